@@ -1,0 +1,196 @@
+//! What exists: a grid of tiles, the things that stand on it, their colours and textures.
+//!
+//! A [`World`] is valid by construction: every index in it points at something, its start is on
+//! open floor, and no later stage checks again. It is made by [`map::parse`](crate::map::parse)
+//! and its siblings, which name every fault of a map with its place; building one by hand, with
+//! faults that have no place to name, was refused.
+
+mod camera;
+mod color;
+mod grid;
+pub mod texture;
+
+pub use camera::{Camera, FieldOfView, Heading};
+pub use color::{NotAColor, Rgb};
+pub use grid::{Cell, Grid, TileId};
+pub use texture::Texture;
+
+/// What a level consists of.
+#[derive(Clone, Debug, PartialEq)]
+pub struct World {
+    title: String,
+    grid: Grid,
+    tiles: Vec<Tile>,
+    textures: Vec<Texture>,
+    floor: Paint,
+    ceiling: Paint,
+    start: Start,
+    things: Vec<Thing>,
+}
+
+/// One kind of tile.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub struct Tile {
+    /// The character that draws it in a map.
+    pub character: char,
+    /// What it is.
+    pub kind: TileKind,
+}
+
+/// What a tile is.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum TileKind {
+    /// Floor to walk on, and to see across.
+    Open,
+    /// A solid cube.
+    Wall(Paint),
+}
+
+/// How a surface looks.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Paint {
+    /// The same colour all over.
+    Color(Rgb),
+    /// A texture.
+    Texture(TextureId),
+}
+
+/// Which texture: an index into the world's list of textures.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
+pub struct TextureId(pub u16);
+
+/// Where the player starts.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Start {
+    /// The cell in whose middle the player stands.
+    pub cell: Cell,
+    /// Which way the player looks.
+    pub heading: Heading,
+}
+
+/// Something that stands in a cell.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub struct Thing {
+    /// What it is.
+    pub kind: ThingKind,
+    /// Where it stands.
+    pub cell: Cell,
+}
+
+/// What a thing is.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum ThingKind {
+    /// Who reaches it has finished the level.
+    Exit,
+}
+
+/// The pieces of a world, not yet known to fit together.
+pub(crate) struct Parts {
+    pub(crate) title: String,
+    pub(crate) grid: Grid,
+    pub(crate) tiles: Vec<Tile>,
+    pub(crate) textures: Vec<Texture>,
+    pub(crate) floor: Paint,
+    pub(crate) ceiling: Paint,
+    pub(crate) start: Start,
+    pub(crate) things: Vec<Thing>,
+}
+
+impl World {
+    /// A world of `parts` that fit together: every tile of the grid and every texture is in its
+    /// list, open tiles come before solid ones, and the start and all things stand on open floor.
+    /// The map's own checks establish all of that, and name what does not fit.
+    pub(crate) fn from_parts(parts: Parts) -> Self {
+        let Parts { title, grid, tiles, textures, floor, ceiling, start, things } = parts;
+        let world = Self { title, grid, tiles, textures, floor, ceiling, start, things };
+        debug_assert!(world.fits_together());
+        world
+    }
+
+    fn fits_together(&self) -> bool {
+        let known = |paint: Paint| match paint {
+            Paint::Color(_) => true,
+            Paint::Texture(id) => usize::from(id.0) < self.textures.len(),
+        };
+        let open = |cell: Cell| {
+            let (column, row) = (i64::from(cell.column), i64::from(cell.row));
+            self.grid.tile(column, row).is_some() && !self.grid.is_solid(column, row)
+        };
+        let tile_fits = |(index, tile): (usize, &Tile)| match tile.kind {
+            TileKind::Open => !self.grid.is_solid_tile(TileId(index as u8)),
+            TileKind::Wall(paint) => self.grid.is_solid_tile(TileId(index as u8)) && known(paint),
+        };
+        self.tiles.iter().enumerate().all(tile_fits)
+            && self.grid.rows().flatten().all(|tile| usize::from(tile.0) < self.tiles.len())
+            && known(self.floor)
+            && known(self.ceiling)
+            && open(self.start.cell)
+            && self.things.iter().all(|thing| open(thing.cell))
+    }
+
+    /// The level's name; empty where the map gives none.
+    pub fn title(&self) -> &str {
+        &self.title
+    }
+
+    /// Which tile each cell holds.
+    pub fn grid(&self) -> &Grid {
+        &self.grid
+    }
+
+    /// The kinds of tile that the grid refers to.
+    pub fn tiles(&self) -> &[Tile] {
+        &self.tiles
+    }
+
+    /// What `id`, a tile of this world's grid, stands for.
+    ///
+    /// # Panics
+    /// Where `id` is from another world that has more tiles.
+    pub fn tile(&self, id: TileId) -> Tile {
+        self.tiles[usize::from(id.0)]
+    }
+
+    /// The texture `id` of this world.
+    ///
+    /// # Panics
+    /// Where `id` is from another world that has more textures.
+    pub fn texture(&self, id: TextureId) -> &Texture {
+        &self.textures[usize::from(id.0)]
+    }
+
+    /// The one colour that stands for `paint`: itself, or the mean of its texture.
+    pub fn mean_color(&self, paint: Paint) -> Rgb {
+        match paint {
+            Paint::Color(color) => color,
+            Paint::Texture(id) => self.texture(id).mean(),
+        }
+    }
+
+    /// How the floor looks.
+    pub fn floor(&self) -> Paint {
+        self.floor
+    }
+
+    /// How the ceiling looks.
+    pub fn ceiling(&self) -> Paint {
+        self.ceiling
+    }
+
+    /// Where the player starts.
+    pub fn start(&self) -> Start {
+        self.start
+    }
+
+    /// What stands in the cells, the start excepted.
+    pub fn things(&self) -> &[Thing] {
+        &self.things
+    }
+
+    /// A camera where the player starts.
+    pub fn start_camera(&self, field_of_view: FieldOfView) -> Camera {
+        let Start { cell, heading } = self.start;
+        Camera::new(cell.center(), heading, field_of_view)
+            .expect("the middle of a cell is at a finite place")
+    }
+}

@@ -1,0 +1,194 @@
+//! The camera: where somebody stands, which way they look, and how wide.
+
+use std::f64::consts::FRAC_PI_2;
+use std::fmt;
+
+use glam::DVec2;
+
+/// A direction on the map: 0° is east, 90° south, clockwise.
+///
+/// It is a whole number of quarter turns and an angle of at most an eighth of a turn beside it, so
+/// that the four axes are exact (looking south, `x` is 0 and not 6e-17), and no number of turns
+/// makes it drift: its sine and cosine are computed afresh from that angle. A unit vector that is
+/// rotated at every step was refused for its drift in length.
+#[derive(Clone, Copy, Debug, PartialEq, Default)]
+pub struct Heading {
+    quarter_turns: u8,
+    /// Radians, within ±π/4 but for rounding.
+    beside: f64,
+}
+
+impl Heading {
+    /// A heading from degrees of any size. `None` where they are not finite.
+    pub fn from_degrees(degrees: f64) -> Option<Self> {
+        if !degrees.is_finite() {
+            return None;
+        }
+        // The remainder of a division is exact in floating point.
+        let degrees = degrees % 360.0;
+        let quarters = (degrees / 90.0).round();
+        let beside = (degrees - 90.0 * quarters).to_radians();
+        Some(Self { quarter_turns: quarters.rem_euclid(4.0) as u8, beside })
+    }
+
+    /// Degrees, from 0 up to 360.
+    pub fn degrees(self) -> f64 {
+        let degrees = 90.0 * f64::from(self.quarter_turns) + self.beside.to_degrees();
+        if degrees < 0.0 { degrees + 360.0 } else { degrees }
+    }
+
+    /// Turned clockwise by `radians`; anything but a finite angle turns nothing.
+    #[must_use]
+    pub fn turned(self, radians: f64) -> Self {
+        if !radians.is_finite() {
+            return self;
+        }
+        let beside = self.beside + radians % (4.0 * FRAC_PI_2);
+        let quarters = (beside / FRAC_PI_2).round();
+        Self {
+            quarter_turns: (f64::from(self.quarter_turns) + quarters).rem_euclid(4.0) as u8,
+            beside: beside - quarters * FRAC_PI_2,
+        }
+    }
+
+    /// The unit vector that points this way.
+    pub fn direction(self) -> DVec2 {
+        let (sin, cos) = (libm::sin(self.beside), libm::cos(self.beside));
+        match self.quarter_turns {
+            0 => DVec2::new(cos, sin),
+            1 => DVec2::new(-sin, cos),
+            2 => DVec2::new(-cos, -sin),
+            _ => DVec2::new(sin, -cos),
+        }
+    }
+}
+
+/// How wide the camera sees: the angle between the left and the right edge of the picture.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct FieldOfView {
+    degrees: f64,
+}
+
+impl FieldOfView {
+    /// A field of view from degrees, above 0 and below 180. `None` outside that.
+    pub fn from_degrees(degrees: f64) -> Option<Self> {
+        (degrees > 0.0 && degrees < 180.0).then_some(Self { degrees })
+    }
+
+    /// Degrees, above 0 and below 180.
+    pub fn degrees(self) -> f64 {
+        self.degrees
+    }
+
+    /// The tangent of half the angle: half the width of a picture at distance 1. Above 0 and finite.
+    pub fn half_width(self) -> f64 {
+        libm::tan(self.degrees.to_radians() / 2.0).max(f64::MIN_POSITIVE)
+    }
+}
+
+impl Default for FieldOfView {
+    /// 66°, whose half width is close to 0.65.
+    fn default() -> Self {
+        Self { degrees: 66.0 }
+    }
+}
+
+impl fmt::Display for FieldOfView {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        write!(f, "{}°", self.degrees)
+    }
+}
+
+/// Where somebody stands, which way they look, and how wide.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Camera {
+    position: DVec2,
+    /// Which way it looks.
+    pub heading: Heading,
+    /// How wide it sees.
+    pub field_of_view: FieldOfView,
+}
+
+impl Camera {
+    /// A camera at `position`, in cells. `None` where that is not finite.
+    pub fn new(position: DVec2, heading: Heading, field_of_view: FieldOfView) -> Option<Self> {
+        position.is_finite().then_some(Self { position, heading, field_of_view })
+    }
+
+    /// Where it stands, in cells.
+    pub fn position(&self) -> DVec2 {
+        self.position
+    }
+
+    /// The unit vector through the middle of the picture.
+    pub fn direction(&self) -> DVec2 {
+        self.heading.direction()
+    }
+
+    /// The vector from the middle of the picture, at distance 1, to its right edge.
+    pub fn plane(&self) -> DVec2 {
+        self.direction().perp() * self.field_of_view.half_width()
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    fn heading(degrees: f64) -> Heading {
+        Heading::from_degrees(degrees).unwrap()
+    }
+
+    #[test]
+    fn the_axes_are_exact() {
+        for turns in [-1e6, -1.0, 0.0, 7.0] {
+            let axes = [(0.0, DVec2::X), (90.0, DVec2::Y), (180.0, -DVec2::X), (270.0, -DVec2::Y)];
+            for (degrees, axis) in axes {
+                assert_eq!(heading(degrees + 360.0 * turns).direction(), axis);
+            }
+        }
+    }
+
+    #[test]
+    fn degrees_come_back() {
+        for degrees in [0.0, 1.0, 44.0, 45.0, 46.0, 135.0, 225.5, 359.0] {
+            assert!((heading(degrees).degrees() - degrees).abs() < 1e-12, "{degrees}");
+        }
+        assert_eq!(Heading::from_degrees(f64::NAN), None);
+        assert_eq!(Heading::from_degrees(f64::INFINITY), None);
+    }
+
+    #[test]
+    fn ten_million_turns_of_the_wheel_leave_a_unit_vector() {
+        let mut wheel = heading(12.0);
+        for _ in 0..10_000_000 {
+            wheel = wheel.turned(0.1);
+        }
+        assert!((wheel.direction().length() - 1.0).abs() < 4.0 * f64::EPSILON);
+        let camera = Camera::new(DVec2::ZERO, wheel, FieldOfView::default()).unwrap();
+        assert!(camera.direction().dot(camera.plane()).abs() < 4.0 * f64::EPSILON);
+    }
+
+    #[test]
+    fn a_turn_that_is_no_number_turns_nothing() {
+        assert_eq!(heading(3.0).turned(f64::NAN), heading(3.0));
+        assert_eq!(heading(3.0).turned(f64::INFINITY), heading(3.0));
+    }
+
+    #[test]
+    fn the_plane_points_to_the_right() {
+        let camera = Camera::new(DVec2::ZERO, heading(0.0), FieldOfView::default()).unwrap();
+        assert!(camera.plane().x == 0.0 && camera.plane().y > 0.0);
+    }
+
+    #[test]
+    fn any_field_of_view_has_a_width() {
+        for degrees in [1e-320, 0.001, 66.0, 179.9, 180.0_f64.next_down()] {
+            let width = FieldOfView::from_degrees(degrees).unwrap().half_width();
+            assert!(width > 0.0 && width.is_finite(), "{degrees}");
+        }
+        for degrees in [0.0, -1.0, 180.0, f64::NAN, f64::INFINITY] {
+            assert_eq!(FieldOfView::from_degrees(degrees), None);
+        }
+    }
+}

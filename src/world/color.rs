@@ -1,0 +1,130 @@
+//! Colours: 8-bit sRGB, packed so that a pixel is one machine word.
+
+use std::fmt;
+use std::str::FromStr;
+
+/// An opaque sRGB colour with 8 bits a channel.
+///
+/// It is stored as `0x00RRGGBB` in one word: a pixel is then one store, and halving all channels
+/// one shift and one mask. Three separate bytes were refused, as they cost three of each.
+#[derive(Clone, Copy, PartialEq, Eq, Hash, Default)]
+pub struct Rgb(u32);
+
+impl Rgb {
+    /// The darkest colour.
+    pub const BLACK: Self = Self::new(0, 0, 0);
+    /// The brightest colour.
+    pub const WHITE: Self = Self::new(255, 255, 255);
+    /// What a ray sees that leaves the map, and what the colour name `sky` stands for.
+    pub const SKY: Self = Self::new(0x87, 0xb5, 0xd9);
+
+    /// A colour from its red, green and blue channels.
+    pub const fn new(red: u8, green: u8, blue: u8) -> Self {
+        Self((red as u32) << 16 | (green as u32) << 8 | blue as u32)
+    }
+
+    /// The red channel.
+    pub const fn red(self) -> u8 {
+        (self.0 >> 16) as u8
+    }
+
+    /// The green channel.
+    pub const fn green(self) -> u8 {
+        (self.0 >> 8) as u8
+    }
+
+    /// The blue channel.
+    pub const fn blue(self) -> u8 {
+        self.0 as u8
+    }
+
+    /// Red, green and blue.
+    pub const fn channels(self) -> [u8; 3] {
+        [self.red(), self.green(), self.blue()]
+    }
+
+    /// Half as bright: each channel divided by two, rounded down.
+    #[must_use]
+    pub const fn halved(self) -> Self {
+        const LOW_SEVEN_BITS_OF_EACH_CHANNEL: u32 = 0x007f_7f7f;
+        Self(self.0 >> 1 & LOW_SEVEN_BITS_OF_EACH_CHANNEL)
+    }
+
+    /// How bright the colour looks, from 0 to 255, by the Rec. 709 weights in 16-bit fixed point.
+    pub const fn luma(self) -> u8 {
+        const RED: u32 = 13_933;
+        const GREEN: u32 = 46_871;
+        const BLUE: u32 = 4_732;
+        let sum =
+            RED * self.red() as u32 + GREEN * self.green() as u32 + BLUE * self.blue() as u32;
+        (sum >> 16) as u8
+    }
+}
+
+impl fmt::Display for Rgb {
+    /// Writes `#rrggbb`.
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        write!(f, "#{:06x}", self.0)
+    }
+}
+
+impl fmt::Debug for Rgb {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        fmt::Display::fmt(self, f)
+    }
+}
+
+/// The error of [`Rgb::from_str`]: the text is no colour.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub struct NotAColor;
+
+impl fmt::Display for NotAColor {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        f.write_str("a colour is written as \"#rrggbb\", such as \"#a04030\", or as \"sky\"")
+    }
+}
+
+impl std::error::Error for NotAColor {}
+
+impl FromStr for Rgb {
+    type Err = NotAColor;
+
+    /// Reads `#rrggbb`, in either case, or `sky`.
+    fn from_str(text: &str) -> Result<Self, NotAColor> {
+        if text == "sky" {
+            return Ok(Self::SKY);
+        }
+        let digits = text.strip_prefix('#').ok_or(NotAColor)?;
+        if digits.len() != 6 || !digits.bytes().all(|byte| byte.is_ascii_hexdigit()) {
+            return Err(NotAColor);
+        }
+        u32::from_str_radix(digits, 16).map(Self).map_err(|_| NotAColor)
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn text_and_colour_agree() {
+        for text in ["#000000", "#a04030", "#ffffff"] {
+            assert_eq!(text.parse::<Rgb>().unwrap().to_string(), text);
+        }
+        assert_eq!("#A04030".parse(), Ok(Rgb::new(0xa0, 0x40, 0x30)));
+        for text in ["", "#", "a04030", "#a0403", "#a040300", "#+12345", "#gg0000", "#ä0000", "red"] {
+            assert_eq!(text.parse::<Rgb>(), Err(NotAColor), "{text}");
+        }
+    }
+
+    #[test]
+    fn halving_never_borrows_from_the_next_channel() {
+        assert_eq!(Rgb::new(255, 1, 3).halved(), Rgb::new(127, 0, 1));
+    }
+
+    #[test]
+    fn luma_spans_its_range() {
+        assert_eq!(Rgb::BLACK.luma(), 0);
+        assert_eq!(Rgb::WHITE.luma(), 255);
+    }
+}

@@ -1,0 +1,124 @@
+//! The grid: one byte a cell, row by row from the north.
+
+use std::num::NonZeroU32;
+
+use glam::DVec2;
+
+/// The place of a cell: column from the west, row from the north, both from 0.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Hash, PartialOrd, Ord)]
+pub struct Cell {
+    /// Cells to the west of this one.
+    pub column: u32,
+    /// Cells to the north of this one.
+    pub row: u32,
+}
+
+impl Cell {
+    /// The middle of the cell.
+    pub fn center(self) -> DVec2 {
+        DVec2::new(f64::from(self.column) + 0.5, f64::from(self.row) + 0.5)
+    }
+}
+
+/// Which kind of tile a cell holds: an index into the world's list of tiles.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Hash, PartialOrd, Ord)]
+pub struct TileId(pub u8);
+
+/// Which tile each cell holds, and which tiles are solid.
+///
+/// Tiles are numbered with the open ones first, so that asking whether a cell is solid is one
+/// comparison and needs no table.
+#[derive(Clone, Debug, PartialEq, Eq)]
+pub struct Grid {
+    width: NonZeroU32,
+    height: NonZeroU32,
+    first_solid: TileId,
+    cells: Vec<TileId>,
+}
+
+impl Grid {
+    /// A grid of `width` × `height` cells, row by row from the north, where tiles from
+    /// `first_solid` on are solid. `None` where `cells` is not as long as that.
+    pub fn new(
+        width: NonZeroU32,
+        height: NonZeroU32,
+        first_solid: TileId,
+        cells: Vec<TileId>,
+    ) -> Option<Self> {
+        let count = u64::from(width.get()) * u64::from(height.get());
+        (cells.len() as u64 == count).then_some(Self { width, height, first_solid, cells })
+    }
+
+    /// A grid drawn in characters: `.` and a space are open floor (tile 0), anything else is solid
+    /// (tile 1). `None` where it is empty or its rows are not of one length.
+    ///
+    /// ```
+    /// let grid = cellcaster::world::Grid::sketch(&["###", "#.#", "###"]).unwrap();
+    /// assert!(grid.is_solid(0, 0) && !grid.is_solid(1, 1));
+    /// ```
+    pub fn sketch(rows: &[&str]) -> Option<Self> {
+        let width = NonZeroU32::new(rows.first()?.chars().count() as u32)?;
+        let height = NonZeroU32::new(rows.len() as u32)?;
+        if rows.iter().any(|row| row.chars().count() as u32 != width.get()) {
+            return None;
+        }
+        let tile = |character| TileId(u8::from(!matches!(character, '.' | ' ')));
+        let cells = rows.iter().flat_map(|row| row.chars()).map(tile).collect();
+        Self::new(width, height, TileId(1), cells)
+    }
+
+    /// Columns, from west to east.
+    pub fn width(&self) -> u32 {
+        self.width.get()
+    }
+
+    /// Rows, from north to south.
+    pub fn height(&self) -> u32 {
+        self.height.get()
+    }
+
+    /// The tile at a place, or `None` off the map.
+    pub fn tile(&self, column: i64, row: i64) -> Option<TileId> {
+        let column = u32::try_from(column).ok().filter(|&column| column < self.width())?;
+        let row = u32::try_from(row).ok().filter(|&row| row < self.height())?;
+        Some(self.cells[row as usize * self.width() as usize + column as usize])
+    }
+
+    /// Whether there is something solid at a place; off the map there is nothing.
+    pub fn is_solid(&self, column: i64, row: i64) -> bool {
+        self.tile(column, row).is_some_and(|tile| self.is_solid_tile(tile))
+    }
+
+    /// Whether cells that hold `tile` are solid.
+    pub fn is_solid_tile(&self, tile: TileId) -> bool {
+        tile >= self.first_solid
+    }
+
+    /// The tiles row by row from the north, each row from the west.
+    pub fn rows(&self) -> impl ExactSizeIterator<Item = &[TileId]> {
+        self.cells.chunks_exact(self.width() as usize)
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn off_the_map_is_nothing() {
+        let grid = Grid::sketch(&["#.", "##", "##"]).unwrap();
+        assert_eq!((grid.width(), grid.height()), (2, 3));
+        assert!(!grid.is_solid(1, 0) && grid.is_solid(1, 2));
+        for (column, row) in [(-1, 0), (0, -1), (2, 0), (0, 3), (i64::MAX, i64::MIN)] {
+            assert_eq!(grid.tile(column, row), None);
+            assert!(!grid.is_solid(column, row));
+        }
+    }
+
+    #[test]
+    fn no_grid_without_cells_or_with_ragged_rows() {
+        assert_eq!(Grid::sketch(&[]), None);
+        assert_eq!(Grid::sketch(&[""]), None);
+        assert_eq!(Grid::sketch(&["##", "#"]), None);
+    }
+}

@@ -1,0 +1,135 @@
+//! Textures: pictures that walls are papered with.
+//!
+//! Texels are stored column by column, top to bottom, because a wall is drawn column by column and
+//! then reads one stretch of memory.
+
+pub mod builtin;
+
+use std::num::NonZeroU32;
+
+use super::Rgb;
+
+/// A picture, at least one texel wide and high.
+#[derive(Clone, Debug, PartialEq, Eq)]
+pub struct Texture {
+    width: NonZeroU32,
+    height: NonZeroU32,
+    /// Column by column, each from top to bottom.
+    texels: Vec<Rgb>,
+    /// 0 for clear, 255 for opaque, in the order of `texels`; empty where all is opaque.
+    alpha: Vec<u8>,
+    mean: Rgb,
+}
+
+impl Texture {
+    /// An opaque texture whose texel at `(x, y)` is `texel(x, y)`, `x` from the left and `y` from
+    /// the top.
+    pub fn from_fn(
+        width: NonZeroU32,
+        height: NonZeroU32,
+        mut texel: impl FnMut(u32, u32) -> Rgb,
+    ) -> Self {
+        Self::from_fn_with_alpha(width, height, |x, y| (texel(x, y), u8::MAX))
+    }
+
+    /// As [`Texture::from_fn`], each texel with its alpha: 0 for clear, 255 for opaque.
+    pub fn from_fn_with_alpha(
+        width: NonZeroU32,
+        height: NonZeroU32,
+        mut texel: impl FnMut(u32, u32) -> (Rgb, u8),
+    ) -> Self {
+        let (texels, mut alpha): (Vec<Rgb>, Vec<u8>) = (0..width.get())
+            .flat_map(|x| (0..height.get()).map(move |y| (x, y)))
+            .map(|(x, y)| texel(x, y))
+            .unzip();
+        if alpha.iter().all(|&alpha| alpha == u8::MAX) {
+            alpha = Vec::new();
+        }
+        let mean = mean(&texels);
+        Self { width, height, texels, alpha, mean }
+    }
+
+    /// Texels from left to right.
+    pub fn width(&self) -> u32 {
+        self.width.get()
+    }
+
+    /// Texels from top to bottom.
+    pub fn height(&self) -> u32 {
+        self.height.get()
+    }
+
+    /// The column that holds `u`, from 0 at the left edge to 1 at the right one, top to bottom. A
+    /// `u` outside that range, or not a number, means the nearest column.
+    pub fn column(&self, u: f64) -> &[Rgb] {
+        let height = self.height.get() as usize;
+        let x = texel_index(u, self.width.get()) * height;
+        &self.texels[x..x + height]
+    }
+
+    /// The alpha of the texel at `(x, y)`, 255 where it is opaque.
+    ///
+    /// # Panics
+    /// Where the texture has no such texel.
+    pub fn alpha(&self, x: u32, y: u32) -> u8 {
+        assert!(x < self.width() && y < self.height(), "no texel at ({x}, {y})");
+        let index = x as usize * self.height.get() as usize + y as usize;
+        self.alpha.get(index).copied().unwrap_or(u8::MAX)
+    }
+
+    /// The mean colour of all texels: what the texture looks like from very far away.
+    pub fn mean(&self) -> Rgb {
+        self.mean
+    }
+}
+
+/// The texel of `count` in a row that holds `coordinate`, from 0 to 1; the nearest one outside.
+fn texel_index(coordinate: f64, count: u32) -> usize {
+    let index = (coordinate * f64::from(count)) as usize;
+    index.min(count as usize - 1)
+}
+
+fn mean(texels: &[Rgb]) -> Rgb {
+    let mut sums = [0u64; 3];
+    for texel in texels {
+        for (sum, channel) in sums.iter_mut().zip(texel.channels()) {
+            *sum += u64::from(channel);
+        }
+    }
+    let count = texels.len() as u64;
+    let [red, green, blue] = sums.map(|sum| ((sum + count / 2) / count) as u8);
+    Rgb::new(red, green, blue)
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    fn size(side: u32) -> NonZeroU32 {
+        NonZeroU32::new(side).unwrap()
+    }
+
+    #[test]
+    fn columns_are_read_top_to_bottom() {
+        let texture = Texture::from_fn(size(4), size(2), |x, y| Rgb::new(x as u8, y as u8, 0));
+        assert_eq!(texture.column(0.0), [Rgb::new(0, 0, 0), Rgb::new(0, 1, 0)]);
+        assert_eq!(texture.column(0.25), [Rgb::new(1, 0, 0), Rgb::new(1, 1, 0)]);
+        for far in [0.999, 1.0, 2.0, f64::INFINITY] {
+            assert_eq!(texture.column(far)[0].red(), 3, "{far}");
+        }
+        for near in [-0.0, -1.0, f64::NEG_INFINITY, f64::NAN] {
+            assert_eq!(texture.column(near)[0].red(), 0, "{near}");
+        }
+    }
+
+    #[test]
+    fn mean_and_alpha() {
+        let texture = Texture::from_fn_with_alpha(size(2), size(1), |x, _| {
+            (Rgb::new(100 * x as u8, 0, 255), if x == 0 { 0 } else { 255 })
+        });
+        assert_eq!(texture.mean(), Rgb::new(50, 0, 255));
+        assert_eq!((texture.alpha(0, 0), texture.alpha(1, 0)), (0, 255));
+        let opaque = Texture::from_fn(size(1), size(1), |_, _| Rgb::BLACK);
+        assert_eq!(opaque.alpha(0, 0), 255);
+    }
+}
