@@ -7,4 +7,8 @@
 //! ```
 
 pub mod cast;
+pub mod palette;
+pub mod render;
+#[cfg(feature = "tui")]
+pub mod tui;
 pub mod world;

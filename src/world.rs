@@ -189,8 +189,6 @@ impl World {
 
     /// A camera where the player starts.
     pub fn start_camera(&self, field_of_view: FieldOfView) -> Camera {
-        let Start { cell, heading } = self.start;
-        Camera::new(cell.center(), heading, field_of_view)
-            .expect("the middle of a cell is at a finite place")
+        Camera::in_cell(self.start.cell, self.start.heading, field_of_view)
     }
 }

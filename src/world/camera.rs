@@ -5,6 +5,8 @@ use std::fmt;
 
 use glam::DVec2;
 
+use super::Cell;
+
 /// A direction on the map: 0° is east, 90° south, clockwise.
 ///
 /// It is a whole number of quarter turns and an angle of at most an eighth of a turn beside it, so
@@ -113,6 +115,11 @@ impl Camera {
     /// A camera at `position`, in cells. `None` where that is not finite.
     pub fn new(position: DVec2, heading: Heading, field_of_view: FieldOfView) -> Option<Self> {
         position.is_finite().then_some(Self { position, heading, field_of_view })
+    }
+
+    /// A camera in the middle of `cell`.
+    pub fn in_cell(cell: Cell, heading: Heading, field_of_view: FieldOfView) -> Self {
+        Self { position: cell.center(), heading, field_of_view }
     }
 
     /// Where it stands, in cells.

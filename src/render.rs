@@ -1,0 +1,49 @@
+//! Drawing: a world and a camera in, pixels out.
+//!
+//! A frame is drawn in passes, each a file: `columns` casts one ray for every column of pixels,
+//! `backdrop` fills in floor and ceiling, `walls` papers what the rays hit. The passes share a
+//! `Projection`, which is the only place that knows how the world maps to pixels.
+//!
+//! The caller owns the [`Frame`] and keeps the [`Renderer`], which owns what the passes need in
+//! between; drawing allocates nothing once both have grown to the size of the picture. One pass that
+//! does everything to a column before it goes to the next was refused: a pass that a scene has no
+//! use for can be left out, a branch in the innermost loop can't.
+
+mod backdrop;
+mod columns;
+mod frame;
+mod projection;
+mod walls;
+
+pub use columns::{Column, Surface};
+pub use frame::{Frame, FrameSize, PixelAspect};
+
+use crate::cast::Dda;
+use crate::world::{Camera, World};
+use projection::Projection;
+
+/// Draws frames, and keeps what is worth keeping from one to the next.
+#[derive(Clone, Debug, Default)]
+pub struct Renderer {
+    columns: Vec<Column>,
+}
+
+impl Renderer {
+    /// A renderer that has drawn nothing yet.
+    pub fn new() -> Self {
+        Self::default()
+    }
+
+    /// Draws what `camera` sees of `world` into all of `frame`.
+    pub fn render(&mut self, world: &World, camera: &Camera, frame: &mut Frame) {
+        let projection = Projection::new(camera, frame.size(), frame.pixel_aspect());
+        columns::cast(&Dda, world.grid(), &projection, &mut self.columns);
+        backdrop::draw(world, &self.columns, frame);
+        walls::draw(world, &projection, &self.columns, frame);
+    }
+
+    /// What the rays of the last frame met, from left to right, one for each column of pixels.
+    pub fn columns(&self) -> &[Column] {
+        &self.columns
+    }
+}

@@ -1,0 +1,92 @@
+//! The first pass: one ray for every column of pixels.
+
+use std::ops::Range;
+
+use glam::DVec2;
+
+use super::Projection;
+use crate::cast::{Caster, Hit, Ray, Side};
+use crate::world::Grid;
+
+/// What the ray of one column of pixels met.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Column {
+    /// What it hit, or `None` where it left the map.
+    pub hit: Option<Hit>,
+    /// How far it got, in cells from the camera plane: to the wall, or to the edge of the map.
+    pub distance: f64,
+    /// The rows of pixels between ceiling and floor at that distance: the wall or, beyond the edge
+    /// of the map, the sky and the ground.
+    pub rows: Range<u32>,
+}
+
+/// What a pixel shows.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Surface {
+    /// The ceiling.
+    Ceiling,
+    /// The sky beyond the edge of the map.
+    Sky,
+    /// A wall's west or east side.
+    WallX,
+    /// A wall's north or south side.
+    WallY,
+    /// The floor.
+    Floor,
+}
+
+impl Column {
+    /// What the pixel in `row` of this column shows, in a frame `height` pixels high.
+    pub fn surface(&self, row: u32, height: u32) -> Surface {
+        if row < self.rows.start {
+            return Surface::Ceiling;
+        }
+        if row >= self.rows.end {
+            return Surface::Floor;
+        }
+        match &self.hit {
+            Some(Hit { side: Side::X, .. }) => Surface::WallX,
+            Some(Hit { side: Side::Y, .. }) => Surface::WallY,
+            None if row < first_row_of_ground(height) => Surface::Sky,
+            None => Surface::Floor,
+        }
+    }
+}
+
+/// The first row that shows the ground where nothing is in the way: the first one with its centre
+/// at the horizon or below.
+pub(super) fn first_row_of_ground(height: u32) -> u32 {
+    height / 2
+}
+
+/// Casts the ray of every column into `columns`, whatever they held before.
+pub(super) fn cast<C: Caster>(
+    caster: &C,
+    grid: &Grid,
+    projection: &Projection,
+    columns: &mut Vec<Column>,
+) {
+    columns.clear();
+    columns.extend(projection.rays().map(|ray| {
+        let hit = caster.cast(grid, &ray);
+        let distance = hit.map_or_else(|| distance_to_edge(grid, &ray), |hit| hit.t);
+        Column { hit, distance, rows: projection.wall_rows(distance) }
+    }));
+}
+
+/// How far along `ray` the map ends; 0 where the ray is off the map and never enters it.
+fn distance_to_edge(grid: &Grid, ray: &Ray) -> f64 {
+    let edges = DVec2::new(f64::from(grid.width()), f64::from(grid.height()));
+    let along = |origin: f64, direction: f64, edge: f64| {
+        if direction > 0.0 {
+            (edge - origin) / direction
+        } else if direction < 0.0 {
+            origin / -direction
+        } else {
+            f64::INFINITY
+        }
+    };
+    let (origin, direction) = (ray.origin(), ray.direction());
+    let leaves = along(origin.x, direction.x, edges.x).min(along(origin.y, direction.y, edges.y));
+    leaves.max(0.0)
+}

@@ -1,0 +1,115 @@
+//! The frame: pixels off screen, row by row from the top.
+
+use std::num::NonZeroU32;
+
+use crate::world::Rgb;
+
+/// How many pixels a frame has.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub struct FrameSize {
+    /// Pixels from left to right.
+    pub width: NonZeroU32,
+    /// Pixels from top to bottom.
+    pub height: NonZeroU32,
+}
+
+impl FrameSize {
+    /// A size of `width` × `height` pixels. `None` where one of them is zero.
+    pub fn new(width: u32, height: u32) -> Option<Self> {
+        Some(Self { width: NonZeroU32::new(width)?, height: NonZeroU32::new(height)? })
+    }
+
+    fn area(self) -> usize {
+        self.width.get() as usize * self.height.get() as usize
+    }
+}
+
+/// The height of a pixel over its width.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct PixelAspect(f64);
+
+impl PixelAspect {
+    /// Pixels as wide as they are high.
+    pub const SQUARE: Self = Self(1.0);
+
+    /// A ratio above 0 and finite. `None` for anything else.
+    pub fn new(height_over_width: f64) -> Option<Self> {
+        (height_over_width > 0.0 && height_over_width.is_finite())
+            .then_some(Self(height_over_width))
+    }
+
+    /// The height of a pixel over its width.
+    pub fn height_over_width(self) -> f64 {
+        self.0
+    }
+}
+
+/// A picture in memory, owned by the caller and drawn over from frame to frame.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Frame {
+    size: FrameSize,
+    pixel_aspect: PixelAspect,
+    /// Row by row from the top, each from the left.
+    pixels: Vec<Rgb>,
+}
+
+impl Frame {
+    /// A black frame.
+    pub fn new(size: FrameSize, pixel_aspect: PixelAspect) -> Self {
+        Self { size, pixel_aspect, pixels: vec![Rgb::BLACK; size.area()] }
+    }
+
+    /// Changes the size and the shape of pixels; what the pixels show is unspecified until the next
+    /// drawing. Memory is kept, and allocated only where the frame was never as large.
+    pub fn resize(&mut self, size: FrameSize, pixel_aspect: PixelAspect) {
+        self.size = size;
+        self.pixel_aspect = pixel_aspect;
+        self.pixels.resize(size.area(), Rgb::BLACK);
+    }
+
+    /// How many pixels it has.
+    pub fn size(&self) -> FrameSize {
+        self.size
+    }
+
+    /// Pixels from left to right.
+    pub fn width(&self) -> u32 {
+        self.size.width.get()
+    }
+
+    /// Pixels from top to bottom.
+    pub fn height(&self) -> u32 {
+        self.size.height.get()
+    }
+
+    /// The shape of its pixels.
+    pub fn pixel_aspect(&self) -> PixelAspect {
+        self.pixel_aspect
+    }
+
+    /// The pixels row by row from the top, each row from the left.
+    pub fn rows(&self) -> impl ExactSizeIterator<Item = &[Rgb]> {
+        self.pixels.chunks_exact(self.width() as usize)
+    }
+
+    /// The pixel in column `x` from the left and row `y` from the top.
+    ///
+    /// # Panics
+    /// Where the frame has no such pixel.
+    pub fn pixel(&self, x: u32, y: u32) -> Rgb {
+        assert!(x < self.width(), "no pixel at ({x}, {y})");
+        self.pixels[y as usize * self.width() as usize + x as usize]
+    }
+
+    /// The pixels of the rows from `first` up to `last`, which is left out.
+    pub(super) fn row_range_mut(&mut self, first: u32, last: u32) -> &mut [Rgb] {
+        let width = self.width() as usize;
+        &mut self.pixels[first as usize * width..last as usize * width]
+    }
+
+    /// The pixels of column `x`, from the top.
+    pub(super) fn column_mut(&mut self, x: usize) -> impl Iterator<Item = &mut Rgb> {
+        let width = self.width() as usize;
+        self.pixels[x..].iter_mut().step_by(width)
+    }
+}

@@ -1,0 +1,77 @@
+//! The projection: which ray a column stands for, and which rows a wall covers.
+//!
+//! It is true on any window and any font: the focal length in pixels is `(w/2) / tan(fov/2)`, and
+//! vertically that divided by the shape of a pixel, so that a cube looks like a cube. Rows and
+//! columns are taken at the centres of pixels.
+
+use std::ops::Range;
+
+use glam::DVec2;
+
+use super::{FrameSize, PixelAspect};
+use crate::cast::Ray;
+use crate::world::Camera;
+
+/// How the world maps to the pixels of one frame.
+#[derive(Clone, Debug)]
+pub(super) struct Projection {
+    origin: DVec2,
+    direction: DVec2,
+    plane: DVec2,
+    width: u32,
+    height: f64,
+    /// The row that the eye's own height falls on, in pixels from the top.
+    horizon: f64,
+    /// Rows from the horizon to something 1 above the eye at distance 1.
+    focal_length: f64,
+}
+
+impl Projection {
+    pub(super) fn new(camera: &Camera, size: FrameSize, pixel_aspect: PixelAspect) -> Self {
+        let width = size.width.get();
+        let height = f64::from(size.height.get());
+        let across = f64::from(width) / 2.0 / camera.field_of_view.half_width();
+        Self {
+            origin: camera.position(),
+            direction: camera.direction(),
+            plane: camera.plane(),
+            width,
+            height,
+            horizon: height / 2.0,
+            focal_length: across / pixel_aspect.height_over_width(),
+        }
+    }
+
+    /// The rays of all columns, from left to right, each through the middle of its pixels.
+    ///
+    /// A ray's `t` is the distance to the camera plane, so nothing needs correcting afterwards.
+    pub(super) fn rays(&self) -> impl Iterator<Item = Ray> {
+        let width = f64::from(self.width);
+        (0..self.width).map(move |column| {
+            // The quotient of two whole numbers: a column and its mirror image get opposite ones.
+            let across = (f64::from(column) * 2.0 + 1.0 - width) / width;
+            Ray::new(self.origin, self.direction + self.plane * across)
+                .expect("a camera is at a finite place, and its plane is not parallel to its view")
+        })
+    }
+
+    /// The rows whose centres are between the top and the bottom of a wall, 1 high, at distance `t`.
+    pub(super) fn wall_rows(&self, t: f64) -> Range<u32> {
+        let half = 0.5 * self.focal_length / t;
+        self.first_row_below(self.horizon - half)..self.first_row_below(self.horizon + half)
+    }
+
+    /// How far down a wall at distance `t` the centre of `row` is: 0 at its top, 1 at its bottom.
+    pub(super) fn down_the_wall(&self, t: f64) -> impl Fn(u32) -> f64 {
+        let wall_per_row = t / self.focal_length;
+        let horizon = self.horizon;
+        move |row| 0.5 + (f64::from(row) + 0.5 - horizon) * wall_per_row
+    }
+
+    /// The first row with its centre at `y` or below; the number of rows where there is none.
+    fn first_row_below(&self, y: f64) -> u32 {
+        // The cast takes what is not a number, as of a wall infinitely far through an infinitely
+        // long lens, to 0.
+        (y - 0.5).ceil().clamp(0.0, self.height) as u32
+    }
+}

@@ -1,0 +1,35 @@
+//! Widgets: what ratatui programs put on their screens.
+//!
+//! [`FirstPerson`] shows what a camera sees, [`Minimap`] shows the map from above. Both are plain
+//! ratatui widgets that fill whatever area they are given and know nothing of keys or escape
+//! sequences:
+//!
+//! ```
+//! use cellcaster::tui::{FirstPerson, Minimap, View};
+//! use cellcaster::world::FieldOfView;
+//! use ratatui::layout::{Constraint, Layout};
+//!
+//! let world = cellcaster::map::builtin::LEVELS[0].world()?;
+//! let camera = world.start_camera(FieldOfView::default());
+//! let mut view = View::default();
+//!
+//! let draw = |frame: &mut ratatui::Frame| {
+//!     let panels = [Constraint::Fill(1), Constraint::Length(24)];
+//!     let [picture, map] = Layout::horizontal(panels).areas(frame.area());
+//!     frame.render_stateful_widget(FirstPerson::new(&world, &camera), picture, &mut view);
+//!     frame.render_widget(Minimap::new(&world, &camera).seen(view.columns()), map);
+//! };
+//! # let mut terminal = ratatui::Terminal::new(ratatui::backend::TestBackend::new(80, 24))?;
+//! # terminal.draw(draw)?;
+//! # Ok::<(), Box<dyn std::error::Error>>(())
+//! ```
+
+mod ascii;
+mod first_person;
+mod glyphs;
+mod half_blocks;
+mod minimap;
+
+pub use first_person::{FirstPerson, View};
+pub use glyphs::{CellAspect, GlyphMode};
+pub use minimap::Minimap;

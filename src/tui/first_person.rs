@@ -1,0 +1,116 @@
+//! The first-person view: what a camera sees, in cells.
+
+use std::num::NonZeroU32;
+
+use ratatui::buffer::Buffer;
+use ratatui::layout::{Rect, Size};
+use ratatui::widgets::StatefulWidget;
+
+use super::{CellAspect, GlyphMode, ascii, half_blocks};
+use crate::palette::ColorDepth;
+use crate::render::{Column, Frame, FrameSize, PixelAspect, Renderer};
+use crate::world::{Camera, World};
+
+/// A widget that shows what a camera sees.
+///
+/// Its state, a [`View`], keeps the memory for the picture from one drawing to the next.
+#[derive(Clone, Copy, Debug)]
+pub struct FirstPerson<'a> {
+    world: &'a World,
+    camera: &'a Camera,
+    glyphs: GlyphMode,
+    depth: ColorDepth,
+    cell_aspect: CellAspect,
+}
+
+impl<'a> FirstPerson<'a> {
+    /// What `camera` sees of `world`: half blocks in true colour, on cells twice as high as wide.
+    pub fn new(world: &'a World, camera: &'a Camera) -> Self {
+        Self {
+            world,
+            camera,
+            glyphs: GlyphMode::default(),
+            depth: ColorDepth::default(),
+            cell_aspect: CellAspect::default(),
+        }
+    }
+
+    /// With those characters.
+    #[must_use]
+    pub fn glyphs(self, glyphs: GlyphMode) -> Self {
+        Self { glyphs, ..self }
+    }
+
+    /// With that many colours.
+    #[must_use]
+    pub fn color_depth(self, depth: ColorDepth) -> Self {
+        Self { depth, ..self }
+    }
+
+    /// On cells of that shape.
+    #[must_use]
+    pub fn cell_aspect(self, cell_aspect: CellAspect) -> Self {
+        Self { cell_aspect, ..self }
+    }
+
+    /// Draws the picture for an area of that size into `view`, as pixels only.
+    ///
+    /// With [`FirstPerson::paint`] this is what rendering the widget does. Apart, they serve who has
+    /// no room for the cells of the whole picture at once.
+    pub fn draw(&self, size: Size, view: &mut View) {
+        let height = u32::from(size.height) * self.glyphs.pixels_per_cell();
+        let Some(size) = FrameSize::new(u32::from(size.width), height) else { return };
+        view.frame.resize(size, self.cell_aspect.of_pixels(self.glyphs));
+        view.renderer.render(self.world, self.camera, &mut view.frame);
+    }
+
+    /// Fills `area` with the cells of the picture in `view`, from its row of cells `first_row` on.
+    ///
+    /// # Panics
+    /// Where the picture has fewer cells than that.
+    pub fn paint(&self, view: &View, first_row: u16, area: Rect, buffer: &mut Buffer) {
+        let View { renderer, frame } = view;
+        let above = u32::from(first_row) * self.glyphs.pixels_per_cell();
+        match self.glyphs {
+            GlyphMode::Half => {
+                half_blocks::draw(area, buffer, self.depth, above, |x, y| frame.pixel(x, y));
+            }
+            GlyphMode::Ascii => ascii::draw(area, buffer, self.depth, |x, y| {
+                let surface = renderer.columns()[x as usize].surface(above + y, frame.height());
+                let color = frame.pixel(x, above + y);
+                (color, ascii::character(surface, color))
+            }),
+        }
+    }
+}
+
+/// What a [`FirstPerson`] keeps between drawings: the picture, and what the rays met.
+#[derive(Clone, Debug)]
+pub struct View {
+    renderer: Renderer,
+    frame: Frame,
+}
+
+impl Default for View {
+    fn default() -> Self {
+        let smallest = FrameSize { width: NonZeroU32::MIN, height: NonZeroU32::MIN };
+        Self { renderer: Renderer::new(), frame: Frame::new(smallest, PixelAspect::SQUARE) }
+    }
+}
+
+impl View {
+    /// What the rays of the last drawing met, from left to right.
+    pub fn columns(&self) -> &[Column] {
+        self.renderer.columns()
+    }
+}
+
+impl StatefulWidget for FirstPerson<'_> {
+    type State = View;
+
+    fn render(self, area: Rect, buffer: &mut Buffer, view: &mut View) {
+        let area = area.intersection(buffer.area);
+        self.draw(area.as_size(), view);
+        self.paint(view, 0, area, buffer);
+    }
+}

@@ -1,0 +1,224 @@
+//! The minimap: the map from above, north up.
+
+use glam::DVec2;
+use ratatui::buffer::Buffer;
+use ratatui::layout::Rect;
+use ratatui::style::Color;
+use ratatui::widgets::Widget;
+
+use super::{GlyphMode, ascii, half_blocks};
+use crate::palette::ColorDepth;
+use crate::render::Column;
+use crate::world::{Camera, Rgb, ThingKind, TileKind, World};
+
+/// A widget that shows the map from above: walls in their colours, the player as an arrow, and the
+/// part of the floor that is seen, by the rays that the picture was drawn from.
+///
+/// It is as large as fits its area, in whole pixels a cell. A map that is too large for that scrolls
+/// with the player.
+#[derive(Clone, Copy, Debug)]
+pub struct Minimap<'a> {
+    world: &'a World,
+    camera: &'a Camera,
+    columns: &'a [Column],
+    glyphs: GlyphMode,
+    depth: ColorDepth,
+}
+
+impl<'a> Minimap<'a> {
+    /// The map of `world` with `camera` on it, in half blocks and true colour.
+    pub fn new(world: &'a World, camera: &'a Camera) -> Self {
+        Self {
+            world,
+            camera,
+            columns: &[],
+            glyphs: GlyphMode::default(),
+            depth: ColorDepth::default(),
+        }
+    }
+
+    /// With the field of view that `columns` saw; they are those of a picture by the same camera.
+    #[must_use]
+    pub fn seen(self, columns: &'a [Column]) -> Self {
+        Self { columns, ..self }
+    }
+
+    /// With those characters.
+    #[must_use]
+    pub fn glyphs(self, glyphs: GlyphMode) -> Self {
+        Self { glyphs, ..self }
+    }
+
+    /// With that many colours.
+    #[must_use]
+    pub fn color_depth(self, depth: ColorDepth) -> Self {
+        Self { depth, ..self }
+    }
+}
+
+/// The floor that nobody sees just now.
+const FLOOR: Rgb = Rgb::new(0x24, 0x24, 0x2c);
+/// The floor in the field of view.
+const SEEN: Rgb = Rgb::new(0x6c, 0x66, 0x4a);
+/// What is not on the map.
+const VOID: Rgb = Rgb::BLACK;
+/// The cell to reach.
+const EXIT: Rgb = Rgb::new(0x3c, 0xc8, 0x64);
+/// The arrow.
+const PLAYER: Color = Color::Yellow;
+
+impl Widget for Minimap<'_> {
+    fn render(self, area: Rect, buffer: &mut Buffer) {
+        let area = area.intersection(buffer.area);
+        if area.is_empty() {
+            return;
+        }
+        let window = Window::new(area, self.glyphs, self.world, self.camera.position());
+        let place = |x, y| self.place(window.point(x, y));
+        match self.glyphs {
+            GlyphMode::Half => {
+                half_blocks::draw(area, buffer, self.depth, 0, |x, y| place(x, y).color());
+            }
+            GlyphMode::Ascii => ascii::draw(area, buffer, self.depth, |x, y| {
+                let place = place(x, y);
+                (place.color(), place.character())
+            }),
+        }
+        self.draw_player(&window, area, buffer);
+    }
+}
+
+impl Minimap<'_> {
+    /// What is on the map at `point`.
+    fn place(&self, point: DVec2) -> Place {
+        let (column, row) = (point.x.floor() as i64, point.y.floor() as i64);
+        let Some(tile) = self.world.grid().tile(column, row) else { return Place::Void };
+        if let TileKind::Wall(paint) = self.world.tile(tile).kind {
+            return Place::Wall(self.world.mean_color(paint));
+        }
+        let is_exit = self.world.things().iter().any(|thing| {
+            let cell = (i64::from(thing.cell.column), i64::from(thing.cell.row));
+            thing.kind == ThingKind::Exit && cell == (column, row)
+        });
+        if is_exit {
+            Place::Exit
+        } else if self.sees(point) {
+            Place::Seen
+        } else {
+            Place::Floor
+        }
+    }
+
+    /// Whether the ray of the column that `point` falls in gets as far as that.
+    fn sees(&self, point: DVec2) -> bool {
+        let to_point = point - self.camera.position();
+        let distance = to_point.dot(self.camera.direction());
+        if distance <= 0.0 || self.columns.is_empty() {
+            return false;
+        }
+        let half_width = self.camera.field_of_view.half_width();
+        let across = to_point.dot(self.camera.direction().perp()) / (distance * half_width);
+        let index = (f64::midpoint(across, 1.0) * self.columns.len() as f64).floor();
+        index >= 0.0
+            && self.columns.get(index as usize).is_some_and(|column| distance <= column.distance)
+    }
+
+    fn draw_player(&self, window: &Window, area: Rect, buffer: &mut Buffer) {
+        let Some((x, y)) = window.cell(self.camera.position()) else { return };
+        let arrows = match self.glyphs {
+            GlyphMode::Half => ['→', '↘', '↓', '↙', '←', '↖', '↑', '↗'],
+            GlyphMode::Ascii => ['>', '\\', 'v', '/', '<', '\\', '^', '/'],
+        };
+        let eighth = (self.camera.heading.degrees() / 45.0).round() as usize % arrows.len();
+        let cell = &mut buffer[(area.x + x, area.y + y)];
+        cell.set_char(arrows[eighth]);
+        if self.depth != ColorDepth::Mono {
+            cell.set_fg(PLAYER);
+        }
+    }
+}
+
+/// What is at a point of the map.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+enum Place {
+    Void,
+    Wall(Rgb),
+    Floor,
+    Seen,
+    Exit,
+}
+
+impl Place {
+    fn color(self) -> Rgb {
+        match self {
+            Self::Void => VOID,
+            Self::Wall(color) => color,
+            Self::Floor => FLOOR,
+            Self::Seen => SEEN,
+            Self::Exit => EXIT,
+        }
+    }
+
+    fn character(self) -> char {
+        match self {
+            Self::Void | Self::Floor => ' ',
+            Self::Wall(_) => '#',
+            Self::Seen => '.',
+            Self::Exit => 'X',
+        }
+    }
+}
+
+/// The part of the map that shows in an area.
+#[derive(Clone, Copy, Debug)]
+struct Window {
+    /// Pixels of the area from left to right and from top to bottom.
+    size: DVec2,
+    /// Pixels for a cell of the map.
+    scale: DVec2,
+    /// Where the area's top left corner is, in pixels from the map's.
+    corner: DVec2,
+    pixels_per_cell: u32,
+}
+
+impl Window {
+    /// All of the map and as large as possible, or as much as fits around `center`.
+    fn new(area: Rect, glyphs: GlyphMode, world: &World, center: DVec2) -> Self {
+        let pixels_per_cell = glyphs.pixels_per_cell();
+        let size =
+            DVec2::new(f64::from(area.width), f64::from(u32::from(area.height) * pixels_per_cell));
+        let map = DVec2::new(f64::from(world.grid().width()), f64::from(world.grid().height()));
+        // A pixel of half blocks is about square; a whole cell is about twice as high as wide.
+        let smallest = match glyphs {
+            GlyphMode::Half => DVec2::new(1.0, 1.0),
+            GlyphMode::Ascii => DVec2::new(2.0, 1.0),
+        };
+        let scale = smallest * (size / (map * smallest)).min_element().floor().max(1.0);
+        let spare = size - map * scale;
+        let corner_along = |spare: f64, center: f64, size: f64| {
+            if spare >= 0.0 {
+                -(spare / 2.0).floor()
+            } else {
+                (center - size / 2.0).floor().clamp(0.0, -spare)
+            }
+        };
+        let center = center * scale;
+        let corner = DVec2::new(
+            corner_along(spare.x, center.x, size.x),
+            corner_along(spare.y, center.y, size.y),
+        );
+        Self { size, scale, corner, pixels_per_cell }
+    }
+
+    /// The point of the map that the centre of a pixel shows.
+    fn point(&self, x: u32, y: u32) -> DVec2 {
+        (DVec2::new(f64::from(x), f64::from(y)) + 0.5 + self.corner) / self.scale
+    }
+
+    /// The cell of the area that shows `point`.
+    fn cell(&self, point: DVec2) -> Option<(u16, u16)> {
+        let pixel = (point * self.scale - self.corner).floor();
+        let shows = pixel.cmpge(DVec2::ZERO).all() && pixel.cmplt(self.size).all();
+        shows.then(|| (pixel.x as u16, (pixel.y as u32 / self.pixels_per_cell) as u16))
+    }
+}
