@@ -1,1 +1,195 @@
-//! The built-in textures.
+//! The built-in textures: painted by code when a map asks for one.
+//!
+//! All are 64 texels square and lit from the upper left. Each is a function from a texel's place to
+//! its colour, in integers only, so that it is the same on every machine. Noise wraps around and
+//! joints are centred on the edges, so that walls stand side by side without a seam; all but
+//! `plaster`, which has a rail above and a skirting below, tile from top to bottom as well.
+//!
+//! Shapes are large and grain is faint: a wall is rarely more than thirty pixels high in a
+//! terminal, where grain shimmers and costs bytes. Pictures compiled in from files were refused:
+//! they would be larger than this code, and nobody could review a change to one.
+
+mod block;
+mod facing;
+mod hedge;
+mod masonry;
+mod metal;
+mod noise;
+mod patch;
+mod shade;
+mod timber;
+
+use std::num::NonZeroU32;
+
+use super::Texture;
+use crate::world::Rgb;
+
+/// The names that [`named`] knows.
+pub const NAMES: &[&str] = &names();
+
+/// The built-in texture of that name, or `None` where there is none.
+pub fn named(name: &str) -> Option<Texture> {
+    let (_, paint) = PAINTERS.iter().find(|(known, _)| *known == name)?;
+    Some(Texture::from_fn(SIDE_LENGTH, SIDE_LENGTH, |x, y| paint(x as i32, y as i32)))
+}
+
+/// Texels along each side of a texture.
+const SIDE: i32 = SIDE_LENGTH.get() as i32;
+const SIDE_LENGTH: NonZeroU32 = NonZeroU32::new(64).expect("64 is not 0");
+
+/// The colour of the texel at `(x, y)`, both from 0 up to [`SIDE`].
+type Painter = fn(i32, i32) -> Rgb;
+
+const PAINTERS: [(&str, Painter); 12] = [
+    ("brick", masonry::brick),
+    ("stone", masonry::stone),
+    ("moss", masonry::moss),
+    ("wood", timber::wood),
+    ("oak", timber::oak),
+    ("metal", metal::metal),
+    ("tile", facing::tile),
+    ("flagstone", masonry::flagstone),
+    ("plaster", facing::plaster),
+    ("sandstone", masonry::sandstone),
+    ("hedge", hedge::hedge),
+    ("marble", facing::marble),
+];
+
+/// A difference between two places, the short way around the texture.
+fn wrapped(difference: i32) -> i32 {
+    (difference + SIDE / 2).rem_euclid(SIDE) - SIDE / 2
+}
+
+const fn names() -> [&'static str; PAINTERS.len()] {
+    let mut names = [""; PAINTERS.len()];
+    let mut index = 0;
+    while index < names.len() {
+        names[index] = PAINTERS[index].0;
+        index += 1;
+    }
+    names
+}
+
+#[cfg(test)]
+mod tests {
+    use std::collections::BTreeSet;
+    use std::fmt::Write;
+
+    use super::*;
+
+    /// The texels of the texture `name`, column by column.
+    fn columns(name: &str) -> Vec<Vec<Rgb>> {
+        let texture = named(name).unwrap();
+        let middle = |x: i32| (f64::from(x) + 0.5) / f64::from(SIDE);
+        (0..SIDE).map(|x| texture.column(middle(x)).to_vec()).collect()
+    }
+
+    fn rows(columns: &[Vec<Rgb>]) -> Vec<Vec<Rgb>> {
+        (0..columns[0].len()).map(|y| columns.iter().map(|column| column[y]).collect()).collect()
+    }
+
+    /// The sum of the differences of all channels of two lines of texels.
+    fn difference(one: &[Rgb], other: &[Rgb]) -> u32 {
+        let channels = |line: &[Rgb]| line.iter().flat_map(|texel| texel.channels()).collect();
+        let (one, other): (Vec<u8>, Vec<u8>) = (channels(one), channels(other));
+        one.iter().zip(other).map(|(&one, other)| u32::from(one.abs_diff(other))).sum()
+    }
+
+    /// Whether the last of `lines` beside the first differs at most twice as much as neighbours do
+    /// on average.
+    fn wraps(lines: &[Vec<Rgb>]) -> bool {
+        let between: u32 = lines.windows(2).map(|pair| difference(&pair[0], &pair[1])).sum();
+        let seam = difference(&lines[lines.len() - 1], &lines[0]);
+        seam * (lines.len() as u32 - 1) <= 2 * between
+    }
+
+    #[test]
+    fn each_name_is_a_picture_of_its_own() {
+        let mut seen = Vec::new();
+        for name in NAMES {
+            let texture = named(name).unwrap();
+            assert_eq!((texture.width(), texture.height()), (64, 64), "{name}");
+            assert!(!seen.contains(&texture), "{name} looks like another one");
+            seen.push(texture);
+        }
+        assert_eq!(named("Brick"), None);
+        assert_eq!(named(""), None);
+    }
+
+    #[test]
+    fn walls_stand_side_by_side_without_a_seam() {
+        for name in NAMES {
+            assert!(wraps(&columns(name)), "{name}");
+        }
+    }
+
+    #[test]
+    fn floors_have_no_seam_from_north_to_south() {
+        for name in NAMES.iter().filter(|&&name| name != "plaster") {
+            assert!(wraps(&rows(&columns(name))), "{name}");
+        }
+    }
+
+    #[test]
+    fn none_is_too_dark_or_too_bright_to_see_a_shaded_side_of() {
+        for name in NAMES {
+            let luma = named(name).unwrap().mean().luma();
+            assert!((70..=210).contains(&luma), "{name}: {luma}");
+        }
+    }
+
+    #[test]
+    fn shapes_can_be_told_when_a_wall_is_eight_pixels_high() {
+        const PIXEL: usize = SIDE as usize / 8;
+        for name in NAMES {
+            let columns = columns(name);
+            let pixel_luma = |x: usize, y: usize| {
+                let texels = columns[x..x + PIXEL].iter().flat_map(|column| &column[y..y + PIXEL]);
+                texels.map(|texel| u32::from(texel.luma())).sum::<u32>() / (PIXEL * PIXEL) as u32
+            };
+            let steps = || (0..SIDE as usize).step_by(PIXEL);
+            let lumas: Vec<u32> = steps()
+                .flat_map(|x| steps().map(move |y| (x, y)))
+                .map(|(x, y)| pixel_luma(x, y))
+                .collect();
+            let contrast = lumas.iter().max().unwrap() - lumas.iter().min().unwrap();
+            assert!(contrast >= 20, "{name}: {contrast}");
+        }
+    }
+
+    #[test]
+    fn palettes_are_small() {
+        for name in NAMES {
+            let colors: BTreeSet<[u8; 3]> =
+                columns(name).iter().flatten().map(|texel| texel.channels()).collect();
+            assert!(colors.len() <= 100, "{name}: {}", colors.len());
+        }
+    }
+
+    #[test]
+    fn they_are_the_same_everywhere() {
+        let mut list = String::new();
+        for name in NAMES {
+            let columns = columns(name);
+            let fingerprint = columns.iter().flatten().fold(0, |sum, texel| {
+                let [red, green, blue] = texel.channels().map(i32::from);
+                noise::hash(red << 16 | green << 8 | blue, 0, sum)
+            });
+            writeln!(list, "{name:9} {} {fingerprint:08x}", named(name).unwrap().mean()).unwrap();
+        }
+        insta::assert_snapshot!(list, @r"
+        brick     #a4614c fc4b38eb
+        stone     #787b84 2057e56f
+        moss      #607454 5c82026b
+        wood      #855b36 1ed0e4e3
+        oak       #926231 34f64b78
+        metal     #636e7a a98a0733
+        tile      #789590 8701390b
+        flagstone #7b6f61 98697f34
+        plaster   #bba88c d8e05a63
+        sandstone #ba9661 e42eb514
+        hedge     #447535 0f990761
+        marble    #c1c4ca ed3037a3
+        ");
+    }
+}

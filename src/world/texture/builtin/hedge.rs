@@ -1,0 +1,69 @@
+//! A clipped hedge.
+
+use super::noise::{Noise, hash};
+use super::shade::{pick, shade};
+use super::{SIDE, wrapped};
+use crate::world::Rgb;
+
+/// Leaves upon leaves, on boughs that swell and recede.
+pub(super) fn hedge(x: i32, y: i32) -> Rgb {
+    const DEPTH: Rgb = Rgb::new(0x1c, 0x38, 0x1e);
+    const GREEN: [Rgb; 3] =
+        [Rgb::new(0x40, 0x7a, 0x30), Rgb::new(0x34, 0x68, 0x2c), Rgb::new(0x50, 0x8a, 0x36)];
+    const BOUGHS: Noise = Noise::new(14, 16, 16);
+
+    let leaf_here = leaves().find_map(|leaf| Some((leaf.id, leaf.light_at(x, y)?)));
+    let light = BOUGHS.at(x, y, 40);
+    match leaf_here {
+        Some((id, on_leaf)) => shade(pick(GREEN, id), light + on_leaf - id / 2),
+        None => shade(DEPTH, light / 3),
+    }
+}
+
+struct Leaf {
+    /// The place of its middle.
+    x: i32,
+    y: i32,
+    /// The way from there to its tip, about [`TIP`] texels long.
+    tip: (i32, i32),
+    id: i32,
+}
+
+const TIP: i32 = 8;
+
+impl Leaf {
+    /// The light on the leaf at a texel, or `None` beside it: the half above the midrib is
+    /// brighter than the one below; an upright leaf is dim.
+    fn light_at(&self, x: i32, y: i32) -> Option<i32> {
+        let (x, y) = (wrapped(x - self.x), wrapped(y - self.y));
+        let (tip_x, tip_y) = self.tip;
+        // In texels times TIP, along the midrib and across it.
+        let along = x * tip_x + y * tip_y;
+        let across = x * tip_y - y * tip_x;
+        let half_width = (TIP * TIP - along * along / (TIP * TIP)) / 2;
+        (across.abs() < half_width).then_some(if across * tip_x.signum() > 0 { 36 } else { -14 })
+    }
+}
+
+/// The leaves, those in front first: one or two in each square of a coarse grid,
+/// anywhere in it.
+fn leaves() -> impl Iterator<Item = Leaf> {
+    const SPACING: i32 = 8;
+    const COUNT: i32 = 104;
+    const TIPS: [(i32, i32); 6] = [(8, 0), (7, 4), (4, 7), (0, 8), (4, -7), (7, -4)];
+    const SQUARES: i32 = SIDE / SPACING;
+    // Without a divisor in common with the number of squares: it visits all of them, and leaves
+    // that are neighbours in the hedge are not in depth.
+    const STRIDE: i32 = 37;
+
+    (0..COUNT).map(|index| {
+        let square = index * STRIDE % (SQUARES * SQUARES);
+        let jitter = |seed| (hash(index, square, seed) % SPACING as u32) as i32;
+        Leaf {
+            x: square % SQUARES * SPACING + jitter(1),
+            y: square / SQUARES * SPACING + jitter(2),
+            tip: TIPS[hash(index, square, 3) as usize % TIPS.len()],
+            id: index,
+        }
+    })
+}

@@ -1,0 +1,91 @@
+//! Chance that is the same every time: hashes of a place, and smooth noise made of them.
+
+use super::SIDE;
+
+/// A number that looks random but depends on `x`, `y` and `seed` alone.
+pub(super) fn hash(x: i32, y: i32, seed: u32) -> u32 {
+    let mut bits = (x as u32)
+        .wrapping_mul(0x9e37_79b1)
+        .wrapping_add((y as u32).wrapping_mul(0x85eb_ca77))
+        .wrapping_add(seed.wrapping_mul(0xc2b2_ae3d));
+    for _ in 0..2 {
+        bits ^= bits >> 15;
+        bits = bits.wrapping_mul(0x2c1b_3c6d);
+        bits ^= bits >> 13;
+    }
+    bits
+}
+
+/// Smooth noise: chance at the points of a lattice, interpolated between them.
+///
+/// The lattice wraps around at the texture's edges, and the noise with it.
+#[derive(Clone, Copy)]
+pub(super) struct Noise {
+    seed: u32,
+    /// Texels from one lattice point to the next, across and down.
+    spacing: (i32, i32),
+}
+
+impl Noise {
+    /// Noise with lattice points `across` texels apart in a row and `down` texels in a column. Both
+    /// divide the texture's side.
+    pub(super) const fn new(seed: u32, across: i32, down: i32) -> Self {
+        assert!(SIDE % across == 0 && SIDE % down == 0, "this noise would not wrap");
+        Self { seed, spacing: (across, down) }
+    }
+
+    /// The noise at a texel: from `-swing` to `swing`.
+    pub(super) fn at(self, x: i32, y: i32, swing: i32) -> i32 {
+        let (across, down) = self.spacing;
+        let (left, top) = (x.div_euclid(across), y.div_euclid(down));
+        let (from_left, from_top) =
+            (ease(x.rem_euclid(across), across), ease(y.rem_euclid(down), down));
+        let upper = blend(self.point(left, top), self.point(left + 1, top), from_left);
+        let lower = blend(self.point(left, top + 1), self.point(left + 1, top + 1), from_left);
+        blend(upper, lower, from_top) * swing / POINT_RANGE
+    }
+
+    /// Chance at a lattice point: from `-POINT_RANGE` to `POINT_RANGE`.
+    fn point(self, column: i32, row: i32) -> i32 {
+        let (across, down) = self.spacing;
+        let (column, row) = (column.rem_euclid(SIDE / across), row.rem_euclid(SIDE / down));
+        (hash(column, row, self.seed) % (2 * POINT_RANGE as u32 + 1)) as i32 - POINT_RANGE
+    }
+}
+
+const POINT_RANGE: i32 = 1024;
+
+/// The weight that stands for all of the second of two values.
+const WHOLE: i32 = 256;
+
+fn blend(from: i32, to: i32, weight: i32) -> i32 {
+    from + (to - from) * weight / WHOLE
+}
+
+/// How far `step` of `steps` is on the way from 0 to [`WHOLE`], setting off and arriving gently.
+fn ease(step: i32, steps: i32) -> i32 {
+    let t = step * WHOLE / steps;
+    t * t * (3 * WHOLE - 2 * t) / (WHOLE * WHOLE)
+}
+
+#[cfg(test)]
+mod tests {
+    use proptest::prelude::*;
+
+    use super::*;
+
+    proptest! {
+        #[test]
+        fn noise_wraps_and_keeps_to_its_swing(
+            seed: u32, x in 0..SIDE, y in 0..SIDE, swing in 0..256,
+            across in prop::sample::select(vec![2, 4, 8, 16, 32, 64]),
+            down in prop::sample::select(vec![2, 4, 8, 16, 32, 64]),
+        ) {
+            let noise = Noise::new(seed, across, down);
+            let value = noise.at(x, y, swing);
+            prop_assert!(value.abs() <= swing);
+            prop_assert_eq!(noise.at(x + SIDE, y, swing), value);
+            prop_assert_eq!(noise.at(x, y - SIDE, swing), value);
+        }
+    }
+}
