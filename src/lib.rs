@@ -7,6 +7,7 @@
 //! ```
 
 pub mod cast;
+pub mod game;
 pub mod palette;
 pub mod render;
 #[cfg(feature = "tui")]

@@ -1,0 +1,88 @@
+//! A circle among solid cells: never inside one, never through one, and along them without a catch.
+//!
+//! One predicate, [`is_clear`], says where the circle may be, and no place is ever accepted that
+//! fails it: a contact that rounding has put a hair inside is backed off along the way that led to
+//! it, to a point that passes. So the circle is clear after a step because it was before. Moving
+//! first and pushing out of walls afterwards was refused: it finds the wrong side of a wall at
+//! speed, and jitters in corners.
+
+mod sweep;
+
+use glam::DVec2;
+
+use crate::world::Grid;
+use sweep::{Path, first_contact};
+
+/// How many walls a body may touch in one step. A corner is two; who touches more is stuck between
+/// them, and stops.
+const MOST_CONTACTS: usize = 4;
+
+/// The radius of a circle that can stand in the middle of any open cell: above 0 and at most half
+/// a cell, so that only the eight cells around its own are ever in reach.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub(super) struct Radius(f64);
+
+impl Radius {
+    /// A radius in cells, or `None` where that is outside the range.
+    pub(super) const fn new(cells: f64) -> Option<Self> {
+        if cells > 0.0 && cells <= 0.5 { Some(Self(cells)) } else { None }
+    }
+}
+
+/// Where a body is, in cells, and its velocity, in cells per second.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub(super) struct Body {
+    pub(super) position: DVec2,
+    pub(super) velocity: DVec2,
+}
+
+/// Moves a body by `displacement`, however long, and along what stands in its way. It loses the
+/// part of its velocity that points into what it touches.
+pub(super) fn slide(grid: &Grid, body: Body, displacement: DVec2, radius: Radius) -> Body {
+    let Body { mut position, mut velocity } = body;
+    let mut remaining = displacement;
+    for _ in 0..MOST_CONTACTS {
+        let Some(path) = Path::new(position, remaining) else {
+            return Body { position, velocity };
+        };
+        let Some(contact) = first_contact(grid, path, radius) else {
+            return Body { position: path.last_clear(grid, path.length(), radius), velocity };
+        };
+        position = contact.position;
+        remaining = without_inward(contact.remaining, contact.normal);
+        velocity = without_inward(velocity, contact.normal);
+    }
+    Body { position, velocity: DVec2::ZERO }
+}
+
+/// `vector` without the part that points against `normal`, a unit vector.
+fn without_inward(vector: DVec2, normal: DVec2) -> DVec2 {
+    vector - normal * vector.dot(normal).min(0.0)
+}
+
+/// Whether a circle around `center` overlaps nothing solid; it may touch. Solid cells are closed
+/// squares, and everything off the map is solid: nobody walks off the edge of the world.
+fn is_clear(grid: &Grid, center: DVec2, radius: Radius) -> bool {
+    let (column, row) = cell_of(center);
+    let around = (row - 1..=row + 1).flat_map(|r| (column - 1..=column + 1).map(move |c| (c, r)));
+    around
+        .filter(|&(column, row)| blocks(grid, column, row))
+        .all(|(column, row)| square_distance(center, column, row) >= radius.0 * radius.0)
+}
+
+/// The square of the distance from `point` to the nearest point of a cell.
+fn square_distance(point: DVec2, column: i64, row: i64) -> f64 {
+    let low = DVec2::new(column as f64, row as f64);
+    (low - point).max(point - (low + DVec2::ONE)).max(DVec2::ZERO).length_squared()
+}
+
+fn blocks(grid: &Grid, column: i64, row: i64) -> bool {
+    grid.tile(column, row).is_none_or(|tile| grid.is_solid_tile(tile))
+}
+
+fn cell_of(point: DVec2) -> (i64, i64) {
+    (point.x.floor() as i64, point.y.floor() as i64)
+}
+
+#[cfg(test)]
+mod tests;

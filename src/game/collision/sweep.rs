@@ -1,0 +1,250 @@
+//! How far a circle gets on a straight path before it touches something.
+//!
+//! Its centre walks the grid from cell to cell, so that the longest path costs no more than the map
+//! has columns and rows. In each open cell the question is small: a solid neighbour beside the cell
+//! is a wall, moved inwards by the radius; a solid neighbour across a corner is a quarter disc
+//! around that corner, unless a wall beside it covers it. Rounding off every solid cell by itself
+//! was refused: that makes a quarter disc at each joint of a straight wall, for rounding to trip on.
+
+use glam::DVec2;
+
+use super::{Radius, blocks, cell_of, is_clear};
+use crate::world::Grid;
+
+/// How deep a path cuts into a corner's disc, as a part of the radius, before it counts as touching.
+/// Who slides around a corner leaves it along its tangent, and that is exact to about 1e-16.
+const GRAZE: f64 = 1e-14;
+
+/// A straight path.
+#[derive(Clone, Copy, Debug)]
+pub(super) struct Path {
+    from: DVec2,
+    /// A unit vector.
+    direction: DVec2,
+    length: f64,
+}
+
+impl Path {
+    /// The path from a place by a displacement; `None` where it leads nowhere.
+    pub(super) fn new(from: DVec2, displacement: DVec2) -> Option<Self> {
+        // Unlike a square root of squares, this neither overflows nor underflows.
+        let length = libm::hypot(displacement.x, displacement.y);
+        (length > 0.0).then(|| Self { from, direction: displacement / length, length })
+    }
+
+    pub(super) fn length(self) -> f64 {
+        self.length
+    }
+
+    fn at(self, distance: f64) -> DVec2 {
+        self.from + self.direction * distance
+    }
+
+    /// The place at `distance` along the path, or if a circle is not clear there, one a little
+    /// before it, where it is. The path begins at such a place, and is free of obstacles up to
+    /// `distance` but for rounding.
+    pub(super) fn last_clear(self, grid: &Grid, distance: f64, radius: Radius) -> DVec2 {
+        let retreats = std::iter::successors(Some(f64::EPSILON), |retreat| Some(2.0 * retreat));
+        std::iter::once(distance)
+            .chain(retreats.map(|retreat| distance - retreat))
+            .take_while(|&distance| distance > 0.0)
+            .map(|distance| self.at(distance))
+            .find(|&center| is_clear(grid, center, radius))
+            .unwrap_or(self.from)
+    }
+}
+
+/// The first touch between a circle on a path and something solid.
+#[derive(Clone, Copy, Debug)]
+pub(super) struct Contact {
+    /// Where the circle's centre is then, and is clear.
+    pub(super) position: DVec2,
+    /// The unit vector from what is touched to the centre.
+    pub(super) normal: DVec2,
+    /// The displacement that is left of the path.
+    pub(super) remaining: DVec2,
+}
+
+/// Where a circle that follows `path` touches something first, if it does.
+pub(super) fn first_contact(grid: &Grid, path: Path, radius: Radius) -> Option<Contact> {
+    let (mut column, mut row) = cell_of(path.from);
+    loop {
+        let room = Room { grid, column, row, radius };
+        let Event { distance, kind } = room.next_event(path)?;
+        if distance > path.length {
+            return None;
+        }
+        match kind {
+            EventKind::Leave { columns, rows } => {
+                column += columns;
+                row += rows;
+            }
+            EventKind::Touch(obstacle) => {
+                let (position, normal) = obstacle.touched(grid, path, distance, radius);
+                let remaining = path.direction * (path.length - distance);
+                return Some(Contact { position, normal, remaining });
+            }
+        }
+    }
+}
+
+/// An open cell, as the centre of a circle finds it.
+struct Room<'a> {
+    grid: &'a Grid,
+    column: i64,
+    row: i64,
+    radius: Radius,
+}
+
+/// What happens to a circle next.
+struct Event {
+    /// Distance along the path.
+    distance: f64,
+    kind: EventKind,
+}
+
+enum EventKind {
+    /// Its centre crosses into an open cell beside this one.
+    Leave { columns: i64, rows: i64 },
+    /// It touches something solid.
+    Touch(Obstacle),
+}
+
+enum Obstacle {
+    /// A flat wall, touched from `position`.
+    Wall { position: DVec2, normal: DVec2 },
+    /// The corner of a solid cell.
+    Corner { vertex: DVec2 },
+}
+
+/// The side of a room that a path makes for along one axis.
+struct Side {
+    /// The cell behind it, as columns and rows from this one.
+    neighbor: (i64, i64),
+    /// Whether that is solid.
+    is_wall: bool,
+    /// How far the centre may go along the axis in this room.
+    line: f64,
+    /// Distance along the path.
+    distance: f64,
+}
+
+impl Room<'_> {
+    fn blocks(&self, columns: i64, rows: i64) -> bool {
+        blocks(self.grid, self.column + columns, self.row + rows)
+    }
+
+    /// The first of: either side ahead, any corner. `None` for a path without a direction.
+    fn next_event(&self, path: Path) -> Option<Event> {
+        // Either of two equals will do: the other is met again in the next room, or on the slide.
+        let sides = [self.event_along_y(path), self.event_along_x(path)];
+        let events = sides.into_iter().flatten().chain(self.corner_events(path));
+        events.reduce(|first, next| if next.distance <= first.distance { next } else { first })
+    }
+
+    fn event_along_x(&self, path: Path) -> Option<Event> {
+        let side = self.side(self.column, path.from.x, path.direction.x, (1, 0))?;
+        let position = DVec2::new(side.line, path.at(side.distance).y);
+        Some(side.event(position))
+    }
+
+    fn event_along_y(&self, path: Path) -> Option<Event> {
+        let side = self.side(self.row, path.from.y, path.direction.y, (0, 1))?;
+        let position = DVec2::new(path.at(side.distance).x, side.line);
+        Some(side.event(position))
+    }
+
+    /// The side that a path makes for along `axis`, on which this room is the cell `index`. `None`
+    /// where it keeps its place on that axis.
+    fn side(&self, index: i64, from: f64, direction: f64, axis: (i64, i64)) -> Option<Side> {
+        if direction == 0.0 {
+            return None;
+        }
+        let step = if direction > 0.0 { 1 } else { -1 };
+        let neighbor = (axis.0 * step, axis.1 * step);
+        let is_wall = self.blocks(neighbor.0, neighbor.1);
+        let border = (index + i64::from(step > 0)) as f64;
+        let inset = if is_wall { self.radius.0 } else { 0.0 };
+        let line = border - step as f64 * inset;
+        Some(Side { neighbor, is_wall, line, distance: ((line - from) / direction).max(0.0) })
+    }
+
+    fn corner_events(&self, path: Path) -> impl Iterator<Item = Event> {
+        let exposed = |(columns, rows): &(i64, i64)| {
+            self.blocks(*columns, *rows) && !self.blocks(*columns, 0) && !self.blocks(0, *rows)
+        };
+        let vertex = |(columns, rows): (i64, i64)| {
+            let column = self.column + i64::from(columns > 0);
+            let row = self.row + i64::from(rows > 0);
+            DVec2::new(column as f64, row as f64)
+        };
+        [(-1, -1), (1, -1), (-1, 1), (1, 1)]
+            .into_iter()
+            .filter(exposed)
+            .map(vertex)
+            .filter_map(move |vertex| corner_event(path, vertex, self.radius))
+    }
+}
+
+impl Side {
+    /// What happens at this side, to a centre that is then at `position`.
+    fn event(&self, position: DVec2) -> Event {
+        let (columns, rows) = self.neighbor;
+        let kind = if self.is_wall {
+            let normal = -DVec2::new(columns as f64, rows as f64);
+            EventKind::Touch(Obstacle::Wall { position, normal })
+        } else {
+            EventKind::Leave { columns, rows }
+        };
+        Event { distance: self.distance, kind }
+    }
+}
+
+/// Where a path enters the disc around a corner.
+fn corner_event(path: Path, vertex: DVec2, Radius(radius): Radius) -> Option<Event> {
+    let offset = path.from - vertex;
+    let closest = -path.direction.dot(offset);
+    let miss = path.direction.perp_dot(offset).abs();
+    if closest <= 0.0 || miss >= radius * (1.0 - GRAZE) {
+        return None;
+    }
+    let half_chord = ((radius - miss) * (radius + miss)).sqrt();
+    let distance = (closest - half_chord).max(0.0);
+    Some(Event { distance, kind: EventKind::Touch(Obstacle::Corner { vertex }) })
+}
+
+impl Obstacle {
+    /// Where a circle is that touches this at `distance` on its path, and the contact's normal.
+    fn touched(self, grid: &Grid, path: Path, distance: f64, radius: Radius) -> (DVec2, DVec2) {
+        match self {
+            Self::Wall { position, normal } if is_clear(grid, position, radius) => {
+                (position, normal)
+            }
+            Self::Wall { normal, .. } => (path.last_clear(grid, distance, radius), normal),
+            Self::Corner { vertex } => {
+                let position = path.last_clear(grid, distance, radius);
+                let outward = position - vertex;
+                (position, outward / outward.length())
+            }
+        }
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn a_joint_of_a_wall_is_no_corner() {
+        let felt = |rows: &[&str]| {
+            let grid = Grid::sketch(rows).unwrap();
+            let room = Room { grid: &grid, column: 1, row: 1, radius: Radius(0.25) };
+            let path = Path::new(DVec2::new(1.5, 1.5), DVec2::new(-1.0, -1.0)).unwrap();
+            room.corner_events(path).count()
+        };
+        assert_eq!(felt(&["#..", "...", "..."]), 1);
+        assert_eq!(felt(&["##.", "...", "..."]), 0);
+        assert_eq!(felt(&["#..", "#..", "..."]), 0);
+        assert_eq!(felt(&[".#.", "#..", "..."]), 0);
+    }
+}

@@ -1,0 +1,255 @@
+//! What walkers rely on, tried on random grids.
+
+use std::f64::consts::TAU;
+use std::ops::Range;
+
+use glam::Vec2Swizzles;
+use proptest::prelude::*;
+
+use super::*;
+use crate::world::Cell;
+
+fn radius(cells: f64) -> Radius {
+    Radius::new(cells).unwrap()
+}
+
+fn still_at(position: DVec2) -> Body {
+    Body { position, velocity: DVec2::ZERO }
+}
+
+fn moved(grid: &Grid, from: DVec2, displacement: DVec2, radius: Radius) -> DVec2 {
+    slide(grid, still_at(from), displacement, radius).position
+}
+
+fn transposed(rows: &[&str]) -> Vec<String> {
+    let columns = rows[0].len();
+    (0..columns).map(|column| rows.iter().map(|row| &row[column..=column]).collect()).collect()
+}
+
+fn sketch<T: AsRef<str>>(rows: &[T]) -> Grid {
+    Grid::sketch(&rows.iter().map(AsRef::as_ref).collect::<Vec<_>>()).unwrap()
+}
+
+/// A grid, and an open cell in it.
+fn grid_and_start() -> impl Strategy<Value = (Grid, Cell)> {
+    let size = (1..10_usize, 1..10_usize);
+    size.prop_flat_map(|(width, height)| {
+        let solid = prop::collection::vec(prop::bool::weighted(0.3), width * height);
+        (Just(width), solid, 0..width * height)
+    })
+    .prop_map(|(width, mut solid, start)| {
+        solid[start] = false;
+        let character = |&solid| if solid { '#' } else { '.' };
+        let rows: Vec<String> =
+            solid.chunks(width).map(|row| row.iter().map(character).collect()).collect();
+        let cell = Cell { column: (start % width) as u32, row: (start / width) as u32 };
+        (sketch(&rows), cell)
+    })
+}
+
+/// From a billionth of a cell to a million cells; every other one along an axis or a diagonal.
+fn displacement() -> impl Strategy<Value = DVec2> {
+    let compass = (0..8).prop_map(|eighths| match eighths {
+        0 => DVec2::X,
+        1 => DVec2::ONE,
+        2 => DVec2::Y,
+        3 => DVec2::new(-1.0, 1.0),
+        4 => -DVec2::X,
+        5 => -DVec2::ONE,
+        6 => -DVec2::Y,
+        _ => DVec2::new(1.0, -1.0),
+    });
+    let angle = (0.0..TAU).prop_map(|angle| DVec2::new(libm::cos(angle), libm::sin(angle)));
+    let length = prop_oneof![Just(0.25), Just(0.5), Just(1.0), power_of_ten()];
+    (prop_oneof![compass, angle], length).prop_map(|(direction, length)| direction * length)
+}
+
+fn power_of_ten() -> impl Strategy<Value = f64> {
+    (-9.0..6.0).prop_map(|exponent| libm::pow(10.0, exponent))
+}
+
+/// Half of the coordinates are whole quarters, so that paths meet joints and corners exactly.
+fn point(x: Range<f64>, y: Range<f64>) -> impl Strategy<Value = DVec2> {
+    let coordinate = |range: Range<f64>| {
+        let quarters = range.clone().prop_map(|value| (4.0 * value).round() / 4.0);
+        prop_oneof![range, quarters]
+    };
+    (coordinate(x), coordinate(y)).prop_map(|(x, y)| DVec2::new(x, y))
+}
+
+fn any_radius() -> impl Strategy<Value = Radius> {
+    prop_oneof![Just(0.25), Just(0.5), 0.01..0.5].prop_map(radius)
+}
+
+/// The distance from a point on the map to the nearest solid cell, off the map included.
+fn clearance(grid: &Grid, point: DVec2) -> f64 {
+    let (width, height) = (i64::from(grid.width()), i64::from(grid.height()));
+    let cells = (-1..=height).flat_map(|row| (-1..=width).map(move |column| (column, row)));
+    cells
+        .filter(|&(column, row)| blocks(grid, column, row))
+        .map(|(column, row)| {
+            let low = DVec2::new(column as f64, row as f64);
+            point.distance(point.clamp(low, low + DVec2::ONE))
+        })
+        .fold(f64::INFINITY, f64::min)
+}
+
+/// The cells that can be walked to from `start`, by their sides.
+fn reachable(grid: &Grid, start: (i64, i64)) -> Vec<(i64, i64)> {
+    let mut found = vec![start];
+    let mut next = 0;
+    while let Some(&(column, row)) = found.get(next) {
+        for cell in [(column - 1, row), (column + 1, row), (column, row - 1), (column, row + 1)] {
+            if !blocks(grid, cell.0, cell.1) && !found.contains(&cell) {
+                found.push(cell);
+            }
+        }
+        next += 1;
+    }
+    found
+}
+
+proptest! {
+    #![proptest_config(ProptestConfig::with_cases(2000))]
+
+    #[test]
+    fn never_inside_a_wall_and_never_through_one(
+        (grid, start) in grid_and_start(),
+        radius in any_radius(),
+        displacements in prop::collection::vec(displacement(), 1..40),
+    ) {
+        let mut position = start.center();
+        let reachable = reachable(&grid, cell_of(position));
+        for displacement in displacements {
+            position = moved(&grid, position, displacement, radius);
+            prop_assert!(is_clear(&grid, position, radius), "{position}");
+            prop_assert!(clearance(&grid, position) >= radius.0 * (1.0 - 1e-15));
+            prop_assert!(reachable.contains(&cell_of(position)), "{position}");
+        }
+    }
+
+    #[test]
+    fn the_path_to_a_contact_is_free_and_ends_at_a_wall(
+        (grid, start) in grid_and_start(),
+        radius in any_radius(),
+        detour in displacement(),
+        displacement in displacement(),
+    ) {
+        let from = moved(&grid, start.center(), detour, radius);
+        let path = Path::new(from, displacement).unwrap();
+        let contact = first_contact(&grid, path, radius);
+        let end = contact.map_or(from + displacement, |contact| contact.position);
+        for part in 0..=100 {
+            let point = from.lerp(end, f64::from(part) / 100.0);
+            prop_assert!(clearance(&grid, point) >= radius.0 - 1e-9, "{point}");
+        }
+        if let Some(contact) = contact {
+            prop_assert!(clearance(&grid, end) <= radius.0 + 1e-6, "{end}");
+            prop_assert!(displacement.dot(contact.normal) < 0.0);
+            let wall = end - contact.normal * (radius.0 + 1e-5);
+            prop_assert!(clearance(&grid, wall) == 0.0, "nothing solid at {wall}");
+        }
+    }
+
+    #[test]
+    fn speed_is_only_lost(
+        (grid, start) in grid_and_start(),
+        displacement in displacement(),
+        velocity in displacement(),
+    ) {
+        let body = Body { position: start.center(), velocity };
+        let after = slide(&grid, body, displacement, radius(0.25));
+        prop_assert!(after.velocity.length() <= velocity.length() * (1.0 + 1e-12));
+    }
+
+    #[test]
+    fn joints_do_not_catch(
+        from in point(0.5..39.5, 1.25..1.75),
+        displacement in prop_oneof![point(-50.0..50.0, 1.0..9.0), point(-50.0..50.0, -9.0..-1.0)],
+    ) {
+        let rows = ["#".repeat(40), ".".repeat(40), "#".repeat(40)];
+        let rows = rows.each_ref().map(String::as_str);
+        let target = (from + displacement).clamp(DVec2::new(0.25, 1.25), DVec2::new(39.75, 1.75));
+
+        let along = moved(&sketch(&rows), from, displacement, radius(0.25));
+        let across = sketch(&transposed(&rows));
+        let down = moved(&across, from.yx(), displacement.yx(), radius(0.25)).yx();
+        for end in [along, down] {
+            prop_assert!((end.x - target.x).abs() < 1e-9, "{end}, not {target}");
+            prop_assert_eq!(end.y, target.y);
+        }
+    }
+
+    #[test]
+    fn a_corner_is_walked_around(offset in 0.001..0.249, stride in 0.001..0.3) {
+        let rows = [".........", ".........", "....#....", ".........", "........."];
+        let across = sketch(&transposed(&rows));
+        let grid = sketch(&rows);
+        for from in [DVec2::new(2.5, 2.0 - offset), DVec2::new(2.5, 3.0 + offset)] {
+            let (mut along, mut down) = (from, from.yx());
+            for _ in 0..(8.0 / stride) as usize {
+                along = moved(&grid, along, DVec2::new(stride, 0.0), radius(0.25));
+                down = moved(&across, down, DVec2::new(0.0, stride), radius(0.25));
+            }
+            prop_assert!(along.x > 5.0, "caught at {along}");
+            prop_assert!(down.y > 5.0, "caught at {down}");
+        }
+    }
+
+    #[test]
+    fn a_corner_holds_without_jitter(
+        from in (0.25..1.75, 0.25..1.75),
+        push in (0.001..1.0, 0.001..1.0),
+        radius in any_radius(),
+    ) {
+        let grid = sketch(&["..", ".."]);
+        let from = DVec2::new(from.0, from.1).clamp(DVec2::splat(0.5), DVec2::splat(1.5));
+        let push = DVec2::new(push.0, push.1);
+        let cornered = moved(&grid, from, push * 1e4, radius);
+        let held = slide(&grid, Body { position: cornered, velocity: push }, push, radius);
+        prop_assert!(cornered.distance(DVec2::splat(2.0 - radius.0)) < 1e-12);
+        prop_assert!(held.position.distance(cornered) < 1e-12);
+        prop_assert_eq!(held.velocity, DVec2::ZERO);
+        prop_assert_eq!(slide(&grid, held, push, radius), held);
+    }
+}
+
+#[test]
+fn fits_through_what_is_exactly_as_wide() {
+    let grid =
+        sketch(&["#######", "#.....#", "###.###", "#.....#", "###.###", "#.....#", "#######"]);
+    let widest = radius(0.5);
+    let mut position = DVec2::new(1.5, 1.5);
+    let walk = [
+        (DVec2::new(2.0, 0.0), DVec2::new(3.5, 1.5)),
+        (DVec2::new(0.0, 2.0), DVec2::new(3.5, 3.5)),
+        (DVec2::new(-1e6, 0.0), DVec2::new(1.5, 3.5)),
+        (DVec2::new(1e6, 7.0), DVec2::new(5.5, 3.5)),
+        (DVec2::new(-2.0, 0.0), DVec2::new(3.5, 3.5)),
+        (DVec2::new(0.0, 1e6), DVec2::new(3.5, 5.5)),
+        (DVec2::new(0.0, -1e6), DVec2::new(3.5, 1.5)),
+    ];
+    for (displacement, target) in walk {
+        position = moved(&grid, position, displacement, widest);
+        assert_eq!(position, target);
+    }
+}
+
+#[test]
+fn what_touches_is_clear_and_the_map_has_an_edge() {
+    let grid = sketch(&["..#"]);
+    let quarter = radius(0.25);
+    assert!(is_clear(&grid, DVec2::new(1.75, 0.5), quarter));
+    assert!(!is_clear(&grid, DVec2::new(1.75_f64.next_up(), 0.5), quarter));
+    assert!(is_clear(&grid, DVec2::new(0.25, 0.25), quarter));
+    assert!(!is_clear(&grid, DVec2::new(0.25, 0.25_f64.next_down()), quarter));
+    assert!(!is_clear(&grid, DVec2::new(2.5, 0.5), quarter));
+    assert!(!is_clear(&grid, DVec2::new(-7.0, 0.5), quarter));
+}
+
+#[test]
+fn a_radius_is_at_most_half_a_cell() {
+    for cells in [0.0, -0.25, 0.5_f64.next_up(), f64::NAN, f64::INFINITY] {
+        assert_eq!(Radius::new(cells), None, "{cells}");
+    }
+}

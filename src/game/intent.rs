@@ -1,0 +1,130 @@
+//! What the player wants, free of keys: which key means what, and for how long it counts as held,
+//! is decided where keys are read.
+
+use std::fmt;
+
+/// One thing that the player may want to do.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Hash, PartialOrd, Ord)]
+pub enum Intent {
+    /// Walk where the player looks.
+    Forward,
+    /// Walk backwards.
+    Back,
+    /// Walk to the left without turning.
+    StrafeLeft,
+    /// Walk to the right without turning.
+    StrafeRight,
+    /// Turn anticlockwise, as seen from above.
+    TurnLeft,
+    /// Turn clockwise, as seen from above.
+    TurnRight,
+    /// Walk faster.
+    Run,
+}
+
+impl Intent {
+    /// All of them.
+    pub const ALL: [Self; 7] = [
+        Self::Forward,
+        Self::Back,
+        Self::StrafeLeft,
+        Self::StrafeRight,
+        Self::TurnLeft,
+        Self::TurnRight,
+        Self::Run,
+    ];
+}
+
+/// A set of intents: all that the player wants at one time.
+#[derive(Clone, Copy, PartialEq, Eq, Hash, Default)]
+pub struct Intents {
+    /// One bit for each intent, by its place in the enum.
+    bits: u8,
+}
+
+impl Intents {
+    /// The empty set: the player wants nothing.
+    pub const fn new() -> Self {
+        Self { bits: 0 }
+    }
+
+    /// Adds `intent`.
+    pub fn insert(&mut self, intent: Intent) {
+        self.bits |= bit(intent);
+    }
+
+    /// Takes `intent` out.
+    pub fn remove(&mut self, intent: Intent) {
+        self.bits &= !bit(intent);
+    }
+
+    /// Whether `intent` is among them.
+    pub fn contains(self, intent: Intent) -> bool {
+        self.bits & bit(intent) != 0
+    }
+
+    /// Whether the player wants nothing.
+    pub fn is_empty(self) -> bool {
+        self == Self::new()
+    }
+
+    /// The intents in it, in the order of [`Intent::ALL`].
+    pub fn iter(self) -> impl Iterator<Item = Intent> {
+        Intent::ALL.into_iter().filter(move |&intent| self.contains(intent))
+    }
+
+    /// 1 where only `toward` is wanted, -1 where only `against` is, and 0 where they cancel.
+    pub(super) fn balance(self, toward: Intent, against: Intent) -> f64 {
+        f64::from(i8::from(self.contains(toward)) - i8::from(self.contains(against)))
+    }
+}
+
+const fn bit(intent: Intent) -> u8 {
+    1 << intent as u8
+}
+
+impl FromIterator<Intent> for Intents {
+    fn from_iter<I: IntoIterator<Item = Intent>>(intents: I) -> Self {
+        let mut set = Self::new();
+        for intent in intents {
+            set.insert(intent);
+        }
+        set
+    }
+}
+
+impl fmt::Debug for Intents {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        f.debug_set().entries(self.iter()).finish()
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use std::collections::BTreeSet;
+
+    use proptest::prelude::*;
+
+    use super::*;
+
+    proptest! {
+        #[test]
+        fn behaves_as_a_set(changes: Vec<(bool, prop::sample::Index)>) {
+            let mut intents = Intents::new();
+            let mut model = BTreeSet::new();
+            for (add, index) in changes {
+                let intent = *index.get(&Intent::ALL);
+                if add {
+                    intents.insert(intent);
+                    model.insert(intent);
+                } else {
+                    intents.remove(intent);
+                    model.remove(&intent);
+                }
+                prop_assert_eq!(intents.is_empty(), model.is_empty());
+                prop_assert!(intents.iter().eq(model.iter().copied()));
+                prop_assert_eq!(intents, model.iter().copied().collect());
+            }
+        }
+    }
+}
