@@ -1,1 +1,7 @@
-fn main() {}
+//! The `cellcaster` command.
+
+use std::process::ExitCode;
+
+fn main() -> ExitCode {
+    cellcaster::cli::run(std::env::args_os())
+}

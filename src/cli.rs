@@ -1,0 +1,42 @@
+//! The command line: one file for each subcommand, each thin.
+//!
+//! A mistake of the user is one clear sentence on standard error and exit status 2; what the machine
+//! refuses is a sentence and status 1. A reader that closes the pipe is neither: the program ends
+//! quietly. Nothing here panics on any argument.
+
+mod arguments;
+mod cast;
+mod check;
+mod error;
+mod help;
+mod level;
+mod play;
+mod snapshot;
+
+use std::ffi::OsString;
+use std::process::ExitCode;
+
+use arguments::Command;
+pub use error::Error;
+
+/// Runs the command that `arguments` ask for, the program's own name first, and tells the status to
+/// end with.
+pub fn run(arguments: impl IntoIterator<Item = OsString>) -> ExitCode {
+    match Command::parse(arguments).and_then(Command::run) {
+        Ok(()) => ExitCode::SUCCESS,
+        Err(error) => error.report(),
+    }
+}
+
+impl Command {
+    fn run(self) -> Result<(), Error> {
+        match self {
+            Self::Help => help::print(),
+            Self::Version => help::print_version(),
+            Self::Play(options) => play::run(options),
+            Self::Snapshot(options) => snapshot::run(&options),
+            Self::Cast(options) => cast::run(&options),
+            Self::Check(maps) => check::run(&maps),
+        }
+    }
+}

@@ -1,0 +1,83 @@
+//! `cellcaster cast`: rays in, hits out, a line each.
+
+use std::io::{self, BufRead, BufReader, BufWriter, Write};
+
+use glam::DVec2;
+use serde::Serialize;
+
+use super::arguments::Cast;
+use super::{Error, level};
+use crate::cast::{Caster, Dda, Ray, Side};
+use crate::world::World;
+
+/// Answers every line of standard input until it ends.
+pub(super) fn run(options: &Cast) -> Result<(), Error> {
+    let world = level::load(options.map.as_deref())?;
+    let mut input = BufReader::new(io::stdin().lock());
+    let mut output = BufWriter::new(io::stdout().lock());
+    let mut line = Vec::new();
+    loop {
+        line.clear();
+        let length = input
+            .read_until(b'\n', &mut line)
+            .map_err(|error| Error::machine(format!("standard input can't be read: {error}")))?;
+        if length == 0 {
+            return output.flush().map_err(|error| Error::of_output(&error));
+        }
+        write(&answer(&world, &line), &mut output).map_err(|error| Error::of_output(&error))?;
+        // Somebody may be waiting for this answer before they ask on.
+        if input.buffer().is_empty() {
+            output.flush().map_err(|error| Error::of_output(&error))?;
+        }
+    }
+}
+
+/// What is written for one ray.
+#[derive(Debug, Serialize)]
+#[serde(untagged)]
+enum Answer {
+    Hit { cell: [u32; 2], side: &'static str, t: f64, u: f64, tile: char },
+    Escaped { escaped: bool },
+    Error { error: String },
+}
+
+fn answer(world: &World, line: &[u8]) -> Answer {
+    let ray = match read_ray(line) {
+        Ok(ray) => ray,
+        Err(error) => return Answer::Error { error },
+    };
+    let Some(hit) = Dda.cast(world.grid(), &ray) else { return Answer::Escaped { escaped: true } };
+    let (column, row) = (hit.cell.column, hit.cell.row);
+    let tile = world.grid().tile(i64::from(column), i64::from(row));
+    Answer::Hit {
+        cell: [column, row],
+        side: match hit.side {
+            Side::X => "x",
+            Side::Y => "y",
+        },
+        t: hit.t,
+        u: hit.u,
+        tile: tile.map_or('.', |tile| world.tile(tile).character),
+    }
+}
+
+fn read_ray(line: &[u8]) -> Result<Ray, String> {
+    const FORM: &str = "a ray is four numbers, \"X Y DX DY\"";
+    let text = std::str::from_utf8(line).map_err(|_| format!("{FORM}; this is not text"))?;
+    let mut numbers = [0.0; 4];
+    let mut words = text.split_whitespace();
+    for number in &mut numbers {
+        let word = words.next().ok_or_else(|| format!("{FORM}; this is fewer"))?;
+        *number = word.parse().map_err(|_| format!("{FORM}; \"{word}\" is no number"))?;
+    }
+    if words.next().is_some() {
+        return Err(format!("{FORM}; this is more"));
+    }
+    let [x, y, dx, dy] = numbers;
+    Ray::new(DVec2::new(x, y), DVec2::new(dx, dy)).map_err(|error| error.to_string())
+}
+
+fn write(answer: &Answer, output: &mut impl Write) -> io::Result<()> {
+    serde_json::to_writer(&mut *output, answer)?;
+    output.write_all(b"\n")
+}

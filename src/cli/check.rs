@@ -1,0 +1,29 @@
+//! `cellcaster check`: everything that is wrong with maps.
+
+use std::ffi::OsString;
+use std::io::{self, Write};
+
+use super::{Error, level};
+
+/// Checks all `maps`, whatever the faults of the first, and says which ones are right.
+pub(super) fn run(maps: &[OsString]) -> Result<(), Error> {
+    let mut wrong = 0_usize;
+    for map in maps {
+        match level::load(Some(map)) {
+            Ok(world) => {
+                let (width, height) = (world.grid().width(), world.grid().height());
+                writeln!(io::stdout(), "{}: right, {width}×{height} cells", map.display())
+                    .map_err(|error| Error::of_output(&error))?;
+            }
+            Err(error) => {
+                error.report();
+                wrong += 1;
+            }
+        }
+    }
+    match (wrong, maps.len()) {
+        (0, _) => Ok(()),
+        (1, 1) => Err(Error::mistake("the map has faults, listed above")),
+        (_, all) => Err(Error::mistake(format!("{wrong} of {all} maps have faults, listed above"))),
+    }
+}

@@ -1,0 +1,72 @@
+//! What `--help` prints: enough to use the program.
+
+use std::io::{self, Write};
+
+use super::Error;
+
+pub(super) fn print() -> Result<(), Error> {
+    write(HELP)
+}
+
+pub(super) fn print_version() -> Result<(), Error> {
+    write(concat!("cellcaster ", env!("CARGO_PKG_VERSION"), "\n"))
+}
+
+fn write(text: &str) -> Result<(), Error> {
+    io::stdout().write_all(text.as_bytes()).map_err(|error| Error::of_output(&error))
+}
+
+const HELP: &str = r#"cellcaster: a raycaster game in the terminal, and its pictures in scripts
+
+USAGE
+  cellcaster [play] [MAP] [OPTIONS]    play; without MAP, the built-in levels
+  cellcaster snapshot [MAP] [OPTIONS]  one frame to standard output
+  cellcaster cast [MAP]                rays from standard input, hits to standard output
+  cellcaster check MAP...              say everything that is wrong with maps
+  cellcaster --help | --version
+
+  MAP is a map file, or a built-in level: cellar, museum, citadel.
+
+KEYS
+  W S, Up Down      walk                M, Tab  show or hide the map
+  A D               strafe              + -     field of view
+  Left Right        turn                P       pause
+  Shift             run                 ?       help
+  R                 run, on and off     Q, Esc  leave
+
+OPTIONS OF PLAY
+  --fps N           at most N frames a second, 1 to 240            [30]
+  --config FILE     key bindings        [cellcaster/config.toml in the
+                    folder for configuration files]
+
+OPTIONS OF SNAPSHOT
+  --size COLSxROWS  cells, 1x1 to 4096x4096                        [80x24]
+  --camera X,Y,HEADING
+                    where to look from, in cells and degrees: 0 is east,
+                    90 south                                       [the map's start]
+  --format FORMAT   text: characters; ansi: with colours; json; png  [text]
+
+OPTIONS OF BOTH
+  --fov DEG         field of view, above 0, below 180              [66]
+  --cell-aspect H   height of a cell over its width, 0.1 to 10     [2.0, or what
+                    the terminal says]
+  --glyphs MODE     half: two pixels a cell; ascii: one, as a character  [half]
+  --colors DEPTH    true, 256, 16 or mono           [true, or what the terminal has]
+
+CAST
+  Reads one ray a line, "X Y DX DY", and writes one JSON object a line:
+  {"cell":[c,r],"side":"x","t":1.5,"u":0.25,"tile":"#"}, {"escaped":true} for a
+  ray that leaves the map, or {"error":"..."} for a line that is no ray.
+
+EXAMPLES
+  cellcaster                                   play the built-in levels
+  cellcaster my.toml --colors 256              play a map of your own
+  ssh -t host cellcaster                       play it somewhere else
+  cellcaster snapshot museum --format ansi     a picture in the terminal
+  cellcaster snapshot my.toml --size 120x40 --format png > my.png
+  echo "1.5 1.5 1 0" | cellcaster cast my.toml
+  cellcaster check maps/*.toml
+
+Exit status: 0, or 2 for a mistake in the arguments or a map, or 1 where the
+machine refuses something.
+"#;

@@ -1,0 +1,310 @@
+//! The game as a program: a state that keys and time change, and that draws itself.
+//!
+//! [`play`] is the loop around it. It sleeps until a key, a signal or the next frame is due; while
+//! nothing moves there is no next frame, so nothing is computed and nothing written. The state knows
+//! no terminal and no clock: keys and times are handed to it, and it is tested by handing it some.
+
+mod clock;
+mod levels;
+mod panels;
+
+use std::time::{Duration, Instant};
+
+pub use levels::Levels;
+use ratatui::Frame;
+use ratatui::layout::Rect;
+
+use super::bindings::{Action, Bindings};
+use super::held::HeldKeys;
+use super::{CellAspect, FirstPerson, GlyphMode, Minimap, View};
+use crate::game::{Game, Intent, Intents};
+use crate::palette::ColorDepth;
+use crate::terminal::{Error, Event, Key, KeyEvent, Phase, Session};
+use crate::world::{Camera, FieldOfView, World};
+use clock::Clock;
+
+/// How the game is shown and steered.
+#[derive(Clone, Debug, Default)]
+pub struct Settings {
+    /// Which key does what.
+    pub bindings: Bindings,
+    /// The least time between two frames.
+    pub frame_time: Duration,
+    /// How wide the view is at first.
+    pub field_of_view: FieldOfView,
+    /// The shape of a cell; `None` for what the terminal says.
+    pub cell_aspect: Option<CellAspect>,
+    /// Which characters stand for pixels.
+    pub glyphs: GlyphMode,
+    /// How many colours there are; `None` for what the terminal has.
+    pub depth: Option<ColorDepth>,
+}
+
+/// Plays `levels` on the terminal until the player leaves or somebody else ends the program.
+///
+/// # Errors
+/// Where there is no terminal, or it fails.
+pub fn play(levels: Levels, settings: Settings) -> Result<(), Error> {
+    let mut session = Session::enter()?;
+    let mut app = App::new(levels, settings, session.color_depth());
+    let start = Instant::now();
+    app.cell_aspect = session.size().cell_aspect;
+    while !app.has_left {
+        app.advance(start.elapsed());
+        if app.is_due(start.elapsed()) {
+            session.draw(|frame| app.draw(frame))?;
+            app.drawn(start.elapsed());
+        }
+        let timeout = app.wakes_at().map(|wakes| wakes.saturating_sub(start.elapsed()));
+        match session.next_event(timeout)? {
+            None => {}
+            Some(Event::Key(event)) => app.key(event, start.elapsed()),
+            Some(Event::Resized) => app.resized(session.size().cell_aspect),
+            Some(Event::ColorDepth(depth)) => app.set_terminal_depth(depth),
+            Some(Event::KeyReleases(reported)) => app.held.set_reports_releases(reported),
+            Some(Event::Suspend) => {
+                session.suspend()?;
+                app.resumed(start.elapsed());
+            }
+            Some(Event::Quit(reason)) => return session.leave(reason),
+        }
+    }
+    Ok(())
+}
+
+/// What shows besides the picture, and what keys do meanwhile.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+enum Screen {
+    Playing,
+    Paused,
+    Help,
+    LevelDone,
+    End,
+}
+
+struct App {
+    later_levels: Box<dyn Iterator<Item = World>>,
+    game: Game,
+    /// Seconds taken by the levels before this one.
+    earlier: f64,
+    screen: Screen,
+    settings: Settings,
+    terminal_depth: ColorDepth,
+    cell_aspect: Option<CellAspect>,
+    field_of_view: FieldOfView,
+    held: HeldKeys,
+    runs: bool,
+    shows_minimap: bool,
+    has_left: bool,
+    clock: Clock,
+    view: View,
+    /// What the screen shows; `None` where it must be drawn again.
+    shown: Option<Camera>,
+    next_frame: Duration,
+}
+
+/// By how much a key widens or narrows the view, and how far, in degrees.
+const VIEW_STEP: f64 = 6.0;
+const NARROWEST_VIEW: f64 = 30.0;
+const WIDEST_VIEW: f64 = 120.0;
+
+impl App {
+    fn new(levels: Levels, settings: Settings, terminal_depth: ColorDepth) -> Self {
+        let Levels { first, rest } = levels;
+        Self {
+            later_levels: rest,
+            game: Game::new(first),
+            earlier: 0.0,
+            screen: Screen::Playing,
+            field_of_view: settings.field_of_view,
+            settings,
+            terminal_depth,
+            cell_aspect: None,
+            held: HeldKeys::default(),
+            runs: false,
+            shows_minimap: true,
+            has_left: false,
+            clock: Clock::default(),
+            view: View::default(),
+            shown: None,
+            next_frame: Duration::ZERO,
+        }
+    }
+
+    /// Lets the game go on until `now`.
+    fn advance(&mut self, now: Duration) {
+        self.held.expire(now);
+        let steps = self.clock.steps_until(now);
+        if self.screen != Screen::Playing {
+            return;
+        }
+        let intents = self.intents();
+        if self.game.is_at_rest(intents) {
+            self.game.wait(steps);
+        } else {
+            (0..steps.min(Clock::MOST_STEPS)).for_each(|_| self.game.step(intents));
+        }
+        if self.game.is_finished() {
+            self.show(Screen::LevelDone);
+        }
+    }
+
+    fn intents(&self) -> Intents {
+        let wanted = self.held.iter().filter_map(|key| match self.settings.bindings.action(key) {
+            Some(Action::Want(intent)) => Some(intent),
+            _ => None,
+        });
+        wanted.chain(self.runs.then_some(Intent::Run)).collect()
+    }
+
+    fn camera(&self) -> Camera {
+        self.game.camera(self.field_of_view)
+    }
+
+    /// Whether the screen shows something that is no longer so, and may be drawn again at `now`.
+    fn is_due(&self, now: Duration) -> bool {
+        self.is_stale() && now >= self.next_frame
+    }
+
+    fn is_stale(&self) -> bool {
+        self.shown != Some(self.camera())
+    }
+
+    fn drawn(&mut self, now: Duration) {
+        self.shown = Some(self.camera());
+        self.next_frame = now + self.settings.frame_time;
+    }
+
+    /// When something will happen without an event; `None` for never.
+    fn wakes_at(&self) -> Option<Duration> {
+        let moves = self.screen == Screen::Playing && !self.game.is_at_rest(self.intents());
+        let frame = if self.is_stale() {
+            Some(self.next_frame)
+        } else {
+            moves.then(|| self.next_frame.max(self.clock.next_step()))
+        };
+        frame.into_iter().chain(self.held.next_expiry()).min()
+    }
+
+    fn key(&mut self, event: KeyEvent, now: Duration) {
+        self.advance(now);
+        if event.key == Key::Char('c') && event.modifiers.control {
+            self.has_left |= event.phase == Phase::Press;
+            return;
+        }
+        let action = self.settings.bindings.action(event.key);
+        if let Some(Action::Want(_)) = action {
+            let bindings = &self.settings.bindings;
+            let opposes = |other| {
+                action.zip(bindings.action(other)).is_some_and(|(one, other)| one.opposes(other))
+            };
+            self.held.note(event, now, opposes);
+        }
+        if event.phase != Phase::Release {
+            self.press(event.key, action);
+        }
+    }
+
+    fn press(&mut self, key: Key, action: Option<Action>) {
+        match (self.screen, action) {
+            (Screen::LevelDone, _) if is_confirmation(key) => self.next_level(),
+            (Screen::End, _) if is_confirmation(key) => self.has_left = true,
+            (Screen::Help, Some(Action::Leave)) if key == Key::Escape => self.show(Screen::Playing),
+            (_, Some(Action::Leave)) => self.has_left = true,
+            (Screen::Playing, Some(Action::ToggleHelp)) => self.show(Screen::Help),
+            (Screen::Playing, Some(Action::TogglePause)) => self.show(Screen::Paused),
+            (Screen::Help, Some(Action::ToggleHelp))
+            | (Screen::Paused, Some(Action::TogglePause)) => self.show(Screen::Playing),
+            (_, Some(Action::ToggleMinimap)) => {
+                self.shows_minimap = !self.shows_minimap;
+                self.shown = None;
+            }
+            (_, Some(Action::ToggleRun)) => {
+                self.runs = !self.runs;
+                self.shown = None;
+            }
+            (_, Some(Action::WidenView)) => self.widen_view(VIEW_STEP),
+            (_, Some(Action::NarrowView)) => self.widen_view(-VIEW_STEP),
+            _ => {}
+        }
+    }
+
+    fn show(&mut self, screen: Screen) {
+        self.screen = screen;
+        self.shown = None;
+    }
+
+    fn widen_view(&mut self, degrees: f64) {
+        let view = (self.field_of_view.degrees() + degrees).clamp(NARROWEST_VIEW, WIDEST_VIEW);
+        if let Some(view) = FieldOfView::from_degrees(view) {
+            self.field_of_view = view;
+        }
+    }
+
+    fn next_level(&mut self) {
+        let Some(world) = self.later_levels.next() else { return self.show(Screen::End) };
+        self.earlier += self.game.elapsed();
+        self.game = Game::new(world);
+        self.held.clear();
+        self.show(Screen::Playing);
+    }
+
+    fn resized(&mut self, cell_aspect: Option<CellAspect>) {
+        self.cell_aspect = cell_aspect;
+        self.shown = None;
+    }
+
+    fn set_terminal_depth(&mut self, depth: ColorDepth) {
+        self.terminal_depth = depth;
+        self.shown = None;
+    }
+
+    /// The program was stopped, and goes on: the time in between does not count.
+    fn resumed(&mut self, now: Duration) {
+        self.clock.skip_to(now);
+        self.held.clear();
+        self.shown = None;
+    }
+
+    fn draw(&mut self, frame: &mut Frame) {
+        let area = frame.area();
+        if panels::is_too_small(area) {
+            return panels::too_small(frame);
+        }
+        let [picture, status] = panels::picture_and_status(area);
+        self.draw_picture(frame, picture);
+        panels::status(frame, status, self.game.world(), self.runs, &self.settings.bindings);
+        let seconds = self.game.elapsed();
+        match self.screen {
+            Screen::Playing => {}
+            Screen::Paused => panels::paused(frame, picture, &self.settings.bindings),
+            Screen::Help => panels::help(frame, picture, &self.settings.bindings),
+            Screen::LevelDone => panels::level_done(frame, picture, self.game.world(), seconds),
+            Screen::End => panels::end(frame, picture, self.earlier + seconds),
+        }
+    }
+
+    fn draw_picture(&mut self, frame: &mut Frame, area: Rect) {
+        let camera = self.camera();
+        let world = self.game.world();
+        let depth = self.settings.depth.unwrap_or(self.terminal_depth);
+        let cell_aspect = self.settings.cell_aspect.or(self.cell_aspect).unwrap_or_default();
+        let picture = FirstPerson::new(world, &camera)
+            .glyphs(self.settings.glyphs)
+            .color_depth(depth)
+            .cell_aspect(cell_aspect);
+        frame.render_stateful_widget(picture, area, &mut self.view);
+        if let Some(panel) = panels::minimap(area).filter(|_| self.shows_minimap) {
+            let map = Minimap::new(world, &camera)
+                .seen(self.view.columns())
+                .glyphs(self.settings.glyphs)
+                .color_depth(depth);
+            let inside = panels::framed(frame, panel, "map");
+            frame.render_widget(map, inside);
+        }
+    }
+}
+
+fn is_confirmation(key: Key) -> bool {
+    matches!(key, Key::Enter | Key::Char(' '))
+}
