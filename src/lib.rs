@@ -6,4 +6,6 @@
 //! maps/*.toml ─ map ─▶ World ─ game ─▶ World + Camera ─ render ─▶ Frame ─ tui ─▶ Buffer ─ terminal ─▶ bytes
 //! ```
 
+#[cfg(feature = "terminal")]
+pub mod terminal;
 pub mod world;
