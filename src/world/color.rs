@@ -55,8 +55,7 @@ impl Rgb {
         const RED: u32 = 13_933;
         const GREEN: u32 = 46_871;
         const BLUE: u32 = 4_732;
-        let sum =
-            RED * self.red() as u32 + GREEN * self.green() as u32 + BLUE * self.blue() as u32;
+        let sum = RED * self.red() as u32 + GREEN * self.green() as u32 + BLUE * self.blue() as u32;
         (sum >> 16) as u8
     }
 }
@@ -112,7 +111,8 @@ mod tests {
             assert_eq!(text.parse::<Rgb>().unwrap().to_string(), text);
         }
         assert_eq!("#A04030".parse(), Ok(Rgb::new(0xa0, 0x40, 0x30)));
-        for text in ["", "#", "a04030", "#a0403", "#a040300", "#+12345", "#gg0000", "#ä0000", "red"] {
+        for text in ["", "#", "a04030", "#a0403", "#a040300", "#+12345", "#gg0000", "#ä0000", "red"]
+        {
             assert_eq!(text.parse::<Rgb>(), Err(NotAColor), "{text}");
         }
     }
