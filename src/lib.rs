@@ -7,9 +7,15 @@
 //! ```
 
 pub mod cast;
+#[cfg(feature = "cli")]
+pub mod cli;
+pub mod fault;
 pub mod game;
+pub mod map;
 pub mod palette;
 pub mod render;
+#[cfg(feature = "terminal")]
+pub mod terminal;
 #[cfg(feature = "tui")]
 pub mod tui;
 pub mod world;

@@ -24,12 +24,22 @@
 //! # Ok::<(), Box<dyn std::error::Error>>(())
 //! ```
 
+#[cfg(feature = "terminal")]
+mod app;
 mod ascii;
+#[cfg(feature = "terminal")]
+mod bindings;
 mod first_person;
 mod glyphs;
 mod half_blocks;
+#[cfg(feature = "terminal")]
+mod held;
 mod minimap;
 
+#[cfg(feature = "terminal")]
+pub use app::{Levels, Settings, play};
+#[cfg(feature = "terminal")]
+pub use bindings::Bindings;
 pub use first_person::{FirstPerson, View};
 pub use glyphs::{CellAspect, GlyphMode};
 pub use minimap::Minimap;

@@ -37,8 +37,11 @@ fn every_line_gets_an_answer() {
     ];
     let answers = answers(&(rays.join("\n") + "\n"));
     assert_eq!(answers.lines().count(), rays.len());
-    let dialogue: String =
-        rays.iter().zip(answers.lines()).map(|(ray, answer)| format!("{ray}\n  {answer}\n")).collect();
+    let dialogue: String = rays
+        .iter()
+        .zip(answers.lines())
+        .map(|(ray, answer)| format!("{ray}\n  {answer}\n"))
+        .collect();
     insta::assert_snapshot!(dialogue);
 }
 
@@ -58,11 +61,8 @@ fn bytes_that_are_no_text_are_no_ray() {
 
 #[test]
 fn an_answer_comes_before_the_next_ray_is_asked_for() {
-    let mut child = cellcaster(&["cast", MAP])
-        .stdin(Stdio::piped())
-        .stdout(Stdio::piped())
-        .spawn()
-        .unwrap();
+    let mut child =
+        cellcaster(&["cast", MAP]).stdin(Stdio::piped()).stdout(Stdio::piped()).spawn().unwrap();
     let mut rays = child.stdin.take().unwrap();
     let mut hits = BufReader::new(child.stdout.take().unwrap());
     for _ in 0..3 {

@@ -31,7 +31,7 @@ fn every_level_looks_as_it_did() {
     for level in builtin::LEVELS {
         for size in ["80x24", "120x40", "33x9"] {
             for format in ["json", "text", "ansi", "png"] {
-                assert_golden(level.name(), size, &[], format);
+                assert_golden(level.name, size, &[], format);
             }
         }
     }
@@ -44,7 +44,7 @@ fn every_depth_and_glyph_mode_looks_as_it_did() {
             for glyphs in ["half", "ascii"] {
                 for format in ["ansi", "png"] {
                     let options = [("--colors", depth), ("--glyphs", glyphs)];
-                    assert_golden(level.name(), "80x24", &options, format);
+                    assert_golden(level.name, "80x24", &options, format);
                 }
             }
         }
@@ -61,9 +61,11 @@ fn json_has_the_cells_of_the_widget() {
     let camera = world.start_camera(FieldOfView::default());
     let area = Rect::new(0, 0, 80, 24);
     let mut buffer = Buffer::empty(area);
-    FirstPerson::new(&world, &camera)
-        .color_depth(ColorDepth::True)
-        .render(area, &mut buffer, &mut View::default());
+    FirstPerson::new(&world, &camera).color_depth(ColorDepth::True).render(
+        area,
+        &mut buffer,
+        &mut View::default(),
+    );
     let hex = |color: Color| match color {
         Color::Rgb(red, green, blue) => format!("#{red:02x}{green:02x}{blue:02x}"),
         other => panic!("{other} is no colour of its own"),
@@ -114,12 +116,24 @@ fn a_camera_can_stand_anywhere() {
 
 #[test]
 fn extreme_pictures_are_drawn() {
-    for (size, fov, aspect) in
-        [("1x1", "66", "2"), ("1x300", "0.001", "0.1"), ("300x1", "179.9", "10"), ("4096x2", "1e-300", "2")]
-    {
+    for (size, fov, aspect) in [
+        ("1x1", "66", "2"),
+        ("1x300", "0.001", "0.1"),
+        ("300x1", "179.9", "10"),
+        ("4096x2", "1e-300", "2"),
+    ] {
         for format in ["text", "png"] {
-            let options =
-                ["snapshot", "--size", size, "--fov", fov, "--cell-aspect", aspect, "--format", format];
+            let options = [
+                "snapshot",
+                "--size",
+                size,
+                "--fov",
+                fov,
+                "--cell-aspect",
+                aspect,
+                "--format",
+                format,
+            ];
             assert!(!output_of(&options).is_empty());
         }
     }

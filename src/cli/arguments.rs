@@ -120,7 +120,9 @@ fn parse_play(mut parser: Parser) -> Result<Command, Error> {
             Arg::Short('h') | Arg::Long("help") => return Ok(Command::Help),
             Arg::Short('V') | Arg::Long("version") => return Ok(Command::Version),
             Arg::Value(map) if play.map.is_none() => play.map = Some(map),
-            Arg::Long("config") => play.config = Some(word(&mut parser, "--config", "a file")?.into()),
+            Arg::Long("config") => {
+                play.config = Some(word(&mut parser, "--config", "a file")?.into())
+            }
             Arg::Long("fps") => play.frames_per_second = FRAMES_PER_SECOND.value(&mut parser)?,
             Arg::Long("fov") => play.field_of_view = FIELD_OF_VIEW.value(&mut parser)?,
             Arg::Long("cell-aspect") => play.cell_aspect = Some(CELL_ASPECT.value(&mut parser)?),
@@ -173,7 +175,9 @@ fn parse_check(mut parser: Parser) -> Result<Command, Error> {
         }
     }
     if maps.is_empty() {
-        return Err(Error::mistake("check takes at least one map, as in \"cellcaster check my.toml\""));
+        return Err(Error::mistake(
+            "check takes at least one map, as in \"cellcaster check my.toml\"",
+        ));
     }
     Ok(Command::Check(maps))
 }
@@ -285,7 +289,9 @@ fn next(parser: &mut Parser) -> Result<Option<Arg<'_>>, Error> {
 
 /// The word after an option.
 fn word(parser: &mut Parser, name: &str, takes: &str) -> Result<OsString, Error> {
-    parser.value().map_err(|_| Error::mistake(format!("{name} takes {takes}, and nothing follows it")))
+    parser
+        .value()
+        .map_err(|_| Error::mistake(format!("{name} takes {takes}, and nothing follows it")))
 }
 
 fn unexpected(command: &str, options: &[&str], argument: Arg<'_>) -> Error {
@@ -295,9 +301,7 @@ fn unexpected(command: &str, options: &[&str], argument: Arg<'_>) -> Error {
             "{command} takes one map, and \"{}\" is one too many; {help}",
             value.display()
         )),
-        Arg::Short(letter) => {
-            Error::mistake(format!("{command} has no option -{letter}; {help}"))
-        }
+        Arg::Short(letter) => Error::mistake(format!("{command} has no option -{letter}; {help}")),
         Arg::Long(name) => {
             let name = format!("--{name}");
             let meant = fault::nearest(&name, options);

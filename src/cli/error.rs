@@ -5,6 +5,7 @@ use std::io;
 use std::process::ExitCode;
 
 use crate::fault::Faults;
+use crate::terminal;
 
 /// Why a command ended early: a whole sentence, or a report of several, and the status to end with.
 #[derive(Debug)]
@@ -69,6 +70,16 @@ fn print(error: &Error) {
 impl From<Faults> for Error {
     fn from(faults: Faults) -> Self {
         Self { cause: Cause::Faults(faults) }
+    }
+}
+
+impl From<terminal::Error> for Error {
+    fn from(error: terminal::Error) -> Self {
+        if error.is_mistake() {
+            Self::mistake(error.to_string())
+        } else {
+            Self::machine(error.to_string())
+        }
     }
 }
 

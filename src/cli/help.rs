@@ -16,7 +16,7 @@ fn write(text: &str) -> Result<(), Error> {
     io::stdout().write_all(text.as_bytes()).map_err(|error| Error::of_output(&error))
 }
 
-const HELP: &str = r#"cellcaster: a raycaster game in the terminal, and its pictures in scripts
+const HELP: &str = r##"cellcaster: a raycaster game in the terminal, and its pictures in scripts
 
 USAGE
   cellcaster [play] [MAP] [OPTIONS]    play; without MAP, the built-in levels
@@ -69,4 +69,4 @@ EXAMPLES
 
 Exit status: 0, or 2 for a mistake in the arguments or a map, or 1 where the
 machine refuses something.
-"#;
+"##;

@@ -21,6 +21,6 @@ pub(super) fn load(argument: Option<&OsStr>) -> Result<World, Error> {
 
 /// The place among the built-in levels of the one called `name`; a file of that name goes first.
 pub(super) fn builtin_level(name: &OsStr) -> Option<usize> {
-    let index = builtin::LEVELS.iter().position(|level| name == level.name())?;
+    let index = builtin::LEVELS.iter().position(|level| name == level.name)?;
     (!Path::new(name).exists()).then_some(index)
 }

@@ -47,7 +47,11 @@ pub(super) fn run(options: &Snapshot) -> Result<(), Error> {
     write(&picture, options, output).map_err(|error| Error::of_output(&error))
 }
 
-fn write(picture: &FirstPerson, options: &Snapshot, output: impl Write) -> io::Result<()> {
+fn write(
+    picture: &FirstPerson,
+    options: &Snapshot,
+    output: impl Write + 'static,
+) -> io::Result<()> {
     let size = Size::new(options.size.columns, options.size.rows);
     let mut view = View::default();
     picture.draw(size, &mut view);
@@ -65,11 +69,11 @@ fn write(picture: &FirstPerson, options: &Snapshot, output: impl Write) -> io::R
     writer.finish()
 }
 
-fn writer<'output>(
+fn writer(
     options: &Snapshot,
     size: Size,
-    output: impl Write + 'output,
-) -> io::Result<Box<dyn Writer + 'output>> {
+    output: impl Write + 'static,
+) -> io::Result<Box<dyn Writer>> {
     Ok(match options.format {
         Format::Text => Box::new(text::Text::new(output)),
         Format::Ansi => Box::new(ansi::Ansi::new(output)),

@@ -8,6 +8,7 @@ mod clock;
 mod levels;
 mod panels;
 
+use std::env;
 use std::time::{Duration, Instant};
 
 pub use levels::Levels;
@@ -19,7 +20,7 @@ use super::held::HeldKeys;
 use super::{CellAspect, FirstPerson, GlyphMode, Minimap, View};
 use crate::game::{Game, Intent, Intents};
 use crate::palette::ColorDepth;
-use crate::terminal::{Error, Event, Key, KeyEvent, Phase, Session};
+use crate::terminal::{Detected, Error, Event, Key, KeyEvent, Options, Phase, Session};
 use crate::world::{Camera, FieldOfView, World};
 use clock::Clock;
 
@@ -45,10 +46,14 @@ pub struct Settings {
 /// # Errors
 /// Where there is no terminal, or it fails.
 pub fn play(levels: Levels, settings: Settings) -> Result<(), Error> {
-    let mut session = Session::enter()?;
-    let mut app = App::new(levels, settings, session.color_depth());
+    let mut options = Options::from_environment(|name| env::var(name).ok());
+    if let Some(depth) = settings.depth {
+        options.color_depth = Detected::Certain(depth);
+    }
+    let mut session = Session::enter(options)?;
+    let mut app = App::new(levels, settings);
+    app.terminal_changed(&session);
     let start = Instant::now();
-    app.cell_aspect = session.size().cell_aspect;
     while !app.has_left {
         app.advance(start.elapsed());
         if app.is_due(start.elapsed()) {
@@ -59,14 +64,13 @@ pub fn play(levels: Levels, settings: Settings) -> Result<(), Error> {
         match session.next_event(timeout)? {
             None => {}
             Some(Event::Key(event)) => app.key(event, start.elapsed()),
-            Some(Event::Resized) => app.resized(session.size().cell_aspect),
-            Some(Event::ColorDepth(depth)) => app.set_terminal_depth(depth),
+            Some(Event::Resized | Event::ColorDepth(_)) => app.terminal_changed(&session),
             Some(Event::KeyReleases(reported)) => app.held.set_reports_releases(reported),
             Some(Event::Suspend) => {
                 session.suspend()?;
                 app.resumed(start.elapsed());
             }
-            Some(Event::Quit(reason)) => return session.leave(reason),
+            Some(Event::Quit(_)) => break,
         }
     }
     Ok(())
@@ -89,8 +93,8 @@ struct App {
     earlier: f64,
     screen: Screen,
     settings: Settings,
-    terminal_depth: ColorDepth,
-    cell_aspect: Option<CellAspect>,
+    depth: ColorDepth,
+    cell_aspect: CellAspect,
     field_of_view: FieldOfView,
     held: HeldKeys,
     runs: bool,
@@ -109,7 +113,7 @@ const NARROWEST_VIEW: f64 = 30.0;
 const WIDEST_VIEW: f64 = 120.0;
 
 impl App {
-    fn new(levels: Levels, settings: Settings, terminal_depth: ColorDepth) -> Self {
+    fn new(levels: Levels, settings: Settings) -> Self {
         let Levels { first, rest } = levels;
         Self {
             later_levels: rest,
@@ -117,9 +121,9 @@ impl App {
             earlier: 0.0,
             screen: Screen::Playing,
             field_of_view: settings.field_of_view,
+            depth: settings.depth.unwrap_or_default(),
+            cell_aspect: settings.cell_aspect.unwrap_or_default(),
             settings,
-            terminal_depth,
-            cell_aspect: None,
             held: HeldKeys::default(),
             runs: false,
             shows_minimap: true,
@@ -188,10 +192,6 @@ impl App {
 
     fn key(&mut self, event: KeyEvent, now: Duration) {
         self.advance(now);
-        if event.key == Key::Char('c') && event.modifiers.control {
-            self.has_left |= event.phase == Phase::Press;
-            return;
-        }
         let action = self.settings.bindings.action(event.key);
         if let Some(Action::Want(_)) = action {
             let bindings = &self.settings.bindings;
@@ -249,13 +249,11 @@ impl App {
         self.show(Screen::Playing);
     }
 
-    fn resized(&mut self, cell_aspect: Option<CellAspect>) {
-        self.cell_aspect = cell_aspect;
-        self.shown = None;
-    }
-
-    fn set_terminal_depth(&mut self, depth: ColorDepth) {
-        self.terminal_depth = depth;
+    /// The terminal has another size, or has told more about itself.
+    fn terminal_changed(&mut self, session: &Session) {
+        let told = session.size().cell_aspect.and_then(CellAspect::new);
+        self.cell_aspect = self.settings.cell_aspect.or(told).unwrap_or_default();
+        self.depth = self.settings.depth.unwrap_or(session.color_depth());
         self.shown = None;
     }
 
@@ -287,18 +285,16 @@ impl App {
     fn draw_picture(&mut self, frame: &mut Frame, area: Rect) {
         let camera = self.camera();
         let world = self.game.world();
-        let depth = self.settings.depth.unwrap_or(self.terminal_depth);
-        let cell_aspect = self.settings.cell_aspect.or(self.cell_aspect).unwrap_or_default();
         let picture = FirstPerson::new(world, &camera)
             .glyphs(self.settings.glyphs)
-            .color_depth(depth)
-            .cell_aspect(cell_aspect);
+            .color_depth(self.depth)
+            .cell_aspect(self.cell_aspect);
         frame.render_stateful_widget(picture, area, &mut self.view);
         if let Some(panel) = panels::minimap(area).filter(|_| self.shows_minimap) {
             let map = Minimap::new(world, &camera)
                 .seen(self.view.columns())
                 .glyphs(self.settings.glyphs)
-                .color_depth(depth);
+                .color_depth(self.depth);
             let inside = panels::framed(frame, panel, "map");
             frame.render_widget(map, inside);
         }

@@ -135,7 +135,8 @@ impl Bindings {
     pub fn parse(text: &str, name: &str) -> Result<Self, Faults> {
         let mut faults = Vec::new();
         let document = document::parse(text, &mut faults);
-        let bindings = if faults.is_empty() { read(&document, &mut faults) } else { Self::default() };
+        let bindings =
+            if faults.is_empty() { read(&document, &mut faults) } else { Self::default() };
         if faults.is_empty() { Ok(bindings) } else { Err(Faults::new(name, text, faults)) }
     }
 
@@ -186,7 +187,9 @@ fn read_keys(table: &DeTable, faults: &mut Vec<Fault>) -> Vec<(Key, Action)> {
             continue;
         };
         let values = match entry.value {
-            DeValue::Array(values) => values.iter().map(|value| (value.get_ref(), value.span())).collect(),
+            DeValue::Array(values) => {
+                values.iter().map(|value| (value.get_ref(), value.span())).collect()
+            }
             single => vec![(single, entry.value_place.clone())],
         };
         for (value, place) in values {
@@ -195,7 +198,9 @@ fn read_keys(table: &DeTable, faults: &mut Vec<Fault>) -> Vec<(Key, Action)> {
                 break;
             };
             match name.parse::<Key>() {
-                Err(error) => faults.push(Fault::new(place, error.to_string()).label("unknown key")),
+                Err(error) => {
+                    faults.push(Fault::new(place, error.to_string()).label("unknown key"))
+                }
                 Ok(key) if bound.iter().any(|&(other, to)| other == key && to != action) => {
                     faults.push(bound_twice(key, place));
                 }

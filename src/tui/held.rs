@@ -117,9 +117,7 @@ impl Repetition {
         match self {
             Self::NotYet => FIRST_WINDOW,
             Self::Once => SECOND_WINDOW,
-            Self::Every(interval) => {
-                (interval * INTERVALS).clamp(SHORTEST_WINDOW, LONGEST_WINDOW)
-            }
+            Self::Every(interval) => (interval * INTERVALS).clamp(SHORTEST_WINDOW, LONGEST_WINDOW),
         }
     }
 }

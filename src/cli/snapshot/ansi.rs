@@ -4,7 +4,7 @@ use std::io::{self, Write};
 
 use ratatui::buffer::Cell;
 
-use crate::terminal::CellStyle;
+use crate::terminal::Style;
 
 /// Writes cells as text with the sequences that colour it. Every line ends in the terminal's own
 /// colours, so that pagers and scrolling can cut between lines.
@@ -22,14 +22,18 @@ impl<W: Write> Ansi<W> {
 impl<W: Write> super::Writer for Ansi<W> {
     fn write_row(&mut self, cells: &[Cell]) -> io::Result<()> {
         self.line.clear();
-        let mut style = CellStyle::RESET;
+        let mut style = Style::RESET;
         for cell in cells {
-            let next = CellStyle::of(cell);
-            next.write_after(style, &mut self.line);
-            style = next;
+            let next = Style::of(cell);
+            if next != style {
+                next.write_from(Some(style), &mut self.line);
+                style = next;
+            }
             self.line.extend_from_slice(cell.symbol().as_bytes());
         }
-        CellStyle::RESET.write_after(style, &mut self.line);
+        if style != Style::RESET {
+            Style::RESET.write_from(Some(style), &mut self.line);
+        }
         self.line.push(b'\n');
         self.output.write_all(&self.line)
     }

@@ -20,14 +20,14 @@ const INK: Rgb = Rgb::WHITE;
 const PAPER: Rgb = Rgb::BLACK;
 
 /// Writes cells as pixels.
-pub(super) struct Png<'output, W: Write> {
-    stream: StreamWriter<'output, W>,
+pub(super) struct Png<W: Write + 'static> {
+    stream: StreamWriter<'static, W>,
     cell_width: u32,
     cell_height: u32,
     line: Vec<u8>,
 }
 
-impl<'output, W: Write + 'output> Png<'output, W> {
+impl<W: Write + 'static> Png<W> {
     pub(super) fn new(output: W, size: Size, aspect: CellAspect) -> io::Result<Self> {
         let (cell_width, cell_height) = cell_size(size, aspect);
         let width = u32::from(size.width) * cell_width;
@@ -47,13 +47,12 @@ fn cell_size(size: Size, aspect: CellAspect) -> (u32, u32) {
     let sizes = [GLYPH_SIDE, 4, 2].map(|width| {
         (width, (f64::from(width) * aspect.height_over_width()).round().max(1.0) as u32)
     });
-    let fits = |&(width, height): &(u32, u32)| {
-        cells * u64::from(width) * u64::from(height) <= MOST_PIXELS
-    };
+    let fits =
+        |&(width, height): &(u32, u32)| cells * u64::from(width) * u64::from(height) <= MOST_PIXELS;
     sizes.into_iter().find(fits).unwrap_or((1, aspect.height_over_width().round().max(1.0) as u32))
 }
 
-impl<'output, W: Write + 'output> super::Writer for Png<'output, W> {
+impl<W: Write + 'static> super::Writer for Png<W> {
     fn write_row(&mut self, cells: &[Cell]) -> io::Result<()> {
         for y in 0..self.cell_height {
             let glyph_row = (y * GLYPH_SIDE / self.cell_height) as usize;

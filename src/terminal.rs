@@ -1,0 +1,39 @@
+//! The real terminal: what it can do, entering and leaving it, its bytes as events, cells as bytes.
+//!
+//! A [`Session`] takes the terminal and yields [`Event`]s; [`Session::draw`] shows a frame. Whatever
+//! ends the session — a return, an error, a panic, a signal — the terminal is given back as it was
+//! found.
+//!
+//! The bytes are read and cut by this module itself. Leaving that to an event library was refused:
+//! those known swallow keys after an answer that they do not know, take half a sequence for
+//! keys, or keep a reading thread that competes with the answers to queries.
+
+mod cell_writer;
+mod depth;
+mod error;
+mod event;
+mod guard;
+mod input;
+mod key;
+mod sequence;
+mod session;
+mod size;
+#[cfg(unix)]
+mod unix;
+#[cfg(not(unix))]
+mod unsupported;
+
+#[cfg(unix)]
+use self::unix as platform;
+#[cfg(not(unix))]
+use self::unsupported as platform;
+
+pub use self::cell_writer::CellWriter;
+#[cfg(feature = "cli")]
+pub(crate) use self::cell_writer::Style;
+pub use self::depth::{Detected, color_depth};
+pub use self::error::Error;
+pub use self::event::{Event, QuitReason};
+pub use self::key::{Key, KeyEvent, Modifiers, Phase, UnknownKey};
+pub use self::session::{Options, Session};
+pub use self::size::WindowSize;

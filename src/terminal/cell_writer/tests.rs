@@ -1,0 +1,302 @@
+use std::cell::RefCell;
+use std::num::NonZeroU16;
+use std::rc::Rc;
+
+use proptest::prelude::*;
+use ratatui::Terminal;
+use ratatui::buffer::Buffer;
+use ratatui::layout::Rect;
+use ratatui::style::{Color, Modifier};
+
+use super::*;
+
+/// A terminal's screen that counts the writes that reach it.
+#[derive(Clone)]
+struct Screen(Rc<RefCell<Received>>);
+
+struct Received {
+    parser: vt100::Parser,
+    writes: usize,
+    bytes: Vec<u8>,
+}
+
+impl Screen {
+    fn new(size: Size) -> Self {
+        let parser = vt100::Parser::new(length(size.height), length(size.width), 0);
+        Self(Rc::new(RefCell::new(Received { parser, writes: 0, bytes: Vec::new() })))
+    }
+
+    fn resize(&self, size: Size) {
+        self.0.borrow_mut().parser.set_size(length(size.height), length(size.width));
+    }
+
+    fn writes(&self) -> usize {
+        self.0.borrow().writes
+    }
+
+    /// What has been received since the last call.
+    fn take_text(&self) -> String {
+        String::from_utf8(std::mem::take(&mut self.0.borrow_mut().bytes)).unwrap()
+    }
+}
+
+impl Write for Screen {
+    fn write(&mut self, bytes: &[u8]) -> io::Result<usize> {
+        let mut received = self.0.borrow_mut();
+        received.parser.process(bytes);
+        received.writes += 1;
+        received.bytes.extend_from_slice(bytes);
+        Ok(bytes.len())
+    }
+
+    fn flush(&mut self) -> io::Result<()> {
+        Ok(())
+    }
+}
+
+fn length(cells: u16) -> NonZeroU16 {
+    NonZeroU16::new(cells).unwrap()
+}
+
+fn terminal(size: Size) -> (Terminal<CellWriter<Screen>>, Screen) {
+    let screen = Screen::new(size);
+    (Terminal::new(CellWriter::new(screen.clone(), size)).unwrap(), screen)
+}
+
+fn draw(terminal: &mut Terminal<CellWriter<Screen>>, content: &Buffer) {
+    terminal.draw(|frame| frame.buffer_mut().merge(content)).unwrap();
+}
+
+/// Draws `cells` in a row, and answers what was written for it.
+fn bytes_of(cells: &[Cell]) -> String {
+    let (mut terminal, screen) = terminal(Size::new(10, 1));
+    let mut buffer = Buffer::empty(Rect::new(0, 0, cells.len() as u16, 1));
+    buffer.content.clone_from_slice(cells);
+    draw(&mut terminal, &buffer);
+    screen.take_text()
+}
+
+/// What was written for `cells`, one sequence a line.
+fn readable(cells: &[Cell]) -> String {
+    bytes_of(cells).replace('\x1b', "\nESC").trim_start().to_owned()
+}
+
+fn colored(symbol: &'static str, fg: Color, bg: Color) -> Cell {
+    let mut cell = Cell::new(symbol);
+    cell.set_fg(fg).set_bg(bg);
+    cell
+}
+
+fn assert_shown(screen: &Screen, content: &Buffer) {
+    let received = screen.0.borrow();
+    for position in content.area.positions() {
+        let expected = &content[position];
+        let shown = received.parser.screen().cell(position.y, position.x).unwrap();
+        if shown.is_wide_continuation() {
+            continue;
+        }
+        let symbol = if shown.has_contents() { shown.contents() } else { " " };
+        assert_eq!(symbol, expected.symbol(), "the symbol at {position}");
+        assert_eq!(shown.fgcolor(), color(expected.fg), "the foreground at {position}");
+        assert_eq!(shown.bgcolor(), color(expected.bg), "the background at {position}");
+        let shown_modifier = [
+            (shown.bold(), Modifier::BOLD),
+            (shown.dim(), Modifier::DIM),
+            (shown.italic(), Modifier::ITALIC),
+            (shown.underline(), Modifier::UNDERLINED),
+            (shown.inverse(), Modifier::REVERSED),
+        ]
+        .into_iter()
+        .filter_map(|(set, modifier)| set.then_some(modifier))
+        .collect::<Modifier>();
+        assert_eq!(shown_modifier, expected.modifier, "the modifier at {position}");
+    }
+}
+
+fn color(color: Color) -> vt100::Color {
+    match color {
+        Color::Reset => vt100::Color::Default,
+        Color::Rgb(red, green, blue) => vt100::Color::Rgb(red, green, blue),
+        Color::Indexed(index) => vt100::Color::Idx(index),
+        Color::Red => vt100::Color::Idx(1),
+        Color::White => vt100::Color::Idx(15),
+        other => panic!("{other} is not among the test's colours"),
+    }
+}
+
+fn any_color() -> impl Strategy<Value = Color> {
+    prop_oneof![
+        Just(Color::Reset),
+        Just(Color::Red),
+        Just(Color::White),
+        any::<u8>().prop_map(Color::Indexed),
+        (0..3_u8, 0..2_u8, any::<bool>()).prop_map(|(red, green, blue)| Color::Rgb(
+            red,
+            green,
+            if blue { 255 } else { 0 }
+        )),
+    ]
+}
+
+fn any_modifier() -> impl Strategy<Value = Modifier> {
+    let intensity = prop::sample::select(vec![Modifier::empty(), Modifier::BOLD, Modifier::DIM]);
+    let others = Modifier::ITALIC | Modifier::UNDERLINED | Modifier::REVERSED;
+    (intensity, any::<u16>())
+        .prop_map(move |(intensity, bits)| intensity | others & Modifier::from_bits_truncate(bits))
+}
+
+fn any_cell() -> impl Strategy<Value = Cell> {
+    let symbol = prop::sample::select(vec![" ", "▀", "▄", "█", "#", "a", "é", "字"]);
+    (symbol, any_color(), any_color(), any_modifier()).prop_map(|(symbol, fg, bg, modifier)| {
+        let mut cell = colored(symbol, fg, bg);
+        cell.modifier = modifier;
+        cell
+    })
+}
+
+fn any_buffer(size: Size) -> impl Strategy<Value = Buffer> {
+    let area = Rect::from(size);
+    prop::collection::vec(any_cell(), usize::from(size.width) * usize::from(size.height)).prop_map(
+        move |content| {
+            let mut buffer = Buffer { area, content };
+            tidy_wide_symbols(&mut buffer);
+            buffer
+        },
+    )
+}
+
+/// After a wide symbol, ratatui's widgets leave the next cell blank; none stands in the last column.
+fn tidy_wide_symbols(buffer: &mut Buffer) {
+    for y in 0..buffer.area.height {
+        for x in 0..buffer.area.width {
+            if buffer[(x, y)].cell_width() > 1 {
+                if x + 1 == buffer.area.width {
+                    buffer[(x, y)].set_symbol("#");
+                } else {
+                    buffer[(x + 1, y)].reset();
+                }
+            }
+        }
+    }
+}
+
+fn any_size() -> impl Strategy<Value = Size> {
+    (1..12_u16, 1..6_u16).prop_map(Size::from)
+}
+
+proptest! {
+    #[test]
+    fn a_terminal_shows_what_was_drawn_after_any_history(
+        (size, history) in any_size()
+            .prop_flat_map(|size| (Just(size), prop::collection::vec(any_buffer(size), 1..6)))
+    ) {
+        let (mut terminal, screen) = terminal(size);
+        for content in &history {
+            draw(&mut terminal, content);
+            assert_shown(&screen, content);
+        }
+        prop_assert!(screen.writes() <= history.len());
+        prop_assert_eq!(terminal.backend().bytes_written(), screen.take_text().len() as u64);
+    }
+
+    #[test]
+    fn a_frame_without_a_change_writes_nothing(
+        content in any_size().prop_flat_map(any_buffer)
+    ) {
+        let (mut terminal, screen) = terminal(content.area.as_size());
+        draw(&mut terminal, &content);
+        let writes = screen.writes();
+        draw(&mut terminal, &content);
+        prop_assert_eq!(screen.writes(), writes);
+    }
+
+    #[test]
+    fn a_resized_window_is_drawn_afresh(
+        before in any_size().prop_flat_map(any_buffer),
+        after in any_size().prop_flat_map(any_buffer),
+    ) {
+        let (mut terminal, screen) = terminal(before.area.as_size());
+        draw(&mut terminal, &before);
+        screen.resize(after.area.as_size());
+        terminal.backend_mut().set_size(after.area.as_size());
+        draw(&mut terminal, &after);
+        assert_shown(&screen, &after);
+    }
+}
+
+#[test]
+fn only_what_differs_from_the_cell_before_is_sent() {
+    let (red, blue) = (Color::Rgb(200, 0, 0), Color::Rgb(0, 0, 200));
+    let row = [
+        colored("▀", red, blue),
+        colored("▀", red, blue),
+        colored("▀", red, red),
+        colored("▀", blue, red),
+        colored("▀", Color::Red, Color::White),
+        colored("▀", Color::Indexed(100), Color::White),
+        Cell::EMPTY,
+        colored("x", Color::Reset, Color::Reset),
+    ];
+    insta::assert_snapshot!(readable(&row), @r"
+    ESC[?2026h
+    ESC[1;1H
+    ESC[m
+    ESC[38;2;200;0;0;48;2;0;0;200m▀▀
+    ESC[48;2;200;0;0m▀
+    ESC[38;2;0;0;200m▀
+    ESC[31;107m▀
+    ESC[38;5;100m▀
+    ESC[1C
+    ESC[mx
+    ESC[?2026l
+    ");
+}
+
+#[test]
+fn modifiers_are_switched_one_by_one_except_intensity() {
+    let with = |modifier: Modifier| {
+        let mut cell = Cell::new("x");
+        cell.modifier = modifier;
+        cell
+    };
+    let row = [
+        with(Modifier::BOLD | Modifier::DIM | Modifier::REVERSED),
+        with(Modifier::DIM | Modifier::REVERSED),
+        with(Modifier::DIM | Modifier::CROSSED_OUT),
+        with(Modifier::empty()),
+    ];
+    insta::assert_snapshot!(readable(&row), @r"
+    ESC[?2026h
+    ESC[1;1H
+    ESC[m
+    ESC[1;2;7mx
+    ESC[22;2mx
+    ESC[27mx
+    ESC[mx
+    ESC[?2026l
+    ");
+}
+
+#[test]
+fn control_characters_in_a_cell_reach_no_terminal() {
+    let bytes = bytes_of(&[colored("\x1b]0;mine\x07", Color::Red, Color::Reset)]);
+    assert!(!bytes.contains("mine"), "{bytes:?}");
+}
+
+#[test]
+fn the_cursor_is_shown_where_a_frame_puts_it_and_hidden_again() {
+    let (mut terminal, screen) = terminal(Size::new(10, 4));
+    let hidden = |screen: &Screen| screen.0.borrow().parser.screen().hide_cursor();
+    terminal.draw(|frame| frame.set_cursor_position((3, 2))).unwrap();
+    assert!(!hidden(&screen));
+    assert_eq!(screen.0.borrow().parser.screen().cursor_position(), (2, 3));
+    terminal.draw(|_| ()).unwrap();
+    assert!(hidden(&screen));
+}
+
+#[test]
+fn a_window_of_no_size_is_drawn_without_complaint() {
+    let screen = Screen::new(Size::new(1, 1));
+    let mut terminal = Terminal::new(CellWriter::new(screen, Size::ZERO)).unwrap();
+    terminal.draw(|_| ()).unwrap();
+}

@@ -1,0 +1,134 @@
+//! How many colours the terminal shows, as far as its environment tells.
+//!
+//! First what the user asks for (`NO_COLOR`, `FORCE_COLOR`, `CLICOLOR_FORCE`), then what the
+//! terminal says of itself (`COLORTERM`, `TERM`), then a guess that a query may raise. A database
+//! of terminals was refused: it is missing on half the machines, and wrong about colours on others.
+
+use crate::palette::ColorDepth;
+
+/// What an environment tells of the colour depth.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Detected {
+    /// Nothing the terminal answers would change it.
+    Certain(ColorDepth),
+    /// The most to rely on until the terminal has been asked.
+    Guess(ColorDepth),
+}
+
+impl Detected {
+    /// The depth to start with.
+    pub fn depth(self) -> ColorDepth {
+        match self {
+            Self::Certain(depth) | Self::Guess(depth) => depth,
+        }
+    }
+}
+
+/// The colour depth that `environment`, a lookup of variables by name, speaks for.
+pub fn color_depth(environment: impl Fn(&str) -> Option<String>) -> Detected {
+    let variable = |name| environment(name).filter(|value| !value.is_empty());
+    if variable("NO_COLOR").is_some() {
+        return Detected::Certain(ColorDepth::Mono);
+    }
+    let forced = match environment("FORCE_COLOR").as_deref() {
+        Some("0" | "false") => return Detected::Certain(ColorDepth::Mono),
+        Some("1") => return Detected::Certain(ColorDepth::Indexed16),
+        Some("2") => return Detected::Certain(ColorDepth::Indexed256),
+        Some("3") => return Detected::Certain(ColorDepth::True),
+        Some(_) => true,
+        None => variable("CLICOLOR_FORCE").is_some_and(|value| value != "0"),
+    };
+    if matches!(variable("COLORTERM").as_deref(), Some("truecolor" | "24bit")) {
+        return Detected::Certain(ColorDepth::True);
+    }
+    let named = variable("TERM").map_or(Detected::Guess(ColorDepth::Indexed256), |term| of(&term));
+    match named {
+        Detected::Certain(ColorDepth::Mono) if forced => Detected::Certain(ColorDepth::Indexed16),
+        named => named,
+    }
+}
+
+/// What `term`, a value of `TERM`, says.
+fn of(term: &str) -> Detected {
+    const TRUE: [&str; 9] = [
+        "alacritty",
+        "contour",
+        "foot",
+        "ghostty",
+        "rio",
+        "wezterm",
+        "xterm-direct",
+        "xterm-ghostty",
+        "xterm-kitty",
+    ];
+    const SIXTEEN: [&str; 5] = ["ansi", "cygwin", "linux", "rxvt", "xterm-16color"];
+    const MONO: [&str; 7] = ["dumb", "unknown", "vt52", "vt100", "vt102", "vt220", "xterm-mono"];
+    let is = |known: &&str| {
+        term.strip_prefix(*known).is_some_and(|rest| rest.is_empty() || rest.starts_with('-'))
+    };
+    if TRUE.iter().any(is) || term.ends_with("-direct") {
+        Detected::Certain(ColorDepth::True)
+    } else if MONO.contains(&term) {
+        Detected::Certain(ColorDepth::Mono)
+    } else if SIXTEEN.contains(&term) {
+        Detected::Certain(ColorDepth::Indexed16)
+    } else if is(&"screen") {
+        // It hands the query through to the terminal around it, whose answer would be another's.
+        Detected::Certain(ColorDepth::Indexed256)
+    } else {
+        Detected::Guess(ColorDepth::Indexed256)
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::ColorDepth::{Indexed16, Indexed256, Mono, True};
+    use super::Detected::{Certain, Guess};
+    use super::*;
+
+    #[test]
+    fn the_environment_is_read_in_the_documented_order() {
+        let cases: [(&str, Detected); 30] = [
+            ("", Guess(Indexed256)),
+            ("TERM=xterm-256color", Guess(Indexed256)),
+            ("TERM=tmux-256color", Guess(Indexed256)),
+            ("TERM=screen-256color", Certain(Indexed256)),
+            ("TERM=screen", Certain(Indexed256)),
+            ("TERM=xterm", Guess(Indexed256)),
+            ("TERM=xterm-kitty", Certain(True)),
+            ("TERM=alacritty", Certain(True)),
+            ("TERM=alacritty-direct", Certain(True)),
+            ("TERM=foot-extra", Certain(True)),
+            ("TERM=footloose", Guess(Indexed256)),
+            ("TERM=konsole-direct", Certain(True)),
+            ("TERM=linux", Certain(Indexed16)),
+            ("TERM=dumb", Certain(Mono)),
+            ("TERM=vt100", Certain(Mono)),
+            ("TERM=linux COLORTERM=truecolor", Certain(True)),
+            ("TERM=xterm COLORTERM=24bit", Certain(True)),
+            ("TERM=xterm COLORTERM=yes", Guess(Indexed256)),
+            ("TERM=xterm-kitty NO_COLOR=1", Certain(Mono)),
+            ("TERM=xterm-kitty NO_COLOR=", Certain(True)),
+            ("NO_COLOR=1 FORCE_COLOR=3", Certain(Mono)),
+            ("COLORTERM=truecolor FORCE_COLOR=0", Certain(Mono)),
+            ("COLORTERM=truecolor FORCE_COLOR=1", Certain(Indexed16)),
+            ("TERM=dumb FORCE_COLOR=2", Certain(Indexed256)),
+            ("TERM=dumb FORCE_COLOR=3", Certain(True)),
+            ("TERM=dumb FORCE_COLOR=", Certain(Indexed16)),
+            ("TERM=dumb FORCE_COLOR=true", Certain(Indexed16)),
+            ("TERM=dumb CLICOLOR_FORCE=1", Certain(Indexed16)),
+            ("TERM=dumb CLICOLOR_FORCE=0", Certain(Mono)),
+            ("TERM=xterm-kitty CLICOLOR_FORCE=1", Certain(True)),
+        ];
+        for (variables, expected) in cases {
+            let environment = |name: &str| {
+                variables
+                    .split_whitespace()
+                    .filter_map(|pair| pair.split_once('='))
+                    .find(|(known, _)| *known == name)
+                    .map(|(_, value)| value.to_owned())
+            };
+            assert_eq!(color_depth(environment), expected, "{variables}");
+        }
+    }
+}

@@ -1,0 +1,97 @@
+//! What can go wrong with a terminal.
+
+use std::{fmt, io};
+
+/// Why a session with the terminal did not start, or does not go on.
+///
+/// Its message is a whole sentence for the user.
+#[derive(Debug)]
+pub struct Error(Kind);
+
+#[derive(Debug)]
+enum Kind {
+    NotATerminal {
+        stream: &'static str,
+    },
+    #[cfg(not(unix))]
+    UnsupportedPlatform,
+    AlreadyTaken,
+    GivenBack,
+    Io {
+        doing: &'static str,
+        source: io::Error,
+    },
+}
+
+impl Error {
+    /// `stream` ("standard input", say) is not a terminal.
+    pub(super) fn not_a_terminal(stream: &'static str) -> Self {
+        Self(Kind::NotATerminal { stream })
+    }
+
+    /// There is no way yet to play on this platform.
+    #[cfg(not(unix))]
+    pub(super) fn unsupported_platform() -> Self {
+        Self(Kind::UnsupportedPlatform)
+    }
+
+    /// This program has a session already.
+    pub(super) fn already_taken() -> Self {
+        Self(Kind::AlreadyTaken)
+    }
+
+    /// The session was ended from outside: by a panic in another thread.
+    pub(super) fn given_back() -> Self {
+        Self(Kind::GivenBack)
+    }
+
+    /// Whether the user can do otherwise: play on a terminal, or on another platform.
+    pub fn is_mistake(&self) -> bool {
+        match self.0 {
+            Kind::NotATerminal { .. } => true,
+            #[cfg(not(unix))]
+            Kind::UnsupportedPlatform => true,
+            Kind::AlreadyTaken | Kind::GivenBack | Kind::Io { .. } => false,
+        }
+    }
+
+    /// Makes an error of one that occurred while `doing` something ("reading keys", say).
+    pub(super) fn while_doing(doing: &'static str) -> impl FnOnce(io::Error) -> Self {
+        move |source| Self(Kind::Io { doing, source })
+    }
+}
+
+impl fmt::Display for Error {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        match &self.0 {
+            Kind::NotATerminal { stream } => write!(
+                f,
+                "{stream} is not a terminal, which playing needs; \
+                 `cellcaster snapshot` draws a frame without one"
+            ),
+            #[cfg(not(unix))]
+            Kind::UnsupportedPlatform => f.write_str(
+                "playing needs a Unix terminal for now; \
+                 `cellcaster snapshot` draws a frame on every platform",
+            ),
+            Kind::AlreadyTaken => {
+                f.write_str("this program has taken the terminal already, and has not left it yet")
+            }
+            Kind::GivenBack => {
+                f.write_str("the terminal was given back when another part of the program failed")
+            }
+            Kind::Io { doing, source } => {
+                write!(f, "{doing} failed: {source}")
+            }
+        }
+    }
+}
+
+impl std::error::Error for Error {
+    fn source(&self) -> Option<&(dyn std::error::Error + 'static)> {
+        match &self.0 {
+            Kind::Io { source, .. } => Some(source),
+            _ => None,
+        }
+    }
+}

@@ -1,0 +1,234 @@
+//! Takes the terminal, and gives it back as it was found.
+//!
+//! A guard is shared by the session, the panic hook and the thread that takes signals. Whichever is
+//! first gives the terminal back; for the others there is nothing left to do. Restoring in each of
+//! them what it knows of was refused: what is pushed twice or popped twice is worse than neither.
+
+mod panic_hook;
+
+use std::io;
+use std::sync::atomic::{AtomicBool, Ordering};
+use std::sync::{Arc, Condvar, Mutex, MutexGuard, PoisonError};
+use std::time::{Duration, Instant};
+
+use super::Error;
+use super::input::{Answer, Decoder, Input};
+use super::platform::Device;
+use super::sequence;
+
+/// How long a terminal may take to answer.
+const ANSWER_PATIENCE: Duration = Duration::from_secs(1);
+
+/// How long it may take to accept what gives it back.
+const WRITE_PATIENCE: Duration = Duration::from_millis(250);
+
+/// What is changed about the terminal, and how to undo it.
+#[derive(Debug)]
+pub(super) struct Guard {
+    device: Device,
+    state: Mutex<State>,
+    given_back: Condvar,
+    hurried: AtomicBool,
+}
+
+#[derive(Debug)]
+struct State {
+    taken: bool,
+    key_flags: KeyFlags,
+    fences: Fences,
+}
+
+/// Whether the terminal reports keys in the kitty protocol.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+enum KeyFlags {
+    /// It has not been told to.
+    Untouched,
+    /// It does whenever it is taken.
+    Pushed,
+}
+
+/// The queries that the terminal has not answered yet.
+#[derive(Debug)]
+struct Fences {
+    open: u32,
+    last_sent: Instant,
+}
+
+impl Guard {
+    /// A guard of `device`, which becomes the one that the panic hook uses.
+    ///
+    /// # Errors
+    /// Where the process has a guard already.
+    pub(super) fn install(device: Device) -> Result<Arc<Self>, Error> {
+        let guard = Arc::new(Self {
+            device,
+            state: Mutex::new(State {
+                taken: false,
+                key_flags: KeyFlags::Untouched,
+                fences: Fences { open: 0, last_sent: Instant::now() },
+            }),
+            given_back: Condvar::new(),
+            hurried: AtomicBool::new(false),
+        });
+        panic_hook::protect(&guard)?;
+        Ok(guard)
+    }
+
+    /// Gives the terminal back for good.
+    pub(super) fn uninstall(&self) {
+        self.give_back();
+        panic_hook::release(self);
+    }
+
+    pub(super) fn device(&self) -> &Device {
+        &self.device
+    }
+
+    /// Takes the terminal: raw mode, the alternate screen, no cursor.
+    pub(super) fn take(&self) -> io::Result<()> {
+        let mut state = self.lock();
+        self.device.make_raw()?;
+        state.taken = true;
+        let mut text = [
+            sequence::ENTER_ALTERNATE_SCREEN,
+            sequence::HIDE_CURSOR,
+            sequence::DISABLE_WRAP,
+            sequence::RESET_STYLE,
+        ]
+        .concat();
+        if state.key_flags == KeyFlags::Pushed {
+            text.push_str(sequence::PUSH_KEY_FLAGS);
+        }
+        drop(state);
+        self.write(text.as_bytes())
+    }
+
+    /// Asks `queries`, and sends a fence after them.
+    pub(super) fn ask(&self, queries: &str) -> io::Result<()> {
+        self.lock().fences.sent();
+        self.write([queries, sequence::QUERY_FENCE].concat().as_bytes())
+    }
+
+    /// Takes note that the terminal has answered all before a fence.
+    pub(super) fn fence_answered(&self) {
+        self.lock().fences.answered();
+    }
+
+    /// Makes the terminal report keys in the kitty protocol, now and whenever it is taken.
+    pub(super) fn push_key_flags(&self) -> io::Result<()> {
+        self.lock().key_flags = KeyFlags::Pushed;
+        self.write(sequence::PUSH_KEY_FLAGS.as_bytes())
+    }
+
+    /// Whether the terminal is ours to write to.
+    pub(super) fn is_taken(&self) -> bool {
+        self.lock().taken
+    }
+
+    /// Writes `bytes`, however long the terminal takes; unless the program is to end meanwhile, or
+    /// the terminal has been given back.
+    pub(super) fn write(&self, bytes: &[u8]) -> io::Result<()> {
+        if !self.is_taken() {
+            return Err(io::Error::other(Error::given_back()));
+        }
+        self.device.write(bytes, || !self.hurried.load(Ordering::SeqCst))
+    }
+
+    /// From now on, nothing waits for a terminal that takes no bytes.
+    pub(super) fn hurry(&self) {
+        self.hurried.store(true, Ordering::SeqCst);
+    }
+
+    /// Gives the terminal back, if that has not been done. Takes two seconds at the most.
+    pub(super) fn give_back(&self) {
+        let mut state = self.lock();
+        if state.taken {
+            state.taken = false;
+            self.leave(&mut state);
+            self.given_back.notify_all();
+        }
+    }
+
+    /// Waits until the terminal has been given back; whether it has been by `timeout`.
+    pub(super) fn wait_until_given_back(&self, timeout: Duration) -> bool {
+        let state = self.lock();
+        let waited = self.given_back.wait_timeout_while(state, timeout, |state| state.taken);
+        !waited.unwrap_or_else(PoisonError::into_inner).0.taken
+    }
+
+    /// A panic while it is held changes nothing that matters: what is left to undo is still told.
+    fn lock(&self) -> MutexGuard<'_, State> {
+        self.state.lock().unwrap_or_else(PoisonError::into_inner)
+    }
+
+    /// Undoes everything, in the opposite order. Each step is tried whether or not the one before
+    /// has worked: there is nothing better to do about an error than the rest.
+    fn leave(&self, state: &mut State) {
+        let mut text = [sequence::END_SYNCHRONIZED, sequence::RESET_STYLE].concat();
+        if state.key_flags == KeyFlags::Pushed {
+            text.push_str(sequence::POP_KEY_FLAGS);
+            // What is typed before the flags are popped is sent in the old way; the answer to
+            // this comes after it.
+            text.push_str(sequence::QUERY_FENCE);
+            state.fences.sent();
+        }
+        text.push_str(sequence::ENABLE_WRAP);
+        text.push_str(sequence::SHOW_CURSOR);
+        if self.write_or_discard(&text).is_ok() {
+            self.swallow_answers(&mut state.fences);
+            _ = self.write_or_discard(sequence::LEAVE_ALTERNATE_SCREEN);
+        }
+        _ = self.device.restore_attributes();
+    }
+
+    /// Writes `text`, if need be in the place of a frame that the terminal has not taken.
+    fn write_or_discard(&self, text: &str) -> io::Result<()> {
+        let patiently = || {
+            let deadline = Instant::now() + WRITE_PATIENCE;
+            self.device.write(text.as_bytes(), || Instant::now() < deadline)
+        };
+        patiently().or_else(|_| {
+            self.device.discard_output()?;
+            patiently()
+        })
+    }
+
+    /// Reads until every query is answered, so that no answer and no key's release is typed into
+    /// the shell.
+    fn swallow_answers(&self, fences: &mut Fences) {
+        let mut decoder = Decoder::default();
+        let mut buffer = [0; 256];
+        while let Some(patience) = fences.patience() {
+            match self.device.wait_for_input(patience) {
+                Ok(true) => {}
+                Ok(false) | Err(_) => return,
+            }
+            match self.device.read(&mut buffer) {
+                Ok(None) => {}
+                Ok(Some(0)) | Err(_) => return,
+                Ok(Some(count)) => decoder.feed(&buffer[..count], |input| {
+                    if input == Input::Answer(Answer::Fence) {
+                        fences.answered();
+                    }
+                }),
+            }
+        }
+    }
+}
+
+impl Fences {
+    fn sent(&mut self) {
+        self.open += 1;
+        self.last_sent = Instant::now();
+    }
+
+    fn answered(&mut self) {
+        self.open = self.open.saturating_sub(1);
+    }
+
+    /// How much longer to wait for an answer; `None` where nothing is expected any more.
+    fn patience(&self) -> Option<Duration> {
+        let left = ANSWER_PATIENCE.checked_sub(self.last_sent.elapsed())?;
+        (self.open > 0).then_some(left)
+    }
+}

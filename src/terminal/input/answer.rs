@@ -1,0 +1,34 @@
+//! What the terminal answers to queries.
+
+use super::super::sequence;
+
+/// An answer of the terminal's.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub(in super::super) enum Answer {
+    /// It speaks the kitty keyboard protocol.
+    KeyFlags,
+    /// It shows 24-bit colours.
+    TrueColor,
+    /// It has answered all that was asked before the fence.
+    Fence,
+}
+
+/// Whether `unit`, a control sequence, has a shape that only reports have, and no key.
+pub(super) fn is_report(unit: &[u8]) -> bool {
+    matches!(unit, [_, _, b'<'..=b'?', ..] | [.., b'n'])
+}
+
+/// What the report `unit` answers; `None` for what was not asked.
+pub(super) fn parse_report(unit: &[u8]) -> Option<Answer> {
+    match unit {
+        [_, _, b'?', b'0'..=b'9' | b';', .., b'c'] => Some(Answer::Fence),
+        [_, _, b'?', b'0'..=b'9', .., b'u'] => Some(Answer::KeyFlags),
+        _ => None,
+    }
+}
+
+/// What the device control string `unit` answers; `None` for a refusal, and for what was not asked.
+pub(super) fn parse_device_control(unit: &[u8]) -> Option<Answer> {
+    let capability = unit.strip_prefix(b"\x1bP1+r")?;
+    capability.starts_with(sequence::RGB_CAPABILITY.as_bytes()).then_some(Answer::TrueColor)
+}

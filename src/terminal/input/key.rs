@@ -1,0 +1,69 @@
+//! A whole unit of bytes to a key.
+
+use termina::event::{KeyCode, KeyEventKind, ModifierKeyCode, Modifiers as Reported};
+
+use super::super::key::{Key, KeyEvent, Modifiers, Phase};
+
+/// The key event that `unit` stands for; `None` for what is no key, or none that a game binds.
+pub(super) fn parse(unit: &[u8]) -> Option<KeyEvent> {
+    match unit {
+        [0x1b, character] => {
+            let event = parse(&[*character])?;
+            Some(KeyEvent { modifiers: Modifiers { alt: true, ..event.modifiers }, ..event })
+        }
+        _ => translate(reported(unit)?),
+    }
+}
+
+/// What the parser makes of `unit`. It is a fresh one each time: one that has kept something of a
+/// unit that it does not know would prefix it to the next.
+fn reported(unit: &[u8]) -> Option<termina::event::KeyEvent> {
+    let mut parser = termina::Parser::default();
+    parser.parse(unit, false);
+    match parser.pop() {
+        Some(termina::Event::Key(event)) => Some(event),
+        _ => None,
+    }
+}
+
+fn translate(event: termina::event::KeyEvent) -> Option<KeyEvent> {
+    let modifiers = Modifiers {
+        shift: event.modifiers.contains(Reported::SHIFT),
+        control: event.modifiers.contains(Reported::CONTROL),
+        alt: event.modifiers.contains(Reported::ALT),
+    };
+    let phase = match event.kind {
+        KeyEventKind::Press => Phase::Press,
+        KeyEventKind::Repeat => Phase::Repeat,
+        KeyEventKind::Release => Phase::Release,
+    };
+    Some(KeyEvent { key: name(event.code)?, modifiers, phase })
+}
+
+fn name(code: KeyCode) -> Option<Key> {
+    Some(match code {
+        KeyCode::Char(character) if character.is_control() => return None,
+        KeyCode::Char(character) => Key::typing(character),
+        KeyCode::Enter => Key::Enter,
+        KeyCode::Backspace => Key::Backspace,
+        KeyCode::Tab | KeyCode::BackTab => Key::Tab,
+        KeyCode::Escape => Key::Escape,
+        KeyCode::Left => Key::Left,
+        KeyCode::Right => Key::Right,
+        KeyCode::Up => Key::Up,
+        KeyCode::Down => Key::Down,
+        KeyCode::Home => Key::Home,
+        KeyCode::End => Key::End,
+        KeyCode::PageUp => Key::PageUp,
+        KeyCode::PageDown => Key::PageDown,
+        KeyCode::Insert => Key::Insert,
+        KeyCode::Delete => Key::Delete,
+        KeyCode::Function(number) => Key::Function(number),
+        KeyCode::Modifier(ModifierKeyCode::LeftShift | ModifierKeyCode::RightShift) => Key::Shift,
+        KeyCode::Modifier(ModifierKeyCode::LeftControl | ModifierKeyCode::RightControl) => {
+            Key::Control
+        }
+        KeyCode::Modifier(ModifierKeyCode::LeftAlt | ModifierKeyCode::RightAlt) => Key::Alt,
+        _ => return None,
+    })
+}

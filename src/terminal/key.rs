@@ -1,0 +1,222 @@
+//! Keys by name, and what happened to them.
+//!
+//! A key is the one on the keyboard, not the text it types: letters are lower-case, and Shift is a
+//! modifier. Passing on a parser's own types was refused: bindings are written in a file by these
+//! names, and outlive any parser.
+
+use std::fmt;
+use std::str::FromStr;
+
+/// Something happened to a key.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
+pub struct KeyEvent {
+    /// Which key.
+    pub key: Key,
+    /// Which modifiers were down at that moment.
+    pub modifiers: Modifiers,
+    /// What happened to it.
+    pub phase: Phase,
+}
+
+/// A key on the keyboard.
+///
+/// Its text, for [`Display`](fmt::Display) and [`FromStr`], is the character itself, or a name:
+/// `space`, `up`, `down`, `left`, `right`, `enter`, `escape`, `tab`, `backspace`, `insert`,
+/// `delete`, `home`, `end`, `pageup`, `pagedown`, `shift`, `control`, `alt`, `f1` to `f35`.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Hash, PartialOrd, Ord)]
+pub enum Key {
+    /// A key that types a character. A letter is lower-case, whether Shift is down or not.
+    Char(char),
+    /// Arrow up.
+    Up,
+    /// Arrow down.
+    Down,
+    /// Arrow to the left.
+    Left,
+    /// Arrow to the right.
+    Right,
+    /// Enter, also the keypad's.
+    Enter,
+    /// Escape.
+    Escape,
+    /// Tab; backwards with Shift.
+    Tab,
+    /// Backspace.
+    Backspace,
+    /// Insert.
+    Insert,
+    /// Delete.
+    Delete,
+    /// Home.
+    Home,
+    /// End.
+    End,
+    /// Page up.
+    PageUp,
+    /// Page down.
+    PageDown,
+    /// Either Shift by itself. Seen only where the terminal reports releases.
+    Shift,
+    /// Either Control by itself. Seen only where the terminal reports releases.
+    Control,
+    /// Either Alt by itself. Seen only where the terminal reports releases.
+    Alt,
+    /// A function key, from 1 to 35.
+    Function(u8),
+}
+
+/// The modifiers that were down during an event.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Hash)]
+pub struct Modifiers {
+    /// Either Shift.
+    pub shift: bool,
+    /// Either Control.
+    pub control: bool,
+    /// Either Alt, or Option.
+    pub alt: bool,
+}
+
+/// What happened to a key.
+///
+/// A terminal that does not report releases sends presses only, and sends them again and again
+/// while the key is held.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
+pub enum Phase {
+    /// It went down.
+    Press,
+    /// It is still down, says the keyboard's repetition.
+    Repeat,
+    /// It went up.
+    Release,
+}
+
+/// The error of [`Key::from_str`]: no key has this name.
+#[derive(Clone, Debug, PartialEq, Eq)]
+pub struct UnknownKey {
+    name: String,
+}
+
+const LAST_FUNCTION_KEY: u8 = 35;
+
+const NAMES: [(&str, Key); 18] = [
+    ("space", Key::Char(' ')),
+    ("up", Key::Up),
+    ("down", Key::Down),
+    ("left", Key::Left),
+    ("right", Key::Right),
+    ("enter", Key::Enter),
+    ("escape", Key::Escape),
+    ("tab", Key::Tab),
+    ("backspace", Key::Backspace),
+    ("insert", Key::Insert),
+    ("delete", Key::Delete),
+    ("home", Key::Home),
+    ("end", Key::End),
+    ("pageup", Key::PageUp),
+    ("pagedown", Key::PageDown),
+    ("shift", Key::Shift),
+    ("control", Key::Control),
+    ("alt", Key::Alt),
+];
+
+impl Key {
+    /// The key that types `character`, in either case.
+    pub(super) fn typing(character: char) -> Self {
+        let mut lower = character.to_lowercase();
+        match (lower.next(), lower.next()) {
+            (Some(single), None) => Self::Char(single),
+            _ => Self::Char(character),
+        }
+    }
+}
+
+impl fmt::Display for Key {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        match (NAMES.iter().find(|(_, key)| key == self), self) {
+            (Some((name, _)), _) => f.write_str(name),
+            (None, Self::Char(character)) => write!(f, "{character}"),
+            (None, Self::Function(number)) => write!(f, "f{number}"),
+            (None, named) => unreachable!("{named:?} is in the list of names"),
+        }
+    }
+}
+
+impl FromStr for Key {
+    type Err = UnknownKey;
+
+    /// Reads a name or a single character, in either case.
+    fn from_str(text: &str) -> Result<Self, UnknownKey> {
+        let unknown = || UnknownKey { name: text.to_owned() };
+        let mut characters = text.chars();
+        if let (Some(only), None) = (characters.next(), characters.next()) {
+            return if only.is_control() { Err(unknown()) } else { Ok(Self::typing(only)) };
+        }
+        let name = text.to_ascii_lowercase();
+        if let Some((_, key)) = NAMES.iter().find(|(known, _)| *known == name) {
+            return Ok(*key);
+        }
+        name.strip_prefix('f')
+            .filter(|number| number.bytes().all(|digit| digit.is_ascii_digit()))
+            .and_then(|number| number.parse().ok())
+            .filter(|number| (1..=LAST_FUNCTION_KEY).contains(number))
+            .map(Self::Function)
+            .ok_or_else(unknown)
+    }
+}
+
+impl fmt::Display for UnknownKey {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        write!(
+            f,
+            "{:?} is not a key: write one character, such as \"w\", or a name, such as \"up\", \
+             \"space\" or \"f1\"",
+            self.name
+        )
+    }
+}
+
+impl std::error::Error for UnknownKey {}
+
+#[cfg(test)]
+mod tests {
+    use proptest::prelude::*;
+
+    use super::*;
+
+    #[test]
+    fn names_and_keys_agree() {
+        for (name, key) in NAMES {
+            assert_eq!(name.parse(), Ok(key));
+            assert_eq!(key.to_string(), name);
+        }
+        for number in 1..=LAST_FUNCTION_KEY {
+            let key = Key::Function(number);
+            assert_eq!(key.to_string().parse(), Ok(key));
+        }
+    }
+
+    #[test]
+    fn either_case_names_the_same_key() {
+        assert_eq!("W".parse(), Ok(Key::Char('w')));
+        assert_eq!("Ä".parse(), Ok(Key::Char('ä')));
+        assert_eq!("PageUp".parse(), Ok(Key::PageUp));
+        assert_eq!("F11".parse(), Ok(Key::Function(11)));
+    }
+
+    #[test]
+    fn what_is_no_key_is_refused_by_name() {
+        for text in ["", "upp", "f0", "f36", "f+1", "f999", "ctrl-c", "\u{7}"] {
+            let error = text.parse::<Key>().unwrap_err();
+            assert!(error.to_string().starts_with(&format!("{text:?}")), "{error}");
+        }
+    }
+
+    proptest! {
+        #[test]
+        fn every_character_key_survives_its_text(character: char) {
+            prop_assume!(!character.is_control());
+            let key = Key::typing(character);
+            prop_assert_eq!(key.to_string().parse::<Key>(), Ok(key));
+        }
+    }
+}

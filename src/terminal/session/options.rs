@@ -1,0 +1,53 @@
+//! How to enter the terminal.
+
+use super::super::{Detected, color_depth};
+
+/// What is known of the terminal beforehand.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub struct Options {
+    /// How many colours it shows. The terminal is asked where this is a guess.
+    pub color_depth: Detected,
+    /// Whether to ask for reports of when keys are released.
+    pub ask_for_key_releases: bool,
+}
+
+impl Options {
+    /// What `environment`, a lookup of variables by name, tells of the terminal.
+    ///
+    /// A terminal multiplexer is not asked for releases: those that agree lose some, and a key whose
+    /// release is lost is held for ever.
+    pub fn from_environment(environment: impl Fn(&str) -> Option<String>) -> Self {
+        let is_set = |name| environment(name).is_some_and(|value| !value.is_empty());
+        let term = environment("TERM").unwrap_or_default();
+        let multiplexed = is_set("TMUX")
+            || is_set("STY")
+            || ["tmux", "screen"].iter().any(|name| term.starts_with(name));
+        Self { color_depth: color_depth(environment), ask_for_key_releases: !multiplexed }
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    fn asks_for_releases(name: &str, value: &str) -> bool {
+        let environment = |asked: &str| (asked == name).then(|| value.to_owned());
+        Options::from_environment(environment).ask_for_key_releases
+    }
+
+    #[test]
+    fn multiplexers_are_not_asked_for_releases() {
+        for (name, value) in [
+            ("TMUX", "/tmp/tmux-1000/default,1,0"),
+            ("STY", "1.pts-0.host"),
+            ("TERM", "screen"),
+            ("TERM", "screen-256color"),
+            ("TERM", "tmux-256color"),
+        ] {
+            assert!(!asks_for_releases(name, value), "{name}={value}");
+        }
+        for (name, value) in [("TERM", "xterm-kitty"), ("TMUX", ""), ("TERM", "")] {
+            assert!(asks_for_releases(name, value), "{name}={value}");
+        }
+    }
+}

@@ -1,0 +1,155 @@
+//! What is Unix about a terminal: its device, its attributes, waiting for it, and signals.
+
+mod signals;
+
+use std::io;
+use std::os::fd::{BorrowedFd, OwnedFd};
+use std::time::Duration;
+
+use rustix::event::{PollFd, PollFlags, Timespec, poll};
+use rustix::fs::{Mode, OFlags};
+use rustix::io::Errno;
+use rustix::termios::{
+    OptionalActions, QueueSelector, Termios, isatty, tcflush, tcgetattr, tcgetwinsize, tcsetattr,
+    ttyname,
+};
+
+pub(super) use self::signals::{Signal, Signals};
+use super::{Error, WindowSize};
+
+/// The terminal that standard input and output are.
+///
+/// Both are opened anew where that is possible: a descriptor of our own can be told not to
+/// block, where telling a shared one would tell the shell as well. A program that cannot block in a
+/// write can still be ended while the link is down.
+#[derive(Debug)]
+pub(super) struct Device {
+    input: OwnedFd,
+    output: OwnedFd,
+    attributes: Termios,
+}
+
+/// What there is to do.
+#[derive(Clone, Copy, Debug)]
+pub(super) struct Ready {
+    /// There are bytes to read, or there will never be.
+    pub(super) input: bool,
+    /// There are signals.
+    pub(super) signals: bool,
+}
+
+impl Device {
+    pub(super) fn open() -> Result<Self, Error> {
+        let (input, output) = (rustix::stdio::stdin(), rustix::stdio::stdout());
+        for (stream, name) in [(input, "standard input"), (output, "standard output")] {
+            if !isatty(stream) {
+                return Err(Error::not_a_terminal(name));
+            }
+        }
+        Self::of_terminals(input, output).map_err(Error::while_doing("opening the terminal"))
+    }
+
+    fn of_terminals(input: BorrowedFd, output: BorrowedFd) -> io::Result<Self> {
+        Ok(Self {
+            input: open_again(input, OFlags::RDONLY)?,
+            output: open_again(output, OFlags::WRONLY)?,
+            attributes: tcgetattr(input)?,
+        })
+    }
+
+    /// From now on, keys arrive one by one, unseen and uninterpreted.
+    pub(super) fn make_raw(&self) -> io::Result<()> {
+        let mut raw = self.attributes.clone();
+        raw.make_raw();
+        Ok(tcsetattr(&self.input, OptionalActions::Now, &raw)?)
+    }
+
+    /// Goes back to how it was when it was opened.
+    pub(super) fn restore_attributes(&self) -> io::Result<()> {
+        Ok(tcsetattr(&self.input, OptionalActions::Now, &self.attributes)?)
+    }
+
+    pub(super) fn size(&self) -> WindowSize {
+        tcgetwinsize(&self.output).map_or(WindowSize::UNKNOWN, |size| {
+            WindowSize::new((size.ws_col, size.ws_row), (size.ws_xpixel, size.ws_ypixel))
+        })
+    }
+
+    /// Writes all of `bytes`; where the terminal takes no more, as long as `go_on` says so.
+    pub(super) fn write(&self, bytes: &[u8], go_on: impl Fn() -> bool) -> io::Result<()> {
+        let mut rest = bytes;
+        while !rest.is_empty() {
+            match rustix::io::write(&self.output, rest) {
+                Ok(count) => rest = &rest[count..],
+                Err(Errno::INTR) => {}
+                Err(Errno::AGAIN) if go_on() => self.wait_for_room()?,
+                Err(Errno::AGAIN) => return Err(io::ErrorKind::TimedOut.into()),
+                Err(error) => return Err(error.into()),
+            }
+        }
+        Ok(())
+    }
+
+    /// Waits until the terminal takes bytes again, or for a moment.
+    fn wait_for_room(&self) -> io::Result<()> {
+        const MOMENT: Duration = Duration::from_millis(50);
+        let mut output = [PollFd::new(&self.output, PollFlags::OUT)];
+        wait(&mut output, Some(MOMENT))
+    }
+
+    /// Drops what was written and has not been taken yet.
+    pub(super) fn discard_output(&self) -> io::Result<()> {
+        Ok(tcflush(&self.output, QueueSelector::OFlush)?)
+    }
+
+    /// Reads what there is into `buffer`: so many bytes, or none at the end, or `None` for nothing
+    /// yet.
+    pub(super) fn read(&self, buffer: &mut [u8]) -> io::Result<Option<usize>> {
+        match rustix::io::read(&self.input, buffer) {
+            Ok(count) => Ok(Some(count)),
+            Err(Errno::AGAIN | Errno::INTR) => Ok(None),
+            // What a terminal says that has been hung up.
+            Err(Errno::IO) => Ok(Some(0)),
+            Err(error) => Err(error.into()),
+        }
+    }
+
+    /// Waits for bytes to read; whether there are any by `timeout`.
+    pub(super) fn wait_for_input(&self, timeout: Duration) -> io::Result<bool> {
+        let mut input = [PollFd::new(&self.input, PollFlags::IN)];
+        wait(&mut input, Some(timeout))?;
+        Ok(!input[0].revents().is_empty())
+    }
+
+    /// Waits for bytes or signals, at most for `timeout`.
+    pub(super) fn wait(&self, signals: &Signals, timeout: Option<Duration>) -> io::Result<Ready> {
+        let mut both =
+            [PollFd::new(&self.input, PollFlags::IN), PollFd::new(signals, PollFlags::IN)];
+        wait(&mut both, timeout)?;
+        let [input, signals] = both.map(|one| !one.revents().is_empty());
+        Ok(Ready { input, signals })
+    }
+}
+
+/// Opens the terminal `stream` once more, so that reads and writes do not block; or the same one
+/// again, where its name does not lead to it.
+fn open_again(stream: BorrowedFd, access: OFlags) -> io::Result<OwnedFd> {
+    let flags = access | OFlags::NOCTTY | OFlags::NONBLOCK | OFlags::CLOEXEC;
+    let again =
+        ttyname(stream, Vec::new()).and_then(|name| rustix::fs::open(name, flags, Mode::empty()));
+    again.or_else(|_| stream.try_clone_to_owned())
+}
+
+/// Polls `streams`; a signal that arrives meanwhile ends it early.
+fn wait(streams: &mut [PollFd], timeout: Option<Duration>) -> io::Result<()> {
+    // What is too long for the system to count is for ever.
+    let timeout = timeout.and_then(|timeout| Timespec::try_from(timeout).ok());
+    match poll(streams, timeout.as_ref()) {
+        Ok(_) => Ok(()),
+        Err(Errno::INTR) => {
+            streams.iter_mut().for_each(PollFd::clear_revents);
+            Ok(())
+        }
+        Err(error) => Err(error.into()),
+    }
+}

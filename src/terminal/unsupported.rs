@@ -1,0 +1,87 @@
+//! The same face as `unix`, where there is no terminal that could be opened.
+//!
+//! A device cannot exist here, so nothing that needs one is ever called.
+
+use std::io;
+use std::sync::Arc;
+use std::time::Duration;
+
+use super::guard::Guard;
+use super::{Error, QuitReason, WindowSize};
+
+/// There is none.
+#[derive(Debug)]
+pub(super) enum Device {}
+
+/// There are none.
+#[derive(Debug)]
+pub(super) enum Signals {}
+
+/// What there is to do.
+#[derive(Clone, Copy, Debug)]
+pub(super) struct Ready {
+    pub(super) input: bool,
+    pub(super) signals: bool,
+}
+
+/// What a signal would mean.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+#[expect(dead_code, reason = "there are no signals here")]
+pub(super) enum Signal {
+    Resized,
+    Suspend,
+    Continued,
+    Quit(QuitReason),
+}
+
+impl Device {
+    pub(super) fn open() -> Result<Self, Error> {
+        Err(Error::unsupported_platform())
+    }
+
+    pub(super) fn make_raw(&self) -> io::Result<()> {
+        match *self {}
+    }
+
+    pub(super) fn restore_attributes(&self) -> io::Result<()> {
+        match *self {}
+    }
+
+    pub(super) fn size(&self) -> WindowSize {
+        match *self {}
+    }
+
+    pub(super) fn write(&self, _: &[u8], _: impl Fn() -> bool) -> io::Result<()> {
+        match *self {}
+    }
+
+    pub(super) fn discard_output(&self) -> io::Result<()> {
+        match *self {}
+    }
+
+    pub(super) fn read(&self, _: &mut [u8]) -> io::Result<Option<usize>> {
+        match *self {}
+    }
+
+    pub(super) fn wait_for_input(&self, _: Duration) -> io::Result<bool> {
+        match *self {}
+    }
+
+    pub(super) fn wait(&self, _: &Signals, _: Option<Duration>) -> io::Result<Ready> {
+        match *self {}
+    }
+}
+
+impl Signals {
+    pub(super) fn listen(guard: Arc<Guard>) -> io::Result<Self> {
+        guard.device().make_raw().map(|()| unreachable!("there is no device"))
+    }
+
+    pub(super) fn take(&mut self) -> Vec<Signal> {
+        match *self {}
+    }
+
+    pub(super) fn stop_until_continued(&mut self) -> io::Result<()> {
+        match *self {}
+    }
+}
