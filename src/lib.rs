@@ -6,4 +6,5 @@
 //! maps/*.toml ─ map ─▶ World ─ game ─▶ World + Camera ─ render ─▶ Frame ─ tui ─▶ Buffer ─ terminal ─▶ bytes
 //! ```
 
+pub mod fault;
 pub mod world;
