@@ -7,4 +7,5 @@
 //! ```
 
 pub mod fault;
+pub mod map;
 pub mod world;
