@@ -1,0 +1,102 @@
+//! TOML with the place of every key and value.
+//!
+//! Reading into structs through serde was refused: it stops at the first fault, and has lost the
+//! places by the time that the values are looked at together.
+
+use std::collections::BTreeSet;
+use std::ops::Range;
+
+use toml::Spanned;
+use toml::de::{DeTable, DeValue};
+
+use super::{Fault, nearest, quoted};
+
+/// In bytes. Of a longer text that is not TOML only the first fault is named: it may have millions.
+const LONGEST_RECOVERED: usize = 1 << 20;
+
+/// The document that `text` holds, as far as it is TOML; where it is not is added to `faults`.
+pub(crate) fn parse<'t>(text: &'t str, faults: &mut Vec<Fault>) -> DeTable<'t> {
+    let (table, errors) = if text.len() <= LONGEST_RECOVERED {
+        DeTable::parse_recoverable(text)
+    } else {
+        match DeTable::parse(text) {
+            Ok(table) => (table, Vec::new()),
+            Err(error) => (Spanned::new(0..0, DeTable::new()), vec![error]),
+        }
+    };
+    let mut seen = BTreeSet::new();
+    for error in errors {
+        let place = error.span().unwrap_or(0..0);
+        // The parser may fail at one place in several ways.
+        if seen.insert(place.start) {
+            faults.push(Fault::new(place, "this is not valid TOML").label(error.message()));
+        }
+    }
+    table.into_inner()
+}
+
+/// A key and its value.
+pub(crate) struct Entry<'a, 't> {
+    pub(crate) key: &'a str,
+    pub(crate) key_place: Range<usize>,
+    pub(crate) value: &'a DeValue<'t>,
+    pub(crate) value_place: Range<usize>,
+}
+
+/// The entries of `table`, in the order of their keys.
+pub(crate) fn entries<'a, 't>(table: &'a DeTable<'t>) -> impl Iterator<Item = Entry<'a, 't>> {
+    table.iter().map(|(key, value)| Entry {
+        key: key.get_ref(),
+        key_place: key.span(),
+        value: value.get_ref(),
+        value_place: value.span(),
+    })
+}
+
+impl<'a, 't> Entry<'a, 't> {
+    /// The value as a string; where it is none, that is added to `faults`. The `example` is a whole
+    /// entry.
+    pub(crate) fn string(&self, example: &str, faults: &mut Vec<Fault>) -> Option<&'a str> {
+        let DeValue::String(string) = self.value else {
+            faults.push(self.wrong_type("a string", example));
+            return None;
+        };
+        Some(string)
+    }
+
+    /// The value as a table, as [`Entry::string`].
+    pub(crate) fn table(&self, example: &str, faults: &mut Vec<Fault>) -> Option<&'a DeTable<'t>> {
+        let DeValue::Table(table) = self.value else {
+            faults.push(self.wrong_type("a table", example));
+            return None;
+        };
+        Some(table)
+    }
+
+    /// The fault that the value is not what is `wanted`, with an `example` of a whole entry.
+    pub(crate) fn wrong_type(&self, wanted: &str, example: &str) -> Fault {
+        let found = match self.value {
+            DeValue::String(_) => "a string",
+            DeValue::Integer(_) => "an integer",
+            DeValue::Float(_) => "a float",
+            DeValue::Boolean(_) => "a boolean",
+            DeValue::Datetime(_) => "a date or time",
+            DeValue::Array(_) => "an array",
+            DeValue::Table(_) => "a table",
+        };
+        Fault::new(self.value_place.clone(), format!("{} must be {wanted}", quoted(self.key)))
+            .label(format!("this is {found}"))
+            .help(format!("write {example}"))
+    }
+
+    /// The fault that the key is none of `known`, which are what `owner` may hold.
+    pub(crate) fn unknown_key(&self, owner: &str, known: &[&str]) -> Fault {
+        let fault =
+            Fault::new(self.key_place.clone(), format!("{owner} has no key {}", quoted(self.key)))
+                .label("unknown key");
+        match nearest(self.key, known) {
+            Some(name) => fault.help(format!("the nearest key is {}", quoted(name))),
+            None => fault.help(format!("known keys: {}", known.join(", "))),
+        }
+    }
+}

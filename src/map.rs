@@ -1,0 +1,175 @@
+//! The map file: TOML with a grid drawn in characters, read into a [`World`].
+//!
+//! ```
+//! let world = cellcaster::map::parse_str(
+//!     r#"
+//! grid = '''
+//! %%%%
+//! %@.%
+//! %%%%
+//! '''
+//! [tiles]
+//! "%" = { wall = "brick" }
+//! [things]
+//! "@" = { start = 0 }
+//! "#,
+//! )
+//! .unwrap();
+//! assert_eq!((world.grid().width(), world.grid().height()), (4, 3));
+//! ```
+//!
+//! Reading goes in stages, each of which adds what it finds wrong to one list: the TOML, the
+//! definitions of characters, the grid that is drawn with them, and the textures that the grid
+//! uses. A stage works with what the earlier ones could make out, and is silent about
+//! anything that an earlier one has found fault with. Rows of unequal length are a fault: padding
+//! short ones was refused, as a lost character then moves half a wall without a word.
+
+pub mod builtin;
+mod definitions;
+mod drawing;
+mod layout;
+mod legend;
+mod per_character;
+mod picture;
+mod textures;
+
+use std::collections::BTreeSet;
+use std::fs::{self, File};
+use std::io::{self, Read};
+use std::path::Path;
+
+use crate::fault::{Fault, Faults, document};
+use crate::world::{Parts, World};
+use definitions::Definitions;
+use drawing::Drawing;
+use layout::Layout;
+use textures::Textures;
+pub use textures::{Folder, NoFiles, TextureFileError, TextureFiles};
+
+/// The largest map file, in bytes. The largest grid, in characters of three bytes, has room.
+pub const MAX_BYTES: usize = 64 << 20;
+/// The most columns, and the most rows, of a grid.
+pub const MAX_SIDE: u32 = 4096;
+
+/// The world that the map `text` describes. Faults call the map `name`; textures that are not
+/// built in come from `files`.
+///
+/// # Errors
+/// Everything that is wrong with the map.
+pub fn parse(text: &str, name: &str, files: &dyn TextureFiles) -> Result<World, Faults> {
+    if text.len() > MAX_BYTES {
+        return Err(too_large(name));
+    }
+    let mut faults = Vec::new();
+    match read(text, files, &mut faults) {
+        Some(world) if faults.is_empty() => Ok(world),
+        _ => Err(Faults::new(name, text, faults)),
+    }
+}
+
+/// As [`parse`], for a map whose textures are all built in.
+///
+/// # Errors
+/// Everything that is wrong with the map, which they call `map`.
+pub fn parse_str(text: &str) -> Result<World, Faults> {
+    parse(text, "map", &NoFiles)
+}
+
+/// The world that the map file at `path` describes. Textures that are not built in are files in
+/// its folder, or in folders within that.
+///
+/// # Errors
+/// Everything that is wrong with the map, or why the file cannot be read.
+pub fn load(path: &Path) -> Result<World, Faults> {
+    let name = path.display().to_string();
+    let text = read_text(path, &name)?;
+    parse(&text, &name, &Folder::of(path))
+}
+
+fn read_text(path: &Path, name: &str) -> Result<String, Faults> {
+    let bytes = read_up_to(path, MAX_BYTES + 1).map_err(|error| unreadable(name, &error))?;
+    if bytes.len() > MAX_BYTES {
+        return Err(too_large(name));
+    }
+    String::from_utf8(bytes).map_err(|error| {
+        let valid = error.utf8_error().valid_up_to();
+        let line = error.as_bytes()[..valid].split(|&byte| byte == b'\n').count();
+        let message = format!(
+            "{name} is not UTF-8 text: line {line} has a byte that is part of no character"
+        );
+        Faults::of_whole_file(name, message, "save the map in the encoding UTF-8")
+    })
+}
+
+/// At most `limit` bytes of a file: what lies beyond is not read.
+fn read_up_to(path: &Path, limit: usize) -> io::Result<Vec<u8>> {
+    if fs::metadata(path)?.is_dir() {
+        return Err(io::ErrorKind::IsADirectory.into());
+    }
+    let mut bytes = Vec::new();
+    File::open(path)?.take(limit as u64).read_to_end(&mut bytes)?;
+    Ok(bytes)
+}
+
+fn too_large(name: &str) -> Faults {
+    let limit = MAX_BYTES >> 20;
+    let message = format!("{name} is larger than {limit} MiB, the most that a map may have");
+    Faults::of_whole_file(name, message, "")
+}
+
+fn unreadable(name: &str, error: &io::Error) -> Faults {
+    let (message, help) = match error.kind() {
+        io::ErrorKind::NotFound => (format!("there is no file {name}"), ""),
+        io::ErrorKind::IsADirectory => {
+            (format!("{name} is a folder, not a map"), "name a map file in it")
+        }
+        kind => (format!("{name} cannot be read: {kind}"), ""),
+    };
+    Faults::of_whole_file(name, message, help)
+}
+
+/// What `text` describes. Where it is not a map, that is added to `faults`.
+fn read(text: &str, files: &dyn TextureFiles, faults: &mut Vec<Fault>) -> Option<World> {
+    let document = document::parse(text, faults);
+    let not_toml = std::mem::take(faults);
+    let definitions = Definitions::read(&document, faults);
+    if !not_toml.is_empty() {
+        keep_apart(faults, not_toml, text);
+        return None;
+    }
+    let mut textures = Textures::new(files);
+    let floor = textures.paint(&definitions.floor, faults);
+    let ceiling = textures.paint(&definitions.ceiling, faults);
+    let Some(grid) = &definitions.grid else {
+        faults.push(no_grid());
+        return None;
+    };
+    let drawing = Drawing::read(grid, text, faults)?;
+    let layout = Layout::of(&drawing, &definitions.legend, &mut textures, faults)?;
+    Some(World::from_parts(Parts {
+        title: definitions.title,
+        grid: layout.grid,
+        tiles: layout.tiles,
+        textures: textures.into_list(),
+        floor: floor?,
+        ceiling: ceiling?,
+        start: layout.start,
+        things: layout.things,
+    }))
+}
+
+/// Adds the places that are not TOML to `faults`, and drops what was found in the same lines: the
+/// table holds a guess at what they mean.
+fn keep_apart(faults: &mut Vec<Fault>, not_toml: Vec<Fault>, text: &str) {
+    let line_ends: Vec<_> = text.match_indices('\n').map(|(at, _)| at).collect();
+    let line = |fault: &Fault| line_ends.partition_point(|&end| end < fault.start());
+    let broken: BTreeSet<_> = not_toml.iter().map(line).collect();
+    faults.retain(|fault| !broken.contains(&line(fault)));
+    faults.extend(not_toml);
+}
+
+fn no_grid() -> Fault {
+    Fault::new(0..0, "the map has no grid")
+        .label("a grid is missing")
+        .help("draw it before [tiles]: grid = ''' on a line, the rows, and ''' again")
+}

@@ -1,0 +1,32 @@
+//! The built-in levels, compiled in from `maps/`.
+
+use super::parse;
+use super::textures::NoFiles;
+use crate::fault::Faults;
+use crate::world::World;
+
+/// A built-in level.
+#[derive(Clone, Copy, Debug)]
+pub struct Level {
+    /// What it is asked for by.
+    pub name: &'static str,
+    /// Its map; every texture it uses is built in.
+    pub text: &'static str,
+}
+
+impl Level {
+    /// What the map describes.
+    ///
+    /// # Errors
+    /// None: the tests read every built-in level.
+    pub fn world(&self) -> Result<World, Faults> {
+        parse(self.text, self.name, &NoFiles)
+    }
+}
+
+/// The built-in levels, in playing order.
+pub const LEVELS: &[Level] = &[
+    Level { name: "cellar", text: include_str!("../../maps/cellar.toml") },
+    Level { name: "museum", text: include_str!("../../maps/museum.toml") },
+    Level { name: "citadel", text: include_str!("../../maps/citadel.toml") },
+];

@@ -1,0 +1,71 @@
+//! The definitions: everything in a map but its grid, each read on its own.
+
+use toml::de::DeTable;
+
+use super::legend::{Legend, Section};
+use super::textures::Surface;
+use crate::fault::Fault;
+use crate::fault::document::{Entry, entries};
+use crate::world::Rgb;
+
+/// The keys of a map.
+pub(super) const KEYS: &[&str] = &["title", "ceiling", "floor", "grid", "tiles", "things"];
+const DEFAULT_CEILING: Rgb = Rgb::new(0x30, 0x30, 0x30);
+const DEFAULT_FLOOR: Rgb = Rgb::new(0x58, 0x58, 0x58);
+
+/// What a map says besides drawing its grid.
+pub(super) struct Definitions<'a, 't> {
+    pub(super) title: String,
+    pub(super) ceiling: Surface<'a>,
+    pub(super) floor: Surface<'a>,
+    pub(super) grid: Option<Entry<'a, 't>>,
+    pub(super) legend: Legend<'a>,
+}
+
+impl<'a, 't> Definitions<'a, 't> {
+    /// The definitions of `document`. What is wrong with one is added to `faults`, and the
+    /// definition stands with a default.
+    pub(super) fn read(document: &'a DeTable<'t>, faults: &mut Vec<Fault>) -> Self {
+        let mut definitions = Self {
+            title: String::new(),
+            ceiling: Surface::plain(DEFAULT_CEILING),
+            floor: Surface::plain(DEFAULT_FLOOR),
+            grid: None,
+            legend: Legend::new(),
+        };
+        for entry in entries(document) {
+            definitions.read_entry(entry, faults);
+        }
+        definitions
+    }
+
+    fn read_entry(&mut self, entry: Entry<'a, 't>, faults: &mut Vec<Fault>) {
+        match entry.key {
+            "title" => self.title = title(&entry, faults).unwrap_or_default(),
+            "ceiling" => {
+                if let Some(surface) = Surface::read(&entry, r##"ceiling = "#202028""##, faults) {
+                    self.ceiling = surface;
+                }
+            }
+            "floor" => {
+                if let Some(surface) = Surface::read(&entry, r#"floor = "stone""#, faults) {
+                    self.floor = surface;
+                }
+            }
+            "grid" => self.grid = Some(entry),
+            "tiles" => self.legend.read_section(Section::Tiles, &entry, faults),
+            "things" => self.legend.read_section(Section::Things, &entry, faults),
+            _ => faults.push(entry.unknown_key("a map", KEYS)),
+        }
+    }
+}
+
+fn title(entry: &Entry<'_, '_>, faults: &mut Vec<Fault>) -> Option<String> {
+    let title = entry.string(r#"title = "Cellar""#, faults)?;
+    if title.contains(char::is_control) {
+        let message = "the title has a line break or another control character";
+        faults.push(Fault::new(entry.value_place.clone(), message).help("write it on one line"));
+        return None;
+    }
+    Some(title.to_owned())
+}

@@ -1,0 +1,236 @@
+//! The drawing: the text of the grid, its rows, and how often each character is in it.
+
+use std::collections::BTreeMap;
+use std::num::NonZeroU32;
+use std::ops::Range;
+
+use super::MAX_SIDE;
+use super::per_character::PerCharacter;
+use crate::fault::Fault;
+use crate::fault::document::Entry;
+use crate::world::Cell;
+
+const EXAMPLE: &str = "grid = ''' on a line, the rows below it, and ''' again";
+
+/// A grid as it is drawn. No side is longer than allowed; rows may be of unequal length, and
+/// characters undefined.
+pub(super) struct Drawing<'a> {
+    text: DrawnText<'a>,
+    pub(super) width: NonZeroU32,
+    pub(super) height: NonZeroU32,
+    /// Where the map says `grid`.
+    pub(super) key_place: Range<usize>,
+    sightings: PerCharacter<Sightings>,
+}
+
+/// Where a character is in the grid.
+#[derive(Clone, Copy, Default)]
+pub(super) struct Sightings {
+    pub(super) count: usize,
+    /// Of the first two: bytes from the start of the grid's text.
+    places: [usize; 2],
+}
+
+impl<'a> Drawing<'a> {
+    /// The drawing that `entry` of the map `text` holds. `None` where it has no width and height
+    /// to speak of; anything wrong with it is added to `faults`.
+    pub(super) fn read(entry: &Entry<'a, '_>, text: &str, faults: &mut Vec<Fault>) -> Option<Self> {
+        let value = entry.string(EXAMPLE, faults)?;
+        let text = DrawnText::new(value, entry.value_place.clone(), text);
+        let (widths, sightings) = text.survey();
+        let width = usual_width(&widths);
+        let height = NonZeroU32::new(widths.len() as u32);
+        let (Some(width), Some(height)) = (width, height) else {
+            faults.push(
+                Fault::new(entry.value_place.clone(), "the grid is empty")
+                    .help("draw at least one row"),
+            );
+            return None;
+        };
+        let widest = widths.iter().copied().max().unwrap_or_default();
+        if widest > MAX_SIDE || height.get() > MAX_SIDE {
+            let message = format!(
+                "the grid is {widest}×{height} cells, and may be {MAX_SIDE}×{MAX_SIDE} at most"
+            );
+            faults.push(Fault::new(entry.key_place.clone(), message));
+            return None;
+        }
+        faults.extend(text.ragged_rows(&widths, width));
+        Some(Self { text, width, height, key_place: entry.key_place.clone(), sightings })
+    }
+
+    /// The characters that are in the grid, in their order.
+    pub(super) fn characters(&self) -> impl Iterator<Item = (char, Sightings)> {
+        self.sightings.iter().filter(|(_, sightings)| sightings.count > 0)
+    }
+
+    /// Where a character is in the grid.
+    pub(super) fn sightings(&self, character: char) -> Sightings {
+        self.sightings.get(character)
+    }
+
+    /// The place in the map of a `character` that is in the grid at byte `at` of its text.
+    pub(super) fn place(&self, character: char, at: usize) -> Range<usize> {
+        self.text.place(at..at + character.len_utf8())
+    }
+
+    /// The rows from the north.
+    pub(super) fn rows(&self) -> impl Iterator<Item = &'a str> {
+        self.text.rows().map(|(_, row)| row)
+    }
+
+    /// The cells that `character` is drawn in, row by row from the north.
+    pub(super) fn cells_of(&self, character: char) -> impl Iterator<Item = Cell> {
+        self.rows().zip(0..).flat_map(move |(line, row)| {
+            let drawn = line.chars().zip(0..).filter(move |&(drawn, _)| drawn == character);
+            drawn.map(move |(_, column)| Cell { column, row })
+        })
+    }
+}
+
+impl Sightings {
+    fn record(&mut self, at: usize) {
+        if let Some(place) = self.places.get_mut(self.count) {
+            *place = at;
+        }
+        self.count += 1;
+    }
+
+    /// The first places, two at most.
+    pub(super) fn first_places(&self) -> &[usize] {
+        &self.places[..self.count.min(2)]
+    }
+}
+
+/// The text of the grid, which knows its place in the map.
+struct DrawnText<'a> {
+    value: &'a str,
+    /// The place of the whole TOML string, with its quotes.
+    string_place: Range<usize>,
+    /// Where the value starts in the map; `None` where the map spells it differently, with
+    /// escapes.
+    start: Option<usize>,
+}
+
+impl<'a> DrawnText<'a> {
+    fn new(value: &'a str, string_place: Range<usize>, map: &str) -> Self {
+        let start = value_start(map.get(string_place.clone()).unwrap_or_default(), value)
+            .map(|start| string_place.start + start);
+        Self { value, string_place, start }
+    }
+
+    /// The place in the map of bytes of the value: the whole string where it has no own.
+    fn place(&self, bytes: Range<usize>) -> Range<usize> {
+        match self.start {
+            Some(start) => start + bytes.start..start + bytes.end,
+            None => self.string_place.clone(),
+        }
+    }
+
+    /// The rows from the north, each with the byte of the value that it starts at.
+    fn rows(&self) -> impl Iterator<Item = (usize, &'a str)> + use<'a> {
+        let mut next_start = 0;
+        self.value.split_inclusive('\n').map(move |line| {
+            let start = next_start;
+            next_start += line.len();
+            let row = line.strip_suffix('\n').unwrap_or(line);
+            (start, row.strip_suffix('\r').unwrap_or(row))
+        })
+    }
+
+    /// The width of each row in cells, and where each character is.
+    fn survey(&self) -> (Vec<u32>, PerCharacter<Sightings>) {
+        let mut sightings = PerCharacter::<Sightings>::new();
+        let widths = self.rows().map(|(start, row)| {
+            let mut width = 0;
+            for (at, character) in row.char_indices() {
+                sightings.get_mut(character).record(start + at);
+                width += 1;
+            }
+            width
+        });
+        (widths.collect(), sightings)
+    }
+
+    fn ragged_rows(&self, widths: &[u32], usual: NonZeroU32) -> impl Iterator<Item = Fault> {
+        let rows = self.rows().zip(widths).zip(1..);
+        rows.filter(move |&((_, &width), _)| width != usual.get()).map(
+            move |(((start, row), &width), number)| {
+                let end = start + row.len();
+                let message = format!(
+                    "row {number} of the grid has {}, other rows have {usual}",
+                    cells(width)
+                );
+                if width < usual.get() {
+                    let label = format!("{} missing", cells(usual.get() - width));
+                    return Fault::new(self.place(end..end), message)
+                        .label(label)
+                        .help("make all rows equally long, and draw open floor as '.'");
+                }
+                let too_many = row.char_indices().nth(usual.get() as usize);
+                let too_many = too_many.map_or(end, |(at, _)| start + at);
+                Fault::new(self.place(too_many..end), message)
+                    .label(format!("{} too many", cells(width - usual.get())))
+                    .help("make all rows equally long")
+            },
+        )
+    }
+}
+
+/// The most common of `widths` but 0; of several, the one that comes first.
+fn usual_width(widths: &[u32]) -> Option<NonZeroU32> {
+    let widths = widths.iter().copied().filter_map(NonZeroU32::new);
+    let mut counts = BTreeMap::<NonZeroU32, usize>::new();
+    for width in widths.clone() {
+        *counts.entry(width).or_default() += 1;
+    }
+    let most = counts.values().copied().max()?;
+    widths.into_iter().find(|width| counts[width] == most)
+}
+
+fn cells(count: u32) -> String {
+    if count == 1 { "1 cell".to_owned() } else { format!("{count} cells") }
+}
+
+/// Where `value` starts in `literal`, the TOML string that stands for it; `None` where it is
+/// spelt differently there.
+fn value_start(literal: &str, value: &str) -> Option<usize> {
+    ["'''", "\"\"\"", "'", "\""].into_iter().find_map(|quotes| {
+        let inner = literal.strip_prefix(quotes)?.strip_suffix(quotes)?;
+        let spelt = if quotes.len() == 3 { without_first_line_break(inner) } else { inner };
+        (spelt == value).then(|| quotes.len() + inner.len() - spelt.len())
+    })
+}
+
+/// TOML drops a line break right after the opening quotes.
+fn without_first_line_break(inner: &str) -> &str {
+    inner.strip_prefix("\r\n").or_else(|| inner.strip_prefix('\n')).unwrap_or(inner)
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn a_value_is_found_in_its_literal() {
+        for (literal, start) in [
+            ("'''\n##'''", 4),
+            ("'''\r\n##'''", 5),
+            ("\"\"\"##\"\"\"", 3),
+            ("'##'", 1),
+            ("\"##\"", 1),
+        ] {
+            assert_eq!(value_start(literal, "##"), Some(start), "{literal}");
+        }
+        assert_eq!(value_start(r#""\u0023#""#, "##"), None);
+    }
+
+    #[test]
+    fn the_usual_width_is_the_most_common_one() {
+        assert_eq!(usual_width(&[3, 4, 4]), NonZeroU32::new(4));
+        assert_eq!(usual_width(&[3, 4]), NonZeroU32::new(3));
+        assert_eq!(usual_width(&[0, 0, 1]), NonZeroU32::new(1));
+        assert_eq!(usual_width(&[0, 0]), None);
+        assert_eq!(usual_width(&[]), None);
+    }
+}

@@ -1,0 +1,255 @@
+//! The legend: what each character of the grid means, from the tables `[tiles]` and `[things]`.
+
+use std::collections::BTreeMap;
+use std::ops::Range;
+
+use toml::de::DeValue;
+
+use super::definitions::KEYS;
+use super::textures::Surface;
+use crate::fault::document::{Entry, entries};
+use crate::fault::{Fault, quoted};
+use crate::world::Heading;
+
+/// What other raycasters have in their cells and this one has not.
+const NOT_YET: &[(&str, &str)] = &[
+    ("door", "doors"),
+    ("guard", "guards"),
+    ("key", "keys"),
+    ("lamp", "lamps"),
+    ("locked", "locked doors"),
+    ("mirror", "mirrors"),
+    ("pushwall", "moving walls"),
+    ("secret", "secret doors"),
+    ("window", "windows"),
+];
+
+/// What the characters mean that the grid may be drawn with.
+pub(super) struct Legend<'a> {
+    pub(super) symbols: BTreeMap<char, Symbol<'a>>,
+    /// Whether every definition is in `symbols`: false where the map has one without a character
+    /// to find it by.
+    pub(super) is_complete: bool,
+}
+
+/// What a character means.
+pub(super) struct Symbol<'a> {
+    /// Where it is defined.
+    pub(super) place: Range<usize>,
+    pub(super) meaning: Meaning<'a>,
+}
+
+/// What a character stands for in the grid.
+pub(super) enum Meaning<'a> {
+    Open,
+    Wall(Surface<'a>),
+    Start(Heading),
+    Exit,
+    /// Something that a fault has been found with already.
+    Unclear,
+}
+
+/// One of the two tables that define characters.
+#[derive(Clone, Copy, PartialEq, Eq)]
+pub(super) enum Section {
+    Tiles,
+    Things,
+}
+
+impl Section {
+    fn name(self) -> &'static str {
+        match self {
+            Self::Tiles => "[tiles]",
+            Self::Things => "[things]",
+        }
+    }
+
+    fn noun(self) -> &'static str {
+        match self {
+            Self::Tiles => "a tile",
+            Self::Things => "a thing",
+        }
+    }
+
+    fn keys(self) -> &'static [&'static str] {
+        match self {
+            Self::Tiles => &["wall"],
+            Self::Things => &["start", "exit"],
+        }
+    }
+
+    fn example(self) -> &'static str {
+        match self {
+            Self::Tiles => r##""#" = { wall = "brick" }"##,
+            Self::Things => r#""@" = { start = 0 }"#,
+        }
+    }
+
+    fn other(self) -> Self {
+        match self {
+            Self::Tiles => Self::Things,
+            Self::Things => Self::Tiles,
+        }
+    }
+}
+
+impl<'a> Legend<'a> {
+    /// The characters that mean the same in every map.
+    pub(super) fn new() -> Self {
+        let open = |character| (character, Symbol { place: 0..0, meaning: Meaning::Open });
+        Self { symbols: ['.', ' '].map(open).into(), is_complete: true }
+    }
+
+    /// Whether every definition is known, and what it means.
+    pub(super) fn is_clear(&self) -> bool {
+        let is_unclear = |symbol: &Symbol<'_>| matches!(symbol.meaning, Meaning::Unclear);
+        self.is_complete && !self.symbols.values().any(is_unclear)
+    }
+
+    /// Adds the definitions in the table that `entry` holds; what is wrong there is added to
+    /// `faults`.
+    pub(super) fn read_section(
+        &mut self,
+        section: Section,
+        entry: &Entry<'a, '_>,
+        faults: &mut Vec<Fault>,
+    ) {
+        let Some(table) = entry.table(section.name(), faults) else {
+            self.is_complete = false;
+            return;
+        };
+        for entry in entries(table) {
+            let character = match character(section, &entry) {
+                Ok(character) => character,
+                Err(fault) => {
+                    faults.push(fault);
+                    self.is_complete = false;
+                    continue;
+                }
+            };
+            let mut meaning = meaning(section, &entry, faults);
+            if self.symbols.contains_key(&character) {
+                faults.push(defined_twice(character, entry.key_place.clone()));
+                meaning = Meaning::Unclear;
+            }
+            self.symbols.insert(character, Symbol { place: entry.key_place, meaning });
+        }
+    }
+}
+
+/// The character that `entry` defines.
+fn character(section: Section, entry: &Entry<'_, '_>) -> Result<char, Fault> {
+    const ANOTHER: &str = "draw it with another character";
+    let fault = |message: String| Fault::new(entry.key_place.clone(), message);
+    let mut characters = entry.key.chars();
+    match (characters.next(), characters.next()) {
+        (Some(open @ ('.' | ' ')), None) => {
+            Err(fault(format!("{open:?} is open floor and cannot be defined")).help(ANOTHER))
+        }
+        (Some(control), None) if control.is_control() => {
+            Err(fault(format!("the control character {control:?} cannot be drawn")).help(ANOTHER))
+        }
+        (Some(character), None) => Ok(character),
+        _ => {
+            let (noun, key) = (section.noun(), quoted(entry.key));
+            let fault = fault(format!("{noun} is drawn with one character, not {key}"));
+            Err(if KEYS.contains(&entry.key) {
+                fault.help(format!("move {} above {}", entry.key, section.name()))
+            } else {
+                fault.help(format!("write, for example, {}", section.example()))
+            })
+        }
+    }
+}
+
+/// What the character of `entry` stands for.
+fn meaning<'a>(section: Section, entry: &Entry<'a, '_>, faults: &mut Vec<Fault>) -> Meaning<'a> {
+    let Some(table) = entry.table(section.example(), faults) else {
+        return Meaning::Unclear;
+    };
+    let faults_before = faults.len();
+    let mut meanings: Vec<_> =
+        entries(table).filter_map(|entry| property(section, &entry, faults)).collect();
+    let place = || entry.key_place.clone();
+    match meanings.pop() {
+        Some(meaning) if meanings.is_empty() => return meaning,
+        Some(_) => faults.push(
+            Fault::new(place(), format!("{:?} is several things at once", entry.key))
+                .help("draw each with a character of its own"),
+        ),
+        None if faults.len() == faults_before => faults.push(
+            Fault::new(place(), format!("{:?} does not say what it is", entry.key))
+                .help(format!("write, for example, {}", section.example())),
+        ),
+        None => {}
+    }
+    Meaning::Unclear
+}
+
+/// What one property of a tile or thing makes of it.
+fn property<'a>(
+    section: Section,
+    entry: &Entry<'a, '_>,
+    faults: &mut Vec<Fault>,
+) -> Option<Meaning<'a>> {
+    match (section, entry.key) {
+        (Section::Tiles, "wall") => {
+            Surface::read(entry, r#"{ wall = "brick" }"#, faults).map(Meaning::Wall)
+        }
+        (Section::Things, "start") => Some(Meaning::Start(heading(entry, faults)?)),
+        (Section::Things, "exit") => exit(entry, faults),
+        _ => {
+            faults.push(unknown_property(section, entry));
+            None
+        }
+    }
+}
+
+fn heading(entry: &Entry<'_, '_>, faults: &mut Vec<Fault>) -> Option<Heading> {
+    let degrees = match entry.value {
+        DeValue::Integer(integer) => i64::from_str_radix(integer.as_str(), integer.radix())
+            .map_or(f64::NAN, |degrees| degrees as f64),
+        DeValue::Float(float) => float.as_str().parse().unwrap_or(f64::NAN),
+        _ => f64::NAN,
+    };
+    let heading = Heading::from_degrees(degrees);
+    if heading.is_none() {
+        faults.push(
+            Fault::new(entry.value_place.clone(), "a heading must be a finite number of degrees")
+                .label("this is none")
+                .help("write 0 for east, 90 for south, 180 for west, 270 for north"),
+        );
+    }
+    heading
+}
+
+fn exit<'a>(entry: &Entry<'a, '_>, faults: &mut Vec<Fault>) -> Option<Meaning<'a>> {
+    if let DeValue::Boolean(true) = entry.value {
+        return Some(Meaning::Exit);
+    }
+    faults.push(
+        Fault::new(entry.value_place.clone(), "\"exit\" must be true")
+            .help("write { exit = true }"),
+    );
+    None
+}
+
+fn unknown_property(section: Section, entry: &Entry<'_, '_>) -> Fault {
+    let place = || entry.key_place.clone();
+    if let Some((_, plural)) = NOT_YET.iter().find(|(key, _)| *key == entry.key) {
+        return Fault::new(place(), format!("{plural} are not supported yet"))
+            .help(format!("known keys: {}", section.keys().join(", ")));
+    }
+    let other = section.other();
+    if other.keys().contains(&entry.key) {
+        let message = format!("\"{}\" makes {}, not {}", entry.key, other.noun(), section.noun());
+        return Fault::new(place(), message).help(format!("move it to {}", other.name()));
+    }
+    entry.unknown_key(section.noun(), section.keys())
+}
+
+fn defined_twice(character: char, place: Range<usize>) -> Fault {
+    Fault::new(place, format!("{character:?} is both a tile and a thing"))
+        .label("also defined in the other table")
+        .help("a thing stands on open floor: draw one of the two with another character")
+}

@@ -1,0 +1,205 @@
+//! What a map may be made of, and that nothing else brings the reader down.
+
+use std::cell::RefCell;
+use std::io;
+
+use cellcaster::map::{self, TextureFileError, TextureFiles, builtin};
+use cellcaster::world::{Cell, Paint, Rgb, ThingKind, TileKind, World};
+use proptest::prelude::*;
+
+const VALID: &str = r##"
+title = "Two rooms"
+ceiling = "sky"
+floor = "stone"
+
+grid = '''
+#########
+#@..#...#
+#...+.. #
+#...#..X#
+#########
+'''
+
+[tiles]
+"#" = { wall = "brick" }
+"+" = { wall = "#a04030" }
+
+[things]
+"@" = { start = 90 }
+"X" = { exit = true }
+"##;
+
+/// The grid as the world has it, with open floor as `.`.
+fn drawn(world: &World) -> String {
+    let row = |tiles: &[_]| tiles.iter().map(|&tile| world.tile(tile).character).collect();
+    world.grid().rows().map(row).collect::<Vec<String>>().join("\n")
+}
+
+#[test]
+fn a_map_says_all_that_a_world_is() {
+    let world = map::parse_str(VALID).unwrap();
+    assert_eq!(world.title(), "Two rooms");
+    assert_eq!(world.ceiling(), Paint::Color(Rgb::SKY));
+    assert!(matches!(world.floor(), Paint::Texture(_)));
+    assert_eq!(drawn(&world), "#########\n#...#...#\n#...+...#\n#...#...#\n#########");
+    let characters: String = world.tiles().iter().map(|tile| tile.character).collect();
+    assert_eq!(characters, ".#+");
+    assert_eq!(world.tiles()[2].kind, TileKind::Wall(Paint::Color(Rgb::new(0xa0, 0x40, 0x30))));
+    assert_eq!(world.start().cell, Cell { column: 1, row: 1 });
+    assert_eq!(world.start().heading.degrees(), 90.0);
+    let [exit] = world.things() else { panic!("one thing") };
+    assert_eq!((exit.kind, exit.cell), (ThingKind::Exit, Cell { column: 7, row: 3 }));
+}
+
+#[test]
+fn one_cell_without_walls_or_an_exit_is_a_map() {
+    let world = map::parse_str("grid = '@'\nthings.'@'.start = -4.5e2").unwrap();
+    assert_eq!((world.grid().width(), world.grid().height()), (1, 1));
+    assert_eq!(world.start().heading.degrees(), 270.0);
+    assert_eq!((world.title(), world.things()), ("", [].as_slice()));
+}
+
+#[test]
+fn line_ends_and_marks_of_other_systems_change_nothing() {
+    let world = map::parse_str(VALID).unwrap();
+    let other = format!("\u{feff}{}", VALID.replace('\n', "\r\n"));
+    assert_eq!(map::parse_str(&other).unwrap(), world);
+}
+
+#[test]
+fn a_kind_of_tile_that_is_not_drawn_is_left_out() {
+    let text = VALID.replace("[things]", "\"%\" = { wall = \"unused.png\" }\n[things]");
+    assert_eq!(map::parse_str(&text).unwrap(), map::parse_str(VALID).unwrap());
+}
+
+#[test]
+fn as_many_kinds_of_wall_as_there_are_numbers() {
+    let characters: String = ('\u{4e00}'..).take(254).collect();
+    let mut text = format!("grid = '{characters}@'\nthings.'@'.start = 0\n[tiles]\n");
+    for wall in characters.chars() {
+        text.extend(["'", wall.encode_utf8(&mut [0; 4]), "'.wall = 'sky'\n"]);
+    }
+    let world = map::parse_str(&text).unwrap();
+    assert_eq!(drawn(&world), format!("{characters}."));
+}
+
+#[test]
+fn the_built_in_levels_can_be_finished() {
+    for level in builtin::LEVELS {
+        let world = map::parse_str(level.text).unwrap();
+        assert!(!world.title().is_empty(), "{}", level.name);
+        assert!(exit_is_within_reach(&world), "{}", level.name);
+    }
+}
+
+fn exit_is_within_reach(world: &World) -> bool {
+    let mut reached = vec![world.start().cell];
+    let mut next = 0;
+    while let Some(&Cell { column, row }) = reached.get(next) {
+        next += 1;
+        for (east, south) in [(1, 0), (-1, 0), (0, 1), (0, -1)] {
+            let (column, row) = (i64::from(column) + east, i64::from(row) + south);
+            let open =
+                world.grid().tile(column, row).is_some() && !world.grid().is_solid(column, row);
+            let cell = Cell { column: column as u32, row: row as u32 };
+            if open && !reached.contains(&cell) {
+                reached.push(cell);
+            }
+        }
+    }
+    world
+        .things()
+        .iter()
+        .any(|thing| thing.kind == ThingKind::Exit && reached.contains(&thing.cell))
+}
+
+/// Answers every name with a picture of one red texel, and writes down what it was asked.
+#[derive(Default)]
+struct RedFiles {
+    asked: RefCell<Vec<String>>,
+}
+
+impl TextureFiles for RedFiles {
+    fn read(&self, name: &str) -> Result<Vec<u8>, TextureFileError> {
+        self.asked.borrow_mut().push(name.to_owned());
+        let mut bytes = Vec::new();
+        let mut encoder = png::Encoder::new(&mut bytes, 1, 1);
+        encoder.set_color(png::ColorType::Rgb);
+        let written = encoder.write_header().and_then(|mut png| png.write_image_data(&[255, 0, 0]));
+        written.map_err(|error| TextureFileError::Unreadable(io::Error::other(error)))?;
+        Ok(bytes)
+    }
+}
+
+#[test]
+fn a_texture_is_read_once_and_only_where_it_is_used() {
+    let text = VALID
+        .replace("\"brick\"", "\"a.png\"")
+        .replace("\"#a04030\"", "\"a.png\"")
+        .replace("\"sky\"", "\"b/c.PNG\"")
+        .replace("[things]", "\"%\" = { wall = \"unused.png\" }\n[things]");
+    let files = RedFiles::default();
+    let world = map::parse(&text, "map", &files).unwrap();
+    assert_eq!(files.asked.into_inner(), ["b/c.PNG", "a.png"]);
+    assert_eq!(world.mean_color(world.ceiling()), Rgb::new(255, 0, 0));
+    assert_eq!(world.tiles()[1].kind, world.tiles()[2].kind);
+}
+
+/// A valid map with some bytes of it replaced, removed or repeated.
+fn mutated_map() -> impl Strategy<Value = String> {
+    let edit = (any::<prop::sample::Index>(), 0..12_usize, "[\\[\\]{}='\"#@.X\n\ta0é\\\\]{0,4}");
+    prop::collection::vec(edit, 1..6).prop_map(|edits| {
+        let mut characters: Vec<char> = VALID.chars().collect();
+        for (place, length, replacement) in edits {
+            let start = place.index(characters.len() + 1);
+            let end = (start + length).min(characters.len());
+            characters.splice(start..end, replacement.chars());
+        }
+        characters.into_iter().collect()
+    })
+}
+
+/// Rows of one width that hold one `@`.
+fn rows() -> impl Strategy<Value = Vec<String>> {
+    (1..12_usize, 1..12_usize)
+        .prop_flat_map(|(width, height)| {
+            let character = prop::sample::select(vec!['.', '#', '%', 'é', '壁', '\\']);
+            let cells = prop::collection::vec(character, width * height);
+            (Just(width), cells, any::<prop::sample::Index>())
+        })
+        .prop_map(|(width, mut cells, start)| {
+            let start = start.index(cells.len());
+            cells[start] = '@';
+            cells.chunks(width).map(|row| row.iter().collect()).collect()
+        })
+}
+
+proptest! {
+    #[test]
+    fn any_text_is_a_world_or_has_faults(text in any::<String>()) {
+        if let Err(faults) = map::parse_str(&text) {
+            prop_assert!(faults.len() > 0 && faults.to_string().starts_with("error: "));
+        }
+    }
+
+    #[test]
+    fn a_mutated_map_is_a_world_or_has_faults(text in mutated_map()) {
+        if let Err(faults) = map::parse_str(&text) {
+            prop_assert!(faults.len() > 0 && faults.to_string().starts_with("error: "));
+        }
+    }
+
+    #[test]
+    fn a_grid_comes_out_as_it_was_drawn(rows in rows()) {
+        let grid = rows.join("\n");
+        let text = format!(
+            "grid = '''\n{grid}\n'''\nthings.'@'.start = 0\n\
+             tiles = {{ '#'.wall = 'brick', '%'.wall = 'stone', 'é'.wall = 'sky', \
+             '壁'.wall = '#000000', '\\'.wall = 'brick' }}"
+        );
+        let world = map::parse_str(&text).unwrap();
+        prop_assert_eq!(drawn(&world), grid.replace('@', "."));
+        let Cell { column, row } = world.start().cell;
+        prop_assert_eq!(rows[row as usize].chars().nth(column as usize), Some('@'));
+    }
+}
