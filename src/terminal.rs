@@ -12,6 +12,7 @@ mod cell_writer;
 mod depth;
 mod error;
 mod event;
+#[cfg_attr(not(unix), expect(dead_code, reason = "signals, of which there are none, use it"))]
 mod guard;
 mod input;
 mod key;

@@ -10,6 +10,7 @@ pub struct Error(Kind);
 
 #[derive(Debug)]
 enum Kind {
+    #[cfg(unix)]
     NotATerminal {
         stream: &'static str,
     },
@@ -25,6 +26,7 @@ enum Kind {
 
 impl Error {
     /// `stream` ("standard input", say) is not a terminal.
+    #[cfg(unix)]
     pub(super) fn not_a_terminal(stream: &'static str) -> Self {
         Self(Kind::NotATerminal { stream })
     }
@@ -64,6 +66,7 @@ impl Error {
 impl fmt::Display for Error {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
         match &self.0 {
+            #[cfg(unix)]
             Kind::NotATerminal { stream } => write!(
                 f,
                 "{stream} is not a terminal, which playing needs; \

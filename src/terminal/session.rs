@@ -57,8 +57,8 @@ impl Session {
     }
 
     fn take(guard: &Arc<Guard>, options: Options) -> Result<Self, Error> {
-        let signals = Signals::listen(Arc::clone(guard))
-            .map_err(Error::while_doing("listening for signals"))?;
+        let signals =
+            Signals::listen(guard).map_err(Error::while_doing("listening for signals"))?;
         let size = guard.device().size();
         let output = Output { guard: Arc::clone(guard) };
         let mut session = Self {

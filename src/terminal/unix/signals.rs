@@ -55,16 +55,17 @@ pub(in super::super) struct Signals {
 impl Signals {
     /// Takes the signals over. When one says that the program is to end and it does not, gives the
     /// terminal back through `guard`, and ends it.
-    pub(in super::super) fn listen(guard: Arc<Guard>) -> io::Result<Self> {
+    pub(in super::super) fn listen(guard: &Arc<Guard>) -> io::Result<Self> {
         let (receiver, sender) = UnixStream::pair()?;
         receiver.set_nonblocking(true)?;
         sender.set_nonblocking(true)?;
         default_effects()?.store(false, Ordering::SeqCst);
         let incoming = Incoming::new(EFFECTIVE.iter().chain(&NOTICES))?;
         let handle = incoming.handle();
-        let thread = thread::Builder::new()
-            .name("signals".to_owned())
-            .spawn(move || pass_on(incoming, &sender, &guard))?;
+        let thread = thread::Builder::new().name("signals".to_owned()).spawn({
+            let guard = Arc::clone(guard);
+            move || pass_on(incoming, &sender, &guard)
+        })?;
         Ok(Self { receiver, handle, thread: Some(thread), deferred: Vec::new() })
     }
 

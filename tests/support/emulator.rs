@@ -1,0 +1,158 @@
+//! A terminal emulator: what it shows, the modes that are set, and what it answers.
+
+use std::num::NonZeroU16;
+
+use vt100::{Callbacks, Parser, Screen};
+
+/// What a terminal answers.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub(crate) enum Speaks {
+    /// Nothing.
+    Nothing,
+    /// What device it is.
+    Plain,
+    /// The kitty keyboard protocol as well, and that it shows 24-bit colours. A key's release is always on its way when the program
+    /// turns the protocol off.
+    Kitty,
+}
+
+/// The modes that a program sets, and should set back.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+#[expect(clippy::struct_excessive_bools, reason = "each mode is set or not, by itself")]
+pub(crate) struct Modes {
+    pub(crate) alternate_screen: bool,
+    pub(crate) cursor_hidden: bool,
+    pub(crate) wrap: bool,
+    pub(crate) synchronized: bool,
+    /// How many sets of keyboard flags are pushed, on the main and on the alternate screen.
+    pub(crate) key_flags: [i32; 2],
+}
+
+impl Default for Modes {
+    /// As a terminal starts.
+    fn default() -> Self {
+        Self {
+            alternate_screen: false,
+            cursor_hidden: false,
+            wrap: true,
+            synchronized: false,
+            key_flags: [0, 0],
+        }
+    }
+}
+
+/// A terminal emulator.
+pub(crate) struct Emulator {
+    parser: Parser<Extensions>,
+    bytes: Vec<u8>,
+    answered_about_colors: bool,
+}
+
+/// What the parser leaves to us.
+struct Extensions {
+    speaks: Speaks,
+    modes: Modes,
+    title: String,
+    answers: Vec<u8>,
+}
+
+impl Emulator {
+    pub(crate) fn new(columns: u16, rows: u16, speaks: Speaks) -> Self {
+        let extensions = Extensions {
+            speaks,
+            modes: Modes::default(),
+            title: String::new(),
+            answers: Vec::new(),
+        };
+        let parser = Parser::new_with_callbacks(length(rows), length(columns), 0, extensions);
+        Self { parser, bytes: Vec::new(), answered_about_colors: false }
+    }
+
+    /// Takes `bytes`, and returns what the terminal answers.
+    pub(crate) fn process(&mut self, bytes: &[u8]) -> Vec<u8> {
+        self.bytes.extend_from_slice(bytes);
+        self.parser.process(bytes);
+        let answers = std::mem::take(&mut self.parser.callbacks_mut().answers);
+        [self.answer_about_colors(), answers].concat()
+    }
+
+    /// Answers the query for 24-bit colours, a kind of string that the parser passes over.
+    fn answer_about_colors(&mut self) -> Vec<u8> {
+        const QUERY: &[u8] = b"\x1bP+q524742\x1b\\";
+        const ANSWER: &[u8] = b"\x1bP1+r524742=38\x1b\\";
+        let speaks = self.parser.callbacks().speaks;
+        if self.answered_about_colors
+            || speaks != Speaks::Kitty
+            || !self.bytes.windows(QUERY.len()).any(|window| window == QUERY)
+        {
+            return Vec::new();
+        }
+        self.answered_about_colors = true;
+        ANSWER.to_vec()
+    }
+
+    pub(crate) fn resize(&mut self, columns: u16, rows: u16) {
+        self.parser.set_size(length(rows), length(columns));
+    }
+
+    pub(crate) fn screen(&self) -> &Screen {
+        self.parser.screen()
+    }
+
+    pub(crate) fn text(&self) -> String {
+        self.screen().contents()
+    }
+
+    pub(crate) fn title(&self) -> &str {
+        &self.parser.callbacks().title
+    }
+
+    pub(crate) fn bytes(&self) -> &[u8] {
+        &self.bytes
+    }
+
+    pub(crate) fn modes(&self) -> Modes {
+        Modes {
+            alternate_screen: self.screen().alternate_screen(),
+            cursor_hidden: self.screen().hide_cursor(),
+            ..self.parser.callbacks().modes
+        }
+    }
+}
+
+impl Callbacks for Extensions {
+    fn set_window_title(&mut self, _: &mut Screen, title: &[u8]) {
+        self.title = String::from_utf8_lossy(title).into_owned();
+    }
+
+    fn unhandled_csi(
+        &mut self,
+        screen: &mut Screen,
+        prefix: Option<u8>,
+        _: Option<u8>,
+        parameters: &[&[u16]],
+        last: char,
+    ) {
+        let key_flags = &mut self.modes.key_flags[usize::from(screen.alternate_screen())];
+        match (prefix, parameters, last) {
+            (Some(b'?'), [[7]], 'h' | 'l') => self.modes.wrap = last == 'h',
+            (Some(b'?'), [[2026]], 'h' | 'l') => self.modes.synchronized = last == 'h',
+            (Some(b'>'), _, 'u') => *key_flags += 1,
+            (Some(b'<'), _, 'u') => {
+                *key_flags -= 1;
+                self.answers.extend(b"\x1b[119;1:3u");
+            }
+            (Some(b'?'), _, 'u') if self.speaks == Speaks::Kitty => {
+                self.answers.extend(b"\x1b[?0u");
+            }
+            (None, _, 'c') if self.speaks != Speaks::Nothing => {
+                self.answers.extend(b"\x1b[?62;22c");
+            }
+            _ => {}
+        }
+    }
+}
+
+fn length(cells: u16) -> NonZeroU16 {
+    NonZeroU16::new(cells).unwrap()
+}

@@ -1,0 +1,232 @@
+//! A player at a terminal: starts a program under a pseudo-terminal, types, and looks.
+
+use std::ffi::OsStr;
+use std::io::{Read, Write};
+use std::os::unix::process::ExitStatusExt;
+use std::process::{Child, ExitStatus};
+use std::sync::{Arc, Condvar, Mutex, MutexGuard};
+use std::thread;
+use std::time::{Duration, Instant};
+
+use pty_process::Size;
+use pty_process::blocking::{Command, Pts, Pty};
+use rustix::event::{PollFd, PollFlags, Timespec, poll};
+use rustix::process::{Pid, Signal, kill_process};
+use rustix::termios::{OptionalActions, Termios, tcgetattr, tcsetattr};
+
+use super::emulator::{Emulator, Modes, Speaks};
+
+/// Long enough for a machine under load; what is waited for takes milliseconds.
+const PATIENCE: Duration = Duration::from_secs(20);
+
+/// A program, and the terminal that it runs in.
+pub(crate) struct Player {
+    child: Child,
+    pty: Arc<Pty>,
+    /// Kept open, so that the terminal outlives the program.
+    terminal: Pts,
+    attributes_before: Termios,
+    shared: Arc<Shared>,
+}
+
+struct Shared {
+    state: Mutex<State>,
+    changed: Condvar,
+}
+
+struct State {
+    emulator: Emulator,
+    reading: bool,
+}
+
+impl Player {
+    /// Starts `program` in a terminal of `columns` by `rows` that `speaks` so. The program sees no
+    /// environment but `TERM` and `environment`.
+    pub(crate) fn start<A: AsRef<OsStr>>(
+        (columns, rows): (u16, u16),
+        speaks: Speaks,
+        program: impl AsRef<OsStr>,
+        arguments: impl IntoIterator<Item = A>,
+        environment: &[(&str, &str)],
+    ) -> Self {
+        let (pty, terminal) = pty_process::blocking::open().unwrap();
+        pty.resize(Size::new(rows, columns)).unwrap();
+        let attributes_before = tcgetattr(&pty).unwrap();
+        let child = Command::new(program.as_ref())
+            .args(arguments)
+            .env_clear()
+            .env("TERM", "xterm-256color")
+            .envs(environment.iter().copied())
+            .spawn_borrowed(&terminal)
+            .unwrap();
+        let state = State { emulator: Emulator::new(columns, rows, speaks), reading: true };
+        let shared = Arc::new(Shared { state: Mutex::new(state), changed: Condvar::new() });
+        let pty = Arc::new(pty);
+        thread::spawn({
+            let (pty, shared) = (Arc::clone(&pty), Arc::clone(&shared));
+            move || receive(&pty, &shared)
+        });
+        Self { child, pty, terminal, attributes_before, shared }
+    }
+
+    /// Types `bytes`, as the terminal would send them for keys.
+    pub(crate) fn send(&self, bytes: impl AsRef<[u8]>) {
+        (&*self.pty).write_all(bytes.as_ref()).unwrap();
+    }
+
+    /// Makes the window larger or smaller.
+    pub(crate) fn resize(&self, columns: u16, rows: u16) {
+        self.state().emulator.resize(columns, rows);
+        self.pty.resize(Size::new(rows, columns)).unwrap();
+    }
+
+    /// Waits until `condition` holds of the screen, and fails with the screen if it never does.
+    #[track_caller]
+    pub(crate) fn wait_until(&self, what: &str, condition: impl Fn(&Emulator) -> bool) {
+        let unmet = |state: &mut State| !condition(&state.emulator);
+        let waited = self.shared.changed.wait_timeout_while(self.state(), PATIENCE, unmet);
+        let (state, timeout) = waited.unwrap();
+        assert!(!timeout.timed_out(), "never {what}; the screen:\n{}", state.emulator.text());
+    }
+
+    /// Waits until the screen shows `text`.
+    #[track_caller]
+    pub(crate) fn wait_for(&self, text: &str) {
+        self.wait_until(&format!("showed {text:?}"), |emulator| emulator.text().contains(text));
+    }
+
+    /// Stops or goes on taking what the program writes, as a link does that is down or up.
+    pub(crate) fn set_reading(&self, reading: bool) {
+        self.state().reading = reading;
+        self.shared.changed.notify_all();
+    }
+
+    /// Waits until the terminal, which is not being read, has no room for another byte.
+    #[track_caller]
+    pub(crate) fn wait_until_full(&self) {
+        let deadline = Instant::now() + PATIENCE;
+        while is_ready(&self.terminal, PollFlags::OUT) {
+            assert!(Instant::now() < deadline, "the terminal never was full");
+            thread::sleep(Duration::from_millis(5));
+        }
+    }
+
+    /// Sends the program a signal.
+    pub(crate) fn signal(&self, signal: Signal) {
+        let id = Pid::from_raw(self.child.id().cast_signed()).unwrap();
+        kill_process(id, signal).unwrap();
+    }
+
+    /// Waits until the program has ended, and the terminal has taken what it wrote; how it ended.
+    pub(crate) fn wait_for_end(&mut self) -> Ending {
+        let deadline = Instant::now() + PATIENCE;
+        let status = loop {
+            if let Some(status) = self.child.try_wait().unwrap() {
+                break status;
+            }
+            assert!(Instant::now() < deadline, "never ended; the screen:\n{}", self.text());
+            thread::sleep(Duration::from_millis(5));
+        };
+        self.set_reading(true);
+        // The terminal answers this, and by then it has taken all before it.
+        let mark = "\x1b]2;the end\x07";
+        rustix::io::write(&self.terminal, mark.as_bytes()).unwrap();
+        self.wait_until("reached the end", |emulator| emulator.title() == "the end");
+        Ending {
+            status,
+            modes: self.state().emulator.modes(),
+            attributes_restored: self.attributes_restored(),
+            leftover_input: self.leftover_input(),
+        }
+    }
+
+    /// What the screen shows.
+    pub(crate) fn text(&self) -> String {
+        self.state().emulator.text()
+    }
+
+    /// The modes that are set.
+    pub(crate) fn modes(&self) -> Modes {
+        self.state().emulator.modes()
+    }
+
+    /// All bytes that the program has written.
+    pub(crate) fn bytes(&self) -> Vec<u8> {
+        self.state().emulator.bytes().to_vec()
+    }
+
+    /// Whether raw mode and its like are as they were before the program.
+    pub(crate) fn attributes_restored(&self) -> bool {
+        let now = tcgetattr(&*self.pty).unwrap();
+        let before = &self.attributes_before;
+        now.input_modes == before.input_modes
+            && now.output_modes == before.output_modes
+            && now.control_modes == before.control_modes
+            && now.local_modes == before.local_modes
+    }
+
+    /// Whether something has been typed that nobody has read: a shell would find it.
+    fn leftover_input(&self) -> bool {
+        let mut raw = tcgetattr(&self.terminal).unwrap();
+        raw.make_raw();
+        tcsetattr(&self.terminal, OptionalActions::Now, &raw).unwrap();
+        is_ready(&self.terminal, PollFlags::IN)
+    }
+
+    fn state(&self) -> MutexGuard<'_, State> {
+        self.shared.state.lock().unwrap()
+    }
+}
+
+impl Drop for Player {
+    fn drop(&mut self) {
+        // It has ended, unless the test has failed.
+        _ = self.child.kill();
+        _ = self.child.wait();
+    }
+}
+
+/// How a program has left the terminal.
+#[derive(Debug)]
+pub(crate) struct Ending {
+    pub(crate) status: ExitStatus,
+    pub(crate) modes: Modes,
+    pub(crate) attributes_restored: bool,
+    pub(crate) leftover_input: bool,
+}
+
+impl Ending {
+    /// Fails unless the terminal is as it was found.
+    #[track_caller]
+    pub(crate) fn assert_given_back(&self) {
+        assert_eq!(self.modes, Modes::default());
+        assert!(self.attributes_restored, "the terminal's attributes are not as they were");
+        assert!(!self.leftover_input, "the shell would find input");
+    }
+
+    /// The signal that ended the program.
+    pub(crate) fn signal(&self) -> Option<i32> {
+        self.status.signal()
+    }
+}
+
+fn is_ready(terminal: &Pts, for_what: PollFlags) -> bool {
+    let mut terminal = [PollFd::new(terminal, for_what)];
+    poll(&mut terminal, Some(&Timespec { tv_sec: 0, tv_nsec: 0 })).unwrap() > 0
+}
+
+/// Takes what the program writes, and answers, for as long as the terminal exists.
+fn receive(mut pty: &Pty, shared: &Shared) {
+    let mut buffer = [0; 4096];
+    loop {
+        let state = shared.state.lock().unwrap();
+        drop(shared.changed.wait_while(state, |state| !state.reading).unwrap());
+        let Ok(count @ 1..) = pty.read(&mut buffer) else { return };
+        let mut state = shared.state.lock().unwrap();
+        let answers = state.emulator.process(&buffer[..count]);
+        drop(state);
+        // The program may have ended without waiting for them.
+        _ = pty.write_all(&answers);
+        shared.changed.notify_all();
+    }
+}
