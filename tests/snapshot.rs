@@ -3,6 +3,7 @@
 mod support;
 
 use std::io::Read;
+use std::num::NonZeroU16;
 use std::process::Stdio;
 
 use cellcaster::map::builtin;
@@ -96,7 +97,8 @@ fn ansi_shows_the_same_cells_in_a_terminal() {
         let arguments = |format| ["snapshot", "citadel", "--colors", depth, "--format", format];
         let text = String::from_utf8(output_of(&arguments("text"))).unwrap();
         let ansi = output_of(&arguments("ansi"));
-        let mut terminal = vt100::Parser::new(24, 80, 0);
+        let mut terminal =
+            vt100::Parser::new(NonZeroU16::new(24).unwrap(), NonZeroU16::new(80).unwrap(), 0);
         terminal.process(&String::from_utf8(ansi).unwrap().replace('\n', "\r\n").into_bytes()[..]);
         let shown: Vec<String> = terminal.screen().rows(0, 80).collect();
         // The last line break scrolled the first row away.

@@ -27,9 +27,9 @@ pub(super) const BEGIN_SYNCHRONIZED: &str = "\x1b[?2026h";
 /// ...until here.
 pub(super) const END_SYNCHRONIZED: &str = "\x1b[?2026l";
 
-/// Asks for every key as an escape code, with presses, repeats and releases: the kitty keyboard
-/// protocol's flags 1, 2 and 8.
-pub(super) const PUSH_KEY_FLAGS: &str = "\x1b[>11u";
+/// Asks for every key as an escape code, with presses, repeats and releases, and with the character
+/// that Shift makes of it: the kitty keyboard protocol's flags 1, 2, 4 and 8.
+pub(super) const PUSH_KEY_FLAGS: &str = "\x1b[>15u";
 /// Goes back to the flags from before.
 pub(super) const POP_KEY_FLAGS: &str = "\x1b[<u";
 

@@ -5,14 +5,14 @@ use std::io::Write;
 use std::process::{Command, Output, Stdio};
 
 /// The program, in a clean environment.
-pub fn cellcaster(arguments: &[&str]) -> Command {
+pub(crate) fn cellcaster(arguments: &[&str]) -> Command {
     let mut command = Command::new(env!("CARGO_BIN_EXE_cellcaster"));
     command.args(arguments).env_clear();
     command
 }
 
 /// What the program does, given that input.
-pub fn run_with_input(arguments: &[&str], input: &[u8]) -> Output {
+pub(crate) fn run_with_input(arguments: &[&str], input: &[u8]) -> Output {
     let mut child = cellcaster(arguments)
         .stdin(Stdio::piped())
         .stdout(Stdio::piped())
@@ -24,7 +24,7 @@ pub fn run_with_input(arguments: &[&str], input: &[u8]) -> Output {
 }
 
 /// What the program writes to standard output, after ending well and without a word on the other.
-pub fn output_of(arguments: &[&str]) -> Vec<u8> {
+pub(crate) fn output_of(arguments: &[&str]) -> Vec<u8> {
     let output = cellcaster(arguments).output().unwrap();
     assert_eq!(String::from_utf8_lossy(&output.stderr), "", "{arguments:?}");
     assert_eq!(output.status.code(), Some(0), "{arguments:?}");
@@ -32,7 +32,7 @@ pub fn output_of(arguments: &[&str]) -> Vec<u8> {
 }
 
 /// What the program has to say about a mistake.
-pub fn complaint_about(arguments: &[&str]) -> String {
+pub(crate) fn complaint_about(arguments: &[&str]) -> String {
     let output = cellcaster(arguments).output().unwrap();
     assert_eq!(output.status.code(), Some(2), "{arguments:?}");
     assert_eq!(String::from_utf8_lossy(&output.stdout), "", "{arguments:?}");
