@@ -221,7 +221,7 @@ fn unknown_preset(name: &str, place: Range<usize>) -> Fault {
 
 fn bound_twice(key: Key, place: Range<usize>) -> Fault {
     Fault::new(place, format!("the key {} is bound to two actions", quoted(&key.to_string())))
-        .label("bound a second time here")
+        .label("another action has it too")
         .help("give each key to one action")
 }
 

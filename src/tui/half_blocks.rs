@@ -3,9 +3,10 @@
 //! Of the glyphs that show the same two pixels, the one is taken that shares more colours with the
 //! cell before it, because those need not be sent again. Two pixels alike are a space.
 //!
-//! Without colour a pixel is lit or it is not. Which one is decided by comparing its brightness
-//! with a fixed 4×4 pattern of thresholds: shades stay apart, and stand still while the picture does.
-//! Error diffusion was refused: there, one changed pixel changes all that follow.
+//! Without colour a pixel is lit or it is not; which one is decided by comparing its brightness with
+//! a fixed 4×4 pattern of thresholds. With 16 colours the same pattern makes pixels lighter and
+//! darker before the nearest colour is taken. So shades stay apart, and stand still while the picture
+//! does. Error diffusion was refused: there, one changed pixel changes all that follow.
 
 use ratatui::buffer::Buffer;
 use ratatui::layout::Rect;
@@ -34,10 +35,14 @@ pub(super) fn draw(
         let lower = upper + 1;
         let (top, bottom) = (pixel(x, upper), pixel(x, lower));
         match depth {
-            ColorDepth::Mono => {
-                Glyph::lit(is_lit(top.luma(), x, upper), is_lit(bottom.luma(), x, lower))
+            ColorDepth::Mono => Glyph::lit(is_lit(top, x, upper), is_lit(bottom, x, lower)),
+            ColorDepth::Indexed16 => {
+                let (top, bottom) = (dithered(top, x, upper), dithered(bottom, x, lower));
+                Glyph::colored(color_at(depth, top), color_at(depth, bottom), before)
             }
-            _ => Glyph::colored(color_at(depth, top), color_at(depth, bottom), before),
+            ColorDepth::True | ColorDepth::Indexed256 => {
+                Glyph::colored(color_at(depth, top), color_at(depth, bottom), before)
+            }
         }
     };
     for (row, y) in (0u32..).zip(area.top()..area.bottom()) {
@@ -82,12 +87,26 @@ impl Glyph {
     }
 }
 
-/// Whether a pixel of that brightness is lit at that place.
-fn is_lit(luma: u8, x: u32, y: u32) -> bool {
-    /// Bayer's ordered dither: every 2×2 part of it has two of the lower and two of the upper half.
-    const ORDER: [[u8; 4]; 4] = [[0, 8, 2, 10], [12, 4, 14, 6], [3, 11, 1, 9], [15, 7, 13, 5]];
-    let threshold = 16 * ORDER[(y % 4) as usize][(x % 4) as usize] + 8;
-    luma >= threshold
+/// Bayer's ordered dither: every 2×2 part of it has two of the lower and two of the upper half.
+const ORDER: [[u8; 4]; 4] = [[0, 8, 2, 10], [12, 4, 14, 6], [3, 11, 1, 9], [15, 7, 13, 5]];
+
+/// The place of a pixel in that order, from 0 to 15.
+fn order(x: u32, y: u32) -> u8 {
+    ORDER[(y % 4) as usize][(x % 4) as usize]
+}
+
+/// Whether a pixel of that colour is lit at that place.
+fn is_lit(color: Rgb, x: u32, y: u32) -> bool {
+    color.luma() >= 16 * order(x, y) + 8
+}
+
+/// `color` made lighter or darker, by less than the named colours differ.
+fn dithered(color: Rgb, x: u32, y: u32) -> Rgb {
+    const STRENGTH: i16 = 2;
+    let offset = STRENGTH * (2 * i16::from(order(x, y)) - 15);
+    let [red, green, blue] =
+        color.channels().map(|channel| (i16::from(channel) + offset).clamp(0, 255) as u8);
+    Rgb::new(red, green, blue)
 }
 
 #[cfg(test)]
@@ -113,7 +132,10 @@ mod tests {
 
     #[test]
     fn brightness_without_colour_is_how_many_pixels_are_lit() {
-        let lit = |luma| (0..16).filter(|index| is_lit(luma, index % 4, index / 4)).count();
+        let lit = |level| {
+            let grey = Rgb::new(level, level, level);
+            (0..16).filter(|index| is_lit(grey, index % 4, index / 4)).count()
+        };
         assert_eq!((lit(0), lit(64), lit(128), lit(255)), (0, 4, 8, 16));
         let row = [Rgb::WHITE, Rgb::BLACK];
         let buffer = drawn(ColorDepth::Mono, &[&row, &[Rgb::BLACK, Rgb::BLACK]]);
