@@ -20,11 +20,13 @@ pub enum Intent {
     TurnRight,
     /// Walk faster.
     Run,
+    /// Turn more slowly.
+    Aim,
 }
 
 impl Intent {
     /// All of them.
-    pub const ALL: [Self; 7] = [
+    pub const ALL: [Self; 8] = [
         Self::Forward,
         Self::Back,
         Self::StrafeLeft,
@@ -32,6 +34,7 @@ impl Intent {
         Self::TurnLeft,
         Self::TurnRight,
         Self::Run,
+        Self::Aim,
     ];
 }
 

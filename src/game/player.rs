@@ -17,6 +17,8 @@ const WALK: f64 = 3.0;
 const RUN: f64 = 5.5;
 /// Radians per second.
 const TURN: f64 = 2.4;
+/// Radians per second, for who aims.
+const AIM: f64 = 0.6;
 
 /// How fast the feet take hold, per second.
 const FRICTION: f64 = 12.0;
@@ -63,7 +65,8 @@ impl Player {
     }
 
     fn turned(self, intents: Intents) -> Self {
-        let target = TURN * intents.balance(Intent::TurnRight, Intent::TurnLeft);
+        let speed = if intents.contains(Intent::Aim) { AIM } else { TURN };
+        let target = speed * intents.balance(Intent::TurnRight, Intent::TurnLeft);
         let Glide { velocity, displacement } = approach(self.turning, target, TURN_FRICTION, STEP);
         let turning = if velocity.abs() < STILL { 0.0 } else { velocity };
         Self { heading: self.heading.turned(displacement), turning, ..self }

@@ -158,7 +158,15 @@ impl App {
             Some(Action::Want(intent)) => Some(intent),
             _ => None,
         });
-        wanted.chain(self.runs.then_some(Intent::Run)).collect()
+        let aims = self.held.iter().any(|key| self.turns(key) && !self.held.is_certain(key));
+        wanted.chain(self.runs.then_some(Intent::Run)).chain(aims.then_some(Intent::Aim)).collect()
+    }
+
+    /// Whether `key` turns the player. What may be a tap turns slowly: it is to aim with, and on
+    /// most terminals nobody says when it ends.
+    fn turns(&self, key: Key) -> bool {
+        let turn = [Intent::TurnLeft, Intent::TurnRight].map(|turn| Some(Action::Want(turn)));
+        turn.contains(&self.settings.bindings.action(key))
     }
 
     fn camera(&self) -> Camera {

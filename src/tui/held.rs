@@ -4,7 +4,8 @@
 //! is held, and only the one pressed last. There, a key counts as held until its repetition fails to
 //! come: the first time for longer than any keyboard waits before it repeats, from then on for a few
 //! of the intervals that this keyboard was measured to repeat in. Timers shorter than the wait before
-//! the first repetition were refused: walking stutters with them.
+//! the first repetition were refused: walking stutters with them. A key that was merely tapped
+//! counts as held for as long as that wait; [`HeldKeys::is_certain`] tells it from one that is held.
 //!
 //! Time is handed in, as the time since some fixed moment, so that tests need not wait.
 
@@ -96,6 +97,12 @@ impl HeldKeys {
         self.keys.iter().filter_map(|held| held.expires).min()
     }
 
+    /// Whether `key` is known to be held, by its repetition or because releases are reported.
+    pub(super) fn is_certain(&self, key: Key) -> bool {
+        let repeats = |held: &HeldKey| !matches!(held.repetition, Repetition::NotYet);
+        self.reports_releases || self.keys.iter().any(|held| held.key == key && repeats(held))
+    }
+
     /// The keys that are held, Shift among them where only its effect on another key shows.
     pub(super) fn iter(&self) -> impl Iterator<Item = Key> {
         let shifted = !self.reports_releases && self.keys.iter().any(|held| held.shift);
@@ -184,6 +191,18 @@ mod tests {
         held.note(event('w', Phase::Press), at(0), NONE);
         held.note(event('s', Phase::Press), at(50), |key| key == Key::Char('w'));
         assert_eq!(held_at(&mut held, 51), [Key::Char('s')]);
+    }
+
+    #[test]
+    fn a_tap_is_not_certain_until_it_repeats() {
+        let mut held = HeldKeys::default();
+        held.note(event('w', Phase::Press), at(0), NONE);
+        assert!(!held.is_certain(Key::Char('w')));
+        held.note(event('w', Phase::Press), at(400), NONE);
+        assert!(held.is_certain(Key::Char('w')));
+        held.set_reports_releases(true);
+        held.note(event('a', Phase::Press), at(500), NONE);
+        assert!(held.is_certain(Key::Char('a')));
     }
 
     #[test]
