@@ -37,12 +37,12 @@ fn every_line_gets_an_answer() {
     ];
     let answers = answers(&(rays.join("\n") + "\n"));
     assert_eq!(answers.lines().count(), rays.len());
-    let dialogue: String = rays
+    let dialogue: Vec<String> = rays
         .iter()
         .zip(answers.lines())
         .map(|(ray, answer)| format!("{ray}\n  {answer}\n"))
         .collect();
-    insta::assert_snapshot!(dialogue);
+    insta::assert_snapshot!(dialogue.concat());
 }
 
 #[test]

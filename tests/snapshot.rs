@@ -22,8 +22,9 @@ fn assert_golden(level: &str, size: &str, options: &[(&str, &str)], format: &str
     let mut arguments = vec!["snapshot", level, "--size", size, "--format", format];
     arguments.extend(options.iter().flat_map(|&(name, value)| [name, value]));
     let picture = output_of(&arguments);
-    let options: String = options.iter().map(|(_, value)| format!("_{value}")).collect();
-    let name = format!("{level}_{size}{options}.{format}");
+    let values = options.iter().map(|&(_, value)| value);
+    let name: Vec<&str> = [level, size].into_iter().chain(values).collect();
+    let name = format!("{}.{format}", name.join("_"));
     insta::assert_binary_snapshot!(&name, picture);
 }
 
@@ -179,7 +180,7 @@ fn mistakes_are_one_sentence_each() {
         &["cellar", "museum"],
         &["no-such-map.toml"],
     ];
-    let complaints: String = mistakes
+    let complaints: Vec<String> = mistakes
         .into_iter()
         .map(|mistake| {
             let arguments = [&["snapshot"], mistake].concat();
@@ -188,5 +189,5 @@ fn mistakes_are_one_sentence_each() {
             format!("{}\n  {complaint}", arguments.join(" "))
         })
         .collect();
-    insta::assert_snapshot!(complaints);
+    insta::assert_snapshot!(complaints.concat());
 }

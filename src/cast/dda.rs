@@ -147,6 +147,7 @@ mod tests {
         Dda.cast(&grid, &ray)
     }
 
+    #[expect(clippy::unnecessary_wraps, reason = "it is compared with what casting returns")]
     fn hit(column: u32, row: u32, side: Side, t: f64, u: f64) -> Option<Hit> {
         Some(Hit { cell: Cell { column, row }, side, t, u })
     }

@@ -121,7 +121,7 @@ fn parse_play(mut parser: Parser) -> Result<Command, Error> {
             Arg::Short('V') | Arg::Long("version") => return Ok(Command::Version),
             Arg::Value(map) if play.map.is_none() => play.map = Some(map),
             Arg::Long("config") => {
-                play.config = Some(word(&mut parser, "--config", "a file")?.into())
+                play.config = Some(word(&mut parser, "--config", "a file")?.into());
             }
             Arg::Long("fps") => play.frames_per_second = FRAMES_PER_SECOND.value(&mut parser)?,
             Arg::Long("fov") => play.field_of_view = FIELD_OF_VIEW.value(&mut parser)?,

@@ -84,7 +84,7 @@ pub struct Bindings {
 impl Default for Bindings {
     /// For QWERTY keyboards.
     fn default() -> Self {
-        Self::with_letters(Letters { forward: 'w', strafe_left: 'a', leave: 'q' })
+        Self::with_letters(&Letters { forward: 'w', strafe_left: 'a', leave: 'q' })
     }
 }
 
@@ -100,10 +100,10 @@ const PRESETS: [&str; 2] = ["qwerty", "azerty"];
 impl Bindings {
     /// For AZERTY keyboards: Z, Q, S and D lie where W, A, S and D do on others; A leaves.
     pub fn azerty() -> Self {
-        Self::with_letters(Letters { forward: 'z', strafe_left: 'q', leave: 'a' })
+        Self::with_letters(&Letters { forward: 'z', strafe_left: 'q', leave: 'a' })
     }
 
-    fn with_letters(letters: Letters) -> Self {
+    fn with_letters(letters: &Letters) -> Self {
         let keys = vec![
             (Key::Char(letters.forward), Action::Want(Intent::Forward)),
             (Key::Up, Action::Want(Intent::Forward)),
@@ -199,7 +199,7 @@ fn read_keys(table: &DeTable, faults: &mut Vec<Fault>) -> Vec<(Key, Action)> {
             };
             match name.parse::<Key>() {
                 Err(error) => {
-                    faults.push(Fault::new(place, error.to_string()).label("unknown key"))
+                    faults.push(Fault::new(place, error.to_string()).label("unknown key"));
                 }
                 Ok(key) if bound.iter().any(|&(other, to)| other == key && to != action) => {
                     faults.push(bound_twice(key, place));

@@ -111,6 +111,8 @@ fn dithered(color: Rgb, x: u32, y: u32) -> Rgb {
 
 #[cfg(test)]
 mod tests {
+    use ratatui::buffer::Cell;
+
     use super::*;
 
     fn drawn(depth: ColorDepth, rows: &[&[Rgb]]) -> Buffer {
@@ -124,7 +126,7 @@ mod tests {
     fn the_glyph_that_shares_colours_with_its_neighbour_is_taken() {
         let (a, b, c) = (Rgb::new(1, 0, 0), Rgb::new(2, 0, 0), Rgb::new(3, 0, 0));
         let buffer = drawn(ColorDepth::True, &[&[a, b, c, c], &[b, a, b, c]]);
-        let symbols: String = buffer.content().iter().map(|cell| cell.symbol()).collect();
+        let symbols: String = buffer.content().iter().map(Cell::symbol).collect();
         assert_eq!(symbols, "▀▄▀ ");
         let second = &buffer.content()[1];
         assert_eq!((second.fg, second.bg), (Color::Rgb(1, 0, 0), Color::Rgb(2, 0, 0)));
