@@ -1,0 +1,69 @@
+//! Any intents, any number of times: the same frames, and nobody inside a wall.
+
+use cellcaster::game::{Game, Intent, Intents};
+use cellcaster::map::builtin;
+use cellcaster::render::{Frame, FrameSize, PixelAspect, Renderer};
+use cellcaster::world::{FieldOfView, Grid};
+use glam::DVec2;
+use proptest::prelude::*;
+
+/// The player's.
+const RADIUS: f64 = 0.25;
+
+fn wants() -> impl Strategy<Value = Vec<(Intents, u8)>> {
+    let intents = prop::collection::vec(prop::sample::select(&Intent::ALL[..]), 0..4);
+    let held = intents.prop_map(|intents| intents.into_iter().collect::<Intents>());
+    prop::collection::vec((held, 1_u8..40), 1..30)
+}
+
+/// Every position on the way, and a frame after each of `wants`.
+fn play(level: usize, wants: &[(Intents, u8)]) -> (Vec<DVec2>, Vec<Frame>) {
+    let mut game = Game::new(builtin::LEVELS[level].world().unwrap());
+    let mut renderer = Renderer::new();
+    let (mut positions, mut frames) = (Vec::new(), Vec::new());
+    for &(intents, steps) in wants {
+        for _ in 0..steps {
+            game.step(intents);
+            positions.push(game.camera(FieldOfView::default()).position());
+        }
+        let mut frame = Frame::new(FrameSize::new(40, 24).unwrap(), PixelAspect::SQUARE);
+        renderer.render(game.world(), &game.camera(FieldOfView::default()), &mut frame);
+        frames.push(frame);
+    }
+    (positions, frames)
+}
+
+/// How far `point` is from the nearest solid cell around it.
+fn clearance(grid: &Grid, point: DVec2) -> f64 {
+    let (column, row) = (point.x as i64, point.y as i64);
+    let around =
+        (row - 1..=row + 1).flat_map(|row| (column - 1..=column + 1).map(move |c| (c, row)));
+    around
+        .filter(|&(column, row)| grid.is_solid(column, row))
+        .map(|(column, row)| {
+            let corner = DVec2::new(column as f64, row as f64);
+            point.distance(point.clamp(corner, corner + 1.0))
+        })
+        .fold(f64::INFINITY, f64::min)
+}
+
+proptest! {
+    #![proptest_config(ProptestConfig::with_cases(64))]
+
+    #[test]
+    fn the_same_intents_give_the_same_frames(level in 0..builtin::LEVELS.len(), wants in wants()) {
+        let (positions, frames) = play(level, &wants);
+        let (positions_again, frames_again) = play(level, &wants);
+        prop_assert_eq!(positions, positions_again);
+        prop_assert!(frames == frames_again);
+    }
+
+    #[test]
+    fn nobody_is_ever_inside_a_wall(level in 0..builtin::LEVELS.len(), wants in wants()) {
+        let world = builtin::LEVELS[level].world().unwrap();
+        for position in play(level, &wants).0 {
+            let clearance = clearance(world.grid(), position);
+            prop_assert!(clearance >= RADIUS, "{} from a wall, at {}", clearance, position);
+        }
+    }
+}

@@ -1,0 +1,60 @@
+//! What a frame costs once everything has grown to its size: no allocation at all.
+
+use allocation_counter::measure;
+use cellcaster::map::builtin;
+use cellcaster::palette::ColorDepth;
+use cellcaster::render::{Frame, FrameSize, PixelAspect, Renderer};
+use cellcaster::tui::{FirstPerson, GlyphMode, Minimap, View};
+use cellcaster::world::FieldOfView;
+use ratatui::buffer::Buffer;
+use ratatui::layout::Rect;
+use ratatui::widgets::{StatefulWidget, Widget};
+
+#[test]
+fn drawing_a_frame_allocates_nothing_after_the_first() {
+    for level in builtin::LEVELS {
+        let world = level.world().unwrap();
+        let mut camera = world.start_camera(FieldOfView::default());
+        let mut renderer = Renderer::new();
+        let mut frame = Frame::new(FrameSize::new(160, 90).unwrap(), PixelAspect::SQUARE);
+        renderer.render(&world, &camera, &mut frame);
+        for _ in 0..100 {
+            camera.heading = camera.heading.turned(0.1);
+            let counted = measure(|| renderer.render(&world, &camera, &mut frame));
+            assert_eq!(counted.count_total, 0, "{}", level.name);
+        }
+    }
+}
+
+#[test]
+fn drawing_the_widgets_allocates_nothing_after_the_first_time() {
+    let world = builtin::LEVELS[1].world().unwrap();
+    let mut camera = world.start_camera(FieldOfView::default());
+    let picture = Rect::new(0, 0, 120, 40);
+    let map = Rect::new(80, 0, 40, 20);
+    let mut buffer = Buffer::empty(picture);
+    let depths =
+        [ColorDepth::True, ColorDepth::Indexed256, ColorDepth::Indexed16, ColorDepth::Mono];
+    for (glyphs, depth) in depths
+        .into_iter()
+        .flat_map(|depth| [GlyphMode::Half, GlyphMode::Ascii].map(|glyphs| (glyphs, depth)))
+    {
+        let mut view = View::default();
+        for turn in 0..20 {
+            camera.heading = camera.heading.turned(0.3);
+            let counted = measure(|| {
+                FirstPerson::new(&world, &camera).glyphs(glyphs).color_depth(depth).render(
+                    picture,
+                    &mut buffer,
+                    &mut view,
+                );
+                Minimap::new(&world, &camera)
+                    .seen(view.columns())
+                    .glyphs(glyphs)
+                    .color_depth(depth)
+                    .render(map, &mut buffer);
+            });
+            assert!(turn == 0 || counted.count_total == 0, "{glyphs:?} {depth:?}");
+        }
+    }
+}
