@@ -23,7 +23,7 @@ fn assert_golden(level: &str, size: &str, options: &[(&str, &str)], format: &str
     arguments.extend(options.iter().flat_map(|&(name, value)| [name, value]));
     let picture = output_of(&arguments);
     let values = options.iter().map(|&(_, value)| value);
-    let name: Vec<&str> = [level, size].into_iter().chain(values).collect();
+    let name: Vec<&str> = [level, size].into_iter().chain(values).chain([format]).collect();
     let name = format!("{}.{format}", name.join("_"));
     insta::assert_binary_snapshot!(&name, picture);
 }
