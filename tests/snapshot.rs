@@ -110,6 +110,20 @@ fn ansi_shows_the_same_cells_in_a_terminal() {
 }
 
 #[test]
+fn a_letter_on_a_wall_reads_the_same_from_all_sides() {
+    let seen_from = |camera| {
+        let map = "tests/maps/letter.toml";
+        let picture = output_of(&["snapshot", map, "--size", "40x20", "--camera", camera]);
+        String::from_utf8(picture).unwrap()
+    };
+    let from_the_west = seen_from("1.5,3.5,0");
+    insta::assert_snapshot!(from_the_west);
+    for camera in ["5.5,3.5,180", "3.5,1.5,90", "3.5,5.5,270"] {
+        assert_eq!(seen_from(camera), from_the_west, "{camera}");
+    }
+}
+
+#[test]
 fn a_camera_can_stand_anywhere() {
     for camera in ["2.5,2.5,90", "-3,-4.5,45", "1e300,0,180", "0,0,1e300", "3,3,-0"] {
         let picture = output_of(&["snapshot", "--camera", camera, "--size", "20x5"]);
