@@ -18,7 +18,7 @@ mod walls;
 pub use columns::{Column, Surface};
 pub use frame::{Frame, FrameSize, PixelAspect};
 
-use crate::cast::Dda;
+use crate::cast::Exact;
 use crate::world::{Camera, World};
 use projection::Projection;
 
@@ -37,7 +37,7 @@ impl Renderer {
     /// Draws what `camera` sees of `world` into all of `frame`.
     pub fn render(&mut self, world: &World, camera: &Camera, frame: &mut Frame) {
         let projection = Projection::new(camera, frame.size(), frame.pixel_aspect());
-        columns::cast(&Dda, world.grid(), &projection, &mut self.columns);
+        columns::cast(&Exact, world.grid(), &projection, &mut self.columns);
         backdrop::draw(world, &self.columns, frame);
         walls::draw(world, &projection, &self.columns, frame);
     }
