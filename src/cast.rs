@@ -15,24 +15,42 @@
 //! |---|---|---|
 //! | [`Exact`] | the lines in their true order: doubles, and integers where those can't tell | here |
 //! | [`Dda`] | the lines in order, in double precision | Lode Vandevenne, "Raycasting II" |
+//! | [`Dda32`] | the same in single precision | the same |
+//! | [`Accumulate`] | a running sum of distances | Lode Vandevenne, "Raycasting" |
+//! | [`Fixed`] | the lines in order, in fixed point | drummyfish, LRS, "Raycasting" |
+//! | [`Table`] | x and y lines apart, along the nearest of so many angles | F. Permadi, "Ray-Casting Tutorial" |
+//! | [`March`] | constant steps | what Lode Vandevenne warns of |
 //!
-//! Only [`Exact`] keeps the rules for every ray.
+//! Only [`Exact`] keeps the rules for every ray; the others are here to be compared with it.
 //!
 //! Each method of casting is one file and one type that implements [`Caster`]; callers are generic
-//! over it. A method picked through a pointer for each ray was
+//! over it, and a [`Method`] picks one by name. A method picked through a pointer for each ray was
 //! refused: the call would cost as much as a short ray.
 
+mod accumulate;
+mod approach;
 mod cross;
 mod dda;
+mod dda32;
 mod exact;
+mod fixed;
 mod hit;
+mod march;
+mod method;
 mod ray;
+mod table;
 mod walk;
 
+pub use accumulate::Accumulate;
 pub use dda::{Dda, DdaOrder};
+pub use dda32::Dda32;
 pub use exact::{Exact, ExactOrder};
+pub use fixed::Fixed;
 pub use hit::{Hit, Side};
+pub use march::March;
+pub use method::{Method, NotAMethod, Visitor};
 pub use ray::{NotARay, Ray};
+pub use table::Table;
 pub use walk::{Crossing, Order, Walk};
 
 use crate::world::Grid;

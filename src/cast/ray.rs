@@ -51,6 +51,11 @@ impl Ray {
         let scale = |component| libm::scalbn(component, -exponent);
         (DVec2::new(scale(self.direction.x), scale(self.direction.y)), exponent)
     }
+
+    /// The same line begun elsewhere, and `t` measured in another length.
+    pub(super) fn moved(origin: DVec2, direction: DVec2) -> Self {
+        Self { origin, direction }
+    }
 }
 
 /// The error of [`Ray::new`]: what keeps the numbers from being a ray.
