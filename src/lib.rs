@@ -6,6 +6,8 @@
 //! maps/*.toml ─ map ─▶ World ─ game ─▶ World + Camera ─ render ─▶ Frame ─ tui ─▶ Buffer ─ terminal ─▶ bytes
 //! ```
 
+#[cfg(feature = "accuracy")]
+pub mod accuracy;
 pub mod cast;
 #[cfg(feature = "cli")]
 pub mod cli;

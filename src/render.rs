@@ -18,13 +18,14 @@ mod walls;
 pub use columns::{Column, Surface};
 pub use frame::{Frame, FrameSize, PixelAspect};
 
-use crate::cast::Dda;
-use crate::world::{Camera, World};
+use crate::cast::{Caster, Method, Visitor};
+use crate::world::{Camera, Grid, World};
 use projection::Projection;
 
 /// Draws frames, and keeps what is worth keeping from one to the next.
 #[derive(Clone, Debug, Default)]
 pub struct Renderer {
+    method: Method,
     columns: Vec<Column>,
 }
 
@@ -34,10 +35,16 @@ impl Renderer {
         Self::default()
     }
 
+    /// A renderer that finds the walls by `method`, where [`Renderer::new`] finds them exactly.
+    pub fn with_method(method: Method) -> Self {
+        Self { method, columns: Vec::new() }
+    }
+
     /// Draws what `camera` sees of `world` into all of `frame`.
     pub fn render(&mut self, world: &World, camera: &Camera, frame: &mut Frame) {
         let projection = Projection::new(camera, frame.size(), frame.pixel_aspect());
-        columns::cast(&Dda, world.grid(), &projection, &mut self.columns);
+        let grid = world.grid();
+        self.method.accept(FirstPass { grid, projection: &projection, columns: &mut self.columns });
         backdrop::draw(world, &self.columns, frame);
         walls::draw(world, &projection, &self.columns, frame);
     }
@@ -45,5 +52,20 @@ impl Renderer {
     /// What the rays of the last frame met, from left to right, one for each column of pixels.
     pub fn columns(&self) -> &[Column] {
         &self.columns
+    }
+}
+
+/// The first pass, for whichever caster it is done with.
+struct FirstPass<'a> {
+    grid: &'a Grid,
+    projection: &'a Projection,
+    columns: &'a mut Vec<Column>,
+}
+
+impl Visitor for FirstPass<'_> {
+    type Output = ();
+
+    fn visit<C: Caster>(self, caster: &C) {
+        columns::cast(caster, self.grid, self.projection, self.columns);
     }
 }

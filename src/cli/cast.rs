@@ -7,7 +7,7 @@ use serde::Serialize;
 
 use super::arguments::Cast;
 use super::{Error, level};
-use crate::cast::{Caster, Dda, Ray, Side};
+use crate::cast::{Caster, Exact, Ray, Side};
 use crate::world::World;
 
 /// Answers every line of standard input until it ends.
@@ -46,7 +46,7 @@ fn answer(world: &World, line: &[u8]) -> Answer {
         Ok(ray) => ray,
         Err(error) => return Answer::Error { error },
     };
-    let Some(hit) = Dda.cast(world.grid(), &ray) else { return Answer::Escaped { escaped: true } };
+    let Some(hit) = Exact.cast(world.grid(), &ray) else { return Answer::Escaped { escaped: true } };
     let (column, row) = (hit.cell.column, hit.cell.row);
     let tile = world.grid().tile(i64::from(column), i64::from(row));
     Answer::Hit {

@@ -1,0 +1,108 @@
+//! The ray, and what every method wants to know of it first.
+
+use std::fmt;
+
+use glam::DVec2;
+
+/// A half-line on the map: a finite origin, and a finite direction that is not zero.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Ray {
+    origin: DVec2,
+    direction: DVec2,
+}
+
+impl Ray {
+    /// The ray from `origin`, in cells, along `direction`, of any length but zero.
+    ///
+    /// # Errors
+    /// Where either is not finite, or the direction is zero.
+    pub fn new(origin: DVec2, direction: DVec2) -> Result<Self, NotARay> {
+        if !origin.is_finite() {
+            Err(NotARay::Origin)
+        } else if !direction.is_finite() {
+            Err(NotARay::Direction)
+        } else if direction == DVec2::ZERO {
+            Err(NotARay::NoDirection)
+        } else {
+            Ok(Self { origin, direction })
+        }
+    }
+
+    /// Where it starts.
+    pub fn origin(&self) -> DVec2 {
+        self.origin
+    }
+
+    /// Where it goes, and the length that `t` is measured in.
+    pub fn direction(&self) -> DVec2 {
+        self.direction
+    }
+
+    /// The point at `t`.
+    pub fn at(&self, t: f64) -> DVec2 {
+        self.origin + self.direction * t
+    }
+
+    /// The direction with its larger component between 1/2 and 1, and the exponent of the power of
+    /// two that it was divided by. The smaller component vanishes where it is too small beside the
+    /// larger one to be a double.
+    pub(super) fn scaled_direction(&self) -> (DVec2, i32) {
+        let exponent = libm::ilogb(self.direction.abs().max_element()) + 1;
+        let scale = |component| libm::scalbn(component, -exponent);
+        (DVec2::new(scale(self.direction.x), scale(self.direction.y)), exponent)
+    }
+
+    /// The same line begun elsewhere, and `t` measured in another length.
+    pub(super) fn moved(origin: DVec2, direction: DVec2) -> Self {
+        Self { origin, direction }
+    }
+}
+
+/// The error of [`Ray::new`]: what keeps the numbers from being a ray.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum NotARay {
+    /// The origin is not finite.
+    Origin,
+    /// The direction is not finite.
+    Direction,
+    /// The direction is zero.
+    NoDirection,
+}
+
+impl fmt::Display for NotARay {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        f.write_str(match self {
+            Self::Origin => "a ray's origin must be two finite numbers",
+            Self::Direction => "a ray's direction must be two finite numbers",
+            Self::NoDirection => "a ray's direction must not be zero",
+        })
+    }
+}
+
+impl std::error::Error for NotARay {}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn no_ray_without_a_direction() {
+        let ray = |x, y, dx, dy| Ray::new(DVec2::new(x, y), DVec2::new(dx, dy));
+        assert_eq!(ray(0.0, 0.0, 0.0, -0.0), Err(NotARay::NoDirection));
+        assert_eq!(ray(0.0, f64::NAN, 1.0, 0.0), Err(NotARay::Origin));
+        assert_eq!(ray(0.0, 0.0, f64::INFINITY, 0.0), Err(NotARay::Direction));
+    }
+
+    #[test]
+    fn scaling_a_direction_keeps_its_slope() {
+        for (direction, scaled) in [
+            ((3.0, -4.0), (0.375, -0.5)),
+            ((1.0, 0.0), (0.5, 0.0)),
+            ((5e-324, -5e-324), (0.5, -0.5)),
+            ((2f64.powi(1023), 5e-324), (0.5, 0.0)),
+        ] {
+            let ray = Ray::new(DVec2::ZERO, DVec2::from(direction)).unwrap();
+            assert_eq!(ray.scaled_direction().0, DVec2::from(scaled));
+        }
+    }
+}

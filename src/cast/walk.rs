@@ -1,0 +1,197 @@
+//! The walk: the cells that a ray enters, one line of the grid after the other.
+//!
+//! The walk counts lines, columns and rows, which are integers and the same for every method. Which
+//! line comes next is the one question that methods differ in, and it is answered by an [`Order`].
+//! So whatever the arithmetic of a method comes to, its walk goes from a cell to a neighbour, never
+//! looks up what is off the map, and ends after at most one step for each line of the map. One loop
+//! for each method was refused: each would have to get all of that right again.
+
+use super::{ExactOrder, Ray, Side};
+use crate::world::{Cell, Grid, TileId};
+
+/// A cell that a ray enters, and the kind of line that it crosses to do so.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub struct Crossing {
+    /// The cell.
+    pub cell: Cell,
+    /// What it holds.
+    pub tile: TileId,
+    /// The kind of line that was crossed into it.
+    pub side: Side,
+}
+
+/// How a walk finds out which line its ray crosses next.
+pub trait Order {
+    /// Whether the ray meets the line at `x` or the line at `y` first; the walk crosses it.
+    ///
+    /// Both are ahead of the ray. Along an axis that the ray does not move on, there is no line
+    /// ahead and its place is infinite; to say that this one is next ends the walk.
+    fn next(&mut self, x: f64, y: f64) -> Side;
+}
+
+/// The cells of a map that a ray enters, from near to far, open ones included.
+///
+/// It ends where the ray leaves the map. [`Hit::entering`](super::Hit::entering) tells the distance
+/// of one of them.
+#[derive(Clone, Debug)]
+pub struct Walk<'grid, O = ExactOrder> {
+    grid: &'grid Grid,
+    x: Axis,
+    y: Axis,
+    order: O,
+}
+
+impl<'grid> Walk<'grid> {
+    /// The walk of `ray` through `grid`, in the exact order.
+    pub fn new(grid: &'grid Grid, ray: &Ray) -> Self {
+        Self::in_order(grid, ray, ExactOrder::new(grid, ray))
+    }
+}
+
+impl<'grid, O: Order> Walk<'grid, O> {
+    /// The walk of `ray` through `grid`, in an order made for both.
+    pub fn in_order(grid: &'grid Grid, ray: &Ray, order: O) -> Self {
+        let (origin, direction) = (ray.origin(), ray.direction());
+        Self {
+            grid,
+            x: Axis::new(origin.x, direction.x, grid.width()),
+            y: Axis::new(origin.y, direction.y, grid.height()),
+            order,
+        }
+    }
+
+    /// The order, as it is after the last step.
+    pub fn order(&self) -> &O {
+        &self.order
+    }
+
+    /// The first solid cell that the ray enters.
+    pub fn first_solid(&mut self) -> Option<Crossing> {
+        let grid = self.grid;
+        self.find(|crossing| grid.is_solid_tile(crossing.tile))
+    }
+}
+
+impl<O: Order> Iterator for Walk<'_, O> {
+    type Item = Crossing;
+
+    fn next(&mut self) -> Option<Crossing> {
+        loop {
+            let side = self.order.next(self.x.line, self.y.line);
+            let axis = match side {
+                Side::X => &mut self.x,
+                Side::Y => &mut self.y,
+            };
+            axis.cross();
+            if !axis.is_on_map() {
+                return None;
+            }
+            if let Some(tile) = self.grid.tile(self.x.index, self.y.index) {
+                let cell = Cell { column: self.x.index as u32, row: self.y.index as u32 };
+                return Some(Crossing { cell, tile, side });
+            }
+        }
+    }
+}
+
+/// A ray's progress along one axis of the grid.
+#[derive(Clone, Debug)]
+struct Axis {
+    /// The column or row that the ray is in; off the map, any that is off the map on that side.
+    index: i64,
+    /// Where the next line is; infinite where there is none.
+    line: f64,
+    /// From one line to the next: 1, −1, or 0 where the ray does not move on this axis.
+    step: i64,
+    /// How many columns or rows the map has.
+    count: i64,
+}
+
+impl Axis {
+    fn new(origin: f64, direction: f64, count: u32) -> Self {
+        let line = first_line(origin, direction, count);
+        let count = i64::from(count);
+        let (before, step) = if direction > 0.0 {
+            (line - 1.0, 1)
+        } else if direction < 0.0 {
+            (line, -1)
+        } else {
+            (origin.floor(), 0)
+        };
+        let index = (before as i64).clamp(-1, count);
+        // No line can be crossed without moving; an order that says so ends the walk.
+        let count = if step == 0 { 0 } else { count };
+        Self { index, line, step, count }
+    }
+
+    fn cross(&mut self) {
+        self.index += self.step;
+        self.line += self.step as f64;
+    }
+
+    /// Whether the ray is on the map, as far as this axis tells. It is after the first line that it
+    /// crosses here, because that is the edge at the earliest, until it leaves the map for good.
+    fn is_on_map(&self) -> bool {
+        (0..self.count).contains(&self.index)
+    }
+}
+
+/// The first line of a map that a ray meets along one axis; infinite where it meets none.
+///
+/// A ray that is still off the map begins with its edge: what it crosses until there is nothing,
+/// however far away it starts.
+pub(super) fn first_line(origin: f64, direction: f64, count: u32) -> f64 {
+    if direction > 0.0 {
+        origin.ceil().max(0.0)
+    } else if direction < 0.0 {
+        origin.floor().min(f64::from(count))
+    } else {
+        f64::INFINITY
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use glam::DVec2;
+    use proptest::prelude::*;
+
+    use super::*;
+
+    /// An order that knows nothing of the ray.
+    struct Whim(u64);
+
+    impl Order for Whim {
+        fn next(&mut self, _: f64, _: f64) -> Side {
+            self.0 = self.0.rotate_left(1);
+            if self.0.is_multiple_of(2) { Side::X } else { Side::Y }
+        }
+    }
+
+    proptest! {
+        /// Whatever the ray and the order, it ends, in at most one step a line, each to a neighbour.
+        #[test]
+        fn every_walk_ends(
+            origin in (any::<f64>(), any::<f64>()),
+            near in (-2.0..6.0, -2.0..5.0),
+            is_near in any::<bool>(),
+            direction in (any::<f64>(), any::<f64>()),
+            whim in any::<u64>(),
+        ) {
+            let grid = Grid::sketch(&["....", "....", "...."]).unwrap();
+            let origin = DVec2::from(if is_near { near } else { origin });
+            let ray = Ray::new(origin, DVec2::from(direction));
+            prop_assume!(ray.is_ok());
+            let ray = ray.unwrap();
+            let exact: Vec<Crossing> = Walk::new(&grid, &ray).collect();
+            let at_a_whim: Vec<Crossing> = Walk::in_order(&grid, &ray, Whim(whim)).collect();
+            for entered in [exact, at_a_whim] {
+                prop_assert!(entered.len() <= 7);
+                for pair in entered.windows(2) {
+                    let steps = pair[0].cell.column.abs_diff(pair[1].cell.column)
+                        + pair[0].cell.row.abs_diff(pair[1].cell.row);
+                    prop_assert_eq!(steps, 1);
+                }
+            }
+        }
+    }
+}
