@@ -5,11 +5,19 @@
 //! [`adversarial_ray`] make as many more as one likes, from a seed.
 
 mod chance;
+mod motion;
+mod pictures;
 mod rays;
 mod reference;
+mod report;
 mod sets;
+mod trial;
 
 pub use chance::Chance;
+pub use motion::{Integrator, MotionCase, MotionResult, compare_motions};
+pub use pictures::{Gallery, Reference};
 pub use rays::{adversarial_ray, random_ray};
 pub use reference::{Rational, Truth, cast};
+pub use report::{PICTURES, Plan, RaySource, Report, Row, SetRow, report, set_names};
 pub use sets::{Set, ordinary, sets};
+pub use trial::{Errors, Timing, Trial, time_in_turns};

@@ -4,6 +4,7 @@
 //! refuses is a sentence and status 1. A reader that closes the pipe is neither: the program ends
 //! quietly. Nothing here panics on any argument.
 
+mod accuracy;
 mod arguments;
 mod cast;
 mod check;
@@ -37,6 +38,7 @@ impl Command {
             Self::Snapshot(options) => snapshot::run(&options),
             Self::Cast(options) => cast::run(&options),
             Self::Check(maps) => check::run(&maps),
+            Self::Accuracy(options) => accuracy::run(&options),
         }
     }
 }

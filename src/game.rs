@@ -14,6 +14,8 @@ use crate::world::{Camera, FieldOfView, ThingKind, World};
 use player::Player;
 
 pub use intent::{Intent, Intents};
+#[cfg(feature = "accuracy")]
+pub(crate) use motion::approach;
 
 /// How long one step lasts, in seconds.
 pub const STEP: f64 = 1.0 / 60.0;

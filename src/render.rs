@@ -19,7 +19,7 @@ pub use columns::{Column, Surface};
 pub use frame::{Frame, FrameSize, PixelAspect};
 
 use crate::cast::{Caster, Method, Visitor};
-use crate::world::{Camera, Grid, World};
+use crate::world::{Camera, World};
 use projection::Projection;
 
 /// Draws frames, and keeps what is worth keeping from one to the next.
@@ -42,11 +42,18 @@ impl Renderer {
 
     /// Draws what `camera` sees of `world` into all of `frame`.
     pub fn render(&mut self, world: &World, camera: &Camera, frame: &mut Frame) {
-        let projection = Projection::new(camera, frame.size(), frame.pixel_aspect());
-        let grid = world.grid();
-        self.method.accept(FirstPass { grid, projection: &projection, columns: &mut self.columns });
-        backdrop::draw(world, &self.columns, frame);
-        walls::draw(world, &projection, &self.columns, frame);
+        self.method.accept(Picture { world, camera, columns: &mut self.columns, frame });
+    }
+
+    /// As [`Renderer::render`], with the walls that `caster` finds.
+    pub fn render_with<C: Caster>(
+        &mut self,
+        caster: &C,
+        world: &World,
+        camera: &Camera,
+        frame: &mut Frame,
+    ) {
+        Picture { world, camera, columns: &mut self.columns, frame }.visit(caster);
     }
 
     /// What the rays of the last frame met, from left to right, one for each column of pixels.
@@ -55,17 +62,22 @@ impl Renderer {
     }
 }
 
-/// The first pass, for whichever caster it is done with.
-struct FirstPass<'a> {
-    grid: &'a Grid,
-    projection: &'a Projection,
+/// A picture to draw, with whichever caster.
+struct Picture<'a> {
+    world: &'a World,
+    camera: &'a Camera,
     columns: &'a mut Vec<Column>,
+    frame: &'a mut Frame,
 }
 
-impl Visitor for FirstPass<'_> {
+impl Visitor for Picture<'_> {
     type Output = ();
 
     fn visit<C: Caster>(self, caster: &C) {
-        columns::cast(caster, self.grid, self.projection, self.columns);
+        let Self { world, camera, columns, frame } = self;
+        let projection = Projection::new(camera, frame.size(), frame.pixel_aspect());
+        columns::cast(caster, world.grid(), &projection, columns);
+        backdrop::draw(world, columns, frame);
+        walls::draw(world, &projection, columns, frame);
     }
 }

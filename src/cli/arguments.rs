@@ -7,6 +7,7 @@ use glam::DVec2;
 use lexopt::{Arg, Parser};
 
 use super::Error;
+use crate::cast::{Method, NotAMethod};
 use crate::fault;
 use crate::palette::ColorDepth;
 use crate::tui::{CellAspect, GlyphMode};
@@ -21,6 +22,7 @@ pub(super) enum Command {
     Snapshot(Snapshot),
     Cast(Cast),
     Check(Vec<OsString>),
+    Accuracy(Accuracy),
 }
 
 /// Options of `play`; `None` where the terminal or the configuration decides.
@@ -33,6 +35,7 @@ pub(super) struct Play {
     pub(super) cell_aspect: Option<CellAspect>,
     pub(super) glyphs: GlyphMode,
     pub(super) depth: Option<ColorDepth>,
+    pub(super) method: Method,
 }
 
 /// Options of `snapshot`.
@@ -47,12 +50,37 @@ pub(super) struct Snapshot {
     pub(super) glyphs: GlyphMode,
     pub(super) depth: ColorDepth,
     pub(super) format: Format,
+    pub(super) method: Method,
 }
 
 /// Options of `cast`.
 #[derive(Debug, Default)]
 pub(super) struct Cast {
     pub(super) map: Option<OsString>,
+    pub(super) method: Method,
+}
+
+/// Options of `accuracy`.
+#[derive(Debug)]
+pub(super) struct Accuracy {
+    pub(super) map: Option<OsString>,
+    pub(super) set: Option<String>,
+    /// None for all.
+    pub(super) methods: Vec<Method>,
+    /// Rays in each scene.
+    pub(super) rays: usize,
+    pub(super) seed: u64,
+    pub(super) format: ReportFormat,
+}
+
+/// How a report is written.
+#[derive(Clone, Copy, Debug)]
+pub(super) enum ReportFormat {
+    Table,
+    Json,
+    Csv,
+    Svg,
+    Png,
 }
 
 /// The most frames a second, from 1 to 240.
@@ -101,13 +129,14 @@ impl Command {
             "snapshot" => parse_snapshot(parser),
             "cast" => parse_cast(parser),
             "check" => parse_check(parser),
+            "accuracy" => parse_accuracy(parser),
             "help" => Ok(Self::Help),
             _ => parse_play(parser),
         }
     }
 }
 
-const COMMANDS: [&str; 5] = ["play", "snapshot", "cast", "check", "help"];
+const COMMANDS: [&str; 6] = ["play", "snapshot", "cast", "check", "accuracy", "help"];
 
 fn is_command(argument: &OsStr) -> bool {
     COMMANDS.iter().any(|&command| argument == command)
@@ -128,6 +157,7 @@ fn parse_play(mut parser: Parser) -> Result<Command, Error> {
             Arg::Long("cell-aspect") => play.cell_aspect = Some(CELL_ASPECT.value(&mut parser)?),
             Arg::Long("glyphs") => play.glyphs = GLYPHS.value(&mut parser)?,
             Arg::Long("colors") => play.depth = Some(COLORS.value(&mut parser)?),
+            Arg::Long("caster") => play.method = method(&mut parser)?,
             other => return Err(unexpected("play", &PLAY_OPTIONS, other)),
         }
     }
@@ -147,6 +177,7 @@ fn parse_snapshot(mut parser: Parser) -> Result<Command, Error> {
             Arg::Long("glyphs") => snapshot.glyphs = GLYPHS.value(&mut parser)?,
             Arg::Long("colors") => snapshot.depth = COLORS.value(&mut parser)?,
             Arg::Long("format") => snapshot.format = FORMAT.value(&mut parser)?,
+            Arg::Long("caster") => snapshot.method = method(&mut parser)?,
             other => return Err(unexpected("snapshot", &SNAPSHOT_OPTIONS, other)),
         }
     }
@@ -159,10 +190,35 @@ fn parse_cast(mut parser: Parser) -> Result<Command, Error> {
         match argument {
             Arg::Short('h') | Arg::Long("help") => return Ok(Command::Help),
             Arg::Value(map) if cast.map.is_none() => cast.map = Some(map),
-            other => return Err(unexpected("cast", &[], other)),
+            Arg::Long("caster") => cast.method = method(&mut parser)?,
+            other => return Err(unexpected("cast", &["--caster"], other)),
         }
     }
     Ok(Command::Cast(cast))
+}
+
+fn parse_accuracy(mut parser: Parser) -> Result<Command, Error> {
+    let mut accuracy = Accuracy {
+        map: None,
+        set: None,
+        methods: Vec::new(),
+        rays: 2000,
+        seed: 1,
+        format: ReportFormat::Table,
+    };
+    while let Some(argument) = next(&mut parser)? {
+        match argument {
+            Arg::Short('h') | Arg::Long("help") => return Ok(Command::Help),
+            Arg::Value(map) if accuracy.map.is_none() => accuracy.map = Some(map),
+            Arg::Long("set") => accuracy.set = Some(SET.value(&mut parser)?),
+            Arg::Long("caster") => accuracy.methods.push(method(&mut parser)?),
+            Arg::Long("rays") => accuracy.rays = RAYS.value(&mut parser)?,
+            Arg::Long("seed") => accuracy.seed = SEED.value(&mut parser)?,
+            Arg::Long("format") => accuracy.format = REPORT_FORMAT.value(&mut parser)?,
+            other => return Err(unexpected("accuracy", &ACCURACY_OPTIONS, other)),
+        }
+    }
+    Ok(Command::Accuracy(accuracy))
 }
 
 fn parse_check(mut parser: Parser) -> Result<Command, Error> {
@@ -182,10 +238,28 @@ fn parse_check(mut parser: Parser) -> Result<Command, Error> {
     Ok(Command::Check(maps))
 }
 
-const PLAY_OPTIONS: [&str; 7] =
-    ["--cell-aspect", "--colors", "--config", "--fov", "--fps", "--glyphs", "--version"];
-const SNAPSHOT_OPTIONS: [&str; 7] =
-    ["--camera", "--cell-aspect", "--colors", "--format", "--fov", "--glyphs", "--size"];
+const PLAY_OPTIONS: [&str; 8] = [
+    "--caster",
+    "--cell-aspect",
+    "--colors",
+    "--config",
+    "--fov",
+    "--fps",
+    "--glyphs",
+    "--version",
+];
+const SNAPSHOT_OPTIONS: [&str; 8] = [
+    "--camera",
+    "--caster",
+    "--cell-aspect",
+    "--colors",
+    "--format",
+    "--fov",
+    "--glyphs",
+    "--size",
+];
+
+const ACCURACY_OPTIONS: [&str; 5] = ["--caster", "--format", "--rays", "--seed", "--set"];
 
 /// An option that takes a value.
 struct Valued<T> {
@@ -280,6 +354,38 @@ const CAMERA: Valued<(DVec2, Heading)> = Valued {
         (position.is_finite() && numbers.next().is_none()).then_some((position, heading))
     },
 };
+
+const SET: Valued<String> =
+    Valued { name: "--set", takes: "the name of a set", read: |text| Some(text.to_owned()) };
+
+const RAYS: Valued<usize> = Valued {
+    name: "--rays",
+    takes: "a whole number from 1 to 10000000",
+    read: |text| text.parse().ok().filter(|rays| (1..=10_000_000).contains(rays)),
+};
+
+const SEED: Valued<u64> =
+    Valued { name: "--seed", takes: "a whole number", read: |text| text.parse().ok() };
+
+const REPORT_FORMAT: Valued<ReportFormat> = Valued {
+    name: "--format",
+    takes: "table, json, csv, svg or png",
+    read: |text| match text {
+        "table" => Some(ReportFormat::Table),
+        "json" => Some(ReportFormat::Json),
+        "csv" => Some(ReportFormat::Csv),
+        "svg" => Some(ReportFormat::Svg),
+        "png" => Some(ReportFormat::Png),
+        _ => None,
+    },
+};
+
+/// The value of `--caster`, which knows best what is wrong with it.
+fn method(parser: &mut Parser) -> Result<Method, Error> {
+    let text = word(parser, "--caster", "the name of a method")?;
+    let text = text.to_string_lossy();
+    text.parse().map_err(|error: NotAMethod| Error::mistake(format!("--caster {text}: {error}")))
+}
 
 /// The next argument.
 fn next(parser: &mut Parser) -> Result<Option<Arg<'_>>, Error> {

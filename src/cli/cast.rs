@@ -7,27 +7,41 @@ use serde::Serialize;
 
 use super::arguments::Cast;
 use super::{Error, level};
-use crate::cast::{Caster, Exact, Ray, Side};
+use crate::cast::{Caster, Ray, Side, Visitor};
 use crate::world::World;
 
 /// Answers every line of standard input until it ends.
 pub(super) fn run(options: &Cast) -> Result<(), Error> {
     let world = level::load(options.map.as_deref())?;
-    let mut input = BufReader::new(io::stdin().lock());
-    let mut output = BufWriter::new(io::stdout().lock());
-    let mut line = Vec::new();
-    loop {
-        line.clear();
-        let length = input
-            .read_until(b'\n', &mut line)
-            .map_err(|error| Error::machine(format!("standard input can't be read: {error}")))?;
-        if length == 0 {
-            return output.flush().map_err(|error| Error::of_output(&error));
-        }
-        write(&answer(&world, &line), &mut output).map_err(|error| Error::of_output(&error))?;
-        // Somebody may be waiting for this answer before they ask on.
-        if input.buffer().is_empty() {
-            output.flush().map_err(|error| Error::of_output(&error))?;
+    options.method.accept(Dialogue { world: &world })
+}
+
+/// Rays from standard input and hits to standard output, with whichever caster.
+struct Dialogue<'a> {
+    world: &'a World,
+}
+
+impl Visitor for Dialogue<'_> {
+    type Output = Result<(), Error>;
+
+    fn visit<C: Caster>(self, caster: &C) -> Result<(), Error> {
+        let mut input = BufReader::new(io::stdin().lock());
+        let mut output = BufWriter::new(io::stdout().lock());
+        let mut line = Vec::new();
+        loop {
+            line.clear();
+            let length = input.read_until(b'\n', &mut line).map_err(|error| {
+                Error::machine(format!("standard input can't be read: {error}"))
+            })?;
+            if length == 0 {
+                return output.flush().map_err(|error| Error::of_output(&error));
+            }
+            let answer = answer(self.world, caster, &line);
+            write(&answer, &mut output).map_err(|error| Error::of_output(&error))?;
+            // Somebody may be waiting for this answer before they ask on.
+            if input.buffer().is_empty() {
+                output.flush().map_err(|error| Error::of_output(&error))?;
+            }
         }
     }
 }
@@ -41,12 +55,14 @@ enum Answer {
     Error { error: String },
 }
 
-fn answer(world: &World, line: &[u8]) -> Answer {
+fn answer<C: Caster>(world: &World, caster: &C, line: &[u8]) -> Answer {
     let ray = match read_ray(line) {
         Ok(ray) => ray,
         Err(error) => return Answer::Error { error },
     };
-    let Some(hit) = Exact.cast(world.grid(), &ray) else { return Answer::Escaped { escaped: true } };
+    let Some(hit) = caster.cast(world.grid(), &ray) else {
+        return Answer::Escaped { escaped: true };
+    };
     let (column, row) = (hit.cell.column, hit.cell.row);
     let tile = world.grid().tile(i64::from(column), i64::from(row));
     Answer::Hit {

@@ -22,6 +22,7 @@ pub(super) fn run(options: Play) -> Result<(), Error> {
         cell_aspect: options.cell_aspect,
         glyphs: options.glyphs,
         depth: options.depth,
+        method: options.method,
     };
     tui::play(levels, settings).map_err(Error::from)
 }

@@ -53,7 +53,7 @@ fn write(
     output: impl Write + 'static,
 ) -> io::Result<()> {
     let size = Size::new(options.size.columns, options.size.rows);
-    let mut view = View::default();
+    let mut view = View::with_method(options.method.clone());
     picture.draw(size, &mut view);
 
     let mut writer = writer(options, size, output)?;

@@ -9,17 +9,17 @@ use glam::DVec2;
 
 /// The state of a motion after a while, and the way covered meanwhile.
 #[derive(Clone, Copy, Debug, PartialEq)]
-pub(super) struct Glide<V> {
+pub(crate) struct Glide<V> {
     /// Units per second.
-    pub(super) velocity: V,
+    pub(crate) velocity: V,
     /// Units.
-    pub(super) displacement: V,
+    pub(crate) displacement: V,
 }
 
 /// What becomes of `velocity` within `duration` seconds on its way to `target`, where the
 /// difference between the two shrinks by the factor e in 1 / `rate` seconds. Where all four are
 /// finite, `rate` above 0 and `duration` at least 0, so is the result.
-pub(super) fn approach(velocity: f64, target: f64, rate: f64, duration: f64) -> Glide<f64> {
+pub(crate) fn approach(velocity: f64, target: f64, rate: f64, duration: f64) -> Glide<f64> {
     let remains = libm::exp(-rate * duration);
     // For how long the first velocity would cover its share of the way, and the target the rest.
     let coasting = (-libm::expm1(-rate * duration) / rate).min(duration);

@@ -18,6 +18,7 @@ use ratatui::layout::Rect;
 use super::bindings::{Action, Bindings};
 use super::held::HeldKeys;
 use super::{CellAspect, FirstPerson, GlyphMode, Minimap, View};
+use crate::cast::Method;
 use crate::game::{Game, Intent, Intents};
 use crate::palette::ColorDepth;
 use crate::terminal::{Detected, Error, Event, Key, KeyEvent, Options, Phase, Session};
@@ -39,6 +40,8 @@ pub struct Settings {
     pub glyphs: GlyphMode,
     /// How many colours there are; `None` for what the terminal has.
     pub depth: Option<ColorDepth>,
+    /// How walls are found.
+    pub method: Method,
 }
 
 /// Plays `levels` on the terminal until the player leaves or somebody else ends the program.
@@ -123,13 +126,13 @@ impl App {
             field_of_view: settings.field_of_view,
             depth: settings.depth.unwrap_or_default(),
             cell_aspect: settings.cell_aspect.unwrap_or_default(),
+            view: View::with_method(settings.method.clone()),
             settings,
             held: HeldKeys::default(),
             runs: false,
             shows_minimap: true,
             has_left: false,
             clock: Clock::default(),
-            view: View::default(),
             shown: None,
             next_frame: Duration::ZERO,
         }

@@ -7,6 +7,7 @@ use ratatui::layout::{Rect, Size};
 use ratatui::widgets::StatefulWidget;
 
 use super::{CellAspect, GlyphMode, ascii, half_blocks};
+use crate::cast::Method;
 use crate::palette::ColorDepth;
 use crate::render::{Column, Frame, FrameSize, PixelAspect, Renderer};
 use crate::world::{Camera, World};
@@ -99,6 +100,11 @@ impl Default for View {
 }
 
 impl View {
+    /// A view whose renderer finds the walls by `method`.
+    pub fn with_method(method: Method) -> Self {
+        Self { renderer: Renderer::with_method(method), ..Self::default() }
+    }
+
     /// What the rays of the last drawing met, from left to right.
     pub fn columns(&self) -> &[Column] {
         self.renderer.columns()

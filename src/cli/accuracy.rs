@@ -1,0 +1,55 @@
+//! `cellcaster accuracy`: error against run time.
+
+mod csv;
+mod json;
+mod plot;
+mod progress;
+mod table;
+
+use std::io::{self, BufWriter, Write};
+
+use super::arguments::{Accuracy, ReportFormat};
+use super::{Error, level};
+use crate::accuracy::{Plan, RaySource, Report, report, set_names};
+use progress::Progress;
+
+/// Reports what `options` ask for.
+pub(super) fn run(options: &Accuracy) -> Result<(), Error> {
+    let world = match &options.map {
+        Some(map) => level::load(Some(map))?,
+        // The built-in level in which there is most to see.
+        None => level::load(Some("museum".as_ref()))?,
+    };
+    let rays = match (&options.set, &options.map) {
+        (Some(name), _) => RaySource::Set(name.clone()),
+        (None, Some(_)) => RaySource::World,
+        (None, None) => RaySource::Scenes,
+    };
+    let plan = Plan {
+        world: &world,
+        rays,
+        methods: options.methods.clone(),
+        count: options.rays,
+        seed: options.seed,
+    };
+    let mut progress = Progress::new();
+    let report = report(&plan, |share| progress.show(share));
+    progress.finish();
+    let report = report.ok_or_else(|| {
+        let name = options.set.as_deref().unwrap_or_default();
+        Error::mistake(format!("there is no set \"{name}\"; there are {}", set_names().join(", ")))
+    })?;
+    let output = BufWriter::new(io::stdout().lock());
+    write(&report, options.format, output).map_err(|error| Error::of_output(&error))
+}
+
+fn write(report: &Report, format: ReportFormat, mut output: impl Write) -> io::Result<()> {
+    match format {
+        ReportFormat::Table => table::write(report, &mut output)?,
+        ReportFormat::Json => json::write(report, &mut output)?,
+        ReportFormat::Csv => csv::write(report, &mut output)?,
+        ReportFormat::Svg => plot::write_svg(report, &mut output)?,
+        ReportFormat::Png => plot::write_png(report, &mut output)?,
+    }
+    output.flush()
+}

@@ -1,0 +1,97 @@
+//! Marks as pixels.
+
+use std::io::{self, Write};
+
+use font8x8::{BASIC_FONTS, UnicodeFonts};
+use png::{BitDepth, ColorType, Encoder};
+
+use super::{Align, Mark, PAGE};
+use crate::world::Rgb;
+
+const PAPER: Rgb = Rgb::WHITE;
+const INK: Rgb = Rgb::new(0x20, 0x20, 0x20);
+const GRID: Rgb = Rgb::new(0xdd, 0xdd, 0xdd);
+const FRONT: Rgb = Rgb::new(0xd0, 0x60, 0x10);
+const OTHER: Rgb = Rgb::new(0x30, 0x60, 0xa0);
+const GLYPH_SIDE: i32 = 8;
+const DOT_RADIUS: i32 = 5;
+
+pub(super) fn write(marks: &[Mark], output: &mut impl Write) -> io::Result<()> {
+    let mut page = Page::blank();
+    marks.iter().for_each(|mark| page.put(mark));
+    let mut encoder = Encoder::new(output, page.width as u32, page.height as u32);
+    encoder.set_color(ColorType::Rgb);
+    encoder.set_depth(BitDepth::Eight);
+    let bytes: Vec<u8> = page.pixels.iter().flat_map(|pixel| pixel.channels()).collect();
+    let mut writer = encoder.write_header()?;
+    writer.write_image_data(&bytes)?;
+    Ok(writer.finish()?)
+}
+
+struct Page {
+    width: i32,
+    height: i32,
+    pixels: Vec<Rgb>,
+}
+
+impl Page {
+    fn blank() -> Self {
+        let (width, height) = (PAGE.0 as i32, PAGE.1 as i32);
+        Self { width, height, pixels: vec![PAPER; width as usize * height as usize] }
+    }
+
+    fn put(&mut self, mark: &Mark) {
+        match mark {
+            Mark::Line { from, to, is_front } => self.line(*from, *to, *is_front),
+            Mark::Dot { at, is_front } => self.dot(*at, if *is_front { FRONT } else { OTHER }),
+            Mark::Text { at, align, text } => self.text(*at, *align, text),
+        }
+    }
+
+    fn set(&mut self, x: i32, y: i32, color: Rgb) {
+        if (0..self.width).contains(&x) && (0..self.height).contains(&y) {
+            self.pixels[y as usize * self.width as usize + x as usize] = color;
+        }
+    }
+
+    fn line(&mut self, from: (f64, f64), to: (f64, f64), is_front: bool) {
+        let length = (to.0 - from.0).abs().max((to.1 - from.1).abs()).ceil().max(1.0);
+        for step in 0..=length as i32 {
+            let share = f64::from(step) / length;
+            let x = (from.0 + share * (to.0 - from.0)).round() as i32;
+            let y = (from.1 + share * (to.1 - from.1)).round() as i32;
+            self.set(x, y, if is_front { FRONT } else { GRID });
+            if is_front {
+                self.set(x, y + 1, FRONT);
+            }
+        }
+    }
+
+    fn dot(&mut self, at: (f64, f64), color: Rgb) {
+        let around = -DOT_RADIUS..=DOT_RADIUS;
+        for (dx, dy) in around.clone().flat_map(|dx| around.clone().map(move |dy| (dx, dy))) {
+            if dx * dx + dy * dy <= DOT_RADIUS * DOT_RADIUS {
+                self.set(at.0 as i32 + dx, at.1 as i32 + dy, color);
+            }
+        }
+    }
+
+    fn text(&mut self, at: (f64, f64), align: Align, text: &str) {
+        let width = GLYPH_SIDE * text.chars().count() as i32;
+        let left = at.0 as i32
+            - match align {
+                Align::Start => 0,
+                Align::Middle => width / 2,
+                Align::End => width,
+            };
+        let top = at.1 as i32 - GLYPH_SIDE;
+        for (index, character) in (0..).zip(text.chars()) {
+            let rows = BASIC_FONTS.get(character).unwrap_or_default();
+            for (row, dots) in (0..).zip(rows) {
+                for column in (0..GLYPH_SIDE).filter(|column| dots >> column & 1 == 1) {
+                    self.set(left + GLYPH_SIDE * index + column, top + row, INK);
+                }
+            }
+        }
+    }
+}
