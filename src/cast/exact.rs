@@ -5,7 +5,8 @@
 //! near to the corner where the two lines meet that only the sign of a cross product tells on which
 //! side, and that one is computed without rounding. Ordinary rays never get there, and pay one
 //! comparison a line: in rooms, among pillars and in corridors (`benches/casters.rs`) a ray takes
-//! 1.03 to 1.04 times what it takes `dda`. That is why this is the default.
+//! 1.03 times what it takes `dda` in the median of 24 runs, and up to 1.07 times between the fastest
+//! of each. That is why this is the default.
 //!
 //! The bound on the rounding is computed once for each ray, from the size of the map. One for each
 //! line, tighter near the start, was refused: it costs more than the exact cross products it saves.
