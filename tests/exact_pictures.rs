@@ -1,6 +1,8 @@
 //! Pictures against exact geometry: every pixel of a flat-coloured map, computed again in rational
 //! arithmetic from nothing but the camera, by asking all faces of all walls which is the nearest.
 
+use std::path::Path;
+
 use cellcaster::map;
 use cellcaster::render::{Frame, FrameSize, PixelAspect, Renderer};
 use cellcaster::world::{Camera, FieldOfView, Heading, Rgb, World};
@@ -40,7 +42,7 @@ proptest! {
     fn every_pixel_is_where_geometry_says(
         position in (0.0..7.0, 0.0..7.0),
         degrees in prop_oneof![0.0..360.0, (0..8).prop_map(|eighth| 45.0 * f64::from(eighth))],
-        field_of_view in 30.0..=120.0,
+        field_of_view in prop_oneof![8 => 30.0..=120.0, 1 => Just(0.001), 1 => Just(179.9)],
         size in (1_u32..24, 1_u32..24),
         aspect in prop_oneof![Just(1.0), Just(2.0), 0.3..4.0],
     ) {
@@ -59,6 +61,40 @@ proptest! {
             if let Some(color) = geometry.color(x, y) {
                 prop_assert_eq!(frame.pixel(x, y), color, "at ({}, {})", x, y);
             }
+        }
+    }
+}
+
+#[test]
+fn a_huge_picture_is_as_exact_as_a_small_one() {
+    let world = map::parse_str(MAP).unwrap();
+    let heading = Heading::from_degrees(33.0).unwrap();
+    let camera = Camera::new(DVec2::new(1.7, 2.4), heading, FieldOfView::default()).unwrap();
+    let mut frame = Frame::new(FrameSize::new(4000, 2000).unwrap(), PixelAspect::SQUARE);
+    Renderer::new().render(&world, &camera, &mut frame);
+    let geometry = Geometry::new(&world, &camera, &frame);
+    let mut compared = 0;
+    for (x, y) in (0..4000).step_by(97).flat_map(|x| (0..2000).step_by(211).map(move |y| (x, y))) {
+        if let Some(color) = geometry.color(x, y) {
+            assert_eq!(frame.pixel(x, y), color, "at ({x}, {y})");
+            compared += 1;
+        }
+    }
+    assert!(compared > 400);
+}
+
+#[test]
+fn a_wall_before_the_nose_shows_the_texels_at_eye_height() {
+    // The texture has 64 rows, whose red is their number; the wall's face is at x = 0.
+    let world = map::load(Path::new("tests/maps/nose.toml")).unwrap();
+    let mut frame = Frame::new(FrameSize::new(40, 24).unwrap(), PixelAspect::SQUARE);
+    for gap in [1e-12, 1e-30, 1e-300, 5e-324] {
+        let position = DVec2::new(-gap, 0.5);
+        let camera = Camera::new(position, Heading::default(), FieldOfView::default()).unwrap();
+        Renderer::new().render(&world, &camera, &mut frame);
+        for (y, row) in frame.rows().enumerate() {
+            let texel = if y < 12 { 31 } else { 32 };
+            assert!(row.iter().all(|pixel| pixel.red() == texel), "row {y}, {gap} from the wall");
         }
     }
 }

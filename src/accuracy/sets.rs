@@ -1,5 +1,6 @@
 //! The named sets: ordinary scenes, and all that is stiff or extreme.
 
+mod cameras;
 mod directions;
 mod lengths;
 mod ordinary;
@@ -31,6 +32,7 @@ pub fn sets(seed: u64) -> Vec<Set> {
     let mut sets = directions::sets(&mut chance);
     sets.extend(origins::sets(&mut chance));
     sets.extend(lengths::sets(&mut chance));
+    sets.extend(cameras::sets());
     sets
 }
 

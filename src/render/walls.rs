@@ -20,12 +20,9 @@ pub(super) fn draw(world: &World, projection: &Projection, columns: &[Column], f
             }
             Paint::Texture(texture) => {
                 let texels = world.texture(texture).column(hit.u);
-                let last = texels.len() - 1;
-                let down = projection.down_the_wall(hit.t);
-                let rows = column.rows.clone();
-                for (row, pixel) in rows.zip(pixels) {
-                    let texel = (down(row) * texels.len() as f64) as usize;
-                    *pixel = shaded(texels[texel.min(last)], hit.side);
+                let texel = projection.texel_on_the_wall(hit.t, texels.len());
+                for (row, pixel) in column.rows.clone().zip(pixels) {
+                    *pixel = shaded(texels[texel(row)], hit.side);
                 }
             }
         }

@@ -129,6 +129,8 @@ fn share(share: f64) -> String {
 fn number(number: f64) -> String {
     if number == 0.0 {
         "0".to_owned()
+    } else if number >= f64::MAX {
+        "inf".to_owned()
     } else if (0.01..1000.0).contains(&number) {
         let text = format!("{number:.3}");
         text.trim_end_matches('0').trim_end_matches('.').to_owned()

@@ -147,7 +147,8 @@ proptest! {
             prop_assert!(clearance(&grid, end) <= radius.0 + 1e-6, "{end}");
             prop_assert!(displacement.dot(contact.normal) < 0.0);
             let wall = end - contact.normal * (radius.0 + 1e-5);
-            prop_assert!(clearance(&grid, wall) == 0.0, "nothing solid at {wall}");
+            // At the very end of a face, rounding may put the probe an ulp beside it.
+            prop_assert!(clearance(&grid, wall) < 1e-9, "nothing solid at {wall}");
         }
     }
 
