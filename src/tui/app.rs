@@ -63,7 +63,11 @@ pub fn play(levels: Levels, settings: Settings) -> Result<(), Error> {
         let timeout = app.wakes_at().map(|wakes| wakes.saturating_sub(start.elapsed()));
         match session.next_event(timeout)? {
             None => {}
-            Some(Event::Key(event)) => app.key(event, start.elapsed()),
+            Some(Event::Key(event)) => {
+                #[cfg(debug_assertions)]
+                panic_on_demand(event.key);
+                app.key(event, start.elapsed());
+            }
             Some(Event::Resized | Event::ColorDepth(_)) => app.terminal_changed(&session),
             Some(Event::KeyReleases(reported)) => app.held.set_reports_releases(reported),
             Some(Event::Suspend) => {
@@ -74,6 +78,13 @@ pub fn play(levels: Levels, settings: Settings) -> Result<(), Error> {
         }
     }
     Ok(())
+}
+
+/// A fault in the middle of a game, for the tests that look at how it ends.
+#[cfg(debug_assertions)]
+fn panic_on_demand(key: Key) {
+    let demanded = key == Key::Function(12) && env::var_os("CELLCASTER_PANIC").is_some();
+    assert!(!demanded, "CELLCASTER_PANIC is set, and F12 was pressed");
 }
 
 /// What shows besides the picture, and what keys do meanwhile.
