@@ -301,11 +301,14 @@ impl App {
             .color_depth(self.depth)
             .cell_aspect(self.cell_aspect);
         frame.render_stateful_widget(picture, area, &mut self.view);
-        if let Some(panel) = panels::minimap(area).filter(|_| self.shows_minimap) {
-            let map = Minimap::new(world, &camera)
-                .seen(self.view.columns())
-                .glyphs(self.settings.glyphs)
-                .color_depth(self.depth);
+        if !self.shows_minimap {
+            return;
+        }
+        let map = Minimap::new(world, &camera)
+            .seen(self.view.columns())
+            .glyphs(self.settings.glyphs)
+            .color_depth(self.depth);
+        if let Some(panel) = panels::minimap(area, &map) {
             let inside = panels::framed(frame, panel, "map");
             frame.render_widget(map, inside);
         }

@@ -1,21 +1,24 @@
 //! What shows besides the picture: the status line, the minimap's frame, and messages.
 
 use ratatui::Frame;
-use ratatui::layout::{Constraint, Flex, Layout, Rect};
+use ratatui::layout::{Constraint, Flex, Layout, Rect, Size};
 use ratatui::style::{Modifier, Style};
 use ratatui::text::{Line, Text};
 use ratatui::widgets::{Block, Clear, Paragraph, Wrap};
 
+use crate::tui::Minimap;
 use crate::tui::bindings::{Action, Bindings};
 use crate::world::World;
 
 /// The least that can be played in.
 const LEAST_COLUMNS: u16 = 20;
 const LEAST_ROWS: u16 = 6;
-/// The least picture that leaves room for a minimap, whose panel is a third as wide.
+/// The least picture that leaves room for a minimap.
 const LEAST_WITH_MINIMAP: (u16, u16) = (36, 12);
-/// The largest panel of the minimap: more would hide too much of the picture.
-const LARGEST_MINIMAP: (u16, u16) = (42, 22);
+/// The largest minimap: more would hide too much of the picture.
+const LARGEST_MINIMAP: (u16, u16) = (40, 20);
+/// What the borders of a panel take of its width and height.
+const BORDERS: u16 = 2;
 
 /// Whether `area` is too small to play in.
 pub(super) fn is_too_small(area: Rect) -> bool {
@@ -33,14 +36,18 @@ pub(super) fn picture_and_status(area: Rect) -> [Rect; 2] {
     Layout::vertical([Constraint::Fill(1), Constraint::Length(1)]).areas(area)
 }
 
-/// Where the minimap goes, in the upper right corner of the picture, if there is room for it.
-pub(super) fn minimap(picture: Rect) -> Option<Rect> {
+/// Where the panel of `map` goes, in the upper right corner of the picture, if there is room for it.
+pub(super) fn minimap(picture: Rect, map: &Minimap) -> Option<Rect> {
     let (least_columns, least_rows) = LEAST_WITH_MINIMAP;
     if picture.width < least_columns || picture.height < least_rows {
         return None;
     }
-    let width = (picture.width / 3).min(LARGEST_MINIMAP.0);
-    let height = (picture.height / 2).min(LARGEST_MINIMAP.1);
+    let room = Size {
+        width: (picture.width / 3).min(LARGEST_MINIMAP.0),
+        height: (picture.height / 2 - BORDERS).min(LARGEST_MINIMAP.1),
+    };
+    let size = map.size_within(room);
+    let (width, height) = (size.width + BORDERS, size.height + BORDERS);
     Some(Rect { x: picture.right() - width, y: picture.y, width, height })
 }
 
@@ -96,7 +103,6 @@ pub(super) fn end(frame: &mut Frame, picture: Rect, seconds: f64) {
 
 /// A panel in the middle of the picture, as large as `text` needs.
 fn message(frame: &mut Frame, picture: Rect, title: &str, text: Text) {
-    const BORDERS: u16 = 2;
     const PADDING: u16 = 2;
     let widest = text.width().max(title.len()) as u16;
     let width = Constraint::Length(widest.saturating_add(BORDERS + PADDING));
