@@ -134,12 +134,17 @@ impl Guard {
         if !self.is_taken() {
             return Err(io::Error::other(Error::given_back()));
         }
-        self.device.write(bytes, || !self.hurried.load(Ordering::SeqCst))
+        self.device.write(bytes, || !self.is_hurried())
     }
 
     /// From now on, nothing waits for a terminal that takes no bytes.
     pub(super) fn hurry(&self) {
         self.hurried.store(true, Ordering::SeqCst);
+    }
+
+    /// Whether that is so.
+    pub(super) fn is_hurried(&self) -> bool {
+        self.hurried.load(Ordering::SeqCst)
     }
 
     /// Gives the terminal back, if that has not been done. Takes two seconds at the most.
