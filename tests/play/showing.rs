@@ -124,7 +124,7 @@ fn a_pause_stops_the_clock_and_everything_else() {
 
 /// The time that the game says was taken: minutes, seconds, tenths.
 fn seconds(text: &str) -> f64 {
-    let (_, time) = text.split_once("Way out in ").unwrap();
+    let (_, time) = text.split_once(" in ").unwrap();
     let (minutes, seconds) = time.split_whitespace().next().unwrap().split_once(':').unwrap();
     minutes.parse::<f64>().unwrap() * 60.0 + seconds.parse::<f64>().unwrap()
 }
