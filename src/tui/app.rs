@@ -29,7 +29,7 @@ use clock::Clock;
 pub struct Settings {
     /// Which key does what.
     pub bindings: Bindings,
-    /// The least time between two frames.
+    /// The time between two frames, while something moves.
     pub frame_time: Duration,
     /// How wide the view is at first.
     pub field_of_view: FieldOfView,
@@ -187,7 +187,11 @@ impl App {
 
     fn drawn(&mut self, now: Duration) {
         self.shown = Some(self.camera());
-        self.next_frame = now + self.settings.frame_time;
+        // Counted from when this frame was due, or the time that drawing takes would slow them down.
+        let frame_time = self.settings.frame_time;
+        self.next_frame = Some(self.next_frame + frame_time)
+            .filter(|&next| now < next)
+            .unwrap_or(now + frame_time);
     }
 
     /// When something will happen without an event; `None` for never.
