@@ -11,13 +11,15 @@ mod style;
 
 use std::io::{self, Write};
 
+use crossterm::cursor::{Hide, Show};
+use crossterm::queue;
+use crossterm::terminal::{self, BeginSynchronizedUpdate, Clear, EndSynchronizedUpdate};
 use ratatui::backend::{Backend, ClearType, WindowSize};
 use ratatui::buffer::{Cell, CellWidth};
 use ratatui::layout::{Position, Size};
 
 use self::control::ControlSequence;
 pub(crate) use self::style::Style;
-use super::sequence;
 
 /// A ratatui backend that writes to `W`.
 ///
@@ -27,6 +29,7 @@ use super::sequence;
 pub struct CellWriter<W> {
     output: W,
     size: Size,
+    /// What is to be written; it begins with the mark of synchronized output.
     frame: Vec<u8>,
     style: Option<Style>,
     position: Option<Position>,
@@ -67,16 +70,21 @@ impl<W: Write> CellWriter<W> {
         self.cursor_visible = false;
     }
 
-    fn push(&mut self, text: &str) {
-        self.frame.extend_from_slice(text.as_bytes());
+    /// The frame, begun if it was not.
+    fn frame(&mut self) -> io::Result<&mut Vec<u8>> {
+        if self.frame.is_empty() {
+            queue!(self.frame, BeginSynchronizedUpdate)?;
+        }
+        Ok(&mut self.frame)
     }
 
-    fn move_to(&mut self, target: Position) {
+    fn move_to(&mut self, target: Position) -> io::Result<()> {
         if self.position == Some(target) {
-            return;
+            return Ok(());
         }
-        let mut motion = ControlSequence::begin(&mut self.frame);
-        match self.position {
+        let position = self.position;
+        let mut motion = ControlSequence::begin(self.frame()?);
+        match position {
             Some(position) if position.y == target.y && position.x < target.x => {
                 motion.parameter(target.x - position.x);
                 motion.end(b'C');
@@ -89,20 +97,23 @@ impl<W: Write> CellWriter<W> {
             }
         }
         self.position = Some(target);
+        Ok(())
     }
 
-    fn set_style(&mut self, target: Style) {
+    fn set_style(&mut self, target: Style) -> io::Result<()> {
         if self.style != Some(target) {
-            target.write_from(self.style, &mut self.frame);
+            target.write_from(self.style, self.frame()?);
             self.style = Some(target);
         }
+        Ok(())
     }
 
-    fn write_symbol(&mut self, at: Position, symbol: &str) {
+    fn write_symbol(&mut self, at: Position, symbol: &str) -> io::Result<()> {
         let symbol = if symbol.chars().any(char::is_control) { " " } else { symbol };
-        self.push(symbol);
+        self.frame()?.extend_from_slice(symbol.as_bytes());
         self.position = Some(Position { x: at.x.saturating_add(1), ..at })
             .filter(|next| next.x < self.size.width && advances_by_one(symbol));
+        Ok(())
     }
 }
 
@@ -120,16 +131,16 @@ impl<W: Write> Backend for CellWriter<W> {
     {
         for (x, y, cell) in content {
             let position = Position { x, y };
-            self.move_to(position);
-            self.set_style(Style::of(cell));
-            self.write_symbol(position, cell.symbol());
+            self.move_to(position)?;
+            self.set_style(Style::of(cell))?;
+            self.write_symbol(position, cell.symbol())?;
         }
         Ok(())
     }
 
     fn hide_cursor(&mut self) -> io::Result<()> {
         if self.cursor_visible {
-            self.push(sequence::HIDE_CURSOR);
+            queue!(self.frame()?, Hide)?;
             self.cursor_visible = false;
         }
         Ok(())
@@ -137,7 +148,7 @@ impl<W: Write> Backend for CellWriter<W> {
 
     fn show_cursor(&mut self) -> io::Result<()> {
         if !self.cursor_visible {
-            self.push(sequence::SHOW_CURSOR);
+            queue!(self.frame()?, Show)?;
             self.cursor_visible = true;
         }
         Ok(())
@@ -149,8 +160,7 @@ impl<W: Write> Backend for CellWriter<W> {
     }
 
     fn set_cursor_position<P: Into<Position>>(&mut self, position: P) -> io::Result<()> {
-        self.move_to(position.into());
-        Ok(())
+        self.move_to(position.into())
     }
 
     fn clear(&mut self) -> io::Result<()> {
@@ -158,15 +168,15 @@ impl<W: Write> Backend for CellWriter<W> {
     }
 
     fn clear_region(&mut self, region: ClearType) -> io::Result<()> {
-        self.set_style(Style::RESET);
-        self.push(match region {
-            ClearType::All => sequence::CLEAR,
-            ClearType::AfterCursor => sequence::CLEAR_AFTER_CURSOR,
-            ClearType::BeforeCursor => sequence::CLEAR_BEFORE_CURSOR,
-            ClearType::CurrentLine => sequence::CLEAR_LINE,
-            ClearType::UntilNewLine => sequence::CLEAR_REST_OF_LINE,
-        });
-        Ok(())
+        self.set_style(Style::RESET)?;
+        let region = match region {
+            ClearType::All => terminal::ClearType::All,
+            ClearType::AfterCursor => terminal::ClearType::FromCursorDown,
+            ClearType::BeforeCursor => terminal::ClearType::FromCursorUp,
+            ClearType::CurrentLine => terminal::ClearType::CurrentLine,
+            ClearType::UntilNewLine => terminal::ClearType::UntilNewLine,
+        };
+        queue!(self.frame()?, Clear(region))
     }
 
     fn size(&self) -> io::Result<Size> {
@@ -182,8 +192,7 @@ impl<W: Write> Backend for CellWriter<W> {
         if self.frame.is_empty() {
             return Ok(());
         }
-        self.frame.splice(..0, sequence::BEGIN_SYNCHRONIZED.bytes());
-        self.push(sequence::END_SYNCHRONIZED);
+        queue!(self.frame, EndSynchronizedUpdate)?;
         let written = self.output.write_all(&self.frame).and_then(|()| self.output.flush());
         match written {
             Ok(()) => self.bytes_written += self.frame.len() as u64,

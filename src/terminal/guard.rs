@@ -11,6 +11,12 @@ use std::sync::atomic::{AtomicBool, Ordering};
 use std::sync::{Arc, Condvar, Mutex, MutexGuard, PoisonError};
 use std::time::{Duration, Instant};
 
+use crossterm::cursor::{Hide, Show};
+use crossterm::terminal::{
+    DisableLineWrap, EnableLineWrap, EndSynchronizedUpdate, EnterAlternateScreen,
+    LeaveAlternateScreen,
+};
+
 use super::Error;
 use super::input::{Answer, Decoder, Input};
 use super::platform::Device;
@@ -89,13 +95,10 @@ impl Guard {
         let mut state = self.lock();
         self.device.make_raw()?;
         state.taken = true;
-        let mut text = [
-            sequence::ENTER_ALTERNATE_SCREEN,
-            sequence::HIDE_CURSOR,
-            sequence::DISABLE_WRAP,
-            sequence::RESET_STYLE,
-        ]
-        .concat();
+        let mut text = sequence::of(EnterAlternateScreen) + &sequence::of(Hide);
+        // What is too long for a line is cut, so a window made narrower does not scroll.
+        text.push_str(&sequence::of(DisableLineWrap));
+        text.push_str(sequence::RESET_STYLE);
         if state.key_flags == KeyFlags::Pushed {
             text.push_str(sequence::PUSH_KEY_FLAGS);
         }
@@ -131,12 +134,17 @@ impl Guard {
         if !self.is_taken() {
             return Err(io::Error::other(Error::given_back()));
         }
-        self.device.write(bytes, || !self.hurried.load(Ordering::SeqCst))
+        self.device.write(bytes, || !self.is_hurried())
     }
 
     /// From now on, nothing waits for a terminal that takes no bytes.
     pub(super) fn hurry(&self) {
         self.hurried.store(true, Ordering::SeqCst);
+    }
+
+    /// Whether that is so.
+    pub(super) fn is_hurried(&self) -> bool {
+        self.hurried.load(Ordering::SeqCst)
     }
 
     /// Gives the terminal back, if that has not been done. Takes two seconds at the most.
@@ -164,7 +172,7 @@ impl Guard {
     /// Undoes everything, in the opposite order. Each step is tried whether or not the one before
     /// has worked: there is nothing better to do about an error than the rest.
     fn leave(&self, state: &mut State) {
-        let mut text = [sequence::END_SYNCHRONIZED, sequence::RESET_STYLE].concat();
+        let mut text = sequence::of(EndSynchronizedUpdate) + sequence::RESET_STYLE;
         if state.key_flags == KeyFlags::Pushed {
             text.push_str(sequence::POP_KEY_FLAGS);
             // What is typed before the flags are popped is sent in the old way; the answer to
@@ -172,11 +180,11 @@ impl Guard {
             text.push_str(sequence::QUERY_FENCE);
             state.fences.sent();
         }
-        text.push_str(sequence::ENABLE_WRAP);
-        text.push_str(sequence::SHOW_CURSOR);
+        text.push_str(&sequence::of(EnableLineWrap));
+        text.push_str(&sequence::of(Show));
         if self.write_or_discard(&text).is_ok() {
             self.swallow_answers(&mut state.fences);
-            _ = self.write_or_discard(sequence::LEAVE_ALTERNATE_SCREEN);
+            _ = self.write_or_discard(&sequence::of(LeaveAlternateScreen));
         }
         _ = self.device.restore_attributes();
     }

@@ -114,14 +114,19 @@ impl Session {
         }
     }
 
-    /// Draws a frame, and writes what has changed since the last one.
+    /// Draws a frame, and writes what has changed since the last one. A terminal that takes no bytes
+    /// is waited for, unless a signal wants the program to end: then the frame is dropped, and the
+    /// event that says so comes next.
     ///
     /// # Errors
-    /// Where the terminal cannot be written to, has been given back by a panic in another thread, or
-    /// takes no bytes while a signal waits for the program to end.
+    /// Where the terminal cannot be written to, or a panic in another thread has given it back.
     pub fn draw(&mut self, render: impl FnOnce(&mut Frame)) -> Result<(), Error> {
-        self.terminal.draw(render).map_err(Error::while_doing("drawing a frame"))?;
-        Ok(())
+        match self.terminal.draw(render) {
+            Ok(_) => Ok(()),
+            // To report this on standard error could take for ever: it leads to the same terminal.
+            Err(_) if self.guard.is_hurried() => Ok(()),
+            Err(error) => Err(Error::while_doing("drawing a frame")(error)),
+        }
     }
 
     /// Gives the terminal back, stops the program until the shell continues it, and takes the

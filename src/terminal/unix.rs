@@ -21,7 +21,8 @@ use super::{Error, WindowSize};
 ///
 /// Both are opened anew where that is possible: a descriptor of our own can be told not to
 /// block, where telling a shared one would tell the shell as well. A program that cannot block in a
-/// write can still be ended while the link is down.
+/// write can still be ended while the link is down. That is also why raw mode and sizes are not left to
+/// crossterm, which asks whatever terminal it finds.
 #[derive(Debug)]
 pub(super) struct Device {
     input: OwnedFd,

@@ -30,7 +30,7 @@ use clock::Clock;
 pub struct Settings {
     /// Which key does what.
     pub bindings: Bindings,
-    /// The least time between two frames.
+    /// The time between two frames, while something moves.
     pub frame_time: Duration,
     /// How wide the view is at first.
     pub field_of_view: FieldOfView,
@@ -66,7 +66,11 @@ pub fn play(levels: Levels, settings: Settings) -> Result<(), Error> {
         let timeout = app.wakes_at().map(|wakes| wakes.saturating_sub(start.elapsed()));
         match session.next_event(timeout)? {
             None => {}
-            Some(Event::Key(event)) => app.key(event, start.elapsed()),
+            Some(Event::Key(event)) => {
+                #[cfg(debug_assertions)]
+                panic_on_demand(event.key);
+                app.key(event, start.elapsed());
+            }
             Some(Event::Resized | Event::ColorDepth(_)) => app.terminal_changed(&session),
             Some(Event::KeyReleases(reported)) => app.held.set_reports_releases(reported),
             Some(Event::Suspend) => {
@@ -77,6 +81,13 @@ pub fn play(levels: Levels, settings: Settings) -> Result<(), Error> {
         }
     }
     Ok(())
+}
+
+/// A fault in the middle of a game, for the tests that look at how it ends.
+#[cfg(debug_assertions)]
+fn panic_on_demand(key: Key) {
+    let demanded = key == Key::Function(12) && env::var_os("CELLCASTER_PANIC").is_some();
+    assert!(!demanded, "CELLCASTER_PANIC is set, and F12 was pressed");
 }
 
 /// What shows besides the picture, and what keys do meanwhile.
@@ -187,7 +198,11 @@ impl App {
 
     fn drawn(&mut self, now: Duration) {
         self.shown = Some(self.camera());
-        self.next_frame = now + self.settings.frame_time;
+        // Counted from when this frame was due, or the time that drawing takes would slow them down.
+        let frame_time = self.settings.frame_time;
+        self.next_frame = Some(self.next_frame + frame_time)
+            .filter(|&next| now < next)
+            .unwrap_or(now + frame_time);
     }
 
     /// When something will happen without an event; `None` for never.
@@ -301,11 +316,14 @@ impl App {
             .color_depth(self.depth)
             .cell_aspect(self.cell_aspect);
         frame.render_stateful_widget(picture, area, &mut self.view);
-        if let Some(panel) = panels::minimap(area).filter(|_| self.shows_minimap) {
-            let map = Minimap::new(world, &camera)
-                .seen(self.view.columns())
-                .glyphs(self.settings.glyphs)
-                .color_depth(self.depth);
+        if !self.shows_minimap {
+            return;
+        }
+        let map = Minimap::new(world, &camera)
+            .seen(self.view.columns())
+            .glyphs(self.settings.glyphs)
+            .color_depth(self.depth);
+        if let Some(panel) = panels::minimap(area, &map) {
             let inside = panels::framed(frame, panel, "map");
             frame.render_widget(map, inside);
         }

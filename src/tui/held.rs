@@ -50,10 +50,12 @@ enum Repetition {
 }
 
 impl HeldKeys {
-    /// From now on releases are reported, or are not; every key counts as up.
+    /// From now on releases are reported, or are not. Where that is news, every key counts as up.
     pub(super) fn set_reports_releases(&mut self, reports_releases: bool) {
-        self.reports_releases = reports_releases;
-        self.keys.clear();
+        if self.reports_releases != reports_releases {
+            self.reports_releases = reports_releases;
+            self.keys.clear();
+        }
     }
 
     /// Takes note of an event at time `now`. Keys that `opposes` names are let go of where nobody

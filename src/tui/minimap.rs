@@ -2,7 +2,7 @@
 
 use glam::DVec2;
 use ratatui::buffer::Buffer;
-use ratatui::layout::Rect;
+use ratatui::layout::{Rect, Size};
 use ratatui::style::Color;
 use ratatui::widgets::Widget;
 
@@ -89,6 +89,16 @@ impl Widget for Minimap<'_> {
 }
 
 impl Minimap<'_> {
+    /// How much of `room` shows something of the map; the rest would be blank.
+    #[cfg(feature = "terminal")]
+    pub(super) fn size_within(&self, room: Size) -> Size {
+        let pixels_per_cell = f64::from(self.glyphs.pixels_per_cell());
+        let pixels = pixels_within(room, self.glyphs);
+        let needed = map_size(self.world) * scale(self.world, pixels, self.glyphs);
+        let needed = needed.min(pixels);
+        Size::new(needed.x as u16, (needed.y / pixels_per_cell).ceil() as u16)
+    }
+
     /// What is on the map at `point`.
     fn place(&self, point: DVec2) -> Place {
         let (column, row) = (point.x.floor() as i64, point.y.floor() as i64);
@@ -185,15 +195,9 @@ impl Window {
     /// All of the map and as large as possible, or as much as fits around `center`.
     fn new(area: Rect, glyphs: GlyphMode, world: &World, center: DVec2) -> Self {
         let pixels_per_cell = glyphs.pixels_per_cell();
-        let size =
-            DVec2::new(f64::from(area.width), f64::from(u32::from(area.height) * pixels_per_cell));
-        let map = DVec2::new(f64::from(world.grid().width()), f64::from(world.grid().height()));
-        // A pixel of half blocks is about square; a whole cell is about twice as high as wide.
-        let smallest = match glyphs {
-            GlyphMode::Half => DVec2::new(1.0, 1.0),
-            GlyphMode::Ascii => DVec2::new(2.0, 1.0),
-        };
-        let scale = smallest * (size / (map * smallest)).min_element().floor().max(1.0);
+        let size = pixels_within(area.as_size(), glyphs);
+        let map = map_size(world);
+        let scale = scale(world, size, glyphs);
         let spare = size - map * scale;
         let corner_along = |spare: f64, center: f64, size: f64| {
             if spare >= 0.0 {
@@ -221,4 +225,24 @@ impl Window {
         let shows = pixel.cmpge(DVec2::ZERO).all() && pixel.cmplt(self.size).all();
         shows.then(|| (pixel.x as u16, (pixel.y as u32 / self.pixels_per_cell) as u16))
     }
+}
+
+/// Cells of the map from left to right and from top to bottom.
+fn map_size(world: &World) -> DVec2 {
+    DVec2::new(f64::from(world.grid().width()), f64::from(world.grid().height()))
+}
+
+fn pixels_within(cells: Size, glyphs: GlyphMode) -> DVec2 {
+    let height = u32::from(cells.height) * glyphs.pixels_per_cell();
+    DVec2::new(f64::from(cells.width), f64::from(height))
+}
+
+/// How many of `pixels` a cell of the map gets: as many whole ones as let all of the map be seen.
+fn scale(world: &World, pixels: DVec2, glyphs: GlyphMode) -> DVec2 {
+    // A pixel of half blocks is about square; a whole cell is about twice as high as wide.
+    let smallest = match glyphs {
+        GlyphMode::Half => DVec2::new(1.0, 1.0),
+        GlyphMode::Ascii => DVec2::new(2.0, 1.0),
+    };
+    smallest * (pixels / (map_size(world) * smallest)).min_element().floor().max(1.0)
 }

@@ -1,4 +1,5 @@
 //! A player at a terminal: starts a program under a pseudo-terminal, types, and looks.
+#![allow(dead_code, reason = "every test file uses its own share of this")]
 
 use std::ffi::OsStr;
 use std::io::{Read, Write};
@@ -80,10 +81,12 @@ impl Player {
         self.pty.resize(Size::new(rows, columns)).unwrap();
     }
 
-    /// Waits until `condition` holds of the screen, and fails with the screen if it never does.
+    /// Waits until `condition` holds of the screen, between two frames, and fails with the screen if
+    /// it never does.
     #[track_caller]
     pub(crate) fn wait_until(&self, what: &str, condition: impl Fn(&Emulator) -> bool) {
-        let unmet = |state: &mut State| !condition(&state.emulator);
+        let unmet =
+            |state: &mut State| state.emulator.modes().synchronized || !condition(&state.emulator);
         let waited = self.shared.changed.wait_timeout_while(self.state(), PATIENCE, unmet);
         let (state, timeout) = waited.unwrap();
         assert!(!timeout.timed_out(), "never {what}; the screen:\n{}", state.emulator.text());
@@ -140,6 +143,29 @@ impl Player {
         }
     }
 
+    /// Waits until nothing has been written for half a second.
+    #[track_caller]
+    pub(crate) fn wait_for_rest(&self) {
+        const REST: Duration = Duration::from_millis(500);
+        let deadline = Instant::now() + PATIENCE;
+        let mut seen = None;
+        while seen != Some(self.bytes_written()) {
+            assert!(Instant::now() < deadline, "never rested; the screen:\n{}", self.text());
+            seen = Some(self.bytes_written());
+            thread::sleep(REST);
+        }
+    }
+
+    /// The process that runs the program.
+    pub(crate) fn process(&self) -> u32 {
+        self.child.id()
+    }
+
+    /// What `look` finds on the screen.
+    pub(crate) fn look<T>(&self, look: impl Fn(&Emulator) -> T) -> T {
+        look(&self.state().emulator)
+    }
+
     /// What the screen shows.
     pub(crate) fn text(&self) -> String {
         self.state().emulator.text()
@@ -153,6 +179,11 @@ impl Player {
     /// All bytes that the program has written.
     pub(crate) fn bytes(&self) -> Vec<u8> {
         self.state().emulator.bytes().to_vec()
+    }
+
+    /// How many bytes the program has written.
+    pub(crate) fn bytes_written(&self) -> usize {
+        self.state().emulator.bytes().len()
     }
 
     /// Whether raw mode and its like are as they were before the program.

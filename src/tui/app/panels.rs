@@ -1,21 +1,26 @@
 //! What shows besides the picture: the status line, the minimap's frame, and messages.
 
 use ratatui::Frame;
-use ratatui::layout::{Constraint, Flex, Layout, Rect};
+use ratatui::layout::{Constraint, Flex, Layout, Rect, Size};
 use ratatui::style::{Modifier, Style};
 use ratatui::text::{Line, Text};
 use ratatui::widgets::{Block, Clear, Paragraph, Wrap};
 
+use crate::tui::Minimap;
 use crate::tui::bindings::{Action, Bindings};
 use crate::world::World;
 
 /// The least that can be played in.
 const LEAST_COLUMNS: u16 = 20;
 const LEAST_ROWS: u16 = 6;
-/// The least picture that leaves room for a minimap, whose panel is a third as wide.
+/// The least picture that leaves room for a minimap.
 const LEAST_WITH_MINIMAP: (u16, u16) = (36, 12);
-/// The largest panel of the minimap: more would hide too much of the picture.
-const LARGEST_MINIMAP: (u16, u16) = (42, 22);
+/// The largest minimap: more would hide too much of the picture.
+const LARGEST_MINIMAP: (u16, u16) = (40, 20);
+/// What the borders of a panel take of its width and height.
+const BORDERS: u16 = 2;
+/// What a message leaves blank to its left and right.
+const PADDING: u16 = 2;
 
 /// Whether `area` is too small to play in.
 pub(super) fn is_too_small(area: Rect) -> bool {
@@ -33,14 +38,18 @@ pub(super) fn picture_and_status(area: Rect) -> [Rect; 2] {
     Layout::vertical([Constraint::Fill(1), Constraint::Length(1)]).areas(area)
 }
 
-/// Where the minimap goes, in the upper right corner of the picture, if there is room for it.
-pub(super) fn minimap(picture: Rect) -> Option<Rect> {
+/// Where the panel of `map` goes, in the upper right corner of the picture, if there is room for it.
+pub(super) fn minimap(picture: Rect, map: &Minimap) -> Option<Rect> {
     let (least_columns, least_rows) = LEAST_WITH_MINIMAP;
     if picture.width < least_columns || picture.height < least_rows {
         return None;
     }
-    let width = (picture.width / 3).min(LARGEST_MINIMAP.0);
-    let height = (picture.height / 2).min(LARGEST_MINIMAP.1);
+    let room = Size {
+        width: (picture.width / 3).min(LARGEST_MINIMAP.0),
+        height: (picture.height / 2 - BORDERS).min(LARGEST_MINIMAP.1),
+    };
+    let size = map.size_within(room);
+    let (width, height) = (size.width + BORDERS, size.height + BORDERS);
     Some(Rect { x: picture.right() - width, y: picture.y, width, height })
 }
 
@@ -63,9 +72,12 @@ pub(super) fn status(
 ) {
     let running = if runs { "  running" } else { "" };
     let left = Line::from(format!(" {}{running}", title(world)));
-    let right = Line::from(format!("{} help ", key_names(bindings, Action::ToggleHelp)));
-    frame.render_widget(left.style(Style::new().add_modifier(Modifier::REVERSED)), area);
-    frame.render_widget(right.right_aligned(), area);
+    let right = Line::from(format!(" {} help ", key_names(bindings, Action::ToggleHelp)));
+    let widths = [Constraint::Fill(1), Constraint::Length(right.width() as u16)];
+    let [left_area, right_area] = Layout::horizontal(widths).areas(area);
+    let reversed = Style::new().add_modifier(Modifier::REVERSED);
+    frame.render_widget(left.style(reversed), left_area);
+    frame.render_widget(right.style(reversed), right_area);
 }
 
 /// That the game waits.
@@ -74,30 +86,43 @@ pub(super) fn paused(frame: &mut Frame, picture: Rect, bindings: &Bindings) {
     message(frame, picture, "paused", Text::from(format!("{keys} goes on")).centered());
 }
 
-/// Which key does what.
+/// Which key does what: in as many columns as it takes, or as much as there is room for.
 pub(super) fn help(frame: &mut Frame, picture: Rect, bindings: &Bindings) {
-    let lines = Action::ALL.into_iter().map(|(_, does, action)| {
-        Line::from(format!("{:<10}  {does}", key_names(bindings, action)))
-    });
-    message(frame, picture, "keys", lines.collect());
+    const GAP: usize = 3;
+    let lines: Vec<String> = Action::ALL
+        .into_iter()
+        .map(|(_, does, action)| format!("{:<10}  {does}", key_names(bindings, action)))
+        .collect();
+    let width = lines.iter().map(|line| line.chars().count()).max().unwrap_or_default() + GAP;
+    let room = usize::from(picture.height.saturating_sub(BORDERS)).max(1);
+    let most_columns = usize::from(picture.width.saturating_sub(BORDERS + PADDING)) + GAP;
+    let columns = lines.len().div_ceil(room).clamp(1, (most_columns / width).max(1));
+    let height = lines.len().div_ceil(columns);
+    let mut rows: Vec<String> = (0..height)
+        .map(|row| lines[row..].iter().step_by(height).map(|line| format!("{line:<width$}")))
+        .map(|cells| cells.collect::<Vec<_>>().concat().trim_end().to_owned())
+        .collect();
+    if height > room {
+        rows.truncate(room - 1);
+        rows.push("more in a larger window".to_owned());
+    }
+    message(frame, picture, "keys", rows.into_iter().map(Line::from).collect());
 }
 
 /// That the exit was reached, and how soon.
 pub(super) fn level_done(frame: &mut Frame, picture: Rect, world: &World, seconds: f64) {
-    let text = format!("{} in {}\n\nEnter goes on", title(world), time(seconds));
+    let text = format!("{}\nin {}\nEnter goes on", title(world), time(seconds));
     message(frame, picture, "you found the way out", Text::from(text).centered());
 }
 
 /// That there are no more levels, and how soon the player got through them.
 pub(super) fn end(frame: &mut Frame, picture: Rect, seconds: f64) {
-    let text = format!("all levels in {}\n\nEnter leaves", time(seconds));
+    let text = format!("all levels\nin {}\nEnter leaves", time(seconds));
     message(frame, picture, "the end", Text::from(text).centered());
 }
 
 /// A panel in the middle of the picture, as large as `text` needs.
 fn message(frame: &mut Frame, picture: Rect, title: &str, text: Text) {
-    const BORDERS: u16 = 2;
-    const PADDING: u16 = 2;
     let widest = text.width().max(title.len()) as u16;
     let width = Constraint::Length(widest.saturating_add(BORDERS + PADDING));
     let height = Constraint::Length((text.height() as u16).saturating_add(BORDERS));
@@ -126,7 +151,29 @@ fn time(seconds: f64) -> String {
 
 #[cfg(test)]
 mod tests {
+    use ratatui::Terminal;
+    use ratatui::backend::TestBackend;
+
     use super::*;
+
+    fn shown(columns: u16, rows: u16, draw: impl FnOnce(&mut Frame)) -> String {
+        let mut terminal = Terminal::new(TestBackend::new(columns, rows)).unwrap();
+        terminal.draw(draw).unwrap();
+        terminal.backend().to_string()
+    }
+
+    #[test]
+    fn help_is_whole_or_says_that_there_is_more() {
+        let bindings = Bindings::default();
+        for (columns, rows, is_whole) in
+            [(31, 16, true), (61, 9, true), (200, 60, true), (60, 9, false), (20, 5, false)]
+        {
+            let text = shown(columns, rows, |frame| help(frame, frame.area(), &bindings));
+            let is_so = Action::ALL.iter().all(|(_, does, _)| text.contains(does));
+            assert_eq!(is_so, is_whole, "{columns} by {rows}:\n{text}");
+            assert_eq!(text.contains("more in a"), !is_whole, "{columns} by {rows}:\n{text}");
+        }
+    }
 
     #[test]
     fn times_are_minutes_seconds_and_tenths() {

@@ -1,0 +1,27 @@
+//! The whole program in a real terminal: what it shows, what keys do, and how it ends.
+#![cfg(all(unix, feature = "cli"))]
+
+#[path = "support/mod.rs"]
+mod support;
+
+#[path = "support/emulator.rs"]
+mod emulator;
+#[path = "support/player.rs"]
+mod player;
+
+#[path = "play/ending.rs"]
+mod ending;
+#[path = "play/game.rs"]
+mod game;
+#[path = "play/holding.rs"]
+mod holding;
+#[path = "play/levels.rs"]
+mod levels;
+#[path = "play/moving.rs"]
+mod moving;
+#[path = "play/resting.rs"]
+mod resting;
+#[path = "play/settings.rs"]
+mod settings;
+#[path = "play/showing.rs"]
+mod showing;

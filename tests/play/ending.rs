@@ -1,0 +1,152 @@
+//! However it ends, the terminal is as it was.
+
+use std::fs;
+use std::thread;
+use std::time::{Duration, Instant};
+
+use rustix::process::{Pid, Signal, kill_process};
+
+use crate::emulator::{Modes, Speaks};
+use crate::game::{ENVIRONMENT, Game, Key, PROGRAM};
+use crate::player::Player;
+
+#[test]
+fn the_terminal_is_taken_while_the_game_is_played() {
+    let game = Game::start();
+    game.wait_for_releases();
+    assert_eq!(game.modes(), TAKEN);
+    assert!(!game.attributes_restored());
+}
+
+const TAKEN: Modes = Modes {
+    alternate_screen: true,
+    cursor_hidden: true,
+    wrap: false,
+    synchronized: false,
+    key_flags: [0, 1],
+};
+
+/// A release is always on its way when the game ends; the shell does not get it.
+#[test]
+fn q_escape_and_control_c_leave() {
+    for leave in [Key::Char('q').event(1), Key::Escape.event(1), "\x1b[99;5u".to_owned()] {
+        let mut game = Game::start();
+        game.press(Key::Char('w'));
+        game.send(leave);
+        let ending = game.wait_for_end();
+        ending.assert_given_back();
+        assert!(ending.status.success());
+    }
+    for leave in ["q", "\x1b", "\x03"] {
+        let mut game = Game::with(Speaks::Plain, (80, 24), None, &[], &[]);
+        game.send(leave);
+        game.wait_for_end().assert_given_back();
+    }
+}
+
+#[test]
+fn signals_end_it_in_the_middle_of_a_walk() {
+    for signal in [Signal::TERM, Signal::HUP, Signal::INT] {
+        let mut game = Game::start();
+        game.press(Key::Right);
+        game.wait_for_arrow("turned", |arrow| arrow.points != '→');
+        game.signal(signal);
+        let ending = game.wait_for_end();
+        ending.assert_given_back();
+        assert!(ending.status.success(), "{ending:?}");
+    }
+}
+
+#[test]
+fn it_ends_even_while_the_link_is_down() {
+    let mut game = Game::start();
+    game.press(Key::Right);
+    game.wait_for_arrow("turned", |arrow| arrow.points != '→');
+    game.set_reading(false);
+    game.wait_until_full();
+    game.signal(Signal::TERM);
+    let ending = game.wait_for_end();
+    assert_eq!(ending.modes, Modes::default());
+    assert!(ending.attributes_restored);
+}
+
+#[cfg(debug_assertions)]
+#[test]
+fn a_panic_gives_the_terminal_back_and_then_says_one_sentence() {
+    const F12: &str = "\x1b[24~";
+    let demand = [("CELLCASTER_PANIC", "1")];
+    let mut game = Game::with(Speaks::Kitty, (120, 40), None, &[], &demand);
+    game.wait_for_releases();
+    game.send(F12);
+    let ending = game.wait_for_end();
+    ending.assert_given_back();
+    assert_eq!(ending.status.code(), Some(101));
+    game.wait_for("had to end: CELLCASTER_PANIC is set, and F12 was pressed (at");
+}
+
+#[test]
+fn control_z_gives_the_terminal_to_the_shell_and_fg_paints_it_again() {
+    let script = "set -m; \"$0\" play; echo stopped; read line; fg; echo ended";
+    let arguments = ["-c", script, PROGRAM];
+    let mut player = Player::start((80, 24), Speaks::Kitty, "/bin/sh", arguments, &ENVIRONMENT);
+    let taken = |player: &Player| {
+        player.wait_until("took the terminal", |emulator| emulator.modes() == TAKEN);
+        player.wait_for("? help");
+    };
+    taken(&player);
+    let before = player.look(|emulator| emulator.screen().contents_formatted());
+    player.send("\x1b[122;5u");
+    player.wait_for("stopped");
+    assert_eq!(player.modes(), Modes::default());
+    assert!(player.attributes_restored());
+    player.send("\r");
+    taken(&player);
+    let after = player.look(|emulator| emulator.screen().contents_formatted());
+    assert!(after == before, "it was painted otherwise");
+    player.send(Key::Char('q').event(1));
+    player.wait_for("ended");
+    player.wait_for_end().assert_given_back();
+}
+
+#[test]
+fn control_z_does_nothing_where_no_shell_would_continue_it() {
+    let mut game = Game::start();
+    game.wait_for_releases();
+    game.send("\x1b[122;5u");
+    game.wait_until("took the terminal again", |emulator| {
+        let taken = b"\x1b[?1049h";
+        let times = emulator.bytes().windows(taken.len()).filter(|bytes| bytes == taken).count();
+        times == 2 && emulator.modes() == TAKEN
+    });
+    game.press(Key::Right);
+    game.wait_for_arrow("turned", |arrow| arrow.points != '→');
+    game.press(Key::Char('q'));
+    game.wait_for_end().assert_given_back();
+}
+
+/// The shell is killed, and its terminal goes with it.
+#[cfg(target_os = "linux")]
+#[test]
+fn it_ends_when_the_terminal_is_gone() {
+    let arguments = ["-c", "\"$0\" play; true", PROGRAM];
+    let player = Player::start((80, 24), Speaks::Kitty, "/bin/sh", arguments, &ENVIRONMENT);
+    player.wait_for("? help");
+    let shell = player.process();
+    let children = fs::read_to_string(format!("/proc/{shell}/task/{shell}/children")).unwrap();
+    let game = children.trim();
+    let is_alive = || {
+        let status = fs::read_to_string(format!("/proc/{game}/stat"));
+        status.is_ok_and(|status| !status.contains(") Z "))
+    };
+    assert!(is_alive());
+    player.signal(Signal::KILL);
+    let deadline = Instant::now() + Duration::from_secs(20);
+    while is_alive() {
+        if Instant::now() > deadline {
+            let game = Pid::from_raw(game.parse().unwrap()).unwrap();
+            kill_process(game, Signal::KILL).unwrap();
+            panic!("it lives on without a terminal");
+        }
+        thread::sleep(Duration::from_millis(5));
+    }
+}

@@ -1,0 +1,251 @@
+//! The game that a test plays.
+
+use std::fmt::{Display, Write};
+use std::ops::{Deref, DerefMut};
+use std::path::{Path, PathBuf};
+
+use serde_json::Value;
+
+use crate::emulator::{Emulator, Speaks};
+use crate::player::Player;
+use crate::support::output_of;
+
+pub(crate) const PROGRAM: &str = env!("CARGO_BIN_EXE_cellcaster");
+
+/// A terminal of all colours, and a folder that the game takes for the user's own; nobody has put a
+/// configuration there.
+pub(crate) const ENVIRONMENT: [(&str, &str); 2] =
+    [("COLORTERM", "truecolor"), ("HOME", env!("CARGO_TARGET_TMPDIR"))];
+
+/// The size of the window, if nothing else is said.
+const SIZE: (u16, u16) = (80, 24);
+
+/// The game, and the terminal that it runs in.
+pub(crate) struct Game {
+    player: Player,
+    speaks: Speaks,
+    map: Option<String>,
+}
+
+/// A key, by the number that the kitty protocol has for it.
+#[derive(Clone, Copy)]
+pub(crate) enum Key {
+    Char(char),
+    Left,
+    Right,
+    Escape,
+    Enter,
+}
+
+/// The player's arrow on the minimap.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub(crate) struct Arrow {
+    pub(crate) column: u16,
+    pub(crate) row: u16,
+    pub(crate) points: char,
+}
+
+impl Game {
+    /// Starts the first level in a terminal that reports when keys are released.
+    pub(crate) fn start() -> Self {
+        Self::with(Speaks::Kitty, SIZE, None, &[], &[])
+    }
+
+    /// Starts `map` of this project's tests in such a terminal.
+    pub(crate) fn start_map(map: &str) -> Self {
+        Self::with(Speaks::Kitty, SIZE, Some(map), &[], &[])
+    }
+
+    /// Starts a game, and waits until it is played: until it shows a picture, and knows what the
+    /// terminal can do.
+    pub(crate) fn with(
+        speaks: Speaks,
+        size: (u16, u16),
+        map: Option<&str>,
+        options: &[&str],
+        environment: &[(&str, &str)],
+    ) -> Self {
+        let map = map.map(|name| test_map(name).to_str().unwrap().to_owned());
+        let words = ["play"].iter().chain(options).copied();
+        let arguments: Vec<&str> = words.chain(map.as_deref()).collect();
+        let environment = [&ENVIRONMENT[..], environment].concat();
+        let player = Player::start(size, speaks, PROGRAM, arguments, &environment);
+        player.wait_for("? help");
+        Self { player, speaks, map }
+    }
+
+    /// Waits until the terminal reports releases.
+    #[track_caller]
+    pub(crate) fn wait_for_releases(&self) {
+        let pushed = |emulator: &Emulator| emulator.modes().key_flags == [0, 1];
+        self.wait_until("asked for releases", pushed);
+    }
+
+    /// Presses `key`, and holds it.
+    pub(crate) fn press(&self, key: Key) {
+        match self.speaks {
+            Speaks::Kitty => {
+                self.wait_for_releases();
+                self.send(key.event(1));
+            }
+            Speaks::Plain | Speaks::Nothing => self.send(key.text()),
+        }
+    }
+
+    /// Lets go of `key`; nobody tells where the terminal does not.
+    pub(crate) fn release(&self, key: Key) {
+        if self.speaks == Speaks::Kitty {
+            self.send(key.event(3));
+        }
+    }
+
+    /// Presses `key`, and lets go of it. One that ends the game is let go of by the terminal.
+    pub(crate) fn tap(&self, key: Key) {
+        self.press(key);
+        self.release(key);
+    }
+
+    /// Where the player stands on the minimap.
+    #[track_caller]
+    pub(crate) fn arrow(&self) -> Arrow {
+        self.wait_until("showed an arrow", |emulator| arrow(emulator).is_some());
+        self.look(arrow).unwrap()
+    }
+
+    /// Waits until the arrow is as `condition` says.
+    #[track_caller]
+    pub(crate) fn wait_for_arrow(&self, what: &str, condition: impl Fn(Arrow) -> bool) {
+        self.wait_until(what, |emulator| arrow(emulator).is_some_and(&condition));
+    }
+
+    /// Waits until the screen shows the status line, and above it, where no panel hides it, what
+    /// `snapshot` draws with `options`.
+    #[track_caller]
+    pub(crate) fn wait_for_picture(&self, options: &[&str]) {
+        let (columns, rows) = self.look(size);
+        let size = format!("{columns}x{}", rows - 1);
+        let words = ["snapshot", "--format", "json", "--size", &size];
+        let arguments: Vec<&str> =
+            words.into_iter().chain(options.iter().copied()).chain(self.map.as_deref()).collect();
+        let snapshot: Value = serde_json::from_slice(&output_of(&arguments)).unwrap();
+        let rows = snapshot["cells"].as_array().unwrap();
+        let what = format!("showed the picture of {arguments:?}");
+        self.wait_until(&what, |emulator| shows(emulator, rows));
+    }
+
+    /// Waits until the screen shows that picture and nothing else but the status line.
+    #[track_caller]
+    pub(crate) fn wait_for_bare_picture(&self, options: &[&str]) {
+        self.wait_until("hid the panels", |emulator| panel(emulator).is_none());
+        self.wait_for_picture(options);
+    }
+}
+
+impl Deref for Game {
+    type Target = Player;
+
+    fn deref(&self) -> &Player {
+        &self.player
+    }
+}
+
+impl DerefMut for Game {
+    fn deref_mut(&mut self) -> &mut Player {
+        &mut self.player
+    }
+}
+
+impl Key {
+    /// What the kitty protocol sends: `phase` is 1 for a press, 2 for a repetition, 3 for a release.
+    pub(crate) fn event(self, phase: u8) -> String {
+        match self {
+            Self::Char(character) => code(u32::from(character), phase),
+            Self::Escape => code(27, phase),
+            Self::Enter => code(13, phase),
+            Self::Left => format!("\x1b[1;1:{phase}D"),
+            Self::Right => format!("\x1b[1;1:{phase}C"),
+        }
+    }
+
+    /// What every terminal sends.
+    fn text(self) -> String {
+        match self {
+            Self::Char(character) => character.to_string(),
+            Self::Escape => "\x1b".to_owned(),
+            Self::Enter => "\r".to_owned(),
+            Self::Left => "\x1b[D".to_owned(),
+            Self::Right => "\x1b[C".to_owned(),
+        }
+    }
+}
+
+fn code(number: impl Display, phase: u8) -> String {
+    format!("\x1b[{number};1:{phase}u")
+}
+
+/// A map of this project's tests.
+pub(crate) fn test_map(name: &str) -> PathBuf {
+    Path::new(env!("CARGO_MANIFEST_DIR")).join("tests/maps").join(name).with_extension("toml")
+}
+
+/// Columns and rows.
+fn size(emulator: &Emulator) -> (u16, u16) {
+    let (rows, columns) = emulator.screen().size();
+    (columns.get(), rows.get())
+}
+
+/// What stands in a cell of the screen.
+pub(crate) fn symbol(emulator: &Emulator, column: u16, row: u16) -> &str {
+    emulator.screen().cell(row, column).map_or("", |cell| cell.contents())
+}
+
+fn arrow(emulator: &Emulator) -> Option<Arrow> {
+    let (columns, rows) = size(emulator);
+    let mut cells = (0..rows).flat_map(|row| (0..columns).map(move |column| (column, row)));
+    cells.find_map(|(column, row)| {
+        let points = symbol(emulator, column, row).chars().next()?;
+        "→↘↓↙←↖↑↗".contains(points).then_some(Arrow { column, row, points })
+    })
+}
+
+/// The first column and the last row of the panel in the upper right corner.
+fn panel(emulator: &Emulator) -> Option<(u16, u16)> {
+    let (columns, rows) = size(emulator);
+    let left = (0..columns).find(|&column| symbol(emulator, column, 0) == "┌")?;
+    let bottom = (0..rows).find(|&row| symbol(emulator, left, row) == "└")?;
+    Some((left, bottom))
+}
+
+/// Whether the screen shows the cells of `rows`, and below them a status line.
+fn shows(emulator: &Emulator, rows: &[Value]) -> bool {
+    let hidden = panel(emulator).unwrap_or((u16::MAX, 0));
+    let is_hidden = |column, row| column >= hidden.0 && row <= hidden.1;
+    let picture =
+        rows.iter().zip(0..).all(|(cells, row)| {
+            cells.as_array().unwrap().iter().zip(0..).all(|(cell, column)| {
+                is_hidden(column, row) || shows_cell(emulator, column, row, cell)
+            })
+        });
+    let (columns, height) = size(emulator);
+    let status = emulator.screen().cell(height - 1, columns / 2);
+    picture && status.is_some_and(vt100::Cell::inverse)
+}
+
+fn shows_cell(emulator: &Emulator, column: u16, row: u16, cell: &Value) -> bool {
+    emulator.screen().cell(row, column).is_some_and(|shown| {
+        shown.contents() == cell["ch"].as_str().unwrap()
+            && hexadecimal(shown.fgcolor()) == cell["fg"].as_str().unwrap()
+            && hexadecimal(shown.bgcolor()) == cell["bg"].as_str().unwrap()
+    })
+}
+
+fn hexadecimal(color: vt100::Color) -> String {
+    let mut text = String::new();
+    match color {
+        vt100::Color::Rgb(red, green, blue) => {
+            write!(text, "#{red:02x}{green:02x}{blue:02x}").unwrap();
+        }
+        other => write!(text, "{other:?}").unwrap(),
+    }
+    text
+}
