@@ -21,8 +21,9 @@ const HELP: &str = r##"cellcaster: a raycaster game in the terminal, and its pic
 USAGE
   cellcaster [play] [MAP] [OPTIONS]    play; without MAP, the built-in levels
   cellcaster snapshot [MAP] [OPTIONS]  one frame to standard output
-  cellcaster cast [MAP]                rays from standard input, hits to standard output
+  cellcaster cast [MAP] [OPTIONS]      rays from standard input, hits to standard output
   cellcaster check MAP...              say everything that is wrong with maps
+  cellcaster accuracy [MAP] [OPTIONS]  error against run time, for every way to cast
   cellcaster --help | --version
 
   MAP is a map file, or a built-in level: cellar, museum, citadel.
@@ -53,10 +54,22 @@ OPTIONS OF BOTH
   --glyphs MODE     half: two pixels a cell; ascii: one, as a character  [half]
   --colors DEPTH    true, 256, 16 or mono           [true, or what the terminal has]
 
+  --caster METHOD   also of cast: how walls are found               [exact]
+                    exact, dda, dda32, accumulate, fixed:BITS, table:ANGLES
+                    or march:STEP
+
 CAST
   Reads one ray a line, "X Y DX DY", and writes one JSON object a line:
   {"cell":[c,r],"side":"x","t":1.5,"u":0.25,"tile":"#"}, {"escaped":true} for a
   ray that leaves the map, or {"error":"..."} for a line that is no ray.
+
+ACCURACY
+  --caster METHOD   report on this method; may be repeated         [all]
+  --set NAME        rays of one set, such as "through corners"     [three scenes,
+                    and then every stiff and extreme set; in MAP if one is given]
+  --rays N          rays in each scene, 1 to 10000000              [2000]
+  --seed S          where chance begins                            [1]
+  --format FORMAT   table, json, csv, svg or png                   [table]
 
 EXAMPLES
   cellcaster                                   play the built-in levels
@@ -66,6 +79,8 @@ EXAMPLES
   cellcaster snapshot my.toml --size 120x40 --format png > my.png
   echo "1.5 1.5 1 0" | cellcaster cast my.toml
   cellcaster check maps/*.toml
+  cellcaster accuracy --caster exact --caster dda --set "through corners"
+  cellcaster accuracy --format svg > accuracy.svg
 
 Exit status: 0, or 2 for a mistake in the arguments or a map, or 1 where the
 machine refuses something.

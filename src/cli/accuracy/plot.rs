@@ -74,6 +74,45 @@ enum Align {
     End,
 }
 
+/// The part of a line of text, or the dot, that something takes up.
+#[derive(Clone, Copy)]
+struct Span {
+    left: f64,
+    right: f64,
+    middle: f64,
+}
+
+impl Span {
+    /// Pixels of a character, from left to right and from top to bottom.
+    const CHARACTER: (f64, f64) = (8.0, 11.0);
+
+    fn of_dot((x, y): (f64, f64)) -> Self {
+        Self { left: x - 5.0, right: x + 5.0, middle: y }
+    }
+
+    /// Where the label of a dot may go, the best place first.
+    fn beside((x, y): (f64, f64), label: &str) -> [Self; 6] {
+        const GAP: f64 = 9.0;
+        let width = Self::CHARACTER.0 * label.chars().count() as f64;
+        let (right, left, line) = (x + GAP, x - GAP - width, 14.0);
+        [
+            (right, y),
+            (left, y),
+            (right, y - line),
+            (right, y + line),
+            (left, y - line),
+            (left, y + line),
+        ]
+        .map(|(left, middle)| Self { left, right: left + width, middle })
+    }
+
+    fn overlaps(&self, other: &Self) -> bool {
+        self.left < other.right
+            && other.left < self.right
+            && (self.middle - other.middle).abs() < Self::CHARACTER.1
+    }
+}
+
 impl Axis {
     /// The powers of ten around `values`, which are above 0.
     fn around(values: impl Iterator<Item = f64>) -> Self {
@@ -100,7 +139,7 @@ impl Axis {
 impl Plot {
     fn of(report: &Report) -> Self {
         /// Where no error at all is drawn: below the rounding of a double.
-        const LEAST_ERROR: f64 = 1e-17;
+        const LEAST_ERROR: f64 = 1e-18;
         let points: Vec<Point> = report
             .rows
             .iter()
@@ -125,14 +164,21 @@ impl Plot {
     fn marks(&self) -> Vec<Mark> {
         let mut marks = self.axes();
         marks.extend(self.front());
-        for point in &self.points {
-            let at = self.place(point.time, point.error);
-            marks.push(Mark::Dot { at, is_front: point.is_on_front });
-            let (x, y) = at;
-            // What is near the right edge is labelled on its left.
-            let (x, align) =
-                if x > RIGHT - 100.0 { (x - 9.0, Align::End) } else { (x + 9.0, Align::Start) };
-            marks.push(Mark::Text { at: (x, y + 4.0), align, text: point.label.clone() });
+        let dots = || self.points.iter().map(|point| self.place(point.time, point.error));
+        marks.extend(
+            self.points
+                .iter()
+                .zip(dots())
+                .map(|(point, at)| Mark::Dot { at, is_front: point.is_on_front }),
+        );
+        let mut taken: Vec<Span> = dots().map(Span::of_dot).collect();
+        for (point, dot) in self.points.iter().zip(dots()) {
+            let places = Span::beside(dot, &point.label);
+            let is_free = |span: &&Span| !taken.iter().any(|other| span.overlaps(other));
+            let span = *places.iter().find(is_free).unwrap_or(&places[0]);
+            taken.push(span);
+            let at = (span.left, span.middle + 4.0);
+            marks.push(Mark::Text { at, align: Align::Start, text: point.label.clone() });
         }
         marks
     }
