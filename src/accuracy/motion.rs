@@ -166,11 +166,11 @@ fn exponential_of_minus(x: f64) -> f64 {
     let mut sum = one.clone();
     let mut term = one.clone();
     for count in 1..=TERMS {
-        term = (term * &scaled >> BITS) / count;
+        term = ((term * &scaled) >> BITS) / count;
         sum += &term;
     }
     for _ in 0..HALVINGS {
-        sum = &sum * &sum >> BITS;
+        sum = (&sum * &sum) >> BITS;
     }
     let quotient = (BigInt::from(1) << (2 * BITS)) / sum;
     let digits = u64::try_from(quotient >> (BITS - 63)).unwrap_or(u64::MAX);

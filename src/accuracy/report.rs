@@ -1,5 +1,7 @@
 //! The report: every method with several values of its parameter, what it costs and how wrong it is.
 
+use std::num::NonZeroU32;
+
 use super::{
     Chance, Errors, Gallery, MotionResult, Set, Timing, Trial, compare_motions, ordinary,
     random_ray, sets, time_in_turns,
@@ -37,7 +39,7 @@ pub enum RaySource {
 /// What each method costs, and how wrong it is.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Report {
-    /// A row for each method, in the order of [`Report::methods`].
+    /// A row for each method, in the order in which they were asked for.
     pub rows: Vec<Row>,
     /// The stiff and extreme sets, where they were asked for.
     pub sets: Vec<SetRow>,
@@ -70,7 +72,14 @@ pub struct SetRow {
 }
 
 /// The sizes of the pictures that are compared, in pixels.
-pub const PICTURES: [(u32, u32); 2] = [(160, 90), (400, 120)];
+pub const PICTURES: [FrameSize; 2] = [picture(160, 90), picture(400, 120)];
+const fn picture(width: u32, height: u32) -> FrameSize {
+    match (NonZeroU32::new(width), NonZeroU32::new(height)) {
+        (Some(width), Some(height)) => FrameSize { width, height },
+        _ => panic!("a picture has pixels"),
+    }
+}
+
 /// How many pictures of each size.
 const PICTURES_OF_A_SIZE: usize = 4;
 /// How often each method is timed.
@@ -104,10 +113,8 @@ pub fn report(plan: &Plan, mut progress: impl FnMut(f64)) -> Option<Report> {
     let methods = plan.methods_or_all();
     let trials = plan.trials()?;
     let timings = time_in_turns(&methods, &trials, TURNS, |share| progress(share * UNTIL_TIMED));
-    let galleries = PICTURES.map(|(width, height)| {
-        let size = FrameSize::new(width, height).expect("no picture is empty");
-        Gallery::new(plan.world, size, PICTURES_OF_A_SIZE, plan.seed)
-    });
+    let galleries =
+        PICTURES.map(|size| Gallery::new(plan.world, size, PICTURES_OF_A_SIZE, plan.seed));
     let mut rows = Vec::with_capacity(methods.len());
     for (method, timing) in methods.iter().zip(timings) {
         let done = rows.len() as f64 / methods.len() as f64;

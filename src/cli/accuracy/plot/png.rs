@@ -18,7 +18,9 @@ const DOT_RADIUS: i32 = 5;
 
 pub(super) fn write(marks: &[Mark], output: &mut impl Write) -> io::Result<()> {
     let mut page = Page::blank();
-    marks.iter().for_each(|mark| page.put(mark));
+    for mark in marks {
+        page.put(mark);
+    }
     let mut encoder = Encoder::new(output, page.width as u32, page.height as u32);
     encoder.set_color(ColorType::Rgb);
     encoder.set_depth(BitDepth::Eight);
