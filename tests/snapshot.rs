@@ -172,7 +172,7 @@ fn a_closed_pipe_ends_it_quietly() {
 
 #[test]
 fn mistakes_are_one_sentence_each() {
-    let mistakes: [&[&str]; 20] = [
+    let mistakes: [&[&str]; 21] = [
         &["--size", "80"],
         &["--size", "0x24"],
         &["--size", "80x4097"],
@@ -193,6 +193,7 @@ fn mistakes_are_one_sentence_each() {
         &["-x"],
         &["cellar", "museum"],
         &["no-such-map.toml"],
+        &["musuem"],
     ];
     let complaints: Vec<String> = mistakes
         .into_iter()

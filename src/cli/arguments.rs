@@ -136,7 +136,7 @@ impl Command {
     }
 }
 
-const COMMANDS: [&str; 6] = ["play", "snapshot", "cast", "check", "accuracy", "help"];
+pub(super) const COMMANDS: [&str; 6] = ["play", "snapshot", "cast", "check", "accuracy", "help"];
 
 fn is_command(argument: &OsStr) -> bool {
     COMMANDS.iter().any(|&command| argument == command)

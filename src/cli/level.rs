@@ -4,23 +4,36 @@ use std::ffi::OsStr;
 use std::path::Path;
 
 use super::Error;
+use super::arguments::COMMANDS;
+use crate::fault::nearest;
 use crate::map::{self, builtin};
 use crate::world::World;
 
 /// The level that `argument` names: a built-in one or a map file; without it, the first built-in.
 pub(super) fn load(argument: Option<&OsStr>) -> Result<World, Error> {
-    let world = match argument {
-        None => builtin::LEVELS[0].world(),
-        Some(argument) => match builtin_level(argument) {
-            Some(index) => builtin::LEVELS[index].world(),
-            None => map::load(Path::new(argument)),
-        },
-    };
-    world.map_err(Error::from)
+    let Some(argument) = argument else { return Ok(builtin::LEVELS[0].world()?) };
+    if let Some(index) = builtin_level(argument) {
+        return Ok(builtin::LEVELS[index].world()?);
+    }
+    let path = Path::new(argument);
+    match misspelt(argument).filter(|_| !path.exists()) {
+        Some(meant) => Err(Error::mistake(format!(
+            "there is no map \"{}\"; did you mean {meant}?",
+            argument.display()
+        ))),
+        None => Ok(map::load(path)?),
+    }
 }
 
 /// The place among the built-in levels of the one called `name`; a file of that name goes first.
 pub(super) fn builtin_level(name: &OsStr) -> Option<usize> {
     let index = builtin::LEVELS.iter().position(|level| name == level.name)?;
     (!Path::new(name).exists()).then_some(index)
+}
+
+/// The command or built-in level that somebody may have meant by `name`.
+fn misspelt(name: &OsStr) -> Option<&'static str> {
+    let levels = builtin::LEVELS.iter().map(|level| level.name);
+    let known: Vec<&str> = COMMANDS.into_iter().chain(levels).collect();
+    nearest(name.to_str()?, &known)
 }
