@@ -7,6 +7,7 @@
 //! differs, and 25 bytes for a frame without a change.
 
 mod control;
+mod look;
 mod style;
 
 use std::io::{self, Write};
@@ -132,8 +133,9 @@ impl<W: Write> Backend for CellWriter<W> {
         for (x, y, cell) in content {
             let position = Position { x, y };
             self.move_to(position)?;
-            self.set_style(Style::of(cell))?;
-            self.write_symbol(position, cell.symbol())?;
+            let (symbol, style) = look::cheapest(cell, self.style);
+            self.set_style(style)?;
+            self.write_symbol(position, symbol)?;
         }
         Ok(())
     }

@@ -9,14 +9,14 @@ use super::control::ControlSequence;
 /// How a character is drawn.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub(crate) struct Style {
-    foreground: Shade,
-    background: Shade,
+    pub(super) foreground: Shade,
+    pub(super) background: Shade,
     modifier: Modifier,
 }
 
 /// A colour in the one way that SGR writes it, of ratatui's several.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
-enum Shade {
+pub(super) enum Shade {
     Default,
     Indexed(u8),
     Rgb(u8, u8, u8),
@@ -65,6 +65,26 @@ impl Style {
             background: Shade::of(cell.bg),
             modifier: cell.modifier.intersection(SUPPORTED),
         }
+    }
+
+    /// Those two colours, and no modifiers.
+    pub(super) fn plain(foreground: Shade, background: Shade) -> Self {
+        Self { foreground, background, modifier: Modifier::empty() }
+    }
+
+    pub(super) fn has_no_modifiers(self) -> bool {
+        self.modifier.is_empty()
+    }
+
+    /// About how many bytes [`Style::write_from`] would write after `current`.
+    pub(super) fn bytes_after(self, current: Self) -> usize {
+        /// What introduces a sequence, and its last byte.
+        const SEQUENCE: usize = 3;
+        let colors = [(self.foreground, current.foreground), (self.background, current.background)];
+        let parameters: usize =
+            colors.iter().filter(|(new, old)| new != old).map(|(new, _)| new.bytes()).sum();
+        let switches = SEQUENCE * usize::from(self.modifier != current.modifier);
+        if parameters + switches == 0 { 0 } else { SEQUENCE + parameters + switches }
     }
 
     /// Writes what turns `current`, or an unknown style, into this one.
@@ -125,6 +145,20 @@ impl Shade {
             Color::LightCyan => 14,
             Color::White => 15,
         })
+    }
+
+    /// About how many bytes it takes as parameters.
+    fn bytes(self) -> usize {
+        let digits = |number: u8| match number {
+            0..10 => 1,
+            10..100 => 2,
+            _ => 3,
+        };
+        match self {
+            Self::Default | Self::Indexed(..16) => 2,
+            Self::Indexed(index) => 5 + digits(index),
+            Self::Rgb(red, green, blue) => 7 + digits(red) + digits(green) + digits(blue),
+        }
     }
 
     fn write(self, ground: Ground, rendition: &mut ControlSequence) {
