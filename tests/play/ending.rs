@@ -7,7 +7,7 @@ use std::time::{Duration, Instant};
 use rustix::process::{Pid, Signal, kill_process};
 
 use crate::emulator::{Modes, Speaks};
-use crate::game::{ENVIRONMENT, Game, Key, PROGRAM};
+use crate::game::{ENVIRONMENT, Game, Key, PROGRAM, looks};
 use crate::player::Player;
 
 #[test]
@@ -94,15 +94,14 @@ fn control_z_gives_the_terminal_to_the_shell_and_fg_paints_it_again() {
         player.wait_for("? help");
     };
     taken(&player);
-    let before = player.look(|emulator| emulator.screen().contents_formatted());
+    let before = player.look(looks);
     player.send("\x1b[122;5u");
     player.wait_for("stopped");
     assert_eq!(player.modes(), Modes::default());
     assert!(player.attributes_restored());
     player.send("\r");
     taken(&player);
-    let after = player.look(|emulator| emulator.screen().contents_formatted());
-    assert!(after == before, "it was painted otherwise");
+    assert!(player.look(looks) == before, "it was painted otherwise");
     player.send(Key::Char('q').event(1));
     player.wait_for("ended");
     player.wait_for_end().assert_given_back();

@@ -231,12 +231,41 @@ fn shows(emulator: &Emulator, rows: &[Value]) -> bool {
     picture && status.is_some_and(vt100::Cell::inverse)
 }
 
+/// What every cell of the screen looks like.
+pub(crate) fn looks(emulator: &Emulator) -> Vec<String> {
+    let (columns, rows) = size(emulator);
+    let cells = (0..rows).flat_map(|row| (0..columns).map(move |column| (row, column)));
+    cells
+        .filter_map(|(row, column)| emulator.screen().cell(row, column))
+        .map(|cell| {
+            let (text, ground) = (hexadecimal(cell.fgcolor()), hexadecimal(cell.bgcolor()));
+            match halves(cell.contents(), &text, &ground) {
+                Some((top, bottom)) => format!("{top} {bottom}"),
+                None => format!("{} {text} {ground}", cell.contents()),
+            }
+        })
+        .collect()
+}
+
 fn shows_cell(emulator: &Emulator, column: u16, row: u16, cell: &Value) -> bool {
+    let text = |key: &str| cell[key].as_str().unwrap();
     emulator.screen().cell(row, column).is_some_and(|shown| {
-        shown.contents() == cell["ch"].as_str().unwrap()
-            && hexadecimal(shown.fgcolor()) == cell["fg"].as_str().unwrap()
-            && hexadecimal(shown.bgcolor()) == cell["bg"].as_str().unwrap()
+        let (foreground, background) = (hexadecimal(shown.fgcolor()), hexadecimal(shown.bgcolor()));
+        let shown = halves(shown.contents(), &foreground, &background);
+        shown.is_some() && shown == halves(text("ch"), text("fg"), text("bg"))
     })
+}
+
+/// The colours of the upper and the lower half of a block character, several of which look the same;
+/// `None` for any other.
+fn halves<'a>(symbol: &str, text: &'a str, ground: &'a str) -> Option<(&'a str, &'a str)> {
+    match symbol {
+        "▀" => Some((text, ground)),
+        "▄" => Some((ground, text)),
+        "█" => Some((text, text)),
+        " " | "" => Some((ground, ground)),
+        _ => None,
+    }
 }
 
 fn hexadecimal(color: vt100::Color) -> String {
