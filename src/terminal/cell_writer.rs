@@ -5,9 +5,14 @@
 //! told is carried from frame to frame, so only the colour that differs is sent, and the cursor is
 //! moved only where it does not already stand. Ratatui's own backends send both colours when one
 //! differs, and 25 bytes for a frame without a change.
+//!
+//! What the terminal shows is modelled cell by cell: what looks as it should is not sent, and what
+//! moved sideways is moved by the terminal.
 
 mod control;
 mod look;
+mod screen;
+mod shift;
 mod style;
 
 use std::io::{self, Write};
@@ -20,6 +25,9 @@ use ratatui::buffer::{Cell, CellWidth};
 use ratatui::layout::{Position, Size};
 
 use self::control::ControlSequence;
+use self::look::Look;
+use self::screen::{Row, Screen};
+use self::shift::{Shift, Way};
 pub(crate) use self::style::Style;
 
 /// A ratatui backend that writes to `W`.
@@ -30,6 +38,9 @@ pub(crate) use self::style::Style;
 pub struct CellWriter<W> {
     output: W,
     size: Size,
+    screen: Screen,
+    /// What a row is to look like, while it is written.
+    row: Vec<Look>,
     /// What is to be written; it begins with the mark of synchronized output.
     frame: Vec<u8>,
     style: Option<Style>,
@@ -39,11 +50,14 @@ pub struct CellWriter<W> {
 }
 
 impl<W: Write> CellWriter<W> {
-    /// A backend that writes to `output`, a terminal of `size` whose cursor is hidden.
+    /// A backend that writes to `output`, a terminal of `size` whose cursor is hidden, and which is
+    /// blank.
     pub fn new(output: W, size: Size) -> Self {
         Self {
             output,
             size,
+            screen: Screen::blank(size),
+            row: Vec::new(),
             frame: Vec::new(),
             style: None,
             position: None,
@@ -60,12 +74,14 @@ impl<W: Write> CellWriter<W> {
     /// Takes note that the window is now of `size`; ratatui clears it in the next frame.
     pub fn set_size(&mut self, size: Size) {
         self.size = size;
+        self.screen.resize(size);
     }
 
     /// Takes note that others may have written to the terminal: nothing is known but that the
     /// cursor is hidden.
     pub fn forget(&mut self) {
         self.frame.clear();
+        self.screen.forget();
         self.style = None;
         self.position = None;
         self.cursor_visible = false;
@@ -77,6 +93,74 @@ impl<W: Write> CellWriter<W> {
             queue!(self.frame, BeginSynchronizedUpdate)?;
         }
         Ok(&mut self.frame)
+    }
+
+    /// Makes a row look as it is wanted.
+    fn draw_row(&mut self, row: Row) -> io::Result<()> {
+        let Row { y, shown, wanted } = row;
+        let mut looks = std::mem::take(&mut self.row);
+        looks.clear();
+        looks.extend(wanted.iter().map(Look::of));
+        if shown.iter().chain(&looks).all(|look| look.can_move()) {
+            while let Some(shift) = Shift::best(shown, &looks) {
+                self.shift(&shift, y)?;
+                shift.apply(shown);
+            }
+        }
+        let mut covered = 0;
+        for (x, (cell, &look)) in (0..).zip(wanted.iter().zip(&looks)) {
+            if covered > 0 {
+                // The second half of a wide character.
+                covered -= 1;
+                shown[usize::from(x)] = Look::UNKNOWN;
+            } else {
+                covered = cell.cell_width().saturating_sub(1);
+                if !shown[usize::from(x)].is(look) {
+                    self.draw_cell(Position { x, y }, cell)?;
+                    shown[usize::from(x)] = look;
+                }
+            }
+        }
+        self.row = looks;
+        Ok(())
+    }
+
+    fn draw_cell(&mut self, position: Position, cell: &Cell) -> io::Result<()> {
+        self.move_to(position)?;
+        let (symbol, style) = look::cheapest(cell, self.style);
+        self.set_style(style)?;
+        self.write_symbol(position, symbol)
+    }
+
+    /// Moves a stretch of row `y`. What is to the right of it moves back and forth.
+    fn shift(&mut self, shift: &Shift, y: u16) -> io::Result<()> {
+        let (start, end, by) =
+            (shift.columns.start as u16, shift.columns.end as u16, shift.by as u16);
+        let is_whole = end == self.size.width;
+        match shift.way {
+            Way::Left => {
+                self.edit_row(Position { x: start, y }, by, DELETE)?;
+                if !is_whole {
+                    self.edit_row(Position { x: end - by, y }, by, INSERT)?;
+                }
+            }
+            Way::Right => {
+                if !is_whole {
+                    self.edit_row(Position { x: end - by, y }, by, DELETE)?;
+                }
+                self.edit_row(Position { x: start, y }, by, INSERT)?;
+            }
+        }
+        Ok(())
+    }
+
+    /// Deletes or inserts `count` characters; the cursor stays.
+    fn edit_row(&mut self, at: Position, count: u16, operation: u8) -> io::Result<()> {
+        self.move_to(at)?;
+        let mut edit = ControlSequence::begin(self.frame()?);
+        edit.parameter(count);
+        edit.end(operation);
+        Ok(())
     }
 
     fn move_to(&mut self, target: Position) -> io::Result<()> {
@@ -118,6 +202,10 @@ impl<W: Write> CellWriter<W> {
     }
 }
 
+/// The last bytes of the sequences that delete characters, and insert blank ones.
+const DELETE: u8 = b'P';
+const INSERT: u8 = b'@';
+
 /// Whether every terminal moves its cursor by one cell for `symbol`. They disagree about the rest.
 fn advances_by_one(symbol: &str) -> bool {
     symbol.chars().nth(1).is_none() && symbol.cell_width() == 1
@@ -131,13 +219,13 @@ impl<W: Write> Backend for CellWriter<W> {
         I: Iterator<Item = (u16, u16, &'a Cell)>,
     {
         for (x, y, cell) in content {
-            let position = Position { x, y };
-            self.move_to(position)?;
-            let (symbol, style) = look::cheapest(cell, self.style);
-            self.set_style(style)?;
-            self.write_symbol(position, symbol)?;
+            self.screen.want(x, y, cell);
         }
-        Ok(())
+        // Taken out while it is read, as what is written to goes by the same name.
+        let mut screen = std::mem::replace(&mut self.screen, Screen::none());
+        let drawn = screen.take_changed().try_for_each(|row| self.draw_row(row));
+        self.screen = screen;
+        drawn
     }
 
     fn hide_cursor(&mut self) -> io::Result<()> {
@@ -171,6 +259,7 @@ impl<W: Write> Backend for CellWriter<W> {
 
     fn clear_region(&mut self, region: ClearType) -> io::Result<()> {
         self.set_style(Style::RESET)?;
+        self.screen.clear(region, self.position.unwrap_or(Position::ORIGIN));
         let region = match region {
             ClearType::All => terminal::ClearType::All,
             ClearType::AfterCursor => terminal::ClearType::FromCursorDown,

@@ -5,7 +5,9 @@
 //! that takes the fewest bytes after what the terminal has been told so far. A space is drawn in no
 //! foreground at all, so that of the cell before it stays.
 
-use ratatui::buffer::Cell;
+use std::fmt;
+
+use ratatui::buffer::{Cell, CellWidth};
 
 use super::style::{Shade, Style};
 
@@ -13,6 +15,65 @@ const UPPER: &str = "▀";
 const LOWER: &str = "▄";
 const FULL: &str = "█";
 const SPACE: &str = " ";
+
+/// What a cell looks like, in one number: equal ones look the same.
+#[derive(Clone, Copy, PartialEq, Eq)]
+pub(super) struct Look(u128);
+
+impl Look {
+    /// Nobody knows; no cell that is to be shown looks like this.
+    pub(super) const UNKNOWN: Self = Self(0);
+    /// Of several characters, or wider than a cell: sent whenever its row changes.
+    const INTRICATE: Self = Self(1);
+    const BLOCK: u128 = 2;
+    const CHARACTER: u128 = 3;
+
+    /// What `cell` looks like.
+    pub(super) fn of(cell: &Cell) -> Self {
+        let glyph = (cell.symbol(), Style::of(cell));
+        if let Some((top, bottom)) = halves(&glyph) {
+            return Self::of_fields(Self::BLOCK, 0, top.in_bits(), bottom.in_bits(), 0);
+        }
+        let (symbol, style) = glyph;
+        let mut characters = symbol.chars();
+        match (characters.next(), characters.next()) {
+            (Some(character), None) if cell.cell_width() == 1 => Self::of_fields(
+                Self::CHARACTER,
+                u32::from(character),
+                style.foreground.in_bits(),
+                style.background.in_bits(),
+                style.modifier_bits(),
+            ),
+            _ => Self::INTRICATE,
+        }
+    }
+
+    /// Whether it stays what it is where it is moved.
+    pub(super) fn can_move(self) -> bool {
+        self != Self::INTRICATE
+    }
+
+    /// Whether a cell that looks like `wanted` need not be sent.
+    pub(super) fn is(self, wanted: Self) -> bool {
+        self == wanted && self != Self::INTRICATE
+    }
+
+    fn of_fields(kind: u128, character: u32, one: u32, other: u32, modifier: u16) -> Self {
+        let colors = u128::from(one) << 32 | u128::from(other);
+        Self(kind << 112 | u128::from(modifier) << 96 | u128::from(character) << 64 | colors)
+    }
+
+    #[cfg(test)]
+    pub(super) fn of_character(character: char) -> Self {
+        Self::of(Cell::default().set_char(character))
+    }
+}
+
+impl fmt::Debug for Look {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        write!(f, "{:x}", self.0)
+    }
+}
 
 /// A character, and how it is drawn.
 pub(super) type Glyph<'a> = (&'a str, Style);

@@ -72,6 +72,10 @@ impl Style {
         Self { foreground, background, modifier: Modifier::empty() }
     }
 
+    pub(super) fn modifier_bits(self) -> u16 {
+        self.modifier.bits()
+    }
+
     pub(super) fn has_no_modifiers(self) -> bool {
         self.modifier.is_empty()
     }
@@ -145,6 +149,15 @@ impl Shade {
             Color::LightCyan => 14,
             Color::White => 15,
         })
+    }
+
+    /// A number of its own, of 26 bits.
+    pub(super) fn in_bits(self) -> u32 {
+        match self {
+            Self::Default => 0,
+            Self::Indexed(index) => 1 << 24 | u32::from(index),
+            Self::Rgb(red, green, blue) => 2 << 24 | u32::from_be_bytes([0, red, green, blue]),
+        }
     }
 
     /// About how many bytes it takes as parameters.

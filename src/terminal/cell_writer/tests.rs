@@ -240,6 +240,26 @@ proptest! {
         assert_shown(&screen, &content);
     }
 
+    /// A picture that turns: stretches of rows move by a few columns from frame to frame.
+    #[test]
+    fn what_moves_sideways_looks_as_it_should(
+        cells in any_pixels(160),
+        moves in prop::collection::vec((0..4_usize, 0..40_usize, 0..40_usize, 0..9_usize), 1..8),
+    ) {
+        let size = Size::new(40, 4);
+        let (mut terminal, screen) = terminal(size);
+        let mut content = Buffer { area: Rect::from(size), content: cells };
+        draw(&mut terminal, &content);
+        for (row, one, other, by) in moves {
+            let stretch = 40 * row + one.min(other)..40 * row + one.max(other) + 1;
+            let stretch = &mut content.content[stretch];
+            let count = stretch.len();
+            stretch.rotate_left(by % count);
+            draw(&mut terminal, &content);
+            assert_shown(&screen, &content);
+        }
+    }
+
     #[test]
     fn a_terminal_shows_what_was_drawn_after_any_history(
         (size, history) in any_size()

@@ -1,0 +1,89 @@
+//! What the terminal shows, and what it is to show.
+
+use ratatui::backend::ClearType;
+use ratatui::buffer::Cell;
+use ratatui::layout::{Position, Size};
+
+use super::look::Look;
+
+/// What the terminal shows, and what it is to show, cell by cell.
+#[derive(Debug)]
+pub(super) struct Screen {
+    width: usize,
+    shown: Vec<Look>,
+    wanted: Vec<Cell>,
+    /// Whether anything in a row is to be changed.
+    changed: Vec<bool>,
+}
+
+/// A row of it.
+pub(super) struct Row<'a> {
+    pub(super) y: u16,
+    pub(super) shown: &'a mut [Look],
+    pub(super) wanted: &'a [Cell],
+}
+
+impl Screen {
+    /// A blank screen.
+    pub(super) fn blank(size: Size) -> Self {
+        let mut screen = Self::none();
+        screen.resize(size);
+        screen.clear(ClearType::All, Position::ORIGIN);
+        screen
+    }
+
+    /// No screen at all.
+    pub(super) fn none() -> Self {
+        Self { width: 0, shown: Vec::new(), wanted: Vec::new(), changed: Vec::new() }
+    }
+
+    /// Takes another size; what it shows is unknown then.
+    pub(super) fn resize(&mut self, size: Size) {
+        let (width, height) = (usize::from(size.width), usize::from(size.height));
+        self.width = width;
+        self.shown.resize(width * height, Look::UNKNOWN);
+        self.wanted.resize(width * height, Cell::EMPTY);
+        self.changed.resize(height, false);
+        self.forget();
+    }
+
+    /// Nothing is known of what it shows.
+    pub(super) fn forget(&mut self) {
+        self.shown.fill(Look::UNKNOWN);
+    }
+
+    /// A part of it, row by row, has been erased with the cursor at `cursor`, and is to stay so.
+    pub(super) fn clear(&mut self, region: ClearType, cursor: Position) {
+        let row = usize::from(cursor.y) * self.width;
+        let at = row + usize::from(cursor.x);
+        let end = self.shown.len();
+        let cells = match region {
+            ClearType::All => 0..end,
+            ClearType::AfterCursor => at..end,
+            ClearType::BeforeCursor => 0..at + 1,
+            ClearType::CurrentLine => row..row + self.width,
+            ClearType::UntilNewLine => at..row + self.width,
+        };
+        let cells = cells.start.min(end)..cells.end.min(end);
+        self.shown[cells.clone()].fill(Look::of(&Cell::EMPTY));
+        self.wanted[cells].fill(Cell::EMPTY);
+    }
+
+    /// It is to show `cell` there; what is off the screen is nowhere.
+    pub(super) fn want(&mut self, x: u16, y: u16, cell: &Cell) {
+        let (x, y) = (usize::from(x), usize::from(y));
+        if x < self.width && y < self.changed.len() {
+            self.wanted[y * self.width + x].clone_from(cell);
+            self.changed[y] = true;
+        }
+    }
+
+    /// The rows to change, from the top; they count as changed no longer.
+    pub(super) fn take_changed(&mut self) -> impl Iterator<Item = Row<'_>> {
+        let width = self.width.max(1);
+        let rows = self.shown.chunks_mut(width).zip(self.wanted.chunks(width));
+        (0..).zip(rows.zip(&mut self.changed)).filter_map(|(y, ((shown, wanted), changed))| {
+            std::mem::take(changed).then_some(Row { y, shown, wanted })
+        })
+    }
+}
