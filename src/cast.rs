@@ -21,6 +21,16 @@
 //! | [`Table`] | x and y lines apart, along the nearest of so many angles | F. Permadi, "Ray-Casting Tutorial" |
 //! | [`March`] | constant steps | what Lode Vandevenne warns of |
 //!
+//! Besides walls there are doors, whose leaf stands back in its cell, and cubes that are seen through.
+//! [`Caster::cast_through`] knows them:
+//!
+//! - A ray that is in the cell of a door, whether it has entered it or starts there, hits its leaf
+//!   where it meets it, and otherwise goes on.
+//! - A ray that enters a cube of glass or one with holes passes through, and is told of it. Cells of
+//!   the same tile side by side are one cube: there is no face between them.
+//!
+//! Only [`Exact`] does that; to the others all of these are walls.
+//!
 //! Only [`Exact`] keeps the rules for every ray; the others are here to be compared with it.
 //!
 //! Each method of casting is one file and one type that implements [`Caster`]; callers are generic
@@ -32,6 +42,7 @@ mod approach;
 mod cross;
 mod dda;
 mod dda32;
+mod door;
 mod exact;
 mod fixed;
 mod hit;
@@ -39,6 +50,7 @@ mod march;
 mod method;
 mod ray;
 mod table;
+mod through;
 mod walk;
 
 pub use accumulate::Accumulate;
@@ -53,10 +65,19 @@ pub use ray::{NotARay, Ray};
 pub use table::Table;
 pub use walk::{Crossing, Order, Walk};
 
-use crate::world::Grid;
+use crate::world::{Grid, World};
 
 /// A method of finding what a ray hits.
 pub trait Caster {
     /// What `ray` hits first in `grid`, or `None` where it escapes.
     fn cast(&self, grid: &Grid, ray: &Ray) -> Option<Hit>;
+
+    /// What `ray` hits first in `world` that cannot be seen through, or `None` where it escapes. What
+    /// it enters before that and is seen through, it tells to `passed`, from near to far.
+    ///
+    /// A method that does not know better takes everything solid for a wall.
+    fn cast_through(&self, world: &World, ray: &Ray, passed: impl FnMut(Hit)) -> Option<Hit> {
+        _ = passed;
+        self.cast(world.grid(), ray)
+    }
 }

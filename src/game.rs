@@ -1,4 +1,5 @@
-//! What happens: a player walks through a world, in fixed steps, until they reach the exit.
+//! What happens: a player walks through a world, in fixed steps, finds keys, opens doors, and reaches
+//! the exit.
 //!
 //! A step lasts [`STEP`] seconds whatever the machine does meanwhile, and takes nothing but
 //! [`Intents`]: the same intents give the same states, bit for bit, on every machine. Steps as long
@@ -6,11 +7,17 @@
 //! one, and no walk could be repeated.
 
 mod collision;
+mod doors;
 mod intent;
 mod motion;
+mod notice;
 mod player;
 
-use crate::world::{Camera, FieldOfView, ThingKind, World};
+use std::collections::BTreeSet;
+
+use crate::world::{Camera, Cell, Door, FieldOfView, KeyId, ThingKind, World};
+use doors::{Doors, door_ahead};
+use notice::Notice;
 use player::Player;
 
 pub use intent::{Intent, Intents};
@@ -25,17 +32,29 @@ pub const STEP: f64 = 1.0 / 60.0;
 pub struct Game {
     world: World,
     player: Player,
+    doors: Doors,
+    keys: BTreeSet<KeyId>,
+    notice: Notice,
     steps: u64,
+    revision: u64,
 }
 
 impl Game {
     /// A game at its beginning: the player stands still at the world's start.
     pub fn new(world: World) -> Self {
-        let player = Player::new(world.start());
-        Self { world, player, steps: 0 }
+        Self {
+            player: Player::new(world.start()),
+            world,
+            doors: Doors::default(),
+            keys: BTreeSet::new(),
+            notice: Notice::default(),
+            steps: 0,
+            revision: 0,
+        }
     }
 
-    /// Where the game takes place.
+    /// Where the game takes place, as it is now: with its doors as far open as they are, and without
+    /// the keys that were taken.
     pub fn world(&self) -> &World {
         &self.world
     }
@@ -52,33 +71,136 @@ impl Game {
         self.steps as f64 * STEP
     }
 
+    /// What there is to tell the player, such as why a door does not open; for a few seconds.
+    pub fn message(&self) -> Option<&str> {
+        self.notice.text()
+    }
+
+    /// The names of the keys that the player has found.
+    pub fn keys(&self) -> impl Iterator<Item = &str> {
+        self.keys.iter().map(|&key| self.world.key_name(key))
+    }
+
+    /// A number that grows whenever anything changes that can be seen, other than what the camera
+    /// tells: a door moves, a key is taken, there is something else to tell.
+    pub fn revision(&self) -> u64 {
+        self.revision
+    }
+
     /// Whether the player has reached the exit's cell. Nothing moves after that, nor does the clock.
     pub fn is_finished(&self) -> bool {
         let cell = self.player.cell();
-        self.world.things().iter().any(|thing| match thing.kind {
-            ThingKind::Exit => thing.cell == cell,
-        })
+        self.world.things().iter().any(|thing| thing.kind == ThingKind::Exit && thing.cell == cell)
     }
 
-    /// Whether a step with these intents would change nothing but the clock: the player stands
-    /// still and wants no more, or pushes against what does not give way.
+    /// Whether steps with these intents, however many, would change nothing but the clock: the player
+    /// stands still and wants no more, or pushes against what does not give way, all doors are closed,
+    /// and nothing is being told.
     pub fn is_at_rest(&self, intents: Intents) -> bool {
-        self.is_finished() || self.player.stepped(self.world.grid(), intents) == self.player
+        self.quiet_steps(intents) == u64::MAX
+    }
+
+    /// For how many steps with these intents nothing happens but that clocks run: the game's own, and
+    /// those of doors that wait to close and of what is being told. [`u64::MAX`] where the game is [at
+    /// rest](Game::is_at_rest).
+    pub fn quiet_steps(&self, intents: Intents) -> u64 {
+        if self.is_finished() {
+            return u64::MAX;
+        }
+        if self.player.stepped(self.world.grid(), intents) != self.player {
+            return 0;
+        }
+        if self.door_wanted(intents).is_some_and(|(cell, door)| self.would_answer(cell, door)) {
+            return 0;
+        }
+        let waits = [self.doors.quiet_steps(), self.notice.quiet_steps()];
+        waits.into_iter().flatten().min().unwrap_or(u64::MAX)
     }
 
     /// Lets one step pass, of [`STEP`] seconds, in which the player wants what `intents` says.
     pub fn step(&mut self, intents: Intents) {
-        if !self.is_finished() {
-            self.player = self.player.stepped(self.world.grid(), intents);
-            self.wait(1);
+        if self.is_finished() {
+            return;
         }
+        self.player = self.player.stepped(self.world.grid(), intents);
+        self.take_keys();
+        let is_silent = self.notice.wait(1);
+        let player = self.player;
+        let has_moved = self.doors.step(&mut self.world, |cell| player.touches(cell));
+        self.revision += u64::from(is_silent) + u64::from(has_moved);
+        if let Some((cell, door)) = self.door_wanted(intents) {
+            self.try_to_open(cell, door);
+        }
+        self.steps = self.steps.saturating_add(1);
     }
 
-    /// Lets the clock run for `steps` steps in which nobody moves: all that as many calls of
-    /// [`Game::step`] do where the game [is at rest](Game::is_at_rest).
+    /// Lets the clocks run for `steps` steps in which nobody moves: all that as many calls of
+    /// [`Game::step`] do where there are no more of them than [`Game::quiet_steps`].
     pub fn wait(&mut self, steps: u64) {
         if !self.is_finished() {
             self.steps = self.steps.saturating_add(steps);
+            self.doors.wait(steps);
+            self.notice.wait(steps);
+        }
+    }
+
+    /// The door that the player is before, if they want to open it or to walk through it.
+    fn door_wanted(&self, intents: Intents) -> Option<(Cell, Door)> {
+        if self.world.is_of_walls() {
+            return None;
+        }
+        let looking = intents.contains(Intent::Open).then(|| self.player.heading().direction());
+        let directions = [looking, self.player.wanted_direction(intents)];
+        let position = self.player.position();
+        directions.into_iter().flatten().find_map(|way| door_ahead(&self.world, position, way))
+    }
+
+    fn can_open(&self, door: Door) -> bool {
+        door.key.is_none_or(|key| self.keys.contains(&key))
+    }
+
+    fn try_to_open(&mut self, cell: Cell, door: Door) {
+        if self.can_open(door) {
+            self.doors.open(cell);
+        } else {
+            self.say(self.refusal(door));
+        }
+    }
+
+    /// Whether [`Game::try_to_open`] would change anything.
+    fn would_answer(&self, cell: Cell, door: Door) -> bool {
+        if self.can_open(door) {
+            self.doors.would_open(cell)
+        } else {
+            self.notice.text() != Some(&self.refusal(door))
+        }
+    }
+
+    fn say(&mut self, text: String) {
+        if self.notice.text() != Some(&text) {
+            self.notice = Notice::new(text);
+            self.revision += 1;
+        }
+    }
+
+    /// What a locked door says to who does not have its key.
+    fn refusal(&self, door: Door) -> String {
+        let name = door.key.map_or("right", |key| self.world.key_name(key));
+        format!("This door needs the {name} key.")
+    }
+
+    /// Takes the keys in the player's cell.
+    fn take_keys(&mut self) {
+        let cell = self.player.cell();
+        let found = self.world.things().iter().find_map(|thing| match thing.kind {
+            ThingKind::Key(key) if thing.cell == cell => Some(key),
+            _ => None,
+        });
+        if let Some(key) = found {
+            self.keys.insert(key);
+            self.world.take_things(cell, |kind| kind == ThingKind::Key(key));
+            self.revision += 1;
+            self.say(format!("You have the {} key.", self.world.key_name(key)));
         }
     }
 }
@@ -119,6 +241,7 @@ mod tests {
             things: cells_that_hold('E')
                 .map(|cell| Thing { kind: ThingKind::Exit, cell })
                 .collect(),
+            keys: vec![],
         })
     }
 

@@ -26,11 +26,13 @@
 
 pub mod builtin;
 mod definitions;
+mod doors;
 mod drawing;
 mod layout;
 mod legend;
 mod per_character;
 mod picture;
+mod see_through;
 mod textures;
 
 use std::collections::BTreeSet;
@@ -155,6 +157,7 @@ fn read(text: &str, files: &dyn TextureFiles, faults: &mut Vec<Fault>) -> Option
         ceiling: ceiling?,
         start: layout.start,
         things: layout.things,
+        keys: layout.keys,
     }))
 }
 

@@ -4,14 +4,20 @@
 //! open floor, and no later stage checks again. It is made by [`map::parse`](crate::map::parse)
 //! and its siblings, which name every fault of a map with its place; building one by hand, with
 //! faults that have no place to name, was refused.
+//!
+//! A map's world has all doors closed and all keys in their places. What happens to them happens in
+//! a game's own world, so that whoever draws it needs to be handed nothing else.
 
 mod camera;
 mod color;
+mod door;
 mod grid;
 pub mod texture;
 
 pub use camera::{Camera, FieldOfView, Heading};
 pub use color::{NotAColor, Rgb};
+use door::Ajar;
+pub use door::{Door, KeyId, Opening};
 pub use grid::{Cell, Grid, TileId};
 pub use texture::Texture;
 
@@ -26,6 +32,8 @@ pub struct World {
     ceiling: Paint,
     start: Start,
     things: Vec<Thing>,
+    keys: Vec<String>,
+    ajar: Ajar,
 }
 
 /// One kind of tile.
@@ -42,8 +50,26 @@ pub struct Tile {
 pub enum TileKind {
     /// Floor to walk on, and to see across.
     Open,
+    /// Where a door is that is all open: floor between two jambs.
+    Doorway(Door),
     /// A solid cube.
     Wall(Paint),
+    /// A door that is closed, or not all open. It stands between two solid cells, open floor before
+    /// and behind it.
+    Door(Door),
+    /// A solid cube whose sides have holes where the texture is clear.
+    Mask(TextureId),
+    /// A solid cube of tinted glass.
+    Glass(Glass),
+}
+
+/// Glass to look through.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub struct Glass {
+    /// Its tint.
+    pub color: Rgb,
+    /// How much of the tint is seen in place of what is behind: from 0 for none to 255 for all.
+    pub opacity: u8,
 }
 
 /// How a surface looks.
@@ -82,6 +108,8 @@ pub struct Thing {
 pub enum ThingKind {
     /// Who reaches it has finished the level.
     Exit,
+    /// Who reaches it takes it, and can open the doors that ask for it.
+    Key(KeyId),
 }
 
 /// The pieces of a world, not yet known to fit together.
@@ -94,15 +122,19 @@ pub(crate) struct Parts {
     pub(crate) ceiling: Paint,
     pub(crate) start: Start,
     pub(crate) things: Vec<Thing>,
+    pub(crate) keys: Vec<String>,
 }
 
 impl World {
     /// A world of `parts` that fit together: every tile of the grid and every texture is in its
-    /// list, open tiles come before solid ones, and the start and all things stand on open floor.
+    /// list, open tiles come before solid ones, the start and all things stand on open floor, every
+    /// door has a doorway by the same character, and stands between solid cells that are no doors.
     /// The map's own checks establish all of that, and name what does not fit.
     pub(crate) fn from_parts(parts: Parts) -> Self {
-        let Parts { title, grid, tiles, textures, floor, ceiling, start, things } = parts;
-        let world = Self { title, grid, tiles, textures, floor, ceiling, start, things };
+        let Parts { title, grid, tiles, textures, floor, ceiling, start, things, keys } = parts;
+        let ajar = Ajar::default();
+        let world =
+            Self { title, grid, tiles, textures, floor, ceiling, start, things, keys, ajar };
         debug_assert!(world.fits_together());
         world
     }
@@ -116,9 +148,22 @@ impl World {
             let (column, row) = (i64::from(cell.column), i64::from(cell.row));
             self.grid.tile(column, row).is_some() && !self.grid.is_solid(column, row)
         };
-        let tile_fits = |(index, tile): (usize, &Tile)| match tile.kind {
-            TileKind::Open => !self.grid.is_solid_tile(TileId(index as u8)),
-            TileKind::Wall(paint) => self.grid.is_solid_tile(TileId(index as u8)) && known(paint),
+        let opens = |door: Door| {
+            let is_known = door.key.is_none_or(|key| usize::from(key.0) < self.keys.len());
+            is_known && known(door.leaf) && known(door.jamb)
+        };
+        let tile_fits = |(index, tile): (usize, &Tile)| {
+            let is_solid = self.grid.is_solid_tile(TileId(index as u8));
+            match tile.kind {
+                TileKind::Open => !is_solid,
+                TileKind::Doorway(door) => !is_solid && opens(door),
+                TileKind::Wall(paint) => is_solid && known(paint),
+                TileKind::Door(door) => {
+                    is_solid && opens(door) && self.doorway(tile.character).is_some()
+                }
+                TileKind::Mask(texture) => is_solid && known(Paint::Texture(texture)),
+                TileKind::Glass(_) => is_solid,
+            }
         };
         self.tiles.iter().enumerate().all(tile_fits)
             && self.grid.rows().flatten().all(|tile| usize::from(tile.0) < self.tiles.len())
@@ -185,6 +230,77 @@ impl World {
     /// What stands in the cells, the start excepted.
     pub fn things(&self) -> &[Thing] {
         &self.things
+    }
+
+    /// What the key `id` of this world is called, such as "brass".
+    ///
+    /// # Panics
+    /// Where `id` is from another world that has more keys.
+    pub fn key_name(&self, id: KeyId) -> &str {
+        &self.keys[usize::from(id.0)]
+    }
+
+    /// The door in `cell`, however far it is open; `None` where there is none.
+    pub fn door(&self, cell: Cell) -> Option<Door> {
+        match self.kind_at(cell)? {
+            TileKind::Door(door) | TileKind::Doorway(door) => Some(door),
+            _ => None,
+        }
+    }
+
+    /// How far the door in `cell` is open; closed where there is none.
+    pub fn opening(&self, cell: Cell) -> Opening {
+        match self.kind_at(cell) {
+            Some(TileKind::Doorway(_)) => Opening::OPEN,
+            _ => self.ajar.opening(cell).unwrap_or(Opening::CLOSED),
+        }
+    }
+
+    /// Moves the door in `cell`; does nothing where there is none. The cell is open floor where the
+    /// door is all open, and solid otherwise.
+    pub fn set_opening(&mut self, cell: Cell, opening: Opening) {
+        let Some(tile) = self.tile_at(cell) else { return };
+        if !matches!(tile.kind, TileKind::Door(_) | TileKind::Doorway(_)) {
+            return;
+        }
+        let solid = |kind: &TileKind| matches!(kind, TileKind::Door(_));
+        let id = match opening {
+            Opening::OPEN => self.doorway(tile.character),
+            _ => self.tile_id(tile.character, solid),
+        };
+        if let Some(id) = id {
+            self.grid.set(cell, id);
+            self.ajar.set(cell, opening);
+        }
+    }
+
+    /// Takes away all things in `cell` of which `is_taken` says so.
+    pub(crate) fn take_things(&mut self, cell: Cell, is_taken: impl Fn(ThingKind) -> bool) {
+        self.things.retain(|thing| thing.cell != cell || !is_taken(thing.kind));
+    }
+
+    /// Whether all that is solid is walls, which show one side each and hide what is behind.
+    pub(crate) fn is_of_walls(&self) -> bool {
+        let is_plain = |tile: &Tile| matches!(tile.kind, TileKind::Open | TileKind::Wall(_));
+        self.tiles.iter().all(is_plain)
+    }
+
+    fn tile_at(&self, cell: Cell) -> Option<Tile> {
+        let tile = self.grid.tile(i64::from(cell.column), i64::from(cell.row))?;
+        Some(self.tile(tile))
+    }
+
+    fn kind_at(&self, cell: Cell) -> Option<TileKind> {
+        self.tile_at(cell).map(|tile| tile.kind)
+    }
+
+    fn doorway(&self, character: char) -> Option<TileId> {
+        self.tile_id(character, |kind| matches!(kind, TileKind::Doorway(_)))
+    }
+
+    fn tile_id(&self, character: char, is_kind: impl Fn(&TileKind) -> bool) -> Option<TileId> {
+        let is_it = |tile: &Tile| tile.character == character && is_kind(&tile.kind);
+        self.tiles.iter().position(is_it).map(|index| TileId(index as u8))
     }
 
     /// A camera where the player starts.

@@ -14,8 +14,8 @@
 use glam::DVec2;
 
 use super::cross::cross;
-use super::{Caster, DdaOrder, Hit, Order, Ray, Side, Walk};
-use crate::world::Grid;
+use super::{Caster, DdaOrder, Hit, Order, Ray, Side, Walk, through};
+use crate::world::{Grid, World};
 
 /// Casts by walking the grid in the exact order; the default.
 ///
@@ -27,6 +27,10 @@ impl Caster for Exact {
     fn cast(&self, grid: &Grid, ray: &Ray) -> Option<Hit> {
         let wall = Walk::new(grid, ray).first_solid()?;
         Some(Hit::entering(ray, wall.cell, wall.side))
+    }
+
+    fn cast_through(&self, world: &World, ray: &Ray, passed: impl FnMut(Hit)) -> Option<Hit> {
+        through::cast(Walk::new(world.grid(), ray), world, ray, passed)
     }
 }
 

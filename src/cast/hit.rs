@@ -36,24 +36,31 @@ impl Hit {
     /// The distance comes from the index of the cell, by one subtraction and one division; a sum
     /// that runs from line to line would gather an error at each of them.
     pub fn entering(ray: &Ray, cell: Cell, side: Side) -> Self {
-        let (origin, direction) = (ray.origin(), ray.direction());
-        let corner = corner_of_face(direction, cell, side);
-        let offset = corner - origin;
-        let (t, start, slope) = match side {
-            Side::X => ((offset.x / direction.x).abs(), -offset.y, direction.y),
-            Side::Y => ((offset.y / direction.y).abs(), -offset.x, direction.x),
-        };
-        let moved = t * slope;
-        let along = if start.abs() + moved.abs() <= FAR {
-            start + moved
-        } else {
-            match side {
-                Side::X => cross(origin, direction, corner).over(direction.x),
-                Side::Y => -cross(origin, direction, corner).over(direction.y),
-            }
-        };
+        let direction = ray.direction();
+        let (t, along) = meeting(ray, side, corner_of_face(direction, cell, side));
         Self { cell, side, t, u: texture_coordinate(direction, side, along) }
     }
+}
+
+/// How far along `ray` it meets the line of kind `side` through `corner`, which must not lie behind
+/// it, and how far from the corner that is, to the south or to the east.
+pub(super) fn meeting(ray: &Ray, side: Side, corner: DVec2) -> (f64, f64) {
+    let (origin, direction) = (ray.origin(), ray.direction());
+    let offset = corner - origin;
+    let (t, start, slope) = match side {
+        Side::X => ((offset.x / direction.x).abs(), -offset.y, direction.y),
+        Side::Y => ((offset.y / direction.y).abs(), -offset.x, direction.x),
+    };
+    let moved = t * slope;
+    let along = if start.abs() + moved.abs() <= FAR {
+        start + moved
+    } else {
+        match side {
+            Side::X => cross(origin, direction, corner).over(direction.x),
+            Side::Y => -cross(origin, direction, corner).over(direction.y),
+        }
+    };
+    (t, along)
 }
 
 /// Up to this many cells, two rounded terms of that size add up to within 10⁻¹² of their true sum.

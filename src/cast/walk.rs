@@ -65,7 +65,13 @@ impl<'grid, O: Order> Walk<'grid, O> {
         &self.order
     }
 
-    /// The first solid cell that the ray enters.
+    /// The cell that the ray is in as yet; `None` off the map.
+    pub(super) fn cell(&self) -> Option<(Cell, TileId)> {
+        let tile = self.grid.tile(self.x.index, self.y.index)?;
+        Some((Cell { column: self.x.index as u32, row: self.y.index as u32 }, tile))
+    }
+
+    /// The next solid cell that the ray enters.
     pub fn first_solid(&mut self) -> Option<Crossing> {
         let grid = self.grid;
         self.find(|crossing| grid.is_solid_tile(crossing.tile))

@@ -60,7 +60,9 @@ fn answer<C: Caster>(world: &World, caster: &C, line: &[u8]) -> Answer {
         Ok(ray) => ray,
         Err(error) => return Answer::Error { error },
     };
-    let Some(hit) = caster.cast(world.grid(), &ray) else {
+    let mut nearest = None;
+    let behind = caster.cast_through(world, &ray, |hit| _ = nearest.get_or_insert(hit));
+    let Some(hit) = nearest.or(behind) else {
         return Answer::Escaped { escaped: true };
     };
     let (column, row) = (hit.cell.column, hit.cell.row);

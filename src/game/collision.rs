@@ -10,7 +10,7 @@ mod sweep;
 
 use glam::DVec2;
 
-use crate::world::Grid;
+use crate::world::{Cell, Grid};
 use sweep::{Path, first_contact};
 
 /// How many walls a body may touch in one step. A corner is two; who touches more is stuck between
@@ -67,7 +67,16 @@ fn is_clear(grid: &Grid, center: DVec2, radius: Radius) -> bool {
     let around = (row - 1..=row + 1).flat_map(|r| (column - 1..=column + 1).map(move |c| (c, r)));
     around
         .filter(|&(column, row)| blocks(grid, column, row))
-        .all(|(column, row)| square_distance(center, column, row) >= radius.0 * radius.0)
+        .all(|(column, row)| is_clear_of(center, column, row, radius))
+}
+
+/// Whether a circle around `center` overlaps `cell`, solid or not; it may touch.
+pub(super) fn overlaps(center: DVec2, cell: Cell, radius: Radius) -> bool {
+    !is_clear_of(center, i64::from(cell.column), i64::from(cell.row), radius)
+}
+
+fn is_clear_of(center: DVec2, column: i64, row: i64, Radius(radius): Radius) -> bool {
+    square_distance(center, column, row) >= radius * radius
 }
 
 /// The square of the distance from `point` to the nearest point of a cell.

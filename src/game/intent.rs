@@ -22,11 +22,13 @@ pub enum Intent {
     Run,
     /// Turn more slowly.
     Aim,
+    /// Open the door ahead.
+    Open,
 }
 
 impl Intent {
     /// All of them.
-    pub const ALL: [Self; 8] = [
+    pub const ALL: [Self; 9] = [
         Self::Forward,
         Self::Back,
         Self::StrafeLeft,
@@ -35,6 +37,7 @@ impl Intent {
         Self::TurnRight,
         Self::Run,
         Self::Aim,
+        Self::Open,
     ];
 }
 
@@ -42,7 +45,7 @@ impl Intent {
 #[derive(Clone, Copy, PartialEq, Eq, Hash, Default)]
 pub struct Intents {
     /// One bit for each intent, by its place in the enum.
-    bits: u8,
+    bits: u16,
 }
 
 impl Intents {
@@ -82,7 +85,7 @@ impl Intents {
     }
 }
 
-const fn bit(intent: Intent) -> u8 {
+const fn bit(intent: Intent) -> u16 {
     1 << intent as u8
 }
 

@@ -3,7 +3,7 @@
 use glam::DVec2;
 
 use super::STEP;
-use super::collision::{Body, Radius, slide};
+use super::collision::{Body, Radius, overlaps, slide};
 use super::intent::{Intent, Intents};
 use super::motion::{Glide, approach, approach_in_plane};
 use crate::world::{Cell, Grid, Heading, Start};
@@ -56,6 +56,16 @@ impl Player {
     pub(super) fn cell(&self) -> Cell {
         let DVec2 { x, y } = self.body.position;
         Cell { column: x as u32, row: y as u32 }
+    }
+
+    /// Whether the player would be inside `cell` if it were solid.
+    pub(super) fn touches(&self, cell: Cell) -> bool {
+        overlaps(self.body.position, cell, RADIUS)
+    }
+
+    /// Which way the player wants to walk, as a vector of length 1; `None` for nowhere.
+    pub(super) fn wanted_direction(&self, intents: Intents) -> Option<DVec2> {
+        wanted_velocity(self.heading, intents).try_normalize()
     }
 
     /// The player one step later: turned first, then walked.

@@ -74,6 +74,16 @@ impl<'a> Drawing<'a> {
         self.text.place(at..at + character.len_utf8())
     }
 
+    /// The place in the map of what is drawn in `cell`.
+    pub(super) fn place_of(&self, cell: Cell) -> Range<usize> {
+        let row = self.text.rows().nth(cell.row as usize);
+        let drawn = row.and_then(|(start, row)| {
+            let (at, character) = row.char_indices().nth(cell.column as usize)?;
+            Some(self.place(character, start + at))
+        });
+        drawn.unwrap_or_else(|| self.key_place.clone())
+    }
+
     /// The rows from the north.
     pub(super) fn rows(&self) -> impl Iterator<Item = &'a str> {
         self.text.rows().map(|(_, row)| row)

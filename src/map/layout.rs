@@ -2,25 +2,28 @@
 
 use std::ops::Range;
 
+use super::doors::{self, Keys};
 use super::drawing::Drawing;
 use super::legend::{Legend, Meaning, Symbol};
 use super::per_character::PerCharacter;
 use super::textures::Textures;
 use crate::fault::Fault;
-use crate::world::{Grid, Start, Thing, ThingKind, Tile, TileId, TileKind};
+use crate::world::{Door, Grid, Start, Thing, ThingKind, Tile, TileId, TileKind};
 
 /// The most kinds of tile in a grid, open floor among them.
 const MAX_TILES: usize = 255;
 const OPEN: Tile = Tile { character: '.', kind: TileKind::Open };
-const OPEN_TILES: u8 = 1;
 
 /// What a drawing shows.
 pub(super) struct Layout {
     pub(super) grid: Grid,
-    /// Open floor, then the walls that the grid has, in the order of their characters.
+    /// Open floor and the doorways, then what is solid in the grid, each in the order of their
+    /// characters.
     pub(super) tiles: Vec<Tile>,
     pub(super) start: Start,
     pub(super) things: Vec<Thing>,
+    /// The names of the keys.
+    pub(super) keys: Vec<String>,
 }
 
 impl Layout {
@@ -34,13 +37,19 @@ impl Layout {
     ) -> Option<Self> {
         faults.extend(undefined_characters(drawing, legend));
         faults.extend(wrong_start(drawing, legend));
-        let tiles = tiles(drawing, legend, textures, faults);
+        let keys = Keys::of(drawing, legend);
+        let tiles = tiles(drawing, legend, &keys, textures, faults);
         if !faults.is_empty() {
             return None;
         }
         let start = start(drawing, legend)?;
-        let things = exits(drawing, legend).collect();
-        Some(Self { grid: grid(drawing, &tiles)?, tiles, start, things })
+        let grid = grid(drawing, &tiles)?;
+        faults.extend(doors::faults(drawing, legend, &grid, &tiles, start));
+        if !faults.is_empty() {
+            return None;
+        }
+        let things = things(drawing, legend, &keys).collect();
+        Some(Self { grid, tiles, start, things, keys: keys.into_names() })
     }
 }
 
@@ -118,41 +127,76 @@ fn start(drawing: &Drawing<'_>, legend: &Legend<'_>) -> Option<Start> {
     Some(Start { cell, heading })
 }
 
-fn exits(drawing: &Drawing<'_>, legend: &Legend<'_>) -> impl Iterator<Item = Thing> {
-    let is_exit = |symbol: &Symbol<'_>| matches!(symbol.meaning, Meaning::Exit);
-    let exits = legend.symbols.iter().filter(move |(_, symbol)| is_exit(symbol));
-    let drawn = exits.filter(|&(&character, _)| drawing.sightings(character).count > 0);
-    drawn
-        .flat_map(|(&character, _)| drawing.cells_of(character))
-        .map(|cell| Thing { kind: ThingKind::Exit, cell })
+/// What stands in the drawing, the start excepted.
+fn things(drawing: &Drawing<'_>, legend: &Legend<'_>, keys: &Keys) -> impl Iterator<Item = Thing> {
+    let kinds = drawing.characters().filter_map(|(character, _)| {
+        let kind = match &legend.symbols.get(&character)?.meaning {
+            Meaning::Exit => ThingKind::Exit,
+            Meaning::Key(key) => ThingKind::Key(keys.id(key.name)?),
+            _ => return None,
+        };
+        Some((character, kind))
+    });
+    kinds.flat_map(|(character, kind)| {
+        drawing.cells_of(character).map(move |cell| Thing { kind, cell })
+    })
 }
 
 /// The kinds of tile in the drawing.
 fn tiles(
     drawing: &Drawing<'_>,
     legend: &Legend<'_>,
+    keys: &Keys,
     textures: &mut Textures<'_>,
     faults: &mut Vec<Fault>,
 ) -> Vec<Tile> {
-    let mut tiles = vec![OPEN];
+    let mut open = vec![OPEN];
+    let mut solid = Vec::new();
     for (character, _) in drawing.characters() {
         let Some(symbol) = legend.symbols.get(&character) else { continue };
-        let Meaning::Wall(surface) = &symbol.meaning else { continue };
-        if tiles.len() == MAX_TILES {
+        let Some(kind) = solid_kind(&symbol.meaning, keys, textures, faults) else { continue };
+        if let TileKind::Door(door) = kind {
+            open.push(Tile { character, kind: TileKind::Doorway(door) });
+        }
+        solid.push(Tile { character, kind });
+        if open.len() + solid.len() > MAX_TILES {
             let message = format!("the grid has more than {} kinds of wall", MAX_TILES - 1);
             faults.push(Fault::new(symbol.place.clone(), message).label("one too many"));
             break;
         }
-        if let Some(paint) = textures.paint(surface, faults) {
-            tiles.push(Tile { character, kind: TileKind::Wall(paint) });
-        }
     }
-    tiles
+    open.extend(solid);
+    open
 }
 
-/// The grid of a drawing whose walls are all in `tiles`.
+/// The kind of solid tile that a character stands for; `None` where it stands for none, or where a
+/// fault has been found with it.
+fn solid_kind(
+    meaning: &Meaning<'_>,
+    keys: &Keys,
+    textures: &mut Textures<'_>,
+    faults: &mut Vec<Fault>,
+) -> Option<TileKind> {
+    match meaning {
+        Meaning::Wall(surface) => textures.paint(surface, faults).map(TileKind::Wall),
+        Meaning::Door(door) => Some(TileKind::Door(Door {
+            leaf: textures.paint(&door.leaf, faults)?,
+            jamb: textures.jamb(),
+            key: door.key.as_ref().and_then(|key| keys.id(key.name)),
+        })),
+        Meaning::Mask(mask) => mask.texture(textures, faults).map(TileKind::Mask),
+        Meaning::Glass(glass) => Some(TileKind::Glass(*glass)),
+        Meaning::Open | Meaning::Start(_) | Meaning::Exit | Meaning::Key(_) | Meaning::Unclear => {
+            None
+        }
+    }
+}
+
+/// The grid of a drawing whose tiles are all in `tiles`: of a door, the solid one.
 fn grid(drawing: &Drawing<'_>, tiles: &[Tile]) -> Option<Grid> {
     let mut tile_of = PerCharacter::<u8>::new();
+    let is_open = |tile: &Tile| matches!(tile.kind, TileKind::Open | TileKind::Doorway(_));
+    let first_solid = tiles.iter().take_while(|tile| is_open(tile)).count();
     for (tile, id) in tiles.iter().zip(0..) {
         *tile_of.get_mut(tile.character) = id;
     }
@@ -161,5 +205,5 @@ fn grid(drawing: &Drawing<'_>, tiles: &[Tile]) -> Option<Grid> {
     for row in drawing.rows() {
         cells.extend(row.chars().map(|character| TileId(tile_of.get(character))));
     }
-    Grid::new(width, height, TileId(OPEN_TILES), cells)
+    Grid::new(width, height, TileId(first_solid as u8), cells)
 }

@@ -3,21 +3,20 @@
 use std::collections::BTreeMap;
 use std::ops::Range;
 
-use toml::de::DeValue;
+use toml::de::{DeTable, DeValue};
 
 use super::definitions::KEYS;
+use super::doors::{DoorSymbol, KeySymbol};
+use super::see_through::{self, MaskSymbol};
 use super::textures::Surface;
 use crate::fault::document::{Entry, entries};
 use crate::fault::{Fault, quoted};
-use crate::world::Heading;
+use crate::world::{Glass, Heading};
 
 /// What other raycasters have in their cells and this one has not.
 const NOT_YET: &[(&str, &str)] = &[
-    ("door", "doors"),
     ("guard", "guards"),
-    ("key", "keys"),
     ("lamp", "lamps"),
-    ("locked", "locked doors"),
     ("mirror", "mirrors"),
     ("pushwall", "moving walls"),
     ("secret", "secret doors"),
@@ -43,8 +42,12 @@ pub(super) struct Symbol<'a> {
 pub(super) enum Meaning<'a> {
     Open,
     Wall(Surface<'a>),
+    Door(DoorSymbol<'a>),
+    Mask(MaskSymbol<'a>),
+    Glass(Glass),
     Start(Heading),
     Exit,
+    Key(KeySymbol<'a>),
     /// Something that a fault has been found with already.
     Unclear,
 }
@@ -73,8 +76,16 @@ impl Section {
 
     fn keys(self) -> &'static [&'static str] {
         match self {
-            Self::Tiles => &["wall"],
-            Self::Things => &["start", "exit"],
+            Self::Tiles => &["wall", "door", "mask", "glass"],
+            Self::Things => &["start", "exit", "key"],
+        }
+    }
+
+    /// The keys that say more of what another one makes: each with that one.
+    fn additions(self) -> &'static [(&'static str, &'static str)] {
+        match self {
+            Self::Tiles => &[("key", "door"), ("opacity", "glass")],
+            Self::Things => &[],
         }
     }
 
@@ -169,7 +180,7 @@ fn meaning<'a>(section: Section, entry: &Entry<'a, '_>, faults: &mut Vec<Fault>)
     };
     let faults_before = faults.len();
     let mut meanings: Vec<_> =
-        entries(table).filter_map(|entry| property(section, &entry, faults)).collect();
+        entries(table).filter_map(|entry| property(section, &entry, table, faults)).collect();
     let place = || entry.key_place.clone();
     match meanings.pop() {
         Some(meaning) if meanings.is_empty() => return meaning,
@@ -190,11 +201,22 @@ fn meaning<'a>(section: Section, entry: &Entry<'a, '_>, faults: &mut Vec<Fault>)
 fn property<'a>(
     section: Section,
     entry: &Entry<'a, '_>,
+    table: &'a DeTable<'_>,
     faults: &mut Vec<Fault>,
 ) -> Option<Meaning<'a>> {
+    let is_addition = |&(key, to): &(&str, &str)| key == entry.key && table.contains_key(to);
+    if section.additions().iter().any(is_addition) {
+        return None;
+    }
     match (section, entry.key) {
         (Section::Tiles, "wall") => {
             Surface::read(entry, r#"{ wall = "brick" }"#, faults).map(Meaning::Wall)
+        }
+        (Section::Tiles, "door") => DoorSymbol::read(entry, table, faults).map(Meaning::Door),
+        (Section::Tiles, "mask") => MaskSymbol::read(entry, faults).map(Meaning::Mask),
+        (Section::Tiles, "glass") => see_through::glass(entry, table, faults).map(Meaning::Glass),
+        (Section::Things, "key") => {
+            KeySymbol::read(entry, r#"{ key = "brass" }"#, faults).map(Meaning::Key)
         }
         (Section::Things, "start") => Some(Meaning::Start(heading(entry, faults)?)),
         (Section::Things, "exit") => exit(entry, faults),
@@ -240,12 +262,18 @@ fn unknown_property(section: Section, entry: &Entry<'_, '_>) -> Fault {
         return Fault::new(place(), format!("{plural} are not supported yet"))
             .help(format!("known keys: {}", section.keys().join(", ")));
     }
+    if let Some((key, to)) = section.additions().iter().find(|(key, _)| *key == entry.key) {
+        let message = format!("\"{key}\" goes with \"{to}\", and there is none");
+        return Fault::new(place(), message).help(format!("name a {to} in the same braces"));
+    }
     let other = section.other();
     if other.keys().contains(&entry.key) {
         let message = format!("\"{}\" makes {}, not {}", entry.key, other.noun(), section.noun());
         return Fault::new(place(), message).help(format!("move it to {}", other.name()));
     }
-    entry.unknown_key(section.noun(), section.keys())
+    let additions = section.additions().iter().map(|&(key, _)| key);
+    let known: Vec<&str> = section.keys().iter().copied().chain(additions).collect();
+    entry.unknown_key(section.noun(), &known)
 }
 
 fn defined_twice(character: char, place: Range<usize>) -> Fault {

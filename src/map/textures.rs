@@ -170,6 +170,13 @@ impl<'a> Surface<'a> {
     }
 }
 
+impl Surface<'_> {
+    /// Where the map says it.
+    pub(super) fn place(&self) -> Range<usize> {
+        self.place.clone()
+    }
+}
+
 impl<'a> Source<'a> {
     /// What `text`, written at `place`, names: a colour, a built-in texture or a PNG file. Whether
     /// there is such a file is not asked yet.
@@ -274,6 +281,18 @@ impl<'f> Textures<'f> {
             fault(error.to_string()).help("a texture is a PNG file beside the map")
         })?;
         picture::decode(&bytes).map_err(|error| fault(error.to_string()).help(error.help()))
+    }
+
+    /// The texture of the walls that a door is set between.
+    pub(super) fn jamb(&mut self) -> Paint {
+        let surface = Surface { source: Source::BuiltIn("jamb"), place: 0..0 };
+        // It is built in, so no fault is found with it.
+        self.paint(&surface, &mut Vec::new()).unwrap_or(Paint::Color(Rgb::BLACK))
+    }
+
+    /// A texture that [`Textures::paint`] has given out.
+    pub(super) fn get(&self, id: TextureId) -> &Texture {
+        &self.list[usize::from(id.0)]
     }
 
     pub(super) fn into_list(self) -> Vec<Texture> {

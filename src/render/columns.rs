@@ -5,8 +5,9 @@ use std::ops::Range;
 use glam::DVec2;
 
 use super::Projection;
+use super::see_through::Passed;
 use crate::cast::{Caster, Hit, Ray, Side};
-use crate::world::Grid;
+use crate::world::{Grid, World};
 
 /// What the ray of one column of pixels met.
 #[derive(Clone, Debug, PartialEq)]
@@ -59,19 +60,29 @@ pub(super) fn first_row_of_ground(height: u32) -> u32 {
     height / 2
 }
 
-/// Casts the ray of every column into `columns`, whatever they held before.
+/// Casts the ray of every column into `columns`, and what it passes into `passed`, whatever they
+/// held before.
 pub(super) fn cast<C: Caster>(
     caster: &C,
-    grid: &Grid,
+    world: &World,
     projection: &Projection,
     columns: &mut Vec<Column>,
+    passed: &mut Passed,
 ) {
+    let grid = world.grid();
     columns.clear();
-    columns.extend(projection.rays().map(|ray| {
-        let hit = caster.cast(grid, &ray);
+    passed.clear();
+    let column = |ray: Ray, hit: Option<Hit>| {
         let distance = hit.map_or_else(|| distance_to_edge(grid, &ray), |hit| hit.t);
         Column { hit, distance, rows: projection.wall_rows(distance) }
-    }));
+    };
+    if world.is_of_walls() {
+        columns.extend(projection.rays().map(|ray| column(ray, caster.cast(grid, &ray))));
+    } else {
+        columns.extend(projection.rays().enumerate().map(|(index, ray)| {
+            column(ray, caster.cast_through(world, &ray, |hit| passed.push(index, hit)))
+        }));
+    }
 }
 
 /// How far along `ray` the map ends; 0 where the ray is off the map and never enters it.

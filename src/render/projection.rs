@@ -42,6 +42,11 @@ impl Projection {
         }
     }
 
+    /// Where the camera stands.
+    pub(super) fn origin(&self) -> DVec2 {
+        self.origin
+    }
+
     /// The rays of all columns, from left to right, each through the middle of its pixels.
     ///
     /// A ray's `t` is the distance to the camera plane, so nothing needs correcting afterwards.

@@ -100,6 +100,13 @@ enum Screen {
     End,
 }
 
+/// What of the game shows in a picture of it.
+#[derive(Clone, Copy, Debug, PartialEq)]
+struct Scene {
+    camera: Camera,
+    revision: u64,
+}
+
 struct App {
     later_levels: Box<dyn Iterator<Item = World>>,
     game: Game,
@@ -117,7 +124,7 @@ struct App {
     clock: Clock,
     view: View,
     /// What the screen shows; `None` where it must be drawn again.
-    shown: Option<Camera>,
+    shown: Option<Scene>,
     next_frame: Duration,
 }
 
@@ -157,11 +164,9 @@ impl App {
             return;
         }
         let intents = self.intents();
-        if self.game.is_at_rest(intents) {
-            self.game.wait(steps);
-        } else {
-            (0..steps.min(Clock::MOST_STEPS)).for_each(|_| self.game.step(intents));
-        }
+        let quiet = self.game.quiet_steps(intents).min(steps);
+        self.game.wait(quiet);
+        (quiet..steps).take(Clock::MOST_STEPS).for_each(|_| self.game.step(intents));
         if self.game.is_finished() {
             self.show(Screen::LevelDone);
         }
@@ -183,6 +188,10 @@ impl App {
         turn.contains(&self.settings.bindings.action(key))
     }
 
+    fn scene(&self) -> Scene {
+        Scene { camera: self.camera(), revision: self.game.revision() }
+    }
+
     fn camera(&self) -> Camera {
         self.game.camera(self.field_of_view)
     }
@@ -193,11 +202,11 @@ impl App {
     }
 
     fn is_stale(&self) -> bool {
-        self.shown != Some(self.camera())
+        self.shown != Some(self.scene())
     }
 
     fn drawn(&mut self, now: Duration) {
-        self.shown = Some(self.camera());
+        self.shown = Some(self.scene());
         // Counted from when this frame was due, or the time that drawing takes would slow them down.
         let frame_time = self.settings.frame_time;
         self.next_frame = Some(self.next_frame + frame_time)
@@ -207,13 +216,23 @@ impl App {
 
     /// When something will happen without an event; `None` for never.
     fn wakes_at(&self) -> Option<Duration> {
-        let moves = self.screen == Screen::Playing && !self.game.is_at_rest(self.intents());
         let frame = if self.is_stale() {
             Some(self.next_frame)
         } else {
-            moves.then(|| self.next_frame.max(self.clock.next_step()))
+            self.next_change().map(|change| change.max(self.next_frame))
         };
         frame.into_iter().chain(self.held.next_expiry()).min()
+    }
+
+    /// When the game will change by itself; `None` for never.
+    fn next_change(&self) -> Option<Duration> {
+        if self.screen != Screen::Playing {
+            return None;
+        }
+        match self.game.quiet_steps(self.intents()) {
+            u64::MAX => None,
+            quiet => Some(self.clock.step_after(quiet)),
+        }
     }
 
     fn key(&mut self, event: KeyEvent, now: Duration) {
@@ -297,7 +316,7 @@ impl App {
         }
         let [picture, status] = panels::picture_and_status(area);
         self.draw_picture(frame, picture);
-        panels::status(frame, status, self.game.world(), self.runs, &self.settings.bindings);
+        panels::status(frame, status, &self.game, self.runs, &self.settings.bindings);
         let seconds = self.game.elapsed();
         match self.screen {
             Screen::Playing => {}

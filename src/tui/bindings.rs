@@ -42,7 +42,7 @@ pub(crate) enum Action {
 
 impl Action {
     /// Every action: its name in a file, what it does in a word or two, and itself.
-    pub(crate) const ALL: [(&'static str, &'static str, Self); 14] = [
+    pub(crate) const ALL: [(&'static str, &'static str, Self); 15] = [
         ("forward", "walk", Self::Want(Intent::Forward)),
         ("back", "walk back", Self::Want(Intent::Back)),
         ("strafe-left", "strafe left", Self::Want(Intent::StrafeLeft)),
@@ -50,6 +50,7 @@ impl Action {
         ("turn-left", "turn left", Self::Want(Intent::TurnLeft)),
         ("turn-right", "turn right", Self::Want(Intent::TurnRight)),
         ("run", "run while held", Self::Want(Intent::Run)),
+        ("open", "open a door", Self::Want(Intent::Open)),
         ("toggle-run", "run, on and off", Self::ToggleRun),
         ("minimap", "map", Self::ToggleMinimap),
         ("help", "this help", Self::ToggleHelp),
@@ -114,6 +115,8 @@ impl Bindings {
             (Key::Left, Action::Want(Intent::TurnLeft)),
             (Key::Right, Action::Want(Intent::TurnRight)),
             (Key::Shift, Action::Want(Intent::Run)),
+            (Key::Char(' '), Action::Want(Intent::Open)),
+            (Key::Char('e'), Action::Want(Intent::Open)),
             (Key::Char('r'), Action::ToggleRun),
             (Key::Char('m'), Action::ToggleMinimap),
             (Key::Tab, Action::ToggleMinimap),

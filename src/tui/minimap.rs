@@ -9,7 +9,7 @@ use ratatui::widgets::Widget;
 use super::{GlyphMode, ascii, half_blocks};
 use crate::palette::ColorDepth;
 use crate::render::Column;
-use crate::world::{Camera, Rgb, ThingKind, TileKind, World};
+use crate::world::{Camera, Cell, Paint, Rgb, ThingKind, TileId, TileKind, World};
 
 /// A widget that shows the map from above: walls in their colours, the player as an arrow, and the
 /// part of the floor that is seen, by the rays that the picture was drawn from.
@@ -64,6 +64,10 @@ const SEEN: Rgb = Rgb::new(0x6c, 0x66, 0x4a);
 const VOID: Rgb = Rgb::BLACK;
 /// The cell to reach.
 const EXIT: Rgb = Rgb::new(0x3c, 0xc8, 0x64);
+/// A key to take.
+const KEY: Rgb = Rgb::new(0xf0, 0xc0, 0x40);
+/// How opaque glass is at least, so that clear glass can be told from floor.
+const MIST: u8 = 96;
 /// The arrow.
 const PLAYER: Color = Color::Yellow;
 
@@ -103,20 +107,32 @@ impl Minimap<'_> {
     fn place(&self, point: DVec2) -> Place {
         let (column, row) = (point.x.floor() as i64, point.y.floor() as i64);
         let Some(tile) = self.world.grid().tile(column, row) else { return Place::Void };
-        if let TileKind::Wall(paint) = self.world.tile(tile).kind {
-            return Place::Wall(self.world.mean_color(paint));
+        if let Some(color) = self.solid_color(tile) {
+            return Place::Wall(color);
         }
-        let is_exit = self.world.things().iter().any(|thing| {
-            let cell = (i64::from(thing.cell.column), i64::from(thing.cell.row));
-            thing.kind == ThingKind::Exit && cell == (column, row)
+        let mut things = self.world.things().iter().filter(|thing| {
+            (i64::from(thing.cell.column), i64::from(thing.cell.row)) == (column, row)
         });
-        if is_exit {
-            Place::Exit
-        } else if self.sees(point) {
-            Place::Seen
-        } else {
-            Place::Floor
+        match things.next().map(|thing| (thing.kind, thing.cell)) {
+            Some((ThingKind::Exit, _)) => Place::Exit,
+            Some((ThingKind::Key(_), cell)) if is_on_dot(point, cell) => Place::Key,
+            _ if self.sees(point) => Place::Seen,
+            _ => Place::Floor,
         }
+    }
+
+    /// The colour of a solid tile; `None` for floor.
+    fn solid_color(&self, tile: TileId) -> Option<Rgb> {
+        let paint = match self.world.tile(tile).kind {
+            TileKind::Open | TileKind::Doorway(_) => return None,
+            TileKind::Wall(paint) => paint,
+            TileKind::Door(door) => door.leaf,
+            TileKind::Mask(texture) => Paint::Texture(texture),
+            TileKind::Glass(glass) => {
+                return Some(glass.color.over(FLOOR, glass.opacity.max(MIST)));
+            }
+        };
+        Some(self.world.mean_color(paint))
     }
 
     /// Whether the ray of the column that `point` falls in gets as far as that.
@@ -148,6 +164,12 @@ impl Minimap<'_> {
     }
 }
 
+/// Whether `point` is on the dot that stands for a key in `cell`.
+fn is_on_dot(point: DVec2, cell: Cell) -> bool {
+    const RADIUS: f64 = 0.3;
+    (point - cell.center()).abs().max_element() <= RADIUS
+}
+
 /// What is at a point of the map.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 enum Place {
@@ -156,6 +178,7 @@ enum Place {
     Floor,
     Seen,
     Exit,
+    Key,
 }
 
 impl Place {
@@ -166,6 +189,7 @@ impl Place {
             Self::Floor => FLOOR,
             Self::Seen => SEEN,
             Self::Exit => EXIT,
+            Self::Key => KEY,
         }
     }
 
@@ -175,6 +199,7 @@ impl Place {
             Self::Wall(_) => '#',
             Self::Seen => '.',
             Self::Exit => 'X',
+            Self::Key => 'k',
         }
     }
 }

@@ -50,6 +50,22 @@ impl Rgb {
         Self(self.0 >> 1 & LOW_SEVEN_BITS_OF_EACH_CHANNEL)
     }
 
+    /// It in front of `behind`, of which it hides `alpha` parts in 255: each channel rounded to the
+    /// nearest.
+    #[must_use]
+    pub const fn over(self, behind: Self, alpha: u8) -> Self {
+        const fn mixed(front: u8, behind: u8, alpha: u8) -> u8 {
+            const WHOLE: u32 = 255;
+            let sum = front as u32 * alpha as u32 + behind as u32 * (WHOLE - alpha as u32);
+            ((sum + WHOLE / 2) / WHOLE) as u8
+        }
+        Self::new(
+            mixed(self.red(), behind.red(), alpha),
+            mixed(self.green(), behind.green(), alpha),
+            mixed(self.blue(), behind.blue(), alpha),
+        )
+    }
+
     /// How bright the colour looks, from 0 to 255, by the Rec. 709 weights in 16-bit fixed point.
     pub const fn luma(self) -> u8 {
         const RED: u32 = 13_933;
@@ -120,6 +136,14 @@ mod tests {
     #[test]
     fn halving_never_borrows_from_the_next_channel() {
         assert_eq!(Rgb::new(255, 1, 3).halved(), Rgb::new(127, 0, 1));
+    }
+
+    #[test]
+    fn what_is_in_front_hides_its_share() {
+        let (front, behind) = (Rgb::new(255, 0, 10), Rgb::new(0, 255, 20));
+        assert_eq!(front.over(behind, 0), behind);
+        assert_eq!(front.over(behind, 255), front);
+        assert_eq!(front.over(behind, 51), Rgb::new(51, 204, 18));
     }
 
     #[test]

@@ -84,6 +84,12 @@ impl Grid {
         Some(self.cells[row as usize * self.width() as usize + column as usize])
     }
 
+    /// Puts `tile` into `cell`, which must be on the map.
+    pub(super) fn set(&mut self, cell: Cell, tile: TileId) {
+        let width = self.width() as usize;
+        self.cells[cell.row as usize * width + cell.column as usize] = tile;
+    }
+
     /// Whether there is something solid at a place; off the map there is nothing.
     pub fn is_solid(&self, column: i64, row: i64) -> bool {
         self.tile(column, row).is_some_and(|tile| self.is_solid_tile(tile))

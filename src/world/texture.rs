@@ -67,6 +67,18 @@ impl Texture {
         &self.texels[x..x + height]
     }
 
+    /// Whether any of it can be seen through.
+    pub fn has_alpha(&self) -> bool {
+        !self.alpha.is_empty()
+    }
+
+    /// The alpha of the texels of [`Texture::column`]; `None` where all of the texture is opaque.
+    pub fn alpha_column(&self, u: f64) -> Option<&[u8]> {
+        let height = self.height.get() as usize;
+        let x = texel_index(u, self.width.get()) * height;
+        self.alpha.get(x..x + height)
+    }
+
     /// The alpha of the texel at `(x, y)`, 255 where it is opaque.
     ///
     /// # Panics

@@ -7,7 +7,6 @@ use glam::Vec2Swizzles;
 use proptest::prelude::*;
 
 use super::*;
-use crate::world::Cell;
 
 fn radius(cells: f64) -> Radius {
     Radius::new(cells).unwrap()

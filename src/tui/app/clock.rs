@@ -14,7 +14,7 @@ pub(super) struct Clock {
 impl Clock {
     /// The most steps that are made up for at once, a quarter of a second: a machine that can't keep
     /// up plays slower, rather than later and later.
-    pub(super) const MOST_STEPS: u64 = 15;
+    pub(super) const MOST_STEPS: usize = 15;
 
     /// How many steps have passed between the last call and `now`.
     pub(super) fn steps_until(&mut self, now: Duration) -> u64 {
@@ -29,9 +29,10 @@ impl Clock {
         self.cut = now;
     }
 
-    /// When the next step will have passed.
-    pub(super) fn next_step(&self) -> Duration {
-        self.cut + step()
+    /// When the step after `steps` steps to come will have passed.
+    pub(super) fn step_after(&self, steps: u64) -> Duration {
+        let nanoseconds = step().as_nanos() as u64;
+        self.cut + Duration::from_nanos(nanoseconds.saturating_mul(steps.saturating_add(1)))
     }
 }
 
@@ -48,7 +49,8 @@ mod tests {
         let mut clock = Clock::default();
         let steps: u64 = (1..=997).map(|call| clock.steps_until(Duration::from_millis(call))).sum();
         assert_eq!(steps, 59);
-        assert!(clock.next_step() > Duration::from_millis(997));
+        assert!(clock.step_after(0) > Duration::from_millis(997));
+        assert_eq!(clock.step_after(2), clock.step_after(0) + 2 * step());
         clock.skip_to(Duration::from_secs(3600));
         assert_eq!(clock.steps_until(Duration::from_secs(3600)), 0);
     }

@@ -6,6 +6,7 @@ use ratatui::style::{Modifier, Style};
 use ratatui::text::{Line, Text};
 use ratatui::widgets::{Block, Clear, Paragraph, Wrap};
 
+use crate::game::Game;
 use crate::tui::Minimap;
 use crate::tui::bindings::{Action, Bindings};
 use crate::world::World;
@@ -63,15 +64,14 @@ pub(super) fn framed(frame: &mut Frame, area: Rect, title: &str) -> Rect {
 }
 
 /// The line below the picture.
-pub(super) fn status(
-    frame: &mut Frame,
-    area: Rect,
-    world: &World,
-    runs: bool,
-    bindings: &Bindings,
-) {
-    let running = if runs { "  running" } else { "" };
-    let left = Line::from(format!(" {}{running}", title(world)));
+pub(super) fn status(frame: &mut Frame, area: Rect, game: &Game, runs: bool, bindings: &Bindings) {
+    let running = runs.then(|| "running".to_owned());
+    let keys = game.keys().map(|key| format!("{key} key"));
+    let message = game.message().map(str::to_owned);
+    let parts = running.into_iter().chain(keys).chain(message);
+    let left: String =
+        parts.fold(format!(" {}", title(game.world())), |line, part| line + "  " + &part);
+    let left = Line::from(left);
     let right = Line::from(format!(" {} help ", key_names(bindings, Action::ToggleHelp)));
     let widths = [Constraint::Fill(1), Constraint::Length(right.width() as u16)];
     let [left_area, right_area] = Layout::horizontal(widths).areas(area);
@@ -166,7 +166,7 @@ mod tests {
     fn help_is_whole_or_says_that_there_is_more() {
         let bindings = Bindings::default();
         for (columns, rows, is_whole) in
-            [(31, 16, true), (61, 9, true), (200, 60, true), (60, 9, false), (20, 5, false)]
+            [(31, 17, true), (61, 10, true), (200, 60, true), (60, 9, false), (20, 5, false)]
         {
             let text = shown(columns, rows, |frame| help(frame, frame.area(), &bindings));
             let is_so = Action::ALL.iter().all(|(_, does, _)| text.contains(does));

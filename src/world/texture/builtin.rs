@@ -3,7 +3,8 @@
 //! All are 64 texels square and lit from the upper left. Each is a function from a texel's place to
 //! its colour, in integers only, so that it is the same on every machine. Noise wraps around and
 //! joints are centred on the edges, so that walls stand side by side without a seam; all but
-//! `plaster`, which has a rail above and a skirting below, tile from top to bottom as well.
+//! `plaster`, which has a rail above and a skirting below, and `fence`, which stands on the ground,
+//! tile from top to bottom as well. `grate` and `fence` have holes.
 //!
 //! Shapes are large and grain is faint: a wall is rarely more than thirty pixels high in a
 //! terminal, where grain shimmers and costs bytes. Pictures compiled in from files were refused:
@@ -12,6 +13,7 @@
 mod block;
 mod facing;
 mod hedge;
+mod ironwork;
 mod masonry;
 mod metal;
 mod noise;
@@ -29,30 +31,52 @@ pub const NAMES: &[&str] = &names();
 
 /// The built-in texture of that name, or `None` where there is none.
 pub fn named(name: &str) -> Option<Texture> {
-    let (_, paint) = PAINTERS.iter().find(|(known, _)| *known == name)?;
-    Some(Texture::from_fn(SIDE_LENGTH, SIDE_LENGTH, |x, y| paint(x as i32, y as i32)))
+    let (_, painter) = PAINTERS.iter().find(|(known, _)| *known == name)?;
+    Some(match *painter {
+        Painter::Solid(paint) => {
+            Texture::from_fn(SIDE_LENGTH, SIDE_LENGTH, |x, y| paint(x as i32, y as i32))
+        }
+        Painter::WithHoles(paint) => {
+            Texture::from_fn_with_alpha(SIDE_LENGTH, SIDE_LENGTH, |x, y| {
+                paint(x as i32, y as i32).map_or((HOLE, CLEAR), |color| (color, OPAQUE))
+            })
+        }
+    })
 }
 
 /// Texels along each side of a texture.
 const SIDE: i32 = SIDE_LENGTH.get() as i32;
 const SIDE_LENGTH: NonZeroU32 = NonZeroU32::new(64).expect("64 is not 0");
 
-/// The colour of the texel at `(x, y)`, both from 0 up to [`SIDE`].
-type Painter = fn(i32, i32) -> Rgb;
+/// What gives the texel at `(x, y)`, both from 0 up to [`SIDE`], its colour.
+#[derive(Clone, Copy)]
+enum Painter {
+    Solid(fn(i32, i32) -> Rgb),
+    /// There is a hole where it gives none.
+    WithHoles(fn(i32, i32) -> Option<Rgb>),
+}
 
-const PAINTERS: [(&str, Painter); 12] = [
-    ("brick", masonry::brick),
-    ("stone", masonry::stone),
-    ("moss", masonry::moss),
-    ("wood", timber::wood),
-    ("oak", timber::oak),
-    ("metal", metal::metal),
-    ("tile", facing::tile),
-    ("flagstone", masonry::flagstone),
-    ("plaster", facing::plaster),
-    ("sandstone", masonry::sandstone),
-    ("hedge", hedge::hedge),
-    ("marble", facing::marble),
+/// What is seen in a hole where a texture with holes is used for a wall.
+const HOLE: Rgb = Rgb::new(0x1c, 0x1e, 0x22);
+const CLEAR: u8 = 0;
+const OPAQUE: u8 = u8::MAX;
+
+const PAINTERS: [(&str, Painter); 15] = [
+    ("brick", Painter::Solid(masonry::brick)),
+    ("stone", Painter::Solid(masonry::stone)),
+    ("moss", Painter::Solid(masonry::moss)),
+    ("wood", Painter::Solid(timber::wood)),
+    ("oak", Painter::Solid(timber::oak)),
+    ("metal", Painter::Solid(metal::metal)),
+    ("tile", Painter::Solid(facing::tile)),
+    ("flagstone", Painter::Solid(masonry::flagstone)),
+    ("plaster", Painter::Solid(facing::plaster)),
+    ("sandstone", Painter::Solid(masonry::sandstone)),
+    ("hedge", Painter::Solid(hedge::hedge)),
+    ("marble", Painter::Solid(facing::marble)),
+    ("jamb", Painter::Solid(ironwork::jamb)),
+    ("grate", Painter::WithHoles(ironwork::grate)),
+    ("fence", Painter::WithHoles(timber::fence)),
 ];
 
 /// A difference between two places, the short way around the texture.
@@ -125,7 +149,7 @@ mod tests {
 
     #[test]
     fn floors_have_no_seam_from_north_to_south() {
-        for name in NAMES.iter().filter(|&&name| name != "plaster") {
+        for name in NAMES.iter().filter(|name| !["plaster", "fence"].contains(name)) {
             assert!(wraps(&rows(&columns(name))), "{name}");
         }
     }
@@ -167,6 +191,20 @@ mod tests {
     }
 
     #[test]
+    fn grates_and_fences_have_holes_that_one_can_see_through() {
+        for name in NAMES {
+            let texture = named(name).unwrap();
+            let texels = || (0..64).flat_map(|x| (0..64).map(move |y| (x, y)));
+            let holes = texels().filter(|&(x, y)| texture.alpha(x, y) == CLEAR).count();
+            if ["grate", "fence"].contains(name) {
+                assert!((64 * 64 / 3..64 * 64 * 3 / 4).contains(&holes), "{name}: {holes}");
+            } else {
+                assert!(holes == 0 && !texture.has_alpha(), "{name}: {holes}");
+            }
+        }
+    }
+
+    #[test]
     fn they_are_the_same_everywhere() {
         let mut list = String::new();
         for name in NAMES {
@@ -190,6 +228,9 @@ mod tests {
         sandstone #ba9661 e42eb514
         hedge     #447535 0f990761
         marble    #c1c4ca ed3037a3
+        jamb      #75777a bf2e1ee8
+        grate     #56585c bce9d347
+        fence     #6a5c47 bfff9378
         ");
     }
 }

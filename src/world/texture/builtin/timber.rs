@@ -1,4 +1,4 @@
-//! What carpenters make: planks and a panelled door.
+//! What carpenters make: planks, a panelled door, a picket fence.
 
 use std::ops::Range;
 
@@ -102,4 +102,30 @@ fn knob(x: i32, y: i32) -> Option<Rgb> {
     } else {
         None
     }
+}
+
+/// A fence of pointed pickets on two rails.
+pub(super) fn fence(x: i32, y: i32) -> Option<Rgb> {
+    const PICKET: i32 = 16;
+    const WIDTH: i32 = 10;
+    const POINT: i32 = 12;
+    const RAILS: [Range<i32>; 2] = [22..28, 48..54];
+    const PAINT: Rgb = Rgb::new(0xb8, 0x9a, 0x6c);
+    const RAIL_PAINT: Rgb = Rgb::new(0x8c, 0x70, 0x4a);
+
+    let (picket_x, half) = (x % PICKET - (PICKET - WIDTH) / 2, WIDTH / 2);
+    let from_middle = if picket_x < half { half - 1 - picket_x } else { picket_x - half };
+    let top = POINT + from_middle * 2;
+    if (0..WIDTH).contains(&picket_x) && y >= top {
+        let edge = match picket_x {
+            0 | 1 => 40,
+            _ if picket_x >= WIDTH - 2 => -60,
+            _ if y < top + 2 => 50,
+            _ => 0,
+        };
+        return Some(shade(PAINT, edge + grain(x, y)));
+    }
+    let rail = RAILS.iter().find(|rail| rail.contains(&y))?;
+    let edge = if y == rail.start { 30 } else { -30 * i32::from(y + 2 >= rail.end) };
+    Some(shade(RAIL_PAINT, edge + grain(y, x)))
 }

@@ -1,0 +1,54 @@
+//! The walk past what a ray may pass: doors that are ajar, glass, and holes.
+//!
+//! It stops at every solid cell and asks what that is; between two of them it is the walk that looks
+//! for walls, and costs the same.
+
+use super::{Crossing, Hit, Order, Ray, Side, Walk, door};
+use crate::world::{TileId, TileKind, World};
+
+/// What `ray`, whose `walk` has not begun, hits in `world`; it tells `passed` what it passes.
+pub(super) fn cast<O: Order>(
+    mut walk: Walk<O>,
+    world: &World,
+    ray: &Ray,
+    mut passed: impl FnMut(Hit),
+) -> Option<Hit> {
+    let grid = world.grid();
+    let leaf_in = |cell| door::meet(grid, ray, cell, world.opening(cell));
+    let start = walk.cell();
+    if let Some((cell, tile)) = start
+        && let TileKind::Door(_) = world.tile(tile).kind
+        && let Some(hit) = leaf_in(cell)
+    {
+        return Some(hit);
+    }
+    while let Some(crossing) = walk.first_solid() {
+        match world.tile(crossing.tile).kind {
+            TileKind::Door(_) => {
+                if let Some(hit) = leaf_in(crossing.cell) {
+                    return Some(hit);
+                }
+            }
+            TileKind::Mask(_) | TileKind::Glass(_) => {
+                if tile_before(world, ray, crossing) != Some(crossing.tile) {
+                    passed(Hit::entering(ray, crossing.cell, crossing.side));
+                }
+            }
+            TileKind::Wall(_) | TileKind::Open | TileKind::Doorway(_) => {
+                return Some(Hit::entering(ray, crossing.cell, crossing.side));
+            }
+        }
+    }
+    None
+}
+
+/// What the cell holds that `ray` leaves by a crossing.
+fn tile_before(world: &World, ray: &Ray, crossing: Crossing) -> Option<TileId> {
+    let back = |direction: f64| if direction > 0.0 { -1 } else { 1 };
+    let (columns, rows) = match crossing.side {
+        Side::X => (back(ray.direction().x), 0),
+        Side::Y => (0, back(ray.direction().y)),
+    };
+    let (column, row) = (i64::from(crossing.cell.column), i64::from(crossing.cell.row));
+    world.grid().tile(column + columns, row + rows)
+}

@@ -1,0 +1,240 @@
+//! Doors and keys: what the legend says of them, and whether the drawing lets them work.
+//!
+//! A door slides into a wall, so it stands between two; and it leads from somewhere to somewhere, so
+//! there is open floor before and behind it. A locked one must be worth walking up to: its key lies
+//! where the player gets without opening it.
+
+mod reach;
+
+use std::collections::{BTreeMap, BTreeSet};
+use std::ops::Range;
+
+use toml::de::DeTable;
+
+use super::drawing::Drawing;
+use super::legend::{Legend, Meaning};
+use super::textures::Surface;
+use crate::fault::document::{Entry, entries};
+use crate::fault::{Fault, quoted};
+use crate::world::{Cell, Grid, KeyId, Start, Tile, TileKind};
+use reach::Reach;
+
+/// A door, as the legend has it.
+pub(super) struct DoorSymbol<'a> {
+    pub(super) leaf: Surface<'a>,
+    pub(super) key: Option<KeySymbol<'a>>,
+}
+
+/// The name of a key, and where the map says it.
+#[derive(Clone)]
+pub(super) struct KeySymbol<'a> {
+    pub(super) name: &'a str,
+    place: Range<usize>,
+}
+
+impl<'a> DoorSymbol<'a> {
+    /// The door that `entry` of `table` describes, with the key that the table names.
+    pub(super) fn read(
+        entry: &Entry<'a, '_>,
+        table: &'a DeTable<'_>,
+        faults: &mut Vec<Fault>,
+    ) -> Option<Self> {
+        let leaf = Surface::read(entry, r#"{ door = "oak" }"#, faults);
+        let key = entries(table).find(|entry| entry.key == "key");
+        let key = match key {
+            None => None,
+            Some(key) => {
+                Some(KeySymbol::read(&key, r#"{ door = "metal", key = "brass" }"#, faults)?)
+            }
+        };
+        Some(Self { leaf: leaf?, key })
+    }
+}
+
+impl<'a> KeySymbol<'a> {
+    /// The name that `entry` holds.
+    pub(super) fn read(
+        entry: &Entry<'a, '_>,
+        example: &str,
+        faults: &mut Vec<Fault>,
+    ) -> Option<Self> {
+        let name = entry.string(example, faults)?;
+        let place = entry.value_place.clone();
+        if name.is_empty() || name.contains(char::is_control) {
+            let message = "a key's name is some characters on one line";
+            faults.push(Fault::new(place, message).help(format!("write {example}")));
+            return None;
+        }
+        Some(Self { name, place })
+    }
+}
+
+/// The names of the keys that the doors of a drawing ask for; each key is an index into them.
+pub(super) struct Keys {
+    names: Vec<String>,
+}
+
+impl Keys {
+    /// Those of the doors that are drawn. No more than there are kinds of tile.
+    pub(super) fn of(drawing: &Drawing<'_>, legend: &Legend<'_>) -> Self {
+        let doors = locked_doors(drawing, legend);
+        let names: BTreeSet<&str> = doors.map(|(_, key)| key.name).collect();
+        Self { names: names.into_iter().map(str::to_owned).collect() }
+    }
+
+    /// The key of that name, if a door asks for it.
+    pub(super) fn id(&self, name: &str) -> Option<KeyId> {
+        let index = self.names.iter().position(|known| known == name)?;
+        u8::try_from(index).ok().map(KeyId)
+    }
+
+    pub(super) fn into_names(self) -> Vec<String> {
+        self.names
+    }
+}
+
+/// What is wrong with the doors and keys of a drawing whose cells are those of `grid`.
+pub(super) fn faults(
+    drawing: &Drawing<'_>,
+    legend: &Legend<'_>,
+    grid: &Grid,
+    tiles: &[Tile],
+    start: Start,
+) -> Vec<Fault> {
+    let doors = drawn_doors(drawing, legend);
+    let mut faults: Vec<Fault> =
+        doors.filter_map(|door| misplaced(drawing, grid, tiles, door)).collect();
+    // Where doors are misplaced, what lies behind them is anybody's guess.
+    if faults.is_empty() {
+        faults = keys_out_of_reach(drawing, legend, grid, start);
+    }
+    faults.extend(useless_keys(drawing, legend));
+    faults
+}
+
+/// The characters of the doors in a drawing.
+fn drawn_doors(drawing: &Drawing<'_>, legend: &Legend<'_>) -> impl Iterator<Item = char> {
+    let is_door = |character: &char| {
+        legend
+            .symbols
+            .get(character)
+            .is_some_and(|symbol| matches!(symbol.meaning, Meaning::Door(_)))
+    };
+    drawing.characters().map(|(character, _)| character).filter(move |it| is_door(it))
+}
+
+/// The characters of the locked doors in a drawing, and their keys.
+fn locked_doors<'l, 'a>(
+    drawing: &'l Drawing<'_>,
+    legend: &'l Legend<'a>,
+) -> impl Iterator<Item = (char, &'l KeySymbol<'a>)> {
+    drawing.characters().filter_map(|(character, _)| {
+        match &legend.symbols.get(&character)?.meaning {
+            Meaning::Door(DoorSymbol { key: Some(key), .. }) => Some((character, key)),
+            _ => None,
+        }
+    })
+}
+
+/// The characters of the keys in a drawing, and which they are.
+fn drawn_keys<'l, 'a>(
+    drawing: &'l Drawing<'_>,
+    legend: &'l Legend<'a>,
+) -> impl Iterator<Item = (char, &'l KeySymbol<'a>)> {
+    drawing.characters().filter_map(|(character, _)| {
+        match &legend.symbols.get(&character)?.meaning {
+            Meaning::Key(key) => Some((character, key)),
+            _ => None,
+        }
+    })
+}
+
+/// The fault that the doors drawn as `character` include some that can't slide, or lead nowhere.
+fn misplaced(drawing: &Drawing<'_>, grid: &Grid, tiles: &[Tile], character: char) -> Option<Fault> {
+    let mut wrong =
+        drawing.cells_of(character).filter(|&cell| !is_between_jambs(grid, tiles, cell));
+    let first = wrong.next()?;
+    let message = "a door stands between two walls, with open floor before and behind it";
+    let fault = Fault::new(drawing.place_of(first), message)
+        .help("draw it in a gap of a wall, such as \"#+#\", or use { wall = … }");
+    Some(match wrong.count() {
+        0 => fault.label("this one does not"),
+        others => fault.label(format!("this one does not, and {others} more")),
+    })
+}
+
+/// Whether exactly one pair of opposite neighbours of `cell` can hold a door, and the other pair is
+/// open floor.
+fn is_between_jambs(grid: &Grid, tiles: &[Tile], cell: Cell) -> bool {
+    let (column, row) = (i64::from(cell.column), i64::from(cell.row));
+    let kinds = |places: [(i64, i64); 2]| {
+        places.map(|(column, row)| Some(tiles[usize::from(grid.tile(column, row)?.0)].kind))
+    };
+    let pairs = [
+        kinds([(column - 1, row), (column + 1, row)]),
+        kinds([(column, row - 1), (column, row + 1)]),
+    ];
+    let holds =
+        |kind| matches!(kind, Some(TileKind::Wall(_) | TileKind::Mask(_) | TileKind::Glass(_)));
+    let is_open = |kind| matches!(kind, Some(TileKind::Open));
+    let [one, other] = pairs;
+    one.into_iter().all(holds) && other.into_iter().all(is_open)
+        || one.into_iter().all(is_open) && other.into_iter().all(holds)
+}
+
+/// The faults that keys are drawn that no drawn door asks for.
+fn useless_keys(drawing: &Drawing<'_>, legend: &Legend<'_>) -> Vec<Fault> {
+    let asked: BTreeSet<&str> = locked_doors(drawing, legend).map(|(_, key)| key.name).collect();
+    let useless = drawn_keys(drawing, legend).filter(|(_, key)| !asked.contains(key.name));
+    useless
+        .map(|(_, key)| {
+            let name = quoted(key.name);
+            Fault::new(key.place.clone(), format!("no door in the grid asks for the key {name}"))
+                .help(format!(
+                    "draw a door {{ door = \"oak\", key = {name} }}, or leave the key out"
+                ))
+        })
+        .collect()
+}
+
+/// The faults that doors are drawn whose key nobody gets at.
+fn keys_out_of_reach(
+    drawing: &Drawing<'_>,
+    legend: &Legend<'_>,
+    grid: &Grid,
+    start: Start,
+) -> Vec<Fault> {
+    let mut locks = BTreeMap::new();
+    for (character, key) in locked_doors(drawing, legend) {
+        locks.extend(drawing.cells_of(character).map(|cell| (cell, key.name)));
+    }
+    if locks.is_empty() {
+        return Vec::new();
+    }
+    let doors: BTreeSet<Cell> =
+        drawn_doors(drawing, legend).flat_map(|door| drawing.cells_of(door)).collect();
+    let keys: BTreeMap<Cell, &str> = drawn_keys(drawing, legend)
+        .flat_map(|(character, key)| drawing.cells_of(character).map(|cell| (cell, key.name)))
+        .collect();
+    let taken = Reach { grid, doors: &doors, locks: &locks, keys: &keys }.keys_from(start.cell);
+    let missing = locked_doors(drawing, legend).filter(|(_, key)| !taken.contains(key.name));
+    missing
+        .map(|(_, key)| {
+            let name = quoted(key.name);
+            let is_drawn = drawn_keys(drawing, legend).any(|(_, drawn)| drawn.name == key.name);
+            let place = key.place.clone();
+            if is_drawn {
+                let message = format!("the key {name} cannot be reached from the start");
+                Fault::new(place, message)
+                    .label("nobody can open this door")
+                    .help("put the key where one gets without opening the doors that ask for it")
+            } else {
+                Fault::new(place, format!("there is no key {name} in the grid"))
+                    .label("nobody can open this door")
+                    .help(format!(
+                        "under [things] write \"k\" = {{ key = {name} }}, and draw one k"
+                    ))
+            }
+        })
+        .collect()
+}

@@ -1,0 +1,106 @@
+//! Doors: how they look, which key they ask for, and how far each of them is open.
+//!
+//! A door's leaf stands in the middle of its cell and slides aside into a jamb. Two kinds of tile
+//! belong to it: [`Door`](super::TileKind::Door), which is solid, as long as any of the leaf is in
+//! the way, and [`Doorway`](super::TileKind::Doorway), which is open floor between two jambs, once
+//! all of it is gone. So a door that is open costs no more than the floor, one that is closed no more
+//! than a wall, and nobody who asks what is solid needs to know of doors. A door that is solid just
+//! where its leaf is was refused: whoever stands beside the leaf as it comes back would be inside it.
+
+use super::{Cell, Paint};
+
+/// A kind of door.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub struct Door {
+    /// How its leaf looks.
+    pub leaf: Paint,
+    /// How the walls look that it is set between, where they face its cell.
+    pub jamb: Paint,
+    /// Which key opens it; `None` where it is not locked.
+    pub key: Option<KeyId>,
+}
+
+/// Which key: an index into the world's list of their names.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Hash, PartialOrd, Ord)]
+pub struct KeyId(pub u8);
+
+/// How far a door is open: the part of its leaf that has gone into the jamb, from 0 to 1.
+#[derive(Clone, Copy, Debug, PartialEq, PartialOrd)]
+pub struct Opening(f64);
+
+impl Opening {
+    /// All of the leaf is in the way.
+    pub const CLOSED: Self = Self(0.0);
+    /// None of it is.
+    pub const OPEN: Self = Self(1.0);
+
+    /// An opening by that part, from 0 to 1. `None` outside that.
+    pub fn new(part: f64) -> Option<Self> {
+        // Zero is added to be rid of its sign.
+        (0.0..=1.0).contains(&part).then_some(Self(part + 0.0))
+    }
+
+    /// The part of the leaf that is gone, from 0 to 1.
+    pub fn part(self) -> f64 {
+        self.0
+    }
+}
+
+/// The doors that are neither closed nor open, and how far they are open.
+#[derive(Clone, Debug, PartialEq, Default)]
+pub(super) struct Ajar {
+    /// In the order of their cells: few at any time.
+    openings: Vec<(Cell, Opening)>,
+}
+
+impl Ajar {
+    /// How far the door in `cell` is open, if it is one of them.
+    pub(super) fn opening(&self, cell: Cell) -> Option<Opening> {
+        self.find(cell).ok().map(|index| self.openings[index].1)
+    }
+
+    /// Takes note that the door in `cell` is open by `opening`.
+    pub(super) fn set(&mut self, cell: Cell, opening: Opening) {
+        let is_ajar = Opening::CLOSED < opening && opening < Opening::OPEN;
+        match self.find(cell) {
+            Ok(index) if is_ajar => self.openings[index].1 = opening,
+            Err(index) if is_ajar => self.openings.insert(index, (cell, opening)),
+            Ok(index) => _ = self.openings.remove(index),
+            Err(_) => {}
+        }
+    }
+
+    fn find(&self, cell: Cell) -> Result<usize, usize> {
+        self.openings.binary_search_by_key(&cell, |&(ajar, _)| ajar)
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn an_opening_is_a_part() {
+        for part in [0.0, -0.0, 0.25, 1.0] {
+            assert_eq!(Opening::new(part).map(Opening::part), Some(part));
+        }
+        for part in [-0.001, 1.001, f64::NAN, f64::INFINITY] {
+            assert_eq!(Opening::new(part), None);
+        }
+    }
+
+    #[test]
+    fn only_doors_that_are_ajar_are_remembered() {
+        let cell = |column| Cell { column, row: 0 };
+        let half = Opening::new(0.5).unwrap();
+        let mut ajar = Ajar::default();
+        for column in [5, 3, 4] {
+            ajar.set(cell(column), half);
+        }
+        ajar.set(cell(4), Opening::CLOSED);
+        ajar.set(cell(3), Opening::OPEN);
+        assert_eq!([3, 4, 5].map(|column| ajar.opening(cell(column))), [None, None, Some(half)]);
+        ajar.set(cell(5), Opening::CLOSED);
+        assert_eq!(ajar, Ajar::default());
+    }
+}
