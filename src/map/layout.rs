@@ -3,7 +3,7 @@
 use std::ops::Range;
 
 use super::drawing::Drawing;
-use super::legend::{Legend, Meaning, Symbol};
+use super::legend::{Legend, Meaning, Surroundings, Symbol};
 use super::per_character::PerCharacter;
 use super::textures::Textures;
 use crate::fault::Fault;
@@ -11,36 +11,38 @@ use crate::world::{Grid, Start, Thing, ThingKind, Tile, TileId, TileKind};
 
 /// The most kinds of tile in a grid, open floor among them.
 const MAX_TILES: usize = 255;
-const OPEN: Tile = Tile { character: '.', kind: TileKind::Open };
-const OPEN_TILES: u8 = 1;
 
 /// What a drawing shows.
 pub(super) struct Layout {
     pub(super) grid: Grid,
-    /// Open floor, then the walls that the grid has, in the order of their characters.
+    /// The map's own open floor, then other open floor and then the walls that the grid has, each in
+    /// the order of their characters.
     pub(super) tiles: Vec<Tile>,
     pub(super) start: Start,
     pub(super) things: Vec<Thing>,
 }
 
 impl Layout {
-    /// What `drawing` shows. `None` where anything is wrong with the map; what is wrong with this
+    /// What `drawing` shows, on open floor like `ground`. `None` where anything is wrong with the map; what is wrong with this
     /// part of it is added to `faults`.
     pub(super) fn of(
         drawing: &Drawing<'_>,
         legend: &Legend<'_>,
+        ground: Tile,
         textures: &mut Textures<'_>,
         faults: &mut Vec<Fault>,
     ) -> Option<Self> {
         faults.extend(undefined_characters(drawing, legend));
         faults.extend(wrong_start(drawing, legend));
-        let tiles = tiles(drawing, legend, textures, faults);
+        let tiles = tiles(drawing, legend, ground, textures, faults);
         if !faults.is_empty() {
             return None;
         }
         let start = start(drawing, legend)?;
         let things = exits(drawing, legend).collect();
-        Some(Self { grid: grid(drawing, &tiles)?, tiles, start, things })
+        let first_solid = TileId(tiles.open.len() as u8);
+        let tiles = [tiles.open, tiles.walls].concat();
+        Some(Self { grid: grid(drawing, &tiles, first_solid)?, tiles, start, things })
     }
 }
 
@@ -127,31 +129,67 @@ fn exits(drawing: &Drawing<'_>, legend: &Legend<'_>) -> impl Iterator<Item = Thi
         .map(|cell| Thing { kind: ThingKind::Exit, cell })
 }
 
-/// The kinds of tile in the drawing.
+/// The kinds of tile in the drawing, open ones first; `ground` is the map's own.
 fn tiles(
     drawing: &Drawing<'_>,
     legend: &Legend<'_>,
+    ground: Tile,
     textures: &mut Textures<'_>,
     faults: &mut Vec<Fault>,
-) -> Vec<Tile> {
-    let mut tiles = vec![OPEN];
+) -> Tiles {
+    let mut tiles = Tiles { open: vec![ground], walls: Vec::new() };
     for (character, _) in drawing.characters() {
         let Some(symbol) = legend.symbols.get(&character) else { continue };
-        let Meaning::Wall(surface) = &symbol.meaning else { continue };
+        if !matches!(symbol.meaning, Meaning::Wall(..) | Meaning::Floor(_)) {
+            continue;
+        }
         if tiles.len() == MAX_TILES {
-            let message = format!("the grid has more than {} kinds of wall", MAX_TILES - 1);
+            let message = format!("the grid has more than {} kinds of tile", MAX_TILES - 1);
             faults.push(Fault::new(symbol.place.clone(), message).label("one too many"));
             break;
         }
-        if let Some(paint) = textures.paint(surface, faults) {
-            tiles.push(Tile { character, kind: TileKind::Wall(paint) });
+        match &symbol.meaning {
+            Meaning::Wall(surface, light) => {
+                let paint = textures.paint(surface, faults);
+                tiles.walls.extend(paint.map(|paint| Tile {
+                    character,
+                    kind: TileKind::Wall(paint),
+                    light: *light,
+                    ..ground
+                }));
+            }
+            Meaning::Floor(Surroundings { floor, ceiling, light }) => {
+                let floor = floor.as_ref().and_then(|floor| floor.covering(textures, faults));
+                let ceiling =
+                    ceiling.as_ref().and_then(|ceiling| ceiling.ceiling(textures, faults));
+                tiles.open.push(Tile {
+                    character,
+                    kind: TileKind::Open,
+                    floor: floor.unwrap_or(ground.floor),
+                    ceiling: ceiling.unwrap_or(ground.ceiling),
+                    light: *light,
+                });
+            }
+            _ => {}
         }
     }
     tiles
 }
 
-/// The grid of a drawing whose walls are all in `tiles`.
-fn grid(drawing: &Drawing<'_>, tiles: &[Tile]) -> Option<Grid> {
+/// Kinds of tile, open ones and solid ones apart.
+struct Tiles {
+    open: Vec<Tile>,
+    walls: Vec<Tile>,
+}
+
+impl Tiles {
+    fn len(&self) -> usize {
+        self.open.len() + self.walls.len()
+    }
+}
+
+/// The grid of a drawing whose tiles are all in `tiles`, which are solid from `first_solid` on.
+fn grid(drawing: &Drawing<'_>, tiles: &[Tile], first_solid: TileId) -> Option<Grid> {
     let mut tile_of = PerCharacter::<u8>::new();
     for (tile, id) in tiles.iter().zip(0..) {
         *tile_of.get_mut(tile.character) = id;
@@ -161,5 +199,5 @@ fn grid(drawing: &Drawing<'_>, tiles: &[Tile]) -> Option<Grid> {
     for row in drawing.rows() {
         cells.extend(row.chars().map(|character| TileId(tile_of.get(character))));
     }
-    Grid::new(width, height, TileId(OPEN_TILES), cells)
+    Grid::new(width, height, first_solid, cells)
 }

@@ -15,6 +15,7 @@ mod hedge;
 mod masonry;
 mod metal;
 mod noise;
+mod panorama;
 mod patch;
 mod shade;
 mod timber;
@@ -31,6 +32,17 @@ pub const NAMES: &[&str] = &names();
 pub fn named(name: &str) -> Option<Texture> {
     let (_, paint) = PAINTERS.iter().find(|(known, _)| *known == name)?;
     Some(Texture::from_fn(SIDE_LENGTH, SIDE_LENGTH, |x, y| paint(x as i32, y as i32)))
+}
+
+/// The names that [`panorama`] knows.
+pub const PANORAMAS: &[&str] = &["hills"];
+
+/// The built-in picture of a whole sky of that name, or `None` where there is none.
+pub fn panorama(name: &str) -> Option<Texture> {
+    const WIDTH: NonZeroU32 = NonZeroU32::new(panorama::WIDTH as u32).expect("it is not 0");
+    const HEIGHT: NonZeroU32 = NonZeroU32::new(panorama::HEIGHT as u32).expect("it is not 0");
+    let paint = (name == PANORAMAS[0]).then_some(panorama::hills)?;
+    Some(Texture::from_fn(WIDTH, HEIGHT, |x, y| paint(x as i32, y as i32)))
 }
 
 /// Texels along each side of a texture.
