@@ -211,7 +211,10 @@ mod tests {
     use proptest::prelude::*;
 
     use super::*;
-    use crate::world::{Cell, Grid, Heading, Paint, Parts, Rgb, Start, Thing, Tile, TileKind};
+    use crate::world::{
+        Ceiling, Cell, Covering, Grid, Heading, Paint, Parts, Rgb, Sky, Start, Thing, Tile,
+        TileKind,
+    };
 
     /// A world drawn in characters: `#` is solid, `@` is where the player starts, `E` is an exit.
     fn world(rows: &[&str], degrees: f64) -> World {
@@ -224,16 +227,17 @@ mod tests {
         let floors: Vec<String> = rows.iter().map(|row| row.replace(['@', 'E'], ".")).collect();
         let floors: Vec<&str> = floors.iter().map(String::as_str).collect();
         let gray = Paint::Color(Rgb::new(128, 128, 128));
+        let (floor, ceiling) = (Covering::from(gray), Ceiling::Covered(gray.into()));
+        let tile = |character, kind| Tile { character, kind, floor, ceiling, light: None };
         World::from_parts(Parts {
             title: String::new(),
             grid: Grid::sketch(&floors).unwrap(),
-            tiles: vec![
-                Tile { character: '.', kind: TileKind::Open },
-                Tile { character: '#', kind: TileKind::Wall(gray) },
-            ],
+            tiles: vec![tile('.', TileKind::Open), tile('#', TileKind::Wall(gray))],
             textures: vec![],
-            floor: gray,
-            ceiling: gray,
+            floor,
+            ceiling,
+            sky: Sky::default(),
+            fog: None,
             start: Start {
                 cell: cells_that_hold('@').next().unwrap(),
                 heading: Heading::from_degrees(degrees).unwrap(),

@@ -24,7 +24,9 @@
 //! anything that an earlier one has found fault with. Rows of unequal length are a fault: padding
 //! short ones was refused, as a lost character then moves half a wall without a word.
 
+mod air;
 pub mod builtin;
+mod covering;
 mod definitions;
 mod doors;
 mod drawing;
@@ -41,7 +43,7 @@ use std::io::{self, Read};
 use std::path::Path;
 
 use crate::fault::{Fault, Faults, document};
-use crate::world::{Parts, World};
+use crate::world::{Ceiling, Covering, Paint, Parts, Rgb, Sky, Tile, TileKind, World};
 use definitions::Definitions;
 use drawing::Drawing;
 use layout::Layout;
@@ -140,21 +142,33 @@ fn read(text: &str, files: &dyn TextureFiles, faults: &mut Vec<Fault>) -> Option
         return None;
     }
     let mut textures = Textures::new(files);
-    let floor = textures.paint(&definitions.floor, faults);
-    let ceiling = textures.paint(&definitions.ceiling, faults);
+    let floor = definitions.floor.covering(&mut textures, faults);
+    let ceiling = definitions.ceiling.ceiling(&mut textures, faults);
+    let sky = definitions.sky.as_ref().map(|sky| sky.sky(&mut textures, faults));
     let Some(grid) = &definitions.grid else {
         faults.push(no_grid());
         return None;
     };
     let drawing = Drawing::read(grid, text, faults)?;
-    let layout = Layout::of(&drawing, &definitions.legend, &mut textures, faults)?;
+    // Where one of the two has a fault, nothing will come of the tiles but further faults.
+    let plain = Covering::from(Paint::Color(Rgb::BLACK));
+    let ground = Tile {
+        character: '.',
+        kind: TileKind::Open,
+        floor: floor.unwrap_or(plain),
+        ceiling: ceiling.unwrap_or(Ceiling::Sky),
+        light: None,
+    };
+    let layout = Layout::of(&drawing, &definitions.legend, ground, &mut textures, faults)?;
     Some(World::from_parts(Parts {
         title: definitions.title,
         grid: layout.grid,
         tiles: layout.tiles,
         textures: textures.into_list(),
-        floor: floor?,
-        ceiling: ceiling?,
+        floor: ground.floor,
+        ceiling: ground.ceiling,
+        sky: sky.unwrap_or_else(|| Some(Sky::default()))?,
+        fog: definitions.fog,
         start: layout.start,
         things: layout.things,
         keys: layout.keys,

@@ -8,14 +8,18 @@
 //! A map's world has all doors closed and all keys in their places. What happens to them happens in
 //! a game's own world, so that whoever draws it needs to be handed nothing else.
 
+mod air;
 mod camera;
 mod color;
+mod covering;
 mod door;
 mod grid;
 pub mod texture;
 
+pub use air::{Fog, Light, Sky};
 pub use camera::{Camera, FieldOfView, Heading};
 pub use color::{NotAColor, Rgb};
+pub use covering::{Ceiling, Covering, Pattern, Scale};
 use door::Ajar;
 pub use door::{Door, KeyId, Opening};
 pub use grid::{Cell, Grid, TileId};
@@ -28,8 +32,10 @@ pub struct World {
     grid: Grid,
     tiles: Vec<Tile>,
     textures: Vec<Texture>,
-    floor: Paint,
-    ceiling: Paint,
+    floor: Covering,
+    ceiling: Ceiling,
+    sky: Sky,
+    fog: Option<Fog>,
     start: Start,
     things: Vec<Thing>,
     keys: Vec<String>,
@@ -37,12 +43,20 @@ pub struct World {
 }
 
 /// One kind of tile.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+#[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Tile {
     /// The character that draws it in a map.
     pub character: char,
     /// What it is.
     pub kind: TileKind,
+    /// What its floor is laid with: its own, or the map's.
+    pub floor: Covering,
+    /// What is overhead there: its own ceiling, or the map's.
+    pub ceiling: Ceiling,
+    /// Of open floor, how bright it is, and the walls that it is seen from; of a wall, how bright its
+    /// own sides are. `None` where the map does not say: full for open floor, and for a wall as
+    /// bright as the floor before it.
+    pub light: Option<Light>,
 }
 
 /// What a tile is.
@@ -118,8 +132,10 @@ pub(crate) struct Parts {
     pub(crate) grid: Grid,
     pub(crate) tiles: Vec<Tile>,
     pub(crate) textures: Vec<Texture>,
-    pub(crate) floor: Paint,
-    pub(crate) ceiling: Paint,
+    pub(crate) floor: Covering,
+    pub(crate) ceiling: Ceiling,
+    pub(crate) sky: Sky,
+    pub(crate) fog: Option<Fog>,
     pub(crate) start: Start,
     pub(crate) things: Vec<Thing>,
     pub(crate) keys: Vec<String>,
@@ -131,10 +147,22 @@ impl World {
     /// door has a doorway by the same character, and stands between solid cells that are no doors.
     /// The map's own checks establish all of that, and name what does not fit.
     pub(crate) fn from_parts(parts: Parts) -> Self {
-        let Parts { title, grid, tiles, textures, floor, ceiling, start, things, keys } = parts;
-        let ajar = Ajar::default();
-        let world =
-            Self { title, grid, tiles, textures, floor, ceiling, start, things, keys, ajar };
+        let Parts { title, grid, tiles, textures, floor, ceiling, sky, fog, start, things, keys } =
+            parts;
+        let world = Self {
+            title,
+            grid,
+            tiles,
+            textures,
+            floor,
+            ceiling,
+            sky,
+            fog,
+            start,
+            things,
+            keys,
+            ajar: Ajar::default(),
+        };
         debug_assert!(world.fits_together());
         world
     }
@@ -143,6 +171,15 @@ impl World {
         let known = |paint: Paint| match paint {
             Paint::Color(_) => true,
             Paint::Texture(id) => usize::from(id.0) < self.textures.len(),
+        };
+        let covers = |covering: Covering| covering.pattern.paints().iter().copied().all(known);
+        let ceils = |ceiling| match ceiling {
+            Ceiling::Sky => true,
+            Ceiling::Covered(covering) => covers(covering),
+        };
+        let sky_is_known = match self.sky {
+            Sky::Gradient { .. } => true,
+            Sky::Panorama(id) => known(Paint::Texture(id)),
         };
         let open = |cell: Cell| {
             let (column, row) = (i64::from(cell.column), i64::from(cell.row));
@@ -166,9 +203,11 @@ impl World {
             }
         };
         self.tiles.iter().enumerate().all(tile_fits)
+            && self.tiles.iter().all(|tile| covers(tile.floor) && ceils(tile.ceiling))
             && self.grid.rows().flatten().all(|tile| usize::from(tile.0) < self.tiles.len())
-            && known(self.floor)
-            && known(self.ceiling)
+            && covers(self.floor)
+            && ceils(self.ceiling)
+            && sky_is_known
             && open(self.start.cell)
             && self.things.iter().all(|thing| open(thing.cell))
     }
@@ -212,14 +251,24 @@ impl World {
         }
     }
 
-    /// How the floor looks.
-    pub fn floor(&self) -> Paint {
+    /// What the floor is laid with where no tile has its own, and beyond the edge of the map.
+    pub fn floor(&self) -> Covering {
         self.floor
     }
 
-    /// How the ceiling looks.
-    pub fn ceiling(&self) -> Paint {
+    /// What is overhead where no tile has its own ceiling. Beyond the edge of the map is sky.
+    pub fn ceiling(&self) -> Ceiling {
         self.ceiling
+    }
+
+    /// What the sky looks like.
+    pub fn sky(&self) -> Sky {
+        self.sky
+    }
+
+    /// What everything fades into, if anything.
+    pub fn fog(&self) -> Option<Fog> {
+        self.fog
     }
 
     /// Where the player starts.

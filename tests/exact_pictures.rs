@@ -14,6 +14,7 @@ use proptest::prelude::*;
 const MAP: &str = r##"
 floor   = "#102030"
 ceiling = "#405060"
+sky     = { gradient = ["#87b5d9", "#87b5d9"] }
 grid = '''
 aaabbbc
 b.....c
@@ -31,6 +32,9 @@ aa.accc
 [things]
 "@" = { start = 0 }
 "##;
+
+const FLOOR: Rgb = Rgb::new(0x10, 0x20, 0x30);
+const CEILING: Rgb = Rgb::new(0x40, 0x50, 0x60);
 
 /// How near to an edge a pixel's centre may be before its colour is anybody's guess, in pixels.
 const DOUBTFUL: f64 = 1e-6;
@@ -158,10 +162,9 @@ impl<'a> Geometry<'a> {
         if (below.abs() - &half).abs() < doubt {
             return None;
         }
-        let background =
-            if below.is_negative() { self.world.ceiling() } else { self.world.floor() };
+        let background = if below.is_negative() { CEILING } else { FLOOR };
         if below.abs() > half {
-            return Some(self.world.mean_color(background));
+            return Some(background);
         }
         match met.place {
             Some((column, row, face)) => {
@@ -170,7 +173,7 @@ impl<'a> Geometry<'a> {
             }
             None if below.abs() < doubt => None,
             None if below.is_negative() => Some(Rgb::SKY),
-            None => Some(self.world.mean_color(self.world.floor())),
+            None => Some(FLOOR),
         }
     }
 

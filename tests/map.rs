@@ -4,7 +4,7 @@ use std::cell::RefCell;
 use std::io;
 
 use cellcaster::map::{self, TextureFileError, TextureFiles, builtin};
-use cellcaster::world::{Cell, Paint, Rgb, ThingKind, TileKind, World};
+use cellcaster::world::{Ceiling, Cell, Covering, Paint, Pattern, Rgb, ThingKind, TileKind, World};
 use proptest::prelude::*;
 
 const VALID: &str = r##"
@@ -39,8 +39,8 @@ fn drawn(world: &World) -> String {
 fn a_map_says_all_that_a_world_is() {
     let world = map::parse_str(VALID).unwrap();
     assert_eq!(world.title(), "Two rooms");
-    assert_eq!(world.ceiling(), Paint::Color(Rgb::SKY));
-    assert!(matches!(world.floor(), Paint::Texture(_)));
+    assert_eq!(world.ceiling(), Ceiling::Sky);
+    assert!(matches!(world.floor().pattern, Pattern::Plain(Paint::Texture(_))));
     assert_eq!(drawn(&world), "#########\n#...#...#\n#...+...#\n#...#...#\n#########");
     let characters: String = world.tiles().iter().map(|tile| tile.character).collect();
     assert_eq!(characters, ".#+");
@@ -141,7 +141,10 @@ fn a_texture_is_read_once_and_only_where_it_is_used() {
     let files = RedFiles::default();
     let world = map::parse(&text, "map", &files).unwrap();
     assert_eq!(files.asked.into_inner(), ["b/c.PNG", "a.png"]);
-    assert_eq!(world.mean_color(world.ceiling()), Rgb::new(255, 0, 0));
+    let Ceiling::Covered(Covering { pattern: Pattern::Plain(paint), .. }) = world.ceiling() else {
+        panic!("a ceiling of one texture")
+    };
+    assert_eq!(world.mean_color(paint), Rgb::new(255, 0, 0));
     assert_eq!(world.tiles()[1].kind, world.tiles()[2].kind);
 }
 

@@ -10,6 +10,7 @@ use super::Error;
 use crate::cast::{Method, NotAMethod};
 use crate::fault;
 use crate::palette::ColorDepth;
+use crate::render::Filter;
 use crate::tui::{CellAspect, GlyphMode};
 use crate::world::{FieldOfView, Heading};
 
@@ -36,6 +37,7 @@ pub(super) struct Play {
     pub(super) glyphs: GlyphMode,
     pub(super) depth: Option<ColorDepth>,
     pub(super) method: Method,
+    pub(super) filter: Filter,
 }
 
 /// Options of `snapshot`.
@@ -51,6 +53,9 @@ pub(super) struct Snapshot {
     pub(super) depth: ColorDepth,
     pub(super) format: Format,
     pub(super) method: Method,
+    pub(super) filter: Filter,
+    /// Whether to tell how the frame is drawn instead of writing it.
+    pub(super) explain: bool,
 }
 
 /// Options of `cast`.
@@ -158,6 +163,7 @@ fn parse_play(mut parser: Parser) -> Result<Command, Error> {
             Arg::Long("glyphs") => play.glyphs = GLYPHS.value(&mut parser)?,
             Arg::Long("colors") => play.depth = Some(COLORS.value(&mut parser)?),
             Arg::Long("caster") => play.method = method(&mut parser)?,
+            Arg::Long("filter") => play.filter = FILTER.value(&mut parser)?,
             other => return Err(unexpected("play", &PLAY_OPTIONS, other)),
         }
     }
@@ -178,6 +184,8 @@ fn parse_snapshot(mut parser: Parser) -> Result<Command, Error> {
             Arg::Long("colors") => snapshot.depth = COLORS.value(&mut parser)?,
             Arg::Long("format") => snapshot.format = FORMAT.value(&mut parser)?,
             Arg::Long("caster") => snapshot.method = method(&mut parser)?,
+            Arg::Long("filter") => snapshot.filter = FILTER.value(&mut parser)?,
+            Arg::Long("explain") => snapshot.explain = true,
             other => return Err(unexpected("snapshot", &SNAPSHOT_OPTIONS, other)),
         }
     }
@@ -238,21 +246,24 @@ fn parse_check(mut parser: Parser) -> Result<Command, Error> {
     Ok(Command::Check(maps))
 }
 
-const PLAY_OPTIONS: [&str; 8] = [
+const PLAY_OPTIONS: [&str; 9] = [
     "--caster",
     "--cell-aspect",
     "--colors",
     "--config",
+    "--filter",
     "--fov",
     "--fps",
     "--glyphs",
     "--version",
 ];
-const SNAPSHOT_OPTIONS: [&str; 8] = [
+const SNAPSHOT_OPTIONS: [&str; 10] = [
     "--camera",
     "--caster",
     "--cell-aspect",
     "--colors",
+    "--explain",
+    "--filter",
     "--format",
     "--fov",
     "--glyphs",
@@ -306,6 +317,16 @@ const GLYPHS: Valued<GlyphMode> = Valued {
     read: |text| match text {
         "half" => Some(GlyphMode::Half),
         "ascii" => Some(GlyphMode::Ascii),
+        _ => None,
+    },
+};
+
+const FILTER: Valued<Filter> = Valued {
+    name: "--filter",
+    takes: "mip or nearest",
+    read: |text| match text {
+        "mip" => Some(Filter::Mip),
+        "nearest" => Some(Filter::Nearest),
         _ => None,
     },
 };

@@ -46,6 +46,7 @@ OPTIONS OF SNAPSHOT
                     where to look from, in cells and degrees: 0 is east,
                     90 south                                       [the map's start]
   --format FORMAT   text: characters; ansi: with colours; json; png  [text]
+  --explain         how the frame is drawn and what it costs, in its place
 
 OPTIONS OF BOTH
   --fov DEG         field of view, above 0, below 180              [66]
@@ -53,6 +54,7 @@ OPTIONS OF BOTH
                     the terminal says]
   --glyphs MODE     half: two pixels a cell; ascii: one, as a character  [half]
   --colors DEPTH    true, 256, 16 or mono           [true, or what the terminal has]
+  --filter FILTER   mip: far textures are averaged; nearest: raw texels  [mip]
 
   --caster METHOD   also of cast: how walls are found               [exact]
                     exact, dda, dda32, accumulate, fixed:BITS, table:ANGLES

@@ -23,6 +23,7 @@ pub(super) fn run(options: Play) -> Result<(), Error> {
         glyphs: options.glyphs,
         depth: options.depth,
         method: options.method,
+        filter: options.filter,
     };
     tui::play(levels, settings).map_err(Error::from)
 }

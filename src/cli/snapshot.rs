@@ -42,9 +42,26 @@ pub(super) fn run(options: &Snapshot) -> Result<(), Error> {
     let picture = FirstPerson::new(&world, &camera)
         .glyphs(options.glyphs)
         .color_depth(options.depth)
-        .cell_aspect(options.cell_aspect);
+        .cell_aspect(options.cell_aspect)
+        .filter(options.filter);
     let output = BufWriter::new(io::stdout().lock());
+    if options.explain {
+        return explain(&picture, options, output).map_err(|error| Error::of_output(&error));
+    }
     write(&picture, options, output).map_err(|error| Error::of_output(&error))
+}
+
+/// Writes how the frame is drawn, and what it costs.
+fn explain(picture: &FirstPerson, options: &Snapshot, mut output: impl Write) -> io::Result<()> {
+    let mut view = View::with_method(options.method.clone());
+    if let Some(explanation) = picture.explain(size(options), &mut view) {
+        write!(output, "{explanation}")?;
+    }
+    output.flush()
+}
+
+fn size(options: &Snapshot) -> Size {
+    Size::new(options.size.columns, options.size.rows)
 }
 
 fn write(
@@ -52,7 +69,7 @@ fn write(
     options: &Snapshot,
     output: impl Write + 'static,
 ) -> io::Result<()> {
-    let size = Size::new(options.size.columns, options.size.rows);
+    let size = size(options);
     let mut view = View::with_method(options.method.clone());
     picture.draw(size, &mut view);
 

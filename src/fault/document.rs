@@ -73,6 +73,43 @@ impl<'a, 't> Entry<'a, 't> {
         Some(table)
     }
 
+    /// The value as a number; `None` where it is none.
+    pub(crate) fn number(&self) -> Option<f64> {
+        match self.value {
+            DeValue::Integer(integer) => i64::from_str_radix(integer.as_str(), integer.radix())
+                .ok()
+                .map(|integer| integer as f64),
+            DeValue::Float(float) => float.as_str().parse().ok(),
+            _ => None,
+        }
+    }
+
+    /// The value as a list of two, each as an entry of the same key; where it is something else,
+    /// that is added to `faults`.
+    pub(crate) fn pair(&self, example: &str, faults: &mut Vec<Fault>) -> Option<[Self; 2]> {
+        let DeValue::Array(list) = self.value else {
+            faults.push(self.wrong_type("a list of two", example));
+            return None;
+        };
+        let mut entries = list.iter().map(|value| Self {
+            key: self.key,
+            key_place: self.key_place.clone(),
+            value: value.get_ref(),
+            value_place: value.span(),
+        });
+        if let (Some(first), Some(second), None) = (entries.next(), entries.next(), entries.next())
+        {
+            return Some([first, second]);
+        }
+        let message = format!("{} must be a list of two", quoted(self.key));
+        faults.push(
+            Fault::new(self.value_place.clone(), message)
+                .label(format!("this is a list of {}", list.len()))
+                .help(format!("write {example}")),
+        );
+        None
+    }
+
     /// The fault that the value is not what is `wanted`, with an `example` of a whole entry.
     pub(crate) fn wrong_type(&self, wanted: &str, example: &str) -> Fault {
         let found = match self.value {

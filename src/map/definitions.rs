@@ -2,22 +2,26 @@
 
 use toml::de::DeTable;
 
+use super::air::{self, SkyText};
+use super::covering::{CeilingText, CoveringText};
 use super::legend::{Legend, Section};
-use super::textures::Surface;
 use crate::fault::Fault;
 use crate::fault::document::{Entry, entries};
-use crate::world::Rgb;
+use crate::world::{Fog, Rgb};
 
 /// The keys of a map.
-pub(super) const KEYS: &[&str] = &["title", "ceiling", "floor", "grid", "tiles", "things"];
+pub(super) const KEYS: &[&str] =
+    &["title", "ceiling", "floor", "sky", "fog", "grid", "tiles", "things"];
 const DEFAULT_CEILING: Rgb = Rgb::new(0x30, 0x30, 0x30);
 const DEFAULT_FLOOR: Rgb = Rgb::new(0x58, 0x58, 0x58);
 
 /// What a map says besides drawing its grid.
 pub(super) struct Definitions<'a, 't> {
     pub(super) title: String,
-    pub(super) ceiling: Surface<'a>,
-    pub(super) floor: Surface<'a>,
+    pub(super) ceiling: CeilingText<'a>,
+    pub(super) floor: CoveringText<'a>,
+    pub(super) sky: Option<SkyText<'a>>,
+    pub(super) fog: Option<Fog>,
     pub(super) grid: Option<Entry<'a, 't>>,
     pub(super) legend: Legend<'a>,
 }
@@ -28,8 +32,10 @@ impl<'a, 't> Definitions<'a, 't> {
     pub(super) fn read(document: &'a DeTable<'t>, faults: &mut Vec<Fault>) -> Self {
         let mut definitions = Self {
             title: String::new(),
-            ceiling: Surface::plain(DEFAULT_CEILING),
-            floor: Surface::plain(DEFAULT_FLOOR),
+            ceiling: CeilingText::plain(DEFAULT_CEILING),
+            floor: CoveringText::plain(DEFAULT_FLOOR),
+            sky: None,
+            fog: None,
             grid: None,
             legend: Legend::new(),
         };
@@ -43,15 +49,18 @@ impl<'a, 't> Definitions<'a, 't> {
         match entry.key {
             "title" => self.title = title(&entry, faults).unwrap_or_default(),
             "ceiling" => {
-                if let Some(surface) = Surface::read(&entry, r##"ceiling = "#202028""##, faults) {
-                    self.ceiling = surface;
+                if let Some(ceiling) = CeilingText::read(&entry, r##"ceiling = "#202028""##, faults)
+                {
+                    self.ceiling = ceiling;
                 }
             }
             "floor" => {
-                if let Some(surface) = Surface::read(&entry, r#"floor = "stone""#, faults) {
-                    self.floor = surface;
+                if let Some(floor) = CoveringText::read(&entry, r#"floor = "stone""#, faults) {
+                    self.floor = floor;
                 }
             }
+            "sky" => self.sky = SkyText::read(&entry, faults),
+            "fog" => self.fog = air::fog(&entry, faults),
             "grid" => self.grid = Some(entry),
             "tiles" => self.legend.read_section(Section::Tiles, &entry, faults),
             "things" => self.legend.read_section(Section::Things, &entry, faults),

@@ -4,7 +4,7 @@ use std::ops::Range;
 
 use super::doors::{self, Keys};
 use super::drawing::Drawing;
-use super::legend::{Legend, Meaning, Symbol};
+use super::legend::{Legend, Meaning, Surroundings, Symbol};
 use super::per_character::PerCharacter;
 use super::textures::Textures;
 use crate::fault::Fault;
@@ -12,13 +12,12 @@ use crate::world::{Door, Grid, Start, Thing, ThingKind, Tile, TileId, TileKind};
 
 /// The most kinds of tile in a grid, open floor among them.
 const MAX_TILES: usize = 255;
-const OPEN: Tile = Tile { character: '.', kind: TileKind::Open };
 
 /// What a drawing shows.
 pub(super) struct Layout {
     pub(super) grid: Grid,
-    /// Open floor and the doorways, then what is solid in the grid, each in the order of their
-    /// characters.
+    /// The map's own open floor, then other open floor and the doorways, then what is solid in the
+    /// grid, each in the order of their characters.
     pub(super) tiles: Vec<Tile>,
     pub(super) start: Start,
     pub(super) things: Vec<Thing>,
@@ -27,18 +26,19 @@ pub(super) struct Layout {
 }
 
 impl Layout {
-    /// What `drawing` shows. `None` where anything is wrong with the map; what is wrong with this
+    /// What `drawing` shows, on open floor like `ground`. `None` where anything is wrong with the map; what is wrong with this
     /// part of it is added to `faults`.
     pub(super) fn of(
         drawing: &Drawing<'_>,
         legend: &Legend<'_>,
+        ground: Tile,
         textures: &mut Textures<'_>,
         faults: &mut Vec<Fault>,
     ) -> Option<Self> {
         faults.extend(undefined_characters(drawing, legend));
         faults.extend(wrong_start(drawing, legend));
         let keys = Keys::of(drawing, legend);
-        let tiles = tiles(drawing, legend, &keys, textures, faults);
+        let tiles = tiles(drawing, legend, &keys, ground, textures, faults);
         if !faults.is_empty() {
             return None;
         }
@@ -142,31 +142,59 @@ fn things(drawing: &Drawing<'_>, legend: &Legend<'_>, keys: &Keys) -> impl Itera
     })
 }
 
-/// The kinds of tile in the drawing.
+/// The kinds of tile in the drawing, open ones first; `ground` is the map's own.
 fn tiles(
     drawing: &Drawing<'_>,
     legend: &Legend<'_>,
     keys: &Keys,
+    ground: Tile,
     textures: &mut Textures<'_>,
     faults: &mut Vec<Fault>,
 ) -> Vec<Tile> {
-    let mut open = vec![OPEN];
+    let mut open = vec![ground];
     let mut solid = Vec::new();
     for (character, _) in drawing.characters() {
         let Some(symbol) = legend.symbols.get(&character) else { continue };
-        let Some(kind) = solid_kind(&symbol.meaning, keys, textures, faults) else { continue };
-        if let TileKind::Door(door) = kind {
-            open.push(Tile { character, kind: TileKind::Doorway(door) });
+        if let Meaning::Floor(surroundings) = &symbol.meaning {
+            open.push(open_tile(character, surroundings, ground, textures, faults));
+        } else if let Some(kind) = solid_kind(&symbol.meaning, keys, textures, faults) {
+            if let TileKind::Door(door) = kind {
+                open.push(Tile { character, kind: TileKind::Doorway(door), ..ground });
+            }
+            let light = match &symbol.meaning {
+                Meaning::Wall(_, light) => *light,
+                _ => None,
+            };
+            solid.push(Tile { character, kind, light, ..ground });
         }
-        solid.push(Tile { character, kind });
         if open.len() + solid.len() > MAX_TILES {
-            let message = format!("the grid has more than {} kinds of wall", MAX_TILES - 1);
+            let message = format!("the grid has more than {} kinds of tile", MAX_TILES - 1);
             faults.push(Fault::new(symbol.place.clone(), message).label("one too many"));
             break;
         }
     }
     open.extend(solid);
     open
+}
+
+/// The open floor that is not like the map's own, `ground`, but as `surroundings` say.
+fn open_tile(
+    character: char,
+    surroundings: &Surroundings<'_>,
+    ground: Tile,
+    textures: &mut Textures<'_>,
+    faults: &mut Vec<Fault>,
+) -> Tile {
+    let Surroundings { floor, ceiling, light } = surroundings;
+    let floor = floor.as_ref().and_then(|floor| floor.covering(textures, faults));
+    let ceiling = ceiling.as_ref().and_then(|ceiling| ceiling.ceiling(textures, faults));
+    Tile {
+        character,
+        kind: TileKind::Open,
+        floor: floor.unwrap_or(ground.floor),
+        ceiling: ceiling.unwrap_or(ground.ceiling),
+        light: *light,
+    }
 }
 
 /// The kind of solid tile that a character stands for; `None` where it stands for none, or where a
@@ -178,7 +206,7 @@ fn solid_kind(
     faults: &mut Vec<Fault>,
 ) -> Option<TileKind> {
     match meaning {
-        Meaning::Wall(surface) => textures.paint(surface, faults).map(TileKind::Wall),
+        Meaning::Wall(surface, _) => textures.paint(surface, faults).map(TileKind::Wall),
         Meaning::Door(door) => Some(TileKind::Door(Door {
             leaf: textures.paint(&door.leaf, faults)?,
             jamb: textures.jamb(),
@@ -186,9 +214,12 @@ fn solid_kind(
         })),
         Meaning::Mask(mask) => mask.texture(textures, faults).map(TileKind::Mask),
         Meaning::Glass(glass) => Some(TileKind::Glass(*glass)),
-        Meaning::Open | Meaning::Start(_) | Meaning::Exit | Meaning::Key(_) | Meaning::Unclear => {
-            None
-        }
+        Meaning::Open
+        | Meaning::Floor(_)
+        | Meaning::Start(_)
+        | Meaning::Exit
+        | Meaning::Key(_)
+        | Meaning::Unclear => None,
     }
 }
 

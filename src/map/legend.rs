@@ -5,13 +5,14 @@ use std::ops::Range;
 
 use toml::de::{DeTable, DeValue};
 
+use super::covering::{CeilingText, CoveringText};
 use super::definitions::KEYS;
 use super::doors::{DoorSymbol, KeySymbol};
 use super::see_through::{self, MaskSymbol};
 use super::textures::Surface;
 use crate::fault::document::{Entry, entries};
 use crate::fault::{Fault, quoted};
-use crate::world::{Glass, Heading};
+use crate::world::{Glass, Heading, Light};
 
 /// What other raycasters have in their cells and this one has not.
 const NOT_YET: &[(&str, &str)] = &[
@@ -41,7 +42,10 @@ pub(super) struct Symbol<'a> {
 /// What a character stands for in the grid.
 pub(super) enum Meaning<'a> {
     Open,
-    Wall(Surface<'a>),
+    /// With a light of its own, if any.
+    Wall(Surface<'a>, Option<Light>),
+    /// Open floor that is not like the map's.
+    Floor(Surroundings<'a>),
     Door(DoorSymbol<'a>),
     Mask(MaskSymbol<'a>),
     Glass(Glass),
@@ -50,6 +54,14 @@ pub(super) enum Meaning<'a> {
     Key(KeySymbol<'a>),
     /// Something that a fault has been found with already.
     Unclear,
+}
+
+/// What an open tile has of its own; the rest is as the map says.
+#[derive(Default)]
+pub(super) struct Surroundings<'a> {
+    pub(super) floor: Option<CoveringText<'a>>,
+    pub(super) ceiling: Option<CeilingText<'a>>,
+    pub(super) light: Option<Light>,
 }
 
 /// One of the two tables that define characters.
@@ -76,7 +88,7 @@ impl Section {
 
     fn keys(self) -> &'static [&'static str] {
         match self {
-            Self::Tiles => &["wall", "door", "mask", "glass"],
+            Self::Tiles => &["wall", "door", "mask", "glass", "floor", "ceiling", "light"],
             Self::Things => &["start", "exit", "key"],
         }
     }
@@ -179,22 +191,66 @@ fn meaning<'a>(section: Section, entry: &Entry<'a, '_>, faults: &mut Vec<Fault>)
         return Meaning::Unclear;
     };
     let faults_before = faults.len();
-    let mut meanings: Vec<_> =
-        entries(table).filter_map(|entry| property(section, &entry, table, faults)).collect();
+    let mut surroundings = Surroundings::default();
+    let mut meanings: Vec<_> = entries(table)
+        .filter_map(|entry| match surroundings.take(section, &entry, faults) {
+            Taken::Yes => None,
+            Taken::No => property(section, &entry, table, faults),
+        })
+        .collect();
+    if faults.len() > faults_before {
+        return Meaning::Unclear;
+    }
     let place = || entry.key_place.clone();
-    match meanings.pop() {
-        Some(meaning) if meanings.is_empty() => return meaning,
-        Some(_) => faults.push(
-            Fault::new(place(), format!("{:?} is several things at once", entry.key))
-                .help("draw each with a character of its own"),
-        ),
-        None if faults.len() == faults_before => faults.push(
+    let several_at_once = || {
+        Fault::new(place(), format!("{:?} is several things at once", entry.key))
+            .help("draw each with a character of its own")
+    };
+    match (meanings.pop(), meanings.is_empty()) {
+        (Some(Meaning::Wall(surface, _)), true) if !surroundings.has_covering() => {
+            return Meaning::Wall(surface, surroundings.light);
+        }
+        (Some(meaning), true) if surroundings.is_empty() => return meaning,
+        (None, _) if !surroundings.is_empty() => return Meaning::Floor(surroundings),
+        (Some(_), _) => faults.push(several_at_once()),
+        (None, _) => faults.push(
             Fault::new(place(), format!("{:?} does not say what it is", entry.key))
                 .help(format!("write, for example, {}", section.example())),
         ),
-        None => {}
     }
     Meaning::Unclear
+}
+
+/// Whether a property was one of the [`Surroundings`].
+#[derive(Clone, Copy, PartialEq, Eq)]
+enum Taken {
+    Yes,
+    No,
+}
+
+impl<'a> Surroundings<'a> {
+    fn is_empty(&self) -> bool {
+        !self.has_covering() && self.light.is_none()
+    }
+
+    fn has_covering(&self) -> bool {
+        self.floor.is_some() || self.ceiling.is_some()
+    }
+
+    /// Takes the property that `entry` is, if it is one of a tile's surroundings.
+    fn take(&mut self, section: Section, entry: &Entry<'a, '_>, faults: &mut Vec<Fault>) -> Taken {
+        match (section, entry.key) {
+            (Section::Tiles, "floor") => {
+                self.floor = CoveringText::read(entry, r#"{ floor = "moss" }"#, faults);
+            }
+            (Section::Tiles, "ceiling") => {
+                self.ceiling = CeilingText::read(entry, r#"{ ceiling = "wood" }"#, faults);
+            }
+            (Section::Tiles, "light") => self.light = light(entry, faults),
+            _ => return Taken::No,
+        }
+        Taken::Yes
+    }
 }
 
 /// What one property of a tile or thing makes of it.
@@ -209,9 +265,8 @@ fn property<'a>(
         return None;
     }
     match (section, entry.key) {
-        (Section::Tiles, "wall") => {
-            Surface::read(entry, r#"{ wall = "brick" }"#, faults).map(Meaning::Wall)
-        }
+        (Section::Tiles, "wall") => Surface::read(entry, r#"{ wall = "brick" }"#, faults)
+            .map(|surface| Meaning::Wall(surface, None)),
         (Section::Tiles, "door") => DoorSymbol::read(entry, table, faults).map(Meaning::Door),
         (Section::Tiles, "mask") => MaskSymbol::read(entry, faults).map(Meaning::Mask),
         (Section::Tiles, "glass") => see_through::glass(entry, table, faults).map(Meaning::Glass),
@@ -228,13 +283,7 @@ fn property<'a>(
 }
 
 fn heading(entry: &Entry<'_, '_>, faults: &mut Vec<Fault>) -> Option<Heading> {
-    let degrees = match entry.value {
-        DeValue::Integer(integer) => i64::from_str_radix(integer.as_str(), integer.radix())
-            .map_or(f64::NAN, |degrees| degrees as f64),
-        DeValue::Float(float) => float.as_str().parse().unwrap_or(f64::NAN),
-        _ => f64::NAN,
-    };
-    let heading = Heading::from_degrees(degrees);
+    let heading = entry.number().and_then(Heading::from_degrees);
     if heading.is_none() {
         faults.push(
             Fault::new(entry.value_place.clone(), "a heading must be a finite number of degrees")
@@ -243,6 +292,19 @@ fn heading(entry: &Entry<'_, '_>, faults: &mut Vec<Fault>) -> Option<Heading> {
         );
     }
     heading
+}
+
+/// How bright something is, from a number between 0 and 1.
+fn light(entry: &Entry<'_, '_>, faults: &mut Vec<Fault>) -> Option<Light> {
+    let light = entry.number().and_then(Light::new);
+    if light.is_none() {
+        faults.push(
+            Fault::new(entry.value_place.clone(), "a light must be a number from 0 to 1")
+                .label("this is none")
+                .help("write 0 for darkness, 1 for full brightness"),
+        );
+    }
+    light
 }
 
 fn exit<'a>(entry: &Entry<'a, '_>, faults: &mut Vec<Fault>) -> Option<Meaning<'a>> {

@@ -159,9 +159,34 @@ impl<'a> Surface<'a> {
         faults: &mut Vec<Fault>,
     ) -> Option<Self> {
         let text = entry.string(example, faults)?;
+        Self::from_source(Source::read(text, entry.value_place.clone()), entry, faults)
+    }
+
+    /// As [`Surface::read`], for the picture of a sky.
+    pub(super) fn read_panorama(
+        entry: &Entry<'a, '_>,
+        example: &str,
+        faults: &mut Vec<Fault>,
+    ) -> Option<Self> {
+        let text = entry.string(example, faults)?;
         let place = entry.value_place.clone();
-        match Source::read(text, place.clone()) {
-            Ok(source) => Some(Self { source, place }),
+        let source = if builtin::PANORAMAS.contains(&text) {
+            Ok(Source::BuiltIn(text))
+        } else if is_png(text) {
+            Source::read(text, place)
+        } else {
+            Err(unknown_panorama(text, place))
+        };
+        Self::from_source(source, entry, faults)
+    }
+
+    fn from_source(
+        source: Result<Source<'a>, Fault>,
+        entry: &Entry<'_, '_>,
+        faults: &mut Vec<Fault>,
+    ) -> Option<Self> {
+        match source {
+            Ok(source) => Some(Self { source, place: entry.value_place.clone() }),
             Err(fault) => {
                 faults.push(fault);
                 None
@@ -219,6 +244,13 @@ fn unknown_name(name: &str, place: Range<usize>) -> Fault {
     }
 }
 
+fn unknown_panorama(name: &str, place: Range<usize>) -> Fault {
+    Fault::new(place, format!("there is no panorama {}", quoted(name))).help(format!(
+        "write the name of a PNG beside the map, or one of {}",
+        builtin::PANORAMAS.join(", ")
+    ))
+}
+
 /// The textures that a map uses, each once.
 pub(super) struct Textures<'f> {
     files: &'f dyn TextureFiles,
@@ -239,15 +271,24 @@ impl<'f> Textures<'f> {
         surface: &Surface<'_>,
         faults: &mut Vec<Fault>,
     ) -> Option<Paint> {
-        let name = match surface.source {
-            Source::Color(color) => return Some(Paint::Color(color)),
-            Source::BuiltIn(name) | Source::File(name) => name,
-        };
-        let id = match self.known.get(name) {
+        match surface.source {
+            Source::Color(color) => Some(Paint::Color(color)),
+            Source::BuiltIn(name) | Source::File(name) => {
+                self.texture(name, surface, faults).map(Paint::Texture)
+            }
+        }
+    }
+
+    fn texture(
+        &mut self,
+        name: &str,
+        surface: &Surface<'_>,
+        faults: &mut Vec<Fault>,
+    ) -> Option<TextureId> {
+        match self.known.get(name) {
             Some(id) => *id,
             None => self.add(name, surface, faults),
-        };
-        id.map(Paint::Texture)
+        }
     }
 
     fn add(
@@ -271,7 +312,7 @@ impl<'f> Textures<'f> {
     }
 
     fn make(&self, name: &str, surface: &Surface<'_>) -> Result<Texture, Fault> {
-        if let Some(texture) = builtin::named(name) {
+        if let Some(texture) = builtin::named(name).or_else(|| builtin::panorama(name)) {
             return Ok(texture);
         }
         let fault = |why: String| {

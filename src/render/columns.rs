@@ -5,6 +5,7 @@ use std::ops::Range;
 use glam::DVec2;
 
 use super::Projection;
+use super::planes::first_row_of_ground;
 use super::see_through::Passed;
 use crate::cast::{Caster, Hit, Ray, Side};
 use crate::world::{Grid, World};
@@ -52,12 +53,20 @@ impl Column {
             None => Surface::Floor,
         }
     }
-}
 
-/// The first row that shows the ground where nothing is in the way: the first one with its centre
-/// at the horizon or below.
-pub(super) fn first_row_of_ground(height: u32) -> u32 {
-    height / 2
+    /// How many rows, from the top, show the ceiling, in a frame that high.
+    pub(super) fn rows_of_ceiling(&self, height: u32) -> u32 {
+        self.rows.start.min(first_row_of_ground(height))
+    }
+
+    /// How many rows, from the bottom of a frame that high, show the floor.
+    pub(super) fn rows_of_floor(&self, height: u32) -> u32 {
+        height
+            - match self.hit {
+                Some(_) => self.rows.end.max(first_row_of_ground(height)),
+                None => first_row_of_ground(height),
+            }
+    }
 }
 
 /// Casts the ray of every column into `columns`, and what it passes into `passed`, whatever they

@@ -8,6 +8,7 @@ use std::ops::Range;
 
 use glam::DVec2;
 
+use super::track::Track;
 use super::{FrameSize, PixelAspect};
 use crate::cast::Ray;
 use crate::world::Camera;
@@ -24,6 +25,8 @@ pub(super) struct Projection {
     horizon: f64,
     /// Rows from the horizon to something 1 above the eye at distance 1.
     focal_length: f64,
+    /// Columns from the middle to something 1 beside it at distance 1.
+    focal_length_across: f64,
 }
 
 impl Projection {
@@ -39,6 +42,7 @@ impl Projection {
             height,
             horizon: height / 2.0,
             focal_length: across / pixel_aspect.height_over_width(),
+            focal_length_across: across,
         }
     }
 
@@ -51,13 +55,18 @@ impl Projection {
     ///
     /// A ray's `t` is the distance to the camera plane, so nothing needs correcting afterwards.
     pub(super) fn rays(&self) -> impl Iterator<Item = Ray> {
-        let width = f64::from(self.width);
         (0..self.width).map(move |column| {
-            // The quotient of two whole numbers: a column and its mirror image get opposite ones.
-            let across = (f64::from(column) * 2.0 + 1.0 - width) / width;
-            Ray::new(self.origin, self.direction + self.plane * across)
+            Ray::new(self.origin, self.direction_of(column))
                 .expect("a camera is at a finite place, and its plane is not parallel to its view")
         })
+    }
+
+    /// The direction of the ray of `column`.
+    pub(super) fn direction_of(&self, column: u32) -> DVec2 {
+        let width = f64::from(self.width);
+        // The quotient of two whole numbers: a column and its mirror image get opposite ones.
+        let across = (f64::from(column) * 2.0 + 1.0 - width) / width;
+        self.direction + self.plane * across
     }
 
     /// The rows whose centres are between the top and the bottom of a wall, 1 high, at distance `t`.
@@ -81,6 +90,40 @@ impl Projection {
             let below = (f64::from(row) + 0.5 - horizon) * texels_per_row + from_middle;
             (middle + floor(below)).clamp(0, last) as usize
         }
+    }
+
+    /// How much of a wall's side the pixels of a column cover, in square cells each: where its ray,
+    /// at `t`, meets the wall with a `slope` of that much towards it for each unit of `t`.
+    pub(super) fn pixel_area_on_wall(&self, t: f64, slope: f64) -> f64 {
+        let down = t / self.focal_length;
+        let across = t / (self.focal_length_across * slope.abs());
+        down * across
+    }
+
+    /// What `row` shows of the floor or the ceiling: they are half a cell from the eye.
+    pub(super) fn track(&self, row: u32) -> Track {
+        let slope = self.slope(row).abs();
+        let distance = 0.5 / slope;
+        // A row further down, the distance is less by that.
+        let along = distance / slope / self.focal_length;
+        Track {
+            distance,
+            pixel_area: along * distance / self.focal_length_across,
+            middle: self.origin + self.direction * distance,
+            half_step: self.plane * (distance / f64::from(self.width)),
+            width: self.width,
+        }
+    }
+
+    /// How much higher than the eye something is that shows in the middle of `row`, for each cell
+    /// that it is away; negative below the horizon.
+    pub(super) fn slope(&self, row: u32) -> f64 {
+        (self.horizon - (f64::from(row) + 0.5)) / self.focal_length
+    }
+
+    /// The angles, in radians, that a pixel in the middle of the picture covers, across and down.
+    pub(super) fn pixel_angles(&self) -> DVec2 {
+        DVec2::new(1.0 / self.focal_length_across, 1.0 / self.focal_length)
     }
 
     /// The first row with its centre at `y` or below; the number of rows where there is none.

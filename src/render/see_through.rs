@@ -7,10 +7,12 @@
 //! Colours are mixed as they are in the frame, as sRGB. Mixing light instead was refused: it needs a
 //! table each way for every pixel, and a tint looks no more like glass for it.
 
-use super::walls::shaded;
-use super::{Frame, Projection};
+use super::shade::{Faded, Shade};
+use super::tally::{Pass, Tally};
+use super::walls::light_of;
+use super::{Frame, Scene};
 use crate::cast::Hit;
-use crate::world::{Glass, Texture, TileKind, World};
+use crate::world::{Glass, Texture, TileKind};
 
 /// What all rays of a frame passed.
 #[derive(Clone, Debug, Default)]
@@ -31,45 +33,66 @@ impl Passed {
 }
 
 /// Draws what the rays passed over what is in `frame`.
-pub(super) fn draw(world: &World, projection: &Projection, passed: &Passed, frame: &mut Frame) {
+pub(super) fn draw<T: Tally>(scene: Scene<'_>, passed: &Passed, frame: &mut Frame, tally: &mut T) {
     for &(column, ref hit) in passed.list.iter().rev() {
-        draw_hit(world, projection, column, hit, frame);
+        draw_hit(scene, column, hit, frame, tally);
     }
 }
 
 /// Draws one thing that the ray of `column` passed.
-fn draw_hit(world: &World, projection: &Projection, column: usize, hit: &Hit, frame: &mut Frame) {
+fn draw_hit<T: Tally>(
+    scene: Scene<'_>,
+    column: usize,
+    hit: &Hit,
+    frame: &mut Frame,
+    tally: &mut T,
+) {
+    let world = scene.world;
     let tile = world.grid().tile(i64::from(hit.cell.column), i64::from(hit.cell.row));
+    let light = light_of(scene, column as u32, hit);
+    let shade = Faded::of_wall(hit.side, light, world.fog(), hit.t);
+    let rows = scene.projection.wall_rows(hit.t).len();
+    tally.pixels(Pass::SeeThrough, rows);
     match tile.map(|tile| world.tile(tile).kind) {
         Some(TileKind::Mask(texture)) => {
-            draw_mask(world.texture(texture), projection, column, hit, frame);
+            tally.texels(Pass::SeeThrough, rows);
+            draw_mask(world.texture(texture), shade, scene, column, hit, frame);
         }
-        Some(TileKind::Glass(glass)) => draw_glass(glass, projection, column, hit, frame),
+        Some(TileKind::Glass(glass)) => draw_glass(glass, shade, scene, column, hit, frame),
         _ => {}
     }
 }
 
+/// Draws a mask from the texture itself: the levels of a texture know no holes.
 fn draw_mask(
     texture: &Texture,
-    projection: &Projection,
+    shade: Faded,
+    scene: Scene<'_>,
     column: usize,
     hit: &Hit,
     frame: &mut Frame,
 ) {
     let texels = texture.column(hit.u);
     let Some(alphas) = texture.alpha_column(hit.u) else { return };
-    let texel = projection.texel_on_the_wall(hit.t, texels.len());
-    let rows = projection.wall_rows(hit.t);
+    let texel = scene.projection.texel_on_the_wall(hit.t, texels.len());
+    let rows = scene.projection.wall_rows(hit.t);
     let pixels = frame.column_mut(column).skip(rows.start as usize);
     for (row, pixel) in rows.zip(pixels) {
         let texel = texel(row);
-        *pixel = shaded(texels[texel], hit.side).over(*pixel, alphas[texel]);
+        *pixel = shade.apply(texels[texel]).over(*pixel, alphas[texel]);
     }
 }
 
-fn draw_glass(glass: Glass, projection: &Projection, column: usize, hit: &Hit, frame: &mut Frame) {
-    let tint = shaded(glass.color, hit.side);
-    let rows = projection.wall_rows(hit.t);
+fn draw_glass(
+    glass: Glass,
+    shade: Faded,
+    scene: Scene<'_>,
+    column: usize,
+    hit: &Hit,
+    frame: &mut Frame,
+) {
+    let tint = shade.apply(glass.color);
+    let rows = scene.projection.wall_rows(hit.t);
     let pixels = frame.column_mut(column).skip(rows.start as usize).take(rows.len());
     for pixel in pixels {
         *pixel = tint.over(*pixel, glass.opacity);

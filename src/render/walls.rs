@@ -1,54 +1,147 @@
-//! The third pass: the walls that the rays hit.
+//! The last pass: the walls that the rays hit.
 //!
 //! A column of a wall is one column of its texture, stretched. The texel of each pixel is computed
 //! from its row, not from the texel above it, so that no error adds up down the picture; and where a
 //! wall is so near that only a few texels of it fill the screen, they are the right ones.
 
+use std::ops::Range;
+
+use glam::DVec2;
+
 use super::doors::jamb;
-use super::{Column, Frame, Projection};
+use super::plan::WallLoop;
+use super::shade::{Bright, Faded, Halved, Shade};
+use super::tally::{Pass, Tally};
+use super::{Frame, Scene};
 use crate::cast::{Hit, Side};
-use crate::world::{Paint, Rgb, TileKind, World};
+use crate::world::{Light, Paint, Rgb, TextureId, Tile, TileId, TileKind, World};
 
 /// Draws the wall of every column that has one.
-pub(super) fn draw(world: &World, projection: &Projection, columns: &[Column], frame: &mut Frame) {
-    let has_jambs = !world.is_of_walls();
-    for (x, column) in columns.iter().enumerate() {
-        let Some(hit) = &column.hit else { continue };
-        let pixels = frame.column_mut(x).skip(column.rows.start as usize).take(column.rows.len());
-        let jamb = if has_jambs { jamb(world, projection, hit) } else { None };
-        match jamb.unwrap_or_else(|| paint_of(world, hit)) {
-            Paint::Color(color) => {
-                let color = shaded(color, hit.side);
-                pixels.for_each(|pixel| *pixel = color);
-            }
-            Paint::Texture(texture) => {
-                let texels = world.texture(texture).column(hit.u);
-                let texel = projection.texel_on_the_wall(hit.t, texels.len());
-                for (row, pixel) in column.rows.clone().zip(pixels) {
-                    *pixel = shaded(texels[texel(row)], hit.side);
-                }
-            }
+pub(super) fn draw<T: Tally>(scene: Scene<'_>, plan: WallLoop, frame: &mut Frame, tally: &mut T) {
+    if plan.faded { draw_faded(scene, frame, tally) } else { draw_unfaded(scene, frame, tally) }
+}
+
+fn draw_unfaded<T: Tally>(scene: Scene<'_>, frame: &mut Frame, tally: &mut T) {
+    for strip in strips(scene) {
+        match strip.hit.side {
+            Side::X => strip.draw(Bright, frame, tally),
+            Side::Y => strip.draw(Halved, frame, tally),
         }
     }
 }
 
+fn draw_faded<T: Tally>(scene: Scene<'_>, frame: &mut Frame, tally: &mut T) {
+    for strip in strips(scene) {
+        let fog = scene.world.fog();
+        let shade = Faded::of_wall(strip.hit.side, strip.light(), fog, strip.hit.t);
+        strip.draw(shade, frame, tally);
+    }
+}
+
+/// The columns that show a wall.
+fn strips(scene: Scene<'_>) -> impl Iterator<Item = Strip<'_>> {
+    (0..).zip(scene.columns).filter_map(move |(x, column)| {
+        let hit = column.hit.as_ref()?;
+        Some(Strip { scene, x, rows: column.rows.clone(), hit })
+    })
+}
+
+/// A wall as wide as a pixel.
+struct Strip<'a> {
+    scene: Scene<'a>,
+    x: u32,
+    rows: Range<u32>,
+    hit: &'a Hit,
+}
+
+impl Strip<'_> {
+    #[inline]
+    fn draw<S: Shade, T: Tally>(&self, shade: S, frame: &mut Frame, tally: &mut T) {
+        let rows = self.rows.clone();
+        tally.pixels(Pass::Walls, rows.len());
+        let pixels = frame.column_mut(self.x as usize).skip(rows.start as usize).take(rows.len());
+        match self.paint() {
+            Paint::Color(color) => {
+                let color = shade.apply(color);
+                pixels.for_each(|pixel| *pixel = color);
+            }
+            Paint::Texture(texture) => {
+                let texels = self.texels(texture);
+                tally.texels(Pass::Walls, rows.len());
+                let texel = self.scene.projection.texel_on_the_wall(self.hit.t, texels.len());
+                for (row, pixel) in rows.zip(pixels) {
+                    *pixel = shade.apply(texels[texel(row)]);
+                }
+            }
+        }
+    }
+
+    /// How it looks: as a jamb, where it faces a door.
+    fn paint(&self) -> Paint {
+        let Scene { world, projection, .. } = self.scene;
+        let jamb = if world.is_of_walls() { None } else { jamb(world, projection, self.hit) };
+        jamb.unwrap_or_else(|| paint_of(world, self.hit))
+    }
+
+    /// The column of the texture that shows, from a level that suits the distance.
+    fn texels(&self, id: TextureId) -> &[Rgb] {
+        let Scene { world, projection, filter, .. } = self.scene;
+        let texture = world.texture(id);
+        let texels = f64::from(texture.width()) * f64::from(texture.height());
+        let area = projection.pixel_area_on_wall(self.hit.t, self.across(self.direction()));
+        texture.level(filter.halvings(area * texels)).column(self.hit.u)
+    }
+
+    /// How bright the side is.
+    fn light(&self) -> Light {
+        let world = self.scene.world;
+        let own = tile_of(world, self.hit).and_then(|tile| tile.light);
+        own.or_else(|| self.tile_before()?.light).unwrap_or(Light::FULL)
+    }
+
+    /// The tile that the side is seen from.
+    fn tile_before(&self) -> Option<Tile> {
+        let world = self.scene.world;
+        let (column, row) = (i64::from(self.hit.cell.column), i64::from(self.hit.cell.row));
+        let step = if self.across(self.direction()) > 0.0 { 1 } else { -1 };
+        let before: Option<TileId> = match self.hit.side {
+            Side::X => world.grid().tile(column - step, row),
+            Side::Y => world.grid().tile(column, row - step),
+        };
+        before.map(|tile| world.tile(tile))
+    }
+
+    fn direction(&self) -> DVec2 {
+        self.scene.projection.direction_of(self.x)
+    }
+
+    /// The part of a direction that leads straight at the side.
+    fn across(&self, direction: DVec2) -> f64 {
+        match self.hit.side {
+            Side::X => direction.x,
+            Side::Y => direction.y,
+        }
+    }
+}
+
+/// How bright what the ray of column `x` hit is.
+pub(super) fn light_of(scene: Scene<'_>, x: u32, hit: &Hit) -> Light {
+    Strip { scene, x, rows: 0..0, hit }.light()
+}
+
 fn paint_of(world: &World, hit: &Hit) -> Paint {
-    let tile = world.grid().tile(i64::from(hit.cell.column), i64::from(hit.cell.row));
-    match tile.map(|tile| world.tile(tile).kind) {
+    match tile_of(world, hit).map(|tile| tile.kind) {
         Some(TileKind::Wall(paint)) => paint,
         Some(TileKind::Door(door)) => door.leaf,
         // Casters that know no masks and no glass hit these.
         Some(TileKind::Mask(texture)) => Paint::Texture(texture),
         Some(TileKind::Glass(glass)) => Paint::Color(glass.color),
         // No caster hits what is not solid; were one to, the floor is what is there.
-        Some(TileKind::Open | TileKind::Doorway(_)) | None => world.floor(),
+        Some(TileKind::Open | TileKind::Doorway(_)) | None => world.floor().pattern.first_paint(),
     }
 }
 
-/// A y-side is half as bright as an x-side, so that the edge between the two shows.
-pub(super) fn shaded(color: Rgb, side: Side) -> Rgb {
-    match side {
-        Side::X => color,
-        Side::Y => color.halved(),
-    }
+fn tile_of(world: &World, hit: &Hit) -> Option<Tile> {
+    let tile = world.grid().tile(i64::from(hit.cell.column), i64::from(hit.cell.row))?;
+    Some(world.tile(tile))
 }

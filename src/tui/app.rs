@@ -21,6 +21,7 @@ use super::{CellAspect, FirstPerson, GlyphMode, Minimap, View};
 use crate::cast::Method;
 use crate::game::{Game, Intent, Intents};
 use crate::palette::ColorDepth;
+use crate::render::Filter;
 use crate::terminal::{Detected, Error, Event, Key, KeyEvent, Options, Phase, Session};
 use crate::world::{Camera, FieldOfView, World};
 use clock::Clock;
@@ -42,6 +43,8 @@ pub struct Settings {
     pub depth: Option<ColorDepth>,
     /// How walls are found.
     pub method: Method,
+    /// How textures are looked up.
+    pub filter: Filter,
 }
 
 /// Plays `levels` on the terminal until the player leaves or somebody else ends the program.
@@ -333,7 +336,8 @@ impl App {
         let picture = FirstPerson::new(world, &camera)
             .glyphs(self.settings.glyphs)
             .color_depth(self.depth)
-            .cell_aspect(self.cell_aspect);
+            .cell_aspect(self.cell_aspect)
+            .filter(self.settings.filter);
         frame.render_stateful_widget(picture, area, &mut self.view);
         if !self.shows_minimap {
             return;

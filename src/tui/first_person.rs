@@ -9,7 +9,7 @@ use ratatui::widgets::StatefulWidget;
 use super::{CellAspect, GlyphMode, ascii, half_blocks};
 use crate::cast::Method;
 use crate::palette::ColorDepth;
-use crate::render::{Column, Frame, FrameSize, PixelAspect, Renderer};
+use crate::render::{Column, Explanation, Filter, Frame, FrameSize, PixelAspect, Renderer};
 use crate::world::{Camera, World};
 
 /// A widget that shows what a camera sees.
@@ -22,6 +22,7 @@ pub struct FirstPerson<'a> {
     glyphs: GlyphMode,
     depth: ColorDepth,
     cell_aspect: CellAspect,
+    filter: Filter,
 }
 
 impl<'a> FirstPerson<'a> {
@@ -33,6 +34,7 @@ impl<'a> FirstPerson<'a> {
             glyphs: GlyphMode::default(),
             depth: ColorDepth::default(),
             cell_aspect: CellAspect::default(),
+            filter: Filter::default(),
         }
     }
 
@@ -54,15 +56,34 @@ impl<'a> FirstPerson<'a> {
         Self { cell_aspect, ..self }
     }
 
+    /// With textures looked up like that.
+    #[must_use]
+    pub fn filter(self, filter: Filter) -> Self {
+        Self { filter, ..self }
+    }
+
     /// Draws the picture for an area of that size into `view`, as pixels only.
     ///
     /// With [`FirstPerson::paint`] this is what rendering the widget does. Apart, they serve who has
     /// no room for the cells of the whole picture at once.
     pub fn draw(&self, size: Size, view: &mut View) {
+        let Some(View { renderer, frame }) = self.prepare(size, view) else { return };
+        renderer.render(self.world, self.camera, frame);
+    }
+
+    /// As [`FirstPerson::draw`], and tells how it went; `None` where the area has no cells.
+    pub fn explain(&self, size: Size, view: &mut View) -> Option<Explanation> {
+        let View { renderer, frame } = self.prepare(size, view)?;
+        Some(renderer.explain(self.world, self.camera, frame))
+    }
+
+    /// `view`, ready to be drawn to; `None` where the area has no cells.
+    fn prepare<'v>(&self, size: Size, view: &'v mut View) -> Option<&'v mut View> {
         let height = u32::from(size.height) * self.glyphs.pixels_per_cell();
-        let Some(size) = FrameSize::new(u32::from(size.width), height) else { return };
+        let size = FrameSize::new(u32::from(size.width), height)?;
         view.frame.resize(size, self.cell_aspect.of_pixels(self.glyphs));
-        view.renderer.render(self.world, self.camera, &mut view.frame);
+        view.renderer.set_filter(self.filter);
+        Some(view)
     }
 
     /// Fills `area` with the cells of the picture in `view`, from its row of cells `first_row` on.

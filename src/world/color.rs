@@ -15,7 +15,7 @@ impl Rgb {
     pub const BLACK: Self = Self::new(0, 0, 0);
     /// The brightest colour.
     pub const WHITE: Self = Self::new(255, 255, 255);
-    /// What a ray sees that leaves the map, and what the colour name `sky` stands for.
+    /// What the colour name `sky` stands for.
     pub const SKY: Self = Self::new(0x87, 0xb5, 0xd9);
 
     /// A colour from its red, green and blue channels.
@@ -64,6 +64,19 @@ impl Rgb {
             mixed(self.green(), behind.green(), alpha),
             mixed(self.blue(), behind.blue(), alpha),
         )
+    }
+
+    /// The sum of `own` 256ths of this colour and `share` 256ths of `other`, rounded down.
+    ///
+    /// Together they are at most 256, so that no channel overflows into the next.
+    #[inline]
+    #[must_use]
+    pub(crate) const fn blended(self, own: u32, other: Self, share: u32) -> Self {
+        const RED_AND_BLUE: u32 = 0x00ff_00ff;
+        const GREEN: u32 = 0x0000_ff00;
+        let red_and_blue = (self.0 & RED_AND_BLUE) * own + (other.0 & RED_AND_BLUE) * share;
+        let green = (self.0 & GREEN) * own + (other.0 & GREEN) * share;
+        Self(red_and_blue >> 8 & RED_AND_BLUE | green >> 8 & GREEN)
     }
 
     /// How bright the colour looks, from 0 to 255, by the Rec. 709 weights in 16-bit fixed point.
@@ -144,6 +157,15 @@ mod tests {
         assert_eq!(front.over(behind, 0), behind);
         assert_eq!(front.over(behind, 255), front);
         assert_eq!(front.over(behind, 51), Rgb::new(51, 204, 18));
+    }
+
+    #[test]
+    fn blending_is_by_channel() {
+        let (one, other) = (Rgb::new(200, 0, 255), Rgb::new(100, 255, 1));
+        assert_eq!(one.blended(256, other, 0), one);
+        assert_eq!(one.blended(0, other, 256), other);
+        assert_eq!(one.blended(128, other, 128), Rgb::new(150, 127, 128));
+        assert_eq!(one.blended(128, other, 0), one.halved());
     }
 
     #[test]

@@ -1,22 +1,25 @@
-//! Textures: pictures that walls are papered with.
+//! Textures: pictures that surfaces are papered with.
 //!
 //! Texels are stored column by column, top to bottom, because a wall is drawn column by column and
-//! then reads one stretch of memory.
+//! then reads one stretch of memory. A texture is a list of levels, each half as large as the one
+//! before: what is far away is drawn from a level whose texels are about as large as pixels.
 
 pub mod builtin;
+mod level;
 
 use std::num::NonZeroU32;
 
 use super::Rgb;
+pub use level::Level;
+pub(crate) use level::mean_of_two;
 
 /// A picture, at least one texel wide and high.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub struct Texture {
-    width: NonZeroU32,
-    height: NonZeroU32,
-    /// Column by column, each from top to bottom.
-    texels: Vec<Rgb>,
-    /// 0 for clear, 255 for opaque, in the order of `texels`; empty where all is opaque.
+    /// From the picture itself down to one texel.
+    levels: Vec<Level>,
+    /// 0 for clear, 255 for opaque, in the order of the first level's texels; empty where all is
+    /// opaque.
     alpha: Vec<u8>,
     mean: Rgb,
 }
@@ -46,25 +49,23 @@ impl Texture {
             alpha = Vec::new();
         }
         let mean = mean(&texels);
-        Self { width, height, texels, alpha, mean }
+        Self { levels: level::pyramid(width, height, texels), alpha, mean }
     }
 
     /// Texels from left to right.
     pub fn width(&self) -> u32 {
-        self.width.get()
+        self.levels[0].width()
     }
 
     /// Texels from top to bottom.
     pub fn height(&self) -> u32 {
-        self.height.get()
+        self.levels[0].height()
     }
 
     /// The column that holds `u`, from 0 at the left edge to 1 at the right one, top to bottom. A
     /// `u` outside that range, or not a number, means the nearest column.
     pub fn column(&self, u: f64) -> &[Rgb] {
-        let height = self.height.get() as usize;
-        let x = texel_index(u, self.width.get()) * height;
-        &self.texels[x..x + height]
+        self.levels[0].column(u)
     }
 
     /// Whether any of it can be seen through.
@@ -74,9 +75,7 @@ impl Texture {
 
     /// The alpha of the texels of [`Texture::column`]; `None` where all of the texture is opaque.
     pub fn alpha_column(&self, u: f64) -> Option<&[u8]> {
-        let height = self.height.get() as usize;
-        let x = texel_index(u, self.width.get()) * height;
-        self.alpha.get(x..x + height)
+        self.alpha.get(self.levels[0].column_range(u))
     }
 
     /// The alpha of the texel at `(x, y)`, 255 where it is opaque.
@@ -85,20 +84,24 @@ impl Texture {
     /// Where the texture has no such texel.
     pub fn alpha(&self, x: u32, y: u32) -> u8 {
         assert!(x < self.width() && y < self.height(), "no texel at ({x}, {y})");
-        let index = x as usize * self.height.get() as usize + y as usize;
+        let index = x as usize * self.height() as usize + y as usize;
         self.alpha.get(index).copied().unwrap_or(u8::MAX)
     }
 
-    /// The mean colour of all texels: what the texture looks like from very far away.
+    /// The texture itself, halved `halvings` times: along each axis, and down to one texel.
+    pub fn level(&self, halvings: usize) -> &Level {
+        &self.levels[halvings.min(self.levels.len() - 1)]
+    }
+
+    /// The texture itself and all halvings of it; the last one is a single texel.
+    pub fn levels(&self) -> &[Level] {
+        &self.levels
+    }
+
+    /// The mean colour of all texels: what the texture looks like on a map.
     pub fn mean(&self) -> Rgb {
         self.mean
     }
-}
-
-/// The texel of `count` in a row that holds `coordinate`, from 0 to 1; the nearest one outside.
-fn texel_index(coordinate: f64, count: u32) -> usize {
-    let index = (coordinate * f64::from(count)) as usize;
-    index.min(count as usize - 1)
 }
 
 fn mean(texels: &[Rgb]) -> Rgb {

@@ -17,6 +17,7 @@ mod ironwork;
 mod masonry;
 mod metal;
 mod noise;
+mod panorama;
 mod patch;
 mod shade;
 mod timber;
@@ -42,6 +43,17 @@ pub fn named(name: &str) -> Option<Texture> {
             })
         }
     })
+}
+
+/// The names that [`panorama`] knows.
+pub const PANORAMAS: &[&str] = &["hills"];
+
+/// The built-in picture of a whole sky of that name, or `None` where there is none.
+pub fn panorama(name: &str) -> Option<Texture> {
+    const WIDTH: NonZeroU32 = NonZeroU32::new(panorama::WIDTH as u32).expect("it is not 0");
+    const HEIGHT: NonZeroU32 = NonZeroU32::new(panorama::HEIGHT as u32).expect("it is not 0");
+    let paint = (name == PANORAMAS[0]).then_some(panorama::hills)?;
+    Some(Texture::from_fn(WIDTH, HEIGHT, |x, y| paint(x as i32, y as i32)))
 }
 
 /// Texels along each side of a texture.
@@ -228,7 +240,7 @@ mod tests {
         sandstone #ba9661 e42eb514
         hedge     #447535 0f990761
         marble    #c1c4ca ed3037a3
-        jamb      #75777a bf2e1ee8
+        jamb      #75767a bf2e1ee8
         grate     #56585c bce9d347
         fence     #6a5c47 bfff9378
         ");

@@ -1,0 +1,171 @@
+//! Floors and ceilings: one surface by its name, or a table that says how it is laid.
+
+use toml::de::{DeTable, DeValue};
+
+use super::textures::{Surface, Textures};
+use crate::fault::Fault;
+use crate::fault::document::{Entry, entries};
+use crate::world::{Ceiling, Covering, Pattern, Rgb, Scale};
+
+const KEYS: &[&str] = &["texture", "checker", "stripes", "scale"];
+const EXAMPLE: &str = r#"{ texture = "tile" }"#;
+
+/// A floor or a ceiling, as the map says it.
+pub(super) struct CoveringText<'a> {
+    pattern: PatternText<'a>,
+    scale: Scale,
+}
+
+enum PatternText<'a> {
+    Plain(Surface<'a>),
+    Checker([Surface<'a>; 2]),
+    Stripes([Surface<'a>; 2]),
+}
+
+impl<'a> CoveringText<'a> {
+    /// One colour that the map does not mention.
+    pub(super) fn plain(color: Rgb) -> Self {
+        Self { pattern: PatternText::Plain(Surface::plain(color)), scale: Scale::ONE }
+    }
+
+    /// What `entry` describes; where it describes nothing, that is added to `faults`. The `example`
+    /// is a whole entry.
+    pub(super) fn read(
+        entry: &Entry<'a, '_>,
+        example: &str,
+        faults: &mut Vec<Fault>,
+    ) -> Option<Self> {
+        match entry.value {
+            DeValue::String(_) => {
+                let surface = Surface::read(entry, example, faults)?;
+                Some(Self { pattern: PatternText::Plain(surface), scale: Scale::ONE })
+            }
+            DeValue::Table(table) => Self::read_table(entry, table, faults),
+            _ => {
+                faults.push(entry.wrong_type("a string or a table", example));
+                None
+            }
+        }
+    }
+
+    fn read_table(
+        owner: &Entry<'a, '_>,
+        table: &'a DeTable<'_>,
+        faults: &mut Vec<Fault>,
+    ) -> Option<Self> {
+        let faults_before = faults.len();
+        let mut patterns = Vec::new();
+        let mut scale = Scale::ONE;
+        for entry in entries(table) {
+            match entry.key {
+                "scale" => scale = read_scale(&entry, faults).unwrap_or(scale),
+                "texture" | "checker" | "stripes" => {
+                    patterns.extend(PatternText::read(&entry, faults));
+                }
+                _ => faults.push(entry.unknown_key(&format!("a {}", owner.key), KEYS)),
+            }
+        }
+        if faults.len() > faults_before {
+            return None;
+        }
+        match (patterns.pop(), patterns.is_empty()) {
+            (Some(pattern), true) => Some(Self { pattern, scale }),
+            (found, _) => {
+                let fault = |message: String| Fault::new(owner.value_place.clone(), message);
+                faults.push(if found.is_none() {
+                    fault(format!("the {} does not say what it is laid with", owner.key))
+                        .help(format!("write {} = {EXAMPLE}", owner.key))
+                } else {
+                    fault(format!("the {} is laid with several patterns at once", owner.key))
+                        .help("keep one of texture, checker and stripes")
+                });
+                None
+            }
+        }
+    }
+
+    /// The covering itself. Where its textures cannot be had, that is added to `faults`.
+    pub(super) fn covering(
+        &self,
+        textures: &mut Textures<'_>,
+        faults: &mut Vec<Fault>,
+    ) -> Option<Covering> {
+        let mut both = |[first, second]: &[Surface<'_>; 2]| {
+            let paints = [textures.paint(first, faults), textures.paint(second, faults)];
+            Some([paints[0]?, paints[1]?])
+        };
+        let pattern = match &self.pattern {
+            PatternText::Checker(surfaces) => Pattern::Checker(both(surfaces)?),
+            PatternText::Stripes(surfaces) => Pattern::Stripes(both(surfaces)?),
+            PatternText::Plain(surface) => Pattern::Plain(textures.paint(surface, faults)?),
+        };
+        Some(Covering { pattern, scale: self.scale })
+    }
+}
+
+impl<'a> PatternText<'a> {
+    /// The pattern that a key of a covering's table describes.
+    fn read(entry: &Entry<'a, '_>, faults: &mut Vec<Fault>) -> Option<Self> {
+        if entry.key == "texture" {
+            return Surface::read(entry, r#"texture = "tile""#, faults).map(Self::Plain);
+        }
+        let example = format!(r#"{} = ["tile", "marble"]"#, entry.key);
+        let pair = entry.pair(&example, faults)?;
+        let [first, second] = pair.map(|entry| Surface::read(&entry, &example, faults));
+        let surfaces = [first?, second?];
+        Some(match entry.key {
+            "checker" => Self::Checker(surfaces),
+            _ => Self::Stripes(surfaces),
+        })
+    }
+}
+
+fn read_scale(entry: &Entry<'_, '_>, faults: &mut Vec<Fault>) -> Option<Scale> {
+    let scale = entry.number().and_then(Scale::new);
+    if scale.is_none() {
+        let message = "a scale must be a finite number of cells above 0";
+        faults.push(
+            Fault::new(entry.value_place.clone(), message)
+                .label("this is none")
+                .help("write 2.0 to stretch a texture over two cells"),
+        );
+    }
+    scale
+}
+
+/// What is overhead, as the map says it.
+pub(super) enum CeilingText<'a> {
+    Sky,
+    Covered(CoveringText<'a>),
+}
+
+impl<'a> CeilingText<'a> {
+    /// One colour that the map does not mention.
+    pub(super) fn plain(color: Rgb) -> Self {
+        Self::Covered(CoveringText::plain(color))
+    }
+
+    /// As [`CoveringText::read`]; `"sky"` is none.
+    pub(super) fn read(
+        entry: &Entry<'a, '_>,
+        example: &str,
+        faults: &mut Vec<Fault>,
+    ) -> Option<Self> {
+        match entry.value {
+            DeValue::String(text) if text == "sky" => Some(Self::Sky),
+            _ => CoveringText::read(entry, example, faults).map(Self::Covered),
+        }
+    }
+
+    /// The ceiling itself, as [`CoveringText::covering`].
+    pub(super) fn ceiling(
+        &self,
+        textures: &mut Textures<'_>,
+        faults: &mut Vec<Fault>,
+    ) -> Option<Ceiling> {
+        match self {
+            Self::Sky => Some(Ceiling::Sky),
+            Self::Covered(covering) => covering.covering(textures, faults).map(Ceiling::Covered),
+        }
+    }
+}

@@ -1,0 +1,57 @@
+//! An explanation: the plan of a frame beside what the frame cost.
+
+use std::fmt;
+
+use super::Plan;
+use super::projection::Projection;
+use super::tally::{Counts, Pass};
+use crate::cast::Walk;
+use crate::world::Grid;
+
+/// How a frame was drawn, and what it cost.
+#[derive(Clone, Debug, PartialEq, Eq)]
+pub struct Explanation {
+    /// How it was drawn.
+    pub plan: Plan,
+    /// What it cost.
+    pub counts: Counts,
+}
+
+impl fmt::Display for Explanation {
+    /// Writes a few lines for people.
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        let Self { plan, counts } = self;
+        write!(f, "{plan}")?;
+        writeln!(f)?;
+        writeln!(f, "rays     {:>10} cast, into {} cells", counts.rays, counts.cells)?;
+        let passes = [
+            ("ceiling", Pass::Ceiling),
+            ("floor", Pass::Floor),
+            ("sky", Pass::Sky),
+            ("walls", Pass::Walls),
+            ("through", Pass::SeeThrough),
+        ];
+        for (name, pass) in passes {
+            let counts = counts.of(pass);
+            let (pixels, texels) = (counts.pixels, counts.texels);
+            writeln!(f, "{name:8} {pixels:>10} pixels written, {texels} texels read")?;
+        }
+        let (pixels, overwritten) = (counts.pixels(), counts.overwritten);
+        writeln!(f, "all      {pixels:>10} pixels written, {overwritten} of them overwritten")
+    }
+}
+
+/// How many cells the rays of a picture enter until they hit something or leave the map.
+pub(super) fn cells_entered(grid: &Grid, projection: &Projection) -> u64 {
+    let entered = |ray| {
+        let mut count = 0;
+        for crossing in Walk::new(grid, &ray) {
+            count += 1;
+            if grid.is_solid_tile(crossing.tile) {
+                break;
+            }
+        }
+        count
+    };
+    projection.rays().map(entered).sum()
+}

@@ -1,0 +1,169 @@
+//! The plan: which passes draw a frame, and with which inner loop.
+//!
+//! It is a small value, made from the world before anything is drawn, by looking at what each kind of
+//! tile consists of. The passes match on it once a frame, so that what a scene does not have is absent
+//! from their loops; what a single map has everywhere costs only that map.
+
+use std::fmt;
+
+use super::Filter;
+use crate::world::{Ceiling, Covering, Light, Paint, Pattern, Rgb, Sky, Tile, TileKind, World};
+
+/// Which passes draw a frame, and how.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub struct Plan {
+    /// How what is overhead is drawn.
+    pub ceiling: CeilingLoop,
+    /// How the floor is drawn.
+    pub floor: PlaneLoop,
+    /// How the sky is drawn, where there is any: in place of a ceiling, or beyond the edge.
+    pub sky: SkyLoop,
+    /// How the walls are drawn.
+    pub walls: WallLoop,
+    /// Which level of a texture is read.
+    pub filter: Filter,
+}
+
+/// How the floor or the ceiling is drawn.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum PlaneLoop {
+    /// One colour everywhere: a single fill, walls or no walls.
+    Fill(Rgb),
+    /// One colour, in fog: a fill for each row.
+    FillRows(Rgb),
+    /// One covering everywhere: the spans of each row that no wall hides.
+    Spans,
+    /// By tile: the same spans, cut where the tile changes.
+    Tiles,
+}
+
+/// How what is overhead is drawn.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum CeilingLoop {
+    /// Nothing but sky.
+    Sky,
+    /// A ceiling, in places at least.
+    Laid(PlaneLoop),
+}
+
+/// How the sky is drawn.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum SkyLoop {
+    /// One colour a row.
+    Gradient,
+    /// A texel a pixel, along the spans of each row that nothing hides.
+    Panorama,
+}
+
+/// How the walls are drawn.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub struct WallLoop {
+    /// Whether any wall has a texture.
+    pub textured: bool,
+    /// Whether colours fade, by fog or for want of light.
+    pub faded: bool,
+}
+
+impl Plan {
+    /// The plan for `world`.
+    pub fn new(world: &World, filter: Filter) -> Self {
+        let tiles = world.tiles();
+        let is_open = |tile: &&Tile| tile.kind == TileKind::Open;
+        let dims = |tile: &Tile| tile.light.is_some_and(|light| light != Light::FULL);
+        let open = || tiles.iter().filter(is_open);
+        let is_foggy = world.fog().is_some();
+        let floor_varies = open().any(|tile| dims(tile) || tile.floor != world.floor());
+        let ceiling_varies = open().any(|tile| dims(tile) || tile.ceiling != world.ceiling());
+        let is_textured = |tile: &Tile| matches!(tile.kind, TileKind::Wall(Paint::Texture(_)));
+        Self {
+            floor: PlaneLoop::new(world.floor(), floor_varies, is_foggy),
+            ceiling: match world.ceiling() {
+                Ceiling::Sky if open().all(|tile| tile.ceiling == Ceiling::Sky) => CeilingLoop::Sky,
+                Ceiling::Sky => CeilingLoop::Laid(PlaneLoop::Tiles),
+                Ceiling::Covered(covering) => {
+                    CeilingLoop::Laid(PlaneLoop::new(covering, ceiling_varies, is_foggy))
+                }
+            },
+            sky: match world.sky() {
+                Sky::Gradient { .. } => SkyLoop::Gradient,
+                Sky::Panorama(_) => SkyLoop::Panorama,
+            },
+            walls: WallLoop {
+                textured: tiles.iter().any(is_textured),
+                faded: is_foggy || tiles.iter().any(dims),
+            },
+            filter,
+        }
+    }
+}
+
+impl PlaneLoop {
+    fn new(covering: Covering, varies: bool, is_foggy: bool) -> Self {
+        match covering.pattern {
+            _ if varies => Self::Tiles,
+            Pattern::Plain(Paint::Color(color)) if is_foggy => Self::FillRows(color),
+            Pattern::Plain(Paint::Color(color)) => Self::Fill(color),
+            _ => Self::Spans,
+        }
+    }
+}
+
+impl fmt::Display for Plan {
+    /// Writes a line for each pass: how it runs, and why.
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        writeln!(f, "ceiling  {}", self.ceiling)?;
+        writeln!(f, "floor    {}", self.floor)?;
+        writeln!(f, "sky      {}", self.sky)?;
+        writeln!(f, "walls    {}", self.walls)?;
+        writeln!(f, "filter   {}", self.filter)
+    }
+}
+
+impl fmt::Display for PlaneLoop {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        match self {
+            Self::Fill(color) => write!(f, "one fill: it is {color} everywhere"),
+            Self::FillRows(color) => write!(f, "a fill for each row: it is {color}, in fog"),
+            Self::Spans => f.write_str("visible spans: it is laid with the same everywhere"),
+            Self::Tiles => f.write_str("visible spans, cut by tile: tiles differ"),
+        }
+    }
+}
+
+impl fmt::Display for CeilingLoop {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        match self {
+            Self::Sky => f.write_str("not drawn: there is only sky"),
+            Self::Laid(plane) => plane.fmt(f),
+        }
+    }
+}
+
+impl fmt::Display for SkyLoop {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        f.write_str(match self {
+            Self::Gradient => "a colour for each row, where there is sky: it is a gradient",
+            Self::Panorama => "visible spans, where there is sky: it is a panorama",
+        })
+    }
+}
+
+impl fmt::Display for WallLoop {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        f.write_str(if self.textured { "columns of texels" } else { "columns of one colour" })?;
+        f.write_str(if self.faded {
+            ", faded: there is fog, or a tile that is not fully lit"
+        } else {
+            ", unfaded: there is no fog, and all is fully lit"
+        })
+    }
+}
+
+impl fmt::Display for Filter {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        f.write_str(match self {
+            Self::Mip => "mip: far texels are averaged",
+            Self::Nearest => "nearest: every texel is one of the texture's own",
+        })
+    }
+}

@@ -1,0 +1,105 @@
+//! The tally: what a frame cost, counted where it is spent.
+//!
+//! The passes are generic over it, and a frame that nobody wants explained is drawn with `()`, which
+//! counts nothing and leaves no code behind.
+
+/// A pass that writes pixels.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
+pub enum Pass {
+    /// What is overhead.
+    Ceiling,
+    /// What is below.
+    Floor,
+    /// What is seen in place of a ceiling, or beyond the edge of the map.
+    Sky,
+    /// What the rays hit.
+    Walls,
+    /// What the rays passed.
+    SeeThrough,
+}
+
+/// Something that is told what is spent.
+pub(super) trait Tally {
+    /// So many texels are read.
+    fn texels(&mut self, pass: Pass, count: usize);
+
+    /// So many pixels are written.
+    fn pixels(&mut self, pass: Pass, count: usize);
+}
+
+impl Tally for () {
+    #[inline]
+    fn texels(&mut self, _: Pass, _: usize) {}
+
+    #[inline]
+    fn pixels(&mut self, _: Pass, _: usize) {}
+}
+
+/// What a pass read and wrote.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Default)]
+pub struct PassCounts {
+    /// Texels that were read, each as often as that.
+    pub texels: u64,
+    /// Pixels that were written, each as often as that.
+    pub pixels: u64,
+}
+
+/// What a frame cost.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Default)]
+pub struct Counts {
+    /// Rays that were cast, one for each column of pixels.
+    pub rays: u64,
+    /// Cells that they entered, the ones that they hit included.
+    pub cells: u64,
+    /// The ceiling.
+    pub ceiling: PassCounts,
+    /// The floor.
+    pub floor: PassCounts,
+    /// The sky.
+    pub sky: PassCounts,
+    /// The walls.
+    pub walls: PassCounts,
+    /// Masks and glass.
+    pub see_through: PassCounts,
+    /// Pixels that were written more than once, each as often as that beyond the first time.
+    pub overwritten: u64,
+}
+
+impl Counts {
+    /// What `pass` read and wrote.
+    pub fn of(&self, pass: Pass) -> PassCounts {
+        match pass {
+            Pass::Ceiling => self.ceiling,
+            Pass::Floor => self.floor,
+            Pass::Sky => self.sky,
+            Pass::Walls => self.walls,
+            Pass::SeeThrough => self.see_through,
+        }
+    }
+
+    /// Pixels that were written by all passes together.
+    pub fn pixels(&self) -> u64 {
+        let passes = [self.ceiling, self.floor, self.sky, self.walls, self.see_through];
+        passes.iter().map(|pass| pass.pixels).sum()
+    }
+
+    fn of_mut(&mut self, pass: Pass) -> &mut PassCounts {
+        match pass {
+            Pass::Ceiling => &mut self.ceiling,
+            Pass::Floor => &mut self.floor,
+            Pass::Sky => &mut self.sky,
+            Pass::Walls => &mut self.walls,
+            Pass::SeeThrough => &mut self.see_through,
+        }
+    }
+}
+
+impl Tally for Counts {
+    fn texels(&mut self, pass: Pass, count: usize) {
+        self.of_mut(pass).texels += count as u64;
+    }
+
+    fn pixels(&mut self, pass: Pass, count: usize) {
+        self.of_mut(pass).pixels += count as u64;
+    }
+}

@@ -1,0 +1,118 @@
+//! Tracks: where on the map the pixels of a row are, as far as they show floor or ceiling.
+//!
+//! All pixels of such a row are at one distance, and their centres stand side by side on a straight
+//! line. Each row's line is computed from the row's own index, and each pixel's place from the middle
+//! of its row, in fixed point that wraps around: no error adds up anywhere, and a picture and its
+//! mirror image agree bit for bit.
+
+use glam::DVec2;
+
+/// The line that a row of pixels shows of the floor or the ceiling.
+#[derive(Clone, Copy, Debug)]
+pub(super) struct Track {
+    /// How far it is from the camera plane; infinite for a row at the horizon.
+    pub(super) distance: f64,
+    /// How large a pixel is on it, in square cells.
+    pub(super) pixel_area: f64,
+    /// What the middle of the row shows.
+    pub(super) middle: DVec2,
+    /// From the middle of a pixel to its right edge.
+    pub(super) half_step: DVec2,
+    /// How many pixels the row has.
+    pub(super) width: u32,
+}
+
+impl Track {
+    /// What the centre of the pixel in column `x` shows.
+    pub(super) fn point(&self, x: usize) -> DVec2 {
+        self.middle + self.half_step * self.half_steps_to(x) as f64
+    }
+
+    /// The places of the pixels from column `x` on within the repeats of something that repeats
+    /// `per_cell` times in a cell, along both axes.
+    pub(super) fn places(&self, x: usize, per_cell: f64) -> Places {
+        let along = |middle: f64, half_step: f64| {
+            let half_step = fraction(half_step * per_cell);
+            let start = half_step.wrapping_mul(self.half_steps_to(x) as u64);
+            (fraction(middle * per_cell).wrapping_add(start), half_step.wrapping_mul(2))
+        };
+        let (x, x_step) = along(self.middle.x, self.half_step.x);
+        let (y, y_step) = along(self.middle.y, self.half_step.y);
+        Places { x, y, x_step, y_step }
+    }
+
+    /// From the middle of the row to the centre of a pixel.
+    fn half_steps_to(&self, x: usize) -> i64 {
+        2 * x as i64 + 1 - i64::from(self.width)
+    }
+}
+
+/// Places within a repeat, one for each pixel, in 2⁻⁶⁴ths of it along both axes.
+#[derive(Clone, Debug)]
+pub(super) struct Places {
+    x: u64,
+    y: u64,
+    x_step: u64,
+    y_step: u64,
+}
+
+impl Iterator for Places {
+    type Item = (u64, u64);
+
+    #[inline]
+    fn next(&mut self) -> Option<(u64, u64)> {
+        let place = (self.x, self.y);
+        // Integers that wrap around lose nothing.
+        self.x = self.x.wrapping_add(self.x_step);
+        self.y = self.y.wrapping_add(self.y_step);
+        Some(place)
+    }
+}
+
+/// What is behind the decimal point of `number`, in 2⁻⁶⁴ths; 0 for what is no number.
+fn fraction(number: f64) -> u64 {
+    const WHOLE: f64 = 18_446_744_073_709_551_616.0;
+    let size = number.abs();
+    let fraction = ((size - size.floor()) * WHOLE) as u64;
+    if number < 0.0 { fraction.wrapping_neg() } else { fraction }
+}
+
+#[cfg(test)]
+mod tests {
+    use proptest::prelude::*;
+
+    use super::*;
+
+    #[test]
+    fn fractions_wrap_around() {
+        let quarter = 1 << 62;
+        assert_eq!([0.25, 7.25, -0.75, -3.75].map(fraction), [quarter; 4]);
+        assert_eq!([0.0, -0.0, 5.0, f64::NAN, f64::INFINITY].map(fraction), [0; 5]);
+    }
+
+    proptest! {
+        #[test]
+        fn places_are_those_of_the_points(
+            middle in (-50.0..50.0, -50.0..50.0),
+            half_step in (-0.5..0.5, -0.5..0.5),
+            width in 1_u32..4096,
+            per_cell in 0.1..3.0,
+        ) {
+            let track = Track {
+                distance: 1.0,
+                pixel_area: 1.0,
+                middle: DVec2::from(middle),
+                half_step: DVec2::from(half_step),
+                width,
+            };
+            let first = width as usize / 3;
+            for (x, (east, south)) in (first..width as usize).zip(track.places(first, per_cell)) {
+                let point = track.point(x) * per_cell;
+                for (place, expected) in [(east, point.x), (south, point.y)] {
+                    let off = place as f64 / 2.0_f64.powi(64) - (expected - expected.floor());
+                    prop_assert!(off.abs() < 1e-9 || (off.abs() - 1.0).abs() < 1e-9);
+                }
+            }
+        }
+    }
+}

@@ -1,0 +1,225 @@
+//! Levels: a texture in half its size, a quarter, and so on.
+//!
+//! A texel of a level is the mean of those it covers in the level before, by the area of each, so
+//! that sides which are no powers of two lose nothing. The mean is taken in linear light, because
+//! that is what the eye does from far away; taken of the numbers as they are stored, a black and white
+//! chessboard would turn too dark with the distance.
+
+use std::num::NonZeroU32;
+use std::ops::Range;
+use std::sync::LazyLock;
+
+use crate::world::Rgb;
+
+/// A picture in one size, at least one texel wide and high.
+#[derive(Clone, Debug, PartialEq, Eq)]
+pub struct Level {
+    width: NonZeroU32,
+    height: NonZeroU32,
+    /// Column by column, each from top to bottom.
+    texels: Vec<Rgb>,
+}
+
+impl Level {
+    /// Texels from left to right.
+    pub fn width(&self) -> u32 {
+        self.width.get()
+    }
+
+    /// Texels from top to bottom.
+    pub fn height(&self) -> u32 {
+        self.height.get()
+    }
+
+    /// The column that holds `u`, from 0 at the left edge to 1 at the right one, top to bottom. A
+    /// `u` outside that range, or not a number, means the nearest column.
+    pub fn column(&self, u: f64) -> &[Rgb] {
+        &self.texels[self.column_range(u)]
+    }
+
+    /// Where the texels of that column are among all of them.
+    pub(super) fn column_range(&self, u: f64) -> Range<usize> {
+        let height = self.height.get() as usize;
+        let start = texel_index(u, self.width.get()) * height;
+        start..start + height
+    }
+
+    /// The texel at a place given in 2⁻⁶⁴ths of the way from left to right and from top to bottom.
+    #[inline]
+    pub fn at_fraction(&self, x: u64, y: u64) -> Rgb {
+        let index = |fraction: u64, count: NonZeroU32| {
+            (((fraction >> u32::BITS) * u64::from(count.get())) >> u32::BITS) as usize
+        };
+        self.texels[index(x, self.width) * self.height.get() as usize + index(y, self.height)]
+    }
+}
+
+/// The texel of `count` in a row that holds `coordinate`, from 0 to 1; the nearest one outside.
+fn texel_index(coordinate: f64, count: u32) -> usize {
+    let index = (coordinate * f64::from(count)) as usize;
+    index.min(count as usize - 1)
+}
+
+/// A picture of these texels, column by column, and its halvings down to one texel.
+pub(super) fn pyramid(width: NonZeroU32, height: NonZeroU32, texels: Vec<Rgb>) -> Vec<Level> {
+    let mut light = Light { width, height, texels: texels.iter().copied().map(linear).collect() };
+    let mut levels = vec![Level { width, height, texels }];
+    while light.texels.len() > 1 {
+        light = light.halved();
+        let texels = light.texels.iter().copied().map(stored).collect();
+        levels.push(Level { width: light.width, height: light.height, texels });
+    }
+    levels
+}
+
+/// A picture in linear light: 16 bits for each of red, green and blue.
+struct Light {
+    width: NonZeroU32,
+    height: NonZeroU32,
+    texels: Vec<[u16; 3]>,
+}
+
+impl Light {
+    fn halved(&self) -> Self {
+        let half = |side: NonZeroU32| NonZeroU32::new(side.get() / 2).unwrap_or(NonZeroU32::MIN);
+        let (width, height) = (half(self.width), half(self.height));
+        let places = (0..width.get()).flat_map(|x| (0..height.get()).map(move |y| (x, y)));
+        let texels = places
+            .map(|(x, y)| {
+                self.mean(covered(x, self.width, width), &covered(y, self.height, height))
+            })
+            .collect();
+        Self { width, height, texels }
+    }
+
+    /// The mean of the texels in some columns and rows, each with its weight.
+    fn mean(
+        &self,
+        columns: impl Iterator<Item = (u32, u64)>,
+        rows: &(impl Iterator<Item = (u32, u64)> + Clone),
+    ) -> [u16; 3] {
+        let (mut sums, mut total) = ([0; 3], 0);
+        for (x, share_of_column) in columns {
+            let column = &self.texels[x as usize * self.height.get() as usize..];
+            for (y, share_of_row) in rows.clone() {
+                let weight = share_of_column * share_of_row;
+                total += weight;
+                for (sum, channel) in sums.iter_mut().zip(column[y as usize]) {
+                    *sum += weight * u64::from(channel);
+                }
+            }
+        }
+        sums.map(|sum| ((sum + total / 2) / total) as u16)
+    }
+}
+
+/// The texels, of `from` in a row, that texel `index` of `to` covers, and how much of each.
+fn covered(
+    index: u32,
+    from: NonZeroU32,
+    to: NonZeroU32,
+) -> impl Iterator<Item = (u32, u64)> + Clone {
+    let (from, to) = (u64::from(from.get()), u64::from(to.get()));
+    // In such units that both kinds of texel are whole.
+    let (start, end) = (u64::from(index) * from, (u64::from(index) + 1) * from);
+    (start / to..end.div_ceil(to)).map(move |texel| {
+        let covered = end.min((texel + 1) * to) - start.max(texel * to);
+        (texel as u32, covered)
+    })
+}
+
+/// The colour of a surface that is half of the one and half of the other, from far away.
+pub(crate) fn mean_of_two(one: Rgb, other: Rgb) -> Rgb {
+    let (one, other) = (linear(one), linear(other));
+    stored(std::array::from_fn(|channel| one[channel].midpoint(other[channel])))
+}
+
+/// What each stored channel is in linear light.
+static LINEAR: LazyLock<[u16; 256]> = LazyLock::new(|| {
+    std::array::from_fn(|channel| {
+        let stored = channel as f64 / 255.0;
+        let linear = if stored <= 0.040_45 {
+            stored / 12.92
+        } else {
+            libm::pow((stored + 0.055) / 1.055, 2.4)
+        };
+        (linear * f64::from(u16::MAX)).round() as u16
+    })
+});
+
+fn linear(color: Rgb) -> [u16; 3] {
+    color.channels().map(|channel| LINEAR[usize::from(channel)])
+}
+
+/// The stored colour that is nearest to one in linear light.
+fn stored(light: [u16; 3]) -> Rgb {
+    let [red, green, blue] = light.map(|channel| {
+        let above = LINEAR.partition_point(|&linear| linear < channel).min(255);
+        let below = above.saturating_sub(1);
+        let is_below = channel - LINEAR[below].min(channel) < LINEAR[above] - channel;
+        (if is_below { below } else { above }) as u8
+    });
+    Rgb::new(red, green, blue)
+}
+
+#[cfg(test)]
+mod tests {
+    use proptest::prelude::*;
+
+    use super::*;
+
+    fn size(side: u32) -> NonZeroU32 {
+        NonZeroU32::new(side).unwrap()
+    }
+
+    #[test]
+    fn every_channel_comes_back_from_linear_light() {
+        for channel in 0..=255 {
+            let gray = Rgb::new(channel, channel, channel);
+            assert_eq!(stored(linear(gray)), gray);
+        }
+    }
+
+    #[test]
+    fn a_chessboard_turns_into_the_gray_it_looks_like() {
+        let texels = (0..16).map(|index| if (index + index / 4) % 2 == 0 { 0 } else { 255 });
+        let texels = texels.map(|gray| Rgb::new(gray, gray, gray)).collect();
+        let levels = pyramid(size(4), size(4), texels);
+        assert_eq!(levels.len(), 3);
+        // Half the light, which is far more than half the number.
+        assert!(
+            levels[1..]
+                .iter()
+                .flat_map(|level| &level.texels)
+                .all(|&texel| { texel == Rgb::new(188, 188, 188) })
+        );
+    }
+
+    #[test]
+    fn a_fraction_names_the_texel_that_holds_it() {
+        let level = &pyramid(size(2), size(1), vec![Rgb::BLACK, Rgb::WHITE])[0];
+        let half = 1 << 63;
+        let seen = [0, half - 1, half, u64::MAX].map(|x| level.at_fraction(x, u64::MAX));
+        assert_eq!(seen, [Rgb::BLACK, Rgb::BLACK, Rgb::WHITE, Rgb::WHITE]);
+    }
+
+    proptest! {
+        /// Light is neither lost nor made: all levels have the same mean, whatever the sides.
+        #[test]
+        fn a_halving_is_as_bright_as_the_whole(
+            width in 1_u32..20,
+            height in 1_u32..20,
+            seed in prop::collection::vec(any::<u16>(), 400),
+        ) {
+            let count = (width * height) as usize;
+            let texels = seed[..count].iter().map(|&light| [light; 3]).collect();
+            let whole = Light { width: size(width), height: size(height), texels };
+            let half = whole.halved();
+            let mean = |light: &Light| {
+                let sum: f64 = light.texels.iter().map(|texel| f64::from(texel[0])).sum();
+                sum / light.texels.len() as f64
+            };
+            prop_assert!((mean(&whole) - mean(&half)).abs() <= 0.5);
+        }
+    }
+}

@@ -1,0 +1,133 @@
+//! A frame costs what its scene shows: counts of what is read and written, for each map of the gallery.
+
+use std::path::Path;
+
+use allocation_counter::measure;
+use cellcaster::map;
+use cellcaster::render::{
+    CeilingLoop, Explanation, Filter, Frame, FrameSize, PixelAspect, PlaneLoop, Renderer,
+};
+use cellcaster::world::{FieldOfView, World};
+
+const WIDTH: u32 = 160;
+const HEIGHT: u32 = 90;
+const PIXELS: u64 = WIDTH as u64 * HEIGHT as u64;
+
+fn gallery(name: &str) -> World {
+    map::load(Path::new(&format!("maps/gallery/{name}.toml"))).unwrap()
+}
+
+fn frame() -> Frame {
+    Frame::new(FrameSize::new(WIDTH, HEIGHT).unwrap(), PixelAspect::SQUARE)
+}
+
+fn explained(world: &World) -> Explanation {
+    let camera = world.start_camera(FieldOfView::default());
+    Renderer::new().explain(world, &camera, &mut frame())
+}
+
+#[test]
+fn a_flat_scene_reads_texels_for_its_walls_alone() {
+    let Explanation { plan, counts } = explained(&gallery("flat"));
+    assert!(matches!(plan.floor, PlaneLoop::Fill(_)));
+    assert!(matches!(plan.ceiling, CeilingLoop::Laid(PlaneLoop::Fill(_))));
+    assert_eq!((counts.floor.texels, counts.ceiling.texels, counts.sky.pixels), (0, 0, 0));
+    assert_eq!(counts.walls.texels, counts.walls.pixels);
+    assert_eq!(counts.rays, u64::from(WIDTH));
+    // Two fills of half the picture each, and the walls over them.
+    assert_eq!(counts.floor.pixels + counts.ceiling.pixels, PIXELS);
+    assert_eq!(counts.overwritten, counts.walls.pixels);
+}
+
+#[test]
+fn walls_of_one_colour_read_no_texel_at_all() {
+    let text = include_str!("../maps/gallery/flat.toml")
+        .replace("brick", "#804030")
+        .replace("stone", "#606468");
+    let counts = explained(&map::parse_str(&text).unwrap()).counts;
+    assert_eq!(counts.walls.texels, 0);
+}
+
+#[test]
+fn textures_are_read_once_for_each_pixel_that_shows_them() {
+    let counts = explained(&gallery("floor")).counts;
+    assert_eq!(counts.overwritten, 0);
+    assert_eq!(counts.floor.texels, counts.floor.pixels);
+    assert_eq!(counts.ceiling.texels, counts.ceiling.pixels);
+}
+
+#[test]
+fn a_texture_on_the_floor_alone_costs_the_floor_alone() {
+    let text = include_str!("../maps/gallery/floor.toml").replace("\"wood\"", "\"#26262c\"");
+    let Explanation { plan, counts } = explained(&map::parse_str(&text).unwrap());
+    assert!(matches!(plan.ceiling, CeilingLoop::Laid(PlaneLoop::Fill(_))));
+    assert_eq!(counts.ceiling.texels, 0);
+    assert_eq!(counts.floor, explained(&gallery("floor")).counts.floor);
+}
+
+#[test]
+fn a_gradient_reads_no_texel_and_a_panorama_one_a_pixel() {
+    let gradient = explained(&gallery("gradient")).counts.sky;
+    assert_eq!((gradient.texels, gradient.pixels), (0, PIXELS / 2));
+    let panorama = explained(&gallery("panorama")).counts.sky;
+    assert_eq!(panorama.texels, panorama.pixels);
+}
+
+#[test]
+fn explaining_draws_the_same_frame() {
+    for name in ["flat", "tiles", "fog", "panorama", "light"] {
+        let world = gallery(name);
+        let camera = world.start_camera(FieldOfView::default());
+        let (mut drawn, mut explained) = (frame(), frame());
+        Renderer::new().render(&world, &camera, &mut drawn);
+        Renderer::new().explain(&world, &camera, &mut explained);
+        assert!(drawn == explained, "{name}");
+    }
+}
+
+#[test]
+fn no_feature_allocates_once_the_first_frame_is_drawn() {
+    for entry in std::fs::read_dir("maps/gallery").unwrap() {
+        let world = map::load(&entry.unwrap().path()).unwrap();
+        let mut camera = world.start_camera(FieldOfView::default());
+        let (mut renderer, mut frame) = (Renderer::new(), frame());
+        renderer.render(&world, &camera, &mut frame);
+        for _ in 0..20 {
+            camera.heading = camera.heading.turned(0.3);
+            let counted = measure(|| renderer.render(&world, &camera, &mut frame));
+            assert_eq!(counted.count_total, 0, "{}", world.title());
+        }
+    }
+}
+
+/// The mean change of a channel from frame to frame of a slow turn, in 8-bit steps.
+fn shimmer(world: &World, filter: Filter) -> f64 {
+    const FRAMES: u32 = 60;
+    let mut camera = world.start_camera(FieldOfView::default());
+    let mut renderer = Renderer::new();
+    renderer.set_filter(filter);
+    let (mut before, mut after) = (frame(), frame());
+    renderer.render(world, &camera, &mut before);
+    let mut sum = 0;
+    for _ in 0..FRAMES {
+        camera.heading = camera.heading.turned(0.002);
+        renderer.render(world, &camera, &mut after);
+        let channels = |frame: &Frame| {
+            frame.rows().flatten().flat_map(|pixel| pixel.channels()).collect::<Vec<u8>>()
+        };
+        let changes = channels(&before).into_iter().zip(channels(&after));
+        sum += changes.map(|(one, other)| u64::from(one.abs_diff(other))).sum::<u64>();
+        std::mem::swap(&mut before, &mut after);
+    }
+    sum as f64 / (f64::from(FRAMES) * 3.0 * PIXELS as f64)
+}
+
+#[test]
+fn a_slow_turn_is_calmer_with_averaged_textures() {
+    for name in ["flat", "floor", "checker", "mip"] {
+        let world = gallery(name);
+        let (mip, nearest) = (shimmer(&world, Filter::Mip), shimmer(&world, Filter::Nearest));
+        println!("{name}: {mip:.3} with mip, {nearest:.3} with nearest");
+        assert!(mip < nearest, "{name}: {mip} with mip, {nearest} with nearest");
+    }
+}

@@ -1,0 +1,80 @@
+//! The gallery: a small map for each feature, with golden pictures; and the page about maps.
+
+mod support;
+
+use std::fs;
+
+use cellcaster::map;
+use cellcaster::render::{Frame, FrameSize, PixelAspect, Renderer};
+use cellcaster::world::FieldOfView;
+use support::output_of;
+
+fn names() -> Vec<String> {
+    let mut names: Vec<String> = fs::read_dir("maps/gallery")
+        .unwrap()
+        .map(|entry| entry.unwrap().file_name().into_string().unwrap())
+        .filter_map(|name| name.strip_suffix(".toml").map(str::to_owned))
+        .collect();
+    names.sort();
+    names
+}
+
+#[test]
+fn every_feature_looks_as_it_did() {
+    for name in names() {
+        let map = format!("maps/gallery/{name}.toml");
+        for format in ["png", "text"] {
+            let picture = output_of(&["snapshot", &map, "--format", format]);
+            insta::assert_binary_snapshot!(&format!("{name}.{format}"), picture);
+        }
+    }
+}
+
+#[test]
+fn every_feature_is_explained_as_it_was() {
+    for name in names() {
+        let map = format!("maps/gallery/{name}.toml");
+        let explanation = String::from_utf8(output_of(&["snapshot", &map, "--explain"])).unwrap();
+        insta::assert_snapshot!(format!("explain_{name}"), explanation);
+    }
+}
+
+#[test]
+fn every_example_on_the_page_about_maps_is_a_map() {
+    let page = fs::read_to_string("docs/maps.md").unwrap();
+    let examples: Vec<&str> = page
+        .split("```toml\n")
+        .skip(1)
+        .map(|rest| rest.split("```").next().unwrap_or_default())
+        .collect();
+    assert!(examples.len() >= 10, "where are the examples?");
+    for example in examples {
+        // An example of a feature is a part of a map; the rest is always the same.
+        let text = if example.contains("grid") { example.to_owned() } else { with_room(example) };
+        let world = map::parse_str(&text).unwrap_or_else(|faults| panic!("{text}\n{faults}"));
+        let mut frame = Frame::new(FrameSize::new(80, 48).unwrap(), PixelAspect::SQUARE);
+        let camera = world.start_camera(FieldOfView::default());
+        Renderer::new().render(&world, &camera, &mut frame);
+        let first = frame.pixel(0, 0);
+        assert!(frame.rows().flatten().any(|&pixel| pixel != first), "{example}");
+    }
+}
+
+/// A part of a map in a room of its own.
+fn with_room(part: &str) -> String {
+    const ROOM: &str = "grid = '''\n######\n#@,;.#\n#....#\n######\n'''\n";
+    const WALL: &str = "\"#\" = { wall = \"brick\" }\n";
+    const OPEN: &str = "\",\" = { light = 1 }\n\";\" = { light = 1 }\n";
+    const START: &str = "[things]\n\"@\" = { start = 0 }\n";
+    match part.split_once("[tiles]\n") {
+        None => format!("{part}{ROOM}[tiles]\n{WALL}{OPEN}{START}"),
+        Some((head, tiles)) => {
+            let missing: String = [WALL]
+                .into_iter()
+                .chain(OPEN.split_inclusive('\n'))
+                .filter(|line| !tiles.contains(&line[..3]))
+                .collect();
+            format!("{head}{ROOM}[tiles]\n{tiles}{missing}{START}")
+        }
+    }
+}

@@ -1,0 +1,135 @@
+//! Floor and ceiling against plain geometry: what every pixel shows of them, found pixel by pixel from
+//! nothing but the camera, wherever no edge of a texel, a tile or a wall is near.
+
+use cellcaster::cast::{Caster, Exact, Ray};
+use cellcaster::map;
+use cellcaster::render::{Filter, Frame, FrameSize, PixelAspect, Renderer};
+use cellcaster::world::{
+    Camera, Ceiling, Covering, FieldOfView, Heading, Light, Paint, Pattern, Rgb, World,
+};
+use glam::DVec2;
+use proptest::prelude::*;
+
+const MAP: &str = r##"
+floor   = { checker = ["tile", "#203040"], scale = 1.5 }
+ceiling = { stripes = ["moss", "marble"] }
+grid = '''
+#########
+#.......#
+#.,,..%.#
+@.,,....#
+#....d..#
+#.......#
+#########
+'''
+[tiles]
+"#" = { wall = "#ff00ff" }
+"%" = { wall = "#ff00ff" }
+"," = { floor = { texture = "wood", scale = 0.7 }, ceiling = "#405060" }
+"d" = { light = 0.5 }
+[things]
+"@" = { start = 0 }
+"##;
+
+/// How near to an edge a point may be before its colour is anybody's guess, in cells or texels.
+const DOUBTFUL: f64 = 1e-5;
+
+/// The colour of `covering` at a point of the map; `None` near an edge.
+fn color(world: &World, covering: Covering, point: DVec2) -> Option<Rgb> {
+    let place = point / covering.scale.cells();
+    let piece = place.floor();
+    let share = place - piece;
+    let paint = match covering.pattern {
+        Pattern::Plain(paint) => paint,
+        Pattern::Checker(paints) => paints[(piece.x + piece.y).rem_euclid(2.0) as usize],
+        Pattern::Stripes(paints) => paints[piece.y.rem_euclid(2.0) as usize],
+    };
+    if near_a_line(place) {
+        return None;
+    }
+    match paint {
+        Paint::Color(color) => Some(color),
+        Paint::Texture(id) => {
+            let texture = world.texture(id);
+            let size = DVec2::new(f64::from(texture.width()), f64::from(texture.height()));
+            let texel = share * size;
+            (!near_a_line(texel)).then(|| texture.column(share.x)[texel.y as usize])
+        }
+    }
+}
+
+fn near_a_line(place: DVec2) -> bool {
+    (place - place.round()).abs().min_element() < DOUBTFUL
+}
+
+/// What the pixel `(x, y)` shows of the floor or the ceiling; `None` where it shows something else, or
+/// an edge is near.
+fn expected(world: &World, camera: &Camera, frame: &Frame, x: u32, y: u32) -> Option<Rgb> {
+    let (width, height) = (f64::from(frame.width()), f64::from(frame.height()));
+    let half_width = camera.field_of_view.half_width();
+    let focal = width / 2.0 / half_width / frame.pixel_aspect().height_over_width();
+    let below = f64::from(y) + 0.5 - height / 2.0;
+    let distance = 0.5 * focal / below.abs();
+    let across = (f64::from(x) + 0.5) * 2.0 / width - 1.0;
+    let direction = camera.direction() + camera.plane() * across;
+    let hit = Exact.cast(world.grid(), &Ray::new(camera.position(), direction).unwrap());
+    if below == 0.0 || hit.is_none_or(|hit| distance > hit.t * (1.0 - DOUBTFUL)) {
+        return None;
+    }
+    let point = camera.position() + direction * distance;
+    if near_a_line(point) || point.min_element() < 0.0 {
+        return None;
+    }
+    let tile = world.grid().tile(point.x as i64, point.y as i64)?;
+    let tile = world.tile(tile);
+    let covering = match tile.ceiling {
+        _ if below > 0.0 => tile.floor,
+        Ceiling::Covered(covering) => covering,
+        Ceiling::Sky => return None,
+    };
+    let color = color(world, covering, point)?;
+    Some(if tile.light == Light::new(0.5) { color.halved() } else { color })
+}
+
+proptest! {
+    #![proptest_config(ProptestConfig::with_cases(64))]
+
+    #[test]
+    fn every_pixel_shows_the_texel_at_its_centre(
+        position in (1.0..8.0, 1.0..6.0),
+        degrees in prop_oneof![0.0..360.0, (0..8).prop_map(|eighth| 45.0 * f64::from(eighth))],
+        field_of_view in 30.0..=120.0,
+        size in (1_u32..120, 1_u32..120),
+        aspect in prop_oneof![Just(1.0), Just(2.0), 0.3..4.0],
+    ) {
+        let world = map::parse_str(MAP).unwrap();
+        let camera = Camera::new(
+            DVec2::from(position),
+            Heading::from_degrees(degrees).unwrap(),
+            FieldOfView::from_degrees(field_of_view).unwrap(),
+        ).unwrap();
+        let size = FrameSize::new(size.0, size.1).unwrap();
+        let mut frame = Frame::new(size, PixelAspect::new(aspect).unwrap());
+        let mut renderer = Renderer::new();
+        renderer.set_filter(Filter::Nearest);
+        renderer.render(&world, &camera, &mut frame);
+        for (x, y) in (0..frame.width()).flat_map(|x| (0..frame.height()).map(move |y| (x, y))) {
+            if let Some(color) = expected(&world, &camera, &frame, x, y) {
+                prop_assert_eq!(frame.pixel(x, y), color, "at ({}, {})", x, y);
+            }
+        }
+    }
+}
+
+/// Most pixels are far from any edge, so that the property above is about something.
+#[test]
+fn most_pixels_are_certain() {
+    let world = map::parse_str(MAP).unwrap();
+    let camera = world.start_camera(FieldOfView::default());
+    let frame = Frame::new(FrameSize::new(80, 48).unwrap(), PixelAspect::SQUARE);
+    let certain = (0..80)
+        .flat_map(|x| (0..48).map(move |y| (x, y)))
+        .filter(|&(x, y)| expected(&world, &camera, &frame, x, y).is_some())
+        .count();
+    assert!(certain > 80 * 48 / 2, "{certain}");
+}
