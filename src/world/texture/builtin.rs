@@ -228,7 +228,7 @@ mod tests {
         sandstone #ba9661 e42eb514
         hedge     #447535 0f990761
         marble    #c1c4ca ed3037a3
-        jamb      #75777a bf2e1ee8
+        jamb      #75767a bf2e1ee8
         grate     #56585c bce9d347
         fence     #6a5c47 bfff9378
         ");
