@@ -22,11 +22,7 @@ fn names() -> Vec<String> {
 #[test]
 fn every_feature_looks_as_it_did() {
     for name in names() {
-        let map = format!("maps/gallery/{name}.toml");
-        for format in ["png", "text"] {
-            let picture = output_of(&["snapshot", &map, "--format", format]);
-            insta::assert_binary_snapshot!(&format!("{name}.{format}"), picture);
-        }
+        assert_golden(&name, &name, &[]);
     }
 }
 
@@ -77,4 +73,31 @@ fn with_room(part: &str) -> String {
             format!("{head}{ROOM}[tiles]\n{tiles}{missing}{START}")
         }
     }
+}
+
+/// A golden file for the picture, and one for its characters.
+fn assert_golden(map: &str, name: &str, options: &[&str]) {
+    let path = format!("maps/gallery/{map}.toml");
+    for format in ["png", "text"] {
+        let arguments = [&["snapshot", &path, "--format", format], options].concat();
+        insta::assert_binary_snapshot!(&format!("{name}_{format}.{format}"), output_of(&arguments));
+    }
+}
+
+#[test]
+fn doors_stand_back_between_their_jambs() {
+    assert_golden("doors", "doors_at_an_angle", &["--camera", "2.5,4.2,308"]);
+    assert_golden("doors", "doors_from_the_front", &["--camera", "2.7,2.5,0"]);
+}
+
+#[test]
+fn masks_show_what_is_behind_their_holes() {
+    assert_golden("masks", "masks_in_a_row", &["--camera", "2.5,2.5,4"]);
+    assert_golden("masks", "masks_along_a_fence", &["--camera", "1.6,2.6,24"]);
+}
+
+#[test]
+fn panes_of_glass_add_up() {
+    assert_golden("glass", "glass_in_a_row", &["--camera", "4.6,2.6,10"]);
+    assert_golden("glass", "glass_along_a_row", &["--camera", "8.4,5.6,250"]);
 }

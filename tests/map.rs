@@ -4,7 +4,9 @@ use std::cell::RefCell;
 use std::io;
 
 use cellcaster::map::{self, TextureFileError, TextureFiles, builtin};
-use cellcaster::world::{Ceiling, Cell, Covering, Paint, Pattern, Rgb, ThingKind, TileKind, World};
+use cellcaster::world::{
+    Ceiling, Cell, Covering, Glass, Paint, Pattern, Rgb, ThingKind, TileKind, World,
+};
 use proptest::prelude::*;
 
 const VALID: &str = r##"
@@ -99,9 +101,12 @@ fn exit_is_within_reach(world: &World) -> bool {
         next += 1;
         for (east, south) in [(1, 0), (-1, 0), (0, 1), (0, -1)] {
             let (column, row) = (i64::from(column) + east, i64::from(row) + south);
-            let open =
-                world.grid().tile(column, row).is_some() && !world.grid().is_solid(column, row);
+            if world.grid().tile(column, row).is_none() {
+                continue;
+            }
             let cell = Cell { column: column as u32, row: row as u32 };
+            // A map whose keys cannot be reached would have been refused.
+            let open = !world.grid().is_solid(column, row) || world.door(cell).is_some();
             if open && !reached.contains(&cell) {
                 reached.push(cell);
             }
@@ -111,6 +116,44 @@ fn exit_is_within_reach(world: &World) -> bool {
         .things()
         .iter()
         .any(|thing| thing.kind == ThingKind::Exit && reached.contains(&thing.cell))
+}
+
+#[test]
+fn doors_keys_and_glass_are_what_the_map_says() {
+    let world = map::parse_str(
+        r##"
+grid = '''
+#######
+#@+.k.#
+#%###=#
+#g....#
+#######
+'''
+[tiles]
+"#" = { wall = "brick" }
+"+" = { door = "oak" }
+"=" = { door = "#102030", key = "brass" }
+"%" = { mask = "grate" }
+"g" = { glass = "#80c0ff", opacity = 0.5 }
+[things]
+"@" = { start = 0 }
+"k" = { key = "brass" }
+"##,
+    )
+    .unwrap();
+    let door = |column, row| world.door(Cell { column, row });
+    assert_eq!(door(2, 1).unwrap().key, None);
+    let lock = door(5, 2).unwrap();
+    assert_eq!(lock.leaf, Paint::Color(Rgb::new(0x10, 0x20, 0x30)));
+    assert_eq!(world.key_name(lock.key.unwrap()), "brass");
+    assert_eq!(door(4, 1), None);
+    let [key] = world.things() else { panic!("one thing") };
+    assert_eq!(key.kind, ThingKind::Key(lock.key.unwrap()));
+    let kind = |column, row| world.tile(world.grid().tile(column, row).unwrap()).kind;
+    assert!(matches!(kind(1, 2), TileKind::Mask(_)));
+    let glass = Glass { color: Rgb::new(0x80, 0xc0, 0xff), opacity: 128 };
+    assert_eq!(kind(1, 3), TileKind::Glass(glass));
+    assert_eq!(drawn(&world).replace('=', "+").matches('+').count(), 2);
 }
 
 /// Answers every name with a picture of one red texel, and writes down what it was asked.

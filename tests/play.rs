@@ -9,6 +9,8 @@ mod emulator;
 #[path = "support/player.rs"]
 mod player;
 
+#[path = "play/doors.rs"]
+mod doors;
 #[path = "play/ending.rs"]
 mod ending;
 #[path = "play/game.rs"]

@@ -1,11 +1,12 @@
 //! What a frame costs once everything has grown to its size: no allocation at all.
 
 use allocation_counter::measure;
-use cellcaster::map::builtin;
+use cellcaster::map::{self, builtin};
 use cellcaster::palette::ColorDepth;
 use cellcaster::render::{Frame, FrameSize, PixelAspect, Renderer};
 use cellcaster::tui::{FirstPerson, GlyphMode, Minimap, View};
-use cellcaster::world::FieldOfView;
+use cellcaster::world::{Camera, Cell, FieldOfView, Heading, Opening};
+use glam::DVec2;
 use ratatui::buffer::Buffer;
 use ratatui::layout::Rect;
 use ratatui::widgets::{StatefulWidget, Widget};
@@ -23,6 +24,26 @@ fn drawing_a_frame_allocates_nothing_after_the_first() {
             let counted = measure(|| renderer.render(&world, &camera, &mut frame));
             assert_eq!(counted.count_total, 0, "{}", level.name);
         }
+    }
+}
+
+#[test]
+fn doors_ajar_masks_and_glass_allocate_nothing_after_the_first_frame() {
+    for map in ["doors", "masks", "glass"] {
+        let mut world = map::load(format!("maps/gallery/{map}.toml").as_ref()).unwrap();
+        world.set_opening(Cell { column: 4, row: 2 }, Opening::new(0.4).unwrap());
+        let heading = Heading::from_degrees(0.0).unwrap();
+        let mut renderer = Renderer::new();
+        let mut frame = Frame::new(FrameSize::new(160, 90).unwrap(), PixelAspect::SQUARE);
+        let mut draw = |turn: u32| {
+            let heading = heading.turned(f64::from(turn) * 0.1);
+            let camera =
+                Camera::new(DVec2::new(2.5, 2.5), heading, FieldOfView::default()).unwrap();
+            measure(|| renderer.render(&world, &camera, &mut frame)).count_total
+        };
+        // Once around, and the list of what is seen through is as long as it gets.
+        (0..63).for_each(|turn| _ = draw(turn));
+        assert_eq!((0..63).map(&mut draw).sum::<u64>(), 0, "{map}");
     }
 }
 

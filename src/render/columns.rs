@@ -88,6 +88,7 @@ pub(super) fn cast<C: Caster>(
     if world.is_of_walls() {
         columns.extend(projection.rays().map(|ray| column(ray, caster.cast(grid, &ray))));
     } else {
+        passed.make_room_for(projection.columns());
         columns.extend(projection.rays().enumerate().map(|(index, ray)| {
             column(ray, caster.cast_through(world, &ray, |hit| passed.push(index, hit)))
         }));

@@ -51,6 +51,11 @@ impl Projection {
         self.origin
     }
 
+    /// How many columns of pixels there are.
+    pub(super) fn columns(&self) -> usize {
+        self.width as usize
+    }
+
     /// The rays of all columns, from left to right, each through the middle of its pixels.
     ///
     /// A ray's `t` is the distance to the camera plane, so nothing needs correcting afterwards.

@@ -26,6 +26,13 @@ impl Passed {
         self.list.clear();
     }
 
+    /// Makes room for what so many rays pass in all but the strangest of maps, so that a camera that
+    /// turns towards more of it needs no more memory.
+    pub(super) fn make_room_for(&mut self, rays: usize) {
+        const OF_A_RAY: usize = 8;
+        self.list.reserve(rays * OF_A_RAY);
+    }
+
     /// Adds what the ray of `column` passed: columns from the left, hits from near to far.
     pub(super) fn push(&mut self, column: usize, hit: Hit) {
         self.list.push((column, hit));

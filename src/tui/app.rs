@@ -110,6 +110,7 @@ struct Scene {
     revision: u64,
 }
 
+#[expect(clippy::struct_excessive_bools, reason = "each is a switch of its own")]
 struct App {
     later_levels: Box<dyn Iterator<Item = World>>,
     game: Game,
@@ -122,6 +123,8 @@ struct App {
     field_of_view: FieldOfView,
     held: HeldKeys,
     runs: bool,
+    /// Whether the key that opens doors was pressed since the last step, even if it is up again.
+    opens: bool,
     shows_minimap: bool,
     has_left: bool,
     clock: Clock,
@@ -151,6 +154,7 @@ impl App {
             settings,
             held: HeldKeys::default(),
             runs: false,
+            opens: false,
             shows_minimap: true,
             has_left: false,
             clock: Clock::default(),
@@ -170,6 +174,7 @@ impl App {
         let quiet = self.game.quiet_steps(intents).min(steps);
         self.game.wait(quiet);
         (quiet..steps).take(Clock::MOST_STEPS).for_each(|_| self.game.step(intents));
+        self.opens &= steps == 0;
         if self.game.is_finished() {
             self.show(Screen::LevelDone);
         }
@@ -181,7 +186,12 @@ impl App {
             _ => None,
         });
         let aims = self.held.iter().any(|key| self.turns(key) && !self.held.is_certain(key));
-        wanted.chain(self.runs.then_some(Intent::Run)).chain(aims.then_some(Intent::Aim)).collect()
+        let others = [
+            self.runs.then_some(Intent::Run),
+            self.opens.then_some(Intent::Open),
+            aims.then_some(Intent::Aim),
+        ];
+        wanted.chain(others.into_iter().flatten()).collect()
     }
 
     /// Whether `key` turns the player. What may be a tap turns slowly: it is to aim with, and on
@@ -267,6 +277,7 @@ impl App {
                 self.shows_minimap = !self.shows_minimap;
                 self.shown = None;
             }
+            (Screen::Playing, Some(Action::Want(Intent::Open))) => self.opens = true,
             (_, Some(Action::ToggleRun)) => {
                 self.runs = !self.runs;
                 self.shown = None;
