@@ -49,6 +49,9 @@ fn draw_hit(world: &World, projection: &Projection, column: usize, hit: &Hit, fr
     }
 }
 
+const CLEAR: u8 = 0;
+const OPAQUE: u8 = u8::MAX;
+
 fn draw_mask(
     texture: &Texture,
     projection: &Projection,
@@ -63,7 +66,11 @@ fn draw_mask(
     let pixels = frame.column_mut(column).skip(rows.start as usize);
     for (row, pixel) in rows.zip(pixels) {
         let texel = texel(row);
-        *pixel = shaded(texels[texel], hit.side).over(*pixel, alphas[texel]);
+        match alphas[texel] {
+            CLEAR => {}
+            OPAQUE => *pixel = shaded(texels[texel], hit.side),
+            alpha => *pixel = shaded(texels[texel], hit.side).over(*pixel, alpha),
+        }
     }
 }
 
