@@ -34,6 +34,7 @@ KEYS
   Left Right        turn                P       pause
   Shift             run                 ?       help
   R                 run, on and off     Q, Esc  leave
+  E, Space          open a door
 
 OPTIONS OF PLAY
   --fps N           at most N frames a second, 1 to 240            [30]

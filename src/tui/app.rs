@@ -123,8 +123,8 @@ struct App {
     field_of_view: FieldOfView,
     held: HeldKeys,
     runs: bool,
-    /// Whether the key that opens doors was pressed since the last step, even if it is up again.
-    opens: bool,
+    /// What counts for the next step even if its key is up again by then.
+    pressed: Intents,
     shows_minimap: bool,
     has_left: bool,
     clock: Clock,
@@ -154,7 +154,7 @@ impl App {
             settings,
             held: HeldKeys::default(),
             runs: false,
-            opens: false,
+            pressed: Intents::new(),
             shows_minimap: true,
             has_left: false,
             clock: Clock::default(),
@@ -174,7 +174,9 @@ impl App {
         let quiet = self.game.quiet_steps(intents).min(steps);
         self.game.wait(quiet);
         (quiet..steps).take(Clock::MOST_STEPS).for_each(|_| self.game.step(intents));
-        self.opens &= steps == 0;
+        if steps > 0 {
+            self.pressed = Intents::new();
+        }
         if self.game.is_finished() {
             self.show(Screen::LevelDone);
         }
@@ -186,12 +188,8 @@ impl App {
             _ => None,
         });
         let aims = self.held.iter().any(|key| self.turns(key) && !self.held.is_certain(key));
-        let others = [
-            self.runs.then_some(Intent::Run),
-            self.opens.then_some(Intent::Open),
-            aims.then_some(Intent::Aim),
-        ];
-        wanted.chain(others.into_iter().flatten()).collect()
+        let others = [self.runs.then_some(Intent::Run), aims.then_some(Intent::Aim)];
+        wanted.chain(self.pressed.iter()).chain(others.into_iter().flatten()).collect()
     }
 
     /// Whether `key` turns the player. What may be a tap turns slowly: it is to aim with, and on
@@ -277,7 +275,9 @@ impl App {
                 self.shows_minimap = !self.shows_minimap;
                 self.shown = None;
             }
-            (Screen::Playing, Some(Action::Want(Intent::Open))) => self.opens = true,
+            (Screen::Playing, Some(Action::Want(Intent::Open))) => {
+                self.pressed.insert(Intent::Open);
+            }
             (_, Some(Action::ToggleRun)) => {
                 self.runs = !self.runs;
                 self.shown = None;
