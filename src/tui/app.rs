@@ -110,7 +110,6 @@ struct Scene {
     revision: u64,
 }
 
-#[expect(clippy::struct_excessive_bools, reason = "each is a switch of its own")]
 struct App {
     later_levels: Box<dyn Iterator<Item = World>>,
     game: Game,
