@@ -14,6 +14,7 @@ mod color;
 mod covering;
 mod door;
 mod grid;
+mod pitch;
 pub mod texture;
 
 pub use air::{Fog, Light, Sky};
@@ -23,6 +24,7 @@ pub use covering::{Ceiling, Covering, Pattern, Scale};
 use door::Ajar;
 pub use door::{Door, KeyId, Opening};
 pub use grid::{Cell, Grid, TileId};
+pub use pitch::Pitch;
 pub use texture::Texture;
 
 /// What a level consists of.
