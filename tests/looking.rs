@@ -35,7 +35,7 @@ proptest! {
         index in 0..WORLDS,
         place in any::<prop::sample::Index>(),
         degrees in 0.0..360.0,
-        pitch in -40.0..=40.0,
+        pitch in -30.0..=30.0,
         eye in prop_oneof![Just(0.5), 0.02..0.98],
         size in (1_u32..80, 1_u32..80),
         aspect in prop_oneof![Just(1.0), Just(2.0)],
@@ -70,7 +70,7 @@ proptest! {
     fn no_camera_panics(
         index in 0..WORLDS,
         eye in any::<f64>(),
-        pitch in -40.0..=40.0,
+        pitch in -30.0..=30.0,
         field_of_view in prop_oneof![Just(1e-320), Just(1e-9), Just(179.999_999), 1.0..179.0],
         size in (1_u32..30, 1_u32..30),
     ) {

@@ -104,7 +104,7 @@ proptest! {
         size in (1_u32..120, 1_u32..120),
         aspect in prop_oneof![Just(1.0), Just(2.0), 0.3..4.0],
         eye in prop_oneof![Just(0.5), 0.02..0.98],
-        pitch in prop_oneof![Just(0.0), -40.0..=40.0],
+        pitch in prop_oneof![Just(0.0), -30.0..=30.0],
     ) {
         let world = map::parse_str(MAP).unwrap();
         let camera = Camera::new(

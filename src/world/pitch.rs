@@ -6,20 +6,20 @@
 //! a camera that looks straight ahead and whose film is shifted, as architects take it; it looks
 //! wrong only where it shows what is far above or below, and so it ends at [`Pitch::MOST_DEGREES`].
 
-/// How far up or down somebody looks: within ±40°.
+/// How far up or down somebody looks: within ±30°.
 #[derive(Clone, Copy, Debug, PartialEq, Default)]
 pub struct Pitch {
     slope: f64,
 }
 
 /// The tangent of [`Pitch::MOST_DEGREES`].
-const STEEPEST: f64 = 0.839_099_631_177_28;
+const STEEPEST: f64 = 0.577_350_269_189_625_7;
 
 impl Pitch {
     /// Straight ahead.
     pub const LEVEL: Self = Self { slope: 0.0 };
-    /// Further up or down than that, walls would look stretched.
-    pub const MOST_DEGREES: f64 = 40.0;
+    /// Further up or down than that, the horizon is far out of view, and walls look stretched.
+    pub const MOST_DEGREES: f64 = 30.0;
 
     /// A pitch from degrees, positive for up, within ±[`Pitch::MOST_DEGREES`]. `None` outside that.
     pub fn from_degrees(degrees: f64) -> Option<Self> {
@@ -56,18 +56,18 @@ mod tests {
 
     #[test]
     fn degrees_come_back() {
-        for degrees in [-40.0, -12.5, 0.0, 1.0, 39.999, 40.0] {
+        for degrees in [-30.0, -12.5, 0.0, 1.0, 29.999, 30.0] {
             let pitch = Pitch::from_degrees(degrees).unwrap();
             assert!((pitch.degrees() - degrees).abs() < 1e-12, "{degrees}");
         }
-        for degrees in [40.001, -41.0, f64::NAN, f64::INFINITY] {
+        for degrees in [30.001, -31.0, f64::NAN, f64::INFINITY] {
             assert_eq!(Pitch::from_degrees(degrees), None);
         }
     }
 
     #[test]
     fn nobody_looks_further_than_the_limit() {
-        let highest = Pitch::from_degrees(40.0).unwrap();
+        let highest = Pitch::from_degrees(30.0).unwrap();
         assert_eq!(Pitch::LEVEL.tilted(f64::INFINITY), highest.tilted(1e9));
         assert_eq!(highest.tilted(1.0).tilted(-2.0 * STEEPEST).degrees(), -highest.degrees());
         assert_eq!(highest.tilted(f64::NAN), highest);
