@@ -212,8 +212,8 @@ mod tests {
 
     use super::*;
     use crate::world::{
-        Ceiling, Cell, Covering, Grid, Heading, Paint, Parts, Rgb, Sky, Start, Thing, Tile,
-        TileKind,
+        Ceiling, Cell, Covering, Grid, Heading, Heights, Paint, Parts, Rgb, Sky, Start, Thing,
+        Tile, TileKind,
     };
 
     /// A world drawn in characters: `#` is solid, `@` is where the player starts, `E` is an exit.
@@ -228,11 +228,23 @@ mod tests {
         let floors: Vec<&str> = floors.iter().map(String::as_str).collect();
         let gray = Paint::Color(Rgb::new(128, 128, 128));
         let (floor, ceiling) = (Covering::from(gray), Ceiling::Covered(gray.into()));
-        let tile = |character, kind| Tile { character, kind, floor, ceiling, light: None };
+        let tile = |character, kind, heights| Tile {
+            character,
+            kind,
+            floor,
+            ceiling,
+            light: None,
+            heights,
+            riser: gray,
+            lintel: gray,
+        };
         World::from_parts(Parts {
             title: String::new(),
             grid: Grid::sketch(&floors).unwrap(),
-            tiles: vec![tile('.', TileKind::Open), tile('#', TileKind::Wall(gray))],
+            tiles: vec![
+                tile('.', TileKind::Open, Heights::LEVEL),
+                tile('#', TileKind::Wall(gray), Heights::LEVEL_WALL),
+            ],
             textures: vec![],
             floor,
             ceiling,

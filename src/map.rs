@@ -30,6 +30,7 @@ mod covering;
 mod definitions;
 mod doors;
 mod drawing;
+mod heights;
 mod layout;
 mod legend;
 mod per_character;
@@ -43,7 +44,7 @@ use std::io::{self, Read};
 use std::path::Path;
 
 use crate::fault::{Fault, Faults, document};
-use crate::world::{Ceiling, Covering, Paint, Parts, Rgb, Sky, Tile, TileKind, World};
+use crate::world::{Ceiling, Covering, Heights, Paint, Parts, Rgb, Sky, Tile, TileKind, World};
 use definitions::Definitions;
 use drawing::Drawing;
 use layout::Layout;
@@ -152,12 +153,17 @@ fn read(text: &str, files: &dyn TextureFiles, faults: &mut Vec<Fault>) -> Option
     let drawing = Drawing::read(grid, text, faults)?;
     // Where one of the two has a fault, nothing will come of the tiles but further faults.
     let plain = Covering::from(Paint::Color(Rgb::BLACK));
+    let (floor, ceiling) = (floor.unwrap_or(plain), ceiling.unwrap_or(Ceiling::Covered(plain)));
+    let map_ceiling = definitions.ceiling_height;
     let ground = Tile {
         character: '.',
         kind: TileKind::Open,
-        floor: floor.unwrap_or(plain),
-        ceiling: ceiling.unwrap_or(Ceiling::Sky),
+        floor,
+        ceiling,
         light: None,
+        heights: Heights::new(0.0, map_ceiling, map_ceiling)?,
+        riser: floor.pattern.first_paint(),
+        lintel: layout::lintel_below(ceiling, floor),
     };
     let layout = Layout::of(&drawing, &definitions.legend, ground, &mut textures, faults)?;
     Some(World::from_parts(Parts {

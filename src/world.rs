@@ -15,6 +15,7 @@ mod covering;
 mod door;
 mod grid;
 mod pitch;
+mod heights;
 pub mod texture;
 
 pub use air::{Fog, Light, Sky};
@@ -25,6 +26,7 @@ use door::Ajar;
 pub use door::{Door, KeyId, Opening};
 pub use grid::{Cell, Grid, TileId};
 pub use pitch::Pitch;
+pub use heights::{Gap, Heights};
 pub use texture::Texture;
 
 /// What a level consists of.
@@ -59,6 +61,14 @@ pub struct Tile {
     /// own sides are. `None` where the map does not say: full for open floor, and for a wall as
     /// bright as the floor before it.
     pub light: Option<Light>,
+    /// How high its floor, its ceiling and what hangs above that are.
+    pub heights: Heights,
+    /// How the sides look of what its floor lies on, where they are seen from a lower one; a wall's
+    /// own sides, and its top.
+    pub riser: Paint,
+    /// How the sides look of what hangs above its ceiling, where they are seen from below a higher
+    /// one; and its roof.
+    pub lintel: Paint,
 }
 
 /// What a tile is.
@@ -68,7 +78,7 @@ pub enum TileKind {
     Open,
     /// Where a door is that is all open: floor between two jambs.
     Doorway(Door),
-    /// A solid cube.
+    /// A solid block, as high as its floor says: what is above it is open.
     Wall(Paint),
     /// A door that is closed, or not all open. It stands between two solid cells, open floor before
     /// and behind it.
@@ -145,7 +155,7 @@ pub(crate) struct Parts {
 
 impl World {
     /// A world of `parts` that fit together: every tile of the grid and every texture is in its
-    /// list, open tiles come before solid ones, the start and all things stand on open floor, every
+    /// list, open tiles come before solid ones, the map's own floor first, the start and all things stand on open floor, every
     /// door has a doorway by the same character, and stands between solid cells that are no doors.
     /// The map's own checks establish all of that, and name what does not fit.
     pub(crate) fn from_parts(parts: Parts) -> Self {
@@ -206,6 +216,7 @@ impl World {
         };
         self.tiles.iter().enumerate().all(tile_fits)
             && self.tiles.iter().all(|tile| covers(tile.floor) && ceils(tile.ceiling))
+            && self.tiles.iter().all(|tile| known(tile.riser) && known(tile.lintel))
             && self.grid.rows().flatten().all(|tile| usize::from(tile.0) < self.tiles.len())
             && covers(self.floor)
             && ceils(self.ceiling)
@@ -261,6 +272,21 @@ impl World {
     /// What is overhead where no tile has its own ceiling. Beyond the edge of the map is sky.
     pub fn ceiling(&self) -> Ceiling {
         self.ceiling
+    }
+
+    /// The open floor that is as the map says: what `.` stands for.
+    pub fn ground(&self) -> Tile {
+        self.tiles[0]
+    }
+
+    /// Whether all floors are at 0, and all ceilings and walls a cell above that: every ray ends where
+    /// it meets the first wall.
+    pub fn is_level(&self) -> bool {
+        let level = |tile: &Tile| match tile.kind {
+            TileKind::Wall(_) => Heights::LEVEL_WALL,
+            _ => Heights::LEVEL,
+        };
+        self.tiles.iter().all(|tile| tile.heights == level(tile))
     }
 
     /// What the sky looks like.

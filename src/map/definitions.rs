@@ -4,14 +4,15 @@ use toml::de::DeTable;
 
 use super::air::{self, SkyText};
 use super::covering::{CeilingText, CoveringText};
+use super::heights;
 use super::legend::{Legend, Section};
 use crate::fault::Fault;
 use crate::fault::document::{Entry, entries};
-use crate::world::{Fog, Rgb};
+use crate::world::{Fog, Heights, Rgb};
 
 /// The keys of a map.
 pub(super) const KEYS: &[&str] =
-    &["title", "ceiling", "floor", "sky", "fog", "grid", "tiles", "things"];
+    &["title", "ceiling", "ceiling_height", "floor", "sky", "fog", "grid", "tiles", "things"];
 const DEFAULT_CEILING: Rgb = Rgb::new(0x30, 0x30, 0x30);
 const DEFAULT_FLOOR: Rgb = Rgb::new(0x58, 0x58, 0x58);
 
@@ -19,6 +20,8 @@ const DEFAULT_FLOOR: Rgb = Rgb::new(0x58, 0x58, 0x58);
 pub(super) struct Definitions<'a, 't> {
     pub(super) title: String,
     pub(super) ceiling: CeilingText<'a>,
+    /// How high the ceiling is, and how high walls are.
+    pub(super) ceiling_height: f64,
     pub(super) floor: CoveringText<'a>,
     pub(super) sky: Option<SkyText<'a>>,
     pub(super) fog: Option<Fog>,
@@ -33,6 +36,7 @@ impl<'a, 't> Definitions<'a, 't> {
         let mut definitions = Self {
             title: String::new(),
             ceiling: CeilingText::plain(DEFAULT_CEILING),
+            ceiling_height: Heights::LEVEL.ceiling(),
             floor: CoveringText::plain(DEFAULT_FLOOR),
             sky: None,
             fog: None,
@@ -52,6 +56,11 @@ impl<'a, 't> Definitions<'a, 't> {
                 if let Some(ceiling) = CeilingText::read(&entry, r##"ceiling = "#202028""##, faults)
                 {
                     self.ceiling = ceiling;
+                }
+            }
+            "ceiling_height" => {
+                if let Some(height) = heights::map_ceiling(&entry, faults) {
+                    self.ceiling_height = height;
                 }
             }
             "floor" => {

@@ -6,9 +6,11 @@ use super::doors::{self, Keys};
 use super::drawing::Drawing;
 use super::legend::{Legend, Meaning, Surroundings, Symbol};
 use super::per_character::PerCharacter;
-use super::textures::Textures;
+use super::textures::{Surface, Textures};
 use crate::fault::Fault;
-use crate::world::{Door, Grid, Start, Thing, ThingKind, Tile, TileId, TileKind};
+use crate::world::{
+    Ceiling, Covering, Door, Grid, Heights, Paint, Start, Thing, ThingKind, Tile, TileId, TileKind,
+};
 
 /// The most kinds of tile in a grid, open floor among them.
 const MAX_TILES: usize = 255;
@@ -155,17 +157,14 @@ fn tiles(
     let mut solid = Vec::new();
     for (character, _) in drawing.characters() {
         let Some(symbol) = legend.symbols.get(&character) else { continue };
-        if let Meaning::Floor(surroundings) = &symbol.meaning {
-            open.push(open_tile(character, surroundings, ground, textures, faults));
+        if let Meaning::Floor = symbol.meaning {
+            open.extend(tile(character, TileKind::Open, symbol, ground, textures, faults));
         } else if let Some(kind) = solid_kind(&symbol.meaning, keys, textures, faults) {
             if let TileKind::Door(door) = kind {
-                open.push(Tile { character, kind: TileKind::Doorway(door), ..ground });
+                let kind = TileKind::Doorway(door);
+                open.extend(tile(character, kind, symbol, ground, textures, faults));
             }
-            let light = match &symbol.meaning {
-                Meaning::Wall(_, light) => *light,
-                _ => None,
-            };
-            solid.push(Tile { character, kind, light, ..ground });
+            solid.extend(tile(character, kind, symbol, ground, textures, faults));
         }
         if open.len() + solid.len() > MAX_TILES {
             let message = format!("the grid has more than {} kinds of tile", MAX_TILES - 1);
@@ -177,23 +176,46 @@ fn tiles(
     open
 }
 
-/// The open floor that is not like the map's own, `ground`, but as `surroundings` say.
-fn open_tile(
+/// A tile like the map's own, `ground`, but for what `symbol` says.
+fn tile(
     character: char,
-    surroundings: &Surroundings<'_>,
+    kind: TileKind,
+    symbol: &Symbol<'_>,
     ground: Tile,
     textures: &mut Textures<'_>,
     faults: &mut Vec<Fault>,
-) -> Tile {
-    let Surroundings { floor, ceiling, light } = surroundings;
+) -> Option<Tile> {
+    let Surroundings { floor, ceiling, light, heights } = &symbol.surroundings;
+    let faults_before = faults.len();
+    let map_ceiling = ground.heights.ceiling();
     let floor = floor.as_ref().and_then(|floor| floor.covering(textures, faults));
     let ceiling = ceiling.as_ref().and_then(|ceiling| ceiling.ceiling(textures, faults));
-    Tile {
-        character,
-        kind: TileKind::Open,
-        floor: floor.unwrap_or(ground.floor),
-        ceiling: ceiling.unwrap_or(ground.ceiling),
-        light: *light,
+    let (floor, ceiling) = (floor.unwrap_or(ground.floor), ceiling.unwrap_or(ground.ceiling));
+    let mut face = |surface: &Option<Surface<'_>>, otherwise: Paint| {
+        surface.as_ref().and_then(|it| textures.paint(it, faults)).unwrap_or(otherwise)
+    };
+    let riser = match kind {
+        TileKind::Wall(paint) => paint,
+        _ => face(&heights.riser, floor.pattern.first_paint()),
+    };
+    let lintel = face(&heights.lintel, lintel_below(ceiling, floor));
+    if faults.len() > faults_before {
+        return None;
+    }
+    let heights = match &symbol.meaning {
+        Meaning::Wall(_, height) => {
+            Heights::new(height.unwrap_or(map_ceiling), map_ceiling, map_ceiling)?
+        }
+        _ => heights.heights(ceiling, map_ceiling, faults)?,
+    };
+    Some(Tile { character, kind, floor, ceiling, light: *light, heights, riser, lintel })
+}
+
+/// How what hangs above a ceiling looks from the side where the map does not say.
+pub(super) fn lintel_below(ceiling: Ceiling, floor: Covering) -> Paint {
+    match ceiling {
+        Ceiling::Covered(covering) => covering.pattern.first_paint(),
+        Ceiling::Sky => floor.pattern.first_paint(),
     }
 }
 
@@ -215,7 +237,7 @@ fn solid_kind(
         Meaning::Mask(mask) => mask.texture(textures, faults).map(TileKind::Mask),
         Meaning::Glass(glass) => Some(TileKind::Glass(*glass)),
         Meaning::Open
-        | Meaning::Floor(_)
+        | Meaning::Floor
         | Meaning::Start(_)
         | Meaning::Exit
         | Meaning::Key(_)

@@ -8,6 +8,7 @@ use toml::de::{DeTable, DeValue};
 use super::covering::{CeilingText, CoveringText};
 use super::definitions::KEYS;
 use super::doors::{DoorSymbol, KeySymbol};
+use super::heights::{self, HeightsText};
 use super::see_through::{self, MaskSymbol};
 use super::textures::Surface;
 use crate::fault::document::{Entry, entries};
@@ -37,15 +38,16 @@ pub(super) struct Symbol<'a> {
     /// Where it is defined.
     pub(super) place: Range<usize>,
     pub(super) meaning: Meaning<'a>,
+    pub(super) surroundings: Surroundings<'a>,
 }
 
 /// What a character stands for in the grid.
 pub(super) enum Meaning<'a> {
     Open,
-    /// With a light of its own, if any.
-    Wall(Surface<'a>, Option<Light>),
-    /// Open floor that is not like the map's.
-    Floor(Surroundings<'a>),
+    /// With a height of its own, if any.
+    Wall(Surface<'a>, Option<f64>),
+    /// Open floor that is not like the map's, but as the symbol's surroundings say.
+    Floor,
     Door(DoorSymbol<'a>),
     Mask(MaskSymbol<'a>),
     Glass(Glass),
@@ -56,12 +58,13 @@ pub(super) enum Meaning<'a> {
     Unclear,
 }
 
-/// What an open tile has of its own; the rest is as the map says.
+/// What a tile has of its own; the rest is as the map says.
 #[derive(Default)]
 pub(super) struct Surroundings<'a> {
     pub(super) floor: Option<CoveringText<'a>>,
     pub(super) ceiling: Option<CeilingText<'a>>,
     pub(super) light: Option<Light>,
+    pub(super) heights: HeightsText<'a>,
 }
 
 /// One of the two tables that define characters.
@@ -88,7 +91,20 @@ impl Section {
 
     fn keys(self) -> &'static [&'static str] {
         match self {
-            Self::Tiles => &["wall", "door", "mask", "glass", "floor", "ceiling", "light"],
+            Self::Tiles => &[
+                "wall",
+                "door",
+                "mask",
+                "glass",
+                "floor",
+                "ceiling",
+                "light",
+                "floor_height",
+                "ceiling_height",
+                "roof_height",
+                "riser",
+                "lintel",
+            ],
             Self::Things => &["start", "exit", "key"],
         }
     }
@@ -96,7 +112,7 @@ impl Section {
     /// The keys that say more of what another one makes: each with that one.
     fn additions(self) -> &'static [(&'static str, &'static str)] {
         match self {
-            Self::Tiles => &[("key", "door"), ("opacity", "glass")],
+            Self::Tiles => &[("key", "door"), ("opacity", "glass"), ("height", "wall")],
             Self::Things => &[],
         }
     }
@@ -119,7 +135,10 @@ impl Section {
 impl<'a> Legend<'a> {
     /// The characters that mean the same in every map.
     pub(super) fn new() -> Self {
-        let open = |character| (character, Symbol { place: 0..0, meaning: Meaning::Open });
+        let open = |character| {
+            let (meaning, surroundings) = (Meaning::Open, Surroundings::default());
+            (character, Symbol { place: 0..0, meaning, surroundings })
+        };
         Self { symbols: ['.', ' '].map(open).into(), is_complete: true }
     }
 
@@ -150,12 +169,13 @@ impl<'a> Legend<'a> {
                     continue;
                 }
             };
-            let mut meaning = meaning(section, &entry, faults);
+            let (mut meaning, surroundings) = meaning(section, &entry, faults);
             if self.symbols.contains_key(&character) {
                 faults.push(defined_twice(character, entry.key_place.clone()));
                 meaning = Meaning::Unclear;
             }
-            self.symbols.insert(character, Symbol { place: entry.key_place, meaning });
+            let place = entry.key_place;
+            self.symbols.insert(character, Symbol { place, meaning, surroundings });
         }
     }
 }
@@ -185,13 +205,17 @@ fn character(section: Section, entry: &Entry<'_, '_>) -> Result<char, Fault> {
     }
 }
 
-/// What the character of `entry` stands for.
-fn meaning<'a>(section: Section, entry: &Entry<'a, '_>, faults: &mut Vec<Fault>) -> Meaning<'a> {
+/// What the character of `entry` stands for, and what there is around it.
+fn meaning<'a>(
+    section: Section,
+    entry: &Entry<'a, '_>,
+    faults: &mut Vec<Fault>,
+) -> (Meaning<'a>, Surroundings<'a>) {
+    let mut surroundings = Surroundings::default();
     let Some(table) = entry.table(section.example(), faults) else {
-        return Meaning::Unclear;
+        return (Meaning::Unclear, surroundings);
     };
     let faults_before = faults.len();
-    let mut surroundings = Surroundings::default();
     let mut meanings: Vec<_> = entries(table)
         .filter_map(|entry| match surroundings.take(section, &entry, faults) {
             Taken::Yes => None,
@@ -199,7 +223,7 @@ fn meaning<'a>(section: Section, entry: &Entry<'a, '_>, faults: &mut Vec<Fault>)
         })
         .collect();
     if faults.len() > faults_before {
-        return Meaning::Unclear;
+        return (Meaning::Unclear, surroundings);
     }
     let place = || entry.key_place.clone();
     let several_at_once = || {
@@ -207,18 +231,15 @@ fn meaning<'a>(section: Section, entry: &Entry<'a, '_>, faults: &mut Vec<Fault>)
             .help("draw each with a character of its own")
     };
     match (meanings.pop(), meanings.is_empty()) {
-        (Some(Meaning::Wall(surface, _)), true) if !surroundings.has_covering() => {
-            return Meaning::Wall(surface, surroundings.light);
-        }
-        (Some(meaning), true) if surroundings.is_empty() => return meaning,
-        (None, _) if !surroundings.is_empty() => return Meaning::Floor(surroundings),
+        (Some(meaning), true) if surroundings.suit(&meaning) => return (meaning, surroundings),
+        (None, _) if !surroundings.is_empty() => return (Meaning::Floor, surroundings),
         (Some(_), _) => faults.push(several_at_once()),
         (None, _) => faults.push(
             Fault::new(place(), format!("{:?} does not say what it is", entry.key))
                 .help(format!("write, for example, {}", section.example())),
         ),
     }
-    Meaning::Unclear
+    (Meaning::Unclear, surroundings)
 }
 
 /// Whether a property was one of the [`Surroundings`].
@@ -230,7 +251,18 @@ enum Taken {
 
 impl<'a> Surroundings<'a> {
     fn is_empty(&self) -> bool {
-        !self.has_covering() && self.light.is_none()
+        !self.has_covering() && self.light.is_none() && self.heights.is_empty()
+    }
+
+    /// Whether a tile of that meaning can have these.
+    fn suit(&self, meaning: &Meaning<'_>) -> bool {
+        match meaning {
+            Meaning::Wall(..) => !self.has_covering() && self.heights.is_empty(),
+            Meaning::Door(_) | Meaning::Mask(_) | Meaning::Glass(_) => {
+                !self.has_covering() && self.light.is_none()
+            }
+            _ => self.is_empty(),
+        }
     }
 
     fn has_covering(&self) -> bool {
@@ -247,6 +279,7 @@ impl<'a> Surroundings<'a> {
                 self.ceiling = CeilingText::read(entry, r#"{ ceiling = "wood" }"#, faults);
             }
             (Section::Tiles, "light") => self.light = light(entry, faults),
+            (Section::Tiles, _) if self.heights.take(entry, faults) => {}
             _ => return Taken::No,
         }
         Taken::Yes
@@ -265,8 +298,11 @@ fn property<'a>(
         return None;
     }
     match (section, entry.key) {
-        (Section::Tiles, "wall") => Surface::read(entry, r#"{ wall = "brick" }"#, faults)
-            .map(|surface| Meaning::Wall(surface, None)),
+        (Section::Tiles, "wall") => {
+            let surface = Surface::read(entry, r#"{ wall = "brick" }"#, faults);
+            let height = heights::of_wall(table, faults);
+            surface.map(|surface| Meaning::Wall(surface, height))
+        }
         (Section::Tiles, "door") => DoorSymbol::read(entry, table, faults).map(Meaning::Door),
         (Section::Tiles, "mask") => MaskSymbol::read(entry, faults).map(Meaning::Mask),
         (Section::Tiles, "glass") => see_through::glass(entry, table, faults).map(Meaning::Glass),
