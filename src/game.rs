@@ -90,7 +90,7 @@ impl Game {
     /// Whether the player has reached the exit's cell. Nothing moves after that, nor does the clock.
     pub fn is_finished(&self) -> bool {
         let cell = self.player.cell();
-        self.world.things().iter().any(|thing| thing.kind == ThingKind::Exit && thing.cell == cell)
+        self.world.things_in(cell).iter().any(|thing| thing.kind == ThingKind::Exit)
     }
 
     /// Whether steps with these intents, however many, would change nothing but the clock: the player
@@ -192,8 +192,8 @@ impl Game {
     /// Takes the keys in the player's cell.
     fn take_keys(&mut self) {
         let cell = self.player.cell();
-        let found = self.world.things().iter().find_map(|thing| match thing.kind {
-            ThingKind::Key(key) if thing.cell == cell => Some(key),
+        let found = self.world.things_in(cell).iter().find_map(|thing| match thing.kind {
+            ThingKind::Key(key) => Some(key),
             _ => None,
         });
         if let Some(key) = found {
@@ -211,9 +211,10 @@ mod tests {
     use proptest::prelude::*;
 
     use super::*;
+    use crate::world::sprite::builtin;
     use crate::world::{
-        Ceiling, Cell, Covering, Grid, Heading, Heights, Paint, Parts, Rgb, Sky, Start, Thing,
-        Tile, TileKind,
+        Ceiling, Cell, Covering, Grid, Heading, Heights, Paint, Parts, Rgb, Sky, SpriteId, Start,
+        Thing, Tile, TileKind,
     };
 
     /// A world drawn in characters: `#` is solid, `@` is where the player starts, `E` is an exit.
@@ -254,8 +255,9 @@ mod tests {
                 cell: cells_that_hold('@').next().unwrap(),
                 heading: Heading::from_degrees(degrees).unwrap(),
             },
+            sprites: vec![builtin::named(builtin::EXIT).unwrap()],
             things: cells_that_hold('E')
-                .map(|cell| Thing { kind: ThingKind::Exit, cell })
+                .map(|cell| Thing { kind: ThingKind::Exit, cell, sprite: SpriteId(0) })
                 .collect(),
             keys: vec![],
         })

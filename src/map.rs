@@ -36,6 +36,7 @@ mod legend;
 mod per_character;
 mod picture;
 mod see_through;
+mod sprites;
 mod textures;
 
 use std::collections::BTreeSet;
@@ -176,6 +177,7 @@ fn read(text: &str, files: &dyn TextureFiles, faults: &mut Vec<Fault>) -> Option
         sky: sky.unwrap_or_else(|| Some(Sky::default()))?,
         fog: definitions.fog,
         start: layout.start,
+        sprites: layout.sprites,
         things: layout.things,
         keys: layout.keys,
     }))

@@ -2,8 +2,8 @@
 //!
 //! A frame is drawn by a [`Plan`], made from the world, in passes, each a file: `columns` casts one
 //! ray for every column of pixels, `planes` lays floor and ceiling, `sky` fills in what is open,
-//! `walls` papers what the rays hit, `see_through` paints over that what the rays passed. The passes
-//! share a `Projection`, which is the only place that knows how the world maps to pixels.
+//! `walls` papers what the rays hit, `see_through` paints over that what the rays passed, and `things`
+//! what stands between all that. The passes share a `Projection`, which is the only place that knows how the world maps to pixels.
 //!
 //! The caller owns the [`Frame`] and keeps the [`Renderer`], which owns what the passes need in
 //! between; drawing allocates nothing once both have grown to the size of the picture. One pass that
@@ -16,6 +16,7 @@ mod explanation;
 mod filter;
 mod frame;
 mod lay;
+mod marks;
 mod plan;
 mod planes;
 mod projection;
@@ -23,6 +24,7 @@ mod see_through;
 mod shade;
 mod sky;
 mod tally;
+mod things;
 mod track;
 mod walls;
 
@@ -30,22 +32,25 @@ pub use columns::{Column, Surface};
 pub use explanation::Explanation;
 pub use filter::Filter;
 pub use frame::{Frame, FrameSize, PixelAspect};
-pub use plan::{CeilingLoop, Plan, PlaneLoop, SkyLoop, WallLoop};
+pub use plan::{CeilingLoop, Plan, PlaneLoop, SkyLoop, ThingLoop, WallLoop};
 pub use tally::{Counts, Pass, PassCounts};
 
 use crate::cast::{Caster, Method, Visitor};
 use crate::world::{Camera, World};
+use marks::Marks;
 use planes::{Plane, PlaneKind};
 use projection::Projection;
 use see_through::Passed;
 use sky::{SkyColumn, SkyView};
 use tally::Tally;
+use things::InView;
 
 /// Draws frames, and keeps what is worth keeping from one to the next.
 #[derive(Clone, Debug, Default)]
 pub struct Renderer {
     method: Method,
     filter: Filter,
+    seconds: f64,
     memory: Memory,
 }
 
@@ -58,6 +63,9 @@ struct Memory {
     /// For each column, how many rows show the floor or the ceiling, whichever is being drawn.
     visible: Vec<u32>,
     sky: Vec<SkyColumn>,
+    in_view: InView,
+    marks: Marks,
+    next_change: Option<f64>,
 }
 
 impl Renderer {
@@ -76,10 +84,27 @@ impl Renderer {
         self.filter = filter;
     }
 
+    /// Shows things as they are after so many `seconds` from now on; 0 at first.
+    pub fn set_time(&mut self, seconds: f64) {
+        self.seconds = seconds;
+    }
+
+    /// When something in the last frame begins to look different, by the clock of
+    /// [`Renderer::set_time`]; `None` for never.
+    pub fn next_change(&self) -> Option<f64> {
+        self.memory.next_change
+    }
+
+    /// Keeps what each pixel shows from now on, or no longer, for [`Renderer::surface`].
+    pub fn keep_surfaces(&mut self, are_kept: bool) {
+        self.memory.marks.keep(are_kept);
+    }
+
     /// Draws what `camera` sees of `world` into all of `frame`.
     pub fn render(&mut self, world: &World, camera: &Camera, frame: &mut Frame) {
-        let Self { method, filter, memory } = self;
-        method.accept(Picture { world, camera, filter: *filter, memory, frame, tally: &mut () });
+        let Self { method, filter, seconds, memory } = self;
+        let (filter, seconds, tally) = (*filter, *seconds, &mut ());
+        method.accept(Picture { world, camera, filter, seconds, memory, frame, tally });
     }
 
     /// As [`Renderer::render`], with the walls that `caster` finds.
@@ -90,18 +115,18 @@ impl Renderer {
         camera: &Camera,
         frame: &mut Frame,
     ) {
-        let Self { filter, memory, .. } = self;
-        let picture = Picture { world, camera, filter: *filter, memory, frame, tally: &mut () };
-        picture.visit(caster);
+        let Self { filter, seconds, memory, .. } = self;
+        let (filter, seconds, tally) = (*filter, *seconds, &mut ());
+        Picture { world, camera, filter, seconds, memory, frame, tally }.visit(caster);
     }
 
     /// As [`Renderer::render`], and tells how it went. Cells are counted along exact rays, whatever
     /// the method of finding walls.
     pub fn explain(&mut self, world: &World, camera: &Camera, frame: &mut Frame) -> Explanation {
-        let Self { method, filter, memory } = self;
+        let Self { method, filter, seconds, memory } = self;
         let mut counts = Counts::default();
-        let tally = &mut counts;
-        let plan = method.accept(Picture { world, camera, filter: *filter, memory, frame, tally });
+        let (filter, seconds, tally) = (*filter, *seconds, &mut counts);
+        let plan = method.accept(Picture { world, camera, filter, seconds, memory, frame, tally });
         let projection = Projection::new(camera, frame.size(), frame.pixel_aspect());
         counts.rays = u64::from(frame.width());
         counts.cells = explanation::cells_entered(world.grid(), &projection);
@@ -115,10 +140,12 @@ impl Renderer {
         &self.memory.columns
     }
 
-    /// What the pixel `(x, y)` of the last frame shows; `None` where the frame had no column `x`.
+    /// What the pixel `(x, y)` of the last frame shows, where [that is kept](Renderer::keep_surfaces);
+    /// else what it shows but for things and masks before that. `None` where the frame had no column `x`.
     pub fn surface(&self, x: u32, y: u32) -> Option<Surface> {
-        let column = self.memory.columns.get(x as usize)?;
-        Some(column.surface(y, self.memory.first_row_of_ground))
+        let Memory { columns, first_row_of_ground, marks, .. } = &self.memory;
+        let column = columns.get(x as usize)?;
+        Some(marks.surface(x, y).unwrap_or_else(|| column.surface(y, *first_row_of_ground)))
     }
 }
 
@@ -127,6 +154,7 @@ struct Picture<'a, T> {
     world: &'a World,
     camera: &'a Camera,
     filter: Filter,
+    seconds: f64,
     memory: &'a mut Memory,
     frame: &'a mut Frame,
     tally: &'a mut T,
@@ -145,8 +173,17 @@ impl<T: Tally> Visitor for Picture<'_, T> {
     type Output = Plan;
 
     fn visit<C: Caster>(self, caster: &C) -> Plan {
-        let Self { world, camera, filter, memory, frame, tally } = self;
-        let Memory { columns, first_row_of_ground, passed, visible, sky } = memory;
+        let Self { world, camera, filter, seconds, memory, frame, tally } = self;
+        let Memory {
+            columns,
+            first_row_of_ground,
+            passed,
+            visible,
+            sky,
+            in_view,
+            marks,
+            next_change,
+        } = memory;
         let plan = Plan::new(world, filter);
         let projection = &Projection::new(camera, frame.size(), frame.pixel_aspect());
         columns::cast(caster, world, projection, columns, passed);
@@ -168,7 +205,16 @@ impl<T: Tally> Visitor for Picture<'_, T> {
         visible.extend(columns.iter().map(|column| column.rows_of_floor(ground, height)));
         Plane { scene, kind: PlaneKind::Floor, sky, visible }.draw(plan.floor, frame, tally);
         walls::draw(scene, plan.walls, frame, tally);
-        see_through::draw(scene, passed, frame, tally);
+        marks.begin(frame.width(), height);
+        *next_change = match plan.things {
+            ThingLoop::None => {
+                see_through::draw(scene, passed, marks, frame, tally);
+                None
+            }
+            ThingLoop::Billboards => {
+                things::draw(scene, seconds, passed, in_view, marks, frame, tally)
+            }
+        };
         plan
     }
 }

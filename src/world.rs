@@ -14,9 +14,11 @@ mod color;
 mod covering;
 mod door;
 mod grid;
-mod pitch;
 mod heights;
+mod pitch;
+pub mod sprite;
 pub mod texture;
+mod things;
 
 pub use air::{Fog, Light, Sky};
 pub use camera::{Camera, FieldOfView, Heading};
@@ -25,9 +27,12 @@ pub use covering::{Ceiling, Covering, Pattern, Scale};
 use door::Ajar;
 pub use door::{Door, KeyId, Opening};
 pub use grid::{Cell, Grid, TileId};
-pub use pitch::Pitch;
 pub use heights::{Gap, Heights};
+pub use pitch::Pitch;
+pub use sprite::{Anchor, Facings, FrameTime, Sprite, SpriteHeight, SpriteId};
 pub use texture::Texture;
+use things::Things;
+pub use things::{Thing, ThingKind};
 
 /// What a level consists of.
 #[derive(Clone, Debug, PartialEq)]
@@ -41,7 +46,8 @@ pub struct World {
     sky: Sky,
     fog: Option<Fog>,
     start: Start,
-    things: Vec<Thing>,
+    sprites: Vec<Sprite>,
+    things: Things,
     keys: Vec<String>,
     ajar: Ajar,
 }
@@ -120,24 +126,6 @@ pub struct Start {
     pub heading: Heading,
 }
 
-/// Something that stands in a cell.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub struct Thing {
-    /// What it is.
-    pub kind: ThingKind,
-    /// Where it stands.
-    pub cell: Cell,
-}
-
-/// What a thing is.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub enum ThingKind {
-    /// Who reaches it has finished the level.
-    Exit,
-    /// Who reaches it takes it, and can open the doors that ask for it.
-    Key(KeyId),
-}
-
 /// The pieces of a world, not yet known to fit together.
 pub(crate) struct Parts {
     pub(crate) title: String,
@@ -149,6 +137,7 @@ pub(crate) struct Parts {
     pub(crate) sky: Sky,
     pub(crate) fog: Option<Fog>,
     pub(crate) start: Start,
+    pub(crate) sprites: Vec<Sprite>,
     pub(crate) things: Vec<Thing>,
     pub(crate) keys: Vec<String>,
 }
@@ -159,8 +148,22 @@ impl World {
     /// door has a doorway by the same character, and stands between solid cells that are no doors.
     /// The map's own checks establish all of that, and name what does not fit.
     pub(crate) fn from_parts(parts: Parts) -> Self {
-        let Parts { title, grid, tiles, textures, floor, ceiling, sky, fog, start, things, keys } =
-            parts;
+        let Parts {
+            title,
+            mut grid,
+            tiles,
+            textures,
+            floor,
+            ceiling,
+            sky,
+            fog,
+            start,
+            sprites,
+            things,
+            keys,
+        } = parts;
+        let blocks = |thing: &&Thing| sprites[usize::from(thing.sprite.0)].blocks;
+        things.iter().filter(blocks).for_each(|thing| grid.occupy(thing.cell));
         let world = Self {
             title,
             grid,
@@ -171,7 +174,8 @@ impl World {
             sky,
             fog,
             start,
-            things,
+            sprites,
+            things: Things::new(things),
             keys,
             ajar: Ajar::default(),
         };
@@ -222,12 +226,17 @@ impl World {
             && ceils(self.ceiling)
             && sky_is_known
             && open(self.start.cell)
-            && self.things.iter().all(|thing| open(thing.cell))
+            && self.things().iter().all(|thing| open(thing.cell))
     }
 
     /// The level's name; empty where the map gives none.
     pub fn title(&self) -> &str {
         &self.title
+    }
+
+    /// The heights of the floor and the ceiling in `cell`; off the map, those of the map's own floor.
+    pub fn room_in(&self, cell: Cell) -> Heights {
+        self.tile_at(cell).unwrap_or(self.ground()).heights
     }
 
     /// Which tile each cell holds.
@@ -304,9 +313,32 @@ impl World {
         self.start
     }
 
-    /// What stands in the cells, the start excepted.
+    /// What stands in the cells, the start excepted: row by row from the north, each from the west.
     pub fn things(&self) -> &[Thing] {
-        &self.things
+        self.things.all()
+    }
+
+    /// What stands in `cell`.
+    pub fn things_in(&self, cell: Cell) -> &[Thing] {
+        self.things.between(cell.row, cell.column, cell.column)
+    }
+
+    /// What stands in `row` between two columns, themselves included.
+    pub(crate) fn things_between(&self, row: u32, first: u32, last: u32) -> &[Thing] {
+        self.things.between(row, first, last)
+    }
+
+    /// The sprite `id` of this world.
+    ///
+    /// # Panics
+    /// Where `id` is from another world that has more sprites.
+    pub fn sprite(&self, id: SpriteId) -> &Sprite {
+        &self.sprites[usize::from(id.0)]
+    }
+
+    /// How wide the widest sprite is, in cells; 0 where nothing stands anywhere.
+    pub(crate) fn widest_sprite(&self) -> f64 {
+        self.sprites.iter().map(Sprite::width).fold(0.0, f64::max)
     }
 
     /// What the key `id` of this world is called, such as "brass".
@@ -353,7 +385,7 @@ impl World {
 
     /// Takes away all things in `cell` of which `is_taken` says so.
     pub(crate) fn take_things(&mut self, cell: Cell, is_taken: impl Fn(ThingKind) -> bool) {
-        self.things.retain(|thing| thing.cell != cell || !is_taken(thing.kind));
+        self.things.remove(|thing| thing.cell == cell && is_taken(thing.kind));
     }
 
     /// Whether all that is solid is walls, which show one side each and hide what is behind.

@@ -159,7 +159,7 @@ impl Picture<'_> {
             TileKind::Mask(texture) => {
                 let texture = self.world.texture(texture);
                 let (x, y) = ((face.u * 64.0) as u32, (from_top * 64.0) as u32);
-                (texture.column(face.u)[y as usize], texture.alpha(x, y))
+                (texture.column(face.u)[y as usize], texture.texel(x, y).1)
             }
             other => panic!("{other:?} is not in the map"),
         }

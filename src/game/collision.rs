@@ -86,7 +86,7 @@ fn square_distance(point: DVec2, column: i64, row: i64) -> f64 {
 }
 
 fn blocks(grid: &Grid, column: i64, row: i64) -> bool {
-    grid.tile(column, row).is_none_or(|tile| grid.is_solid_tile(tile))
+    grid.is_barred(column, row)
 }
 
 fn cell_of(point: DVec2) -> (i64, i64) {

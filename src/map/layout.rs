@@ -8,8 +8,10 @@ use super::legend::{Legend, Meaning, Surroundings, Symbol};
 use super::per_character::PerCharacter;
 use super::textures::{Surface, Textures};
 use crate::fault::Fault;
+use crate::world::sprite::builtin;
 use crate::world::{
-    Ceiling, Covering, Door, Grid, Heights, Paint, Start, Thing, ThingKind, Tile, TileId, TileKind,
+    Ceiling, Covering, Door, Grid, Heights, Paint, Sprite, SpriteId, Start, Thing, ThingKind, Tile,
+    TileId, TileKind,
 };
 
 /// The most kinds of tile in a grid, open floor among them.
@@ -22,6 +24,7 @@ pub(super) struct Layout {
     /// grid, each in the order of their characters.
     pub(super) tiles: Vec<Tile>,
     pub(super) start: Start,
+    pub(super) sprites: Vec<Sprite>,
     pub(super) things: Vec<Thing>,
     /// The names of the keys.
     pub(super) keys: Vec<String>,
@@ -50,8 +53,9 @@ impl Layout {
         if !faults.is_empty() {
             return None;
         }
-        let things = things(drawing, legend, &keys).collect();
-        Some(Self { grid, tiles, start, things, keys: keys.into_names() })
+        let (things, sprites) = things(drawing, legend, &keys, textures, faults);
+        let keys = keys.into_names();
+        faults.is_empty().then_some(Self { grid, tiles, start, sprites, things, keys })
     }
 }
 
@@ -129,19 +133,35 @@ fn start(drawing: &Drawing<'_>, legend: &Legend<'_>) -> Option<Start> {
     Some(Start { cell, heading })
 }
 
-/// What stands in the drawing, the start excepted.
-fn things(drawing: &Drawing<'_>, legend: &Legend<'_>, keys: &Keys) -> impl Iterator<Item = Thing> {
-    let kinds = drawing.characters().filter_map(|(character, _)| {
-        let kind = match &legend.symbols.get(&character)?.meaning {
-            Meaning::Exit => ThingKind::Exit,
-            Meaning::Key(key) => ThingKind::Key(keys.id(key.name)?),
-            _ => return None,
+/// What stands in the drawing, the start excepted, and how that looks.
+fn things(
+    drawing: &Drawing<'_>,
+    legend: &Legend<'_>,
+    keys: &Keys,
+    textures: &Textures<'_>,
+    faults: &mut Vec<Fault>,
+) -> (Vec<Thing>, Vec<Sprite>) {
+    let (mut things, mut sprites) = (Vec::new(), Vec::new());
+    for (character, _) in drawing.characters() {
+        let Some(symbol) = legend.symbols.get(&character) else { continue };
+        let of_kind = match &symbol.meaning {
+            Meaning::Exit => Some(ThingKind::Exit).zip(builtin::named(builtin::EXIT)),
+            Meaning::Key(key) => {
+                keys.id(key.name).map(ThingKind::Key).zip(builtin::named(builtin::KEY))
+            }
+            Meaning::Ornament(sprite) => {
+                Some(ThingKind::Ornament).zip(sprite.sprite(textures, faults))
+            }
+            _ => None,
         };
-        Some((character, kind))
-    });
-    kinds.flat_map(|(character, kind)| {
-        drawing.cells_of(character).map(move |cell| Thing { kind, cell })
-    })
+        if let Some((kind, look)) = of_kind {
+            // There is one for each character at most, and far fewer of those than that.
+            let sprite = SpriteId(sprites.len() as u16);
+            sprites.push(look);
+            things.extend(drawing.cells_of(character).map(|cell| Thing { kind, cell, sprite }));
+        }
+    }
+    (things, sprites)
 }
 
 /// The kinds of tile in the drawing, open ones first; `ground` is the map's own.
@@ -241,6 +261,7 @@ fn solid_kind(
         | Meaning::Start(_)
         | Meaning::Exit
         | Meaning::Key(_)
+        | Meaning::Ornament(_)
         | Meaning::Unclear => None,
     }
 }

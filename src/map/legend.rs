@@ -10,6 +10,7 @@ use super::definitions::KEYS;
 use super::doors::{DoorSymbol, KeySymbol};
 use super::heights::{self, HeightsText};
 use super::see_through::{self, MaskSymbol};
+use super::sprites::{self, SpriteSymbol};
 use super::textures::Surface;
 use crate::fault::document::{Entry, entries};
 use crate::fault::{Fault, quoted};
@@ -18,7 +19,6 @@ use crate::world::{Glass, Heading, Light};
 /// What other raycasters have in their cells and this one has not.
 const NOT_YET: &[(&str, &str)] = &[
     ("guard", "guards"),
-    ("lamp", "lamps"),
     ("mirror", "mirrors"),
     ("pushwall", "moving walls"),
     ("secret", "secret doors"),
@@ -54,6 +54,7 @@ pub(super) enum Meaning<'a> {
     Start(Heading),
     Exit,
     Key(KeySymbol<'a>),
+    Ornament(SpriteSymbol<'a>),
     /// Something that a fault has been found with already.
     Unclear,
 }
@@ -105,7 +106,7 @@ impl Section {
                 "riser",
                 "lintel",
             ],
-            Self::Things => &["start", "exit", "key"],
+            Self::Things => &["start", "exit", "key", "sprite"],
         }
     }
 
@@ -113,7 +114,7 @@ impl Section {
     fn additions(self) -> &'static [(&'static str, &'static str)] {
         match self {
             Self::Tiles => &[("key", "door"), ("opacity", "glass"), ("height", "wall")],
-            Self::Things => &[],
+            Self::Things => &sprites::ADDITIONS,
         }
     }
 
@@ -308,6 +309,9 @@ fn property<'a>(
         (Section::Tiles, "glass") => see_through::glass(entry, table, faults).map(Meaning::Glass),
         (Section::Things, "key") => {
             KeySymbol::read(entry, r#"{ key = "brass" }"#, faults).map(Meaning::Key)
+        }
+        (Section::Things, "sprite") => {
+            SpriteSymbol::read(entry, table, faults).map(Meaning::Ornament)
         }
         (Section::Things, "start") => Some(Meaning::Start(heading(entry, faults)?)),
         (Section::Things, "exit") => exit(entry, faults),

@@ -20,6 +20,8 @@ pub struct Plan {
     pub sky: SkyLoop,
     /// How the walls are drawn.
     pub walls: WallLoop,
+    /// How things are drawn.
+    pub things: ThingLoop,
     /// Which level of a texture is read.
     pub filter: Filter,
 }
@@ -64,6 +66,15 @@ pub struct WallLoop {
     pub faded: bool,
 }
 
+/// How things are drawn.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum ThingLoop {
+    /// Not at all: there are none.
+    None,
+    /// Those in the cells in view, from far to near.
+    Billboards,
+}
+
 impl Plan {
     /// The plan for `world`.
     pub fn new(world: &World, filter: Filter) -> Self {
@@ -92,6 +103,7 @@ impl Plan {
                 textured: tiles.iter().any(is_textured),
                 faded: is_foggy || tiles.iter().any(dims),
             },
+            things: if world.things().is_empty() { ThingLoop::None } else { ThingLoop::Billboards },
             filter,
         }
     }
@@ -115,6 +127,7 @@ impl fmt::Display for Plan {
         writeln!(f, "floor    {}", self.floor)?;
         writeln!(f, "sky      {}", self.sky)?;
         writeln!(f, "walls    {}", self.walls)?;
+        writeln!(f, "things   {}", self.things)?;
         writeln!(f, "filter   {}", self.filter)
     }
 }
@@ -155,6 +168,15 @@ impl fmt::Display for WallLoop {
             ", faded: there is fog, or a tile that is not fully lit"
         } else {
             ", unfaded: there is no fog, and all is fully lit"
+        })
+    }
+}
+
+impl fmt::Display for ThingLoop {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        f.write_str(match self {
+            Self::None => "not drawn: there are none",
+            Self::Billboards => "those in view, from far to near",
         })
     }
 }

@@ -14,6 +14,7 @@ use super::shade::{Bright, Faded, Halved, Shade};
 use super::tally::{Pass, Tally};
 use super::{Frame, Scene};
 use crate::cast::{Hit, Side};
+use crate::world::texture::Level;
 use crate::world::{Light, Paint, Rgb, TextureId, Tile, TileId, TileKind, World};
 
 /// Draws the wall of every column that has one.
@@ -54,7 +55,16 @@ struct Strip<'a> {
     hit: &'a Hit,
 }
 
-impl Strip<'_> {
+impl<'a> Strip<'a> {
+    /// The level of a texture that suits the distance.
+    fn level(&self, id: TextureId) -> &'a Level {
+        let Scene { world, projection, filter, .. } = self.scene;
+        let texture = world.texture(id);
+        let texels = f64::from(texture.width()) * f64::from(texture.height());
+        let area = projection.pixel_area_on_wall(self.hit.t, self.across(self.direction()));
+        texture.level(filter.halvings(area * texels))
+    }
+
     #[inline]
     fn draw<S: Shade, T: Tally>(&self, shade: S, frame: &mut Frame, tally: &mut T) {
         let rows = self.rows.clone();
@@ -83,13 +93,9 @@ impl Strip<'_> {
         jamb.unwrap_or_else(|| paint_of(world, self.hit))
     }
 
-    /// The column of the texture that shows, from a level that suits the distance.
+    /// The column of the texture that shows.
     fn texels(&self, id: TextureId) -> &[Rgb] {
-        let Scene { world, projection, filter, .. } = self.scene;
-        let texture = world.texture(id);
-        let texels = f64::from(texture.width()) * f64::from(texture.height());
-        let area = projection.pixel_area_on_wall(self.hit.t, self.across(self.direction()));
-        texture.level(filter.halvings(area * texels)).column(self.hit.u)
+        self.level(id).column(self.hit.u)
     }
 
     /// How bright the side is.
@@ -127,6 +133,11 @@ impl Strip<'_> {
 /// How bright what the ray of column `x` hit is.
 pub(super) fn light_of(scene: Scene<'_>, x: u32, hit: &Hit) -> Light {
     Strip { scene, x, rows: 0..0, hit }.light()
+}
+
+/// The level of the texture `id` that suits what the ray of column `x` hit.
+pub(super) fn level_of<'a>(scene: Scene<'a>, x: u32, hit: &'a Hit, id: TextureId) -> &'a Level {
+    Strip { scene, x, rows: 0..0, hit }.level(id)
 }
 
 fn paint_of(world: &World, hit: &Hit) -> Paint {

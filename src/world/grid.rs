@@ -1,5 +1,6 @@
 //! The grid: one byte a cell, row by row from the north.
 
+use std::collections::BTreeSet;
 use std::num::NonZeroU32;
 
 use glam::DVec2;
@@ -34,6 +35,8 @@ pub struct Grid {
     height: NonZeroU32,
     first_solid: TileId,
     cells: Vec<TileId>,
+    /// Where something stands that is in the way.
+    occupied: BTreeSet<Cell>,
 }
 
 impl Grid {
@@ -46,7 +49,13 @@ impl Grid {
         cells: Vec<TileId>,
     ) -> Option<Self> {
         let count = u64::from(width.get()) * u64::from(height.get());
-        (cells.len() as u64 == count).then_some(Self { width, height, first_solid, cells })
+        (cells.len() as u64 == count).then_some(Self {
+            width,
+            height,
+            first_solid,
+            cells,
+            occupied: BTreeSet::new(),
+        })
     }
 
     /// A grid drawn in characters: `.` and a space are open floor (tile 0), anything else is solid
@@ -88,6 +97,19 @@ impl Grid {
     pub(super) fn set(&mut self, cell: Cell, tile: TileId) {
         let width = self.width() as usize;
         self.cells[cell.row as usize * width + cell.column as usize] = tile;
+    }
+
+    /// Notes that something stands in `cell` that one cannot walk through.
+    pub(super) fn occupy(&mut self, cell: Cell) {
+        self.occupied.insert(cell);
+    }
+
+    /// Whether nobody can walk there: what is solid, what something stands in the way of, and all that
+    /// is off the map.
+    pub fn is_barred(&self, column: i64, row: i64) -> bool {
+        let Some(tile) = self.tile(column, row) else { return true };
+        let cell = Cell { column: column as u32, row: row as u32 };
+        self.is_solid_tile(tile) || !self.occupied.is_empty() && self.occupied.contains(&cell)
     }
 
     /// Whether there is something solid at a place; off the map there is nothing.
