@@ -213,8 +213,8 @@ mod tests {
     use super::*;
     use crate::world::sprite::builtin;
     use crate::world::{
-        Ceiling, Cell, Covering, Grid, Heading, Heights, Paint, Parts, Rgb, Sky, SpriteId, Start,
-        Thing, Tile, TileKind,
+        Ceiling, Cell, Covering, Grid, Heading, Heights, Lamplight, Paint, Parts, Rgb, Sky,
+        SpriteId, Start, Thing, Tile, TileKind,
     };
 
     /// A world drawn in characters: `#` is solid, `@` is where the player starts, `E` is an exit.
@@ -256,6 +256,7 @@ mod tests {
                 heading: Heading::from_degrees(degrees).unwrap(),
             },
             sprites: vec![builtin::named(builtin::EXIT).unwrap()],
+            lamplight: Lamplight::default(),
             things: cells_that_hold('E')
                 .map(|cell| Thing { kind: ThingKind::Exit, cell, sprite: SpriteId(0) })
                 .collect(),

@@ -31,6 +31,7 @@ mod definitions;
 mod doors;
 mod drawing;
 mod heights;
+mod lamps;
 mod layout;
 mod legend;
 mod per_character;
@@ -161,7 +162,7 @@ fn read(text: &str, files: &dyn TextureFiles, faults: &mut Vec<Fault>) -> Option
         kind: TileKind::Open,
         floor,
         ceiling,
-        light: None,
+        light: definitions.light,
         heights: Heights::new(0.0, map_ceiling, map_ceiling)?,
         riser: floor.pattern.first_paint(),
         lintel: layout::lintel_below(ceiling, floor),
@@ -177,6 +178,7 @@ fn read(text: &str, files: &dyn TextureFiles, faults: &mut Vec<Fault>) -> Option
         sky: sky.unwrap_or_else(|| Some(Sky::default()))?,
         fog: definitions.fog,
         start: layout.start,
+        lamplight: layout.lamplight,
         sprites: layout.sprites,
         things: layout.things,
         keys: layout.keys,

@@ -15,6 +15,7 @@ mod covering;
 mod door;
 mod grid;
 mod heights;
+mod lamplight;
 mod pitch;
 pub mod sprite;
 pub mod texture;
@@ -28,6 +29,8 @@ use door::Ajar;
 pub use door::{Door, KeyId, Opening};
 pub use grid::{Cell, Grid, TileId};
 pub use heights::{Gap, Heights};
+pub(crate) use lamplight::Lamplight;
+pub use lamplight::{Lamp, Reach};
 pub use pitch::Pitch;
 pub use sprite::{Anchor, Facings, FrameTime, Sprite, SpriteHeight, SpriteId};
 pub use texture::Texture;
@@ -48,6 +51,7 @@ pub struct World {
     start: Start,
     sprites: Vec<Sprite>,
     things: Things,
+    lamplight: Lamplight,
     keys: Vec<String>,
     ajar: Ajar,
 }
@@ -139,18 +143,19 @@ pub(crate) struct Parts {
     pub(crate) start: Start,
     pub(crate) sprites: Vec<Sprite>,
     pub(crate) things: Vec<Thing>,
+    pub(crate) lamplight: Lamplight,
     pub(crate) keys: Vec<String>,
 }
 
 impl World {
     /// A world of `parts` that fit together: every tile of the grid and every texture is in its
-    /// list, open tiles come before solid ones, the map's own floor first, the start and all things stand on open floor, every
+    /// list, open tiles come before solid ones, the map's own floor first, the start and all things stand on open floor, those that block are known to the grid, every
     /// door has a doorway by the same character, and stands between solid cells that are no doors.
     /// The map's own checks establish all of that, and name what does not fit.
     pub(crate) fn from_parts(parts: Parts) -> Self {
         let Parts {
             title,
-            mut grid,
+            grid,
             tiles,
             textures,
             floor,
@@ -160,10 +165,9 @@ impl World {
             start,
             sprites,
             things,
+            lamplight,
             keys,
         } = parts;
-        let blocks = |thing: &&Thing| sprites[usize::from(thing.sprite.0)].blocks;
-        things.iter().filter(blocks).for_each(|thing| grid.occupy(thing.cell));
         let world = Self {
             title,
             grid,
@@ -176,6 +180,7 @@ impl World {
             start,
             sprites,
             things: Things::new(things),
+            lamplight,
             keys,
             ajar: Ajar::default(),
         };
@@ -200,6 +205,12 @@ impl World {
         let open = |cell: Cell| {
             let (column, row) = (i64::from(cell.column), i64::from(cell.row));
             self.grid.tile(column, row).is_some() && !self.grid.is_solid(column, row)
+        };
+        let stands = |thing: &Thing| {
+            let blocks = self.sprites.get(usize::from(thing.sprite.0)).is_some_and(|it| it.blocks);
+            let (column, row) = (i64::from(thing.cell.column), i64::from(thing.cell.row));
+            usize::from(thing.sprite.0) < self.sprites.len()
+                && (!blocks || self.grid.is_barred(column, row))
         };
         let opens = |door: Door| {
             let is_known = door.key.is_none_or(|key| usize::from(key.0) < self.keys.len());
@@ -226,7 +237,7 @@ impl World {
             && ceils(self.ceiling)
             && sky_is_known
             && open(self.start.cell)
-            && self.things().iter().all(|thing| open(thing.cell))
+            && self.things().iter().all(|thing| open(thing.cell) && stands(thing))
     }
 
     /// The level's name; empty where the map gives none.
@@ -237,6 +248,24 @@ impl World {
     /// The heights of the floor and the ceiling in `cell`; off the map, those of the map's own floor.
     pub fn room_in(&self, cell: Cell) -> Heights {
         self.tile_at(cell).unwrap_or(self.ground()).heights
+    }
+
+    /// How bright it is in `cell`: as its tile says, and what lamps add; of a wall, as its own sides
+    /// are, where it says so.
+    pub fn light_in(&self, cell: Cell) -> Light {
+        let own = self.tile_at(cell).unwrap_or(self.ground()).light;
+        own.unwrap_or(Light::FULL).plus(self.lamplight.at(cell))
+    }
+
+    /// What lamps add to the light in `cell`.
+    #[inline]
+    pub(crate) fn lamplight_in(&self, cell: Cell) -> Light {
+        self.lamplight.at(cell)
+    }
+
+    /// Whether lamps add anything anywhere.
+    pub(crate) fn has_lamplight(&self) -> bool {
+        !self.lamplight.is_dark()
     }
 
     /// Which tile each cell holds.

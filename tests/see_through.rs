@@ -2,7 +2,7 @@
 //! by asking every face of every cell, and laid over one another from far to near.
 
 use cellcaster::map;
-use cellcaster::render::{Frame, FrameSize, PixelAspect, Renderer};
+use cellcaster::render::{Filter, Frame, FrameSize, PixelAspect, Renderer};
 use cellcaster::world::{Camera, FieldOfView, Heading, Rgb, TileKind, World};
 use glam::DVec2;
 use proptest::prelude::*;
@@ -54,7 +54,9 @@ proptest! {
             FieldOfView::from_degrees(field_of_view).unwrap(),
         ).unwrap();
         let mut frame = Frame::new(FrameSize::new(size.0, size.1).unwrap(), PixelAspect::SQUARE);
-        Renderer::new().render(&world, &camera, &mut frame);
+        let mut renderer = Renderer::new();
+        renderer.set_filter(Filter::Nearest);
+        renderer.render(&world, &camera, &mut frame);
 
         let picture = Picture { world: &world, camera: &camera, size };
         let mut compared = 0;

@@ -5,14 +5,24 @@ use toml::de::DeTable;
 use super::air::{self, SkyText};
 use super::covering::{CeilingText, CoveringText};
 use super::heights;
-use super::legend::{Legend, Section};
+use super::legend::{self, Legend, Section};
 use crate::fault::Fault;
 use crate::fault::document::{Entry, entries};
-use crate::world::{Fog, Heights, Rgb};
+use crate::world::{Fog, Heights, Light, Rgb};
 
 /// The keys of a map.
-pub(super) const KEYS: &[&str] =
-    &["title", "ceiling", "ceiling_height", "floor", "sky", "fog", "grid", "tiles", "things"];
+pub(super) const KEYS: &[&str] = &[
+    "title",
+    "ceiling",
+    "ceiling_height",
+    "floor",
+    "light",
+    "sky",
+    "fog",
+    "grid",
+    "tiles",
+    "things",
+];
 const DEFAULT_CEILING: Rgb = Rgb::new(0x30, 0x30, 0x30);
 const DEFAULT_FLOOR: Rgb = Rgb::new(0x58, 0x58, 0x58);
 
@@ -25,6 +35,8 @@ pub(super) struct Definitions<'a, 't> {
     pub(super) floor: CoveringText<'a>,
     pub(super) sky: Option<SkyText<'a>>,
     pub(super) fog: Option<Fog>,
+    /// How bright it is where no tile says otherwise.
+    pub(super) light: Option<Light>,
     pub(super) grid: Option<Entry<'a, 't>>,
     pub(super) legend: Legend<'a>,
 }
@@ -40,6 +52,7 @@ impl<'a, 't> Definitions<'a, 't> {
             floor: CoveringText::plain(DEFAULT_FLOOR),
             sky: None,
             fog: None,
+            light: None,
             grid: None,
             legend: Legend::new(),
         };
@@ -69,6 +82,7 @@ impl<'a, 't> Definitions<'a, 't> {
                 }
             }
             "sky" => self.sky = SkyText::read(&entry, faults),
+            "light" => self.light = legend::light(&entry, faults),
             "fog" => self.fog = air::fog(&entry, faults),
             "grid" => self.grid = Some(entry),
             "tiles" => self.legend.read_section(Section::Tiles, &entry, faults),

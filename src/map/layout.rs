@@ -4,14 +4,15 @@ use std::ops::Range;
 
 use super::doors::{self, Keys};
 use super::drawing::Drawing;
+use super::lamps;
 use super::legend::{Legend, Meaning, Surroundings, Symbol};
 use super::per_character::PerCharacter;
 use super::textures::{Surface, Textures};
 use crate::fault::Fault;
 use crate::world::sprite::builtin;
 use crate::world::{
-    Ceiling, Covering, Door, Grid, Heights, Paint, Sprite, SpriteId, Start, Thing, ThingKind, Tile,
-    TileId, TileKind,
+    Ceiling, Covering, Door, Grid, Heights, Lamplight, Paint, Sprite, SpriteId, Start, Thing,
+    ThingKind, Tile, TileId, TileKind,
 };
 
 /// The most kinds of tile in a grid, open floor among them.
@@ -24,6 +25,7 @@ pub(super) struct Layout {
     /// grid, each in the order of their characters.
     pub(super) tiles: Vec<Tile>,
     pub(super) start: Start,
+    pub(super) lamplight: Lamplight,
     pub(super) sprites: Vec<Sprite>,
     pub(super) things: Vec<Thing>,
     /// The names of the keys.
@@ -48,14 +50,17 @@ impl Layout {
             return None;
         }
         let start = start(drawing, legend)?;
-        let grid = grid(drawing, &tiles)?;
+        let mut grid = grid(drawing, &tiles)?;
+        let (things, sprites) = things(drawing, legend, &keys, textures, faults);
+        let blocks = |thing: &&Thing| sprites[usize::from(thing.sprite.0)].blocks;
+        things.iter().filter(blocks).for_each(|thing| grid.occupy(thing.cell));
         faults.extend(doors::faults(drawing, legend, &grid, &tiles, start));
         if !faults.is_empty() {
             return None;
         }
-        let (things, sprites) = things(drawing, legend, &keys, textures, faults);
+        let lamplight = lamps::lamplight(&grid, &tiles, &sprites, &things);
         let keys = keys.into_names();
-        faults.is_empty().then_some(Self { grid, tiles, start, sprites, things, keys })
+        Some(Self { grid, tiles, start, lamplight, sprites, things, keys })
     }
 }
 
@@ -228,7 +233,12 @@ fn tile(
         }
         _ => heights.heights(ceiling, map_ceiling, faults)?,
     };
-    Some(Tile { character, kind, floor, ceiling, light: *light, heights, riser, lintel })
+    let light = match kind {
+        // Where a wall does not say, it is as bright as what it is seen from.
+        TileKind::Wall(_) => *light,
+        _ => light.or(ground.light),
+    };
+    Some(Tile { character, kind, floor, ceiling, light, heights, riser, lintel })
 }
 
 /// How what hangs above a ceiling looks from the side where the map does not say.

@@ -335,7 +335,7 @@ fn heading(entry: &Entry<'_, '_>, faults: &mut Vec<Fault>) -> Option<Heading> {
 }
 
 /// How bright something is, from a number between 0 and 1.
-fn light(entry: &Entry<'_, '_>, faults: &mut Vec<Fault>) -> Option<Light> {
+pub(super) fn light(entry: &Entry<'_, '_>, faults: &mut Vec<Fault>) -> Option<Light> {
     let light = entry.number().and_then(Light::new);
     if light.is_none() {
         faults.push(

@@ -5,14 +5,17 @@ use std::ops::Range;
 
 use toml::de::{DeTable, DeValue};
 
+use super::legend;
 use super::textures::{SheetError, Textures, is_png, stays_inside};
 use crate::fault::document::{Entry, entries};
 use crate::fault::{Fault, nearest, quoted};
 use crate::world::sprite::builtin;
-use crate::world::{Anchor, Facings, FrameTime, Heading, Sprite, SpriteHeight, Texture};
+use crate::world::{
+    Anchor, Facings, FrameTime, Heading, Lamp, Light, Reach, Sprite, SpriteHeight, Texture,
+};
 
 /// The keys that say more of a sprite.
-pub(super) const ADDITIONS: [(&str, &str); 7] = [
+pub(super) const ADDITIONS: [(&str, &str); 9] = [
     ("anchor", "sprite"),
     ("blocks", "sprite"),
     ("facings", "sprite"),
@@ -20,6 +23,8 @@ pub(super) const ADDITIONS: [(&str, &str); 7] = [
     ("frames", "sprite"),
     ("heading", "sprite"),
     ("height", "sprite"),
+    ("light", "sprite"),
+    ("reach", "sprite"),
 ];
 
 /// The most frames of a sheet.
@@ -33,6 +38,8 @@ pub(super) struct SpriteSymbol<'a> {
     blocks: Option<bool>,
     height: Option<SpriteHeight>,
     heading: Option<Heading>,
+    light: Option<Light>,
+    reach: Option<Reach>,
     frame_time: Option<FrameTime>,
     frames: Option<(u32, Range<usize>)>,
     facings: Option<(Facings, Range<usize>)>,
@@ -56,6 +63,8 @@ impl<'a> SpriteSymbol<'a> {
             blocks: None,
             height: None,
             heading: None,
+            light: None,
+            reach: None,
             frame_time: None,
             frames: None,
             facings: None,
@@ -78,6 +87,11 @@ impl<'a> SpriteSymbol<'a> {
             "heading" => {
                 let heading = entry.number().and_then(Heading::from_degrees);
                 self.heading = known(heading, entry, "a finite number of degrees", "90", faults);
+            }
+            "light" => self.light = legend::light(entry, faults),
+            "reach" => {
+                let reach = entry.number().and_then(Reach::new);
+                self.reach = known(reach, entry, "a number of cells from 1 to 32", "5", faults);
             }
             "frame_time" => {
                 let time = entry.number().and_then(FrameTime::new);
@@ -118,6 +132,10 @@ impl<'a> SpriteSymbol<'a> {
         sprite.blocks = self.blocks.unwrap_or(sprite.blocks);
         sprite.height = self.height.unwrap_or(sprite.height);
         sprite.heading = self.heading.unwrap_or(sprite.heading);
+        let light = self.light.or(sprite.lamp.map(|lamp| lamp.light));
+        let light = light.filter(|&light| light != Light::NONE);
+        let reach = self.reach.unwrap_or_default();
+        sprite.lamp = light.map(|light| Lamp { light, reach });
         Some(match self.frame_time {
             Some(frame_time) => sprite.with_frame_time(frame_time),
             None => sprite,
@@ -156,7 +174,7 @@ impl<'a> SpriteSymbol<'a> {
                 None => Err(Fault::new(
                     place.clone(),
                     format!(
-                        "{name} is {texels} texels {side}, which do not divide into {count} {what}"
+                        "{name} is {texels} texels {side}, which does not divide into {count} {what}"
                     ),
                 )
                 .help(format!("make it a multiple of {count} texels {side}"))),

@@ -38,7 +38,7 @@ impl fmt::Display for Explanation {
             writeln!(f, "{name:8} {pixels:>10} pixels written, {texels} texels read")?;
         }
         let (considered, drawn) = (counts.things_considered, counts.things_drawn);
-        writeln!(f, "things   {considered:>10} considered, {drawn} of them drawn")?;
+        writeln!(f, "in view  {considered:>10} things considered, {drawn} of them drawn")?;
         let (pixels, overwritten) = (counts.pixels(), counts.overwritten);
         writeln!(f, "all      {pixels:>10} pixels written, {overwritten} of them overwritten")
     }

@@ -83,8 +83,11 @@ impl Plan {
         let dims = |tile: &Tile| tile.light.is_some_and(|light| light != Light::FULL);
         let open = || tiles.iter().filter(is_open);
         let is_foggy = world.fog().is_some();
-        let floor_varies = open().any(|tile| dims(tile) || tile.floor != world.floor());
-        let ceiling_varies = open().any(|tile| dims(tile) || tile.ceiling != world.ceiling());
+        let is_lamplit = world.has_lamplight();
+        let floor_varies =
+            is_lamplit || open().any(|tile| dims(tile) || tile.floor != world.floor());
+        let ceiling_varies =
+            is_lamplit || open().any(|tile| dims(tile) || tile.ceiling != world.ceiling());
         let is_textured = |tile: &Tile| matches!(tile.kind, TileKind::Wall(Paint::Texture(_)));
         Self {
             floor: PlaneLoop::new(world.floor(), floor_varies, is_foggy),

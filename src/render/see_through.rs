@@ -47,6 +47,7 @@ impl Passed {
     /// Finds out what belongs to each of `columns` columns.
     pub(super) fn sort_out(&mut self, columns: usize) {
         self.left.clear();
+        self.left.reserve(columns);
         if self.list.is_empty() {
             return;
         }

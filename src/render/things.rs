@@ -17,10 +17,14 @@ use super::shade::{Bright, Faded, Shade};
 use super::tally::{Pass, Tally};
 use super::{Frame, Scene, Surface};
 use crate::world::texture::Level;
-use crate::world::{Anchor, Light, Thing, World};
+use crate::world::{Anchor, Thing};
 
 /// Things that are nearer than that to the camera plane are not drawn: the player stands in them.
 const NEAREST: f64 = 0.2;
+
+/// There is room for so many things in view from the first frame on, so that a camera that turns
+/// towards more of them needs no more memory.
+const MOST_AT_FIRST: usize = 4096;
 
 /// The things in view, from far to near; kept so that it is allocated once.
 #[derive(Clone, Debug, Default)]
@@ -55,6 +59,7 @@ pub(super) fn draw<T: Tally>(
 ) -> Option<f64> {
     let list = &mut in_view.list;
     list.clear();
+    list.reserve(scene.world.things().len().min(MOST_AT_FIRST));
     let mut considered = 0;
     for thing in around(scene) {
         considered += 1;
@@ -178,7 +183,7 @@ impl<'a> Picture<'a> {
         let level = texture.level(filter.halvings(texels / (billboard.width * (bottom - top))));
         Self {
             level,
-            shade: Faded::of_plane(light_of(world, thing), world.fog(), depth),
+            shade: Faded::of_plane(world.light_in(thing.cell), world.fog(), depth),
             rows: projection.rows_between(top, bottom),
             top,
             texels_in_row: f64::from(level.height()) / (bottom - top),
@@ -226,11 +231,4 @@ impl<'a> Picture<'a> {
         let texel = (f64::from(row) + 0.5 - self.top) * self.texels_in_row;
         (texel as usize).min(self.level.height() as usize - 1)
     }
-}
-
-/// How bright it is where `thing` stands.
-fn light_of(world: &World, thing: Thing) -> Light {
-    let (column, row) = (i64::from(thing.cell.column), i64::from(thing.cell.row));
-    let tile = world.grid().tile(column, row).map(|tile| world.tile(tile));
-    tile.and_then(|tile| tile.light).unwrap_or(Light::FULL)
 }

@@ -15,7 +15,7 @@ use super::tally::{Pass, Tally};
 use super::{Frame, Scene};
 use crate::cast::{Hit, Side};
 use crate::world::texture::Level;
-use crate::world::{Light, Paint, Rgb, TextureId, Tile, TileId, TileKind, World};
+use crate::world::{Cell, Light, Paint, Rgb, TextureId, Tile, TileKind, World};
 
 /// Draws the wall of every column that has one.
 pub(super) fn draw<T: Tally>(scene: Scene<'_>, plan: WallLoop, frame: &mut Frame, tally: &mut T) {
@@ -102,19 +102,19 @@ impl<'a> Strip<'a> {
     fn light(&self) -> Light {
         let world = self.scene.world;
         let own = tile_of(world, self.hit).and_then(|tile| tile.light);
-        own.or_else(|| self.tile_before()?.light).unwrap_or(Light::FULL)
+        own.unwrap_or_else(|| self.cell_before().map_or(Light::FULL, |cell| world.light_in(cell)))
     }
 
-    /// The tile that the side is seen from.
-    fn tile_before(&self) -> Option<Tile> {
-        let world = self.scene.world;
-        let (column, row) = (i64::from(self.hit.cell.column), i64::from(self.hit.cell.row));
-        let step = if self.across(self.direction()) > 0.0 { 1 } else { -1 };
-        let before: Option<TileId> = match self.hit.side {
-            Side::X => world.grid().tile(column - step, row),
-            Side::Y => world.grid().tile(column, row - step),
-        };
-        before.map(|tile| world.tile(tile))
+    /// The cell that the side is seen from; `None` off the map's north and west.
+    fn cell_before(&self) -> Option<Cell> {
+        let Cell { column, row } = self.hit.cell;
+        let is_ahead = self.across(self.direction()) > 0.0;
+        let before =
+            |index: u32| if is_ahead { index.checked_sub(1) } else { index.checked_add(1) };
+        Some(match self.hit.side {
+            Side::X => Cell { column: before(column)?, row },
+            Side::Y => Cell { column, row: before(row)? },
+        })
     }
 
     fn direction(&self) -> DVec2 {

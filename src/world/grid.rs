@@ -5,6 +5,8 @@ use std::num::NonZeroU32;
 
 use glam::DVec2;
 
+use super::Lamplight;
+
 /// The place of a cell: column from the west, row from the north, both from 0.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash, PartialOrd, Ord)]
 pub struct Cell {
@@ -76,6 +78,11 @@ impl Grid {
         Self::new(width, height, TileId(1), cells)
     }
 
+    /// Lamplight for as many cells, in which no lamp shines yet.
+    pub(crate) fn lamplight(&self) -> Lamplight {
+        Lamplight::new(self.width, self.height)
+    }
+
     /// Columns, from west to east.
     pub fn width(&self) -> u32 {
         self.width.get()
@@ -100,7 +107,7 @@ impl Grid {
     }
 
     /// Notes that something stands in `cell` that one cannot walk through.
-    pub(super) fn occupy(&mut self, cell: Cell) {
+    pub(crate) fn occupy(&mut self, cell: Cell) {
         self.occupied.insert(cell);
     }
 

@@ -10,7 +10,7 @@ use std::f64::consts::TAU;
 
 use glam::DVec2;
 
-use super::{Heading, Texture};
+use super::{Heading, Lamp, Texture};
 
 /// How a thing looks, and where in its cell.
 #[derive(Clone, Debug, PartialEq)]
@@ -27,6 +27,8 @@ pub struct Sprite {
     pub height: SpriteHeight,
     /// Whether it is in everybody's way.
     pub blocks: bool,
+    /// How it shines, if it does.
+    pub lamp: Option<Lamp>,
 }
 
 /// Which sprite: an index into the world's list of sprites.
@@ -122,6 +124,7 @@ impl Sprite {
             anchor: Anchor::default(),
             height: SpriteHeight::FULL,
             blocks: false,
+            lamp: None,
         })
     }
 

@@ -12,7 +12,7 @@ mod treasure;
 use std::num::NonZeroU32;
 
 use super::{Anchor, Facings, FrameTime, Sprite, SpriteHeight};
-use crate::world::{Rgb, Texture};
+use crate::world::{Lamp, Light, Reach, Rgb, Texture};
 
 /// The names that [`named`] knows, those for things that a map asks for by other words left out.
 pub const NAMES: &[&str] =
@@ -25,7 +25,7 @@ pub const KEY: &str = "key";
 
 /// The built-in sprite of that name, or `None` where there is none.
 pub fn named(name: &str) -> Option<Sprite> {
-    let Design { pictures, facings, seconds, anchor, height, blocks } = match name {
+    let Design { pictures, facings, seconds, anchor, height, blocks, shines } = match name {
         "barrel" => furniture::barrel(),
         "bones" => treasure::bones(),
         "column" => furniture::column(),
@@ -42,6 +42,9 @@ pub fn named(name: &str) -> Option<Sprite> {
     sprite.anchor = anchor;
     sprite.height = SpriteHeight::new(height)?;
     sprite.blocks = blocks;
+    sprite.lamp = Light::new(shines)
+        .filter(|&light| light != Light::NONE)
+        .map(|light| Lamp { light, reach: Reach::default() });
     Some(sprite)
 }
 
@@ -55,13 +58,15 @@ struct Design {
     /// In cells.
     height: f64,
     blocks: bool,
+    /// What it adds to the light in its cell, from 0 to 1.
+    shines: f64,
 }
 
 impl Design {
     /// Pictures of one facing that stand on the floor, in nobody's way.
     fn standing(height: f64, pictures: Vec<Texture>) -> Self {
         let (facings, anchor) = (Facings::One, Anchor::Floor);
-        Self { pictures, facings, seconds: 0.2, anchor, height, blocks: false }
+        Self { pictures, facings, seconds: 0.2, anchor, height, blocks: false, shines: 0.0 }
     }
 }
 

@@ -41,7 +41,7 @@ pub(super) fn lamp() -> Design {
     ];
     let pictures = FRAMES.iter().map(|frame| drawn(frame, FIRE)).collect();
     let design = Design::standing(0.42, pictures);
-    Design { anchor: Anchor::Ceiling, seconds: 0.25, ..design }
+    Design { anchor: Anchor::Ceiling, seconds: 0.25, shines: 0.7, ..design }
 }
 
 /// A torch on a stand.
@@ -121,7 +121,7 @@ pub(super) fn torch() -> Design {
         ],
     ];
     let pictures = FRAMES.iter().map(|frame| drawn(frame, FIRE)).collect();
-    Design { seconds: 0.15, ..Design::standing(0.72, pictures) }
+    Design { seconds: 0.15, shines: 0.6, ..Design::standing(0.72, pictures) }
 }
 
 const FIRE: &Palette = &[

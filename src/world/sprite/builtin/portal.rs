@@ -9,7 +9,7 @@ pub(super) fn portal() -> Design {
     let pictures = (0..FRAMES).map(|frame| {
         painted(WIDTH as u32, HEIGHT as u32, |x, y| texel(x, y, frame * BAND * 2 / FRAMES))
     });
-    Design { seconds: 0.15, ..Design::standing(0.9, pictures.collect()) }
+    Design { seconds: 0.15, shines: 0.3, ..Design::standing(0.9, pictures.collect()) }
 }
 
 const WIDTH: i32 = 24;
