@@ -94,11 +94,12 @@ impl Plane<'_> {
         mut pixels: &mut [Rgb],
         tally: &mut T,
     ) {
-        let world = self.scene.world;
+        let Scene { world, projection, .. } = self.scene;
+        let places = &track.just_before(projection.origin());
         let mut x = span.start;
         while x < span.end {
-            let ground = self.ground_at(track, x);
-            let next = (x + 1..span.end).find(|&x| self.ground_at(track, x) != ground);
+            let ground = self.ground_at(places, x);
+            let next = (x + 1..span.end).find(|&x| self.ground_at(places, x) != ground);
             let count = next.unwrap_or(span.end) - x;
             let (stretch, rest) = pixels.split_at_mut(count);
             pixels = rest;
@@ -139,9 +140,9 @@ impl Plane<'_> {
 
     /// The tile that the pixel in column `x` shows, and what lamps add to its light; `None` off the
     /// map.
-    fn ground_at(&self, track: &Track, x: usize) -> Option<(TileId, Light)> {
+    fn ground_at(&self, places: &Track, x: usize) -> Option<(TileId, Light)> {
         let world = self.scene.world;
-        let point = track.point(x);
+        let point = places.point(x);
         // Casts round towards zero, so that what is less than a cell off the map has to be told apart.
         let is_on_map = point.x >= 0.0 && point.y >= 0.0;
         let (column, row) = (point.x as i64, point.y as i64);

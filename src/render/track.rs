@@ -23,6 +23,15 @@ pub(super) struct Track {
 }
 
 impl Track {
+    /// The same line, a hair nearer to `eye`. It tells which cell a pixel is seen in: on the line
+    /// between two cells that is the one before it, at the foot of a wall the one before the wall.
+    pub(super) fn just_before(self, eye: DVec2) -> Self {
+        /// As a share of the way: more than rounding can move a point, and less than shows.
+        const HAIR: f64 = 1e-9;
+        let middle = self.middle + (eye - self.middle) * HAIR;
+        Self { middle, half_step: self.half_step * (1.0 - HAIR), ..self }
+    }
+
     /// What the centre of the pixel in column `x` shows.
     pub(super) fn point(&self, x: usize) -> DVec2 {
         self.middle + self.half_step * self.half_steps_to(x) as f64
