@@ -5,7 +5,7 @@ use std::path::Path;
 use allocation_counter::measure;
 use cellcaster::map;
 use cellcaster::render::{
-    CeilingLoop, Counts, Explanation, Filter, Frame, FrameSize, PassCounts, PixelAspect, PlaneLoop,
+    CeilingLoop, Counts, Explanation, Frame, FrameSize, PassCounts, PixelAspect, PlaneLoop,
     Renderer, ThingLoop,
 };
 use cellcaster::world::{FieldOfView, World};
@@ -148,37 +148,5 @@ fn no_feature_allocates_once_the_first_frame_is_drawn() {
             let counted = measure(|| renderer.render(&world, &camera, &mut frame));
             assert_eq!(counted.count_total, 0, "{}", world.title());
         }
-    }
-}
-
-/// The mean change of a channel from frame to frame of a slow turn, in 8-bit steps.
-fn shimmer(world: &World, filter: Filter) -> f64 {
-    const FRAMES: u32 = 60;
-    let mut camera = world.start_camera(FieldOfView::default());
-    let mut renderer = Renderer::new();
-    renderer.set_filter(filter);
-    let (mut before, mut after) = (frame(), frame());
-    renderer.render(world, &camera, &mut before);
-    let mut sum = 0;
-    for _ in 0..FRAMES {
-        camera.heading = camera.heading.turned(0.002);
-        renderer.render(world, &camera, &mut after);
-        let channels = |frame: &Frame| {
-            frame.rows().flatten().flat_map(|pixel| pixel.channels()).collect::<Vec<u8>>()
-        };
-        let changes = channels(&before).into_iter().zip(channels(&after));
-        sum += changes.map(|(one, other)| u64::from(one.abs_diff(other))).sum::<u64>();
-        std::mem::swap(&mut before, &mut after);
-    }
-    sum as f64 / (f64::from(FRAMES) * 3.0 * PIXELS as f64)
-}
-
-#[test]
-fn a_slow_turn_is_calmer_with_averaged_textures() {
-    for name in ["flat", "floor", "checker", "mip"] {
-        let world = gallery(name);
-        let (mip, nearest) = (shimmer(&world, Filter::Mip), shimmer(&world, Filter::Nearest));
-        println!("{name}: {mip:.3} with mip, {nearest:.3} with nearest");
-        assert!(mip < nearest, "{name}: {mip} with mip, {nearest} with nearest");
     }
 }
