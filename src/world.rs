@@ -14,8 +14,8 @@ mod color;
 mod covering;
 mod door;
 mod grid;
-mod pitch;
 mod heights;
+mod pitch;
 pub mod texture;
 
 pub use air::{Fog, Light, Sky};
@@ -25,8 +25,8 @@ pub use covering::{Ceiling, Covering, Pattern, Scale};
 use door::Ajar;
 pub use door::{Door, KeyId, Opening};
 pub use grid::{Cell, Grid, TileId};
-pub use pitch::Pitch;
 pub use heights::{Gap, Heights};
+pub use pitch::Pitch;
 pub use texture::Texture;
 
 /// What a level consists of.

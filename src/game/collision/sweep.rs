@@ -8,8 +8,7 @@
 
 use glam::DVec2;
 
-use super::{Radius, blocks, cell_of, is_clear};
-use crate::world::Grid;
+use super::{Obstacles, Radius, cell_of, is_clear};
 
 /// How deep a path cuts into a corner's disc, as a part of the radius, before it counts as touching.
 /// Who slides around a corner leaves it along its tangent, and that is exact to about 1e-16.
@@ -43,13 +42,18 @@ impl Path {
     /// The place at `distance` along the path, or if a circle is not clear there, one a little
     /// before it, where it is. The path begins at such a place, and is free of obstacles up to
     /// `distance` but for rounding.
-    pub(super) fn last_clear(self, grid: &Grid, distance: f64, radius: Radius) -> DVec2 {
+    pub(super) fn last_clear<O: Obstacles>(
+        self,
+        obstacles: &O,
+        distance: f64,
+        radius: Radius,
+    ) -> DVec2 {
         let retreats = std::iter::successors(Some(f64::EPSILON), |retreat| Some(2.0 * retreat));
         std::iter::once(distance)
             .chain(retreats.map(|retreat| distance - retreat))
             .take_while(|&distance| distance > 0.0)
             .map(|distance| self.at(distance))
-            .find(|&center| is_clear(grid, center, radius))
+            .find(|&center| is_clear(obstacles, center, radius))
             .unwrap_or(self.from)
     }
 }
@@ -63,13 +67,19 @@ pub(super) struct Contact {
     pub(super) normal: DVec2,
     /// The displacement that is left of the path.
     pub(super) remaining: DVec2,
+    /// The column and the row of what is touched.
+    pub(super) cell: (i64, i64),
 }
 
 /// Where a circle that follows `path` touches something first, if it does.
-pub(super) fn first_contact(grid: &Grid, path: Path, radius: Radius) -> Option<Contact> {
+pub(super) fn first_contact<O: Obstacles>(
+    obstacles: &O,
+    path: Path,
+    radius: Radius,
+) -> Option<Contact> {
     let (mut column, mut row) = cell_of(path.from);
     loop {
-        let room = Room { grid, column, row, radius };
+        let room = Room { obstacles, column, row, radius };
         let Event { distance, kind } = room.next_event(path)?;
         if distance > path.length {
             return None;
@@ -80,17 +90,19 @@ pub(super) fn first_contact(grid: &Grid, path: Path, radius: Radius) -> Option<C
                 row += rows;
             }
             EventKind::Touch(obstacle) => {
-                let (position, normal) = obstacle.touched(grid, path, distance, radius);
+                let (position, normal) = obstacle.touched(obstacles, path, distance, radius);
                 let remaining = path.direction * (path.length - distance);
-                return Some(Contact { position, normal, remaining });
+                let (columns, rows) = obstacle.cell();
+                let cell = (column + columns, row + rows);
+                return Some(Contact { position, normal, remaining, cell });
             }
         }
     }
 }
 
 /// An open cell, as the centre of a circle finds it.
-struct Room<'a> {
-    grid: &'a Grid,
+struct Room<'a, O> {
+    obstacles: &'a O,
     column: i64,
     row: i64,
     radius: Radius,
@@ -113,8 +125,8 @@ enum EventKind {
 enum Obstacle {
     /// A flat wall, touched from `position`.
     Wall { position: DVec2, normal: DVec2 },
-    /// The corner of a solid cell.
-    Corner { vertex: DVec2 },
+    /// The corner of a solid cell, so many columns and rows from this one.
+    Corner { vertex: DVec2, cell: (i64, i64) },
 }
 
 /// The side of a room that a path makes for along one axis.
@@ -129,9 +141,9 @@ struct Side {
     distance: f64,
 }
 
-impl Room<'_> {
+impl<O: Obstacles> Room<'_, O> {
     fn blocks(&self, columns: i64, rows: i64) -> bool {
-        blocks(self.grid, self.column + columns, self.row + rows)
+        self.obstacles.blocks(self.column + columns, self.row + rows)
     }
 
     /// The first of: either side ahead, any corner. `None` for a path without a direction.
@@ -173,16 +185,15 @@ impl Room<'_> {
         let exposed = |(columns, rows): &(i64, i64)| {
             self.blocks(*columns, *rows) && !self.blocks(*columns, 0) && !self.blocks(0, *rows)
         };
-        let vertex = |(columns, rows): (i64, i64)| {
+        let event = move |(columns, rows): (i64, i64)| {
             let column = self.column + i64::from(columns > 0);
             let row = self.row + i64::from(rows > 0);
-            DVec2::new(column as f64, row as f64)
+            let vertex = DVec2::new(column as f64, row as f64);
+            let distance = distance_to_disc(path, vertex, self.radius)?;
+            let corner = Obstacle::Corner { vertex, cell: (columns, rows) };
+            Some(Event { distance, kind: EventKind::Touch(corner) })
         };
-        [(-1, -1), (1, -1), (-1, 1), (1, 1)]
-            .into_iter()
-            .filter(exposed)
-            .map(vertex)
-            .filter_map(move |vertex| corner_event(path, vertex, self.radius))
+        [(-1, -1), (1, -1), (-1, 1), (1, 1)].into_iter().filter(exposed).filter_map(event)
     }
 }
 
@@ -200,8 +211,8 @@ impl Side {
     }
 }
 
-/// Where a path enters the disc around a corner.
-fn corner_event(path: Path, vertex: DVec2, Radius(radius): Radius) -> Option<Event> {
+/// How far along a path it enters the disc around a corner.
+fn distance_to_disc(path: Path, vertex: DVec2, Radius(radius): Radius) -> Option<f64> {
     let offset = path.from - vertex;
     let closest = -path.direction.dot(offset);
     let miss = path.direction.perp_dot(offset).abs();
@@ -209,20 +220,33 @@ fn corner_event(path: Path, vertex: DVec2, Radius(radius): Radius) -> Option<Eve
         return None;
     }
     let half_chord = ((radius - miss) * (radius + miss)).sqrt();
-    let distance = (closest - half_chord).max(0.0);
-    Some(Event { distance, kind: EventKind::Touch(Obstacle::Corner { vertex }) })
+    Some((closest - half_chord).max(0.0))
 }
 
 impl Obstacle {
+    /// The cell that is touched, as columns and rows from the one that the circle's centre is in.
+    fn cell(&self) -> (i64, i64) {
+        match *self {
+            Self::Wall { normal, .. } => (-normal.x as i64, -normal.y as i64),
+            Self::Corner { cell, .. } => cell,
+        }
+    }
+
     /// Where a circle is that touches this at `distance` on its path, and the contact's normal.
-    fn touched(self, grid: &Grid, path: Path, distance: f64, radius: Radius) -> (DVec2, DVec2) {
-        match self {
-            Self::Wall { position, normal } if is_clear(grid, position, radius) => {
+    fn touched<O: Obstacles>(
+        &self,
+        obstacles: &O,
+        path: Path,
+        distance: f64,
+        radius: Radius,
+    ) -> (DVec2, DVec2) {
+        match *self {
+            Self::Wall { position, normal } if is_clear(obstacles, position, radius) => {
                 (position, normal)
             }
-            Self::Wall { normal, .. } => (path.last_clear(grid, distance, radius), normal),
-            Self::Corner { vertex } => {
-                let position = path.last_clear(grid, distance, radius);
+            Self::Wall { normal, .. } => (path.last_clear(obstacles, distance, radius), normal),
+            Self::Corner { vertex, .. } => {
+                let position = path.last_clear(obstacles, distance, radius);
                 let outward = position - vertex;
                 (position, outward / outward.length())
             }
@@ -233,12 +257,13 @@ impl Obstacle {
 #[cfg(test)]
 mod tests {
     use super::*;
+    use crate::world::Grid;
 
     #[test]
     fn a_joint_of_a_wall_is_no_corner() {
         let felt = |rows: &[&str]| {
             let grid = Grid::sketch(rows).unwrap();
-            let room = Room { grid: &grid, column: 1, row: 1, radius: Radius(0.25) };
+            let room = Room { obstacles: &grid, column: 1, row: 1, radius: Radius(0.25) };
             let path = Path::new(DVec2::new(1.5, 1.5), DVec2::new(-1.0, -1.0)).unwrap();
             room.corner_events(path).count()
         };
