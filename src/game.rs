@@ -70,6 +70,11 @@ impl Game {
             .expect("the player stands inside the map, where all places are finite")
     }
 
+    /// How high the player's feet are, in cells above the map's own floor.
+    pub fn feet(&self) -> f64 {
+        self.player.feet()
+    }
+
     /// Seconds that have passed in the game, counted in steps.
     pub fn elapsed(&self) -> f64 {
         self.steps as f64 * STEP
@@ -111,6 +116,7 @@ impl Game {
         if self.is_finished() {
             return u64::MAX;
         }
+        let intents = self.at_a_door(intents);
         if self.player.stepped(&self.world, intents) != self.player {
             return 0;
         }
@@ -126,6 +132,7 @@ impl Game {
         if self.is_finished() {
             return;
         }
+        let intents = self.at_a_door(intents);
         self.player = self.player.stepped(&self.world, intents);
         self.take_keys();
         let is_silent = self.notice.wait(1);
@@ -146,6 +153,19 @@ impl Game {
             self.doors.wait(steps);
             self.notice.wait(steps);
         }
+    }
+
+    /// The same intents, but that who wants to jump before a door wants to open it.
+    fn at_a_door(&self, mut intents: Intents) -> Intents {
+        let looking = self.player.heading().direction();
+        if intents.contains(Intent::Jump)
+            && !self.world.is_of_walls()
+            && door_ahead(&self.world, self.player.position(), looking).is_some()
+        {
+            intents.remove(Intent::Jump);
+            intents.insert(Intent::Open);
+        }
+        intents
     }
 
     /// The door that the player is before, if they want to open it or to walk through it.

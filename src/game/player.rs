@@ -82,6 +82,10 @@ impl Player {
         self.body.position
     }
 
+    pub(super) fn feet(&self) -> f64 {
+        self.feet
+    }
+
     pub(super) fn heading(&self) -> Heading {
         self.heading
     }
