@@ -53,6 +53,7 @@ pub struct Renderer {
 #[derive(Clone, Debug, Default)]
 struct Memory {
     columns: Vec<Column>,
+    first_row_of_ground: u32,
     passed: Passed,
     /// For each column, how many rows show the floor or the ceiling, whichever is being drawn.
     visible: Vec<u32>,
@@ -113,6 +114,12 @@ impl Renderer {
     pub fn columns(&self) -> &[Column] {
         &self.memory.columns
     }
+
+    /// What the pixel `(x, y)` of the last frame shows; `None` where the frame had no column `x`.
+    pub fn surface(&self, x: u32, y: u32) -> Option<Surface> {
+        let column = self.memory.columns.get(x as usize)?;
+        Some(column.surface(y, self.memory.first_row_of_ground))
+    }
 }
 
 /// A picture to draw, with whichever caster.
@@ -139,25 +146,26 @@ impl<T: Tally> Visitor for Picture<'_, T> {
 
     fn visit<C: Caster>(self, caster: &C) -> Plan {
         let Self { world, camera, filter, memory, frame, tally } = self;
-        let Memory { columns, passed, visible, sky } = memory;
+        let Memory { columns, first_row_of_ground, passed, visible, sky } = memory;
         let plan = Plan::new(world, filter);
         let projection = &Projection::new(camera, frame.size(), frame.pixel_aspect());
         columns::cast(caster, world, projection, columns, passed);
         let scene = Scene { world, projection, columns, filter };
-        let height = frame.height();
+        let (ground, height) = (projection.first_row_of_ground(), frame.height());
+        *first_row_of_ground = ground;
 
         let sky = &SkyView::new(world, projection, filter, sky);
         match plan.ceiling {
             CeilingLoop::Sky => sky.draw_overhead(plan.sky, scene, frame, tally),
             CeilingLoop::Laid(plane) => {
                 visible.clear();
-                visible.extend(columns.iter().map(|column| column.rows_of_ceiling(height)));
+                visible.extend(columns.iter().map(|column| column.rows_of_ceiling(ground)));
                 Plane { scene, kind: PlaneKind::Ceiling, sky, visible }.draw(plane, frame, tally);
                 sky.draw_beyond_edge(scene, frame, tally);
             }
         }
         visible.clear();
-        visible.extend(columns.iter().map(|column| column.rows_of_floor(height)));
+        visible.extend(columns.iter().map(|column| column.rows_of_floor(ground, height)));
         Plane { scene, kind: PlaneKind::Floor, sky, visible }.draw(plan.floor, frame, tally);
         walls::draw(scene, plan.walls, frame, tally);
         see_through::draw(scene, passed, frame, tally);

@@ -15,6 +15,7 @@ mod covering;
 mod door;
 mod grid;
 mod heights;
+mod pitch;
 pub mod texture;
 
 pub use air::{Fog, Light, Sky};
@@ -25,6 +26,7 @@ use door::Ajar;
 pub use door::{Door, KeyId, Opening};
 pub use grid::{Cell, Grid, TileId};
 pub use heights::{Gap, Heights};
+pub use pitch::Pitch;
 pub use texture::Texture;
 
 /// What a level consists of.

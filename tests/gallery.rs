@@ -101,3 +101,11 @@ fn panes_of_glass_add_up() {
     assert_golden("glass", "glass_in_a_row", &["--camera", "4.6,2.6,10"]);
     assert_golden("glass", "glass_along_a_row", &["--camera", "8.4,5.6,250"]);
 }
+
+#[test]
+fn who_looks_up_and_down_sees_the_same_moved() {
+    assert_golden("looking", "looking_up", &["--pitch", "14"]);
+    assert_golden("looking", "looking_down", &["--pitch", "-14"]);
+    assert_golden("looking", "looking_from_below", &["--eye", "0.2"]);
+    assert_golden("looking", "looking_from_above", &["--eye", "0.9", "--pitch", "-10"]);
+}

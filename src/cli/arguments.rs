@@ -12,7 +12,7 @@ use crate::fault;
 use crate::palette::ColorDepth;
 use crate::render::Filter;
 use crate::tui::{CellAspect, GlyphMode};
-use crate::world::{FieldOfView, Heading};
+use crate::world::{FieldOfView, Heading, Pitch};
 
 /// What is asked for.
 #[derive(Debug)]
@@ -47,6 +47,9 @@ pub(super) struct Snapshot {
     pub(super) size: SnapshotSize,
     /// Where to look from; the map's start where there is none.
     pub(super) camera: Option<(DVec2, Heading)>,
+    /// How high the eye is; where somebody's is who stands there if there is none.
+    pub(super) eye: Option<f64>,
+    pub(super) pitch: Pitch,
     pub(super) field_of_view: FieldOfView,
     pub(super) cell_aspect: CellAspect,
     pub(super) glyphs: GlyphMode,
@@ -178,6 +181,8 @@ fn parse_snapshot(mut parser: Parser) -> Result<Command, Error> {
             Arg::Value(map) if snapshot.map.is_none() => snapshot.map = Some(map),
             Arg::Long("size") => snapshot.size = SIZE.value(&mut parser)?,
             Arg::Long("camera") => snapshot.camera = Some(CAMERA.value(&mut parser)?),
+            Arg::Long("eye") => snapshot.eye = Some(EYE.value(&mut parser)?),
+            Arg::Long("pitch") => snapshot.pitch = PITCH.value(&mut parser)?,
             Arg::Long("fov") => snapshot.field_of_view = FIELD_OF_VIEW.value(&mut parser)?,
             Arg::Long("cell-aspect") => snapshot.cell_aspect = CELL_ASPECT.value(&mut parser)?,
             Arg::Long("glyphs") => snapshot.glyphs = GLYPHS.value(&mut parser)?,
@@ -257,16 +262,18 @@ const PLAY_OPTIONS: [&str; 9] = [
     "--glyphs",
     "--version",
 ];
-const SNAPSHOT_OPTIONS: [&str; 10] = [
+const SNAPSHOT_OPTIONS: [&str; 12] = [
     "--camera",
     "--caster",
     "--cell-aspect",
     "--colors",
     "--explain",
+    "--eye",
     "--filter",
     "--format",
     "--fov",
     "--glyphs",
+    "--pitch",
     "--size",
 ];
 
@@ -374,6 +381,18 @@ const CAMERA: Valued<(DVec2, Heading)> = Valued {
         let heading = Heading::from_degrees(numbers.next()??)?;
         (position.is_finite() && numbers.next().is_none()).then_some((position, heading))
     },
+};
+
+const EYE: Valued<f64> = Valued {
+    name: "--eye",
+    takes: "a finite height in cells, such as 0.5",
+    read: |text| text.parse().ok().filter(|eye: &f64| eye.is_finite()),
+};
+
+const PITCH: Valued<Pitch> = Valued {
+    name: "--pitch",
+    takes: "degrees from -30, down, to 30, up",
+    read: |text| Pitch::from_degrees(text.parse().ok()?),
 };
 
 const SET: Valued<String> =

@@ -46,6 +46,8 @@ OPTIONS OF SNAPSHOT
   --camera X,Y,HEADING
                     where to look from, in cells and degrees: 0 is east,
                     90 south                                       [the map's start]
+  --eye HEIGHT      in cells above floor level                     [0.5]
+  --pitch DEG       look down, from -30, or up, to 30              [0]
   --format FORMAT   text: characters; ansi: with colours; json; png  [text]
   --explain         how the frame is drawn and what it costs, in its place
 

@@ -39,6 +39,8 @@ pub(super) fn run(options: &Snapshot) -> Result<(), Error> {
         Some((position, heading)) => Camera::new(position, heading, options.field_of_view)
             .unwrap_or_else(|| world.start_camera(options.field_of_view)),
     };
+    let camera = options.eye.and_then(|eye| camera.with_eye(eye)).unwrap_or(camera);
+    let camera = camera.with_pitch(options.pitch);
     let picture = FirstPerson::new(&world, &camera)
         .glyphs(options.glyphs)
         .color_depth(options.depth)

@@ -23,7 +23,7 @@ pub(super) struct Plane<'a> {
     pub(super) kind: PlaneKind,
     /// What shows where a tile of the ceiling is open to the sky.
     pub(super) sky: &'a SkyView<'a>,
-    /// For each column, how many rows of its half of the picture show the plane.
+    /// For each column, how many rows of its part of the picture show the plane.
     pub(super) visible: &'a [u32],
 }
 
@@ -34,7 +34,7 @@ pub(super) enum PlaneKind {
 }
 
 impl Plane<'_> {
-    /// Draws the plane into its half of `frame`.
+    /// Draws the plane into its part of `frame`.
     pub(super) fn draw<T: Tally>(&self, plan: PlaneLoop, frame: &mut Frame, tally: &mut T) {
         let rows = self.rows(frame.height());
         match plan {
@@ -148,11 +148,12 @@ impl Plane<'_> {
         faded.map_or(color, |faded| faded.apply(color))
     }
 
-    /// The plane's half of a picture of that height.
+    /// The plane's part of a picture of that height.
     fn rows(&self, height: u32) -> Range<u32> {
+        let ground = self.scene.projection.first_row_of_ground();
         match self.kind {
-            PlaneKind::Floor => first_row_of_ground(height)..height,
-            PlaneKind::Ceiling => 0..first_row_of_ground(height),
+            PlaneKind::Floor => ground..height,
+            PlaneKind::Ceiling => 0..ground,
         }
     }
 
@@ -167,12 +168,6 @@ impl Plane<'_> {
             PlaneKind::Ceiling => Pass::Ceiling,
         }
     }
-}
-
-/// The first row that shows the ground where nothing is in the way: the first one with its centre
-/// at the horizon or below.
-pub(super) fn first_row_of_ground(height: u32) -> u32 {
-    height / 2
 }
 
 /// The stretches of `list`, as long as possible, whose items all are `wanted`.

@@ -21,8 +21,12 @@ pub(super) struct Projection {
     plane: DVec2,
     width: u32,
     height: f64,
-    /// The row that the eye's own height falls on, in pixels from the top.
+    /// The row that the eye's own height falls on, in pixels from the top; far outside the picture
+    /// where the camera looks that far up or down.
     horizon: f64,
+    /// How high the eye is above the floor, and how far below the ceiling.
+    above_floor: f64,
+    below_ceiling: f64,
     /// Rows from the horizon to something 1 above the eye at distance 1.
     focal_length: f64,
     /// Columns from the middle to something 1 beside it at distance 1.
@@ -34,14 +38,18 @@ impl Projection {
         let width = size.width.get();
         let height = f64::from(size.height.get());
         let across = f64::from(width) / 2.0 / camera.field_of_view.half_width();
+        let focal_length = across / pixel_aspect.height_over_width();
+        let eye = camera.eye().clamp(NEAREST, 1.0 - NEAREST);
         Self {
             origin: camera.position(),
             direction: camera.direction(),
             plane: camera.plane(),
             width,
             height,
-            horizon: height / 2.0,
-            focal_length: across / pixel_aspect.height_over_width(),
+            horizon: height / 2.0 + rows_of_pitch(camera, focal_length),
+            above_floor: eye,
+            below_ceiling: 1.0 - eye,
+            focal_length,
             focal_length_across: across,
         }
     }
@@ -76,24 +84,26 @@ impl Projection {
 
     /// The rows whose centres are between the top and the bottom of a wall, 1 high, at distance `t`.
     pub(super) fn wall_rows(&self, t: f64) -> Range<u32> {
-        let half = 0.5 * self.focal_length / t;
-        self.first_row_below(self.horizon - half)..self.first_row_below(self.horizon + half)
+        let above = self.below_ceiling * self.focal_length / t;
+        let below = self.above_floor * self.focal_length / t;
+        self.first_row_below(self.horizon - above)..self.first_row_below(self.horizon + below)
     }
 
     /// Which of `count` texels, from top to bottom of a wall at distance `t`, the centre of a row of
     /// pixels is on. The row must be one of [`Projection::wall_rows`].
     ///
     /// Texels are counted from eye height, where a double can tell how little a row is above or
-    /// below it: however near the wall is, the upper half of the picture shows its upper half.
+    /// below it: however near the wall is, what is above the horizon shows what is above the eye.
     pub(super) fn texel_on_the_wall(&self, t: f64, count: usize) -> impl Fn(u32) -> usize {
         let texels_per_row = (t / self.focal_length * count as f64).max(f64::MIN_POSITIVE);
-        let middle = (count / 2) as i64;
-        let from_middle = if count.is_multiple_of(2) { 0.0 } else { 0.5 };
+        let at_eye = self.below_ceiling * count as f64;
+        let texel_at_eye = floor(at_eye);
+        let into_it = at_eye - texel_at_eye as f64;
         let last = count as i64 - 1;
         let horizon = self.horizon;
         move |row| {
-            let below = (f64::from(row) + 0.5 - horizon) * texels_per_row + from_middle;
-            (middle + floor(below)).clamp(0, last) as usize
+            let below = (f64::from(row) + 0.5 - horizon) * texels_per_row + into_it;
+            (texel_at_eye + floor(below)).clamp(0, last) as usize
         }
     }
 
@@ -105,10 +115,12 @@ impl Projection {
         down * across
     }
 
-    /// What `row` shows of the floor or the ceiling: they are half a cell from the eye.
+    /// What `row` shows of the floor, or of the ceiling where it is above the horizon.
     pub(super) fn track(&self, row: u32) -> Track {
-        let slope = self.slope(row).abs();
-        let distance = 0.5 / slope;
+        let slope = self.slope(row);
+        let height = if slope > 0.0 { self.below_ceiling } else { self.above_floor };
+        let slope = slope.abs();
+        let distance = height / slope;
         // A row further down, the distance is less by that.
         let along = distance / slope / self.focal_length;
         Track {
@@ -131,12 +143,31 @@ impl Projection {
         DVec2::new(1.0 / self.focal_length_across, 1.0 / self.focal_length)
     }
 
+    /// The first row that shows the ground where nothing is in the way: the first one with its
+    /// centre at the horizon or below.
+    pub(super) fn first_row_of_ground(&self) -> u32 {
+        self.first_row_below(self.horizon)
+    }
+
     /// The first row with its centre at `y` or below; the number of rows where there is none.
     fn first_row_below(&self, y: f64) -> u32 {
         // The cast takes what is not a number, as of a wall infinitely far through an infinitely
         // long lens, to 0.
         (y - 0.5).ceil().clamp(0.0, self.height) as u32
     }
+}
+
+/// An eye is at least that far from floor and ceiling, in cells: what is nearer shows nothing but
+/// where it touches.
+const NEAREST: f64 = 1.0 / 64.0;
+
+/// By how many rows the horizon is below the middle of the picture: a whole number, so that what
+/// stays in view looks as it did.
+fn rows_of_pitch(camera: &Camera, focal_length: f64) -> f64 {
+    /// Out of any picture; through an infinitely long lens the way there would be infinite.
+    const FAR: f64 = 1e9;
+    let slope = camera.pitch.slope();
+    if slope == 0.0 { 0.0 } else { (slope * focal_length).round().clamp(-FAR, FAR) }
 }
 
 /// The largest integer that is not above `value`. The processor's own rounding is not in every

@@ -5,7 +5,7 @@ use std::f64::consts::TAU;
 use glam::DVec2;
 
 use super::plan::SkyLoop;
-use super::planes::{first_row_of_ground, spans};
+use super::planes::spans;
 use super::projection::Projection;
 use super::tally::{Pass, Tally};
 use super::{Column, Filter, Frame, Scene};
@@ -81,7 +81,7 @@ impl<'a> SkyView<'a> {
         frame: &mut Frame,
         tally: &mut T,
     ) {
-        let ground = first_row_of_ground(frame.height());
+        let ground = scene.projection.first_row_of_ground();
         for row in 0..ground {
             let pixels = frame.row_range_mut(row, row + 1);
             match plan {
@@ -110,7 +110,7 @@ impl<'a> SkyView<'a> {
             .filter(|column| column.hit.is_none())
             .map(|column| column.rows.start);
         let Some(first) = first_rows.min() else { return };
-        for row in first..first_row_of_ground(frame.height()) {
+        for row in first..scene.projection.first_row_of_ground() {
             let pixels = frame.row_range_mut(row, row + 1);
             let shows = |column: &Column| column.hit.is_none() && column.rows.start <= row;
             for span in spans(scene.columns, shows) {

@@ -9,7 +9,9 @@ use ratatui::widgets::StatefulWidget;
 use super::{CellAspect, GlyphMode, ascii, half_blocks};
 use crate::cast::Method;
 use crate::palette::ColorDepth;
-use crate::render::{Column, Explanation, Filter, Frame, FrameSize, PixelAspect, Renderer};
+use crate::render::{
+    Column, Explanation, Filter, Frame, FrameSize, PixelAspect, Renderer, Surface,
+};
 use crate::world::{Camera, World};
 
 /// A widget that shows what a camera sees.
@@ -98,8 +100,8 @@ impl<'a> FirstPerson<'a> {
                 half_blocks::draw(area, buffer, self.depth, above, |x, y| frame.pixel(x, y));
             }
             GlyphMode::Ascii => ascii::draw(area, buffer, self.depth, |x, y| {
-                let surface = renderer.columns()[x as usize].surface(above + y, frame.height());
                 let color = frame.pixel(x, above + y);
+                let surface = renderer.surface(x, above + y).unwrap_or(Surface::Sky);
                 (color, ascii::character(surface, color))
             }),
         }
