@@ -87,14 +87,17 @@ pub enum TileKind {
     Mask(TextureId),
     /// A solid cube of tinted glass.
     Glass(Glass),
+    /// A block as a wall's, with sides that reflect under a tint.
+    Mirror(Glass),
 }
 
-/// Glass to look through.
+/// Glass to look through, or into.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct Glass {
     /// Its tint.
     pub color: Rgb,
-    /// How much of the tint is seen in place of what is behind: from 0 for none to 255 for all.
+    /// How much of the tint is seen in place of what is behind, or reflected: from 0 for none to 255
+    /// for all.
     pub opacity: u8,
 }
 
@@ -211,7 +214,7 @@ impl World {
                     is_solid && opens(door) && self.doorway(tile.character).is_some()
                 }
                 TileKind::Mask(texture) => is_solid && known(Paint::Texture(texture)),
-                TileKind::Glass(_) => is_solid,
+                TileKind::Glass(_) | TileKind::Mirror(_) => is_solid,
             }
         };
         self.tiles.iter().enumerate().all(tile_fits)
@@ -283,7 +286,7 @@ impl World {
     /// it meets the first wall.
     pub fn is_level(&self) -> bool {
         let level = |tile: &Tile| match tile.kind {
-            TileKind::Wall(_) => Heights::LEVEL_WALL,
+            TileKind::Wall(_) | TileKind::Mirror(_) => Heights::LEVEL_WALL,
             _ => Heights::LEVEL,
         };
         self.tiles.iter().all(|tile| tile.heights == level(tile))
@@ -354,6 +357,11 @@ impl World {
     /// Takes away all things in `cell` of which `is_taken` says so.
     pub(crate) fn take_things(&mut self, cell: Cell, is_taken: impl Fn(ThingKind) -> bool) {
         self.things.retain(|thing| thing.cell != cell || !is_taken(thing.kind));
+    }
+
+    /// Whether any tile is a mirror.
+    pub fn has_mirrors(&self) -> bool {
+        self.tiles.iter().any(|tile| matches!(tile.kind, TileKind::Mirror(_)))
     }
 
     /// Whether all that is solid is walls, which show one side each and hide what is behind.

@@ -34,7 +34,7 @@ pub(super) fn cast<O: Order>(
                     passed(Hit::entering(ray, crossing.cell, crossing.side));
                 }
             }
-            TileKind::Wall(_) | TileKind::Open | TileKind::Doorway(_) => {
+            TileKind::Wall(_) | TileKind::Mirror(_) | TileKind::Open | TileKind::Doorway(_) => {
                 return Some(Hit::entering(ray, crossing.cell, crossing.side));
             }
         }

@@ -174,8 +174,12 @@ fn is_between_jambs(grid: &Grid, tiles: &[Tile], cell: Cell) -> bool {
         kinds([(column - 1, row), (column + 1, row)]),
         kinds([(column, row - 1), (column, row + 1)]),
     ];
-    let holds =
-        |kind| matches!(kind, Some(TileKind::Wall(_) | TileKind::Mask(_) | TileKind::Glass(_)));
+    let holds = |kind| {
+        matches!(
+            kind,
+            Some(TileKind::Wall(_) | TileKind::Mask(_) | TileKind::Glass(_) | TileKind::Mirror(_))
+        )
+    };
     let is_open = |kind| matches!(kind, Some(TileKind::Open));
     let [one, other] = pairs;
     one.into_iter().all(holds) && other.into_iter().all(is_open)

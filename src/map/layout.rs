@@ -196,6 +196,7 @@ fn tile(
     };
     let riser = match kind {
         TileKind::Wall(paint) => paint,
+        TileKind::Mirror(tint) => Paint::Color(tint.color),
         _ => face(&heights.riser, floor.pattern.first_paint()),
     };
     let lintel = face(&heights.lintel, lintel_below(ceiling, floor));
@@ -203,7 +204,7 @@ fn tile(
         return None;
     }
     let heights = match &symbol.meaning {
-        Meaning::Wall(_, height) => {
+        Meaning::Wall(_, height) | Meaning::Mirror(_, height) => {
             Heights::new(height.unwrap_or(map_ceiling), map_ceiling, map_ceiling)?
         }
         _ => heights.heights(ceiling, map_ceiling, faults)?,
@@ -236,6 +237,7 @@ fn solid_kind(
         })),
         Meaning::Mask(mask) => mask.texture(textures, faults).map(TileKind::Mask),
         Meaning::Glass(glass) => Some(TileKind::Glass(*glass)),
+        Meaning::Mirror(tint, _) => Some(TileKind::Mirror(*tint)),
         Meaning::Open
         | Meaning::Floor
         | Meaning::Start(_)

@@ -135,7 +135,7 @@ fn paint_of(world: &World, hit: &Hit) -> Paint {
         Some(TileKind::Door(door)) => door.leaf,
         // Casters that know no masks and no glass hit these.
         Some(TileKind::Mask(texture)) => Paint::Texture(texture),
-        Some(TileKind::Glass(glass)) => Paint::Color(glass.color),
+        Some(TileKind::Glass(glass) | TileKind::Mirror(glass)) => Paint::Color(glass.color),
         // No caster hits what is not solid; were one to, the floor is what is there.
         Some(TileKind::Open | TileKind::Doorway(_)) | None => world.floor().pattern.first_paint(),
     }

@@ -127,6 +127,7 @@ impl Minimap<'_> {
             TileKind::Open | TileKind::Doorway(_) => return None,
             TileKind::Wall(paint) => paint,
             TileKind::Door(door) => door.leaf,
+            TileKind::Mirror(tint) => Paint::Color(tint.color),
             TileKind::Mask(texture) => Paint::Texture(texture),
             TileKind::Glass(glass) => {
                 return Some(glass.color.over(FLOOR, glass.opacity.max(MIST)));
