@@ -28,8 +28,9 @@ fn walk(game: &mut Game, steps: usize, wanted: &[Intent]) {
 fn corridor(ceiling: &str, tiles: &[&str]) -> Game {
     let letters: String = ('a'..).take(tiles.len()).collect();
     let wall = "#".repeat(6 + tiles.len());
-    let legend: String =
+    let legend: Vec<String> =
         ('a'..).zip(tiles).map(|(letter, tile)| format!("\"{letter}\" = {{ {tile} }}\n")).collect();
+    let legend = legend.concat();
     let map = format!(
         "{ceiling}\ngrid = '''\n{wall}\n#@...{letters}#\n{wall}\n'''\n[tiles]\n\
          \"#\" = {{ wall = \"brick\", height = 99 }}\n{legend}[things]\n\"@\" = {{ start = 0 }}\n"
@@ -160,9 +161,10 @@ fn any_world() -> impl Strategy<Value = World> {
     let cells = prop::collection::vec(prop::sample::select(&b"abcdefgh......#|%"[..]), 35);
     (prop::collection::vec(tile, 8), cells).prop_map(|(tiles, mut cells)| {
         cells[17] = b'@';
-        let rows: String =
+        let rows: Vec<String> =
             cells.chunks(7).map(|row| format!("#{}#\n", String::from_utf8_lossy(row))).collect();
-        let legend: String = tiles
+        let rows = rows.concat();
+        let legend: Vec<String> = tiles
             .iter()
             .zip('a'..)
             .map(|(&(floor, headroom), letter)| match headroom {
@@ -173,6 +175,7 @@ fn any_world() -> impl Strategy<Value = World> {
                 _ => format!("\"{letter}\" = {{ floor_height = {floor:?}, ceiling = \"sky\" }}\n"),
             })
             .collect();
+        let legend = legend.concat();
         let text = format!(
             "ceiling_height = 1.5\ngrid = '''\n#########\n{rows}#########\n'''\n[tiles]\n\
              \"#\" = {{ wall = \"brick\" }}\n\"%\" = {{ wall = \"brick\", height = 0.5 }}\n\
@@ -236,7 +239,9 @@ proptest! {
     fn the_same_intents_give_the_same_states(world in any_world(), script in script()) {
         let mut games = [Game::new(world.clone()), Game::new(world)];
         for (steps, wanted) in &script {
-            games.iter_mut().for_each(|game| walk(game, *steps, wanted));
+            for game in &mut games {
+                walk(game, *steps, wanted);
+            }
         }
         prop_assert!(games[0] == games[1]);
     }

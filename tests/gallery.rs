@@ -109,3 +109,10 @@ fn who_looks_up_and_down_sees_the_same_moved() {
     assert_golden("looking", "looking_from_below", &["--eye", "0.2"]);
     assert_golden("looking", "looking_from_above", &["--eye", "0.9", "--pitch", "-10"]);
 }
+
+#[test]
+fn shapes_do_not_fill_their_cells() {
+    assert_golden("shapes", "shapes_of_pillars", &["--camera", "6.5,4.5,200"]);
+    assert_golden("shapes", "shapes_of_diagonals", &["--camera", "10.5,5.5,90"]);
+    assert_golden("shapes", "shapes_of_thin_walls", &["--camera", "6.5,6.5,340"]);
+}

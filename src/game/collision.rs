@@ -6,12 +6,13 @@
 //! first and pushing out of walls afterwards was refused: it finds the wrong side of a wall at
 //! speed, and jitters in corners.
 
+mod outline;
 mod place;
 mod sweep;
 
 use glam::DVec2;
 
-use crate::world::Cell;
+use crate::world::{Cell, Outline};
 pub(super) use place::{Place, Stature};
 use sweep::{Path, first_contact};
 
@@ -35,6 +36,12 @@ impl Radius {
 pub(super) trait Obstacles {
     /// Whether a cell is solid; everything off the map is: nobody walks off the edge of the world.
     fn blocks(&self, column: i64, row: i64) -> bool;
+
+    /// The shape that stands in a cell that does not block, if there is one.
+    fn outline(&self, cell: Cell) -> Option<Outline> {
+        _ = cell;
+        None
+    }
 
     /// Whether a cell that was touched by a circle around `center` is so no more, because it gives
     /// way, or because the circle has been lifted onto it.
@@ -93,9 +100,15 @@ fn without_inward(vector: DVec2, normal: DVec2) -> DVec2 {
 fn is_clear<O: Obstacles>(obstacles: &O, center: DVec2, radius: Radius) -> bool {
     let (column, row) = cell_of(center);
     let around = (row - 1..=row + 1).flat_map(|r| (column - 1..=column + 1).map(move |c| (c, r)));
-    around
-        .filter(|&(column, row)| obstacles.blocks(column, row))
-        .all(|(column, row)| is_clear_of(center, column, row, radius))
+    around.filter(|&(column, row)| !is_clear_of(center, column, row, radius)).all(
+        |(column, row)| {
+            let stands_clear = |cell| {
+                let outline = obstacles.outline(cell);
+                outline.is_none_or(|outline| outline::is_clear_of(outline, cell, center, radius))
+            };
+            !obstacles.blocks(column, row) && cell_on_map(column, row).is_none_or(stands_clear)
+        },
+    )
 }
 
 /// Whether a circle around `center` overlaps `cell`, solid or not; it may touch.
@@ -111,6 +124,11 @@ fn is_clear_of(center: DVec2, column: i64, row: i64, Radius(radius): Radius) -> 
 fn square_distance(point: DVec2, column: i64, row: i64) -> f64 {
     let low = DVec2::new(column as f64, row as f64);
     (low - point).max(point - (low + DVec2::ONE)).max(DVec2::ZERO).length_squared()
+}
+
+/// The cell at a place that may be off the map to the west or to the north.
+fn cell_on_map(column: i64, row: i64) -> Option<Cell> {
+    Some(Cell { column: u32::try_from(column).ok()?, row: u32::try_from(row).ok()? })
 }
 
 fn cell_of(point: DVec2) -> (i64, i64) {

@@ -182,7 +182,7 @@ impl Player {
 
     fn place<'a>(&self, world: &'a World) -> Place<'a> {
         let stature = Stature { feet: self.feet, height: self.posture.height() };
-        Place { world, stature, step: 0.0 }
+        Place { world, stature, step: 0.0, has_shapes: world.has_shapes() }
     }
 }
 

@@ -8,7 +8,7 @@ use glam::DVec2;
 
 use super::{Obstacles, Radius, cell_of, is_clear, is_clear_of};
 use crate::game::fall::Room;
-use crate::world::{Gap, Tile, TileKind, World};
+use crate::world::{Cell, Gap, Outline, Tile, TileKind, World};
 
 /// How high somebody stands, and how tall they are just now, in cells.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -32,11 +32,27 @@ pub(in crate::game) struct Place<'a> {
     pub(in crate::game) stature: Stature,
     /// How much higher a floor may be for them to step onto it; 0 for who is in the air.
     pub(in crate::game) step: f64,
+    /// Whether there are any shapes to look for.
+    pub(in crate::game) has_shapes: bool,
 }
 
 impl Obstacles for Place<'_> {
     fn blocks(&self, column: i64, row: i64) -> bool {
         self.gap(column, row).is_none()
+    }
+
+    fn outline(&self, cell: Cell) -> Option<Outline> {
+        if !self.has_shapes {
+            return None;
+        }
+        let tile = self.tile(i64::from(cell.column), i64::from(cell.row))?;
+        match tile.kind {
+            // It reaches no further than to the ceiling.
+            TileKind::Shape(shape) if self.stature.feet < tile.heights.ceiling() => {
+                Some(shape.outline)
+            }
+            _ => None,
+        }
     }
 
     /// Steps up, where there is room for it.
@@ -98,7 +114,11 @@ impl Place<'_> {
 /// What is open in a cell of `tile` to who walks: what stands in a gap fills it up to the ceiling.
 fn gaps(tile: Tile) -> impl Iterator<Item = Gap> {
     let is_filled = match tile.kind {
-        TileKind::Open | TileKind::Doorway(_) | TileKind::Wall(_) => false,
+        TileKind::Open
+        | TileKind::Doorway(_)
+        | TileKind::Wall(_)
+        | TileKind::Mirror(_)
+        | TileKind::Shape(_) => false,
         TileKind::Door(_) | TileKind::Mask(_) | TileKind::Glass(_) => true,
     };
     let top = tile.heights.ceiling();

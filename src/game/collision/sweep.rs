@@ -8,7 +8,8 @@
 
 use glam::DVec2;
 
-use super::{Obstacles, Radius, cell_of, is_clear};
+use super::outline::{TouchKind, first_touch};
+use super::{Obstacles, Radius, cell_of, cell_on_map, is_clear};
 
 /// How deep a path cuts into a corner's disc, as a part of the radius, before it counts as touching.
 /// Who slides around a corner leaves it along its tangent, and that is exact to about 1e-16.
@@ -35,7 +36,11 @@ impl Path {
         self.length
     }
 
-    fn at(self, distance: f64) -> DVec2 {
+    pub(super) fn direction(self) -> DVec2 {
+        self.direction
+    }
+
+    pub(super) fn at(self, distance: f64) -> DVec2 {
         self.from + self.direction * distance
     }
 
@@ -127,6 +132,8 @@ enum Obstacle {
     Wall { position: DVec2, normal: DVec2 },
     /// The corner of a solid cell, so many columns and rows from this one.
     Corner { vertex: DVec2, cell: (i64, i64) },
+    /// The shape in a cell, so many columns and rows from this one.
+    Shape { touch: TouchKind, cell: (i64, i64) },
 }
 
 /// The side of a room that a path makes for along one axis.
@@ -146,11 +153,12 @@ impl<O: Obstacles> Room<'_, O> {
         self.obstacles.blocks(self.column + columns, self.row + rows)
     }
 
-    /// The first of: either side ahead, any corner. `None` for a path without a direction.
+    /// The first of: either side ahead, any corner, any shape. `None` for a path without a direction.
     fn next_event(&self, path: Path) -> Option<Event> {
         // Either of two equals will do: the other is met again in the next room, or on the slide.
         let sides = [self.event_along_y(path), self.event_along_x(path)];
-        let events = sides.into_iter().flatten().chain(self.corner_events(path));
+        let events = sides.into_iter().flatten();
+        let events = events.chain(self.corner_events(path)).chain(self.shape_events(path));
         events.reduce(|first, next| if next.distance <= first.distance { next } else { first })
     }
 
@@ -189,11 +197,22 @@ impl<O: Obstacles> Room<'_, O> {
             let column = self.column + i64::from(columns > 0);
             let row = self.row + i64::from(rows > 0);
             let vertex = DVec2::new(column as f64, row as f64);
-            let distance = distance_to_disc(path, vertex, self.radius)?;
+            let distance = distance_to_disc(path, vertex, self.radius.0)?;
             let corner = Obstacle::Corner { vertex, cell: (columns, rows) };
             Some(Event { distance, kind: EventKind::Touch(corner) })
         };
         [(-1, -1), (1, -1), (-1, 1), (1, 1)].into_iter().filter(exposed).filter_map(event)
+    }
+
+    fn shape_events(&self, path: Path) -> impl Iterator<Item = Event> {
+        let around = (-1..=1).flat_map(|rows| (-1..=1).map(move |columns| (columns, rows)));
+        around.filter_map(move |(columns, rows)| {
+            let cell = cell_on_map(self.column + columns, self.row + rows)?;
+            let outline = self.obstacles.outline(cell)?;
+            let touch = first_touch(outline, cell, path, self.radius)?;
+            let shape = Obstacle::Shape { touch: touch.kind, cell: (columns, rows) };
+            Some(Event { distance: touch.distance, kind: EventKind::Touch(shape) })
+        })
     }
 }
 
@@ -211,9 +230,9 @@ impl Side {
     }
 }
 
-/// How far along a path it enters the disc around a corner.
-fn distance_to_disc(path: Path, vertex: DVec2, Radius(radius): Radius) -> Option<f64> {
-    let offset = path.from - vertex;
+/// How far along a path it enters a disc.
+pub(super) fn distance_to_disc(path: Path, center: DVec2, radius: f64) -> Option<f64> {
+    let offset = path.from - center;
     let closest = -path.direction.dot(offset);
     let miss = path.direction.perp_dot(offset).abs();
     if closest <= 0.0 || miss >= radius * (1.0 - GRAZE) {
@@ -228,7 +247,7 @@ impl Obstacle {
     fn cell(&self) -> (i64, i64) {
         match *self {
             Self::Wall { normal, .. } => (-normal.x as i64, -normal.y as i64),
-            Self::Corner { cell, .. } => cell,
+            Self::Corner { cell, .. } | Self::Shape { cell, .. } => cell,
         }
     }
 
@@ -245,7 +264,14 @@ impl Obstacle {
                 (position, normal)
             }
             Self::Wall { normal, .. } => (path.last_clear(obstacles, distance, radius), normal),
-            Self::Corner { vertex, .. } => {
+            Self::Shape { touch: TouchKind::Flat { position, normal }, .. } => {
+                if is_clear(obstacles, position, radius) {
+                    (position, normal)
+                } else {
+                    (path.last_clear(obstacles, distance, radius), normal)
+                }
+            }
+            Self::Corner { vertex, .. } | Self::Shape { touch: TouchKind::Round(vertex), .. } => {
                 let position = path.last_clear(obstacles, distance, radius);
                 let outward = position - vertex;
                 (position, outward / outward.length())
