@@ -38,11 +38,11 @@ pub(super) fn parse(mut parser: Parser) -> Result<Command, Error> {
                 play.config = Some(word(&mut parser, "--config", "a file")?.into());
             }
             Arg::Long("fps") => {
-                play.frames_per_second = value::FRAMES_PER_SECOND.value(&mut parser)?
+                play.frames_per_second = value::FRAMES_PER_SECOND.value(&mut parser)?;
             }
             Arg::Long("fov") => play.field_of_view = value::FIELD_OF_VIEW.value(&mut parser)?,
             Arg::Long("cell-aspect") => {
-                play.cell_aspect = Some(value::CELL_ASPECT.value(&mut parser)?)
+                play.cell_aspect = Some(value::CELL_ASPECT.value(&mut parser)?);
             }
             Arg::Long("glyphs") => play.glyphs = value::GLYPHS.value(&mut parser)?,
             Arg::Long("colors") => play.depth = Some(value::COLORS.value(&mut parser)?),

@@ -51,7 +51,7 @@ pub(super) fn parse(mut parser: Parser) -> Result<Command, Error> {
             Arg::Long("camera") => snapshot.camera = Some(CAMERA.value(&mut parser)?),
             Arg::Long("fov") => snapshot.field_of_view = value::FIELD_OF_VIEW.value(&mut parser)?,
             Arg::Long("cell-aspect") => {
-                snapshot.cell_aspect = value::CELL_ASPECT.value(&mut parser)?
+                snapshot.cell_aspect = value::CELL_ASPECT.value(&mut parser)?;
             }
             Arg::Long("glyphs") => snapshot.glyphs = value::GLYPHS.value(&mut parser)?,
             Arg::Long("colors") => snapshot.depth = value::COLORS.value(&mut parser)?,
