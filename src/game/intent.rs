@@ -39,6 +39,26 @@ impl Intent {
         Self::Aim,
         Self::Open,
     ];
+
+    /// What files call it.
+    pub fn name(self) -> &'static str {
+        match self {
+            Self::Forward => "forward",
+            Self::Back => "back",
+            Self::StrafeLeft => "strafe-left",
+            Self::StrafeRight => "strafe-right",
+            Self::TurnLeft => "turn-left",
+            Self::TurnRight => "turn-right",
+            Self::Run => "run",
+            Self::Aim => "aim",
+            Self::Open => "open",
+        }
+    }
+
+    /// The one of that name.
+    pub(super) fn named(name: &str) -> Option<Self> {
+        Self::ALL.into_iter().find(|intent| intent.name() == name)
+    }
 }
 
 /// A set of intents: all that the player wants at one time.
