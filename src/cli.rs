@@ -6,12 +6,14 @@
 
 mod accuracy;
 mod arguments;
+mod asciicast;
 mod cast;
 mod check;
 mod error;
 mod help;
 mod level;
 mod play;
+mod recording;
 mod snapshot;
 
 use std::ffi::OsString;

@@ -27,7 +27,9 @@ pub(crate) use motion::approach;
 pub use script::{Recorder, Script, Section, Stretch};
 
 /// How long one step lasts, in seconds.
-pub const STEP: f64 = 1.0 / 60.0;
+pub const STEP: f64 = 1.0 / STEPS_PER_SECOND as f64;
+
+pub(crate) const STEPS_PER_SECOND: u32 = 60;
 
 /// A world, who walks in it, and for how long they have.
 #[derive(Clone, Debug, PartialEq)]

@@ -23,7 +23,7 @@ mod recorder;
 
 use std::fmt;
 
-use super::Intents;
+use super::{Intent, Intents, STEPS_PER_SECOND};
 use crate::fault::Faults;
 
 pub use recorder::Recorder;
@@ -95,8 +95,6 @@ impl Stretch {
     pub const MOST_STEPS: u32 = 60 * 60 * STEPS_PER_SECOND;
 }
 
-/// As many as [`STEP`](super::STEP) says.
-const STEPS_PER_SECOND: u32 = 60;
 /// Times of so many steps are written as seconds with one digit, and no digit is lost.
 const STEPS_PER_TENTH: u32 = STEPS_PER_SECOND / 10;
 /// What stands for wanting nothing.
@@ -126,7 +124,7 @@ impl fmt::Display for Stretch {
             }
             steps => format!("{steps} steps"),
         };
-        let mut wanted: Vec<&str> = self.intents.iter().map(super::Intent::name).collect();
+        let mut wanted: Vec<&str> = self.intents.iter().map(Intent::name).collect();
         if wanted.is_empty() {
             wanted.push(STAND);
         }
@@ -139,7 +137,6 @@ mod tests {
     use proptest::prelude::*;
 
     use super::*;
-    use crate::game::{Intent, STEP};
 
     pub(super) fn stretches() -> impl Strategy<Value = Vec<Stretch>> {
         let intents = prop::sample::subsequence(Intent::ALL.to_vec(), 0..=Intent::ALL.len());
@@ -165,11 +162,6 @@ mod tests {
             let text = script.to_string();
             prop_assert_eq!(Script::parse(&text, "it").map_err(|faults| faults.to_string()), Ok(script));
         }
-    }
-
-    #[test]
-    fn a_second_has_as_many_steps_as_the_game_says() {
-        assert!((f64::from(STEPS_PER_SECOND) * STEP - 1.0).abs() < 1e-12);
     }
 
     #[test]

@@ -2,9 +2,9 @@
 
 use std::ops::Range;
 
-use super::{STAND, STEPS_PER_SECOND, Script, Section, Stretch};
+use super::{STAND, Script, Section, Stretch};
 use crate::fault::{Fault, Faults, nearest, quoted};
-use crate::game::{Intent, Intents};
+use crate::game::{Intent, Intents, STEPS_PER_SECOND};
 
 pub(super) fn parse(text: &str, name: &str) -> Result<Script, Faults> {
     let mut reader = Reader { text, sections: Vec::new(), faults: Vec::new() };
