@@ -40,6 +40,11 @@ impl<W: Write> Asciicast<W> {
         self.write_event(time, "r", &format!("{}x{}", size.width, size.height))
     }
 
+    /// Writes what `output` has held back.
+    pub(super) fn finish(mut self) -> io::Result<()> {
+        self.output.flush()
+    }
+
     fn write_event(&mut self, time: Duration, code: &str, data: &str) -> io::Result<()> {
         // Rounded as times, not as intervals: the errors of those would add up.
         let now = time.as_millis().max(self.last);

@@ -17,7 +17,7 @@ pub(super) fn run(options: Play) -> Result<(), Error> {
     let levels = level::load_series(options.map.as_deref())?;
     let settings = Settings {
         bindings: bindings(options.config)?,
-        frame_time: Duration::from_secs(1) / options.frames_per_second.0,
+        frame_time: Duration::from_secs(1) / options.frames_per_second.get().get(),
         field_of_view: options.field_of_view,
         cell_aspect: options.cell_aspect,
         glyphs: options.glyphs,
