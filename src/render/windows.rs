@@ -178,7 +178,7 @@ impl Windows {
     fn reflection(&mut self, unfolding: Unfolding) -> Reflection {
         let known = self.unfoldings.iter().rposition(|&known| known == unfolding);
         let index = known.unwrap_or_else(|| {
-            if self.unfoldings.len() <= usize::from(u16::MAX) {
+            if u16::try_from(self.unfoldings.len()).is_ok() {
                 self.unfoldings.push(unfolding);
             }
             self.unfoldings.len() - 1

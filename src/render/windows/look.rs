@@ -258,7 +258,7 @@ impl<'a> Look<'a> {
         let above = self.rows(&branch.window, top, f64::INFINITY, leaf.t);
         self.face(rows, &met, door.leaf, light, Stretch { bottom, top });
         if branch.reflection == Reflection::NONE {
-            self.hit = Some(leaf.clone());
+            self.hit = Some(*leaf);
             self.distance = self.distance.max(leaf.t);
         }
         branch.window = above;
