@@ -36,6 +36,7 @@ mod legend;
 mod per_character;
 mod picture;
 mod see_through;
+mod shapes;
 mod textures;
 
 use std::collections::BTreeSet;

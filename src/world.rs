@@ -16,6 +16,7 @@ mod door;
 mod grid;
 mod heights;
 mod pitch;
+mod shape;
 pub mod texture;
 
 pub use air::{Fog, Light, Sky};
@@ -27,6 +28,7 @@ pub use door::{Door, KeyId, Opening};
 pub use grid::{Cell, Grid, TileId};
 pub use heights::{Gap, Heights};
 pub use pitch::Pitch;
+pub use shape::{Line, Outline, PillarRadius, Shape};
 pub use texture::Texture;
 
 /// What a level consists of.
@@ -72,7 +74,7 @@ pub struct Tile {
 }
 
 /// What a tile is.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+#[derive(Clone, Copy, Debug, PartialEq)]
 pub enum TileKind {
     /// Floor to walk on, and to see across.
     Open,
@@ -89,6 +91,9 @@ pub enum TileKind {
     Glass(Glass),
     /// A block as a wall's, with sides that reflect under a tint.
     Mirror(Glass),
+    /// A wall that does not fill the cell, from floor to ceiling. Rays and walkers that know no shapes
+    /// take the cell for solid; the others pass it by.
+    Shape(Shape),
 }
 
 /// Glass to look through, or into.
@@ -215,6 +220,7 @@ impl World {
                 }
                 TileKind::Mask(texture) => is_solid && known(Paint::Texture(texture)),
                 TileKind::Glass(_) | TileKind::Mirror(_) => is_solid,
+                TileKind::Shape(shape) => is_solid && known(shape.paint),
             }
         };
         self.tiles.iter().enumerate().all(tile_fits)
@@ -362,6 +368,11 @@ impl World {
     /// Whether any tile is a mirror.
     pub fn has_mirrors(&self) -> bool {
         self.tiles.iter().any(|tile| matches!(tile.kind, TileKind::Mirror(_)))
+    }
+
+    /// Whether any tile is a shape.
+    pub(crate) fn has_shapes(&self) -> bool {
+        self.tiles.iter().any(|tile| matches!(tile.kind, TileKind::Shape(_)))
     }
 
     /// Whether all that is solid is walls, which show one side each and hide what is behind.

@@ -232,6 +232,7 @@ fn solid_kind(
         Meaning::Mask(mask) => mask.texture(textures, faults).map(TileKind::Mask),
         Meaning::Glass(glass) => Some(TileKind::Glass(*glass)),
         Meaning::Mirror(tint, _) => Some(TileKind::Mirror(*tint)),
+        Meaning::Shape(shape) => shape.shape(textures, faults).map(TileKind::Shape),
         Meaning::Open
         | Meaning::Floor
         | Meaning::Start(_)

@@ -10,6 +10,7 @@ use super::definitions::KEYS;
 use super::doors::{DoorSymbol, KeySymbol};
 use super::heights::{self, HeightsText};
 use super::see_through::{self, MaskSymbol};
+use super::shapes::ShapeSymbol;
 use super::textures::Surface;
 use crate::fault::document::{Entry, entries};
 use crate::fault::{Fault, quoted};
@@ -52,6 +53,7 @@ pub(super) enum Meaning<'a> {
     Glass(Glass),
     /// With a height of its own, if any.
     Mirror(Glass, Option<f64>),
+    Shape(ShapeSymbol<'a>),
     Start(Heading),
     Exit,
     Key(KeySymbol<'a>),
@@ -98,6 +100,9 @@ impl Section {
                 "mask",
                 "glass",
                 "mirror",
+                "pillar",
+                "diagonal",
+                "thin",
                 "floor",
                 "ceiling",
                 "light",
@@ -120,6 +125,9 @@ impl Section {
                 ("opacity", "mirror"),
                 ("height", "wall"),
                 ("height", "mirror"),
+                ("radius", "pillar"),
+                ("from", "diagonal"),
+                ("at", "thin"),
             ],
             Self::Things => &[],
         }
@@ -268,6 +276,7 @@ impl<'a> Surroundings<'a> {
             Meaning::Wall(..) | Meaning::Mirror(..) => {
                 !self.has_covering() && self.heights.is_empty()
             }
+            Meaning::Shape(_) => true,
             Meaning::Door(_) | Meaning::Mask(_) | Meaning::Glass(_) => {
                 !self.has_covering() && self.light.is_none()
             }
@@ -320,6 +329,9 @@ fn property<'a>(
             let tint = see_through::mirror(entry, table, faults);
             let height = heights::of_wall(table, faults);
             tint.map(|tint| Meaning::Mirror(tint, height))
+        }
+        (Section::Tiles, "pillar" | "diagonal" | "thin") => {
+            ShapeSymbol::read(entry, table, faults).map(Meaning::Shape)
         }
         (Section::Things, "key") => {
             KeySymbol::read(entry, r#"{ key = "brass" }"#, faults).map(Meaning::Key)
