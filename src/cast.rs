@@ -71,6 +71,7 @@ pub use method::{Method, NotAMethod, Visitor};
 pub use ray::{NotARay, Ray};
 pub use table::Table;
 pub use walk::{Crossing, Order, Walk};
+pub(crate) use walk::{UnfoldedWalk, Unfolding};
 
 use crate::world::{Grid, World};
 

@@ -25,12 +25,13 @@ mod sky;
 mod tally;
 mod track;
 mod walls;
+mod windows;
 
 pub use columns::{Column, Surface};
 pub use explanation::Explanation;
 pub use filter::Filter;
 pub use frame::{Frame, FrameSize, PixelAspect};
-pub use plan::{CeilingLoop, Plan, PlaneLoop, SkyLoop, WallLoop};
+pub use plan::{CeilingLoop, Geometry, Plan, PlaneLoop, SkyLoop, WallLoop, WhyWindows};
 pub use tally::{Counts, Pass, PassCounts};
 
 use crate::cast::{Caster, Method, Visitor};
@@ -40,6 +41,8 @@ use projection::Projection;
 use see_through::Passed;
 use sky::{SkyColumn, SkyView};
 use tally::Tally;
+pub use windows::WindowCounts;
+use windows::Windows;
 
 /// Draws frames, and keeps what is worth keeping from one to the next.
 #[derive(Clone, Debug, Default)]
@@ -58,6 +61,9 @@ struct Memory {
     /// For each column, how many rows show the floor or the ceiling, whichever is being drawn.
     visible: Vec<u32>,
     sky: Vec<SkyColumn>,
+    windows: Windows,
+    /// By which passes the last frame was drawn.
+    geometry: Option<Geometry>,
 }
 
 impl Renderer {
@@ -104,7 +110,15 @@ impl Renderer {
         let plan = method.accept(Picture { world, camera, filter: *filter, memory, frame, tally });
         let projection = Projection::new(camera, frame.size(), frame.pixel_aspect());
         counts.rays = u64::from(frame.width());
-        counts.cells = explanation::cells_entered(world.grid(), &projection);
+        match plan.geometry {
+            Geometry::Level => {
+                counts.cells = explanation::cells_entered(world.grid(), &projection);
+            }
+            Geometry::Windows(_) => {
+                counts.windows = memory.windows.counts();
+                counts.cells = counts.windows.cells;
+            }
+        }
         let size = u64::from(frame.width()) * u64::from(frame.height());
         counts.overwritten = counts.pixels() - size;
         Explanation { plan, counts }
@@ -117,8 +131,12 @@ impl Renderer {
 
     /// What the pixel `(x, y)` of the last frame shows; `None` where the frame had no column `x`.
     pub fn surface(&self, x: u32, y: u32) -> Option<Surface> {
-        let column = self.memory.columns.get(x as usize)?;
-        Some(column.surface(y, self.memory.first_row_of_ground))
+        let Memory { columns, first_row_of_ground, windows, geometry, .. } = &self.memory;
+        let column = columns.get(x as usize)?;
+        match geometry {
+            Some(Geometry::Windows(_)) => windows.surface(x, y),
+            _ => Some(column.surface(y, *first_row_of_ground)),
+        }
     }
 }
 
@@ -145,14 +163,25 @@ impl<T: Tally> Visitor for Picture<'_, T> {
     type Output = Plan;
 
     fn visit<C: Caster>(self, caster: &C) -> Plan {
+        let plan = Plan::new(self.world, self.camera, self.filter);
+        match plan.geometry {
+            Geometry::Level => self.draw_level(plan, caster),
+            Geometry::Windows(_) => self.draw_windows(plan),
+        }
+        plan
+    }
+}
+
+impl<T: Tally> Picture<'_, T> {
+    fn draw_level<C: Caster>(self, plan: Plan, caster: &C) {
         let Self { world, camera, filter, memory, frame, tally } = self;
-        let Memory { columns, first_row_of_ground, passed, visible, sky } = memory;
-        let plan = Plan::new(world, filter);
+        let Memory { columns, first_row_of_ground, passed, visible, sky, geometry, .. } = memory;
         let projection = &Projection::new(camera, frame.size(), frame.pixel_aspect());
         columns::cast(caster, world, projection, columns, passed);
         let scene = Scene { world, projection, columns, filter };
         let (ground, height) = (projection.first_row_of_ground(), frame.height());
         *first_row_of_ground = ground;
+        *geometry = Some(plan.geometry);
 
         let sky = &SkyView::new(world, projection, filter, sky);
         match plan.ceiling {
@@ -169,6 +198,16 @@ impl<T: Tally> Visitor for Picture<'_, T> {
         Plane { scene, kind: PlaneKind::Floor, sky, visible }.draw(plan.floor, frame, tally);
         walls::draw(scene, plan.walls, frame, tally);
         see_through::draw(scene, passed, frame, tally);
-        plan
+    }
+
+    /// Draws by exact rays, whatever the caster: the others know nothing but walls.
+    fn draw_windows(self, plan: Plan) {
+        let Self { world, camera, filter, memory, frame, tally } = self;
+        let Memory { columns, sky, windows, geometry, .. } = memory;
+        *geometry = Some(plan.geometry);
+        let projection = &Projection::new(camera, frame.size(), frame.pixel_aspect());
+        let sky = &SkyView::new(world, projection, filter, sky);
+        let scene = windows::Scene::new(world, projection, filter);
+        windows::draw(scene, plan.walls, sky, windows, columns, frame, tally);
     }
 }

@@ -6,13 +6,25 @@ use super::air::{self, SkyText};
 use super::covering::{CeilingText, CoveringText};
 use super::heights;
 use super::legend::{Legend, Section};
+use super::textures::Surface;
 use crate::fault::Fault;
 use crate::fault::document::{Entry, entries};
 use crate::world::{Fog, Heights, Rgb};
 
 /// The keys of a map.
-pub(super) const KEYS: &[&str] =
-    &["title", "ceiling", "ceiling_height", "floor", "sky", "fog", "grid", "tiles", "things"];
+pub(super) const KEYS: &[&str] = &[
+    "title",
+    "ceiling",
+    "ceiling_height",
+    "floor",
+    "riser",
+    "lintel",
+    "sky",
+    "fog",
+    "grid",
+    "tiles",
+    "things",
+];
 const DEFAULT_CEILING: Rgb = Rgb::new(0x30, 0x30, 0x30);
 const DEFAULT_FLOOR: Rgb = Rgb::new(0x58, 0x58, 0x58);
 
@@ -23,6 +35,10 @@ pub(super) struct Definitions<'a, 't> {
     /// How high the ceiling is, and how high walls are.
     pub(super) ceiling_height: f64,
     pub(super) floor: CoveringText<'a>,
+    /// The sides of floors, where a tile does not say.
+    pub(super) riser: Option<Surface<'a>>,
+    /// The sides of what hangs above ceilings, where a tile does not say.
+    pub(super) lintel: Option<Surface<'a>>,
     pub(super) sky: Option<SkyText<'a>>,
     pub(super) fog: Option<Fog>,
     pub(super) grid: Option<Entry<'a, 't>>,
@@ -38,6 +54,8 @@ impl<'a, 't> Definitions<'a, 't> {
             ceiling: CeilingText::plain(DEFAULT_CEILING),
             ceiling_height: Heights::LEVEL.ceiling(),
             floor: CoveringText::plain(DEFAULT_FLOOR),
+            riser: None,
+            lintel: None,
             sky: None,
             fog: None,
             grid: None,
@@ -68,6 +86,8 @@ impl<'a, 't> Definitions<'a, 't> {
                     self.floor = floor;
                 }
             }
+            "riser" => self.riser = Surface::read(&entry, r#"riser = "stone""#, faults),
+            "lintel" => self.lintel = Surface::read(&entry, r#"lintel = "brick""#, faults),
             "sky" => self.sky = SkyText::read(&entry, faults),
             "fog" => self.fog = air::fog(&entry, faults),
             "grid" => self.grid = Some(entry),

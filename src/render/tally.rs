@@ -3,6 +3,8 @@
 //! The passes are generic over it, and a frame that nobody wants explained is drawn with `()`, which
 //! counts nothing and leaves no code behind.
 
+use super::WindowCounts;
+
 /// A pass that writes pixels.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
 pub enum Pass {
@@ -61,6 +63,8 @@ pub struct Counts {
     pub walls: PassCounts,
     /// Masks and glass.
     pub see_through: PassCounts,
+    /// What it took to see above, below and in mirrors, where the world is not level.
+    pub windows: WindowCounts,
     /// Pixels that were written more than once, each as often as that beyond the first time.
     pub overwritten: u64,
 }
