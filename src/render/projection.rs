@@ -11,7 +11,7 @@ use glam::DVec2;
 use super::track::Track;
 use super::{FrameSize, PixelAspect};
 use crate::cast::Ray;
-use crate::world::Camera;
+use crate::world::{Camera, Heights};
 
 /// How the world maps to the pixels of one frame.
 #[derive(Clone, Debug)]
@@ -24,7 +24,9 @@ pub(super) struct Projection {
     /// The row that the eye's own height falls on, in pixels from the top; far outside the picture
     /// where the camera looks that far up or down.
     horizon: f64,
-    /// How high the eye is above the floor, and how far below the ceiling.
+    /// How high the eye is.
+    eye: f64,
+    /// How high it is above a level's floor, and how far below the ceiling, as if it were between.
     above_floor: f64,
     below_ceiling: f64,
     /// Rows from the horizon to something 1 above the eye at distance 1.
@@ -50,6 +52,7 @@ impl Projection {
         let focal_length = across / pixel_aspect.height_over_width();
         let eye = camera.eye().clamp(NEAREST, 1.0 - NEAREST);
         Self {
+            eye: camera.eye().clamp(-FARTHEST, FARTHEST),
             origin: camera.position(),
             direction: camera.direction(),
             plane: camera.plane(),
@@ -61,6 +64,11 @@ impl Projection {
             focal_length,
             focal_length_across: across,
         }
+    }
+
+    /// How high the eye is.
+    pub(super) fn eye(&self) -> f64 {
+        self.eye
     }
 
     /// Where the camera stands.
@@ -96,6 +104,43 @@ impl Projection {
         let above = self.below_ceiling * self.focal_length / t;
         let below = self.above_floor * self.focal_length / t;
         self.first_row_below(self.horizon - above)..self.first_row_below(self.horizon + below)
+    }
+
+    /// The first row whose centre is not above what is at `height` and distance `t`.
+    pub(super) fn row_of(&self, height: f64, t: f64) -> u32 {
+        let rise = height - self.eye;
+        if rise == 0.0 {
+            return self.first_row_below(self.horizon);
+        }
+        self.first_row_below(self.horizon - rise * self.focal_length / t)
+    }
+
+    /// As [`Projection::texel_on_the_wall`], for a face from the height `bottom` to `top`, of which
+    /// the texture covers a cell at a time, from one whole height to the next.
+    pub(super) fn texel_on_the_face(
+        &self,
+        t: f64,
+        count: usize,
+        bottom: f64,
+        top: f64,
+    ) -> impl Fn(u32) -> usize {
+        let texels = count as f64;
+        let texels_per_row = (t / self.focal_length * texels).max(f64::MIN_POSITIVE);
+        let at_eye = (1.0 - self.eye) * texels;
+        let texel_at_eye = floor(at_eye);
+        let into_it = at_eye - texel_at_eye as f64;
+        let first = floor((1.0 - top) * texels);
+        let last = first.max(-floor((bottom - 1.0) * texels) - 1);
+        let horizon = self.horizon;
+        move |row| {
+            let below = (f64::from(row) + 0.5 - horizon) * texels_per_row + into_it;
+            let texel = texel_at_eye.saturating_add(floor(below)).clamp(first, last);
+            if (0..count as i64).contains(&texel) {
+                texel as usize
+            } else {
+                texel.rem_euclid(count as i64) as usize
+            }
+        }
     }
 
     /// Which of `count` texels, from top to bottom of a wall at distance `t`, the centre of a row of
@@ -156,9 +201,18 @@ impl Projection {
 
     /// What `row` shows of the floor, or of the ceiling where it is above the horizon.
     pub(super) fn track(&self, row: u32) -> Track {
-        let slope = self.slope(row);
-        let height = if slope > 0.0 { self.below_ceiling } else { self.above_floor };
-        let slope = slope.abs();
+        let height = if self.slope(row) > 0.0 { self.below_ceiling } else { self.above_floor };
+        self.track_of(row, height)
+    }
+
+    /// What `row` shows of a floor or a ceiling at that height.
+    pub(super) fn track_at(&self, row: u32, height: f64) -> Track {
+        self.track_of(row, (height - self.eye).abs())
+    }
+
+    /// What `row` shows of a floor or a ceiling `height` cells below or above the eye.
+    fn track_of(&self, row: u32, height: f64) -> Track {
+        let slope = self.slope(row).abs();
         let distance = height / slope;
         // A row further down, the distance is less by that.
         let along = distance / slope / self.focal_length;
@@ -199,6 +253,9 @@ impl Projection {
 /// An eye is at least that far from floor and ceiling, in cells: what is nearer shows nothing but
 /// where it touches.
 const NEAREST: f64 = 1.0 / 64.0;
+
+/// An eye further up or down sees nothing else than from there: no height is so far.
+const FARTHEST: f64 = 4.0 * Heights::MOST;
 
 /// By how many rows the horizon is below the middle of the picture: a whole number, so that what
 /// stays in view looks as it did.

@@ -71,6 +71,11 @@ impl<W: Write> CellWriter<W> {
         self.bytes_written
     }
 
+    /// What was written to.
+    pub fn into_output(self) -> W {
+        self.output
+    }
+
     /// Takes note that the window is now of `size`; ratatui clears it in the next frame.
     pub fn set_size(&mut self, size: Size) {
         self.size = size;
