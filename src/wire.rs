@@ -82,18 +82,10 @@ pub fn report(plan: &Plan, replay: &mut Replay) -> Report {
         frames = frame as usize;
         Ok::<(), std::convert::Infallible>(())
     });
-    let mut encoders: Vec<EncoderReport> = tallies.into_iter().map(Tally::finish).collect();
-    relate_to_first(&mut encoders);
-    Report { frames, encoders }
-}
-
-/// Fills in how many bytes each encoder takes for one of the first encoder's.
-fn relate_to_first(encoders: &mut [EncoderReport]) {
-    let Some(first) = encoders.first().cloned() else { return };
-    for encoder in encoders {
-        let parts = encoder.sections.iter_mut().zip(&first.sections);
-        for (part, first) in parts.chain([(&mut encoder.all, &first.all)]) {
-            part.ratio = part.bytes.mean / first.bytes.mean;
-        }
+    let mut encoders: Vec<EncoderReport> = Vec::new();
+    for tally in tallies {
+        let report = tally.finish(encoders.first());
+        encoders.push(report);
     }
+    Report { frames, encoders }
 }
