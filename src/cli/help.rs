@@ -84,6 +84,8 @@ REPLAY, WIRE
   --format FORMAT   of wire: table, json or csv                    [table]
   --size, --fps     as above        [80x24 for replay, 120x40 for wire; 30]
   --fov, --colors   of replay, as above                            [66; true]
+  --fidelity LEVEL  exact, high, low or 0 to 255: how far colours may be off
+                    [exact for replay; for wire, which takes several, the named]
   A script is lines such as "2.5 s forward run" or "12 steps turn-left open";
   "stand" is nothing, [walking] begins a section, # a comment.
 
