@@ -17,7 +17,11 @@ const CAMERAS: usize = 64;
 
 fn drawing(criterion: &mut Criterion) {
     let scenes = [
-        ("planes", speed::textured_scene(), &[ClassicFloor::ByColumn, ClassicFloor::ByScanline][..]),
+        (
+            "planes",
+            speed::textured_scene(),
+            &[ClassicFloor::ByColumn, ClassicFloor::ByScanline][..],
+        ),
         ("walls", speed::plain_scene(), &[ClassicFloor::None]),
     ];
     for (width, height) in SIZES {

@@ -23,6 +23,7 @@ mod see_through;
 mod shade;
 mod sky;
 mod tally;
+mod texels_down;
 mod track;
 mod walls;
 
@@ -40,6 +41,7 @@ use projection::Projection;
 use see_through::Passed;
 use sky::{SkyColumn, SkyView};
 use tally::Tally;
+use walls::Papers;
 
 /// Draws frames, and keeps what is worth keeping from one to the next.
 #[derive(Clone, Debug, Default)]
@@ -57,6 +59,7 @@ struct Memory {
     /// For each column, how many rows show the floor or the ceiling, whichever is being drawn.
     visible: Vec<u32>,
     sky: Vec<SkyColumn>,
+    papers: Papers,
 }
 
 impl Renderer {
@@ -139,7 +142,7 @@ impl<T: Tally> Visitor for Picture<'_, T> {
 
     fn visit<C: Caster>(self, caster: &C) -> Plan {
         let Self { world, camera, filter, memory, frame, tally } = self;
-        let Memory { columns, passed, visible, sky } = memory;
+        let Memory { columns, passed, visible, sky, papers } = memory;
         let plan = Plan::new(world, filter);
         let projection = &Projection::new(camera, frame.size(), frame.pixel_aspect());
         columns::cast(caster, world, projection, columns, passed);
@@ -159,7 +162,7 @@ impl<T: Tally> Visitor for Picture<'_, T> {
         visible.clear();
         visible.extend(columns.iter().map(|column| column.rows_of_floor(height)));
         Plane { scene, kind: PlaneKind::Floor, sky, visible }.draw(plan.floor, frame, tally);
-        walls::draw(scene, plan.walls, frame, tally);
+        walls::draw(scene, plan.walls, papers, frame, tally);
         see_through::draw(scene, passed, frame, tally);
         plan
     }

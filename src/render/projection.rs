@@ -8,6 +8,7 @@ use std::ops::Range;
 
 use glam::DVec2;
 
+use super::texels_down::TexelsDown;
 use super::track::Track;
 use super::{FrameSize, PixelAspect};
 use crate::cast::Ray;
@@ -80,21 +81,10 @@ impl Projection {
         self.first_row_below(self.horizon - half)..self.first_row_below(self.horizon + half)
     }
 
-    /// Which of `count` texels, from top to bottom of a wall at distance `t`, the centre of a row of
-    /// pixels is on. The row must be one of [`Projection::wall_rows`].
-    ///
-    /// Texels are counted from eye height, where a double can tell how little a row is above or
-    /// below it: however near the wall is, the upper half of the picture shows its upper half.
-    pub(super) fn texel_on_the_wall(&self, t: f64, count: usize) -> impl Fn(u32) -> usize {
-        let texels_per_row = (t / self.focal_length * count as f64).max(f64::MIN_POSITIVE);
-        let middle = (count / 2) as i64;
-        let from_middle = if count.is_multiple_of(2) { 0.0 } else { 0.5 };
-        let last = count as i64 - 1;
-        let horizon = self.horizon;
-        move |row| {
-            let below = (f64::from(row) + 0.5 - horizon) * texels_per_row + from_middle;
-            (middle + floor(below)).clamp(0, last) as usize
-        }
+    /// Where on a wall at distance `t` the rows of pixels are, in `count` texels from its top to its
+    /// bottom.
+    pub(super) fn texels_down_the_wall(&self, t: f64, count: usize) -> TexelsDown {
+        TexelsDown::new(2.0 * self.horizon, t / self.focal_length, count)
     }
 
     /// How much of a wall's side the pixels of a column cover, in square cells each: where its ray,
@@ -137,11 +127,4 @@ impl Projection {
         // long lens, to 0.
         (y - 0.5).ceil().clamp(0.0, self.height) as u32
     }
-}
-
-/// The largest integer that is not above `value`. The processor's own rounding is not in every
-/// machine's first instruction set, and a call would cost more than all else that a texel does.
-fn floor(value: f64) -> i64 {
-    let truncated = value as i64;
-    truncated - i64::from(value < truncated as f64)
 }

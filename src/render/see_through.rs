@@ -81,11 +81,10 @@ fn draw_mask(
 ) {
     let texels = texture.column(hit.u);
     let Some(alphas) = texture.alpha_column(hit.u) else { return };
-    let texel = scene.projection.texel_on_the_wall(hit.t, texels.len());
+    let texels_down = scene.projection.texels_down_the_wall(hit.t, texels.len());
     let rows = scene.projection.wall_rows(hit.t);
-    let pixels = frame.column_mut(column).skip(rows.start as usize);
-    for (row, pixel) in rows.zip(pixels) {
-        let texel = texel(row);
+    for (row, pixel) in rows.clone().zip(frame.column_mut(column as u32, rows)) {
+        let texel = texels_down.at(row);
         *pixel = shade.apply(texels[texel]).over(*pixel, alphas[texel]);
     }
 }
@@ -100,8 +99,7 @@ fn draw_glass(
 ) {
     let tint = shade.apply(glass.color);
     let rows = scene.projection.wall_rows(hit.t);
-    let pixels = frame.column_mut(column).skip(rows.start as usize).take(rows.len());
-    for pixel in pixels {
+    for pixel in frame.column_mut(column as u32, rows) {
         *pixel = tint.over(*pixel, glass.opacity);
     }
 }

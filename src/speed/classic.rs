@@ -96,8 +96,7 @@ impl Classic {
         x: usize,
         pixels: &mut [u32],
     ) {
-        let (position, direction, plane) =
-            (camera.position(), camera.direction(), camera.plane());
+        let (position, direction, plane) = (camera.position(), camera.direction(), camera.plane());
         let across = 2.0 * x as f64 / width as f64 - 1.0;
         let ray = direction + plane * across;
         let (mut column, mut row) = (position.x as usize, position.y as usize);
@@ -133,11 +132,8 @@ impl Classic {
         let line = (height as f64 / distance) as i64;
         let start = (height as i64 / 2 - line / 2).max(0);
         let end = (height as i64 / 2 + line / 2).min(height as i64 - 1);
-        let place = if is_y_side {
-            position.x + distance * ray.x
-        } else {
-            position.y + distance * ray.y
-        };
+        let place =
+            if is_y_side { position.x + distance * ray.x } else { position.y + distance * ray.y };
         let place = place - place.floor();
         let texture = &self.textures[self.map[row][column] - 1];
         let mut texel_x = (place * texture.width as f64) as usize;
@@ -178,8 +174,7 @@ impl Classic {
     }
 
     fn draw_planes(&self, camera: &Camera, (width, height): (usize, usize), pixels: &mut [u32]) {
-        let (position, direction, plane) =
-            (camera.position(), camera.direction(), camera.plane());
+        let (position, direction, plane) = (camera.position(), camera.direction(), camera.plane());
         let (left, right) = (direction - plane, direction + plane);
         for y in height / 2..height {
             let below = y as f64 - height as f64 / 2.0;
