@@ -16,8 +16,12 @@ pub mod game;
 pub mod map;
 pub mod palette;
 pub mod render;
+#[cfg(feature = "speed")]
+pub mod speed;
 #[cfg(feature = "terminal")]
 pub mod terminal;
 #[cfg(feature = "tui")]
 pub mod tui;
+#[cfg(feature = "cli")]
+pub mod wire;
 pub mod world;
