@@ -106,6 +106,19 @@ fn a_single_lamp_costs_the_pixels_that_it_covers() {
 }
 
 #[test]
+fn lamplight_reads_and_writes_nothing_more() {
+    let lit = gallery("lamps");
+    let text = include_str!("../maps/gallery/lamps.toml");
+    let sprites =
+        text.replace("lamp\"", "plant\"").replace("torch\", light = 0.8, reach = 5", "plant\"");
+    let unlit = map::parse_str(&sprites).unwrap();
+    let (lit, unlit) = (explained(&lit), explained(&unlit));
+    assert_eq!(lit.plan, unlit.plan);
+    let same = |counts: Counts| (counts.floor, counts.ceiling, counts.walls, counts.cells);
+    assert_eq!(same(lit.counts), same(unlit.counts));
+}
+
+#[test]
 fn ten_thousand_things_elsewhere_are_not_considered() {
     let row = format!("#{}#\n", "b".repeat(398));
     let hall = "#@...b...#".to_owned() + &"#".repeat(390) + "\n";
