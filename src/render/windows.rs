@@ -13,8 +13,11 @@
 //! is followed was refused: by rows its shade and its distance are found once for many pixels.
 
 mod faces;
+mod lines;
 mod look;
+mod notes;
 mod planes;
+mod standing;
 #[cfg(test)]
 mod tests;
 mod veils;

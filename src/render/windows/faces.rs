@@ -2,6 +2,8 @@
 
 use std::ops::Range;
 
+use glam::DVec2;
+
 use super::Scene;
 use crate::cast::Side;
 use crate::render::Frame;
@@ -15,12 +17,23 @@ use crate::world::{Light, Paint, Rgb, Texture};
 pub(super) struct Face {
     pub(super) column: u32,
     pub(super) rows: Range<u32>,
-    pub(super) side: Side,
+    pub(super) facing: Facing,
+    /// How much of the ray leads straight at it, for each unit of `t`.
+    pub(super) slope: f64,
     pub(super) t: f64,
     pub(super) u: f64,
     pub(super) paint: Paint,
     pub(super) light: Light,
     pub(super) stretch: Stretch,
+}
+
+/// Which way a face looks.
+#[derive(Clone, Copy, Debug)]
+pub(super) enum Facing {
+    /// Along an axis.
+    Side(Side),
+    /// Along a vector of length 1, or the opposite way.
+    Normal(DVec2),
 }
 
 /// From which height to which something reaches.
@@ -39,14 +52,21 @@ pub(super) fn draw<T: Tally>(
     tally: &mut T,
 ) {
     for face in faces {
-        match face.side {
-            _ if plan.faded => {
-                let fog = scene.world.fog();
-                let shade = Faded::of_wall(face.side, face.light, fog, face.t);
-                face.draw(scene, shade, frame, tally);
-            }
-            Side::X => face.draw(scene, Bright, frame, tally),
-            Side::Y => face.draw(scene, Halved, frame, tally),
+        match face.facing {
+            Facing::Side(Side::X) if !plan.faded => face.draw(scene, Bright, frame, tally),
+            Facing::Side(Side::Y) if !plan.faded => face.draw(scene, Halved, frame, tally),
+            _ => face.draw(scene, face.facing.shade(scene, face.light, face.t), frame, tally),
+        }
+    }
+}
+
+impl Facing {
+    /// What becomes of the colours of what looks this way.
+    pub(super) fn shade(self, scene: Scene<'_>, light: Light, t: f64) -> Faded {
+        let fog = scene.world.fog();
+        match self {
+            Self::Side(side) => Faded::of_wall(side, light, fog, t),
+            Self::Normal(normal) => Faded::of_surface(normal, light, fog, t),
         }
     }
 }
@@ -83,12 +103,7 @@ impl Face {
     /// The column of the texture that shows, from a level that suits the distance.
     fn texels<'t>(&self, scene: Scene<'_>, texture: &'t Texture) -> &'t [Rgb] {
         let texels = f64::from(texture.width()) * f64::from(texture.height());
-        let direction = scene.projection.direction_of(self.column);
-        let across = match self.side {
-            Side::X => direction.x,
-            Side::Y => direction.y,
-        };
-        let area = scene.projection.pixel_area_on_wall(self.t, across);
+        let area = scene.projection.pixel_area_on_wall(self.t, self.slope);
         texture.level(scene.filter.halvings(area * texels)).column(self.u)
     }
 }

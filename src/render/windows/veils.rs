@@ -3,8 +3,7 @@
 use std::ops::Range;
 
 use super::Scene;
-use super::faces::Stretch;
-use crate::cast::Side;
+use super::faces::{Facing, Stretch};
 use crate::render::Frame;
 use crate::render::shade::{Faded, Shade};
 use crate::render::tally::{Pass, Tally};
@@ -15,7 +14,7 @@ use crate::world::{Glass, Light, TextureId};
 pub(super) struct Veil {
     pub(super) column: u32,
     pub(super) rows: Range<u32>,
-    pub(super) side: Side,
+    pub(super) facing: Facing,
     pub(super) t: f64,
     pub(super) u: f64,
     pub(super) light: Light,
@@ -34,7 +33,7 @@ pub(super) enum Film {
 pub(super) fn draw<T: Tally>(scene: Scene<'_>, veils: &[Veil], frame: &mut Frame, tally: &mut T) {
     for veil in veils.iter().rev() {
         tally.pixels(Pass::SeeThrough, veil.rows.len());
-        let shade = Faded::of_wall(veil.side, veil.light, scene.world.fog(), veil.t);
+        let shade = veil.facing.shade(scene, veil.light, veil.t);
         match veil.film {
             Film::Mask(texture) => {
                 tally.texels(Pass::SeeThrough, veil.rows.len());
