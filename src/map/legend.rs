@@ -11,6 +11,7 @@ use super::doors::{DoorSymbol, KeySymbol};
 use super::heights::{self, HeightsText};
 use super::see_through::{self, MaskSymbol};
 use super::shapes::ShapeSymbol;
+use super::sprites::{self, SpriteSymbol};
 use super::textures::Surface;
 use crate::fault::document::{Entry, entries};
 use crate::fault::{Fault, quoted};
@@ -19,7 +20,6 @@ use crate::world::{Glass, Heading, Light};
 /// What other raycasters have in their cells and this one has not.
 const NOT_YET: &[(&str, &str)] = &[
     ("guard", "guards"),
-    ("lamp", "lamps"),
     ("pushwall", "moving walls"),
     ("secret", "secret doors"),
     ("window", "windows"),
@@ -57,6 +57,7 @@ pub(super) enum Meaning<'a> {
     Start(Heading),
     Exit,
     Key(KeySymbol<'a>),
+    Ornament(SpriteSymbol<'a>),
     /// Something that a fault has been found with already.
     Unclear,
 }
@@ -112,7 +113,7 @@ impl Section {
                 "riser",
                 "lintel",
             ],
-            Self::Things => &["start", "exit", "key"],
+            Self::Things => &["start", "exit", "key", "sprite"],
         }
     }
 
@@ -129,7 +130,7 @@ impl Section {
                 ("from", "diagonal"),
                 ("at", "thin"),
             ],
-            Self::Things => &[],
+            Self::Things => &sprites::ADDITIONS,
         }
     }
 
@@ -336,6 +337,9 @@ fn property<'a>(
         (Section::Things, "key") => {
             KeySymbol::read(entry, r#"{ key = "brass" }"#, faults).map(Meaning::Key)
         }
+        (Section::Things, "sprite") => {
+            SpriteSymbol::read(entry, table, faults).map(Meaning::Ornament)
+        }
         (Section::Things, "start") => Some(Meaning::Start(heading(entry, faults)?)),
         (Section::Things, "exit") => exit(entry, faults),
         _ => {
@@ -358,7 +362,7 @@ fn heading(entry: &Entry<'_, '_>, faults: &mut Vec<Fault>) -> Option<Heading> {
 }
 
 /// How bright something is, from a number between 0 and 1.
-fn light(entry: &Entry<'_, '_>, faults: &mut Vec<Fault>) -> Option<Light> {
+pub(super) fn light(entry: &Entry<'_, '_>, faults: &mut Vec<Fault>) -> Option<Light> {
     let light = entry.number().and_then(Light::new);
     if light.is_none() {
         faults.push(

@@ -23,7 +23,7 @@ use super::bindings::{Action, Bindings};
 use super::held::HeldKeys;
 use super::{CellAspect, FirstPerson, GlyphMode, Minimap, View};
 use crate::cast::Method;
-use crate::game::{Game, Intent, Intents};
+use crate::game::{Game, Intent, Intents, STEP};
 use crate::palette::ColorDepth;
 use crate::render::Filter;
 use crate::terminal::{Detected, Error, Event, Key, KeyEvent, Options, Phase, Session};
@@ -138,6 +138,8 @@ struct App {
     view: View,
     /// What the screen shows; `None` where it must be drawn again.
     shown: Option<Scene>,
+    /// When, by the game's clock, something in the picture looks different by itself.
+    animates_at: Option<f64>,
     next_frame: Duration,
     /// Where what is wanted is noted down.
     script: Option<ScriptRecorder>,
@@ -169,6 +171,7 @@ impl App {
             has_left: false,
             clock: Clock::default(),
             shown: None,
+            animates_at: None,
             next_frame: Duration::ZERO,
             script: None,
         }
@@ -239,11 +242,19 @@ impl App {
     }
 
     fn is_stale(&self) -> bool {
-        self.shown != Some(self.scene())
+        self.shown != Some(self.scene()) || self.steps_to_animation() == Some(0)
+    }
+
+    /// In how many steps something in the picture looks different by itself; `None` for never.
+    fn steps_to_animation(&self) -> Option<u64> {
+        let steps = (self.animates_at? - self.game.elapsed()) / STEP;
+        Some(steps.round().max(0.0) as u64)
     }
 
     fn drawn(&mut self, now: Duration) {
         self.shown = Some(self.scene());
+        let soonest = self.game.elapsed() + STEP;
+        self.animates_at = self.view.next_change().map(|change| change.max(soonest));
         // Counted from when this frame was due, or the time that drawing takes would slow them down.
         let frame_time = self.settings.frame_time;
         self.next_frame = Some(self.next_frame + frame_time)
@@ -266,10 +277,10 @@ impl App {
         if self.screen != Screen::Playing {
             return None;
         }
-        match self.game.quiet_steps(self.intents()) {
-            u64::MAX => None,
-            quiet => Some(self.clock.step_after(quiet)),
-        }
+        let quiet = Some(self.game.quiet_steps(self.intents())).filter(|&quiet| quiet < u64::MAX);
+        let before_animation = self.steps_to_animation().map(|steps| steps.saturating_sub(1));
+        let steps = quiet.into_iter().chain(before_animation).min()?;
+        Some(self.clock.step_after(steps))
     }
 
     fn key(&mut self, event: KeyEvent, now: Duration) {
@@ -379,7 +390,8 @@ impl App {
             .glyphs(self.settings.glyphs)
             .color_depth(self.depth)
             .cell_aspect(self.cell_aspect)
-            .filter(self.settings.filter);
+            .filter(self.settings.filter)
+            .time(self.game.elapsed());
         frame.render_stateful_widget(picture, area, &mut self.view);
         if !self.shows_minimap {
             return;
