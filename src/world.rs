@@ -431,6 +431,11 @@ impl World {
         self.tiles.iter().any(|tile| matches!(tile.kind, TileKind::Mirror(_)))
     }
 
+    /// Whether any tile is a door.
+    pub(crate) fn has_doors(&self) -> bool {
+        self.tiles.iter().any(|tile| matches!(tile.kind, TileKind::Door(_)))
+    }
+
     /// Whether any tile is a shape.
     pub(crate) fn has_shapes(&self) -> bool {
         self.tiles.iter().any(|tile| matches!(tile.kind, TileKind::Shape(_)))

@@ -15,7 +15,7 @@ use super::tally::{Pass, Tally};
 use super::{Frame, Scene};
 use crate::cast::{Hit, Side};
 use crate::world::texture::Level;
-use crate::world::{Cell, Light, Outline, Paint, Rgb, Shape, TextureId, Tile, TileKind, World};
+use crate::world::{Cell, Light, Outline, Paint, Rgb, Shape, TextureId, Tile, TileKind};
 
 /// Draws the wall of every column that has one.
 pub(super) fn draw<T: Tally>(scene: Scene<'_>, plan: WallLoop, frame: &mut Frame, tally: &mut T) {
@@ -23,10 +23,9 @@ pub(super) fn draw<T: Tally>(scene: Scene<'_>, plan: WallLoop, frame: &mut Frame
 }
 
 fn draw_unfaded<T: Tally>(scene: Scene<'_>, frame: &mut Frame, tally: &mut T) {
-    let has_shapes = scene.world.has_shapes();
     for strip in strips(scene) {
         match strip.hit.side {
-            _ if has_shapes && strip.shape().is_some() => strip.draw(strip.shade(), frame, tally),
+            _ if strip.shape().is_some() => strip.draw(strip.shade(), frame, tally),
             Side::X => strip.draw(Bright, frame, tally),
             Side::Y => strip.draw(Halved, frame, tally),
         }
@@ -41,9 +40,10 @@ fn draw_faded<T: Tally>(scene: Scene<'_>, frame: &mut Frame, tally: &mut T) {
 
 /// The columns that show a wall.
 fn strips(scene: Scene<'_>) -> impl Iterator<Item = Strip<'_>> {
+    let has_doors = scene.world.has_doors();
     (0..).zip(scene.columns).filter_map(move |(x, column)| {
         let hit = column.hit.as_ref()?;
-        Some(Strip { scene, x, rows: column.rows.clone(), hit })
+        Some(Strip { rows: column.rows.clone(), has_doors, ..Strip::of(scene, x, hit) })
     })
 }
 
@@ -53,9 +53,21 @@ struct Strip<'a> {
     x: u32,
     rows: Range<u32>,
     hit: &'a Hit,
+    /// The tile that was hit.
+    tile: Option<&'a Tile>,
+    /// Whether it may face a door.
+    has_doors: bool,
 }
 
 impl<'a> Strip<'a> {
+    /// What the ray of column `x` hit, as yet in no rows and far from all doors.
+    fn of(scene: Scene<'a>, x: u32, hit: &'a Hit) -> Self {
+        let (column, row) = (i64::from(hit.cell.column), i64::from(hit.cell.row));
+        let id = scene.world.grid().tile(column, row);
+        let tile = id.and_then(|id| scene.world.tiles().get(usize::from(id.0)));
+        Self { scene, x, rows: 0..0, hit, tile, has_doors: false }
+    }
+
     /// The level of a texture that suits the distance.
     fn level(&self, id: TextureId) -> &'a Level {
         let Scene { world, projection, filter, .. } = self.scene;
@@ -86,11 +98,22 @@ impl<'a> Strip<'a> {
         }
     }
 
-    /// How it looks: as a jamb, where it faces a door.
+    /// How it looks: as a jamb, where it is a wall that faces a door.
     fn paint(&self) -> Paint {
         let Scene { world, projection, .. } = self.scene;
-        let jamb = if world.is_of_walls() { None } else { jamb(world, projection, self.hit) };
-        jamb.unwrap_or_else(|| paint_of(world, self.hit))
+        match self.tile.map(|tile| tile.kind) {
+            Some(TileKind::Wall(paint)) if !self.has_doors => paint,
+            Some(TileKind::Wall(paint)) => jamb(world, projection, self.hit).unwrap_or(paint),
+            Some(TileKind::Shape(shape)) => shape.paint,
+            Some(TileKind::Door(door)) => door.leaf,
+            // Casters that know no masks, no glass and no mirrors hit these.
+            Some(TileKind::Mask(texture)) => Paint::Texture(texture),
+            Some(TileKind::Glass(glass) | TileKind::Mirror(glass)) => Paint::Color(glass.color),
+            // No caster hits what is not solid; were one to, the floor is what is there.
+            Some(TileKind::Open | TileKind::Doorway(_)) | None => {
+                world.floor().pattern.first_paint()
+            }
+        }
     }
 
     /// The column of the texture that shows.
@@ -110,19 +133,16 @@ impl<'a> Strip<'a> {
     /// How bright the side is.
     fn light(&self) -> Light {
         let world = self.scene.world;
-        let tile = tile_of(world, self.hit);
-        let seen_from = match tile.map(|tile| tile.kind) {
-            // It stands in a cell of its own.
-            Some(TileKind::Shape(_)) => Some(self.hit.cell),
-            _ => self.cell_before(),
-        };
-        let own = tile.and_then(|tile| tile.light);
-        own.unwrap_or_else(|| seen_from.map_or(Light::FULL, |cell| world.light_in(cell)))
+        self.tile.and_then(|tile| tile.light).unwrap_or_else(|| {
+            // A shape stands in a cell of its own.
+            let cell = self.shape().map_or_else(|| self.cell_before(), |_| Some(self.hit.cell));
+            cell.map_or(Light::FULL, |cell| world.light_in(cell))
+        })
     }
 
     /// The shape that the ray hit, if it is one.
     fn shape(&self) -> Option<Shape> {
-        match tile_of(self.scene.world, self.hit)?.kind {
+        match self.tile?.kind {
             TileKind::Shape(shape) => Some(shape),
             _ => None,
         }
@@ -173,28 +193,10 @@ impl<'a> Strip<'a> {
 
 /// How bright what the ray of column `x` hit is.
 pub(super) fn light_of(scene: Scene<'_>, x: u32, hit: &Hit) -> Light {
-    Strip { scene, x, rows: 0..0, hit }.light()
+    Strip::of(scene, x, hit).light()
 }
 
 /// The level of the texture `id` that suits what the ray of column `x` hit.
 pub(super) fn level_of<'a>(scene: Scene<'a>, x: u32, hit: &'a Hit, id: TextureId) -> &'a Level {
-    Strip { scene, x, rows: 0..0, hit }.level(id)
-}
-
-fn paint_of(world: &World, hit: &Hit) -> Paint {
-    match tile_of(world, hit).map(|tile| tile.kind) {
-        Some(TileKind::Wall(paint)) => paint,
-        Some(TileKind::Door(door)) => door.leaf,
-        Some(TileKind::Shape(shape)) => shape.paint,
-        // Casters that know no masks and no glass hit these.
-        Some(TileKind::Mask(texture)) => Paint::Texture(texture),
-        Some(TileKind::Glass(glass) | TileKind::Mirror(glass)) => Paint::Color(glass.color),
-        // No caster hits what is not solid; were one to, the floor is what is there.
-        Some(TileKind::Open | TileKind::Doorway(_)) | None => world.floor().pattern.first_paint(),
-    }
-}
-
-fn tile_of(world: &World, hit: &Hit) -> Option<Tile> {
-    let tile = world.grid().tile(i64::from(hit.cell.column), i64::from(hit.cell.row))?;
-    Some(world.tile(tile))
+    Strip::of(scene, x, hit).level(id)
 }
