@@ -1,6 +1,7 @@
 //! The frame: pixels off screen, row by row from the top.
 
 use std::num::NonZeroU32;
+use std::ops::Range;
 
 use crate::world::Rgb;
 
@@ -107,9 +108,16 @@ impl Frame {
         &mut self.pixels[first as usize * width..last as usize * width]
     }
 
-    /// The pixels of column `x`, from the top.
-    pub(super) fn column_mut(&mut self, x: usize) -> impl Iterator<Item = &mut Rgb> {
+    /// The pixels of column `x` in `rows`, from the top; no more than there are.
+    pub(super) fn column_mut<'f>(
+        &'f mut self,
+        x: usize,
+        rows: &Range<u32>,
+    ) -> impl Iterator<Item = &'f mut Rgb> + use<'f> {
         let width = self.width() as usize;
-        self.pixels[x..].iter_mut().step_by(width)
+        let first = rows.start as usize * width + x;
+        let below = self.pixels.get_mut(first..).unwrap_or_default();
+        // Chunks, not steps: a step asks at each pixel whether it is the first.
+        below.chunks_mut(width).take(rows.len()).map(|chunk| &mut chunk[0])
     }
 }

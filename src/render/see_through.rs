@@ -149,7 +149,7 @@ fn draw_mask(
     let Some(alphas) = level.alpha_column(hit.u) else { return };
     let texel = scene.projection.texel_on_the_wall(hit.t, texels.len());
     let rows = scene.projection.wall_rows(hit.t);
-    let pixels = frame.column_mut(column).skip(rows.start as usize);
+    let pixels = frame.column_mut(column, &rows);
     for (row, pixel) in rows.clone().zip(pixels) {
         let texel = texel(row);
         *pixel = shade.apply(texels[texel]).over(*pixel, alphas[texel]);
@@ -172,7 +172,7 @@ fn draw_glass(
 ) {
     let tint = shade.apply(glass.color);
     let rows = scene.projection.wall_rows(hit.t);
-    let pixels = frame.column_mut(column).skip(rows.start as usize).take(rows.len());
+    let pixels = frame.column_mut(column, &rows);
     for pixel in pixels {
         *pixel = tint.over(*pixel, glass.opacity);
     }

@@ -25,7 +25,7 @@ pub(super) fn draw<T: Tally>(scene: Scene<'_>, plan: WallLoop, frame: &mut Frame
 fn draw_unfaded<T: Tally>(scene: Scene<'_>, frame: &mut Frame, tally: &mut T) {
     for strip in strips(scene) {
         match strip.hit.side {
-            _ if strip.shape().is_some() => strip.draw(strip.shade(), frame, tally),
+            _ if strip.shape().is_some() => strip.draw_faded(frame, tally),
             Side::X => strip.draw(Bright, frame, tally),
             Side::Y => strip.draw(Halved, frame, tally),
         }
@@ -34,7 +34,7 @@ fn draw_unfaded<T: Tally>(scene: Scene<'_>, frame: &mut Frame, tally: &mut T) {
 
 fn draw_faded<T: Tally>(scene: Scene<'_>, frame: &mut Frame, tally: &mut T) {
     for strip in strips(scene) {
-        strip.draw(strip.shade(), frame, tally);
+        strip.draw_faded(frame, tally);
     }
 }
 
@@ -77,11 +77,17 @@ impl<'a> Strip<'a> {
         texture.level(filter.halvings(area * texels))
     }
 
+    // Inlined, it takes registers from the other loops.
+    #[inline(never)]
+    fn draw_faded<T: Tally>(&self, frame: &mut Frame, tally: &mut T) {
+        self.draw(self.shade(), frame, tally);
+    }
+
     #[inline]
     fn draw<S: Shade, T: Tally>(&self, shade: S, frame: &mut Frame, tally: &mut T) {
         let rows = self.rows.clone();
         tally.pixels(Pass::Walls, rows.len());
-        let pixels = frame.column_mut(self.x as usize).skip(rows.start as usize).take(rows.len());
+        let pixels = frame.column_mut(self.x as usize, &rows);
         match self.paint() {
             Paint::Color(color) => {
                 let color = shade.apply(color);

@@ -81,8 +81,7 @@ impl Face {
     ) {
         let rows = self.rows.clone();
         tally.pixels(Pass::Walls, rows.len());
-        let pixels =
-            frame.column_mut(self.column as usize).skip(rows.start as usize).take(rows.len());
+        let pixels = frame.column_mut(self.column as usize, &rows);
         match self.paint {
             Paint::Color(color) => {
                 let color = shade.apply(color);

@@ -51,7 +51,7 @@ impl Veil {
         let Some(alphas) = texture.alpha_column(self.u) else { return };
         let Stretch { bottom, top } = self.stretch;
         let texel = scene.projection.texel_on_the_face(self.t, texels.len(), bottom, top);
-        let pixels = frame.column_mut(self.column as usize).skip(self.rows.start as usize);
+        let pixels = frame.column_mut(self.column as usize, &self.rows);
         for (row, pixel) in self.rows.clone().zip(pixels) {
             let texel = texel(row);
             *pixel = shade.apply(texels[texel]).over(*pixel, alphas[texel]);
@@ -60,8 +60,8 @@ impl Veil {
 
     fn draw_glass(&self, glass: Glass, shade: Faded, frame: &mut Frame) {
         let tint = shade.apply(glass.color);
-        let pixels = frame.column_mut(self.column as usize).skip(self.rows.start as usize);
-        for pixel in pixels.take(self.rows.len()) {
+        let pixels = frame.column_mut(self.column as usize, &self.rows);
+        for pixel in pixels {
             *pixel = tint.over(*pixel, glass.opacity);
         }
     }
