@@ -37,6 +37,7 @@ mod per_character;
 mod picture;
 mod see_through;
 mod shapes;
+mod supports;
 mod textures;
 
 use std::collections::BTreeSet;
