@@ -103,7 +103,7 @@ impl Game {
     /// Whether the player has reached the exit's cell. Nothing moves after that, nor does the clock.
     pub fn is_finished(&self) -> bool {
         let cell = self.player.cell();
-        self.world.things().iter().any(|thing| thing.kind == ThingKind::Exit && thing.cell == cell)
+        self.world.things_in(cell).iter().any(|thing| thing.kind == ThingKind::Exit)
     }
 
     /// Whether steps with these intents, however many, would change nothing but the clock: the player
@@ -220,8 +220,8 @@ impl Game {
     /// Takes the keys in the player's cell.
     fn take_keys(&mut self) {
         let cell = self.player.cell();
-        let found = self.world.things().iter().find_map(|thing| match thing.kind {
-            ThingKind::Key(key) if thing.cell == cell => Some(key),
+        let found = self.world.things_in(cell).iter().find_map(|thing| match thing.kind {
+            ThingKind::Key(key) => Some(key),
             _ => None,
         });
         if let Some(key) = found {

@@ -31,12 +31,14 @@ mod definitions;
 mod doors;
 mod drawing;
 mod heights;
+mod lamps;
 mod layout;
 mod legend;
 mod per_character;
 mod picture;
 mod see_through;
 mod shapes;
+mod sprites;
 mod supports;
 mod textures;
 
@@ -165,7 +167,7 @@ fn read(text: &str, files: &dyn TextureFiles, faults: &mut Vec<Fault>) -> Option
         kind: TileKind::Open,
         floor,
         ceiling,
-        light: None,
+        light: definitions.light,
         heights: Heights::new(0.0, map_ceiling, map_ceiling)?,
         riser: faces.riser(floor),
         lintel: faces.lintel(floor, ceiling),
@@ -182,6 +184,8 @@ fn read(text: &str, files: &dyn TextureFiles, faults: &mut Vec<Fault>) -> Option
         sky: sky.unwrap_or_else(|| Some(Sky::default()))?,
         fog: definitions.fog,
         start: layout.start,
+        lamplight: layout.lamplight,
+        sprites: layout.sprites,
         things: layout.things,
         keys: layout.keys,
     }))

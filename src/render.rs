@@ -2,8 +2,8 @@
 //!
 //! A frame is drawn by a [`Plan`], made from the world, in passes, each a file: `columns` casts one
 //! ray for every column of pixels, `planes` lays floor and ceiling, `sky` fills in what is open,
-//! `walls` papers what the rays hit, `see_through` paints over that what the rays passed. The passes
-//! share a `Projection`, which is the only place that knows how the world maps to pixels.
+//! `walls` papers what the rays hit, `see_through` paints over that what the rays passed, and `things`
+//! what stands between all that. The passes share a `Projection`, which is the only place that knows how the world maps to pixels.
 //!
 //! The caller owns the [`Frame`] and keeps the [`Renderer`], which owns what the passes need in
 //! between; drawing allocates nothing once both have grown to the size of the picture. One pass that
@@ -16,6 +16,7 @@ mod explanation;
 mod filter;
 mod frame;
 mod lay;
+mod marks;
 mod plan;
 mod planes;
 mod projection;
@@ -23,6 +24,7 @@ mod see_through;
 mod shade;
 mod sky;
 mod tally;
+mod things;
 mod track;
 mod walls;
 mod windows;
@@ -31,16 +33,18 @@ pub use columns::{Column, Surface};
 pub use explanation::Explanation;
 pub use filter::Filter;
 pub use frame::{Frame, FrameSize, PixelAspect};
-pub use plan::{CeilingLoop, Geometry, Plan, PlaneLoop, SkyLoop, WallLoop, WhyWindows};
+pub use plan::{CeilingLoop, Geometry, Plan, PlaneLoop, SkyLoop, ThingLoop, WallLoop, WhyWindows};
 pub use tally::{Counts, Pass, PassCounts};
 
 use crate::cast::{Caster, Method, Visitor};
 use crate::world::{Camera, World};
+use marks::Marks;
 use planes::{Plane, PlaneKind};
 use projection::Projection;
 use see_through::Passed;
 use sky::{SkyColumn, SkyView};
 use tally::Tally;
+use things::InView;
 pub use windows::WindowCounts;
 use windows::Windows;
 
@@ -49,6 +53,7 @@ use windows::Windows;
 pub struct Renderer {
     method: Method,
     filter: Filter,
+    seconds: f64,
     memory: Memory,
 }
 
@@ -61,6 +66,9 @@ struct Memory {
     /// For each column, how many rows show the floor or the ceiling, whichever is being drawn.
     visible: Vec<u32>,
     sky: Vec<SkyColumn>,
+    in_view: InView,
+    marks: Marks,
+    next_change: Option<f64>,
     windows: Windows,
     /// By which passes the last frame was drawn.
     geometry: Option<Geometry>,
@@ -82,10 +90,27 @@ impl Renderer {
         self.filter = filter;
     }
 
+    /// Shows things as they are after so many `seconds` from now on; 0 at first.
+    pub fn set_time(&mut self, seconds: f64) {
+        self.seconds = seconds;
+    }
+
+    /// When something in the last frame begins to look different, by the clock of
+    /// [`Renderer::set_time`]; `None` for never.
+    pub fn next_change(&self) -> Option<f64> {
+        self.memory.next_change
+    }
+
+    /// Keeps what each pixel shows from now on, or no longer, for [`Renderer::surface`].
+    pub fn keep_surfaces(&mut self, are_kept: bool) {
+        self.memory.marks.keep(are_kept);
+    }
+
     /// Draws what `camera` sees of `world` into all of `frame`.
     pub fn render(&mut self, world: &World, camera: &Camera, frame: &mut Frame) {
-        let Self { method, filter, memory } = self;
-        method.accept(Picture { world, camera, filter: *filter, memory, frame, tally: &mut () });
+        let Self { method, filter, seconds, memory } = self;
+        let (filter, seconds, tally) = (*filter, *seconds, &mut ());
+        method.accept(Picture { world, camera, filter, seconds, memory, frame, tally });
     }
 
     /// As [`Renderer::render`], with the walls that `caster` finds.
@@ -96,18 +121,18 @@ impl Renderer {
         camera: &Camera,
         frame: &mut Frame,
     ) {
-        let Self { filter, memory, .. } = self;
-        let picture = Picture { world, camera, filter: *filter, memory, frame, tally: &mut () };
-        picture.visit(caster);
+        let Self { filter, seconds, memory, .. } = self;
+        let (filter, seconds, tally) = (*filter, *seconds, &mut ());
+        Picture { world, camera, filter, seconds, memory, frame, tally }.visit(caster);
     }
 
     /// As [`Renderer::render`], and tells how it went. Cells are counted along exact rays, whatever
     /// the method of finding walls.
     pub fn explain(&mut self, world: &World, camera: &Camera, frame: &mut Frame) -> Explanation {
-        let Self { method, filter, memory } = self;
+        let Self { method, filter, seconds, memory } = self;
         let mut counts = Counts::default();
-        let tally = &mut counts;
-        let plan = method.accept(Picture { world, camera, filter: *filter, memory, frame, tally });
+        let (filter, seconds, tally) = (*filter, *seconds, &mut counts);
+        let plan = method.accept(Picture { world, camera, filter, seconds, memory, frame, tally });
         let projection = Projection::new(camera, frame.size(), frame.pixel_aspect());
         counts.rays = u64::from(frame.width());
         match plan.geometry {
@@ -129,13 +154,16 @@ impl Renderer {
         &self.memory.columns
     }
 
-    /// What the pixel `(x, y)` of the last frame shows; `None` where the frame had no column `x`.
+    /// What the pixel `(x, y)` of the last frame shows, where [that is kept](Renderer::keep_surfaces);
+    /// else what it shows but for things and masks before that. `None` where the frame had no column `x`.
     pub fn surface(&self, x: u32, y: u32) -> Option<Surface> {
-        let Memory { columns, first_row_of_ground, windows, geometry, .. } = &self.memory;
+        let Memory { columns, first_row_of_ground, marks, windows, geometry, .. } = &self.memory;
         let column = columns.get(x as usize)?;
         match geometry {
             Some(Geometry::Windows(_)) => windows.surface(x, y),
-            _ => Some(column.surface(y, *first_row_of_ground)),
+            _ => {
+                Some(marks.surface(x, y).unwrap_or_else(|| column.surface(y, *first_row_of_ground)))
+            }
         }
     }
 }
@@ -145,6 +173,7 @@ struct Picture<'a, T> {
     world: &'a World,
     camera: &'a Camera,
     filter: Filter,
+    seconds: f64,
     memory: &'a mut Memory,
     frame: &'a mut Frame,
     tally: &'a mut T,
@@ -174,8 +203,19 @@ impl<T: Tally> Visitor for Picture<'_, T> {
 
 impl<T: Tally> Picture<'_, T> {
     fn draw_level<C: Caster>(self, plan: Plan, caster: &C) {
-        let Self { world, camera, filter, memory, frame, tally } = self;
-        let Memory { columns, first_row_of_ground, passed, visible, sky, geometry, .. } = memory;
+        let Self { world, camera, filter, seconds, memory, frame, tally } = self;
+        let Memory {
+            columns,
+            first_row_of_ground,
+            passed,
+            visible,
+            sky,
+            in_view,
+            marks,
+            next_change,
+            geometry,
+            ..
+        } = memory;
         let projection = &Projection::new(camera, frame.size(), frame.pixel_aspect());
         columns::cast(caster, world, projection, columns, passed);
         let scene = Scene { world, projection, columns, filter };
@@ -197,12 +237,21 @@ impl<T: Tally> Picture<'_, T> {
         visible.extend(columns.iter().map(|column| column.rows_of_floor(ground, height)));
         Plane { scene, kind: PlaneKind::Floor, sky, visible }.draw(plan.floor, frame, tally);
         walls::draw(scene, plan.walls, frame, tally);
-        see_through::draw(scene, passed, frame, tally);
+        marks.begin(frame.width(), height);
+        *next_change = match plan.things {
+            ThingLoop::None => {
+                see_through::draw(scene, passed, marks, frame, tally);
+                None
+            }
+            ThingLoop::Billboards => {
+                things::draw(scene, seconds, passed, in_view, marks, frame, tally)
+            }
+        };
     }
 
     /// Draws by exact rays, whatever the caster: the others know nothing but walls.
     fn draw_windows(self, plan: Plan) {
-        let Self { world, camera, filter, memory, frame, tally } = self;
+        let Self { world, camera, filter, memory, frame, tally, .. } = self;
         let Memory { columns, sky, windows, geometry, .. } = memory;
         *geometry = Some(plan.geometry);
         let projection = &Projection::new(camera, frame.size(), frame.pixel_aspect());

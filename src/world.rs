@@ -15,9 +15,12 @@ mod covering;
 mod door;
 mod grid;
 mod heights;
+mod lamplight;
 mod pitch;
 mod shape;
+pub mod sprite;
 pub mod texture;
+mod things;
 
 pub use air::{Fog, Light, Sky};
 pub use camera::{Camera, FieldOfView, Heading};
@@ -27,9 +30,14 @@ use door::Ajar;
 pub use door::{Door, KeyId, Opening};
 pub use grid::{Cell, Grid, TileId};
 pub use heights::{Gap, Heights};
+pub(crate) use lamplight::Lamplight;
+pub use lamplight::{Lamp, Reach};
 pub use pitch::Pitch;
 pub use shape::{Line, Outline, PillarRadius, Shape};
+pub use sprite::{Anchor, Facings, FrameTime, Sprite, SpriteHeight, SpriteId};
 pub use texture::Texture;
+use things::Things;
+pub use things::{Thing, ThingKind};
 
 /// What a level consists of.
 #[derive(Clone, Debug, PartialEq)]
@@ -43,7 +51,9 @@ pub struct World {
     sky: Sky,
     fog: Option<Fog>,
     start: Start,
-    things: Vec<Thing>,
+    sprites: Vec<Sprite>,
+    things: Things,
+    lamplight: Lamplight,
     keys: Vec<String>,
     ajar: Ajar,
 }
@@ -128,24 +138,6 @@ pub struct Start {
     pub heading: Heading,
 }
 
-/// Something that stands in a cell.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub struct Thing {
-    /// What it is.
-    pub kind: ThingKind,
-    /// Where it stands.
-    pub cell: Cell,
-}
-
-/// What a thing is.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub enum ThingKind {
-    /// Who reaches it has finished the level.
-    Exit,
-    /// Who reaches it takes it, and can open the doors that ask for it.
-    Key(KeyId),
-}
-
 /// The pieces of a world, not yet known to fit together.
 pub(crate) struct Parts {
     pub(crate) title: String,
@@ -157,18 +149,33 @@ pub(crate) struct Parts {
     pub(crate) sky: Sky,
     pub(crate) fog: Option<Fog>,
     pub(crate) start: Start,
+    pub(crate) sprites: Vec<Sprite>,
     pub(crate) things: Vec<Thing>,
+    pub(crate) lamplight: Lamplight,
     pub(crate) keys: Vec<String>,
 }
 
 impl World {
     /// A world of `parts` that fit together: every tile of the grid and every texture is in its
-    /// list, open tiles come before solid ones, the map's own floor first, the start and all things stand on open floor, every
+    /// list, open tiles come before solid ones, the map's own floor first, the start and all things stand on open floor, those that block are known to the grid, every
     /// door has a doorway by the same character, and stands between solid cells that are no doors.
     /// The map's own checks establish all of that, and name what does not fit.
     pub(crate) fn from_parts(parts: Parts) -> Self {
-        let Parts { title, grid, tiles, textures, floor, ceiling, sky, fog, start, things, keys } =
-            parts;
+        let Parts {
+            title,
+            grid,
+            tiles,
+            textures,
+            floor,
+            ceiling,
+            sky,
+            fog,
+            start,
+            sprites,
+            things,
+            lamplight,
+            keys,
+        } = parts;
         let world = Self {
             title,
             grid,
@@ -179,7 +186,9 @@ impl World {
             sky,
             fog,
             start,
-            things,
+            sprites,
+            things: Things::new(things),
+            lamplight,
             keys,
             ajar: Ajar::default(),
         };
@@ -204,6 +213,12 @@ impl World {
         let open = |cell: Cell| {
             let (column, row) = (i64::from(cell.column), i64::from(cell.row));
             self.grid.tile(column, row).is_some() && !self.grid.is_solid(column, row)
+        };
+        let stands = |thing: &Thing| {
+            let blocks = self.sprites.get(usize::from(thing.sprite.0)).is_some_and(|it| it.blocks);
+            let (column, row) = (i64::from(thing.cell.column), i64::from(thing.cell.row));
+            usize::from(thing.sprite.0) < self.sprites.len()
+                && (!blocks || self.grid.is_occupied(column, row))
         };
         let opens = |door: Door| {
             let is_known = door.key.is_none_or(|key| usize::from(key.0) < self.keys.len());
@@ -231,12 +246,35 @@ impl World {
             && ceils(self.ceiling)
             && sky_is_known
             && open(self.start.cell)
-            && self.things.iter().all(|thing| open(thing.cell))
+            && self.things().iter().all(|thing| open(thing.cell) && stands(thing))
     }
 
     /// The level's name; empty where the map gives none.
     pub fn title(&self) -> &str {
         &self.title
+    }
+
+    /// The heights of the floor and the ceiling in `cell`; off the map, those of the map's own floor.
+    pub fn room_in(&self, cell: Cell) -> Heights {
+        self.tile_at(cell).unwrap_or(self.ground()).heights
+    }
+
+    /// How bright it is in `cell`: as its tile says, and what lamps add; of a wall, as its own sides
+    /// are, where it says so.
+    pub fn light_in(&self, cell: Cell) -> Light {
+        let own = self.tile_at(cell).unwrap_or(self.ground()).light;
+        own.unwrap_or(Light::FULL).plus(self.lamplight.at(cell))
+    }
+
+    /// What lamps add to the light in `cell`.
+    #[inline]
+    pub(crate) fn lamplight_in(&self, cell: Cell) -> Light {
+        self.lamplight.at(cell)
+    }
+
+    /// Whether lamps add anything anywhere.
+    pub(crate) fn has_lamplight(&self) -> bool {
+        !self.lamplight.is_dark()
     }
 
     /// Which tile each cell holds.
@@ -313,9 +351,32 @@ impl World {
         self.start
     }
 
-    /// What stands in the cells, the start excepted.
+    /// What stands in the cells, the start excepted: row by row from the north, each from the west.
     pub fn things(&self) -> &[Thing] {
-        &self.things
+        self.things.all()
+    }
+
+    /// What stands in `cell`.
+    pub fn things_in(&self, cell: Cell) -> &[Thing] {
+        self.things.between(cell.row, cell.column, cell.column)
+    }
+
+    /// What stands in `row` between two columns, themselves included.
+    pub(crate) fn things_between(&self, row: u32, first: u32, last: u32) -> &[Thing] {
+        self.things.between(row, first, last)
+    }
+
+    /// The sprite `id` of this world.
+    ///
+    /// # Panics
+    /// Where `id` is from another world that has more sprites.
+    pub fn sprite(&self, id: SpriteId) -> &Sprite {
+        &self.sprites[usize::from(id.0)]
+    }
+
+    /// How wide the widest sprite is, in cells; 0 where nothing stands anywhere.
+    pub(crate) fn widest_sprite(&self) -> f64 {
+        self.sprites.iter().map(Sprite::width).fold(0.0, f64::max)
     }
 
     /// What the key `id` of this world is called, such as "brass".
@@ -362,7 +423,7 @@ impl World {
 
     /// Takes away all things in `cell` of which `is_taken` says so.
     pub(crate) fn take_things(&mut self, cell: Cell, is_taken: impl Fn(ThingKind) -> bool) {
-        self.things.retain(|thing| thing.cell != cell || !is_taken(thing.kind));
+        self.things.remove(|thing| thing.cell == cell && is_taken(thing.kind));
     }
 
     /// Whether any tile is a mirror.

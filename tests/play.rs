@@ -23,6 +23,8 @@ mod game;
 mod holding;
 #[path = "play/levels.rs"]
 mod levels;
+#[path = "play/looking.rs"]
+mod looking;
 #[path = "play/moving.rs"]
 mod moving;
 #[path = "play/recording.rs"]

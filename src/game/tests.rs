@@ -4,9 +4,10 @@ use glam::DVec2;
 use proptest::prelude::*;
 
 use super::*;
+use crate::world::sprite::builtin;
 use crate::world::{
-    Ceiling, Cell, Covering, Grid, Heading, Heights, Paint, Parts, Rgb, Sky, Start, Thing, Tile,
-    TileKind,
+    Ceiling, Cell, Covering, Grid, Heading, Heights, Lamplight, Paint, Parts, Rgb, Sky, SpriteId,
+    Start, Thing, Tile, TileKind,
 };
 
 /// A world drawn in characters: `#` is solid, `@` is where the player starts, `E` is an exit.
@@ -47,7 +48,11 @@ fn world(rows: &[&str], degrees: f64) -> World {
             cell: cells_that_hold('@').next().unwrap(),
             heading: Heading::from_degrees(degrees).unwrap(),
         },
-        things: cells_that_hold('E').map(|cell| Thing { kind: ThingKind::Exit, cell }).collect(),
+        sprites: vec![builtin::named(builtin::EXIT).unwrap()],
+        lamplight: Lamplight::default(),
+        things: cells_that_hold('E')
+            .map(|cell| Thing { kind: ThingKind::Exit, cell, sprite: SpriteId(0) })
+            .collect(),
         keys: vec![],
     })
 }

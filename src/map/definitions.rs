@@ -5,11 +5,11 @@ use toml::de::DeTable;
 use super::air::{self, SkyText};
 use super::covering::{CeilingText, CoveringText};
 use super::heights;
-use super::legend::{Legend, Section};
+use super::legend::{self, Legend, Section};
 use super::textures::Surface;
 use crate::fault::Fault;
 use crate::fault::document::{Entry, entries};
-use crate::world::{Fog, Heights, Rgb};
+use crate::world::{Fog, Heights, Light, Rgb};
 
 /// The keys of a map.
 pub(super) const KEYS: &[&str] = &[
@@ -19,6 +19,7 @@ pub(super) const KEYS: &[&str] = &[
     "floor",
     "riser",
     "lintel",
+    "light",
     "sky",
     "fog",
     "grid",
@@ -41,6 +42,8 @@ pub(super) struct Definitions<'a, 't> {
     pub(super) lintel: Option<Surface<'a>>,
     pub(super) sky: Option<SkyText<'a>>,
     pub(super) fog: Option<Fog>,
+    /// How bright it is where no tile says otherwise.
+    pub(super) light: Option<Light>,
     pub(super) grid: Option<Entry<'a, 't>>,
     pub(super) legend: Legend<'a>,
 }
@@ -58,6 +61,7 @@ impl<'a, 't> Definitions<'a, 't> {
             lintel: None,
             sky: None,
             fog: None,
+            light: None,
             grid: None,
             legend: Legend::new(),
         };
@@ -89,6 +93,7 @@ impl<'a, 't> Definitions<'a, 't> {
             "riser" => self.riser = Surface::read(&entry, r#"riser = "stone""#, faults),
             "lintel" => self.lintel = Surface::read(&entry, r#"lintel = "brick""#, faults),
             "sky" => self.sky = SkyText::read(&entry, faults),
+            "light" => self.light = legend::light(&entry, faults),
             "fog" => self.fog = air::fog(&entry, faults),
             "grid" => self.grid = Some(entry),
             "tiles" => self.legend.read_section(Section::Tiles, &entry, faults),

@@ -6,12 +6,17 @@ use std::ops::Range;
 use super::doors::{self, Keys};
 use super::drawing::Drawing;
 use super::heights::Faces;
+use super::lamps;
 use super::legend::{Legend, Meaning, Surroundings, Symbol};
 use super::per_character::PerCharacter;
 use super::supports;
 use super::textures::{Surface, Textures};
 use crate::fault::Fault;
-use crate::world::{Door, Grid, Heights, Paint, Start, Thing, ThingKind, Tile, TileId, TileKind};
+use crate::world::sprite::builtin;
+use crate::world::{
+    Door, Grid, Heights, Lamplight, Paint, Sprite, SpriteId, Start, Thing, ThingKind, Tile, TileId,
+    TileKind,
+};
 
 /// The most kinds of tile in a grid, open floor among them.
 const MAX_TILES: usize = 255;
@@ -23,6 +28,8 @@ pub(super) struct Layout {
     /// grid, each in the order of their characters.
     pub(super) tiles: Vec<Tile>,
     pub(super) start: Start,
+    pub(super) lamplight: Lamplight,
+    pub(super) sprites: Vec<Sprite>,
     pub(super) things: Vec<Thing>,
     /// The names of the keys.
     pub(super) keys: Vec<String>,
@@ -48,14 +55,18 @@ impl Layout {
             return None;
         }
         let start = start(drawing, legend)?;
-        let grid = grid(drawing, legend, &tiles)?;
+        let mut grid = grid(drawing, legend, &tiles)?;
         faults.extend(supports::low_start(drawing, &grid, &tiles, start));
+        let (things, sprites) = things(drawing, legend, &keys, textures, faults);
+        let blocks = |thing: &&Thing| sprites[usize::from(thing.sprite.0)].blocks;
+        things.iter().filter(blocks).for_each(|thing| grid.occupy(thing.cell));
         faults.extend(doors::faults(drawing, legend, &grid, &tiles, start));
         if !faults.is_empty() {
             return None;
         }
-        let things = things(drawing, legend, &keys).collect();
-        Some(Self { grid, tiles, start, things, keys: keys.into_names() })
+        let lamplight = lamps::lamplight(&grid, &tiles, &sprites, &things);
+        let keys = keys.into_names();
+        Some(Self { grid, tiles, start, lamplight, sprites, things, keys })
     }
 }
 
@@ -133,19 +144,35 @@ fn start(drawing: &Drawing<'_>, legend: &Legend<'_>) -> Option<Start> {
     Some(Start { cell, heading })
 }
 
-/// What stands in the drawing, the start excepted.
-fn things(drawing: &Drawing<'_>, legend: &Legend<'_>, keys: &Keys) -> impl Iterator<Item = Thing> {
-    let kinds = drawing.characters().filter_map(|(character, _)| {
-        let kind = match &legend.symbols.get(&character)?.meaning {
-            Meaning::Exit => ThingKind::Exit,
-            Meaning::Key(key) => ThingKind::Key(keys.id(key.name)?),
-            _ => return None,
+/// What stands in the drawing, the start excepted, and how that looks.
+fn things(
+    drawing: &Drawing<'_>,
+    legend: &Legend<'_>,
+    keys: &Keys,
+    textures: &Textures<'_>,
+    faults: &mut Vec<Fault>,
+) -> (Vec<Thing>, Vec<Sprite>) {
+    let (mut things, mut sprites) = (Vec::new(), Vec::new());
+    for (character, _) in drawing.characters() {
+        let Some(symbol) = legend.symbols.get(&character) else { continue };
+        let of_kind = match &symbol.meaning {
+            Meaning::Exit => Some(ThingKind::Exit).zip(builtin::named(builtin::EXIT)),
+            Meaning::Key(key) => {
+                keys.id(key.name).map(ThingKind::Key).zip(builtin::named(builtin::KEY))
+            }
+            Meaning::Ornament(sprite) => {
+                Some(ThingKind::Ornament).zip(sprite.sprite(textures, faults))
+            }
+            _ => None,
         };
-        Some((character, kind))
-    });
-    kinds.flat_map(|(character, kind)| {
-        drawing.cells_of(character).map(move |cell| Thing { kind, cell })
-    })
+        if let Some((kind, look)) = of_kind {
+            // There is one for each character at most, and far fewer of those than that.
+            let sprite = SpriteId(sprites.len() as u16);
+            sprites.push(look);
+            things.extend(drawing.cells_of(character).map(|cell| Thing { kind, cell, sprite }));
+        }
+    }
+    (things, sprites)
 }
 
 /// The kinds of tile in the drawing, open ones first; `ground` is the map's own.
@@ -217,7 +244,12 @@ fn tile(
         }
         _ => heights.heights(ceiling, map_ceiling, faults)?,
     };
-    Some(Tile { character, kind, floor, ceiling, light: *light, heights, riser, lintel })
+    let light = match kind {
+        // Where a wall does not say, it is as bright as what it is seen from.
+        TileKind::Wall(_) => *light,
+        _ => light.or(ground.light),
+    };
+    Some(Tile { character, kind, floor, ceiling, light, heights, riser, lintel })
 }
 
 /// The kind of solid tile that a character stands for; `None` where it stands for none, or where a
@@ -244,6 +276,7 @@ fn solid_kind(
         | Meaning::Start(_)
         | Meaning::Exit
         | Meaning::Key(_)
+        | Meaning::Ornament(_)
         | Meaning::Unclear => None,
     }
 }

@@ -13,6 +13,7 @@ use super::doors::{DoorSymbol, KeySymbol};
 use super::heights::{self, HeightsText};
 use super::see_through::{self, MaskSymbol};
 use super::shapes::ShapeSymbol;
+use super::sprites::SpriteSymbol;
 use super::textures::Surface;
 use crate::fault::document::{Entry, entries};
 use crate::fault::{Fault, quoted};
@@ -61,6 +62,7 @@ pub(super) enum Meaning<'a> {
     Start(Heading),
     Exit,
     Key(KeySymbol<'a>),
+    Ornament(SpriteSymbol<'a>),
     /// Something that a fault has been found with already.
     Unclear,
 }
@@ -262,8 +264,8 @@ fn property<'a>(
     table: &'a DeTable<'_>,
     faults: &mut Vec<Fault>,
 ) -> Option<Meaning<'a>> {
-    let is_addition = |&(key, to): &(&str, &str)| key == entry.key && table.contains_key(to);
-    if section.additions().iter().any(is_addition) {
+    let is_addition = |(key, to): (&str, &str)| key == entry.key && table.contains_key(to);
+    if section.additions().any(is_addition) {
         return None;
     }
     match (section, entry.key) {
@@ -285,6 +287,9 @@ fn property<'a>(
         }
         (Section::Things, "key") => {
             KeySymbol::read(entry, r#"{ key = "brass" }"#, faults).map(Meaning::Key)
+        }
+        (Section::Things, "sprite") => {
+            SpriteSymbol::read(entry, table, faults).map(Meaning::Ornament)
         }
         (Section::Things, "start") => Some(Meaning::Start(heading(entry, faults)?)),
         (Section::Things, "exit") => exit(entry, faults),
@@ -308,7 +313,7 @@ fn heading(entry: &Entry<'_, '_>, faults: &mut Vec<Fault>) -> Option<Heading> {
 }
 
 /// How bright something is, from a number between 0 and 1.
-fn light(entry: &Entry<'_, '_>, faults: &mut Vec<Fault>) -> Option<Light> {
+pub(super) fn light(entry: &Entry<'_, '_>, faults: &mut Vec<Fault>) -> Option<Light> {
     let light = entry.number().and_then(Light::new);
     if light.is_none() {
         faults.push(

@@ -34,6 +34,8 @@ pub enum Surface {
     WallY,
     /// The floor.
     Floor,
+    /// Something that stands before all that.
+    Thing,
 }
 
 impl Column {

@@ -34,12 +34,15 @@ impl fmt::Display for Explanation {
             ("sky", Pass::Sky),
             ("walls", Pass::Walls),
             ("through", Pass::SeeThrough),
+            ("things", Pass::Things),
         ];
         for (name, pass) in passes {
             let counts = counts.of(pass);
             let (pixels, texels) = (counts.pixels, counts.texels);
             writeln!(f, "{name:8} {pixels:>10} pixels written, {texels} texels read")?;
         }
+        let (considered, drawn) = (counts.things_considered, counts.things_drawn);
+        writeln!(f, "in view  {considered:>10} things considered, {drawn} of them drawn")?;
         let (pixels, overwritten) = (counts.pixels(), counts.overwritten);
         writeln!(f, "all      {pixels:>10} pixels written, {overwritten} of them overwritten")
     }

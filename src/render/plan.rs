@@ -24,6 +24,8 @@ pub struct Plan {
     pub sky: SkyLoop,
     /// How the walls are drawn.
     pub walls: WallLoop,
+    /// How things are drawn.
+    pub things: ThingLoop,
     /// Which level of a texture is read.
     pub filter: Filter,
 }
@@ -88,6 +90,15 @@ pub struct WallLoop {
     pub faded: bool,
 }
 
+/// How things are drawn.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum ThingLoop {
+    /// Not at all: there are none.
+    None,
+    /// Those in the cells in view, from far to near.
+    Billboards,
+}
+
 impl Plan {
     /// The plan for what `camera` sees of `world`.
     pub fn new(world: &World, camera: &Camera, filter: Filter) -> Self {
@@ -96,8 +107,11 @@ impl Plan {
         let dims = |tile: &Tile| tile.light.is_some_and(|light| light != Light::FULL);
         let open = || tiles.iter().filter(is_open);
         let is_foggy = world.fog().is_some();
-        let floor_varies = open().any(|tile| dims(tile) || tile.floor != world.floor());
-        let ceiling_varies = open().any(|tile| dims(tile) || tile.ceiling != world.ceiling());
+        let is_lamplit = world.has_lamplight();
+        let floor_varies =
+            is_lamplit || open().any(|tile| dims(tile) || tile.floor != world.floor());
+        let ceiling_varies =
+            is_lamplit || open().any(|tile| dims(tile) || tile.ceiling != world.ceiling());
         let is_textured = |tile: &Tile| matches!(tile.kind, TileKind::Wall(Paint::Texture(_)));
         Self {
             geometry: Geometry::new(world, camera),
@@ -117,6 +131,7 @@ impl Plan {
                 textured: tiles.iter().any(is_textured),
                 faded: is_foggy || tiles.iter().any(dims),
             },
+            things: if world.things().is_empty() { ThingLoop::None } else { ThingLoop::Billboards },
             filter,
         }
     }
@@ -156,6 +171,7 @@ impl fmt::Display for Plan {
         writeln!(f, "floor    {}", self.floor)?;
         writeln!(f, "sky      {}", self.sky)?;
         writeln!(f, "walls    {}", self.walls)?;
+        writeln!(f, "things   {}", self.things)?;
         writeln!(f, "filter   {}", self.filter)
     }
 }
@@ -209,6 +225,15 @@ impl fmt::Display for WallLoop {
             ", faded: there is fog, or a tile that is not fully lit"
         } else {
             ", unfaded: there is no fog, and all is fully lit"
+        })
+    }
+}
+
+impl fmt::Display for ThingLoop {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        f.write_str(match self {
+            Self::None => "not drawn: there are none",
+            Self::Billboards => "those in view, from far to near",
         })
     }
 }

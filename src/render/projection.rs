@@ -35,6 +35,15 @@ pub(super) struct Projection {
     focal_length_across: f64,
 }
 
+/// Where something is in a picture.
+#[derive(Clone, Copy, Debug)]
+pub(super) struct Place {
+    /// How far it is from the camera plane, in cells; not above 0 for what is not before it.
+    pub(super) depth: f64,
+    /// Columns of pixels from the left edge.
+    pub(super) column: f64,
+}
+
 impl Projection {
     pub(super) fn new(camera: &Camera, size: FrameSize, pixel_aspect: PixelAspect) -> Self {
         let width = size.width.get();
@@ -150,6 +159,36 @@ impl Projection {
             let below = (f64::from(row) + 0.5 - horizon) * texels_per_row + into_it;
             (texel_at_eye + floor(below)).clamp(0, last) as usize
         }
+    }
+
+    /// Where something in the middle of `point` is in the picture.
+    pub(super) fn place(&self, point: DVec2) -> Place {
+        let from_eye = point - self.origin;
+        let depth = from_eye.dot(self.direction);
+        let beside = from_eye.dot(self.direction.perp());
+        let column = f64::from(self.width) / 2.0 + self.focal_length_across * beside / depth;
+        Place { depth, column }
+    }
+
+    /// How many columns of pixels something covers that is `width` cells wide, at `depth`.
+    pub(super) fn columns_for(&self, width: f64, depth: f64) -> f64 {
+        self.focal_length_across * width / depth
+    }
+
+    /// The columns whose centres are between two places, given in columns from the left.
+    pub(super) fn columns_between(&self, left: f64, right: f64) -> Range<u32> {
+        let first = |x: f64| (x - 0.5).ceil().clamp(0.0, f64::from(self.width)) as u32;
+        first(left)..first(right)
+    }
+
+    /// Where something at `height` above the floor is at `depth`, in rows from the top.
+    pub(super) fn row_at(&self, height: f64, depth: f64) -> f64 {
+        self.horizon + (self.above_floor - height) * self.focal_length / depth
+    }
+
+    /// The rows whose centres are between two places, given in rows from the top.
+    pub(super) fn rows_between(&self, top: f64, bottom: f64) -> Range<u32> {
+        self.first_row_below(top)..self.first_row_below(bottom)
     }
 
     /// How much of a wall's side the pixels of a column cover, in square cells each: where its ray,

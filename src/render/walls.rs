@@ -14,7 +14,8 @@ use super::shade::{Bright, Faded, Halved, Shade};
 use super::tally::{Pass, Tally};
 use super::{Frame, Scene};
 use crate::cast::{Hit, Side};
-use crate::world::{Light, Outline, Paint, Rgb, Shape, TextureId, Tile, TileId, TileKind, World};
+use crate::world::texture::Level;
+use crate::world::{Cell, Light, Outline, Paint, Rgb, Shape, TextureId, Tile, TileKind, World};
 
 /// Draws the wall of every column that has one.
 pub(super) fn draw<T: Tally>(scene: Scene<'_>, plan: WallLoop, frame: &mut Frame, tally: &mut T) {
@@ -54,7 +55,16 @@ struct Strip<'a> {
     hit: &'a Hit,
 }
 
-impl Strip<'_> {
+impl<'a> Strip<'a> {
+    /// The level of a texture that suits the distance.
+    fn level(&self, id: TextureId) -> &'a Level {
+        let Scene { world, projection, filter, .. } = self.scene;
+        let texture = world.texture(id);
+        let texels = f64::from(texture.width()) * f64::from(texture.height());
+        let area = projection.pixel_area_on_wall(self.hit.t, self.across(self.direction()));
+        texture.level(filter.halvings(area * texels))
+    }
+
     #[inline]
     fn draw<S: Shade, T: Tally>(&self, shade: S, frame: &mut Frame, tally: &mut T) {
         let rows = self.rows.clone();
@@ -83,13 +93,9 @@ impl Strip<'_> {
         jamb.unwrap_or_else(|| paint_of(world, self.hit))
     }
 
-    /// The column of the texture that shows, from a level that suits the distance.
+    /// The column of the texture that shows.
     fn texels(&self, id: TextureId) -> &[Rgb] {
-        let Scene { world, projection, filter, .. } = self.scene;
-        let texture = world.texture(id);
-        let texels = f64::from(texture.width()) * f64::from(texture.height());
-        let area = projection.pixel_area_on_wall(self.hit.t, self.across(self.direction()));
-        texture.level(filter.halvings(area * texels)).column(self.hit.u)
+        self.level(id).column(self.hit.u)
     }
 
     /// What becomes of its colours.
@@ -105,13 +111,13 @@ impl Strip<'_> {
     fn light(&self) -> Light {
         let world = self.scene.world;
         let tile = tile_of(world, self.hit);
-        let before = match tile.map(|tile| tile.kind) {
+        let seen_from = match tile.map(|tile| tile.kind) {
             // It stands in a cell of its own.
-            Some(TileKind::Shape(_)) => None,
-            _ => self.tile_before(),
+            Some(TileKind::Shape(_)) => Some(self.hit.cell),
+            _ => self.cell_before(),
         };
         let own = tile.and_then(|tile| tile.light);
-        own.or_else(|| before?.light).unwrap_or(Light::FULL)
+        own.unwrap_or_else(|| seen_from.map_or(Light::FULL, |cell| world.light_in(cell)))
     }
 
     /// The shape that the ray hit, if it is one.
@@ -133,16 +139,16 @@ impl Strip<'_> {
         }
     }
 
-    /// The tile that the side is seen from.
-    fn tile_before(&self) -> Option<Tile> {
-        let world = self.scene.world;
-        let (column, row) = (i64::from(self.hit.cell.column), i64::from(self.hit.cell.row));
-        let step = if self.across_line(self.direction()) > 0.0 { 1 } else { -1 };
-        let before: Option<TileId> = match self.hit.side {
-            Side::X => world.grid().tile(column - step, row),
-            Side::Y => world.grid().tile(column, row - step),
-        };
-        before.map(|tile| world.tile(tile))
+    /// The cell that the side is seen from; `None` off the map's north and west.
+    fn cell_before(&self) -> Option<Cell> {
+        let Cell { column, row } = self.hit.cell;
+        let is_ahead = self.across_line(self.direction()) > 0.0;
+        let before =
+            |index: u32| if is_ahead { index.checked_sub(1) } else { index.checked_add(1) };
+        Some(match self.hit.side {
+            Side::X => Cell { column: before(column)?, row },
+            Side::Y => Cell { column, row: before(row)? },
+        })
     }
 
     fn direction(&self) -> DVec2 {
@@ -168,6 +174,11 @@ impl Strip<'_> {
 /// How bright what the ray of column `x` hit is.
 pub(super) fn light_of(scene: Scene<'_>, x: u32, hit: &Hit) -> Light {
     Strip { scene, x, rows: 0..0, hit }.light()
+}
+
+/// The level of the texture `id` that suits what the ray of column `x` hit.
+pub(super) fn level_of<'a>(scene: Scene<'a>, x: u32, hit: &'a Hit, id: TextureId) -> &'a Level {
+    Strip { scene, x, rows: 0..0, hit }.level(id)
 }
 
 fn paint_of(world: &World, hit: &Hit) -> Paint {

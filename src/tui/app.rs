@@ -23,7 +23,7 @@ use super::bindings::{Action, Bindings};
 use super::held::HeldKeys;
 use super::{CellAspect, FirstPerson, GlyphMode, Minimap, View};
 use crate::cast::Method;
-use crate::game::{Game, Intent, Intents};
+use crate::game::{Game, Intent, Intents, STEP};
 use crate::palette::ColorDepth;
 use crate::render::Filter;
 use crate::terminal::{Detected, Error, Event, Key, KeyEvent, Options, Phase, Session};
@@ -129,6 +129,7 @@ struct App {
     field_of_view: FieldOfView,
     held: HeldKeys,
     runs: bool,
+    ducks: bool,
     /// What counts for the next step even if its key is up again by then.
     pressed: Intents,
     shows_minimap: bool,
@@ -137,6 +138,8 @@ struct App {
     view: View,
     /// What the screen shows; `None` where it must be drawn again.
     shown: Option<Scene>,
+    /// When, by the game's clock, something in the picture looks different by itself.
+    animates_at: Option<f64>,
     next_frame: Duration,
     /// Where what is wanted is noted down.
     script: Option<ScriptRecorder>,
@@ -162,11 +165,13 @@ impl App {
             settings,
             held: HeldKeys::default(),
             runs: false,
+            ducks: false,
             pressed: Intents::new(),
             shows_minimap: true,
             has_left: false,
             clock: Clock::default(),
             shown: None,
+            animates_at: None,
             next_frame: Duration::ZERO,
             script: None,
         }
@@ -202,15 +207,25 @@ impl App {
             _ => None,
         });
         let aims = self.held.iter().any(|key| self.turns(key) && !self.held.is_certain(key));
-        let others = [self.runs.then_some(Intent::Run), aims.then_some(Intent::Aim)];
+        let others = [
+            self.runs.then_some(Intent::Run),
+            self.ducks.then_some(Intent::Duck),
+            aims.then_some(Intent::Aim),
+        ];
         wanted.chain(self.pressed.iter()).chain(others.into_iter().flatten()).collect()
     }
 
-    /// Whether `key` turns the player. What may be a tap turns slowly: it is to aim with, and on
+    /// Whether `key` turns the player, or their gaze. What may be a tap turns slowly: it is to aim with, and on
     /// most terminals nobody says when it ends.
     fn turns(&self, key: Key) -> bool {
-        let turn = [Intent::TurnLeft, Intent::TurnRight].map(|turn| Some(Action::Want(turn)));
-        turn.contains(&self.settings.bindings.action(key))
+        let turns = [Intent::TurnLeft, Intent::TurnRight, Intent::LookUp, Intent::LookDown];
+        let turns = turns.map(|turn| Some(Action::Want(turn)));
+        turns.contains(&self.settings.bindings.action(key))
+    }
+
+    /// How the player walks, as far as they need not hold a key for it.
+    fn gait(&self) -> panels::Gait {
+        panels::Gait { runs: self.runs, ducks: self.ducks }
     }
 
     fn scene(&self) -> Scene {
@@ -227,11 +242,19 @@ impl App {
     }
 
     fn is_stale(&self) -> bool {
-        self.shown != Some(self.scene())
+        self.shown != Some(self.scene()) || self.steps_to_animation() == Some(0)
+    }
+
+    /// In how many steps something in the picture looks different by itself; `None` for never.
+    fn steps_to_animation(&self) -> Option<u64> {
+        let steps = (self.animates_at? - self.game.elapsed()) / STEP;
+        Some(steps.round().max(0.0) as u64)
     }
 
     fn drawn(&mut self, now: Duration) {
         self.shown = Some(self.scene());
+        let soonest = self.game.elapsed() + STEP;
+        self.animates_at = self.view.next_change().map(|change| change.max(soonest));
         // Counted from when this frame was due, or the time that drawing takes would slow them down.
         let frame_time = self.settings.frame_time;
         self.next_frame = Some(self.next_frame + frame_time)
@@ -254,10 +277,10 @@ impl App {
         if self.screen != Screen::Playing {
             return None;
         }
-        match self.game.quiet_steps(self.intents()) {
-            u64::MAX => None,
-            quiet => Some(self.clock.step_after(quiet)),
-        }
+        let quiet = Some(self.game.quiet_steps(self.intents())).filter(|&quiet| quiet < u64::MAX);
+        let before_animation = self.steps_to_animation().map(|steps| steps.saturating_sub(1));
+        let steps = quiet.into_iter().chain(before_animation).min()?;
+        Some(self.clock.step_after(steps))
     }
 
     fn key(&mut self, event: KeyEvent, now: Duration) {
@@ -289,8 +312,13 @@ impl App {
                 self.shows_minimap = !self.shows_minimap;
                 self.shown = None;
             }
-            (Screen::Playing, Some(Action::Want(Intent::Open))) => {
-                self.pressed.insert(Intent::Open);
+            (
+                Screen::Playing,
+                Some(Action::Want(tap @ (Intent::Open | Intent::Jump | Intent::LookAhead))),
+            ) => self.pressed.insert(tap),
+            (_, Some(Action::ToggleDuck)) => {
+                self.ducks = !self.ducks;
+                self.shown = None;
             }
             (_, Some(Action::ToggleRun)) => {
                 self.runs = !self.runs;
@@ -344,7 +372,7 @@ impl App {
         }
         let [picture, status] = panels::picture_and_status(area);
         self.draw_picture(frame, picture);
-        panels::status(frame, status, &self.game, self.runs, &self.settings.bindings);
+        panels::status(frame, status, &self.game, self.gait(), &self.settings.bindings);
         let seconds = self.game.elapsed();
         match self.screen {
             Screen::Playing => {}
@@ -362,7 +390,8 @@ impl App {
             .glyphs(self.settings.glyphs)
             .color_depth(self.depth)
             .cell_aspect(self.cell_aspect)
-            .filter(self.settings.filter);
+            .filter(self.settings.filter)
+            .time(self.game.elapsed());
         frame.render_stateful_widget(picture, area, &mut self.view);
         if !self.shows_minimap {
             return;

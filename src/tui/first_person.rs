@@ -25,6 +25,7 @@ pub struct FirstPerson<'a> {
     depth: ColorDepth,
     cell_aspect: CellAspect,
     filter: Filter,
+    seconds: f64,
 }
 
 impl<'a> FirstPerson<'a> {
@@ -37,6 +38,7 @@ impl<'a> FirstPerson<'a> {
             depth: ColorDepth::default(),
             cell_aspect: CellAspect::default(),
             filter: Filter::default(),
+            seconds: 0.0,
         }
     }
 
@@ -64,6 +66,12 @@ impl<'a> FirstPerson<'a> {
         Self { filter, ..self }
     }
 
+    /// With things as they are after so many seconds; [`View::next_change`] tells when to draw again.
+    #[must_use]
+    pub fn time(self, seconds: f64) -> Self {
+        Self { seconds, ..self }
+    }
+
     /// Draws the picture for an area of that size into `view`, as pixels only.
     ///
     /// With [`FirstPerson::paint`] this is what rendering the widget does. Apart, they serve who has
@@ -85,6 +93,8 @@ impl<'a> FirstPerson<'a> {
         let size = FrameSize::new(u32::from(size.width), height)?;
         view.frame.resize(size, self.cell_aspect.of_pixels(self.glyphs));
         view.renderer.set_filter(self.filter);
+        view.renderer.set_time(self.seconds);
+        view.renderer.keep_surfaces(self.glyphs == GlyphMode::Ascii);
         Some(view)
     }
 
@@ -126,6 +136,12 @@ impl View {
     /// A view whose renderer finds the walls by `method`.
     pub fn with_method(method: Method) -> Self {
         Self { renderer: Renderer::with_method(method), ..Self::default() }
+    }
+
+    /// When something in the last picture begins to look different, by the clock of
+    /// [`FirstPerson::time`]; `None` for never.
+    pub fn next_change(&self) -> Option<f64> {
+        self.renderer.next_change()
     }
 
     /// What the rays of the last drawing met, from left to right.

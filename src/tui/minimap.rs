@@ -66,6 +66,8 @@ const VOID: Rgb = Rgb::BLACK;
 const EXIT: Rgb = Rgb::new(0x3c, 0xc8, 0x64);
 /// A key to take.
 const KEY: Rgb = Rgb::new(0xf0, 0xc0, 0x40);
+/// Something to walk around, or past.
+const ORNAMENT: Rgb = Rgb::new(0x9c, 0x8c, 0x74);
 /// How opaque glass is at least, so that clear glass can be told from floor.
 const MIST: u8 = 96;
 /// The arrow.
@@ -112,12 +114,12 @@ impl Minimap<'_> {
         {
             return Place::Wall(color);
         }
-        let mut things = self.world.things().iter().filter(|thing| {
-            (i64::from(thing.cell.column), i64::from(thing.cell.row)) == (column, row)
-        });
-        match things.next().map(|thing| (thing.kind, thing.cell)) {
-            Some((ThingKind::Exit, _)) => Place::Exit,
-            Some((ThingKind::Key(_), cell)) if is_on_dot(point, cell) => Place::Key,
+        let cell = Cell { column: column as u32, row: row as u32 };
+        let is_on_dot = is_on_dot(point, cell);
+        match self.world.things_in(cell).first().map(|thing| thing.kind) {
+            Some(ThingKind::Exit) => Place::Exit,
+            Some(ThingKind::Key(_)) if is_on_dot => Place::Key,
+            Some(ThingKind::Ornament) if is_on_dot => Place::Ornament,
             _ if self.sees(point) => Place::Seen,
             _ => Place::Floor,
         }
@@ -177,7 +179,7 @@ impl Minimap<'_> {
     }
 }
 
-/// Whether `point` is on the dot that stands for a key in `cell`.
+/// Whether `point` is on the dot that stands for a thing in `cell`.
 fn is_on_dot(point: DVec2, cell: Cell) -> bool {
     const RADIUS: f64 = 0.3;
     (point - cell.center()).abs().max_element() <= RADIUS
@@ -192,6 +194,7 @@ enum Place {
     Seen,
     Exit,
     Key,
+    Ornament,
 }
 
 impl Place {
@@ -203,6 +206,7 @@ impl Place {
             Self::Seen => SEEN,
             Self::Exit => EXIT,
             Self::Key => KEY,
+            Self::Ornament => ORNAMENT,
         }
     }
 
@@ -213,6 +217,7 @@ impl Place {
             Self::Seen => '.',
             Self::Exit => 'X',
             Self::Key => 'k',
+            Self::Ornament => 'o',
         }
     }
 }

@@ -74,8 +74,10 @@ impl Place<'_> {
         self.tile(column, row).and_then(|tile| gaps(tile).find(|&gap| stature.fits(gap)))
     }
 
+    /// The tile of a cell; `None` where that is off the map, or something stands in the way.
     fn tile(&self, column: i64, row: i64) -> Option<Tile> {
-        let id = self.world.grid().tile(column, row)?;
+        let grid = self.world.grid();
+        let id = grid.tile(column, row).filter(|_| !grid.is_occupied(column, row))?;
         Some(self.world.tile(id))
     }
 

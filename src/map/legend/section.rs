@@ -2,15 +2,29 @@
 
 use crate::fault::Fault;
 use crate::fault::document::Entry;
+use crate::map::sprites;
 
 /// What other raycasters have in their cells and this one has not.
 const NOT_YET: &[(&str, &str)] = &[
     ("guard", "guards"),
-    ("lamp", "lamps"),
     ("pushwall", "moving walls"),
     ("secret", "secret doors"),
     ("window", "windows"),
 ];
+
+const OF_TILES: &[(&str, &str)] = &[
+    ("key", "door"),
+    ("opacity", "glass"),
+    ("opacity", "mirror"),
+    ("height", "wall"),
+    ("height", "mirror"),
+    ("radius", "pillar"),
+    ("from", "diagonal"),
+    ("at", "thin"),
+];
+
+const SUPPORTS: &[(&str, &str)] =
+    &[("on", "start"), ("on", "exit"), ("on", "key"), ("on", "sprite")];
 
 /// One of the two tables that define characters.
 #[derive(Clone, Copy, PartialEq, Eq)]
@@ -54,25 +68,17 @@ impl Section {
                 "riser",
                 "lintel",
             ],
-            Self::Things => &["start", "exit", "key"],
+            Self::Things => &["start", "exit", "key", "sprite"],
         }
     }
 
     /// The keys that say more of what another one makes: each with that one.
-    pub(super) fn additions(self) -> &'static [(&'static str, &'static str)] {
-        match self {
-            Self::Tiles => &[
-                ("key", "door"),
-                ("opacity", "glass"),
-                ("opacity", "mirror"),
-                ("height", "wall"),
-                ("height", "mirror"),
-                ("radius", "pillar"),
-                ("from", "diagonal"),
-                ("at", "thin"),
-            ],
-            Self::Things => &[("on", "start"), ("on", "exit"), ("on", "key")],
-        }
+    pub(super) fn additions(self) -> impl Iterator<Item = (&'static str, &'static str)> {
+        let (additions, more): (&[_], &[_]) = match self {
+            Self::Tiles => (OF_TILES, &[]),
+            Self::Things => (&sprites::ADDITIONS, SUPPORTS),
+        };
+        additions.iter().chain(more).copied()
     }
 
     pub(super) fn example(self) -> &'static str {
@@ -96,8 +102,8 @@ impl Section {
             return Fault::new(place(), format!("{plural} are not supported yet"))
                 .help(format!("known keys: {}", self.keys().join(", ")));
         }
-        let wanted = self.additions().iter().filter(|(key, _)| *key == entry.key);
-        let wanted: Vec<&str> = wanted.map(|&(_, to)| to).collect();
+        let wanted = self.additions().filter(|(key, _)| *key == entry.key);
+        let wanted: Vec<&str> = wanted.map(|(_, to)| to).collect();
         if !wanted.is_empty() {
             let (key, to) = (entry.key, wanted.join("\" or \""));
             let message = format!("\"{key}\" goes with \"{to}\", and there is none");
@@ -109,7 +115,7 @@ impl Section {
             let message = format!("\"{}\" makes {}, not {}", entry.key, other.noun(), self.noun());
             return Fault::new(place(), message).help(format!("move it to {}", other.name()));
         }
-        let additions = self.additions().iter().map(|&(key, _)| key);
+        let additions = self.additions().map(|(key, _)| key);
         let mut known: Vec<&str> = self.keys().iter().copied().chain(additions).collect();
         known.dedup();
         entry.unknown_key(self.noun(), &known)

@@ -41,7 +41,8 @@ fn both(world: &World, camera: &Camera, filter: Filter, size: FrameSize) -> [Fra
         let mut frame = Frame::new(size, PixelAspect::SQUARE);
         let (memory, frame_mut) = (&mut Memory::default(), &mut frame);
         let tally = &mut ();
-        let picture = Picture { world, camera, filter, memory, frame: frame_mut, tally };
+        let seconds = 0.0;
+        let picture = Picture { world, camera, filter, seconds, memory, frame: frame_mut, tally };
         match geometry {
             Geometry::Level => picture.draw_level(plan, &Exact),
             Geometry::Windows(_) => picture.draw_windows(plan),

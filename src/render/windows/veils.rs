@@ -45,9 +45,8 @@ pub(super) fn draw<T: Tally>(scene: Scene<'_>, veils: &[Veil], frame: &mut Frame
 }
 
 impl Veil {
-    /// Draws a mask from the texture itself: the levels of a texture know no holes.
     fn draw_mask(&self, scene: Scene<'_>, texture: TextureId, shade: Faded, frame: &mut Frame) {
-        let texture = scene.world.texture(texture);
+        let texture = scene.world.texture(texture).level(0);
         let texels = texture.column(self.u);
         let Some(alphas) = texture.alpha_column(self.u) else { return };
         let Stretch { bottom, top } = self.stretch;
