@@ -10,7 +10,7 @@ use crate::render::Frame;
 use crate::render::plan::WallLoop;
 use crate::render::shade::{Bright, Faded, Halved, Shade};
 use crate::render::tally::{Pass, Tally};
-use crate::world::{Light, Paint, Rgb, Texture};
+use crate::world::{Light, Paint};
 
 /// A face as wide as a pixel, as far as it is seen.
 #[derive(Clone, Debug)]
@@ -90,7 +90,8 @@ impl Face {
             }
             Paint::Texture(id) => {
                 tally.texels(Pass::Walls, rows.len());
-                let texels = self.texels(scene, scene.world.texture(id));
+                let level = scene.level_on(scene.world.texture(id), self.t, self.slope);
+                let texels = level.column(self.u);
                 let Stretch { bottom, top } = self.stretch;
                 let texel = scene.projection.texel_on_the_face(self.t, texels.len(), bottom, top);
                 for (row, pixel) in rows.zip(pixels) {
@@ -98,12 +99,5 @@ impl Face {
                 }
             }
         }
-    }
-
-    /// The column of the texture that shows, from a level that suits the distance.
-    fn texels<'t>(&self, scene: Scene<'_>, texture: &'t Texture) -> &'t [Rgb] {
-        let texels = f64::from(texture.width()) * f64::from(texture.height());
-        let area = scene.projection.pixel_area_on_wall(self.t, self.slope);
-        texture.level(scene.filter.halvings(area * texels)).column(self.u)
     }
 }
