@@ -12,6 +12,7 @@ mod cell_writer;
 mod depth;
 mod error;
 mod event;
+mod fidelity;
 #[cfg_attr(not(unix), expect(dead_code, reason = "signals, of which there are none, use it"))]
 mod guard;
 mod input;
@@ -36,6 +37,7 @@ pub(crate) use self::cell_writer::Style;
 pub use self::depth::{Detected, color_depth};
 pub use self::error::Error;
 pub use self::event::{Event, QuitReason};
+pub use self::fidelity::{Fidelity, UnknownFidelity};
 pub use self::key::{Key, KeyEvent, Modifiers, Phase, UnknownKey};
 pub use self::recorder::Recorder;
 pub use self::session::{Options, Session};

@@ -21,6 +21,7 @@ use ratatui::buffer::Buffer;
 use ratatui::layout::Size;
 
 use crate::game::Script;
+use crate::terminal::Fidelity;
 use crate::tui::Replay;
 use encoder::{Encoder, Stock, Writer};
 use tally::Tally;
@@ -36,6 +37,8 @@ pub struct Plan<'a> {
     pub size: Size,
     /// How many frames a second are sent.
     pub frames_per_second: NonZeroU32,
+    /// The fidelities at which our encoder is measured.
+    pub fidelities: Vec<Fidelity>,
 }
 
 /// What was measured.
@@ -62,8 +65,10 @@ pub struct EncoderReport {
 
 /// Plays the script of `plan` and measures.
 pub fn report(plan: &Plan, replay: &mut Replay) -> Report {
-    let exact: Box<dyn Encoder> = Box::new(Writer::new(plan.size));
-    let ours = [("exact".to_owned(), exact)];
+    let ours = plan.fidelities.iter().map(|&fidelity| {
+        let writer: Box<dyn Encoder> = Box::new(Writer::new(plan.size, fidelity));
+        (fidelity.to_string(), writer)
+    });
     let stock: Box<dyn Encoder> = Box::new(Stock::new());
     let mut tallies: Vec<Tally> = [("stock".to_owned(), stock)]
         .into_iter()
@@ -82,18 +87,10 @@ pub fn report(plan: &Plan, replay: &mut Replay) -> Report {
         frames = frame as usize;
         Ok::<(), std::convert::Infallible>(())
     });
-    let mut encoders: Vec<EncoderReport> = tallies.into_iter().map(Tally::finish).collect();
-    relate_to_first(&mut encoders);
-    Report { frames, encoders }
-}
-
-/// Fills in how many bytes each encoder takes for one of the first encoder's.
-fn relate_to_first(encoders: &mut [EncoderReport]) {
-    let Some(first) = encoders.first().cloned() else { return };
-    for encoder in encoders {
-        let parts = encoder.sections.iter_mut().zip(&first.sections);
-        for (part, first) in parts.chain([(&mut encoder.all, &first.all)]) {
-            part.ratio = part.bytes.mean / first.bytes.mean;
-        }
+    let mut encoders: Vec<EncoderReport> = Vec::new();
+    for tally in tallies {
+        let report = tally.finish(encoders.first());
+        encoders.push(report);
     }
+    Report { frames, encoders }
 }

@@ -6,6 +6,7 @@ use std::num::NonZeroU32;
 
 use cellcaster::game::{Script, Stretch};
 use cellcaster::map::builtin;
+use cellcaster::terminal::Fidelity;
 use cellcaster::tui::{Levels, Replay, Settings};
 use cellcaster::wire::{self, EncoderReport, Part, Plan, Report};
 use ratatui::layout::Size;
@@ -32,7 +33,8 @@ fn report() -> Report {
     let size = Size::new(120, 40);
     let frames_per_second = NonZeroU32::new(30).unwrap();
     let script = script();
-    let plan = Plan { script: &script, size, frames_per_second };
+    let fidelities = vec![Fidelity::EXACT, Fidelity::HIGH, Fidelity::LOW];
+    let plan = Plan { script: &script, size, frames_per_second, fidelities };
     wire::report(&plan, &mut Replay::new(levels, Settings::default(), size))
 }
 
@@ -57,6 +59,13 @@ fn a_frame_takes_no_more_bytes_than_is_promised() {
     assert_eq!(exact.all.seen.mean_distance, 0.0);
     assert_eq!(exact.all.seen.signal_to_noise, f64::INFINITY);
     assert_eq!(section(encoder(&report, "stock"), "standing").bytes.largest, 25);
+
+    let stock = encoder(&report, "stock");
+    let (high, low) = (encoder(&report, "high"), encoder(&report, "low"));
+    assert!(high.all.seen.mean_distance <= 1.0 && low.all.seen.mean_distance <= 2.0);
+    for pair in [stock, exact, high, low].windows(2) {
+        assert!(pair[1].all.bytes.mean < 0.9 * pair[0].all.bytes.mean, "{}", pair[1].name);
+    }
 
     let frames: usize = exact.sections.iter().map(|part| part.frames).sum();
     assert_eq!((exact.all.frames, report.frames), (frames, frames));

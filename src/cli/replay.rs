@@ -51,6 +51,7 @@ fn write(
     let mut screen = Screen { asciicast: Asciicast::begin(output, size)?, now: Rc::clone(&now) };
     screen.send(|bytes| queue!(bytes, EnterAlternateScreen, Hide))?;
     let mut writer = CellWriter::new(screen, size);
+    writer.set_fidelity(options.fidelity);
     let mut before = Buffer::empty(size.into());
     let frames_per_second = options.frames_per_second.get();
     replay.play(script, frames_per_second, |frame, _, picture| {

@@ -10,6 +10,7 @@ use std::io::{self, BufWriter, Write};
 use super::arguments::{Wire, WireFormat};
 use super::script::{self, SHOWCASE};
 use super::{Error, level};
+use crate::terminal::Fidelity;
 use crate::tui::{Replay, Settings};
 use crate::wire::{self, Plan, Report};
 
@@ -23,6 +24,10 @@ pub(super) fn run(options: &Wire) -> Result<(), Error> {
         script: &script,
         size: options.size.cells(),
         frames_per_second: options.frames_per_second.get(),
+        fidelities: match options.fidelities.as_slice() {
+            [] => vec![Fidelity::EXACT, Fidelity::HIGH, Fidelity::LOW],
+            named => named.to_vec(),
+        },
     };
     let mut replay = Replay::new(level::load_series(map)?, Settings::default(), plan.size);
     let report = wire::report(&plan, &mut replay);

@@ -26,6 +26,7 @@ impl Difference {
             for (column, cell) in (0..).zip(cells) {
                 difference.pixels += 2;
                 let shown = encoder.shown(column, row);
+                let shown = shown.and_then(|[upper, lower]| Some([rgb(upper)?, rgb(lower)?]));
                 if let Some((shown, wanted)) = shown.zip(pixels(cell)) {
                     difference.note(shown[0], wanted[0]);
                     difference.note(shown[1], wanted[1]);

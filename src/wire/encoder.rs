@@ -7,9 +7,9 @@ use std::rc::Rc;
 use ratatui::backend::{Backend, CrosstermBackend};
 use ratatui::buffer::Cell;
 use ratatui::layout::Size;
+use ratatui::style::Color;
 
-use crate::terminal::CellWriter;
-use crate::world::Rgb;
+use crate::terminal::{CellWriter, Fidelity};
 
 /// Cells that are not what they were, as ratatui's backends get them.
 pub(super) type Changes<'a> = [(u16, u16, &'a Cell)];
@@ -19,9 +19,9 @@ pub(super) trait Encoder {
     /// The bytes that a frame takes, added to `bytes`: what ratatui's `Terminal` has its backend do.
     fn encode(&mut self, changes: &Changes, bytes: &mut Vec<u8>);
 
-    /// The colours that the upper and the lower half of a cell show, as far as they are not what
-    /// was asked for.
-    fn shown(&self, column: u16, row: u16) -> Option<[Rgb; 2]>;
+    /// The colours that the upper and the lower half of a cell show; `None` where they are what was
+    /// asked for.
+    fn shown(&self, column: u16, row: u16) -> Option<[Color; 2]>;
 }
 
 /// Where a backend writes to.
@@ -66,7 +66,7 @@ impl Encoder for Stock {
         bytes.append(&mut self.sink.0.borrow_mut());
     }
 
-    fn shown(&self, _: u16, _: u16) -> Option<[Rgb; 2]> {
+    fn shown(&self, _: u16, _: u16) -> Option<[Color; 2]> {
         None
     }
 }
@@ -78,9 +78,10 @@ pub(super) struct Writer {
 }
 
 impl Writer {
-    pub(super) fn new(size: Size) -> Self {
+    pub(super) fn new(size: Size, fidelity: Fidelity) -> Self {
         let sink = Sink::default();
-        let backend = CellWriter::new(sink.clone(), size);
+        let mut backend = CellWriter::new(sink.clone(), size);
+        backend.set_fidelity(fidelity);
         Self { sink, backend }
     }
 }
@@ -91,8 +92,7 @@ impl Encoder for Writer {
         bytes.append(&mut self.sink.0.borrow_mut());
     }
 
-    fn shown(&self, column: u16, row: u16) -> Option<[Rgb; 2]> {
-        _ = (column, row);
-        None
+    fn shown(&self, column: u16, row: u16) -> Option<[Color; 2]> {
+        self.backend.shown_colors(column, row)
     }
 }

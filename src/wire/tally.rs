@@ -112,13 +112,17 @@ impl Tally {
         }
     }
 
-    pub(super) fn finish(self) -> EncoderReport {
-        let named = self.sections.into_iter().filter(|sums| !sums.name.is_empty());
+    /// What it has come to, beside what the first of the encoders has; `None` for that one itself.
+    pub(super) fn finish(self, first: Option<&EncoderReport>) -> EncoderReport {
+        let sections = self.sections.into_iter().filter(|sums| !sums.name.is_empty());
+        let sections = sections.enumerate();
         EncoderReport {
             name: self.name,
             first_frame: self.first_frame,
-            sections: named.map(Sums::finish).collect(),
-            all: self.all.finish(),
+            sections: sections
+                .map(|(index, sums)| sums.finish(first.map(|first| &first.sections[index])))
+                .collect(),
+            all: self.all.finish(first.map(|first| &first.all)),
         }
     }
 }
@@ -143,20 +147,21 @@ impl Sums {
         }
     }
 
-    fn finish(mut self) -> Part {
+    fn finish(mut self, first: Option<&Part>) -> Part {
         self.bytes.sort_unstable();
         let frames = self.bytes.len();
         let count = frames.max(1) as f64;
+        let mean = self.bytes.iter().sum::<usize>() as f64 / count;
         Part {
             name: self.name,
             frames,
             bytes: Bytes {
-                mean: self.bytes.iter().sum::<usize>() as f64 / count,
+                mean,
                 median: share(&self.bytes, 50),
                 percentile_95: share(&self.bytes, 95),
                 largest: share(&self.bytes, 100),
             },
-            ratio: f64::NAN,
+            ratio: mean / first.map_or(mean, |first| first.bytes.mean),
             compressed: self.compressed as f64 / count,
             time: self.time.div_f64(count),
             seen: Seen {

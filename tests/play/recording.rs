@@ -69,6 +69,8 @@ fn a_recorded_walk_replays_to_the_same_picture() {
     let recording = Asciicast::read(&String::from_utf8(file).unwrap());
     let (_, frames) = recording.events.split_last().unwrap();
     let mut terminal = Parser::new(24.try_into().unwrap(), 80.try_into().unwrap(), 0);
-    frames.iter().for_each(|event| terminal.process(event.data.as_bytes()));
+    for event in frames {
+        terminal.process(event.data.as_bytes());
+    }
     assert!(looks(terminal.screen()) == played, "{}", fs::read_to_string(path).unwrap());
 }

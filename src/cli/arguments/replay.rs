@@ -8,6 +8,7 @@ use lexopt::{Arg, Parser};
 use super::value::{self, FramesPerSecond, Size};
 use super::{Command, Error, next, unexpected, word};
 use crate::palette::ColorDepth;
+use crate::terminal::Fidelity;
 use crate::world::FieldOfView;
 
 /// Options of `replay`.
@@ -21,6 +22,7 @@ pub(in crate::cli) struct Replay {
     pub(in crate::cli) frames_per_second: FramesPerSecond,
     pub(in crate::cli) field_of_view: FieldOfView,
     pub(in crate::cli) depth: ColorDepth,
+    pub(in crate::cli) fidelity: Fidelity,
 }
 
 pub(super) fn parse(mut parser: Parser) -> Result<Command, Error> {
@@ -32,6 +34,7 @@ pub(super) fn parse(mut parser: Parser) -> Result<Command, Error> {
         frames_per_second: FramesPerSecond::default(),
         field_of_view: FieldOfView::default(),
         depth: ColorDepth::default(),
+        fidelity: Fidelity::default(),
     };
     let mut script = None;
     while let Some(argument) = next(&mut parser)? {
@@ -46,6 +49,7 @@ pub(super) fn parse(mut parser: Parser) -> Result<Command, Error> {
             }
             Arg::Long("fov") => replay.field_of_view = value::FIELD_OF_VIEW.value(&mut parser)?,
             Arg::Long("colors") => replay.depth = value::COLORS.value(&mut parser)?,
+            Arg::Long("fidelity") => replay.fidelity = value::fidelity(&mut parser)?,
             other => return Err(unexpected("replay", &OPTIONS, other)),
         }
     }
@@ -55,4 +59,4 @@ pub(super) fn parse(mut parser: Parser) -> Result<Command, Error> {
     Ok(Command::Replay(Replay { script: script.into(), ..replay }))
 }
 
-const OPTIONS: [&str; 5] = ["--cast", "--colors", "--fov", "--fps", "--size"];
+const OPTIONS: [&str; 6] = ["--cast", "--colors", "--fidelity", "--fov", "--fps", "--size"];

@@ -8,6 +8,7 @@ use super::{Error, word};
 use crate::cast::{Method, NotAMethod};
 use crate::palette::ColorDepth;
 use crate::render::Filter;
+use crate::terminal::{Fidelity, UnknownFidelity};
 use crate::tui::{CellAspect, GlyphMode};
 use crate::world::FieldOfView;
 
@@ -139,4 +140,11 @@ pub(super) fn method(parser: &mut Parser) -> Result<Method, Error> {
     let text = word(parser, "--caster", "the name of a method")?;
     let text = text.to_string_lossy();
     text.parse().map_err(|error: NotAMethod| Error::mistake(format!("--caster {text}: {error}")))
+}
+
+/// The value of `--fidelity`, likewise.
+pub(super) fn fidelity(parser: &mut Parser) -> Result<Fidelity, Error> {
+    let text = word(parser, "--fidelity", "exact, high, low or a number up to 255")?;
+    let text = text.to_string_lossy();
+    text.parse().map_err(|error: UnknownFidelity| Error::mistake(format!("--fidelity: {error}")))
 }

@@ -7,6 +7,7 @@ use lexopt::{Arg, Parser};
 
 use super::value::{self, FramesPerSecond, Size, Valued};
 use super::{Command, Error, next, unexpected, word};
+use crate::terminal::Fidelity;
 
 /// Options of `wire`.
 #[derive(Debug)]
@@ -16,6 +17,8 @@ pub(in crate::cli) struct Wire {
     pub(in crate::cli) script: Option<PathBuf>,
     pub(in crate::cli) size: Size,
     pub(in crate::cli) frames_per_second: FramesPerSecond,
+    /// None for those that have a name.
+    pub(in crate::cli) fidelities: Vec<Fidelity>,
     pub(in crate::cli) format: WireFormat,
 }
 
@@ -33,6 +36,7 @@ pub(super) fn parse(mut parser: Parser) -> Result<Command, Error> {
         script: None,
         size: Size { columns: 120, rows: 40 },
         frames_per_second: FramesPerSecond::default(),
+        fidelities: Vec::new(),
         format: WireFormat::Table,
     };
     while let Some(argument) = next(&mut parser)? {
@@ -46,6 +50,7 @@ pub(super) fn parse(mut parser: Parser) -> Result<Command, Error> {
             Arg::Long("fps") => {
                 wire.frames_per_second = value::FRAMES_PER_SECOND.value(&mut parser)?;
             }
+            Arg::Long("fidelity") => wire.fidelities.push(value::fidelity(&mut parser)?),
             Arg::Long("format") => wire.format = FORMAT.value(&mut parser)?,
             other => return Err(unexpected("wire", &OPTIONS, other)),
         }
@@ -53,7 +58,7 @@ pub(super) fn parse(mut parser: Parser) -> Result<Command, Error> {
     Ok(Command::Wire(wire))
 }
 
-const OPTIONS: [&str; 4] = ["--format", "--fps", "--script", "--size"];
+const OPTIONS: [&str; 5] = ["--fidelity", "--format", "--fps", "--script", "--size"];
 
 const FORMAT: Valued<WireFormat> = Valued {
     name: "--format",

@@ -8,7 +8,7 @@ use super::Scene;
 use crate::cast::Side;
 use crate::render::Frame;
 use crate::render::plan::WallLoop;
-use crate::render::shade::{Bright, Faded, Halved, Shade};
+use crate::render::shade::{Faded, OfSide, Shade};
 use crate::render::tally::{Pass, Tally};
 use crate::world::{Light, Paint};
 
@@ -53,8 +53,7 @@ pub(super) fn draw<T: Tally>(
 ) {
     for face in faces {
         match face.facing {
-            Facing::Side(Side::X) if !plan.faded => face.draw(scene, Bright, frame, tally),
-            Facing::Side(Side::Y) if !plan.faded => face.draw(scene, Halved, frame, tally),
+            Facing::Side(side) if !plan.faded => face.draw(scene, OfSide(side), frame, tally),
             _ => face.draw(scene, face.facing.shade(scene, face.light, face.t), frame, tally),
         }
     }
@@ -81,8 +80,7 @@ impl Face {
     ) {
         let rows = self.rows.clone();
         tally.pixels(Pass::Walls, rows.len());
-        let pixels =
-            frame.column_mut(self.column as usize).skip(rows.start as usize).take(rows.len());
+        let pixels = frame.column_mut(self.column, rows.clone());
         match self.paint {
             Paint::Color(color) => {
                 let color = shade.apply(color);
@@ -93,9 +91,9 @@ impl Face {
                 let level = scene.level_on(scene.world.texture(id), self.t, self.slope);
                 let texels = level.column(self.u);
                 let Stretch { bottom, top } = self.stretch;
-                let texel = scene.projection.texel_on_the_face(self.t, texels.len(), bottom, top);
+                let down = scene.projection.texels_down_the_face(self.t, texels.len(), bottom, top);
                 for (row, pixel) in rows.zip(pixels) {
-                    *pixel = shade.apply(texels[texel(row)]);
+                    *pixel = shade.apply(texels[down.at(row)]);
                 }
             }
         }

@@ -286,7 +286,7 @@ impl Billboard {
             (texel as usize).min(texels.len() - 1)
         };
         let alpha = |texel: usize| alphas.map_or(u8::MAX, |alphas| alphas[texel]);
-        let pixels = frame.column_mut(between.column as usize).skip(rows.start as usize);
+        let pixels = frame.column_mut(between.column, rows.clone());
         for (row, pixel) in rows.clone().zip(pixels) {
             let texel = texel(row);
             *pixel = match alpha(texel) {
