@@ -108,16 +108,15 @@ impl Frame {
         &mut self.pixels[first as usize * width..last as usize * width]
     }
 
-    /// The pixels of column `x` in `rows`, from the top; no more than there are.
-    pub(super) fn column_mut<'f>(
-        &'f mut self,
-        x: usize,
-        rows: &Range<u32>,
-    ) -> impl Iterator<Item = &'f mut Rgb> + use<'f> {
+    /// The pixels of column `x` in those rows, from the top.
+    #[inline]
+    pub(super) fn column_mut(
+        &mut self,
+        x: u32,
+        rows: Range<u32>,
+    ) -> impl Iterator<Item = &mut Rgb> {
         let width = self.width() as usize;
-        let first = rows.start as usize * width + x;
-        let below = self.pixels.get_mut(first..).unwrap_or_default();
-        // Chunks, not steps: a step asks at each pixel whether it is the first.
-        below.chunks_mut(width).take(rows.len()).map(|chunk| &mut chunk[0])
+        let first = (rows.start as usize * width + x as usize).min(self.pixels.len());
+        self.pixels[first..].iter_mut().step_by(width).take(rows.len())
     }
 }

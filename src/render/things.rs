@@ -20,7 +20,7 @@ use crate::world::texture::Level;
 use crate::world::{Anchor, Thing};
 
 /// Things that are nearer than that to the camera plane are not drawn: the player stands in them.
-const NEAREST: f64 = 0.2;
+pub(super) const NEAREST: f64 = 0.2;
 
 /// There is room for so many things in view from the first frame on, so that a camera that turns
 /// towards more of them needs no more memory.
@@ -215,7 +215,7 @@ impl<'a> Picture<'a> {
     fn draw_shaded<S: Shade>(&self, shade: S, x: usize, u: f64, frame: &mut Frame) {
         let texels = self.level.column(u);
         let alphas = self.level.alpha_column(u);
-        let pixels = frame.column_mut(x, &self.rows);
+        let pixels = frame.column_mut(x as u32, self.rows.clone());
         for (row, pixel) in self.rows.clone().zip(pixels) {
             let texel = self.texel(row);
             *pixel = match alphas.map_or(u8::MAX, |alphas| alphas[texel]) {

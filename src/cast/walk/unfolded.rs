@@ -160,6 +160,16 @@ impl Unfolding {
         DVec2::new(self.x.real_place(point.x), self.y.real_place(point.y))
     }
 
+    /// Where a point of the map is, unfolded.
+    pub(crate) fn unfolded_point(self, point: DVec2) -> DVec2 {
+        DVec2::new(self.x.unfolded_place(point.x), self.y.unfolded_place(point.y))
+    }
+
+    /// Whether left and right are swapped.
+    pub(crate) fn swaps_sides(self) -> bool {
+        self.x.is_mirrored != self.y.is_mirrored
+    }
+
     /// Which way an unfolded direction is on the map.
     pub(crate) fn real_direction(self, direction: DVec2) -> DVec2 {
         let along = |fold: Fold, part: f64| if fold.is_mirrored { -part } else { part };
@@ -171,6 +181,11 @@ impl Fold {
     fn real_place(self, place: f64) -> f64 {
         let offset = self.offset as f64;
         if self.is_mirrored { offset - place } else { offset + place }
+    }
+
+    fn unfolded_place(self, place: f64) -> f64 {
+        let offset = self.offset as f64;
+        if self.is_mirrored { offset - place } else { place - offset }
     }
 
     /// The column or row that the unfolded one at `index` is.

@@ -8,9 +8,9 @@ use super::Scene;
 use crate::cast::Side;
 use crate::render::Frame;
 use crate::render::plan::WallLoop;
-use crate::render::shade::{Bright, Faded, Halved, Shade};
+use crate::render::shade::{Faded, OfSide, Shade};
 use crate::render::tally::{Pass, Tally};
-use crate::world::{Light, Paint, Rgb, Texture};
+use crate::world::{Light, Paint};
 
 /// A face as wide as a pixel, as far as it is seen.
 #[derive(Clone, Debug)]
@@ -53,8 +53,7 @@ pub(super) fn draw<T: Tally>(
 ) {
     for face in faces {
         match face.facing {
-            Facing::Side(Side::X) if !plan.faded => face.draw(scene, Bright, frame, tally),
-            Facing::Side(Side::Y) if !plan.faded => face.draw(scene, Halved, frame, tally),
+            Facing::Side(side) if !plan.faded => face.draw(scene, OfSide(side), frame, tally),
             _ => face.draw(scene, face.facing.shade(scene, face.light, face.t), frame, tally),
         }
     }
@@ -81,7 +80,7 @@ impl Face {
     ) {
         let rows = self.rows.clone();
         tally.pixels(Pass::Walls, rows.len());
-        let pixels = frame.column_mut(self.column as usize, &rows);
+        let pixels = frame.column_mut(self.column, rows.clone());
         match self.paint {
             Paint::Color(color) => {
                 let color = shade.apply(color);
@@ -89,20 +88,14 @@ impl Face {
             }
             Paint::Texture(id) => {
                 tally.texels(Pass::Walls, rows.len());
-                let texels = self.texels(scene, scene.world.texture(id));
+                let level = scene.level_on(scene.world.texture(id), self.t, self.slope);
+                let texels = level.column(self.u);
                 let Stretch { bottom, top } = self.stretch;
-                let texel = scene.projection.texel_on_the_face(self.t, texels.len(), bottom, top);
+                let down = scene.projection.texels_down_the_face(self.t, texels.len(), bottom, top);
                 for (row, pixel) in rows.zip(pixels) {
-                    *pixel = shade.apply(texels[texel(row)]);
+                    *pixel = shade.apply(texels[down.at(row)]);
                 }
             }
         }
-    }
-
-    /// The column of the texture that shows, from a level that suits the distance.
-    fn texels<'t>(&self, scene: Scene<'_>, texture: &'t Texture) -> &'t [Rgb] {
-        let texels = f64::from(texture.width()) * f64::from(texture.height());
-        let area = scene.projection.pixel_area_on_wall(self.t, self.slope);
-        texture.level(scene.filter.halvings(area * texels)).column(self.u)
     }
 }

@@ -28,7 +28,7 @@ impl Look<'_> {
             if window.is_empty() {
                 continue;
             }
-            let open = Branch { place, gap, window, from: met.t, ..branch.clone() };
+            let open = Branch { place, gap, window, ..branch.clone() };
             self.pass_pane(&open, met);
             if place.is_none() {
                 self.look_beyond_edge(&open);
@@ -77,7 +77,6 @@ impl Look<'_> {
         self.windows.counts.bounces += 1;
         let everywhere = Stretch { bottom: BOTTOMLESS.bottom, top: BOTTOMLESS.top };
         self.veil(image.window.clone(), met, place, Film::Glass(tint), everywhere);
-        image.from = met.t;
         image.walk.reflect(met.side);
         image.reflection = self.windows.reflection(image.walk.unfolding());
         self.windows.branches.push(image);

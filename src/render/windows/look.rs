@@ -3,7 +3,7 @@
 use std::ops::Range;
 
 use super::faces::Facing;
-use super::{Part, Piece, Reflection, Scene, Shown, Windows};
+use super::{Part, Piece, Reflection, Scene, Shown, Windows, rows_between};
 use crate::cast::{Hit, Ray, Side, UnfoldedWalk};
 use crate::render::Column;
 use crate::world::{Cell, Gap, Heights, TileId};
@@ -131,6 +131,7 @@ impl<'a> Look<'a> {
     /// Notes floor and ceiling of the cell that `branch` is in, which it leaves at `t`, and closes
     /// the window over them.
     pub(super) fn lay(&mut self, branch: &mut Branch, t: f64) {
+        self.note_things(branch, t);
         let projection = self.scene.projection;
         let (eye, Gap { bottom, top }) = (projection.eye(), branch.gap);
         let Range { start, end } = branch.window;
@@ -146,6 +147,7 @@ impl<'a> Look<'a> {
             self.show(start..row, piece(Part::Ceiling));
         }
         branch.window = self.rows(&branch.window, bottom, top, t);
+        branch.from = t;
     }
 
     /// Whether the bottom of a branch's gap is a floor or a roof.
@@ -160,15 +162,7 @@ impl<'a> Look<'a> {
 
     /// The part of `window` that shows what is between two heights at distance `t`.
     pub(super) fn rows(&self, window: &Range<u32>, bottom: f64, top: f64, t: f64) -> Range<u32> {
-        let projection = self.scene.projection;
-        let Range { mut start, mut end } = *window;
-        if top < f64::INFINITY {
-            start = start.max(projection.row_of(top, t));
-        }
-        if bottom > f64::NEG_INFINITY {
-            end = end.min(projection.row_of(bottom, t));
-        }
-        start..end
+        rows_between(self.scene.projection, window, bottom, top, t)
     }
 }
 

@@ -3,8 +3,9 @@
 use std::ops::Range;
 
 use super::faces::{Face, Stretch};
-use super::look::{Look, Met, Place};
-use super::veils::{Film, Veil};
+use super::look::{Branch, Look, Met, Place};
+use super::things::Between;
+use super::veils::{Film, Pane, Veil};
 use super::{Shown, Windows};
 use crate::world::{Cell, Gap, Light, Paint, Tile, TileKind};
 
@@ -35,9 +36,26 @@ impl<'a> Look<'a> {
             return;
         }
         let light = self.light(place, met);
-        let &Met { facing, t, u, .. } = met;
+        let &Met { facing, slope, t, u, .. } = met;
         let column = self.column as u32;
-        self.windows.veils.push(Veil { column, rows, facing, t, u, light, film, stretch });
+        let pane = Pane { column, rows, facing, slope, t, u, light, film, stretch };
+        self.windows.veils.push(Veil::Pane(pane));
+    }
+
+    /// Takes note of the things that are seen by `branch` before it gets to `to`.
+    pub(super) fn note_things(&mut self, branch: &Branch, to: f64) {
+        if !self.scene.has_things {
+            return;
+        }
+        let &Branch { ref window, gap, from, reflection, .. } = branch;
+        let column = self.column as u32;
+        let between = Between { column, rows: window.clone(), from, to, gap, reflection };
+        self.windows.veils.push(Veil::Things(between));
+        let projection = self.scene.projection;
+        let direction = projection.direction_of(column);
+        for t in [from, to] {
+            self.windows.image(reflection).show(projection.origin() + direction * t);
+        }
     }
 
     pub(super) fn show(&mut self, rows: Range<u32>, shown: Shown) {
@@ -49,11 +67,12 @@ impl<'a> Look<'a> {
     }
 
     /// How bright what is in `place` is, seen from where it is met: by its own light, if it is solid,
-    /// else as bright as what is before it.
+    /// else as it is there.
     pub(super) fn light(&self, place: Place, met: &Met) -> Light {
         let is_solid = |tile: &&Tile| !matches!(tile.kind, TileKind::Open | TileKind::Doorway(_));
         let own = self.tile(place).filter(is_solid).and_then(|tile| tile.light);
-        own.or_else(|| self.tile(met.before)?.light).unwrap_or(Light::FULL)
+        let there = |(cell, _)| self.scene.world.light_in(cell);
+        own.unwrap_or_else(|| met.before.map_or(Light::FULL, there))
     }
 
     /// What is open at `place`, from the lowest gap up.
