@@ -138,6 +138,29 @@ fn ten_thousand_things_elsewhere_are_not_considered() {
 }
 
 #[test]
+fn things_on_both_sides_of_a_diagonal_view_are_not_considered() {
+    const SIDE: u32 = 100;
+    let character = |column: u32, row: u32| match column.abs_diff(row) {
+        _ if (column, row) == (1, 1) => '@',
+        _ if [column, row].iter().any(|place| [0, SIDE - 1].contains(place)) => '#',
+        0 | 1 => '.',
+        2 => '#',
+        _ => 'b',
+    };
+    let line = |row| (0..SIDE).map(|column| character(column, row)).collect::<String>() + "\n";
+    let text = format!(
+        "grid = '''\n{}'''\ntiles.'#'.wall = 'brick'\n\
+         things = {{ '@'.start = 45, 'b'.sprite = 'bones' }}\n",
+        (0..SIDE).map(line).collect::<String>()
+    );
+    let world = map::parse_str(&text).unwrap();
+    assert!(world.things().len() > 9_000);
+    let counts = explained(&world).counts;
+    assert_eq!(counts.things_drawn, 0);
+    assert!(counts.things_considered < u64::from(SIDE), "{}", counts.things_considered);
+}
+
+#[test]
 fn explaining_draws_the_same_frame() {
     for name in ["flat", "tiles", "fog", "panorama", "light"] {
         let world = gallery(name);
