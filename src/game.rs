@@ -12,6 +12,7 @@ mod intent;
 mod motion;
 mod notice;
 mod player;
+mod script;
 
 use std::collections::BTreeSet;
 
@@ -23,9 +24,12 @@ use player::Player;
 pub use intent::{Intent, Intents};
 #[cfg(feature = "accuracy")]
 pub(crate) use motion::approach;
+pub use script::{Recorder, Script, Section, Stretch};
 
 /// How long one step lasts, in seconds.
-pub const STEP: f64 = 1.0 / 60.0;
+pub const STEP: f64 = 1.0 / STEPS_PER_SECOND as f64;
+
+pub(crate) const STEPS_PER_SECOND: u32 = 60;
 
 /// A world, who walks in it, and for how long they have.
 #[derive(Clone, Debug, PartialEq)]

@@ -20,4 +20,6 @@ pub mod render;
 pub mod terminal;
 #[cfg(feature = "tui")]
 pub mod tui;
+#[cfg(feature = "cli")]
+pub mod wire;
 pub mod world;

@@ -37,7 +37,7 @@ mod held;
 mod minimap;
 
 #[cfg(feature = "terminal")]
-pub use app::{Levels, Settings, play};
+pub use app::{Levels, Recording, Replay, Settings, play};
 #[cfg(feature = "terminal")]
 pub use bindings::Bindings;
 pub use first_person::{FirstPerson, View};

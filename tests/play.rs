@@ -4,8 +4,12 @@
 #[path = "support/mod.rs"]
 mod support;
 
+#[path = "support/asciicast.rs"]
+mod asciicast;
 #[path = "support/emulator.rs"]
 mod emulator;
+#[path = "support/looks.rs"]
+mod looks;
 #[path = "support/player.rs"]
 mod player;
 
@@ -21,6 +25,8 @@ mod holding;
 mod levels;
 #[path = "play/moving.rs"]
 mod moving;
+#[path = "play/recording.rs"]
+mod recording;
 #[path = "play/resting.rs"]
 mod resting;
 #[path = "play/settings.rs"]

@@ -7,6 +7,7 @@ use super::Error;
 use super::arguments::COMMANDS;
 use crate::fault::nearest;
 use crate::map::{self, builtin};
+use crate::tui::Levels;
 use crate::world::World;
 
 /// The level that `argument` names: a built-in one or a map file; without it, the first built-in.
@@ -25,8 +26,16 @@ pub(super) fn load(argument: Option<&OsStr>) -> Result<World, Error> {
     }
 }
 
+/// The level that `argument` names, and the built-in ones that follow it if it is one.
+pub(super) fn load_series(argument: Option<&OsStr>) -> Result<Levels, Error> {
+    let first = load(argument)?;
+    let index = argument.map_or(Some(0), builtin_level);
+    let following = index.map_or(&[][..], |index| &builtin::LEVELS[index + 1..]);
+    Ok(Levels::new(first, following.iter().map_while(|level| level.world().ok())))
+}
+
 /// The place among the built-in levels of the one called `name`; a file of that name goes first.
-pub(super) fn builtin_level(name: &OsStr) -> Option<usize> {
+fn builtin_level(name: &OsStr) -> Option<usize> {
     let index = builtin::LEVELS.iter().position(|level| name == level.name)?;
     (!Path::new(name).exists()).then_some(index)
 }

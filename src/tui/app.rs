@@ -7,6 +7,8 @@
 mod clock;
 mod levels;
 mod panels;
+mod recording;
+mod replay;
 
 use std::env;
 use std::time::{Duration, Instant};
@@ -14,6 +16,8 @@ use std::time::{Duration, Instant};
 pub use levels::Levels;
 use ratatui::Frame;
 use ratatui::layout::Rect;
+pub use recording::Recording;
+pub use replay::Replay;
 
 use super::bindings::{Action, Bindings};
 use super::held::HeldKeys;
@@ -25,6 +29,7 @@ use crate::render::Filter;
 use crate::terminal::{Detected, Error, Event, Key, KeyEvent, Options, Phase, Session};
 use crate::world::{Camera, FieldOfView, World};
 use clock::Clock;
+use recording::ScriptRecorder;
 
 /// How the game is shown and steered.
 #[derive(Clone, Debug, Default)]
@@ -47,17 +52,19 @@ pub struct Settings {
     pub filter: Filter,
 }
 
-/// Plays `levels` on the terminal until the player leaves or somebody else ends the program.
+/// Plays `levels` on the terminal until the player leaves or somebody else ends the program, and
+/// notes down what `recording` asks for.
 ///
 /// # Errors
 /// Where there is no terminal, or it fails.
-pub fn play(levels: Levels, settings: Settings) -> Result<(), Error> {
+pub fn play(levels: Levels, settings: Settings, recording: Recording) -> Result<(), Error> {
     let mut options = Options::from_environment(|name| env::var(name).ok());
     if let Some(depth) = settings.depth {
         options.color_depth = Detected::Certain(depth);
     }
-    let mut session = Session::enter(options)?;
+    let mut session = Session::enter_recorded(options, recording.terminal)?;
     let mut app = App::new(levels, settings);
+    app.script = recording.script;
     app.terminal_changed(&session);
     let start = Instant::now();
     while !app.has_left {
@@ -133,6 +140,8 @@ struct App {
     /// When, by the game's clock, something in the picture looks different by itself.
     animates_at: Option<f64>,
     next_frame: Duration,
+    /// Where what is wanted is noted down.
+    script: Option<ScriptRecorder>,
 }
 
 /// By how much a key widens or narrows the view, and how far, in degrees.
@@ -162,6 +171,7 @@ impl App {
             shown: None,
             animates_at: None,
             next_frame: Duration::ZERO,
+            script: None,
         }
     }
 
@@ -175,7 +185,12 @@ impl App {
         let intents = self.intents();
         let quiet = self.game.quiet_steps(intents).min(steps);
         self.game.wait(quiet);
-        (quiet..steps).take(Clock::MOST_STEPS).for_each(|_| self.game.step(intents));
+        let mut moving = 0;
+        while moving < (steps - quiet).min(Clock::MOST_STEPS) && !self.game.is_finished() {
+            self.game.step(intents);
+            moving += 1;
+        }
+        self.record(intents, quiet + moving);
         if steps > 0 {
             self.pressed = Intents::new();
         }
