@@ -9,6 +9,7 @@ mod panels;
 mod recording;
 mod replay;
 mod run;
+mod stats;
 
 use std::time::Duration;
 
@@ -26,10 +27,11 @@ use crate::cast::Method;
 use crate::game::{Game, Intent, Intents, STEP};
 use crate::palette::ColorDepth;
 use crate::render::Filter;
-use crate::terminal::{Key, KeyEvent, Phase};
+use crate::terminal::{Fidelity, Key, KeyEvent, Phase};
 use crate::world::{Camera, FieldOfView, World};
 use clock::Clock;
 use recording::ScriptRecorder;
+use stats::Stats;
 
 /// How the game is shown and steered.
 #[derive(Clone, Debug, Default)]
@@ -50,6 +52,10 @@ pub struct Settings {
     pub method: Method,
     /// How textures are looked up.
     pub filter: Filter,
+    /// How exact frames are; `None` for as exact as the link to the terminal allows.
+    pub fidelity: Option<Fidelity>,
+    /// Whether the status line tells of frames and the link at first.
+    pub shows_stats: bool,
 }
 
 /// What shows besides the picture, and what keys do meanwhile.
@@ -91,7 +97,8 @@ struct App {
     shown: Option<Scene>,
     /// When, by the game's clock, something in the picture looks different by itself.
     animates_at: Option<f64>,
-    next_frame: Duration,
+    shows_stats: bool,
+    stats: Option<Stats>,
     /// Where what is wanted is noted down.
     script: Option<ScriptRecorder>,
 }
@@ -113,6 +120,7 @@ impl App {
             depth: settings.depth.unwrap_or_default(),
             cell_aspect: settings.cell_aspect.unwrap_or_default(),
             view: View::with_method(settings.method.clone()),
+            shows_stats: settings.shows_stats,
             settings,
             held: HeldKeys::default(),
             runs: false,
@@ -122,7 +130,7 @@ impl App {
             clock: Clock::default(),
             shown: None,
             animates_at: None,
-            next_frame: Duration::ZERO,
+            stats: None,
             script: None,
         }
     }
@@ -176,11 +184,7 @@ impl App {
         self.game.camera(self.field_of_view)
     }
 
-    /// Whether the screen shows something that is no longer so, and may be drawn again at `now`.
-    fn is_due(&self, now: Duration) -> bool {
-        self.is_stale() && now >= self.next_frame
-    }
-
+    /// Whether the screen shows something that is no longer so.
     fn is_stale(&self) -> bool {
         self.shown != Some(self.scene()) || self.steps_to_animation() == Some(0)
     }
@@ -191,25 +195,11 @@ impl App {
         Some(steps.round().max(0.0) as u64)
     }
 
-    fn drawn(&mut self, now: Duration) {
+    /// Takes note that the screen shows what there is.
+    fn drawn(&mut self) {
         self.shown = Some(self.scene());
         let soonest = self.game.elapsed() + STEP;
         self.animates_at = self.view.next_change().map(|change| change.max(soonest));
-        // Counted from when this frame was due, or the time that drawing takes would slow them down.
-        let frame_time = self.settings.frame_time;
-        self.next_frame = Some(self.next_frame + frame_time)
-            .filter(|&next| now < next)
-            .unwrap_or(now + frame_time);
-    }
-
-    /// When something will happen without an event; `None` for never.
-    fn wakes_at(&self) -> Option<Duration> {
-        let frame = if self.is_stale() {
-            Some(self.next_frame)
-        } else {
-            self.next_change().map(|change| change.max(self.next_frame))
-        };
-        frame.into_iter().chain(self.held.next_expiry()).min()
     }
 
     /// When the game will change by itself; `None` for never.
@@ -259,6 +249,10 @@ impl App {
                 self.runs = !self.runs;
                 self.shown = None;
             }
+            (_, Some(Action::ToggleStats)) => {
+                self.shows_stats = !self.shows_stats;
+                self.shown = None;
+            }
             (_, Some(Action::WidenView)) => self.widen_view(VIEW_STEP),
             (_, Some(Action::NarrowView)) => self.widen_view(-VIEW_STEP),
             _ => {}
@@ -306,7 +300,8 @@ impl App {
         }
         let [picture, status] = panels::picture_and_status(area);
         self.draw_picture(frame, picture);
-        panels::status(frame, status, &self.game, self.runs, &self.settings.bindings);
+        let stats = self.stats.as_ref().filter(|_| self.shows_stats);
+        panels::status(frame, status, &self.game, self.runs, stats, &self.settings.bindings);
         let seconds = self.game.elapsed();
         match self.screen {
             Screen::Playing => {}

@@ -6,6 +6,7 @@ use ratatui::style::{Modifier, Style};
 use ratatui::text::{Line, Text};
 use ratatui::widgets::{Block, Clear, Paragraph, Wrap};
 
+use super::stats::Stats;
 use crate::game::Game;
 use crate::tui::Minimap;
 use crate::tui::bindings::{Action, Bindings};
@@ -64,7 +65,14 @@ pub(super) fn framed(frame: &mut Frame, area: Rect, title: &str) -> Rect {
 }
 
 /// The line below the picture.
-pub(super) fn status(frame: &mut Frame, area: Rect, game: &Game, runs: bool, bindings: &Bindings) {
+pub(super) fn status(
+    frame: &mut Frame,
+    area: Rect,
+    game: &Game,
+    runs: bool,
+    stats: Option<&Stats>,
+    bindings: &Bindings,
+) {
     let running = runs.then(|| "running".to_owned());
     let keys = game.keys().map(|key| format!("{key} key"));
     let message = game.message().map(str::to_owned);
@@ -72,7 +80,8 @@ pub(super) fn status(frame: &mut Frame, area: Rect, game: &Game, runs: bool, bin
     let left: String =
         parts.fold(format!(" {}", title(game.world())), |line, part| line + "  " + &part);
     let left = Line::from(left);
-    let right = Line::from(format!(" {} help ", key_names(bindings, Action::ToggleHelp)));
+    let stats = stats.map(|stats| format!("  {stats} ")).unwrap_or_default();
+    let right = Line::from(format!("{stats} {} help ", key_names(bindings, Action::ToggleHelp)));
     let widths = [Constraint::Fill(1), Constraint::Length(right.width() as u16)];
     let [left_area, right_area] = Layout::horizontal(widths).areas(area);
     let reversed = Style::new().add_modifier(Modifier::REVERSED);
