@@ -37,6 +37,7 @@ mod legend;
 mod per_character;
 mod picture;
 mod see_through;
+mod shapes;
 mod sprites;
 mod textures;
 
@@ -49,9 +50,10 @@ use crate::fault::{Fault, Faults, document};
 use crate::world::{Ceiling, Covering, Heights, Paint, Parts, Rgb, Sky, Tile, TileKind, World};
 use definitions::Definitions;
 use drawing::Drawing;
+use heights::Faces;
 use layout::Layout;
-use textures::Textures;
 pub use textures::{Folder, NoFiles, TextureFileError, TextureFiles};
+use textures::{Surface, Textures};
 
 /// The largest map file, in bytes. The largest grid, in characters of three bytes, has room.
 pub const MAX_BYTES: usize = 64 << 20;
@@ -156,6 +158,8 @@ fn read(text: &str, files: &dyn TextureFiles, faults: &mut Vec<Fault>) -> Option
     // Where one of the two has a fault, nothing will come of the tiles but further faults.
     let plain = Covering::from(Paint::Color(Rgb::BLACK));
     let (floor, ceiling) = (floor.unwrap_or(plain), ceiling.unwrap_or(Ceiling::Covered(plain)));
+    let mut face = |surface: &Option<Surface<'_>>| textures.paint(surface.as_ref()?, faults);
+    let faces = Faces { riser: face(&definitions.riser), lintel: face(&definitions.lintel) };
     let map_ceiling = definitions.ceiling_height;
     let ground = Tile {
         character: '.',
@@ -164,10 +168,11 @@ fn read(text: &str, files: &dyn TextureFiles, faults: &mut Vec<Fault>) -> Option
         ceiling,
         light: definitions.light,
         heights: Heights::new(0.0, map_ceiling, map_ceiling)?,
-        riser: floor.pattern.first_paint(),
-        lintel: layout::lintel_below(ceiling, floor),
+        riser: faces.riser(floor),
+        lintel: faces.lintel(floor, ceiling),
     };
-    let layout = Layout::of(&drawing, &definitions.legend, ground, &mut textures, faults)?;
+    let (legend, textures_mut) = (&definitions.legend, &mut textures);
+    let layout = Layout::of(&drawing, legend, ground, faces, textures_mut, faults)?;
     Some(World::from_parts(Parts {
         title: definitions.title,
         grid: layout.grid,

@@ -24,15 +24,17 @@ mod see_through;
 mod shade;
 mod sky;
 mod tally;
+mod texels_down;
 mod things;
 mod track;
 mod walls;
+mod windows;
 
 pub use columns::{Column, Surface};
 pub use explanation::Explanation;
 pub use filter::Filter;
 pub use frame::{Frame, FrameSize, PixelAspect};
-pub use plan::{CeilingLoop, Plan, PlaneLoop, SkyLoop, ThingLoop, WallLoop};
+pub use plan::{CeilingLoop, Geometry, Plan, PlaneLoop, SkyLoop, ThingLoop, WallLoop, WhyWindows};
 pub use tally::{Counts, Pass, PassCounts};
 
 use crate::cast::{Caster, Method, Visitor};
@@ -44,6 +46,9 @@ use see_through::Passed;
 use sky::{SkyColumn, SkyView};
 use tally::Tally;
 use things::InView;
+use walls::Papers;
+pub use windows::WindowCounts;
+use windows::Windows;
 
 /// Draws frames, and keeps what is worth keeping from one to the next.
 #[derive(Clone, Debug, Default)]
@@ -66,6 +71,10 @@ struct Memory {
     in_view: InView,
     marks: Marks,
     next_change: Option<f64>,
+    windows: Windows,
+    /// By which passes the last frame was drawn.
+    geometry: Option<Geometry>,
+    papers: Papers,
 }
 
 impl Renderer {
@@ -129,7 +138,15 @@ impl Renderer {
         let plan = method.accept(Picture { world, camera, filter, seconds, memory, frame, tally });
         let projection = Projection::new(camera, frame.size(), frame.pixel_aspect());
         counts.rays = u64::from(frame.width());
-        counts.cells = explanation::cells_entered(world.grid(), &projection);
+        match plan.geometry {
+            Geometry::Level => {
+                counts.cells = explanation::cells_entered(world.grid(), &projection);
+            }
+            Geometry::Windows(_) => {
+                counts.windows = memory.windows.counts();
+                counts.cells = counts.windows.cells;
+            }
+        }
         let size = u64::from(frame.width()) * u64::from(frame.height());
         counts.overwritten = counts.pixels() - size;
         Explanation { plan, counts }
@@ -143,9 +160,14 @@ impl Renderer {
     /// What the pixel `(x, y)` of the last frame shows, where [that is kept](Renderer::keep_surfaces);
     /// else what it shows but for things and masks before that. `None` where the frame had no column `x`.
     pub fn surface(&self, x: u32, y: u32) -> Option<Surface> {
-        let Memory { columns, first_row_of_ground, marks, .. } = &self.memory;
+        let Memory { columns, first_row_of_ground, marks, windows, geometry, .. } = &self.memory;
         let column = columns.get(x as usize)?;
-        Some(marks.surface(x, y).unwrap_or_else(|| column.surface(y, *first_row_of_ground)))
+        match geometry {
+            Some(Geometry::Windows(_)) => windows.surface(x, y),
+            _ => {
+                Some(marks.surface(x, y).unwrap_or_else(|| column.surface(y, *first_row_of_ground)))
+            }
+        }
     }
 }
 
@@ -173,6 +195,17 @@ impl<T: Tally> Visitor for Picture<'_, T> {
     type Output = Plan;
 
     fn visit<C: Caster>(self, caster: &C) -> Plan {
+        let plan = Plan::new(self.world, self.camera, self.filter);
+        match plan.geometry {
+            Geometry::Level => self.draw_level(plan, caster),
+            Geometry::Windows(_) => self.draw_windows(plan),
+        }
+        plan
+    }
+}
+
+impl<T: Tally> Picture<'_, T> {
+    fn draw_level<C: Caster>(self, plan: Plan, caster: &C) {
         let Self { world, camera, filter, seconds, memory, frame, tally } = self;
         let Memory {
             columns,
@@ -183,13 +216,16 @@ impl<T: Tally> Visitor for Picture<'_, T> {
             in_view,
             marks,
             next_change,
+            geometry,
+            papers,
+            ..
         } = memory;
-        let plan = Plan::new(world, filter);
         let projection = &Projection::new(camera, frame.size(), frame.pixel_aspect());
         columns::cast(caster, world, projection, columns, passed);
         let scene = Scene { world, projection, columns, filter };
         let (ground, height) = (projection.first_row_of_ground(), frame.height());
         *first_row_of_ground = ground;
+        *geometry = Some(plan.geometry);
 
         let sky = &SkyView::new(world, projection, filter, sky);
         match plan.ceiling {
@@ -204,7 +240,7 @@ impl<T: Tally> Visitor for Picture<'_, T> {
         visible.clear();
         visible.extend(columns.iter().map(|column| column.rows_of_floor(ground, height)));
         Plane { scene, kind: PlaneKind::Floor, sky, visible }.draw(plan.floor, frame, tally);
-        walls::draw(scene, plan.walls, frame, tally);
+        walls::draw(scene, plan.walls, papers, frame, tally);
         marks.begin(frame.width(), height);
         *next_change = match plan.things {
             ThingLoop::None => {
@@ -215,6 +251,16 @@ impl<T: Tally> Visitor for Picture<'_, T> {
                 things::draw(scene, seconds, passed, in_view, marks, frame, tally)
             }
         };
-        plan
+    }
+
+    /// Draws by exact rays, whatever the caster: the others know nothing but walls.
+    fn draw_windows(self, plan: Plan) {
+        let Self { world, camera, filter, memory, frame, tally, .. } = self;
+        let Memory { columns, sky, windows, geometry, .. } = memory;
+        *geometry = Some(plan.geometry);
+        let projection = &Projection::new(camera, frame.size(), frame.pixel_aspect());
+        let sky = &SkyView::new(world, projection, filter, sky);
+        let scene = windows::Scene::new(world, projection, filter);
+        windows::draw(scene, plan.walls, sky, windows, columns, frame, tally);
     }
 }

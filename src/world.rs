@@ -17,6 +17,7 @@ mod grid;
 mod heights;
 mod lamplight;
 mod pitch;
+mod shape;
 pub mod sprite;
 pub mod texture;
 mod things;
@@ -32,6 +33,7 @@ pub use heights::{Gap, Heights};
 pub(crate) use lamplight::Lamplight;
 pub use lamplight::{Lamp, Reach};
 pub use pitch::Pitch;
+pub use shape::{Line, Outline, PillarRadius, Shape};
 pub use sprite::{Anchor, Facings, FrameTime, Sprite, SpriteHeight, SpriteId};
 pub use texture::Texture;
 use things::Things;
@@ -82,7 +84,7 @@ pub struct Tile {
 }
 
 /// What a tile is.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+#[derive(Clone, Copy, Debug, PartialEq)]
 pub enum TileKind {
     /// Floor to walk on, and to see across.
     Open,
@@ -97,14 +99,20 @@ pub enum TileKind {
     Mask(TextureId),
     /// A solid cube of tinted glass.
     Glass(Glass),
+    /// A block as a wall's, with sides that reflect under a tint.
+    Mirror(Glass),
+    /// A wall that does not fill the cell, from floor to ceiling. Rays and walkers that know no shapes
+    /// take the cell for solid; the others pass it by.
+    Shape(Shape),
 }
 
-/// Glass to look through.
+/// Glass to look through, or into.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct Glass {
     /// Its tint.
     pub color: Rgb,
-    /// How much of the tint is seen in place of what is behind: from 0 for none to 255 for all.
+    /// How much of the tint is seen in place of what is behind, or reflected: from 0 for none to 255
+    /// for all.
     pub opacity: u8,
 }
 
@@ -210,7 +218,7 @@ impl World {
             let blocks = self.sprites.get(usize::from(thing.sprite.0)).is_some_and(|it| it.blocks);
             let (column, row) = (i64::from(thing.cell.column), i64::from(thing.cell.row));
             usize::from(thing.sprite.0) < self.sprites.len()
-                && (!blocks || self.grid.is_barred(column, row))
+                && (!blocks || self.grid.is_occupied(column, row))
         };
         let opens = |door: Door| {
             let is_known = door.key.is_none_or(|key| usize::from(key.0) < self.keys.len());
@@ -226,7 +234,8 @@ impl World {
                     is_solid && opens(door) && self.doorway(tile.character).is_some()
                 }
                 TileKind::Mask(texture) => is_solid && known(Paint::Texture(texture)),
-                TileKind::Glass(_) => is_solid,
+                TileKind::Glass(_) | TileKind::Mirror(_) => is_solid,
+                TileKind::Shape(shape) => is_solid && known(shape.paint),
             }
         };
         self.tiles.iter().enumerate().all(tile_fits)
@@ -321,7 +330,7 @@ impl World {
     /// it meets the first wall.
     pub fn is_level(&self) -> bool {
         let level = |tile: &Tile| match tile.kind {
-            TileKind::Wall(_) => Heights::LEVEL_WALL,
+            TileKind::Wall(_) | TileKind::Mirror(_) => Heights::LEVEL_WALL,
             _ => Heights::LEVEL,
         };
         self.tiles.iter().all(|tile| tile.heights == level(tile))
@@ -415,6 +424,16 @@ impl World {
     /// Takes away all things in `cell` of which `is_taken` says so.
     pub(crate) fn take_things(&mut self, cell: Cell, is_taken: impl Fn(ThingKind) -> bool) {
         self.things.remove(|thing| thing.cell == cell && is_taken(thing.kind));
+    }
+
+    /// Whether any tile is a mirror.
+    pub fn has_mirrors(&self) -> bool {
+        self.tiles.iter().any(|tile| matches!(tile.kind, TileKind::Mirror(_)))
+    }
+
+    /// Whether any tile is a shape.
+    pub(crate) fn has_shapes(&self) -> bool {
+        self.tiles.iter().any(|tile| matches!(tile.kind, TileKind::Shape(_)))
     }
 
     /// Whether all that is solid is walls, which show one side each and hide what is behind.

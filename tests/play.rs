@@ -25,6 +25,8 @@ mod holding;
 mod lagging;
 #[path = "play/levels.rs"]
 mod levels;
+#[path = "play/looking.rs"]
+mod looking;
 #[path = "play/moving.rs"]
 mod moving;
 #[path = "play/recording.rs"]

@@ -6,6 +6,10 @@
 //! looks up what is off the map, and ends after at most one step for each line of the map. One loop
 //! for each method was refused: each would have to get all of that right again.
 
+mod unfolded;
+
+pub(crate) use unfolded::{UnfoldedWalk, Unfolding};
+
 use super::{ExactOrder, Ray, Side};
 use crate::world::{Cell, Grid, TileId};
 
@@ -72,6 +76,7 @@ impl<'grid, O: Order> Walk<'grid, O> {
     }
 
     /// The next solid cell that the ray enters.
+    #[inline]
     pub fn first_solid(&mut self) -> Option<Crossing> {
         let grid = self.grid;
         self.find(|crossing| grid.is_solid_tile(crossing.tile))
@@ -81,6 +86,7 @@ impl<'grid, O: Order> Walk<'grid, O> {
 impl<O: Order> Iterator for Walk<'_, O> {
     type Item = Crossing;
 
+    #[inline]
     fn next(&mut self) -> Option<Crossing> {
         loop {
             let side = self.order.next(self.x.line, self.y.line);

@@ -6,6 +6,7 @@ use super::air::{self, SkyText};
 use super::covering::{CeilingText, CoveringText};
 use super::heights;
 use super::legend::{self, Legend, Section};
+use super::textures::Surface;
 use crate::fault::Fault;
 use crate::fault::document::{Entry, entries};
 use crate::world::{Fog, Heights, Light, Rgb};
@@ -16,6 +17,8 @@ pub(super) const KEYS: &[&str] = &[
     "ceiling",
     "ceiling_height",
     "floor",
+    "riser",
+    "lintel",
     "light",
     "sky",
     "fog",
@@ -33,6 +36,10 @@ pub(super) struct Definitions<'a, 't> {
     /// How high the ceiling is, and how high walls are.
     pub(super) ceiling_height: f64,
     pub(super) floor: CoveringText<'a>,
+    /// The sides of floors, where a tile does not say.
+    pub(super) riser: Option<Surface<'a>>,
+    /// The sides of what hangs above ceilings, where a tile does not say.
+    pub(super) lintel: Option<Surface<'a>>,
     pub(super) sky: Option<SkyText<'a>>,
     pub(super) fog: Option<Fog>,
     /// How bright it is where no tile says otherwise.
@@ -50,6 +57,8 @@ impl<'a, 't> Definitions<'a, 't> {
             ceiling: CeilingText::plain(DEFAULT_CEILING),
             ceiling_height: Heights::LEVEL.ceiling(),
             floor: CoveringText::plain(DEFAULT_FLOOR),
+            riser: None,
+            lintel: None,
             sky: None,
             fog: None,
             light: None,
@@ -81,6 +90,8 @@ impl<'a, 't> Definitions<'a, 't> {
                     self.floor = floor;
                 }
             }
+            "riser" => self.riser = Surface::read(&entry, r#"riser = "stone""#, faults),
+            "lintel" => self.lintel = Surface::read(&entry, r#"lintel = "brick""#, faults),
             "sky" => self.sky = SkyText::read(&entry, faults),
             "light" => self.light = legend::light(&entry, faults),
             "fog" => self.fog = air::fog(&entry, faults),

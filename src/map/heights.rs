@@ -7,7 +7,7 @@ use toml::de::DeTable;
 use super::textures::Surface;
 use crate::fault::Fault;
 use crate::fault::document::{Entry, entries};
-use crate::world::{Ceiling, Heights};
+use crate::world::{Ceiling, Covering, Heights, Paint};
 
 /// The least height of the map's ceiling: things and the player's start are on the map's own floor.
 const LEAST_HEADROOM: f64 = 0.75;
@@ -20,6 +20,13 @@ pub(super) struct HeightsText<'a> {
     roof: Option<Height>,
     pub(super) riser: Option<Surface<'a>>,
     pub(super) lintel: Option<Surface<'a>>,
+}
+
+/// How upright faces look that a tile says nothing of, as far as the map does.
+#[derive(Clone, Copy)]
+pub(super) struct Faces {
+    pub(super) riser: Option<Paint>,
+    pub(super) lintel: Option<Paint>,
 }
 
 /// A height, and where the map says it.
@@ -98,6 +105,22 @@ impl<'a> HeightsText<'a> {
             ),
             _ => None,
         }
+    }
+}
+
+impl Faces {
+    /// The sides of that floor: like the floor, unless the map says otherwise.
+    pub(super) fn riser(self, floor: Covering) -> Paint {
+        self.riser.unwrap_or(floor.pattern.first_paint())
+    }
+
+    /// The sides of what hangs above that ceiling: like the ceiling, unless the map says otherwise.
+    pub(super) fn lintel(self, floor: Covering, ceiling: Ceiling) -> Paint {
+        let below = match ceiling {
+            Ceiling::Covered(covering) => covering,
+            Ceiling::Sky => floor,
+        };
+        self.lintel.unwrap_or(below.pattern.first_paint())
     }
 }
 

@@ -4,6 +4,7 @@ use std::ops::Range;
 
 use super::doors::{self, Keys};
 use super::drawing::Drawing;
+use super::heights::Faces;
 use super::lamps;
 use super::legend::{Legend, Meaning, Surroundings, Symbol};
 use super::per_character::PerCharacter;
@@ -11,8 +12,8 @@ use super::textures::{Surface, Textures};
 use crate::fault::Fault;
 use crate::world::sprite::builtin;
 use crate::world::{
-    Ceiling, Covering, Door, Grid, Heights, Lamplight, Paint, Sprite, SpriteId, Start, Thing,
-    ThingKind, Tile, TileId, TileKind,
+    Door, Grid, Heights, Lamplight, Paint, Sprite, SpriteId, Start, Thing, ThingKind, Tile, TileId,
+    TileKind,
 };
 
 /// The most kinds of tile in a grid, open floor among them.
@@ -39,13 +40,14 @@ impl Layout {
         drawing: &Drawing<'_>,
         legend: &Legend<'_>,
         ground: Tile,
+        faces: Faces,
         textures: &mut Textures<'_>,
         faults: &mut Vec<Fault>,
     ) -> Option<Self> {
         faults.extend(undefined_characters(drawing, legend));
         faults.extend(wrong_start(drawing, legend));
         let keys = Keys::of(drawing, legend);
-        let tiles = tiles(drawing, legend, &keys, ground, textures, faults);
+        let tiles = tiles(drawing, legend, &keys, ground, faces, textures, faults);
         if !faults.is_empty() {
             return None;
         }
@@ -175,6 +177,7 @@ fn tiles(
     legend: &Legend<'_>,
     keys: &Keys,
     ground: Tile,
+    faces: Faces,
     textures: &mut Textures<'_>,
     faults: &mut Vec<Fault>,
 ) -> Vec<Tile> {
@@ -183,13 +186,13 @@ fn tiles(
     for (character, _) in drawing.characters() {
         let Some(symbol) = legend.symbols.get(&character) else { continue };
         if let Meaning::Floor = symbol.meaning {
-            open.extend(tile(character, TileKind::Open, symbol, ground, textures, faults));
+            open.extend(tile(character, TileKind::Open, symbol, ground, faces, textures, faults));
         } else if let Some(kind) = solid_kind(&symbol.meaning, keys, textures, faults) {
             if let TileKind::Door(door) = kind {
                 let kind = TileKind::Doorway(door);
-                open.extend(tile(character, kind, symbol, ground, textures, faults));
+                open.extend(tile(character, kind, symbol, ground, faces, textures, faults));
             }
-            solid.extend(tile(character, kind, symbol, ground, textures, faults));
+            solid.extend(tile(character, kind, symbol, ground, faces, textures, faults));
         }
         if open.len() + solid.len() > MAX_TILES {
             let message = format!("the grid has more than {} kinds of tile", MAX_TILES - 1);
@@ -207,6 +210,7 @@ fn tile(
     kind: TileKind,
     symbol: &Symbol<'_>,
     ground: Tile,
+    faces: Faces,
     textures: &mut Textures<'_>,
     faults: &mut Vec<Fault>,
 ) -> Option<Tile> {
@@ -221,14 +225,15 @@ fn tile(
     };
     let riser = match kind {
         TileKind::Wall(paint) => paint,
-        _ => face(&heights.riser, floor.pattern.first_paint()),
+        TileKind::Mirror(tint) => Paint::Color(tint.color),
+        _ => face(&heights.riser, faces.riser(floor)),
     };
-    let lintel = face(&heights.lintel, lintel_below(ceiling, floor));
+    let lintel = face(&heights.lintel, faces.lintel(floor, ceiling));
     if faults.len() > faults_before {
         return None;
     }
     let heights = match &symbol.meaning {
-        Meaning::Wall(_, height) => {
+        Meaning::Wall(_, height) | Meaning::Mirror(_, height) => {
             Heights::new(height.unwrap_or(map_ceiling), map_ceiling, map_ceiling)?
         }
         _ => heights.heights(ceiling, map_ceiling, faults)?,
@@ -239,14 +244,6 @@ fn tile(
         _ => light.or(ground.light),
     };
     Some(Tile { character, kind, floor, ceiling, light, heights, riser, lintel })
-}
-
-/// How what hangs above a ceiling looks from the side where the map does not say.
-pub(super) fn lintel_below(ceiling: Ceiling, floor: Covering) -> Paint {
-    match ceiling {
-        Ceiling::Covered(covering) => covering.pattern.first_paint(),
-        Ceiling::Sky => floor.pattern.first_paint(),
-    }
 }
 
 /// The kind of solid tile that a character stands for; `None` where it stands for none, or where a
@@ -266,6 +263,8 @@ fn solid_kind(
         })),
         Meaning::Mask(mask) => mask.texture(textures, faults).map(TileKind::Mask),
         Meaning::Glass(glass) => Some(TileKind::Glass(*glass)),
+        Meaning::Mirror(tint, _) => Some(TileKind::Mirror(*tint)),
+        Meaning::Shape(shape) => shape.shape(textures, faults).map(TileKind::Shape),
         Meaning::Open
         | Meaning::Floor
         | Meaning::Start(_)

@@ -10,6 +10,7 @@ use super::definitions::KEYS;
 use super::doors::{DoorSymbol, KeySymbol};
 use super::heights::{self, HeightsText};
 use super::see_through::{self, MaskSymbol};
+use super::shapes::ShapeSymbol;
 use super::sprites::{self, SpriteSymbol};
 use super::textures::Surface;
 use crate::fault::document::{Entry, entries};
@@ -19,7 +20,6 @@ use crate::world::{Glass, Heading, Light};
 /// What other raycasters have in their cells and this one has not.
 const NOT_YET: &[(&str, &str)] = &[
     ("guard", "guards"),
-    ("mirror", "mirrors"),
     ("pushwall", "moving walls"),
     ("secret", "secret doors"),
     ("window", "windows"),
@@ -51,6 +51,9 @@ pub(super) enum Meaning<'a> {
     Door(DoorSymbol<'a>),
     Mask(MaskSymbol<'a>),
     Glass(Glass),
+    /// With a height of its own, if any.
+    Mirror(Glass, Option<f64>),
+    Shape(ShapeSymbol<'a>),
     Start(Heading),
     Exit,
     Key(KeySymbol<'a>),
@@ -97,6 +100,10 @@ impl Section {
                 "door",
                 "mask",
                 "glass",
+                "mirror",
+                "pillar",
+                "diagonal",
+                "thin",
                 "floor",
                 "ceiling",
                 "light",
@@ -113,7 +120,16 @@ impl Section {
     /// The keys that say more of what another one makes: each with that one.
     fn additions(self) -> &'static [(&'static str, &'static str)] {
         match self {
-            Self::Tiles => &[("key", "door"), ("opacity", "glass"), ("height", "wall")],
+            Self::Tiles => &[
+                ("key", "door"),
+                ("opacity", "glass"),
+                ("opacity", "mirror"),
+                ("height", "wall"),
+                ("height", "mirror"),
+                ("radius", "pillar"),
+                ("from", "diagonal"),
+                ("at", "thin"),
+            ],
             Self::Things => &sprites::ADDITIONS,
         }
     }
@@ -258,7 +274,10 @@ impl<'a> Surroundings<'a> {
     /// Whether a tile of that meaning can have these.
     fn suit(&self, meaning: &Meaning<'_>) -> bool {
         match meaning {
-            Meaning::Wall(..) => !self.has_covering() && self.heights.is_empty(),
+            Meaning::Wall(..) | Meaning::Mirror(..) => {
+                !self.has_covering() && self.heights.is_empty()
+            }
+            Meaning::Shape(_) => true,
             Meaning::Door(_) | Meaning::Mask(_) | Meaning::Glass(_) => {
                 !self.has_covering() && self.light.is_none()
             }
@@ -307,6 +326,14 @@ fn property<'a>(
         (Section::Tiles, "door") => DoorSymbol::read(entry, table, faults).map(Meaning::Door),
         (Section::Tiles, "mask") => MaskSymbol::read(entry, faults).map(Meaning::Mask),
         (Section::Tiles, "glass") => see_through::glass(entry, table, faults).map(Meaning::Glass),
+        (Section::Tiles, "mirror") => {
+            let tint = see_through::mirror(entry, table, faults);
+            let height = heights::of_wall(table, faults);
+            tint.map(|tint| Meaning::Mirror(tint, height))
+        }
+        (Section::Tiles, "pillar" | "diagonal" | "thin") => {
+            ShapeSymbol::read(entry, table, faults).map(Meaning::Shape)
+        }
         (Section::Things, "key") => {
             KeySymbol::read(entry, r#"{ key = "brass" }"#, faults).map(Meaning::Key)
         }
@@ -364,9 +391,13 @@ fn unknown_property(section: Section, entry: &Entry<'_, '_>) -> Fault {
         return Fault::new(place(), format!("{plural} are not supported yet"))
             .help(format!("known keys: {}", section.keys().join(", ")));
     }
-    if let Some((key, to)) = section.additions().iter().find(|(key, _)| *key == entry.key) {
+    let wanted = section.additions().iter().filter(|(key, _)| *key == entry.key);
+    let wanted: Vec<&str> = wanted.map(|&(_, to)| to).collect();
+    if !wanted.is_empty() {
+        let (key, to) = (entry.key, wanted.join("\" or \""));
         let message = format!("\"{key}\" goes with \"{to}\", and there is none");
-        return Fault::new(place(), message).help(format!("name a {to} in the same braces"));
+        let help = format!("name a {} in the same braces", wanted.join(" or a "));
+        return Fault::new(place(), message).help(help);
     }
     let other = section.other();
     if other.keys().contains(&entry.key) {
@@ -374,7 +405,8 @@ fn unknown_property(section: Section, entry: &Entry<'_, '_>) -> Fault {
         return Fault::new(place(), message).help(format!("move it to {}", other.name()));
     }
     let additions = section.additions().iter().map(|&(key, _)| key);
-    let known: Vec<&str> = section.keys().iter().copied().chain(additions).collect();
+    let mut known: Vec<&str> = section.keys().iter().copied().chain(additions).collect();
+    known.dedup();
     entry.unknown_key(section.noun(), &known)
 }
 

@@ -2,9 +2,9 @@
 
 use std::fmt;
 
-use super::Plan;
 use super::projection::Projection;
 use super::tally::{Counts, Pass};
+use super::{Geometry, Plan, WindowCounts};
 use crate::cast::Walk;
 use crate::world::Grid;
 
@@ -24,6 +24,10 @@ impl fmt::Display for Explanation {
         write!(f, "{plan}")?;
         writeln!(f)?;
         writeln!(f, "rays     {:>10} cast, into {} cells", counts.rays, counts.cells)?;
+        if let Geometry::Windows(_) = plan.geometry {
+            let WindowCounts { faces, spans, bounces, .. } = counts.windows;
+            writeln!(f, "windows  {faces:>10} faces, {spans} spans, {bounces} bounces")?;
+        }
         let passes = [
             ("ceiling", Pass::Ceiling),
             ("floor", Pass::Floor),

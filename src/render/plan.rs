@@ -7,11 +7,15 @@
 use std::fmt;
 
 use super::Filter;
-use crate::world::{Ceiling, Covering, Light, Paint, Pattern, Rgb, Sky, Tile, TileKind, World};
+use crate::world::{
+    Camera, Ceiling, Covering, Heights, Light, Paint, Pattern, Rgb, Sky, Tile, TileKind, World,
+};
 
 /// Which passes draw a frame, and how.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct Plan {
+    /// Whether every ray ends where it meets the first wall, or goes on above, below and reflected.
+    pub geometry: Geometry,
     /// How what is overhead is drawn.
     pub ceiling: CeilingLoop,
     /// How the floor is drawn.
@@ -24,6 +28,26 @@ pub struct Plan {
     pub things: ThingLoop,
     /// Which level of a texture is read.
     pub filter: Filter,
+}
+
+/// Which passes draw what there is.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Geometry {
+    /// Those for a world that is level: one wall for each column, floor and ceiling around it.
+    Level,
+    /// Those for floors, ceilings and walls of any height, and for mirrors.
+    Windows(WhyWindows),
+}
+
+/// Why a level's passes would not do.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum WhyWindows {
+    /// Floors, ceilings or walls are not all of one height.
+    Heights,
+    /// There are mirrors.
+    Mirrors,
+    /// The eye is not between floor and ceiling.
+    Eye,
 }
 
 /// How the floor or the ceiling is drawn.
@@ -76,10 +100,10 @@ pub enum ThingLoop {
 }
 
 impl Plan {
-    /// The plan for `world`.
-    pub fn new(world: &World, filter: Filter) -> Self {
+    /// The plan for what `camera` sees of `world`.
+    pub fn new(world: &World, camera: &Camera, filter: Filter) -> Self {
         let tiles = world.tiles();
-        let is_open = |tile: &&Tile| tile.kind == TileKind::Open;
+        let is_open = |tile: &&Tile| matches!(tile.kind, TileKind::Open | TileKind::Shape(_));
         let dims = |tile: &Tile| tile.light.is_some_and(|light| light != Light::FULL);
         let open = || tiles.iter().filter(is_open);
         let is_foggy = world.fog().is_some();
@@ -90,6 +114,7 @@ impl Plan {
             is_lamplit || open().any(|tile| dims(tile) || tile.ceiling != world.ceiling());
         let is_textured = |tile: &Tile| matches!(tile.kind, TileKind::Wall(Paint::Texture(_)));
         Self {
+            geometry: Geometry::new(world, camera),
             floor: PlaneLoop::new(world.floor(), floor_varies, is_foggy),
             ceiling: match world.ceiling() {
                 Ceiling::Sky if open().all(|tile| tile.ceiling == Ceiling::Sky) => CeilingLoop::Sky,
@@ -112,6 +137,21 @@ impl Plan {
     }
 }
 
+impl Geometry {
+    fn new(world: &World, camera: &Camera) -> Self {
+        let level = Heights::LEVEL;
+        if !world.is_level() {
+            Self::Windows(WhyWindows::Heights)
+        } else if world.has_mirrors() {
+            Self::Windows(WhyWindows::Mirrors)
+        } else if level.floor() < camera.eye() && camera.eye() < level.ceiling() {
+            Self::Level
+        } else {
+            Self::Windows(WhyWindows::Eye)
+        }
+    }
+}
+
 impl PlaneLoop {
     fn new(covering: Covering, varies: bool, is_foggy: bool) -> Self {
         match covering.pattern {
@@ -126,12 +166,26 @@ impl PlaneLoop {
 impl fmt::Display for Plan {
     /// Writes a line for each pass: how it runs, and why.
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        writeln!(f, "geometry {}", self.geometry)?;
         writeln!(f, "ceiling  {}", self.ceiling)?;
         writeln!(f, "floor    {}", self.floor)?;
         writeln!(f, "sky      {}", self.sky)?;
         writeln!(f, "walls    {}", self.walls)?;
         writeln!(f, "things   {}", self.things)?;
         writeln!(f, "filter   {}", self.filter)
+    }
+}
+
+impl fmt::Display for Geometry {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        f.write_str(match self {
+            Self::Level => "level: a ray ends at the first wall",
+            Self::Windows(WhyWindows::Heights) => {
+                "windows: floors, ceilings or walls are not all of one height"
+            }
+            Self::Windows(WhyWindows::Mirrors) => "windows: there are mirrors",
+            Self::Windows(WhyWindows::Eye) => "windows: the eye is not between floor and ceiling",
+        })
     }
 }
 

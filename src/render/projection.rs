@@ -8,10 +8,11 @@ use std::ops::Range;
 
 use glam::DVec2;
 
+use super::texels_down::{Texels, TexelsDown};
 use super::track::Track;
 use super::{FrameSize, PixelAspect};
 use crate::cast::Ray;
-use crate::world::Camera;
+use crate::world::{Camera, Heights};
 
 /// How the world maps to the pixels of one frame.
 #[derive(Clone, Debug)]
@@ -24,7 +25,9 @@ pub(super) struct Projection {
     /// The row that the eye's own height falls on, in pixels from the top; far outside the picture
     /// where the camera looks that far up or down.
     horizon: f64,
-    /// How high the eye is above the floor, and how far below the ceiling.
+    /// How high the eye is.
+    eye: f64,
+    /// How high it is above a level's floor, and how far below the ceiling, as if it were between.
     above_floor: f64,
     below_ceiling: f64,
     /// Rows from the horizon to something 1 above the eye at distance 1.
@@ -50,6 +53,7 @@ impl Projection {
         let focal_length = across / pixel_aspect.height_over_width();
         let eye = camera.eye().clamp(NEAREST, 1.0 - NEAREST);
         Self {
+            eye: camera.eye().clamp(-FARTHEST, FARTHEST),
             origin: camera.position(),
             direction: camera.direction(),
             plane: camera.plane(),
@@ -61,6 +65,11 @@ impl Projection {
             focal_length,
             focal_length_across: across,
         }
+    }
+
+    /// How high the eye is.
+    pub(super) fn eye(&self) -> f64 {
+        self.eye
     }
 
     /// Where the camera stands.
@@ -98,22 +107,34 @@ impl Projection {
         self.first_row_below(self.horizon - above)..self.first_row_below(self.horizon + below)
     }
 
-    /// Which of `count` texels, from top to bottom of a wall at distance `t`, the centre of a row of
-    /// pixels is on. The row must be one of [`Projection::wall_rows`].
-    ///
-    /// Texels are counted from eye height, where a double can tell how little a row is above or
-    /// below it: however near the wall is, what is above the horizon shows what is above the eye.
-    pub(super) fn texel_on_the_wall(&self, t: f64, count: usize) -> impl Fn(u32) -> usize {
-        let texels_per_row = (t / self.focal_length * count as f64).max(f64::MIN_POSITIVE);
-        let at_eye = self.below_ceiling * count as f64;
-        let texel_at_eye = floor(at_eye);
-        let into_it = at_eye - texel_at_eye as f64;
-        let last = count as i64 - 1;
-        let horizon = self.horizon;
-        move |row| {
-            let below = (f64::from(row) + 0.5 - horizon) * texels_per_row + into_it;
-            (texel_at_eye + floor(below)).clamp(0, last) as usize
+    /// The first row whose centre is not above what is at `height` and distance `t`.
+    pub(super) fn row_of(&self, height: f64, t: f64) -> u32 {
+        let rise = height - self.eye;
+        if rise == 0.0 {
+            return self.first_row_below(self.horizon);
         }
+        self.first_row_below(self.horizon - rise * self.focal_length / t)
+    }
+
+    /// The texels of a wall at distance `t`, `count` from its top to its bottom.
+    pub(super) fn texels_down_the_wall(&self, t: f64, count: usize) -> TexelsDown {
+        let texels = Texels { count, of_cells: (0.0, 1.0), at_eye: self.below_ceiling };
+        TexelsDown::new(2.0 * self.horizon, t / self.focal_length, texels)
+    }
+
+    /// The texels of a face at distance `t` from the height `bottom` to `top`: `count` for each cell
+    /// of its height, from one whole height to the next.
+    pub(super) fn texels_down_the_face(
+        &self,
+        t: f64,
+        count: usize,
+        bottom: f64,
+        top: f64,
+    ) -> TexelsDown {
+        let above = top.ceil();
+        let of_cells = (above - top, above - bottom);
+        let texels = Texels { count, of_cells, at_eye: above - self.eye };
+        TexelsDown::new(2.0 * self.horizon, t / self.focal_length, texels)
     }
 
     /// Where something in the middle of `point` is in the picture.
@@ -156,9 +177,18 @@ impl Projection {
 
     /// What `row` shows of the floor, or of the ceiling where it is above the horizon.
     pub(super) fn track(&self, row: u32) -> Track {
-        let slope = self.slope(row);
-        let height = if slope > 0.0 { self.below_ceiling } else { self.above_floor };
-        let slope = slope.abs();
+        let height = if self.slope(row) > 0.0 { self.below_ceiling } else { self.above_floor };
+        self.track_of(row, height)
+    }
+
+    /// What `row` shows of a floor or a ceiling at that height.
+    pub(super) fn track_at(&self, row: u32, height: f64) -> Track {
+        self.track_of(row, (height - self.eye).abs())
+    }
+
+    /// What `row` shows of a floor or a ceiling `height` cells below or above the eye.
+    fn track_of(&self, row: u32, height: f64) -> Track {
+        let slope = self.slope(row).abs();
         let distance = height / slope;
         // A row further down, the distance is less by that.
         let along = distance / slope / self.focal_length;
@@ -200,6 +230,9 @@ impl Projection {
 /// where it touches.
 const NEAREST: f64 = 1.0 / 64.0;
 
+/// An eye further up or down sees nothing else than from there: no height is so far.
+const FARTHEST: f64 = 4.0 * Heights::MOST;
+
 /// By how many rows the horizon is below the middle of the picture: a whole number, so that what
 /// stays in view looks as it did.
 fn rows_of_pitch(camera: &Camera, focal_length: f64) -> f64 {
@@ -207,11 +240,4 @@ fn rows_of_pitch(camera: &Camera, focal_length: f64) -> f64 {
     const FAR: f64 = 1e9;
     let slope = camera.pitch.slope();
     if slope == 0.0 { 0.0 } else { (slope * focal_length).round().clamp(-FAR, FAR) }
-}
-
-/// The largest integer that is not above `value`. The processor's own rounding is not in every
-/// machine's first instruction set, and a call would cost more than all else that a texel does.
-fn floor(value: f64) -> i64 {
-    let truncated = value as i64;
-    truncated - i64::from(value < truncated as f64)
 }

@@ -3,6 +3,8 @@
 //! The passes are generic over it, and a frame that nobody wants explained is drawn with `()`, which
 //! counts nothing and leaves no code behind.
 
+use super::WindowCounts;
+
 /// A pass that writes pixels.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
 pub enum Pass {
@@ -75,6 +77,8 @@ pub struct Counts {
     pub things_considered: u64,
     /// Those that are.
     pub things_drawn: u64,
+    /// What it took to see above, below and in mirrors, where the world is not level.
+    pub windows: WindowCounts,
     /// Pixels that were written more than once, each as often as that beyond the first time.
     pub overwritten: u64,
 }

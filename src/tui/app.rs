@@ -87,6 +87,7 @@ struct App {
     field_of_view: FieldOfView,
     held: HeldKeys,
     runs: bool,
+    ducks: bool,
     /// What counts for the next step even if its key is up again by then.
     pressed: Intents,
     shows_minimap: bool,
@@ -124,6 +125,7 @@ impl App {
             settings,
             held: HeldKeys::default(),
             runs: false,
+            ducks: false,
             pressed: Intents::new(),
             shows_minimap: true,
             has_left: false,
@@ -165,15 +167,25 @@ impl App {
             _ => None,
         });
         let aims = self.held.iter().any(|key| self.turns(key) && !self.held.is_certain(key));
-        let others = [self.runs.then_some(Intent::Run), aims.then_some(Intent::Aim)];
+        let others = [
+            self.runs.then_some(Intent::Run),
+            self.ducks.then_some(Intent::Duck),
+            aims.then_some(Intent::Aim),
+        ];
         wanted.chain(self.pressed.iter()).chain(others.into_iter().flatten()).collect()
     }
 
-    /// Whether `key` turns the player. What may be a tap turns slowly: it is to aim with, and on
+    /// Whether `key` turns the player, or their gaze. What may be a tap turns slowly: it is to aim with, and on
     /// most terminals nobody says when it ends.
     fn turns(&self, key: Key) -> bool {
-        let turn = [Intent::TurnLeft, Intent::TurnRight].map(|turn| Some(Action::Want(turn)));
-        turn.contains(&self.settings.bindings.action(key))
+        let turns = [Intent::TurnLeft, Intent::TurnRight, Intent::LookUp, Intent::LookDown];
+        let turns = turns.map(|turn| Some(Action::Want(turn)));
+        turns.contains(&self.settings.bindings.action(key))
+    }
+
+    /// How the player walks, as far as they need not hold a key for it.
+    fn gait(&self) -> panels::Gait {
+        panels::Gait { runs: self.runs, ducks: self.ducks }
     }
 
     fn scene(&self) -> Scene {
@@ -242,8 +254,13 @@ impl App {
                 self.shows_minimap = !self.shows_minimap;
                 self.shown = None;
             }
-            (Screen::Playing, Some(Action::Want(Intent::Open))) => {
-                self.pressed.insert(Intent::Open);
+            (
+                Screen::Playing,
+                Some(Action::Want(tap @ (Intent::Open | Intent::Jump | Intent::LookAhead))),
+            ) => self.pressed.insert(tap),
+            (_, Some(Action::ToggleDuck)) => {
+                self.ducks = !self.ducks;
+                self.shown = None;
             }
             (_, Some(Action::ToggleRun)) => {
                 self.runs = !self.runs;
@@ -301,7 +318,7 @@ impl App {
         let [picture, status] = panels::picture_and_status(area);
         self.draw_picture(frame, picture);
         let stats = self.stats.as_ref().filter(|_| self.shows_stats);
-        panels::status(frame, status, &self.game, self.runs, stats, &self.settings.bindings);
+        panels::status(frame, status, &self.game, self.gait(), stats, &self.settings.bindings);
         let seconds = self.game.elapsed();
         match self.screen {
             Screen::Playing => {}

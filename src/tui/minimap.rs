@@ -9,7 +9,7 @@ use ratatui::widgets::Widget;
 use super::{GlyphMode, ascii, half_blocks};
 use crate::palette::ColorDepth;
 use crate::render::Column;
-use crate::world::{Camera, Cell, Paint, Rgb, ThingKind, TileId, TileKind, World};
+use crate::world::{Camera, Cell, Paint, Rgb, Shape, ThingKind, TileId, TileKind, World};
 
 /// A widget that shows the map from above: walls in their colours, the player as an arrow, and the
 /// part of the floor that is seen, by the rays that the picture was drawn from.
@@ -80,7 +80,7 @@ impl Widget for Minimap<'_> {
             return;
         }
         let window = Window::new(area, self.glyphs, self.world, self.camera.position());
-        let place = |x, y| self.place(window.point(x, y));
+        let place = |x, y| self.place(window.point(x, y), window.pixel());
         match self.glyphs {
             GlyphMode::Half => {
                 half_blocks::draw(area, buffer, self.depth, 0, |x, y| place(x, y).color());
@@ -105,11 +105,13 @@ impl Minimap<'_> {
         Size::new(needed.x as u16, (needed.y / pixels_per_cell).ceil() as u16)
     }
 
-    /// What is on the map at `point`.
-    fn place(&self, point: DVec2) -> Place {
+    /// What is on the map at `point`, in the middle of a pixel that is `pixel` cells wide.
+    fn place(&self, point: DVec2, pixel: f64) -> Place {
         let (column, row) = (point.x.floor() as i64, point.y.floor() as i64);
         let Some(tile) = self.world.grid().tile(column, row) else { return Place::Void };
-        if let Some(color) = self.solid_color(tile) {
+        if let Some(color) = self.solid_color(tile)
+            && self.is_covered(tile, point, pixel)
+        {
             return Place::Wall(color);
         }
         let cell = Cell { column: column as u32, row: row as u32 };
@@ -127,14 +129,25 @@ impl Minimap<'_> {
     fn solid_color(&self, tile: TileId) -> Option<Rgb> {
         let paint = match self.world.tile(tile).kind {
             TileKind::Open | TileKind::Doorway(_) => return None,
-            TileKind::Wall(paint) => paint,
+            TileKind::Wall(paint) | TileKind::Shape(Shape { paint, .. }) => paint,
             TileKind::Door(door) => door.leaf,
+            TileKind::Mirror(tint) => Paint::Color(tint.color),
             TileKind::Mask(texture) => Paint::Texture(texture),
             TileKind::Glass(glass) => {
                 return Some(glass.color.over(FLOOR, glass.opacity.max(MIST)));
             }
         };
         Some(self.world.mean_color(paint))
+    }
+
+    /// Whether a pixel around `point`, in a cell of a solid tile, shows that: all do but those beside
+    /// a shape.
+    fn is_covered(&self, tile: TileId, point: DVec2, pixel: f64) -> bool {
+        let TileKind::Shape(Shape { outline, .. }) = self.world.tile(tile).kind else {
+            return true;
+        };
+        let cell = Cell { column: point.x as u32, row: point.y as u32 };
+        outline.distance(cell, point) <= pixel / 2.0
     }
 
     /// Whether the ray of the column that `point` falls in gets as far as that.
@@ -242,6 +255,11 @@ impl Window {
             corner_along(spare.y, center.y, size.y),
         );
         Self { size, scale, corner, pixels_per_cell }
+    }
+
+    /// How many cells of the map a pixel is wide.
+    fn pixel(&self) -> f64 {
+        1.0 / self.scale.x
     }
 
     /// The point of the map that the centre of a pixel shows.

@@ -111,12 +111,10 @@ impl Grid {
         self.occupied.insert(cell);
     }
 
-    /// Whether nobody can walk there: what is solid, what something stands in the way of, and all that
-    /// is off the map.
-    pub fn is_barred(&self, column: i64, row: i64) -> bool {
-        let Some(tile) = self.tile(column, row) else { return true };
+    /// Whether something stands at a place, on the map, that nobody can walk through.
+    pub fn is_occupied(&self, column: i64, row: i64) -> bool {
         let cell = Cell { column: column as u32, row: row as u32 };
-        self.is_solid_tile(tile) || !self.occupied.is_empty() && self.occupied.contains(&cell)
+        !self.occupied.is_empty() && self.occupied.contains(&cell)
     }
 
     /// Whether there is something solid at a place; off the map there is nothing.

@@ -64,19 +64,27 @@ pub(super) fn framed(frame: &mut Frame, area: Rect, title: &str) -> Rect {
     inside
 }
 
+/// How the player walks, whatever keys are held.
+#[derive(Clone, Copy, Debug)]
+pub(super) struct Gait {
+    pub(super) runs: bool,
+    pub(super) ducks: bool,
+}
+
 /// The line below the picture.
 pub(super) fn status(
     frame: &mut Frame,
     area: Rect,
     game: &Game,
-    runs: bool,
+    gait: Gait,
     stats: Option<&Stats>,
     bindings: &Bindings,
 ) {
-    let running = runs.then(|| "running".to_owned());
+    let running = gait.runs.then(|| "running".to_owned());
+    let ducking = gait.ducks.then(|| "ducking".to_owned());
     let keys = game.keys().map(|key| format!("{key} key"));
     let message = game.message().map(str::to_owned);
-    let parts = running.into_iter().chain(keys).chain(message);
+    let parts = running.into_iter().chain(ducking).chain(keys).chain(message);
     let left: String =
         parts.fold(format!(" {}", title(game.world())), |line, part| line + "  " + &part);
     let left = Line::from(left);
@@ -175,7 +183,7 @@ mod tests {
     fn help_is_whole_or_says_that_there_is_more() {
         let bindings = Bindings::default();
         for (columns, rows, is_whole) in
-            [(31, 17, true), (61, 10, true), (200, 60, true), (60, 9, false), (20, 5, false)]
+            [(32, 24, true), (64, 13, true), (200, 60, true), (60, 9, false), (20, 5, false)]
         {
             let text = shown(columns, rows, |frame| help(frame, frame.area(), &bindings));
             let is_so = Action::ALL.iter().all(|(_, does, _)| text.contains(does));
