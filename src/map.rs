@@ -39,6 +39,7 @@ mod picture;
 mod see_through;
 mod shapes;
 mod sprites;
+mod supports;
 mod textures;
 
 use std::collections::BTreeSet;
