@@ -86,8 +86,7 @@ struct App {
     cell_aspect: CellAspect,
     field_of_view: FieldOfView,
     held: HeldKeys,
-    runs: bool,
-    ducks: bool,
+    gait: panels::Gait,
     /// What counts for the next step even if its key is up again by then.
     pressed: Intents,
     shows_minimap: bool,
@@ -124,8 +123,7 @@ impl App {
             shows_stats: settings.shows_stats,
             settings,
             held: HeldKeys::default(),
-            runs: false,
-            ducks: false,
+            gait: panels::Gait::default(),
             pressed: Intents::new(),
             shows_minimap: true,
             has_left: false,
@@ -168,8 +166,8 @@ impl App {
         });
         let aims = self.held.iter().any(|key| self.turns(key) && !self.held.is_certain(key));
         let others = [
-            self.runs.then_some(Intent::Run),
-            self.ducks.then_some(Intent::Duck),
+            self.gait.runs.then_some(Intent::Run),
+            self.gait.ducks.then_some(Intent::Duck),
             aims.then_some(Intent::Aim),
         ];
         wanted.chain(self.pressed.iter()).chain(others.into_iter().flatten()).collect()
@@ -184,10 +182,6 @@ impl App {
     }
 
     /// How the player walks, as far as they need not hold a key for it.
-    fn gait(&self) -> panels::Gait {
-        panels::Gait { runs: self.runs, ducks: self.ducks }
-    }
-
     fn scene(&self) -> Scene {
         Scene { camera: self.camera(), revision: self.game.revision() }
     }
@@ -259,11 +253,11 @@ impl App {
                 Some(Action::Want(tap @ (Intent::Open | Intent::Jump | Intent::LookAhead))),
             ) => self.pressed.insert(tap),
             (_, Some(Action::ToggleDuck)) => {
-                self.ducks = !self.ducks;
+                self.gait.ducks = !self.gait.ducks;
                 self.shown = None;
             }
             (_, Some(Action::ToggleRun)) => {
-                self.runs = !self.runs;
+                self.gait.runs = !self.gait.runs;
                 self.shown = None;
             }
             (_, Some(Action::ToggleStats)) => {
@@ -318,7 +312,7 @@ impl App {
         let [picture, status] = panels::picture_and_status(area);
         self.draw_picture(frame, picture);
         let stats = self.stats.as_ref().filter(|_| self.shows_stats);
-        panels::status(frame, status, &self.game, self.gait(), stats, &self.settings.bindings);
+        panels::status(frame, status, &self.game, self.gait, stats, &self.settings.bindings);
         let seconds = self.game.elapsed();
         match self.screen {
             Screen::Playing => {}

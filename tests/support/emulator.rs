@@ -1,4 +1,5 @@
 //! A terminal emulator: what it shows, the modes that are set, and what it answers.
+#![allow(dead_code, reason = "every test file uses its own share of this")]
 
 use std::num::NonZeroU16;
 

@@ -65,7 +65,7 @@ pub(super) fn framed(frame: &mut Frame, area: Rect, title: &str) -> Rect {
 }
 
 /// How the player walks, whatever keys are held.
-#[derive(Clone, Copy, Debug)]
+#[derive(Clone, Copy, Debug, Default)]
 pub(super) struct Gait {
     pub(super) runs: bool,
     pub(super) ducks: bool,
