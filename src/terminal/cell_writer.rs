@@ -81,6 +81,11 @@ impl<W: Write> CellWriter<W> {
         self.bytes_written
     }
 
+    /// What is written to. A byte that others write to it is one that this does not know of.
+    pub fn output_mut(&mut self) -> &mut W {
+        &mut self.output
+    }
+
     /// What was written to.
     pub fn into_output(self) -> W {
         self.output
