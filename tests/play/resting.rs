@@ -36,6 +36,24 @@ fn while_nothing_moves_nothing_is_written_and_the_processor_rests() {
     assert_rests("paused while turning");
 }
 
+#[test]
+fn what_flickers_is_drawn_when_it_does_and_only_while_it_is_in_view() {
+    const FLICKERS: usize = 4;
+    let game = Game::start_map("torch");
+    game.wait_for_releases();
+    let (begun, before) = (Instant::now(), count(&game.bytes(), BEGIN));
+    game.wait_until("flickered", |emulator| count(emulator.bytes(), BEGIN) >= before + FLICKERS);
+    // A quarter of a second each, but for the first, which may have been about to come.
+    let elapsed = begun.elapsed();
+    assert!(elapsed >= Duration::from_millis(700), "{FLICKERS} frames in {elapsed:?}");
+    // Past it, to the wall behind.
+    game.press(Key::Char('w'));
+    game.wait_for_rest();
+    let written = game.bytes_written();
+    thread::sleep(Duration::from_secs(1));
+    assert_eq!(game.bytes_written(), written, "the torch is behind the player");
+}
+
 /// In hundredths of a second, where the system has a file that says so.
 fn processor_time(game: &Game) -> Option<u64> {
     let status = std::fs::read_to_string(format!("/proc/{}/stat", game.process())).ok()?;
