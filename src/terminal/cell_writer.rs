@@ -273,7 +273,7 @@ impl<W: Write> CellWriter<W> {
 }
 
 /// How often a row is shifted in a frame: its left, its right and its middle may each move their way.
-const MOST_SHIFTS: usize = 3;
+const MOST_SHIFTS: usize = 6;
 
 /// The last bytes of the sequences that delete characters, and insert blank ones.
 const DELETE: u8 = b'P';

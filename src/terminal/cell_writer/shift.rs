@@ -30,7 +30,7 @@ pub(super) enum Way {
 /// The farthest that is looked for: what moves faster has changed in other ways too.
 const FARTHEST: usize = 16;
 /// As many landmarks are asked where they come from.
-const MOST_LANDMARKS: usize = 12;
+const MOST_LANDMARKS: usize = 32;
 /// About how many bytes a cell takes.
 const CELL: i32 = 12;
 /// About how many bytes a shift takes: two motions, a deletion and an insertion.
