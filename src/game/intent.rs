@@ -24,11 +24,21 @@ pub enum Intent {
     Aim,
     /// Open the door ahead.
     Open,
+    /// Look further up.
+    LookUp,
+    /// Look further down.
+    LookDown,
+    /// Look level again, neither up nor down.
+    LookAhead,
+    /// Jump; before a door that is not open, open it instead.
+    Jump,
+    /// Make oneself small for as long as this is wanted.
+    Duck,
 }
 
 impl Intent {
     /// All of them.
-    pub const ALL: [Self; 9] = [
+    pub const ALL: [Self; 14] = [
         Self::Forward,
         Self::Back,
         Self::StrafeLeft,
@@ -38,6 +48,11 @@ impl Intent {
         Self::Run,
         Self::Aim,
         Self::Open,
+        Self::LookUp,
+        Self::LookDown,
+        Self::LookAhead,
+        Self::Jump,
+        Self::Duck,
     ];
 }
 
