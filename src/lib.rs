@@ -16,6 +16,7 @@ pub mod game;
 pub mod map;
 pub mod palette;
 pub mod render;
+pub mod space;
 #[cfg(feature = "terminal")]
 pub mod terminal;
 #[cfg(feature = "tui")]
