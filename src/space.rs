@@ -22,7 +22,7 @@ mod scene;
 mod seen;
 
 pub use body::{Block, Body, Coat, FARTHEST, Plane, SMALLEST, Shape, Sphere};
-pub use camera::{Axes, Camera, Elevation};
+pub use camera::{Axes, Camera, EYE_ROOM, Elevation};
 pub use explanation::Explanation;
 pub use light::{Share, Sky, Sun};
 pub use ray::{Hit, Ray};

@@ -9,6 +9,9 @@ use super::ray::Ray;
 use crate::render::{FrameSize, PixelAspect};
 use crate::world::{FieldOfView, Heading};
 
+/// How far the eye of a player keeps from every body, in cells.
+pub const EYE_ROOM: f64 = 0.25;
+
 /// How far up or down somebody looks: from straight down to straight up.
 ///
 /// Past that they would see the world upside down, and left would be right.
