@@ -8,6 +8,7 @@
 
 mod collision;
 mod doors;
+mod flight;
 mod intent;
 mod motion;
 mod notice;
@@ -18,8 +19,9 @@ use std::collections::BTreeSet;
 use crate::world::{Camera, Cell, Door, FieldOfView, KeyId, ThingKind, World};
 use doors::{Doors, door_ahead};
 use notice::Notice;
-use player::Player;
+use player::{AIM, FRICTION, Player, RUN, STILL, TURN, TURN_FRICTION, WALK};
 
+pub use flight::Flight;
 pub use intent::{Intent, Intents};
 #[cfg(feature = "accuracy")]
 pub(crate) use motion::approach;
