@@ -9,7 +9,7 @@ use etcetera::{BaseStrategy, choose_base_strategy};
 
 use super::arguments::Play;
 use super::{Error, level};
-use crate::map::builtin;
+use crate::map::{Level, builtin};
 use crate::tui::{self, Bindings, Levels, Settings};
 
 /// Plays until the player has had enough.
@@ -34,7 +34,8 @@ fn levels(options: &Play) -> Result<Levels, Error> {
     let first = level::load(map)?;
     let index = map.map_or(Some(0), level::builtin_level);
     let following = index.map_or(&[][..], |index| &builtin::LEVELS[index + 1..]);
-    Ok(Levels::new(first, following.iter().map_while(|level| level.world().ok())))
+    let following = following.iter().map_while(|level| level.world().ok());
+    Ok(Levels::new(first, following.map(|world| Level::Grid(Box::new(world)))))
 }
 
 /// The bindings in the file that was named, or in the user's own if there is one.

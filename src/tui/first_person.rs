@@ -6,7 +6,7 @@ use ratatui::buffer::Buffer;
 use ratatui::layout::{Rect, Size};
 use ratatui::widgets::StatefulWidget;
 
-use super::{CellAspect, GlyphMode, ascii, half_blocks};
+use super::{CellAspect, GlyphMode, ascii, half_blocks, ramp};
 use crate::cast::Method;
 use crate::palette::ColorDepth;
 use crate::render::{Column, Explanation, Filter, Frame, FrameSize, PixelAspect, Renderer};
@@ -101,6 +101,10 @@ impl<'a> FirstPerson<'a> {
                 let surface = renderer.columns()[x as usize].surface(above + y, frame.height());
                 let color = frame.pixel(x, above + y);
                 (color, ascii::character(surface, color))
+            }),
+            GlyphMode::Ramp => ascii::draw(area, buffer, self.depth, |x, y| {
+                let color = frame.pixel(x, above + y);
+                (color, ramp::character(color))
             }),
         }
     }

@@ -6,10 +6,9 @@ use ratatui::style::{Modifier, Style};
 use ratatui::text::{Line, Text};
 use ratatui::widgets::{Block, Clear, Paragraph, Wrap};
 
-use crate::game::Game;
+use super::played::Played;
 use crate::tui::Minimap;
 use crate::tui::bindings::{Action, Bindings};
-use crate::world::World;
 
 /// The least that can be played in.
 const LEAST_COLUMNS: u16 = 20;
@@ -64,13 +63,16 @@ pub(super) fn framed(frame: &mut Frame, area: Rect, title: &str) -> Rect {
 }
 
 /// The line below the picture.
-pub(super) fn status(frame: &mut Frame, area: Rect, game: &Game, runs: bool, bindings: &Bindings) {
+pub(super) fn status(
+    frame: &mut Frame,
+    area: Rect,
+    game: &Played,
+    runs: bool,
+    bindings: &Bindings,
+) {
     let running = runs.then(|| "running".to_owned());
-    let keys = game.keys().map(|key| format!("{key} key"));
-    let message = game.message().map(str::to_owned);
-    let parts = running.into_iter().chain(keys).chain(message);
-    let left: String =
-        parts.fold(format!(" {}", title(game.world())), |line, part| line + "  " + &part);
+    let parts = running.into_iter().chain(game.news());
+    let left: String = parts.fold(format!(" {}", game.title()), |line, part| line + "  " + &part);
     let left = Line::from(left);
     let right = Line::from(format!(" {} help ", key_names(bindings, Action::ToggleHelp)));
     let widths = [Constraint::Fill(1), Constraint::Length(right.width() as u16)];
@@ -110,8 +112,8 @@ pub(super) fn help(frame: &mut Frame, picture: Rect, bindings: &Bindings) {
 }
 
 /// That the exit was reached, and how soon.
-pub(super) fn level_done(frame: &mut Frame, picture: Rect, world: &World, seconds: f64) {
-    let text = format!("{}\nin {}\nEnter goes on", title(world), time(seconds));
+pub(super) fn level_done(frame: &mut Frame, picture: Rect, title: &str, seconds: f64) {
+    let text = format!("{title}\nin {}\nEnter goes on", time(seconds));
     message(frame, picture, "you found the way out", Text::from(text).centered());
 }
 
@@ -132,10 +134,6 @@ fn message(frame: &mut Frame, picture: Rect, title: &str, text: Text) {
     let [inside] =
         Layout::horizontal([Constraint::Fill(1)]).horizontal_margin(PADDING / 2).areas(inside);
     frame.render_widget(Paragraph::new(text), inside);
-}
-
-fn title(world: &World) -> &str {
-    if world.title().is_empty() { "a level without a name" } else { world.title() }
 }
 
 fn key_names(bindings: &Bindings, action: Action) -> String {
