@@ -21,13 +21,18 @@
 //! | [`Table`] | x and y lines apart, along the nearest of so many angles | F. Permadi, "Ray-Casting Tutorial" |
 //! | [`March`] | constant steps | what Lode Vandevenne warns of |
 //!
-//! Besides walls there are doors, whose leaf stands back in its cell, and cubes that are seen through.
+//! Besides walls there are doors, whose leaf stands back in its cell, cubes that are seen through, and
+//! shapes that do not fill their cell.
 //! [`Caster::cast_through`] knows them:
 //!
 //! - A ray that is in the cell of a door, whether it has entered it or starts there, hits its leaf
 //!   where it meets it, and otherwise goes on.
 //! - A ray that enters a cube of glass or one with holes passes through, and is told of it. Cells of
 //!   the same tile side by side are one cube: there is no face between them.
+//!
+//! - A ray that is in the cell of a shape, a pillar or a line, hits it where it meets it, and
+//!   otherwise goes on. A line has no thickness, and both its ends belong to it: a ray along it meets
+//!   nothing, one through an end does. A ray that starts inside a pillar leaves it.
 //!
 //! Only [`Exact`] does that; to the others all of these are walls.
 //!
@@ -43,12 +48,14 @@ mod cross;
 mod dda;
 mod dda32;
 mod door;
+mod double;
 mod exact;
 mod fixed;
 mod hit;
 mod march;
 mod method;
 mod ray;
+mod shape;
 mod table;
 mod through;
 mod walk;
@@ -64,6 +71,7 @@ pub use method::{Method, NotAMethod, Visitor};
 pub use ray::{NotARay, Ray};
 pub use table::Table;
 pub use walk::{Crossing, Order, Walk};
+pub(crate) use walk::{UnfoldedWalk, Unfolding};
 
 use crate::world::{Grid, World};
 

@@ -6,13 +6,18 @@
 
 mod accuracy;
 mod arguments;
+mod asciicast;
 mod cast;
 mod check;
 mod error;
 mod help;
 mod level;
 mod play;
+mod recording;
+mod replay;
+mod script;
 mod snapshot;
+mod wire;
 
 use std::ffi::OsString;
 use std::process::ExitCode;
@@ -39,6 +44,8 @@ impl Command {
             Self::Cast(options) => cast::run(&options),
             Self::Check(maps) => check::run(&maps),
             Self::Accuracy(options) => accuracy::run(&options),
+            Self::Replay(options) => replay::run(&options),
+            Self::Wire(options) => wire::run(&options),
         }
     }
 }

@@ -21,4 +21,6 @@ pub mod space;
 pub mod terminal;
 #[cfg(feature = "tui")]
 pub mod tui;
+#[cfg(feature = "cli")]
+pub mod wire;
 pub mod world;

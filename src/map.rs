@@ -30,12 +30,16 @@ mod covering;
 mod definitions;
 mod doors;
 mod drawing;
+mod heights;
+mod lamps;
 mod layout;
 mod legend;
 mod per_character;
 mod picture;
 mod scene;
 mod see_through;
+mod shapes;
+mod sprites;
 mod textures;
 
 use std::collections::BTreeSet;
@@ -45,12 +49,13 @@ use std::path::Path;
 
 use crate::fault::{Fault, Faults, document};
 use crate::space::Scene;
-use crate::world::{Ceiling, Covering, Paint, Parts, Rgb, Sky, Tile, TileKind, World};
+use crate::world::{Ceiling, Covering, Heights, Paint, Parts, Rgb, Sky, Tile, TileKind, World};
 use definitions::Definitions;
 use drawing::Drawing;
+use heights::Faces;
 use layout::Layout;
-use textures::Textures;
 pub use textures::{Folder, NoFiles, TextureFileError, TextureFiles};
+use textures::{Surface, Textures};
 
 /// The largest map file, in bytes. The largest grid, in characters of three bytes, has room.
 pub const MAX_BYTES: usize = 64 << 20;
@@ -115,6 +120,18 @@ pub fn load_level(path: &Path) -> Result<Level, Faults> {
     let name = path.display().to_string();
     let text = read_text(path, &name)?;
     parse_level(&text, &name, &Folder::of(path))
+}
+
+impl From<World> for Level {
+    fn from(world: World) -> Self {
+        Self::Grid(Box::new(world))
+    }
+}
+
+impl From<Scene> for Level {
+    fn from(scene: Scene) -> Self {
+        Self::Space(scene)
+    }
 }
 
 impl Level {
@@ -196,15 +213,23 @@ fn read(text: &str, files: &dyn TextureFiles, faults: &mut Vec<Fault>) -> Option
     let drawing = Drawing::read(grid, text, faults)?;
     // Where one of the two has a fault, nothing will come of the tiles but further faults.
     let plain = Covering::from(Paint::Color(Rgb::BLACK));
+    let (floor, ceiling) = (floor.unwrap_or(plain), ceiling.unwrap_or(Ceiling::Covered(plain)));
+    let mut face = |surface: &Option<Surface<'_>>| textures.paint(surface.as_ref()?, faults);
+    let faces = Faces { riser: face(&definitions.riser), lintel: face(&definitions.lintel) };
+    let map_ceiling = definitions.ceiling_height;
     let ground = Tile {
         character: '.',
         kind: TileKind::Open,
-        floor: floor.unwrap_or(plain),
-        ceiling: ceiling.unwrap_or(Ceiling::Sky),
-        light: None,
+        floor,
+        ceiling,
+        light: definitions.light,
+        heights: Heights::new(0.0, map_ceiling, map_ceiling)?,
+        riser: faces.riser(floor),
+        lintel: faces.lintel(floor, ceiling),
     };
-    let layout = Layout::of(&drawing, &definitions.legend, ground, &mut textures, faults)?;
-    Some(Level::Grid(Box::new(World::from_parts(Parts {
+    let (legend, textures_mut) = (&definitions.legend, &mut textures);
+    let layout = Layout::of(&drawing, legend, ground, faces, textures_mut, faults)?;
+    Some(Level::from(World::from_parts(Parts {
         title: definitions.title,
         grid: layout.grid,
         tiles: layout.tiles,
@@ -214,9 +239,11 @@ fn read(text: &str, files: &dyn TextureFiles, faults: &mut Vec<Fault>) -> Option
         sky: sky.unwrap_or_else(|| Some(Sky::default()))?,
         fog: definitions.fog,
         start: layout.start,
+        lamplight: layout.lamplight,
+        sprites: layout.sprites,
         things: layout.things,
         keys: layout.keys,
-    }))))
+    })))
 }
 
 /// Adds the places that are not TOML to `faults`, and drops what was found in the same lines: the

@@ -2,8 +2,8 @@
 //!
 //! A frame is drawn by a [`Plan`], made from the world, in passes, each a file: `columns` casts one
 //! ray for every column of pixels, `planes` lays floor and ceiling, `sky` fills in what is open,
-//! `walls` papers what the rays hit, `see_through` paints over that what the rays passed. The passes
-//! share a `Projection`, which is the only place that knows how the world maps to pixels.
+//! `walls` papers what the rays hit, `see_through` paints over that what the rays passed, and `things`
+//! what stands between all that. The passes share a `Projection`, which is the only place that knows how the world maps to pixels.
 //!
 //! The caller owns the [`Frame`] and keeps the [`Renderer`], which owns what the passes need in
 //! between; drawing allocates nothing once both have grown to the size of the picture. One pass that
@@ -16,6 +16,7 @@ mod explanation;
 mod filter;
 mod frame;
 mod lay;
+mod marks;
 mod plan;
 mod planes;
 mod projection;
@@ -23,29 +24,36 @@ mod see_through;
 mod shade;
 mod sky;
 mod tally;
+mod things;
 mod track;
 mod walls;
+mod windows;
 
 pub use columns::{Column, Surface};
 pub use explanation::Explanation;
 pub use filter::Filter;
 pub use frame::{Frame, FrameSize, PixelAspect};
-pub use plan::{CeilingLoop, Plan, PlaneLoop, SkyLoop, WallLoop};
+pub use plan::{CeilingLoop, Geometry, Plan, PlaneLoop, SkyLoop, ThingLoop, WallLoop, WhyWindows};
 pub use tally::{Counts, Pass, PassCounts};
 
 use crate::cast::{Caster, Method, Visitor};
 use crate::world::{Camera, World};
+use marks::Marks;
 use planes::{Plane, PlaneKind};
 use projection::Projection;
 use see_through::Passed;
 use sky::{SkyColumn, SkyView};
 use tally::Tally;
+use things::InView;
+pub use windows::WindowCounts;
+use windows::Windows;
 
 /// Draws frames, and keeps what is worth keeping from one to the next.
 #[derive(Clone, Debug, Default)]
 pub struct Renderer {
     method: Method,
     filter: Filter,
+    seconds: f64,
     memory: Memory,
 }
 
@@ -53,10 +61,17 @@ pub struct Renderer {
 #[derive(Clone, Debug, Default)]
 struct Memory {
     columns: Vec<Column>,
+    first_row_of_ground: u32,
     passed: Passed,
     /// For each column, how many rows show the floor or the ceiling, whichever is being drawn.
     visible: Vec<u32>,
     sky: Vec<SkyColumn>,
+    in_view: InView,
+    marks: Marks,
+    next_change: Option<f64>,
+    windows: Windows,
+    /// By which passes the last frame was drawn.
+    geometry: Option<Geometry>,
 }
 
 impl Renderer {
@@ -75,10 +90,27 @@ impl Renderer {
         self.filter = filter;
     }
 
+    /// Shows things as they are after so many `seconds` from now on; 0 at first.
+    pub fn set_time(&mut self, seconds: f64) {
+        self.seconds = seconds;
+    }
+
+    /// When something in the last frame begins to look different, by the clock of
+    /// [`Renderer::set_time`]; `None` for never.
+    pub fn next_change(&self) -> Option<f64> {
+        self.memory.next_change
+    }
+
+    /// Keeps what each pixel shows from now on, or no longer, for [`Renderer::surface`].
+    pub fn keep_surfaces(&mut self, are_kept: bool) {
+        self.memory.marks.keep(are_kept);
+    }
+
     /// Draws what `camera` sees of `world` into all of `frame`.
     pub fn render(&mut self, world: &World, camera: &Camera, frame: &mut Frame) {
-        let Self { method, filter, memory } = self;
-        method.accept(Picture { world, camera, filter: *filter, memory, frame, tally: &mut () });
+        let Self { method, filter, seconds, memory } = self;
+        let (filter, seconds, tally) = (*filter, *seconds, &mut ());
+        method.accept(Picture { world, camera, filter, seconds, memory, frame, tally });
     }
 
     /// As [`Renderer::render`], with the walls that `caster` finds.
@@ -89,21 +121,29 @@ impl Renderer {
         camera: &Camera,
         frame: &mut Frame,
     ) {
-        let Self { filter, memory, .. } = self;
-        let picture = Picture { world, camera, filter: *filter, memory, frame, tally: &mut () };
-        picture.visit(caster);
+        let Self { filter, seconds, memory, .. } = self;
+        let (filter, seconds, tally) = (*filter, *seconds, &mut ());
+        Picture { world, camera, filter, seconds, memory, frame, tally }.visit(caster);
     }
 
     /// As [`Renderer::render`], and tells how it went. Cells are counted along exact rays, whatever
     /// the method of finding walls.
     pub fn explain(&mut self, world: &World, camera: &Camera, frame: &mut Frame) -> Explanation {
-        let Self { method, filter, memory } = self;
+        let Self { method, filter, seconds, memory } = self;
         let mut counts = Counts::default();
-        let tally = &mut counts;
-        let plan = method.accept(Picture { world, camera, filter: *filter, memory, frame, tally });
+        let (filter, seconds, tally) = (*filter, *seconds, &mut counts);
+        let plan = method.accept(Picture { world, camera, filter, seconds, memory, frame, tally });
         let projection = Projection::new(camera, frame.size(), frame.pixel_aspect());
         counts.rays = u64::from(frame.width());
-        counts.cells = explanation::cells_entered(world.grid(), &projection);
+        match plan.geometry {
+            Geometry::Level => {
+                counts.cells = explanation::cells_entered(world.grid(), &projection);
+            }
+            Geometry::Windows(_) => {
+                counts.windows = memory.windows.counts();
+                counts.cells = counts.windows.cells;
+            }
+        }
         let size = u64::from(frame.width()) * u64::from(frame.height());
         counts.overwritten = counts.pixels() - size;
         Explanation { plan, counts }
@@ -113,6 +153,19 @@ impl Renderer {
     pub fn columns(&self) -> &[Column] {
         &self.memory.columns
     }
+
+    /// What the pixel `(x, y)` of the last frame shows, where [that is kept](Renderer::keep_surfaces);
+    /// else what it shows but for things and masks before that. `None` where the frame had no column `x`.
+    pub fn surface(&self, x: u32, y: u32) -> Option<Surface> {
+        let Memory { columns, first_row_of_ground, marks, windows, geometry, .. } = &self.memory;
+        let column = columns.get(x as usize)?;
+        match geometry {
+            Some(Geometry::Windows(_)) => windows.surface(x, y),
+            _ => {
+                Some(marks.surface(x, y).unwrap_or_else(|| column.surface(y, *first_row_of_ground)))
+            }
+        }
+    }
 }
 
 /// A picture to draw, with whichever caster.
@@ -120,6 +173,7 @@ struct Picture<'a, T> {
     world: &'a World,
     camera: &'a Camera,
     filter: Filter,
+    seconds: f64,
     memory: &'a mut Memory,
     frame: &'a mut Frame,
     tally: &'a mut T,
@@ -138,29 +192,71 @@ impl<T: Tally> Visitor for Picture<'_, T> {
     type Output = Plan;
 
     fn visit<C: Caster>(self, caster: &C) -> Plan {
-        let Self { world, camera, filter, memory, frame, tally } = self;
-        let Memory { columns, passed, visible, sky } = memory;
-        let plan = Plan::new(world, filter);
+        let plan = Plan::new(self.world, self.camera, self.filter);
+        match plan.geometry {
+            Geometry::Level => self.draw_level(plan, caster),
+            Geometry::Windows(_) => self.draw_windows(plan),
+        }
+        plan
+    }
+}
+
+impl<T: Tally> Picture<'_, T> {
+    fn draw_level<C: Caster>(self, plan: Plan, caster: &C) {
+        let Self { world, camera, filter, seconds, memory, frame, tally } = self;
+        let Memory {
+            columns,
+            first_row_of_ground,
+            passed,
+            visible,
+            sky,
+            in_view,
+            marks,
+            next_change,
+            geometry,
+            ..
+        } = memory;
         let projection = &Projection::new(camera, frame.size(), frame.pixel_aspect());
         columns::cast(caster, world, projection, columns, passed);
         let scene = Scene { world, projection, columns, filter };
-        let height = frame.height();
+        let (ground, height) = (projection.first_row_of_ground(), frame.height());
+        *first_row_of_ground = ground;
+        *geometry = Some(plan.geometry);
 
         let sky = &SkyView::new(world, projection, filter, sky);
         match plan.ceiling {
             CeilingLoop::Sky => sky.draw_overhead(plan.sky, scene, frame, tally),
             CeilingLoop::Laid(plane) => {
                 visible.clear();
-                visible.extend(columns.iter().map(|column| column.rows_of_ceiling(height)));
+                visible.extend(columns.iter().map(|column| column.rows_of_ceiling(ground)));
                 Plane { scene, kind: PlaneKind::Ceiling, sky, visible }.draw(plane, frame, tally);
                 sky.draw_beyond_edge(scene, frame, tally);
             }
         }
         visible.clear();
-        visible.extend(columns.iter().map(|column| column.rows_of_floor(height)));
+        visible.extend(columns.iter().map(|column| column.rows_of_floor(ground, height)));
         Plane { scene, kind: PlaneKind::Floor, sky, visible }.draw(plan.floor, frame, tally);
         walls::draw(scene, plan.walls, frame, tally);
-        see_through::draw(scene, passed, frame, tally);
-        plan
+        marks.begin(frame.width(), height);
+        *next_change = match plan.things {
+            ThingLoop::None => {
+                see_through::draw(scene, passed, marks, frame, tally);
+                None
+            }
+            ThingLoop::Billboards => {
+                things::draw(scene, seconds, passed, in_view, marks, frame, tally)
+            }
+        };
+    }
+
+    /// Draws by exact rays, whatever the caster: the others know nothing but walls.
+    fn draw_windows(self, plan: Plan) {
+        let Self { world, camera, filter, memory, frame, tally, .. } = self;
+        let Memory { columns, sky, windows, geometry, .. } = memory;
+        *geometry = Some(plan.geometry);
+        let projection = &Projection::new(camera, frame.size(), frame.pixel_aspect());
+        let sky = &SkyView::new(world, projection, filter, sky);
+        let scene = windows::Scene::new(world, projection, filter);
+        windows::draw(scene, plan.walls, sky, windows, columns, frame, tally);
     }
 }

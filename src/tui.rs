@@ -39,7 +39,7 @@ mod ramp;
 mod space_view;
 
 #[cfg(feature = "terminal")]
-pub use app::{Levels, Settings, play};
+pub use app::{Levels, Recording, Replay, Settings, play};
 #[cfg(feature = "terminal")]
 pub use bindings::Bindings;
 pub use first_person::{FirstPerson, View};

@@ -14,7 +14,13 @@ mod color;
 mod covering;
 mod door;
 mod grid;
+mod heights;
+mod lamplight;
+mod pitch;
+mod shape;
+pub mod sprite;
 pub mod texture;
+mod things;
 
 pub use air::{Fog, Light, Sky};
 pub use camera::{Camera, FieldOfView, Heading};
@@ -23,7 +29,15 @@ pub use covering::{Ceiling, Covering, Pattern, Scale};
 use door::Ajar;
 pub use door::{Door, KeyId, Opening};
 pub use grid::{Cell, Grid, TileId};
+pub use heights::{Gap, Heights};
+pub(crate) use lamplight::Lamplight;
+pub use lamplight::{Lamp, Reach};
+pub use pitch::Pitch;
+pub use shape::{Line, Outline, PillarRadius, Shape};
+pub use sprite::{Anchor, Facings, FrameTime, Sprite, SpriteHeight, SpriteId};
 pub use texture::Texture;
+use things::Things;
+pub use things::{Thing, ThingKind};
 
 /// What a level consists of.
 #[derive(Clone, Debug, PartialEq)]
@@ -37,7 +51,9 @@ pub struct World {
     sky: Sky,
     fog: Option<Fog>,
     start: Start,
-    things: Vec<Thing>,
+    sprites: Vec<Sprite>,
+    things: Things,
+    lamplight: Lamplight,
     keys: Vec<String>,
     ajar: Ajar,
 }
@@ -57,16 +73,24 @@ pub struct Tile {
     /// own sides are. `None` where the map does not say: full for open floor, and for a wall as
     /// bright as the floor before it.
     pub light: Option<Light>,
+    /// How high its floor, its ceiling and what hangs above that are.
+    pub heights: Heights,
+    /// How the sides look of what its floor lies on, where they are seen from a lower one; a wall's
+    /// own sides, and its top.
+    pub riser: Paint,
+    /// How the sides look of what hangs above its ceiling, where they are seen from below a higher
+    /// one; and its roof.
+    pub lintel: Paint,
 }
 
 /// What a tile is.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+#[derive(Clone, Copy, Debug, PartialEq)]
 pub enum TileKind {
     /// Floor to walk on, and to see across.
     Open,
     /// Where a door is that is all open: floor between two jambs.
     Doorway(Door),
-    /// A solid cube.
+    /// A solid block, as high as its floor says: what is above it is open.
     Wall(Paint),
     /// A door that is closed, or not all open. It stands between two solid cells, open floor before
     /// and behind it.
@@ -75,14 +99,20 @@ pub enum TileKind {
     Mask(TextureId),
     /// A solid cube of tinted glass.
     Glass(Glass),
+    /// A block as a wall's, with sides that reflect under a tint.
+    Mirror(Glass),
+    /// A wall that does not fill the cell, from floor to ceiling. Rays and walkers that know no shapes
+    /// take the cell for solid; the others pass it by.
+    Shape(Shape),
 }
 
-/// Glass to look through.
+/// Glass to look through, or into.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct Glass {
     /// Its tint.
     pub color: Rgb,
-    /// How much of the tint is seen in place of what is behind: from 0 for none to 255 for all.
+    /// How much of the tint is seen in place of what is behind, or reflected: from 0 for none to 255
+    /// for all.
     pub opacity: u8,
 }
 
@@ -108,24 +138,6 @@ pub struct Start {
     pub heading: Heading,
 }
 
-/// Something that stands in a cell.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub struct Thing {
-    /// What it is.
-    pub kind: ThingKind,
-    /// Where it stands.
-    pub cell: Cell,
-}
-
-/// What a thing is.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub enum ThingKind {
-    /// Who reaches it has finished the level.
-    Exit,
-    /// Who reaches it takes it, and can open the doors that ask for it.
-    Key(KeyId),
-}
-
 /// The pieces of a world, not yet known to fit together.
 pub(crate) struct Parts {
     pub(crate) title: String,
@@ -137,18 +149,33 @@ pub(crate) struct Parts {
     pub(crate) sky: Sky,
     pub(crate) fog: Option<Fog>,
     pub(crate) start: Start,
+    pub(crate) sprites: Vec<Sprite>,
     pub(crate) things: Vec<Thing>,
+    pub(crate) lamplight: Lamplight,
     pub(crate) keys: Vec<String>,
 }
 
 impl World {
     /// A world of `parts` that fit together: every tile of the grid and every texture is in its
-    /// list, open tiles come before solid ones, the start and all things stand on open floor, every
+    /// list, open tiles come before solid ones, the map's own floor first, the start and all things stand on open floor, those that block are known to the grid, every
     /// door has a doorway by the same character, and stands between solid cells that are no doors.
     /// The map's own checks establish all of that, and name what does not fit.
     pub(crate) fn from_parts(parts: Parts) -> Self {
-        let Parts { title, grid, tiles, textures, floor, ceiling, sky, fog, start, things, keys } =
-            parts;
+        let Parts {
+            title,
+            grid,
+            tiles,
+            textures,
+            floor,
+            ceiling,
+            sky,
+            fog,
+            start,
+            sprites,
+            things,
+            lamplight,
+            keys,
+        } = parts;
         let world = Self {
             title,
             grid,
@@ -159,7 +186,9 @@ impl World {
             sky,
             fog,
             start,
-            things,
+            sprites,
+            things: Things::new(things),
+            lamplight,
             keys,
             ajar: Ajar::default(),
         };
@@ -185,6 +214,12 @@ impl World {
             let (column, row) = (i64::from(cell.column), i64::from(cell.row));
             self.grid.tile(column, row).is_some() && !self.grid.is_solid(column, row)
         };
+        let stands = |thing: &Thing| {
+            let blocks = self.sprites.get(usize::from(thing.sprite.0)).is_some_and(|it| it.blocks);
+            let (column, row) = (i64::from(thing.cell.column), i64::from(thing.cell.row));
+            usize::from(thing.sprite.0) < self.sprites.len()
+                && (!blocks || self.grid.is_occupied(column, row))
+        };
         let opens = |door: Door| {
             let is_known = door.key.is_none_or(|key| usize::from(key.0) < self.keys.len());
             is_known && known(door.leaf) && known(door.jamb)
@@ -199,22 +234,47 @@ impl World {
                     is_solid && opens(door) && self.doorway(tile.character).is_some()
                 }
                 TileKind::Mask(texture) => is_solid && known(Paint::Texture(texture)),
-                TileKind::Glass(_) => is_solid,
+                TileKind::Glass(_) | TileKind::Mirror(_) => is_solid,
+                TileKind::Shape(shape) => is_solid && known(shape.paint),
             }
         };
         self.tiles.iter().enumerate().all(tile_fits)
             && self.tiles.iter().all(|tile| covers(tile.floor) && ceils(tile.ceiling))
+            && self.tiles.iter().all(|tile| known(tile.riser) && known(tile.lintel))
             && self.grid.rows().flatten().all(|tile| usize::from(tile.0) < self.tiles.len())
             && covers(self.floor)
             && ceils(self.ceiling)
             && sky_is_known
             && open(self.start.cell)
-            && self.things.iter().all(|thing| open(thing.cell))
+            && self.things().iter().all(|thing| open(thing.cell) && stands(thing))
     }
 
     /// The level's name; empty where the map gives none.
     pub fn title(&self) -> &str {
         &self.title
+    }
+
+    /// The heights of the floor and the ceiling in `cell`; off the map, those of the map's own floor.
+    pub fn room_in(&self, cell: Cell) -> Heights {
+        self.tile_at(cell).unwrap_or(self.ground()).heights
+    }
+
+    /// How bright it is in `cell`: as its tile says, and what lamps add; of a wall, as its own sides
+    /// are, where it says so.
+    pub fn light_in(&self, cell: Cell) -> Light {
+        let own = self.tile_at(cell).unwrap_or(self.ground()).light;
+        own.unwrap_or(Light::FULL).plus(self.lamplight.at(cell))
+    }
+
+    /// What lamps add to the light in `cell`.
+    #[inline]
+    pub(crate) fn lamplight_in(&self, cell: Cell) -> Light {
+        self.lamplight.at(cell)
+    }
+
+    /// Whether lamps add anything anywhere.
+    pub(crate) fn has_lamplight(&self) -> bool {
+        !self.lamplight.is_dark()
     }
 
     /// Which tile each cell holds.
@@ -261,6 +321,21 @@ impl World {
         self.ceiling
     }
 
+    /// The open floor that is as the map says: what `.` stands for.
+    pub fn ground(&self) -> Tile {
+        self.tiles[0]
+    }
+
+    /// Whether all floors are at 0, and all ceilings and walls a cell above that: every ray ends where
+    /// it meets the first wall.
+    pub fn is_level(&self) -> bool {
+        let level = |tile: &Tile| match tile.kind {
+            TileKind::Wall(_) | TileKind::Mirror(_) => Heights::LEVEL_WALL,
+            _ => Heights::LEVEL,
+        };
+        self.tiles.iter().all(|tile| tile.heights == level(tile))
+    }
+
     /// What the sky looks like.
     pub fn sky(&self) -> Sky {
         self.sky
@@ -276,9 +351,32 @@ impl World {
         self.start
     }
 
-    /// What stands in the cells, the start excepted.
+    /// What stands in the cells, the start excepted: row by row from the north, each from the west.
     pub fn things(&self) -> &[Thing] {
-        &self.things
+        self.things.all()
+    }
+
+    /// What stands in `cell`.
+    pub fn things_in(&self, cell: Cell) -> &[Thing] {
+        self.things.between(cell.row, cell.column, cell.column)
+    }
+
+    /// What stands in `row` between two columns, themselves included.
+    pub(crate) fn things_between(&self, row: u32, first: u32, last: u32) -> &[Thing] {
+        self.things.between(row, first, last)
+    }
+
+    /// The sprite `id` of this world.
+    ///
+    /// # Panics
+    /// Where `id` is from another world that has more sprites.
+    pub fn sprite(&self, id: SpriteId) -> &Sprite {
+        &self.sprites[usize::from(id.0)]
+    }
+
+    /// How wide the widest sprite is, in cells; 0 where nothing stands anywhere.
+    pub(crate) fn widest_sprite(&self) -> f64 {
+        self.sprites.iter().map(Sprite::width).fold(0.0, f64::max)
     }
 
     /// What the key `id` of this world is called, such as "brass".
@@ -325,7 +423,17 @@ impl World {
 
     /// Takes away all things in `cell` of which `is_taken` says so.
     pub(crate) fn take_things(&mut self, cell: Cell, is_taken: impl Fn(ThingKind) -> bool) {
-        self.things.retain(|thing| thing.cell != cell || !is_taken(thing.kind));
+        self.things.remove(|thing| thing.cell == cell && is_taken(thing.kind));
+    }
+
+    /// Whether any tile is a mirror.
+    pub fn has_mirrors(&self) -> bool {
+        self.tiles.iter().any(|tile| matches!(tile.kind, TileKind::Mirror(_)))
+    }
+
+    /// Whether any tile is a shape.
+    pub(crate) fn has_shapes(&self) -> bool {
+        self.tiles.iter().any(|tile| matches!(tile.kind, TileKind::Shape(_)))
     }
 
     /// Whether all that is solid is walls, which show one side each and hide what is behind.

@@ -5,7 +5,8 @@ use std::path::Path;
 use allocation_counter::measure;
 use cellcaster::map;
 use cellcaster::render::{
-    CeilingLoop, Explanation, Filter, Frame, FrameSize, PixelAspect, PlaneLoop, Renderer,
+    CeilingLoop, Counts, Explanation, Filter, Frame, FrameSize, PassCounts, PixelAspect, PlaneLoop,
+    Renderer, ThingLoop,
 };
 use cellcaster::world::{FieldOfView, World};
 
@@ -71,6 +72,56 @@ fn a_gradient_reads_no_texel_and_a_panorama_one_a_pixel() {
     assert_eq!((gradient.texels, gradient.pixels), (0, PIXELS / 2));
     let panorama = explained(&gallery("panorama")).counts.sky;
     assert_eq!(panorama.texels, panorama.pixels);
+}
+
+#[test]
+fn a_scene_without_things_considers_none() {
+    for name in ["flat", "floor", "masks"] {
+        let Explanation { plan, counts } = explained(&gallery(name));
+        assert_eq!(plan.things, ThingLoop::None, "{name}");
+        let things = (counts.things_considered, counts.things_drawn, counts.things);
+        assert_eq!(things, (0, 0, PassCounts::default()), "{name}");
+    }
+}
+
+#[test]
+fn a_single_lamp_costs_the_pixels_that_it_covers() {
+    let with_lamp = include_str!("../maps/gallery/flat.toml")
+        .replace("[things]", "[things]\n\"l\" = { sprite = \"lamp\" }")
+        .replace("@..", "@.l");
+    let flat = explained(&gallery("flat")).counts;
+    let Explanation { plan, counts } = explained(&map::parse_str(&with_lamp).unwrap());
+    // All is fully lit: there is nothing to add to, and the floor is one fill as before.
+    assert!(matches!(plan.floor, PlaneLoop::Fill(_)));
+    assert_eq!((counts.things_considered, counts.things_drawn), (1, 1));
+    let without_lamp = Counts {
+        things: PassCounts::default(),
+        things_considered: 0,
+        things_drawn: 0,
+        overwritten: counts.overwritten - counts.things.pixels,
+        ..counts
+    };
+    assert_eq!(without_lamp, flat);
+    assert!((1..PIXELS / 20).contains(&counts.things.pixels), "{}", counts.things.pixels);
+}
+
+#[test]
+fn ten_thousand_things_elsewhere_are_not_considered() {
+    let row = format!("#{}#\n", "b".repeat(398));
+    let hall = "#@...b...#".to_owned() + &"#".repeat(390) + "\n";
+    let wall = "#".repeat(400) + "\n";
+    let text = |rows: usize| {
+        format!(
+            "grid = '''\n{wall}{hall}{wall}{}{wall}'''\n\
+             tiles.'#'.wall = 'brick'\nthings = {{ '@'.start = 0, 'b'.sprite = 'barrel' }}\n",
+            row.repeat(rows)
+        )
+    };
+    let [few, many] = [0, 26].map(|rows| map::parse_str(&text(rows)).unwrap());
+    assert!(many.things().len() > 10_000);
+    let (few, many) = (explained(&few).counts, explained(&many).counts);
+    assert_eq!((few.things_considered, few.things_drawn), (1, 1));
+    assert_eq!(few, many);
 }
 
 #[test]

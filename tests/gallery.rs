@@ -126,3 +126,34 @@ fn panes_of_glass_add_up() {
     assert_golden("glass", "glass_in_a_row", &["--camera", "4.6,2.6,10"]);
     assert_golden("glass", "glass_along_a_row", &["--camera", "8.4,5.6,250"]);
 }
+
+#[test]
+fn who_looks_up_and_down_sees_the_same_moved() {
+    assert_golden("looking", "looking_up", &["--pitch", "14"]);
+    assert_golden("looking", "looking_down", &["--pitch", "-14"]);
+    assert_golden("looking", "looking_from_below", &["--eye", "0.2"]);
+    assert_golden("looking", "looking_from_above", &["--eye", "0.9", "--pitch", "-10"]);
+}
+
+#[test]
+
+fn heights_are_seen_from_below_and_from_above() {
+    assert_golden("heights", "heights_large", &["--size", "200x60"]);
+    let above = ["--camera", "2.5,10.5,330", "--eye", "3.3", "--pitch", "-20"];
+    assert_golden("heights", "heights_from_above", &above);
+    assert_golden("heights", "heights_of_a_pit", &["--camera", "5.5,9.5,190", "--pitch", "-12"]);
+    assert_golden("heights", "heights_under_a_roof", &["--camera", "8.5,7.5,40", "--pitch", "8"]);
+}
+
+#[test]
+fn mirrors_show_mirrors() {
+    assert_golden("mirrors", "mirrors_large", &["--size", "200x60"]);
+    assert_golden("mirrors", "mirrors_face_to_face", &["--camera", "6.5,6.6,4"]);
+}
+
+#[test]
+fn shapes_do_not_fill_their_cells() {
+    assert_golden("shapes", "shapes_of_pillars", &["--camera", "6.5,4.5,200"]);
+    assert_golden("shapes", "shapes_of_diagonals", &["--camera", "10.5,5.5,90"]);
+    assert_golden("shapes", "shapes_of_thin_walls", &["--camera", "6.5,6.5,340"]);
+}

@@ -5,7 +5,7 @@ use cellcaster::cast::{Caster, Exact, Ray};
 use cellcaster::map;
 use cellcaster::render::{Filter, Frame, FrameSize, PixelAspect, Renderer};
 use cellcaster::world::{
-    Camera, Ceiling, Covering, FieldOfView, Heading, Light, Paint, Pattern, Rgb, World,
+    Camera, Ceiling, Covering, FieldOfView, Heading, Light, Paint, Pattern, Pitch, Rgb, World,
 };
 use glam::DVec2;
 use proptest::prelude::*;
@@ -68,8 +68,10 @@ fn expected(world: &World, camera: &Camera, frame: &Frame, x: u32, y: u32) -> Op
     let (width, height) = (f64::from(frame.width()), f64::from(frame.height()));
     let half_width = camera.field_of_view.half_width();
     let focal = width / 2.0 / half_width / frame.pixel_aspect().height_over_width();
-    let below = f64::from(y) + 0.5 - height / 2.0;
-    let distance = 0.5 * focal / below.abs();
+    let horizon = height / 2.0 + (camera.pitch.slope() * focal).round();
+    let below = f64::from(y) + 0.5 - horizon;
+    let to_plane = if below > 0.0 { camera.eye() } else { 1.0 - camera.eye() };
+    let distance = to_plane * focal / below.abs();
     let across = (f64::from(x) + 0.5) * 2.0 / width - 1.0;
     let direction = camera.direction() + camera.plane() * across;
     let hit = Exact.cast(world.grid(), &Ray::new(camera.position(), direction).unwrap());
@@ -101,6 +103,8 @@ proptest! {
         field_of_view in 30.0..=120.0,
         size in (1_u32..120, 1_u32..120),
         aspect in prop_oneof![Just(1.0), Just(2.0), 0.3..4.0],
+        eye in prop_oneof![Just(0.5), 0.02..0.98],
+        pitch in prop_oneof![Just(0.0), -30.0..=30.0],
     ) {
         let world = map::parse_str(MAP).unwrap();
         let camera = Camera::new(
@@ -108,6 +112,7 @@ proptest! {
             Heading::from_degrees(degrees).unwrap(),
             FieldOfView::from_degrees(field_of_view).unwrap(),
         ).unwrap();
+        let camera = camera.with_eye(eye).unwrap().with_pitch(Pitch::from_degrees(pitch).unwrap());
         let size = FrameSize::new(size.0, size.1).unwrap();
         let mut frame = Frame::new(size, PixelAspect::new(aspect).unwrap());
         let mut renderer = Renderer::new();

@@ -4,8 +4,12 @@
 #[path = "support/mod.rs"]
 mod support;
 
+#[path = "support/asciicast.rs"]
+mod asciicast;
 #[path = "support/emulator.rs"]
 mod emulator;
+#[path = "support/looks.rs"]
+mod looks;
 #[path = "support/player.rs"]
 mod player;
 
@@ -19,8 +23,12 @@ mod game;
 mod holding;
 #[path = "play/levels.rs"]
 mod levels;
+#[path = "play/looking.rs"]
+mod looking;
 #[path = "play/moving.rs"]
 mod moving;
+#[path = "play/recording.rs"]
+mod recording;
 #[path = "play/resting.rs"]
 mod resting;
 #[path = "play/settings.rs"]

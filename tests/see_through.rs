@@ -2,7 +2,7 @@
 //! by asking every face of every cell, and laid over one another from far to near.
 
 use cellcaster::map;
-use cellcaster::render::{Frame, FrameSize, PixelAspect, Renderer};
+use cellcaster::render::{Filter, Frame, FrameSize, PixelAspect, Renderer};
 use cellcaster::world::{Camera, FieldOfView, Heading, Rgb, TileKind, World};
 use glam::DVec2;
 use proptest::prelude::*;
@@ -54,7 +54,9 @@ proptest! {
             FieldOfView::from_degrees(field_of_view).unwrap(),
         ).unwrap();
         let mut frame = Frame::new(FrameSize::new(size.0, size.1).unwrap(), PixelAspect::SQUARE);
-        Renderer::new().render(&world, &camera, &mut frame);
+        let mut renderer = Renderer::new();
+        renderer.set_filter(Filter::Nearest);
+        renderer.render(&world, &camera, &mut frame);
 
         let picture = Picture { world: &world, camera: &camera, size };
         let mut compared = 0;
@@ -159,7 +161,7 @@ impl Picture<'_> {
             TileKind::Mask(texture) => {
                 let texture = self.world.texture(texture);
                 let (x, y) = ((face.u * 64.0) as u32, (from_top * 64.0) as u32);
-                (texture.column(face.u)[y as usize], texture.alpha(x, y))
+                (texture.column(face.u)[y as usize], texture.texel(x, y).1)
             }
             other => panic!("{other:?} is not in the map"),
         }

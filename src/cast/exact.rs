@@ -46,8 +46,12 @@ pub struct ExactOrder {
 impl ExactOrder {
     /// The order for `ray` in `grid`.
     pub fn new(grid: &Grid, ray: &Ray) -> Self {
+        Self::within(DVec2::new(f64::from(grid.width()), f64::from(grid.height())), ray)
+    }
+
+    /// The order for `ray` among lines that are no further from 0 than `size`.
+    pub(super) fn within(size: DVec2, ray: &Ray) -> Self {
         let rounded = DdaOrder::new(ray);
-        let size = DVec2::new(f64::from(grid.width()), f64::from(grid.height()));
         // No line is further than that. A distance to one is rounded once when it is taken and once
         // when it is weighed; all together, twice an epsilon is twice as much as that comes to. What
         // vanishes for being too small a double is less than the second term.

@@ -1,9 +1,9 @@
-//! The walk past what a ray may pass: doors that are ajar, glass, and holes.
+//! The walk past what a ray may pass: doors that are ajar, shapes, glass, and holes.
 //!
 //! It stops at every solid cell and asks what that is; between two of them it is the walk that looks
 //! for walls, and costs the same.
 
-use super::{Crossing, Hit, Order, Ray, Side, Walk, door};
+use super::{Crossing, Hit, Order, Ray, Side, Walk, door, shape};
 use crate::world::{TileId, TileKind, World};
 
 /// What `ray`, whose `walk` has not begun, hits in `world`; it tells `passed` what it passes.
@@ -15,12 +15,13 @@ pub(super) fn cast<O: Order>(
 ) -> Option<Hit> {
     let grid = world.grid();
     let leaf_in = |cell| door::meet(grid, ray, cell, world.opening(cell));
-    let start = walk.cell();
-    if let Some((cell, tile)) = start
-        && let TileKind::Door(_) = world.tile(tile).kind
-        && let Some(hit) = leaf_in(cell)
-    {
-        return Some(hit);
+    let start = walk.cell().and_then(|(cell, tile)| match world.tile(tile).kind {
+        TileKind::Door(_) => leaf_in(cell),
+        TileKind::Shape(it) => shape::meet(ray, cell, it.outline),
+        _ => None,
+    });
+    if start.is_some() {
+        return start;
     }
     while let Some(crossing) = walk.first_solid() {
         match world.tile(crossing.tile).kind {
@@ -29,12 +30,17 @@ pub(super) fn cast<O: Order>(
                     return Some(hit);
                 }
             }
+            TileKind::Shape(it) => {
+                if let Some(hit) = shape::meet(ray, crossing.cell, it.outline) {
+                    return Some(hit);
+                }
+            }
             TileKind::Mask(_) | TileKind::Glass(_) => {
                 if tile_before(world, ray, crossing) != Some(crossing.tile) {
                     passed(Hit::entering(ray, crossing.cell, crossing.side));
                 }
             }
-            TileKind::Wall(_) | TileKind::Open | TileKind::Doorway(_) => {
+            TileKind::Wall(_) | TileKind::Mirror(_) | TileKind::Open | TileKind::Doorway(_) => {
                 return Some(Hit::entering(ray, crossing.cell, crossing.side));
             }
         }

@@ -4,8 +4,10 @@ mod accuracy;
 mod cast;
 mod check;
 mod play;
+mod replay;
 mod snapshot;
 mod value;
+mod wire;
 
 use std::ffi::{OsStr, OsString};
 
@@ -14,7 +16,9 @@ use lexopt::{Arg, Parser};
 pub(super) use self::accuracy::{Accuracy, ReportFormat};
 pub(super) use self::cast::Cast;
 pub(super) use self::play::Play;
+pub(super) use self::replay::Replay;
 pub(super) use self::snapshot::{Format, Snapshot};
+pub(super) use self::wire::{Wire, WireFormat};
 use super::Error;
 use crate::fault;
 
@@ -28,6 +32,8 @@ pub(super) enum Command {
     Cast(Cast),
     Check(Vec<OsString>),
     Accuracy(Accuracy),
+    Replay(Replay),
+    Wire(Wire),
 }
 
 impl Command {
@@ -44,13 +50,16 @@ impl Command {
             "cast" => cast::parse(parser),
             "check" => check::parse(parser),
             "accuracy" => accuracy::parse(parser),
+            "replay" => replay::parse(parser),
+            "wire" => wire::parse(parser),
             "help" => Ok(Self::Help),
             _ => play::parse(parser),
         }
     }
 }
 
-pub(super) const COMMANDS: [&str; 6] = ["play", "snapshot", "cast", "check", "accuracy", "help"];
+pub(super) const COMMANDS: [&str; 8] =
+    ["play", "snapshot", "cast", "check", "accuracy", "replay", "wire", "help"];
 
 fn is_command(argument: &OsStr) -> bool {
     COMMANDS.iter().any(|&command| argument == command)

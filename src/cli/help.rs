@@ -24,6 +24,8 @@ USAGE
   cellcaster cast [MAP] [OPTIONS]      rays from standard input, hits to standard output
   cellcaster check MAP...              say everything that is wrong with maps
   cellcaster accuracy [MAP] [OPTIONS]  error against run time, for every way to cast
+  cellcaster replay SCRIPT [MAP] [OPTIONS]  a script, off screen, as asciicast
+  cellcaster wire [MAP] [OPTIONS]      bytes a frame against what the viewer sees
   cellcaster --help | --version
 
   MAP is a map file, or a built-in level: cellar, museum, citadel.
@@ -40,12 +42,16 @@ OPTIONS OF PLAY
   --fps N           at most N frames a second, 1 to 240            [30]
   --config FILE     key bindings        [cellcaster/config.toml in the
                     folder for configuration files]
+  --record FILE     a FILE.cast: what the terminal is sent, as asciicast v3;
+                    any other: what you do, as a script for replay and wire
 
 OPTIONS OF SNAPSHOT
   --size COLSxROWS  cells, 1x1 to 4096x4096                        [80x24]
   --camera X,Y,HEADING
                     where to look from, in cells and degrees: 0 is east,
                     90 south                                       [the map's start]
+  --eye HEIGHT      in cells above floor level                     [0.5]
+  --pitch DEG       look down, from -30, or up, to 30              [0]
   --format FORMAT   text: characters; ansi: with colours; json; png  [text]
   --explain         how the frame is drawn and what it costs, in its place
 
@@ -75,6 +81,17 @@ ACCURACY
   --seed S          where chance begins                            [1]
   --format FORMAT   table, json, csv, svg or png                   [table]
 
+REPLAY, WIRE
+  --cast FILE       of replay: where to write                      [standard output]
+  --script FILE     of wire: what is played                        [a walk in citadel]
+  --format FORMAT   of wire: table, json or csv                    [table]
+  --size, --fps     as above        [80x24 for replay, 120x40 for wire; 30]
+  --fov, --colors   of replay, as above                            [66; true]
+  --fidelity LEVEL  exact, high, low or 0 to 255: how far colours may be off
+                    [exact for replay; for wire, which takes several, the named]
+  A script is lines such as "2.5 s forward run" or "12 steps turn-left open";
+  "stand" is nothing, [walking] begins a section, # a comment.
+
 EXAMPLES
   cellcaster                                   play the built-in levels
   cellcaster my.toml --colors 256              play a map of your own
@@ -85,6 +102,7 @@ EXAMPLES
   cellcaster check maps/*.toml
   cellcaster accuracy --caster exact --caster dda --set "through corners"
   cellcaster accuracy --format svg > accuracy.svg
+  cellcaster --record walk.script && cellcaster replay walk.script > walk.cast
 
 Exit status: 0, or 2 for a mistake in the arguments or a map, or 1 where the
 machine refuses something.

@@ -7,6 +7,7 @@ use super::Error;
 use super::arguments::COMMANDS;
 use crate::fault::nearest;
 use crate::map::{self, Level, builtin};
+use crate::tui::Levels;
 use crate::world::World;
 
 /// As [`load`], for a command that needs a grid.
@@ -23,7 +24,7 @@ pub(super) fn load_grid(argument: Option<&OsStr>) -> Result<World, Error> {
 
 /// The level that `argument` names: a built-in one or a map file; without it, the first built-in.
 pub(super) fn load(argument: Option<&OsStr>) -> Result<Level, Error> {
-    let of_grid = |level: &builtin::Level| Ok(Level::Grid(Box::new(level.world()?)));
+    let of_grid = |level: &builtin::Level| Ok(Level::from(level.world()?));
     let Some(argument) = argument else { return of_grid(&builtin::LEVELS[0]) };
     if let Some(index) = builtin_level(argument) {
         return of_grid(&builtin::LEVELS[index]);
@@ -38,8 +39,17 @@ pub(super) fn load(argument: Option<&OsStr>) -> Result<Level, Error> {
     }
 }
 
+/// The level that `argument` names, and the built-in ones that follow it if it is one.
+pub(super) fn load_series(argument: Option<&OsStr>) -> Result<Levels, Error> {
+    let first = load(argument)?;
+    let index = argument.map_or(Some(0), builtin_level);
+    let following = index.map_or(&[][..], |index| &builtin::LEVELS[index + 1..]);
+    let following = following.iter().map_while(|level| level.world().ok());
+    Ok(Levels::new(first, following.map(Level::from)))
+}
+
 /// The place among the built-in levels of the one called `name`; a file of that name goes first.
-pub(super) fn builtin_level(name: &OsStr) -> Option<usize> {
+fn builtin_level(name: &OsStr) -> Option<usize> {
     let index = builtin::LEVELS.iter().position(|level| name == level.name)?;
     (!Path::new(name).exists()).then_some(index)
 }

@@ -8,16 +8,16 @@ use std::time::Duration;
 use etcetera::{BaseStrategy, choose_base_strategy};
 
 use super::arguments::Play;
+use super::recording::RecordingFile;
 use super::{Error, level};
-use crate::map::{Level, builtin};
-use crate::tui::{self, Bindings, Levels, Settings};
+use crate::tui::{self, Bindings, Settings};
 
 /// Plays until the player has had enough.
 pub(super) fn run(options: Play) -> Result<(), Error> {
-    let levels = levels(&options)?;
+    let levels = level::load_series(options.map.as_deref())?;
     let settings = Settings {
         bindings: bindings(options.config)?,
-        frame_time: Duration::from_secs(1) / options.frames_per_second.0,
+        frame_time: Duration::from_secs(1) / options.frames_per_second.get().get(),
         field_of_view: options.field_of_view,
         cell_aspect: options.cell_aspect,
         glyphs: options.glyphs,
@@ -25,17 +25,10 @@ pub(super) fn run(options: Play) -> Result<(), Error> {
         method: options.method,
         filter: options.filter,
     };
-    tui::play(levels, settings).map_err(Error::from)
-}
-
-/// The level that was asked for, and the built-in ones that follow it if it is one.
-fn levels(options: &Play) -> Result<Levels, Error> {
-    let map = options.map.as_deref();
-    let first = level::load(map)?;
-    let index = map.map_or(Some(0), level::builtin_level);
-    let following = index.map_or(&[][..], |index| &builtin::LEVELS[index + 1..]);
-    let following = following.iter().map_while(|level| level.world().ok());
-    Ok(Levels::new(first, following.map(|world| Level::Grid(Box::new(world)))))
+    let file = options.record.as_deref().map(RecordingFile::create).transpose()?;
+    let recording = file.as_ref().map(RecordingFile::recording).unwrap_or_default();
+    tui::play(levels, settings, recording)?;
+    file.map_or(Ok(()), RecordingFile::finish)
 }
 
 /// The bindings in the file that was named, or in the user's own if there is one.

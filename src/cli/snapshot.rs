@@ -19,9 +19,9 @@ use super::arguments::{Format, Snapshot};
 use super::{Error, level};
 use crate::map::Level;
 use crate::palette;
-use crate::space::{self, Scene};
+use crate::space::{self, Elevation, Scene};
 use crate::tui::View;
-use crate::world::{Camera, Rgb};
+use crate::world::{Camera, Rgb, World};
 use picture::{OfGrid, OfSpace, Picture};
 
 /// Rows of cells that are made at a time: a multiple of the height of the pattern that dithers.
@@ -39,11 +39,7 @@ trait Writer {
 pub(super) fn run(options: &Snapshot) -> Result<(), Error> {
     match level::load(options.map.as_deref())? {
         Level::Grid(world) => {
-            let camera = match options.camera {
-                None => world.start_camera(options.field_of_view),
-                Some((position, heading)) => Camera::new(position, heading, options.field_of_view)
-                    .unwrap_or_else(|| world.start_camera(options.field_of_view)),
-            };
+            let camera = camera(&world, options);
             let view = View::with_method(options.method.clone());
             output(&mut OfGrid::new(&world, &camera, view, options), options)
         }
@@ -55,14 +51,27 @@ pub(super) fn run(options: &Snapshot) -> Result<(), Error> {
     .map_err(|error| Error::of_output(&error))
 }
 
-/// At the height of the start, as high or low as that looks, where a camera is asked for.
+fn camera(world: &World, options: &Snapshot) -> Camera {
+    let start = world.start_camera(options.field_of_view);
+    let camera = options
+        .camera
+        .and_then(|(position, heading)| Camera::new(position, heading, options.field_of_view));
+    let camera = camera.unwrap_or(start);
+    let camera = options.eye.and_then(|eye| camera.with_eye(eye)).unwrap_or(camera);
+    camera.with_pitch(options.pitch.unwrap_or_default())
+}
+
+/// What is not asked for is as at the start, the height too.
 fn scene_camera(scene: &Scene, options: &Snapshot) -> Result<space::Camera, Error> {
     let start = scene.start_camera(options.field_of_view);
-    let Some((position, heading)) = options.camera else { return Ok(start) };
-    let position = position.extend(start.position().z);
+    let (position, heading) =
+        options.camera.unwrap_or((start.position().truncate(), start.heading));
+    let position = position.extend(options.eye.unwrap_or(start.position().z));
+    let elevation = options.pitch.and_then(|pitch| Elevation::from_degrees(pitch.degrees()));
     let camera = space::Camera::new(position, heading, options.field_of_view);
-    let camera = camera.map(|camera| camera.with_elevation(start.elevation));
-    camera.ok_or_else(|| Error::mistake("--camera is further away than a map of bodies reaches"))
+    camera.map(|camera| camera.with_elevation(elevation.unwrap_or(start.elevation))).ok_or_else(
+        || Error::mistake("--camera or --eye is further away than a map of bodies reaches"),
+    )
 }
 
 fn output(picture: &mut dyn Picture, options: &Snapshot) -> io::Result<()> {

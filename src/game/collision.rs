@@ -1,4 +1,4 @@
-//! A circle among solid cells: never inside one, never through one, and along them without a catch.
+//! A circle among what blocks: never inside it, never through it, and along it without a catch.
 //!
 //! One predicate, [`is_clear`], says where the circle may be, and no place is ever accepted that
 //! fails it: a contact that rounding has put a hair inside is backed off along the way that led to
@@ -6,11 +6,14 @@
 //! first and pushing out of walls afterwards was refused: it finds the wrong side of a wall at
 //! speed, and jitters in corners.
 
+mod outline;
+mod place;
 mod sweep;
 
 use glam::DVec2;
 
-use crate::world::{Cell, Grid};
+use crate::world::{Cell, Outline};
+pub(super) use place::{Place, Stature};
 use sweep::{Path, first_contact};
 
 /// How many walls a body may touch in one step. A corner is two; who touches more is stuck between
@@ -29,6 +32,25 @@ impl Radius {
     }
 }
 
+/// What may be in the way of a circle.
+pub(super) trait Obstacles {
+    /// Whether a cell is solid; everything off the map is: nobody walks off the edge of the world.
+    fn blocks(&self, column: i64, row: i64) -> bool;
+
+    /// The shape that stands in a cell that does not block, if there is one.
+    fn outline(&self, cell: Cell) -> Option<Outline> {
+        _ = cell;
+        None
+    }
+
+    /// Whether a cell that was touched by a circle around `center` is so no more, because it gives
+    /// way, or because the circle has been lifted onto it.
+    fn gives_way(&mut self, column: i64, row: i64, center: DVec2, radius: Radius) -> bool {
+        _ = (column, row, center, radius);
+        false
+    }
+}
+
 /// Where a body is, in cells, and its velocity, in cells per second.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub(super) struct Body {
@@ -38,17 +60,30 @@ pub(super) struct Body {
 
 /// Moves a body by `displacement`, however long, and along what stands in its way. It loses the
 /// part of its velocity that points into what it touches.
-pub(super) fn slide(grid: &Grid, body: Body, displacement: DVec2, radius: Radius) -> Body {
+pub(super) fn slide<O: Obstacles>(
+    obstacles: &mut O,
+    body: Body,
+    displacement: DVec2,
+    radius: Radius,
+) -> Body {
     let Body { mut position, mut velocity } = body;
     let mut remaining = displacement;
-    for _ in 0..MOST_CONTACTS {
+    let mut contacts = 0;
+    while contacts < MOST_CONTACTS {
         let Some(path) = Path::new(position, remaining) else {
             return Body { position, velocity };
         };
-        let Some(contact) = first_contact(grid, path, radius) else {
-            return Body { position: path.last_clear(grid, path.length(), radius), velocity };
+        let Some(contact) = first_contact(obstacles, path, radius) else {
+            let position = path.last_clear(obstacles, path.length(), radius);
+            return Body { position, velocity };
         };
         position = contact.position;
+        let (column, row) = contact.cell;
+        if obstacles.gives_way(column, row, position, radius) {
+            remaining = contact.remaining;
+            continue;
+        }
+        contacts += 1;
         remaining = without_inward(contact.remaining, contact.normal);
         velocity = without_inward(velocity, contact.normal);
     }
@@ -60,14 +95,20 @@ fn without_inward(vector: DVec2, normal: DVec2) -> DVec2 {
     vector - normal * vector.dot(normal).min(0.0)
 }
 
-/// Whether a circle around `center` overlaps nothing solid; it may touch. Solid cells are closed
-/// squares, and everything off the map is solid: nobody walks off the edge of the world.
-fn is_clear(grid: &Grid, center: DVec2, radius: Radius) -> bool {
+/// Whether a circle around `center` overlaps nothing that blocks; it may touch. Cells are closed
+/// squares.
+fn is_clear<O: Obstacles>(obstacles: &O, center: DVec2, radius: Radius) -> bool {
     let (column, row) = cell_of(center);
     let around = (row - 1..=row + 1).flat_map(|r| (column - 1..=column + 1).map(move |c| (c, r)));
-    around
-        .filter(|&(column, row)| blocks(grid, column, row))
-        .all(|(column, row)| is_clear_of(center, column, row, radius))
+    around.filter(|&(column, row)| !is_clear_of(center, column, row, radius)).all(
+        |(column, row)| {
+            let stands_clear = |cell| {
+                let outline = obstacles.outline(cell);
+                outline.is_none_or(|outline| outline::is_clear_of(outline, cell, center, radius))
+            };
+            !obstacles.blocks(column, row) && cell_on_map(column, row).is_none_or(stands_clear)
+        },
+    )
 }
 
 /// Whether a circle around `center` overlaps `cell`, solid or not; it may touch.
@@ -85,8 +126,9 @@ fn square_distance(point: DVec2, column: i64, row: i64) -> f64 {
     (low - point).max(point - (low + DVec2::ONE)).max(DVec2::ZERO).length_squared()
 }
 
-fn blocks(grid: &Grid, column: i64, row: i64) -> bool {
-    grid.tile(column, row).is_none_or(|tile| grid.is_solid_tile(tile))
+/// The cell at a place that may be off the map to the west or to the north.
+fn cell_on_map(column: i64, row: i64) -> Option<Cell> {
+    Some(Cell { column: u32::try_from(column).ok()?, row: u32::try_from(row).ok()? })
 }
 
 fn cell_of(point: DVec2) -> (i64, i64) {

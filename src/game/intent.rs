@@ -54,6 +54,31 @@ impl Intent {
         Self::Jump,
         Self::Duck,
     ];
+
+    /// What files call it.
+    pub fn name(self) -> &'static str {
+        match self {
+            Self::Forward => "forward",
+            Self::Back => "back",
+            Self::StrafeLeft => "strafe-left",
+            Self::StrafeRight => "strafe-right",
+            Self::TurnLeft => "turn-left",
+            Self::TurnRight => "turn-right",
+            Self::Run => "run",
+            Self::Aim => "aim",
+            Self::Open => "open",
+            Self::LookUp => "look-up",
+            Self::LookDown => "look-down",
+            Self::LookAhead => "look-ahead",
+            Self::Jump => "jump",
+            Self::Duck => "duck",
+        }
+    }
+
+    /// The one of that name.
+    pub(super) fn named(name: &str) -> Option<Self> {
+        Self::ALL.into_iter().find(|intent| intent.name() == name)
+    }
 }
 
 /// A set of intents: all that the player wants at one time.

@@ -3,10 +3,13 @@
 use glam::DVec2;
 
 use super::STEP;
-use super::collision::{Body, Radius, overlaps, slide};
+use super::collision::{Body, Place, Radius, Stature, overlaps, slide};
+use super::fall::{Flight, GRAVITY, Room};
+use super::gaze::Gaze;
 use super::intent::{Intent, Intents};
 use super::motion::{Glide, approach, approach_in_plane};
-use crate::world::{Cell, Grid, Heading, Start};
+use super::posture::Posture;
+use crate::world::{Camera, Cell, FieldOfView, Heading, Start, World};
 
 /// How far from their middle the player touches a wall: doors are twice as wide as they are.
 const RADIUS: Radius = Radius::new(0.25).expect("a quarter is between nothing and a half");
@@ -25,6 +28,11 @@ pub(super) const FRICTION: f64 = 12.0;
 /// How fast a turn begins and ends, per second.
 pub(super) const TURN_FRICTION: f64 = 20.0;
 
+/// How much higher a floor may be for somebody to step onto it, or lower to step down, in cells.
+const STEP_HEIGHT: f64 = 0.35;
+/// How high somebody jumps, in cells.
+const JUMP_HEIGHT: f64 = 0.66;
+
 /// What is slower stands still, in cells or radians per second. An exponential never ends, but a
 /// program that may sleep while nothing moves wants it to.
 pub(super) const STILL: f64 = 1e-4;
@@ -32,6 +40,14 @@ pub(super) const STILL: f64 = 1e-4;
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub(super) struct Player {
     body: Body,
+    /// How high their feet are, in cells.
+    feet: f64,
+    /// Cells per second, upwards.
+    rising: f64,
+    posture: Posture,
+    gaze: Gaze,
+    /// Whether they wanted to jump in the last step: each wish is for one jump.
+    wanted_to_jump: bool,
     heading: Heading,
     /// Radians per second, clockwise.
     turning: f64,
@@ -41,11 +57,33 @@ impl Player {
     /// A player who stands still at the start.
     pub(super) fn new(start: Start) -> Self {
         let body = Body { position: start.cell.center(), velocity: DVec2::ZERO };
-        Self { body, heading: start.heading, turning: 0.0 }
+        Self {
+            body,
+            // The start is on the map's own floor, and has headroom.
+            feet: 0.0,
+            rising: 0.0,
+            posture: Posture::default(),
+            gaze: Gaze::default(),
+            wanted_to_jump: false,
+            heading: start.heading,
+            turning: 0.0,
+        }
+    }
+
+    /// What the player sees of `world`.
+    pub(super) fn camera(&self, world: &World, field_of_view: FieldOfView) -> Option<Camera> {
+        let ceiling = self.room(world).ceiling + self.posture.height();
+        let eye = self.feet + self.posture.eye(ceiling - self.feet);
+        let camera = Camera::new(self.position(), self.heading, field_of_view)?.with_eye(eye)?;
+        Some(camera.with_pitch(self.gaze.pitch))
     }
 
     pub(super) fn position(&self) -> DVec2 {
         self.body.position
+    }
+
+    pub(super) fn feet(&self) -> f64 {
+        self.feet
     }
 
     pub(super) fn heading(&self) -> Heading {
@@ -68,10 +106,11 @@ impl Player {
         wanted_velocity(self.heading, intents).try_normalize()
     }
 
-    /// The player one step later: turned first, then walked.
+    /// The player one step later: turned first, then ducked, then walked.
     #[must_use]
-    pub(super) fn stepped(self, grid: &Grid, intents: Intents) -> Self {
-        self.turned(intents).walked(grid, intents)
+    pub(super) fn stepped(self, world: &World, intents: Intents) -> Self {
+        let gaze = self.gaze.after_a_step(intents);
+        Self { gaze, ..self }.turned(intents).ducked(world, intents).walked(world, intents)
     }
 
     fn turned(self, intents: Intents) -> Self {
@@ -82,15 +121,68 @@ impl Player {
         Self { heading: self.heading.turned(displacement), turning, ..self }
     }
 
-    fn walked(self, grid: &Grid, intents: Intents) -> Self {
+    /// Nobody stands up where there is no room for it.
+    fn ducked(self, world: &World, intents: Intents) -> Self {
+        let posture = self.posture.after_a_step(intents.contains(Intent::Duck));
+        let ducked = Self { posture, ..self };
+        if posture.height() <= self.posture.height() || ducked.has_room(world) {
+            ducked
+        } else {
+            self
+        }
+    }
+
+    fn walked(self, world: &World, intents: Intents) -> Self {
+        let wants_to_jump = intents.contains(Intent::Jump);
+        let stands = self.rising == 0.0 && self.feet == self.room(world).floor;
+        let jumps = stands && wants_to_jump && !self.wanted_to_jump;
+        let step = if stands && !jumps { STEP_HEIGHT } else { 0.0 };
+
         let target = wanted_velocity(self.heading, intents);
         let Glide { velocity, displacement } =
             approach_in_plane(self.body.velocity, target, FRICTION, STEP);
-        let mut body = slide(grid, Body { velocity, ..self.body }, displacement, RADIUS);
+        let mut place = Place { step, ..self.place(world) };
+        let mut body = slide(&mut place, Body { velocity, ..self.body }, displacement, RADIUS);
         if body.velocity.length() < STILL {
             body.velocity = DVec2::ZERO;
         }
-        Self { body, ..self }
+        let walked = Self { body, wanted_to_jump: wants_to_jump, ..self };
+        let feet = place.stature.feet;
+        let room = place.room(body.position, RADIUS);
+        if stands && !jumps && feet - room.floor <= STEP_HEIGHT {
+            walked.standing_on(room.floor)
+        } else {
+            let speed = if jumps { libm::sqrt(2.0 * GRAVITY * JUMP_HEIGHT) } else { self.rising };
+            walked.flying(Flight { height: feet, speed }, room)
+        }
+    }
+
+    fn standing_on(self, floor: f64) -> Self {
+        Self {
+            feet: floor,
+            rising: 0.0,
+            posture: self.posture.following(floor - self.feet),
+            ..self
+        }
+    }
+
+    fn flying(self, flight: Flight, room: Room) -> Self {
+        let Flight { height, speed } = flight.after(STEP, room);
+        Self { feet: height, rising: speed, posture: self.posture.following(0.0), ..self }
+    }
+
+    /// How low and how high the feet may be where the player is.
+    fn room(&self, world: &World) -> Room {
+        self.place(world).room(self.body.position, RADIUS)
+    }
+
+    fn has_room(&self, world: &World) -> bool {
+        self.place(world).is_clear(self.body.position, RADIUS)
+    }
+
+    fn place<'a>(&self, world: &'a World) -> Place<'a> {
+        let stature = Stature { feet: self.feet, height: self.posture.height() };
+        Place { world, stature, step: 0.0, has_shapes: world.has_shapes() }
     }
 }
 

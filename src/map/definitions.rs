@@ -4,14 +4,28 @@ use toml::de::DeTable;
 
 use super::air::{self, SkyText};
 use super::covering::{CeilingText, CoveringText};
-use super::legend::{Legend, Section};
+use super::heights;
+use super::legend::{self, Legend, Section};
+use super::textures::Surface;
 use crate::fault::Fault;
 use crate::fault::document::{Entry, entries};
-use crate::world::{Fog, Rgb};
+use crate::world::{Fog, Heights, Light, Rgb};
 
 /// The keys of a map.
-pub(super) const KEYS: &[&str] =
-    &["title", "ceiling", "floor", "sky", "fog", "grid", "tiles", "things"];
+pub(super) const KEYS: &[&str] = &[
+    "title",
+    "ceiling",
+    "ceiling_height",
+    "floor",
+    "riser",
+    "lintel",
+    "light",
+    "sky",
+    "fog",
+    "grid",
+    "tiles",
+    "things",
+];
 const DEFAULT_CEILING: Rgb = Rgb::new(0x30, 0x30, 0x30);
 const DEFAULT_FLOOR: Rgb = Rgb::new(0x58, 0x58, 0x58);
 
@@ -19,9 +33,17 @@ const DEFAULT_FLOOR: Rgb = Rgb::new(0x58, 0x58, 0x58);
 pub(super) struct Definitions<'a, 't> {
     pub(super) title: String,
     pub(super) ceiling: CeilingText<'a>,
+    /// How high the ceiling is, and how high walls are.
+    pub(super) ceiling_height: f64,
     pub(super) floor: CoveringText<'a>,
+    /// The sides of floors, where a tile does not say.
+    pub(super) riser: Option<Surface<'a>>,
+    /// The sides of what hangs above ceilings, where a tile does not say.
+    pub(super) lintel: Option<Surface<'a>>,
     pub(super) sky: Option<SkyText<'a>>,
     pub(super) fog: Option<Fog>,
+    /// How bright it is where no tile says otherwise.
+    pub(super) light: Option<Light>,
     pub(super) grid: Option<Entry<'a, 't>>,
     pub(super) legend: Legend<'a>,
 }
@@ -33,9 +55,13 @@ impl<'a, 't> Definitions<'a, 't> {
         let mut definitions = Self {
             title: String::new(),
             ceiling: CeilingText::plain(DEFAULT_CEILING),
+            ceiling_height: Heights::LEVEL.ceiling(),
             floor: CoveringText::plain(DEFAULT_FLOOR),
+            riser: None,
+            lintel: None,
             sky: None,
             fog: None,
+            light: None,
             grid: None,
             legend: Legend::new(),
         };
@@ -54,12 +80,20 @@ impl<'a, 't> Definitions<'a, 't> {
                     self.ceiling = ceiling;
                 }
             }
+            "ceiling_height" => {
+                if let Some(height) = heights::map_ceiling(&entry, faults) {
+                    self.ceiling_height = height;
+                }
+            }
             "floor" => {
                 if let Some(floor) = CoveringText::read(&entry, r#"floor = "stone""#, faults) {
                     self.floor = floor;
                 }
             }
+            "riser" => self.riser = Surface::read(&entry, r#"riser = "stone""#, faults),
+            "lintel" => self.lintel = Surface::read(&entry, r#"lintel = "brick""#, faults),
             "sky" => self.sky = SkyText::read(&entry, faults),
+            "light" => self.light = legend::light(&entry, faults),
             "fog" => self.fog = air::fog(&entry, faults),
             "grid" => self.grid = Some(entry),
             "tiles" => self.legend.read_section(Section::Tiles, &entry, faults),

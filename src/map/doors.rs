@@ -114,13 +114,19 @@ pub(super) fn faults(
 
 /// The characters of the doors in a drawing.
 fn drawn_doors(drawing: &Drawing<'_>, legend: &Legend<'_>) -> impl Iterator<Item = char> {
-    let is_door = |character: &char| {
-        legend
-            .symbols
-            .get(character)
-            .is_some_and(|symbol| matches!(symbol.meaning, Meaning::Door(_)))
-    };
-    drawing.characters().map(|(character, _)| character).filter(move |it| is_door(it))
+    drawn(drawing, legend, |meaning| matches!(meaning, Meaning::Door(_)))
+}
+
+/// The characters in a drawing that mean what is wanted.
+fn drawn(
+    drawing: &Drawing<'_>,
+    legend: &Legend<'_>,
+    is_wanted: impl Fn(&Meaning<'_>) -> bool,
+) -> impl Iterator<Item = char> {
+    let characters = drawing.characters().map(|(character, _)| character);
+    characters.filter(move |character| {
+        legend.symbols.get(character).is_some_and(|symbol| is_wanted(&symbol.meaning))
+    })
 }
 
 /// The characters of the locked doors in a drawing, and their keys.
@@ -174,8 +180,12 @@ fn is_between_jambs(grid: &Grid, tiles: &[Tile], cell: Cell) -> bool {
         kinds([(column - 1, row), (column + 1, row)]),
         kinds([(column, row - 1), (column, row + 1)]),
     ];
-    let holds =
-        |kind| matches!(kind, Some(TileKind::Wall(_) | TileKind::Mask(_) | TileKind::Glass(_)));
+    let holds = |kind| {
+        matches!(
+            kind,
+            Some(TileKind::Wall(_) | TileKind::Mask(_) | TileKind::Glass(_) | TileKind::Mirror(_))
+        )
+    };
     let is_open = |kind| matches!(kind, Some(TileKind::Open));
     let [one, other] = pairs;
     one.into_iter().all(holds) && other.into_iter().all(is_open)
@@ -211,12 +221,15 @@ fn keys_out_of_reach(
     if locks.is_empty() {
         return Vec::new();
     }
-    let doors: BTreeSet<Cell> =
-        drawn_doors(drawing, legend).flat_map(|door| drawing.cells_of(door)).collect();
+    let passable: BTreeSet<Cell> =
+        drawn(drawing, legend, |meaning| matches!(meaning, Meaning::Door(_) | Meaning::Shape(_)))
+            .flat_map(|character| drawing.cells_of(character))
+            .collect();
     let keys: BTreeMap<Cell, &str> = drawn_keys(drawing, legend)
         .flat_map(|(character, key)| drawing.cells_of(character).map(|cell| (cell, key.name)))
         .collect();
-    let taken = Reach { grid, doors: &doors, locks: &locks, keys: &keys }.keys_from(start.cell);
+    let taken =
+        Reach { grid, passable: &passable, locks: &locks, keys: &keys }.keys_from(start.cell);
     let missing = locked_doors(drawing, legend).filter(|(_, key)| !taken.contains(key.name));
     missing
         .map(|(_, key)| {

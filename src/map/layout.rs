@@ -4,11 +4,17 @@ use std::ops::Range;
 
 use super::doors::{self, Keys};
 use super::drawing::Drawing;
+use super::heights::Faces;
+use super::lamps;
 use super::legend::{Legend, Meaning, Surroundings, Symbol};
 use super::per_character::PerCharacter;
-use super::textures::Textures;
+use super::textures::{Surface, Textures};
 use crate::fault::Fault;
-use crate::world::{Door, Grid, Start, Thing, ThingKind, Tile, TileId, TileKind};
+use crate::world::sprite::builtin;
+use crate::world::{
+    Door, Grid, Heights, Lamplight, Paint, Sprite, SpriteId, Start, Thing, ThingKind, Tile, TileId,
+    TileKind,
+};
 
 /// The most kinds of tile in a grid, open floor among them.
 const MAX_TILES: usize = 255;
@@ -20,6 +26,8 @@ pub(super) struct Layout {
     /// grid, each in the order of their characters.
     pub(super) tiles: Vec<Tile>,
     pub(super) start: Start,
+    pub(super) lamplight: Lamplight,
+    pub(super) sprites: Vec<Sprite>,
     pub(super) things: Vec<Thing>,
     /// The names of the keys.
     pub(super) keys: Vec<String>,
@@ -32,24 +40,29 @@ impl Layout {
         drawing: &Drawing<'_>,
         legend: &Legend<'_>,
         ground: Tile,
+        faces: Faces,
         textures: &mut Textures<'_>,
         faults: &mut Vec<Fault>,
     ) -> Option<Self> {
         faults.extend(undefined_characters(drawing, legend));
         faults.extend(wrong_start(drawing, legend));
         let keys = Keys::of(drawing, legend);
-        let tiles = tiles(drawing, legend, &keys, ground, textures, faults);
+        let tiles = tiles(drawing, legend, &keys, ground, faces, textures, faults);
         if !faults.is_empty() {
             return None;
         }
         let start = start(drawing, legend)?;
-        let grid = grid(drawing, &tiles)?;
+        let mut grid = grid(drawing, &tiles)?;
+        let (things, sprites) = things(drawing, legend, &keys, textures, faults);
+        let blocks = |thing: &&Thing| sprites[usize::from(thing.sprite.0)].blocks;
+        things.iter().filter(blocks).for_each(|thing| grid.occupy(thing.cell));
         faults.extend(doors::faults(drawing, legend, &grid, &tiles, start));
         if !faults.is_empty() {
             return None;
         }
-        let things = things(drawing, legend, &keys).collect();
-        Some(Self { grid, tiles, start, things, keys: keys.into_names() })
+        let lamplight = lamps::lamplight(&grid, &tiles, &sprites, &things);
+        let keys = keys.into_names();
+        Some(Self { grid, tiles, start, lamplight, sprites, things, keys })
     }
 }
 
@@ -127,19 +140,35 @@ fn start(drawing: &Drawing<'_>, legend: &Legend<'_>) -> Option<Start> {
     Some(Start { cell, heading })
 }
 
-/// What stands in the drawing, the start excepted.
-fn things(drawing: &Drawing<'_>, legend: &Legend<'_>, keys: &Keys) -> impl Iterator<Item = Thing> {
-    let kinds = drawing.characters().filter_map(|(character, _)| {
-        let kind = match &legend.symbols.get(&character)?.meaning {
-            Meaning::Exit => ThingKind::Exit,
-            Meaning::Key(key) => ThingKind::Key(keys.id(key.name)?),
-            _ => return None,
+/// What stands in the drawing, the start excepted, and how that looks.
+fn things(
+    drawing: &Drawing<'_>,
+    legend: &Legend<'_>,
+    keys: &Keys,
+    textures: &Textures<'_>,
+    faults: &mut Vec<Fault>,
+) -> (Vec<Thing>, Vec<Sprite>) {
+    let (mut things, mut sprites) = (Vec::new(), Vec::new());
+    for (character, _) in drawing.characters() {
+        let Some(symbol) = legend.symbols.get(&character) else { continue };
+        let of_kind = match &symbol.meaning {
+            Meaning::Exit => Some(ThingKind::Exit).zip(builtin::named(builtin::EXIT)),
+            Meaning::Key(key) => {
+                keys.id(key.name).map(ThingKind::Key).zip(builtin::named(builtin::KEY))
+            }
+            Meaning::Ornament(sprite) => {
+                Some(ThingKind::Ornament).zip(sprite.sprite(textures, faults))
+            }
+            _ => None,
         };
-        Some((character, kind))
-    });
-    kinds.flat_map(|(character, kind)| {
-        drawing.cells_of(character).map(move |cell| Thing { kind, cell })
-    })
+        if let Some((kind, look)) = of_kind {
+            // There is one for each character at most, and far fewer of those than that.
+            let sprite = SpriteId(sprites.len() as u16);
+            sprites.push(look);
+            things.extend(drawing.cells_of(character).map(|cell| Thing { kind, cell, sprite }));
+        }
+    }
+    (things, sprites)
 }
 
 /// The kinds of tile in the drawing, open ones first; `ground` is the map's own.
@@ -148,6 +177,7 @@ fn tiles(
     legend: &Legend<'_>,
     keys: &Keys,
     ground: Tile,
+    faces: Faces,
     textures: &mut Textures<'_>,
     faults: &mut Vec<Fault>,
 ) -> Vec<Tile> {
@@ -155,17 +185,14 @@ fn tiles(
     let mut solid = Vec::new();
     for (character, _) in drawing.characters() {
         let Some(symbol) = legend.symbols.get(&character) else { continue };
-        if let Meaning::Floor(surroundings) = &symbol.meaning {
-            open.push(open_tile(character, surroundings, ground, textures, faults));
+        if let Meaning::Floor = symbol.meaning {
+            open.extend(tile(character, TileKind::Open, symbol, ground, faces, textures, faults));
         } else if let Some(kind) = solid_kind(&symbol.meaning, keys, textures, faults) {
             if let TileKind::Door(door) = kind {
-                open.push(Tile { character, kind: TileKind::Doorway(door), ..ground });
+                let kind = TileKind::Doorway(door);
+                open.extend(tile(character, kind, symbol, ground, faces, textures, faults));
             }
-            let light = match &symbol.meaning {
-                Meaning::Wall(_, light) => *light,
-                _ => None,
-            };
-            solid.push(Tile { character, kind, light, ..ground });
+            solid.extend(tile(character, kind, symbol, ground, faces, textures, faults));
         }
         if open.len() + solid.len() > MAX_TILES {
             let message = format!("the grid has more than {} kinds of tile", MAX_TILES - 1);
@@ -177,24 +204,46 @@ fn tiles(
     open
 }
 
-/// The open floor that is not like the map's own, `ground`, but as `surroundings` say.
-fn open_tile(
+/// A tile like the map's own, `ground`, but for what `symbol` says.
+fn tile(
     character: char,
-    surroundings: &Surroundings<'_>,
+    kind: TileKind,
+    symbol: &Symbol<'_>,
     ground: Tile,
+    faces: Faces,
     textures: &mut Textures<'_>,
     faults: &mut Vec<Fault>,
-) -> Tile {
-    let Surroundings { floor, ceiling, light } = surroundings;
+) -> Option<Tile> {
+    let Surroundings { floor, ceiling, light, heights } = &symbol.surroundings;
+    let faults_before = faults.len();
+    let map_ceiling = ground.heights.ceiling();
     let floor = floor.as_ref().and_then(|floor| floor.covering(textures, faults));
     let ceiling = ceiling.as_ref().and_then(|ceiling| ceiling.ceiling(textures, faults));
-    Tile {
-        character,
-        kind: TileKind::Open,
-        floor: floor.unwrap_or(ground.floor),
-        ceiling: ceiling.unwrap_or(ground.ceiling),
-        light: *light,
+    let (floor, ceiling) = (floor.unwrap_or(ground.floor), ceiling.unwrap_or(ground.ceiling));
+    let mut face = |surface: &Option<Surface<'_>>, otherwise: Paint| {
+        surface.as_ref().and_then(|it| textures.paint(it, faults)).unwrap_or(otherwise)
+    };
+    let riser = match kind {
+        TileKind::Wall(paint) => paint,
+        TileKind::Mirror(tint) => Paint::Color(tint.color),
+        _ => face(&heights.riser, faces.riser(floor)),
+    };
+    let lintel = face(&heights.lintel, faces.lintel(floor, ceiling));
+    if faults.len() > faults_before {
+        return None;
     }
+    let heights = match &symbol.meaning {
+        Meaning::Wall(_, height) | Meaning::Mirror(_, height) => {
+            Heights::new(height.unwrap_or(map_ceiling), map_ceiling, map_ceiling)?
+        }
+        _ => heights.heights(ceiling, map_ceiling, faults)?,
+    };
+    let light = match kind {
+        // Where a wall does not say, it is as bright as what it is seen from.
+        TileKind::Wall(_) => *light,
+        _ => light.or(ground.light),
+    };
+    Some(Tile { character, kind, floor, ceiling, light, heights, riser, lintel })
 }
 
 /// The kind of solid tile that a character stands for; `None` where it stands for none, or where a
@@ -214,11 +263,14 @@ fn solid_kind(
         })),
         Meaning::Mask(mask) => mask.texture(textures, faults).map(TileKind::Mask),
         Meaning::Glass(glass) => Some(TileKind::Glass(*glass)),
+        Meaning::Mirror(tint, _) => Some(TileKind::Mirror(*tint)),
+        Meaning::Shape(shape) => shape.shape(textures, faults).map(TileKind::Shape),
         Meaning::Open
-        | Meaning::Floor(_)
+        | Meaning::Floor
         | Meaning::Start(_)
         | Meaning::Exit
         | Meaning::Key(_)
+        | Meaning::Ornament(_)
         | Meaning::Unclear => None,
     }
 }

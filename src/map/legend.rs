@@ -8,7 +8,10 @@ use toml::de::{DeTable, DeValue};
 use super::covering::{CeilingText, CoveringText};
 use super::definitions::KEYS;
 use super::doors::{DoorSymbol, KeySymbol};
+use super::heights::{self, HeightsText};
 use super::see_through::{self, MaskSymbol};
+use super::shapes::ShapeSymbol;
+use super::sprites::{self, SpriteSymbol};
 use super::textures::Surface;
 use crate::fault::document::{Entry, entries};
 use crate::fault::{Fault, quoted};
@@ -17,8 +20,6 @@ use crate::world::{Glass, Heading, Light};
 /// What other raycasters have in their cells and this one has not.
 const NOT_YET: &[(&str, &str)] = &[
     ("guard", "guards"),
-    ("lamp", "lamps"),
-    ("mirror", "mirrors"),
     ("pushwall", "moving walls"),
     ("secret", "secret doors"),
     ("window", "windows"),
@@ -37,31 +38,37 @@ pub(super) struct Symbol<'a> {
     /// Where it is defined.
     pub(super) place: Range<usize>,
     pub(super) meaning: Meaning<'a>,
+    pub(super) surroundings: Surroundings<'a>,
 }
 
 /// What a character stands for in the grid.
 pub(super) enum Meaning<'a> {
     Open,
-    /// With a light of its own, if any.
-    Wall(Surface<'a>, Option<Light>),
-    /// Open floor that is not like the map's.
-    Floor(Surroundings<'a>),
+    /// With a height of its own, if any.
+    Wall(Surface<'a>, Option<f64>),
+    /// Open floor that is not like the map's, but as the symbol's surroundings say.
+    Floor,
     Door(DoorSymbol<'a>),
     Mask(MaskSymbol<'a>),
     Glass(Glass),
+    /// With a height of its own, if any.
+    Mirror(Glass, Option<f64>),
+    Shape(ShapeSymbol<'a>),
     Start(Heading),
     Exit,
     Key(KeySymbol<'a>),
+    Ornament(SpriteSymbol<'a>),
     /// Something that a fault has been found with already.
     Unclear,
 }
 
-/// What an open tile has of its own; the rest is as the map says.
+/// What a tile has of its own; the rest is as the map says.
 #[derive(Default)]
 pub(super) struct Surroundings<'a> {
     pub(super) floor: Option<CoveringText<'a>>,
     pub(super) ceiling: Option<CeilingText<'a>>,
     pub(super) light: Option<Light>,
+    pub(super) heights: HeightsText<'a>,
 }
 
 /// One of the two tables that define characters.
@@ -88,16 +95,42 @@ impl Section {
 
     fn keys(self) -> &'static [&'static str] {
         match self {
-            Self::Tiles => &["wall", "door", "mask", "glass", "floor", "ceiling", "light"],
-            Self::Things => &["start", "exit", "key"],
+            Self::Tiles => &[
+                "wall",
+                "door",
+                "mask",
+                "glass",
+                "mirror",
+                "pillar",
+                "diagonal",
+                "thin",
+                "floor",
+                "ceiling",
+                "light",
+                "floor_height",
+                "ceiling_height",
+                "roof_height",
+                "riser",
+                "lintel",
+            ],
+            Self::Things => &["start", "exit", "key", "sprite"],
         }
     }
 
     /// The keys that say more of what another one makes: each with that one.
     fn additions(self) -> &'static [(&'static str, &'static str)] {
         match self {
-            Self::Tiles => &[("key", "door"), ("opacity", "glass")],
-            Self::Things => &[],
+            Self::Tiles => &[
+                ("key", "door"),
+                ("opacity", "glass"),
+                ("opacity", "mirror"),
+                ("height", "wall"),
+                ("height", "mirror"),
+                ("radius", "pillar"),
+                ("from", "diagonal"),
+                ("at", "thin"),
+            ],
+            Self::Things => &sprites::ADDITIONS,
         }
     }
 
@@ -119,7 +152,10 @@ impl Section {
 impl<'a> Legend<'a> {
     /// The characters that mean the same in every map.
     pub(super) fn new() -> Self {
-        let open = |character| (character, Symbol { place: 0..0, meaning: Meaning::Open });
+        let open = |character| {
+            let (meaning, surroundings) = (Meaning::Open, Surroundings::default());
+            (character, Symbol { place: 0..0, meaning, surroundings })
+        };
         Self { symbols: ['.', ' '].map(open).into(), is_complete: true }
     }
 
@@ -150,12 +186,13 @@ impl<'a> Legend<'a> {
                     continue;
                 }
             };
-            let mut meaning = meaning(section, &entry, faults);
+            let (mut meaning, surroundings) = meaning(section, &entry, faults);
             if self.symbols.contains_key(&character) {
                 faults.push(defined_twice(character, entry.key_place.clone()));
                 meaning = Meaning::Unclear;
             }
-            self.symbols.insert(character, Symbol { place: entry.key_place, meaning });
+            let place = entry.key_place;
+            self.symbols.insert(character, Symbol { place, meaning, surroundings });
         }
     }
 }
@@ -185,13 +222,17 @@ fn character(section: Section, entry: &Entry<'_, '_>) -> Result<char, Fault> {
     }
 }
 
-/// What the character of `entry` stands for.
-fn meaning<'a>(section: Section, entry: &Entry<'a, '_>, faults: &mut Vec<Fault>) -> Meaning<'a> {
+/// What the character of `entry` stands for, and what there is around it.
+fn meaning<'a>(
+    section: Section,
+    entry: &Entry<'a, '_>,
+    faults: &mut Vec<Fault>,
+) -> (Meaning<'a>, Surroundings<'a>) {
+    let mut surroundings = Surroundings::default();
     let Some(table) = entry.table(section.example(), faults) else {
-        return Meaning::Unclear;
+        return (Meaning::Unclear, surroundings);
     };
     let faults_before = faults.len();
-    let mut surroundings = Surroundings::default();
     let mut meanings: Vec<_> = entries(table)
         .filter_map(|entry| match surroundings.take(section, &entry, faults) {
             Taken::Yes => None,
@@ -199,7 +240,7 @@ fn meaning<'a>(section: Section, entry: &Entry<'a, '_>, faults: &mut Vec<Fault>)
         })
         .collect();
     if faults.len() > faults_before {
-        return Meaning::Unclear;
+        return (Meaning::Unclear, surroundings);
     }
     let place = || entry.key_place.clone();
     let several_at_once = || {
@@ -207,18 +248,15 @@ fn meaning<'a>(section: Section, entry: &Entry<'a, '_>, faults: &mut Vec<Fault>)
             .help("draw each with a character of its own")
     };
     match (meanings.pop(), meanings.is_empty()) {
-        (Some(Meaning::Wall(surface, _)), true) if !surroundings.has_covering() => {
-            return Meaning::Wall(surface, surroundings.light);
-        }
-        (Some(meaning), true) if surroundings.is_empty() => return meaning,
-        (None, _) if !surroundings.is_empty() => return Meaning::Floor(surroundings),
+        (Some(meaning), true) if surroundings.suit(&meaning) => return (meaning, surroundings),
+        (None, _) if !surroundings.is_empty() => return (Meaning::Floor, surroundings),
         (Some(_), _) => faults.push(several_at_once()),
         (None, _) => faults.push(
             Fault::new(place(), format!("{:?} does not say what it is", entry.key))
                 .help(format!("write, for example, {}", section.example())),
         ),
     }
-    Meaning::Unclear
+    (Meaning::Unclear, surroundings)
 }
 
 /// Whether a property was one of the [`Surroundings`].
@@ -230,7 +268,21 @@ enum Taken {
 
 impl<'a> Surroundings<'a> {
     fn is_empty(&self) -> bool {
-        !self.has_covering() && self.light.is_none()
+        !self.has_covering() && self.light.is_none() && self.heights.is_empty()
+    }
+
+    /// Whether a tile of that meaning can have these.
+    fn suit(&self, meaning: &Meaning<'_>) -> bool {
+        match meaning {
+            Meaning::Wall(..) | Meaning::Mirror(..) => {
+                !self.has_covering() && self.heights.is_empty()
+            }
+            Meaning::Shape(_) => true,
+            Meaning::Door(_) | Meaning::Mask(_) | Meaning::Glass(_) => {
+                !self.has_covering() && self.light.is_none()
+            }
+            _ => self.is_empty(),
+        }
     }
 
     fn has_covering(&self) -> bool {
@@ -247,6 +299,7 @@ impl<'a> Surroundings<'a> {
                 self.ceiling = CeilingText::read(entry, r#"{ ceiling = "wood" }"#, faults);
             }
             (Section::Tiles, "light") => self.light = light(entry, faults),
+            (Section::Tiles, _) if self.heights.take(entry, faults) => {}
             _ => return Taken::No,
         }
         Taken::Yes
@@ -265,13 +318,27 @@ fn property<'a>(
         return None;
     }
     match (section, entry.key) {
-        (Section::Tiles, "wall") => Surface::read(entry, r#"{ wall = "brick" }"#, faults)
-            .map(|surface| Meaning::Wall(surface, None)),
+        (Section::Tiles, "wall") => {
+            let surface = Surface::read(entry, r#"{ wall = "brick" }"#, faults);
+            let height = heights::of_wall(table, faults);
+            surface.map(|surface| Meaning::Wall(surface, height))
+        }
         (Section::Tiles, "door") => DoorSymbol::read(entry, table, faults).map(Meaning::Door),
         (Section::Tiles, "mask") => MaskSymbol::read(entry, faults).map(Meaning::Mask),
         (Section::Tiles, "glass") => see_through::glass(entry, table, faults).map(Meaning::Glass),
+        (Section::Tiles, "mirror") => {
+            let tint = see_through::mirror(entry, table, faults);
+            let height = heights::of_wall(table, faults);
+            tint.map(|tint| Meaning::Mirror(tint, height))
+        }
+        (Section::Tiles, "pillar" | "diagonal" | "thin") => {
+            ShapeSymbol::read(entry, table, faults).map(Meaning::Shape)
+        }
         (Section::Things, "key") => {
             KeySymbol::read(entry, r#"{ key = "brass" }"#, faults).map(Meaning::Key)
+        }
+        (Section::Things, "sprite") => {
+            SpriteSymbol::read(entry, table, faults).map(Meaning::Ornament)
         }
         (Section::Things, "start") => Some(Meaning::Start(heading(entry, faults)?)),
         (Section::Things, "exit") => exit(entry, faults),
@@ -295,7 +362,7 @@ fn heading(entry: &Entry<'_, '_>, faults: &mut Vec<Fault>) -> Option<Heading> {
 }
 
 /// How bright something is, from a number between 0 and 1.
-fn light(entry: &Entry<'_, '_>, faults: &mut Vec<Fault>) -> Option<Light> {
+pub(super) fn light(entry: &Entry<'_, '_>, faults: &mut Vec<Fault>) -> Option<Light> {
     let light = entry.number().and_then(Light::new);
     if light.is_none() {
         faults.push(
@@ -324,9 +391,13 @@ fn unknown_property(section: Section, entry: &Entry<'_, '_>) -> Fault {
         return Fault::new(place(), format!("{plural} are not supported yet"))
             .help(format!("known keys: {}", section.keys().join(", ")));
     }
-    if let Some((key, to)) = section.additions().iter().find(|(key, _)| *key == entry.key) {
+    let wanted = section.additions().iter().filter(|(key, _)| *key == entry.key);
+    let wanted: Vec<&str> = wanted.map(|&(_, to)| to).collect();
+    if !wanted.is_empty() {
+        let (key, to) = (entry.key, wanted.join("\" or \""));
         let message = format!("\"{key}\" goes with \"{to}\", and there is none");
-        return Fault::new(place(), message).help(format!("name a {to} in the same braces"));
+        let help = format!("name a {} in the same braces", wanted.join(" or a "));
+        return Fault::new(place(), message).help(help);
     }
     let other = section.other();
     if other.keys().contains(&entry.key) {
@@ -334,7 +405,8 @@ fn unknown_property(section: Section, entry: &Entry<'_, '_>) -> Fault {
         return Fault::new(place(), message).help(format!("move it to {}", other.name()));
     }
     let additions = section.additions().iter().map(|&(key, _)| key);
-    let known: Vec<&str> = section.keys().iter().copied().chain(additions).collect();
+    let mut known: Vec<&str> = section.keys().iter().copied().chain(additions).collect();
+    known.dedup();
     entry.unknown_key(section.noun(), &known)
 }
 

@@ -123,7 +123,7 @@ mod tests {
     fn texels(bytes: &[u8]) -> [(Rgb, u8); 2] {
         let texture = decode(bytes).unwrap();
         assert_eq!((texture.width(), texture.height()), (2, 1));
-        [0, 1].map(|x| (texture.column(f64::from(x) / 2.0)[0], texture.alpha(x, 0)))
+        [0, 1].map(|x| (texture.column(f64::from(x) / 2.0)[0], texture.texel(x, 0).1))
     }
 
     #[test]

@@ -1,14 +1,17 @@
-//! Walls to see through: what the legend says of them.
+//! Walls to see through, or to see oneself in: what the legend says of them.
 
 use toml::de::{DeTable, DeValue};
 
 use super::textures::{Surface, Textures};
-use crate::fault::Fault;
 use crate::fault::document::{Entry, entries};
+use crate::fault::{Fault, quoted};
 use crate::world::{Glass, Paint, Rgb, TextureId};
 
 const GLASS_EXAMPLE: &str = r##"{ glass = "#80c0ff", opacity = 0.3 }"##;
-const DEFAULT_OPACITY: f64 = 0.3;
+const GLASS_OPACITY: f64 = 0.3;
+const MIRROR_EXAMPLE: &str = "{ mirror = true }";
+const MIRROR_OPACITY: f64 = 0.1;
+const SILVER: Rgb = Rgb::new(0xb8, 0xc8, 0xd0);
 
 /// A wall with holes, as the legend has it.
 pub(super) struct MaskSymbol<'a>(Surface<'a>);
@@ -44,21 +47,44 @@ pub(super) fn glass(
     table: &DeTable<'_>,
     faults: &mut Vec<Fault>,
 ) -> Option<Glass> {
-    let color = color(entry, faults);
+    let color = color(entry, GLASS_EXAMPLE, faults);
+    tinted(color, GLASS_OPACITY, table, faults)
+}
+
+/// The tint of the mirror that `entry` of `table` describes, with the opacity that the table gives.
+pub(super) fn mirror(
+    entry: &Entry<'_, '_>,
+    table: &DeTable<'_>,
+    faults: &mut Vec<Fault>,
+) -> Option<Glass> {
+    let color = match entry.value {
+        DeValue::Boolean(true) => Some(SILVER),
+        _ => color(entry, MIRROR_EXAMPLE, faults),
+    };
+    tinted(color, MIRROR_OPACITY, table, faults)
+}
+
+/// Glass of that color, with the opacity that the table gives or, without, the usual one.
+fn tinted(
+    color: Option<Rgb>,
+    usual_opacity: f64,
+    table: &DeTable<'_>,
+    faults: &mut Vec<Fault>,
+) -> Option<Glass> {
     let opacity = entries(table).find(|entry| entry.key == "opacity");
     let opacity = match opacity {
-        None => DEFAULT_OPACITY,
+        None => usual_opacity,
         Some(entry) => opacity_of(&entry, faults)?,
     };
     Some(Glass { color: color?, opacity: (opacity * 255.0).round() as u8 })
 }
 
-fn color(entry: &Entry<'_, '_>, faults: &mut Vec<Fault>) -> Option<Rgb> {
-    let text = entry.string(GLASS_EXAMPLE, faults)?;
+fn color(entry: &Entry<'_, '_>, example: &str, faults: &mut Vec<Fault>) -> Option<Rgb> {
+    let text = entry.string(example, faults)?;
     let color = text.parse();
     color
         .map_err(|error| {
-            let message = "glass has a colour for a tint";
+            let message = format!("{} is not a colour for a tint", quoted(text));
             faults.push(Fault::new(entry.value_place.clone(), message).help(format!("{error}")));
         })
         .ok()

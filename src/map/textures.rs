@@ -224,12 +224,12 @@ impl<'a> Source<'a> {
     }
 }
 
-fn is_png(name: &str) -> bool {
+pub(super) fn is_png(name: &str) -> bool {
     Path::new(name).extension().is_some_and(|extension| extension.eq_ignore_ascii_case("png"))
 }
 
 /// Whether `name` means the same file within a folder on every system.
-fn stays_inside(name: &str) -> bool {
+pub(super) fn stays_inside(name: &str) -> bool {
     !name.contains(['\\', ':']) && name.split('/').all(|part| !matches!(part, "" | "." | ".."))
 }
 
@@ -249,6 +249,12 @@ fn unknown_panorama(name: &str, place: Range<usize>) -> Fault {
         "write the name of a PNG beside the map, or one of {}",
         builtin::PANORAMAS.join(", ")
     ))
+}
+
+/// Why there is no picture: what is true of it, to follow its name, and what to do.
+pub(super) struct SheetError {
+    pub(super) why: String,
+    pub(super) help: &'static str,
 }
 
 /// The textures that a map uses, each once.
@@ -322,6 +328,16 @@ impl<'f> Textures<'f> {
             fault(error.to_string()).help("a texture is a PNG file beside the map")
         })?;
         picture::decode(&bytes).map_err(|error| fault(error.to_string()).help(error.help()))
+    }
+
+    /// The picture in the file `name`, as it is: for sprites.
+    pub(super) fn sheet(&self, name: &str) -> Result<Texture, SheetError> {
+        let bytes = self.files.read(name).map_err(|error| SheetError {
+            why: error.to_string(),
+            help: "a sprite is a PNG file beside the map",
+        })?;
+        picture::decode(&bytes)
+            .map_err(|error| SheetError { why: error.to_string(), help: error.help() })
     }
 
     /// The texture of the walls that a door is set between.

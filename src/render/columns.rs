@@ -5,7 +5,6 @@ use std::ops::Range;
 use glam::DVec2;
 
 use super::Projection;
-use super::planes::first_row_of_ground;
 use super::see_through::Passed;
 use crate::cast::{Caster, Hit, Ray, Side};
 use crate::world::{Grid, World};
@@ -35,11 +34,13 @@ pub enum Surface {
     WallY,
     /// The floor.
     Floor,
+    /// Something that stands before all that.
+    Thing,
 }
 
 impl Column {
-    /// What the pixel in `row` of this column shows, in a frame `height` pixels high.
-    pub fn surface(&self, row: u32, height: u32) -> Surface {
+    /// What the pixel in `row` of this column shows, where the ground begins in row `ground`.
+    pub(super) fn surface(&self, row: u32, ground: u32) -> Surface {
         if row < self.rows.start {
             return Surface::Ceiling;
         }
@@ -49,22 +50,22 @@ impl Column {
         match &self.hit {
             Some(Hit { side: Side::X, .. }) => Surface::WallX,
             Some(Hit { side: Side::Y, .. }) => Surface::WallY,
-            None if row < first_row_of_ground(height) => Surface::Sky,
+            None if row < ground => Surface::Sky,
             None => Surface::Floor,
         }
     }
 
-    /// How many rows, from the top, show the ceiling, in a frame that high.
-    pub(super) fn rows_of_ceiling(&self, height: u32) -> u32 {
-        self.rows.start.min(first_row_of_ground(height))
+    /// How many rows, from the top, show the ceiling, where the ground begins in row `ground`.
+    pub(super) fn rows_of_ceiling(&self, ground: u32) -> u32 {
+        self.rows.start.min(ground)
     }
 
-    /// How many rows, from the bottom of a frame that high, show the floor.
-    pub(super) fn rows_of_floor(&self, height: u32) -> u32 {
+    /// How many rows, from the bottom of a frame `height` pixels high, show the floor.
+    pub(super) fn rows_of_floor(&self, ground: u32, height: u32) -> u32 {
         height
             - match self.hit {
-                Some(_) => self.rows.end.max(first_row_of_ground(height)),
-                None => first_row_of_ground(height),
+                Some(_) => self.rows.end.max(ground),
+                None => ground,
             }
     }
 }

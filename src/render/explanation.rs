@@ -2,9 +2,9 @@
 
 use std::fmt;
 
-use super::Plan;
 use super::projection::Projection;
 use super::tally::{Counts, Pass};
+use super::{Geometry, Plan, WindowCounts};
 use crate::cast::Walk;
 use crate::world::Grid;
 
@@ -24,18 +24,25 @@ impl fmt::Display for Explanation {
         write!(f, "{plan}")?;
         writeln!(f)?;
         writeln!(f, "rays     {:>10} cast, into {} cells", counts.rays, counts.cells)?;
+        if let Geometry::Windows(_) = plan.geometry {
+            let WindowCounts { faces, spans, bounces, .. } = counts.windows;
+            writeln!(f, "windows  {faces:>10} faces, {spans} spans, {bounces} bounces")?;
+        }
         let passes = [
             ("ceiling", Pass::Ceiling),
             ("floor", Pass::Floor),
             ("sky", Pass::Sky),
             ("walls", Pass::Walls),
             ("through", Pass::SeeThrough),
+            ("things", Pass::Things),
         ];
         for (name, pass) in passes {
             let counts = counts.of(pass);
             let (pixels, texels) = (counts.pixels, counts.texels);
             writeln!(f, "{name:8} {pixels:>10} pixels written, {texels} texels read")?;
         }
+        let (considered, drawn) = (counts.things_considered, counts.things_drawn);
+        writeln!(f, "in view  {considered:>10} things considered, {drawn} of them drawn")?;
         let (pixels, overwritten) = (counts.pixels(), counts.overwritten);
         writeln!(f, "all      {pixels:>10} pixels written, {overwritten} of them overwritten")
     }

@@ -7,11 +7,15 @@
 use std::fmt;
 
 use super::Filter;
-use crate::world::{Ceiling, Covering, Light, Paint, Pattern, Rgb, Sky, Tile, TileKind, World};
+use crate::world::{
+    Camera, Ceiling, Covering, Heights, Light, Paint, Pattern, Rgb, Sky, Tile, TileKind, World,
+};
 
 /// Which passes draw a frame, and how.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct Plan {
+    /// Whether every ray ends where it meets the first wall, or goes on above, below and reflected.
+    pub geometry: Geometry,
     /// How what is overhead is drawn.
     pub ceiling: CeilingLoop,
     /// How the floor is drawn.
@@ -20,8 +24,30 @@ pub struct Plan {
     pub sky: SkyLoop,
     /// How the walls are drawn.
     pub walls: WallLoop,
+    /// How things are drawn.
+    pub things: ThingLoop,
     /// Which level of a texture is read.
     pub filter: Filter,
+}
+
+/// Which passes draw what there is.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Geometry {
+    /// Those for a world that is level: one wall for each column, floor and ceiling around it.
+    Level,
+    /// Those for floors, ceilings and walls of any height, and for mirrors.
+    Windows(WhyWindows),
+}
+
+/// Why a level's passes would not do.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum WhyWindows {
+    /// Floors, ceilings or walls are not all of one height.
+    Heights,
+    /// There are mirrors.
+    Mirrors,
+    /// The eye is not between floor and ceiling.
+    Eye,
 }
 
 /// How the floor or the ceiling is drawn.
@@ -64,18 +90,31 @@ pub struct WallLoop {
     pub faded: bool,
 }
 
+/// How things are drawn.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum ThingLoop {
+    /// Not at all: there are none.
+    None,
+    /// Those in the cells in view, from far to near.
+    Billboards,
+}
+
 impl Plan {
-    /// The plan for `world`.
-    pub fn new(world: &World, filter: Filter) -> Self {
+    /// The plan for what `camera` sees of `world`.
+    pub fn new(world: &World, camera: &Camera, filter: Filter) -> Self {
         let tiles = world.tiles();
-        let is_open = |tile: &&Tile| tile.kind == TileKind::Open;
+        let is_open = |tile: &&Tile| matches!(tile.kind, TileKind::Open | TileKind::Shape(_));
         let dims = |tile: &Tile| tile.light.is_some_and(|light| light != Light::FULL);
         let open = || tiles.iter().filter(is_open);
         let is_foggy = world.fog().is_some();
-        let floor_varies = open().any(|tile| dims(tile) || tile.floor != world.floor());
-        let ceiling_varies = open().any(|tile| dims(tile) || tile.ceiling != world.ceiling());
+        let is_lamplit = world.has_lamplight();
+        let floor_varies =
+            is_lamplit || open().any(|tile| dims(tile) || tile.floor != world.floor());
+        let ceiling_varies =
+            is_lamplit || open().any(|tile| dims(tile) || tile.ceiling != world.ceiling());
         let is_textured = |tile: &Tile| matches!(tile.kind, TileKind::Wall(Paint::Texture(_)));
         Self {
+            geometry: Geometry::new(world, camera),
             floor: PlaneLoop::new(world.floor(), floor_varies, is_foggy),
             ceiling: match world.ceiling() {
                 Ceiling::Sky if open().all(|tile| tile.ceiling == Ceiling::Sky) => CeilingLoop::Sky,
@@ -92,7 +131,23 @@ impl Plan {
                 textured: tiles.iter().any(is_textured),
                 faded: is_foggy || tiles.iter().any(dims),
             },
+            things: if world.things().is_empty() { ThingLoop::None } else { ThingLoop::Billboards },
             filter,
+        }
+    }
+}
+
+impl Geometry {
+    fn new(world: &World, camera: &Camera) -> Self {
+        let level = Heights::LEVEL;
+        if !world.is_level() {
+            Self::Windows(WhyWindows::Heights)
+        } else if world.has_mirrors() {
+            Self::Windows(WhyWindows::Mirrors)
+        } else if level.floor() < camera.eye() && camera.eye() < level.ceiling() {
+            Self::Level
+        } else {
+            Self::Windows(WhyWindows::Eye)
         }
     }
 }
@@ -111,11 +166,26 @@ impl PlaneLoop {
 impl fmt::Display for Plan {
     /// Writes a line for each pass: how it runs, and why.
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        writeln!(f, "geometry {}", self.geometry)?;
         writeln!(f, "ceiling  {}", self.ceiling)?;
         writeln!(f, "floor    {}", self.floor)?;
         writeln!(f, "sky      {}", self.sky)?;
         writeln!(f, "walls    {}", self.walls)?;
+        writeln!(f, "things   {}", self.things)?;
         writeln!(f, "filter   {}", self.filter)
+    }
+}
+
+impl fmt::Display for Geometry {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        f.write_str(match self {
+            Self::Level => "level: a ray ends at the first wall",
+            Self::Windows(WhyWindows::Heights) => {
+                "windows: floors, ceilings or walls are not all of one height"
+            }
+            Self::Windows(WhyWindows::Mirrors) => "windows: there are mirrors",
+            Self::Windows(WhyWindows::Eye) => "windows: the eye is not between floor and ceiling",
+        })
     }
 }
 
@@ -155,6 +225,15 @@ impl fmt::Display for WallLoop {
             ", faded: there is fog, or a tile that is not fully lit"
         } else {
             ", unfaded: there is no fog, and all is fully lit"
+        })
+    }
+}
+
+impl fmt::Display for ThingLoop {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        f.write_str(match self {
+            Self::None => "not drawn: there are none",
+            Self::Billboards => "those in view, from far to near",
         })
     }
 }

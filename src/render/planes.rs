@@ -15,7 +15,7 @@ use super::sky::SkyView;
 use super::tally::{Pass, Tally};
 use super::track::Track;
 use super::{Frame, Scene};
-use crate::world::{Ceiling, Covering, Light, Rgb, TileId};
+use crate::world::{Ceiling, Cell, Covering, Light, Rgb, TileId};
 
 /// One of the two planes, and what there is to know to draw it.
 pub(super) struct Plane<'a> {
@@ -23,7 +23,7 @@ pub(super) struct Plane<'a> {
     pub(super) kind: PlaneKind,
     /// What shows where a tile of the ceiling is open to the sky.
     pub(super) sky: &'a SkyView<'a>,
-    /// For each column, how many rows of its half of the picture show the plane.
+    /// For each column, how many rows of its part of the picture show the plane.
     pub(super) visible: &'a [u32],
 }
 
@@ -34,7 +34,7 @@ pub(super) enum PlaneKind {
 }
 
 impl Plane<'_> {
-    /// Draws the plane into its half of `frame`.
+    /// Draws the plane into its part of `frame`.
     pub(super) fn draw<T: Tally>(&self, plan: PlaneLoop, frame: &mut Frame, tally: &mut T) {
         let rows = self.rows(frame.height());
         match plan {
@@ -97,15 +97,16 @@ impl Plane<'_> {
         let world = self.scene.world;
         let mut x = span.start;
         while x < span.end {
-            let tile = self.tile_at(track, x);
-            let next = (x + 1..span.end).find(|&x| self.tile_at(track, x) != tile);
+            let ground = self.ground_at(track, x);
+            let next = (x + 1..span.end).find(|&x| self.ground_at(track, x) != ground);
             let count = next.unwrap_or(span.end) - x;
             let (stretch, rest) = pixels.split_at_mut(count);
             pixels = rest;
-            match tile.map(|tile| world.tile(tile)) {
+            match ground {
                 None => self.lay_default(track, x, stretch, tally),
-                Some(tile) => {
-                    let light = tile.light.unwrap_or(Light::FULL);
+                Some((tile, lamplight)) => {
+                    let tile = world.tile(tile);
+                    let light = tile.light.unwrap_or(Light::FULL).plus(lamplight);
                     match self.covering(tile.floor, tile.ceiling) {
                         Some(covering) => {
                             self.layer().lay(covering, light, track, x, stretch, tally);
@@ -123,7 +124,8 @@ impl Plane<'_> {
         let world = self.scene.world;
         // A ceiling that is sky is drawn by tile; off the map it is seen by nobody on the map.
         let covering = self.covering(world.floor(), world.ceiling()).unwrap_or(world.floor());
-        self.layer().lay(covering, Light::FULL, track, x, pixels, tally);
+        let light = world.ground().light.unwrap_or(Light::FULL);
+        self.layer().lay(covering, light, track, x, pixels, tally);
     }
 
     /// The one of the two that this plane shows; `None` for the sky.
@@ -135,11 +137,16 @@ impl Plane<'_> {
         }
     }
 
-    fn tile_at(&self, track: &Track, x: usize) -> Option<TileId> {
+    /// The tile that the pixel in column `x` shows, and what lamps add to its light; `None` off the
+    /// map.
+    fn ground_at(&self, track: &Track, x: usize) -> Option<(TileId, Light)> {
+        let world = self.scene.world;
         let point = track.point(x);
         // Casts round towards zero, so that what is less than a cell off the map has to be told apart.
         let is_on_map = point.x >= 0.0 && point.y >= 0.0;
-        is_on_map.then(|| self.scene.world.grid().tile(point.x as i64, point.y as i64)).flatten()
+        let (column, row) = (point.x as i64, point.y as i64);
+        let tile = is_on_map.then(|| world.grid().tile(column, row)).flatten()?;
+        Some((tile, world.lamplight_in(Cell { column: column as u32, row: row as u32 })))
     }
 
     fn fogged(&self, color: Rgb, row: u32) -> Rgb {
@@ -148,11 +155,12 @@ impl Plane<'_> {
         faded.map_or(color, |faded| faded.apply(color))
     }
 
-    /// The plane's half of a picture of that height.
+    /// The plane's part of a picture of that height.
     fn rows(&self, height: u32) -> Range<u32> {
+        let ground = self.scene.projection.first_row_of_ground();
         match self.kind {
-            PlaneKind::Floor => first_row_of_ground(height)..height,
-            PlaneKind::Ceiling => 0..first_row_of_ground(height),
+            PlaneKind::Floor => ground..height,
+            PlaneKind::Ceiling => 0..ground,
         }
     }
 
@@ -167,12 +175,6 @@ impl Plane<'_> {
             PlaneKind::Ceiling => Pass::Ceiling,
         }
     }
-}
-
-/// The first row that shows the ground where nothing is in the way: the first one with its centre
-/// at the horizon or below.
-pub(super) fn first_row_of_ground(height: u32) -> u32 {
-    height / 2
 }
 
 /// The stretches of `list`, as long as possible, whose items all are `wanted`.

@@ -11,7 +11,7 @@ use glam::DVec2;
 use super::track::Track;
 use super::{FrameSize, PixelAspect};
 use crate::cast::Ray;
-use crate::world::Camera;
+use crate::world::{Camera, Heights};
 
 /// How the world maps to the pixels of one frame.
 #[derive(Clone, Debug)]
@@ -21,12 +21,27 @@ pub(super) struct Projection {
     plane: DVec2,
     width: u32,
     height: f64,
-    /// The row that the eye's own height falls on, in pixels from the top.
+    /// The row that the eye's own height falls on, in pixels from the top; far outside the picture
+    /// where the camera looks that far up or down.
     horizon: f64,
+    /// How high the eye is.
+    eye: f64,
+    /// How high it is above a level's floor, and how far below the ceiling, as if it were between.
+    above_floor: f64,
+    below_ceiling: f64,
     /// Rows from the horizon to something 1 above the eye at distance 1.
     focal_length: f64,
     /// Columns from the middle to something 1 beside it at distance 1.
     focal_length_across: f64,
+}
+
+/// Where something is in a picture.
+#[derive(Clone, Copy, Debug)]
+pub(super) struct Place {
+    /// How far it is from the camera plane, in cells; not above 0 for what is not before it.
+    pub(super) depth: f64,
+    /// Columns of pixels from the left edge.
+    pub(super) column: f64,
 }
 
 impl Projection {
@@ -34,16 +49,26 @@ impl Projection {
         let width = size.width.get();
         let height = f64::from(size.height.get());
         let across = f64::from(width) / 2.0 / camera.field_of_view.half_width();
+        let focal_length = across / pixel_aspect.height_over_width();
+        let eye = camera.eye().clamp(NEAREST, 1.0 - NEAREST);
         Self {
+            eye: camera.eye().clamp(-FARTHEST, FARTHEST),
             origin: camera.position(),
             direction: camera.direction(),
             plane: camera.plane(),
             width,
             height,
-            horizon: height / 2.0,
-            focal_length: across / pixel_aspect.height_over_width(),
+            horizon: height / 2.0 + rows_of_pitch(camera, focal_length),
+            above_floor: eye,
+            below_ceiling: 1.0 - eye,
+            focal_length,
             focal_length_across: across,
         }
+    }
+
+    /// How high the eye is.
+    pub(super) fn eye(&self) -> f64 {
+        self.eye
     }
 
     /// Where the camera stands.
@@ -76,25 +101,94 @@ impl Projection {
 
     /// The rows whose centres are between the top and the bottom of a wall, 1 high, at distance `t`.
     pub(super) fn wall_rows(&self, t: f64) -> Range<u32> {
-        let half = 0.5 * self.focal_length / t;
-        self.first_row_below(self.horizon - half)..self.first_row_below(self.horizon + half)
+        let above = self.below_ceiling * self.focal_length / t;
+        let below = self.above_floor * self.focal_length / t;
+        self.first_row_below(self.horizon - above)..self.first_row_below(self.horizon + below)
+    }
+
+    /// The first row whose centre is not above what is at `height` and distance `t`.
+    pub(super) fn row_of(&self, height: f64, t: f64) -> u32 {
+        let rise = height - self.eye;
+        if rise == 0.0 {
+            return self.first_row_below(self.horizon);
+        }
+        self.first_row_below(self.horizon - rise * self.focal_length / t)
+    }
+
+    /// As [`Projection::texel_on_the_wall`], for a face from the height `bottom` to `top`, of which
+    /// the texture covers a cell at a time, from one whole height to the next.
+    pub(super) fn texel_on_the_face(
+        &self,
+        t: f64,
+        count: usize,
+        bottom: f64,
+        top: f64,
+    ) -> impl Fn(u32) -> usize {
+        let texels = count as f64;
+        let texels_per_row = (t / self.focal_length * texels).max(f64::MIN_POSITIVE);
+        let at_eye = (1.0 - self.eye) * texels;
+        let texel_at_eye = floor(at_eye);
+        let into_it = at_eye - texel_at_eye as f64;
+        let first = floor((1.0 - top) * texels);
+        let last = first.max(-floor((bottom - 1.0) * texels) - 1);
+        let horizon = self.horizon;
+        move |row| {
+            let below = (f64::from(row) + 0.5 - horizon) * texels_per_row + into_it;
+            let texel = texel_at_eye.saturating_add(floor(below)).clamp(first, last);
+            if (0..count as i64).contains(&texel) {
+                texel as usize
+            } else {
+                texel.rem_euclid(count as i64) as usize
+            }
+        }
     }
 
     /// Which of `count` texels, from top to bottom of a wall at distance `t`, the centre of a row of
     /// pixels is on. The row must be one of [`Projection::wall_rows`].
     ///
     /// Texels are counted from eye height, where a double can tell how little a row is above or
-    /// below it: however near the wall is, the upper half of the picture shows its upper half.
+    /// below it: however near the wall is, what is above the horizon shows what is above the eye.
     pub(super) fn texel_on_the_wall(&self, t: f64, count: usize) -> impl Fn(u32) -> usize {
         let texels_per_row = (t / self.focal_length * count as f64).max(f64::MIN_POSITIVE);
-        let middle = (count / 2) as i64;
-        let from_middle = if count.is_multiple_of(2) { 0.0 } else { 0.5 };
+        let at_eye = self.below_ceiling * count as f64;
+        let texel_at_eye = floor(at_eye);
+        let into_it = at_eye - texel_at_eye as f64;
         let last = count as i64 - 1;
         let horizon = self.horizon;
         move |row| {
-            let below = (f64::from(row) + 0.5 - horizon) * texels_per_row + from_middle;
-            (middle + floor(below)).clamp(0, last) as usize
+            let below = (f64::from(row) + 0.5 - horizon) * texels_per_row + into_it;
+            (texel_at_eye + floor(below)).clamp(0, last) as usize
         }
+    }
+
+    /// Where something in the middle of `point` is in the picture.
+    pub(super) fn place(&self, point: DVec2) -> Place {
+        let from_eye = point - self.origin;
+        let depth = from_eye.dot(self.direction);
+        let beside = from_eye.dot(self.direction.perp());
+        let column = f64::from(self.width) / 2.0 + self.focal_length_across * beside / depth;
+        Place { depth, column }
+    }
+
+    /// How many columns of pixels something covers that is `width` cells wide, at `depth`.
+    pub(super) fn columns_for(&self, width: f64, depth: f64) -> f64 {
+        self.focal_length_across * width / depth
+    }
+
+    /// The columns whose centres are between two places, given in columns from the left.
+    pub(super) fn columns_between(&self, left: f64, right: f64) -> Range<u32> {
+        let first = |x: f64| (x - 0.5).ceil().clamp(0.0, f64::from(self.width)) as u32;
+        first(left)..first(right)
+    }
+
+    /// Where something at `height` above the floor is at `depth`, in rows from the top.
+    pub(super) fn row_at(&self, height: f64, depth: f64) -> f64 {
+        self.horizon + (self.above_floor - height) * self.focal_length / depth
+    }
+
+    /// The rows whose centres are between two places, given in rows from the top.
+    pub(super) fn rows_between(&self, top: f64, bottom: f64) -> Range<u32> {
+        self.first_row_below(top)..self.first_row_below(bottom)
     }
 
     /// How much of a wall's side the pixels of a column cover, in square cells each: where its ray,
@@ -105,10 +199,21 @@ impl Projection {
         down * across
     }
 
-    /// What `row` shows of the floor or the ceiling: they are half a cell from the eye.
+    /// What `row` shows of the floor, or of the ceiling where it is above the horizon.
     pub(super) fn track(&self, row: u32) -> Track {
+        let height = if self.slope(row) > 0.0 { self.below_ceiling } else { self.above_floor };
+        self.track_of(row, height)
+    }
+
+    /// What `row` shows of a floor or a ceiling at that height.
+    pub(super) fn track_at(&self, row: u32, height: f64) -> Track {
+        self.track_of(row, (height - self.eye).abs())
+    }
+
+    /// What `row` shows of a floor or a ceiling `height` cells below or above the eye.
+    fn track_of(&self, row: u32, height: f64) -> Track {
         let slope = self.slope(row).abs();
-        let distance = 0.5 / slope;
+        let distance = height / slope;
         // A row further down, the distance is less by that.
         let along = distance / slope / self.focal_length;
         Track {
@@ -131,12 +236,34 @@ impl Projection {
         DVec2::new(1.0 / self.focal_length_across, 1.0 / self.focal_length)
     }
 
+    /// The first row that shows the ground where nothing is in the way: the first one with its
+    /// centre at the horizon or below.
+    pub(super) fn first_row_of_ground(&self) -> u32 {
+        self.first_row_below(self.horizon)
+    }
+
     /// The first row with its centre at `y` or below; the number of rows where there is none.
     fn first_row_below(&self, y: f64) -> u32 {
         // The cast takes what is not a number, as of a wall infinitely far through an infinitely
         // long lens, to 0.
         (y - 0.5).ceil().clamp(0.0, self.height) as u32
     }
+}
+
+/// An eye is at least that far from floor and ceiling, in cells: what is nearer shows nothing but
+/// where it touches.
+const NEAREST: f64 = 1.0 / 64.0;
+
+/// An eye further up or down sees nothing else than from there: no height is so far.
+const FARTHEST: f64 = 4.0 * Heights::MOST;
+
+/// By how many rows the horizon is below the middle of the picture: a whole number, so that what
+/// stays in view looks as it did.
+fn rows_of_pitch(camera: &Camera, focal_length: f64) -> f64 {
+    /// Out of any picture; through an infinitely long lens the way there would be infinite.
+    const FAR: f64 = 1e9;
+    let slope = camera.pitch.slope();
+    if slope == 0.0 { 0.0 } else { (slope * focal_length).round().clamp(-FAR, FAR) }
 }
 
 /// The largest integer that is not above `value`. The processor's own rounding is not in every

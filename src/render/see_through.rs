@@ -7,23 +7,29 @@
 //! Colours are mixed as they are in the frame, as sRGB. Mixing light instead was refused: it needs a
 //! table each way for every pixel, and a tint looks no more like glass for it.
 
+use std::ops::Range;
+
+use super::marks::Marks;
 use super::shade::{Faded, Shade};
 use super::tally::{Pass, Tally};
-use super::walls::light_of;
-use super::{Frame, Scene};
-use crate::cast::Hit;
-use crate::world::{Glass, Texture, TileKind};
+use super::walls::{level_of, light_of};
+use super::{Frame, Scene, Surface};
+use crate::cast::{Hit, Side};
+use crate::world::{Glass, TextureId, TileKind};
 
 /// What all rays of a frame passed.
 #[derive(Clone, Debug, Default)]
 pub(super) struct Passed {
     list: Vec<(usize, Hit)>,
+    /// For each column, which part of the list is still to be drawn; empty until that is asked for.
+    left: Vec<Range<usize>>,
 }
 
 impl Passed {
     /// Forgets everything but how much memory it took.
     pub(super) fn clear(&mut self) {
         self.list.clear();
+        self.left.clear();
     }
 
     /// Makes room for what so many rays pass in all but the strangest of maps, so that a camera that
@@ -37,12 +43,70 @@ impl Passed {
     pub(super) fn push(&mut self, column: usize, hit: Hit) {
         self.list.push((column, hit));
     }
+
+    /// Finds out what belongs to each of `columns` columns.
+    pub(super) fn sort_out(&mut self, columns: usize) {
+        self.left.clear();
+        self.left.reserve(columns);
+        if self.list.is_empty() {
+            return;
+        }
+        self.left.resize(columns, 0..0);
+        for (index, &(column, _)) in self.list.iter().enumerate() {
+            let left = &mut self.left[column];
+            *left = if Range::is_empty(left) { index..index + 1 } else { left.start..index + 1 };
+        }
+    }
+
+    /// The furthest that is left in `column`, if it is `depth` away or more; it is left no longer.
+    fn take_behind(&mut self, column: usize, depth: f64) -> Option<Hit> {
+        let left = self.left.get_mut(column).filter(|left| !Range::is_empty(left))?;
+        let (_, hit) = self.list[left.end - 1];
+        (hit.t >= depth).then(|| {
+            left.end -= 1;
+            hit
+        })
+    }
 }
 
 /// Draws what the rays passed over what is in `frame`.
-pub(super) fn draw<T: Tally>(scene: Scene<'_>, passed: &Passed, frame: &mut Frame, tally: &mut T) {
+pub(super) fn draw<T: Tally>(
+    scene: Scene<'_>,
+    passed: &Passed,
+    marks: &mut Marks,
+    frame: &mut Frame,
+    tally: &mut T,
+) {
     for &(column, ref hit) in passed.list.iter().rev() {
-        draw_hit(scene, column, hit, frame, tally);
+        draw_hit(scene, column, hit, marks, frame, tally);
+    }
+}
+
+/// Draws what the ray of `column` passed at `depth` or further away, where that is left to be drawn.
+pub(super) fn draw_behind<T: Tally>(
+    depth: f64,
+    column: usize,
+    scene: Scene<'_>,
+    passed: &mut Passed,
+    marks: &mut Marks,
+    frame: &mut Frame,
+    tally: &mut T,
+) {
+    while let Some(hit) = passed.take_behind(column, depth) {
+        draw_hit(scene, column, &hit, marks, frame, tally);
+    }
+}
+
+/// Draws what is left to be drawn.
+pub(super) fn draw_rest<T: Tally>(
+    scene: Scene<'_>,
+    passed: &mut Passed,
+    marks: &mut Marks,
+    frame: &mut Frame,
+    tally: &mut T,
+) {
+    for column in 0..passed.left.len() {
+        draw_behind(0.0, column, scene, passed, marks, frame, tally);
     }
 }
 
@@ -51,6 +115,7 @@ fn draw_hit<T: Tally>(
     scene: Scene<'_>,
     column: usize,
     hit: &Hit,
+    marks: &mut Marks,
     frame: &mut Frame,
     tally: &mut T,
 ) {
@@ -63,31 +128,38 @@ fn draw_hit<T: Tally>(
     match tile.map(|tile| world.tile(tile).kind) {
         Some(TileKind::Mask(texture)) => {
             tally.texels(Pass::SeeThrough, rows);
-            draw_mask(world.texture(texture), shade, scene, column, hit, frame);
+            draw_mask(texture, shade, scene, column, hit, marks, frame);
         }
         Some(TileKind::Glass(glass)) => draw_glass(glass, shade, scene, column, hit, frame),
         _ => {}
     }
 }
 
-/// Draws a mask from the texture itself: the levels of a texture know no holes.
 fn draw_mask(
-    texture: &Texture,
+    texture: TextureId,
     shade: Faded,
     scene: Scene<'_>,
     column: usize,
     hit: &Hit,
+    marks: &mut Marks,
     frame: &mut Frame,
 ) {
-    let texels = texture.column(hit.u);
-    let Some(alphas) = texture.alpha_column(hit.u) else { return };
+    let level = level_of(scene, column as u32, hit, texture);
+    let texels = level.column(hit.u);
+    let Some(alphas) = level.alpha_column(hit.u) else { return };
     let texel = scene.projection.texel_on_the_wall(hit.t, texels.len());
     let rows = scene.projection.wall_rows(hit.t);
     let pixels = frame.column_mut(column).skip(rows.start as usize);
-    for (row, pixel) in rows.zip(pixels) {
+    for (row, pixel) in rows.clone().zip(pixels) {
         let texel = texel(row);
         *pixel = shade.apply(texels[texel]).over(*pixel, alphas[texel]);
     }
+    let surface = match hit.side {
+        Side::X => Surface::WallX,
+        Side::Y => Surface::WallY,
+    };
+    let is_shown = |row| alphas[texel(row)] > u8::MAX / 2;
+    marks.note(column, rows.start, surface, rows.map(is_shown));
 }
 
 fn draw_glass(

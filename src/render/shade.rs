@@ -3,6 +3,8 @@
 //! A row of the floor and a column of a wall have one shade each. The inner loops are compiled for
 //! each kind, so that a scene without fog and darkness has no trace of them there.
 
+use glam::DVec2;
+
 use crate::cast::Side;
 use crate::world::{Fog, Light, Rgb};
 
@@ -67,6 +69,13 @@ impl Faded {
         Self::new(light, fog, distance)
     }
 
+    /// What becomes of a surface that faces along `normal`, a vector of length 1: as an x-side or a
+    /// y-side where it runs along one, and in between where it runs across.
+    pub(super) fn of_surface(normal: DVec2, light: Light, fog: Option<Fog>, distance: f64) -> Self {
+        let share = f64::midpoint(1.0, normal.x * normal.x);
+        Self::new((f64::from(light.in_256ths()) * share) as u32, fog, distance)
+    }
+
     fn new(light: u32, fog: Option<Fog>, distance: f64) -> Self {
         let Some(fog) = fog else { return Self { own: light, fog: Rgb::BLACK, share: 0 } };
         let clear = (fog.clearness(distance) * f64::from(FULL)).round() as u32;
@@ -88,6 +97,15 @@ mod tests {
         assert_eq!(Faded::of_plane(Light::FULL, None, 100.0), None);
         let wall = Faded::of_wall(Side::Y, Light::FULL, fog, 0.0);
         assert_eq!(wall.apply(Rgb::WHITE), Rgb::WHITE.halved());
+    }
+
+    #[test]
+    fn a_surface_along_the_grid_is_as_bright_as_a_wall() {
+        let light = Light::new(0.7).unwrap();
+        for (normal, side) in [(DVec2::X, Side::X), (-DVec2::X, Side::X), (DVec2::Y, Side::Y)] {
+            let wall = Faded::of_wall(side, light, None, 3.0);
+            assert_eq!(Faded::of_surface(normal, light, None, 3.0), wall);
+        }
     }
 
     #[test]

@@ -5,10 +5,11 @@ use std::f64::consts::TAU;
 use glam::DVec2;
 
 use super::plan::SkyLoop;
-use super::planes::{first_row_of_ground, spans};
+use super::planes::spans;
 use super::projection::Projection;
 use super::tally::{Pass, Tally};
 use super::{Column, Filter, Frame, Scene};
+use crate::cast::Unfolding;
 use crate::world::texture::Level;
 use crate::world::{Rgb, Sky, World};
 
@@ -73,6 +74,30 @@ impl<'a> SkyView<'a> {
         }
     }
 
+    /// As [`SkyView::draw`], seen in the mirrors behind which the map is unfolded by `unfolding`.
+    pub(super) fn draw_reflected<T: Tally>(
+        &self,
+        unfolding: Unfolding,
+        row: u32,
+        x: usize,
+        pixels: &mut [Rgb],
+        tally: &mut T,
+    ) {
+        match *self {
+            Self::Gradient { .. } => self.draw(row, x, pixels, tally),
+            Self::Panorama { projection, level, columns } => {
+                tally.pixels(Pass::Sky, pixels.len());
+                tally.texels(Pass::Sky, pixels.len());
+                let slope = projection.slope(row);
+                for (pixel, column) in pixels.iter_mut().zip(&columns[x..]) {
+                    let down = 1.0 - slope * column.up_for_slope;
+                    let across = column.reflected_across(unfolding);
+                    *pixel = level.at_fraction(across, (down * WHOLE) as u64);
+                }
+            }
+        }
+    }
+
     /// Draws it above all walls.
     pub(super) fn draw_overhead<T: Tally>(
         &self,
@@ -81,7 +106,7 @@ impl<'a> SkyView<'a> {
         frame: &mut Frame,
         tally: &mut T,
     ) {
-        let ground = first_row_of_ground(frame.height());
+        let ground = scene.projection.first_row_of_ground();
         for row in 0..ground {
             let pixels = frame.row_range_mut(row, row + 1);
             match plan {
@@ -110,7 +135,7 @@ impl<'a> SkyView<'a> {
             .filter(|column| column.hit.is_none())
             .map(|column| column.rows.start);
         let Some(first) = first_rows.min() else { return };
-        for row in first..first_row_of_ground(frame.height()) {
+        for row in first..scene.projection.first_row_of_ground() {
             let pixels = frame.row_range_mut(row, row + 1);
             let shows = |column: &Column| column.hit.is_none() && column.rows.start <= row;
             for span in spans(scene.columns, shows) {
@@ -126,6 +151,15 @@ impl SkyColumn {
         let turn = libm::atan2(direction.y, direction.x) / TAU;
         let turn = if turn < 0.0 { turn + 1.0 } else { turn };
         Self { across: (turn * WHOLE) as u64, up_for_slope: 1.0 / (direction.length() * height) }
+    }
+
+    /// Where it looks after the reflections that unfold the map by `unfolding`: a turn is taken from
+    /// the east, so that a mirror that faces north or south negates it.
+    fn reflected_across(&self, unfolding: Unfolding) -> u64 {
+        const HALF: u64 = 1 << 63;
+        let direction = unfolding.real_direction(DVec2::ONE);
+        let across = if direction.y < 0.0 { self.across.wrapping_neg() } else { self.across };
+        if direction.x < 0.0 { HALF.wrapping_sub(across) } else { across }
     }
 }
 

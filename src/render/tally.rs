@@ -3,6 +3,8 @@
 //! The passes are generic over it, and a frame that nobody wants explained is drawn with `()`, which
 //! counts nothing and leaves no code behind.
 
+use super::WindowCounts;
+
 /// A pass that writes pixels.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
 pub enum Pass {
@@ -16,6 +18,8 @@ pub enum Pass {
     Walls,
     /// What the rays passed.
     SeeThrough,
+    /// What stands in the cells.
+    Things,
 }
 
 /// Something that is told what is spent.
@@ -25,6 +29,9 @@ pub(super) trait Tally {
 
     /// So many pixels are written.
     fn pixels(&mut self, pass: Pass, count: usize);
+
+    /// So many things are looked at, and so many of them drawn.
+    fn things(&mut self, considered: usize, drawn: usize);
 }
 
 impl Tally for () {
@@ -33,6 +40,9 @@ impl Tally for () {
 
     #[inline]
     fn pixels(&mut self, _: Pass, _: usize) {}
+
+    #[inline]
+    fn things(&mut self, _: usize, _: usize) {}
 }
 
 /// What a pass read and wrote.
@@ -61,6 +71,14 @@ pub struct Counts {
     pub walls: PassCounts,
     /// Masks and glass.
     pub see_through: PassCounts,
+    /// Things.
+    pub things: PassCounts,
+    /// Things that may be in view by the cell that they stand in.
+    pub things_considered: u64,
+    /// Those that are.
+    pub things_drawn: u64,
+    /// What it took to see above, below and in mirrors, where the world is not level.
+    pub windows: WindowCounts,
     /// Pixels that were written more than once, each as often as that beyond the first time.
     pub overwritten: u64,
 }
@@ -74,13 +92,14 @@ impl Counts {
             Pass::Sky => self.sky,
             Pass::Walls => self.walls,
             Pass::SeeThrough => self.see_through,
+            Pass::Things => self.things,
         }
     }
 
     /// Pixels that were written by all passes together.
     pub fn pixels(&self) -> u64 {
-        let passes = [self.ceiling, self.floor, self.sky, self.walls, self.see_through];
-        passes.iter().map(|pass| pass.pixels).sum()
+        let Self { ceiling, floor, sky, walls, see_through, things, .. } = self;
+        [ceiling, floor, sky, walls, see_through, things].iter().map(|pass| pass.pixels).sum()
     }
 
     fn of_mut(&mut self, pass: Pass) -> &mut PassCounts {
@@ -90,6 +109,7 @@ impl Counts {
             Pass::Sky => &mut self.sky,
             Pass::Walls => &mut self.walls,
             Pass::SeeThrough => &mut self.see_through,
+            Pass::Things => &mut self.things,
         }
     }
 }
@@ -101,5 +121,10 @@ impl Tally for Counts {
 
     fn pixels(&mut self, pass: Pass, count: usize) {
         self.of_mut(pass).pixels += count as u64;
+    }
+
+    fn things(&mut self, considered: usize, drawn: usize) {
+        self.things_considered += considered as u64;
+        self.things_drawn += drawn as u64;
     }
 }

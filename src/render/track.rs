@@ -7,6 +7,8 @@
 
 use glam::DVec2;
 
+use crate::cast::Unfolding;
+
 /// The line that a row of pixels shows of the floor or the ceiling.
 #[derive(Clone, Copy, Debug)]
 pub(super) struct Track {
@@ -23,6 +25,15 @@ pub(super) struct Track {
 }
 
 impl Track {
+    /// Where it is on the map, if what it shows is seen in mirrors.
+    pub(super) fn seen_in_mirrors(self, unfolding: Unfolding) -> Self {
+        Self {
+            middle: unfolding.real_point(self.middle),
+            half_step: unfolding.real_direction(self.half_step),
+            ..self
+        }
+    }
+
     /// What the centre of the pixel in column `x` shows.
     pub(super) fn point(&self, x: usize) -> DVec2 {
         self.middle + self.half_step * self.half_steps_to(x) as f64

@@ -14,6 +14,7 @@ mod look;
 mod screen;
 mod shift;
 mod style;
+mod tolerance;
 
 use std::io::{self, Write};
 
@@ -23,12 +24,16 @@ use crossterm::terminal::{self, BeginSynchronizedUpdate, Clear, EndSynchronizedU
 use ratatui::backend::{Backend, ClearType, WindowSize};
 use ratatui::buffer::{Cell, CellWidth};
 use ratatui::layout::{Position, Size};
+use ratatui::style::Color;
 
 use self::control::ControlSequence;
 use self::look::Look;
 use self::screen::{Row, Screen};
 use self::shift::{Shift, Way};
+use self::style::Shade;
 pub(crate) use self::style::Style;
+use self::tolerance::Tolerance;
+use super::fidelity::Fidelity;
 
 /// A ratatui backend that writes to `W`.
 ///
@@ -47,6 +52,9 @@ pub struct CellWriter<W> {
     position: Option<Position>,
     cursor_visible: bool,
     bytes_written: u64,
+    fidelity: Fidelity,
+    /// How far colours may be off at present: shrinks while nothing moves.
+    tolerance: Tolerance,
 }
 
 impl<W: Write> CellWriter<W> {
@@ -63,12 +71,48 @@ impl<W: Write> CellWriter<W> {
             position: None,
             cursor_visible: false,
             bytes_written: 0,
+            fidelity: Fidelity::EXACT,
+            tolerance: Tolerance::of(Fidelity::EXACT),
         }
     }
 
     /// How many bytes have been written so far.
     pub fn bytes_written(&self) -> u64 {
         self.bytes_written
+    }
+
+    /// What was written to.
+    pub fn into_output(self) -> W {
+        self.output
+    }
+
+    /// From the next frame on, colours may be as far off as `fidelity` says.
+    pub fn set_fidelity(&mut self, fidelity: Fidelity) {
+        self.fidelity = fidelity;
+    }
+
+    /// Whether the terminal shows exactly what was drawn last. Where it does not, each further draw
+    /// without a changed cell brings it nearer, and the tenth is exact.
+    pub fn is_settled(&self) -> bool {
+        self.screen.is_exact()
+    }
+
+    /// Draws what is shown inexactly anew, a little more exactly: what a draw without a changed cell
+    /// does. It is written with the next flush.
+    ///
+    /// # Errors
+    ///
+    /// None but those of writing into memory.
+    pub fn refine(&mut self) -> io::Result<()> {
+        self.tolerance = self.tolerance.refined(self.fidelity);
+        self.screen.redraw_inexact();
+        self.draw_changed()
+    }
+
+    /// The colours that the terminal shows in the upper and the lower half of a cell; `None` where
+    /// it shows text in it, where nobody knows, and off the screen.
+    pub fn shown_colors(&self, column: u16, row: u16) -> Option<[Color; 2]> {
+        Some(self.screen.shown(column, row)?.halves()?.map(Shade::color))
     }
 
     /// Takes note that the window is now of `size`; ratatui clears it in the next frame.
@@ -95,9 +139,18 @@ impl<W: Write> CellWriter<W> {
         Ok(&mut self.frame)
     }
 
+    /// Makes every row that has changed look as it is wanted.
+    fn draw_changed(&mut self) -> io::Result<()> {
+        // Taken out while it is read, as what is written to goes by the same name.
+        let mut screen = std::mem::replace(&mut self.screen, Screen::none());
+        let drawn = screen.take_changed().try_for_each(|row| self.draw_row(row));
+        self.screen = screen;
+        drawn
+    }
+
     /// Makes a row look as it is wanted.
     fn draw_row(&mut self, row: Row) -> io::Result<()> {
-        let Row { y, shown, wanted } = row;
+        let Row { y, shown, wanted, exact } = row;
         let mut looks = std::mem::take(&mut self.row);
         looks.clear();
         looks.extend(wanted.iter().map(Look::of));
@@ -108,6 +161,7 @@ impl<W: Write> CellWriter<W> {
             }
         }
         let mut covered = 0;
+        *exact = true;
         for (x, (cell, &look)) in (0..).zip(wanted.iter().zip(&looks)) {
             if covered > 0 {
                 // The second half of a wide character.
@@ -115,21 +169,24 @@ impl<W: Write> CellWriter<W> {
                 shown[usize::from(x)] = Look::UNKNOWN;
             } else {
                 covered = cell.cell_width().saturating_sub(1);
-                if !shown[usize::from(x)].is(look) {
-                    self.draw_cell(Position { x, y }, cell)?;
-                    shown[usize::from(x)] = look;
+                let shown = &mut shown[usize::from(x)];
+                if !shown.is_near(look, self.tolerance) {
+                    *shown = self.draw_cell(Position { x, y }, cell)?;
                 }
+                *exact &= *shown == look;
             }
         }
         self.row = looks;
         Ok(())
     }
 
-    fn draw_cell(&mut self, position: Position, cell: &Cell) -> io::Result<()> {
+    /// Writes `cell`, or what passes for it, and answers what that looks like.
+    fn draw_cell(&mut self, position: Position, cell: &Cell) -> io::Result<Look> {
         self.move_to(position)?;
-        let (symbol, style) = look::cheapest(cell, self.style);
+        let ((symbol, style), look) = look::cheapest(cell, self.style, self.tolerance);
         self.set_style(style)?;
-        self.write_symbol(position, symbol)
+        self.write_symbol(position, symbol)?;
+        Ok(look)
     }
 
     /// Moves a stretch of row `y`. What is to the right of it moves back and forth.
@@ -221,11 +278,11 @@ impl<W: Write> Backend for CellWriter<W> {
         for (x, y, cell) in content {
             self.screen.want(x, y, cell);
         }
-        // Taken out while it is read, as what is written to goes by the same name.
-        let mut screen = std::mem::replace(&mut self.screen, Screen::none());
-        let drawn = screen.take_changed().try_for_each(|row| self.draw_row(row));
-        self.screen = screen;
-        drawn
+        if !self.screen.is_changed() {
+            return self.refine();
+        }
+        self.tolerance = Tolerance::of(self.fidelity);
+        self.draw_changed()
     }
 
     fn hide_cursor(&mut self) -> io::Result<()> {

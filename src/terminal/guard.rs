@@ -20,6 +20,7 @@ use crossterm::terminal::{
 use super::Error;
 use super::input::{Answer, Decoder, Input};
 use super::platform::Device;
+use super::recorder::{Recorder, Recording};
 use super::sequence;
 
 /// How long a terminal may take to answer.
@@ -35,6 +36,7 @@ pub(super) struct Guard {
     state: Mutex<State>,
     given_back: Condvar,
     hurried: AtomicBool,
+    recording: Mutex<Recording>,
 }
 
 #[derive(Debug)]
@@ -65,7 +67,10 @@ impl Guard {
     ///
     /// # Errors
     /// Where the process has a guard already.
-    pub(super) fn install(device: Device) -> Result<Arc<Self>, Error> {
+    pub(super) fn install(
+        device: Device,
+        recorder: Option<Box<dyn Recorder>>,
+    ) -> Result<Arc<Self>, Error> {
         let guard = Arc::new(Self {
             device,
             state: Mutex::new(State {
@@ -75,6 +80,7 @@ impl Guard {
             }),
             given_back: Condvar::new(),
             hurried: AtomicBool::new(false),
+            recording: Mutex::new(Recording::by(recorder)),
         });
         panic_hook::protect(&guard)?;
         Ok(guard)
@@ -88,6 +94,11 @@ impl Guard {
 
     pub(super) fn device(&self) -> &Device {
         &self.device
+    }
+
+    /// What takes note of what is sent.
+    pub(super) fn recording(&self) -> MutexGuard<'_, Recording> {
+        self.recording.lock().unwrap_or_else(PoisonError::into_inner)
     }
 
     /// Takes the terminal: raw mode, the alternate screen, no cursor.
@@ -134,6 +145,7 @@ impl Guard {
         if !self.is_taken() {
             return Err(io::Error::other(Error::given_back()));
         }
+        self.recording().sent(bytes);
         self.device.write(bytes, || !self.is_hurried())
     }
 
@@ -191,6 +203,7 @@ impl Guard {
 
     /// Writes `text`, if need be in the place of a frame that the terminal has not taken.
     fn write_or_discard(&self, text: &str) -> io::Result<()> {
+        self.recording().sent(text.as_bytes());
         let patiently = || {
             let deadline = Instant::now() + WRITE_PATIENCE;
             self.device.write(text.as_bytes(), || Instant::now() < deadline)

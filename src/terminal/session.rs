@@ -14,7 +14,8 @@ use super::guard::Guard;
 use super::input::{Answer, Decoder, Input};
 use super::platform::{Device, Signal, Signals};
 use super::{
-    CellWriter, Detected, Error, Event, Key, KeyEvent, Phase, QuitReason, WindowSize, sequence,
+    CellWriter, Detected, Error, Event, Key, KeyEvent, Phase, QuitReason, Recorder, WindowSize,
+    sequence,
 };
 use crate::palette::ColorDepth;
 
@@ -52,7 +53,18 @@ impl Session {
     /// Where standard input or output is not a terminal, where the process has a session already,
     /// where the platform has no Unix terminals, and where the terminal cannot be written to.
     pub fn enter(options: Options) -> Result<Self, Error> {
-        let guard = Guard::install(Device::open()?)?;
+        Self::enter_recorded(options, None)
+    }
+
+    /// As [`Session::enter`], and `recorder` takes note of everything that is sent.
+    ///
+    /// # Errors
+    /// As [`Session::enter`].
+    pub fn enter_recorded(
+        options: Options,
+        recorder: Option<Box<dyn Recorder>>,
+    ) -> Result<Self, Error> {
+        let guard = Guard::install(Device::open()?, recorder)?;
         Self::take(&guard, options).inspect_err(|_| guard.uninstall())
     }
 
@@ -60,6 +72,7 @@ impl Session {
         let signals =
             Signals::listen(guard).map_err(Error::while_doing("listening for signals"))?;
         let size = guard.device().size();
+        guard.recording().resized(size.cells());
         let output = Output { guard: Arc::clone(guard) };
         let mut session = Self {
             guard: Arc::clone(guard),
@@ -257,7 +270,11 @@ impl Session {
 
     /// The next frame is drawn from nothing, in the size that the window has now.
     fn repaint(&mut self) {
-        self.size = self.guard.device().size();
+        let size = self.guard.device().size();
+        if size.cells() != self.size.cells() {
+            self.guard.recording().resized(size.cells());
+        }
+        self.size = size;
         let writer = self.terminal.backend_mut();
         writer.forget();
         writer.set_size(self.size.cells());

@@ -8,6 +8,8 @@ mod clock;
 mod levels;
 mod panels;
 mod played;
+mod recording;
+mod replay;
 
 use std::env;
 use std::time::{Duration, Instant};
@@ -15,12 +17,14 @@ use std::time::{Duration, Instant};
 pub use levels::Levels;
 use ratatui::Frame;
 use ratatui::layout::Rect;
+pub use recording::Recording;
+pub use replay::Replay;
 
 use super::bindings::{Action, Bindings};
 use super::held::HeldKeys;
 use super::{CellAspect, GlyphMode, Minimap, View};
 use crate::cast::Method;
-use crate::game::{Intent, Intents};
+use crate::game::{Intent, Intents, STEP};
 use crate::map::Level;
 use crate::palette::ColorDepth;
 use crate::render::Filter;
@@ -28,6 +32,7 @@ use crate::terminal::{Detected, Error, Event, Key, KeyEvent, Options, Phase, Ses
 use crate::world::FieldOfView;
 use clock::Clock;
 use played::{Eye, Memory, Played};
+use recording::ScriptRecorder;
 
 /// How the game is shown and steered.
 #[derive(Clone, Debug, Default)]
@@ -50,17 +55,19 @@ pub struct Settings {
     pub filter: Filter,
 }
 
-/// Plays `levels` on the terminal until the player leaves or somebody else ends the program.
+/// Plays `levels` on the terminal until the player leaves or somebody else ends the program, and
+/// notes down what `recording` asks for.
 ///
 /// # Errors
 /// Where there is no terminal, or it fails.
-pub fn play(levels: Levels, settings: Settings) -> Result<(), Error> {
+pub fn play(levels: Levels, settings: Settings, recording: Recording) -> Result<(), Error> {
     let mut options = Options::from_environment(|name| env::var(name).ok());
     if let Some(depth) = settings.depth {
         options.color_depth = Detected::Certain(depth);
     }
-    let mut session = Session::enter(options)?;
+    let mut session = Session::enter_recorded(options, recording.terminal)?;
     let mut app = App::new(levels, settings);
+    app.script = recording.script;
     app.terminal_changed(&session);
     let start = Instant::now();
     while !app.has_left {
@@ -134,6 +141,7 @@ struct App {
     field_of_view: FieldOfView,
     held: HeldKeys,
     runs: bool,
+    ducks: bool,
     /// What counts for the next step even if its key is up again by then.
     pressed: Intents,
     shows_minimap: bool,
@@ -142,7 +150,11 @@ struct App {
     memory: Memory,
     /// What the screen shows; `None` where it must be drawn again.
     shown: Option<Scene>,
+    /// When, by the game's clock, something in the picture looks different by itself.
+    animates_at: Option<f64>,
     next_frame: Duration,
+    /// Where what is wanted is noted down.
+    script: Option<ScriptRecorder>,
 }
 
 /// By how much a key widens or narrows the view, and how far, in degrees.
@@ -168,12 +180,15 @@ impl App {
             settings,
             held: HeldKeys::default(),
             runs: false,
+            ducks: false,
             pressed: Intents::new(),
             shows_minimap: true,
             has_left: false,
             clock: Clock::default(),
             shown: None,
+            animates_at: None,
             next_frame: Duration::ZERO,
+            script: None,
         }
     }
 
@@ -187,7 +202,12 @@ impl App {
         let intents = self.intents();
         let quiet = self.game.quiet_steps(intents).min(steps);
         self.game.wait(quiet);
-        (quiet..steps).take(Clock::MOST_STEPS).for_each(|_| self.game.step(intents));
+        let mut moving = 0;
+        while moving < (steps - quiet).min(Clock::MOST_STEPS) && !self.game.is_finished() {
+            self.game.step(intents);
+            moving += 1;
+        }
+        self.record(intents, quiet + moving);
         if steps > 0 {
             self.pressed = Intents::new();
         }
@@ -202,15 +222,25 @@ impl App {
             _ => None,
         });
         let aims = self.held.iter().any(|key| self.turns(key) && !self.held.is_certain(key));
-        let others = [self.runs.then_some(Intent::Run), aims.then_some(Intent::Aim)];
+        let others = [
+            self.runs.then_some(Intent::Run),
+            self.ducks.then_some(Intent::Duck),
+            aims.then_some(Intent::Aim),
+        ];
         wanted.chain(self.pressed.iter()).chain(others.into_iter().flatten()).collect()
     }
 
-    /// Whether `key` turns the player. What may be a tap turns slowly: it is to aim with, and on
+    /// Whether `key` turns the player, or their gaze. What may be a tap turns slowly: it is to aim with, and on
     /// most terminals nobody says when it ends.
     fn turns(&self, key: Key) -> bool {
-        let turn = [Intent::TurnLeft, Intent::TurnRight].map(|turn| Some(Action::Want(turn)));
-        turn.contains(&self.settings.bindings.action(key))
+        let turns = [Intent::TurnLeft, Intent::TurnRight, Intent::LookUp, Intent::LookDown];
+        let turns = turns.map(|turn| Some(Action::Want(turn)));
+        turns.contains(&self.settings.bindings.action(key))
+    }
+
+    /// How the player walks, as far as they need not hold a key for it.
+    fn gait(&self) -> panels::Gait {
+        panels::Gait { runs: self.runs, ducks: self.ducks }
     }
 
     fn scene(&self) -> Scene {
@@ -227,11 +257,19 @@ impl App {
     }
 
     fn is_stale(&self) -> bool {
-        self.shown != Some(self.scene())
+        self.shown != Some(self.scene()) || self.steps_to_animation() == Some(0)
+    }
+
+    /// In how many steps something in the picture looks different by itself; `None` for never.
+    fn steps_to_animation(&self) -> Option<u64> {
+        let steps = (self.animates_at? - self.game.elapsed()) / STEP;
+        Some(steps.round().max(0.0) as u64)
     }
 
     fn drawn(&mut self, now: Duration) {
         self.shown = Some(self.scene());
+        let soonest = self.game.elapsed() + STEP;
+        self.animates_at = self.memory.next_change().map(|change| change.max(soonest));
         // Counted from when this frame was due, or the time that drawing takes would slow them down.
         let frame_time = self.settings.frame_time;
         self.next_frame = Some(self.next_frame + frame_time)
@@ -254,10 +292,10 @@ impl App {
         if self.screen != Screen::Playing {
             return None;
         }
-        match self.game.quiet_steps(self.intents()) {
-            u64::MAX => None,
-            quiet => Some(self.clock.step_after(quiet)),
-        }
+        let quiet = Some(self.game.quiet_steps(self.intents())).filter(|&quiet| quiet < u64::MAX);
+        let before_animation = self.steps_to_animation().map(|steps| steps.saturating_sub(1));
+        let steps = quiet.into_iter().chain(before_animation).min()?;
+        Some(self.clock.step_after(steps))
     }
 
     fn key(&mut self, event: KeyEvent, now: Duration) {
@@ -289,8 +327,13 @@ impl App {
                 self.shows_minimap = !self.shows_minimap;
                 self.shown = None;
             }
-            (Screen::Playing, Some(Action::Want(Intent::Open))) => {
-                self.pressed.insert(Intent::Open);
+            (
+                Screen::Playing,
+                Some(Action::Want(tap @ (Intent::Open | Intent::Jump | Intent::LookAhead))),
+            ) => self.pressed.insert(tap),
+            (_, Some(Action::ToggleDuck)) => {
+                self.ducks = !self.ducks;
+                self.shown = None;
             }
             (_, Some(Action::ToggleRun)) => {
                 self.runs = !self.runs;
@@ -344,7 +387,7 @@ impl App {
         }
         let [picture, status] = panels::picture_and_status(area);
         self.draw_picture(frame, picture);
-        panels::status(frame, status, &self.game, self.runs, &self.settings.bindings);
+        panels::status(frame, status, &self.game, self.gait(), &self.settings.bindings);
         let seconds = self.game.elapsed();
         match self.screen {
             Screen::Playing => {}

@@ -50,6 +50,7 @@ fn shades(surface: Surface) -> [char; 4] {
         Surface::WallX => ['x', '%', '#', '@'],
         Surface::WallY => ['!', '/', '|', 'H'],
         Surface::Floor => ['.', ':', '-', '='],
+        Surface::Thing => ['c', 'o', 'O', '8'],
     }
 }
 
@@ -61,8 +62,14 @@ mod tests {
 
     #[test]
     fn no_character_stands_for_two_surfaces() {
-        let surfaces =
-            [Surface::Ceiling, Surface::Sky, Surface::WallX, Surface::WallY, Surface::Floor];
+        let surfaces = [
+            Surface::Ceiling,
+            Surface::Sky,
+            Surface::WallX,
+            Surface::WallY,
+            Surface::Floor,
+            Surface::Thing,
+        ];
         let mut seen = HashSet::new();
         for surface in surfaces {
             let own: HashSet<char> = shades(surface).into_iter().collect();

@@ -26,6 +26,8 @@ pub(crate) enum Action {
     Want(Intent),
     /// Running until it is pressed again.
     ToggleRun,
+    /// Ducking until it is pressed again.
+    ToggleDuck,
     /// Showing or hiding the minimap.
     ToggleMinimap,
     /// Showing or hiding the keys.
@@ -42,7 +44,7 @@ pub(crate) enum Action {
 
 impl Action {
     /// Every action: its name in a file, what it does in a word or two, and itself.
-    pub(crate) const ALL: [(&'static str, &'static str, Self); 15] = [
+    pub(crate) const ALL: [(&'static str, &'static str, Self); 21] = [
         ("forward", "walk", Self::Want(Intent::Forward)),
         ("back", "walk back", Self::Want(Intent::Back)),
         ("strafe-left", "strafe left", Self::Want(Intent::StrafeLeft)),
@@ -51,7 +53,13 @@ impl Action {
         ("turn-right", "turn right", Self::Want(Intent::TurnRight)),
         ("run", "run while held", Self::Want(Intent::Run)),
         ("open", "open a door", Self::Want(Intent::Open)),
+        ("jump", "jump, or open", Self::Want(Intent::Jump)),
+        ("duck", "duck while held", Self::Want(Intent::Duck)),
+        ("look-up", "look up", Self::Want(Intent::LookUp)),
+        ("look-down", "look down", Self::Want(Intent::LookDown)),
+        ("look-ahead", "look ahead", Self::Want(Intent::LookAhead)),
         ("toggle-run", "run, on and off", Self::ToggleRun),
+        ("toggle-duck", "duck, on and off", Self::ToggleDuck),
         ("minimap", "map", Self::ToggleMinimap),
         ("help", "this help", Self::ToggleHelp),
         ("pause", "pause", Self::TogglePause),
@@ -66,8 +74,10 @@ impl Action {
 
     /// Whether nobody wants both at once.
     pub(super) fn opposes(self, other: Self) -> bool {
-        use Intent::{Back, Forward, StrafeLeft, StrafeRight, TurnLeft, TurnRight};
-        let pairs = [(Forward, Back), (StrafeLeft, StrafeRight), (TurnLeft, TurnRight)];
+        use Intent::{Back, Forward, LookDown, LookUp, StrafeLeft, StrafeRight};
+        use Intent::{TurnLeft, TurnRight};
+        let pairs =
+            [(Forward, Back), (StrafeLeft, StrafeRight), (TurnLeft, TurnRight), (LookUp, LookDown)];
         pairs.into_iter().any(|(one, another)| {
             (self, other) == (Self::Want(one), Self::Want(another))
                 || (other, self) == (Self::Want(one), Self::Want(another))
@@ -115,9 +125,15 @@ impl Bindings {
             (Key::Left, Action::Want(Intent::TurnLeft)),
             (Key::Right, Action::Want(Intent::TurnRight)),
             (Key::Shift, Action::Want(Intent::Run)),
-            (Key::Char(' '), Action::Want(Intent::Open)),
+            (Key::Char(' '), Action::Want(Intent::Jump)),
             (Key::Char('e'), Action::Want(Intent::Open)),
+            // Not Control: with another key held, it is a command to the terminal.
+            (Key::Char('c'), Action::Want(Intent::Duck)),
+            (Key::PageUp, Action::Want(Intent::LookUp)),
+            (Key::PageDown, Action::Want(Intent::LookDown)),
+            (Key::Home, Action::Want(Intent::LookAhead)),
             (Key::Char('r'), Action::ToggleRun),
+            (Key::Char('x'), Action::ToggleDuck),
             (Key::Char('m'), Action::ToggleMinimap),
             (Key::Tab, Action::ToggleMinimap),
             (Key::Char('?'), Action::ToggleHelp),

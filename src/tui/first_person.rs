@@ -9,7 +9,9 @@ use ratatui::widgets::StatefulWidget;
 use super::{CellAspect, GlyphMode, ascii, half_blocks, ramp};
 use crate::cast::Method;
 use crate::palette::ColorDepth;
-use crate::render::{Column, Explanation, Filter, Frame, FrameSize, PixelAspect, Renderer};
+use crate::render::{
+    Column, Explanation, Filter, Frame, FrameSize, PixelAspect, Renderer, Surface,
+};
 use crate::world::{Camera, World};
 
 /// A widget that shows what a camera sees.
@@ -23,6 +25,7 @@ pub struct FirstPerson<'a> {
     depth: ColorDepth,
     cell_aspect: CellAspect,
     filter: Filter,
+    seconds: f64,
 }
 
 impl<'a> FirstPerson<'a> {
@@ -35,6 +38,7 @@ impl<'a> FirstPerson<'a> {
             depth: ColorDepth::default(),
             cell_aspect: CellAspect::default(),
             filter: Filter::default(),
+            seconds: 0.0,
         }
     }
 
@@ -62,6 +66,12 @@ impl<'a> FirstPerson<'a> {
         Self { filter, ..self }
     }
 
+    /// With things as they are after so many seconds; [`View::next_change`] tells when to draw again.
+    #[must_use]
+    pub fn time(self, seconds: f64) -> Self {
+        Self { seconds, ..self }
+    }
+
     /// Draws the picture for an area of that size into `view`, as pixels only.
     ///
     /// With [`FirstPerson::paint`] this is what rendering the widget does. Apart, they serve who has
@@ -83,6 +93,8 @@ impl<'a> FirstPerson<'a> {
         let size = FrameSize::new(u32::from(size.width), height)?;
         view.frame.resize(size, self.cell_aspect.of_pixels(self.glyphs));
         view.renderer.set_filter(self.filter);
+        view.renderer.set_time(self.seconds);
+        view.renderer.keep_surfaces(self.glyphs == GlyphMode::Ascii);
         Some(view)
     }
 
@@ -98,8 +110,8 @@ impl<'a> FirstPerson<'a> {
                 half_blocks::draw(area, buffer, self.depth, above, |x, y| frame.pixel(x, y));
             }
             GlyphMode::Ascii => ascii::draw(area, buffer, self.depth, |x, y| {
-                let surface = renderer.columns()[x as usize].surface(above + y, frame.height());
                 let color = frame.pixel(x, above + y);
+                let surface = renderer.surface(x, above + y).unwrap_or(Surface::Sky);
                 (color, ascii::character(surface, color))
             }),
             GlyphMode::Ramp => ascii::draw(area, buffer, self.depth, |x, y| {
@@ -128,6 +140,12 @@ impl View {
     /// A view whose renderer finds the walls by `method`.
     pub fn with_method(method: Method) -> Self {
         Self { renderer: Renderer::with_method(method), ..Self::default() }
+    }
+
+    /// When something in the last picture begins to look different, by the clock of
+    /// [`FirstPerson::time`]; `None` for never.
+    pub fn next_change(&self) -> Option<f64> {
+        self.renderer.next_change()
     }
 
     /// What the rays of the last drawing met, from left to right.

@@ -9,7 +9,7 @@ use ratatui::widgets::Widget;
 use super::{GlyphMode, ascii, half_blocks};
 use crate::palette::ColorDepth;
 use crate::render::Column;
-use crate::world::{Camera, Cell, Paint, Rgb, ThingKind, TileId, TileKind, World};
+use crate::world::{Camera, Cell, Paint, Rgb, Shape, ThingKind, TileId, TileKind, World};
 
 /// A widget that shows the map from above: walls in their colours, the player as an arrow, and the
 /// part of the floor that is seen, by the rays that the picture was drawn from.
@@ -66,6 +66,8 @@ const VOID: Rgb = Rgb::BLACK;
 const EXIT: Rgb = Rgb::new(0x3c, 0xc8, 0x64);
 /// A key to take.
 const KEY: Rgb = Rgb::new(0xf0, 0xc0, 0x40);
+/// Something to walk around, or past.
+const ORNAMENT: Rgb = Rgb::new(0x9c, 0x8c, 0x74);
 /// How opaque glass is at least, so that clear glass can be told from floor.
 const MIST: u8 = 96;
 /// The arrow.
@@ -78,7 +80,7 @@ impl Widget for Minimap<'_> {
             return;
         }
         let window = Window::new(area, self.glyphs, self.world, self.camera.position());
-        let place = |x, y| self.place(window.point(x, y));
+        let place = |x, y| self.place(window.point(x, y), window.pixel());
         match self.glyphs {
             GlyphMode::Half => {
                 half_blocks::draw(area, buffer, self.depth, 0, |x, y| place(x, y).color());
@@ -103,19 +105,21 @@ impl Minimap<'_> {
         Size::new(needed.x as u16, (needed.y / pixels_per_cell).ceil() as u16)
     }
 
-    /// What is on the map at `point`.
-    fn place(&self, point: DVec2) -> Place {
+    /// What is on the map at `point`, in the middle of a pixel that is `pixel` cells wide.
+    fn place(&self, point: DVec2, pixel: f64) -> Place {
         let (column, row) = (point.x.floor() as i64, point.y.floor() as i64);
         let Some(tile) = self.world.grid().tile(column, row) else { return Place::Void };
-        if let Some(color) = self.solid_color(tile) {
+        if let Some(color) = self.solid_color(tile)
+            && self.is_covered(tile, point, pixel)
+        {
             return Place::Wall(color);
         }
-        let mut things = self.world.things().iter().filter(|thing| {
-            (i64::from(thing.cell.column), i64::from(thing.cell.row)) == (column, row)
-        });
-        match things.next().map(|thing| (thing.kind, thing.cell)) {
-            Some((ThingKind::Exit, _)) => Place::Exit,
-            Some((ThingKind::Key(_), cell)) if is_on_dot(point, cell) => Place::Key,
+        let cell = Cell { column: column as u32, row: row as u32 };
+        let is_on_dot = is_on_dot(point, cell);
+        match self.world.things_in(cell).first().map(|thing| thing.kind) {
+            Some(ThingKind::Exit) => Place::Exit,
+            Some(ThingKind::Key(_)) if is_on_dot => Place::Key,
+            Some(ThingKind::Ornament) if is_on_dot => Place::Ornament,
             _ if self.sees(point) => Place::Seen,
             _ => Place::Floor,
         }
@@ -125,14 +129,25 @@ impl Minimap<'_> {
     fn solid_color(&self, tile: TileId) -> Option<Rgb> {
         let paint = match self.world.tile(tile).kind {
             TileKind::Open | TileKind::Doorway(_) => return None,
-            TileKind::Wall(paint) => paint,
+            TileKind::Wall(paint) | TileKind::Shape(Shape { paint, .. }) => paint,
             TileKind::Door(door) => door.leaf,
+            TileKind::Mirror(tint) => Paint::Color(tint.color),
             TileKind::Mask(texture) => Paint::Texture(texture),
             TileKind::Glass(glass) => {
                 return Some(glass.color.over(FLOOR, glass.opacity.max(MIST)));
             }
         };
         Some(self.world.mean_color(paint))
+    }
+
+    /// Whether a pixel around `point`, in a cell of a solid tile, shows that: all do but those beside
+    /// a shape.
+    fn is_covered(&self, tile: TileId, point: DVec2, pixel: f64) -> bool {
+        let TileKind::Shape(Shape { outline, .. }) = self.world.tile(tile).kind else {
+            return true;
+        };
+        let cell = Cell { column: point.x as u32, row: point.y as u32 };
+        outline.distance(cell, point) <= pixel / 2.0
     }
 
     /// Whether the ray of the column that `point` falls in gets as far as that.
@@ -164,7 +179,7 @@ impl Minimap<'_> {
     }
 }
 
-/// Whether `point` is on the dot that stands for a key in `cell`.
+/// Whether `point` is on the dot that stands for a thing in `cell`.
 fn is_on_dot(point: DVec2, cell: Cell) -> bool {
     const RADIUS: f64 = 0.3;
     (point - cell.center()).abs().max_element() <= RADIUS
@@ -179,6 +194,7 @@ enum Place {
     Seen,
     Exit,
     Key,
+    Ornament,
 }
 
 impl Place {
@@ -190,6 +206,7 @@ impl Place {
             Self::Seen => SEEN,
             Self::Exit => EXIT,
             Self::Key => KEY,
+            Self::Ornament => ORNAMENT,
         }
     }
 
@@ -200,6 +217,7 @@ impl Place {
             Self::Seen => '.',
             Self::Exit => 'X',
             Self::Key => 'k',
+            Self::Ornament => 'o',
         }
     }
 }
@@ -237,6 +255,11 @@ impl Window {
             corner_along(spare.y, center.y, size.y),
         );
         Self { size, scale, corner, pixels_per_cell }
+    }
+
+    /// How many cells of the map a pixel is wide.
+    fn pixel(&self) -> f64 {
+        1.0 / self.scale.x
     }
 
     /// The point of the map that the centre of a pixel shows.

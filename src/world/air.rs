@@ -9,6 +9,8 @@ pub struct Light(u16);
 impl Light {
     /// Every colour as it is.
     pub const FULL: Self = Self(256);
+    /// Every colour black.
+    pub const NONE: Self = Self(0);
 
     /// A light of `share`, from 0 for darkness to 1 for full brightness. `None` outside that.
     pub fn new(share: f64) -> Option<Self> {
@@ -19,6 +21,18 @@ impl Light {
     /// From 0 to 256.
     pub const fn in_256ths(self) -> u32 {
         self.0 as u32
+    }
+
+    /// Both together, full at most.
+    #[must_use]
+    pub fn plus(self, other: Self) -> Self {
+        Self((self.0 + other.0).min(Self::FULL.0))
+    }
+
+    /// A share of it, from 0 to 1.
+    #[must_use]
+    pub(crate) fn dimmed(self, share: f64) -> Self {
+        Self((f64::from(self.0) * share).round() as u16)
     }
 }
 

@@ -1,11 +1,11 @@
-//! The camera: where somebody stands, which way they look, and how wide.
+//! The camera: where somebody stands and how high, which way they look, and how wide.
 
 use std::f64::consts::FRAC_PI_2;
 use std::fmt;
 
 use glam::DVec2;
 
-use super::Cell;
+use super::{Cell, Pitch};
 
 /// A direction on the map: 0° is east, 90° south, clockwise.
 ///
@@ -101,25 +101,49 @@ impl fmt::Display for FieldOfView {
     }
 }
 
-/// Where somebody stands, which way they look, and how wide.
+/// Where somebody stands and how high, which way they look, and how wide.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Camera {
     position: DVec2,
+    eye: f64,
     /// Which way it looks.
     pub heading: Heading,
+    /// How far up or down it looks.
+    pub pitch: Pitch,
     /// How wide it sees.
     pub field_of_view: FieldOfView,
 }
 
 impl Camera {
-    /// A camera at `position`, in cells. `None` where that is not finite.
+    /// How high the eye of somebody is who stands on a floor, in cells above it.
+    pub const STANDING: f64 = 0.5;
+
+    /// A camera at `position`, in cells, that looks straight ahead from [`Camera::STANDING`] above
+    /// 0. `None` where the position is not finite.
     pub fn new(position: DVec2, heading: Heading, field_of_view: FieldOfView) -> Option<Self> {
-        position.is_finite().then_some(Self { position, heading, field_of_view })
+        let camera = Self::at(position, heading, field_of_view);
+        position.is_finite().then_some(camera)
     }
 
-    /// A camera in the middle of `cell`.
+    /// As [`Camera::new`], in the middle of `cell`.
     pub fn in_cell(cell: Cell, heading: Heading, field_of_view: FieldOfView) -> Self {
-        Self { position: cell.center(), heading, field_of_view }
+        Self::at(cell.center(), heading, field_of_view)
+    }
+
+    fn at(position: DVec2, heading: Heading, field_of_view: FieldOfView) -> Self {
+        Self { position, eye: Self::STANDING, heading, pitch: Pitch::LEVEL, field_of_view }
+    }
+
+    /// The same camera with its eye at that height, in cells above 0. `None` where that is not
+    /// finite.
+    pub fn with_eye(self, eye: f64) -> Option<Self> {
+        eye.is_finite().then_some(Self { eye, ..self })
+    }
+
+    /// The same camera, looking up or down.
+    #[must_use]
+    pub fn with_pitch(self, pitch: Pitch) -> Self {
+        Self { pitch, ..self }
     }
 
     /// Where it stands, in cells.
@@ -127,12 +151,17 @@ impl Camera {
         self.position
     }
 
-    /// The unit vector through the middle of the picture.
+    /// How high its eye is, in cells above 0, the height of a floor where a map says no other.
+    pub fn eye(&self) -> f64 {
+        self.eye
+    }
+
+    /// The unit vector straight ahead.
     pub fn direction(&self) -> DVec2 {
         self.heading.direction()
     }
 
-    /// The vector from the middle of the picture, at distance 1, to its right edge.
+    /// The vector from straight ahead, at distance 1, to the right edge of the picture.
     pub fn plane(&self) -> DVec2 {
         self.direction().perp() * self.field_of_view.half_width()
     }

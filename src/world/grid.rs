@@ -1,8 +1,11 @@
 //! The grid: one byte a cell, row by row from the north.
 
+use std::collections::BTreeSet;
 use std::num::NonZeroU32;
 
 use glam::DVec2;
+
+use super::Lamplight;
 
 /// The place of a cell: column from the west, row from the north, both from 0.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash, PartialOrd, Ord)]
@@ -34,6 +37,8 @@ pub struct Grid {
     height: NonZeroU32,
     first_solid: TileId,
     cells: Vec<TileId>,
+    /// Where something stands that is in the way.
+    occupied: BTreeSet<Cell>,
 }
 
 impl Grid {
@@ -46,7 +51,13 @@ impl Grid {
         cells: Vec<TileId>,
     ) -> Option<Self> {
         let count = u64::from(width.get()) * u64::from(height.get());
-        (cells.len() as u64 == count).then_some(Self { width, height, first_solid, cells })
+        (cells.len() as u64 == count).then_some(Self {
+            width,
+            height,
+            first_solid,
+            cells,
+            occupied: BTreeSet::new(),
+        })
     }
 
     /// A grid drawn in characters: `.` and a space are open floor (tile 0), anything else is solid
@@ -65,6 +76,11 @@ impl Grid {
         let tile = |character| TileId(u8::from(!matches!(character, '.' | ' ')));
         let cells = rows.iter().flat_map(|row| row.chars()).map(tile).collect();
         Self::new(width, height, TileId(1), cells)
+    }
+
+    /// Lamplight for as many cells, in which no lamp shines yet.
+    pub(crate) fn lamplight(&self) -> Lamplight {
+        Lamplight::new(self.width, self.height)
     }
 
     /// Columns, from west to east.
@@ -88,6 +104,17 @@ impl Grid {
     pub(super) fn set(&mut self, cell: Cell, tile: TileId) {
         let width = self.width() as usize;
         self.cells[cell.row as usize * width + cell.column as usize] = tile;
+    }
+
+    /// Notes that something stands in `cell` that one cannot walk through.
+    pub(crate) fn occupy(&mut self, cell: Cell) {
+        self.occupied.insert(cell);
+    }
+
+    /// Whether something stands at a place, on the map, that nobody can walk through.
+    pub fn is_occupied(&self, column: i64, row: i64) -> bool {
+        let cell = Cell { column: column as u32, row: row as u32 };
+        !self.occupied.is_empty() && self.occupied.contains(&cell)
     }
 
     /// Whether there is something solid at a place; off the map there is nothing.

@@ -18,9 +18,6 @@ pub(crate) use level::mean_of_two;
 pub struct Texture {
     /// From the picture itself down to one texel.
     levels: Vec<Level>,
-    /// 0 for clear, 255 for opaque, in the order of the first level's texels; empty where all is
-    /// opaque.
-    alpha: Vec<u8>,
     mean: Rgb,
 }
 
@@ -49,7 +46,7 @@ impl Texture {
             alpha = Vec::new();
         }
         let mean = mean(&texels);
-        Self { levels: level::pyramid(width, height, texels), alpha, mean }
+        Self { levels: level::pyramid(width, height, texels, alpha), mean }
     }
 
     /// Texels from left to right.
@@ -70,22 +67,25 @@ impl Texture {
 
     /// Whether any of it can be seen through.
     pub fn has_alpha(&self) -> bool {
-        !self.alpha.is_empty()
+        self.levels[0].has_alpha()
     }
 
-    /// The alpha of the texels of [`Texture::column`]; `None` where all of the texture is opaque.
-    pub fn alpha_column(&self, u: f64) -> Option<&[u8]> {
-        self.alpha.get(self.levels[0].column_range(u))
-    }
-
-    /// The alpha of the texel at `(x, y)`, 255 where it is opaque.
+    /// The colour of the texel at `(x, y)`, and its alpha: 0 for clear, 255 for opaque.
     ///
     /// # Panics
     /// Where the texture has no such texel.
-    pub fn alpha(&self, x: u32, y: u32) -> u8 {
+    pub fn texel(&self, x: u32, y: u32) -> (Rgb, u8) {
         assert!(x < self.width() && y < self.height(), "no texel at ({x}, {y})");
-        let index = x as usize * self.height() as usize + y as usize;
-        self.alpha.get(index).copied().unwrap_or(u8::MAX)
+        self.levels[0].texel(x, y)
+    }
+
+    /// A part of it, from `(left, top)` on, as a texture of its own.
+    ///
+    /// # Panics
+    /// Where the part reaches beyond an edge.
+    #[must_use]
+    pub fn part(&self, left: u32, top: u32, width: NonZeroU32, height: NonZeroU32) -> Self {
+        Self::from_fn_with_alpha(width, height, |x, y| self.texel(left + x, top + y))
     }
 
     /// The texture itself, halved `halvings` times: along each axis, and down to one texel.
@@ -143,8 +143,8 @@ mod tests {
             (Rgb::new(100 * x as u8, 0, 255), if x == 0 { 0 } else { 255 })
         });
         assert_eq!(texture.mean(), Rgb::new(50, 0, 255));
-        assert_eq!((texture.alpha(0, 0), texture.alpha(1, 0)), (0, 255));
+        assert_eq!((texture.texel(0, 0).1, texture.texel(1, 0).1), (0, 255));
         let opaque = Texture::from_fn(size(1), size(1), |_, _| Rgb::BLACK);
-        assert_eq!(opaque.alpha(0, 0), 255);
+        assert_eq!(opaque.texel(0, 0).1, 255);
     }
 }

@@ -33,6 +33,8 @@ pub(crate) enum Key {
     Char(char),
     Left,
     Right,
+    PageUp,
+    Home,
     Escape,
     Enter,
 }
@@ -164,6 +166,8 @@ impl Key {
             Self::Enter => code(13, phase),
             Self::Left => format!("\x1b[1;1:{phase}D"),
             Self::Right => format!("\x1b[1;1:{phase}C"),
+            Self::PageUp => format!("\x1b[5;1:{phase}~"),
+            Self::Home => format!("\x1b[1;1:{phase}H"),
         }
     }
 
@@ -175,6 +179,8 @@ impl Key {
             Self::Enter => "\r".to_owned(),
             Self::Left => "\x1b[D".to_owned(),
             Self::Right => "\x1b[C".to_owned(),
+            Self::PageUp => "\x1b[5~".to_owned(),
+            Self::Home => "\x1b[H".to_owned(),
         }
     }
 }

@@ -25,6 +25,8 @@ pub(in crate::cli) struct Play {
     pub(in crate::cli) depth: Option<ColorDepth>,
     pub(in crate::cli) method: Method,
     pub(in crate::cli) filter: Filter,
+    /// Where to write what happens.
+    pub(in crate::cli) record: Option<PathBuf>,
 }
 
 pub(super) fn parse(mut parser: Parser) -> Result<Command, Error> {
@@ -38,23 +40,26 @@ pub(super) fn parse(mut parser: Parser) -> Result<Command, Error> {
                 play.config = Some(word(&mut parser, "--config", "a file")?.into());
             }
             Arg::Long("fps") => {
-                play.frames_per_second = value::FRAMES_PER_SECOND.value(&mut parser)?
+                play.frames_per_second = value::FRAMES_PER_SECOND.value(&mut parser)?;
             }
             Arg::Long("fov") => play.field_of_view = value::FIELD_OF_VIEW.value(&mut parser)?,
             Arg::Long("cell-aspect") => {
-                play.cell_aspect = Some(value::CELL_ASPECT.value(&mut parser)?)
+                play.cell_aspect = Some(value::CELL_ASPECT.value(&mut parser)?);
             }
             Arg::Long("glyphs") => play.glyphs = value::GLYPHS.value(&mut parser)?,
             Arg::Long("colors") => play.depth = Some(value::COLORS.value(&mut parser)?),
             Arg::Long("caster") => play.method = value::method(&mut parser)?,
             Arg::Long("filter") => play.filter = value::FILTER.value(&mut parser)?,
+            Arg::Long("record") => {
+                play.record = Some(word(&mut parser, "--record", "a file")?.into());
+            }
             other => return Err(unexpected("play", &OPTIONS, other)),
         }
     }
     Ok(Command::Play(play))
 }
 
-const OPTIONS: [&str; 9] = [
+const OPTIONS: [&str; 10] = [
     "--caster",
     "--cell-aspect",
     "--colors",
@@ -63,5 +68,6 @@ const OPTIONS: [&str; 9] = [
     "--fov",
     "--fps",
     "--glyphs",
+    "--record",
     "--version",
 ];

@@ -11,7 +11,7 @@ use crate::cast::Method;
 use crate::palette::ColorDepth;
 use crate::render::Filter;
 use crate::tui::{CellAspect, GlyphMode};
-use crate::world::{FieldOfView, Heading};
+use crate::world::{FieldOfView, Heading, Pitch};
 
 /// Options of `snapshot`.
 #[derive(Debug, Default)]
@@ -20,6 +20,11 @@ pub(in crate::cli) struct Snapshot {
     pub(in crate::cli) size: Size,
     /// Where to look from; the map's start where there is none.
     pub(in crate::cli) camera: Option<(DVec2, Heading)>,
+    /// How high the eye is; where somebody's is who stands there if there is none.
+    pub(in crate::cli) eye: Option<f64>,
+    /// How far up or down to look; straight ahead, or as at the start of a map of bodies, if there is
+    /// none.
+    pub(in crate::cli) pitch: Option<Pitch>,
     pub(in crate::cli) field_of_view: FieldOfView,
     pub(in crate::cli) cell_aspect: CellAspect,
     pub(in crate::cli) glyphs: GlyphMode,
@@ -49,9 +54,11 @@ pub(super) fn parse(mut parser: Parser) -> Result<Command, Error> {
             Arg::Value(map) if snapshot.map.is_none() => snapshot.map = Some(map),
             Arg::Long("size") => snapshot.size = value::SIZE.value(&mut parser)?,
             Arg::Long("camera") => snapshot.camera = Some(CAMERA.value(&mut parser)?),
+            Arg::Long("eye") => snapshot.eye = Some(EYE.value(&mut parser)?),
+            Arg::Long("pitch") => snapshot.pitch = Some(PITCH.value(&mut parser)?),
             Arg::Long("fov") => snapshot.field_of_view = value::FIELD_OF_VIEW.value(&mut parser)?,
             Arg::Long("cell-aspect") => {
-                snapshot.cell_aspect = value::CELL_ASPECT.value(&mut parser)?
+                snapshot.cell_aspect = value::CELL_ASPECT.value(&mut parser)?;
             }
             Arg::Long("glyphs") => snapshot.glyphs = value::GLYPHS.value(&mut parser)?,
             Arg::Long("colors") => snapshot.depth = value::COLORS.value(&mut parser)?,
@@ -65,18 +72,32 @@ pub(super) fn parse(mut parser: Parser) -> Result<Command, Error> {
     Ok(Command::Snapshot(snapshot))
 }
 
-const OPTIONS: [&str; 10] = [
+const OPTIONS: [&str; 12] = [
     "--camera",
     "--caster",
     "--cell-aspect",
     "--colors",
     "--explain",
+    "--eye",
     "--filter",
     "--format",
     "--fov",
     "--glyphs",
+    "--pitch",
     "--size",
 ];
+
+const EYE: Valued<f64> = Valued {
+    name: "--eye",
+    takes: "a finite height in cells, such as 0.5",
+    read: |text| text.parse().ok().filter(|eye: &f64| eye.is_finite()),
+};
+
+const PITCH: Valued<Pitch> = Valued {
+    name: "--pitch",
+    takes: "degrees from -30, down, to 30, up",
+    read: |text| Pitch::from_degrees(text.parse().ok()?),
+};
 
 const CAMERA: Valued<(DVec2, Heading)> = Valued {
     name: "--camera",

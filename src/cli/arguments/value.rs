@@ -1,21 +1,30 @@
 //! Options that several commands take, and how the value of one is read.
 
+use std::num::NonZeroU32;
+
 use lexopt::Parser;
 
 use super::{Error, word};
 use crate::cast::{Method, NotAMethod};
 use crate::palette::ColorDepth;
 use crate::render::Filter;
+use crate::terminal::{Fidelity, UnknownFidelity};
 use crate::tui::{CellAspect, GlyphMode};
 use crate::world::FieldOfView;
 
 /// The most frames a second, from 1 to 240.
 #[derive(Clone, Copy, Debug)]
-pub(in crate::cli) struct FramesPerSecond(pub(in crate::cli) u32);
+pub(in crate::cli) struct FramesPerSecond(NonZeroU32);
+
+impl FramesPerSecond {
+    pub(in crate::cli) fn get(self) -> NonZeroU32 {
+        self.0
+    }
+}
 
 impl Default for FramesPerSecond {
     fn default() -> Self {
-        Self(30)
+        Self(const { NonZeroU32::new(30).unwrap() })
     }
 }
 
@@ -24,6 +33,12 @@ impl Default for FramesPerSecond {
 pub(in crate::cli) struct Size {
     pub(in crate::cli) columns: u16,
     pub(in crate::cli) rows: u16,
+}
+
+impl Size {
+    pub(in crate::cli) fn cells(self) -> ratatui::layout::Size {
+        ratatui::layout::Size::new(self.columns, self.rows)
+    }
 }
 
 impl Default for Size {
@@ -54,7 +69,7 @@ pub(super) const FRAMES_PER_SECOND: Valued<FramesPerSecond> = Valued {
     name: "--fps",
     takes: "a whole number from 1 to 240",
     read: |text| {
-        let frames = text.parse().ok().filter(|frames| (1..=240).contains(frames));
+        let frames = text.parse::<NonZeroU32>().ok().filter(|frames| frames.get() <= 240);
         frames.map(FramesPerSecond)
     },
 };
@@ -114,9 +129,23 @@ pub(super) const SIZE: Valued<Size> = Valued {
     },
 };
 
+/// As [`SIZE`], of a window that somebody may have, several of which are kept at once.
+pub(super) const WINDOW_SIZE: Valued<Size> = Valued {
+    name: "--size",
+    takes: "COLSxROWS from 1x1 to 1000x1000, such as 120x40",
+    read: |text| (SIZE.read)(text).filter(|size| size.columns.max(size.rows) <= 1000),
+};
+
 /// The value of `--caster`, which knows best what is wrong with it.
 pub(super) fn method(parser: &mut Parser) -> Result<Method, Error> {
     let text = word(parser, "--caster", "the name of a method")?;
     let text = text.to_string_lossy();
     text.parse().map_err(|error: NotAMethod| Error::mistake(format!("--caster {text}: {error}")))
+}
+
+/// The value of `--fidelity`, likewise.
+pub(super) fn fidelity(parser: &mut Parser) -> Result<Fidelity, Error> {
+    let text = word(parser, "--fidelity", "exact, high, low or a number up to 255")?;
+    let text = text.to_string_lossy();
+    text.parse().map_err(|error: UnknownFidelity| Error::mistake(format!("--fidelity: {error}")))
 }

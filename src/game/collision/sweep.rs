@@ -8,8 +8,8 @@
 
 use glam::DVec2;
 
-use super::{Radius, blocks, cell_of, is_clear};
-use crate::world::Grid;
+use super::outline::{TouchKind, first_touch};
+use super::{Obstacles, Radius, cell_of, cell_on_map, is_clear};
 
 /// How deep a path cuts into a corner's disc, as a part of the radius, before it counts as touching.
 /// Who slides around a corner leaves it along its tangent, and that is exact to about 1e-16.
@@ -36,20 +36,29 @@ impl Path {
         self.length
     }
 
-    fn at(self, distance: f64) -> DVec2 {
+    pub(super) fn direction(self) -> DVec2 {
+        self.direction
+    }
+
+    pub(super) fn at(self, distance: f64) -> DVec2 {
         self.from + self.direction * distance
     }
 
     /// The place at `distance` along the path, or if a circle is not clear there, one a little
     /// before it, where it is. The path begins at such a place, and is free of obstacles up to
     /// `distance` but for rounding.
-    pub(super) fn last_clear(self, grid: &Grid, distance: f64, radius: Radius) -> DVec2 {
+    pub(super) fn last_clear<O: Obstacles>(
+        self,
+        obstacles: &O,
+        distance: f64,
+        radius: Radius,
+    ) -> DVec2 {
         let retreats = std::iter::successors(Some(f64::EPSILON), |retreat| Some(2.0 * retreat));
         std::iter::once(distance)
             .chain(retreats.map(|retreat| distance - retreat))
             .take_while(|&distance| distance > 0.0)
             .map(|distance| self.at(distance))
-            .find(|&center| is_clear(grid, center, radius))
+            .find(|&center| is_clear(obstacles, center, radius))
             .unwrap_or(self.from)
     }
 }
@@ -63,13 +72,19 @@ pub(super) struct Contact {
     pub(super) normal: DVec2,
     /// The displacement that is left of the path.
     pub(super) remaining: DVec2,
+    /// The column and the row of what is touched.
+    pub(super) cell: (i64, i64),
 }
 
 /// Where a circle that follows `path` touches something first, if it does.
-pub(super) fn first_contact(grid: &Grid, path: Path, radius: Radius) -> Option<Contact> {
+pub(super) fn first_contact<O: Obstacles>(
+    obstacles: &O,
+    path: Path,
+    radius: Radius,
+) -> Option<Contact> {
     let (mut column, mut row) = cell_of(path.from);
     loop {
-        let room = Room { grid, column, row, radius };
+        let room = Room { obstacles, column, row, radius };
         let Event { distance, kind } = room.next_event(path)?;
         if distance > path.length {
             return None;
@@ -80,17 +95,19 @@ pub(super) fn first_contact(grid: &Grid, path: Path, radius: Radius) -> Option<C
                 row += rows;
             }
             EventKind::Touch(obstacle) => {
-                let (position, normal) = obstacle.touched(grid, path, distance, radius);
+                let (position, normal) = obstacle.touched(obstacles, path, distance, radius);
                 let remaining = path.direction * (path.length - distance);
-                return Some(Contact { position, normal, remaining });
+                let (columns, rows) = obstacle.cell();
+                let cell = (column + columns, row + rows);
+                return Some(Contact { position, normal, remaining, cell });
             }
         }
     }
 }
 
 /// An open cell, as the centre of a circle finds it.
-struct Room<'a> {
-    grid: &'a Grid,
+struct Room<'a, O> {
+    obstacles: &'a O,
     column: i64,
     row: i64,
     radius: Radius,
@@ -113,8 +130,10 @@ enum EventKind {
 enum Obstacle {
     /// A flat wall, touched from `position`.
     Wall { position: DVec2, normal: DVec2 },
-    /// The corner of a solid cell.
-    Corner { vertex: DVec2 },
+    /// The corner of a solid cell, so many columns and rows from this one.
+    Corner { vertex: DVec2, cell: (i64, i64) },
+    /// The shape in a cell, so many columns and rows from this one.
+    Shape { touch: TouchKind, cell: (i64, i64) },
 }
 
 /// The side of a room that a path makes for along one axis.
@@ -129,16 +148,17 @@ struct Side {
     distance: f64,
 }
 
-impl Room<'_> {
+impl<O: Obstacles> Room<'_, O> {
     fn blocks(&self, columns: i64, rows: i64) -> bool {
-        blocks(self.grid, self.column + columns, self.row + rows)
+        self.obstacles.blocks(self.column + columns, self.row + rows)
     }
 
-    /// The first of: either side ahead, any corner. `None` for a path without a direction.
+    /// The first of: either side ahead, any corner, any shape. `None` for a path without a direction.
     fn next_event(&self, path: Path) -> Option<Event> {
         // Either of two equals will do: the other is met again in the next room, or on the slide.
         let sides = [self.event_along_y(path), self.event_along_x(path)];
-        let events = sides.into_iter().flatten().chain(self.corner_events(path));
+        let events = sides.into_iter().flatten();
+        let events = events.chain(self.corner_events(path)).chain(self.shape_events(path));
         events.reduce(|first, next| if next.distance <= first.distance { next } else { first })
     }
 
@@ -173,16 +193,26 @@ impl Room<'_> {
         let exposed = |(columns, rows): &(i64, i64)| {
             self.blocks(*columns, *rows) && !self.blocks(*columns, 0) && !self.blocks(0, *rows)
         };
-        let vertex = |(columns, rows): (i64, i64)| {
+        let event = move |(columns, rows): (i64, i64)| {
             let column = self.column + i64::from(columns > 0);
             let row = self.row + i64::from(rows > 0);
-            DVec2::new(column as f64, row as f64)
+            let vertex = DVec2::new(column as f64, row as f64);
+            let distance = distance_to_disc(path, vertex, self.radius.0)?;
+            let corner = Obstacle::Corner { vertex, cell: (columns, rows) };
+            Some(Event { distance, kind: EventKind::Touch(corner) })
         };
-        [(-1, -1), (1, -1), (-1, 1), (1, 1)]
-            .into_iter()
-            .filter(exposed)
-            .map(vertex)
-            .filter_map(move |vertex| corner_event(path, vertex, self.radius))
+        [(-1, -1), (1, -1), (-1, 1), (1, 1)].into_iter().filter(exposed).filter_map(event)
+    }
+
+    fn shape_events(&self, path: Path) -> impl Iterator<Item = Event> {
+        let around = (-1..=1).flat_map(|rows| (-1..=1).map(move |columns| (columns, rows)));
+        around.filter_map(move |(columns, rows)| {
+            let cell = cell_on_map(self.column + columns, self.row + rows)?;
+            let outline = self.obstacles.outline(cell)?;
+            let touch = first_touch(outline, cell, path, self.radius)?;
+            let shape = Obstacle::Shape { touch: touch.kind, cell: (columns, rows) };
+            Some(Event { distance: touch.distance, kind: EventKind::Touch(shape) })
+        })
     }
 }
 
@@ -200,29 +230,49 @@ impl Side {
     }
 }
 
-/// Where a path enters the disc around a corner.
-fn corner_event(path: Path, vertex: DVec2, Radius(radius): Radius) -> Option<Event> {
-    let offset = path.from - vertex;
+/// How far along a path it enters a disc.
+pub(super) fn distance_to_disc(path: Path, center: DVec2, radius: f64) -> Option<f64> {
+    let offset = path.from - center;
     let closest = -path.direction.dot(offset);
     let miss = path.direction.perp_dot(offset).abs();
     if closest <= 0.0 || miss >= radius * (1.0 - GRAZE) {
         return None;
     }
     let half_chord = ((radius - miss) * (radius + miss)).sqrt();
-    let distance = (closest - half_chord).max(0.0);
-    Some(Event { distance, kind: EventKind::Touch(Obstacle::Corner { vertex }) })
+    Some((closest - half_chord).max(0.0))
 }
 
 impl Obstacle {
+    /// The cell that is touched, as columns and rows from the one that the circle's centre is in.
+    fn cell(&self) -> (i64, i64) {
+        match *self {
+            Self::Wall { normal, .. } => (-normal.x as i64, -normal.y as i64),
+            Self::Corner { cell, .. } | Self::Shape { cell, .. } => cell,
+        }
+    }
+
     /// Where a circle is that touches this at `distance` on its path, and the contact's normal.
-    fn touched(self, grid: &Grid, path: Path, distance: f64, radius: Radius) -> (DVec2, DVec2) {
-        match self {
-            Self::Wall { position, normal } if is_clear(grid, position, radius) => {
+    fn touched<O: Obstacles>(
+        &self,
+        obstacles: &O,
+        path: Path,
+        distance: f64,
+        radius: Radius,
+    ) -> (DVec2, DVec2) {
+        match *self {
+            Self::Wall { position, normal } if is_clear(obstacles, position, radius) => {
                 (position, normal)
             }
-            Self::Wall { normal, .. } => (path.last_clear(grid, distance, radius), normal),
-            Self::Corner { vertex } => {
-                let position = path.last_clear(grid, distance, radius);
+            Self::Wall { normal, .. } => (path.last_clear(obstacles, distance, radius), normal),
+            Self::Shape { touch: TouchKind::Flat { position, normal }, .. } => {
+                if is_clear(obstacles, position, radius) {
+                    (position, normal)
+                } else {
+                    (path.last_clear(obstacles, distance, radius), normal)
+                }
+            }
+            Self::Corner { vertex, .. } | Self::Shape { touch: TouchKind::Round(vertex), .. } => {
+                let position = path.last_clear(obstacles, distance, radius);
                 let outward = position - vertex;
                 (position, outward / outward.length())
             }
@@ -233,12 +283,13 @@ impl Obstacle {
 #[cfg(test)]
 mod tests {
     use super::*;
+    use crate::world::Grid;
 
     #[test]
     fn a_joint_of_a_wall_is_no_corner() {
         let felt = |rows: &[&str]| {
             let grid = Grid::sketch(rows).unwrap();
-            let room = Room { grid: &grid, column: 1, row: 1, radius: Radius(0.25) };
+            let room = Room { obstacles: &grid, column: 1, row: 1, radius: Radius(0.25) };
             let path = Path::new(DVec2::new(1.5, 1.5), DVec2::new(-1.0, -1.0)).unwrap();
             room.corner_events(path).count()
         };

@@ -7,8 +7,8 @@ use crate::world::{Cell, Grid};
 /// A map, as somebody finds it who looks for keys.
 pub(super) struct Reach<'a> {
     pub(super) grid: &'a Grid,
-    /// All doors.
-    pub(super) doors: &'a BTreeSet<Cell>,
+    /// The solid cells that one gets through: doors, and shapes, which may leave room beside them.
+    pub(super) passable: &'a BTreeSet<Cell>,
     /// The locked ones, and the names of their keys.
     pub(super) locks: &'a BTreeMap<Cell, &'a str>,
     /// The keys that lie about.
@@ -49,14 +49,15 @@ impl<'a> Reach<'a> {
         cell.row as usize * self.grid.width() as usize + cell.column as usize
     }
 
-    /// The cells beside `cell` that are floor or a door.
+    /// The cells beside `cell` where one can walk, if only through a door.
     fn neighbors(&self, cell: Cell) -> impl Iterator<Item = Cell> {
         let sides = [(-1, 0), (1, 0), (0, -1), (0, 1)];
         sides.into_iter().filter_map(move |(columns, rows)| {
             let (column, row) = (i64::from(cell.column) + columns, i64::from(cell.row) + rows);
             let tile = self.grid.tile(column, row)?;
+            let is_barred = self.grid.is_solid_tile(tile) || self.grid.is_occupied(column, row);
             let cell = Cell { column: column as u32, row: row as u32 };
-            (!self.grid.is_solid_tile(tile) || self.doors.contains(&cell)).then_some(cell)
+            (!is_barred || self.passable.contains(&cell)).then_some(cell)
         })
     }
 }

@@ -10,6 +10,7 @@ use std::fmt;
 use ratatui::buffer::{Cell, CellWidth};
 
 use super::style::{Shade, Style};
+use super::tolerance::Tolerance;
 
 const UPPER: &str = "▀";
 const LOWER: &str = "▄";
@@ -32,7 +33,7 @@ impl Look {
     pub(super) fn of(cell: &Cell) -> Self {
         let glyph = (cell.symbol(), Style::of(cell));
         if let Some((top, bottom)) = halves(&glyph) {
-            return Self::of_fields(Self::BLOCK, 0, top.in_bits(), bottom.in_bits(), 0);
+            return Self::of_halves(top, bottom);
         }
         let (symbol, style) = glyph;
         let mut characters = symbol.chars();
@@ -58,6 +59,28 @@ impl Look {
         self == wanted && self != Self::INTRICATE
     }
 
+    /// Whether a cell that looks like `wanted` need not be sent, where colours may be off by
+    /// `tolerance`.
+    pub(super) fn is_near(self, wanted: Self, tolerance: Tolerance) -> bool {
+        self.is(wanted)
+            || match (self.halves(), wanted.halves()) {
+                (Some(shown), Some(wanted)) if !tolerance.is_exact() => {
+                    tolerance.covers(shown[0], wanted[0]) && tolerance.covers(shown[1], wanted[1])
+                }
+                _ => false,
+            }
+    }
+
+    /// The colours of the upper and the lower half of a block.
+    pub(super) fn halves(self) -> Option<[Shade; 2]> {
+        (self.0 >> 112 == Self::BLOCK)
+            .then(|| [Shade::from_bits((self.0 >> 32) as u32), Shade::from_bits(self.0 as u32)])
+    }
+
+    fn of_halves(top: Shade, bottom: Shade) -> Self {
+        Self::of_fields(Self::BLOCK, 0, top.in_bits(), bottom.in_bits(), 0)
+    }
+
     fn of_fields(kind: u128, character: u32, one: u32, other: u32, modifier: u16) -> Self {
         let colors = u128::from(one) << 32 | u128::from(other);
         Self(kind << 112 | u128::from(modifier) << 96 | u128::from(character) << 64 | colors)
@@ -78,20 +101,36 @@ impl fmt::Debug for Look {
 /// A character, and how it is drawn.
 pub(super) type Glyph<'a> = (&'a str, Style);
 
-/// The cheapest glyph that looks like `cell`, after `current`.
-pub(super) fn cheapest(cell: &Cell, current: Option<Style>) -> Glyph<'_> {
+/// The cheapest glyph that looks like `cell` within `tolerance`, after `current`, and what it looks
+/// like.
+pub(super) fn cheapest(
+    cell: &Cell,
+    current: Option<Style>,
+    tolerance: Tolerance,
+) -> (Glyph<'_>, Look) {
     let plain = (cell.symbol(), Style::of(cell));
-    let (Some(current), Some((top, bottom))) = (current, halves(&plain)) else { return plain };
-    let candidates = if top == bottom {
-        [
-            (SPACE, Style::plain(current.foreground, top)),
-            (FULL, Style::plain(top, current.background)),
-        ]
-    } else {
-        [(UPPER, Style::plain(top, bottom)), (LOWER, Style::plain(bottom, top))]
+    let (Some(current), Some((top, bottom))) = (current, halves(&plain)) else {
+        return (plain, Look::of(cell));
     };
-    let bytes = |&(symbol, style): &Glyph| symbol.len() + style.bytes_after(current);
-    candidates.into_iter().min_by_key(bytes).unwrap_or(plain)
+    let snapped =
+        |wanted: Shade, told: Shade| if tolerance.covers(told, wanted) { told } else { wanted };
+    let mut candidates = [None; 6];
+    for (candidate, merged) in candidates.iter_mut().zip([top, bottom, current.background]) {
+        if tolerance.covers(merged, top) && tolerance.covers(merged, bottom) {
+            let style = Style::plain(current.foreground, merged);
+            *candidate = Some(((SPACE, style), Look::of_halves(merged, merged)));
+        }
+    }
+    if tolerance.covers(current.foreground, top) && tolerance.covers(current.foreground, bottom) {
+        let look = Look::of_halves(current.foreground, current.foreground);
+        candidates[3] = Some(((FULL, Style::plain(current.foreground, current.background)), look));
+    }
+    let [upper, under] = [snapped(top, current.foreground), snapped(bottom, current.background)];
+    candidates[4] = Some(((UPPER, Style::plain(upper, under)), Look::of_halves(upper, under)));
+    let [over, lower] = [snapped(top, current.background), snapped(bottom, current.foreground)];
+    candidates[5] = Some(((LOWER, Style::plain(lower, over)), Look::of_halves(over, lower)));
+    let bytes = |&((symbol, style), _): &(Glyph, Look)| symbol.len() + style.bytes_after(current);
+    candidates.into_iter().flatten().min_by_key(bytes).unwrap_or((plain, Look::of(cell)))
 }
 
 /// The colours of the upper and the lower half of a glyph; `None` where it is no block, or where

@@ -14,6 +14,8 @@ pub(super) struct Screen {
     wanted: Vec<Cell>,
     /// Whether anything in a row is to be changed.
     changed: Vec<bool>,
+    /// Whether a row shows exactly what it is to show.
+    exact: Vec<bool>,
 }
 
 /// A row of it.
@@ -21,6 +23,7 @@ pub(super) struct Row<'a> {
     pub(super) y: u16,
     pub(super) shown: &'a mut [Look],
     pub(super) wanted: &'a [Cell],
+    pub(super) exact: &'a mut bool,
 }
 
 impl Screen {
@@ -34,7 +37,13 @@ impl Screen {
 
     /// No screen at all.
     pub(super) fn none() -> Self {
-        Self { width: 0, shown: Vec::new(), wanted: Vec::new(), changed: Vec::new() }
+        Self {
+            width: 0,
+            shown: Vec::new(),
+            wanted: Vec::new(),
+            changed: Vec::new(),
+            exact: Vec::new(),
+        }
     }
 
     /// Takes another size; what it shows is unknown then.
@@ -44,6 +53,7 @@ impl Screen {
         self.shown.resize(width * height, Look::UNKNOWN);
         self.wanted.resize(width * height, Cell::EMPTY);
         self.changed.resize(height, false);
+        self.exact.resize(height, true);
         self.forget();
     }
 
@@ -78,12 +88,36 @@ impl Screen {
         }
     }
 
+    /// Whether anything was wanted since the rows to change were taken.
+    pub(super) fn is_changed(&self) -> bool {
+        self.changed.contains(&true)
+    }
+
+    /// Whether every row that was drawn shows exactly what it is to show.
+    pub(super) fn is_exact(&self) -> bool {
+        !self.exact.contains(&false)
+    }
+
+    /// The rows that are not exact yet are to be drawn again.
+    pub(super) fn redraw_inexact(&mut self) {
+        for (changed, exact) in self.changed.iter_mut().zip(&self.exact) {
+            *changed |= !exact;
+        }
+    }
+
+    /// What is shown there; `None` off the screen.
+    pub(super) fn shown(&self, x: u16, y: u16) -> Option<Look> {
+        let (x, y) = (usize::from(x), usize::from(y));
+        (x < self.width).then(|| self.shown.get(y * self.width + x).copied()).flatten()
+    }
+
     /// The rows to change, from the top; they count as changed no longer.
     pub(super) fn take_changed(&mut self) -> impl Iterator<Item = Row<'_>> {
         let width = self.width.max(1);
         let rows = self.shown.chunks_mut(width).zip(self.wanted.chunks(width));
-        (0..).zip(rows.zip(&mut self.changed)).filter_map(|(y, ((shown, wanted), changed))| {
-            std::mem::take(changed).then_some(Row { y, shown, wanted })
+        let states = self.changed.iter_mut().zip(&mut self.exact);
+        (0..).zip(rows.zip(states)).filter_map(|(y, ((shown, wanted), (changed, exact)))| {
+            std::mem::take(changed).then_some(Row { y, shown, wanted, exact })
         })
     }
 }

@@ -160,6 +160,25 @@ impl Shade {
         }
     }
 
+    /// The colour that has the number `bits`.
+    pub(super) fn from_bits(bits: u32) -> Self {
+        let [kind, red, green, blue] = bits.to_be_bytes();
+        match kind {
+            0 => Self::Default,
+            1 => Self::Indexed(blue),
+            _ => Self::Rgb(red, green, blue),
+        }
+    }
+
+    /// The same colour, as ratatui names it.
+    pub(super) fn color(self) -> Color {
+        match self {
+            Self::Default => Color::Reset,
+            Self::Indexed(index) => Color::Indexed(index),
+            Self::Rgb(red, green, blue) => Color::Rgb(red, green, blue),
+        }
+    }
+
     /// About how many bytes it takes as parameters.
     fn bytes(self) -> usize {
         let digits = |number: u8| match number {

@@ -299,6 +299,30 @@ proptest! {
     }
 }
 
+proptest! {
+    #[test]
+    fn a_resting_picture_is_exact_within_ten_frames(
+        history in prop::collection::vec(any_pixels(24), 1..4),
+        tolerance: u8,
+    ) {
+        let size = Size::new(6, 4);
+        let (mut terminal, screen) = terminal(size);
+        terminal.backend_mut().set_fidelity(Fidelity::new(tolerance));
+        let pictures = history.into_iter().map(|content| Buffer { area: Rect::from(size), content });
+        let pictures: Vec<_> = pictures.collect();
+        pictures.iter().for_each(|content| draw(&mut terminal, content));
+        let last = pictures.last().unwrap();
+        for _ in 0..10 {
+            draw(&mut terminal, last);
+        }
+        assert_shown(&screen, last);
+        prop_assert!(terminal.backend().is_settled());
+        let writes = screen.writes();
+        draw(&mut terminal, last);
+        prop_assert_eq!(screen.writes(), writes);
+    }
+}
+
 #[test]
 fn only_what_differs_from_the_cell_before_is_sent() {
     let (red, blue) = (Color::Rgb(200, 0, 0), Color::Rgb(0, 0, 200));

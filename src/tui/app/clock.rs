@@ -14,7 +14,7 @@ pub(super) struct Clock {
 impl Clock {
     /// The most steps that are made up for at once, a quarter of a second: a machine that can't keep
     /// up plays slower, rather than later and later.
-    pub(super) const MOST_STEPS: usize = 15;
+    pub(super) const MOST_STEPS: u64 = 15;
 
     /// How many steps have passed between the last call and `now`.
     pub(super) fn steps_until(&mut self, now: Duration) -> u64 {

@@ -62,16 +62,24 @@ pub(super) fn framed(frame: &mut Frame, area: Rect, title: &str) -> Rect {
     inside
 }
 
+/// How the player walks, whatever keys are held.
+#[derive(Clone, Copy, Debug)]
+pub(super) struct Gait {
+    pub(super) runs: bool,
+    pub(super) ducks: bool,
+}
+
 /// The line below the picture.
 pub(super) fn status(
     frame: &mut Frame,
     area: Rect,
     game: &Played,
-    runs: bool,
+    gait: Gait,
     bindings: &Bindings,
 ) {
-    let running = runs.then(|| "running".to_owned());
-    let parts = running.into_iter().chain(game.news());
+    let running = gait.runs.then(|| "running".to_owned());
+    let ducking = gait.ducks.then(|| "ducking".to_owned());
+    let parts = running.into_iter().chain(ducking).chain(game.news());
     let left: String = parts.fold(format!(" {}", game.title()), |line, part| line + "  " + &part);
     let left = Line::from(left);
     let right = Line::from(format!(" {} help ", key_names(bindings, Action::ToggleHelp)));
@@ -164,7 +172,7 @@ mod tests {
     fn help_is_whole_or_says_that_there_is_more() {
         let bindings = Bindings::default();
         for (columns, rows, is_whole) in
-            [(31, 17, true), (61, 10, true), (200, 60, true), (60, 9, false), (20, 5, false)]
+            [(32, 23, true), (64, 13, true), (200, 60, true), (60, 9, false), (20, 5, false)]
         {
             let text = shown(columns, rows, |frame| help(frame, frame.area(), &bindings));
             let is_so = Action::ALL.iter().all(|(_, does, _)| text.contains(does));

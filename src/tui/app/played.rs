@@ -10,6 +10,7 @@ use crate::tui::{FirstPerson, SpaceMemory, SpaceView, View};
 use crate::world::{Camera, FieldOfView};
 
 /// A level, as far as it has been played.
+#[derive(Debug)]
 pub(super) enum Played {
     Grid(Box<Game>),
     Space(Box<Flight>),
@@ -27,6 +28,14 @@ pub(super) enum Eye {
 pub(super) struct Memory {
     pub(super) grid: View,
     pub(super) space: SpaceMemory,
+}
+
+impl Memory {
+    /// When, by the game's clock, something that was drawn last looks different by itself; `None` for
+    /// never.
+    pub(super) fn next_change(&self) -> Option<f64> {
+        self.grid.next_change()
+    }
 }
 
 impl Played {
@@ -116,7 +125,8 @@ impl Played {
                     .glyphs(look.glyphs)
                     .color_depth(look.depth)
                     .cell_aspect(look.cell_aspect)
-                    .filter(look.filter);
+                    .filter(look.filter)
+                    .time(game.elapsed());
                 frame.render_stateful_widget(picture, area, &mut memory.grid);
             }
             (Self::Space(flight), Eye::Space(camera)) => {

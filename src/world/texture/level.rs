@@ -3,7 +3,8 @@
 //! A texel of a level is the mean of those it covers in the level before, by the area of each, so
 //! that sides which are no powers of two lose nothing. The mean is taken in linear light, because
 //! that is what the eye does from far away; taken of the numbers as they are stored, a black and white
-//! chessboard would turn too dark with the distance.
+//! chessboard would turn too dark with the distance. What is clear lends its colour to nobody: texels
+//! count by their alpha as well as by their area.
 
 use std::num::NonZeroU32;
 use std::ops::Range;
@@ -18,6 +19,8 @@ pub struct Level {
     height: NonZeroU32,
     /// Column by column, each from top to bottom.
     texels: Vec<Rgb>,
+    /// 0 for clear, 255 for opaque, in the same order; empty where all is opaque.
+    alpha: Vec<u8>,
 }
 
 impl Level {
@@ -37,8 +40,23 @@ impl Level {
         &self.texels[self.column_range(u)]
     }
 
+    /// The alpha of the texels of [`Level::column`]; `None` where all of the level is opaque.
+    pub fn alpha_column(&self, u: f64) -> Option<&[u8]> {
+        self.alpha.get(self.column_range(u))
+    }
+
+    /// The texel at `(x, y)`, and its alpha.
+    pub(super) fn texel(&self, x: u32, y: u32) -> (Rgb, u8) {
+        let index = x as usize * self.height.get() as usize + y as usize;
+        (self.texels[index], self.alpha.get(index).copied().unwrap_or(u8::MAX))
+    }
+
+    pub(super) fn has_alpha(&self) -> bool {
+        !self.alpha.is_empty()
+    }
+
     /// Where the texels of that column are among all of them.
-    pub(super) fn column_range(&self, u: f64) -> Range<usize> {
+    fn column_range(&self, u: f64) -> Range<usize> {
         let height = self.height.get() as usize;
         let start = texel_index(u, self.width.get()) * height;
         start..start + height
@@ -60,14 +78,22 @@ fn texel_index(coordinate: f64, count: u32) -> usize {
     index.min(count as usize - 1)
 }
 
-/// A picture of these texels, column by column, and its halvings down to one texel.
-pub(super) fn pyramid(width: NonZeroU32, height: NonZeroU32, texels: Vec<Rgb>) -> Vec<Level> {
-    let mut light = Light { width, height, texels: texels.iter().copied().map(linear).collect() };
-    let mut levels = vec![Level { width, height, texels }];
+/// A picture of these texels, column by column, and its halvings down to one texel. `alpha` is in
+/// the same order, or empty where all is opaque.
+pub(super) fn pyramid(
+    width: NonZeroU32,
+    height: NonZeroU32,
+    texels: Vec<Rgb>,
+    alpha: Vec<u8>,
+) -> Vec<Level> {
+    let light_texels = texels.iter().copied().map(linear).collect();
+    let mut light = Light { width, height, texels: light_texels, alpha: alpha.clone() };
+    let mut levels = vec![Level { width, height, texels, alpha }];
     while light.texels.len() > 1 {
         light = light.halved();
         let texels = light.texels.iter().copied().map(stored).collect();
-        levels.push(Level { width: light.width, height: light.height, texels });
+        let (width, height, alpha) = (light.width, light.height, light.alpha.clone());
+        levels.push(Level { width, height, texels, alpha });
     }
     levels
 }
@@ -77,6 +103,8 @@ struct Light {
     width: NonZeroU32,
     height: NonZeroU32,
     texels: Vec<[u16; 3]>,
+    /// As in a [`Level`].
+    alpha: Vec<u8>,
 }
 
 impl Light {
@@ -84,32 +112,41 @@ impl Light {
         let half = |side: NonZeroU32| NonZeroU32::new(side.get() / 2).unwrap_or(NonZeroU32::MIN);
         let (width, height) = (half(self.width), half(self.height));
         let places = (0..width.get()).flat_map(|x| (0..height.get()).map(move |y| (x, y)));
-        let texels = places
+        let (texels, mut alpha): (Vec<_>, Vec<u8>) = places
             .map(|(x, y)| {
                 self.mean(covered(x, self.width, width), &covered(y, self.height, height))
             })
-            .collect();
-        Self { width, height, texels }
+            .unzip();
+        if self.alpha.is_empty() {
+            alpha = Vec::new();
+        }
+        Self { width, height, texels, alpha }
     }
 
-    /// The mean of the texels in some columns and rows, each with its weight.
+    /// The mean of the texels in some columns and rows, each with its weight, and of their alpha.
     fn mean(
         &self,
         columns: impl Iterator<Item = (u32, u64)>,
         rows: &(impl Iterator<Item = (u32, u64)> + Clone),
-    ) -> [u16; 3] {
-        let (mut sums, mut total) = ([0; 3], 0);
+    ) -> ([u16; 3], u8) {
+        const OPAQUE: u64 = u8::MAX as u64;
+        let (mut sums, mut weights, mut total) = ([0; 3], 0, 0);
         for (x, share_of_column) in columns {
-            let column = &self.texels[x as usize * self.height.get() as usize..];
+            let start = x as usize * self.height.get() as usize;
             for (y, share_of_row) in rows.clone() {
-                let weight = share_of_column * share_of_row;
-                total += weight;
-                for (sum, channel) in sums.iter_mut().zip(column[y as usize]) {
+                let index = start + y as usize;
+                let area = share_of_column * share_of_row;
+                let weight = area * self.alpha.get(index).map_or(OPAQUE, |&alpha| alpha.into());
+                total += area;
+                weights += weight;
+                for (sum, channel) in sums.iter_mut().zip(self.texels[index]) {
                     *sum += weight * u64::from(channel);
                 }
             }
         }
-        sums.map(|sum| ((sum + total / 2) / total) as u16)
+        let shown = weights.max(1);
+        let color = sums.map(|sum| ((sum + shown / 2) / shown) as u16);
+        (color, ((weights + total / 2) / total) as u8)
     }
 }
 
@@ -184,7 +221,7 @@ mod tests {
     fn a_chessboard_turns_into_the_gray_it_looks_like() {
         let texels = (0..16).map(|index| if (index + index / 4) % 2 == 0 { 0 } else { 255 });
         let texels = texels.map(|gray| Rgb::new(gray, gray, gray)).collect();
-        let levels = pyramid(size(4), size(4), texels);
+        let levels = pyramid(size(4), size(4), texels, vec![]);
         assert_eq!(levels.len(), 3);
         // Half the light, which is far more than half the number.
         assert!(
@@ -197,10 +234,19 @@ mod tests {
 
     #[test]
     fn a_fraction_names_the_texel_that_holds_it() {
-        let level = &pyramid(size(2), size(1), vec![Rgb::BLACK, Rgb::WHITE])[0];
+        let level = &pyramid(size(2), size(1), vec![Rgb::BLACK, Rgb::WHITE], vec![])[0];
         let half = 1 << 63;
         let seen = [0, half - 1, half, u64::MAX].map(|x| level.at_fraction(x, u64::MAX));
         assert_eq!(seen, [Rgb::BLACK, Rgb::BLACK, Rgb::WHITE, Rgb::WHITE]);
+    }
+
+    #[test]
+    fn what_is_clear_lends_no_colour() {
+        let texels = vec![Rgb::WHITE, Rgb::BLACK, Rgb::WHITE, Rgb::BLACK];
+        let level = &pyramid(size(2), size(2), texels, vec![255, 0, 255, 0])[1];
+        assert_eq!(level.texel(0, 0), (Rgb::WHITE, 128));
+        let level = &pyramid(size(2), size(1), vec![Rgb::WHITE; 2], vec![0, 0])[1];
+        assert_eq!(level.texel(0, 0).1, 0);
     }
 
     proptest! {
@@ -213,7 +259,7 @@ mod tests {
         ) {
             let count = (width * height) as usize;
             let texels = seed[..count].iter().map(|&light| [light; 3]).collect();
-            let whole = Light { width: size(width), height: size(height), texels };
+            let whole = Light { width: size(width), height: size(height), texels, alpha: vec![] };
             let half = whole.halved();
             let mean = |light: &Light| {
                 let sum: f64 = light.texels.iter().map(|texel| f64::from(texel[0])).sum();

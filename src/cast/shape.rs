@@ -1,0 +1,87 @@
+//! Shapes within a cell: where a ray meets a pillar or a line.
+//!
+//! Both are solved from the ray's own start, and neither by steps: a line by the quotient of two cross
+//! products, whose signs tell without rounding on which side of its ends the ray passes; a pillar by a
+//! quadratic equation in numbers of twice the digits. The ends belong to the line, and a ray that
+//! just touches a pillar hits it. One that runs along a line, or starts inside a pillar, meets
+//! nothing.
+
+use std::f64::consts::TAU;
+
+use glam::DVec2;
+
+use super::cross::cross;
+use super::double::Double;
+use super::{Hit, Ray, Side};
+use crate::world::{Cell, Line, Outline, PillarRadius};
+
+/// Where `ray`, which is in `cell` for a while, meets the shape of that outline there. `None` where it
+/// passes it by.
+pub(super) fn meet(ray: &Ray, cell: Cell, outline: Outline) -> Option<Hit> {
+    match outline {
+        Outline::Pillar(radius) => meet_pillar(ray, cell, radius),
+        Outline::Line(line) => meet_line(ray, cell, line),
+    }
+}
+
+fn meet_line(ray: &Ray, cell: Cell, line: Line) -> Option<Hit> {
+    let (start, stretch) = (line.start(cell), line.stretch());
+    let (direction, exponent) = ray.scaled_direction();
+    // How fast the line is approached, from its left or its right; rounded at most once.
+    let across = direction.x * stretch.y - direction.y * stretch.x;
+    let to_line = cross(ray.origin(), stretch, start);
+    let is_ahead = to_line.sign() == 0.0 || (to_line.sign() > 0.0) == (across > 0.0);
+    if across == 0.0 || !is_ahead {
+        return None;
+    }
+    let side_of = |end| cross(ray.origin(), ray.direction(), end).sign();
+    let (from_start, from_end) = (side_of(start), side_of(start + stretch));
+    let is_beside = from_start > 0.0 && from_end > 0.0 || from_start < 0.0 && from_end < 0.0;
+    if is_beside {
+        return None;
+    }
+    let t = libm::scalbn(to_line.over(across), -exponent).abs();
+    let along = cross(ray.origin(), direction, start).over(across).clamp(0.0, 1.0) + 0.0;
+    let u = if across > 0.0 { along } else { 1.0 - along };
+    Some(Hit { cell, side: facing(stretch.perp()), t, u })
+}
+
+fn meet_pillar(ray: &Ray, cell: Cell, radius: PillarRadius) -> Option<Hit> {
+    /// From further away than that, squares are beyond what a double holds.
+    const FARTHEST: f64 = 1e100;
+    let (center, radius) = (cell.center(), radius.cells());
+    let (direction, exponent) = ray.scaled_direction();
+    let x = Double::sum(center.x, -ray.origin().x);
+    let y = Double::sum(center.y, -ray.origin().y);
+    if x.rounded().abs().max(y.rounded().abs()) > FARTHEST {
+        return None;
+    }
+    let (along_x, along_y) = (Double::from(direction.x), Double::from(direction.y));
+    let to_closest = (x * along_x + y * along_y).rounded();
+    let miss = x * along_y - y * along_x;
+    let length_squared = along_x.square() + along_y.square();
+    let radius_squared = Double::product(radius, radius);
+    let half_chord_squared = (radius_squared * length_squared - miss.square()).rounded();
+    let outside = (x.square() + y.square() - radius_squared).rounded();
+    if half_chord_squared < 0.0 || outside < 0.0 || to_closest <= 0.0 {
+        return None;
+    }
+    let half_chord = half_chord_squared.sqrt();
+    let t = libm::scalbn(outside / (to_closest + half_chord), -exponent);
+    let outward = direction.perp() * miss.rounded() - direction * half_chord;
+    Some(Hit { cell, side: facing(outward), t, u: around_pillar(outward, radius) })
+}
+
+/// How far along its paper a pillar shows where it faces `outward`. The paper is pasted around it as
+/// many times as lets a cell of it be nearest to a cell wide.
+fn around_pillar(outward: DVec2, radius: f64) -> f64 {
+    let times = (TAU * radius).round().max(1.0);
+    let turn = libm::atan2(-outward.y, outward.x) / TAU * times;
+    // What is just below 0 would be rounded to 1, the left edge of the next sheet.
+    Some(turn - turn.floor()).filter(|&u| u < 1.0).unwrap_or_default()
+}
+
+/// The kind of grid line that something runs along most, which faces along `normal`.
+fn facing(normal: DVec2) -> Side {
+    if normal.x.abs() >= normal.y.abs() { Side::X } else { Side::Y }
+}

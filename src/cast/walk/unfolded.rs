@@ -1,0 +1,235 @@
+//! The walk through a hall of mirrors, unfolded: the ray goes straight on, and the map is turned over.
+//!
+//! Behind a mirror is the map once more, the other way round. So a ray that meets one is not bent:
+//! it keeps its origin, its direction and its `t`, goes on crossing the same lines in the same exact
+//! order, and only which cell of the map it is in is looked up mirrored. What is seen in a mirror is
+//! computed as it would be in a room that is built behind it, bit for bit. A new ray that starts at
+//! the mirror was refused: its origin would be rounded, and each bounce would add to the error.
+
+use glam::DVec2;
+
+use super::Axis;
+use crate::cast::hit::{meeting, texture_coordinate};
+use crate::cast::{ExactOrder, Hit, Order, Ray, Side, door};
+use crate::world::{Cell, Grid, TileId, World};
+
+/// Where places of the unfolded map are on the map itself.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Default)]
+pub(crate) struct Unfolding {
+    x: Fold,
+    y: Fold,
+}
+
+/// Where the lines of one axis are on the map itself: so many to the east or south of their unfolded
+/// places, or mirrored and then so many.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Default)]
+struct Fold {
+    is_mirrored: bool,
+    offset: i64,
+}
+
+/// A line that a walk crossed.
+#[derive(Clone, Copy, Debug)]
+pub(crate) struct Crossed {
+    /// The kind of line.
+    pub(crate) side: Side,
+    /// What it leads into; `None` where it is the edge of the map, and the walk ends.
+    pub(crate) into: Option<(Cell, TileId)>,
+    /// The north or west end of the crossed face, unfolded.
+    corner: DVec2,
+}
+
+/// The cells that a ray enters, mirrors and all, in the exact order.
+#[derive(Clone, Debug)]
+pub(crate) struct UnfoldedWalk {
+    ray: Ray,
+    order: ExactOrder,
+    x: Axis,
+    y: Axis,
+    unfolding: Unfolding,
+    bounces: u32,
+}
+
+impl UnfoldedWalk {
+    /// The walk of `ray` through `grid`, which is reflected so often at most.
+    pub(crate) fn new(grid: &Grid, ray: &Ray, most_bounces: u32) -> Self {
+        let size = DVec2::new(f64::from(grid.width()), f64::from(grid.height()));
+        let (origin, direction) = (ray.origin(), ray.direction());
+        Self {
+            ray: *ray,
+            order: ExactOrder::within(size * f64::from(most_bounces + 1), ray),
+            x: Axis::new(origin.x, direction.x, grid.width()),
+            y: Axis::new(origin.y, direction.y, grid.height()),
+            unfolding: Unfolding::default(),
+            bounces: 0,
+        }
+    }
+
+    /// The cell that the ray is in; `None` off the map.
+    pub(crate) fn cell(&self, grid: &Grid) -> Option<(Cell, TileId)> {
+        let (column, row) = self.real_indices();
+        let tile = grid.tile(column, row)?;
+        Some((Cell { column: column as u32, row: row as u32 }, tile))
+    }
+
+    /// Goes on until the ray enters a cell, or leaves the map for good.
+    pub(crate) fn cross(&mut self, grid: &Grid) -> Crossed {
+        loop {
+            let side = self.order.next(self.x.line, self.y.line);
+            let (axis, fold) = match side {
+                Side::X => (&mut self.x, self.unfolding.x),
+                Side::Y => (&mut self.y, self.unfolding.y),
+            };
+            let line = axis.line;
+            axis.cross();
+            let is_on_map = (0..axis.count).contains(&fold.real_index(axis.index));
+            let into = self.cell(grid);
+            if into.is_some() || !is_on_map {
+                let corner = match side {
+                    Side::X => DVec2::new(line, self.y.index as f64),
+                    Side::Y => DVec2::new(self.x.index as f64, line),
+                };
+                return Crossed { side, into, corner };
+            }
+        }
+    }
+
+    /// How far along the ray a line is that it has just crossed, and how far along the face, as
+    /// [`Hit`] has both.
+    pub(crate) fn meeting(&self, crossed: &Crossed) -> (f64, f64) {
+        let (t, along) = meeting(&self.ray, crossed.side, crossed.corner);
+        let fold = match crossed.side {
+            Side::X => self.unfolding.y,
+            Side::Y => self.unfolding.x,
+        };
+        let along = along.clamp(0.0, 1.0);
+        let along = if fold.is_mirrored { 1.0 - along } else { along };
+        (t, texture_coordinate(self.direction(), crossed.side, along))
+    }
+
+    /// Turns the ray back at the line of that kind that it has just crossed.
+    pub(crate) fn reflect(&mut self, side: Side) {
+        let (axis, fold) = match side {
+            Side::X => (&self.x, &mut self.unfolding.x),
+            Side::Y => (&self.y, &mut self.unfolding.y),
+        };
+        *fold = fold.mirrored_at(axis.line as i64 - axis.step);
+        self.bounces += 1;
+    }
+
+    /// Where the ray meets what is left of the door's leaf in `cell`, where it is now.
+    pub(crate) fn leaf(&self, world: &World, cell: Cell) -> Option<Hit> {
+        let origin = self.unfolding.real_point(self.ray.origin());
+        let ray = Ray::moved(origin, self.direction());
+        door::meet(world.grid(), &ray, cell, world.opening(cell))
+    }
+
+    /// Where the unfolded places around the ray are on the map.
+    pub(crate) fn unfolding(&self) -> Unfolding {
+        self.unfolding
+    }
+
+    /// How often the ray has been reflected.
+    pub(crate) fn bounces(&self) -> u32 {
+        self.bounces
+    }
+
+    /// Where the ray goes on the map, after all reflections.
+    fn direction(&self) -> DVec2 {
+        self.unfolding.real_direction(self.ray.direction())
+    }
+
+    fn real_indices(&self) -> (i64, i64) {
+        let Unfolding { x, y } = self.unfolding;
+        (x.real_index(self.x.index), y.real_index(self.y.index))
+    }
+}
+
+impl Unfolding {
+    /// Where an unfolded point is on the map.
+    pub(crate) fn real_point(self, point: DVec2) -> DVec2 {
+        DVec2::new(self.x.real_place(point.x), self.y.real_place(point.y))
+    }
+
+    /// Which way an unfolded direction is on the map.
+    pub(crate) fn real_direction(self, direction: DVec2) -> DVec2 {
+        let along = |fold: Fold, part: f64| if fold.is_mirrored { -part } else { part };
+        DVec2::new(along(self.x, direction.x), along(self.y, direction.y))
+    }
+}
+
+impl Fold {
+    fn real_place(self, place: f64) -> f64 {
+        let offset = self.offset as f64;
+        if self.is_mirrored { offset - place } else { offset + place }
+    }
+
+    /// The column or row that the unfolded one at `index` is.
+    fn real_index(self, index: i64) -> i64 {
+        if self.is_mirrored { self.offset - 1 - index } else { self.offset + index }
+    }
+
+    /// The fold behind a mirror at the unfolded `line`.
+    fn mirrored_at(self, line: i64) -> Self {
+        let moved = if self.is_mirrored { -2 * line } else { 2 * line };
+        Self { is_mirrored: !self.is_mirrored, offset: self.offset + moved }
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use proptest::prelude::*;
+
+    use super::*;
+    use crate::cast::Walk;
+
+    proptest! {
+        /// Without a mirror it is the walk in the exact order, and meets what that meets.
+        #[test]
+        fn unreflected_it_is_the_plain_walk(
+            origin in (-3.0..9.0, -3.0..7.0),
+            direction in (-1.0..1.0, -1.0..1.0),
+        ) {
+            let grid = Grid::sketch(&["......", "......", "......", "......"]).unwrap();
+            let ray = Ray::new(DVec2::from(origin), DVec2::from(direction));
+            prop_assume!(ray.is_ok());
+            let ray = ray.unwrap();
+            let mut unfolded = UnfoldedWalk::new(&grid, &ray, 0);
+            for crossing in Walk::new(&grid, &ray) {
+                let crossed = unfolded.cross(&grid);
+                let hit = Hit::entering(&ray, crossing.cell, crossing.side);
+                prop_assert_eq!(crossed.into, Some((crossing.cell, crossing.tile)));
+                prop_assert_eq!(crossed.side, crossing.side);
+                prop_assert_eq!(unfolded.meeting(&crossed), (hit.t, hit.u));
+            }
+            prop_assert!(unfolded.cross(&grid).into.is_none());
+        }
+
+        /// A ray between two mirrors goes to and fro, and ends where it leaves by the open sides.
+        #[test]
+        fn a_reflected_ray_stays_between_the_mirrors(
+            origin in (1.0..3.0, 0.0..2.0),
+            direction in (-1.0..1.0, -1.0..1.0),
+        ) {
+            let grid = Grid::sketch(&["#..#", "#..#"]).unwrap();
+            let ray = Ray::new(DVec2::from(origin), DVec2::from(direction));
+            prop_assume!(ray.is_ok());
+            let mut walk = UnfoldedWalk::new(&grid, &ray.unwrap(), 100);
+            let mut last = 0.0;
+            while let Some((cell, tile)) = walk.cross(&grid).into {
+                if grid.is_solid_tile(tile) {
+                    walk.reflect(Side::X);
+                    let (before, _) = walk.cell(&grid).unwrap();
+                    prop_assert_eq!(before.column, if cell.column == 0 { 1 } else { 2 });
+                }
+                let crossed = walk.clone().cross(&grid);
+                let (t, u) = walk.meeting(&crossed);
+                prop_assert!(t >= last && (0.0..=1.0).contains(&u));
+                last = t;
+                if walk.bounces() == 100 {
+                    break;
+                }
+            }
+        }
+    }
+}

@@ -1,0 +1,92 @@
+//! `cellcaster replay`: a script, played off screen into a recording.
+
+use std::cell::Cell;
+use std::fs::File;
+use std::io::{self, BufWriter, Write};
+use std::rc::Rc;
+use std::time::Duration;
+
+use crossterm::cursor::{Hide, Show};
+use crossterm::queue;
+use crossterm::terminal::{EnterAlternateScreen, LeaveAlternateScreen};
+use ratatui::backend::Backend;
+use ratatui::buffer::Buffer;
+
+use super::arguments::Replay;
+use super::asciicast::Asciicast;
+use super::recording::unwritable;
+use super::{Error, level, script};
+use crate::game::Script;
+use crate::terminal::CellWriter;
+use crate::tui::{self, Settings};
+
+/// Writes the recording that `options` ask for.
+pub(super) fn run(options: &Replay) -> Result<(), Error> {
+    let script = script::load(&options.script)?;
+    let levels = level::load_series(options.map.as_deref())?;
+    let settings = Settings {
+        field_of_view: options.field_of_view,
+        depth: Some(options.depth),
+        ..Settings::default()
+    };
+    let size = options.size.cells();
+    let mut replay = tui::Replay::new(levels, settings, size);
+    match &options.cast {
+        None => write(&mut replay, &script, options, BufWriter::new(io::stdout().lock()))
+            .map_err(|error| Error::of_output(&error)),
+        Some(path) => File::create(path)
+            .and_then(|file| write(&mut replay, &script, options, BufWriter::new(file)))
+            .map_err(|error| unwritable(path, &error)),
+    }
+}
+
+fn write(
+    replay: &mut tui::Replay,
+    script: &Script,
+    options: &Replay,
+    output: impl Write,
+) -> io::Result<()> {
+    let size = options.size.cells();
+    let now = Rc::new(Cell::new(Duration::ZERO));
+    let mut screen = Screen { asciicast: Asciicast::begin(output, size)?, now: Rc::clone(&now) };
+    screen.send(|bytes| queue!(bytes, EnterAlternateScreen, Hide))?;
+    let mut writer = CellWriter::new(screen, size);
+    writer.set_fidelity(options.fidelity);
+    let mut before = Buffer::empty(size.into());
+    let frames_per_second = options.frames_per_second.get();
+    replay.play(script, frames_per_second, |frame, _, picture| {
+        now.set(Duration::from_secs(frame) / frames_per_second.get());
+        writer.draw(before.diff(picture).into_iter())?;
+        writer.flush()?;
+        before.clone_from(picture);
+        Ok::<(), io::Error>(())
+    })?;
+    let mut screen = writer.into_output();
+    screen.send(|bytes| queue!(bytes, Show, LeaveAlternateScreen))?;
+    screen.asciicast.finish()
+}
+
+/// Takes what is written to it at once as one event, at the time that `now` says.
+struct Screen<W> {
+    asciicast: Asciicast<W>,
+    now: Rc<Cell<Duration>>,
+}
+
+impl<W: Write> Screen<W> {
+    fn send(&mut self, queue: impl FnOnce(&mut Vec<u8>) -> io::Result<()>) -> io::Result<()> {
+        let mut bytes = Vec::new();
+        queue(&mut bytes)?;
+        self.write_all(&bytes)
+    }
+}
+
+impl<W: Write> Write for Screen<W> {
+    fn write(&mut self, bytes: &[u8]) -> io::Result<usize> {
+        self.asciicast.sent(self.now.get(), bytes)?;
+        Ok(bytes.len())
+    }
+
+    fn flush(&mut self) -> io::Result<()> {
+        Ok(())
+    }
+}

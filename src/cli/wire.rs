@@ -1,0 +1,55 @@
+//! `cellcaster wire`: error against bytes.
+
+mod csv;
+mod json;
+mod table;
+
+use std::ffi::OsStr;
+use std::io::{self, BufWriter, Write};
+
+use super::arguments::{Wire, WireFormat};
+use super::script::{self, SHOWCASE};
+use super::{Error, level};
+use crate::terminal::Fidelity;
+use crate::tui::{Replay, Settings};
+use crate::wire::{self, Plan, Report};
+
+/// Reports what `options` ask for.
+pub(super) fn run(options: &Wire) -> Result<(), Error> {
+    let (script, map) = match &options.script {
+        Some(path) => (script::load(path)?, options.map.as_deref()),
+        None => (SHOWCASE.script()?, options.map.as_deref().or(Some(OsStr::new(SHOWCASE.level)))),
+    };
+    let plan = Plan {
+        script: &script,
+        size: options.size.cells(),
+        frames_per_second: options.frames_per_second.get(),
+        fidelities: match options.fidelities.as_slice() {
+            [] => vec![Fidelity::EXACT, Fidelity::HIGH, Fidelity::LOW],
+            named => named.to_vec(),
+        },
+    };
+    let mut replay = Replay::new(level::load_series(map)?, Settings::default(), plan.size);
+    let report = wire::report(&plan, &mut replay);
+    let output = BufWriter::new(io::stdout().lock());
+    write(&plan, &report, options.format, output).map_err(|error| Error::of_output(&error))
+}
+
+fn write(
+    plan: &Plan,
+    report: &Report,
+    format: WireFormat,
+    mut output: impl Write,
+) -> io::Result<()> {
+    match format {
+        WireFormat::Table => table::write(plan, report, &mut output)?,
+        WireFormat::Json => json::write(plan, report, &mut output)?,
+        WireFormat::Csv => csv::write(report, &mut output)?,
+    }
+    output.flush()
+}
+
+/// `number`, where it is one.
+fn finite(number: f64) -> Option<f64> {
+    number.is_finite().then_some(number)
+}

@@ -1,0 +1,50 @@
+//! One line for each section and encoder.
+
+use std::io::{self, Write};
+
+use super::finite;
+use crate::wire::Report;
+
+const HEADER: &str = "section,encoder,frames,mean_bytes,ratio,median_bytes,percentile_95_bytes,\
+                      largest_bytes,mean_compressed_bytes,mean_nanoseconds,psnr,mean_delta_e,\
+                      largest_delta_e";
+
+pub(super) fn write(report: &Report, output: &mut impl Write) -> io::Result<()> {
+    writeln!(output, "{HEADER}")?;
+    for encoder in &report.encoders {
+        for part in encoder.sections.iter().chain([&encoder.all]) {
+            writeln!(
+                output,
+                "{},{},{},{},{},{},{},{},{},{},{},{},{}",
+                field(&part.name),
+                encoder.name,
+                part.frames,
+                part.bytes.mean,
+                number(part.ratio),
+                part.bytes.median,
+                part.bytes.percentile_95,
+                part.bytes.largest,
+                part.compressed,
+                part.time.as_nanos(),
+                number(part.seen.signal_to_noise),
+                part.seen.mean_distance,
+                part.seen.largest_distance,
+            )?;
+        }
+    }
+    Ok(())
+}
+
+/// A number, or nothing where there is none.
+fn number(number: f64) -> String {
+    finite(number).map(|number| number.to_string()).unwrap_or_default()
+}
+
+/// A text between quotation marks, if it needs them.
+fn field(text: &str) -> String {
+    if text.contains(['"', ',']) {
+        format!("\"{}\"", text.replace('"', "\"\""))
+    } else {
+        text.to_owned()
+    }
+}

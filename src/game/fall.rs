@@ -1,0 +1,140 @@
+//! Falling and rising: a parabola between a floor and a ceiling.
+//!
+//! Its times are known: when it lands, when it hits its head, when it is at its highest. A step is
+//! solved up to the first of them and on from there, so no step is too long and none too short, two
+//! steps are the same as one of their sum, and nobody falls through a floor. Adding `gravity * dt` to
+//! the speed and that to the height was refused: how high one jumps then depends on the step, and
+//! a fast fall has to be stopped after it has gone too far.
+
+/// Cells per second, each second.
+pub(super) const GRAVITY: f64 = 12.0;
+
+/// How high something is that falls or rises, and how fast.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub(super) struct Flight {
+    /// In cells.
+    pub(super) height: f64,
+    /// Cells per second, upwards.
+    pub(super) speed: f64,
+}
+
+/// How low and how high something may be: both included, the ceiling no lower than the floor, and
+/// infinite where there is none.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub(super) struct Room {
+    pub(super) floor: f64,
+    pub(super) ceiling: f64,
+}
+
+impl Flight {
+    /// The flight after `duration` seconds in `room`, in which it is as yet. It ends on the floor,
+    /// and begins to fall where it meets the ceiling.
+    pub(super) fn after(self, duration: f64, room: Room) -> Self {
+        match self.time_to_ceiling(room.ceiling) {
+            Some(time) if time < duration => {
+                let top = Self { height: room.ceiling, speed: 0.0 };
+                top.falling(duration - time, room)
+            }
+            _ => self.falling(duration, room),
+        }
+    }
+
+    /// When it meets a ceiling on its way up, in seconds.
+    fn time_to_ceiling(self, ceiling: f64) -> Option<f64> {
+        let way = ceiling - self.height;
+        let left = self.speed * self.speed - 2.0 * GRAVITY * way;
+        (self.speed > 0.0 && left > 0.0).then(|| 2.0 * way / (self.speed + left.sqrt()))
+    }
+
+    /// The flight after `duration` seconds, on a way that no ceiling ends.
+    fn falling(self, duration: f64, room: Room) -> Self {
+        if duration >= self.time_to_floor(room.floor) {
+            return Self { height: room.floor, speed: 0.0 };
+        }
+        let speed = self.speed - GRAVITY * duration;
+        let height = self.height + f64::midpoint(self.speed, speed) * duration;
+        Self { height: height.clamp(room.floor, room.ceiling), speed }
+    }
+
+    /// When it lands, in seconds.
+    fn time_to_floor(self, floor: f64) -> f64 {
+        let way = self.height - floor;
+        let at_floor = (self.speed * self.speed + 2.0 * GRAVITY * way).sqrt();
+        // Of the two ways to write the solution, the one that adds up what has one sign.
+        if self.speed > 0.0 {
+            (self.speed + at_floor) / GRAVITY
+        } else if way > 0.0 {
+            2.0 * way / (at_floor - self.speed)
+        } else {
+            0.0
+        }
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use proptest::prelude::*;
+
+    use super::*;
+
+    const SKY: Room = Room { floor: 0.0, ceiling: f64::INFINITY };
+
+    fn power_of_ten(exponents: std::ops::Range<f64>) -> impl Strategy<Value = f64> {
+        exponents.prop_map(|exponent| libm::pow(10.0, exponent))
+    }
+
+    proptest! {
+        #[test]
+        fn two_steps_are_one_step_of_their_sum(
+            height in 0.0..1.0,
+            speed in -10.0..10.0,
+            ceiling in prop_oneof![Just(f64::INFINITY), 1.0..3.0],
+            first in power_of_ten(-9.0..1.0),
+            second in power_of_ten(-9.0..1.0),
+        ) {
+            let room = Room { ceiling, ..SKY };
+            let flight = Flight { height, speed };
+            let twice = flight.after(first, room).after(second, room);
+            let once = flight.after(first + second, room);
+            // How fast it is at the ceiling tells little of when it was there.
+            prop_assert!((twice.height - once.height).abs() < 1e-6, "{twice:?}, {once:?}");
+            let is_landing = twice.height < 1e-6;
+            prop_assert!(is_landing || (twice.speed - once.speed).abs() < 1e-6);
+        }
+
+        #[test]
+        fn it_is_always_between_floor_and_ceiling(
+            height in 0.0..=1.0,
+            speed in prop_oneof![-1e9..1e9, -1.0..1.0],
+            floor in prop_oneof![Just(0.0), Just(-1e9), -1e-9..0.0],
+            headroom in prop_oneof![Just(0.0), 0.0..1e-9, 0.0..1e9],
+            duration in power_of_ten(-9.0..9.0),
+        ) {
+            let room = Room { floor, ceiling: height + headroom };
+            let after = Flight { height, speed }.after(duration, room);
+            prop_assert!((room.floor..=room.ceiling).contains(&after.height), "{after:?}");
+            prop_assert!(after.speed.is_finite());
+        }
+
+        #[test]
+        fn energy_is_kept_in_the_air(speed in 0.1..10.0, part in 0.0..1.0) {
+            let start = Flight { height: 0.0, speed };
+            let after = start.after(part * 2.0 * speed / GRAVITY, SKY);
+            let energy = |flight: Flight| {
+                flight.speed * flight.speed / 2.0 + GRAVITY * flight.height
+            };
+            prop_assert!((energy(after) - energy(start)).abs() < 1e-12 * energy(start) || after.height == 0.0);
+        }
+    }
+
+    #[test]
+    fn a_fall_of_a_thousand_cells_ends_on_the_floor() {
+        let start = Flight { height: 1000.0, speed: 0.0 };
+        let time = (2.0 * 1000.0 / GRAVITY).sqrt();
+        assert!(start.after(time - 1e-6, SKY).height > 0.0);
+        let landed = Flight { height: 0.0, speed: 0.0 };
+        assert_eq!(start.after(time + 1e-6, SKY), landed);
+        assert_eq!(start.after(1e9, SKY), landed);
+        assert_eq!(landed.after(1e-9, SKY), landed);
+    }
+}

@@ -1,0 +1,82 @@
+//! How far up or down the player looks.
+//!
+//! Nobody's gaze wanders back by itself: who looks up at something may want to walk around it. A key
+//! to look straight ahead again takes it back, all the way, even if it is only tapped.
+
+use super::STEP;
+use super::intent::{Intent, Intents};
+use super::motion::{Glide, approach};
+use crate::world::Pitch;
+
+/// How fast it moves, as a slope, per second; and for who aims.
+const LOOK: f64 = 0.8;
+const AIM: f64 = 0.2;
+/// How fast such a motion begins and ends, per second.
+const FRICTION: f64 = 20.0;
+/// How fast it goes back to straight ahead, per second.
+const RETURN: f64 = 10.0;
+/// What is less is nothing, as a slope or a slope per second: less than a row of pixels.
+const STILL: f64 = 1e-3;
+
+#[derive(Clone, Copy, Debug, PartialEq, Default)]
+pub(super) struct Gaze {
+    pub(super) pitch: Pitch,
+    /// Slope per second, upwards.
+    speed: f64,
+    returns: bool,
+}
+
+impl Gaze {
+    /// The gaze one step later.
+    #[must_use]
+    pub(super) fn after_a_step(self, intents: Intents) -> Self {
+        let upwards = intents.balance(Intent::LookUp, Intent::LookDown);
+        let returns = upwards == 0.0 && (self.returns || intents.contains(Intent::LookAhead));
+        if returns {
+            return Self { returns, ..self }.returned();
+        }
+        let target = upwards * if intents.contains(Intent::Aim) { AIM } else { LOOK };
+        let Glide { velocity, displacement } = approach(self.speed, target, FRICTION, STEP);
+        let pitch = self.pitch.tilted(displacement);
+        let is_still = velocity.abs() < STILL || pitch == self.pitch;
+        Self { pitch, speed: if is_still { 0.0 } else { velocity }, returns }
+    }
+
+    fn returned(self) -> Self {
+        let slope = approach(self.pitch.slope(), 0.0, RETURN, STEP).velocity;
+        if slope.abs() < STILL {
+            return Self::default();
+        }
+        Self { pitch: Pitch::LEVEL.tilted(slope), speed: 0.0, ..self }
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    fn after(gaze: Gaze, steps: usize, intents: &[Intent]) -> Gaze {
+        let intents = intents.iter().copied().collect();
+        (0..steps).fold(gaze, |gaze, _| gaze.after_a_step(intents))
+    }
+
+    #[test]
+    fn it_goes_as_far_as_it_goes_and_comes_to_rest() {
+        let up = after(Gaze::default(), 600, &[Intent::LookUp]);
+        assert_eq!(up.pitch, Pitch::from_degrees(Pitch::MOST_DEGREES).unwrap());
+        assert_eq!(after(up, 1, &[Intent::LookUp]), up);
+        assert_eq!(after(up, 600, &[]), up);
+        assert_eq!(after(up, 600, &[Intent::LookUp, Intent::LookDown]), up);
+        let down = after(up, 600, &[Intent::LookDown]);
+        assert_eq!(down.pitch.slope(), -up.pitch.slope());
+    }
+
+    #[test]
+    fn a_tap_takes_it_back_unless_one_looks_elsewhere() {
+        let up = after(Gaze::default(), 40, &[Intent::LookUp]);
+        let returning = after(up, 1, &[Intent::LookAhead]);
+        assert_eq!(after(returning, 120, &[]), Gaze::default());
+        let elsewhere = after(returning, 10, &[Intent::LookUp]);
+        assert!(after(elsewhere, 120, &[]).pitch.slope() > 0.0);
+    }
+}

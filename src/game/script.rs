@@ -1,0 +1,189 @@
+//! Scripts: what a player wants, and for how long, as a text that people write and read.
+//!
+//! ```text
+//! # Out of the gate, and once around.
+//! [walking]
+//! 2.5 s     forward
+//! 1 s       forward run
+//! 3 steps   stand
+//!
+//! [turning]
+//! 4 s       turn-left
+//! ```
+//!
+//! A line is a stretch: how long, in seconds or steps, and all that is wanted meanwhile, or `stand`
+//! for nothing. A name in brackets begins a section, for who reports on parts; a `#` begins a
+//! comment. The same script in the same map gives the same states, bit for bit.
+//!
+//! Events at times, a press here and a release there, were refused: who writes such a list by hand
+//! adds up times, and a line left out holds a key for ever.
+
+mod parse;
+mod recorder;
+
+use std::fmt;
+
+use super::{Intent, Intents, STEPS_PER_SECOND};
+use crate::fault::Faults;
+
+pub use recorder::Recorder;
+
+/// What a player wants, stretch after stretch.
+#[derive(Clone, Debug, PartialEq, Eq)]
+pub struct Script {
+    sections: Vec<Section>,
+}
+
+/// A part of a script, at least one stretch long.
+#[derive(Clone, Debug, PartialEq, Eq)]
+pub struct Section {
+    /// Empty for what comes before the first name.
+    pub name: String,
+    /// What is wanted in it.
+    pub stretches: Vec<Stretch>,
+}
+
+/// A time during which the player wants the same things.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub struct Stretch {
+    /// How long it lasts, in steps of [`STEP`](super::STEP) seconds: from 1 to
+    /// [`Stretch::MOST_STEPS`].
+    pub steps: u32,
+    /// What is wanted.
+    pub intents: Intents,
+}
+
+impl Script {
+    /// Reads a script, which faults call `name`.
+    ///
+    /// # Errors
+    /// Everything that is wrong with the text.
+    pub fn parse(text: &str, name: &str) -> Result<Self, Faults> {
+        parse::parse(text, name)
+    }
+
+    /// Its sections, in their order; there is at least one, and none is empty.
+    pub fn sections(&self) -> &[Section] {
+        &self.sections
+    }
+
+    /// How long all of it lasts, in steps.
+    pub fn steps(&self) -> u64 {
+        self.sections.iter().map(Section::steps).sum()
+    }
+
+    /// What is wanted in each step, with the place of its section.
+    pub fn iter(&self) -> impl Iterator<Item = (usize, Intents)> {
+        let stretches = self.sections.iter().enumerate().flat_map(|(index, section)| {
+            section.stretches.iter().map(move |&stretch| (index, stretch))
+        });
+        stretches.flat_map(|(index, Stretch { steps, intents })| {
+            (0..steps).map(move |_| (index, intents))
+        })
+    }
+}
+
+impl Section {
+    /// How long it lasts, in steps.
+    pub fn steps(&self) -> u64 {
+        self.stretches.iter().map(|stretch| u64::from(stretch.steps)).sum()
+    }
+}
+
+impl Stretch {
+    /// An hour.
+    pub const MOST_STEPS: u32 = 60 * 60 * STEPS_PER_SECOND;
+}
+
+/// Times of so many steps are written as seconds with one digit, and no digit is lost.
+const STEPS_PER_TENTH: u32 = STEPS_PER_SECOND / 10;
+/// What stands for wanting nothing.
+const STAND: &str = "stand";
+
+impl fmt::Display for Script {
+    /// A text that reads as the same script.
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        for (index, section) in self.sections.iter().enumerate() {
+            if !section.name.is_empty() {
+                let blank = if index == 0 { "" } else { "\n" };
+                writeln!(f, "{blank}[{}]", section.name)?;
+            }
+            section.stretches.iter().try_for_each(|stretch| writeln!(f, "{stretch}"))?;
+        }
+        Ok(())
+    }
+}
+
+impl fmt::Display for Stretch {
+    /// A line, without its end.
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        let duration = match self.steps {
+            1 => "1 step".to_owned(),
+            steps if steps.is_multiple_of(STEPS_PER_TENTH) => {
+                format!("{} s", f64::from(steps) / f64::from(STEPS_PER_SECOND))
+            }
+            steps => format!("{steps} steps"),
+        };
+        let mut wanted: Vec<&str> = self.intents.iter().map(Intent::name).collect();
+        if wanted.is_empty() {
+            wanted.push(STAND);
+        }
+        write!(f, "{duration:<9} {}", wanted.join(" "))
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use proptest::prelude::*;
+
+    use super::*;
+
+    pub(super) fn stretches() -> impl Strategy<Value = Vec<Stretch>> {
+        let intents = prop::sample::subsequence(Intent::ALL.to_vec(), 0..=Intent::ALL.len());
+        let stretch = (1..=Stretch::MOST_STEPS, intents)
+            .prop_map(|(steps, intents)| Stretch { steps, intents: intents.into_iter().collect() });
+        prop::collection::vec(stretch, 1..10)
+    }
+
+    fn script() -> impl Strategy<Value = Script> {
+        let named = ("[a-zä]([a-z ]{0,8}[a-z])?", stretches());
+        (prop::option::of(stretches()), prop::collection::vec(named, 1..4)).prop_map(
+            |(first, named)| {
+                let first = first.into_iter().map(|stretches| (String::new(), stretches));
+                let section = |(name, stretches)| Section { name, stretches };
+                Script { sections: first.chain(named).map(section).collect() }
+            },
+        )
+    }
+
+    proptest! {
+        #[test]
+        fn what_is_written_reads_as_the_same(script in script()) {
+            let text = script.to_string();
+            prop_assert_eq!(Script::parse(&text, "it").map_err(|faults| faults.to_string()), Ok(script));
+        }
+    }
+
+    #[test]
+    fn a_script_is_its_steps() {
+        let text = "1 step forward\n[b] # two\n0.05s stand\n2 steps run  open\n";
+        let script = Script::parse(text, "it").unwrap();
+        let wanted: Vec<(usize, Vec<Intent>)> =
+            script.iter().map(|(section, intents)| (section, intents.iter().collect())).collect();
+        let running = (1, vec![Intent::Run, Intent::Open]);
+        let expected = [
+            (0, vec![Intent::Forward]),
+            (1, vec![]),
+            (1, vec![]),
+            (1, vec![]),
+            running.clone(),
+            running,
+        ];
+        assert_eq!(wanted, expected);
+        assert_eq!(script.steps(), 6);
+        assert_eq!(
+            script.to_string(),
+            "1 step    forward\n\n[b]\n3 steps   stand\n2 steps   run open\n"
+        );
+    }
+}

@@ -1,0 +1,199 @@
+//! A script's text to its stretches, with every fault in one run.
+
+use std::ops::Range;
+
+use super::{STAND, Script, Section, Stretch};
+use crate::fault::{Fault, Faults, nearest, quoted};
+use crate::game::{Intent, Intents, STEPS_PER_SECOND};
+
+pub(super) fn parse(text: &str, name: &str) -> Result<Script, Faults> {
+    let mut reader = Reader { text, sections: Vec::new(), faults: Vec::new() };
+    let mut start = 0;
+    for line in text.split_inclusive('\n') {
+        let end = line.find('#').unwrap_or(line.len());
+        reader.read_line(trimmed(text, start..start + end));
+        start += line.len();
+    }
+    reader.end(name)
+}
+
+/// What has been read so far.
+struct Reader<'t> {
+    text: &'t str,
+    sections: Vec<Named>,
+    faults: Vec<Fault>,
+}
+
+/// A section and where its name stands.
+struct Named {
+    section: Section,
+    place: Range<usize>,
+}
+
+impl Reader<'_> {
+    fn read_line(&mut self, line: Range<usize>) {
+        if line.is_empty() {
+            return;
+        }
+        if self.text[line.clone()].starts_with('[') {
+            return self.read_name(line);
+        }
+        match self.stretch(line) {
+            Ok(stretch) => self.section().stretches.push(stretch),
+            Err(fault) => {
+                // One fault is enough: the section would have a stretch if this line were one.
+                self.faults.push(fault);
+            }
+        }
+    }
+
+    /// The section that lines belong to now.
+    fn section(&mut self) -> &mut Section {
+        if self.sections.is_empty() {
+            self.begin_section(String::new(), 0..0);
+        }
+        let last = self.sections.len() - 1;
+        &mut self.sections[last].section
+    }
+
+    fn begin_section(&mut self, name: String, place: Range<usize>) {
+        self.sections.push(Named { section: Section { name, stretches: Vec::new() }, place });
+    }
+
+    fn read_name(&mut self, line: Range<usize>) {
+        let text = &self.text[line.clone()];
+        let name = text.strip_prefix('[').and_then(|text| text.strip_suffix(']'));
+        let name =
+            name.map(str::trim).filter(|name| !name.is_empty() && !name.contains(['[', ']']));
+        match name {
+            Some(name) => self.begin_section(name.to_owned(), line),
+            None => self.faults.push(
+                Fault::new(
+                    line,
+                    "a section begins with its name in brackets, on a line of its own",
+                )
+                .help("write [walking]"),
+            ),
+        }
+    }
+
+    fn stretch(&self, line: Range<usize>) -> Result<Stretch, Fault> {
+        let (steps, rest) = self.duration(line.clone())?;
+        let words = words(self.text, rest);
+        if words.is_empty() {
+            return Err(Fault::new(line, "a line says what is wanted after how long it is")
+                .label("and then?")
+                .help(format!("write {STAND:?} where nothing is")));
+        }
+        Ok(Stretch { steps, intents: self.intents(&words)? })
+    }
+
+    /// How many steps a line lasts, and what follows.
+    fn duration(&self, line: Range<usize>) -> Result<(u32, Range<usize>), Fault> {
+        let text = &self.text[line.clone()];
+        let length = text.find(|c: char| !c.is_ascii_digit() && c != '.').unwrap_or(text.len());
+        let number = line.start..line.start + length;
+        let Ok(amount) = text[..length].parse::<f64>() else {
+            let first = words(self.text, line).swap_remove(0);
+            return Err(Fault::new(first, "a line begins with how long it lasts")
+                .label("not a number")
+                .help("write 2.5 s forward, or 12 steps forward turn-left"));
+        };
+        let rest = trimmed(self.text, number.end..line.end);
+        let unit = words(self.text, rest.clone()).into_iter().next().unwrap_or(number.clone());
+        let steps = match &self.text[unit.clone()] {
+            "s" => (amount * f64::from(STEPS_PER_SECOND)).round(),
+            "step" | "steps" if amount.fract() == 0.0 => amount,
+            "step" | "steps" => {
+                return Err(Fault::new(number, "there is no part of a step")
+                    .label("not a whole number")
+                    .help(format!("a second has {STEPS_PER_SECOND} steps")));
+            }
+            _ => {
+                return Err(Fault::new(unit, "a time is in seconds or in steps")
+                    .label("no unit of time")
+                    .help("write 2.5 s, or 150 steps"));
+            }
+        };
+        if !(1.0..=f64::from(Stretch::MOST_STEPS)).contains(&steps) {
+            return Err(Fault::new(number, "a line lasts from one step to one hour")
+                .label(if steps < 1.0 { "too short" } else { "too long" })
+                .help(format!("a second has {STEPS_PER_SECOND} steps")));
+        }
+        Ok((steps as u32, unit.end..rest.end))
+    }
+
+    fn intents(&self, words: &[Range<usize>]) -> Result<Intents, Fault> {
+        let mut intents = Intents::new();
+        for place in words.iter().cloned() {
+            match (&self.text[place.clone()], words.len()) {
+                (STAND, 1) => {}
+                (STAND, _) => {
+                    return Err(Fault::new(place, "who stands wants nothing else")
+                        .label("take this away, or all the rest"));
+                }
+                (word, _) => match Intent::named(word) {
+                    None => return Err(unknown(word, place)),
+                    Some(intent) if intents.contains(intent) => {
+                        return Err(Fault::new(place, format!("{} is wanted twice", quoted(word)))
+                            .label("once is enough"));
+                    }
+                    Some(intent) => intents.insert(intent),
+                },
+            }
+        }
+        Ok(intents)
+    }
+
+    fn end(mut self, name: &str) -> Result<Script, Faults> {
+        if self.faults.is_empty() && self.sections.is_empty() {
+            return Err(Faults::of_whole_file(
+                name,
+                format!("{name} holds no stretch of time"),
+                "write a line such as 2.5 s forward",
+            ));
+        }
+        if self.faults.is_empty() {
+            let empty = self.sections.iter().filter(|named| named.section.stretches.is_empty());
+            self.faults.extend(empty.map(|named| {
+                Fault::new(named.place.clone(), "a section holds at least one stretch of time")
+                    .label("this one is empty")
+            }));
+        }
+        if self.faults.is_empty() {
+            Ok(Script { sections: self.sections.into_iter().map(|named| named.section).collect() })
+        } else {
+            Err(Faults::new(name, self.text, self.faults))
+        }
+    }
+}
+
+fn unknown(word: &str, place: Range<usize>) -> Fault {
+    let names: Vec<&str> = Intent::ALL.into_iter().map(Intent::name).chain([STAND]).collect();
+    let help = match nearest(word, &names) {
+        Some(meant) => format!("the nearest is {}", quoted(meant)),
+        None => format!("there are {}", names.join(", ")),
+    };
+    Fault::new(place, format!("nobody can want {}", quoted(word))).label("unknown").help(help)
+}
+
+/// The words in a part of `text`.
+fn words(text: &str, part: Range<usize>) -> Vec<Range<usize>> {
+    let mut words = Vec::new();
+    let mut start = part.start;
+    for piece in text[part].split_inclusive(char::is_whitespace) {
+        let word = trimmed(text, start..start + piece.len());
+        if !word.is_empty() {
+            words.push(word);
+        }
+        start += piece.len();
+    }
+    words
+}
+
+/// A part of `text` without the blanks around it.
+fn trimmed(text: &str, part: Range<usize>) -> Range<usize> {
+    let whole = &text[part.clone()];
+    let start = part.start + (whole.len() - whole.trim_start().len());
+    start..(part.start + whole.trim_end().len()).max(start)
+}

@@ -1,0 +1,107 @@
+//! Writing down what a player wants while they play.
+
+use std::io::{self, Write};
+
+use super::Stretch;
+use crate::game::Intents;
+
+/// Writes a script as it happens.
+///
+/// A stretch is written when it ends, in one piece, so what has been written is a script at any
+/// time; the last stretch is written when the recorder is [finished](Recorder::finish) or dropped.
+#[derive(Debug)]
+pub struct Recorder<W: Write> {
+    output: W,
+    current: Option<Stretch>,
+}
+
+impl<W: Write> Recorder<W> {
+    /// A recorder that writes to `output`.
+    pub fn new(output: W) -> Self {
+        Self { output, current: None }
+    }
+
+    /// Takes note that the player wants `intents` for `steps` steps more.
+    ///
+    /// # Errors
+    /// Where `output` fails.
+    pub fn record(&mut self, intents: Intents, mut steps: u64) -> io::Result<()> {
+        while steps > 0 {
+            let before = match self.current {
+                Some(stretch) if stretch.intents == intents => stretch.steps,
+                _ => {
+                    self.write_current()?;
+                    0
+                }
+            };
+            let taken = steps.min(u64::from(Stretch::MOST_STEPS - before)) as u32;
+            steps -= u64::from(taken);
+            self.current = Some(Stretch { steps: before + taken, intents });
+            if steps > 0 {
+                self.write_current()?;
+            }
+        }
+        Ok(())
+    }
+
+    /// Writes what has not been written.
+    ///
+    /// # Errors
+    /// Where `output` fails.
+    pub fn finish(&mut self) -> io::Result<()> {
+        self.write_current()?;
+        self.output.flush()
+    }
+
+    fn write_current(&mut self) -> io::Result<()> {
+        let Some(stretch) = self.current.take() else { return Ok(()) };
+        self.output.write_all(format!("{stretch}\n").as_bytes())
+    }
+}
+
+impl<W: Write> Drop for Recorder<W> {
+    fn drop(&mut self) {
+        // Who wants to know whether it could be written has called `finish`.
+        _ = self.finish();
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use proptest::prelude::*;
+
+    use super::super::Script;
+    use super::*;
+    use crate::game::Intent;
+
+    proptest! {
+        #[test]
+        fn what_was_recorded_is_what_happened(
+            happened in prop::collection::vec((0..3_usize, 0..400_u64), 1..20)
+        ) {
+            let wants = [Intents::new(), [Intent::Run].into_iter().collect(), Intent::ALL.into_iter().collect()];
+            prop_assume!(happened.iter().any(|&(_, steps)| steps > 0));
+            let mut text = Vec::new();
+            let mut recorder = Recorder::new(&mut text);
+            for &(want, steps) in &happened {
+                recorder.record(wants[want], steps)?;
+            }
+            drop(recorder);
+            let script = Script::parse(&String::from_utf8(text)?, "it").unwrap();
+            let each = |&(want, steps): &(usize, u64)| (0..steps).map(move |_| wants[want]);
+            prop_assert!(script.iter().map(|(_, intents)| intents).eq(happened.iter().flat_map(each)));
+        }
+    }
+
+    #[test]
+    fn a_stretch_longer_than_a_line_may_be_takes_several() {
+        let mut text = Vec::new();
+        Recorder::new(&mut text)
+            .record(Intents::new(), 2 * u64::from(Stretch::MOST_STEPS) + 1)
+            .unwrap();
+        assert_eq!(
+            String::from_utf8(text).unwrap(),
+            "3600 s    stand\n3600 s    stand\n1 step    stand\n"
+        );
+    }
+}

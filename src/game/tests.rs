@@ -1,0 +1,226 @@
+//! What players rely on, in small levels.
+
+use glam::DVec2;
+use proptest::prelude::*;
+
+use super::*;
+use crate::world::sprite::builtin;
+use crate::world::{
+    Ceiling, Cell, Covering, Grid, Heading, Heights, Lamplight, Paint, Parts, Rgb, Sky, SpriteId,
+    Start, Thing, Tile, TileKind,
+};
+
+/// A world drawn in characters: `#` is solid, `@` is where the player starts, `E` is an exit.
+fn world(rows: &[&str], degrees: f64) -> World {
+    let cells_that_hold = |wanted: char| {
+        rows.iter().zip(0..).flat_map(move |(line, row)| {
+            let columns = line.chars().zip(0..).filter(move |&(found, _)| found == wanted);
+            columns.map(move |(_, column)| Cell { column, row })
+        })
+    };
+    let floors: Vec<String> = rows.iter().map(|row| row.replace(['@', 'E'], ".")).collect();
+    let floors: Vec<&str> = floors.iter().map(String::as_str).collect();
+    let gray = Paint::Color(Rgb::new(128, 128, 128));
+    let (floor, ceiling) = (Covering::from(gray), Ceiling::Covered(gray.into()));
+    let tile = |character, kind, heights| Tile {
+        character,
+        kind,
+        floor,
+        ceiling,
+        light: None,
+        heights,
+        riser: gray,
+        lintel: gray,
+    };
+    World::from_parts(Parts {
+        title: String::new(),
+        grid: Grid::sketch(&floors).unwrap(),
+        tiles: vec![
+            tile('.', TileKind::Open, Heights::LEVEL),
+            tile('#', TileKind::Wall(gray), Heights::LEVEL_WALL),
+        ],
+        textures: vec![],
+        floor,
+        ceiling,
+        sky: Sky::default(),
+        fog: None,
+        start: Start {
+            cell: cells_that_hold('@').next().unwrap(),
+            heading: Heading::from_degrees(degrees).unwrap(),
+        },
+        sprites: vec![builtin::named(builtin::EXIT).unwrap()],
+        lamplight: Lamplight::default(),
+        things: cells_that_hold('E')
+            .map(|cell| Thing { kind: ThingKind::Exit, cell, sprite: SpriteId(0) })
+            .collect(),
+        keys: vec![],
+    })
+}
+
+const CELLAR: [&str; 7] = [
+    "##########",
+    "#@...#...#",
+    "#....#.#.#",
+    "#.##...#.#",
+    "#....#.#.#",
+    "#..#.....#",
+    "##########",
+];
+
+fn intents(list: &[Intent]) -> Intents {
+    list.iter().copied().collect()
+}
+
+fn walk(game: &mut Game, steps: usize, list: &[Intent]) {
+    for _ in 0..steps {
+        game.step(intents(list));
+    }
+}
+
+fn position(game: &Game) -> DVec2 {
+    game.camera(FieldOfView::default()).position()
+}
+
+fn to_nearest_wall(grid: &Grid, point: DVec2) -> f64 {
+    let cells = (0..grid.height()).flat_map(|row| (0..grid.width()).map(move |c| (c, row)));
+    cells
+        .filter(|&(column, row)| grid.is_solid(column.into(), row.into()))
+        .map(|(column, row)| Cell { column, row }.center())
+        .map(|middle| point.distance(point.clamp(middle - 0.5, middle + 0.5)))
+        .fold(f64::INFINITY, f64::min)
+}
+
+/// Intents that are held for a few steps each.
+fn script() -> impl Strategy<Value = Vec<(usize, Vec<Intent>)>> {
+    let held = prop::sample::subsequence(Intent::ALL.to_vec(), 0..=Intent::ALL.len());
+    prop::collection::vec((1..60_usize, held), 0..30)
+}
+
+proptest! {
+    #[test]
+    fn the_same_intents_give_the_same_states(script in script(), degrees in 0.0..360.0) {
+        let mut games = [0; 2].map(|_| Game::new(world(&CELLAR, degrees)));
+        for (steps, held) in &script {
+            for game in &mut games {
+                walk(game, *steps, held);
+            }
+        }
+        let [one, other] = games.map(|game| position(&game).to_array().map(f64::to_bits));
+        prop_assert_eq!(one, other);
+    }
+
+    #[test]
+    fn nobody_enters_a_wall_or_outruns_a_runner(script in script(), degrees in 0.0..360.0) {
+        let mut game = Game::new(world(&CELLAR, degrees));
+        for held in script.iter().flat_map(|(steps, held)| vec![held; *steps]) {
+            let before = position(&game);
+            walk(&mut game, 1, held);
+            let after = position(&game);
+            prop_assert!(before.distance(after) <= 5.5 * STEP * (1.0 + 1e-12));
+            prop_assert!(to_nearest_wall(game.world().grid(), after) >= 0.25 - 1e-12);
+        }
+    }
+
+    #[test]
+    fn who_wants_nothing_comes_to_rest(script in script(), degrees in 0.0..360.0) {
+        let mut game = Game::new(world(&CELLAR, degrees));
+        for (steps, held) in &script {
+            walk(&mut game, *steps, held);
+        }
+        walk(&mut game, 120, &[]);
+        prop_assert!(game.is_at_rest(Intents::new()));
+        prop_assert!(game.is_at_rest(intents(&[Intent::Run])));
+
+        let mut waiting = game.clone();
+        walk(&mut game, 1000, &[]);
+        waiting.wait(1000);
+        prop_assert_eq!(game, waiting);
+    }
+
+    #[test]
+    fn who_pushes_into_a_corner_comes_to_rest(degrees in 1.0..89.0) {
+        let mut game = Game::new(world(&["####", "#@.#", "#..#", "####"], degrees));
+        walk(&mut game, 60 * 60, &[Intent::Forward]);
+        prop_assert!(game.is_at_rest(intents(&[Intent::Forward])));
+        prop_assert!(!game.is_at_rest(intents(&[Intent::Back])));
+        prop_assert_eq!(position(&game), DVec2::new(2.75, 2.75));
+    }
+}
+
+#[test]
+fn a_second_of_walking_and_of_turning() {
+    let row = format!("@{}", ".".repeat(20));
+    for (gait, speed) in [(&[][..], 3.0), (&[Intent::Run], 5.5)] {
+        let mut game = Game::new(world(&[&row], 0.0));
+        walk(&mut game, 60, &[&[Intent::Forward], gait].concat());
+        let before = position(&game);
+        walk(&mut game, 60, &[&[Intent::Forward], gait].concat());
+        assert!((position(&game) - before - DVec2::new(speed, 0.0)).length() < 1e-4);
+    }
+    let mut game = Game::new(world(&["@"], 0.0));
+    walk(&mut game, 60, &[Intent::TurnRight]);
+    let heading = game.camera(FieldOfView::default()).heading.degrees();
+    assert!((heading - (2.4_f64 - 2.4 / 20.0).to_degrees()).abs() < 1e-6, "{heading}");
+    assert!(!game.is_at_rest(Intents::new()));
+    assert!((game.elapsed() - 1.0).abs() < 1e-12);
+}
+
+#[test]
+fn a_wall_keeps_no_speed() {
+    let mut game = Game::new(world(&["@....#"], 0.0));
+    walk(&mut game, 600, &[Intent::Forward, Intent::Run]);
+    assert_eq!(position(&game), DVec2::new(4.75, 0.5));
+    assert!(game.is_at_rest(Intents::new()));
+    assert!(game.is_at_rest(intents(&[Intent::Forward])));
+}
+
+#[test]
+fn the_exit_ends_the_game() {
+    let mut game = Game::new(world(&["@..E..."], 0.0));
+    let forward = [Intent::Forward];
+    while !game.is_finished() {
+        assert!(position(&game).x < 3.0 && !game.is_at_rest(intents(&forward)));
+        walk(&mut game, 1, &forward);
+    }
+    assert!((3.0..3.1).contains(&position(&game).x));
+
+    let end = game.clone();
+    assert!(game.is_at_rest(intents(&forward)));
+    walk(&mut game, 60, &forward);
+    game.wait(60);
+    assert_eq!(game, end);
+}
+
+#[test]
+fn a_walk_ends_at_the_same_place_on_every_machine() {
+    use Intent::{Back, Forward, Run, StrafeLeft, StrafeRight, TurnLeft, TurnRight};
+    let mut game = Game::new(world(&CELLAR, 17.0));
+    let script: [(usize, &[Intent]); 7] = [
+        (50, &[Forward]),
+        (25, &[Forward, TurnRight, Run]),
+        (90, &[Forward, StrafeLeft]),
+        (31, &[TurnLeft, Run, StrafeRight]),
+        (77, &[Forward, Run]),
+        (13, &[Back, TurnRight]),
+        (5, &[]),
+    ];
+    for (steps, held) in script {
+        walk(&mut game, steps, held);
+    }
+    let camera = game.camera(FieldOfView::default());
+    insta::assert_debug_snapshot!(
+        (camera.position().to_array(), camera.direction().to_array()),
+        @r"
+    (
+        [
+            8.203787533664316,
+            5.624213200187348,
+        ],
+        [
+            0.8502489054169883,
+            0.5263808496110145,
+        ],
+    )
+    "
+    );
+}

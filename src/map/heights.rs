@@ -1,0 +1,173 @@
+//! Heights: what a map and its tiles say of them.
+
+use std::ops::Range;
+
+use toml::de::DeTable;
+
+use super::textures::Surface;
+use crate::fault::Fault;
+use crate::fault::document::{Entry, entries};
+use crate::world::{Ceiling, Covering, Heights, Paint};
+
+/// The least height of the map's ceiling: things and the player's start are on the map's own floor.
+const LEAST_HEADROOM: f64 = 0.75;
+
+/// What a tile says of its heights; the rest is as the map says.
+#[derive(Default)]
+pub(super) struct HeightsText<'a> {
+    floor: Option<Height>,
+    ceiling: Option<Height>,
+    roof: Option<Height>,
+    pub(super) riser: Option<Surface<'a>>,
+    pub(super) lintel: Option<Surface<'a>>,
+}
+
+/// How upright faces look that a tile says nothing of, as far as the map does.
+#[derive(Clone, Copy)]
+pub(super) struct Faces {
+    pub(super) riser: Option<Paint>,
+    pub(super) lintel: Option<Paint>,
+}
+
+/// A height, and where the map says it.
+#[derive(Clone)]
+pub(super) struct Height {
+    cells: f64,
+    place: Range<usize>,
+}
+
+impl<'a> HeightsText<'a> {
+    /// Takes the property that `entry` is; `false` where it says nothing of heights.
+    pub(super) fn take(&mut self, entry: &Entry<'a, '_>, faults: &mut Vec<Fault>) -> bool {
+        match entry.key {
+            "floor_height" => self.floor = Height::read(entry, faults),
+            "ceiling_height" => self.ceiling = Height::read(entry, faults),
+            "roof_height" => self.roof = Height::read(entry, faults),
+            "riser" => self.riser = Surface::read(entry, r#"{ riser = "stone" }"#, faults),
+            "lintel" => self.lintel = Surface::read(entry, r#"{ lintel = "brick" }"#, faults),
+            _ => return false,
+        }
+        true
+    }
+
+    pub(super) fn is_empty(&self) -> bool {
+        let Self { floor, ceiling, roof, riser, lintel } = self;
+        [floor, ceiling, roof].iter().all(|height| height.is_none())
+            && riser.is_none()
+            && lintel.is_none()
+    }
+
+    /// The heights of a tile under `overhead`, in a map whose ceiling is at `map_ceiling`. Where they
+    /// contradict each other, that is added to `faults`.
+    pub(super) fn heights(
+        &self,
+        overhead: Ceiling,
+        map_ceiling: f64,
+        faults: &mut Vec<Fault>,
+    ) -> Option<Heights> {
+        let cells = |height: &Option<Height>| height.as_ref().map(|height| height.cells);
+        let floor = cells(&self.floor).unwrap_or(0.0);
+        let ceiling = match overhead {
+            Ceiling::Covered(_) => cells(&self.ceiling).unwrap_or(map_ceiling),
+            Ceiling::Sky => (floor + map_ceiling).min(Heights::MOST),
+        };
+        let roof = cells(&self.roof).unwrap_or(map_ceiling.max(ceiling));
+        if let Some(fault) = self.contradiction(overhead, floor, ceiling) {
+            faults.push(fault);
+            return None;
+        }
+        Heights::new(floor, ceiling, roof)
+    }
+
+    /// What is wrong with a tile whose floor and ceiling are there.
+    fn contradiction(&self, overhead: Ceiling, floor: f64, ceiling: f64) -> Option<Fault> {
+        let is_open = overhead == Ceiling::Sky;
+        match (&self.ceiling, &self.floor, &self.roof) {
+            (Some(height), ..) if is_open => Some(
+                Fault::new(height.place.clone(), "there is no ceiling here to be at a height")
+                    .label("this tile is open to the sky")
+                    .help("give it one, such as ceiling = \"wood\", or leave its height out"),
+            ),
+            (.., Some(height)) if is_open => Some(
+                Fault::new(height.place.clone(), "there is no roof here to be at a height")
+                    .label("this tile is open to the sky")
+                    .help("give it a ceiling, such as ceiling = \"wood\", or leave the roof out"),
+            ),
+            (Some(height), ..) | (None, Some(height), _) if !is_open && floor >= ceiling => Some(
+                Fault::new(height.place.clone(), "a ceiling must be above its floor")
+                    .label(format!("the floor is at {floor} here, the ceiling at {ceiling}"))
+                    .help("raise ceiling_height, or write a wall with a height"),
+            ),
+            (.., Some(height)) if height.cells < ceiling => Some(
+                Fault::new(height.place.clone(), "a roof must not be below its ceiling")
+                    .label(format!("the ceiling is at {ceiling}"))
+                    .help("raise roof_height; what is between the two is solid"),
+            ),
+            _ => None,
+        }
+    }
+}
+
+impl Faces {
+    /// The sides of that floor: like the floor, unless the map says otherwise.
+    pub(super) fn riser(self, floor: Covering) -> Paint {
+        self.riser.unwrap_or(floor.pattern.first_paint())
+    }
+
+    /// The sides of what hangs above that ceiling: like the ceiling, unless the map says otherwise.
+    pub(super) fn lintel(self, floor: Covering, ceiling: Ceiling) -> Paint {
+        let below = match ceiling {
+            Ceiling::Covered(covering) => covering,
+            Ceiling::Sky => floor,
+        };
+        self.lintel.unwrap_or(below.pattern.first_paint())
+    }
+}
+
+impl Height {
+    /// The height that `entry` holds.
+    fn read(entry: &Entry<'_, '_>, faults: &mut Vec<Fault>) -> Option<Self> {
+        let cells = entry.number().filter(|height| height.abs() <= Heights::MOST);
+        if cells.is_none() {
+            let most = Heights::MOST;
+            let message = format!("a height must be a number of cells from -{most} to {most}");
+            faults.push(
+                Fault::new(entry.value_place.clone(), message)
+                    .label("this is none")
+                    .help("write 0.25 for a quarter of a cell above the map's floor"),
+            );
+        }
+        Some(Self { cells: cells?, place: entry.value_place.clone() })
+    }
+}
+
+/// The height that the map gives its ceiling, and its walls.
+pub(super) fn map_ceiling(entry: &Entry<'_, '_>, faults: &mut Vec<Fault>) -> Option<f64> {
+    let height = Height::read(entry, faults)?;
+    if height.cells >= LEAST_HEADROOM {
+        return Some(height.cells);
+    }
+    let message = format!("the ceiling of a map is at {LEAST_HEADROOM} cells or above");
+    faults.push(
+        Fault::new(height.place, message)
+            .label("the player starts on the map's own floor, and has no room below this")
+            .help("lower the ceiling in places, by a tile with a ceiling_height"),
+    );
+    None
+}
+
+/// The height that `table` gives a wall, if it does.
+pub(super) fn of_wall(table: &DeTable<'_>, faults: &mut Vec<Fault>) -> Option<f64> {
+    let entry = entries(table).find(|entry| entry.key == "height")?;
+    let height = Height::read(&entry, faults)?;
+    if height.cells > 0.0 {
+        return Some(height.cells);
+    }
+    let message = "the height of a wall must be above 0";
+    faults.push(
+        Fault::new(height.place, message)
+            .label("this is not")
+            .help("write { floor_height = -1 } for a pit"),
+    );
+    None
+}

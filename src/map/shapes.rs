@@ -1,0 +1,113 @@
+//! Shapes: what the legend says of walls that do not fill their cell.
+
+use toml::de::DeTable;
+
+use super::textures::{Surface, Textures};
+use crate::fault::document::{Entry, entries};
+use crate::fault::{Fault, nearest, quoted};
+use crate::world::{Line, Outline, PillarRadius, Shape};
+
+const DEFAULT_RADIUS: PillarRadius = PillarRadius::new(0.3).expect("it fits a cell");
+
+/// Where a thin wall may be in its cell.
+const PLACES: [(&str, Line); 6] = [
+    ("north", Line::North),
+    ("east", Line::East),
+    ("south", Line::South),
+    ("west", Line::West),
+    ("east-west", Line::EastWest),
+    ("north-south", Line::NorthSouth),
+];
+
+/// Where a diagonal may begin.
+const CORNERS: [(&str, Line); 4] = [
+    ("north-west", Line::FromNorthWest),
+    ("south-east", Line::FromNorthWest),
+    ("north-east", Line::FromNorthEast),
+    ("south-west", Line::FromNorthEast),
+];
+
+/// A shape, as the legend has it.
+pub(super) struct ShapeSymbol<'a> {
+    outline: Outline,
+    surface: Surface<'a>,
+}
+
+impl<'a> ShapeSymbol<'a> {
+    /// The shape that `entry` of `table` names, with what the table says of where it stands.
+    pub(super) fn read(
+        entry: &Entry<'a, '_>,
+        table: &DeTable<'_>,
+        faults: &mut Vec<Fault>,
+    ) -> Option<Self> {
+        let (addition, example) = match entry.key {
+            "pillar" => ("radius", r#"{ pillar = "marble", radius = 0.3 }"#),
+            "diagonal" => ("from", r#"{ diagonal = "brick", from = "north-west" }"#),
+            _ => ("at", r#"{ thin = "wood", at = "north" }"#),
+        };
+        let surface = Surface::read(entry, example, faults);
+        let said = entries(table).find(|entry| entry.key == addition);
+        let outline = match (addition, said) {
+            ("radius", None) => Some(Outline::Pillar(DEFAULT_RADIUS)),
+            ("radius", Some(radius)) => read_radius(&radius, faults).map(Outline::Pillar),
+            ("from", Some(corner)) => {
+                named(&corner, "corner", &CORNERS, example, faults).map(Outline::Line)
+            }
+            (_, Some(place)) => {
+                named(&place, "place in a cell", &PLACES, example, faults).map(Outline::Line)
+            }
+            (_, None) => {
+                let message = format!("a {} wall does not say where it is", entry.key);
+                let fault = Fault::new(entry.key_place.clone(), message);
+                faults.push(
+                    fault
+                        .label(format!("{} is missing", quoted(addition)))
+                        .help(format!("write, for example, {example}")),
+                );
+                None
+            }
+        };
+        Some(Self { outline: outline?, surface: surface? })
+    }
+
+    /// The shape, papered with one of `textures`.
+    pub(super) fn shape(
+        &self,
+        textures: &mut Textures<'_>,
+        faults: &mut Vec<Fault>,
+    ) -> Option<Shape> {
+        let paint = textures.paint(&self.surface, faults)?;
+        Some(Shape { outline: self.outline, paint })
+    }
+}
+
+fn read_radius(entry: &Entry<'_, '_>, faults: &mut Vec<Fault>) -> Option<PillarRadius> {
+    let radius = entry.number().and_then(PillarRadius::new);
+    if radius.is_none() {
+        let message = "the radius of a pillar is above 0 and at most 0.5, half a cell";
+        faults.push(Fault::new(entry.value_place.clone(), message).label("this is not"));
+    }
+    radius
+}
+
+/// The line that `entry` names: one of `lines`, each of which is `what`.
+fn named(
+    entry: &Entry<'_, '_>,
+    what: &str,
+    lines: &[(&str, Line)],
+    example: &str,
+    faults: &mut Vec<Fault>,
+) -> Option<Line> {
+    let name = entry.string(example, faults)?;
+    let line = lines.iter().find(|(known, _)| *known == name);
+    if line.is_none() {
+        let names: Vec<&str> = lines.iter().map(|&(name, _)| name).collect();
+        let help = match nearest(name, &names) {
+            Some(meant) => format!("the nearest is {}", quoted(meant)),
+            None => format!("write one of {}", names.join(", ")),
+        };
+        let message = format!("{} is no {what}", quoted(name));
+        faults.push(Fault::new(entry.value_place.clone(), message).help(help));
+    }
+    line.map(|&(_, line)| line)
+}

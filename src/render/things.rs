@@ -1,0 +1,234 @@
+//! The pass for things: flat pictures that stand parallel to the camera plane.
+//!
+//! Where the rays ended is known by now, and with it the stretch of the map that can be seen: only
+//! things in those cells are considered. What is left of them is drawn from far to near, column by
+//! column as far as the walls let it be seen; what the rays passed on their way, such as a grate, is
+//! drawn before the first thing that stands nearer. A buffer of depths for each pixel was refused: one
+//! distance for each column says the same, since walls reach from floor to ceiling.
+
+use std::cmp::Ordering;
+use std::ops::Range;
+
+use glam::DVec2;
+
+use super::marks::Marks;
+use super::see_through::{self, Passed};
+use super::shade::{Bright, Faded, Shade};
+use super::tally::{Pass, Tally};
+use super::{Frame, Scene, Surface};
+use crate::world::texture::Level;
+use crate::world::{Anchor, Thing};
+
+/// Things that are nearer than that to the camera plane are not drawn: the player stands in them.
+const NEAREST: f64 = 0.2;
+
+/// There is room for so many things in view from the first frame on, so that a camera that turns
+/// towards more of them needs no more memory.
+const MOST_AT_FIRST: usize = 4096;
+
+/// The things in view, from far to near; kept so that it is allocated once.
+#[derive(Clone, Debug, Default)]
+pub(super) struct InView {
+    list: Vec<Billboard>,
+}
+
+/// A thing, as it stands in the picture.
+#[derive(Clone, Debug)]
+struct Billboard {
+    /// Its place in the world's list.
+    thing: Thing,
+    /// How far it is from the camera plane, in cells.
+    depth: f64,
+    /// Where its left edge is, in pixels, and how many pixels wide it is.
+    left: f64,
+    width: f64,
+    /// The columns of pixels whose centres are on it.
+    columns: Range<u32>,
+}
+
+/// Draws the things in view and all that the rays `passed`, as it is after `seconds`. Returns when a
+/// thing in view will look different; `None` for never.
+pub(super) fn draw<T: Tally>(
+    scene: Scene<'_>,
+    seconds: f64,
+    passed: &mut Passed,
+    in_view: &mut InView,
+    marks: &mut Marks,
+    frame: &mut Frame,
+    tally: &mut T,
+) -> Option<f64> {
+    let list = &mut in_view.list;
+    list.clear();
+    list.reserve(scene.world.things().len().min(MOST_AT_FIRST));
+    let mut considered = 0;
+    for thing in around(scene) {
+        considered += 1;
+        list.extend(Billboard::new(scene, thing));
+    }
+    list.sort_unstable_by(from_far_to_near);
+    passed.sort_out(scene.columns.len());
+    let (mut drawn, mut next_change) = (0, None::<f64>);
+    for billboard in &*list {
+        if billboard.draw(scene, seconds, passed, marks, frame, tally) {
+            drawn += 1;
+            let change = scene.world.sprite(billboard.thing.sprite).next_change(seconds);
+            next_change = next_change.into_iter().chain(change).reduce(f64::min);
+        }
+    }
+    tally.things(considered, drawn);
+    see_through::draw_rest(scene, passed, marks, frame, tally);
+    next_change
+}
+
+fn from_far_to_near(one: &Billboard, other: &Billboard) -> Ordering {
+    other.depth.total_cmp(&one.depth).then_with(|| {
+        let place = |it: &Billboard| (it.thing.cell.row, it.thing.cell.column, it.thing.sprite.0);
+        place(one).cmp(&place(other))
+    })
+}
+
+/// The things in the part of the map that holds all that is seen.
+fn around(scene: Scene<'_>) -> impl Iterator<Item = Thing> {
+    let Scene { world, projection, columns, .. } = scene;
+    let origin = projection.origin();
+    let (mut low, mut high) = (origin, origin);
+    for (x, column) in (0..).zip(columns) {
+        let end = origin + projection.direction_of(x) * column.distance;
+        (low, high) = (low.min(end), high.max(end));
+    }
+    // What stands beside what is seen reaches into it by half its width.
+    let margin = world.widest_sprite() / 2.0;
+    let grid = world.grid();
+    let cells = |low: f64, high: f64, count: u32| {
+        let first = (low - margin).max(0.0) as u32;
+        let last = ((high + margin).min(f64::from(count) - 1.0)).max(0.0) as u32;
+        first..=last
+    };
+    let columns = cells(low.x, high.x, grid.width());
+    let rows = cells(low.y, high.y, grid.height());
+    rows.flat_map(move |row| world.things_between(row, *columns.start(), *columns.end())).copied()
+}
+
+impl Billboard {
+    /// `thing`, if any of it is in the picture and before the walls.
+    fn new(scene: Scene<'_>, thing: Thing) -> Option<Self> {
+        let Scene { world, projection, columns: seen, .. } = scene;
+        let place = projection.place(thing.cell.center());
+        if !(NEAREST..f64::INFINITY).contains(&place.depth) {
+            return None;
+        }
+        let width = projection.columns_for(world.sprite(thing.sprite).width(), place.depth);
+        let left = place.column - width / 2.0;
+        let columns = projection.columns_between(left, left + width);
+        let is_seen = |x: u32| place.depth < seen[x as usize].distance;
+        let is_in_view = columns.clone().any(is_seen);
+        is_in_view.then_some(Self { thing, depth: place.depth, left, width, columns })
+    }
+
+    /// Draws what is seen of it, and before that what is behind it of what the rays passed. Returns
+    /// whether there was a column to draw.
+    fn draw<T: Tally>(
+        &self,
+        scene: Scene<'_>,
+        seconds: f64,
+        passed: &mut Passed,
+        marks: &mut Marks,
+        frame: &mut Frame,
+        tally: &mut T,
+    ) -> bool {
+        let picture = Picture::new(scene, self, seconds);
+        if picture.rows.is_empty() {
+            return false;
+        }
+        let mut has_drawn = false;
+        for x in self.columns.clone() {
+            if self.depth >= scene.columns[x as usize].distance {
+                continue;
+            }
+            has_drawn = true;
+            see_through::draw_behind(self.depth, x as usize, scene, passed, marks, frame, tally);
+            let u = (f64::from(x) + 0.5 - self.left) / self.width;
+            picture.draw_column(x as usize, u, marks, frame, tally);
+        }
+        has_drawn
+    }
+}
+
+/// What a thing looks like from where the camera is.
+struct Picture<'a> {
+    level: &'a Level,
+    shade: Option<Faded>,
+    rows: Range<u32>,
+    /// Where its top is, in rows, and how many texels there are in a row.
+    top: f64,
+    texels_in_row: f64,
+}
+
+impl<'a> Picture<'a> {
+    fn new(scene: Scene<'a>, billboard: &Billboard, seconds: f64) -> Self {
+        let Scene { world, projection, filter, .. } = scene;
+        let Billboard { thing, depth, .. } = *billboard;
+        let sprite = world.sprite(thing.sprite);
+        let to_viewer: DVec2 = projection.origin() - thing.cell.center();
+        let texture = sprite.picture(seconds, to_viewer);
+        let height = sprite.height.cells();
+        let room = world.room_in(thing.cell);
+        let base = match sprite.anchor {
+            Anchor::Floor => room.floor(),
+            Anchor::Ceiling => room.ceiling() - height,
+        };
+        let top = projection.row_at(base + height, depth);
+        let bottom = projection.row_at(base, depth);
+        let texels = f64::from(texture.width()) * f64::from(texture.height());
+        let level = texture.level(filter.halvings(texels / (billboard.width * (bottom - top))));
+        Self {
+            level,
+            shade: Faded::of_plane(world.light_in(thing.cell), world.fog(), depth),
+            rows: projection.rows_between(top, bottom),
+            top,
+            texels_in_row: f64::from(level.height()) / (bottom - top),
+        }
+    }
+
+    fn draw_column<T: Tally>(
+        &self,
+        x: usize,
+        u: f64,
+        marks: &mut Marks,
+        frame: &mut Frame,
+        tally: &mut T,
+    ) {
+        tally.pixels(Pass::Things, self.rows.len());
+        tally.texels(Pass::Things, self.rows.len());
+        match self.shade {
+            None => self.draw_shaded(Bright, x, u, frame),
+            Some(faded) => self.draw_shaded(faded, x, u, frame),
+        }
+        let alphas = self.level.alpha_column(u);
+        let shown = self
+            .rows
+            .clone()
+            .map(|row| alphas.is_none_or(|alphas| alphas[self.texel(row)] > u8::MAX / 2));
+        marks.note(x, self.rows.start, Surface::Thing, shown);
+    }
+
+    fn draw_shaded<S: Shade>(&self, shade: S, x: usize, u: f64, frame: &mut Frame) {
+        let texels = self.level.column(u);
+        let alphas = self.level.alpha_column(u);
+        let pixels = frame.column_mut(x).skip(self.rows.start as usize);
+        for (row, pixel) in self.rows.clone().zip(pixels) {
+            let texel = self.texel(row);
+            *pixel = match alphas.map_or(u8::MAX, |alphas| alphas[texel]) {
+                0 => *pixel,
+                u8::MAX => shade.apply(texels[texel]),
+                alpha => shade.apply(texels[texel]).over(*pixel, alpha),
+            };
+        }
+    }
+
+    /// Which texel, from the top, the centre of `row` is on.
+    fn texel(&self, row: u32) -> usize {
+        let texel = (f64::from(row) + 0.5 - self.top) * self.texels_in_row;
+        (texel as usize).min(self.level.height() as usize - 1)
+    }
+}

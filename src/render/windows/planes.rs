@@ -1,0 +1,83 @@
+//! The pass for what lies flat, and for the sky: along rows, over the spans that show the same.
+
+use super::{Part, Piece, Reflection, Scene, Shown, Windows};
+use crate::render::Frame;
+use crate::render::lay::Layer;
+use crate::render::sky::SkyView;
+use crate::render::tally::{Pass, Tally};
+use crate::world::{Ceiling, Covering, Light, Rgb, Tile, TileKind};
+
+/// Draws every span, and tells how many there were.
+pub(super) fn draw<T: Tally>(
+    scene: Scene<'_>,
+    sky: &SkyView<'_>,
+    windows: &Windows,
+    frame: &mut Frame,
+    tally: &mut T,
+) -> u64 {
+    let mut count = 0;
+    for (row, shown) in (0..).zip(windows.shown.chunks_exact(windows.width)) {
+        let mut pixels = frame.row_range_mut(row, row + 1);
+        let mut x = 0;
+        for alike in shown.chunk_by(|one, other| one == other) {
+            let (span, rest) = pixels.split_at_mut(alike.len());
+            pixels = rest;
+            match alike[0] {
+                Shown::Face(_) => {}
+                Shown::Sky { reflection: Reflection::NONE } => sky.draw(row, x, span, tally),
+                Shown::Sky { reflection } => {
+                    sky.draw_reflected(windows.unfolding(reflection), row, x, span, tally);
+                }
+                Shown::Plane(piece) => lay(scene, windows, piece, row, x, span, tally),
+            }
+            count += u64::from(!matches!(alike[0], Shown::Face(_)));
+            x += alike.len();
+        }
+    }
+    count
+}
+
+/// Lays `piece` on `pixels`, which are those from column `x` on of `row`.
+fn lay<T: Tally>(
+    scene: Scene<'_>,
+    windows: &Windows,
+    piece: Piece,
+    row: u32,
+    x: usize,
+    pixels: &mut [Rgb],
+    tally: &mut T,
+) {
+    let Scene { world, projection, filter, .. } = scene;
+    let (height, covering, light) = match piece.tile {
+        None => (0.0, world.floor(), Light::FULL),
+        Some(id) => {
+            let tile = &world.tiles()[usize::from(id.0)];
+            let (height, covering) = height_and_covering(tile, piece.part);
+            (height, covering, tile.light.unwrap_or(Light::FULL))
+        }
+    };
+    let mut track = projection.track_at(row, height);
+    if piece.reflection != Reflection::NONE {
+        track = track.seen_in_mirrors(windows.unfolding(piece.reflection));
+    }
+    let pass = match piece.part {
+        Part::Ceiling => Pass::Ceiling,
+        Part::Floor | Part::Roof => Pass::Floor,
+    };
+    Layer { world, filter, pass }.lay(covering, light, &track, x, pixels, tally);
+}
+
+/// How high a part of a tile is, and what it is laid with.
+fn height_and_covering(tile: &Tile, part: Part) -> (f64, Covering) {
+    let mut gaps = tile.gaps();
+    match (part, tile.ceiling, tile.kind) {
+        (Part::Ceiling, Ceiling::Covered(covering), _) => (tile.heights.ceiling(), covering),
+        (Part::Roof, ..) => {
+            (gaps.next_back().map_or(0.0, |gap| gap.bottom), Covering::from(tile.lintel))
+        }
+        (_, _, TileKind::Wall(_) | TileKind::Mirror(_)) => {
+            (gaps.next().map_or(0.0, |gap| gap.bottom), Covering::from(tile.riser))
+        }
+        (..) => (gaps.next().map_or(0.0, |gap| gap.bottom), tile.floor),
+    }
+}

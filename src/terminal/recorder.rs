@@ -1,0 +1,42 @@
+//! Taking note of what a terminal is sent.
+
+use std::fmt;
+
+use ratatui::layout::Size;
+
+/// What takes note of all that a [`Session`](super::Session) sends.
+pub trait Recorder: Send {
+    /// The window is of `size`: once before anything is sent, and whenever it changes.
+    fn resized(&mut self, size: Size);
+
+    /// The terminal is sent `bytes`, which hold whole characters and whole sequences.
+    fn sent(&mut self, bytes: &[u8]);
+}
+
+/// A recorder, if there is one.
+#[derive(Default)]
+pub(super) struct Recording(Option<Box<dyn Recorder>>);
+
+impl Recording {
+    pub(super) fn by(recorder: Option<Box<dyn Recorder>>) -> Self {
+        Self(recorder)
+    }
+
+    pub(super) fn resized(&mut self, size: Size) {
+        if let Some(recorder) = &mut self.0 {
+            recorder.resized(size);
+        }
+    }
+
+    pub(super) fn sent(&mut self, bytes: &[u8]) {
+        if let Some(recorder) = &mut self.0 {
+            recorder.sent(bytes);
+        }
+    }
+}
+
+impl fmt::Debug for Recording {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        f.debug_tuple("Recording").field(&self.0.is_some()).finish()
+    }
+}

@@ -1,0 +1,80 @@
+//! The game played by a script, off screen.
+
+use std::convert::Infallible;
+use std::fmt;
+use std::num::NonZeroU32;
+
+use ratatui::Terminal;
+use ratatui::backend::TestBackend;
+use ratatui::buffer::Buffer;
+use ratatui::layout::Size;
+
+use super::{App, Levels, Screen, Settings};
+use crate::game::{Intents, STEPS_PER_SECOND, Script};
+
+/// A game that no terminal shows, one step at a time: the picture, minimap and status line that a
+/// player would see who wants the same things.
+///
+/// Where a level's exit is reached, the next step is the first one of the next level.
+pub struct Replay {
+    app: App,
+    window: Terminal<TestBackend>,
+}
+
+impl Replay {
+    /// The beginning of `levels`, in a window of `size`.
+    pub fn new(levels: Levels, settings: Settings, size: Size) -> Self {
+        let Ok(window) = Terminal::new(TestBackend::new(size.width, size.height));
+        Self { app: App::new(levels, settings), window }
+    }
+
+    /// Lets a step pass in which the player wants `intents`.
+    pub fn step(&mut self, intents: Intents) {
+        if self.app.screen == Screen::LevelDone {
+            self.app.next_level();
+        }
+        if self.app.screen == Screen::Playing {
+            self.app.game.step(intents);
+            if self.app.game.is_finished() {
+                self.app.show(Screen::LevelDone);
+            }
+        }
+    }
+
+    /// Plays `script`, and shows its pictures, so many a second: the first from before the first
+    /// step, each with its number and the place of the section that led to it.
+    ///
+    /// # Errors
+    /// The first that `show` has.
+    pub fn play<E>(
+        &mut self,
+        script: &Script,
+        frames_per_second: NonZeroU32,
+        mut show: impl FnMut(u64, usize, &Buffer) -> Result<(), E>,
+    ) -> Result<(), E> {
+        let mut frame = 0;
+        show(frame, 0, self.picture())?;
+        for (steps, (section, intents)) in (1..).zip(script.iter()) {
+            self.step(intents);
+            let frames = steps * u64::from(frames_per_second.get()) / u64::from(STEPS_PER_SECOND);
+            while frame < frames {
+                frame += 1;
+                show(frame, section, self.picture())?;
+            }
+        }
+        Ok(())
+    }
+
+    /// What the window shows now.
+    pub fn picture(&mut self) -> &Buffer {
+        let drawn: Result<_, Infallible> = self.window.draw(|frame| self.app.draw(frame));
+        let Ok(_) = drawn;
+        self.window.backend().buffer()
+    }
+}
+
+impl fmt::Debug for Replay {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        f.debug_struct("Replay").field("game", &self.app.game).finish_non_exhaustive()
+    }
+}

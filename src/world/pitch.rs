@@ -1,0 +1,75 @@
+//! The pitch: how far up or down somebody looks.
+//!
+//! The picture is sheared, not turned: all of it moves up or down by whole rows of pixels, and what
+//! stays in view looks as it did. A true rotation was refused: walls would lean, a column of pixels
+//! would no longer be one ray, and every pass would pay for it. A sheared picture is the true one of
+//! a camera that looks straight ahead and whose film is shifted, as architects take it; it looks
+//! wrong only where it shows what is far above or below, and so it ends at [`Pitch::MOST_DEGREES`].
+
+/// How far up or down somebody looks: within ±30°.
+#[derive(Clone, Copy, Debug, PartialEq, Default)]
+pub struct Pitch {
+    slope: f64,
+}
+
+/// The tangent of [`Pitch::MOST_DEGREES`].
+const STEEPEST: f64 = 0.577_350_269_189_625_7;
+
+impl Pitch {
+    /// Straight ahead.
+    pub const LEVEL: Self = Self { slope: 0.0 };
+    /// Further up or down than that, the horizon is far out of view, and walls look stretched.
+    pub const MOST_DEGREES: f64 = 30.0;
+
+    /// A pitch from degrees, positive for up, within ±[`Pitch::MOST_DEGREES`]. `None` outside that.
+    pub fn from_degrees(degrees: f64) -> Option<Self> {
+        let is_within = degrees.abs() <= Self::MOST_DEGREES;
+        is_within.then(|| Self::LEVEL.tilted(libm::tan(degrees.to_radians())))
+    }
+
+    /// Degrees, positive for up.
+    pub fn degrees(self) -> f64 {
+        libm::atan(self.slope).to_degrees()
+    }
+
+    /// How much higher than the eye something is in the middle of the picture, for each cell that it
+    /// is away; negative for lower.
+    pub fn slope(self) -> f64 {
+        self.slope
+    }
+
+    /// Looking higher by `slope`, or lower where that is negative, up to the limit; what is no number
+    /// changes nothing.
+    #[must_use]
+    pub fn tilted(self, slope: f64) -> Self {
+        if slope.is_nan() {
+            return self;
+        }
+        // Zero is added to be rid of its sign.
+        Self { slope: (self.slope + slope).clamp(-STEEPEST, STEEPEST) + 0.0 }
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn degrees_come_back() {
+        for degrees in [-30.0, -12.5, 0.0, 1.0, 29.999, 30.0] {
+            let pitch = Pitch::from_degrees(degrees).unwrap();
+            assert!((pitch.degrees() - degrees).abs() < 1e-12, "{degrees}");
+        }
+        for degrees in [30.001, -31.0, f64::NAN, f64::INFINITY] {
+            assert_eq!(Pitch::from_degrees(degrees), None);
+        }
+    }
+
+    #[test]
+    fn nobody_looks_further_than_the_limit() {
+        let highest = Pitch::from_degrees(30.0).unwrap();
+        assert_eq!(Pitch::LEVEL.tilted(f64::INFINITY), highest.tilted(1e9));
+        assert_eq!(highest.tilted(1.0).tilted(-2.0 * STEEPEST).degrees(), -highest.degrees());
+        assert_eq!(highest.tilted(f64::NAN), highest);
+    }
+}

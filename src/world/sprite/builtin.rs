@@ -1,0 +1,138 @@
+//! The built-in sprites: drawn by characters, or painted by code, when a map asks for one.
+//!
+//! They are few texels large, with a dark outline and one light from the upper left, so that they can
+//! be told from each other when they are ten pixels high. A drawing is text: a change to it shows in a
+//! review, which one to a picture file would not.
+
+mod figure;
+mod furniture;
+mod portal;
+mod treasure;
+
+use std::num::NonZeroU32;
+
+use super::{Anchor, Facings, FrameTime, Sprite, SpriteHeight};
+use crate::world::{Lamp, Light, Reach, Rgb, Texture};
+
+/// The names that [`named`] knows, those for things that a map asks for by other words left out.
+pub const NAMES: &[&str] =
+    &["barrel", "bones", "column", "lamp", "plant", "statue", "table", "torch"];
+
+/// The sprite of an exit.
+pub const EXIT: &str = "portal";
+/// The sprite of a key.
+pub const KEY: &str = "key";
+
+/// The built-in sprite of that name, or `None` where there is none.
+pub fn named(name: &str) -> Option<Sprite> {
+    let Design { pictures, facings, seconds, anchor, height, blocks, shines } = match name {
+        "barrel" => furniture::barrel(),
+        "bones" => treasure::bones(),
+        "column" => furniture::column(),
+        "lamp" => furniture::lamp(),
+        "plant" => furniture::plant(),
+        "statue" => figure::statue(),
+        "table" => furniture::table(),
+        "torch" => furniture::torch(),
+        EXIT => portal::portal(),
+        KEY => treasure::key(),
+        _ => return None,
+    };
+    let mut sprite = Sprite::new(pictures, facings)?.with_frame_time(FrameTime::new(seconds)?);
+    sprite.anchor = anchor;
+    sprite.height = SpriteHeight::new(height)?;
+    sprite.blocks = blocks;
+    sprite.lamp = Light::new(shines)
+        .filter(|&light| light != Light::NONE)
+        .map(|light| Lamp { light, reach: Reach::default() });
+    Some(sprite)
+}
+
+/// What a sprite is made from.
+struct Design {
+    pictures: Vec<Texture>,
+    facings: Facings,
+    /// For each frame.
+    seconds: f64,
+    anchor: Anchor,
+    /// In cells.
+    height: f64,
+    blocks: bool,
+    /// What it adds to the light in its cell, from 0 to 1.
+    shines: f64,
+}
+
+impl Design {
+    /// Pictures of one facing that stand on the floor, in nobody's way.
+    fn standing(height: f64, pictures: Vec<Texture>) -> Self {
+        let (facings, anchor) = (Facings::One, Anchor::Floor);
+        Self { pictures, facings, seconds: 0.2, anchor, height, blocks: false, shines: 0.0 }
+    }
+}
+
+/// Which colour a character stands for; all others are clear.
+type Palette = [(char, Rgb)];
+
+/// The picture that lines of characters draw, all of one length.
+fn drawn(lines: &[&str], palette: &Palette) -> Texture {
+    let rows: Vec<Vec<char>> = lines.iter().map(|line| line.chars().collect()).collect();
+    painted(rows[0].len() as u32, rows.len() as u32, |x, y| {
+        let character = rows[y as usize].get(x as usize)?;
+        palette.iter().find(|(known, _)| known == character).map(|&(_, color)| color)
+    })
+}
+
+/// The same seen from the other side: left and right are swapped.
+fn mirrored(lines: &[&str], palette: &Palette) -> Texture {
+    let lines: Vec<String> = lines.iter().map(|line| line.chars().rev().collect()).collect();
+    let lines: Vec<&str> = lines.iter().map(String::as_str).collect();
+    drawn(&lines, palette)
+}
+
+/// The picture whose texel at `(x, y)` is `paint(x, y)`, or clear where that is none.
+fn painted(width: u32, height: u32, paint: impl Fn(i32, i32) -> Option<Rgb>) -> Texture {
+    const CLEAR: (Rgb, u8) = (Rgb::BLACK, 0);
+    let side = |side| NonZeroU32::new(side).unwrap_or(NonZeroU32::MIN);
+    Texture::from_fn_with_alpha(side(width), side(height), |x, y| {
+        paint(x as i32, y as i32).map_or(CLEAR, |color| (color, u8::MAX))
+    })
+}
+
+/// What outlines are drawn in.
+const INK: Rgb = Rgb::new(0x1c, 0x18, 0x20);
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    fn all() -> impl Iterator<Item = (&'static str, Sprite)> {
+        let names = NAMES.iter().copied().chain([EXIT, KEY]);
+        names.map(|name| (name, named(name).unwrap_or_else(|| panic!("{name} is drawn"))))
+    }
+
+    #[test]
+    fn every_picture_shows_something_and_leaves_something_clear() {
+        for (name, sprite) in all() {
+            for picture in &sprite.pictures {
+                let texels = (0..picture.width())
+                    .flat_map(|x| (0..picture.height()).map(move |y| picture.texel(x, y).1));
+                let shown = texels.filter(|&alpha| alpha > 0).count() as u32;
+                let area = picture.width() * picture.height();
+                assert!((area / 8..area).contains(&shown), "{name}: {shown} of {area}");
+            }
+        }
+        assert_eq!(named("dragon"), None);
+    }
+
+    #[test]
+    fn all_pictures_of_a_sprite_are_of_one_size_and_differ() {
+        for (name, sprite) in all() {
+            let first = &sprite.pictures[0];
+            for (index, picture) in sprite.pictures.iter().enumerate() {
+                let size = (picture.width(), picture.height());
+                assert_eq!(size, (first.width(), first.height()), "{name}");
+                assert!(!sprite.pictures[..index].contains(picture), "{name}: {index}");
+            }
+        }
+    }
+}

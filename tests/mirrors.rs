@@ -1,0 +1,221 @@
+//! Mirrors, against the room that is seen in them: built behind the mirror, the other way round, it
+//! looks the same without one.
+
+use cellcaster::map::{self, TextureFileError, TextureFiles};
+use cellcaster::render::{Frame, FrameSize, PixelAspect, Renderer};
+use cellcaster::world::{Camera, FieldOfView, Heading, World};
+use glam::DVec2;
+use proptest::prelude::*;
+
+const COLUMNS: usize = 6;
+const ROWS: usize = 4;
+/// The kinds of cell in a room: floor of one colour, floor with a texture, a wall, a low wall, a step, a tall wall, glass.
+const KINDS: [char; 7] = ['.', 'f', 'a', 'l', 's', 't', 'g'];
+/// How often a ray is reflected at most.
+const MOST_BOUNCES: usize = 8;
+
+/// Whether a room is seen in a mirror that faces east or west, and in one that faces north or south.
+type Flips = (bool, bool);
+
+/// A picture of noise, and that picture the other way round.
+struct Noise;
+
+impl TextureFiles for Noise {
+    fn read(&self, name: &str) -> Result<Vec<u8>, TextureFileError> {
+        let is_flipped = |letter| name.contains(letter);
+        let side = |index: u8, is_flipped: bool| if is_flipped { 7 - index } else { index };
+        let mut bytes = Vec::new();
+        let mut encoder = png::Encoder::new(&mut bytes, 8, 8);
+        encoder.set_color(png::ColorType::Rgb);
+        let places = (0..8).flat_map(|y| (0..8).map(move |x| (x, y)));
+        let texels: Vec<u8> = places
+            .flat_map(|(x, y)| {
+                let (x, y) = (side(x, is_flipped('x')), side(y, is_flipped('y')));
+                [x * 32, y * 32, (x ^ y) * 16]
+            })
+            .collect();
+        encoder.write_header().unwrap().write_image_data(&texels).unwrap();
+        Ok(bytes)
+    }
+}
+
+/// The character for a cell of that kind in a room seen by those mirrors.
+fn character(kind: char, (x, y): Flips) -> char {
+    let copies = ["#.glstfa", "Q.glBCDE", "q.glcdez", "R.glGHIJ"];
+    let index = copies[0].find(kind).unwrap();
+    char::from(copies[usize::from(x) + 2 * usize::from(y)].as_bytes()[index])
+}
+
+/// The tiles of a room seen by those mirrors.
+fn tiles(flips: Flips) -> String {
+    let (x, y) = flips;
+    let letters = |x, y| format!("{}{}", if x { "x" } else { "" }, if y { "y" } else { "" });
+    let floor = format!("noise-{}.png", letters(x, y));
+    // Seen in two mirrors, left is left again.
+    let wall = format!("noise-{}.png", letters(x != y, false));
+    let of = |kind, what: String| format!("\"{}\" = {{ {what} }}\n", character(kind, flips));
+    let tiles = of('#', format!("wall = \"{wall}\""))
+        + &of('a', format!("wall = \"{wall}\""))
+        + &of('t', format!("wall = \"{wall}\", height = 1.75"))
+        + &of('s', format!("floor = \"{floor}\", floor_height = 0.25, riser = \"{wall}\""))
+        + &of('f', format!("floor = \"{floor}\""));
+    if x || y {
+        return tiles;
+    }
+    // Glass that touches a mirror is one cube with its image. Of a low wall the top is seen, too, and
+    // lies otherwise in a mirror than the sides stand.
+    tiles
+        + &of('g', "glass = \"#80c0ff\"".to_owned())
+        + &of('l', "wall = \"#a07040\", height = 0.375".to_owned())
+}
+
+/// A map whose cells are those of a room, with the start outside, behind a wall.
+fn parse(rows: &[String], tiles: &str, is_covered: bool) -> World {
+    let start: String =
+        std::iter::once('@').chain(std::iter::repeat_n('#', rows[0].chars().count() - 1)).collect();
+    let text = format!(
+        "floor = \"#604830\"\nceiling = \"{}\"\ngrid = '''\n{}\n{start}\n'''\n[tiles]\n{tiles}\
+         \"M\" = {{ mirror = \"#204060\", opacity = 0, height = 9 }}\n[things]\n\"@\" = {{ start = 0 }}\n",
+        if is_covered { "#506070" } else { "sky" },
+        rows.join("\n"),
+    );
+    map::parse(&text, "room", &Noise).unwrap_or_else(|faults| panic!("{faults}"))
+}
+
+/// A room of `cells` between walls: what is at a column and a row of it.
+fn at(cells: &[char], column: usize, row: usize) -> char {
+    let is_inside = (1..=COLUMNS).contains(&column) && (1..=ROWS).contains(&row);
+    if is_inside { cells[(row - 1) * COLUMNS + column - 1] } else { '#' }
+}
+
+/// The same cells, but for floor around the camera.
+fn with_room_for((x, y): (f64, f64), mut cells: Vec<char>) -> Vec<char> {
+    cells[(y as usize - 1) * COLUMNS + x as usize - 1] = '.';
+    cells
+}
+
+fn picture(world: &World, position: DVec2, degrees: f64, eye: f64) -> Frame {
+    let heading = Heading::from_degrees(degrees).unwrap();
+    let camera = Camera::new(position, heading, FieldOfView::default()).unwrap();
+    let mut frame = Frame::new(FrameSize::new(72, 48).unwrap(), PixelAspect::SQUARE);
+    Renderer::new().render(world, &camera.with_eye(eye).unwrap(), &mut frame);
+    frame
+}
+
+fn first_difference(one: &Frame, other: &Frame) -> Option<(usize, usize)> {
+    let width = one.width() as usize;
+    let mut pixels = one.rows().flatten().zip(other.rows().flatten());
+    let index = pixels.position(|(one, other)| one != other)?;
+    Some((index % width, index / width))
+}
+
+/// A place that is a double to the last bit, wherever the map begins.
+fn place(cells: usize) -> impl Strategy<Value = f64> {
+    (1025..1023 + 1024 * cells as u32).prop_map(|parts| f64::from(parts) / 1024.0)
+}
+
+fn cells() -> impl Strategy<Value = Vec<char>> {
+    let kind = prop_oneof![2 => Just('.'), 1 => prop::sample::select(&KINDS[..])];
+    prop::collection::vec(kind, COLUMNS * ROWS)
+}
+
+proptest! {
+    #![proptest_config(ProptestConfig::with_cases(96))]
+
+    #[test]
+    fn a_mirror_shows_the_room_the_other_way_round(
+        cells in cells(),
+        (is_in_east, is_in_north) in prop::sample::select(vec![(true, false), (false, true), (true, true)]),
+        position in (place(COLUMNS), place(ROWS)),
+        degrees in 0.0..360.0,
+        eye in prop_oneof![2 => Just(0.5), 1 => 0.3..0.95],
+        is_covered in any::<bool>(),
+    ) {
+        let cells = with_room_for(position, cells);
+        let columns: Vec<(usize, bool)> = if is_in_east {
+            (0..=COLUMNS).map(|x| (x, false)).chain((0..=COLUMNS).rev().map(|x| (x, true))).collect()
+        } else {
+            (0..COLUMNS + 2).map(|x| (x, false)).collect()
+        };
+        let rows: Vec<(usize, bool)> = if is_in_north {
+            (1..ROWS + 2).rev().map(|y| (y, true)).chain((1..ROWS + 2).map(|y| (y, false))).collect()
+        } else {
+            (0..ROWS + 2).map(|y| (y, false)).collect()
+        };
+        let unfolded: Vec<String> = rows
+            .iter()
+            .map(|&(y, flip_y)| {
+                columns.iter().map(|&(x, flip_x)| character(at(&cells, x, y), (flip_x, flip_y))).collect()
+            })
+            .collect();
+        let with_mirrors: Vec<String> = (0..ROWS + 2)
+            .map(|y| {
+                let cell = |x| match (x, y) {
+                    _ if x == COLUMNS + 1 && is_in_east || y == 0 && is_in_north => 'M',
+                    _ => character(at(&cells, x, y), (false, false)),
+                };
+                (0..COLUMNS + 2).map(cell).collect()
+            })
+            .collect();
+        let all_tiles: String =
+            [(false, false), (true, false), (false, true), (true, true)].map(tiles).concat();
+        let with_mirrors = parse(&with_mirrors, &all_tiles, is_covered);
+        let unfolded = parse(&unfolded, &all_tiles, is_covered);
+
+        let position = DVec2::from(position);
+        let moved = DVec2::new(0.0, if is_in_north { ROWS as f64 } else { 0.0 });
+        let reflected = picture(&with_mirrors, position, degrees, eye);
+        let straight = picture(&unfolded, position + moved, degrees, eye);
+        prop_assert_eq!(first_difference(&reflected, &straight), None);
+    }
+
+    /// Between two mirrors is a row of rooms, and at its end the mirrors' own colour.
+    #[test]
+    fn two_mirrors_show_a_row_of_rooms(
+        cells in cells(),
+        position in (place(COLUMNS), place(ROWS)),
+        degrees in prop_oneof![4 => 0.0..360.0, 1 => -5.0..5.0, 1 => 175.0..185.0],
+    ) {
+        let cells = with_room_for(position, cells);
+        let copies = || (0..=2 * MOST_BOUNCES).map(|copy| copy % 2 == 1);
+        let row = |y| {
+            let room = copies().flat_map(|is_flipped| {
+                let columns = (1..=COLUMNS).map(move |x| if is_flipped { COLUMNS + 1 - x } else { x });
+                columns.map(move |x| (x, is_flipped))
+            });
+            room.map(|(x, is_flipped)| character(at(&cells, x, y), (is_flipped, false))).collect::<String>()
+        };
+        let unfolded: Vec<String> = (0..ROWS + 2).map(|y| format!("n{}n", row(y))).collect();
+        let with_mirrors: Vec<String> = (0..ROWS + 2)
+            .map(|y| {
+                let inside: String =
+                    (1..=COLUMNS).map(|x| character(at(&cells, x, y), (false, false))).collect();
+                format!("M{inside}M")
+            })
+            .collect();
+        let tiles = tiles((false, false)) + &tiles((true, false)) + "n = { wall = \"#204060\" }\n";
+        let with_mirrors = parse(&with_mirrors, &tiles, true);
+        let unfolded = parse(&unfolded, &tiles, true);
+
+        let position = DVec2::from(position);
+        let moved = DVec2::new((MOST_BOUNCES * COLUMNS) as f64, 0.0);
+        let reflected = picture(&with_mirrors, position, degrees, 0.5);
+        let straight = picture(&unfolded, position + moved, degrees, 0.5);
+        prop_assert_eq!(first_difference(&reflected, &straight), None);
+    }
+
+    /// Whatever the camera, also inside a mirror or touching one, a picture comes to an end.
+    #[test]
+    fn no_camera_among_mirrors_is_too_much(
+        position in (-2.0..6.0, -2.0..6.0),
+        is_on_a_line in any::<bool>(),
+        degrees in prop_oneof![0.0..360.0, (0..8).prop_map(|eighth| 45.0 * f64::from(eighth))],
+        eye in -2.0..3.0,
+    ) {
+        let rows = ["MMMM", "M.M.", "M..M", "MMMM"].map(str::to_owned);
+        let world = parse(&rows, &tiles((false, false)), eye < 1.0);
+        let position = DVec2::from(position);
+        let position = if is_on_a_line { position.round() } else { position };
+        picture(&world, position, degrees, eye);
+    }
+}

@@ -1,0 +1,247 @@
+//! Things: what is seen of them, and what is not, against a calculation for each pixel.
+
+use cellcaster::game::{Game, Intent, Intents};
+use cellcaster::map;
+use cellcaster::render::{Filter, Frame, FrameSize, PixelAspect, Renderer};
+use cellcaster::world::{Camera, FieldOfView, Heading, Rgb, Thing, World};
+use glam::DVec2;
+use proptest::prelude::*;
+
+const WIDTH: u32 = 96;
+const HEIGHT: u32 = 60;
+
+fn frame_of(world: &World, camera: &Camera) -> Frame {
+    let size = FrameSize::new(WIDTH, HEIGHT).unwrap();
+    let mut frame = Frame::new(size, PixelAspect::SQUARE);
+    let mut renderer = Renderer::new();
+    renderer.set_filter(Filter::Nearest);
+    renderer.render(world, camera, &mut frame);
+    frame
+}
+
+fn camera(position: (f64, f64), degrees: f64) -> Camera {
+    let heading = Heading::from_degrees(degrees).unwrap();
+    Camera::new(position.into(), heading, FieldOfView::default()).unwrap()
+}
+
+/// A world drawn with `t` where there is a thing, and the same without it.
+fn with_and_without(grid: &str, thing: &str) -> [World; 2] {
+    let world = |grid: &str| {
+        let text = format!(
+            "grid = '''\n{grid}'''\n[tiles]\n'#' = {{ wall = \"brick\" }}\n'%' = {{ mask = \"grate\" }}\n\
+             [things]\n'@' = {{ start = 0 }}\n't' = {{ {thing} }}\n"
+        );
+        map::parse_str(&text).unwrap_or_else(|faults| panic!("{faults}"))
+    };
+    [world(grid), world(&grid.replace('t', "."))]
+}
+
+const SPRITES: [&str; 5] = [
+    "sprite = 'statue', heading = 40",
+    "sprite = 'column'",
+    "sprite = 'lamp'",
+    "sprite = 'barrel'",
+    "sprite = 'table', height = 0.9",
+];
+
+proptest! {
+    #[test]
+    fn a_thing_behind_a_wall_never_shows(
+        x in 1.1..5.9,
+        y in 1.1..3.9,
+        degrees in 0.0..360.0,
+        sprite in prop::sample::select(&SPRITES[..]),
+    ) {
+        let grid = "#########\n#@....#.#\n#.....#t#\n#.....#.#\n#########\n";
+        let [with, without] = with_and_without(grid, sprite);
+        let camera = camera((x, y), degrees);
+        prop_assert!(frame_of(&with, &camera) == frame_of(&without, &camera));
+    }
+
+    #[test]
+    fn a_thing_in_front_always_shows(
+        x in 1.1..5.9,
+        y in 1.1..3.9,
+        aside in -25.0..25.0,
+        sprite in prop::sample::select(&SPRITES[..]),
+    ) {
+        let grid = "#########\n#@......#\n#......t#\n#.......#\n#########\n";
+        let [with, without] = with_and_without(grid, sprite);
+        let to_thing = DVec2::new(7.5, 2.5) - DVec2::new(x, y);
+        let degrees = to_thing.y.atan2(to_thing.x).to_degrees() + aside;
+        let camera = camera((x, y), degrees);
+        prop_assert!(frame_of(&with, &camera) != frame_of(&without, &camera));
+    }
+
+    /// Each pixel is asked by itself what its ray meets first: the picture of the thing, or what is
+    /// there without it.
+    #[test]
+    fn its_pixels_are_those_of_a_calculation_for_each(
+        x in 1.3..4.5,
+        y in 1.3..4.7,
+        aside in -30.0..30.0,
+        sprite in prop::sample::select(&SPRITES[..]),
+    ) {
+        let grid = "########\n#@.....#\n#.....##\n#....t.#\n#....#.#\n########\n";
+        let [with, without] = with_and_without(grid, sprite);
+        let to_thing = DVec2::new(5.5, 3.5) - DVec2::new(x, y);
+        let camera = camera((x, y), to_thing.y.atan2(to_thing.x).to_degrees() + aside);
+        let (drawn, empty) = (frame_of(&with, &camera), frame_of(&without, &camera));
+        let oracle = Oracle::new(&with, &camera);
+        let mut compared = 0;
+        for row in 0..HEIGHT {
+            for column in 0..WIDTH {
+                if let Some(expected) = oracle.pixel(column, row, empty.pixel(column, row)) {
+                    prop_assert_eq!(drawn.pixel(column, row), expected, "({}, {})", column, row);
+                    compared += 1;
+                }
+            }
+        }
+        prop_assert!(compared > WIDTH * HEIGHT * 9 / 10, "{compared} pixels");
+    }
+}
+
+/// What a pixel shows, by a ray through its middle.
+struct Oracle<'a> {
+    world: &'a World,
+    camera: &'a Camera,
+    thing: Thing,
+    renderer: Renderer,
+}
+
+impl<'a> Oracle<'a> {
+    fn new(world: &'a World, camera: &'a Camera) -> Self {
+        let mut renderer = Renderer::new();
+        let size = FrameSize::new(WIDTH, HEIGHT).unwrap();
+        renderer.render(world, camera, &mut Frame::new(size, PixelAspect::SQUARE));
+        Self { world, camera, thing: world.things()[0], renderer }
+    }
+
+    /// `None` where the pixel is so near to an edge that rounding may decide.
+    fn pixel(&self, column: u32, row: u32, behind: Rgb) -> Option<Rgb> {
+        const HAIR: f64 = 1e-9;
+        let Self { world, camera, thing, renderer } = self;
+        let sprite = world.sprite(thing.sprite);
+        let half = camera.field_of_view.half_width();
+        let across = (2.0 * (f64::from(column) + 0.5) / f64::from(WIDTH) - 1.0) * half;
+        let up = (f64::from(HEIGHT) / 2.0 - (f64::from(row) + 0.5)) * 2.0 * half / f64::from(WIDTH);
+        let from_eye = thing.cell.center() - camera.position();
+        let depth = from_eye.dot(camera.direction());
+        if depth <= 0.2 || renderer.columns()[column as usize].distance <= depth {
+            return Some(behind);
+        }
+        let beside = across * depth - from_eye.dot(camera.direction().perp());
+        let above = up * depth + 0.5;
+        let (width, height) = (sprite.width(), sprite.height.cells());
+        let base = match sprite.anchor {
+            cellcaster::world::Anchor::Floor => 0.0,
+            cellcaster::world::Anchor::Ceiling => 1.0 - height,
+        };
+        let picture = sprite.picture(0.0, -from_eye);
+        let x = (beside / width + 0.5) * f64::from(picture.width());
+        let y = (1.0 - (above - base) / height) * f64::from(picture.height());
+        if (x - x.round()).abs() < HAIR || (y - y.round()).abs() < HAIR {
+            return None;
+        }
+        let inside = |place: f64, count: u32| (0.0..f64::from(count)).contains(&place);
+        if !inside(x, picture.width()) || !inside(y, picture.height()) {
+            return Some(behind);
+        }
+        let (color, alpha) = picture.texel(x as u32, y as u32);
+        Some(color.over(behind, alpha))
+    }
+}
+
+#[test]
+fn a_symmetrical_scene_is_symmetrical() {
+    let grid = "#######\n#.....#\n#.t.t.#\n#..t..#\n#.....#\n#..@..#\n#######\n";
+    // The table is the built-in sprite that is its own mirror image; bricks are not theirs.
+    let text = format!(
+        "grid = '''\n{grid}'''\ntiles.'#'.wall = '#804030'\n\
+         things = {{ '@'.start = 0, 't'.sprite = 'table' }}\n"
+    );
+    let world = map::parse_str(&text).unwrap();
+    for eye in [(3.5, 5.5), (3.5, 4.9)] {
+        let frame = frame_of(&world, &camera(eye, 270.0));
+        for row in 0..HEIGHT {
+            for column in 0..WIDTH / 2 {
+                let mirrored = frame.pixel(WIDTH - 1 - column, row);
+                assert_eq!(frame.pixel(column, row), mirrored, "({column}, {row})");
+            }
+        }
+    }
+}
+
+#[test]
+fn a_thing_behind_a_grate_shows_through_its_holes_only() {
+    let grid = "#######\n#.....#\n#@..%t#\n#.....#\n#######\n";
+    let [with, without] = with_and_without(grid, "sprite = 'column'");
+    let camera = camera((1.5, 2.5), 0.0);
+    let (with, without) = (frame_of(&with, &camera), frame_of(&without, &camera));
+    let column = |frame: &Frame, x: u32| (0..HEIGHT).map(|y| frame.pixel(x, y)).collect::<Vec<_>>();
+    let changed: Vec<u32> =
+        (0..WIDTH).filter(|&x| column(&with, x) != column(&without, x)).collect();
+    assert!(!changed.is_empty(), "it shows");
+    let (first, last) = (changed[0], changed[changed.len() - 1]);
+    let kept = (first..=last)
+        .flat_map(|x| (0..HEIGHT).map(move |y| (x, y)))
+        .filter(|&(x, y)| with.pixel(x, y) == without.pixel(x, y));
+    assert!(kept.count() > 40, "the grate hides some of it");
+}
+
+#[test]
+fn a_thing_before_a_grate_hides_it() {
+    let grid = "#######\n#.....#\n#@.t%.#\n#.....#\n#######\n";
+    let [with, without] = with_and_without(grid, "sprite = 'column'");
+    let camera = camera((1.5, 2.5), 0.0);
+    let (with, without) = (frame_of(&with, &camera), frame_of(&without, &camera));
+    let middle = (WIDTH / 2, HEIGHT / 2);
+    assert!(with.pixel(middle.0, middle.1) != without.pixel(middle.0, middle.1));
+    let opaque = (0..8).all(|x| with.pixel(middle.0 - 4 + x, middle.1).red() > 60);
+    assert!(opaque, "nothing of the grate is on the column");
+}
+
+#[test]
+fn a_barrel_is_in_the_way_and_bones_are_not() {
+    let reached = |thing: &str| {
+        let [world, _] = with_and_without("########\n#@.t...#\n########\n", thing);
+        let mut game = Game::new(world);
+        let forward: Intents = [Intent::Forward].into_iter().collect();
+        (0..200).for_each(|_| game.step(forward));
+        game.camera(FieldOfView::default()).position().x
+    };
+    assert_eq!(reached("sprite = 'barrel'"), 2.75);
+    assert_eq!(reached("sprite = 'bones'"), 6.75);
+    assert_eq!(reached("sprite = 'bones', blocks = true"), 2.75);
+    assert_eq!(reached("sprite = 'barrel', blocks = false"), 6.75);
+}
+
+#[test]
+fn a_lamp_lights_what_a_straight_line_leads_to() {
+    let text = "light = 0.25\ngrid = '''\n#######\n#l..#.#\n#...#.#\n#@....#\n#######\n'''\n\
+                [tiles]\n'#' = { wall = 'brick' }\n\
+                [things]\n'@' = { start = 0 }\n'l' = { sprite = 'lamp', reach = 6 }\n";
+    let world = map::parse_str(text).unwrap();
+    let light = |column, row| world.light_in(cellcaster::world::Cell { column, row }).in_256ths();
+    assert!(light(1, 1) > light(2, 1) && light(2, 1) > light(3, 1) && light(3, 1) > 64);
+    assert_eq!(light(5, 1), 64, "a wall is in between");
+    let unlit = map::parse_str(&text.replace("light = 0.25\n", "")).unwrap();
+    assert_eq!(unlit.light_in(cellcaster::world::Cell { column: 1, row: 1 }).in_256ths(), 256);
+}
+
+#[test]
+fn a_picture_changes_when_its_next_frame_is_due_and_not_before() {
+    let [world, _] = with_and_without("######\n#@.t.#\n######\n", "sprite = 'torch'");
+    let camera = camera((1.5, 1.5), 0.0);
+    let mut renderer = Renderer::new();
+    let mut draw = |seconds| {
+        let mut frame = Frame::new(FrameSize::new(WIDTH, HEIGHT).unwrap(), PixelAspect::SQUARE);
+        renderer.set_time(seconds);
+        renderer.render(&world, &camera, &mut frame);
+        (frame, renderer.next_change())
+    };
+    let (first, change) = draw(0.0);
+    let change = change.expect("it flickers");
+    assert!(draw(change - 0.01).0 == first);
+    assert!(draw(change + 0.01).0 != first);
+}

@@ -1,0 +1,77 @@
+//! What a game costs on the wire, in bytes and in what the viewer sees.
+#![cfg(feature = "cli")]
+
+use std::fmt::Write;
+use std::num::NonZeroU32;
+
+use cellcaster::game::{Script, Stretch};
+use cellcaster::map::builtin;
+use cellcaster::terminal::Fidelity;
+use cellcaster::tui::{Levels, Replay, Settings};
+use cellcaster::wire::{self, EncoderReport, Part, Plan, Report};
+use ratatui::layout::Size;
+
+/// How much of each stretch of the committed script is played: a debug build takes its time.
+const SHARE: u32 = 4;
+
+/// The committed script, each stretch cut short.
+fn script() -> Script {
+    let whole = Script::parse(include_str!("../maps/showcase.script"), "showcase").unwrap();
+    let mut text = String::new();
+    for section in whole.sections() {
+        writeln!(text, "[{}]", section.name).unwrap();
+        for stretch in &section.stretches {
+            writeln!(text, "{}", Stretch { steps: stretch.steps / SHARE, ..*stretch }).unwrap();
+        }
+    }
+    Script::parse(&text, "short").unwrap()
+}
+
+fn report() -> Report {
+    let citadel = builtin::LEVELS.iter().find(|level| level.name == "citadel").unwrap();
+    let levels = Levels::new(citadel.world().unwrap().into(), std::iter::empty());
+    let size = Size::new(120, 40);
+    let frames_per_second = NonZeroU32::new(30).unwrap();
+    let script = script();
+    let fidelities = vec![Fidelity::EXACT, Fidelity::HIGH, Fidelity::LOW];
+    let plan = Plan { script: &script, size, frames_per_second, fidelities };
+    wire::report(&plan, &mut Replay::new(levels, Settings::default(), size))
+}
+
+fn encoder<'a>(report: &'a Report, name: &str) -> &'a EncoderReport {
+    report.encoders.iter().find(|encoder| encoder.name == name).unwrap()
+}
+
+fn section<'a>(encoder: &'a EncoderReport, name: &str) -> &'a Part {
+    encoder.sections.iter().find(|part| part.name == name).unwrap()
+}
+
+/// Of what is promised, a little more is let through than the figure says: the levels change.
+const SLACK: f64 = 1.05;
+
+#[test]
+fn a_frame_takes_no_more_bytes_than_is_promised() {
+    let report = report();
+    let exact = encoder(&report, "exact");
+    assert!(exact.all.ratio <= 0.60 * SLACK, "{:?}", exact.all);
+    assert!(section(exact, "turning").ratio <= 0.55 * SLACK, "{exact:?}");
+    assert_eq!(section(exact, "standing").bytes.largest, 0);
+    assert_eq!(exact.all.seen.mean_distance, 0.0);
+    assert_eq!(exact.all.seen.signal_to_noise, f64::INFINITY);
+    assert_eq!(section(encoder(&report, "stock"), "standing").bytes.largest, 25);
+
+    let stock = encoder(&report, "stock");
+    let (high, low) = (encoder(&report, "high"), encoder(&report, "low"));
+    assert!(high.all.seen.mean_distance <= 1.0 && low.all.seen.mean_distance <= 2.0);
+    for pair in [stock, exact, high, low].windows(2) {
+        assert!(pair[1].all.bytes.mean < 0.9 * pair[0].all.bytes.mean, "{}", pair[1].name);
+    }
+
+    let frames: usize = exact.sections.iter().map(|part| part.frames).sum();
+    assert_eq!((exact.all.frames, report.frames), (frames, frames));
+    for part in exact.sections.iter().chain([&exact.all]) {
+        let bytes = part.bytes;
+        assert!(bytes.median <= bytes.percentile_95 && bytes.percentile_95 <= bytes.largest);
+        assert!(bytes.mean <= bytes.largest as f64);
+    }
+}
