@@ -71,6 +71,7 @@ impl Renderer {
 
     fn find_bodies(&mut self, scene: &Scene, projection: &Projection) {
         self.in_view.clear();
+        self.in_view.reserve(scene.bodies.len());
         self.in_view.extend(scene.bodies.iter().enumerate().filter_map(|(body, found)| {
             let seen = Seen::new(&found.shape, projection.origin);
             let bounds = Bounds::new(&seen, projection)?;
