@@ -14,7 +14,9 @@ use crate::space::{Camera, EYE_ROOM, Elevation, Scene};
 use crate::world::{FieldOfView, Heading};
 
 /// How fast the eye is raised or lowered, in radians per second.
-const RAISE: f64 = 1.2;
+const RAISE: f64 = 0.8;
+/// The same, for who aims.
+const AIM_UPWARDS: f64 = 0.2;
 /// How often the way is cut down, at most: between two planes, some is cut off each time.
 const CUTS: usize = 8;
 
@@ -110,7 +112,8 @@ impl Player {
         if intents.contains(Intent::LookAhead) {
             return Self { elevation: Elevation::LEVEL, raising: 0.0, ..self };
         }
-        let target = RAISE * intents.balance(Intent::LookUp, Intent::LookDown);
+        let speed = if intents.contains(Intent::Aim) { AIM_UPWARDS } else { RAISE };
+        let target = speed * intents.balance(Intent::LookUp, Intent::LookDown);
         let Glide { velocity, displacement } = approach(self.raising, target, TURN_FRICTION, STEP);
         let elevation = self.elevation.raised(displacement);
         let has_stopped = velocity.abs() < STILL || elevation == self.elevation;
@@ -252,12 +255,12 @@ mod tests {
     #[test]
     fn rising_sinking_and_looking() {
         let mut flight = Flight::new(scene(0.0));
-        (0..20).for_each(|_| flight.step(intents(&[Intent::Jump, Intent::LookUp])));
+        (0..30).for_each(|_| flight.step(intents(&[Intent::Jump, Intent::LookUp])));
         assert!(flight.player.position.z > 1.0 && flight.player.elevation.degrees() > 10.0);
         (0..120).for_each(|_| flight.step(intents(&[Intent::Duck, Intent::LookDown])));
         assert!((flight.player.position.z - EYE_ROOM).abs() < 1e-6);
         flight.step(intents(&[Intent::LookAhead]));
         assert_eq!(flight.player.elevation, Elevation::LEVEL);
-        assert!((flight.elapsed() - 141.0 * STEP).abs() < 1e-12);
+        assert!((flight.elapsed() - 151.0 * STEP).abs() < 1e-12);
     }
 }
