@@ -24,6 +24,7 @@ mod see_through;
 mod shade;
 mod sky;
 mod tally;
+mod texels_down;
 mod things;
 mod track;
 mod walls;
@@ -45,6 +46,7 @@ use see_through::Passed;
 use sky::{SkyColumn, SkyView};
 use tally::Tally;
 use things::InView;
+use walls::Papers;
 pub use windows::WindowCounts;
 use windows::Windows;
 
@@ -72,6 +74,7 @@ struct Memory {
     windows: Windows,
     /// By which passes the last frame was drawn.
     geometry: Option<Geometry>,
+    papers: Papers,
 }
 
 impl Renderer {
@@ -214,6 +217,7 @@ impl<T: Tally> Picture<'_, T> {
             marks,
             next_change,
             geometry,
+            papers,
             ..
         } = memory;
         let projection = &Projection::new(camera, frame.size(), frame.pixel_aspect());
@@ -236,7 +240,7 @@ impl<T: Tally> Picture<'_, T> {
         visible.clear();
         visible.extend(columns.iter().map(|column| column.rows_of_floor(ground, height)));
         Plane { scene, kind: PlaneKind::Floor, sky, visible }.draw(plan.floor, frame, tally);
-        walls::draw(scene, plan.walls, frame, tally);
+        walls::draw(scene, plan.walls, papers, frame, tally);
         marks.begin(frame.width(), height);
         *next_change = match plan.things {
             ThingLoop::None => {

@@ -1,6 +1,7 @@
 //! The frame: pixels off screen, row by row from the top.
 
 use std::num::NonZeroU32;
+use std::ops::Range;
 
 use crate::world::Rgb;
 
@@ -112,9 +113,15 @@ impl Frame {
         &mut self.pixels[first as usize * width..last as usize * width]
     }
 
-    /// The pixels of column `x`, from the top.
-    pub(super) fn column_mut(&mut self, x: usize) -> impl Iterator<Item = &mut Rgb> {
+    /// The pixels of column `x` in those rows, from the top.
+    #[inline]
+    pub(super) fn column_mut(
+        &mut self,
+        x: u32,
+        rows: Range<u32>,
+    ) -> impl Iterator<Item = &mut Rgb> {
         let width = self.width() as usize;
-        self.pixels[x..].iter_mut().step_by(width)
+        let first = (rows.start as usize * width + x as usize).min(self.pixels.len());
+        self.pixels[first..].iter_mut().step_by(width).take(rows.len())
     }
 }

@@ -146,6 +146,8 @@ impl Plane<'_> {
         let is_on_map = point.x >= 0.0 && point.y >= 0.0;
         let (column, row) = (point.x as i64, point.y as i64);
         let tile = is_on_map.then(|| world.grid().tile(column, row)).flatten()?;
+        // The middle of a pixel may be on the line where a wall begins: its light is that of its sides.
+        let tile = if world.grid().is_solid_tile(tile) { TileId(0) } else { tile };
         Some((tile, world.lamplight_in(Cell { column: column as u32, row: row as u32 })))
     }
 

@@ -215,7 +215,7 @@ impl<'a> Picture<'a> {
     fn draw_shaded<S: Shade>(&self, shade: S, x: usize, u: f64, frame: &mut Frame) {
         let texels = self.level.column(u);
         let alphas = self.level.alpha_column(u);
-        let pixels = frame.column_mut(x).skip(self.rows.start as usize);
+        let pixels = frame.column_mut(x as u32, self.rows.clone());
         for (row, pixel) in self.rows.clone().zip(pixels) {
             let texel = self.texel(row);
             *pixel = match alphas.map_or(u8::MAX, |alphas| alphas[texel]) {

@@ -6,7 +6,7 @@ use super::Scene;
 use crate::cast::Side;
 use crate::render::Frame;
 use crate::render::plan::WallLoop;
-use crate::render::shade::{Bright, Faded, Halved, Shade};
+use crate::render::shade::{Faded, OfSide, Shade};
 use crate::render::tally::{Pass, Tally};
 use crate::world::{Light, Paint, Rgb, Texture};
 
@@ -39,14 +39,11 @@ pub(super) fn draw<T: Tally>(
     tally: &mut T,
 ) {
     for face in faces {
-        match face.side {
-            _ if plan.faded => {
-                let fog = scene.world.fog();
-                let shade = Faded::of_wall(face.side, face.light, fog, face.t);
-                face.draw(scene, shade, frame, tally);
-            }
-            Side::X => face.draw(scene, Bright, frame, tally),
-            Side::Y => face.draw(scene, Halved, frame, tally),
+        if plan.faded {
+            let shade = Faded::of_wall(face.side, face.light, scene.world.fog(), face.t);
+            face.draw(scene, shade, frame, tally);
+        } else {
+            face.draw(scene, OfSide(face.side), frame, tally);
         }
     }
 }
@@ -61,8 +58,7 @@ impl Face {
     ) {
         let rows = self.rows.clone();
         tally.pixels(Pass::Walls, rows.len());
-        let pixels =
-            frame.column_mut(self.column as usize).skip(rows.start as usize).take(rows.len());
+        let pixels = frame.column_mut(self.column, rows.clone());
         match self.paint {
             Paint::Color(color) => {
                 let color = shade.apply(color);
@@ -72,9 +68,9 @@ impl Face {
                 tally.texels(Pass::Walls, rows.len());
                 let texels = self.texels(scene, scene.world.texture(id));
                 let Stretch { bottom, top } = self.stretch;
-                let texel = scene.projection.texel_on_the_face(self.t, texels.len(), bottom, top);
+                let down = scene.projection.texels_down_the_face(self.t, texels.len(), bottom, top);
                 for (row, pixel) in rows.zip(pixels) {
-                    *pixel = shade.apply(texels[texel(row)]);
+                    *pixel = shade.apply(texels[down.at(row)]);
                 }
             }
         }

@@ -51,18 +51,17 @@ impl Veil {
         let texels = texture.column(self.u);
         let Some(alphas) = texture.alpha_column(self.u) else { return };
         let Stretch { bottom, top } = self.stretch;
-        let texel = scene.projection.texel_on_the_face(self.t, texels.len(), bottom, top);
-        let pixels = frame.column_mut(self.column as usize).skip(self.rows.start as usize);
+        let texels_down = scene.projection.texels_down_the_face(self.t, texels.len(), bottom, top);
+        let pixels = frame.column_mut(self.column, self.rows.clone());
         for (row, pixel) in self.rows.clone().zip(pixels) {
-            let texel = texel(row);
+            let texel = texels_down.at(row);
             *pixel = shade.apply(texels[texel]).over(*pixel, alphas[texel]);
         }
     }
 
     fn draw_glass(&self, glass: Glass, shade: Faded, frame: &mut Frame) {
         let tint = shade.apply(glass.color);
-        let pixels = frame.column_mut(self.column as usize).skip(self.rows.start as usize);
-        for pixel in pixels.take(self.rows.len()) {
+        for pixel in frame.column_mut(self.column, self.rows.clone()) {
             *pixel = tint.over(*pixel, glass.opacity);
         }
     }
