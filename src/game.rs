@@ -52,7 +52,7 @@ impl Game {
     /// A game at its beginning: the player stands still at the world's start.
     pub fn new(world: World) -> Self {
         Self {
-            player: Player::new(world.start()),
+            player: Player::new(&world),
             world,
             doors: Doors::default(),
             keys: BTreeSet::new(),

@@ -40,6 +40,7 @@ mod scene;
 mod see_through;
 mod shapes;
 mod sprites;
+mod supports;
 mod textures;
 
 use std::collections::BTreeSet;

@@ -162,12 +162,10 @@ impl Renderer {
     pub fn surface(&self, x: u32, y: u32) -> Option<Surface> {
         let Memory { columns, first_row_of_ground, marks, windows, geometry, .. } = &self.memory;
         let column = columns.get(x as usize)?;
-        match geometry {
+        marks.surface(x, y).or_else(|| match geometry {
             Some(Geometry::Windows(_)) => windows.surface(x, y),
-            _ => {
-                Some(marks.surface(x, y).unwrap_or_else(|| column.surface(y, *first_row_of_ground)))
-            }
-        }
+            _ => Some(column.surface(y, *first_row_of_ground)),
+        })
     }
 }
 
@@ -255,12 +253,14 @@ impl<T: Tally> Picture<'_, T> {
 
     /// Draws by exact rays, whatever the caster: the others know nothing but walls.
     fn draw_windows(self, plan: Plan) {
-        let Self { world, camera, filter, memory, frame, tally, .. } = self;
-        let Memory { columns, sky, windows, geometry, .. } = memory;
+        let Self { world, camera, filter, seconds, memory, frame, tally } = self;
+        let Memory { columns, sky, windows, marks, next_change, geometry, .. } = memory;
         *geometry = Some(plan.geometry);
         let projection = &Projection::new(camera, frame.size(), frame.pixel_aspect());
         let sky = &SkyView::new(world, projection, filter, sky);
         let scene = windows::Scene::new(world, projection, filter);
-        windows::draw(scene, plan.walls, sky, windows, columns, frame, tally);
+        let viewer = windows::Viewer { camera, seconds };
+        let notes = (windows, columns, marks);
+        *next_change = windows::draw(scene, viewer, (plan.walls, sky), notes, frame, tally);
     }
 }

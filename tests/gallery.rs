@@ -136,7 +136,6 @@ fn who_looks_up_and_down_sees_the_same_moved() {
 }
 
 #[test]
-
 fn heights_are_seen_from_below_and_from_above() {
     assert_golden("heights", "heights_large", &["--size", "200x60"]);
     let above = ["--camera", "2.5,10.5,330", "--eye", "3.3", "--pitch", "-20"];
@@ -149,6 +148,7 @@ fn heights_are_seen_from_below_and_from_above() {
 fn mirrors_show_mirrors() {
     assert_golden("mirrors", "mirrors_large", &["--size", "200x60"]);
     assert_golden("mirrors", "mirrors_face_to_face", &["--camera", "6.5,6.6,4"]);
+    assert_golden("mirrors", "mirrors_and_whoever_looks", &["--camera", "2.5,3.5,180"]);
 }
 
 #[test]

@@ -9,7 +9,7 @@ use super::gaze::Gaze;
 use super::intent::{Intent, Intents};
 use super::motion::{Glide, approach, approach_in_plane};
 use super::posture::Posture;
-use crate::world::{Camera, Cell, FieldOfView, Heading, Start, World};
+use crate::world::{Camera, Cell, FieldOfView, Heading, World};
 
 /// How far from their middle the player touches a wall: doors are twice as wide as they are.
 const RADIUS: Radius = Radius::new(0.25).expect("a quarter is between nothing and a half");
@@ -55,12 +55,13 @@ pub(super) struct Player {
 
 impl Player {
     /// A player who stands still at the start.
-    pub(super) fn new(start: Start) -> Self {
+    pub(super) fn new(world: &World) -> Self {
+        let start = world.start();
         let body = Body { position: start.cell.center(), velocity: DVec2::ZERO };
         Self {
             body,
-            // The start is on the map's own floor, and has headroom.
-            feet: 0.0,
+            // The start has headroom.
+            feet: world.floor_at(start.cell),
             rising: 0.0,
             posture: Posture::default(),
             gaze: Gaze::default(),

@@ -162,6 +162,11 @@ impl Projection {
         self.horizon + (self.above_floor - height) * self.focal_length / depth
     }
 
+    /// As [`Projection::row_at`], from wherever the eye is.
+    pub(super) fn row_seen_at(&self, height: f64, depth: f64) -> f64 {
+        self.horizon + (self.eye - height) * self.focal_length / depth
+    }
+
     /// The rows whose centres are between two places, given in rows from the top.
     pub(super) fn rows_between(&self, top: f64, bottom: f64) -> Range<u32> {
         self.first_row_below(top)..self.first_row_below(bottom)

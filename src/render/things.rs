@@ -20,7 +20,7 @@ use crate::world::texture::Level;
 use crate::world::{Anchor, Thing};
 
 /// Things that are nearer than that to the camera plane are not drawn: the player stands in them.
-const NEAREST: f64 = 0.2;
+pub(super) const NEAREST: f64 = 0.2;
 
 /// There is room for so many things in view from the first frame on, so that a camera that turns
 /// towards more of them needs no more memory.
