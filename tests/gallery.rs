@@ -28,6 +28,15 @@ fn every_feature_looks_as_it_did() {
 }
 
 #[test]
+fn every_feature_looks_as_it_did_on_a_large_screen() {
+    for name in names() {
+        let map = format!("maps/gallery/{name}.toml");
+        let picture = output_of(&["snapshot", &map, "--size", "200x60", "--format", "png"]);
+        insta::assert_binary_snapshot!(&format!("{name}_200x60.png"), picture);
+    }
+}
+
+#[test]
 fn every_feature_is_explained_as_it_was() {
     for name in names() {
         let map = format!("maps/gallery/{name}.toml");

@@ -36,12 +36,15 @@ KEYS
   Left Right        turn                P       pause
   Shift             run                 ?       help
   R                 run, on and off     Q, Esc  leave
-  E, Space          open a door
+  E, Space          open a door         I       show frames and link
 
 OPTIONS OF PLAY
   --fps N           at most N frames a second, 1 to 240            [30]
   --config FILE     key bindings        [cellcaster/config.toml in the
                     folder for configuration files]
+  --fidelity LEVEL  how exact colours are while something moves: auto (as the
+                    link allows), exact, high, low or 0 to 255     [auto]
+  --stats           show frames and bytes a second, round trip and fidelity
   --record FILE     a FILE.cast: what the terminal is sent, as asciicast v3;
                     any other: what you do, as a script for replay and wire
 

@@ -1,8 +1,7 @@
 //! The game as a program: a state that keys and time change, and that draws itself.
 //!
-//! [`play`] is the loop around it. It sleeps until a key, a signal or the next frame is due; while
-//! nothing moves there is no next frame, so nothing is computed and nothing written. The state knows
-//! no terminal and no clock: keys and times are handed to it, and it is tested by handing it some.
+//! The state knows no terminal and no clock: keys and times are handed to it, and a [`Replay`] plays
+//! it off screen. [`play`] is the loop around it that has both.
 
 mod clock;
 mod levels;
@@ -10,15 +9,17 @@ mod panels;
 mod played;
 mod recording;
 mod replay;
+mod run;
+mod stats;
 
-use std::env;
-use std::time::{Duration, Instant};
+use std::time::Duration;
 
 pub use levels::Levels;
 use ratatui::Frame;
 use ratatui::layout::Rect;
 pub use recording::Recording;
 pub use replay::Replay;
+pub use run::play;
 
 use super::bindings::{Action, Bindings};
 use super::held::HeldKeys;
@@ -28,11 +29,12 @@ use crate::game::{Intent, Intents, STEP};
 use crate::map::Level;
 use crate::palette::ColorDepth;
 use crate::render::Filter;
-use crate::terminal::{Detected, Error, Event, Key, KeyEvent, Options, Phase, Session};
+use crate::terminal::{Fidelity, Key, KeyEvent, Phase};
 use crate::world::FieldOfView;
 use clock::Clock;
 use played::{Eye, Memory, Played};
 use recording::ScriptRecorder;
+use stats::Stats;
 
 /// How the game is shown and steered.
 #[derive(Clone, Debug, Default)]
@@ -53,54 +55,10 @@ pub struct Settings {
     pub method: Method,
     /// How textures are looked up.
     pub filter: Filter,
-}
-
-/// Plays `levels` on the terminal until the player leaves or somebody else ends the program, and
-/// notes down what `recording` asks for.
-///
-/// # Errors
-/// Where there is no terminal, or it fails.
-pub fn play(levels: Levels, settings: Settings, recording: Recording) -> Result<(), Error> {
-    let mut options = Options::from_environment(|name| env::var(name).ok());
-    if let Some(depth) = settings.depth {
-        options.color_depth = Detected::Certain(depth);
-    }
-    let mut session = Session::enter_recorded(options, recording.terminal)?;
-    let mut app = App::new(levels, settings);
-    app.script = recording.script;
-    app.terminal_changed(&session);
-    let start = Instant::now();
-    while !app.has_left {
-        app.advance(start.elapsed());
-        if app.is_due(start.elapsed()) {
-            session.draw(|frame| app.draw(frame))?;
-            app.drawn(start.elapsed());
-        }
-        let timeout = app.wakes_at().map(|wakes| wakes.saturating_sub(start.elapsed()));
-        match session.next_event(timeout)? {
-            None => {}
-            Some(Event::Key(event)) => {
-                #[cfg(debug_assertions)]
-                panic_on_demand(event.key);
-                app.key(event, start.elapsed());
-            }
-            Some(Event::Resized | Event::ColorDepth(_)) => app.terminal_changed(&session),
-            Some(Event::KeyReleases(reported)) => app.held.set_reports_releases(reported),
-            Some(Event::Suspend) => {
-                session.suspend()?;
-                app.resumed(start.elapsed());
-            }
-            Some(Event::Quit(_)) => break,
-        }
-    }
-    Ok(())
-}
-
-/// A fault in the middle of a game, for the tests that look at how it ends.
-#[cfg(debug_assertions)]
-fn panic_on_demand(key: Key) {
-    let demanded = key == Key::Function(12) && env::var_os("CELLCASTER_PANIC").is_some();
-    assert!(!demanded, "CELLCASTER_PANIC is set, and F12 was pressed");
+    /// How exact frames are; `None` for as exact as the link to the terminal allows.
+    pub fidelity: Option<Fidelity>,
+    /// Whether the status line tells of frames and the link at first.
+    pub shows_stats: bool,
 }
 
 /// What shows besides the picture, and what keys do meanwhile.
@@ -140,8 +98,7 @@ struct App {
     cell_aspect: CellAspect,
     field_of_view: FieldOfView,
     held: HeldKeys,
-    runs: bool,
-    ducks: bool,
+    gait: panels::Gait,
     /// What counts for the next step even if its key is up again by then.
     pressed: Intents,
     shows_minimap: bool,
@@ -152,7 +109,8 @@ struct App {
     shown: Option<Scene>,
     /// When, by the game's clock, something in the picture looks different by itself.
     animates_at: Option<f64>,
-    next_frame: Duration,
+    shows_stats: bool,
+    stats: Option<Stats>,
     /// Where what is wanted is noted down.
     script: Option<ScriptRecorder>,
 }
@@ -177,17 +135,17 @@ impl App {
                 grid: View::with_method(settings.method.clone()),
                 ..Memory::default()
             },
+            shows_stats: settings.shows_stats,
             settings,
             held: HeldKeys::default(),
-            runs: false,
-            ducks: false,
+            gait: panels::Gait::default(),
             pressed: Intents::new(),
             shows_minimap: true,
             has_left: false,
             clock: Clock::default(),
             shown: None,
             animates_at: None,
-            next_frame: Duration::ZERO,
+            stats: None,
             script: None,
         }
     }
@@ -223,8 +181,8 @@ impl App {
         });
         let aims = self.held.iter().any(|key| self.turns(key) && !self.held.is_certain(key));
         let others = [
-            self.runs.then_some(Intent::Run),
-            self.ducks.then_some(Intent::Duck),
+            self.gait.runs.then_some(Intent::Run),
+            self.gait.ducks.then_some(Intent::Duck),
             aims.then_some(Intent::Aim),
         ];
         wanted.chain(self.pressed.iter()).chain(others.into_iter().flatten()).collect()
@@ -239,10 +197,6 @@ impl App {
     }
 
     /// How the player walks, as far as they need not hold a key for it.
-    fn gait(&self) -> panels::Gait {
-        panels::Gait { runs: self.runs, ducks: self.ducks }
-    }
-
     fn scene(&self) -> Scene {
         Scene { eye: self.eye(), revision: self.game.revision() }
     }
@@ -251,11 +205,7 @@ impl App {
         self.game.eye(self.field_of_view)
     }
 
-    /// Whether the screen shows something that is no longer so, and may be drawn again at `now`.
-    fn is_due(&self, now: Duration) -> bool {
-        self.is_stale() && now >= self.next_frame
-    }
-
+    /// Whether the screen shows something that is no longer so.
     fn is_stale(&self) -> bool {
         self.shown != Some(self.scene()) || self.steps_to_animation() == Some(0)
     }
@@ -266,25 +216,11 @@ impl App {
         Some(steps.round().max(0.0) as u64)
     }
 
-    fn drawn(&mut self, now: Duration) {
+    /// Takes note that the screen shows what there is.
+    fn drawn(&mut self) {
         self.shown = Some(self.scene());
         let soonest = self.game.elapsed() + STEP;
         self.animates_at = self.memory.next_change().map(|change| change.max(soonest));
-        // Counted from when this frame was due, or the time that drawing takes would slow them down.
-        let frame_time = self.settings.frame_time;
-        self.next_frame = Some(self.next_frame + frame_time)
-            .filter(|&next| now < next)
-            .unwrap_or(now + frame_time);
-    }
-
-    /// When something will happen without an event; `None` for never.
-    fn wakes_at(&self) -> Option<Duration> {
-        let frame = if self.is_stale() {
-            Some(self.next_frame)
-        } else {
-            self.next_change().map(|change| change.max(self.next_frame))
-        };
-        frame.into_iter().chain(self.held.next_expiry()).min()
     }
 
     /// When the game will change by itself; `None` for never.
@@ -332,11 +268,15 @@ impl App {
                 Some(Action::Want(tap @ (Intent::Open | Intent::Jump | Intent::LookAhead))),
             ) => self.pressed.insert(tap),
             (_, Some(Action::ToggleDuck)) => {
-                self.ducks = !self.ducks;
+                self.gait.ducks = !self.gait.ducks;
                 self.shown = None;
             }
             (_, Some(Action::ToggleRun)) => {
-                self.runs = !self.runs;
+                self.gait.runs = !self.gait.runs;
+                self.shown = None;
+            }
+            (_, Some(Action::ToggleStats)) => {
+                self.shows_stats = !self.shows_stats;
                 self.shown = None;
             }
             (_, Some(Action::WidenView)) => self.widen_view(VIEW_STEP),
@@ -366,10 +306,9 @@ impl App {
     }
 
     /// The terminal has another size, or has told more about itself.
-    fn terminal_changed(&mut self, session: &Session) {
-        let told = session.size().cell_aspect.and_then(CellAspect::new);
-        self.cell_aspect = self.settings.cell_aspect.or(told).unwrap_or_default();
-        self.depth = self.settings.depth.unwrap_or(session.color_depth());
+    fn terminal_changed(&mut self, told_aspect: Option<CellAspect>, told_depth: ColorDepth) {
+        self.cell_aspect = self.settings.cell_aspect.or(told_aspect).unwrap_or_default();
+        self.depth = self.settings.depth.unwrap_or(told_depth);
         self.shown = None;
     }
 
@@ -387,7 +326,8 @@ impl App {
         }
         let [picture, status] = panels::picture_and_status(area);
         self.draw_picture(frame, picture);
-        panels::status(frame, status, &self.game, self.gait(), &self.settings.bindings);
+        let stats = self.stats.as_ref().filter(|_| self.shows_stats);
+        panels::status(frame, status, &self.game, self.gait, stats, &self.settings.bindings);
         let seconds = self.game.elapsed();
         match self.screen {
             Screen::Playing => {}

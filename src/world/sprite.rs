@@ -165,7 +165,7 @@ impl Sprite {
     /// When it begins to look different from what it looks like after `seconds`; `None` for never.
     pub fn next_change(&self, seconds: f64) -> Option<f64> {
         let frame = (seconds.max(0.0) / self.frame_time.0).floor();
-        (self.frames() > 1).then(|| (frame + 1.0) * self.frame_time.0)
+        (self.frames() > 1).then_some((frame + 1.0) * self.frame_time.0)
     }
 
     /// Which side a viewer sees: 0 for the front, then clockwise as the viewer walks around it.

@@ -7,6 +7,7 @@ use ratatui::text::{Line, Text};
 use ratatui::widgets::{Block, Clear, Paragraph, Wrap};
 
 use super::played::Played;
+use super::stats::Stats;
 use crate::tui::Minimap;
 use crate::tui::bindings::{Action, Bindings};
 
@@ -63,7 +64,7 @@ pub(super) fn framed(frame: &mut Frame, area: Rect, title: &str) -> Rect {
 }
 
 /// How the player walks, whatever keys are held.
-#[derive(Clone, Copy, Debug)]
+#[derive(Clone, Copy, Debug, Default)]
 pub(super) struct Gait {
     pub(super) runs: bool,
     pub(super) ducks: bool,
@@ -75,6 +76,7 @@ pub(super) fn status(
     area: Rect,
     game: &Played,
     gait: Gait,
+    stats: Option<&Stats>,
     bindings: &Bindings,
 ) {
     let running = gait.runs.then(|| "running".to_owned());
@@ -82,7 +84,8 @@ pub(super) fn status(
     let parts = running.into_iter().chain(ducking).chain(game.news());
     let left: String = parts.fold(format!(" {}", game.title()), |line, part| line + "  " + &part);
     let left = Line::from(left);
-    let right = Line::from(format!(" {} help ", key_names(bindings, Action::ToggleHelp)));
+    let stats = stats.map(|stats| format!("  {stats} ")).unwrap_or_default();
+    let right = Line::from(format!("{stats} {} help ", key_names(bindings, Action::ToggleHelp)));
     let widths = [Constraint::Fill(1), Constraint::Length(right.width() as u16)];
     let [left_area, right_area] = Layout::horizontal(widths).areas(area);
     let reversed = Style::new().add_modifier(Modifier::REVERSED);
@@ -172,7 +175,7 @@ mod tests {
     fn help_is_whole_or_says_that_there_is_more() {
         let bindings = Bindings::default();
         for (columns, rows, is_whole) in
-            [(32, 23, true), (64, 13, true), (200, 60, true), (60, 9, false), (20, 5, false)]
+            [(32, 24, true), (64, 13, true), (200, 60, true), (60, 9, false), (20, 5, false)]
         {
             let text = shown(columns, rows, |frame| help(frame, frame.area(), &bindings));
             let is_so = Action::ALL.iter().all(|(_, does, _)| text.contains(does));
