@@ -9,6 +9,7 @@
 mod collision;
 mod doors;
 mod fall;
+mod flight;
 mod gaze;
 mod intent;
 mod motion;
@@ -22,8 +23,9 @@ use std::collections::BTreeSet;
 use crate::world::{Camera, Cell, Door, FieldOfView, KeyId, ThingKind, World};
 use doors::{Doors, door_ahead};
 use notice::Notice;
-use player::Player;
+use player::{AIM, FRICTION, Player, RUN, STILL, TURN, TURN_FRICTION, WALK};
 
+pub use flight::Flight;
 pub use intent::{Intent, Intents};
 #[cfg(feature = "accuracy")]
 pub(crate) use motion::approach;

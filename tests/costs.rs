@@ -3,11 +3,12 @@
 use std::path::Path;
 
 use allocation_counter::measure;
-use cellcaster::map;
+use cellcaster::map::{self, Level};
 use cellcaster::render::{
     CeilingLoop, Counts, Explanation, Frame, FrameSize, PassCounts, PixelAspect, PlaneLoop,
     Renderer, ThingLoop,
 };
+use cellcaster::space::{self, Scene};
 use cellcaster::world::{FieldOfView, World};
 
 const WIDTH: u32 = 160;
@@ -175,7 +176,13 @@ fn explaining_draws_the_same_frame() {
 #[test]
 fn no_feature_allocates_once_the_first_frame_is_drawn() {
     for entry in std::fs::read_dir("maps/gallery").unwrap() {
-        let world = map::load(&entry.unwrap().path()).unwrap();
+        let world = match map::load_level(&entry.unwrap().path()).unwrap() {
+            Level::Grid(world) => world,
+            Level::Space(scene) => {
+                assert_no_allocation_in_space(&scene);
+                continue;
+            }
+        };
         let mut camera = world.start_camera(FieldOfView::default());
         let (mut renderer, mut frame) = (Renderer::new(), frame());
         renderer.render(&world, &camera, &mut frame);
@@ -184,5 +191,16 @@ fn no_feature_allocates_once_the_first_frame_is_drawn() {
             let counted = measure(|| renderer.render(&world, &camera, &mut frame));
             assert_eq!(counted.count_total, 0, "{}", world.title());
         }
+    }
+}
+
+fn assert_no_allocation_in_space(scene: &Scene) {
+    let mut camera = scene.start_camera(FieldOfView::default());
+    let (mut renderer, mut frame) = (space::Renderer::new(), frame());
+    renderer.render(scene, &camera, &mut frame);
+    for _ in 0..20 {
+        camera.heading = camera.heading.turned(0.3);
+        let counted = measure(|| renderer.render(scene, &camera, &mut frame));
+        assert_eq!(counted.count_total, 0, "{}", scene.title);
     }
 }

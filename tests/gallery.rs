@@ -4,8 +4,9 @@ mod support;
 
 use std::fs;
 
-use cellcaster::map;
+use cellcaster::map::{self, Level, NoFiles};
 use cellcaster::render::{Frame, FrameSize, PixelAspect, Renderer};
+use cellcaster::space;
 use cellcaster::world::FieldOfView;
 use support::output_of;
 
@@ -54,15 +55,33 @@ fn every_example_on_the_page_about_maps_is_a_map() {
         .collect();
     assert!(examples.len() >= 10, "where are the examples?");
     for example in examples {
+        if example.contains("[[") {
+            assert!(shows_something(&scene_picture(example)), "{example}");
+            continue;
+        }
         // An example of a feature is a part of a map; the rest is always the same.
         let text = if example.contains("grid") { example.to_owned() } else { with_room(example) };
         let world = map::parse_str(&text).unwrap_or_else(|faults| panic!("{text}\n{faults}"));
         let mut frame = Frame::new(FrameSize::new(80, 48).unwrap(), PixelAspect::SQUARE);
         let camera = world.start_camera(FieldOfView::default());
         Renderer::new().render(&world, &camera, &mut frame);
-        let first = frame.pixel(0, 0);
-        assert!(frame.rows().flatten().any(|&pixel| pixel != first), "{example}");
+        assert!(shows_something(&frame), "{example}");
     }
+}
+
+fn shows_something(frame: &Frame) -> bool {
+    let first = frame.pixel(0, 0);
+    frame.rows().flatten().any(|&pixel| pixel != first)
+}
+
+/// The picture of a map of bodies.
+fn scene_picture(text: &str) -> Frame {
+    let level = map::parse_level(text, "example", &NoFiles);
+    let Ok(Level::Space(scene)) = level else { panic!("{text}\n{level:?}") };
+    let mut frame = Frame::new(FrameSize::new(80, 48).unwrap(), PixelAspect::SQUARE);
+    let camera = scene.start_camera(FieldOfView::default());
+    space::Renderer::new().render(&scene, &camera, &mut frame);
+    frame
 }
 
 /// A part of a map in a room of its own.
@@ -91,6 +110,12 @@ fn assert_golden(map: &str, name: &str, options: &[&str]) {
         let arguments = [&["snapshot", &path, "--format", format], options].concat();
         insta::assert_binary_snapshot!(&format!("{name}_{format}.{format}"), output_of(&arguments));
     }
+}
+
+#[test]
+fn a_ramp_of_sixteen_shades_is_for_maps_of_both_kinds() {
+    assert_golden("spheres", "spheres_ramp", &["--glyphs", "ramp"]);
+    assert_golden("doors", "doors_ramp", &["--glyphs", "ramp"]);
 }
 
 #[test]

@@ -29,7 +29,7 @@ fn script() -> Script {
 
 fn report() -> Report {
     let citadel = builtin::LEVELS.iter().find(|level| level.name == "citadel").unwrap();
-    let levels = Levels::new(citadel.world().unwrap(), std::iter::empty());
+    let levels = Levels::new(citadel.world().unwrap().into(), std::iter::empty());
     let size = Size::new(120, 40);
     let frames_per_second = NonZeroU32::new(30).unwrap();
     let script = script();

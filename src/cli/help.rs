@@ -62,7 +62,8 @@ OPTIONS OF BOTH
   --fov DEG         field of view, above 0, below 180              [66]
   --cell-aspect H   height of a cell over its width, 0.1 to 10     [2.0, or what
                     the terminal says]
-  --glyphs MODE     half: two pixels a cell; ascii: one, as a character  [half]
+  --glyphs MODE     half: two pixels a cell; ascii: one, as a character;
+                    ramp: one, as a character for its brightness   [half]
   --colors DEPTH    true, 256, 16 or mono           [true, or what the terminal has]
   --filter FILTER   mip: far textures are averaged; nearest: raw texels  [mip]
 

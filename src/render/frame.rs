@@ -102,6 +102,11 @@ impl Frame {
         self.pixels[y as usize * self.width() as usize + x as usize]
     }
 
+    /// The pixels of row `y`, from the left.
+    pub(crate) fn row_mut(&mut self, y: u32) -> &mut [Rgb] {
+        self.row_range_mut(y, y + 1)
+    }
+
     /// The pixels of the rows from `first` up to `last`, which is left out.
     pub(super) fn row_range_mut(&mut self, first: u32, last: u32) -> &mut [Rgb] {
         let width = self.width() as usize;

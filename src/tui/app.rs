@@ -6,6 +6,7 @@
 mod clock;
 mod levels;
 mod panels;
+mod played;
 mod recording;
 mod replay;
 mod run;
@@ -22,14 +23,16 @@ pub use run::play;
 
 use super::bindings::{Action, Bindings};
 use super::held::HeldKeys;
-use super::{CellAspect, FirstPerson, GlyphMode, Minimap, View};
+use super::{CellAspect, GlyphMode, Minimap, View};
 use crate::cast::Method;
-use crate::game::{Game, Intent, Intents, STEP};
+use crate::game::{Intent, Intents, STEP};
+use crate::map::Level;
 use crate::palette::ColorDepth;
 use crate::render::Filter;
 use crate::terminal::{Fidelity, Key, KeyEvent, Phase};
-use crate::world::{Camera, FieldOfView, World};
+use crate::world::FieldOfView;
 use clock::Clock;
+use played::{Eye, Memory, Played};
 use recording::ScriptRecorder;
 use stats::Stats;
 
@@ -71,13 +74,22 @@ enum Screen {
 /// What of the game shows in a picture of it.
 #[derive(Clone, Copy, Debug, PartialEq)]
 struct Scene {
-    camera: Camera,
+    eye: Eye,
     revision: u64,
 }
 
+/// How a picture is shown.
+#[derive(Clone, Copy, Debug)]
+struct Look {
+    glyphs: GlyphMode,
+    depth: ColorDepth,
+    cell_aspect: CellAspect,
+    filter: Filter,
+}
+
 struct App {
-    later_levels: Box<dyn Iterator<Item = World>>,
-    game: Game,
+    later_levels: Box<dyn Iterator<Item = Level>>,
+    game: Played,
     /// Seconds taken by the levels before this one.
     earlier: f64,
     screen: Screen,
@@ -92,7 +104,7 @@ struct App {
     shows_minimap: bool,
     has_left: bool,
     clock: Clock,
-    view: View,
+    memory: Memory,
     /// What the screen shows; `None` where it must be drawn again.
     shown: Option<Scene>,
     /// When, by the game's clock, something in the picture looks different by itself.
@@ -113,13 +125,16 @@ impl App {
         let Levels { first, rest } = levels;
         Self {
             later_levels: rest,
-            game: Game::new(first),
+            game: Played::new(first),
             earlier: 0.0,
             screen: Screen::Playing,
             field_of_view: settings.field_of_view,
             depth: settings.depth.unwrap_or_default(),
             cell_aspect: settings.cell_aspect.unwrap_or_default(),
-            view: View::with_method(settings.method.clone()),
+            memory: Memory {
+                grid: View::with_method(settings.method.clone()),
+                ..Memory::default()
+            },
             shows_stats: settings.shows_stats,
             settings,
             held: HeldKeys::default(),
@@ -183,11 +198,11 @@ impl App {
 
     /// How the player walks, as far as they need not hold a key for it.
     fn scene(&self) -> Scene {
-        Scene { camera: self.camera(), revision: self.game.revision() }
+        Scene { eye: self.eye(), revision: self.game.revision() }
     }
 
-    fn camera(&self) -> Camera {
-        self.game.camera(self.field_of_view)
+    fn eye(&self) -> Eye {
+        self.game.eye(self.field_of_view)
     }
 
     /// Whether the screen shows something that is no longer so.
@@ -205,7 +220,7 @@ impl App {
     fn drawn(&mut self) {
         self.shown = Some(self.scene());
         let soonest = self.game.elapsed() + STEP;
-        self.animates_at = self.view.next_change().map(|change| change.max(soonest));
+        self.animates_at = self.memory.next_change().map(|change| change.max(soonest));
     }
 
     /// When the game will change by itself; `None` for never.
@@ -283,9 +298,9 @@ impl App {
     }
 
     fn next_level(&mut self) {
-        let Some(world) = self.later_levels.next() else { return self.show(Screen::End) };
+        let Some(level) = self.later_levels.next() else { return self.show(Screen::End) };
         self.earlier += self.game.elapsed();
-        self.game = Game::new(world);
+        self.game = Played::new(level);
         self.held.clear();
         self.show(Screen::Playing);
     }
@@ -318,26 +333,26 @@ impl App {
             Screen::Playing => {}
             Screen::Paused => panels::paused(frame, picture, &self.settings.bindings),
             Screen::Help => panels::help(frame, picture, &self.settings.bindings),
-            Screen::LevelDone => panels::level_done(frame, picture, self.game.world(), seconds),
+            Screen::LevelDone => panels::level_done(frame, picture, self.game.title(), seconds),
             Screen::End => panels::end(frame, picture, self.earlier + seconds),
         }
     }
 
     fn draw_picture(&mut self, frame: &mut Frame, area: Rect) {
-        let camera = self.camera();
-        let world = self.game.world();
-        let picture = FirstPerson::new(world, &camera)
-            .glyphs(self.settings.glyphs)
-            .color_depth(self.depth)
-            .cell_aspect(self.cell_aspect)
-            .filter(self.settings.filter)
-            .time(self.game.elapsed());
-        frame.render_stateful_widget(picture, area, &mut self.view);
+        let eye = self.eye();
+        let look = Look {
+            glyphs: self.settings.glyphs,
+            depth: self.depth,
+            cell_aspect: self.cell_aspect,
+            filter: self.settings.filter,
+        };
+        self.game.draw(&eye, look, (frame, area), &mut self.memory);
+        let (Played::Grid(game), Eye::Grid(camera)) = (&self.game, &eye) else { return };
         if !self.shows_minimap {
             return;
         }
-        let map = Minimap::new(world, &camera)
-            .seen(self.view.columns())
+        let map = Minimap::new(game.world(), camera)
+            .seen(self.memory.grid.columns())
             .glyphs(self.settings.glyphs)
             .color_depth(self.depth);
         if let Some(panel) = panels::minimap(area, &map) {

@@ -90,10 +90,11 @@ pub(super) const CELL_ASPECT: Valued<CellAspect> = Valued {
 
 pub(super) const GLYPHS: Valued<GlyphMode> = Valued {
     name: "--glyphs",
-    takes: "half or ascii",
+    takes: "half, ascii or ramp",
     read: |text| match text {
         "half" => Some(GlyphMode::Half),
         "ascii" => Some(GlyphMode::Ascii),
+        "ramp" => Some(GlyphMode::Ramp),
         _ => None,
     },
 };

@@ -6,7 +6,7 @@ use proptest::prelude::*;
 
 use super::super::{Memory, Picture};
 use crate::cast::Exact;
-use crate::map::{self, builtin};
+use crate::map::{self, Level, builtin};
 use crate::render::{
     Filter, Frame, FrameSize, Geometry, PixelAspect, Plan, Projection, WhyWindows,
 };
@@ -16,9 +16,12 @@ use crate::world::{Camera, Cell, FieldOfView, Heading, Opening, Pitch, World};
 static LEVEL_MAPS: LazyLock<Vec<(String, World)>> = LazyLock::new(|| {
     let builtin =
         builtin::LEVELS.iter().map(|level| (level.name.to_owned(), level.world().unwrap()));
-    let gallery = std::fs::read_dir("maps/gallery").unwrap().map(|entry| {
+    let gallery = std::fs::read_dir("maps/gallery").unwrap().filter_map(|entry| {
         let path = entry.unwrap().path();
-        (path.display().to_string(), map::load(Path::new(&path)).unwrap())
+        match map::load_level(Path::new(&path)).unwrap() {
+            Level::Grid(world) => Some((path.display().to_string(), *world)),
+            Level::Space(_) => None,
+        }
     });
     let is_level = |(_, world): &(String, World)| world.is_level() && !world.has_mirrors();
     let mut maps: Vec<(String, World)> = builtin.chain(gallery).filter(is_level).collect();
