@@ -75,7 +75,7 @@ impl Hall {
     }
 
     fn is_plant(&self, column: u32, row: u32) -> bool {
-        (self.holds)(column, row) && (column + 2 * row) % 5 == 0
+        (self.holds)(column, row) && (column + 2 * row).is_multiple_of(5)
     }
 
     fn is_beside(&self, column: u32, row: u32) -> bool {

@@ -36,7 +36,7 @@ fn scene(floor: &str, ceiling: &str) -> World {
     map::parse_str(&text).expect("the level is sound, and tests parse it")
 }
 
-const ROOMS: &str = r##"
+const ROOMS: &str = r#"
 grid = '''
 bbbbbbbbbbbbbbbbssssssss
 b..............s.......s
@@ -73,7 +73,7 @@ mmmmmmmmmmmmmmmooooooooo
 
 [things]
 "@" = { start = 0 }
-"##;
+"#;
 
 /// `count` cameras along a walk through `world` that turns all the while, and so looks everywhere.
 pub fn walk(world: &World, count: usize) -> Vec<Camera> {

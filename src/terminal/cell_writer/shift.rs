@@ -97,27 +97,27 @@ impl Rows<'_> {
         };
         let places = 1..self.wanted.len();
         let apart = (self.wanted.len() / MOST_LANDMARKS).max(1);
-        let mut votes = [[0_u8; FARTHEST + 1]; 2];
+        let mut votes = [[0_u8; 2]; FARTHEST + 1];
         let mut next = 0;
         for place in places.filter(is_landmark) {
             if place < next {
                 continue;
             }
             next = place + apart;
-            for by in 1..=FARTHEST {
+            for (by, votes) in votes.iter_mut().enumerate().skip(1) {
                 let comes_from = |from: usize| {
                     from < self.shown.len()
                         && self.is_good(from, place)
                         && self.is_good(from - 1, place - 1)
                 };
-                votes[0][by] += u8::from(comes_from(place + by));
-                votes[1][by] += u8::from(place > by && comes_from(place - by));
+                votes[Way::Left as usize] += u8::from(comes_from(place + by));
+                votes[Way::Right as usize] += u8::from(place > by && comes_from(place - by));
             }
         }
         [Way::Left, Way::Right].map(|way| {
-            let votes = &votes[way as usize];
-            let (by, votes) = votes.iter().enumerate().max_by_key(|&(_, votes)| votes)?;
-            (*votes > 1).then_some((by, way))
+            let votes = votes.iter().map(|votes| votes[way as usize]).enumerate();
+            let (by, votes) = votes.max_by_key(|&(_, votes)| votes)?;
+            (votes > 1).then_some((by, way))
         })
     }
 
