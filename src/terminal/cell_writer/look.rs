@@ -65,14 +65,18 @@ impl Look {
 
     /// Whether a cell that looks like `wanted` need not be sent, where colours may be off by
     /// `tolerance`.
+    #[inline]
     pub(super) fn is_near(self, wanted: Self, tolerance: Tolerance) -> bool {
-        self.is(wanted)
-            || match (self.halves(), wanted.halves()) {
-                (Some(shown), Some(wanted)) if !tolerance.is_exact() => {
-                    tolerance.covers(shown[0], wanted[0]) && tolerance.covers(shown[1], wanted[1])
-                }
-                _ => false,
+        self.is(wanted) || !tolerance.is_exact() && self.is_about(wanted, tolerance)
+    }
+
+    fn is_about(self, wanted: Self, tolerance: Tolerance) -> bool {
+        match (self.halves(), wanted.halves()) {
+            (Some(shown), Some(wanted)) => {
+                tolerance.covers(shown[0], wanted[0]) && tolerance.covers(shown[1], wanted[1])
             }
+            _ => false,
+        }
     }
 
     /// The colours of the upper and the lower half of a block.
