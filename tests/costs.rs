@@ -76,6 +76,34 @@ fn a_gradient_reads_no_texel_and_a_panorama_one_a_pixel() {
 }
 
 #[test]
+fn what_cannot_be_seen_through_keeps_one_hit_a_column() {
+    for name in ["flat", "floor", "doors"] {
+        let world = gallery(name);
+        let camera = world.start_camera(FieldOfView::default());
+        let mut renderer = Renderer::new();
+        let counts = renderer.explain(&world, &camera, &mut frame()).counts;
+        assert_eq!((counts.see_through, counts.rays), (PassCounts::default(), WIDTH.into()));
+        assert_eq!(renderer.columns().len(), WIDTH as usize, "{name}");
+    }
+}
+
+#[test]
+fn a_still_door_costs_what_a_wall_does() {
+    let map = |tile: &str| {
+        let text = format!(
+            "grid = '''\n#########\n#@..+...#\n#########\n'''\n\
+             tiles = {{ '#'.wall = 'brick', '+'.{tile} = 'oak' }}\nthings.'@'.start = 0\n"
+        );
+        map::parse_str(&text).unwrap()
+    };
+    let [door, wall] = ["door", "wall"].map(|tile| explained(&map(tile)).counts);
+    assert_eq!((door.rays, door.see_through), (wall.rays, wall.see_through));
+    assert_eq!(door.walls.texels, door.walls.pixels);
+    // It stands half a cell further back, and so shows a little less of itself.
+    assert!(door.walls.pixels <= wall.walls.pixels && door.pixels() <= wall.pixels());
+}
+
+#[test]
 fn a_scene_without_things_considers_none() {
     for name in ["flat", "floor", "masks"] {
         let Explanation { plan, counts } = explained(&gallery(name));
