@@ -33,10 +33,12 @@ USAGE
 KEYS
   W S, Up Down      walk                M, Tab  show or hide the map
   A D               strafe              + -     field of view
-  Left Right        turn                P       pause
-  Shift             run                 ?       help
-  R                 run, on and off     Q, Esc  leave
-  E, Space          open a door         I       show frames and link
+  Left Right        turn                PgUp PgDn, Home   look up, down, ahead
+  Shift             run                 P       pause
+  R                 run, on and off     I       show frames and link
+  E, Space          open a door         ?       help
+  Space             jump                Q, Esc  leave
+  C                 duck, X: on and off
 
 OPTIONS OF PLAY
   --fps N           at most N frames a second, 1 to 240            [30]
