@@ -11,10 +11,12 @@
 //! The bound on the rounding is computed once for each ray, from the size of the map. One for each
 //! line, tighter near the start, was refused: it costs more than the exact cross products it saves.
 
+use std::iter;
+
 use glam::DVec2;
 
 use super::cross::cross;
-use super::{Caster, DdaOrder, Hit, Order, Ray, Side, Walk, through};
+use super::{Caster, Crossing, DdaOrder, Hit, Order, Ray, Side, Sweep, Walk, through};
 use crate::world::{Grid, World};
 
 /// Casts by walking the grid in the exact order; the default.
@@ -25,13 +27,29 @@ pub struct Exact;
 
 impl Caster for Exact {
     fn cast(&self, grid: &Grid, ray: &Ray) -> Option<Hit> {
-        let wall = Walk::new(grid, ray).first_solid()?;
+        let wall = match Sweep::new(grid, ray) {
+            Some(mut sweep) => sweep.next()?,
+            None => walk_to_first_solid(grid, ray)?,
+        };
         Some(Hit::entering(ray, wall.cell, wall.side))
     }
 
     fn cast_through(&self, world: &World, ray: &Ray, passed: impl FnMut(Hit)) -> Option<Hit> {
-        through::cast(Walk::new(world.grid(), ray), world, ray, passed)
+        let grid = world.grid();
+        if let Some(sweep) = Sweep::new(grid, ray) {
+            return through::cast(sweep.cell(), sweep, world, ray, passed);
+        }
+        let mut walk = Walk::new(grid, ray);
+        let (start, solid_cells) = (walk.cell(), iter::from_fn(|| walk.first_solid()));
+        through::cast(start, solid_cells, world, ray, passed)
     }
+}
+
+/// The first solid cell of a ray that does not start well inside a cell of the map.
+#[cold]
+#[inline(never)]
+fn walk_to_first_solid(grid: &Grid, ray: &Ray) -> Option<Crossing> {
+    Walk::new(grid, ray).first_solid()
 }
 
 /// The order in which a ray meets the lines of a grid.
@@ -66,7 +84,7 @@ impl ExactOrder {
 /// It takes the ray by its parts, because a reference would keep the walk in memory.
 #[cold]
 #[inline(never)]
-fn decide(origin: DVec2, direction: DVec2, x: f64, y: f64) -> Side {
+pub(super) fn decide(origin: DVec2, direction: DVec2, x: f64, y: f64) -> Side {
     let cross = cross(origin, direction, DVec2::new(x, y)).sign();
     // Seen from a ray to the north-east or to the south-west, left and right are swapped.
     let x_behind_y = if (direction.x > 0.0) == (direction.y > 0.0) { cross } else { -cross };
