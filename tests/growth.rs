@@ -31,7 +31,7 @@ fn explained(world: &World) -> Explanation {
 
 #[test]
 fn among_rooms_rays_go_line_by_line() {
-    let rooms = square(64, |column, row| {
+    let rooms = square(66, |column, row| {
         (column % 8 == 0 && row % 8 != 4 || row % 8 == 0 && column % 8 != 4).then_some('#')
     });
     let Explanation { plan, counts } = explained(&rooms);
