@@ -96,8 +96,11 @@ static DECIMALS: [Decimal; 256] = {
     let mut table = [Decimal { text: [SEPARATOR; 4], length: 0 }; 256];
     let mut number = 0;
     while number < table.len() {
-        let [hundreds, tens, ones] =
-            [b'0' + (number / 100) as u8, b'0' + (number / 10 % 10) as u8, b'0' + (number % 10) as u8];
+        let [hundreds, tens, ones] = [
+            b'0' + (number / 100) as u8,
+            b'0' + (number / 10 % 10) as u8,
+            b'0' + (number % 10) as u8,
+        ];
         table[number] = match number {
             0..10 => Decimal { text: [SEPARATOR, ones, 0, 0], length: 2 },
             10..100 => Decimal { text: [SEPARATOR, tens, ones, 0], length: 3 },

@@ -48,9 +48,9 @@ pub(super) fn draw_cell(pen: &mut Pen, row: &mut Row, column: usize) {
 /// Moves the stretches of a row that have only moved.
 fn shift(pen: &mut Pen, shifts: &mut Shifts, row: &mut Row) {
     shifts.begin(row);
-    while let Some(shift) = shifts.next(row, |from, to| {
-        if row.shown[from] == row.looks[to] { 0 } else { CELL }
-    }) {
+    while let Some(shift) =
+        shifts.next(row, |from, to| if row.shown[from] == row.looks[to] { 0 } else { CELL })
+    {
         pen.shift_row(&shift, row.y);
         row.shift(&shift);
     }

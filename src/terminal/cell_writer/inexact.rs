@@ -62,23 +62,24 @@ impl Draughtsman {
         self.wanted.extend(row.looks.iter().map(|&look| inks(look)));
         self.shown.clear();
         let shown = row.shown.iter().zip(row.looks).zip(&self.wanted);
-        self.shown.extend(
-            shown.map(|((&shown, &look), wanted)| if shown == look { *wanted } else { inks(shown) }),
-        );
+        self.shown
+            .extend(shown.map(
+                |((&shown, &look), wanted)| if shown == look { *wanted } else { inks(shown) },
+            ));
     }
 
     /// Moves the stretches of a row that have only moved, or about.
     fn shift(&mut self, pen: &mut Pen, shifts: &mut Shifts, row: &mut Row, price: Price) {
         shifts.begin(row);
-        while let Some(shift) = shifts.next(row, |from, to| {
-            match (&self.shown[from], &self.wanted[to]) {
+        while let Some(shift) =
+            shifts.next(row, |from, to| match (&self.shown[from], &self.wanted[to]) {
                 (Some(shown), Some(wanted)) => {
                     ((price.of_halves(*shown, *wanted) * BYTE as f32) as i32).min(CELL)
                 }
                 _ if row.shown[from] == row.looks[to] => 0,
                 _ => CELL,
-            }
-        }) {
+            })
+        {
             pen.shift_row(&shift, row.y);
             row.shift(&shift);
             shift.apply(&mut self.shown, None);

@@ -181,7 +181,10 @@ fn count_alike(one: &[Mark], other: &[Mark]) -> usize {
     // In steps that a byte can count, so that the compiler can compare many at a time.
     let chunks = one.chunks(255).zip(other.chunks(255));
     let counts = chunks.map(|(one, other)| {
-        one.iter().zip(other).map(|(one, other)| u8::from(one == other) & u8::from(*one != Mark::NONE)).sum::<u8>()
+        one.iter()
+            .zip(other)
+            .map(|(one, other)| u8::from(one == other) & u8::from(*one != Mark::NONE))
+            .sum::<u8>()
     });
     counts.map(usize::from).sum()
 }
