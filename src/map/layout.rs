@@ -60,7 +60,8 @@ impl Layout {
         let (things, sprites) = things(drawing, legend, &keys, textures, faults);
         let blocks = |thing: &&Thing| sprites[usize::from(thing.sprite.0)].blocks;
         things.iter().filter(blocks).for_each(|thing| grid.occupy(thing.cell));
-        faults.extend(doors::faults(drawing, legend, &grid, &tiles, start));
+        let low_things = supports::low_things(&grid, &tiles, &sprites, &things);
+        faults.extend(doors::faults(drawing, legend, &grid, &tiles, start, &low_things));
         if !faults.is_empty() {
             return None;
         }

@@ -33,7 +33,7 @@ use super::tally::Tally;
 use super::{Column, Filter, Frame, Projection};
 use crate::cast::{Side, Unfolding};
 use crate::world::texture::Level;
-use crate::world::{Camera, Texture, TileId, World};
+use crate::world::{Camera, Texture, Tile, TileId, TileKind, World};
 use faces::Face;
 use look::{Branch, Look};
 use things::{Billboards, Image};
@@ -94,6 +94,8 @@ enum Part {
     Ceiling,
     /// The top of what hangs above the ceiling.
     Roof,
+    /// The top of a pillar.
+    Top,
 }
 
 /// By which mirrors something is seen: an index into the list of images.
@@ -118,10 +120,18 @@ pub(super) struct Scene<'a> {
 
 impl<'a> Scene<'a> {
     pub(super) fn new(world: &'a World, projection: &'a Projection, filter: Filter) -> Self {
-        let tops = world.tiles().iter().filter_map(|tile| tile.gaps().next_back());
-        let top = tops.map(|gap| gap.bottom).fold(0.0, f64::max);
         let has_things = !world.things().is_empty() || world.has_mirrors();
-        Self { world, projection, filter, top, has_things }
+        let tallest_thing = if has_things { world.tallest_sprite().max(Camera::STANDING) } else { 0.0 };
+        let top_of = |tile: &Tile| match tile.kind {
+            TileKind::Open | TileKind::Doorway(_) => tile.heights.floor() + tallest_thing,
+            TileKind::Wall(_) | TileKind::Mirror(_) => tile.heights.floor(),
+            TileKind::Door(_) | TileKind::Mask(_) | TileKind::Glass(_) | TileKind::Shape(_) => {
+                tile.top_of_what_stands()
+            }
+        };
+        let roof_of = |tile: &Tile| tile.gaps().next_back().map_or(0.0, |gap| gap.bottom);
+        let tops = world.tiles().iter().map(|tile| top_of(tile).max(roof_of(tile)));
+        Self { world, projection, filter, top: tops.fold(0.0, f64::max), has_things }
     }
 
     /// The level of a texture that suits a face at `t`, where the ray leads straight at it by `slope`
@@ -200,7 +210,7 @@ impl Windows {
             Shown::Face(Side::X) => Surface::WallX,
             Shown::Face(Side::Y) => Surface::WallY,
             Shown::Plane(Piece { part: Part::Ceiling, .. }) => Surface::Ceiling,
-            Shown::Plane(Piece { part: Part::Floor | Part::Roof, .. }) => Surface::Floor,
+            Shown::Plane(Piece { part: Part::Floor | Part::Roof | Part::Top, .. }) => Surface::Floor,
         })
     }
 

@@ -19,7 +19,7 @@ use crate::render::shade::{Faded, Shade};
 use crate::render::tally::{Pass, Tally};
 use crate::render::things::NEAREST;
 use crate::world::sprite::builtin;
-use crate::world::{Anchor, Camera, Cell, Gap, Light, Sprite, SpriteId, Thing};
+use crate::world::{Camera, Cell, Gap, Light, Sprite, SpriteId, Thing};
 
 /// A part of a ray that is in one gap.
 #[derive(Clone, Debug)]
@@ -190,11 +190,7 @@ impl Billboard {
     ) -> Option<Self> {
         let world = scene.world;
         let sprite = world.sprite(thing.sprite);
-        let room = world.room_in(thing.cell);
-        let base = match sprite.anchor {
-            Anchor::Floor => room.floor(),
-            Anchor::Ceiling => room.ceiling() - sprite.height.cells(),
-        };
+        let base = sprite.base(world.room_in(thing.cell));
         let light = world.light_in(thing.cell);
         let center = thing.cell.center();
         let billboard = Self::new(scene, unfolding, sprite, seconds, center, base, light)?;
