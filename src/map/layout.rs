@@ -195,11 +195,11 @@ fn tiles(
         if let Meaning::Floor = symbol.meaning {
             open.extend(tile(character, TileKind::Open, symbol, ground, faces, textures, faults));
         } else if let Some(kind) = solid_kind(&symbol.meaning, keys, textures, faults) {
+            let tile = tile(character, kind, symbol, ground, faces, textures, faults);
             if let TileKind::Door(door) = kind {
-                let kind = TileKind::Doorway(door);
-                open.extend(tile(character, kind, symbol, ground, faces, textures, faults));
+                open.extend(tile.map(|tile| Tile { kind: TileKind::Doorway(door), ..tile }));
             }
-            solid.extend(tile(character, kind, symbol, ground, faces, textures, faults));
+            solid.extend(tile);
         }
         if open.len() + solid.len() > MAX_TILES {
             let message = format!("the grid has more than {} kinds of tile", MAX_TILES - 1);
