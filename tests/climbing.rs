@@ -3,7 +3,7 @@
 
 use cellcaster::game::{Game, Intent, Intents, STEP};
 use cellcaster::map;
-use cellcaster::world::{FieldOfView, Gap, World};
+use cellcaster::world::{Anchor, Ceiling, Cell, FieldOfView, Gap, TileKind, World};
 use glam::DVec2;
 use proptest::prelude::*;
 
@@ -151,15 +151,91 @@ fn a_fall_of_a_thousand_cells_takes_its_time_and_ends() {
     assert!(game.is_at_rest(Intents::new()));
 }
 
-/// A closed room with cells of eight kinds, whose heights are drawn.
+/// What somebody stands on in the end who walks up to a thing, and then jumps.
+fn jump_onto(thing: &str) -> [f64; 2] {
+    let map = format!(
+        "{SKY}\ngrid = '''\n#######\n#@..tt#\n#######\n'''\n[tiles]\n\
+         \"#\" = {{ wall = \"brick\", height = 99 }}\n[things]\n\"@\" = {{ start = 0 }}\n\
+         \"t\" = {{ {thing} }}\n"
+    );
+    let mut game = Game::new(map::parse_str(&map).unwrap_or_else(|faults| panic!("{faults}")));
+    walk(&mut game, 120, &[Intent::Forward]);
+    let after_walking = game.feet();
+    walk(&mut game, 120, &[Intent::Forward, Intent::Jump]);
+    [after_walking, game.feet()]
+}
+
+#[test]
+fn who_jumps_stands_on_a_low_thing_and_nobody_walks_onto_one() {
+    assert_eq!(jump_onto("sprite = \"table\""), [0.0, 0.42]);
+    assert_eq!(jump_onto("sprite = \"barrel\""), [0.0, 0.58]);
+    assert_eq!(jump_onto("sprite = \"bones\", blocks = true, height = 0.1"), [0.0, 0.1]);
+    assert_eq!(jump_onto("sprite = \"statue\""), [0.0, 0.0]);
+    assert_eq!(jump_onto("sprite = \"bones\""), [0.0, 0.0]);
+}
+
+#[test]
+fn who_jumps_passes_over_a_thing_and_who_ducks_under_one() {
+    let past = |thing: &str, wanted: &[Intent]| {
+        let map = format!(
+            "ceiling_height = 1.5\ngrid = '''\n########\n#@.t...#\n########\n'''\n[tiles]\n\
+             \"#\" = {{ wall = \"brick\" }}\n[things]\n\"@\" = {{ start = 0 }}\n\
+             \"t\" = {{ {thing} }}\n"
+        );
+        let mut game = Game::new(map::parse_str(&map).unwrap_or_else(|faults| panic!("{faults}")));
+        walk(&mut game, 60, &[Intent::Forward]);
+        walk(&mut game, 120, wanted);
+        position(&game).x > 4.25
+    };
+    let hanging = "sprite = \"lamp\", anchor = \"ceiling\", blocks = true, height = 0.9";
+    assert!(past("sprite = \"table\"", &[Intent::Forward, Intent::Jump]));
+    assert!(!past("sprite = \"table\"", &[Intent::Forward]));
+    assert!(past(hanging, &[Intent::Forward, Intent::Duck]));
+    assert!(!past(hanging, &[Intent::Forward]));
+}
+
+#[test]
+fn a_low_pillar_is_a_step_and_a_higher_one_is_jumped_onto() {
+    let walk_and_jump = |height: f64| {
+        let pillar = format!("pillar = \"marble\", radius = 0.5, height = {height}");
+        let mut game = corridor(SKY, &[&pillar]);
+        walk(&mut game, 120, &[Intent::Forward]);
+        let after_walking = game.feet();
+        walk(&mut game, 120, &[Intent::Forward, Intent::Jump]);
+        [after_walking, game.feet()]
+    };
+    assert_eq!(walk_and_jump(0.35), [0.35, 0.35]);
+    assert_eq!(walk_and_jump(0.6), [0.0, 0.6]);
+    assert_eq!(walk_and_jump(0.7), [0.0, 0.0]);
+}
+
+#[test]
+fn who_falls_onto_a_pillar_stands_on_it() {
+    let ledge = "floor_height = 3";
+    let pillar = "pillar = \"marble\", radius = 0.5, height = 2";
+    let map = format!(
+        "{SKY}\ngrid = '''\n######\n#@o..#\n######\n'''\n[tiles]\n\
+         \"#\" = {{ wall = \"brick\", height = 99 }}\n\"l\" = {{ {ledge} }}\n\
+         \"o\" = {{ {pillar} }}\n[things]\n\"@\" = {{ start = 0, on = \"l\" }}\n"
+    );
+    let mut game = Game::new(map::parse_str(&map).unwrap());
+    walk(&mut game, 20, &[Intent::Forward]);
+    walk(&mut game, 60, &[]);
+    assert_eq!(game.feet(), 2.0, "at {}", position(&game));
+    walk(&mut game, 60, &[Intent::Forward]);
+    assert_eq!(game.feet(), 0.0);
+}
+
+/// A closed room with cells of eight kinds, whose heights are drawn, and with shapes and things.
 fn any_world() -> impl Strategy<Value = World> {
     let floor = prop::sample::select(vec![
         0.0_f64, 1e-9, 0.1, 0.3, 0.35, 0.36, 0.5, 0.6, 0.9, -0.3, -2.0, -1e9, 1e9, 3.0,
     ]);
     let headroom = prop::sample::select(vec![1e-9, 0.3, 0.5, 0.55, 0.7, 0.75, 1.0, 2.5]);
     let tile = (floor, prop::option::of(headroom));
-    let cells = prop::collection::vec(prop::sample::select(&b"abcdefgh......#|%"[..]), 35);
-    (prop::collection::vec(tile, 8), cells).prop_map(|(tiles, mut cells)| {
+    let cells = prop::collection::vec(prop::sample::select(&b"abcdefgh......#|%oO/-tTBH"[..]), 35);
+    let height = prop::sample::select(vec![1e-9_f64, 0.1, 0.3, 0.36, 0.6, 0.9, 1.0, 2.0]);
+    (prop::collection::vec(tile, 8), cells, height).prop_map(|(tiles, mut cells, height)| {
         cells[17] = b'@';
         let rows: Vec<String> =
             cells.chunks(7).map(|row| format!("#{}#\n", String::from_utf8_lossy(row))).collect();
@@ -179,7 +255,16 @@ fn any_world() -> impl Strategy<Value = World> {
         let text = format!(
             "ceiling_height = 1.5\ngrid = '''\n#########\n{rows}#########\n'''\n[tiles]\n\
              \"#\" = {{ wall = \"brick\" }}\n\"%\" = {{ wall = \"brick\", height = 0.5 }}\n\
-             \"|\" = {{ glass = \"#ffffff\" }}\n{legend}[things]\n\"@\" = {{ start = 0 }}\n"
+             \"|\" = {{ glass = \"#ffffff\" }}\n{legend}\
+             \"o\" = {{ pillar = \"brick\", height = {height:?} }}\n\
+             \"O\" = {{ pillar = \"brick\", radius = 0.5, ceiling = \"sky\" }}\n\
+             \"/\" = {{ diagonal = \"brick\", from = \"north-east\", height = {height:?} }}\n\
+             \"-\" = {{ thin = \"brick\", at = \"north\", floor_height = 0.3, height = 0.3 }}\n\
+             [things]\n\"@\" = {{ start = 0 }}\n\"t\" = {{ sprite = \"table\" }}\n\
+             \"T\" = {{ sprite = \"table\", height = 0.2, on = \"a\" }}\n\
+             \"B\" = {{ sprite = \"barrel\", height = {:?} }}\n\
+             \"H\" = {{ sprite = \"lamp\", anchor = \"ceiling\", blocks = true, height = 0.8 }}\n",
+            height.max(0.01)
         );
         map::parse_str(&text).unwrap_or_else(|faults| panic!("{text}\n{faults}"))
     })
@@ -193,7 +278,32 @@ fn gaps(world: &World, column: i64, row: i64) -> Vec<Gap> {
     };
     let is_filled = matches!(tile.kind, Door(_) | Mask(_) | Glass(_));
     let stands_in = |gap: &Gap| is_filled && gap.bottom < tile.heights.ceiling();
-    tile.gaps().filter(|gap| !stands_in(gap)).collect()
+    let gaps = tile.gaps().filter(|gap| !stands_in(gap));
+    let things = world.things_in(Cell { column: column as u32, row: row as u32 }).iter();
+    let mut sprites = things.map(|thing| world.sprite(thing.sprite));
+    let Some(sprite) = sprites.find(|sprite| sprite.blocks) else { return gaps.collect() };
+    let (low, high) = match sprite.anchor {
+        Anchor::Floor => (tile.heights.floor(), tile.heights.floor() + sprite.height.cells()),
+        Anchor::Ceiling => (tile.heights.ceiling() - sprite.height.cells(), tile.heights.ceiling()),
+    };
+    gaps.flat_map(|gap| {
+        [Gap { top: gap.top.min(low), ..gap }, Gap { bottom: gap.bottom.max(high), ..gap }]
+    })
+    .collect()
+}
+
+/// Whether somebody is beside or above the shape in a cell, if there is one.
+fn is_beside_shape(world: &World, column: i64, row: i64, position: DVec2, feet: f64) -> bool {
+    let Some(tile) = world.grid().tile(column, row).map(|id| world.tile(id)) else { return true };
+    let TileKind::Shape(shape) = tile.kind else { return true };
+    let cell = Cell { column: column as u32, row: row as u32 };
+    let height = shape.height.map_or(f64::INFINITY, |height| height.cells());
+    let top = tile.heights.floor() + height;
+    let top = match tile.ceiling {
+        Ceiling::Sky if shape.height.is_some() => top,
+        _ => top.min(tile.heights.ceiling()),
+    };
+    feet >= top || shape.outline.distance(cell, position) >= RADIUS
 }
 
 /// Whether all of somebody, as small as they can be, is in gaps of the cells that they are in.
@@ -209,6 +319,7 @@ fn is_in_the_open(world: &World, position: DVec2, feet: f64) -> bool {
         .all(|(column, row)| {
             let holds = |gap: &Gap| gap.bottom <= feet && feet <= gap.top - DUCKING;
             gaps(world, column, row).iter().any(holds)
+                && is_beside_shape(world, column, row, position, feet)
         })
 }
 

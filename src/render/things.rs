@@ -18,9 +18,9 @@ use super::see_through::{self, Passed};
 use super::shade::{Bright, Faded, Shade};
 use super::tally::{Pass, Tally};
 use super::{Frame, Scene, Surface};
-use crate::world::texture::Level;
 use crate::world::Thing;
-use sight::Sight;
+use crate::world::texture::Level;
+pub(super) use sight::Sight;
 
 /// Things that are nearer than that to the camera plane are not drawn: the player stands in them.
 pub(super) const NEAREST: f64 = 0.2;

@@ -150,10 +150,7 @@ impl Reach<'_> {
     /// How high the feet may be of somebody who left a place and touches `cell` for the first time.
     fn highest(&self, from: Place, cell: Cell) -> f64 {
         let apart = |one: u32, other: u32| f64::from(one.abs_diff(other).saturating_sub(1));
-        let way = libm::hypot(
-            apart(from.cell.column, cell.column),
-            apart(from.cell.row, cell.row),
-        );
+        let way = libm::hypot(apart(from.cell.column, cell.column), apart(from.cell.row, cell.row));
         let seconds = (way - 2.0 * RADIUS).max(0.0) / RUN;
         let speed = if self.gait == Gait::Jumps { TAKE_OFF } else { 0.0 };
         let seconds = seconds.max(speed / GRAVITY);
