@@ -25,10 +25,10 @@ const HAIR: f64 = 1e-9;
 
 /// A place to stand.
 #[derive(Clone, Copy, Debug, PartialEq)]
-pub struct Place {
-    pub cell: Cell,
+pub(crate) struct Place {
+    pub(crate) cell: Cell,
     /// How high the feet are, in cells.
-    pub height: f64,
+    pub(crate) height: f64,
 }
 
 impl Eq for Place {}
@@ -46,11 +46,11 @@ impl PartialOrd for Place {
 }
 
 /// The keys that somebody has.
-pub type Keys = BTreeSet<u8>;
+pub(crate) type Keys = BTreeSet<u8>;
 
 /// What somebody can do.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub enum Gait {
+pub(crate) enum Gait {
     /// Run, and fall.
     Walks,
     /// The same, and jump.
@@ -61,28 +61,28 @@ pub enum Gait {
 
 /// A level, as somebody finds it who has some keys.
 #[derive(Clone, Debug)]
-pub struct Reach<'a> {
-    pub world: &'a World,
-    pub gait: Gait,
-    pub keys: Keys,
+pub(crate) struct Reach<'a> {
+    pub(crate) world: &'a World,
+    pub(crate) gait: Gait,
+    pub(crate) keys: Keys,
     /// Whether they pick up the keys that they come by.
-    pub takes_keys: bool,
+    pub(crate) takes_keys: bool,
 }
 
 impl Reach<'_> {
     /// Where the player starts.
-    pub fn start(&self) -> Place {
+    pub(crate) fn start(&self) -> Place {
         let cell = self.world.start().cell;
         Place { cell, height: self.world.floor_at(cell) }
     }
 
     /// Everywhere they get from a place. What they pick up is added to their keys.
-    pub fn from(&mut self, start: Place) -> BTreeSet<Place> {
+    pub(crate) fn from(&mut self, start: Place) -> BTreeSet<Place> {
         self.until(start, |_| false)
     }
 
     /// Whether they get from a place to one of the `goals`, or to the exit.
-    pub fn gets_out(&mut self, start: Place, goals: &BTreeSet<Place>) -> bool {
+    pub(crate) fn gets_out(&mut self, start: Place, goals: &BTreeSet<Place>) -> bool {
         let world = self.world;
         let is_goal = |place: &Place| goals.contains(place) || is_exit(world, place.cell);
         self.until(start, is_goal).iter().any(is_goal)
@@ -112,7 +112,7 @@ impl Reach<'_> {
     }
 
     /// Whether the exit is at one of `places`.
-    pub fn has_exit(&self, places: &BTreeSet<Place>) -> bool {
+    pub(crate) fn has_exit(&self, places: &BTreeSet<Place>) -> bool {
         places.iter().any(|place| is_exit(self.world, place.cell))
     }
 

@@ -143,9 +143,10 @@ mod tests {
             let projection = &Projection::new(&camera, size, PixelAspect::SQUARE);
             let scene = Scene::new(world, projection, Filter::Mip);
             let mut windows = Windows::default();
-            windows.begin(&Frame::new(size, PixelAspect::SQUARE));
+            let frame = Frame::new(size, PixelAspect::SQUARE);
+            windows.begin(&frame);
             for (x, ray) in projection.rays().enumerate() {
-                Look::new(scene, x, size.height(), &mut windows).follow(&ray);
+                Look::new(scene, x, frame.height(), &mut windows).follow(&ray);
             }
             let mut sights = Sights::default();
             sights.look(scene, &windows.images, &windows.veils);

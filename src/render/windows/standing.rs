@@ -65,7 +65,8 @@ impl Look<'_> {
 
     /// Shows the top of a pillar, which ends at `end`, to an eye that is above it.
     fn look_down_at(&mut self, branch: &mut Branch, top: f64, end: f64) {
-        if self.scene.projection.eye() <= top || end < branch.from {
+        let is_seen = self.scene.projection.eye() > top && branch.from <= end;
+        if !is_seen || branch.window.is_empty() {
             return;
         }
         let tile = branch.place.map(|(_, tile)| tile);
