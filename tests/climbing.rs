@@ -1,44 +1,19 @@
 //! Steps, ledges, low ceilings and deep falls: what the player gets onto, over and under, and that
 //! they are never inside anything.
 
+#[path = "support/walker.rs"]
+mod walker;
+
 use cellcaster::game::{Game, Intent, Intents, STEP};
 use cellcaster::map;
 use cellcaster::world::{Anchor, Ceiling, Cell, FieldOfView, Gap, TileKind, World};
 use glam::DVec2;
 use proptest::prelude::*;
+use walker::{SKY, corridor, position, walk, want};
 
 const RADIUS: f64 = 0.25;
 /// How tall the player is at least.
 const DUCKING: f64 = 0.5;
-
-fn want(list: &[Intent]) -> Intents {
-    list.iter().copied().collect()
-}
-
-fn position(game: &Game) -> DVec2 {
-    game.camera(FieldOfView::default()).position()
-}
-
-fn walk(game: &mut Game, steps: usize, wanted: &[Intent]) {
-    (0..steps).for_each(|_| game.step(want(wanted)));
-}
-
-/// A corridor to the east under the sky, or below a ceiling: after the start come three cells of the
-/// map's own floor, and then one for each of `tiles`, which is what a map says of it.
-fn corridor(ceiling: &str, tiles: &[&str]) -> Game {
-    let letters: String = ('a'..).take(tiles.len()).collect();
-    let wall = "#".repeat(6 + tiles.len());
-    let legend: Vec<String> =
-        ('a'..).zip(tiles).map(|(letter, tile)| format!("\"{letter}\" = {{ {tile} }}\n")).collect();
-    let legend = legend.concat();
-    let map = format!(
-        "{ceiling}\ngrid = '''\n{wall}\n#@...{letters}#\n{wall}\n'''\n[tiles]\n\
-         \"#\" = {{ wall = \"brick\", height = 99 }}\n{legend}[things]\n\"@\" = {{ start = 0 }}\n"
-    );
-    Game::new(map::parse_str(&map).unwrap_or_else(|faults| panic!("{map}\n{faults}")))
-}
-
-const SKY: &str = "ceiling = \"sky\"";
 
 #[test]
 fn a_step_is_climbed_up_to_the_limit() {
@@ -149,81 +124,6 @@ fn a_fall_of_a_thousand_cells_takes_its_time_and_ends() {
     walk(&mut game, 60, &[]);
     assert_eq!(game.feet(), -1000.0);
     assert!(game.is_at_rest(Intents::new()));
-}
-
-/// What somebody stands on in the end who walks up to a thing, and then jumps.
-fn jump_onto(thing: &str) -> [f64; 2] {
-    let map = format!(
-        "{SKY}\ngrid = '''\n#######\n#@..tt#\n#######\n'''\n[tiles]\n\
-         \"#\" = {{ wall = \"brick\", height = 99 }}\n[things]\n\"@\" = {{ start = 0 }}\n\
-         \"t\" = {{ {thing} }}\n"
-    );
-    let mut game = Game::new(map::parse_str(&map).unwrap_or_else(|faults| panic!("{faults}")));
-    walk(&mut game, 120, &[Intent::Forward]);
-    let after_walking = game.feet();
-    walk(&mut game, 120, &[Intent::Forward, Intent::Jump]);
-    [after_walking, game.feet()]
-}
-
-#[test]
-fn who_jumps_stands_on_a_low_thing_and_nobody_walks_onto_one() {
-    assert_eq!(jump_onto("sprite = \"table\""), [0.0, 0.42]);
-    assert_eq!(jump_onto("sprite = \"barrel\""), [0.0, 0.58]);
-    assert_eq!(jump_onto("sprite = \"bones\", blocks = true, height = 0.1"), [0.0, 0.1]);
-    assert_eq!(jump_onto("sprite = \"statue\""), [0.0, 0.0]);
-    assert_eq!(jump_onto("sprite = \"bones\""), [0.0, 0.0]);
-}
-
-#[test]
-fn who_jumps_passes_over_a_thing_and_who_ducks_under_one() {
-    let past = |thing: &str, wanted: &[Intent]| {
-        let map = format!(
-            "ceiling_height = 1.5\ngrid = '''\n########\n#@.t...#\n########\n'''\n[tiles]\n\
-             \"#\" = {{ wall = \"brick\" }}\n[things]\n\"@\" = {{ start = 0 }}\n\
-             \"t\" = {{ {thing} }}\n"
-        );
-        let mut game = Game::new(map::parse_str(&map).unwrap_or_else(|faults| panic!("{faults}")));
-        walk(&mut game, 60, &[Intent::Forward]);
-        walk(&mut game, 120, wanted);
-        position(&game).x > 4.25
-    };
-    let hanging = "sprite = \"lamp\", anchor = \"ceiling\", blocks = true, height = 0.9";
-    assert!(past("sprite = \"table\"", &[Intent::Forward, Intent::Jump]));
-    assert!(!past("sprite = \"table\"", &[Intent::Forward]));
-    assert!(past(hanging, &[Intent::Forward, Intent::Duck]));
-    assert!(!past(hanging, &[Intent::Forward]));
-}
-
-#[test]
-fn a_low_pillar_is_a_step_and_a_higher_one_is_jumped_onto() {
-    let walk_and_jump = |height: f64| {
-        let pillar = format!("pillar = \"marble\", radius = 0.5, height = {height}");
-        let mut game = corridor(SKY, &[&pillar]);
-        walk(&mut game, 120, &[Intent::Forward]);
-        let after_walking = game.feet();
-        walk(&mut game, 120, &[Intent::Forward, Intent::Jump]);
-        [after_walking, game.feet()]
-    };
-    assert_eq!(walk_and_jump(0.35), [0.35, 0.35]);
-    assert_eq!(walk_and_jump(0.6), [0.0, 0.6]);
-    assert_eq!(walk_and_jump(0.7), [0.0, 0.0]);
-}
-
-#[test]
-fn who_falls_onto_a_pillar_stands_on_it() {
-    let ledge = "floor_height = 3";
-    let pillar = "pillar = \"marble\", radius = 0.5, height = 2";
-    let map = format!(
-        "{SKY}\ngrid = '''\n######\n#@o..#\n######\n'''\n[tiles]\n\
-         \"#\" = {{ wall = \"brick\", height = 99 }}\n\"l\" = {{ {ledge} }}\n\
-         \"o\" = {{ {pillar} }}\n[things]\n\"@\" = {{ start = 0, on = \"l\" }}\n"
-    );
-    let mut game = Game::new(map::parse_str(&map).unwrap());
-    walk(&mut game, 20, &[Intent::Forward]);
-    walk(&mut game, 60, &[]);
-    assert_eq!(game.feet(), 2.0, "at {}", position(&game));
-    walk(&mut game, 60, &[Intent::Forward]);
-    assert_eq!(game.feet(), 0.0);
 }
 
 /// A closed room with cells of eight kinds, whose heights are drawn, and with shapes and things.

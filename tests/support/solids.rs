@@ -24,11 +24,25 @@ pub(crate) struct Solids<'a> {
 
 enum Solid<'a> {
     Block(Block),
-    Pillar { center: DVec2, radius: f64, heights: Gap, paint: Paint },
+    Pillar {
+        center: DVec2,
+        radius: f64,
+        heights: Gap,
+        paint: Paint,
+    },
     /// A thin wall, from a place and along a way.
-    Panel { start: DVec2, way: DVec2, heights: Gap, paint: Paint },
+    Panel {
+        start: DVec2,
+        way: DVec2,
+        heights: Gap,
+        paint: Paint,
+    },
     /// A picture that faces the viewer.
-    Picture { center: DVec2, base: f64, sprite: &'a Sprite },
+    Picture {
+        center: DVec2,
+        base: f64,
+        sprite: &'a Sprite,
+    },
 }
 
 /// A block of rock, and the paints of its sides, its top and its bottom.
