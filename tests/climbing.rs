@@ -6,7 +6,7 @@ mod walker;
 
 use cellcaster::game::{Game, Intent, Intents, STEP};
 use cellcaster::map;
-use cellcaster::world::{Anchor, Ceiling, Cell, FieldOfView, Gap, TileKind, World};
+use cellcaster::world::{Anchor, Ceiling, Cell, FieldOfView, Gap, ShapeHeight, TileKind, World};
 use glam::DVec2;
 use proptest::prelude::*;
 use walker::{SKY, corridor, position, walk, want};
@@ -197,7 +197,7 @@ fn is_beside_shape(world: &World, column: i64, row: i64, position: DVec2, feet: 
     let Some(tile) = world.grid().tile(column, row).map(|id| world.tile(id)) else { return true };
     let TileKind::Shape(shape) = tile.kind else { return true };
     let cell = Cell { column: column as u32, row: row as u32 };
-    let height = shape.height.map_or(f64::INFINITY, |height| height.cells());
+    let height = shape.height.map_or(f64::INFINITY, ShapeHeight::cells);
     let top = tile.heights.floor() + height;
     let top = match tile.ceiling {
         Ceiling::Sky if shape.height.is_some() => top,

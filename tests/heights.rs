@@ -160,7 +160,7 @@ fn map_of(kinds: &[Kind], cells: &[usize], is_covered: bool, look: Look) -> Stri
                 )
             }
             Kind::Shape { floor: floor_height, height, outline } => {
-                let outline = outline.replace(";", &format!("\"{lintel}\","));
+                let outline = outline.replace(';', &format!("\"{lintel}\","));
                 writeln!(
                     text,
                     "{character} = {{ {outline}, height = {height:?}, floor = \"{floor}\", \

@@ -43,7 +43,9 @@ impl Sights {
         self.extents.clear();
         self.extents.resize(images.len(), Extent::NONE);
         for (image, ends) in pieces(scene, images, veils) {
-            ends.into_iter().for_each(|end| self.extents[image].include(end.y));
+            for end in ends {
+                self.extents[image].include(end.y);
+            }
         }
         for (sight, extent) in self.list.iter_mut().zip(&self.extents) {
             sight.begin(scene.world, extent.north, extent.south);
