@@ -57,9 +57,10 @@ impl Draughtsman {
         self.wanted.extend(row.looks.iter().map(|&look| inks(look)));
         self.shown.clear();
         let shown = row.shown.iter().zip(row.looks).zip(&self.wanted);
-        self.shown.extend(
-            shown.map(|((&shown, &look), wanted)| if shown == look { *wanted } else { inks(shown) }),
-        );
+        self.shown
+            .extend(shown.map(
+                |((&shown, &look), wanted)| if shown == look { *wanted } else { inks(shown) },
+            ));
     }
 
     /// Moves the stretches of a row that have only moved, or about.

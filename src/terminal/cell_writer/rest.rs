@@ -78,9 +78,10 @@ impl Rest {
 /// How far off the cells of a row are that are not exact.
 fn errors<'a>(row: &'a Row) -> impl Iterator<Item = Cell> + 'a {
     let looks = row.shown.iter().zip(row.looks);
-    (0..).zip(looks).filter(|(_, (shown, look))| shown != look).map(|(column, (&shown, &look))| {
-        Cell { error: error(shown, look), y: row.y, column }
-    })
+    (0..)
+        .zip(looks)
+        .filter(|(_, (shown, look))| shown != look)
+        .map(|(column, (&shown, &look))| Cell { error: error(shown, look), y: row.y, column })
 }
 
 /// The larger distance of the two halves; infinite where it can't be told.

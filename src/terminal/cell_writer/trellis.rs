@@ -50,8 +50,7 @@ impl Ink {
     }
 
     fn between(self, other: Self) -> Self {
-        let channel =
-            |index: usize| self.channels[index].midpoint(other.channels[index]);
+        let channel = |index: usize| self.channels[index].midpoint(other.channels[index]);
         Self::new([channel(0), channel(1), channel(2)])
     }
 }
