@@ -81,3 +81,18 @@ fn who_falls_onto_a_pillar_stands_on_it() {
     walk(&mut game, 60, &[Intent::Forward]);
     assert_eq!(game.feet(), 0.0);
 }
+
+#[test]
+fn a_key_is_taken_by_who_is_as_high_as_it_is() {
+    let text = "ceiling = \"sky\"\ngrid = '''\n#######\n#@.k..#\n####+##\n####.##\n#######\n'''\n[tiles]\n\
+                \"#\" = { wall = \"brick\", height = 99 }\n\"+\" = { door = \"oak\", key = \"brass\" }\n\
+                \"=\" = { floor_height = -2, ceiling = \"wood\", ceiling_height = -0.5, roof_height = 0 }\n\
+                [things]\n\"@\" = { start = 0 }\n";
+    let keys_on_the_way = |key: &str| {
+        let mut game = Game::new(map::parse_str(&format!("{text}{key}")).unwrap());
+        walk(&mut game, 200, &[Intent::Forward]);
+        game.keys().count()
+    };
+    assert_eq!(keys_on_the_way("k = { key = \"brass\" }"), 1);
+    assert_eq!(keys_on_the_way("k = { key = \"brass\", on = \"=\" }"), 0, "it is under a roof");
+}
