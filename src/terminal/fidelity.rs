@@ -16,7 +16,7 @@ impl Fidelity {
     /// What is shown is what is wanted.
     pub const EXACT: Self = Self::new(0);
     /// A difference that is hard to see.
-    pub const HIGH: Self = Self::new(11);
+    pub const HIGH: Self = Self::new(10);
     /// A difference that is seen, and does not disturb.
     pub const LOW: Self = Self::new(24);
 
