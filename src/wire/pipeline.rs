@@ -34,10 +34,11 @@ pub struct PipelineRow {
 /// How many frames a second are drawn.
 const FRAMES_PER_SECOND: u32 = 30;
 const STEPS_A_FRAME: usize = (STEPS_PER_SECOND / FRAMES_PER_SECOND) as usize;
-/// How many frames are played at least, if the script has as many.
-const FEWEST_FRAMES: usize = 20;
+/// How many steps of a stretch are played at least, if it has as many.
+const FEWEST_STEPS: u32 = 4;
 
-/// Plays `script` in games that `begin` makes, in a window of `size`: for about so long, or to its end.
+/// Plays `script` in games that `begin` makes, in a window of `size`: as much of
+/// each stretch as there is time for.
 /// The first row is ratatui's own encoder, the others are ours at the fidelities that have a name.
 pub fn measure_pipeline<E>(
     script: &Script,
@@ -56,19 +57,30 @@ pub fn measure_pipeline<E>(
         let window = Window::new(backend, size, sink);
         players.push(Player::new(fidelity.to_string(), begin(size)?, Box::new(window)));
     }
+    let begun = Instant::now();
     for player in &mut players {
         player.play(&[]);
         player.forget();
     }
-    let begun = Instant::now();
-    let wanted: Vec<Intents> = script.iter().map(|(_, intents)| intents).collect();
-    for (frame, steps) in wanted.chunks_exact(STEPS_A_FRAME).enumerate() {
-        if frame >= FEWEST_FRAMES && begun.elapsed() >= time {
-            break;
-        }
+    // The first frame, which paints everything, takes longer than most.
+    let affordable = time.as_secs_f64() / begun.elapsed().as_secs_f64().max(f64::MIN_POSITIVE);
+    let wanted = shortened(script, affordable as usize * STEPS_A_FRAME);
+    for steps in wanted.chunks_exact(STEPS_A_FRAME) {
         players.iter_mut().for_each(|player| player.play(steps));
     }
     Ok(players.into_iter().map(|player| player.finish(size)).collect())
+}
+
+/// What `script` wants step by step, or the same share of each of its stretches, so that it is about
+/// `most` steps.
+fn shortened(script: &Script, most: usize) -> Vec<Intents> {
+    let share = script.iter().count().div_ceil(most.max(1)) as u32;
+    let stretches = script.sections().iter().flat_map(|section| &section.stretches);
+    let steps = stretches.flat_map(|stretch| {
+        let count = stretch.steps.div_ceil(share.max(1)).max(FEWEST_STEPS).min(stretch.steps);
+        std::iter::repeat_n(stretch.intents, count as usize)
+    });
+    steps.collect()
 }
 
 /// A game and what shows it.
