@@ -13,7 +13,7 @@
 //!
 //! | method | finds the hit by | from |
 //! |---|---|---|
-//! | [`Exact`] | the lines in their true order: doubles, and integers where those can't tell | here |
+//! | [`Exact`] | the lines in their true order: integers, and longer ones where those can't tell | here |
 //! | [`Dda`] | the lines in order, in double precision | Lode Vandevenne, "Raycasting II" |
 //! | [`Dda32`] | the same in single precision | the same |
 //! | [`Accumulate`] | a running sum of distances | Lode Vandevenne, "Raycasting" |

@@ -40,6 +40,9 @@ const FEWEST_STEPS: u32 = 4;
 /// Plays `script` in games that `begin` makes, in a window of `size`: as much of
 /// each stretch as there is time for.
 /// The first row is ratatui's own encoder, the others are ours at the fidelities that have a name.
+///
+/// # Errors
+/// The first that `begin` has.
 pub fn measure_pipeline<E>(
     script: &Script,
     size: Size,
@@ -66,7 +69,9 @@ pub fn measure_pipeline<E>(
     let affordable = time.as_secs_f64() / begun.elapsed().as_secs_f64().max(f64::MIN_POSITIVE);
     let wanted = shortened(script, affordable as usize * STEPS_A_FRAME);
     for steps in wanted.chunks_exact(STEPS_A_FRAME) {
-        players.iter_mut().for_each(|player| player.play(steps));
+        for player in &mut players {
+            player.play(steps);
+        }
     }
     Ok(players.into_iter().map(|player| player.finish(size)).collect())
 }
@@ -100,7 +105,9 @@ impl Player {
     /// Plays so many steps, and shows what has come of it.
     fn play(&mut self, steps: &[Intents]) {
         let start = Instant::now();
-        steps.iter().for_each(|&intents| self.replay.step(intents));
+        for &intents in steps {
+            self.replay.step(intents);
+        }
         let bytes = self.window.show(&mut self.replay);
         self.times.push(start.elapsed().as_secs_f64());
         self.bytes += bytes;

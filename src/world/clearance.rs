@@ -219,7 +219,7 @@ mod tests {
         fn it_is_as_far_as_a_king_walks(
             rows in prop::collection::vec("[.......#]{9}", 1..9_usize),
         ) {
-            let drawn: Vec<&[u8]> = rows.iter().map(|row| row.as_bytes()).collect();
+            let drawn: Vec<&[u8]> = rows.iter().map(String::as_bytes).collect();
             let may_be_solid = |column: i64, row: i64| {
                 let row = drawn.get(row as usize);
                 row.and_then(|row| row.get(column as usize)).is_none_or(|&drawn| drawn == b'#')
