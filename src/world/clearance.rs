@@ -90,14 +90,12 @@ impl Clearance {
         for end in (2 * width..=cells.len()).step_by(width) {
             let (before, row) = cells[..end].split_at_mut(end - width);
             approach(row, &before[before.len() - width..]);
-            (1..width).for_each(|column| row[column] = row[column].min(row[column - 1] + 1));
+            spread(row.iter_mut());
         }
         for start in (0..cells.len() - width).step_by(width).rev() {
             let (row, after) = cells[start..].split_at_mut(width);
             approach(row, &after[..width]);
-            (1..width)
-                .rev()
-                .for_each(|column| row[column - 1] = row[column - 1].min(row[column] + 1));
+            spread(row.iter_mut().rev());
         }
         Self { cells: cells.into_iter().map(Coded::new).collect(), width, is_measured: true }
     }
@@ -164,6 +162,14 @@ fn approach(row: &mut [u16], beside: &[u16]) {
         let nearest = neighbours[0].min(neighbours[1]).min(neighbours[2]);
         *cell = (*cell).min(nearest + 1);
     }
+}
+
+/// Brings each cell as near as the one before it, the first of which is not clear.
+fn spread<'row>(cells: impl Iterator<Item = &'row mut u16>) {
+    cells.fold(0, |before, cell| {
+        *cell = (*cell).min(before + 1);
+        *cell
+    });
 }
 
 #[cfg(test)]
