@@ -126,13 +126,14 @@ mod tests {
             ("\x1b[?0u", answer(Answer::KeyFlags)),
             ("\x1b[?11u", answer(Answer::KeyFlags)),
             ("\x1b[?62;4c", answer(Answer::Fence)),
+            ("\x1b[0n", answer(Answer::Status)),
+            ("\x1b[3n", answer(Answer::Status)),
             ("\x1bP1+r524742=382F382F38\x1b\\", answer(Answer::TrueColor)),
             ("\x1bP1+r524742\x1b\\", answer(Answer::TrueColor)),
         ];
         let meaningless = [
             "\x1bP0+r524742\x1b\\",
             "\x1b[?2026;2$y",
-            "\x1b[0n",
             "\x1b[>1;4000;19c",
             "\x1b[?997;1n",
             "\x1b[12;40R",

@@ -35,6 +35,8 @@ pub(super) const QUERY_KEY_FLAGS: &str = "\x1b[?u";
 pub(super) const RGB_CAPABILITY: &str = "524742";
 /// Asks for that capability.
 pub(super) const QUERY_TRUE_COLOR: &str = "\x1bP+q524742\x1b\\";
+/// Asks for the device's status; the answer tells that all before the query has been taken in.
+pub(super) const QUERY_STATUS: &str = "\x1b[5n";
 /// Asks for the device's attributes, which every terminal answers, and after all earlier queries.
 pub(super) const QUERY_FENCE: &str = "\x1b[c";
 

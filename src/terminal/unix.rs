@@ -37,6 +37,8 @@ pub(super) struct Ready {
     pub(super) input: bool,
     /// There are signals.
     pub(super) signals: bool,
+    /// There is room for bytes to write, or there will never be.
+    pub(super) output: bool,
 }
 
 impl Device {
@@ -76,17 +78,29 @@ impl Device {
         })
     }
 
-    /// Writes all of `bytes`; where the terminal takes no more, as long as `go_on` says so.
-    pub(super) fn write(&self, bytes: &[u8], go_on: impl Fn() -> bool) -> io::Result<()> {
-        let mut rest = bytes;
-        while !rest.is_empty() {
-            match rustix::io::write(&self.output, rest) {
-                Ok(count) => rest = &rest[count..],
+    /// Writes as much of `bytes` as the terminal takes at once, and tells how much that is.
+    pub(super) fn write_some(&self, bytes: &[u8]) -> io::Result<usize> {
+        let mut written = 0;
+        while written < bytes.len() {
+            match rustix::io::write(&self.output, &bytes[written..]) {
+                Ok(count) => written += count,
                 Err(Errno::INTR) => {}
-                Err(Errno::AGAIN) if go_on() => self.wait_for_room()?,
-                Err(Errno::AGAIN) => return Err(io::ErrorKind::TimedOut.into()),
+                Err(Errno::AGAIN) => break,
                 Err(error) => return Err(error.into()),
             }
+        }
+        Ok(written)
+    }
+
+    /// Writes all of `bytes`; where the terminal takes no more, as long as `go_on` says so.
+    pub(super) fn write(&self, bytes: &[u8], go_on: impl Fn() -> bool) -> io::Result<()> {
+        let mut rest = &bytes[self.write_some(bytes)?..];
+        while !rest.is_empty() {
+            if !go_on() {
+                return Err(io::ErrorKind::TimedOut.into());
+            }
+            self.wait_for_room()?;
+            rest = &rest[self.write_some(rest)?..];
         }
         Ok(())
     }
@@ -122,13 +136,24 @@ impl Device {
         Ok(!input[0].revents().is_empty())
     }
 
-    /// Waits for bytes or signals, at most for `timeout`.
-    pub(super) fn wait(&self, signals: &Signals, timeout: Option<Duration>) -> io::Result<Ready> {
-        let mut both =
-            [PollFd::new(&self.input, PollFlags::IN), PollFd::new(signals, PollFlags::IN)];
-        wait(&mut both, timeout)?;
-        let [input, signals] = both.map(|one| !one.revents().is_empty());
-        Ok(Ready { input, signals })
+    /// Waits for bytes, signals or, where it `wants_room`, for room to write; at most for `timeout`.
+    pub(super) fn wait(
+        &self,
+        signals: &Signals,
+        wants_room: bool,
+        timeout: Option<Duration>,
+    ) -> io::Result<Ready> {
+        let room = if wants_room { PollFlags::OUT } else { PollFlags::empty() };
+        let mut all = [
+            PollFd::new(&self.input, PollFlags::IN),
+            PollFd::new(signals, PollFlags::IN),
+            PollFd::new(&self.output, room),
+        ];
+        // A terminal that has been hung up is ready whether or not anybody wants to write to it.
+        let watched = if wants_room { &mut all[..] } else { &mut all[..2] };
+        wait(watched, timeout)?;
+        let [input, signals, output] = all.map(|one| !one.revents().is_empty());
+        Ok(Ready { input, signals, output })
     }
 }
 

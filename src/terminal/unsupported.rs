@@ -22,6 +22,7 @@ pub(super) enum Signals {}
 pub(super) struct Ready {
     pub(super) input: bool,
     pub(super) signals: bool,
+    pub(super) output: bool,
 }
 
 /// What a signal would mean.
@@ -51,6 +52,10 @@ impl Device {
         match *self {}
     }
 
+    pub(super) fn write_some(&self, _: &[u8]) -> io::Result<usize> {
+        match *self {}
+    }
+
     pub(super) fn write(&self, _: &[u8], _: impl Fn() -> bool) -> io::Result<()> {
         match *self {}
     }
@@ -67,7 +72,7 @@ impl Device {
         match *self {}
     }
 
-    pub(super) fn wait(&self, _: &Signals, _: Option<Duration>) -> io::Result<Ready> {
+    pub(super) fn wait(&self, _: &Signals, _: bool, _: Option<Duration>) -> io::Result<Ready> {
         match *self {}
     }
 }

@@ -1,23 +1,23 @@
 //! The game as a program: a state that keys and time change, and that draws itself.
 //!
-//! [`play`] is the loop around it. It sleeps until a key, a signal or the next frame is due; while
-//! nothing moves there is no next frame, so nothing is computed and nothing written. The state knows
-//! no terminal and no clock: keys and times are handed to it, and it is tested by handing it some.
+//! The state knows no terminal and no clock: keys and times are handed to it, and a [`Replay`] plays
+//! it off screen. [`play`] is the loop around it that has both.
 
 mod clock;
 mod levels;
 mod panels;
 mod recording;
 mod replay;
+mod run;
 
-use std::env;
-use std::time::{Duration, Instant};
+use std::time::Duration;
 
 pub use levels::Levels;
 use ratatui::Frame;
 use ratatui::layout::Rect;
 pub use recording::Recording;
 pub use replay::Replay;
+pub use run::play;
 
 use super::bindings::{Action, Bindings};
 use super::held::HeldKeys;
@@ -26,7 +26,7 @@ use crate::cast::Method;
 use crate::game::{Game, Intent, Intents, STEP};
 use crate::palette::ColorDepth;
 use crate::render::Filter;
-use crate::terminal::{Detected, Error, Event, Key, KeyEvent, Options, Phase, Session};
+use crate::terminal::{Key, KeyEvent, Phase};
 use crate::world::{Camera, FieldOfView, World};
 use clock::Clock;
 use recording::ScriptRecorder;
@@ -50,54 +50,6 @@ pub struct Settings {
     pub method: Method,
     /// How textures are looked up.
     pub filter: Filter,
-}
-
-/// Plays `levels` on the terminal until the player leaves or somebody else ends the program, and
-/// notes down what `recording` asks for.
-///
-/// # Errors
-/// Where there is no terminal, or it fails.
-pub fn play(levels: Levels, settings: Settings, recording: Recording) -> Result<(), Error> {
-    let mut options = Options::from_environment(|name| env::var(name).ok());
-    if let Some(depth) = settings.depth {
-        options.color_depth = Detected::Certain(depth);
-    }
-    let mut session = Session::enter_recorded(options, recording.terminal)?;
-    let mut app = App::new(levels, settings);
-    app.script = recording.script;
-    app.terminal_changed(&session);
-    let start = Instant::now();
-    while !app.has_left {
-        app.advance(start.elapsed());
-        if app.is_due(start.elapsed()) {
-            session.draw(|frame| app.draw(frame))?;
-            app.drawn(start.elapsed());
-        }
-        let timeout = app.wakes_at().map(|wakes| wakes.saturating_sub(start.elapsed()));
-        match session.next_event(timeout)? {
-            None => {}
-            Some(Event::Key(event)) => {
-                #[cfg(debug_assertions)]
-                panic_on_demand(event.key);
-                app.key(event, start.elapsed());
-            }
-            Some(Event::Resized | Event::ColorDepth(_)) => app.terminal_changed(&session),
-            Some(Event::KeyReleases(reported)) => app.held.set_reports_releases(reported),
-            Some(Event::Suspend) => {
-                session.suspend()?;
-                app.resumed(start.elapsed());
-            }
-            Some(Event::Quit(_)) => break,
-        }
-    }
-    Ok(())
-}
-
-/// A fault in the middle of a game, for the tests that look at how it ends.
-#[cfg(debug_assertions)]
-fn panic_on_demand(key: Key) {
-    let demanded = key == Key::Function(12) && env::var_os("CELLCASTER_PANIC").is_some();
-    assert!(!demanded, "CELLCASTER_PANIC is set, and F12 was pressed");
 }
 
 /// What shows besides the picture, and what keys do meanwhile.
@@ -351,10 +303,9 @@ impl App {
     }
 
     /// The terminal has another size, or has told more about itself.
-    fn terminal_changed(&mut self, session: &Session) {
-        let told = session.size().cell_aspect.and_then(CellAspect::new);
-        self.cell_aspect = self.settings.cell_aspect.or(told).unwrap_or_default();
-        self.depth = self.settings.depth.unwrap_or(session.color_depth());
+    fn terminal_changed(&mut self, told_aspect: Option<CellAspect>, told_depth: ColorDepth) {
+        self.cell_aspect = self.settings.cell_aspect.or(told_aspect).unwrap_or_default();
+        self.depth = self.settings.depth.unwrap_or(told_depth);
         self.shown = None;
     }
 

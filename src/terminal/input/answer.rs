@@ -11,6 +11,8 @@ pub(in super::super) enum Answer {
     TrueColor,
     /// It has answered all that was asked before the fence.
     Fence,
+    /// It has come as far as a status request.
+    Status,
 }
 
 /// Whether `unit`, a control sequence, has a shape that only reports have, and no key.
@@ -23,6 +25,7 @@ pub(super) fn parse_report(unit: &[u8]) -> Option<Answer> {
     match unit {
         [_, _, b'?', b'0'..=b'9' | b';', .., b'c'] => Some(Answer::Fence),
         [_, _, b'?', b'0'..=b'9', .., b'u'] => Some(Answer::KeyFlags),
+        [_, _, b'0'..=b'9', b'n'] => Some(Answer::Status),
         _ => None,
     }
 }
