@@ -5,6 +5,7 @@
 //! [`adversarial_ray`] make as many more as one likes, from a seed.
 
 mod chance;
+mod filters;
 mod motion;
 mod pictures;
 mod rays;
@@ -14,6 +15,7 @@ mod sets;
 mod trial;
 
 pub use chance::Chance;
+pub use filters::{FilterErrors, FilterRow, compare_filters, shimmer};
 pub use motion::{Integrator, MotionCase, MotionResult, compare_motions};
 pub use pictures::{Gallery, Reference};
 pub use rays::{adversarial_ray, random_ray};

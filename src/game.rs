@@ -9,6 +9,7 @@
 mod collision;
 mod doors;
 mod fall;
+mod flight;
 mod gaze;
 mod intent;
 mod motion;
@@ -22,8 +23,9 @@ use std::collections::BTreeSet;
 use crate::world::{Camera, Cell, Door, FieldOfView, KeyId, ThingKind, World};
 use doors::{Doors, door_ahead};
 use notice::Notice;
-use player::Player;
+use player::{AIM, FRICTION, Player, RUN, STILL, TURN, TURN_FRICTION, WALK};
 
+pub use flight::Flight;
 pub use intent::{Intent, Intents};
 #[cfg(feature = "accuracy")]
 pub(crate) use motion::approach;
@@ -50,7 +52,7 @@ impl Game {
     /// A game at its beginning: the player stands still at the world's start.
     pub fn new(world: World) -> Self {
         Self {
-            player: Player::new(world.start()),
+            player: Player::new(&world),
             world,
             doors: Doors::default(),
             keys: BTreeSet::new(),

@@ -16,6 +16,9 @@ pub mod game;
 pub mod map;
 pub mod palette;
 pub mod render;
+pub mod space;
+#[cfg(feature = "speed")]
+pub mod speed;
 #[cfg(feature = "terminal")]
 pub mod terminal;
 #[cfg(feature = "tui")]

@@ -36,9 +36,11 @@ mod layout;
 mod legend;
 mod per_character;
 mod picture;
+mod scene;
 mod see_through;
 mod shapes;
 mod sprites;
+mod supports;
 mod textures;
 
 use std::collections::BTreeSet;
@@ -47,6 +49,7 @@ use std::io::{self, Read};
 use std::path::Path;
 
 use crate::fault::{Fault, Faults, document};
+use crate::space::Scene;
 use crate::world::{Ceiling, Covering, Heights, Paint, Parts, Rgb, Sky, Tile, TileKind, World};
 use definitions::Definitions;
 use drawing::Drawing;
@@ -60,18 +63,35 @@ pub const MAX_BYTES: usize = 64 << 20;
 /// The most columns, and the most rows, of a grid.
 pub const MAX_SIDE: u32 = 4096;
 
+/// What a map describes: there are two kinds.
+#[derive(Clone, Debug, PartialEq)]
+pub enum Level {
+    /// A grid of tiles.
+    Grid(Box<World>),
+    /// Spheres, planes and boxes.
+    Space(Scene),
+}
+
 /// The world that the map `text` describes. Faults call the map `name`; textures that are not
 /// built in come from `files`.
 ///
 /// # Errors
-/// Everything that is wrong with the map.
+/// Everything that is wrong with the map, or that it has no grid but bodies.
 pub fn parse(text: &str, name: &str, files: &dyn TextureFiles) -> Result<World, Faults> {
+    parse_level(text, name, files)?.into_world(name)
+}
+
+/// As [`parse`], for a map of either kind.
+///
+/// # Errors
+/// Everything that is wrong with the map.
+pub fn parse_level(text: &str, name: &str, files: &dyn TextureFiles) -> Result<Level, Faults> {
     if text.len() > MAX_BYTES {
         return Err(too_large(name));
     }
     let mut faults = Vec::new();
     match read(text, files, &mut faults) {
-        Some(world) if faults.is_empty() => Ok(world),
+        Some(level) if faults.is_empty() => Ok(level),
         _ => Err(Faults::new(name, text, faults)),
     }
 }
@@ -90,9 +110,41 @@ pub fn parse_str(text: &str) -> Result<World, Faults> {
 /// # Errors
 /// Everything that is wrong with the map, or why the file cannot be read.
 pub fn load(path: &Path) -> Result<World, Faults> {
+    load_level(path)?.into_world(&path.display().to_string())
+}
+
+/// As [`load`], for a map of either kind.
+///
+/// # Errors
+/// Everything that is wrong with the map, or why the file cannot be read.
+pub fn load_level(path: &Path) -> Result<Level, Faults> {
     let name = path.display().to_string();
     let text = read_text(path, &name)?;
-    parse(&text, &name, &Folder::of(path))
+    parse_level(&text, &name, &Folder::of(path))
+}
+
+impl From<World> for Level {
+    fn from(world: World) -> Self {
+        Self::Grid(Box::new(world))
+    }
+}
+
+impl From<Scene> for Level {
+    fn from(scene: Scene) -> Self {
+        Self::Space(scene)
+    }
+}
+
+impl Level {
+    fn into_world(self, name: &str) -> Result<World, Faults> {
+        match self {
+            Self::Grid(world) => Ok(*world),
+            Self::Space(_) => {
+                let message = format!("{name} is a map of bodies, and has no grid");
+                Err(Faults::of_whole_file(name, message, "name a map with a grid"))
+            }
+        }
+    }
 }
 
 fn read_text(path: &Path, name: &str) -> Result<String, Faults> {
@@ -138,9 +190,14 @@ fn unreadable(name: &str, error: &io::Error) -> Faults {
 }
 
 /// What `text` describes. Where it is not a map, that is added to `faults`.
-fn read(text: &str, files: &dyn TextureFiles, faults: &mut Vec<Fault>) -> Option<World> {
+fn read(text: &str, files: &dyn TextureFiles, faults: &mut Vec<Fault>) -> Option<Level> {
     let document = document::parse(text, faults);
     let not_toml = std::mem::take(faults);
+    if scene::has_bodies(&document) {
+        let scene = scene::read(&document, faults);
+        keep_apart(faults, not_toml, text);
+        return scene.map(Level::Space);
+    }
     let definitions = Definitions::read(&document, faults);
     if !not_toml.is_empty() {
         keep_apart(faults, not_toml, text);
@@ -173,7 +230,7 @@ fn read(text: &str, files: &dyn TextureFiles, faults: &mut Vec<Fault>) -> Option
     };
     let (legend, textures_mut) = (&definitions.legend, &mut textures);
     let layout = Layout::of(&drawing, legend, ground, faces, textures_mut, faults)?;
-    Some(World::from_parts(Parts {
+    Some(Level::from(World::from_parts(Parts {
         title: definitions.title,
         grid: layout.grid,
         tiles: layout.tiles,
@@ -187,7 +244,7 @@ fn read(text: &str, files: &dyn TextureFiles, faults: &mut Vec<Fault>) -> Option
         sprites: layout.sprites,
         things: layout.things,
         keys: layout.keys,
-    }))
+    })))
 }
 
 /// Adds the places that are not TOML to `faults`, and drops what was found in the same lines: the

@@ -24,6 +24,7 @@ mod see_through;
 mod shade;
 mod sky;
 mod tally;
+mod texels_down;
 mod things;
 mod track;
 mod walls;
@@ -45,6 +46,7 @@ use see_through::Passed;
 use sky::{SkyColumn, SkyView};
 use tally::Tally;
 use things::InView;
+use walls::Papers;
 pub use windows::WindowCounts;
 use windows::Windows;
 
@@ -72,6 +74,7 @@ struct Memory {
     windows: Windows,
     /// By which passes the last frame was drawn.
     geometry: Option<Geometry>,
+    papers: Papers,
 }
 
 impl Renderer {
@@ -159,12 +162,10 @@ impl Renderer {
     pub fn surface(&self, x: u32, y: u32) -> Option<Surface> {
         let Memory { columns, first_row_of_ground, marks, windows, geometry, .. } = &self.memory;
         let column = columns.get(x as usize)?;
-        match geometry {
+        marks.surface(x, y).or_else(|| match geometry {
             Some(Geometry::Windows(_)) => windows.surface(x, y),
-            _ => {
-                Some(marks.surface(x, y).unwrap_or_else(|| column.surface(y, *first_row_of_ground)))
-            }
-        }
+            _ => Some(column.surface(y, *first_row_of_ground)),
+        })
     }
 }
 
@@ -214,6 +215,7 @@ impl<T: Tally> Picture<'_, T> {
             marks,
             next_change,
             geometry,
+            papers,
             ..
         } = memory;
         let projection = &Projection::new(camera, frame.size(), frame.pixel_aspect());
@@ -236,7 +238,7 @@ impl<T: Tally> Picture<'_, T> {
         visible.clear();
         visible.extend(columns.iter().map(|column| column.rows_of_floor(ground, height)));
         Plane { scene, kind: PlaneKind::Floor, sky, visible }.draw(plan.floor, frame, tally);
-        walls::draw(scene, plan.walls, frame, tally);
+        walls::draw(scene, plan.walls, papers, frame, tally);
         marks.begin(frame.width(), height);
         *next_change = match plan.things {
             ThingLoop::None => {
@@ -251,12 +253,14 @@ impl<T: Tally> Picture<'_, T> {
 
     /// Draws by exact rays, whatever the caster: the others know nothing but walls.
     fn draw_windows(self, plan: Plan) {
-        let Self { world, camera, filter, memory, frame, tally, .. } = self;
-        let Memory { columns, sky, windows, geometry, .. } = memory;
+        let Self { world, camera, filter, seconds, memory, frame, tally } = self;
+        let Memory { columns, sky, windows, marks, next_change, geometry, .. } = memory;
         *geometry = Some(plan.geometry);
         let projection = &Projection::new(camera, frame.size(), frame.pixel_aspect());
         let sky = &SkyView::new(world, projection, filter, sky);
         let scene = windows::Scene::new(world, projection, filter);
-        windows::draw(scene, plan.walls, sky, windows, columns, frame, tally);
+        let viewer = windows::Viewer { camera, seconds };
+        let notes = (windows, columns, marks);
+        *next_change = windows::draw(scene, viewer, (plan.walls, sky), notes, frame, tally);
     }
 }

@@ -35,6 +35,8 @@ mod half_blocks;
 #[cfg(feature = "terminal")]
 mod held;
 mod minimap;
+mod ramp;
+mod space_view;
 
 #[cfg(feature = "terminal")]
 pub use app::{Levels, Recording, Replay, Settings, play};
@@ -43,3 +45,4 @@ pub use bindings::Bindings;
 pub use first_person::{FirstPerson, View};
 pub use glyphs::{CellAspect, GlyphMode};
 pub use minimap::Minimap;
+pub use space_view::{SpaceMemory, SpaceView};

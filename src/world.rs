@@ -462,6 +462,12 @@ impl World {
 
     /// A camera where the player starts.
     pub fn start_camera(&self, field_of_view: FieldOfView) -> Camera {
-        Camera::in_cell(self.start.cell, self.start.heading, field_of_view)
+        let camera = Camera::in_cell(self.start.cell, self.start.heading, field_of_view);
+        camera.with_eye(self.floor_at(self.start.cell) + Camera::STANDING).unwrap_or(camera)
+    }
+
+    /// How high the floor in `cell` is, or the top of a wall; 0 off the map.
+    pub fn floor_at(&self, cell: Cell) -> f64 {
+        self.tile_at(cell).map_or(0.0, |tile| tile.heights.floor())
     }
 }

@@ -24,6 +24,8 @@ fn the_whole_report_finds_the_exact_method_right_about_everything() {
     );
     assert_eq!(methods[0]["wrong_pixels"]["160x90"], 0.0);
     assert!(methods.iter().any(|method| method["front"] == true));
+    let mean_error = |filter: usize| &report["filters"][filter]["pictures"]["160x90"]["mean"];
+    assert!(mean_error(0).as_f64() < mean_error(1).as_f64(), "{}", report["filters"]);
     let sets = report["sets"].as_array().unwrap();
     assert!(sets.len() >= 20);
     for set in sets {
@@ -37,7 +39,7 @@ fn the_whole_report_finds_the_exact_method_right_about_everything() {
 #[test]
 fn a_table_is_for_people() {
     let table = String::from_utf8(report("table")).unwrap();
-    for word in ["40 rays", "exact", "march:0.1", "400x120", "nanoseconds a ray"] {
+    for word in ["40 rays", "exact", "march:0.1", "400x120", "nanoseconds a ray", "shimmer"] {
         assert!(table.contains(word), "no {word} in\n{table}");
     }
 }

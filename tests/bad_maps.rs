@@ -12,7 +12,7 @@ type Outcome = Result<(), Box<dyn Error>>;
 
 /// The faults of a map that has some.
 fn faults(path: &Path) -> Result<Faults, String> {
-    map::load(path).err().ok_or_else(|| format!("{} was accepted", path.display()))
+    map::load_level(path).err().ok_or_else(|| format!("{} was accepted", path.display()))
 }
 
 /// A folder of its own for the test `name`.

@@ -4,8 +4,9 @@ mod support;
 
 use std::fs;
 
-use cellcaster::map;
+use cellcaster::map::{self, Level, NoFiles};
 use cellcaster::render::{Frame, FrameSize, PixelAspect, Renderer};
+use cellcaster::space;
 use cellcaster::world::FieldOfView;
 use support::output_of;
 
@@ -23,6 +24,15 @@ fn names() -> Vec<String> {
 fn every_feature_looks_as_it_did() {
     for name in names() {
         assert_golden(&name, &name, &[]);
+    }
+}
+
+#[test]
+fn every_feature_looks_as_it_did_on_a_large_screen() {
+    for name in names() {
+        let map = format!("maps/gallery/{name}.toml");
+        let picture = output_of(&["snapshot", &map, "--size", "200x60", "--format", "png"]);
+        insta::assert_binary_snapshot!(&format!("{name}_200x60.png"), picture);
     }
 }
 
@@ -45,15 +55,33 @@ fn every_example_on_the_page_about_maps_is_a_map() {
         .collect();
     assert!(examples.len() >= 10, "where are the examples?");
     for example in examples {
+        if example.contains("[[") {
+            assert!(shows_something(&scene_picture(example)), "{example}");
+            continue;
+        }
         // An example of a feature is a part of a map; the rest is always the same.
         let text = if example.contains("grid") { example.to_owned() } else { with_room(example) };
         let world = map::parse_str(&text).unwrap_or_else(|faults| panic!("{text}\n{faults}"));
         let mut frame = Frame::new(FrameSize::new(80, 48).unwrap(), PixelAspect::SQUARE);
         let camera = world.start_camera(FieldOfView::default());
         Renderer::new().render(&world, &camera, &mut frame);
-        let first = frame.pixel(0, 0);
-        assert!(frame.rows().flatten().any(|&pixel| pixel != first), "{example}");
+        assert!(shows_something(&frame), "{example}");
     }
+}
+
+fn shows_something(frame: &Frame) -> bool {
+    let first = frame.pixel(0, 0);
+    frame.rows().flatten().any(|&pixel| pixel != first)
+}
+
+/// The picture of a map of bodies.
+fn scene_picture(text: &str) -> Frame {
+    let level = map::parse_level(text, "example", &NoFiles);
+    let Ok(Level::Space(scene)) = level else { panic!("{text}\n{level:?}") };
+    let mut frame = Frame::new(FrameSize::new(80, 48).unwrap(), PixelAspect::SQUARE);
+    let camera = scene.start_camera(FieldOfView::default());
+    space::Renderer::new().render(&scene, &camera, &mut frame);
+    frame
 }
 
 /// A part of a map in a room of its own.
@@ -85,6 +113,12 @@ fn assert_golden(map: &str, name: &str, options: &[&str]) {
 }
 
 #[test]
+fn a_ramp_of_sixteen_shades_is_for_maps_of_both_kinds() {
+    assert_golden("spheres", "spheres_ramp", &["--glyphs", "ramp"]);
+    assert_golden("doors", "doors_ramp", &["--glyphs", "ramp"]);
+}
+
+#[test]
 fn doors_stand_back_between_their_jambs() {
     assert_golden("doors", "doors_at_an_angle", &["--camera", "2.5,4.2,308"]);
     assert_golden("doors", "doors_from_the_front", &["--camera", "2.7,2.5,0"]);
@@ -111,7 +145,6 @@ fn who_looks_up_and_down_sees_the_same_moved() {
 }
 
 #[test]
-
 fn heights_are_seen_from_below_and_from_above() {
     assert_golden("heights", "heights_large", &["--size", "200x60"]);
     let above = ["--camera", "2.5,10.5,330", "--eye", "3.3", "--pitch", "-20"];
@@ -124,6 +157,7 @@ fn heights_are_seen_from_below_and_from_above() {
 fn mirrors_show_mirrors() {
     assert_golden("mirrors", "mirrors_large", &["--size", "200x60"]);
     assert_golden("mirrors", "mirrors_face_to_face", &["--camera", "6.5,6.6,4"]);
+    assert_golden("mirrors", "mirrors_and_whoever_looks", &["--camera", "2.5,3.5,180"]);
 }
 
 #[test]

@@ -2,10 +2,9 @@
 //! asking all blocks of rock which of them a line through the pixel meets first.
 
 use std::fmt::Write as _;
-use std::path::Path;
 
 use cellcaster::map;
-use cellcaster::render::{Filter, Frame, FrameSize, PixelAspect, Renderer};
+use cellcaster::render::{Frame, FrameSize, PixelAspect, Renderer};
 use cellcaster::world::{Camera, FieldOfView, Gap, Heading, Pitch, Rgb, TileKind, World};
 use glam::{DVec2, DVec3};
 use proptest::prelude::*;

@@ -2,7 +2,7 @@
 //! looks the same without one.
 
 use cellcaster::map::{self, TextureFileError, TextureFiles};
-use cellcaster::render::{Frame, FrameSize, PixelAspect, Renderer};
+use cellcaster::render::{Filter, Frame, FrameSize, PixelAspect, Renderer, Surface};
 use cellcaster::world::{Camera, FieldOfView, Heading, World};
 use glam::DVec2;
 use proptest::prelude::*;
@@ -94,19 +94,32 @@ fn with_room_for((x, y): (f64, f64), mut cells: Vec<char>) -> Vec<char> {
     cells
 }
 
-fn picture(world: &World, position: DVec2, degrees: f64, eye: f64) -> Frame {
+/// A picture, and what its pixels show.
+struct Picture {
+    frame: Frame,
+    renderer: Renderer,
+}
+
+fn picture(world: &World, position: DVec2, degrees: f64, eye: f64) -> Picture {
     let heading = Heading::from_degrees(degrees).unwrap();
     let camera = Camera::new(position, heading, FieldOfView::default()).unwrap();
     let mut frame = Frame::new(FrameSize::new(72, 48).unwrap(), PixelAspect::SQUARE);
-    Renderer::new().render(world, &camera.with_eye(eye).unwrap(), &mut frame);
-    frame
+    let mut renderer = Renderer::new();
+    // Of a texture itself, a texel is seen or not; its averages are seen in part.
+    renderer.set_filter(Filter::Nearest);
+    renderer.keep_surfaces(true);
+    renderer.render(world, &camera.with_eye(eye).unwrap(), &mut frame);
+    Picture { frame, renderer }
 }
 
-fn first_difference(one: &Frame, other: &Frame) -> Option<(usize, usize)> {
-    let width = one.width() as usize;
-    let mut pixels = one.rows().flatten().zip(other.rows().flatten());
-    let index = pixels.position(|(one, other)| one != other)?;
-    Some((index % width, index / width))
+/// Where two pictures differ first, but for the player's own image in one of them.
+fn first_difference(reflected: &Picture, straight: &Picture) -> Option<(u32, u32)> {
+    let (width, height) = (straight.frame.width(), straight.frame.height());
+    let mut places = (0..height).flat_map(|y| (0..width).map(move |x| (x, y)));
+    places.find(|&(x, y)| {
+        let is_player = reflected.renderer.surface(x, y) == Some(Surface::Thing);
+        !is_player && reflected.frame.pixel(x, y) != straight.frame.pixel(x, y)
+    })
 }
 
 /// A place that is a double to the last bit, wherever the map begins.

@@ -138,3 +138,29 @@ fn most_pixels_are_certain() {
         .count();
     assert!(certain > 80 * 48 / 2, "{certain}");
 }
+
+/// Seen from the middle of a cell, some pixels show the very line where floor and wall meet.
+#[test]
+fn the_foot_of_a_wall_is_as_dark_as_the_floor_before_it() {
+    const ROOM: &str = r##"
+light = 0.5
+floor = "#ffffff"
+ceiling = "#ffffff"
+grid = """
+########
+#......#
+#......#
+#@.....#
+#......#
+########
+"""
+tiles."#".wall = "#000000"
+things."@".start = 0
+"##;
+    let world = map::parse_str(ROOM).unwrap();
+    let camera = world.start_camera(FieldOfView::default());
+    let mut frame = Frame::new(FrameSize::new(80, 48).unwrap(), PixelAspect::SQUARE);
+    Renderer::new().render(&world, &camera, &mut frame);
+    let brightest = frame.rows().flatten().map(|pixel| pixel.red()).max().unwrap();
+    assert!((120..=128).contains(&brightest), "{brightest}");
+}

@@ -21,6 +21,8 @@ mod ending;
 mod game;
 #[path = "play/holding.rs"]
 mod holding;
+#[path = "play/lagging.rs"]
+mod lagging;
 #[path = "play/levels.rs"]
 mod levels;
 #[path = "play/looking.rs"]

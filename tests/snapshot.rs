@@ -172,7 +172,7 @@ fn a_closed_pipe_ends_it_quietly() {
 
 #[test]
 fn mistakes_are_one_sentence_each() {
-    let mistakes: [&[&str]; 21] = [
+    let mistakes: [&[&str]; 25] = [
         &["--size", "80"],
         &["--size", "0x24"],
         &["--size", "80x4097"],
@@ -181,6 +181,10 @@ fn mistakes_are_one_sentence_each() {
         &["--camera", "1,2"],
         &["--camera", "1,nan,3"],
         &["--camera", "1,2,3,4"],
+        &["--eye", "high"],
+        &["--eye", "inf"],
+        &["--pitch", "31"],
+        &["--pitch", "nan"],
         &["--fov", "0"],
         &["--fov", "180"],
         &["--fov", "wide"],

@@ -29,7 +29,7 @@ fn script() -> Script {
 
 fn report() -> Report {
     let citadel = builtin::LEVELS.iter().find(|level| level.name == "citadel").unwrap();
-    let levels = Levels::new(citadel.world().unwrap(), std::iter::empty());
+    let levels = Levels::new(citadel.world().unwrap().into(), std::iter::empty());
     let size = Size::new(120, 40);
     let frames_per_second = NonZeroU32::new(30).unwrap();
     let script = script();
@@ -63,6 +63,8 @@ fn a_frame_takes_no_more_bytes_than_is_promised() {
     let stock = encoder(&report, "stock");
     let (high, low) = (encoder(&report, "high"), encoder(&report, "low"));
     assert!(high.all.seen.mean_distance <= 1.0 && low.all.seen.mean_distance <= 2.0);
+    assert!(high.all.ratio <= 0.22 * SLACK, "{:?}", high.all);
+    assert!(low.all.ratio <= 0.15 * SLACK, "{:?}", low.all);
     for pair in [stock, exact, high, low].windows(2) {
         assert!(pair[1].all.bytes.mean < 0.9 * pair[0].all.bytes.mean, "{}", pair[1].name);
     }

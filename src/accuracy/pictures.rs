@@ -26,12 +26,9 @@ pub struct Gallery<'world> {
 impl<'world> Gallery<'world> {
     /// `count` pictures of `world` in that size: one from its start, the others from anywhere.
     pub fn new(world: &'world World, size: FrameSize, count: usize, seed: u64) -> Self {
-        let mut chance = Chance::new(seed);
-        let start = world.start_camera(FieldOfView::default());
-        let cameras = std::iter::once(start)
-            .chain(std::iter::repeat_with(|| random_camera(world, &mut chance)));
-        let pictures =
-            cameras.take(count).map(|camera| (camera, draw(world, &camera, size, &Reference)));
+        let pictures = cameras(world, seed)
+            .take(count)
+            .map(|camera| (camera, draw(world, &camera, size, &Reference)));
         Self { world, pictures: pictures.collect() }
     }
 
@@ -39,6 +36,13 @@ impl<'world> Gallery<'world> {
     pub fn share_wrong(&self, method: &Method) -> f64 {
         method.accept(Comparison { gallery: self })
     }
+}
+
+/// Where pictures of `world` are taken: from its start, and then from anywhere.
+pub(super) fn cameras(world: &World, seed: u64) -> impl Iterator<Item = Camera> {
+    let mut chance = Chance::new(seed);
+    let start = world.start_camera(FieldOfView::default());
+    std::iter::once(start).chain(std::iter::repeat_with(move || random_camera(world, &mut chance)))
 }
 
 /// A camera anywhere on open floor.

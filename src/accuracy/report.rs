@@ -3,8 +3,8 @@
 use std::num::NonZeroU32;
 
 use super::{
-    Chance, Errors, Gallery, MotionResult, Set, Timing, Trial, compare_motions, ordinary,
-    random_ray, sets, time_in_turns,
+    Chance, Errors, FilterRow, Gallery, MotionResult, Set, Timing, Trial, compare_filters,
+    compare_motions, ordinary, random_ray, sets, time_in_turns,
 };
 use crate::cast::Method;
 use crate::render::FrameSize;
@@ -41,6 +41,8 @@ pub enum RaySource {
 pub struct Report {
     /// A row for each method, in the order in which they were asked for.
     pub rows: Vec<Row>,
+    /// The ways of looking textures up, in pictures of each of the sizes in [`PICTURES`].
+    pub filters: [FilterRow; 2],
     /// The stiff and extreme sets, where they were asked for.
     pub sets: Vec<SetRow>,
     /// The ways of moving, where the sets were asked for.
@@ -131,6 +133,7 @@ pub fn report(plan: &Plan, mut progress: impl FnMut(f64)) -> Option<Report> {
     let is_whole = plan.rays == RaySource::Scenes;
     let report = Report {
         rows,
+        filters: compare_filters(plan.world, PICTURES, PICTURES_OF_A_SIZE, plan.seed),
         sets: if is_whole { set_rows(plan.seed) } else { Vec::new() },
         motions: if is_whole { compare_motions() } else { Vec::new() },
     };

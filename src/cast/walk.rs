@@ -76,6 +76,7 @@ impl<'grid, O: Order> Walk<'grid, O> {
     }
 
     /// The next solid cell that the ray enters.
+    #[inline]
     pub fn first_solid(&mut self) -> Option<Crossing> {
         let grid = self.grid;
         self.find(|crossing| grid.is_solid_tile(crossing.tile))
@@ -85,6 +86,7 @@ impl<'grid, O: Order> Walk<'grid, O> {
 impl<O: Order> Iterator for Walk<'_, O> {
     type Item = Crossing;
 
+    #[inline]
     fn next(&mut self) -> Option<Crossing> {
         loop {
             let side = self.order.next(self.x.line, self.y.line);

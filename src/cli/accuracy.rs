@@ -16,9 +16,9 @@ use progress::Progress;
 /// Reports what `options` ask for.
 pub(super) fn run(options: &Accuracy) -> Result<(), Error> {
     let world = match &options.map {
-        Some(map) => level::load(Some(map))?,
+        Some(map) => level::load_grid(Some(map))?,
         // The built-in level in which there is most to see.
-        None => level::load(Some("museum".as_ref()))?,
+        None => level::load_grid(Some("museum".as_ref()))?,
     };
     let rays = match (&options.set, &options.map) {
         (Some(name), _) => RaySource::Set(name.clone()),

@@ -12,7 +12,7 @@ use crate::world::World;
 
 /// Answers every line of standard input until it ends.
 pub(super) fn run(options: &Cast) -> Result<(), Error> {
-    let world = level::load(options.map.as_deref())?;
+    let world = level::load_grid(options.map.as_deref())?;
     options.method.accept(Dialogue { world: &world })
 }
 

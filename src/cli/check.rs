@@ -4,15 +4,21 @@ use std::ffi::OsString;
 use std::io::{self, Write};
 
 use super::{Error, level};
+use crate::map::Level;
 
 /// Checks all `maps`, whatever the faults of the first, and says which ones are right.
 pub(super) fn run(maps: &[OsString]) -> Result<(), Error> {
     let mut wrong = 0_usize;
     for map in maps {
         match level::load(Some(map)) {
-            Ok(world) => {
-                let (width, height) = (world.grid().width(), world.grid().height());
-                writeln!(io::stdout(), "{}: right, {width}×{height} cells", map.display())
+            Ok(level) => {
+                let size = match level {
+                    Level::Grid(world) => {
+                        format!("{}×{} cells", world.grid().width(), world.grid().height())
+                    }
+                    Level::Space(scene) => format!("{} bodies", scene.bodies.len()),
+                };
+                writeln!(io::stdout(), "{}: right, {size}", map.display())
                     .map_err(|error| Error::of_output(&error))?;
             }
             Err(error) => {

@@ -33,15 +33,20 @@ USAGE
 KEYS
   W S, Up Down      walk                M, Tab  show or hide the map
   A D               strafe              + -     field of view
-  Left Right        turn                P       pause
-  Shift             run                 ?       help
-  R                 run, on and off     Q, Esc  leave
-  E, Space          open a door
+  Left Right        turn                PgUp PgDn, Home   look up, down, ahead
+  Shift             run                 P       pause
+  R                 run, on and off     I       show frames and link
+  E, Space          open a door         ?       help
+  Space             jump                Q, Esc  leave
+  C                 duck, X: on and off
 
 OPTIONS OF PLAY
   --fps N           at most N frames a second, 1 to 240            [30]
   --config FILE     key bindings        [cellcaster/config.toml in the
                     folder for configuration files]
+  --fidelity LEVEL  how exact colours are while something moves: auto (as the
+                    link allows), exact, high, low or 0 to 255     [auto]
+  --stats           show frames and bytes a second, round trip and fidelity
   --record FILE     a FILE.cast: what the terminal is sent, as asciicast v3;
                     any other: what you do, as a script for replay and wire
 
@@ -59,7 +64,8 @@ OPTIONS OF BOTH
   --fov DEG         field of view, above 0, below 180              [66]
   --cell-aspect H   height of a cell over its width, 0.1 to 10     [2.0, or what
                     the terminal says]
-  --glyphs MODE     half: two pixels a cell; ascii: one, as a character  [half]
+  --glyphs MODE     half: two pixels a cell; ascii: one, as a character;
+                    ramp: one, as a character for its brightness   [half]
   --colors DEPTH    true, 256, 16 or mono           [true, or what the terminal has]
   --filter FILTER   mip: far textures are averaged; nearest: raw texels  [mip]
 

@@ -6,15 +6,28 @@ use std::path::Path;
 use super::Error;
 use super::arguments::COMMANDS;
 use crate::fault::nearest;
-use crate::map::{self, builtin};
+use crate::map::{self, Level, builtin};
 use crate::tui::Levels;
 use crate::world::World;
 
+/// As [`load`], for a command that needs a grid.
+pub(super) fn load_grid(argument: Option<&OsStr>) -> Result<World, Error> {
+    match load(argument)? {
+        Level::Grid(world) => Ok(*world),
+        Level::Space(_) => {
+            let name = argument.unwrap_or_default().display();
+            let message = "is a map of bodies, and this command needs one with a grid";
+            Err(Error::mistake(format!("{name} {message}")))
+        }
+    }
+}
+
 /// The level that `argument` names: a built-in one or a map file; without it, the first built-in.
-pub(super) fn load(argument: Option<&OsStr>) -> Result<World, Error> {
-    let Some(argument) = argument else { return Ok(builtin::LEVELS[0].world()?) };
+pub(super) fn load(argument: Option<&OsStr>) -> Result<Level, Error> {
+    let of_grid = |level: &builtin::Level| Ok(Level::from(level.world()?));
+    let Some(argument) = argument else { return of_grid(&builtin::LEVELS[0]) };
     if let Some(index) = builtin_level(argument) {
-        return Ok(builtin::LEVELS[index].world()?);
+        return of_grid(&builtin::LEVELS[index]);
     }
     let path = Path::new(argument);
     match misspelt(argument).filter(|_| !path.exists()) {
@@ -22,7 +35,7 @@ pub(super) fn load(argument: Option<&OsStr>) -> Result<World, Error> {
             "there is no map \"{}\"; did you mean {meant}?",
             argument.display()
         ))),
-        None => Ok(map::load(path)?),
+        None => Ok(map::load_level(path)?),
     }
 }
 
@@ -31,7 +44,8 @@ pub(super) fn load_series(argument: Option<&OsStr>) -> Result<Levels, Error> {
     let first = load(argument)?;
     let index = argument.map_or(Some(0), builtin_level);
     let following = index.map_or(&[][..], |index| &builtin::LEVELS[index + 1..]);
-    Ok(Levels::new(first, following.iter().map_while(|level| level.world().ok())))
+    let following = following.iter().map_while(|level| level.world().ok());
+    Ok(Levels::new(first, following.map(Level::from)))
 }
 
 /// The place among the built-in levels of the one called `name`; a file of that name goes first.

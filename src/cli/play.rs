@@ -24,6 +24,8 @@ pub(super) fn run(options: Play) -> Result<(), Error> {
         depth: options.depth,
         method: options.method,
         filter: options.filter,
+        fidelity: options.fidelity,
+        shows_stats: options.shows_stats,
     };
     let file = options.record.as_deref().map(RecordingFile::create).transpose()?;
     let recording = file.as_ref().map(RecordingFile::recording).unwrap_or_default();

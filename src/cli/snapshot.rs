@@ -5,6 +5,7 @@
 
 mod ansi;
 mod json;
+mod picture;
 mod png;
 mod text;
 
@@ -16,9 +17,12 @@ use ratatui::style::Color;
 
 use super::arguments::{Format, Snapshot};
 use super::{Error, level};
+use crate::map::Level;
 use crate::palette;
-use crate::tui::{FirstPerson, View};
-use crate::world::{Camera, Rgb};
+use crate::space::{self, Elevation, Scene};
+use crate::tui::View;
+use crate::world::{Camera, Rgb, World};
+use picture::{OfGrid, OfSpace, Picture};
 
 /// Rows of cells that are made at a time: a multiple of the height of the pattern that dithers.
 const BAND: u16 = 64;
@@ -33,33 +37,51 @@ trait Writer {
 
 /// Writes the frame that `options` ask for.
 pub(super) fn run(options: &Snapshot) -> Result<(), Error> {
-    let world = level::load(options.map.as_deref())?;
-    let camera = match options.camera {
-        None => world.start_camera(options.field_of_view),
-        Some((position, heading)) => Camera::new(position, heading, options.field_of_view)
-            .unwrap_or_else(|| world.start_camera(options.field_of_view)),
-    };
-    let camera = options.eye.and_then(|eye| camera.with_eye(eye)).unwrap_or(camera);
-    let camera = camera.with_pitch(options.pitch);
-    let picture = FirstPerson::new(&world, &camera)
-        .glyphs(options.glyphs)
-        .color_depth(options.depth)
-        .cell_aspect(options.cell_aspect)
-        .filter(options.filter);
-    let output = BufWriter::new(io::stdout().lock());
-    if options.explain {
-        return explain(&picture, options, output).map_err(|error| Error::of_output(&error));
+    match level::load(options.map.as_deref())? {
+        Level::Grid(world) => {
+            let camera = camera(&world, options);
+            let view = View::with_method(options.method.clone());
+            output(&mut OfGrid::new(&world, &camera, view, options), options)
+        }
+        Level::Space(scene) => {
+            let camera = scene_camera(&scene, options)?;
+            output(&mut OfSpace::new(&scene, &camera, options), options)
+        }
     }
-    write(&picture, options, output).map_err(|error| Error::of_output(&error))
+    .map_err(|error| Error::of_output(&error))
 }
 
-/// Writes how the frame is drawn, and what it costs.
-fn explain(picture: &FirstPerson, options: &Snapshot, mut output: impl Write) -> io::Result<()> {
-    let mut view = View::with_method(options.method.clone());
-    if let Some(explanation) = picture.explain(size(options), &mut view) {
+fn camera(world: &World, options: &Snapshot) -> Camera {
+    let start = world.start_camera(options.field_of_view);
+    let camera = options
+        .camera
+        .and_then(|(position, heading)| Camera::new(position, heading, options.field_of_view));
+    let camera = camera.unwrap_or(start);
+    let camera = options.eye.and_then(|eye| camera.with_eye(eye)).unwrap_or(camera);
+    camera.with_pitch(options.pitch.unwrap_or_default())
+}
+
+/// What is not asked for is as at the start, the height too.
+fn scene_camera(scene: &Scene, options: &Snapshot) -> Result<space::Camera, Error> {
+    let start = scene.start_camera(options.field_of_view);
+    let (position, heading) =
+        options.camera.unwrap_or((start.position().truncate(), start.heading));
+    let position = position.extend(options.eye.unwrap_or(start.position().z));
+    let elevation = options.pitch.and_then(|pitch| Elevation::from_degrees(pitch.degrees()));
+    let camera = space::Camera::new(position, heading, options.field_of_view);
+    camera.map(|camera| camera.with_elevation(elevation.unwrap_or(start.elevation))).ok_or_else(
+        || Error::mistake("--camera or --eye is further away than a map of bodies reaches"),
+    )
+}
+
+fn output(picture: &mut dyn Picture, options: &Snapshot) -> io::Result<()> {
+    let mut output = BufWriter::new(io::stdout().lock());
+    let explanation = picture.draw(size(options), options.explain);
+    if options.explain {
         write!(output, "{explanation}")?;
+        return output.flush();
     }
-    output.flush()
+    write(picture, options, output)
 }
 
 fn size(options: &Snapshot) -> Size {
@@ -67,20 +89,17 @@ fn size(options: &Snapshot) -> Size {
 }
 
 fn write(
-    picture: &FirstPerson,
+    picture: &dyn Picture,
     options: &Snapshot,
     output: impl Write + 'static,
 ) -> io::Result<()> {
     let size = size(options);
-    let mut view = View::with_method(options.method.clone());
-    picture.draw(size, &mut view);
-
     let mut writer = writer(options, size, output)?;
     let mut band = Buffer::default();
     for first_row in (0..size.height).step_by(usize::from(BAND)) {
         let area = Rect::new(0, 0, size.width, BAND.min(size.height - first_row));
         band.resize(area);
-        picture.paint(&view, first_row, area, &mut band);
+        picture.paint(first_row, area, &mut band);
         for cells in band.content.chunks_exact(usize::from(size.width)) {
             writer.write_row(cells)?;
         }

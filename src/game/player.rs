@@ -9,24 +9,24 @@ use super::gaze::Gaze;
 use super::intent::{Intent, Intents};
 use super::motion::{Glide, approach, approach_in_plane};
 use super::posture::Posture;
-use crate::world::{Camera, Cell, FieldOfView, Heading, Start, World};
+use crate::world::{Camera, Cell, FieldOfView, Heading, World};
 
 /// How far from their middle the player touches a wall: doors are twice as wide as they are.
 const RADIUS: Radius = Radius::new(0.25).expect("a quarter is between nothing and a half");
 
 /// Cells per second, in any direction.
-const WALK: f64 = 3.0;
+pub(super) const WALK: f64 = 3.0;
 /// Cells per second, in any direction, for who runs.
-const RUN: f64 = 5.5;
+pub(super) const RUN: f64 = 5.5;
 /// Radians per second.
-const TURN: f64 = 2.4;
+pub(super) const TURN: f64 = 2.4;
 /// Radians per second, for who aims.
-const AIM: f64 = 0.6;
+pub(super) const AIM: f64 = 0.6;
 
 /// How fast the feet take hold, per second.
-const FRICTION: f64 = 12.0;
+pub(super) const FRICTION: f64 = 12.0;
 /// How fast a turn begins and ends, per second.
-const TURN_FRICTION: f64 = 20.0;
+pub(super) const TURN_FRICTION: f64 = 20.0;
 
 /// How much higher a floor may be for somebody to step onto it, or lower to step down, in cells.
 const STEP_HEIGHT: f64 = 0.35;
@@ -35,7 +35,7 @@ const JUMP_HEIGHT: f64 = 0.66;
 
 /// What is slower stands still, in cells or radians per second. An exponential never ends, but a
 /// program that may sleep while nothing moves wants it to.
-const STILL: f64 = 1e-4;
+pub(super) const STILL: f64 = 1e-4;
 
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub(super) struct Player {
@@ -55,12 +55,13 @@ pub(super) struct Player {
 
 impl Player {
     /// A player who stands still at the start.
-    pub(super) fn new(start: Start) -> Self {
+    pub(super) fn new(world: &World) -> Self {
+        let start = world.start();
         let body = Body { position: start.cell.center(), velocity: DVec2::ZERO };
         Self {
             body,
-            // The start is on the map's own floor, and has headroom.
-            feet: 0.0,
+            // The start has headroom.
+            feet: world.floor_at(start.cell),
             rising: 0.0,
             posture: Posture::default(),
             gaze: Gaze::default(),

@@ -65,7 +65,7 @@ fn gradient<'a>(entry: &Entry<'a, '_>, faults: &mut Vec<Fault>) -> Option<SkyTex
     Some(SkyText::Gradient { zenith: zenith?, horizon: horizon? })
 }
 
-fn color(entry: &Entry<'_, '_>, example: &str, faults: &mut Vec<Fault>) -> Option<Rgb> {
+pub(super) fn color(entry: &Entry<'_, '_>, example: &str, faults: &mut Vec<Fault>) -> Option<Rgb> {
     let text = entry.string(example, faults)?;
     text.parse()
         .map_err(|error| {

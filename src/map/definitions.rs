@@ -103,7 +103,7 @@ impl<'a, 't> Definitions<'a, 't> {
     }
 }
 
-fn title(entry: &Entry<'_, '_>, faults: &mut Vec<Fault>) -> Option<String> {
+pub(super) fn title(entry: &Entry<'_, '_>, faults: &mut Vec<Fault>) -> Option<String> {
     let title = entry.string(r#"title = "Cellar""#, faults)?;
     if title.contains(char::is_control) {
         let message = "the title has a line break or another control character";

@@ -9,8 +9,8 @@ use crate::fault::Fault;
 use crate::fault::document::{Entry, entries};
 use crate::world::{Ceiling, Covering, Heights, Paint};
 
-/// The least height of the map's ceiling: things and the player's start are on the map's own floor.
-const LEAST_HEADROOM: f64 = 0.75;
+/// The least height of a ceiling above the floor that the player starts on, and of the map's own.
+pub(super) const LEAST_HEADROOM: f64 = 0.75;
 
 /// What a tile says of its heights; the rest is as the map says.
 #[derive(Default)]
@@ -150,7 +150,7 @@ pub(super) fn map_ceiling(entry: &Entry<'_, '_>, faults: &mut Vec<Fault>) -> Opt
     let message = format!("the ceiling of a map is at {LEAST_HEADROOM} cells or above");
     faults.push(
         Fault::new(height.place, message)
-            .label("the player starts on the map's own floor, and has no room below this")
+            .label("nobody has room to stand below this")
             .help("lower the ceiling in places, by a tile with a ceiling_height"),
     );
     None

@@ -1,5 +1,6 @@
 //! The layout: what the drawing shows, by the definitions of its characters.
 
+use std::collections::BTreeSet;
 use std::ops::Range;
 
 use super::doors::{self, Keys};
@@ -8,6 +9,7 @@ use super::heights::Faces;
 use super::lamps;
 use super::legend::{Legend, Meaning, Surroundings, Symbol};
 use super::per_character::PerCharacter;
+use super::supports;
 use super::textures::{Surface, Textures};
 use crate::fault::Fault;
 use crate::world::sprite::builtin;
@@ -46,13 +48,15 @@ impl Layout {
     ) -> Option<Self> {
         faults.extend(undefined_characters(drawing, legend));
         faults.extend(wrong_start(drawing, legend));
+        faults.extend(supports::faults(drawing, legend));
         let keys = Keys::of(drawing, legend);
         let tiles = tiles(drawing, legend, &keys, ground, faces, textures, faults);
         if !faults.is_empty() {
             return None;
         }
         let start = start(drawing, legend)?;
-        let mut grid = grid(drawing, &tiles)?;
+        let mut grid = grid(drawing, legend, &tiles)?;
+        faults.extend(supports::low_start(drawing, &grid, &tiles, start));
         let (things, sprites) = things(drawing, legend, &keys, textures, faults);
         let blocks = |thing: &&Thing| sprites[usize::from(thing.sprite.0)].blocks;
         things.iter().filter(blocks).for_each(|thing| grid.occupy(thing.cell));
@@ -183,7 +187,9 @@ fn tiles(
 ) -> Vec<Tile> {
     let mut open = vec![ground];
     let mut solid = Vec::new();
-    for (character, _) in drawing.characters() {
+    let drawn = drawing.characters().map(|(character, _)| character);
+    let stood_on = supports::of(drawing, legend).map(|(_, support)| support.tile);
+    for character in drawn.chain(stood_on).collect::<BTreeSet<char>>() {
         let Some(symbol) = legend.symbols.get(&character) else { continue };
         if let Meaning::Floor = symbol.meaning {
             open.extend(tile(character, TileKind::Open, symbol, ground, faces, textures, faults));
@@ -276,12 +282,15 @@ fn solid_kind(
 }
 
 /// The grid of a drawing whose tiles are all in `tiles`: of a door, the solid one.
-fn grid(drawing: &Drawing<'_>, tiles: &[Tile]) -> Option<Grid> {
+fn grid(drawing: &Drawing<'_>, legend: &Legend<'_>, tiles: &[Tile]) -> Option<Grid> {
     let mut tile_of = PerCharacter::<u8>::new();
     let is_open = |tile: &Tile| matches!(tile.kind, TileKind::Open | TileKind::Doorway(_));
     let first_solid = tiles.iter().take_while(|tile| is_open(tile)).count();
     for (tile, id) in tiles.iter().zip(0..) {
         *tile_of.get_mut(tile.character) = id;
+    }
+    for (thing, support) in supports::of(drawing, legend) {
+        *tile_of.get_mut(thing) = tile_of.get(support.tile);
     }
     let (width, height) = (drawing.width, drawing.height);
     let mut cells = Vec::with_capacity(width.get() as usize * height.get() as usize);

@@ -1,5 +1,7 @@
 //! The legend: what each character of the grid means, from the tables `[tiles]` and `[things]`.
 
+mod section;
+
 use std::collections::BTreeMap;
 use std::ops::Range;
 
@@ -11,19 +13,12 @@ use super::doors::{DoorSymbol, KeySymbol};
 use super::heights::{self, HeightsText};
 use super::see_through::{self, MaskSymbol};
 use super::shapes::ShapeSymbol;
-use super::sprites::{self, SpriteSymbol};
+use super::sprites::SpriteSymbol;
 use super::textures::Surface;
 use crate::fault::document::{Entry, entries};
 use crate::fault::{Fault, quoted};
 use crate::world::{Glass, Heading, Light};
-
-/// What other raycasters have in their cells and this one has not.
-const NOT_YET: &[(&str, &str)] = &[
-    ("guard", "guards"),
-    ("pushwall", "moving walls"),
-    ("secret", "secret doors"),
-    ("window", "windows"),
-];
+pub(super) use section::Section;
 
 /// What the characters mean that the grid may be drawn with.
 pub(super) struct Legend<'a> {
@@ -39,6 +34,16 @@ pub(super) struct Symbol<'a> {
     pub(super) place: Range<usize>,
     pub(super) meaning: Meaning<'a>,
     pub(super) surroundings: Surroundings<'a>,
+    /// Of a thing, which tile it stands on; the map's own floor, if it does not say.
+    pub(super) support: Option<Support>,
+}
+
+/// The tile that a thing stands on.
+pub(super) struct Support {
+    /// What it is drawn with elsewhere.
+    pub(super) tile: char,
+    /// Where the map says it.
+    pub(super) place: Range<usize>,
 }
 
 /// What a character stands for in the grid.
@@ -71,90 +76,12 @@ pub(super) struct Surroundings<'a> {
     pub(super) heights: HeightsText<'a>,
 }
 
-/// One of the two tables that define characters.
-#[derive(Clone, Copy, PartialEq, Eq)]
-pub(super) enum Section {
-    Tiles,
-    Things,
-}
-
-impl Section {
-    fn name(self) -> &'static str {
-        match self {
-            Self::Tiles => "[tiles]",
-            Self::Things => "[things]",
-        }
-    }
-
-    fn noun(self) -> &'static str {
-        match self {
-            Self::Tiles => "a tile",
-            Self::Things => "a thing",
-        }
-    }
-
-    fn keys(self) -> &'static [&'static str] {
-        match self {
-            Self::Tiles => &[
-                "wall",
-                "door",
-                "mask",
-                "glass",
-                "mirror",
-                "pillar",
-                "diagonal",
-                "thin",
-                "floor",
-                "ceiling",
-                "light",
-                "floor_height",
-                "ceiling_height",
-                "roof_height",
-                "riser",
-                "lintel",
-            ],
-            Self::Things => &["start", "exit", "key", "sprite"],
-        }
-    }
-
-    /// The keys that say more of what another one makes: each with that one.
-    fn additions(self) -> &'static [(&'static str, &'static str)] {
-        match self {
-            Self::Tiles => &[
-                ("key", "door"),
-                ("opacity", "glass"),
-                ("opacity", "mirror"),
-                ("height", "wall"),
-                ("height", "mirror"),
-                ("radius", "pillar"),
-                ("from", "diagonal"),
-                ("at", "thin"),
-            ],
-            Self::Things => &sprites::ADDITIONS,
-        }
-    }
-
-    fn example(self) -> &'static str {
-        match self {
-            Self::Tiles => r##""#" = { wall = "brick" }"##,
-            Self::Things => r#""@" = { start = 0 }"#,
-        }
-    }
-
-    fn other(self) -> Self {
-        match self {
-            Self::Tiles => Self::Things,
-            Self::Things => Self::Tiles,
-        }
-    }
-}
-
 impl<'a> Legend<'a> {
     /// The characters that mean the same in every map.
     pub(super) fn new() -> Self {
         let open = |character| {
             let (meaning, surroundings) = (Meaning::Open, Surroundings::default());
-            (character, Symbol { place: 0..0, meaning, surroundings })
+            (character, Symbol { place: 0..0, meaning, surroundings, support: None })
         };
         Self { symbols: ['.', ' '].map(open).into(), is_complete: true }
     }
@@ -191,9 +118,33 @@ impl<'a> Legend<'a> {
                 faults.push(defined_twice(character, entry.key_place.clone()));
                 meaning = Meaning::Unclear;
             }
+            let support = match (section, entry.value) {
+                (Section::Things, DeValue::Table(thing)) => Support::read(thing, faults),
+                _ => None,
+            };
             let place = entry.key_place;
-            self.symbols.insert(character, Symbol { place, meaning, surroundings });
+            self.symbols.insert(character, Symbol { place, meaning, surroundings, support });
         }
+    }
+}
+
+impl Support {
+    /// The tile that the table of a thing names, if it does.
+    fn read(thing: &DeTable<'_>, faults: &mut Vec<Fault>) -> Option<Self> {
+        let entry = entries(thing).find(|entry| entry.key == "on")?;
+        let text = entry.string(r#"on = ",""#, faults)?;
+        let mut characters = text.chars();
+        if let (Some(tile), None) = (characters.next(), characters.next()) {
+            return Some(Self { tile, place: entry.value_place });
+        }
+        faults.push(
+            Fault::new(
+                entry.value_place,
+                format!("{} is not the character of a tile", quoted(text)),
+            )
+            .help("write the character that the floor is drawn with elsewhere"),
+        );
+        None
     }
 }
 
@@ -313,8 +264,8 @@ fn property<'a>(
     table: &'a DeTable<'_>,
     faults: &mut Vec<Fault>,
 ) -> Option<Meaning<'a>> {
-    let is_addition = |&(key, to): &(&str, &str)| key == entry.key && table.contains_key(to);
-    if section.additions().iter().any(is_addition) {
+    let is_addition = |(key, to): (&str, &str)| key == entry.key && table.contains_key(to);
+    if section.additions().any(is_addition) {
         return None;
     }
     match (section, entry.key) {
@@ -343,7 +294,7 @@ fn property<'a>(
         (Section::Things, "start") => Some(Meaning::Start(heading(entry, faults)?)),
         (Section::Things, "exit") => exit(entry, faults),
         _ => {
-            faults.push(unknown_property(section, entry));
+            faults.push(section.unknown_property(entry));
             None
         }
     }
@@ -383,31 +334,6 @@ fn exit<'a>(entry: &Entry<'a, '_>, faults: &mut Vec<Fault>) -> Option<Meaning<'a
             .help("write { exit = true }"),
     );
     None
-}
-
-fn unknown_property(section: Section, entry: &Entry<'_, '_>) -> Fault {
-    let place = || entry.key_place.clone();
-    if let Some((_, plural)) = NOT_YET.iter().find(|(key, _)| *key == entry.key) {
-        return Fault::new(place(), format!("{plural} are not supported yet"))
-            .help(format!("known keys: {}", section.keys().join(", ")));
-    }
-    let wanted = section.additions().iter().filter(|(key, _)| *key == entry.key);
-    let wanted: Vec<&str> = wanted.map(|&(_, to)| to).collect();
-    if !wanted.is_empty() {
-        let (key, to) = (entry.key, wanted.join("\" or \""));
-        let message = format!("\"{key}\" goes with \"{to}\", and there is none");
-        let help = format!("name a {} in the same braces", wanted.join(" or a "));
-        return Fault::new(place(), message).help(help);
-    }
-    let other = section.other();
-    if other.keys().contains(&entry.key) {
-        let message = format!("\"{}\" makes {}, not {}", entry.key, other.noun(), section.noun());
-        return Fault::new(place(), message).help(format!("move it to {}", other.name()));
-    }
-    let additions = section.additions().iter().map(|&(key, _)| key);
-    let mut known: Vec<&str> = section.keys().iter().copied().chain(additions).collect();
-    known.dedup();
-    entry.unknown_key(section.noun(), &known)
 }
 
 fn defined_twice(character: char, place: Range<usize>) -> Fault {

@@ -1,6 +1,7 @@
 //! The frame: pixels off screen, row by row from the top.
 
 use std::num::NonZeroU32;
+use std::ops::Range;
 
 use crate::world::Rgb;
 
@@ -101,15 +102,26 @@ impl Frame {
         self.pixels[y as usize * self.width() as usize + x as usize]
     }
 
+    /// The pixels of row `y`, from the left.
+    pub(crate) fn row_mut(&mut self, y: u32) -> &mut [Rgb] {
+        self.row_range_mut(y, y + 1)
+    }
+
     /// The pixels of the rows from `first` up to `last`, which is left out.
     pub(super) fn row_range_mut(&mut self, first: u32, last: u32) -> &mut [Rgb] {
         let width = self.width() as usize;
         &mut self.pixels[first as usize * width..last as usize * width]
     }
 
-    /// The pixels of column `x`, from the top.
-    pub(super) fn column_mut(&mut self, x: usize) -> impl Iterator<Item = &mut Rgb> {
+    /// The pixels of column `x` in those rows, from the top.
+    #[inline]
+    pub(super) fn column_mut(
+        &mut self,
+        x: u32,
+        rows: Range<u32>,
+    ) -> impl Iterator<Item = &mut Rgb> {
         let width = self.width() as usize;
-        self.pixels[x..].iter_mut().step_by(width)
+        let first = (rows.start as usize * width + x as usize).min(self.pixels.len());
+        self.pixels[first..].iter_mut().step_by(width).take(rows.len())
     }
 }

@@ -58,8 +58,15 @@ impl Layer<'_> {
                 Sample::Color(color) => pixels.fill(shade.apply(color)),
                 Sample::Level(level) => {
                     tally.texels(self.pass, pixels.len());
-                    for (pixel, (x, y)) in pixels.iter_mut().zip(track.places(x, per_cell)) {
-                        *pixel = shade.apply(level.at_fraction(x, y));
+                    let pixels = pixels.iter_mut().zip(track.places(x, per_cell));
+                    if let Some(level) = level.by_shifts() {
+                        for (pixel, (x, y)) in pixels {
+                            *pixel = shade.apply(level.at_fraction(x, y));
+                        }
+                    } else {
+                        for (pixel, (x, y)) in pixels {
+                            *pixel = shade.apply(level.at_fraction(x, y));
+                        }
                     }
                 }
             },

@@ -8,6 +8,8 @@
 
 use std::ops::Range;
 
+use glam::DVec2;
+
 use super::lay::Layer;
 use super::plan::PlaneLoop;
 use super::shade::{Faded, Shade};
@@ -94,14 +96,17 @@ impl Plane<'_> {
         mut pixels: &mut [Rgb],
         tally: &mut T,
     ) {
-        let world = self.scene.world;
-        let mut x = span.start;
-        while x < span.end {
-            let ground = self.ground_at(track, x);
-            let next = (x + 1..span.end).find(|&x| self.ground_at(track, x) != ground);
-            let count = next.unwrap_or(span.end) - x;
-            let (stretch, rest) = pixels.split_at_mut(count);
+        let Scene { world, projection, .. } = self.scene;
+        let places = track.just_before(projection.origin());
+        let grounds = places.cells(span).map(|(corner, columns)| (self.ground_in(corner), columns));
+        let mut grounds = grounds.peekable();
+        while let Some((ground, mut columns)) = grounds.next() {
+            while let Some((_, more)) = grounds.next_if(|&(next, _)| next == ground) {
+                columns.end = more.end;
+            }
+            let (stretch, rest) = pixels.split_at_mut(columns.len());
             pixels = rest;
+            let x = columns.start;
             match ground {
                 None => self.lay_default(track, x, stretch, tally),
                 Some((tile, lamplight)) => {
@@ -115,7 +120,6 @@ impl Plane<'_> {
                     }
                 }
             }
-            x += count;
         }
     }
 
@@ -137,15 +141,14 @@ impl Plane<'_> {
         }
     }
 
-    /// The tile that the pixel in column `x` shows, and what lamps add to its light; `None` off the
-    /// map.
-    fn ground_at(&self, track: &Track, x: usize) -> Option<(TileId, Light)> {
+    /// The tile of the cell with that north-west corner, and what lamps add to its light; `None` off
+    /// the map.
+    fn ground_in(&self, corner: DVec2) -> Option<(TileId, Light)> {
         let world = self.scene.world;
-        let point = track.point(x);
-        // Casts round towards zero, so that what is less than a cell off the map has to be told apart.
-        let is_on_map = point.x >= 0.0 && point.y >= 0.0;
-        let (column, row) = (point.x as i64, point.y as i64);
-        let tile = is_on_map.then(|| world.grid().tile(column, row)).flatten()?;
+        // Casts saturate, and take what is not a number to 0.
+        let is_a_place = corner.is_finite();
+        let (column, row) = (corner.x as i64, corner.y as i64);
+        let tile = is_a_place.then(|| world.grid().tile(column, row)).flatten()?;
         Some((tile, world.lamplight_in(Cell { column: column as u32, row: row as u32 })))
     }
 

@@ -8,6 +8,7 @@ use std::ops::Range;
 
 use glam::DVec2;
 
+use super::texels_down::{Texels, TexelsDown};
 use super::track::Track;
 use super::{FrameSize, PixelAspect};
 use crate::cast::Ray;
@@ -115,50 +116,25 @@ impl Projection {
         self.first_row_below(self.horizon - rise * self.focal_length / t)
     }
 
-    /// As [`Projection::texel_on_the_wall`], for a face from the height `bottom` to `top`, of which
-    /// the texture covers a cell at a time, from one whole height to the next.
-    pub(super) fn texel_on_the_face(
+    /// The texels of a wall at distance `t`, `count` from its top to its bottom.
+    pub(super) fn texels_down_the_wall(&self, t: f64, count: usize) -> TexelsDown {
+        let texels = Texels { count, of_cells: (0.0, 1.0), at_eye: self.below_ceiling };
+        TexelsDown::new(2.0 * self.horizon, t / self.focal_length, texels)
+    }
+
+    /// The texels of a face at distance `t` from the height `bottom` to `top`: `count` for each cell
+    /// of its height, from one whole height to the next.
+    pub(super) fn texels_down_the_face(
         &self,
         t: f64,
         count: usize,
         bottom: f64,
         top: f64,
-    ) -> impl Fn(u32) -> usize {
-        let texels = count as f64;
-        let texels_per_row = (t / self.focal_length * texels).max(f64::MIN_POSITIVE);
-        let at_eye = (1.0 - self.eye) * texels;
-        let texel_at_eye = floor(at_eye);
-        let into_it = at_eye - texel_at_eye as f64;
-        let first = floor((1.0 - top) * texels);
-        let last = first.max(-floor((bottom - 1.0) * texels) - 1);
-        let horizon = self.horizon;
-        move |row| {
-            let below = (f64::from(row) + 0.5 - horizon) * texels_per_row + into_it;
-            let texel = texel_at_eye.saturating_add(floor(below)).clamp(first, last);
-            if (0..count as i64).contains(&texel) {
-                texel as usize
-            } else {
-                texel.rem_euclid(count as i64) as usize
-            }
-        }
-    }
-
-    /// Which of `count` texels, from top to bottom of a wall at distance `t`, the centre of a row of
-    /// pixels is on. The row must be one of [`Projection::wall_rows`].
-    ///
-    /// Texels are counted from eye height, where a double can tell how little a row is above or
-    /// below it: however near the wall is, what is above the horizon shows what is above the eye.
-    pub(super) fn texel_on_the_wall(&self, t: f64, count: usize) -> impl Fn(u32) -> usize {
-        let texels_per_row = (t / self.focal_length * count as f64).max(f64::MIN_POSITIVE);
-        let at_eye = self.below_ceiling * count as f64;
-        let texel_at_eye = floor(at_eye);
-        let into_it = at_eye - texel_at_eye as f64;
-        let last = count as i64 - 1;
-        let horizon = self.horizon;
-        move |row| {
-            let below = (f64::from(row) + 0.5 - horizon) * texels_per_row + into_it;
-            (texel_at_eye + floor(below)).clamp(0, last) as usize
-        }
+    ) -> TexelsDown {
+        let above = top.ceil();
+        let of_cells = (above - top, above - bottom);
+        let texels = Texels { count, of_cells, at_eye: above - self.eye };
+        TexelsDown::new(2.0 * self.horizon, t / self.focal_length, texels)
     }
 
     /// Where something in the middle of `point` is in the picture.
@@ -184,6 +160,11 @@ impl Projection {
     /// Where something at `height` above the floor is at `depth`, in rows from the top.
     pub(super) fn row_at(&self, height: f64, depth: f64) -> f64 {
         self.horizon + (self.above_floor - height) * self.focal_length / depth
+    }
+
+    /// As [`Projection::row_at`], from wherever the eye is.
+    pub(super) fn row_seen_at(&self, height: f64, depth: f64) -> f64 {
+        self.horizon + (self.eye - height) * self.focal_length / depth
     }
 
     /// The rows whose centres are between two places, given in rows from the top.
@@ -264,11 +245,4 @@ fn rows_of_pitch(camera: &Camera, focal_length: f64) -> f64 {
     const FAR: f64 = 1e9;
     let slope = camera.pitch.slope();
     if slope == 0.0 { 0.0 } else { (slope * focal_length).round().clamp(-FAR, FAR) }
-}
-
-/// The largest integer that is not above `value`. The processor's own rounding is not in every
-/// machine's first instruction set, and a call would cost more than all else that a texel does.
-fn floor(value: f64) -> i64 {
-    let truncated = value as i64;
-    truncated - i64::from(value < truncated as f64)
 }

@@ -147,18 +147,17 @@ fn draw_mask(
     let level = level_of(scene, column as u32, hit, texture);
     let texels = level.column(hit.u);
     let Some(alphas) = level.alpha_column(hit.u) else { return };
-    let texel = scene.projection.texel_on_the_wall(hit.t, texels.len());
+    let texels_down = scene.projection.texels_down_the_wall(hit.t, texels.len());
     let rows = scene.projection.wall_rows(hit.t);
-    let pixels = frame.column_mut(column).skip(rows.start as usize);
-    for (row, pixel) in rows.clone().zip(pixels) {
-        let texel = texel(row);
+    for (row, pixel) in rows.clone().zip(frame.column_mut(column as u32, rows.clone())) {
+        let texel = texels_down.at(row);
         *pixel = shade.apply(texels[texel]).over(*pixel, alphas[texel]);
     }
     let surface = match hit.side {
         Side::X => Surface::WallX,
         Side::Y => Surface::WallY,
     };
-    let is_shown = |row| alphas[texel(row)] > u8::MAX / 2;
+    let is_shown = |row| alphas[texels_down.at(row)] > u8::MAX / 2;
     marks.note(column, rows.start, surface, rows.map(is_shown));
 }
 
@@ -172,8 +171,7 @@ fn draw_glass(
 ) {
     let tint = shade.apply(glass.color);
     let rows = scene.projection.wall_rows(hit.t);
-    let pixels = frame.column_mut(column).skip(rows.start as usize).take(rows.len());
-    for pixel in pixels {
+    for pixel in frame.column_mut(column as u32, rows) {
         *pixel = tint.over(*pixel, glass.opacity);
     }
 }

@@ -17,9 +17,9 @@ pub(super) trait Shade: Copy {
 #[derive(Clone, Copy)]
 pub(super) struct Bright;
 
-/// It is half as bright: a y-side, so that the edge between the two kinds of side shows.
+/// Half as bright on a y-side, so that the edge between the two kinds of side shows.
 #[derive(Clone, Copy)]
-pub(super) struct Halved;
+pub(super) struct OfSide(pub(super) Side);
 
 /// It fades.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -38,10 +38,13 @@ impl Shade for Bright {
     }
 }
 
-impl Shade for Halved {
+impl Shade for OfSide {
     #[inline]
     fn apply(self, color: Rgb) -> Rgb {
-        color.halved()
+        match self.0 {
+            Side::X => color,
+            Side::Y => color.halved(),
+        }
     }
 }
 

@@ -1,10 +1,12 @@
 //! The pass for things: flat pictures that stand parallel to the camera plane.
 //!
-//! Where the rays ended is known by now, and with it the stretch of the map that can be seen: only
-//! things in those cells are considered. What is left of them is drawn from far to near, column by
+//! Where the rays ended is known by now, and with it the part of the map that can be seen, its `sight`:
+//! only things in there are considered. What is left of them is drawn from far to near, column by
 //! column as far as the walls let it be seen; what the rays passed on their way, such as a grate, is
 //! drawn before the first thing that stands nearer. A buffer of depths for each pixel was refused: one
 //! distance for each column says the same, since walls reach from floor to ceiling.
+
+mod sight;
 
 use std::cmp::Ordering;
 use std::ops::Range;
@@ -18,9 +20,10 @@ use super::tally::{Pass, Tally};
 use super::{Frame, Scene, Surface};
 use crate::world::texture::Level;
 use crate::world::{Anchor, Thing};
+use sight::Sight;
 
 /// Things that are nearer than that to the camera plane are not drawn: the player stands in them.
-const NEAREST: f64 = 0.2;
+pub(super) const NEAREST: f64 = 0.2;
 
 /// There is room for so many things in view from the first frame on, so that a camera that turns
 /// towards more of them needs no more memory.
@@ -29,6 +32,7 @@ const MOST_AT_FIRST: usize = 4096;
 /// The things in view, from far to near; kept so that it is allocated once.
 #[derive(Clone, Debug, Default)]
 pub(super) struct InView {
+    sight: Sight,
     list: Vec<Billboard>,
 }
 
@@ -57,11 +61,12 @@ pub(super) fn draw<T: Tally>(
     frame: &mut Frame,
     tally: &mut T,
 ) -> Option<f64> {
-    let list = &mut in_view.list;
+    let InView { sight, list } = in_view;
     list.clear();
     list.reserve(scene.world.things().len().min(MOST_AT_FIRST));
     let mut considered = 0;
-    for thing in around(scene) {
+    sight.look(scene);
+    for &thing in sight.things(scene.world) {
         considered += 1;
         list.extend(Billboard::new(scene, thing));
     }
@@ -85,28 +90,6 @@ fn from_far_to_near(one: &Billboard, other: &Billboard) -> Ordering {
         let place = |it: &Billboard| (it.thing.cell.row, it.thing.cell.column, it.thing.sprite.0);
         place(one).cmp(&place(other))
     })
-}
-
-/// The things in the part of the map that holds all that is seen.
-fn around(scene: Scene<'_>) -> impl Iterator<Item = Thing> {
-    let Scene { world, projection, columns, .. } = scene;
-    let origin = projection.origin();
-    let (mut low, mut high) = (origin, origin);
-    for (x, column) in (0..).zip(columns) {
-        let end = origin + projection.direction_of(x) * column.distance;
-        (low, high) = (low.min(end), high.max(end));
-    }
-    // What stands beside what is seen reaches into it by half its width.
-    let margin = world.widest_sprite() / 2.0;
-    let grid = world.grid();
-    let cells = |low: f64, high: f64, count: u32| {
-        let first = (low - margin).max(0.0) as u32;
-        let last = ((high + margin).min(f64::from(count) - 1.0)).max(0.0) as u32;
-        first..=last
-    };
-    let columns = cells(low.x, high.x, grid.width());
-    let rows = cells(low.y, high.y, grid.height());
-    rows.flat_map(move |row| world.things_between(row, *columns.start(), *columns.end())).copied()
 }
 
 impl Billboard {
@@ -215,7 +198,7 @@ impl<'a> Picture<'a> {
     fn draw_shaded<S: Shade>(&self, shade: S, x: usize, u: f64, frame: &mut Frame) {
         let texels = self.level.column(u);
         let alphas = self.level.alpha_column(u);
-        let pixels = frame.column_mut(x).skip(self.rows.start as usize);
+        let pixels = frame.column_mut(x as u32, self.rows.clone());
         for (row, pixel) in self.rows.clone().zip(pixels) {
             let texel = self.texel(row);
             *pixel = match alphas.map_or(u8::MAX, |alphas| alphas[texel]) {

@@ -5,6 +5,8 @@
 //! of its row, in fixed point that wraps around: no error adds up anywhere, and a picture and its
 //! mirror image agree bit for bit.
 
+use std::ops::Range;
+
 use glam::DVec2;
 
 use crate::cast::Unfolding;
@@ -25,6 +27,15 @@ pub(super) struct Track {
 }
 
 impl Track {
+    /// The same line, a hair nearer to `eye`. It tells which cell a pixel is seen in: on the line
+    /// between two cells that is the one before it, at the foot of a wall the one before the wall.
+    pub(super) fn just_before(self, eye: DVec2) -> Self {
+        /// As a share of the way: more than rounding can move a point, and less than shows.
+        const HAIR: f64 = 1e-9;
+        let middle = self.middle + (eye - self.middle) * HAIR;
+        Self { middle, half_step: self.half_step * (1.0 - HAIR), ..self }
+    }
+
     /// Where it is on the map, if what it shows is seen in mirrors.
     pub(super) fn seen_in_mirrors(self, unfolding: Unfolding) -> Self {
         Self {
@@ -37,6 +48,51 @@ impl Track {
     /// What the centre of the pixel in column `x` shows.
     pub(super) fn point(&self, x: usize) -> DVec2 {
         self.middle + self.half_step * self.half_steps_to(x) as f64
+    }
+
+    /// The cells that the pixels in `columns` show, each by its north-west corner, and in which of the
+    /// columns.
+    ///
+    /// A cell costs a few divisions, and not each pixel in it a look at the map.
+    pub(super) fn cells(
+        self,
+        columns: Range<usize>,
+    ) -> impl Iterator<Item = (DVec2, Range<usize>)> {
+        let mut first = columns.start;
+        std::iter::from_fn(move || {
+            (first < columns.end).then(|| {
+                let corner = self.point(first).floor();
+                let start = first;
+                first = self.end_of_cell(corner, start..columns.end);
+                (corner, start..first)
+            })
+        })
+    }
+
+    /// The first of `columns` that does not show the cell at `corner` as the first one does; where they
+    /// end if there is none.
+    fn end_of_cell(&self, corner: DVec2, columns: Range<usize>) -> usize {
+        let along = |from: f64, corner: f64, half_step: f64| {
+            let edge = if half_step > 0.0 { corner + 1.0 } else { corner };
+            (edge - from) / (2.0 * half_step)
+        };
+        let from = self.point(columns.start);
+        let along_x = along(from.x, corner.x, self.half_step.x);
+        let along_y = along(from.y, corner.y, self.half_step.y);
+        // Steps of 0 never get to an edge, and make something that is no number or below 0 of it.
+        let is_ahead = |&along: &f64| along >= 0.0;
+        let pixels = [along_x, along_y].into_iter().filter(is_ahead).fold(f64::INFINITY, f64::min);
+        let least = columns.start + 1;
+        let mut end = columns.start.saturating_add(pixels as usize).clamp(least, columns.end);
+        // Rounding may be off by a pixel; the pixels themselves know.
+        let shows = |x: usize| self.point(x).floor() == corner;
+        while end > least && !shows(end - 1) {
+            end -= 1;
+        }
+        while end < columns.end && shows(end) {
+            end += 1;
+        }
+        end
     }
 
     /// The places of the pixels from column `x` on within the repeats of something that repeats
@@ -102,6 +158,27 @@ mod tests {
     }
 
     proptest! {
+        #[test]
+        fn every_pixel_is_in_the_cell_that_it_shows(
+            middle in (-50.0..50.0, -50.0..50.0),
+            half_step in (
+                prop_oneof![Just(0.0), Just(0.25), -0.9..0.9],
+                prop_oneof![Just(0.0), Just(-0.5), -0.9..0.9],
+            ),
+            width in 1_u32..400,
+        ) {
+            let (middle, half_step) = (DVec2::from(middle), DVec2::from(half_step));
+            let track = Track { distance: 1.0, pixel_area: 1.0, middle, half_step, width };
+            let mut next = 0;
+            for (corner, columns) in track.cells(0..width as usize) {
+                prop_assert_eq!(columns.start, next);
+                prop_assert!(columns.clone().all(|x| track.point(x).floor() == corner));
+                next = columns.end;
+                prop_assert!(next == width as usize || track.point(next).floor() != corner);
+            }
+            prop_assert_eq!(next, width as usize);
+        }
+
         #[test]
         fn places_are_those_of_the_points(
             middle in (-50.0..50.0, -50.0..50.0),

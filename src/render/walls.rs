@@ -10,41 +10,119 @@ use glam::DVec2;
 
 use super::doors::jamb;
 use super::plan::WallLoop;
-use super::shade::{Bright, Faded, Halved, Shade};
+use super::shade::{Faded, OfSide, Shade};
 use super::tally::{Pass, Tally};
-use super::{Frame, Scene};
+use super::texels_down::TexelsDown;
+use super::{Column, Frame, Scene};
 use crate::cast::{Hit, Side};
 use crate::world::texture::Level;
 use crate::world::{Cell, Light, Outline, Paint, Rgb, Shape, TextureId, Tile, TileKind, World};
 
-/// Draws the wall of every column that has one.
-pub(super) fn draw<T: Tally>(scene: Scene<'_>, plan: WallLoop, frame: &mut Frame, tally: &mut T) {
-    if plan.faded { draw_faded(scene, frame, tally) } else { draw_unfaded(scene, frame, tally) }
-}
-
-fn draw_unfaded<T: Tally>(scene: Scene<'_>, frame: &mut Frame, tally: &mut T) {
-    let has_shapes = scene.world.has_shapes();
-    for strip in strips(scene) {
-        match strip.hit.side {
-            _ if has_shapes && strip.shape().is_some() => strip.draw(strip.shade(), frame, tally),
-            Side::X => strip.draw(Bright, frame, tally),
-            Side::Y => strip.draw(Halved, frame, tally),
+/// Draws the wall of every column that has one. `papers` is memory to work with.
+pub(super) fn draw<T: Tally>(
+    scene: Scene<'_>,
+    plan: WallLoop,
+    papers: &mut Papers,
+    frame: &mut Frame,
+    tally: &mut T,
+) {
+    let papers = &mut papers.0;
+    for first in (0..frame.width()).step_by(COLUMNS_AT_ONCE) {
+        let columns = first..frame.width().min(first + COLUMNS_AT_ONCE as u32);
+        let strips = strips(scene, columns);
+        if plan.faded || scene.world.has_shapes() {
+            draw_strips(strips, papers, frame, tally, Strip::shade);
+        } else {
+            draw_strips(strips, papers, frame, tally, |strip| OfSide(strip.hit.side));
         }
     }
 }
 
-fn draw_faded<T: Tally>(scene: Scene<'_>, frame: &mut Frame, tally: &mut T) {
-    for strip in strips(scene) {
-        strip.draw(strip.shade(), frame, tally);
+/// As many columns as there are pixels in what a processor fetches from memory at a time.
+const COLUMNS_AT_ONCE: usize = 16;
+/// So few rows that their pixels in those columns stay at hand until the last column is drawn,
+/// even where a row is a power of two wide and they compete for the same places in the cache.
+const ROWS_AT_ONCE: usize = 32;
+
+/// What the columns are papered with that are drawn at once.
+#[derive(Clone, Debug)]
+pub(super) struct Papers(Box<[Paper; COLUMNS_AT_ONCE]>);
+
+/// The texels of a column, as they are shaded.
+type Paper = [Rgb; PAPER];
+/// A power of two, and more than there are in a column of most textures.
+const PAPER: usize = 128;
+
+impl Default for Papers {
+    fn default() -> Self {
+        Self(Box::new([[Rgb::BLACK; PAPER]; COLUMNS_AT_ONCE]))
     }
 }
 
 /// The columns that show a wall.
-fn strips(scene: Scene<'_>) -> impl Iterator<Item = Strip<'_>> {
-    (0..).zip(scene.columns).filter_map(move |(x, column)| {
-        let hit = column.hit.as_ref()?;
-        Some(Strip { scene, x, rows: column.rows.clone(), hit })
+fn strips(scene: Scene<'_>, columns: Range<u32>) -> impl Iterator<Item = Strip<'_>> {
+    columns.filter_map(move |x| {
+        let Column { hit, rows, .. } = &scene.columns[x as usize];
+        Some(Strip { scene, x, rows: rows.clone(), hit: hit.as_ref()? })
     })
+}
+
+/// Draws at most [`COLUMNS_AT_ONCE`] of them.
+#[inline]
+fn draw_strips<'a, S: Shade, T: Tally>(
+    strips: impl Iterator<Item = Strip<'a>>,
+    papers: &mut [Paper; COLUMNS_AT_ONCE],
+    frame: &mut Frame,
+    tally: &mut T,
+    shade: impl Fn(&Strip<'a>) -> S,
+) {
+    let mut coats = [const { None }; COLUMNS_AT_ONCE];
+    for (coat, (strip, paper)) in coats.iter_mut().zip(strips.zip(papers)) {
+        *coat = Some(strip.coat(shade(&strip), paper, tally));
+    }
+    let coats = || coats.iter().flatten();
+    let first = coats().map(|coat| coat.rows.start).min().unwrap_or_default();
+    let end = coats().map(|coat| coat.rows.end).max().unwrap_or_default();
+    for row in (first..end).step_by(ROWS_AT_ONCE) {
+        coats().for_each(|coat| coat.draw(row..row + ROWS_AT_ONCE as u32, frame));
+    }
+}
+
+/// How a column of pixels is covered.
+struct Coat<'a, S> {
+    x: u32,
+    rows: Range<u32>,
+    cover: Cover<'a, S>,
+}
+
+enum Cover<'a, S> {
+    Color(Rgb),
+    /// More rows than texels, which were shaded once.
+    Paper(&'a Paper, TexelsDown),
+    Texels(&'a [Rgb], TexelsDown, S),
+}
+
+impl<S: Shade> Coat<'_, S> {
+    /// Draws what of it is in `rows`.
+    #[inline]
+    fn draw(&self, rows: Range<u32>, frame: &mut Frame) {
+        let rows = rows.start.max(self.rows.start)..rows.end.min(self.rows.end);
+        let first = rows.start;
+        let pixels = frame.column_mut(self.x, rows);
+        match self.cover {
+            Cover::Color(color) => pixels.for_each(|pixel| *pixel = color),
+            Cover::Paper(paper, down) => {
+                for (pixel, texel) in pixels.zip(down.from(first)) {
+                    *pixel = paper[texel % PAPER];
+                }
+            }
+            Cover::Texels(texels, down, shade) => {
+                for (pixel, row) in pixels.zip(first..) {
+                    *pixel = shade.apply(texels[down.at(row)]);
+                }
+            }
+        }
+    }
 }
 
 /// A wall as wide as a pixel.
@@ -65,25 +143,34 @@ impl<'a> Strip<'a> {
         texture.level(filter.halvings(area * texels))
     }
 
-    #[inline]
-    fn draw<S: Shade, T: Tally>(&self, shade: S, frame: &mut Frame, tally: &mut T) {
+    /// How it is covered in that shade, by means of `paper`.
+    fn coat<S: Shade, T: Tally>(
+        &self,
+        shade: S,
+        paper: &'a mut Paper,
+        tally: &mut T,
+    ) -> Coat<'a, S> {
         let rows = self.rows.clone();
         tally.pixels(Pass::Walls, rows.len());
-        let pixels = frame.column_mut(self.x as usize).skip(rows.start as usize).take(rows.len());
-        match self.paint() {
-            Paint::Color(color) => {
-                let color = shade.apply(color);
-                pixels.for_each(|pixel| *pixel = color);
-            }
+        let cover = match self.paint() {
+            Paint::Color(color) => Cover::Color(shade.apply(color)),
             Paint::Texture(texture) => {
-                let texels = self.texels(texture);
                 tally.texels(Pass::Walls, rows.len());
-                let texel = self.scene.projection.texel_on_the_wall(self.hit.t, texels.len());
-                for (row, pixel) in rows.zip(pixels) {
-                    *pixel = shade.apply(texels[texel(row)]);
+                let texels = self.texels(texture);
+                let down = self.scene.projection.texels_down_the_wall(self.hit.t, texels.len());
+                if texels.len() < PAPER && texels.len() <= 2 * rows.len() {
+                    for (shaded, texel) in paper.iter_mut().zip(texels) {
+                        *shaded = shade.apply(*texel);
+                    }
+                    // Rounding may take the last row one texel too far.
+                    paper[texels.len()] = paper[texels.len() - 1];
+                    Cover::Paper(paper, down)
+                } else {
+                    Cover::Texels(texels, down, shade)
                 }
             }
-        }
+        };
+        Coat { x: self.x, rows, cover }
     }
 
     /// How it looks: as a jamb, where it faces a door.
@@ -94,7 +181,7 @@ impl<'a> Strip<'a> {
     }
 
     /// The column of the texture that shows.
-    fn texels(&self, id: TextureId) -> &[Rgb] {
+    fn texels(&self, id: TextureId) -> &'a [Rgb] {
         self.level(id).column(self.hit.u)
     }
 

@@ -8,26 +8,35 @@
 //!
 //! Each of the passes is a file: `look` follows the rays and notes what every pixel shows, `planes`
 //! lays floors, ceilings and the sky along rows, `faces` papers what stands upright, `veils` paints
-//! what is seen through over that. Where a world is level and has no mirrors the other passes draw
+//! over that what is seen through, and `things` what stands between. Where a world is level and has no mirrors the other passes draw
 //! the same with less: they need not ask what a pixel shows. Laying a floor at once while its column
 //! is followed was refused: by rows its shade and its distance are found once for many pixels.
 
 mod faces;
+mod lines;
 mod look;
+mod notes;
 mod planes;
+mod standing;
 #[cfg(test)]
 mod tests;
+mod things;
 mod veils;
 
+use std::ops::Range;
+
 use super::columns::Surface;
+use super::marks::Marks;
 use super::plan::WallLoop;
 use super::sky::SkyView;
 use super::tally::Tally;
 use super::{Column, Filter, Frame, Projection};
 use crate::cast::{Side, Unfolding};
-use crate::world::{TileId, World};
+use crate::world::texture::Level;
+use crate::world::{Camera, Texture, TileId, World};
 use faces::Face;
 use look::{Branch, Look};
+use things::{Billboards, Image};
 use veils::Veil;
 
 /// What the passes hand on to each other; kept so that it is allocated once.
@@ -41,8 +50,9 @@ pub(super) struct Windows {
     veils: Vec<Veil>,
     /// Where a ray still has to be followed.
     branches: Vec<Branch>,
-    /// Where on the map is what is seen in mirrors, the map itself first.
-    unfoldings: Vec<Unfolding>,
+    /// What is seen of the map itself, and then in mirrors.
+    images: Vec<Image>,
+    billboards: Billboards,
     counts: WindowCounts,
 }
 
@@ -86,7 +96,7 @@ enum Part {
     Roof,
 }
 
-/// By which mirrors something is seen: an index into the list of unfoldings.
+/// By which mirrors something is seen: an index into the list of images.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 struct Reflection(u16);
 
@@ -102,26 +112,44 @@ pub(super) struct Scene<'a> {
     pub(super) filter: Filter,
     /// Above this height there is only sky.
     top: f64,
+    /// Whether anything stands anywhere, be it the player before a mirror.
+    has_things: bool,
 }
 
 impl<'a> Scene<'a> {
     pub(super) fn new(world: &'a World, projection: &'a Projection, filter: Filter) -> Self {
         let tops = world.tiles().iter().filter_map(|tile| tile.gaps().next_back());
         let top = tops.map(|gap| gap.bottom).fold(0.0, f64::max);
-        Self { world, projection, filter, top }
+        let has_things = !world.things().is_empty() || world.has_mirrors();
+        Self { world, projection, filter, top, has_things }
+    }
+
+    /// The level of a texture that suits a face at `t`, where the ray leads straight at it by `slope`
+    /// for each unit of that.
+    fn level_on(self, texture: &Texture, t: f64, slope: f64) -> &Level {
+        let texels = f64::from(texture.width()) * f64::from(texture.height());
+        let area = self.projection.pixel_area_on_wall(t, slope);
+        texture.level(self.filter.halvings(area * texels))
     }
 }
 
-/// Draws what there is to see into `frame`, and notes in `columns` how far each ray got.
+/// Who looks, and when.
+#[derive(Clone, Copy)]
+pub(super) struct Viewer<'a> {
+    pub(super) camera: &'a Camera,
+    pub(super) seconds: f64,
+}
+
+/// Draws what there is to see into `frame`, and notes in `columns` how far each ray got. Returns when
+/// a thing in view will look different; `None` for never.
 pub(super) fn draw<T: Tally>(
     scene: Scene<'_>,
-    plan: WallLoop,
-    sky: &SkyView<'_>,
-    windows: &mut Windows,
-    columns: &mut Vec<Column>,
+    viewer: Viewer<'_>,
+    (plan, sky): (WallLoop, &SkyView<'_>),
+    (windows, columns, marks): (&mut Windows, &mut Vec<Column>, &mut Marks),
     frame: &mut Frame,
     tally: &mut T,
-) {
+) -> Option<f64> {
     windows.begin(frame);
     columns.clear();
     for (x, ray) in scene.projection.rays().enumerate() {
@@ -130,7 +158,37 @@ pub(super) fn draw<T: Tally>(
     windows.counts.faces = windows.faces.len() as u64;
     windows.counts.spans = planes::draw(scene, sky, windows, frame, tally);
     faces::draw(scene, plan, &windows.faces, frame, tally);
-    veils::draw(scene, &windows.veils, frame, tally);
+
+    marks.begin(frame.width(), frame.height());
+    let Windows { veils, images, billboards, .. } = windows;
+    if scene.has_things {
+        billboards.find(scene, images, viewer.camera, viewer.seconds);
+    }
+    veils::draw(scene, veils, billboards, marks, frame, tally);
+    if !scene.has_things {
+        return None;
+    }
+    let (considered, drawn) = billboards.counts();
+    tally.things(considered as usize, drawn as usize);
+    billboards.next_change(scene, viewer.seconds)
+}
+
+/// The part of `window` that shows what is between two heights at distance `t`.
+fn rows_between(
+    projection: &Projection,
+    window: &Range<u32>,
+    bottom: f64,
+    top: f64,
+    t: f64,
+) -> Range<u32> {
+    let Range { mut start, mut end } = *window;
+    if top < f64::INFINITY {
+        start = start.max(projection.row_of(top, t));
+    }
+    if bottom > f64::NEG_INFINITY {
+        end = end.min(projection.row_of(bottom, t));
+    }
+    start..end
 }
 
 impl Windows {
@@ -167,27 +225,31 @@ impl Windows {
         self.veils.reserve(width * OF_A_RAY);
         self.branches.clear();
         self.branches.reserve(AT_ONCE);
-        self.unfoldings.clear();
-        self.unfoldings.reserve(AT_ONCE);
-        self.unfoldings.push(Unfolding::default());
+        self.images.clear();
+        self.images.reserve(AT_ONCE);
+        self.images.push(Image::new(Unfolding::default()));
         self.counts = WindowCounts::default();
     }
 
     /// The index of `unfolding`. Of a map with more mirrors in view than there are indices, the last
     /// ones show the places of another.
     fn reflection(&mut self, unfolding: Unfolding) -> Reflection {
-        let known = self.unfoldings.iter().rposition(|&known| known == unfolding);
+        let known = self.images.iter().rposition(|known| known.unfolding == unfolding);
         let index = known.unwrap_or_else(|| {
-            if u16::try_from(self.unfoldings.len()).is_ok() {
-                self.unfoldings.push(unfolding);
+            if u16::try_from(self.images.len()).is_ok() {
+                self.images.push(Image::new(unfolding));
             }
-            self.unfoldings.len() - 1
+            self.images.len() - 1
         });
         Reflection(index as u16)
     }
 
+    fn image(&mut self, Reflection(index): Reflection) -> &mut Image {
+        &mut self.images[usize::from(index)]
+    }
+
     /// Where what is seen by `reflection` is on the map.
     fn unfolding(&self, Reflection(index): Reflection) -> Unfolding {
-        self.unfoldings[usize::from(index)]
+        self.images[usize::from(index)].unfolding
     }
 }

@@ -27,7 +27,7 @@ use ratatui::layout::{Position, Size};
 use ratatui::style::Color;
 
 use self::control::ControlSequence;
-use self::look::Look;
+use self::look::{Block, Look};
 use self::screen::{Row, Screen};
 use self::shift::{Shift, Way};
 use self::style::Shade;
@@ -44,8 +44,6 @@ pub struct CellWriter<W> {
     output: W,
     size: Size,
     screen: Screen,
-    /// What a row is to look like, while it is written.
-    row: Vec<Look>,
     /// What is to be written; it begins with the mark of synchronized output.
     frame: Vec<u8>,
     style: Option<Style>,
@@ -65,7 +63,6 @@ impl<W: Write> CellWriter<W> {
             output,
             size,
             screen: Screen::blank(size),
-            row: Vec::new(),
             frame: Vec::new(),
             style: None,
             position: None,
@@ -79,6 +76,11 @@ impl<W: Write> CellWriter<W> {
     /// How many bytes have been written so far.
     pub fn bytes_written(&self) -> u64 {
         self.bytes_written
+    }
+
+    /// What is written to. A byte that others write to it is one that this does not know of.
+    pub fn output_mut(&mut self) -> &mut W {
+        &mut self.output
     }
 
     /// What was written to.
@@ -150,42 +152,53 @@ impl<W: Write> CellWriter<W> {
 
     /// Makes a row look as it is wanted.
     fn draw_row(&mut self, row: Row) -> io::Result<()> {
-        let Row { y, shown, wanted, exact } = row;
-        let mut looks = std::mem::take(&mut self.row);
-        looks.clear();
-        looks.extend(wanted.iter().map(Look::of));
-        if shown.iter().chain(&looks).all(|look| look.can_move()) {
-            while let Some(shift) = Shift::best(shown, &looks) {
+        let Row { y, shown, looks, wanted, exact } = row;
+        if shown.iter().chain(looks).all(|look| look.can_move()) {
+            for _ in 0..MOST_SHIFTS {
+                let Some(shift) = Shift::best(shown, looks, self.tolerance) else { break };
                 self.shift(&shift, y)?;
                 shift.apply(shown);
             }
         }
         let mut covered = 0;
         *exact = true;
-        for (x, (cell, &look)) in (0..).zip(wanted.iter().zip(&looks)) {
+        for (x, (shown, &look)) in (0..).zip(shown.iter_mut().zip(looks)) {
             if covered > 0 {
                 // The second half of a wide character.
                 covered -= 1;
-                shown[usize::from(x)] = Look::UNKNOWN;
-            } else {
-                covered = cell.cell_width().saturating_sub(1);
-                let shown = &mut shown[usize::from(x)];
-                if !shown.is_near(look, self.tolerance) {
-                    *shown = self.draw_cell(Position { x, y }, cell)?;
-                }
-                *exact &= *shown == look;
+                *shown = Look::UNKNOWN;
+                continue;
             }
+            if !shown.is_near(look, self.tolerance) {
+                *shown = match look.halves() {
+                    Some(halves) => self.draw_block(Position { x, y }, halves)?,
+                    None => self.draw_cell(Position { x, y }, &wanted[usize::from(x)], look)?,
+                };
+            }
+            if look.is_intricate() {
+                covered = wanted[usize::from(x)].cell_width().saturating_sub(1);
+            }
+            *exact &= *shown == look;
         }
-        self.row = looks;
         Ok(())
     }
 
-    /// Writes `cell`, or what passes for it, and answers what that looks like.
-    fn draw_cell(&mut self, position: Position, cell: &Cell) -> io::Result<Look> {
+    /// Writes what passes for a block of these two halves, and answers what it looks like.
+    fn draw_block(&mut self, position: Position, halves: [Shade; 2]) -> io::Result<Look> {
         self.move_to(position)?;
-        let ((symbol, style), look) = look::cheapest(cell, self.style, self.tolerance);
+        let Block { symbol, style, look } = look::cheapest(halves, self.style, self.tolerance);
         self.set_style(style)?;
-        self.write_symbol(position, symbol)?;
+        self.frame()?.extend_from_slice(symbol.as_bytes());
+        self.position = Some(Position { x: position.x.saturating_add(1), ..position })
+            .filter(|next| next.x < self.size.width);
+        Ok(look)
+    }
+
+    /// Writes `cell` as it is.
+    fn draw_cell(&mut self, position: Position, cell: &Cell, look: Look) -> io::Result<Look> {
+        self.move_to(position)?;
+        self.set_style(Style::of(cell))?;
+        self.write_symbol(position, cell.symbol())?;
         Ok(look)
     }
 
@@ -258,6 +271,9 @@ impl<W: Write> CellWriter<W> {
         Ok(())
     }
 }
+
+/// How often a row is shifted in a frame: its left, its right and its middle may each move their way.
+const MOST_SHIFTS: usize = 6;
 
 /// The last bytes of the sequences that delete characters, and insert blank ones.
 const DELETE: u8 = b'P';

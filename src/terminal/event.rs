@@ -15,6 +15,9 @@ pub enum Event {
     /// The terminal has agreed, or not, to report when keys are released. Sent at most once; until
     /// then, releases are not reported.
     KeyReleases(bool),
+    /// The terminal is ready for the next frame. Sent only after
+    /// [`Session::is_ready`](super::Session::is_ready) has denied it.
+    Ready,
     /// The user wants to go back to the shell for a while: Ctrl-Z, or a signal. The program is
     /// asked to call [`Session::suspend`](super::Session::suspend).
     Suspend,

@@ -62,8 +62,10 @@ const FIRST_WINDOW: usize = 2;
 /// The least time after which an answer counts as lost, and the most.
 const LEAST_PATIENCE: Duration = Duration::from_secs(1);
 pub(super) const MOST_PATIENCE: Duration = Duration::from_secs(8);
-/// After how many round trips without an answer it counts as lost.
-const PATIENT_ROUND_TRIPS: u32 = 4;
+/// How many times longer than expected an answer may take.
+const PATIENT_TIMES: u32 = 4;
+/// What a link carries that nothing is known of, if it is as slow as one can be: bytes a second.
+const SLOWEST: f64 = 16_000.0;
 
 impl Flow {
     /// Whether a status request belongs after the next frame.
@@ -95,10 +97,14 @@ impl Flow {
             return;
         }
         self.in_flight.pop_front();
-        self.given_up = 0;
         self.misses = 0;
         self.active_at = now;
-        self.link.answered(now, at, bytes);
+        if self.given_up > 0 {
+            // It may be the answer to one of those, and says nothing of the link.
+            self.given_up = 0;
+        } else {
+            self.link.answered(now, at, bytes);
+        }
     }
 
     /// Takes note that the terminal has passed over a request, and answered what was asked later.
@@ -180,9 +186,14 @@ impl Flow {
         self.opens_at().is_some_and(|time| time <= now)
     }
 
+    /// How long there may be no answer until those to come count as lost.
     fn patience(&self) -> Duration {
-        let round_trips = self.link.round_trip().unwrap_or_default() * PATIENT_ROUND_TRIPS;
-        let first = round_trips.clamp(LEAST_PATIENCE, MOST_PATIENCE);
+        let bytes = self.in_flight.iter().map(|sent| sent.bytes).sum();
+        let expected = match self.link.time_for(bytes) {
+            Some(busy) => (self.link.expected_round_trip() + busy) * PATIENT_TIMES,
+            None => Duration::from_secs_f64(bytes as f64 / SLOWEST),
+        };
+        let first = expected.clamp(LEAST_PATIENCE, MOST_PATIENCE);
         first.saturating_mul(1_u32.checked_shl(self.misses).unwrap_or(u32::MAX)).min(MOST_PATIENCE)
     }
 }

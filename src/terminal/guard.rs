@@ -4,6 +4,7 @@
 //! first gives the terminal back; for the others there is nothing left to do. Restoring in each of
 //! them what it knows of was refused: what is pushed twice or popped twice is worse than neither.
 
+mod outbox;
 mod panic_hook;
 
 use std::io;
@@ -17,6 +18,7 @@ use crossterm::terminal::{
     LeaveAlternateScreen,
 };
 
+use self::outbox::Outbox;
 use super::Error;
 use super::input::{Answer, Decoder, Input};
 use super::platform::Device;
@@ -36,6 +38,7 @@ pub(super) struct Guard {
     state: Mutex<State>,
     given_back: Condvar,
     hurried: AtomicBool,
+    outbox: Mutex<Outbox>,
     recording: Mutex<Recording>,
 }
 
@@ -44,6 +47,8 @@ struct State {
     taken: bool,
     key_flags: KeyFlags,
     fences: Fences,
+    /// Whether answers to status requests are on their way.
+    awaits_statuses: bool,
 }
 
 /// Whether the terminal reports keys in the kitty protocol.
@@ -77,9 +82,11 @@ impl Guard {
                 taken: false,
                 key_flags: KeyFlags::Untouched,
                 fences: Fences { open: 0, last_sent: Instant::now() },
+                awaits_statuses: false,
             }),
             given_back: Condvar::new(),
             hurried: AtomicBool::new(false),
+            outbox: Mutex::default(),
             recording: Mutex::new(Recording::by(recorder)),
         });
         panic_hook::protect(&guard)?;
@@ -106,6 +113,7 @@ impl Guard {
         let mut state = self.lock();
         self.device.make_raw()?;
         state.taken = true;
+        self.outbox().clear();
         let mut text = sequence::of(EnterAlternateScreen) + &sequence::of(Hide);
         // What is too long for a line is cut, so a window made narrower does not scroll.
         text.push_str(&sequence::of(DisableLineWrap));
@@ -139,17 +147,33 @@ impl Guard {
         self.lock().taken
     }
 
-    /// Writes `bytes`, however long the terminal takes; unless the program is to end meanwhile, or
-    /// the terminal has been given back.
+    /// Writes `bytes` after all that was written before, as far as the terminal takes them at once;
+    /// the rest when it [has room](Self::write_rest).
     pub(super) fn write(&self, bytes: &[u8]) -> io::Result<()> {
-        if !self.is_taken() {
-            return Err(io::Error::other(Error::given_back()));
-        }
+        self.check_taken()?;
         self.recording().sent(bytes);
-        self.device.write(bytes, || !self.is_hurried())
+        let mut outbox = self.outbox();
+        outbox.push(bytes);
+        outbox.write_to(&self.device)
     }
 
-    /// From now on, nothing waits for a terminal that takes no bytes.
+    /// Writes what the terminal has not taken yet, as far as it does now.
+    pub(super) fn write_rest(&self) -> io::Result<()> {
+        self.check_taken()?;
+        self.outbox().write_to(&self.device)
+    }
+
+    /// Whether the terminal has taken all that was written.
+    pub(super) fn has_written_all(&self) -> bool {
+        self.outbox().is_empty()
+    }
+
+    /// Takes note whether answers to status requests are on their way.
+    pub(super) fn await_statuses(&self, awaits: bool) {
+        self.lock().awaits_statuses = awaits;
+    }
+
+    /// From now on, nothing waits for a terminal that is not ready for a frame.
     pub(super) fn hurry(&self) {
         self.hurried.store(true, Ordering::SeqCst);
     }
@@ -176,6 +200,14 @@ impl Guard {
         !waited.unwrap_or_else(PoisonError::into_inner).0.taken
     }
 
+    fn check_taken(&self) -> io::Result<()> {
+        if self.is_taken() { Ok(()) } else { Err(io::Error::other(Error::given_back())) }
+    }
+
+    fn outbox(&self) -> MutexGuard<'_, Outbox> {
+        self.outbox.lock().unwrap_or_else(PoisonError::into_inner)
+    }
+
     /// A panic while it is held changes nothing that matters: what is left to undo is still told.
     fn lock(&self) -> MutexGuard<'_, State> {
         self.state.lock().unwrap_or_else(PoisonError::into_inner)
@@ -187,10 +219,13 @@ impl Guard {
         let mut text = sequence::of(EndSynchronizedUpdate) + sequence::RESET_STYLE;
         if state.key_flags == KeyFlags::Pushed {
             text.push_str(sequence::POP_KEY_FLAGS);
-            // What is typed before the flags are popped is sent in the old way; the answer to
-            // this comes after it.
+        }
+        if state.key_flags == KeyFlags::Pushed || state.awaits_statuses {
+            // What is typed before the flags are popped is sent in the old way, and frames are
+            // answered; the answer to this comes after all of it.
             text.push_str(sequence::QUERY_FENCE);
             state.fences.sent();
+            state.awaits_statuses = false;
         }
         text.push_str(&sequence::of(EnableLineWrap));
         text.push_str(&sequence::of(Show));

@@ -143,15 +143,14 @@ impl Device {
         wants_room: bool,
         timeout: Option<Duration>,
     ) -> io::Result<Ready> {
-        let room = if wants_room { PollFlags::OUT } else { PollFlags::empty() };
         let mut all = [
             PollFd::new(&self.input, PollFlags::IN),
             PollFd::new(signals, PollFlags::IN),
-            PollFd::new(&self.output, room),
+            PollFd::new(&self.output, PollFlags::OUT),
         ];
         // A terminal that has been hung up is ready whether or not anybody wants to write to it.
-        let watched = if wants_room { &mut all[..] } else { &mut all[..2] };
-        wait(watched, timeout)?;
+        let watched = if wants_room { 3 } else { 2 };
+        wait(&mut all[..watched], timeout)?;
         let [input, signals, output] = all.map(|one| !one.revents().is_empty());
         Ok(Ready { input, signals, output })
     }

@@ -6,9 +6,11 @@
 mod clock;
 mod levels;
 mod panels;
+mod played;
 mod recording;
 mod replay;
 mod run;
+mod stats;
 
 use std::time::Duration;
 
@@ -21,15 +23,18 @@ pub use run::play;
 
 use super::bindings::{Action, Bindings};
 use super::held::HeldKeys;
-use super::{CellAspect, FirstPerson, GlyphMode, Minimap, View};
+use super::{CellAspect, GlyphMode, Minimap, View};
 use crate::cast::Method;
-use crate::game::{Game, Intent, Intents, STEP};
+use crate::game::{Intent, Intents, STEP};
+use crate::map::Level;
 use crate::palette::ColorDepth;
 use crate::render::Filter;
-use crate::terminal::{Key, KeyEvent, Phase};
-use crate::world::{Camera, FieldOfView, World};
+use crate::terminal::{Fidelity, Key, KeyEvent, Phase};
+use crate::world::FieldOfView;
 use clock::Clock;
+use played::{Eye, Memory, Played};
 use recording::ScriptRecorder;
+use stats::Stats;
 
 /// How the game is shown and steered.
 #[derive(Clone, Debug, Default)]
@@ -50,6 +55,10 @@ pub struct Settings {
     pub method: Method,
     /// How textures are looked up.
     pub filter: Filter,
+    /// How exact frames are; `None` for as exact as the link to the terminal allows.
+    pub fidelity: Option<Fidelity>,
+    /// Whether the status line tells of frames and the link at first.
+    pub shows_stats: bool,
 }
 
 /// What shows besides the picture, and what keys do meanwhile.
@@ -65,13 +74,22 @@ enum Screen {
 /// What of the game shows in a picture of it.
 #[derive(Clone, Copy, Debug, PartialEq)]
 struct Scene {
-    camera: Camera,
+    eye: Eye,
     revision: u64,
 }
 
+/// How a picture is shown.
+#[derive(Clone, Copy, Debug)]
+struct Look {
+    glyphs: GlyphMode,
+    depth: ColorDepth,
+    cell_aspect: CellAspect,
+    filter: Filter,
+}
+
 struct App {
-    later_levels: Box<dyn Iterator<Item = World>>,
-    game: Game,
+    later_levels: Box<dyn Iterator<Item = Level>>,
+    game: Played,
     /// Seconds taken by the levels before this one.
     earlier: f64,
     screen: Screen,
@@ -80,19 +98,19 @@ struct App {
     cell_aspect: CellAspect,
     field_of_view: FieldOfView,
     held: HeldKeys,
-    runs: bool,
-    ducks: bool,
+    gait: panels::Gait,
     /// What counts for the next step even if its key is up again by then.
     pressed: Intents,
     shows_minimap: bool,
     has_left: bool,
     clock: Clock,
-    view: View,
+    memory: Memory,
     /// What the screen shows; `None` where it must be drawn again.
     shown: Option<Scene>,
     /// When, by the game's clock, something in the picture looks different by itself.
     animates_at: Option<f64>,
-    next_frame: Duration,
+    shows_stats: bool,
+    stats: Option<Stats>,
     /// Where what is wanted is noted down.
     script: Option<ScriptRecorder>,
 }
@@ -107,24 +125,27 @@ impl App {
         let Levels { first, rest } = levels;
         Self {
             later_levels: rest,
-            game: Game::new(first),
+            game: Played::new(first),
             earlier: 0.0,
             screen: Screen::Playing,
             field_of_view: settings.field_of_view,
             depth: settings.depth.unwrap_or_default(),
             cell_aspect: settings.cell_aspect.unwrap_or_default(),
-            view: View::with_method(settings.method.clone()),
+            memory: Memory {
+                grid: View::with_method(settings.method.clone()),
+                ..Memory::default()
+            },
+            shows_stats: settings.shows_stats,
             settings,
             held: HeldKeys::default(),
-            runs: false,
-            ducks: false,
+            gait: panels::Gait::default(),
             pressed: Intents::new(),
             shows_minimap: true,
             has_left: false,
             clock: Clock::default(),
             shown: None,
             animates_at: None,
-            next_frame: Duration::ZERO,
+            stats: None,
             script: None,
         }
     }
@@ -160,8 +181,8 @@ impl App {
         });
         let aims = self.held.iter().any(|key| self.turns(key) && !self.held.is_certain(key));
         let others = [
-            self.runs.then_some(Intent::Run),
-            self.ducks.then_some(Intent::Duck),
+            self.gait.runs.then_some(Intent::Run),
+            self.gait.ducks.then_some(Intent::Duck),
             aims.then_some(Intent::Aim),
         ];
         wanted.chain(self.pressed.iter()).chain(others.into_iter().flatten()).collect()
@@ -176,23 +197,15 @@ impl App {
     }
 
     /// How the player walks, as far as they need not hold a key for it.
-    fn gait(&self) -> panels::Gait {
-        panels::Gait { runs: self.runs, ducks: self.ducks }
-    }
-
     fn scene(&self) -> Scene {
-        Scene { camera: self.camera(), revision: self.game.revision() }
+        Scene { eye: self.eye(), revision: self.game.revision() }
     }
 
-    fn camera(&self) -> Camera {
-        self.game.camera(self.field_of_view)
+    fn eye(&self) -> Eye {
+        self.game.eye(self.field_of_view)
     }
 
-    /// Whether the screen shows something that is no longer so, and may be drawn again at `now`.
-    fn is_due(&self, now: Duration) -> bool {
-        self.is_stale() && now >= self.next_frame
-    }
-
+    /// Whether the screen shows something that is no longer so.
     fn is_stale(&self) -> bool {
         self.shown != Some(self.scene()) || self.steps_to_animation() == Some(0)
     }
@@ -203,25 +216,11 @@ impl App {
         Some(steps.round().max(0.0) as u64)
     }
 
-    fn drawn(&mut self, now: Duration) {
+    /// Takes note that the screen shows what there is.
+    fn drawn(&mut self) {
         self.shown = Some(self.scene());
         let soonest = self.game.elapsed() + STEP;
-        self.animates_at = self.view.next_change().map(|change| change.max(soonest));
-        // Counted from when this frame was due, or the time that drawing takes would slow them down.
-        let frame_time = self.settings.frame_time;
-        self.next_frame = Some(self.next_frame + frame_time)
-            .filter(|&next| now < next)
-            .unwrap_or(now + frame_time);
-    }
-
-    /// When something will happen without an event; `None` for never.
-    fn wakes_at(&self) -> Option<Duration> {
-        let frame = if self.is_stale() {
-            Some(self.next_frame)
-        } else {
-            self.next_change().map(|change| change.max(self.next_frame))
-        };
-        frame.into_iter().chain(self.held.next_expiry()).min()
+        self.animates_at = self.memory.next_change().map(|change| change.max(soonest));
     }
 
     /// When the game will change by itself; `None` for never.
@@ -269,11 +268,15 @@ impl App {
                 Some(Action::Want(tap @ (Intent::Open | Intent::Jump | Intent::LookAhead))),
             ) => self.pressed.insert(tap),
             (_, Some(Action::ToggleDuck)) => {
-                self.ducks = !self.ducks;
+                self.gait.ducks = !self.gait.ducks;
                 self.shown = None;
             }
             (_, Some(Action::ToggleRun)) => {
-                self.runs = !self.runs;
+                self.gait.runs = !self.gait.runs;
+                self.shown = None;
+            }
+            (_, Some(Action::ToggleStats)) => {
+                self.shows_stats = !self.shows_stats;
                 self.shown = None;
             }
             (_, Some(Action::WidenView)) => self.widen_view(VIEW_STEP),
@@ -295,9 +298,9 @@ impl App {
     }
 
     fn next_level(&mut self) {
-        let Some(world) = self.later_levels.next() else { return self.show(Screen::End) };
+        let Some(level) = self.later_levels.next() else { return self.show(Screen::End) };
         self.earlier += self.game.elapsed();
-        self.game = Game::new(world);
+        self.game = Played::new(level);
         self.held.clear();
         self.show(Screen::Playing);
     }
@@ -323,32 +326,33 @@ impl App {
         }
         let [picture, status] = panels::picture_and_status(area);
         self.draw_picture(frame, picture);
-        panels::status(frame, status, &self.game, self.gait(), &self.settings.bindings);
+        let stats = self.stats.as_ref().filter(|_| self.shows_stats);
+        panels::status(frame, status, &self.game, self.gait, stats, &self.settings.bindings);
         let seconds = self.game.elapsed();
         match self.screen {
             Screen::Playing => {}
             Screen::Paused => panels::paused(frame, picture, &self.settings.bindings),
             Screen::Help => panels::help(frame, picture, &self.settings.bindings),
-            Screen::LevelDone => panels::level_done(frame, picture, self.game.world(), seconds),
+            Screen::LevelDone => panels::level_done(frame, picture, self.game.title(), seconds),
             Screen::End => panels::end(frame, picture, self.earlier + seconds),
         }
     }
 
     fn draw_picture(&mut self, frame: &mut Frame, area: Rect) {
-        let camera = self.camera();
-        let world = self.game.world();
-        let picture = FirstPerson::new(world, &camera)
-            .glyphs(self.settings.glyphs)
-            .color_depth(self.depth)
-            .cell_aspect(self.cell_aspect)
-            .filter(self.settings.filter)
-            .time(self.game.elapsed());
-        frame.render_stateful_widget(picture, area, &mut self.view);
+        let eye = self.eye();
+        let look = Look {
+            glyphs: self.settings.glyphs,
+            depth: self.depth,
+            cell_aspect: self.cell_aspect,
+            filter: self.settings.filter,
+        };
+        self.game.draw(&eye, look, (frame, area), &mut self.memory);
+        let (Played::Grid(game), Eye::Grid(camera)) = (&self.game, &eye) else { return };
         if !self.shows_minimap {
             return;
         }
-        let map = Minimap::new(world, &camera)
-            .seen(self.view.columns())
+        let map = Minimap::new(game.world(), camera)
+            .seen(self.memory.grid.columns())
             .glyphs(self.settings.glyphs)
             .color_depth(self.depth);
         if let Some(panel) = panels::minimap(area, &map) {

@@ -38,13 +38,15 @@ pub(crate) enum Action {
     WidenView,
     /// Seeing less at once.
     NarrowView,
+    /// Showing or hiding what frames take.
+    ToggleStats,
     /// Leaving the game.
     Leave,
 }
 
 impl Action {
     /// Every action: its name in a file, what it does in a word or two, and itself.
-    pub(crate) const ALL: [(&'static str, &'static str, Self); 21] = [
+    pub(crate) const ALL: [(&'static str, &'static str, Self); 22] = [
         ("forward", "walk", Self::Want(Intent::Forward)),
         ("back", "walk back", Self::Want(Intent::Back)),
         ("strafe-left", "strafe left", Self::Want(Intent::StrafeLeft)),
@@ -65,6 +67,7 @@ impl Action {
         ("pause", "pause", Self::TogglePause),
         ("wider", "wider view", Self::WidenView),
         ("narrower", "narrower view", Self::NarrowView),
+        ("stats", "frames and link", Self::ToggleStats),
         ("leave", "leave", Self::Leave),
     ];
 
@@ -141,6 +144,7 @@ impl Bindings {
             (Key::Char('+'), Action::WidenView),
             (Key::Char('='), Action::WidenView),
             (Key::Char('-'), Action::NarrowView),
+            (Key::Char('i'), Action::ToggleStats),
             (Key::Char(letters.leave), Action::Leave),
             (Key::Escape, Action::Leave),
         ];

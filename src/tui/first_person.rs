@@ -6,7 +6,7 @@ use ratatui::buffer::Buffer;
 use ratatui::layout::{Rect, Size};
 use ratatui::widgets::StatefulWidget;
 
-use super::{CellAspect, GlyphMode, ascii, half_blocks};
+use super::{CellAspect, GlyphMode, ascii, half_blocks, ramp};
 use crate::cast::Method;
 use crate::palette::ColorDepth;
 use crate::render::{
@@ -113,6 +113,10 @@ impl<'a> FirstPerson<'a> {
                 let color = frame.pixel(x, above + y);
                 let surface = renderer.surface(x, above + y).unwrap_or(Surface::Sky);
                 (color, ascii::character(surface, color))
+            }),
+            GlyphMode::Ramp => ascii::draw(area, buffer, self.depth, |x, y| {
+                let color = frame.pixel(x, above + y);
+                (color, ramp::character(color))
             }),
         }
     }

@@ -15,6 +15,8 @@ pub enum GlyphMode {
     /// One pixel a cell, as a character that tells by its shape what it shows, for terminals and
     /// fonts without block characters and for readers without colour.
     Ascii,
+    /// One pixel a cell, as one of sixteen characters that tell how bright it is and no more.
+    Ramp,
 }
 
 impl GlyphMode {
@@ -22,7 +24,7 @@ impl GlyphMode {
     pub const fn pixels_per_cell(self) -> u32 {
         match self {
             Self::Half => 2,
-            Self::Ascii => 1,
+            Self::Ascii | Self::Ramp => 1,
         }
     }
 }

@@ -85,7 +85,7 @@ impl Widget for Minimap<'_> {
             GlyphMode::Half => {
                 half_blocks::draw(area, buffer, self.depth, 0, |x, y| place(x, y).color());
             }
-            GlyphMode::Ascii => ascii::draw(area, buffer, self.depth, |x, y| {
+            GlyphMode::Ascii | GlyphMode::Ramp => ascii::draw(area, buffer, self.depth, |x, y| {
                 let place = place(x, y);
                 (place.color(), place.character())
             }),
@@ -168,7 +168,7 @@ impl Minimap<'_> {
         let Some((x, y)) = window.cell(self.camera.position()) else { return };
         let arrows = match self.glyphs {
             GlyphMode::Half => ['→', '↘', '↓', '↙', '←', '↖', '↑', '↗'],
-            GlyphMode::Ascii => ['>', '\\', 'v', '/', '<', '\\', '^', '/'],
+            GlyphMode::Ascii | GlyphMode::Ramp => ['>', '\\', 'v', '/', '<', '\\', '^', '/'],
         };
         let eighth = (self.camera.heading.degrees() / 45.0).round() as usize % arrows.len();
         let cell = &mut buffer[(area.x + x, area.y + y)];
@@ -290,7 +290,7 @@ fn scale(world: &World, pixels: DVec2, glyphs: GlyphMode) -> DVec2 {
     // A pixel of half blocks is about square; a whole cell is about twice as high as wide.
     let smallest = match glyphs {
         GlyphMode::Half => DVec2::new(1.0, 1.0),
-        GlyphMode::Ascii => DVec2::new(2.0, 1.0),
+        GlyphMode::Ascii | GlyphMode::Ramp => DVec2::new(2.0, 1.0),
     };
     smallest * (pixels / (map_size(world) * smallest)).min_element().floor().max(1.0)
 }

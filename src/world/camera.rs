@@ -1,6 +1,6 @@
 //! The camera: where somebody stands and how high, which way they look, and how wide.
 
-use std::f64::consts::FRAC_PI_2;
+use std::f64::consts::{FRAC_PI_2, FRAC_PI_4};
 use std::fmt;
 
 use glam::DVec2;
@@ -46,7 +46,8 @@ impl Heading {
             return self;
         }
         let beside = self.beside + radians % (4.0 * FRAC_PI_2);
-        let quarters = (beside / FRAC_PI_2).round();
+        // On a diagonal the next quarter is as near, and to change to it would be to turn for ever.
+        let quarters = if beside.abs() <= FRAC_PI_4 { 0.0 } else { (beside / FRAC_PI_2).round() };
         Self {
             quarter_turns: (f64::from(self.quarter_turns) + quarters).rem_euclid(4.0) as u8,
             beside: beside - quarters * FRAC_PI_2,
@@ -182,6 +183,13 @@ mod tests {
             for (degrees, axis) in axes {
                 assert_eq!(heading(degrees + 360.0 * turns).direction(), axis);
             }
+        }
+    }
+
+    #[test]
+    fn a_turn_by_nothing_leaves_a_heading_as_it_is() {
+        for degrees in (0..720).map(|half| f64::from(half) / 2.0) {
+            assert_eq!(heading(degrees).turned(0.0), heading(degrees), "{degrees}");
         }
     }
 

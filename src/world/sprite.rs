@@ -147,15 +147,25 @@ impl Sprite {
 
     /// What it looks like after `seconds`, to a viewer who is in the direction `to_viewer` of it.
     pub fn picture(&self, seconds: f64, to_viewer: DVec2) -> &Texture {
+        &self.pictures[self.picture_index(seconds, to_viewer)]
+    }
+
+    /// Which of its pictures [`Sprite::picture`] is.
+    pub(crate) fn picture_index(&self, seconds: f64, to_viewer: DVec2) -> usize {
         let frame = (seconds.max(0.0) / self.frame_time.0) as u64 % self.frames() as u64;
         let facings = self.facings.count() as usize;
-        &self.pictures[frame as usize * facings + self.facing(to_viewer)]
+        frame as usize * facings + self.facing(to_viewer)
+    }
+
+    /// All that it looks like.
+    pub(crate) fn pictures(&self) -> &[Texture] {
+        &self.pictures
     }
 
     /// When it begins to look different from what it looks like after `seconds`; `None` for never.
     pub fn next_change(&self, seconds: f64) -> Option<f64> {
         let frame = (seconds.max(0.0) / self.frame_time.0).floor();
-        (self.frames() > 1).then(|| (frame + 1.0) * self.frame_time.0)
+        (self.frames() > 1).then_some((frame + 1.0) * self.frame_time.0)
     }
 
     /// Which side a viewer sees: 0 for the front, then clockwise as the viewer walks around it.

@@ -36,6 +36,24 @@ fn while_nothing_moves_nothing_is_written_and_the_processor_rests() {
     assert_rests("paused while turning");
 }
 
+#[test]
+fn what_flickers_is_drawn_when_it_does_and_only_while_it_is_in_view() {
+    const FLICKERS: usize = 4;
+    let game = Game::start_map("torch");
+    game.wait_for_releases();
+    let (begun, before) = (Instant::now(), count(&game.bytes(), BEGIN));
+    game.wait_until("flickered", |emulator| count(emulator.bytes(), BEGIN) >= before + FLICKERS);
+    // A quarter of a second each, but for the first, which may have been about to come.
+    let elapsed = begun.elapsed();
+    assert!(elapsed >= Duration::from_millis(700), "{FLICKERS} frames in {elapsed:?}");
+    // Past it, to the wall behind.
+    game.press(Key::Char('w'));
+    game.wait_for_rest();
+    let written = game.bytes_written();
+    thread::sleep(Duration::from_secs(1));
+    assert_eq!(game.bytes_written(), written, "the torch is behind the player");
+}
+
 /// In hundredths of a second, where the system has a file that says so.
 fn processor_time(game: &Game) -> Option<u64> {
     let status = std::fs::read_to_string(format!("/proc/{}/stat", game.process())).ok()?;
@@ -67,11 +85,13 @@ fn every_frame_is_shown_at_once() {
     let first = bytes.windows(BEGIN.len()).position(|window| window == BEGIN).unwrap();
     let mut rest = &bytes[first..];
     let mut frames = 0;
-    // What follows the first one is nothing but frames and the request for releases.
+    // What follows the first one is nothing but frames with their status requests, and the request
+    // for releases.
     while let Some(end) = rest.windows(END.len()).position(|window| window == END) {
         let before = rest.windows(BEGIN.len()).position(|window| window == BEGIN).unwrap();
         let between = String::from_utf8_lossy(&rest[..before]);
-        assert!(["", "\x1b[>15u"].contains(&&*between), "{between:?} is outside of frames");
+        let besides = between.replacen("\x1b[5n", "", 1);
+        assert!(["", "\x1b[>15u"].contains(&&*besides), "{between:?} is outside of frames");
         let inside = &rest[before + BEGIN.len()..end];
         assert_eq!(count(inside, BEGIN), 0, "a frame begins within a frame");
         rest = &rest[end + END.len()..];

@@ -1,4 +1,5 @@
 //! A terminal emulator: what it shows, the modes that are set, and what it answers.
+#![allow(dead_code, reason = "every test file uses its own share of this")]
 
 use std::num::NonZeroU16;
 
@@ -11,7 +12,7 @@ pub(crate) enum Speaks {
     Nothing,
     /// What device it is.
     Plain,
-    /// The kitty keyboard protocol as well, and that it shows 24-bit colours. A key's release is always on its way when the program
+    /// Status requests and the kitty keyboard protocol as well, and that it shows 24-bit colours. A key's release is always on its way when the program
     /// turns the protocol off.
     Kitty,
 }
@@ -54,6 +55,16 @@ struct Extensions {
     modes: Modes,
     title: String,
     answers: Vec<u8>,
+    statuses: Statuses,
+}
+
+/// The requests for the terminal's status.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+pub(crate) struct Statuses {
+    /// Whether answers are lost on the way.
+    pub(crate) lost: bool,
+    /// How many requests have not been answered.
+    pub(crate) unanswered: usize,
 }
 
 impl Emulator {
@@ -63,6 +74,7 @@ impl Emulator {
             modes: Modes::default(),
             title: String::new(),
             answers: Vec::new(),
+            statuses: Statuses::default(),
         };
         let parser = Parser::new_with_callbacks(length(rows), length(columns), 0, extensions);
         Self { parser, bytes: Vec::new(), answered_about_colors: false }
@@ -111,6 +123,10 @@ impl Emulator {
         &self.bytes
     }
 
+    pub(crate) fn statuses(&mut self) -> &mut Statuses {
+        &mut self.parser.callbacks_mut().statuses
+    }
+
     pub(crate) fn modes(&self) -> Modes {
         Modes {
             alternate_screen: self.screen().alternate_screen(),
@@ -145,6 +161,8 @@ impl Callbacks for Extensions {
             (Some(b'?'), _, 'u') if self.speaks == Speaks::Kitty => {
                 self.answers.extend(b"\x1b[?0u");
             }
+            (None, [[5]], 'n') if self.statuses.lost => self.statuses.unanswered += 1,
+            (None, [[5]], 'n') if self.speaks == Speaks::Kitty => self.answers.extend(b"\x1b[0n"),
             (None, _, 'c') if self.speaks != Speaks::Nothing => {
                 self.answers.extend(b"\x1b[?62;22c");
             }

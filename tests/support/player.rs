@@ -104,6 +104,16 @@ impl Player {
         self.shared.changed.notify_all();
     }
 
+    /// Loses the answers to status requests from now on, or does not any more.
+    pub(crate) fn lose_statuses(&self, lost: bool) {
+        self.state().emulator.statuses().lost = lost;
+    }
+
+    /// How many status requests were lost.
+    pub(crate) fn lost_statuses(&self) -> usize {
+        self.state().emulator.statuses().unanswered
+    }
+
     /// Waits until the terminal, which is not being read, has no room for another byte.
     #[track_caller]
     pub(crate) fn wait_until_full(&self) {

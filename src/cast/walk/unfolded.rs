@@ -10,8 +10,8 @@ use glam::DVec2;
 
 use super::Axis;
 use crate::cast::hit::{meeting, texture_coordinate};
-use crate::cast::{ExactOrder, Hit, Order, Ray, Side, door};
-use crate::world::{Cell, Grid, TileId, World};
+use crate::cast::{ExactOrder, Hit, Order, Ray, Side, door, shape};
+use crate::world::{Cell, Grid, TileId, TileKind, World};
 
 /// Where places of the unfolded map are on the map itself.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Default)]
@@ -117,11 +117,20 @@ impl UnfoldedWalk {
         self.bounces += 1;
     }
 
-    /// Where the ray meets what is left of the door's leaf in `cell`, where it is now.
-    pub(crate) fn leaf(&self, world: &World, cell: Cell) -> Option<Hit> {
-        let origin = self.unfolding.real_point(self.ray.origin());
-        let ray = Ray::moved(origin, self.direction());
-        door::meet(world.grid(), &ray, cell, world.opening(cell))
+    /// Where the ray meets what stands in `cell`, where it is now, and does not fill it: a door's leaf
+    /// or a shape. `None` where it passes by, or there is neither.
+    pub(crate) fn standing(&self, world: &World, cell: Cell, kind: TileKind) -> Option<Hit> {
+        let ray = self.real_ray();
+        match kind {
+            TileKind::Door(_) => door::meet(world.grid(), &ray, cell, world.opening(cell)),
+            TileKind::Shape(it) => shape::meet(&ray, cell, it.outline),
+            _ => None,
+        }
+    }
+
+    /// The ray as it is on the map after all reflections, as if it had come straight.
+    pub(crate) fn real_ray(&self) -> Ray {
+        Ray::moved(self.unfolding.real_point(self.ray.origin()), self.direction())
     }
 
     /// Where the unfolded places around the ray are on the map.
@@ -151,6 +160,16 @@ impl Unfolding {
         DVec2::new(self.x.real_place(point.x), self.y.real_place(point.y))
     }
 
+    /// Where a point of the map is, unfolded.
+    pub(crate) fn unfolded_point(self, point: DVec2) -> DVec2 {
+        DVec2::new(self.x.unfolded_place(point.x), self.y.unfolded_place(point.y))
+    }
+
+    /// Whether left and right are swapped.
+    pub(crate) fn swaps_sides(self) -> bool {
+        self.x.is_mirrored != self.y.is_mirrored
+    }
+
     /// Which way an unfolded direction is on the map.
     pub(crate) fn real_direction(self, direction: DVec2) -> DVec2 {
         let along = |fold: Fold, part: f64| if fold.is_mirrored { -part } else { part };
@@ -162,6 +181,11 @@ impl Fold {
     fn real_place(self, place: f64) -> f64 {
         let offset = self.offset as f64;
         if self.is_mirrored { offset - place } else { offset + place }
+    }
+
+    fn unfolded_place(self, place: f64) -> f64 {
+        let offset = self.offset as f64;
+        if self.is_mirrored { offset - place } else { place - offset }
     }
 
     /// The column or row that the unfolded one at `index` is.

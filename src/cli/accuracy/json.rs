@@ -1,10 +1,10 @@
-//! One object: the methods, the sets and the motions.
+//! One object: the methods, the filters, the sets and the motions.
 
 use std::io::{self, Write};
 
 use serde_json::{Value, json};
 
-use crate::accuracy::{Errors, Report};
+use crate::accuracy::{Errors, FilterErrors, Report};
 
 pub(super) fn write(report: &Report, output: &mut impl Write) -> io::Result<()> {
     let methods: Vec<Value> = report
@@ -22,6 +22,14 @@ pub(super) fn write(report: &Report, output: &mut impl Write) -> io::Result<()> 
                 "wrong_pixels": { "160x90": row.wrong_pixels[0], "400x120": row.wrong_pixels[1] },
                 "front": row.is_on_front,
             })
+        })
+        .collect();
+    let filters: Vec<Value> = report
+        .filters
+        .iter()
+        .map(|row| {
+            let [small, large] = row.errors.map(filter_errors);
+            json!({ "filter": row.name, "pictures": { "160x90": small, "400x120": large } })
         })
         .collect();
     let sets: Vec<Value> = report
@@ -49,7 +57,8 @@ pub(super) fn write(report: &Report, output: &mut impl Write) -> io::Result<()> 
             })
         })
         .collect();
-    let report = json!({ "methods": methods, "sets": sets, "motions": motions });
+    let report =
+        json!({ "methods": methods, "filters": filters, "sets": sets, "motions": motions });
     serde_json::to_writer_pretty(&mut *output, &report)?;
     output.write_all(b"\n")
 }
@@ -63,4 +72,8 @@ fn errors(errors: &Errors) -> Value {
         "worst_texel": errors.worst_texel,
         "mean_texel": errors.mean_texel,
     })
+}
+
+fn filter_errors(errors: FilterErrors) -> Value {
+    json!({ "mean": errors.mean, "worst": errors.worst, "shimmer": errors.shimmer })
 }

@@ -3,12 +3,14 @@
 use std::io::{self, Write};
 
 use super::plot;
-use crate::accuracy::{Errors, MotionResult, Report, Row, SetRow};
+use crate::accuracy::{Errors, FilterRow, MotionResult, Report, Row, SetRow};
 
 pub(super) fn write(report: &Report, output: &mut impl Write) -> io::Result<()> {
     write_methods(&report.rows, output)?;
     writeln!(output)?;
     plot::write_text(report, output)?;
+    writeln!(output)?;
+    write_filters(&report.filters, output)?;
     if !report.sets.is_empty() {
         writeln!(output)?;
         write_sets(&report.sets, output)?;
@@ -54,6 +56,28 @@ fn write_methods(rows: &[Row], output: &mut impl Write) -> io::Result<()> {
             share(*small),
             share(*large),
         )?;
+    }
+    Ok(())
+}
+
+fn write_filters(filters: &[FilterRow], output: &mut impl Write) -> io::Result<()> {
+    writeln!(
+        output,
+        "Filters: how far a channel, of 256 steps, is from the mean of 64 samples of its pixel; and how\n\
+         much it changes, in the mean, from frame to frame of a turn at a ninth of a degree a frame.\n"
+    )?;
+    writeln!(
+        output,
+        "  {:<12} {:>26} {:>26}\n  {:<12} {:>8} {:>8} {:>8} {:>8} {:>8} {:>8}",
+        "", "160x90", "400x120", "filter", "mean", "worst", "shimmer", "mean", "worst", "shimmer"
+    )?;
+    for FilterRow { name, errors: [small, large] } in filters {
+        write!(output, "  {name:<12}")?;
+        for errors in [small, large] {
+            let (mean, shimmer) = (number(errors.mean), number(errors.shimmer));
+            write!(output, " {mean:>8} {:>8} {shimmer:>8}", errors.worst)?;
+        }
+        writeln!(output)?;
     }
     Ok(())
 }

@@ -10,6 +10,7 @@ use super::{Command, Error, next, unexpected, word};
 use crate::cast::Method;
 use crate::palette::ColorDepth;
 use crate::render::Filter;
+use crate::terminal::Fidelity;
 use crate::tui::{CellAspect, GlyphMode};
 use crate::world::FieldOfView;
 
@@ -25,6 +26,8 @@ pub(in crate::cli) struct Play {
     pub(in crate::cli) depth: Option<ColorDepth>,
     pub(in crate::cli) method: Method,
     pub(in crate::cli) filter: Filter,
+    pub(in crate::cli) fidelity: Option<Fidelity>,
+    pub(in crate::cli) shows_stats: bool,
     /// Where to write what happens.
     pub(in crate::cli) record: Option<PathBuf>,
 }
@@ -50,6 +53,8 @@ pub(super) fn parse(mut parser: Parser) -> Result<Command, Error> {
             Arg::Long("colors") => play.depth = Some(value::COLORS.value(&mut parser)?),
             Arg::Long("caster") => play.method = value::method(&mut parser)?,
             Arg::Long("filter") => play.filter = value::FILTER.value(&mut parser)?,
+            Arg::Long("fidelity") => play.fidelity = value::fidelity_or_auto(&mut parser)?,
+            Arg::Long("stats") => play.shows_stats = true,
             Arg::Long("record") => {
                 play.record = Some(word(&mut parser, "--record", "a file")?.into());
             }
@@ -59,15 +64,17 @@ pub(super) fn parse(mut parser: Parser) -> Result<Command, Error> {
     Ok(Command::Play(play))
 }
 
-const OPTIONS: [&str; 10] = [
+const OPTIONS: [&str; 12] = [
     "--caster",
     "--cell-aspect",
     "--colors",
     "--config",
+    "--fidelity",
     "--filter",
     "--fov",
     "--fps",
     "--glyphs",
     "--record",
+    "--stats",
     "--version",
 ];

@@ -22,7 +22,9 @@ pub(in crate::cli) struct Snapshot {
     pub(in crate::cli) camera: Option<(DVec2, Heading)>,
     /// How high the eye is; where somebody's is who stands there if there is none.
     pub(in crate::cli) eye: Option<f64>,
-    pub(in crate::cli) pitch: Pitch,
+    /// How far up or down to look; straight ahead, or as at the start of a map of bodies, if there is
+    /// none.
+    pub(in crate::cli) pitch: Option<Pitch>,
     pub(in crate::cli) field_of_view: FieldOfView,
     pub(in crate::cli) cell_aspect: CellAspect,
     pub(in crate::cli) glyphs: GlyphMode,
@@ -53,7 +55,7 @@ pub(super) fn parse(mut parser: Parser) -> Result<Command, Error> {
             Arg::Long("size") => snapshot.size = value::SIZE.value(&mut parser)?,
             Arg::Long("camera") => snapshot.camera = Some(CAMERA.value(&mut parser)?),
             Arg::Long("eye") => snapshot.eye = Some(EYE.value(&mut parser)?),
-            Arg::Long("pitch") => snapshot.pitch = PITCH.value(&mut parser)?,
+            Arg::Long("pitch") => snapshot.pitch = Some(PITCH.value(&mut parser)?),
             Arg::Long("fov") => snapshot.field_of_view = value::FIELD_OF_VIEW.value(&mut parser)?,
             Arg::Long("cell-aspect") => {
                 snapshot.cell_aspect = value::CELL_ASPECT.value(&mut parser)?;

@@ -2,6 +2,8 @@
 
 use std::num::NonZeroU32;
 
+use std::ffi::OsStr;
+
 use lexopt::Parser;
 
 use super::{Error, word};
@@ -88,10 +90,11 @@ pub(super) const CELL_ASPECT: Valued<CellAspect> = Valued {
 
 pub(super) const GLYPHS: Valued<GlyphMode> = Valued {
     name: "--glyphs",
-    takes: "half or ascii",
+    takes: "half, ascii or ramp",
     read: |text| match text {
         "half" => Some(GlyphMode::Half),
         "ascii" => Some(GlyphMode::Ascii),
+        "ramp" => Some(GlyphMode::Ramp),
         _ => None,
     },
 };
@@ -145,6 +148,19 @@ pub(super) fn method(parser: &mut Parser) -> Result<Method, Error> {
 /// The value of `--fidelity`, likewise.
 pub(super) fn fidelity(parser: &mut Parser) -> Result<Fidelity, Error> {
     let text = word(parser, "--fidelity", "exact, high, low or a number up to 255")?;
-    let text = text.to_string_lossy();
-    text.parse().map_err(|error: UnknownFidelity| Error::mistake(format!("--fidelity: {error}")))
+    parse_fidelity(&text).map_err(|error| Error::mistake(format!("--fidelity: {error}")))
+}
+
+/// As [`fidelity`], and `None` for "auto".
+pub(super) fn fidelity_or_auto(parser: &mut Parser) -> Result<Option<Fidelity>, Error> {
+    let text = word(parser, "--fidelity", "auto, exact, high, low or a number up to 255")?;
+    if text == "auto" {
+        return Ok(None);
+    }
+    let fidelity = parse_fidelity(&text);
+    fidelity.map(Some).map_err(|error| Error::mistake(format!("--fidelity: {error}, or auto")))
+}
+
+fn parse_fidelity(text: &OsStr) -> Result<Fidelity, UnknownFidelity> {
+    text.to_string_lossy().parse()
 }

@@ -2,25 +2,38 @@
 
 use std::ops::Range;
 
+use glam::DVec2;
+
 use super::Scene;
 use crate::cast::Side;
 use crate::render::Frame;
 use crate::render::plan::WallLoop;
-use crate::render::shade::{Bright, Faded, Halved, Shade};
+use crate::render::shade::{Faded, OfSide, Shade};
 use crate::render::tally::{Pass, Tally};
-use crate::world::{Light, Paint, Rgb, Texture};
+use crate::world::{Light, Paint};
 
 /// A face as wide as a pixel, as far as it is seen.
 #[derive(Clone, Debug)]
 pub(super) struct Face {
     pub(super) column: u32,
     pub(super) rows: Range<u32>,
-    pub(super) side: Side,
+    pub(super) facing: Facing,
+    /// How much of the ray leads straight at it, for each unit of `t`.
+    pub(super) slope: f64,
     pub(super) t: f64,
     pub(super) u: f64,
     pub(super) paint: Paint,
     pub(super) light: Light,
     pub(super) stretch: Stretch,
+}
+
+/// Which way a face looks.
+#[derive(Clone, Copy, Debug)]
+pub(super) enum Facing {
+    /// Along an axis.
+    Side(Side),
+    /// Along a vector of length 1, or the opposite way.
+    Normal(DVec2),
 }
 
 /// From which height to which something reaches.
@@ -39,14 +52,20 @@ pub(super) fn draw<T: Tally>(
     tally: &mut T,
 ) {
     for face in faces {
-        match face.side {
-            _ if plan.faded => {
-                let fog = scene.world.fog();
-                let shade = Faded::of_wall(face.side, face.light, fog, face.t);
-                face.draw(scene, shade, frame, tally);
-            }
-            Side::X => face.draw(scene, Bright, frame, tally),
-            Side::Y => face.draw(scene, Halved, frame, tally),
+        match face.facing {
+            Facing::Side(side) if !plan.faded => face.draw(scene, OfSide(side), frame, tally),
+            _ => face.draw(scene, face.facing.shade(scene, face.light, face.t), frame, tally),
+        }
+    }
+}
+
+impl Facing {
+    /// What becomes of the colours of what looks this way.
+    pub(super) fn shade(self, scene: Scene<'_>, light: Light, t: f64) -> Faded {
+        let fog = scene.world.fog();
+        match self {
+            Self::Side(side) => Faded::of_wall(side, light, fog, t),
+            Self::Normal(normal) => Faded::of_surface(normal, light, fog, t),
         }
     }
 }
@@ -61,8 +80,7 @@ impl Face {
     ) {
         let rows = self.rows.clone();
         tally.pixels(Pass::Walls, rows.len());
-        let pixels =
-            frame.column_mut(self.column as usize).skip(rows.start as usize).take(rows.len());
+        let pixels = frame.column_mut(self.column, rows.clone());
         match self.paint {
             Paint::Color(color) => {
                 let color = shade.apply(color);
@@ -70,25 +88,14 @@ impl Face {
             }
             Paint::Texture(id) => {
                 tally.texels(Pass::Walls, rows.len());
-                let texels = self.texels(scene, scene.world.texture(id));
+                let level = scene.level_on(scene.world.texture(id), self.t, self.slope);
+                let texels = level.column(self.u);
                 let Stretch { bottom, top } = self.stretch;
-                let texel = scene.projection.texel_on_the_face(self.t, texels.len(), bottom, top);
+                let down = scene.projection.texels_down_the_face(self.t, texels.len(), bottom, top);
                 for (row, pixel) in rows.zip(pixels) {
-                    *pixel = shade.apply(texels[texel(row)]);
+                    *pixel = shade.apply(texels[down.at(row)]);
                 }
             }
         }
-    }
-
-    /// The column of the texture that shows, from a level that suits the distance.
-    fn texels<'t>(&self, scene: Scene<'_>, texture: &'t Texture) -> &'t [Rgb] {
-        let texels = f64::from(texture.width()) * f64::from(texture.height());
-        let direction = scene.projection.direction_of(self.column);
-        let across = match self.side {
-            Side::X => direction.x,
-            Side::Y => direction.y,
-        };
-        let area = scene.projection.pixel_area_on_wall(self.t, across);
-        texture.level(scene.filter.halvings(area * texels)).column(self.u)
     }
 }

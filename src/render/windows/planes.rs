@@ -1,11 +1,13 @@
 //! The pass for what lies flat, and for the sky: along rows, over the spans that show the same.
 
+use glam::DVec2;
+
 use super::{Part, Piece, Reflection, Scene, Shown, Windows};
 use crate::render::Frame;
 use crate::render::lay::Layer;
 use crate::render::sky::SkyView;
 use crate::render::tally::{Pass, Tally};
-use crate::world::{Ceiling, Covering, Light, Rgb, Tile, TileKind};
+use crate::world::{Ceiling, Cell, Covering, Light, Rgb, Tile, TileKind, World};
 
 /// Draws every span, and tells how many there were.
 pub(super) fn draw<T: Tally>(
@@ -48,13 +50,12 @@ fn lay<T: Tally>(
     tally: &mut T,
 ) {
     let Scene { world, projection, filter, .. } = scene;
-    let (height, covering, light) = match piece.tile {
-        None => (0.0, world.floor(), Light::FULL),
-        Some(id) => {
-            let tile = &world.tiles()[usize::from(id.0)];
-            let (height, covering) = height_and_covering(tile, piece.part);
-            (height, covering, tile.light.unwrap_or(Light::FULL))
-        }
+    let ground = world.ground();
+    let tile = piece.tile.map_or(&ground, |id| &world.tiles()[usize::from(id.0)]);
+    let light = tile.light.unwrap_or(Light::FULL);
+    let (height, covering) = match piece.tile {
+        None => (0.0, world.floor()),
+        Some(_) => height_and_covering(tile, piece.part),
     };
     let mut track = projection.track_at(row, height);
     if piece.reflection != Reflection::NONE {
@@ -64,7 +65,29 @@ fn lay<T: Tally>(
         Part::Ceiling => Pass::Ceiling,
         Part::Floor | Part::Roof => Pass::Floor,
     };
-    Layer { world, filter, pass }.lay(covering, light, &track, x, pixels, tally);
+    let layer = Layer { world, filter, pass };
+    if !world.has_lamplight() || piece.tile.is_none() {
+        layer.lay(covering, light, &track, x, pixels, tally);
+        return;
+    }
+    // Lamps light each cell as it is.
+    let lamplight = |x: usize| lamplight_at(world, track.point(x));
+    let mut x = x;
+    let mut rest = pixels;
+    while !rest.is_empty() {
+        let here = lamplight(x);
+        let alike = (1..rest.len()).find(|&more| lamplight(x + more) != here).unwrap_or(rest.len());
+        let (stretch, further) = rest.split_at_mut(alike);
+        layer.lay(covering, light.plus(here), &track, x, stretch, tally);
+        (x, rest) = (x + alike, further);
+    }
+}
+
+/// What lamps add to the light at `point`.
+fn lamplight_at(world: &World, point: DVec2) -> Light {
+    let is_on_map = point.x >= 0.0 && point.y >= 0.0;
+    let cell = Cell { column: point.x as u32, row: point.y as u32 };
+    if is_on_map { world.lamplight_in(cell) } else { Light::NONE }
 }
 
 /// How high a part of a tile is, and what it is laid with.

@@ -3,19 +3,31 @@
 use std::ops::Range;
 
 use super::Scene;
-use super::faces::Stretch;
+use super::faces::{Facing, Stretch};
+use super::things::{Between, Billboards};
 use crate::cast::Side;
-use crate::render::Frame;
+use crate::render::marks::Marks;
 use crate::render::shade::{Faded, Shade};
 use crate::render::tally::{Pass, Tally};
+use crate::render::{Frame, Surface};
 use crate::world::{Glass, Light, TextureId};
 
-/// Something to see through, as wide as a pixel.
+/// What is painted over what is behind it, as wide as a pixel.
 #[derive(Clone, Debug)]
-pub(super) struct Veil {
+pub(super) enum Veil {
+    Pane(Pane),
+    /// The things in a part of the ray.
+    Things(Between),
+}
+
+/// Something to see through, or the tint of a mirror.
+#[derive(Clone, Debug)]
+pub(super) struct Pane {
     pub(super) column: u32,
     pub(super) rows: Range<u32>,
-    pub(super) side: Side,
+    pub(super) facing: Facing,
+    /// How much of the ray leads straight at it, for each unit of `t`.
+    pub(super) slope: f64,
     pub(super) t: f64,
     pub(super) u: f64,
     pub(super) light: Light,
@@ -23,7 +35,7 @@ pub(super) struct Veil {
     pub(super) stretch: Stretch,
 }
 
-/// What is painted over what is behind it.
+/// What a pane is made of.
 #[derive(Clone, Copy, Debug)]
 pub(super) enum Film {
     Mask(TextureId),
@@ -31,38 +43,71 @@ pub(super) enum Film {
 }
 
 /// Draws all of `veils`, the last ones first: in a column they are further away.
-pub(super) fn draw<T: Tally>(scene: Scene<'_>, veils: &[Veil], frame: &mut Frame, tally: &mut T) {
+pub(super) fn draw<T: Tally>(
+    scene: Scene<'_>,
+    veils: &[Veil],
+    billboards: &mut Billboards,
+    marks: &mut Marks,
+    frame: &mut Frame,
+    tally: &mut T,
+) {
     for veil in veils.iter().rev() {
-        tally.pixels(Pass::SeeThrough, veil.rows.len());
-        let shade = Faded::of_wall(veil.side, veil.light, scene.world.fog(), veil.t);
-        match veil.film {
-            Film::Mask(texture) => {
-                tally.texels(Pass::SeeThrough, veil.rows.len());
-                veil.draw_mask(scene, texture, shade, frame);
-            }
-            Film::Glass(glass) => veil.draw_glass(glass, shade, frame),
+        match veil {
+            Veil::Pane(pane) => pane.draw(scene, marks, frame, tally),
+            Veil::Things(between) => billboards.draw(scene, between, marks, frame, tally),
         }
     }
 }
 
-impl Veil {
-    fn draw_mask(&self, scene: Scene<'_>, texture: TextureId, shade: Faded, frame: &mut Frame) {
-        let texture = scene.world.texture(texture).level(0);
-        let texels = texture.column(self.u);
-        let Some(alphas) = texture.alpha_column(self.u) else { return };
+impl Pane {
+    fn draw<T: Tally>(
+        &self,
+        scene: Scene<'_>,
+        marks: &mut Marks,
+        frame: &mut Frame,
+        tally: &mut T,
+    ) {
+        tally.pixels(Pass::SeeThrough, self.rows.len());
+        let shade = self.facing.shade(scene, self.light, self.t);
+        match self.film {
+            Film::Mask(texture) => {
+                tally.texels(Pass::SeeThrough, self.rows.len());
+                self.draw_mask(scene, texture, shade, marks, frame);
+            }
+            Film::Glass(glass) => self.draw_glass(glass, shade, frame),
+        }
+    }
+
+    fn draw_mask(
+        &self,
+        scene: Scene<'_>,
+        texture: TextureId,
+        shade: Faded,
+        marks: &mut Marks,
+        frame: &mut Frame,
+    ) {
+        let level = scene.level_on(scene.world.texture(texture), self.t, self.slope);
+        let texels = level.column(self.u);
+        let Some(alphas) = level.alpha_column(self.u) else { return };
         let Stretch { bottom, top } = self.stretch;
-        let texel = scene.projection.texel_on_the_face(self.t, texels.len(), bottom, top);
-        let pixels = frame.column_mut(self.column as usize).skip(self.rows.start as usize);
+        let texels_down = scene.projection.texels_down_the_face(self.t, texels.len(), bottom, top);
+        let pixels = frame.column_mut(self.column, self.rows.clone());
         for (row, pixel) in self.rows.clone().zip(pixels) {
-            let texel = texel(row);
+            let texel = texels_down.at(row);
             *pixel = shade.apply(texels[texel]).over(*pixel, alphas[texel]);
         }
+        let surface = match self.facing {
+            Facing::Side(Side::Y) => Surface::WallY,
+            Facing::Side(Side::X) | Facing::Normal(_) => Surface::WallX,
+        };
+        let is_shown = |row| alphas[texels_down.at(row)] > u8::MAX / 2;
+        let shown = self.rows.clone().map(is_shown);
+        marks.note(self.column as usize, self.rows.start, surface, shown);
     }
 
     fn draw_glass(&self, glass: Glass, shade: Faded, frame: &mut Frame) {
         let tint = shade.apply(glass.color);
-        let pixels = frame.column_mut(self.column as usize).skip(self.rows.start as usize);
-        for pixel in pixels.take(self.rows.len()) {
+        for pixel in frame.column_mut(self.column, self.rows.clone()) {
             *pixel = tint.over(*pixel, glass.opacity);
         }
     }

@@ -38,8 +38,14 @@ impl<'a> ControlSequence<'a> {
 
 /// By hand, as the formatting machinery would cost more than all else that a cell does.
 fn push_decimal(bytes: &mut Vec<u8>, number: u16) {
-    if number >= 10 {
-        push_decimal(bytes, number / 10);
+    let digit = |unit: u16| b'0' + (number / unit % 10) as u8;
+    match number {
+        0..10 => bytes.push(digit(1)),
+        10..100 => bytes.extend_from_slice(&[digit(10), digit(1)]),
+        100..1000 => bytes.extend_from_slice(&[digit(100), digit(10), digit(1)]),
+        _ => {
+            push_decimal(bytes, number / 10);
+            bytes.push(digit(1));
+        }
     }
-    bytes.push(b'0' + (number % 10) as u8);
 }

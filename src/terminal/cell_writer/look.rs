@@ -31,11 +31,10 @@ impl Look {
 
     /// What `cell` looks like.
     pub(super) fn of(cell: &Cell) -> Self {
-        let glyph = (cell.symbol(), Style::of(cell));
-        if let Some((top, bottom)) = halves(&glyph) {
+        let (symbol, style) = (cell.symbol(), Style::of(cell));
+        if let Some((top, bottom)) = halves(symbol, style) {
             return Self::of_halves(top, bottom);
         }
-        let (symbol, style) = glyph;
         let mut characters = symbol.chars();
         match (characters.next(), characters.next()) {
             (Some(character), None) if cell.cell_width() == 1 => Self::of_fields(
@@ -47,6 +46,11 @@ impl Look {
             ),
             _ => Self::INTRICATE,
         }
+    }
+
+    /// Whether it may be wider than a cell.
+    pub(super) fn is_intricate(self) -> bool {
+        self == Self::INTRICATE
     }
 
     /// Whether it stays what it is where it is moved.
@@ -61,14 +65,18 @@ impl Look {
 
     /// Whether a cell that looks like `wanted` need not be sent, where colours may be off by
     /// `tolerance`.
+    #[inline]
     pub(super) fn is_near(self, wanted: Self, tolerance: Tolerance) -> bool {
-        self.is(wanted)
-            || match (self.halves(), wanted.halves()) {
-                (Some(shown), Some(wanted)) if !tolerance.is_exact() => {
-                    tolerance.covers(shown[0], wanted[0]) && tolerance.covers(shown[1], wanted[1])
-                }
-                _ => false,
+        self.is(wanted) || !tolerance.is_exact() && self.is_about(wanted, tolerance)
+    }
+
+    fn is_about(self, wanted: Self, tolerance: Tolerance) -> bool {
+        match (self.halves(), wanted.halves()) {
+            (Some(shown), Some(wanted)) => {
+                tolerance.covers(shown[0], wanted[0]) && tolerance.covers(shown[1], wanted[1])
             }
+            _ => false,
+        }
     }
 
     /// The colours of the upper and the lower half of a block.
@@ -98,45 +106,56 @@ impl fmt::Debug for Look {
     }
 }
 
-/// A character, and how it is drawn.
-pub(super) type Glyph<'a> = (&'a str, Style);
-
-/// The cheapest glyph that looks like `cell` within `tolerance`, after `current`, and what it looks
-/// like.
-pub(super) fn cheapest(
-    cell: &Cell,
-    current: Option<Style>,
-    tolerance: Tolerance,
-) -> (Glyph<'_>, Look) {
-    let plain = (cell.symbol(), Style::of(cell));
-    let (Some(current), Some((top, bottom))) = (current, halves(&plain)) else {
-        return (plain, Look::of(cell));
-    };
-    let snapped =
-        |wanted: Shade, told: Shade| if tolerance.covers(told, wanted) { told } else { wanted };
-    let mut candidates = [None; 6];
-    for (candidate, merged) in candidates.iter_mut().zip([top, bottom, current.background]) {
-        if tolerance.covers(merged, top) && tolerance.covers(merged, bottom) {
-            let style = Style::plain(current.foreground, merged);
-            *candidate = Some(((SPACE, style), Look::of_halves(merged, merged)));
-        }
-    }
-    if tolerance.covers(current.foreground, top) && tolerance.covers(current.foreground, bottom) {
-        let look = Look::of_halves(current.foreground, current.foreground);
-        candidates[3] = Some(((FULL, Style::plain(current.foreground, current.background)), look));
-    }
-    let [upper, under] = [snapped(top, current.foreground), snapped(bottom, current.background)];
-    candidates[4] = Some(((UPPER, Style::plain(upper, under)), Look::of_halves(upper, under)));
-    let [over, lower] = [snapped(top, current.background), snapped(bottom, current.foreground)];
-    candidates[5] = Some(((LOWER, Style::plain(lower, over)), Look::of_halves(over, lower)));
-    let bytes = |&((symbol, style), _): &(Glyph, Look)| symbol.len() + style.bytes_after(current);
-    candidates.into_iter().flatten().min_by_key(bytes).unwrap_or((plain, Look::of(cell)))
+/// A block, how it is drawn, and what that looks like.
+pub(super) struct Block {
+    pub(super) symbol: &'static str,
+    pub(super) style: Style,
+    pub(super) look: Look,
 }
 
-/// The colours of the upper and the lower half of a glyph; `None` where it is no block, or where
+/// The cheapest block that looks like these two halves, within `tolerance`, after `current`.
+pub(super) fn cheapest(
+    [top, bottom]: [Shade; 2],
+    current: Option<Style>,
+    tolerance: Tolerance,
+) -> Block {
+    let plain = |symbol, text, ground, halves: [Shade; 2]| Block {
+        symbol,
+        style: Style::plain(text, ground),
+        look: Look::of_halves(halves[0], halves[1]),
+    };
+    let Some(current) = current else { return plain(UPPER, top, bottom, [top, bottom]) };
+    let (text, ground) = (current.foreground, current.background);
+    let is_told = current.has_no_modifiers();
+    let passes = |shade| tolerance.covers(shade, top) && tolerance.covers(shade, bottom);
+    // What takes no colour at all is cheapest, and what takes one comes next.
+    if is_told && passes(ground) {
+        return plain(SPACE, text, ground, [ground; 2]);
+    }
+    if is_told && passes(text) {
+        return plain(FULL, text, ground, [text; 2]);
+    }
+    let merged = [top, bottom].into_iter().find(|&shade| passes(shade));
+    if let Some(merged) = merged {
+        return if merged.bytes() < text.bytes() && !is_told {
+            plain(SPACE, merged, merged, [merged; 2])
+        } else {
+            plain(SPACE, text, merged, [merged; 2])
+        };
+    }
+    let snapped = |wanted, told| if tolerance.covers(told, wanted) { told } else { wanted };
+    let upright = [snapped(top, text), snapped(bottom, ground)];
+    let turned = [snapped(top, ground), snapped(bottom, text)];
+    let upright = plain(UPPER, upright[0], upright[1], upright);
+    let turned = plain(LOWER, turned[1], turned[0], turned);
+    let bytes = |block: &Block| block.style.bytes_after(current);
+    if bytes(&turned) < bytes(&upright) { turned } else { upright }
+}
+
+/// The colours of the upper and the lower half of a cell; `None` where it is no block, or where
 /// another block would not look the same: in the terminal's own colours, which are not the same two
 /// as text and as ground, and with modifiers.
-fn halves(&(symbol, style): &Glyph) -> Option<(Shade, Shade)> {
+fn halves(symbol: &str, style: Style) -> Option<(Shade, Shade)> {
     let (text, ground) = (style.foreground, style.background);
     let (top, bottom) = match symbol {
         UPPER => (text, ground),

@@ -11,6 +11,9 @@ use super::look::Look;
 pub(super) struct Screen {
     width: usize,
     shown: Vec<Look>,
+    /// What it is to look like.
+    looks: Vec<Look>,
+    /// The cells that are to be shown, where their looks do not say all.
     wanted: Vec<Cell>,
     /// Whether anything in a row is to be changed.
     changed: Vec<bool>,
@@ -22,6 +25,7 @@ pub(super) struct Screen {
 pub(super) struct Row<'a> {
     pub(super) y: u16,
     pub(super) shown: &'a mut [Look],
+    pub(super) looks: &'a [Look],
     pub(super) wanted: &'a [Cell],
     pub(super) exact: &'a mut bool,
 }
@@ -40,6 +44,7 @@ impl Screen {
         Self {
             width: 0,
             shown: Vec::new(),
+            looks: Vec::new(),
             wanted: Vec::new(),
             changed: Vec::new(),
             exact: Vec::new(),
@@ -51,6 +56,7 @@ impl Screen {
         let (width, height) = (usize::from(size.width), usize::from(size.height));
         self.width = width;
         self.shown.resize(width * height, Look::UNKNOWN);
+        self.looks.resize(width * height, Look::of(&Cell::EMPTY));
         self.wanted.resize(width * height, Cell::EMPTY);
         self.changed.resize(height, false);
         self.exact.resize(height, true);
@@ -76,6 +82,7 @@ impl Screen {
         };
         let cells = cells.start.min(end)..cells.end.min(end);
         self.shown[cells.clone()].fill(Look::of(&Cell::EMPTY));
+        self.looks[cells.clone()].fill(Look::of(&Cell::EMPTY));
         self.wanted[cells].fill(Cell::EMPTY);
     }
 
@@ -83,7 +90,11 @@ impl Screen {
     pub(super) fn want(&mut self, x: u16, y: u16, cell: &Cell) {
         let (x, y) = (usize::from(x), usize::from(y));
         if x < self.width && y < self.changed.len() {
-            self.wanted[y * self.width + x].clone_from(cell);
+            let (place, look) = (y * self.width + x, Look::of(cell));
+            self.looks[place] = look;
+            if look.halves().is_none() {
+                self.wanted[place].clone_from(cell);
+            }
             self.changed[y] = true;
         }
     }
@@ -114,10 +125,13 @@ impl Screen {
     /// The rows to change, from the top; they count as changed no longer.
     pub(super) fn take_changed(&mut self) -> impl Iterator<Item = Row<'_>> {
         let width = self.width.max(1);
-        let rows = self.shown.chunks_mut(width).zip(self.wanted.chunks(width));
+        let wanted = self.looks.chunks(width).zip(self.wanted.chunks(width));
+        let rows = self.shown.chunks_mut(width).zip(wanted);
         let states = self.changed.iter_mut().zip(&mut self.exact);
-        (0..).zip(rows.zip(states)).filter_map(|(y, ((shown, wanted), (changed, exact)))| {
-            std::mem::take(changed).then_some(Row { y, shown, wanted, exact })
-        })
+        (0..).zip(rows.zip(states)).filter_map(
+            |(y, ((shown, (looks, wanted)), (changed, exact)))| {
+                std::mem::take(changed).then_some(Row { y, shown, looks, wanted, exact })
+            },
+        )
     }
 }

@@ -180,7 +180,7 @@ impl Shade {
     }
 
     /// About how many bytes it takes as parameters.
-    fn bytes(self) -> usize {
+    pub(super) fn bytes(self) -> usize {
         let digits = |number: u8| match number {
             0..10 => 1,
             10..100 => 2,

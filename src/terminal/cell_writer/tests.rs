@@ -310,7 +310,9 @@ proptest! {
         terminal.backend_mut().set_fidelity(Fidelity::new(tolerance));
         let pictures = history.into_iter().map(|content| Buffer { area: Rect::from(size), content });
         let pictures: Vec<_> = pictures.collect();
-        pictures.iter().for_each(|content| draw(&mut terminal, content));
+        for content in &pictures {
+            draw(&mut terminal, content);
+        }
         let last = pictures.last().unwrap();
         for _ in 0..10 {
             draw(&mut terminal, last);

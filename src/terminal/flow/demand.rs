@@ -13,14 +13,14 @@ pub(super) struct Demand {
 }
 
 /// How many frames a second the link should have room for.
-const FRAMES_PER_SECOND: f64 = 25.0;
-/// By how much a tolerance of one lowers the binary logarithm of a frame's size: measured on the
-/// built-in levels. Where it is another, the next frames correct it.
-const SAVING: f64 = 0.45;
+const FRAMES_PER_SECOND: f64 = 18.0;
+/// By how much a tolerance of one lowers the binary logarithm of a frame's size: about as much as
+/// it does at first. Where it is less, the next frames correct it.
+const SAVING: f64 = 0.4;
 /// How much of a high demand counts after one more frame.
 const KEPT: f64 = 0.99;
 /// From here on, fewer frames are better than worse ones.
-const LEAST_FIDELITY: Fidelity = Fidelity::new(12);
+const LEAST_FIDELITY: Fidelity = Fidelity::new(32);
 
 impl Demand {
     pub(super) fn showed_motion(&mut self, bytes: usize, fidelity: Fidelity) {

@@ -1,14 +1,16 @@
-//! How to enter the terminal.
+//! How to use the terminal.
 
-use super::super::{Detected, color_depth};
+use super::super::{Detected, Fidelity, color_depth};
 
-/// What is known of the terminal beforehand.
+/// What is known of the terminal beforehand, and how it is to be used.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct Options {
     /// How many colours it shows. The terminal is asked where this is a guess.
     pub color_depth: Detected,
     /// Whether to ask for reports of when keys are released.
     pub ask_for_key_releases: bool,
+    /// How exact frames are; `None` for exact where the link keeps up, and less so where it lags.
+    pub fidelity: Option<Fidelity>,
 }
 
 impl Options {
@@ -22,7 +24,11 @@ impl Options {
         let multiplexed = is_set("TMUX")
             || is_set("STY")
             || ["tmux", "screen"].iter().any(|name| term.starts_with(name));
-        Self { color_depth: color_depth(environment), ask_for_key_releases: !multiplexed }
+        Self {
+            color_depth: color_depth(environment),
+            ask_for_key_releases: !multiplexed,
+            fidelity: None,
+        }
     }
 }
 

@@ -6,10 +6,10 @@ use ratatui::style::{Modifier, Style};
 use ratatui::text::{Line, Text};
 use ratatui::widgets::{Block, Clear, Paragraph, Wrap};
 
-use crate::game::Game;
+use super::played::Played;
+use super::stats::Stats;
 use crate::tui::Minimap;
 use crate::tui::bindings::{Action, Bindings};
-use crate::world::World;
 
 /// The least that can be played in.
 const LEAST_COLUMNS: u16 = 20;
@@ -64,23 +64,28 @@ pub(super) fn framed(frame: &mut Frame, area: Rect, title: &str) -> Rect {
 }
 
 /// How the player walks, whatever keys are held.
-#[derive(Clone, Copy, Debug)]
+#[derive(Clone, Copy, Debug, Default)]
 pub(super) struct Gait {
     pub(super) runs: bool,
     pub(super) ducks: bool,
 }
 
 /// The line below the picture.
-pub(super) fn status(frame: &mut Frame, area: Rect, game: &Game, gait: Gait, bindings: &Bindings) {
+pub(super) fn status(
+    frame: &mut Frame,
+    area: Rect,
+    game: &Played,
+    gait: Gait,
+    stats: Option<&Stats>,
+    bindings: &Bindings,
+) {
     let running = gait.runs.then(|| "running".to_owned());
     let ducking = gait.ducks.then(|| "ducking".to_owned());
-    let keys = game.keys().map(|key| format!("{key} key"));
-    let message = game.message().map(str::to_owned);
-    let parts = running.into_iter().chain(ducking).chain(keys).chain(message);
-    let left: String =
-        parts.fold(format!(" {}", title(game.world())), |line, part| line + "  " + &part);
+    let parts = running.into_iter().chain(ducking).chain(game.news());
+    let left: String = parts.fold(format!(" {}", game.title()), |line, part| line + "  " + &part);
     let left = Line::from(left);
-    let right = Line::from(format!(" {} help ", key_names(bindings, Action::ToggleHelp)));
+    let stats = stats.map(|stats| format!("  {stats} ")).unwrap_or_default();
+    let right = Line::from(format!("{stats} {} help ", key_names(bindings, Action::ToggleHelp)));
     let widths = [Constraint::Fill(1), Constraint::Length(right.width() as u16)];
     let [left_area, right_area] = Layout::horizontal(widths).areas(area);
     let reversed = Style::new().add_modifier(Modifier::REVERSED);
@@ -118,8 +123,8 @@ pub(super) fn help(frame: &mut Frame, picture: Rect, bindings: &Bindings) {
 }
 
 /// That the exit was reached, and how soon.
-pub(super) fn level_done(frame: &mut Frame, picture: Rect, world: &World, seconds: f64) {
-    let text = format!("{}\nin {}\nEnter goes on", title(world), time(seconds));
+pub(super) fn level_done(frame: &mut Frame, picture: Rect, title: &str, seconds: f64) {
+    let text = format!("{title}\nin {}\nEnter goes on", time(seconds));
     message(frame, picture, "you found the way out", Text::from(text).centered());
 }
 
@@ -140,10 +145,6 @@ fn message(frame: &mut Frame, picture: Rect, title: &str, text: Text) {
     let [inside] =
         Layout::horizontal([Constraint::Fill(1)]).horizontal_margin(PADDING / 2).areas(inside);
     frame.render_widget(Paragraph::new(text), inside);
-}
-
-fn title(world: &World) -> &str {
-    if world.title().is_empty() { "a level without a name" } else { world.title() }
 }
 
 fn key_names(bindings: &Bindings, action: Action) -> String {
@@ -174,7 +175,7 @@ mod tests {
     fn help_is_whole_or_says_that_there_is_more() {
         let bindings = Bindings::default();
         for (columns, rows, is_whole) in
-            [(32, 23, true), (64, 13, true), (200, 60, true), (60, 9, false), (20, 5, false)]
+            [(32, 24, true), (64, 13, true), (200, 60, true), (60, 9, false), (20, 5, false)]
         {
             let text = shown(columns, rows, |frame| help(frame, frame.area(), &bindings));
             let is_so = Action::ALL.iter().all(|(_, does, _)| text.contains(does));

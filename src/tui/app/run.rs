@@ -4,8 +4,9 @@
 //! frame, so nothing is computed and nothing written.
 
 use std::env;
-use std::time::Instant;
+use std::time::{Duration, Instant};
 
+use super::stats::{Meter, Stats};
 use super::{App, Levels, Recording, Settings};
 #[cfg(debug_assertions)]
 use crate::terminal::Key;
@@ -22,20 +23,20 @@ pub fn play(levels: Levels, settings: Settings, recording: Recording) -> Result<
     if let Some(depth) = settings.depth {
         options.color_depth = Detected::Certain(depth);
     }
+    options.fidelity = settings.fidelity;
     let mut session = Session::enter_recorded(options, recording.terminal)?;
+    let mut presenter = Presenter::new(settings.frame_time);
     let mut app = App::new(levels, settings);
     app.script = recording.script;
     tell_terminal(&mut app, &session);
     let start = Instant::now();
     while !app.has_left {
         app.advance(start.elapsed());
-        if app.is_due(start.elapsed()) {
-            session.draw(|frame| app.draw(frame))?;
-            app.drawn(start.elapsed());
-        }
-        let timeout = app.wakes_at().map(|wakes| wakes.saturating_sub(start.elapsed()));
+        presenter.update(&mut app, &mut session, start.elapsed())?;
+        let wakes_at = presenter.wakes_at(&app, &session, start.elapsed());
+        let timeout = wakes_at.map(|wakes| wakes.saturating_sub(start.elapsed()));
         match session.next_event(timeout)? {
-            None => {}
+            None | Some(Event::Ready) => {}
             Some(Event::Key(event)) => {
                 #[cfg(debug_assertions)]
                 panic_on_demand(event.key);
@@ -51,6 +52,67 @@ pub fn play(levels: Levels, settings: Settings, recording: Recording) -> Result<
         }
     }
     Ok(())
+}
+
+/// What shows the game: no sooner than the pace allows and the terminal is ready, always the newest.
+struct Presenter {
+    frame_time: Duration,
+    next_frame: Duration,
+    /// Whether the terminal was not ready when a frame was due, and will tell when it is.
+    waits: bool,
+    meter: Meter,
+}
+
+impl Presenter {
+    fn new(frame_time: Duration) -> Self {
+        let meter = Meter::default();
+        Self { frame_time, next_frame: Duration::ZERO, waits: false, meter }
+    }
+
+    /// Shows what there is to show, if it is time for it.
+    fn update(&mut self, app: &mut App, session: &mut Session, now: Duration) -> Result<(), Error> {
+        let is_due = is_unfinished(app, session) && now >= self.next_frame;
+        self.waits = is_due && !session.is_ready();
+        if !is_due || self.waits {
+            return Ok(());
+        }
+        if app.is_stale() {
+            session.draw(|frame| app.draw(frame))?;
+            app.drawn();
+            self.measure(app, session, now);
+        } else {
+            session.refine()?;
+        }
+        // Counted from when this frame was due, or the time that drawing takes would slow them down.
+        self.next_frame = Some(self.next_frame + self.frame_time)
+            .filter(|&next| now < next)
+            .unwrap_or(now + self.frame_time);
+        Ok(())
+    }
+
+    fn measure(&mut self, app: &mut App, session: &Session, now: Duration) {
+        if let Some(pace) = self.meter.frame(now, session.bytes_written()) {
+            let (round_trip, fidelity) = (session.round_trip(), session.fidelity());
+            app.stats = Some(Stats { pace, round_trip, fidelity });
+        }
+    }
+
+    /// When something will happen without an event; `None` for never.
+    fn wakes_at(&self, app: &App, session: &Session, now: Duration) -> Option<Duration> {
+        let (frame, soonest) = if self.waits {
+            // The game goes on meanwhile.
+            (None, now + self.frame_time)
+        } else {
+            (is_unfinished(app, session).then_some(self.next_frame), self.next_frame)
+        };
+        let change = app.next_change().map(|change| change.max(soonest));
+        frame.into_iter().chain(change).chain(app.held.next_expiry()).min()
+    }
+}
+
+/// Whether the terminal does not show what there is, or not exactly.
+fn is_unfinished(app: &App, session: &Session) -> bool {
+    app.is_stale() || !session.is_settled()
 }
 
 /// Tells `app` what the terminal is like.

@@ -6,6 +6,7 @@
 
 mod figure;
 mod furniture;
+mod player;
 mod portal;
 mod treasure;
 
@@ -22,6 +23,8 @@ pub const NAMES: &[&str] =
 pub const EXIT: &str = "portal";
 /// The sprite of a key.
 pub const KEY: &str = "key";
+/// The sprite of whoever looks into a mirror.
+pub const PLAYER: &str = "player";
 
 /// The built-in sprite of that name, or `None` where there is none.
 pub fn named(name: &str) -> Option<Sprite> {
@@ -36,6 +39,7 @@ pub fn named(name: &str) -> Option<Sprite> {
         "torch" => furniture::torch(),
         EXIT => portal::portal(),
         KEY => treasure::key(),
+        PLAYER => player::player(),
         _ => return None,
     };
     let mut sprite = Sprite::new(pictures, facings)?.with_frame_time(FrameTime::new(seconds)?);

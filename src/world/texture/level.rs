@@ -70,6 +70,33 @@ impl Level {
         };
         self.texels[index(x, self.width) * self.height.get() as usize + index(y, self.height)]
     }
+
+    /// The same without a multiplication, where both sides are powers of two; `None` elsewhere.
+    #[inline]
+    pub(crate) fn by_shifts(&self) -> Option<LevelByShifts<'_>> {
+        let bits = |side: NonZeroU32| side.is_power_of_two().then(|| side.trailing_zeros());
+        let (width, height) = (bits(self.width)?, bits(self.height)?);
+        Some(LevelByShifts { texels: &self.texels, width, height })
+    }
+}
+
+/// A level whose width and height are powers of two, known by their exponents.
+#[derive(Clone, Copy)]
+pub(crate) struct LevelByShifts<'a> {
+    texels: &'a [Rgb],
+    width: u32,
+    height: u32,
+}
+
+impl LevelByShifts<'_> {
+    /// As [`Level::at_fraction`].
+    #[inline]
+    pub(crate) fn at_fraction(self, x: u64, y: u64) -> Rgb {
+        // In two shifts, since one by all 64 bits is none.
+        let column = x >> 1 >> (u64::BITS - 1 - self.width);
+        let row = y >> 1 >> (u64::BITS - 1 - self.height);
+        self.texels[(column << self.height | row) as usize]
+    }
 }
 
 /// The texel of `count` in a row that holds `coordinate`, from 0 to 1; the nearest one outside.

@@ -1,0 +1,103 @@
+//! The price list: what a frame of each map of the gallery takes, as a multiple of the flat one's.
+//!
+//! `cargo bench --no-default-features --bench prices` writes the table of `docs/prices.md`. All maps
+//! take their turns one after the other and are compared within a turn, and what counts of a turn is the
+//! median frame: a machine that is busy with something else slows all of them down, or stops in few
+//! of the frames. The table has the median turn and, in brackets, the quartiles.
+
+use std::hint::black_box;
+use std::time::Instant;
+
+use cellcaster::render::FrameSize;
+
+#[path = "frame/before.rs"]
+mod before;
+#[path = "frame/gallery.rs"]
+mod gallery;
+
+use before::Before;
+use gallery::{Easel, Scene, name_of, scenes, sizes};
+
+/// How often each map has its turn.
+const TURNS: usize = 101;
+/// How many pixels are drawn in a turn, at least.
+const PIXELS_IN_A_TURN: u32 = 1_000_000;
+
+/// What is compared: a scene, drawn by the renderer or as it was before.
+struct Row {
+    name: String,
+    /// For each size, what each turn took, as a multiple of the flat scene's in the same turn.
+    ratios: [Vec<f64>; 2],
+}
+
+fn main() {
+    // Asked for a test of the bench, once is enough.
+    let turns = if std::env::args().any(|argument| argument == "--test") { 1 } else { TURNS };
+    let scenes = scenes();
+    let names = ["flat, before"].into_iter().chain(scenes.iter().map(|scene| scene.name.as_str()));
+    let mut rows: Vec<Row> =
+        names.map(|name| Row { name: name.to_owned(), ratios: [Vec::new(), Vec::new()] }).collect();
+    let mut flat_nanoseconds = [0.0; 2];
+    for (index, size) in sizes().into_iter().enumerate() {
+        let mut flat_times = Vec::with_capacity(turns);
+        for _ in 0..turns {
+            let times = turn(&scenes, size);
+            let flat = times[1];
+            flat_times.push(flat);
+            for (row, time) in rows.iter_mut().zip(times) {
+                row.ratios[index].push(time / flat);
+            }
+        }
+        flat_nanoseconds[index] = quartiles(flat_times)[1];
+    }
+    print(rows, flat_nanoseconds);
+}
+
+/// Nanoseconds a frame of the flat scene as it was drawn before, and of each scene.
+fn turn(scenes: &[Scene], size: FrameSize) -> Vec<f64> {
+    let frames = PIXELS_IN_A_TURN.div_ceil(size.width.get() * size.height.get());
+    let flat = &scenes[0];
+    let mut before = Before::new(size);
+    let mut easel = Easel::new(size);
+    let mut times = vec![time(frames, || {
+        before.render(&flat.world, black_box(&flat.camera));
+        black_box(before.pixels());
+    })];
+    times.extend(scenes.iter().map(|scene| {
+        time(frames, || {
+            black_box(easel.draw(black_box(scene)));
+        })
+    }));
+    times
+}
+
+/// Nanoseconds for the median one of so many `frames`, after one that is not counted.
+fn time(frames: u32, mut draw: impl FnMut()) -> f64 {
+    draw();
+    let times = (0..frames).map(|_| {
+        let start = Instant::now();
+        draw();
+        start.elapsed().as_secs_f64() * 1e9
+    });
+    quartiles(times.collect())[1]
+}
+
+fn quartiles(mut values: Vec<f64>) -> [f64; 3] {
+    values.sort_by(f64::total_cmp);
+    let last = values.len() - 1;
+    [0.25, 0.5, 0.75].map(|share| values[(share * last as f64).round() as usize])
+}
+
+fn print(rows: Vec<Row>, flat_nanoseconds: [f64; 2]) {
+    let [small, large] = sizes().map(name_of);
+    println!("| map | {small} | {large} |\n|---|---|---|");
+    for Row { name, ratios } in rows {
+        let [small, large] = ratios.map(|ratios| {
+            let [lower, median, upper] = quartiles(ratios);
+            format!("{median:.2} ({lower:.2}–{upper:.2})")
+        });
+        println!("| {name} | {small} | {large} |");
+    }
+    let [small, large] = flat_nanoseconds.map(|nanoseconds| nanoseconds / 1000.0);
+    println!("| *flat, microseconds a frame* | {small:.1} | {large:.1} |");
+}

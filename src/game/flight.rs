@@ -1,0 +1,266 @@
+//! A flight through a scene of bodies: who looks around floats, and enters no body.
+//!
+//! All bodies are convex. From where the player is, each is therefore behind a plane through its
+//! nearest point, and a way that stays on the near side of all those planes enters none of them,
+//! however long it is: the way is cut down to that, which makes it slide along what it meets. Moving
+//! first and pushing out afterwards was refused: between two bodies that ends inside one of them.
+
+use glam::{DVec2, DVec3};
+
+use super::intent::{Intent, Intents};
+use super::motion::{Glide, approach};
+use super::{AIM, FRICTION, RUN, STEP, STILL, TURN, TURN_FRICTION, WALK};
+use crate::space::{Camera, EYE_ROOM, Elevation, Scene};
+use crate::world::{FieldOfView, Heading};
+
+/// How fast the eye is raised or lowered, in radians per second.
+const RAISE: f64 = 0.8;
+/// The same, for who aims.
+const AIM_UPWARDS: f64 = 0.2;
+/// How often the way is cut down, at most: between two planes, some is cut off each time.
+const CUTS: usize = 8;
+
+/// A scene, who moves in it, and for how long.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Flight {
+    scene: Scene,
+    player: Player,
+    steps: u64,
+}
+
+#[derive(Clone, Copy, Debug, PartialEq)]
+struct Player {
+    position: DVec3,
+    /// Cells per second.
+    velocity: DVec3,
+    heading: Heading,
+    /// Radians per second, clockwise.
+    turning: f64,
+    elevation: Elevation,
+    /// Radians per second, upwards.
+    raising: f64,
+}
+
+impl Flight {
+    /// A flight at its beginning: the player is still, at the scene's start.
+    pub fn new(scene: Scene) -> Self {
+        let start = scene.start;
+        let player = Player {
+            position: start.position(),
+            velocity: DVec3::ZERO,
+            heading: start.heading,
+            turning: 0.0,
+            elevation: start.elevation,
+            raising: 0.0,
+        };
+        Self { scene, player, steps: 0 }
+    }
+
+    /// Where the flight takes place.
+    pub fn scene(&self) -> &Scene {
+        &self.scene
+    }
+
+    /// What the player sees.
+    pub fn camera(&self, field_of_view: FieldOfView) -> Camera {
+        let Player { position, heading, elevation, .. } = self.player;
+        // Nobody gets to where no camera can be.
+        Camera::new(position, heading, field_of_view)
+            .unwrap_or_else(|| self.scene.start_camera(field_of_view))
+            .with_elevation(elevation)
+    }
+
+    /// Seconds that have passed, counted in steps.
+    pub fn elapsed(&self) -> f64 {
+        self.steps as f64 * STEP
+    }
+
+    /// For how many steps with these intents nothing happens but that the clock runs: none, or
+    /// [`u64::MAX`].
+    pub fn quiet_steps(&self, intents: Intents) -> u64 {
+        let is_at_rest = self.player.stepped(&self.scene, intents) == self.player;
+        if is_at_rest { u64::MAX } else { 0 }
+    }
+
+    /// Lets one step pass, of [`STEP`] seconds, in which the player wants what `intents` says. Who
+    /// wants to jump, or to open something, rises; who wants to duck sinks.
+    pub fn step(&mut self, intents: Intents) {
+        self.player = self.player.stepped(&self.scene, intents);
+        self.wait(1);
+    }
+
+    /// Lets the clock run for `steps` steps in which nobody moves.
+    pub fn wait(&mut self, steps: u64) {
+        self.steps = self.steps.saturating_add(steps);
+    }
+}
+
+impl Player {
+    fn stepped(self, scene: &Scene, intents: Intents) -> Self {
+        self.turned(intents).raised(intents).moved(scene, intents)
+    }
+
+    fn turned(self, intents: Intents) -> Self {
+        let speed = if intents.contains(Intent::Aim) { AIM } else { TURN };
+        let target = speed * intents.balance(Intent::TurnRight, Intent::TurnLeft);
+        let Glide { velocity, displacement } = approach(self.turning, target, TURN_FRICTION, STEP);
+        let turning = if velocity.abs() < STILL { 0.0 } else { velocity };
+        Self { heading: self.heading.turned(displacement), turning, ..self }
+    }
+
+    fn raised(self, intents: Intents) -> Self {
+        if intents.contains(Intent::LookAhead) {
+            return Self { elevation: Elevation::LEVEL, raising: 0.0, ..self };
+        }
+        let speed = if intents.contains(Intent::Aim) { AIM_UPWARDS } else { RAISE };
+        let target = speed * intents.balance(Intent::LookUp, Intent::LookDown);
+        let Glide { velocity, displacement } = approach(self.raising, target, TURN_FRICTION, STEP);
+        let elevation = self.elevation.raised(displacement);
+        let has_stopped = velocity.abs() < STILL || elevation == self.elevation;
+        Self { elevation, raising: if has_stopped { 0.0 } else { velocity }, ..self }
+    }
+
+    fn moved(self, scene: &Scene, intents: Intents) -> Self {
+        let target = wanted_velocity(self.heading, intents);
+        let glide = |velocity, target| approach(velocity, target, FRICTION, STEP);
+        let [x, y, z] = [
+            glide(self.velocity.x, target.x),
+            glide(self.velocity.y, target.y),
+            glide(self.velocity.z, target.z),
+        ];
+        let way = DVec3::new(x.displacement, y.displacement, z.displacement);
+        let velocity = DVec3::new(x.velocity, y.velocity, z.velocity);
+        let (way, velocity) = self.cut_down(scene, way, velocity);
+        let velocity = if velocity.length() < STILL { DVec3::ZERO } else { velocity };
+        if way.length() < STILL * STEP {
+            return Self { velocity, ..self };
+        }
+        let position = self.position + way;
+        if is_free(scene, position) {
+            Self { position, velocity, ..self }
+        } else {
+            Self { velocity: DVec3::ZERO, ..self }
+        }
+    }
+
+    /// `way` and `velocity` without what leads into bodies.
+    fn cut_down(self, scene: &Scene, mut way: DVec3, mut velocity: DVec3) -> (DVec3, DVec3) {
+        for _ in 0..CUTS {
+            let before = way;
+            for body in &scene.bodies {
+                let (clearance, outwards) = body.shape.clearance(self.position);
+                // What is left of it, so that rounding leads no further.
+                let room = (clearance - EYE_ROOM - SLACK).max(0.0);
+                let too_far = -outwards.dot(way) - room;
+                if too_far > 0.0 {
+                    way += outwards * too_far;
+                    velocity -= outwards * outwards.dot(velocity).min(0.0);
+                }
+            }
+            if way == before {
+                break;
+            }
+        }
+        (way, velocity)
+    }
+}
+
+/// How much further from bodies than they must the player stops, in cells.
+const SLACK: f64 = 1e-9;
+
+/// Whether the player can be at `position`.
+fn is_free(scene: &Scene, position: DVec3) -> bool {
+    scene.bodies.iter().all(|body| body.shape.clearance(position).0 >= EYE_ROOM)
+        && Camera::new(position, Heading::default(), FieldOfView::default()).is_some()
+}
+
+/// The velocity that the player would have after a while in empty space.
+fn wanted_velocity(heading: Heading, intents: Intents) -> DVec3 {
+    let forward = intents.balance(Intent::Forward, Intent::Back);
+    let right = intents.balance(Intent::StrafeRight, Intent::StrafeLeft);
+    let rises = [Intent::Jump, Intent::Open].into_iter().any(|up| intents.contains(up));
+    let up = f64::from(rises) - f64::from(intents.contains(Intent::Duck));
+    let speed = if intents.contains(Intent::Run) { RUN } else { WALK };
+    let level = heading.direction().rotate(DVec2::new(forward, right));
+    level.extend(up).normalize_or_zero() * speed
+}
+
+#[cfg(test)]
+mod tests {
+    use proptest::prelude::*;
+
+    use super::*;
+    use crate::space::{Block, Body, Coat, Plane, Shape, Sphere, Start};
+    use crate::world::Rgb;
+
+    /// A start between a floor, a ball, a wall that leans, and a box.
+    fn scene(degrees: f64) -> Scene {
+        let shapes = [
+            Shape::Plane(Plane::new(DVec3::ZERO, DVec3::Z).unwrap()),
+            Shape::Plane(Plane::new(-DVec3::X, DVec3::new(2.0, 1.0, -1.0)).unwrap()),
+            Shape::Sphere(Sphere::new(DVec3::new(2.0, 0.0, 0.5), 1.0).unwrap()),
+            Shape::Block(
+                Block::new(DVec3::new(-1.0, 1.0, 0.0), DVec3::new(3.0, 2.0, 1.0)).unwrap(),
+            ),
+        ];
+        let heading = Heading::from_degrees(degrees).unwrap();
+        let coat = Coat::Plain(Rgb::WHITE);
+        Scene {
+            bodies: shapes.map(|shape| Body { shape, coat }).to_vec(),
+            start: Start::new(DVec3::new(0.5, 0.0, 0.5), heading, Elevation::LEVEL).unwrap(),
+            ..Scene::default()
+        }
+    }
+
+    fn intents(list: &[Intent]) -> Intents {
+        list.iter().copied().collect()
+    }
+
+    proptest! {
+        #[test]
+        fn nobody_enters_a_body_or_outruns_a_runner(
+            degrees in 0.0..360.0,
+            script in prop::collection::vec(
+                (1..40_usize, prop::sample::subsequence(Intent::ALL.to_vec(), 0..6)),
+                0..30,
+            ),
+        ) {
+            let mut flight = Flight::new(scene(degrees));
+            let sides = |at| flight_sides(&scene(degrees), at);
+            let at_first = sides(flight.player.position);
+            for (steps, held) in script {
+                for _ in 0..steps {
+                    let before = flight.player.position;
+                    flight.step(intents(&held));
+                    let after = flight.player.position;
+                    prop_assert!(is_free(flight.scene(), after));
+                    prop_assert!(before.distance(after) <= RUN * STEP * (1.0 + 1e-9));
+                }
+            }
+            prop_assert_eq!(sides(flight.player.position), at_first);
+            (0..120).for_each(|_| flight.step(Intents::new()));
+            prop_assert_eq!(flight.quiet_steps(Intents::new()), u64::MAX);
+        }
+    }
+
+    /// On which side of its planes a place is.
+    fn flight_sides(scene: &Scene, at: DVec3) -> Vec<bool> {
+        let planes = scene.bodies.iter().filter_map(|body| match body.shape {
+            Shape::Plane(plane) => Some(plane.normal().dot(at - plane.point()) > 0.0),
+            _ => None,
+        });
+        planes.collect()
+    }
+
+    #[test]
+    fn rising_sinking_and_looking() {
+        let mut flight = Flight::new(scene(0.0));
+        (0..30).for_each(|_| flight.step(intents(&[Intent::Jump, Intent::LookUp])));
+        assert!(flight.player.position.z > 1.0 && flight.player.elevation.degrees() > 10.0);
+        (0..120).for_each(|_| flight.step(intents(&[Intent::Duck, Intent::LookDown])));
+        assert!((flight.player.position.z - EYE_ROOM).abs() < 1e-6);
+        flight.step(intents(&[Intent::LookAhead]));
+        assert_eq!(flight.player.elevation, Elevation::LEVEL);
+        assert!((flight.elapsed() - 151.0 * STEP).abs() < 1e-12);
+    }
+}

@@ -1,0 +1,123 @@
+//! The two tables of the legend, and which keys their entries have.
+
+use crate::fault::Fault;
+use crate::fault::document::Entry;
+use crate::map::sprites;
+
+/// What other raycasters have in their cells and this one has not.
+const NOT_YET: &[(&str, &str)] = &[
+    ("guard", "guards"),
+    ("pushwall", "moving walls"),
+    ("secret", "secret doors"),
+    ("window", "windows"),
+];
+
+const OF_TILES: &[(&str, &str)] = &[
+    ("key", "door"),
+    ("opacity", "glass"),
+    ("opacity", "mirror"),
+    ("height", "wall"),
+    ("height", "mirror"),
+    ("radius", "pillar"),
+    ("from", "diagonal"),
+    ("at", "thin"),
+];
+
+const SUPPORTS: &[(&str, &str)] =
+    &[("on", "start"), ("on", "exit"), ("on", "key"), ("on", "sprite")];
+
+/// One of the two tables that define characters.
+#[derive(Clone, Copy, PartialEq, Eq)]
+pub(in crate::map) enum Section {
+    Tiles,
+    Things,
+}
+
+impl Section {
+    pub(super) fn name(self) -> &'static str {
+        match self {
+            Self::Tiles => "[tiles]",
+            Self::Things => "[things]",
+        }
+    }
+
+    pub(super) fn noun(self) -> &'static str {
+        match self {
+            Self::Tiles => "a tile",
+            Self::Things => "a thing",
+        }
+    }
+
+    fn keys(self) -> &'static [&'static str] {
+        match self {
+            Self::Tiles => &[
+                "wall",
+                "door",
+                "mask",
+                "glass",
+                "mirror",
+                "pillar",
+                "diagonal",
+                "thin",
+                "floor",
+                "ceiling",
+                "light",
+                "floor_height",
+                "ceiling_height",
+                "roof_height",
+                "riser",
+                "lintel",
+            ],
+            Self::Things => &["start", "exit", "key", "sprite"],
+        }
+    }
+
+    /// The keys that say more of what another one makes: each with that one.
+    pub(super) fn additions(self) -> impl Iterator<Item = (&'static str, &'static str)> {
+        let (additions, more): (&[_], &[_]) = match self {
+            Self::Tiles => (OF_TILES, &[]),
+            Self::Things => (&sprites::ADDITIONS, SUPPORTS),
+        };
+        additions.iter().chain(more).copied()
+    }
+
+    pub(super) fn example(self) -> &'static str {
+        match self {
+            Self::Tiles => r##""#" = { wall = "brick" }"##,
+            Self::Things => r#""@" = { start = 0 }"#,
+        }
+    }
+
+    fn other(self) -> Self {
+        match self {
+            Self::Tiles => Self::Things,
+            Self::Things => Self::Tiles,
+        }
+    }
+
+    /// The fault that a tile or thing has no such property.
+    pub(super) fn unknown_property(self, entry: &Entry<'_, '_>) -> Fault {
+        let place = || entry.key_place.clone();
+        if let Some((_, plural)) = NOT_YET.iter().find(|(key, _)| *key == entry.key) {
+            return Fault::new(place(), format!("{plural} are not supported yet"))
+                .help(format!("known keys: {}", self.keys().join(", ")));
+        }
+        let wanted = self.additions().filter(|(key, _)| *key == entry.key);
+        let wanted: Vec<&str> = wanted.map(|(_, to)| to).collect();
+        if !wanted.is_empty() {
+            let (key, to) = (entry.key, wanted.join("\" or \""));
+            let message = format!("\"{key}\" goes with \"{to}\", and there is none");
+            let help = format!("name a {} in the same braces", wanted.join(" or a "));
+            return Fault::new(place(), message).help(help);
+        }
+        let other = self.other();
+        if other.keys().contains(&entry.key) {
+            let message = format!("\"{}\" makes {}, not {}", entry.key, other.noun(), self.noun());
+            return Fault::new(place(), message).help(format!("move it to {}", other.name()));
+        }
+        let additions = self.additions().map(|(key, _)| key);
+        let mut known: Vec<&str> = self.keys().iter().copied().chain(additions).collect();
+        known.dedup();
+        entry.unknown_key(self.noun(), &known)
+    }
+}

@@ -1,0 +1,181 @@
+//! The other kind of map: bodies in place of a grid.
+//!
+//! What is said of a map as a whole is read here, of one body in `body`, and places, directions and
+//! numbers in `vector`.
+
+mod body;
+mod vector;
+
+use glam::DVec3;
+use toml::de::{DeTable, DeValue};
+
+use super::air::{self, SkyText};
+use super::definitions;
+use crate::fault::Fault;
+use crate::fault::document::{Entry, entries};
+use crate::space::{EYE_ROOM, Elevation, FARTHEST, Scene, Share, Sky, Start, Sun};
+use crate::world::Heading;
+use body::Kind;
+
+const KEYS: &[&str] = &["title", "sky", "fog", "light", "start", "sphere", "plane", "box"];
+const LIGHT_KEYS: &[&str] = &["toward", "ambient"];
+const LIGHT_EXAMPLE: &str = "light = { toward = [-1, -1, 2], ambient = 0.2 }";
+const START_KEYS: &[&str] = &["at", "heading", "pitch"];
+const START_EXAMPLE: &str = "start = { at = [0, 0, 0.5], heading = 0 }";
+
+/// Whether `document` has bodies, and so is no map of a grid.
+pub(super) fn has_bodies(document: &DeTable) -> bool {
+    entries(document).any(|entry| Kind::of_key(entry.key).is_some())
+}
+
+/// The scene that `document` describes; `None` where it describes none. What is wrong with it is added
+/// to `faults`.
+pub(super) fn read(document: &DeTable, faults: &mut Vec<Fault>) -> Option<Scene> {
+    let mut scene = Scene::default();
+    let mut start = None;
+    for entry in entries(document) {
+        match entry.key {
+            "title" => scene.title = definitions::title(&entry, faults).unwrap_or_default(),
+            "sky" => scene.sky = sky(&entry, faults).unwrap_or_default(),
+            "fog" => scene.fog = air::fog(&entry, faults),
+            "light" => scene.sun = light(&entry, faults).unwrap_or_default(),
+            "start" => start = Some(entry),
+            "grid" | "tiles" | "things" => faults.push(both_kinds(&entry)),
+            key => match Kind::of_key(key) {
+                Some(kind) => scene.bodies.extend(kind.read_all(&entry, faults)),
+                None => faults.push(entry.unknown_key("a map of bodies", KEYS)),
+            },
+        }
+    }
+    let Some(entry) = start else {
+        faults.push(
+            Fault::new(0..0, "the map has no start")
+                .label("a start is missing")
+                .help(format!("write {START_EXAMPLE}")),
+        );
+        return None;
+    };
+    scene.start = read_start(&entry, &scene, faults)?;
+    Some(scene)
+}
+
+fn both_kinds(entry: &Entry<'_, '_>) -> Fault {
+    Fault::new(entry.key_place.clone(), "a map has either a grid or bodies")
+        .label("this map has bodies")
+        .help("make two maps of it")
+}
+
+fn sky(entry: &Entry<'_, '_>, faults: &mut Vec<Fault>) -> Option<Sky> {
+    match SkyText::read(entry, faults)? {
+        SkyText::Gradient { zenith, horizon } => Some(Sky { zenith, horizon }),
+        SkyText::Panorama(surface) => {
+            faults.push(
+                Fault::new(surface.place(), "the sky of a map of bodies has no panorama")
+                    .help(r##"write sky = { gradient = ["#5080c0", "#c0d8f0"] }"##),
+            );
+            None
+        }
+    }
+}
+
+fn light(entry: &Entry<'_, '_>, faults: &mut Vec<Fault>) -> Option<Sun> {
+    let table = entry.table(LIGHT_EXAMPLE, faults)?;
+    let mut sun = Sun::default();
+    for entry in entries(table) {
+        match entry.key {
+            "toward" => sun = toward(&entry, sun, faults).unwrap_or(sun),
+            "ambient" => match entry.number().and_then(Share::new) {
+                Some(ambient) => sun.ambient = ambient,
+                None => faults.push(
+                    Fault::new(entry.value_place, "the ambient light must be a number from 0 to 1")
+                        .label("this is none")
+                        .help("write 0.2 for dark shades, 1 for none"),
+                ),
+            },
+            _ => faults.push(entry.unknown_key("a light", LIGHT_KEYS)),
+        }
+    }
+    Some(sun)
+}
+
+fn toward(entry: &Entry<'_, '_>, sun: Sun, faults: &mut Vec<Fault>) -> Option<Sun> {
+    let toward = vector::direction(entry, "toward = [-1, -1, 2]", faults)?;
+    Sun::new(toward, sun.ambient)
+}
+
+fn read_start(entry: &Entry<'_, '_>, scene: &Scene, faults: &mut Vec<Fault>) -> Option<Start> {
+    let table = entry.table(START_EXAMPLE, faults)?;
+    let faults_before = faults.len();
+    let mut place = None;
+    let (mut heading, mut elevation) = (Heading::default(), Elevation::LEVEL);
+    for entry in entries(table) {
+        match entry.key {
+            "at" => place = vector::place(&entry, faults).map(|at| (at, entry.value_place)),
+            "heading" => heading = read_heading(&entry, faults).unwrap_or_default(),
+            "pitch" => elevation = read_elevation(&entry, faults).unwrap_or_default(),
+            _ => faults.push(entry.unknown_key("a start", START_KEYS)),
+        }
+    }
+    if faults.len() > faults_before {
+        return None;
+    }
+    let Some((at, place)) = place else {
+        let fault = Fault::new(entry.value_place.clone(), "the start does not say where it is");
+        faults.push(fault.help(format!("write {START_EXAMPLE}")));
+        return None;
+    };
+    let is_free =
+        |at: DVec3| scene.bodies.iter().all(|body| body.shape.clearance(at).0 >= EYE_ROOM);
+    if !is_free(at) {
+        let message = format!("the start is less than {EYE_ROOM} cells from a body, or inside it");
+        faults.push(Fault::new(place, message).help("move one of the two"));
+        return None;
+    }
+    Start::new(at, heading, elevation)
+}
+
+fn read_heading(entry: &Entry<'_, '_>, faults: &mut Vec<Fault>) -> Option<Heading> {
+    let heading = entry.number().and_then(Heading::from_degrees);
+    if heading.is_none() {
+        faults.push(number_wanted(entry, "a heading must be a finite number of degrees"));
+    }
+    heading
+}
+
+fn read_elevation(entry: &Entry<'_, '_>, faults: &mut Vec<Fault>) -> Option<Elevation> {
+    let elevation = entry.number().and_then(Elevation::from_degrees);
+    if elevation.is_none() {
+        faults.push(number_wanted(entry, "a pitch must be degrees from -90, down, to 90, up"));
+    }
+    elevation
+}
+
+fn number_wanted(entry: &Entry<'_, '_>, message: &str) -> Fault {
+    Fault::new(entry.value_place.clone(), message).label("this is none")
+}
+
+/// What a coordinate may be, in words.
+fn coordinates() -> String {
+    format!("from -{FARTHEST:e} to {FARTHEST:e}")
+}
+
+/// The tables of `entry`, which is written as `[[key]]` for each.
+fn tables<'a, 't>(
+    entry: &Entry<'a, 't>,
+    example: &str,
+    faults: &mut Vec<Fault>,
+) -> Vec<(&'a DeTable<'t>, std::ops::Range<usize>)> {
+    let wrong = || entry.wrong_type("a list of tables", example);
+    let DeValue::Array(list) = entry.value else {
+        faults.push(wrong());
+        return Vec::new();
+    };
+    let mut tables = Vec::new();
+    for value in list {
+        match value.get_ref() {
+            DeValue::Table(table) => tables.push((table, value.span())),
+            _ => faults.push(wrong()),
+        }
+    }
+    tables
+}

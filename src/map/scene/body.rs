@@ -1,0 +1,180 @@
+//! Bodies: their shapes and colours, as a map says them.
+
+use std::ops::Range;
+
+use glam::DVec3;
+use toml::de::DeTable;
+
+use super::{coordinates, tables, vector};
+use crate::fault::document::{Entry, entries};
+use crate::fault::{Fault, quoted};
+use crate::map::air;
+use crate::space::{Block, Body, Coat, FARTHEST, Plane, SMALLEST, Shape, Sphere};
+use crate::world::{Rgb, Scale};
+
+/// What a body is called in a map.
+#[derive(Clone, Copy)]
+pub(super) enum Kind {
+    Sphere,
+    Plane,
+    Box,
+}
+
+/// What the table of a body says, each with its place.
+#[derive(Default)]
+struct Said {
+    vectors: Vec<(&'static str, DVec3)>,
+    number: Option<(f64, Range<usize>)>,
+    color: Option<Rgb>,
+    checker: Option<[Rgb; 2]>,
+    scale: Option<Scale>,
+}
+
+impl Kind {
+    pub(super) fn of_key(key: &str) -> Option<Self> {
+        match key {
+            "sphere" => Some(Self::Sphere),
+            "plane" => Some(Self::Plane),
+            "box" => Some(Self::Box),
+            _ => None,
+        }
+    }
+
+    /// The bodies of `entry`; what is wrong with one is added to `faults`.
+    pub(super) fn read_all(self, entry: &Entry<'_, '_>, faults: &mut Vec<Fault>) -> Vec<Body> {
+        tables(entry, self.example(), faults)
+            .into_iter()
+            .filter_map(|(table, place)| self.read(table, place, faults))
+            .collect()
+    }
+
+    fn example(self) -> &'static str {
+        match self {
+            Self::Sphere => r##"[[sphere]], center = [4, 0, 1], radius = 1 and color = "#c04030""##,
+            Self::Plane => r##"[[plane]], height = 0 and color = "#608040""##,
+            Self::Box => r##"[[box]], from = [4, 0, 0], to = [5, 1, 1] and color = "#c0a040""##,
+        }
+    }
+
+    fn name(self) -> &'static str {
+        match self {
+            Self::Sphere => "a sphere",
+            Self::Plane => "a plane",
+            Self::Box => "a box",
+        }
+    }
+
+    /// The vectors and the number that say its shape.
+    fn shape_keys(self) -> (&'static [&'static str], &'static str) {
+        match self {
+            Self::Sphere => (&["center"], "radius"),
+            Self::Plane => (&["point", "normal"], "height"),
+            Self::Box => (&["from", "to"], ""),
+        }
+    }
+
+    fn read(self, table: &DeTable, place: Range<usize>, faults: &mut Vec<Fault>) -> Option<Body> {
+        let faults_before = faults.len();
+        let said = self.read_entries(table, faults);
+        if faults.len() > faults_before {
+            return None;
+        }
+        let fault = |message: String| {
+            Some(Fault::new(place, message).help(format!("write {}", self.example())))
+        };
+        let (shape, coat) = (self.shape(&said), said.coat());
+        let (fault, body) = match (shape, coat) {
+            (Some(shape), Some(coat)) => (None, Some(Body { shape, coat })),
+            (None, _) => (fault(format!("{} needs {}", self.name(), self.needs())), None),
+            (_, None) => {
+                let message = "has either a color, or a checker of two and perhaps a scale";
+                (fault(format!("{} {message}", self.name())), None)
+            }
+        };
+        faults.extend(fault);
+        body
+    }
+
+    fn needs(self) -> String {
+        match self {
+            Self::Sphere => format!("a center, and a radius from {SMALLEST:e} to {FARTHEST:e}"),
+            Self::Plane => format!("a point and a normal, or a height {}", coordinates()),
+            Self::Box => format!("two corners, at least {SMALLEST:e} apart along every axis"),
+        }
+    }
+
+    fn read_entries(self, table: &DeTable, faults: &mut Vec<Fault>) -> Said {
+        let (vectors, number) = self.shape_keys();
+        let mut said = Said::default();
+        for entry in entries(table) {
+            if let Some(&key) = vectors.iter().find(|&&key| key == entry.key) {
+                let vector = if key == "normal" {
+                    vector::direction(&entry, "normal = [0, 0, 1]", faults)
+                } else {
+                    vector::place(&entry, faults)
+                };
+                said.vectors.extend(vector.map(|vector| (key, vector)));
+                continue;
+            }
+            match entry.key {
+                "color" => said.color = air::color(&entry, r##"color = "#c04030""##, faults),
+                "checker" => said.checker = checker(&entry, faults),
+                "scale" => said.scale = scale(&entry, faults),
+                key if key == number => match entry.number() {
+                    Some(found) => said.number = Some((found, entry.value_place)),
+                    None => faults.push(entry.wrong_type("a number", &format!("{key} = 1.0"))),
+                },
+                _ => {
+                    let known = [vectors, &["color", "checker", "scale"]].concat();
+                    let own = (!number.is_empty()).then_some(number);
+                    let known: Vec<&str> = own.into_iter().chain(known).collect();
+                    faults.push(entry.unknown_key(self.name(), &known));
+                }
+            }
+        }
+        said
+    }
+
+    fn shape(self, said: &Said) -> Option<Shape> {
+        let number = said.number.as_ref().map(|&(number, _)| number);
+        let vector = |key| said.vectors.iter().find(|&&(said, _)| said == key).map(|&(_, it)| it);
+        match self {
+            Self::Sphere => Sphere::new(vector("center")?, number?).map(Shape::Sphere),
+            Self::Box => Block::new(vector("from")?, vector("to")?).map(Shape::Block),
+            Self::Plane => match (number, vector("point"), vector("normal")) {
+                (Some(height), None, None) => Plane::new(DVec3::Z * height, DVec3::Z),
+                (None, Some(point), Some(normal)) => Plane::new(point, normal),
+                _ => None,
+            }
+            .map(Shape::Plane),
+        }
+    }
+}
+
+impl Said {
+    fn coat(&self) -> Option<Coat> {
+        match (self.color, self.checker, self.scale) {
+            (Some(color), None, None) => Some(Coat::Plain(color)),
+            (None, Some(checker), scale) => {
+                Some(Coat::Checker(checker, scale.unwrap_or(Scale::ONE)))
+            }
+            _ => None,
+        }
+    }
+}
+
+fn checker(entry: &Entry<'_, '_>, faults: &mut Vec<Fault>) -> Option<[Rgb; 2]> {
+    let example = r##"checker = ["#e0e0e0", "#404040"]"##;
+    let [one, other] =
+        entry.pair(example, faults)?.map(|entry| air::color(&entry, example, faults));
+    Some([one?, other?])
+}
+
+fn scale(entry: &Entry<'_, '_>, faults: &mut Vec<Fault>) -> Option<Scale> {
+    let scale = entry.number().and_then(Scale::new);
+    if scale.is_none() {
+        let message = format!("{} must be a finite number above 0", quoted(entry.key));
+        faults.push(Fault::new(entry.value_place.clone(), message).help("write scale = 1.0"));
+    }
+    scale
+}

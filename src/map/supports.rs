@@ -1,0 +1,48 @@
+//! What things stand on: floor as the map says, or the floor of a tile that they name.
+
+use super::drawing::Drawing;
+use super::heights::LEAST_HEADROOM;
+use super::legend::{Legend, Meaning, Support};
+use crate::fault::Fault;
+use crate::world::{Grid, Start, Tile};
+
+/// The faults that things in the drawing stand on what is no open floor.
+pub(super) fn faults(drawing: &Drawing<'_>, legend: &Legend<'_>) -> Vec<Fault> {
+    let wrong = of(drawing, legend).filter_map(|(_, support)| {
+        let tile = legend.symbols.get(&support.tile).map(|symbol| &symbol.meaning);
+        let is_fine = matches!(tile, Some(Meaning::Open | Meaning::Floor | Meaning::Unclear))
+            || tile.is_none() && !legend.is_complete;
+        let message = format!("a thing stands on open floor, and {:?} is none", support.tile);
+        let help = "write the character of a tile that has no wall, door, mask or glass";
+        (!is_fine).then(|| Fault::new(support.place.clone(), message).help(help))
+    });
+    wrong.collect()
+}
+
+/// The things in the drawing that do not stand on the map's own floor.
+pub(super) fn of<'l>(
+    drawing: &'l Drawing<'_>,
+    legend: &'l Legend<'_>,
+) -> impl Iterator<Item = (char, &'l Support)> {
+    drawing.characters().filter_map(|(character, _)| {
+        let support = legend.symbols.get(&character)?.support.as_ref()?;
+        Some((character, support))
+    })
+}
+
+/// The fault that the player has no room to stand where they start.
+pub(super) fn low_start(
+    drawing: &Drawing<'_>,
+    grid: &Grid,
+    tiles: &[Tile],
+    start: Start,
+) -> Option<Fault> {
+    let tile = grid.tile(start.cell.column.into(), start.cell.row.into())?;
+    let room = tiles[usize::from(tile.0)].gaps().next()?.height();
+    let message = "the player has no room to stand where they start";
+    (room < LEAST_HEADROOM).then(|| {
+        Fault::new(drawing.place_of(start.cell), message)
+            .label(format!("the ceiling is {room} above the floor here"))
+            .help(format!("the player starts where it is {LEAST_HEADROOM} or more"))
+    })
+}

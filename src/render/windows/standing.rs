@@ -1,0 +1,70 @@
+//! What stands in a cell and does not fill it: the leaves of doors, and shapes.
+
+use glam::DVec2;
+
+use super::Reflection;
+use super::faces::{Facing, Stretch};
+use super::look::{Branch, Look, Met, Place};
+use crate::cast::{Hit, Ray, Side};
+use crate::world::{Cell, Outline, TileKind};
+
+impl Look<'_> {
+    /// Meets what stands in the cell that `branch` is in. What is above it, if anything, stays open.
+    pub(super) fn meet_standing(&mut self, branch: &mut Branch) {
+        let Some((cell, kind)) = self.kind(branch.place) else { return };
+        let Some(hit) = branch.walk.standing(self.scene.world, cell, kind) else { return };
+        let Some(tile) = self.tile(branch.place) else { return };
+        let (bottom, top) = (tile.heights.floor(), tile.heights.ceiling());
+        // A ray that was reflected in this cell may have been nowhere near before that.
+        let is_behind = branch.reflection != Reflection::NONE && hit.t < branch.from;
+        if is_behind || branch.gap.bottom != bottom {
+            return;
+        }
+        self.lay(branch, hit.t);
+        let ray = branch.walk.real_ray();
+        let (paint, facing) = match kind {
+            TileKind::Door(door) => (door.leaf, Facing::Side(hit.side)),
+            TileKind::Shape(it) => (it.paint, Facing::Normal(normal(it.outline, &ray, &hit))),
+            _ => return,
+        };
+        let before = match kind {
+            TileKind::Door(_) => self.place_before(&ray, &hit),
+            // It stands in a cell of its own.
+            _ => branch.place,
+        };
+        let slope = match facing {
+            Facing::Side(Side::X) => ray.direction().x,
+            Facing::Side(Side::Y) => ray.direction().y,
+            Facing::Normal(normal) => normal.dot(ray.direction()),
+        };
+        let met = Met { side: hit.side, facing, slope, t: hit.t, u: hit.u, before };
+        let rows = self.rows(&branch.window, bottom, top, hit.t);
+        branch.window = self.rows(&branch.window, top, f64::INFINITY, hit.t);
+        let light = self.light(branch.place, &met);
+        self.face(rows, &met, paint, light, Stretch { bottom, top });
+        if branch.reflection == Reflection::NONE {
+            self.hit = Some(hit);
+            self.distance = self.distance.max(hit.t);
+        }
+    }
+
+    /// The cell before the one of a leaf, on the side that `ray` comes from.
+    fn place_before(&self, ray: &Ray, hit: &Hit) -> Place {
+        let back = |direction: f64| if direction > 0.0 { -1 } else { 1 };
+        let (columns, rows) = match hit.side {
+            Side::X => (back(ray.direction().x), 0),
+            Side::Y => (0, back(ray.direction().y)),
+        };
+        let (column, row) = (i64::from(hit.cell.column) + columns, i64::from(hit.cell.row) + rows);
+        let tile = self.scene.world.grid().tile(column, row)?;
+        Some((Cell { column: column as u32, row: row as u32 }, tile))
+    }
+}
+
+/// Which way a shape faces where `ray` hit it, or the opposite way: a vector of length 1.
+fn normal(outline: Outline, ray: &Ray, hit: &Hit) -> DVec2 {
+    match outline {
+        Outline::Line(line) => line.stretch().perp().normalize(),
+        Outline::Pillar(_) => (ray.at(hit.t) - hit.cell.center()).normalize_or_zero(),
+    }
+}

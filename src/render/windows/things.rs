@@ -1,0 +1,301 @@
+//! Things, where the world is not level: billboards that are clipped to the windows they are seen in.
+//!
+//! A thing is seen by each unfolding of the map once, at its own depth. Along a ray, whatever is
+//! between two lines is behind the panes at the first and before all at the second; so a column notes
+//! such a stretch among its veils, and the things in it are drawn when its turn comes. Drawing each
+//! thing across all of its columns at once was refused: what hides it differs from one to the next.
+
+use std::cmp::Ordering;
+use std::ops::Range;
+
+use glam::DVec2;
+
+use super::{Reflection, Scene, rows_between};
+use crate::cast::{Side, Unfolding};
+use crate::render::Frame;
+use crate::render::Surface;
+use crate::render::marks::Marks;
+use crate::render::shade::{Faded, Shade};
+use crate::render::tally::{Pass, Tally};
+use crate::render::things::NEAREST;
+use crate::world::sprite::builtin;
+use crate::world::{Anchor, Camera, Cell, Gap, Light, Sprite, SpriteId, Thing};
+
+/// A part of a ray that is in one gap.
+#[derive(Clone, Debug)]
+pub(super) struct Between {
+    pub(super) column: u32,
+    /// The rows that nothing nearer covers.
+    pub(super) rows: Range<u32>,
+    pub(super) from: f64,
+    pub(super) to: f64,
+    pub(super) gap: Gap,
+    pub(super) reflection: Reflection,
+}
+
+/// An unfolding of the map, and the part of it that is seen so, in places of the map.
+#[derive(Clone, Debug)]
+pub(super) struct Image {
+    pub(super) unfolding: Unfolding,
+    pub(super) low: DVec2,
+    pub(super) high: DVec2,
+}
+
+/// The things in view, as they stand in the picture; kept so that it is allocated once.
+#[derive(Clone, Debug, Default)]
+pub(super) struct Billboards {
+    /// Those of each image together, from near to far.
+    list: Vec<Billboard>,
+    of_image: Vec<Range<usize>>,
+    considered: u64,
+    /// The player, as they see themselves; `None` until there is a mirror.
+    figure: Option<Sprite>,
+}
+
+#[derive(Clone, Debug)]
+struct Billboard {
+    /// `None` for the player.
+    sprite: Option<SpriteId>,
+    /// Which of the sprite's pictures, and how often to halve it.
+    picture: usize,
+    halvings: usize,
+    shade: Faded,
+    depth: f64,
+    /// Where its left edge is, in pixels, and how many pixels wide it is.
+    left: f64,
+    width: f64,
+    columns: Range<u32>,
+    /// Where its top and its bottom are, in rows.
+    top: f64,
+    bottom: f64,
+    is_mirrored: bool,
+    is_drawn: bool,
+    /// Which comes first of those that are equally far away.
+    order: (u32, u32, u16),
+}
+
+impl Image {
+    /// The image of `unfolding`, of which nothing has been seen yet.
+    pub(super) fn new(unfolding: Unfolding) -> Self {
+        Self { unfolding, low: DVec2::INFINITY, high: DVec2::NEG_INFINITY }
+    }
+
+    /// Takes note that what is at an unfolded `point` may be seen.
+    pub(super) fn show(&mut self, point: DVec2) {
+        let point = self.unfolding.real_point(point);
+        (self.low, self.high) = (self.low.min(point), self.high.max(point));
+    }
+}
+
+impl Billboards {
+    /// Finds all that the `images` show, as it is after `seconds`.
+    pub(super) fn find(
+        &mut self,
+        scene: Scene<'_>,
+        images: &[Image],
+        camera: &Camera,
+        seconds: f64,
+    ) {
+        const MOST_AT_FIRST: usize = 4096;
+        self.list.clear();
+        self.list.reserve(scene.world.things().len().min(MOST_AT_FIRST) + images.len());
+        self.of_image.clear();
+        self.of_image.reserve(images.len().max(64));
+        self.considered = 0;
+        if self.figure.is_none() && scene.world.has_mirrors() {
+            self.figure = builtin::named(builtin::PLAYER);
+        }
+        if let Some(figure) = &mut self.figure {
+            figure.heading = camera.heading;
+        }
+        for (index, image) in images.iter().enumerate() {
+            let start = self.list.len();
+            for &thing in things_in(scene, image) {
+                self.considered += 1;
+                self.list.extend(Billboard::of_thing(scene, image.unfolding, thing, seconds));
+            }
+            if let Some(figure) = self.figure.as_ref().filter(|_| index > 0) {
+                self.list.extend(Billboard::of_player(scene, image.unfolding, figure));
+            }
+            self.list[start..].sort_unstable_by(from_near_to_far);
+            self.of_image.push(start..self.list.len());
+        }
+    }
+
+    /// Draws those in a part of a ray, from far to near.
+    pub(super) fn draw<T: Tally>(
+        &mut self,
+        scene: Scene<'_>,
+        between: &Between,
+        marks: &mut Marks,
+        frame: &mut Frame,
+        tally: &mut T,
+    ) {
+        let Reflection(image) = between.reflection;
+        let list = &mut self.list[self.of_image[usize::from(image)].clone()];
+        let start = list.partition_point(|it| it.depth < between.from);
+        let end = list.partition_point(|it| it.depth < between.to);
+        for billboard in list[start..end.max(start)].iter_mut().rev() {
+            if billboard.columns.contains(&between.column) {
+                let sprite = match billboard.sprite {
+                    Some(id) => Some(scene.world.sprite(id)),
+                    None => self.figure.as_ref(),
+                };
+                if let Some(sprite) = sprite {
+                    billboard.draw(scene, sprite, between, marks, frame, tally);
+                }
+            }
+        }
+    }
+
+    /// How many things were looked at, and how many of them drawn.
+    pub(super) fn counts(&self) -> (u64, u64) {
+        let drawn = self.list.iter().filter(|it| it.is_drawn && it.sprite.is_some()).count();
+        (self.considered, drawn as u64)
+    }
+
+    /// When something that was drawn begins to look different; `None` for never.
+    pub(super) fn next_change(&self, scene: Scene<'_>, seconds: f64) -> Option<f64> {
+        let drawn = self.list.iter().filter(|it| it.is_drawn);
+        let sprites = drawn.filter_map(|it| it.sprite).map(|id| scene.world.sprite(id));
+        sprites.filter_map(|sprite| sprite.next_change(seconds)).reduce(f64::min)
+    }
+}
+
+fn from_near_to_far(one: &Billboard, other: &Billboard) -> Ordering {
+    one.depth.total_cmp(&other.depth).then_with(|| other.order.cmp(&one.order))
+}
+
+/// The things in the part of the map that an image shows.
+fn things_in<'a>(scene: Scene<'a>, image: &Image) -> impl Iterator<Item = &'a Thing> + use<'a> {
+    let world = scene.world;
+    // What stands beside what is seen reaches into it by half its width.
+    let margin = world.widest_sprite() / 2.0;
+    let cells = |low: f64, high: f64, count: u32| {
+        let end = (high + margin).floor() + 1.0;
+        (low - margin).max(0.0) as u32..end.min(f64::from(count)).max(0.0) as u32
+    };
+    let columns = cells(image.low.x, image.high.x, world.grid().width());
+    let rows = cells(image.low.y, image.high.y, world.grid().height());
+    let last = columns.end.saturating_sub(1);
+    rows.flat_map(move |row| world.things_between(row, columns.start, last))
+}
+
+impl Billboard {
+    fn of_thing(
+        scene: Scene<'_>,
+        unfolding: Unfolding,
+        thing: Thing,
+        seconds: f64,
+    ) -> Option<Self> {
+        let world = scene.world;
+        let sprite = world.sprite(thing.sprite);
+        let room = world.room_in(thing.cell);
+        let base = match sprite.anchor {
+            Anchor::Floor => room.floor(),
+            Anchor::Ceiling => room.ceiling() - sprite.height.cells(),
+        };
+        let light = world.light_in(thing.cell);
+        let center = thing.cell.center();
+        let billboard = Self::new(scene, unfolding, sprite, seconds, center, base, light)?;
+        let order = (thing.cell.row, thing.cell.column, thing.sprite.0);
+        Some(Self { sprite: Some(thing.sprite), order, ..billboard })
+    }
+
+    fn of_player(scene: Scene<'_>, unfolding: Unfolding, figure: &Sprite) -> Option<Self> {
+        let place = scene.projection.origin();
+        let base = scene.projection.eye() - Camera::STANDING;
+        let is_on_map = place.x >= 0.0 && place.y >= 0.0;
+        let cell = Cell { column: place.x as u32, row: place.y as u32 };
+        let light = if is_on_map { scene.world.light_in(cell) } else { Light::FULL };
+        Self::new(scene, unfolding, figure, 0.0, place, base, light)
+    }
+
+    /// How `sprite` looks that stands at `center` on the map; `None` where it is out of the picture.
+    fn new(
+        scene: Scene<'_>,
+        unfolding: Unfolding,
+        sprite: &Sprite,
+        seconds: f64,
+        center: DVec2,
+        base: f64,
+        light: Light,
+    ) -> Option<Self> {
+        let Scene { world, projection, filter, .. } = scene;
+        let place = projection.place(unfolding.unfolded_point(center));
+        let depth = place.depth;
+        if !(NEAREST..f64::INFINITY).contains(&depth) {
+            return None;
+        }
+        let width = projection.columns_for(sprite.width(), depth);
+        let left = place.column - width / 2.0;
+        let columns = projection.columns_between(left, left + width);
+        let top = projection.row_seen_at(base + sprite.height.cells(), depth);
+        let bottom = projection.row_seen_at(base, depth);
+        if columns.is_empty() || projection.rows_between(top, bottom).is_empty() {
+            return None;
+        }
+        let to_viewer = unfolding.real_point(projection.origin()) - center;
+        let picture = sprite.picture_index(seconds, to_viewer);
+        let texture = &sprite.pictures()[picture];
+        let texels = f64::from(texture.width()) * f64::from(texture.height());
+        Some(Self {
+            sprite: None,
+            picture,
+            halvings: filter.halvings(texels / (width * (bottom - top))),
+            shade: Faded::of_wall(Side::X, light, world.fog(), depth),
+            depth,
+            left,
+            width,
+            columns,
+            top,
+            bottom,
+            is_mirrored: unfolding.swaps_sides(),
+            is_drawn: false,
+            order: (0, 0, 0),
+        })
+    }
+
+    fn draw<T: Tally>(
+        &mut self,
+        scene: Scene<'_>,
+        sprite: &Sprite,
+        between: &Between,
+        marks: &mut Marks,
+        frame: &mut Frame,
+        tally: &mut T,
+    ) {
+        let projection = scene.projection;
+        let own = projection.rows_between(self.top, self.bottom);
+        let Gap { bottom, top } = between.gap;
+        let in_gap = rows_between(projection, &between.rows, bottom, top, self.depth);
+        let rows = own.start.max(in_gap.start)..own.end.min(in_gap.end);
+        if rows.is_empty() {
+            return;
+        }
+        self.is_drawn = true;
+        tally.pixels(Pass::Things, rows.len());
+        tally.texels(Pass::Things, rows.len());
+        let u = (f64::from(between.column) + 0.5 - self.left) / self.width;
+        let u = if self.is_mirrored { 1.0 - u } else { u };
+        let level = sprite.pictures()[self.picture].level(self.halvings);
+        let (texels, alphas) = (level.column(u), level.alpha_column(u));
+        let texels_in_row = f64::from(level.height()) / (self.bottom - self.top);
+        let texel = |row: u32| {
+            let texel = (f64::from(row) + 0.5 - self.top) * texels_in_row;
+            (texel as usize).min(texels.len() - 1)
+        };
+        let alpha = |texel: usize| alphas.map_or(u8::MAX, |alphas| alphas[texel]);
+        let pixels = frame.column_mut(between.column, rows.clone());
+        for (row, pixel) in rows.clone().zip(pixels) {
+            let texel = texel(row);
+            *pixel = match alpha(texel) {
+                0 => *pixel,
+                u8::MAX => self.shade.apply(texels[texel]),
+                alpha => self.shade.apply(texels[texel]).over(*pixel, alpha),
+            };
+        }
+        let shown = rows.clone().map(|row| alpha(texel(row)) > u8::MAX / 2);
+        marks.note(between.column as usize, rows.start, Surface::Thing, shown);
+    }
+}

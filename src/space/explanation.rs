@@ -1,0 +1,32 @@
+//! An explanation: what a frame of a scene cost.
+
+use std::fmt;
+
+/// What a frame of a scene cost.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub struct Explanation {
+    /// Bodies in the scene.
+    pub bodies: u64,
+    /// Bodies that can be seen at all.
+    pub in_view: u64,
+    /// Rays that were cast, one for each pixel.
+    pub rays: u64,
+    /// How often a ray was tested against a body.
+    pub tests: u64,
+    /// Rays that hit one.
+    pub hits: u64,
+}
+
+impl fmt::Display for Explanation {
+    /// Writes a few lines for people.
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        let Self { bodies, in_view, rays, tests, hits } = self;
+        let without_bounds = rays * bodies;
+        writeln!(f, "bodies   {in_view:>10} of {bodies} in view")?;
+        writeln!(f, "rays     {rays:>10} cast, one a pixel, {hits} of them hit a body")?;
+        writeln!(
+            f,
+            "tests    {tests:>10} of a ray against a body, of {without_bounds} without bounds"
+        )
+    }
+}

@@ -1,0 +1,143 @@
+//! Drawing: for each row of pixels the bodies that reach it, for each of them its pixels.
+
+use glam::DVec3;
+
+use super::bounds::Bounds;
+use super::camera::{Camera, Projection};
+use super::explanation::Explanation;
+use super::scene::Scene;
+use super::seen::Seen;
+use crate::render::Frame;
+use crate::world::{Fog, Rgb};
+
+/// Draws frames, and keeps the memory for it from one to the next.
+#[derive(Clone, Debug, Default)]
+pub struct Renderer {
+    /// The bodies that can be seen at all.
+    in_view: Vec<InView>,
+    /// What the rays of a row have met so far.
+    nearest: Vec<Option<Nearest>>,
+    /// The directions of the rays of the row in the middle of the picture.
+    directions: Vec<DVec3>,
+}
+
+#[derive(Clone, Debug)]
+struct InView {
+    /// Its place in the scene.
+    body: usize,
+    seen: Seen,
+    bounds: Bounds,
+}
+
+#[derive(Clone, Copy, Debug)]
+struct Nearest {
+    t: f64,
+    /// Its place among the bodies in view.
+    index: usize,
+}
+
+impl Renderer {
+    /// A renderer that has drawn nothing yet.
+    pub fn new() -> Self {
+        Self::default()
+    }
+
+    /// Draws what `camera` sees of `scene` into all of `frame`.
+    pub fn render(&mut self, scene: &Scene, camera: &Camera, frame: &mut Frame) {
+        self.explain(scene, camera, frame);
+    }
+
+    /// As [`Renderer::render`], and tells how it went.
+    pub fn explain(&mut self, scene: &Scene, camera: &Camera, frame: &mut Frame) -> Explanation {
+        let projection = Projection::new(camera, frame.size(), frame.pixel_aspect());
+        self.find_bodies(scene, &projection);
+        self.directions.clear();
+        self.directions.extend((0..projection.width).map(|column| projection.across(column)));
+        let mut explanation = Explanation {
+            bodies: scene.bodies.len() as u64,
+            in_view: self.in_view.len() as u64,
+            rays: u64::from(projection.width) * u64::from(projection.height),
+            tests: 0,
+            hits: 0,
+        };
+        for row in 0..projection.height {
+            let up = projection.upwards(row);
+            explanation.tests += self.cast_row(row, up);
+            let pixels = frame.row_mut(row);
+            explanation.hits += self.shade_row(scene, projection.origin, up, pixels);
+        }
+        explanation
+    }
+
+    fn find_bodies(&mut self, scene: &Scene, projection: &Projection) {
+        self.in_view.clear();
+        self.in_view.reserve(scene.bodies.len());
+        self.in_view.extend(scene.bodies.iter().enumerate().filter_map(|(body, found)| {
+            let seen = Seen::new(&found.shape, projection.origin);
+            let bounds = Bounds::new(&seen, projection)?;
+            Some(InView { body, seen, bounds })
+        }));
+    }
+
+    /// Finds what the rays of `row` hit, and tells how many tests that took.
+    fn cast_row(&mut self, row: u32, up: DVec3) -> u64 {
+        let Self { in_view, nearest, directions } = self;
+        nearest.clear();
+        nearest.resize(directions.len(), None);
+        let mut tests = 0;
+        for (index, InView { seen, bounds, .. }) in in_view.iter().enumerate() {
+            if !bounds.rows.contains(&row) {
+                continue;
+            }
+            if let Seen::Plane(plane) = seen {
+                // What is behind both ends of a row is behind all of it.
+                let ends = [directions.first(), directions.last()];
+                if !ends.into_iter().flatten().any(|&across| plane.is_ahead(across + up)) {
+                    continue;
+                }
+            }
+            let columns = bounds.columns.start as usize..bounds.columns.end as usize;
+            tests += columns.len() as u64;
+            for (nearest, &across) in nearest[columns.clone()].iter_mut().zip(&directions[columns])
+            {
+                let Some(t) = seen.distance(across + up) else { continue };
+                if nearest.is_none_or(|before| t < before.t) {
+                    *nearest = Some(Nearest { t, index });
+                }
+            }
+        }
+        tests
+    }
+
+    /// Gives the pixels of a row their colours, and tells how many show a body.
+    fn shade_row(&self, scene: &Scene, origin: DVec3, up: DVec3, pixels: &mut [Rgb]) -> u64 {
+        let mut hits = 0;
+        for ((pixel, nearest), &across) in
+            pixels.iter_mut().zip(&self.nearest).zip(&self.directions)
+        {
+            let direction = across + up;
+            let Some(Nearest { t, index }) = *nearest else {
+                *pixel = scene.sky.color(direction);
+                continue;
+            };
+            hits += 1;
+            let InView { body, seen, .. } = &self.in_view[index];
+            let normal = seen.normal(direction, t);
+            let point = origin + direction * t;
+            let color = scene.bodies[*body].coat.color_below(point, normal);
+            *pixel = lit(color, scene.sun.brightness(normal), scene.fog, t);
+        }
+        hits
+    }
+}
+
+/// `color` in that brightness, seen through fog from a distance of `t`.
+fn lit(color: Rgb, brightness: f64, fog: Option<Fog>, t: f64) -> Rgb {
+    const WHOLE: f64 = 256.0;
+    let (behind, clearness) = match fog {
+        Some(fog) => (fog.color, fog.clearness(t)),
+        None => (Rgb::BLACK, 1.0),
+    };
+    let own = (WHOLE * brightness * clearness).round() as u32;
+    color.blended(own, behind, 256 - (WHOLE * clearness).round() as u32)
+}

@@ -1,0 +1,138 @@
+//! What arrives, and what is made of it.
+
+use std::io;
+use std::time::Instant;
+
+use super::{KeyReleases, Session};
+use crate::palette::ColorDepth;
+use crate::terminal::input::{Answer, Input};
+use crate::terminal::platform::Signal;
+use crate::terminal::{Detected, Event, Key, KeyEvent, Phase, QuitReason};
+
+/// Whether something arrived.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub(super) enum Received {
+    Something,
+    Nothing,
+}
+
+impl Session {
+    pub(super) fn receive(&mut self, wake_at: Option<Instant>) -> io::Result<Received> {
+        let timeout = wake_at.map(|time| time.saturating_duration_since(Instant::now()));
+        let has_rest = !self.guard.has_written_all();
+        let ready = self.guard.device().wait(&self.signals, has_rest, timeout)?;
+        if ready.signals {
+            self.receive_signals()?;
+        }
+        if ready.input {
+            self.receive_input()?;
+        }
+        if ready.output && !self.is_ending() {
+            self.send_rest()?;
+        }
+        let something = ready.input || ready.signals || ready.output;
+        Ok(if something { Received::Something } else { Received::Nothing })
+    }
+
+    fn receive_signals(&mut self) -> io::Result<()> {
+        for signal in self.signals.take() {
+            match signal {
+                Signal::Resized => self.repaint(),
+                Signal::Suspend => self.events.push_back(Event::Suspend),
+                Signal::Continued => {
+                    // Stopped from outside, without a chance to give the terminal back.
+                    self.guard.device().make_raw()?;
+                    self.repaint();
+                }
+                Signal::Quit(reason) => self.events.push_back(Event::Quit(reason)),
+            }
+        }
+        Ok(())
+    }
+
+    fn receive_input(&mut self) -> io::Result<()> {
+        let mut buffer = [0; 1024];
+        let Some(count) = self.guard.device().read(&mut buffer)? else { return Ok(()) };
+        if count == 0 {
+            self.events.push_back(Event::Quit(QuitReason::InputClosed));
+            return Ok(());
+        }
+        self.heard_at = Instant::now();
+        let mut inputs = Vec::new();
+        self.decoder.feed(&buffer[..count], |input| inputs.push(input));
+        inputs.into_iter().try_for_each(|input| self.take_input(input))
+    }
+
+    pub(super) fn stop_waiting_for_more(&mut self) {
+        let events = &mut self.events;
+        self.decoder.give_up(|input| {
+            // An answer is a whole unit, and never what is left of one.
+            if let Input::Key(event) = input {
+                events.push_back(meaning(event));
+            }
+        });
+    }
+
+    fn take_input(&mut self, input: Input) -> io::Result<()> {
+        match input {
+            Input::Key(event) => self.events.push_back(meaning(event)),
+            Input::Answer(Answer::KeyFlags) => self.settle_key_releases(true)?,
+            Input::Answer(Answer::TrueColor) => self.raise_color_depth(),
+            Input::Answer(Answer::Status) => {
+                self.flow.answered(self.now());
+                self.guard.await_statuses(self.flow.awaits_answers());
+            }
+            Input::Answer(Answer::Fence) => {
+                self.guard.fence_answered();
+                self.flow.passed_over();
+                self.settle_key_releases(false)?;
+            }
+        }
+        Ok(())
+    }
+
+    fn settle_key_releases(&mut self, agreed: bool) -> io::Result<()> {
+        if self.key_releases == KeyReleases::Asked {
+            self.key_releases = KeyReleases::Settled;
+            if agreed {
+                self.guard.push_key_flags()?;
+            }
+            self.events.push_back(Event::KeyReleases(agreed));
+        }
+        Ok(())
+    }
+
+    fn raise_color_depth(&mut self) {
+        if let Detected::Guess(_) = self.color_depth {
+            self.color_depth = Detected::Certain(ColorDepth::True);
+            self.events.push_back(Event::ColorDepth(ColorDepth::True));
+        }
+    }
+
+    /// The next frame is drawn from nothing, in the size that the window has now.
+    pub(super) fn repaint(&mut self) {
+        let size = self.guard.device().size();
+        if size.cells() != self.size.cells() {
+            self.guard.recording().resized(size.cells());
+        }
+        self.size = size;
+        let writer = self.terminal.backend_mut();
+        writer.forget();
+        writer.set_size(self.size.cells());
+        // Nothing is written before the next frame, so nothing can fail yet.
+        _ = self.terminal.clear();
+        if self.events.back() != Some(&Event::Resized) {
+            self.events.push_back(Event::Resized);
+        }
+    }
+}
+
+/// What a key means to every program: raw mode leaves to us what the terminal would have done.
+fn meaning(event: KeyEvent) -> Event {
+    let pressed = event.phase == Phase::Press && event.modifiers.control && !event.modifiers.alt;
+    match event.key {
+        Key::Char('c') if pressed => Event::Quit(QuitReason::Interrupted),
+        Key::Char('z') if pressed => Event::Suspend,
+        _ => Event::Key(event),
+    }
+}

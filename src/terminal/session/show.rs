@@ -1,0 +1,155 @@
+//! Showing frames: when, how exactly, and what that takes.
+
+use std::io;
+use std::time::{Duration, Instant};
+
+use ratatui::Frame;
+use ratatui::backend::Backend;
+
+use super::Session;
+use crate::terminal::{Error, Event, Fidelity, sequence};
+
+impl Session {
+    /// Draws a frame, and sends what has changed since the last one. Where the terminal is not
+    /// [ready](Self::is_ready) for it, waits until it is, unless the program is asked to end:
+    /// then the frame is dropped, and the event that says so comes next.
+    ///
+    /// # Errors
+    /// Where the terminal cannot be written to, or a panic in another thread has given it back.
+    pub fn draw(&mut self, render: impl FnOnce(&mut Frame)) -> Result<(), Error> {
+        let drawn = self.try_draw(render);
+        self.unless_hurried(drawn)
+    }
+
+    /// Shows the last frame more exactly, if it is not shown exactly. Waits as [`Session::draw`].
+    ///
+    /// # Errors
+    /// As [`Session::draw`].
+    pub fn refine(&mut self) -> Result<(), Error> {
+        let refined = self.try_refine();
+        self.unless_hurried(refined)
+    }
+
+    /// Whether the terminal shows exactly what was drawn last. Where it does not, a few calls of
+    /// [`Session::refine`] make it.
+    pub fn is_settled(&self) -> bool {
+        self.terminal.backend().is_settled()
+    }
+
+    /// Whether a frame that is drawn now is shown soon, rather than behind others that are still on
+    /// their way. Where it is not, [`Event::Ready`] comes when it is.
+    pub fn is_ready(&mut self) -> bool {
+        let is_ready = self.may_send();
+        self.awaits_readiness = !is_ready;
+        is_ready
+    }
+
+    /// How exact a frame of motion is at present.
+    pub fn fidelity(&self) -> Fidelity {
+        self.fidelity.unwrap_or_else(|| self.flow.fidelity())
+    }
+
+    /// How long the terminal has taken to answer of late; `None` where it does not.
+    pub fn round_trip(&self) -> Option<Duration> {
+        self.flow.round_trip()
+    }
+
+    /// How many bytes all frames together have taken.
+    pub fn bytes_written(&self) -> u64 {
+        self.terminal.backend().bytes_written()
+    }
+
+    fn try_draw(&mut self, render: impl FnOnce(&mut Frame)) -> io::Result<()> {
+        if self.wait_until_ready()? {
+            let fidelity = self.fidelity();
+            self.terminal.backend_mut().set_fidelity(fidelity);
+            self.terminal.draw(render)?;
+            let bytes = self.send()?;
+            self.flow.showed_motion(bytes, fidelity);
+        }
+        Ok(())
+    }
+
+    fn try_refine(&mut self) -> io::Result<()> {
+        if self.wait_until_ready()? {
+            self.terminal.backend_mut().refine()?;
+            Backend::flush(self.terminal.backend_mut())?;
+            self.send()?;
+        }
+        Ok(())
+    }
+
+    fn unless_hurried(&self, done: io::Result<()>) -> Result<(), Error> {
+        match done {
+            Ok(()) => Ok(()),
+            // To report this on standard error could take for ever: it leads to the same terminal.
+            Err(_) if self.guard.is_hurried() => Ok(()),
+            Err(error) => Err(Error::while_doing("drawing a frame")(error)),
+        }
+    }
+
+    /// Whether it is; not where the program is to end meanwhile.
+    fn wait_until_ready(&mut self) -> io::Result<bool> {
+        while !self.may_send() {
+            if self.is_ending() {
+                return Ok(false);
+            }
+            self.receive(self.opens_at())?;
+        }
+        Ok(true)
+    }
+
+    /// Whether the program has been asked to end.
+    pub(super) fn is_ending(&self) -> bool {
+        let is_quit = |event: &Event| matches!(event, Event::Quit(_));
+        self.guard.is_hurried() || self.events.iter().any(is_quit)
+    }
+
+    fn may_send(&self) -> bool {
+        self.guard.has_written_all() && self.flow.may_send(self.now())
+    }
+
+    /// When a frame may be sent even if nothing happens until then; `None` for never.
+    pub(super) fn opens_at(&self) -> Option<Instant> {
+        let time = if self.guard.has_written_all() { self.flow.opens_at() } else { None };
+        time.map(|time| self.begun_at + time)
+    }
+
+    /// Sends what has been written, if anything has, and tells how many bytes that is.
+    fn send(&mut self) -> io::Result<usize> {
+        let now = self.now();
+        let frame = self.terminal.backend_mut().output_mut();
+        let bytes = frame.len();
+        if bytes == 0 {
+            return Ok(0);
+        }
+        if self.flow.asks() {
+            frame.extend_from_slice(sequence::QUERY_STATUS.as_bytes());
+        }
+        let written = self.guard.write(frame);
+        frame.clear();
+        self.flow.sent(now, bytes);
+        self.guard.await_statuses(self.flow.awaits_answers());
+        written?;
+        self.note_what_is_taken();
+        Ok(bytes)
+    }
+
+    /// Sends what the terminal has not taken yet.
+    pub(super) fn send_rest(&mut self) -> io::Result<()> {
+        self.guard.write_rest()?;
+        self.note_what_is_taken();
+        Ok(())
+    }
+
+    fn note_what_is_taken(&mut self) {
+        if self.guard.has_written_all() {
+            self.flow.taken(self.now());
+        }
+    }
+
+    /// The time for the flow, which has no clock.
+    pub(super) fn now(&self) -> Duration {
+        self.begun_at.elapsed()
+    }
+}

@@ -1,0 +1,143 @@
+//! What is played: a walk in a grid, or a flight among bodies.
+
+use ratatui::Frame;
+use ratatui::layout::Rect;
+
+use crate::game::{Flight, Game, Intents};
+use crate::map::Level;
+use crate::space;
+use crate::tui::{FirstPerson, SpaceMemory, SpaceView, View};
+use crate::world::{Camera, FieldOfView};
+
+/// A level, as far as it has been played.
+#[derive(Debug)]
+pub(super) enum Played {
+    Grid(Box<Game>),
+    Space(Box<Flight>),
+}
+
+/// Where the player looks from.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub(super) enum Eye {
+    Grid(Camera),
+    Space(space::Camera),
+}
+
+/// What drawing keeps from one frame to the next.
+#[derive(Default)]
+pub(super) struct Memory {
+    pub(super) grid: View,
+    pub(super) space: SpaceMemory,
+}
+
+impl Memory {
+    /// When, by the game's clock, something that was drawn last looks different by itself; `None` for
+    /// never.
+    pub(super) fn next_change(&self) -> Option<f64> {
+        self.grid.next_change()
+    }
+}
+
+impl Played {
+    pub(super) fn new(level: Level) -> Self {
+        match level {
+            Level::Grid(world) => Self::Grid(Box::new(Game::new(*world))),
+            Level::Space(scene) => Self::Space(Box::new(Flight::new(scene))),
+        }
+    }
+
+    pub(super) fn title(&self) -> &str {
+        let title = match self {
+            Self::Grid(game) => game.world().title(),
+            Self::Space(flight) => &flight.scene().title,
+        };
+        if title.is_empty() { "a level without a name" } else { title }
+    }
+
+    pub(super) fn eye(&self, field_of_view: FieldOfView) -> Eye {
+        match self {
+            Self::Grid(game) => Eye::Grid(game.camera(field_of_view)),
+            Self::Space(flight) => Eye::Space(flight.camera(field_of_view)),
+        }
+    }
+
+    /// What there is to tell besides the title: what the player has, and why something did not work.
+    pub(super) fn news(&self) -> Vec<String> {
+        let Self::Grid(game) = self else { return Vec::new() };
+        let keys = game.keys().map(|key| format!("{key} key"));
+        keys.chain(game.message().map(str::to_owned)).collect()
+    }
+
+    /// A number that grows whenever anything changes that can be seen, other than what the eye tells.
+    pub(super) fn revision(&self) -> u64 {
+        match self {
+            Self::Grid(game) => game.revision(),
+            Self::Space(_) => 0,
+        }
+    }
+
+    pub(super) fn is_finished(&self) -> bool {
+        match self {
+            Self::Grid(game) => game.is_finished(),
+            Self::Space(_) => false,
+        }
+    }
+
+    pub(super) fn elapsed(&self) -> f64 {
+        match self {
+            Self::Grid(game) => game.elapsed(),
+            Self::Space(flight) => flight.elapsed(),
+        }
+    }
+
+    pub(super) fn quiet_steps(&self, intents: Intents) -> u64 {
+        match self {
+            Self::Grid(game) => game.quiet_steps(intents),
+            Self::Space(flight) => flight.quiet_steps(intents),
+        }
+    }
+
+    pub(super) fn step(&mut self, intents: Intents) {
+        match self {
+            Self::Grid(game) => game.step(intents),
+            Self::Space(flight) => flight.step(intents),
+        }
+    }
+
+    pub(super) fn wait(&mut self, steps: u64) {
+        match self {
+            Self::Grid(game) => game.wait(steps),
+            Self::Space(flight) => flight.wait(steps),
+        }
+    }
+
+    /// Draws what `eye`, one of its own, sees.
+    pub(super) fn draw(
+        &self,
+        eye: &Eye,
+        look: super::Look,
+        (frame, area): (&mut Frame, Rect),
+        memory: &mut Memory,
+    ) {
+        match (self, eye) {
+            (Self::Grid(game), Eye::Grid(camera)) => {
+                let picture = FirstPerson::new(game.world(), camera)
+                    .glyphs(look.glyphs)
+                    .color_depth(look.depth)
+                    .cell_aspect(look.cell_aspect)
+                    .filter(look.filter)
+                    .time(game.elapsed());
+                frame.render_stateful_widget(picture, area, &mut memory.grid);
+            }
+            (Self::Space(flight), Eye::Space(camera)) => {
+                let picture = SpaceView::new(flight.scene(), camera)
+                    .glyphs(look.glyphs)
+                    .color_depth(look.depth)
+                    .cell_aspect(look.cell_aspect);
+                frame.render_stateful_widget(picture, area, &mut memory.space);
+            }
+            // An eye is that of what is played.
+            (Self::Grid(_), Eye::Space(_)) | (Self::Space(_), Eye::Grid(_)) => {}
+        }
+    }
+}

@@ -1,0 +1,113 @@
+//! The player, as they see themselves in a mirror: a traveller with a hat and a cloak.
+
+use super::{Design, INK, Palette, drawn, mirrored};
+use crate::world::Rgb;
+use crate::world::sprite::Facings;
+
+/// The player's own figure, whose eyes are where a camera is.
+pub(super) fn player() -> Design {
+    const FRONT: [&str; 24] = [
+        "................",
+        ".....kkkkkk.....",
+        "....kHHHHhhk....",
+        "....kHHHHhhk....",
+        "..kkkYYYYyykkk..",
+        ".kHHHHHHHHhhhhk.",
+        "..kkkkkkkkkkkk..",
+        "....kFeFFefk....",
+        "....kFFFFffk....",
+        ".....kFFFfk.....",
+        "...kkkCFfckkk...",
+        "..kCCCCYyCccck..",
+        ".kCCCkCCCCkccck.",
+        ".kCCkCCCCccckck.",
+        ".kCCkCCCCccckck.",
+        ".kCCkLLYYLLlkck.",
+        ".kFfkCCCCccckFk.",
+        "..kkkCCCCccckk..",
+        "...kCCCCCcccck..",
+        "...kCCCCCcccck..",
+        "...kkTTkkTTtkk..",
+        "....kTtkkTtk....",
+        "...kBBbkkBBbk...",
+        "...kkkkkkkkkk...",
+    ];
+    const BACK: [&str; 24] = [
+        "................",
+        ".....kkkkkk.....",
+        "....kHHHHhhk....",
+        "....kHHHHhhk....",
+        "..kkkYYYYyykkk..",
+        ".kHHHHHHHHhhhhk.",
+        "..kkkkkkkkkkkk..",
+        "....kTTTTttk....",
+        "....kTTTTttk....",
+        ".....kTTttk.....",
+        "...kkkCCCckkk...",
+        "..kCCCCCCCccck..",
+        ".kCCCCCCCCccccck",
+        ".kCCCCCCCCccccck",
+        ".kCCCCCCCCccccck",
+        ".kCCCCCCCCccccck",
+        ".kCCCCCCCCccccck",
+        "..kCCCCCCCcccck.",
+        "..kCCCCCCCcccck.",
+        "..kCCCCCCCcccck.",
+        "...kkTTkkTTtkk..",
+        "....kTtkkTtk....",
+        "...kBBbkkBBbk...",
+        "...kkkkkkkkkk...",
+    ];
+    const SIDE: [&str; 24] = [
+        "................",
+        ".....kkkkkk.....",
+        "....kHHHHhhk....",
+        "....kHHHHhhk....",
+        "...kkYYYYyykk...",
+        ".kkHHHHHHHhhhkk.",
+        "..kkkkkkkkkkkk..",
+        "....kFeFFTtk....",
+        "....kFFFFTtk....",
+        ".....kFFfTk.....",
+        ".....kkCCckk....",
+        "....kCCCCcck....",
+        "....kCCCCccck...",
+        "....kCCkCccck...",
+        "....kCCkCcccck..",
+        "....kLLkLlccck..",
+        "....kCFfkcccck..",
+        "....kCkkCccccck.",
+        "....kCCCCccccck.",
+        "....kCCCCccccck.",
+        ".....kTTttkkkk..",
+        ".....kTTttk.....",
+        "....kBBBbbk.....",
+        "....kkkkkkk.....",
+    ];
+    let pictures = vec![
+        drawn(&FRONT, COLORS),
+        mirrored(&SIDE, COLORS),
+        drawn(&BACK, COLORS),
+        drawn(&SIDE, COLORS),
+    ];
+    Design { facings: Facings::Four, ..Design::standing(0.68, pictures) }
+}
+
+const COLORS: &Palette = &[
+    ('k', INK),
+    ('H', Rgb::new(0x70, 0x4c, 0x30)),
+    ('h', Rgb::new(0x4c, 0x34, 0x20)),
+    ('Y', Rgb::new(0xe0, 0xb8, 0x50)),
+    ('y', Rgb::new(0xa8, 0x84, 0x34)),
+    ('F', Rgb::new(0xe8, 0xb8, 0x90)),
+    ('f', Rgb::new(0xb8, 0x88, 0x64)),
+    ('e', Rgb::new(0x20, 0x20, 0x28)),
+    ('C', Rgb::new(0x34, 0x78, 0x60)),
+    ('c', Rgb::new(0x20, 0x50, 0x44)),
+    ('L', Rgb::new(0x58, 0x38, 0x20)),
+    ('l', Rgb::new(0x40, 0x28, 0x18)),
+    ('T', Rgb::new(0x58, 0x44, 0x34)),
+    ('t', Rgb::new(0x40, 0x30, 0x28)),
+    ('B', Rgb::new(0x48, 0x34, 0x28)),
+    ('b', Rgb::new(0x30, 0x24, 0x1c)),
+];

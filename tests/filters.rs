@@ -1,0 +1,38 @@
+//! Levels of textures keep a turning view calm: they take away a quarter of what changes from frame to
+//! frame, or more, in the built-in levels and in the gallery.
+
+use std::path::Path;
+
+use cellcaster::accuracy::shimmer;
+use cellcaster::map::{self, builtin};
+use cellcaster::render::{Filter, FrameSize};
+use cellcaster::world::{FieldOfView, World};
+
+/// So much shimmer may be left.
+const MOST: f64 = 0.75;
+
+/// Shimmer with levels of textures, as a share of that without, seen from the start of `world`.
+fn share_left(world: &World) -> f64 {
+    let camera = world.start_camera(FieldOfView::default());
+    let size = FrameSize::new(160, 90).unwrap();
+    let [mip, nearest] =
+        [Filter::Mip, Filter::Nearest].map(|filter| shimmer(world, &camera, size, filter));
+    mip / nearest
+}
+
+#[test]
+fn the_built_in_levels_turn_calmly() {
+    for level in builtin::LEVELS {
+        let share = share_left(&level.world().unwrap());
+        assert!(share < MOST, "{}: {share}", level.name);
+    }
+}
+
+#[test]
+fn textures_far_away_turn_calmly() {
+    for name in ["flat", "floor", "checker", "mip"] {
+        let world = map::load(Path::new(&format!("maps/gallery/{name}.toml"))).unwrap();
+        let share = share_left(&world);
+        assert!(share < MOST, "{name}: {share}");
+    }
+}

@@ -1,0 +1,198 @@
+//! The 3-D caster: bodies are where geometry says, at any size, and a picture shows what its rays hit.
+
+use cellcaster::render::{Frame, FrameSize, PixelAspect};
+use cellcaster::space::{
+    Block, Body, Camera, Coat, Elevation, Plane, Ray, Renderer, Scene, Shape, Sphere,
+};
+use cellcaster::world::{FieldOfView, Heading, Rgb};
+use glam::DVec3;
+use proptest::prelude::*;
+
+const ROUNDING: f64 = 1e-12;
+
+fn scene(shapes: impl IntoIterator<Item = Shape>) -> Scene {
+    let body = |(index, shape)| Body { shape, coat: Coat::Plain(Rgb::new(index, 255, 255)) };
+    Scene { bodies: (0..).zip(shapes).map(body).collect(), ..Scene::default() }
+}
+
+fn sphere(center: DVec3, radius: f64) -> Shape {
+    Shape::Sphere(Sphere::new(center, radius).unwrap())
+}
+
+fn direction() -> impl Strategy<Value = DVec3> {
+    let component = || prop_oneof![Just(0.0), -1.0..1.0];
+    (component(), component(), component())
+        .prop_map(DVec3::from)
+        .prop_filter_map("no direction", DVec3::try_normalize)
+}
+
+fn power_of_ten(exponents: std::ops::Range<f64>) -> impl Strategy<Value = f64> {
+    exponents.prop_map(|exponent| libm::pow(10.0, exponent))
+}
+
+fn point(reach: f64) -> impl Strategy<Value = DVec3> {
+    [-reach..reach, -reach..reach, -reach..reach].prop_map(DVec3::from)
+}
+
+fn shape() -> impl Strategy<Value = Shape> {
+    prop_oneof![
+        (point(6.0), 0.01..4.0).prop_map(|(center, radius)| sphere(center, radius)),
+        (point(6.0), direction())
+            .prop_map(|(point, normal)| Shape::Plane(Plane::new(point, normal).unwrap())),
+        (point(6.0), point(3.0)).prop_filter_map("no size", |(corner, size)| {
+            Block::new(corner, corner + size).map(Shape::Block)
+        }),
+    ]
+}
+
+fn camera() -> impl Strategy<Value = Camera> {
+    (point(6.0), 0.0..360.0, -90.0..=90.0, 1.0..170.0).prop_map(
+        |(position, heading, elevation, field_of_view)| {
+            let heading = Heading::from_degrees(heading).unwrap();
+            let field_of_view = FieldOfView::from_degrees(field_of_view).unwrap();
+            let camera = Camera::new(position, heading, field_of_view).unwrap();
+            camera.with_elevation(Elevation::from_degrees(elevation).unwrap())
+        },
+    )
+}
+
+proptest! {
+    /// By an angle, where the caster solves a quadratic: a sphere of radius r at distance d covers
+    /// the cone of half-angle asin(r/d) around its center.
+    #[test]
+    fn a_spheres_outline_is_where_geometry_says(
+        toward in direction(),
+        ray in direction(),
+        distance in power_of_ten(-3.0..8.5),
+        share in power_of_ten(-6.0..0.0),
+    ) {
+        let scene = scene([sphere(toward * distance, (distance * share).max(1e-9))]);
+        let Shape::Sphere(sphere) = scene.bodies[0].shape else { unreachable!() };
+        let beside = libm::atan2(ray.cross(toward).length(), ray.dot(toward));
+        let half_angle = libm::asin(sphere.radius() / sphere.center().length());
+        prop_assume!((beside - half_angle).abs() > 1e-9);
+        let hit = scene.cast(&Ray::new(DVec3::ZERO, ray));
+        prop_assert_eq!(hit.is_some(), beside < half_angle);
+    }
+
+    /// A place on the sphere is chosen first, so that the distance to it is known.
+    #[test]
+    fn a_sphere_of_any_size_is_hit_at_the_distance_that_was_chosen(
+        outwards in direction(),
+        aside in direction(),
+        radius in power_of_ten(-9.0..9.0),
+        height in power_of_ten(-6.0..3.0),
+    ) {
+        // The camera is on the axis through the center, that far from the surface.
+        let distance = height.max(radius * 1e-6);
+        let center = -outwards * (radius + distance);
+        prop_assume!(center.abs().max_element() <= 1e9);
+        let sphere = sphere(center, radius);
+        let hit = scene([sphere]).cast(&Ray::new(DVec3::ZERO, -outwards)).unwrap();
+        // The center is rounded to a double, and with it the true distance.
+        let rounding = ROUNDING * distance + f64::EPSILON * 4.0 * center.length();
+        prop_assert!((hit.t - distance).abs() <= rounding, "{} for {distance}", hit.t);
+        let tilt = 1e-6 + f64::EPSILON * 4.0 * center.length() / radius;
+        prop_assert!((hit.normal - outwards).length() < tilt);
+        // From inside, through the center, it is the far side that is hit.
+        let inside = scene([sphere]).cast(&Ray::new(center, aside)).unwrap();
+        prop_assert!((inside.t / radius - 1.0).abs() <= ROUNDING);
+    }
+
+    #[test]
+    fn what_is_hit_is_on_the_surface_and_nothing_is_before_it(
+        shape in shape(),
+        origin in point(10.0),
+        direction in direction(),
+    ) {
+        let scene = scene([shape]);
+        let ray = Ray::new(origin, direction);
+        let (outside, _) = shape.clearance(origin);
+        let end = match scene.cast(&ray) {
+            Some(hit) => {
+                let (off, _) = shape.clearance(ray.at(hit.t));
+                prop_assert!(off.abs() <= ROUNDING * (1.0 + hit.t) * 10.0, "{off} off at {}", hit.t);
+                prop_assert!(hit.normal.dot(direction) <= 0.0);
+                hit.t
+            }
+            None => 40.0,
+        };
+        for part in 1..32 {
+            let (clearance, _) = shape.clearance(ray.at(end * f64::from(part) / 32.0));
+            prop_assert!(clearance * outside.signum() >= -1e-9, "{clearance} at part {part}");
+        }
+    }
+
+    /// Bounds, rows and memory change nothing: each pixel is what its own ray sees.
+    #[test]
+    fn a_picture_shows_what_its_rays_hit(
+        shapes in prop::collection::vec(shape(), 0..6),
+        camera in camera(),
+        (width, height) in (1..24_u32, 1..24_u32),
+        aspect in 0.2..4.0,
+    ) {
+        let scene = scene(shapes);
+        let (size, aspect) = (FrameSize::new(width, height).unwrap(), PixelAspect::new(aspect).unwrap());
+        let mut frame = Frame::new(size, aspect);
+        let explanation = Renderer::new().explain(&scene, &camera, &mut frame);
+        let mut hits = 0;
+        for (row, pixels) in (0..).zip(frame.rows()) {
+            for (column, &pixel) in (0..).zip(pixels) {
+                let ray = camera.ray(size, aspect, column, row);
+                let expected = match scene.cast(&ray) {
+                    None => scene.sky.color(ray.direction),
+                    Some(hit) => {
+                        hits += 1;
+                        let share = (256.0 * scene.sun.brightness(hit.normal)).round() / 256.0;
+                        let [red, ..] = pixel.channels();
+                        prop_assert_eq!(red, (hit.body as f64 * share) as u8);
+                        let level = (255.0 * share) as u8;
+                        Rgb::new(red, level, level)
+                    }
+                };
+                prop_assert_eq!(pixel, expected, "column {}, row {}", column, row);
+            }
+        }
+        prop_assert_eq!(explanation.hits, hits);
+    }
+
+    #[test]
+    fn no_scene_and_no_camera_is_too_much(
+        center in [-1e9..=1e9, -1e9..=1e9, -1e9..=1e9],
+        radius in power_of_ten(-9.0..9.0),
+        field_of_view in prop_oneof![Just(1e-320), Just(180.0_f64.next_down()), 1.0..170.0],
+    ) {
+        let center = DVec3::from(center);
+        let block = Block::new(center, center - DVec3::splat(1e-6)).map(Shape::Block);
+        let plane = Plane::new(center, DVec3::new(1e-300, 0.0, 1e-300)).map(Shape::Plane);
+        let shapes = [Some(sphere(center, radius)), block, plane];
+        let field_of_view = FieldOfView::from_degrees(field_of_view).unwrap();
+        let camera = Camera::new(center, Heading::default(), field_of_view).unwrap();
+        let mut frame = Frame::new(FrameSize::new(3, 1000).unwrap(), PixelAspect::SQUARE);
+        Renderer::new().render(&scene(shapes.into_iter().flatten()), &camera, &mut frame);
+    }
+}
+
+#[test]
+fn a_small_body_costs_few_tests() {
+    let scene = scene([sphere(DVec3::new(10.0, 0.0, 0.0), 0.5)]);
+    let camera = Camera::new(DVec3::ZERO, Heading::default(), FieldOfView::default()).unwrap();
+    let mut frame = Frame::new(FrameSize::new(160, 96).unwrap(), PixelAspect::SQUARE);
+    let explanation = Renderer::new().explain(&scene, &camera, &mut frame);
+    assert!(explanation.hits > 100 && explanation.tests < 2 * explanation.hits);
+    let behind = Camera::new(DVec3::X * 20.0, Heading::default(), FieldOfView::default()).unwrap();
+    assert_eq!(Renderer::new().explain(&scene, &behind, &mut frame).tests, 0);
+}
+
+#[test]
+fn a_sphere_ahead_is_round() {
+    let scene = scene([sphere(DVec3::new(5.0, 0.0, 0.0), 1.0)]);
+    let camera = Camera::new(DVec3::ZERO, Heading::default(), FieldOfView::default()).unwrap();
+    let size = FrameSize::new(80, 24).unwrap();
+    let mut frame = Frame::new(size, PixelAspect::new(2.0).unwrap());
+    Renderer::new().render(&scene, &camera, &mut frame);
+    let is_sphere = |column: u32, row: u32| frame.pixel(column, row).red() == 0;
+    let across = (0..80).filter(|&column| is_sphere(column, 12)).count();
+    let down = (0..24).filter(|&row| is_sphere(40, row)).count();
+    assert!(down > 8 && across.abs_diff(2 * down) <= 2, "{across} by {down}");
+}
