@@ -26,15 +26,19 @@ use std::sync::Arc;
 
 pub use chunk::{CHUNK_SIDE, Chunk, ChunkIndex, Extent, Plot, Site};
 pub use level::Level;
+pub(crate) use window::Shift;
 pub use window::Window;
 
 /// What a level consists of, as a function of the place.
 ///
 /// The same plot always has the same chunk, whatever was dug before.
 pub trait Terrain: fmt::Debug + Send + Sync {
+    /// Where chance begins, for what is not the terrain's to decide, such as where the way out is.
+    fn seed(&self) -> u64;
+
     /// A map file that gives the characters of its chunks their meaning: every one of them is drawn
-    /// in its grid. It has no keys, its walls include `#`, and it has an exit `X`.
-    fn legend(&self) -> &str;
+    /// in its grid. It has no keys, its walls include `#`, and it has an exit.
+    fn legend(&self) -> String;
 
     /// What is in the cells of a chunk. What is outside `plot` does not matter: it will be wall.
     ///

@@ -44,8 +44,12 @@ const WINDING: usize = 160;
 type Place = (usize, usize);
 
 impl Terrain for Cave {
-    fn legend(&self) -> &str {
-        include_str!("cave.toml")
+    fn seed(&self) -> u64 {
+        self.seed
+    }
+
+    fn legend(&self) -> String {
+        format!("title = \"Cave {}\"\n{}", self.seed, include_str!("cave.toml"))
     }
 
     fn chunk(&self, plot: &Plot) -> Chunk {

@@ -130,6 +130,11 @@ impl Plot {
         self.extent.plot(self.chunk.offset(columns, rows))
     }
 
+    /// Whether no cell is part of it: it is outside the level.
+    pub fn is_empty(&self) -> bool {
+        self.columns.is_empty() || self.rows.is_empty()
+    }
+
     /// Whether all of the plot is at least `side` cells long and wide.
     pub fn holds(&self, side: usize) -> bool {
         self.columns.len() >= side && self.rows.len() >= side

@@ -22,6 +22,8 @@ pub(super) enum Purpose {
     Furniture = 6,
     /// Where the middle of a chunk is.
     Hub = 7,
+    /// Where the way out is.
+    Exit = 8,
 }
 
 /// A number that looks random, of a seed, a purpose and a place.

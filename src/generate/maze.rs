@@ -32,8 +32,12 @@ const STATUE: u8 = b's';
 const PASSAGES: usize = 2;
 
 impl Terrain for Maze {
-    fn legend(&self) -> &str {
-        include_str!("maze.toml")
+    fn seed(&self) -> u64 {
+        self.seed
+    }
+
+    fn legend(&self) -> String {
+        format!("title = \"Maze {}\"\n{}", self.seed, include_str!("maze.toml"))
     }
 
     fn chunk(&self, plot: &Plot) -> Chunk {
