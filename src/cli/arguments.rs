@@ -3,6 +3,7 @@
 mod accuracy;
 mod cast;
 mod check;
+mod generated;
 mod play;
 mod replay;
 mod snapshot;
@@ -15,6 +16,7 @@ use lexopt::{Arg, Parser};
 
 pub(super) use self::accuracy::{Accuracy, ReportFormat};
 pub(super) use self::cast::Cast;
+pub(super) use self::generated::Generated;
 pub(super) use self::play::Play;
 pub(super) use self::replay::Replay;
 pub(super) use self::snapshot::{Format, Snapshot};

@@ -8,9 +8,9 @@
 //! each of its sides, whose place is that of the side: so every hub is connected with every other one.
 //! Hollows beside the tunnels stay as they are; from some of them nobody ever gets out, nor in.
 
+use super::Terrain;
 use super::chunk::{CHUNK_SIDE, Chunk, Plot, every_cell};
 use super::hash::{Chance, Purpose, hash};
-use super::Terrain;
 
 /// A cave of a seed.
 #[derive(Clone, Debug)]

@@ -9,9 +9,9 @@
 //! No straight line of sight crosses two chunk borders: the passages in the one are in the half of the
 //! border that those in the next are not.
 
+use super::Terrain;
 use super::chunk::{CHUNK_SIDE, Chunk, Plot};
 use super::hash::{Chance, Purpose, hash};
-use super::Terrain;
 
 /// A maze of a seed.
 #[derive(Clone, Debug)]

@@ -99,10 +99,7 @@ impl Window {
         let along = |place: i64, first: i64| {
             u32::try_from(place.wrapping_sub(first)).ok().filter(|&place| place < SIDE as u32)
         };
-        Some(Cell {
-            column: along(site.column, first.column)?,
-            row: along(site.row, first.row)?,
-        })
+        Some(Cell { column: along(site.column, first.column)?, row: along(site.row, first.row)? })
     }
 
     /// Moves so that the player, who is in `cell`, is in the middle, and lets `world` show what is
@@ -124,10 +121,8 @@ impl Window {
         });
         self.chunks = chunks.collect();
         self.first = first;
-        let shift = Shift {
-            columns: -columns * CHUNK_SIDE as i64,
-            rows: -rows * CHUNK_SIDE as i64,
-        };
+        let shift =
+            Shift { columns: -columns * CHUNK_SIDE as i64, rows: -rows * CHUNK_SIDE as i64 };
         let heading = world.start().heading;
         let cell = shift.cell(cell).unwrap_or(CENTER);
         self.draw(world, |_| Start { cell, heading });
@@ -175,11 +170,11 @@ fn chunks_off(place: u32) -> i64 {
 /// The heading, of the four along the grid, in which one sees furthest from `cell`.
 fn best_heading(grid: &Grid, cell: Cell) -> Heading {
     let ways = [(0.0, (1, 0)), (90.0, (0, 1)), (180.0, (-1, 0)), (270.0, (0, -1))];
-    let is_open = |column, row| grid.tile(column, row).is_some_and(|tile| !grid.is_solid_tile(tile));
+    let is_open =
+        |column, row| grid.tile(column, row).is_some_and(|tile| !grid.is_solid_tile(tile));
     let open_cells = |(across, down): (i64, i64)| {
-        let places = (1..).map(move |by| {
-            (i64::from(cell.column) + across * by, i64::from(cell.row) + down * by)
-        });
+        let places = (1..)
+            .map(move |by| (i64::from(cell.column) + across * by, i64::from(cell.row) + down * by));
         places.take_while(|&(column, row)| is_open(column, row))
     };
     let most = ways.iter().rev().max_by_key(|(_, way)| open_cells(*way).count());

@@ -42,13 +42,11 @@ const LAMP_SPACING: usize = 8;
 
 const CARPETED: Furniture =
     Furniture { floor: b'.', pieces: &[(b't', 10), (b'p', 3)], lamp: Some(b'l') };
-const PANELLED: Furniture =
-    Furniture { floor: b'_', pieces: &[(b'T', 6), (b'P', 4)], lamp: None };
+const PANELLED: Furniture = Furniture { floor: b'_', pieces: &[(b'T', 6), (b'P', 4)], lamp: None };
 const STORE: Furniture = Furniture { floor: b'%', pieces: &[(b'q', 14)], lamp: None };
 const HALL: Furniture =
     Furniture { floor: b'.', pieces: &[(b't', 16), (b'p', 2)], lamp: Some(b'l') };
-const GARDEN: Furniture =
-    Furniture { floor: b'"', pieces: &[(b'y', 10), (b's', 1)], lamp: None };
+const GARDEN: Furniture = Furniture { floor: b'"', pieces: &[(b'y', 10), (b's', 1)], lamp: None };
 
 impl Block {
     /// The block of a plot whose corridors end before `first`, if there is room for one.
@@ -135,7 +133,8 @@ impl Building<'_> {
     }
 
     fn open_to_corridors(&mut self, block: &Block) {
-        let in_west: Vec<_> = block.rows.clone().map(|row| (block.columns.start - 1, row)).collect();
+        let in_west: Vec<_> =
+            block.rows.clone().map(|row| (block.columns.start - 1, row)).collect();
         let in_north: Vec<_> =
             block.columns.clone().map(|column| (column, block.rows.start - 1)).collect();
         for wall in [in_west, in_north] {
