@@ -37,7 +37,9 @@ pub trait Terrain: fmt::Debug + Send + Sync {
     fn seed(&self) -> u64;
 
     /// A map file that gives the characters of its chunks their meaning: every one of them is drawn
-    /// in its grid. It has no keys, its walls include `#`, and it has an exit.
+    /// in its grid. It has no keys, its walls include `#`, and it has an exit. A pattern of a floor or
+    /// a ceiling, of a scale that is a power of two up to 16, is the same in every chunk; others would
+    /// jump as the window moves.
     fn legend(&self) -> String;
 
     /// What is in the cells of a chunk. What is outside `plot` does not matter: it will be wall.

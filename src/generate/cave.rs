@@ -24,13 +24,19 @@ const FLOOR: u8 = b'.';
 const STALAGMITE: u8 = b'o';
 const TORCH: u8 = b't';
 const BONES: u8 = b'b';
+const CRYSTAL: u8 = b'c';
+const HERB: u8 = b'm';
+const TUNNEL: u8 = b':';
+const POOL: u8 = b'~';
 
 /// How many times the rock settles.
 const GENERATIONS: usize = 4;
 /// Cells along each side of what a chunk is worked out from.
 const WITH_MARGIN: usize = CHUNK_SIDE + 2 * GENERATIONS;
 /// How many cells of a hundred are rock at first.
-const ROCK_IN_100: u64 = 45;
+const ROCK_IN_100: u64 = 49;
+/// How many are dry.
+const DRY_IN_100: u64 = 60;
 /// With so many cells of rock around it, itself included, a cell is rock.
 const MOST_OF_NINE: usize = 5;
 
@@ -54,14 +60,17 @@ impl Terrain for Cave {
 
     fn chunk(&self, plot: &Plot) -> Chunk {
         let (column, row) = (plot.chunk.column, plot.chunk.row);
-        let rock = self.settled(plot);
+        let rock = self.settled(plot, Purpose::Rock, ROCK_IN_100);
+        let dry = self.settled(plot, Purpose::Dry, DRY_IN_100);
         let mossy = hash(self.seed, Purpose::District, column >> 1, row >> 1) % 3 == 0;
         let mut chunk = Chunk::full_of(if mossy { MOSS } else { STONE });
         for (x, y) in every_cell().filter(|&(x, y)| !rock[y + GENERATIONS][x + GENERATIONS]) {
-            chunk.set(x, y, FLOOR);
+            let is_dry = dry[y + GENERATIONS][x + GENERATIONS];
+            chunk.set(x, y, if is_dry { FLOOR } else { POOL });
         }
         let Some(hub) = self.hub(plot) else { return chunk };
         dig_around(&mut chunk, plot, hub, HUB_RADIUS);
+        chunk.set(hub.0, hub.1, FLOOR);
         let mut chance = Chance::of(self.seed, Purpose::Plan, column, row);
         for gate in self.gates(plot).into_iter().flatten() {
             dig_tunnel(&mut chunk, plot, hub, gate, &mut chance);
@@ -83,14 +92,20 @@ impl Terrain for Cave {
 }
 
 impl Cave {
-    /// Which cells are rock, of the chunk and of the margin around it.
-    fn settled(&self, plot: &Plot) -> [[bool; WITH_MARGIN]; WITH_MARGIN] {
+    /// Which cells are such, of the chunk and of the margin around it, where at first so many of a
+    /// hundred are, by chance.
+    fn settled(
+        &self,
+        plot: &Plot,
+        purpose: Purpose,
+        in_100: u64,
+    ) -> [[bool; WITH_MARGIN]; WITH_MARGIN] {
         let margin = GENERATIONS as i64;
         let mut rock = [[false; WITH_MARGIN]; WITH_MARGIN];
         for (row, y) in rock.iter_mut().zip(-margin..) {
             for (cell, x) in row.iter_mut().zip(-margin..) {
                 let site = plot.chunk.site(x, y);
-                *cell = hash(self.seed, Purpose::Rock, site.column, site.row) % 100 < ROCK_IN_100;
+                *cell = hash(self.seed, purpose, site.column, site.row) % 100 < in_100;
             }
         }
         for generation in 1..=GENERATIONS {
@@ -137,10 +152,12 @@ impl Cave {
             if !is_free {
                 continue;
             }
-            match chance.below(90) {
-                0..7 => chunk.set(x, y, STALAGMITE),
-                7..9 => chunk.set(x, y, TORCH),
+            match chance.below(60) {
+                0..5 => chunk.set(x, y, STALAGMITE),
+                5 => chunk.set(x, y, CRYSTAL),
+                6..9 => chunk.set(x, y, TORCH),
                 9 => chunk.set(x, y, BONES),
+                10..14 => chunk.set(x, y, HERB),
                 _ => {}
             }
         }
@@ -151,15 +168,15 @@ fn is_floor_of(chunk: &Chunk, plot: &Plot, column: usize, row: usize) -> bool {
     plot.contains(column, row) && chunk.get(column, row) == FLOOR
 }
 
-/// Digs all of the plot that is within `radius` of a cell, but for the corners.
+/// Digs all of the plot that is rock and within `radius` of a cell, but for the corners.
 fn dig_around(chunk: &mut Chunk, plot: &Plot, (column, row): Place, radius: usize) {
     let near = |(x, y): Place| {
         let (across, down) = (x.abs_diff(column), y.abs_diff(row));
         across * across + down * down <= radius * radius + 1
     };
-    for (x, y) in every_cell().filter(|&place| near(place) && plot.contains(place.0, place.1)) {
-        chunk.set(x, y, FLOOR);
-    }
+    let is_rock = |(x, y): Place| plot.contains(x, y) && [STONE, MOSS].contains(&chunk.get(x, y));
+    let dug: Vec<_> = every_cell().filter(|&place| near(place) && is_rock(place)).collect();
+    dug.into_iter().for_each(|(x, y)| chunk.set(x, y, TUNNEL));
 }
 
 /// Digs a winding way from one cell of the plot to another.
@@ -186,7 +203,6 @@ fn dig_tunnel(chunk: &mut Chunk, plot: &Plot, from: Place, to: Place, chance: &m
             row = stepped(row, to.1);
         }
         dig_around(chunk, plot, (column, row), usize::from(chance.one_in(3)));
-        chunk.set(column, row, FLOOR);
     }
 }
 

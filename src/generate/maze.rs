@@ -19,15 +19,33 @@ pub(super) struct Maze {
     pub(super) seed: u64,
 }
 
-/// Which walls a district may have.
-const WALLS: [u8; 5] = *b"#HSBM";
+/// What a district consists of.
+#[derive(Clone, Copy, Debug)]
+struct District {
+    wall: u8,
+    floor: u8,
+    /// What may be at the end of a blind alley.
+    torch: u8,
+    bones: u8,
+    /// What may be in the middle of a hall, and in the way there.
+    landmark: u8,
+}
+
+const DUNGEON: District =
+    District { wall: b'#', floor: b'.', torch: b't', bones: b'b', landmark: b's' };
+const GARDEN: District =
+    District { wall: b'H', floor: b',', torch: b'p', bones: b'q', landmark: b'u' };
+const TEMPLE: District =
+    District { wall: b'S', floor: b';', torch: b'a', bones: b'c', landmark: b'o' };
+const DISTRICTS: [District; 5] = [
+    DUNGEON,
+    GARDEN,
+    TEMPLE,
+    District { wall: b'B', ..DUNGEON },
+    District { wall: b'M', ..DUNGEON },
+];
 /// Chunks along each side of a district, as a power of two.
 const DISTRICT_BITS: u32 = 1;
-const FLOOR: u8 = b'.';
-const TORCH: u8 = b't';
-const BONES: u8 = b'b';
-const STATUE: u8 = b's';
-
 /// Passages to each neighbour.
 const PASSAGES: usize = 2;
 
@@ -44,9 +62,10 @@ impl Terrain for Maze {
         let (column, row) = (plot.chunk.column, plot.chunk.row);
         let district =
             hash(self.seed, Purpose::District, column >> DISTRICT_BITS, row >> DISTRICT_BITS);
-        let wall = WALLS[(district % WALLS.len() as u64) as usize];
+        let district = DISTRICTS[(district % DISTRICTS.len() as u64) as usize];
         let mut digging = Digging {
-            chunk: Chunk::full_of(wall),
+            chunk: Chunk::full_of(district.wall),
+            district,
             nodes: (plot.columns.end / 2, plot.rows.end / 2),
             chance: Chance::of(self.seed, Purpose::Plan, column, row),
         };
@@ -73,14 +92,14 @@ impl Maze {
             let mut chance = Chance::of(self.seed, Purpose::WestPassage, column, row);
             for _ in 0..PASSAGES {
                 let node = in_half(rows, column, &mut chance);
-                digging.chunk.set(0, 2 * node + 1, FLOOR);
+                digging.dig((0, 2 * node + 1));
             }
         }
         if self.hub(&plot.neighbor(0, -1)).is_some() {
             let mut chance = Chance::of(self.seed, Purpose::NorthPassage, column, row);
             for _ in 0..PASSAGES {
                 let node = in_half(columns, row, &mut chance);
-                digging.chunk.set(2 * node + 1, 0, FLOOR);
+                digging.dig((2 * node + 1, 0));
             }
         }
     }
@@ -96,6 +115,7 @@ fn in_half(nodes: usize, border: i64, chance: &mut Chance) -> usize {
 /// A chunk that is being dug.
 struct Digging {
     chunk: Chunk,
+    district: District,
     /// Nodes from west to east and from north to south, of which there are some.
     nodes: (usize, usize),
     chance: Chance,
@@ -139,8 +159,8 @@ impl Digging {
                     let next = walls[self.chance.below(walls.len())];
                     self.dig(between(node, next));
                 }
-                3 => self.chunk.set(column, row, TORCH),
-                4 => self.chunk.set(column, row, BONES),
+                3 => self.chunk.set(column, row, self.district.torch),
+                4 => self.chunk.set(column, row, self.district.bones),
                 _ => {}
             }
         }
@@ -160,17 +180,18 @@ impl Digging {
             let cells = (north..=south).flat_map(|row| (west..=east).map(move |x| (x, row)));
             cells.for_each(|place| self.dig(place));
             let center = (usize::midpoint(west, east), usize::midpoint(north, south));
-            let landmark = if self.chance.one_in(2) { STATUE } else { TORCH };
+            let District { landmark, torch, .. } = self.district;
+            let landmark = if self.chance.one_in(2) { landmark } else { torch };
             self.chunk.set(center.0, center.1, landmark);
         }
     }
 
     fn dig(&mut self, (column, row): (usize, usize)) {
-        self.chunk.set(column, row, FLOOR);
+        self.chunk.set(column, row, self.district.floor);
     }
 
     fn is_dug(&self, (column, row): (usize, usize)) -> bool {
-        !WALLS.contains(&self.chunk.get(column, row))
+        self.chunk.get(column, row) != self.district.wall
     }
 
     fn all(&self) -> Vec<Node> {
