@@ -48,14 +48,18 @@ fn the_same_seed_digs_the_same_level() {
 
 #[test]
 fn a_camera_is_a_place_of_the_level() {
-    let level = ["--generate", "maze", "--seed", "7"];
-    let at_start = output_of(&[&["snapshot"][..], &level].concat());
-    let there = ["--camera", "1.5,1.5,90"];
-    let looked = [&["snapshot"][..], &level, &there].concat();
-    let ahead = [&["snapshot"][..], &level, &["--camera", "1.5,1.5,0"]].concat();
-    assert!([looked, ahead].map(|arguments| output_of(&arguments)).contains(&at_start));
-    let far = ["--camera", "1000000000.5,-999999999.5,45"];
-    assert_eq!(output_of(&[&["snapshot"][..], &level, &far].concat()).len(), at_start.len());
+    let level = Generator::Maze.level(7, Extent::Endless).unwrap();
+    for place in [0, 1_000_000_000, -1_000_000_000] {
+        let Site { column, row } = level.start_near(Site { column: place, row: -place }).unwrap();
+        let start = format!("{column},{row}");
+        let maze = ["snapshot", "--generate", "maze", "--seed", "7"];
+        let at_start = output_of(&[&maze[..], &["--start", &start]].concat());
+        let looks = [0, 90, 180, 270].map(|heading| {
+            let camera = format!("{},{},{heading}", column as f64 + 0.5, row as f64 + 0.5);
+            output_of(&[&maze[..], &["--camera", &camera]].concat())
+        });
+        assert!(looks.contains(&at_start), "{start}");
+    }
 }
 
 #[test]

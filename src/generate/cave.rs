@@ -62,7 +62,7 @@ impl Terrain for Cave {
         let (column, row) = (plot.chunk.column, plot.chunk.row);
         let rock = self.settled(plot, Purpose::Rock, ROCK_IN_100);
         let dry = self.settled(plot, Purpose::Dry, DRY_IN_100);
-        let mossy = hash(self.seed, Purpose::District, column >> 1, row >> 1) % 3 == 0;
+        let mossy = hash(self.seed, Purpose::District, column >> 1, row >> 1).is_multiple_of(3);
         let mut chunk = Chunk::full_of(if mossy { MOSS } else { STONE });
         for (x, y) in every_cell().filter(|&(x, y)| !rock[y + GENERATIONS][x + GENERATIONS]) {
             let is_dry = dry[y + GENERATIONS][x + GENERATIONS];
@@ -176,7 +176,9 @@ fn dig_around(chunk: &mut Chunk, plot: &Plot, (column, row): Place, radius: usiz
     };
     let is_rock = |(x, y): Place| plot.contains(x, y) && [STONE, MOSS].contains(&chunk.get(x, y));
     let dug: Vec<_> = every_cell().filter(|&place| near(place) && is_rock(place)).collect();
-    dug.into_iter().for_each(|(x, y)| chunk.set(x, y, TUNNEL));
+    for (x, y) in dug {
+        chunk.set(x, y, TUNNEL);
+    }
 }
 
 /// Digs a winding way from one cell of the plot to another.

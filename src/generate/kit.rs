@@ -21,7 +21,7 @@ pub(super) struct Kit {
     world: World,
     /// By character; what has no meaning is rock.
     meanings: Vec<Meaning>,
-    exit: Option<u8>,
+    exits: Vec<u8>,
 }
 
 #[derive(Clone, Copy, Debug)]
@@ -47,13 +47,14 @@ impl Kit {
             return Err(Faults::of_whole_file(NAME, message, "draw one in its grid"));
         };
         let mut meanings = vec![rock; 256];
-        let mut exit = None;
+        let mut exits = Vec::new();
         for (byte, meaning) in drawn {
             meanings[usize::from(byte)] = meaning;
-            let is_exit = matches!(meaning.thing, Some((ThingKind::Exit, _)));
-            exit = exit.or(is_exit.then_some(byte));
+            if matches!(meaning.thing, Some((ThingKind::Exit, _))) {
+                exits.push(byte);
+            }
         }
-        Ok(Self { world, meanings, exit })
+        Ok(Self { world, meanings, exits })
     }
 
     /// A world to draw in.
@@ -61,9 +62,17 @@ impl Kit {
         self.world.clone()
     }
 
-    /// The character of an exit, if there is one.
-    pub(super) fn exit(&self) -> Option<u8> {
-        self.exit
+    /// The character of an exit that stands on such floor as `character`, or on another one if there
+    /// is none; `None` where there is no exit at all.
+    pub(super) fn exit_on(&self, character: u8) -> Option<u8> {
+        let floor = self.meaning(character).tile;
+        let fits = |&&exit: &&u8| self.meaning(exit).tile == floor;
+        self.exits.iter().find(fits).or(self.exits.first()).copied()
+    }
+
+    #[cfg(test)]
+    pub(super) fn is_exit(&self, character: u8) -> bool {
+        self.exits.contains(&character)
     }
 
     /// Whether one can walk where `character` is drawn.

@@ -58,11 +58,11 @@ impl Level {
     /// A chunk of it.
     pub fn chunk(&self, index: ChunkIndex) -> Chunk {
         let mut chunk = self.without_exit(index);
-        if let Some((exit, character)) = self.exit.zip(self.kit.exit())
-            && exit.chunk().0 == index
+        if let Some((chunk_of_exit, (column, row))) = self.exit.map(Site::chunk)
+            && chunk_of_exit == index
+            && let Some(exit) = self.kit.exit_on(chunk.get(column, row))
         {
-            let (column, row) = exit.chunk().1;
-            chunk.set(column, row, character);
+            chunk.set(column, row, exit);
         }
         chunk
     }
@@ -207,12 +207,12 @@ mod tests {
             let level = generator.level(seed, Extent::new(columns, rows).unwrap()).unwrap();
             let start = level.start().unwrap();
             let exit = level.exit().unwrap();
-            let drawing = Drawing::of(level, ChunkIndex::default(), 4);
+            let drawing = Drawing::of(level.clone(), ChunkIndex::default(), 4);
             let cell = |site: Site| (site.column as usize, site.row as usize);
             prop_assert!(drawing.reachable(cell(start)).contains(&cell(exit)));
             prop_assert_ne!(start, exit);
             let exits = drawing.chunks.iter().flat_map(|chunk| (0..CHUNK_SIDE).map(|row| chunk.row(row)));
-            let exits = exits.flatten().filter(|&&character| character == b'X').count();
+            let exits = exits.flatten().filter(|&&character| level.kit.is_exit(character)).count();
             prop_assert_eq!(exits, 1);
             for along in 0..4 * CHUNK_SIDE {
                 for (column, row) in [
@@ -278,7 +278,7 @@ mod tests {
     fn every_legend_is_a_map_with_an_exit() {
         for generator in Generator::ALL {
             let kit = Kit::of(&generator.terrain(7).legend()).unwrap();
-            assert!(kit.exit().is_some_and(|exit| kit.is_walkable(exit)));
+            assert!(kit.exit_on(b'.').is_some_and(|exit| kit.is_walkable(exit)));
             assert!(!kit.is_walkable(ROCK) && kit.is_walkable(b'.'));
         }
     }

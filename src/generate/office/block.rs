@@ -17,7 +17,6 @@ pub(super) struct Block {
 
 const GLASS: u8 = b'G';
 const DOOR: u8 = b'+';
-const PILLAR: u8 = b'o';
 
 /// The least inside of a room, along each side.
 const LEAST: usize = 3;
@@ -34,6 +33,8 @@ struct Furniture {
     pieces: &'static [(u8, usize)],
     /// What hangs where one can walk.
     lamp: Option<u8>,
+    /// What holds the ceiling, in a hall.
+    pillar: u8,
 }
 
 const PLACES: usize = 32;
@@ -41,12 +42,14 @@ const PLACES: usize = 32;
 const LAMP_SPACING: usize = 8;
 
 const CARPETED: Furniture =
-    Furniture { floor: b'.', pieces: &[(b't', 10), (b'p', 3)], lamp: Some(b'l') };
-const PANELLED: Furniture = Furniture { floor: b'_', pieces: &[(b'T', 6), (b'P', 4)], lamp: None };
-const STORE: Furniture = Furniture { floor: b'%', pieces: &[(b'q', 14)], lamp: None };
+    Furniture { floor: b'.', pieces: &[(b't', 10), (b'p', 3)], lamp: Some(b'l'), pillar: b'o' };
+const PANELLED: Furniture =
+    Furniture { floor: b'_', pieces: &[(b'T', 6), (b'P', 4)], lamp: None, pillar: b'o' };
+const STORE: Furniture = Furniture { floor: b'%', pieces: &[(b'q', 14)], lamp: None, pillar: b'o' };
 const HALL: Furniture =
-    Furniture { floor: b'.', pieces: &[(b't', 16), (b'p', 2)], lamp: Some(b'l') };
-const GARDEN: Furniture = Furniture { floor: b'"', pieces: &[(b'y', 10), (b's', 1)], lamp: None };
+    Furniture { floor: b'.', pieces: &[(b't', 16), (b'p', 2)], lamp: Some(b'l'), pillar: b'o' };
+const GARDEN: Furniture =
+    Furniture { floor: b'"', pieces: &[(b'y', 10), (b's', 1)], lamp: None, pillar: b'O' };
 
 impl Block {
     /// The block of a plot whose corridors end before `first`, if there is room for one.
@@ -95,7 +98,7 @@ impl Building<'_> {
         let is_pillars = |place: usize| place % PILLAR_SPACING == 1;
         for row in block.rows.clone().filter(|&row| is_pillars(row)) {
             for column in block.columns.clone().filter(|&column| is_pillars(column)) {
-                self.chunk.set(column, row, PILLAR);
+                self.chunk.set(column, row, furniture.pillar);
             }
         }
     }
@@ -159,7 +162,7 @@ impl Building<'_> {
     }
 
     fn furnish(&mut self, room: &Block, furniture: Furniture) {
-        let lamps_in = |range: &Range<usize>| (range.start + range.len() / 2) % LAMP_SPACING & !1;
+        let lamps_in = |range: &Range<usize>| ((range.start + range.len() / 2) % LAMP_SPACING) & !1;
         let lamps = (lamps_in(&room.columns), lamps_in(&room.rows));
         for row in room.rows.clone() {
             for column in room.columns.clone() {
