@@ -16,9 +16,9 @@ impl Fidelity {
     /// What is shown is what is wanted.
     pub const EXACT: Self = Self::new(0);
     /// A difference that is hard to see.
-    pub const HIGH: Self = Self::new(10);
+    pub const HIGH: Self = Self::new(11);
     /// A difference that is seen, and does not disturb.
-    pub const LOW: Self = Self::new(17);
+    pub const LOW: Self = Self::new(24);
 
     /// Colours up to `tolerance` from those that are wanted, of 255.
     pub const fn new(tolerance: u8) -> Self {

@@ -8,7 +8,6 @@
 use std::ops::Range;
 
 use super::look::Look;
-use super::tolerance::Tolerance;
 
 /// A stretch of a row whose cells move by some columns.
 #[derive(Clone, Debug, PartialEq, Eq)]
@@ -21,6 +20,13 @@ pub(super) struct Shift {
     pub(super) way: Way,
 }
 
+/// Which way, and how far.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+struct Move {
+    way: Way,
+    by: usize,
+}
+
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub(super) enum Way {
     Left,
@@ -29,32 +35,61 @@ pub(super) enum Way {
 
 /// The farthest that is looked for: what moves faster has changed in other ways too.
 const FARTHEST: usize = 16;
-/// As many landmarks are asked where they come from.
-const MOST_LANDMARKS: usize = 32;
-/// About how many bytes a cell takes.
-const CELL: i32 = 12;
+/// So many moves of a row are tried.
+const MOST_TRIED: usize = 4;
+/// A loss of one byte.
+pub(super) const BYTE: i32 = 16;
+/// The loss of a cell that is not as it should be at all: about how many bytes it takes.
+pub(super) const CELL: i32 = 12 * BYTE;
 /// About how many bytes a shift takes: two motions, a deletion and an insertion.
-const SHIFT: i32 = 20;
+const SHIFT: i32 = 20 * BYTE;
 
 impl Shift {
-    /// The shift of a row that shows `shown` that brings it nearest to `wanted`, if one spares more
-    /// bytes than it takes. What is within `tolerance` is as good as what is wanted.
-    ///
-    /// Only the two distances are looked into that most landmarks have moved by. To look into all of
-    /// them took three times as long as everything else together, and spared no more.
-    pub(super) fn best(shown: &[Look], wanted: &[Look], tolerance: Tolerance) -> Option<Self> {
-        let row = Rows { shown, wanted, tolerance };
-        if row.count_wrong() * CELL <= SHIFT {
-            return None;
-        }
-        let candidates = row.likely_moves().into_iter().flatten();
-        let shifts = candidates.filter_map(|(by, way)| row.best_of(by, way));
+    /// The shift by one of these moves after which least is lost in a row of so many cells, if it
+    /// spares more than it takes. `loss` is what is lost where the cell that is now at the first
+    /// place is shown at the second.
+    pub(super) fn best(
+        width: usize,
+        moves: &Moves,
+        loss: impl Fn(usize, usize) -> i32,
+    ) -> Option<Self> {
+        let shifts = moves.likely().filter_map(|by| Self::best_of(width, by, &loss));
         let (shift, spared) = shifts.max_by_key(|&(_, spared)| spared)?;
         (spared > SHIFT).then_some(shift)
     }
 
-    /// Does to `row` what the terminal does.
-    pub(super) fn apply(&self, row: &mut [Look]) {
+    /// Whether a row that has so much to lose may be worth a shift.
+    pub(super) fn may_spare(loss: i32) -> bool {
+        loss > SHIFT
+    }
+
+    /// The best shift by that move, and what it spares.
+    fn best_of(
+        width: usize,
+        Move { by, way }: Move,
+        loss: &impl Fn(usize, usize) -> i32,
+    ) -> Option<(Self, i32)> {
+        let last = width.checked_sub(by)?;
+        // Places that a cell can move to, and what is spared where it does.
+        let spared = |index: usize| {
+            let (from, to) = match way {
+                Way::Left => (index + by, index),
+                Way::Right => (index, index + by),
+            };
+            loss(to, to) - loss(from, to)
+        };
+        let (moved, spared) = best_stretch((0..last).map(spared))?;
+        // What is uncovered must be sent, even where it was right before.
+        let (columns, uncovered) = match way {
+            Way::Left => (moved.start..moved.end + by, moved.end..moved.end + by),
+            Way::Right => (moved.start..moved.end + by, moved.start..moved.start + by),
+        };
+        let lost: i32 = uncovered.map(|index| CELL - loss(index, index)).sum();
+        Some((Self { columns, by, way }, spared - lost))
+    }
+
+    /// Does to `row` what the terminal does; what is uncovered becomes `unknown`.
+    pub(super) fn apply<T: Clone>(&self, row: &mut [T], unknown: T) {
         let stretch = &mut row[self.columns.clone()];
         let uncovered = match self.way {
             Way::Left => {
@@ -66,81 +101,59 @@ impl Shift {
                 0..self.by
             }
         };
-        stretch[uncovered].fill(Look::UNKNOWN);
+        stretch[uncovered].fill(unknown);
     }
 }
 
-/// A row as it is and as it is to be.
-#[derive(Clone, Copy)]
-struct Rows<'a> {
-    shown: &'a [Look],
-    wanted: &'a [Look],
-    tolerance: Tolerance,
-}
+/// The moves that brought most landmarks of a row to where they are.
+///
+/// A landmark is a pair of unlike neighbours. Where each was before is looked up in a table by a hash
+/// of the pair; to compare every landmark with every place it may have come from took longer than all
+/// the rest of the encoder.
+#[derive(Debug)]
+pub(super) struct Moves([Option<Move>; MOST_TRIED]);
 
-impl Rows<'_> {
-    /// Whether the cell that is now at `from` is good at `to`.
-    fn is_good(self, from: usize, to: usize) -> bool {
-        self.shown[from].is_near(self.wanted[to], self.tolerance)
-    }
-
-    fn count_wrong(self) -> i32 {
-        (0..self.shown.len()).filter(|&index| !self.is_good(index, index)).count() as i32
-    }
-
-    /// The two moves that bring most landmarks, which are pairs of unlike neighbours that are wrong
-    /// where they are, to where they are wanted.
-    fn likely_moves(self) -> [Option<(usize, Way)>; 2] {
-        let is_landmark = |&index: &usize| {
-            self.wanted[index - 1] != self.wanted[index]
-                && !(self.is_good(index, index) && self.is_good(index - 1, index - 1))
-        };
-        let places = 1..self.wanted.len();
-        let apart = (self.wanted.len() / MOST_LANDMARKS).max(1);
-        let mut votes = [[0_u8; 2]; FARTHEST + 1];
-        let mut next = 0;
-        for place in places.filter(is_landmark) {
-            if place < next {
-                continue;
-            }
-            next = place + apart;
-            for (by, votes) in votes.iter_mut().enumerate().skip(1) {
-                let comes_from = |from: usize| {
-                    from < self.shown.len()
-                        && self.is_good(from, place)
-                        && self.is_good(from - 1, place - 1)
-                };
-                votes[Way::Left as usize] += u8::from(comes_from(place + by));
-                votes[Way::Right as usize] += u8::from(place > by && comes_from(place - by));
+impl Moves {
+    /// From what was wanted of the row in the last frame to what is wanted now.
+    pub(super) fn between(before: &[Look], now: &[Look]) -> Self {
+        let mut places = [0_u16; 256];
+        for (place, pair) in (1..).zip(before.windows(2)) {
+            if pair[0] != pair[1] {
+                places[usize::from(Look::hash_pair(pair))] = place;
             }
         }
-        [Way::Left, Way::Right].map(|way| {
-            let votes = votes.iter().map(|votes| votes[way as usize]).enumerate();
-            let (by, votes) = votes.max_by_key(|&(_, votes)| votes)?;
-            (votes > 1).then_some((by, way))
-        })
+        let mut votes = [[0_u16; FARTHEST + 1]; 2];
+        for (place, pair) in (1_usize..).zip(now.windows(2)) {
+            if pair[0] == pair[1] {
+                continue;
+            }
+            let from = usize::from(places[usize::from(Look::hash_pair(pair))]);
+            let by = from.abs_diff(place);
+            if from > 0 && (1..=FARTHEST).contains(&by) && before[from - 1..=from] == *pair {
+                let way = if from > place { Way::Left } else { Way::Right };
+                votes[way as usize][by] += 1;
+            }
+        }
+        Self::elect(&votes)
     }
 
-    /// The best shift by that far that way, and how many bytes it spares.
-    fn best_of(self, by: usize, way: Way) -> Option<(Shift, i32)> {
-        let last = self.shown.len().checked_sub(by)?;
-        let is_wrong = |from: usize, to: usize| i32::from(!self.is_good(from, to));
-        // Places that a cell can move to, and what is spared where it does.
-        let spared = |index: usize| {
-            let (from, to) = match way {
-                Way::Left => (index + by, index),
-                Way::Right => (index, index + by),
-            };
-            CELL * (is_wrong(to, to) - is_wrong(from, to))
-        };
-        let (moved, spared) = best_stretch((0..last).map(spared))?;
-        // What is uncovered must be sent, even where it was right before.
-        let (columns, uncovered) = match way {
-            Way::Left => (moved.start..moved.end + by, moved.end..moved.end + by),
-            Way::Right => (moved.start..moved.end + by, moved.start..moved.start + by),
-        };
-        let lost = uncovered.filter(|&index| self.is_good(index, index)).count() as i32;
-        Some((Shift { columns, by, way }, spared - CELL * lost))
+    fn elect(votes: &[[u16; FARTHEST + 1]; 2]) -> Self {
+        let mut elected = [None; MOST_TRIED];
+        let mut fewest = [1; MOST_TRIED];
+        for way in [Way::Left, Way::Right] {
+            for (by, &votes) in votes[way as usize].iter().enumerate() {
+                if let Some(rank) = fewest.iter().position(|&fewest| votes > fewest) {
+                    elected[rank..].rotate_right(1);
+                    fewest[rank..].rotate_right(1);
+                    (elected[rank], fewest[rank]) = (Some(Move { way, by }), votes);
+                }
+            }
+        }
+        Self(elected)
+    }
+
+    fn likely(&self) -> impl Iterator<Item = Move> {
+        self.0.iter().copied().flatten()
     }
 }
 
@@ -164,11 +177,11 @@ fn best_stretch(gains: impl Iterator<Item = i32>) -> Option<(Range<usize>, i32)>
 mod tests {
     use proptest::prelude::*;
 
-    use super::super::super::Fidelity;
     use super::*;
 
     fn best(shown: &[Look], wanted: &[Look]) -> Option<Shift> {
-        Shift::best(shown, wanted, Tolerance::of(Fidelity::EXACT))
+        let loss = |from: usize, to: usize| if shown[from] == wanted[to] { 0 } else { CELL };
+        Shift::best(shown.len(), &Moves::between(shown, wanted), loss)
     }
 
     fn row(text: &str) -> Vec<Look> {
@@ -203,7 +216,7 @@ mod tests {
     #[test]
     fn a_shift_uncovers_what_nobody_knows() {
         let mut shown = row("abcdef");
-        Shift { columns: 1..5, by: 2, way: Way::Left }.apply(&mut shown);
+        Shift { columns: 1..5, by: 2, way: Way::Left }.apply(&mut shown, Look::UNKNOWN);
         assert_eq!(shown[..3], row("ade"));
         assert_eq!((shown[3], shown[4]), (Look::UNKNOWN, Look::UNKNOWN));
         assert_eq!(shown[5..], row("f"));
@@ -220,7 +233,7 @@ mod tests {
             let to_send = |shown: &[Look]| shown.iter().zip(wanted).filter(|(a, b)| a != b).count();
             let before = to_send(&shown);
             if let Some(shift) = best(&shown, wanted) {
-                shift.apply(&mut shown);
+                shift.apply(&mut shown, Look::UNKNOWN);
                 prop_assert!(to_send(&shown) < before);
             }
         }

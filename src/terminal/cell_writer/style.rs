@@ -80,6 +80,11 @@ impl Style {
         self.modifier.is_empty()
     }
 
+    /// The text's colour and the ground's, where there are no modifiers.
+    pub(super) fn plain_colors(self) -> Option<[Shade; 2]> {
+        self.has_no_modifiers().then_some([self.foreground, self.background])
+    }
+
     /// About how many bytes [`Style::write_from`] would write after `current`.
     pub(super) fn bytes_after(self, current: Self) -> usize {
         /// What introduces a sequence, and its last byte.
