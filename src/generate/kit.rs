@@ -80,10 +80,14 @@ impl Kit {
         self.meaning(character).is_walkable
     }
 
+    /// Whether `character` is floor, with something on it or not.
+    pub(super) fn is_floor(&self, character: u8) -> bool {
+        matches!(self.world.tile(self.meaning(character).tile).kind, TileKind::Open)
+    }
+
     /// Whether `character` is floor on which nothing stands.
     pub(super) fn is_bare(&self, character: u8) -> bool {
-        let Meaning { tile, thing, .. } = self.meaning(character);
-        thing.is_none() && matches!(self.world.tile(tile).kind, TileKind::Open)
+        self.is_floor(character) && self.meaning(character).thing.is_none()
     }
 
     /// Makes `world`, one of the kit's own, show `rows`, which are of one length, `width`. All its
