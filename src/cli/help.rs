@@ -28,8 +28,8 @@ USAGE
   cellcaster wire [MAP] [OPTIONS]      bytes a frame against what the viewer sees
   cellcaster --help | --version
 
-  MAP is a map file, or a built-in level: cellar, museum, citadel; --generate
-  maze, cave or office digs a level in its place.
+  MAP is a map file, or a built-in level: cellar, museum, citadel,
+  cistern, observatory; --generate maze, cave or office digs one in its place.
 
 KEYS
   W S, Up Down      walk                M, Tab  show or hide the map

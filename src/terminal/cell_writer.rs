@@ -34,6 +34,7 @@ use self::inexact::Draughtsman;
 use self::pen::Pen;
 use self::rest::Rest;
 use self::screen::Screen;
+use self::shift::Shifts;
 use self::style::Shade;
 pub(crate) use self::style::Style;
 use self::trellis::Price;
@@ -52,6 +53,7 @@ pub struct CellWriter<W> {
     cursor_visible: bool,
     bytes_written: u64,
     fidelity: Fidelity,
+    shifts: Shifts,
     draughtsman: Draughtsman,
     rest: Rest,
 }
@@ -68,6 +70,7 @@ impl<W: Write> CellWriter<W> {
             cursor_visible: false,
             bytes_written: 0,
             fidelity: Fidelity::EXACT,
+            shifts: Shifts::default(),
             draughtsman: Draughtsman::default(),
             rest: Rest::new(),
         }
@@ -102,7 +105,7 @@ impl<W: Write> CellWriter<W> {
     /// Draws a part of what is shown inexactly anew, and exactly: what a draw without a changed cell
     /// does. It is written with the next flush.
     pub fn refine(&mut self) {
-        self.rest.draw(&mut self.pen, &mut self.screen);
+        self.rest.draw(&mut self.pen, &mut self.shifts, &mut self.screen);
     }
 
     /// The colours that the terminal shows in the upper and the lower half of a cell; `None` where
@@ -128,11 +131,12 @@ impl<W: Write> CellWriter<W> {
 
     /// Makes every row that has changed look as it is wanted.
     fn draw_changed(&mut self) {
+        let (pen, shifts) = (&mut self.pen, &mut self.shifts);
         let price = Price::at(self.fidelity);
         for row in self.screen.changed_rows() {
             match price {
-                Some(price) => self.draughtsman.draw_row(&mut self.pen, row, price),
-                None => exact::draw_row(&mut self.pen, row),
+                Some(price) => self.draughtsman.draw_row(pen, shifts, row, price),
+                None => exact::draw_row(pen, shifts, row),
             }
         }
     }

@@ -6,13 +6,13 @@ use ratatui::layout::Position;
 use super::look::{self, Look};
 use super::pen::Pen;
 use super::screen::Row;
-use super::shift::{CELL, Moves, Shift};
+use super::shift::{CELL, Shifts};
 use super::style::Style;
 
 /// Makes a row look as it is wanted.
-pub(super) fn draw_row(pen: &mut Pen, mut row: Row) {
+pub(super) fn draw_row(pen: &mut Pen, shifts: &mut Shifts, mut row: Row) {
     if row.can_move() {
-        shift(pen, &mut row);
+        shift(pen, shifts, &mut row);
     }
     let mut covered = 0;
     for column in 0..row.width() {
@@ -30,7 +30,6 @@ pub(super) fn draw_row(pen: &mut Pen, mut row: Row) {
         }
     }
     *row.exact = true;
-    row.finish();
 }
 
 /// Draws one cell of a row.
@@ -38,7 +37,7 @@ pub(super) fn draw_cell(pen: &mut Pen, row: &mut Row, column: usize) {
     let position = Position { x: column as u16, y: row.y };
     if let Some(halves) = row.looks[column].halves() {
         let (glyph, style) = look::cheapest(halves, pen.style());
-        pen.draw(position, glyph.symbol(), style);
+        pen.draw_block(position, glyph, style);
     } else {
         let cell = &row.wanted[column];
         pen.draw_text(position, cell.symbol(), Style::of(cell));
@@ -47,18 +46,13 @@ pub(super) fn draw_cell(pen: &mut Pen, row: &mut Row, column: usize) {
 }
 
 /// Moves the stretches of a row that have only moved.
-fn shift(pen: &mut Pen, row: &mut Row) {
-    let wrong = row.shown.iter().zip(row.looks).filter(|(shown, look)| shown != look).count();
-    if !Shift::may_spare(wrong as i32 * CELL) {
-        return;
-    }
-    let moves = Moves::between(row.before, row.looks);
-    let width = row.width();
-    loop {
-        let (shown, looks) = (&*row.shown, row.looks);
-        let loss = |from: usize, to: usize| if shown[from] == looks[to] { 0 } else { CELL };
-        let Some(shift) = Shift::best(width, &moves, loss) else { break };
+fn shift(pen: &mut Pen, shifts: &mut Shifts, row: &mut Row) {
+    shifts.begin(row);
+    while let Some(shift) =
+        shifts.next(row, |from, to| if row.shown[from] == row.looks[to] { 0 } else { CELL })
+    {
         pen.shift_row(&shift, row.y);
-        shift.apply(row.shown, Look::UNKNOWN);
+        row.shift(&shift);
     }
+    shifts.end(row);
 }

@@ -6,7 +6,7 @@ use super::exact;
 use super::look::Look;
 use super::pen::Pen;
 use super::screen::Row;
-use super::shift::{BYTE, CELL, Moves, Shift};
+use super::shift::{BYTE, CELL, Shifts};
 use super::trellis::{Action, Halves, Ink, Price, Trellis, Wanted};
 
 /// Draws rows inexactly, and keeps the memory that it takes.
@@ -21,13 +21,19 @@ pub(super) struct Draughtsman {
 
 impl Draughtsman {
     /// Makes a row look as it is wanted, or so that it can't be told for that price.
-    pub(super) fn draw_row(&mut self, pen: &mut Pen, mut row: Row, price: Price) {
+    pub(super) fn draw_row(
+        &mut self,
+        pen: &mut Pen,
+        shifts: &mut Shifts,
+        mut row: Row,
+        price: Price,
+    ) {
         if !row.can_move() {
             // Nobody knows how much of it a character covers.
-            return exact::draw_row(pen, row);
+            return exact::draw_row(pen, shifts, row);
         }
         self.mix_inks(&row);
-        self.shift(pen, &mut row, price);
+        self.shift(pen, shifts, &mut row, price);
         self.cells.clear();
         let inks = self.wanted.iter().zip(&self.shown);
         let looks = row.shown.iter().zip(row.looks);
@@ -43,13 +49,12 @@ impl Draughtsman {
                 Action::DrawExactly => exact::draw_cell(pen, &mut row, column),
                 Action::Draw(glyph, style) => {
                     let position = Position { x: column as u16, y: row.y };
-                    pen.draw(position, glyph.symbol(), style);
+                    pen.draw_block(position, glyph, style);
                     row.shown[column] = Look::of_block(glyph, style);
                 }
             }
             *row.exact &= row.shown[column] == row.looks[column];
         }
-        row.finish();
     }
 
     fn mix_inks(&mut self, row: &Row) {
@@ -57,32 +62,29 @@ impl Draughtsman {
         self.wanted.extend(row.looks.iter().map(|&look| inks(look)));
         self.shown.clear();
         let shown = row.shown.iter().zip(row.looks).zip(&self.wanted);
-        self.shown.extend(
-            shown.map(|((&shown, &look), wanted)| if shown == look { *wanted } else { inks(shown) }),
-        );
+        self.shown
+            .extend(shown.map(
+                |((&shown, &look), wanted)| if shown == look { *wanted } else { inks(shown) },
+            ));
     }
 
     /// Moves the stretches of a row that have only moved, or about.
-    fn shift(&mut self, pen: &mut Pen, row: &mut Row, price: Price) {
-        let width = row.width();
-        let mut moves = None;
-        loop {
-            let loss = |from: usize, to: usize| match (&self.shown[from], &self.wanted[to]) {
+    fn shift(&mut self, pen: &mut Pen, shifts: &mut Shifts, row: &mut Row, price: Price) {
+        shifts.begin(row);
+        while let Some(shift) =
+            shifts.next(row, |from, to| match (&self.shown[from], &self.wanted[to]) {
                 (Some(shown), Some(wanted)) => {
                     ((price.of_halves(*shown, *wanted) * BYTE as f32) as i32).min(CELL)
                 }
                 _ if row.shown[from] == row.looks[to] => 0,
                 _ => CELL,
-            };
-            if !Shift::may_spare((0..width).map(|column| loss(column, column)).sum()) {
-                break;
-            }
-            let moves = moves.get_or_insert_with(|| Moves::between(row.before, row.looks));
-            let Some(shift) = Shift::best(width, moves, loss) else { break };
+            })
+        {
             pen.shift_row(&shift, row.y);
-            shift.apply(row.shown, Look::UNKNOWN);
+            row.shift(&shift);
             shift.apply(&mut self.shown, None);
         }
+        shifts.end(row);
     }
 }
 

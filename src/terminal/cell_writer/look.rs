@@ -25,8 +25,6 @@ pub(super) enum Glyph {
 }
 
 impl Glyph {
-    const ALL: [Self; 4] = [Self::Upper, Self::Lower, Self::Full, Self::Space];
-
     #[inline]
     pub(super) const fn symbol(self) -> &'static str {
         match self {
@@ -37,8 +35,15 @@ impl Glyph {
         }
     }
 
+    #[inline]
     fn of(symbol: &str) -> Option<Self> {
-        Self::ALL.into_iter().find(|glyph| glyph.symbol() == symbol)
+        match symbol {
+            "▀" => Some(Self::Upper),
+            "▄" => Some(Self::Lower),
+            "█" => Some(Self::Full),
+            " " => Some(Self::Space),
+            _ => None,
+        }
     }
 
     /// The colours of the upper and the lower half.
@@ -99,16 +104,10 @@ impl Look {
         self == wanted && self != Self::INTRICATE
     }
 
-    /// A hash of two looks.
+    /// A hash; its upper bits are the best.
     #[inline]
-    pub(super) fn hash_pair(pair: &[Self]) -> u8 {
-        const MULTIPLIERS: [u64; 2] = [0x9E37_79B9_7F4A_7C15, 0xC2B2_AE3D_27D4_EB4F];
-        let fold = |look: Self| look.0 as u64 ^ (look.0 >> 64) as u64;
-        let hashes = pair.iter().zip(MULTIPLIERS);
-        let sum = hashes.fold(0, |sum: u64, (&look, multiplier)| {
-            sum.wrapping_add(fold(look)).wrapping_mul(multiplier)
-        });
-        (sum >> 56) as u8
+    pub(super) fn hash(self) -> u64 {
+        (self.0 as u64 ^ (self.0 >> 64) as u64).wrapping_mul(0x9E37_79B9_7F4A_7C15)
     }
 
     /// The colours of the upper and the lower half of a block.
@@ -158,10 +157,12 @@ pub(super) fn cheapest([top, bottom]: [Shade; 2], current: Option<Style>) -> (Gl
             block(Glyph::Space, text, top)
         };
     }
-    let upright = block(Glyph::Upper, top, bottom);
-    let turned = block(Glyph::Lower, bottom, top);
-    let bytes = |(_, style): (Glyph, Style)| style.bytes_after(current);
-    if bytes(turned) < bytes(upright) { turned } else { upright }
+    let told = |new_text, new_ground| u8::from(new_text == text) + u8::from(new_ground == ground);
+    if told(bottom, top) > told(top, bottom) {
+        block(Glyph::Lower, bottom, top)
+    } else {
+        block(Glyph::Upper, top, bottom)
+    }
 }
 
 /// The colours of the upper and the lower half of a cell; `None` where it is no block, or where
@@ -169,6 +170,6 @@ pub(super) fn cheapest([top, bottom]: [Shade; 2], current: Option<Style>) -> (Gl
 /// as text and as ground, and with modifiers.
 fn halves(symbol: &str, style: Style) -> Option<[Shade; 2]> {
     let halves = Glyph::of(symbol)?.halves(style.foreground, style.background);
-    let has_own = halves.contains(&Shade::Default);
+    let has_own = halves.contains(&Shade::DEFAULT);
     (style.has_no_modifiers() && !has_own).then_some(halves)
 }

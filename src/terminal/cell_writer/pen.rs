@@ -6,6 +6,7 @@ use ratatui::buffer::CellWidth;
 use ratatui::layout::Position;
 
 use super::control::ControlSequence;
+use super::look::Glyph;
 use super::shift::{Shift, Way};
 use super::style::Style;
 
@@ -71,27 +72,28 @@ impl Pen {
         _ = queue!(self.frame(), command);
     }
 
+    #[inline]
     pub(super) fn move_to(&mut self, target: Position) {
         if self.position == Some(target) {
             return;
         }
         let position = self.position;
-        let mut motion = ControlSequence::begin(self.frame());
+        let mut motion = ControlSequence::new();
         match position {
             Some(position) if position.y == target.y && position.x < target.x => {
-                motion.parameter(target.x - position.x);
-                motion.end(b'C');
+                motion.place(target.x - position.x);
+                motion.end(b'C', self.frame());
             }
             _ => {
-                motion.parameters(
-                    [target.y, target.x].map(|zero_based| zero_based.saturating_add(1)),
-                );
-                motion.end(b'H');
+                motion.place(target.y.saturating_add(1));
+                motion.place(target.x.saturating_add(1));
+                motion.end(b'H', self.frame());
             }
         }
         self.position = Some(target);
     }
 
+    #[inline]
     pub(super) fn set_style(&mut self, target: Style) {
         if self.style != Some(target) {
             let current = self.style;
@@ -100,22 +102,36 @@ impl Pen {
         }
     }
 
-    /// Draws `symbol`, of which each terminal knows how wide it is, at a position on the screen.
-    pub(super) fn draw(&mut self, position: Position, symbol: &str, style: Style) {
+    /// Draws a block at a position on the screen.
+    #[inline]
+    pub(super) fn draw_block(&mut self, position: Position, glyph: Glyph, style: Style) {
         self.move_to(position);
         self.set_style(style);
-        self.frame().extend_from_slice(symbol.as_bytes());
-        let next = Position { x: position.x.saturating_add(1), ..position };
-        self.position = (next.x < self.width).then_some(next);
+        match glyph {
+            Glyph::Space => self.frame().push(b' '),
+            _ => self.frame().extend_from_slice(glyph.symbol().as_bytes()),
+        }
+        self.advance(position);
     }
 
     /// Draws any text. A control character is written as a space.
     pub(super) fn draw_text(&mut self, position: Position, text: &str, style: Style) {
         let text = if text.chars().any(char::is_control) { " " } else { text };
-        self.draw(position, text, style);
-        if !advances_by_one(text) {
+        self.move_to(position);
+        self.set_style(style);
+        self.frame().extend_from_slice(text.as_bytes());
+        if advances_by_one(text) {
+            self.advance(position);
+        } else {
             self.position = None;
         }
+    }
+
+    /// The cursor has moved on from there.
+    #[inline]
+    fn advance(&mut self, position: Position) {
+        let next = Position { x: position.x.saturating_add(1), ..position };
+        self.position = (next.x < self.width).then_some(next);
     }
 
     /// Moves a stretch of row `y`. What is to the right of it moves back and forth.
@@ -143,9 +159,9 @@ impl Pen {
     /// Deletes or inserts `count` characters at a position; the cursor stays there.
     fn edit_row(&mut self, at: Position, count: u16, operation: u8) {
         self.move_to(at);
-        let mut edit = ControlSequence::begin(self.frame());
-        edit.parameter(count);
-        edit.end(operation);
+        let mut edit = ControlSequence::new();
+        edit.place(count);
+        edit.end(operation, self.frame());
     }
 
     /// The frame, begun if it was not.

@@ -7,6 +7,7 @@ use super::exact;
 use super::look::Look;
 use super::pen::Pen;
 use super::screen::{Row, Screen};
+use super::shift::Shifts;
 use super::trellis::Ink;
 
 /// How far a picture has come to rest, and the memory that it takes.
@@ -40,7 +41,7 @@ impl Rest {
     }
 
     /// Draws the next of the frames.
-    pub(super) fn draw(&mut self, pen: &mut Pen, screen: &mut Screen) {
+    pub(super) fn draw(&mut self, pen: &mut Pen, shifts: &mut Shifts, screen: &mut Screen) {
         if screen.is_exact() {
             return;
         }
@@ -49,7 +50,7 @@ impl Rest {
             if row.is_near() {
                 self.inexact.extend(errors(&row));
             } else {
-                exact::draw_row(pen, row);
+                exact::draw_row(pen, shifts, row);
             }
         }
         self.choose_worst();
@@ -78,9 +79,10 @@ impl Rest {
 /// How far off the cells of a row are that are not exact.
 fn errors<'a>(row: &'a Row) -> impl Iterator<Item = Cell> + 'a {
     let looks = row.shown.iter().zip(row.looks);
-    (0..).zip(looks).filter(|(_, (shown, look))| shown != look).map(|(column, (&shown, &look))| {
-        Cell { error: error(shown, look), y: row.y, column }
-    })
+    (0..)
+        .zip(looks)
+        .filter(|(_, (shown, look))| shown != look)
+        .map(|(column, (&shown, &look))| Cell { error: error(shown, look), y: row.y, column })
 }
 
 /// The larger distance of the two halves; infinite where it can't be told.

@@ -5,6 +5,7 @@ use ratatui::buffer::Cell;
 use ratatui::layout::{Position, Size};
 
 use super::look::Look;
+use super::shift::{Mark, Shift};
 
 /// What the terminal shows, and what it is to show, cell by cell.
 #[derive(Debug, Default)]
@@ -13,8 +14,8 @@ pub(super) struct Screen {
     shown: Vec<Look>,
     /// What it is to look like.
     looks: Vec<Look>,
-    /// What it was to look like when it was drawn last.
-    before: Vec<Look>,
+    /// The landmarks of what it was to look like when it was drawn last.
+    marks: Vec<Mark>,
     /// The cells that are to be shown, where their looks do not say all.
     wanted: Vec<Cell>,
     /// Whether anything in a row is to be changed.
@@ -28,7 +29,8 @@ pub(super) struct Row<'a> {
     pub(super) y: u16,
     pub(super) shown: &'a mut [Look],
     pub(super) looks: &'a [Look],
-    pub(super) before: &'a mut [Look],
+    /// The landmarks of what it was to show in the last frame, moved as that was moved since.
+    pub(super) marks: &'a mut [Mark],
     pub(super) wanted: &'a [Cell],
     pub(super) exact: &'a mut bool,
 }
@@ -47,10 +49,12 @@ impl Screen {
     pub(super) fn resize(&mut self, size: Size) {
         let (width, height) = (usize::from(size.width), usize::from(size.height));
         self.width = width;
-        for looks in [&mut self.shown, &mut self.looks, &mut self.before] {
+        for looks in [&mut self.shown, &mut self.looks] {
             looks.clear();
             looks.resize(width * height, Look::of(&Cell::EMPTY));
         }
+        self.marks.clear();
+        self.marks.resize(width * height, Mark::NONE);
         self.wanted.clear();
         self.wanted.resize(width * height, Cell::EMPTY);
         self.changed.clear();
@@ -128,12 +132,12 @@ impl Screen {
     ) -> impl Iterator<Item = Row<'_>> {
         let width = self.width.max(1);
         let wanted = self.looks.chunks(width).zip(self.wanted.chunks(width));
-        let known = self.shown.chunks_mut(width).zip(self.before.chunks_mut(width));
+        let known = self.shown.chunks_mut(width).zip(self.marks.chunks_mut(width));
         let states = self.changed.iter_mut().zip(&mut self.exact);
         (0..).zip(known.zip(wanted).zip(states)).filter_map(move |(y, (cells, state))| {
-            let ((shown, before), (looks, wanted)) = cells;
+            let ((shown, marks), (looks, wanted)) = cells;
             let (changed, exact) = state;
-            is_asked(*exact, changed).then_some(Row { y, shown, looks, before, wanted, exact })
+            is_asked(*exact, changed).then_some(Row { y, shown, looks, marks, wanted, exact })
         })
     }
 }
@@ -158,8 +162,9 @@ impl Row<'_> {
         })
     }
 
-    /// It has been drawn.
-    pub(super) fn finish(self) {
-        self.before.copy_from_slice(self.looks);
+    /// The terminal has moved a part of it.
+    pub(super) fn shift(&mut self, shift: &Shift) {
+        shift.apply(self.shown, Look::UNKNOWN);
+        shift.apply(self.marks, Mark::NONE);
     }
 }

@@ -8,6 +8,7 @@
 use std::ops::Range;
 
 use super::look::Look;
+use super::screen::Row;
 
 /// A stretch of a row whose cells move by some columns.
 #[derive(Clone, Debug, PartialEq, Eq)]
@@ -35,8 +36,8 @@ pub(super) enum Way {
 
 /// The farthest that is looked for: what moves faster has changed in other ways too.
 const FARTHEST: usize = 16;
-/// So many moves of a row are tried.
-const MOST_TRIED: usize = 4;
+/// So many moves of a row are tried. Twice as many spare half a byte in a hundred.
+const MOST_TRIED: usize = 2;
 /// A loss of one byte.
 pub(super) const BYTE: i32 = 16;
 /// The loss of a cell that is not as it should be at all: about how many bytes it takes.
@@ -44,47 +45,67 @@ pub(super) const CELL: i32 = 12 * BYTE;
 /// About how many bytes a shift takes: two motions, a deletion and an insertion.
 const SHIFT: i32 = 20 * BYTE;
 
-impl Shift {
-    /// The shift by one of these moves after which least is lost in a row of so many cells, if it
-    /// spares more than it takes. `loss` is what is lost where the cell that is now at the first
-    /// place is shown at the second.
-    pub(super) fn best(
-        width: usize,
-        moves: &Moves,
-        loss: impl Fn(usize, usize) -> i32,
-    ) -> Option<Self> {
-        let shifts = moves.likely().filter_map(|by| Self::best_of(width, by, &loss));
+/// Finds the shifts of a row, one after another, and has the memory that it takes.
+#[derive(Debug, Default)]
+pub(super) struct Shifts {
+    marks: Vec<Mark>,
+    losses: Vec<i32>,
+}
+
+impl Shifts {
+    /// Begins with a row.
+    pub(super) fn begin(&mut self, row: &Row) {
+        self.marks.clear();
+        self.marks.extend(Mark::all(row.looks));
+    }
+
+    /// The shift after which least is lost, if it spares more than it takes. `loss` is what is lost
+    /// where the cell that is now at the first place is shown at the second.
+    pub(super) fn next(&mut self, row: &Row, loss: impl Fn(usize, usize) -> i32) -> Option<Shift> {
+        self.losses.clear();
+        self.losses.extend((0..row.width()).map(|column| loss(column, column)));
+        if self.losses.iter().sum::<i32>() <= SHIFT {
+            return None;
+        }
+        let moves = likely_moves(row.marks, &self.marks).into_iter().flatten();
+        let shifts = moves.filter_map(|by| Shift::best(&self.losses, by, &loss));
         let (shift, spared) = shifts.max_by_key(|&(_, spared)| spared)?;
         (spared > SHIFT).then_some(shift)
     }
 
-    /// Whether a row that has so much to lose may be worth a shift.
-    pub(super) fn may_spare(loss: i32) -> bool {
-        loss > SHIFT
+    /// Is done with the row: what it is to show now is what was wanted before the next frame.
+    pub(super) fn end(&self, row: &mut Row) {
+        row.marks.copy_from_slice(&self.marks);
     }
+}
 
+impl Shift {
     /// The best shift by that move, and what it spares.
-    fn best_of(
-        width: usize,
+    fn best(
+        losses: &[i32],
         Move { by, way }: Move,
         loss: &impl Fn(usize, usize) -> i32,
     ) -> Option<(Self, i32)> {
-        let last = width.checked_sub(by)?;
-        // Places that a cell can move to, and what is spared where it does.
-        let spared = |index: usize| {
-            let (from, to) = match way {
-                Way::Left => (index + by, index),
-                Way::Right => (index, index + by),
-            };
-            loss(to, to) - loss(from, to)
+        let remaining = losses.get(by..)?;
+        // Counted from the first place that a cell can move to.
+        let best = match way {
+            Way::Left => {
+                let spared = losses[..remaining.len()].iter().enumerate();
+                best_stretch(spared.map(|(to, now)| now - loss(to + by, to)))
+            }
+            Way::Right => {
+                let spared = remaining.iter().enumerate();
+                best_stretch(spared.map(|(from, now)| now - loss(from, from + by)))
+            }
         };
-        let (moved, spared) = best_stretch((0..last).map(spared))?;
+        let (moved, spared) = best?;
+        let columns = moved.start..moved.end + by;
         // What is uncovered must be sent, even where it was right before.
-        let (columns, uncovered) = match way {
-            Way::Left => (moved.start..moved.end + by, moved.end..moved.end + by),
-            Way::Right => (moved.start..moved.end + by, moved.start..moved.start + by),
+        let uncovered = match way {
+            Way::Left => columns.end - by..columns.end,
+            Way::Right => columns.start..columns.start + by,
         };
-        let lost: i32 = uncovered.map(|index| CELL - loss(index, index)).sum();
+        let lost: i32 = losses[uncovered].iter().map(|loss| CELL - loss).sum();
         Some((Self { columns, by, way }, spared - lost))
     }
 
@@ -107,54 +128,65 @@ impl Shift {
 
 /// The moves that brought most landmarks of a row to where they are.
 ///
-/// A landmark is a pair of unlike neighbours. Where each was before is looked up in a table by a hash
-/// of the pair; to compare every landmark with every place it may have come from took longer than all
-/// the rest of the encoder.
-#[derive(Debug)]
-pub(super) struct Moves([Option<Move>; MOST_TRIED]);
-
-impl Moves {
-    /// From what was wanted of the row in the last frame to what is wanted now.
-    pub(super) fn between(before: &[Look], now: &[Look]) -> Self {
-        let mut places = [0_u16; 256];
-        for (place, pair) in (1..).zip(before.windows(2)) {
-            if pair[0] != pair[1] {
-                places[usize::from(Look::hash_pair(pair))] = place;
+/// A landmark is a pair of unlike neighbours, told by a mark of eight bits. All marks of a row are
+/// compared with all from before, move by move, which is a few instructions for sixteen of them. To
+/// compare what they look like took longer than all the rest of the encoder, and to look each up in
+/// a table missed those that are there several times.
+fn likely_moves(before: &[Mark], now: &[Mark]) -> [Option<Move>; MOST_TRIED] {
+    let mut likely = [None; MOST_TRIED];
+    let mut votes = [CHANCE; MOST_TRIED];
+    for by in 1..=FARTHEST.min(now.len()) {
+        let left = count_alike(&before[by..], now);
+        let right = count_alike(before, &now[by..]);
+        for (way, count) in [(Way::Left, left), (Way::Right, right)] {
+            if let Some(rank) = votes.iter().position(|&votes| count > votes) {
+                likely[rank..].rotate_right(1);
+                votes[rank..].rotate_right(1);
+                (likely[rank], votes[rank]) = (Some(Move { way, by }), count);
             }
         }
-        let mut votes = [[0_u16; FARTHEST + 1]; 2];
-        for (place, pair) in (1_usize..).zip(now.windows(2)) {
-            if pair[0] == pair[1] {
-                continue;
-            }
-            let from = usize::from(places[usize::from(Look::hash_pair(pair))]);
-            let by = from.abs_diff(place);
-            if from > 0 && (1..=FARTHEST).contains(&by) && before[from - 1..=from] == *pair {
-                let way = if from > place { Way::Left } else { Way::Right };
-                votes[way as usize][by] += 1;
-            }
-        }
-        Self::elect(&votes)
     }
+    likely
+}
 
-    fn elect(votes: &[[u16; FARTHEST + 1]; 2]) -> Self {
-        let mut elected = [None; MOST_TRIED];
-        let mut fewest = [1; MOST_TRIED];
-        for way in [Way::Left, Way::Right] {
-            for (by, &votes) in votes[way as usize].iter().enumerate() {
-                if let Some(rank) = fewest.iter().position(|&fewest| votes > fewest) {
-                    elected[rank..].rotate_right(1);
-                    fewest[rank..].rotate_right(1);
-                    (elected[rank], fewest[rank]) = (Some(Move { way, by }), votes);
-                }
-            }
-        }
-        Self(elected)
-    }
+/// So few landmarks may agree by chance.
+const CHANCE: usize = 2;
 
-    fn likely(&self) -> impl Iterator<Item = Move> {
-        self.0.iter().copied().flatten()
+/// What a landmark is told by.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+#[repr(transparent)]
+pub(super) struct Mark(u8);
+
+impl Mark {
+    /// Of a cell that is like the one before it.
+    pub(super) const NONE: Self = Self(0);
+
+    /// The marks of a row's cells.
+    fn all(row: &[Look]) -> impl Iterator<Item = Self> {
+        /// A large odd number.
+        const STIR: u64 = 0xC2B2_AE3D_27D4_EB4F;
+        let mut before = (Look::UNKNOWN, 0);
+        row.iter().map(move |&look| {
+            let (last, last_hash) = before;
+            let hash = look.hash();
+            before = (look, hash);
+            let pair = u64::wrapping_mul(last_hash, STIR).wrapping_add(hash);
+            if last == look { Self::NONE } else { Self(((pair >> 56) as u8).max(1)) }
+        })
     }
+}
+
+/// At how many places both have the same mark.
+fn count_alike(one: &[Mark], other: &[Mark]) -> usize {
+    // In steps that a byte can count, so that the compiler can compare many at a time.
+    let chunks = one.chunks(255).zip(other.chunks(255));
+    let counts = chunks.map(|(one, other)| {
+        one.iter()
+            .zip(other)
+            .map(|(one, other)| u8::from(one == other) & u8::from(*one != Mark::NONE))
+            .sum::<u8>()
+    });
+    counts.map(usize::from).sum()
 }
 
 /// The stretch of `gains` with the largest sum, and that sum.
@@ -180,8 +212,18 @@ mod tests {
     use super::*;
 
     fn best(shown: &[Look], wanted: &[Look]) -> Option<Shift> {
+        let row = Row {
+            y: 0,
+            shown: &mut shown.to_vec(),
+            looks: wanted,
+            marks: &mut Mark::all(shown).collect::<Vec<_>>(),
+            wanted: &[],
+            exact: &mut false,
+        };
         let loss = |from: usize, to: usize| if shown[from] == wanted[to] { 0 } else { CELL };
-        Shift::best(shown.len(), &Moves::between(shown, wanted), loss)
+        let mut shifts = Shifts::default();
+        shifts.begin(&row);
+        shifts.next(&row, loss)
     }
 
     fn row(text: &str) -> Vec<Look> {

@@ -12,36 +12,35 @@
 
 use super::lab::Lab;
 use super::look::Glyph;
-use super::style::{Shade, Style};
+use super::style::{Kind, Shade, Style};
 use crate::terminal::Fidelity;
 
-/// A colour, and what it costs.
-#[derive(Clone, Copy, Debug, Default)]
+/// A colour of red, green and blue, and what it costs.
+#[derive(Clone, Copy, Debug)]
 pub(super) struct Ink {
     channels: [u8; 3],
-    lab: Lab,
     bytes: u8,
+    lab: Lab,
 }
 
 impl Ink {
-    /// The colour of those channels.
-    pub(super) fn new(channels: [u8; 3]) -> Self {
-        let [red, green, blue] = channels;
-        let bytes = Shade::Rgb(red, green, blue).bytes() as u8;
-        Self { channels, lab: Lab::of(channels), bytes }
-    }
-
     /// That colour, if it is one of red, green and blue.
+    #[inline]
     pub(super) fn of(shade: Shade) -> Option<Self> {
-        match shade {
-            Shade::Rgb(red, green, blue) => Some(Self::new([red, green, blue])),
+        match shade.kind() {
+            Kind::Rgb(channels) => Some(Self::new(channels)),
             _ => None,
         }
     }
 
+    #[inline]
+    fn new(channels: [u8; 3]) -> Self {
+        let bytes = Shade::rgb(channels).bytes() as u8;
+        Self { channels, bytes, lab: Lab::of(channels) }
+    }
+
     fn shade(self) -> Shade {
-        let [red, green, blue] = self.channels;
-        Shade::Rgb(red, green, blue)
+        Shade::rgb(self.channels)
     }
 
     /// CIE76's ΔE.
@@ -49,9 +48,9 @@ impl Ink {
         self.lab.distance(other.lab)
     }
 
+    /// The colour that is halfway.
     fn between(self, other: Self) -> Self {
-        let channel =
-            |index: usize| self.channels[index].midpoint(other.channels[index]);
+        let channel = |index: usize| self.channels[index].midpoint(other.channels[index]);
         Self::new([channel(0), channel(1), channel(2)])
     }
 }
@@ -145,6 +144,8 @@ enum Step {
 struct Ways {
     kept: [Way; KEPT],
     count: usize,
+    /// What costs no less than this is not kept.
+    highest: f32,
 }
 
 /// So many ways are kept at each cell. With twice as many, the same error takes a twentieth fewer
@@ -232,14 +233,10 @@ fn digits(number: u16) -> u32 {
     number.checked_ilog10().unwrap_or(0) + 1
 }
 
-/// The bytes of a sequence that sets one colour, without the colour, and of one that sets both.
-const ONE_COLOR: f32 = 3.0;
-const TWO_COLORS: f32 = 4.0;
-
 impl Ways {
     fn none() -> Self {
         let way = Way { cost: 0.0, inks: None, cursor: None, step: Step::Keep, before: 0 };
-        Self { kept: [way; KEPT], count: 0 }
+        Self { kept: [way; KEPT], count: 0, highest: f32::INFINITY }
     }
 
     /// The one way to the start of a row.
@@ -293,128 +290,155 @@ impl Ways {
         price: Price,
     ) -> Self {
         let error = shown.map_or(f32::INFINITY, |shown| price.of_halves(shown, wanted));
-        let block = NewBlock::new(wanted, price);
         let mut past = Self::none();
+        if error < f32::INFINITY {
+            for (before, way) in self.iter() {
+                past.add(Way { cost: way.cost + error, step: Step::Keep, before, ..*way });
+            }
+        }
+        let is_right = error == 0.0;
+        let mut block = NewBlock::new(wanted, price);
         for (before, way) in self.iter() {
-            past.add(Way { cost: way.cost + error, step: Step::Keep, before, ..*way });
-            // What is right already is drawn again only where that is a shorter way to the next cell.
-            if error == 0.0 && way.cursor != Some(place.x) {
+            // What is right is drawn again only where that is a shorter way to the next cell.
+            if is_right && way.cursor != Some(place.x) {
                 continue;
             }
             let start = way.cost + place.motion_from(way.cursor);
-            let mut draw = |glyph: Glyph, inks, cost: f32| {
-                past.add(Way {
-                    cost: start + glyph.symbol().len() as f32 + cost,
-                    inks: Some(inks),
-                    cursor: Some(place.x + 1),
-                    step: Step::Draw(glyph),
-                    before,
-                });
-            };
+            let mut drawn = Drawn { past: &mut past, start, before, cursor: place.x + 1 };
             if let Some(inks) = way.inks {
-                block.in_told_colors(inks, price, &mut draw);
-                if error > 0.0 {
-                    block.in_one_new_color(inks, price, &mut draw);
-                }
+                block.draw_in_told_colors(inks, !is_right, &mut drawn);
             }
-            if error > 0.0 {
-                block.in_new_colors(&mut draw);
+            if !is_right {
+                block.draw_in_new_colors(&mut drawn);
             }
         }
         past
     }
 
-    /// Adds a way, unless there are cheaper ones in its place.
+    /// Whether a way of that cost would be kept.
     #[inline]
+    fn would_keep(&self, cost: f32) -> bool {
+        cost < self.highest
+    }
+
+    /// Adds a way, unless there are cheaper ones in its place.
     fn add(&mut self, way: Way) {
-        if way.cost == f32::INFINITY {
+        if !self.would_keep(way.cost) {
             return;
         }
         let kept = &mut self.kept[..self.count];
-        if let Some(same) =
-            kept.iter_mut().find(|kept| kept.cursor == way.cursor && kept.inks == way.inks)
-        {
-            if way.cost < same.cost {
-                *same = way;
+        let same = kept.iter_mut().find(|kept| kept.cursor == way.cursor && kept.inks == way.inks);
+        if let Some(same) = same {
+            if way.cost >= same.cost {
+                return;
             }
+            *same = way;
         } else if self.count < KEPT {
             self.kept[self.count] = way;
             self.count += 1;
-        } else if let Some(worst) =
-            kept.iter_mut().max_by(|one, other| one.cost.total_cmp(&other.cost))
-            && way.cost < worst.cost
-        {
+        } else if let Some(worst) = kept.iter_mut().find(|kept| kept.cost == self.highest) {
             *worst = way;
+        }
+        if self.count == KEPT {
+            self.highest = self.kept.iter().fold(0.0, |highest, way| way.cost.max(highest));
         }
     }
 }
 
-/// A block to draw, and what does not depend on the way there.
+/// Ways past a cell that go on from one of those before it, and draw.
+struct Drawn<'a> {
+    past: &'a mut Ways,
+    /// What it costs to come here.
+    start: f32,
+    before: u8,
+    cursor: u16,
+}
+
+impl Drawn<'_> {
+    /// Whether a way on that costs so much would be kept.
+    #[inline]
+    fn would_keep(&self, cost: f32) -> bool {
+        self.past.would_keep(self.start + cost)
+    }
+
+    #[inline]
+    fn add(&mut self, glyph: Glyph, inks: [Ink; 2], cost: f32) {
+        let cost = self.start + glyph.symbol().len() as f32 + cost;
+        if self.past.would_keep(cost) {
+            self.past.add(Way {
+                cost,
+                inks: Some(inks),
+                cursor: Some(self.cursor),
+                step: Step::Draw(glyph),
+                before: self.before,
+            });
+        }
+    }
+}
+
+/// A block to draw.
 struct NewBlock {
     wanted: Halves,
+    price: Price,
     /// Colours that may stand for both halves, and what that costs: their bytes, and the error.
-    merged: [(Ink, f32); 3],
+    /// Worked out when it is asked for.
+    merged: Option<[(Ink, f32); 3]>,
 }
+
+/// The bytes of a sequence that sets one colour, without the colour, and of one that sets both.
+const ONE_COLOR: f32 = 3.0;
+const TWO_COLORS: f32 = 4.0;
+/// A colour takes no fewer bytes.
+const SHORTEST_INK: f32 = 10.0;
 
 impl NewBlock {
     fn new(wanted: Halves, price: Price) -> Self {
-        let [upper, lower] = wanted;
-        let merged = [upper.between(lower), upper, lower].map(|ink| {
-            let error = price.of_halves([ink; 2], wanted);
-            (ink, ONE_COLOR + f32::from(ink.bytes) + error)
-        });
-        Self { wanted, merged }
+        Self { wanted, price, merged: None }
     }
 
-    /// In what the terminal draws in already.
-    #[inline]
-    fn in_told_colors(
-        &self,
-        inks: [Ink; 2],
-        price: Price,
-        draw: &mut impl FnMut(Glyph, [Ink; 2], f32),
-    ) {
-        let [text, ground] = inks;
-        for (glyph, halves) in [
-            (Glyph::Space, [ground, ground]),
-            (Glyph::Full, [text, text]),
-            (Glyph::Upper, [text, ground]),
-            (Glyph::Lower, [ground, text]),
-        ] {
-            draw(glyph, inks, price.of_halves(halves, self.wanted));
-        }
-    }
-
-    /// In one of these colours and one that is told for it.
-    #[inline]
-    fn in_one_new_color(
-        &self,
-        inks: [Ink; 2],
-        price: Price,
-        draw: &mut impl FnMut(Glyph, [Ink; 2], f32),
-    ) {
+    /// In the text's colour and the ground's that the terminal draws in already, and where
+    /// `may_tell`, in one of them and a new one.
+    fn draw_in_told_colors(&mut self, inks: [Ink; 2], may_tell: bool, drawn: &mut Drawn) {
         let [text, ground] = inks;
         let [upper, lower] = self.wanted;
-        for (glyph, inks, new, told, replaced) in [
-            (Glyph::Upper, [upper, ground], upper, ground, lower),
-            (Glyph::Upper, [text, lower], lower, text, upper),
-            (Glyph::Lower, [text, upper], upper, text, lower),
-            (Glyph::Lower, [lower, ground], lower, ground, upper),
-        ] {
-            let error = price.of(told, replaced);
-            draw(glyph, inks, ONE_COLOR + f32::from(new.bytes) + error);
+        if !drawn.would_keep(0.0) {
+            return;
         }
-        for (merged, cost) in self.merged {
-            draw(Glyph::Space, [text, merged], cost);
+        let [text_above, text_below] = self.wanted.map(|wanted| self.price.of(text, wanted));
+        let [ground_above, ground_below] = self.wanted.map(|wanted| self.price.of(ground, wanted));
+        drawn.add(Glyph::Space, inks, ground_above + ground_below);
+        drawn.add(Glyph::Full, inks, text_above + text_below);
+        drawn.add(Glyph::Upper, inks, text_above + ground_below);
+        drawn.add(Glyph::Lower, inks, ground_above + text_below);
+        if !may_tell || !drawn.would_keep(ONE_COLOR + SHORTEST_INK) {
+            return;
+        }
+        let told = |ink: Ink| ONE_COLOR + f32::from(ink.bytes);
+        drawn.add(Glyph::Upper, [upper, ground], told(upper) + ground_below);
+        drawn.add(Glyph::Upper, [text, lower], told(lower) + text_above);
+        drawn.add(Glyph::Lower, [text, upper], told(upper) + text_below);
+        drawn.add(Glyph::Lower, [lower, ground], told(lower) + ground_above);
+        for (merged, cost) in self.merged() {
+            drawn.add(Glyph::Space, [text, merged], cost);
         }
     }
 
-    /// In two colours that are told for it.
-    #[inline]
-    fn in_new_colors(&self, draw: &mut impl FnMut(Glyph, [Ink; 2], f32)) {
+    /// In two new colours.
+    fn draw_in_new_colors(&self, drawn: &mut Drawn) {
         let [upper, lower] = self.wanted;
         let cost = TWO_COLORS + f32::from(upper.bytes + lower.bytes);
-        draw(Glyph::Upper, [upper, lower], cost);
-        draw(Glyph::Lower, [lower, upper], cost);
+        drawn.add(Glyph::Upper, [upper, lower], cost);
+        drawn.add(Glyph::Lower, [lower, upper], cost);
+    }
+
+    fn merged(&mut self) -> [(Ink, f32); 3] {
+        let (price, wanted) = (self.price, self.wanted);
+        *self.merged.get_or_insert_with(|| {
+            let [upper, lower] = wanted;
+            [upper.between(lower), upper, lower].map(|ink| {
+                let error = price.of_halves([ink; 2], wanted);
+                (ink, ONE_COLOR + f32::from(ink.bytes) + error)
+            })
+        })
     }
 }
