@@ -383,6 +383,11 @@ impl World {
         &self.sprites[usize::from(id.0)]
     }
 
+    /// The sprites that the things refer to.
+    pub(crate) fn sprites(&self) -> &[Sprite] {
+        &self.sprites
+    }
+
     /// How wide the widest sprite is, in cells; 0 where nothing stands anywhere.
     pub(crate) fn widest_sprite(&self) -> f64 {
         self.sprites.iter().map(Sprite::width).fold(0.0, f64::max)
@@ -433,6 +438,22 @@ impl World {
             self.grid.set(cell, id);
             self.ajar.set(cell, opening);
         }
+    }
+
+    /// Shows other cells of the same kinds: `grid`, with no door that is ajar, and what stands there.
+    /// They fit together with the rest as in [`World::from_parts`].
+    pub(crate) fn redraw(
+        &mut self,
+        grid: Grid,
+        start: Start,
+        things: Vec<Thing>,
+        lamplight: Lamplight,
+    ) {
+        self.grid = grid;
+        self.start = start;
+        self.things = Things::new(things);
+        self.lamplight = lamplight;
+        self.ajar = Ajar::default();
     }
 
     /// Takes away all things in `cell` of which `is_taken` says so.

@@ -30,7 +30,7 @@ USAGE
   cellcaster --help | --version
 
   MAP is a map file, or a built-in level: cellar, museum, citadel,
-  cistern, observatory.
+  cistern, observatory; --generate maze, cave or office digs one in its place.
 
 KEYS
   W S, Up Down      walk                M, Tab  show or hide the map
@@ -75,6 +75,14 @@ OPTIONS OF BOTH
                     exact, dda, dda32, accumulate, fixed:BITS, table:ANGLES
                     or march:STEP
 
+OPTIONS OF LEVELS TO DIG, for play, snapshot and replay
+  --generate KIND   maze, cave or office, in place of MAP
+  --seed N          which one                                      [1]
+  --level-size COLSxROWS
+                    with walls around, and an exit                 [without an end]
+  --start COLUMN,ROW
+                    the cell to start at                           [the first corner]
+
 CAST
   Reads one ray a line, "X Y DX DY", and writes one JSON object a line:
   {"cell":[c,r],"side":"x","t":1.5,"u":0.25,"tile":"#"}, {"escaped":true} for a
@@ -105,6 +113,7 @@ REPLAY, WIRE
 
 EXAMPLES
   cellcaster                                   play the built-in levels
+  cellcaster play --generate maze --seed 7     walk through a maze without an end
   cellcaster my.toml --colors 256              play a map of your own
   ssh -t host cellcaster                       play it somewhere else
   cellcaster snapshot museum --format ansi     a picture in the terminal

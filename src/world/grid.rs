@@ -157,6 +157,11 @@ impl Grid {
         self.tile(column, row).is_some_and(|tile| self.is_solid_tile(tile))
     }
 
+    /// The first tile that is solid; so are all that come after it.
+    pub(crate) fn first_solid(&self) -> TileId {
+        self.first_solid
+    }
+
     /// Whether cells that hold `tile` are solid.
     pub fn is_solid_tile(&self, tile: TileId) -> bool {
         tile >= self.first_solid
