@@ -178,9 +178,7 @@ impl World {
             lamplight,
             keys,
         } = parts;
-        let may_become_solid =
-            |id: TileId| matches!(tiles[usize::from(id.0)].kind, TileKind::Doorway(_));
-        grid.clear(may_become_solid);
+        clear(&mut grid, &tiles);
         let world = Self {
             title,
             grid,
@@ -450,6 +448,7 @@ impl World {
         lamplight: Lamplight,
     ) {
         self.grid = grid;
+        clear(&mut self.grid, &self.tiles);
         self.start = start;
         self.things = Things::new(things);
         self.lamplight = lamplight;
@@ -505,4 +504,10 @@ impl World {
     pub fn floor_at(&self, cell: Cell) -> f64 {
         self.tile_at(cell).map_or(0.0, |tile| tile.heights.floor())
     }
+}
+
+/// Lets rays know what is empty in `grid`, where doors may close.
+fn clear(grid: &mut Grid, tiles: &[Tile]) {
+    let is_doorway = |id: TileId| matches!(tiles[usize::from(id.0)].kind, TileKind::Doorway(_));
+    grid.clear(is_doorway);
 }
