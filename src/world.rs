@@ -10,6 +10,7 @@
 
 mod air;
 mod camera;
+mod clearance;
 mod color;
 mod covering;
 mod door;
@@ -24,6 +25,7 @@ mod things;
 
 pub use air::{Fog, Light, Sky};
 pub use camera::{Camera, FieldOfView, Heading};
+pub(crate) use clearance::Clearance;
 pub use color::{NotAColor, Rgb};
 pub use covering::{Ceiling, Covering, Pattern, Scale};
 use door::Ajar;
@@ -163,7 +165,7 @@ impl World {
     pub(crate) fn from_parts(parts: Parts) -> Self {
         let Parts {
             title,
-            grid,
+            mut grid,
             tiles,
             textures,
             floor,
@@ -176,6 +178,9 @@ impl World {
             lamplight,
             keys,
         } = parts;
+        let may_become_solid =
+            |id: TileId| matches!(tiles[usize::from(id.0)].kind, TileKind::Doorway(_));
+        grid.clear(may_become_solid);
         let world = Self {
             title,
             grid,

@@ -1,6 +1,7 @@
 //! The arguments: words to typed options, each mistake one sentence.
 
 mod accuracy;
+mod bench;
 mod cast;
 mod check;
 mod generated;
@@ -15,6 +16,7 @@ use std::ffi::{OsStr, OsString};
 use lexopt::{Arg, Parser};
 
 pub(super) use self::accuracy::{Accuracy, ReportFormat};
+pub(super) use self::bench::{Bench, BenchFormat};
 pub(super) use self::cast::Cast;
 pub(super) use self::generated::Generated;
 pub(super) use self::play::Play;
@@ -34,6 +36,7 @@ pub(super) enum Command {
     Cast(Cast),
     Check(Vec<OsString>),
     Accuracy(Accuracy),
+    Bench(Bench),
     Replay(Replay),
     Wire(Wire),
 }
@@ -52,6 +55,7 @@ impl Command {
             "cast" => cast::parse(parser),
             "check" => check::parse(parser),
             "accuracy" => accuracy::parse(parser),
+            "bench" => bench::parse(parser),
             "replay" => replay::parse(parser),
             "wire" => wire::parse(parser),
             "help" => Ok(Self::Help),
@@ -60,8 +64,8 @@ impl Command {
     }
 }
 
-pub(super) const COMMANDS: [&str; 8] =
-    ["play", "snapshot", "cast", "check", "accuracy", "replay", "wire", "help"];
+pub(super) const COMMANDS: [&str; 9] =
+    ["play", "snapshot", "cast", "check", "accuracy", "bench", "replay", "wire", "help"];
 
 fn is_command(argument: &OsStr) -> bool {
     COMMANDS.iter().any(|&command| argument == command)

@@ -24,6 +24,7 @@ USAGE
   cellcaster cast [MAP] [OPTIONS]      rays from standard input, hits to standard output
   cellcaster check MAP...              say everything that is wrong with maps
   cellcaster accuracy [MAP] [OPTIONS]  error against run time, for every way to cast
+  cellcaster bench [OPTIONS]           how fast this machine draws, and a link shows it
   cellcaster replay SCRIPT [MAP] [OPTIONS]  a script, off screen, as asciicast
   cellcaster wire [MAP] [OPTIONS]      bytes a frame against what the viewer sees
   cellcaster --help | --version
@@ -95,6 +96,10 @@ ACCURACY
   --seed S          where chance begins                            [1]
   --format FORMAT   table, json, csv, svg or png                   [table]
 
+BENCH
+  --seconds N       how long to measure, roughly, 1 to 60            [10]
+  --format FORMAT   table or json                                    [table]
+
 REPLAY, WIRE
   --cast FILE       of replay: where to write                      [standard output]
   --script FILE     of wire: what is played                        [a walk in citadel]
@@ -117,6 +122,8 @@ EXAMPLES
   cellcaster check maps/*.toml
   cellcaster accuracy --caster exact --caster dda --set "through corners"
   cellcaster accuracy --format svg > accuracy.svg
+  cellcaster bench                             what to expect of this machine
+  cellcaster bench --format json > bench.json
   cellcaster --record walk.script && cellcaster replay walk.script > walk.cast
 
 Exit status: 0, or 2 for a mistake in the arguments or a map, or 1 where the
