@@ -20,7 +20,7 @@ mod script;
 
 use std::collections::BTreeSet;
 
-use crate::world::{Camera, Cell, Door, FieldOfView, KeyId, ThingKind, World};
+use crate::world::{Camera, Cell, Door, FieldOfView, KeyId, Thing, ThingKind, World};
 use doors::{Doors, door_ahead};
 use notice::Notice;
 use player::{AIM, FRICTION, Player, RUN, STILL, TURN, TURN_FRICTION, WALK};
@@ -102,10 +102,21 @@ impl Game {
         self.revision
     }
 
-    /// Whether the player has reached the exit's cell. Nothing moves after that, nor does the clock.
+    /// Whether the player has reached the exit. Nothing moves after that, nor does the clock.
     pub fn is_finished(&self) -> bool {
+        self.things_reached().any(|thing| thing.kind == ThingKind::Exit)
+    }
+
+    /// The things in the player's cell that are neither above their head nor below their feet.
+    fn things_reached(&self) -> impl Iterator<Item = &Thing> {
         let cell = self.player.cell();
-        self.world.things_in(cell).iter().any(|thing| thing.kind == ThingKind::Exit)
+        let heights = self.world.room_in(cell);
+        let (feet, head) = (self.player.feet(), self.player.head());
+        self.world.things_in(cell).iter().filter(move |thing| {
+            let sprite = self.world.sprite(thing.sprite);
+            let base = sprite.base(heights);
+            feet <= base + sprite.height.cells() && base <= head
+        })
     }
 
     /// Whether steps with these intents, however many, would change nothing but the clock: the player
@@ -219,10 +230,10 @@ impl Game {
         format!("This door needs the {name} key.")
     }
 
-    /// Takes the keys in the player's cell.
+    /// Takes the keys that the player has reached.
     fn take_keys(&mut self) {
         let cell = self.player.cell();
-        let found = self.world.things_in(cell).iter().find_map(|thing| match thing.kind {
+        let found = self.things_reached().find_map(|thing| match thing.kind {
             ThingKind::Key(key) => Some(key),
             _ => None,
         });

@@ -33,7 +33,7 @@ pub use heights::{Gap, Heights};
 pub(crate) use lamplight::Lamplight;
 pub use lamplight::{Lamp, Reach};
 pub use pitch::Pitch;
-pub use shape::{Line, Outline, PillarRadius, Shape};
+pub use shape::{Line, Outline, PillarRadius, Shape, ShapeHeight};
 pub use sprite::{Anchor, Facings, FrameTime, Sprite, SpriteHeight, SpriteId};
 pub use texture::Texture;
 use things::Things;
@@ -101,8 +101,8 @@ pub enum TileKind {
     Glass(Glass),
     /// A block as a wall's, with sides that reflect under a tint.
     Mirror(Glass),
-    /// A wall that does not fill the cell, from floor to ceiling. Rays and walkers that know no shapes
-    /// take the cell for solid; the others pass it by.
+    /// A wall that does not fill the cell, and may be lower than its ceiling. Rays and walkers that
+    /// know no shapes take the cell for solid; the others pass it by.
     Shape(Shape),
 }
 
@@ -326,14 +326,18 @@ impl World {
         self.tiles[0]
     }
 
-    /// Whether all floors are at 0, and all ceilings and walls a cell above that: every ray ends where
-    /// it meets the first wall.
+    /// Whether all floors are at 0, and all ceilings, walls and shapes a cell above that: every ray ends
+    /// where it meets the first of those.
     pub fn is_level(&self) -> bool {
         let level = |tile: &Tile| match tile.kind {
             TileKind::Wall(_) | TileKind::Mirror(_) => Heights::LEVEL_WALL,
             _ => Heights::LEVEL,
         };
-        self.tiles.iter().all(|tile| tile.heights == level(tile))
+        let is_as_high = |tile: &Tile| match tile.kind {
+            TileKind::Shape(_) => tile.top_of_what_stands() == Heights::LEVEL.ceiling(),
+            _ => true,
+        };
+        self.tiles.iter().all(|tile| tile.heights == level(tile) && is_as_high(tile))
     }
 
     /// What the sky looks like.
@@ -377,6 +381,11 @@ impl World {
     /// How wide the widest sprite is, in cells; 0 where nothing stands anywhere.
     pub(crate) fn widest_sprite(&self) -> f64 {
         self.sprites.iter().map(Sprite::width).fold(0.0, f64::max)
+    }
+
+    /// How high the highest sprite is, in cells; 0 where nothing stands anywhere.
+    pub(crate) fn tallest_sprite(&self) -> f64 {
+        self.sprites.iter().map(|sprite| sprite.height.cells()).fold(0.0, f64::max)
     }
 
     /// What the key `id` of this world is called, such as "brass".

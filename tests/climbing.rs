@@ -1,44 +1,19 @@
 //! Steps, ledges, low ceilings and deep falls: what the player gets onto, over and under, and that
 //! they are never inside anything.
 
+#[path = "support/walker.rs"]
+mod walker;
+
 use cellcaster::game::{Game, Intent, Intents, STEP};
 use cellcaster::map;
-use cellcaster::world::{FieldOfView, Gap, World};
+use cellcaster::world::{Anchor, Ceiling, Cell, FieldOfView, Gap, ShapeHeight, TileKind, World};
 use glam::DVec2;
 use proptest::prelude::*;
+use walker::{SKY, corridor, position, walk, want};
 
 const RADIUS: f64 = 0.25;
 /// How tall the player is at least.
 const DUCKING: f64 = 0.5;
-
-fn want(list: &[Intent]) -> Intents {
-    list.iter().copied().collect()
-}
-
-fn position(game: &Game) -> DVec2 {
-    game.camera(FieldOfView::default()).position()
-}
-
-fn walk(game: &mut Game, steps: usize, wanted: &[Intent]) {
-    (0..steps).for_each(|_| game.step(want(wanted)));
-}
-
-/// A corridor to the east under the sky, or below a ceiling: after the start come three cells of the
-/// map's own floor, and then one for each of `tiles`, which is what a map says of it.
-fn corridor(ceiling: &str, tiles: &[&str]) -> Game {
-    let letters: String = ('a'..).take(tiles.len()).collect();
-    let wall = "#".repeat(6 + tiles.len());
-    let legend: Vec<String> =
-        ('a'..).zip(tiles).map(|(letter, tile)| format!("\"{letter}\" = {{ {tile} }}\n")).collect();
-    let legend = legend.concat();
-    let map = format!(
-        "{ceiling}\ngrid = '''\n{wall}\n#@...{letters}#\n{wall}\n'''\n[tiles]\n\
-         \"#\" = {{ wall = \"brick\", height = 99 }}\n{legend}[things]\n\"@\" = {{ start = 0 }}\n"
-    );
-    Game::new(map::parse_str(&map).unwrap_or_else(|faults| panic!("{map}\n{faults}")))
-}
-
-const SKY: &str = "ceiling = \"sky\"";
 
 #[test]
 fn a_step_is_climbed_up_to_the_limit() {
@@ -151,15 +126,16 @@ fn a_fall_of_a_thousand_cells_takes_its_time_and_ends() {
     assert!(game.is_at_rest(Intents::new()));
 }
 
-/// A closed room with cells of eight kinds, whose heights are drawn.
+/// A closed room with cells of eight kinds, whose heights are drawn, and with shapes and things.
 fn any_world() -> impl Strategy<Value = World> {
     let floor = prop::sample::select(vec![
         0.0_f64, 1e-9, 0.1, 0.3, 0.35, 0.36, 0.5, 0.6, 0.9, -0.3, -2.0, -1e9, 1e9, 3.0,
     ]);
     let headroom = prop::sample::select(vec![1e-9, 0.3, 0.5, 0.55, 0.7, 0.75, 1.0, 2.5]);
     let tile = (floor, prop::option::of(headroom));
-    let cells = prop::collection::vec(prop::sample::select(&b"abcdefgh......#|%"[..]), 35);
-    (prop::collection::vec(tile, 8), cells).prop_map(|(tiles, mut cells)| {
+    let cells = prop::collection::vec(prop::sample::select(&b"abcdefgh......#|%oO/-tTBH"[..]), 35);
+    let height = prop::sample::select(vec![1e-9_f64, 0.1, 0.3, 0.36, 0.6, 0.9, 1.0, 2.0]);
+    (prop::collection::vec(tile, 8), cells, height).prop_map(|(tiles, mut cells, height)| {
         cells[17] = b'@';
         let rows: Vec<String> =
             cells.chunks(7).map(|row| format!("#{}#\n", String::from_utf8_lossy(row))).collect();
@@ -179,7 +155,16 @@ fn any_world() -> impl Strategy<Value = World> {
         let text = format!(
             "ceiling_height = 1.5\ngrid = '''\n#########\n{rows}#########\n'''\n[tiles]\n\
              \"#\" = {{ wall = \"brick\" }}\n\"%\" = {{ wall = \"brick\", height = 0.5 }}\n\
-             \"|\" = {{ glass = \"#ffffff\" }}\n{legend}[things]\n\"@\" = {{ start = 0 }}\n"
+             \"|\" = {{ glass = \"#ffffff\" }}\n{legend}\
+             \"o\" = {{ pillar = \"brick\", height = {height:?} }}\n\
+             \"O\" = {{ pillar = \"brick\", radius = 0.5, ceiling = \"sky\" }}\n\
+             \"/\" = {{ diagonal = \"brick\", from = \"north-east\", height = {height:?} }}\n\
+             \"-\" = {{ thin = \"brick\", at = \"north\", floor_height = 0.3, height = 0.3 }}\n\
+             [things]\n\"@\" = {{ start = 0 }}\n\"t\" = {{ sprite = \"table\" }}\n\
+             \"T\" = {{ sprite = \"table\", height = 0.2, on = \"a\" }}\n\
+             \"B\" = {{ sprite = \"barrel\", height = {:?} }}\n\
+             \"H\" = {{ sprite = \"lamp\", anchor = \"ceiling\", blocks = true, height = 0.8 }}\n",
+            height.max(0.01)
         );
         map::parse_str(&text).unwrap_or_else(|faults| panic!("{text}\n{faults}"))
     })
@@ -193,7 +178,32 @@ fn gaps(world: &World, column: i64, row: i64) -> Vec<Gap> {
     };
     let is_filled = matches!(tile.kind, Door(_) | Mask(_) | Glass(_));
     let stands_in = |gap: &Gap| is_filled && gap.bottom < tile.heights.ceiling();
-    tile.gaps().filter(|gap| !stands_in(gap)).collect()
+    let gaps = tile.gaps().filter(|gap| !stands_in(gap));
+    let things = world.things_in(Cell { column: column as u32, row: row as u32 }).iter();
+    let mut sprites = things.map(|thing| world.sprite(thing.sprite));
+    let Some(sprite) = sprites.find(|sprite| sprite.blocks) else { return gaps.collect() };
+    let (low, high) = match sprite.anchor {
+        Anchor::Floor => (tile.heights.floor(), tile.heights.floor() + sprite.height.cells()),
+        Anchor::Ceiling => (tile.heights.ceiling() - sprite.height.cells(), tile.heights.ceiling()),
+    };
+    gaps.flat_map(|gap| {
+        [Gap { top: gap.top.min(low), ..gap }, Gap { bottom: gap.bottom.max(high), ..gap }]
+    })
+    .collect()
+}
+
+/// Whether somebody is beside or above the shape in a cell, if there is one.
+fn is_beside_shape(world: &World, column: i64, row: i64, position: DVec2, feet: f64) -> bool {
+    let Some(tile) = world.grid().tile(column, row).map(|id| world.tile(id)) else { return true };
+    let TileKind::Shape(shape) = tile.kind else { return true };
+    let cell = Cell { column: column as u32, row: row as u32 };
+    let height = shape.height.map_or(f64::INFINITY, ShapeHeight::cells);
+    let top = tile.heights.floor() + height;
+    let top = match tile.ceiling {
+        Ceiling::Sky if shape.height.is_some() => top,
+        _ => top.min(tile.heights.ceiling()),
+    };
+    feet >= top || shape.outline.distance(cell, position) >= RADIUS
 }
 
 /// Whether all of somebody, as small as they can be, is in gaps of the cells that they are in.
@@ -209,6 +219,7 @@ fn is_in_the_open(world: &World, position: DVec2, feet: f64) -> bool {
         .all(|(column, row)| {
             let holds = |gap: &Gap| gap.bottom <= feet && feet <= gap.top - DUCKING;
             gaps(world, column, row).iter().any(holds)
+                && is_beside_shape(world, column, row, position, feet)
         })
 }
 

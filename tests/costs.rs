@@ -147,23 +147,29 @@ fn lamplight_reads_and_writes_nothing_more() {
     assert_eq!(same(lit.counts), same(unlit.counts));
 }
 
+/// What the tile `u` of a map may be, out of sight: it decides which passes draw the map.
+const OUT_OF_SIGHT: [&str; 3] = ["wall = 'brick'", "floor_height = 0.25", "mirror = true"];
+
 #[test]
 fn ten_thousand_things_elsewhere_are_not_considered() {
     let row = format!("#{}#\n", "b".repeat(398));
-    let hall = "#@...b...#".to_owned() + &"#".repeat(390) + "\n";
+    let hall = "#@...b...#".to_owned() + &"#".repeat(389) + "u\n";
     let wall = "#".repeat(400) + "\n";
-    let text = |rows: usize| {
-        format!(
-            "grid = '''\n{wall}{hall}{wall}{}{wall}'''\n\
-             tiles.'#'.wall = 'brick'\nthings = {{ '@'.start = 0, 'b'.sprite = 'barrel' }}\n",
-            row.repeat(rows)
-        )
-    };
-    let [few, many] = [0, 26].map(|rows| map::parse_str(&text(rows)).unwrap());
-    assert!(many.things().len() > 10_000);
-    let (few, many) = (explained(&few).counts, explained(&many).counts);
-    assert_eq!((few.things_considered, few.things_drawn), (1, 1));
-    assert_eq!(few, many);
+    for tile in OUT_OF_SIGHT {
+        let text = |rows: usize| {
+            format!(
+                "grid = '''\n{wall}{hall}{wall}{}{wall}'''\n\
+                 tiles = {{ '#'.wall = 'brick', u.{tile} }}\n\
+                 things = {{ '@'.start = 0, 'b'.sprite = 'barrel' }}\n",
+                row.repeat(rows)
+            )
+        };
+        let [few, many] = [0, 26].map(|rows| map::parse_str(&text(rows)).unwrap());
+        assert!(many.things().len() > 10_000);
+        let (few, many) = (explained(&few).counts, explained(&many).counts);
+        assert_eq!((few.things_considered, few.things_drawn), (1, 1), "{tile}");
+        assert_eq!(few, many, "{tile}");
+    }
 }
 
 #[test]
@@ -171,22 +177,45 @@ fn things_on_both_sides_of_a_diagonal_view_are_not_considered() {
     const SIDE: u32 = 100;
     let character = |column: u32, row: u32| match column.abs_diff(row) {
         _ if (column, row) == (1, 1) => '@',
+        _ if (column, row) == (0, SIDE - 1) => 'u',
         _ if [column, row].iter().any(|place| [0, SIDE - 1].contains(place)) => '#',
         0 | 1 => '.',
         2 => '#',
         _ => 'b',
     };
     let line = |row| (0..SIDE).map(|column| character(column, row)).collect::<String>() + "\n";
-    let text = format!(
-        "grid = '''\n{}'''\ntiles.'#'.wall = 'brick'\n\
-         things = {{ '@'.start = 45, 'b'.sprite = 'bones' }}\n",
-        (0..SIDE).map(line).collect::<String>()
-    );
-    let world = map::parse_str(&text).unwrap();
-    assert!(world.things().len() > 9_000);
-    let counts = explained(&world).counts;
-    assert_eq!(counts.things_drawn, 0);
-    assert!(counts.things_considered < u64::from(SIDE), "{}", counts.things_considered);
+    for tile in OUT_OF_SIGHT {
+        let text = format!(
+            "grid = '''\n{}'''\ntiles = {{ '#'.wall = 'brick', u.{tile} }}\n\
+             things = {{ '@'.start = 45, 'b'.sprite = 'bones' }}\n",
+            (0..SIDE).map(line).collect::<String>()
+        );
+        let world = map::parse_str(&text).unwrap();
+        assert!(world.things().len() > 9_000);
+        let counts = explained(&world).counts;
+        assert_eq!(counts.things_drawn, 0, "{tile}");
+        assert!(counts.things_considered < u64::from(SIDE), "{}", counts.things_considered);
+    }
+}
+
+/// Between two walls of mirror, with thousands of things behind them: what is considered is the one
+/// barrel, once as it is and once in each mirror image of it.
+#[test]
+fn things_behind_mirrors_are_not_considered() {
+    let hall = "bbbMMMMMMMMMMbbb\n";
+    let text = |row: &str| {
+        let rows = row.repeat(500);
+        format!(
+            "grid = '''\n{rows}{hall}bbbM@....b..Mbbb\n{hall}{rows}'''\ntiles.M.mirror = true\n\
+             things = {{ '@'.start = 0, 'b'.sprite = 'barrel' }}\n"
+        )
+    };
+    let [few, many] = ["################\n", "bbbbbbbbbbbbbbbb\n"]
+        .map(|row| map::parse_str(&(text(row) + "tiles.'#'.wall = 'brick'\n")).unwrap());
+    assert!(many.things().len() > 10_000);
+    let [few, many] = [few, many].map(|world| explained(&world).counts);
+    assert_eq!(few, many);
+    assert!(many.things_drawn > 8 && many.things_considered < 400, "{many:?}");
 }
 
 #[test]

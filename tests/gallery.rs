@@ -165,4 +165,6 @@ fn shapes_do_not_fill_their_cells() {
     assert_golden("shapes", "shapes_of_pillars", &["--camera", "6.5,4.5,200"]);
     assert_golden("shapes", "shapes_of_diagonals", &["--camera", "10.5,5.5,90"]);
     assert_golden("shapes", "shapes_of_thin_walls", &["--camera", "6.5,6.5,340"]);
+    let above = ["--eye", "1.6", "--pitch", "-15"];
+    assert_golden("stumps", "shapes_from_above", &above);
 }

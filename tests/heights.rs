@@ -1,22 +1,48 @@
 //! Worlds that are not level, against geometry: every pixel of small random ones, computed again by
-//! asking all blocks of rock which of them a line through the pixel meets first.
+//! asking everything in them what a line through the pixel meets first.
+
+#[path = "support/solids.rs"]
+mod solids;
 
 use std::fmt::Write as _;
 
-use cellcaster::map;
-use cellcaster::render::{Frame, FrameSize, PixelAspect, Renderer};
-use cellcaster::world::{Camera, FieldOfView, Gap, Heading, Pitch, Rgb, TileKind, World};
+use cellcaster::map::{self, TextureFileError, TextureFiles};
+use cellcaster::render::{Filter, Frame, FrameSize, PixelAspect, Renderer};
+use cellcaster::world::{Camera, FieldOfView, Heading, Pitch, Rgb};
 use glam::{DVec2, DVec3};
 use proptest::prelude::*;
+use solids::Solids;
 
 /// How near to an edge a pixel's centre may be before its colour is anybody's guess, in pixels.
 const DOUBTFUL: f64 = 1e-5;
-/// Further than anything.
-const FAR: f64 = 1e30;
 const SKY: Rgb = Rgb::new(1, 2, 3);
-const GROUND: Rgb = Rgb::new(8, 16, 24);
 const COLUMNS: usize = 6;
 const ROWS: usize = 5;
+/// How many kinds of tile there are; things stand on the first.
+const KINDS: usize = 5;
+
+/// Pictures of noise, each in a colour of its own.
+struct Noise;
+
+impl TextureFiles for Noise {
+    fn read(&self, name: &str) -> Result<Vec<u8>, TextureFileError> {
+        let number = name.bytes().fold(0_u8, |sum, byte| sum.wrapping_mul(31).wrapping_add(byte));
+        let is_thing = name.starts_with("thing");
+        let mut bytes = Vec::new();
+        let mut encoder = png::Encoder::new(&mut bytes, 8, 8);
+        encoder.set_color(png::ColorType::Rgba);
+        let places = (0..8_u8).flat_map(|y| (0..8_u8).map(move |x| (x, y)));
+        let texels: Vec<u8> = places
+            .flat_map(|(x, y)| {
+                // A thing has holes and no edges.
+                let is_clear = is_thing && (x ^ y) % 3 == 0;
+                [x * 32 + 7, y * 32 + 7, number | 1, if is_clear { 0 } else { u8::MAX }]
+            })
+            .collect();
+        encoder.write_header().unwrap().write_image_data(&texels).unwrap();
+        Ok(bytes)
+    }
+}
 
 /// What a tile of a random world is like.
 #[derive(Clone, Copy, Debug)]
@@ -24,21 +50,47 @@ enum Kind {
     Wall { height: f64 },
     Open { floor: f64 },
     Covered { floor: f64, room: f64, rock: f64 },
+    Shape { floor: f64, height: f64, outline: &'static str },
+}
+
+/// How things in a world are painted.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+enum Look {
+    Colors,
+    Textures,
+}
+
+impl Look {
+    /// What a map says of the paint of one part of the tile `character`.
+    fn paint(self, character: char, part: u8) -> String {
+        match self {
+            Self::Colors => {
+                let kind = character as u8 - b'a';
+                Rgb::new(9 * kind + 20, 50 * part, 200).to_string()
+            }
+            Self::Textures => format!("{character}{part}.png"),
+        }
+    }
+}
+
+fn ordinary_height() -> impl Strategy<Value = f64> {
+    prop_oneof![
+        2 => (-4..=8_i32).prop_map(|quarters| f64::from(quarters) / 4.0),
+        1 => -1.0..2.0,
+    ]
 }
 
 fn height() -> impl Strategy<Value = f64> {
     prop_oneof![
-        4 => (-4..=8_i32).prop_map(|quarters| f64::from(quarters) / 4.0),
-        2 => -1.0..2.0,
+        6 => ordinary_height(),
         1 => prop::sample::select(vec![1e-9, -1e-9, 0.5 + 1e-9, 1e3, -1e3, 1e8, -1e8]),
     ]
 }
 
-fn kind() -> impl Strategy<Value = Kind> {
+fn open_kind<H: Strategy<Value = f64>>(height: impl Fn() -> H) -> impl Strategy<Value = Kind> {
     let above = || prop_oneof![4 => 0.25..2.0, 1 => Just(1e-9), 1 => Just(1e3)];
     let rock = prop_oneof![Just(0.0), 0.1..1.0];
     prop_oneof![
-        height().prop_map(|height| Kind::Wall { height: height.abs().max(1e-9) }),
         height().prop_map(|floor| Kind::Open { floor }),
         (height(), above(), rock).prop_map(|(floor, room, rock)| Kind::Covered {
             floor,
@@ -48,22 +100,46 @@ fn kind() -> impl Strategy<Value = Kind> {
     ]
 }
 
-/// A map of tiles `a`, `b` and so on; the player starts in a corner that nobody looks at.
-fn map_of(kinds: &[Kind], cells: &[usize], is_covered: bool) -> String {
+fn kind<H: Strategy<Value = f64>>(height: impl Fn() -> H) -> impl Strategy<Value = Kind> {
+    let outline = prop::sample::select(&OUTLINES[..]);
+    let shape = (ordinary_height(), 0.1..2.0, outline);
+    prop_oneof![
+        1 => height().prop_map(|height| Kind::Wall { height: height.abs().max(1e-9) }),
+        2 => open_kind(height),
+        1 => shape.prop_map(|(floor, height, outline)| Kind::Shape { floor, height, outline }),
+    ]
+}
+
+/// What a map says of a shape after its kind and its paint.
+const OUTLINES: [&str; 6] = [
+    "pillar = ; radius = 0.5",
+    "pillar = ; radius = 0.3",
+    "pillar = ; radius = 0.11",
+    "diagonal = ; from = \"north-east\"",
+    "diagonal = ; from = \"north-west\"",
+    "thin = ; at = \"north-south\"",
+];
+
+/// A map of tiles `a`, `b` and so on, with things on some of the first kind; the player starts in a corner
+/// that nobody looks at.
+fn map_of(kinds: &[Kind], cells: &[usize], is_covered: bool, look: Look) -> String {
     let mut text = format!(
-        "sky = {{ gradient = [\"{SKY}\", \"{SKY}\"] }}\nfloor = \"{GROUND}\"\nceiling = \"{}\"\n",
-        if is_covered { "#506070" } else { "sky" }
+        "sky = {{ gradient = [\"{SKY}\", \"{SKY}\"] }}\nfloor = \"{}\"\nceiling = \"{}\"\n",
+        look.paint('z', 0),
+        if is_covered { look.paint('z', 1) } else { "sky".to_owned() }
     );
     text += "ceiling_height = 1.25\ngrid = '''\n";
     for row in cells.chunks(COLUMNS) {
-        text.extend(row.iter().map(|&kind| char::from(b'a' + kind as u8)));
+        let character = |&kind: &usize| match kind {
+            KINDS.. => 't',
+            kind => char::from(b'a' + kind as u8),
+        };
+        text.extend(row.iter().map(character));
         text.push('\n');
     }
     _ = writeln!(text, "@.....\n'''\n[tiles]");
-    for (index, kind) in kinds.iter().enumerate() {
-        let character = char::from(b'a' + index as u8);
-        let color = |part: usize| Rgb::new(20 * index as u8 + 20, 50 * part as u8, 200);
-        let [floor, ceiling, riser, lintel] = [0, 1, 2, 3].map(color);
+    for (character, kind) in ('a'..).zip(kinds) {
+        let [floor, ceiling, riser, lintel] = [0, 1, 2, 3].map(|part| look.paint(character, part));
         _ = match kind {
             Kind::Wall { height } => {
                 writeln!(text, "{character} = {{ wall = \"{riser}\", height = {height:?} }}")
@@ -83,118 +159,18 @@ fn map_of(kinds: &[Kind], cells: &[usize], is_covered: bool) -> String {
                     top + rock
                 )
             }
+            Kind::Shape { floor: floor_height, height, outline } => {
+                let outline = outline.replace(';', &format!("\"{lintel}\","));
+                writeln!(
+                    text,
+                    "{character} = {{ {outline}, height = {height:?}, floor = \"{floor}\", \
+                     floor_height = {floor_height:?}, riser = \"{riser}\", ceiling = \"sky\" }}"
+                )
+            }
         };
     }
-    text + "[things]\n\"@\" = { start = 0 }\n"
-}
-
-/// A block of rock, and the colours of its sides, its top and its bottom.
-struct Block {
-    low: DVec3,
-    high: DVec3,
-    side: Rgb,
-    top: Rgb,
-    bottom: Rgb,
-}
-
-/// Which face of a block a line enters.
-#[derive(Clone, Copy, Debug, PartialEq)]
-enum Face {
-    X,
-    Y,
-    Top,
-    Bottom,
-}
-
-/// All rock of `world`, and the ground around it.
-fn blocks_of(world: &World) -> Vec<Block> {
-    let (width, height) = (world.grid().width(), world.grid().height());
-    let cells = (0..height).flat_map(|row| (0..width).map(move |column| (column, row)));
-    let mut blocks: Vec<Block> = cells
-        .flat_map(|(column, row)| {
-            let tile = world.tile(world.grid().tile(column.into(), row.into()).unwrap());
-            let gaps: Vec<Gap> = tile.gaps().collect();
-            let low = DVec3::new(f64::from(column), f64::from(row), -FAR);
-            let high = DVec3::new(low.x + 1.0, low.y + 1.0, gaps[0].bottom);
-            let [riser, lintel] = [tile.riser, tile.lintel].map(|paint| world.mean_color(paint));
-            let floor = world.mean_color(tile.floor.pattern.first_paint());
-            let top = if let TileKind::Wall(_) = tile.kind { riser } else { floor };
-            let below = Block { low, high, side: riser, top, bottom: Rgb::BLACK };
-            let above = gaps.get(1).map(|gap| Block {
-                low: low.with_z(gaps[0].top),
-                high: high.with_z(gap.bottom),
-                side: lintel,
-                top: lintel,
-                bottom: match tile.ceiling {
-                    cellcaster::world::Ceiling::Covered(it) => {
-                        world.mean_color(it.pattern.first_paint())
-                    }
-                    cellcaster::world::Ceiling::Sky => unreachable!("there is rock above"),
-                },
-            });
-            [below].into_iter().chain(above)
-        })
-        .collect();
-    let (width, height) = (f64::from(width), f64::from(height));
-    let around = [
-        (-FAR, -FAR, 0.0, FAR),
-        (width, -FAR, FAR, FAR),
-        (0.0, -FAR, width, 0.0),
-        (0.0, height, width, FAR),
-    ];
-    blocks.extend(around.map(|(west, north, east, south)| Block {
-        low: DVec3::new(west, north, -FAR),
-        high: DVec3::new(east, south, 0.0),
-        side: GROUND,
-        top: GROUND,
-        bottom: GROUND,
-    }));
-    blocks
-}
-
-impl Block {
-    /// Where a line from `origin` along `direction` enters, and by which face.
-    fn entry(&self, origin: DVec3, direction: DVec3) -> Option<(f64, Face)> {
-        let mut enters = (f64::NEG_INFINITY, Face::X);
-        let mut leaves = f64::INFINITY;
-        for axis in 0..3 {
-            let to = |place: f64| (place - origin[axis]) / direction[axis];
-            if direction[axis] == 0.0 {
-                if !(self.low[axis]..=self.high[axis]).contains(&origin[axis]) {
-                    return None;
-                }
-                continue;
-            }
-            let (near, far) = if direction[axis] > 0.0 {
-                (to(self.low[axis]), to(self.high[axis]))
-            } else {
-                (to(self.high[axis]), to(self.low[axis]))
-            };
-            if near > enters.0 {
-                let upright = [Face::X, Face::Y].get(axis).copied();
-                let flat = if direction.z > 0.0 { Face::Bottom } else { Face::Top };
-                enters = (near, upright.unwrap_or(flat));
-            }
-            leaves = leaves.min(far);
-        }
-        (enters.0 >= 0.0 && enters.0 <= leaves).then_some(enters)
-    }
-}
-
-/// The colour of what a line meets first, and which block and face that is.
-fn meet(blocks: &[Block], origin: DVec3, direction: DVec3) -> Option<(usize, Face, Rgb)> {
-    let entries = blocks.iter().enumerate().filter_map(|(index, block)| {
-        block.entry(origin, direction).map(|(t, face)| (t, index, face))
-    });
-    let (_, index, face) = entries.min_by(|one, other| one.0.total_cmp(&other.0))?;
-    let block = &blocks[index];
-    let color = match face {
-        Face::X => block.side,
-        Face::Y => block.side.halved(),
-        Face::Top => block.top,
-        Face::Bottom => block.bottom,
-    };
-    Some((index, face, color))
+    text + "[things]\n\"@\" = { start = 0 }\n\
+            t = { sprite = \"thing.png\", height = 0.8, on = \"a\" }\n"
 }
 
 /// The line through a place in a picture.
@@ -206,13 +182,31 @@ fn direction(camera: &Camera, frame: &Frame, x: f64, y: f64) -> DVec3 {
     across.extend((horizon - y) / focal_length)
 }
 
-proptest! {
-    #![proptest_config(ProptestConfig::with_cases(256))]
+/// A world of tiles, and from where and how it is looked at.
+#[derive(Clone, Debug)]
+struct Scene {
+    kinds: Vec<Kind>,
+    cells: Vec<usize>,
+    is_covered: bool,
+    position: DVec2,
+    is_on_a_roof: bool,
+    up: f64,
+    degrees: f64,
+    pitch: f64,
+    size: (u32, u32),
+}
 
-    #[test]
-    fn every_pixel_is_where_geometry_says(
-        kinds in prop::collection::vec(kind(), 5),
-        cells in prop::collection::vec(0_usize..5, COLUMNS * ROWS),
+prop_compose! {
+    fn scene(of: Look)(
+        first in match of {
+            Look::Colors => open_kind(height).boxed(),
+            Look::Textures => open_kind(ordinary_height).boxed(),
+        },
+        others in match of {
+            Look::Colors => prop::collection::vec(kind(height), KINDS - 1).boxed(),
+            Look::Textures => prop::collection::vec(kind(ordinary_height), KINDS - 1).boxed(),
+        },
+        cells in prop::collection::vec(0..=KINDS, COLUMNS * ROWS),
         is_covered in any::<bool>(),
         position in (0.0..6.0, 0.0..5.0),
         is_on_a_roof in any::<bool>(),
@@ -220,33 +214,59 @@ proptest! {
         degrees in prop_oneof![0.0..360.0, (0..8).prop_map(|eighth| 45.0 * f64::from(eighth))],
         pitch in prop_oneof![Just(0.0), -30.0..30.0],
         size in (1_u32..40, 1_u32..40),
-    ) {
-        let world = map::parse_str(&map_of(&kinds, &cells, is_covered)).unwrap();
+    ) -> Scene {
+        let kinds = [vec![first], others].concat();
         let position = DVec2::from(position);
-        let tile = world.grid().tile(position.x as i64, position.y as i64).unwrap();
-        let mut gaps = world.tile(tile).gaps();
-        let gap = if is_on_a_roof { gaps.next_back() } else { gaps.next() }.unwrap();
-        let eye = gap.bottom + up * gap.height().min(3.0);
-        let camera =
-            Camera::new(position, Heading::from_degrees(degrees).unwrap(), FieldOfView::default());
-        let camera = camera.unwrap().with_eye(eye).unwrap();
-        let camera = camera.with_pitch(Pitch::from_degrees(pitch).unwrap());
-        let mut frame = Frame::new(FrameSize::new(size.0, size.1).unwrap(), PixelAspect::SQUARE);
-        Renderer::new().render(&world, &camera, &mut frame);
+        Scene { kinds, cells, is_covered, position, is_on_a_roof, up, degrees, pitch, size }
+    }
+}
 
-        let blocks = blocks_of(&world);
-        let origin = position.extend(eye);
-        for (x, y) in (0..size.0).flat_map(|x| (0..size.1).map(move |y| (x, y))) {
-            let meet_beside = |right: f64, down: f64| {
-                let (x, y) = (f64::from(x) + 0.5 + right, f64::from(y) + 0.5 + down);
-                meet(&blocks, origin, direction(&camera, &frame, x, y))
-            };
-            let met = meet_beside(0.0, 0.0);
-            let beside = [(-DOUBTFUL, 0.0), (DOUBTFUL, 0.0), (0.0, -DOUBTFUL), (0.0, DOUBTFUL)];
-            if beside.into_iter().all(|(right, down)| meet_beside(right, down) == met) {
-                let color = met.map_or(SKY, |(_, _, color)| color);
-                prop_assert_eq!(frame.pixel(x, y), color, "at ({}, {}): {:?}", x, y, met);
-            }
+/// Compares every pixel of a picture but for those on an edge.
+fn compare(scene: &Scene, look: Look) -> Result<(), TestCaseError> {
+    let text = map_of(&scene.kinds, &scene.cells, scene.is_covered, look);
+    let world = map::parse(&text, "random", &Noise).unwrap_or_else(|it| panic!("{text}\n{it}"));
+    let position = scene.position;
+    let tile = world.grid().tile(position.x as i64, position.y as i64).unwrap();
+    let mut gaps = world.tile(tile).gaps();
+    let gap = if scene.is_on_a_roof { gaps.next_back() } else { gaps.next() }.unwrap();
+    let eye = gap.bottom + scene.up * gap.height().min(3.0);
+    let heading = Heading::from_degrees(scene.degrees).unwrap();
+    let camera = Camera::new(position, heading, FieldOfView::default()).unwrap();
+    let camera = camera.with_eye(eye).unwrap();
+    let camera = camera.with_pitch(Pitch::from_degrees(scene.pitch).unwrap());
+    let solids = Solids::of(&world, &camera);
+    prop_assume!(!solids.is_in_pillar(position.extend(eye)));
+
+    let size = FrameSize::new(scene.size.0, scene.size.1).unwrap();
+    let mut frame = Frame::new(size, PixelAspect::SQUARE);
+    let mut renderer = Renderer::new();
+    renderer.set_filter(Filter::Nearest);
+    renderer.render(&world, &camera, &mut frame);
+    for (x, y) in (0..scene.size.0).flat_map(|x| (0..scene.size.1).map(move |y| (x, y))) {
+        let meet_beside = |right: f64, down: f64| {
+            let (x, y) = (f64::from(x) + 0.5 + right, f64::from(y) + 0.5 + down);
+            solids.meet(direction(&camera, &frame, x, y))
+        };
+        let met = meet_beside(0.0, 0.0);
+        let beside = [(-DOUBTFUL, 0.0), (DOUBTFUL, 0.0), (0.0, -DOUBTFUL), (0.0, DOUBTFUL)];
+        if beside.into_iter().all(|(right, down)| meet_beside(right, down) == met) {
+            let color = met.map_or(SKY, |met| met.color);
+            prop_assert_eq!(frame.pixel(x, y), color, "at ({}, {}): {:?}", x, y, met);
         }
+    }
+    Ok(())
+}
+
+proptest! {
+    #![proptest_config(ProptestConfig::with_cases(256))]
+
+    #[test]
+    fn every_pixel_is_where_geometry_says(scene in scene(Look::Colors)) {
+        compare(&scene, Look::Colors)?;
+    }
+
+    #[test]
+    fn every_texel_is_where_geometry_says(scene in scene(Look::Textures)) {
+        compare(&scene, Look::Textures)?;
     }
 }

@@ -5,7 +5,8 @@ use cellcaster::cast::{Caster, Exact, Ray};
 use cellcaster::map;
 use cellcaster::render::{Filter, Frame, FrameSize, PixelAspect, Renderer};
 use cellcaster::world::{
-    Camera, Ceiling, Covering, FieldOfView, Heading, Light, Paint, Pattern, Pitch, Rgb, World,
+    Camera, Ceiling, Cell, Covering, FieldOfView, Heading, Light, Opening, Paint, Pattern, Pitch,
+    Rgb, World,
 };
 use glam::DVec2;
 use proptest::prelude::*;
@@ -163,4 +164,30 @@ things."@".start = 0
     Renderer::new().render(&world, &camera, &mut frame);
     let brightest = frame.rows().flatten().map(|pixel| pixel.red()).max().unwrap();
     assert!((120..=128).contains(&brightest), "{brightest}");
+}
+
+/// What is seen of the cell in the middle of a corridor that has a floor and a ceiling of its own.
+#[test]
+fn what_stands_in_a_cell_leaves_its_floor_and_its_ceiling_to_see() {
+    const FLOOR: Rgb = Rgb::new(200, 10, 10);
+    const CEILING: Rgb = Rgb::new(10, 10, 200);
+    for tile in ["door = \"oak\"", "glass = \"#808080\", opacity = 0.0", "mask = \"fence\""] {
+        for uneven in ["", "ceiling_height = 1.5\n"] {
+            let text = format!(
+                "{uneven}grid = '''\n#######\n#@.+..#\n#######\n'''\n[tiles]\n\
+                 \"#\" = {{ wall = \"brick\" }}\n\
+                 \"+\" = {{ {tile}, floor = \"{FLOOR}\", ceiling = \"{CEILING}\" }}\n\
+                 [things]\n\"@\" = {{ start = 0 }}\n"
+            );
+            let mut world = map::parse_str(&text).unwrap_or_else(|faults| panic!("{faults}"));
+            world.set_opening(Cell { column: 3, row: 1 }, Opening::OPEN);
+            let size = FrameSize::new(80, 60).unwrap();
+            let mut frame = Frame::new(size, PixelAspect::SQUARE);
+            let camera = world.start_camera(FieldOfView::default());
+            Renderer::new().render(&world, &camera, &mut frame);
+            for color in [FLOOR, CEILING] {
+                assert!(frame.rows().flatten().any(|&pixel| pixel == color), "{tile}, {color}");
+            }
+        }
+    }
 }

@@ -24,6 +24,15 @@ pub(super) fn meet(ray: &Ray, cell: Cell, outline: Outline) -> Option<Hit> {
     }
 }
 
+/// How far along `ray`, which is in `cell` for a while, it comes out of the shape of that outline there,
+/// if it has been inside: a line has no inside.
+pub(super) fn leave(ray: &Ray, cell: Cell, outline: Outline) -> Option<f64> {
+    let Outline::Pillar(radius) = outline else { return None };
+    let (_, exponent) = ray.scaled_direction();
+    let t = libm::scalbn(Chord::new(ray, cell, radius)?.end(), -exponent);
+    (t >= 0.0).then_some(t)
+}
+
 fn meet_line(ray: &Ray, cell: Cell, line: Line) -> Option<Hit> {
     let (start, stretch) = (line.start(cell), line.stretch());
     let (direction, exponent) = ray.scaled_direction();
@@ -47,29 +56,68 @@ fn meet_line(ray: &Ray, cell: Cell, line: Line) -> Option<Hit> {
 }
 
 fn meet_pillar(ray: &Ray, cell: Cell, radius: PillarRadius) -> Option<Hit> {
-    /// From further away than that, squares are beyond what a double holds.
-    const FARTHEST: f64 = 1e100;
-    let (center, radius) = (cell.center(), radius.cells());
+    let Chord { to_closest, half_length, outside, miss, .. } = Chord::new(ray, cell, radius)?;
+    if outside < 0.0 || to_closest <= 0.0 {
+        return None;
+    }
     let (direction, exponent) = ray.scaled_direction();
-    let x = Double::sum(center.x, -ray.origin().x);
-    let y = Double::sum(center.y, -ray.origin().y);
-    if x.rounded().abs().max(y.rounded().abs()) > FARTHEST {
-        return None;
+    let t = libm::scalbn(outside / (to_closest + half_length), -exponent);
+    let outward = direction.perp() * miss - direction * half_length;
+    Some(Hit { cell, side: facing(outward), t, u: around_pillar(outward, radius.cells()) })
+}
+
+/// The part of a line that is in a pillar, in numbers that are larger by the length of the ray's scaled
+/// direction.
+struct Chord {
+    /// The way from the ray's start to the middle of the chord.
+    to_closest: f64,
+    half_length: f64,
+    /// By how much the square of the start's distance from the axis is larger than that of the radius;
+    /// not larger by anything.
+    outside: f64,
+    /// By how much the line misses the axis, to one side.
+    miss: f64,
+    /// The square of the length that it all is larger by.
+    scale_squared: f64,
+}
+
+impl Chord {
+    /// The chord of the line that `ray` is part of; `None` where that passes by.
+    fn new(ray: &Ray, cell: Cell, radius: PillarRadius) -> Option<Self> {
+        /// From further away than that, squares are beyond what a double holds.
+        const FARTHEST: f64 = 1e100;
+        let (center, radius) = (cell.center(), radius.cells());
+        let (direction, _) = ray.scaled_direction();
+        let x = Double::sum(center.x, -ray.origin().x);
+        let y = Double::sum(center.y, -ray.origin().y);
+        if x.rounded().abs().max(y.rounded().abs()) > FARTHEST {
+            return None;
+        }
+        let (along_x, along_y) = (Double::from(direction.x), Double::from(direction.y));
+        let to_closest = (x * along_x + y * along_y).rounded();
+        let miss = x * along_y - y * along_x;
+        let length_squared = along_x.square() + along_y.square();
+        let radius_squared = Double::product(radius, radius);
+        let half_length_squared = (radius_squared * length_squared - miss.square()).rounded();
+        let outside = (x.square() + y.square() - radius_squared).rounded();
+        (half_length_squared >= 0.0).then(|| Self {
+            to_closest,
+            half_length: half_length_squared.sqrt(),
+            outside,
+            miss: miss.rounded(),
+            scale_squared: length_squared.rounded(),
+        })
     }
-    let (along_x, along_y) = (Double::from(direction.x), Double::from(direction.y));
-    let to_closest = (x * along_x + y * along_y).rounded();
-    let miss = x * along_y - y * along_x;
-    let length_squared = along_x.square() + along_y.square();
-    let radius_squared = Double::product(radius, radius);
-    let half_chord_squared = (radius_squared * length_squared - miss.square()).rounded();
-    let outside = (x.square() + y.square() - radius_squared).rounded();
-    if half_chord_squared < 0.0 || outside < 0.0 || to_closest <= 0.0 {
-        return None;
+
+    /// Where the ray comes out, in lengths of its scaled direction; negative where that is behind it.
+    fn end(&self) -> f64 {
+        // Of the two ways to write the solution, the one that adds up what has one sign.
+        if self.to_closest > 0.0 {
+            (self.to_closest + self.half_length) / self.scale_squared
+        } else {
+            -self.outside / (self.half_length - self.to_closest)
+        }
     }
-    let half_chord = half_chord_squared.sqrt();
-    let t = libm::scalbn(outside / (to_closest + half_chord), -exponent);
-    let outward = direction.perp() * miss.rounded() - direction * half_chord;
-    Some(Hit { cell, side: facing(outward), t, u: around_pillar(outward, radius) })
 }
 
 /// How far along its paper a pillar shows where it faces `outward`. The paper is pasted around it as

@@ -28,7 +28,8 @@ USAGE
   cellcaster wire [MAP] [OPTIONS]      bytes a frame against what the viewer sees
   cellcaster --help | --version
 
-  MAP is a map file, or a built-in level: cellar, museum, citadel.
+  MAP is a map file, or a built-in level: cellar, museum, citadel,
+  cistern, observatory.
 
 KEYS
   W S, Up Down      walk                M, Tab  show or hide the map

@@ -87,6 +87,11 @@ impl Player {
         self.feet
     }
 
+    /// How high the top of their head is, in cells.
+    pub(super) fn head(&self) -> f64 {
+        self.feet + self.posture.height()
+    }
+
     pub(super) fn heading(&self) -> Heading {
         self.heading
     }

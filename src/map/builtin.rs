@@ -29,4 +29,6 @@ pub const LEVELS: &[Level] = &[
     Level { name: "cellar", text: include_str!("../../maps/cellar.toml") },
     Level { name: "museum", text: include_str!("../../maps/museum.toml") },
     Level { name: "citadel", text: include_str!("../../maps/citadel.toml") },
+    Level { name: "cistern", text: include_str!("../../maps/cistern.toml") },
+    Level { name: "observatory", text: include_str!("../../maps/observatory.toml") },
 ];

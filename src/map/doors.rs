@@ -100,13 +100,14 @@ pub(super) fn faults(
     grid: &Grid,
     tiles: &[Tile],
     start: Start,
+    low_things: &BTreeSet<Cell>,
 ) -> Vec<Fault> {
     let doors = drawn_doors(drawing, legend);
     let mut faults: Vec<Fault> =
         doors.filter_map(|door| misplaced(drawing, grid, tiles, door)).collect();
     // Where doors are misplaced, what lies behind them is anybody's guess.
     if faults.is_empty() {
-        faults = keys_out_of_reach(drawing, legend, grid, start);
+        faults = keys_out_of_reach(drawing, legend, grid, start, low_things);
     }
     faults.extend(useless_keys(drawing, legend));
     faults
@@ -213,6 +214,7 @@ fn keys_out_of_reach(
     legend: &Legend<'_>,
     grid: &Grid,
     start: Start,
+    low_things: &BTreeSet<Cell>,
 ) -> Vec<Fault> {
     let mut locks = BTreeMap::new();
     for (character, key) in locked_doors(drawing, legend) {
@@ -224,6 +226,7 @@ fn keys_out_of_reach(
     let passable: BTreeSet<Cell> =
         drawn(drawing, legend, |meaning| matches!(meaning, Meaning::Door(_) | Meaning::Shape(_)))
             .flat_map(|character| drawing.cells_of(character))
+            .chain(low_things.iter().copied())
             .collect();
     let keys: BTreeMap<Cell, &str> = drawn_keys(drawing, legend)
         .flat_map(|(character, key)| drawing.cells_of(character).map(|cell| (cell, key.name)))

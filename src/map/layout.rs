@@ -60,7 +60,8 @@ impl Layout {
         let (things, sprites) = things(drawing, legend, &keys, textures, faults);
         let blocks = |thing: &&Thing| sprites[usize::from(thing.sprite.0)].blocks;
         things.iter().filter(blocks).for_each(|thing| grid.occupy(thing.cell));
-        faults.extend(doors::faults(drawing, legend, &grid, &tiles, start));
+        let low_things = supports::low_things(&grid, &tiles, &sprites, &things);
+        faults.extend(doors::faults(drawing, legend, &grid, &tiles, start, &low_things));
         if !faults.is_empty() {
             return None;
         }
@@ -194,11 +195,11 @@ fn tiles(
         if let Meaning::Floor = symbol.meaning {
             open.extend(tile(character, TileKind::Open, symbol, ground, faces, textures, faults));
         } else if let Some(kind) = solid_kind(&symbol.meaning, keys, textures, faults) {
+            let tile = tile(character, kind, symbol, ground, faces, textures, faults);
             if let TileKind::Door(door) = kind {
-                let kind = TileKind::Doorway(door);
-                open.extend(tile(character, kind, symbol, ground, faces, textures, faults));
+                open.extend(tile.map(|tile| Tile { kind: TileKind::Doorway(door), ..tile }));
             }
-            solid.extend(tile(character, kind, symbol, ground, faces, textures, faults));
+            solid.extend(tile);
         }
         if open.len() + solid.len() > MAX_TILES {
             let message = format!("the grid has more than {} kinds of tile", MAX_TILES - 1);

@@ -229,9 +229,7 @@ impl<'a> Surroundings<'a> {
                 !self.has_covering() && self.heights.is_empty()
             }
             Meaning::Shape(_) => true,
-            Meaning::Door(_) | Meaning::Mask(_) | Meaning::Glass(_) => {
-                !self.has_covering() && self.light.is_none()
-            }
+            Meaning::Door(_) | Meaning::Mask(_) | Meaning::Glass(_) => self.light.is_none(),
             _ => self.is_empty(),
         }
     }

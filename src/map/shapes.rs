@@ -5,7 +5,7 @@ use toml::de::DeTable;
 use super::textures::{Surface, Textures};
 use crate::fault::document::{Entry, entries};
 use crate::fault::{Fault, nearest, quoted};
-use crate::world::{Line, Outline, PillarRadius, Shape};
+use crate::world::{Heights, Line, Outline, PillarRadius, Shape, ShapeHeight};
 
 const DEFAULT_RADIUS: PillarRadius = PillarRadius::new(0.3).expect("it fits a cell");
 
@@ -31,6 +31,7 @@ const CORNERS: [(&str, Line); 4] = [
 pub(super) struct ShapeSymbol<'a> {
     outline: Outline,
     surface: Surface<'a>,
+    height: Option<ShapeHeight>,
 }
 
 impl<'a> ShapeSymbol<'a> {
@@ -67,7 +68,9 @@ impl<'a> ShapeSymbol<'a> {
                 None
             }
         };
-        Some(Self { outline: outline?, surface: surface? })
+        let height = entries(table).find(|entry| entry.key == "height");
+        let height = height.and_then(|height| read_height(&height, faults));
+        Some(Self { outline: outline?, surface: surface?, height })
     }
 
     /// The shape, papered with one of `textures`.
@@ -77,7 +80,7 @@ impl<'a> ShapeSymbol<'a> {
         faults: &mut Vec<Fault>,
     ) -> Option<Shape> {
         let paint = textures.paint(&self.surface, faults)?;
-        Some(Shape { outline: self.outline, paint })
+        Some(Shape { outline: self.outline, paint, height: self.height })
     }
 }
 
@@ -88,6 +91,16 @@ fn read_radius(entry: &Entry<'_, '_>, faults: &mut Vec<Fault>) -> Option<PillarR
         faults.push(Fault::new(entry.value_place.clone(), message).label("this is not"));
     }
     radius
+}
+
+fn read_height(entry: &Entry<'_, '_>, faults: &mut Vec<Fault>) -> Option<ShapeHeight> {
+    let height = entry.number().and_then(ShapeHeight::new);
+    if height.is_none() {
+        let most = Heights::MOST;
+        let message = format!("the height of a shape is above 0 and at most {most} cells");
+        faults.push(Fault::new(entry.value_place.clone(), message).label("this is not"));
+    }
+    height
 }
 
 /// The line that `entry` names: one of `lines`, each of which is `what`.

@@ -1,10 +1,12 @@
 //! What things stand on: floor as the map says, or the floor of a tile that they name.
 
+use std::collections::BTreeSet;
+
 use super::drawing::Drawing;
 use super::heights::LEAST_HEADROOM;
 use super::legend::{Legend, Meaning, Support};
 use crate::fault::Fault;
-use crate::world::{Grid, Start, Tile};
+use crate::world::{Cell, Grid, Sprite, Start, Thing, Tile};
 
 /// The faults that things in the drawing stand on what is no open floor.
 pub(super) fn faults(drawing: &Drawing<'_>, legend: &Legend<'_>) -> Vec<Fault> {
@@ -28,6 +30,30 @@ pub(super) fn of<'l>(
         let support = legend.symbols.get(&character)?.support.as_ref()?;
         Some((character, support))
     })
+}
+
+/// The cells of things that are in the way, but leave room above them for who jumps that high.
+pub(super) fn low_things(
+    grid: &Grid,
+    tiles: &[Tile],
+    sprites: &[Sprite],
+    things: &[Thing],
+) -> BTreeSet<Cell> {
+    /// How tall a player is who ducks, in cells.
+    const DUCKING: f64 = 0.5;
+    let is_low = |thing: &&Thing| {
+        let (column, row) = (i64::from(thing.cell.column), i64::from(thing.cell.row));
+        let (Some(sprite), Some(id)) =
+            (sprites.get(usize::from(thing.sprite.0)), grid.tile(column, row))
+        else {
+            return false;
+        };
+        let tile = &tiles[usize::from(id.0)];
+        let top = sprite.base(tile.heights) + sprite.height.cells();
+        let has_room = tile.gaps().any(|gap| gap.holds(top) && gap.top - top >= DUCKING);
+        sprite.blocks && has_room
+    };
+    things.iter().filter(is_low).map(|thing| thing.cell).collect()
 }
 
 /// The fault that the player has no room to stand where they start.

@@ -103,7 +103,7 @@ impl Plan {
     /// The plan for what `camera` sees of `world`.
     pub fn new(world: &World, camera: &Camera, filter: Filter) -> Self {
         let tiles = world.tiles();
-        let is_open = |tile: &&Tile| matches!(tile.kind, TileKind::Open | TileKind::Shape(_));
+        let is_open = |tile: &&Tile| !matches!(tile.kind, TileKind::Wall(_) | TileKind::Mirror(_));
         let dims = |tile: &Tile| tile.light.is_some_and(|light| light != Light::FULL);
         let open = || tiles.iter().filter(is_open);
         let is_foggy = world.fog().is_some();

@@ -18,9 +18,9 @@ use super::see_through::{self, Passed};
 use super::shade::{Bright, Faded, Shade};
 use super::tally::{Pass, Tally};
 use super::{Frame, Scene, Surface};
+use crate::world::Thing;
 use crate::world::texture::Level;
-use crate::world::{Anchor, Thing};
-use sight::Sight;
+pub(super) use sight::Sight;
 
 /// Things that are nearer than that to the camera plane are not drawn: the player stands in them.
 pub(super) const NEAREST: f64 = 0.2;
@@ -155,11 +155,7 @@ impl<'a> Picture<'a> {
         let to_viewer: DVec2 = projection.origin() - thing.cell.center();
         let texture = sprite.picture(seconds, to_viewer);
         let height = sprite.height.cells();
-        let room = world.room_in(thing.cell);
-        let base = match sprite.anchor {
-            Anchor::Floor => room.floor(),
-            Anchor::Ceiling => room.ceiling() - height,
-        };
+        let base = sprite.base(world.room_in(thing.cell));
         let top = projection.row_at(base + height, depth);
         let bottom = projection.row_at(base, depth);
         let texels = f64::from(texture.width()) * f64::from(texture.height());

@@ -17,6 +17,7 @@ mod lines;
 mod look;
 mod notes;
 mod planes;
+mod sights;
 mod standing;
 #[cfg(test)]
 mod tests;
@@ -33,11 +34,14 @@ use super::tally::Tally;
 use super::{Column, Filter, Frame, Projection};
 use crate::cast::{Side, Unfolding};
 use crate::world::texture::Level;
-use crate::world::{Camera, Texture, TileId, World};
+use crate::world::{Camera, Texture, Tile, TileId, TileKind, World};
 use faces::Face;
 use look::{Branch, Look};
-use things::{Billboards, Image};
+use things::{Between, Billboards};
 use veils::Veil;
+
+/// There is room for so many images in mirrors from the first frame on.
+const IMAGES_AT_ONCE: usize = 64;
 
 /// What the passes hand on to each other; kept so that it is allocated once.
 #[derive(Clone, Debug, Default)]
@@ -50,8 +54,8 @@ pub(super) struct Windows {
     veils: Vec<Veil>,
     /// Where a ray still has to be followed.
     branches: Vec<Branch>,
-    /// What is seen of the map itself, and then in mirrors.
-    images: Vec<Image>,
+    /// Where what is seen is on the map: first as it is, and then in mirrors.
+    images: Vec<Unfolding>,
     billboards: Billboards,
     counts: WindowCounts,
 }
@@ -94,6 +98,8 @@ enum Part {
     Ceiling,
     /// The top of what hangs above the ceiling.
     Roof,
+    /// The top of a pillar.
+    Top,
 }
 
 /// By which mirrors something is seen: an index into the list of images.
@@ -118,10 +124,19 @@ pub(super) struct Scene<'a> {
 
 impl<'a> Scene<'a> {
     pub(super) fn new(world: &'a World, projection: &'a Projection, filter: Filter) -> Self {
-        let tops = world.tiles().iter().filter_map(|tile| tile.gaps().next_back());
-        let top = tops.map(|gap| gap.bottom).fold(0.0, f64::max);
         let has_things = !world.things().is_empty() || world.has_mirrors();
-        Self { world, projection, filter, top, has_things }
+        let tallest_thing =
+            if has_things { world.tallest_sprite().max(Camera::STANDING) } else { 0.0 };
+        let top_of = |tile: &Tile| match tile.kind {
+            TileKind::Open | TileKind::Doorway(_) => tile.heights.floor() + tallest_thing,
+            TileKind::Wall(_) | TileKind::Mirror(_) => tile.heights.floor(),
+            TileKind::Door(_) | TileKind::Mask(_) | TileKind::Glass(_) | TileKind::Shape(_) => {
+                tile.top_of_what_stands()
+            }
+        };
+        let roof_of = |tile: &Tile| tile.gaps().next_back().map_or(0.0, |gap| gap.bottom);
+        let tops = world.tiles().iter().map(|tile| top_of(tile).max(roof_of(tile)));
+        Self { world, projection, filter, top: tops.fold(0.0, f64::max), has_things }
     }
 
     /// The level of a texture that suits a face at `t`, where the ray leads straight at it by `slope`
@@ -162,7 +177,7 @@ pub(super) fn draw<T: Tally>(
     marks.begin(frame.width(), frame.height());
     let Windows { veils, images, billboards, .. } = windows;
     if scene.has_things {
-        billboards.find(scene, images, viewer.camera, viewer.seconds);
+        billboards.find(scene, images, veils, viewer);
     }
     veils::draw(scene, veils, billboards, marks, frame, tally);
     if !scene.has_things {
@@ -200,7 +215,9 @@ impl Windows {
             Shown::Face(Side::X) => Surface::WallX,
             Shown::Face(Side::Y) => Surface::WallY,
             Shown::Plane(Piece { part: Part::Ceiling, .. }) => Surface::Ceiling,
-            Shown::Plane(Piece { part: Part::Floor | Part::Roof, .. }) => Surface::Floor,
+            Shown::Plane(Piece { part: Part::Floor | Part::Roof | Part::Top, .. }) => {
+                Surface::Floor
+            }
         })
     }
 
@@ -226,30 +243,26 @@ impl Windows {
         self.branches.clear();
         self.branches.reserve(AT_ONCE);
         self.images.clear();
-        self.images.reserve(AT_ONCE);
-        self.images.push(Image::new(Unfolding::default()));
+        self.images.reserve(IMAGES_AT_ONCE);
+        self.images.push(Unfolding::default());
         self.counts = WindowCounts::default();
     }
 
     /// The index of `unfolding`. Of a map with more mirrors in view than there are indices, the last
     /// ones show the places of another.
     fn reflection(&mut self, unfolding: Unfolding) -> Reflection {
-        let known = self.images.iter().rposition(|known| known.unfolding == unfolding);
+        let known = self.images.iter().rposition(|&known| known == unfolding);
         let index = known.unwrap_or_else(|| {
             if u16::try_from(self.images.len()).is_ok() {
-                self.images.push(Image::new(unfolding));
+                self.images.push(unfolding);
             }
             self.images.len() - 1
         });
         Reflection(index as u16)
     }
 
-    fn image(&mut self, Reflection(index): Reflection) -> &mut Image {
-        &mut self.images[usize::from(index)]
-    }
-
     /// Where what is seen by `reflection` is on the map.
     fn unfolding(&self, Reflection(index): Reflection) -> Unfolding {
-        self.images[usize::from(index)].unfolding
+        self.images[usize::from(index)]
     }
 }

@@ -10,29 +10,34 @@
 //! moved sideways is moved by the terminal.
 
 mod control;
+mod exact;
+mod inexact;
+mod lab;
 mod look;
+mod pen;
+mod rest;
 mod screen;
 mod shift;
 mod style;
-mod tolerance;
+mod trellis;
 
 use std::io::{self, Write};
 
 use crossterm::cursor::{Hide, Show};
-use crossterm::queue;
-use crossterm::terminal::{self, BeginSynchronizedUpdate, Clear, EndSynchronizedUpdate};
+use crossterm::terminal::{self, Clear};
 use ratatui::backend::{Backend, ClearType, WindowSize};
-use ratatui::buffer::{Cell, CellWidth};
+use ratatui::buffer::Cell;
 use ratatui::layout::{Position, Size};
 use ratatui::style::Color;
 
-use self::control::ControlSequence;
-use self::look::{Block, Look};
-use self::screen::{Row, Screen};
-use self::shift::{Shift, Way};
+use self::inexact::Draughtsman;
+use self::pen::Pen;
+use self::rest::Rest;
+use self::screen::Screen;
+use self::shift::Shifts;
 use self::style::Shade;
 pub(crate) use self::style::Style;
-use self::tolerance::Tolerance;
+use self::trellis::Price;
 use super::fidelity::Fidelity;
 
 /// A ratatui backend that writes to `W`.
@@ -44,15 +49,13 @@ pub struct CellWriter<W> {
     output: W,
     size: Size,
     screen: Screen,
-    /// What is to be written; it begins with the mark of synchronized output.
-    frame: Vec<u8>,
-    style: Option<Style>,
-    position: Option<Position>,
+    pen: Pen,
     cursor_visible: bool,
     bytes_written: u64,
     fidelity: Fidelity,
-    /// How far colours may be off at present: shrinks while nothing moves.
-    tolerance: Tolerance,
+    shifts: Shifts,
+    draughtsman: Draughtsman,
+    rest: Rest,
 }
 
 impl<W: Write> CellWriter<W> {
@@ -63,13 +66,13 @@ impl<W: Write> CellWriter<W> {
             output,
             size,
             screen: Screen::blank(size),
-            frame: Vec::new(),
-            style: None,
-            position: None,
+            pen: Pen::new(size.width),
             cursor_visible: false,
             bytes_written: 0,
             fidelity: Fidelity::EXACT,
-            tolerance: Tolerance::of(Fidelity::EXACT),
+            shifts: Shifts::default(),
+            draughtsman: Draughtsman::default(),
+            rest: Rest::new(),
         }
     }
 
@@ -94,21 +97,15 @@ impl<W: Write> CellWriter<W> {
     }
 
     /// Whether the terminal shows exactly what was drawn last. Where it does not, each further draw
-    /// without a changed cell brings it nearer, and the tenth is exact.
+    /// without a changed cell brings it nearer, and after the tenth it is.
     pub fn is_settled(&self) -> bool {
         self.screen.is_exact()
     }
 
-    /// Draws what is shown inexactly anew, a little more exactly: what a draw without a changed cell
+    /// Draws a part of what is shown inexactly anew, and exactly: what a draw without a changed cell
     /// does. It is written with the next flush.
-    ///
-    /// # Errors
-    ///
-    /// None but those of writing into memory.
-    pub fn refine(&mut self) -> io::Result<()> {
-        self.tolerance = self.tolerance.refined(self.fidelity);
-        self.screen.redraw_inexact();
-        self.draw_changed()
+    pub fn refine(&mut self) {
+        self.rest.draw(&mut self.pen, &mut self.shifts, &mut self.screen);
     }
 
     /// The colours that the terminal shows in the upper and the lower half of a cell; `None` where
@@ -121,167 +118,28 @@ impl<W: Write> CellWriter<W> {
     pub fn set_size(&mut self, size: Size) {
         self.size = size;
         self.screen.resize(size);
+        self.pen.set_width(size.width);
     }
 
     /// Takes note that others may have written to the terminal: nothing is known but that the
     /// cursor is hidden.
     pub fn forget(&mut self) {
-        self.frame.clear();
         self.screen.forget();
-        self.style = None;
-        self.position = None;
+        self.pen.forget();
         self.cursor_visible = false;
     }
 
-    /// The frame, begun if it was not.
-    fn frame(&mut self) -> io::Result<&mut Vec<u8>> {
-        if self.frame.is_empty() {
-            queue!(self.frame, BeginSynchronizedUpdate)?;
-        }
-        Ok(&mut self.frame)
-    }
-
     /// Makes every row that has changed look as it is wanted.
-    fn draw_changed(&mut self) -> io::Result<()> {
-        // Taken out while it is read, as what is written to goes by the same name.
-        let mut screen = std::mem::replace(&mut self.screen, Screen::none());
-        let drawn = screen.take_changed().try_for_each(|row| self.draw_row(row));
-        self.screen = screen;
-        drawn
-    }
-
-    /// Makes a row look as it is wanted.
-    fn draw_row(&mut self, row: Row) -> io::Result<()> {
-        let Row { y, shown, looks, wanted, exact } = row;
-        if shown.iter().chain(looks).all(|look| look.can_move()) {
-            for _ in 0..MOST_SHIFTS {
-                let Some(shift) = Shift::best(shown, looks, self.tolerance) else { break };
-                self.shift(&shift, y)?;
-                shift.apply(shown);
+    fn draw_changed(&mut self) {
+        let (pen, shifts) = (&mut self.pen, &mut self.shifts);
+        let price = Price::at(self.fidelity);
+        for row in self.screen.changed_rows() {
+            match price {
+                Some(price) => self.draughtsman.draw_row(pen, shifts, row, price),
+                None => exact::draw_row(pen, shifts, row),
             }
         }
-        let mut covered = 0;
-        *exact = true;
-        for (x, (shown, &look)) in (0..).zip(shown.iter_mut().zip(looks)) {
-            if covered > 0 {
-                // The second half of a wide character.
-                covered -= 1;
-                *shown = Look::UNKNOWN;
-                continue;
-            }
-            if !shown.is_near(look, self.tolerance) {
-                *shown = match look.halves() {
-                    Some(halves) => self.draw_block(Position { x, y }, halves)?,
-                    None => self.draw_cell(Position { x, y }, &wanted[usize::from(x)], look)?,
-                };
-            }
-            if look.is_intricate() {
-                covered = wanted[usize::from(x)].cell_width().saturating_sub(1);
-            }
-            *exact &= *shown == look;
-        }
-        Ok(())
     }
-
-    /// Writes what passes for a block of these two halves, and answers what it looks like.
-    fn draw_block(&mut self, position: Position, halves: [Shade; 2]) -> io::Result<Look> {
-        self.move_to(position)?;
-        let Block { symbol, style, look } = look::cheapest(halves, self.style, self.tolerance);
-        self.set_style(style)?;
-        self.frame()?.extend_from_slice(symbol.as_bytes());
-        self.position = Some(Position { x: position.x.saturating_add(1), ..position })
-            .filter(|next| next.x < self.size.width);
-        Ok(look)
-    }
-
-    /// Writes `cell` as it is.
-    fn draw_cell(&mut self, position: Position, cell: &Cell, look: Look) -> io::Result<Look> {
-        self.move_to(position)?;
-        self.set_style(Style::of(cell))?;
-        self.write_symbol(position, cell.symbol())?;
-        Ok(look)
-    }
-
-    /// Moves a stretch of row `y`. What is to the right of it moves back and forth.
-    fn shift(&mut self, shift: &Shift, y: u16) -> io::Result<()> {
-        let (start, end, by) =
-            (shift.columns.start as u16, shift.columns.end as u16, shift.by as u16);
-        let is_whole = end == self.size.width;
-        match shift.way {
-            Way::Left => {
-                self.edit_row(Position { x: start, y }, by, DELETE)?;
-                if !is_whole {
-                    self.edit_row(Position { x: end - by, y }, by, INSERT)?;
-                }
-            }
-            Way::Right => {
-                if !is_whole {
-                    self.edit_row(Position { x: end - by, y }, by, DELETE)?;
-                }
-                self.edit_row(Position { x: start, y }, by, INSERT)?;
-            }
-        }
-        Ok(())
-    }
-
-    /// Deletes or inserts `count` characters; the cursor stays.
-    fn edit_row(&mut self, at: Position, count: u16, operation: u8) -> io::Result<()> {
-        self.move_to(at)?;
-        let mut edit = ControlSequence::begin(self.frame()?);
-        edit.parameter(count);
-        edit.end(operation);
-        Ok(())
-    }
-
-    fn move_to(&mut self, target: Position) -> io::Result<()> {
-        if self.position == Some(target) {
-            return Ok(());
-        }
-        let position = self.position;
-        let mut motion = ControlSequence::begin(self.frame()?);
-        match position {
-            Some(position) if position.y == target.y && position.x < target.x => {
-                motion.parameter(target.x - position.x);
-                motion.end(b'C');
-            }
-            _ => {
-                motion.parameters(
-                    [target.y, target.x].map(|zero_based| zero_based.saturating_add(1)),
-                );
-                motion.end(b'H');
-            }
-        }
-        self.position = Some(target);
-        Ok(())
-    }
-
-    fn set_style(&mut self, target: Style) -> io::Result<()> {
-        if self.style != Some(target) {
-            target.write_from(self.style, self.frame()?);
-            self.style = Some(target);
-        }
-        Ok(())
-    }
-
-    fn write_symbol(&mut self, at: Position, symbol: &str) -> io::Result<()> {
-        let symbol = if symbol.chars().any(char::is_control) { " " } else { symbol };
-        self.frame()?.extend_from_slice(symbol.as_bytes());
-        self.position = Some(Position { x: at.x.saturating_add(1), ..at })
-            .filter(|next| next.x < self.size.width && advances_by_one(symbol));
-        Ok(())
-    }
-}
-
-/// How often a row is shifted in a frame: its left, its right and its middle may each move their way.
-const MOST_SHIFTS: usize = 6;
-
-/// The last bytes of the sequences that delete characters, and insert blank ones.
-const DELETE: u8 = b'P';
-const INSERT: u8 = b'@';
-
-/// Whether every terminal moves its cursor by one cell for `symbol`. They disagree about the rest.
-fn advances_by_one(symbol: &str) -> bool {
-    symbol.chars().nth(1).is_none() && symbol.cell_width() == 1
 }
 
 impl<W: Write> Backend for CellWriter<W> {
@@ -294,16 +152,18 @@ impl<W: Write> Backend for CellWriter<W> {
         for (x, y, cell) in content {
             self.screen.want(x, y, cell);
         }
-        if !self.screen.is_changed() {
-            return self.refine();
+        if self.screen.is_changed() {
+            self.rest.disturb();
+            self.draw_changed();
+        } else {
+            self.refine();
         }
-        self.tolerance = Tolerance::of(self.fidelity);
-        self.draw_changed()
+        Ok(())
     }
 
     fn hide_cursor(&mut self) -> io::Result<()> {
         if self.cursor_visible {
-            queue!(self.frame()?, Hide)?;
+            self.pen.command(Hide);
             self.cursor_visible = false;
         }
         Ok(())
@@ -311,7 +171,7 @@ impl<W: Write> Backend for CellWriter<W> {
 
     fn show_cursor(&mut self) -> io::Result<()> {
         if !self.cursor_visible {
-            queue!(self.frame()?, Show)?;
+            self.pen.command(Show);
             self.cursor_visible = true;
         }
         Ok(())
@@ -319,11 +179,12 @@ impl<W: Write> Backend for CellWriter<W> {
 
     /// Where the next character would go, as far as it is known without asking the terminal.
     fn get_cursor_position(&mut self) -> io::Result<Position> {
-        Ok(self.position.unwrap_or(Position::ORIGIN))
+        Ok(self.pen.position().unwrap_or(Position::ORIGIN))
     }
 
     fn set_cursor_position<P: Into<Position>>(&mut self, position: P) -> io::Result<()> {
-        self.move_to(position.into())
+        self.pen.move_to(position.into());
+        Ok(())
     }
 
     fn clear(&mut self) -> io::Result<()> {
@@ -331,8 +192,8 @@ impl<W: Write> Backend for CellWriter<W> {
     }
 
     fn clear_region(&mut self, region: ClearType) -> io::Result<()> {
-        self.set_style(Style::RESET)?;
-        self.screen.clear(region, self.position.unwrap_or(Position::ORIGIN));
+        self.pen.set_style(Style::RESET);
+        self.screen.clear(region, self.pen.position().unwrap_or(Position::ORIGIN));
         let region = match region {
             ClearType::All => terminal::ClearType::All,
             ClearType::AfterCursor => terminal::ClearType::FromCursorDown,
@@ -340,7 +201,8 @@ impl<W: Write> Backend for CellWriter<W> {
             ClearType::CurrentLine => terminal::ClearType::CurrentLine,
             ClearType::UntilNewLine => terminal::ClearType::UntilNewLine,
         };
-        queue!(self.frame()?, Clear(region))
+        self.pen.command(Clear(region));
+        Ok(())
     }
 
     fn size(&self) -> io::Result<Size> {
@@ -353,16 +215,13 @@ impl<W: Write> Backend for CellWriter<W> {
 
     /// Writes the frame, if there is anything in it.
     fn flush(&mut self) -> io::Result<()> {
-        if self.frame.is_empty() {
-            return Ok(());
-        }
-        queue!(self.frame, EndSynchronizedUpdate)?;
-        let written = self.output.write_all(&self.frame).and_then(|()| self.output.flush());
+        let Some(frame) = self.pen.finish_frame() else { return Ok(()) };
+        let written = self.output.write_all(frame).and_then(|()| self.output.flush());
         match written {
-            Ok(()) => self.bytes_written += self.frame.len() as u64,
+            Ok(()) => self.bytes_written += frame.len() as u64,
             Err(_) => self.forget(),
         }
-        self.frame.clear();
+        self.pen.clear();
         written
     }
 }

@@ -14,11 +14,6 @@ pub(super) fn of(command: impl Command) -> String {
     text
 }
 
-/// Starts a control sequence.
-pub(super) const INTRODUCER: &str = "\x1b[";
-/// Stands between the parameters of a control sequence.
-pub(super) const SEPARATOR: &str = ";";
-
 /// Asks for every key as an escape code, with presses, repeats and releases, and with the character
 /// that Shift makes of it: the kitty keyboard protocol's flags 1, 2, 4 and 8.
 pub(super) const PUSH_KEY_FLAGS: &str = "\x1b[>15u";

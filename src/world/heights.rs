@@ -6,7 +6,7 @@
 //! refused: a floor, a ceiling and a roof say all that a raycaster's levels are made of, and there
 //! are never more than two gaps.
 
-use super::{Ceiling, Tile};
+use super::{Ceiling, Shape, Tile, TileKind};
 
 /// How high the parts of a tile are, in cells above the map's own floor: finite, and within
 /// [`Heights::MOST`] of it.
@@ -85,6 +85,20 @@ impl Tile {
             Ceiling::Covered(_) => (None, up_from(floor.max(roof))),
         };
         inside.into_iter().chain([above])
+    }
+
+    /// Up to where a door, glass, a wall with holes or a shape stands here, from the floor.
+    pub fn top_of_what_stands(&self) -> f64 {
+        let Heights { floor, ceiling, .. } = self.heights;
+        match (self.kind, self.ceiling) {
+            (TileKind::Shape(Shape { height: Some(height), .. }), Ceiling::Sky) => {
+                floor + height.cells()
+            }
+            (TileKind::Shape(Shape { height: Some(height), .. }), Ceiling::Covered(_)) => {
+                ceiling.min(floor + height.cells())
+            }
+            _ => ceiling,
+        }
     }
 }
 

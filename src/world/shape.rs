@@ -7,7 +7,7 @@
 
 use glam::DVec2;
 
-use super::{Cell, Paint};
+use super::{Cell, Heights, Paint};
 
 /// A wall that does not fill its cell.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -16,6 +16,25 @@ pub struct Shape {
     pub outline: Outline,
     /// How it looks: papered once along a line, and as often around a pillar as fits best.
     pub paint: Paint,
+    /// How high it is; `None` where it reaches up to the ceiling.
+    pub height: Option<ShapeHeight>,
+}
+
+/// How high a shape is, in cells above the floor that it stands on: above 0, and at most
+/// [`Heights::MOST`].
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct ShapeHeight(f64);
+
+impl ShapeHeight {
+    /// A height in cells. `None` where a shape of that height is none, or absurd.
+    pub const fn new(cells: f64) -> Option<Self> {
+        if cells > 0.0 && cells <= Heights::MOST { Some(Self(cells)) } else { None }
+    }
+
+    /// In cells.
+    pub fn cells(self) -> f64 {
+        self.0
+    }
 }
 
 /// What a shape looks like from above.
@@ -155,6 +174,9 @@ mod tests {
         assert!(PillarRadius::new(0.5).is_some());
         for cells in [0.0, -0.1, 0.5_f64.next_up(), f64::NAN] {
             assert_eq!(PillarRadius::new(cells), None);
+        }
+        for cells in [0.0, -0.1, 1.1e9, f64::NAN] {
+            assert_eq!(ShapeHeight::new(cells), None);
         }
     }
 }

@@ -10,7 +10,7 @@ use std::f64::consts::TAU;
 
 use glam::DVec2;
 
-use super::{Heading, Lamp, Texture};
+use super::{Heading, Heights, Lamp, Texture};
 
 /// How a thing looks, and where in its cell.
 #[derive(Clone, Debug, PartialEq)]
@@ -112,6 +112,14 @@ impl Default for FrameTime {
 }
 
 impl Sprite {
+    /// How high its lower edge is in a cell of those heights.
+    pub fn base(&self, heights: Heights) -> f64 {
+        match self.anchor {
+            Anchor::Floor => heights.floor(),
+            Anchor::Ceiling => heights.ceiling() - self.height.cells(),
+        }
+    }
+
     /// A sprite of `pictures`, frame by frame and in each facing by facing, that stands on the floor
     /// and is in nobody's way. `None` where there is no whole frame.
     pub fn new(pictures: Vec<Texture>, facings: Facings) -> Option<Self> {

@@ -11,7 +11,7 @@ use glam::DVec2;
 use super::Axis;
 use crate::cast::hit::{meeting, texture_coordinate};
 use crate::cast::{ExactOrder, Hit, Order, Ray, Side, door, shape};
-use crate::world::{Cell, Grid, TileId, TileKind, World};
+use crate::world::{Cell, Grid, Shape, TileId, TileKind, World};
 
 /// Where places of the unfolded map are on the map itself.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Default)]
@@ -126,6 +126,11 @@ impl UnfoldedWalk {
             TileKind::Shape(it) => shape::meet(&ray, cell, it.outline),
             _ => None,
         }
+    }
+
+    /// Where the ray comes out of the shape in `cell`, where it is now, if it has been inside.
+    pub(crate) fn leaving(&self, cell: Cell, shape: Shape) -> Option<f64> {
+        shape::leave(&self.real_ray(), cell, shape.outline)
     }
 
     /// The ray as it is on the map after all reflections, as if it had come straight.

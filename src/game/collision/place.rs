@@ -3,10 +3,18 @@
 //! A cell has gaps, between a floor and a ceiling or above a roof. Somebody is clear of it where one
 //! of them holds all of them, from feet to head. So for feet at one height the world is flat again:
 //! some cells block and the others do not, and the sweep needs to know of nothing else.
+//!
+//! A thing that blocks fills its cell, but only as high as it is: who jumps lands on it, or passes over
+//! it. Nobody walks up onto one, however low it is; what is to be stepped onto is drawn as a floor. A
+//! box as wide as the picture was refused: a map says of a cell whether it is free, and the level's
+//! author sees that in the grid.
+
+use std::array::IntoIter;
+use std::iter::Flatten;
 
 use glam::DVec2;
 
-use super::{Obstacles, Radius, cell_of, is_clear, is_clear_of};
+use super::{Obstacles, Radius, cell_of, cell_on_map, is_clear, is_clear_of, outline};
 use crate::game::fall::Room;
 use crate::world::{Cell, Gap, Outline, Tile, TileKind, World};
 
@@ -48,7 +56,8 @@ impl Obstacles for Place<'_> {
         let tile = self.tile(i64::from(cell.column), i64::from(cell.row))?;
         match tile.kind {
             // It reaches no further than to the ceiling.
-            TileKind::Shape(shape) if self.stature.feet < tile.heights.ceiling() => {
+            // It reaches no further than to the ceiling.
+            TileKind::Shape(shape) if self.stature.feet < tile.top_of_what_stands() => {
                 Some(shape.outline)
             }
             _ => None,
@@ -57,38 +66,54 @@ impl Obstacles for Place<'_> {
 
     /// Steps up, where there is room for it.
     fn gives_way(&mut self, column: i64, row: i64, center: DVec2, radius: Radius) -> bool {
-        let Some(feet) = self.step_up(column, row) else { return false };
-        let lifted = Self { stature: Stature { feet, ..self.stature }, ..*self };
-        let has_room = is_clear(&lifted, center, radius);
-        if has_room {
-            *self = lifted;
-        }
-        has_room
+        let at = |feet| Self { stature: Stature { feet, ..self.stature }, ..*self };
+        let mut steps = self.steps_up(column, row).map(at);
+        let Some(lifted) = steps.find(|lifted| is_clear(lifted, center, radius)) else {
+            return false;
+        };
+        *self = lifted;
+        true
     }
 }
 
 impl Place<'_> {
     /// The gap of a cell that holds all of somebody.
     fn gap(&self, column: i64, row: i64) -> Option<Gap> {
-        let stature = self.stature;
-        self.tile(column, row).and_then(|tile| gaps(tile).find(|&gap| stature.fits(gap)))
+        let tile = self.tile(column, row)?;
+        let fits = |gap: &Gap| self.stature.fits(*gap);
+        let Some(thing) = self.thing_in_the_way(column, row, tile) else {
+            return gaps(tile).find(fits);
+        };
+        gaps(tile).flat_map(|gap| around(gap, thing)).find(fits)
     }
 
-    /// The tile of a cell; `None` where that is off the map, or something stands in the way.
+    /// The tile of a cell; `None` where that is off the map.
     fn tile(&self, column: i64, row: i64) -> Option<Tile> {
-        let grid = self.world.grid();
-        let id = grid.tile(column, row).filter(|_| !grid.is_occupied(column, row))?;
+        let id = self.world.grid().tile(column, row)?;
         Some(self.world.tile(id))
     }
 
-    /// The height of the lowest floor in a cell that is a step up from here, with room to stand.
-    fn step_up(&self, column: i64, row: i64) -> Option<f64> {
-        let Stature { feet, height } = self.stature;
-        let is_step = |gap: &Gap| {
-            let stature = Stature { feet: gap.bottom, height };
-            gap.bottom > feet && gap.bottom <= feet + self.step && stature.fits(*gap)
-        };
-        gaps(self.tile(column, row)?).find(is_step).map(|gap| gap.bottom)
+    /// From where to where a thing blocks a cell of `tile`, if one does.
+    fn thing_in_the_way(&self, column: i64, row: i64, tile: Tile) -> Option<Gap> {
+        if !self.world.grid().is_occupied(column, row) {
+            return None;
+        }
+        let things = self.world.things_in(cell_on_map(column, row)?).iter();
+        let sprite = things.map(|thing| self.world.sprite(thing.sprite)).find(|it| it.blocks)?;
+        let base = sprite.base(tile.heights);
+        Some(Gap { bottom: base, top: base + sprite.height.cells() })
+    }
+
+    /// The heights in a cell that are a step up from here: its floor, and the top of its shape. Nobody
+    /// steps onto a thing.
+    fn steps_up(&self, column: i64, row: i64) -> impl Iterator<Item = f64> + use<> {
+        let Stature { feet, .. } = self.stature;
+        let most = feet + self.step;
+        let tile = self.tile(column, row);
+        let floors = tile.into_iter().flat_map(gaps).map(|gap| gap.bottom);
+        let shapes = tile.filter(|tile| matches!(tile.kind, TileKind::Shape(_)));
+        let tops = shapes.map(|tile| tile.top_of_what_stands());
+        floors.chain(tops).filter(move |&height| height > feet && height <= most)
     }
 
     /// Whether somebody has room around `center`.
@@ -104,30 +129,64 @@ impl Place<'_> {
             (row - 1..=row + 1).flat_map(|row| (column - 1..=column + 1).map(move |c| (c, row)));
         let gaps = around
             .filter(|&(column, row)| !is_clear_of(center, column, row, radius))
-            .filter_map(|(column, row)| self.gap(column, row));
+            .filter_map(|(column, row)| self.gap_above_shapes(column, row, center, radius));
         let most = Room { floor: f64::NEG_INFINITY, ceiling: f64::INFINITY };
         gaps.fold(most, |room, gap| Room {
             floor: room.floor.max(gap.bottom),
             ceiling: room.ceiling.min(gap.top - self.stature.height),
         })
     }
+
+    /// The gap of a cell that holds all of somebody whose circle is around `center`: above the shape
+    /// there, if the circle is.
+    fn gap_above_shapes(
+        &self,
+        column: i64,
+        row: i64,
+        center: DVec2,
+        radius: Radius,
+    ) -> Option<Gap> {
+        let gap = self.gap(column, row)?;
+        if !self.has_shapes {
+            return Some(gap);
+        }
+        let (tile, cell) = (self.tile(column, row)?, cell_on_map(column, row)?);
+        let top = tile.top_of_what_stands();
+        match tile.kind {
+            TileKind::Shape(shape)
+                if top <= self.stature.feet
+                    && !outline::is_clear_of(shape.outline, cell, center, radius) =>
+            {
+                Some(Gap { bottom: gap.bottom.max(top), ..gap })
+            }
+            _ => Some(gap),
+        }
+    }
 }
 
-/// What is open in a cell of `tile` to who walks: what stands in a gap fills it up to the ceiling.
+/// What is open in a cell of `tile` to who walks: a door, glass or a wall with holes fills a gap up to
+/// its top.
 fn gaps(tile: Tile) -> impl Iterator<Item = Gap> {
-    let is_filled = match tile.kind {
+    let filled = match tile.kind {
         TileKind::Open
         | TileKind::Doorway(_)
         | TileKind::Wall(_)
         | TileKind::Mirror(_)
-        | TileKind::Shape(_) => false,
-        TileKind::Door(_) | TileKind::Mask(_) | TileKind::Glass(_) => true,
+        | TileKind::Shape(_) => None,
+        TileKind::Door(_) | TileKind::Mask(_) | TileKind::Glass(_) => {
+            Some(Gap { bottom: tile.heights.floor(), top: tile.top_of_what_stands() })
+        }
     };
-    let top = tile.heights.ceiling();
-    let above = move |gap: Gap| match gap {
-        gap if !is_filled => Some(gap),
-        Gap { top: end, .. } if end <= top => None,
-        Gap { bottom, top: end } => Some(Gap { bottom: bottom.max(top), top: end }),
-    };
-    tile.gaps().filter_map(above)
+    tile.gaps().flat_map(move |gap| match filled {
+        None => [Some(gap), None].into_iter().flatten(),
+        Some(filled) => around(gap, filled),
+    })
+}
+
+/// What is left of a gap below and above what fills a part of it.
+fn around(gap: Gap, filled: Gap) -> Flatten<IntoIter<Option<Gap>, 2>> {
+    let below = Gap { top: gap.top.min(filled.bottom), ..gap };
+    let above = Gap { bottom: gap.bottom.max(filled.top), ..gap };
+    let is_open = |gap: &Gap| gap.bottom < gap.top;
+    [Some(below).filter(is_open), Some(above).filter(is_open)].into_iter().flatten()
 }

@@ -7,7 +7,8 @@ use crate::world::{Cell, Grid};
 /// A map, as somebody finds it who looks for keys.
 pub(super) struct Reach<'a> {
     pub(super) grid: &'a Grid,
-    /// The solid cells that one gets through: doors, and shapes, which may leave room beside them.
+    /// The solid cells that one gets through: doors; shapes, which may leave room beside them; and things
+    /// that may be jumped over.
     pub(super) passable: &'a BTreeSet<Cell>,
     /// The locked ones, and the names of their keys.
     pub(super) locks: &'a BTreeMap<Cell, &'a str>,

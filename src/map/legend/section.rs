@@ -18,6 +18,9 @@ const OF_TILES: &[(&str, &str)] = &[
     ("opacity", "mirror"),
     ("height", "wall"),
     ("height", "mirror"),
+    ("height", "pillar"),
+    ("height", "diagonal"),
+    ("height", "thin"),
     ("radius", "pillar"),
     ("from", "diagonal"),
     ("at", "thin"),
@@ -105,9 +108,12 @@ impl Section {
         let wanted = self.additions().filter(|(key, _)| *key == entry.key);
         let wanted: Vec<&str> = wanted.map(|(_, to)| to).collect();
         if !wanted.is_empty() {
-            let (key, to) = (entry.key, wanted.join("\" or \""));
-            let message = format!("\"{key}\" goes with \"{to}\", and there is none");
-            let help = format!("name a {} in the same braces", wanted.join(" or a "));
+            let (key, to) = (entry.key, alternatives(&wanted));
+            let message = format!("\"{key}\" goes with {to}, and there is none");
+            let help = match wanted.len() {
+                1 | 2 => format!("name a {} in the same braces", wanted.join(" or a ")),
+                _ => "name one of them in the same braces".to_owned(),
+            };
             return Fault::new(place(), message).help(help);
         }
         let other = self.other();
@@ -119,5 +125,15 @@ impl Section {
         let mut known: Vec<&str> = self.keys().iter().copied().chain(additions).collect();
         known.dedup();
         entry.unknown_key(self.noun(), &known)
+    }
+}
+
+/// `names`, each in quotes, as one says which of them there are to choose from.
+fn alternatives(names: &[&str]) -> String {
+    let quoted: Vec<String> = names.iter().map(|name| format!("\"{name}\"")).collect();
+    match quoted.split_last() {
+        Some((last, [])) => last.clone(),
+        Some((last, others)) => format!("{} or {last}", others.join(", ")),
+        None => String::new(),
     }
 }

@@ -12,16 +12,18 @@ use glam::DVec2;
 
 use super::Scene;
 use crate::render::Column;
-use crate::world::{Grid, Thing, World};
+use crate::world::{Thing, World};
 
 /// What is seen is taken to be that much larger all around, in cells: more than rounding amounts to.
 const HAIR: f64 = 1e-6;
 
 /// Which things may be in view; kept so that it is allocated once.
 #[derive(Clone, Debug, Default)]
-pub(super) struct Sight {
+pub(in crate::render) struct Sight {
     /// How far beside what is seen the middle of a thing may be that reaches into it.
     margin: f64,
+    /// How many rows the map has.
+    row_count: u32,
     first_row: u32,
     stretches: Vec<Stretch>,
 }
@@ -44,24 +46,39 @@ impl Stretch {
 impl Sight {
     /// Finds out what the rays of `scene` show.
     pub(super) fn look(&mut self, scene: Scene<'_>) {
-        let (grid, origin) = (scene.world.grid(), scene.projection.origin());
-        self.margin = scene.world.widest_sprite() / 2.0 + HAIR;
+        let origin = scene.projection.origin();
         let span = |(low, high): (f64, f64), end: DVec2| (low.min(end.y), high.max(end.y));
         let (low, high) = ends(scene).fold((origin.y, origin.y), span);
-        let rows = self.reached(low, high, grid.height());
-        self.first_row = rows.start;
-        self.stretches.clear();
-        self.stretches.reserve(grid.height() as usize);
-        self.stretches.resize(rows.len(), Stretch::NONE);
+        self.begin(scene.world, low, high);
         let corners = ends(scene).chain([origin]);
         corners.fold(origin, |one, other| {
-            self.follow(one, other, grid);
+            self.follow(one, other);
             other
         });
     }
 
+    /// Forgets what was seen, and is ready to follow lines between two places from north to south.
+    pub(in crate::render) fn begin(&mut self, world: &World, north: f64, south: f64) {
+        self.margin = world.widest_sprite() / 2.0 + HAIR;
+        self.row_count = world.grid().height();
+        let rows = self.reached(north, south, self.row_count);
+        self.first_row = rows.start;
+        self.stretches.clear();
+        self.make_room(world);
+        self.stretches.resize(rows.len(), Stretch::NONE);
+    }
+
+    /// Needs no more memory after this, whatever is seen of `world`.
+    pub(in crate::render) fn make_room(&mut self, world: &World) {
+        let missing = (world.grid().height() as usize).saturating_sub(self.stretches.len());
+        self.stretches.reserve(missing);
+    }
+
     /// The things of which a part may be in view, row by row.
-    pub(super) fn things<'a>(&self, world: &'a World) -> impl Iterator<Item = &'a Thing> {
+    pub(in crate::render) fn things<'a>(
+        &self,
+        world: &'a World,
+    ) -> impl Iterator<Item = &'a Thing> {
         let width = world.grid().width();
         let rows = (self.first_row..).zip(&self.stretches);
         let reached =
@@ -70,11 +87,12 @@ impl Sight {
         reached.flat_map(|(row, columns)| world.things_between(row, columns.start, columns.end - 1))
     }
 
-    /// Takes in what lies on the straight line between two corners of the outline.
-    fn follow(&mut self, one: DVec2, other: DVec2, grid: &Grid) {
+    /// Takes in what lies on the straight line between two places: corners of the outline, or the ends of
+    /// what is seen along a ray.
+    pub(in crate::render) fn follow(&mut self, one: DVec2, other: DVec2) {
         let (top, bottom) = if one.y <= other.y { (one, other) } else { (other, one) };
         let x_at = |y: f64| top.x + (bottom.x - top.x) * ((y - top.y) / (bottom.y - top.y));
-        for row in self.reached(top.y, bottom.y, grid.height()) {
+        for row in self.reached(top.y, bottom.y, self.row_count) {
             let middle = f64::from(row) + 0.5;
             let (from, to) = (middle - self.margin, middle + self.margin);
             let stretch = &mut self.stretches[(row - self.first_row) as usize];

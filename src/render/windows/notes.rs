@@ -51,11 +51,6 @@ impl<'a> Look<'a> {
         let column = self.column as u32;
         let between = Between { column, rows: window.clone(), from, to, gap, reflection };
         self.windows.veils.push(Veil::Things(between));
-        let projection = self.scene.projection;
-        let direction = projection.direction_of(column);
-        for t in [from, to] {
-            self.windows.image(reflection).show(projection.origin() + direction * t);
-        }
     }
 
     pub(super) fn show(&mut self, rows: Range<u32>, shown: Shown) {

@@ -63,7 +63,7 @@ fn lay<T: Tally>(
     }
     let pass = match piece.part {
         Part::Ceiling => Pass::Ceiling,
-        Part::Floor | Part::Roof => Pass::Floor,
+        Part::Floor | Part::Roof | Part::Top => Pass::Floor,
     };
     let layer = Layer { world, filter, pass };
     if !world.has_lamplight() || piece.tile.is_none() {
@@ -95,6 +95,9 @@ fn height_and_covering(tile: &Tile, part: Part) -> (f64, Covering) {
     let mut gaps = tile.gaps();
     match (part, tile.ceiling, tile.kind) {
         (Part::Ceiling, Ceiling::Covered(covering), _) => (tile.heights.ceiling(), covering),
+        (Part::Top, _, TileKind::Shape(shape)) => {
+            (tile.top_of_what_stands(), Covering::from(shape.paint))
+        }
         (Part::Roof, ..) => {
             (gaps.next_back().map_or(0.0, |gap| gap.bottom), Covering::from(tile.lintel))
         }

@@ -1,25 +1,40 @@
 //! What stands in a cell and does not fill it: the leaves of doors, and shapes.
 
+use std::ops::Range;
+
 use glam::DVec2;
 
-use super::Reflection;
 use super::faces::{Facing, Stretch};
 use super::look::{Branch, Look, Met, Place};
+use super::{Part, Piece, Reflection, Shown};
 use crate::cast::{Hit, Ray, Side};
-use crate::world::{Cell, Outline, TileKind};
+use crate::world::{Cell, Outline, Tile, TileKind};
 
 impl Look<'_> {
     /// Meets what stands in the cell that `branch` is in. What is above it, if anything, stays open.
     pub(super) fn meet_standing(&mut self, branch: &mut Branch) {
         let Some((cell, kind)) = self.kind(branch.place) else { return };
-        let Some(hit) = branch.walk.standing(self.scene.world, cell, kind) else { return };
         let Some(tile) = self.tile(branch.place) else { return };
-        let (bottom, top) = (tile.heights.floor(), tile.heights.ceiling());
-        // A ray that was reflected in this cell may have been nowhere near before that.
-        let is_behind = branch.reflection != Reflection::NONE && hit.t < branch.from;
-        if is_behind || branch.gap.bottom != bottom {
+        if branch.gap.bottom != tile.heights.floor() {
             return;
         }
+        if let Some(hit) = branch.walk.standing(self.scene.world, cell, kind) {
+            // A ray that was reflected in this cell may have been nowhere near before that.
+            if branch.reflection != Reflection::NONE && hit.t < branch.from {
+                return;
+            }
+            self.meet_side(branch, kind, tile, hit);
+        }
+        if let TileKind::Shape(shape) = kind
+            && let Some(end) = branch.walk.leaving(cell, shape)
+        {
+            self.look_down_at(branch, tile.top_of_what_stands(), end);
+        }
+    }
+
+    /// Meets a leaf or a shape where `hit` says.
+    fn meet_side(&mut self, branch: &mut Branch, kind: TileKind, tile: &Tile, hit: Hit) {
+        let (bottom, top) = (tile.heights.floor(), tile.top_of_what_stands());
         self.lay(branch, hit.t);
         let ray = branch.walk.real_ray();
         let (paint, facing) = match kind {
@@ -46,6 +61,20 @@ impl Look<'_> {
             self.hit = Some(hit);
             self.distance = self.distance.max(hit.t);
         }
+    }
+
+    /// Shows the top of a pillar, which ends at `end`, to an eye that is above it.
+    fn look_down_at(&mut self, branch: &mut Branch, top: f64, end: f64) {
+        let is_seen = self.scene.projection.eye() > top && branch.from <= end;
+        if !is_seen || branch.window.is_empty() {
+            return;
+        }
+        let tile = branch.place.map(|(_, tile)| tile);
+        let piece = Piece { tile, part: Part::Top, reflection: branch.reflection };
+        let Range { start, end: bottom } = branch.window;
+        let row = self.scene.projection.row_of(top, end).clamp(start, bottom);
+        self.show(row..bottom, Shown::Plane(piece));
+        branch.window = start..row;
     }
 
     /// The cell before the one of a leaf, on the side that `ray` comes from.

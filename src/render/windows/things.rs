@@ -10,7 +10,8 @@ use std::ops::Range;
 
 use glam::DVec2;
 
-use super::{Reflection, Scene, rows_between};
+use super::sights::Sights;
+use super::{IMAGES_AT_ONCE, Reflection, Scene, Veil, Viewer, rows_between};
 use crate::cast::{Side, Unfolding};
 use crate::render::Frame;
 use crate::render::Surface;
@@ -19,7 +20,7 @@ use crate::render::shade::{Faded, Shade};
 use crate::render::tally::{Pass, Tally};
 use crate::render::things::NEAREST;
 use crate::world::sprite::builtin;
-use crate::world::{Anchor, Camera, Cell, Gap, Light, Sprite, SpriteId, Thing};
+use crate::world::{Camera, Cell, Gap, Light, Sprite, SpriteId, Thing};
 
 /// A part of a ray that is in one gap.
 #[derive(Clone, Debug)]
@@ -33,20 +34,13 @@ pub(super) struct Between {
     pub(super) reflection: Reflection,
 }
 
-/// An unfolding of the map, and the part of it that is seen so, in places of the map.
-#[derive(Clone, Debug)]
-pub(super) struct Image {
-    pub(super) unfolding: Unfolding,
-    pub(super) low: DVec2,
-    pub(super) high: DVec2,
-}
-
 /// The things in view, as they stand in the picture; kept so that it is allocated once.
 #[derive(Clone, Debug, Default)]
 pub(super) struct Billboards {
     /// Those of each image together, from near to far.
     list: Vec<Billboard>,
     of_image: Vec<Range<usize>>,
+    sights: Sights,
     considered: u64,
     /// The player, as they see themselves; `None` until there is a mirror.
     figure: Option<Sprite>,
@@ -74,48 +68,38 @@ struct Billboard {
     order: (u32, u32, u16),
 }
 
-impl Image {
-    /// The image of `unfolding`, of which nothing has been seen yet.
-    pub(super) fn new(unfolding: Unfolding) -> Self {
-        Self { unfolding, low: DVec2::INFINITY, high: DVec2::NEG_INFINITY }
-    }
-
-    /// Takes note that what is at an unfolded `point` may be seen.
-    pub(super) fn show(&mut self, point: DVec2) {
-        let point = self.unfolding.real_point(point);
-        (self.low, self.high) = (self.low.min(point), self.high.max(point));
-    }
-}
-
 impl Billboards {
-    /// Finds all that the `images` show, as it is after `seconds`.
+    /// Finds all that the `images` show to `viewer`, by the parts of rays among `veils`.
     pub(super) fn find(
         &mut self,
         scene: Scene<'_>,
-        images: &[Image],
-        camera: &Camera,
-        seconds: f64,
+        images: &[Unfolding],
+        veils: &[Veil],
+        viewer: Viewer<'_>,
     ) {
         const MOST_AT_FIRST: usize = 4096;
+        let world = scene.world;
+        let players = images.len().max(IMAGES_AT_ONCE);
         self.list.clear();
-        self.list.reserve(scene.world.things().len().min(MOST_AT_FIRST) + images.len());
+        self.list.reserve(world.things().len().min(MOST_AT_FIRST) + players);
         self.of_image.clear();
-        self.of_image.reserve(images.len().max(64));
+        self.of_image.reserve(players);
         self.considered = 0;
-        if self.figure.is_none() && scene.world.has_mirrors() {
+        if self.figure.is_none() && world.has_mirrors() {
             self.figure = builtin::named(builtin::PLAYER);
         }
         if let Some(figure) = &mut self.figure {
-            figure.heading = camera.heading;
+            figure.heading = viewer.camera.heading;
         }
-        for (index, image) in images.iter().enumerate() {
+        self.sights.look(scene, images, veils);
+        for (index, &unfolding) in images.iter().enumerate() {
             let start = self.list.len();
-            for &thing in things_in(scene, image) {
+            for &thing in self.sights.things(index, world) {
                 self.considered += 1;
-                self.list.extend(Billboard::of_thing(scene, image.unfolding, thing, seconds));
+                self.list.extend(Billboard::of_thing(scene, unfolding, thing, viewer.seconds));
             }
             if let Some(figure) = self.figure.as_ref().filter(|_| index > 0) {
-                self.list.extend(Billboard::of_player(scene, image.unfolding, figure));
+                self.list.extend(Billboard::of_player(scene, unfolding, figure));
             }
             self.list[start..].sort_unstable_by(from_near_to_far);
             self.of_image.push(start..self.list.len());
@@ -166,21 +150,6 @@ fn from_near_to_far(one: &Billboard, other: &Billboard) -> Ordering {
     one.depth.total_cmp(&other.depth).then_with(|| other.order.cmp(&one.order))
 }
 
-/// The things in the part of the map that an image shows.
-fn things_in<'a>(scene: Scene<'a>, image: &Image) -> impl Iterator<Item = &'a Thing> + use<'a> {
-    let world = scene.world;
-    // What stands beside what is seen reaches into it by half its width.
-    let margin = world.widest_sprite() / 2.0;
-    let cells = |low: f64, high: f64, count: u32| {
-        let end = (high + margin).floor() + 1.0;
-        (low - margin).max(0.0) as u32..end.min(f64::from(count)).max(0.0) as u32
-    };
-    let columns = cells(image.low.x, image.high.x, world.grid().width());
-    let rows = cells(image.low.y, image.high.y, world.grid().height());
-    let last = columns.end.saturating_sub(1);
-    rows.flat_map(move |row| world.things_between(row, columns.start, last))
-}
-
 impl Billboard {
     fn of_thing(
         scene: Scene<'_>,
@@ -190,11 +159,7 @@ impl Billboard {
     ) -> Option<Self> {
         let world = scene.world;
         let sprite = world.sprite(thing.sprite);
-        let room = world.room_in(thing.cell);
-        let base = match sprite.anchor {
-            Anchor::Floor => room.floor(),
-            Anchor::Ceiling => room.ceiling() - sprite.height.cells(),
-        };
+        let base = sprite.base(world.room_in(thing.cell));
         let light = world.light_in(thing.cell);
         let center = thing.cell.center();
         let billboard = Self::new(scene, unfolding, sprite, seconds, center, base, light)?;

@@ -1,51 +1,129 @@
 //! Writes control sequences with numeric parameters.
 
-use super::super::sequence;
-
 /// A control sequence in the making. It is written when it has got a parameter; without one, it is
 /// as if it had never been begun.
-pub(super) struct ControlSequence<'a> {
-    bytes: &'a mut Vec<u8>,
-    begun: bool,
+pub(super) struct ControlSequence {
+    /// As long as the longest: all that a style says, and more than any motion.
+    bytes: [u8; 96],
+    length: usize,
 }
 
-impl<'a> ControlSequence<'a> {
-    /// Begins a sequence at the end of `bytes`.
-    pub(super) fn begin(bytes: &'a mut Vec<u8>) -> Self {
-        Self { bytes, begun: false }
+impl ControlSequence {
+    /// A sequence without parameters.
+    #[inline]
+    pub(super) fn new() -> Self {
+        let mut bytes = [0; 96];
+        bytes[0] = INTRODUCER[0];
+        Self { bytes, length: 1 }
     }
 
     /// Adds the parameter `number`.
-    pub(super) fn parameter(&mut self, number: u16) {
-        let separator = if self.begun { sequence::SEPARATOR } else { sequence::INTRODUCER };
-        self.bytes.extend_from_slice(separator.as_bytes());
-        self.begun = true;
-        push_decimal(self.bytes, number);
+    #[inline]
+    pub(super) fn parameter(&mut self, number: u8) {
+        let Decimal { text, length } = DECIMALS[usize::from(number)];
+        // All of it, as four bytes are copied faster than as many as there are.
+        self.bytes[self.length..self.length + text.len()].copy_from_slice(&text);
+        self.length += usize::from(length);
     }
 
     /// Adds several parameters.
-    pub(super) fn parameters(&mut self, numbers: impl IntoIterator<Item = u16>) {
+    #[inline]
+    pub(super) fn parameters(&mut self, numbers: impl IntoIterator<Item = u8>) {
         numbers.into_iter().for_each(|number| self.parameter(number));
     }
 
-    /// Ends the sequence with `last`, its final byte.
-    pub(super) fn end(self, last: u8) {
-        if self.begun {
-            self.bytes.push(last);
+    /// Adds a parameter that is a place on the screen, or a distance on it.
+    #[inline]
+    pub(super) fn place(&mut self, number: u16) {
+        match u8::try_from(number) {
+            Ok(small) => self.parameter(small),
+            Err(_) => self.large_place(number),
+        }
+    }
+
+    fn large_place(&mut self, number: u16) {
+        let digit = |unit| b'0' + (number / unit % 10) as u8;
+        let text = [SEPARATOR, digit(10_000), digit(1000), digit(100), digit(10), digit(1)];
+        let skipped = text.len() - 2 - number.ilog10() as usize;
+        for byte in [SEPARATOR].iter().chain(&text[1 + skipped..]) {
+            self.bytes[self.length] = *byte;
+            self.length += 1;
+        }
+    }
+
+    /// Writes it, with `last` as its final byte.
+    #[inline]
+    pub(super) fn end(mut self, last: u8, bytes: &mut Vec<u8>) {
+        if self.length > 1 {
+            // Each parameter came with a separator before it.
+            self.bytes[1] = INTRODUCER[1];
+            self.bytes[self.length] = last;
+            let end = bytes.len() + self.length + 1;
+            if let Some(usual) = self.bytes.first_chunk::<USUAL>()
+                && self.length < USUAL
+            {
+                // More than there is, as so many bytes are copied faster than any number of them.
+                bytes.extend_from_slice(usual);
+                bytes.truncate(end);
+            } else {
+                bytes.extend_from_slice(&self.bytes[..=self.length]);
+            }
         }
     }
 }
 
-/// By hand, as the formatting machinery would cost more than all else that a cell does.
-fn push_decimal(bytes: &mut Vec<u8>, number: u16) {
-    let digit = |unit: u16| b'0' + (number / unit % 10) as u8;
-    match number {
-        0..10 => bytes.push(digit(1)),
-        10..100 => bytes.extend_from_slice(&[digit(10), digit(1)]),
-        100..1000 => bytes.extend_from_slice(&[digit(100), digit(10), digit(1)]),
-        _ => {
-            push_decimal(bytes, number / 10);
-            bytes.push(digit(1));
+const INTRODUCER: &[u8; 2] = b"\x1b[";
+/// No sequence is longer that sets two colours.
+const USUAL: usize = 40;
+const SEPARATOR: u8 = b';';
+
+/// How many digits a number has.
+#[inline]
+pub(super) fn digits(number: u8) -> usize {
+    usize::from(DECIMALS[usize::from(number)].length) - 1
+}
+
+/// A number in decimal, after a separator.
+#[derive(Clone, Copy)]
+struct Decimal {
+    text: [u8; 4],
+    /// How much of the text there is.
+    length: u8,
+}
+
+/// Every number of a byte: to divide would cost more than all else that a cell does.
+static DECIMALS: [Decimal; 256] = {
+    let mut table = [Decimal { text: [SEPARATOR; 4], length: 0 }; 256];
+    let mut number = 0;
+    while number < table.len() {
+        let [hundreds, tens, ones] = [
+            b'0' + (number / 100) as u8,
+            b'0' + (number / 10 % 10) as u8,
+            b'0' + (number % 10) as u8,
+        ];
+        table[number] = match number {
+            0..10 => Decimal { text: [SEPARATOR, ones, 0, 0], length: 2 },
+            10..100 => Decimal { text: [SEPARATOR, tens, ones, 0], length: 3 },
+            _ => Decimal { text: [SEPARATOR, hundreds, tens, ones], length: 4 },
+        };
+        number += 1;
+    }
+    table
+};
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn every_number_is_written_in_decimal() {
+        for number in 0..=u16::MAX {
+            let mut bytes = Vec::new();
+            let mut sequence = ControlSequence::new();
+            sequence.place(7);
+            sequence.place(number);
+            sequence.end(b'H', &mut bytes);
+            assert_eq!(bytes, format!("\x1b[7;{number}H").into_bytes());
         }
     }
 }

@@ -10,12 +10,53 @@ use std::fmt;
 use ratatui::buffer::{Cell, CellWidth};
 
 use super::style::{Shade, Style};
-use super::tolerance::Tolerance;
 
-const UPPER: &str = "▀";
-const LOWER: &str = "▄";
-const FULL: &str = "█";
-const SPACE: &str = " ";
+/// A character that shows two colours at most, each in a whole half of its cell.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub(super) enum Glyph {
+    /// The upper half in the text's colour, the lower one in the ground's.
+    Upper,
+    /// The other way about.
+    Lower,
+    /// Both in the text's.
+    Full,
+    /// Both in the ground's.
+    Space,
+}
+
+impl Glyph {
+    #[inline]
+    pub(super) const fn symbol(self) -> &'static str {
+        match self {
+            Self::Upper => "▀",
+            Self::Lower => "▄",
+            Self::Full => "█",
+            Self::Space => " ",
+        }
+    }
+
+    #[inline]
+    fn of(symbol: &str) -> Option<Self> {
+        match symbol {
+            "▀" => Some(Self::Upper),
+            "▄" => Some(Self::Lower),
+            "█" => Some(Self::Full),
+            " " => Some(Self::Space),
+            _ => None,
+        }
+    }
+
+    /// The colours of the upper and the lower half.
+    #[inline]
+    pub(super) fn halves<T: Copy>(self, text: T, ground: T) -> [T; 2] {
+        match self {
+            Self::Upper => [text, ground],
+            Self::Lower => [ground, text],
+            Self::Full => [text; 2],
+            Self::Space => [ground; 2],
+        }
+    }
+}
 
 /// What a cell looks like, in one number: equal ones look the same.
 #[derive(Clone, Copy, PartialEq, Eq)]
@@ -32,8 +73,8 @@ impl Look {
     /// What `cell` looks like.
     pub(super) fn of(cell: &Cell) -> Self {
         let (symbol, style) = (cell.symbol(), Style::of(cell));
-        if let Some((top, bottom)) = halves(symbol, style) {
-            return Self::of_halves(top, bottom);
+        if let Some(halves) = halves(symbol, style) {
+            return Self::of_halves(halves);
         }
         let mut characters = symbol.chars();
         match (characters.next(), characters.next()) {
@@ -63,20 +104,10 @@ impl Look {
         self == wanted && self != Self::INTRICATE
     }
 
-    /// Whether a cell that looks like `wanted` need not be sent, where colours may be off by
-    /// `tolerance`.
+    /// A hash; its upper bits are the best.
     #[inline]
-    pub(super) fn is_near(self, wanted: Self, tolerance: Tolerance) -> bool {
-        self.is(wanted) || !tolerance.is_exact() && self.is_about(wanted, tolerance)
-    }
-
-    fn is_about(self, wanted: Self, tolerance: Tolerance) -> bool {
-        match (self.halves(), wanted.halves()) {
-            (Some(shown), Some(wanted)) => {
-                tolerance.covers(shown[0], wanted[0]) && tolerance.covers(shown[1], wanted[1])
-            }
-            _ => false,
-        }
+    pub(super) fn hash(self) -> u64 {
+        (self.0 as u64 ^ (self.0 >> 64) as u64).wrapping_mul(0x9E37_79B9_7F4A_7C15)
     }
 
     /// The colours of the upper and the lower half of a block.
@@ -85,7 +116,12 @@ impl Look {
             .then(|| [Shade::from_bits((self.0 >> 32) as u32), Shade::from_bits(self.0 as u32)])
     }
 
-    fn of_halves(top: Shade, bottom: Shade) -> Self {
+    /// What a block looks like that is drawn so.
+    pub(super) fn of_block(glyph: Glyph, style: Style) -> Self {
+        Self::of_halves(glyph.halves(style.foreground, style.background))
+    }
+
+    fn of_halves([top, bottom]: [Shade; 2]) -> Self {
         Self::of_fields(Self::BLOCK, 0, top.in_bits(), bottom.in_bits(), 0)
     }
 
@@ -106,64 +142,34 @@ impl fmt::Debug for Look {
     }
 }
 
-/// A block, how it is drawn, and what that looks like.
-pub(super) struct Block {
-    pub(super) symbol: &'static str,
-    pub(super) style: Style,
-    pub(super) look: Look,
-}
-
-/// The cheapest block that looks like these two halves, within `tolerance`, after `current`.
-pub(super) fn cheapest(
-    [top, bottom]: [Shade; 2],
-    current: Option<Style>,
-    tolerance: Tolerance,
-) -> Block {
-    let plain = |symbol, text, ground, halves: [Shade; 2]| Block {
-        symbol,
-        style: Style::plain(text, ground),
-        look: Look::of_halves(halves[0], halves[1]),
-    };
-    let Some(current) = current else { return plain(UPPER, top, bottom, [top, bottom]) };
+/// The cheapest block that looks like these two halves, and how it is drawn, after `current`.
+pub(super) fn cheapest([top, bottom]: [Shade; 2], current: Option<Style>) -> (Glyph, Style) {
+    let block = |glyph, text, ground| (glyph, Style::plain(text, ground));
+    let Some(current) = current else { return block(Glyph::Upper, top, bottom) };
     let (text, ground) = (current.foreground, current.background);
     let is_told = current.has_no_modifiers();
-    let passes = |shade| tolerance.covers(shade, top) && tolerance.covers(shade, bottom);
-    // What takes no colour at all is cheapest, and what takes one comes next.
-    if is_told && passes(ground) {
-        return plain(SPACE, text, ground, [ground; 2]);
-    }
-    if is_told && passes(text) {
-        return plain(FULL, text, ground, [text; 2]);
-    }
-    let merged = [top, bottom].into_iter().find(|&shade| passes(shade));
-    if let Some(merged) = merged {
-        return if merged.bytes() < text.bytes() && !is_told {
-            plain(SPACE, merged, merged, [merged; 2])
+    if top == bottom {
+        return if is_told && text == top && ground != top {
+            block(Glyph::Full, text, ground)
+        } else if !is_told && top.bytes() < text.bytes() {
+            block(Glyph::Space, top, top)
         } else {
-            plain(SPACE, text, merged, [merged; 2])
+            block(Glyph::Space, text, top)
         };
     }
-    let snapped = |wanted, told| if tolerance.covers(told, wanted) { told } else { wanted };
-    let upright = [snapped(top, text), snapped(bottom, ground)];
-    let turned = [snapped(top, ground), snapped(bottom, text)];
-    let upright = plain(UPPER, upright[0], upright[1], upright);
-    let turned = plain(LOWER, turned[1], turned[0], turned);
-    let bytes = |block: &Block| block.style.bytes_after(current);
-    if bytes(&turned) < bytes(&upright) { turned } else { upright }
+    let told = |new_text, new_ground| u8::from(new_text == text) + u8::from(new_ground == ground);
+    if told(bottom, top) > told(top, bottom) {
+        block(Glyph::Lower, bottom, top)
+    } else {
+        block(Glyph::Upper, top, bottom)
+    }
 }
 
 /// The colours of the upper and the lower half of a cell; `None` where it is no block, or where
 /// another block would not look the same: in the terminal's own colours, which are not the same two
 /// as text and as ground, and with modifiers.
-fn halves(symbol: &str, style: Style) -> Option<(Shade, Shade)> {
-    let (text, ground) = (style.foreground, style.background);
-    let (top, bottom) = match symbol {
-        UPPER => (text, ground),
-        LOWER => (ground, text),
-        FULL => (text, text),
-        SPACE => (ground, ground),
-        _ => return None,
-    };
-    let is_own = |shade| shade == Shade::Default;
-    (style.has_no_modifiers() && !is_own(top) && !is_own(bottom)).then_some((top, bottom))
+fn halves(symbol: &str, style: Style) -> Option<[Shade; 2]> {
+    let halves = Glyph::of(symbol)?.halves(style.foreground, style.background);
+    let has_own = halves.contains(&Shade::DEFAULT);
+    (style.has_no_modifiers() && !has_own).then_some(halves)
 }

@@ -5,14 +5,17 @@ use ratatui::buffer::Cell;
 use ratatui::layout::{Position, Size};
 
 use super::look::Look;
+use super::shift::{Mark, Shift};
 
 /// What the terminal shows, and what it is to show, cell by cell.
-#[derive(Debug)]
+#[derive(Debug, Default)]
 pub(super) struct Screen {
     width: usize,
     shown: Vec<Look>,
     /// What it is to look like.
     looks: Vec<Look>,
+    /// The landmarks of what it was to look like when it was drawn last.
+    marks: Vec<Mark>,
     /// The cells that are to be shown, where their looks do not say all.
     wanted: Vec<Cell>,
     /// Whether anything in a row is to be changed.
@@ -26,6 +29,8 @@ pub(super) struct Row<'a> {
     pub(super) y: u16,
     pub(super) shown: &'a mut [Look],
     pub(super) looks: &'a [Look],
+    /// The landmarks of what it was to show in the last frame, moved as that was moved since.
+    pub(super) marks: &'a mut [Mark],
     pub(super) wanted: &'a [Cell],
     pub(super) exact: &'a mut bool,
 }
@@ -33,39 +38,35 @@ pub(super) struct Row<'a> {
 impl Screen {
     /// A blank screen.
     pub(super) fn blank(size: Size) -> Self {
-        let mut screen = Self::none();
+        let mut screen = Self::default();
         screen.resize(size);
         screen.clear(ClearType::All, Position::ORIGIN);
+        screen.exact.fill(true);
         screen
     }
 
-    /// No screen at all.
-    pub(super) fn none() -> Self {
-        Self {
-            width: 0,
-            shown: Vec::new(),
-            looks: Vec::new(),
-            wanted: Vec::new(),
-            changed: Vec::new(),
-            exact: Vec::new(),
-        }
-    }
-
-    /// Takes another size; what it shows is unknown then.
+    /// Takes another size and is to be blank; what it shows is unknown then.
     pub(super) fn resize(&mut self, size: Size) {
         let (width, height) = (usize::from(size.width), usize::from(size.height));
         self.width = width;
-        self.shown.resize(width * height, Look::UNKNOWN);
-        self.looks.resize(width * height, Look::of(&Cell::EMPTY));
+        for looks in [&mut self.shown, &mut self.looks] {
+            looks.clear();
+            looks.resize(width * height, Look::of(&Cell::EMPTY));
+        }
+        self.marks.clear();
+        self.marks.resize(width * height, Mark::NONE);
+        self.wanted.clear();
         self.wanted.resize(width * height, Cell::EMPTY);
+        self.changed.clear();
         self.changed.resize(height, false);
-        self.exact.resize(height, true);
+        self.exact.resize(height, false);
         self.forget();
     }
 
     /// Nothing is known of what it shows.
     pub(super) fn forget(&mut self) {
         self.shown.fill(Look::UNKNOWN);
+        self.exact.fill(false);
     }
 
     /// A part of it, row by row, has been erased with the cursor at `cursor`, and is to stay so.
@@ -99,21 +100,14 @@ impl Screen {
         }
     }
 
-    /// Whether anything was wanted since the rows to change were taken.
+    /// Whether anything was wanted since the rows were drawn.
     pub(super) fn is_changed(&self) -> bool {
         self.changed.contains(&true)
     }
 
-    /// Whether every row that was drawn shows exactly what it is to show.
+    /// Whether every row shows exactly what it is to show.
     pub(super) fn is_exact(&self) -> bool {
         !self.exact.contains(&false)
-    }
-
-    /// The rows that are not exact yet are to be drawn again.
-    pub(super) fn redraw_inexact(&mut self) {
-        for (changed, exact) in self.changed.iter_mut().zip(&self.exact) {
-            *changed |= !exact;
-        }
     }
 
     /// What is shown there; `None` off the screen.
@@ -122,16 +116,55 @@ impl Screen {
         (x < self.width).then(|| self.shown.get(y * self.width + x).copied()).flatten()
     }
 
-    /// The rows to change, from the top; they count as changed no longer.
-    pub(super) fn take_changed(&mut self) -> impl Iterator<Item = Row<'_>> {
+    /// The rows that have changed, from the top; they count as changed no longer.
+    pub(super) fn changed_rows(&mut self) -> impl Iterator<Item = Row<'_>> {
+        self.rows_where(|_, changed| std::mem::take(changed))
+    }
+
+    /// The rows that do not show exactly what they are to show.
+    pub(super) fn inexact_rows(&mut self) -> impl Iterator<Item = Row<'_>> {
+        self.rows_where(|is_exact, _| !is_exact)
+    }
+
+    fn rows_where(
+        &mut self,
+        mut is_asked: impl FnMut(bool, &mut bool) -> bool,
+    ) -> impl Iterator<Item = Row<'_>> {
         let width = self.width.max(1);
         let wanted = self.looks.chunks(width).zip(self.wanted.chunks(width));
-        let rows = self.shown.chunks_mut(width).zip(wanted);
+        let known = self.shown.chunks_mut(width).zip(self.marks.chunks_mut(width));
         let states = self.changed.iter_mut().zip(&mut self.exact);
-        (0..).zip(rows.zip(states)).filter_map(
-            |(y, ((shown, (looks, wanted)), (changed, exact)))| {
-                std::mem::take(changed).then_some(Row { y, shown, looks, wanted, exact })
-            },
-        )
+        (0..).zip(known.zip(wanted).zip(states)).filter_map(move |(y, (cells, state))| {
+            let ((shown, marks), (looks, wanted)) = cells;
+            let (changed, exact) = state;
+            is_asked(*exact, changed).then_some(Row { y, shown, looks, marks, wanted, exact })
+        })
+    }
+}
+
+impl Row<'_> {
+    /// How many cells it has.
+    pub(super) fn width(&self) -> usize {
+        self.looks.len()
+    }
+
+    /// Whether each of its cells stays what it is where it is moved.
+    pub(super) fn can_move(&self) -> bool {
+        self.shown.iter().chain(self.looks).all(|look| look.can_move())
+    }
+
+    /// Whether it shows blocks wherever it does not show what it is to show, and is to show blocks
+    /// there.
+    pub(super) fn is_near(&self) -> bool {
+        let mut looks = self.shown.iter().zip(self.looks);
+        looks.all(|(shown, look)| {
+            shown == look || shown.halves().is_some() && look.halves().is_some()
+        })
+    }
+
+    /// The terminal has moved a part of it.
+    pub(super) fn shift(&mut self, shift: &Shift) {
+        shift.apply(self.shown, Look::UNKNOWN);
+        shift.apply(self.marks, Mark::NONE);
     }
 }

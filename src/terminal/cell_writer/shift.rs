@@ -8,7 +8,7 @@
 use std::ops::Range;
 
 use super::look::Look;
-use super::tolerance::Tolerance;
+use super::screen::Row;
 
 /// A stretch of a row whose cells move by some columns.
 #[derive(Clone, Debug, PartialEq, Eq)]
@@ -21,6 +21,13 @@ pub(super) struct Shift {
     pub(super) way: Way,
 }
 
+/// Which way, and how far.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+struct Move {
+    way: Way,
+    by: usize,
+}
+
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub(super) enum Way {
     Left,
@@ -29,32 +36,81 @@ pub(super) enum Way {
 
 /// The farthest that is looked for: what moves faster has changed in other ways too.
 const FARTHEST: usize = 16;
-/// As many landmarks are asked where they come from.
-const MOST_LANDMARKS: usize = 32;
-/// About how many bytes a cell takes.
-const CELL: i32 = 12;
+/// So many moves of a row are tried. Twice as many spare half a byte in a hundred.
+const MOST_TRIED: usize = 2;
+/// A loss of one byte.
+pub(super) const BYTE: i32 = 16;
+/// The loss of a cell that is not as it should be at all: about how many bytes it takes.
+pub(super) const CELL: i32 = 12 * BYTE;
 /// About how many bytes a shift takes: two motions, a deletion and an insertion.
-const SHIFT: i32 = 20;
+const SHIFT: i32 = 20 * BYTE;
 
-impl Shift {
-    /// The shift of a row that shows `shown` that brings it nearest to `wanted`, if one spares more
-    /// bytes than it takes. What is within `tolerance` is as good as what is wanted.
-    ///
-    /// Only the two distances are looked into that most landmarks have moved by. To look into all of
-    /// them took three times as long as everything else together, and spared no more.
-    pub(super) fn best(shown: &[Look], wanted: &[Look], tolerance: Tolerance) -> Option<Self> {
-        let row = Rows { shown, wanted, tolerance };
-        if row.count_wrong() * CELL <= SHIFT {
+/// Finds the shifts of a row, one after another, and has the memory that it takes.
+#[derive(Debug, Default)]
+pub(super) struct Shifts {
+    marks: Vec<Mark>,
+    losses: Vec<i32>,
+}
+
+impl Shifts {
+    /// Begins with a row.
+    pub(super) fn begin(&mut self, row: &Row) {
+        self.marks.clear();
+        self.marks.extend(Mark::all(row.looks));
+    }
+
+    /// The shift after which least is lost, if it spares more than it takes. `loss` is what is lost
+    /// where the cell that is now at the first place is shown at the second.
+    pub(super) fn next(&mut self, row: &Row, loss: impl Fn(usize, usize) -> i32) -> Option<Shift> {
+        self.losses.clear();
+        self.losses.extend((0..row.width()).map(|column| loss(column, column)));
+        if self.losses.iter().sum::<i32>() <= SHIFT {
             return None;
         }
-        let candidates = row.likely_moves().into_iter().flatten();
-        let shifts = candidates.filter_map(|(by, way)| row.best_of(by, way));
+        let moves = likely_moves(row.marks, &self.marks).into_iter().flatten();
+        let shifts = moves.filter_map(|by| Shift::best(&self.losses, by, &loss));
         let (shift, spared) = shifts.max_by_key(|&(_, spared)| spared)?;
         (spared > SHIFT).then_some(shift)
     }
 
-    /// Does to `row` what the terminal does.
-    pub(super) fn apply(&self, row: &mut [Look]) {
+    /// Is done with the row: what it is to show now is what was wanted before the next frame.
+    pub(super) fn end(&self, row: &mut Row) {
+        row.marks.copy_from_slice(&self.marks);
+    }
+}
+
+impl Shift {
+    /// The best shift by that move, and what it spares.
+    fn best(
+        losses: &[i32],
+        Move { by, way }: Move,
+        loss: &impl Fn(usize, usize) -> i32,
+    ) -> Option<(Self, i32)> {
+        let remaining = losses.get(by..)?;
+        // Counted from the first place that a cell can move to.
+        let best = match way {
+            Way::Left => {
+                let spared = losses[..remaining.len()].iter().enumerate();
+                best_stretch(spared.map(|(to, now)| now - loss(to + by, to)))
+            }
+            Way::Right => {
+                let spared = remaining.iter().enumerate();
+                best_stretch(spared.map(|(from, now)| now - loss(from, from + by)))
+            }
+        };
+        let (moved, spared) = best?;
+        let columns = moved.start..moved.end + by;
+        // What is uncovered must be sent, even where it was right before.
+        let uncovered = match way {
+            Way::Left => columns.end - by..columns.end,
+            Way::Right => columns.start..columns.start + by,
+        };
+        let lost: i32 = losses[uncovered].iter().map(|loss| CELL - loss).sum();
+        Some((Self { columns, by, way }, spared - lost))
+    }
+
+    /// Does to `row` what the terminal does; what is uncovered becomes `unknown`.
+    pub(super) fn apply<T: Clone>(&self, row: &mut [T], unknown: T) {
         let stretch = &mut row[self.columns.clone()];
         let uncovered = match self.way {
             Way::Left => {
@@ -66,82 +122,71 @@ impl Shift {
                 0..self.by
             }
         };
-        stretch[uncovered].fill(Look::UNKNOWN);
+        stretch[uncovered].fill(unknown);
     }
 }
 
-/// A row as it is and as it is to be.
-#[derive(Clone, Copy)]
-struct Rows<'a> {
-    shown: &'a [Look],
-    wanted: &'a [Look],
-    tolerance: Tolerance,
-}
-
-impl Rows<'_> {
-    /// Whether the cell that is now at `from` is good at `to`.
-    fn is_good(self, from: usize, to: usize) -> bool {
-        self.shown[from].is_near(self.wanted[to], self.tolerance)
-    }
-
-    fn count_wrong(self) -> i32 {
-        (0..self.shown.len()).filter(|&index| !self.is_good(index, index)).count() as i32
-    }
-
-    /// The two moves that bring most landmarks, which are pairs of unlike neighbours that are wrong
-    /// where they are, to where they are wanted.
-    fn likely_moves(self) -> [Option<(usize, Way)>; 2] {
-        let is_landmark = |&index: &usize| {
-            self.wanted[index - 1] != self.wanted[index]
-                && !(self.is_good(index, index) && self.is_good(index - 1, index - 1))
-        };
-        let places = 1..self.wanted.len();
-        let apart = (self.wanted.len() / MOST_LANDMARKS).max(1);
-        let mut votes = [[0_u8; 2]; FARTHEST + 1];
-        let mut next = 0;
-        for place in places.filter(is_landmark) {
-            if place < next {
-                continue;
-            }
-            next = place + apart;
-            for (by, votes) in votes.iter_mut().enumerate().skip(1) {
-                let comes_from = |from: usize| {
-                    from < self.shown.len()
-                        && self.is_good(from, place)
-                        && self.is_good(from - 1, place - 1)
-                };
-                votes[Way::Left as usize] += u8::from(comes_from(place + by));
-                votes[Way::Right as usize] += u8::from(place > by && comes_from(place - by));
+/// The moves that brought most landmarks of a row to where they are.
+///
+/// A landmark is a pair of unlike neighbours, told by a mark of eight bits. All marks of a row are
+/// compared with all from before, move by move, which is a few instructions for sixteen of them. To
+/// compare what they look like took longer than all the rest of the encoder, and to look each up in
+/// a table missed those that are there several times.
+fn likely_moves(before: &[Mark], now: &[Mark]) -> [Option<Move>; MOST_TRIED] {
+    let mut likely = [None; MOST_TRIED];
+    let mut votes = [CHANCE; MOST_TRIED];
+    for by in 1..=FARTHEST.min(now.len()) {
+        let left = count_alike(&before[by..], now);
+        let right = count_alike(before, &now[by..]);
+        for (way, count) in [(Way::Left, left), (Way::Right, right)] {
+            if let Some(rank) = votes.iter().position(|&votes| count > votes) {
+                likely[rank..].rotate_right(1);
+                votes[rank..].rotate_right(1);
+                (likely[rank], votes[rank]) = (Some(Move { way, by }), count);
             }
         }
-        [Way::Left, Way::Right].map(|way| {
-            let votes = votes.iter().map(|votes| votes[way as usize]).enumerate();
-            let (by, votes) = votes.max_by_key(|&(_, votes)| votes)?;
-            (votes > 1).then_some((by, way))
+    }
+    likely
+}
+
+/// So few landmarks may agree by chance.
+const CHANCE: usize = 2;
+
+/// What a landmark is told by.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+#[repr(transparent)]
+pub(super) struct Mark(u8);
+
+impl Mark {
+    /// Of a cell that is like the one before it.
+    pub(super) const NONE: Self = Self(0);
+
+    /// The marks of a row's cells.
+    fn all(row: &[Look]) -> impl Iterator<Item = Self> {
+        /// A large odd number.
+        const STIR: u64 = 0xC2B2_AE3D_27D4_EB4F;
+        let mut before = (Look::UNKNOWN, 0);
+        row.iter().map(move |&look| {
+            let (last, last_hash) = before;
+            let hash = look.hash();
+            before = (look, hash);
+            let pair = u64::wrapping_mul(last_hash, STIR).wrapping_add(hash);
+            if last == look { Self::NONE } else { Self(((pair >> 56) as u8).max(1)) }
         })
     }
+}
 
-    /// The best shift by that far that way, and how many bytes it spares.
-    fn best_of(self, by: usize, way: Way) -> Option<(Shift, i32)> {
-        let last = self.shown.len().checked_sub(by)?;
-        let is_wrong = |from: usize, to: usize| i32::from(!self.is_good(from, to));
-        // Places that a cell can move to, and what is spared where it does.
-        let spared = |index: usize| {
-            let (from, to) = match way {
-                Way::Left => (index + by, index),
-                Way::Right => (index, index + by),
-            };
-            CELL * (is_wrong(to, to) - is_wrong(from, to))
-        };
-        let (moved, spared) = best_stretch((0..last).map(spared))?;
-        // What is uncovered must be sent, even where it was right before.
-        let (columns, uncovered) = match way {
-            Way::Left => (moved.start..moved.end + by, moved.end..moved.end + by),
-            Way::Right => (moved.start..moved.end + by, moved.start..moved.start + by),
-        };
-        let lost = uncovered.filter(|&index| self.is_good(index, index)).count() as i32;
-        Some((Shift { columns, by, way }, spared - CELL * lost))
-    }
+/// At how many places both have the same mark.
+fn count_alike(one: &[Mark], other: &[Mark]) -> usize {
+    // In steps that a byte can count, so that the compiler can compare many at a time.
+    let chunks = one.chunks(255).zip(other.chunks(255));
+    let counts = chunks.map(|(one, other)| {
+        one.iter()
+            .zip(other)
+            .map(|(one, other)| u8::from(one == other) & u8::from(*one != Mark::NONE))
+            .sum::<u8>()
+    });
+    counts.map(usize::from).sum()
 }
 
 /// The stretch of `gains` with the largest sum, and that sum.
@@ -164,11 +209,21 @@ fn best_stretch(gains: impl Iterator<Item = i32>) -> Option<(Range<usize>, i32)>
 mod tests {
     use proptest::prelude::*;
 
-    use super::super::super::Fidelity;
     use super::*;
 
     fn best(shown: &[Look], wanted: &[Look]) -> Option<Shift> {
-        Shift::best(shown, wanted, Tolerance::of(Fidelity::EXACT))
+        let row = Row {
+            y: 0,
+            shown: &mut shown.to_vec(),
+            looks: wanted,
+            marks: &mut Mark::all(shown).collect::<Vec<_>>(),
+            wanted: &[],
+            exact: &mut false,
+        };
+        let loss = |from: usize, to: usize| if shown[from] == wanted[to] { 0 } else { CELL };
+        let mut shifts = Shifts::default();
+        shifts.begin(&row);
+        shifts.next(&row, loss)
     }
 
     fn row(text: &str) -> Vec<Look> {
@@ -203,7 +258,7 @@ mod tests {
     #[test]
     fn a_shift_uncovers_what_nobody_knows() {
         let mut shown = row("abcdef");
-        Shift { columns: 1..5, by: 2, way: Way::Left }.apply(&mut shown);
+        Shift { columns: 1..5, by: 2, way: Way::Left }.apply(&mut shown, Look::UNKNOWN);
         assert_eq!(shown[..3], row("ade"));
         assert_eq!((shown[3], shown[4]), (Look::UNKNOWN, Look::UNKNOWN));
         assert_eq!(shown[5..], row("f"));
@@ -220,7 +275,7 @@ mod tests {
             let to_send = |shown: &[Look]| shown.iter().zip(wanted).filter(|(a, b)| a != b).count();
             let before = to_send(&shown);
             if let Some(shift) = best(&shown, wanted) {
-                shift.apply(&mut shown);
+                shift.apply(&mut shown, Look::UNKNOWN);
                 prop_assert!(to_send(&shown) < before);
             }
         }

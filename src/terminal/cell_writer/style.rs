@@ -1,10 +1,12 @@
 //! Colours and modifiers, as Select Graphic Rendition (SGR) takes them.
 
+use std::fmt;
+
 use ratatui::buffer::Cell;
 use ratatui::style::{Color, Modifier};
 
 use super::super::sequence;
-use super::control::ControlSequence;
+use super::control::{self, ControlSequence};
 
 /// How a character is drawn.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -14,12 +16,17 @@ pub(crate) struct Style {
     modifier: Modifier,
 }
 
-/// A colour in the one way that SGR writes it, of ratatui's several.
+/// A colour in the one way that SGR writes it, of ratatui's several; in 26 bits, as most of what is
+/// done with colours is to compare them.
+#[derive(Clone, Copy, PartialEq, Eq)]
+pub(super) struct Shade(u32);
+
+/// What a [`Shade`] is.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub(super) enum Shade {
+pub(super) enum Kind {
     Default,
     Indexed(u8),
-    Rgb(u8, u8, u8),
+    Rgb([u8; 3]),
 }
 
 /// Which of the two colours of a cell.
@@ -32,8 +39,8 @@ enum Ground {
 /// A modifier, and the parameters that turn it on and off.
 struct Switch {
     modifier: Modifier,
-    on: u16,
-    off: u16,
+    on: u8,
+    off: u8,
 }
 
 /// Bold and dim are turned off together.
@@ -53,8 +60,8 @@ const SUPPORTED: Modifier =
 impl Style {
     /// The terminal's own colours, and no modifiers.
     pub(crate) const RESET: Self = Self {
-        foreground: Shade::Default,
-        background: Shade::Default,
+        foreground: Shade::DEFAULT,
+        background: Shade::DEFAULT,
         modifier: Modifier::empty(),
     };
 
@@ -80,15 +87,9 @@ impl Style {
         self.modifier.is_empty()
     }
 
-    /// About how many bytes [`Style::write_from`] would write after `current`.
-    pub(super) fn bytes_after(self, current: Self) -> usize {
-        /// What introduces a sequence, and its last byte.
-        const SEQUENCE: usize = 3;
-        let colors = [(self.foreground, current.foreground), (self.background, current.background)];
-        let parameters: usize =
-            colors.iter().filter(|(new, old)| new != old).map(|(new, _)| new.bytes()).sum();
-        let switches = SEQUENCE * usize::from(self.modifier != current.modifier);
-        if parameters + switches == 0 { 0 } else { SEQUENCE + parameters + switches }
+    /// The text's colour and the ground's, where there are no modifiers.
+    pub(super) fn plain_colors(self) -> Option<[Shade; 2]> {
+        self.has_no_modifiers().then_some([self.foreground, self.background])
     }
 
     /// Writes what turns `current`, or an unknown style, into this one.
@@ -100,15 +101,17 @@ impl Style {
                 Self::RESET
             }
         };
-        let mut rendition = ControlSequence::begin(bytes);
-        self.switch_modifiers(known.modifier, &mut rendition);
+        let mut rendition = ControlSequence::new();
+        if self.modifier != known.modifier {
+            self.switch_modifiers(known.modifier, &mut rendition);
+        }
         if self.foreground != known.foreground {
             self.foreground.write(Ground::Fore, &mut rendition);
         }
         if self.background != known.background {
             self.background.write(Ground::Back, &mut rendition);
         }
-        rendition.end(b'm');
+        rendition.end(b'm', bytes);
     }
 
     fn switch_modifiers(self, known: Modifier, rendition: &mut ControlSequence) {
@@ -127,10 +130,24 @@ impl Style {
 }
 
 impl Shade {
+    /// The terminal's own colour.
+    pub(super) const DEFAULT: Self = Self(0);
+    const INDEXED: u32 = 1 << 24;
+    const RGB: u32 = 2 << 24;
+
+    const fn indexed(index: u8) -> Self {
+        Self(Self::INDEXED | index as u32)
+    }
+
+    pub(super) const fn rgb([red, green, blue]: [u8; 3]) -> Self {
+        Self(Self::RGB | u32::from_be_bytes([0, red, green, blue]))
+    }
+
+    #[inline]
     fn of(color: Color) -> Self {
-        Self::Indexed(match color {
-            Color::Reset => return Self::Default,
-            Color::Rgb(red, green, blue) => return Self::Rgb(red, green, blue),
+        Self::indexed(match color {
+            Color::Rgb(red, green, blue) => return Self::rgb([red, green, blue]),
+            Color::Reset => return Self::DEFAULT,
             Color::Indexed(index) => index,
             Color::Black => 0,
             Color::Red => 1,
@@ -153,59 +170,63 @@ impl Shade {
 
     /// A number of its own, of 26 bits.
     pub(super) fn in_bits(self) -> u32 {
-        match self {
-            Self::Default => 0,
-            Self::Indexed(index) => 1 << 24 | u32::from(index),
-            Self::Rgb(red, green, blue) => 2 << 24 | u32::from_be_bytes([0, red, green, blue]),
-        }
+        self.0
     }
 
     /// The colour that has the number `bits`.
     pub(super) fn from_bits(bits: u32) -> Self {
-        let [kind, red, green, blue] = bits.to_be_bytes();
+        Self(bits)
+    }
+
+    #[inline]
+    pub(super) fn kind(self) -> Kind {
+        let [kind, red, green, blue] = self.0.to_be_bytes();
         match kind {
-            0 => Self::Default,
-            1 => Self::Indexed(blue),
-            _ => Self::Rgb(red, green, blue),
+            0 => Kind::Default,
+            1 => Kind::Indexed(blue),
+            _ => Kind::Rgb([red, green, blue]),
         }
     }
 
     /// The same colour, as ratatui names it.
     pub(super) fn color(self) -> Color {
-        match self {
-            Self::Default => Color::Reset,
-            Self::Indexed(index) => Color::Indexed(index),
-            Self::Rgb(red, green, blue) => Color::Rgb(red, green, blue),
+        match self.kind() {
+            Kind::Default => Color::Reset,
+            Kind::Indexed(index) => Color::Indexed(index),
+            Kind::Rgb([red, green, blue]) => Color::Rgb(red, green, blue),
         }
     }
 
     /// About how many bytes it takes as parameters.
+    #[inline]
     pub(super) fn bytes(self) -> usize {
-        let digits = |number: u8| match number {
-            0..10 => 1,
-            10..100 => 2,
-            _ => 3,
-        };
-        match self {
-            Self::Default | Self::Indexed(..16) => 2,
-            Self::Indexed(index) => 5 + digits(index),
-            Self::Rgb(red, green, blue) => 7 + digits(red) + digits(green) + digits(blue),
+        match self.kind() {
+            Kind::Default | Kind::Indexed(..16) => 2,
+            Kind::Indexed(index) => 5 + control::digits(index),
+            Kind::Rgb(channels) => 7 + channels.map(control::digits).iter().sum::<usize>(),
         }
     }
 
+    #[inline]
     fn write(self, ground: Ground, rendition: &mut ControlSequence) {
         let (dark, bright, extended, default) = match ground {
             Ground::Fore => (30, 90, 38, 39),
             Ground::Back => (40, 100, 48, 49),
         };
-        match self {
-            Self::Default => rendition.parameter(default),
-            Self::Indexed(index @ 0..=7) => rendition.parameter(dark + u16::from(index)),
-            Self::Indexed(index @ 8..=15) => rendition.parameter(bright + u16::from(index - 8)),
-            Self::Indexed(index) => rendition.parameters([extended, 5, index.into()]),
-            Self::Rgb(red, green, blue) => {
-                rendition.parameters([extended, 2, red.into(), green.into(), blue.into()]);
+        match self.kind() {
+            Kind::Default => rendition.parameter(default),
+            Kind::Indexed(index @ 0..=7) => rendition.parameter(dark + index),
+            Kind::Indexed(index @ 8..=15) => rendition.parameter(bright + (index - 8)),
+            Kind::Indexed(index) => rendition.parameters([extended, 5, index]),
+            Kind::Rgb([red, green, blue]) => {
+                rendition.parameters([extended, 2, red, green, blue]);
             }
         }
+    }
+}
+
+impl fmt::Debug for Shade {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        self.kind().fmt(f)
     }
 }

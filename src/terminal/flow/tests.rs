@@ -73,7 +73,7 @@ impl Simulation {
             }
             if self.now >= due && self.flow.may_send(self.now) {
                 let fidelity = self.flow.fidelity();
-                let saving = (f64::from(fidelity.tolerance()) * 0.5).exp2();
+                let saving = 1.0 + f64::from(fidelity.tolerance()) * 0.3;
                 let bytes = (exact as f64 / saving) as usize;
                 self.send(bytes);
                 self.flow.showed_motion(bytes, fidelity);

@@ -72,7 +72,7 @@ impl Session {
 
     fn try_refine(&mut self) -> io::Result<()> {
         if self.wait_until_ready()? {
-            self.terminal.backend_mut().refine()?;
+            self.terminal.backend_mut().refine();
             Backend::flush(self.terminal.backend_mut())?;
             self.send()?;
         }

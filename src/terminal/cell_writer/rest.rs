@@ -1,0 +1,96 @@
+//! A picture that rests becomes exact, in a few frames of about the same size.
+//!
+//! The worst cells come first. To allow less and less error until none is allowed was refused: cells
+//! were sent twice, and the last of the frames had most of the bytes.
+
+use super::exact;
+use super::look::Look;
+use super::pen::Pen;
+use super::screen::{Row, Screen};
+use super::shift::Shifts;
+use super::trellis::Ink;
+
+/// How far a picture has come to rest, and the memory that it takes.
+#[derive(Debug)]
+pub(super) struct Rest {
+    /// In so many frames it is to be exact.
+    frames: usize,
+    /// How far off the inexact cells are, and where they are, row by row.
+    inexact: Vec<Cell>,
+}
+
+/// How far off a cell is.
+#[derive(Clone, Copy, Debug)]
+struct Cell {
+    error: f32,
+    y: u16,
+    column: u16,
+}
+
+/// In so many frames a resting picture becomes exact.
+const FRAMES: usize = 10;
+
+impl Rest {
+    pub(super) fn new() -> Self {
+        Self { frames: FRAMES, inexact: Vec::new() }
+    }
+
+    /// There is motion: the next picture comes to rest afresh.
+    pub(super) fn disturb(&mut self) {
+        self.frames = FRAMES;
+    }
+
+    /// Draws the next of the frames.
+    pub(super) fn draw(&mut self, pen: &mut Pen, shifts: &mut Shifts, screen: &mut Screen) {
+        if screen.is_exact() {
+            return;
+        }
+        self.inexact.clear();
+        for row in screen.inexact_rows() {
+            if row.is_near() {
+                self.inexact.extend(errors(&row));
+            } else {
+                exact::draw_row(pen, shifts, row);
+            }
+        }
+        self.choose_worst();
+        let mut chosen = self.inexact.iter().peekable();
+        for mut row in screen.inexact_rows() {
+            while let Some(cell) = chosen.next_if(|cell| cell.y == row.y) {
+                exact::draw_cell(pen, &mut row, usize::from(cell.column));
+            }
+            *row.exact = row.shown == row.looks;
+        }
+    }
+
+    /// Leaves the share of this frame, in the order of the screen.
+    fn choose_worst(&mut self) {
+        let share = self.inexact.len().div_ceil(self.frames);
+        self.frames = (self.frames - 1).max(1);
+        if share < self.inexact.len() {
+            self.inexact
+                .select_nth_unstable_by(share, |one, other| other.error.total_cmp(&one.error));
+            self.inexact.truncate(share);
+        }
+        self.inexact.sort_unstable_by_key(|cell| (cell.y, cell.column));
+    }
+}
+
+/// How far off the cells of a row are that are not exact.
+fn errors<'a>(row: &'a Row) -> impl Iterator<Item = Cell> + 'a {
+    let looks = row.shown.iter().zip(row.looks);
+    (0..)
+        .zip(looks)
+        .filter(|(_, (shown, look))| shown != look)
+        .map(|(column, (&shown, &look))| Cell { error: error(shown, look), y: row.y, column })
+}
+
+/// The larger distance of the two halves; infinite where it can't be told.
+fn error(shown: Look, wanted: Look) -> f32 {
+    let Some((shown, wanted)) = shown.halves().zip(wanted.halves()) else { return f32::INFINITY };
+    let distances = shown.into_iter().zip(wanted).map(|(shown, wanted)| {
+        let inks = Ink::of(shown).zip(Ink::of(wanted));
+        inks.map_or(f32::INFINITY, |(shown, wanted)| shown.distance(wanted))
+    });
+    distances.fold(0.0, f32::max)
+}

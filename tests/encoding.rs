@@ -1,0 +1,269 @@
+//! What two emulators, of two projects, show of our bytes: at fidelity exact the very picture, within the
+//! stated distance otherwise, by nothing but sequences that every terminal understands.
+#![cfg(feature = "terminal")]
+
+use std::collections::BTreeSet;
+
+use cellcaster::terminal::{CellWriter, Fidelity};
+use proptest::prelude::*;
+use ratatui::Terminal;
+use ratatui::buffer::{Buffer, Cell};
+use ratatui::layout::{Rect, Size};
+use ratatui::style::Color;
+
+type Rgb = [u8; 3];
+
+/// What a cell shows: the colours of its halves, or a character in two colours.
+#[derive(Clone, Copy, Debug, PartialEq)]
+enum Shown {
+    Halves([Rgb; 2]),
+    Character(char, Option<Rgb>, Option<Rgb>),
+}
+
+impl Shown {
+    fn new(character: char, text: Option<Rgb>, ground: Option<Rgb>) -> Self {
+        match (character, text, ground) {
+            ('▀', Some(text), Some(ground)) => Self::Halves([text, ground]),
+            ('▄', Some(text), Some(ground)) => Self::Halves([ground, text]),
+            ('█', Some(text), _) => Self::Halves([text; 2]),
+            (' ', _, Some(ground)) => Self::Halves([ground; 2]),
+            _ => Self::Character(character, text, ground),
+        }
+    }
+
+    fn of(cell: &Cell) -> Self {
+        let rgb = |color| match color {
+            Color::Rgb(red, green, blue) => Some([red, green, blue]),
+            _ => None,
+        };
+        Self::new(cell.symbol().chars().next().unwrap(), rgb(cell.fg), rgb(cell.bg))
+    }
+
+    /// How far off it is: the larger ΔE of the two halves.
+    fn distance(self, wanted: Self) -> f64 {
+        match (self, wanted) {
+            (Self::Halves(shown), Self::Halves(wanted)) => {
+                let distances = shown.into_iter().zip(wanted).map(|(one, other)| delta(one, other));
+                distances.fold(0.0, f64::max)
+            }
+            _ if self == wanted => 0.0,
+            _ => f64::INFINITY,
+        }
+    }
+}
+
+/// CIE76's ΔE by the formulas of the standard.
+fn delta(one: Rgb, other: Rgb) -> f64 {
+    let (one, other) = (lab(one), lab(other));
+    one.iter().zip(other).map(|(one, other)| (one - other).powi(2)).sum::<f64>().sqrt()
+}
+
+fn lab(color: Rgb) -> [f64; 3] {
+    let [r, g, b] = color.map(|channel| {
+        let signal = f64::from(channel) / 255.0;
+        if signal <= 0.04045 { signal / 12.92 } else { ((signal + 0.055) / 1.055).powf(2.4) }
+    });
+    let answer = |light: f64| {
+        if light > 0.008_856_451_679 { light.cbrt() } else { 7.787_037_037 * light + 4.0 / 29.0 }
+    };
+    let x = answer((0.412_456_4 * r + 0.357_576_1 * g + 0.180_437_5 * b) / 0.950_47);
+    let y = answer(0.212_672_9 * r + 0.715_152_2 * g + 0.072_175 * b);
+    let z = answer((0.019_333_9 * r + 0.119_192 * g + 0.950_304_1 * b) / 1.088_83);
+    [116.0 * y - 16.0, 500.0 * (x - y), 200.0 * (y - z)]
+}
+
+/// Integers are that much worse than the formulas.
+const ROUNDING: f64 = 0.1;
+
+/// Both emulators, and ratatui with our backend, which writes to them.
+struct Screens {
+    terminal: Terminal<CellWriter<Vec<u8>>>,
+    one: vt100::Parser,
+    other: avt::Terminal,
+    /// The kinds of all sequences so far.
+    sequences: BTreeSet<String>,
+}
+
+impl Screens {
+    fn new(size: Size, fidelity: Fidelity) -> Self {
+        let mut writer = CellWriter::new(Vec::new(), size);
+        writer.set_fidelity(fidelity);
+        let [rows, columns] = [size.height, size.width].map(|side| side.try_into().unwrap());
+        Self {
+            terminal: Terminal::new(writer).unwrap(),
+            one: vt100::Parser::new(rows, columns, 0),
+            other: avt::Terminal::new(size.width.into(), size.height.into()).unwrap(),
+            sequences: BTreeSet::new(),
+        }
+    }
+
+    fn draw(&mut self, picture: &Buffer) {
+        self.terminal.draw(|frame| frame.buffer_mut().merge(picture)).unwrap();
+        let bytes = std::mem::take(self.terminal.backend_mut().output_mut());
+        self.one.process(&bytes);
+        let text = String::from_utf8(bytes).unwrap();
+        self.other.feed(text.as_str());
+        self.sequences.extend(kinds(&text));
+    }
+
+    /// What a cell shows in both.
+    fn shown(&self, x: u16, y: u16) -> [Shown; 2] {
+        let cell = self.one.screen().cell(y, x).unwrap();
+        let rgb = |color| match color {
+            vt100::Color::Rgb(red, green, blue) => Some([red, green, blue]),
+            _ => None,
+        };
+        let character = cell.contents().chars().next().unwrap_or(' ');
+        let one = Shown::new(character, rgb(cell.fgcolor()), rgb(cell.bgcolor()));
+        let cell = &self.other.screen().line(y.into()).unwrap().cells()[usize::from(x)];
+        let rgb = |color| match color {
+            Some(avt::Color::RGB(rgb)) => Some([rgb.r, rgb.g, rgb.b]),
+            _ => None,
+        };
+        let pen = cell.pen();
+        let other = Shown::new(cell.char(), rgb(pen.foreground()), rgb(pen.background()));
+        [one, other]
+    }
+
+    /// How far off the cells are, both emulators agreeing on each.
+    fn largest_distance(&self, picture: &Buffer) -> f64 {
+        let distances = picture.area.positions().map(|position| {
+            let [one, other] = self.shown(position.x, position.y);
+            assert_eq!(one, other, "at {position}");
+            one.distance(Shown::of(&picture[position]))
+        });
+        distances.fold(0.0, f64::max)
+    }
+}
+
+/// Of each control sequence in `text` its private mark and its last byte, and of each other control
+/// character that.
+fn kinds(text: &str) -> Vec<String> {
+    let mut kinds = Vec::new();
+    let mut characters = text.chars();
+    while let Some(character) = characters.next() {
+        if character == '\x1b' {
+            assert_eq!(characters.next(), Some('['), "an escape that starts no control sequence");
+            let mut parameters = String::new();
+            let last = loop {
+                match characters.next().unwrap() {
+                    last @ '@'..='~' => break last,
+                    parameter => parameters.push(parameter),
+                }
+            };
+            let is_private = parameters.starts_with('?');
+            kinds.push(if is_private { format!("{parameters}{last}") } else { last.to_string() });
+        } else if character.is_control() {
+            kinds.push(format!("{character:?}"));
+        }
+    }
+    kinds
+}
+
+/// Those that terminals are known to understand: motions to a place and to the right, erasing, deleting
+/// and inserting characters, colours, synchronized output, and the cursor's visibility.
+const SAFE: [&str; 11] = ["H", "C", "J", "K", "P", "@", "m", "?2026h", "?2026l", "?25h", "?25l"];
+
+/// A picture of smooth stretches, sharp edges, noise and text.
+fn any_picture(size: Size) -> impl Strategy<Value = Buffer> {
+    let cell = prop_oneof![
+        6 => (0..12_u8, 0..12_u8).prop_map(|(upper, lower)| block([90 + 4 * upper, 60, 40 + upper], [90 + 3 * lower, 60, 45])),
+        3 => (any::<Rgb>(), any::<Rgb>()).prop_map(|(upper, lower)| block(upper, lower)),
+        1 => prop::sample::select(vec!['a', '#', 'é']).prop_map(|character| {
+            let mut cell = Cell::default();
+            cell.set_char(character).set_fg(Color::Rgb(200, 200, 200)).set_bg(Color::Rgb(0, 0, 0));
+            cell
+        }),
+    ];
+    prop::collection::vec(cell, usize::from(size.width) * usize::from(size.height))
+        .prop_map(move |content| Buffer { area: Rect::from(size), content })
+}
+
+fn block([r, g, b]: Rgb, lower: Rgb) -> Cell {
+    let mut cell = Cell::new("▀");
+    cell.set_fg(Color::Rgb(r, g, b)).set_bg(Color::Rgb(lower[0], lower[1], lower[2]));
+    cell
+}
+
+/// A picture, and how its rows move from frame to frame.
+fn any_history() -> impl Strategy<Value = Vec<Buffer>> {
+    let size = (1..50_u16, 1..7_u16).prop_map(Size::from);
+    size.prop_flat_map(|size| {
+        let moves = prop::collection::vec((any::<u16>(), 0..6_usize, any::<bool>()), 1..6);
+        (prop::collection::vec(any_picture(size), 1..3), moves)
+    })
+    .prop_map(|(mut pictures, moves)| {
+        let mut picture = pictures[0].clone();
+        let width = usize::from(picture.area.width);
+        for (row, by, is_left) in moves {
+            let rows = picture.content.chunks_mut(width);
+            let row = usize::from(row) % rows.len();
+            let row = &mut picture.content[row * width..][..width];
+            let by = by.min(width);
+            if is_left {
+                row.rotate_left(by)
+            } else {
+                row.rotate_right(by)
+            }
+            pictures.push(picture.clone());
+        }
+        pictures
+    })
+}
+
+proptest! {
+    #[test]
+    fn every_picture_is_shown_within_the_stated_distance(
+        history in any_history(),
+        tolerance in prop_oneof![Just(0_u8), 1..60_u8, any::<u8>()],
+    ) {
+        let size = history[0].area.as_size();
+        let mut screens = Screens::new(size, Fidelity::new(tolerance));
+        for picture in &history {
+            screens.draw(picture);
+            let distance = screens.largest_distance(picture);
+            let stated = if tolerance == 0 { 0.0 } else { f64::from(tolerance) + ROUNDING };
+            prop_assert!(distance <= stated, "{} at {}", distance, tolerance);
+        }
+        // What rests becomes exact.
+        let last = history.last().unwrap();
+        for _ in 0..10 {
+            screens.draw(last);
+        }
+        prop_assert_eq!(screens.largest_distance(last), 0.0);
+        prop_assert!(screens.terminal.backend().is_settled());
+        for kind in &screens.sequences {
+            prop_assert!(SAFE.contains(&kind.as_str()), "{}", kind);
+        }
+    }
+}
+
+#[test]
+fn a_resting_picture_becomes_exact_in_frames_of_about_one_size() {
+    let size = Size::new(80, 24);
+    let mut screens = Screens::new(size, Fidelity::LOW);
+    // Two gradients, the second too near to the first for anything to be sent.
+    let gradient = |offset: u16| {
+        let cells = (0..size.width * size.height).map(|index| {
+            let value = (index % size.width + offset) as u8;
+            block([value, 100, value], [value, 90, value])
+        });
+        Buffer { area: Rect::from(size), content: cells.collect() }
+    };
+    screens.draw(&gradient(0));
+    screens.draw(&gradient(1));
+    let mut sizes = Vec::new();
+    while !screens.terminal.backend().is_settled() {
+        let before = screens.terminal.backend().bytes_written();
+        screens.draw(&gradient(1));
+        sizes.push(screens.terminal.backend().bytes_written() - before);
+    }
+    assert_eq!(sizes.len(), 10, "{sizes:?}");
+    let (least, most) = (sizes.iter().min().unwrap(), sizes.iter().max().unwrap());
+    assert!(*most < 2 * least, "{sizes:?}");
+    let cells = u64::from(size.width) * u64::from(size.height);
+    assert!(*most < cells / 10 * LONGEST_CELL, "{sizes:?}");
+}
+
+/// A motion, two colours and a glyph.
+const LONGEST_CELL: u64 = 10 + 38 + 3;

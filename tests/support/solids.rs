@@ -1,0 +1,336 @@
+//! A world as blocks of rock, pillars, thin walls and pictures, of which a line meets one first.
+//!
+//! It knows nothing of windows, rows or cells to walk through: it asks everything there is, and takes what
+//! is nearest. What it finds it colours by the place alone.
+
+use std::f64::consts::TAU;
+
+use cellcaster::world::{
+    Anchor, Camera, Ceiling, Cell, Gap, Outline, Paint, Rgb, Sprite, TileKind, World,
+};
+use glam::{DVec2, DVec3};
+
+/// Further than anything.
+const FAR: f64 = 1e30;
+/// Things that are nearer than that are not drawn.
+const NEAREST: f64 = 0.2;
+
+/// All that there is in a world, for somebody who looks at it.
+pub(crate) struct Solids<'a> {
+    world: &'a World,
+    camera: &'a Camera,
+    all: Vec<Solid<'a>>,
+}
+
+enum Solid<'a> {
+    Block(Block),
+    Pillar {
+        center: DVec2,
+        radius: f64,
+        heights: Gap,
+        paint: Paint,
+    },
+    /// A thin wall, from a place and along a way.
+    Panel {
+        start: DVec2,
+        way: DVec2,
+        heights: Gap,
+        paint: Paint,
+    },
+    /// A picture that faces the viewer.
+    Picture {
+        center: DVec2,
+        base: f64,
+        sprite: &'a Sprite,
+    },
+}
+
+/// A block of rock, and the paints of its sides, its top and its bottom.
+struct Block {
+    low: DVec3,
+    high: DVec3,
+    side: Paint,
+    top: Paint,
+    bottom: Paint,
+}
+
+/// What a line meets, and where.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub(crate) struct Met {
+    solid: usize,
+    face: Face,
+    /// What is seen there.
+    pub(crate) color: Rgb,
+}
+
+/// Which face of something a line enters.
+#[derive(Clone, Copy, Debug, PartialEq)]
+enum Face {
+    X,
+    Y,
+    /// What faces along neither axis.
+    Slanted,
+    Top,
+    Bottom,
+}
+
+/// Where on a line something is met, and by which face.
+type Entry = (f64, Face);
+
+impl<'a> Solids<'a> {
+    /// All that `camera` may see of `world`.
+    pub(crate) fn of(world: &'a World, camera: &'a Camera) -> Self {
+        let (width, height) = (world.grid().width(), world.grid().height());
+        let cells = (0..height).flat_map(|row| (0..width).map(move |column| Cell { column, row }));
+        let mut all: Vec<Solid> = cells.flat_map(|cell| solids_in(world, cell)).collect();
+        all.extend(ground_around(world).map(Solid::Block));
+        all.extend(world.things().iter().map(|thing| {
+            let sprite = world.sprite(thing.sprite);
+            let heights = world.room_in(thing.cell);
+            let base = match sprite.anchor {
+                Anchor::Floor => heights.floor(),
+                Anchor::Ceiling => heights.ceiling() - sprite.height.cells(),
+            };
+            Solid::Picture { center: thing.cell.center(), base, sprite }
+        }));
+        Self { world, camera, all }
+    }
+
+    /// What a line from the camera along `direction` meets first; `None` where that is the sky.
+    pub(crate) fn meet(&self, direction: DVec3) -> Option<Met> {
+        let origin = self.camera.position().extend(self.camera.eye());
+        let entries = self.all.iter().enumerate().filter_map(|(index, solid)| {
+            let (t, face) = self.entry(solid, origin, direction)?;
+            Some((t, index, face))
+        });
+        let (t, solid, face) = entries.min_by(|one, other| one.0.total_cmp(&other.0))?;
+        let color = self.color(&self.all[solid], face, origin + direction * t, direction);
+        Some(Met { solid, face, color })
+    }
+
+    /// Whether a place is inside a pillar, from where nothing is seen.
+    pub(crate) fn is_in_pillar(&self, place: DVec3) -> bool {
+        self.all.iter().any(|solid| match *solid {
+            Solid::Pillar { center, radius, heights, .. } => {
+                place.truncate().distance(center) <= radius && heights.holds(place.z)
+            }
+            _ => false,
+        })
+    }
+
+    fn entry(&self, solid: &Solid, origin: DVec3, direction: DVec3) -> Option<Entry> {
+        match *solid {
+            Solid::Block(ref block) => block.entry(origin, direction),
+            Solid::Pillar { center, radius, heights, .. } => {
+                pillar_entry(origin - center.extend(0.0), direction, radius, heights)
+            }
+            Solid::Panel { start, way, heights, .. } => {
+                panel_entry(origin - start.extend(0.0), direction, way, heights)
+            }
+            Solid::Picture { center, base, sprite } => {
+                // The direction is one unit long along that of the camera.
+                let t = (center - origin.truncate()).dot(self.camera.direction());
+                let (x, y) = self.texel_of(center, base, sprite, origin + direction * t)?;
+                let picture = self.picture(center, sprite);
+                let is_seen = t >= NEAREST && picture.texel(x, y).1 > 0;
+                is_seen.then_some((t, Face::Slanted))
+            }
+        }
+    }
+
+    /// Which texel of a picture is at a place in its plane.
+    fn texel_of(
+        &self,
+        center: DVec2,
+        base: f64,
+        sprite: &Sprite,
+        place: DVec3,
+    ) -> Option<(u32, u32)> {
+        let picture = self.picture(center, sprite);
+        let beside = (place.truncate() - center).dot(self.camera.direction().perp());
+        let x = (beside / sprite.width() + 0.5) * f64::from(picture.width());
+        let y = (1.0 - (place.z - base) / sprite.height.cells()) * f64::from(picture.height());
+        let is_on_it = (0.0..f64::from(picture.width())).contains(&x)
+            && (0.0..f64::from(picture.height())).contains(&y);
+        is_on_it.then_some((x as u32, y as u32))
+    }
+
+    fn picture<'s>(&self, center: DVec2, sprite: &'s Sprite) -> &'s cellcaster::world::Texture {
+        sprite.picture(0.0, self.camera.position() - center)
+    }
+
+    fn color(&self, solid: &Solid, face: Face, place: DVec3, direction: DVec3) -> Rgb {
+        let flat = |paint| self.texel(paint, place.x, place.y);
+        // Textures hang from whole heights.
+        let upright = |paint, u: f64| self.texel(paint, u, -place.z);
+        match *solid {
+            Solid::Block(ref block) => match face {
+                Face::Top => flat(block.top),
+                Face::Bottom => flat(block.bottom),
+                Face::X => upright(block.side, if direction.x > 0.0 { place.y } else { -place.y }),
+                Face::Y | Face::Slanted => {
+                    let u = if direction.y < 0.0 { place.x } else { -place.x };
+                    upright(block.side, u).halved()
+                }
+            },
+            Solid::Pillar { paint, .. } if face == Face::Top => flat(paint),
+            Solid::Pillar { center, radius, paint, .. } => {
+                let outward = place.truncate() - center;
+                let times = (TAU * radius).round().max(1.0);
+                let turn = libm::atan2(-outward.y, outward.x) / TAU * times;
+                dimmed(upright(paint, turn), outward / radius)
+            }
+            Solid::Panel { start, way, paint, .. } => {
+                let along = (place.truncate() - start).dot(way) / way.length_squared();
+                let is_from_the_left = direction.truncate().perp_dot(way) > 0.0;
+                let u = if is_from_the_left { along } else { -along };
+                dimmed(upright(paint, u), way.perp().normalize())
+            }
+            Solid::Picture { center, base, sprite } => {
+                let texel = self.texel_of(center, base, sprite, place);
+                let (x, y) = texel.unwrap_or_default();
+                self.picture(center, sprite).texel(x, y).0
+            }
+        }
+    }
+
+    /// What `paint` is so many cells from the left and from the top.
+    fn texel(&self, paint: Paint, x: f64, y: f64) -> Rgb {
+        let Paint::Texture(id) = paint else { return self.world.mean_color(paint) };
+        let texture = self.world.texture(id);
+        let index = |place: f64, count: u32| {
+            let fraction = place - place.floor();
+            ((fraction * f64::from(count)) as u32).min(count - 1)
+        };
+        texture.texel(index(x, texture.width()), index(y, texture.height())).0
+    }
+}
+
+/// A colour as it is on what faces along `normal`.
+fn dimmed(color: Rgb, normal: DVec2) -> Rgb {
+    let share = (256.0 * f64::midpoint(1.0, normal.x * normal.x)) as u32;
+    let [red, green, blue] =
+        color.channels().map(|channel| (u32::from(channel) * share / 256) as u8);
+    Rgb::new(red, green, blue)
+}
+
+/// What is solid in a cell.
+fn solids_in<'a>(world: &World, cell: Cell) -> Vec<Solid<'a>> {
+    let tile = world.tile(world.grid().tile(cell.column.into(), cell.row.into()).unwrap());
+    let gaps: Vec<Gap> = tile.gaps().collect();
+    let low = DVec3::new(f64::from(cell.column), f64::from(cell.row), -FAR);
+    let high = DVec3::new(low.x + 1.0, low.y + 1.0, gaps[0].bottom);
+    let top = match tile.kind {
+        TileKind::Wall(_) => tile.riser,
+        _ => tile.floor.pattern.first_paint(),
+    };
+    let below = Block { low, high, side: tile.riser, top, bottom: top };
+    let above = gaps.get(1).map(|gap| Block {
+        low: low.with_z(gaps[0].top),
+        high: high.with_z(gap.bottom),
+        side: tile.lintel,
+        top: tile.lintel,
+        bottom: match tile.ceiling {
+            Ceiling::Covered(covering) => covering.pattern.first_paint(),
+            Ceiling::Sky => unreachable!("there is rock above"),
+        },
+    });
+    let shape = match tile.kind {
+        TileKind::Shape(shape) => Some(shape),
+        _ => None,
+    };
+    let shape = shape.map(|shape| {
+        let heights = Gap { bottom: tile.heights.floor(), top: tile.top_of_what_stands() };
+        let paint = shape.paint;
+        match shape.outline {
+            Outline::Pillar(radius) => {
+                Solid::Pillar { center: cell.center(), radius: radius.cells(), heights, paint }
+            }
+            Outline::Line(line) => {
+                Solid::Panel { start: line.start(cell), way: line.stretch(), heights, paint }
+            }
+        }
+    });
+    [below].into_iter().chain(above).map(Solid::Block).chain(shape).collect()
+}
+
+/// The ground beyond the edges of the map.
+fn ground_around(world: &World) -> impl Iterator<Item = Block> {
+    let (width, height) = (f64::from(world.grid().width()), f64::from(world.grid().height()));
+    let paint = world.floor().pattern.first_paint();
+    let around = [
+        (-FAR, -FAR, 0.0, FAR),
+        (width, -FAR, FAR, FAR),
+        (0.0, -FAR, width, 0.0),
+        (0.0, height, width, FAR),
+    ];
+    around.into_iter().map(move |(west, north, east, south)| Block {
+        low: DVec3::new(west, north, -FAR),
+        high: DVec3::new(east, south, 0.0),
+        side: paint,
+        top: paint,
+        bottom: paint,
+    })
+}
+
+impl Block {
+    /// Where a line from `origin` along `direction` enters.
+    fn entry(&self, origin: DVec3, direction: DVec3) -> Option<Entry> {
+        let mut enters = (f64::NEG_INFINITY, Face::X);
+        let mut leaves = f64::INFINITY;
+        for axis in 0..3 {
+            let to = |place: f64| (place - origin[axis]) / direction[axis];
+            if direction[axis] == 0.0 {
+                if !(self.low[axis]..=self.high[axis]).contains(&origin[axis]) {
+                    return None;
+                }
+                continue;
+            }
+            let (near, far) = if direction[axis] > 0.0 {
+                (to(self.low[axis]), to(self.high[axis]))
+            } else {
+                (to(self.high[axis]), to(self.low[axis]))
+            };
+            if near > enters.0 {
+                let upright = [Face::X, Face::Y].get(axis).copied();
+                let flat = if direction.z > 0.0 { Face::Bottom } else { Face::Top };
+                enters = (near, upright.unwrap_or(flat));
+            }
+            leaves = leaves.min(far);
+        }
+        (enters.0 >= 0.0 && enters.0 <= leaves).then_some(enters)
+    }
+}
+
+/// Where a line enters a pillar, whose axis is the origin of all places.
+fn pillar_entry(origin: DVec3, direction: DVec3, radius: f64, heights: Gap) -> Option<Entry> {
+    let (from, along) = (origin.truncate(), direction.truncate());
+    let (a, b) = (along.length_squared(), from.dot(along));
+    let discriminant = b * b - a * (from.length_squared() - radius * radius);
+    if discriminant < 0.0 {
+        return None;
+    }
+    let enters = (-b - discriminant.sqrt()) / a;
+    let to_top = (heights.top - origin.z) / direction.z;
+    let is_on_top = (from + along * to_top).length() <= radius;
+    if enters >= 0.0 && heights.holds(origin.z + direction.z * enters) {
+        Some((enters, Face::Slanted))
+    } else if direction.z < 0.0 && to_top >= 0.0 && is_on_top {
+        Some((to_top, Face::Top))
+    } else {
+        None
+    }
+}
+
+/// Where a line goes through a thin wall along `way`, which begins at the origin of all places.
+fn panel_entry(origin: DVec3, direction: DVec3, way: DVec2, heights: Gap) -> Option<Entry> {
+    let (from, along) = (origin.truncate(), direction.truncate());
+    let across = along.perp_dot(way);
+    let t = -from.perp_dot(way) / across;
+    let place = -from.perp_dot(along) / across;
+    let is_met = across != 0.0
+        && t >= 0.0
+        && (0.0..=1.0).contains(&place)
+        && heights.holds(origin.z + direction.z * t);
+    is_met.then_some((t, Face::Slanted))
+}
