@@ -1,77 +1,109 @@
 //! Our drawing beside the classic loop and a fill, at five sizes.
 //!
-//! `cargo bench --no-default-features --features speed --bench drawing`. An element is a pixel. They
-//! take turns within a size, so compare within one run only.
+//! `cargo bench --no-default-features --features speed --bench drawing` writes the table of
+//! `PERFORMANCE.md`. From each camera of a walk all draw one after the other, so that a machine that
+//! is busy with something else slows all of them down; of each camera's times the median counts, and
+//! a time in the table is the mean of those. One thread draws.
 
 use std::hint::black_box;
+use std::time::Instant;
 
 use cellcaster::render::{Frame, FrameSize, Renderer};
 use cellcaster::speed::{self, Classic, ClassicFloor};
-use cellcaster::world::World;
-use criterion::{Criterion, Throughput, criterion_group, criterion_main};
+use cellcaster::world::{Camera, World};
 
 const SIZES: [(u32, u32); 5] = [(160, 90), (320, 200), (640, 480), (1920, 1080), (3840, 2160)];
-
 /// Cameras along the walk, one a picture.
 const CAMERAS: usize = 64;
+/// Pictures with more pixels are drawn from fewer of them.
+const LARGE: u32 = 1_000_000;
+const CAMERAS_OF_LARGE: usize = 16;
+/// How often each camera has its turn.
+const TURNS: usize = 15;
 
-fn drawing(criterion: &mut Criterion) {
+/// What is drawn, and how the classic loop may draw it.
+struct Scene {
+    name: &'static str,
+    world: World,
+    floors: &'static [ClassicFloor],
+}
+
+/// Nanoseconds a picture.
+struct Times {
+    ours: f64,
+    /// In the order of the scene's floors.
+    classic: Vec<f64>,
+    fill: f64,
+}
+
+fn main() {
+    // Asked for a test of the bench, once is enough.
+    let turns = if std::env::args().any(|argument| argument == "--test") { 1 } else { TURNS };
     let scenes = [
-        (
-            "planes",
-            speed::textured_scene(),
-            &[ClassicFloor::ByColumn, ClassicFloor::ByScanline][..],
-        ),
-        ("walls", speed::plain_scene(), &[ClassicFloor::None]),
+        Scene {
+            name: "textured floor and ceiling",
+            world: speed::textured_scene(),
+            floors: &[ClassicFloor::ByColumn, ClassicFloor::ByScanline],
+        },
+        Scene { name: "walls only", world: speed::plain_scene(), floors: &[ClassicFloor::None] },
     ];
-    for (width, height) in SIZES {
-        for (scene, world, floors) in &scenes {
-            compare(criterion, (width, height), scene, world, floors);
+    println!(
+        "| scene | size | ours, µs | ours, ns a pixel | times faster than the faster classic loop | times a fill |"
+    );
+    println!("|---|---|---|---|---|---|");
+    for scene in &scenes {
+        for (width, height) in SIZES {
+            let size = FrameSize::new(width, height).expect("no side is zero");
+            let Times { ours, classic, fill } = measure(scene, size, turns);
+            let faster = classic.into_iter().fold(f64::INFINITY, f64::min);
+            println!(
+                "| {} | {width}x{height} | {:.1} | {:.2} | {:.2} | {:.1} |",
+                scene.name,
+                ours / 1000.0,
+                ours / f64::from(width * height),
+                faster / ours,
+                ours / fill,
+            );
         }
     }
 }
 
-fn compare(
-    criterion: &mut Criterion,
-    (width, height): (u32, u32),
-    scene: &str,
-    world: &World,
-    floors: &[ClassicFloor],
-) {
-    let mut group = criterion.benchmark_group(format!("{scene} {width}x{height}"));
-    group.sample_size(10);
-    group.throughput(Throughput::Elements(u64::from(width) * u64::from(height)));
-    let size = FrameSize::new(width, height).expect("no side is zero");
-    let cameras = speed::walk(world, CAMERAS);
+fn measure(scene: &Scene, size: FrameSize, turns: usize) -> Times {
+    let Scene { world, floors, .. } = scene;
+    let (width, height) = (size.width.get(), size.height.get());
+    let of_the_walk = if width * height > LARGE { CAMERAS_OF_LARGE } else { CAMERAS };
+    let cameras: Vec<Camera> =
+        speed::walk(world, CAMERAS).into_iter().step_by(CAMERAS / of_the_walk).collect();
+    let (mut renderer, classic) = (Renderer::new(), Classic::new(world));
     let mut frame = Frame::new(size, speed::pixel_aspect(size));
     let mut pixels = vec![0; (width * height) as usize];
-    let mut renderer = Renderer::new();
-    let mut turn = 0;
-    let mut next = || {
-        turn = (turn + 1) % cameras.len();
-        &cameras[turn]
-    };
-    group.bench_function("ours", |bencher| {
-        bencher.iter(|| renderer.render(world, next(), black_box(&mut frame)));
-    });
-    let classic = Classic::new(world);
-    for &floor in floors {
-        group.bench_function(format!("classic {floor:?}"), |bencher| {
-            bencher.iter(|| {
+
+    // Of each camera: ours, the fill, and the classic loop with each of the floors.
+    let mut times = vec![vec![Vec::with_capacity(turns); 2 + floors.len()]; cameras.len()];
+    for turn in 0..turns {
+        for (camera, times) in cameras.iter().zip(&mut times) {
+            times[0].push(time(|| renderer.render(world, camera, black_box(&mut frame))));
+            times[1].push(time(|| speed::fill(black_box(&mut pixels), turn as u32)));
+            for (times, &floor) in times[2..].iter_mut().zip(*floors) {
                 let size = (width as usize, height as usize);
-                classic.draw(next(), floor, size, black_box(&mut pixels));
-            });
-        });
+                times.push(time(|| classic.draw(camera, floor, size, black_box(&mut pixels))));
+            }
+        }
     }
-    group.bench_function("fill", |bencher| {
-        let mut color = 0_u32;
-        bencher.iter(|| {
-            color = color.wrapping_add(1);
-            speed::fill(black_box(&mut pixels), color);
-        });
-    });
-    group.finish();
+    let mut mean = |drawn: usize| {
+        times.iter_mut().map(|times| median(&mut times[drawn])).sum::<f64>() / cameras.len() as f64
+    };
+    Times { ours: mean(0), fill: mean(1), classic: (2..2 + floors.len()).map(mean).collect() }
 }
 
-criterion_group!(benches, drawing);
-criterion_main!(benches);
+/// Nanoseconds that something takes.
+fn time(draw: impl FnOnce()) -> f64 {
+    let start = Instant::now();
+    draw();
+    start.elapsed().as_secs_f64() * 1e9
+}
+
+fn median(times: &mut [f64]) -> f64 {
+    times.sort_by(f64::total_cmp);
+    times[times.len() / 2]
+}

@@ -10,6 +10,7 @@
 //! does everything to a column before it goes to the next was refused: a pass that a scene has no
 //! use for can be left out, a branch in the innermost loop can't.
 
+mod coat;
 mod columns;
 mod doors;
 mod explanation;
@@ -41,14 +42,14 @@ pub use tally::{Counts, Pass, PassCounts};
 
 use crate::cast::{Caster, Method, Visitor};
 use crate::world::{Camera, World};
+use coat::Papers;
 use marks::Marks;
-use planes::{Plane, PlaneKind};
+use planes::{Plane, PlaneKind, RowOfPlane};
 use projection::Projection;
 use see_through::Passed;
 use sky::{SkyColumn, SkyView};
 use tally::Tally;
 use things::InView;
-use walls::Papers;
 pub use windows::WindowCounts;
 use windows::Windows;
 
@@ -69,6 +70,7 @@ struct Memory {
     passed: Passed,
     /// For each column, how many rows show the floor or the ceiling, whichever is being drawn.
     visible: Vec<u32>,
+    rows_of_plane: Vec<RowOfPlane>,
     sky: Vec<SkyColumn>,
     in_view: InView,
     marks: Marks,
@@ -214,6 +216,7 @@ impl<T: Tally> Picture<'_, T> {
             first_row_of_ground,
             passed,
             visible,
+            rows_of_plane,
             sky,
             in_view,
             marks,
@@ -235,13 +238,23 @@ impl<T: Tally> Picture<'_, T> {
             CeilingLoop::Laid(plane) => {
                 visible.clear();
                 visible.extend(columns.iter().map(|column| column.rows_of_ceiling(ground)));
-                Plane { scene, kind: PlaneKind::Ceiling, sky, visible }.draw(plane, frame, tally);
+                Plane { scene, kind: PlaneKind::Ceiling, sky, visible }.draw(
+                    plane,
+                    rows_of_plane,
+                    frame,
+                    tally,
+                );
                 sky.draw_beyond_edge(scene, frame, tally);
             }
         }
         visible.clear();
         visible.extend(columns.iter().map(|column| column.rows_of_floor(ground, height)));
-        Plane { scene, kind: PlaneKind::Floor, sky, visible }.draw(plan.floor, frame, tally);
+        Plane { scene, kind: PlaneKind::Floor, sky, visible }.draw(
+            plan.floor,
+            rows_of_plane,
+            frame,
+            tally,
+        );
         walls::draw(scene, plan.walls, papers, frame, tally);
         marks.begin(frame.width(), height);
         *next_change = match plan.things {

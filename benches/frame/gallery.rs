@@ -1,6 +1,6 @@
 //! What is measured: the maps of the gallery, each as its start shows it.
 
-use cellcaster::map;
+use cellcaster::map::{self, Level};
 use cellcaster::render::{Frame, FrameSize, PixelAspect, Renderer};
 use cellcaster::world::{Camera, FieldOfView, World};
 
@@ -30,11 +30,13 @@ pub(crate) fn scenes() -> Vec<Scene> {
     let files = std::fs::read_dir("maps/gallery").expect("the benches run in the package's folder");
     let paths = files.map(|file| file.expect("the gallery can be read").path());
     let mut scenes: Vec<Scene> = paths
-        .map(|path| {
+        .filter_map(|path| {
             let name = path.file_stem().unwrap_or_default().to_string_lossy().into_owned();
-            let world = map::load(&path).unwrap_or_else(|faults| panic!("{faults}"));
+            let level = map::load_level(&path).unwrap_or_else(|faults| panic!("{faults}"));
+            // Maps of bodies have a bench of their own.
+            let Level::Grid(world) = level else { return None };
             let camera = world.start_camera(FieldOfView::default());
-            Scene { name, world, camera }
+            Some(Scene { name, world: *world, camera })
         })
         .collect();
     scenes.sort_by(|one, other| {

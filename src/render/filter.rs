@@ -19,10 +19,16 @@ impl Filter {
     pub(super) fn halvings(self, area: f64) -> usize {
         match self {
             // The nearest power of four; the exponent of a double is exact on every machine.
-            Self::Mip if area >= 0.5 => (libm::ilogb(2.0 * area) / 2) as usize,
+            Self::Mip if area >= 0.5 => (exponent(2.0 * area) / 2) as usize,
             Self::Mip | Self::Nearest => 0,
         }
     }
+}
+
+/// The exponent of a double that is at least 1; above all others where it is infinite.
+fn exponent(number: f64) -> u64 {
+    const BIAS: u64 = f64::MAX_EXP as u64 - 1;
+    (number.to_bits() >> (f64::MANTISSA_DIGITS - 1)) - BIAS
 }
 
 #[cfg(test)]

@@ -124,4 +124,17 @@ impl Frame {
         let first = (rows.start as usize * width + x as usize).min(self.pixels.len());
         self.pixels[first..].iter_mut().step_by(width).take(rows.len())
     }
+
+    /// The pixels of `N` columns from `x` on in those rows, row by row.
+    #[inline]
+    pub(super) fn block_mut<const N: usize>(
+        &mut self,
+        x: u32,
+        rows: Range<u32>,
+    ) -> impl Iterator<Item = &mut [Rgb; N]> {
+        let width = self.width() as usize;
+        self.row_range_mut(rows.start, rows.end)
+            .chunks_exact_mut(width)
+            .filter_map(move |row| row[x as usize..].first_chunk_mut())
+    }
 }

@@ -3,8 +3,8 @@
 use super::Filter;
 use super::shade::{Bright, Faded, Shade};
 use super::tally::{Pass, Tally};
-use super::track::Track;
-use crate::world::texture::{Level, mean_of_two};
+use super::track::{Places, Track};
+use crate::world::texture::{Level, LevelByShifts, mean_of_two};
 use crate::world::{Covering, Light, Paint, Pattern, Rgb, World};
 
 /// What all of a floor's or a ceiling's spans have in common.
@@ -58,14 +58,13 @@ impl Layer<'_> {
                 Sample::Color(color) => pixels.fill(shade.apply(color)),
                 Sample::Level(level) => {
                     tally.texels(self.pass, pixels.len());
-                    let pixels = pixels.iter_mut().zip(track.places(x, per_cell));
-                    if let Some(level) = level.by_shifts() {
-                        for (pixel, (x, y)) in pixels {
-                            *pixel = shade.apply(level.at_fraction(x, y));
-                        }
-                    } else {
-                        for (pixel, (x, y)) in pixels {
-                            *pixel = shade.apply(level.at_fraction(x, y));
+                    let places = track.places(x, per_cell);
+                    match level.by_shifts() {
+                        Some(level) => lay_by_shifts(level, shade, places, pixels),
+                        None => {
+                            for (pixel, (x, y)) in pixels.iter_mut().zip(places) {
+                                *pixel = shade.apply(level.at_fraction(x, y));
+                            }
                         }
                     }
                 }
@@ -87,6 +86,48 @@ impl Layer<'_> {
         }
     }
 }
+
+/// Lays `level` on `pixels`, many at a time: which texels they show is computed first, in a loop that
+/// reads no texel, so that a compiler has several of them computed at once.
+fn lay_by_shifts<S: Shade>(
+    level: LevelByShifts<'_>,
+    shade: S,
+    mut places: Places,
+    pixels: &mut [Rgb],
+) {
+    let mut texels = [0; AT_ONCE];
+    for pixels in pixels.chunks_mut(AT_ONCE) {
+        // A few too many take less time than a few that are computed one by one.
+        let texels = &mut texels[..pixels.len().next_multiple_of(LANES)];
+        for (texel, (x, y)) in texels.iter_mut().zip(places.clone()) {
+            *texel = level.index(x, y);
+        }
+        look_up(level, shade, texels, pixels);
+        places.skip_pixels(AT_ONCE as u64);
+    }
+}
+
+/// Colours `pixels` by the indices of their texels, of which there are at least as many.
+#[inline]
+fn look_up<S: Shade>(level: LevelByShifts<'_>, shade: S, texels: &[u32], pixels: &mut [Rgb]) {
+    // Each may be the last, for all that a compiler knows, and so it does not unroll this by itself.
+    let (pixels, rest) = pixels.as_chunks_mut::<UNROLLED>();
+    let (texels, rest_of_texels) = texels.split_at(pixels.as_flattened().len());
+    for (pixels, texels) in pixels.iter_mut().zip(texels.as_chunks::<UNROLLED>().0) {
+        for (pixel, &texel) in pixels.iter_mut().zip(texels) {
+            *pixel = shade.apply(level.at_index(texel));
+        }
+    }
+    for (pixel, &texel) in rest.iter_mut().zip(rest_of_texels) {
+        *pixel = shade.apply(level.at_index(texel));
+    }
+}
+
+/// So many pixels are laid at once, at most.
+const AT_ONCE: usize = 64;
+/// A multiple of how many texels a processor computes at once.
+const LANES: usize = 16;
+const UNROLLED: usize = 8;
 
 impl<'a> Layer<'a> {
     /// What `paint` is infinitely far away.

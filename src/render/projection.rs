@@ -227,7 +227,10 @@ impl Projection {
     fn first_row_below(&self, y: f64) -> u32 {
         // The cast takes what is not a number, as of a wall infinitely far through an infinitely
         // long lens, to 0.
-        (y - 0.5).ceil().clamp(0.0, self.height) as u32
+        let y = (y - 0.5).clamp(0.0, self.height);
+        // Where a processor may be old, `f64::ceil` is a call.
+        let row = y as u32;
+        row + u32::from(f64::from(row) < y)
     }
 }
 

@@ -38,13 +38,13 @@ impl TexelsDown {
         let in_texels = |cells: f64| cells * count as f64;
         let texels_in_row = in_texels(height_of_row).min(MOST_TEXELS);
         // A smaller step would not get past the hair, and a row above the horizon below it.
-        let half_step = ((texels_in_row / 2.0 * TEXEL).round() as i64).max(2 * HAIR);
+        let half_step = rounded(texels_in_row / 2.0 * TEXEL).max(2 * HAIR);
         // What is far above or below the face wraps around, and is back where the face begins.
-        let at_horizon = (in_texels(at_eye) * TEXEL).round() as i128 as i64;
+        let at_horizon = rounded(in_texels(at_eye) * TEXEL);
         let half_rows_to_first = 1 - half_rows_to_horizon as i64;
         let from_horizon = half_step.wrapping_mul(half_rows_to_first);
-        let uppermost = in_texels(top).floor() as i64;
-        let lowest = (in_texels(bottom).ceil() as i64 - 1).max(uppermost);
+        let uppermost = floor(in_texels(top));
+        let lowest = (-floor(-in_texels(bottom)) - 1).max(uppermost);
         Self {
             first: at_horizon.wrapping_add(HAIR).wrapping_add(from_horizon),
             step: 2 * half_step,
@@ -78,10 +78,42 @@ impl TexelsDown {
         })
     }
 
+    /// Where the centre of `row` is and how far it is to the next one, such that the texel is what
+    /// the uppermost `BITS` bits say; of a wall that one texture covers, by less than 2 to the power
+    /// of `BITS` texels.
+    #[inline]
+    pub(super) fn in_uppermost<const BITS: u32>(self, row: u32) -> (u64, u64) {
+        let to_the_top = u64::BITS - TEXEL_BITS - BITS;
+        ((self.place(row) as u64) << to_the_top, (self.step as u64) << to_the_top)
+    }
+
     #[inline]
     fn place(self, row: u32) -> i64 {
         self.first.wrapping_add(self.step.wrapping_mul(i64::from(row)))
     }
+}
+
+/// The nearest whole number, the further one from 0 of two; what is beyond 64 bits wraps around.
+///
+/// Where a processor may be old, `f64::round` is a call, and so is `f64::floor`.
+#[inline]
+fn rounded(number: f64) -> i64 {
+    const LARGE: f64 = (1_u64 << 62) as f64;
+    if number.abs() >= LARGE {
+        // It is whole.
+        return number as i128 as i64;
+    }
+    let whole = number as i64;
+    let rest = number - whole as f64;
+    whole + i64::from(rest >= 0.5) - i64::from(rest <= -0.5)
+}
+
+/// The largest whole number that is not above `number`, of those in the middle half of 64 bits.
+#[inline]
+fn floor(number: f64) -> i64 {
+    const MOST: f64 = (1_u64 << 62) as f64;
+    let whole = number.clamp(-MOST, MOST) as i64;
+    whole - i64::from(whole as f64 > number)
 }
 
 /// A texel, in fixed point.

@@ -123,6 +123,14 @@ pub(super) struct Places {
     y_step: u64,
 }
 
+impl Places {
+    /// Goes on by so many pixels.
+    pub(super) fn skip_pixels(&mut self, count: u64) {
+        self.x = self.x.wrapping_add(self.x_step.wrapping_mul(count));
+        self.y = self.y.wrapping_add(self.y_step.wrapping_mul(count));
+    }
+}
+
 impl Iterator for Places {
     type Item = (u64, u64);
 
@@ -139,8 +147,12 @@ impl Iterator for Places {
 /// What is behind the decimal point of `number`, in 2⁻⁶⁴ths; 0 for what is no number.
 fn fraction(number: f64) -> u64 {
     const WHOLE: f64 = 18_446_744_073_709_551_616.0;
+    /// From here on doubles are whole.
+    const LARGE: f64 = (1_u64 << f64::MANTISSA_DIGITS) as f64;
     let size = number.abs();
-    let fraction = ((size - size.floor()) * WHOLE) as u64;
+    // `f64::floor` is a call where a processor may be old.
+    let rest = if size < LARGE { size - size as i64 as f64 } else { 0.0 };
+    let fraction = (rest * WHOLE) as u64;
     if number < 0.0 { fraction.wrapping_neg() } else { fraction }
 }
 

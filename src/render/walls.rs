@@ -8,15 +8,15 @@ use std::ops::Range;
 
 use glam::DVec2;
 
+use super::coat::{self, COLUMNS_AT_ONCE, Coat, Cover, Paper, Papers};
 use super::doors::jamb;
 use super::plan::WallLoop;
 use super::shade::{Faded, OfSide, Shade};
 use super::tally::{Pass, Tally};
-use super::texels_down::TexelsDown;
 use super::{Column, Frame, Scene};
 use crate::cast::{Hit, Side};
 use crate::world::texture::Level;
-use crate::world::{Cell, Light, Outline, Paint, Rgb, Shape, TextureId, Tile, TileKind, World};
+use crate::world::{Cell, Light, Outline, Paint, Rgb, Shape, TextureId, Tile, TileId, TileKind};
 
 /// Draws the wall of every column that has one. `papers` is memory to work with.
 pub(super) fn draw<T: Tally>(
@@ -26,7 +26,6 @@ pub(super) fn draw<T: Tally>(
     frame: &mut Frame,
     tally: &mut T,
 ) {
-    let papers = &mut papers.0;
     for first in (0..frame.width()).step_by(COLUMNS_AT_ONCE) {
         let columns = first..frame.width().min(first + COLUMNS_AT_ONCE as u32);
         let strips = strips(scene, columns);
@@ -38,32 +37,11 @@ pub(super) fn draw<T: Tally>(
     }
 }
 
-/// As many columns as there are pixels in what a processor fetches from memory at a time.
-const COLUMNS_AT_ONCE: usize = 16;
-/// So few rows that their pixels in those columns stay at hand until the last column is drawn,
-/// even where a row is a power of two wide and they compete for the same places in the cache.
-const ROWS_AT_ONCE: usize = 32;
-
-/// What the columns are papered with that are drawn at once.
-#[derive(Clone, Debug)]
-pub(super) struct Papers(Box<[Paper; COLUMNS_AT_ONCE]>);
-
-/// The texels of a column, as they are shaded.
-type Paper = [Rgb; PAPER];
-/// A power of two, and more than there are in a column of most textures.
-const PAPER: usize = 128;
-
-impl Default for Papers {
-    fn default() -> Self {
-        Self(Box::new([[Rgb::BLACK; PAPER]; COLUMNS_AT_ONCE]))
-    }
-}
-
 /// The columns that show a wall.
 fn strips(scene: Scene<'_>, columns: Range<u32>) -> impl Iterator<Item = Strip<'_>> {
     columns.filter_map(move |x| {
         let Column { hit, rows, .. } = &scene.columns[x as usize];
-        Some(Strip { scene, x, rows: rows.clone(), hit: hit.as_ref()? })
+        Some(Strip::new(scene, x, rows.clone(), hit.as_ref()?))
     })
 }
 
@@ -71,58 +49,16 @@ fn strips(scene: Scene<'_>, columns: Range<u32>) -> impl Iterator<Item = Strip<'
 #[inline]
 fn draw_strips<'a, S: Shade, T: Tally>(
     strips: impl Iterator<Item = Strip<'a>>,
-    papers: &mut [Paper; COLUMNS_AT_ONCE],
+    papers: &mut Papers,
     frame: &mut Frame,
     tally: &mut T,
     shade: impl Fn(&Strip<'a>) -> S,
 ) {
     let mut coats = [const { None }; COLUMNS_AT_ONCE];
-    for (coat, (strip, paper)) in coats.iter_mut().zip(strips.zip(papers)) {
+    for (coat, (strip, paper)) in coats.iter_mut().zip(strips.zip(papers.iter_mut())) {
         *coat = Some(strip.coat(shade(&strip), paper, tally));
     }
-    let coats = || coats.iter().flatten();
-    let first = coats().map(|coat| coat.rows.start).min().unwrap_or_default();
-    let end = coats().map(|coat| coat.rows.end).max().unwrap_or_default();
-    for row in (first..end).step_by(ROWS_AT_ONCE) {
-        coats().for_each(|coat| coat.draw(row..row + ROWS_AT_ONCE as u32, frame));
-    }
-}
-
-/// How a column of pixels is covered.
-struct Coat<'a, S> {
-    x: u32,
-    rows: Range<u32>,
-    cover: Cover<'a, S>,
-}
-
-enum Cover<'a, S> {
-    Color(Rgb),
-    /// More rows than texels, which were shaded once.
-    Paper(&'a Paper, TexelsDown),
-    Texels(&'a [Rgb], TexelsDown, S),
-}
-
-impl<S: Shade> Coat<'_, S> {
-    /// Draws what of it is in `rows`.
-    #[inline]
-    fn draw(&self, rows: Range<u32>, frame: &mut Frame) {
-        let rows = rows.start.max(self.rows.start)..rows.end.min(self.rows.end);
-        let first = rows.start;
-        let pixels = frame.column_mut(self.x, rows);
-        match self.cover {
-            Cover::Color(color) => pixels.for_each(|pixel| *pixel = color),
-            Cover::Paper(paper, down) => {
-                for (pixel, texel) in pixels.zip(down.from(first)) {
-                    *pixel = paper[texel % PAPER];
-                }
-            }
-            Cover::Texels(texels, down, shade) => {
-                for (pixel, row) in pixels.zip(first..) {
-                    *pixel = shade.apply(texels[down.at(row)]);
-                }
-            }
-        }
-    }
+    coat::draw(&coats, papers, frame);
 }
 
 /// A wall as wide as a pixel.
@@ -131,9 +67,19 @@ struct Strip<'a> {
     x: u32,
     rows: Range<u32>,
     hit: &'a Hit,
+    /// What stands in the cell that was hit.
+    tile: Option<&'a Tile>,
 }
 
 impl<'a> Strip<'a> {
+    #[inline]
+    fn new(scene: Scene<'a>, x: u32, rows: Range<u32>, hit: &'a Hit) -> Self {
+        let Cell { column, row } = hit.cell;
+        let id = scene.world.grid().tile(i64::from(column), i64::from(row));
+        let tile = id.map(|TileId(index)| &scene.world.tiles()[usize::from(index)]);
+        Self { scene, x, rows, hit, tile }
+    }
+
     /// The level of a texture that suits the distance.
     fn level(&self, id: TextureId) -> &'a Level {
         let Scene { world, projection, filter, .. } = self.scene;
@@ -144,40 +90,41 @@ impl<'a> Strip<'a> {
     }
 
     /// How it is covered in that shade, by means of `paper`.
-    fn coat<S: Shade, T: Tally>(
-        &self,
-        shade: S,
-        paper: &'a mut Paper,
-        tally: &mut T,
-    ) -> Coat<'a, S> {
-        let rows = self.rows.clone();
-        tally.pixels(Pass::Walls, rows.len());
+    fn coat<S: Shade, T: Tally>(&self, shade: S, paper: &mut Paper, tally: &mut T) -> Coat<'a, S> {
+        tally.pixels(Pass::Walls, self.rows.len());
         let cover = match self.paint() {
-            Paint::Color(color) => Cover::Color(shade.apply(color)),
+            Paint::Color(color) => Cover::of_color(color, shade, paper),
             Paint::Texture(texture) => {
-                tally.texels(Pass::Walls, rows.len());
+                tally.texels(Pass::Walls, self.rows.len());
                 let texels = self.texels(texture);
                 let down = self.scene.projection.texels_down_the_wall(self.hit.t, texels.len());
-                if texels.len() < PAPER && texels.len() <= 2 * rows.len() {
-                    for (shaded, texel) in paper.iter_mut().zip(texels) {
-                        *shaded = shade.apply(*texel);
-                    }
-                    // Rounding may take the last row one texel too far.
-                    paper[texels.len()] = paper[texels.len() - 1];
-                    Cover::Paper(paper, down)
-                } else {
-                    Cover::Texels(texels, down, shade)
-                }
+                Cover::of_texels(texels, down, shade, paper, self.rows.len())
             }
         };
-        Coat { x: self.x, rows, cover }
+        Coat { x: self.x, rows: self.rows.clone(), cover }
     }
 
     /// How it looks: as a jamb, where it faces a door.
     fn paint(&self) -> Paint {
         let Scene { world, projection, .. } = self.scene;
         let jamb = if world.is_of_walls() { None } else { jamb(world, projection, self.hit) };
-        jamb.unwrap_or_else(|| paint_of(world, self.hit))
+        jamb.unwrap_or_else(|| self.paint_of_tile())
+    }
+
+    /// How the tile itself looks.
+    fn paint_of_tile(&self) -> Paint {
+        match self.tile.map(|tile| tile.kind) {
+            Some(TileKind::Wall(paint)) => paint,
+            Some(TileKind::Door(door)) => door.leaf,
+            Some(TileKind::Shape(shape)) => shape.paint,
+            // Casters that know no masks and no glass hit these.
+            Some(TileKind::Mask(texture)) => Paint::Texture(texture),
+            Some(TileKind::Glass(glass) | TileKind::Mirror(glass)) => Paint::Color(glass.color),
+            // No caster hits what is not solid; were one to, the floor is what is there.
+            Some(TileKind::Open | TileKind::Doorway(_)) | None => {
+                self.scene.world.floor().pattern.first_paint()
+            }
+        }
     }
 
     /// The column of the texture that shows.
@@ -197,19 +144,18 @@ impl<'a> Strip<'a> {
     /// How bright the side is.
     fn light(&self) -> Light {
         let world = self.scene.world;
-        let tile = tile_of(world, self.hit);
-        let seen_from = match tile.map(|tile| tile.kind) {
+        let seen_from = match self.tile.map(|tile| tile.kind) {
             // It stands in a cell of its own.
             Some(TileKind::Shape(_)) => Some(self.hit.cell),
             _ => self.cell_before(),
         };
-        let own = tile.and_then(|tile| tile.light);
+        let own = self.tile.and_then(|tile| tile.light);
         own.unwrap_or_else(|| seen_from.map_or(Light::FULL, |cell| world.light_in(cell)))
     }
 
     /// The shape that the ray hit, if it is one.
     fn shape(&self) -> Option<Shape> {
-        match tile_of(self.scene.world, self.hit)?.kind {
+        match self.tile?.kind {
             TileKind::Shape(shape) => Some(shape),
             _ => None,
         }
@@ -260,28 +206,10 @@ impl<'a> Strip<'a> {
 
 /// How bright what the ray of column `x` hit is.
 pub(super) fn light_of(scene: Scene<'_>, x: u32, hit: &Hit) -> Light {
-    Strip { scene, x, rows: 0..0, hit }.light()
+    Strip::new(scene, x, 0..0, hit).light()
 }
 
 /// The level of the texture `id` that suits what the ray of column `x` hit.
 pub(super) fn level_of<'a>(scene: Scene<'a>, x: u32, hit: &'a Hit, id: TextureId) -> &'a Level {
-    Strip { scene, x, rows: 0..0, hit }.level(id)
-}
-
-fn paint_of(world: &World, hit: &Hit) -> Paint {
-    match tile_of(world, hit).map(|tile| tile.kind) {
-        Some(TileKind::Wall(paint)) => paint,
-        Some(TileKind::Door(door)) => door.leaf,
-        Some(TileKind::Shape(shape)) => shape.paint,
-        // Casters that know no masks and no glass hit these.
-        Some(TileKind::Mask(texture)) => Paint::Texture(texture),
-        Some(TileKind::Glass(glass) | TileKind::Mirror(glass)) => Paint::Color(glass.color),
-        // No caster hits what is not solid; were one to, the floor is what is there.
-        Some(TileKind::Open | TileKind::Doorway(_)) | None => world.floor().pattern.first_paint(),
-    }
-}
-
-fn tile_of(world: &World, hit: &Hit) -> Option<Tile> {
-    let tile = world.grid().tile(i64::from(hit.cell.column), i64::from(hit.cell.row))?;
-    Some(world.tile(tile))
+    Strip::new(scene, x, 0..0, hit).level(id)
 }

@@ -76,26 +76,40 @@ impl Level {
     pub(crate) fn by_shifts(&self) -> Option<LevelByShifts<'_>> {
         let bits = |side: NonZeroU32| side.is_power_of_two().then(|| side.trailing_zeros());
         let (width, height) = (bits(self.width)?, bits(self.height)?);
-        Some(LevelByShifts { texels: &self.texels, width, height })
+        (width + height < u32::BITS).then(|| LevelByShifts {
+            texels: &self.texels,
+            // What is shifted out by all 32 bits, or is left of nothing, is masked away.
+            shift_x: (u32::BITS - width - height).min(u32::BITS - 1),
+            mask_x: (self.width.get() - 1) << height,
+            shift_y: (u32::BITS - height).min(u32::BITS - 1),
+            mask_y: self.height.get() - 1,
+        })
     }
 }
 
-/// A level whose width and height are powers of two, known by their exponents.
+/// A level whose width and height are powers of two, so that the place of a texel among all of them
+/// consists of bits of its place along both axes.
 #[derive(Clone, Copy)]
 pub(crate) struct LevelByShifts<'a> {
     texels: &'a [Rgb],
-    width: u32,
-    height: u32,
+    shift_x: u32,
+    mask_x: u32,
+    shift_y: u32,
+    mask_y: u32,
 }
 
 impl LevelByShifts<'_> {
-    /// As [`Level::at_fraction`].
+    /// Which texel [`Level::at_fraction`] would look up.
     #[inline]
-    pub(crate) fn at_fraction(self, x: u64, y: u64) -> Rgb {
-        // In two shifts, since one by all 64 bits is none.
-        let column = x >> 1 >> (u64::BITS - 1 - self.width);
-        let row = y >> 1 >> (u64::BITS - 1 - self.height);
-        self.texels[(column << self.height | row) as usize]
+    pub(crate) fn index(self, x: u64, y: u64) -> u32 {
+        let (x, y) = ((x >> u32::BITS) as u32, (y >> u32::BITS) as u32);
+        x >> self.shift_x & self.mask_x | y >> self.shift_y & self.mask_y
+    }
+
+    /// The texel at one of those indices.
+    #[inline]
+    pub(crate) fn at_index(self, index: u32) -> Rgb {
+        self.texels[index as usize]
     }
 }
 
@@ -265,6 +279,27 @@ mod tests {
         let half = 1 << 63;
         let seen = [0, half - 1, half, u64::MAX].map(|x| level.at_fraction(x, u64::MAX));
         assert_eq!(seen, [Rgb::BLACK, Rgb::BLACK, Rgb::WHITE, Rgb::WHITE]);
+    }
+
+    proptest! {
+        #[test]
+        fn shifts_find_the_texel_that_fractions_name(
+            sides in (0_u32..8, 0_u32..8),
+            places in prop::collection::vec(any::<(u64, u64)>(), 1..20),
+        ) {
+            let (width, height) = (1 << sides.0, 1 << sides.1);
+            let texels = (0..width * height).map(|texel| Rgb::new(0, (texel >> 8) as u8, texel as u8));
+            let level = Level {
+                width: size(width),
+                height: size(height),
+                texels: texels.collect(),
+                alpha: vec![],
+            };
+            let shifts = level.by_shifts().unwrap();
+            for (x, y) in places.into_iter().chain([(0, u64::MAX), (u64::MAX, 0)]) {
+                prop_assert_eq!(shifts.at_index(shifts.index(x, y)), level.at_fraction(x, y));
+            }
+        }
     }
 
     #[test]
