@@ -13,7 +13,7 @@
 //!
 //! | method | finds the hit by | from |
 //! |---|---|---|
-//! | [`Exact`] | the lines in their true order: doubles, and integers where those can't tell | here |
+//! | [`Exact`] | the lines in their true order: integers, and longer ones where those can't tell | here |
 //! | [`Dda`] | the lines in order, in double precision | Lode Vandevenne, "Raycasting II" |
 //! | [`Dda32`] | the same in single precision | the same |
 //! | [`Accumulate`] | a running sum of distances | Lode Vandevenne, "Raycasting" |
@@ -56,6 +56,7 @@ mod march;
 mod method;
 mod ray;
 mod shape;
+mod sweep;
 mod table;
 mod through;
 mod walk;
@@ -69,6 +70,7 @@ pub use hit::{Hit, Side};
 pub use march::March;
 pub use method::{Method, NotAMethod, Visitor};
 pub use ray::{NotARay, Ray};
+pub(crate) use sweep::Sweep;
 pub use table::Table;
 pub use walk::{Crossing, Order, Walk};
 pub(crate) use walk::{UnfoldedWalk, Unfolding};

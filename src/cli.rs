@@ -7,6 +7,7 @@
 mod accuracy;
 mod arguments;
 mod asciicast;
+mod bench;
 mod cast;
 mod check;
 mod error;
@@ -44,6 +45,7 @@ impl Command {
             Self::Cast(options) => cast::run(&options),
             Self::Check(maps) => check::run(&maps),
             Self::Accuracy(options) => accuracy::run(&options),
+            Self::Bench(options) => bench::run(&options),
             Self::Replay(options) => replay::run(&options),
             Self::Wire(options) => wire::run(&options),
         }

@@ -20,6 +20,7 @@ mod script;
 
 use std::collections::BTreeSet;
 
+use crate::generate::{self, Site, Window};
 use crate::world::{Camera, Cell, Door, FieldOfView, KeyId, Thing, ThingKind, World};
 use doors::{Doors, door_ahead};
 use notice::Notice;
@@ -40,6 +41,8 @@ pub(crate) const STEPS_PER_SECOND: u32 = 60;
 #[derive(Clone, Debug, PartialEq)]
 pub struct Game {
     world: World,
+    /// Of a level that is dug, which part of it the world is.
+    window: Option<Window>,
     player: Player,
     doors: Doors,
     keys: BTreeSet<KeyId>,
@@ -54,12 +57,26 @@ impl Game {
         Self {
             player: Player::new(&world),
             world,
+            window: None,
             doors: Doors::default(),
             keys: BTreeSet::new(),
             notice: Notice::default(),
             steps: 0,
             revision: 0,
         }
+    }
+
+    /// A game in a level that is dug where the player is, who starts at `site` or near it. `None`
+    /// where there is nowhere to stand, as outside the level.
+    pub fn in_level(level: generate::Level, site: Site) -> Option<Self> {
+        let (window, world) = Window::open(level, site)?;
+        Some(Self { window: Some(window), ..Self::new(world) })
+    }
+
+    /// Which cell of a level that is dug the player is in; `None` on a map, whose cells are the
+    /// world's.
+    pub fn site(&self) -> Option<Site> {
+        Some(self.window.as_ref()?.site(self.player.cell()))
     }
 
     /// Where the game takes place, as it is now: with its doors as far open as they are, and without
@@ -159,7 +176,17 @@ impl Game {
         if let Some((cell, door)) = self.door_wanted(intents) {
             self.try_to_open(cell, door);
         }
+        self.dig();
         self.steps = self.steps.saturating_add(1);
+    }
+
+    /// Moves the window to where the player has gone.
+    fn dig(&mut self) {
+        let Some(window) = &mut self.window else { return };
+        if let Some(shift) = window.follow(&mut self.world, self.player.cell()) {
+            self.player = self.player.shifted(shift);
+            self.doors.shift(&mut self.world, shift);
+        }
     }
 
     /// Lets the clocks run for `steps` steps in which nobody moves: all that as many calls of

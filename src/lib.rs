@@ -13,6 +13,7 @@ pub mod cast;
 pub mod cli;
 pub mod fault;
 pub mod game;
+pub mod generate;
 pub mod map;
 pub mod palette;
 pub mod render;

@@ -54,6 +54,7 @@ use crate::world::{Ceiling, Covering, Heights, Paint, Parts, Rgb, Sky, Tile, Til
 use definitions::Definitions;
 use drawing::Drawing;
 use heights::Faces;
+pub(crate) use lamps::lamplight;
 use layout::Layout;
 pub use textures::{Folder, NoFiles, TextureFileError, TextureFiles};
 use textures::{Surface, Textures};
@@ -245,6 +246,14 @@ fn read(text: &str, files: &dyn TextureFiles, faults: &mut Vec<Fault>) -> Option
         things: layout.things,
         keys: layout.keys,
     })))
+}
+
+/// The rows of the grid that the map `text` draws, from the north; none where it draws none.
+pub(crate) fn rows_of_grid(text: &str) -> Vec<String> {
+    let document = document::parse(text, &mut Vec::new());
+    let grid = document::entries(&document).find(|entry| entry.key == "grid");
+    let drawn = grid.and_then(|entry| entry.string("", &mut Vec::new()));
+    drawn.unwrap_or_default().lines().map(str::to_owned).collect()
 }
 
 /// Adds the places that are not TOML to `faults`, and drops what was found in the same lines: the

@@ -35,7 +35,9 @@ pub use columns::{Column, Surface};
 pub use explanation::Explanation;
 pub use filter::Filter;
 pub use frame::{Frame, FrameSize, PixelAspect};
-pub use plan::{CeilingLoop, Geometry, Plan, PlaneLoop, SkyLoop, ThingLoop, WallLoop, WhyWindows};
+pub use plan::{
+    CeilingLoop, Geometry, Plan, PlaneLoop, RayLoop, SkyLoop, ThingLoop, WallLoop, WhyWindows,
+};
 pub use tally::{Counts, Pass, PassCounts};
 
 use crate::cast::{Caster, Method, Visitor};
@@ -142,11 +144,13 @@ impl Renderer {
         counts.rays = u64::from(frame.width());
         match plan.geometry {
             Geometry::Level => {
-                counts.cells = explanation::cells_entered(world.grid(), &projection);
+                (counts.cells, counts.looks) =
+                    explanation::cells_entered(world.grid(), &projection);
             }
             Geometry::Windows(_) => {
                 counts.windows = memory.windows.counts();
                 counts.cells = counts.windows.cells;
+                counts.looks = counts.cells;
             }
         }
         let size = u64::from(frame.width()) * u64::from(frame.height());

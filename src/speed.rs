@@ -7,8 +7,12 @@
 //! pixels to draw.
 
 mod classic;
+mod drawing;
 
 pub use classic::{Classic, ClassicFloor};
+#[cfg(feature = "cli")]
+pub(crate) use drawing::median;
+pub use drawing::{DrawingRow, SIZES, Scene, measure_drawing};
 
 use crate::game::{Game, Intent, Intents};
 use crate::map;

@@ -13,6 +13,7 @@ mod compression;
 mod difference;
 mod encoder;
 mod lab;
+mod pipeline;
 mod tally;
 
 use std::num::NonZeroU32;
@@ -26,6 +27,7 @@ use crate::tui::Replay;
 use encoder::{Encoder, Stock, Writer};
 use tally::Tally;
 
+pub use pipeline::{PipelineRow, measure_pipeline};
 pub use tally::{Bytes, Part, Seen};
 
 /// What to measure.

@@ -10,6 +10,7 @@
 
 mod air;
 mod camera;
+mod clearance;
 mod color;
 mod covering;
 mod door;
@@ -24,6 +25,7 @@ mod things;
 
 pub use air::{Fog, Light, Sky};
 pub use camera::{Camera, FieldOfView, Heading};
+pub(crate) use clearance::Clearance;
 pub use color::{NotAColor, Rgb};
 pub use covering::{Ceiling, Covering, Pattern, Scale};
 use door::Ajar;
@@ -163,7 +165,7 @@ impl World {
     pub(crate) fn from_parts(parts: Parts) -> Self {
         let Parts {
             title,
-            grid,
+            mut grid,
             tiles,
             textures,
             floor,
@@ -176,6 +178,9 @@ impl World {
             lamplight,
             keys,
         } = parts;
+        let may_become_solid =
+            |id: TileId| matches!(tiles[usize::from(id.0)].kind, TileKind::Doorway(_));
+        grid.clear(may_become_solid);
         let world = Self {
             title,
             grid,
@@ -378,6 +383,11 @@ impl World {
         &self.sprites[usize::from(id.0)]
     }
 
+    /// The sprites that the things refer to.
+    pub(crate) fn sprites(&self) -> &[Sprite] {
+        &self.sprites
+    }
+
     /// How wide the widest sprite is, in cells; 0 where nothing stands anywhere.
     pub(crate) fn widest_sprite(&self) -> f64 {
         self.sprites.iter().map(Sprite::width).fold(0.0, f64::max)
@@ -428,6 +438,22 @@ impl World {
             self.grid.set(cell, id);
             self.ajar.set(cell, opening);
         }
+    }
+
+    /// Shows other cells of the same kinds: `grid`, with no door that is ajar, and what stands there.
+    /// They fit together with the rest as in [`World::from_parts`].
+    pub(crate) fn redraw(
+        &mut self,
+        grid: Grid,
+        start: Start,
+        things: Vec<Thing>,
+        lamplight: Lamplight,
+    ) {
+        self.grid = grid;
+        self.start = start;
+        self.things = Things::new(things);
+        self.lamplight = lamplight;
+        self.ajar = Ajar::default();
     }
 
     /// Takes away all things in `cell` of which `is_taken` says so.

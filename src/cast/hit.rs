@@ -15,6 +15,17 @@ pub enum Side {
     Y,
 }
 
+impl Side {
+    /// The other kind.
+    #[inline]
+    pub(super) fn other(self) -> Self {
+        match self {
+            Self::X => Self::Y,
+            Self::Y => Self::X,
+        }
+    }
+}
+
 /// Where a ray enters a solid cell.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Hit {
@@ -35,6 +46,7 @@ impl Hit {
     ///
     /// The distance comes from the index of the cell, by one subtraction and one division; a sum
     /// that runs from line to line would gather an error at each of them.
+    #[inline]
     pub fn entering(ray: &Ray, cell: Cell, side: Side) -> Self {
         let direction = ray.direction();
         let (t, along) = meeting(ray, side, corner_of_face(direction, cell, side));
@@ -44,6 +56,7 @@ impl Hit {
 
 /// How far along `ray` it meets the line of kind `side` through `corner`, which must not lie behind
 /// it, and how far from the corner that is, to the south or to the east.
+#[inline]
 pub(super) fn meeting(ray: &Ray, side: Side, corner: DVec2) -> (f64, f64) {
     let (origin, direction) = (ray.origin(), ray.direction());
     let offset = corner - origin;
@@ -55,18 +68,27 @@ pub(super) fn meeting(ray: &Ray, side: Side, corner: DVec2) -> (f64, f64) {
     let along = if start.abs() + moved.abs() <= FAR {
         start + moved
     } else {
-        match side {
-            Side::X => cross(origin, direction, corner).over(direction.x),
-            Side::Y => -cross(origin, direction, corner).over(direction.y),
-        }
+        far_along(origin, direction, side, corner)
     };
     (t, along)
+}
+
+/// How far from `corner` a line is met, where the two terms of that are large.
+#[cold]
+#[inline(never)]
+fn far_along(origin: DVec2, direction: DVec2, side: Side, corner: DVec2) -> f64 {
+    let cross = cross(origin, direction, corner);
+    match side {
+        Side::X => cross.over(direction.x),
+        Side::Y => -cross.over(direction.y),
+    }
 }
 
 /// Up to this many cells, two rounded terms of that size add up to within 10⁻¹² of their true sum.
 const FAR: f64 = 1024.0;
 
 /// The north or west end of the face by which a ray along `direction` enters `cell`.
+#[inline]
 fn corner_of_face(direction: DVec2, cell: Cell, side: Side) -> DVec2 {
     let (column, row) = (f64::from(cell.column), f64::from(cell.row));
     match side {
@@ -78,6 +100,7 @@ fn corner_of_face(direction: DVec2, cell: Cell, side: Side) -> DVec2 {
 
 /// The texture coordinate of a place on a face, `along` cells from its north or west end, as a
 /// viewer sees it who looks along `direction`.
+#[inline]
 pub(super) fn texture_coordinate(direction: DVec2, side: Side, along: f64) -> f64 {
     // Zero is added to be rid of its sign.
     let along = along.clamp(0.0, 1.0) + 0.0;

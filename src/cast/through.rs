@@ -3,19 +3,21 @@
 //! It stops at every solid cell and asks what that is; between two of them it is the walk that looks
 //! for walls, and costs the same.
 
-use super::{Crossing, Hit, Order, Ray, Side, Walk, door, shape};
-use crate::world::{TileId, TileKind, World};
+use super::{Crossing, Hit, Ray, Side, door, shape};
+use crate::world::{Cell, TileId, TileKind, World};
 
-/// What `ray`, whose `walk` has not begun, hits in `world`; it tells `passed` what it passes.
-pub(super) fn cast<O: Order>(
-    mut walk: Walk<O>,
+/// What `ray` hits in `world`, where it starts in one cell and enters those `solid_cells`; it tells
+/// `passed` what it passes.
+pub(super) fn cast(
+    start: Option<(Cell, TileId)>,
+    solid_cells: impl Iterator<Item = Crossing>,
     world: &World,
     ray: &Ray,
     mut passed: impl FnMut(Hit),
 ) -> Option<Hit> {
     let grid = world.grid();
     let leaf_in = |cell| door::meet(grid, ray, cell, world.opening(cell));
-    let start = walk.cell().and_then(|(cell, tile)| match world.tile(tile).kind {
+    let start = start.and_then(|(cell, tile)| match world.tile(tile).kind {
         TileKind::Door(_) => leaf_in(cell),
         TileKind::Shape(it) => shape::meet(ray, cell, it.outline),
         _ => None,
@@ -23,7 +25,7 @@ pub(super) fn cast<O: Order>(
     if start.is_some() {
         return start;
     }
-    while let Some(crossing) = walk.first_solid() {
+    for crossing in solid_cells {
         match world.tile(crossing.tile).kind {
             TileKind::Door(_) => {
                 if let Some(hit) = leaf_in(crossing.cell) {

@@ -1,8 +1,10 @@
 //! The arguments: words to typed options, each mistake one sentence.
 
 mod accuracy;
+mod bench;
 mod cast;
 mod check;
+mod generated;
 mod play;
 mod replay;
 mod snapshot;
@@ -14,7 +16,9 @@ use std::ffi::{OsStr, OsString};
 use lexopt::{Arg, Parser};
 
 pub(super) use self::accuracy::{Accuracy, ReportFormat};
+pub(super) use self::bench::{Bench, BenchFormat};
 pub(super) use self::cast::Cast;
+pub(super) use self::generated::Generated;
 pub(super) use self::play::Play;
 pub(super) use self::replay::Replay;
 pub(super) use self::snapshot::{Format, Snapshot};
@@ -32,6 +36,7 @@ pub(super) enum Command {
     Cast(Cast),
     Check(Vec<OsString>),
     Accuracy(Accuracy),
+    Bench(Bench),
     Replay(Replay),
     Wire(Wire),
 }
@@ -50,6 +55,7 @@ impl Command {
             "cast" => cast::parse(parser),
             "check" => check::parse(parser),
             "accuracy" => accuracy::parse(parser),
+            "bench" => bench::parse(parser),
             "replay" => replay::parse(parser),
             "wire" => wire::parse(parser),
             "help" => Ok(Self::Help),
@@ -58,8 +64,8 @@ impl Command {
     }
 }
 
-pub(super) const COMMANDS: [&str; 8] =
-    ["play", "snapshot", "cast", "check", "accuracy", "replay", "wire", "help"];
+pub(super) const COMMANDS: [&str; 9] =
+    ["play", "snapshot", "cast", "check", "accuracy", "bench", "replay", "wire", "help"];
 
 fn is_command(argument: &OsStr) -> bool {
     COMMANDS.iter().any(|&command| argument == command)

@@ -24,12 +24,13 @@ USAGE
   cellcaster cast [MAP] [OPTIONS]      rays from standard input, hits to standard output
   cellcaster check MAP...              say everything that is wrong with maps
   cellcaster accuracy [MAP] [OPTIONS]  error against run time, for every way to cast
+  cellcaster bench [OPTIONS]           how fast this machine draws, and a link shows it
   cellcaster replay SCRIPT [MAP] [OPTIONS]  a script, off screen, as asciicast
   cellcaster wire [MAP] [OPTIONS]      bytes a frame against what the viewer sees
   cellcaster --help | --version
 
   MAP is a map file, or a built-in level: cellar, museum, citadel,
-  cistern, observatory.
+  cistern, observatory; --generate maze, cave or office digs one in its place.
 
 KEYS
   W S, Up Down      walk                M, Tab  show or hide the map
@@ -74,6 +75,14 @@ OPTIONS OF BOTH
                     exact, dda, dda32, accumulate, fixed:BITS, table:ANGLES
                     or march:STEP
 
+OPTIONS OF LEVELS TO DIG, for play, snapshot and replay
+  --generate KIND   maze, cave or office, in place of MAP
+  --seed N          which one                                      [1]
+  --level-size COLSxROWS
+                    with walls around, and an exit                 [without an end]
+  --start COLUMN,ROW
+                    the cell to start at                           [the first corner]
+
 CAST
   Reads one ray a line, "X Y DX DY", and writes one JSON object a line:
   {"cell":[c,r],"side":"x","t":1.5,"u":0.25,"tile":"#"}, {"escaped":true} for a
@@ -86,6 +95,10 @@ ACCURACY
   --rays N          rays in each scene, 1 to 10000000              [2000]
   --seed S          where chance begins                            [1]
   --format FORMAT   table, json, csv, svg or png                   [table]
+
+BENCH
+  --seconds N       how long to measure, roughly, 1 to 60            [10]
+  --format FORMAT   table or json                                    [table]
 
 REPLAY, WIRE
   --cast FILE       of replay: where to write                      [standard output]
@@ -100,6 +113,7 @@ REPLAY, WIRE
 
 EXAMPLES
   cellcaster                                   play the built-in levels
+  cellcaster play --generate maze --seed 7     walk through a maze without an end
   cellcaster my.toml --colors 256              play a map of your own
   ssh -t host cellcaster                       play it somewhere else
   cellcaster snapshot museum --format ansi     a picture in the terminal
@@ -108,6 +122,8 @@ EXAMPLES
   cellcaster check maps/*.toml
   cellcaster accuracy --caster exact --caster dda --set "through corners"
   cellcaster accuracy --format svg > accuracy.svg
+  cellcaster bench                             what to expect of this machine
+  cellcaster bench --format json > bench.json
   cellcaster --record walk.script && cellcaster replay walk.script > walk.cast
 
 Exit status: 0, or 2 for a mistake in the arguments or a map, or 1 where the

@@ -4,8 +4,10 @@ use std::ffi::OsStr;
 use std::path::Path;
 
 use super::Error;
-use super::arguments::COMMANDS;
+use super::arguments::{COMMANDS, Generated};
 use crate::fault::nearest;
+use crate::game::Game;
+use crate::generate::{Site, Window};
 use crate::map::{self, Level, builtin};
 use crate::tui::Levels;
 use crate::world::World;
@@ -47,6 +49,31 @@ pub(super) fn load_series(argument: Option<&OsStr>) -> Result<Levels, Error> {
     let following = following.iter().map_while(|level| level.world().ok());
     Ok(Levels::new(first, following.map(Level::from)))
 }
+
+/// As [`load_series`], or the level to dig, and after it those of the seeds that follow.
+pub(super) fn load_or_dig(
+    map: Option<&OsStr>,
+    generated: Option<Generated>,
+) -> Result<Levels, Error> {
+    let Some(generated) = generated else { return load_series(map) };
+    let Generated { generator, seed, extent, start } = generated;
+    let game = move |seed: u64, start: Site| {
+        let level = generator.level(seed, extent)?;
+        Game::in_level(level, start).ok_or_else(|| Error::mistake(NO_START))
+    };
+    let first = game(seed, start.unwrap_or_default())?;
+    let later = (1..).map_while(move |by| game(seed.wrapping_add(by), Site::default()).ok());
+    Ok(Levels::of_games(first, later))
+}
+
+/// The part of a level to dig that is around `site`.
+pub(super) fn dig(generated: Generated, site: Site) -> Result<(Window, World), Error> {
+    let level = generated.generator.level(generated.seed, generated.extent)?;
+    Window::open(level, site).ok_or_else(|| Error::mistake(NO_START))
+}
+
+const NO_START: &str =
+    "there is nowhere to stand at --start or --camera: that is outside the level";
 
 /// The place among the built-in levels of the one called `name`; a file of that name goes first.
 fn builtin_level(name: &OsStr) -> Option<usize> {

@@ -14,7 +14,7 @@ use crate::tui::{self, Bindings, Settings};
 
 /// Plays until the player has had enough.
 pub(super) fn run(options: Play) -> Result<(), Error> {
-    let levels = level::load_series(options.map.as_deref())?;
+    let levels = level::load_or_dig(options.map.as_deref(), options.generated)?;
     let settings = Settings {
         bindings: bindings(options.config)?,
         frame_time: Duration::from_secs(1) / options.frames_per_second.get().get(),

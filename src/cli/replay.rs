@@ -23,7 +23,7 @@ use crate::tui::{self, Settings};
 /// Writes the recording that `options` ask for.
 pub(super) fn run(options: &Replay) -> Result<(), Error> {
     let script = script::load(&options.script)?;
-    let levels = level::load_series(options.map.as_deref())?;
+    let levels = level::load_or_dig(options.map.as_deref(), options.generated)?;
     let settings = Settings {
         field_of_view: options.field_of_view,
         depth: Some(options.depth),

@@ -11,17 +11,19 @@ mod text;
 
 use std::io::{self, BufWriter, Write};
 
+use glam::DVec2;
 use ratatui::buffer::{Buffer, Cell};
 use ratatui::layout::{Rect, Size};
 use ratatui::style::Color;
 
-use super::arguments::{Format, Snapshot};
+use super::arguments::{Format, Generated, Snapshot};
 use super::{Error, level};
+use crate::generate::Site;
 use crate::map::Level;
 use crate::palette;
 use crate::space::{self, Elevation, Scene};
 use crate::tui::View;
-use crate::world::{Camera, Rgb, World};
+use crate::world::{Camera, Heading, Rgb, World};
 use picture::{OfGrid, OfSpace, Picture};
 
 /// Rows of cells that are made at a time: a multiple of the height of the pattern that dithers.
@@ -37,9 +39,15 @@ trait Writer {
 
 /// Writes the frame that `options` ask for.
 pub(super) fn run(options: &Snapshot) -> Result<(), Error> {
+    if let Some(generated) = options.generated {
+        let (world, camera) = dug(generated, options)?;
+        let view = View::with_method(options.method.clone());
+        return output(&mut OfGrid::new(&world, &camera, view, options), options)
+            .map_err(|error| Error::of_output(&error));
+    }
     match level::load(options.map.as_deref())? {
         Level::Grid(world) => {
-            let camera = camera(&world, options);
+            let camera = camera(&world, options.camera, options);
             let view = View::with_method(options.method.clone());
             output(&mut OfGrid::new(&world, &camera, view, options), options)
         }
@@ -51,11 +59,26 @@ pub(super) fn run(options: &Snapshot) -> Result<(), Error> {
     .map_err(|error| Error::of_output(&error))
 }
 
-fn camera(world: &World, options: &Snapshot) -> Camera {
+/// The part of a level to dig that is around the camera, and the camera in that.
+fn dug(generated: Generated, options: &Snapshot) -> Result<(World, Camera), Error> {
+    let Some((position, heading)) = options.camera else {
+        let (_, world) = level::dig(generated, generated.start.unwrap_or_default())?;
+        let camera = camera(&world, None, options);
+        return Ok((world, camera));
+    };
+    let whole = position.floor();
+    let site = Site { column: whole.x as i64, row: whole.y as i64 };
+    let (window, world) = level::dig(generated, site)?;
+    // Exact: the corner of a cell of the window, and what is left of a double without its whole part.
+    let corner = window.cell(site).map_or(DVec2::ZERO, |cell| cell.center() - 0.5);
+    let camera = camera(&world, Some((corner + (position - whole), heading)), options);
+    Ok((world, camera))
+}
+
+fn camera(world: &World, place: Option<(DVec2, Heading)>, options: &Snapshot) -> Camera {
     let start = world.start_camera(options.field_of_view);
-    let camera = options
-        .camera
-        .and_then(|(position, heading)| Camera::new(position, heading, options.field_of_view));
+    let camera =
+        place.and_then(|(position, heading)| Camera::new(position, heading, options.field_of_view));
     let camera = camera.unwrap_or(start);
     let camera = options.eye.and_then(|eye| camera.with_eye(eye)).unwrap_or(camera);
     camera.with_pitch(options.pitch.unwrap_or_default())

@@ -12,6 +12,7 @@
 use glam::DVec2;
 
 use crate::cast::{Ray, Walk};
+use crate::generate::Shift;
 use crate::world::{Cell, Door, Opening, TileKind, World};
 
 /// Steps from closed to open: 0.6 seconds.
@@ -77,6 +78,19 @@ impl Doors {
             is_open
         });
         has_moved
+    }
+
+    /// Opens the doors of `world`, the same ones in a window that has moved and shows them closed, as
+    /// far as they were open. Those that are out of it are closed.
+    pub(super) fn shift(&mut self, world: &mut World, shift: Shift) {
+        self.moving.retain_mut(|door| match shift.cell(door.cell) {
+            Some(cell) => {
+                door.cell = cell;
+                world.set_opening(cell, door.phase.opening());
+                true
+            }
+            None => false,
+        });
     }
 
     /// For how many steps no door begins, continues or ends to move; `None` for ever.

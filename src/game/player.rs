@@ -9,6 +9,7 @@ use super::gaze::Gaze;
 use super::intent::{Intent, Intents};
 use super::motion::{Glide, approach, approach_in_plane};
 use super::posture::Posture;
+use crate::generate::Shift;
 use crate::world::{Camera, Cell, FieldOfView, Heading, World};
 
 /// How far from their middle the player touches a wall: doors are twice as wide as they are.
@@ -94,6 +95,13 @@ impl Player {
 
     pub(super) fn heading(&self) -> Heading {
         self.heading
+    }
+
+    /// The same player, in a window that has moved.
+    #[must_use]
+    pub(super) fn shifted(self, shift: Shift) -> Self {
+        let position = shift.position(self.body.position);
+        Self { body: Body { position, ..self.body }, ..self }
     }
 
     /// The cell that the player's middle is in.

@@ -7,7 +7,7 @@ use crate::cast::{Ray, Walk};
 use crate::world::{Cell, Grid, Lamp, Lamplight, Light, Sprite, Thing, Tile, TileKind};
 
 /// What the lamps among `things` add to the light of each cell: nothing where all is fully lit.
-pub(super) fn lamplight(
+pub(crate) fn lamplight(
     grid: &Grid,
     tiles: &[Tile],
     sprites: &[Sprite],

@@ -5,7 +5,7 @@ use std::fmt;
 use super::projection::Projection;
 use super::tally::{Counts, Pass};
 use super::{Geometry, Plan, WindowCounts};
-use crate::cast::Walk;
+use crate::cast::{Sweep, Walk};
 use crate::world::Grid;
 
 /// How a frame was drawn, and what it cost.
@@ -23,7 +23,8 @@ impl fmt::Display for Explanation {
         let Self { plan, counts } = self;
         write!(f, "{plan}")?;
         writeln!(f)?;
-        writeln!(f, "rays     {:>10} cast, into {} cells", counts.rays, counts.cells)?;
+        let Counts { rays, cells, looks, .. } = counts;
+        writeln!(f, "rays     {rays:>10} cast, into {cells} cells, by {looks} looks")?;
         if let Geometry::Windows(_) = plan.geometry {
             let WindowCounts { faces, spans, bounces, .. } = counts.windows;
             writeln!(f, "windows  {faces:>10} faces, {spans} spans, {bounces} bounces")?;
@@ -48,17 +49,21 @@ impl fmt::Display for Explanation {
     }
 }
 
-/// How many cells the rays of a picture enter until they hit something or leave the map.
-pub(super) fn cells_entered(grid: &Grid, projection: &Projection) -> u64 {
-    let entered = |ray| {
-        let mut count = 0;
+/// How many cells the rays of a picture enter until they hit something or leave the map, and how often
+/// they look where they are.
+pub(super) fn cells_entered(grid: &Grid, projection: &Projection) -> (u64, u64) {
+    projection.rays().fold((0, 0), |(all_cells, all_looks), ray| {
+        let mut cells = 0;
         for crossing in Walk::new(grid, &ray) {
-            count += 1;
+            cells += 1;
             if grid.is_solid_tile(crossing.tile) {
                 break;
             }
         }
-        count
-    };
-    projection.rays().map(entered).sum()
+        let looks = Sweep::new(grid, &ray).map_or(cells, |mut sweep| {
+            sweep.next();
+            sweep.looks()
+        });
+        (all_cells + cells, all_looks + looks)
+    })
 }

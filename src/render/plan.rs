@@ -16,6 +16,8 @@ use crate::world::{
 pub struct Plan {
     /// Whether every ray ends where it meets the first wall, or goes on above, below and reflected.
     pub geometry: Geometry,
+    /// How exact rays go from cell to cell.
+    pub rays: RayLoop,
     /// How what is overhead is drawn.
     pub ceiling: CeilingLoop,
     /// How the floor is drawn.
@@ -48,6 +50,17 @@ pub enum WhyWindows {
     Mirrors,
     /// The eye is not between floor and ceiling.
     Eye,
+}
+
+/// How exact rays go from cell to cell.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum RayLoop {
+    /// They cross one line after the other and stop in every cell.
+    Cells,
+    /// They cross one line after the other, along one axis.
+    Lines,
+    /// They cross as many lines at once as no wall is near to: the map is mostly empty.
+    Leaps,
 }
 
 /// How the floor or the ceiling is drawn.
@@ -113,8 +126,14 @@ impl Plan {
         let ceiling_varies =
             is_lamplit || open().any(|tile| dims(tile) || tile.ceiling != world.ceiling());
         let is_textured = |tile: &Tile| matches!(tile.kind, TileKind::Wall(Paint::Texture(_)));
+        let geometry = Geometry::new(world, camera);
         Self {
-            geometry: Geometry::new(world, camera),
+            geometry,
+            rays: match geometry {
+                Geometry::Windows(_) => RayLoop::Cells,
+                Geometry::Level if world.grid().clearance().is_measured() => RayLoop::Leaps,
+                Geometry::Level => RayLoop::Lines,
+            },
             floor: PlaneLoop::new(world.floor(), floor_varies, is_foggy),
             ceiling: match world.ceiling() {
                 Ceiling::Sky if open().all(|tile| tile.ceiling == Ceiling::Sky) => CeilingLoop::Sky,
@@ -167,6 +186,7 @@ impl fmt::Display for Plan {
     /// Writes a line for each pass: how it runs, and why.
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
         writeln!(f, "geometry {}", self.geometry)?;
+        writeln!(f, "rays     {}", self.rays)?;
         writeln!(f, "ceiling  {}", self.ceiling)?;
         writeln!(f, "floor    {}", self.floor)?;
         writeln!(f, "sky      {}", self.sky)?;
@@ -185,6 +205,16 @@ impl fmt::Display for Geometry {
             }
             Self::Windows(WhyWindows::Mirrors) => "windows: there are mirrors",
             Self::Windows(WhyWindows::Eye) => "windows: the eye is not between floor and ceiling",
+        })
+    }
+}
+
+impl fmt::Display for RayLoop {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        f.write_str(match self {
+            Self::Cells => "cell by cell: each is looked at",
+            Self::Lines => "line by line, along one axis: walls are near",
+            Self::Leaps => "many lines at once, along one axis: most of the map is empty",
         })
     }
 }

@@ -61,6 +61,8 @@ pub struct Counts {
     pub rays: u64,
     /// Cells that they entered, the ones that they hit included.
     pub cells: u64,
+    /// How often they looked where they were: less than once a cell, where they do not stop in each.
+    pub looks: u64,
     /// The ceiling.
     pub ceiling: PassCounts,
     /// The floor.

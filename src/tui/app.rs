@@ -26,7 +26,6 @@ use super::held::HeldKeys;
 use super::{CellAspect, GlyphMode, Minimap, View};
 use crate::cast::Method;
 use crate::game::{Intent, Intents, STEP};
-use crate::map::Level;
 use crate::palette::ColorDepth;
 use crate::render::Filter;
 use crate::terminal::{Fidelity, Key, KeyEvent, Phase};
@@ -88,7 +87,7 @@ struct Look {
 }
 
 struct App {
-    later_levels: Box<dyn Iterator<Item = Level>>,
+    later_levels: Box<dyn Iterator<Item = Played>>,
     game: Played,
     /// Seconds taken by the levels before this one.
     earlier: f64,
@@ -125,7 +124,7 @@ impl App {
         let Levels { first, rest } = levels;
         Self {
             later_levels: rest,
-            game: Played::new(first),
+            game: first,
             earlier: 0.0,
             screen: Screen::Playing,
             field_of_view: settings.field_of_view,
@@ -300,7 +299,7 @@ impl App {
     fn next_level(&mut self) {
         let Some(level) = self.later_levels.next() else { return self.show(Screen::End) };
         self.earlier += self.game.elapsed();
-        self.game = Played::new(level);
+        self.game = level;
         self.held.clear();
         self.show(Screen::Playing);
     }

@@ -26,7 +26,14 @@ pub(super) trait Encoder {
 
 /// Where a backend writes to.
 #[derive(Clone, Debug, Default)]
-struct Sink(Rc<RefCell<Vec<u8>>>);
+pub(super) struct Sink(Rc<RefCell<Vec<u8>>>);
+
+impl Sink {
+    /// How many bytes have been written since the last time.
+    pub(super) fn drain(&self) -> usize {
+        self.0.borrow_mut().drain(..).len()
+    }
+}
 
 impl Write for Sink {
     fn write(&mut self, bytes: &[u8]) -> io::Result<usize> {

@@ -2,10 +2,12 @@
 
 use std::collections::BTreeSet;
 use std::num::NonZeroU32;
+use std::sync::Arc;
 
 use glam::DVec2;
 
 use super::Lamplight;
+use super::clearance::Clearance;
 
 /// The place of a cell: column from the west, row from the north, both from 0.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash, PartialOrd, Ord)]
@@ -39,6 +41,8 @@ pub struct Grid {
     cells: Vec<TileId>,
     /// Where something stands that is in the way.
     occupied: BTreeSet<Cell>,
+    /// Where rays need not look. It is shared, as it never changes.
+    clearance: Arc<Clearance>,
 }
 
 impl Grid {
@@ -51,12 +55,19 @@ impl Grid {
         cells: Vec<TileId>,
     ) -> Option<Self> {
         let count = u64::from(width.get()) * u64::from(height.get());
-        (cells.len() as u64 == count).then_some(Self {
+        if cells.len() as u64 != count {
+            return None;
+        }
+        let is_solid = |&tile: &TileId| tile >= first_solid;
+        let rows = cells.chunks_exact(width.get() as usize);
+        let clearance = Clearance::new(rows.map(|row| row.iter().map(is_solid)));
+        Some(Self {
             width,
             height,
             first_solid,
-            cells,
             occupied: BTreeSet::new(),
+            clearance: Arc::new(clearance),
+            cells,
         })
     }
 
@@ -76,6 +87,30 @@ impl Grid {
         let tile = |character| TileId(u8::from(!matches!(character, '.' | ' ')));
         let cells = rows.iter().flat_map(|row| row.chars()).map(tile).collect();
         Self::new(width, height, TileId(1), cells)
+    }
+
+    /// Lets rays skip what is empty, where the map is empty enough, though some of its open tiles
+    /// `may_become_solid`.
+    pub(super) fn clear(&mut self, may_become_solid: impl Fn(TileId) -> bool) {
+        self.clearance = Arc::new(self.near(may_become_solid).measured_if_worthwhile());
+    }
+
+    /// As [`Grid::clear`], however many walls there are.
+    #[cfg(test)]
+    pub(crate) fn measure_clearance(&mut self, may_become_solid: impl Fn(TileId) -> bool) {
+        self.clearance = Arc::new(self.near(may_become_solid).measured());
+    }
+
+    /// How clear it is where one looks one cell far.
+    fn near(&self, may_become_solid: impl Fn(TileId) -> bool) -> Clearance {
+        let may_be_solid = |&tile: &TileId| self.is_solid_tile(tile) || may_become_solid(tile);
+        Clearance::new(self.rows().map(|row| row.iter().map(may_be_solid)))
+    }
+
+    /// Where rays need not look.
+    #[inline]
+    pub(crate) fn clearance(&self) -> &Clearance {
+        &self.clearance
     }
 
     /// Lamplight for as many cells, in which no lamp shines yet.
@@ -120,6 +155,11 @@ impl Grid {
     /// Whether there is something solid at a place; off the map there is nothing.
     pub fn is_solid(&self, column: i64, row: i64) -> bool {
         self.tile(column, row).is_some_and(|tile| self.is_solid_tile(tile))
+    }
+
+    /// The first tile that is solid; so are all that come after it.
+    pub(crate) fn first_solid(&self) -> TileId {
+        self.first_solid
     }
 
     /// Whether cells that hold `tile` are solid.

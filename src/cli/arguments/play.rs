@@ -5,6 +5,7 @@ use std::path::PathBuf;
 
 use lexopt::{Arg, Parser};
 
+use super::generated::{Generated, Options};
 use super::value::{self, FramesPerSecond};
 use super::{Command, Error, next, unexpected, word};
 use crate::cast::Method;
@@ -18,6 +19,8 @@ use crate::world::FieldOfView;
 #[derive(Debug, Default)]
 pub(in crate::cli) struct Play {
     pub(in crate::cli) map: Option<OsString>,
+    /// What to dig in place of a map.
+    pub(in crate::cli) generated: Option<Generated>,
     pub(in crate::cli) config: Option<PathBuf>,
     pub(in crate::cli) frames_per_second: FramesPerSecond,
     pub(in crate::cli) field_of_view: FieldOfView,
@@ -34,6 +37,7 @@ pub(in crate::cli) struct Play {
 
 pub(super) fn parse(mut parser: Parser) -> Result<Command, Error> {
     let mut play = Play::default();
+    let mut generated = Options::default();
     while let Some(argument) = next(&mut parser)? {
         match argument {
             Arg::Short('h') | Arg::Long("help") => return Ok(Command::Help),
@@ -58,13 +62,18 @@ pub(super) fn parse(mut parser: Parser) -> Result<Command, Error> {
             Arg::Long("record") => {
                 play.record = Some(word(&mut parser, "--record", "a file")?.into());
             }
+            Arg::Long(name) if Options::include(name) => {
+                let name = name.to_owned();
+                generated.take(&name, &mut parser)?;
+            }
             other => return Err(unexpected("play", &OPTIONS, other)),
         }
     }
+    play.generated = generated.finish(play.map.as_deref())?;
     Ok(Command::Play(play))
 }
 
-const OPTIONS: [&str; 12] = [
+const OPTIONS: [&str; 16] = [
     "--caster",
     "--cell-aspect",
     "--colors",
@@ -73,8 +82,12 @@ const OPTIONS: [&str; 12] = [
     "--filter",
     "--fov",
     "--fps",
+    "--generate",
     "--glyphs",
+    "--level-size",
     "--record",
+    "--seed",
+    "--start",
     "--stats",
     "--version",
 ];

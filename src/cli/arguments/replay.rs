@@ -5,6 +5,7 @@ use std::path::PathBuf;
 
 use lexopt::{Arg, Parser};
 
+use super::generated::{Generated, Options};
 use super::value::{self, FramesPerSecond, Size};
 use super::{Command, Error, next, unexpected, word};
 use crate::palette::ColorDepth;
@@ -16,6 +17,8 @@ use crate::world::FieldOfView;
 pub(in crate::cli) struct Replay {
     pub(in crate::cli) script: PathBuf,
     pub(in crate::cli) map: Option<OsString>,
+    /// What to dig in place of a map.
+    pub(in crate::cli) generated: Option<Generated>,
     /// Where to write; standard output where there is none.
     pub(in crate::cli) cast: Option<PathBuf>,
     pub(in crate::cli) size: Size,
@@ -29,6 +32,7 @@ pub(super) fn parse(mut parser: Parser) -> Result<Command, Error> {
     let mut replay = Replay {
         script: PathBuf::new(),
         map: None,
+        generated: None,
         cast: None,
         size: Size::default(),
         frames_per_second: FramesPerSecond::default(),
@@ -37,6 +41,7 @@ pub(super) fn parse(mut parser: Parser) -> Result<Command, Error> {
         fidelity: Fidelity::default(),
     };
     let mut script = None;
+    let mut generated = Options::default();
     while let Some(argument) = next(&mut parser)? {
         match argument {
             Arg::Short('h') | Arg::Long("help") => return Ok(Command::Help),
@@ -50,13 +55,29 @@ pub(super) fn parse(mut parser: Parser) -> Result<Command, Error> {
             Arg::Long("fov") => replay.field_of_view = value::FIELD_OF_VIEW.value(&mut parser)?,
             Arg::Long("colors") => replay.depth = value::COLORS.value(&mut parser)?,
             Arg::Long("fidelity") => replay.fidelity = value::fidelity(&mut parser)?,
+            Arg::Long(name) if Options::include(name) => {
+                let name = name.to_owned();
+                generated.take(&name, &mut parser)?;
+            }
             other => return Err(unexpected("replay", &OPTIONS, other)),
         }
     }
     let script = script.ok_or_else(|| {
         Error::mistake("replay takes a script, as in \"cellcaster replay walk.script\"")
     })?;
+    replay.generated = generated.finish(replay.map.as_deref())?;
     Ok(Command::Replay(Replay { script: script.into(), ..replay }))
 }
 
-const OPTIONS: [&str; 6] = ["--cast", "--colors", "--fidelity", "--fov", "--fps", "--size"];
+const OPTIONS: [&str; 10] = [
+    "--cast",
+    "--colors",
+    "--fidelity",
+    "--fov",
+    "--fps",
+    "--generate",
+    "--level-size",
+    "--seed",
+    "--size",
+    "--start",
+];

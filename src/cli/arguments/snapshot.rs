@@ -5,6 +5,7 @@ use std::ffi::OsString;
 use glam::DVec2;
 use lexopt::{Arg, Parser};
 
+use super::generated::{Generated, Options};
 use super::value::{self, Size, Valued};
 use super::{Command, Error, next, unexpected};
 use crate::cast::Method;
@@ -17,6 +18,8 @@ use crate::world::{FieldOfView, Heading, Pitch};
 #[derive(Debug, Default)]
 pub(in crate::cli) struct Snapshot {
     pub(in crate::cli) map: Option<OsString>,
+    /// What to dig in place of a map.
+    pub(in crate::cli) generated: Option<Generated>,
     pub(in crate::cli) size: Size,
     /// Where to look from; the map's start where there is none.
     pub(in crate::cli) camera: Option<(DVec2, Heading)>,
@@ -48,6 +51,7 @@ pub(in crate::cli) enum Format {
 
 pub(super) fn parse(mut parser: Parser) -> Result<Command, Error> {
     let mut snapshot = Snapshot::default();
+    let mut generated = Options::default();
     while let Some(argument) = next(&mut parser)? {
         match argument {
             Arg::Short('h') | Arg::Long("help") => return Ok(Command::Help),
@@ -66,13 +70,18 @@ pub(super) fn parse(mut parser: Parser) -> Result<Command, Error> {
             Arg::Long("caster") => snapshot.method = value::method(&mut parser)?,
             Arg::Long("filter") => snapshot.filter = value::FILTER.value(&mut parser)?,
             Arg::Long("explain") => snapshot.explain = true,
+            Arg::Long(name) if Options::include(name) => {
+                let name = name.to_owned();
+                generated.take(&name, &mut parser)?;
+            }
             other => return Err(unexpected("snapshot", &OPTIONS, other)),
         }
     }
+    snapshot.generated = generated.finish(snapshot.map.as_deref())?;
     Ok(Command::Snapshot(snapshot))
 }
 
-const OPTIONS: [&str; 12] = [
+const OPTIONS: [&str; 16] = [
     "--camera",
     "--caster",
     "--cell-aspect",
@@ -82,9 +91,13 @@ const OPTIONS: [&str; 12] = [
     "--filter",
     "--format",
     "--fov",
+    "--generate",
     "--glyphs",
+    "--level-size",
     "--pitch",
+    "--seed",
     "--size",
+    "--start",
 ];
 
 const EYE: Valued<f64> = Valued {

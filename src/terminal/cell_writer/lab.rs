@@ -14,12 +14,13 @@ const STEPS: f32 = 64.0;
 
 impl Lab {
     /// The sRGB colour of these channels.
+    #[inline]
     pub(super) fn of(channels: [u8; 3]) -> Self {
-        let light = channels.map(|channel| u32::from(LIGHT[usize::from(channel)]));
-        let [x, y, z] = LIGHT_TO_XYZ.map(|weights| {
-            let sum: u32 = light.iter().zip(weights).map(|(light, weight)| light * weight).sum();
-            response(sum >> 16)
-        });
+        let light = |channel: usize| u32::from(LIGHT[usize::from(channels[channel])]);
+        let (red, green, blue) = (light(0), light(1), light(2));
+        let tristimulus = |[r, g, b]: [u32; 3]| response((r * red + g * green + b * blue) >> 16);
+        let [to_x, to_y, to_z] = LIGHT_TO_XYZ;
+        let (x, y, z) = (tristimulus(to_x), tristimulus(to_y), tristimulus(to_z));
         // A response has 21 binary digits after the point, and a step of these 6.
         let steps = |response: i32| (response >> 15) as i16;
         Self([steps(116 * y) - 16 * STEPS as i16, steps(500 * (x - y)), steps(200 * (y - z))])
@@ -79,7 +80,8 @@ static RESPONSE: [u16; 1025] = {
     table
 };
 
-/// The eye's answer to `light`, with 21 binary digits after the point.
+/// The eye's answer to `light`, in 65536ths of all there is, with 21 binary digits after the point.
+#[inline]
 fn response(light: u32) -> i32 {
     let index = (light / SPACING) as usize;
     let (lower, upper) = (i32::from(RESPONSE[index]), i32::from(RESPONSE[index + 1]));

@@ -48,7 +48,9 @@ const SHIFT: i32 = 20 * BYTE;
 /// Finds the shifts of a row, one after another, and has the memory that it takes.
 #[derive(Debug, Default)]
 pub(super) struct Shifts {
+    /// The row's landmarks, padded, as they are to be, and as they were.
     marks: Vec<Mark>,
+    marks_before: Vec<Mark>,
     losses: Vec<i32>,
 }
 
@@ -57,6 +59,7 @@ impl Shifts {
     pub(super) fn begin(&mut self, row: &Row) {
         self.marks.clear();
         self.marks.extend(Mark::all(row.looks));
+        pad(&mut self.marks);
     }
 
     /// The shift after which least is lost, if it spares more than it takes. `loss` is what is lost
@@ -67,7 +70,10 @@ impl Shifts {
         if self.losses.iter().sum::<i32>() <= SHIFT {
             return None;
         }
-        let moves = likely_moves(row.marks, &self.marks).into_iter().flatten();
+        self.marks_before.clear();
+        self.marks_before.extend_from_slice(row.marks);
+        pad(&mut self.marks_before);
+        let moves = likely_moves(&self.marks_before, &self.marks).into_iter().flatten();
         let shifts = moves.filter_map(|by| Shift::best(&self.losses, by, &loss));
         let (shift, spared) = shifts.max_by_key(|&(_, spared)| spared)?;
         (spared > SHIFT).then_some(shift)
@@ -75,7 +81,7 @@ impl Shifts {
 
     /// Is done with the row: what it is to show now is what was wanted before the next frame.
     pub(super) fn end(&self, row: &mut Row) {
-        row.marks.copy_from_slice(&self.marks);
+        row.marks.copy_from_slice(&self.marks[..row.width()]);
     }
 }
 
@@ -135,7 +141,7 @@ impl Shift {
 fn likely_moves(before: &[Mark], now: &[Mark]) -> [Option<Move>; MOST_TRIED] {
     let mut likely = [None; MOST_TRIED];
     let mut votes = [CHANCE; MOST_TRIED];
-    for by in 1..=FARTHEST.min(now.len()) {
+    for by in 1..=FARTHEST {
         let left = count_alike(&before[by..], now);
         let right = count_alike(before, &now[by..]);
         for (way, count) in [(Way::Left, left), (Way::Right, right)] {
@@ -149,8 +155,18 @@ fn likely_moves(before: &[Mark], now: &[Mark]) -> [Option<Move>; MOST_TRIED] {
     likely
 }
 
+/// Marks are padded so that they can be compared so many at a time, however far they moved.
+fn pad(marks: &mut Vec<Mark>) {
+    let whole = marks.len().next_multiple_of(LANES);
+    marks.resize(whole + LANES, Mark::NONE);
+}
+
+/// So many marks are compared at a time: no fewer than they move by.
+const LANES: usize = 32;
+const _: () = assert!(FARTHEST <= LANES);
+
 /// So few landmarks may agree by chance.
-const CHANCE: usize = 2;
+const CHANCE: u32 = 2;
 
 /// What a landmark is told by.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -177,16 +193,16 @@ impl Mark {
 }
 
 /// At how many places both have the same mark.
-fn count_alike(one: &[Mark], other: &[Mark]) -> usize {
-    // In steps that a byte can count, so that the compiler can compare many at a time.
-    let chunks = one.chunks(255).zip(other.chunks(255));
-    let counts = chunks.map(|(one, other)| {
-        one.iter()
-            .zip(other)
-            .map(|(one, other)| u8::from(one == other) & u8::from(*one != Mark::NONE))
-            .sum::<u8>()
-    });
-    counts.map(usize::from).sum()
+#[inline]
+fn count_alike(one: &[Mark], other: &[Mark]) -> u32 {
+    // Lane by lane, so that the compiler compares all lanes at once.
+    let mut counts = [0_u8; LANES];
+    for (one, other) in one.chunks_exact(LANES).zip(other.chunks_exact(LANES)) {
+        for ((count, one), other) in counts.iter_mut().zip(one).zip(other) {
+            *count = count.saturating_add(u8::from(one == other) & u8::from(*one != Mark::NONE));
+        }
+    }
+    counts.into_iter().map(u32::from).sum()
 }
 
 /// The stretch of `gains` with the largest sum, and that sum.

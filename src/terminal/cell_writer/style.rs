@@ -203,7 +203,9 @@ impl Shade {
         match self.kind() {
             Kind::Default | Kind::Indexed(..16) => 2,
             Kind::Indexed(index) => 5 + control::digits(index),
-            Kind::Rgb(channels) => 7 + channels.map(control::digits).iter().sum::<usize>(),
+            Kind::Rgb([red, green, blue]) => {
+                7 + control::digits(red) + control::digits(green) + control::digits(blue)
+            }
         }
     }
 

@@ -20,7 +20,7 @@ const SAVING: f64 = 0.32;
 /// How much of a high demand counts after one more frame.
 const KEPT: f64 = 0.99;
 /// From here on, fewer frames are better than worse ones.
-const LEAST_FIDELITY: Fidelity = Fidelity::LOW;
+pub(super) const LEAST_FIDELITY: Fidelity = Fidelity::new(48);
 
 impl Demand {
     pub(super) fn showed_motion(&mut self, bytes: usize, fidelity: Fidelity) {

@@ -3,6 +3,7 @@
 
 use proptest::prelude::*;
 
+use super::demand::LEAST_FIDELITY;
 use super::*;
 
 const MILLISECOND: Duration = Duration::from_millis(1);
@@ -34,6 +35,11 @@ impl Shown {
     fn age(self) -> Duration {
         self.at.saturating_sub(self.sent_at)
     }
+}
+
+/// By how much smaller the pretended encoder's frames are at `fidelity`.
+fn saving(fidelity: Fidelity) -> f64 {
+    1.0 + f64::from(fidelity.tolerance()) * 0.3
 }
 
 impl Simulation {
@@ -73,7 +79,7 @@ impl Simulation {
             }
             if self.now >= due && self.flow.may_send(self.now) {
                 let fidelity = self.flow.fidelity();
-                let saving = 1.0 + f64::from(fidelity.tolerance()) * 0.3;
+                let saving = saving(fidelity);
                 let bytes = (exact as f64 / saving) as usize;
                 self.send(bytes);
                 self.flow.showed_motion(bytes, fidelity);
@@ -232,7 +238,7 @@ proptest! {
         let mut link = Simulation::new(Duration::from_millis(delay), rate);
         link.walk(Duration::from_secs(12), exact);
         let settled = link.shown_since(Duration::from_secs(8));
-        let least = exact as f64 / 64.0 / rate;
+        let least = exact as f64 / saving(LEAST_FIDELITY) / rate;
         let allowed = link.delay + 150 * MILLISECOND + Duration::from_secs_f64(2.0 * least);
         for shown in &settled {
             prop_assert!(shown.age() <= allowed, "{shown:?}");

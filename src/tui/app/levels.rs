@@ -2,18 +2,26 @@
 
 use std::fmt;
 
+use super::played::Played;
+use crate::game::Game;
 use crate::map::Level;
 
 /// The levels of a game, in order; each but the first is made when it is reached.
 pub struct Levels {
-    pub(super) first: Level,
-    pub(super) rest: Box<dyn Iterator<Item = Level>>,
+    pub(super) first: Played,
+    pub(super) rest: Box<dyn Iterator<Item = Played>>,
 }
 
 impl Levels {
     /// `first`, and then `rest`.
     pub fn new(first: Level, rest: impl Iterator<Item = Level> + 'static) -> Self {
-        Self { first, rest: Box::new(rest) }
+        Self { first: Played::new(first), rest: Box::new(rest.map(Played::new)) }
+    }
+
+    /// Games that have begun elsewhere: `first`, and then `rest`.
+    pub fn of_games(first: Game, rest: impl Iterator<Item = Game> + 'static) -> Self {
+        let rest = rest.map(|game| Played::Grid(Box::new(game)));
+        Self { first: Played::Grid(Box::new(first)), rest: Box::new(rest) }
     }
 }
 

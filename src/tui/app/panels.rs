@@ -81,7 +81,7 @@ pub(super) fn status(
 ) {
     let running = gait.runs.then(|| "running".to_owned());
     let ducking = gait.ducks.then(|| "ducking".to_owned());
-    let parts = running.into_iter().chain(ducking).chain(game.news());
+    let parts = game.place().into_iter().chain(running).chain(ducking).chain(game.news());
     let left: String = parts.fold(format!(" {}", game.title()), |line, part| line + "  " + &part);
     let left = Line::from(left);
     let stats = stats.map(|stats| format!("  {stats} ")).unwrap_or_default();

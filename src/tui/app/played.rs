@@ -61,6 +61,13 @@ impl Played {
         }
     }
 
+    /// Where the player is in a level that is dug: cells to the east and to the south of home.
+    pub(super) fn place(&self) -> Option<String> {
+        let Self::Grid(game) = self else { return None };
+        let site = game.site()?;
+        Some(format!("{}, {}", site.column, site.row))
+    }
+
     /// What there is to tell besides the title: what the player has, and why something did not work.
     pub(super) fn news(&self) -> Vec<String> {
         let Self::Grid(game) = self else { return Vec::new() };

@@ -5,7 +5,7 @@ use std::fmt;
 use std::num::NonZeroU32;
 
 use ratatui::Terminal;
-use ratatui::backend::TestBackend;
+use ratatui::backend::{Backend, TestBackend};
 use ratatui::buffer::Buffer;
 use ratatui::layout::Size;
 
@@ -63,6 +63,11 @@ impl Replay {
             }
         }
         Ok(())
+    }
+
+    /// Shows in `window` what there is to see now.
+    pub(crate) fn draw<B: Backend>(&mut self, window: &mut Terminal<B>) -> Result<(), B::Error> {
+        window.draw(|frame| self.app.draw(frame)).map(|_| ())
     }
 
     /// What the window shows now.

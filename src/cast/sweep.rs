@@ -1,0 +1,356 @@
+//! The sweep: along the axis that a ray moves fastest on, from line to line, several at a time.
+//!
+//! Between two lines of that axis, the driving one, the ray crosses at most one line of the other. So
+//! at each line it is enough to know in which band between two lines of the other axis the ray is: if
+//! it is not the one of the line before, it has crossed over just before this line. Nothing depends on
+//! what was found at the line before, so a processor looks at several lines at once, where the walk
+//! has to know which line it crossed to know the next.
+//!
+//! Nor must a sweep look at every line. A ray that moves by so many lines of the driving axis moves by
+//! at most as many of the other, so it goes on behind all that is [clear](crate::world::Clearance).
+//!
+//! Places are in 2⁻³² of a cell, in integers: that of the start, and a slope for each line in between.
+//! What rounding can have done to that is less than a unit a line; where a place is so near to the edge
+//! of a band that it might be beyond, the cross product tells that is right.
+
+use glam::DVec2;
+
+use super::exact::decide;
+use super::{Crossing, Ray, Side};
+use crate::world::{Cell, Clearance, Grid, TileId};
+
+/// The solid cells that a ray enters, in the exact order.
+pub(crate) struct Sweep<'grid> {
+    grid: &'grid Grid,
+    course: Course,
+    at: Progress,
+}
+
+/// How far a ray has come.
+#[derive(Clone, Copy)]
+struct Progress {
+    /// How many lines it has crossed.
+    line: i64,
+    /// The band that it is in: a row where columns are crossed, and the other way round.
+    band: i64,
+    /// How often it was looked where it is.
+    looks: u64,
+}
+
+/// The way that a ray takes through a map.
+#[derive(Clone, Copy)]
+struct Course {
+    origin: DVec2,
+    direction: DVec2,
+    /// Lines of this kind are crossed along the driving axis.
+    side: Side,
+    /// The column or row before the first of them, and 1 or −1 from there to the next.
+    start: i64,
+    step: i64,
+    /// Where the ray is a line before the first, and a [`DOUBT`] further, in units across the bands.
+    place: i64,
+    /// How far it moves on from one line to the next, in units.
+    slope: i64,
+    /// In the list of all cells: the one before the first line in band 0, and from there to the one
+    /// behind the line, and to the one in the next band.
+    corner: i64,
+    line_stride: i64,
+    band_stride: i64,
+}
+
+/// What a ray and a map are along one axis.
+#[derive(Clone, Copy)]
+struct Along {
+    /// The column or row that the ray starts in; on a line that it crosses, the one before.
+    start: i64,
+    /// Where it starts, in units.
+    place: i64,
+    direction: f64,
+    /// From one cell to the next in the list of all cells.
+    stride: i64,
+}
+
+/// More lines than that, and units would be too coarse.
+const MOST_LINES: u32 = 1 << 16;
+/// Within so many units of its true place a ray is taken to be: for every slope one unit, which is
+/// more than rounding does, and eight for where it starts.
+const DOUBT: i64 = MOST_LINES as i64 + 8;
+const FRACTION_BITS: u32 = 32;
+const UNITS: i64 = 1 << FRACTION_BITS;
+
+impl<'grid> Sweep<'grid> {
+    /// The sweep of `ray` through `grid`. `None` where the ray does not start inside the map.
+    #[expect(clippy::inline_always, reason = "elsewhere it would be made in memory")]
+    #[inline(always)]
+    pub(crate) fn new(grid: &'grid Grid, ray: &Ray) -> Option<Self> {
+        let (origin, direction) = (ray.origin(), ray.direction());
+        let clearance = grid.clearance();
+        let [to_east, to_south] = clearance.strides();
+        let x = Along::new(origin.x, direction.x, grid.width(), to_east)?;
+        let y = Along::new(origin.y, direction.y, grid.height(), to_south)?;
+        let is_steep = direction.x.abs() < direction.y.abs();
+        let (driving, passive) = if is_steep { (y, x) } else { (x, y) };
+        let slope = units(passive.direction / driving.direction.abs());
+        let (step, first_line) = if driving.direction > 0.0 {
+            (1, (driving.start + 1) * UNITS)
+        } else {
+            (-1, driving.start * UNITS)
+        };
+        let to_first = (first_line - driving.place) * step;
+        // Both are halved, as a product of two whole cells is one more bit than there is.
+        let moved = (to_first / 2) * (slope / 2) / (UNITS / 4);
+        let start = driving.start;
+        let course = Course {
+            origin,
+            direction,
+            side: if is_steep { Side::Y } else { Side::X },
+            start,
+            step,
+            place: passive.place + moved - slope + DOUBT,
+            slope,
+            corner: clearance.first() + start * driving.stride,
+            line_stride: step * driving.stride,
+            band_stride: passive.stride,
+        };
+        Some(Self { grid, course, at: Progress { line: 0, band: passive.start, looks: 0 } })
+    }
+
+    /// The cell that the ray is in.
+    pub(super) fn cell(&self) -> Option<(Cell, TileId)> {
+        self.course.cell_in(self.grid, self.at.line, self.at.band)
+    }
+
+    /// How often it was looked where the ray is to get where it is.
+    pub(crate) fn looks(&self) -> u64 {
+        self.at.looks
+    }
+}
+
+impl Iterator for Sweep<'_> {
+    type Item = Crossing;
+
+    #[expect(clippy::inline_always, reason = "elsewhere it would be kept in memory")]
+    #[inline(always)]
+    fn next(&mut self) -> Option<Crossing> {
+        let Self { grid, course, .. } = *self;
+        let clearance = grid.clearance();
+        loop {
+            let (before, at) = if clearance.is_measured() {
+                course.leap(clearance, self.at)
+            } else {
+                course.go(clearance, self.at)
+            };
+            let Progress { line, band, looks } = at;
+            if band != before {
+                let (cell, tile) = course.cell_in(grid, line - 1, band)?;
+                if grid.is_solid_tile(tile) {
+                    self.at = Progress { line: line - 1, band, looks };
+                    return Some(Crossing { cell, tile, side: course.side.other() });
+                }
+            }
+            self.at = at;
+            let (cell, tile) = course.cell_in(grid, line, band)?;
+            if grid.is_solid_tile(tile) {
+                return Some(Crossing { cell, tile, side: course.side });
+            }
+        }
+    }
+}
+
+impl Course {
+    /// Goes on line by line, at least one, until the cell behind a line or the one beside the cell
+    /// before it is not clear; and tells the band at the line before, too.
+    #[inline]
+    fn go(self, clearance: &Clearance, from: Progress) -> (i64, Progress) {
+        let Progress { mut line, mut band, mut looks } = from;
+        let mut place = self.place + self.slope * line;
+        let mut before_line = self.corner + self.line_stride * line;
+        loop {
+            looks += 1;
+            line += 1;
+            place += self.slope;
+            let band_before = band;
+            band = self.band_at(place, line);
+            let beside = before_line + self.band_stride * band;
+            let ahead = beside + self.line_stride;
+            if !clearance.is_clear(ahead) || !clearance.is_clear(beside) {
+                return (band_before, Progress { line, band, looks });
+            }
+            before_line += self.line_stride;
+        }
+    }
+
+    /// As [`Course::go`], across as many lines at once as are clear.
+    #[inline]
+    fn leap(self, clearance: &Clearance, from: Progress) -> (i64, Progress) {
+        let Progress { mut line, mut band, mut looks } = from;
+        let mut clear = 1;
+        loop {
+            looks += 1;
+            line += clear;
+            let band_before = band;
+            band = self.band_at(self.place + self.slope * line, line);
+            let ahead = self.corner + self.line_stride * line + self.band_stride * band;
+            clear = clearance.lines_at(ahead);
+            // What is two cells from all that is solid has nothing solid beside it.
+            if clear < 2 && (clear == 0 || !clearance.is_clear(ahead - self.line_stride)) {
+                return (band_before, Progress { line, band, looks });
+            }
+        }
+    }
+
+    /// The band that the ray is in where it crosses that line at that place.
+    #[inline]
+    fn band_at(self, place: i64, line: i64) -> i64 {
+        let band = place >> FRACTION_BITS;
+        if (place as u32) < 2 * DOUBT as u32 {
+            let line = self.start + self.step * line + i64::from(self.step < 0);
+            decide_band(self.origin, self.direction, self.side, line, band)
+        } else {
+            band
+        }
+    }
+
+    #[inline]
+    fn cell_in(self, grid: &Grid, line: i64, band: i64) -> Option<(Cell, TileId)> {
+        let along = self.start + self.step * line;
+        let (column, row) = match self.side {
+            Side::X => (along, band),
+            Side::Y => (band, along),
+        };
+        let tile = grid.tile(column, row)?;
+        Some((Cell { column: column as u32, row: row as u32 }, tile))
+    }
+}
+
+/// The band that a ray is in where it crosses the `line` of kind `side`, which is the one that begins at
+/// the line `edge`, or the one that ends there.
+///
+/// It is no method, because a reference would keep the course in memory.
+#[cold]
+#[inline(never)]
+fn decide_band(origin: DVec2, direction: DVec2, side: Side, line: i64, edge: i64) -> i64 {
+    let (line_at, edge_at) = (line as f64, edge as f64);
+    let (x, y, origin_across, direction_across) = match side {
+        Side::X => (line_at, edge_at, origin.y, direction.y),
+        Side::Y => (edge_at, line_at, origin.x, direction.x),
+    };
+    let is_beyond = if direction_across == 0.0 {
+        origin_across >= edge_at
+    } else {
+        let is_across = decide(origin, direction, x, y) != side;
+        is_across == (direction_across > 0.0)
+    };
+    if is_beyond { edge } else { edge - 1 }
+}
+
+/// The units of a place, rounded. What is far off any map is far off in units.
+#[inline]
+fn units(place: f64) -> i64 {
+    // A double of that size has as many bits after the point, with more or less than that added to it.
+    const SIZE: f64 = 1.5 * (1_u64 << (f64::MANTISSA_DIGITS - 1 - FRACTION_BITS)) as f64;
+    (place + SIZE).to_bits().wrapping_sub(SIZE.to_bits()) as i64
+}
+
+impl Along {
+    /// `None` where the ray does not start on the map.
+    #[inline]
+    fn new(origin: f64, direction: f64, count: u32, stride: i64) -> Option<Self> {
+        /// More than is rounded away.
+        const NEAR: u32 = 2;
+        let place = units(origin);
+        let is_near_line = (place as u32).wrapping_add(NEAR) < 2 * NEAR;
+        let start =
+            if is_near_line { start_near_line(origin, direction) } else { place >> FRACTION_BITS };
+        let is_on_map = (start as u64) < u64::from(count) && count <= MOST_LINES;
+        is_on_map.then_some(Self { start, place, direction, stride })
+    }
+}
+
+/// The column or row that a ray starts in that starts on a line, or nearly so.
+#[cold]
+#[inline(never)]
+fn start_near_line(origin: f64, direction: f64) -> i64 {
+    let start = origin.floor();
+    let is_before = start == origin && direction > 0.0;
+    // What is not near the map at all may be as far as there are numbers.
+    (start as i64).saturating_sub(i64::from(is_before))
+}
+
+#[cfg(test)]
+mod tests {
+    use proptest::prelude::*;
+
+    use super::*;
+    use crate::cast::Walk;
+
+    /// Places and directions, of which many meet corners and run along lines.
+    fn number() -> impl Strategy<Value = f64> {
+        prop_oneof![
+            -1.0..14.0_f64,
+            (-4..52_i32).prop_map(|quarters| f64::from(quarters) / 4.0),
+            (0..12_i32, -3..3_i64).prop_map(|(whole, ulps)| {
+                f64::from_bits((f64::from(whole).to_bits() as i64 + ulps).max(0) as u64)
+            }),
+        ]
+    }
+
+    /// Few walls, and doors that stand open.
+    fn map() -> impl Strategy<Value = Vec<Vec<u8>>> {
+        let tile = prop_oneof![30 => Just(0_u8), 1 => Just(1_u8), 2 => Just(2_u8)];
+        prop::collection::vec(prop::collection::vec(tile, 12), 1..12)
+    }
+
+    fn grid(map: &[Vec<u8>]) -> Grid {
+        let [width, height] = [12, map.len() as u32].map(|side| side.try_into().unwrap());
+        let cells = map.iter().flatten().map(|&tile| TileId(tile)).collect();
+        Grid::new(width, height, TileId(2), cells).unwrap()
+    }
+
+    proptest! {
+        /// Line by line or by leaps, it stops where the walk does.
+        #[test]
+        fn it_meets_what_the_walk_meets(
+            map in map(),
+            origin in (number(), number()),
+            direction in (number(), number()),
+            signs in (any::<bool>(), any::<bool>()),
+        ) {
+            let sign = |number: f64, is_negative| if is_negative { -number } else { number };
+            let direction = DVec2::new(sign(direction.0, signs.0), sign(direction.1, signs.1));
+            let ray = Ray::new(origin.into(), direction);
+            prop_assume!(ray.is_ok());
+            let (grid, ray) = (grid(&map), ray.unwrap());
+            let mut measured = grid.clone();
+            measured.measure_clearance(|tile| tile == TileId(1));
+            for grid in [&grid, &measured] {
+                let walk = Walk::new(grid, &ray).filter(|met| grid.is_solid_tile(met.tile));
+                let Some(sweep) = Sweep::new(grid, &ray) else { continue };
+                prop_assert_eq!(sweep.collect::<Vec<_>>(), walk.collect::<Vec<_>>());
+            }
+        }
+    }
+
+    #[test]
+    fn an_empty_hall_is_crossed_in_few_leaps() {
+        let side = 4096;
+        let count = u32::try_from(side).unwrap().try_into().unwrap();
+        let is_edge = |place: usize| place == 0 || place == side - 1;
+        let cells = (0..side * side).map(|index| is_edge(index % side) || is_edge(index / side));
+        let cells = cells.map(|is_edge| TileId(u8::from(is_edge))).collect();
+        let mut hall = Grid::new(count, count, TileId(1), cells).unwrap();
+        let looks = |grid: &Grid, direction| {
+            let ray = Ray::new(DVec2::new(1.5, 2048.5), direction).unwrap();
+            let mut sweep = Sweep::new(grid, &ray).unwrap();
+            assert_eq!(sweep.next().map(|met| met.cell.column), Some(4095));
+            sweep.looks()
+        };
+        for direction in [DVec2::X, DVec2::new(1.0, 0.3), DVec2::new(1.0, -0.45)] {
+            assert_eq!(looks(&hall, direction), 4094);
+        }
+        hall.measure_clearance(|_| false);
+        for direction in [DVec2::X, DVec2::new(1.0, 0.3), DVec2::new(1.0, -0.45)] {
+            assert!(looks(&hall, direction) < 40, "{}", looks(&hall, direction));
+        }
+    }
+}

@@ -1,0 +1,91 @@
+//! `cellcaster bench`: how fast this machine is at it.
+
+mod json;
+mod table;
+
+use std::ffi::OsStr;
+use std::io::{self, BufWriter, Write};
+use std::time::{Duration, Instant};
+
+use ratatui::layout::Size;
+
+use super::arguments::{Bench, BenchFormat};
+use super::script::SHOWCASE;
+use super::{Error, level};
+use crate::speed::{DrawingRow, measure_drawing};
+use crate::tui::{Replay, Settings};
+use crate::wire::{PipelineRow, measure_pipeline};
+
+/// What was measured.
+struct Report {
+    drawing: Vec<DrawingRow>,
+    pipeline: Vec<PipelineRow>,
+    /// From nothing to the bytes of the first frame.
+    first_frame: Duration,
+}
+
+/// The windows that the pipeline is measured in.
+const WINDOWS: [Size; 3] = [Size::new(80, 24), Size::new(120, 40), Size::new(200, 60)];
+
+/// Reports what `options` ask for.
+pub(super) fn run(options: &Bench) -> Result<(), Error> {
+    let time = Duration::from_secs(options.seconds.into());
+    let report = Report {
+        first_frame: first_frame()?,
+        drawing: measure_drawing(time / 2),
+        pipeline: pipeline(time / 2)?,
+    };
+    let output = BufWriter::new(io::stdout().lock());
+    write(&report, options.format, output).map_err(|error| Error::of_output(&error))
+}
+
+fn write(report: &Report, format: BenchFormat, mut output: impl Write) -> io::Result<()> {
+    match format {
+        BenchFormat::Table => table::write(report, &mut output)?,
+        BenchFormat::Json => json::write(report, &mut output)?,
+    }
+    output.flush()
+}
+
+/// A game of the level that the showcase is about.
+fn begin(size: Size) -> Result<Replay, Error> {
+    let levels = level::load_series(Some(OsStr::new(SHOWCASE.level)))?;
+    Ok(Replay::new(levels, Settings::default(), size))
+}
+
+fn pipeline(time: Duration) -> Result<Vec<PipelineRow>, Error> {
+    let script = SHOWCASE.script()?;
+    let share = time / WINDOWS.len() as u32;
+    let rows = WINDOWS.map(|size| measure_pipeline(&script, size, share, begin));
+    let rows: Result<Vec<_>, Error> = rows.into_iter().collect();
+    Ok(rows?.into_iter().flatten().collect())
+}
+
+/// How long it takes to read the level and draw its first frame in the smallest window.
+fn first_frame() -> Result<Duration, Error> {
+    let start = Instant::now();
+    begin(WINDOWS[0])?.picture();
+    Ok(start.elapsed())
+}
+
+/// Megabits a second of the links that frame rates are told for.
+const LINKS: [u32; 3] = [1, 10, 100];
+
+/// How many frames of `row` a second go over a link of so many megabits a second: as many as are
+/// drawn in that time, at most.
+fn frames_per_second(row: &PipelineRow, megabits: u32) -> f64 {
+    let bits = row.bytes * 8.0;
+    let sending = bits / (f64::from(megabits) * 1e6);
+    1.0 / sending.max(row.time.as_secs_f64()).max(f64::MIN_POSITIVE)
+}
+
+/// The row of ratatui's own encoder in the window of `row`.
+fn stock<'a>(report: &'a Report, row: &PipelineRow) -> Option<&'a PipelineRow> {
+    report.pipeline.iter().find(|other| other.size == row.size)
+}
+
+/// How long a frame of `row` takes, as a share of what it takes ratatui's own encoder.
+fn share_of_stock(report: &Report, row: &PipelineRow) -> f64 {
+    let stock = stock(report, row).unwrap_or(row);
+    row.time.as_secs_f64() / stock.time.as_secs_f64().max(f64::MIN_POSITIVE)
+}

@@ -1,0 +1,214 @@
+//! A cave: rock that has settled, tunnels that connect it, and stalagmites.
+//!
+//! Chance decides for each cell whether it is rock; then, several times over, each becomes what most
+//! of those around it are. A cell depends on others as far away as there were generations: a chunk is
+//! worked out with that margin around it, and fits its neighbours without a seam.
+//!
+//! What settles is not connected. Each chunk has a hub, and winding tunnels from there to a gate in
+//! each of its sides, whose place is that of the side: so every hub is connected with every other one.
+//! Hollows beside the tunnels stay as they are; from some of them nobody ever gets out, nor in.
+
+use super::Terrain;
+use super::chunk::{CHUNK_SIDE, Chunk, Plot, every_cell};
+use super::hash::{Chance, Purpose, hash};
+
+/// A cave of a seed.
+#[derive(Clone, Debug)]
+pub(super) struct Cave {
+    pub(super) seed: u64,
+}
+
+const STONE: u8 = b'#';
+const MOSS: u8 = b'M';
+const FLOOR: u8 = b'.';
+const STALAGMITE: u8 = b'o';
+const TORCH: u8 = b't';
+const BONES: u8 = b'b';
+const CRYSTAL: u8 = b'c';
+const HERB: u8 = b'm';
+const TUNNEL: u8 = b':';
+const POOL: u8 = b'~';
+
+/// How many times the rock settles.
+const GENERATIONS: usize = 4;
+/// Cells along each side of what a chunk is worked out from.
+const WITH_MARGIN: usize = CHUNK_SIDE + 2 * GENERATIONS;
+/// How many cells of a hundred are rock at first.
+const ROCK_IN_100: u64 = 49;
+/// How many are dry.
+const DRY_IN_100: u64 = 60;
+/// With so many cells of rock around it, itself included, a cell is rock.
+const MOST_OF_NINE: usize = 5;
+
+/// The smallest plot that has a hub.
+const LEAST: usize = 6;
+/// How far around a hub is floor.
+const HUB_RADIUS: usize = 2;
+/// Steps that a tunnel may wind, before it goes straight on.
+const WINDING: usize = 160;
+
+type Place = (usize, usize);
+
+impl Terrain for Cave {
+    fn seed(&self) -> u64 {
+        self.seed
+    }
+
+    fn legend(&self) -> String {
+        format!("title = \"Cave {}\"\n{}", self.seed, include_str!("cave.toml"))
+    }
+
+    fn chunk(&self, plot: &Plot) -> Chunk {
+        let (column, row) = (plot.chunk.column, plot.chunk.row);
+        let rock = self.settled(plot, Purpose::Rock, ROCK_IN_100);
+        let dry = self.settled(plot, Purpose::Dry, DRY_IN_100);
+        let mossy = hash(self.seed, Purpose::District, column >> 1, row >> 1).is_multiple_of(3);
+        let mut chunk = Chunk::full_of(if mossy { MOSS } else { STONE });
+        for (x, y) in every_cell().filter(|&(x, y)| !rock[y + GENERATIONS][x + GENERATIONS]) {
+            let is_dry = dry[y + GENERATIONS][x + GENERATIONS];
+            chunk.set(x, y, if is_dry { FLOOR } else { POOL });
+        }
+        let Some(hub) = self.hub(plot) else { return chunk };
+        dig_around(&mut chunk, plot, hub, HUB_RADIUS);
+        chunk.set(hub.0, hub.1, FLOOR);
+        let mut chance = Chance::of(self.seed, Purpose::Plan, column, row);
+        for gate in self.gates(plot).into_iter().flatten() {
+            dig_tunnel(&mut chunk, plot, hub, gate, &mut chance);
+        }
+        self.furnish(&mut chunk, plot, hub);
+        chunk
+    }
+
+    fn hub(&self, plot: &Plot) -> Option<Place> {
+        if !plot.holds(LEAST) {
+            return None;
+        }
+        let mut chance = Chance::of(self.seed, Purpose::Hub, plot.chunk.column, plot.chunk.row);
+        let mut within = |range: &std::ops::Range<usize>| {
+            range.start + range.len() / 4 + chance.below(range.len() / 2)
+        };
+        Some((within(&plot.columns), within(&plot.rows)))
+    }
+}
+
+impl Cave {
+    /// Which cells are such, of the chunk and of the margin around it, where at first so many of a
+    /// hundred are, by chance.
+    fn settled(
+        &self,
+        plot: &Plot,
+        purpose: Purpose,
+        in_100: u64,
+    ) -> [[bool; WITH_MARGIN]; WITH_MARGIN] {
+        let margin = GENERATIONS as i64;
+        let mut rock = [[false; WITH_MARGIN]; WITH_MARGIN];
+        for (row, y) in rock.iter_mut().zip(-margin..) {
+            for (cell, x) in row.iter_mut().zip(-margin..) {
+                let site = plot.chunk.site(x, y);
+                *cell = hash(self.seed, purpose, site.column, site.row) % 100 < in_100;
+            }
+        }
+        for generation in 1..=GENERATIONS {
+            let before = rock;
+            let inner = generation..WITH_MARGIN - generation;
+            for y in inner.clone() {
+                for x in inner.clone() {
+                    let around = before[y - 1..=y + 1].iter().flat_map(|row| &row[x - 1..=x + 1]);
+                    rock[y][x] = around.filter(|&&is_rock| is_rock).count() >= MOST_OF_NINE;
+                }
+            }
+        }
+        rock
+    }
+
+    /// Where one leaves the chunk to the north, the west, the south and the east.
+    fn gates(&self, plot: &Plot) -> [Option<Place>; 4] {
+        let last = CHUNK_SIDE - 1;
+        let (column, row) = (plot.chunk.column, plot.chunk.row);
+        let has_hub = |columns, rows| self.hub(&plot.neighbor(columns, rows)).is_some();
+        let along = |range: &std::ops::Range<usize>, purpose, column, row| {
+            range.start + Chance::of(self.seed, purpose, column, row).below(range.len())
+        };
+        let across = |column, row| along(&plot.columns, Purpose::NorthPassage, column, row);
+        let down = |column, row| along(&plot.rows, Purpose::WestPassage, column, row);
+        let (south, east) = (plot.chunk.offset(0, 1).row, plot.chunk.offset(1, 0).column);
+        [
+            has_hub(0, -1).then(|| (across(column, row), 0)),
+            has_hub(-1, 0).then(|| (0, down(column, row))),
+            has_hub(0, 1).then(|| (across(column, south), last)),
+            has_hub(1, 0).then(|| (last, down(east, row))),
+        ]
+    }
+
+    /// Puts stalagmites and things where one can walk around them, though not on the hub.
+    fn furnish(&self, chunk: &mut Chunk, plot: &Plot, hub: Place) {
+        let (column, row) = (plot.chunk.column, plot.chunk.row);
+        let mut chance = Chance::of(self.seed, Purpose::Furniture, column, row);
+        let inner = 1..CHUNK_SIDE - 1;
+        let places = inner.clone().flat_map(|y| inner.clone().map(move |x| (x, y)));
+        for (x, y) in places.filter(|&place| place != hub) {
+            let is_free = (y - 1..=y + 1)
+                .all(|row| (x - 1..=x + 1).all(|column| is_floor_of(chunk, plot, column, row)));
+            if !is_free {
+                continue;
+            }
+            match chance.below(60) {
+                0..5 => chunk.set(x, y, STALAGMITE),
+                5 => chunk.set(x, y, CRYSTAL),
+                6..9 => chunk.set(x, y, TORCH),
+                9 => chunk.set(x, y, BONES),
+                10..14 => chunk.set(x, y, HERB),
+                _ => {}
+            }
+        }
+    }
+}
+
+fn is_floor_of(chunk: &Chunk, plot: &Plot, column: usize, row: usize) -> bool {
+    plot.contains(column, row) && chunk.get(column, row) == FLOOR
+}
+
+/// Digs all of the plot that is rock and within `radius` of a cell, but for the corners.
+fn dig_around(chunk: &mut Chunk, plot: &Plot, (column, row): Place, radius: usize) {
+    let near = |(x, y): Place| {
+        let (across, down) = (x.abs_diff(column), y.abs_diff(row));
+        across * across + down * down <= radius * radius + 1
+    };
+    let is_rock = |(x, y): Place| plot.contains(x, y) && [STONE, MOSS].contains(&chunk.get(x, y));
+    let dug: Vec<_> = every_cell().filter(|&place| near(place) && is_rock(place)).collect();
+    for (x, y) in dug {
+        chunk.set(x, y, TUNNEL);
+    }
+}
+
+/// Digs a winding way from one cell of the plot to another.
+fn dig_tunnel(chunk: &mut Chunk, plot: &Plot, from: Place, to: Place, chance: &mut Chance) {
+    let (mut column, mut row) = from;
+    let mut steps = 0;
+    while (column, row) != to {
+        steps += 1;
+        let (across, down) = (to.0.abs_diff(column), to.1.abs_diff(row));
+        let goes_across = chance.below(across + down) < across;
+        if steps < WINDING && chance.one_in(3) {
+            let back_and_forth = chance.one_in(2);
+            let beside = |place, range: &std::ops::Range<usize>| {
+                stepped(place, if back_and_forth { range.start } else { range.end - 1 })
+            };
+            if goes_across {
+                row = beside(row, &plot.rows);
+            } else {
+                column = beside(column, &plot.columns);
+            }
+        } else if goes_across {
+            column = stepped(column, to.0);
+        } else {
+            row = stepped(row, to.1);
+        }
+        dig_around(chunk, plot, (column, row), usize::from(chance.one_in(3)));
+    }
+}
+
+/// One nearer to `to`.
+fn stepped(from: usize, to: usize) -> usize {
+    if from < to { from + 1 } else { from - usize::from(from > to) }
+}

@@ -1,0 +1,279 @@
+//! Chunks: the squares that a level is dug in.
+//!
+//! A chunk is a function of the seed and its own place alone, so that a level is the same however one
+//! gets there; what two neighbours must agree about, such as where one passes between them, is decided
+//! by the place of the side that they share. A function of single cells was refused: a cave
+//! that settles over several generations would be worked out anew for every cell, and nothing that
+//! takes more than a cell, a room or a spanning tree, could be promised.
+//!
+//! Places wrap around: beyond the last cell that a number can name comes the first one. So no
+//! arithmetic on them can fail.
+
+use std::collections::VecDeque;
+use std::fmt;
+use std::ops::Range;
+
+/// Cells along each side of a chunk.
+pub const CHUNK_SIDE: usize = 32;
+
+/// A cell of a level that has no edges: columns from the west, rows from the north, home at `(0, 0)`.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Hash, PartialOrd, Ord, Default)]
+pub struct Site {
+    /// Cells to the east of home.
+    pub column: i64,
+    /// Cells to the south of home.
+    pub row: i64,
+}
+
+/// Which chunk: columns and rows of chunks, from the one whose north-west cell is home.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Hash, PartialOrd, Ord, Default)]
+pub struct ChunkIndex {
+    /// Chunks to the east of home's.
+    pub column: i64,
+    /// Chunks to the south of home's.
+    pub row: i64,
+}
+
+impl Site {
+    /// The chunk that the cell is in, and which of its cells it is: column and row.
+    pub fn chunk(self) -> (ChunkIndex, (usize, usize)) {
+        const SIDE: i64 = CHUNK_SIDE as i64;
+        let index =
+            ChunkIndex { column: self.column.div_euclid(SIDE), row: self.row.div_euclid(SIDE) };
+        let local = |place: i64| place.rem_euclid(SIDE) as usize;
+        (index, (local(self.column), local(self.row)))
+    }
+}
+
+impl ChunkIndex {
+    /// The chunk so many further to the east and the south.
+    #[must_use]
+    pub fn offset(self, columns: i64, rows: i64) -> Self {
+        // As many chunks as there are cells for: so an index wraps where cells do.
+        const SPARE_BITS: u32 = CHUNK_SIDE.trailing_zeros();
+        let wrapped = |index: i64, by: i64| (index.wrapping_add(by) << SPARE_BITS) >> SPARE_BITS;
+        Self { column: wrapped(self.column, columns), row: wrapped(self.row, rows) }
+    }
+
+    /// A cell of the chunk, so many to the east and the south of its north-west one.
+    pub fn site(self, column: i64, row: i64) -> Site {
+        const SIDE: i64 = CHUNK_SIDE as i64;
+        let place = |index: i64, by: i64| index.wrapping_mul(SIDE).wrapping_add(by);
+        Site { column: place(self.column, column), row: place(self.row, row) }
+    }
+}
+
+/// How large a level is.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Default)]
+pub enum Extent {
+    /// It has no end.
+    #[default]
+    Endless,
+    /// So many cells to the east and the south of home, the outermost of which are wall.
+    Cells {
+        /// At least [`Extent::LEAST`].
+        columns: u32,
+        /// At least [`Extent::LEAST`].
+        rows: u32,
+    },
+}
+
+impl Extent {
+    /// The fewest cells along a side.
+    pub const LEAST: u32 = 8;
+    /// The most cells along a side.
+    pub const MOST: u32 = 1_000_000_000;
+
+    /// A level of so many cells. `None` where one side is out of range.
+    pub fn new(columns: u32, rows: u32) -> Option<Self> {
+        let is_in_range = |side: u32| (Self::LEAST..=Self::MOST).contains(&side);
+        (is_in_range(columns) && is_in_range(rows)).then_some(Self::Cells { columns, rows })
+    }
+
+    /// The part of the level that is in a chunk.
+    pub fn plot(self, chunk: ChunkIndex) -> Plot {
+        let (columns, rows) = match self {
+            Self::Endless => (0..CHUNK_SIDE, 0..CHUNK_SIDE),
+            Self::Cells { columns, rows } => {
+                (inside(chunk.column, columns), inside(chunk.row, rows))
+            }
+        };
+        Plot { extent: self, chunk, columns, rows }
+    }
+}
+
+/// Which cells of the chunk `index` are within an outermost wall around `side` cells.
+fn inside(index: i64, side: u32) -> Range<usize> {
+    const SIDE: i64 = CHUNK_SIDE as i64;
+    let first = index.saturating_mul(SIDE);
+    let local = |cell: i64| cell.saturating_sub(first).clamp(0, SIDE) as usize;
+    let (start, end) = (local(1), local(i64::from(side) - 1));
+    start.min(end)..end
+}
+
+/// The part of a chunk that may be dug.
+#[derive(Clone, Debug, PartialEq, Eq)]
+pub struct Plot {
+    extent: Extent,
+    /// Which chunk it is a part of.
+    pub chunk: ChunkIndex,
+    /// Which columns of the chunk; none where the chunk is outside the level.
+    pub columns: Range<usize>,
+    /// Which of its rows, likewise.
+    pub rows: Range<usize>,
+}
+
+impl Plot {
+    /// The plot of a chunk so many further to the east and the south.
+    #[must_use]
+    pub fn neighbor(&self, columns: i64, rows: i64) -> Self {
+        self.extent.plot(self.chunk.offset(columns, rows))
+    }
+
+    /// Whether no cell is part of it: it is outside the level.
+    pub fn is_empty(&self) -> bool {
+        self.columns.is_empty() || self.rows.is_empty()
+    }
+
+    /// Whether all of the plot is at least `side` cells long and wide.
+    pub fn holds(&self, side: usize) -> bool {
+        self.columns.len() >= side && self.rows.len() >= side
+    }
+
+    /// Whether a cell is part of it.
+    pub fn contains(&self, column: usize, row: usize) -> bool {
+        self.columns.contains(&column) && self.rows.contains(&row)
+    }
+}
+
+/// What the cells of a chunk hold, as the characters of a map.
+#[derive(Clone, PartialEq, Eq)]
+pub struct Chunk {
+    cells: [[u8; CHUNK_SIDE]; CHUNK_SIDE],
+}
+
+impl Chunk {
+    /// A chunk that is full of `character`.
+    pub fn full_of(character: u8) -> Self {
+        Self { cells: [[character; CHUNK_SIDE]; CHUNK_SIDE] }
+    }
+
+    /// What is in a cell.
+    ///
+    /// # Panics
+    /// Where that is not in the chunk.
+    pub fn get(&self, column: usize, row: usize) -> u8 {
+        self.cells[row][column]
+    }
+
+    /// Puts `character` into a cell.
+    ///
+    /// # Panics
+    /// Where that is not in the chunk.
+    pub fn set(&mut self, column: usize, row: usize, character: u8) {
+        self.cells[row][column] = character;
+    }
+
+    /// The cells of a row from the west.
+    ///
+    /// # Panics
+    /// Where there is no such row.
+    pub fn row(&self, row: usize) -> &[u8; CHUNK_SIDE] {
+        &self.cells[row]
+    }
+
+    /// Fills what is not part of `plot`.
+    pub(super) fn clip(&mut self, plot: &Plot, character: u8) {
+        for (column, row) in every_cell().filter(|&(column, row)| !plot.contains(column, row)) {
+            self.set(column, row, character);
+        }
+    }
+
+    /// The cells that one gets to from `start` without leaving the chunk, in the order of their
+    /// distance, where one walks through what `is_open` says so of.
+    pub(super) fn reachable(
+        &self,
+        start: (usize, usize),
+        is_open: impl Fn(u8) -> bool,
+    ) -> Vec<(usize, usize)> {
+        let mut seen = [[false; CHUNK_SIDE]; CHUNK_SIDE];
+        let mut queue = VecDeque::from([start]);
+        let mut found = Vec::new();
+        seen[start.1][start.0] = true;
+        while let Some((column, row)) = queue.pop_front() {
+            found.push((column, row));
+            for (column, row) in beside(column, row) {
+                if is_open(self.get(column, row)) && !seen[row][column] {
+                    seen[row][column] = true;
+                    queue.push_back((column, row));
+                }
+            }
+        }
+        found
+    }
+}
+
+/// All cells of a chunk, row by row.
+pub(super) fn every_cell() -> impl Iterator<Item = (usize, usize)> {
+    (0..CHUNK_SIDE).flat_map(|row| (0..CHUNK_SIDE).map(move |column| (column, row)))
+}
+
+/// The cells of a chunk in the west, the east, the north and the south of one.
+fn beside(column: usize, row: usize) -> impl Iterator<Item = (usize, usize)> {
+    let places = [
+        (column.wrapping_sub(1), row),
+        (column + 1, row),
+        (column, row.wrapping_sub(1)),
+        (column, row + 1),
+    ];
+    places.into_iter().filter(|&(column, row)| column < CHUNK_SIDE && row < CHUNK_SIDE)
+}
+
+/// The rows as one would draw them.
+impl fmt::Display for Chunk {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        self.cells.iter().try_for_each(|row| writeln!(f, "{}", String::from_utf8_lossy(row)))
+    }
+}
+
+impl fmt::Debug for Chunk {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        write!(f, "\n{self}")
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use proptest::prelude::*;
+
+    use super::*;
+
+    proptest! {
+        #[test]
+        fn every_site_is_a_cell_of_one_chunk(column: i64, row: i64, columns in -9_i64..9, rows in -9_i64..9) {
+            let (chunk, (x, y)) = Site { column, row }.chunk();
+            prop_assert_eq!(chunk.site(x as i64, y as i64), Site { column, row });
+            let further = chunk.offset(columns, rows);
+            let moved = Site {
+                column: column.wrapping_add(columns * CHUNK_SIDE as i64),
+                row: row.wrapping_add(rows * CHUNK_SIDE as i64),
+            };
+            prop_assert_eq!(moved.chunk(), (further, (x, y)));
+        }
+
+        #[test]
+        fn plots_are_what_is_within_the_outermost_wall(columns in 8_u32..200, rows in 8_u32..200) {
+            let extent = Extent::new(columns, rows).unwrap();
+            let plots = (-1..8).flat_map(|row| (-1..8).map(move |column| ChunkIndex { column, row }));
+            let area: usize = plots.map(|index| extent.plot(index)).map(|plot| plot.columns.len() * plot.rows.len()).sum();
+            prop_assert_eq!(area, (columns as usize - 2) * (rows as usize - 2));
+        }
+    }
+
+    #[test]
+    fn no_level_is_too_small_or_too_large() {
+        assert_eq!(Extent::new(7, 8), None);
+        assert_eq!(Extent::new(8, 1_000_000_001), None);
+        assert!(Extent::new(8, 1_000_000_000).is_some());
+    }
+}

@@ -1,0 +1,146 @@
+//! The kit: what the characters of chunks stand for, learnt from a map in which each is drawn.
+//!
+//! So a level's tiles, textures, sprites and air are read, and found fault with, as those of any map.
+//! The map is read once; what is dug later takes its tiles from there by their number.
+
+use std::num::NonZeroU32;
+
+use crate::fault::Faults;
+use crate::map::{self, NoFiles};
+use crate::world::{
+    Cell, Grid, Lamplight, SpriteId, Start, Thing, ThingKind, Tile, TileId, TileKind, World,
+};
+
+/// What fills all that is not dug.
+pub(super) const ROCK: u8 = b'#';
+
+/// What the characters of chunks stand for.
+#[derive(Clone, Debug)]
+pub(super) struct Kit {
+    /// The legend's own world.
+    world: World,
+    /// By character; what has no meaning is rock.
+    meanings: Vec<Meaning>,
+    exits: Vec<u8>,
+}
+
+#[derive(Clone, Copy, Debug)]
+struct Meaning {
+    tile: TileId,
+    thing: Option<(ThingKind, SpriteId)>,
+    /// Whether one can walk there: of a door, once it is open.
+    is_walkable: bool,
+}
+
+impl Kit {
+    /// The kit that the map `legend` shows.
+    ///
+    /// # Errors
+    /// Everything that is wrong with the map, or that it shows no rock.
+    pub(super) fn of(legend: &str) -> Result<Self, Faults> {
+        const NAME: &str = "the legend";
+        let world = map::parse(legend, NAME, &NoFiles)?;
+        let drawn = drawn(&world, legend);
+        let is_rock = |&(byte, meaning): &(u8, Meaning)| byte == ROCK && !meaning.is_walkable;
+        let Some((_, rock)) = drawn.iter().copied().find(is_rock) else {
+            let message = format!("{NAME} shows no wall '#'");
+            return Err(Faults::of_whole_file(NAME, message, "draw one in its grid"));
+        };
+        let mut meanings = vec![rock; 256];
+        let mut exits = Vec::new();
+        for (byte, meaning) in drawn {
+            meanings[usize::from(byte)] = meaning;
+            if matches!(meaning.thing, Some((ThingKind::Exit, _))) {
+                exits.push(byte);
+            }
+        }
+        Ok(Self { world, meanings, exits })
+    }
+
+    /// A world to draw in.
+    pub(super) fn world(&self) -> World {
+        self.world.clone()
+    }
+
+    /// The character of an exit that stands on such floor as `character`, or on another one if there
+    /// is none; `None` where there is no exit at all.
+    pub(super) fn exit_on(&self, character: u8) -> Option<u8> {
+        let floor = self.meaning(character).tile;
+        let fits = |&&exit: &&u8| self.meaning(exit).tile == floor;
+        self.exits.iter().find(fits).or(self.exits.first()).copied()
+    }
+
+    #[cfg(test)]
+    pub(super) fn is_exit(&self, character: u8) -> bool {
+        self.exits.contains(&character)
+    }
+
+    /// Whether one can walk where `character` is drawn.
+    pub(super) fn is_walkable(&self, character: u8) -> bool {
+        self.meaning(character).is_walkable
+    }
+
+    /// Whether `character` is floor, with something on it or not.
+    pub(super) fn is_floor(&self, character: u8) -> bool {
+        matches!(self.world.tile(self.meaning(character).tile).kind, TileKind::Open)
+    }
+
+    /// Whether `character` is floor on which nothing stands.
+    pub(super) fn is_bare(&self, character: u8) -> bool {
+        self.is_floor(character) && self.meaning(character).thing.is_none()
+    }
+
+    /// Makes `world`, one of the kit's own, show `rows`, which are of one length, `width`. All its
+    /// doors are closed.
+    pub(super) fn draw<'a>(
+        &self,
+        world: &mut World,
+        width: NonZeroU32,
+        rows: impl ExactSizeIterator<Item = Vec<u8>> + 'a,
+        start: impl FnOnce(&Grid) -> Start,
+    ) {
+        let height = NonZeroU32::new(rows.len() as u32).unwrap_or(NonZeroU32::MIN);
+        let mut cells = Vec::with_capacity(width.get() as usize * rows.len());
+        let mut things = Vec::new();
+        for (characters, row) in rows.zip(0..) {
+            for (character, column) in characters.into_iter().zip(0..) {
+                let Meaning { tile, thing, .. } = self.meaning(character);
+                cells.push(tile);
+                let cell = Cell { column, row };
+                things.extend(thing.map(|(kind, sprite)| Thing { kind, cell, sprite }));
+            }
+        }
+        let first_solid = self.world.grid().first_solid();
+        let Some(mut grid) = Grid::new(width, height, first_solid, cells) else { return };
+        let blocks = |thing: &&Thing| self.world.sprite(thing.sprite).blocks;
+        things.iter().filter(blocks).for_each(|thing| grid.occupy(thing.cell));
+        let lamplight = self.lamplight(&grid, &things);
+        let start = start(&grid);
+        world.redraw(grid, start, things, lamplight);
+    }
+
+    fn lamplight(&self, grid: &Grid, things: &[Thing]) -> Lamplight {
+        map::lamplight(grid, self.world.tiles(), self.world.sprites(), things)
+    }
+
+    fn meaning(&self, character: u8) -> Meaning {
+        self.meanings[usize::from(character)]
+    }
+}
+
+/// What is drawn in `legend`, whose world is `world`.
+fn drawn(world: &World, legend: &str) -> Vec<(u8, Meaning)> {
+    let rows = map::rows_of_grid(legend);
+    let cells = rows.iter().zip(0..).flat_map(|(line, row)| {
+        line.bytes().zip(0..).map(move |(byte, column)| (byte, Cell { column, row }))
+    });
+    let meaning = |cell: Cell| {
+        let tile = world.grid().tile(cell.column.into(), cell.row.into())?;
+        let thing = world.things_in(cell).first().map(|thing| (thing.kind, thing.sprite));
+        let is_free = !world.grid().is_occupied(cell.column.into(), cell.row.into());
+        let Tile { kind, .. } = world.tile(tile);
+        let is_open = matches!(kind, TileKind::Open | TileKind::Door(_));
+        Some(Meaning { tile, thing, is_walkable: is_open && is_free })
+    };
+    cells.filter_map(|(byte, cell)| Some((byte, meaning(cell)?))).collect()
+}

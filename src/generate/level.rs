@@ -1,0 +1,147 @@
+//! A level: a terrain, how much of it there is, and the way out.
+
+use std::sync::Arc;
+
+use super::chunk::{CHUNK_SIDE, Chunk, ChunkIndex, Extent, Site};
+use super::hash::{Chance, Purpose};
+use super::kit::{Kit, ROCK};
+use super::{Generator, Terrain};
+use crate::fault::Faults;
+
+/// A level that is dug where somebody is.
+#[derive(Clone, Debug)]
+pub struct Level {
+    terrain: Arc<dyn Terrain>,
+    kit: Arc<Kit>,
+    extent: Extent,
+    exit: Option<Site>,
+}
+
+impl Level {
+    /// The level that `terrain` makes of `extent`. One with an end has an exit.
+    ///
+    /// # Errors
+    /// Everything that is wrong with the terrain's legend.
+    pub fn new(terrain: Arc<dyn Terrain>, extent: Extent) -> Result<Self, Faults> {
+        let kit = Arc::new(Kit::of(&terrain.legend())?);
+        let endless = Self { terrain, kit, extent, exit: None };
+        let exit = endless.place_for_exit();
+        Ok(Self { exit, ..endless })
+    }
+
+    /// How large it is.
+    pub fn extent(&self) -> Extent {
+        self.extent
+    }
+
+    /// Where one starts, in the chunk at home. `None` where a terrain has made nowhere to stand there.
+    pub fn start(&self) -> Option<Site> {
+        self.start_near(Site::default())
+    }
+
+    /// Where one starts who wants to start at `site`: there, if one can get away from it, or else at
+    /// the hub of its chunk. `None` where that has none, as outside the level.
+    pub fn start_near(&self, site: Site) -> Option<Site> {
+        let (index, place) = site.chunk();
+        let hub = self.terrain.hub(&self.extent.plot(index))?;
+        let chunk = self.chunk(index);
+        // A door is closed at first.
+        let is_connected = self.kit.is_floor(chunk.get(place.0, place.1))
+            && self.walk(&chunk, hub).contains(&place);
+        let (column, row) = if is_connected { place } else { hub };
+        Some(index.site(column as i64, row as i64))
+    }
+
+    /// Where the way out is; `None` of a level without an end.
+    pub fn exit(&self) -> Option<Site> {
+        self.exit
+    }
+
+    /// A chunk of it.
+    pub fn chunk(&self, index: ChunkIndex) -> Chunk {
+        let mut chunk = self.without_exit(index);
+        if let Some((chunk_of_exit, (column, row))) = self.exit.map(Site::chunk)
+            && chunk_of_exit == index
+            && let Some(exit) = self.kit.exit_on(chunk.get(column, row))
+        {
+            chunk.set(column, row, exit);
+        }
+        chunk
+    }
+
+    pub(super) fn kit(&self) -> &Kit {
+        &self.kit
+    }
+
+    fn without_exit(&self, index: ChunkIndex) -> Chunk {
+        let plot = self.extent.plot(index);
+        if plot.is_empty() {
+            return Chunk::full_of(ROCK);
+        }
+        let mut chunk = self.terrain.chunk(&plot);
+        chunk.clip(&plot, ROCK);
+        chunk
+    }
+
+    /// The cells of a chunk that one gets to from `start` without leaving it, the nearest first.
+    fn walk(&self, chunk: &Chunk, start: (usize, usize)) -> Vec<(usize, usize)> {
+        chunk.reachable(start, |character| self.kit.is_walkable(character))
+    }
+
+    /// A cell far from home, and as far from the hub of its chunk as one can be in that.
+    fn place_for_exit(&self) -> Option<Site> {
+        let index = self.chunk_for_exit()?;
+        let hub = self.terrain.hub(&self.extent.plot(index))?;
+        let chunk = self.without_exit(index);
+        let is_free = |&&(column, row): &&(usize, usize)| {
+            (column, row) != hub && self.kit.is_bare(chunk.get(column, row))
+        };
+        let reachable = self.walk(&chunk, hub);
+        let &(column, row) = reachable.iter().rev().find(is_free)?;
+        Some(index.site(column as i64, row as i64))
+    }
+
+    /// A chunk with a hub at the eastern or the southern end.
+    fn chunk_for_exit(&self) -> Option<ChunkIndex> {
+        let Extent::Cells { columns, rows } = self.extent else { return None };
+        let mut chance = Chance::of(self.terrain.seed(), Purpose::Exit, 0, 0);
+        let chunks = |side: u32| (side as usize).div_ceil(CHUNK_SIDE);
+        let (columns, rows) = (chunks(columns), chunks(rows));
+        let (across, down) = (chance.below(columns), chance.below(rows));
+        let is_in_the_east = chance.one_in(2);
+        // The outermost chunks may be too narrow to have one.
+        let places = (1..=columns.min(2)).flat_map(|from_east| {
+            (1..=rows.min(2)).flat_map(move |from_south| {
+                let (last_column, last_row) = (columns - from_east, rows - from_south);
+                let on_edge = if is_in_the_east {
+                    (last_column, down.min(last_row))
+                } else {
+                    (across.min(last_column), last_row)
+                };
+                [on_edge, (last_column, last_row)]
+            })
+        });
+        let index = |(column, row)| ChunkIndex { column: column as i64, row: row as i64 };
+        places.map(index).find(|&index| self.terrain.hub(&self.extent.plot(index)).is_some())
+    }
+}
+
+impl Generator {
+    /// The level of that extent that it makes of a seed.
+    ///
+    /// # Errors
+    /// None: the tests read the legend of every generator.
+    pub fn level(self, seed: u64, extent: Extent) -> Result<Level, Faults> {
+        Level::new(self.terrain(seed), extent)
+    }
+}
+
+/// Two levels are equal that come from one call of [`Level::new`].
+impl PartialEq for Level {
+    fn eq(&self, other: &Self) -> bool {
+        Arc::ptr_eq(&self.kit, &other.kit)
+    }
+}
+
+#[cfg(test)]
+mod tests;

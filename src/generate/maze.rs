@@ -1,0 +1,224 @@
+//! A maze: passages a cell wide between walls a cell thick, halls, and torches.
+//!
+//! Cells whose place in the chunk is odd both ways are nodes; what is between two of them is dug or
+//! not. Each chunk has a spanning tree of its own nodes, and passages to its northern and western
+//! neighbours: so every node is connected with every other one, by a way that stays among the chunks
+//! between them, and the passages from chunk to chunk close loops that can be walked. A tree over the
+//! whole level was refused: a local rule that makes one is as lopsided as a comb.
+//!
+//! No straight line of sight crosses two chunk borders: the passages in the one are in the half of the
+//! border that those in the next are not.
+
+use super::Terrain;
+use super::chunk::{CHUNK_SIDE, Chunk, Plot};
+use super::hash::{Chance, Purpose, hash};
+
+/// A maze of a seed.
+#[derive(Clone, Debug)]
+pub(super) struct Maze {
+    pub(super) seed: u64,
+}
+
+/// What a district consists of.
+#[derive(Clone, Copy, Debug)]
+struct District {
+    wall: u8,
+    floor: u8,
+    /// What may be at the end of a blind alley.
+    torch: u8,
+    bones: u8,
+    /// What may be in the middle of a hall, and in the way there.
+    landmark: u8,
+}
+
+const DUNGEON: District =
+    District { wall: b'#', floor: b'.', torch: b't', bones: b'b', landmark: b's' };
+const GARDEN: District =
+    District { wall: b'H', floor: b',', torch: b'p', bones: b'q', landmark: b'u' };
+const TEMPLE: District =
+    District { wall: b'S', floor: b';', torch: b'a', bones: b'c', landmark: b'o' };
+const DISTRICTS: [District; 5] = [
+    DUNGEON,
+    GARDEN,
+    TEMPLE,
+    District { wall: b'B', ..DUNGEON },
+    District { wall: b'M', ..DUNGEON },
+];
+/// Chunks along each side of a district, as a power of two.
+const DISTRICT_BITS: u32 = 1;
+/// Passages to each neighbour.
+const PASSAGES: usize = 2;
+
+impl Terrain for Maze {
+    fn seed(&self) -> u64 {
+        self.seed
+    }
+
+    fn legend(&self) -> String {
+        format!("title = \"Maze {}\"\n{}", self.seed, include_str!("maze.toml"))
+    }
+
+    fn chunk(&self, plot: &Plot) -> Chunk {
+        let (column, row) = (plot.chunk.column, plot.chunk.row);
+        let district =
+            hash(self.seed, Purpose::District, column >> DISTRICT_BITS, row >> DISTRICT_BITS);
+        let district = DISTRICTS[(district % DISTRICTS.len() as u64) as usize];
+        let mut digging = Digging {
+            chunk: Chunk::full_of(district.wall),
+            district,
+            nodes: (plot.columns.end / 2, plot.rows.end / 2),
+            chance: Chance::of(self.seed, Purpose::Plan, column, row),
+        };
+        if self.hub(plot).is_some() {
+            digging.grow_tree();
+            digging.open_dead_ends();
+            digging.dig_halls();
+            self.dig_passages(plot, &mut digging);
+        }
+        digging.chunk
+    }
+
+    fn hub(&self, plot: &Plot) -> Option<(usize, usize)> {
+        let has_node = plot.columns.end >= 2 && plot.rows.end >= 2;
+        (has_node && plot.contains(1, 1)).then_some((1, 1))
+    }
+}
+
+impl Maze {
+    fn dig_passages(&self, plot: &Plot, digging: &mut Digging) {
+        let (columns, rows) = digging.nodes;
+        let (column, row) = (plot.chunk.column, plot.chunk.row);
+        if self.hub(&plot.neighbor(-1, 0)).is_some() {
+            let mut chance = Chance::of(self.seed, Purpose::WestPassage, column, row);
+            for _ in 0..PASSAGES {
+                let node = in_half(rows, column, &mut chance);
+                digging.dig((0, 2 * node + 1));
+            }
+        }
+        if self.hub(&plot.neighbor(0, -1)).is_some() {
+            let mut chance = Chance::of(self.seed, Purpose::NorthPassage, column, row);
+            for _ in 0..PASSAGES {
+                let node = in_half(columns, row, &mut chance);
+                digging.dig((2 * node + 1, 0));
+            }
+        }
+    }
+}
+
+/// One of `nodes` nodes along a border: of the first half where the `border` is even, of the second
+/// half where it is odd.
+fn in_half(nodes: usize, border: i64, chance: &mut Chance) -> usize {
+    let first = nodes / 2;
+    if border % 2 == 0 { chance.below(first.max(1)) } else { first + chance.below(nodes - first) }
+}
+
+/// A chunk that is being dug.
+struct Digging {
+    chunk: Chunk,
+    district: District,
+    /// Nodes from west to east and from north to south, of which there are some.
+    nodes: (usize, usize),
+    chance: Chance,
+}
+
+/// A node by its column and row among the nodes of its chunk.
+type Node = (usize, usize);
+
+impl Digging {
+    /// Digs ways to all nodes from the first, going on from where it dug last until there is nothing
+    /// left beside that.
+    fn grow_tree(&mut self) {
+        let mut way = vec![(0, 0)];
+        self.dig((1, 1));
+        while let Some(&node) = way.last() {
+            let undug: Vec<Node> =
+                self.beside(node).into_iter().filter(|&next| !self.is_dug(cell(next))).collect();
+            if undug.is_empty() {
+                way.pop();
+                continue;
+            }
+            let next = undug[self.chance.below(undug.len())];
+            self.dig(between(node, next));
+            self.dig(cell(next));
+            way.push(next);
+        }
+    }
+
+    /// Opens some of the nodes that only one way leads to, and leaves something in others.
+    fn open_dead_ends(&mut self) {
+        for node in self.all() {
+            let beside = self.beside(node);
+            let is_way = |&next: &Node| self.is_dug(between(node, next));
+            let (ways, walls): (Vec<Node>, Vec<Node>) = beside.into_iter().partition(is_way);
+            if ways.len() > 1 {
+                continue;
+            }
+            let (column, row) = cell(node);
+            match self.chance.below(6) {
+                0..3 if !walls.is_empty() => {
+                    let next = walls[self.chance.below(walls.len())];
+                    self.dig(between(node, next));
+                }
+                3 => self.chunk.set(column, row, self.district.torch),
+                4 => self.chunk.set(column, row, self.district.bones),
+                _ => {}
+            }
+        }
+    }
+
+    /// Digs halls of three nodes by two or three, around a statue or a torch.
+    fn dig_halls(&mut self) {
+        for _ in 0..2 {
+            let (width, height) = (3, 2 + self.chance.below(2));
+            if self.nodes.0 < width || self.nodes.1 < height || self.chance.one_in(3) {
+                continue;
+            }
+            let column = self.chance.below(self.nodes.0 - width + 1);
+            let row = self.chance.below(self.nodes.1 - height + 1);
+            let ((west, north), (east, south)) =
+                (cell((column, row)), cell((column + width - 1, row + height - 1)));
+            let cells = (north..=south).flat_map(|row| (west..=east).map(move |x| (x, row)));
+            cells.for_each(|place| self.dig(place));
+            let center = (usize::midpoint(west, east), usize::midpoint(north, south));
+            let District { landmark, torch, .. } = self.district;
+            let landmark = if self.chance.one_in(2) { landmark } else { torch };
+            self.chunk.set(center.0, center.1, landmark);
+        }
+    }
+
+    fn dig(&mut self, (column, row): (usize, usize)) {
+        self.chunk.set(column, row, self.district.floor);
+    }
+
+    fn is_dug(&self, (column, row): (usize, usize)) -> bool {
+        self.chunk.get(column, row) != self.district.wall
+    }
+
+    fn all(&self) -> Vec<Node> {
+        let (columns, rows) = self.nodes;
+        (0..rows).flat_map(|row| (0..columns).map(move |column| (column, row))).collect()
+    }
+
+    fn beside(&self, (column, row): Node) -> Vec<Node> {
+        let places = [
+            (column.wrapping_sub(1), row),
+            (column + 1, row),
+            (column, row.wrapping_sub(1)),
+            (column, row + 1),
+        ];
+        let (columns, rows) = self.nodes;
+        places.into_iter().filter(|&(column, row)| column < columns && row < rows).collect()
+    }
+}
+
+/// The cell of a node in its chunk.
+fn cell((column, row): Node) -> (usize, usize) {
+    (2 * column + 1, 2 * row + 1)
+}
+
+/// The cell between two nodes that are beside each other.
+fn between(one: Node, other: Node) -> (usize, usize) {
+    (one.0 + other.0 + 1, one.1 + other.1 + 1)
+}
+
+const _: () = assert!(CHUNK_SIDE.is_multiple_of(2), "the last node would be beside the next one");

@@ -1,0 +1,89 @@
+//! An office: corridors with fire doors, rooms, stores, halls of desks, and a garden here and there.
+//!
+//! Each chunk has a corridor along its northern and its western side, with a door to the next chunk
+//! at its end: so all corridors are connected, and no sight goes further than the doors. The rest of
+//! the chunk is a [`Block`], reached from the corridors.
+//!
+//! Walls stand in columns and rows that are odd, doors in even ones, and furniture where both are odd.
+//! So no wall ever ends in a door, each door stands between walls, and what is even is a way
+//! from any cell of a room to any other one: no furniture is in the way, and nothing need be checked.
+
+mod block;
+
+use super::Terrain;
+use super::chunk::{Chunk, Plot};
+use super::hash::{Chance, Purpose};
+use block::Block;
+
+/// An office of a seed.
+#[derive(Clone, Debug)]
+pub(super) struct Office {
+    pub(super) seed: u64,
+}
+
+const WALL: u8 = b'#';
+const CORRIDOR: u8 = b',';
+const CORRIDOR_LAMP: u8 = b'L';
+const FIRE_DOOR: u8 = b'=';
+
+/// Where the corridors are, and how wide.
+const CORRIDORS: std::ops::Range<usize> = 1..3;
+/// Cells between two lamps of a corridor.
+const LAMP_SPACING: usize = 7;
+
+impl Terrain for Office {
+    fn seed(&self) -> u64 {
+        self.seed
+    }
+
+    fn legend(&self) -> String {
+        format!("title = \"Office {}\"\n{}", self.seed, include_str!("office.toml"))
+    }
+
+    fn chunk(&self, plot: &Plot) -> Chunk {
+        let mut chunk = Chunk::full_of(WALL);
+        if self.hub(plot).is_none() {
+            return chunk;
+        }
+        dig_corridors(&mut chunk, plot);
+        self.set_fire_doors(&mut chunk, plot);
+        let chance = Chance::of(self.seed, Purpose::Plan, plot.chunk.column, plot.chunk.row);
+        if let Some(block) = Block::of(plot, CORRIDORS.end) {
+            block.build(&mut chunk, chance);
+        }
+        chunk
+    }
+
+    fn hub(&self, plot: &Plot) -> Option<(usize, usize)> {
+        let corner = (CORRIDORS.start, CORRIDORS.start);
+        plot.contains(corner.0, corner.1).then_some(corner)
+    }
+}
+
+impl Office {
+    fn set_fire_doors(&self, chunk: &mut Chunk, plot: &Plot) {
+        let has_hub = |columns, rows| self.hub(&plot.neighbor(columns, rows)).is_some();
+        if has_hub(-1, 0) {
+            chunk.set(0, CORRIDORS.start, FIRE_DOOR);
+        }
+        if has_hub(0, -1) {
+            chunk.set(CORRIDORS.start, 0, FIRE_DOOR);
+        }
+    }
+}
+
+fn dig_corridors(chunk: &mut Chunk, plot: &Plot) {
+    let inside = |range: &std::ops::Range<usize>| range.start.max(1)..range.end;
+    let lamp_at = |along: usize| along % LAMP_SPACING == LAMP_SPACING / 2;
+    let floor = |along, across: usize| {
+        if lamp_at(along) && across == CORRIDORS.start { CORRIDOR_LAMP } else { CORRIDOR }
+    };
+    for across in CORRIDORS {
+        for row in inside(&plot.rows).filter(|&row| plot.contains(across, row)) {
+            chunk.set(across, row, floor(row, across));
+        }
+        for column in inside(&plot.columns).filter(|&column| plot.contains(column, across)) {
+            chunk.set(column, across, floor(column, across));
+        }
+    }
+}

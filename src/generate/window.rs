@@ -1,0 +1,186 @@
+//! The window: the part of a level that is around the player, as a world.
+//!
+//! It is [`CHUNKS`] chunks along each side, and moves by whole chunks as soon as the player has left
+//! the middle of it. The player is always between columns 64 and 128 of it, and rows, where two doubles
+//! that follow each other are always as far apart: so adding a whole number of cells to a position is
+//! exact, and a step from one window to the next leaves no trace in the picture.
+//!
+//! The outermost cells are wall. They are 72 cells away or more, which is further than one sees: every
+//! generator's sight is cut off before that, or sinks into its fog.
+//!
+//! Doors close behind whoever opened them, and are closed when they come back into the window. Nothing
+//! else changes in a level that is dug.
+
+use std::num::NonZeroU32;
+
+use glam::DVec2;
+
+use super::Level;
+use super::chunk::{CHUNK_SIDE, Chunk, ChunkIndex, Site};
+use super::kit::ROCK;
+use crate::world::{Cell, Grid, Heading, Start, World};
+
+/// Chunks along each side of a window.
+const CHUNKS: usize = 6;
+/// Cells along each side of a window.
+const SIDE: usize = CHUNKS * CHUNK_SIDE;
+/// Where a player is, along each side, for whom the window need not move.
+const MIDDLE: std::ops::Range<u32> = 72..120;
+/// Which of the window's chunks the player is in, if they are in the east or south of that.
+const PLAYERS_CHUNK: usize = 2;
+
+/// What of a level there is, at the moment.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Window {
+    level: Level,
+    /// The one in the north-west.
+    first: ChunkIndex,
+    /// Row by row from the north.
+    chunks: Vec<Chunk>,
+}
+
+/// By how many cells everything in a window is further to the east and the south than it was.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub(crate) struct Shift {
+    columns: i64,
+    rows: i64,
+}
+
+impl Shift {
+    /// Where `cell` is now, if it is in the window.
+    pub(crate) fn cell(self, cell: Cell) -> Option<Cell> {
+        let along = |place: u32, by: i64| {
+            let place = u32::try_from(i64::from(place) + by).ok()?;
+            (place < SIDE as u32).then_some(place)
+        };
+        Some(Cell { column: along(cell.column, self.columns)?, row: along(cell.row, self.rows)? })
+    }
+
+    /// Where `position` is now.
+    pub(crate) fn position(self, position: DVec2) -> DVec2 {
+        position + DVec2::new(self.columns as f64, self.rows as f64)
+    }
+}
+
+impl Window {
+    /// A window around `site`, and a world that shows what is in it, where one starts at `site`, or
+    /// near it if one cannot get away from there; looking where there is most to see. `None` where
+    /// there is nowhere to start near that, as outside the level.
+    pub fn open(level: Level, site: Site) -> Option<(Self, World)> {
+        let site = level.start_near(site)?;
+        let (index, (column, row)) = site.chunk();
+        // Whoever is in the west of their chunk is in the window's next one: in the middle, that is.
+        let before = |place: usize| PLAYERS_CHUNK + usize::from(place < CHUNK_SIDE / 2);
+        let first = index.offset(-(before(column) as i64), -(before(row) as i64));
+        let places = every_chunk(first);
+        let chunks = places.map(|(_, index)| level.chunk(index)).collect();
+        let window = Self { level, first, chunks };
+        let mut world = window.level.kit().world();
+        window.draw(&mut world, |grid| {
+            let cell = window.cell(site).unwrap_or(CENTER);
+            Start { cell, heading: best_heading(grid, cell) }
+        });
+        Some((window, world))
+    }
+
+    /// The level that it shows a part of.
+    pub fn level(&self) -> &Level {
+        &self.level
+    }
+
+    /// Which cell of the level a cell of the window's world is.
+    pub fn site(&self, cell: Cell) -> Site {
+        self.first.site(cell.column.into(), cell.row.into())
+    }
+
+    /// Which cell of the window's world a cell of the level is, if it is in the window.
+    pub fn cell(&self, site: Site) -> Option<Cell> {
+        let first = self.first.site(0, 0);
+        let along = |place: i64, first: i64| {
+            u32::try_from(place.wrapping_sub(first)).ok().filter(|&place| place < SIDE as u32)
+        };
+        Some(Cell { column: along(site.column, first.column)?, row: along(site.row, first.row)? })
+    }
+
+    /// Moves so that the player, who is in `cell`, is in the middle, and lets `world` show what is
+    /// there now, all doors closed. `None` where they are there already.
+    pub(crate) fn follow(&mut self, world: &mut World, cell: Cell) -> Option<Shift> {
+        let (columns, rows) = (chunks_off(cell.column), chunks_off(cell.row));
+        if (columns, rows) == (0, 0) {
+            return None;
+        }
+        let first = self.first.offset(columns, rows);
+        let chunks = every_chunk(first).map(|((column, row), index)| {
+            let known = |place: usize, by: i64| {
+                usize::try_from(place as i64 + by).ok().filter(|&place| place < CHUNKS)
+            };
+            match (known(column, columns), known(row, rows)) {
+                (Some(column), Some(row)) => self.chunks[row * CHUNKS + column].clone(),
+                _ => self.level.chunk(index),
+            }
+        });
+        self.chunks = chunks.collect();
+        self.first = first;
+        let shift =
+            Shift { columns: -columns * CHUNK_SIDE as i64, rows: -rows * CHUNK_SIDE as i64 };
+        let heading = world.start().heading;
+        let cell = shift.cell(cell).unwrap_or(CENTER);
+        self.draw(world, |_| Start { cell, heading });
+        Some(shift)
+    }
+
+    fn draw(&self, world: &mut World, start: impl FnOnce(&Grid) -> Start) {
+        const WIDTH: NonZeroU32 = NonZeroU32::new(SIDE as u32).expect("there are chunks");
+        let rows = (0..SIDE).map(|row| self.row(row));
+        self.level.kit().draw(world, WIDTH, rows, start);
+    }
+
+    /// The characters of a row.
+    fn row(&self, row: usize) -> Vec<u8> {
+        if row == 0 || row == SIDE - 1 {
+            return vec![ROCK; SIDE];
+        }
+        let chunks = &self.chunks[row / CHUNK_SIDE * CHUNKS..][..CHUNKS];
+        let mut characters: Vec<u8> =
+            chunks.iter().flat_map(|chunk| chunk.row(row % CHUNK_SIDE)).copied().collect();
+        (characters[0], characters[SIDE - 1]) = (ROCK, ROCK);
+        characters
+    }
+}
+
+const CENTER: Cell = Cell { column: SIDE as u32 / 2, row: SIDE as u32 / 2 };
+
+/// The chunks of a window, row by row from the north, the one in the north-west being `first`.
+fn every_chunk(first: ChunkIndex) -> impl Iterator<Item = ((usize, usize), ChunkIndex)> {
+    let places = (0..CHUNKS).flat_map(|row| (0..CHUNKS).map(move |column| (column, row)));
+    places.map(move |(column, row)| ((column, row), first.offset(column as i64, row as i64)))
+}
+
+/// By how many chunks a window has to move so that `place`, along one side, is in its middle.
+fn chunks_off(place: u32) -> i64 {
+    if MIDDLE.contains(&place) {
+        0
+    } else if place < MIDDLE.start {
+        -1
+    } else {
+        1
+    }
+}
+
+/// The heading, of the four along the grid, in which one sees furthest from `cell`.
+fn best_heading(grid: &Grid, cell: Cell) -> Heading {
+    let ways = [(0.0, (1, 0)), (90.0, (0, 1)), (180.0, (-1, 0)), (270.0, (0, -1))];
+    let is_open =
+        |column, row| grid.tile(column, row).is_some_and(|tile| !grid.is_solid_tile(tile));
+    let open_cells = |(across, down): (i64, i64)| {
+        let places = (1..)
+            .map(move |by| (i64::from(cell.column) + across * by, i64::from(cell.row) + down * by));
+        places.take_while(|&(column, row)| is_open(column, row))
+    };
+    let most = ways.iter().rev().max_by_key(|(_, way)| open_cells(*way).count());
+    let degrees = most.map_or(0.0, |&(degrees, _)| degrees);
+    Heading::from_degrees(degrees).unwrap_or_default()
+}
+
+#[cfg(test)]
+mod tests;

@@ -1,0 +1,245 @@
+//! Clearance: how far rays may go from each cell without looking.
+//!
+//! A byte a cell says whether there is anything to look at, so that a ray looks at little memory, and at
+//! nothing else until it comes to something. Around the map is a border of cells that are not clear,
+//! and a ray that leaves needs no other test.
+//!
+//! On an empty map the byte says more: how far the cell is from the nearest that may be solid. A ray
+//! that knows it crosses as many lines in one step. That is measured once, when a map is read, and only
+//! where it pays: among rooms a ray is at a wall before it has saved anything. What may become solid
+//! counts as solid from the start, so a door that opens or closes changes nothing here.
+//!
+//! Blocks of cells that are empty, and blocks of blocks, were refused: they take an eighth of the
+//! memory, but a ray stops at the edge of each block, and a single pillar fills all that hold it.
+
+use std::fmt;
+
+/// For each cell, and those around the map, how many lines of the grid a ray can cross at once that is
+/// in it: no cell that is nearer than that is, or may become, solid. 0 where the cell itself may be.
+#[derive(Clone, PartialEq, Eq)]
+pub(crate) struct Clearance {
+    /// Row by row from the one north of the map, each from the cell west of it.
+    cells: Vec<Coded>,
+    /// How many cells are in a row.
+    width: usize,
+    /// Whether any cell says more than 1.
+    is_measured: bool,
+}
+
+/// A number of lines in a byte: exact as far as [`Coded::EXACT`], then rounded down to a multiple of
+/// [`Coded::STEP`], up to more than a map has.
+#[derive(Clone, Copy, PartialEq, Eq)]
+struct Coded(u8);
+
+impl Coded {
+    const NONE: Self = Self(0);
+    const ONE: Self = Self(1);
+    const EXACT: u16 = 128;
+    const STEP: u16 = 32;
+    const MOST: u16 = Self::EXACT + (u8::MAX as u16 - Self::EXACT) * Self::STEP;
+
+    fn new(lines: u16) -> Self {
+        let beyond = lines.min(Self::MOST).saturating_sub(Self::EXACT);
+        Self((lines.min(Self::EXACT) + beyond / Self::STEP) as u8)
+    }
+
+    #[inline]
+    fn lines(self) -> u16 {
+        let code = u16::from(self.0);
+        let beyond = code.saturating_sub(Self::EXACT);
+        code + beyond * (Self::STEP - 1)
+    }
+}
+
+impl Clearance {
+    /// Where a ray crosses as many lines at a time, in the mean, it is faster for it.
+    const WORTHWHILE: f64 = 4.0;
+
+    /// Looks one cell far. `rows` are as long as each other, of cells that `may_be_solid`.
+    pub(super) fn new<Row: ExactSizeIterator<Item = bool>>(
+        rows: impl ExactSizeIterator<Item = Row>,
+    ) -> Self {
+        let height = rows.len() + 2;
+        let mut width = 2;
+        let mut cells = Vec::new();
+        for row in rows {
+            if cells.is_empty() {
+                width += row.len();
+                cells.reserve_exact(width * height);
+                cells.resize(width, Coded::NONE);
+            }
+            cells.push(Coded::NONE);
+            cells.extend(row.map(|may_be| if may_be { Coded::NONE } else { Coded::ONE }));
+            cells.push(Coded::NONE);
+        }
+        cells.resize(width * height, Coded::NONE);
+        Self { cells, width, is_measured: false }
+    }
+
+    /// The same, which looks as far as there is anything to see, if rays gain by it.
+    pub(super) fn measured_if_worthwhile(self) -> Self {
+        let measured = self.measured();
+        if measured.is_worthwhile() { measured } else { self }
+    }
+
+    /// The cell that is nearest to one comes before it in the order of reading, or after it.
+    pub(super) fn measured(&self) -> Self {
+        let width = self.width;
+        let farthest = |&cell: &Coded| if cell == Coded::NONE { 0 } else { Coded::MOST };
+        let mut cells: Vec<u16> = self.cells.iter().map(farthest).collect();
+        for end in (2 * width..=cells.len()).step_by(width) {
+            let (before, row) = cells[..end].split_at_mut(end - width);
+            approach(row, &before[before.len() - width..]);
+            spread(row.iter_mut());
+        }
+        for start in (0..cells.len() - width).step_by(width).rev() {
+            let (row, after) = cells[start..].split_at_mut(width);
+            approach(row, &after[..width]);
+            spread(row.iter_mut().rev());
+        }
+        Self { cells: cells.into_iter().map(Coded::new).collect(), width, is_measured: true }
+    }
+
+    /// Whether a ray crosses more than a few lines at a time, in the mean of all cells that it may be
+    /// in.
+    fn is_worthwhile(&self) -> bool {
+        let mut counts = [0_u64; u8::MAX as usize + 1];
+        for &Coded(code) in &self.cells {
+            counts[usize::from(code)] += 1;
+        }
+        let clear: u64 = counts[1..].iter().sum();
+        let lines = (1..=u8::MAX).map(|code| f64::from(Coded(code).lines()));
+        let looks: f64 = lines.zip(&counts[1..]).map(|(lines, &count)| count as f64 / lines).sum();
+        clear as f64 > Self::WORTHWHILE * looks
+    }
+
+    /// How many lines can be crossed at once from the cell at `index`.
+    #[inline]
+    pub(crate) fn lines_at(&self, index: i64) -> i64 {
+        i64::from(self.at(index).lines())
+    }
+
+    /// Whether the cell at `index` is not solid, and will never be.
+    #[inline]
+    pub(crate) fn is_clear(&self, index: i64) -> bool {
+        self.at(index) != Coded::NONE
+    }
+
+    #[inline]
+    fn at(&self, index: i64) -> Coded {
+        self.cells.get(index as usize).copied().unwrap_or(Coded::NONE)
+    }
+
+    /// The index of the cell in the map's north-west.
+    #[inline]
+    pub(crate) fn first(&self) -> i64 {
+        self.width as i64 + 1
+    }
+
+    /// From a cell's index to that of the one to the east, and to that of the one to the south.
+    #[inline]
+    pub(crate) fn strides(&self) -> [i64; 2] {
+        [1, self.width as i64]
+    }
+
+    /// Whether it is told how far a ray can go, and not only whether.
+    #[inline]
+    pub(crate) fn is_measured(&self) -> bool {
+        self.is_measured
+    }
+}
+
+impl fmt::Debug for Clearance {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        f.debug_struct("Clearance").field("is_measured", &self.is_measured).finish_non_exhaustive()
+    }
+}
+
+/// Brings each cell of a row, but the first and the last, as near as its neighbours in the row beside.
+fn approach(row: &mut [u16], beside: &[u16]) {
+    let inner = row.len() - 1;
+    for (cell, neighbours) in row[1..inner].iter_mut().zip(beside.windows(3)) {
+        let nearest = neighbours[0].min(neighbours[1]).min(neighbours[2]);
+        *cell = (*cell).min(nearest + 1);
+    }
+}
+
+/// Brings each cell as near as the one before it, the first of which is not clear.
+fn spread<'row>(cells: impl Iterator<Item = &'row mut u16>) {
+    cells.fold(0, |before, cell| {
+        *cell = (*cell).min(before + 1);
+        *cell
+    });
+}
+
+#[cfg(test)]
+mod tests {
+    use proptest::prelude::*;
+
+    use super::*;
+
+    fn of<Row: AsRef<str>>(rows: &[Row]) -> Clearance {
+        let may_be_solid = |drawn: char| drawn == '#';
+        Clearance::new(
+            rows.iter()
+                .map(|row| row.as_ref().chars().map(may_be_solid).collect::<Vec<_>>().into_iter()),
+        )
+    }
+
+    /// How clear the cells of the map are, without those around.
+    fn inner(clearance: &Clearance) -> Vec<Vec<u16>> {
+        let rows: Vec<&[Coded]> = clearance.cells.chunks_exact(clearance.width).collect();
+        let lines =
+            |row: &&[Coded]| row[1..row.len() - 1].iter().map(|cell| cell.lines()).collect();
+        rows[1..rows.len() - 1].iter().map(lines).collect()
+    }
+
+    #[test]
+    fn around_the_map_nothing_is_clear() {
+        let clearance = of(&["....", "...#"]);
+        assert_eq!(inner(&clearance), [[1, 1, 1, 1], [1, 1, 1, 0]]);
+        assert_eq!(clearance.cells.iter().filter(|&&cell| cell != Coded::NONE).count(), 7);
+        assert_eq!(inner(&of(&[".....", ".....", "....."]).measured())[1], [1, 2, 2, 2, 1]);
+        assert!(!clearance.is_clear(-1));
+    }
+
+    #[test]
+    fn far_is_rounded_down() {
+        for (lines, coded) in [(0, 0), (1, 1), (128, 128), (159, 128), (160, 160), (4096, 4096)] {
+            assert_eq!(Coded::new(lines).lines(), coded);
+        }
+        assert_eq!(Coded::new(u16::MAX).lines(), Coded::MOST);
+        let wide = of(&vec![".".repeat(600); 600]).measured();
+        assert_eq!((inner(&wide)[300][100], inner(&wide)[300][254]), (101, 224));
+    }
+
+    #[test]
+    fn halls_are_worth_measuring_and_rooms_are_not() {
+        assert!(of(&vec![".".repeat(62); 62]).measured_if_worthwhile().is_measured);
+        assert!(!of(&vec!["......#".repeat(9); 62]).measured_if_worthwhile().is_measured);
+    }
+
+    proptest! {
+        /// It is the distance of the nearest, by looking at them all.
+        #[test]
+        fn it_is_as_far_as_a_king_walks(
+            rows in prop::collection::vec("[.......#]{9}", 1..9_usize),
+        ) {
+            let drawn: Vec<&[u8]> = rows.iter().map(String::as_bytes).collect();
+            let may_be_solid = |column: i64, row: i64| {
+                let row = drawn.get(row as usize);
+                row.and_then(|row| row.get(column as usize)).is_none_or(|&drawn| drawn == b'#')
+            };
+            let places = || (-1..10).flat_map(|row| (-1..10).map(move |column| (column, row)));
+            let nearest = |column: i64, row: i64| {
+                let solid = places().filter(|&(column, row)| may_be_solid(column, row));
+                solid.map(|other| column.abs_diff(other.0).max(row.abs_diff(other.1))).min()
+            };
+            for (cells, row) in inner(&of(&rows).measured()).into_iter().zip(0..) {
+                for (cell, column) in cells.into_iter().zip(0..) {
+                    prop_assert_eq!(Some(u64::from(cell)), nearest(column, row));
+                }
+            }
+        }
+    }
+}

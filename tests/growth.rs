@@ -1,0 +1,80 @@
+//! What a ray and a frame cost as a map grows: how often rays look where they are, not how long it takes.
+
+use cellcaster::cast::{Caster, Exact, Ray};
+use cellcaster::map;
+use cellcaster::render::{Explanation, Frame, FrameSize, PixelAspect, RayLoop, Renderer};
+use cellcaster::world::{Cell, FieldOfView, Opening, World};
+use glam::DVec2;
+
+/// A square with walls around it and whatever else `drawn` puts in a cell.
+fn square(side: u32, drawn: impl Fn(u32, u32) -> Option<char>) -> World {
+    let is_edge = |place: u32| place == 0 || place == side - 1;
+    let mut text = String::from("grid = '''\n");
+    for row in 0..side {
+        text.extend((0..side).map(|column| match drawn(column, row) {
+            _ if is_edge(column) || is_edge(row) => '#',
+            _ if (column, row) == (2, side / 2) => '@',
+            drawn => drawn.unwrap_or('.'),
+        }));
+        text.push('\n');
+    }
+    text.push_str("'''\n[tiles]\n'#'.wall = 'brick'\n'+'.door = 'oak'\n\n");
+    text.push_str("[things]\n'@'.start = 0\n");
+    map::parse_str(&text).unwrap_or_else(|faults| panic!("{faults}"))
+}
+
+fn explained(world: &World) -> Explanation {
+    let camera = world.start_camera(FieldOfView::default());
+    let mut frame = Frame::new(FrameSize::new(160, 90).unwrap(), PixelAspect::SQUARE);
+    Renderer::new().explain(world, &camera, &mut frame)
+}
+
+#[test]
+fn among_rooms_rays_go_line_by_line() {
+    let rooms = square(66, |column, row| {
+        (column % 8 == 0 && row % 8 != 4 || row % 8 == 0 && column % 8 != 4).then_some('#')
+    });
+    let Explanation { plan, counts } = explained(&rooms);
+    assert_eq!(plan.rays, RayLoop::Lines);
+    assert!(counts.looks < counts.cells);
+}
+
+#[test]
+fn a_hall_sixteen_times_as_wide_takes_twice_the_looks_at_most() {
+    let [small, large] = [64, 1024].map(|side| explained(&square(side, |_, _| None)));
+    assert_eq!((small.plan.rays, large.plan.rays), (RayLoop::Leaps, RayLoop::Leaps));
+    assert!(large.counts.cells > 10 * small.counts.cells);
+    assert!(large.counts.looks <= 2 * small.counts.looks, "{:?}", (small.counts, large.counts));
+    assert!(small.counts.looks < small.counts.cells / 3);
+}
+
+/// A door in a wall across a hall, wherever a ray leaps from.
+#[test]
+fn nobody_leaps_across_a_door_that_closes() {
+    let side = 100;
+    let door = Cell { column: 50, row: side / 2 };
+    let wall =
+        |column, row| (column == door.column).then_some(if row == door.row { '+' } else { '#' });
+    let mut world = square(side, wall);
+    assert_eq!(explained(&world).plan.rays, RayLoop::Leaps);
+    let hit = |world: &World, x: f64| {
+        let ray = Ray::new(DVec2::new(x, 50.5), DVec2::X).unwrap();
+        Exact.cast_through(world, &ray, |_| ()).map(|hit| hit.cell.column)
+    };
+    let far = side - 1;
+    let half = Opening::new(0.25).unwrap();
+    for (opening, column) in [
+        (Opening::CLOSED, door.column),
+        (half, door.column),
+        (Opening::OPEN, far),
+        (half, door.column),
+        (Opening::CLOSED, door.column),
+        (Opening::OPEN, far),
+    ] {
+        world.set_opening(door, opening);
+        for x in [1.5, 20.25, 48.5, 49.75] {
+            assert_eq!(hit(&world, x), Some(column), "{opening:?} from {x}");
+        }
+        assert_eq!(hit(&world, 50.75), Some(far), "{opening:?}");
+    }
+}
