@@ -201,9 +201,9 @@ fn any_history() -> impl Strategy<Value = Vec<Buffer>> {
             let row = &mut picture.content[row * width..][..width];
             let by = by.min(width);
             if is_left {
-                row.rotate_left(by)
+                row.rotate_left(by);
             } else {
-                row.rotate_right(by)
+                row.rotate_right(by);
             }
             pictures.push(picture.clone());
         }

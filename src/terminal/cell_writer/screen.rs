@@ -158,7 +158,7 @@ impl Row<'_> {
 
     /// Whether each of its cells stays what it is where it is moved.
     pub(super) fn can_move(&self) -> bool {
-        let looks = self.shown.iter().zip(&*self.looks);
+        let looks = self.shown.iter().zip(self.looks);
         looks.fold(true, |can, (shown, look)| can & shown.can_move() & look.can_move())
     }
 
