@@ -56,6 +56,8 @@ struct Course {
     corner: i64,
     line_stride: i64,
     band_stride: i64,
+    /// Likewise in the list of all blocks, from one to the next.
+    block_strides: [i64; 2],
 }
 
 /// What a ray and a map are along one axis.
@@ -66,8 +68,9 @@ struct Along {
     /// Where it starts, in units.
     place: i64,
     direction: f64,
-    /// From one cell to the next in the list of all cells.
+    /// From one cell to the next in the list of all cells, and from one block to the next.
     stride: i64,
+    block_stride: i64,
 }
 
 /// More lines than that, and units would be too coarse.
@@ -75,6 +78,8 @@ const MOST_LINES: u32 = 1 << 16;
 /// Within so many units of its true place a ray is taken to be: for every slope one unit, which is
 /// more than rounding does, and eight for where it starts.
 const DOUBT: i64 = MOST_LINES as i64 + 8;
+/// Where all cells of a block are so far from anything solid, it is not worth a look at the cell.
+const FAR: i64 = 6;
 const FRACTION_BITS: u32 = 32;
 const UNITS: i64 = 1 << FRACTION_BITS;
 
@@ -86,8 +91,9 @@ impl<'grid> Sweep<'grid> {
         let (origin, direction) = (ray.origin(), ray.direction());
         let clearance = grid.clearance();
         let [to_east, to_south] = clearance.strides();
-        let x = Along::new(origin.x, direction.x, grid.width(), to_east)?;
-        let y = Along::new(origin.y, direction.y, grid.height(), to_south)?;
+        let [east_block, south_block] = clearance.strides_of_blocks();
+        let x = Along::new(origin.x, direction.x, grid.width(), [to_east, east_block])?;
+        let y = Along::new(origin.y, direction.y, grid.height(), [to_south, south_block])?;
         let is_steep = direction.x.abs() < direction.y.abs();
         let (driving, passive) = if is_steep { (y, x) } else { (x, y) };
         let slope = units(passive.direction / driving.direction.abs());
@@ -111,6 +117,7 @@ impl<'grid> Sweep<'grid> {
             corner: clearance.first() + start * driving.stride,
             line_stride: step * driving.stride,
             band_stride: passive.stride,
+            block_strides: [driving.block_stride, passive.block_stride],
         };
         Some(Self { grid, course, at: Progress { line: 0, band: passive.start, looks: 0 } })
     }
@@ -190,6 +197,11 @@ impl Course {
             line += clear;
             let band_before = band;
             band = self.band_at(self.place + self.slope * line, line);
+            let along = self.start + self.step * line;
+            clear = clearance.lines_of_block([along, band], self.block_strides);
+            if clear >= FAR {
+                continue;
+            }
             let ahead = self.corner + self.line_stride * line + self.band_stride * band;
             clear = clearance.lines_at(ahead);
             // What is two cells from all that is solid has nothing solid beside it.
@@ -255,7 +267,7 @@ fn units(place: f64) -> i64 {
 impl Along {
     /// `None` where the ray does not start on the map.
     #[inline]
-    fn new(origin: f64, direction: f64, count: u32, stride: i64) -> Option<Self> {
+    fn new(origin: f64, direction: f64, count: u32, strides: [i64; 2]) -> Option<Self> {
         /// More than is rounded away.
         const NEAR: u32 = 2;
         let place = units(origin);
@@ -263,7 +275,8 @@ impl Along {
         let start =
             if is_near_line { start_near_line(origin, direction) } else { place >> FRACTION_BITS };
         let is_on_map = (start as u64) < u64::from(count) && count <= MOST_LINES;
-        is_on_map.then_some(Self { start, place, direction, stride })
+        let [stride, block_stride] = strides;
+        is_on_map.then_some(Self { start, place, direction, stride, block_stride })
     }
 }
 
@@ -328,6 +341,32 @@ mod tests {
                 let Some(sweep) = Sweep::new(grid, &ray) else { continue };
                 prop_assert_eq!(sweep.collect::<Vec<_>>(), walk.collect::<Vec<_>>());
             }
+        }
+    }
+
+    proptest! {
+        /// Where it is so empty that it leaps by blocks, too.
+        #[test]
+        fn it_meets_what_the_walk_meets_far_from_walls(
+            (width, height) in (30_u32..140, 30_u32..140),
+            pillars in prop::collection::vec((any::<u32>(), any::<u32>()), 0..6),
+            share in (0.0..1.0, 0.0..1.0),
+            direction in (-1.0..1.0_f64, -1.0..1.0_f64),
+        ) {
+            let mut cells = vec![TileId(0); (width * height) as usize];
+            for (column, row) in pillars {
+                cells[(row % height * width + column % width) as usize] = TileId(1);
+            }
+            let sides = [width, height].map(|side| side.try_into().unwrap());
+            let mut grid = Grid::new(sides[0], sides[1], TileId(1), cells).unwrap();
+            grid.measure_clearance(|_| false);
+            let size = DVec2::new(f64::from(width), f64::from(height));
+            let ray = Ray::new(DVec2::from(share) * size, direction.into());
+            prop_assume!(ray.is_ok());
+            let ray = ray.unwrap();
+            let walk = Walk::new(&grid, &ray).filter(|met| grid.is_solid_tile(met.tile));
+            let Some(sweep) = Sweep::new(&grid, &ray) else { return Ok(()) };
+            prop_assert_eq!(sweep.collect::<Vec<_>>(), walk.collect::<Vec<_>>());
         }
     }
 

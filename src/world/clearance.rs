@@ -9,8 +9,11 @@
 //! where it pays: among rooms a ray is at a wall before it has saved anything. What may become solid
 //! counts as solid from the start, so a door that opens or closes changes nothing here.
 //!
-//! Blocks of cells that are empty, and blocks of blocks, were refused: they take an eighth of the
-//! memory, but a ray stops at the edge of each block, and a single pillar fills all that hold it.
+//! A measured map has a byte more for each block of 8 by 8 cells, the least that is said in it. Far
+//! from anything solid a ray asks no cell: the blocks of a large map fit a cache that its cells do not.
+//!
+//! Only to skip blocks that are empty, and blocks of blocks, was refused: a ray stops at the edge of
+//! each block, and a single pillar fills all that hold it.
 
 use std::fmt;
 
@@ -22,9 +25,17 @@ pub(crate) struct Clearance {
     cells: Vec<Coded>,
     /// How many cells are in a row.
     width: usize,
-    /// Whether any cell says more than 1.
-    is_measured: bool,
+    /// For each block of cells, the least that any of them says; nothing where that is at most 1.
+    ///
+    /// Of a large map these are in the cache, and the cells are not.
+    blocks: Vec<Coded>,
+    /// How many blocks are in a row.
+    width_in_blocks: usize,
 }
+
+/// How many cells a block has along each axis.
+const BLOCK: usize = 1 << BLOCK_BITS;
+const BLOCK_BITS: u32 = 3;
 
 /// A number of lines in a byte: exact as far as [`Coded::EXACT`], then rounded down to a multiple of
 /// [`Coded::STEP`], up to more than a map has.
@@ -73,7 +84,7 @@ impl Clearance {
             cells.push(Coded::NONE);
         }
         cells.resize(width * height, Coded::NONE);
-        Self { cells, width, is_measured: false }
+        Self { cells, width, blocks: Vec::new(), width_in_blocks: 0 }
     }
 
     /// The same, which looks as far as there is anything to see, if rays gain by it.
@@ -97,7 +108,18 @@ impl Clearance {
             approach(row, &after[..width]);
             spread(row.iter_mut().rev());
         }
-        Self { cells: cells.into_iter().map(Coded::new).collect(), width, is_measured: true }
+        let width_in_blocks = width.div_ceil(BLOCK);
+        let blocks = cells.chunks(BLOCK * width).flat_map(|rows| {
+            let least = |block: usize| {
+                let of_row =
+                    |row: &[u16]| row.iter().skip(block * BLOCK).take(BLOCK).min().copied();
+                rows.chunks_exact(width).filter_map(of_row).min().unwrap_or(0)
+            };
+            (0..width_in_blocks).map(least).map(Coded::new).collect::<Vec<_>>()
+        });
+        let blocks = blocks.collect();
+        let cells = cells.into_iter().map(Coded::new).collect();
+        Self { cells, width, blocks, width_in_blocks }
     }
 
     /// Whether a ray crosses more than a few lines at a time, in the mean of all cells that it may be
@@ -130,6 +152,21 @@ impl Clearance {
         self.cells.get(index as usize).copied().unwrap_or(Coded::NONE)
     }
 
+    /// At least how many lines can be crossed at once from the cell at those `places` along two axes, of
+    /// which `strides` are the [strides](Clearance::strides_of_blocks). 0 means that it is not known.
+    #[inline]
+    pub(crate) fn lines_of_block(&self, places: [i64; 2], strides: [i64; 2]) -> i64 {
+        let [one, other] = places.map(|place| (place + 1) >> BLOCK_BITS);
+        let index = one * strides[0] + other * strides[1];
+        i64::from(self.blocks.get(index as usize).copied().unwrap_or(Coded::NONE).lines())
+    }
+
+    /// As [`Clearance::strides`], of blocks.
+    #[inline]
+    pub(crate) fn strides_of_blocks(&self) -> [i64; 2] {
+        [1, self.width_in_blocks as i64]
+    }
+
     /// The index of the cell in the map's north-west.
     #[inline]
     pub(crate) fn first(&self) -> i64 {
@@ -145,13 +182,15 @@ impl Clearance {
     /// Whether it is told how far a ray can go, and not only whether.
     #[inline]
     pub(crate) fn is_measured(&self) -> bool {
-        self.is_measured
+        !self.blocks.is_empty()
     }
 }
 
 impl fmt::Debug for Clearance {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
-        f.debug_struct("Clearance").field("is_measured", &self.is_measured).finish_non_exhaustive()
+        f.debug_struct("Clearance")
+            .field("is_measured", &self.is_measured())
+            .finish_non_exhaustive()
     }
 }
 
@@ -215,8 +254,8 @@ mod tests {
 
     #[test]
     fn halls_are_worth_measuring_and_rooms_are_not() {
-        assert!(of(&vec![".".repeat(62); 62]).measured_if_worthwhile().is_measured);
-        assert!(!of(&vec!["......#".repeat(9); 62]).measured_if_worthwhile().is_measured);
+        assert!(of(&vec![".".repeat(62); 62]).measured_if_worthwhile().is_measured());
+        assert!(!of(&vec!["......#".repeat(9); 62]).measured_if_worthwhile().is_measured());
     }
 
     proptest! {
