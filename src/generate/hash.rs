@@ -92,8 +92,7 @@ mod tests {
     fn a_neighbour_a_purpose_and_a_seed_tell_nothing_of_each_other() {
         let ones = |one: u64, other: u64| (one ^ other).count_ones();
         let mean = |pairs: &dyn Fn(i64) -> (u64, u64)| {
-            (0..1000).map(pairs).map(|(one, other)| ones(one, other)).sum::<u32>()
-                / 1000
+            (0..1000).map(pairs).map(|(one, other)| ones(one, other)).sum::<u32>() / 1000
         };
         let at = |column, row| hash(7, Purpose::Rock, column, row);
         for mean in [
