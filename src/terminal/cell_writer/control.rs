@@ -2,19 +2,22 @@
 
 /// A control sequence in the making. It is written when it has got a parameter; without one, it is
 /// as if it had never been begun.
-pub(super) struct ControlSequence {
-    /// As long as the longest: all that a style says, and more than any motion.
-    bytes: [u8; 96],
-    length: usize,
+pub(super) struct ControlSequence<'a> {
+    /// What was written before, the sequence so far, and room for the rest of it.
+    bytes: &'a mut Vec<u8>,
+    start: usize,
+    end: usize,
 }
 
-impl ControlSequence {
-    /// A sequence without parameters.
+impl<'a> ControlSequence<'a> {
+    /// Begins a sequence at the end of `bytes`.
     #[inline]
-    pub(super) fn new() -> Self {
-        let mut bytes = [0; 96];
-        bytes[0] = INTRODUCER[0];
-        Self { bytes, length: 1 }
+    pub(super) fn begin(bytes: &'a mut Vec<u8>) -> Self {
+        let start = bytes.len();
+        // Room is made once. In a buffer of its own, the sequence would be copied a moment after it
+        // was written, for which processors wait.
+        bytes.extend_from_slice(&[INTRODUCER[0]; LONGEST]);
+        Self { bytes, start, end: start + 1 }
     }
 
     /// Adds the parameter `number`.
@@ -22,8 +25,8 @@ impl ControlSequence {
     pub(super) fn parameter(&mut self, number: u8) {
         let Decimal { text, length } = DECIMALS[usize::from(number)];
         // All of it, as four bytes are copied faster than as many as there are.
-        self.bytes[self.length..self.length + text.len()].copy_from_slice(&text);
-        self.length += usize::from(length);
+        self.bytes[self.end..self.end + text.len()].copy_from_slice(&text);
+        self.end += usize::from(length);
     }
 
     /// Adds several parameters.
@@ -42,39 +45,28 @@ impl ControlSequence {
     }
 
     fn large_place(&mut self, number: u16) {
-        let digit = |unit| b'0' + (number / unit % 10) as u8;
-        let text = [SEPARATOR, digit(10_000), digit(1000), digit(100), digit(10), digit(1)];
-        let skipped = text.len() - 2 - number.ilog10() as usize;
-        for byte in [SEPARATOR].iter().chain(&text[1 + skipped..]) {
-            self.bytes[self.length] = *byte;
-            self.length += 1;
-        }
+        let text = format!(";{number}");
+        self.bytes[self.end..self.end + text.len()].copy_from_slice(text.as_bytes());
+        self.end += text.len();
     }
 
-    /// Writes it, with `last` as its final byte.
+    /// Ends it with `last` as its final byte.
     #[inline]
-    pub(super) fn end(mut self, last: u8, bytes: &mut Vec<u8>) {
-        if self.length > 1 {
+    pub(super) fn end(self, last: u8) {
+        if self.end > self.start + 1 {
             // Each parameter came with a separator before it.
-            self.bytes[1] = INTRODUCER[1];
-            self.bytes[self.length] = last;
-            let end = bytes.len() + self.length + 1;
-            if let Some(usual) = self.bytes.first_chunk::<USUAL>()
-                && self.length < USUAL
-            {
-                // More than there is, as so many bytes are copied faster than any number of them.
-                bytes.extend_from_slice(usual);
-                bytes.truncate(end);
-            } else {
-                bytes.extend_from_slice(&self.bytes[..=self.length]);
-            }
+            self.bytes[self.start + 1] = INTRODUCER[1];
+            self.bytes[self.end] = last;
+            self.bytes.truncate(self.end + 1);
+        } else {
+            self.bytes.truncate(self.start);
         }
     }
 }
 
+/// No sequence is longer: all that a style says, and more than any motion.
+const LONGEST: usize = 64;
 const INTRODUCER: &[u8; 2] = b"\x1b[";
-/// No sequence is longer that sets two colours.
-const USUAL: usize = 40;
 const SEPARATOR: u8 = b';';
 
 /// How many digits a number has.
@@ -119,10 +111,10 @@ mod tests {
     fn every_number_is_written_in_decimal() {
         for number in 0..=u16::MAX {
             let mut bytes = Vec::new();
-            let mut sequence = ControlSequence::new();
+            let mut sequence = ControlSequence::begin(&mut bytes);
             sequence.place(7);
             sequence.place(number);
-            sequence.end(b'H', &mut bytes);
+            sequence.end(b'H');
             assert_eq!(bytes, format!("\x1b[7;{number}H").into_bytes());
         }
     }

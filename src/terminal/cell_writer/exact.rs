@@ -13,7 +13,20 @@ use super::style::Style;
 pub(super) fn draw_row(pen: &mut Pen, shifts: &mut Shifts, mut row: Row) {
     if row.can_move() {
         shift(pen, shifts, &mut row);
+        let mut column = 0;
+        while let Some(unchanged) = row.alike_from(column) {
+            column += unchanged;
+            draw_cell(pen, &mut row, column);
+            column += 1;
+        }
+    } else {
+        draw_intricate_row(pen, &mut row);
     }
+    *row.exact = true;
+}
+
+/// The same of a row where characters may cover more than their cells.
+fn draw_intricate_row(pen: &mut Pen, row: &mut Row) {
     let mut covered = 0;
     for column in 0..row.width() {
         if covered > 0 {
@@ -23,13 +36,12 @@ pub(super) fn draw_row(pen: &mut Pen, shifts: &mut Shifts, mut row: Row) {
             continue;
         }
         if !row.shown[column].is(row.looks[column]) {
-            draw_cell(pen, &mut row, column);
+            draw_cell(pen, row, column);
         }
         if row.looks[column].is_intricate() {
             covered = row.wanted[column].cell_width().saturating_sub(1);
         }
     }
-    *row.exact = true;
 }
 
 /// Draws one cell of a row.
@@ -48,9 +60,10 @@ pub(super) fn draw_cell(pen: &mut Pen, row: &mut Row, column: usize) {
 /// Moves the stretches of a row that have only moved.
 fn shift(pen: &mut Pen, shifts: &mut Shifts, row: &mut Row) {
     shifts.begin(row);
-    while let Some(shift) =
-        shifts.next(row, |from, to| if row.shown[from] == row.looks[to] { 0 } else { CELL })
-    {
+    while let Some(shift) = shifts.next(row, |from, to, losses| {
+        let looks = row.shown[from..].iter().zip(&row.looks[to..]);
+        losses.extend(looks.map(|(shown, look)| if shown == look { 0 } else { CELL }));
+    }) {
         pen.shift_row(&shift, row.y);
         row.shift(&shift);
     }

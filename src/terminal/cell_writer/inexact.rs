@@ -71,15 +71,17 @@ impl Draughtsman {
     /// Moves the stretches of a row that have only moved, or about.
     fn shift(&mut self, pen: &mut Pen, shifts: &mut Shifts, row: &mut Row, price: Price) {
         shifts.begin(row);
-        while let Some(shift) =
-            shifts.next(row, |from, to| match (&self.shown[from], &self.wanted[to]) {
+        while let Some(shift) = shifts.next(row, |from, to, losses| {
+            let inks = self.shown[from..].iter().zip(&self.wanted[to..]);
+            let looks = row.shown[from..].iter().zip(&row.looks[to..]);
+            losses.extend(inks.zip(looks).map(|(inks, (shown, look))| match inks {
+                _ if shown == look => 0,
                 (Some(shown), Some(wanted)) => {
                     ((price.of_halves(*shown, *wanted) * BYTE as f32) as i32).min(CELL)
                 }
-                _ if row.shown[from] == row.looks[to] => 0,
                 _ => CELL,
-            })
-        {
+            }));
+        }) {
             pen.shift_row(&shift, row.y);
             row.shift(&shift);
             shift.apply(&mut self.shown, None);

@@ -35,13 +35,14 @@ impl Glyph {
         }
     }
 
+    /// By its bytes in UTF-8, as every changed cell is asked.
     #[inline]
     fn of(symbol: &str) -> Option<Self> {
-        match symbol {
-            "▀" => Some(Self::Upper),
-            "▄" => Some(Self::Lower),
-            "█" => Some(Self::Full),
-            " " => Some(Self::Space),
+        match *symbol.as_bytes() {
+            [b' '] => Some(Self::Space),
+            [0xE2, 0x96, 0x80] => Some(Self::Upper),
+            [0xE2, 0x96, 0x84] => Some(Self::Lower),
+            [0xE2, 0x96, 0x88] => Some(Self::Full),
             _ => None,
         }
     }
@@ -71,12 +72,17 @@ impl Look {
     const CHARACTER: u128 = 3;
 
     /// What `cell` looks like.
+    #[inline]
     pub(super) fn of(cell: &Cell) -> Self {
         let (symbol, style) = (cell.symbol(), Style::of(cell));
-        if let Some(halves) = halves(symbol, style) {
-            return Self::of_halves(halves);
+        match halves(symbol, style) {
+            Some(halves) => Self::of_halves(halves),
+            None => Self::of_text(cell, style),
         }
-        let mut characters = symbol.chars();
+    }
+
+    fn of_text(cell: &Cell, style: Style) -> Self {
+        let mut characters = cell.symbol().chars();
         match (characters.next(), characters.next()) {
             (Some(character), None) if cell.cell_width() == 1 => Self::of_fields(
                 Self::CHARACTER,
@@ -168,6 +174,7 @@ pub(super) fn cheapest([top, bottom]: [Shade; 2], current: Option<Style>) -> (Gl
 /// The colours of the upper and the lower half of a cell; `None` where it is no block, or where
 /// another block would not look the same: in the terminal's own colours, which are not the same two
 /// as text and as ground, and with modifiers.
+#[inline]
 fn halves(symbol: &str, style: Style) -> Option<[Shade; 2]> {
     let halves = Glyph::of(symbol)?.halves(style.foreground, style.background);
     let has_own = halves.contains(&Shade::DEFAULT);

@@ -78,16 +78,16 @@ impl Pen {
             return;
         }
         let position = self.position;
-        let mut motion = ControlSequence::new();
+        let mut motion = ControlSequence::begin(self.frame());
         match position {
             Some(position) if position.y == target.y && position.x < target.x => {
                 motion.place(target.x - position.x);
-                motion.end(b'C', self.frame());
+                motion.end(b'C');
             }
             _ => {
                 motion.place(target.y.saturating_add(1));
                 motion.place(target.x.saturating_add(1));
-                motion.end(b'H', self.frame());
+                motion.end(b'H');
             }
         }
         self.position = Some(target);
@@ -159,9 +159,9 @@ impl Pen {
     /// Deletes or inserts `count` characters at a position; the cursor stays there.
     fn edit_row(&mut self, at: Position, count: u16, operation: u8) {
         self.move_to(at);
-        let mut edit = ControlSequence::new();
+        let mut edit = ControlSequence::begin(self.frame());
         edit.place(count);
-        edit.end(operation, self.frame());
+        edit.end(operation);
     }
 
     /// The frame, begun if it was not.

@@ -88,6 +88,7 @@ impl Screen {
     }
 
     /// It is to show `cell` there; what is off the screen is nowhere.
+    #[inline]
     pub(super) fn want(&mut self, x: u16, y: u16, cell: &Cell) {
         let (x, y) = (usize::from(x), usize::from(y));
         if x < self.width && y < self.changed.len() {
@@ -148,9 +149,17 @@ impl Row<'_> {
         self.looks.len()
     }
 
+    /// How many cells from `column` on show what they are to show; `None` if all do.
+    #[inline]
+    pub(super) fn alike_from(&self, column: usize) -> Option<usize> {
+        let mut looks = self.shown[column..].iter().zip(&self.looks[column..]);
+        looks.position(|(shown, look)| shown != look)
+    }
+
     /// Whether each of its cells stays what it is where it is moved.
     pub(super) fn can_move(&self) -> bool {
-        self.shown.iter().chain(self.looks).all(|look| look.can_move())
+        let looks = self.shown.iter().zip(&*self.looks);
+        looks.fold(true, |can, (shown, look)| can & shown.can_move() & look.can_move())
     }
 
     /// Whether it shows blocks wherever it does not show what it is to show, and is to show blocks

@@ -28,6 +28,16 @@ struct Move {
     by: usize,
 }
 
+impl Move {
+    /// The first cell that can move, and where it moves to.
+    fn places(self) -> (usize, usize) {
+        match self.way {
+            Way::Left => (self.by, 0),
+            Way::Right => (0, self.by),
+        }
+    }
+}
+
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub(super) enum Way {
     Left,
@@ -51,7 +61,9 @@ pub(super) struct Shifts {
     /// The row's landmarks, padded, as they are to be, and as they were.
     marks: Vec<Mark>,
     marks_before: Vec<Mark>,
+    /// What is lost now, and what would be lost after a move.
     losses: Vec<i32>,
+    moved: Vec<i32>,
 }
 
 impl Shifts {
@@ -62,19 +74,30 @@ impl Shifts {
         pad(&mut self.marks);
     }
 
-    /// The shift after which least is lost, if it spares more than it takes. `loss` is what is lost
-    /// where the cell that is now at the first place is shown at the second.
-    pub(super) fn next(&mut self, row: &Row, loss: impl Fn(usize, usize) -> i32) -> Option<Shift> {
+    /// The shift after which least is lost, if it spares more than it takes. `lose` adds what is lost
+    /// where the cells that are now at the first place and after it are shown at the second and
+    /// after it.
+    pub(super) fn next(
+        &mut self,
+        row: &Row,
+        lose: impl Fn(usize, usize, &mut Vec<i32>),
+    ) -> Option<Shift> {
         self.losses.clear();
-        self.losses.extend((0..row.width()).map(|column| loss(column, column)));
+        lose(0, 0, &mut self.losses);
         if self.losses.iter().sum::<i32>() <= SHIFT {
             return None;
         }
         self.marks_before.clear();
         self.marks_before.extend_from_slice(row.marks);
         pad(&mut self.marks_before);
-        let moves = likely_moves(&self.marks_before, &self.marks).into_iter().flatten();
-        let shifts = moves.filter_map(|by| Shift::best(&self.losses, by, &loss));
+        let moves =
+            likely_moves(&self.marks_before, &self.marks, row.width()).into_iter().flatten();
+        let shifts = moves.filter_map(|by| {
+            let (from, to) = by.places();
+            self.moved.clear();
+            lose(from, to, &mut self.moved);
+            Shift::best(by, &self.losses, &self.moved)
+        });
         let (shift, spared) = shifts.max_by_key(|&(_, spared)| spared)?;
         (spared > SHIFT).then_some(shift)
     }
@@ -86,32 +109,20 @@ impl Shifts {
 }
 
 impl Shift {
-    /// The best shift by that move, and what it spares.
-    fn best(
-        losses: &[i32],
-        Move { by, way }: Move,
-        loss: &impl Fn(usize, usize) -> i32,
-    ) -> Option<(Self, i32)> {
-        let remaining = losses.get(by..)?;
-        // Counted from the first place that a cell can move to.
-        let best = match way {
-            Way::Left => {
-                let spared = losses[..remaining.len()].iter().enumerate();
-                best_stretch(spared.map(|(to, now)| now - loss(to + by, to)))
-            }
-            Way::Right => {
-                let spared = remaining.iter().enumerate();
-                best_stretch(spared.map(|(from, now)| now - loss(from, from + by)))
-            }
-        };
-        let (moved, spared) = best?;
-        let columns = moved.start..moved.end + by;
+    /// The best shift by that move, and what it spares, where that much is lost now, and that much
+    /// after all that can move has moved.
+    fn best(by: Move, now: &[i32], moved: &[i32]) -> Option<(Self, i32)> {
+        let (_, first) = by.places();
+        let spared = now[first..].iter().zip(moved).map(|(now, moved)| now - moved);
+        let (stretch, spared) = best_stretch(spared)?;
+        let Move { way, by } = by;
+        let columns = stretch.start..stretch.end + by;
         // What is uncovered must be sent, even where it was right before.
         let uncovered = match way {
             Way::Left => columns.end - by..columns.end,
             Way::Right => columns.start..columns.start + by,
         };
-        let lost: i32 = losses[uncovered].iter().map(|loss| CELL - loss).sum();
+        let lost: i32 = now[uncovered].iter().map(|loss| CELL - loss).sum();
         Some((Self { columns, by, way }, spared - lost))
     }
 
@@ -138,10 +149,10 @@ impl Shift {
 /// compared with all from before, move by move, which is a few instructions for sixteen of them. To
 /// compare what they look like took longer than all the rest of the encoder, and to look each up in
 /// a table missed those that are there several times.
-fn likely_moves(before: &[Mark], now: &[Mark]) -> [Option<Move>; MOST_TRIED] {
+fn likely_moves(before: &[Mark], now: &[Mark], width: usize) -> [Option<Move>; MOST_TRIED] {
     let mut likely = [None; MOST_TRIED];
     let mut votes = [CHANCE; MOST_TRIED];
-    for by in 1..=FARTHEST {
+    for by in 1..=FARTHEST.min(width.saturating_sub(1)) {
         let left = count_alike(&before[by..], now);
         let right = count_alike(before, &now[by..]);
         for (way, count) in [(Way::Left, left), (Way::Right, right)] {
@@ -179,14 +190,12 @@ impl Mark {
 
     /// The marks of a row's cells.
     fn all(row: &[Look]) -> impl Iterator<Item = Self> {
-        /// A large odd number.
-        const STIR: u64 = 0xC2B2_AE3D_27D4_EB4F;
         let mut before = (Look::UNKNOWN, 0);
         row.iter().map(move |&look| {
             let (last, last_hash) = before;
             let hash = look.hash();
             before = (look, hash);
-            let pair = u64::wrapping_mul(last_hash, STIR).wrapping_add(hash);
+            let pair = u64::rotate_left(last_hash, 5).wrapping_add(hash);
             if last == look { Self::NONE } else { Self(((pair >> 56) as u8).max(1)) }
         })
     }
@@ -236,10 +245,12 @@ mod tests {
             wanted: &[],
             exact: &mut false,
         };
-        let loss = |from: usize, to: usize| if shown[from] == wanted[to] { 0 } else { CELL };
         let mut shifts = Shifts::default();
         shifts.begin(&row);
-        shifts.next(&row, loss)
+        shifts.next(&row, |from, to, losses| {
+            let looks = shown[from..].iter().zip(&wanted[to..]);
+            losses.extend(looks.map(|(shown, wanted)| CELL * i32::from(shown != wanted)));
+        })
     }
 
     fn row(text: &str) -> Vec<Look> {

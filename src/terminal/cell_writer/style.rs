@@ -66,6 +66,7 @@ impl Style {
     };
 
     /// How `cell` is drawn.
+    #[inline]
     pub(crate) fn of(cell: &Cell) -> Self {
         Self {
             foreground: Shade::of(cell.fg),
@@ -93,6 +94,7 @@ impl Style {
     }
 
     /// Writes what turns `current`, or an unknown style, into this one.
+    #[inline]
     pub(crate) fn write_from(self, current: Option<Self>, bytes: &mut Vec<u8>) {
         let known = match current {
             Some(style) if self != Self::RESET => style,
@@ -101,7 +103,7 @@ impl Style {
                 Self::RESET
             }
         };
-        let mut rendition = ControlSequence::new();
+        let mut rendition = ControlSequence::begin(bytes);
         if self.modifier != known.modifier {
             self.switch_modifiers(known.modifier, &mut rendition);
         }
@@ -111,7 +113,7 @@ impl Style {
         if self.background != known.background {
             self.background.write(Ground::Back, &mut rendition);
         }
-        rendition.end(b'm', bytes);
+        rendition.end(b'm');
     }
 
     fn switch_modifiers(self, known: Modifier, rendition: &mut ControlSequence) {
@@ -216,13 +218,13 @@ impl Shade {
             Ground::Back => (40, 100, 48, 49),
         };
         match self.kind() {
+            Kind::Rgb([red, green, blue]) => {
+                rendition.parameters([extended, 2, red, green, blue]);
+            }
             Kind::Default => rendition.parameter(default),
             Kind::Indexed(index @ 0..=7) => rendition.parameter(dark + index),
             Kind::Indexed(index @ 8..=15) => rendition.parameter(bright + (index - 8)),
             Kind::Indexed(index) => rendition.parameters([extended, 5, index]),
-            Kind::Rgb([red, green, blue]) => {
-                rendition.parameters([extended, 2, red, green, blue]);
-            }
         }
     }
 }
