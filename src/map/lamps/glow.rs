@@ -162,10 +162,8 @@ mod tests {
             let every_cell = (0..height).flat_map(|row| (0..width).map(move |column| Cell { column, row }));
             for cell in every_cell {
                 let distance = cell.center().distance(place.center());
-                let expected = match is_seen(&grid, place, cell) {
-                    true if distance < reach => lamp.light_at(distance),
-                    _ => Light::NONE,
-                };
+                let is_lit = distance < reach && is_seen(&grid, place, cell);
+                let expected = if is_lit { lamp.light_at(distance) } else { Light::NONE };
                 prop_assert_eq!(lit.get(&cell).copied().unwrap_or(Light::NONE), expected, "{:?}", cell);
             }
         }
