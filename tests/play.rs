@@ -13,6 +13,8 @@ mod looks;
 #[path = "support/player.rs"]
 mod player;
 
+#[path = "play/digging.rs"]
+mod digging;
 #[path = "play/doors.rs"]
 mod doors;
 #[path = "play/ending.rs"]

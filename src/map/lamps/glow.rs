@@ -1,0 +1,171 @@
+//! A glow: where a lamp's light goes, cell by cell, as long as nothing is in its way.
+//!
+//! The lines from one lamp to all the cells that it reaches are the same wherever it stands, and many of
+//! them begin in the same cells. So they are found out once, as a tree, and a lamp follows its branches
+//! until each meets something. Walking along every line by itself was refused: a level that is dug has
+//! hundreds of lamps, and that took most of the time that its window needs to move.
+
+use std::num::NonZeroU32;
+
+use crate::cast::{Ray, Walk};
+use crate::world::{Cell, Grid, Lamp, Light, TileId};
+
+/// All that a kind of lamp shines into where nothing stands around it.
+#[derive(Debug)]
+pub(super) struct Glow {
+    /// What it adds in its own cell.
+    light: Light,
+    /// A tree of cells: each comes before those that are behind it.
+    branches: Vec<Branch>,
+}
+
+/// A cell that light passes, coming from the one before.
+#[derive(Debug)]
+struct Branch {
+    /// Columns to the east of the lamp, and rows to the south.
+    offset: (i64, i64),
+    /// What the lamp adds there; nothing, where its light only passes on the way to other cells.
+    light: Light,
+    /// The index of the first branch that does not lead through this cell.
+    next_beside: usize,
+}
+
+impl Glow {
+    pub(super) fn of(lamp: &Lamp) -> Self {
+        let mut lines = lines(lamp);
+        // Lines that begin in the same cells come after each other, the shorter ones first.
+        lines.sort_by(|one, other| one.cells.cmp(&other.cells));
+        let mut branches: Vec<Branch> = Vec::new();
+        let mut open: Vec<usize> = Vec::new();
+        let mut before: &[Offset] = &[];
+        for Line { cells, light } in &lines {
+            let shared = before.iter().zip(cells).take_while(|(one, other)| one == other).count();
+            close(&mut branches, open.drain(shared..));
+            for &offset in &cells[shared..] {
+                open.push(branches.len());
+                branches.push(Branch { offset, light: Light::NONE, next_beside: 0 });
+            }
+            if let Some(end) = branches.last_mut() {
+                end.light = *light;
+            }
+            before = cells;
+        }
+        close(&mut branches, open.drain(..));
+        Self { light: lamp.light_at(0.0), branches }
+    }
+
+    /// Has `add` called with what a lamp in `place` adds to the cells of `grid` that it shines into,
+    /// through whatever `is_clear`.
+    pub(super) fn shine(
+        &self,
+        grid: &Grid,
+        place: Cell,
+        is_clear: impl Fn(TileId) -> bool,
+        mut add: impl FnMut(Cell, Light),
+    ) {
+        add(place, self.light);
+        let mut index = 0;
+        while let Some(branch) = self.branches.get(index) {
+            let column = i64::from(place.column) + branch.offset.0;
+            let row = i64::from(place.row) + branch.offset.1;
+            if grid.tile(column, row).is_some_and(&is_clear) {
+                add(Cell { column: column as u32, row: row as u32 }, branch.light);
+                index += 1;
+            } else {
+                index = branch.next_beside;
+            }
+        }
+    }
+}
+
+/// Notes that no more branches lead through those at `indices`.
+fn close(branches: &mut [Branch], indices: impl Iterator<Item = usize>) {
+    let end = branches.len();
+    indices.for_each(|index| branches[index].next_beside = end);
+}
+
+type Offset = (i64, i64);
+
+/// The cells between a lamp and one that it reaches, that one included.
+struct Line {
+    cells: Vec<Offset>,
+    light: Light,
+}
+
+/// The lines from a lamp to all cells that it reaches, but for its own.
+fn lines(lamp: &Lamp) -> Vec<Line> {
+    let reach = lamp.reach.cells() as u32;
+    let side = NonZeroU32::MIN.saturating_add(2 * reach);
+    let cells = vec![TileId(0); side.get() as usize * side.get() as usize];
+    let Some(grid) = Grid::new(side, side, TileId(1), cells) else { return Vec::new() };
+    let place = Cell { column: reach, row: reach };
+    let offset = |cell: Cell| {
+        let along = |place: u32| i64::from(place) - i64::from(reach);
+        (along(cell.column), along(cell.row))
+    };
+    let around = (0..side.get())
+        .flat_map(|row| (0..side.get()).map(move |column| Cell { column, row }))
+        .filter_map(|cell| {
+            let way = cell.center() - place.center();
+            let is_reached = way.length() < lamp.reach.cells();
+            let ray = Ray::new(place.center(), way).ok().filter(|_| is_reached)?;
+            let mut cells: Vec<Offset> = Walk::new(&grid, &ray)
+                .map(|crossing| offset(crossing.cell))
+                .take_while(|&passed| passed != offset(cell))
+                .collect();
+            cells.push(offset(cell));
+            Some(Line { cells, light: lamp.light_at(way.length()) })
+        });
+    around.collect()
+}
+
+#[cfg(test)]
+mod tests {
+    use std::collections::BTreeMap;
+
+    use proptest::prelude::*;
+
+    use super::*;
+    use crate::world::Reach;
+
+    /// Whether the line from the middle of one cell to that of another leads through open floor.
+    fn is_seen(grid: &Grid, from: Cell, to: Cell) -> bool {
+        let Ok(ray) = Ray::new(from.center(), to.center() - from.center()) else { return true };
+        let mut open = Walk::new(grid, &ray).take_while(|it| !grid.is_solid_tile(it.tile));
+        open.any(|crossing| crossing.cell == to)
+    }
+
+    proptest! {
+        #[test]
+        fn a_lamp_lights_what_a_straight_line_leads_to(
+            width in 1_u32..24,
+            solid in prop::collection::vec(prop::bool::weighted(0.2), 24 * 24),
+            height in 1_u32..24,
+            place in any::<prop::sample::Index>(),
+            reach in prop_oneof![1.0..=32.0, (1..=32_u32).prop_map(f64::from)],
+        ) {
+            let place = place.index((width * height) as usize) as u32;
+            let place = Cell { column: place % width, row: place / width };
+            let cells: Vec<TileId> = (0..height * width)
+                .map(|index| TileId(u8::from(solid[index as usize])))
+                .collect();
+            let sides = [width, height].map(|side| NonZeroU32::new(side).unwrap());
+            let grid = Grid::new(sides[0], sides[1], TileId(1), cells).unwrap();
+            let lamp = Lamp { light: Light::FULL, reach: Reach::new(reach).unwrap() };
+
+            let mut lit = BTreeMap::new();
+            let is_clear = |tile| !grid.is_solid_tile(tile);
+            Glow::of(&lamp).shine(&grid, place, is_clear, |cell, light| {
+                let before = lit.entry(cell).or_insert(Light::NONE);
+                *before = before.plus(light);
+            });
+            let every_cell = (0..height).flat_map(|row| (0..width).map(move |column| Cell { column, row }));
+            for cell in every_cell {
+                let distance = cell.center().distance(place.center());
+                let is_lit = distance < reach && is_seen(&grid, place, cell);
+                let expected = if is_lit { lamp.light_at(distance) } else { Light::NONE };
+                prop_assert_eq!(lit.get(&cell).copied().unwrap_or(Light::NONE), expected, "{:?}", cell);
+            }
+        }
+    }
+}
