@@ -10,7 +10,7 @@
 //! refused: every ray of every map would have paid for it.
 //!
 //! What is random is hashed from the seed, what it decides and where, in integers: see
-//! [`hash`](self::hash). The same seed is the same level on every machine.
+//! `hash`. The same seed is the same level on every machine.
 
 mod cave;
 mod chunk;

@@ -79,3 +79,36 @@ fn drawing_the_widgets_allocates_nothing_after_the_first_time() {
         }
     }
 }
+
+#[test]
+#[cfg(feature = "terminal")]
+fn encoding_a_frame_allocates_nothing_once_its_memory_has_grown() {
+    use cellcaster::terminal::{CellWriter, Fidelity};
+    use ratatui::backend::Backend;
+
+    let world = builtin::LEVELS[1].world().unwrap();
+    let mut camera = world.start_camera(FieldOfView::default());
+    let picture = Rect::new(0, 0, 120, 40);
+    for fidelity in [Fidelity::EXACT, Fidelity::HIGH, Fidelity::LOW] {
+        let mut writer = CellWriter::new(Vec::new(), picture.as_size());
+        writer.set_fidelity(fidelity);
+        let mut view = View::default();
+        let mut before = Buffer::empty(picture);
+        let mut encode = |turn: usize| {
+            camera.heading = camera.heading.turned(if turn % 8 < 6 { 0.1 } else { 0.0 });
+            let mut buffer = Buffer::empty(picture);
+            FirstPerson::new(&world, &camera).render(picture, &mut buffer, &mut view);
+            let changes = before.diff(&buffer);
+            writer.output_mut().clear();
+            let counted = measure(|| {
+                writer.draw(changes.iter().copied()).unwrap();
+                Backend::flush(&mut writer).unwrap();
+            });
+            before = buffer;
+            counted.count_total
+        };
+        // Twice around, so that every buffer is as large as it gets.
+        (0..170).for_each(|turn| _ = encode(turn));
+        assert_eq!((0..80).map(&mut encode).sum::<u64>(), 0, "{fidelity}");
+    }
+}
