@@ -48,17 +48,36 @@ fn a_hall_sixteen_times_as_wide_takes_twice_the_looks_at_most() {
     assert!(small.counts.looks < small.counts.cells / 3);
 }
 
+/// A pillar stands in one cell of each 64 by 64, not in the middle.
+#[test]
+fn a_plain_sixty_four_times_as_wide_takes_four_times_the_looks_at_most() {
+    let pillar = |column: u32, row: u32| {
+        let moved = |by: u32| 16 + (column / 64 * 37 + row / 64 * 101 + by * 53) % 32;
+        ((column % 64, row % 64) == (moved(0), moved(1))).then_some('#')
+    };
+    let [small, large] = [64, 4096].map(|side| explained(&square(side, pillar)).counts);
+    assert!(large.cells > 1000 * large.rays, "{large:?}");
+    assert!(large.looks < 40 * large.rays, "{large:?}");
+    assert!(large.looks <= 4 * small.looks, "{:?}", (small, large));
+}
+
 /// A door in a wall across a hall, wherever a ray leaps from.
 #[test]
 fn nobody_leaps_across_a_door_that_closes() {
-    let side = 100;
+    for side in [100, 1024] {
+        nobody_leaps_across_a_door(side);
+    }
+}
+
+fn nobody_leaps_across_a_door(side: u32) {
     let door = Cell { column: 50, row: side / 2 };
     let wall =
         |column, row| (column == door.column).then_some(if row == door.row { '+' } else { '#' });
     let mut world = square(side, wall);
     assert_eq!(explained(&world).plan.rays, RayLoop::Leaps);
     let hit = |world: &World, x: f64| {
-        let ray = Ray::new(DVec2::new(x, 50.5), DVec2::X).unwrap();
+        let middle = f64::from(side / 2) + 0.5;
+        let ray = Ray::new(DVec2::new(x, middle), DVec2::X).unwrap();
         Exact.cast_through(world, &ray, |_| ()).map(|hit| hit.cell.column)
     };
     let far = side - 1;

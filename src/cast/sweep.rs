@@ -13,11 +13,13 @@
 //! What rounding can have done to that is less than a unit a line; where a place is so near to the edge
 //! of a band that it might be beyond, the cross product tells that is right.
 
+mod flight;
+
 use glam::DVec2;
 
 use super::exact::decide;
 use super::{Crossing, Ray, Side};
-use crate::world::{Cell, Clearance, Grid, TileId};
+use crate::world::{Cell, Clearance, FRACTION_BITS, Grid, TileId};
 
 /// The solid cells that a ray enters, in the exact order.
 pub(crate) struct Sweep<'grid> {
@@ -80,7 +82,6 @@ const MOST_LINES: u32 = 1 << 16;
 const DOUBT: i64 = MOST_LINES as i64 + 8;
 /// Where all cells of a block are so far from anything solid, it is not worth a look at the cell.
 const FAR: i64 = 6;
-const FRACTION_BITS: u32 = 32;
 const UNITS: i64 = 1 << FRACTION_BITS;
 
 impl<'grid> Sweep<'grid> {
@@ -142,10 +143,12 @@ impl Iterator for Sweep<'_> {
         let Self { grid, course, .. } = *self;
         let clearance = grid.clearance();
         loop {
-            let (before, at) = if clearance.is_measured() {
-                course.leap(clearance, self.at)
-            } else {
+            let (before, at) = if !clearance.is_measured() {
                 course.go(clearance, self.at)
+            } else if let Some(shafts) = clearance.shafts() {
+                course.fly(clearance, shafts, self.at)
+            } else {
+                course.leap(clearance, self.at)
             };
             let Progress { line, band, looks } = at;
             if band != before {

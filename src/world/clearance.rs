@@ -12,10 +12,15 @@
 //! A measured map has a byte more for each block of 8 by 8 cells, the least that is said in it. Far
 //! from anything solid a ray asks no cell: the blocks of a large map fit a cache that its cells do not.
 //!
+//! A large map on which little is solid has [shafts](Shafts), too, which tell how far it is clear ahead,
+//! and not only around.
+//!
 //! Only to skip blocks that are empty, and blocks of blocks, was refused: a ray stops at the edge of
 //! each block, and a single pillar fills all that hold it.
 
 use std::fmt;
+
+use super::Shafts;
 
 /// For each cell, and those around the map, how many lines of the grid a ray can cross at once that is
 /// in it: no cell that is nearer than that is, or may become, solid. 0 where the cell itself may be.
@@ -31,6 +36,8 @@ pub(crate) struct Clearance {
     blocks: Vec<Coded>,
     /// How many blocks are in a row.
     width_in_blocks: usize,
+    /// Of rays that are fastest along rows, and along columns.
+    shafts: Option<Box<[Shafts; 2]>>,
 }
 
 /// How many cells a block has along each axis.
@@ -84,13 +91,19 @@ impl Clearance {
             cells.push(Coded::NONE);
         }
         cells.resize(width * height, Coded::NONE);
-        Self { cells, width, blocks: Vec::new(), width_in_blocks: 0 }
+        Self { cells, width, blocks: Vec::new(), width_in_blocks: 0, shafts: None }
     }
 
     /// The same, which looks as far as there is anything to see, if rays gain by it.
     pub(super) fn measured_if_worthwhile(self) -> Self {
         let measured = self.measured();
-        if measured.is_worthwhile() { measured } else { self }
+        if !measured.is_worthwhile() {
+            self
+        } else if measured.are_shafts_worthwhile() {
+            measured.with_shafts()
+        } else {
+            measured
+        }
     }
 
     /// The cell that is nearest to one comes before it in the order of reading, or after it.
@@ -119,7 +132,35 @@ impl Clearance {
         });
         let blocks = blocks.collect();
         let cells = cells.into_iter().map(Coded::new).collect();
-        Self { cells, width, blocks, width_in_blocks }
+        Self { cells, width, blocks, width_in_blocks, shafts: None }
+    }
+
+    /// The same, with shafts.
+    pub(super) fn with_shafts(self) -> Self {
+        let [columns, rows] = self.size();
+        let along_rows = Shafts::new([columns, rows], self.solid());
+        let swapped = self.solid().map(|[column, row]| [row, column]);
+        let along_columns = Shafts::new([rows, columns], swapped);
+        Self { shafts: Some(Box::new([along_rows, along_columns])), ..self }
+    }
+
+    fn are_shafts_worthwhile(&self) -> bool {
+        let solid = self.cells.iter().filter(|&&cell| cell == Coded::NONE).count();
+        Shafts::are_worthwhile(self.size(), solid as i64)
+    }
+
+    /// The map's columns and rows.
+    fn size(&self) -> [i64; 2] {
+        [self.width as i64 - 2, (self.cells.len() / self.width) as i64 - 2]
+    }
+
+    /// The column and row of each cell that is or may be solid, with those around the map.
+    fn solid(&self) -> impl Iterator<Item = [i64; 2]> {
+        let rows = self.cells.chunks_exact(self.width).zip(-1..);
+        rows.flat_map(|(cells, row)| {
+            let solid = cells.iter().zip(-1..).filter(|&(&cell, _)| cell == Coded::NONE);
+            solid.map(move |(_, column)| [column, row])
+        })
     }
 
     /// Whether a ray crosses more than a few lines at a time, in the mean of all cells that it may be
@@ -183,6 +224,12 @@ impl Clearance {
     #[inline]
     pub(crate) fn is_measured(&self) -> bool {
         !self.blocks.is_empty()
+    }
+
+    /// The shafts of rays that are fastest along rows, and of those along columns, if any.
+    #[inline]
+    pub(crate) fn shafts(&self) -> Option<&[Shafts; 2]> {
+        self.shafts.as_deref()
     }
 }
 

@@ -101,6 +101,12 @@ impl Grid {
         self.clearance = Arc::new(self.near(may_become_solid).measured());
     }
 
+    /// As [`Grid::measure_clearance`], with shafts.
+    #[cfg(test)]
+    pub(crate) fn make_shafts(&mut self, may_become_solid: impl Fn(TileId) -> bool) {
+        self.clearance = Arc::new(self.near(may_become_solid).measured().with_shafts());
+    }
+
     /// How clear it is where one looks one cell far.
     fn near(&self, may_become_solid: impl Fn(TileId) -> bool) -> Clearance {
         let may_be_solid = |&tile: &TileId| self.is_solid_tile(tile) || may_become_solid(tile);
