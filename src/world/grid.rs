@@ -29,6 +29,12 @@ impl Cell {
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash, PartialOrd, Ord)]
 pub struct TileId(pub u8);
 
+impl TileId {
+    /// A world has no more tiles.
+    #[cfg_attr(not(feature = "tui"), expect(dead_code, reason = "only the minimap has a table"))]
+    pub(crate) const MOST: usize = 1 << u8::BITS;
+}
+
 /// Which tile each cell holds, and which tiles are solid.
 ///
 /// Tiles are numbered with the open ones first, so that asking whether a cell is solid is one
