@@ -22,6 +22,7 @@ use super::{Crossing, Ray, Side};
 use crate::world::{Cell, Clearance, FRACTION_BITS, Grid, TileId};
 
 /// The solid cells that a ray enters, in the exact order.
+#[derive(Clone, Copy)]
 pub(crate) struct Sweep<'grid> {
     grid: &'grid Grid,
     course: Course,
@@ -140,16 +141,34 @@ impl Iterator for Sweep<'_> {
     #[expect(clippy::inline_always, reason = "elsewhere it would be kept in memory")]
     #[inline(always)]
     fn next(&mut self) -> Option<Crossing> {
-        let Self { grid, course, .. } = *self;
-        let clearance = grid.clearance();
-        loop {
-            let (before, at) = if !clearance.is_measured() {
-                course.go(clearance, self.at)
-            } else if let Some(shafts) = clearance.shafts() {
-                course.fly(clearance, shafts, self.at)
+        let clearance = self.grid.clearance();
+        if clearance.shafts().is_some() {
+            let (sweep, met) = self.fly();
+            *self = sweep;
+            return met;
+        }
+        self.advance(|course, at| {
+            if clearance.is_measured() {
+                course.leap(clearance, at)
             } else {
-                course.leap(clearance, self.at)
-            };
+                course.go(clearance, at)
+            }
+        })
+    }
+}
+
+impl Sweep<'_> {
+    /// The next solid cell, where `to_something` goes on to what is not clear, and tells the band at the line
+    /// before, too.
+    #[expect(clippy::inline_always, reason = "elsewhere it would be kept in memory")]
+    #[inline(always)]
+    fn advance(
+        &mut self,
+        to_something: impl Fn(Course, Progress) -> (i64, Progress),
+    ) -> Option<Crossing> {
+        let Self { grid, course, .. } = *self;
+        loop {
+            let (before, at) = to_something(course, self.at);
             let Progress { line, band, looks } = at;
             if band != before {
                 let (cell, tile) = course.cell_in(grid, line - 1, band)?;
@@ -164,6 +183,19 @@ impl Iterator for Sweep<'_> {
                 return Some(Crossing { cell, tile, side: course.side });
             }
         }
+    }
+
+    /// As [`Sweep::next`], on a map with shafts.
+    ///
+    /// It takes a copy and is a function of its own, so that rays among rooms have the registers for
+    /// themselves.
+    #[inline(never)]
+    fn fly(mut self) -> (Self, Option<Crossing>) {
+        let clearance = self.grid.clearance();
+        let shafts = clearance.shafts();
+        let met =
+            shafts.and_then(|shafts| self.advance(|course, at| course.fly(clearance, shafts, at)));
+        (self, met)
     }
 }
 

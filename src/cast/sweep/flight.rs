@@ -9,8 +9,7 @@ use crate::world::{Bundle, Clearance, STRIP, Shafts};
 
 impl Course {
     /// As [`Course::leap`], and across all that is clear ahead.
-    // It is a function of its own so that other sweeps have the registers for themselves.
-    #[inline(never)]
+    #[inline]
     pub(super) fn fly(
         self,
         clearance: &Clearance,
