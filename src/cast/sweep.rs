@@ -22,7 +22,7 @@ use super::{Crossing, Ray, Side};
 use crate::world::{Cell, Clearance, FRACTION_BITS, Grid, TileId};
 
 /// The solid cells that a ray enters, in the exact order.
-#[derive(Clone, Copy)]
+#[derive(Clone)]
 pub(crate) struct Sweep<'grid> {
     grid: &'grid Grid,
     course: Course,
@@ -143,7 +143,7 @@ impl Iterator for Sweep<'_> {
     fn next(&mut self) -> Option<Crossing> {
         let clearance = self.grid.clearance();
         if clearance.shafts().is_some() {
-            let (sweep, met) = self.fly();
+            let (sweep, met) = self.clone().fly();
             *self = sweep;
             return met;
         }
