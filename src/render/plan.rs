@@ -105,6 +105,8 @@ pub struct WallLoop {
     pub textured: bool,
     /// Whether colours fade, by fog or for want of light.
     pub faded: bool,
+    /// Whether a door may be set into them, and show its jamb.
+    pub jambs: bool,
 }
 
 /// How things are drawn.
@@ -137,6 +139,7 @@ impl Plan {
         let ceiling_varies =
             is_lamplit || open().any(|tile| dims(tile) || tile.ceiling != world.ceiling());
         let is_textured = |tile: &Tile| matches!(tile.kind, TileKind::Wall(Paint::Texture(_)));
+        let is_door = |tile: &Tile| matches!(tile.kind, TileKind::Door(_) | TileKind::Doorway(_));
         let geometry = Geometry::new(world, camera);
         Self {
             geometry,
@@ -160,6 +163,7 @@ impl Plan {
             walls: WallLoop {
                 textured: tiles.iter().any(is_textured),
                 faded: is_foggy || tiles.iter().any(dims),
+                jambs: tiles.iter().any(is_door),
             },
             things: if world.things().is_empty() { ThingLoop::None } else { ThingLoop::Billboards },
             filter,

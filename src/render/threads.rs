@@ -12,7 +12,7 @@ use std::thread;
 use super::{FrameSize, Geometry};
 
 /// A thread for each so many pixels: with fewer, starting it takes longer than it saves.
-const PIXELS_OF_A_THREAD: usize = 1 << 18;
+const PIXELS_OF_A_THREAD: usize = 1 << 19;
 
 /// Bands for each thread. Each costs what it takes to prepare all columns.
 const BANDS_OF_A_THREAD: usize = 2;
@@ -142,10 +142,11 @@ mod tests {
             let size = FrameSize::new(width, height).unwrap();
             Threads::new(Geometry::Level, size, NonZero::new(most))
         };
-        for (width, height) in [(1, 1), (640, 480), (1_000_000, 1)] {
+        for (width, height) in [(1, 1), (640, 480), (1280, 720), (4_000_000, 1)] {
             assert_eq!(threads(width, height, 8), Threads::One(WhyOne::Small));
         }
         assert_eq!(threads(1920, 1080, 1), Threads::One(WhyOne::Only));
-        assert_eq!([3, 7, 100].map(|most| threads(1920, 1080, most).count()), [3, 7, 7]);
+        assert_eq!([2, 3, 7].map(|most| threads(1920, 1080, most).count()), [2, 3, 3]);
+        assert_eq!([2, 7, 100].map(|most| threads(3840, 2160, most).count()), [2, 7, 15]);
     }
 }

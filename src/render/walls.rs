@@ -33,10 +33,10 @@ pub(super) fn draw<T: Tally>(
         let columns = first..width.min(first + COLUMNS_AT_ONCE as u32);
         let strips = strips(scene, columns, band);
         if is_faded {
-            let coats = coats(strips, papers, tally, Strip::shade);
+            let coats = coats(strips, plan, papers, tally, Strip::shade);
             coat::draw(&coats, papers, band);
         } else {
-            let coats = coats(strips, papers, tally, |strip| OfSide(strip.hit.side));
+            let coats = coats(strips, plan, papers, tally, |strip| OfSide(strip.hit.side));
             coat::draw(&coats, papers, band);
         }
     }
@@ -59,13 +59,14 @@ fn strips<'a>(
 #[inline]
 fn coats<'a, S: Shade, T: Tally>(
     strips: impl Iterator<Item = Strip<'a>>,
+    plan: WallLoop,
     papers: &mut Papers,
     tally: &mut T,
     shade: impl Fn(&Strip<'a>) -> S,
 ) -> [Option<Coat<'a, S>>; COLUMNS_AT_ONCE] {
     let mut coats = [const { None }; COLUMNS_AT_ONCE];
     for (coat, (strip, paper)) in coats.iter_mut().zip(strips.zip(papers.iter_mut())) {
-        *coat = Some(strip.coat(shade(&strip), paper, tally));
+        *coat = Some(strip.coat(plan, shade(&strip), paper, tally));
     }
     coats
 }
@@ -99,9 +100,16 @@ impl<'a> Strip<'a> {
     }
 
     /// How it is covered in that shade, by means of `paper`.
-    fn coat<S: Shade, T: Tally>(&self, shade: S, paper: &mut Paper, tally: &mut T) -> Coat<'a, S> {
+    #[inline]
+    fn coat<S: Shade, T: Tally>(
+        &self,
+        plan: WallLoop,
+        shade: S,
+        paper: &mut Paper,
+        tally: &mut T,
+    ) -> Coat<'a, S> {
         tally.pixels(Pass::Walls, self.rows.len());
-        let cover = match self.paint() {
+        let cover = match self.paint(plan) {
             Paint::Color(color) => Cover::of_color(color, shade, paper),
             Paint::Texture(texture) => {
                 tally.texels(Pass::Walls, self.rows.len());
@@ -114,9 +122,9 @@ impl<'a> Strip<'a> {
     }
 
     /// How it looks: as a jamb, where it faces a door.
-    fn paint(&self) -> Paint {
+    fn paint(&self, plan: WallLoop) -> Paint {
         let Scene { world, projection, .. } = self.scene;
-        let jamb = if world.is_of_walls() { None } else { jamb(world, projection, self.hit) };
+        let jamb = if plan.jambs { jamb(world, projection, self.hit) } else { None };
         jamb.unwrap_or_else(|| self.paint_of_tile())
     }
 
