@@ -21,9 +21,11 @@ fn json_has_every_size_and_every_encoder() {
     }
     let is_positive = |value: &Value| value.as_f64().is_some_and(|number| number > 0.0);
     for row in &drawing {
-        for who in ["ours", "classic", "fill"] {
+        for who in ["ours", "by_threads", "classic", "fill"] {
             assert!(is_positive(&row["nanoseconds_a_pixel"][who]), "{who}: {row}");
         }
+        let is_small = row["width"].as_u64().unwrap() < 1000;
+        assert!(row["threads"].as_u64().is_some_and(|count| count == 1 || !is_small), "{row}");
     }
     let pipeline = rows("pipeline");
     for window in pipeline.chunks_exact(4) {

@@ -1,7 +1,7 @@
 //! How long drawing takes, at several sizes, beside the classic loop and a fill.
 
 use std::hint::black_box;
-use std::num::NonZeroU32;
+use std::num::{NonZero, NonZeroU32};
 use std::time::{Duration, Instant};
 
 use super::{Classic, ClassicFloor, fill, pixel_aspect, plain_scene, textured_scene, walk};
@@ -15,8 +15,12 @@ pub struct DrawingRow {
     pub scene: Scene,
     /// The size of the picture.
     pub size: FrameSize,
-    /// What we take.
+    /// What we take, one thread.
     pub ours: f64,
+    /// How many threads we draw such a picture with, left to ourselves.
+    pub threads: usize,
+    /// What we take with those.
+    pub by_threads: f64,
     /// What the classic loop takes: the faster one of two, where there is a floor to draw.
     pub classic: f64,
     /// What it takes to set every pixel.
@@ -61,22 +65,24 @@ fn measure(scene: Scene, world: &World, size: FrameSize, time: Duration) -> Draw
     let (width, height) = (size.width.get(), size.height.get());
     let mut frame = Frame::new(size, pixel_aspect(size));
     let mut pixels = vec![0; width as usize * height as usize];
-    let mut renderer = Renderer::new();
+    let (mut alone, mut together) = (Renderer::new(), Renderer::new());
+    alone.set_threads(NonZero::<usize>::MIN);
     let classic = Classic::new(world);
     let floors = match scene {
         Scene::Planes => &[ClassicFloor::ByColumn, ClassicFloor::ByScanline][..],
         Scene::Walls => &[ClassicFloor::None],
     };
-    let mut times =
-        Times { ours: Vec::new(), classic: vec![Vec::new(); floors.len()], fill: Vec::new() };
+    let mut times = Times::of_floors(floors.len());
     let cameras = walk(world, CAMERAS);
+    let plan = together.explain(world, &cameras[0], &mut frame).plan;
     let begun = Instant::now();
     for (turn, camera) in (0..).zip(cameras.iter().cycle()) {
         if turn > FEWEST_TURNS && begun.elapsed() >= time {
             break;
         }
-        let ours = seconds(|| renderer.render(world, camera, black_box(&mut frame)));
-        times.ours.push(ours);
+        times.ours.push(seconds(|| alone.render(world, camera, black_box(&mut frame))));
+        let by_threads = seconds(|| together.render(world, camera, black_box(&mut frame)));
+        times.by_threads.push(by_threads);
         for (&floor, times) in floors.iter().zip(&mut times.classic) {
             times.push(seconds(|| draw_classic(&classic, camera, floor, size, &mut pixels)));
         }
@@ -88,9 +94,9 @@ fn measure(scene: Scene, world: &World, size: FrameSize, time: Duration) -> Draw
     }
     let a_pixel = 1e9 / (f64::from(width) * f64::from(height));
     let classic = times.classic.into_iter().map(median).fold(f64::INFINITY, f64::min);
-    let (ours, fill) = (median(times.ours), median(times.fill));
-    let [ours, classic, fill] = [ours, classic, fill].map(|seconds| seconds * a_pixel);
-    DrawingRow { scene, size, ours, classic, fill }
+    let of_all = [median(times.ours), median(times.by_threads), classic, median(times.fill)];
+    let [ours, by_threads, classic, fill] = of_all.map(|seconds| seconds * a_pixel);
+    DrawingRow { scene, size, ours, threads: plan.threads.count(), by_threads, classic, fill }
 }
 
 fn draw_classic(
@@ -107,13 +113,21 @@ fn draw_classic(
 /// In seconds, turn by turn.
 struct Times {
     ours: Vec<f64>,
+    by_threads: Vec<f64>,
     classic: Vec<Vec<f64>>,
     fill: Vec<f64>,
 }
 
 impl Times {
+    /// None yet, of a scene whose floor is drawn in so many ways by the classic loop.
+    fn of_floors(count: usize) -> Self {
+        let none = Vec::new;
+        Self { ours: none(), by_threads: none(), classic: vec![none(); count], fill: none() }
+    }
+
     fn clear(&mut self) {
         self.ours.clear();
+        self.by_threads.clear();
         self.classic.iter_mut().for_each(Vec::clear);
         self.fill.clear();
     }

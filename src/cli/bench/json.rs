@@ -26,7 +26,13 @@ fn drawing(row: &DrawingRow) -> Value {
         },
         "width": row.size.width,
         "height": row.size.height,
-        "nanoseconds_a_pixel": { "ours": row.ours, "classic": row.classic, "fill": row.fill },
+        "threads": row.threads,
+        "nanoseconds_a_pixel": {
+            "ours": row.ours,
+            "by_threads": row.by_threads,
+            "classic": row.classic,
+            "fill": row.fill,
+        },
         "classic_over_ours": row.classic / row.ours,
         "ours_over_fill": row.ours / row.fill,
     })

@@ -41,16 +41,15 @@ static LEVEL_MAPS: LazyLock<Vec<(String, World)>> = LazyLock::new(|| {
 fn both(world: &World, camera: &Camera, filter: Filter, size: FrameSize) -> [Frame; 2] {
     [Geometry::Level, Geometry::Windows(WhyWindows::Heights)].map(|geometry| {
         let plan = Plan { geometry, ..Plan::new(world, camera, filter, size, None) };
-        let mut frame = Frame::new(size, PixelAspect::SQUARE);
-        let (memory, frame_mut) = (&mut Memory::default(), &mut frame);
-        let tally = &mut ();
-        let (seconds, threads, frame) = (0.0, None, frame_mut);
+        let mut drawn = Frame::new(size, PixelAspect::SQUARE);
+        let (memory, frame, tally) = (&mut Memory::default(), &mut drawn, &mut ());
+        let (seconds, threads) = (0.0, None);
         let picture = Picture { world, camera, filter, seconds, threads, memory, frame, tally };
         match geometry {
             Geometry::Level => level::draw(picture, plan, &Exact),
             Geometry::Windows(_) => picture.draw_windows(plan),
         }
-        frame
+        drawn
     })
 }
 
