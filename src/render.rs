@@ -3,12 +3,14 @@
 //! A frame is drawn by a [`Plan`], made from the world, in passes, each a file: `columns` casts one
 //! ray for every column of pixels, `planes` lays floor and ceiling, `sky` fills in what is open,
 //! `walls` papers what the rays hit, `see_through` paints over that what the rays passed, and `things`
-//! what stands between all that. The passes share a `Projection`, which is the only place that knows how the world maps to pixels.
+//! what stands between all that. The passes share a `Projection`, which is the only place that knows
+//! how the world maps to pixels. `level` runs them, those after the first for each band of rows, which
+//! several threads share out where the picture is large; `windows` has passes of its own.
 //!
 //! The caller owns the [`Frame`] and keeps the [`Renderer`], which owns what the passes need in
-//! between; drawing allocates nothing once both have grown to the size of the picture. One pass that
-//! does everything to a column before it goes to the next was refused: a pass that a scene has no
-//! use for can be left out, a branch in the innermost loop can't.
+//! between; drawing by one thread allocates nothing once both have grown to the size of the picture.
+//! One pass that does everything to a column before it goes to the next was refused: a pass that a
+//! scene has no use for can be left out, a branch in the innermost loop can't.
 
 mod band;
 mod coat;
