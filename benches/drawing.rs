@@ -87,13 +87,16 @@ fn measure(scene: &Scene, size: FrameSize, turns: usize) -> Times {
     let mut pixels = vec![0; (width * height) as usize];
 
     let threads = together.explain(world, &cameras[0], &mut frame).plan.threads.count();
-    // Of each camera: ours by one thread and by several, the fill, and the classic loop with each of the floors.
+    // Of each camera: ours by one thread, the fill, ours by several, and the classic loop with each of
+    // the floors.
     let mut times = vec![vec![Vec::with_capacity(turns); 3 + floors.len()]; cameras.len()];
     for turn in 0..turns {
         for (camera, times) in cameras.iter().zip(&mut times) {
             times[0].push(time(|| alone.render(world, camera, black_box(&mut frame))));
-            times[1].push(time(|| together.render(world, camera, black_box(&mut frame))));
-            times[2].push(time(|| speed::fill(black_box(&mut pixels), turn as u32)));
+            times[1].push(time(|| speed::fill(black_box(&mut pixels), turn as u32)));
+            if threads > 1 {
+                times[2].push(time(|| together.render(world, camera, black_box(&mut frame))));
+            }
             for (times, &floor) in times[3..].iter_mut().zip(*floors) {
                 let size = (width as usize, height as usize);
                 times.push(time(|| classic.draw(camera, floor, size, black_box(&mut pixels))));
@@ -105,9 +108,9 @@ fn measure(scene: &Scene, size: FrameSize, turns: usize) -> Times {
     };
     Times {
         ours: mean(0),
-        by_threads: mean(1),
+        fill: mean(1),
+        by_threads: mean(if threads > 1 { 2 } else { 0 }),
         threads,
-        fill: mean(2),
         classic: (3..3 + floors.len()).map(mean).collect(),
     }
 }

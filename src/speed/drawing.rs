@@ -74,19 +74,21 @@ fn measure(scene: Scene, world: &World, size: FrameSize, time: Duration) -> Draw
     };
     let mut times = Times::of_floors(floors.len());
     let cameras = walk(world, CAMERAS);
-    let plan = together.explain(world, &cameras[0], &mut frame).plan;
+    let threads = together.explain(world, &cameras[0], &mut frame).plan.threads.count();
     let begun = Instant::now();
     for (turn, camera) in (0..).zip(cameras.iter().cycle()) {
         if turn > FEWEST_TURNS && begun.elapsed() >= time {
             break;
         }
         times.ours.push(seconds(|| alone.render(world, camera, black_box(&mut frame))));
-        let by_threads = seconds(|| together.render(world, camera, black_box(&mut frame)));
-        times.by_threads.push(by_threads);
+        times.fill.push(seconds(|| fill(black_box(&mut pixels), turn)));
+        if threads > 1 {
+            let by_threads = seconds(|| together.render(world, camera, black_box(&mut frame)));
+            times.by_threads.push(by_threads);
+        }
         for (&floor, times) in floors.iter().zip(&mut times.classic) {
             times.push(seconds(|| draw_classic(&classic, camera, floor, size, &mut pixels)));
         }
-        times.fill.push(seconds(|| fill(black_box(&mut pixels), turn)));
         if turn == 0 {
             // The first of all fetches everything.
             times.clear();
@@ -94,9 +96,11 @@ fn measure(scene: Scene, world: &World, size: FrameSize, time: Duration) -> Draw
     }
     let a_pixel = 1e9 / (f64::from(width) * f64::from(height));
     let classic = times.classic.into_iter().map(median).fold(f64::INFINITY, f64::min);
-    let of_all = [median(times.ours), median(times.by_threads), classic, median(times.fill)];
-    let [ours, by_threads, classic, fill] = of_all.map(|seconds| seconds * a_pixel);
-    DrawingRow { scene, size, ours, threads: plan.threads.count(), by_threads, classic, fill }
+    let (ours, fill) = (median(times.ours), median(times.fill));
+    let by_threads = if threads > 1 { median(times.by_threads) } else { ours };
+    let [ours, by_threads, classic, fill] =
+        [ours, by_threads, classic, fill].map(|seconds| seconds * a_pixel);
+    DrawingRow { scene, size, ours, threads, by_threads, classic, fill }
 }
 
 fn draw_classic(
