@@ -102,6 +102,15 @@ impl Frame {
         self.pixels[y as usize * self.width() as usize + x as usize]
     }
 
+    /// The pixels of row `y` from the top, from the left.
+    ///
+    /// # Panics
+    /// Where the frame has no such row.
+    pub fn row(&self, y: u32) -> impl ExactSizeIterator<Item = Rgb> {
+        let start = y as usize * self.width() as usize;
+        self.pixels[start..][..self.width() as usize].iter().copied()
+    }
+
     /// All of it.
     pub(crate) fn whole(&mut self) -> Band<'_> {
         Band::new(self.width() as usize, 0, &mut self.pixels)

@@ -1,15 +1,14 @@
 //! What shows besides the picture: the status line, the minimap's frame, and messages.
 
-use ratatui::Frame;
 use ratatui::layout::{Constraint, Flex, Layout, Rect, Size};
 use ratatui::style::{Modifier, Style};
 use ratatui::text::{Line, Text};
-use ratatui::widgets::{Block, Clear, Paragraph, Wrap};
+use ratatui::widgets::{Block, Paragraph, Wrap};
 
 use super::played::Played;
 use super::stats::Stats;
-use crate::tui::Minimap;
 use crate::tui::bindings::{Action, Bindings};
+use crate::tui::{Canvas, Minimap};
 
 /// The least that can be played in.
 const LEAST_COLUMNS: u16 = 20;
@@ -29,9 +28,9 @@ pub(super) fn is_too_small(area: Rect) -> bool {
 }
 
 /// Says so.
-pub(super) fn too_small(frame: &mut Frame) {
+pub(super) fn too_small(canvas: &mut impl Canvas) {
     let text = format!("Too small to play: {LEAST_COLUMNS}×{LEAST_ROWS} at least.");
-    frame.render_widget(Paragraph::new(text).wrap(Wrap { trim: true }), frame.area());
+    canvas.draw_widget(Paragraph::new(text).wrap(Wrap { trim: true }), canvas.bounds());
 }
 
 /// Where the picture and the status line go.
@@ -55,11 +54,10 @@ pub(super) fn minimap(picture: Rect, map: &Minimap) -> Option<Rect> {
 }
 
 /// Draws an empty panel with a border and a title, and tells where its inside is.
-pub(super) fn framed(frame: &mut Frame, area: Rect, title: &str) -> Rect {
+pub(super) fn framed(canvas: &mut impl Canvas, area: Rect, title: &str) -> Rect {
     let block = Block::bordered().title(title);
     let inside = block.inner(area);
-    frame.render_widget(Clear, area);
-    frame.render_widget(block, area);
+    canvas.draw_widget(block, area);
     inside
 }
 
@@ -72,7 +70,7 @@ pub(super) struct Gait {
 
 /// The line below the picture.
 pub(super) fn status(
-    frame: &mut Frame,
+    canvas: &mut impl Canvas,
     area: Rect,
     game: &Played,
     gait: Gait,
@@ -89,18 +87,18 @@ pub(super) fn status(
     let widths = [Constraint::Fill(1), Constraint::Length(right.width() as u16)];
     let [left_area, right_area] = Layout::horizontal(widths).areas(area);
     let reversed = Style::new().add_modifier(Modifier::REVERSED);
-    frame.render_widget(left.style(reversed), left_area);
-    frame.render_widget(right.style(reversed), right_area);
+    canvas.draw_widget(left.style(reversed), left_area);
+    canvas.draw_widget(right.style(reversed), right_area);
 }
 
 /// That the game waits.
-pub(super) fn paused(frame: &mut Frame, picture: Rect, bindings: &Bindings) {
+pub(super) fn paused(canvas: &mut impl Canvas, picture: Rect, bindings: &Bindings) {
     let keys = key_names(bindings, Action::TogglePause);
-    message(frame, picture, "paused", Text::from(format!("{keys} goes on")).centered());
+    message(canvas, picture, "paused", Text::from(format!("{keys} goes on")).centered());
 }
 
 /// Which key does what: in as many columns as it takes, or as much as there is room for.
-pub(super) fn help(frame: &mut Frame, picture: Rect, bindings: &Bindings) {
+pub(super) fn help(canvas: &mut impl Canvas, picture: Rect, bindings: &Bindings) {
     const GAP: usize = 3;
     let lines: Vec<String> = Action::ALL
         .into_iter()
@@ -119,32 +117,32 @@ pub(super) fn help(frame: &mut Frame, picture: Rect, bindings: &Bindings) {
         rows.truncate(room - 1);
         rows.push("more in a larger window".to_owned());
     }
-    message(frame, picture, "keys", rows.into_iter().map(Line::from).collect());
+    message(canvas, picture, "keys", rows.into_iter().map(Line::from).collect());
 }
 
 /// That the exit was reached, and how soon.
-pub(super) fn level_done(frame: &mut Frame, picture: Rect, title: &str, seconds: f64) {
+pub(super) fn level_done(canvas: &mut impl Canvas, picture: Rect, title: &str, seconds: f64) {
     let text = format!("{title}\nin {}\nEnter goes on", time(seconds));
-    message(frame, picture, "you found the way out", Text::from(text).centered());
+    message(canvas, picture, "you found the way out", Text::from(text).centered());
 }
 
 /// That there are no more levels, and how soon the player got through them.
-pub(super) fn end(frame: &mut Frame, picture: Rect, seconds: f64) {
+pub(super) fn end(canvas: &mut impl Canvas, picture: Rect, seconds: f64) {
     let text = format!("all levels\nin {}\nEnter leaves", time(seconds));
-    message(frame, picture, "the end", Text::from(text).centered());
+    message(canvas, picture, "the end", Text::from(text).centered());
 }
 
 /// A panel in the middle of the picture, as large as `text` needs.
-fn message(frame: &mut Frame, picture: Rect, title: &str, text: Text) {
+fn message(canvas: &mut impl Canvas, picture: Rect, title: &str, text: Text) {
     let widest = text.width().max(title.len()) as u16;
     let width = Constraint::Length(widest.saturating_add(BORDERS + PADDING));
     let height = Constraint::Length((text.height() as u16).saturating_add(BORDERS));
     let [area] = Layout::horizontal([width]).flex(Flex::Center).areas(picture);
     let [area] = Layout::vertical([height]).flex(Flex::Center).areas(area);
-    let inside = framed(frame, area, title);
+    let inside = framed(canvas, area, title);
     let [inside] =
         Layout::horizontal([Constraint::Fill(1)]).horizontal_margin(PADDING / 2).areas(inside);
-    frame.render_widget(Paragraph::new(text), inside);
+    canvas.draw_widget(Paragraph::new(text), inside);
 }
 
 fn key_names(bindings: &Bindings, action: Action) -> String {
@@ -160,15 +158,15 @@ fn time(seconds: f64) -> String {
 
 #[cfg(test)]
 mod tests {
-    use ratatui::Terminal;
-    use ratatui::backend::TestBackend;
+    use ratatui::buffer::{Buffer, Cell};
 
     use super::*;
 
-    fn shown(columns: u16, rows: u16, draw: impl FnOnce(&mut Frame)) -> String {
-        let mut terminal = Terminal::new(TestBackend::new(columns, rows)).unwrap();
-        terminal.draw(draw).unwrap();
-        terminal.backend().to_string()
+    fn shown(columns: u16, rows: u16, draw: impl FnOnce(&mut Buffer)) -> String {
+        let mut buffer = Buffer::empty(Rect::new(0, 0, columns, rows));
+        draw(&mut buffer);
+        let lines = buffer.content().chunks(columns.into());
+        lines.flat_map(|line| line.iter().map(Cell::symbol).chain(["\n"])).collect()
     }
 
     #[test]
@@ -177,7 +175,7 @@ mod tests {
         for (columns, rows, is_whole) in
             [(32, 24, true), (64, 13, true), (200, 60, true), (60, 9, false), (20, 5, false)]
         {
-            let text = shown(columns, rows, |frame| help(frame, frame.area(), &bindings));
+            let text = shown(columns, rows, |canvas| help(canvas, canvas.bounds(), &bindings));
             let is_so = Action::ALL.iter().all(|(_, does, _)| text.contains(does));
             assert_eq!(is_so, is_whole, "{columns} by {rows}:\n{text}");
             assert_eq!(text.contains("more in a"), !is_whole, "{columns} by {rows}:\n{text}");
