@@ -9,9 +9,9 @@ use cellcaster::render::{
 };
 use cellcaster::world::{Camera, Cell, FieldOfView, Opening, Pitch, World};
 
-/// Large enough for seven threads, and divided by neither of their numbers.
-const WIDTH: u32 = 1925;
-const HEIGHT: u32 = 1083;
+/// Large enough for seven threads, with a height that is divided by neither of their numbers.
+const WIDTH: u32 = 2555;
+const HEIGHT: u32 = 1441;
 
 /// All levels and all maps of the gallery that have a grid, with doors ajar.
 fn worlds() -> Vec<(String, World)> {
