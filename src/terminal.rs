@@ -34,7 +34,7 @@ use self::unix as platform;
 use self::unsupported as platform;
 
 #[cfg(feature = "cli")]
-pub(crate) use self::cell_writer::Style;
+pub(crate) use self::cell_writer::{Bytes, Style};
 pub use self::cell_writer::{CellWriter, Screen};
 pub use self::depth::{Detected, color_depth};
 pub use self::error::Error;

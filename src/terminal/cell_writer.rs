@@ -9,6 +9,7 @@
 //! What the terminal shows is modelled cell by cell: what looks as it should is not sent, and what
 //! moved sideways is moved by the terminal.
 
+mod bytes;
 mod control;
 mod exact;
 mod inexact;
@@ -30,6 +31,7 @@ use ratatui::buffer::Cell;
 use ratatui::layout::{Position, Size};
 use ratatui::style::Color;
 
+pub(crate) use self::bytes::Bytes;
 use self::inexact::Draughtsman;
 use self::pen::Pen;
 use self::rest::Rest;

@@ -4,18 +4,18 @@ use std::io::{self, Write};
 
 use ratatui::buffer::Cell;
 
-use crate::terminal::Style;
+use crate::terminal::{Bytes, Style};
 
 /// Writes cells as text with the sequences that colour it. Every line ends in the terminal's own
 /// colours, so that pagers and scrolling can cut between lines.
 pub(super) struct Ansi<W> {
     output: W,
-    line: Vec<u8>,
+    line: Bytes,
 }
 
 impl<W: Write> Ansi<W> {
     pub(super) fn new(output: W) -> Self {
-        Self { output, line: Vec::new() }
+        Self { output, line: Bytes::default() }
     }
 }
 
@@ -29,13 +29,13 @@ impl<W: Write> super::Writer for Ansi<W> {
                 next.write_from(Some(style), &mut self.line);
                 style = next;
             }
-            self.line.extend_from_slice(cell.symbol().as_bytes());
+            self.line.push_text(cell.symbol().as_bytes());
         }
         if style != Style::RESET {
             Style::RESET.write_from(Some(style), &mut self.line);
         }
-        self.line.push(b'\n');
-        self.output.write_all(&self.line)
+        self.line.push_text(b"\n");
+        self.output.write_all(self.line.as_slice())
     }
 
     fn finish(mut self: Box<Self>) -> io::Result<()> {

@@ -1,32 +1,34 @@
 //! Writes control sequences with numeric parameters.
 
-/// A control sequence in the making. It is written when it has got a parameter; without one, it is
-/// as if it had never been begun.
-pub(super) struct ControlSequence<'a> {
-    /// What was written before, the sequence so far, and room for the rest of it.
-    bytes: &'a mut Vec<u8>,
+use super::bytes::Piece;
+
+/// A control sequence in the making. It counts as written when it has got a parameter; without one, it
+/// is as if it had never been begun.
+pub(super) struct ControlSequence<'a, 'b> {
+    piece: &'a mut Piece<'b>,
     start: usize,
-    end: usize,
 }
 
-impl<'a> ControlSequence<'a> {
-    /// Begins a sequence at the end of `bytes`.
+impl<'a, 'b> ControlSequence<'a, 'b> {
+    /// Begins a sequence at the end of `piece`.
     #[inline]
-    pub(super) fn begin(bytes: &'a mut Vec<u8>) -> Self {
-        let start = bytes.len();
-        // Room is made once. In a buffer of its own, the sequence would be copied a moment after it
-        // was written, for which processors wait.
-        bytes.extend_from_slice(&[INTRODUCER[0]; LONGEST]);
-        Self { bytes, start, end: start + 1 }
+    pub(super) fn begin(piece: &'a mut Piece<'b>) -> Self {
+        let start = piece.end();
+        piece.push([INTRODUCER[0]], 1);
+        Self { piece, start }
     }
 
     /// Adds the parameter `number`.
     #[inline]
     pub(super) fn parameter(&mut self, number: u8) {
         let Decimal { text, length } = DECIMALS[usize::from(number)];
-        // All of it, as four bytes are copied faster than as many as there are.
-        self.bytes[self.end..self.end + text.len()].copy_from_slice(&text);
-        self.end += usize::from(length);
+        self.piece.push(text, length.into());
+    }
+
+    /// Adds parameters in decimal, each after a separator.
+    #[inline]
+    pub(super) fn literal<const LENGTH: usize>(&mut self, text: [u8; LENGTH]) {
+        self.piece.push(text, LENGTH);
     }
 
     /// Adds several parameters.
@@ -45,27 +47,25 @@ impl<'a> ControlSequence<'a> {
     }
 
     fn large_place(&mut self, number: u16) {
-        let text = format!(";{number}");
-        self.bytes[self.end..self.end + text.len()].copy_from_slice(text.as_bytes());
-        self.end += text.len();
+        self.literal([SEPARATOR]);
+        for unit in [10_000, 1_000, 100, 10, 1].into_iter().filter(|&unit| unit <= number) {
+            self.literal([b'0' + (number / unit % 10) as u8]);
+        }
     }
 
     /// Ends it with `last` as its final byte.
     #[inline]
     pub(super) fn end(self, last: u8) {
-        if self.end > self.start + 1 {
+        if self.piece.end() > self.start + 1 {
             // Each parameter came with a separator before it.
-            self.bytes[self.start + 1] = INTRODUCER[1];
-            self.bytes[self.end] = last;
-            self.bytes.truncate(self.end + 1);
+            self.piece.put(self.start + 1, INTRODUCER[1]);
+            self.piece.push([last], 1);
         } else {
-            self.bytes.truncate(self.start);
+            self.piece.end_at(self.start);
         }
     }
 }
 
-/// No sequence is longer: all that a style says, and more than any motion.
-const LONGEST: usize = 64;
 const INTRODUCER: &[u8; 2] = b"\x1b[";
 const SEPARATOR: u8 = b';';
 
@@ -105,17 +105,20 @@ static DECIMALS: [Decimal; 256] = {
 
 #[cfg(test)]
 mod tests {
+    use super::super::bytes::Bytes;
     use super::*;
 
     #[test]
     fn every_number_is_written_in_decimal() {
         for number in 0..=u16::MAX {
-            let mut bytes = Vec::new();
-            let mut sequence = ControlSequence::begin(&mut bytes);
+            let mut bytes = Bytes::default();
+            let mut piece = bytes.piece();
+            let mut sequence = ControlSequence::begin(&mut piece);
             sequence.place(7);
             sequence.place(number);
             sequence.end(b'H');
-            assert_eq!(bytes, format!("\x1b[7;{number}H").into_bytes());
+            piece.finish();
+            assert_eq!(bytes.as_slice(), format!("\x1b[7;{number}H").as_bytes());
         }
     }
 }

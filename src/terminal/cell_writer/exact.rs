@@ -11,16 +11,15 @@ use super::style::Style;
 
 /// Makes a row look as it is wanted.
 pub(super) fn draw_row(pen: &mut Pen, shifts: &mut Shifts, mut row: Row) {
-    if row.can_move() {
-        shift(pen, shifts, &mut row);
-        let mut column = 0;
-        while let Some(unchanged) = row.alike_from(column) {
-            column += unchanged;
-            draw_cell(pen, &mut row, column);
-            column += 1;
-        }
-    } else {
+    if *row.intricate {
         draw_intricate_row(pen, &mut row);
+    } else {
+        shift(pen, shifts, &mut row);
+        for (column, &loss) in shifts.losses().iter().enumerate() {
+            if loss > 0 {
+                draw_cell(pen, &mut row, column);
+            }
+        }
     }
     *row.exact = true;
 }
@@ -42,6 +41,7 @@ fn draw_intricate_row(pen: &mut Pen, row: &mut Row) {
             covered = row.wanted[column].cell_width().saturating_sub(1);
         }
     }
+    *row.intricate = row.shown.iter().chain(row.looks).any(|look| look.is_intricate());
 }
 
 /// Draws one cell of a row.
@@ -63,11 +63,12 @@ pub(super) fn draw_cell(pen: &mut Pen, row: &mut Row, column: usize) {
 
 /// Moves the stretches of a row that have only moved.
 fn shift(pen: &mut Pen, shifts: &mut Shifts, row: &mut Row) {
-    shifts.begin(row);
-    while let Some(shift) = shifts.next(row, |from, to, losses| {
+    let lose = |row: &Row, from: usize, to: usize, losses: &mut Vec<i32>| {
         let looks = row.shown[from..].iter().zip(&row.looks[to..]);
         losses.extend(looks.map(|(shown, look)| if shown == look { 0 } else { CELL }));
-    }) {
+    };
+    shifts.begin(row, |from, to, losses| lose(row, from, to, losses));
+    while let Some(shift) = shifts.next(|from, to, losses| lose(row, from, to, losses)) {
         pen.shift_row(&shift, row.y);
         row.shift(&shift);
     }

@@ -28,7 +28,7 @@ impl Draughtsman {
         mut row: Row,
         price: Price,
     ) {
-        if !row.can_move() {
+        if *row.intricate {
             // Nobody knows how much of it a character covers.
             return exact::draw_row(pen, shifts, row);
         }
@@ -70,18 +70,22 @@ impl Draughtsman {
 
     /// Moves the stretches of a row that have only moved, or about.
     fn shift(&mut self, pen: &mut Pen, shifts: &mut Shifts, row: &mut Row, price: Price) {
-        shifts.begin(row);
-        while let Some(shift) = shifts.next(row, |from, to, losses| {
-            let inks = self.shown[from..].iter().zip(&self.wanted[to..]);
-            let looks = row.shown[from..].iter().zip(&row.looks[to..]);
-            losses.extend(inks.zip(looks).map(|(inks, (shown, look))| match inks {
-                _ if shown == look => 0,
-                (Some(shown), Some(wanted)) => {
-                    ((price.of_halves(*shown, *wanted) * BYTE as f32) as i32).min(CELL)
-                }
-                _ => CELL,
-            }));
-        }) {
+        let lose =
+            |shown: &[Option<Halves>], row: &Row, [from, to]: [usize; 2], losses: &mut Vec<i32>| {
+                let inks = shown[from..].iter().zip(&self.wanted[to..]);
+                let looks = row.shown[from..].iter().zip(&row.looks[to..]);
+                losses.extend(inks.zip(looks).map(|(inks, (shown, look))| match inks {
+                    _ if shown == look => 0,
+                    (Some(shown), Some(wanted)) => {
+                        ((price.of_halves(*shown, *wanted) * BYTE as f32) as i32).min(CELL)
+                    }
+                    _ => CELL,
+                }));
+            };
+        shifts.begin(row, |from, to, losses| lose(&self.shown, row, [from, to], losses));
+        while let Some(shift) =
+            shifts.next(|from, to, losses| lose(&self.shown, row, [from, to], losses))
+        {
             pen.shift_row(&shift, row.y);
             row.shift(&shift);
             shift.apply(&mut self.shown, None);

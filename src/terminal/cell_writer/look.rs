@@ -26,13 +26,14 @@ pub(super) enum Glyph {
 }
 
 impl Glyph {
+    /// Itself in UTF-8, and how many of the bytes that takes.
     #[inline]
-    pub(super) const fn symbol(self) -> &'static str {
+    pub(super) const fn encoded(self) -> ([u8; 4], usize) {
         match self {
-            Self::Upper => "▀",
-            Self::Lower => "▄",
-            Self::Full => "█",
-            Self::Space => " ",
+            Self::Upper => ([0xE2, 0x96, 0x80, 0], 3),
+            Self::Lower => ([0xE2, 0x96, 0x84, 0], 3),
+            Self::Full => ([0xE2, 0x96, 0x88, 0], 3),
+            Self::Space => ([b' ', 0, 0, 0], 1),
         }
     }
 
@@ -140,11 +141,6 @@ impl Look {
     /// Whether it may be wider than a cell.
     pub(super) fn is_intricate(self) -> bool {
         self == Self::INTRICATE
-    }
-
-    /// Whether it stays what it is where it is moved.
-    pub(super) fn can_move(self) -> bool {
-        self != Self::INTRICATE
     }
 
     /// Whether a cell that looks like `wanted` need not be sent.

@@ -5,6 +5,7 @@ use crossterm::{Command, queue};
 use ratatui::buffer::CellWidth;
 use ratatui::layout::Position;
 
+use super::bytes::{Bytes, Piece};
 use super::control::ControlSequence;
 use super::look::Glyph;
 use super::shift::{Shift, Way};
@@ -14,7 +15,7 @@ use super::style::Style;
 #[derive(Debug)]
 pub(super) struct Pen {
     /// It begins with the mark of synchronized output.
-    frame: Vec<u8>,
+    frame: Bytes,
     /// How wide the terminal is.
     width: u16,
     style: Option<Style>,
@@ -28,7 +29,7 @@ const INSERT: u8 = b'@';
 impl Pen {
     /// For a terminal of that width of which nothing is known.
     pub(super) fn new(width: u16) -> Self {
-        Self { frame: Vec::new(), width, style: None, position: None }
+        Self { frame: Bytes::default(), width, style: None, position: None }
     }
 
     /// What the terminal draws in; `None` where nobody knows.
@@ -52,7 +53,7 @@ impl Pen {
             return None;
         }
         self.command(EndSynchronizedUpdate);
-        Some(&self.frame)
+        Some(self.frame.as_slice())
     }
 
     /// Begins another frame.
@@ -69,35 +70,21 @@ impl Pen {
     /// Writes one of crossterm's commands that changes neither the cursor's place nor the style.
     pub(super) fn command(&mut self, command: impl Command) {
         // Memory takes everything.
-        _ = queue!(self.frame(), command);
+        _ = queue!(begun(&mut self.frame), command);
     }
 
-    #[inline]
     pub(super) fn move_to(&mut self, target: Position) {
-        if self.position == Some(target) {
-            return;
-        }
-        let position = self.position;
-        let mut motion = ControlSequence::begin(self.frame());
-        match position {
-            Some(position) if position.y == target.y && position.x < target.x => {
-                motion.place(target.x - position.x);
-                motion.end(b'C');
-            }
-            _ => {
-                motion.place(target.y.saturating_add(1));
-                motion.place(target.x.saturating_add(1));
-                motion.end(b'H');
-            }
-        }
+        let mut piece = begun(&mut self.frame).piece();
+        push_motion(self.position, target, &mut piece);
+        piece.finish();
         self.position = Some(target);
     }
 
-    #[inline]
     pub(super) fn set_style(&mut self, target: Style) {
         if self.style != Some(target) {
-            let current = self.style;
-            target.write_from(current, self.frame());
+            let mut piece = begun(&mut self.frame).piece();
+            target.push_from(self.style, &mut piece);
+            piece.finish();
             self.style = Some(target);
         }
     }
@@ -105,12 +92,15 @@ impl Pen {
     /// Draws a block at a position on the screen.
     #[inline]
     pub(super) fn draw_block(&mut self, position: Position, glyph: Glyph, style: Style) {
-        self.move_to(position);
-        self.set_style(style);
-        match glyph {
-            Glyph::Space => self.frame().push(b' '),
-            _ => self.frame().extend_from_slice(glyph.symbol().as_bytes()),
+        let mut piece = begun(&mut self.frame).piece();
+        push_motion(self.position, position, &mut piece);
+        if self.style != Some(style) {
+            style.push_from(self.style, &mut piece);
+            self.style = Some(style);
         }
+        let (encoded, count) = glyph.encoded();
+        piece.push(encoded, count);
+        piece.finish();
         self.advance(position);
     }
 
@@ -119,7 +109,7 @@ impl Pen {
         let text = if text.chars().any(char::is_control) { " " } else { text };
         self.move_to(position);
         self.set_style(style);
-        self.frame().extend_from_slice(text.as_bytes());
+        begun(&mut self.frame).push_text(text.as_bytes());
         if advances_by_one(text) {
             self.advance(position);
         } else {
@@ -159,18 +149,41 @@ impl Pen {
     /// Deletes or inserts `count` characters at a position; the cursor stays there.
     fn edit_row(&mut self, at: Position, count: u16, operation: u8) {
         self.move_to(at);
-        let mut edit = ControlSequence::begin(self.frame());
+        let mut piece = begun(&mut self.frame).piece();
+        let mut edit = ControlSequence::begin(&mut piece);
         edit.place(count);
         edit.end(operation);
+        piece.finish();
     }
+}
 
-    /// The frame, begun if it was not.
-    fn frame(&mut self) -> &mut Vec<u8> {
-        if self.frame.is_empty() {
-            // Memory takes everything.
-            _ = queue!(self.frame, BeginSynchronizedUpdate);
+/// The frame, begun if it was not.
+#[inline]
+fn begun(frame: &mut Bytes) -> &mut Bytes {
+    if frame.is_empty() {
+        // Memory takes everything.
+        _ = queue!(frame, BeginSynchronizedUpdate);
+    }
+    frame
+}
+
+/// Adds the motion from where the cursor stands to `target`.
+#[inline]
+fn push_motion(position: Option<Position>, target: Position, piece: &mut Piece) {
+    if position == Some(target) {
+        return;
+    }
+    let mut motion = ControlSequence::begin(piece);
+    match position {
+        Some(position) if position.y == target.y && position.x < target.x => {
+            motion.place(target.x - position.x);
+            motion.end(b'C');
         }
-        &mut self.frame
+        _ => {
+            motion.place(target.y.saturating_add(1));
+            motion.place(target.x.saturating_add(1));
+            motion.end(b'H');
+        }
     }
 }
 

@@ -27,6 +27,8 @@ pub struct Screen {
     wanted: Vec<Cell>,
     /// Whether anything in a row is to be changed.
     changed: Vec<bool>,
+    /// Whether a row shows, or is to show, anything intricate.
+    intricate: Vec<bool>,
     /// Whether a row shows exactly what it is to show.
     exact: Vec<bool>,
     /// Where widgets are drawn first.
@@ -38,9 +40,10 @@ pub(super) struct Row<'a> {
     pub(super) y: u16,
     pub(super) shown: &'a mut [Look],
     pub(super) looks: &'a [Look],
-    /// The landmarks of what it was to show in the last frame, moved as that was moved since.
+    /// The landmarks of what it was to show in the last frame.
     pub(super) marks: &'a mut [Mark],
     pub(super) wanted: &'a [Cell],
+    pub(super) intricate: &'a mut bool,
     pub(super) exact: &'a mut bool,
 }
 
@@ -68,6 +71,8 @@ impl Screen {
         self.wanted.resize(width * height, Cell::EMPTY);
         self.changed.clear();
         self.changed.resize(height, false);
+        self.intricate.clear();
+        self.intricate.resize(height, false);
         self.exact.resize(height, false);
         self.forget();
     }
@@ -109,9 +114,18 @@ impl Screen {
     fn set(&mut self, place: usize, cell: &Cell) {
         let look = Look::of(cell);
         self.looks[place] = look;
-        if look.is_intricate() && self.wanted[place] != *cell {
+        if look.is_intricate() {
+            self.want_intricate(place, cell);
+        }
+    }
+
+    #[cold]
+    fn want_intricate(&mut self, place: usize, cell: &Cell) {
+        let y = place / self.width;
+        self.intricate[y] = true;
+        if self.wanted[place] != *cell {
             self.wanted[place].clone_from(cell);
-            self.changed[place / self.width] = true;
+            self.changed[y] = true;
         }
     }
 
@@ -171,11 +185,12 @@ impl Screen {
         let width = self.width.max(1);
         let wanted = self.looks.chunks(width).zip(self.wanted.chunks(width));
         let known = self.shown.chunks_mut(width).zip(self.marks.chunks_mut(width));
-        let states = self.changed.iter_mut().zip(&mut self.exact);
+        let states = self.changed.iter_mut().zip(&mut self.intricate).zip(&mut self.exact);
         (0..).zip(known.zip(wanted).zip(states)).filter_map(move |(y, (cells, state))| {
             let ((shown, marks), (looks, wanted)) = cells;
-            let (changed, exact) = state;
-            is_asked(*exact, changed).then_some(Row { y, shown, looks, marks, wanted, exact })
+            let ((changed, intricate), exact) = state;
+            let row = Row { y, shown, looks, marks, wanted, intricate, exact };
+            is_asked(*row.exact, changed).then_some(row)
         })
     }
 }
@@ -219,19 +234,6 @@ impl Row<'_> {
         self.looks.len()
     }
 
-    /// How many cells from `column` on show what they are to show; `None` if all do.
-    #[inline]
-    pub(super) fn alike_from(&self, column: usize) -> Option<usize> {
-        let mut looks = self.shown[column..].iter().zip(&self.looks[column..]);
-        looks.position(|(shown, look)| shown != look)
-    }
-
-    /// Whether each of its cells stays what it is where it is moved.
-    pub(super) fn can_move(&self) -> bool {
-        let looks = self.shown.iter().zip(self.looks);
-        looks.fold(true, |can, (shown, look)| can & shown.can_move() & look.can_move())
-    }
-
     /// Whether it shows blocks wherever it does not show what it is to show, and is to show blocks
     /// there.
     pub(super) fn is_near(&self) -> bool {
@@ -244,6 +246,5 @@ impl Row<'_> {
     /// The terminal has moved a part of it.
     pub(super) fn shift(&mut self, shift: &Shift) {
         shift.apply(self.shown, Look::UNKNOWN);
-        shift.apply(self.marks, Mark::NONE);
     }
 }

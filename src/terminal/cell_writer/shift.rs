@@ -61,45 +61,59 @@ pub(super) struct Shifts {
     /// The row's landmarks, padded, as they are to be, and as they were.
     marks: Vec<Mark>,
     marks_before: Vec<Mark>,
-    /// What is lost now, and what would be lost after a move.
+    /// What is lost now, and what would be lost after a move, and after the best of them.
     losses: Vec<i32>,
     moved: Vec<i32>,
+    moved_best: Vec<i32>,
 }
 
 impl Shifts {
-    /// Begins with a row.
-    pub(super) fn begin(&mut self, row: &Row) {
+    /// Begins with a row. `lose` adds what is lost where the cells that are now at the first place and
+    /// after it are shown at the second and after it.
+    pub(super) fn begin(&mut self, row: &Row, lose: impl Fn(usize, usize, &mut Vec<i32>)) {
         self.marks.clear();
         self.marks.extend(Mark::all(row.looks));
-        pad(&mut self.marks);
-    }
-
-    /// The shift after which least is lost, if it spares more than it takes. `lose` adds what is lost
-    /// where the cells that are now at the first place and after it are shown at the second and
-    /// after it.
-    pub(super) fn next(
-        &mut self,
-        row: &Row,
-        lose: impl Fn(usize, usize, &mut Vec<i32>),
-    ) -> Option<Shift> {
+        pad(&mut self.marks, Mark::NONE);
+        self.marks_before.clear();
+        self.marks_before.extend(row.marks.iter().map(|&mark| mark.before()));
+        pad(&mut self.marks_before, Mark::NONE.before());
         self.losses.clear();
         lose(0, 0, &mut self.losses);
+    }
+
+    /// The shift after which least is lost, if it spares more than it takes.
+    pub(super) fn next(&mut self, lose: impl Fn(usize, usize, &mut Vec<i32>)) -> Option<Shift> {
         if self.losses.iter().sum::<i32>() <= SHIFT {
             return None;
         }
-        self.marks_before.clear();
-        self.marks_before.extend_from_slice(row.marks);
-        pad(&mut self.marks_before);
-        let moves =
-            likely_moves(&self.marks_before, &self.marks, row.width()).into_iter().flatten();
-        let shifts = moves.filter_map(|by| {
+        let mut best: Option<(Shift, i32)> = None;
+        let moves = likely_moves(&self.marks_before, &self.marks, self.losses.len());
+        for by in moves.into_iter().flatten() {
             let (from, to) = by.places();
             self.moved.clear();
             lose(from, to, &mut self.moved);
-            Shift::best(by, &self.losses, &self.moved)
-        });
-        let (shift, spared) = shifts.max_by_key(|&(_, spared)| spared)?;
-        (spared > SHIFT).then_some(shift)
+            let (shift, spared) = Shift::best(by, &self.losses, &self.moved);
+            if best.as_ref().is_none_or(|&(_, most)| spared > most) {
+                best = Some((shift, spared));
+                std::mem::swap(&mut self.moved, &mut self.moved_best);
+            }
+        }
+        let (shift, _) = best.filter(|&(_, spared)| spared > SHIFT)?;
+        self.take(&shift);
+        Some(shift)
+    }
+
+    /// The row has been moved.
+    fn take(&mut self, shift: &Shift) {
+        shift.apply(&mut self.marks_before, Mark::NONE.before());
+        let moved = shift.columns.start..shift.columns.end - shift.by;
+        self.losses[shift.covered()].copy_from_slice(&self.moved_best[moved]);
+        self.losses[shift.uncovered()].fill(CELL);
+    }
+
+    /// What is lost in each cell of the row.
+    pub(super) fn losses(&self) -> &[i32] {
+        &self.losses
     }
 
     /// Is done with the row: what it is to show now is what was wanted before the next frame.
@@ -111,35 +125,43 @@ impl Shifts {
 impl Shift {
     /// The best shift by that move, and what it spares, where that much is lost now, and that much
     /// after all that can move has moved.
-    fn best(by: Move, now: &[i32], moved: &[i32]) -> Option<(Self, i32)> {
+    fn best(by: Move, now: &[i32], moved: &[i32]) -> (Self, i32) {
         let (_, first) = by.places();
         let spared = now[first..].iter().zip(moved).map(|(now, moved)| now - moved);
-        let (stretch, spared) = best_stretch(spared)?;
+        let (stretch, spared) = best_stretch(spared);
         let Move { way, by } = by;
-        let columns = stretch.start..stretch.end + by;
+        let shift = Self { columns: stretch.start as usize..stretch.end as usize + by, by, way };
         // What is uncovered must be sent, even where it was right before.
-        let uncovered = match way {
-            Way::Left => columns.end - by..columns.end,
-            Way::Right => columns.start..columns.start + by,
-        };
-        let lost: i32 = now[uncovered].iter().map(|loss| CELL - loss).sum();
-        Some((Self { columns, by, way }, spared - lost))
+        let lost: i32 = now[shift.uncovered()].iter().map(|loss| CELL - loss).sum();
+        (shift, spared - lost)
+    }
+
+    /// The cells of which nobody knows what they show when it has been made.
+    fn uncovered(&self) -> Range<usize> {
+        let Range { start, end } = self.columns;
+        match self.way {
+            Way::Left => end - self.by..end,
+            Way::Right => start..start + self.by,
+        }
+    }
+
+    /// The cells that show what others showed before.
+    fn covered(&self) -> Range<usize> {
+        let Range { start, end } = self.columns;
+        match self.way {
+            Way::Left => start..end - self.by,
+            Way::Right => start + self.by..end,
+        }
     }
 
     /// Does to `row` what the terminal does; what is uncovered becomes `unknown`.
     pub(super) fn apply<T: Clone>(&self, row: &mut [T], unknown: T) {
         let stretch = &mut row[self.columns.clone()];
-        let uncovered = match self.way {
-            Way::Left => {
-                stretch.rotate_left(self.by);
-                stretch.len() - self.by..stretch.len()
-            }
-            Way::Right => {
-                stretch.rotate_right(self.by);
-                0..self.by
-            }
-        };
-        stretch[uncovered].fill(unknown);
+        match self.way {
+            Way::Left => stretch.rotate_left(self.by),
+            Way::Right => stretch.rotate_right(self.by),
+        }
+        row[self.uncovered()].fill(unknown);
     }
 }
 
@@ -167,9 +189,9 @@ fn likely_moves(before: &[Mark], now: &[Mark], width: usize) -> [Option<Move>; M
 }
 
 /// Marks are padded so that they can be compared so many at a time, however far they moved.
-fn pad(marks: &mut Vec<Mark>) {
+fn pad(marks: &mut Vec<Mark>, padding: Mark) {
     let whole = marks.len().next_multiple_of(LANES);
-    marks.resize(whole + LANES, Mark::NONE);
+    marks.resize(whole + LANES, padding);
 }
 
 /// So many marks are compared at a time: no fewer than they move by.
@@ -188,6 +210,11 @@ impl Mark {
     /// Of a cell that is like the one before it.
     pub(super) const NONE: Self = Self(0);
 
+    /// The mark in a row from before, where that of no landmark is another, so that none is alike.
+    fn before(self) -> Self {
+        Self(self.0.max(1))
+    }
+
     /// The marks of a row's cells.
     fn all(row: &[Look]) -> impl Iterator<Item = Self> {
         let mut before = (Look::UNKNOWN, 0);
@@ -196,7 +223,7 @@ impl Mark {
             let hash = look.hash();
             before = (look, hash);
             let pair = u64::rotate_left(last_hash, 5).wrapping_add(hash);
-            if last == look { Self::NONE } else { Self(((pair >> 56) as u8).max(1)) }
+            if last == look { Self::NONE } else { Self(((pair >> 56) as u8).max(2)) }
         })
     }
 }
@@ -208,26 +235,27 @@ fn count_alike(one: &[Mark], other: &[Mark]) -> u32 {
     let mut counts = [0_u8; LANES];
     for (one, other) in one.chunks_exact(LANES).zip(other.chunks_exact(LANES)) {
         for ((count, one), other) in counts.iter_mut().zip(one).zip(other) {
-            *count = count.saturating_add(u8::from(one == other) & u8::from(*one != Mark::NONE));
+            *count = count.saturating_add(u8::from(one == other));
         }
     }
     counts.into_iter().map(u32::from).sum()
 }
 
-/// The stretch of `gains` with the largest sum, and that sum.
-fn best_stretch(gains: impl Iterator<Item = i32>) -> Option<(Range<usize>, i32)> {
-    let mut best = None;
+/// The stretch of `gains` with the largest sum, and that sum; an empty one where none is positive.
+///
+/// Without branches: where sums turn negative is nothing that a processor guesses.
+#[inline]
+fn best_stretch(gains: impl Iterator<Item = i32>) -> (Range<u32>, i32) {
     let (mut start, mut sum) = (0, 0);
-    for (index, gain) in gains.enumerate() {
-        if sum <= 0 {
-            (start, sum) = (index, 0);
-        }
-        sum += gain;
-        if best.as_ref().is_none_or(|&(_, most)| sum > most) {
-            best = Some((start..index + 1, sum));
-        }
+    let (mut best, mut most) = (0..0, 0);
+    for (index, gain) in (0_u32..).zip(gains) {
+        start = if sum > 0 { start } else { index };
+        sum = sum.max(0) + gain;
+        best.start = if sum > most { start } else { best.start };
+        best.end = if sum > most { index + 1 } else { best.end };
+        most = most.max(sum);
     }
-    best
+    (best, most)
 }
 
 #[cfg(test)]
@@ -244,14 +272,16 @@ mod tests {
             looks: wanted,
             marks: &mut Mark::all(shown).collect::<Vec<_>>(),
             wanted: &[],
+            intricate: &mut false,
             exact: &mut false,
         };
         let mut shifts = Shifts::default();
-        shifts.begin(&row);
-        shifts.next(&row, |from, to, losses| {
+        let lose = |from: usize, to: usize, losses: &mut Vec<i32>| {
             let looks = shown[from..].iter().zip(&wanted[to..]);
             losses.extend(looks.map(|(shown, wanted)| CELL * i32::from(shown != wanted)));
-        })
+        };
+        shifts.begin(&row, lose);
+        shifts.next(lose)
     }
 
     fn row(text: &str) -> Vec<Look> {

@@ -6,6 +6,9 @@ use ratatui::buffer::Cell;
 use ratatui::style::{Color, Modifier};
 
 use super::super::sequence;
+#[cfg(feature = "cli")]
+use super::bytes::Bytes;
+use super::bytes::Piece;
 use super::control::{self, ControlSequence};
 
 /// How a character is drawn.
@@ -99,16 +102,24 @@ impl Style {
     }
 
     /// Writes what turns `current`, or an unknown style, into this one.
+    #[cfg(feature = "cli")]
+    pub(crate) fn write_from(self, current: Option<Self>, bytes: &mut Bytes) {
+        let mut piece = bytes.piece();
+        self.push_from(current, &mut piece);
+        piece.finish();
+    }
+
+    /// Adds what turns `current`, or an unknown style, into this one.
     #[inline]
-    pub(crate) fn write_from(self, current: Option<Self>, bytes: &mut Vec<u8>) {
+    pub(super) fn push_from(self, current: Option<Self>, piece: &mut Piece) {
         let known = match current {
             Some(style) if self != Self::RESET => style,
             _ => {
-                bytes.extend_from_slice(sequence::RESET_STYLE.as_bytes());
+                sequence::RESET_STYLE.bytes().for_each(|byte| piece.push([byte], 1));
                 Self::RESET
             }
         };
-        let mut rendition = ControlSequence::begin(bytes);
+        let mut rendition = ControlSequence::begin(piece);
         if self.modifier != known.modifier {
             self.switch_modifiers(known.modifier, &mut rendition);
         }
@@ -218,18 +229,22 @@ impl Shade {
 
     #[inline]
     fn write(self, ground: Ground, rendition: &mut ControlSequence) {
-        let (dark, bright, extended, default) = match ground {
-            Ground::Fore => (30, 90, 38, 39),
-            Ground::Back => (40, 100, 48, 49),
+        let (dark, bright, default, rgb, indexed) = match ground {
+            Ground::Fore => (30, 90, 39, *b";38;2", *b";38;5"),
+            Ground::Back => (40, 100, 49, *b";48;2", *b";48;5"),
         };
         match self.kind() {
-            Kind::Rgb([red, green, blue]) => {
-                rendition.parameters([extended, 2, red, green, blue]);
+            Kind::Rgb(channels) => {
+                rendition.literal(rgb);
+                rendition.parameters(channels);
             }
             Kind::Default => rendition.parameter(default),
             Kind::Indexed(index @ 0..=7) => rendition.parameter(dark + index),
             Kind::Indexed(index @ 8..=15) => rendition.parameter(bright + (index - 8)),
-            Kind::Indexed(index) => rendition.parameters([extended, 5, index]),
+            Kind::Indexed(index) => {
+                rendition.literal(indexed);
+                rendition.parameter(index);
+            }
         }
     }
 }

@@ -363,7 +363,7 @@ impl Drawn<'_> {
 
     #[inline]
     fn add(&mut self, glyph: Glyph, inks: [Ink; 2], cost: f32) {
-        let cost = self.start + glyph.symbol().len() as f32 + cost;
+        let cost = self.start + glyph.encoded().1 as f32 + cost;
         if self.past.would_keep(cost) {
             self.past.add(Way {
                 cost,
