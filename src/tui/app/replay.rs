@@ -66,7 +66,10 @@ impl Replay {
     }
 
     /// Shows in `window` what there is to see now.
-    pub(crate) fn draw<B: Backend>(&mut self, window: &mut Terminal<B>) -> Result<(), B::Error> {
+    ///
+    /// # Errors
+    /// Those of the window's backend.
+    pub fn draw<B: Backend>(&mut self, window: &mut Terminal<B>) -> Result<(), B::Error> {
         window.draw(|frame| self.app.draw(frame)).map(|_| ())
     }
 
