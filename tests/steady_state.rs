@@ -142,7 +142,9 @@ fn the_whole_pipeline_allocates_nothing_once_its_memory_has_grown() {
             let frames = intents.chunks_exact(2).map(|steps| {
                 window.backend_mut().output_mut().clear();
                 measure(|| {
-                    steps.iter().for_each(|&intents| replay.step(intents));
+                    for &intents in steps {
+                        replay.step(intents);
+                    }
                     replay.draw(&mut window).unwrap();
                 })
                 .count_total
