@@ -33,9 +33,9 @@ use self::unix as platform;
 #[cfg(not(unix))]
 use self::unsupported as platform;
 
-pub use self::cell_writer::CellWriter;
 #[cfg(feature = "cli")]
 pub(crate) use self::cell_writer::Style;
+pub use self::cell_writer::{CellWriter, Screen};
 pub use self::depth::{Detected, color_depth};
 pub use self::error::Error;
 pub use self::event::{Event, QuitReason};

@@ -29,6 +29,7 @@ mod app;
 mod ascii;
 #[cfg(feature = "terminal")]
 mod bindings;
+mod canvas;
 mod first_person;
 mod glyphs;
 mod half_blocks;
@@ -42,6 +43,7 @@ mod space_view;
 pub use app::{Levels, Recording, Replay, Settings, play};
 #[cfg(feature = "terminal")]
 pub use bindings::Bindings;
+pub use canvas::Canvas;
 pub use first_person::{FirstPerson, View};
 pub use glyphs::{CellAspect, GlyphMode};
 pub use minimap::Minimap;

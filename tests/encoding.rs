@@ -5,11 +5,14 @@
 use std::collections::BTreeSet;
 
 use cellcaster::terminal::{CellWriter, Fidelity};
+use cellcaster::tui::Canvas;
 use proptest::prelude::*;
 use ratatui::Terminal;
+use ratatui::backend::Backend;
 use ratatui::buffer::{Buffer, Cell};
 use ratatui::layout::{Rect, Size};
 use ratatui::style::Color;
+use ratatui::widgets::Widget;
 
 type Rgb = [u8; 3];
 
@@ -75,8 +78,18 @@ fn lab(color: Rgb) -> [f64; 3] {
 /// Integers are that much worse than the formulas.
 const ROUNDING: f64 = 0.1;
 
+/// How pictures get to our encoder.
+#[derive(Clone, Copy, Debug)]
+enum Way {
+    /// As changed cells, from ratatui.
+    Backend,
+    /// As whole pictures, drawn where it keeps what is to be shown.
+    Canvas,
+}
+
 /// Both emulators, and ratatui with our backend, which writes to them.
 struct Screens {
+    way: Way,
     terminal: Terminal<CellWriter<Vec<u8>>>,
     one: vt100::Parser,
     other: avt::Terminal,
@@ -85,11 +98,12 @@ struct Screens {
 }
 
 impl Screens {
-    fn new(size: Size, fidelity: Fidelity) -> Self {
+    fn new(way: Way, size: Size, fidelity: Fidelity) -> Self {
         let mut writer = CellWriter::new(Vec::new(), size);
         writer.set_fidelity(fidelity);
         let [rows, columns] = [size.height, size.width].map(|side| side.try_into().unwrap());
         Self {
+            way,
             terminal: Terminal::new(writer).unwrap(),
             one: vt100::Parser::new(rows, columns, 0),
             other: avt::Terminal::new(size.width.into(), size.height.into()).unwrap(),
@@ -98,7 +112,16 @@ impl Screens {
     }
 
     fn draw(&mut self, picture: &Buffer) {
-        self.terminal.draw(|frame| frame.buffer_mut().merge(picture)).unwrap();
+        match self.way {
+            Way::Backend => {
+                self.terminal.draw(|frame| frame.buffer_mut().merge(picture)).unwrap();
+            }
+            Way::Canvas => {
+                let writer = self.terminal.backend_mut();
+                writer.draw_frame(|screen| paint(picture, screen));
+                writer.flush().unwrap();
+            }
+        }
         let bytes = std::mem::take(self.terminal.backend_mut().output_mut());
         self.one.process(&bytes);
         let text = String::from_utf8(bytes).unwrap();
@@ -133,6 +156,35 @@ impl Screens {
             one.distance(Shown::of(&picture[position]))
         });
         distances.fold(0.0, f64::max)
+    }
+}
+
+/// Draws `picture` by each of the ways that there are, row by row.
+fn paint(picture: &Buffer, canvas: &mut impl Canvas) {
+    for y in picture.area.rows().map(|row| row.y) {
+        let cells = picture.area.positions().filter(|place| place.y == y);
+        for (x, cell) in cells.map(|place| (place.x, &picture[place])) {
+            match (y % 3, Shown::of(cell)) {
+                (0, _) => canvas.draw_widget(One(cell), Rect::new(x, y, 1, 1)),
+                (1, Shown::Halves(halves)) => {
+                    let rgb = |[red, green, blue]: Rgb| Color::Rgb(red, green, blue);
+                    canvas.draw_halves(x, y, std::iter::once(halves.map(rgb)));
+                }
+                _ => {
+                    let character = cell.symbol().chars().next().unwrap();
+                    canvas.draw_character(x, y, character, [cell.fg, cell.bg]);
+                }
+            }
+        }
+    }
+}
+
+/// A widget of one cell.
+struct One<'a>(&'a Cell);
+
+impl Widget for One<'_> {
+    fn render(self, area: Rect, buffer: &mut Buffer) {
+        buffer[area.as_position()] = self.0.clone();
     }
 }
 
@@ -216,9 +268,10 @@ proptest! {
     fn every_picture_is_shown_within_the_stated_distance(
         history in any_history(),
         tolerance in prop_oneof![Just(0_u8), 1..60_u8, any::<u8>()],
+        way in prop::sample::select(vec![Way::Backend, Way::Canvas]),
     ) {
         let size = history[0].area.as_size();
-        let mut screens = Screens::new(size, Fidelity::new(tolerance));
+        let mut screens = Screens::new(way, size, Fidelity::new(tolerance));
         for picture in &history {
             screens.draw(picture);
             let distance = screens.largest_distance(picture);
@@ -241,7 +294,7 @@ proptest! {
 #[test]
 fn a_resting_picture_becomes_exact_in_frames_of_about_one_size() {
     let size = Size::new(80, 24);
-    let mut screens = Screens::new(size, Fidelity::LOW);
+    let mut screens = Screens::new(Way::Backend, size, Fidelity::LOW);
     // Two gradients, the second too near to the first for anything to be sent.
     let gradient = |offset: u16| {
         let cells = (0..size.width * size.height).map(|index| {

@@ -122,8 +122,8 @@ fn the_whole_pipeline_allocates_nothing_once_its_memory_has_grown() {
     use cellcaster::map::Level;
     use cellcaster::terminal::{CellWriter, Fidelity};
     use cellcaster::tui::{Levels, Replay, Settings};
+    use ratatui::backend::Backend;
     use ratatui::layout::Size;
-    use ratatui::{Terminal, TerminalOptions, Viewport};
 
     const SIZE: Size = Size::new(120, 40);
     let script = include_str!("../maps/showcase.script");
@@ -136,16 +136,15 @@ fn the_whole_pipeline_allocates_nothing_once_its_memory_has_grown() {
         let mut replay = Replay::new(levels, Settings::default(), SIZE);
         let mut writer = CellWriter::new(Vec::new(), SIZE);
         writer.set_fidelity(fidelity);
-        let viewport = Viewport::Fixed(SIZE.into());
-        let mut window = Terminal::with_options(writer, TerminalOptions { viewport }).unwrap();
         let mut pass = || {
             let frames = intents.chunks_exact(2).map(|steps| {
-                window.backend_mut().output_mut().clear();
+                writer.output_mut().clear();
                 measure(|| {
                     for &intents in steps {
                         replay.step(intents);
                     }
-                    replay.draw(&mut window).unwrap();
+                    writer.draw_frame(|screen| replay.draw(screen));
+                    Backend::flush(&mut writer).unwrap();
                 })
                 .count_total
             });

@@ -14,6 +14,7 @@ use std::env;
 use std::thread;
 
 use cellcaster::terminal::{Event, Key, Options, Phase, Session};
+use cellcaster::tui::Canvas;
 use ratatui::widgets::{Paragraph, Wrap};
 use rustix::process::Signal;
 
@@ -60,7 +61,7 @@ fn hang(session: &mut Session) -> ! {
 
 fn show(session: &mut Session, text: &str) {
     let text = Paragraph::new(text).wrap(Wrap { trim: false });
-    session.draw(|frame| frame.render_widget(text, frame.area())).unwrap();
+    session.draw(|screen| screen.draw_widget(text, screen.bounds())).unwrap();
 }
 
 fn start(speaks: Speaks) -> Player {

@@ -102,6 +102,15 @@ impl Frame {
         self.pixels[y as usize * self.width() as usize + x as usize]
     }
 
+    /// The pixels of row `y` from the top, from the left.
+    ///
+    /// # Panics
+    /// Where the frame has no such row.
+    pub fn row(&self, y: u32) -> impl ExactSizeIterator<Item = Rgb> {
+        let start = y as usize * self.width() as usize;
+        self.pixels[start..][..self.width() as usize].iter().copied()
+    }
+
     /// The pixels of row `y`, from the left.
     pub(crate) fn row_mut(&mut self, y: u32) -> &mut [Rgb] {
         self.row_range_mut(y, y + 1)

@@ -33,7 +33,7 @@ use ratatui::style::Color;
 use self::inexact::Draughtsman;
 use self::pen::Pen;
 use self::rest::Rest;
-use self::screen::Screen;
+pub use self::screen::Screen;
 use self::shift::Shifts;
 use self::style::Shade;
 pub(crate) use self::style::Style;
@@ -129,6 +129,25 @@ impl<W: Write> CellWriter<W> {
         self.cursor_visible = false;
     }
 
+    /// Has `draw` draw a whole frame, on a blank screen, and takes note of what must be written for it with
+    /// the next flush: for drawing without ratatui's [`Terminal`](ratatui::Terminal) and its buffers.
+    pub fn draw_frame(&mut self, draw: impl FnOnce(&mut Screen)) {
+        self.screen.begin_frame();
+        draw(&mut self.screen);
+        self.screen.end_frame();
+        self.update();
+    }
+
+    /// Draws what has changed; where nothing has, refines.
+    fn update(&mut self) {
+        if self.screen.is_changed() {
+            self.rest.disturb();
+            self.draw_changed();
+        } else {
+            self.refine();
+        }
+    }
+
     /// Makes every row that has changed look as it is wanted.
     fn draw_changed(&mut self) {
         let (pen, shifts) = (&mut self.pen, &mut self.shifts);
@@ -152,12 +171,7 @@ impl<W: Write> Backend for CellWriter<W> {
         for (x, y, cell) in content {
             self.screen.want(x, y, cell);
         }
-        if self.screen.is_changed() {
-            self.rest.disturb();
-            self.draw_changed();
-        } else {
-            self.refine();
-        }
+        self.update();
         Ok(())
     }
 

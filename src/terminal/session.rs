@@ -9,8 +9,6 @@ use std::io;
 use std::sync::Arc;
 use std::time::{Duration, Instant};
 
-use ratatui::Terminal;
-
 pub use self::options::Options;
 use self::receive::Received;
 use super::flow::Flow;
@@ -30,7 +28,7 @@ pub struct Session {
     guard: Arc<Guard>,
     signals: Signals,
     /// What it writes is sent by the session.
-    terminal: Terminal<CellWriter<Vec<u8>>>,
+    writer: CellWriter<Vec<u8>>,
     decoder: Decoder,
     heard_at: Instant,
     events: VecDeque<Event>,
@@ -84,8 +82,7 @@ impl Session {
         let mut session = Self {
             guard: Arc::clone(guard),
             signals,
-            terminal: Terminal::new(CellWriter::new(Vec::new(), size.cells()))
-                .map_err(Error::while_doing("preparing the first frame"))?,
+            writer: CellWriter::new(Vec::new(), size.cells()),
             decoder: Decoder::default(),
             heard_at: Instant::now(),
             events: VecDeque::new(),

@@ -16,7 +16,6 @@ mod status;
 use std::time::Duration;
 
 pub use levels::Levels;
-use ratatui::Frame;
 use ratatui::layout::Rect;
 pub use recording::Recording;
 pub use replay::Replay;
@@ -24,7 +23,7 @@ pub use run::play;
 
 use super::bindings::{Action, Bindings};
 use super::held::HeldKeys;
-use super::{CellAspect, GlyphMode, Minimap, View};
+use super::{Canvas, CellAspect, GlyphMode, Minimap, View};
 use crate::cast::Method;
 use crate::game::{Intent, Intents, STEP};
 use crate::palette::ColorDepth;
@@ -322,27 +321,27 @@ impl App {
         self.shown = None;
     }
 
-    fn draw(&mut self, frame: &mut Frame) {
-        let area = frame.area();
+    fn draw(&mut self, canvas: &mut impl Canvas) {
+        let area = canvas.bounds();
         if panels::is_too_small(area) {
-            return panels::too_small(frame);
+            return panels::too_small(canvas);
         }
         let [picture, status] = panels::picture_and_status(area);
-        self.draw_picture(frame, picture);
+        self.draw_picture(canvas, picture);
         let stats = self.stats.as_ref().filter(|_| self.shows_stats);
         self.status.update(&self.game, self.gait, stats, &self.settings.bindings);
-        self.status.draw(frame, status);
+        canvas.draw_widget(&self.status, status);
         let seconds = self.game.elapsed();
         match self.screen {
             Screen::Playing => {}
-            Screen::Paused => panels::paused(frame, picture, &self.settings.bindings),
-            Screen::Help => panels::help(frame, picture, &self.settings.bindings),
-            Screen::LevelDone => panels::level_done(frame, picture, self.game.title(), seconds),
-            Screen::End => panels::end(frame, picture, self.earlier + seconds),
+            Screen::Paused => panels::paused(canvas, picture, &self.settings.bindings),
+            Screen::Help => panels::help(canvas, picture, &self.settings.bindings),
+            Screen::LevelDone => panels::level_done(canvas, picture, self.game.title(), seconds),
+            Screen::End => panels::end(canvas, picture, self.earlier + seconds),
         }
     }
 
-    fn draw_picture(&mut self, frame: &mut Frame, area: Rect) {
+    fn draw_picture(&mut self, canvas: &mut impl Canvas, area: Rect) {
         let eye = self.eye();
         let look = Look {
             glyphs: self.settings.glyphs,
@@ -350,7 +349,7 @@ impl App {
             cell_aspect: self.cell_aspect,
             filter: self.settings.filter,
         };
-        self.game.draw(&eye, look, (frame, area), &mut self.memory);
+        self.game.draw(&eye, look, (canvas, area), &mut self.memory);
         let (Played::Grid(game), Eye::Grid(camera)) = (&self.game, &eye) else { return };
         if !self.shows_minimap {
             return;
@@ -360,8 +359,8 @@ impl App {
             .glyphs(self.settings.glyphs)
             .color_depth(self.depth);
         if let Some(panel) = panels::minimap(area, &map) {
-            let inside = panels::framed(frame, panel, "map");
-            frame.render_widget(map, inside);
+            let inside = panels::framed(canvas, panel, "map");
+            map.paint(inside, canvas);
         }
     }
 }

@@ -5,9 +5,9 @@
 //! ramp of brightness for all was refused: a dark wall before a bright one and a bright floor
 //! before a dark wall looked the same.
 
-use ratatui::buffer::Buffer;
 use ratatui::layout::Rect;
 
+use super::Canvas;
 use super::glyphs::color_at;
 use crate::palette::ColorDepth;
 use crate::render::Surface;
@@ -16,17 +16,15 @@ use crate::world::Rgb;
 /// Draws the pixels of `area`, as many as cells: `pixel(x, y)` counts from its top left corner.
 pub(super) fn draw(
     area: Rect,
-    buffer: &mut Buffer,
+    canvas: &mut impl Canvas,
     depth: ColorDepth,
     pixel: impl Fn(u32, u32) -> (Rgb, char),
 ) {
     for (row, y) in (0u32..).zip(area.top()..area.bottom()) {
         for (column, x) in (0u32..).zip(area.left()..area.right()) {
             let (color, character) = pixel(column, row);
-            let cell = &mut buffer[(x, y)];
-            cell.reset();
-            cell.set_char(character);
-            cell.set_fg(color_at(depth, color)).set_bg(color_at(depth, Rgb::BLACK));
+            let colors = [color, Rgb::BLACK].map(|color| color_at(depth, color));
+            canvas.draw_character(x, y, character, colors);
         }
     }
 }

@@ -6,7 +6,7 @@ use ratatui::buffer::Buffer;
 use ratatui::layout::{Rect, Size};
 use ratatui::widgets::StatefulWidget;
 
-use super::{CellAspect, GlyphMode, ascii, half_blocks, ramp};
+use super::{Canvas, CellAspect, GlyphMode, ascii, half_blocks, ramp};
 use crate::cast::Method;
 use crate::palette::ColorDepth;
 use crate::render::{
@@ -102,19 +102,19 @@ impl<'a> FirstPerson<'a> {
     ///
     /// # Panics
     /// Where the picture has fewer cells than that.
-    pub fn paint(&self, view: &View, first_row: u16, area: Rect, buffer: &mut Buffer) {
+    pub fn paint(&self, view: &View, first_row: u16, area: Rect, canvas: &mut impl Canvas) {
         let View { renderer, frame } = view;
         let above = u32::from(first_row) * self.glyphs.pixels_per_cell();
         match self.glyphs {
             GlyphMode::Half => {
-                half_blocks::draw(area, buffer, self.depth, above, |x, y| frame.pixel(x, y));
+                half_blocks::draw(area, canvas, self.depth, above, |y| frame.row(y));
             }
-            GlyphMode::Ascii => ascii::draw(area, buffer, self.depth, |x, y| {
+            GlyphMode::Ascii => ascii::draw(area, canvas, self.depth, |x, y| {
                 let color = frame.pixel(x, above + y);
                 let surface = renderer.surface(x, above + y).unwrap_or(Surface::Sky);
                 (color, ascii::character(surface, color))
             }),
-            GlyphMode::Ramp => ascii::draw(area, buffer, self.depth, |x, y| {
+            GlyphMode::Ramp => ascii::draw(area, canvas, self.depth, |x, y| {
                 let color = frame.pixel(x, above + y);
                 (color, ramp::character(color))
             }),

@@ -59,6 +59,7 @@ impl Default for CellAspect {
 }
 
 /// `color`, as nearly as a terminal of that depth can show it.
+#[inline]
 pub(super) fn color_at(depth: ColorDepth, color: Rgb) -> Color {
     match depth {
         ColorDepth::True => Color::Rgb(color.red(), color.green(), color.blue()),

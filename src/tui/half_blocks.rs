@@ -1,89 +1,65 @@
-//! Half blocks: a cell shows two pixels, one in the colour of its text, one in that of its ground.
-//!
-//! Of the glyphs that show the same two pixels, the one is taken that shares more colours with the
-//! cell before it, because those need not be sent again. Two pixels alike are a space.
+//! Half blocks: a cell shows two pixels, one above the other.
 //!
 //! Without colour a pixel is lit or it is not; which one is decided by comparing its brightness with
 //! a fixed 4×4 pattern of thresholds. With 16 colours the same pattern makes pixels lighter and
 //! darker before the nearest colour is taken. So shades stay apart, and stand still while the picture
 //! does. Error diffusion was refused: there, one changed pixel changes all that follow.
 
-use ratatui::buffer::Buffer;
 use ratatui::layout::Rect;
 use ratatui::style::Color;
 
+use super::Canvas;
 use super::glyphs::color_at;
 use crate::palette::ColorDepth;
 use crate::world::Rgb;
 
-const UPPER: char = '▀';
-const LOWER: char = '▄';
-const FULL: char = '█';
-const EMPTY: char = ' ';
-
-/// Draws the pixels of `area`, twice as many as cells from top to bottom: `pixel(x, y)` counts from
-/// its left edge and from `above` pixels over its top edge.
-pub(super) fn draw(
+/// Draws the pixels of `area`, twice as many as cells from top to bottom: `row(y)` is a row of them from
+/// the left edge on, and counts from `above` pixels over the top edge.
+pub(super) fn draw<Row: Iterator<Item = Rgb>>(
     area: Rect,
-    buffer: &mut Buffer,
+    canvas: &mut impl Canvas,
     depth: ColorDepth,
     above: u32,
-    pixel: impl Fn(u32, u32) -> Rgb,
+    row: impl Fn(u32) -> Row,
 ) {
-    let glyph_at = |x: u32, row: u32, before: &Glyph| {
-        let upper = above + 2 * row;
+    for (y, upper) in (area.top()..area.bottom()).zip((above..).step_by(2)) {
         let lower = upper + 1;
-        let (top, bottom) = (pixel(x, upper), pixel(x, lower));
+        let pixels = row(upper).zip(row(lower)).take(area.width.into());
         match depth {
-            ColorDepth::Mono => Glyph::lit(is_lit(top, x, upper), is_lit(bottom, x, lower)),
+            ColorDepth::True => {
+                let color = |pixel| color_at(ColorDepth::True, pixel);
+                let colors = pixels.map(|(top, bottom)| [color(top), color(bottom)]);
+                canvas.draw_halves(area.x, y, colors);
+            }
+            ColorDepth::Indexed256 => {
+                let color = |pixel| color_at(ColorDepth::Indexed256, pixel);
+                let colors = pixels.map(|(top, bottom)| [color(top), color(bottom)]);
+                canvas.draw_halves(area.x, y, colors);
+            }
             ColorDepth::Indexed16 => {
-                let (top, bottom) = (dithered(top, x, upper), dithered(bottom, x, lower));
-                Glyph::colored(color_at(depth, top), color_at(depth, bottom), before)
+                let color = |pixel, x, y| color_at(ColorDepth::Indexed16, dithered(pixel, x, y));
+                let colors = (0..)
+                    .zip(pixels)
+                    .map(|(x, (top, bottom))| [color(top, x, upper), color(bottom, x, lower)]);
+                canvas.draw_halves(area.x, y, colors);
             }
-            ColorDepth::True | ColorDepth::Indexed256 => {
-                Glyph::colored(color_at(depth, top), color_at(depth, bottom), before)
+            ColorDepth::Mono => {
+                for (x, (top, bottom)) in (0..).zip(pixels) {
+                    let glyph = lit_glyph(is_lit(top, x, upper), is_lit(bottom, x, lower));
+                    canvas.draw_character(area.x + x as u16, y, glyph, [Color::Reset; 2]);
+                }
             }
-        }
-    };
-    for (row, y) in (0u32..).zip(area.top()..area.bottom()) {
-        let mut glyph = Glyph { character: EMPTY, text: Color::Reset, ground: Color::Reset };
-        for (column, x) in (0u32..).zip(area.left()..area.right()) {
-            glyph = glyph_at(column, row, &glyph);
-            let cell = &mut buffer[(x, y)];
-            cell.reset();
-            cell.set_char(glyph.character).set_fg(glyph.text).set_bg(glyph.ground);
         }
     }
 }
 
-struct Glyph {
-    character: char,
-    text: Color,
-    ground: Color,
-}
-
-impl Glyph {
-    fn colored(top: Color, bottom: Color, before: &Self) -> Self {
-        let shared = |text: Color, ground: Color| {
-            u8::from(text == before.text) + u8::from(ground == before.ground)
-        };
-        if top == bottom {
-            Self { character: EMPTY, text: top, ground: top }
-        } else if shared(bottom, top) > shared(top, bottom) {
-            Self { character: LOWER, text: bottom, ground: top }
-        } else {
-            Self { character: UPPER, text: top, ground: bottom }
-        }
-    }
-
-    fn lit(top: bool, bottom: bool) -> Self {
-        let character = match (top, bottom) {
-            (true, true) => FULL,
-            (true, false) => UPPER,
-            (false, true) => LOWER,
-            (false, false) => EMPTY,
-        };
-        Self { character, text: Color::Reset, ground: Color::Reset }
+/// The character whose halves are lit or not.
+fn lit_glyph(top: bool, bottom: bool) -> char {
+    match (top, bottom) {
+        (true, true) => '█',
+        (true, false) => '▀',
+        (false, true) => '▄',
+        (false, false) => ' ',
     }
 }
 
@@ -111,25 +87,15 @@ fn dithered(color: Rgb, x: u32, y: u32) -> Rgb {
 
 #[cfg(test)]
 mod tests {
-    use ratatui::buffer::Cell;
+    use ratatui::buffer::Buffer;
 
     use super::*;
 
     fn drawn(depth: ColorDepth, rows: &[&[Rgb]]) -> Buffer {
         let area = Rect::new(0, 0, rows[0].len() as u16, rows.len() as u16 / 2);
         let mut buffer = Buffer::empty(area);
-        draw(area, &mut buffer, depth, 0, |x, y| rows[y as usize][x as usize]);
+        draw(area, &mut buffer, depth, 0, |y| rows[y as usize].iter().copied());
         buffer
-    }
-
-    #[test]
-    fn the_glyph_that_shares_colours_with_its_neighbour_is_taken() {
-        let (a, b, c) = (Rgb::new(1, 0, 0), Rgb::new(2, 0, 0), Rgb::new(3, 0, 0));
-        let buffer = drawn(ColorDepth::True, &[&[a, b, c, c], &[b, a, b, c]]);
-        let symbols: String = buffer.content().iter().map(Cell::symbol).collect();
-        assert_eq!(symbols, "▀▄▀ ");
-        let second = &buffer.content()[1];
-        assert_eq!((second.fg, second.bg), (Color::Rgb(1, 0, 0), Color::Rgb(2, 0, 0)));
     }
 
     #[test]

@@ -6,7 +6,8 @@ use ratatui::layout::{Rect, Size};
 use ratatui::style::Color;
 use ratatui::widgets::Widget;
 
-use super::{GlyphMode, ascii, half_blocks};
+use super::glyphs::color_at;
+use super::{Canvas, GlyphMode, ascii, half_blocks};
 use crate::palette::ColorDepth;
 use crate::render::Column;
 use crate::world::{Camera, Cell, Paint, Rgb, Shape, ThingKind, TileId, TileKind, World};
@@ -75,26 +76,38 @@ const PLAYER: Color = Color::Yellow;
 
 impl Widget for Minimap<'_> {
     fn render(self, area: Rect, buffer: &mut Buffer) {
-        let area = area.intersection(buffer.area);
-        if area.is_empty() {
-            return;
-        }
-        let window = Window::new(area, self.glyphs, self.world, self.camera.position());
-        let place = |x, y| self.place(window.point(x, y), window.pixel());
-        match self.glyphs {
-            GlyphMode::Half => {
-                half_blocks::draw(area, buffer, self.depth, 0, |x, y| place(x, y).color());
-            }
-            GlyphMode::Ascii | GlyphMode::Ramp => ascii::draw(area, buffer, self.depth, |x, y| {
-                let place = place(x, y);
-                (place.color(), place.character())
-            }),
-        }
-        self.draw_player(&window, area, buffer);
+        self.paint(area, buffer);
     }
 }
 
 impl Minimap<'_> {
+    /// Draws it on `area`, as rendering the widget does on that of a buffer.
+    pub fn paint(&self, area: Rect, canvas: &mut impl Canvas) {
+        let area = area.intersection(canvas.bounds());
+        if area.is_empty() {
+            return;
+        }
+        let window = Window::new(area, self.glyphs, self.world, self.camera.position());
+        let sight = Sight::new(self.camera, self.columns);
+        let place = |x, y| self.place(window.point(x, y), window.pixel(), &sight);
+        match self.glyphs {
+            GlyphMode::Half => half_blocks::draw(area, canvas, self.depth, 0, |y| {
+                (0..area.width.into()).map(move |x| place(x, y).color())
+            }),
+            GlyphMode::Ascii | GlyphMode::Ramp => ascii::draw(area, canvas, self.depth, |x, y| {
+                let place = place(x, y);
+                (place.color(), place.character())
+            }),
+        }
+        if let Some((x, y)) = window.cell(self.camera.position()) {
+            let ground = match self.glyphs {
+                GlyphMode::Half => place(x.into(), 2 * u32::from(y) + 1).color(),
+                GlyphMode::Ascii | GlyphMode::Ramp => Rgb::BLACK,
+            };
+            self.draw_player((area.x + x, area.y + y), ground, canvas);
+        }
+    }
+
     /// How much of `room` shows something of the map; the rest would be blank.
     #[cfg(feature = "terminal")]
     pub(super) fn size_within(&self, room: Size) -> Size {
@@ -106,8 +119,9 @@ impl Minimap<'_> {
     }
 
     /// What is on the map at `point`, in the middle of a pixel that is `pixel` cells wide.
-    fn place(&self, point: DVec2, pixel: f64) -> Place {
-        let (column, row) = (point.x.floor() as i64, point.y.floor() as i64);
+    #[inline]
+    fn place(&self, point: DVec2, pixel: f64, sight: &Sight) -> Place {
+        let [column, row] = [point.x, point.y].map(cell_at);
         let Some(tile) = self.world.grid().tile(column, row) else { return Place::Void };
         if let Some(color) = self.solid_color(tile)
             && self.is_covered(tile, point, pixel)
@@ -120,7 +134,7 @@ impl Minimap<'_> {
             Some(ThingKind::Exit) => Place::Exit,
             Some(ThingKind::Key(_)) if is_on_dot => Place::Key,
             Some(ThingKind::Ornament) if is_on_dot => Place::Ornament,
-            _ if self.sees(point) => Place::Seen,
+            _ if sight.reaches(point) => Place::Seen,
             _ => Place::Floor,
         }
     }
@@ -150,33 +164,55 @@ impl Minimap<'_> {
         outline.distance(cell, point) <= pixel / 2.0
     }
 
-    /// Whether the ray of the column that `point` falls in gets as far as that.
-    fn sees(&self, point: DVec2) -> bool {
-        let to_point = point - self.camera.position();
-        let distance = to_point.dot(self.camera.direction());
-        if distance <= 0.0 || self.columns.is_empty() {
-            return false;
-        }
-        let half_width = self.camera.field_of_view.half_width();
-        let across = to_point.dot(self.camera.direction().perp()) / (distance * half_width);
-        let index = (f64::midpoint(across, 1.0) * self.columns.len() as f64).floor();
-        index >= 0.0
-            && self.columns.get(index as usize).is_some_and(|column| distance <= column.distance)
-    }
-
-    fn draw_player(&self, window: &Window, area: Rect, buffer: &mut Buffer) {
-        let Some((x, y)) = window.cell(self.camera.position()) else { return };
+    /// Draws the arrow at `place`, on ground of that colour.
+    fn draw_player(&self, (x, y): (u16, u16), ground: Rgb, canvas: &mut impl Canvas) {
         let arrows = match self.glyphs {
             GlyphMode::Half => ['→', '↘', '↓', '↙', '←', '↖', '↑', '↗'],
             GlyphMode::Ascii | GlyphMode::Ramp => ['>', '\\', 'v', '/', '<', '\\', '^', '/'],
         };
         let eighth = (self.camera.heading.degrees() / 45.0).round() as usize % arrows.len();
-        let cell = &mut buffer[(area.x + x, area.y + y)];
-        cell.set_char(arrows[eighth]);
-        if self.depth != ColorDepth::Mono {
-            cell.set_fg(PLAYER);
+        let text = if self.depth == ColorDepth::Mono { Color::Reset } else { PLAYER };
+        canvas.draw_character(x, y, arrows[eighth], [text, color_at(self.depth, ground)]);
+    }
+}
+
+/// What the player sees of the floor.
+struct Sight<'a> {
+    position: DVec2,
+    direction: DVec2,
+    half_width: f64,
+    columns: &'a [Column],
+}
+
+impl<'a> Sight<'a> {
+    fn new(camera: &Camera, columns: &'a [Column]) -> Self {
+        Self {
+            position: camera.position(),
+            direction: camera.direction(),
+            half_width: camera.field_of_view.half_width(),
+            columns,
         }
     }
+
+    /// Whether the ray of the column that `point` falls in gets as far as that.
+    #[inline]
+    fn reaches(&self, point: DVec2) -> bool {
+        let to_point = point - self.position;
+        let distance = to_point.dot(self.direction);
+        if distance <= 0.0 || self.columns.is_empty() {
+            return false;
+        }
+        let across = to_point.dot(self.direction.perp()) / (distance * self.half_width);
+        let index = f64::midpoint(across, 1.0) * self.columns.len() as f64;
+        index >= 0.0
+            && self.columns.get(index as usize).is_some_and(|column| distance <= column.distance)
+    }
+}
+
+/// The column or row that a place is in; before the map, one before it. Where processors may be old, rounding
+/// down is a call.
+fn cell_at(place: f64) -> i64 {
+    place as i64 - i64::from(place < 0.0)
 }
 
 /// Whether `point` is on the dot that stands for a thing in `cell`.

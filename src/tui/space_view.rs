@@ -6,7 +6,7 @@ use ratatui::buffer::Buffer;
 use ratatui::layout::{Rect, Size};
 use ratatui::widgets::StatefulWidget;
 
-use super::{CellAspect, GlyphMode, ascii, half_blocks, ramp};
+use super::{Canvas, CellAspect, GlyphMode, ascii, half_blocks, ramp};
 use crate::palette::ColorDepth;
 use crate::render::{Frame, FrameSize, PixelAspect};
 use crate::space::{Camera, Explanation, Renderer, Scene};
@@ -71,14 +71,22 @@ impl<'a> SpaceView<'a> {
     ///
     /// # Panics
     /// Where the picture has fewer cells than that.
-    pub fn paint(&self, memory: &SpaceMemory, first_row: u16, area: Rect, buffer: &mut Buffer) {
+    pub fn paint(
+        &self,
+        memory: &SpaceMemory,
+        first_row: u16,
+        area: Rect,
+        canvas: &mut impl Canvas,
+    ) {
         let above = u32::from(first_row) * self.glyphs.pixels_per_cell();
-        let pixel = |x, y| memory.frame.pixel(x, y);
+        let frame = &memory.frame;
         match self.glyphs {
-            GlyphMode::Half => half_blocks::draw(area, buffer, self.depth, above, pixel),
+            GlyphMode::Half => {
+                half_blocks::draw(area, canvas, self.depth, above, |y| frame.row(y));
+            }
             GlyphMode::Ascii | GlyphMode::Ramp => {
-                ascii::draw(area, buffer, self.depth, |x, y| {
-                    let color = pixel(x, above + y);
+                ascii::draw(area, canvas, self.depth, |x, y| {
+                    let color = frame.pixel(x, above + y);
                     (color, ramp::character(color))
                 });
             }

@@ -3,7 +3,6 @@
 //! A script is played by several games at once, each with an encoder of its own, and they take their
 //! turns frame by frame: a machine that is busy slows all of them down.
 
-use std::io;
 use std::time::{Duration, Instant};
 
 use ratatui::backend::{Backend, CrosstermBackend};
@@ -50,15 +49,12 @@ pub fn measure_pipeline<E>(
     mut begin: impl FnMut(Size) -> Result<Replay, E>,
 ) -> Result<Vec<PipelineRow>, E> {
     let mut players = Vec::new();
-    let sink = Sink::default();
-    let stock = Window::new(CrosstermBackend::new(sink.clone()), size, sink);
+    let stock = Stock::new(size);
     players.push(Player::new("stock".to_owned(), begin(size)?, Box::new(stock)));
     for fidelity in [Fidelity::EXACT, Fidelity::HIGH, Fidelity::LOW] {
-        let sink = Sink::default();
-        let mut backend = CellWriter::new(sink.clone(), size);
-        backend.set_fidelity(fidelity);
-        let window = Window::new(backend, size, sink);
-        players.push(Player::new(fidelity.to_string(), begin(size)?, Box::new(window)));
+        let mut writer = CellWriter::new(Sink::default(), size);
+        writer.set_fidelity(fidelity);
+        players.push(Player::new(fidelity.to_string(), begin(size)?, Box::new(writer)));
     }
     let begun = Instant::now();
     for player in &mut players {
@@ -135,25 +131,35 @@ trait Show {
     fn show(&mut self, replay: &mut Replay) -> usize;
 }
 
-/// A window whose backend writes to a sink.
-struct Window<B: Backend> {
-    terminal: Terminal<B>,
+/// Ratatui's window and its own encoder.
+struct Stock {
+    terminal: Terminal<CrosstermBackend<Sink>>,
     sink: Sink,
 }
 
-impl<B: Backend<Error = io::Error>> Window<B> {
-    fn new(backend: B, size: Size, sink: Sink) -> Self {
+impl Stock {
+    fn new(size: Size) -> Self {
+        let sink = Sink::default();
         // A window whose size is given asks nobody for it.
         let viewport = Viewport::Fixed(size.into());
+        let backend = CrosstermBackend::new(sink.clone());
         let terminal = Terminal::with_options(backend, TerminalOptions { viewport });
         Self { terminal: terminal.expect("there is nothing to ask of a sink"), sink }
     }
 }
 
-impl<B: Backend<Error = io::Error>> Show for Window<B> {
+impl Show for Stock {
     fn show(&mut self, replay: &mut Replay) -> usize {
         // A sink takes everything.
-        _ = replay.draw(&mut self.terminal);
+        _ = self.terminal.draw(|frame| replay.draw(frame.buffer_mut()));
         self.sink.drain()
+    }
+}
+
+impl Show for CellWriter<Sink> {
+    fn show(&mut self, replay: &mut Replay) -> usize {
+        self.draw_frame(|screen| replay.draw(screen));
+        _ = Backend::flush(self);
+        self.output_mut().drain()
     }
 }

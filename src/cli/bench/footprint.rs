@@ -8,8 +8,8 @@ use std::path::Path;
 use std::process::{Command, Stdio};
 use std::time::{Duration, Instant};
 
+use ratatui::backend::Backend;
 use ratatui::layout::Size;
-use ratatui::{Terminal, TerminalOptions, Viewport};
 
 use super::begin;
 use crate::cli::Error;
@@ -60,15 +60,14 @@ fn play() -> Result<(), Error> {
     let script = SHOWCASE.script()?;
     let steps: Vec<Intents> = script.iter().map(|(_, intents)| intents).collect();
     let mut replay = begin(GAME_WINDOW)?;
-    let writer = CellWriter::new(io::sink(), GAME_WINDOW);
-    let viewport = Viewport::Fixed(GAME_WINDOW.into());
-    let window = Terminal::with_options(writer, TerminalOptions { viewport });
-    let mut window = window.map_err(|error| Error::of_output(&error))?;
+    let mut writer = CellWriter::new(io::sink(), GAME_WINDOW);
     for steps in steps.chunks(STEPS_A_FRAME) {
         for &intents in steps {
             replay.step(intents);
         }
-        replay.draw(&mut window).map_err(|error| Error::of_output(&error))?;
+        writer.draw_frame(|screen| replay.draw(screen));
+        // A sink takes everything.
+        _ = Backend::flush(&mut writer);
     }
     Ok(())
 }

@@ -51,8 +51,12 @@ pub(super) fn draw_cell(pen: &mut Pen, row: &mut Row, column: usize) {
         let (glyph, style) = look::cheapest(halves, pen.style());
         pen.draw_block(position, glyph, style);
     } else {
-        let cell = &row.wanted[column];
-        pen.draw_text(position, cell.symbol(), Style::of(cell));
+        let mut character = [0; 4];
+        let (text, style) = match row.looks[column].text() {
+            Some((text, style)) => (&*text.encode_utf8(&mut character), style),
+            None => (row.wanted[column].symbol(), Style::of(&row.wanted[column])),
+        };
+        pen.draw_text(position, text, style);
     }
     row.shown[column] = row.looks[column];
 }

@@ -8,6 +8,7 @@
 use std::fmt;
 
 use ratatui::buffer::{Cell, CellWidth};
+use ratatui::style::Color;
 
 use super::style::{Shade, Style};
 
@@ -32,6 +33,15 @@ impl Glyph {
             Self::Lower => "▄",
             Self::Full => "█",
             Self::Space => " ",
+        }
+    }
+
+    const fn character(self) -> char {
+        match self {
+            Self::Upper => '▀',
+            Self::Lower => '▄',
+            Self::Full => '█',
+            Self::Space => ' ',
         }
     }
 
@@ -71,28 +81,60 @@ impl Look {
     const BLOCK: u128 = 2;
     const CHARACTER: u128 = 3;
 
+    /// A space in the terminal's own colours.
+    pub(super) const BLANK: Self = Self(Self::CHARACTER << 112 | (b' ' as u128) << 64);
+
     /// What `cell` looks like.
     #[inline]
     pub(super) fn of(cell: &Cell) -> Self {
         let (symbol, style) = (cell.symbol(), Style::of(cell));
-        match halves(symbol, style) {
+        match Glyph::of(symbol).and_then(|glyph| halves(glyph, style)) {
             Some(halves) => Self::of_halves(halves),
             None => Self::of_text(cell, style),
+        }
+    }
+
+    /// What two colours look like, the first above the second.
+    #[inline]
+    pub(super) fn of_colors(colors: [Color; 2]) -> Self {
+        let [top, bottom] = colors.map(Shade::of);
+        Self::of_glyph(Glyph::Upper, Style::plain(top, bottom))
+    }
+
+    /// What a character that is one cell wide looks like, in the colours of its text and of its ground.
+    pub(super) fn of_character(character: char, colors: [Color; 2]) -> Self {
+        let [text, ground] = colors.map(Shade::of);
+        let style = Style::plain(text, ground);
+        match Glyph::of(character.encode_utf8(&mut [0; 4])) {
+            Some(glyph) => Self::of_glyph(glyph, style),
+            None => Self::of_fields(Self::CHARACTER, character.into(), style),
+        }
+    }
+
+    #[inline]
+    fn of_glyph(glyph: Glyph, style: Style) -> Self {
+        match halves(glyph, style) {
+            Some(halves) => Self::of_halves(halves),
+            None => Self::of_fields(Self::CHARACTER, glyph.character().into(), style),
         }
     }
 
     fn of_text(cell: &Cell, style: Style) -> Self {
         let mut characters = cell.symbol().chars();
         match (characters.next(), characters.next()) {
-            (Some(character), None) if cell.cell_width() == 1 => Self::of_fields(
-                Self::CHARACTER,
-                u32::from(character),
-                style.foreground.in_bits(),
-                style.background.in_bits(),
-                style.modifier_bits(),
-            ),
+            (Some(character), None) if cell.cell_width() == 1 => {
+                Self::of_fields(Self::CHARACTER, character.into(), style)
+            }
             _ => Self::INTRICATE,
         }
+    }
+
+    /// The character that it is, and how it is drawn; `None` for blocks and what is intricate.
+    pub(super) fn text(self) -> Option<(char, Style)> {
+        let character = (self.0 >> 112 == Self::CHARACTER).then_some((self.0 >> 64) as u32);
+        let [foreground, background] = [(self.0 >> 32) as u32, self.0 as u32].map(Shade::from_bits);
+        let style = Style::with_modifier_bits(foreground, background, (self.0 >> 96) as u16);
+        Some((char::from_u32(character?)?, style))
     }
 
     /// Whether it may be wider than a cell.
@@ -128,17 +170,15 @@ impl Look {
     }
 
     fn of_halves([top, bottom]: [Shade; 2]) -> Self {
-        Self::of_fields(Self::BLOCK, 0, top.in_bits(), bottom.in_bits(), 0)
+        Self::of_fields(Self::BLOCK, 0, Style::plain(top, bottom))
     }
 
-    fn of_fields(kind: u128, character: u32, one: u32, other: u32, modifier: u16) -> Self {
-        let colors = u128::from(one) << 32 | u128::from(other);
-        Self(kind << 112 | u128::from(modifier) << 96 | u128::from(character) << 64 | colors)
-    }
-
-    #[cfg(test)]
-    pub(super) fn of_character(character: char) -> Self {
-        Self::of(Cell::default().set_char(character))
+    #[inline]
+    fn of_fields(kind: u128, character: u32, style: Style) -> Self {
+        let (one, other) = (style.foreground.in_bits(), style.background.in_bits());
+        let colors = u64::from(one) << 32 | u64::from(other);
+        let rest = u64::from(style.modifier_bits()) << 32 | u64::from(character);
+        Self(kind << 112 | u128::from(rest) << 64 | u128::from(colors))
     }
 }
 
@@ -171,12 +211,12 @@ pub(super) fn cheapest([top, bottom]: [Shade; 2], current: Option<Style>) -> (Gl
     }
 }
 
-/// The colours of the upper and the lower half of a cell; `None` where it is no block, or where
-/// another block would not look the same: in the terminal's own colours, which are not the same two
-/// as text and as ground, and with modifiers.
+/// The colours of the upper and the lower half of a cell; `None` where another block would not look the
+/// same: in the terminal's own colours, which are not the same two as text and as ground, and with
+/// modifiers.
 #[inline]
-fn halves(symbol: &str, style: Style) -> Option<[Shade; 2]> {
-    let halves = Glyph::of(symbol)?.halves(style.foreground, style.background);
+fn halves(glyph: Glyph, style: Style) -> Option<[Shade; 2]> {
+    let halves = glyph.halves(style.foreground, style.background);
     let has_own = halves.contains(&Shade::DEFAULT);
     (style.has_no_modifiers() && !has_own).then_some(halves)
 }

@@ -1,27 +1,36 @@
 //! What the terminal shows, and what it is to show.
 
 use ratatui::backend::ClearType;
-use ratatui::buffer::Cell;
-use ratatui::layout::{Position, Size};
+use ratatui::buffer::{Buffer, Cell};
+use ratatui::layout::{Position, Rect, Size};
+use ratatui::style::Color;
+use ratatui::widgets::Widget;
 
 use super::look::Look;
 use super::shift::{Mark, Shift};
+use crate::tui::Canvas;
 
-/// What the terminal shows, and what it is to show, cell by cell.
+/// A terminal's screen: what it shows, and what it is to show, cell by cell.
+///
+/// It is a canvas: [`CellWriter::draw_frame`](super::CellWriter::draw_frame) lends it, blank.
 #[derive(Debug, Default)]
-pub(super) struct Screen {
+pub struct Screen {
     width: usize,
     shown: Vec<Look>,
     /// What it is to look like.
     looks: Vec<Look>,
+    /// What it was to look like before the frame that is being drawn.
+    looks_before: Vec<Look>,
     /// The landmarks of what it was to look like when it was drawn last.
     marks: Vec<Mark>,
-    /// The cells that are to be shown, where their looks do not say all.
+    /// The intricate cells that are to be shown: their looks do not say all.
     wanted: Vec<Cell>,
     /// Whether anything in a row is to be changed.
     changed: Vec<bool>,
     /// Whether a row shows exactly what it is to show.
     exact: Vec<bool>,
+    /// Where widgets are drawn first.
+    scratch: Buffer,
 }
 
 /// A row of it.
@@ -49,9 +58,9 @@ impl Screen {
     pub(super) fn resize(&mut self, size: Size) {
         let (width, height) = (usize::from(size.width), usize::from(size.height));
         self.width = width;
-        for looks in [&mut self.shown, &mut self.looks] {
+        for looks in [&mut self.shown, &mut self.looks, &mut self.looks_before] {
             looks.clear();
-            looks.resize(width * height, Look::of(&Cell::EMPTY));
+            looks.resize(width * height, Look::BLANK);
         }
         self.marks.clear();
         self.marks.resize(width * height, Mark::NONE);
@@ -82,9 +91,8 @@ impl Screen {
             ClearType::UntilNewLine => at..row + self.width,
         };
         let cells = cells.start.min(end)..cells.end.min(end);
-        self.shown[cells.clone()].fill(Look::of(&Cell::EMPTY));
-        self.looks[cells.clone()].fill(Look::of(&Cell::EMPTY));
-        self.wanted[cells].fill(Cell::EMPTY);
+        self.shown[cells.clone()].fill(Look::BLANK);
+        self.looks[cells].fill(Look::BLANK);
     }
 
     /// It is to show `cell` there; what is off the screen is nowhere.
@@ -92,13 +100,42 @@ impl Screen {
     pub(super) fn want(&mut self, x: u16, y: u16, cell: &Cell) {
         let (x, y) = (usize::from(x), usize::from(y));
         if x < self.width && y < self.changed.len() {
-            let (place, look) = (y * self.width + x, Look::of(cell));
-            self.looks[place] = look;
-            if look.halves().is_none() {
-                self.wanted[place].clone_from(cell);
-            }
+            self.set(y * self.width + x, cell);
             self.changed[y] = true;
         }
+    }
+
+    #[inline]
+    fn set(&mut self, place: usize, cell: &Cell) {
+        let look = Look::of(cell);
+        self.looks[place] = look;
+        if look.is_intricate() && self.wanted[place] != *cell {
+            self.wanted[place].clone_from(cell);
+            self.changed[place / self.width] = true;
+        }
+    }
+
+    /// A whole frame is drawn, on blank ground.
+    pub(super) fn begin_frame(&mut self) {
+        std::mem::swap(&mut self.looks, &mut self.looks_before);
+        self.looks.fill(Look::BLANK);
+    }
+
+    /// The frame is whole: what is not as it was before has changed.
+    pub(super) fn end_frame(&mut self) {
+        let width = self.width.max(1);
+        let rows = self.looks.chunks(width).zip(self.looks_before.chunks(width));
+        for (changed, (looks, before)) in self.changed.iter_mut().zip(rows) {
+            *changed |= looks != before;
+        }
+    }
+
+    /// The cells from `(x, y)` to the right; none off the screen.
+    #[inline]
+    fn looks_from(&mut self, x: u16, y: u16) -> &mut [Look] {
+        let row = usize::from(y) * self.width;
+        let cells = row + usize::from(x).min(self.width)..row + self.width;
+        self.looks.get_mut(cells).unwrap_or_default()
     }
 
     /// Whether anything was wanted since the rows were drawn.
@@ -140,6 +177,39 @@ impl Screen {
             let (changed, exact) = state;
             is_asked(*exact, changed).then_some(Row { y, shown, looks, marks, wanted, exact })
         })
+    }
+}
+
+impl Canvas for Screen {
+    fn bounds(&self) -> Rect {
+        Rect::new(0, 0, self.width as u16, self.changed.len() as u16)
+    }
+
+    #[inline]
+    fn draw_halves(&mut self, x: u16, y: u16, row: impl Iterator<Item = [Color; 2]>) {
+        for (look, halves) in self.looks_from(x, y).iter_mut().zip(row) {
+            *look = Look::of_colors(halves);
+        }
+    }
+
+    #[inline]
+    fn draw_character(&mut self, x: u16, y: u16, character: char, colors: [Color; 2]) {
+        if let Some(look) = self.looks_from(x, y).first_mut() {
+            *look = Look::of_character(character, colors);
+        }
+    }
+
+    fn draw_widget(&mut self, widget: impl Widget, area: Rect) {
+        let area = area.intersection(self.bounds());
+        let mut scratch = std::mem::take(&mut self.scratch);
+        scratch.resize(area);
+        scratch.reset();
+        widget.render(area, &mut scratch);
+        for (position, cell) in area.positions().zip(scratch.content()) {
+            let place = usize::from(position.y) * self.width + usize::from(position.x);
+            self.set(place, cell);
+        }
+        self.scratch = scratch;
     }
 }
 

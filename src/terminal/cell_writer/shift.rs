@@ -233,6 +233,7 @@ fn best_stretch(gains: impl Iterator<Item = i32>) -> Option<(Range<usize>, i32)>
 #[cfg(test)]
 mod tests {
     use proptest::prelude::*;
+    use ratatui::style::Color;
 
     use super::*;
 
@@ -254,7 +255,7 @@ mod tests {
     }
 
     fn row(text: &str) -> Vec<Look> {
-        text.chars().map(Look::of_character).collect()
+        text.chars().map(|drawn| Look::of_character(drawn, [Color::Reset; 2])).collect()
     }
 
     #[test]

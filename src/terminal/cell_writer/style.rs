@@ -80,6 +80,11 @@ impl Style {
         Self { foreground, background, modifier: Modifier::empty() }
     }
 
+    /// Those two colours, and the modifiers that have those bits.
+    pub(super) fn with_modifier_bits(foreground: Shade, background: Shade, modifiers: u16) -> Self {
+        Self { foreground, background, modifier: Modifier::from_bits_truncate(modifiers) }
+    }
+
     pub(super) fn modifier_bits(self) -> u16 {
         self.modifier.bits()
     }
@@ -146,7 +151,7 @@ impl Shade {
     }
 
     #[inline]
-    fn of(color: Color) -> Self {
+    pub(super) fn of(color: Color) -> Self {
         Self::indexed(match color {
             Color::Rgb(red, green, blue) => return Self::rgb([red, green, blue]),
             Color::Reset => return Self::DEFAULT,

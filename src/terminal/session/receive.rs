@@ -3,6 +3,8 @@
 use std::io;
 use std::time::Instant;
 
+use ratatui::backend::Backend;
+
 use super::{KeyReleases, Session};
 use crate::palette::ColorDepth;
 use crate::terminal::input::{Answer, Input};
@@ -116,11 +118,10 @@ impl Session {
             self.guard.recording().resized(size.cells());
         }
         self.size = size;
-        let writer = self.terminal.backend_mut();
-        writer.forget();
-        writer.set_size(self.size.cells());
+        self.writer.forget();
+        self.writer.set_size(self.size.cells());
         // Nothing is written before the next frame, so nothing can fail yet.
-        _ = self.terminal.clear();
+        _ = Backend::clear(&mut self.writer);
         if self.events.back() != Some(&Event::Resized) {
             self.events.push_back(Event::Resized);
         }

@@ -3,20 +3,19 @@
 use std::io;
 use std::time::{Duration, Instant};
 
-use ratatui::Frame;
 use ratatui::backend::Backend;
 
 use super::Session;
-use crate::terminal::{Error, Event, Fidelity, sequence};
+use crate::terminal::{Error, Event, Fidelity, Screen, sequence};
 
 impl Session {
-    /// Draws a frame, and sends what has changed since the last one. Where the terminal is not
+    /// Draws a frame on a blank screen, and sends what has changed since the last one. Where the terminal is not
     /// [ready](Self::is_ready) for it, waits until it is, unless the program is asked to end:
     /// then the frame is dropped, and the event that says so comes next.
     ///
     /// # Errors
     /// Where the terminal cannot be written to, or a panic in another thread has given it back.
-    pub fn draw(&mut self, render: impl FnOnce(&mut Frame)) -> Result<(), Error> {
+    pub fn draw(&mut self, render: impl FnOnce(&mut Screen)) -> Result<(), Error> {
         let drawn = self.try_draw(render);
         self.unless_hurried(drawn)
     }
@@ -33,7 +32,7 @@ impl Session {
     /// Whether the terminal shows exactly what was drawn last. Where it does not, a few calls of
     /// [`Session::refine`] make it.
     pub fn is_settled(&self) -> bool {
-        self.terminal.backend().is_settled()
+        self.writer.is_settled()
     }
 
     /// Whether a frame that is drawn now is shown soon, rather than behind others that are still on
@@ -56,14 +55,15 @@ impl Session {
 
     /// How many bytes all frames together have taken.
     pub fn bytes_written(&self) -> u64 {
-        self.terminal.backend().bytes_written()
+        self.writer.bytes_written()
     }
 
-    fn try_draw(&mut self, render: impl FnOnce(&mut Frame)) -> io::Result<()> {
+    fn try_draw(&mut self, render: impl FnOnce(&mut Screen)) -> io::Result<()> {
         if self.wait_until_ready()? {
             let fidelity = self.fidelity();
-            self.terminal.backend_mut().set_fidelity(fidelity);
-            self.terminal.draw(render)?;
+            self.writer.set_fidelity(fidelity);
+            self.writer.draw_frame(render);
+            Backend::flush(&mut self.writer)?;
             let bytes = self.send()?;
             self.flow.showed_motion(bytes, fidelity);
         }
@@ -72,8 +72,8 @@ impl Session {
 
     fn try_refine(&mut self) -> io::Result<()> {
         if self.wait_until_ready()? {
-            self.terminal.backend_mut().refine();
-            Backend::flush(self.terminal.backend_mut())?;
+            self.writer.refine();
+            Backend::flush(&mut self.writer)?;
             self.send()?;
         }
         Ok(())
@@ -118,7 +118,7 @@ impl Session {
     /// Sends what has been written, if anything has, and tells how many bytes that is.
     fn send(&mut self) -> io::Result<usize> {
         let now = self.now();
-        let frame = self.terminal.backend_mut().output_mut();
+        let frame = self.writer.output_mut();
         let bytes = frame.len();
         if bytes == 0 {
             return Ok(0);

@@ -1,12 +1,12 @@
 //! What shows on the picture and around it: the minimap's frame, and messages.
 
-use ratatui::Frame;
+use ratatui::buffer::Buffer;
 use ratatui::layout::{Constraint, Flex, Layout, Rect, Size};
 use ratatui::text::{Line, Span, Text};
-use ratatui::widgets::{Block, Clear, Paragraph, Wrap};
+use ratatui::widgets::{Block, Paragraph, Widget, Wrap};
 
-use crate::tui::Minimap;
 use crate::tui::bindings::{Action, Bindings};
+use crate::tui::{Canvas, Minimap};
 
 /// The least that can be played in.
 const LEAST_COLUMNS: u16 = 20;
@@ -26,9 +26,9 @@ pub(super) fn is_too_small(area: Rect) -> bool {
 }
 
 /// Says so.
-pub(super) fn too_small(frame: &mut Frame) {
+pub(super) fn too_small(canvas: &mut impl Canvas) {
     let text = format!("Too small to play: {LEAST_COLUMNS}×{LEAST_ROWS} at least.");
-    frame.render_widget(Paragraph::new(text).wrap(Wrap { trim: true }), frame.area());
+    canvas.draw_widget(Paragraph::new(text).wrap(Wrap { trim: true }), canvas.bounds());
 }
 
 /// Where the picture and the status line go.
@@ -54,24 +54,34 @@ pub(super) fn minimap(picture: Rect, map: &Minimap) -> Option<Rect> {
 }
 
 /// Draws an empty panel with a border and a title, and tells where its inside is.
-pub(super) fn framed(frame: &mut Frame, area: Rect, title: &str) -> Rect {
-    let block = Block::bordered();
-    let inside = block.inner(area);
-    frame.render_widget(Clear, area);
-    frame.render_widget(block, area);
-    // A block's own title is a list that is made for it, and this one is drawn with each frame.
-    frame.render_widget(Span::raw(title), Rect { y: area.y, height: 1, ..inside });
-    inside
+pub(super) fn framed(canvas: &mut impl Canvas, area: Rect, title: &str) -> Rect {
+    canvas.draw_widget(Panel { title }, area);
+    Block::bordered().inner(area)
+}
+
+/// A border with a title. A block of ratatui's keeps its title in a list, which is too much for what is
+/// drawn with each frame.
+struct Panel<'a> {
+    title: &'a str,
+}
+
+impl Widget for Panel<'_> {
+    fn render(self, area: Rect, buffer: &mut Buffer) {
+        let block = Block::bordered();
+        let inside = block.inner(area);
+        block.render(area, buffer);
+        Span::raw(self.title).render(Rect { y: area.y, height: 1, ..inside }, buffer);
+    }
 }
 
 /// That the game waits.
-pub(super) fn paused(frame: &mut Frame, picture: Rect, bindings: &Bindings) {
+pub(super) fn paused(canvas: &mut impl Canvas, picture: Rect, bindings: &Bindings) {
     let keys = key_names(bindings, Action::TogglePause);
-    message(frame, picture, "paused", Text::from(format!("{keys} goes on")).centered());
+    message(canvas, picture, "paused", Text::from(format!("{keys} goes on")).centered());
 }
 
 /// Which key does what: in as many columns as it takes, or as much as there is room for.
-pub(super) fn help(frame: &mut Frame, picture: Rect, bindings: &Bindings) {
+pub(super) fn help(canvas: &mut impl Canvas, picture: Rect, bindings: &Bindings) {
     const GAP: usize = 3;
     let lines: Vec<String> = Action::ALL
         .into_iter()
@@ -90,32 +100,32 @@ pub(super) fn help(frame: &mut Frame, picture: Rect, bindings: &Bindings) {
         rows.truncate(room - 1);
         rows.push("more in a larger window".to_owned());
     }
-    message(frame, picture, "keys", rows.into_iter().map(Line::from).collect());
+    message(canvas, picture, "keys", rows.into_iter().map(Line::from).collect());
 }
 
 /// That the exit was reached, and how soon.
-pub(super) fn level_done(frame: &mut Frame, picture: Rect, title: &str, seconds: f64) {
+pub(super) fn level_done(canvas: &mut impl Canvas, picture: Rect, title: &str, seconds: f64) {
     let text = format!("{title}\nin {}\nEnter goes on", time(seconds));
-    message(frame, picture, "you found the way out", Text::from(text).centered());
+    message(canvas, picture, "you found the way out", Text::from(text).centered());
 }
 
 /// That there are no more levels, and how soon the player got through them.
-pub(super) fn end(frame: &mut Frame, picture: Rect, seconds: f64) {
+pub(super) fn end(canvas: &mut impl Canvas, picture: Rect, seconds: f64) {
     let text = format!("all levels\nin {}\nEnter leaves", time(seconds));
-    message(frame, picture, "the end", Text::from(text).centered());
+    message(canvas, picture, "the end", Text::from(text).centered());
 }
 
 /// A panel in the middle of the picture, as large as `text` needs.
-fn message(frame: &mut Frame, picture: Rect, title: &str, text: Text) {
+fn message(canvas: &mut impl Canvas, picture: Rect, title: &str, text: Text) {
     let widest = text.width().max(title.len()) as u16;
     let width = Constraint::Length(widest.saturating_add(BORDERS + PADDING));
     let height = Constraint::Length((text.height() as u16).saturating_add(BORDERS));
     let [area] = Layout::horizontal([width]).flex(Flex::Center).areas(picture);
     let [area] = Layout::vertical([height]).flex(Flex::Center).areas(area);
-    let inside = framed(frame, area, title);
+    let inside = framed(canvas, area, title);
     let [inside] =
         Layout::horizontal([Constraint::Fill(1)]).horizontal_margin(PADDING / 2).areas(inside);
-    frame.render_widget(Paragraph::new(text), inside);
+    canvas.draw_widget(Paragraph::new(text), inside);
 }
 
 fn key_names(bindings: &Bindings, action: Action) -> String {
@@ -131,15 +141,15 @@ fn time(seconds: f64) -> String {
 
 #[cfg(test)]
 mod tests {
-    use ratatui::Terminal;
-    use ratatui::backend::TestBackend;
+    use ratatui::buffer::{Buffer, Cell};
 
     use super::*;
 
-    fn shown(columns: u16, rows: u16, draw: impl FnOnce(&mut Frame)) -> String {
-        let mut terminal = Terminal::new(TestBackend::new(columns, rows)).unwrap();
-        terminal.draw(draw).unwrap();
-        terminal.backend().to_string()
+    fn shown(columns: u16, rows: u16, draw: impl FnOnce(&mut Buffer)) -> String {
+        let mut buffer = Buffer::empty(Rect::new(0, 0, columns, rows));
+        draw(&mut buffer);
+        let lines = buffer.content().chunks(columns.into());
+        lines.flat_map(|line| line.iter().map(Cell::symbol).chain(["\n"])).collect()
     }
 
     #[test]
@@ -148,7 +158,7 @@ mod tests {
         for (columns, rows, is_whole) in
             [(32, 24, true), (64, 13, true), (200, 60, true), (60, 9, false), (20, 5, false)]
         {
-            let text = shown(columns, rows, |frame| help(frame, frame.area(), &bindings));
+            let text = shown(columns, rows, |canvas| help(canvas, canvas.bounds(), &bindings));
             let is_so = Action::ALL.iter().all(|(_, does, _)| text.contains(does));
             assert_eq!(is_so, is_whole, "{columns} by {rows}:\n{text}");
             assert_eq!(text.contains("more in a"), !is_whole, "{columns} by {rows}:\n{text}");

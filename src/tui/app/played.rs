@@ -1,13 +1,12 @@
 //! What is played: a walk in a grid, or a flight among bodies.
 
-use ratatui::Frame;
 use ratatui::layout::Rect;
 
 use crate::game::{Flight, Game, Intents};
 use crate::generate::Site;
 use crate::map::Level;
 use crate::space;
-use crate::tui::{FirstPerson, SpaceMemory, SpaceView, View};
+use crate::tui::{Canvas, FirstPerson, SpaceMemory, SpaceView, View};
 use crate::world::{Camera, FieldOfView};
 
 /// A level, as far as it has been played.
@@ -132,7 +131,7 @@ impl Played {
         &self,
         eye: &Eye,
         look: super::Look,
-        (frame, area): (&mut Frame, Rect),
+        (canvas, area): (&mut impl Canvas, Rect),
         memory: &mut Memory,
     ) {
         match (self, eye) {
@@ -143,14 +142,16 @@ impl Played {
                     .cell_aspect(look.cell_aspect)
                     .filter(look.filter)
                     .time(game.elapsed());
-                frame.render_stateful_widget(picture, area, &mut memory.grid);
+                picture.draw(area.as_size(), &mut memory.grid);
+                picture.paint(&memory.grid, 0, area, canvas);
             }
             (Self::Space(flight), Eye::Space(camera)) => {
                 let picture = SpaceView::new(flight.scene(), camera)
                     .glyphs(look.glyphs)
                     .color_depth(look.depth)
                     .cell_aspect(look.cell_aspect);
-                frame.render_stateful_widget(picture, area, &mut memory.space);
+                picture.draw(area.as_size(), &mut memory.space);
+                picture.paint(&memory.space, 0, area, canvas);
             }
             // An eye is that of what is played.
             (Self::Grid(_), Eye::Space(_)) | (Self::Space(_), Eye::Grid(_)) => {}

@@ -1,16 +1,14 @@
 //! The game played by a script, off screen.
 
-use std::convert::Infallible;
 use std::fmt;
 use std::num::NonZeroU32;
 
-use ratatui::Terminal;
-use ratatui::backend::{Backend, TestBackend};
 use ratatui::buffer::Buffer;
-use ratatui::layout::Size;
+use ratatui::layout::{Rect, Size};
 
 use super::{App, Levels, Screen, Settings};
 use crate::game::{Intents, STEPS_PER_SECOND, Script};
+use crate::tui::Canvas;
 
 /// A game that no terminal shows, one step at a time: the picture, minimap and status line that a
 /// player would see who wants the same things.
@@ -18,14 +16,14 @@ use crate::game::{Intents, STEPS_PER_SECOND, Script};
 /// Where a level's exit is reached, the next step is the first one of the next level.
 pub struct Replay {
     app: App,
-    window: Terminal<TestBackend>,
+    picture: Buffer,
 }
 
 impl Replay {
     /// The beginning of `levels`, in a window of `size`.
     pub fn new(levels: Levels, settings: Settings, size: Size) -> Self {
-        let Ok(window) = Terminal::new(TestBackend::new(size.width, size.height));
-        Self { app: App::new(levels, settings), window }
+        let area = Rect::from(size);
+        Self { app: App::new(levels, settings), picture: Buffer::empty(area) }
     }
 
     /// Lets a step pass in which the player wants `intents`.
@@ -65,19 +63,16 @@ impl Replay {
         Ok(())
     }
 
-    /// Shows in `window` what there is to see now.
-    ///
-    /// # Errors
-    /// Those of the window's backend.
-    pub fn draw<B: Backend>(&mut self, window: &mut Terminal<B>) -> Result<(), B::Error> {
-        window.draw(|frame| self.app.draw(frame)).map(|_| ())
+    /// Draws what there is to see now.
+    pub fn draw(&mut self, canvas: &mut impl Canvas) {
+        self.app.draw(canvas);
     }
 
     /// What the window shows now.
     pub fn picture(&mut self) -> &Buffer {
-        let drawn: Result<_, Infallible> = self.window.draw(|frame| self.app.draw(frame));
-        let Ok(_) = drawn;
-        self.window.backend().buffer()
+        self.picture.reset();
+        self.app.draw(&mut self.picture);
+        &self.picture
     }
 }
 

@@ -5,10 +5,11 @@
 
 use std::fmt::{self, Write};
 
-use ratatui::Frame;
+use ratatui::buffer::Buffer;
 use ratatui::layout::Rect;
 use ratatui::style::{Modifier, Style};
 use ratatui::text::Span;
+use ratatui::widgets::Widget;
 
 use super::played::Played;
 use super::stats::Stats;
@@ -43,17 +44,18 @@ impl StatusLine {
         _ = write_left(&mut self.left, game, gait);
         _ = write_right(&mut self.right, stats, bindings);
     }
+}
 
-    /// Shows it. What is to the right goes first where there is not room for both.
-    pub(super) fn draw(&self, frame: &mut Frame, area: Rect) {
-        let reversed = Style::new().add_modifier(Modifier::REVERSED);
+impl Widget for &StatusLine {
+    /// What is to the right goes first where there is not room for both.
+    fn render(self, area: Rect, buffer: &mut Buffer) {
         let [left, right] = [&self.left, &self.right].map(|text| Span::raw(text.as_str()));
         let width = (right.width() as u16).min(area.width);
         let left_area = Rect { width: area.width - width, ..area };
         let right_area = Rect { x: left_area.right(), width, ..area };
-        frame.buffer_mut().set_style(area, reversed);
-        frame.render_widget(left, left_area);
-        frame.render_widget(right, right_area);
+        left.render(left_area, buffer);
+        right.render(right_area, buffer);
+        buffer.set_style(area, Style::new().add_modifier(Modifier::REVERSED));
     }
 }
 
@@ -84,8 +86,7 @@ fn write_right(text: &mut String, stats: Option<&Stats>, bindings: &Bindings) ->
 
 #[cfg(test)]
 mod tests {
-    use ratatui::Terminal;
-    use ratatui::backend::TestBackend;
+    use ratatui::buffer::Cell;
 
     use super::*;
 
@@ -93,9 +94,9 @@ mod tests {
     fn help_is_told_of_before_anything_else() {
         let line = StatusLine { left: " a level".to_owned(), right: " ? help ".to_owned() };
         for (columns, shown) in [(20, " a level     ? help "), (12, " a l ? help "), (4, " ? h")] {
-            let mut terminal = Terminal::new(TestBackend::new(columns, 1)).unwrap();
-            terminal.draw(|frame| line.draw(frame, frame.area())).unwrap();
-            assert_eq!(terminal.backend().to_string(), format!("\"{shown}\"\n"));
+            let mut buffer = Buffer::empty(Rect::new(0, 0, columns, 1));
+            line.render(buffer.area, &mut buffer);
+            assert_eq!(buffer.content().iter().map(Cell::symbol).collect::<String>(), shown);
         }
     }
 }
