@@ -41,7 +41,13 @@ impl Table {
         let rules =
             (0..header.len()).map(|column| if column < self.labels { "---" } else { "--:" });
         let rule = rules.collect::<Vec<_>>().join("|");
-        writeln!(output, "{}: {}\n\n| {} |\n|{rule}|", self.title, self.about, header.join(" | "))?;
+        writeln!(
+            output,
+            "**{}:** {}\n\n| {} |\n|{rule}|",
+            self.title,
+            self.about,
+            header.join(" | ")
+        )?;
         lines.try_for_each(|row| writeln!(output, "| {} |", row.join(" | ")))?;
         writeln!(output)
     }
@@ -83,8 +89,7 @@ mod tests {
 
     #[test]
     fn pages_align_by_themselves() {
-        let text =
-            "Fruit: kilograms.\n\n| kind | kg |\n|---|--:|\n| apples | 7 |\n| figs | 12.5 |\n\n";
+        let text = "**Fruit:** kilograms.\n\n| kind | kg |\n|---|--:|\n| apples | 7 |\n| figs | 12.5 |\n\n";
         assert_eq!(written(Table::write_markdown), text);
     }
 }
