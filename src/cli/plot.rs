@@ -69,9 +69,11 @@ pub(super) struct Axis {
 impl Axis {
     /// From the least of `values`, which are above 0, to the greatest.
     pub(super) fn between(values: impl Iterator<Item = f64>) -> Self {
-        let (first, last) = values
-            .fold((f64::INFINITY, f64::NEG_INFINITY), |(low, high), value| {
-                (low.min(value.log10()), high.max(value.log10()))
+        // What a clock was too coarse for took next to nothing.
+        let powers = values.map(|value| value.max(f64::MIN_POSITIVE).log10());
+        let (first, last) = powers
+            .fold((f64::INFINITY, f64::NEG_INFINITY), |(low, high), power| {
+                (low.min(power), high.max(power))
             });
         Self { first, last }
     }
