@@ -39,7 +39,9 @@ pub enum Scene {
 /// The sizes of the pictures.
 pub const SIZES: [FrameSize; 5] =
     [size(160, 90), size(320, 200), size(640, 480), size(1920, 1080), size(3840, 2160)];
-const fn size(width: u32, height: u32) -> FrameSize {
+
+/// The size of a picture that is known to have pixels.
+pub(super) const fn size(width: u32, height: u32) -> FrameSize {
     match (NonZeroU32::new(width), NonZeroU32::new(height)) {
         (Some(width), Some(height)) => FrameSize { width, height },
         _ => panic!("a picture has pixels"),
@@ -138,7 +140,7 @@ impl Times {
 }
 
 /// How long `work` takes, in seconds.
-fn seconds(work: impl FnOnce()) -> f64 {
+pub(super) fn seconds(work: impl FnOnce()) -> f64 {
     let start = Instant::now();
     work();
     start.elapsed().as_secs_f64()

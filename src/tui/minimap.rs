@@ -1,5 +1,7 @@
 //! The minimap: the map from above, north up.
 
+mod chart;
+
 use glam::DVec2;
 use ratatui::buffer::Buffer;
 use ratatui::layout::{Rect, Size};
@@ -10,7 +12,8 @@ use super::glyphs::color_at;
 use super::{Canvas, GlyphMode, ascii, half_blocks};
 use crate::palette::ColorDepth;
 use crate::render::Column;
-use crate::world::{Camera, Cell, Paint, Rgb, Shape, ThingKind, TileId, TileKind, World};
+use crate::world::{Camera, Rgb, World};
+use chart::Chart;
 
 /// A widget that shows the map from above: walls in their colours, the player as an arrow, and the
 /// part of the floor that is seen, by the rays that the picture was drawn from.
@@ -57,20 +60,6 @@ impl<'a> Minimap<'a> {
     }
 }
 
-/// The floor that nobody sees just now.
-const FLOOR: Rgb = Rgb::new(0x24, 0x24, 0x2c);
-/// The floor in the field of view.
-const SEEN: Rgb = Rgb::new(0x6c, 0x66, 0x4a);
-/// What is not on the map.
-const VOID: Rgb = Rgb::BLACK;
-/// The cell to reach.
-const EXIT: Rgb = Rgb::new(0x3c, 0xc8, 0x64);
-/// A key to take.
-const KEY: Rgb = Rgb::new(0xf0, 0xc0, 0x40);
-/// Something to walk around, or past.
-const ORNAMENT: Rgb = Rgb::new(0x9c, 0x8c, 0x74);
-/// How opaque glass is at least, so that clear glass can be told from floor.
-const MIST: u8 = 96;
 /// The arrow.
 const PLAYER: Color = Color::Yellow;
 
@@ -88,11 +77,16 @@ impl Minimap<'_> {
             return;
         }
         let window = Window::new(area, self.glyphs, self.world, self.camera.position());
-        let sight = Sight::new(self.camera, self.columns);
-        let place = |x, y| self.place(window.point(x, y), window.pixel(), &sight);
+        let chart = Chart::new(self.world, self.camera, self.columns, window.pixel());
+        let place = |x, y| {
+            let point = window.point(x, y);
+            chart.place(point, chart.things_in_row(point.y))
+        };
         match self.glyphs {
             GlyphMode::Half => half_blocks::draw(area, canvas, self.depth, 0, |y| {
-                (0..area.width.into()).map(move |x| place(x, y).color())
+                let things = chart.things_in_row(window.point(0, y).y);
+                let points = (0..area.width.into()).map(move |x| window.point(x, y));
+                points.map(|point| chart.place(point, things).color())
             }),
             GlyphMode::Ascii | GlyphMode::Ramp => ascii::draw(area, canvas, self.depth, |x, y| {
                 let place = place(x, y);
@@ -118,52 +112,6 @@ impl Minimap<'_> {
         Size::new(needed.x as u16, (needed.y / pixels_per_cell).ceil() as u16)
     }
 
-    /// What is on the map at `point`, in the middle of a pixel that is `pixel` cells wide.
-    #[inline]
-    fn place(&self, point: DVec2, pixel: f64, sight: &Sight) -> Place {
-        let [column, row] = [point.x, point.y].map(cell_at);
-        let Some(tile) = self.world.grid().tile(column, row) else { return Place::Void };
-        if let Some(color) = self.solid_color(tile)
-            && self.is_covered(tile, point, pixel)
-        {
-            return Place::Wall(color);
-        }
-        let cell = Cell { column: column as u32, row: row as u32 };
-        let is_on_dot = is_on_dot(point, cell);
-        match self.world.things_in(cell).first().map(|thing| thing.kind) {
-            Some(ThingKind::Exit) => Place::Exit,
-            Some(ThingKind::Key(_)) if is_on_dot => Place::Key,
-            Some(ThingKind::Ornament) if is_on_dot => Place::Ornament,
-            _ if sight.reaches(point) => Place::Seen,
-            _ => Place::Floor,
-        }
-    }
-
-    /// The colour of a solid tile; `None` for floor.
-    fn solid_color(&self, tile: TileId) -> Option<Rgb> {
-        let paint = match self.world.tile(tile).kind {
-            TileKind::Open | TileKind::Doorway(_) => return None,
-            TileKind::Wall(paint) | TileKind::Shape(Shape { paint, .. }) => paint,
-            TileKind::Door(door) => door.leaf,
-            TileKind::Mirror(tint) => Paint::Color(tint.color),
-            TileKind::Mask(texture) => Paint::Texture(texture),
-            TileKind::Glass(glass) => {
-                return Some(glass.color.over(FLOOR, glass.opacity.max(MIST)));
-            }
-        };
-        Some(self.world.mean_color(paint))
-    }
-
-    /// Whether a pixel around `point`, in a cell of a solid tile, shows that: all do but those beside
-    /// a shape.
-    fn is_covered(&self, tile: TileId, point: DVec2, pixel: f64) -> bool {
-        let TileKind::Shape(Shape { outline, .. }) = self.world.tile(tile).kind else {
-            return true;
-        };
-        let cell = Cell { column: point.x as u32, row: point.y as u32 };
-        outline.distance(cell, point) <= pixel / 2.0
-    }
-
     /// Draws the arrow at `place`, on ground of that colour.
     fn draw_player(&self, (x, y): (u16, u16), ground: Rgb, canvas: &mut impl Canvas) {
         let arrows = match self.glyphs {
@@ -173,88 +121,6 @@ impl Minimap<'_> {
         let eighth = (self.camera.heading.degrees() / 45.0).round() as usize % arrows.len();
         let text = if self.depth == ColorDepth::Mono { Color::Reset } else { PLAYER };
         canvas.draw_character(x, y, arrows[eighth], [text, color_at(self.depth, ground)]);
-    }
-}
-
-/// What the player sees of the floor.
-struct Sight<'a> {
-    position: DVec2,
-    direction: DVec2,
-    half_width: f64,
-    columns: &'a [Column],
-}
-
-impl<'a> Sight<'a> {
-    fn new(camera: &Camera, columns: &'a [Column]) -> Self {
-        Self {
-            position: camera.position(),
-            direction: camera.direction(),
-            half_width: camera.field_of_view.half_width(),
-            columns,
-        }
-    }
-
-    /// Whether the ray of the column that `point` falls in gets as far as that.
-    #[inline]
-    fn reaches(&self, point: DVec2) -> bool {
-        let to_point = point - self.position;
-        let distance = to_point.dot(self.direction);
-        if distance <= 0.0 || self.columns.is_empty() {
-            return false;
-        }
-        let across = to_point.dot(self.direction.perp()) / (distance * self.half_width);
-        let index = f64::midpoint(across, 1.0) * self.columns.len() as f64;
-        index >= 0.0
-            && self.columns.get(index as usize).is_some_and(|column| distance <= column.distance)
-    }
-}
-
-/// The column or row that a place is in; before the map, one before it. Where processors may be old, rounding
-/// down is a call.
-fn cell_at(place: f64) -> i64 {
-    place as i64 - i64::from(place < 0.0)
-}
-
-/// Whether `point` is on the dot that stands for a thing in `cell`.
-fn is_on_dot(point: DVec2, cell: Cell) -> bool {
-    const RADIUS: f64 = 0.3;
-    (point - cell.center()).abs().max_element() <= RADIUS
-}
-
-/// What is at a point of the map.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
-enum Place {
-    Void,
-    Wall(Rgb),
-    Floor,
-    Seen,
-    Exit,
-    Key,
-    Ornament,
-}
-
-impl Place {
-    fn color(self) -> Rgb {
-        match self {
-            Self::Void => VOID,
-            Self::Wall(color) => color,
-            Self::Floor => FLOOR,
-            Self::Seen => SEEN,
-            Self::Exit => EXIT,
-            Self::Key => KEY,
-            Self::Ornament => ORNAMENT,
-        }
-    }
-
-    fn character(self) -> char {
-        match self {
-            Self::Void | Self::Floor => ' ',
-            Self::Wall(_) => '#',
-            Self::Seen => '.',
-            Self::Exit => 'X',
-            Self::Key => 'k',
-            Self::Ornament => 'o',
-        }
     }
 }
 

@@ -87,6 +87,11 @@ impl Clearance {
         Self { cells, width, blocks: Vec::new(), width_in_blocks: 0 }
     }
 
+    /// How many bytes it takes in memory.
+    pub(super) fn bytes(&self) -> usize {
+        size_of_val(self.cells.as_slice()) + size_of_val(self.blocks.as_slice())
+    }
+
     /// The same, which looks as far as there is anything to see, if rays gain by it.
     pub(super) fn measured_if_worthwhile(self) -> Self {
         let measured = self.measured();

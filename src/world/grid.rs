@@ -29,6 +29,12 @@ impl Cell {
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash, PartialOrd, Ord)]
 pub struct TileId(pub u8);
 
+impl TileId {
+    /// A world has no more tiles.
+    #[cfg_attr(not(feature = "tui"), expect(dead_code, reason = "only the minimap has a table"))]
+    pub(crate) const MOST: usize = 1 << u8::BITS;
+}
+
 /// Which tile each cell holds, and which tiles are solid.
 ///
 /// Tiles are numbered with the open ones first, so that asking whether a cell is solid is one
@@ -165,6 +171,11 @@ impl Grid {
     /// Whether cells that hold `tile` are solid.
     pub fn is_solid_tile(&self, tile: TileId) -> bool {
         tile >= self.first_solid
+    }
+
+    /// How many bytes it takes in memory: its cells, and what rays know of them.
+    pub fn bytes(&self) -> usize {
+        size_of_val(self.cells.as_slice()) + self.clearance.bytes()
     }
 
     /// The tiles row by row from the north, each row from the west.

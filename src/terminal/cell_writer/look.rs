@@ -89,8 +89,8 @@ impl Look {
     #[inline]
     pub(super) fn of(cell: &Cell) -> Self {
         let (symbol, style) = (cell.symbol(), Style::of(cell));
-        match Glyph::of(symbol).and_then(|glyph| halves(glyph, style)) {
-            Some(halves) => Self::of_halves(halves),
+        match Glyph::of(symbol) {
+            Some(glyph) => Self::of_glyph(glyph, style),
             None => Self::of_text(cell, style),
         }
     }
@@ -123,7 +123,7 @@ impl Look {
     fn of_text(cell: &Cell, style: Style) -> Self {
         let mut characters = cell.symbol().chars();
         match (characters.next(), characters.next()) {
-            (Some(character), None) if cell.cell_width() == 1 => {
+            (Some(character), None) if character.is_ascii_graphic() || cell.cell_width() == 1 => {
                 Self::of_fields(Self::CHARACTER, character.into(), style)
             }
             _ => Self::INTRICATE,

@@ -1,0 +1,189 @@
+//! What a point of the map shows from above.
+//!
+//! What tiles look like is found out once a picture, and what stands in a row once a row of pixels: most
+//! pixels need no more than a look into a table.
+
+use glam::DVec2;
+
+use crate::render::Column;
+use crate::world::{Camera, Cell, Paint, Rgb, Shape, Thing, ThingKind, TileId, TileKind, World};
+
+/// All that points are asked of.
+pub(super) struct Chart<'a> {
+    world: &'a World,
+    sight: Sight<'a>,
+    /// What each tile looks like.
+    tiles: [Drawn; TileId::MOST],
+    /// How many cells a pixel is wide.
+    pixel: f64,
+}
+
+/// What a tile looks like.
+#[derive(Clone, Copy)]
+enum Drawn {
+    Floor,
+    Solid(Rgb),
+    /// Solid where the shape is.
+    Shape(Rgb),
+}
+
+/// What is at a point of the map.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub(super) enum Place {
+    Void,
+    Wall(Rgb),
+    Floor,
+    Seen,
+    Exit,
+    Key,
+    Ornament,
+}
+
+/// The floor that nobody sees just now.
+const FLOOR: Rgb = Rgb::new(0x24, 0x24, 0x2c);
+/// The floor in the field of view.
+const SEEN: Rgb = Rgb::new(0x6c, 0x66, 0x4a);
+/// What is not on the map.
+const VOID: Rgb = Rgb::BLACK;
+/// The cell to reach.
+const EXIT: Rgb = Rgb::new(0x3c, 0xc8, 0x64);
+/// A key to take.
+const KEY: Rgb = Rgb::new(0xf0, 0xc0, 0x40);
+/// Something to walk around, or past.
+const ORNAMENT: Rgb = Rgb::new(0x9c, 0x8c, 0x74);
+/// How opaque glass is at least, so that clear glass can be told from floor.
+const MIST: u8 = 96;
+
+impl<'a> Chart<'a> {
+    /// A chart of `world`, of which `camera` saw `columns`, whose pixels are so many cells wide.
+    pub(super) fn new(
+        world: &'a World,
+        camera: &Camera,
+        columns: &'a [Column],
+        pixel: f64,
+    ) -> Self {
+        let mut tiles = [Drawn::Floor; TileId::MOST];
+        for (drawn, tile) in tiles.iter_mut().zip(world.tiles()) {
+            *drawn = drawn_as(tile.kind, world);
+        }
+        Self { world, sight: Sight::new(camera, columns), tiles, pixel }
+    }
+
+    /// What stands in the row that `y` is in.
+    pub(super) fn things_in_row(&self, y: f64) -> &'a [Thing] {
+        let row = u32::try_from(cell_at(y));
+        row.map_or(&[], |row| self.world.things_between(row, 0, u32::MAX))
+    }
+
+    /// What is at `point`, in the middle of a pixel; `things` stand in its row.
+    #[inline]
+    pub(super) fn place(&self, point: DVec2, things: &[Thing]) -> Place {
+        let [column, row] = [point.x, point.y].map(cell_at);
+        let Some(tile) = self.world.grid().tile(column, row) else { return Place::Void };
+        let cell = Cell { column: column as u32, row: row as u32 };
+        match self.tiles[usize::from(tile.0)] {
+            Drawn::Solid(color) => return Place::Wall(color),
+            Drawn::Shape(color) if self.is_covered(tile, cell, point) => return Place::Wall(color),
+            Drawn::Shape(_) | Drawn::Floor => {}
+        }
+        let first = things.partition_point(|thing| thing.cell.column < cell.column);
+        let thing = things.get(first).filter(|thing| thing.cell == cell);
+        match thing.map(|thing| thing.kind) {
+            Some(ThingKind::Exit) => Place::Exit,
+            Some(ThingKind::Key(_)) if is_on_dot(point, cell) => Place::Key,
+            Some(ThingKind::Ornament) if is_on_dot(point, cell) => Place::Ornament,
+            _ if self.sight.reaches(point) => Place::Seen,
+            _ => Place::Floor,
+        }
+    }
+
+    /// Whether a pixel around `point`, in a cell of a tile with a shape, shows that.
+    fn is_covered(&self, tile: TileId, cell: Cell, point: DVec2) -> bool {
+        let TileKind::Shape(Shape { outline, .. }) = self.world.tile(tile).kind else {
+            return true;
+        };
+        outline.distance(cell, point) <= self.pixel / 2.0
+    }
+}
+
+fn drawn_as(kind: TileKind, world: &World) -> Drawn {
+    match kind {
+        TileKind::Open | TileKind::Doorway(_) => Drawn::Floor,
+        TileKind::Wall(paint) => Drawn::Solid(world.mean_color(paint)),
+        TileKind::Shape(Shape { paint, .. }) => Drawn::Shape(world.mean_color(paint)),
+        TileKind::Door(door) => Drawn::Solid(world.mean_color(door.leaf)),
+        TileKind::Mirror(tint) => Drawn::Solid(tint.color),
+        TileKind::Mask(texture) => Drawn::Solid(world.mean_color(Paint::Texture(texture))),
+        TileKind::Glass(glass) => Drawn::Solid(glass.color.over(FLOOR, glass.opacity.max(MIST))),
+    }
+}
+
+/// What the player sees of the floor.
+struct Sight<'a> {
+    position: DVec2,
+    direction: DVec2,
+    half_width: f64,
+    columns: &'a [Column],
+}
+
+impl<'a> Sight<'a> {
+    fn new(camera: &Camera, columns: &'a [Column]) -> Self {
+        Self {
+            position: camera.position(),
+            direction: camera.direction(),
+            half_width: camera.field_of_view.half_width(),
+            columns,
+        }
+    }
+
+    /// Whether the ray of the column that `point` falls in gets as far as that.
+    #[inline]
+    fn reaches(&self, point: DVec2) -> bool {
+        let to_point = point - self.position;
+        let distance = to_point.dot(self.direction);
+        if distance <= 0.0 || self.columns.is_empty() {
+            return false;
+        }
+        let across = to_point.dot(self.direction.perp()) / (distance * self.half_width);
+        let index = f64::midpoint(across, 1.0) * self.columns.len() as f64;
+        index >= 0.0
+            && self.columns.get(index as usize).is_some_and(|column| distance <= column.distance)
+    }
+}
+
+/// The column or row that a place is in; before the map, one before it. Where processors may be old, rounding
+/// down is a call.
+fn cell_at(place: f64) -> i64 {
+    place as i64 - i64::from(place < 0.0)
+}
+
+/// Whether `point` is on the dot that stands for a thing in `cell`.
+fn is_on_dot(point: DVec2, cell: Cell) -> bool {
+    const RADIUS: f64 = 0.3;
+    (point - cell.center()).abs().max_element() <= RADIUS
+}
+
+impl Place {
+    pub(super) fn color(self) -> Rgb {
+        match self {
+            Self::Void => VOID,
+            Self::Wall(color) => color,
+            Self::Floor => FLOOR,
+            Self::Seen => SEEN,
+            Self::Exit => EXIT,
+            Self::Key => KEY,
+            Self::Ornament => ORNAMENT,
+        }
+    }
+
+    pub(super) fn character(self) -> char {
+        match self {
+            Self::Void | Self::Floor => ' ',
+            Self::Wall(_) => '#',
+            Self::Seen => '.',
+            Self::Exit => 'X',
+            Self::Key => 'k',
+            Self::Ornament => 'o',
+        }
+    }
+}
