@@ -165,6 +165,16 @@ impl Shade {
 
     #[inline]
     pub(super) fn of(color: Color) -> Self {
+        // Most are: to ask for that first is foreseen better than where a table of all kinds leads.
+        if let Color::Rgb(red, green, blue) = color {
+            Self::rgb([red, green, blue])
+        } else {
+            Self::of_named(color)
+        }
+    }
+
+    #[inline(never)]
+    fn of_named(color: Color) -> Self {
         Self::indexed(match color {
             Color::Rgb(red, green, blue) => return Self::rgb([red, green, blue]),
             Color::Reset => return Self::DEFAULT,
