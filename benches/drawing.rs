@@ -3,9 +3,11 @@
 //! `cargo bench --no-default-features --features speed --bench drawing` writes the table of
 //! `PERFORMANCE.md`. From each camera of a walk all draw one after the other, so that a machine that
 //! is busy with something else slows all of them down; of each camera's times the median counts, and
-//! a time in the table is the mean of those. One thread draws.
+//! a time in the table is the mean of those. One thread draws, but for the last two columns: they tell
+//! with how many threads a picture of that size is drawn here, and how many times faster that is.
 
 use std::hint::black_box;
+use std::num::NonZero;
 use std::time::Instant;
 
 use cellcaster::render::{Frame, FrameSize, Renderer};
@@ -31,6 +33,9 @@ struct Scene {
 /// Nanoseconds a picture.
 struct Times {
     ours: f64,
+    /// By as many threads as the machine has, where there are enough pixels.
+    by_threads: f64,
+    threads: usize,
     /// In the order of the scene's floors.
     classic: Vec<f64>,
     fill: f64,
@@ -48,21 +53,22 @@ fn main() {
         Scene { name: "walls only", world: speed::plain_scene(), floors: &[ClassicFloor::None] },
     ];
     println!(
-        "| scene | size | ours, µs | ours, ns a pixel | times faster than the faster classic loop | times a fill |"
+        "| scene | size | ours, µs | ours, ns a pixel | times faster than the faster classic loop | times a fill | threads | times faster |"
     );
-    println!("|---|---|---|---|---|---|");
+    println!("|---|---|---|---|---|---|---|---|");
     for scene in &scenes {
         for (width, height) in SIZES {
             let size = FrameSize::new(width, height).expect("no side is zero");
-            let Times { ours, classic, fill } = measure(scene, size, turns);
+            let Times { ours, by_threads, threads, classic, fill } = measure(scene, size, turns);
             let faster = classic.into_iter().fold(f64::INFINITY, f64::min);
             println!(
-                "| {} | {width}x{height} | {:.1} | {:.2} | {:.2} | {:.1} |",
+                "| {} | {width}x{height} | {:.1} | {:.2} | {:.2} | {:.1} | {threads} | {:.2} |",
                 scene.name,
                 ours / 1000.0,
                 ours / f64::from(width * height),
                 faster / ours,
                 ours / fill,
+                ours / by_threads,
             );
         }
     }
@@ -74,17 +80,24 @@ fn measure(scene: &Scene, size: FrameSize, turns: usize) -> Times {
     let of_the_walk = if width * height > LARGE { CAMERAS_OF_LARGE } else { CAMERAS };
     let cameras: Vec<Camera> =
         speed::walk(world, CAMERAS).into_iter().step_by(CAMERAS / of_the_walk).collect();
-    let (mut renderer, classic) = (Renderer::new(), Classic::new(world));
+    let (mut alone, mut together) = (Renderer::new(), Renderer::new());
+    alone.set_threads(NonZero::<usize>::MIN);
+    let classic = Classic::new(world);
     let mut frame = Frame::new(size, speed::pixel_aspect(size));
     let mut pixels = vec![0; (width * height) as usize];
 
-    // Of each camera: ours, the fill, and the classic loop with each of the floors.
-    let mut times = vec![vec![Vec::with_capacity(turns); 2 + floors.len()]; cameras.len()];
+    let threads = together.explain(world, &cameras[0], &mut frame).plan.threads.count();
+    // Of each camera: ours by one thread, the fill, ours by several, and the classic loop with each of
+    // the floors.
+    let mut times = vec![vec![Vec::with_capacity(turns); 3 + floors.len()]; cameras.len()];
     for turn in 0..turns {
         for (camera, times) in cameras.iter().zip(&mut times) {
-            times[0].push(time(|| renderer.render(world, camera, black_box(&mut frame))));
+            times[0].push(time(|| alone.render(world, camera, black_box(&mut frame))));
             times[1].push(time(|| speed::fill(black_box(&mut pixels), turn as u32)));
-            for (times, &floor) in times[2..].iter_mut().zip(*floors) {
+            if threads > 1 {
+                times[2].push(time(|| together.render(world, camera, black_box(&mut frame))));
+            }
+            for (times, &floor) in times[3..].iter_mut().zip(*floors) {
                 let size = (width as usize, height as usize);
                 times.push(time(|| classic.draw(camera, floor, size, black_box(&mut pixels))));
             }
@@ -93,7 +106,13 @@ fn measure(scene: &Scene, size: FrameSize, turns: usize) -> Times {
     let mut mean = |drawn: usize| {
         times.iter_mut().map(|times| median(&mut times[drawn])).sum::<f64>() / cameras.len() as f64
     };
-    Times { ours: mean(0), fill: mean(1), classic: (2..2 + floors.len()).map(mean).collect() }
+    Times {
+        ours: mean(0),
+        fill: mean(1),
+        by_threads: mean(if threads > 1 { 2 } else { 0 }),
+        threads,
+        classic: (3..3 + floors.len()).map(mean).collect(),
+    }
 }
 
 /// Nanoseconds that something takes.

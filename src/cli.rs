@@ -14,6 +14,7 @@ mod error;
 mod help;
 mod level;
 mod play;
+mod plot;
 mod recording;
 mod replay;
 mod script;

@@ -3,13 +3,16 @@
 //! A frame is drawn by a [`Plan`], made from the world, in passes, each a file: `columns` casts one
 //! ray for every column of pixels, `planes` lays floor and ceiling, `sky` fills in what is open,
 //! `walls` papers what the rays hit, `see_through` paints over that what the rays passed, and `things`
-//! what stands between all that. The passes share a `Projection`, which is the only place that knows how the world maps to pixels.
+//! what stands between all that. The passes share a `Projection`, which is the only place that knows
+//! how the world maps to pixels. `level` runs them, those after the first for each band of rows, which
+//! several threads share out where the picture is large; `windows` has passes of its own.
 //!
 //! The caller owns the [`Frame`] and keeps the [`Renderer`], which owns what the passes need in
-//! between; drawing allocates nothing once both have grown to the size of the picture. One pass that
-//! does everything to a column before it goes to the next was refused: a pass that a scene has no
-//! use for can be left out, a branch in the innermost loop can't.
+//! between; drawing by one thread allocates nothing once both have grown to the size of the picture.
+//! One pass that does everything to a column before it goes to the next was refused: a pass that a
+//! scene has no use for can be left out, a branch in the innermost loop can't.
 
+mod band;
 mod coat;
 mod columns;
 mod doors;
@@ -17,6 +20,7 @@ mod explanation;
 mod filter;
 mod frame;
 mod lay;
+mod level;
 mod marks;
 mod plan;
 mod planes;
@@ -27,6 +31,7 @@ mod sky;
 mod tally;
 mod texels_down;
 mod things;
+mod threads;
 mod track;
 mod walls;
 mod windows;
@@ -39,12 +44,14 @@ pub use plan::{
     CeilingLoop, Geometry, Plan, PlaneLoop, RayLoop, SkyLoop, ThingLoop, WallLoop, WhyWindows,
 };
 pub use tally::{Counts, Pass, PassCounts};
+pub use threads::{Threads, WhyOne};
+
+use std::num::NonZero;
 
 use crate::cast::{Caster, Method, Visitor};
 use crate::world::{Camera, World};
-use coat::Papers;
+use level::Worker;
 use marks::Marks;
-use planes::{Plane, PlaneKind, RowOfPlane};
 use projection::Projection;
 use see_through::Passed;
 use sky::{SkyColumn, SkyView};
@@ -59,6 +66,8 @@ pub struct Renderer {
     method: Method,
     filter: Filter,
     seconds: f64,
+    /// How many there may be; `None` for as many as the machine has.
+    threads: Option<NonZero<usize>>,
     memory: Memory,
 }
 
@@ -68,9 +77,6 @@ struct Memory {
     columns: Vec<Column>,
     first_row_of_ground: u32,
     passed: Passed,
-    /// For each column, how many rows show the floor or the ceiling, whichever is being drawn.
-    visible: Vec<u32>,
-    rows_of_plane: Vec<RowOfPlane>,
     sky: Vec<SkyColumn>,
     in_view: InView,
     marks: Marks,
@@ -78,7 +84,8 @@ struct Memory {
     windows: Windows,
     /// By which passes the last frame was drawn.
     geometry: Option<Geometry>,
-    papers: Papers,
+    /// One for each thread.
+    workers: Vec<Worker>,
 }
 
 impl Renderer {
@@ -102,6 +109,12 @@ impl Renderer {
         self.seconds = seconds;
     }
 
+    /// Draws by at most so many `threads` from now on; by as many as the machine has at first. Only
+    /// large pictures are drawn by more than one, and they are the same then, bit for bit.
+    pub fn set_threads(&mut self, threads: NonZero<usize>) {
+        self.threads = Some(threads);
+    }
+
     /// When something in the last frame begins to look different, by the clock of
     /// [`Renderer::set_time`]; `None` for never.
     pub fn next_change(&self) -> Option<f64> {
@@ -115,9 +128,9 @@ impl Renderer {
 
     /// Draws what `camera` sees of `world` into all of `frame`.
     pub fn render(&mut self, world: &World, camera: &Camera, frame: &mut Frame) {
-        let Self { method, filter, seconds, memory } = self;
-        let (filter, seconds, tally) = (*filter, *seconds, &mut ());
-        method.accept(Picture { world, camera, filter, seconds, memory, frame, tally });
+        let Self { method, filter, seconds, threads, memory } = self;
+        let (filter, seconds, threads, tally) = (*filter, *seconds, *threads, &mut ());
+        method.accept(Picture { world, camera, filter, seconds, threads, memory, frame, tally });
     }
 
     /// As [`Renderer::render`], with the walls that `caster` finds.
@@ -128,18 +141,19 @@ impl Renderer {
         camera: &Camera,
         frame: &mut Frame,
     ) {
-        let Self { filter, seconds, memory, .. } = self;
-        let (filter, seconds, tally) = (*filter, *seconds, &mut ());
-        Picture { world, camera, filter, seconds, memory, frame, tally }.visit(caster);
+        let Self { filter, seconds, threads, memory, .. } = self;
+        let (filter, seconds, threads, tally) = (*filter, *seconds, *threads, &mut ());
+        Picture { world, camera, filter, seconds, threads, memory, frame, tally }.visit(caster);
     }
 
     /// As [`Renderer::render`], and tells how it went. Cells are counted along exact rays, whatever
     /// the method of finding walls.
     pub fn explain(&mut self, world: &World, camera: &Camera, frame: &mut Frame) -> Explanation {
-        let Self { method, filter, seconds, memory } = self;
+        let Self { method, filter, seconds, threads, memory } = self;
         let mut counts = Counts::default();
-        let (filter, seconds, tally) = (*filter, *seconds, &mut counts);
-        let plan = method.accept(Picture { world, camera, filter, seconds, memory, frame, tally });
+        let (filter, seconds, threads, tally) = (*filter, *seconds, *threads, &mut counts);
+        let picture = Picture { world, camera, filter, seconds, threads, memory, frame, tally };
+        let plan = method.accept(picture);
         let projection = Projection::new(camera, frame.size(), frame.pixel_aspect());
         counts.rays = u64::from(frame.width());
         match plan.geometry {
@@ -181,6 +195,7 @@ struct Picture<'a, T> {
     camera: &'a Camera,
     filter: Filter,
     seconds: f64,
+    threads: Option<NonZero<usize>>,
     memory: &'a mut Memory,
     frame: &'a mut Frame,
     tally: &'a mut T,
@@ -199,9 +214,10 @@ impl<T: Tally> Visitor for Picture<'_, T> {
     type Output = Plan;
 
     fn visit<C: Caster>(self, caster: &C) -> Plan {
-        let plan = Plan::new(self.world, self.camera, self.filter);
+        let Self { world, camera, filter, threads, .. } = self;
+        let plan = Plan::new(world, camera, filter, self.frame.size(), threads);
         match plan.geometry {
-            Geometry::Level => self.draw_level(plan, caster),
+            Geometry::Level => level::draw(self, plan, caster),
             Geometry::Windows(_) => self.draw_windows(plan),
         }
         plan
@@ -209,68 +225,9 @@ impl<T: Tally> Visitor for Picture<'_, T> {
 }
 
 impl<T: Tally> Picture<'_, T> {
-    fn draw_level<C: Caster>(self, plan: Plan, caster: &C) {
-        let Self { world, camera, filter, seconds, memory, frame, tally } = self;
-        let Memory {
-            columns,
-            first_row_of_ground,
-            passed,
-            visible,
-            rows_of_plane,
-            sky,
-            in_view,
-            marks,
-            next_change,
-            geometry,
-            papers,
-            ..
-        } = memory;
-        let projection = &Projection::new(camera, frame.size(), frame.pixel_aspect());
-        columns::cast(caster, world, projection, columns, passed);
-        let scene = Scene { world, projection, columns, filter };
-        let (ground, height) = (projection.first_row_of_ground(), frame.height());
-        *first_row_of_ground = ground;
-        *geometry = Some(plan.geometry);
-
-        let sky = &SkyView::new(world, projection, filter, sky);
-        match plan.ceiling {
-            CeilingLoop::Sky => sky.draw_overhead(plan.sky, scene, frame, tally),
-            CeilingLoop::Laid(plane) => {
-                visible.clear();
-                visible.extend(columns.iter().map(|column| column.rows_of_ceiling(ground)));
-                Plane { scene, kind: PlaneKind::Ceiling, sky, visible }.draw(
-                    plane,
-                    rows_of_plane,
-                    frame,
-                    tally,
-                );
-                sky.draw_beyond_edge(scene, frame, tally);
-            }
-        }
-        visible.clear();
-        visible.extend(columns.iter().map(|column| column.rows_of_floor(ground, height)));
-        Plane { scene, kind: PlaneKind::Floor, sky, visible }.draw(
-            plan.floor,
-            rows_of_plane,
-            frame,
-            tally,
-        );
-        walls::draw(scene, plan.walls, papers, frame, tally);
-        marks.begin(frame.width(), height);
-        *next_change = match plan.things {
-            ThingLoop::None => {
-                see_through::draw(scene, passed, marks, frame, tally);
-                None
-            }
-            ThingLoop::Billboards => {
-                things::draw(scene, seconds, passed, in_view, marks, frame, tally)
-            }
-        };
-    }
-
     /// Draws by exact rays, whatever the caster: the others know nothing but walls.
     fn draw_windows(self, plan: Plan) {
-        let Self { world, camera, filter, seconds, memory, frame, tally } = self;
+        let Self { world, camera, filter, seconds, memory, frame, tally, .. } = self;
         let Memory { columns, sky, windows, marks, next_change, geometry, .. } = memory;
         *geometry = Some(plan.geometry);
         let projection = &Projection::new(camera, frame.size(), frame.pixel_aspect());

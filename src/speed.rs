@@ -1,4 +1,5 @@
-//! How fast drawing is: the scene, the walk through it, and two loops to compare with.
+//! How fast drawing is: the scene, the walk through it, and two loops to compare with; and what it
+//! costs that a map is large, or full.
 //!
 //! A time says little on a machine that the reader does not have, so every report gives ratios: to
 //! the [`Classic`] loop, as tutorials write it down, and to the [`fill`] of as many pixels, which no
@@ -7,12 +8,18 @@
 //! pixels to draw.
 
 mod classic;
+mod crowd;
 mod drawing;
+mod ground;
+mod growth;
 
 pub use classic::{Classic, ClassicFloor};
+pub use crowd::Vista;
 #[cfg(feature = "cli")]
 pub(crate) use drawing::median;
 pub use drawing::{DrawingRow, SIZES, Scene, measure_drawing};
+pub use ground::{Ground, crossing_rays};
+pub use growth::{CROWDS, CrowdRow, Growth, MapRow, Measured, SIDES, USUAL_SIDE, measure_growth};
 
 use crate::game::{Game, Intent, Intents};
 use crate::map;

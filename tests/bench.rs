@@ -1,17 +1,38 @@
-//! `cellcaster bench`: both formats, and what they are about. How fast anything is, is no matter here.
+//! `cellcaster bench`: its formats, and what they are about. How fast anything is, is no matter here.
 #![cfg(feature = "cli")]
 
 mod support;
+
+use std::fs;
 
 use serde_json::Value;
 use support::{complaint_about, output_of};
 
 #[test]
-fn json_has_every_size_and_every_encoder() {
-    let report = output_of(&["bench", "--seconds", "1", "--format", "json"]);
+fn one_run_gives_all_figures_and_plots_of_them() {
+    let plot = concat!(env!("CARGO_TARGET_TMPDIR"), "/speed.svg");
+    let report = output_of(&["bench", "--seconds", "1", "--format", "json", "--plot", plot]);
     let report: Value = serde_json::from_slice(&report).unwrap();
-    let rows = |part: &str| report[part].as_array().unwrap().clone();
-    let drawing = rows("drawing");
+    has_every_size(&report);
+    has_every_map(&report);
+    has_every_encoder(&report);
+    has_a_footprint(&report["footprint"]);
+    let plot = fs::read_to_string(plot).unwrap();
+    for words in ["Drawing", "classic", "3840", "Rays", "plain", "4096", "Pipeline", "stock"] {
+        assert!(plot.contains(words), "no {words} in\n{plot}");
+    }
+}
+
+fn rows(report: &Value, part: &str) -> Vec<Value> {
+    report[part].as_array().unwrap().clone()
+}
+
+fn is_positive(value: &Value) -> bool {
+    value.as_f64().is_some_and(|number| number > 0.0)
+}
+
+fn has_every_size(report: &Value) {
+    let drawing = rows(report, "drawing");
     let sizes = |scene: &str| {
         let of_scene = drawing.iter().filter(|row| row["scene"] == scene);
         of_scene.map(|row| row["width"].as_u64().unwrap()).collect::<Vec<_>>()
@@ -19,13 +40,42 @@ fn json_has_every_size_and_every_encoder() {
     for scene in ["planes", "walls"] {
         assert_eq!(sizes(scene), [160, 320, 640, 1920, 3840]);
     }
-    let is_positive = |value: &Value| value.as_f64().is_some_and(|number| number > 0.0);
     for row in &drawing {
-        for who in ["ours", "classic", "fill"] {
+        for who in ["ours", "by_threads", "classic", "fill"] {
             assert!(is_positive(&row["nanoseconds_a_pixel"][who]), "{who}: {row}");
         }
+        let is_small = row["width"].as_u64().unwrap() < 1000;
+        assert!(row["threads"].as_u64().is_some_and(|count| count == 1 || !is_small), "{row}");
     }
-    let pipeline = rows("pipeline");
+}
+
+fn has_every_map(report: &Value) {
+    let maps = rows(report, "maps");
+    for ground in ["hall", "plain"] {
+        let maps: Vec<&Value> = maps.iter().filter(|row| row["ground"] == ground).collect();
+        let sides: Vec<u64> = maps.iter().map(|row| row["side"].as_u64().unwrap()).collect();
+        assert_eq!(sides, [16, 64, 256, 1024, 4096]);
+        assert_eq!(
+            (&maps[1]["ray"]["ratio"], &maps[1]["frame"]["ratio"]),
+            (&1.0.into(), &1.0.into())
+        );
+        for row in maps {
+            assert!(is_positive(&row["ray"]["nanoseconds"]), "{row}");
+            assert!(is_positive(&row["frame"]["microseconds"]), "{row}");
+            // A byte says what is in a cell, and another one how far it is to what is not open.
+            assert!(row["bytes_a_cell"].as_f64().unwrap() > 2.0, "{row}");
+        }
+    }
+    let crowds = rows(report, "things");
+    for vista in ["straight", "diagonal"] {
+        let crowds = crowds.iter().filter(|row| row["vista"] == vista);
+        let counts: Vec<u64> = crowds.map(|row| row["things"].as_u64().unwrap()).collect();
+        assert_eq!(counts, [100, 10_000, 100_000]);
+    }
+}
+
+fn has_every_encoder(report: &Value) {
+    let pipeline = rows(report, "pipeline");
     for window in pipeline.chunks_exact(4) {
         let encoders: Vec<&str> =
             window.iter().map(|row| row["encoder"].as_str().unwrap()).collect();
@@ -41,13 +91,23 @@ fn json_has_every_size_and_every_encoder() {
         }
     }
     assert_eq!(pipeline.len(), 12);
-    assert!(is_positive(&report["first_frame_milliseconds"]));
+}
+
+fn has_a_footprint(footprint: &Value) {
+    assert!(is_positive(&footprint["start_milliseconds"]));
+    assert!(is_positive(&footprint["first_frame_milliseconds"]));
+    assert!(footprint["program_bytes"].as_u64().unwrap() > 1 << 20);
+    if cfg!(target_os = "linux") {
+        let memory = footprint["peak_memory_bytes"].as_u64().unwrap();
+        assert!((1 << 20..1 << 28).contains(&memory), "{memory}");
+    }
 }
 
 #[test]
 fn a_table_is_for_people() {
     let table = String::from_utf8(output_of(&["bench", "--seconds", "1"])).unwrap();
-    for word in ["classic/ours", "3840x2160", "200x60", "stock", "Mbit/s", "first frame"] {
+    for word in ["classic/ours", "3840x2160", "200x60", "stock", "Mbit/s", "first frame", "100000"]
+    {
         assert!(table.contains(word), "no {word} in\n{table}");
     }
     assert!(table.lines().all(|line| line.chars().count() <= 100), "{table}");
@@ -61,6 +121,7 @@ fn mistakes_are_told() {
             complaint_about(&["bench", "--seconds", "0"]),
             complaint_about(&["bench", "--format", "svg"]),
             complaint_about(&["bench", "--secnods", "2"]),
+            complaint_about(&["bench", "--plot"]),
         ]
         .join("")
     );

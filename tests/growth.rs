@@ -1,5 +1,6 @@
 //! What a ray and a frame cost as a map grows: how often rays look where they are, not how long it takes.
 
+use allocation_counter::measure;
 use cellcaster::cast::{Caster, Exact, Ray};
 use cellcaster::map;
 use cellcaster::render::{Explanation, Frame, FrameSize, PixelAspect, RayLoop, Renderer};
@@ -27,6 +28,21 @@ fn explained(world: &World) -> Explanation {
     let camera = world.start_camera(FieldOfView::default());
     let mut frame = Frame::new(FrameSize::new(160, 90).unwrap(), PixelAspect::SQUARE);
     Renderer::new().explain(world, &camera, &mut frame)
+}
+
+/// What a map of that side leaves allocated once it is read, and what its grid says.
+fn bytes(side: u32) -> (i64, i64) {
+    let mut world = None;
+    let counted = measure(|| world = Some(square(side, |_, _| None)));
+    (counted.bytes_current, world.unwrap().grid().bytes() as i64)
+}
+
+#[test]
+fn a_grid_tells_what_a_large_map_takes() {
+    let ((small, told_of_small), (large, told_of_large)) = (bytes(64), bytes(1024));
+    let (taken, told) = (large - small, told_of_large - told_of_small);
+    assert!((taken - told).abs() * 100 <= told, "{taken} bytes, and not {told}");
+    assert!(told_of_large < 5 * 1024 * 1024, "{told_of_large} bytes are too many");
 }
 
 #[test]

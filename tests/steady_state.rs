@@ -112,3 +112,46 @@ fn encoding_a_frame_allocates_nothing_once_its_memory_has_grown() {
         assert_eq!((0..80).map(&mut encode).sum::<u64>(), 0, "{fidelity}");
     }
 }
+
+/// From what the player wants to the bytes of a frame, as a game has it: two steps, everything that
+/// shows, and the encoding of it.
+#[test]
+#[cfg(feature = "terminal")]
+fn the_whole_pipeline_allocates_nothing_once_its_memory_has_grown() {
+    use cellcaster::game::{Intents, Script};
+    use cellcaster::map::Level;
+    use cellcaster::terminal::{CellWriter, Fidelity};
+    use cellcaster::tui::{Levels, Replay, Settings};
+    use ratatui::backend::Backend;
+    use ratatui::layout::Size;
+
+    const SIZE: Size = Size::new(120, 40);
+    let script = include_str!("../maps/showcase.script");
+    let script = Script::parse(script, "showcase.script").unwrap();
+    let intents: Vec<Intents> = script.iter().map(|(_, intents)| intents).collect();
+    let citadel = builtin::LEVELS.iter().find(|level| level.name == "citadel").unwrap();
+    for fidelity in [Fidelity::EXACT, Fidelity::HIGH, Fidelity::LOW] {
+        let level = Level::Grid(Box::new(citadel.world().unwrap()));
+        let levels = Levels::new(level, std::iter::empty());
+        let mut replay = Replay::new(levels, Settings::default(), SIZE);
+        let mut writer = CellWriter::new(Vec::new(), SIZE);
+        writer.set_fidelity(fidelity);
+        let mut pass = || {
+            let frames = intents.chunks_exact(2).map(|steps| {
+                writer.output_mut().clear();
+                measure(|| {
+                    for &intents in steps {
+                        replay.step(intents);
+                    }
+                    writer.draw_frame(|screen| replay.draw(screen));
+                    Backend::flush(&mut writer).unwrap();
+                })
+                .count_total
+            });
+            frames.sum::<u64>()
+        };
+        // The second walk begins where the first has ended, and sees other things.
+        pass();
+        assert_eq!(pass(), 0, "{fidelity}");
+    }
+}

@@ -1,27 +1,33 @@
 //! `cellcaster bench`: how fast this machine is at it.
 
+mod footprint;
 mod json;
+mod plot;
 mod table;
+mod tables;
 
 use std::ffi::OsStr;
+use std::fs::File;
 use std::io::{self, BufWriter, Write};
-use std::time::{Duration, Instant};
+use std::time::Duration;
 
 use ratatui::layout::Size;
 
 use super::arguments::{Bench, BenchFormat};
+use super::recording::unwritable;
 use super::script::SHOWCASE;
 use super::{Error, level};
-use crate::speed::{DrawingRow, measure_drawing};
+use crate::speed::{DrawingRow, Growth, measure_drawing, measure_growth};
 use crate::tui::{Replay, Settings};
 use crate::wire::{PipelineRow, measure_pipeline};
+use footprint::Footprint;
 
 /// What was measured.
 struct Report {
+    footprint: Footprint,
     drawing: Vec<DrawingRow>,
+    growth: Growth,
     pipeline: Vec<PipelineRow>,
-    /// From nothing to the bytes of the first frame.
-    first_frame: Duration,
 }
 
 /// The windows that the pipeline is measured in.
@@ -29,22 +35,43 @@ const WINDOWS: [Size; 3] = [Size::new(80, 24), Size::new(120, 40), Size::new(200
 
 /// Reports what `options` ask for.
 pub(super) fn run(options: &Bench) -> Result<(), Error> {
-    let time = Duration::from_secs(options.seconds.into());
-    let report = Report {
-        first_frame: first_frame()?,
-        drawing: measure_drawing(time / 2),
-        pipeline: pipeline(time / 2)?,
+    // Who gives a file that can't be written is told so at once.
+    let plot = match &options.plot {
+        Some(path) => Some((path, File::create(path).map_err(|error| unwritable(path, &error))?)),
+        None => None,
     };
+    let report = Report::measure(Duration::from_secs(options.seconds.into()))?;
+    if let Some((path, file)) = plot {
+        plot::write(&report, file).map_err(|error| unwritable(path, &error))?;
+    }
     let output = BufWriter::new(io::stdout().lock());
     write(&report, options.format, output).map_err(|error| Error::of_output(&error))
 }
 
 fn write(report: &Report, format: BenchFormat, mut output: impl Write) -> io::Result<()> {
     match format {
-        BenchFormat::Table => table::write(report, &mut output)?,
-        BenchFormat::Json => json::write(report, &mut output)?,
-    }
+        BenchFormat::Table => {
+            tables::of(report).iter().try_for_each(|table| table.write_text(&mut output))
+        }
+        BenchFormat::Markdown => {
+            tables::of(report).iter().try_for_each(|table| table.write_markdown(&mut output))
+        }
+        BenchFormat::Json => json::write(report, &mut output),
+    }?;
     output.flush()
+}
+
+impl Report {
+    /// Measures for about that `time`.
+    fn measure(time: Duration) -> Result<Self, Error> {
+        Ok(Self {
+            // First of all: nothing else has taken any memory yet.
+            footprint: Footprint::measure()?,
+            drawing: measure_drawing(time * 2 / 5),
+            growth: measure_growth(time / 5),
+            pipeline: pipeline(time * 2 / 5)?,
+        })
+    }
 }
 
 /// A game of the level that the showcase is about.
@@ -59,13 +86,6 @@ fn pipeline(time: Duration) -> Result<Vec<PipelineRow>, Error> {
     let rows = WINDOWS.map(|size| measure_pipeline(&script, size, share, begin));
     let rows: Result<Vec<_>, Error> = rows.into_iter().collect();
     Ok(rows?.into_iter().flatten().collect())
-}
-
-/// How long it takes to read the level and draw its first frame in the smallest window.
-fn first_frame() -> Result<Duration, Error> {
-    let start = Instant::now();
-    begin(WINDOWS[0])?.picture();
-    Ok(start.elapsed())
 }
 
 /// Megabits a second of the links that frame rates are told for.

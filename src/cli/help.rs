@@ -97,8 +97,9 @@ ACCURACY
   --format FORMAT   table, json, csv, svg or png                   [table]
 
 BENCH
-  --seconds N       how long to measure, roughly, 1 to 60            [10]
-  --format FORMAT   table or json                                    [table]
+  --seconds N       how long to measure, 1 to 60; preparing comes on top  [10]
+  --format FORMAT   table, markdown or json                        [table]
+  --plot FILE       draw plots of it, besides, as SVG
 
 REPLAY, WIRE
   --cast FILE       of replay: where to write                      [standard output]

@@ -7,7 +7,7 @@
 
 use std::ops::{Deref, DerefMut, Range};
 
-use super::Frame;
+use super::band::Band;
 use super::shade::Shade;
 use super::texels_down::TexelsDown;
 use crate::world::Rgb;
@@ -97,7 +97,7 @@ impl<'a, S: Shade> Cover<'a, S> {
 pub(super) fn draw<S: Shade>(
     coats: &[Option<Coat<'_, S>>; COLUMNS_AT_ONCE],
     papers: &Papers,
-    frame: &mut Frame,
+    band: &mut Band<'_>,
 ) {
     let neighbours = || coats.chunks_exact(LANES).zip(papers.chunks_exact(LANES));
     let mut together = [const { None }; COLUMNS_AT_ONCE / LANES];
@@ -107,14 +107,14 @@ pub(super) fn draw<S: Shade>(
     let rows = union(together.iter().flatten().map(|lanes| &lanes.rows));
     for first in rows.clone().step_by(ROWS_AT_ONCE as usize) {
         for lanes in together.iter_mut().flatten() {
-            lanes.draw(first..rows.end.min(first + ROWS_AT_ONCE), frame);
+            lanes.draw(first..rows.end.min(first + ROWS_AT_ONCE), band);
         }
     }
     for (lanes, (coats, papers)) in together.iter().zip(neighbours()) {
         let rows = union(coats.iter().flatten().map(|coat| &coat.rows));
         let drawn = lanes.as_ref().map_or(rows.end..rows.end, |lanes| lanes.rows.clone());
         for part in [rows.start..drawn.start, drawn.end..rows.end] {
-            draw_one_by_one(coats, papers, part, frame);
+            draw_one_by_one(coats, papers, part, band);
         }
     }
 }
@@ -124,12 +124,12 @@ fn draw_one_by_one<S: Shade>(
     coats: &[Option<Coat<'_, S>>],
     papers: &[Paper],
     rows: Range<u32>,
-    frame: &mut Frame,
+    band: &mut Band<'_>,
 ) {
     for first in rows.clone().step_by(ROWS_AT_ONCE as usize) {
         for (coat, paper) in coats.iter().zip(papers) {
             if let Some(coat) = coat {
-                coat.draw(paper, first..rows.end.min(first + ROWS_AT_ONCE), frame);
+                coat.draw(paper, first..rows.end.min(first + ROWS_AT_ONCE), band);
             }
         }
     }
@@ -138,10 +138,10 @@ fn draw_one_by_one<S: Shade>(
 impl<S: Shade> Coat<'_, S> {
     /// Draws what of it is in `rows`.
     #[inline]
-    fn draw(&self, Paper(paper): &Paper, rows: Range<u32>, frame: &mut Frame) {
+    fn draw(&self, Paper(paper): &Paper, rows: Range<u32>, band: &mut Band<'_>) {
         let rows = common(&rows, &self.rows);
         let first = rows.start;
-        let pixels = frame.column_mut(self.x, rows);
+        let pixels = band.column_mut(self.x, rows);
         match self.cover {
             Cover::Color(color) => pixels.for_each(|pixel| *pixel = color),
             Cover::Paper(down) => {
@@ -199,9 +199,9 @@ impl<'a> Lanes<'a> {
 
     /// Draws what of it is in `rows`, which follow those that were drawn before.
     #[inline]
-    fn draw(&mut self, rows: Range<u32>, frame: &mut Frame) {
+    fn draw(&mut self, rows: Range<u32>, band: &mut Band<'_>) {
         let Self { papers, mut places, steps, .. } = *self;
-        for pixels in frame.block_mut::<LANES>(self.x, common(&rows, &self.rows)) {
+        for pixels in band.block_mut::<LANES>(self.x, common(&rows, &self.rows)) {
             for lane in 0..LANES {
                 let texel = places[lane] >> (u64::BITS - PAPER_BITS);
                 pixels[lane] = papers[lane].0[texel as usize];

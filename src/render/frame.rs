@@ -1,8 +1,8 @@
 //! The frame: pixels off screen, row by row from the top.
 
 use std::num::NonZeroU32;
-use std::ops::Range;
 
+use super::band::Band;
 use crate::world::Rgb;
 
 /// How many pixels a frame has.
@@ -111,39 +111,18 @@ impl Frame {
         self.pixels[start..][..self.width() as usize].iter().copied()
     }
 
-    /// The pixels of row `y`, from the left.
-    pub(crate) fn row_mut(&mut self, y: u32) -> &mut [Rgb] {
-        self.row_range_mut(y, y + 1)
+    /// All of it.
+    pub(crate) fn whole(&mut self) -> Band<'_> {
+        Band::new(self.width() as usize, 0, &mut self.pixels)
     }
 
-    /// The pixels of the rows from `first` up to `last`, which is left out.
-    pub(super) fn row_range_mut(&mut self, first: u32, last: u32) -> &mut [Rgb] {
-        let width = self.width() as usize;
-        &mut self.pixels[first as usize * width..last as usize * width]
-    }
-
-    /// The pixels of column `x` in those rows, from the top.
-    #[inline]
-    pub(super) fn column_mut(
-        &mut self,
-        x: u32,
-        rows: Range<u32>,
-    ) -> impl Iterator<Item = &mut Rgb> {
-        let width = self.width() as usize;
-        let first = (rows.start as usize * width + x as usize).min(self.pixels.len());
-        self.pixels[first..].iter_mut().step_by(width).take(rows.len())
-    }
-
-    /// The pixels of `N` columns from `x` on in those rows, row by row.
-    #[inline]
-    pub(super) fn block_mut<const N: usize>(
-        &mut self,
-        x: u32,
-        rows: Range<u32>,
-    ) -> impl Iterator<Item = &mut [Rgb; N]> {
-        let width = self.width() as usize;
-        self.row_range_mut(rows.start, rows.end)
-            .chunks_exact_mut(width)
-            .filter_map(move |row| row[x as usize..].first_chunk_mut())
+    /// All of it, in bands of `rows` rows, the last one of as many as are left.
+    pub(super) fn bands(&mut self, rows: NonZeroU32) -> impl Iterator<Item = Band<'_>> {
+        let (width, rows) = (self.width() as usize, rows.get());
+        let bands = self.pixels.chunks_mut(width * rows as usize);
+        (0..)
+            .step_by(rows as usize)
+            .zip(bands)
+            .map(move |(first, pixels)| Band::new(width, first, pixels))
     }
 }

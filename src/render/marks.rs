@@ -3,6 +3,8 @@
 //! Only glyphs that tell surfaces apart ask for that; for all others no mark is kept, and none is
 //! paid for.
 
+use std::num::NonZeroU32;
+
 use super::Surface;
 
 /// What single pixels show.
@@ -30,27 +32,55 @@ impl Marks {
         }
     }
 
-    /// Notes that of the pixels of column `x` from row `first` on those show `surface` of which
-    /// `shown` says so.
-    pub(super) fn note(
-        &mut self,
-        x: usize,
-        first: u32,
-        surface: Surface,
-        shown: impl Iterator<Item = bool>,
-    ) {
-        if !self.are_kept {
-            return;
-        }
-        let start = first as usize * self.width + x;
-        let column = self.surfaces.iter_mut().skip(start).step_by(self.width.max(1));
-        for (mark, shown) in column.zip(shown) {
-            *mark = if shown { Some(surface) } else { *mark };
-        }
+    /// All of them.
+    pub(super) fn whole(&mut self) -> MarksOfBand<'_> {
+        MarksOfBand { width: self.width, first: 0, surfaces: &mut self.surfaces }
+    }
+
+    /// Those of bands of `rows` rows each, as long as one asks for more.
+    pub(super) fn bands(&mut self, rows: NonZeroU32) -> impl Iterator<Item = MarksOfBand<'_>> {
+        let (width, rows) = (self.width, rows.get());
+        let mut rest = &mut self.surfaces[..];
+        (0..).step_by(rows as usize).map(move |first| {
+            let count = rest.len().min(width * rows as usize);
+            let surfaces = rest.split_off_mut(..count).unwrap_or_default();
+            MarksOfBand { width, first, surfaces }
+        })
     }
 
     /// What the pixel `(x, y)` shows, where that was noted.
     pub(super) fn surface(&self, x: u32, y: u32) -> Option<Surface> {
         *self.surfaces.get(y as usize * self.width + x as usize)?
+    }
+}
+
+/// What the pixels of some rows show.
+#[derive(Debug)]
+pub(super) struct MarksOfBand<'a> {
+    width: usize,
+    /// The first of the rows.
+    first: u32,
+    /// Empty where no marks are kept.
+    surfaces: &'a mut [Option<Surface>],
+}
+
+impl MarksOfBand<'_> {
+    /// Notes that of the pixels of column `x` from `row` on, which is in the band, those show `surface`
+    /// of which `shown` says so.
+    pub(super) fn note(
+        &mut self,
+        x: usize,
+        row: u32,
+        surface: Surface,
+        shown: impl Iterator<Item = bool>,
+    ) {
+        if self.surfaces.is_empty() {
+            return;
+        }
+        let start = (row - self.first) as usize * self.width + x;
+        let column = self.surfaces.iter_mut().skip(start).step_by(self.width);
+        for (mark, shown) in column.zip(shown) {
+            *mark = if shown { Some(surface) } else { *mark };
+        }
     }
 }

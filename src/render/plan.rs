@@ -5,8 +5,10 @@
 //! from their loops; what a single map has everywhere costs only that map.
 
 use std::fmt;
+use std::num::NonZero;
 
-use super::Filter;
+use super::threads::Threads;
+use super::{Filter, FrameSize};
 use crate::world::{
     Camera, Ceiling, Covering, Heights, Light, Paint, Pattern, Rgb, Sky, Tile, TileKind, World,
 };
@@ -30,6 +32,8 @@ pub struct Plan {
     pub things: ThingLoop,
     /// Which level of a texture is read.
     pub filter: Filter,
+    /// How many threads draw.
+    pub threads: Threads,
 }
 
 /// Which passes draw what there is.
@@ -101,6 +105,8 @@ pub struct WallLoop {
     pub textured: bool,
     /// Whether colours fade, by fog or for want of light.
     pub faded: bool,
+    /// Whether a door may be set into them, and show its jamb.
+    pub jambs: bool,
 }
 
 /// How things are drawn.
@@ -113,8 +119,15 @@ pub enum ThingLoop {
 }
 
 impl Plan {
-    /// The plan for what `camera` sees of `world`.
-    pub fn new(world: &World, camera: &Camera, filter: Filter) -> Self {
+    /// The plan for what `camera` sees of `world` in a picture of that size, by at most so many
+    /// `threads`, or as many as the machine has.
+    pub fn new(
+        world: &World,
+        camera: &Camera,
+        filter: Filter,
+        size: FrameSize,
+        threads: Option<NonZero<usize>>,
+    ) -> Self {
         let tiles = world.tiles();
         let is_open = |tile: &&Tile| !matches!(tile.kind, TileKind::Wall(_) | TileKind::Mirror(_));
         let dims = |tile: &Tile| tile.light.is_some_and(|light| light != Light::FULL);
@@ -126,6 +139,7 @@ impl Plan {
         let ceiling_varies =
             is_lamplit || open().any(|tile| dims(tile) || tile.ceiling != world.ceiling());
         let is_textured = |tile: &Tile| matches!(tile.kind, TileKind::Wall(Paint::Texture(_)));
+        let is_door = |tile: &Tile| matches!(tile.kind, TileKind::Door(_) | TileKind::Doorway(_));
         let geometry = Geometry::new(world, camera);
         Self {
             geometry,
@@ -149,9 +163,11 @@ impl Plan {
             walls: WallLoop {
                 textured: tiles.iter().any(is_textured),
                 faded: is_foggy || tiles.iter().any(dims),
+                jambs: tiles.iter().any(is_door),
             },
             things: if world.things().is_empty() { ThingLoop::None } else { ThingLoop::Billboards },
             filter,
+            threads: Threads::new(geometry, size, threads),
         }
     }
 }
@@ -192,7 +208,8 @@ impl fmt::Display for Plan {
         writeln!(f, "sky      {}", self.sky)?;
         writeln!(f, "walls    {}", self.walls)?;
         writeln!(f, "things   {}", self.things)?;
-        writeln!(f, "filter   {}", self.filter)
+        writeln!(f, "filter   {}", self.filter)?;
+        writeln!(f, "threads  {}", self.threads)
     }
 }
 

@@ -10,13 +10,14 @@ use std::ops::Range;
 
 use glam::DVec2;
 
+use super::band::Band;
 use super::lay::Layer;
 use super::plan::PlaneLoop;
 use super::shade::{Faded, Shade};
 use super::sky::SkyView;
 use super::tally::{Pass, Tally};
 use super::track::Track;
-use super::{Frame, Scene};
+use super::{Column, Scene};
 use crate::world::{Ceiling, Cell, Covering, Light, Rgb, TileId};
 
 /// One of the two planes, and what there is to know to draw it.
@@ -25,8 +26,8 @@ pub(super) struct Plane<'a> {
     pub(super) kind: PlaneKind,
     /// What shows where a tile of the ceiling is open to the sky.
     pub(super) sky: &'a SkyView<'a>,
-    /// For each column, how many rows of its part of the picture show the plane.
-    pub(super) visible: &'a [u32],
+    /// How many rows the picture has.
+    pub(super) height: u32,
 }
 
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -45,32 +46,31 @@ pub(super) struct RowOfPlane {
 }
 
 impl Plane<'_> {
-    /// Draws the plane into its part of `frame`.
+    /// Draws what `band` shows of the plane.
     pub(super) fn draw<T: Tally>(
         &self,
         plan: PlaneLoop,
         memory: &mut Vec<RowOfPlane>,
-        frame: &mut Frame,
+        band: &mut Band<'_>,
         tally: &mut T,
     ) {
-        let rows = self.rows(frame.height());
         match plan {
             PlaneLoop::Fill(color) => {
-                let pixels = frame.row_range_mut(rows.start, rows.end);
+                let pixels = band.rows_mut(band.clip(&self.rows()));
                 tally.pixels(self.pass(), pixels.len());
                 pixels.fill(color);
             }
             PlaneLoop::FillRows(color) => {
-                for row in rows {
-                    let pixels = frame.row_range_mut(row, row + 1);
+                for row in band.clip(&self.rows()) {
+                    let pixels = band.row_mut(row);
                     tally.pixels(self.pass(), pixels.len());
                     pixels.fill(self.fogged(color, row));
                 }
             }
-            PlaneLoop::Spans => self.draw_spans(memory, frame, |track, _, span, pixels| {
+            PlaneLoop::Spans => self.draw_spans(memory, band, |track, _, span, pixels| {
                 self.lay_default(track, span.start, pixels, tally);
             }),
-            PlaneLoop::Tiles => self.draw_spans(memory, frame, |track, row, span, pixels| {
+            PlaneLoop::Tiles => self.draw_spans(memory, band, |track, row, span, pixels| {
                 self.draw_by_tile(track, row, span, pixels, tally);
             }),
         }
@@ -83,24 +83,33 @@ impl Plane<'_> {
     fn draw_spans(
         &self,
         rows: &mut Vec<RowOfPlane>,
-        frame: &mut Frame,
+        band: &mut Band<'_>,
         mut draw: impl FnMut(&Track, u32, Range<usize>, &mut [Rgb]),
     ) {
-        let Range { start, end } = self.rows(frame.height());
+        let all = self.rows();
+        let Range { start, end } = band.clip(&all);
         let row_at = |depth: u32| match self.kind {
             PlaneKind::Floor => end - 1 - depth,
             PlaneKind::Ceiling => start + depth,
         };
-        let most = self.visible.iter().copied().max().unwrap_or_default();
+        // Rows of the plane that other bands have: those nearer to the edge of the picture show it, too.
+        let elsewhere = match self.kind {
+            PlaneKind::Floor => all.end - end,
+            PlaneKind::Ceiling => start - all.start,
+        };
+        let visible =
+            |column: &Column| self.visible(column, &all).saturating_sub(elsewhere).min(end - start);
+        let most = self.scene.columns.iter().map(visible).max().unwrap_or_default();
         rows.clear();
         // However much of it shows later, there is room.
-        rows.reserve(frame.height() as usize);
+        rows.reserve((end - start) as usize);
         rows.extend((0..most).map(|depth| {
             let row = row_at(depth);
             RowOfPlane { row, track: self.scene.projection.track(row), span_start: 0 }
         }));
         let mut before = 0;
-        for (x, &visible) in self.visible.iter().chain(&[0]).enumerate() {
+        let columns = self.scene.columns.iter().map(visible).chain([0]);
+        for (x, visible) in columns.enumerate() {
             if visible > before {
                 let begun = &mut rows[before as usize..visible as usize];
                 for row in begun {
@@ -109,7 +118,7 @@ impl Plane<'_> {
             } else {
                 for row in &rows[visible as usize..before as usize] {
                     let span = row.span_start..x;
-                    let pixels = &mut frame.row_mut(row.row)[span.clone()];
+                    let pixels = &mut band.row_mut(row.row)[span.clone()];
                     draw(&row.track, row.row, span, pixels);
                 }
             }
@@ -188,12 +197,20 @@ impl Plane<'_> {
         faded.map_or(color, |faded| faded.apply(color))
     }
 
-    /// The plane's part of a picture of that height.
-    fn rows(&self, height: u32) -> Range<u32> {
+    /// The plane's part of the picture.
+    fn rows(&self) -> Range<u32> {
         let ground = self.scene.projection.first_row_of_ground();
         match self.kind {
-            PlaneKind::Floor => ground..height,
+            PlaneKind::Floor => ground..self.height,
             PlaneKind::Ceiling => 0..ground,
+        }
+    }
+
+    /// How many rows of the plane's part of the picture show it in `column`.
+    fn visible(&self, column: &Column, rows: &Range<u32>) -> u32 {
+        match self.kind {
+            PlaneKind::Floor => column.rows_of_floor(rows.start, rows.end),
+            PlaneKind::Ceiling => column.rows_of_ceiling(rows.end),
         }
     }
 

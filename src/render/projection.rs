@@ -118,8 +118,8 @@ impl Projection {
 
     /// The texels of a wall at distance `t`, `count` from its top to its bottom.
     pub(super) fn texels_down_the_wall(&self, t: f64, count: usize) -> TexelsDown {
-        let texels = Texels { count, of_cells: (0.0, 1.0), at_eye: self.below_ceiling };
-        TexelsDown::new(2.0 * self.horizon, t / self.focal_length, texels)
+        let height_of_row = t / self.focal_length;
+        TexelsDown::of_wall(2.0 * self.horizon, height_of_row, count, self.below_ceiling)
     }
 
     /// The texels of a face at distance `t` from the height `bottom` to `top`: `count` for each cell

@@ -9,11 +9,12 @@
 
 use std::ops::Range;
 
-use super::marks::Marks;
+use super::band::Band;
+use super::marks::MarksOfBand;
 use super::shade::{Faded, Shade};
 use super::tally::{Pass, Tally};
 use super::walls::{level_of, light_of};
-use super::{Frame, Scene, Surface};
+use super::{Scene, Surface};
 use crate::cast::{Hit, Side};
 use crate::world::{Glass, TextureId, TileKind};
 
@@ -21,15 +22,19 @@ use crate::world::{Glass, TextureId, TileKind};
 #[derive(Clone, Debug, Default)]
 pub(super) struct Passed {
     list: Vec<(usize, Hit)>,
-    /// For each column, which part of the list is still to be drawn; empty until that is asked for.
-    left: Vec<Range<usize>>,
+}
+
+/// For each column, which part of what its ray passed is still to be drawn; empty where no ray passed
+/// anything. Kept so that it is allocated once.
+#[derive(Clone, Debug, Default)]
+pub(super) struct Left {
+    of_columns: Vec<Range<usize>>,
 }
 
 impl Passed {
     /// Forgets everything but how much memory it took.
     pub(super) fn clear(&mut self) {
         self.list.clear();
-        self.left.clear();
     }
 
     /// Makes room for what so many rays pass in all but the strangest of maps, so that a camera that
@@ -43,25 +48,28 @@ impl Passed {
     pub(super) fn push(&mut self, column: usize, hit: Hit) {
         self.list.push((column, hit));
     }
+}
 
-    /// Finds out what belongs to each of `columns` columns.
-    pub(super) fn sort_out(&mut self, columns: usize) {
-        self.left.clear();
-        self.left.reserve(columns);
-        if self.list.is_empty() {
+impl Left {
+    /// Finds out what belongs to each of `columns` columns: all of it is left.
+    pub(super) fn begin(&mut self, passed: &Passed, columns: usize) {
+        let Self { of_columns } = self;
+        of_columns.clear();
+        of_columns.reserve(columns);
+        if passed.list.is_empty() {
             return;
         }
-        self.left.resize(columns, 0..0);
-        for (index, &(column, _)) in self.list.iter().enumerate() {
-            let left = &mut self.left[column];
+        of_columns.resize(columns, 0..0);
+        for (index, &(column, _)) in passed.list.iter().enumerate() {
+            let left = &mut of_columns[column];
             *left = if Range::is_empty(left) { index..index + 1 } else { left.start..index + 1 };
         }
     }
 
     /// The furthest that is left in `column`, if it is `depth` away or more; it is left no longer.
-    fn take_behind(&mut self, column: usize, depth: f64) -> Option<Hit> {
-        let left = self.left.get_mut(column).filter(|left| !Range::is_empty(left))?;
-        let (_, hit) = self.list[left.end - 1];
+    fn take_behind(&mut self, passed: &Passed, column: usize, depth: f64) -> Option<Hit> {
+        let left = self.of_columns.get_mut(column).filter(|left| !Range::is_empty(left))?;
+        let (_, hit) = passed.list[left.end - 1];
         (hit.t >= depth).then(|| {
             left.end -= 1;
             hit
@@ -69,16 +77,16 @@ impl Passed {
     }
 }
 
-/// Draws what the rays passed over what is in `frame`.
+/// Draws what the rays passed over what is in `band`.
 pub(super) fn draw<T: Tally>(
     scene: Scene<'_>,
     passed: &Passed,
-    marks: &mut Marks,
-    frame: &mut Frame,
+    marks: &mut MarksOfBand<'_>,
+    band: &mut Band<'_>,
     tally: &mut T,
 ) {
     for &(column, ref hit) in passed.list.iter().rev() {
-        draw_hit(scene, column, hit, marks, frame, tally);
+        draw_hit(scene, column, hit, marks, band, tally);
     }
 }
 
@@ -87,26 +95,26 @@ pub(super) fn draw_behind<T: Tally>(
     depth: f64,
     column: usize,
     scene: Scene<'_>,
-    passed: &mut Passed,
-    marks: &mut Marks,
-    frame: &mut Frame,
+    (passed, left): (&Passed, &mut Left),
+    marks: &mut MarksOfBand<'_>,
+    band: &mut Band<'_>,
     tally: &mut T,
 ) {
-    while let Some(hit) = passed.take_behind(column, depth) {
-        draw_hit(scene, column, &hit, marks, frame, tally);
+    while let Some(hit) = left.take_behind(passed, column, depth) {
+        draw_hit(scene, column, &hit, marks, band, tally);
     }
 }
 
 /// Draws what is left to be drawn.
 pub(super) fn draw_rest<T: Tally>(
     scene: Scene<'_>,
-    passed: &mut Passed,
-    marks: &mut Marks,
-    frame: &mut Frame,
+    (passed, left): (&Passed, &mut Left),
+    marks: &mut MarksOfBand<'_>,
+    band: &mut Band<'_>,
     tally: &mut T,
 ) {
-    for column in 0..passed.left.len() {
-        draw_behind(0.0, column, scene, passed, marks, frame, tally);
+    for column in 0..left.of_columns.len() {
+        draw_behind(0.0, column, scene, (passed, left), marks, band, tally);
     }
 }
 
@@ -115,22 +123,25 @@ fn draw_hit<T: Tally>(
     scene: Scene<'_>,
     column: usize,
     hit: &Hit,
-    marks: &mut Marks,
-    frame: &mut Frame,
+    marks: &mut MarksOfBand<'_>,
+    band: &mut Band<'_>,
     tally: &mut T,
 ) {
+    let rows = band.clip(&scene.projection.wall_rows(hit.t));
+    if rows.is_empty() {
+        return;
+    }
     let world = scene.world;
     let tile = world.grid().tile(i64::from(hit.cell.column), i64::from(hit.cell.row));
     let light = light_of(scene, column as u32, hit);
     let shade = Faded::of_wall(hit.side, light, world.fog(), hit.t);
-    let rows = scene.projection.wall_rows(hit.t).len();
-    tally.pixels(Pass::SeeThrough, rows);
+    tally.pixels(Pass::SeeThrough, rows.len());
     match tile.map(|tile| world.tile(tile).kind) {
         Some(TileKind::Mask(texture)) => {
-            tally.texels(Pass::SeeThrough, rows);
-            draw_mask(texture, shade, scene, column, hit, marks, frame);
+            tally.texels(Pass::SeeThrough, rows.len());
+            draw_mask(texture, shade, scene, (column, rows), hit, marks, band);
         }
-        Some(TileKind::Glass(glass)) => draw_glass(glass, shade, scene, column, hit, frame),
+        Some(TileKind::Glass(glass)) => draw_glass(glass, shade, (column, rows), band),
         _ => {}
     }
 }
@@ -139,17 +150,16 @@ fn draw_mask(
     texture: TextureId,
     shade: Faded,
     scene: Scene<'_>,
-    column: usize,
+    (column, rows): (usize, Range<u32>),
     hit: &Hit,
-    marks: &mut Marks,
-    frame: &mut Frame,
+    marks: &mut MarksOfBand<'_>,
+    band: &mut Band<'_>,
 ) {
     let level = level_of(scene, column as u32, hit, texture);
     let texels = level.column(hit.u);
     let Some(alphas) = level.alpha_column(hit.u) else { return };
     let texels_down = scene.projection.texels_down_the_wall(hit.t, texels.len());
-    let rows = scene.projection.wall_rows(hit.t);
-    for (row, pixel) in rows.clone().zip(frame.column_mut(column as u32, rows.clone())) {
+    for (row, pixel) in rows.clone().zip(band.column_mut(column as u32, rows.clone())) {
         let texel = texels_down.at(row);
         *pixel = shade.apply(texels[texel]).over(*pixel, alphas[texel]);
     }
@@ -164,14 +174,11 @@ fn draw_mask(
 fn draw_glass(
     glass: Glass,
     shade: Faded,
-    scene: Scene<'_>,
-    column: usize,
-    hit: &Hit,
-    frame: &mut Frame,
+    (column, rows): (usize, Range<u32>),
+    band: &mut Band<'_>,
 ) {
     let tint = shade.apply(glass.color);
-    let rows = scene.projection.wall_rows(hit.t);
-    for pixel in frame.column_mut(column as u32, rows) {
+    for pixel in band.column_mut(column as u32, rows) {
         *pixel = tint.over(*pixel, glass.opacity);
     }
 }

@@ -4,11 +4,12 @@ use std::f64::consts::TAU;
 
 use glam::DVec2;
 
+use super::band::Band;
 use super::plan::SkyLoop;
 use super::planes::spans;
 use super::projection::Projection;
 use super::tally::{Pass, Tally};
-use super::{Column, Filter, Frame, Scene};
+use super::{Column, Filter, Scene};
 use crate::cast::Unfolding;
 use crate::world::texture::Level;
 use crate::world::{Rgb, Sky, World};
@@ -103,12 +104,12 @@ impl<'a> SkyView<'a> {
         &self,
         plan: SkyLoop,
         scene: Scene<'_>,
-        frame: &mut Frame,
+        band: &mut Band<'_>,
         tally: &mut T,
     ) {
         let ground = scene.projection.first_row_of_ground();
-        for row in 0..ground {
-            let pixels = frame.row_range_mut(row, row + 1);
+        for row in band.clip(&(0..ground)) {
+            let pixels = band.row_mut(row);
             match plan {
                 // A fill of all takes less time than to look for what is hidden.
                 SkyLoop::Gradient => self.draw(row, 0, pixels, tally),
@@ -126,7 +127,7 @@ impl<'a> SkyView<'a> {
     pub(super) fn draw_beyond_edge<T: Tally>(
         &self,
         scene: Scene<'_>,
-        frame: &mut Frame,
+        band: &mut Band<'_>,
         tally: &mut T,
     ) {
         let first_rows = scene
@@ -135,8 +136,8 @@ impl<'a> SkyView<'a> {
             .filter(|column| column.hit.is_none())
             .map(|column| column.rows.start);
         let Some(first) = first_rows.min() else { return };
-        for row in first..scene.projection.first_row_of_ground() {
-            let pixels = frame.row_range_mut(row, row + 1);
+        for row in band.clip(&(first..scene.projection.first_row_of_ground())) {
+            let pixels = band.row_mut(row);
             let shows = |column: &Column| column.hit.is_none() && column.rows.start <= row;
             for span in spans(scene.columns, shows) {
                 self.draw(row, span.start, &mut pixels[span], tally);

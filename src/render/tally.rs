@@ -23,7 +23,9 @@ pub enum Pass {
 }
 
 /// Something that is told what is spent.
-pub(super) trait Tally {
+///
+/// Each band of a frame has one of its own.
+pub(super) trait Tally: Default + Send {
     /// So many texels are read.
     fn texels(&mut self, pass: Pass, count: usize);
 
@@ -32,6 +34,14 @@ pub(super) trait Tally {
 
     /// So many things are looked at, and so many of them drawn.
     fn things(&mut self, considered: usize, drawn: usize);
+
+    /// All that `band` was told.
+    fn add(&mut self, band: Self);
+}
+
+impl Pass {
+    const ALL: [Self; 6] =
+        [Self::Ceiling, Self::Floor, Self::Sky, Self::Walls, Self::SeeThrough, Self::Things];
 }
 
 impl Tally for () {
@@ -43,6 +53,9 @@ impl Tally for () {
 
     #[inline]
     fn things(&mut self, _: usize, _: usize) {}
+
+    #[inline]
+    fn add(&mut self, (): Self) {}
 }
 
 /// What a pass read and wrote.
@@ -100,8 +113,7 @@ impl Counts {
 
     /// Pixels that were written by all passes together.
     pub fn pixels(&self) -> u64 {
-        let Self { ceiling, floor, sky, walls, see_through, things, .. } = self;
-        [ceiling, floor, sky, walls, see_through, things].iter().map(|pass| pass.pixels).sum()
+        Pass::ALL.into_iter().map(|pass| self.of(pass).pixels).sum()
     }
 
     fn of_mut(&mut self, pass: Pass) -> &mut PassCounts {
@@ -128,5 +140,13 @@ impl Tally for Counts {
     fn things(&mut self, considered: usize, drawn: usize) {
         self.things_considered += considered as u64;
         self.things_drawn += drawn as u64;
+    }
+
+    fn add(&mut self, band: Self) {
+        for pass in Pass::ALL {
+            self.texels(pass, band.of(pass).texels as usize);
+            self.pixels(pass, band.of(pass).pixels as usize);
+        }
+        self.things(band.things_considered as usize, band.things_drawn as usize);
     }
 }

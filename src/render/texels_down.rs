@@ -36,6 +36,23 @@ impl TexelsDown {
     pub(super) fn new(half_rows_to_horizon: f64, height_of_row: f64, texels: Texels) -> Self {
         let Texels { count, of_cells: (top, bottom), at_eye } = texels;
         let in_texels = |cells: f64| cells * count as f64;
+        let uppermost = floor(in_texels(top));
+        let lowest = (-floor(-in_texels(bottom)) - 1).max(uppermost);
+        Self {
+            range: (uppermost, lowest),
+            ..Self::of_wall(half_rows_to_horizon, height_of_row, count, at_eye)
+        }
+    }
+
+    /// Likewise, of a wall that is 1 high and covered by one texture, `count` texels high.
+    #[inline]
+    pub(super) fn of_wall(
+        half_rows_to_horizon: f64,
+        height_of_row: f64,
+        count: usize,
+        at_eye: f64,
+    ) -> Self {
+        let in_texels = |cells: f64| cells * count as f64;
         let texels_in_row = in_texels(height_of_row).min(MOST_TEXELS);
         // A smaller step would not get past the hair, and a row above the horizon below it.
         let half_step = rounded(texels_in_row / 2.0 * TEXEL).max(2 * HAIR);
@@ -43,13 +60,12 @@ impl TexelsDown {
         let at_horizon = rounded(in_texels(at_eye) * TEXEL);
         let half_rows_to_first = 1 - half_rows_to_horizon as i64;
         let from_horizon = half_step.wrapping_mul(half_rows_to_first);
-        let uppermost = floor(in_texels(top));
-        let lowest = (-floor(-in_texels(bottom)) - 1).max(uppermost);
+        let count = count as i64;
         Self {
             first: at_horizon.wrapping_add(HAIR).wrapping_add(from_horizon),
             step: 2 * half_step,
-            range: (uppermost, lowest),
-            count: count as i64,
+            range: (0, count - 1),
+            count,
         }
     }
 

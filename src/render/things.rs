@@ -13,13 +13,14 @@ use std::ops::Range;
 
 use glam::DVec2;
 
-use super::marks::Marks;
-use super::see_through::{self, Passed};
+use super::band::Band;
+use super::marks::MarksOfBand;
+use super::see_through::{self, Left, Passed};
 use super::shade::{Bright, Faded, Shade};
 use super::tally::{Pass, Tally};
-use super::{Frame, Scene, Surface};
-use crate::world::Thing;
+use super::{Scene, Surface};
 use crate::world::texture::Level;
+use crate::world::{Thing, World};
 pub(super) use sight::Sight;
 
 /// Things that are nearer than that to the camera plane are not drawn: the player stands in them.
@@ -48,41 +49,51 @@ struct Billboard {
     width: f64,
     /// The columns of pixels whose centres are on it.
     columns: Range<u32>,
+    /// Where its top and its bottom are, in rows.
+    top: f64,
+    bottom: f64,
+    /// The rows of pixels whose centres are on it.
+    rows: Range<u32>,
 }
 
-/// Draws the things in view and all that the rays `passed`, as it is after `seconds`. Returns when a
-/// thing in view will look different; `None` for never.
-pub(super) fn draw<T: Tally>(
-    scene: Scene<'_>,
-    seconds: f64,
-    passed: &mut Passed,
-    in_view: &mut InView,
-    marks: &mut Marks,
-    frame: &mut Frame,
-    tally: &mut T,
-) -> Option<f64> {
-    let InView { sight, list } = in_view;
-    list.clear();
-    list.reserve(scene.world.things().len().min(MOST_AT_FIRST));
-    let mut considered = 0;
-    sight.look(scene);
-    for &thing in sight.things(scene.world) {
-        considered += 1;
-        list.extend(Billboard::new(scene, thing));
-    }
-    list.sort_unstable_by(from_far_to_near);
-    passed.sort_out(scene.columns.len());
-    let (mut drawn, mut next_change) = (0, None::<f64>);
-    for billboard in &*list {
-        if billboard.draw(scene, seconds, passed, marks, frame, tally) {
-            drawn += 1;
-            let change = scene.world.sprite(billboard.thing.sprite).next_change(seconds);
-            next_change = next_change.into_iter().chain(change).reduce(f64::min);
+impl InView {
+    /// Finds them.
+    pub(super) fn find<T: Tally>(&mut self, scene: Scene<'_>, tally: &mut T) {
+        let Self { sight, list } = self;
+        list.clear();
+        list.reserve(scene.world.things().len().min(MOST_AT_FIRST));
+        let mut considered = 0;
+        sight.look(scene);
+        for &thing in sight.things(scene.world) {
+            considered += 1;
+            list.extend(Billboard::new(scene, thing));
         }
+        list.sort_unstable_by(from_far_to_near);
+        tally.things(considered, list.len());
     }
-    tally.things(considered, drawn);
-    see_through::draw_rest(scene, passed, marks, frame, tally);
-    next_change
+
+    /// When one of them, as they are after `seconds`, will look different; `None` for never.
+    pub(super) fn next_change(&self, world: &World, seconds: f64) -> Option<f64> {
+        let sprites = self.list.iter().map(|billboard| world.sprite(billboard.thing.sprite));
+        sprites.filter_map(|sprite| sprite.next_change(seconds)).reduce(f64::min)
+    }
+
+    /// Draws them, as they are after `seconds`, and all that the rays `passed`.
+    pub(super) fn draw<T: Tally>(
+        &self,
+        scene: Scene<'_>,
+        seconds: f64,
+        (passed, left): (&Passed, &mut Left),
+        marks: &mut MarksOfBand<'_>,
+        band: &mut Band<'_>,
+        tally: &mut T,
+    ) {
+        left.begin(passed, scene.columns.len());
+        for billboard in &self.list {
+            billboard.draw(scene, seconds, (passed, left), marks, band, tally);
+        }
+        see_through::draw_rest(scene, (passed, left), marks, band, tally);
+    }
 }
 
 fn from_far_to_near(one: &Billboard, other: &Billboard) -> Ordering {
@@ -97,47 +108,54 @@ impl Billboard {
     fn new(scene: Scene<'_>, thing: Thing) -> Option<Self> {
         let Scene { world, projection, columns: seen, .. } = scene;
         let place = projection.place(thing.cell.center());
-        if !(NEAREST..f64::INFINITY).contains(&place.depth) {
+        let depth = place.depth;
+        if !(NEAREST..f64::INFINITY).contains(&depth) {
             return None;
         }
-        let width = projection.columns_for(world.sprite(thing.sprite).width(), place.depth);
+        let sprite = world.sprite(thing.sprite);
+        let width = projection.columns_for(sprite.width(), depth);
         let left = place.column - width / 2.0;
         let columns = projection.columns_between(left, left + width);
-        let is_seen = |x: u32| place.depth < seen[x as usize].distance;
-        let is_in_view = columns.clone().any(is_seen);
-        is_in_view.then_some(Self { thing, depth: place.depth, left, width, columns })
+        let is_seen = |x: u32| depth < seen[x as usize].distance;
+        if !columns.clone().any(is_seen) {
+            return None;
+        }
+        let base = sprite.base(world.room_in(thing.cell));
+        let top = projection.row_at(base + sprite.height.cells(), depth);
+        let bottom = projection.row_at(base, depth);
+        let rows = projection.rows_between(top, bottom);
+        let billboard = Self { thing, depth, left, width, columns, top, bottom, rows };
+        (!billboard.rows.is_empty()).then_some(billboard)
     }
 
-    /// Draws what is seen of it, and before that what is behind it of what the rays passed. Returns
-    /// whether there was a column to draw.
+    /// Draws what is seen of it, and before that what is behind it of what the rays passed.
     fn draw<T: Tally>(
         &self,
         scene: Scene<'_>,
         seconds: f64,
-        passed: &mut Passed,
-        marks: &mut Marks,
-        frame: &mut Frame,
+        (passed, left): (&Passed, &mut Left),
+        marks: &mut MarksOfBand<'_>,
+        band: &mut Band<'_>,
         tally: &mut T,
-    ) -> bool {
-        let picture = Picture::new(scene, self, seconds);
-        if picture.rows.is_empty() {
-            return false;
+    ) {
+        let rows = band.clip(&self.rows);
+        if rows.is_empty() {
+            return;
         }
-        let mut has_drawn = false;
+        let picture = Picture::new(scene, self, seconds, rows);
         for x in self.columns.clone() {
             if self.depth >= scene.columns[x as usize].distance {
                 continue;
             }
-            has_drawn = true;
-            see_through::draw_behind(self.depth, x as usize, scene, passed, marks, frame, tally);
+            let passed = (passed, &mut *left);
+            see_through::draw_behind(self.depth, x as usize, scene, passed, marks, band, tally);
             let u = (f64::from(x) + 0.5 - self.left) / self.width;
-            picture.draw_column(x as usize, u, marks, frame, tally);
+            picture.draw_column(x as usize, u, marks, band, tally);
         }
-        has_drawn
     }
 }
 
-/// What a thing looks like from where the camera is.
+/// What a thing looks like from where the camera is, in some rows.
 struct Picture<'a> {
     level: &'a Level,
     shade: Option<Faded>,
@@ -148,22 +166,18 @@ struct Picture<'a> {
 }
 
 impl<'a> Picture<'a> {
-    fn new(scene: Scene<'a>, billboard: &Billboard, seconds: f64) -> Self {
+    fn new(scene: Scene<'a>, billboard: &Billboard, seconds: f64, rows: Range<u32>) -> Self {
         let Scene { world, projection, filter, .. } = scene;
-        let Billboard { thing, depth, .. } = *billboard;
+        let Billboard { thing, depth, width, top, bottom, .. } = *billboard;
         let sprite = world.sprite(thing.sprite);
         let to_viewer: DVec2 = projection.origin() - thing.cell.center();
         let texture = sprite.picture(seconds, to_viewer);
-        let height = sprite.height.cells();
-        let base = sprite.base(world.room_in(thing.cell));
-        let top = projection.row_at(base + height, depth);
-        let bottom = projection.row_at(base, depth);
         let texels = f64::from(texture.width()) * f64::from(texture.height());
-        let level = texture.level(filter.halvings(texels / (billboard.width * (bottom - top))));
+        let level = texture.level(filter.halvings(texels / (width * (bottom - top))));
         Self {
             level,
             shade: Faded::of_plane(world.light_in(thing.cell), world.fog(), depth),
-            rows: projection.rows_between(top, bottom),
+            rows,
             top,
             texels_in_row: f64::from(level.height()) / (bottom - top),
         }
@@ -173,15 +187,15 @@ impl<'a> Picture<'a> {
         &self,
         x: usize,
         u: f64,
-        marks: &mut Marks,
-        frame: &mut Frame,
+        marks: &mut MarksOfBand<'_>,
+        band: &mut Band<'_>,
         tally: &mut T,
     ) {
         tally.pixels(Pass::Things, self.rows.len());
         tally.texels(Pass::Things, self.rows.len());
         match self.shade {
-            None => self.draw_shaded(Bright, x, u, frame),
-            Some(faded) => self.draw_shaded(faded, x, u, frame),
+            None => self.draw_shaded(Bright, x, u, band),
+            Some(faded) => self.draw_shaded(faded, x, u, band),
         }
         let alphas = self.level.alpha_column(u);
         let shown = self
@@ -191,10 +205,10 @@ impl<'a> Picture<'a> {
         marks.note(x, self.rows.start, Surface::Thing, shown);
     }
 
-    fn draw_shaded<S: Shade>(&self, shade: S, x: usize, u: f64, frame: &mut Frame) {
+    fn draw_shaded<S: Shade>(&self, shade: S, x: usize, u: f64, band: &mut Band<'_>) {
         let texels = self.level.column(u);
         let alphas = self.level.alpha_column(u);
-        let pixels = frame.column_mut(x as u32, self.rows.clone());
+        let pixels = band.column_mut(x as u32, self.rows.clone());
         for (row, pixel) in self.rows.clone().zip(pixels) {
             let texel = self.texel(row);
             *pixel = match alphas.map_or(u8::MAX, |alphas| alphas[texel]) {

@@ -8,12 +8,13 @@ use std::ops::Range;
 
 use glam::DVec2;
 
+use super::band::Band;
 use super::coat::{self, COLUMNS_AT_ONCE, Coat, Cover, Paper, Papers};
 use super::doors::jamb;
 use super::plan::WallLoop;
 use super::shade::{Faded, OfSide, Shade};
 use super::tally::{Pass, Tally};
-use super::{Column, Frame, Scene};
+use super::{Column, Scene};
 use crate::cast::{Hit, Side};
 use crate::world::texture::Level;
 use crate::world::{Cell, Light, Outline, Paint, Rgb, Shape, TextureId, Tile, TileId, TileKind};
@@ -23,42 +24,51 @@ pub(super) fn draw<T: Tally>(
     scene: Scene<'_>,
     plan: WallLoop,
     papers: &mut Papers,
-    frame: &mut Frame,
+    band: &mut Band<'_>,
     tally: &mut T,
 ) {
-    for first in (0..frame.width()).step_by(COLUMNS_AT_ONCE) {
-        let columns = first..frame.width().min(first + COLUMNS_AT_ONCE as u32);
-        let strips = strips(scene, columns);
-        if plan.faded || scene.world.has_shapes() {
-            draw_strips(strips, papers, frame, tally, Strip::shade);
+    let is_faded = plan.faded || scene.world.has_shapes();
+    let width = scene.columns.len() as u32;
+    for first in (0..width).step_by(COLUMNS_AT_ONCE) {
+        let columns = first..width.min(first + COLUMNS_AT_ONCE as u32);
+        let strips = strips(scene, columns, band);
+        if is_faded {
+            let coats = coats(strips, plan, papers, tally, Strip::shade);
+            coat::draw(&coats, papers, band);
         } else {
-            draw_strips(strips, papers, frame, tally, |strip| OfSide(strip.hit.side));
+            let coats = coats(strips, plan, papers, tally, |strip| OfSide(strip.hit.side));
+            coat::draw(&coats, papers, band);
         }
     }
 }
 
-/// The columns that show a wall.
-fn strips(scene: Scene<'_>, columns: Range<u32>) -> impl Iterator<Item = Strip<'_>> {
+/// Those of `columns` that show a wall in `band`.
+fn strips<'a>(
+    scene: Scene<'a>,
+    columns: Range<u32>,
+    band: &Band<'_>,
+) -> impl Iterator<Item = Strip<'a>> {
     columns.filter_map(move |x| {
         let Column { hit, rows, .. } = &scene.columns[x as usize];
-        Some(Strip::new(scene, x, rows.clone(), hit.as_ref()?))
+        let rows = band.clip(rows);
+        (!rows.is_empty()).then(|| Some(Strip::new(scene, x, rows, hit.as_ref()?)))?
     })
 }
 
-/// Draws at most [`COLUMNS_AT_ONCE`] of them.
+/// How at most [`COLUMNS_AT_ONCE`] of them are covered.
 #[inline]
-fn draw_strips<'a, S: Shade, T: Tally>(
+fn coats<'a, S: Shade, T: Tally>(
     strips: impl Iterator<Item = Strip<'a>>,
+    plan: WallLoop,
     papers: &mut Papers,
-    frame: &mut Frame,
     tally: &mut T,
     shade: impl Fn(&Strip<'a>) -> S,
-) {
+) -> [Option<Coat<'a, S>>; COLUMNS_AT_ONCE] {
     let mut coats = [const { None }; COLUMNS_AT_ONCE];
     for (coat, (strip, paper)) in coats.iter_mut().zip(strips.zip(papers.iter_mut())) {
-        *coat = Some(strip.coat(shade(&strip), paper, tally));
+        *coat = Some(strip.coat(plan, shade(&strip), paper, tally));
     }
-    coat::draw(&coats, papers, frame);
+    coats
 }
 
 /// A wall as wide as a pixel.
@@ -90,9 +100,16 @@ impl<'a> Strip<'a> {
     }
 
     /// How it is covered in that shade, by means of `paper`.
-    fn coat<S: Shade, T: Tally>(&self, shade: S, paper: &mut Paper, tally: &mut T) -> Coat<'a, S> {
+    #[inline]
+    fn coat<S: Shade, T: Tally>(
+        &self,
+        plan: WallLoop,
+        shade: S,
+        paper: &mut Paper,
+        tally: &mut T,
+    ) -> Coat<'a, S> {
         tally.pixels(Pass::Walls, self.rows.len());
-        let cover = match self.paint() {
+        let cover = match self.paint(plan) {
             Paint::Color(color) => Cover::of_color(color, shade, paper),
             Paint::Texture(texture) => {
                 tally.texels(Pass::Walls, self.rows.len());
@@ -105,9 +122,9 @@ impl<'a> Strip<'a> {
     }
 
     /// How it looks: as a jamb, where it faces a door.
-    fn paint(&self) -> Paint {
+    fn paint(&self, plan: WallLoop) -> Paint {
         let Scene { world, projection, .. } = self.scene;
-        let jamb = if world.is_of_walls() { None } else { jamb(world, projection, self.hit) };
+        let jamb = if plan.jambs { jamb(world, projection, self.hit) } else { None };
         jamb.unwrap_or_else(|| self.paint_of_tile())
     }
 

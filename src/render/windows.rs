@@ -171,15 +171,16 @@ pub(super) fn draw<T: Tally>(
         columns.push(Look::new(scene, x, frame.height(), windows).follow(&ray));
     }
     windows.counts.faces = windows.faces.len() as u64;
-    windows.counts.spans = planes::draw(scene, sky, windows, frame, tally);
-    faces::draw(scene, plan, &windows.faces, frame, tally);
-
     marks.begin(frame.width(), frame.height());
+    let (band, marks) = (&mut frame.whole(), &mut marks.whole());
+    windows.counts.spans = planes::draw(scene, sky, windows, band, tally);
+    faces::draw(scene, plan, &windows.faces, band, tally);
+
     let Windows { veils, images, billboards, .. } = windows;
     if scene.has_things {
         billboards.find(scene, images, veils, viewer);
     }
-    veils::draw(scene, veils, billboards, marks, frame, tally);
+    veils::draw(scene, veils, billboards, marks, band, tally);
     if !scene.has_things {
         return None;
     }

@@ -60,10 +60,11 @@ impl Renderer {
             tests: 0,
             hits: 0,
         };
+        let mut whole = frame.whole();
         for row in 0..projection.height {
             let up = projection.upwards(row);
             explanation.tests += self.cast_row(row, up);
-            let pixels = frame.row_mut(row);
+            let pixels = whole.row_mut(row);
             explanation.hits += self.shade_row(scene, projection.origin, up, pixels);
         }
         explanation

@@ -1,7 +1,7 @@
 //! How long drawing takes, at several sizes, beside the classic loop and a fill.
 
 use std::hint::black_box;
-use std::num::NonZeroU32;
+use std::num::{NonZero, NonZeroU32};
 use std::time::{Duration, Instant};
 
 use super::{Classic, ClassicFloor, fill, pixel_aspect, plain_scene, textured_scene, walk};
@@ -15,8 +15,12 @@ pub struct DrawingRow {
     pub scene: Scene,
     /// The size of the picture.
     pub size: FrameSize,
-    /// What we take.
+    /// What we take, one thread.
     pub ours: f64,
+    /// How many threads we draw such a picture with, left to ourselves.
+    pub threads: usize,
+    /// What we take with those.
+    pub by_threads: f64,
     /// What the classic loop takes: the faster one of two, where there is a floor to draw.
     pub classic: f64,
     /// What it takes to set every pixel.
@@ -35,7 +39,9 @@ pub enum Scene {
 /// The sizes of the pictures.
 pub const SIZES: [FrameSize; 5] =
     [size(160, 90), size(320, 200), size(640, 480), size(1920, 1080), size(3840, 2160)];
-const fn size(width: u32, height: u32) -> FrameSize {
+
+/// The size of a picture that is known to have pixels.
+pub(super) const fn size(width: u32, height: u32) -> FrameSize {
     match (NonZeroU32::new(width), NonZeroU32::new(height)) {
         (Some(width), Some(height)) => FrameSize { width, height },
         _ => panic!("a picture has pixels"),
@@ -61,26 +67,30 @@ fn measure(scene: Scene, world: &World, size: FrameSize, time: Duration) -> Draw
     let (width, height) = (size.width.get(), size.height.get());
     let mut frame = Frame::new(size, pixel_aspect(size));
     let mut pixels = vec![0; width as usize * height as usize];
-    let mut renderer = Renderer::new();
+    let (mut alone, mut together) = (Renderer::new(), Renderer::new());
+    alone.set_threads(NonZero::<usize>::MIN);
     let classic = Classic::new(world);
     let floors = match scene {
         Scene::Planes => &[ClassicFloor::ByColumn, ClassicFloor::ByScanline][..],
         Scene::Walls => &[ClassicFloor::None],
     };
-    let mut times =
-        Times { ours: Vec::new(), classic: vec![Vec::new(); floors.len()], fill: Vec::new() };
+    let mut times = Times::of_floors(floors.len());
     let cameras = walk(world, CAMERAS);
+    let threads = together.explain(world, &cameras[0], &mut frame).plan.threads.count();
     let begun = Instant::now();
     for (turn, camera) in (0..).zip(cameras.iter().cycle()) {
         if turn > FEWEST_TURNS && begun.elapsed() >= time {
             break;
         }
-        let ours = seconds(|| renderer.render(world, camera, black_box(&mut frame)));
-        times.ours.push(ours);
+        times.ours.push(seconds(|| alone.render(world, camera, black_box(&mut frame))));
+        times.fill.push(seconds(|| fill(black_box(&mut pixels), turn)));
+        if threads > 1 {
+            let by_threads = seconds(|| together.render(world, camera, black_box(&mut frame)));
+            times.by_threads.push(by_threads);
+        }
         for (&floor, times) in floors.iter().zip(&mut times.classic) {
             times.push(seconds(|| draw_classic(&classic, camera, floor, size, &mut pixels)));
         }
-        times.fill.push(seconds(|| fill(black_box(&mut pixels), turn)));
         if turn == 0 {
             // The first of all fetches everything.
             times.clear();
@@ -89,8 +99,10 @@ fn measure(scene: Scene, world: &World, size: FrameSize, time: Duration) -> Draw
     let a_pixel = 1e9 / (f64::from(width) * f64::from(height));
     let classic = times.classic.into_iter().map(median).fold(f64::INFINITY, f64::min);
     let (ours, fill) = (median(times.ours), median(times.fill));
-    let [ours, classic, fill] = [ours, classic, fill].map(|seconds| seconds * a_pixel);
-    DrawingRow { scene, size, ours, classic, fill }
+    let by_threads = if threads > 1 { median(times.by_threads) } else { ours };
+    let [ours, by_threads, classic, fill] =
+        [ours, by_threads, classic, fill].map(|seconds| seconds * a_pixel);
+    DrawingRow { scene, size, ours, threads, by_threads, classic, fill }
 }
 
 fn draw_classic(
@@ -107,20 +119,28 @@ fn draw_classic(
 /// In seconds, turn by turn.
 struct Times {
     ours: Vec<f64>,
+    by_threads: Vec<f64>,
     classic: Vec<Vec<f64>>,
     fill: Vec<f64>,
 }
 
 impl Times {
+    /// None yet, of a scene whose floor is drawn in so many ways by the classic loop.
+    fn of_floors(count: usize) -> Self {
+        let none = Vec::new;
+        Self { ours: none(), by_threads: none(), classic: vec![none(); count], fill: none() }
+    }
+
     fn clear(&mut self) {
         self.ours.clear();
+        self.by_threads.clear();
         self.classic.iter_mut().for_each(Vec::clear);
         self.fill.clear();
     }
 }
 
 /// How long `work` takes, in seconds.
-fn seconds(work: impl FnOnce()) -> f64 {
+pub(super) fn seconds(work: impl FnOnce()) -> f64 {
     let start = Instant::now();
     work();
     start.elapsed().as_secs_f64()

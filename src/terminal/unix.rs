@@ -1,5 +1,7 @@
 //! What is Unix about a terminal: its device, its attributes, waiting for it, and signals.
 
+#[cfg(feature = "cli")]
+mod memory;
 mod signals;
 
 use std::io;
@@ -14,6 +16,8 @@ use rustix::termios::{
     ttyname,
 };
 
+#[cfg(feature = "cli")]
+pub(crate) use self::memory::peak_memory;
 pub(super) use self::signals::{Signal, Signals};
 use super::{Error, WindowSize};
 

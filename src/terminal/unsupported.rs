@@ -35,6 +35,12 @@ pub(super) enum Signal {
     Quit(QuitReason),
 }
 
+/// Nobody tells.
+#[cfg(feature = "cli")]
+pub(crate) fn peak_memory() -> Option<u64> {
+    None
+}
+
 impl Device {
     pub(super) fn open() -> Result<Self, Error> {
         Err(Error::unsupported_platform())

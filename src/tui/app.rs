@@ -11,6 +11,7 @@ mod recording;
 mod replay;
 mod run;
 mod stats;
+mod status;
 
 use std::time::Duration;
 
@@ -33,6 +34,7 @@ use clock::Clock;
 use played::{Eye, Memory, Played};
 use recording::ScriptRecorder;
 use stats::Stats;
+use status::{Gait, StatusLine};
 
 /// How the game is shown and steered.
 #[derive(Clone, Debug, Default)]
@@ -96,7 +98,7 @@ struct App {
     cell_aspect: CellAspect,
     field_of_view: FieldOfView,
     held: HeldKeys,
-    gait: panels::Gait,
+    gait: Gait,
     /// What counts for the next step even if its key is up again by then.
     pressed: Intents,
     shows_minimap: bool,
@@ -109,6 +111,7 @@ struct App {
     animates_at: Option<f64>,
     shows_stats: bool,
     stats: Option<Stats>,
+    status: StatusLine,
     /// Where what is wanted is noted down.
     script: Option<ScriptRecorder>,
 }
@@ -136,7 +139,7 @@ impl App {
             shows_stats: settings.shows_stats,
             settings,
             held: HeldKeys::default(),
-            gait: panels::Gait::default(),
+            gait: Gait::default(),
             pressed: Intents::new(),
             shows_minimap: true,
             has_left: false,
@@ -144,6 +147,7 @@ impl App {
             shown: None,
             animates_at: None,
             stats: None,
+            status: StatusLine::default(),
             script: None,
         }
     }
@@ -325,7 +329,8 @@ impl App {
         let [picture, status] = panels::picture_and_status(area);
         self.draw_picture(canvas, picture);
         let stats = self.stats.as_ref().filter(|_| self.shows_stats);
-        panels::status(canvas, status, &self.game, self.gait, stats, &self.settings.bindings);
+        self.status.update(&self.game, self.gait, stats, &self.settings.bindings);
+        canvas.draw_widget(&self.status, status);
         let seconds = self.game.elapsed();
         match self.screen {
             Screen::Playing => {}

@@ -94,6 +94,12 @@ impl Clearance {
         Self { cells, width, blocks: Vec::new(), width_in_blocks: 0, shafts: None }
     }
 
+    /// How many bytes it takes in memory.
+    pub(super) fn bytes(&self) -> usize {
+        let of_shafts = self.shafts().into_iter().flatten().map(Shafts::bytes).sum::<usize>();
+        size_of_val(self.cells.as_slice()) + size_of_val(self.blocks.as_slice()) + of_shafts
+    }
+
     /// The same, which looks as far as there is anything to see, if rays gain by it.
     pub(super) fn measured_if_worthwhile(self) -> Self {
         let measured = self.measured();

@@ -179,6 +179,11 @@ impl Grid {
         tile >= self.first_solid
     }
 
+    /// How many bytes it takes in memory: its cells, and what rays know of them.
+    pub fn bytes(&self) -> usize {
+        size_of_val(self.cells.as_slice()) + self.clearance.bytes()
+    }
+
     /// The tiles row by row from the north, each row from the west.
     pub fn rows(&self) -> impl ExactSizeIterator<Item = &[TileId]> {
         self.cells.chunks_exact(self.width() as usize)

@@ -102,6 +102,11 @@ impl Shafts {
         shafts
     }
 
+    /// How many bytes they take in memory.
+    pub(super) fn bytes(&self) -> usize {
+        size_of_val(self) + size_of_val(self.solid.as_slice())
+    }
+
     /// Notes a solid cell in all shafts from one slope to the next that it is in.
     fn add(&mut self, line: i64, band: i64, slope: i64) {
         let (strip, within) = (line / STRIP, line % STRIP);

@@ -1,16 +1,11 @@
-//! Error over run time, both logarithmic: one drawing, three ways to put it on a page.
-//!
-//! The drawing is a list of marks on a page of its own, made once; an SVG file, a picture in pixels
-//! and a terminal each know how to put marks down, and nothing of methods. A library for charts was
-//! refused: those that draw text into pixels bring a font engine along.
+//! Error over run time, both logarithmic: as marks on a page, or in characters.
 
-mod png;
-mod svg;
 mod text;
 
 use std::io::{self, Write};
 
 use crate::accuracy::Report;
+use crate::cli::plot::{self, Align, Axis, Ink, Mark, Page};
 
 /// Writes the plot in characters.
 pub(super) fn write_text(report: &Report, output: &mut impl Write) -> io::Result<()> {
@@ -19,12 +14,12 @@ pub(super) fn write_text(report: &Report, output: &mut impl Write) -> io::Result
 
 /// Writes the plot as an SVG file.
 pub(super) fn write_svg(report: &Report, output: &mut impl Write) -> io::Result<()> {
-    svg::write(&Plot::of(report).marks(), output)
+    plot::write_svg(&Plot::of(report).page(), output)
 }
 
 /// Writes the plot as a PNG file.
 pub(super) fn write_png(report: &Report, output: &mut impl Write) -> io::Result<()> {
-    png::write(&Plot::of(report).marks(), output)
+    plot::write_png(&Plot::of(report).page(), output)
 }
 
 /// Width and height of the page.
@@ -34,6 +29,9 @@ const LEFT: f64 = 90.0;
 const RIGHT: f64 = 930.0;
 const TOP: f64 = 50.0;
 const BOTTOM: f64 = 540.0;
+/// The methods that none is both faster and more exact than, and the line from one to the next.
+const FRONT: Ink = Ink::Orange;
+const OTHERS: Ink = Ink::Blue;
 
 /// Methods by time and error.
 struct Plot {
@@ -49,29 +47,6 @@ struct Point {
     time: f64,
     error: f64,
     is_on_front: bool,
-}
-
-/// A logarithmic axis, from one power of ten to another.
-struct Axis {
-    first: i32,
-    last: i32,
-}
-
-/// What is put on a page; places are from its top left corner.
-enum Mark {
-    /// A straight line, of the axes and their grid, or of the front.
-    Line { from: (f64, f64), to: (f64, f64), is_front: bool },
-    /// A point.
-    Dot { at: (f64, f64), is_front: bool },
-    /// Text that begins, is in the middle, or ends there.
-    Text { at: (f64, f64), align: Align, text: String },
-}
-
-#[derive(Clone, Copy, PartialEq, Eq)]
-enum Align {
-    Start,
-    Middle,
-    End,
 }
 
 /// The part of a line of text, or the dot, that something takes up.
@@ -113,29 +88,6 @@ impl Span {
     }
 }
 
-impl Axis {
-    /// The powers of ten around `values`, which are above 0.
-    fn around(values: impl Iterator<Item = f64>) -> Self {
-        let (low, high) = values.fold((f64::INFINITY, f64::NEG_INFINITY), |(low, high), value| {
-            (low.min(value.log10()), high.max(value.log10()))
-        });
-        let first = low.floor() as i32;
-        Self { first, last: (high.ceil() as i32).max(first + 1) }
-    }
-
-    /// How far along the axis `value` is, from 0 to 1.
-    fn share(&self, value: f64) -> f64 {
-        let share = (value.log10() - f64::from(self.first)) / f64::from(self.last - self.first);
-        share.clamp(0.0, 1.0)
-    }
-
-    /// The powers of ten to label, at most about `most` of them.
-    fn ticks(&self, most: usize) -> impl Iterator<Item = i32> {
-        let step = ((self.last - self.first) as usize).div_ceil(most).max(1);
-        (self.first..=self.last).step_by(step)
-    }
-}
-
 impl Plot {
     fn of(report: &Report) -> Self {
         /// Where no error at all is drawn: below the rounding of a double.
@@ -161,16 +113,14 @@ impl Plot {
         (x, y)
     }
 
-    fn marks(&self) -> Vec<Mark> {
+    fn page(&self) -> Page {
         let mut marks = self.axes();
         marks.extend(self.front());
         let dots = || self.points.iter().map(|point| self.place(point.time, point.error));
-        marks.extend(
-            self.points
-                .iter()
-                .zip(dots())
-                .map(|(point, at)| Mark::Dot { at, is_front: point.is_on_front }),
-        );
+        marks.extend(self.points.iter().zip(dots()).map(|(point, at)| Mark::Dot {
+            at,
+            ink: if point.is_on_front { FRONT } else { OTHERS },
+        }));
         let mut taken: Vec<Span> = dots().map(Span::of_dot).collect();
         for (point, dot) in self.points.iter().zip(dots()) {
             let places = Span::beside(dot, &point.label);
@@ -180,23 +130,23 @@ impl Plot {
             let at = (span.left, span.middle + 4.0);
             marks.push(Mark::Text { at, align: Align::Start, text: point.label.clone() });
         }
-        marks
+        Page { width: PAGE.0, height: PAGE.1, marks }
     }
 
     fn axes(&self) -> Vec<Mark> {
         const MOST_TICKS: usize = 9;
         let text = |at, align, text: &str| Mark::Text { at, align, text: text.to_owned() };
-        let line = |from, to| Mark::Line { from, to, is_front: false };
+        let line = |from, to| Mark::Line { from, to, ink: Ink::Pale };
         let mut marks = vec![
             text((LEFT, 28.0), Align::Start, "relative error of the distance (rms) over time"),
             text((RIGHT, 582.0), Align::End, "nanoseconds a ray"),
         ];
-        for power in self.time.ticks(MOST_TICKS) {
+        for power in self.time.powers(MOST_TICKS) {
             let (x, _) = self.place(10_f64.powi(power), 1.0);
             marks.push(line((x, TOP), (x, BOTTOM)));
             marks.push(text((x, BOTTOM + 20.0), Align::Middle, &format!("1e{power}")));
         }
-        for power in self.error.ticks(MOST_TICKS) {
+        for power in self.error.powers(MOST_TICKS) {
             let (_, y) = self.place(1.0, 10_f64.powi(power));
             marks.push(line((LEFT, y), (RIGHT, y)));
             marks.push(text((LEFT - 10.0, y + 4.0), Align::End, &format!("1e{power}")));
@@ -214,6 +164,6 @@ impl Plot {
             .collect();
         front.sort_by(|one, other| one.0.total_cmp(&other.0));
         let pairs = front.windows(2);
-        pairs.map(|pair| Mark::Line { from: pair[0], to: pair[1], is_front: true }).collect()
+        pairs.map(|pair| Mark::Line { from: pair[0], to: pair[1], ink: FRONT }).collect()
     }
 }

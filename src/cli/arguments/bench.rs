@@ -1,9 +1,11 @@
 //! What `bench` is asked for.
 
+use std::path::PathBuf;
+
 use lexopt::{Arg, Parser};
 
 use super::value::Valued;
-use super::{Command, Error, next, unexpected};
+use super::{Command, Error, next, unexpected, word};
 
 /// Options of `bench`.
 #[derive(Debug)]
@@ -11,17 +13,20 @@ pub(in crate::cli) struct Bench {
     /// How long to measure, roughly.
     pub(in crate::cli) seconds: u8,
     pub(in crate::cli) format: BenchFormat,
+    /// Where plots are drawn, besides.
+    pub(in crate::cli) plot: Option<PathBuf>,
 }
 
 /// How the report is written.
 #[derive(Clone, Copy, Debug)]
 pub(in crate::cli) enum BenchFormat {
     Table,
+    Markdown,
     Json,
 }
 
 pub(super) fn parse(mut parser: Parser) -> Result<Command, Error> {
-    let mut bench = Bench { seconds: 10, format: BenchFormat::Table };
+    let mut bench = Bench { seconds: 10, format: BenchFormat::Table, plot: None };
     while let Some(argument) = next(&mut parser)? {
         match argument {
             Arg::Short('h') | Arg::Long("help") => return Ok(Command::Help),
@@ -31,13 +36,14 @@ pub(super) fn parse(mut parser: Parser) -> Result<Command, Error> {
             }
             Arg::Long("seconds") => bench.seconds = SECONDS.value(&mut parser)?,
             Arg::Long("format") => bench.format = FORMAT.value(&mut parser)?,
+            Arg::Long("plot") => bench.plot = Some(word(&mut parser, "--plot", "a file")?.into()),
             other => return Err(unexpected("bench", &OPTIONS, other)),
         }
     }
     Ok(Command::Bench(bench))
 }
 
-const OPTIONS: [&str; 2] = ["--format", "--seconds"];
+const OPTIONS: [&str; 3] = ["--format", "--plot", "--seconds"];
 
 const SECONDS: Valued<u8> = Valued {
     name: "--seconds",
@@ -47,9 +53,10 @@ const SECONDS: Valued<u8> = Valued {
 
 const FORMAT: Valued<BenchFormat> = Valued {
     name: "--format",
-    takes: "table or json",
+    takes: "table, markdown or json",
     read: |text| match text {
         "table" => Some(BenchFormat::Table),
+        "markdown" => Some(BenchFormat::Markdown),
         "json" => Some(BenchFormat::Json),
         _ => None,
     },

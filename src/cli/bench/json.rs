@@ -1,18 +1,22 @@
-//! One object: drawing, the pipeline, and the first frame.
+//! One object, with a list or an object for each table.
 
 use std::io::{self, Write};
+use std::time::Duration;
 
 use serde_json::{Map, Value, json};
 
+use super::footprint::Footprint;
 use super::{LINKS, Report, frames_per_second, share_of_stock};
-use crate::speed::{DrawingRow, Scene};
+use crate::speed::{CrowdRow, DrawingRow, MapRow, Scene};
 use crate::wire::PipelineRow;
 
 pub(super) fn write(report: &Report, output: &mut impl Write) -> io::Result<()> {
     let value = json!({
         "drawing": report.drawing.iter().map(drawing).collect::<Vec<_>>(),
+        "maps": report.growth.maps.iter().map(map).collect::<Vec<_>>(),
+        "things": report.growth.crowds.iter().map(crowd).collect::<Vec<_>>(),
         "pipeline": report.pipeline.iter().map(|row| pipeline(report, row)).collect::<Vec<_>>(),
-        "first_frame_milliseconds": report.first_frame.as_secs_f64() * 1e3,
+        "footprint": footprint(&report.footprint),
     });
     serde_json::to_writer_pretty(&mut *output, &value)?;
     output.write_all(b"\n")
@@ -26,10 +30,48 @@ fn drawing(row: &DrawingRow) -> Value {
         },
         "width": row.size.width,
         "height": row.size.height,
-        "nanoseconds_a_pixel": { "ours": row.ours, "classic": row.classic, "fill": row.fill },
+        "threads": row.threads,
+        "nanoseconds_a_pixel": {
+            "ours": row.ours,
+            "by_threads": row.by_threads,
+            "classic": row.classic,
+            "fill": row.fill,
+        },
         "classic_over_ours": row.classic / row.ours,
         "ours_over_fill": row.ours / row.fill,
     })
+}
+
+fn map(row: &MapRow) -> Value {
+    json!({
+        "ground": row.ground.name(),
+        "side": row.side,
+        "ray": { "nanoseconds": row.ray.seconds * 1e9, "ratio": row.ray.ratio },
+        "frame": { "microseconds": row.frame.seconds * 1e6, "ratio": row.frame.ratio },
+        "reading_milliseconds": milliseconds(row.loading),
+        "bytes_a_cell": row.bytes_a_cell,
+    })
+}
+
+fn crowd(row: &CrowdRow) -> Value {
+    json!({
+        "vista": row.vista.name(),
+        "things": row.count,
+        "frame": { "microseconds": row.frame.seconds * 1e6, "ratio": row.frame.ratio },
+    })
+}
+
+fn footprint(footprint: &Footprint) -> Value {
+    json!({
+        "start_milliseconds": footprint.start_up.map(milliseconds),
+        "first_frame_milliseconds": milliseconds(footprint.first_frame),
+        "program_bytes": footprint.program,
+        "peak_memory_bytes": footprint.memory,
+    })
+}
+
+fn milliseconds(time: Duration) -> f64 {
+    time.as_secs_f64() * 1e3
 }
 
 fn pipeline(report: &Report, row: &PipelineRow) -> Value {

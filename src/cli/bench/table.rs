@@ -1,65 +1,95 @@
-//! Two tables for people.
+//! A table: aligned, or in Markdown.
 
 use std::io::{self, Write};
 
-use super::{LINKS, Report, frames_per_second, share_of_stock};
-use crate::speed::Scene;
-
-pub(super) fn write(report: &Report, output: &mut impl Write) -> io::Result<()> {
-    write_drawing(report, output)?;
-    writeln!(output)?;
-    write_pipeline(report, output)?;
-    let first = report.first_frame.as_secs_f64() * 1e3;
-    writeln!(output, "\nThe first frame, from reading the level to the picture: {first:.1} ms.")
+/// What was measured, row by row.
+pub(super) struct Table {
+    /// What it is about, in a word or two.
+    pub(super) title: &'static str,
+    /// What the figures are; no line of it is too long for a terminal.
+    pub(super) about: String,
+    /// What each column is called.
+    pub(super) columns: Vec<String>,
+    /// How many columns, from the first on, say what a row is about. The others are figures.
+    pub(super) labels: usize,
+    /// As long as there are columns, each.
+    pub(super) rows: Vec<Vec<String>>,
 }
 
-fn write_drawing(report: &Report, output: &mut impl Write) -> io::Result<()> {
-    writeln!(
-        output,
-        "Drawing on one thread: nanoseconds a pixel, beside the loop that tutorials teach and a fill.\n"
-    )?;
-    writeln!(output, "scene   picture      ours  classic   fill  classic/ours  ours/fill")?;
-    for row in &report.drawing {
-        let scene = match row.scene {
-            Scene::Planes => "planes",
-            Scene::Walls => "walls",
+impl Table {
+    /// Writes it for a terminal, with a line to spare.
+    pub(super) fn write_text(&self, output: &mut impl Write) -> io::Result<()> {
+        writeln!(output, "{}: {}\n", self.title, self.about)?;
+        for row in self.lines() {
+            let padded = row.iter().enumerate().map(|(column, cell)| {
+                let width = self.width(column);
+                if column < self.labels {
+                    format!("{cell:<width$}")
+                } else {
+                    format!("{cell:>width$}")
+                }
+            });
+            writeln!(output, "{}", padded.collect::<Vec<_>>().join("  ").trim_end())?;
+        }
+        writeln!(output)
+    }
+
+    /// Writes it for a page, with a line to spare.
+    pub(super) fn write_markdown(&self, output: &mut impl Write) -> io::Result<()> {
+        let mut lines = self.lines();
+        let header = lines.next().unwrap_or_default();
+        let rules =
+            (0..header.len()).map(|column| if column < self.labels { "---" } else { "--:" });
+        let rule = rules.collect::<Vec<_>>().join("|");
+        writeln!(
+            output,
+            "**{}:** {}\n\n| {} |\n|{rule}|",
+            self.title,
+            self.about,
+            header.join(" | ")
+        )?;
+        lines.try_for_each(|row| writeln!(output, "| {} |", row.join(" | ")))?;
+        writeln!(output)
+    }
+
+    /// The header, and then all rows.
+    fn lines(&self) -> impl Iterator<Item = &[String]> {
+        std::iter::once(self.columns.as_slice()).chain(self.rows.iter().map(Vec::as_slice))
+    }
+
+    fn width(&self, column: usize) -> usize {
+        let cells = self.lines().filter_map(|row| row.get(column));
+        cells.map(|cell| cell.chars().count()).max().unwrap_or_default()
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    fn written(write: impl FnOnce(&Table, &mut Vec<u8>) -> io::Result<()>) -> String {
+        let row = |cells: [&str; 2]| cells.map(str::to_owned).to_vec();
+        let table = Table {
+            title: "Fruit",
+            about: "kilograms.".to_owned(),
+            columns: row(["kind", "kg"]),
+            labels: 1,
+            rows: vec![row(["apples", "7"]), row(["figs", "12.5"])],
         };
-        let size = format!("{}x{}", row.size.width, row.size.height);
-        writeln!(
-            output,
-            "{scene:<6}  {size:<9}  {:>6.2}  {:>7.2}  {:>5.3}  {:>12.1}  {:>9.1}",
-            row.ours,
-            row.classic,
-            row.fill,
-            row.classic / row.ours,
-            row.ours / row.fill,
-        )?;
+        let mut bytes = Vec::new();
+        write(&table, &mut bytes).unwrap();
+        String::from_utf8(bytes).unwrap()
     }
-    Ok(())
-}
 
-fn write_pipeline(report: &Report, output: &mut impl Write) -> io::Result<()> {
-    let [first, second, third] = LINKS;
-    writeln!(
-        output,
-        "From what the player wants to bytes: microseconds and bytes a frame, beside ratatui's own\n\
-         encoder, and frames a second over a link of {first}, {second} and {third} Mbit/s.\n"
-    )?;
-    writeln!(
-        output,
-        "window  encoder      µs  ratio   bytes  {first:>7}  {second:>7}  {third:>7}"
-    )?;
-    for row in &report.pipeline {
-        let window = format!("{}x{}", row.size.width, row.size.height);
-        let [first, second, third] = LINKS.map(|link| frames_per_second(row, link));
-        writeln!(
-            output,
-            "{window:<6}  {:<7}  {:>6.0}  {:>5.2}  {:>6.0}  {first:>7.1}  {second:>7.1}  {third:>7.1}",
-            row.encoder,
-            row.time.as_secs_f64() * 1e6,
-            share_of_stock(report, row),
-            row.bytes,
-        )?;
+    #[test]
+    fn words_begin_and_figures_end_together() {
+        let text = "Fruit: kilograms.\n\nkind      kg\napples     7\nfigs    12.5\n\n";
+        assert_eq!(written(Table::write_text), text);
     }
-    Ok(())
+
+    #[test]
+    fn pages_align_by_themselves() {
+        let text = "**Fruit:** kilograms.\n\n| kind | kg |\n|---|--:|\n| apples | 7 |\n| figs | 12.5 |\n\n";
+        assert_eq!(written(Table::write_markdown), text);
+    }
 }

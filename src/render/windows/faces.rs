@@ -6,7 +6,7 @@ use glam::DVec2;
 
 use super::Scene;
 use crate::cast::Side;
-use crate::render::Frame;
+use crate::render::band::Band;
 use crate::render::plan::WallLoop;
 use crate::render::shade::{Faded, OfSide, Shade};
 use crate::render::tally::{Pass, Tally};
@@ -48,13 +48,13 @@ pub(super) fn draw<T: Tally>(
     scene: Scene<'_>,
     plan: WallLoop,
     faces: &[Face],
-    frame: &mut Frame,
+    band: &mut Band<'_>,
     tally: &mut T,
 ) {
     for face in faces {
         match face.facing {
-            Facing::Side(side) if !plan.faded => face.draw(scene, OfSide(side), frame, tally),
-            _ => face.draw(scene, face.facing.shade(scene, face.light, face.t), frame, tally),
+            Facing::Side(side) if !plan.faded => face.draw(scene, OfSide(side), band, tally),
+            _ => face.draw(scene, face.facing.shade(scene, face.light, face.t), band, tally),
         }
     }
 }
@@ -75,12 +75,12 @@ impl Face {
         &self,
         scene: Scene<'_>,
         shade: S,
-        frame: &mut Frame,
+        band: &mut Band<'_>,
         tally: &mut T,
     ) {
         let rows = self.rows.clone();
         tally.pixels(Pass::Walls, rows.len());
-        let pixels = frame.column_mut(self.column, rows.clone());
+        let pixels = band.column_mut(self.column, rows.clone());
         match self.paint {
             Paint::Color(color) => {
                 let color = shade.apply(color);

@@ -3,7 +3,7 @@
 use glam::DVec2;
 
 use super::{Part, Piece, Reflection, Scene, Shown, Windows};
-use crate::render::Frame;
+use crate::render::band::Band;
 use crate::render::lay::Layer;
 use crate::render::sky::SkyView;
 use crate::render::tally::{Pass, Tally};
@@ -14,12 +14,12 @@ pub(super) fn draw<T: Tally>(
     scene: Scene<'_>,
     sky: &SkyView<'_>,
     windows: &Windows,
-    frame: &mut Frame,
+    band: &mut Band<'_>,
     tally: &mut T,
 ) -> u64 {
     let mut count = 0;
     for (row, shown) in (0..).zip(windows.shown.chunks_exact(windows.width)) {
-        let mut pixels = frame.row_range_mut(row, row + 1);
+        let mut pixels = band.row_mut(row);
         let mut x = 0;
         for alike in shown.chunk_by(|one, other| one == other) {
             let (span, rest) = pixels.split_at_mut(alike.len());

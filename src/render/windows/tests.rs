@@ -4,7 +4,7 @@ use std::sync::LazyLock;
 use glam::DVec2;
 use proptest::prelude::*;
 
-use super::super::{Memory, Picture};
+use super::super::{Memory, Picture, level};
 use crate::cast::Exact;
 use crate::map::{self, Level, builtin};
 use crate::render::{
@@ -40,17 +40,16 @@ static LEVEL_MAPS: LazyLock<Vec<(String, World)>> = LazyLock::new(|| {
 /// Both pictures of what `camera` sees: by the passes for a level, and by those for windows.
 fn both(world: &World, camera: &Camera, filter: Filter, size: FrameSize) -> [Frame; 2] {
     [Geometry::Level, Geometry::Windows(WhyWindows::Heights)].map(|geometry| {
-        let plan = Plan { geometry, ..Plan::new(world, camera, filter) };
-        let mut frame = Frame::new(size, PixelAspect::SQUARE);
-        let (memory, frame_mut) = (&mut Memory::default(), &mut frame);
-        let tally = &mut ();
-        let seconds = 0.0;
-        let picture = Picture { world, camera, filter, seconds, memory, frame: frame_mut, tally };
+        let plan = Plan { geometry, ..Plan::new(world, camera, filter, size, None) };
+        let mut drawn = Frame::new(size, PixelAspect::SQUARE);
+        let (memory, frame, tally) = (&mut Memory::default(), &mut drawn, &mut ());
+        let (seconds, threads) = (0.0, None);
+        let picture = Picture { world, camera, filter, seconds, threads, memory, frame, tally };
         match geometry {
-            Geometry::Level => picture.draw_level(plan, &Exact),
+            Geometry::Level => level::draw(picture, plan, &Exact),
             Geometry::Windows(_) => picture.draw_windows(plan),
         }
-        frame
+        drawn
     })
 }
 

@@ -13,9 +13,9 @@ use glam::DVec2;
 use super::sights::Sights;
 use super::{IMAGES_AT_ONCE, Reflection, Scene, Veil, Viewer, rows_between};
 use crate::cast::{Side, Unfolding};
-use crate::render::Frame;
 use crate::render::Surface;
-use crate::render::marks::Marks;
+use crate::render::band::Band;
+use crate::render::marks::MarksOfBand;
 use crate::render::shade::{Faded, Shade};
 use crate::render::tally::{Pass, Tally};
 use crate::render::things::NEAREST;
@@ -111,8 +111,8 @@ impl Billboards {
         &mut self,
         scene: Scene<'_>,
         between: &Between,
-        marks: &mut Marks,
-        frame: &mut Frame,
+        marks: &mut MarksOfBand<'_>,
+        band: &mut Band<'_>,
         tally: &mut T,
     ) {
         let Reflection(image) = between.reflection;
@@ -126,7 +126,7 @@ impl Billboards {
                     None => self.figure.as_ref(),
                 };
                 if let Some(sprite) = sprite {
-                    billboard.draw(scene, sprite, between, marks, frame, tally);
+                    billboard.draw(scene, sprite, between, marks, band, tally);
                 }
             }
         }
@@ -226,8 +226,8 @@ impl Billboard {
         scene: Scene<'_>,
         sprite: &Sprite,
         between: &Between,
-        marks: &mut Marks,
-        frame: &mut Frame,
+        marks: &mut MarksOfBand<'_>,
+        band: &mut Band<'_>,
         tally: &mut T,
     ) {
         let projection = scene.projection;
@@ -251,7 +251,7 @@ impl Billboard {
             (texel as usize).min(texels.len() - 1)
         };
         let alpha = |texel: usize| alphas.map_or(u8::MAX, |alphas| alphas[texel]);
-        let pixels = frame.column_mut(between.column, rows.clone());
+        let pixels = band.column_mut(between.column, rows.clone());
         for (row, pixel) in rows.clone().zip(pixels) {
             let texel = texel(row);
             *pixel = match alpha(texel) {

@@ -6,10 +6,11 @@ use super::Scene;
 use super::faces::{Facing, Stretch};
 use super::things::{Between, Billboards};
 use crate::cast::Side;
-use crate::render::marks::Marks;
+use crate::render::Surface;
+use crate::render::band::Band;
+use crate::render::marks::MarksOfBand;
 use crate::render::shade::{Faded, Shade};
 use crate::render::tally::{Pass, Tally};
-use crate::render::{Frame, Surface};
 use crate::world::{Glass, Light, TextureId};
 
 /// What is painted over what is behind it, as wide as a pixel.
@@ -47,14 +48,14 @@ pub(super) fn draw<T: Tally>(
     scene: Scene<'_>,
     veils: &[Veil],
     billboards: &mut Billboards,
-    marks: &mut Marks,
-    frame: &mut Frame,
+    marks: &mut MarksOfBand<'_>,
+    band: &mut Band<'_>,
     tally: &mut T,
 ) {
     for veil in veils.iter().rev() {
         match veil {
-            Veil::Pane(pane) => pane.draw(scene, marks, frame, tally),
-            Veil::Things(between) => billboards.draw(scene, between, marks, frame, tally),
+            Veil::Pane(pane) => pane.draw(scene, marks, band, tally),
+            Veil::Things(between) => billboards.draw(scene, between, marks, band, tally),
         }
     }
 }
@@ -63,8 +64,8 @@ impl Pane {
     fn draw<T: Tally>(
         &self,
         scene: Scene<'_>,
-        marks: &mut Marks,
-        frame: &mut Frame,
+        marks: &mut MarksOfBand<'_>,
+        band: &mut Band<'_>,
         tally: &mut T,
     ) {
         tally.pixels(Pass::SeeThrough, self.rows.len());
@@ -72,9 +73,9 @@ impl Pane {
         match self.film {
             Film::Mask(texture) => {
                 tally.texels(Pass::SeeThrough, self.rows.len());
-                self.draw_mask(scene, texture, shade, marks, frame);
+                self.draw_mask(scene, texture, shade, marks, band);
             }
-            Film::Glass(glass) => self.draw_glass(glass, shade, frame),
+            Film::Glass(glass) => self.draw_glass(glass, shade, band),
         }
     }
 
@@ -83,15 +84,15 @@ impl Pane {
         scene: Scene<'_>,
         texture: TextureId,
         shade: Faded,
-        marks: &mut Marks,
-        frame: &mut Frame,
+        marks: &mut MarksOfBand<'_>,
+        band: &mut Band<'_>,
     ) {
         let level = scene.level_on(scene.world.texture(texture), self.t, self.slope);
         let texels = level.column(self.u);
         let Some(alphas) = level.alpha_column(self.u) else { return };
         let Stretch { bottom, top } = self.stretch;
         let texels_down = scene.projection.texels_down_the_face(self.t, texels.len(), bottom, top);
-        let pixels = frame.column_mut(self.column, self.rows.clone());
+        let pixels = band.column_mut(self.column, self.rows.clone());
         for (row, pixel) in self.rows.clone().zip(pixels) {
             let texel = texels_down.at(row);
             *pixel = shade.apply(texels[texel]).over(*pixel, alphas[texel]);
@@ -105,9 +106,9 @@ impl Pane {
         marks.note(self.column as usize, self.rows.start, surface, shown);
     }
 
-    fn draw_glass(&self, glass: Glass, shade: Faded, frame: &mut Frame) {
+    fn draw_glass(&self, glass: Glass, shade: Faded, band: &mut Band<'_>) {
         let tint = shade.apply(glass.color);
-        for pixel in frame.column_mut(self.column, self.rows.clone()) {
+        for pixel in band.column_mut(self.column, self.rows.clone()) {
             *pixel = tint.over(*pixel, glass.opacity);
         }
     }

@@ -46,6 +46,7 @@ impl<'a, 'b> ControlSequence<'a, 'b> {
         }
     }
 
+    #[cold]
     fn large_place(&mut self, number: u16) {
         self.literal([SEPARATOR]);
         for unit in [10_000, 1_000, 100, 10, 1].into_iter().filter(|&unit| unit <= number) {

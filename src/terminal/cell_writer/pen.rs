@@ -90,7 +90,8 @@ impl Pen {
     }
 
     /// Draws a block at a position on the screen.
-    #[inline]
+    #[expect(clippy::inline_always, reason = "calls would take longer than what they do")]
+    #[inline(always)]
     pub(super) fn draw_block(&mut self, position: Position, glyph: Glyph, style: Style) {
         let mut piece = begun(&mut self.frame).piece();
         push_motion(self.position, position, &mut piece);
@@ -168,7 +169,8 @@ fn begun(frame: &mut Bytes) -> &mut Bytes {
 }
 
 /// Adds the motion from where the cursor stands to `target`.
-#[inline]
+#[expect(clippy::inline_always, reason = "calls would take longer than what they do")]
+#[inline(always)]
 fn push_motion(position: Option<Position>, target: Position, piece: &mut Piece) {
     if position == Some(target) {
         return;

@@ -110,7 +110,8 @@ impl Style {
     }
 
     /// Adds what turns `current`, or an unknown style, into this one.
-    #[inline]
+    #[expect(clippy::inline_always, reason = "calls would take longer than what they do")]
+    #[inline(always)]
     pub(super) fn push_from(self, current: Option<Self>, piece: &mut Piece) {
         let known = match current {
             Some(style) if self != Self::RESET => style,
@@ -132,6 +133,7 @@ impl Style {
         rendition.end(b'm');
     }
 
+    #[cold]
     fn switch_modifiers(self, known: Modifier, rendition: &mut ControlSequence) {
         let removed = known.difference(self.modifier);
         let kept = if removed.intersects(INTENSITIES) {
@@ -163,6 +165,16 @@ impl Shade {
 
     #[inline]
     pub(super) fn of(color: Color) -> Self {
+        // Most are: to ask for that first is foreseen better than where a table of all kinds leads.
+        if let Color::Rgb(red, green, blue) = color {
+            Self::rgb([red, green, blue])
+        } else {
+            Self::of_named(color)
+        }
+    }
+
+    #[inline(never)]
+    fn of_named(color: Color) -> Self {
         Self::indexed(match color {
             Color::Rgb(red, green, blue) => return Self::rgb([red, green, blue]),
             Color::Reset => return Self::DEFAULT,
@@ -227,7 +239,8 @@ impl Shade {
         }
     }
 
-    #[inline]
+    #[expect(clippy::inline_always, reason = "calls would take longer than what they do")]
+    #[inline(always)]
     fn write(self, ground: Ground, rendition: &mut ControlSequence) {
         let (dark, bright, default, rgb, indexed) = match ground {
             Ground::Fore => (30, 90, 39, *b";38;2", *b";38;5"),

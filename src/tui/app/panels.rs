@@ -1,12 +1,10 @@
-//! What shows besides the picture: the status line, the minimap's frame, and messages.
+//! What shows on the picture and around it: the minimap's frame, and messages.
 
+use ratatui::buffer::Buffer;
 use ratatui::layout::{Constraint, Flex, Layout, Rect, Size};
-use ratatui::style::{Modifier, Style};
-use ratatui::text::{Line, Text};
-use ratatui::widgets::{Block, Paragraph, Wrap};
+use ratatui::text::{Line, Span, Text};
+use ratatui::widgets::{Block, Paragraph, Widget, Wrap};
 
-use super::played::Played;
-use super::stats::Stats;
 use crate::tui::bindings::{Action, Bindings};
 use crate::tui::{Canvas, Minimap};
 
@@ -35,7 +33,9 @@ pub(super) fn too_small(canvas: &mut impl Canvas) {
 
 /// Where the picture and the status line go.
 pub(super) fn picture_and_status(area: Rect) -> [Rect; 2] {
-    Layout::vertical([Constraint::Fill(1), Constraint::Length(1)]).areas(area)
+    let picture = Rect { height: area.height.saturating_sub(1), ..area };
+    let status = Rect { y: picture.bottom(), height: area.height - picture.height, ..area };
+    [picture, status]
 }
 
 /// Where the panel of `map` goes, in the upper right corner of the picture, if there is room for it.
@@ -55,40 +55,23 @@ pub(super) fn minimap(picture: Rect, map: &Minimap) -> Option<Rect> {
 
 /// Draws an empty panel with a border and a title, and tells where its inside is.
 pub(super) fn framed(canvas: &mut impl Canvas, area: Rect, title: &str) -> Rect {
-    let block = Block::bordered().title(title);
-    let inside = block.inner(area);
-    canvas.draw_widget(block, area);
-    inside
+    canvas.draw_widget(Panel { title }, area);
+    Block::bordered().inner(area)
 }
 
-/// How the player walks, whatever keys are held.
-#[derive(Clone, Copy, Debug, Default)]
-pub(super) struct Gait {
-    pub(super) runs: bool,
-    pub(super) ducks: bool,
+/// A border with a title. A block of ratatui's keeps its title in a list, which is too much for what is
+/// drawn with each frame.
+struct Panel<'a> {
+    title: &'a str,
 }
 
-/// The line below the picture.
-pub(super) fn status(
-    canvas: &mut impl Canvas,
-    area: Rect,
-    game: &Played,
-    gait: Gait,
-    stats: Option<&Stats>,
-    bindings: &Bindings,
-) {
-    let running = gait.runs.then(|| "running".to_owned());
-    let ducking = gait.ducks.then(|| "ducking".to_owned());
-    let parts = game.place().into_iter().chain(running).chain(ducking).chain(game.news());
-    let left: String = parts.fold(format!(" {}", game.title()), |line, part| line + "  " + &part);
-    let left = Line::from(left);
-    let stats = stats.map(|stats| format!("  {stats} ")).unwrap_or_default();
-    let right = Line::from(format!("{stats} {} help ", key_names(bindings, Action::ToggleHelp)));
-    let widths = [Constraint::Fill(1), Constraint::Length(right.width() as u16)];
-    let [left_area, right_area] = Layout::horizontal(widths).areas(area);
-    let reversed = Style::new().add_modifier(Modifier::REVERSED);
-    canvas.draw_widget(left.style(reversed), left_area);
-    canvas.draw_widget(right.style(reversed), right_area);
+impl Widget for Panel<'_> {
+    fn render(self, area: Rect, buffer: &mut Buffer) {
+        let block = Block::bordered();
+        let inside = block.inner(area);
+        block.render(area, buffer);
+        Span::raw(self.title).render(Rect { y: area.y, height: 1, ..inside }, buffer);
+    }
 }
 
 /// That the game waits.

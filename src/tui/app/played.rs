@@ -3,6 +3,7 @@
 use ratatui::layout::Rect;
 
 use crate::game::{Flight, Game, Intents};
+use crate::generate::Site;
 use crate::map::Level;
 use crate::space;
 use crate::tui::{Canvas, FirstPerson, SpaceMemory, SpaceView, View};
@@ -60,18 +61,26 @@ impl Played {
         }
     }
 
-    /// Where the player is in a level that is dug: cells to the east and to the south of home.
-    pub(super) fn place(&self) -> Option<String> {
-        let Self::Grid(game) = self else { return None };
-        let site = game.site()?;
-        Some(format!("{}, {}", site.column, site.row))
+    /// Where the player is in a level that is dug.
+    pub(super) fn site(&self) -> Option<Site> {
+        self.grid()?.site()
     }
 
-    /// What there is to tell besides the title: what the player has, and why something did not work.
-    pub(super) fn news(&self) -> Vec<String> {
-        let Self::Grid(game) = self else { return Vec::new() };
-        let keys = game.keys().map(|key| format!("{key} key"));
-        keys.chain(game.message().map(str::to_owned)).collect()
+    /// The names of the keys that the player has.
+    pub(super) fn keys(&self) -> impl Iterator<Item = &str> {
+        self.grid().into_iter().flat_map(Game::keys)
+    }
+
+    /// What there is to tell the player.
+    pub(super) fn message(&self) -> Option<&str> {
+        self.grid()?.message()
+    }
+
+    fn grid(&self) -> Option<&Game> {
+        match self {
+            Self::Grid(game) => Some(game),
+            Self::Space(_) => None,
+        }
     }
 
     /// A number that grows whenever anything changes that can be seen, other than what the eye tells.

@@ -41,13 +41,13 @@ fn label_of_row(plot: &Plot, row: usize) -> Option<String> {
         let share = plot.error.share(10_f64.powi(power));
         ((1.0 - share) * (ROWS - 1) as f64).round() as usize
     };
-    plot.error.ticks(MOST).find(|&power| row_of(power) == row).map(|power| format!("1e{power}"))
+    plot.error.powers(MOST).find(|&power| row_of(power) == row).map(|power| format!("1e{power}"))
 }
 
 fn time_labels(plot: &Plot) -> String {
     const MOST: usize = 8;
     let mut line = String::new();
-    for power in plot.time.ticks(MOST) {
+    for power in plot.time.powers(MOST) {
         let column = (plot.time.share(10_f64.powi(power)) * (COLUMNS - 1) as f64) as usize;
         let padding = column.saturating_sub(line.len());
         line = format!("{line}{}1e{power}", " ".repeat(padding));

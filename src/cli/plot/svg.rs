@@ -1,11 +1,11 @@
-//! Marks as an SVG file.
+//! A page as an SVG file.
 
 use std::io::{self, Write};
 
-use super::{Align, Mark, PAGE};
+use super::{Align, Ink, Mark, Page};
 
-pub(super) fn write(marks: &[Mark], output: &mut impl Write) -> io::Result<()> {
-    let (width, height) = PAGE;
+pub(in crate::cli) fn write(page: &Page, output: &mut impl Write) -> io::Result<()> {
+    let Page { width, height, marks } = page;
     writeln!(
         output,
         "<svg xmlns=\"http://www.w3.org/2000/svg\" viewBox=\"0 0 {width} {height}\" \
@@ -18,8 +18,9 @@ pub(super) fn write(marks: &[Mark], output: &mut impl Write) -> io::Result<()> {
 
 fn write_mark(mark: &Mark, output: &mut impl Write) -> io::Result<()> {
     match mark {
-        Mark::Line { from, to, is_front } => {
-            let (color, width) = if *is_front { ("#d06010", 2) } else { ("#dddddd", 1) };
+        Mark::Line { from, to, ink } => {
+            let color = ink.color();
+            let width = if *ink == Ink::Pale { 1 } else { 2 };
             writeln!(
                 output,
                 "<line x1=\"{:.1}\" y1=\"{:.1}\" x2=\"{:.1}\" y2=\"{:.1}\" stroke=\"{color}\" \
@@ -27,15 +28,14 @@ fn write_mark(mark: &Mark, output: &mut impl Write) -> io::Result<()> {
                 from.0, from.1, to.0, to.1
             )
         }
-        Mark::Dot { at, is_front } => {
-            let color = if *is_front { "#d06010" } else { "#3060a0" };
+        Mark::Dot { at, ink } => {
+            let color = ink.color();
             writeln!(
                 output,
                 "<circle cx=\"{:.1}\" cy=\"{:.1}\" r=\"5\" fill=\"{color}\"/>",
                 at.0, at.1
             )
         }
-        // No method's name and no number has a character that XML would mistake.
         Mark::Text { at, align, text } => {
             let anchor = match align {
                 Align::Start => "start",

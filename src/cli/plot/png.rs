@@ -1,51 +1,48 @@
-//! Marks as pixels.
+//! A page as pixels.
 
 use std::io::{self, Write};
 
 use font8x8::{BASIC_FONTS, UnicodeFonts};
 use png::{BitDepth, ColorType, Encoder};
 
-use super::{Align, Mark, PAGE};
+use super::{Align, Ink, Mark, Page};
 use crate::world::Rgb;
 
 const PAPER: Rgb = Rgb::WHITE;
 const INK: Rgb = Rgb::new(0x20, 0x20, 0x20);
-const GRID: Rgb = Rgb::new(0xdd, 0xdd, 0xdd);
-const FRONT: Rgb = Rgb::new(0xd0, 0x60, 0x10);
-const OTHER: Rgb = Rgb::new(0x30, 0x60, 0xa0);
 const GLYPH_SIDE: i32 = 8;
 const DOT_RADIUS: i32 = 5;
 
-pub(super) fn write(marks: &[Mark], output: &mut impl Write) -> io::Result<()> {
-    let mut page = Page::blank();
-    for mark in marks {
-        page.put(mark);
+pub(in crate::cli) fn write(page: &Page, output: &mut impl Write) -> io::Result<()> {
+    let mut sheet = Sheet::blank(page);
+    for mark in &page.marks {
+        sheet.put(mark);
     }
-    let mut encoder = Encoder::new(output, page.width as u32, page.height as u32);
+    let mut encoder = Encoder::new(output, sheet.width as u32, sheet.height as u32);
     encoder.set_color(ColorType::Rgb);
     encoder.set_depth(BitDepth::Eight);
-    let bytes: Vec<u8> = page.pixels.iter().flat_map(|pixel| pixel.channels()).collect();
+    let bytes: Vec<u8> = sheet.pixels.iter().flat_map(|pixel| pixel.channels()).collect();
     let mut writer = encoder.write_header()?;
     writer.write_image_data(&bytes)?;
     Ok(writer.finish()?)
 }
 
-struct Page {
+struct Sheet {
     width: i32,
     height: i32,
     pixels: Vec<Rgb>,
 }
 
-impl Page {
-    fn blank() -> Self {
-        let (width, height) = (PAGE.0 as i32, PAGE.1 as i32);
+impl Sheet {
+    fn blank(page: &Page) -> Self {
+        let (width, height) = (page.width as i32, page.height as i32);
         Self { width, height, pixels: vec![PAPER; width as usize * height as usize] }
     }
 
     fn put(&mut self, mark: &Mark) {
         match mark {
-            Mark::Line { from, to, is_front } => self.line(*from, *to, *is_front),
-            Mark::Dot { at, is_front } => self.dot(*at, if *is_front { FRONT } else { OTHER }),
+            Mark::Line { from, to, ink } => self.line(*from, *to, *ink),
+            Mark::Dot { at, ink } => self.dot(*at, ink.color()),
             Mark::Text { at, align, text } => self.text(*at, *align, text),
         }
     }
@@ -56,15 +53,15 @@ impl Page {
         }
     }
 
-    fn line(&mut self, from: (f64, f64), to: (f64, f64), is_front: bool) {
+    fn line(&mut self, from: (f64, f64), to: (f64, f64), ink: Ink) {
         let length = (to.0 - from.0).abs().max((to.1 - from.1).abs()).ceil().max(1.0);
         for step in 0..=length as i32 {
             let share = f64::from(step) / length;
             let x = (from.0 + share * (to.0 - from.0)).round() as i32;
             let y = (from.1 + share * (to.1 - from.1)).round() as i32;
-            self.set(x, y, if is_front { FRONT } else { GRID });
-            if is_front {
-                self.set(x, y + 1, FRONT);
+            self.set(x, y, ink.color());
+            if ink != Ink::Pale {
+                self.set(x, y + 1, ink.color());
             }
         }
     }

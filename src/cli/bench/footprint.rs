@@ -1,0 +1,91 @@
+//! What the program takes before it is of any use: time, room on the disk, and memory.
+
+use std::env;
+use std::fs;
+use std::hint::black_box;
+use std::io::{self, Read};
+use std::path::Path;
+use std::process::{Command, Stdio};
+use std::time::{Duration, Instant};
+
+use ratatui::backend::Backend;
+use ratatui::layout::Size;
+
+use super::begin;
+use crate::cli::Error;
+use crate::cli::script::SHOWCASE;
+use crate::game::{Intents, STEPS_PER_SECOND};
+use crate::speed::median;
+use crate::terminal::{CellWriter, peak_memory};
+
+/// What is taken; `None` for what this system does not tell.
+pub(super) struct Footprint {
+    /// From nothing to the first byte of a picture, as whoever starts the program sees it.
+    pub(super) start_up: Option<Duration>,
+    /// The same within a process that runs: reading the level, and drawing it.
+    pub(super) first_frame: Duration,
+    /// The size of the program, in bytes.
+    pub(super) program: Option<u64>,
+    /// The most memory that a game has taken, in bytes.
+    pub(super) memory: Option<u64>,
+}
+
+/// The window that the first picture is in.
+pub(super) const FIRST_WINDOW: Size = Size::new(80, 24);
+/// The window that memory is measured in.
+pub(super) const GAME_WINDOW: Size = Size::new(120, 40);
+/// How often the program is started.
+pub(super) const STARTS: usize = 9;
+
+impl Footprint {
+    /// Measures a process that has done nothing else yet.
+    pub(super) fn measure() -> Result<Self, Error> {
+        let start = Instant::now();
+        black_box(begin(FIRST_WINDOW)?.picture());
+        let first_frame = start.elapsed();
+        play()?;
+        let memory = peak_memory();
+        let path = env::current_exe().ok();
+        let program = path.as_deref().and_then(|path| Some(fs::metadata(path).ok()?.len()));
+        let starts = path.map(|path| (0..STARTS).map_while(|_| start_up(&path).ok()).collect());
+        let start_up = starts.filter(|starts: &Vec<f64>| !starts.is_empty()).map(median);
+        let start_up = start_up.map(Duration::from_secs_f64);
+        Ok(Self { start_up, first_frame, program, memory })
+    }
+}
+
+/// Plays the showcase, as a player's process does.
+fn play() -> Result<(), Error> {
+    const STEPS_A_FRAME: usize = STEPS_PER_SECOND as usize / 30;
+    let script = SHOWCASE.script()?;
+    let steps: Vec<Intents> = script.iter().map(|(_, intents)| intents).collect();
+    let mut replay = begin(GAME_WINDOW)?;
+    let mut writer = CellWriter::new(io::sink(), GAME_WINDOW);
+    for steps in steps.chunks(STEPS_A_FRAME) {
+        for &intents in steps {
+            replay.step(intents);
+        }
+        writer.draw_frame(|screen| replay.draw(screen));
+        // A sink takes everything.
+        _ = Backend::flush(&mut writer);
+    }
+    Ok(())
+}
+
+/// How long it takes the program at `path` to write the first byte of a picture, in seconds.
+fn start_up(path: &Path) -> io::Result<f64> {
+    let size = format!("{}x{}", FIRST_WINDOW.width, FIRST_WINDOW.height);
+    let start = Instant::now();
+    let mut child = Command::new(path)
+        .args(["snapshot", SHOWCASE.level, "--format", "ansi", "--size", &size])
+        .stdin(Stdio::null())
+        .stdout(Stdio::piped())
+        .stderr(Stdio::null())
+        .spawn()?;
+    let mut output = child.stdout.take().ok_or(io::ErrorKind::BrokenPipe)?;
+    output.read_exact(&mut [0])?;
+    let elapsed = start.elapsed();
+    io::copy(&mut output, &mut io::sink())?;
+    child.wait()?;
+    Ok(elapsed.as_secs_f64())
+}

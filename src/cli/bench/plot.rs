@@ -1,0 +1,161 @@
+//! Three small plots of the report on one page, all axes logarithmic.
+
+use std::io::{self, BufWriter, Write};
+
+use ratatui::layout::Size;
+
+use super::{Report, WINDOWS};
+use crate::cli::plot::{self, Align, Axis, Ink, Mark, Page};
+use crate::speed::{DrawingRow, Ground, SIDES, Scene};
+use crate::wire::PipelineRow;
+
+/// Writes the page as an SVG file.
+pub(super) fn write(report: &Report, output: impl Write) -> io::Result<()> {
+    let mut output = BufWriter::new(output);
+    plot::write_svg(&page(report), &mut output)?;
+    output.flush()
+}
+
+/// Width and height of a plot.
+const PLOT: (f64, f64) = (350.0, 310.0);
+/// What is around the axes of a plot: room for what they are labelled with, and for the names of lines.
+const LEFT: f64 = 60.0;
+const RIGHT: f64 = 75.0;
+const TOP: f64 = 40.0;
+const BOTTOM: f64 = 50.0;
+/// How many powers of ten are labelled, about.
+const MOST_TICKS: usize = 6;
+/// How far lines of text are apart.
+const LINE: f64 = 14.0;
+
+/// Something that is measured of several, in several places.
+struct Plot {
+    title: &'static str,
+    across: &'static str,
+    /// Places along the axis to the right, and what they are called.
+    ticks: Vec<(f64, String)>,
+    lines: Vec<Line>,
+}
+
+/// What was measured of one of them.
+struct Line {
+    name: String,
+    ink: Ink,
+    points: Vec<(f64, f64)>,
+}
+
+fn page(report: &Report) -> Page {
+    let plots = [drawing(report), rays(report), pipeline(report)];
+    let width = PLOT.0 * plots.len() as f64;
+    let marks =
+        plots.iter().enumerate().flat_map(|(index, plot)| plot.marks(PLOT.0 * index as f64));
+    Page { width, height: PLOT.1, marks: marks.collect() }
+}
+
+fn drawing(report: &Report) -> Plot {
+    let rows = || report.drawing.iter().filter(|row| row.scene == Scene::Planes);
+    let place =
+        |row: &DrawingRow| f64::from(row.size.width.get()) * f64::from(row.size.height.get());
+    let line = |name: &str, ink, figure: fn(&DrawingRow) -> f64| Line {
+        name: name.to_owned(),
+        ink,
+        points: rows().map(|row| (place(row), figure(row))).collect(),
+    };
+    Plot {
+        title: "Drawing: ns a pixel",
+        across: "width of the picture",
+        ticks: rows().map(|row| (place(row), row.size.width.to_string())).collect(),
+        lines: vec![
+            line("classic", Ink::Blue, |row| row.classic),
+            line("ours", Ink::Orange, |row| row.ours),
+            line("fill", Ink::Gray, |row| row.fill),
+        ],
+    }
+}
+
+fn rays(report: &Report) -> Plot {
+    let line = |ground: Ground, ink| {
+        let rows = report.growth.maps.iter().filter(|row| row.ground == ground);
+        let points = rows.map(|row| (f64::from(row.side), row.ray.seconds * 1e9)).collect();
+        Line { name: ground.name().to_owned(), ink, points }
+    };
+    Plot {
+        title: "Rays: ns a ray",
+        across: "open cells before it",
+        ticks: SIDES.map(|side| (f64::from(side), side.to_string())).into(),
+        lines: vec![line(Ground::Plain, Ink::Blue), line(Ground::Hall, Ink::Orange)],
+    }
+}
+
+fn pipeline(report: &Report) -> Plot {
+    const INKS: [Ink; 4] = [Ink::Blue, Ink::Orange, Ink::Green, Ink::Gray];
+    let encoders = report.pipeline.iter().filter(|row| row.size == WINDOWS[0]);
+    let lines = encoders.zip(INKS).map(|(PipelineRow { encoder, .. }, ink)| {
+        let rows = report.pipeline.iter().filter(|row| row.encoder == *encoder);
+        let points =
+            rows.map(|row| (f64::from(row.size.area()), row.time.as_secs_f64() * 1e6)).collect();
+        Line { name: encoder.clone(), ink, points }
+    });
+    let window = |size: Size| (f64::from(size.area()), format!("{}x{}", size.width, size.height));
+    Plot {
+        title: "Pipeline: µs a frame",
+        across: "window",
+        ticks: WINDOWS.map(window).into(),
+        lines: lines.collect(),
+    }
+}
+
+impl Plot {
+    /// On a page, so far from its left edge.
+    fn marks(&self, offset: f64) -> Vec<Mark> {
+        let points = || self.lines.iter().flat_map(|line| &line.points);
+        let (x_axis, y_axis) = (
+            Axis::between(points().map(|point| point.0)),
+            Axis::around(points().map(|point| point.1)),
+        );
+        let (left, right) = (offset + LEFT, offset + PLOT.0 - RIGHT);
+        let (top, bottom) = (TOP, PLOT.1 - BOTTOM);
+        let x = |value| left + x_axis.share(value) * (right - left);
+        let y = |value| bottom - y_axis.share(value) * (bottom - top);
+        let text = |at, align, text: &str| Mark::Text { at, align, text: text.to_owned() };
+        let mut marks = vec![
+            text((left, top - LINE), Align::Start, self.title),
+            text((f64::midpoint(left, right), bottom + 2.8 * LINE), Align::Middle, self.across),
+        ];
+        for (value, label) in &self.ticks {
+            let x = x(*value);
+            marks.push(Mark::Line { from: (x, top), to: (x, bottom), ink: Ink::Pale });
+            marks.push(text((x, bottom + 1.3 * LINE), Align::Middle, label));
+        }
+        for power in y_axis.powers(MOST_TICKS) {
+            let value = 10_f64.powi(power);
+            marks.push(Mark::Line {
+                from: (left, y(value)),
+                to: (right, y(value)),
+                ink: Ink::Pale,
+            });
+            marks.push(text((left - 8.0, y(value) + 4.0), Align::End, &value.to_string()));
+        }
+        for line in &self.lines {
+            let places = || line.points.iter().map(|point| (x(point.0), y(point.1)));
+            let segments = places().zip(places().skip(1));
+            marks.extend(segments.map(|(from, to)| Mark::Line { from, to, ink: line.ink }));
+            marks.extend(places().map(|at| Mark::Dot { at, ink: line.ink }));
+        }
+        let ends = self.lines.iter().filter_map(|line| Some((y(line.points.last()?.1), line)));
+        marks.extend(names(ends.collect(), right + 10.0));
+        marks
+    }
+}
+
+/// The names of lines beside their ends, the uppermost first, and none over another.
+fn names(mut ends: Vec<(f64, &Line)>, x: f64) -> Vec<Mark> {
+    ends.sort_by(|one, other| one.0.total_cmp(&other.0));
+    let mut free = f64::NEG_INFINITY;
+    let name = |(end, line): (f64, &Line)| {
+        let y = free.max(end);
+        free = y + LINE;
+        Mark::Text { at: (x, y + 4.0), align: Align::Start, text: line.name.clone() }
+    };
+    ends.into_iter().map(name).collect()
+}

@@ -1,0 +1,78 @@
+//! Bands: some rows of a frame, which are drawn by one thread.
+//!
+//! All passes draw into a band, and what they draw of it does not depend on where it begins and ends:
+//! a picture is the same in one band and in many. Rows were chosen, and not columns, because they lie
+//! together in memory: bands are slices that nobody else can write to, and no lock is needed.
+
+use std::ops::Range;
+
+use crate::world::Rgb;
+
+/// Some rows of a frame.
+#[derive(Debug)]
+pub(crate) struct Band<'a> {
+    width: usize,
+    /// Which rows of the frame.
+    rows: Range<u32>,
+    /// Row by row from the top, each from the left.
+    pixels: &'a mut [Rgb],
+}
+
+impl<'a> Band<'a> {
+    /// The rows from `first` on of a frame that is `width` pixels wide: as many as there are `pixels`.
+    pub(super) fn new(width: usize, first: u32, pixels: &'a mut [Rgb]) -> Self {
+        let end = first + (pixels.len() / width) as u32;
+        Self { width, rows: first..end, pixels }
+    }
+
+    /// Those of `rows` that are in the band.
+    #[inline]
+    pub(super) fn clip(&self, rows: &Range<u32>) -> Range<u32> {
+        let Range { start, end } = self.rows;
+        rows.start.clamp(start, end)..rows.end.clamp(start, end)
+    }
+
+    /// The pixels of row `y`, which is in the band, from the left.
+    pub(crate) fn row_mut(&mut self, y: u32) -> &mut [Rgb] {
+        self.rows_mut(y..y + 1)
+    }
+
+    /// The pixels of `rows`, which are in the band.
+    #[inline]
+    pub(super) fn rows_mut(&mut self, rows: Range<u32>) -> &mut [Rgb] {
+        let pixels = self.places(rows);
+        &mut self.pixels[pixels]
+    }
+
+    /// The pixels of column `x` in those rows, which are in the band, from the top.
+    #[inline]
+    pub(super) fn column_mut(
+        &mut self,
+        x: u32,
+        rows: Range<u32>,
+    ) -> impl Iterator<Item = &mut Rgb> {
+        let (count, width) = (rows.len(), self.width);
+        let first = (self.places(rows).start + x as usize).min(self.pixels.len());
+        self.pixels[first..].iter_mut().step_by(width).take(count)
+    }
+
+    /// The pixels of `N` columns from `x` on in those rows, which are in the band, row by row.
+    #[inline]
+    pub(super) fn block_mut<const N: usize>(
+        &mut self,
+        x: u32,
+        rows: Range<u32>,
+    ) -> impl Iterator<Item = &mut [Rgb; N]> {
+        let width = self.width;
+        self.rows_mut(rows)
+            .chunks_exact_mut(width)
+            .filter_map(move |row| row[x as usize..].first_chunk_mut())
+    }
+
+    /// Where the pixels of `rows` are among those of the band.
+    #[inline]
+    fn places(&self, rows: Range<u32>) -> Range<usize> {
+        let place = |row: u32| (row - self.rows.start) as usize * self.width;
+        place(rows.start)..place(rows.end)
+    }
+}

@@ -1,0 +1,152 @@
+//! Threads: how many of them draw a picture, and how they share it out.
+//!
+//! They are started for each picture that is large enough and end with it. Starting one takes tens of
+//! microseconds, and such a picture takes milliseconds. A pool that lives on was refused for that: it
+//! would have to be shut down, and be shared between renderers, to save little.
+
+use std::fmt;
+use std::num::{NonZero, NonZeroU32};
+use std::sync::{LazyLock, Mutex, PoisonError};
+use std::thread;
+
+use super::{FrameSize, Geometry};
+
+/// A thread for each so many pixels: with fewer, starting it takes longer than it saves.
+const PIXELS_OF_A_THREAD: usize = 1 << 19;
+
+/// Bands for each thread. Each costs what it takes to prepare all columns.
+const BANDS_OF_A_THREAD: usize = 2;
+
+/// As many threads as this machine runs at once. To ask takes longer than to draw a small picture.
+static OF_THE_MACHINE: LazyLock<NonZero<usize>> =
+    LazyLock::new(|| thread::available_parallelism().unwrap_or(NonZero::<usize>::MIN));
+
+/// How many threads draw a frame.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Threads {
+    /// One.
+    One(WhyOne),
+    /// So many: each draws a band of rows, and then another one, until all are drawn.
+    Bands(NonZero<usize>),
+}
+
+/// Why one thread draws all of a frame.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum WhyOne {
+    /// Others would take longer to start than the picture to draw.
+    Small,
+    /// There may be no others.
+    Only,
+    /// What a pixel shows is found out by following windows down its column.
+    Windows,
+}
+
+impl Threads {
+    /// Those that a picture of that size is worth, if there may be `most` of them, or as many as the
+    /// machine has.
+    pub(super) fn new(geometry: Geometry, size: FrameSize, most: Option<NonZero<usize>>) -> Self {
+        if let Geometry::Windows(_) = geometry {
+            return Self::One(WhyOne::Windows);
+        }
+        let (width, height) = (size.width.get() as usize, size.height.get() as usize);
+        let worthwhile = (width * height / PIXELS_OF_A_THREAD).min(height);
+        if worthwhile < 2 {
+            return Self::One(WhyOne::Small);
+        }
+        let most = most.unwrap_or_else(|| *OF_THE_MACHINE).get();
+        match NonZero::new(worthwhile.min(most)) {
+            None | Some(NonZero::<usize>::MIN) => Self::One(WhyOne::Only),
+            Some(count) => Self::Bands(count),
+        }
+    }
+
+    /// How many they are.
+    pub fn count(self) -> usize {
+        match self {
+            Self::One(_) => 1,
+            Self::Bands(count) => count.get(),
+        }
+    }
+
+    /// How many rows of a picture of that height they draw at once: all, or so few that a thread which
+    /// has drawn the simplest ones takes some of another's.
+    pub(super) fn rows_of_band(self, height: NonZeroU32) -> NonZeroU32 {
+        match self {
+            Self::One(_) => height,
+            Self::Bands(count) => {
+                let bands = count.get() * BANDS_OF_A_THREAD;
+                NonZeroU32::new(height.get() / bands as u32).unwrap_or(NonZeroU32::MIN)
+            }
+        }
+    }
+}
+
+impl fmt::Display for Threads {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        match self {
+            Self::One(WhyOne::Small) => f.write_str("one: the picture is small"),
+            Self::One(WhyOne::Only) => f.write_str("one: there may be no others"),
+            Self::One(WhyOne::Windows) => f.write_str("one: windows are followed down each column"),
+            Self::Bands(count) => write!(f, "{count}, by bands of rows: the picture is large"),
+        }
+    }
+}
+
+/// Does `work` for each of `tasks`, each worker in a thread of its own that takes the next task as
+/// long as there is one. A single worker works in this thread.
+pub(super) fn share_out<T, W: Send>(
+    tasks: impl Iterator<Item = T> + Send,
+    workers: &mut [W],
+    work: impl Fn(T, &mut W) + Sync,
+) {
+    let Some((own, others)) = workers.split_first_mut() else { return };
+    if others.is_empty() {
+        tasks.for_each(|task| work(task, own));
+        return;
+    }
+    let tasks = Mutex::new(tasks);
+    let next = || tasks.lock().unwrap_or_else(PoisonError::into_inner).next();
+    let work_with = |worker: &mut W| {
+        while let Some(task) = next() {
+            work(task, worker);
+        }
+    };
+    let work_with = &work_with;
+    thread::scope(|scope| {
+        for worker in others {
+            // Where the system has no thread left, those that there are do everything.
+            _ = thread::Builder::new().spawn_scoped(scope, move || work_with(worker));
+        }
+        work_with(own);
+    });
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn every_task_is_done_once() {
+        for count in 1..5 {
+            let mut workers = vec![Vec::new(); count];
+            share_out(0..100, &mut workers, |task, done| done.push(task));
+            let mut done = workers.concat();
+            done.sort_unstable();
+            assert!(done.into_iter().eq(0..100), "{count}");
+        }
+    }
+
+    #[test]
+    fn large_pictures_alone_are_shared_out() {
+        let threads = |width, height, most| {
+            let size = FrameSize::new(width, height).unwrap();
+            Threads::new(Geometry::Level, size, NonZero::new(most))
+        };
+        for (width, height) in [(1, 1), (640, 480), (1280, 720), (4_000_000, 1)] {
+            assert_eq!(threads(width, height, 8), Threads::One(WhyOne::Small));
+        }
+        assert_eq!(threads(1920, 1080, 1), Threads::One(WhyOne::Only));
+        assert_eq!([2, 3, 7].map(|most| threads(1920, 1080, most).count()), [2, 3, 3]);
+        assert_eq!([2, 7, 100].map(|most| threads(3840, 2160, most).count()), [2, 7, 15]);
+    }
+}

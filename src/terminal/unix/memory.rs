@@ -1,0 +1,23 @@
+//! How much memory this process takes.
+
+use std::fs;
+
+/// The most memory that this process has had at once, in bytes, as Linux tells it; `None` on others.
+pub(crate) fn peak_memory() -> Option<u64> {
+    let status = fs::read_to_string("/proc/self/status").ok()?;
+    let peak = status.lines().find_map(|line| line.strip_prefix("VmHWM:"))?;
+    let kibibytes: u64 = peak.trim().strip_suffix("kB")?.trim_end().parse().ok()?;
+    kibibytes.checked_mul(1024)
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    #[cfg(target_os = "linux")]
+    fn linux_tells_how_much_it_is() {
+        let mebibytes = peak_memory().unwrap() >> 20;
+        assert!((1..1 << 20).contains(&mebibytes), "{mebibytes}");
+    }
+}
