@@ -217,8 +217,9 @@ impl Canvas for Screen {
     fn draw_widget(&mut self, widget: impl Widget, area: Rect) {
         let area = area.intersection(self.bounds());
         let mut scratch = std::mem::take(&mut self.scratch);
-        scratch.resize(area);
-        scratch.reset();
+        scratch.area = area;
+        scratch.content.clear();
+        scratch.content.resize(area.area() as usize, Cell::EMPTY);
         widget.render(area, &mut scratch);
         for (position, cell) in area.positions().zip(scratch.content()) {
             let place = usize::from(position.y) * self.width + usize::from(position.x);

@@ -1,9 +1,9 @@
 //! What shows on the picture and around it: the minimap's frame, and messages.
 
 use ratatui::buffer::Buffer;
-use ratatui::layout::{Constraint, Flex, Layout, Rect, Size};
+use ratatui::layout::{Constraint, Flex, Layout, Margin, Rect, Size};
 use ratatui::text::{Line, Span, Text};
-use ratatui::widgets::{Block, Paragraph, Widget, Wrap};
+use ratatui::widgets::{Block, Borders, Padding, Paragraph, Widget, Wrap};
 
 use crate::tui::bindings::{Action, Bindings};
 use crate::tui::{Canvas, Minimap};
@@ -53,24 +53,34 @@ pub(super) fn minimap(picture: Rect, map: &Minimap) -> Option<Rect> {
     Some(Rect { x: picture.right() - width, y: picture.y, width, height })
 }
 
-/// Draws an empty panel with a border and a title, and tells where its inside is.
+/// Draws the border of a panel, with a title, and tells where its inside is.
+///
+/// It goes side by side: what is inside a minimap would be blanked for nothing.
 pub(super) fn framed(canvas: &mut impl Canvas, area: Rect, title: &str) -> Rect {
-    canvas.draw_widget(Panel { title }, area);
-    Block::bordered().inner(area)
+    let inside = Block::bordered().inner(area);
+    let row = |y| Rect { y, height: area.height.min(1), ..area };
+    let column = |x| Rect { x, width: area.width.min(1), ..inside };
+    for (sides, area) in [
+        (Borders::LEFT, column(area.left())),
+        (Borders::RIGHT, column(area.right().saturating_sub(1))),
+        (Borders::BOTTOM | Borders::LEFT | Borders::RIGHT, row(area.bottom().saturating_sub(1))),
+    ] {
+        canvas.draw_widget(Block::new().borders(sides), area);
+    }
+    canvas.draw_widget(Lid { title }, row(area.top()));
+    inside
 }
 
-/// A border with a title. A block of ratatui's keeps its title in a list, which is too much for what is
-/// drawn with each frame.
-struct Panel<'a> {
+/// The upper side of a panel, with a title. A block of ratatui's keeps its title in a list, which is too
+/// much for what is drawn with each frame.
+struct Lid<'a> {
     title: &'a str,
 }
 
-impl Widget for Panel<'_> {
+impl Widget for Lid<'_> {
     fn render(self, area: Rect, buffer: &mut Buffer) {
-        let block = Block::bordered();
-        let inside = block.inner(area);
-        block.render(area, buffer);
-        Span::raw(self.title).render(Rect { y: area.y, height: 1, ..inside }, buffer);
+        Block::new().borders(Borders::TOP | Borders::LEFT | Borders::RIGHT).render(area, buffer);
+        Span::raw(self.title).render(area.inner(Margin::new(1, 0)), buffer);
     }
 }
 
@@ -123,9 +133,8 @@ fn message(canvas: &mut impl Canvas, picture: Rect, title: &str, text: Text) {
     let [area] = Layout::horizontal([width]).flex(Flex::Center).areas(picture);
     let [area] = Layout::vertical([height]).flex(Flex::Center).areas(area);
     let inside = framed(canvas, area, title);
-    let [inside] =
-        Layout::horizontal([Constraint::Fill(1)]).horizontal_margin(PADDING / 2).areas(inside);
-    canvas.draw_widget(Paragraph::new(text), inside);
+    let padded = Block::new().padding(Padding::horizontal(PADDING / 2));
+    canvas.draw_widget(Paragraph::new(text).block(padded), inside);
 }
 
 fn key_names(bindings: &Bindings, action: Action) -> String {
