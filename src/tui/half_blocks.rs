@@ -24,27 +24,26 @@ pub(super) fn draw<Row: Iterator<Item = Rgb>>(
 ) {
     for (y, upper) in (area.top()..area.bottom()).zip((above..).step_by(2)) {
         let lower = upper + 1;
-        let pixels = row(upper).zip(row(lower)).take(area.width.into());
+        let pixels = (0..u32::from(area.width)).zip(row(upper).zip(row(lower)));
         match depth {
             ColorDepth::True => {
                 let color = |pixel| color_at(ColorDepth::True, pixel);
-                let colors = pixels.map(|(top, bottom)| [color(top), color(bottom)]);
+                let colors = pixels.map(|(_, (top, bottom))| [color(top), color(bottom)]);
                 canvas.draw_halves(area.x, y, colors);
             }
             ColorDepth::Indexed256 => {
                 let color = |pixel| color_at(ColorDepth::Indexed256, pixel);
-                let colors = pixels.map(|(top, bottom)| [color(top), color(bottom)]);
+                let colors = pixels.map(|(_, (top, bottom))| [color(top), color(bottom)]);
                 canvas.draw_halves(area.x, y, colors);
             }
             ColorDepth::Indexed16 => {
                 let color = |pixel, x, y| color_at(ColorDepth::Indexed16, dithered(pixel, x, y));
-                let colors = (0..)
-                    .zip(pixels)
+                let colors = pixels
                     .map(|(x, (top, bottom))| [color(top, x, upper), color(bottom, x, lower)]);
                 canvas.draw_halves(area.x, y, colors);
             }
             ColorDepth::Mono => {
-                for (x, (top, bottom)) in (0..).zip(pixels) {
+                for (x, (top, bottom)) in pixels {
                     let glyph = lit_glyph(is_lit(top, x, upper), is_lit(bottom, x, lower));
                     canvas.draw_character(area.x + x as u16, y, glyph, [Color::Reset; 2]);
                 }

@@ -127,10 +127,11 @@ impl Shift {
     /// after all that can move has moved.
     fn best(by: Move, now: &[i32], moved: &[i32]) -> (Self, i32) {
         let (_, first) = by.places();
-        let spared = now[first..].iter().zip(moved).map(|(now, moved)| now - moved);
-        let (stretch, spared) = best_stretch(spared);
+        let stretch = best_stretch(&now[first..], moved);
+        let covered = now[first..][stretch.clone()].iter().sum::<i32>();
+        let spared = covered - moved[stretch.clone()].iter().sum::<i32>();
         let Move { way, by } = by;
-        let shift = Self { columns: stretch.start as usize..stretch.end as usize + by, by, way };
+        let shift = Self { columns: stretch.start..stretch.end + by, by, way };
         // What is uncovered must be sent, even where it was right before.
         let lost: i32 = now[shift.uncovered()].iter().map(|loss| CELL - loss).sum();
         (shift, spared - lost)
@@ -241,21 +242,47 @@ fn count_alike(one: &[Mark], other: &[Mark]) -> u32 {
     counts.into_iter().map(u32::from).sum()
 }
 
-/// The stretch of `gains` with the largest sum, and that sum; an empty one where none is positive.
+/// About the stretch with the most spared, where that much is lost now, and that much after it has moved.
 ///
-/// Without branches: where sums turn negative is nothing that a processor guesses.
-#[inline]
-fn best_stretch(gains: impl Iterator<Item = i32>) -> (Range<u32>, i32) {
+/// It is found block by block, and then its ends to the cell: the best one to the cell takes longer than
+/// all that it finds is worth.
+fn best_stretch(now: &[i32], moved: &[i32]) -> Range<usize> {
+    let blocks = now.chunks(BLOCK).zip(moved.chunks(BLOCK));
+    let spared = blocks.map(|(now, moved)| now.iter().sum::<i32>() - moved.iter().sum::<i32>());
     let (mut start, mut sum) = (0, 0);
     let (mut best, mut most) = (0..0, 0);
-    for (index, gain) in (0_u32..).zip(gains) {
-        start = if sum > 0 { start } else { index };
-        sum = sum.max(0) + gain;
-        best.start = if sum > most { start } else { best.start };
-        best.end = if sum > most { index + 1 } else { best.end };
-        most = most.max(sum);
+    for (block, spared) in spared.enumerate() {
+        if sum <= 0 {
+            (start, sum) = (block, 0);
+        }
+        sum += spared;
+        if sum > most {
+            (best, most) = (start..block + 1, sum);
+        }
     }
-    (best, most)
+    let width = now.len().min(moved.len());
+    let spared = |column: usize| now[column] - moved[column];
+    let (first, last) = (best.start * BLOCK, best.end * BLOCK);
+    let at_start = first.saturating_sub(BLOCK)..(first + BLOCK).min(width);
+    let start = at_start.end - most_of(at_start.rev().map(spared));
+    let at_end = last.saturating_sub(BLOCK)..(last + BLOCK).min(width);
+    let end = at_end.start + most_of(at_end.map(spared));
+    start..end.max(start)
+}
+
+/// So many cells are one block.
+const BLOCK: usize = 8;
+
+/// How many of the first of `gains` have the largest sum.
+fn most_of(gains: impl Iterator<Item = i32>) -> usize {
+    let (mut sum, mut most, mut best) = (0, 0, 0);
+    for (count, gain) in (1..).zip(gains) {
+        sum += gain;
+        if sum > most {
+            (most, best) = (sum, count);
+        }
+    }
+    best
 }
 
 #[cfg(test)]
