@@ -13,6 +13,7 @@
 //! What rounding can have done to that is less than a unit a line; where a place is so near to the edge
 //! of a band that it might be beyond, the cross product tells that is right.
 
+mod along;
 mod flight;
 
 use glam::DVec2;
@@ -20,6 +21,7 @@ use glam::DVec2;
 use super::exact::decide;
 use super::{Crossing, Ray, Side};
 use crate::world::{Cell, Clearance, FRACTION_BITS, Grid, TileId};
+use along::{Along, MOST_LINES, UNITS, units};
 
 /// The solid cells that a ray enters, in the exact order.
 #[derive(Clone)]
@@ -63,27 +65,11 @@ struct Course {
     block_strides: [i64; 2],
 }
 
-/// What a ray and a map are along one axis.
-#[derive(Clone, Copy)]
-struct Along {
-    /// The column or row that the ray starts in; on a line that it crosses, the one before.
-    start: i64,
-    /// Where it starts, in units.
-    place: i64,
-    direction: f64,
-    /// From one cell to the next in the list of all cells, and from one block to the next.
-    stride: i64,
-    block_stride: i64,
-}
-
-/// More lines than that, and units would be too coarse.
-const MOST_LINES: u32 = 1 << 16;
 /// Within so many units of its true place a ray is taken to be: for every slope one unit, which is
 /// more than rounding does, and eight for where it starts.
 const DOUBT: i64 = MOST_LINES as i64 + 8;
 /// Where all cells of a block are so far from anything solid, it is not worth a look at the cell.
 const FAR: i64 = 6;
-const UNITS: i64 = 1 << FRACTION_BITS;
 
 impl<'grid> Sweep<'grid> {
     /// The sweep of `ray` through `grid`. `None` where the ray does not start inside the map.
@@ -291,140 +277,5 @@ fn decide_band(origin: DVec2, direction: DVec2, side: Side, line: i64, edge: i64
     if is_beyond { edge } else { edge - 1 }
 }
 
-/// The units of a place, rounded. What is far off any map is far off in units.
-#[inline]
-fn units(place: f64) -> i64 {
-    // A double of that size has as many bits after the point, with more or less than that added to it.
-    const SIZE: f64 = 1.5 * (1_u64 << (f64::MANTISSA_DIGITS - 1 - FRACTION_BITS)) as f64;
-    (place + SIZE).to_bits().wrapping_sub(SIZE.to_bits()) as i64
-}
-
-impl Along {
-    /// `None` where the ray does not start on the map.
-    #[inline]
-    fn new(origin: f64, direction: f64, count: u32, strides: [i64; 2]) -> Option<Self> {
-        /// More than is rounded away.
-        const NEAR: u32 = 2;
-        let place = units(origin);
-        let is_near_line = (place as u32).wrapping_add(NEAR) < 2 * NEAR;
-        let start =
-            if is_near_line { start_near_line(origin, direction) } else { place >> FRACTION_BITS };
-        let is_on_map = (start as u64) < u64::from(count) && count <= MOST_LINES;
-        let [stride, block_stride] = strides;
-        is_on_map.then_some(Self { start, place, direction, stride, block_stride })
-    }
-}
-
-/// The column or row that a ray starts in that starts on a line, or nearly so.
-#[cold]
-#[inline(never)]
-fn start_near_line(origin: f64, direction: f64) -> i64 {
-    let start = origin.floor();
-    let is_before = start == origin && direction > 0.0;
-    // What is not near the map at all may be as far as there are numbers.
-    (start as i64).saturating_sub(i64::from(is_before))
-}
-
 #[cfg(test)]
-mod tests {
-    use proptest::prelude::*;
-
-    use super::*;
-    use crate::cast::Walk;
-
-    /// Places and directions, of which many meet corners and run along lines.
-    fn number() -> impl Strategy<Value = f64> {
-        prop_oneof![
-            -1.0..14.0_f64,
-            (-4..52_i32).prop_map(|quarters| f64::from(quarters) / 4.0),
-            (0..12_i32, -3..3_i64).prop_map(|(whole, ulps)| {
-                f64::from_bits((f64::from(whole).to_bits() as i64 + ulps).max(0) as u64)
-            }),
-        ]
-    }
-
-    /// Few walls, and doors that stand open.
-    fn map() -> impl Strategy<Value = Vec<Vec<u8>>> {
-        let tile = prop_oneof![30 => Just(0_u8), 1 => Just(1_u8), 2 => Just(2_u8)];
-        prop::collection::vec(prop::collection::vec(tile, 12), 1..12)
-    }
-
-    fn grid(map: &[Vec<u8>]) -> Grid {
-        let [width, height] = [12, map.len() as u32].map(|side| side.try_into().unwrap());
-        let cells = map.iter().flatten().map(|&tile| TileId(tile)).collect();
-        Grid::new(width, height, TileId(2), cells).unwrap()
-    }
-
-    proptest! {
-        /// Line by line or by leaps, it stops where the walk does.
-        #[test]
-        fn it_meets_what_the_walk_meets(
-            map in map(),
-            origin in (number(), number()),
-            direction in (number(), number()),
-            signs in (any::<bool>(), any::<bool>()),
-        ) {
-            let sign = |number: f64, is_negative| if is_negative { -number } else { number };
-            let direction = DVec2::new(sign(direction.0, signs.0), sign(direction.1, signs.1));
-            let ray = Ray::new(origin.into(), direction);
-            prop_assume!(ray.is_ok());
-            let (grid, ray) = (grid(&map), ray.unwrap());
-            let mut measured = grid.clone();
-            measured.measure_clearance(|tile| tile == TileId(1));
-            for grid in [&grid, &measured] {
-                let walk = Walk::new(grid, &ray).filter(|met| grid.is_solid_tile(met.tile));
-                let Some(sweep) = Sweep::new(grid, &ray) else { continue };
-                prop_assert_eq!(sweep.collect::<Vec<_>>(), walk.collect::<Vec<_>>());
-            }
-        }
-    }
-
-    proptest! {
-        /// Where it is so empty that it leaps by blocks, too.
-        #[test]
-        fn it_meets_what_the_walk_meets_far_from_walls(
-            (width, height) in (30_u32..140, 30_u32..140),
-            pillars in prop::collection::vec((any::<u32>(), any::<u32>()), 0..6),
-            share in (0.0..1.0, 0.0..1.0),
-            direction in (-1.0..1.0_f64, -1.0..1.0_f64),
-        ) {
-            let mut cells = vec![TileId(0); (width * height) as usize];
-            for (column, row) in pillars {
-                cells[(row % height * width + column % width) as usize] = TileId(1);
-            }
-            let sides = [width, height].map(|side| side.try_into().unwrap());
-            let mut grid = Grid::new(sides[0], sides[1], TileId(1), cells).unwrap();
-            grid.measure_clearance(|_| false);
-            let size = DVec2::new(f64::from(width), f64::from(height));
-            let ray = Ray::new(DVec2::from(share) * size, direction.into());
-            prop_assume!(ray.is_ok());
-            let ray = ray.unwrap();
-            let walk = Walk::new(&grid, &ray).filter(|met| grid.is_solid_tile(met.tile));
-            let Some(sweep) = Sweep::new(&grid, &ray) else { return Ok(()) };
-            prop_assert_eq!(sweep.collect::<Vec<_>>(), walk.collect::<Vec<_>>());
-        }
-    }
-
-    #[test]
-    fn an_empty_hall_is_crossed_in_few_leaps() {
-        let side = 4096;
-        let count = u32::try_from(side).unwrap().try_into().unwrap();
-        let is_edge = |place: usize| place == 0 || place == side - 1;
-        let cells = (0..side * side).map(|index| is_edge(index % side) || is_edge(index / side));
-        let cells = cells.map(|is_edge| TileId(u8::from(is_edge))).collect();
-        let mut hall = Grid::new(count, count, TileId(1), cells).unwrap();
-        let looks = |grid: &Grid, direction| {
-            let ray = Ray::new(DVec2::new(1.5, 2048.5), direction).unwrap();
-            let mut sweep = Sweep::new(grid, &ray).unwrap();
-            assert_eq!(sweep.next().map(|met| met.cell.column), Some(4095));
-            sweep.looks()
-        };
-        for direction in [DVec2::X, DVec2::new(1.0, 0.3), DVec2::new(1.0, -0.45)] {
-            assert_eq!(looks(&hall, direction), 4094);
-        }
-        hall.measure_clearance(|_| false);
-        for direction in [DVec2::X, DVec2::new(1.0, 0.3), DVec2::new(1.0, -0.45)] {
-            assert!(looks(&hall, direction) < 40, "{}", looks(&hall, direction));
-        }
-    }
-}
+mod tests;

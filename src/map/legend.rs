@@ -1,5 +1,6 @@
 //! The legend: what each character of the grid means, from the tables `[tiles]` and `[things]`.
 
+mod property;
 mod section;
 
 use std::collections::BTreeMap;
@@ -10,14 +11,16 @@ use toml::de::{DeTable, DeValue};
 use super::covering::{CeilingText, CoveringText};
 use super::definitions::KEYS;
 use super::doors::{DoorSymbol, KeySymbol};
-use super::heights::{self, HeightsText};
-use super::see_through::{self, MaskSymbol};
+use super::heights::HeightsText;
+use super::see_through::MaskSymbol;
 use super::shapes::ShapeSymbol;
 use super::sprites::SpriteSymbol;
 use super::textures::Surface;
 use crate::fault::document::{Entry, entries};
 use crate::fault::{Fault, quoted};
 use crate::world::{Glass, Heading, Light};
+pub(super) use property::light;
+use property::property;
 pub(super) use section::Section;
 
 /// What the characters mean that the grid may be drawn with.
@@ -253,85 +256,6 @@ impl<'a> Surroundings<'a> {
         }
         Taken::Yes
     }
-}
-
-/// What one property of a tile or thing makes of it.
-fn property<'a>(
-    section: Section,
-    entry: &Entry<'a, '_>,
-    table: &'a DeTable<'_>,
-    faults: &mut Vec<Fault>,
-) -> Option<Meaning<'a>> {
-    let is_addition = |(key, to): (&str, &str)| key == entry.key && table.contains_key(to);
-    if section.additions().any(is_addition) {
-        return None;
-    }
-    match (section, entry.key) {
-        (Section::Tiles, "wall") => {
-            let surface = Surface::read(entry, r#"{ wall = "brick" }"#, faults);
-            let height = heights::of_wall(table, faults);
-            surface.map(|surface| Meaning::Wall(surface, height))
-        }
-        (Section::Tiles, "door") => DoorSymbol::read(entry, table, faults).map(Meaning::Door),
-        (Section::Tiles, "mask") => MaskSymbol::read(entry, faults).map(Meaning::Mask),
-        (Section::Tiles, "glass") => see_through::glass(entry, table, faults).map(Meaning::Glass),
-        (Section::Tiles, "mirror") => {
-            let tint = see_through::mirror(entry, table, faults);
-            let height = heights::of_wall(table, faults);
-            tint.map(|tint| Meaning::Mirror(tint, height))
-        }
-        (Section::Tiles, "pillar" | "diagonal" | "thin") => {
-            ShapeSymbol::read(entry, table, faults).map(Meaning::Shape)
-        }
-        (Section::Things, "key") => {
-            KeySymbol::read(entry, r#"{ key = "brass" }"#, faults).map(Meaning::Key)
-        }
-        (Section::Things, "sprite") => {
-            SpriteSymbol::read(entry, table, faults).map(Meaning::Ornament)
-        }
-        (Section::Things, "start") => Some(Meaning::Start(heading(entry, faults)?)),
-        (Section::Things, "exit") => exit(entry, faults),
-        _ => {
-            faults.push(section.unknown_property(entry));
-            None
-        }
-    }
-}
-
-fn heading(entry: &Entry<'_, '_>, faults: &mut Vec<Fault>) -> Option<Heading> {
-    let heading = entry.number().and_then(Heading::from_degrees);
-    if heading.is_none() {
-        faults.push(
-            Fault::new(entry.value_place.clone(), "a heading must be a finite number of degrees")
-                .label("this is none")
-                .help("write 0 for east, 90 for south, 180 for west, 270 for north"),
-        );
-    }
-    heading
-}
-
-/// How bright something is, from a number between 0 and 1.
-pub(super) fn light(entry: &Entry<'_, '_>, faults: &mut Vec<Fault>) -> Option<Light> {
-    let light = entry.number().and_then(Light::new);
-    if light.is_none() {
-        faults.push(
-            Fault::new(entry.value_place.clone(), "a light must be a number from 0 to 1")
-                .label("this is none")
-                .help("write 0 for darkness, 1 for full brightness"),
-        );
-    }
-    light
-}
-
-fn exit<'a>(entry: &Entry<'a, '_>, faults: &mut Vec<Fault>) -> Option<Meaning<'a>> {
-    if let DeValue::Boolean(true) = entry.value {
-        return Some(Meaning::Exit);
-    }
-    faults.push(
-        Fault::new(entry.value_place.clone(), "\"exit\" must be true")
-            .help("write { exit = true }"),
-    );
-    None
 }
 
 fn defined_twice(character: char, place: Range<usize>) -> Fault {

@@ -7,7 +7,7 @@
 //! than a wall, and nobody who asks what is solid needs to know of doors. A door that is solid just
 //! where its leaf is was refused: whoever stands beside the leaf as it comes back would be inside it.
 
-use super::{Cell, Paint};
+use super::{Cell, Paint, Tile, TileId, TileKind, World};
 
 /// A kind of door.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -46,6 +46,64 @@ impl Opening {
     }
 }
 
+impl World {
+    /// The door in `cell`, however far it is open; `None` where there is none.
+    pub fn door(&self, cell: Cell) -> Option<Door> {
+        match self.kind_at(cell)? {
+            TileKind::Door(door) | TileKind::Doorway(door) => Some(door),
+            _ => None,
+        }
+    }
+
+    /// How far the door in `cell` is open; closed where there is none.
+    pub fn opening(&self, cell: Cell) -> Opening {
+        match self.kind_at(cell) {
+            Some(TileKind::Doorway(_)) => Opening::OPEN,
+            _ => self.ajar.opening(cell).unwrap_or(Opening::CLOSED),
+        }
+    }
+
+    /// Moves the door in `cell`; does nothing where there is none. The cell is open floor where the
+    /// door is all open, and solid otherwise.
+    pub fn set_opening(&mut self, cell: Cell, opening: Opening) {
+        let Some(tile) = self.tile_at(cell) else { return };
+        if !matches!(tile.kind, TileKind::Door(_) | TileKind::Doorway(_)) {
+            return;
+        }
+        let solid = |kind: &TileKind| matches!(kind, TileKind::Door(_));
+        let id = match opening {
+            Opening::OPEN => self.doorway(tile.character),
+            _ => self.tile_id(tile.character, solid),
+        };
+        if let Some(id) = id {
+            self.grid.set(cell, id);
+            self.ajar.set(cell, opening);
+        }
+    }
+
+    /// What the key `id` of this world is called, such as "brass".
+    ///
+    /// # Panics
+    /// Where `id` is from another world that has more keys.
+    pub fn key_name(&self, id: KeyId) -> &str {
+        &self.keys[usize::from(id.0)]
+    }
+
+    fn kind_at(&self, cell: Cell) -> Option<TileKind> {
+        self.tile_at(cell).map(|tile| tile.kind)
+    }
+
+    /// The open floor that a door drawn with `character` leaves.
+    pub(super) fn doorway(&self, character: char) -> Option<TileId> {
+        self.tile_id(character, |kind| matches!(kind, TileKind::Doorway(_)))
+    }
+
+    fn tile_id(&self, character: char, is_kind: impl Fn(&TileKind) -> bool) -> Option<TileId> {
+        let is_it = |tile: &Tile| tile.character == character && is_kind(&tile.kind);
+        self.tiles.iter().position(is_it).map(|index| TileId(index as u8))
+    }
+}
+
 /// The doors that are neither closed nor open, and how far they are open.
 #[derive(Clone, Debug, PartialEq, Default)]
 pub(super) struct Ajar {
@@ -55,12 +113,12 @@ pub(super) struct Ajar {
 
 impl Ajar {
     /// How far the door in `cell` is open, if it is one of them.
-    pub(super) fn opening(&self, cell: Cell) -> Option<Opening> {
+    fn opening(&self, cell: Cell) -> Option<Opening> {
         self.find(cell).ok().map(|index| self.openings[index].1)
     }
 
     /// Takes note that the door in `cell` is open by `opening`.
-    pub(super) fn set(&mut self, cell: Cell, opening: Opening) {
+    fn set(&mut self, cell: Cell, opening: Opening) {
         let is_ajar = Opening::CLOSED < opening && opening < Opening::OPEN;
         match self.find(cell) {
             Ok(index) if is_ajar => self.openings[index].1 = opening,

@@ -5,7 +5,7 @@
 //! cells that it shows, and pays for no others. A list for each cell was refused: most cells are empty,
 //! and a map has millions.
 
-use super::{Cell, KeyId, SpriteId};
+use super::{Cell, KeyId, SpriteId, World};
 
 /// Something that stands in a cell.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -29,6 +29,28 @@ pub enum ThingKind {
     Ornament,
 }
 
+impl World {
+    /// What stands in the cells, the start excepted: row by row from the north, each from the west.
+    pub fn things(&self) -> &[Thing] {
+        self.things.all()
+    }
+
+    /// What stands in `cell`.
+    pub fn things_in(&self, cell: Cell) -> &[Thing] {
+        self.things.between(cell.row, cell.column, cell.column)
+    }
+
+    /// What stands in `row` between two columns, themselves included.
+    pub(crate) fn things_between(&self, row: u32, first: u32, last: u32) -> &[Thing] {
+        self.things.between(row, first, last)
+    }
+
+    /// Takes away all things in `cell` of which `is_taken` says so.
+    pub(crate) fn take_things(&mut self, cell: Cell, is_taken: impl Fn(ThingKind) -> bool) {
+        self.things.remove(|thing| thing.cell == cell && is_taken(thing.kind));
+    }
+}
+
 /// All things of a world, by place.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub(super) struct Things {
@@ -45,12 +67,12 @@ impl Things {
         new
     }
 
-    pub(super) fn all(&self) -> &[Thing] {
+    fn all(&self) -> &[Thing] {
         &self.sorted
     }
 
     /// Those in `row` between two columns, themselves included.
-    pub(super) fn between(&self, row: u32, first: u32, last: u32) -> &[Thing] {
+    fn between(&self, row: u32, first: u32, last: u32) -> &[Thing] {
         let in_row = &self.sorted[self.before_row(row)..self.before_row(row.saturating_add(1))];
         let start = in_row.partition_point(|thing| thing.cell.column < first);
         let rest = &in_row[start..];
@@ -62,7 +84,7 @@ impl Things {
         self.before_row.get(row as usize).copied().unwrap_or(self.sorted.len())
     }
 
-    pub(super) fn remove(&mut self, is_gone: impl Fn(&Thing) -> bool) {
+    fn remove(&mut self, is_gone: impl Fn(&Thing) -> bool) {
         self.sorted.retain(|thing| !is_gone(thing));
         self.find_rows();
     }

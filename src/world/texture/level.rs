@@ -1,16 +1,15 @@
 //! Levels: a texture in half its size, a quarter, and so on.
 //!
-//! A texel of a level is the mean of those it covers in the level before, by the area of each, so
-//! that sides which are no powers of two lose nothing. The mean is taken in linear light, because
-//! that is what the eye does from far away; taken of the numbers as they are stored, a black and white
-//! chessboard would turn too dark with the distance. What is clear lends its colour to nobody: texels
-//! count by their alpha as well as by their area.
+//! Each is the one before, halved in [linear light](light).
+
+mod light;
 
 use std::num::NonZeroU32;
 use std::ops::Range;
-use std::sync::LazyLock;
 
 use crate::world::Rgb;
+pub(crate) use light::mean_of_two;
+use light::{Light, linear, stored};
 
 /// A picture in one size, at least one texel wide and high.
 #[derive(Clone, Debug, PartialEq, Eq)]
@@ -139,107 +138,6 @@ pub(super) fn pyramid(
     levels
 }
 
-/// A picture in linear light: 16 bits for each of red, green and blue.
-struct Light {
-    width: NonZeroU32,
-    height: NonZeroU32,
-    texels: Vec<[u16; 3]>,
-    /// As in a [`Level`].
-    alpha: Vec<u8>,
-}
-
-impl Light {
-    fn halved(&self) -> Self {
-        let half = |side: NonZeroU32| NonZeroU32::new(side.get() / 2).unwrap_or(NonZeroU32::MIN);
-        let (width, height) = (half(self.width), half(self.height));
-        let places = (0..width.get()).flat_map(|x| (0..height.get()).map(move |y| (x, y)));
-        let (texels, mut alpha): (Vec<_>, Vec<u8>) = places
-            .map(|(x, y)| {
-                self.mean(covered(x, self.width, width), &covered(y, self.height, height))
-            })
-            .unzip();
-        if self.alpha.is_empty() {
-            alpha = Vec::new();
-        }
-        Self { width, height, texels, alpha }
-    }
-
-    /// The mean of the texels in some columns and rows, each with its weight, and of their alpha.
-    fn mean(
-        &self,
-        columns: impl Iterator<Item = (u32, u64)>,
-        rows: &(impl Iterator<Item = (u32, u64)> + Clone),
-    ) -> ([u16; 3], u8) {
-        const OPAQUE: u64 = u8::MAX as u64;
-        let (mut sums, mut weights, mut total) = ([0; 3], 0, 0);
-        for (x, share_of_column) in columns {
-            let start = x as usize * self.height.get() as usize;
-            for (y, share_of_row) in rows.clone() {
-                let index = start + y as usize;
-                let area = share_of_column * share_of_row;
-                let weight = area * self.alpha.get(index).map_or(OPAQUE, |&alpha| alpha.into());
-                total += area;
-                weights += weight;
-                for (sum, channel) in sums.iter_mut().zip(self.texels[index]) {
-                    *sum += weight * u64::from(channel);
-                }
-            }
-        }
-        let shown = weights.max(1);
-        let color = sums.map(|sum| ((sum + shown / 2) / shown) as u16);
-        (color, ((weights + total / 2) / total) as u8)
-    }
-}
-
-/// The texels, of `from` in a row, that texel `index` of `to` covers, and how much of each.
-fn covered(
-    index: u32,
-    from: NonZeroU32,
-    to: NonZeroU32,
-) -> impl Iterator<Item = (u32, u64)> + Clone {
-    let (from, to) = (u64::from(from.get()), u64::from(to.get()));
-    // In such units that both kinds of texel are whole.
-    let (start, end) = (u64::from(index) * from, (u64::from(index) + 1) * from);
-    (start / to..end.div_ceil(to)).map(move |texel| {
-        let covered = end.min((texel + 1) * to) - start.max(texel * to);
-        (texel as u32, covered)
-    })
-}
-
-/// The colour of a surface that is half of the one and half of the other, from far away.
-pub(crate) fn mean_of_two(one: Rgb, other: Rgb) -> Rgb {
-    let (one, other) = (linear(one), linear(other));
-    stored(std::array::from_fn(|channel| one[channel].midpoint(other[channel])))
-}
-
-/// What each stored channel is in linear light.
-static LINEAR: LazyLock<[u16; 256]> = LazyLock::new(|| {
-    std::array::from_fn(|channel| {
-        let stored = channel as f64 / 255.0;
-        let linear = if stored <= 0.040_45 {
-            stored / 12.92
-        } else {
-            libm::pow((stored + 0.055) / 1.055, 2.4)
-        };
-        (linear * f64::from(u16::MAX)).round() as u16
-    })
-});
-
-fn linear(color: Rgb) -> [u16; 3] {
-    color.channels().map(|channel| LINEAR[usize::from(channel)])
-}
-
-/// The stored colour that is nearest to one in linear light.
-fn stored(light: [u16; 3]) -> Rgb {
-    let [red, green, blue] = light.map(|channel| {
-        let above = LINEAR.partition_point(|&linear| linear < channel).min(255);
-        let below = above.saturating_sub(1);
-        let is_below = channel - LINEAR[below].min(channel) < LINEAR[above] - channel;
-        (if is_below { below } else { above }) as u8
-    });
-    Rgb::new(red, green, blue)
-}
-
 #[cfg(test)]
 mod tests {
     use proptest::prelude::*;
@@ -248,14 +146,6 @@ mod tests {
 
     fn size(side: u32) -> NonZeroU32 {
         NonZeroU32::new(side).unwrap()
-    }
-
-    #[test]
-    fn every_channel_comes_back_from_linear_light() {
-        for channel in 0..=255 {
-            let gray = Rgb::new(channel, channel, channel);
-            assert_eq!(stored(linear(gray)), gray);
-        }
     }
 
     #[test]
@@ -309,25 +199,5 @@ mod tests {
         assert_eq!(level.texel(0, 0), (Rgb::WHITE, 128));
         let level = &pyramid(size(2), size(1), vec![Rgb::WHITE; 2], vec![0, 0])[1];
         assert_eq!(level.texel(0, 0).1, 0);
-    }
-
-    proptest! {
-        /// Light is neither lost nor made: all levels have the same mean, whatever the sides.
-        #[test]
-        fn a_halving_is_as_bright_as_the_whole(
-            width in 1_u32..20,
-            height in 1_u32..20,
-            seed in prop::collection::vec(any::<u16>(), 400),
-        ) {
-            let count = (width * height) as usize;
-            let texels = seed[..count].iter().map(|&light| [light; 3]).collect();
-            let whole = Light { width: size(width), height: size(height), texels, alpha: vec![] };
-            let half = whole.halved();
-            let mean = |light: &Light| {
-                let sum: f64 = light.texels.iter().map(|texel| f64::from(texel[0])).sum();
-                sum / light.texels.len() as f64
-            };
-            prop_assert!((mean(&whole) - mean(&half)).abs() <= 0.5);
-        }
     }
 }

@@ -1,0 +1,132 @@
+//! Files: where the pictures beside a map are read from.
+
+use std::path::{Path, PathBuf};
+use std::{fmt, fs, io};
+
+/// The most bytes that a PNG file may have.
+const MAX_FILE_BYTES: usize = 16 << 20;
+
+/// Where a map's own textures come from.
+///
+/// The folder of the map is a [`Folder`]; a program that has its pictures compiled in, or in an
+/// archive, looks them up by name:
+///
+/// ```
+/// use cellcaster::map::{TextureFileError, TextureFiles};
+///
+/// struct CompiledIn(&'static [(&'static str, &'static [u8])]);
+///
+/// impl TextureFiles for CompiledIn {
+///     fn read(&self, name: &str) -> Result<Vec<u8>, TextureFileError> {
+///         let (_, bytes) =
+///             self.0.iter().find(|(known, _)| *known == name).ok_or(TextureFileError::Missing)?;
+///         Ok(bytes.to_vec())
+///     }
+/// }
+/// ```
+pub trait TextureFiles {
+    /// The bytes of the PNG file `name`, which ends in `.png`, may lie in folders (`a/b.png`) and
+    /// never leads out of them.
+    ///
+    /// # Errors
+    /// Why there are none.
+    fn read(&self, name: &str) -> Result<Vec<u8>, TextureFileError>;
+}
+
+/// Why a texture's file has no bytes.
+#[derive(Debug)]
+#[non_exhaustive]
+pub enum TextureFileError {
+    /// There is no such file.
+    Missing,
+    /// A link leads out of the map's folder.
+    Outside,
+    /// It is no regular file, but a folder or a device.
+    NotAFile,
+    /// It is larger than any PNG of an allowed size.
+    TooLarge,
+    /// It cannot be read.
+    Unreadable(io::Error),
+}
+
+impl fmt::Display for TextureFileError {
+    /// Writes what is true of the file, to follow its name.
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        match self {
+            Self::Missing => f.write_str("is not there"),
+            Self::Outside => f.write_str("is a link out of the map's folder"),
+            Self::NotAFile => f.write_str("is no file"),
+            Self::TooLarge => write!(f, "is larger than {} MiB", MAX_FILE_BYTES >> 20),
+            Self::Unreadable(error) => write!(f, "cannot be read: {}", error.kind()),
+        }
+    }
+}
+
+impl std::error::Error for TextureFileError {}
+
+/// No files: every texture is built in.
+#[derive(Clone, Copy, Debug)]
+pub struct NoFiles;
+
+impl TextureFiles for NoFiles {
+    fn read(&self, _: &str) -> Result<Vec<u8>, TextureFileError> {
+        Err(TextureFileError::Missing)
+    }
+}
+
+/// The files of one folder and of those within it. Links that lead out of it are not followed.
+#[derive(Clone, Debug)]
+pub struct Folder {
+    path: PathBuf,
+}
+
+impl Folder {
+    /// The folder that the map file at `map` lies in.
+    pub fn of(map: &Path) -> Self {
+        match map.parent() {
+            Some(parent) if parent != Path::new("") => Self { path: parent.to_owned() },
+            _ => Self { path: PathBuf::from(".") },
+        }
+    }
+
+    fn real_path(&self, name: &str) -> Result<PathBuf, TextureFileError> {
+        let folder = self.path.canonicalize()?;
+        let file = folder.join(name).canonicalize()?;
+        if !file.starts_with(&folder) {
+            return Err(TextureFileError::Outside);
+        }
+        if !fs::metadata(&file)?.is_file() {
+            return Err(TextureFileError::NotAFile);
+        }
+        Ok(file)
+    }
+}
+
+impl TextureFiles for Folder {
+    fn read(&self, name: &str) -> Result<Vec<u8>, TextureFileError> {
+        let bytes = crate::map::read_up_to(&self.real_path(name)?, MAX_FILE_BYTES + 1)?;
+        if bytes.len() > MAX_FILE_BYTES {
+            return Err(TextureFileError::TooLarge);
+        }
+        Ok(bytes)
+    }
+}
+
+impl From<io::Error> for TextureFileError {
+    fn from(error: io::Error) -> Self {
+        match error.kind() {
+            io::ErrorKind::NotFound => Self::Missing,
+            _ => Self::Unreadable(error),
+        }
+    }
+}
+
+/// Whether a file of that name is a picture.
+pub(in crate::map) fn is_png(name: &str) -> bool {
+    Path::new(name).extension().is_some_and(|extension| extension.eq_ignore_ascii_case("png"))
+}
+
+/// Whether `name` means the same file within a folder on every system.
+pub(in crate::map) fn stays_inside(name: &str) -> bool {
+    !name.contains(['\\', ':']) && name.split('/').all(|part| !matches!(part, "" | "." | ".."))
+}

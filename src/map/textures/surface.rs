@@ -1,0 +1,120 @@
+//! Surfaces: what a map says that walls, floors and skies look like.
+
+use std::ops::Range;
+
+use super::files::{is_png, stays_inside};
+use crate::fault::document::Entry;
+use crate::fault::{Fault, nearest, quoted};
+use crate::world::Rgb;
+use crate::world::texture::builtin;
+
+/// How a surface is to look, as the map says it.
+pub(in crate::map) struct Surface<'a> {
+    pub(super) source: Source<'a>,
+    /// Where the map says it.
+    pub(super) place: Range<usize>,
+}
+
+/// What a surface's look is made from.
+pub(super) enum Source<'a> {
+    Color(Rgb),
+    BuiltIn(&'a str),
+    File(&'a str),
+}
+
+impl<'a> Surface<'a> {
+    /// A surface of one colour that the map does not mention.
+    pub(in crate::map) fn plain(color: Rgb) -> Self {
+        Self { source: Source::Color(color), place: 0..0 }
+    }
+
+    /// The surface that `entry` describes; where it describes none, that is added to `faults`. The
+    /// `example` is a whole entry.
+    pub(in crate::map) fn read(
+        entry: &Entry<'a, '_>,
+        example: &str,
+        faults: &mut Vec<Fault>,
+    ) -> Option<Self> {
+        let text = entry.string(example, faults)?;
+        Self::from_source(Source::read(text, entry.value_place.clone()), entry, faults)
+    }
+
+    /// As [`Surface::read`], for the picture of a sky.
+    pub(in crate::map) fn read_panorama(
+        entry: &Entry<'a, '_>,
+        example: &str,
+        faults: &mut Vec<Fault>,
+    ) -> Option<Self> {
+        let text = entry.string(example, faults)?;
+        let place = entry.value_place.clone();
+        let source = if builtin::PANORAMAS.contains(&text) {
+            Ok(Source::BuiltIn(text))
+        } else if is_png(text) {
+            Source::read(text, place)
+        } else {
+            Err(unknown_panorama(text, place))
+        };
+        Self::from_source(source, entry, faults)
+    }
+
+    fn from_source(
+        source: Result<Source<'a>, Fault>,
+        entry: &Entry<'_, '_>,
+        faults: &mut Vec<Fault>,
+    ) -> Option<Self> {
+        match source {
+            Ok(source) => Some(Self { source, place: entry.value_place.clone() }),
+            Err(fault) => {
+                faults.push(fault);
+                None
+            }
+        }
+    }
+}
+
+impl Surface<'_> {
+    /// Where the map says it.
+    pub(in crate::map) fn place(&self) -> Range<usize> {
+        self.place.clone()
+    }
+}
+
+impl<'a> Source<'a> {
+    /// What `text`, written at `place`, names: a colour, a built-in texture or a PNG file. Whether
+    /// there is such a file is not asked yet.
+    fn read(text: &'a str, place: Range<usize>) -> Result<Self, Fault> {
+        match text.parse() {
+            Ok(color) => Ok(Self::Color(color)),
+            Err(error) if text.starts_with('#') => {
+                let message = format!("{} is not a colour", quoted(text));
+                Err(Fault::new(place, message).help(format!("{error}")))
+            }
+            Err(_) if builtin::NAMES.contains(&text) => Ok(Self::BuiltIn(text)),
+            Err(_) if !is_png(text) => Err(unknown_name(text, place)),
+            Err(_) if !stays_inside(text) => {
+                let message = format!("{} is not a file in the map's folder", quoted(text));
+                let help = "copy the picture beside the map, and separate folders by /";
+                Err(Fault::new(place, message).label("leads elsewhere").help(help))
+            }
+            Err(_) => Ok(Self::File(text)),
+        }
+    }
+}
+
+fn unknown_name(name: &str, place: Range<usize>) -> Fault {
+    let fault = Fault::new(place, format!("there is no texture {}", quoted(name)));
+    match nearest(name, builtin::NAMES) {
+        Some(known) => fault.help(format!("the nearest built-in texture is {}", quoted(known))),
+        None => fault.help(format!(
+            "write a colour such as \"#a04030\", the name of a PNG beside the map, or one of {}",
+            builtin::NAMES.join(", ")
+        )),
+    }
+}
+
+fn unknown_panorama(name: &str, place: Range<usize>) -> Fault {
+    Fault::new(place, format!("there is no panorama {}", quoted(name))).help(format!(
+        "write the name of a PNG beside the map, or one of {}",
+        builtin::PANORAMAS.join(", ")
+    ))
+}

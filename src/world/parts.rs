@@ -1,0 +1,148 @@
+//! Parts: what a world is put together from, and what has to fit.
+//!
+//! That they fit is for the map to see to, which can say where something does not; here it is only
+//! asserted, so that a fault of this program's own is found where it was made.
+
+use super::door::Ajar;
+use super::things::Things;
+use super::{
+    Ceiling, Cell, Covering, Door, Fog, Grid, Lamplight, Paint, Sky, Sprite, Start, Texture, Thing,
+    Tile, TileId, TileKind, World,
+};
+
+/// The pieces of a world, not yet known to fit together.
+pub(crate) struct Parts {
+    pub(crate) title: String,
+    pub(crate) grid: Grid,
+    pub(crate) tiles: Vec<Tile>,
+    pub(crate) textures: Vec<Texture>,
+    pub(crate) floor: Covering,
+    pub(crate) ceiling: Ceiling,
+    pub(crate) sky: Sky,
+    pub(crate) fog: Option<Fog>,
+    pub(crate) start: Start,
+    pub(crate) sprites: Vec<Sprite>,
+    pub(crate) things: Vec<Thing>,
+    pub(crate) lamplight: Lamplight,
+    pub(crate) keys: Vec<String>,
+}
+
+impl World {
+    /// A world of `parts` that fit together: every tile of the grid and every texture is in its
+    /// list, open tiles come before solid ones, the map's own floor first, the start and all things
+    /// stand on open floor, those that block are known to the grid, every door has a doorway by the
+    /// same character, and stands between solid cells that are no doors. The map's own checks
+    /// establish all of that, and name what does not fit.
+    pub(crate) fn from_parts(parts: Parts) -> Self {
+        let Parts {
+            title,
+            mut grid,
+            tiles,
+            textures,
+            floor,
+            ceiling,
+            sky,
+            fog,
+            start,
+            sprites,
+            things,
+            lamplight,
+            keys,
+        } = parts;
+        clear(&mut grid, &tiles);
+        let world = Self {
+            title,
+            grid,
+            tiles,
+            textures,
+            floor,
+            ceiling,
+            sky,
+            fog,
+            start,
+            sprites,
+            things: Things::new(things),
+            lamplight,
+            keys,
+            ajar: Ajar::default(),
+        };
+        debug_assert!(world.fits_together());
+        world
+    }
+
+    /// Shows other cells of the same kinds: `grid`, with no door that is ajar, and what stands there.
+    /// They fit together with the rest as in [`World::from_parts`].
+    pub(crate) fn redraw(
+        &mut self,
+        grid: Grid,
+        start: Start,
+        things: Vec<Thing>,
+        lamplight: Lamplight,
+    ) {
+        self.grid = grid;
+        clear(&mut self.grid, &self.tiles);
+        self.start = start;
+        self.things = Things::new(things);
+        self.lamplight = lamplight;
+        self.ajar = Ajar::default();
+    }
+
+    fn fits_together(&self) -> bool {
+        let known = |paint: Paint| match paint {
+            Paint::Color(_) => true,
+            Paint::Texture(id) => usize::from(id.0) < self.textures.len(),
+        };
+        let covers = |covering: Covering| covering.pattern.paints().iter().copied().all(known);
+        let ceils = |ceiling| match ceiling {
+            Ceiling::Sky => true,
+            Ceiling::Covered(covering) => covers(covering),
+        };
+        let sky_is_known = match self.sky {
+            Sky::Gradient { .. } => true,
+            Sky::Panorama(id) => known(Paint::Texture(id)),
+        };
+        let open = |cell: Cell| {
+            let (column, row) = (i64::from(cell.column), i64::from(cell.row));
+            self.grid.tile(column, row).is_some() && !self.grid.is_solid(column, row)
+        };
+        let stands = |thing: &Thing| {
+            let blocks = self.sprites.get(usize::from(thing.sprite.0)).is_some_and(|it| it.blocks);
+            let (column, row) = (i64::from(thing.cell.column), i64::from(thing.cell.row));
+            usize::from(thing.sprite.0) < self.sprites.len()
+                && (!blocks || self.grid.is_occupied(column, row))
+        };
+        let opens = |door: Door| {
+            let is_known = door.key.is_none_or(|key| usize::from(key.0) < self.keys.len());
+            is_known && known(door.leaf) && known(door.jamb)
+        };
+        let tile_fits = |(index, tile): (usize, &Tile)| {
+            let is_solid = self.grid.is_solid_tile(TileId(index as u8));
+            match tile.kind {
+                TileKind::Open => !is_solid,
+                TileKind::Doorway(door) => !is_solid && opens(door),
+                TileKind::Wall(paint) => is_solid && known(paint),
+                TileKind::Door(door) => {
+                    is_solid && opens(door) && self.doorway(tile.character).is_some()
+                }
+                TileKind::Mask(texture) => is_solid && known(Paint::Texture(texture)),
+                TileKind::Glass(_) | TileKind::Mirror(_) => is_solid,
+                TileKind::Shape(shape) => is_solid && known(shape.paint),
+            }
+        };
+        self.tiles.iter().enumerate().all(tile_fits)
+            && self.tiles.iter().all(|tile| covers(tile.floor) && ceils(tile.ceiling))
+            && self.tiles.iter().all(|tile| known(tile.riser) && known(tile.lintel))
+            && self.grid.rows().flatten().all(|tile| usize::from(tile.0) < self.tiles.len())
+            && covers(self.floor)
+            && ceils(self.ceiling)
+            && sky_is_known
+            && open(self.start.cell)
+            && self.things().iter().all(|thing| open(thing.cell) && stands(thing))
+    }
+}
+
+/// Lets rays know what is empty in `grid`, where doors may close.
+fn clear(grid: &mut Grid, tiles: &[Tile]) {
+    let is_doorway = |id: TileId| matches!(tiles[usize::from(id.0)].kind, TileKind::Doorway(_));
+    grid.clear(is_doorway);
+}
