@@ -13,6 +13,7 @@ mod bytes;
 mod control;
 mod exact;
 mod inexact;
+mod ink;
 mod lab;
 mod look;
 mod pen;
@@ -33,13 +34,13 @@ use ratatui::style::Color;
 
 pub(crate) use self::bytes::Bytes;
 use self::inexact::Draughtsman;
+use self::ink::Price;
 use self::pen::Pen;
 use self::rest::Rest;
 pub use self::screen::Screen;
 use self::shift::Shifts;
 use self::style::Shade;
 pub(crate) use self::style::Style;
-use self::trellis::Price;
 use super::fidelity::Fidelity;
 
 /// A ratatui backend that writes to `W`.

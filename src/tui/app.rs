@@ -4,6 +4,7 @@
 //! it off screen. [`play`] is the loop around it that has both.
 
 mod clock;
+mod keys;
 mod levels;
 mod panels;
 mod played;
@@ -21,14 +22,14 @@ pub use recording::Recording;
 pub use replay::Replay;
 pub use run::play;
 
-use super::bindings::{Action, Bindings};
+use super::bindings::Bindings;
 use super::held::HeldKeys;
 use super::{Canvas, CellAspect, GlyphMode, Minimap, View};
 use crate::cast::Method;
-use crate::game::{Intent, Intents, STEP};
+use crate::game::{Intents, STEP};
 use crate::palette::ColorDepth;
 use crate::render::Filter;
-use crate::terminal::{Fidelity, Key, KeyEvent, Phase};
+use crate::terminal::Fidelity;
 use crate::world::FieldOfView;
 use clock::Clock;
 use played::{Eye, Memory, Played};
@@ -116,11 +117,6 @@ struct App {
     script: Option<ScriptRecorder>,
 }
 
-/// By how much a key widens or narrows the view, and how far, in degrees.
-const VIEW_STEP: f64 = 6.0;
-const NARROWEST_VIEW: f64 = 30.0;
-const WIDEST_VIEW: f64 = 120.0;
-
 impl App {
     fn new(levels: Levels, settings: Settings) -> Self {
         let Levels { first, rest } = levels;
@@ -176,29 +172,7 @@ impl App {
         }
     }
 
-    fn intents(&self) -> Intents {
-        let wanted = self.held.iter().filter_map(|key| match self.settings.bindings.action(key) {
-            Some(Action::Want(intent)) => Some(intent),
-            _ => None,
-        });
-        let aims = self.held.iter().any(|key| self.turns(key) && !self.held.is_certain(key));
-        let others = [
-            self.gait.runs.then_some(Intent::Run),
-            self.gait.ducks.then_some(Intent::Duck),
-            aims.then_some(Intent::Aim),
-        ];
-        wanted.chain(self.pressed.iter()).chain(others.into_iter().flatten()).collect()
-    }
-
-    /// Whether `key` turns the player, or their gaze. What may be a tap turns slowly: it is to aim with, and on
-    /// most terminals nobody says when it ends.
-    fn turns(&self, key: Key) -> bool {
-        let turns = [Intent::TurnLeft, Intent::TurnRight, Intent::LookUp, Intent::LookDown];
-        let turns = turns.map(|turn| Some(Action::Want(turn)));
-        turns.contains(&self.settings.bindings.action(key))
-    }
-
-    /// How the player walks, as far as they need not hold a key for it.
+    /// What of the game a picture would show now.
     fn scene(&self) -> Scene {
         Scene { eye: self.eye(), revision: self.game.revision() }
     }
@@ -236,67 +210,9 @@ impl App {
         Some(self.clock.step_after(steps))
     }
 
-    fn key(&mut self, event: KeyEvent, now: Duration) {
-        self.advance(now);
-        let action = self.settings.bindings.action(event.key);
-        if let Some(Action::Want(_)) = action {
-            let bindings = &self.settings.bindings;
-            let opposes = |other| {
-                action.zip(bindings.action(other)).is_some_and(|(one, other)| one.opposes(other))
-            };
-            self.held.note(event, now, opposes);
-        }
-        if event.phase != Phase::Release {
-            self.press(event.key, action);
-        }
-    }
-
-    fn press(&mut self, key: Key, action: Option<Action>) {
-        match (self.screen, action) {
-            (Screen::LevelDone, _) if is_confirmation(key) => self.next_level(),
-            (Screen::End, _) if is_confirmation(key) => self.has_left = true,
-            (Screen::Help, Some(Action::Leave)) if key == Key::Escape => self.show(Screen::Playing),
-            (_, Some(Action::Leave)) => self.has_left = true,
-            (Screen::Playing, Some(Action::ToggleHelp)) => self.show(Screen::Help),
-            (Screen::Playing, Some(Action::TogglePause)) => self.show(Screen::Paused),
-            (Screen::Help, Some(Action::ToggleHelp))
-            | (Screen::Paused, Some(Action::TogglePause)) => self.show(Screen::Playing),
-            (_, Some(Action::ToggleMinimap)) => {
-                self.shows_minimap = !self.shows_minimap;
-                self.shown = None;
-            }
-            (
-                Screen::Playing,
-                Some(Action::Want(tap @ (Intent::Open | Intent::Jump | Intent::LookAhead))),
-            ) => self.pressed.insert(tap),
-            (_, Some(Action::ToggleDuck)) => {
-                self.gait.ducks = !self.gait.ducks;
-                self.shown = None;
-            }
-            (_, Some(Action::ToggleRun)) => {
-                self.gait.runs = !self.gait.runs;
-                self.shown = None;
-            }
-            (_, Some(Action::ToggleStats)) => {
-                self.shows_stats = !self.shows_stats;
-                self.shown = None;
-            }
-            (_, Some(Action::WidenView)) => self.widen_view(VIEW_STEP),
-            (_, Some(Action::NarrowView)) => self.widen_view(-VIEW_STEP),
-            _ => {}
-        }
-    }
-
     fn show(&mut self, screen: Screen) {
         self.screen = screen;
         self.shown = None;
-    }
-
-    fn widen_view(&mut self, degrees: f64) {
-        let view = (self.field_of_view.degrees() + degrees).clamp(NARROWEST_VIEW, WIDEST_VIEW);
-        if let Some(view) = FieldOfView::from_degrees(view) {
-            self.field_of_view = view;
-        }
     }
 
     fn next_level(&mut self) {
@@ -363,8 +279,4 @@ impl App {
             map.paint(inside, canvas);
         }
     }
-}
-
-fn is_confirmation(key: Key) -> bool {
-    matches!(key, Key::Enter | Key::Char(' '))
 }

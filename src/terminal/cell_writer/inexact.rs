@@ -3,11 +3,12 @@
 use ratatui::layout::Position;
 
 use super::exact;
+use super::ink::{Halves, Ink, Price};
 use super::look::Look;
 use super::pen::Pen;
 use super::screen::Row;
 use super::shift::{BYTE, CELL, Shifts};
-use super::trellis::{Action, Halves, Ink, Price, Trellis, Wanted};
+use super::trellis::{Action, Trellis, Wanted};
 
 /// Draws rows inexactly, and keeps the memory that it takes.
 #[derive(Debug, Default)]

@@ -4,11 +4,11 @@
 //! were sent twice, and the last of the frames had most of the bytes.
 
 use super::exact;
+use super::ink::Ink;
 use super::look::Look;
 use super::pen::Pen;
 use super::screen::{Row, Screen};
 use super::shift::Shifts;
-use super::trellis::Ink;
 
 /// How far a picture has come to rest, and the memory that it takes.
 #[derive(Debug)]
