@@ -134,6 +134,19 @@ impl<W: Write> CellWriter<W> {
 
     /// Has `draw` draw a whole frame, on a blank screen, and takes note of what must be written for it with
     /// the next flush: for drawing without ratatui's [`Terminal`](ratatui::Terminal) and its buffers.
+    ///
+    /// ```
+    /// use cellcaster::terminal::CellWriter;
+    /// use cellcaster::tui::Canvas;
+    /// use ratatui::backend::Backend;
+    /// use ratatui::layout::Size;
+    ///
+    /// let mut writer = CellWriter::new(Vec::new(), Size::new(80, 24));
+    /// writer.draw_frame(|screen| screen.draw_widget("hello", screen.bounds()));
+    /// writer.flush()?;
+    /// assert!(writer.output_mut().ends_with(b"hello\x1b[?2026l"));
+    /// # Ok::<(), std::io::Error>(())
+    /// ```
     pub fn draw_frame(&mut self, draw: impl FnOnce(&mut Screen)) {
         self.screen.begin_frame();
         draw(&mut self.screen);
