@@ -11,10 +11,9 @@ use std::num::NonZero;
 use std::time::Instant;
 
 use cellcaster::render::{Frame, FrameSize, Renderer};
-use cellcaster::speed::{self, Classic, ClassicFloor};
+use cellcaster::speed::{self, Classic, ClassicFloor, SIZES};
 use cellcaster::world::{Camera, World};
 
-const SIZES: [(u32, u32); 5] = [(160, 90), (320, 200), (640, 480), (1920, 1080), (3840, 2160)];
 /// Cameras along the walk, one a picture.
 const CAMERAS: usize = 64;
 /// Pictures with more pixels are drawn from fewer of them.
@@ -57,8 +56,8 @@ fn main() {
     );
     println!("|---|---|---|---|---|---|---|---|");
     for scene in &scenes {
-        for (width, height) in SIZES {
-            let size = FrameSize::new(width, height).expect("no side is zero");
+        for size in SIZES {
+            let (width, height) = (size.width.get(), size.height.get());
             let Times { ours, by_threads, threads, classic, fill } = measure(scene, size, turns);
             let faster = classic.into_iter().fold(f64::INFINITY, f64::min);
             println!(

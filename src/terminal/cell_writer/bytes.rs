@@ -44,9 +44,7 @@ impl Bytes {
     /// Begins a piece.
     #[inline]
     pub(super) fn piece(&mut self) -> Piece<'_> {
-        if self.memory.len() < self.length + ROOM {
-            self.grow(ROOM);
-        }
+        self.make_room(ROOM);
         let room = self.memory[self.length..].first_chunk_mut();
         let room = room.expect("there is as much behind what is written");
         Piece { room, end: 0, length: &mut self.length }
@@ -54,18 +52,23 @@ impl Bytes {
 
     /// Adds `text`.
     pub(crate) fn push_text(&mut self, text: &[u8]) {
-        self.grow(text.len());
+        self.make_room(text.len());
         self.memory[self.length..][..text.len()].copy_from_slice(text);
         self.length += text.len();
     }
 
     /// Makes room for so many, if there is not as much.
-    #[cold]
-    fn grow(&mut self, by: usize) {
-        let needed = self.length + by;
+    #[inline]
+    fn make_room(&mut self, count: usize) {
+        let needed = self.length + count;
         if self.memory.len() < needed {
-            self.memory.resize(needed.next_power_of_two(), 0);
+            self.grow(needed);
         }
+    }
+
+    #[cold]
+    fn grow(&mut self, needed: usize) {
+        self.memory.resize(needed.next_power_of_two(), 0);
     }
 }
 
