@@ -25,6 +25,7 @@ mod marks;
 mod plan;
 mod planes;
 mod projection;
+mod runs;
 mod see_through;
 mod shade;
 mod sky;
