@@ -22,6 +22,7 @@ mod frame;
 mod lay;
 mod level;
 mod marks;
+mod paper;
 mod plan;
 mod planes;
 mod projection;
