@@ -82,6 +82,13 @@ pub trait Caster {
     /// What `ray` hits first in `grid`, or `None` where it escapes.
     fn cast(&self, grid: &Grid, ray: &Ray) -> Option<Hit>;
 
+    /// Whether all rays between two, far enough apart that rounding is nothing to it, hit the same side
+    /// of the same cell as both do: from one place, in a map of walls. Else each has to be cast.
+    fn follows_between(&self, left: &Hit, right: &Hit) -> bool {
+        _ = (left, right);
+        false
+    }
+
     /// What `ray` hits first in `world` that cannot be seen through, or `None` where it escapes. What
     /// it enters before that and is seen through, it tells to `passed`, from near to far.
     ///

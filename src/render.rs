@@ -22,9 +22,11 @@ mod frame;
 mod lay;
 mod level;
 mod marks;
+mod paper;
 mod plan;
 mod planes;
 mod projection;
+mod runs;
 mod see_through;
 mod shade;
 mod sky;
@@ -50,6 +52,7 @@ use std::num::NonZero;
 
 use crate::cast::{Caster, Method, Visitor};
 use crate::world::{Camera, World};
+use explanation::RaysOf;
 use level::Worker;
 use marks::Marks;
 use projection::Projection;
@@ -155,13 +158,13 @@ impl Renderer {
         let picture = Picture { world, camera, filter, seconds, threads, memory, frame, tally };
         let plan = method.accept(picture);
         let projection = Projection::new(camera, frame.size(), frame.pixel_aspect());
-        counts.rays = u64::from(frame.width());
         match plan.geometry {
             Geometry::Level => {
-                (counts.cells, counts.looks) =
-                    explanation::cells_entered(world.grid(), &projection);
+                let rays = method.accept(RaysOf { world, projection: &projection });
+                (counts.rays, counts.cells, counts.looks) = (rays.rays, rays.cells, rays.looks);
             }
             Geometry::Windows(_) => {
+                counts.rays = u64::from(frame.width());
                 counts.windows = memory.windows.counts();
                 counts.cells = counts.windows.cells;
                 counts.looks = counts.cells;

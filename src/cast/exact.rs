@@ -38,6 +38,13 @@ impl Caster for Exact {
         Some(Hit::entering(ray, wall.cell, wall.side))
     }
 
+    /// If both hit one face, nothing is in the way of what goes between them. It would be as wide as the
+    /// face and nearer, so that it would be in the way of one of the two.
+    #[inline]
+    fn follows_between(&self, left: &Hit, right: &Hit) -> bool {
+        (left.cell, left.side) == (right.cell, right.side)
+    }
+
     fn cast_through(&self, world: &World, ray: &Ray, passed: impl FnMut(Hit)) -> Option<Hit> {
         let grid = world.grid();
         if let Some(sweep) = Sweep::new(grid, ray) {

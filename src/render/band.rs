@@ -56,17 +56,22 @@ impl<'a> Band<'a> {
         self.pixels[first..].iter_mut().step_by(width).take(count)
     }
 
-    /// The pixels of `N` columns from `x` on in those rows, which are in the band, row by row.
+    /// Hands the pixels of `N` columns from `x` on in those rows, which are in the band, to `draw`, row
+    /// by row.
     #[inline]
-    pub(super) fn block_mut<const N: usize>(
+    pub(super) fn for_each_in_block<const N: usize>(
         &mut self,
         x: u32,
         rows: Range<u32>,
-    ) -> impl Iterator<Item = &mut [Rgb; N]> {
-        let width = self.width;
-        self.rows_mut(rows)
-            .chunks_exact_mut(width)
-            .filter_map(move |row| row[x as usize..].first_chunk_mut())
+        mut draw: impl FnMut(&mut [Rgb; N]),
+    ) {
+        let first = self.places(rows.clone()).start + x as usize;
+        let mut rest = self.pixels.get_mut(first..).unwrap_or_default();
+        for _ in rows {
+            let Some(pixels) = rest.first_chunk_mut() else { return };
+            draw(pixels);
+            rest = rest.get_mut(self.width..).unwrap_or_default();
+        }
     }
 
     /// Where the pixels of `rows` are among those of the band.

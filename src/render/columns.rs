@@ -1,4 +1,7 @@
 //! The first pass: one ray for every column of pixels.
+//!
+//! Among walls, few of them are cast: from the ends of the picture to its middle, and on in each half,
+//! until two rays hit the same face. What goes between two such rays hits that face, too.
 
 use std::ops::Range;
 
@@ -39,6 +42,12 @@ pub enum Surface {
 }
 
 impl Column {
+    #[inline]
+    fn new(grid: &Grid, projection: &Projection, ray: &Ray, hit: Option<Hit>) -> Self {
+        let distance = hit.map_or_else(|| distance_to_edge(grid, ray), |hit| hit.t);
+        Self { hit, distance, rows: projection.wall_rows(distance) }
+    }
+
     /// What the pixel in `row` of this column shows, where the ground begins in row `ground`.
     pub(super) fn surface(&self, row: u32, ground: u32) -> Surface {
         if row < self.rows.start {
@@ -79,20 +88,63 @@ pub(super) fn cast<C: Caster>(
     columns: &mut Vec<Column>,
     passed: &mut Passed,
 ) {
-    let grid = world.grid();
-    columns.clear();
     passed.clear();
-    let column = |ray: Ray, hit: Option<Hit>| {
-        let distance = hit.map_or_else(|| distance_to_edge(grid, &ray), |hit| hit.t);
-        Column { hit, distance, rows: projection.wall_rows(distance) }
-    };
-    if world.is_of_walls() {
-        columns.extend(projection.rays().map(|ray| column(ray, caster.cast(grid, &ray))));
-    } else {
-        passed.make_room_for(projection.columns());
-        columns.extend(projection.rays().enumerate().map(|(index, ray)| {
-            column(ray, caster.cast_through(world, &ray, |hit| passed.push(index, hit)))
-        }));
+    if world.is_of_walls() && projection.fans_out() {
+        let nothing = Column { hit: None, distance: 0.0, rows: 0..0 };
+        columns.resize(projection.columns(), nothing);
+        Fan { caster, grid: world.grid(), projection }.cast(columns);
+        return;
+    }
+    passed.make_room_for(projection.columns());
+    columns.clear();
+    columns.extend(projection.rays().enumerate().map(|(index, ray)| {
+        let hit = caster.cast_through(world, &ray, |hit| passed.push(index, hit));
+        Column::new(world.grid(), projection, &ray, hit)
+    }));
+}
+
+/// The rays of a picture in a map of walls.
+struct Fan<'a, C> {
+    caster: &'a C,
+    grid: &'a Grid,
+    projection: &'a Projection,
+}
+
+impl<C: Caster> Fan<'_, C> {
+    fn cast(&self, columns: &mut [Column]) {
+        let last = columns.len() - 1;
+        for index in [0, last].into_iter().take(columns.len()) {
+            columns[index] = self.cast_one(index);
+        }
+        self.cast_between(columns, 0);
+    }
+
+    /// Casts all but the first and the last of `columns`, which are known. `first` is the index of the
+    /// first.
+    fn cast_between(&self, columns: &mut [Column], first: usize) {
+        let [left, between @ .., right] = columns else { return };
+        if between.is_empty() {
+            return;
+        }
+        if let (Some(left), Some(right)) = (&left.hit, &right.hit)
+            && self.caster.follows_between(left, right)
+        {
+            for (index, column) in (first + 1..).zip(between) {
+                let ray = self.projection.ray(index as u32);
+                let hit = Hit::entering(&ray, left.cell, left.side);
+                *column = Column::new(self.grid, self.projection, &ray, Some(hit));
+            }
+            return;
+        }
+        let middle = columns.len() / 2;
+        columns[middle] = self.cast_one(first + middle);
+        self.cast_between(&mut columns[..=middle], first);
+        self.cast_between(&mut columns[middle..], first + middle);
+    }
+
+    fn cast_one(&self, index: usize) -> Column {
+        let ray = self.projection.ray(index as u32);
+        Column::new(self.grid, self.projection, &ray, self.caster.cast(self.grid, &ray))
     }
 }
 
@@ -111,4 +163,66 @@ fn distance_to_edge(grid: &Grid, ray: &Ray) -> f64 {
     let (origin, direction) = (ray.origin(), ray.direction());
     let leaves = along(origin.x, direction.x, edges.x).min(along(origin.y, direction.y, edges.y));
     leaves.max(0.0)
+}
+
+#[cfg(test)]
+mod tests {
+    use proptest::prelude::*;
+
+    use super::*;
+    use crate::cast::Exact;
+    use crate::map;
+    use crate::render::{FrameSize, PixelAspect};
+    use crate::world::{Camera, FieldOfView, Heading};
+
+    const SIDE: u32 = 12;
+
+    /// A map of cells that are solid or not, and a start in the middle.
+    fn world(cells: &[bool]) -> World {
+        let rows = cells.chunks(SIDE as usize).map(|row| {
+            let row = row.iter().map(|&is_solid| if is_solid { '#' } else { '.' });
+            row.chain(['\n']).collect::<String>()
+        });
+        let mut grid = rows.collect::<String>();
+        let middle = (SIDE / 2 * (SIDE + 1) + SIDE / 2) as usize;
+        grid.replace_range(middle..=middle, "@");
+        let tiles = "[tiles]\n'#'.wall = 'brick'\n[things]\n'@'.start = 0";
+        map::parse_str(&format!("grid = '''\n{grid}'''\n{tiles}")).unwrap()
+    }
+
+    /// Anywhere on the map or near it, and on lines between cells.
+    fn place() -> impl Strategy<Value = f64> {
+        let line = (0..=SIDE).prop_map(f64::from);
+        prop_oneof![2 => -2.0..f64::from(SIDE) + 2.0, 1 => line]
+    }
+
+    proptest! {
+        #[test]
+        fn few_rays_tell_what_all_of_them_hit(
+            solid in 0.0..0.6,
+            cells in prop::collection::vec(0.0..1.0, (SIDE * SIDE) as usize),
+            position in (place(), place()),
+            degrees in prop_oneof![
+                0.0..360.0,
+                prop::sample::select(&[0.0, 45.0, 90.0, 180.0, 225.0, 270.0][..]),
+            ],
+            field_of_view in prop_oneof![Just(66.0), 0.001..179.9],
+            width in 1_u32..300,
+        ) {
+            let world = world(&cells.iter().map(|&cell| cell < solid).collect::<Vec<_>>());
+            let camera = Camera::new(
+                position.into(),
+                Heading::from_degrees(degrees).unwrap(),
+                FieldOfView::from_degrees(field_of_view).unwrap(),
+            )
+            .unwrap();
+            let size = FrameSize::new(width, 10).unwrap();
+            let projection = Projection::new(&camera, size, PixelAspect::SQUARE);
+            let (mut columns, mut passed) = (Vec::new(), Passed::default());
+            cast(&Exact, &world, &projection, &mut columns, &mut passed);
+            let hits: Vec<_> = columns.into_iter().map(|column| column.hit).collect();
+            let rays = projection.rays();
+            prop_assert_eq!(hits, rays.map(|ray| Exact.cast(world.grid(), &ray)).collect::<Vec<_>>());
+        }
+    }
 }

@@ -1,12 +1,14 @@
 //! An explanation: the plan of a frame beside what the frame cost.
 
+use std::cell::Cell;
 use std::fmt;
 
 use super::projection::Projection;
+use super::see_through::Passed;
 use super::tally::{Counts, Pass};
-use super::{Geometry, Plan, WindowCounts};
-use crate::cast::{Sweep, Walk};
-use crate::world::Grid;
+use super::{Geometry, Plan, WindowCounts, columns};
+use crate::cast::{Caster, Hit, Ray, Sweep, Visitor, Walk};
+use crate::world::{Grid, World};
 
 /// How a frame was drawn, and what it cost.
 #[derive(Clone, Debug, PartialEq, Eq)]
@@ -49,21 +51,71 @@ impl fmt::Display for Explanation {
     }
 }
 
-/// How many cells the rays of a picture enter until they hit something or leave the map, and how often
-/// they look where they are.
-pub(super) fn cells_entered(grid: &Grid, projection: &Projection) -> (u64, u64) {
-    projection.rays().fold((0, 0), |(all_cells, all_looks), ray| {
-        let mut cells = 0;
-        for crossing in Walk::new(grid, &ray) {
-            cells += 1;
+/// What rays cost.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Default)]
+pub(super) struct RayCounts {
+    /// How many of them are cast.
+    pub(super) rays: u64,
+    /// How many cells they enter until they hit something or leave the map.
+    pub(super) cells: u64,
+    /// How often they look where they are.
+    pub(super) looks: u64,
+}
+
+/// Counts the rays of a picture of `world` that is level, by a caster that it [visits](Visitor).
+pub(super) struct RaysOf<'a> {
+    pub(super) world: &'a World,
+    pub(super) projection: &'a Projection,
+}
+
+impl Visitor for RaysOf<'_> {
+    type Output = RayCounts;
+
+    fn visit<C: Caster>(self, caster: &C) -> RayCounts {
+        let counting = Counting { caster, counts: Cell::default() };
+        let (mut columns, mut passed) = (Vec::new(), Passed::default());
+        columns::cast(&counting, self.world, self.projection, &mut columns, &mut passed);
+        counting.counts.get()
+    }
+}
+
+/// A caster that counts what it is asked.
+struct Counting<'a, C> {
+    caster: &'a C,
+    counts: Cell<RayCounts>,
+}
+
+impl<C> Counting<'_, C> {
+    fn count(&self, grid: &Grid, ray: &Ray) {
+        let mut entered = 0;
+        for crossing in Walk::new(grid, ray) {
+            entered += 1;
             if grid.is_solid_tile(crossing.tile) {
                 break;
             }
         }
-        let looks = Sweep::new(grid, &ray).map_or(cells, |mut sweep| {
+        let looked = Sweep::new(grid, ray).map_or(entered, |mut sweep| {
             sweep.next();
             sweep.looks()
         });
-        (all_cells + cells, all_looks + looks)
-    })
+        let RayCounts { rays, cells, looks } = self.counts.get();
+        let counts = RayCounts { rays: rays + 1, cells: cells + entered, looks: looks + looked };
+        self.counts.set(counts);
+    }
+}
+
+impl<C: Caster> Caster for Counting<'_, C> {
+    fn cast(&self, grid: &Grid, ray: &Ray) -> Option<Hit> {
+        self.count(grid, ray);
+        self.caster.cast(grid, ray)
+    }
+
+    fn follows_between(&self, left: &Hit, right: &Hit) -> bool {
+        self.caster.follows_between(left, right)
+    }
+
+    fn cast_through(&self, world: &World, ray: &Ray, passed: impl FnMut(Hit)) -> Option<Hit> {
+        self.count(world.grid(), ray);
+        self.caster.cast_through(world, ray, passed)
+    }
 }

@@ -1,6 +1,7 @@
 //! Laying: the inner loops of floor and ceiling, one for each kind of pattern and shade.
 
 use super::Filter;
+use super::runs::Runs;
 use super::shade::{Bright, Faded, Shade};
 use super::tally::{Pass, Tally};
 use super::track::{Places, Track};
@@ -60,7 +61,10 @@ impl Layer<'_> {
                     tally.texels(self.pass, pixels.len());
                     let places = track.places(x, per_cell);
                     match level.by_shifts() {
-                        Some(level) => lay_by_shifts(level, shade, places, pixels),
+                        Some(level) => match Runs::of(level, &places, pixels.len()) {
+                            Some(runs) => runs.lay(level, shade, pixels),
+                            None => lay_by_shifts(level, shade, places, pixels),
+                        },
                         None => {
                             for (pixel, (x, y)) in pixels.iter_mut().zip(places) {
                                 *pixel = shade.apply(level.at_fraction(x, y));

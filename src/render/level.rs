@@ -6,7 +6,7 @@
 use std::sync::{Mutex, PoisonError};
 
 use super::band::Band;
-use super::coat::Papers;
+use super::coat::Wardrobe;
 use super::marks::MarksOfBand;
 use super::planes::{Plane, PlaneKind, RowOfPlane};
 use super::see_through::{self, Left, Passed};
@@ -23,7 +23,7 @@ use crate::cast::Caster;
 #[derive(Clone, Debug, Default)]
 pub(super) struct Worker {
     rows_of_plane: Vec<RowOfPlane>,
-    papers: Papers,
+    wardrobe: Wardrobe,
     left: Left,
 }
 
@@ -91,7 +91,7 @@ impl Shared<'_> {
         marks: &mut MarksOfBand<'_>,
     ) -> T {
         let &Self { plan, scene, height, seconds, ref sky, passed, in_view } = self;
-        let Worker { rows_of_plane, papers, left } = worker;
+        let Worker { rows_of_plane, wardrobe, left } = worker;
         let mut spent = T::default();
         let tally = &mut spent;
         let plane = |kind| Plane { scene, kind, sky, height };
@@ -103,7 +103,7 @@ impl Shared<'_> {
             }
         }
         plane(PlaneKind::Floor).draw(plan.floor, rows_of_plane, band, tally);
-        walls::draw(scene, plan.walls, papers, band, tally);
+        walls::draw(scene, plan.walls, wardrobe, band, tally);
         match plan.things {
             ThingLoop::None => see_through::draw(scene, passed, marks, band, tally),
             ThingLoop::Billboards => {

@@ -4,7 +4,7 @@
 //! vertically that divided by the shape of a pixel, so that a cube looks like a cube. Rows and
 //! columns are taken at the centres of pixels.
 
-use std::ops::Range;
+use std::ops::{Range, RangeInclusive};
 
 use glam::DVec2;
 
@@ -86,10 +86,23 @@ impl Projection {
     ///
     /// A ray's `t` is the distance to the camera plane, so nothing needs correcting afterwards.
     pub(super) fn rays(&self) -> impl Iterator<Item = Ray> {
-        (0..self.width).map(move |column| {
-            Ray::new(self.origin, self.direction_of(column))
-                .expect("a camera is at a finite place, and its plane is not parallel to its view")
-        })
+        (0..self.width).map(|column| self.ray(column))
+    }
+
+    /// The ray of `column`.
+    #[inline]
+    pub(super) fn ray(&self, column: u32) -> Ray {
+        Ray::new(self.origin, self.direction_of(column))
+            .expect("a camera is at a finite place, and its plane is not parallel to its view")
+    }
+
+    /// Whether rays side by side differ by far more than rounding.
+    pub(super) fn fans_out(&self) -> bool {
+        /// Half of that field of view is between 0.06° and 89.94°.
+        const MODERATE: RangeInclusive<f64> = 1e-3..=1e3;
+        /// At most so many rays.
+        const WIDEST: u32 = 1 << 16;
+        MODERATE.contains(&self.plane.length()) && self.width <= WIDEST
     }
 
     /// The direction of the ray of `column`.

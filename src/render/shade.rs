@@ -9,16 +9,16 @@ use crate::cast::Side;
 use crate::world::{Fog, Light, Rgb};
 
 /// What becomes of a colour.
-pub(super) trait Shade: Copy {
+pub(super) trait Shade: Copy + PartialEq {
     fn apply(self, color: Rgb) -> Rgb;
 }
 
 /// Nothing: it is near, and in full light.
-#[derive(Clone, Copy)]
+#[derive(Clone, Copy, PartialEq)]
 pub(super) struct Bright;
 
 /// Half as bright on a y-side, so that the edge between the two kinds of side shows.
-#[derive(Clone, Copy)]
+#[derive(Clone, Copy, PartialEq)]
 pub(super) struct OfSide(pub(super) Side);
 
 /// It fades.

@@ -5,8 +5,6 @@
 //! step is one addition. Counting in doubles was refused: a conversion and a floor for each pixel
 //! took half the time of a whole frame.
 
-use std::iter;
-
 /// The texels of an upright face.
 #[derive(Clone, Copy, Debug)]
 pub(super) struct Texels {
@@ -79,19 +77,6 @@ impl TexelsDown {
         // A division takes as long as all the rest.
         let is_first = (0..self.count).contains(&texel);
         (if is_first { texel } else { texel.rem_euclid(self.count) }) as usize
-    }
-
-    /// The texels of all rows from `row` on, of a wall that one texture covers. By rounding, the
-    /// last of them may be one too many.
-    #[inline]
-    pub(super) fn from(self, row: u32) -> impl Iterator<Item = usize> {
-        let mut place = self.place(row);
-        iter::repeat_with(move || {
-            // On the face it is not negative: the hair is wider than all rounding.
-            let texel = (place >> TEXEL_BITS) as usize;
-            place = place.wrapping_add(self.step);
-            texel
-        })
     }
 
     /// Where the centre of `row` is and how far it is to the next one, such that the texel is what

@@ -124,6 +124,16 @@ pub(super) struct Places {
 }
 
 impl Places {
+    /// The first of them, along both axes.
+    pub(super) fn first(&self) -> [u64; 2] {
+        [self.x, self.y]
+    }
+
+    /// From one to the next, along both axes.
+    pub(super) fn steps(&self) -> [u64; 2] {
+        [self.x_step, self.y_step]
+    }
+
     /// Goes on by so many pixels.
     pub(super) fn skip_pixels(&mut self, count: u64) {
         self.x = self.x.wrapping_add(self.x_step.wrapping_mul(count));

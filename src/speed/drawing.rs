@@ -6,9 +6,9 @@ use std::time::{Duration, Instant};
 
 use super::{Classic, ClassicFloor, fill, pixel_aspect, plain_scene, textured_scene, walk};
 use crate::render::{Frame, FrameSize, Renderer};
-use crate::world::{Camera, World};
+use crate::world::{Camera, FieldOfView, World};
 
-/// What was measured of one scene at one size: the medians of all frames, in nanoseconds a pixel.
+/// What was measured of one scene at one size, in nanoseconds a pixel.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct DrawingRow {
     /// What is drawn.
@@ -48,97 +48,137 @@ pub(super) const fn size(width: u32, height: u32) -> FrameSize {
     }
 }
 
-/// Cameras along the walk, one a picture.
-const CAMERAS: usize = 32;
-/// From one of them to the next that is used, so that a few are spread over all of the walk.
-const STRIDE: usize = 13;
-/// How often everything is timed at least.
-const FEWEST_TURNS: u32 = 3;
+/// Cameras along the walk.
+const CAMERAS: usize = 64;
+/// From each of them to the one that is next: however few have their turn, they are from all of the
+/// walk, and in the end all have.
+const STRIDE: usize = 39;
+/// How often everything is timed from a camera before it is the turn of the next one.
+const TURNS: usize = 3;
 
 /// Draws each scene at each size, and takes about so long altogether.
+///
+/// From a camera all draw in turns, so that a machine that is busy slows all of them down. Of each
+/// camera's times the median counts, and of those the mean over the cameras that had their turn.
 pub fn measure_drawing(time: Duration) -> Vec<DrawingRow> {
     let scenes = [(Scene::Planes, textured_scene()), (Scene::Walls, plain_scene())];
-    let share = time / (SIZES.len() * scenes.len()) as u32;
-    let rows = SIZES.iter().flat_map(|&size| scenes.iter().map(move |scene| (size, scene)));
-    rows.map(|(size, (scene, world))| measure(*scene, world, size, share)).collect()
+    let rows = || SIZES.iter().flat_map(|&size| scenes.iter().map(move |scene| (size, scene)));
+    let all: f64 = rows().map(|(size, (scene, _))| share(*scene, size)).sum();
+    let measured = rows().map(|(size, (scene, world))| {
+        let time = time.mul_f64(share(*scene, size) / all);
+        Contest::new(*scene, world, size).measure(time)
+    });
+    measured.collect()
 }
 
-/// All of them take their turns one after the other, so that a machine that is busy slows all of them
-/// down.
-fn measure(scene: Scene, world: &World, size: FrameSize, time: Duration) -> DrawingRow {
-    let (width, height) = (size.width.get(), size.height.get());
-    let mut frame = Frame::new(size, pixel_aspect(size));
-    let mut pixels = vec![0; width as usize * height as usize];
-    let (mut alone, mut together) = (Renderer::new(), Renderer::new());
-    alone.set_threads(NonZero::<usize>::MIN);
-    let classic = Classic::new(world);
-    let floors = match scene {
-        Scene::Planes => &[ClassicFloor::ByColumn, ClassicFloor::ByScanline][..],
-        Scene::Walls => &[ClassicFloor::None],
-    };
-    let mut times = Times::of_floors(floors.len());
-    let cameras = walk(world, CAMERAS);
-    let threads = together.explain(world, &cameras[0], &mut frame).plan.threads.count();
-    let begun = Instant::now();
-    for (turn, camera) in (0..).zip(cameras.iter().cycle().step_by(STRIDE)) {
-        if turn > FEWEST_TURNS && begun.elapsed() >= time {
-            break;
-        }
-        times.ours.push(seconds(|| alone.render(world, camera, black_box(&mut frame))));
-        times.fill.push(seconds(|| fill(black_box(&mut pixels), turn)));
-        if threads > 1 {
-            let by_threads = seconds(|| together.render(world, camera, black_box(&mut frame)));
-            times.by_threads.push(by_threads);
-        }
-        for (&floor, times) in floors.iter().zip(&mut times.classic) {
-            times.push(seconds(|| draw_classic(&classic, camera, floor, size, &mut pixels)));
-        }
-        if turn == 0 {
-            // The first of all fetches everything.
-            times.clear();
+/// How much of the time should be spent on such pictures, in parts of whatever it is: large ones take
+/// longer, but fewer of them are enough.
+fn share(scene: Scene, size: FrameSize) -> f64 {
+    let pixels = f64::from(size.width.get()) * f64::from(size.height.get());
+    pixels.sqrt() * (1 + scene.floors().len()) as f64
+}
+
+impl Scene {
+    /// How the classic loop may draw its floor.
+    fn floors(self) -> &'static [ClassicFloor] {
+        match self {
+            Self::Planes => &[ClassicFloor::ByColumn, ClassicFloor::ByScanline],
+            Self::Walls => &[ClassicFloor::None],
         }
     }
-    let a_pixel = 1e9 / (f64::from(width) * f64::from(height));
-    let classic = times.classic.into_iter().map(median).fold(f64::INFINITY, f64::min);
-    let (ours, fill) = (median(times.ours), median(times.fill));
-    let by_threads = if threads > 1 { median(times.by_threads) } else { ours };
-    let [ours, by_threads, classic, fill] =
-        [ours, by_threads, classic, fill].map(|seconds| seconds * a_pixel);
-    DrawingRow { scene, size, ours, threads, by_threads, classic, fill }
 }
 
-fn draw_classic(
-    classic: &Classic,
-    camera: &Camera,
-    floor: ClassicFloor,
+/// All who draw a scene at one size, and what they draw on.
+struct Contest<'a> {
+    scene: Scene,
+    world: &'a World,
     size: FrameSize,
-    pixels: &mut [u32],
-) {
-    let size = (size.width.get() as usize, size.height.get() as usize);
-    classic.draw(camera, floor, size, black_box(pixels));
+    alone: Renderer,
+    together: Renderer,
+    threads: usize,
+    classic: Classic,
+    frame: Frame,
+    pixels: Vec<u32>,
 }
 
-/// In seconds, turn by turn.
+/// What everyone took from one camera, in seconds.
+#[derive(Clone, Default)]
 struct Times {
     ours: Vec<f64>,
     by_threads: Vec<f64>,
-    classic: Vec<Vec<f64>>,
     fill: Vec<f64>,
+    /// With each of the scene's floors.
+    classic: [Vec<f64>; 2],
 }
 
-impl Times {
-    /// None yet, of a scene whose floor is drawn in so many ways by the classic loop.
-    fn of_floors(count: usize) -> Self {
-        let none = Vec::new;
-        Self { ours: none(), by_threads: none(), classic: vec![none(); count], fill: none() }
+impl<'a> Contest<'a> {
+    fn new(scene: Scene, world: &'a World, size: FrameSize) -> Self {
+        let mut frame = Frame::new(size, pixel_aspect(size));
+        let (mut alone, mut together) = (Renderer::new(), Renderer::new());
+        alone.set_threads(NonZero::<usize>::MIN);
+        let start = world.start_camera(FieldOfView::default());
+        let threads = together.explain(world, &start, &mut frame).plan.threads.count();
+        let pixels = vec![0; frame.width() as usize * frame.height() as usize];
+        let classic = Classic::new(world);
+        Self { scene, world, size, alone, together, threads, classic, frame, pixels }
     }
 
-    fn clear(&mut self) {
-        self.ours.clear();
-        self.by_threads.clear();
-        self.classic.iter_mut().for_each(Vec::clear);
-        self.fill.clear();
+    fn measure(mut self, time: Duration) -> DrawingRow {
+        let cameras = walk(self.world, CAMERAS);
+        // The first of all fetches everything.
+        self.take_turns(&cameras[0], 1, &mut Times::default());
+        let mut times = vec![Times::default(); CAMERAS];
+        let begun = Instant::now();
+        for index in (0..).map(|index| index * STRIDE % CAMERAS) {
+            self.take_turns(&cameras[index], TURNS, &mut times[index]);
+            if begun.elapsed() >= time {
+                break;
+            }
+        }
+        self.row(&times)
     }
+
+    /// Has everyone draw from `camera` so often, one after the other.
+    fn take_turns(&mut self, camera: &Camera, turns: usize, times: &mut Times) {
+        let Self { scene, world, size, alone, together, threads, classic, frame, pixels } = self;
+        let size = (size.width.get() as usize, size.height.get() as usize);
+        for turn in 0..turns {
+            times.ours.push(seconds(|| alone.render(world, camera, black_box(frame))));
+            times.fill.push(seconds(|| fill(black_box(pixels), turn as u32)));
+            if *threads > 1 {
+                let draw = || together.render(world, camera, black_box(frame));
+                times.by_threads.push(seconds(draw));
+            }
+            for (times, &floor) in times.classic.iter_mut().zip(scene.floors()) {
+                times.push(seconds(|| classic.draw(camera, floor, size, black_box(pixels))));
+            }
+        }
+    }
+
+    /// What comes of the times from all cameras.
+    fn row(&self, times: &[Times]) -> DrawingRow {
+        let Self { scene, size, threads, .. } = *self;
+        let seen = || times.iter().filter(|times| !times.ours.is_empty());
+        let a_pixel = 1e9 / self.pixels.len() as f64;
+        let ours = a_pixel * mean_of_medians(seen().map(|times| &times.ours));
+        let by_threads = a_pixel * mean_of_medians(seen().map(|times| &times.by_threads));
+        let with_floor = |floor| mean_of_medians(seen().map(|times: &Times| &times.classic[floor]));
+        let classic = (0..scene.floors().len()).map(with_floor).fold(f64::INFINITY, f64::min);
+        DrawingRow {
+            scene,
+            size,
+            ours,
+            threads,
+            by_threads: if threads > 1 { by_threads } else { ours },
+            classic: a_pixel * classic,
+            fill: a_pixel * mean_of_medians(seen().map(|times| &times.fill)),
+        }
+    }
+}
+
+fn mean_of_medians<'a>(lists: impl Iterator<Item = &'a Vec<f64>>) -> f64 {
+    let medians: Vec<_> = lists.map(|times| median(times.clone())).collect();
+    medians.iter().sum::<f64>() / medians.len() as f64
 }
 
 /// How long `work` takes, in seconds.

@@ -105,6 +105,11 @@ impl LevelByShifts<'_> {
         x >> self.shift_x & self.mask_x | y >> self.shift_y & self.mask_y
     }
 
+    /// Which bits of that index are due to the place along each axis.
+    pub(crate) fn masks(self) -> [u32; 2] {
+        [self.mask_x, self.mask_y]
+    }
+
     /// The texel at one of those indices.
     #[inline]
     pub(crate) fn at_index(self, index: u32) -> Rgb {
