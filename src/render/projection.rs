@@ -36,6 +36,10 @@ pub(super) struct Projection {
     focal_length_across: f64,
 }
 
+/// How far above the eye something is: in rows above the horizon, from a distance of 1; negative below.
+#[derive(Clone, Copy, Debug)]
+pub(super) struct Rise(f64);
+
 /// Where something is in a picture.
 #[derive(Clone, Copy, Debug)]
 pub(super) struct Place {
@@ -107,13 +111,20 @@ impl Projection {
         self.first_row_below(self.horizon - above)..self.first_row_below(self.horizon + below)
     }
 
-    /// The first row whose centre is not above what is at `height` and distance `t`.
-    pub(super) fn row_of(&self, height: f64, t: f64) -> u32 {
+    /// How far above the eye `height` is.
+    pub(super) fn rise_to(&self, height: f64) -> Rise {
         let rise = height - self.eye;
+        // What is at eye height is so through an infinitely long lens, too.
+        Rise(if rise == 0.0 { 0.0 } else { rise * self.focal_length })
+    }
+
+    /// The first row whose centre is not above what rises by `rise` and is at distance `t`.
+    #[inline]
+    pub(super) fn row_of(&self, Rise(rise): Rise, t: f64) -> u32 {
         if rise == 0.0 {
-            return self.first_row_below(self.horizon);
+            return self.first_row_of_ground();
         }
-        self.first_row_below(self.horizon - rise * self.focal_length / t)
+        self.first_row_below(self.horizon - rise / t)
     }
 
     /// The texels of a wall at distance `t`, `count` from its top to its bottom.
@@ -219,11 +230,13 @@ impl Projection {
 
     /// The first row that shows the ground where nothing is in the way: the first one with its
     /// centre at the horizon or below.
+    #[inline]
     pub(super) fn first_row_of_ground(&self) -> u32 {
         self.first_row_below(self.horizon)
     }
 
     /// The first row with its centre at `y` or below; the number of rows where there is none.
+    #[inline]
     fn first_row_below(&self, y: f64) -> u32 {
         // The cast takes what is not a number, as of a wall infinitely far through an infinitely
         // long lens, to 0.

@@ -7,7 +7,9 @@
 
 use glam::DVec2;
 
-use super::{Between, IMAGES_AT_ONCE, Reflection, Scene, Veil};
+use super::things::Between;
+use super::veils::Veil;
+use super::{IMAGES_AT_ONCE, Reflection, Scene};
 use crate::cast::Unfolding;
 use crate::render::things::Sight;
 use crate::world::{Thing, World};
@@ -103,10 +105,9 @@ mod tests {
     use proptest::prelude::*;
 
     use super::super::Windows;
-    use super::super::look::Look;
     use super::*;
     use crate::map;
-    use crate::render::{Filter, Frame, FrameSize, PixelAspect, Projection};
+    use crate::render::{Filter, FrameSize, PixelAspect, Projection};
     use crate::world::{Camera, FieldOfView, Heading};
 
     const SIDE: usize = 12;
@@ -145,20 +146,16 @@ mod tests {
             let projection = &Projection::new(&camera, size, PixelAspect::SQUARE);
             let scene = Scene::new(world, projection, Filter::Mip);
             let mut windows = Windows::default();
-            let frame = Frame::new(size, PixelAspect::SQUARE);
-            windows.begin(&frame);
-            for (x, ray) in projection.rays().enumerate() {
-                Look::new(scene, x, frame.height(), &mut windows).follow(&ray);
-            }
+            windows.look(scene, size.height.get(), &mut Vec::new());
             let mut sights = Sights::default();
-            sights.look(scene, &windows.images, &windows.veils);
-            let considered: Vec<BTreeSet<_>> = (0..windows.images.len())
+            sights.look(scene, &windows.notes.images, &windows.notes.veils);
+            let considered: Vec<BTreeSet<_>> = (0..windows.notes.images.len())
                 .map(|image| sights.things(image, world).map(|thing| thing.cell).collect())
                 .collect();
-            for veil in &windows.veils {
+            for veil in &windows.notes.veils {
                 let Veil::Things(between) = veil else { continue };
                 let Reflection(image) = between.reflection;
-                let unfolding = windows.images[usize::from(image)];
+                let unfolding = windows.notes.images[usize::from(image)];
                 for thing in world.things() {
                     let place = projection.place(unfolding.unfolded_point(thing.cell.center()));
                     let width = world.sprite(thing.sprite).width();

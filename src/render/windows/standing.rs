@@ -6,7 +6,8 @@ use glam::DVec2;
 
 use super::faces::{Facing, Stretch};
 use super::look::{Branch, Look, Met, Place};
-use super::{Part, Piece, Reflection, Shown};
+use super::notes::Shown;
+use super::{Part, Piece, Reflection};
 use crate::cast::{Hit, Ray, Side};
 use crate::world::{Cell, Outline, Tile, TileKind};
 
@@ -15,7 +16,7 @@ impl Look<'_> {
     pub(super) fn meet_standing(&mut self, branch: &mut Branch) {
         let Some((cell, kind)) = self.kind(branch.place) else { return };
         let Some(tile) = self.tile(branch.place) else { return };
-        if branch.gap.bottom != tile.heights.floor() {
+        if branch.slot.gap.bottom != tile.heights.floor() {
             return;
         }
         if let Some(hit) = branch.walk.standing(self.scene.world, cell, kind) {
@@ -53,10 +54,12 @@ impl Look<'_> {
             Facing::Normal(normal) => normal.dot(ray.direction()),
         };
         let met = Met { side: hit.side, facing, slope, t: hit.t, u: hit.u, before };
-        let rows = self.rows(&branch.window, bottom, top, hit.t);
-        branch.window = self.rows(&branch.window, top, f64::INFINITY, hit.t);
+        let stretch = Stretch { bottom, top };
+        let rows = self.scene.rows_between(&branch.window, stretch, hit.t);
+        let above = self.scene.projection.row_of(self.scene.projection.rise_to(top), hit.t);
+        branch.window.end = branch.window.end.min(above);
         let light = self.light(branch.place, &met);
-        self.face(rows, &met, paint, light, Stretch { bottom, top });
+        self.face(rows, &met, paint, light, stretch);
         if branch.reflection == Reflection::NONE {
             self.hit = Some(hit);
             self.distance = self.distance.max(hit.t);
@@ -72,8 +75,9 @@ impl Look<'_> {
         let tile = branch.place.map(|(_, tile)| tile);
         let piece = Piece { tile, part: Part::Top, reflection: branch.reflection };
         let Range { start, end: bottom } = branch.window;
-        let row = self.scene.projection.row_of(top, end).clamp(start, bottom);
-        self.show(row..bottom, Shown::Plane(piece));
+        let projection = self.scene.projection;
+        let row = projection.row_of(projection.rise_to(top), end).clamp(start, bottom);
+        self.notes.show(row..bottom, Shown::Plane(piece));
         branch.window = start..row;
     }
 

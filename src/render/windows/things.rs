@@ -11,16 +11,18 @@ use std::ops::Range;
 use glam::DVec2;
 
 use super::sights::Sights;
-use super::{IMAGES_AT_ONCE, Reflection, Scene, Veil, Viewer, rows_between};
+use super::veils::Veil;
+use super::{IMAGES_AT_ONCE, Reflection, Scene, Viewer};
 use crate::cast::{Side, Unfolding};
 use crate::render::Surface;
 use crate::render::band::Band;
 use crate::render::marks::MarksOfBand;
+use crate::render::projection::Rise;
 use crate::render::shade::{Faded, Shade};
 use crate::render::tally::{Pass, Tally};
 use crate::render::things::NEAREST;
 use crate::world::sprite::builtin;
-use crate::world::{Camera, Cell, Gap, Light, Sprite, SpriteId, Thing};
+use crate::world::{Camera, Cell, Light, Sprite, SpriteId, Thing};
 
 /// A part of a ray that is in one gap.
 #[derive(Clone, Debug)]
@@ -30,7 +32,8 @@ pub(super) struct Between {
     pub(super) rows: Range<u32>,
     pub(super) from: f64,
     pub(super) to: f64,
-    pub(super) gap: Gap,
+    pub(super) bottom: Rise,
+    pub(super) top: Rise,
     pub(super) reflection: Reflection,
 }
 
@@ -232,9 +235,10 @@ impl Billboard {
     ) {
         let projection = scene.projection;
         let own = projection.rows_between(self.top, self.bottom);
-        let Gap { bottom, top } = between.gap;
-        let in_gap = rows_between(projection, &between.rows, bottom, top, self.depth);
-        let rows = own.start.max(in_gap.start)..own.end.min(in_gap.end);
+        let top = projection.row_of(between.top, self.depth);
+        let bottom = projection.row_of(between.bottom, self.depth);
+        let start = own.start.max(between.rows.start).max(top);
+        let rows = start..own.end.min(between.rows.end).min(bottom);
         if rows.is_empty() {
             return;
         }

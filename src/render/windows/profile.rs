@@ -1,0 +1,89 @@
+//! Profiles: what a ray wants to know of a tile in every cell that it crosses.
+//!
+//! They are made once a frame, from where the eye is. To ask the tile itself in each cell was refused: it
+//! is a large value of many cases, and a ray mostly needs to know where its gaps are.
+
+use super::look::Place;
+use super::{Part, Scene};
+use crate::render::projection::Rise;
+use crate::world::{Gap, Heights, Tile, TileKind};
+
+/// Those of all tiles.
+#[derive(Clone, Debug, Default)]
+pub(super) struct Profiles {
+    /// The first one is that of what is off the map.
+    list: Vec<Profile>,
+}
+
+/// What is open in a cell, and whether anything stands there.
+#[derive(Clone, Copy, Debug)]
+pub(super) struct Profile {
+    pub(super) lowest: Slot,
+    pub(super) upper: Option<Slot>,
+    /// Whether it is seen in front of what is behind the cell, though it does not fill it: a leaf or a shape.
+    pub(super) holds_something: bool,
+}
+
+/// A gap as the eye sees it.
+#[derive(Clone, Copy, Debug)]
+pub(super) struct Slot {
+    pub(super) gap: Gap,
+    pub(super) bottom: Rise,
+    pub(super) top: Rise,
+    /// What its bottom is.
+    pub(super) below: Part,
+}
+
+impl Profiles {
+    /// Makes those of all tiles in `scene`.
+    pub(super) fn begin(&mut self, scene: Scene<'_>) {
+        let beyond = Gap { bottom: 0.0, top: f64::INFINITY };
+        let beyond = Profile {
+            lowest: Slot::new(scene, beyond, Part::Floor),
+            upper: None,
+            holds_something: false,
+        };
+        let of_tiles = scene.world.tiles().iter().map(|tile| Profile::new(scene, tile));
+        self.list.clear();
+        self.list.extend([beyond].into_iter().chain(of_tiles));
+    }
+
+    /// That of what is in `place`.
+    #[inline]
+    pub(super) fn of(&self, place: Place) -> &Profile {
+        &self.list[place.map_or(0, |(_, tile)| usize::from(tile.0) + 1)]
+    }
+}
+
+impl Profile {
+    fn new(scene: Scene<'_>, tile: &Tile) -> Self {
+        let mut gaps = tile.gaps();
+        let lowest = gaps.next().unwrap_or(BOTTOMLESS);
+        Self {
+            lowest: Slot::new(scene, lowest, Part::Floor),
+            upper: gaps.next().map(|gap| Slot::new(scene, gap, Part::Roof)),
+            holds_something: matches!(tile.kind, TileKind::Door(_) | TileKind::Shape(_)),
+        }
+    }
+
+    /// From the lowest up.
+    #[inline]
+    pub(super) fn slots(&self) -> impl Iterator<Item = &Slot> {
+        [&self.lowest].into_iter().chain(&self.upper)
+    }
+}
+
+impl Slot {
+    fn new(scene: Scene<'_>, gap: Gap, below: Part) -> Self {
+        let rise_to = |height| scene.projection.rise_to(height);
+        Self { gap, bottom: rise_to(gap.bottom), top: rise_to(gap.top), below }
+    }
+
+    /// Where an eye is that is in no gap at all.
+    pub(super) fn bottomless(scene: Scene<'_>) -> Self {
+        Self::new(scene, BOTTOMLESS, Part::Roof)
+    }
+}
+
+/// Everything that there may be.
+pub(super) const BOTTOMLESS: Gap = Gap { bottom: -2.0 * Heights::MOST, top: 2.0 * Heights::MOST };
