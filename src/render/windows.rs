@@ -42,6 +42,7 @@ use look::{Branch, Look};
 use notes::{Notes, Shown};
 use profile::Profiles;
 use things::Billboards;
+use veils::Layer;
 
 /// There is room for so many images in mirrors from the first frame on.
 const IMAGES_AT_ONCE: usize = 64;
@@ -54,6 +55,7 @@ pub(super) struct Windows {
     /// Where a ray still has to be followed.
     branches: Vec<Branch>,
     billboards: Billboards,
+    layers: Vec<Layer>,
     /// In which column the span begins that each row is in.
     starts: Vec<usize>,
 }
@@ -166,15 +168,16 @@ pub(super) fn draw<T: Tally>(
     windows.look(scene, frame.height(), columns);
     marks.begin(frame.width(), frame.height());
     let (band, marks) = (&mut frame.whole(), &mut marks.whole());
-    let Windows { notes, billboards, starts, .. } = windows;
+    let Windows { notes, billboards, layers, starts, .. } = windows;
     notes.counts.faces = notes.faces.len() as u64;
     notes.counts.spans = planes::draw(scene, sky, notes, starts, band, tally);
     faces::draw(scene, plan, &notes.faces, band, tally);
 
     if scene.has_things {
-        billboards.find(scene, &notes.images, &notes.veils, viewer);
+        billboards.find(scene, notes, viewer);
     }
-    veils::draw(scene, &notes.veils, billboards, marks, band, tally);
+    veils::lay_out(scene, notes, billboards, layers);
+    veils::draw(scene, (&notes.panes, billboards, layers), marks, band, tally);
     if !scene.has_things {
         return None;
     }

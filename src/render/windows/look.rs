@@ -5,7 +5,7 @@ use std::ops::Range;
 use glam::DVec2;
 
 use super::faces::{Face, Facing, Stretch};
-use super::notes::{Notes, Shown};
+use super::notes::{Leg, Notes, Shown};
 use super::profile::{Profiles, Slot};
 use super::things::Between;
 use super::veils::{Film, Pane, Veil};
@@ -109,10 +109,22 @@ impl<'a> Look<'a> {
     }
 
     fn follow_branch(&mut self, mut branch: Branch) {
+        let start = branch.from;
+        self.follow_on(&mut branch);
+        if self.scene.has_things {
+            let (origin, unfolding) = (self.scene.projection.origin(), branch.walk.unfolding());
+            let end = |t: f64| unfolding.real_point(origin + self.direction * t);
+            let ends = [start, branch.from].map(end);
+            self.notes.legs.push(Leg { ends, reflection: branch.reflection });
+        }
+    }
+
+    /// Follows `branch` as far as it goes.
+    fn follow_on(&mut self, branch: &mut Branch) {
         let grid = self.scene.world.grid();
         loop {
             if self.profiles.of(branch.place).holds_something {
-                self.meet_standing(&mut branch);
+                self.meet_standing(branch);
                 if branch.window.is_empty() {
                     return;
                 }
@@ -126,7 +138,7 @@ impl<'a> Look<'a> {
                 continue;
             }
             let (t, u) = branch.walk.meeting(&crossed);
-            self.lay(&mut branch, t);
+            self.lay(branch, t);
             if branch.reflection == Reflection::NONE {
                 self.distance = self.distance.max(t);
             }
@@ -139,7 +151,7 @@ impl<'a> Look<'a> {
                 Side::Y => self.direction.y,
             };
             let met = Met { side, facing: Facing::Side(side), slope, t, u, before: branch.place };
-            if !self.share_out(&mut branch, crossed.into, &met) {
+            if !self.share_out(branch, crossed.into, &met) {
                 return;
             }
         }
@@ -196,8 +208,9 @@ impl<'a> Look<'a> {
         let light = self.light(place, met);
         let &Met { facing, slope, t, u, .. } = met;
         let column = self.column;
+        self.notes.veils.push(Veil::Pane(self.notes.panes.len()));
         let pane = Pane { column, rows, facing, slope, t, u, light, film, stretch };
-        self.notes.veils.push(Veil::Pane(pane));
+        self.notes.panes.push(pane);
     }
 
     /// Notes that things are seen by `branch` before it gets to `to`.

@@ -6,8 +6,10 @@
 
 use std::ops::Range;
 
+use glam::DVec2;
+
 use super::faces::Face;
-use super::veils::Veil;
+use super::veils::{Pane, Veil};
 use super::{IMAGES_AT_ONCE, Piece, Reflection, WindowCounts};
 use crate::cast::{Side, Unfolding};
 
@@ -24,6 +26,9 @@ pub(super) struct Notes {
     pub(super) faces: Vec<Face>,
     /// What is seen through: in each column, what is further comes later.
     pub(super) veils: Vec<Veil>,
+    pub(super) panes: Vec<Pane>,
+    /// Where things may be in view.
+    pub(super) legs: Vec<Leg>,
 
     /// Where what is seen is on the map: first as it is, and then in mirrors.
     pub(super) images: Vec<Unfolding>,
@@ -35,6 +40,13 @@ pub(super) struct Notes {
 pub(super) struct Run {
     pub(super) rows: Range<u32>,
     pub(super) shown: Shown,
+}
+
+/// The part of a ray that is seen in one image: where it begins and ends on the map.
+#[derive(Clone, Debug)]
+pub(super) struct Leg {
+    pub(super) ends: [DVec2; 2],
+    pub(super) reflection: Reflection,
 }
 
 /// What a pixel shows behind all that is seen through.
@@ -60,6 +72,10 @@ impl Notes {
         self.faces.reserve(width * OF_A_RAY);
         self.veils.clear();
         self.veils.reserve(width * OF_A_RAY);
+        self.panes.clear();
+        self.panes.reserve(width * OF_A_RAY);
+        self.legs.clear();
+        self.legs.reserve(width * OF_A_RAY);
 
         self.images.clear();
         self.images.reserve(IMAGES_AT_ONCE);

@@ -4,7 +4,8 @@ use std::ops::Range;
 
 use super::Scene;
 use super::faces::{Facing, Stretch};
-use super::things::{Between, Billboards};
+use super::notes::Notes;
+use super::things::{Between, Billboards, Strip};
 use crate::cast::Side;
 use crate::render::Surface;
 use crate::render::band::Band;
@@ -13,12 +14,21 @@ use crate::render::shade::{Faded, Shade};
 use crate::render::tally::{Pass, Tally};
 use crate::world::{Glass, Light, TextureId};
 
-/// What is painted over what is behind it, as wide as a pixel.
+/// What a ray passes.
 #[derive(Clone, Debug)]
 pub(super) enum Veil {
-    Pane(Pane),
+    /// Which of all panes.
+    Pane(usize),
     /// The things in a part of the ray.
     Things(Between),
+}
+
+/// What is painted over what is behind it, as wide as a pixel.
+#[derive(Clone, Debug)]
+pub(super) enum Layer {
+    /// Which of all panes.
+    Pane(usize),
+    Thing(Strip),
 }
 
 /// Something to see through, or the tint of a mirror.
@@ -43,19 +53,38 @@ pub(super) enum Film {
     Glass(Glass),
 }
 
-/// Draws all of `veils`, the last ones first: in a column they are further away.
+/// Finds out in `layers` what is to be painted for the veils of `notes`: in each column, what is nearer
+/// comes later.
+pub(super) fn lay_out(
+    scene: Scene<'_>,
+    notes: &Notes,
+    billboards: &mut Billboards,
+    layers: &mut Vec<Layer>,
+) {
+    layers.clear();
+    layers.reserve(notes.veils.capacity());
+    for veil in notes.veils.iter().rev() {
+        match veil {
+            &Veil::Pane(index) => layers.push(Layer::Pane(index)),
+            Veil::Things(between) => {
+                billboards.cut(scene, between, |strip| layers.push(Layer::Thing(strip)));
+            }
+        }
+    }
+}
+
+/// Paints all `layers`.
 pub(super) fn draw<T: Tally>(
     scene: Scene<'_>,
-    veils: &[Veil],
-    billboards: &mut Billboards,
+    (panes, billboards, layers): (&[Pane], &Billboards, &[Layer]),
     marks: &mut MarksOfBand<'_>,
     band: &mut Band<'_>,
     tally: &mut T,
 ) {
-    for veil in veils.iter().rev() {
-        match veil {
-            Veil::Pane(pane) => pane.draw(scene, marks, band, tally),
-            Veil::Things(between) => billboards.draw(scene, between, marks, band, tally),
+    for layer in layers {
+        match layer {
+            &Layer::Pane(index) => panes[index].draw(scene, marks, band, tally),
+            Layer::Thing(strip) => billboards.draw(scene, strip, marks, band, tally),
         }
     }
 }
