@@ -10,8 +10,8 @@ use glam::DVec2;
 
 use super::Axis;
 use crate::cast::hit::{meeting, texture_coordinate};
-use crate::cast::{ExactOrder, Hit, Order, Ray, Side, door, shape};
-use crate::world::{Cell, Grid, Shape, TileId, TileKind, World};
+use crate::cast::{ExactOrder, Order, Passage, Ray, Side, door};
+use crate::world::{Cell, Grid, TileId, TileKind, World};
 
 /// Where places of the unfolded map are on the map itself.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Default)]
@@ -117,20 +117,18 @@ impl UnfoldedWalk {
         self.bounces += 1;
     }
 
-    /// Where the ray meets what stands in `cell`, where it is now, and does not fill it: a door's leaf
-    /// or a shape. `None` where it passes by, or there is neither.
-    pub(crate) fn standing(&self, world: &World, cell: Cell, kind: TileKind) -> Option<Hit> {
+    /// Where the ray passes through what stands in `cell`, where it is now, and does not fill it: a
+    /// door's leaf, which has no inside, or a shape.
+    pub(crate) fn standing(&self, world: &World, cell: Cell, kind: TileKind) -> Passage {
         let ray = self.real_ray();
         match kind {
-            TileKind::Door(_) => door::meet(world.grid(), &ray, cell, world.opening(cell)),
-            TileKind::Shape(it) => shape::meet(&ray, cell, it.outline),
-            _ => None,
+            TileKind::Door(_) => {
+                let hit = door::meet(world.grid(), &ray, cell, world.opening(cell));
+                Passage { hit, end: None }
+            }
+            TileKind::Shape(it) => Passage::new(&ray, cell, it.outline),
+            _ => Passage::NONE,
         }
-    }
-
-    /// Where the ray comes out of the shape in `cell`, where it is now, if it has been inside.
-    pub(crate) fn leaving(&self, cell: Cell, shape: Shape) -> Option<f64> {
-        shape::leave(&self.real_ray(), cell, shape.outline)
     }
 
     /// The ray as it is on the map after all reflections, as if it had come straight.
@@ -210,7 +208,7 @@ mod tests {
     use proptest::prelude::*;
 
     use super::*;
-    use crate::cast::Walk;
+    use crate::cast::{Hit, Walk};
 
     proptest! {
         /// Without a mirror it is the walk in the exact order, and meets what that meets.

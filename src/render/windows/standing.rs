@@ -8,7 +8,7 @@ use super::faces::{Facing, Stretch};
 use super::look::{Branch, Look, Met, Place};
 use super::notes::Shown;
 use super::{Part, Piece, Reflection};
-use crate::cast::{Hit, Ray, Side};
+use crate::cast::{Hit, Passage, Ray, Side};
 use crate::world::{Cell, Outline, Tile, TileKind};
 
 impl Look<'_> {
@@ -19,16 +19,15 @@ impl Look<'_> {
         if branch.slot.gap.bottom != tile.heights.floor() {
             return;
         }
-        if let Some(hit) = branch.walk.standing(self.scene.world, cell, kind) {
+        let Passage { hit, end } = branch.walk.standing(self.scene.world, cell, kind);
+        if let Some(hit) = hit {
             // A ray that was reflected in this cell may have been nowhere near before that.
             if branch.reflection != Reflection::NONE && hit.t < branch.from {
                 return;
             }
             self.meet_side(branch, kind, tile, hit);
         }
-        if let TileKind::Shape(shape) = kind
-            && let Some(end) = branch.walk.leaving(cell, shape)
-        {
+        if let Some(end) = end {
             self.look_down_at(branch, tile.top_of_what_stands(), end);
         }
     }
