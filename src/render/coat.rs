@@ -91,6 +91,32 @@ impl<'a, S: Shade> Cover<'a, S> {
         paper[texels.len()] = paper[texels.len() - 1];
         Self::Paper(down)
     }
+
+    /// Of these `rows` of a face that may show its texels again and again, or only some of them.
+    pub(super) fn of_face(
+        texels: &'a [Rgb],
+        down: TexelsDown,
+        shade: S,
+        Paper(paper): &mut Paper,
+        rows: &Range<u32>,
+    ) -> Self {
+        let most = PAPER.min(2 * rows.len()) as i64;
+        let Some(places) = down.places(rows).filter(|places| places.end - places.start <= most)
+        else {
+            return Self::Texels(texels, down, shade);
+        };
+        let mut place = places.start;
+        while place < places.end {
+            let (first, count) = down.texels_at(place..places.end);
+            let paper = &mut paper[place as usize % PAPER..];
+            let count = count.min(paper.len());
+            for (shaded, texel) in paper.iter_mut().zip(&texels[first..first + count]) {
+                *shaded = shade.apply(*texel);
+            }
+            place += count as i64;
+        }
+        Self::Paper(down)
+    }
 }
 
 /// Draws `coats`, each in a column of its own, with `papers` that belong to them in that order.

@@ -8,7 +8,7 @@ use std::ops::Range;
 
 use glam::DVec2;
 
-use super::texels_down::{Texels, TexelsDown};
+use super::texels_down::{Texels, TexelsDown, ceil};
 use super::track::Track;
 use super::{FrameSize, PixelAspect};
 use crate::cast::Ray;
@@ -142,7 +142,8 @@ impl Projection {
         bottom: f64,
         top: f64,
     ) -> TexelsDown {
-        let above = top.ceil();
+        // Where a processor may be old, `f64::ceil` is a call.
+        let above = ceil(top) as f64;
         let of_cells = (above - top, above - bottom);
         let texels = Texels { count, of_cells, at_eye: above - self.eye };
         TexelsDown::new(2.0 * self.horizon, t / self.focal_length, texels)

@@ -27,6 +27,7 @@ mod veils;
 
 use std::ops::Range;
 
+use super::coat::Papers;
 use super::columns::Surface;
 use super::marks::Marks;
 use super::plan::WallLoop;
@@ -58,6 +59,7 @@ pub(super) struct Windows {
     layers: Vec<Layer>,
     /// In which column the span begins that each row is in.
     starts: Vec<usize>,
+    papers: Papers,
 }
 
 /// What it cost to follow the rays through their windows.
@@ -168,10 +170,10 @@ pub(super) fn draw<T: Tally>(
     windows.look(scene, frame.height(), columns);
     marks.begin(frame.width(), frame.height());
     let (band, marks) = (&mut frame.whole(), &mut marks.whole());
-    let Windows { notes, billboards, layers, starts, .. } = windows;
+    let Windows { notes, billboards, layers, starts, papers, .. } = windows;
     notes.counts.faces = notes.faces.len() as u64;
     notes.counts.spans = planes::draw(scene, sky, notes, starts, band, tally);
-    faces::draw(scene, plan, &notes.faces, band, tally);
+    faces::draw(scene, plan, &notes.faces, papers, band, tally);
 
     if scene.has_things {
         billboards.find(scene, notes, viewer);

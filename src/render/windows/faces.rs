@@ -7,6 +7,7 @@ use glam::DVec2;
 use super::Scene;
 use crate::cast::Side;
 use crate::render::band::Band;
+use crate::render::coat::{self, COLUMNS_AT_ONCE, Coat, Cover, Paper, Papers};
 use crate::render::plan::WallLoop;
 use crate::render::shade::{Faded, OfSide, Shade};
 use crate::render::tally::{Pass, Tally};
@@ -43,20 +44,58 @@ pub(super) struct Stretch {
     pub(super) top: f64,
 }
 
-/// Draws all of `faces`.
+/// Draws all of `faces`, those of a column one after the other. `papers` is memory to work with.
+///
+/// Neighbours in a block of columns are drawn together: mostly the first faces of each are parts of one
+/// wall or step, and so are those behind them.
 pub(super) fn draw<T: Tally>(
     scene: Scene<'_>,
     plan: WallLoop,
     faces: &[Face],
+    papers: &mut Papers,
     band: &mut Band<'_>,
     tally: &mut T,
 ) {
-    for face in faces {
-        match face.facing {
-            Facing::Side(side) if !plan.faded => face.draw(scene, OfSide(side), band, tally),
-            _ => face.draw(scene, face.facing.shade(scene, face.light, face.t), band, tally),
+    let is_faded = plan.faded || scene.world.has_shapes();
+    let block_of = |face: &Face| face.column as usize / COLUMNS_AT_ONCE;
+    for block in faces.chunk_by(|one, other| block_of(one) == block_of(other)) {
+        let mut columns: [&[Face]; COLUMNS_AT_ONCE] = [&[]; COLUMNS_AT_ONCE];
+        for column in block.chunk_by(|one, other| one.column == other.column) {
+            columns[column[0].column as usize % COLUMNS_AT_ONCE] = column;
+        }
+        while columns.iter().any(|column| !column.is_empty()) {
+            let last = columns.each_mut().map(|column| column.split_off_first());
+            if is_faded {
+                let shade = |face: &Face| face.facing.shade(scene, face.light, face.t);
+                let coats = coats(scene, nearest, shade, papers, band, tally);
+                coat::draw(&coats, papers, band);
+            } else {
+                let coats = coats(scene, nearest, |face| OfSide(face.side()), papers, band, tally);
+                coat::draw(&coats, papers, band);
+            }
         }
     }
+}
+
+/// How `faces` are covered in `band`.
+#[inline]
+fn coats<'a, S: Shade, T: Tally>(
+    scene: Scene<'a>,
+    faces: [Option<&Face>; COLUMNS_AT_ONCE],
+    shade: impl Fn(&Face) -> S,
+    papers: &mut Papers,
+    band: &Band<'_>,
+    tally: &mut T,
+) -> [Option<Coat<'a, S>>; COLUMNS_AT_ONCE] {
+    let mut coats = [const { None }; COLUMNS_AT_ONCE];
+    for (coat, (face, paper)) in coats.iter_mut().zip(faces.into_iter().zip(papers.iter_mut())) {
+        let Some(face) = face else { continue };
+        let rows = band.clip(&face.rows);
+        if !rows.is_empty() {
+            *coat = Some(face.coat(scene, rows, shade(face), paper, tally));
+        }
+    }
+    coats
 }
 
 impl Facing {
@@ -71,31 +110,41 @@ impl Facing {
 }
 
 impl Face {
-    fn draw<S: Shade, T: Tally>(
-        &self,
-        scene: Scene<'_>,
-        shade: S,
-        band: &mut Band<'_>,
-        tally: &mut T,
-    ) {
-        let rows = self.rows.clone();
-        tally.pixels(Pass::Walls, rows.len());
-        let pixels = band.column_mut(self.column, rows.clone());
-        match self.paint {
-            Paint::Color(color) => {
-                let color = shade.apply(color);
-                pixels.for_each(|pixel| *pixel = color);
+    /// The kind of line that it runs along most.
+    fn side(&self) -> Side {
+        match self.facing {
+            Facing::Side(side) => side,
+            Facing::Normal(normal) => {
+                if normal.x.abs() >= normal.y.abs() {
+                    Side::X
+                } else {
+                    Side::Y
+                }
             }
+        }
+    }
+
+    /// How it is covered in those `rows` in that shade, by means of `paper`.
+    fn coat<'a, S: Shade, T: Tally>(
+        &self,
+        scene: Scene<'a>,
+        rows: Range<u32>,
+        shade: S,
+        paper: &mut Paper,
+        tally: &mut T,
+    ) -> Coat<'a, S> {
+        tally.pixels(Pass::Walls, rows.len());
+        let cover = match self.paint {
+            Paint::Color(color) => Cover::of_color(color, shade, paper),
             Paint::Texture(id) => {
                 tally.texels(Pass::Walls, rows.len());
                 let level = scene.level_on(scene.world.texture(id), self.t, self.slope);
                 let texels = level.column(self.u);
                 let Stretch { bottom, top } = self.stretch;
                 let down = scene.projection.texels_down_the_face(self.t, texels.len(), bottom, top);
-                for (row, pixel) in rows.zip(pixels) {
-                    *pixel = shade.apply(texels[down.at(row)]);
-                }
+                Cover::of_face(texels, down, shade, paper, &rows)
             }
-        }
+        };
+        Coat { x: self.column, rows, cover }
     }
 }

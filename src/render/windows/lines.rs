@@ -26,7 +26,8 @@ impl Look<'_> {
         // The rock that is below the next gap, and the row below it.
         let (mut rock_from, mut rock_end) = (f64::NEG_INFINITY, end);
         for slot in self.profiles.of(place).slots() {
-            let [bottom, top] = [slot.bottom, slot.top].map(|rise| projection.row_of(rise, met.t));
+            let bottom = slot.row_of_bottom(projection, met.t);
+            let top = slot.row_of_top(projection, met.t);
             let rock = start.max(bottom)..rock_end;
             self.meet_rock(branch, place, met, rock, rock_from..slot.gap.bottom);
             (rock_from, rock_end) = (slot.gap.top, end.min(top));

@@ -162,12 +162,13 @@ impl<'a> Look<'a> {
     pub(super) fn lay(&mut self, branch: &mut Branch, t: f64) {
         self.note_things(branch, t);
         let projection = self.scene.projection;
-        let (eye, Slot { gap, bottom, top, below }) = (projection.eye(), branch.slot);
+        let (eye, Slot { gap, below, .. }) = (projection.eye(), branch.slot);
         let Range { start, end } = branch.window;
         let tile = branch.place.map(|(_, tile)| tile);
         let reflection = branch.reflection;
         let piece = |part| Shown::Plane(Piece { tile, part, reflection });
-        let (top, bottom) = (projection.row_of(top, t), projection.row_of(bottom, t));
+        let bottom = branch.slot.row_of_bottom(projection, t);
+        let top = branch.slot.row_of_top(projection, t);
         if eye > gap.bottom {
             self.notes.show(bottom.max(start)..end, piece(below));
         }
@@ -220,8 +221,7 @@ impl<'a> Look<'a> {
         }
         let &Branch { ref window, slot, from, reflection, .. } = branch;
         let (column, rows) = (self.column, window.clone());
-        let Slot { bottom, top, .. } = slot;
-        let between = Between { column, rows, from, to, bottom, top, reflection };
+        let between = Between { column, rows, from, to, slot, reflection };
         self.notes.veils.push(Veil::Things(between));
     }
 

@@ -5,7 +5,7 @@
 
 use super::look::Place;
 use super::{Part, Scene};
-use crate::render::projection::Rise;
+use crate::render::projection::{Projection, Rise};
 use crate::world::{Gap, Heights, Tile, TileKind};
 
 /// Those of all tiles.
@@ -29,7 +29,8 @@ pub(super) struct Profile {
 pub(super) struct Slot {
     pub(super) gap: Gap,
     pub(super) bottom: Rise,
-    pub(super) top: Rise,
+    /// `None` for the sky.
+    pub(super) top: Option<Rise>,
     /// What its bottom is.
     pub(super) below: Part,
 }
@@ -76,7 +77,20 @@ impl Profile {
 impl Slot {
     fn new(scene: Scene<'_>, gap: Gap, below: Part) -> Self {
         let rise_to = |height| scene.projection.rise_to(height);
-        Self { gap, bottom: rise_to(gap.bottom), top: rise_to(gap.top), below }
+        let top = (gap.top < f64::INFINITY).then(|| rise_to(gap.top));
+        Self { gap, bottom: rise_to(gap.bottom), top, below }
+    }
+
+    /// The first row that shows none of what is above it, at distance `t`.
+    #[inline]
+    pub(super) fn row_of_top(&self, projection: &Projection, t: f64) -> u32 {
+        self.top.map_or(0, |top| projection.row_of(top, t))
+    }
+
+    /// The first row that shows none of it but what is below it, at distance `t`.
+    #[inline]
+    pub(super) fn row_of_bottom(&self, projection: &Projection, t: f64) -> u32 {
+        projection.row_of(self.bottom, t)
     }
 
     /// Where an eye is that is in no gap at all.

@@ -11,13 +11,13 @@ use std::ops::Range;
 use glam::DVec2;
 
 use super::notes::Notes;
+use super::profile::Slot;
 use super::sights::Sights;
 use super::{IMAGES_AT_ONCE, Reflection, Scene, Viewer};
 use crate::cast::{Side, Unfolding};
 use crate::render::Surface;
 use crate::render::band::Band;
 use crate::render::marks::MarksOfBand;
-use crate::render::projection::Rise;
 use crate::render::shade::{Faded, Shade};
 use crate::render::tally::{Pass, Tally};
 use crate::render::things::NEAREST;
@@ -32,8 +32,7 @@ pub(super) struct Between {
     pub(super) rows: Range<u32>,
     pub(super) from: f64,
     pub(super) to: f64,
-    pub(super) bottom: Rise,
-    pub(super) top: Rise,
+    pub(super) slot: Slot,
     pub(super) reflection: Reflection,
 }
 
@@ -260,8 +259,8 @@ impl Billboard {
         }
         let projection = scene.projection;
         let own = projection.rows_between(self.top, self.bottom);
-        let top = projection.row_of(between.top, self.depth);
-        let bottom = projection.row_of(between.bottom, self.depth);
+        let top = between.slot.row_of_top(projection, self.depth);
+        let bottom = between.slot.row_of_bottom(projection, self.depth);
         let start = own.start.max(between.rows.start).max(top);
         start..own.end.min(between.rows.end).min(bottom)
     }
