@@ -64,7 +64,7 @@ pub(super) fn draw<T: Tally>(
             columns[column[0].column as usize % COLUMNS_AT_ONCE] = column;
         }
         while columns.iter().any(|column| !column.is_empty()) {
-            let last = columns.each_mut().map(|column| column.split_off_first());
+            let nearest = columns.each_mut().map(|column| column.split_off_first());
             if is_faded {
                 let shade = |face: &Face| face.facing.shade(scene, face.light, face.t);
                 let coats = coats(scene, nearest, shade, papers, band, tally);
