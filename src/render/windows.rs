@@ -13,6 +13,7 @@
 //! is followed was refused: by rows its shade and its distance are found once for many pixels.
 
 mod faces;
+mod layers;
 mod lines;
 mod look;
 mod notes;
@@ -39,11 +40,11 @@ use crate::cast::Side;
 use crate::world::texture::Level;
 use crate::world::{Camera, Texture, Tile, TileId, TileKind, World};
 use faces::Stretch;
+use layers::{Layer, Painter};
 use look::{Branch, Look};
 use notes::{Notes, Shown};
 use profile::Profiles;
 use things::Billboards;
-use veils::Layer;
 
 /// There is room for so many images in mirrors from the first frame on.
 const IMAGES_AT_ONCE: usize = 64;
@@ -178,8 +179,9 @@ pub(super) fn draw<T: Tally>(
     if scene.has_things {
         billboards.find(scene, notes, viewer);
     }
-    veils::lay_out(scene, notes, billboards, layers);
-    veils::draw(scene, (&notes.panes, billboards, layers), marks, band, tally);
+    layers::lay_out(scene, notes, billboards, layers);
+    let painter = Painter { scene, panes: &notes.panes, billboards };
+    painter.paint(layers, marks, band, tally);
     if !scene.has_things {
         return None;
     }
