@@ -35,8 +35,8 @@ pub(crate) struct Crossed {
     pub(crate) side: Side,
     /// What it leads into; `None` where it is the edge of the map, and the walk ends.
     pub(crate) into: Option<(Cell, TileId)>,
-    /// The north or west end of the crossed face, unfolded.
-    corner: DVec2,
+    /// Where the line is, unfolded.
+    line: f64,
 }
 
 /// The cells that a ray enters, mirrors and all, in the exact order.
@@ -76,28 +76,37 @@ impl UnfoldedWalk {
     pub(crate) fn cross(&mut self, grid: &Grid) -> Crossed {
         loop {
             let side = self.order.next(self.x.line, self.y.line);
-            let (axis, fold) = match side {
-                Side::X => (&mut self.x, self.unfolding.x),
-                Side::Y => (&mut self.y, self.unfolding.y),
+            let axis = match side {
+                Side::X => &mut self.x,
+                Side::Y => &mut self.y,
             };
             let line = axis.line;
             axis.cross();
-            let is_on_map = (0..axis.count).contains(&fold.real_index(axis.index));
             let into = self.cell(grid);
-            if into.is_some() || !is_on_map {
-                let corner = match side {
-                    Side::X => DVec2::new(line, self.y.index as f64),
-                    Side::Y => DVec2::new(self.x.index as f64, line),
-                };
-                return Crossed { side, into, corner };
+            if into.is_some() || !self.is_on_map_along(side) {
+                return Crossed { side, into, line };
             }
         }
+    }
+
+    /// Whether the ray is on the map, as far as the axis tells that crosses such lines.
+    fn is_on_map_along(&self, side: Side) -> bool {
+        let (axis, fold) = match side {
+            Side::X => (&self.x, self.unfolding.x),
+            Side::Y => (&self.y, self.unfolding.y),
+        };
+        (0..axis.count).contains(&fold.real_index(axis.index))
     }
 
     /// How far along the ray a line is that it has just crossed, and how far along the face, as
     /// [`Hit`] has both.
     pub(crate) fn meeting(&self, crossed: &Crossed) -> (f64, f64) {
-        let (t, along) = meeting(&self.ray, crossed.side, crossed.corner);
+        // The north or west end of the crossed face.
+        let corner = match crossed.side {
+            Side::X => DVec2::new(crossed.line, self.y.index as f64),
+            Side::Y => DVec2::new(self.x.index as f64, crossed.line),
+        };
+        let (t, along) = meeting(&self.ray, crossed.side, corner);
         let fold = match crossed.side {
             Side::X => self.unfolding.y,
             Side::Y => self.unfolding.x,
@@ -193,7 +202,9 @@ impl Fold {
 
     /// The column or row that the unfolded one at `index` is.
     fn real_index(self, index: i64) -> i64 {
-        if self.is_mirrored { self.offset - 1 - index } else { self.offset + index }
+        // Cell 0 becomes cell −1, and so on: all bits change.
+        let all_bits = -i64::from(self.is_mirrored);
+        self.offset + (index ^ all_bits)
     }
 
     /// The fold behind a mirror at the unfolded `line`.

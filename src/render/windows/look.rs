@@ -77,10 +77,13 @@ impl<'a> Look<'a> {
     /// Follows `ray`, which is that of the column, to the end of all its branches. Tells what it hit
     /// and how far it got before it was reflected.
     pub(super) fn follow(mut self, ray: &Ray) -> Column {
-        let start = self.start(ray);
-        self.branches.push(start);
-        while let Some(branch) = self.branches.pop() {
-            self.follow_branch(branch);
+        let mut branch = self.start(ray);
+        loop {
+            self.follow_branch(&mut branch);
+            match self.branches.pop() {
+                Some(next) => branch = next,
+                None => break,
+            }
         }
         self.notes.end_column(self.height);
         let Self { scene, hit, distance, .. } = self;
@@ -108,9 +111,9 @@ impl<'a> Look<'a> {
         Branch { walk, place, slot, window, from: 0.0, reflection: Reflection::NONE }
     }
 
-    fn follow_branch(&mut self, mut branch: Branch) {
+    fn follow_branch(&mut self, branch: &mut Branch) {
         let start = branch.from;
-        self.follow_on(&mut branch);
+        self.follow_on(branch);
         if self.scene.has_things {
             let (origin, unfolding) = (self.scene.projection.origin(), branch.walk.unfolding());
             let end = |t: f64| unfolding.real_point(origin + self.direction * t);
@@ -123,7 +126,7 @@ impl<'a> Look<'a> {
     fn follow_on(&mut self, branch: &mut Branch) {
         let grid = self.scene.world.grid();
         loop {
-            if self.profiles.of(branch.place).holds_something {
+            if branch.slot.holds_something {
                 self.meet_standing(branch);
                 if branch.window.is_empty() {
                     return;

@@ -15,13 +15,11 @@ pub(super) struct Profiles {
     list: Vec<Profile>,
 }
 
-/// What is open in a cell, and whether anything stands there.
+/// What is open in a cell.
 #[derive(Clone, Copy, Debug)]
 pub(super) struct Profile {
     pub(super) lowest: Slot,
     pub(super) upper: Option<Slot>,
-    /// Whether it is seen in front of what is behind the cell, though it does not fill it: a leaf or a shape.
-    pub(super) holds_something: bool,
 }
 
 /// A gap as the eye sees it.
@@ -33,17 +31,15 @@ pub(super) struct Slot {
     pub(super) top: Option<Rise>,
     /// What its bottom is.
     pub(super) below: Part,
+    /// Whether something stands on that which does not fill the cell: a leaf or a shape.
+    pub(super) holds_something: bool,
 }
 
 impl Profiles {
     /// Makes those of all tiles in `scene`.
     pub(super) fn begin(&mut self, scene: Scene<'_>) {
         let beyond = Gap { bottom: 0.0, top: f64::INFINITY };
-        let beyond = Profile {
-            lowest: Slot::new(scene, beyond, Part::Floor),
-            upper: None,
-            holds_something: false,
-        };
+        let beyond = Profile { lowest: Slot::new(scene, beyond, Part::Floor), upper: None };
         let of_tiles = scene.world.tiles().iter().map(|tile| Profile::new(scene, tile));
         self.list.clear();
         self.list.extend([beyond].into_iter().chain(of_tiles));
@@ -60,11 +56,10 @@ impl Profile {
     fn new(scene: Scene<'_>, tile: &Tile) -> Self {
         let mut gaps = tile.gaps();
         let lowest = gaps.next().unwrap_or(BOTTOMLESS);
-        Self {
-            lowest: Slot::new(scene, lowest, Part::Floor),
-            upper: gaps.next().map(|gap| Slot::new(scene, gap, Part::Roof)),
-            holds_something: matches!(tile.kind, TileKind::Door(_) | TileKind::Shape(_)),
-        }
+        let stands = matches!(tile.kind, TileKind::Door(_) | TileKind::Shape(_));
+        let holds_something = stands && lowest.bottom == tile.heights.floor();
+        let lowest = Slot { holds_something, ..Slot::new(scene, lowest, Part::Floor) };
+        Self { lowest, upper: gaps.next().map(|gap| Slot::new(scene, gap, Part::Roof)) }
     }
 
     /// From the lowest up.
@@ -78,7 +73,7 @@ impl Slot {
     fn new(scene: Scene<'_>, gap: Gap, below: Part) -> Self {
         let rise_to = |height| scene.projection.rise_to(height);
         let top = (gap.top < f64::INFINITY).then(|| rise_to(gap.top));
-        Self { gap, bottom: rise_to(gap.bottom), top, below }
+        Self { gap, bottom: rise_to(gap.bottom), top, below, holds_something: false }
     }
 
     /// The first row that shows none of what is above it, at distance `t`.

@@ -12,13 +12,10 @@ use crate::cast::{Hit, Passage, Ray, Side};
 use crate::world::{Cell, Outline, Tile, TileKind};
 
 impl Look<'_> {
-    /// Meets what stands in the cell that `branch` is in. What is above it, if anything, stays open.
+    /// Meets what stands in the slot that `branch` is in. What is above it, if anything, stays open.
     pub(super) fn meet_standing(&mut self, branch: &mut Branch) {
         let Some((cell, kind)) = self.kind(branch.place) else { return };
         let Some(tile) = self.tile(branch.place) else { return };
-        if branch.slot.gap.bottom != tile.heights.floor() {
-            return;
-        }
         let Passage { hit, end } = branch.walk.standing(self.scene.world, cell, kind);
         if let Some(hit) = hit {
             // A ray that was reflected in this cell may have been nowhere near before that.
