@@ -171,7 +171,7 @@ pub(super) fn draw<T: Tally>(
     windows.look(scene, frame.height(), columns);
     marks.begin(frame.width(), frame.height());
     let (band, marks) = (&mut frame.whole(), &mut marks.whole());
-    let Windows { notes, billboards, layers, starts, papers, .. } = windows;
+    let Windows { profiles, notes, billboards, layers, starts, papers, .. } = windows;
     notes.counts.faces = notes.faces.len() as u64;
     notes.counts.spans = planes::draw(scene, sky, notes, starts, band, tally);
     faces::draw(scene, plan, &notes.faces, papers, band, tally);
@@ -179,7 +179,7 @@ pub(super) fn draw<T: Tally>(
     if scene.has_things {
         billboards.find(scene, notes, viewer);
     }
-    layers::lay_out(scene, notes, billboards, layers);
+    layers::lay_out(scene, (profiles, notes), billboards, layers);
     let painter = Painter { scene, panes: &notes.panes, billboards };
     painter.paint(layers, marks, band, tally);
     if !scene.has_things {

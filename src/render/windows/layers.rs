@@ -9,6 +9,7 @@ use std::ops::Range;
 
 use super::Scene;
 use super::notes::Notes;
+use super::profile::Profiles;
 use super::things::{Billboards, Strip};
 use super::veils::{Film, Pane, Veil};
 use crate::render::band::Band;
@@ -30,7 +31,7 @@ pub(super) enum Layer {
 /// comes later.
 pub(super) fn lay_out(
     scene: Scene<'_>,
-    notes: &Notes,
+    (profiles, notes): (&Profiles, &Notes),
     billboards: &mut Billboards,
     layers: &mut Vec<Layer>,
 ) {
@@ -40,7 +41,8 @@ pub(super) fn lay_out(
         match veil {
             &Veil::Pane(index) => layers.push(Layer::Pane(index)),
             Veil::Things(between) => {
-                billboards.cut(scene, between, |strip| layers.push(Layer::Thing(strip)));
+                billboards
+                    .cut((scene, profiles), between, |strip| layers.push(Layer::Thing(strip)));
             }
         }
     }

@@ -5,7 +5,7 @@ use std::ops::Range;
 use super::faces::Stretch;
 use super::look::{Branch, Look, MOST_BOUNCES, Met, Place};
 use super::notes::Shown;
-use super::profile::{BOTTOMLESS, Slot};
+use super::profile::{BOTTOMLESS, Holds, SlotId};
 use super::veils::Film;
 use super::{Part, Piece, Reflection};
 use crate::cast::Hit;
@@ -22,10 +22,10 @@ impl Look<'_> {
             self.notes.show(start..end, Shown::Sky { reflection });
             return false;
         }
-        let mut goes_on: Option<(Slot, Range<u32>)> = None;
+        let mut goes_on: Option<(SlotId, Range<u32>)> = None;
         // The rock that is below the next gap, and the row below it.
         let (mut rock_from, mut rock_end) = (f64::NEG_INFINITY, end);
-        for slot in self.profiles.of(place).slots() {
+        for (id, slot) in self.profiles.of(place) {
             let bottom = slot.row_of_bottom(projection, met.t);
             let top = slot.row_of_top(projection, met.t);
             let rock = start.max(bottom)..rock_end;
@@ -39,8 +39,10 @@ impl Look<'_> {
                 self.look_beyond_edge(window, branch.reflection);
                 continue;
             }
-            self.pass_pane(place, slot, &window, met);
-            if let Some((slot, window)) = goes_on.replace((*slot, window)) {
+            if slot.holds == Holds::Cube {
+                self.pass_pane(place, &window, met);
+            }
+            if let Some((slot, window)) = goes_on.replace((id, window)) {
                 self.branches.push(Branch { place, slot, window, ..branch.clone() });
             }
         }
@@ -68,25 +70,24 @@ impl Look<'_> {
             return;
         }
         let is_lowest = heights.start == f64::NEG_INFINITY;
+        let tile = self.tile(place).unwrap_or(&self.scene.world.tiles()[0]);
         if is_lowest
-            && let Some((_, TileKind::Mirror(tint))) = self.kind(place)
+            && let TileKind::Mirror(tint) = tile.kind
             && branch.walk.bounces() < MOST_BOUNCES
         {
             self.reflect(Branch { window: rows, ..branch.clone() }, place, met, tint);
             return;
         }
-        let tile = self.tile(place).unwrap_or(&self.scene.world.tiles()[0]);
-        let paint = match (is_lowest, self.kind(met.before), tile.kind) {
-            (
-                true,
-                Some((_, TileKind::Door(door) | TileKind::Doorway(door))),
-                TileKind::Wall(_),
-            ) => door.jamb,
+        let before = self.tile(met.before).map(|tile| &tile.kind);
+        let paint = match (is_lowest, before, &tile.kind) {
+            (true, Some(TileKind::Door(door) | TileKind::Doorway(door)), TileKind::Wall(_)) => {
+                door.jamb
+            }
             (true, ..) => tile.riser,
             (false, ..) => tile.lintel,
         };
         // As far as it is in the gap that it is seen from.
-        let gap = branch.slot.gap;
+        let gap = self.profiles.slot(branch.slot).gap;
         let stretch =
             Stretch { bottom: heights.start.max(gap.bottom), top: heights.end.min(gap.top) };
         self.face(rows, met, paint, self.light(place, met), stretch);
@@ -105,19 +106,17 @@ impl Look<'_> {
         self.branches.push(image);
     }
 
-    /// Passes the face of a cube that is seen through, if there is one in that gap of `place`.
-    fn pass_pane(&mut self, place: Place, slot: &Slot, window: &Range<u32>, met: &Met) {
-        let film = match self.kind(place) {
-            Some((_, TileKind::Mask(texture))) => Film::Mask(texture),
-            Some((_, TileKind::Glass(glass))) => Film::Glass(glass),
+    /// Passes the face of the cube in `place` that is seen through.
+    fn pass_pane(&mut self, place: Place, window: &Range<u32>, met: &Met) {
+        let Some(Tile { heights, kind, .. }) = self.tile(place) else { return };
+        let film = match *kind {
+            TileKind::Mask(texture) => Film::Mask(texture),
+            TileKind::Glass(glass) => Film::Glass(glass),
             _ => return,
         };
-        let Some(Tile { heights, .. }) = self.tile(place) else { return };
-        if heights.floor() == slot.gap.bottom {
-            let stretch = Stretch { bottom: heights.floor(), top: heights.ceiling() };
-            let rows = self.scene.rows_between(window, stretch, met.t);
-            self.veil(rows, met, place, film, stretch);
-        }
+        let stretch = Stretch { bottom: heights.floor(), top: heights.ceiling() };
+        let rows = self.scene.rows_between(window, stretch, met.t);
+        self.veil(rows, met, place, film, stretch);
     }
 
     /// Shows what is beyond the edge of the map: the sky, and the ground below the horizon.

@@ -6,7 +6,7 @@ use glam::DVec2;
 
 use super::faces::{Face, Facing, Stretch};
 use super::notes::{Leg, Notes, Shown};
-use super::profile::{Profiles, Slot};
+use super::profile::{Holds, Profiles, SlotId};
 use super::things::Between;
 use super::veils::{Film, Pane, Veil};
 use super::{Part, Piece, Reflection, Scene, Windows};
@@ -22,7 +22,7 @@ pub(super) const MOST_BOUNCES: u32 = 8;
 pub(super) struct Branch {
     pub(super) walk: UnfoldedWalk,
     pub(super) place: Place,
-    pub(super) slot: Slot,
+    pub(super) slot: SlotId,
     /// The rows that nothing nearer covers.
     pub(super) window: Range<u32>,
     /// Where on the ray it begins.
@@ -97,15 +97,14 @@ impl<'a> Look<'a> {
         let most_bounces = if world.has_mirrors() { MOST_BOUNCES } else { 0 };
         let walk = UnfoldedWalk::new(world.grid(), ray, most_bounces);
         let place = walk.cell(world.grid());
-        let slot_in = |place: Place| {
-            self.profiles.of(place).slots().find(|slot| slot.gap.holds(eye)).copied()
-        };
+        let slot_in =
+            |place| self.profiles.of(place).find(|(_, slot)| slot.gap.holds(eye)).map(|(id, _)| id);
         // An eye inside the rock sees as if the cell were like the map's own floor.
         let ground = place.map(|(cell, _)| (cell, TileId(0)));
         let (place, slot) = match (slot_in(place), slot_in(ground)) {
             (Some(slot), _) => (place, slot),
             (None, Some(slot)) => (ground, slot),
-            (None, None) => (ground, Slot::bottomless(self.scene)),
+            (None, None) => (ground, SlotId::BOTTOMLESS),
         };
         let window = 0..self.height;
         Branch { walk, place, slot, window, from: 0.0, reflection: Reflection::NONE }
@@ -126,7 +125,7 @@ impl<'a> Look<'a> {
     fn follow_on(&mut self, branch: &mut Branch) {
         let grid = self.scene.world.grid();
         loop {
-            if branch.slot.holds_something {
+            if self.profiles.slot(branch.slot).holds == Holds::Standing {
                 self.meet_standing(branch);
                 if branch.window.is_empty() {
                     return;
@@ -165,17 +164,17 @@ impl<'a> Look<'a> {
     pub(super) fn lay(&mut self, branch: &mut Branch, t: f64) {
         self.note_things(branch, t);
         let projection = self.scene.projection;
-        let (eye, Slot { gap, below, .. }) = (projection.eye(), branch.slot);
+        let (eye, slot) = (projection.eye(), self.profiles.slot(branch.slot));
         let Range { start, end } = branch.window;
         let tile = branch.place.map(|(_, tile)| tile);
         let reflection = branch.reflection;
         let piece = |part| Shown::Plane(Piece { tile, part, reflection });
-        let bottom = branch.slot.row_of_bottom(projection, t);
-        let top = branch.slot.row_of_top(projection, t);
-        if eye > gap.bottom {
-            self.notes.show(bottom.max(start)..end, piece(below));
+        let bottom = slot.row_of_bottom(projection, t);
+        let top = slot.row_of_top(projection, t);
+        if eye > slot.gap.bottom {
+            self.notes.show(bottom.max(start)..end, piece(slot.below));
         }
-        if eye < gap.top && gap.top < f64::INFINITY {
+        if eye < slot.gap.top && slot.gap.top < f64::INFINITY {
             self.notes.show(start..top.min(end), piece(Part::Ceiling));
         }
         branch.window = start.max(top)..end.min(bottom);

@@ -3,6 +3,8 @@
 //! They are made once a frame, from where the eye is. To ask the tile itself in each cell was refused: it
 //! is a large value of many cases, and a ray mostly needs to know where its gaps are.
 
+use std::ops::Range;
+
 use super::look::Place;
 use super::{Part, Scene};
 use crate::render::projection::{Projection, Rise};
@@ -11,69 +13,82 @@ use crate::world::{Gap, Heights, Tile, TileKind};
 /// Those of all tiles.
 #[derive(Clone, Debug, Default)]
 pub(super) struct Profiles {
-    /// The first one is that of what is off the map.
-    list: Vec<Profile>,
+    /// Those of each tile together, from the lowest up.
+    slots: Vec<Slot>,
+    /// Which of them are those of what is off the map, and then of each tile.
+    of_tiles: Vec<Range<usize>>,
 }
 
-/// What is open in a cell.
+/// Which slot of which tile.
 #[derive(Clone, Copy, Debug)]
-pub(super) struct Profile {
-    pub(super) lowest: Slot,
-    pub(super) upper: Option<Slot>,
-}
+pub(super) struct SlotId(usize);
 
 /// A gap as the eye sees it.
 #[derive(Clone, Copy, Debug)]
 pub(super) struct Slot {
     pub(super) gap: Gap,
-    pub(super) bottom: Rise,
+    bottom: Rise,
     /// `None` for the sky.
-    pub(super) top: Option<Rise>,
+    top: Option<Rise>,
     /// What its bottom is.
     pub(super) below: Part,
-    /// Whether something stands on that which does not fill the cell: a leaf or a shape.
-    pub(super) holds_something: bool,
+    pub(super) holds: Holds,
+}
+
+/// What stands on the bottom of a slot.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub(super) enum Holds {
+    Nothing,
+    /// The leaf of a door, or a shape: it does not fill the cell.
+    Standing,
+    /// Glass or a mask, which fill it.
+    Cube,
 }
 
 impl Profiles {
     /// Makes those of all tiles in `scene`.
     pub(super) fn begin(&mut self, scene: Scene<'_>) {
-        let beyond = Gap { bottom: 0.0, top: f64::INFINITY };
-        let beyond = Profile { lowest: Slot::new(scene, beyond, Part::Floor), upper: None };
-        let of_tiles = scene.world.tiles().iter().map(|tile| Profile::new(scene, tile));
-        self.list.clear();
-        self.list.extend([beyond].into_iter().chain(of_tiles));
+        self.slots.clear();
+        self.of_tiles.clear();
+        self.slots.push(Slot::new(scene, BOTTOMLESS, Part::Roof, Holds::Nothing));
+        self.push([Slot::new(scene, BEYOND, Part::Floor, Holds::Nothing)]);
+        for tile in scene.world.tiles() {
+            let parts = [Part::Floor, Part::Roof];
+            let gaps = tile.gaps().zip(parts);
+            self.push(gaps.map(|(gap, below)| Slot::new(scene, gap, below, Holds::new(tile, gap))));
+        }
     }
 
-    /// That of what is in `place`.
+    fn push(&mut self, slots: impl IntoIterator<Item = Slot>) {
+        let first = self.slots.len();
+        self.slots.extend(slots);
+        self.of_tiles.push(first..self.slots.len());
+    }
+
+    /// The slots of what is in `place`, from the lowest up.
     #[inline]
-    pub(super) fn of(&self, place: Place) -> &Profile {
-        &self.list[place.map_or(0, |(_, tile)| usize::from(tile.0) + 1)]
+    pub(super) fn of(&self, place: Place) -> impl Iterator<Item = (SlotId, &Slot)> {
+        let range = self.of_tiles[place.map_or(0, |(_, tile)| usize::from(tile.0) + 1)].clone();
+        range.clone().map(SlotId).zip(&self.slots[range])
+    }
+
+    /// One of them.
+    #[inline]
+    pub(super) fn slot(&self, SlotId(index): SlotId) -> &Slot {
+        &self.slots[index]
     }
 }
 
-impl Profile {
-    fn new(scene: Scene<'_>, tile: &Tile) -> Self {
-        let mut gaps = tile.gaps();
-        let lowest = gaps.next().unwrap_or(BOTTOMLESS);
-        let stands = matches!(tile.kind, TileKind::Door(_) | TileKind::Shape(_));
-        let holds_something = stands && lowest.bottom == tile.heights.floor();
-        let lowest = Slot { holds_something, ..Slot::new(scene, lowest, Part::Floor) };
-        Self { lowest, upper: gaps.next().map(|gap| Slot::new(scene, gap, Part::Roof)) }
-    }
-
-    /// From the lowest up.
-    #[inline]
-    pub(super) fn slots(&self) -> impl Iterator<Item = &Slot> {
-        [&self.lowest].into_iter().chain(&self.upper)
-    }
+impl SlotId {
+    /// Where an eye is that is in no gap at all.
+    pub(super) const BOTTOMLESS: Self = Self(0);
 }
 
 impl Slot {
-    fn new(scene: Scene<'_>, gap: Gap, below: Part) -> Self {
+    fn new(scene: Scene<'_>, gap: Gap, below: Part, holds: Holds) -> Self {
         let rise_to = |height| scene.projection.rise_to(height);
         let top = (gap.top < f64::INFINITY).then(|| rise_to(gap.top));
-        Self { gap, bottom: rise_to(gap.bottom), top, below, holds_something: false }
+        Self { gap, bottom: rise_to(gap.bottom), top, below, holds }
     }
 
     /// The first row that shows none of what is above it, at distance `t`.
@@ -87,12 +102,23 @@ impl Slot {
     pub(super) fn row_of_bottom(&self, projection: &Projection, t: f64) -> u32 {
         projection.row_of(self.bottom, t)
     }
+}
 
-    /// Where an eye is that is in no gap at all.
-    pub(super) fn bottomless(scene: Scene<'_>) -> Self {
-        Self::new(scene, BOTTOMLESS, Part::Roof)
+impl Holds {
+    fn new(tile: &Tile, gap: Gap) -> Self {
+        match tile.kind {
+            _ if gap.bottom != tile.heights.floor() => Self::Nothing,
+            TileKind::Door(_) | TileKind::Shape(_) => Self::Standing,
+            TileKind::Mask(_) | TileKind::Glass(_) => Self::Cube,
+            TileKind::Open | TileKind::Doorway(_) | TileKind::Wall(_) | TileKind::Mirror(_) => {
+                Self::Nothing
+            }
+        }
     }
 }
+
+/// What is open off the map.
+const BEYOND: Gap = Gap { bottom: 0.0, top: f64::INFINITY };
 
 /// Everything that there may be.
 pub(super) const BOTTOMLESS: Gap = Gap { bottom: -2.0 * Heights::MOST, top: 2.0 * Heights::MOST };

@@ -11,7 +11,7 @@ use std::ops::Range;
 use glam::DVec2;
 
 use super::notes::Notes;
-use super::profile::Slot;
+use super::profile::{Profiles, SlotId};
 use super::sights::Sights;
 use super::{IMAGES_AT_ONCE, Reflection, Scene, Viewer};
 use crate::cast::{Side, Unfolding};
@@ -32,7 +32,7 @@ pub(super) struct Between {
     pub(super) rows: Range<u32>,
     pub(super) from: f64,
     pub(super) to: f64,
-    pub(super) slot: Slot,
+    pub(super) slot: SlotId,
     pub(super) reflection: Reflection,
 }
 
@@ -122,7 +122,7 @@ impl Billboards {
     /// Cuts out what shows in a part of a ray, from far to near.
     pub(super) fn cut(
         &mut self,
-        scene: Scene<'_>,
+        (scene, profiles): (Scene<'_>, &Profiles),
         between: &Between,
         mut cut_out: impl FnMut(Strip),
     ) {
@@ -136,7 +136,7 @@ impl Billboards {
         let start = list.partition_point(|it| it.depth < between.from);
         let end = list.partition_point(|it| it.depth < between.to).max(start);
         for (index, billboard) in list.iter_mut().enumerate().take(end).skip(start).rev() {
-            let rows = billboard.rows_in(scene, between);
+            let rows = billboard.rows_in(scene, profiles, between);
             if !rows.is_empty() {
                 billboard.is_drawn = true;
                 cut_out(Strip { column: between.column, rows, billboard: first + index });
@@ -253,14 +253,15 @@ impl Billboard {
     }
 
     /// The rows in which it shows in a part of a ray.
-    fn rows_in(&self, scene: Scene<'_>, between: &Between) -> Range<u32> {
+    fn rows_in(&self, scene: Scene<'_>, profiles: &Profiles, between: &Between) -> Range<u32> {
         if !self.columns.contains(&between.column) {
             return 0..0;
         }
         let projection = scene.projection;
         let own = projection.rows_between(self.top, self.bottom);
-        let top = between.slot.row_of_top(projection, self.depth);
-        let bottom = between.slot.row_of_bottom(projection, self.depth);
+        let slot = profiles.slot(between.slot);
+        let top = slot.row_of_top(projection, self.depth);
+        let bottom = slot.row_of_bottom(projection, self.depth);
         let start = own.start.max(between.rows.start).max(top);
         start..own.end.min(between.rows.end).min(bottom)
     }
