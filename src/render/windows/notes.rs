@@ -94,6 +94,8 @@ impl Notes {
     /// Ends the column that is being looked at, which has so many rows.
     pub(super) fn end_column(&mut self, height: u32) {
         let Self { runs, bounds, unsorted, .. } = self;
+        // Most floors come from the bottom up, so that it is mostly sorted from behind.
+        unsorted.reverse();
         unsorted.sort_unstable_by_key(|run| run.rows.start);
         // Where what stands in a cell is met before the cell itself, by rounding, a row is left out.
         let hole = |rows: Range<u32>| {
