@@ -232,9 +232,9 @@ impl<T: Tally> Picture<'_, T> {
         *geometry = Some(plan.geometry);
         let projection = &Projection::new(camera, frame.size(), frame.pixel_aspect());
         let sky = &SkyView::new(world, projection, filter, sky);
-        let scene = windows::Scene::new(world, projection, filter);
+        let scene = windows::Scene::new(world, projection, filter, plan.walls);
         let viewer = windows::Viewer { camera, seconds };
         let notes = (windows, columns, marks);
-        *next_change = windows::draw(scene, viewer, (plan.walls, sky), notes, frame, tally);
+        *next_change = windows::draw(scene, viewer, sky, notes, frame, tally);
     }
 }

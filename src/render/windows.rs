@@ -115,10 +115,16 @@ pub(super) struct Scene<'a> {
     top: Rise,
     /// Whether anything stands anywhere, be it the player before a mirror.
     has_things: bool,
+    walls: WallLoop,
 }
 
 impl<'a> Scene<'a> {
-    pub(super) fn new(world: &'a World, projection: &'a Projection, filter: Filter) -> Self {
+    pub(super) fn new(
+        world: &'a World,
+        projection: &'a Projection,
+        filter: Filter,
+        walls: WallLoop,
+    ) -> Self {
         let has_things = !world.things().is_empty() || world.has_mirrors();
         let tallest_thing =
             if has_things { world.tallest_sprite().max(Camera::STANDING) } else { 0.0 };
@@ -132,7 +138,7 @@ impl<'a> Scene<'a> {
         let roof_of = |tile: &Tile| tile.gaps().next_back().map_or(0.0, |gap| gap.bottom);
         let tops = world.tiles().iter().map(|tile| top_of(tile).max(roof_of(tile)));
         let top = projection.rise_to(tops.fold(0.0, f64::max));
-        Self { world, projection, filter, top, has_things }
+        Self { world, projection, filter, top, has_things, walls }
     }
 
     /// The part of `window` that shows what is between two heights at distance `t`.
@@ -163,7 +169,7 @@ pub(super) struct Viewer<'a> {
 pub(super) fn draw<T: Tally>(
     scene: Scene<'_>,
     viewer: Viewer<'_>,
-    (plan, sky): (WallLoop, &SkyView<'_>),
+    sky: &SkyView<'_>,
     (windows, columns, marks): (&mut Windows, &mut Vec<Column>, &mut Marks),
     frame: &mut Frame,
     tally: &mut T,
@@ -174,7 +180,7 @@ pub(super) fn draw<T: Tally>(
     let Windows { profiles, notes, billboards, layers, starts, papers, .. } = windows;
     notes.counts.faces = notes.faces.len() as u64;
     notes.counts.spans = planes::draw(scene, sky, notes, starts, band, tally);
-    faces::draw(scene, plan, &notes.faces, papers, band, tally);
+    faces::draw(scene, &notes.faces, papers, band, tally);
 
     if scene.has_things {
         billboards.find(scene, notes, viewer);

@@ -47,7 +47,17 @@ pub(crate) struct UnfoldedWalk {
     x: Axis,
     y: Axis,
     unfolding: Unfolding,
+    column: OnMap,
+    row: OnMap,
     bounces: u32,
+}
+
+/// The column or the row of the map that a ray is in, after all reflections.
+#[derive(Clone, Copy, Debug)]
+struct OnMap {
+    index: i64,
+    /// From there to the next one.
+    step: i64,
 }
 
 impl UnfoldedWalk {
@@ -55,19 +65,24 @@ impl UnfoldedWalk {
     pub(crate) fn new(grid: &Grid, ray: &Ray, most_bounces: u32) -> Self {
         let size = DVec2::new(f64::from(grid.width()), f64::from(grid.height()));
         let (origin, direction) = (ray.origin(), ray.direction());
+        let x = Axis::new(origin.x, direction.x, grid.width());
+        let y = Axis::new(origin.y, direction.y, grid.height());
         Self {
             ray: *ray,
             order: ExactOrder::within(size * f64::from(most_bounces + 1), ray),
-            x: Axis::new(origin.x, direction.x, grid.width()),
-            y: Axis::new(origin.y, direction.y, grid.height()),
             unfolding: Unfolding::default(),
+            column: OnMap { index: x.index, step: x.step },
+            row: OnMap { index: y.index, step: y.step },
+            x,
+            y,
             bounces: 0,
         }
     }
 
     /// The cell that the ray is in; `None` off the map.
+    #[inline]
     pub(crate) fn cell(&self, grid: &Grid) -> Option<(Cell, TileId)> {
-        let (column, row) = self.real_indices();
+        let (column, row) = (self.column.index, self.row.index);
         let tile = grid.tile(column, row)?;
         Some((Cell { column: column as u32, row: row as u32 }, tile))
     }
@@ -76,12 +91,13 @@ impl UnfoldedWalk {
     pub(crate) fn cross(&mut self, grid: &Grid) -> Crossed {
         loop {
             let side = self.order.next(self.x.line, self.y.line);
-            let axis = match side {
-                Side::X => &mut self.x,
-                Side::Y => &mut self.y,
+            let (axis, on_map) = match side {
+                Side::X => (&mut self.x, &mut self.column),
+                Side::Y => (&mut self.y, &mut self.row),
             };
             let line = axis.line;
             axis.cross();
+            on_map.index += on_map.step;
             let into = self.cell(grid);
             if into.is_some() || !self.is_on_map_along(side) {
                 return Crossed { side, into, line };
@@ -91,11 +107,10 @@ impl UnfoldedWalk {
 
     /// Whether the ray is on the map, as far as the axis tells that crosses such lines.
     fn is_on_map_along(&self, side: Side) -> bool {
-        let (axis, fold) = match side {
-            Side::X => (&self.x, self.unfolding.x),
-            Side::Y => (&self.y, self.unfolding.y),
-        };
-        (0..axis.count).contains(&fold.real_index(axis.index))
+        match side {
+            Side::X => (0..self.x.count).contains(&self.column.index),
+            Side::Y => (0..self.y.count).contains(&self.row.index),
+        }
     }
 
     /// How far along the ray a line is that it has just crossed, and how far along the face, as
@@ -118,11 +133,12 @@ impl UnfoldedWalk {
 
     /// Turns the ray back at the line of that kind that it has just crossed.
     pub(crate) fn reflect(&mut self, side: Side) {
-        let (axis, fold) = match side {
-            Side::X => (&self.x, &mut self.unfolding.x),
-            Side::Y => (&self.y, &mut self.unfolding.y),
+        let (axis, fold, on_map) = match side {
+            Side::X => (&self.x, &mut self.unfolding.x, &mut self.column),
+            Side::Y => (&self.y, &mut self.unfolding.y, &mut self.row),
         };
         *fold = fold.mirrored_at(axis.line as i64 - axis.step);
+        *on_map = OnMap { index: fold.real_index(axis.index), step: -on_map.step };
         self.bounces += 1;
     }
 
@@ -158,11 +174,6 @@ impl UnfoldedWalk {
     /// Where the ray goes on the map, after all reflections.
     fn direction(&self) -> DVec2 {
         self.unfolding.real_direction(self.ray.direction())
-    }
-
-    fn real_indices(&self) -> (i64, i64) {
-        let Unfolding { x, y } = self.unfolding;
-        (x.real_index(self.x.index), y.real_index(self.y.index))
     }
 }
 
@@ -202,9 +213,7 @@ impl Fold {
 
     /// The column or row that the unfolded one at `index` is.
     fn real_index(self, index: i64) -> i64 {
-        // Cell 0 becomes cell −1, and so on: all bits change.
-        let all_bits = -i64::from(self.is_mirrored);
-        self.offset + (index ^ all_bits)
+        if self.is_mirrored { self.offset - 1 - index } else { self.offset + index }
     }
 
     /// The fold behind a mirror at the unfolded `line`.

@@ -8,7 +8,6 @@ use super::Scene;
 use crate::cast::Side;
 use crate::render::band::Band;
 use crate::render::coat::{self, COLUMNS_AT_ONCE, Coat, Cover, Paper, Papers};
-use crate::render::plan::WallLoop;
 use crate::render::shade::{Faded, OfSide, Shade};
 use crate::render::tally::{Pass, Tally};
 use crate::world::{Light, Paint};
@@ -50,13 +49,12 @@ pub(super) struct Stretch {
 /// wall or step, and so are those behind them.
 pub(super) fn draw<T: Tally>(
     scene: Scene<'_>,
-    plan: WallLoop,
     faces: &[Face],
     papers: &mut Papers,
     band: &mut Band<'_>,
     tally: &mut T,
 ) {
-    let is_faded = plan.faded || scene.world.has_shapes();
+    let is_faded = scene.walls.faded || scene.world.has_shapes();
     let block_of = |face: &Face| face.column as usize / COLUMNS_AT_ONCE;
     for block in faces.chunk_by(|one, other| block_of(one) == block_of(other)) {
         let mut columns: [&[Face]; COLUMNS_AT_ONCE] = [&[]; COLUMNS_AT_ONCE];

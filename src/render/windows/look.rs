@@ -230,6 +230,9 @@ impl<'a> Look<'a> {
     /// How bright what is in `place` is, seen from where it is met: by its own light, if it is solid,
     /// else as it is there.
     pub(super) fn light(&self, place: Place, met: &Met) -> Light {
+        if !self.scene.walls.faded {
+            return Light::FULL;
+        }
         let is_solid = |tile: &&Tile| !matches!(tile.kind, TileKind::Open | TileKind::Doorway(_));
         let own = self.tile(place).filter(is_solid).and_then(|tile| tile.light);
         let there = |(cell, _)| self.scene.world.light_in(cell);

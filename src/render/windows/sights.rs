@@ -85,7 +85,7 @@ mod tests {
     use super::super::veils::Veil;
     use super::*;
     use crate::map;
-    use crate::render::{Filter, FrameSize, PixelAspect, Projection};
+    use crate::render::{Filter, FrameSize, PixelAspect, Projection, WallLoop};
     use crate::world::{Camera, FieldOfView, Heading};
 
     const SIDE: usize = 12;
@@ -122,7 +122,8 @@ mod tests {
             let camera = Camera::new(position.into(), heading, FieldOfView::default()).unwrap();
             let size = FrameSize::new(30, 20).unwrap();
             let projection = &Projection::new(&camera, size, PixelAspect::SQUARE);
-            let scene = Scene::new(world, projection, Filter::Mip);
+            let walls = WallLoop { textured: true, faded: false, jambs: false };
+            let scene = Scene::new(world, projection, Filter::Mip, walls);
             let mut windows = Windows::default();
             windows.look(scene, size.height.get(), &mut Vec::new());
             let mut sights = Sights::default();
