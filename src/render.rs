@@ -162,7 +162,8 @@ impl Renderer {
                     explanation::cells_entered(world.grid(), &projection);
             }
             Geometry::Windows(_) => {
-                counts.windows = memory.windows.counts();
+                let spans = counts.windows.spans;
+                counts.windows = WindowCounts { spans, ..memory.windows.counts() };
                 counts.cells = counts.windows.cells;
                 counts.looks = counts.cells;
             }
@@ -235,6 +236,6 @@ impl<T: Tally> Picture<'_, T> {
         let scene = windows::Scene::new(world, projection, filter, plan.walls);
         let viewer = windows::Viewer { camera, seconds };
         let notes = (windows, columns, marks);
-        *next_change = windows::draw(scene, viewer, sky, notes, frame, tally);
+        *next_change = windows::draw(scene, viewer, (plan.threads, sky), notes, frame, tally);
     }
 }

@@ -35,6 +35,7 @@ use super::plan::WallLoop;
 use super::projection::Rise;
 use super::sky::SkyView;
 use super::tally::Tally;
+use super::threads::{Threads, draw_bands};
 use super::{Column, Filter, Frame, Projection};
 use crate::cast::Side;
 use crate::world::texture::Level;
@@ -58,6 +59,13 @@ pub(super) struct Windows {
     branches: Vec<Branch>,
     billboards: Billboards,
     layers: Vec<Layer>,
+    /// One for each thread.
+    workers: Vec<Worker>,
+}
+
+/// What the passes for a band hand on to each other; kept so that it is allocated once.
+#[derive(Clone, Debug, Default)]
+struct Worker {
     /// In which column the span begins that each row is in.
     starts: Vec<usize>,
     papers: Papers,
@@ -169,25 +177,27 @@ pub(super) struct Viewer<'a> {
 pub(super) fn draw<T: Tally>(
     scene: Scene<'_>,
     viewer: Viewer<'_>,
-    sky: &SkyView<'_>,
+    (threads, sky): (Threads, &SkyView<'_>),
     (windows, columns, marks): (&mut Windows, &mut Vec<Column>, &mut Marks),
     frame: &mut Frame,
     tally: &mut T,
 ) -> Option<f64> {
     windows.look(scene, frame.height(), columns);
-    marks.begin(frame.width(), frame.height());
-    let (band, marks) = (&mut frame.whole(), &mut marks.whole());
-    let Windows { profiles, notes, billboards, layers, starts, papers, .. } = windows;
-    notes.counts.faces = notes.faces.len() as u64;
-    notes.counts.spans = planes::draw(scene, sky, notes, starts, band, tally);
-    faces::draw(scene, &notes.faces, papers, band, tally);
-
+    let Windows { profiles, notes, billboards, layers, workers, .. } = windows;
     if scene.has_things {
         billboards.find(scene, notes, viewer);
     }
     layers::lay_out(scene, (profiles, notes), billboards, layers);
-    let painter = Painter { scene, panes: &notes.panes, billboards };
-    painter.paint(layers, marks, band, tally);
+    let (notes, billboards, layers) = (&*notes, &*billboards, &*layers);
+    draw_bands(threads, (frame, marks), workers, tally, |worker, band, marks| {
+        let Worker { starts, papers } = worker;
+        let mut spent = T::default();
+        planes::draw(scene, sky, notes, starts, band, &mut spent);
+        faces::draw(scene, &notes.faces, papers, band, &mut spent);
+        let painter = Painter { scene, panes: &notes.panes, billboards };
+        painter.paint(layers, marks, band, &mut spent);
+        spent
+    });
     if !scene.has_things {
         return None;
     }
@@ -207,6 +217,7 @@ impl Windows {
         for (x, ray) in (0..).zip(scene.projection.rays()) {
             columns.push(Look::new(scene, x, height, self).follow(&ray));
         }
+        self.notes.counts.faces = self.notes.faces.len() as u64;
     }
 
     /// What pixel `(x, y)` of the last frame shows, which must have been drawn by these passes.

@@ -12,7 +12,7 @@ use crate::render::sky::SkyView;
 use crate::render::tally::{Pass, Tally};
 use crate::world::{Ceiling, Cell, Covering, Light, Rgb, Tile, TileKind, World};
 
-/// Draws every span, and tells how many there were. `starts` is memory to work with.
+/// Draws every span. `starts` is memory to work with.
 ///
 /// Spans end where the next column shows something else: there are as many as that, and no row is
 /// searched for them.
@@ -23,11 +23,10 @@ pub(super) fn draw<T: Tally>(
     starts: &mut Vec<usize>,
     band: &mut Band<'_>,
     tally: &mut T,
-) -> u64 {
+) {
     let rows = band.rows();
     starts.clear();
     starts.resize(rows.len(), 0);
-    let mut count = 0;
     let mut end_spans = |of: &Run, x: usize| {
         for row in band.clip(&of.rows) {
             let start = mem::replace(&mut starts[(row - rows.start) as usize], x);
@@ -40,7 +39,7 @@ pub(super) fn draw<T: Tally>(
                 }
                 Shown::Plane(piece) => lay(scene, notes, piece, row, start, pixels, tally),
             }
-            count += 1;
+            tally.spans(1);
         }
     };
     let mut before: &[Run] = &[];
@@ -53,7 +52,6 @@ pub(super) fn draw<T: Tally>(
     for run in before {
         end_spans(run, scene.projection.columns());
     }
-    count
 }
 
 /// What `one` column shows that its neighbour does not show in the same rows.
