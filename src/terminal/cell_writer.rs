@@ -9,6 +9,7 @@
 //! What the terminal shows is modelled cell by cell: what looks as it should is not sent, and what
 //! moved sideways is moved by the terminal.
 
+mod alphabet;
 mod bytes;
 mod control;
 mod exact;

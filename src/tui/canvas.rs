@@ -13,6 +13,9 @@ use ratatui::layout::Rect;
 use ratatui::style::Color;
 use ratatui::widgets::{Clear, Widget};
 
+use super::glyphs::true_color;
+use crate::world::Rgb;
+
 /// Cells that one draws on; places off it take nothing.
 pub trait Canvas {
     /// The cells that there are.
@@ -20,6 +23,12 @@ pub trait Canvas {
 
     /// Shows two colours in each of the cells from `(x, y)` to the right, the first above the second.
     fn draw_halves(&mut self, x: u16, y: u16, row: impl Iterator<Item = [Color; 2]>);
+
+    /// As [`Canvas::draw_halves`], in true colour: most cells of most pictures.
+    #[inline]
+    fn draw_pixels(&mut self, x: u16, y: u16, row: impl Iterator<Item = [Rgb; 2]>) {
+        self.draw_halves(x, y, row.map(|halves| halves.map(true_color)));
+    }
 
     /// Shows a character that is one cell wide, in the colours of its text and of its ground.
     fn draw_character(&mut self, x: u16, y: u16, character: char, colors: [Color; 2]);

@@ -62,9 +62,15 @@ impl Default for CellAspect {
 #[inline]
 pub(super) fn color_at(depth: ColorDepth, color: Rgb) -> Color {
     match depth {
-        ColorDepth::True => Color::Rgb(color.red(), color.green(), color.blue()),
+        ColorDepth::True => true_color(color),
         ColorDepth::Indexed256 => Color::Indexed(palette::nearest_of_256(color)),
         ColorDepth::Indexed16 => Color::Indexed(palette::nearest_of_16(color)),
         ColorDepth::Mono => Color::Reset,
     }
+}
+
+/// `color`, as ratatui names it.
+#[inline]
+pub(super) fn true_color(color: Rgb) -> Color {
+    Color::Rgb(color.red(), color.green(), color.blue())
 }

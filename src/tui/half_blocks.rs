@@ -27,9 +27,7 @@ pub(super) fn draw<Row: Iterator<Item = Rgb>>(
         let pixels = (0..u32::from(area.width)).zip(row(upper).zip(row(lower)));
         match depth {
             ColorDepth::True => {
-                let color = |pixel| color_at(ColorDepth::True, pixel);
-                let colors = pixels.map(|(_, (top, bottom))| [color(top), color(bottom)]);
-                canvas.draw_halves(area.x, y, colors);
+                canvas.draw_pixels(area.x, y, pixels.map(|(_, (top, bottom))| [top, bottom]));
             }
             ColorDepth::Indexed256 => {
                 let color = |pixel| color_at(ColorDepth::Indexed256, pixel);

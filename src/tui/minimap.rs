@@ -80,13 +80,13 @@ impl Minimap<'_> {
         let chart = Chart::new(self.world, self.camera, self.columns, window.pixel());
         let place = |x, y| {
             let point = window.point(x, y);
-            chart.place(point, chart.things_in_row(point.y))
+            chart.row(point.y).place(point.x)
         };
         match self.glyphs {
             GlyphMode::Half => half_blocks::draw(area, canvas, self.depth, 0, |y| {
-                let things = chart.things_in_row(window.point(0, y).y);
+                let row = chart.row(window.point(0, y).y);
                 let points = (0..area.width.into()).map(move |x| window.point(x, y));
-                points.map(|point| chart.place(point, things).color())
+                points.map(move |point| row.place(point.x).color())
             }),
             GlyphMode::Ascii | GlyphMode::Ramp => ascii::draw(area, canvas, self.depth, |x, y| {
                 let place = place(x, y);

@@ -38,6 +38,12 @@ impl Rgb {
         self.0 as u8
     }
 
+    /// As a number, `0x00RRGGBB`.
+    #[inline]
+    pub(crate) const fn in_bits(self) -> u32 {
+        self.0
+    }
+
     /// Red, green and blue.
     pub const fn channels(self) -> [u8; 3] {
         [self.red(), self.green(), self.blue()]

@@ -6,7 +6,7 @@ use ratatui::layout::Position;
 use super::look::{self, Look};
 use super::pen::Pen;
 use super::screen::Row;
-use super::shift::{CELL, Shifts};
+use super::shift::{CELL, Loss, Shifts};
 use super::style::Style;
 
 /// Makes a row look as it is wanted.
@@ -52,7 +52,7 @@ pub(super) fn draw_cell(pen: &mut Pen, row: &mut Row, column: usize) {
         pen.draw_block(position, glyph, style);
     } else {
         let mut character = [0; 4];
-        let (text, style) = match row.looks[column].text() {
+        let (text, style) = match row.looks[column].text(row.alphabet) {
             Some((text, style)) => (&*text.encode_utf8(&mut character), style),
             None => (row.wanted[column].symbol(), Style::of(&row.wanted[column])),
         };
@@ -63,7 +63,7 @@ pub(super) fn draw_cell(pen: &mut Pen, row: &mut Row, column: usize) {
 
 /// Moves the stretches of a row that have only moved.
 fn shift(pen: &mut Pen, shifts: &mut Shifts, row: &mut Row) {
-    let lose = |row: &Row, from: usize, to: usize, losses: &mut Vec<i32>| {
+    let lose = |row: &Row, from: usize, to: usize, losses: &mut Vec<Loss>| {
         let looks = row.shown[from..].iter().zip(&row.looks[to..]);
         losses.extend(looks.map(|(shown, look)| if shown == look { 0 } else { CELL }));
     };

@@ -7,7 +7,7 @@ use super::ink::{Halves, Ink, Price};
 use super::look::Look;
 use super::pen::Pen;
 use super::screen::Row;
-use super::shift::{BYTE, CELL, Shifts};
+use super::shift::{BYTE, CELL, Loss, Shifts};
 use super::trellis::{Action, Trellis, Wanted};
 
 /// Draws rows inexactly, and keeps the memory that it takes.
@@ -71,18 +71,20 @@ impl Draughtsman {
 
     /// Moves the stretches of a row that have only moved, or about.
     fn shift(&mut self, pen: &mut Pen, shifts: &mut Shifts, row: &mut Row, price: Price) {
-        let lose =
-            |shown: &[Option<Halves>], row: &Row, [from, to]: [usize; 2], losses: &mut Vec<i32>| {
-                let inks = shown[from..].iter().zip(&self.wanted[to..]);
-                let looks = row.shown[from..].iter().zip(&row.looks[to..]);
-                losses.extend(inks.zip(looks).map(|(inks, (shown, look))| match inks {
-                    _ if shown == look => 0,
-                    (Some(shown), Some(wanted)) => {
-                        ((price.of_halves(*shown, *wanted) * BYTE as f32) as i32).min(CELL)
-                    }
-                    _ => CELL,
-                }));
-            };
+        let lose = |shown: &[Option<Halves>],
+                    row: &Row,
+                    [from, to]: [usize; 2],
+                    losses: &mut Vec<Loss>| {
+            let inks = shown[from..].iter().zip(&self.wanted[to..]);
+            let looks = row.shown[from..].iter().zip(&row.looks[to..]);
+            losses.extend(inks.zip(looks).map(|(inks, (shown, look))| match inks {
+                _ if shown == look => 0,
+                (Some(shown), Some(wanted)) => {
+                    ((price.of_halves(*shown, *wanted) * f32::from(BYTE)) as Loss).min(CELL)
+                }
+                _ => CELL,
+            }));
+        };
         shifts.begin(row, |from, to, losses| lose(&self.shown, row, [from, to], losses));
         while let Some(shift) =
             shifts.next(|from, to, losses| lose(&self.shown, row, [from, to], losses))

@@ -10,7 +10,9 @@ use std::fmt;
 use ratatui::buffer::{Cell, CellWidth};
 use ratatui::style::Color;
 
+use super::alphabet::{Alphabet, Letter, Number};
 use super::style::{Shade, Style};
+use crate::world::Rgb;
 
 /// A character that shows two colours at most, each in a whole half of its cell.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -70,72 +72,114 @@ impl Glyph {
     }
 }
 
-/// What a cell looks like, in one number: equal ones look the same.
+/// What a cell looks like, in one word: equal ones look the same.
+///
+/// The uppermost twelve bits say what it is, and the rest are two colours: of the upper and the lower half,
+/// or of the text and its ground.
 #[derive(Clone, Copy, PartialEq, Eq)]
-pub(super) struct Look(u128);
+pub(super) struct Look(u64);
 
 impl Look {
     /// Nobody knows; no cell that is to be shown looks like this.
-    pub(super) const UNKNOWN: Self = Self(0);
-    /// Of several characters, or wider than a cell: sent whenever its row changes.
-    const INTRICATE: Self = Self(1);
-    const BLOCK: u128 = 2;
-    const CHARACTER: u128 = 3;
-
+    pub(super) const UNKNOWN: Self = Self(1 << Self::KIND);
+    /// Of several characters, or wider than a cell, or of a character that has no number: sent whenever
+    /// its row changes.
+    const INTRICATE: Self = Self(2 << Self::KIND);
     /// A space in the terminal's own colours.
-    pub(super) const BLANK: Self = Self(Self::CHARACTER << 112 | (b' ' as u128) << 64);
+    pub(super) const BLANK: Self = Self::of_text(Number::SPACE, [Shade::DEFAULT; 2]);
+
+    /// Where the kind is: none for blocks, and from here on letters by their numbers.
+    const KIND: u32 = 2 * Shade::BITS;
+    const FIRST_LETTER: u64 = 3;
+    const _KINDS_FIT: () =
+        assert!(Self::FIRST_LETTER + (Number::COUNT as u64) < 1 << (u64::BITS - Self::KIND));
+
+    const LAST_LETTER: u64 = Self::FIRST_LETTER + Number::COUNT as u64 - 1;
 
     /// What `cell` looks like.
     #[inline]
-    pub(super) fn of(cell: &Cell) -> Self {
+    pub(super) fn of(cell: &Cell, alphabet: &mut Alphabet) -> Self {
         let (symbol, style) = (cell.symbol(), Style::of(cell));
         match Glyph::of(symbol) {
-            Some(glyph) => Self::of_glyph(glyph, style),
-            None => Self::of_text(cell, style),
+            Some(glyph) => Self::of_glyph(glyph, style, alphabet),
+            None => Self::of_symbol(cell, style, alphabet),
         }
     }
 
     /// What two colours look like, the first above the second.
     #[inline]
-    pub(super) fn of_colors(colors: [Color; 2]) -> Self {
+    pub(super) fn of_colors(colors: [Color; 2], alphabet: &mut Alphabet) -> Self {
         let [top, bottom] = colors.map(Shade::of);
-        Self::of_glyph(Glyph::Upper, Style::plain(top, bottom))
+        Self::of_glyph(Glyph::Upper, Style::plain(top, bottom), alphabet)
+    }
+
+    /// What two pixels look like, the first above the second.
+    #[inline]
+    pub(super) fn of_pixels(pixels: [Rgb; 2]) -> Self {
+        Self::of_halves(pixels.map(Shade::of_pixel))
     }
 
     /// What a character that is one cell wide looks like, in the colours of its text and of its ground.
-    pub(super) fn of_character(character: char, colors: [Color; 2]) -> Self {
+    pub(super) fn of_character(
+        character: char,
+        colors: [Color; 2],
+        alphabet: &mut Alphabet,
+    ) -> Self {
         let [text, ground] = colors.map(Shade::of);
         let style = Style::plain(text, ground);
         match Glyph::of(character.encode_utf8(&mut [0; 4])) {
-            Some(glyph) => Self::of_glyph(glyph, style),
-            None => Self::of_fields(Self::CHARACTER, character.into(), style),
+            Some(glyph) => Self::of_glyph(glyph, style, alphabet),
+            None => Self::of_letter(character, style, alphabet),
         }
     }
 
     #[inline]
-    fn of_glyph(glyph: Glyph, style: Style) -> Self {
+    fn of_glyph(glyph: Glyph, style: Style, alphabet: &mut Alphabet) -> Self {
         match halves(glyph, style) {
             Some(halves) => Self::of_halves(halves),
-            None => Self::of_fields(Self::CHARACTER, glyph.character().into(), style),
+            None => Self::of_letter(glyph.character(), style, alphabet),
         }
     }
 
-    fn of_text(cell: &Cell, style: Style) -> Self {
+    fn of_symbol(cell: &Cell, style: Style, alphabet: &mut Alphabet) -> Self {
         let mut characters = cell.symbol().chars();
         match (characters.next(), characters.next()) {
             (Some(character), None) if character.is_ascii_graphic() || cell.cell_width() == 1 => {
-                Self::of_fields(Self::CHARACTER, character.into(), style)
+                Self::of_letter(character, style, alphabet)
             }
             _ => Self::INTRICATE,
         }
     }
 
-    /// The character that it is, and how it is drawn; `None` for blocks and what is intricate.
-    pub(super) fn text(self) -> Option<(char, Style)> {
-        let character = (self.0 >> 112 == Self::CHARACTER).then_some((self.0 >> 64) as u32);
-        let [foreground, background] = [(self.0 >> 32) as u32, self.0 as u32].map(Shade::from_bits);
-        let style = Style::with_modifier_bits(foreground, background, (self.0 >> 96) as u16);
-        Some((char::from_u32(character?)?, style))
+    #[inline(never)]
+    fn of_letter(character: char, style: Style, alphabet: &mut Alphabet) -> Self {
+        let number = alphabet.number(Letter::new(character, style.modifier));
+        let colors = [style.foreground, style.background];
+        number.map_or(Self::INTRICATE, |number| Self::of_text(number, colors))
+    }
+
+    /// What a block looks like that is drawn so.
+    pub(super) fn of_block(glyph: Glyph, style: Style) -> Self {
+        Self::of_halves(glyph.halves(style.foreground, style.background))
+    }
+
+    #[inline]
+    const fn of_halves([top, bottom]: [Shade; 2]) -> Self {
+        Self((top.in_bits() as u64) << Shade::BITS | bottom.in_bits() as u64)
+    }
+
+    const fn of_text(number: Number, colors: [Shade; 2]) -> Self {
+        let kind = Self::FIRST_LETTER + number.get() as u64;
+        Self(kind << Self::KIND | Self::of_halves(colors).0)
+    }
+
+    /// The letter that it is, and how it is drawn; `None` for blocks and what is intricate.
+    pub(super) fn text(self, alphabet: &Alphabet) -> Option<(char, Style)> {
+        let number = (self.0 >> Self::KIND).checked_sub(Self::FIRST_LETTER)?;
+        let letter = alphabet.letter(Number::new(number as u16));
+        let [foreground, background] = self.colors();
+        let style = Style { foreground, background, modifier: letter.modifier() };
+        Some((letter.character(), style))
     }
 
     /// Whether it may be wider than a cell.
@@ -148,35 +192,25 @@ impl Look {
         self == wanted && self != Self::INTRICATE
     }
 
-    /// A hash; its upper bits are the best.
+    /// A hash; its upper bits are the best. Of few bits, so that a compiler has several computed at once.
     #[inline]
-    pub(super) fn hash(self) -> u64 {
-        (self.0 as u64 ^ (self.0 >> 64) as u64).wrapping_mul(0x9E37_79B9_7F4A_7C15)
+    pub(super) fn hash(self) -> u32 {
+        ((self.0 ^ self.0 >> 29) as u32).wrapping_mul(0x9E37_79B1)
     }
 
     /// The colours of the upper and the lower half of a block.
+    #[inline]
     pub(super) fn halves(self) -> Option<[Shade; 2]> {
-        (self.0 >> 112 == Self::BLOCK)
-            .then(|| [Shade::from_bits((self.0 >> 32) as u32), Shade::from_bits(self.0 as u32)])
-    }
-
-    /// What a block looks like that is drawn so.
-    pub(super) fn of_block(glyph: Glyph, style: Style) -> Self {
-        Self::of_halves(glyph.halves(style.foreground, style.background))
-    }
-
-    fn of_halves([top, bottom]: [Shade; 2]) -> Self {
-        Self::of_fields(Self::BLOCK, 0, Style::plain(top, bottom))
+        (self.0 >> Self::KIND == 0).then(|| self.colors())
     }
 
     #[inline]
-    fn of_fields(kind: u128, character: u32, style: Style) -> Self {
-        let (one, other) = (style.foreground.in_bits(), style.background.in_bits());
-        let colors = u64::from(one) << 32 | u64::from(other);
-        let rest = u64::from(style.modifier_bits()) << 32 | u64::from(character);
-        Self(kind << 112 | u128::from(rest) << 64 | u128::from(colors))
+    fn colors(self) -> [Shade; 2] {
+        [self.0 >> Shade::BITS, self.0].map(|bits| Shade::from_bits(bits as u32))
     }
 }
+
+const _: () = assert!(Look::LAST_LETTER <= u64::MAX >> Look::KIND);
 
 impl fmt::Debug for Look {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {

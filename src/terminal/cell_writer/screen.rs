@@ -6,9 +6,11 @@ use ratatui::layout::{Position, Rect, Size};
 use ratatui::style::Color;
 use ratatui::widgets::Widget;
 
+use super::alphabet::Alphabet;
 use super::look::Look;
 use super::shift::{Mark, Shift};
 use crate::tui::Canvas;
+use crate::world::Rgb;
 
 /// A terminal's screen: what it shows, and what it is to show, cell by cell.
 ///
@@ -16,6 +18,7 @@ use crate::tui::Canvas;
 #[derive(Debug, Default)]
 pub struct Screen {
     width: usize,
+    alphabet: Alphabet,
     shown: Vec<Look>,
     /// What it is to look like.
     looks: Vec<Look>,
@@ -38,6 +41,7 @@ pub struct Screen {
 /// A row of it.
 pub(super) struct Row<'a> {
     pub(super) y: u16,
+    pub(super) alphabet: &'a Alphabet,
     pub(super) shown: &'a mut [Look],
     pub(super) looks: &'a [Look],
     /// The landmarks of what it was to show in the last frame.
@@ -112,7 +116,7 @@ impl Screen {
 
     #[inline]
     fn set(&mut self, place: usize, cell: &Cell) {
-        let look = Look::of(cell);
+        let look = Look::of(cell, &mut self.alphabet);
         self.looks[place] = look;
         if look.is_intricate() {
             self.want_intricate(place, cell);
@@ -144,12 +148,12 @@ impl Screen {
         }
     }
 
-    /// The cells from `(x, y)` to the right; none off the screen.
+    /// The cells from `(x, y)` to the right, none off the screen; and what characters they may have.
     #[inline]
-    fn looks_from(&mut self, x: u16, y: u16) -> &mut [Look] {
+    fn looks_from(&mut self, x: u16, y: u16) -> (&mut [Look], &mut Alphabet) {
         let row = usize::from(y) * self.width;
         let cells = row + usize::from(x).min(self.width)..row + self.width;
-        self.looks.get_mut(cells).unwrap_or_default()
+        (self.looks.get_mut(cells).unwrap_or_default(), &mut self.alphabet)
     }
 
     /// Whether anything was wanted since the rows were drawn.
@@ -183,13 +187,14 @@ impl Screen {
         mut is_asked: impl FnMut(bool, &mut bool) -> bool,
     ) -> impl Iterator<Item = Row<'_>> {
         let width = self.width.max(1);
+        let alphabet = &self.alphabet;
         let wanted = self.looks.chunks(width).zip(self.wanted.chunks(width));
         let known = self.shown.chunks_mut(width).zip(self.marks.chunks_mut(width));
         let states = self.changed.iter_mut().zip(&mut self.intricate).zip(&mut self.exact);
         (0..).zip(known.zip(wanted).zip(states)).filter_map(move |(y, (cells, state))| {
             let ((shown, marks), (looks, wanted)) = cells;
             let ((changed, intricate), exact) = state;
-            let row = Row { y, shown, looks, marks, wanted, intricate, exact };
+            let row = Row { y, alphabet, shown, looks, marks, wanted, intricate, exact };
             is_asked(*row.exact, changed).then_some(row)
         })
     }
@@ -202,15 +207,29 @@ impl Canvas for Screen {
 
     #[inline]
     fn draw_halves(&mut self, x: u16, y: u16, row: impl Iterator<Item = [Color; 2]>) {
-        for (look, halves) in self.looks_from(x, y).iter_mut().zip(row) {
-            *look = Look::of_colors(halves);
+        let (looks, alphabet) = self.looks_from(x, y);
+        for (look, halves) in looks.iter_mut().zip(row) {
+            *look = Look::of_colors(halves, alphabet);
         }
     }
 
     #[inline]
+    fn draw_pixels(&mut self, x: u16, y: u16, row: impl Iterator<Item = [Rgb; 2]>) {
+        let (looks, _) = self.looks_from(x, y);
+        for (look, pixels) in looks.iter_mut().zip(row) {
+            *look = Look::of_pixels(pixels);
+        }
+    }
+
     fn draw_character(&mut self, x: u16, y: u16, character: char, colors: [Color; 2]) {
-        if let Some(look) = self.looks_from(x, y).first_mut() {
-            *look = Look::of_character(character, colors);
+        let look = Look::of_character(character, colors, &mut self.alphabet);
+        let (looks, _) = self.looks_from(x, y);
+        let Some(place) = looks.first_mut() else { return };
+        *place = look;
+        if look.is_intricate() {
+            let mut cell = Cell::EMPTY;
+            cell.set_char(character).set_fg(colors[0]).set_bg(colors[1]);
+            self.want_intricate(usize::from(y) * self.width + usize::from(x), &cell);
         }
     }
 

@@ -49,35 +49,39 @@ pub(super) enum Way {
     Right,
 }
 
-/// A loss of one byte.
-pub(super) const BYTE: i32 = 16;
-/// The loss of a cell that is not as it should be at all: about how many bytes it takes.
-pub(super) const CELL: i32 = 12 * BYTE;
+/// How bad it is that a cell shows what it does: about how many bytes it would take to draw it anew, in parts
+/// of [`BYTE`].
+pub(super) type Loss = i16;
+
+/// The loss of one byte.
+pub(super) const BYTE: Loss = 16;
+/// The loss of a cell that is not as it should be at all.
+pub(super) const CELL: Loss = 12 * BYTE;
 /// About how many bytes a shift takes: two motions, a deletion and an insertion.
-const SHIFT: i32 = 20 * BYTE;
+const SHIFT: i32 = 20 * BYTE as i32;
 
 /// Finds the shifts of a row, one after another, and has the memory that it takes.
 #[derive(Debug, Default)]
 pub(super) struct Shifts {
     landmarks: Landmarks,
     /// What is lost now, and what would be lost after a move, and after the best of them.
-    losses: Vec<i32>,
-    moved: Vec<i32>,
-    moved_best: Vec<i32>,
+    losses: Vec<Loss>,
+    moved: Vec<Loss>,
+    moved_best: Vec<Loss>,
 }
 
 impl Shifts {
     /// Begins with a row. `lose` adds what is lost where the cells that are now at the first place and
     /// after it are shown at the second and after it.
-    pub(super) fn begin(&mut self, row: &Row, lose: impl Fn(usize, usize, &mut Vec<i32>)) {
+    pub(super) fn begin(&mut self, row: &Row, lose: impl Fn(usize, usize, &mut Vec<Loss>)) {
         self.landmarks.find(row.looks, row.marks);
         self.losses.clear();
         lose(0, 0, &mut self.losses);
     }
 
     /// The shift after which least is lost, if it spares more than it takes.
-    pub(super) fn next(&mut self, lose: impl Fn(usize, usize, &mut Vec<i32>)) -> Option<Shift> {
-        if self.losses.iter().sum::<i32>() <= SHIFT {
+    pub(super) fn next(&mut self, lose: impl Fn(usize, usize, &mut Vec<Loss>)) -> Option<Shift> {
+        if sum(&self.losses) <= SHIFT {
             return None;
         }
         let mut best: Option<(Shift, i32)> = None;
@@ -105,7 +109,7 @@ impl Shifts {
     }
 
     /// What is lost in each cell of the row.
-    pub(super) fn losses(&self) -> &[i32] {
+    pub(super) fn losses(&self) -> &[Loss] {
         &self.losses
     }
 
@@ -118,15 +122,14 @@ impl Shifts {
 impl Shift {
     /// The best shift by that move, and what it spares, where that much is lost now, and that much
     /// after all that can move has moved.
-    fn best(by: Move, now: &[i32], moved: &[i32]) -> (Self, i32) {
+    fn best(by: Move, now: &[Loss], moved: &[Loss]) -> (Self, i32) {
         let (_, first) = by.places();
         let stretch = best_stretch(&now[first..], moved);
-        let covered = now[first..][stretch.clone()].iter().sum::<i32>();
-        let spared = covered - moved[stretch.clone()].iter().sum::<i32>();
+        let spared = sum(&now[first..][stretch.clone()]) - sum(&moved[stretch.clone()]);
         let Move { way, by } = by;
         let shift = Self { columns: stretch.start..stretch.end + by, by, way };
         // What is uncovered must be sent, even where it was right before.
-        let lost: i32 = now[shift.uncovered()].iter().map(|loss| CELL - loss).sum();
+        let lost = shift.by as i32 * i32::from(CELL) - sum(&now[shift.uncovered()]);
         (shift, spared - lost)
     }
 
@@ -159,35 +162,51 @@ impl Shift {
     }
 }
 
+/// What is lost in all of those cells.
+fn sum(losses: &[Loss]) -> i32 {
+    losses.iter().map(|&loss| i32::from(loss)).sum()
+}
+
 #[cfg(test)]
 mod tests {
     use proptest::prelude::*;
-    use ratatui::style::Color;
+    use ratatui::style::{Color, Modifier};
 
+    use super::super::alphabet::{Alphabet, Letter};
     use super::super::look::Look;
     use super::*;
 
     fn best(shown: &[Look], wanted: &[Look]) -> Option<Shift> {
         let row = Row {
             y: 0,
+            alphabet: &Alphabet::default(),
             shown: &mut shown.to_vec(),
             looks: wanted,
-            marks: &mut Mark::all(shown).collect::<Vec<_>>(),
+            marks: &mut marks(shown),
             wanted: &[],
             intricate: &mut false,
             exact: &mut false,
         };
         let mut shifts = Shifts::default();
-        let lose = |from: usize, to: usize, losses: &mut Vec<i32>| {
+        let lose = |from: usize, to: usize, losses: &mut Vec<Loss>| {
             let looks = shown[from..].iter().zip(&wanted[to..]);
-            losses.extend(looks.map(|(shown, wanted)| CELL * i32::from(shown != wanted)));
+            losses.extend(looks.map(|(shown, wanted)| CELL * Loss::from(shown != wanted)));
         };
         shifts.begin(&row, lose);
         shifts.next(lose)
     }
 
+    fn marks(looks: &[Look]) -> Vec<Mark> {
+        let hashes: Vec<_> = looks.iter().map(|look| look.hash()).collect();
+        Mark::all(&hashes).collect()
+    }
+
     fn row(text: &str) -> Vec<Look> {
-        text.chars().map(|drawn| Look::of_character(drawn, [Color::Reset; 2])).collect()
+        let mut alphabet = Alphabet::default();
+        // In any text, the same letters have the same numbers then.
+        (' '..='~').for_each(|letter| _ = alphabet.number(Letter::new(letter, Modifier::empty())));
+        let look = |letter| Look::of_character(letter, [Color::Reset; 2], &mut alphabet);
+        text.chars().map(look).collect()
     }
 
     #[test]

@@ -10,16 +10,17 @@ use super::super::sequence;
 use super::bytes::Bytes;
 use super::bytes::Piece;
 use super::control::{self, ControlSequence};
+use crate::world::Rgb;
 
 /// How a character is drawn.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub(crate) struct Style {
     pub(super) foreground: Shade,
     pub(super) background: Shade,
-    modifier: Modifier,
+    pub(super) modifier: Modifier,
 }
 
-/// A colour in the one way that SGR writes it, of ratatui's several; in 26 bits, as most of what is
+/// A colour in the one way that SGR writes it, of ratatui's several; of few bits, as most of what is
 /// done with colours is to compare them.
 #[derive(Clone, Copy, PartialEq, Eq)]
 pub(super) struct Shade(u32);
@@ -83,15 +84,6 @@ impl Style {
         Self { foreground, background, modifier: Modifier::empty() }
     }
 
-    /// Those two colours, and the modifiers that have those bits.
-    pub(super) fn with_modifier_bits(foreground: Shade, background: Shade, modifiers: u16) -> Self {
-        Self { foreground, background, modifier: Modifier::from_bits_truncate(modifiers) }
-    }
-
-    pub(super) fn modifier_bits(self) -> u16 {
-        self.modifier.bits()
-    }
-
     pub(super) fn has_no_modifiers(self) -> bool {
         self.modifier.is_empty()
     }
@@ -124,12 +116,12 @@ impl Style {
         if self.modifier != known.modifier {
             self.switch_modifiers(known.modifier, &mut rendition);
         }
-        if self.foreground != known.foreground {
-            self.foreground.write(Ground::Fore, &mut rendition);
-        }
-        if self.background != known.background {
-            self.background.write(Ground::Back, &mut rendition);
-        }
+        rendition.add_if(self.foreground != known.foreground, |rendition| {
+            self.foreground.write(Ground::Fore, rendition);
+        });
+        rendition.add_if(self.background != known.background, |rendition| {
+            self.background.write(Ground::Back, rendition);
+        });
         rendition.end(b'm');
     }
 
@@ -152,6 +144,8 @@ impl Style {
 impl Shade {
     /// The terminal's own colour.
     pub(super) const DEFAULT: Self = Self(0);
+    /// So many bits tell one from all others.
+    pub(super) const BITS: u32 = 26;
     const INDEXED: u32 = 1 << 24;
     const RGB: u32 = 2 << 24;
 
@@ -198,14 +192,21 @@ impl Shade {
         })
     }
 
-    /// A number of its own, of 26 bits.
-    pub(super) fn in_bits(self) -> u32 {
+    #[inline]
+    pub(super) fn of_pixel(pixel: Rgb) -> Self {
+        Self(Self::RGB | pixel.in_bits())
+    }
+
+    /// A number of its own, of as many bits.
+    #[inline]
+    pub(super) const fn in_bits(self) -> u32 {
         self.0
     }
 
-    /// The colour that has the number `bits`.
-    pub(super) fn from_bits(bits: u32) -> Self {
-        Self(bits)
+    /// The colour that has that number; what is above it in `bits` does not matter.
+    #[inline]
+    pub(super) const fn from_bits(bits: u32) -> Self {
+        Self(bits & ((1 << Self::BITS) - 1))
     }
 
     #[inline]

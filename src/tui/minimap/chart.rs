@@ -69,31 +69,17 @@ impl<'a> Chart<'a> {
         Self { world, sight: Sight::new(camera, columns), tiles, pixel }
     }
 
-    /// What stands in the row that `y` is in.
-    pub(super) fn things_in_row(&self, y: f64) -> &'a [Thing] {
-        let row = u32::try_from(cell_at(y));
-        row.map_or(&[], |row| self.world.things_between(row, 0, u32::MAX))
-    }
-
-    /// What is at `point`, in the middle of a pixel; `things` stand in its row.
-    #[inline]
-    pub(super) fn place(&self, point: DVec2, things: &[Thing]) -> Place {
-        let [column, row] = [point.x, point.y].map(cell_at);
-        let Some(tile) = self.world.grid().tile(column, row) else { return Place::Void };
-        let cell = Cell { column: column as u32, row: row as u32 };
-        match self.tiles[usize::from(tile.0)] {
-            Drawn::Solid(color) => return Place::Wall(color),
-            Drawn::Shape(color) if self.is_covered(tile, cell, point) => return Place::Wall(color),
-            Drawn::Shape(_) | Drawn::Floor => {}
-        }
-        let first = things.partition_point(|thing| thing.cell.column < cell.column);
-        let thing = things.get(first).filter(|thing| thing.cell == cell);
-        match thing.map(|thing| thing.kind) {
-            Some(ThingKind::Exit) => Place::Exit,
-            Some(ThingKind::Key(_)) if is_on_dot(point, cell) => Place::Key,
-            Some(ThingKind::Ornament) if is_on_dot(point, cell) => Place::Ornament,
-            _ if self.sight.reaches(point) => Place::Seen,
-            _ => Place::Floor,
+    /// What lies at the points whose distance from the map's northern edge is `y`.
+    pub(super) fn row(&self, y: f64) -> Row<'_> {
+        let row = u32::try_from(cell_at(y)).ok();
+        Row {
+            chart: self,
+            tiles: row
+                .and_then(|row| self.world.grid().rows().nth(row as usize))
+                .unwrap_or_default(),
+            things: row.map_or(&[], |row| self.world.things_between(row, 0, u32::MAX)),
+            y,
+            number: row.unwrap_or_default(),
         }
     }
 
@@ -103,6 +89,51 @@ impl<'a> Chart<'a> {
             return true;
         };
         outline.distance(cell, point) <= self.pixel / 2.0
+    }
+}
+
+/// What lies on a line from west to east.
+pub(super) struct Row<'a> {
+    chart: &'a Chart<'a>,
+    tiles: &'a [TileId],
+    things: &'a [Thing],
+    y: f64,
+    /// Which of the map's rows that is, if there are tiles.
+    number: u32,
+}
+
+impl Row<'_> {
+    /// What is there so far from the map's western edge, in the middle of a pixel.
+    #[inline]
+    pub(super) fn place(&self, x: f64) -> Place {
+        let column = cell_at(x) as usize;
+        let Some(&tile) = self.tiles.get(column) else { return Place::Void };
+        let cell = Cell { column: column as u32, row: self.number };
+        let point = DVec2::new(x, self.y);
+        match self.chart.tiles[usize::from(tile.0)] {
+            Drawn::Solid(color) => return Place::Wall(color),
+            Drawn::Shape(color) if self.chart.is_covered(tile, cell, point) => {
+                return Place::Wall(color);
+            }
+            Drawn::Shape(_) | Drawn::Floor => {}
+        }
+        match self.thing(cell) {
+            Some(ThingKind::Exit) => Place::Exit,
+            Some(ThingKind::Key(_)) if is_on_dot(point, cell) => Place::Key,
+            Some(ThingKind::Ornament) if is_on_dot(point, cell) => Place::Ornament,
+            _ if self.chart.sight.reaches(point) => Place::Seen,
+            _ => Place::Floor,
+        }
+    }
+
+    /// The first thing that stands in a cell of the row.
+    #[inline]
+    fn thing(&self, cell: Cell) -> Option<ThingKind> {
+        if self.things.is_empty() {
+            return None;
+        }
+        let first = self.things.partition_point(|thing| thing.cell.column < cell.column);
+        self.things.get(first).filter(|thing| thing.cell == cell).map(|thing| thing.kind)
     }
 }
 
@@ -144,14 +175,20 @@ impl<'a> Sight<'a> {
         if distance <= 0.0 || self.columns.is_empty() {
             return false;
         }
-        let across = to_point.dot(self.direction.perp()) / (distance * self.half_width);
+        let (across, half_width) =
+            (to_point.dot(self.direction.perp()), distance * self.half_width);
+        // Most of what is not in view is found out without a division.
+        if across.abs() > 2.0 * half_width {
+            return false;
+        }
+        let across = across / half_width;
         let index = f64::midpoint(across, 1.0) * self.columns.len() as f64;
         index >= 0.0
             && self.columns.get(index as usize).is_some_and(|column| distance <= column.distance)
     }
 }
 
-/// The column or row that a place is in; before the map, one before it. Where processors may be old, rounding
+/// The column or row that a place is in; before the map, a negative one. Where processors may be old, rounding
 /// down is a call.
 fn cell_at(place: f64) -> i64 {
     place as i64 - i64::from(place < 0.0)

@@ -52,7 +52,7 @@ pub const PANORAMAS: &[&str] = &["hills"];
 pub fn panorama(name: &str) -> Option<Texture> {
     const WIDTH: NonZeroU32 = NonZeroU32::new(panorama::WIDTH as u32).expect("it is not 0");
     const HEIGHT: NonZeroU32 = NonZeroU32::new(panorama::HEIGHT as u32).expect("it is not 0");
-    let paint = (name == PANORAMAS[0]).then_some(panorama::hills)?;
+    let paint = (name == PANORAMAS[0]).then(panorama::hills)?;
     Some(Texture::from_fn(WIDTH, HEIGHT, |x, y| paint(x as i32, y as i32)))
 }
 

@@ -1,19 +1,20 @@
 //! Landmarks: what of a row can be found again where it has moved to.
 //!
-//! A landmark is a pair of unlike neighbours, told by a mark of eight bits. All marks of a row are
-//! compared with all from before, move by move, which is a few instructions for sixteen of them. To
-//! compare what they look like took longer than all the rest of the encoder, and to look each up in
-//! a table missed those that are there several times.
+//! A landmark is a pair of unlike neighbours, told by a mark of eight bits. Each mark of a row is compared
+//! with all that were around it before, which is a few instructions for sixteen of them, and so votes for
+//! the moves that may have brought it there. To compare what cells look like took longer than all the rest
+//! of the encoder, and to look each up in a table missed those that are there several times.
 
 use super::super::look::Look;
 use super::{Move, Shift, Way};
 
-/// The marks of a row's cells, padded, as they are to be and as they were.
+/// The marks of a row's cells, as they are to be and as they were.
 #[derive(Debug, Default)]
 pub(super) struct Landmarks {
+    hashes: Vec<u32>,
     now: Vec<Mark>,
+    /// With as many on either side as are looked at from the first cell and from the last.
     before: Vec<Mark>,
-    width: usize,
 }
 
 /// The farthest that is looked for: what moves faster has changed in other ways too.
@@ -21,49 +22,102 @@ const FARTHEST: usize = 16;
 /// So many moves of a row are tried. Twice as many spare half a byte in a hundred.
 const MOST_TRIED: usize = 2;
 /// So few landmarks may agree by chance.
-const CHANCE: u32 = 2;
-/// So many marks are compared at a time: no fewer than they move by.
-const LANES: usize = 32;
-const _: () = assert!(FARTHEST <= LANES);
+const CHANCE: u16 = 2;
 
 impl Landmarks {
     /// Finds those of a row that is to look like that, and had those marks before.
     pub(super) fn find(&mut self, looks: &[Look], before: &[Mark]) {
-        self.width = looks.len();
+        self.hashes.clear();
+        self.hashes.extend(looks.iter().map(|look| look.hash()));
         self.now.clear();
-        self.now.extend(Mark::all(looks));
-        pad(&mut self.now, Mark::NONE);
+        self.now.extend(Mark::all(&self.hashes));
+        let nothing = Mark::NONE.before();
         self.before.clear();
-        self.before.extend(before.iter().map(|&mark| mark.before()));
-        pad(&mut self.before, Mark::NONE.before());
+        self.before.resize(FARTHEST, nothing);
+        self.before.extend(before.iter().map(|mark| mark.before()));
+        self.before.resize(FARTHEST + before.len() + FARTHEST, nothing);
     }
 
     /// The moves that brought most of them to where they are.
     pub(super) fn likely_moves(&self) -> impl Iterator<Item = Move> {
+        let votes = self.votes();
         let mut likely = [None; MOST_TRIED];
-        let mut votes = [CHANCE; MOST_TRIED];
-        for by in 1..=FARTHEST.min(self.width.saturating_sub(1)) {
-            let left = count_alike(&self.before[by..], &self.now);
-            let right = count_alike(&self.before, &self.now[by..]);
-            for (way, count) in [(Way::Left, left), (Way::Right, right)] {
-                if let Some(rank) = votes.iter().position(|&votes| count > votes) {
+        let mut most = [CHANCE; MOST_TRIED];
+        for by in 1..=FARTHEST {
+            for (way, count) in [(Way::Left, votes.left(by)), (Way::Right, votes.right(by))] {
+                if let Some(rank) = most.iter().position(|&most| count > most) {
                     likely[rank..].rotate_right(1);
-                    votes[rank..].rotate_right(1);
-                    (likely[rank], votes[rank]) = (Some(Move { way, by }), count);
+                    most[rank..].rotate_right(1);
+                    (likely[rank], most[rank]) = (Some(Move { way, by }), count);
                 }
             }
         }
         likely.into_iter().flatten()
     }
 
+    /// For how many landmarks there was a like one in each place around theirs.
+    fn votes(&self) -> Votes {
+        let mut votes = Votes::default();
+        let around = self.before.windows(FARTHEST + 1 + FARTHEST);
+        let mut places = self.now.iter().copied().zip(around);
+        for _ in 0..self.now.len().div_ceil(MOST_AT_ONCE) {
+            votes.add(places.by_ref().take(MOST_AT_ONCE));
+        }
+        votes
+    }
+
     /// The row has been moved.
     pub(super) fn shift(&mut self, shift: &Shift) {
-        shift.apply(&mut self.before, Mark::NONE.before());
+        let row = &mut self.before[FARTHEST..][..self.now.len()];
+        shift.apply(row, Mark::NONE.before());
     }
 
     /// The marks of the row as it is to be.
     pub(super) fn marks(&self) -> &[Mark] {
-        &self.now[..self.width]
+        &self.now
+    }
+}
+
+/// How many landmarks were in each place around where they are now, from left to right.
+#[derive(Default)]
+struct Votes {
+    on_the_left: [u16; FARTHEST],
+    on_the_right: [u16; FARTHEST],
+}
+
+/// So many votes can be counted in eight bits.
+const MOST_AT_ONCE: usize = u8::MAX as usize;
+
+impl Votes {
+    /// Counts those of no more places than that, each with all that was around it before.
+    fn add<'a>(&mut self, places: impl Iterator<Item = (Mark, &'a [Mark])>) {
+        let (mut on_the_left, mut on_the_right) = ([0_u8; FARTHEST], [0_u8; FARTHEST]);
+        for (now, around) in places {
+            let sides = around.first_chunk::<FARTHEST>().zip(around.last_chunk::<FARTHEST>());
+            let (left, right) = sides.expect("there is as much on either side of every cell");
+            for (votes, &before) in on_the_left.iter_mut().zip(left) {
+                *votes += u8::from(before == now);
+            }
+            for (votes, &before) in on_the_right.iter_mut().zip(right) {
+                *votes += u8::from(before == now);
+            }
+        }
+        for (sum, votes) in self.on_the_left.iter_mut().zip(on_the_left) {
+            *sum += u16::from(votes);
+        }
+        for (sum, votes) in self.on_the_right.iter_mut().zip(on_the_right) {
+            *sum += u16::from(votes);
+        }
+    }
+
+    /// How many have moved to the left by so many cells.
+    fn left(&self, by: usize) -> u16 {
+        self.on_the_right[by - 1]
+    }
+
+    /// How many have moved to the right by so many cells.
+    fn right(&self, by: usize) -> u16 {
+        self.on_the_left[FARTHEST - by]
     }
 }
 
@@ -81,34 +135,14 @@ impl Mark {
         Self(self.0.max(1))
     }
 
-    /// The marks of a row's cells.
-    pub(super) fn all(row: &[Look]) -> impl Iterator<Item = Self> {
-        let mut before = (Look::UNKNOWN, 0);
-        row.iter().map(move |&look| {
-            let (last, last_hash) = before;
-            let hash = look.hash();
-            before = (look, hash);
-            let pair = u64::rotate_left(last_hash, 5).wrapping_add(hash);
-            if last == look { Self::NONE } else { Self(((pair >> 56) as u8).max(2)) }
-        })
+    /// The marks of a row's cells, whose looks have those hashes.
+    pub(super) fn all(hashes: &[u32]) -> impl Iterator<Item = Self> {
+        let pairs = hashes.iter().zip(hashes.iter().skip(1));
+        let marks = pairs.map(|(&last, &hash)| {
+            let pair = last.rotate_left(5).wrapping_add(hash);
+            if last == hash { Self::NONE } else { Self(((pair >> 24) as u8).max(2)) }
+        });
+        // What the first one follows is unknown, and so it is no landmark.
+        hashes.first().map(|_| Self::NONE).into_iter().chain(marks)
     }
-}
-
-/// Marks are padded so that they can be compared so many at a time, however far they moved.
-fn pad(marks: &mut Vec<Mark>, padding: Mark) {
-    let whole = marks.len().next_multiple_of(LANES);
-    marks.resize(whole + LANES, padding);
-}
-
-/// At how many places both have the same mark.
-#[inline]
-fn count_alike(one: &[Mark], other: &[Mark]) -> u32 {
-    // Lane by lane, so that the compiler compares all lanes at once.
-    let mut counts = [0_u8; LANES];
-    for (one, other) in one.chunks_exact(LANES).zip(other.chunks_exact(LANES)) {
-        for ((count, one), other) in counts.iter_mut().zip(one).zip(other) {
-            *count = count.saturating_add(u8::from(one == other));
-        }
-    }
-    counts.into_iter().map(u32::from).sum()
 }

@@ -1,5 +1,7 @@
 //! A clipped hedge.
 
+use std::sync::LazyLock;
+
 use super::noise::{Noise, hash};
 use super::shade::{pick, shade};
 use super::{SIDE, wrapped};
@@ -12,7 +14,7 @@ pub(super) fn hedge(x: i32, y: i32) -> Rgb {
         [Rgb::new(0x40, 0x7a, 0x30), Rgb::new(0x34, 0x68, 0x2c), Rgb::new(0x50, 0x8a, 0x36)];
     const BOUGHS: Noise = Noise::new(14, 16, 16);
 
-    let leaf_here = leaves().find_map(|leaf| Some((leaf.id, leaf.light_at(x, y)?)));
+    let leaf_here = LEAVES.iter().find_map(|leaf| Some((leaf.id, leaf.light_at(x, y)?)));
     let light = BOUGHS.at(x, y, 40);
     match leaf_here {
         Some((id, on_leaf)) => shade(pick(GREEN, id), light + on_leaf - id / 2),
@@ -36,6 +38,10 @@ impl Leaf {
     /// brighter than the one below; an upright leaf is dim.
     fn light_at(&self, x: i32, y: i32) -> Option<i32> {
         let (x, y) = (wrapped(x - self.x), wrapped(y - self.y));
+        // Most leaves are elsewhere.
+        if x.abs().max(y.abs()) > 2 * TIP {
+            return None;
+        }
         let (tip_x, tip_y) = self.tip;
         // In texels times TIP, along the midrib and across it.
         let along = x * tip_x + y * tip_y;
@@ -47,16 +53,16 @@ impl Leaf {
 
 /// The leaves, those in front first: one or two in each square of a coarse grid,
 /// anywhere in it.
-fn leaves() -> impl Iterator<Item = Leaf> {
+static LEAVES: LazyLock<[Leaf; 104]> = LazyLock::new(|| {
     const SPACING: i32 = 8;
-    const COUNT: i32 = 104;
     const TIPS: [(i32, i32); 6] = [(8, 0), (7, 4), (4, 7), (0, 8), (4, -7), (7, -4)];
     const SQUARES: i32 = SIDE / SPACING;
     // Without a divisor in common with the number of squares: it visits all of them, and leaves
     // that are neighbours in the hedge are not in depth.
     const STRIDE: i32 = 37;
 
-    (0..COUNT).map(|index| {
+    std::array::from_fn(|index| {
+        let index = index as i32;
         let square = index * STRIDE % (SQUARES * SQUARES);
         let jitter = |seed| (hash(index, square, seed) % SPACING as u32) as i32;
         Leaf {
@@ -66,4 +72,4 @@ fn leaves() -> impl Iterator<Item = Leaf> {
             id: index,
         }
     })
-}
+});

@@ -22,24 +22,28 @@ pub(super) fn hash(x: i32, y: i32, seed: u32) -> u32 {
 #[derive(Clone, Copy)]
 pub(super) struct Noise {
     seed: u32,
-    /// Texels from one lattice point to the next, across and down.
-    spacing: (i32, i32),
+    across: Spacing,
+    down: Spacing,
+}
+
+/// How far it is from one lattice point to the next: a power of two, as a division takes longer than
+/// all the rest of the noise.
+#[derive(Clone, Copy)]
+struct Spacing {
+    bits: u32,
 }
 
 impl Noise {
     /// Noise with lattice points `across` texels apart in a row and `down` texels in a column. Both
-    /// divide the texture's side.
+    /// divide the texture's side, which is a power of two.
     pub(super) const fn new(seed: u32, across: i32, down: i32) -> Self {
-        assert!(SIDE % across == 0 && SIDE % down == 0, "this noise would not wrap");
-        Self { seed, spacing: (across, down) }
+        Self { seed, across: Spacing::new(across), down: Spacing::new(down) }
     }
 
     /// The noise at a texel: from `-swing` to `swing`.
     pub(super) fn at(self, x: i32, y: i32, swing: i32) -> i32 {
-        let (across, down) = self.spacing;
-        let (left, top) = (x.div_euclid(across), y.div_euclid(down));
-        let (from_left, from_top) =
-            (ease(x.rem_euclid(across), across), ease(y.rem_euclid(down), down));
+        let (left, from_left) = self.across.split(x);
+        let (top, from_top) = self.down.split(y);
         let upper = blend(self.point(left, top), self.point(left + 1, top), from_left);
         let lower = blend(self.point(left, top + 1), self.point(left + 1, top + 1), from_left);
         blend(upper, lower, from_top) * swing / POINT_RANGE
@@ -47,9 +51,26 @@ impl Noise {
 
     /// Chance at a lattice point: from `-POINT_RANGE` to `POINT_RANGE`.
     fn point(self, column: i32, row: i32) -> i32 {
-        let (across, down) = self.spacing;
-        let (column, row) = (column.rem_euclid(SIDE / across), row.rem_euclid(SIDE / down));
+        let (column, row) = (self.across.wrapped(column), self.down.wrapped(row));
         (hash(column, row, self.seed) % (2 * POINT_RANGE as u32 + 1)) as i32 - POINT_RANGE
+    }
+}
+
+impl Spacing {
+    const fn new(texels: i32) -> Self {
+        assert!(texels > 0 && SIDE % texels == 0, "this noise would not wrap");
+        Self { bits: texels.trailing_zeros() }
+    }
+
+    /// The lattice point at a texel or before it, and how far the texel is on the way to the next one.
+    fn split(self, texel: i32) -> (i32, i32) {
+        let from_point = texel & ((1 << self.bits) - 1);
+        (texel >> self.bits, ease((from_point * WHOLE) >> self.bits))
+    }
+
+    /// The lattice point that is the same, of those that there are.
+    fn wrapped(self, point: i32) -> i32 {
+        point & ((SIDE >> self.bits) - 1)
     }
 }
 
@@ -62,9 +83,8 @@ fn blend(from: i32, to: i32, weight: i32) -> i32 {
     from + (to - from) * weight / WHOLE
 }
 
-/// How far `step` of `steps` is on the way from 0 to [`WHOLE`], setting off and arriving gently.
-fn ease(step: i32, steps: i32) -> i32 {
-    let t = step * WHOLE / steps;
+/// The same way from 0 to [`WHOLE`], setting off and arriving gently.
+fn ease(t: i32) -> i32 {
     t * t * (3 * WHOLE - 2 * t) / (WHOLE * WHOLE)
 }
 

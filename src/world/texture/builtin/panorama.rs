@@ -9,14 +9,21 @@ pub(super) const WIDTH: i32 = 512;
 pub(super) const HEIGHT: i32 = 64;
 
 /// Three ranges of hills, the further the paler, under a morning sky.
-pub(super) fn hills(x: i32, y: i32) -> Rgb {
-    let up = HEIGHT - 1 - y;
-    let range = RANGES.iter().find(|range| up < range.height_at(x));
-    match range {
-        // The foot of a range lies in the mist.
-        Some(range) => mix(MIST, range.color, 170 + 14 * up.min(6)),
-        None => sky(x, up),
+pub(super) fn hills() -> impl Fn(i32, i32) -> Rgb {
+    let skylines = RANGES.map(|range| (range.color, skyline(&range)));
+    move |x, y| {
+        let up = HEIGHT - 1 - y;
+        match skylines.iter().find(|(_, heights)| up < heights[x as usize]) {
+            // The foot of a range lies in the mist.
+            Some(&(color, _)) => mix(MIST, color, 170 + 14 * up.min(6)),
+            None => sky(x, up),
+        }
     }
+}
+
+/// How high the range is at each `x`.
+fn skyline(range: &Range) -> Vec<i32> {
+    (0..WIDTH).map(|x| range.height_at(x)).collect()
 }
 
 const ZENITH: Rgb = Rgb::new(0x4c, 0x82, 0xbe);
