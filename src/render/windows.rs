@@ -6,11 +6,13 @@
 //! in view: mostly one, two where a roof is seen from below and above at once. A mirror turns the ray
 //! back with the window that its face had.
 //!
-//! Each of the passes is a file: `look` follows the rays and notes what every pixel shows, `planes`
-//! lays floors, ceilings and the sky along rows, `faces` papers what stands upright, `veils` paints
-//! over that what is seen through, and `things` what stands between. Where a world is level and has no mirrors the other passes draw
-//! the same with less: they need not ask what a pixel shows. Laying a floor at once while its column
-//! is followed was refused: by rows its shade and its distance are found once for many pixels.
+//! All of that is found out first, by `look`, from the `profile` of each tile, and noted column by column;
+//! `things` finds what stands in between, and `layers` what is painted over the rest. Then the picture is
+//! drawn band by band, by one thread or by several: `planes` lays floors, ceilings and the sky along rows,
+//! `faces` papers what stands upright, and `layers` paints what is seen through, the `veils`. Where a world
+//! is level and has no mirrors the other passes draw the same with less: they need no notes. Laying a floor
+//! at once while its column is followed was refused: by rows its shade and its distance are found once for
+//! many pixels.
 
 mod faces;
 mod layers;

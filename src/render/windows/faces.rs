@@ -68,7 +68,12 @@ pub(super) fn draw<T: Tally>(
                 let coats = coats(scene, nearest, shade, papers, band, tally);
                 coat::draw(&coats, papers, band);
             } else {
-                let coats = coats(scene, nearest, |face| OfSide(face.side()), papers, band, tally);
+                let shade = |face: &Face| match face.facing {
+                    Facing::Side(side) => OfSide(side),
+                    // Only shapes look that way, and there are none.
+                    Facing::Normal(_) => OfSide(Side::X),
+                };
+                let coats = coats(scene, nearest, shade, papers, band, tally);
                 coat::draw(&coats, papers, band);
             }
         }
@@ -108,20 +113,6 @@ impl Facing {
 }
 
 impl Face {
-    /// The kind of line that it runs along most.
-    fn side(&self) -> Side {
-        match self.facing {
-            Facing::Side(side) => side,
-            Facing::Normal(normal) => {
-                if normal.x.abs() >= normal.y.abs() {
-                    Side::X
-                } else {
-                    Side::Y
-                }
-            }
-        }
-    }
-
     /// How it is covered in those `rows` in that shade, by means of `paper`.
     fn coat<'a, S: Shade, T: Tally>(
         &self,

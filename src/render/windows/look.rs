@@ -239,11 +239,6 @@ impl<'a> Look<'a> {
         own.unwrap_or_else(|| met.before.map_or(Light::FULL, there))
     }
 
-    pub(super) fn kind(&self, place: Place) -> Option<(Cell, TileKind)> {
-        let (cell, _) = place?;
-        Some((cell, self.tile(place)?.kind))
-    }
-
     pub(super) fn tile(&self, place: Place) -> Option<&'a Tile> {
         let (_, id) = place?;
         self.scene.world.tiles().get(usize::from(id.0))

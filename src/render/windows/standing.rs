@@ -14,8 +14,8 @@ use crate::world::{Cell, Outline, Tile, TileKind};
 impl Look<'_> {
     /// Meets what stands in the slot that `branch` is in. What is above it, if anything, stays open.
     pub(super) fn meet_standing(&mut self, branch: &mut Branch) {
-        let Some((cell, kind)) = self.kind(branch.place) else { return };
-        let Some(tile) = self.tile(branch.place) else { return };
+        let (Some((cell, _)), Some(tile)) = (branch.place, self.tile(branch.place)) else { return };
+        let kind = tile.kind;
         let Passage { hit, end } = branch.walk.standing(self.scene.world, cell, kind);
         if let Some(hit) = hit {
             // A ray that was reflected in this cell may have been nowhere near before that.
