@@ -6,6 +6,7 @@ use std::collections::BTreeSet;
 
 use cellcaster::terminal::{CellWriter, Fidelity};
 use cellcaster::tui::Canvas;
+use cellcaster::world::Rgb as Pixel;
 use proptest::prelude::*;
 use ratatui::Terminal;
 use ratatui::backend::Backend;
@@ -164,11 +165,15 @@ fn paint(picture: &Buffer, canvas: &mut impl Canvas) {
     for y in picture.area.rows().map(|row| row.y) {
         let cells = picture.area.positions().filter(|place| place.y == y);
         for (x, cell) in cells.map(|place| (place.x, &picture[place])) {
-            match (y % 3, Shown::of(cell)) {
+            match (y % 4, Shown::of(cell)) {
                 (0, _) => canvas.draw_widget(One(cell), Rect::new(x, y, 1, 1)),
                 (1, Shown::Halves(halves)) => {
                     let rgb = |[red, green, blue]: Rgb| Color::Rgb(red, green, blue);
                     canvas.draw_halves(x, y, std::iter::once(halves.map(rgb)));
+                }
+                (2, Shown::Halves(halves)) => {
+                    let pixel = |[red, green, blue]: Rgb| Pixel::new(red, green, blue);
+                    canvas.draw_pixels(x, y, std::iter::once(halves.map(pixel)));
                 }
                 _ => {
                     let character = cell.symbol().chars().next().unwrap();

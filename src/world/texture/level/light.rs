@@ -25,6 +25,33 @@ impl Light {
     pub(super) fn halved(&self) -> Self {
         let half = |side: NonZeroU32| NonZeroU32::new(side.get() / 2).unwrap_or(NonZeroU32::MIN);
         let (width, height) = (half(self.width), half(self.height));
+        let is_even = |side: NonZeroU32| side.get().is_multiple_of(2);
+        if self.alpha.is_empty() && is_even(self.width) && is_even(self.height) {
+            Self { width, height, texels: self.means_of_four(), alpha: Vec::new() }
+        } else {
+            self.resized(width, height)
+        }
+    }
+
+    /// The means of squares of four texels, all opaque, where both sides are even.
+    fn means_of_four(&self) -> Vec<[u16; 3]> {
+        let height = self.height.get() as usize;
+        let pairs = self.texels.chunks_exact(2 * height).flat_map(|columns| {
+            let (left, right) = columns.split_at(height);
+            left.as_chunks::<2>().0.iter().zip(right.as_chunks::<2>().0)
+        });
+        let mean = |(left, right): (&[[u16; 3]; 2], &[[u16; 3]; 2])| {
+            std::array::from_fn(|channel| {
+                let texels = left.iter().chain(right);
+                let sum: u32 = texels.map(|texel| u32::from(texel[channel])).sum();
+                ((sum + 2) / 4) as u16
+            })
+        };
+        pairs.map(mean).collect()
+    }
+
+    /// So wide and high.
+    fn resized(&self, width: NonZeroU32, height: NonZeroU32) -> Self {
         let places = (0..width.get()).flat_map(|x| (0..height.get()).map(move |y| (x, y)));
         let (texels, mut alpha): (Vec<_>, Vec<u8>) = places
             .map(|(x, y)| {
@@ -102,10 +129,23 @@ pub(super) fn linear(color: Rgb) -> [u16; 3] {
     color.channels().map(|channel| LINEAR[usize::from(channel)])
 }
 
+/// The first stored channel that is as light as each multiple of [`SPACING`] or lighter.
+static FIRST: LazyLock<[u8; (u16::MAX / SPACING) as usize + 1]> = LazyLock::new(|| {
+    std::array::from_fn(|index| {
+        let channel = index as u16 * SPACING;
+        LINEAR.partition_point(|&linear| linear < channel) as u8
+    })
+});
+
+/// About three times the distance of the darkest two channels.
+const SPACING: u16 = 64;
+
 /// The stored colour that is nearest to one in linear light.
 pub(super) fn stored(light: [u16; 3]) -> Rgb {
     let [red, green, blue] = light.map(|channel| {
-        let above = LINEAR.partition_point(|&linear| linear < channel).min(255);
+        let first = usize::from(FIRST[usize::from(channel / SPACING)]);
+        let mut lighter = LINEAR[first..].iter();
+        let above = first + lighter.position(|&linear| linear >= channel).unwrap_or_default();
         let below = above.saturating_sub(1);
         let is_below = channel - LINEAR[below].min(channel) < LINEAR[above] - channel;
         (if is_below { below } else { above }) as u8
@@ -127,7 +167,30 @@ mod tests {
         }
     }
 
+    #[test]
+    fn the_nearest_stored_channel_is_found() {
+        for light in 0..=u16::MAX {
+            let found = stored([light; 3]).red();
+            let least = LINEAR.iter().map(|linear| linear.abs_diff(light)).min().unwrap();
+            assert_eq!(LINEAR[usize::from(found)].abs_diff(light), least, "{light}");
+        }
+    }
+
     proptest! {
+        #[test]
+        fn a_square_of_four_is_halved_as_any_other_size_is(
+            width in 1_u32..6,
+            height in 1_u32..6,
+            seed in prop::collection::vec(any::<[u16; 3]>(), 100),
+        ) {
+            let texels = seed[..4 * (width * height) as usize].to_vec();
+            let [half_width, half_height, width, height] =
+                [width, height, 2 * width, 2 * height].map(|side| NonZeroU32::new(side).unwrap());
+            let whole = Light { width, height, texels, alpha: vec![] };
+            let expected = whole.resized(half_width, half_height).texels;
+            prop_assert_eq!(whole.halved().texels, expected);
+        }
+
         /// Light is neither lost nor made: all levels have the same mean, whatever the sides.
         #[test]
         fn a_halving_is_as_bright_as_the_whole(
