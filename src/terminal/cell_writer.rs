@@ -33,6 +33,7 @@ use ratatui::buffer::Cell;
 use ratatui::layout::{Position, Size};
 use ratatui::style::Color;
 
+#[cfg(feature = "cli")]
 pub(crate) use self::bytes::Bytes;
 use self::inexact::Draughtsman;
 use self::ink::Price;

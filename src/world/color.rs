@@ -38,9 +38,9 @@ impl Rgb {
         self.0 as u8
     }
 
-    /// As a number, `0x00RRGGBB`.
+    /// The colour as a number, `0x00RRGGBB`, as windows take pixels.
     #[inline]
-    pub(crate) const fn in_bits(self) -> u32 {
+    pub const fn to_bits(self) -> u32 {
         self.0
     }
 

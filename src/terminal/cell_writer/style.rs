@@ -194,7 +194,7 @@ impl Shade {
 
     #[inline]
     pub(super) fn of_pixel(pixel: Rgb) -> Self {
-        Self(Self::RGB | pixel.in_bits())
+        Self(Self::RGB | pixel.to_bits())
     }
 
     /// A number of its own, of as many bits.

@@ -9,6 +9,7 @@ use ratatui::layout::Rect;
 use ratatui::style::{Color, Modifier};
 
 use super::*;
+use crate::tui::Canvas;
 
 /// A terminal's screen that counts the writes that reach it.
 #[derive(Clone)]
@@ -393,6 +394,36 @@ fn the_cursor_is_shown_where_a_frame_puts_it_and_hidden_again() {
     assert_eq!(screen.0.borrow().parser.screen().cursor_position(), (2, 3));
     terminal.draw(|_| ()).unwrap();
     assert!(hidden(&screen));
+}
+
+/// What has no number any more is shown all the same, whichever way it is drawn.
+#[test]
+fn more_letters_than_have_numbers_are_shown() {
+    let intensities = [Modifier::empty(), Modifier::BOLD, Modifier::DIM];
+    let others = [Modifier::empty(), Modifier::ITALIC, Modifier::UNDERLINED, Modifier::REVERSED];
+    let modifiers = intensities.map(|one| others.map(|other| one | other));
+    let letters = ('\u{100}'..).flat_map(|letter| {
+        modifiers.as_flattened().iter().map(move |&modifier| {
+            let mut cell = Cell::new("");
+            cell.set_char(letter).modifier = modifier;
+            cell
+        })
+    });
+    let size = Size::new(64, 64);
+    let (mut terminal, screen) = terminal(size);
+    let mut buffer = Buffer::empty(size.into());
+    buffer.content = letters.take(64 * 64).collect();
+    for _ in 0..2 {
+        draw(&mut terminal, &buffer);
+        assert_shown(&screen, &buffer);
+        buffer.content.rotate_left(5);
+    }
+    let writer = terminal.backend_mut();
+    writer.draw_frame(|screen| screen.draw_character(1, 0, 'λ', [Color::Red, Color::White]));
+    writer.flush().unwrap();
+    let mut expected = Buffer::empty(size.into());
+    expected[(1, 0)] = colored("λ", Color::Red, Color::White);
+    assert_shown(&screen, &expected);
 }
 
 #[test]
