@@ -70,6 +70,7 @@ pub use hit::{Hit, Side};
 pub use march::March;
 pub use method::{Method, NotAMethod, Visitor};
 pub use ray::{NotARay, Ray};
+pub(crate) use shape::Passage;
 pub(crate) use sweep::Sweep;
 pub use table::Table;
 pub use walk::{Crossing, Order, Walk};

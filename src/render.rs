@@ -165,7 +165,8 @@ impl Renderer {
             }
             Geometry::Windows(_) => {
                 counts.rays = u64::from(frame.width());
-                counts.windows = memory.windows.counts();
+                let spans = counts.windows.spans;
+                counts.windows = WindowCounts { spans, ..memory.windows.counts() };
                 counts.cells = counts.windows.cells;
                 counts.looks = counts.cells;
             }
@@ -235,9 +236,9 @@ impl<T: Tally> Picture<'_, T> {
         *geometry = Some(plan.geometry);
         let projection = &Projection::new(camera, frame.size(), frame.pixel_aspect());
         let sky = &SkyView::new(world, projection, filter, sky);
-        let scene = windows::Scene::new(world, projection, filter);
+        let scene = windows::Scene::new(world, projection, filter, plan.walls);
         let viewer = windows::Viewer { camera, seconds };
         let notes = (windows, columns, marks);
-        *next_change = windows::draw(scene, viewer, (plan.walls, sky), notes, frame, tally);
+        *next_change = windows::draw(scene, viewer, (plan.threads, sky), notes, frame, tally);
     }
 }

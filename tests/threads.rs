@@ -4,9 +4,7 @@ use std::num::NonZero;
 use std::path::PathBuf;
 
 use cellcaster::map::{self, Level, builtin};
-use cellcaster::render::{
-    Frame, FrameSize, Geometry, PixelAspect, Renderer, Surface, Threads, WhyOne,
-};
+use cellcaster::render::{Frame, FrameSize, PixelAspect, Renderer, Surface, Threads, WhyOne};
 use cellcaster::world::{Camera, Cell, FieldOfView, Opening, Pitch, World};
 
 /// Large enough for seven threads, with a height that is divided by neither of their numbers.
@@ -71,9 +69,7 @@ fn a_frame_is_the_same_by_however_many_threads() {
             let mut expected = frame();
             let mut alone = renderer(1);
             let explained = alone.explain(&world, &camera, &mut expected);
-            let is_level = explained.plan.geometry == Geometry::Level;
-            let why = if is_level { WhyOne::Only } else { WhyOne::Windows };
-            assert_eq!(explained.plan.threads, Threads::One(why), "{name}");
+            assert_eq!(explained.plan.threads, Threads::One(WhyOne::Only), "{name}");
             let surfaces_alone = surfaces(&alone);
             for count in [2, 3, 7] {
                 let (mut drawn, mut several) = (frame(), renderer(count));
@@ -88,7 +84,7 @@ fn a_frame_is_the_same_by_however_many_threads() {
 }
 
 #[test]
-fn threads_are_for_large_pictures_that_are_level() {
+fn threads_are_for_large_pictures() {
     let world = &worlds()[0].1;
     let camera = world.start_camera(FieldOfView::default());
     let mut small = Frame::new(FrameSize::new(160, 90).unwrap(), PixelAspect::SQUARE);

@@ -27,6 +27,21 @@ pub(super) fn cross(origin: DVec2, direction: DVec2, corner: DVec2) -> Scaled {
     ])
 }
 
+/// A number with the sign of [`cross`].
+///
+/// Most signs are told by doubles: where what they come to is larger than all their rounding.
+#[inline]
+pub(super) fn sign_of_cross(origin: DVec2, direction: DVec2, corner: DVec2) -> f64 {
+    /// Each product is rounded three times, and so is their difference once.
+    const ROUNDING: f64 = 4.0 * f64::EPSILON;
+    let way = corner - origin;
+    let (one, other) = (way.x * direction.y, way.y * direction.x);
+    // What vanishes for being too small a double is less than the second term.
+    let doubt = (one.abs() + other.abs()) * ROUNDING + f64::MIN_POSITIVE;
+    let rounded = one - other;
+    if rounded.abs() > doubt { rounded } else { cross(origin, direction, corner).sign() }
+}
+
 /// A number that may be too large or too small for a double: `mantissa` · 2^`exponent`.
 ///
 /// Its sign is right, zero included; its value is right to 50 bits.
@@ -145,6 +160,24 @@ mod tests {
     }
 
     proptest! {
+        /// However near to the corner the ray passes.
+        #[test]
+        fn the_sign_by_doubles_is_the_sign(
+            (x, y) in (-9.0..9.0, -9.0..9.0),
+            corner in (-9_i32..9, -9_i32..9),
+            ulps in (-9_i64..9, -9_i64..9),
+            exponent in prop_oneof![Just(0), -1060..900],
+        ) {
+            let (origin, corner) = (DVec2::new(x, y), DVec2::new(corner.0.into(), corner.1.into()));
+            let moved = |part: f64, ulps| f64::from_bits((part.to_bits() as i64 + ulps) as u64);
+            let way = corner - origin;
+            let direction = DVec2::new(moved(way.x, ulps.0), moved(way.y, ulps.1));
+            let direction = direction * libm::scalbn(1.0, exponent);
+            let signs = [sign_of_cross, |o, d, c| cross(o, d, c).sign()]
+                .map(|sign| sign(origin, direction, corner).partial_cmp(&0.0));
+            prop_assert_eq!(signs[0], signs[1]);
+        }
+
         /// Where nothing is rounded, it is the formula.
         #[test]
         fn agrees_with_integers(

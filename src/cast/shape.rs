@@ -10,27 +10,40 @@ use std::f64::consts::TAU;
 
 use glam::DVec2;
 
-use super::cross::cross;
+use super::cross::{cross, sign_of_cross};
 use super::double::Double;
 use super::{Hit, Ray, Side};
 use crate::world::{Cell, Line, Outline, PillarRadius};
 
-/// Where `ray`, which is in `cell` for a while, meets the shape of that outline there. `None` where it
-/// passes it by.
-pub(super) fn meet(ray: &Ray, cell: Cell, outline: Outline) -> Option<Hit> {
-    match outline {
-        Outline::Pillar(radius) => meet_pillar(ray, cell, radius),
-        Outline::Line(line) => meet_line(ray, cell, line),
+/// Where a ray passes through a shape.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub(crate) struct Passage {
+    /// Where it meets the outside; `None` where it passes by, or starts inside.
+    pub(crate) hit: Option<Hit>,
+    /// How far along the ray it comes out, if it has been inside: a line has no inside.
+    pub(crate) end: Option<f64>,
+}
+
+impl Passage {
+    pub(crate) const NONE: Self = Self { hit: None, end: None };
+
+    /// The one of `ray`, which is in `cell` for a while, through the shape of that outline there.
+    #[inline]
+    pub(super) fn new(ray: &Ray, cell: Cell, outline: Outline) -> Self {
+        match outline {
+            Outline::Pillar(radius) => {
+                let Some(chord) = Chord::new(ray, cell, radius) else { return Self::NONE };
+                Self { hit: chord.hit(ray, cell, radius), end: chord.end(ray) }
+            }
+            Outline::Line(line) => Self { hit: meet_line(ray, cell, line), end: None },
+        }
     }
 }
 
-/// How far along `ray`, which is in `cell` for a while, it comes out of the shape of that outline there,
-/// if it has been inside: a line has no inside.
-pub(super) fn leave(ray: &Ray, cell: Cell, outline: Outline) -> Option<f64> {
-    let Outline::Pillar(radius) = outline else { return None };
-    let (_, exponent) = ray.scaled_direction();
-    let t = libm::scalbn(Chord::new(ray, cell, radius)?.end(), -exponent);
-    (t >= 0.0).then_some(t)
+/// Where `ray`, which is in `cell` for a while, meets the shape of that outline there. `None` where it
+/// passes it by.
+pub(super) fn meet(ray: &Ray, cell: Cell, outline: Outline) -> Option<Hit> {
+    Passage::new(ray, cell, outline).hit
 }
 
 fn meet_line(ray: &Ray, cell: Cell, line: Line) -> Option<Hit> {
@@ -38,32 +51,21 @@ fn meet_line(ray: &Ray, cell: Cell, line: Line) -> Option<Hit> {
     let (direction, exponent) = ray.scaled_direction();
     // How fast the line is approached, from its left or its right; rounded at most once.
     let across = direction.x * stretch.y - direction.y * stretch.x;
-    let to_line = cross(ray.origin(), stretch, start);
-    let is_ahead = to_line.sign() == 0.0 || (to_line.sign() > 0.0) == (across > 0.0);
-    if across == 0.0 || !is_ahead {
-        return None;
-    }
-    let side_of = |end| cross(ray.origin(), ray.direction(), end).sign();
+    let side_of = |end| sign_of_cross(ray.origin(), ray.direction(), end);
     let (from_start, from_end) = (side_of(start), side_of(start + stretch));
     let is_beside = from_start > 0.0 && from_end > 0.0 || from_start < 0.0 && from_end < 0.0;
-    if is_beside {
+    if across == 0.0 || is_beside {
+        return None;
+    }
+    let to_line = cross(ray.origin(), stretch, start);
+    let is_ahead = to_line.sign() == 0.0 || (to_line.sign() > 0.0) == (across > 0.0);
+    if !is_ahead {
         return None;
     }
     let t = libm::scalbn(to_line.over(across), -exponent).abs();
     let along = cross(ray.origin(), direction, start).over(across).clamp(0.0, 1.0) + 0.0;
     let u = if across > 0.0 { along } else { 1.0 - along };
     Some(Hit { cell, side: facing(stretch.perp()), t, u })
-}
-
-fn meet_pillar(ray: &Ray, cell: Cell, radius: PillarRadius) -> Option<Hit> {
-    let Chord { to_closest, half_length, outside, miss, .. } = Chord::new(ray, cell, radius)?;
-    if outside < 0.0 || to_closest <= 0.0 {
-        return None;
-    }
-    let (direction, exponent) = ray.scaled_direction();
-    let t = libm::scalbn(outside / (to_closest + half_length), -exponent);
-    let outward = direction.perp() * miss - direction * half_length;
-    Some(Hit { cell, side: facing(outward), t, u: around_pillar(outward, radius.cells()) })
 }
 
 /// The part of a line that is in a pillar, in numbers that are larger by the length of the ray's scaled
@@ -88,6 +90,9 @@ impl Chord {
         const FARTHEST: f64 = 1e100;
         let (center, radius) = (cell.center(), radius.cells());
         let (direction, _) = ray.scaled_direction();
+        if is_clearly_beside(center - ray.origin(), direction, radius) {
+            return None;
+        }
         let x = Double::sum(center.x, -ray.origin().x);
         let y = Double::sum(center.y, -ray.origin().y);
         if x.rounded().abs().max(y.rounded().abs()) > FARTHEST {
@@ -109,15 +114,39 @@ impl Chord {
         })
     }
 
-    /// Where the ray comes out, in lengths of its scaled direction; negative where that is behind it.
-    fn end(&self) -> f64 {
+    /// Where `ray`, from outside, meets the pillar of that `radius` in `cell`.
+    fn hit(&self, ray: &Ray, cell: Cell, radius: PillarRadius) -> Option<Hit> {
+        let &Self { to_closest, half_length, outside, miss, .. } = self;
+        if outside < 0.0 || to_closest <= 0.0 {
+            return None;
+        }
+        let (direction, exponent) = ray.scaled_direction();
+        let t = libm::scalbn(outside / (to_closest + half_length), -exponent);
+        let outward = direction.perp() * miss - direction * half_length;
+        Some(Hit { cell, side: facing(outward), t, u: around_pillar(outward, radius.cells()) })
+    }
+
+    /// How far along `ray` it comes out; `None` where that is behind it.
+    fn end(&self, ray: &Ray) -> Option<f64> {
         // Of the two ways to write the solution, the one that adds up what has one sign.
-        if self.to_closest > 0.0 {
+        let scaled = if self.to_closest > 0.0 {
             (self.to_closest + self.half_length) / self.scale_squared
         } else {
             -self.outside / (self.half_length - self.to_closest)
-        }
+        };
+        let (_, exponent) = ray.scaled_direction();
+        let t = libm::scalbn(scaled, -exponent);
+        (t >= 0.0).then_some(t)
     }
+}
+
+/// Whether a line along `direction` passes a circle at `way` by more than all rounding of doubles
+/// amounts to: most of those that pass it do, and need no more digits.
+fn is_clearly_beside(way: DVec2, direction: DVec2, radius: f64) -> bool {
+    const ROUNDING: f64 = 1e-12;
+    let miss = (way.x * direction.y - way.y * direction.x).abs();
+    let reach = radius * direction.length();
+    miss > reach + (reach + way.x.abs() + way.y.abs()) * ROUNDING
 }
 
 /// How far along its paper a pillar shows where it faces `outward`. The paper is pasted around it as

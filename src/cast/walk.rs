@@ -115,6 +115,8 @@ struct Axis {
     line: f64,
     /// From one line to the next: 1, −1, or 0 where the ray does not move on this axis.
     step: i64,
+    /// The same.
+    stride: f64,
     /// How many columns or rows the map has.
     count: i64,
 }
@@ -133,12 +135,12 @@ impl Axis {
         let index = (before as i64).clamp(-1, count);
         // No line can be crossed without moving; an order that says so ends the walk.
         let count = if step == 0 { 0 } else { count };
-        Self { index, line, step, count }
+        Self { index, line, step, stride: step as f64, count }
     }
 
     fn cross(&mut self) {
         self.index += self.step;
-        self.line += self.step as f64;
+        self.line += self.stride;
     }
 
     /// Whether the ray is on the map, as far as this axis tells. It is after the first line that it

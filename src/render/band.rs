@@ -25,6 +25,11 @@ impl<'a> Band<'a> {
         Self { width, rows: first..end, pixels }
     }
 
+    /// Which rows of the frame they are.
+    pub(super) fn rows(&self) -> Range<u32> {
+        self.rows.clone()
+    }
+
     /// Those of `rows` that are in the band.
     #[inline]
     pub(super) fn clip(&self, rows: &Range<u32>) -> Range<u32> {

@@ -15,7 +15,7 @@ use super::texels_down::TexelsDown;
 use crate::world::Rgb;
 
 /// So many columns are drawn together at most.
-const COLUMNS_AT_ONCE: usize = 15 * LANES;
+pub(super) const COLUMNS_AT_ONCE: usize = 15 * LANES;
 /// So many rows of some columns are drawn before it is the turn of the columns beside them.
 const ROWS_AT_ONCE: u32 = 8;
 /// So many columns have what their loop needs in registers.
@@ -29,7 +29,7 @@ pub(super) struct Wardrobe {
     lanes: Vec<Lanes>,
 }
 
-/// Coats for the columns of `band`, from left to right, of texels in a shade `S`.
+/// Coats for the columns of `band`, from left to right until they are drawn, of texels in a shade `S`.
 pub(super) struct Coats<'m, 'b, 'a, S> {
     wardrobe: &'m mut Wardrobe,
     band: &'m mut Band<'b>,
@@ -71,11 +71,7 @@ impl<'m, 'b, 'a, S: Shade> Coats<'m, 'b, 'a, S> {
         shade: S,
     ) {
         if texels.len() > 2 * rows.len() || texels.len() > Papers::MOST {
-            // Paper is not worth it.
-            let first = rows.start;
-            for (pixel, row) in self.band.column_mut(x, rows).zip(first..) {
-                *pixel = shade.apply(texels[down.at(row)]);
-            }
+            self.draw_without_paper(x, rows, texels, down, shade);
             return;
         }
         self.make_room_for(texels.len());
@@ -88,6 +84,45 @@ impl<'m, 'b, 'a, S: Shade> Coats<'m, 'b, 'a, S> {
         self.latest = Some((texels, shade, paper));
         let (place, step) = paper.down(down, rows.start);
         self.wardrobe.coats.push(Coat { x, rows, place, step });
+    }
+
+    /// Covers `rows` of column `x` with `texels` of a face that may show them again and again, or only some of
+    /// them.
+    pub(super) fn hang_on_face(
+        &mut self,
+        x: u32,
+        rows: Range<u32>,
+        texels: &'a [Rgb],
+        down: TexelsDown,
+        shade: S,
+    ) {
+        let most = Papers::MOST.min(2 * rows.len()) as i64;
+        let places = down.places(&rows).filter(|places| places.end - places.start <= most);
+        let Some(places) = places else {
+            self.draw_without_paper(x, rows, texels, down, shade);
+            return;
+        };
+        self.make_room_for((places.end - places.start) as usize);
+        let first = places.start;
+        let pieces = down.pieces(texels, places);
+        let paper = self.wardrobe.papers.make_of_pieces(first, pieces, |texel| shade.apply(texel));
+        let (place, step) = paper.down(down, rows.start);
+        self.wardrobe.coats.push(Coat { x, rows, place, step });
+    }
+
+    /// Covers `rows` of column `x` at once: it is not worth a paper, or too large for one.
+    fn draw_without_paper(
+        &mut self,
+        x: u32,
+        rows: Range<u32>,
+        texels: &[Rgb],
+        down: TexelsDown,
+        shade: S,
+    ) {
+        let first = rows.start;
+        for (pixel, row) in self.band.column_mut(x, rows).zip(first..) {
+            *pixel = shade.apply(texels[down.at(row)]);
+        }
     }
 
     fn make_room_for(&mut self, texels: usize) {

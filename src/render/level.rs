@@ -3,8 +3,6 @@
 //! What is the same for the whole picture is found out first: what the rays hit, what stands in view.
 //! With that, its bands are drawn, by one thread or by many.
 
-use std::sync::{Mutex, PoisonError};
-
 use super::band::Band;
 use super::coat::Wardrobe;
 use super::marks::MarksOfBand;
@@ -13,7 +11,7 @@ use super::see_through::{self, Left, Passed};
 use super::sky::SkyView;
 use super::tally::Tally;
 use super::things::InView;
-use super::threads::share_out;
+use super::threads::draw_bands;
 use super::{
     CeilingLoop, Geometry, Memory, Picture, Plan, Projection, Scene, ThingLoop, columns, walls,
 };
@@ -66,19 +64,11 @@ pub(super) fn draw<T: Tally, C: Caster>(picture: Picture<'_, T>, plan: Plan, cas
         }
     };
 
-    let (count, height) = (plan.threads.count(), frame.size().height);
-    if workers.len() < count {
-        workers.resize_with(count, Worker::default);
-    }
+    let height = frame.height();
     let sky = SkyView::new(world, projection, filter, sky);
-    let shared = Shared { plan, scene, height: height.get(), seconds, sky, passed, in_view };
-    marks.begin(frame.width(), frame.height());
-    let rows = plan.threads.rows_of_band(height);
-    let bands = frame.bands(rows).zip(marks.bands(rows));
-    let tally = Mutex::new(tally);
-    share_out(bands, &mut workers[..count], |(mut band, mut marks), worker| {
-        let spent = shared.draw_band(worker, &mut band, &mut marks);
-        tally.lock().unwrap_or_else(PoisonError::into_inner).add(spent);
+    let shared = Shared { plan, scene, height, seconds, sky, passed, in_view };
+    draw_bands(plan.threads, (frame, marks), workers, tally, |worker, band, marks| {
+        shared.draw_band(worker, band, marks)
     });
 }
 

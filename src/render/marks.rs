@@ -32,11 +32,6 @@ impl Marks {
         }
     }
 
-    /// All of them.
-    pub(super) fn whole(&mut self) -> MarksOfBand<'_> {
-        MarksOfBand { width: self.width, first: 0, surfaces: &mut self.surfaces }
-    }
-
     /// Those of bands of `rows` rows each, as long as one asks for more.
     pub(super) fn bands(&mut self, rows: NonZeroU32) -> impl Iterator<Item = MarksOfBand<'_>> {
         let (width, rows) = (self.width, rows.get());

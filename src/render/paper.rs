@@ -8,6 +8,9 @@
 use super::texels_down::TexelsDown;
 use crate::world::Rgb;
 
+/// From one texel to the next, in [`Place`]s.
+const TEXEL: u64 = 1 << (u64::BITS - BITS);
+
 /// So many texels are on all papers together at most: those of as many columns as are drawn at once,
 /// of most textures. What of it is not used takes no room where a processor has things at hand.
 const TEXELS: usize = 1 << BITS;
@@ -20,9 +23,9 @@ pub(super) struct Papers {
     used: usize,
 }
 
-/// Where one of them begins.
+/// One of them, by where the first texel of its texture is, or would be.
 #[derive(Clone, Copy, Debug)]
-pub(super) struct Paper(usize);
+pub(super) struct Paper(Place);
 
 /// A texel on one of them, in the uppermost bits, and a place on it in the others.
 #[derive(Clone, Copy, Debug, Default)]
@@ -47,18 +50,40 @@ impl Papers {
     /// One with those texels, shaded, if there is room.
     #[inline]
     pub(super) fn make(&mut self, texels: &[Rgb], shaded: impl Fn(Rgb) -> Rgb) -> Paper {
-        let start = self.used;
-        let papers = self.texels.get_mut(start..).unwrap_or_default();
+        let paper = Paper(self.next());
+        self.add(texels, &shaded);
+        // Rounding may take the last row one texel too far.
+        self.add(&texels[texels.len().saturating_sub(1)..], &shaded);
+        paper
+    }
+
+    /// One with all texels of `pieces`, shaded, if there is room. The first of them is the one at place `first`
+    /// down its texture.
+    #[inline]
+    pub(super) fn make_of_pieces<'t>(
+        &mut self,
+        first: i64,
+        pieces: impl Iterator<Item = &'t [Rgb]>,
+        shaded: impl Fn(Rgb) -> Rgb,
+    ) -> Paper {
+        let paper = Paper(self.next().further((first.wrapping_neg() as u64).wrapping_mul(TEXEL)));
+        for texels in pieces {
+            self.add(texels, &shaded);
+        }
+        paper
+    }
+
+    fn next(&self) -> Place {
+        Place(self.used as u64 * TEXEL)
+    }
+
+    #[inline]
+    fn add(&mut self, texels: &[Rgb], shaded: impl Fn(Rgb) -> Rgb) {
+        let papers = self.texels.get_mut(self.used..).unwrap_or_default();
         for (paper, &texel) in papers.iter_mut().zip(texels) {
             *paper = shaded(texel);
         }
         self.used += texels.len();
-        // Rounding may take the last row one texel too far.
-        if let (Some(beyond), Some(&last)) = (papers.get_mut(texels.len()), texels.last()) {
-            *beyond = shaded(last);
-            self.used += 1;
-        }
-        Paper(start)
     }
 
     /// Throws all of them away.
@@ -69,14 +94,14 @@ impl Papers {
     /// The texel at `place`.
     #[inline]
     pub(super) fn at(&self, Place(place): Place) -> Rgb {
-        self.texels[(place >> (u64::BITS - BITS)) as usize]
+        self.texels[(place / TEXEL) as usize]
     }
 }
 
 impl Paper {
     /// Where its first texel is.
     pub(super) fn start(self) -> Place {
-        Place((self.0 as u64) << (u64::BITS - BITS))
+        self.0
     }
 
     /// Where the centre of `row` is, and how far it is from there to the next row.

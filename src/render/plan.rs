@@ -167,7 +167,7 @@ impl Plan {
             },
             things: if world.things().is_empty() { ThingLoop::None } else { ThingLoop::Billboards },
             filter,
-            threads: Threads::new(geometry, size, threads),
+            threads: Threads::new(size, threads),
         }
     }
 }

@@ -8,7 +8,7 @@ use std::ops::{Range, RangeInclusive};
 
 use glam::DVec2;
 
-use super::texels_down::{Texels, TexelsDown};
+use super::texels_down::{Texels, TexelsDown, ceil};
 use super::track::Track;
 use super::{FrameSize, PixelAspect};
 use crate::cast::Ray;
@@ -35,6 +35,10 @@ pub(super) struct Projection {
     /// Columns from the middle to something 1 beside it at distance 1.
     focal_length_across: f64,
 }
+
+/// How far above the eye something is: in rows above the horizon, from a distance of 1; negative below.
+#[derive(Clone, Copy, Debug)]
+pub(super) struct Rise(f64);
 
 /// Where something is in a picture.
 #[derive(Clone, Copy, Debug)]
@@ -120,13 +124,20 @@ impl Projection {
         self.first_row_below(self.horizon - above)..self.first_row_below(self.horizon + below)
     }
 
-    /// The first row whose centre is not above what is at `height` and distance `t`.
-    pub(super) fn row_of(&self, height: f64, t: f64) -> u32 {
+    /// How far above the eye `height` is.
+    pub(super) fn rise_to(&self, height: f64) -> Rise {
         let rise = height - self.eye;
+        // What is at eye height is so through an infinitely long lens, too.
+        Rise(if rise == 0.0 { 0.0 } else { rise * self.focal_length })
+    }
+
+    /// The first row whose centre is not above what rises by `rise` and is at distance `t`.
+    #[inline]
+    pub(super) fn row_of(&self, Rise(rise): Rise, t: f64) -> u32 {
         if rise == 0.0 {
-            return self.first_row_below(self.horizon);
+            return self.first_row_of_ground();
         }
-        self.first_row_below(self.horizon - rise * self.focal_length / t)
+        self.first_row_below(self.horizon - rise / t)
     }
 
     /// The texels of a wall at distance `t`, `count` from its top to its bottom.
@@ -144,7 +155,8 @@ impl Projection {
         bottom: f64,
         top: f64,
     ) -> TexelsDown {
-        let above = top.ceil();
+        // Where a processor may be old, `f64::ceil` is a call.
+        let above = ceil(top) as f64;
         let of_cells = (above - top, above - bottom);
         let texels = Texels { count, of_cells, at_eye: above - self.eye };
         TexelsDown::new(2.0 * self.horizon, t / self.focal_length, texels)
@@ -232,11 +244,13 @@ impl Projection {
 
     /// The first row that shows the ground where nothing is in the way: the first one with its
     /// centre at the horizon or below.
+    #[inline]
     pub(super) fn first_row_of_ground(&self) -> u32 {
         self.first_row_below(self.horizon)
     }
 
     /// The first row with its centre at `y` or below; the number of rows where there is none.
+    #[inline]
     fn first_row_below(&self, y: f64) -> u32 {
         // The cast takes what is not a number, as of a wall infinitely far through an infinitely
         // long lens, to 0.

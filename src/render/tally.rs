@@ -35,6 +35,9 @@ pub(super) trait Tally: Default + Send {
     /// So many things are looked at, and so many of them drawn.
     fn things(&mut self, considered: usize, drawn: usize);
 
+    /// So many stretches of rows are drawn, of what is not level.
+    fn spans(&mut self, count: u64);
+
     /// All that `band` was told.
     fn add(&mut self, band: Self);
 }
@@ -53,6 +56,9 @@ impl Tally for () {
 
     #[inline]
     fn things(&mut self, _: usize, _: usize) {}
+
+    #[inline]
+    fn spans(&mut self, _: u64) {}
 
     #[inline]
     fn add(&mut self, (): Self) {}
@@ -142,11 +148,16 @@ impl Tally for Counts {
         self.things_drawn += drawn as u64;
     }
 
+    fn spans(&mut self, count: u64) {
+        self.windows.spans += count;
+    }
+
     fn add(&mut self, band: Self) {
         for pass in Pass::ALL {
             self.texels(pass, band.of(pass).texels as usize);
             self.pixels(pass, band.of(pass).pixels as usize);
         }
         self.things(band.things_considered as usize, band.things_drawn as usize);
+        self.spans(band.windows.spans);
     }
 }

@@ -5,6 +5,9 @@
 //! step is one addition. Counting in doubles was refused: a conversion and a floor for each pixel
 //! took half the time of a whole frame.
 
+use std::iter;
+use std::ops::Range;
+
 /// The texels of an upright face.
 #[derive(Clone, Copy, Debug)]
 pub(super) struct Texels {
@@ -35,7 +38,7 @@ impl TexelsDown {
         let Texels { count, of_cells: (top, bottom), at_eye } = texels;
         let in_texels = |cells: f64| cells * count as f64;
         let uppermost = floor(in_texels(top));
-        let lowest = (-floor(-in_texels(bottom)) - 1).max(uppermost);
+        let lowest = (ceil(in_texels(bottom)) - 1).max(uppermost);
         Self {
             range: (uppermost, lowest),
             ..Self::of_wall(half_rows_to_horizon, height_of_row, count, at_eye)
@@ -71,17 +74,53 @@ impl TexelsDown {
     /// below the face by less than rounding.
     #[inline]
     pub(super) fn at(self, row: u32) -> usize {
+        self.texel_at(self.place(row) >> TEXEL_BITS)
+    }
+
+    /// Which texel of its texture the one at `place` is, counted from the top of the uppermost texture.
+    #[inline]
+    fn texel_at(self, place: i64) -> usize {
         let (uppermost, lowest) = self.range;
-        let texel = self.place(row) >> TEXEL_BITS;
-        let texel = texel.clamp(uppermost, lowest);
+        let texel = place.clamp(uppermost, lowest);
         // A division takes as long as all the rest.
         let is_first = (0..self.count).contains(&texel);
         (if is_first { texel } else { texel.rem_euclid(self.count) }) as usize
     }
 
+    /// The texels that the centres of `rows` are on, counted from the top of the uppermost texture; `None`
+    /// where there is no row, or they wrap around.
+    #[inline]
+    pub(super) fn places(self, rows: &Range<u32>) -> Option<Range<i64>> {
+        let further_down = i64::from(rows.end.checked_sub(rows.start + 1)?);
+        let first = self.place(rows.start);
+        let last = first.checked_add(self.step.checked_mul(further_down)?)?;
+        Some(first >> TEXEL_BITS..(last >> TEXEL_BITS) + 1)
+    }
+
+    /// What of `texels`, those of the texture, is at `places`, in pieces.
+    #[inline]
+    pub(super) fn pieces<T>(self, texels: &[T], places: Range<i64>) -> impl Iterator<Item = &[T]> {
+        let Range { mut start, end } = places;
+        iter::from_fn(move || {
+            let (first, count) = (start < end).then(|| self.texels_at(start..end))?;
+            start += count as i64;
+            Some(&texels[first..first + count])
+        })
+    }
+
+    /// Which texel of its texture the first one of `places` is, and how many of them follow each other in the
+    /// texture as well.
+    #[inline]
+    fn texels_at(self, places: Range<i64>) -> (usize, usize) {
+        let (uppermost, lowest) = self.range;
+        let first = self.texel_at(places.start);
+        let is_on_face = (uppermost..=lowest).contains(&places.start);
+        let end = if is_on_face { places.end.min(lowest + 1) } else { places.start + 1 };
+        (first, (end - places.start).min(self.count - first as i64) as usize)
+    }
+
     /// Where the centre of `row` is and how far it is to the next one, such that the texel is what
-    /// the uppermost `BITS` bits say; of a wall that one texture covers, by less than 2 to the power
-    /// of `BITS` texels.
+    /// the uppermost `BITS` bits say, modulo 2 to the power of `BITS`.
     #[inline]
     pub(super) fn in_uppermost<const BITS: u32>(self, row: u32) -> (u64, u64) {
         let to_the_top = u64::BITS - TEXEL_BITS - BITS;
@@ -115,6 +154,12 @@ fn floor(number: f64) -> i64 {
     const MOST: f64 = (1_u64 << 62) as f64;
     let whole = number.clamp(-MOST, MOST) as i64;
     whole - i64::from(whole as f64 > number)
+}
+
+/// The least whole number that is not below `number`, likewise.
+#[inline]
+pub(super) fn ceil(number: f64) -> i64 {
+    -floor(-number)
 }
 
 /// A texel, in fixed point.

@@ -9,7 +9,10 @@ use std::num::{NonZero, NonZeroU32};
 use std::sync::{LazyLock, Mutex, PoisonError};
 use std::thread;
 
-use super::{FrameSize, Geometry};
+use super::band::Band;
+use super::marks::{Marks, MarksOfBand};
+use super::tally::Tally;
+use super::{Frame, FrameSize};
 
 /// A thread for each so many pixels: with fewer, starting it takes longer than it saves.
 const PIXELS_OF_A_THREAD: usize = 1 << 19;
@@ -37,17 +40,12 @@ pub enum WhyOne {
     Small,
     /// There may be no others.
     Only,
-    /// What a pixel shows is found out by following windows down its column.
-    Windows,
 }
 
 impl Threads {
     /// Those that a picture of that size is worth, if there may be `most` of them, or as many as the
     /// machine has.
-    pub(super) fn new(geometry: Geometry, size: FrameSize, most: Option<NonZero<usize>>) -> Self {
-        if let Geometry::Windows(_) = geometry {
-            return Self::One(WhyOne::Windows);
-        }
+    pub(super) fn new(size: FrameSize, most: Option<NonZero<usize>>) -> Self {
         let (width, height) = (size.width.get() as usize, size.height.get() as usize);
         let worthwhile = (width * height / PIXELS_OF_A_THREAD).min(height);
         if worthwhile < 2 {
@@ -86,15 +84,37 @@ impl fmt::Display for Threads {
         match self {
             Self::One(WhyOne::Small) => f.write_str("one: the picture is small"),
             Self::One(WhyOne::Only) => f.write_str("one: there may be no others"),
-            Self::One(WhyOne::Windows) => f.write_str("one: windows are followed down each column"),
             Self::Bands(count) => write!(f, "{count}, by bands of rows: the picture is large"),
         }
     }
 }
 
+/// Draws all bands of `frame`, by as many threads as that, each with a worker of its own. To `draw` one
+/// tells what it cost.
+pub(super) fn draw_bands<W: Default + Send, T: Tally>(
+    threads: Threads,
+    (frame, marks): (&mut Frame, &mut Marks),
+    workers: &mut Vec<W>,
+    tally: &mut T,
+    draw: impl Fn(&mut W, &mut Band<'_>, &mut MarksOfBand<'_>) -> T + Sync,
+) {
+    let count = threads.count();
+    if workers.len() < count {
+        workers.resize_with(count, W::default);
+    }
+    marks.begin(frame.width(), frame.height());
+    let rows = threads.rows_of_band(frame.size().height);
+    let bands = frame.bands(rows).zip(marks.bands(rows));
+    let tally = Mutex::new(tally);
+    share_out(bands, &mut workers[..count], |(mut band, mut marks), worker| {
+        let spent = draw(worker, &mut band, &mut marks);
+        tally.lock().unwrap_or_else(PoisonError::into_inner).add(spent);
+    });
+}
+
 /// Does `work` for each of `tasks`, each worker in a thread of its own that takes the next task as
 /// long as there is one. A single worker works in this thread.
-pub(super) fn share_out<T, W: Send>(
+fn share_out<T, W: Send>(
     tasks: impl Iterator<Item = T> + Send,
     workers: &mut [W],
     work: impl Fn(T, &mut W) + Sync,
@@ -140,7 +160,7 @@ mod tests {
     fn large_pictures_alone_are_shared_out() {
         let threads = |width, height, most| {
             let size = FrameSize::new(width, height).unwrap();
-            Threads::new(Geometry::Level, size, NonZero::new(most))
+            Threads::new(size, NonZero::new(most))
         };
         for (width, height) in [(1, 1), (640, 480), (1280, 720), (4_000_000, 1)] {
             assert_eq!(threads(width, height, 8), Threads::One(WhyOne::Small));

@@ -6,17 +6,21 @@
 //! in view: mostly one, two where a roof is seen from below and above at once. A mirror turns the ray
 //! back with the window that its face had.
 //!
-//! Each of the passes is a file: `look` follows the rays and notes what every pixel shows, `planes`
-//! lays floors, ceilings and the sky along rows, `faces` papers what stands upright, `veils` paints
-//! over that what is seen through, and `things` what stands between. Where a world is level and has no mirrors the other passes draw
-//! the same with less: they need not ask what a pixel shows. Laying a floor at once while its column
-//! is followed was refused: by rows its shade and its distance are found once for many pixels.
+//! All of that is found out first, by `look`, from the `profile` of each tile, and noted column by column;
+//! `things` finds what stands in between, and `layers` what is painted over the rest. Then the picture is
+//! drawn band by band, by one thread or by several: `planes` lays floors, ceilings and the sky along rows,
+//! `faces` papers what stands upright, and `layers` paints what is seen through, the `veils`. Where a world
+//! is level and has no mirrors the other passes draw the same with less: they need no notes. Laying a floor
+//! at once while its column is followed was refused: by rows its shade and its distance are found once for
+//! many pixels.
 
 mod faces;
+mod layers;
 mod lines;
 mod look;
 mod notes;
 mod planes;
+mod profile;
 mod sights;
 mod standing;
 #[cfg(test)]
@@ -26,19 +30,24 @@ mod veils;
 
 use std::ops::Range;
 
+use super::coat::Wardrobe;
 use super::columns::Surface;
 use super::marks::Marks;
 use super::plan::WallLoop;
+use super::projection::Rise;
 use super::sky::SkyView;
 use super::tally::Tally;
+use super::threads::{Threads, draw_bands};
 use super::{Column, Filter, Frame, Projection};
-use crate::cast::{Side, Unfolding};
+use crate::cast::Side;
 use crate::world::texture::Level;
 use crate::world::{Camera, Texture, Tile, TileId, TileKind, World};
-use faces::Face;
+use faces::Stretch;
+use layers::{Layer, Painter};
 use look::{Branch, Look};
-use things::{Between, Billboards};
-use veils::Veil;
+use notes::{Notes, Shown};
+use profile::Profiles;
+use things::Billboards;
 
 /// There is room for so many images in mirrors from the first frame on.
 const IMAGES_AT_ONCE: usize = 64;
@@ -46,18 +55,22 @@ const IMAGES_AT_ONCE: usize = 64;
 /// What the passes hand on to each other; kept so that it is allocated once.
 #[derive(Clone, Debug, Default)]
 pub(super) struct Windows {
-    /// What each pixel shows, row by row from the top, each from the left.
-    shown: Vec<Shown>,
-    width: usize,
-    faces: Vec<Face>,
-    /// What is seen through: in each column, what is further comes later.
-    veils: Vec<Veil>,
+    profiles: Profiles,
+    notes: Notes,
     /// Where a ray still has to be followed.
     branches: Vec<Branch>,
-    /// Where what is seen is on the map: first as it is, and then in mirrors.
-    images: Vec<Unfolding>,
     billboards: Billboards,
-    counts: WindowCounts,
+    layers: Vec<Layer>,
+    /// One for each thread.
+    workers: Vec<Worker>,
+}
+
+/// What the passes for a band hand on to each other; kept so that it is allocated once.
+#[derive(Clone, Debug, Default)]
+struct Worker {
+    /// In which column the span begins that each row is in.
+    starts: Vec<usize>,
+    wardrobe: Wardrobe,
 }
 
 /// What it cost to follow the rays through their windows.
@@ -71,14 +84,6 @@ pub struct WindowCounts {
     pub spans: u64,
     /// How often they were reflected.
     pub bounces: u64,
-}
-
-/// What a pixel shows behind all that is seen through.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
-enum Shown {
-    Sky { reflection: Reflection },
-    Face(Side),
-    Plane(Piece),
 }
 
 /// Something that lies flat.
@@ -116,14 +121,20 @@ pub(super) struct Scene<'a> {
     pub(super) world: &'a World,
     pub(super) projection: &'a Projection,
     pub(super) filter: Filter,
-    /// Above this height there is only sky.
-    top: f64,
+    /// Above this there is only sky.
+    top: Rise,
     /// Whether anything stands anywhere, be it the player before a mirror.
     has_things: bool,
+    walls: WallLoop,
 }
 
 impl<'a> Scene<'a> {
-    pub(super) fn new(world: &'a World, projection: &'a Projection, filter: Filter) -> Self {
+    pub(super) fn new(
+        world: &'a World,
+        projection: &'a Projection,
+        filter: Filter,
+        walls: WallLoop,
+    ) -> Self {
         let has_things = !world.things().is_empty() || world.has_mirrors();
         let tallest_thing =
             if has_things { world.tallest_sprite().max(Camera::STANDING) } else { 0.0 };
@@ -136,7 +147,15 @@ impl<'a> Scene<'a> {
         };
         let roof_of = |tile: &Tile| tile.gaps().next_back().map_or(0.0, |gap| gap.bottom);
         let tops = world.tiles().iter().map(|tile| top_of(tile).max(roof_of(tile)));
-        Self { world, projection, filter, top: tops.fold(0.0, f64::max), has_things }
+        let top = projection.rise_to(tops.fold(0.0, f64::max));
+        Self { world, projection, filter, top, has_things, walls }
+    }
+
+    /// The part of `window` that shows what is between two heights at distance `t`.
+    fn rows_between(self, window: &Range<u32>, stretch: Stretch, t: f64) -> Range<u32> {
+        let Stretch { bottom, top } = stretch;
+        let row_of = |height| self.projection.row_of(self.projection.rise_to(height), t);
+        window.start.max(row_of(top))..window.end.min(row_of(bottom))
     }
 
     /// The level of a texture that suits a face at `t`, where the ray leads straight at it by `slope`
@@ -160,27 +179,27 @@ pub(super) struct Viewer<'a> {
 pub(super) fn draw<T: Tally>(
     scene: Scene<'_>,
     viewer: Viewer<'_>,
-    (plan, sky): (WallLoop, &SkyView<'_>),
+    (threads, sky): (Threads, &SkyView<'_>),
     (windows, columns, marks): (&mut Windows, &mut Vec<Column>, &mut Marks),
     frame: &mut Frame,
     tally: &mut T,
 ) -> Option<f64> {
-    windows.begin(frame);
-    columns.clear();
-    for (x, ray) in scene.projection.rays().enumerate() {
-        columns.push(Look::new(scene, x, frame.height(), windows).follow(&ray));
-    }
-    windows.counts.faces = windows.faces.len() as u64;
-    marks.begin(frame.width(), frame.height());
-    let (band, marks) = (&mut frame.whole(), &mut marks.whole());
-    windows.counts.spans = planes::draw(scene, sky, windows, band, tally);
-    faces::draw(scene, plan, &windows.faces, band, tally);
-
-    let Windows { veils, images, billboards, .. } = windows;
+    windows.look(scene, frame.height(), columns);
+    let Windows { profiles, notes, billboards, layers, workers, .. } = windows;
     if scene.has_things {
-        billboards.find(scene, images, veils, viewer);
+        billboards.find(scene, notes, viewer);
     }
-    veils::draw(scene, veils, billboards, marks, band, tally);
+    layers::lay_out(scene, (profiles, notes), billboards, layers);
+    let (notes, billboards, layers) = (&*notes, &*billboards, &*layers);
+    draw_bands(threads, (frame, marks), workers, tally, |worker, band, marks| {
+        let Worker { starts, wardrobe } = worker;
+        let mut spent = T::default();
+        planes::draw(scene, sky, notes, starts, band, &mut spent);
+        faces::draw(scene, &notes.faces, wardrobe, band, &mut spent);
+        let painter = Painter { scene, panes: &notes.panes, billboards };
+        painter.paint(layers, marks, band, &mut spent);
+        spent
+    });
     if !scene.has_things {
         return None;
     }
@@ -189,29 +208,23 @@ pub(super) fn draw<T: Tally>(
     billboards.next_change(scene, viewer.seconds)
 }
 
-/// The part of `window` that shows what is between two heights at distance `t`.
-fn rows_between(
-    projection: &Projection,
-    window: &Range<u32>,
-    bottom: f64,
-    top: f64,
-    t: f64,
-) -> Range<u32> {
-    let Range { mut start, mut end } = *window;
-    if top < f64::INFINITY {
-        start = start.max(projection.row_of(top, t));
-    }
-    if bottom > f64::NEG_INFINITY {
-        end = end.min(projection.row_of(bottom, t));
-    }
-    start..end
-}
-
 impl Windows {
+    /// Follows the ray of each column of a picture of that height, and notes in `columns` how far it got.
+    fn look(&mut self, scene: Scene<'_>, height: u32, columns: &mut Vec<Column>) {
+        const BRANCHES_AT_ONCE: usize = 64;
+        self.profiles.begin(scene);
+        self.notes.begin(scene.projection.columns());
+        self.branches.reserve(BRANCHES_AT_ONCE);
+        columns.clear();
+        for (x, ray) in (0..).zip(scene.projection.rays()) {
+            columns.push(Look::new(scene, x, height, self).follow(&ray));
+        }
+        self.notes.counts.faces = self.notes.faces.len() as u64;
+    }
+
     /// What pixel `(x, y)` of the last frame shows, which must have been drawn by these passes.
     pub(super) fn surface(&self, x: u32, y: u32) -> Option<Surface> {
-        let shown = self.shown.get(y as usize * self.width + x as usize)?;
-        Some(match shown {
+        Some(match self.notes.shown(x, y)? {
             Shown::Sky { .. } => Surface::Sky,
             Shown::Face(Side::X) => Surface::WallX,
             Shown::Face(Side::Y) => Surface::WallY,
@@ -224,46 +237,6 @@ impl Windows {
 
     /// What the last frame cost.
     pub(super) fn counts(&self) -> WindowCounts {
-        self.counts
-    }
-
-    /// Forgets the last frame. There is room for all but the strangest maps, so that a camera that
-    /// turns towards more of it needs no more memory.
-    fn begin(&mut self, frame: &Frame) {
-        const OF_A_RAY: usize = 16;
-        const AT_ONCE: usize = 64;
-        let width = frame.width() as usize;
-        self.width = width;
-        self.shown.clear();
-        let nothing = Shown::Sky { reflection: Reflection::NONE };
-        self.shown.resize(width * frame.height() as usize, nothing);
-        self.faces.clear();
-        self.faces.reserve(width * OF_A_RAY);
-        self.veils.clear();
-        self.veils.reserve(width * OF_A_RAY);
-        self.branches.clear();
-        self.branches.reserve(AT_ONCE);
-        self.images.clear();
-        self.images.reserve(IMAGES_AT_ONCE);
-        self.images.push(Unfolding::default());
-        self.counts = WindowCounts::default();
-    }
-
-    /// The index of `unfolding`. Of a map with more mirrors in view than there are indices, the last
-    /// ones show the places of another.
-    fn reflection(&mut self, unfolding: Unfolding) -> Reflection {
-        let known = self.images.iter().rposition(|&known| known == unfolding);
-        let index = known.unwrap_or_else(|| {
-            if u16::try_from(self.images.len()).is_ok() {
-                self.images.push(unfolding);
-            }
-            self.images.len() - 1
-        });
-        Reflection(index as u16)
-    }
-
-    /// Where what is seen by `reflection` is on the map.
-    fn unfolding(&self, Reflection(index): Reflection) -> Unfolding {
-        self.images[usize::from(index)]
+        self.notes.counts
     }
 }

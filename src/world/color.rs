@@ -58,18 +58,22 @@ impl Rgb {
 
     /// It in front of `behind`, of which it hides `alpha` parts in 255: each channel rounded to the
     /// nearest.
+    #[inline]
     #[must_use]
     pub const fn over(self, behind: Self, alpha: u8) -> Self {
-        const fn mixed(front: u8, behind: u8, alpha: u8) -> u8 {
-            const WHOLE: u32 = 255;
-            let sum = front as u32 * alpha as u32 + behind as u32 * (WHOLE - alpha as u32);
-            ((sum + WHOLE / 2) / WHOLE) as u8
+        const WHOLE: u32 = 255;
+        const RED_AND_BLUE: u32 = 0x00ff_00ff;
+        /// A 255th of both halves of a word, rounded to the nearest, where none is above 255 · 255.
+        const fn shared(sums: u32) -> u32 {
+            const HALF_OF_EACH: u32 = 0x007f_007f;
+            const ONE_OF_EACH: u32 = 0x0001_0001;
+            let sums = sums + HALF_OF_EACH;
+            (sums + ONE_OF_EACH + (sums >> 8 & RED_AND_BLUE)) >> 8 & RED_AND_BLUE
         }
-        Self::new(
-            mixed(self.red(), behind.red(), alpha),
-            mixed(self.green(), behind.green(), alpha),
-            mixed(self.blue(), behind.blue(), alpha),
-        )
+        let (own, rest) = (alpha as u32, WHOLE - alpha as u32);
+        let red_and_blue = (self.0 & RED_AND_BLUE) * own + (behind.0 & RED_AND_BLUE) * rest;
+        let green = self.green() as u32 * own + behind.green() as u32 * rest;
+        Self(shared(red_and_blue) | shared(green) << 8)
     }
 
     /// The sum of `own` 256ths of this colour and `share` 256ths of `other`, rounded down.
@@ -163,6 +167,24 @@ mod tests {
         assert_eq!(front.over(behind, 0), behind);
         assert_eq!(front.over(behind, 255), front);
         assert_eq!(front.over(behind, 51), Rgb::new(51, 204, 18));
+    }
+
+    #[test]
+    fn every_share_is_rounded_to_the_nearest() {
+        for (alpha, front) in (0..=255).flat_map(|alpha| (0..=255).map(move |front| (alpha, front)))
+        {
+            for behind in (0..=255).step_by(3).chain([254, 255]) {
+                let sum = u32::from(front) * u32::from(alpha)
+                    + u32::from(behind) * (255 - u32::from(alpha));
+                let mixed = ((sum + 127) / 255) as u8;
+                let drawn = Rgb::new(front, behind, front).over(Rgb::new(behind, behind, 0), alpha);
+                assert_eq!(
+                    (drawn.red(), drawn.green()),
+                    (mixed, behind),
+                    "{front} {behind} {alpha}"
+                );
+            }
+        }
     }
 
     #[test]

@@ -141,10 +141,12 @@ impl Grid {
     }
 
     /// The tile at a place, or `None` off the map.
+    #[inline]
     pub fn tile(&self, column: i64, row: i64) -> Option<TileId> {
-        let column = u32::try_from(column).ok().filter(|&column| column < self.width())?;
-        let row = u32::try_from(row).ok().filter(|&row| row < self.height())?;
-        Some(self.cells[row as usize * self.width() as usize + column as usize])
+        // As unsigned numbers, those below 0 are beyond any width.
+        let (column, row) = (column as u64, row as u64);
+        let is_on_map = column < u64::from(self.width()) && row < u64::from(self.height());
+        is_on_map.then(|| self.cells[row as usize * self.width() as usize + column as usize])
     }
 
     /// Puts `tile` into `cell`, which must be on the map.

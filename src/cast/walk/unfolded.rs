@@ -10,8 +10,8 @@ use glam::DVec2;
 
 use super::Axis;
 use crate::cast::hit::{meeting, texture_coordinate};
-use crate::cast::{ExactOrder, Hit, Order, Ray, Side, door, shape};
-use crate::world::{Cell, Grid, Shape, TileId, TileKind, World};
+use crate::cast::{ExactOrder, Order, Passage, Ray, Side, door};
+use crate::world::{Cell, Grid, TileId, TileKind, World};
 
 /// Where places of the unfolded map are on the map itself.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Default)]
@@ -35,8 +35,8 @@ pub(crate) struct Crossed {
     pub(crate) side: Side,
     /// What it leads into; `None` where it is the edge of the map, and the walk ends.
     pub(crate) into: Option<(Cell, TileId)>,
-    /// The north or west end of the crossed face, unfolded.
-    corner: DVec2,
+    /// Where the line is, unfolded.
+    line: f64,
 }
 
 /// The cells that a ray enters, mirrors and all, in the exact order.
@@ -47,7 +47,17 @@ pub(crate) struct UnfoldedWalk {
     x: Axis,
     y: Axis,
     unfolding: Unfolding,
+    column: OnMap,
+    row: OnMap,
     bounces: u32,
+}
+
+/// The column or the row of the map that a ray is in, after all reflections.
+#[derive(Clone, Copy, Debug)]
+struct OnMap {
+    index: i64,
+    /// From there to the next one.
+    step: i64,
 }
 
 impl UnfoldedWalk {
@@ -55,19 +65,24 @@ impl UnfoldedWalk {
     pub(crate) fn new(grid: &Grid, ray: &Ray, most_bounces: u32) -> Self {
         let size = DVec2::new(f64::from(grid.width()), f64::from(grid.height()));
         let (origin, direction) = (ray.origin(), ray.direction());
+        let x = Axis::new(origin.x, direction.x, grid.width());
+        let y = Axis::new(origin.y, direction.y, grid.height());
         Self {
             ray: *ray,
             order: ExactOrder::within(size * f64::from(most_bounces + 1), ray),
-            x: Axis::new(origin.x, direction.x, grid.width()),
-            y: Axis::new(origin.y, direction.y, grid.height()),
             unfolding: Unfolding::default(),
+            column: OnMap { index: x.index, step: x.step },
+            row: OnMap { index: y.index, step: y.step },
+            x,
+            y,
             bounces: 0,
         }
     }
 
     /// The cell that the ray is in; `None` off the map.
+    #[inline]
     pub(crate) fn cell(&self, grid: &Grid) -> Option<(Cell, TileId)> {
-        let (column, row) = self.real_indices();
+        let (column, row) = (self.column.index, self.row.index);
         let tile = grid.tile(column, row)?;
         Some((Cell { column: column as u32, row: row as u32 }, tile))
     }
@@ -76,28 +91,37 @@ impl UnfoldedWalk {
     pub(crate) fn cross(&mut self, grid: &Grid) -> Crossed {
         loop {
             let side = self.order.next(self.x.line, self.y.line);
-            let (axis, fold) = match side {
-                Side::X => (&mut self.x, self.unfolding.x),
-                Side::Y => (&mut self.y, self.unfolding.y),
+            let (axis, on_map) = match side {
+                Side::X => (&mut self.x, &mut self.column),
+                Side::Y => (&mut self.y, &mut self.row),
             };
             let line = axis.line;
             axis.cross();
-            let is_on_map = (0..axis.count).contains(&fold.real_index(axis.index));
+            on_map.index += on_map.step;
             let into = self.cell(grid);
-            if into.is_some() || !is_on_map {
-                let corner = match side {
-                    Side::X => DVec2::new(line, self.y.index as f64),
-                    Side::Y => DVec2::new(self.x.index as f64, line),
-                };
-                return Crossed { side, into, corner };
+            if into.is_some() || !self.is_on_map_along(side) {
+                return Crossed { side, into, line };
             }
+        }
+    }
+
+    /// Whether the ray is on the map, as far as the axis tells that crosses such lines.
+    fn is_on_map_along(&self, side: Side) -> bool {
+        match side {
+            Side::X => (0..self.x.count).contains(&self.column.index),
+            Side::Y => (0..self.y.count).contains(&self.row.index),
         }
     }
 
     /// How far along the ray a line is that it has just crossed, and how far along the face, as
     /// [`Hit`] has both.
     pub(crate) fn meeting(&self, crossed: &Crossed) -> (f64, f64) {
-        let (t, along) = meeting(&self.ray, crossed.side, crossed.corner);
+        // The north or west end of the crossed face.
+        let corner = match crossed.side {
+            Side::X => DVec2::new(crossed.line, self.y.index as f64),
+            Side::Y => DVec2::new(self.x.index as f64, crossed.line),
+        };
+        let (t, along) = meeting(&self.ray, crossed.side, corner);
         let fold = match crossed.side {
             Side::X => self.unfolding.y,
             Side::Y => self.unfolding.x,
@@ -109,28 +133,27 @@ impl UnfoldedWalk {
 
     /// Turns the ray back at the line of that kind that it has just crossed.
     pub(crate) fn reflect(&mut self, side: Side) {
-        let (axis, fold) = match side {
-            Side::X => (&self.x, &mut self.unfolding.x),
-            Side::Y => (&self.y, &mut self.unfolding.y),
+        let (axis, fold, on_map) = match side {
+            Side::X => (&self.x, &mut self.unfolding.x, &mut self.column),
+            Side::Y => (&self.y, &mut self.unfolding.y, &mut self.row),
         };
         *fold = fold.mirrored_at(axis.line as i64 - axis.step);
+        *on_map = OnMap { index: fold.real_index(axis.index), step: -on_map.step };
         self.bounces += 1;
     }
 
-    /// Where the ray meets what stands in `cell`, where it is now, and does not fill it: a door's leaf
-    /// or a shape. `None` where it passes by, or there is neither.
-    pub(crate) fn standing(&self, world: &World, cell: Cell, kind: TileKind) -> Option<Hit> {
+    /// Where the ray passes through what stands in `cell`, where it is now, and does not fill it: a
+    /// door's leaf, which has no inside, or a shape.
+    pub(crate) fn standing(&self, world: &World, cell: Cell, kind: TileKind) -> Passage {
         let ray = self.real_ray();
         match kind {
-            TileKind::Door(_) => door::meet(world.grid(), &ray, cell, world.opening(cell)),
-            TileKind::Shape(it) => shape::meet(&ray, cell, it.outline),
-            _ => None,
+            TileKind::Door(_) => {
+                let hit = door::meet(world.grid(), &ray, cell, world.opening(cell));
+                Passage { hit, end: None }
+            }
+            TileKind::Shape(it) => Passage::new(&ray, cell, it.outline),
+            _ => Passage::NONE,
         }
-    }
-
-    /// Where the ray comes out of the shape in `cell`, where it is now, if it has been inside.
-    pub(crate) fn leaving(&self, cell: Cell, shape: Shape) -> Option<f64> {
-        shape::leave(&self.real_ray(), cell, shape.outline)
     }
 
     /// The ray as it is on the map after all reflections, as if it had come straight.
@@ -151,11 +174,6 @@ impl UnfoldedWalk {
     /// Where the ray goes on the map, after all reflections.
     fn direction(&self) -> DVec2 {
         self.unfolding.real_direction(self.ray.direction())
-    }
-
-    fn real_indices(&self) -> (i64, i64) {
-        let Unfolding { x, y } = self.unfolding;
-        (x.real_index(self.x.index), y.real_index(self.y.index))
     }
 }
 
@@ -210,7 +228,7 @@ mod tests {
     use proptest::prelude::*;
 
     use super::*;
-    use crate::cast::Walk;
+    use crate::cast::{Hit, Walk};
 
     proptest! {
         /// Without a mirror it is the walk in the exact order, and meets what that meets.

@@ -91,7 +91,8 @@ impl Sight {
     /// what is seen along a ray.
     pub(in crate::render) fn follow(&mut self, one: DVec2, other: DVec2) {
         let (top, bottom) = if one.y <= other.y { (one, other) } else { (other, one) };
-        let x_at = |y: f64| top.x + (bottom.x - top.x) * ((y - top.y) / (bottom.y - top.y));
+        let slope = (bottom.x - top.x) / (bottom.y - top.y);
+        let x_at = |y: f64| top.x + (y - top.y) * slope;
         for row in self.reached(top.y, bottom.y, self.row_count) {
             let middle = f64::from(row) + 0.5;
             let (from, to) = (middle - self.margin, middle + self.margin);

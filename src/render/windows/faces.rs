@@ -7,7 +7,7 @@ use glam::DVec2;
 use super::Scene;
 use crate::cast::Side;
 use crate::render::band::Band;
-use crate::render::plan::WallLoop;
+use crate::render::coat::{COLUMNS_AT_ONCE, Coats, Wardrobe};
 use crate::render::shade::{Faded, OfSide, Shade};
 use crate::render::tally::{Pass, Tally};
 use crate::world::{Light, Paint};
@@ -43,18 +43,51 @@ pub(super) struct Stretch {
     pub(super) top: f64,
 }
 
-/// Draws all of `faces`.
+/// Draws all of `faces`, those of a column one after the other. `wardrobe` is memory to work with.
 pub(super) fn draw<T: Tally>(
     scene: Scene<'_>,
-    plan: WallLoop,
     faces: &[Face],
+    wardrobe: &mut Wardrobe,
     band: &mut Band<'_>,
     tally: &mut T,
 ) {
-    for face in faces {
-        match face.facing {
-            Facing::Side(side) if !plan.faded => face.draw(scene, OfSide(side), band, tally),
-            _ => face.draw(scene, face.facing.shade(scene, face.light, face.t), band, tally),
+    if scene.walls.faded || scene.world.has_shapes() {
+        let shade = |face: &Face| face.facing.shade(scene, face.light, face.t);
+        draw_shaded(scene, faces, Coats::new(wardrobe, band), tally, shade);
+    } else {
+        let shade = |face: &Face| match face.facing {
+            Facing::Side(side) => OfSide(side),
+            // Only shapes look that way, and there are none.
+            Facing::Normal(_) => OfSide(Side::X),
+        };
+        draw_shaded(scene, faces, Coats::new(wardrobe, band), tally, shade);
+    }
+}
+
+/// Neighbours in a block of columns are drawn together: mostly the first faces of each are parts of one
+/// wall or step, and so are those behind them.
+#[inline]
+fn draw_shaded<'a, S: Shade, T: Tally>(
+    scene: Scene<'a>,
+    faces: &[Face],
+    mut coats: Coats<'_, '_, 'a, S>,
+    tally: &mut T,
+    shade: impl Fn(&Face) -> S,
+) {
+    let block_of = |face: &Face| face.column as usize / COLUMNS_AT_ONCE;
+    for block in faces.chunk_by(|one, other| block_of(one) == block_of(other)) {
+        let mut columns: [&[Face]; COLUMNS_AT_ONCE] = [&[]; COLUMNS_AT_ONCE];
+        for column in block.chunk_by(|one, other| one.column == other.column) {
+            columns[column[0].column as usize % COLUMNS_AT_ONCE] = column;
+        }
+        while columns.iter().any(|column| !column.is_empty()) {
+            for face in columns.iter_mut().filter_map(|column| column.split_off_first()) {
+                let rows = coats.clip(&face.rows);
+                if !rows.is_empty() {
+                    face.hang(scene, rows, shade(face), &mut coats, tally);
+                }
+            }
+            coats.draw();
         }
     }
 }
@@ -71,30 +104,25 @@ impl Facing {
 }
 
 impl Face {
-    fn draw<S: Shade, T: Tally>(
+    /// Has it covered in those `rows` in that shade.
+    fn hang<'a, S: Shade, T: Tally>(
         &self,
-        scene: Scene<'_>,
+        scene: Scene<'a>,
+        rows: Range<u32>,
         shade: S,
-        band: &mut Band<'_>,
+        coats: &mut Coats<'_, '_, 'a, S>,
         tally: &mut T,
     ) {
-        let rows = self.rows.clone();
         tally.pixels(Pass::Walls, rows.len());
-        let pixels = band.column_mut(self.column, rows.clone());
         match self.paint {
-            Paint::Color(color) => {
-                let color = shade.apply(color);
-                pixels.for_each(|pixel| *pixel = color);
-            }
+            Paint::Color(color) => coats.paint(self.column, rows, color, shade),
             Paint::Texture(id) => {
                 tally.texels(Pass::Walls, rows.len());
                 let level = scene.level_on(scene.world.texture(id), self.t, self.slope);
                 let texels = level.column(self.u);
                 let Stretch { bottom, top } = self.stretch;
                 let down = scene.projection.texels_down_the_face(self.t, texels.len(), bottom, top);
-                for (row, pixel) in rows.zip(pixels) {
-                    *pixel = shade.apply(texels[down.at(row)]);
-                }
+                coats.hang_on_face(self.column, rows, texels, down, shade);
             }
         }
     }

@@ -2,11 +2,17 @@
 
 use std::ops::Range;
 
-use super::faces::Facing;
-use super::{Part, Piece, Reflection, Scene, Shown, Windows, rows_between};
+use glam::DVec2;
+
+use super::faces::{Face, Facing, Stretch};
+use super::notes::{Leg, Notes, Shown};
+use super::profile::{Holds, Profiles, SlotId};
+use super::things::Between;
+use super::veils::{Film, Pane, Veil};
+use super::{Part, Piece, Reflection, Scene, Windows};
 use crate::cast::{Hit, Ray, Side, UnfoldedWalk};
 use crate::render::Column;
-use crate::world::{Cell, Gap, Heights, TileId};
+use crate::world::{Cell, Light, Paint, Tile, TileId, TileKind};
 
 /// How often a ray is reflected; the mirror after that shows its tint.
 pub(super) const MOST_BOUNCES: u32 = 8;
@@ -16,7 +22,7 @@ pub(super) const MOST_BOUNCES: u32 = 8;
 pub(super) struct Branch {
     pub(super) walk: UnfoldedWalk,
     pub(super) place: Place,
-    pub(super) gap: Gap,
+    pub(super) slot: SlotId,
     /// The rows that nothing nearer covers.
     pub(super) window: Range<u32>,
     /// Where on the ray it begins.
@@ -43,35 +49,46 @@ pub(super) struct Met {
 /// One column that is being looked at.
 pub(super) struct Look<'a> {
     pub(super) scene: Scene<'a>,
-    pub(super) column: usize,
+    pub(super) profiles: &'a Profiles,
+    column: u32,
+    direction: DVec2,
     height: u32,
-    pub(super) windows: &'a mut Windows,
+    pub(super) notes: &'a mut Notes,
+    pub(super) branches: &'a mut Vec<Branch>,
     /// What it hit last before it was reflected, and how far it got.
     pub(super) hit: Option<Hit>,
     pub(super) distance: f64,
 }
 
 impl<'a> Look<'a> {
+    /// At `column` of a picture of that height.
     pub(super) fn new(
         scene: Scene<'a>,
-        column: usize,
+        column: u32,
         height: u32,
         windows: &'a mut Windows,
     ) -> Self {
-        Self { scene, column, height, windows, hit: None, distance: 0.0 }
+        let Windows { profiles, notes, branches, .. } = windows;
+        let direction = scene.projection.direction_of(column);
+        let (hit, distance) = (None, 0.0);
+        Self { scene, profiles, column, direction, height, notes, branches, hit, distance }
     }
 
     /// Follows `ray`, which is that of the column, to the end of all its branches. Tells what it hit
     /// and how far it got before it was reflected.
     pub(super) fn follow(mut self, ray: &Ray) -> Column {
-        let start = self.start(ray);
-        self.windows.branches.push(start);
-        while let Some(branch) = self.windows.branches.pop() {
-            self.follow_branch(branch);
+        let mut branch = self.start(ray);
+        loop {
+            self.follow_branch(&mut branch);
+            match self.branches.pop() {
+                Some(next) => branch = next,
+                None => break,
+            }
         }
+        self.notes.end_column(self.height);
         let Self { scene, hit, distance, .. } = self;
-        let rows = scene.projection.row_of(1.0, distance)..scene.projection.row_of(0.0, distance);
-        Column { hit, distance, rows }
+        let row_of = |height| scene.projection.row_of(scene.projection.rise_to(height), distance);
+        Column { hit, distance, rows: row_of(1.0)..row_of(0.0) }
     }
 
     fn start(&self, ray: &Ray) -> Branch {
@@ -80,27 +97,42 @@ impl<'a> Look<'a> {
         let most_bounces = if world.has_mirrors() { MOST_BOUNCES } else { 0 };
         let walk = UnfoldedWalk::new(world.grid(), ray, most_bounces);
         let place = walk.cell(world.grid());
-        let holds_eye = |gap: &Gap| gap.holds(eye);
-        let gap_in = |place: Place| self.gaps(place).into_iter().flatten().find(holds_eye);
+        let slot_in =
+            |place| self.profiles.of(place).find(|(_, slot)| slot.gap.holds(eye)).map(|(id, _)| id);
         // An eye inside the rock sees as if the cell were like the map's own floor.
         let ground = place.map(|(cell, _)| (cell, TileId(0)));
-        let (place, gap) = match (gap_in(place), gap_in(ground)) {
-            (Some(gap), _) => (place, gap),
-            (None, Some(gap)) => (ground, gap),
-            (None, None) => (ground, BOTTOMLESS),
+        let (place, slot) = match (slot_in(place), slot_in(ground)) {
+            (Some(slot), _) => (place, slot),
+            (None, Some(slot)) => (ground, slot),
+            (None, None) => (ground, SlotId::BOTTOMLESS),
         };
-        Branch { walk, place, gap, window: 0..self.height, from: 0.0, reflection: Reflection::NONE }
+        let window = 0..self.height;
+        Branch { walk, place, slot, window, from: 0.0, reflection: Reflection::NONE }
     }
 
-    fn follow_branch(&mut self, mut branch: Branch) {
-        let direction = self.scene.projection.direction_of(self.column as u32);
+    fn follow_branch(&mut self, branch: &mut Branch) {
+        let start = branch.from;
+        self.follow_on(branch);
+        if self.scene.has_things {
+            let (origin, unfolding) = (self.scene.projection.origin(), branch.walk.unfolding());
+            let end = |t: f64| unfolding.real_point(origin + self.direction * t);
+            let ends = [start, branch.from].map(end);
+            self.notes.legs.push(Leg { ends, reflection: branch.reflection });
+        }
+    }
+
+    /// Follows `branch` as far as it goes.
+    fn follow_on(&mut self, branch: &mut Branch) {
+        let grid = self.scene.world.grid();
         loop {
-            self.meet_standing(&mut branch);
-            if branch.window.is_empty() {
-                return;
+            if self.profiles.slot(branch.slot).holds == Holds::Standing {
+                self.meet_standing(branch);
+                if branch.window.is_empty() {
+                    return;
+                }
             }
-            let crossed = branch.walk.cross(self.scene.world.grid());
-            self.windows.counts.cells += u64::from(crossed.into.is_some());
+            let crossed = branch.walk.cross(grid);
+            self.notes.counts.cells += u64::from(crossed.into.is_some());
             let tile = |(_, tile): (Cell, TileId)| tile;
             if crossed.into.is_some() && crossed.into.map(tile) == branch.place.map(tile) {
                 // All of its heights are the same.
@@ -108,7 +140,7 @@ impl<'a> Look<'a> {
                 continue;
             }
             let (t, u) = branch.walk.meeting(&crossed);
-            self.lay(&mut branch, t);
+            self.lay(branch, t);
             if branch.reflection == Reflection::NONE {
                 self.distance = self.distance.max(t);
             }
@@ -117,13 +149,12 @@ impl<'a> Look<'a> {
             }
             let side = crossed.side;
             let slope = match side {
-                Side::X => direction.x,
-                Side::Y => direction.y,
+                Side::X => self.direction.x,
+                Side::Y => self.direction.y,
             };
             let met = Met { side, facing: Facing::Side(side), slope, t, u, before: branch.place };
-            match self.share_out(branch, crossed.into, &met) {
-                Some(next) => branch = next,
-                None => return,
+            if !self.share_out(branch, crossed.into, &met) {
+                return;
             }
         }
     }
@@ -133,38 +164,83 @@ impl<'a> Look<'a> {
     pub(super) fn lay(&mut self, branch: &mut Branch, t: f64) {
         self.note_things(branch, t);
         let projection = self.scene.projection;
-        let (eye, Gap { bottom, top }) = (projection.eye(), branch.gap);
+        let (eye, slot) = (projection.eye(), self.profiles.slot(branch.slot));
         let Range { start, end } = branch.window;
         let tile = branch.place.map(|(_, tile)| tile);
         let reflection = branch.reflection;
         let piece = |part| Shown::Plane(Piece { tile, part, reflection });
-        if eye > bottom {
-            let row = projection.row_of(bottom, t).max(start);
-            self.show(row..end, piece(self.part_below(branch)));
+        let bottom = slot.row_of_bottom(projection, t);
+        let top = slot.row_of_top(projection, t);
+        if eye > slot.gap.bottom {
+            self.notes.show(bottom.max(start)..end, piece(slot.below));
         }
-        if eye < top && top < f64::INFINITY {
-            let row = projection.row_of(top, t).min(end);
-            self.show(start..row, piece(Part::Ceiling));
+        if eye < slot.gap.top && slot.gap.top < f64::INFINITY {
+            self.notes.show(start..top.min(end), piece(Part::Ceiling));
         }
-        branch.window = self.rows(&branch.window, bottom, top, t);
+        branch.window = start.max(top)..end.min(bottom);
         branch.from = t;
     }
 
-    /// Whether the bottom of a branch's gap is a floor or a roof.
-    fn part_below(&self, branch: &Branch) -> Part {
-        let lowest = self.gaps(branch.place)[0];
-        if lowest.is_none_or(|gap| gap.bottom == branch.gap.bottom) {
-            Part::Floor
-        } else {
-            Part::Roof
-        }
+    /// Notes a face that shows in `rows`.
+    pub(super) fn face(
+        &mut self,
+        rows: Range<u32>,
+        met: &Met,
+        paint: Paint,
+        light: Light,
+        stretch: Stretch,
+    ) {
+        self.notes.show(rows.clone(), Shown::Face(met.side));
+        let &Met { facing, slope, t, u, .. } = met;
+        let column = self.column;
+        self.notes.faces.push(Face { column, rows, facing, slope, t, u, paint, light, stretch });
     }
 
-    /// The part of `window` that shows what is between two heights at distance `t`.
-    pub(super) fn rows(&self, window: &Range<u32>, bottom: f64, top: f64, t: f64) -> Range<u32> {
-        rows_between(self.scene.projection, window, bottom, top, t)
+    /// Notes what is seen through in `rows`.
+    pub(super) fn veil(
+        &mut self,
+        rows: Range<u32>,
+        met: &Met,
+        place: Place,
+        film: Film,
+        stretch: Stretch,
+    ) {
+        if rows.is_empty() {
+            return;
+        }
+        let light = self.light(place, met);
+        let &Met { facing, slope, t, u, .. } = met;
+        let column = self.column;
+        self.notes.veils.push(Veil::Pane(self.notes.panes.len()));
+        let pane = Pane { column, rows, facing, slope, t, u, light, film, stretch };
+        self.notes.panes.push(pane);
+    }
+
+    /// Notes that things are seen by `branch` before it gets to `to`.
+    fn note_things(&mut self, branch: &Branch, to: f64) {
+        if !self.scene.has_things {
+            return;
+        }
+        let &Branch { ref window, slot, from, reflection, .. } = branch;
+        let (column, rows) = (self.column, window.clone());
+        let between = Between { column, rows, from, to, slot, reflection };
+        self.notes.veils.push(Veil::Things(between));
+    }
+
+    /// How bright what is in `place` is, seen from where it is met: by its own light, if it is solid,
+    /// else as it is there.
+    pub(super) fn light(&self, place: Place, met: &Met) -> Light {
+        if !self.scene.walls.faded {
+            return Light::FULL;
+        }
+        let is_solid = |tile: &&Tile| !matches!(tile.kind, TileKind::Open | TileKind::Doorway(_));
+        let own = self.tile(place).filter(is_solid).and_then(|tile| tile.light);
+        let there = |(cell, _)| self.scene.world.light_in(cell);
+        own.unwrap_or_else(|| met.before.map_or(Light::FULL, there))
+    }
+
+    pub(super) fn tile(&self, place: Place) -> Option<&'a Tile> {
+        let (_, id) = place?;
+        self.scene.world.tiles().get(usize::from(id.0))
     }
 }
-
-/// Where an eye is that is in no gap at all.
-pub(super) const BOTTOMLESS: Gap = Gap { bottom: -2.0 * Heights::MOST, top: 2.0 * Heights::MOST };

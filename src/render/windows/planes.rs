@@ -1,48 +1,80 @@
 //! The pass for what lies flat, and for the sky: along rows, over the spans that show the same.
 
+use std::{iter, mem};
+
 use glam::DVec2;
 
-use super::{Part, Piece, Reflection, Scene, Shown, Windows};
+use super::notes::{Notes, Run, Shown};
+use super::{Part, Piece, Reflection, Scene};
 use crate::render::band::Band;
 use crate::render::lay::Layer;
 use crate::render::sky::SkyView;
 use crate::render::tally::{Pass, Tally};
 use crate::world::{Ceiling, Cell, Covering, Light, Rgb, Tile, TileKind, World};
 
-/// Draws every span, and tells how many there were.
+/// Draws every span. `starts` is memory to work with.
+///
+/// Spans end where the next column shows something else: there are as many as that, and no row is
+/// searched for them.
 pub(super) fn draw<T: Tally>(
     scene: Scene<'_>,
     sky: &SkyView<'_>,
-    windows: &Windows,
+    notes: &Notes,
+    starts: &mut Vec<usize>,
     band: &mut Band<'_>,
     tally: &mut T,
-) -> u64 {
-    let mut count = 0;
-    for (row, shown) in (0..).zip(windows.shown.chunks_exact(windows.width)) {
-        let mut pixels = band.row_mut(row);
-        let mut x = 0;
-        for alike in shown.chunk_by(|one, other| one == other) {
-            let (span, rest) = pixels.split_at_mut(alike.len());
-            pixels = rest;
-            match alike[0] {
-                Shown::Face(_) => {}
-                Shown::Sky { reflection: Reflection::NONE } => sky.draw(row, x, span, tally),
+) {
+    let rows = band.rows();
+    starts.clear();
+    starts.resize(rows.len(), 0);
+    let mut end_spans = |of: &Run, x: usize| {
+        for row in band.clip(&of.rows) {
+            let start = mem::replace(&mut starts[(row - rows.start) as usize], x);
+            let pixels = &mut band.row_mut(row)[start..x];
+            match of.shown {
+                Shown::Face(_) => continue,
+                Shown::Sky { reflection: Reflection::NONE } => sky.draw(row, start, pixels, tally),
                 Shown::Sky { reflection } => {
-                    sky.draw_reflected(windows.unfolding(reflection), row, x, span, tally);
+                    sky.draw_reflected(notes.unfolding(reflection), row, start, pixels, tally);
                 }
-                Shown::Plane(piece) => lay(scene, windows, piece, row, x, span, tally),
+                Shown::Plane(piece) => lay(scene, notes, piece, row, start, pixels, tally),
             }
-            count += u64::from(!matches!(alike[0], Shown::Face(_)));
-            x += alike.len();
+            tally.spans(1);
         }
+    };
+    let mut before: &[Run] = &[];
+    for (x, column) in notes.columns().enumerate() {
+        for change in changes(before, column) {
+            end_spans(&change, x);
+        }
+        before = column;
     }
-    count
+    for run in before {
+        end_spans(run, scene.projection.columns());
+    }
+}
+
+/// What `one` column shows that its neighbour does not show in the same rows.
+fn changes(mut one: &[Run], mut other: &[Run]) -> impl Iterator<Item = Run> {
+    let mut start = 0;
+    iter::from_fn(move || {
+        loop {
+            let (this, that) = (one.first()?, other.first()?);
+            let end = this.rows.end.min(that.rows.end);
+            let rows = mem::replace(&mut start, end)..end;
+            one = &one[usize::from(this.rows.end == end)..];
+            other = &other[usize::from(that.rows.end == end)..];
+            if this.shown != that.shown {
+                return Some(Run { rows, shown: this.shown });
+            }
+        }
+    })
 }
 
 /// Lays `piece` on `pixels`, which are those from column `x` on of `row`.
 fn lay<T: Tally>(
     scene: Scene<'_>,
-    windows: &Windows,
+    notes: &Notes,
     piece: Piece,
     row: u32,
     x: usize,
@@ -59,7 +91,7 @@ fn lay<T: Tally>(
     };
     let mut track = projection.track_at(row, height);
     if piece.reflection != Reflection::NONE {
-        track = track.seen_in_mirrors(windows.unfolding(piece.reflection));
+        track = track.seen_in_mirrors(notes.unfolding(piece.reflection));
     }
     let pass = match piece.part {
         Part::Ceiling => Pass::Ceiling,

@@ -1,14 +1,12 @@
 //! The part of the map that each image shows: for each row of cells, the stretch of it.
 //!
-//! What is seen in an image is what lies along its rays, as far as they are in it. Each of those pieces is
+//! What is seen in an image is what lies along its rays, as far as they are in it. Each of those legs is
 //! followed on the map, where the rows that it crosses take it in. A thing whose picture reaches into a ray
 //! is no further beside that than half its width, so that what lies between two rays need not be asked
-//! for. The rectangle around all pieces was refused: of a diagonal view it is everything on both sides.
+//! for. The rectangle around all legs was refused: of a diagonal view it is everything on both sides.
 
-use glam::DVec2;
-
-use super::{Between, IMAGES_AT_ONCE, Reflection, Scene, Veil};
-use crate::cast::Unfolding;
+use super::notes::Leg;
+use super::{IMAGES_AT_ONCE, Reflection, Scene};
 use crate::render::things::Sight;
 use crate::world::{Thing, World};
 
@@ -37,21 +35,24 @@ impl Extent {
 }
 
 impl Sights {
-    /// Finds out what is seen in `images`, by the parts of rays among `veils`.
-    pub(super) fn look(&mut self, scene: Scene<'_>, images: &[Unfolding], veils: &[Veil]) {
-        self.make_room(scene.world, images.len());
+    /// Finds out what is seen in so many images, by all `legs` of rays.
+    pub(super) fn look(&mut self, scene: Scene<'_>, images: usize, legs: &[Leg]) {
+        self.make_room(scene.world, images);
         self.extents.clear();
-        self.extents.resize(images.len(), Extent::NONE);
-        for (image, ends) in pieces(scene, images, veils) {
+        self.extents.resize(images, Extent::NONE);
+        // Those that end nowhere near the map are left out.
+        let is_near = |leg: &&Leg| leg.ends.iter().all(|end| end.is_finite());
+        let legs = || legs.iter().filter(is_near);
+        for Leg { ends, reflection: Reflection(image) } in legs() {
             for end in ends {
-                self.extents[image].include(end.y);
+                self.extents[usize::from(*image)].include(end.y);
             }
         }
         for (sight, extent) in self.list.iter_mut().zip(&self.extents) {
             sight.begin(scene.world, extent.north, extent.south);
         }
-        for (image, [one, other]) in pieces(scene, images, veils) {
-            self.list[image].follow(one, other);
+        for &Leg { ends: [one, other], reflection: Reflection(image) } in legs() {
+            self.list[usize::from(image)].follow(one, other);
         }
     }
 
@@ -74,28 +75,6 @@ impl Sights {
     }
 }
 
-/// The parts of rays among `veils`: the image that each is in, and its ends on the map. Those that end
-/// nowhere near it are left out.
-fn pieces<'a>(
-    scene: Scene<'a>,
-    images: &'a [Unfolding],
-    veils: &'a [Veil],
-) -> impl Iterator<Item = (usize, [DVec2; 2])> {
-    let projection = scene.projection;
-    let betweens = veils.iter().filter_map(|veil| match veil {
-        Veil::Things(between) => Some(between),
-        Veil::Pane(_) => None,
-    });
-    let ends = move |between: &Between| {
-        let &Between { column, from, to, reflection: Reflection(image), .. } = between;
-        let image = usize::from(image);
-        let along = projection.direction_of(column);
-        let end = |t: f64| images[image].real_point(projection.origin() + along * t);
-        (image, [from, to].map(end))
-    };
-    betweens.map(ends).filter(|(_, ends)| ends.iter().all(|end| end.is_finite()))
-}
-
 #[cfg(test)]
 mod tests {
     use std::collections::BTreeSet;
@@ -103,10 +82,10 @@ mod tests {
     use proptest::prelude::*;
 
     use super::super::Windows;
-    use super::super::look::Look;
+    use super::super::veils::Veil;
     use super::*;
     use crate::map;
-    use crate::render::{Filter, Frame, FrameSize, PixelAspect, Projection};
+    use crate::render::{Filter, FrameSize, PixelAspect, Projection, WallLoop};
     use crate::world::{Camera, FieldOfView, Heading};
 
     const SIDE: usize = 12;
@@ -143,22 +122,19 @@ mod tests {
             let camera = Camera::new(position.into(), heading, FieldOfView::default()).unwrap();
             let size = FrameSize::new(30, 20).unwrap();
             let projection = &Projection::new(&camera, size, PixelAspect::SQUARE);
-            let scene = Scene::new(world, projection, Filter::Mip);
+            let walls = WallLoop { textured: true, faded: false, jambs: false };
+            let scene = Scene::new(world, projection, Filter::Mip, walls);
             let mut windows = Windows::default();
-            let frame = Frame::new(size, PixelAspect::SQUARE);
-            windows.begin(&frame);
-            for (x, ray) in projection.rays().enumerate() {
-                Look::new(scene, x, frame.height(), &mut windows).follow(&ray);
-            }
+            windows.look(scene, size.height.get(), &mut Vec::new());
             let mut sights = Sights::default();
-            sights.look(scene, &windows.images, &windows.veils);
-            let considered: Vec<BTreeSet<_>> = (0..windows.images.len())
+            sights.look(scene, windows.notes.images.len(), &windows.notes.legs);
+            let considered: Vec<BTreeSet<_>> = (0..windows.notes.images.len())
                 .map(|image| sights.things(image, world).map(|thing| thing.cell).collect())
                 .collect();
-            for veil in &windows.veils {
+            for veil in &windows.notes.veils {
                 let Veil::Things(between) = veil else { continue };
                 let Reflection(image) = between.reflection;
-                let unfolding = windows.images[usize::from(image)];
+                let unfolding = windows.notes.images[usize::from(image)];
                 for thing in world.things() {
                     let place = projection.place(unfolding.unfolded_point(thing.cell.center()));
                     let width = world.sprite(thing.sprite).width();

@@ -6,28 +6,25 @@ use glam::DVec2;
 
 use super::faces::{Facing, Stretch};
 use super::look::{Branch, Look, Met, Place};
-use super::{Part, Piece, Reflection, Shown};
-use crate::cast::{Hit, Ray, Side};
+use super::notes::Shown;
+use super::{Part, Piece, Reflection};
+use crate::cast::{Hit, Passage, Ray, Side};
 use crate::world::{Cell, Outline, Tile, TileKind};
 
 impl Look<'_> {
-    /// Meets what stands in the cell that `branch` is in. What is above it, if anything, stays open.
+    /// Meets what stands in the slot that `branch` is in. What is above it, if anything, stays open.
     pub(super) fn meet_standing(&mut self, branch: &mut Branch) {
-        let Some((cell, kind)) = self.kind(branch.place) else { return };
-        let Some(tile) = self.tile(branch.place) else { return };
-        if branch.gap.bottom != tile.heights.floor() {
-            return;
-        }
-        if let Some(hit) = branch.walk.standing(self.scene.world, cell, kind) {
+        let (Some((cell, _)), Some(tile)) = (branch.place, self.tile(branch.place)) else { return };
+        let kind = tile.kind;
+        let Passage { hit, end } = branch.walk.standing(self.scene.world, cell, kind);
+        if let Some(hit) = hit {
             // A ray that was reflected in this cell may have been nowhere near before that.
             if branch.reflection != Reflection::NONE && hit.t < branch.from {
                 return;
             }
             self.meet_side(branch, kind, tile, hit);
         }
-        if let TileKind::Shape(shape) = kind
-            && let Some(end) = branch.walk.leaving(cell, shape)
-        {
+        if let Some(end) = end {
             self.look_down_at(branch, tile.top_of_what_stands(), end);
         }
     }
@@ -53,10 +50,12 @@ impl Look<'_> {
             Facing::Normal(normal) => normal.dot(ray.direction()),
         };
         let met = Met { side: hit.side, facing, slope, t: hit.t, u: hit.u, before };
-        let rows = self.rows(&branch.window, bottom, top, hit.t);
-        branch.window = self.rows(&branch.window, top, f64::INFINITY, hit.t);
+        let stretch = Stretch { bottom, top };
+        let rows = self.scene.rows_between(&branch.window, stretch, hit.t);
+        let above = self.scene.projection.row_of(self.scene.projection.rise_to(top), hit.t);
+        branch.window.end = branch.window.end.min(above);
         let light = self.light(branch.place, &met);
-        self.face(rows, &met, paint, light, Stretch { bottom, top });
+        self.face(rows, &met, paint, light, stretch);
         if branch.reflection == Reflection::NONE {
             self.hit = Some(hit);
             self.distance = self.distance.max(hit.t);
@@ -72,8 +71,9 @@ impl Look<'_> {
         let tile = branch.place.map(|(_, tile)| tile);
         let piece = Piece { tile, part: Part::Top, reflection: branch.reflection };
         let Range { start, end: bottom } = branch.window;
-        let row = self.scene.projection.row_of(top, end).clamp(start, bottom);
-        self.show(row..bottom, Shown::Plane(piece));
+        let projection = self.scene.projection;
+        let row = projection.row_of(projection.rise_to(top), end).clamp(start, bottom);
+        self.notes.show(row..bottom, Shown::Plane(piece));
         branch.window = start..row;
     }
 

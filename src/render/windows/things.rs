@@ -2,7 +2,7 @@
 //!
 //! A thing is seen by each unfolding of the map once, at its own depth. Along a ray, whatever is
 //! between two lines is behind the panes at the first and before all at the second; so a column notes
-//! such a stretch among its veils, and the things in it are drawn when its turn comes. Drawing each
+//! such a stretch among its veils, and the things in it are cut to strips as wide as a pixel. Drawing each
 //! thing across all of its columns at once was refused: what hides it differs from one to the next.
 
 use std::cmp::Ordering;
@@ -10,8 +10,10 @@ use std::ops::Range;
 
 use glam::DVec2;
 
+use super::notes::Notes;
+use super::profile::{Profiles, SlotId};
 use super::sights::Sights;
-use super::{IMAGES_AT_ONCE, Reflection, Scene, Veil, Viewer, rows_between};
+use super::{IMAGES_AT_ONCE, Reflection, Scene, Viewer};
 use crate::cast::{Side, Unfolding};
 use crate::render::Surface;
 use crate::render::band::Band;
@@ -20,7 +22,7 @@ use crate::render::shade::{Faded, Shade};
 use crate::render::tally::{Pass, Tally};
 use crate::render::things::NEAREST;
 use crate::world::sprite::builtin;
-use crate::world::{Camera, Cell, Gap, Light, Sprite, SpriteId, Thing};
+use crate::world::{Camera, Cell, Light, Sprite, SpriteId, Thing};
 
 /// A part of a ray that is in one gap.
 #[derive(Clone, Debug)]
@@ -30,7 +32,7 @@ pub(super) struct Between {
     pub(super) rows: Range<u32>,
     pub(super) from: f64,
     pub(super) to: f64,
-    pub(super) gap: Gap,
+    pub(super) slot: SlotId,
     pub(super) reflection: Reflection,
 }
 
@@ -41,9 +43,20 @@ pub(super) struct Billboards {
     list: Vec<Billboard>,
     of_image: Vec<Range<usize>>,
     sights: Sights,
+    /// Which columns show any of them, if nothing is before it.
+    is_covered: Vec<bool>,
     considered: u64,
     /// The player, as they see themselves; `None` until there is a mirror.
     figure: Option<Sprite>,
+}
+
+/// What shows of a thing in a column of pixels.
+#[derive(Clone, Debug)]
+pub(super) struct Strip {
+    pub(super) column: u32,
+    pub(super) rows: Range<u32>,
+    /// Which of all billboards.
+    billboard: usize,
 }
 
 #[derive(Clone, Debug)]
@@ -69,16 +82,10 @@ struct Billboard {
 }
 
 impl Billboards {
-    /// Finds all that the `images` show to `viewer`, by the parts of rays among `veils`.
-    pub(super) fn find(
-        &mut self,
-        scene: Scene<'_>,
-        images: &[Unfolding],
-        veils: &[Veil],
-        viewer: Viewer<'_>,
-    ) {
+    /// Finds all that the rays of `notes` show to `viewer`.
+    pub(super) fn find(&mut self, scene: Scene<'_>, notes: &Notes, viewer: Viewer<'_>) {
         const MOST_AT_FIRST: usize = 4096;
-        let world = scene.world;
+        let (world, images) = (scene.world, &notes.images);
         let players = images.len().max(IMAGES_AT_ONCE);
         self.list.clear();
         self.list.reserve(world.things().len().min(MOST_AT_FIRST) + players);
@@ -91,7 +98,7 @@ impl Billboards {
         if let Some(figure) = &mut self.figure {
             figure.heading = viewer.camera.heading;
         }
-        self.sights.look(scene, images, veils);
+        self.sights.look(scene, images.len(), &notes.legs);
         for (index, &unfolding) in images.iter().enumerate() {
             let start = self.list.len();
             for &thing in self.sights.things(index, world) {
@@ -104,31 +111,55 @@ impl Billboards {
             self.list[start..].sort_unstable_by(from_near_to_far);
             self.of_image.push(start..self.list.len());
         }
+        self.is_covered.clear();
+        self.is_covered.resize(scene.projection.columns(), false);
+        for billboard in &self.list {
+            let Range { start, end } = billboard.columns;
+            self.is_covered[start as usize..end as usize].fill(true);
+        }
     }
 
-    /// Draws those in a part of a ray, from far to near.
-    pub(super) fn draw<T: Tally>(
+    /// Cuts out what shows in a part of a ray, from far to near.
+    pub(super) fn cut(
         &mut self,
-        scene: Scene<'_>,
+        (scene, profiles): (Scene<'_>, &Profiles),
         between: &Between,
+        mut cut_out: impl FnMut(Strip),
+    ) {
+        if !self.is_covered[between.column as usize] {
+            return;
+        }
+        let Reflection(image) = between.reflection;
+        let of_image = self.of_image[usize::from(image)].clone();
+        let first = of_image.start;
+        let list = &mut self.list[of_image];
+        let start = list.partition_point(|it| it.depth < between.from);
+        let end = list.partition_point(|it| it.depth < between.to).max(start);
+        for (index, billboard) in list.iter_mut().enumerate().take(end).skip(start).rev() {
+            let rows = billboard.rows_in(scene, profiles, between);
+            if !rows.is_empty() {
+                billboard.is_drawn = true;
+                cut_out(Strip { column: between.column, rows, billboard: first + index });
+            }
+        }
+    }
+
+    /// Draws what shows in one column.
+    pub(super) fn draw<T: Tally>(
+        &self,
+        scene: Scene<'_>,
+        strip: &Strip,
         marks: &mut MarksOfBand<'_>,
         band: &mut Band<'_>,
         tally: &mut T,
     ) {
-        let Reflection(image) = between.reflection;
-        let list = &mut self.list[self.of_image[usize::from(image)].clone()];
-        let start = list.partition_point(|it| it.depth < between.from);
-        let end = list.partition_point(|it| it.depth < between.to);
-        for billboard in list[start..end.max(start)].iter_mut().rev() {
-            if billboard.columns.contains(&between.column) {
-                let sprite = match billboard.sprite {
-                    Some(id) => Some(scene.world.sprite(id)),
-                    None => self.figure.as_ref(),
-                };
-                if let Some(sprite) = sprite {
-                    billboard.draw(scene, sprite, between, marks, band, tally);
-                }
-            }
+        let billboard = &self.list[strip.billboard];
+        let sprite = match billboard.sprite {
+            Some(id) => Some(scene.world.sprite(id)),
+            None => self.figure.as_ref(),
+        };
+        if let Some(sprite) = sprite {
+            billboard.draw(sprite, strip, marks, band, tally);
         }
     }
 
@@ -221,27 +252,32 @@ impl Billboard {
         })
     }
 
+    /// The rows in which it shows in a part of a ray.
+    fn rows_in(&self, scene: Scene<'_>, profiles: &Profiles, between: &Between) -> Range<u32> {
+        if !self.columns.contains(&between.column) {
+            return 0..0;
+        }
+        let projection = scene.projection;
+        let own = projection.rows_between(self.top, self.bottom);
+        let slot = profiles.slot(between.slot);
+        let top = slot.row_of_top(projection, self.depth);
+        let bottom = slot.row_of_bottom(projection, self.depth);
+        let start = own.start.max(between.rows.start).max(top);
+        start..own.end.min(between.rows.end).min(bottom)
+    }
+
     fn draw<T: Tally>(
-        &mut self,
-        scene: Scene<'_>,
+        &self,
         sprite: &Sprite,
-        between: &Between,
+        strip: &Strip,
         marks: &mut MarksOfBand<'_>,
         band: &mut Band<'_>,
         tally: &mut T,
     ) {
-        let projection = scene.projection;
-        let own = projection.rows_between(self.top, self.bottom);
-        let Gap { bottom, top } = between.gap;
-        let in_gap = rows_between(projection, &between.rows, bottom, top, self.depth);
-        let rows = own.start.max(in_gap.start)..own.end.min(in_gap.end);
-        if rows.is_empty() {
-            return;
-        }
-        self.is_drawn = true;
+        let rows = band.clip(&strip.rows);
         tally.pixels(Pass::Things, rows.len());
         tally.texels(Pass::Things, rows.len());
-        let u = (f64::from(between.column) + 0.5 - self.left) / self.width;
+        let u = (f64::from(strip.column) + 0.5 - self.left) / self.width;
         let u = if self.is_mirrored { 1.0 - u } else { u };
         let level = sprite.pictures()[self.picture].level(self.halvings);
         let (texels, alphas) = (level.column(u), level.alpha_column(u));
@@ -251,7 +287,7 @@ impl Billboard {
             (texel as usize).min(texels.len() - 1)
         };
         let alpha = |texel: usize| alphas.map_or(u8::MAX, |alphas| alphas[texel]);
-        let pixels = band.column_mut(between.column, rows.clone());
+        let pixels = band.column_mut(strip.column, rows.clone());
         for (row, pixel) in rows.clone().zip(pixels) {
             let texel = texel(row);
             *pixel = match alpha(texel) {
@@ -261,6 +297,6 @@ impl Billboard {
             };
         }
         let shown = rows.clone().map(|row| alpha(texel(row)) > u8::MAX / 2);
-        marks.note(between.column as usize, rows.start, Surface::Thing, shown);
+        marks.note(strip.column as usize, rows.start, Surface::Thing, shown);
     }
 }

@@ -1,22 +1,22 @@
-//! The last pass: what is seen through, over what is seen behind it, and tints over mirror images.
+//! Veils: what a ray passes on its way, masks and glass, the tints of mirrors, and things.
 
 use std::ops::Range;
 
 use super::Scene;
 use super::faces::{Facing, Stretch};
-use super::things::{Between, Billboards};
+use super::things::Between;
 use crate::cast::Side;
 use crate::render::Surface;
 use crate::render::band::Band;
 use crate::render::marks::MarksOfBand;
 use crate::render::shade::{Faded, Shade};
-use crate::render::tally::{Pass, Tally};
 use crate::world::{Glass, Light, TextureId};
 
-/// What is painted over what is behind it, as wide as a pixel.
+/// What a ray passes.
 #[derive(Clone, Debug)]
 pub(super) enum Veil {
-    Pane(Pane),
+    /// Which of all panes.
+    Pane(usize),
     /// The things in a part of the ray.
     Things(Between),
 }
@@ -43,47 +43,14 @@ pub(super) enum Film {
     Glass(Glass),
 }
 
-/// Draws all of `veils`, the last ones first: in a column they are further away.
-pub(super) fn draw<T: Tally>(
-    scene: Scene<'_>,
-    veils: &[Veil],
-    billboards: &mut Billboards,
-    marks: &mut MarksOfBand<'_>,
-    band: &mut Band<'_>,
-    tally: &mut T,
-) {
-    for veil in veils.iter().rev() {
-        match veil {
-            Veil::Pane(pane) => pane.draw(scene, marks, band, tally),
-            Veil::Things(between) => billboards.draw(scene, between, marks, band, tally),
-        }
-    }
-}
-
 impl Pane {
-    fn draw<T: Tally>(
-        &self,
-        scene: Scene<'_>,
-        marks: &mut MarksOfBand<'_>,
-        band: &mut Band<'_>,
-        tally: &mut T,
-    ) {
-        tally.pixels(Pass::SeeThrough, self.rows.len());
-        let shade = self.facing.shade(scene, self.light, self.t);
-        match self.film {
-            Film::Mask(texture) => {
-                tally.texels(Pass::SeeThrough, self.rows.len());
-                self.draw_mask(scene, texture, shade, marks, band);
-            }
-            Film::Glass(glass) => self.draw_glass(glass, shade, band),
-        }
-    }
-
-    fn draw_mask(
+    /// Draws what a mask of that `texture` shows in `rows`.
+    pub(super) fn draw_mask(
         &self,
         scene: Scene<'_>,
         texture: TextureId,
         shade: Faded,
+        rows: Range<u32>,
         marks: &mut MarksOfBand<'_>,
         band: &mut Band<'_>,
     ) {
@@ -92,8 +59,8 @@ impl Pane {
         let Some(alphas) = level.alpha_column(self.u) else { return };
         let Stretch { bottom, top } = self.stretch;
         let texels_down = scene.projection.texels_down_the_face(self.t, texels.len(), bottom, top);
-        let pixels = band.column_mut(self.column, self.rows.clone());
-        for (row, pixel) in self.rows.clone().zip(pixels) {
+        let pixels = band.column_mut(self.column, rows.clone());
+        for (row, pixel) in rows.clone().zip(pixels) {
             let texel = texels_down.at(row);
             *pixel = shade.apply(texels[texel]).over(*pixel, alphas[texel]);
         }
@@ -102,14 +69,6 @@ impl Pane {
             Facing::Side(Side::X) | Facing::Normal(_) => Surface::WallX,
         };
         let is_shown = |row| alphas[texels_down.at(row)] > u8::MAX / 2;
-        let shown = self.rows.clone().map(is_shown);
-        marks.note(self.column as usize, self.rows.start, surface, shown);
-    }
-
-    fn draw_glass(&self, glass: Glass, shade: Faded, band: &mut Band<'_>) {
-        let tint = shade.apply(glass.color);
-        for pixel in band.column_mut(self.column, self.rows.clone()) {
-            *pixel = tint.over(*pixel, glass.opacity);
-        }
+        marks.note(self.column as usize, rows.start, surface, rows.map(is_shown));
     }
 }
