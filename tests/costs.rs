@@ -35,7 +35,8 @@ fn a_flat_scene_reads_texels_for_its_walls_alone() {
     assert!(matches!(plan.ceiling, CeilingLoop::Laid(PlaneLoop::Fill(_))));
     assert_eq!((counts.floor.texels, counts.ceiling.texels, counts.sky.pixels), (0, 0, 0));
     assert_eq!(counts.walls.texels, counts.walls.pixels);
-    assert_eq!(counts.rays, u64::from(WIDTH));
+    // What goes between two that hit the same face need not be cast.
+    assert!((2..u64::from(WIDTH) / 2).contains(&counts.rays));
     // Two fills of half the picture each, and the walls over them.
     assert_eq!(counts.floor.pixels + counts.ceiling.pixels, PIXELS);
     assert_eq!(counts.overwritten, counts.walls.pixels);
@@ -82,7 +83,7 @@ fn what_cannot_be_seen_through_keeps_one_hit_a_column() {
         let camera = world.start_camera(FieldOfView::default());
         let mut renderer = Renderer::new();
         let counts = renderer.explain(&world, &camera, &mut frame()).counts;
-        assert_eq!((counts.see_through, counts.rays), (PassCounts::default(), WIDTH.into()));
+        assert_eq!(counts.see_through, PassCounts::default());
         assert_eq!(renderer.columns().len(), WIDTH as usize, "{name}");
     }
 }
@@ -97,7 +98,9 @@ fn a_still_door_costs_what_a_wall_does() {
         map::parse_str(&text).unwrap()
     };
     let [door, wall] = ["door", "wall"].map(|tile| explained(&map(tile)).counts);
-    assert_eq!((door.rays, door.see_through), (wall.rays, wall.see_through));
+    // What may be a leaf is cast anew, column by column, when all around it is known.
+    assert!(door.rays <= wall.rays + u64::from(WIDTH));
+    assert_eq!(door.see_through, wall.see_through);
     assert_eq!(door.walls.texels, door.walls.pixels);
     // It stands half a cell further back, and so shows a little less of itself.
     assert!(door.walls.pixels <= wall.walls.pixels && door.pixels() <= wall.pixels());

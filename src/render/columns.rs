@@ -1,7 +1,8 @@
 //! The first pass: one ray for every column of pixels.
 //!
-//! Among walls, few of them are cast: from the ends of the picture to its middle, and on in each half,
-//! until two rays hit the same face. What goes between two such rays hits that face, too.
+//! Few of them are cast: from the ends of the picture to its middle, and on in each half, until two rays
+//! hit the same face of a wall. What goes between two such rays hits that face, too. Where they hit what
+//! may be passed, all are cast anew, and told what it is.
 
 use std::ops::Range;
 
@@ -10,7 +11,7 @@ use glam::DVec2;
 use super::Projection;
 use super::see_through::Passed;
 use crate::cast::{Caster, Hit, Ray, Side};
-use crate::world::{Grid, World};
+use crate::world::{Cell, Grid, TileKind, World};
 
 /// What the ray of one column of pixels met.
 #[derive(Clone, Debug, PartialEq)]
@@ -89,21 +90,50 @@ pub(super) fn cast<C: Caster>(
     passed: &mut Passed,
 ) {
     passed.clear();
-    if world.is_of_walls() && projection.fans_out() {
-        let nothing = Column { hit: None, distance: 0.0, rows: 0..0 };
-        columns.resize(projection.columns(), nothing);
-        Fan { caster, grid: world.grid(), projection }.cast(columns);
-        return;
-    }
-    passed.make_room_for(projection.columns());
-    columns.clear();
-    columns.extend(projection.rays().enumerate().map(|(index, ray)| {
+    let cast_through = |index: usize, passed: &mut Passed| {
+        let ray = projection.ray(index as u32);
         let hit = caster.cast_through(world, &ray, |hit| passed.push(index, hit));
         Column::new(world.grid(), projection, &ray, hit)
-    }));
+    };
+    if !world.is_of_walls() {
+        passed.make_room_for(projection.columns());
+    }
+    if projection.fans_out() && !stands_in_what_may_be_hit(world, projection.origin()) {
+        columns.resize(projection.columns(), NOTHING);
+        Fan { caster, grid: world.grid(), projection }.cast(columns);
+        if !world.is_of_walls() {
+            for (index, column) in columns.iter_mut().enumerate() {
+                if column.hit.as_ref().is_some_and(|hit| may_be_passed(world, hit.cell)) {
+                    *column = cast_through(index, passed);
+                }
+            }
+        }
+    } else {
+        columns.clear();
+        columns.extend((0..projection.columns()).map(|index| cast_through(index, passed)));
+    }
 }
 
-/// The rays of a picture in a map of walls.
+/// Whether `cell`, which is solid, is no wall.
+fn may_be_passed(world: &World, cell: Cell) -> bool {
+    let tile = world.grid().tile(cell.column.into(), cell.row.into());
+    tile.is_some_and(|tile| !matches!(world.tile(tile).kind, TileKind::Wall(_)))
+}
+
+/// Whether `place` is in a cell of something that a ray may hit without entering a cell, or on its edge.
+fn stands_in_what_may_be_hit(world: &World, place: DVec2) -> bool {
+    let around = |along: f64| [along.floor() as i64, along.ceil() as i64 - 1];
+    let cells = around(place.x).map(|column| around(place.y).map(|row| (column, row)));
+    cells.as_flattened().iter().any(|&(column, row)| {
+        let tile = world.grid().tile(column, row);
+        let kind = tile.map(|tile| world.tile(tile).kind);
+        matches!(kind, Some(TileKind::Door(_) | TileKind::Shape(_)))
+    })
+}
+
+const NOTHING: Column = Column { hit: None, distance: 0.0, rows: 0..0 };
+
+/// The rays of a picture, to which all that is solid is a wall.
 struct Fan<'a, C> {
     caster: &'a C,
     grid: &'a Grid,
@@ -175,32 +205,63 @@ mod tests {
     use crate::render::{FrameSize, PixelAspect};
     use crate::world::{Camera, FieldOfView, Heading};
 
-    const SIDE: u32 = 12;
+    const SIDE: usize = 12;
+    /// Floor and walls, and what may be passed.
+    const TILES: &[u8] = b".#+%~o/";
 
-    /// A map of cells that are solid or not, and a start in the middle.
-    fn world(cells: &[bool]) -> World {
-        let rows = cells.chunks(SIDE as usize).map(|row| {
-            let row = row.iter().map(|&is_solid| if is_solid { '#' } else { '.' });
-            row.chain(['\n']).collect::<String>()
-        });
-        let mut grid = rows.collect::<String>();
-        let middle = (SIDE / 2 * (SIDE + 1) + SIDE / 2) as usize;
-        grid.replace_range(middle..=middle, "@");
-        let tiles = "[tiles]\n'#'.wall = 'brick'\n[things]\n'@'.start = 0";
-        map::parse_str(&format!("grid = '''\n{grid}'''\n{tiles}")).unwrap()
+    /// A map of those, and a start in the middle.
+    fn world(cells: &[u8]) -> World {
+        let mut cells = cells.to_vec();
+        hang_doors(&mut cells);
+        let rows: Vec<_> = cells.chunks(SIDE).map(String::from_utf8_lossy).collect();
+        let grid = rows.join("\n");
+        let text = format!(
+            "grid = \"\"\"\n{grid}\n\"\"\"
+            [tiles]
+            '#'.wall = 'brick'
+            '+'.door = 'oak'
+            '%'.mask = 'grate'
+            '~'.glass = '#406080'
+            'o' = {{ pillar = 'stone', radius = 0.3 }}
+            '/' = {{ diagonal = 'stone', from = 'south-west' }}
+            [things]
+            '@'.start = 0"
+        );
+        map::parse_str(&text).unwrap()
+    }
+
+    /// Puts a wall on either side of each door and floor before and behind it, or it away where another one
+    /// needs the place; and the start.
+    fn hang_doors(cells: &mut [u8]) {
+        let is_inside = |place: usize| {
+            [place % SIDE, place / SIDE].iter().all(|along| (1..SIDE - 1).contains(along))
+        };
+        let around = |place| [place - 1, place + 1, place - SIDE, place + SIDE];
+        for place in (0..cells.len()).filter(|&place| is_inside(place)) {
+            if cells[place] == b'+' {
+                around(place).into_iter().zip(*b"##..").for_each(|(at, tile)| cells[at] = tile);
+            }
+        }
+        cells[SIDE / 2 * SIDE + SIDE / 2] = b'@';
+        for place in 0..cells.len() {
+            let hangs = || around(place).map(|at| cells[at]) == *b"##..";
+            if cells[place] == b'+' && !(is_inside(place) && hangs()) {
+                cells[place] = b'.';
+            }
+        }
     }
 
     /// Anywhere on the map or near it, and on lines between cells.
     fn place() -> impl Strategy<Value = f64> {
-        let line = (0..=SIDE).prop_map(f64::from);
-        prop_oneof![2 => -2.0..f64::from(SIDE) + 2.0, 1 => line]
+        let line = (0..=SIDE).prop_map(|line| line as f64);
+        prop_oneof![2 => -2.0..SIDE as f64 + 2.0, 1 => line]
     }
 
     proptest! {
         #[test]
         fn few_rays_tell_what_all_of_them_hit(
-            solid in 0.0..0.6,
-            cells in prop::collection::vec(0.0..1.0, (SIDE * SIDE) as usize),
+            (floor, walls) in (0.3..1.0, 0.0..1.0),
+            cells in prop::collection::vec(0.0..1.0, SIDE * SIDE),
             position in (place(), place()),
             degrees in prop_oneof![
                 0.0..360.0,
@@ -209,7 +270,13 @@ mod tests {
             field_of_view in prop_oneof![Just(66.0), 0.001..179.9],
             width in 1_u32..300,
         ) {
-            let world = world(&cells.iter().map(|&cell| cell < solid).collect::<Vec<_>>());
+            let walls = floor + (1.0 - floor) * walls;
+            let tile = |cell: f64| match cell {
+                _ if cell < floor => b'.',
+                _ if cell < walls => b'#',
+                _ => TILES[2 + ((cell - walls) / (1.0 - walls) * 5.0) as usize],
+            };
+            let world = world(&cells.into_iter().map(tile).collect::<Vec<_>>());
             let camera = Camera::new(
                 position.into(),
                 Heading::from_degrees(degrees).unwrap(),
@@ -220,9 +287,14 @@ mod tests {
             let projection = Projection::new(&camera, size, PixelAspect::SQUARE);
             let (mut columns, mut passed) = (Vec::new(), Passed::default());
             cast(&Exact, &world, &projection, &mut columns, &mut passed);
+            let mut expected_passed = Passed::default();
+            let expected = projection.rays().enumerate().map(|(index, ray)| {
+                Exact.cast_through(&world, &ray, |hit| expected_passed.push(index, hit))
+            });
+            let expected: Vec<_> = expected.collect();
             let hits: Vec<_> = columns.into_iter().map(|column| column.hit).collect();
-            let rays = projection.rays();
-            prop_assert_eq!(hits, rays.map(|ray| Exact.cast(world.grid(), &ray)).collect::<Vec<_>>());
+            prop_assert_eq!(hits, expected);
+            prop_assert_eq!(passed, expected_passed);
         }
     }
 }

@@ -19,7 +19,7 @@ use crate::cast::{Hit, Side};
 use crate::world::{Glass, TextureId, TileKind};
 
 /// What all rays of a frame passed.
-#[derive(Clone, Debug, Default)]
+#[derive(Clone, Debug, Default, PartialEq)]
 pub(super) struct Passed {
     list: Vec<(usize, Hit)>,
 }
