@@ -29,7 +29,6 @@ pub(super) struct Notes {
     pub(super) panes: Vec<Pane>,
     /// Where things may be in view.
     pub(super) legs: Vec<Leg>,
-
     /// Where what is seen is on the map: first as it is, and then in mirrors.
     pub(super) images: Vec<Unfolding>,
     pub(super) counts: WindowCounts,
@@ -76,7 +75,6 @@ impl Notes {
         self.panes.reserve(width * OF_A_RAY);
         self.legs.clear();
         self.legs.reserve(width * OF_A_RAY);
-
         self.images.clear();
         self.images.reserve(IMAGES_AT_ONCE);
         self.images.push(Unfolding::default());
