@@ -43,6 +43,8 @@ impl Letter {
 impl Number {
     /// The number of a space without modifiers, in every alphabet.
     pub(super) const SPACE: Self = Self(0);
+    /// That of an upper half block, likewise.
+    pub(super) const UPPER_HALF: Self = Self(1);
     /// So many letters have a number.
     pub(super) const COUNT: u16 = 4000;
 
@@ -79,8 +81,9 @@ impl Alphabet {
 impl Default for Alphabet {
     fn default() -> Self {
         let mut alphabet = Self { letters: Vec::new(), numbers: BTreeMap::new() };
-        let space = alphabet.number(Letter::new(' ', Modifier::empty()));
-        debug_assert_eq!(space, Some(Number::SPACE));
+        let mut number = |letter| alphabet.number(Letter::new(letter, Modifier::empty()));
+        let numbers = [' ', '▀'].map(&mut number);
+        debug_assert_eq!(numbers, [Some(Number::SPACE), Some(Number::UPPER_HALF)]);
         alphabet
     }
 }
@@ -92,7 +95,10 @@ mod tests {
     #[test]
     fn letters_have_numbers_until_there_are_no_more() {
         let mut alphabet = Alphabet::default();
-        let letters = || (' '..).map(|character| Letter::new(character, Modifier::empty()));
+        // A half block has one from the start.
+        let letters = || {
+            std::iter::once('▀').chain(' '..).map(|letter| Letter::new(letter, Modifier::empty()))
+        };
         let numbers: Vec<_> =
             letters().take(Number::COUNT.into()).map(|letter| alphabet.number(letter)).collect();
         for (letter, number) in letters().zip(&numbers) {

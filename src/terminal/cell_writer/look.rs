@@ -108,9 +108,12 @@ impl Look {
 
     /// What two colours look like, the first above the second.
     #[inline]
-    pub(super) fn of_colors(colors: [Color; 2], alphabet: &mut Alphabet) -> Self {
-        let [top, bottom] = colors.map(Shade::of);
-        Self::of_glyph(Glyph::Upper, Style::plain(top, bottom), alphabet)
+    pub(super) fn of_colors(colors: [Color; 2]) -> Self {
+        let shades = colors.map(Shade::of);
+        match halves(Glyph::Upper, Style::plain(shades[0], shades[1])) {
+            Some(halves) => Self::of_halves(halves),
+            None => Self::of_text(Number::UPPER_HALF, shades),
+        }
     }
 
     /// What two pixels look like, the first above the second.

@@ -148,12 +148,12 @@ impl Screen {
         }
     }
 
-    /// The cells from `(x, y)` to the right, none off the screen; and what characters they may have.
+    /// The cells from `(x, y)` to the right; none off the screen.
     #[inline]
-    fn looks_from(&mut self, x: u16, y: u16) -> (&mut [Look], &mut Alphabet) {
+    fn looks_from(&mut self, x: u16, y: u16) -> &mut [Look] {
         let row = usize::from(y) * self.width;
         let cells = row + usize::from(x).min(self.width)..row + self.width;
-        (self.looks.get_mut(cells).unwrap_or_default(), &mut self.alphabet)
+        self.looks.get_mut(cells).unwrap_or_default()
     }
 
     /// Whether anything was wanted since the rows were drawn.
@@ -207,24 +207,21 @@ impl Canvas for Screen {
 
     #[inline]
     fn draw_halves(&mut self, x: u16, y: u16, row: impl Iterator<Item = [Color; 2]>) {
-        let (looks, alphabet) = self.looks_from(x, y);
-        for (look, halves) in looks.iter_mut().zip(row) {
-            *look = Look::of_colors(halves, alphabet);
+        for (look, halves) in self.looks_from(x, y).iter_mut().zip(row) {
+            *look = Look::of_colors(halves);
         }
     }
 
     #[inline]
     fn draw_pixels(&mut self, x: u16, y: u16, row: impl Iterator<Item = [Rgb; 2]>) {
-        let (looks, _) = self.looks_from(x, y);
-        for (look, pixels) in looks.iter_mut().zip(row) {
+        for (look, pixels) in self.looks_from(x, y).iter_mut().zip(row) {
             *look = Look::of_pixels(pixels);
         }
     }
 
     fn draw_character(&mut self, x: u16, y: u16, character: char, colors: [Color; 2]) {
         let look = Look::of_character(character, colors, &mut self.alphabet);
-        let (looks, _) = self.looks_from(x, y);
-        let Some(place) = looks.first_mut() else { return };
+        let Some(place) = self.looks_from(x, y).first_mut() else { return };
         *place = look;
         if look.is_intricate() {
             let mut cell = Cell::EMPTY;

@@ -419,10 +419,14 @@ fn more_letters_than_have_numbers_are_shown() {
         buffer.content.rotate_left(5);
     }
     let writer = terminal.backend_mut();
-    writer.draw_frame(|screen| screen.draw_character(1, 0, 'λ', [Color::Red, Color::White]));
+    writer.draw_frame(|screen| {
+        screen.draw_character(1, 0, 'λ', [Color::Red, Color::White]);
+        screen.draw_halves(1, 1, std::iter::once([Color::Red, Color::Reset]));
+    });
     writer.flush().unwrap();
     let mut expected = Buffer::empty(size.into());
     expected[(1, 0)] = colored("λ", Color::Red, Color::White);
+    expected[(1, 1)] = colored("▀", Color::Red, Color::Reset);
     assert_shown(&screen, &expected);
 }
 
