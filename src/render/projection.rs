@@ -140,6 +140,12 @@ impl Projection {
         self.first_row_below(self.horizon - rise / t)
     }
 
+    /// The same of what is at `height`: where it is asked for once.
+    #[inline]
+    pub(super) fn row_of_height(&self, height: f64, t: f64) -> u32 {
+        self.row_of(self.rise_to(height), t)
+    }
+
     /// The texels of a wall at distance `t`, `count` from its top to its bottom.
     pub(super) fn texels_down_the_wall(&self, t: f64, count: usize) -> TexelsDown {
         let height_of_row = t / self.focal_length;

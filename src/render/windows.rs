@@ -14,6 +14,7 @@
 //! at once while its column is followed was refused: by rows its shade and its distance are found once for
 //! many pixels.
 
+mod blocks;
 mod faces;
 mod layers;
 mod lines;
@@ -154,7 +155,7 @@ impl<'a> Scene<'a> {
     /// The part of `window` that shows what is between two heights at distance `t`.
     fn rows_between(self, window: &Range<u32>, stretch: Stretch, t: f64) -> Range<u32> {
         let Stretch { bottom, top } = stretch;
-        let row_of = |height| self.projection.row_of(self.projection.rise_to(height), t);
+        let row_of = |height| self.projection.row_of_height(height, t);
         window.start.max(row_of(top))..window.end.min(row_of(bottom))
     }
 

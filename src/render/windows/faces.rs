@@ -5,6 +5,7 @@ use std::ops::Range;
 use glam::DVec2;
 
 use super::Scene;
+use super::blocks::by_columns;
 use crate::cast::Side;
 use crate::render::band::Band;
 use crate::render::coat::{COLUMNS_AT_ONCE, Coats, Wardrobe};
@@ -74,12 +75,8 @@ fn draw_shaded<'a, S: Shade, T: Tally>(
     tally: &mut T,
     shade: impl Fn(&Face) -> S,
 ) {
-    let block_of = |face: &Face| face.column as usize / COLUMNS_AT_ONCE;
-    for block in faces.chunk_by(|one, other| block_of(one) == block_of(other)) {
-        let mut columns: [&[Face]; COLUMNS_AT_ONCE] = [&[]; COLUMNS_AT_ONCE];
-        for column in block.chunk_by(|one, other| one.column == other.column) {
-            columns[column[0].column as usize % COLUMNS_AT_ONCE] = column;
-        }
+    let blocks = by_columns::<COLUMNS_AT_ONCE, _>(faces, |face| face.column as usize);
+    for mut columns in blocks {
         while columns.iter().any(|column| !column.is_empty()) {
             for face in columns.iter_mut().filter_map(|column| column.split_off_first()) {
                 let rows = coats.clip(&face.rows);

@@ -8,6 +8,7 @@
 use std::ops::Range;
 
 use super::Scene;
+use super::blocks::by_columns;
 use super::notes::Notes;
 use super::profile::Profiles;
 use super::things::{Billboards, Strip};
@@ -68,12 +69,7 @@ impl Painter<'_> {
             Layer::Pane(index) => self.panes[*index].column as usize,
             Layer::Thing(strip) => strip.column as usize,
         };
-        let block_of = |layer: &Layer| column_of(layer) / COLUMNS_AT_ONCE;
-        for block in layers.chunk_by(|one, other| block_of(one) == block_of(other)) {
-            let mut columns: [&[Layer]; COLUMNS_AT_ONCE] = [&[]; COLUMNS_AT_ONCE];
-            for column in block.chunk_by(|one, other| column_of(one) == column_of(other)) {
-                columns[column_of(&column[0]) % COLUMNS_AT_ONCE] = column;
-            }
+        for mut columns in by_columns::<COLUMNS_AT_ONCE, _>(layers, column_of) {
             while columns.iter().any(|column| !column.is_empty()) {
                 let tints = columns
                     .each_mut()

@@ -87,7 +87,7 @@ impl<'a> Look<'a> {
         }
         self.notes.end_column(self.height);
         let Self { scene, hit, distance, .. } = self;
-        let row_of = |height| scene.projection.row_of(scene.projection.rise_to(height), distance);
+        let row_of = |height| scene.projection.row_of_height(height, distance);
         Column { hit, distance, rows: row_of(1.0)..row_of(0.0) }
     }
 

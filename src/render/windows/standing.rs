@@ -52,7 +52,7 @@ impl Look<'_> {
         let met = Met { side: hit.side, facing, slope, t: hit.t, u: hit.u, before };
         let stretch = Stretch { bottom, top };
         let rows = self.scene.rows_between(&branch.window, stretch, hit.t);
-        let above = self.scene.projection.row_of(self.scene.projection.rise_to(top), hit.t);
+        let above = self.scene.projection.row_of_height(top, hit.t);
         branch.window.end = branch.window.end.min(above);
         let light = self.light(branch.place, &met);
         self.face(rows, &met, paint, light, stretch);
@@ -71,8 +71,7 @@ impl Look<'_> {
         let tile = branch.place.map(|(_, tile)| tile);
         let piece = Piece { tile, part: Part::Top, reflection: branch.reflection };
         let Range { start, end: bottom } = branch.window;
-        let projection = self.scene.projection;
-        let row = projection.row_of(projection.rise_to(top), end).clamp(start, bottom);
+        let row = self.scene.projection.row_of_height(top, end).clamp(start, bottom);
         self.notes.show(row..bottom, Shown::Plane(piece));
         branch.window = start..row;
     }
