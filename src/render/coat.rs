@@ -82,8 +82,7 @@ impl<'m, 'b, 'a, S: Shade> Coats<'m, 'b, 'a, S> {
             _ => self.wardrobe.papers.make(texels, |texel| shade.apply(texel)),
         };
         self.latest = Some((texels, shade, paper));
-        let (place, step) = paper.down(down, rows.start);
-        self.wardrobe.coats.push(Coat { x, rows, place, step });
+        self.put_up(x, rows, paper, down);
     }
 
     /// Covers `rows` of column `x` with `texels` of a face that may show them again and again, or only some of
@@ -106,6 +105,12 @@ impl<'m, 'b, 'a, S: Shade> Coats<'m, 'b, 'a, S> {
         let first = places.start;
         let pieces = down.pieces(texels, places);
         let paper = self.wardrobe.papers.make_of_pieces(first, pieces, |texel| shade.apply(texel));
+        self.put_up(x, rows, paper, down);
+    }
+
+    /// Has `paper` cover `rows` of column `x`.
+    #[inline]
+    fn put_up(&mut self, x: u32, rows: Range<u32>, paper: Paper, down: TexelsDown) {
         let (place, step) = paper.down(down, rows.start);
         self.wardrobe.coats.push(Coat { x, rows, place, step });
     }

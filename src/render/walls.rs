@@ -168,11 +168,7 @@ impl<'a> Strip<'_, 'a> {
     /// The level of a texture that suits the distance.
     #[inline]
     fn level(&self, id: TextureId) -> &'a Level {
-        let Scene { world, projection, filter, .. } = self.scene;
-        let texture = world.texture(id);
-        let texels = f64::from(texture.width()) * f64::from(texture.height());
-        let area = projection.pixel_area_on_wall(self.hit.t, self.across());
-        texture.level(filter.halvings(area * texels))
+        level(self.scene, self.hit.t, self.across(), id)
     }
 
     /// What becomes of its colours.
@@ -213,7 +209,18 @@ pub(super) fn light_of(scene: Scene<'_>, x: u32, hit: &Hit) -> Light {
     Face::new(scene, x, hit).light
 }
 
-/// The level of the texture `id` that suits what the ray of column `x` hit.
-pub(super) fn level_of<'a>(scene: Scene<'a>, x: u32, hit: &'a Hit, id: TextureId) -> &'a Level {
-    Strip { scene, x, hit, face: &Face::new(scene, x, hit) }.level(id)
+/// The level of the texture `id` that suits the side of a cube that the ray of column `x` hit.
+pub(super) fn level_of<'a>(scene: Scene<'a>, x: u32, hit: &Hit, id: TextureId) -> &'a Level {
+    level(scene, hit.t, across_line(hit.side, scene.projection.direction_of(x)), id)
+}
+
+/// The level of the texture `id` that suits the distance `t`, where that much of the ray's direction leads
+/// straight at it.
+#[inline]
+fn level(scene: Scene<'_>, t: f64, across: f64, id: TextureId) -> &Level {
+    let Scene { world, projection, filter, .. } = scene;
+    let texture = world.texture(id);
+    let texels = f64::from(texture.width()) * f64::from(texture.height());
+    let area = projection.pixel_area_on_wall(t, across);
+    texture.level(filter.halvings(area * texels))
 }
