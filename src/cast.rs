@@ -84,7 +84,8 @@ pub trait Caster {
     fn cast(&self, grid: &Grid, ray: &Ray) -> Option<Hit>;
 
     /// Whether all rays between two, far enough apart that rounding is nothing to it, hit the same side
-    /// of the same cell as both do: from one place, in a map of walls. Else each has to be cast.
+    /// of the same cell as both do: from one place, and as [`Caster::cast`] has it, to which all that is
+    /// solid is a wall. Else each has to be cast.
     fn follows_between(&self, left: &Hit, right: &Hit) -> bool {
         _ = (left, right);
         false

@@ -90,27 +90,29 @@ pub(super) fn cast<C: Caster>(
     passed: &mut Passed,
 ) {
     passed.clear();
+    let is_of_walls = world.is_of_walls();
+    if !is_of_walls {
+        passed.make_room_for(projection.columns());
+    }
     let cast_through = |index: usize, passed: &mut Passed| {
         let ray = projection.ray(index as u32);
         let hit = caster.cast_through(world, &ray, |hit| passed.push(index, hit));
         Column::new(world.grid(), projection, &ray, hit)
     };
-    if !world.is_of_walls() {
-        passed.make_room_for(projection.columns());
-    }
-    if projection.fans_out() && !stands_in_what_may_be_hit(world, projection.origin()) {
-        columns.resize(projection.columns(), NOTHING);
-        Fan { caster, grid: world.grid(), projection }.cast(columns);
-        if !world.is_of_walls() {
-            for (index, column) in columns.iter_mut().enumerate() {
-                if column.hit.as_ref().is_some_and(|hit| may_be_passed(world, hit.cell)) {
-                    *column = cast_through(index, passed);
-                }
-            }
-        }
-    } else {
+    if !projection.fans_out() || stands_in_what_may_be_hit(world, projection.origin()) {
         columns.clear();
         columns.extend((0..projection.columns()).map(|index| cast_through(index, passed)));
+        return;
+    }
+    columns.resize(projection.columns(), NOTHING);
+    Fan { caster, grid: world.grid(), projection }.cast(columns);
+    if is_of_walls {
+        return;
+    }
+    for (index, column) in columns.iter_mut().enumerate() {
+        if column.hit.as_ref().is_some_and(|hit| may_be_passed(world, hit.cell)) {
+            *column = cast_through(index, passed);
+        }
     }
 }
 

@@ -76,7 +76,8 @@ pub struct PassCounts {
 /// What a frame cost.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Default)]
 pub struct Counts {
-    /// Rays that were cast: at most one for each column of pixels.
+    /// Rays that were cast: at most one for each column of pixels, and another one where that may pass
+    /// what it hit.
     pub rays: u64,
     /// Cells that they entered, the ones that they hit included.
     pub cells: u64,
