@@ -10,9 +10,10 @@ mod asciicast;
 mod bench;
 mod cast;
 mod check;
+mod completions;
 mod error;
-mod help;
 mod level;
+mod manual;
 mod play;
 mod plot;
 mod recording;
@@ -22,6 +23,7 @@ mod snapshot;
 mod wire;
 
 use std::ffi::OsString;
+use std::io::{self, Write};
 use std::process::ExitCode;
 
 use arguments::Command;
@@ -39,8 +41,9 @@ pub fn run(arguments: impl IntoIterator<Item = OsString>) -> ExitCode {
 impl Command {
     fn run(self) -> Result<(), Error> {
         match self {
-            Self::Help => help::print(),
-            Self::Version => help::print_version(),
+            Self::Text(text) => print(&text),
+            Self::Completions(shell) => completions::run(shell),
+            Self::Manual => manual::run(),
             Self::Play(options) => play::run(options),
             Self::Snapshot(options) => snapshot::run(&options),
             Self::Cast(options) => cast::run(&options),
@@ -51,4 +54,8 @@ impl Command {
             Self::Wire(options) => wire::run(&options),
         }
     }
+}
+
+fn print(text: &str) -> Result<(), Error> {
+    io::stdout().write_all(text.as_bytes()).map_err(|error| Error::of_output(&error))
 }

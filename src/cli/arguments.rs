@@ -1,36 +1,53 @@
 //! The arguments: words to typed options, each mistake one sentence.
+//!
+//! Every subcommand is described once, by a [`Subcommand`]: parsing, help, completions and the manual
+//! page come from that. clap's derive was refused: what an option takes, for the sentences about
+//! mistakes, has no place in it.
 
+mod about;
 mod accuracy;
 mod bench;
 mod cast;
 mod check;
 mod generated;
+mod help;
+mod map;
+mod mistake;
+mod option;
+mod order;
 mod play;
 mod replay;
 mod snapshot;
 mod value;
 mod wire;
 
-use std::ffi::{OsStr, OsString};
+use std::ffi::OsString;
 
-use lexopt::{Arg, Parser};
+use clap::builder::{PossibleValuesParser, TypedValueParser};
+use clap::error::ErrorKind;
+use clap::{Arg, ArgAction, ArgMatches, ValueHint, value_parser};
+use clap_complete::Shell;
 
 pub(super) use self::accuracy::{Accuracy, ReportFormat};
 pub(super) use self::bench::{Bench, BenchFormat};
 pub(super) use self::cast::Cast;
 pub(super) use self::generated::Generated;
-pub(super) use self::play::Play;
+pub(super) use self::map::STANDARD_INPUT;
+pub(super) use self::play::{FidelityChoice, Play};
 pub(super) use self::replay::Replay;
 pub(super) use self::snapshot::{Format, Snapshot};
+pub(super) use self::value::Size;
 pub(super) use self::wire::{Wire, WireFormat};
+use self::option::Described;
 use super::Error;
-use crate::fault;
 
 /// What is asked for.
 #[derive(Debug)]
 pub(super) enum Command {
-    Help,
-    Version,
+    /// A text to print: help, or the version.
+    Text(String),
+    Completions(Shell),
+    Manual,
     Play(Play),
     Snapshot(Snapshot),
     Cast(Cast),
@@ -44,59 +61,164 @@ pub(super) enum Command {
 impl Command {
     /// What `arguments` ask for, the program's own name first.
     pub(super) fn parse(arguments: impl IntoIterator<Item = OsString>) -> Result<Self, Error> {
-        let arguments: Vec<OsString> = arguments.into_iter().skip(1).collect();
-        let (name, rest) = match arguments.split_first() {
-            Some((first, rest)) if is_command(first) => (first.to_str().unwrap_or_default(), rest),
-            _ => ("play", arguments.as_slice()),
-        };
-        let parser = Parser::from_args(rest);
-        match name {
-            "snapshot" => snapshot::parse(parser),
-            "cast" => cast::parse(parser),
-            "check" => check::parse(parser),
-            "accuracy" => accuracy::parse(parser),
-            "bench" => bench::parse(parser),
-            "replay" => replay::parse(parser),
-            "wire" => wire::parse(parser),
-            "help" => Ok(Self::Help),
-            _ => play::parse(parser),
+        let (words, subcommand) = order::subcommand_first(arguments.into_iter().collect());
+        let mut program = description();
+        let subcommand = subcommand.unwrap_or(&play::SUBCOMMAND);
+        match program.try_get_matches_from_mut(words) {
+            Ok(mut matches) => {
+                let matches = match matches.remove_subcommand() {
+                    Some((_, matches)) => matches,
+                    None => matches,
+                };
+                (subcommand.read)(matches)
+            }
+            Err(error) => match error.kind() {
+                ErrorKind::DisplayHelp | ErrorKind::DisplayVersion => {
+                    Ok(Self::Text(error.to_string()))
+                }
+                _ => Err(mistake::of(&error, subcommand)),
+            },
         }
     }
 }
 
-pub(super) const COMMANDS: [&str; 9] =
-    ["play", "snapshot", "cast", "check", "accuracy", "bench", "replay", "wire", "help"];
+/// The subcommands, in the order of the help.
+const SUBCOMMANDS: [&Subcommand; 11] = [
+    &play::SUBCOMMAND,
+    &snapshot::SUBCOMMAND,
+    &cast::SUBCOMMAND,
+    &check::SUBCOMMAND,
+    &accuracy::SUBCOMMAND,
+    &bench::SUBCOMMAND,
+    &replay::SUBCOMMAND,
+    &wire::SUBCOMMAND,
+    &about::COMPLETIONS,
+    &about::MAN,
+    &about::HELP,
+];
 
-fn is_command(argument: &OsStr) -> bool {
-    COMMANDS.iter().any(|&command| argument == command)
+/// A subcommand, and all that is said of it anywhere.
+struct Subcommand {
+    name: &'static str,
+    /// What it does, in a line.
+    about: &'static str,
+    /// More about that, for the long help; may be empty.
+    details: &'static str,
+    /// A command a line.
+    examples: &'static str,
+    positionals: &'static [Positional],
+    options: &'static [&'static dyn Described],
+    /// What it takes, to say so where a word is too many.
+    surplus: &'static str,
+    /// The sentence on what it can't do without; empty where it needs nothing.
+    missing: &'static str,
+    read: fn(ArgMatches) -> Result<Command, Error>,
 }
 
-/// The next argument.
-fn next(parser: &mut Parser) -> Result<Option<Arg<'_>>, Error> {
-    // What can go wrong here is a value for an option that takes none, such as `--help=yes`.
-    parser.next().map_err(|error| Error::mistake(error.to_string()))
+/// An argument that is no option.
+struct Positional {
+    name: &'static str,
+    help: &'static str,
+    is_required: bool,
+    action: ArgAction,
+    hint: ValueHint,
+    /// The values, where a list can name them all.
+    choices: &'static [&'static str],
 }
 
-/// The word after an option.
-fn word(parser: &mut Parser, name: &str, takes: &str) -> Result<OsString, Error> {
-    parser
-        .value()
-        .map_err(|_| Error::mistake(format!("{name} takes {takes}, and nothing follows it")))
+/// The names of the subcommands.
+pub(super) fn subcommand_names() -> impl Iterator<Item = &'static str> {
+    SUBCOMMANDS.iter().map(|subcommand| subcommand.name)
 }
 
-fn unexpected(command: &str, options: &[&str], argument: Arg<'_>) -> Error {
-    let help = "\"cellcaster --help\" lists what there is";
-    match argument {
-        Arg::Value(value) => Error::mistake(format!(
-            "{command} takes one map, and \"{}\" is one too many; {help}",
-            value.display()
-        )),
-        Arg::Short(letter) => Error::mistake(format!("{command} has no option -{letter}; {help}")),
-        Arg::Long(name) => {
-            let name = format!("--{name}");
-            let meant = fault::nearest(&name, options);
-            let hint = meant.map_or(help.to_owned(), |meant| format!("did you mean {meant}?"));
-            Error::mistake(format!("{command} has no option {name}; {hint}"))
+fn named(name: &str) -> Option<&'static Subcommand> {
+    SUBCOMMANDS.into_iter().find(|subcommand| subcommand.name == name)
+}
+
+/// The whole program, for clap.
+pub(super) fn description() -> clap::Command {
+    let play = &play::SUBCOMMAND;
+    clap::Command::new("cellcaster")
+        .about("A raycaster game in the terminal, and its pictures in scripts")
+        .long_about(help::ABOUT)
+        .after_help(help::WHERE_TO_READ_ON)
+        .after_long_help(help::more())
+        .version(env!("CARGO_PKG_VERSION"))
+        .args(play.arguments())
+        .arg(help_flag())
+        .arg(
+            Arg::new("version")
+                .short('V')
+                .long("version")
+                .help("Print the version")
+                .action(ArgAction::Version),
+        )
+        .subcommands(SUBCOMMANDS.into_iter().map(Subcommand::description))
+        .args_conflicts_with_subcommands(true)
+        .args_override_self(true)
+        .disable_help_flag(true)
+        .disable_version_flag(true)
+        .disable_help_subcommand(true)
+        .max_term_width(help::WIDTH)
+}
+
+fn help_flag() -> Arg {
+    Arg::new("help")
+        .short('h')
+        .long("help")
+        .help("Explain in brief (-h), or at length (--help)")
+        .action(ArgAction::Help)
+}
+
+impl Subcommand {
+    fn description(&self) -> clap::Command {
+        let command = clap::Command::new(self.name)
+            .about(self.about)
+            .args(self.arguments())
+            .arg(help_flag())
+            .args_override_self(true)
+            .disable_help_flag(true)
+            .after_long_help(help::examples(self));
+        match self.details {
+            "" => command,
+            details => command.long_about(format!("{}\n\n{details}", self.about)),
         }
+    }
+
+    fn arguments(&self) -> impl Iterator<Item = Arg> {
+        let positionals = self.positionals.iter().map(Positional::argument);
+        positionals.chain(self.options.iter().map(|option| option.argument()))
+    }
+
+    /// Whether it has an option `name`, which is without dashes.
+    fn has(&self, name: &str) -> bool {
+        self.options.iter().any(|option| option.name() == name)
+    }
+
+    /// The option of that name, dashes and all.
+    fn option(&self, name: &str) -> Option<&'static dyn Described> {
+        let name = name.strip_prefix("--")?;
+        self.options.iter().copied().find(|option| option.name() == name)
+    }
+}
+
+impl Positional {
+    fn argument(&self) -> Arg {
+        let argument = Arg::new(self.name)
+            .help(self.help)
+            .required(self.is_required)
+            .action(self.action.clone())
+            .value_hint(self.hint);
+        match self.choices {
+            [] => argument.value_parser(value_parser!(OsString)),
+            choices => {
+                argument.value_parser(PossibleValuesParser::new(choices).map(OsString::from))
+            }
+        }
+    }
+
+    /// The value that was given.
+    fn of(&self, matches: &mut ArgMatches) -> Option<OsString> {
+        matches.remove_one(self.name)
     }
 }

@@ -4,7 +4,7 @@ use std::ffi::OsStr;
 use std::path::Path;
 
 use super::Error;
-use super::arguments::{COMMANDS, Generated};
+use super::arguments::{Generated, subcommand_names};
 use crate::fault::nearest;
 use crate::game::Game;
 use crate::generate::{Site, Window};
@@ -84,6 +84,6 @@ fn builtin_level(name: &OsStr) -> Option<usize> {
 /// The command or built-in level that somebody may have meant by `name`.
 fn misspelt(name: &OsStr) -> Option<&'static str> {
     let levels = builtin::LEVELS.iter().map(|level| level.name);
-    let known: Vec<&str> = COMMANDS.into_iter().chain(levels).collect();
+    let known: Vec<&str> = subcommand_names().chain(levels).collect();
     nearest(name.to_str()?, &known)
 }

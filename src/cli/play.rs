@@ -7,7 +7,7 @@ use std::time::Duration;
 
 use etcetera::{BaseStrategy, choose_base_strategy};
 
-use super::arguments::Play;
+use super::arguments::{FidelityChoice, Play};
 use super::recording::RecordingFile;
 use super::{Error, level};
 use crate::tui::{self, Bindings, Settings};
@@ -17,14 +17,15 @@ pub(super) fn run(options: Play) -> Result<(), Error> {
     let levels = level::load_or_dig(options.map.as_deref(), options.generated)?;
     let settings = Settings {
         bindings: bindings(options.config)?,
-        frame_time: Duration::from_secs(1) / options.frames_per_second.get().get(),
-        field_of_view: options.field_of_view,
+        frame_time: Duration::from_secs(1)
+            / options.frames_per_second.unwrap_or_default().get().get(),
+        field_of_view: options.field_of_view.unwrap_or_default(),
         cell_aspect: options.cell_aspect,
-        glyphs: options.glyphs,
+        glyphs: options.glyphs.unwrap_or_default(),
         depth: options.depth,
-        method: options.method,
-        filter: options.filter,
-        fidelity: options.fidelity,
+        method: options.method.unwrap_or_default(),
+        filter: options.filter.unwrap_or_default(),
+        fidelity: options.fidelity.and_then(FidelityChoice::fixed),
         shows_stats: options.shows_stats,
     };
     let file = options.record.as_deref().map(RecordingFile::create).transpose()?;

@@ -108,7 +108,7 @@ fn output(picture: &mut dyn Picture, options: &Snapshot) -> io::Result<()> {
 }
 
 fn size(options: &Snapshot) -> Size {
-    Size::new(options.size.columns, options.size.rows)
+    options.size.unwrap_or_default().cells()
 }
 
 fn write(

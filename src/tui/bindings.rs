@@ -117,6 +117,15 @@ impl Bindings {
         Self::with_letters(&Letters { forward: 'z', strafe_left: 'q', leave: 'a' })
     }
 
+    /// Every action's keys, and what it does in a word or two, in the order of [`Action::ALL`].
+    #[cfg(feature = "cli")]
+    pub(crate) fn described(&self) -> impl Iterator<Item = (String, &'static str)> {
+        Action::ALL.into_iter().map(|(_, does, action)| {
+            let keys: Vec<String> = self.keys(action).map(|key| key.to_string()).collect();
+            (keys.join(" "), does)
+        })
+    }
+
     fn with_letters(letters: &Letters) -> Self {
         let keys = vec![
             (Key::Char(letters.forward), Action::Want(Intent::Forward)),

@@ -2,10 +2,10 @@
 
 use std::path::PathBuf;
 
-use lexopt::{Arg, Parser};
+use clap::ArgMatches;
 
-use super::value::Valued;
-use super::{Command, Error, next, unexpected, word};
+use super::option::{FileOption, Read, Valued};
+use super::{Command, Error, Subcommand};
 
 /// Options of `bench`.
 #[derive(Debug)]
@@ -18,46 +18,61 @@ pub(in crate::cli) struct Bench {
 }
 
 /// How the report is written.
-#[derive(Clone, Copy, Debug)]
+#[derive(Clone, Copy, Debug, Default)]
 pub(in crate::cli) enum BenchFormat {
+    #[default]
     Table,
     Markdown,
     Json,
 }
 
-pub(super) fn parse(mut parser: Parser) -> Result<Command, Error> {
-    let mut bench = Bench { seconds: 10, format: BenchFormat::Table, plot: None };
-    while let Some(argument) = next(&mut parser)? {
-        match argument {
-            Arg::Short('h') | Arg::Long("help") => return Ok(Command::Help),
-            Arg::Value(value) => {
-                let message = format!("bench takes no map, and \"{}\" is one", value.display());
-                return Err(Error::mistake(message));
-            }
-            Arg::Long("seconds") => bench.seconds = SECONDS.value(&mut parser)?,
-            Arg::Long("format") => bench.format = FORMAT.value(&mut parser)?,
-            Arg::Long("plot") => bench.plot = Some(word(&mut parser, "--plot", "a file")?.into()),
-            other => return Err(unexpected("bench", &OPTIONS, other)),
-        }
-    }
-    Ok(Command::Bench(bench))
+pub(super) const SUBCOMMAND: Subcommand = Subcommand {
+    name: "bench",
+    about: "How fast this machine draws, and a link shows it",
+    details: "",
+    examples: "cellcaster bench\n\
+               cellcaster bench --format json > bench.json\n\
+               cellcaster bench --plot speed.svg",
+    positionals: &[],
+    options: &[&SECONDS, &FORMAT, &PLOT],
+    surplus: "takes no map",
+    missing: "",
+    read,
+};
+
+fn read(mut matches: ArgMatches) -> Result<Command, Error> {
+    Ok(Command::Bench(Bench {
+        seconds: SECONDS.of(&mut matches).unwrap_or(10),
+        format: FORMAT.of(&mut matches).unwrap_or_default(),
+        plot: PLOT.of(&mut matches),
+    }))
 }
 
-const OPTIONS: [&str; 3] = ["--format", "--plot", "--seconds"];
-
 const SECONDS: Valued<u8> = Valued {
-    name: "--seconds",
+    name: "seconds",
+    value: "N",
     takes: "a whole number from 1 to 60",
-    read: |text| text.parse().ok().filter(|seconds| (1..=60).contains(seconds)),
+    help: "How long to measure, from 1 to 60 seconds; preparing comes on top",
+    default: "10",
+    choices: &[],
+    read: Read::Plainly(|text| text.parse().ok().filter(|seconds| (1..=60).contains(seconds))),
+    repeats: false,
 };
 
 const FORMAT: Valued<BenchFormat> = Valued {
-    name: "--format",
+    name: "format",
+    value: "FORMAT",
     takes: "table, markdown or json",
-    read: |text| match text {
+    help: "How the report is written",
+    default: "table",
+    choices: &["table", "markdown", "json"],
+    read: Read::Plainly(|text| match text {
         "table" => Some(BenchFormat::Table),
         "markdown" => Some(BenchFormat::Markdown),
         "json" => Some(BenchFormat::Json),
         _ => None,
-    },
+    }),
+    repeats: false,
 };
+
+const PLOT: FileOption = FileOption { name: "plot", help: "Draw plots of it in FILE, besides, as SVG" };

@@ -2,27 +2,42 @@
 
 use std::ffi::OsString;
 
-use lexopt::{Arg, Parser};
+use clap::ArgMatches;
 
-use super::{Command, Error, next, unexpected, value};
+use super::{Command, Error, Subcommand, map, value};
 use crate::cast::Method;
 
 /// Options of `cast`.
-#[derive(Debug, Default)]
+#[derive(Debug)]
 pub(in crate::cli) struct Cast {
     pub(in crate::cli) map: Option<OsString>,
     pub(in crate::cli) method: Method,
 }
 
-pub(super) fn parse(mut parser: Parser) -> Result<Command, Error> {
-    let mut cast = Cast::default();
-    while let Some(argument) = next(&mut parser)? {
-        match argument {
-            Arg::Short('h') | Arg::Long("help") => return Ok(Command::Help),
-            Arg::Value(map) if cast.map.is_none() => cast.map = Some(map),
-            Arg::Long("caster") => cast.method = value::method(&mut parser)?,
-            other => return Err(unexpected("cast", &["--caster"], other)),
-        }
+pub(super) const SUBCOMMAND: Subcommand = Subcommand {
+    name: "cast",
+    about: "Rays from standard input, hits to standard output",
+    details: r##"Reads one ray a line, "X Y DX DY", and writes one JSON object a line:
+
+{"cell":[c,r],"side":"x","t":1.5,"u":0.25,"tile":"#"}  what the ray hits
+{"escaped":true}   for a ray that leaves the map
+{"error":"..."}    for a line that is no ray"##,
+    examples: r#"echo "1.5 1.5 1 0" | cellcaster cast my.toml"#,
+    positionals: &[map::OPTIONAL],
+    options: &[&value::CASTER],
+    surplus: "takes one map",
+    missing: "",
+    read,
+};
+
+fn read(mut matches: ArgMatches) -> Result<Command, Error> {
+    let map = map::of(&mut matches);
+    if map.as_ref().is_some_and(|map| map == map::STANDARD_INPUT) {
+        return Err(Error::mistake(
+            "cast reads rays from standard input, so the map can't come from there, too; \
+             name a file",
+        ));
     }
-    Ok(Command::Cast(cast))
+    let method = value::CASTER.of(&mut matches).unwrap_or_default();
+    Ok(Command::Cast(Cast { map, method }))
 }

@@ -2,10 +2,10 @@
 
 use std::ffi::OsStr;
 
-use lexopt::Parser;
+use clap::ArgMatches;
 
 use super::Error;
-use super::value::Valued;
+use super::option::{Read, Valued};
 use crate::generate::{Extent, Generator, Site};
 
 /// A level that is dug in place of a map.
@@ -18,82 +18,79 @@ pub(in crate::cli) struct Generated {
     pub(in crate::cli) start: Option<Site>,
 }
 
-/// What was said of one, option by option.
-#[derive(Debug, Default)]
-pub(super) struct Options {
-    generator: Option<Generator>,
-    seed: Option<u64>,
-    extent: Option<Extent>,
-    start: Option<Site>,
-}
-
-impl Options {
-    /// The names of the options.
-    pub(super) const NAMES: [&str; 4] = ["--generate", "--level-size", "--seed", "--start"];
-
-    /// Whether `name`, without its dashes, is one of them.
-    pub(super) fn include(name: &str) -> bool {
-        Self::NAMES.iter().any(|option| option.strip_prefix("--") == Some(name))
-    }
-
-    /// Takes the value of the option `name`, which is one of these.
-    pub(super) fn take(&mut self, name: &str, parser: &mut Parser) -> Result<(), Error> {
-        match name {
-            "generate" => self.generator = Some(GENERATOR.value(parser)?),
-            "seed" => self.seed = Some(SEED.value(parser)?),
-            "level-size" => self.extent = Some(LEVEL_SIZE.value(parser)?),
-            _ => self.start = Some(START.value(parser)?),
+/// The level that the options are about, if they are about any; and then there is no `map`.
+pub(super) fn of(
+    matches: &mut ArgMatches,
+    map: Option<&OsStr>,
+) -> Result<Option<Generated>, Error> {
+    let generator = GENERATE.of(matches);
+    let (seed, extent) = (SEED.of(matches), LEVEL_SIZE.of(matches));
+    let start = START.of(matches);
+    let said = [extent.map(|_| "--level-size"), seed.map(|_| "--seed"), start.map(|_| "--start")];
+    match (generator, said.into_iter().flatten().next(), map) {
+        (Some(_), _, Some(map)) => Err(Error::mistake(format!(
+            "--generate digs a level of its own, and \"{}\" is a map: leave one of them out",
+            map.display()
+        ))),
+        (None, Some(name), _) => {
+            Err(Error::mistake(format!("{name} needs --generate maze, cave or office")))
         }
-        Ok(())
-    }
-
-    /// The level that all of it is about, if it is about any; and then there is no `map`.
-    pub(super) fn finish(self, map: Option<&OsStr>) -> Result<Option<Generated>, Error> {
-        let Self { generator, seed, extent, start } = self;
-        let said =
-            [extent.map(|_| "--level-size"), seed.map(|_| "--seed"), start.map(|_| "--start")];
-        match (generator, said.into_iter().flatten().next(), map) {
-            (Some(_), _, Some(map)) => Err(Error::mistake(format!(
-                "--generate digs a level of its own, and \"{}\" is a map: leave one of them out",
-                map.display()
-            ))),
-            (None, Some(name), _) => {
-                Err(Error::mistake(format!("{name} needs --generate maze, cave or office")))
-            }
-            (None, None, _) => Ok(None),
-            (Some(generator), _, None) => Ok(Some(Generated {
-                generator,
-                seed: seed.unwrap_or(1),
-                extent: extent.unwrap_or_default(),
-                start,
-            })),
-        }
+        (None, None, _) => Ok(None),
+        (Some(generator), _, None) => Ok(Some(Generated {
+            generator,
+            seed: seed.unwrap_or(1),
+            extent: extent.unwrap_or_default(),
+            start,
+        })),
     }
 }
 
-const GENERATOR: Valued<Generator> =
-    Valued { name: "--generate", takes: "maze, cave or office", read: Generator::named };
-
-const SEED: Valued<u64> = Valued {
-    name: "--seed",
-    takes: "a whole number from 0 to 18446744073709551615",
-    read: |text| text.parse().ok(),
+pub(super) const GENERATE: Valued<Generator> = Valued {
+    name: "generate",
+    value: "KIND",
+    takes: "maze, cave or office",
+    help: "Dig a level in place of MAP",
+    default: "",
+    choices: &["maze", "cave", "office"],
+    read: Read::Plainly(Generator::named),
+    repeats: false,
 };
 
-const LEVEL_SIZE: Valued<Extent> = Valued {
-    name: "--level-size",
+pub(super) const SEED: Valued<u64> = Valued {
+    name: "seed",
+    value: "N",
+    takes: "a whole number from 0 to 18446744073709551615",
+    help: "Which level to dig",
+    default: "1",
+    choices: &[],
+    read: Read::Plainly(|text| text.parse().ok()),
+    repeats: false,
+};
+
+pub(super) const LEVEL_SIZE: Valued<Extent> = Valued {
+    name: "level-size",
+    value: "COLSxROWS",
     takes: "COLSxROWS from 8x8 to 1000000000x1000000000, such as 64x64",
-    read: |text| {
+    help: "Dig a level with walls around it, and an exit",
+    default: "without an end",
+    choices: &[],
+    read: Read::Plainly(|text| {
         let (columns, rows) = text.split_once('x')?;
         Extent::new(columns.parse().ok()?, rows.parse().ok()?)
-    },
+    }),
+    repeats: false,
 };
 
-const START: Valued<Site> = Valued {
-    name: "--start",
+pub(super) const START: Valued<Site> = Valued {
+    name: "start",
+    value: "COLUMN,ROW",
     takes: "COLUMN,ROW, the cell to start at, such as 1000000,-1000000",
-    read: |text| {
+    help: "The cell of a level to dig to start at",
+    default: "the first corner",
+    choices: &[],
+    read: Read::Plainly(|text| {
         let (column, row) = text.split_once(',')?;
         Some(Site { column: column.trim().parse().ok()?, row: row.trim().parse().ok()? })
-    },
+    }),
+    repeats: false,
 };

@@ -3,91 +3,154 @@
 use std::ffi::OsString;
 use std::path::PathBuf;
 
-use lexopt::{Arg, Parser};
+use clap::ArgMatches;
 
-use super::generated::{Generated, Options};
+use super::generated::{self, Generated};
+use super::option::{FileOption, Flag, Read, Valued};
 use super::value::{self, FramesPerSecond};
-use super::{Command, Error, next, unexpected, word};
+use super::{Command, Error, Subcommand, map};
 use crate::cast::Method;
 use crate::palette::ColorDepth;
 use crate::render::Filter;
-use crate::terminal::Fidelity;
+use crate::terminal::{Fidelity, UnknownFidelity};
 use crate::tui::{CellAspect, GlyphMode};
 use crate::world::FieldOfView;
 
-/// Options of `play`; `None` where the terminal or the configuration decides.
-#[derive(Debug, Default)]
+/// Options of `play`; `None` where they leave it to the configuration or the terminal.
+#[derive(Debug)]
 pub(in crate::cli) struct Play {
     pub(in crate::cli) map: Option<OsString>,
     /// What to dig in place of a map.
     pub(in crate::cli) generated: Option<Generated>,
     pub(in crate::cli) config: Option<PathBuf>,
-    pub(in crate::cli) frames_per_second: FramesPerSecond,
-    pub(in crate::cli) field_of_view: FieldOfView,
+    pub(in crate::cli) frames_per_second: Option<FramesPerSecond>,
+    pub(in crate::cli) field_of_view: Option<FieldOfView>,
     pub(in crate::cli) cell_aspect: Option<CellAspect>,
-    pub(in crate::cli) glyphs: GlyphMode,
+    pub(in crate::cli) glyphs: Option<GlyphMode>,
     pub(in crate::cli) depth: Option<ColorDepth>,
-    pub(in crate::cli) method: Method,
-    pub(in crate::cli) filter: Filter,
-    pub(in crate::cli) fidelity: Option<Fidelity>,
+    pub(in crate::cli) method: Option<Method>,
+    pub(in crate::cli) filter: Option<Filter>,
+    pub(in crate::cli) fidelity: Option<FidelityChoice>,
     pub(in crate::cli) shows_stats: bool,
     /// Where to write what happens.
     pub(in crate::cli) record: Option<PathBuf>,
+    /// Whether that may replace a file.
+    pub(in crate::cli) overwrites: bool,
+    /// Whether to load the map anew when it changes.
+    pub(in crate::cli) watches: bool,
 }
 
-pub(super) fn parse(mut parser: Parser) -> Result<Command, Error> {
-    let mut play = Play::default();
-    let mut generated = Options::default();
-    while let Some(argument) = next(&mut parser)? {
-        match argument {
-            Arg::Short('h') | Arg::Long("help") => return Ok(Command::Help),
-            Arg::Short('V') | Arg::Long("version") => return Ok(Command::Version),
-            Arg::Value(map) if play.map.is_none() => play.map = Some(map),
-            Arg::Long("config") => {
-                play.config = Some(word(&mut parser, "--config", "a file")?.into());
-            }
-            Arg::Long("fps") => {
-                play.frames_per_second = value::FRAMES_PER_SECOND.value(&mut parser)?;
-            }
-            Arg::Long("fov") => play.field_of_view = value::FIELD_OF_VIEW.value(&mut parser)?,
-            Arg::Long("cell-aspect") => {
-                play.cell_aspect = Some(value::CELL_ASPECT.value(&mut parser)?);
-            }
-            Arg::Long("glyphs") => play.glyphs = value::GLYPHS.value(&mut parser)?,
-            Arg::Long("colors") => play.depth = Some(value::COLORS.value(&mut parser)?),
-            Arg::Long("caster") => play.method = value::method(&mut parser)?,
-            Arg::Long("filter") => play.filter = value::FILTER.value(&mut parser)?,
-            Arg::Long("fidelity") => play.fidelity = value::fidelity_or_auto(&mut parser)?,
-            Arg::Long("stats") => play.shows_stats = true,
-            Arg::Long("record") => {
-                play.record = Some(word(&mut parser, "--record", "a file")?.into());
-            }
-            Arg::Long(name) if Options::include(name) => {
-                let name = name.to_owned();
-                generated.take(&name, &mut parser)?;
-            }
-            other => return Err(unexpected("play", &OPTIONS, other)),
+/// What decides how exact frames are.
+#[derive(Clone, Copy, Debug)]
+pub(in crate::cli) enum FidelityChoice {
+    /// What the link allows.
+    Auto,
+    Fixed(Fidelity),
+}
+
+impl FidelityChoice {
+    /// `None` for what the link allows.
+    pub(in crate::cli) fn fixed(self) -> Option<Fidelity> {
+        match self {
+            Self::Auto => None,
+            Self::Fixed(fidelity) => Some(fidelity),
         }
     }
-    play.generated = generated.finish(play.map.as_deref())?;
-    Ok(Command::Play(play))
 }
 
-const OPTIONS: [&str; 16] = [
-    "--caster",
-    "--cell-aspect",
-    "--colors",
-    "--config",
-    "--fidelity",
-    "--filter",
-    "--fov",
-    "--fps",
-    "--generate",
-    "--glyphs",
-    "--level-size",
-    "--record",
-    "--seed",
-    "--start",
-    "--stats",
-    "--version",
-];
+pub(super) const SUBCOMMAND: Subcommand = Subcommand {
+    name: "play",
+    about: "Play; without MAP, the built-in levels",
+    details: "Plays in the terminal: find the green square on the map. \"?\" shows the keys, and Ctrl-C \
+              leaves. Over SSH it takes \"ssh -t HOST cellcaster\".",
+    examples: "cellcaster\n\
+               cellcaster play --generate maze --seed 7\n\
+               cellcaster my.toml --colors 256\n\
+               cellcaster play my.toml --watch\n\
+               ssh -t host cellcaster\n\
+               cellcaster --record walk.script && cellcaster replay walk.script > walk.cast",
+    positionals: &[map::OPTIONAL],
+    options: &[
+        &CONFIG,
+        &value::FRAMES_PER_SECOND,
+        &value::FIELD_OF_VIEW,
+        &CELL_ASPECT,
+        &value::GLYPHS,
+        &COLORS,
+        &value::FILTER,
+        &value::CASTER,
+        &FIDELITY,
+        &STATS,
+        &value::WATCH,
+        &RECORD,
+        &FORCE,
+        &generated::GENERATE,
+        &generated::SEED,
+        &generated::LEVEL_SIZE,
+        &generated::START,
+    ],
+    surplus: "takes one map",
+    missing: "",
+    read: |matches| Ok(Command::Play(read(matches)?)),
+};
+
+fn read(mut matches: ArgMatches) -> Result<Play, Error> {
+    let map = map::of(&mut matches);
+    let generated = generated::of(&mut matches, map.as_deref())?;
+    Ok(Play {
+        map,
+        generated,
+        config: CONFIG.of(&mut matches),
+        frames_per_second: value::FRAMES_PER_SECOND.of(&mut matches),
+        field_of_view: value::FIELD_OF_VIEW.of(&mut matches),
+        cell_aspect: CELL_ASPECT.of(&mut matches),
+        glyphs: value::GLYPHS.of(&mut matches),
+        depth: COLORS.of(&mut matches),
+        method: value::CASTER.of(&mut matches),
+        filter: value::FILTER.of(&mut matches),
+        fidelity: FIDELITY.of(&mut matches),
+        shows_stats: STATS.of(&matches),
+        record: RECORD.of(&mut matches),
+        overwrites: FORCE.of(&matches),
+        watches: value::WATCH.of(&matches),
+    })
+}
+
+const CONFIG: FileOption = FileOption {
+    name: "config",
+    help: "The settings [default: cellcaster/config.toml in the folder for configuration files]",
+};
+
+const CELL_ASPECT: Valued<CellAspect> =
+    Valued { default: "what the terminal says, or 2", ..value::CELL_ASPECT };
+
+const COLORS: Valued<ColorDepth> = Valued { default: "what the terminal has", ..value::COLORS };
+
+const FIDELITY: Valued<FidelityChoice> = Valued {
+    name: "fidelity",
+    value: "LEVEL",
+    takes: "auto, exact, high, low or a number up to 255",
+    help: "How exact colours are while something moves: as the link allows (auto), exact, high, low, \
+           or how far they may be off, from 0 to 255",
+    default: "auto",
+    choices: &[],
+    read: Read::Explaining(|text| match text {
+        "auto" => Ok(FidelityChoice::Auto),
+        _ => text
+            .parse()
+            .map(FidelityChoice::Fixed)
+            .map_err(|error: UnknownFidelity| format!("--fidelity: {error}, or auto")),
+    }),
+    repeats: false,
+};
+
+const STATS: Flag =
+    Flag { name: "stats", help: "Show frames and bytes a second, round trip and fidelity" };
+
+const RECORD: FileOption = FileOption {
+    name: "record",
+    help: "Write FILE.cast, which is what the terminal is sent, as asciicast v3; or FILE.script, which \
+           is what you do, for replay and wire",
+};
+
+const FORCE: Flag = Flag { name: "force", help: "Let --record replace a file" };

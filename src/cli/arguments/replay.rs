@@ -3,11 +3,12 @@
 use std::ffi::OsString;
 use std::path::PathBuf;
 
-use lexopt::{Arg, Parser};
+use clap::{ArgAction, ArgMatches, ValueHint};
 
-use super::generated::{Generated, Options};
+use super::generated::{self, Generated};
+use super::option::FileOption;
 use super::value::{self, FramesPerSecond, Size};
-use super::{Command, Error, next, unexpected, word};
+use super::{Command, Error, Positional, Subcommand, map};
 use crate::palette::ColorDepth;
 use crate::terminal::Fidelity;
 use crate::world::FieldOfView;
@@ -28,56 +29,59 @@ pub(in crate::cli) struct Replay {
     pub(in crate::cli) fidelity: Fidelity,
 }
 
-pub(super) fn parse(mut parser: Parser) -> Result<Command, Error> {
-    let mut replay = Replay {
-        script: PathBuf::new(),
-        map: None,
-        generated: None,
-        cast: None,
-        size: Size::default(),
-        frames_per_second: FramesPerSecond::default(),
-        field_of_view: FieldOfView::default(),
-        depth: ColorDepth::default(),
-        fidelity: Fidelity::default(),
-    };
-    let mut script = None;
-    let mut generated = Options::default();
-    while let Some(argument) = next(&mut parser)? {
-        match argument {
-            Arg::Short('h') | Arg::Long("help") => return Ok(Command::Help),
-            Arg::Value(path) if script.is_none() => script = Some(path),
-            Arg::Value(map) if replay.map.is_none() => replay.map = Some(map),
-            Arg::Long("cast") => replay.cast = Some(word(&mut parser, "--cast", "a file")?.into()),
-            Arg::Long("size") => replay.size = value::WINDOW_SIZE.value(&mut parser)?,
-            Arg::Long("fps") => {
-                replay.frames_per_second = value::FRAMES_PER_SECOND.value(&mut parser)?;
-            }
-            Arg::Long("fov") => replay.field_of_view = value::FIELD_OF_VIEW.value(&mut parser)?,
-            Arg::Long("colors") => replay.depth = value::COLORS.value(&mut parser)?,
-            Arg::Long("fidelity") => replay.fidelity = value::fidelity(&mut parser)?,
-            Arg::Long(name) if Options::include(name) => {
-                let name = name.to_owned();
-                generated.take(&name, &mut parser)?;
-            }
-            other => return Err(unexpected("replay", &OPTIONS, other)),
-        }
-    }
-    let script = script.ok_or_else(|| {
-        Error::mistake("replay takes a script, as in \"cellcaster replay walk.script\"")
-    })?;
-    replay.generated = generated.finish(replay.map.as_deref())?;
-    Ok(Command::Replay(Replay { script: script.into(), ..replay }))
+pub(super) const SUBCOMMAND: Subcommand = Subcommand {
+    name: "replay",
+    about: "Play a script off screen, and write it as asciicast",
+    details: "A script is lines such as \"2.5 s forward run\" or \"12 steps turn-left open\"; \"stand\" \
+              is nothing, [walking] begins a section, and # a comment. play --record writes one.",
+    examples: "cellcaster replay walk.script > walk.cast\n\
+               cellcaster replay walk.script my.toml --size 120x40 --cast walk.cast",
+    positionals: &[SCRIPT, map::OPTIONAL],
+    options: &[
+        &CAST,
+        &value::WINDOW_SIZE,
+        &value::FRAMES_PER_SECOND,
+        &value::FIELD_OF_VIEW,
+        &value::COLORS,
+        &value::FIDELITY,
+        &generated::GENERATE,
+        &generated::SEED,
+        &generated::LEVEL_SIZE,
+        &generated::START,
+    ],
+    surplus: "takes a script and one map",
+    missing: MISSING,
+    read,
+};
+
+const MISSING: &str = "replay takes a script, as in \"cellcaster replay walk.script\"";
+
+fn read(mut matches: ArgMatches) -> Result<Command, Error> {
+    let script: Option<OsString> = matches.remove_one(SCRIPT.name);
+    let map = map::of(&mut matches);
+    let generated = generated::of(&mut matches, map.as_deref())?;
+    Ok(Command::Replay(Replay {
+        script: script.ok_or_else(|| Error::mistake(MISSING))?.into(),
+        map,
+        generated,
+        cast: CAST.of(&mut matches),
+        size: value::WINDOW_SIZE.of(&mut matches).unwrap_or_default(),
+        frames_per_second: value::FRAMES_PER_SECOND.of(&mut matches).unwrap_or_default(),
+        field_of_view: value::FIELD_OF_VIEW.of(&mut matches).unwrap_or_default(),
+        depth: value::COLORS.of(&mut matches).unwrap_or_default(),
+        fidelity: value::FIDELITY.of(&mut matches).unwrap_or_default(),
+    }))
 }
 
-const OPTIONS: [&str; 10] = [
-    "--cast",
-    "--colors",
-    "--fidelity",
-    "--fov",
-    "--fps",
-    "--generate",
-    "--level-size",
-    "--seed",
-    "--size",
-    "--start",
-];
+const SCRIPT: Positional = Positional {
+    name: "SCRIPT",
+    help: "What is played",
+    is_required: true,
+    action: ArgAction::Set,
+    hint: ValueHint::FilePath,
+    choices: &[],
+};
+
+const CAST: FileOption =
+    FileOption { name: "cast", help: "Where to write [default: standard output]" };
+

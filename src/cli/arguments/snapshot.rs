@@ -2,12 +2,13 @@
 
 use std::ffi::OsString;
 
+use clap::ArgMatches;
 use glam::DVec2;
-use lexopt::{Arg, Parser};
 
-use super::generated::{Generated, Options};
-use super::value::{self, Size, Valued};
-use super::{Command, Error, next, unexpected};
+use super::generated::{self, Generated};
+use super::option::{Flag, Read, Valued};
+use super::value::{self, Size};
+use super::{Command, Error, Subcommand, map};
 use crate::cast::Method;
 use crate::palette::ColorDepth;
 use crate::render::Filter;
@@ -15,12 +16,14 @@ use crate::tui::{CellAspect, GlyphMode};
 use crate::world::{FieldOfView, Heading, Pitch};
 
 /// Options of `snapshot`.
-#[derive(Debug, Default)]
+#[derive(Debug)]
 pub(in crate::cli) struct Snapshot {
     pub(in crate::cli) map: Option<OsString>,
     /// What to dig in place of a map.
     pub(in crate::cli) generated: Option<Generated>,
-    pub(in crate::cli) size: Size,
+    /// How large the picture is; 80x24, or as large as the window where that is redrawn, if there is
+    /// none.
+    pub(in crate::cli) size: Option<Size>,
     /// Where to look from; the map's start where there is none.
     pub(in crate::cli) camera: Option<(DVec2, Heading)>,
     /// How high the eye is; where somebody's is who stands there if there is none.
@@ -37,10 +40,12 @@ pub(in crate::cli) struct Snapshot {
     pub(in crate::cli) filter: Filter,
     /// Whether to tell how the frame is drawn instead of writing it.
     pub(in crate::cli) explain: bool,
+    /// Whether to draw it again when the map changes.
+    pub(in crate::cli) watches: bool,
 }
 
 /// How a snapshot is written.
-#[derive(Clone, Copy, Debug, Default)]
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub(in crate::cli) enum Format {
     #[default]
     Text,
@@ -49,88 +54,117 @@ pub(in crate::cli) enum Format {
     Png,
 }
 
-pub(super) fn parse(mut parser: Parser) -> Result<Command, Error> {
-    let mut snapshot = Snapshot::default();
-    let mut generated = Options::default();
-    while let Some(argument) = next(&mut parser)? {
-        match argument {
-            Arg::Short('h') | Arg::Long("help") => return Ok(Command::Help),
-            Arg::Value(map) if snapshot.map.is_none() => snapshot.map = Some(map),
-            Arg::Long("size") => snapshot.size = value::SIZE.value(&mut parser)?,
-            Arg::Long("camera") => snapshot.camera = Some(CAMERA.value(&mut parser)?),
-            Arg::Long("eye") => snapshot.eye = Some(EYE.value(&mut parser)?),
-            Arg::Long("pitch") => snapshot.pitch = Some(PITCH.value(&mut parser)?),
-            Arg::Long("fov") => snapshot.field_of_view = value::FIELD_OF_VIEW.value(&mut parser)?,
-            Arg::Long("cell-aspect") => {
-                snapshot.cell_aspect = value::CELL_ASPECT.value(&mut parser)?;
-            }
-            Arg::Long("glyphs") => snapshot.glyphs = value::GLYPHS.value(&mut parser)?,
-            Arg::Long("colors") => snapshot.depth = value::COLORS.value(&mut parser)?,
-            Arg::Long("format") => snapshot.format = FORMAT.value(&mut parser)?,
-            Arg::Long("caster") => snapshot.method = value::method(&mut parser)?,
-            Arg::Long("filter") => snapshot.filter = value::FILTER.value(&mut parser)?,
-            Arg::Long("explain") => snapshot.explain = true,
-            Arg::Long(name) if Options::include(name) => {
-                let name = name.to_owned();
-                generated.take(&name, &mut parser)?;
-            }
-            other => return Err(unexpected("snapshot", &OPTIONS, other)),
-        }
-    }
-    snapshot.generated = generated.finish(snapshot.map.as_deref())?;
-    Ok(Command::Snapshot(snapshot))
+pub(super) const SUBCOMMAND: Subcommand = Subcommand {
+    name: "snapshot",
+    about: "One frame to standard output",
+    details: "Draws what the game would show, without a terminal, the same bytes on every machine. Of a \
+              map of bodies, --eye and --pitch are as at its start where they are not given.",
+    examples: "cellcaster snapshot museum --format ansi\n\
+               cellcaster snapshot my.toml --size 120x40 --format png > my.png\n\
+               cellcaster snapshot my.toml --camera 2.5,3.5,90 --format json\n\
+               cellcaster snapshot my.toml --format ansi --watch",
+    positionals: &[map::OPTIONAL],
+    options: &[
+        &value::SIZE,
+        &CAMERA,
+        &EYE,
+        &PITCH,
+        &value::FIELD_OF_VIEW,
+        &value::CELL_ASPECT,
+        &value::GLYPHS,
+        &value::COLORS,
+        &value::FILTER,
+        &value::CASTER,
+        &FORMAT,
+        &EXPLAIN,
+        &value::WATCH,
+        &generated::GENERATE,
+        &generated::SEED,
+        &generated::LEVEL_SIZE,
+        &generated::START,
+    ],
+    surplus: "takes one map",
+    missing: "",
+    read,
+};
+
+fn read(mut matches: ArgMatches) -> Result<Command, Error> {
+    let map = map::of(&mut matches);
+    let generated = generated::of(&mut matches, map.as_deref())?;
+    Ok(Command::Snapshot(Snapshot {
+        map,
+        generated,
+        size: value::SIZE.of(&mut matches),
+        camera: CAMERA.of(&mut matches),
+        eye: EYE.of(&mut matches),
+        pitch: PITCH.of(&mut matches),
+        field_of_view: value::FIELD_OF_VIEW.of(&mut matches).unwrap_or_default(),
+        cell_aspect: value::CELL_ASPECT.of(&mut matches).unwrap_or_default(),
+        glyphs: value::GLYPHS.of(&mut matches).unwrap_or_default(),
+        depth: value::COLORS.of(&mut matches).unwrap_or_default(),
+        format: FORMAT.of(&mut matches).unwrap_or_default(),
+        method: value::CASTER.of(&mut matches).unwrap_or_default(),
+        filter: value::FILTER.of(&mut matches).unwrap_or_default(),
+        explain: EXPLAIN.of(&matches),
+        watches: value::WATCH.of(&matches),
+    }))
 }
 
-const OPTIONS: [&str; 16] = [
-    "--camera",
-    "--caster",
-    "--cell-aspect",
-    "--colors",
-    "--explain",
-    "--eye",
-    "--filter",
-    "--format",
-    "--fov",
-    "--generate",
-    "--glyphs",
-    "--level-size",
-    "--pitch",
-    "--seed",
-    "--size",
-    "--start",
-];
-
-const EYE: Valued<f64> = Valued {
-    name: "--eye",
-    takes: "a finite height in cells, such as 0.5",
-    read: |text| text.parse().ok().filter(|eye: &f64| eye.is_finite()),
-};
-
-const PITCH: Valued<Pitch> = Valued {
-    name: "--pitch",
-    takes: "degrees from -30, down, to 30, up",
-    read: |text| Pitch::from_degrees(text.parse().ok()?),
-};
-
 const CAMERA: Valued<(DVec2, Heading)> = Valued {
-    name: "--camera",
+    name: "camera",
+    value: "X,Y,HEADING",
     takes: "X,Y,HEADING, three finite numbers such as 2.5,3.5,90",
-    read: |text| {
+    help: "Where to look from, in cells, and which way, in degrees: 0 is east, 90 south",
+    default: "the map's start",
+    choices: &[],
+    read: Read::Plainly(|text| {
         let mut numbers = text.split(',').map(|number| number.trim().parse::<f64>().ok());
         let position = DVec2::new(numbers.next()??, numbers.next()??);
         let heading = Heading::from_degrees(numbers.next()??)?;
         (position.is_finite() && numbers.next().is_none()).then_some((position, heading))
-    },
+    }),
+    repeats: false,
+};
+
+const EYE: Valued<f64> = Valued {
+    name: "eye",
+    value: "HEIGHT",
+    takes: "a finite height in cells, such as 0.5",
+    help: "How high the eye is above floor level, in cells",
+    default: "0.5",
+    choices: &[],
+    read: Read::Plainly(|text| text.parse().ok().filter(|eye: &f64| eye.is_finite())),
+    repeats: false,
+};
+
+const PITCH: Valued<Pitch> = Valued {
+    name: "pitch",
+    value: "DEG",
+    takes: "degrees from -30, down, to 30, up",
+    help: "Look down, from -30 degrees, or up, to 30",
+    default: "0",
+    choices: &[],
+    read: Read::Plainly(|text| Pitch::from_degrees(text.parse().ok()?)),
+    repeats: false,
 };
 
 const FORMAT: Valued<Format> = Valued {
-    name: "--format",
+    name: "format",
+    value: "FORMAT",
     takes: "text, ansi, json or png",
-    read: |text| match text {
+    help: "How it is written: characters (text), with colours (ansi), a list of cells (json) or a \
+           picture of them (png)",
+    default: "text",
+    choices: &["text", "ansi", "json", "png"],
+    read: Read::Plainly(|text| match text {
         "text" => Some(Format::Text),
         "ansi" => Some(Format::Ansi),
         "json" => Some(Format::Json),
         "png" => Some(Format::Png),
         _ => None,
-    },
+    }),
+    repeats: false,
 };
+
+const EXPLAIN: Flag =
+    Flag { name: "explain", help: "Say how the frame is drawn and what it costs, in its place" };

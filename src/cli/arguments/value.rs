@@ -1,12 +1,8 @@
-//! Options that several commands take, and how the value of one is read.
+//! Options that several commands take.
 
 use std::num::NonZeroU32;
 
-use std::ffi::OsStr;
-
-use lexopt::Parser;
-
-use super::{Error, word};
+use super::option::{Flag, Read, Valued};
 use crate::cast::{Method, NotAMethod};
 use crate::palette::ColorDepth;
 use crate::render::Filter;
@@ -49,118 +45,142 @@ impl Default for Size {
     }
 }
 
-/// An option that takes a value.
-pub(super) struct Valued<T> {
-    pub(super) name: &'static str,
-    /// What it takes, to say so where it gets something else.
-    pub(super) takes: &'static str,
-    pub(super) read: fn(&str) -> Option<T>,
-}
-
-impl<T> Valued<T> {
-    pub(super) fn value(&self, parser: &mut Parser) -> Result<T, Error> {
-        let text = word(parser, self.name, self.takes)?;
-        let text = text.to_string_lossy();
-        (self.read)(&text).ok_or_else(|| {
-            Error::mistake(format!("{} takes {}, not \"{text}\"", self.name, self.takes))
-        })
-    }
-}
-
 pub(super) const FRAMES_PER_SECOND: Valued<FramesPerSecond> = Valued {
-    name: "--fps",
+    name: "fps",
+    value: "N",
     takes: "a whole number from 1 to 240",
-    read: |text| {
+    help: "At most N frames a second, from 1 to 240",
+    default: "30",
+    choices: &[],
+    read: Read::Plainly(|text| {
         let frames = text.parse::<NonZeroU32>().ok().filter(|frames| frames.get() <= 240);
         frames.map(FramesPerSecond)
-    },
+    }),
+    repeats: false,
 };
 
 pub(super) const FIELD_OF_VIEW: Valued<FieldOfView> = Valued {
-    name: "--fov",
+    name: "fov",
+    value: "DEG",
     takes: "degrees above 0 and below 180",
-    read: |text| FieldOfView::from_degrees(text.parse().ok()?),
+    help: "The field of view from left to right, above 0 and below 180 degrees",
+    default: "66",
+    choices: &[],
+    read: Read::Plainly(|text| FieldOfView::from_degrees(text.parse().ok()?)),
+    repeats: false,
 };
 
 pub(super) const CELL_ASPECT: Valued<CellAspect> = Valued {
-    name: "--cell-aspect",
+    name: "cell-aspect",
+    value: "RATIO",
     takes: "the height of a cell over its width, from 0.1 to 10",
-    read: |text| CellAspect::new(text.parse().ok()?),
+    help: "The height of a cell over its width, from 0.1 to 10",
+    default: "2",
+    choices: &[],
+    read: Read::Plainly(|text| CellAspect::new(text.parse().ok()?)),
+    repeats: false,
 };
 
 pub(super) const GLYPHS: Valued<GlyphMode> = Valued {
-    name: "--glyphs",
+    name: "glyphs",
+    value: "MODE",
     takes: "half, ascii or ramp",
-    read: |text| match text {
+    help: "What a cell shows: two pixels (half), one as a character (ascii), or one as a character \
+           for its brightness (ramp)",
+    default: "half",
+    choices: &["half", "ascii", "ramp"],
+    read: Read::Plainly(|text| match text {
         "half" => Some(GlyphMode::Half),
         "ascii" => Some(GlyphMode::Ascii),
         "ramp" => Some(GlyphMode::Ramp),
         _ => None,
-    },
+    }),
+    repeats: false,
 };
 
 pub(super) const FILTER: Valued<Filter> = Valued {
-    name: "--filter",
+    name: "filter",
+    value: "FILTER",
     takes: "mip or nearest",
-    read: |text| match text {
+    help: "How textures are looked up: averaged where they are far (mip), or as raw texels (nearest)",
+    default: "mip",
+    choices: &["mip", "nearest"],
+    read: Read::Plainly(|text| match text {
         "mip" => Some(Filter::Mip),
         "nearest" => Some(Filter::Nearest),
         _ => None,
-    },
+    }),
+    repeats: false,
 };
 
 pub(super) const COLORS: Valued<ColorDepth> = Valued {
-    name: "--colors",
+    name: "colors",
+    value: "DEPTH",
     takes: "true, 256, 16 or mono",
-    read: |text| match text {
+    help: "How many colours there are",
+    default: "true",
+    choices: &["true", "256", "16", "mono"],
+    read: Read::Plainly(|text| match text {
         "true" => Some(ColorDepth::True),
         "256" => Some(ColorDepth::Indexed256),
         "16" => Some(ColorDepth::Indexed16),
         "mono" => Some(ColorDepth::Mono),
         _ => None,
-    },
+    }),
+    repeats: false,
 };
 
 pub(super) const SIZE: Valued<Size> = Valued {
-    name: "--size",
+    name: "size",
+    value: "COLSxROWS",
     takes: "COLSxROWS from 1x1 to 4096x4096, such as 80x24",
-    read: |text| {
-        let (columns, rows) = text.split_once('x')?;
-        let side = |text: &str| text.parse().ok().filter(|side| (1..=4096).contains(side));
-        Some(Size { columns: side(columns)?, rows: side(rows)? })
-    },
+    help: "The size of the picture in cells, from 1x1 to 4096x4096",
+    default: "80x24",
+    choices: &[],
+    read: Read::Plainly(size),
+    repeats: false,
 };
 
 /// As [`SIZE`], of a window that somebody may have, several of which are kept at once.
 pub(super) const WINDOW_SIZE: Valued<Size> = Valued {
-    name: "--size",
     takes: "COLSxROWS from 1x1 to 1000x1000, such as 120x40",
-    read: |text| (SIZE.read)(text).filter(|size| size.columns.max(size.rows) <= 1000),
+    help: "The size of the window in cells, from 1x1 to 1000x1000",
+    read: Read::Plainly(|text| size(text).filter(|size| size.columns.max(size.rows) <= 1000)),
+    ..SIZE
 };
 
-/// The value of `--caster`, which knows best what is wrong with it.
-pub(super) fn method(parser: &mut Parser) -> Result<Method, Error> {
-    let text = word(parser, "--caster", "the name of a method")?;
-    let text = text.to_string_lossy();
-    text.parse().map_err(|error: NotAMethod| Error::mistake(format!("--caster {text}: {error}")))
+fn size(text: &str) -> Option<Size> {
+    let (columns, rows) = text.split_once('x')?;
+    let side = |text: &str| text.parse().ok().filter(|side| (1..=4096).contains(side));
+    Some(Size { columns: side(columns)?, rows: side(rows)? })
 }
 
-/// The value of `--fidelity`, likewise.
-pub(super) fn fidelity(parser: &mut Parser) -> Result<Fidelity, Error> {
-    let text = word(parser, "--fidelity", "exact, high, low or a number up to 255")?;
-    parse_fidelity(&text).map_err(|error| Error::mistake(format!("--fidelity: {error}")))
-}
+pub(super) const CASTER: Valued<Method> = Valued {
+    name: "caster",
+    value: "METHOD",
+    takes: "the name of a method",
+    help: "How walls are found: exact, dda, dda32, accumulate, fixed:BITS, table:ANGLES or march:STEP",
+    default: "exact",
+    choices: &[],
+    read: Read::Explaining(|text| {
+        text.parse().map_err(|error: NotAMethod| format!("--caster {text}: {error}"))
+    }),
+    repeats: false,
+};
 
-/// As [`fidelity`], and `None` for "auto".
-pub(super) fn fidelity_or_auto(parser: &mut Parser) -> Result<Option<Fidelity>, Error> {
-    let text = word(parser, "--fidelity", "auto, exact, high, low or a number up to 255")?;
-    if text == "auto" {
-        return Ok(None);
-    }
-    let fidelity = parse_fidelity(&text);
-    fidelity.map(Some).map_err(|error| Error::mistake(format!("--fidelity: {error}, or auto")))
-}
+pub(super) const FIDELITY: Valued<Fidelity> = Valued {
+    name: "fidelity",
+    value: "LEVEL",
+    takes: "exact, high, low or a number up to 255",
+    help: "How exact colours are while something moves: exact, high, low, or how far they may be off, \
+           from 0 to 255",
+    default: "exact",
+    choices: &[],
+    read: Read::Explaining(|text| {
+        text.parse().map_err(|error: UnknownFidelity| format!("--fidelity: {error}"))
+    }),
+    repeats: false,
+};
 
-fn parse_fidelity(text: &OsStr) -> Result<Fidelity, UnknownFidelity> {
-    text.to_string_lossy().parse()
-}
+pub(super) const WATCH: Flag =
+    Flag { name: "watch", help: "Load the map anew whenever its file, or a PNG that it uses, changes" };

@@ -3,10 +3,11 @@
 use std::ffi::OsString;
 use std::path::PathBuf;
 
-use lexopt::{Arg, Parser};
+use clap::ArgMatches;
 
-use super::value::{self, FramesPerSecond, Size, Valued};
-use super::{Command, Error, next, unexpected, word};
+use super::option::{FileOption, Read, Valued};
+use super::value::{self, FramesPerSecond, Size};
+use super::{Command, Error, Subcommand, map};
 use crate::terminal::Fidelity;
 
 /// Options of `wire`.
@@ -23,50 +24,62 @@ pub(in crate::cli) struct Wire {
 }
 
 /// How the report is written.
-#[derive(Clone, Copy, Debug)]
+#[derive(Clone, Copy, Debug, Default)]
 pub(in crate::cli) enum WireFormat {
+    #[default]
     Table,
     Json,
     Csv,
 }
 
-pub(super) fn parse(mut parser: Parser) -> Result<Command, Error> {
-    let mut wire = Wire {
-        map: None,
-        script: None,
-        size: Size { columns: 120, rows: 40 },
-        frames_per_second: FramesPerSecond::default(),
-        fidelities: Vec::new(),
-        format: WireFormat::Table,
-    };
-    while let Some(argument) = next(&mut parser)? {
-        match argument {
-            Arg::Short('h') | Arg::Long("help") => return Ok(Command::Help),
-            Arg::Value(map) if wire.map.is_none() => wire.map = Some(map),
-            Arg::Long("script") => {
-                wire.script = Some(word(&mut parser, "--script", "a file")?.into());
-            }
-            Arg::Long("size") => wire.size = value::WINDOW_SIZE.value(&mut parser)?,
-            Arg::Long("fps") => {
-                wire.frames_per_second = value::FRAMES_PER_SECOND.value(&mut parser)?;
-            }
-            Arg::Long("fidelity") => wire.fidelities.push(value::fidelity(&mut parser)?),
-            Arg::Long("format") => wire.format = FORMAT.value(&mut parser)?,
-            other => return Err(unexpected("wire", &OPTIONS, other)),
-        }
-    }
-    Ok(Command::Wire(wire))
+pub(super) const SUBCOMMAND: Subcommand = Subcommand {
+    name: "wire",
+    about: "Bytes a frame against what the viewer sees",
+    details: "Plays a script off screen, and measures what its frames take on their way to a terminal.",
+    examples: "cellcaster wire\n\
+               cellcaster wire my.toml --script walk.script --fidelity high --fidelity 12",
+    positionals: &[map::OPTIONAL],
+    options: &[&SCRIPT, &SIZE, &value::FRAMES_PER_SECOND, &FIDELITY, &FORMAT],
+    surplus: "takes one map",
+    missing: "",
+    read,
+};
+
+fn read(mut matches: ArgMatches) -> Result<Command, Error> {
+    Ok(Command::Wire(Wire {
+        map: map::of(&mut matches),
+        script: SCRIPT.of(&mut matches),
+        size: SIZE.of(&mut matches).unwrap_or(Size { columns: 120, rows: 40 }),
+        frames_per_second: value::FRAMES_PER_SECOND.of(&mut matches).unwrap_or_default(),
+        fidelities: FIDELITY.all_of(&mut matches),
+        format: FORMAT.of(&mut matches).unwrap_or_default(),
+    }))
 }
 
-const OPTIONS: [&str; 5] = ["--fidelity", "--format", "--fps", "--script", "--size"];
+const SCRIPT: FileOption =
+    FileOption { name: "script", help: "What is played [default: a walk in citadel]" };
+
+const SIZE: Valued<Size> = Valued { default: "120x40", ..value::WINDOW_SIZE };
+
+const FIDELITY: Valued<Fidelity> = Valued {
+    help: "How far colours may be off: exact, high, low, or from 0 to 255; may be repeated",
+    default: "those that have a name",
+    repeats: true,
+    ..value::FIDELITY
+};
 
 const FORMAT: Valued<WireFormat> = Valued {
-    name: "--format",
+    name: "format",
+    value: "FORMAT",
     takes: "table, json or csv",
-    read: |text| match text {
+    help: "How the report is written",
+    default: "table",
+    choices: &["table", "json", "csv"],
+    read: Read::Plainly(|text| match text {
         "table" => Some(WireFormat::Table),
         "json" => Some(WireFormat::Json),
         "csv" => Some(WireFormat::Csv),
         _ => None,
-    },
+    }),
+    repeats: false,
 };

@@ -1,0 +1,112 @@
+//! What help says besides the lists that clap makes of the descriptions.
+
+use std::fmt::Write;
+
+use super::option::Described;
+use super::{SUBCOMMANDS, Subcommand, play};
+use crate::tui::Bindings;
+
+/// In columns: help is no wider, however wide the window is.
+pub(super) const WIDTH: usize = 80;
+
+pub(super) const ABOUT: &str = "\
+A raycaster game in the terminal, and its pictures in scripts.
+
+MAP is a map file, \"-\" for standard input, or a built-in level: cellar, museum, citadel, cistern \
+or observatory; --generate maze, cave or office digs one in its place. An option may also stand \
+before the command.";
+
+pub(super) const WHERE_TO_READ_ON: &str = "\
+\"cellcaster --help\" has all commands with their options, keys and examples; \"cellcaster COMMAND \
+--help\" tells of one command.";
+
+/// After the options of the game: those of the other commands, keys, examples.
+pub(super) fn more() -> String {
+    let mut text = String::new();
+    for subcommand in SUBCOMMANDS.into_iter().filter(|it| it.name != play::SUBCOMMAND.name) {
+        push_details(&mut text, subcommand);
+    }
+    push_keys(&mut text);
+    text.push_str("Examples:\n");
+    for line in SUBCOMMANDS.iter().flat_map(|subcommand| subcommand.examples.lines()) {
+        _ = writeln!(text, "  {line}");
+    }
+    text.push_str(EXIT_STATUS);
+    text
+}
+
+/// After the options of a command.
+pub(super) fn examples(subcommand: &Subcommand) -> String {
+    let lines: Vec<String> =
+        subcommand.examples.lines().map(|line| format!("  {line}\n")).collect();
+    format!("Examples:\n{}", lines.concat())
+}
+
+
+const EXIT_STATUS: &str = "
+Exit status: 0; 2 for a mistake in the arguments or a map; 1 where the machine
+refuses something.";
+
+/// What there is to say of a command, if it is more than what it does.
+fn push_details(text: &mut String, subcommand: &Subcommand) {
+    if subcommand.details.is_empty() && subcommand.options.is_empty() {
+        return;
+    }
+    _ = writeln!(text, "cellcaster {}:", subcommand.name);
+    for line in subcommand.details.lines() {
+        push_wrapped(text, "  ".to_owned(), 2, line);
+    }
+    push_options(text, subcommand);
+    text.push('\n');
+}
+
+/// The options of a command that play has not, and the names of those that it has.
+fn push_options(text: &mut String, subcommand: &Subcommand) {
+    let options = subcommand.options.iter();
+    let (shared, own): (Vec<&&dyn Described>, Vec<&&dyn Described>) =
+        options.partition(|option| play::SUBCOMMAND.has(option.name()));
+    for option in own {
+        let choices = match option.choices() {
+            [] => String::new(),
+            choices => format!(" [possible values: {}]", choices.join(", ")),
+        };
+        push_row(text, &option.usage(), &(option.help() + &choices));
+    }
+    if !shared.is_empty() {
+        let names: Vec<String> =
+            shared.iter().map(|option| format!("--{}", option.name())).collect();
+        push_row(text, "as above", &names.join(", "));
+    }
+}
+
+fn push_keys(text: &mut String) {
+    text.push_str("Keys:\n");
+    for (keys, does) in Bindings::default().described() {
+        push_row(text, &keys, does);
+    }
+    text.push('\n');
+}
+
+/// Two columns, the second one wrapped.
+fn push_row(text: &mut String, first: &str, second: &str) {
+    const SECOND: usize = 26;
+    let mut line = format!("  {first:<width$}", width = SECOND - 2);
+    if line.len() > SECOND {
+        _ = writeln!(text, "{}", line.trim_end());
+        line = " ".repeat(SECOND);
+    }
+    push_wrapped(text, line, SECOND, second);
+}
+
+/// Goes on with `line`, and where a word has no room there, in the column `indent` of the next one.
+fn push_wrapped(text: &mut String, mut line: String, indent: usize, words: &str) {
+    for word in words.split(' ') {
+        if line.chars().count() + word.chars().count() > WIDTH {
+            _ = writeln!(text, "{}", line.trim_end());
+            line = " ".repeat(indent);
+        }
+        line.push_str(word);
+        line.push(' ');
+    }
+    _ = writeln!(text, "{}", line.trim_end());
+}

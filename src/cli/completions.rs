@@ -1,0 +1,14 @@
+//! `cellcaster completions`: what a shell completes, from the description of the arguments.
+
+use std::io::{self, Write};
+
+use clap_complete::{Shell, generate};
+
+use super::{Error, arguments};
+
+/// Writes the completions for `shell`.
+pub(super) fn run(shell: Shell) -> Result<(), Error> {
+    let mut script = Vec::new();
+    generate(shell, &mut arguments::description(), "cellcaster", &mut script);
+    io::stdout().write_all(&script).map_err(|error| Error::of_output(&error))
+}
