@@ -20,6 +20,7 @@ mod recording;
 mod replay;
 mod script;
 mod snapshot;
+mod watch;
 mod wire;
 
 use std::ffi::OsString;
@@ -45,7 +46,7 @@ impl Command {
             Self::Completions(shell) => completions::run(shell),
             Self::Manual => manual::run(),
             Self::Play(options) => play::run(options),
-            Self::Snapshot(options) => snapshot::run(&options),
+            Self::Snapshot(options) => snapshot::run(options),
             Self::Cast(options) => cast::run(&options),
             Self::Check(maps) => check::run(&maps),
             Self::Accuracy(options) => accuracy::run(&options),

@@ -48,6 +48,26 @@ impl Faults {
     }
 }
 
+impl Faults {
+    /// The first fault in a line, where it is and what it is; and how many more there are.
+    pub fn summary(&self) -> String {
+        let Some(fault) = self.list.first() else { return String::new() };
+        let more = match self.list.len() - 1 {
+            0 => String::new(),
+            1 => ", and 1 more fault".to_owned(),
+            more => format!(", and {more} more faults"),
+        };
+        match fault.place {
+            None => format!("{}{more}", fault.message),
+            Some(_) => {
+                let before = &self.text.as_bytes()[..fault.start().min(self.text.len())];
+                let line = before.iter().filter(|&&byte| byte == b'\n').count() + 1;
+                format!("{}:{line}: {}{more}", self.name, fault.message)
+            }
+        }
+    }
+}
+
 impl fmt::Display for Faults {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
         excerpt::report(f, &self.name, &self.text, &self.list)

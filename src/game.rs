@@ -73,6 +73,19 @@ impl Game {
         Some(Self { window: Some(window), ..Self::new(world) })
     }
 
+    /// A game in `world` that begins where this one is: the player stands still in the same place and
+    /// looks the same way, if there is room for that; otherwise they are at the world's start, as
+    /// where the place is an exit.
+    #[must_use]
+    pub fn begun_again_in(&self, world: World) -> Self {
+        let player = self.player.placed_in(&world);
+        let begun = Self::new(world);
+        match player.map(|player| Self { player, ..begun.clone() }) {
+            Some(game) if !game.is_finished() => game,
+            _ => begun,
+        }
+    }
+
     /// Which cell of a level that is dug the player is in; `None` on a map, whose cells are the
     /// world's.
     pub fn site(&self) -> Option<Site> {

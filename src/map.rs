@@ -119,9 +119,35 @@ pub fn load(path: &Path) -> Result<World, Faults> {
 /// # Errors
 /// Everything that is wrong with the map, or why the file cannot be read.
 pub fn load_level(path: &Path) -> Result<Level, Faults> {
+    load_level_with(path, &Folder::of(path))
+}
+
+/// As [`load_level`], with textures from elsewhere than the map's folder.
+///
+/// # Errors
+/// As [`load_level`].
+pub fn load_level_with(path: &Path, files: &dyn TextureFiles) -> Result<Level, Faults> {
     let name = path.display().to_string();
-    let text = read_text(path, &name)?;
-    parse_level(&text, &name, &Folder::of(path))
+    let is_folder = fs::metadata(path).map(|metadata| metadata.is_dir());
+    let file = match is_folder {
+        Ok(true) => Err(io::ErrorKind::IsADirectory.into()),
+        Ok(false) => File::open(path),
+        Err(error) => Err(error),
+    };
+    read_level(file.map_err(|error| unreadable(&name, &error))?, &name, files)
+}
+
+/// The level that the map in `input` describes. Faults call the map `name`; textures that are not
+/// built in come from `files`. Of an input that is larger than [`MAX_BYTES`], the rest is not read.
+///
+/// # Errors
+/// Everything that is wrong with the map, or why it cannot be read.
+pub fn read_level(
+    input: impl Read,
+    name: &str,
+    files: &dyn TextureFiles,
+) -> Result<Level, Faults> {
+    parse_level(&read_text(input, name)?, name, files)
 }
 
 impl From<World> for Level {
@@ -148,8 +174,10 @@ impl Level {
     }
 }
 
-fn read_text(path: &Path, name: &str) -> Result<String, Faults> {
-    let bytes = read_up_to(path, MAX_BYTES + 1).map_err(|error| unreadable(name, &error))?;
+fn read_text(input: impl Read, name: &str) -> Result<String, Faults> {
+    let mut bytes = Vec::new();
+    let read = input.take(MAX_BYTES as u64 + 1).read_to_end(&mut bytes);
+    read.map_err(|error| unreadable(name, &error))?;
     if bytes.len() > MAX_BYTES {
         return Err(too_large(name));
     }

@@ -42,7 +42,7 @@ pub use self::event::{Event, QuitReason};
 pub use self::fidelity::{Fidelity, UnknownFidelity};
 pub use self::key::{Key, KeyEvent, Modifiers, Phase, UnknownKey};
 #[cfg(feature = "cli")]
-pub(crate) use self::platform::peak_memory;
+pub(crate) use self::platform::{peak_memory, take_keys_from_terminal};
 pub use self::recorder::Recorder;
 pub use self::session::{Options, Session};
 pub use self::size::WindowSize;

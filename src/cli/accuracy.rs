@@ -6,15 +6,18 @@ mod plot;
 mod progress;
 mod table;
 
-use std::io::{self, BufWriter, Write};
+use std::io::{self, BufWriter, IsTerminal, Write};
 
 use super::arguments::{Accuracy, ReportFormat};
-use super::{Error, level};
+use super::{Error, level, snapshot};
 use crate::accuracy::{Plan, RaySource, Report, report, set_names};
 use progress::Progress;
 
 /// Reports what `options` ask for.
 pub(super) fn run(options: &Accuracy) -> Result<(), Error> {
+    if matches!(options.format, ReportFormat::Png) && io::stdout().is_terminal() {
+        return Err(snapshot::no_png_here("accuracy"));
+    }
     let world = match &options.map {
         Some(map) => level::load_grid(Some(map))?,
         // The built-in level in which there is most to see.

@@ -29,7 +29,7 @@ pub(super) fn run(maps: &[OsString]) -> Result<(), Error> {
     }
     match (wrong, maps.len()) {
         (0, _) => Ok(()),
-        (1, 1) => Err(Error::mistake("the map has faults, listed above")),
-        (_, all) => Err(Error::mistake(format!("{wrong} of {all} maps have faults, listed above"))),
+        (1, 1) => Err(Error::told()),
+        (_, all) => Err(Error::mistake(format!("{wrong} of {all} maps are wrong, as said above"))),
     }
 }

@@ -21,6 +21,8 @@ enum Cause {
     Faults(Faults),
     /// The machine refused something.
     Machine(String),
+    /// A mistake that has been told of.
+    Told,
     /// Nobody reads what is written any more.
     ClosedPipe,
 }
@@ -29,6 +31,11 @@ impl Error {
     /// The user asked for something that can't be done, as `sentence` says.
     pub(super) fn mistake(sentence: impl Into<String>) -> Self {
         Self { cause: Cause::Mistake(sentence.into()) }
+    }
+
+    /// A mistake that has been told of already.
+    pub(super) fn told() -> Self {
+        Self { cause: Cause::Told }
     }
 
     /// Standard output took no more.
@@ -49,6 +56,7 @@ impl Error {
     pub(super) fn report(&self) -> ExitCode {
         match &self.cause {
             Cause::ClosedPipe => ExitCode::SUCCESS,
+            Cause::Told => ExitCode::from(2),
             Cause::Mistake(_) | Cause::Faults(_) => {
                 print(self);
                 ExitCode::from(2)
@@ -90,6 +98,7 @@ impl fmt::Display for Error {
                 write!(f, "cellcaster: {sentence}")
             }
             Cause::Faults(faults) => faults.fmt(f),
+            Cause::Told => f.write_str("cellcaster: told already"),
             Cause::ClosedPipe => f.write_str("cellcaster: the output was closed"),
         }
     }

@@ -1,14 +1,16 @@
 //! Which level a command is about.
 
 use std::ffi::OsStr;
+use std::io;
 use std::path::Path;
 
 use super::Error;
-use super::arguments::{Generated, subcommand_names};
+use super::arguments::{Generated, STANDARD_INPUT, subcommand_names};
+use super::watch::Watch;
 use crate::fault::nearest;
 use crate::game::Game;
 use crate::generate::{Site, Window};
-use crate::map::{self, Level, builtin};
+use crate::map::{self, Folder, Level, builtin};
 use crate::tui::Levels;
 use crate::world::World;
 
@@ -31,6 +33,10 @@ pub(super) fn load(argument: Option<&OsStr>) -> Result<Level, Error> {
     if let Some(index) = builtin_level(argument) {
         return of_grid(&builtin::LEVELS[index]);
     }
+    if argument == STANDARD_INPUT {
+        let input = io::stdin().lock();
+        return Ok(map::read_level(input, "<standard input>", &Folder::of(Path::new("")))?);
+    }
     let path = Path::new(argument);
     match misspelt(argument).filter(|_| !path.exists()) {
         Some(meant) => Err(Error::mistake(format!(
@@ -40,6 +46,29 @@ pub(super) fn load(argument: Option<&OsStr>) -> Result<Level, Error> {
         None => Ok(map::load_level(path)?),
     }
 }
+
+/// The level in the file that `argument` names, and what tells when that changes. Nothing else can
+/// change.
+pub(super) fn watch(
+    argument: Option<&OsStr>,
+    generated: Option<Generated>,
+) -> Result<(Level, Watch), Error> {
+    let is_file = |name: &OsStr| name != STANDARD_INPUT && Path::new(name).is_file();
+    match argument {
+        Some(name) if generated.is_none() && is_file(name) => {
+            let (level, watch) = Watch::load(Path::new(name));
+            Ok((level?, watch))
+        }
+        // Why it is none, if it is to be one.
+        Some(name) if name != STANDARD_INPUT && builtin_level(name).is_none() => {
+            load(argument).and_then(|_| Err(Error::mistake(NOTHING_TO_WATCH)))
+        }
+        _ => Err(Error::mistake(NOTHING_TO_WATCH)),
+    }
+}
+
+const NOTHING_TO_WATCH: &str =
+    "--watch needs a map file, as in \"cellcaster play my.toml --watch\": nothing else changes";
 
 /// The level that `argument` names, and the built-in ones that follow it if it is one.
 pub(super) fn load_series(argument: Option<&OsStr>) -> Result<Levels, Error> {

@@ -1,20 +1,22 @@
 //! `cellcaster play`: the game on the terminal.
 
+use std::env;
 use std::fs;
-use std::io;
+use std::io::{self, IsTerminal};
 use std::path::PathBuf;
 use std::time::Duration;
 
 use etcetera::{BaseStrategy, choose_base_strategy};
 
-use super::arguments::{FidelityChoice, Play};
+use super::arguments::{FidelityChoice, Play, STANDARD_INPUT};
 use super::recording::RecordingFile;
 use super::{Error, level};
-use crate::tui::{self, Bindings, Settings};
+use crate::terminal::{self, take_keys_from_terminal};
+use crate::tui::{self, Bindings, Levels, Settings};
 
 /// Plays until the player has had enough.
 pub(super) fn run(options: Play) -> Result<(), Error> {
-    let levels = level::load_or_dig(options.map.as_deref(), options.generated)?;
+    let levels = levels(&options)?;
     let settings = Settings {
         bindings: bindings(options.config)?,
         frame_time: Duration::from_secs(1)
@@ -28,10 +30,49 @@ pub(super) fn run(options: Play) -> Result<(), Error> {
         fidelity: options.fidelity.and_then(FidelityChoice::fixed),
         shows_stats: options.shows_stats,
     };
-    let file = options.record.as_deref().map(RecordingFile::create).transpose()?;
+    let file = options.record.as_deref();
+    let file = file.map(|path| RecordingFile::create(path, options.overwrites)).transpose()?;
     let recording = file.as_ref().map(RecordingFile::recording).unwrap_or_default();
-    tui::play(levels, settings, recording)?;
-    file.map_or(Ok(()), RecordingFile::finish)
+    let played = tui::play(levels, settings, recording);
+    let written = file.map_or(Ok(()), RecordingFile::finish);
+    played.map_err(about_the_terminal)?;
+    written
+}
+
+/// The levels to play; where standard input is one, keys come from the terminal after that.
+fn levels(options: &Play) -> Result<Levels, Error> {
+    if options.watches {
+        if options.record.as_deref().is_some_and(RecordingFile::is_script) {
+            return Err(Error::mistake(
+                "a script is about a map that stays as it is, and --watch loads it anew: leave one \
+                 of them out, or record a .cast",
+            ));
+        }
+        let (level, mut watch) = level::watch(options.map.as_deref(), options.generated)?;
+        return Ok(Levels::changing(level, move || watch.change()));
+    }
+    let levels = level::load_or_dig(options.map.as_deref(), options.generated)?;
+    if options.map.as_ref().is_some_and(|map| map == STANDARD_INPUT) && !io::stdin().is_terminal() {
+        take_keys_from_terminal().map_err(|_| {
+            Error::mistake(
+                "standard input held the map, and there is no terminal to take keys from: name a \
+                 file instead",
+            )
+        })?;
+    }
+    Ok(levels)
+}
+
+/// What is wrong with the terminal; who came by SSH is told how to bring one.
+fn about_the_terminal(error: terminal::Error) -> Error {
+    let came_by_ssh = env::var_os("SSH_CONNECTION").is_some();
+    if error.is_mistake() && came_by_ssh && !io::stdin().is_terminal() {
+        return Error::mistake(
+            "playing needs a terminal, which ssh gives to a command only with -t: \
+             ssh -t HOST cellcaster",
+        );
+    }
+    error.into()
 }
 
 /// The bindings in the file that was named, or in the user's own if there is one.

@@ -1,6 +1,6 @@
 //! `--record`: a file that takes note of a game.
 
-use std::fs::File;
+use std::fs::{self, File, OpenOptions};
 use std::io::{self, Write};
 use std::path::{Path, PathBuf};
 use std::sync::{Arc, Mutex, MutexGuard, PoisonError};
@@ -12,27 +12,52 @@ use super::Error;
 use super::asciicast::Asciicast;
 use crate::{game, terminal, tui};
 
-/// The ending of the files that hold what the terminal was sent; all others hold scripts.
-const ASCIICAST_ENDING: &str = "cast";
+/// What a file holds, by its ending.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+enum Kind {
+    /// What the terminal was sent.
+    Asciicast,
+    /// What the player did.
+    Script,
+}
 
 /// A file that is written while the game is played.
 #[derive(Debug)]
 pub(super) struct RecordingFile {
     path: PathBuf,
+    kind: Kind,
     output: Output,
 }
 
 impl RecordingFile {
-    /// Makes the file, empty.
-    pub(super) fn create(path: &Path) -> Result<Self, Error> {
-        let file = File::create(path).map_err(|error| unwritable(path, &error))?;
-        Ok(Self { path: path.to_owned(), output: Output::to(file) })
+    /// Makes the file, empty. One that is there already is replaced only if this `overwrites`.
+    pub(super) fn create(path: &Path, overwrites: bool) -> Result<Self, Error> {
+        let kind = Kind::of(path)?;
+        let mut options = OpenOptions::new();
+        if overwrites {
+            options.create(true).truncate(true);
+        } else {
+            options.create_new(true);
+        }
+        let file = options.write(true).open(path).map_err(|error| match error.kind() {
+            io::ErrorKind::AlreadyExists => Error::mistake(format!(
+                "{} is there already: name another file, or replace it with --force",
+                path.display()
+            )),
+            _ => unwritable(path, &error),
+        })?;
+        Ok(Self { path: path.to_owned(), kind, output: Output::to(file) })
+    }
+
+    /// Whether a file of that name holds what the player did.
+    pub(super) fn is_script(path: &Path) -> bool {
+        Kind::of(path).is_ok_and(|kind| kind == Kind::Script)
     }
 
     /// What writes it.
     pub(super) fn recording(&self) -> tui::Recording {
         let output = self.output.clone();
-        if is_asciicast(&self.path) {
+        if self.kind == Kind::Asciicast {
             let terminal = TerminalRecorder { output, asciicast: None, start: Instant::now() };
             tui::Recording { terminal: Some(Box::new(terminal)), script: None }
         } else {
@@ -41,8 +66,13 @@ impl RecordingFile {
         }
     }
 
-    /// Whether all could be written.
+    /// Whether all could be written. A file that nothing was written to is removed: the game did not
+    /// begin.
     pub(super) fn finish(self) -> Result<(), Error> {
+        if fs::metadata(&self.path).is_ok_and(|file| file.is_file() && file.len() == 0) {
+            // It only would have been in the way of the next one.
+            _ = fs::remove_file(&self.path);
+        }
         match self.output.lock().fault.take() {
             None => Ok(()),
             Some(error) => Err(unwritable(&self.path, &error)),
@@ -50,9 +80,21 @@ impl RecordingFile {
     }
 }
 
-/// Whether a file of that name holds what a terminal was sent.
-fn is_asciicast(path: &Path) -> bool {
-    path.extension().is_some_and(|ending| ending.eq_ignore_ascii_case(ASCIICAST_ENDING))
+impl Kind {
+    fn of(path: &Path) -> Result<Self, Error> {
+        let ending = path.extension().unwrap_or_default();
+        if ending.eq_ignore_ascii_case("cast") {
+            Ok(Self::Asciicast)
+        } else if ending.eq_ignore_ascii_case("script") {
+            Ok(Self::Script)
+        } else {
+            Err(Error::mistake(format!(
+                "--record takes a file that ends in .cast, for what the terminal is sent, or in \
+                 .script, for what you do, not \"{}\"",
+                path.display()
+            )))
+        }
+    }
 }
 
 /// That a file can't be written.

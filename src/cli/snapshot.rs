@@ -8,8 +8,9 @@ mod json;
 mod picture;
 mod png;
 mod text;
+mod watched;
 
-use std::io::{self, BufWriter, Write};
+use std::io::{self, BufWriter, IsTerminal, Write};
 
 use glam::DVec2;
 use ratatui::buffer::{Buffer, Cell};
@@ -38,22 +39,47 @@ trait Writer {
 }
 
 /// Writes the frame that `options` ask for.
-pub(super) fn run(options: &Snapshot) -> Result<(), Error> {
+pub(super) fn run(options: Snapshot) -> Result<(), Error> {
+    let is_png = options.format == Format::Png && !options.explain;
+    if is_png && options.watches {
+        return Err(Error::mistake(
+            "a PNG is one picture, and --watch draws several: leave one of them out",
+        ));
+    }
+    if is_png && io::stdout().is_terminal() {
+        return Err(no_png_here("snapshot"));
+    }
+    if options.watches {
+        return watched::run(options);
+    }
     if let Some(generated) = options.generated {
-        let (world, camera) = dug(generated, options)?;
+        let (world, camera) = dug(generated, &options)?;
         let view = View::with_method(options.method.clone());
-        return output(&mut OfGrid::new(&world, &camera, view, options), options)
+        return output(&mut OfGrid::new(&world, &camera, view, &options), &options)
             .map_err(|error| Error::of_output(&error));
     }
-    match level::load(options.map.as_deref())? {
+    draw(&level::load(options.map.as_deref())?, &options)
+}
+
+/// That a PNG would be noise in a terminal, of a command that writes one.
+pub(super) fn no_png_here(command: &str) -> Error {
+    Error::mistake(format!(
+        "a PNG is no text, and standard output is a terminal: redirect it to a file, as in \
+         \"cellcaster {command} --format png > picture.png\""
+    ))
+}
+
+/// Draws the frame of `level`.
+fn draw(level: &Level, options: &Snapshot) -> Result<(), Error> {
+    match level {
         Level::Grid(world) => {
-            let camera = camera(&world, options.camera, options);
+            let camera = camera(world, options.camera, options);
             let view = View::with_method(options.method.clone());
-            output(&mut OfGrid::new(&world, &camera, view, options), options)
+            output(&mut OfGrid::new(world, &camera, view, options), options)
         }
         Level::Space(scene) => {
-            let camera = scene_camera(&scene, options)?;
-            output(&mut OfSpace::new(&scene, &camera, options), options)
+            let camera = scene_camera(scene, options)?;
+            output(&mut OfSpace::new(scene, &camera, options), options)
         }
     }
     .map_err(|error| Error::of_output(&error))

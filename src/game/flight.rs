@@ -56,6 +56,20 @@ impl Flight {
         Self { scene, player, steps: 0 }
     }
 
+    /// A flight through `scene` that begins where this one is: the player is still, in the same place,
+    /// and looks the same way, if there is room for that; otherwise they are at the scene's start.
+    #[must_use]
+    pub fn begun_again_in(&self, scene: Scene) -> Self {
+        let Player { position, heading, elevation, .. } = self.player;
+        let has_room = is_free(&scene, position);
+        let begun = Self::new(scene);
+        if !has_room {
+            return begun;
+        }
+        let player = Player { position, heading, elevation, ..begun.player };
+        Self { player, ..begun }
+    }
+
     /// Where the flight takes place.
     pub fn scene(&self) -> &Scene {
         &self.scene

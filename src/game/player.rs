@@ -72,6 +72,23 @@ impl Player {
         }
     }
 
+    /// The same player in another world, standing still; `None` where there is no room for them.
+    pub(super) fn placed_in(self, world: &World) -> Option<Self> {
+        let Cell { column, row } = self.cell();
+        world.grid().tile(column.into(), row.into())?;
+        let still = Self {
+            body: Body { velocity: DVec2::ZERO, ..self.body },
+            rising: 0.0,
+            turning: 0.0,
+            posture: Posture::default(),
+            wanted_to_jump: false,
+            ..self
+        };
+        let heights = [self.feet, world.floor_at(self.cell())];
+        let placed = heights.map(|feet| Self { feet, ..still });
+        placed.into_iter().find(|player| player.has_room(world))
+    }
+
     /// What the player sees of `world`.
     pub(super) fn camera(&self, world: &World, field_of_view: FieldOfView) -> Option<Camera> {
         let ceiling = self.room(world).ceiling + self.posture.height();

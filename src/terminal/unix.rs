@@ -160,6 +160,21 @@ impl Device {
     }
 }
 
+/// Makes the terminal that standard output is standard input as well, which was read to its end and is
+/// not needed any more. "/dev/tty" would do, but can't be polled on every system.
+#[cfg(feature = "cli")]
+pub(crate) fn take_keys_from_terminal() -> io::Result<()> {
+    let output = rustix::stdio::stdout();
+    let name = ttyname(output, Vec::new())?;
+    let terminal = rustix::fs::open(name, OFlags::RDONLY | OFlags::NOCTTY, Mode::empty());
+    match terminal {
+        Ok(terminal) => rustix::stdio::dup2_stdin(terminal)?,
+        // Somebody else's, as after `su`: what is open already can be read all the same.
+        Err(_) => rustix::stdio::dup2_stdin(output)?,
+    }
+    Ok(())
+}
+
 /// Opens the terminal `stream` once more, so that reads and writes do not block; or the same one
 /// again, where its name does not lead to it.
 fn open_again(stream: BorrowedFd, access: OFlags) -> io::Result<OwnedFd> {

@@ -41,6 +41,12 @@ pub(crate) fn peak_memory() -> Option<u64> {
     None
 }
 
+/// There is none to take them from.
+#[cfg(feature = "cli")]
+pub(crate) fn take_keys_from_terminal() -> io::Result<()> {
+    Err(io::ErrorKind::Unsupported.into())
+}
+
 impl Device {
     pub(super) fn open() -> Result<Self, Error> {
         Err(Error::unsupported_platform())

@@ -9,6 +9,7 @@ mod levels;
 mod panels;
 mod played;
 mod recording;
+mod reload;
 mod replay;
 mod run;
 mod stats;
@@ -34,6 +35,7 @@ use crate::world::FieldOfView;
 use clock::Clock;
 use played::{Eye, Memory, Played};
 use recording::ScriptRecorder;
+use reload::Reload;
 use stats::Stats;
 use status::{Gait, StatusLine};
 
@@ -115,11 +117,13 @@ struct App {
     status: StatusLine,
     /// Where what is wanted is noted down.
     script: Option<ScriptRecorder>,
+    /// Where changes of the level come from.
+    reload: Option<Reload>,
 }
 
 impl App {
     fn new(levels: Levels, settings: Settings) -> Self {
-        let Levels { first, rest } = levels;
+        let Levels { first, rest, changes } = levels;
         Self {
             later_levels: rest,
             game: first,
@@ -145,6 +149,7 @@ impl App {
             stats: None,
             status: StatusLine::default(),
             script: None,
+            reload: changes.map(Reload::from),
         }
     }
 
@@ -255,6 +260,7 @@ impl App {
             Screen::LevelDone => panels::level_done(canvas, picture, self.game.title(), seconds),
             Screen::End => panels::end(canvas, picture, self.earlier + seconds),
         }
+        self.draw_fault(canvas, picture);
     }
 
     fn draw_picture(&mut self, canvas: &mut impl Canvas, area: Rect) {

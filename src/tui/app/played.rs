@@ -46,6 +46,19 @@ impl Played {
         }
     }
 
+    /// A game of `level` that begins where this one is, if it can.
+    pub(super) fn begun_again_in(&self, level: Level) -> Self {
+        match (self, level) {
+            (Self::Grid(game), Level::Grid(world)) => {
+                Self::Grid(Box::new(game.begun_again_in(*world)))
+            }
+            (Self::Space(flight), Level::Space(scene)) => {
+                Self::Space(Box::new(flight.begun_again_in(scene)))
+            }
+            (_, level) => Self::new(level),
+        }
+    }
+
     pub(super) fn title(&self) -> &str {
         let title = match self {
             Self::Grid(game) => game.world().title(),

@@ -32,6 +32,7 @@ pub fn play(levels: Levels, settings: Settings, recording: Recording) -> Result<
     let start = Instant::now();
     while !app.has_left {
         app.advance(start.elapsed());
+        app.reload(start.elapsed());
         presenter.update(&mut app, &mut session, start.elapsed())?;
         let wakes_at = presenter.wakes_at(&app, &session, start.elapsed());
         let timeout = wakes_at.map(|wakes| wakes.saturating_sub(start.elapsed()));
@@ -106,7 +107,7 @@ impl Presenter {
             (is_unfinished(app, session).then_some(self.next_frame), self.next_frame)
         };
         let change = app.next_change().map(|change| change.max(soonest));
-        frame.into_iter().chain(change).chain(app.held.next_expiry()).min()
+        frame.into_iter().chain(change).chain(app.held.next_expiry()).chain(app.next_reload()).min()
     }
 }
 
