@@ -39,3 +39,5 @@ mod resting;
 mod settings;
 #[path = "play/showing.rs"]
 mod showing;
+#[path = "play/watching.rs"]
+mod watching;

@@ -105,3 +105,46 @@ impl Stamp {
         Some(Self { modified: metadata.modified().ok(), length: metadata.len() })
     }
 }
+
+#[cfg(test)]
+mod tests {
+    use std::env;
+
+    use super::*;
+
+    const MAP: &str = "floor = \"floor.png\"\ngrid = '@'\n[things]\n\"@\" = { start = 0 }\n";
+    const PNG: &[u8] = include_bytes!("../../tests/maps/rows.png");
+    const ANOTHER_PNG: &[u8] = include_bytes!("../../tests/maps/letter.png");
+
+    #[test]
+    fn every_change_is_told_of_once_and_a_fault_when_it_lasts() {
+        let folder = env::temp_dir().join(format!("cellcaster-watch-{}", std::process::id()));
+        fs::create_dir_all(&folder).unwrap();
+        let (map, texture) = (folder.join("map.toml"), folder.join("floor.png"));
+        fs::write(&map, MAP).unwrap();
+        fs::write(&texture, PNG).unwrap();
+        let (level, mut watch) = Watch::load(&map);
+        let first = level.unwrap();
+        assert!(watch.change().is_none());
+
+        fs::write(&texture, ANOTHER_PNG).unwrap();
+        let second = watch.change().unwrap().unwrap();
+        assert!(second != first);
+        assert!(watch.change().is_none());
+
+        // Gone for a moment only, as where an editor replaces it.
+        fs::remove_file(&map).unwrap();
+        assert!(watch.change().is_none());
+        fs::write(&map, MAP).unwrap();
+        assert!(watch.change().unwrap().unwrap() == second);
+
+        fs::remove_file(&texture).unwrap();
+        assert!(watch.change().is_none());
+        assert!(watch.change().unwrap().is_err());
+        assert!(watch.change().is_none());
+        fs::write(&texture, PNG).unwrap();
+        assert!(watch.change().unwrap().unwrap() == first);
+        assert!(watch.change().is_none());
+        fs::remove_dir_all(&folder).unwrap();
+    }
+}

@@ -224,3 +224,23 @@ fn a_walk_ends_at_the_same_place_on_every_machine() {
     "
     );
 }
+
+#[test]
+fn in_a_changed_world_the_player_keeps_their_place_while_there_is_room() {
+    let rows = ["#######", "#@....#", "#....E#", "#######"];
+    let mut game = Game::new(world(&rows, 0.0));
+    let wants = [Intent::Forward, Intent::TurnRight].into_iter().collect();
+    (0..20).for_each(|_| game.step(wants));
+    let view = FieldOfView::default();
+    let before = game.camera(view);
+    let again = game.begun_again_in(world(&["########", "#@.....#", "#......#", "########"], 0.0));
+    assert_eq!(again.camera(view).position(), before.position());
+    assert_eq!(again.camera(view).heading(), before.heading());
+    assert_eq!(again.elapsed(), 0.0);
+
+    // A wall, an exit, and nothing at all where they stand.
+    for rows in [["#######", "#@#####", "#....E#"], ["#######", "#@EEE##", "#....E#"], ["###", "#@#", "###"]] {
+        let changed = world(&rows, 0.0);
+        assert_eq!(game.begun_again_in(changed.clone()), Game::new(changed), "{rows:?}");
+    }
+}

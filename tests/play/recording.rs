@@ -15,7 +15,7 @@ use crate::support::output_of;
 /// A game that is recorded in a new file of that name.
 fn recorded(name: &str) -> (Game, PathBuf) {
     let path = Path::new(env!("CARGO_TARGET_TMPDIR")).join(name);
-    let options = ["--record", path.to_str().unwrap()];
+    let options = ["--force", "--record", path.to_str().unwrap()];
     (Game::with(Speaks::Kitty, (80, 24), None, &options, &[]), path)
 }
 
