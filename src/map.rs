@@ -142,11 +142,7 @@ pub fn load_level_with(path: &Path, files: &dyn TextureFiles) -> Result<Level, F
 ///
 /// # Errors
 /// Everything that is wrong with the map, or why it cannot be read.
-pub fn read_level(
-    input: impl Read,
-    name: &str,
-    files: &dyn TextureFiles,
-) -> Result<Level, Faults> {
+pub fn read_level(input: impl Read, name: &str, files: &dyn TextureFiles) -> Result<Level, Faults> {
     parse_level(&read_text(input, name)?, name, files)
 }
 

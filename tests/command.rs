@@ -130,7 +130,8 @@ fn bash_completes_subcommands_options_and_values() {
 #[test]
 fn options_may_stand_before_the_subcommand() {
     let size = ["--size", "20x4"];
-    let after = output_of(&[&["snapshot", "--format", "ansi", "--colors", "256"], &size[..]].concat());
+    let after =
+        output_of(&[&["snapshot", "--format", "ansi", "--colors", "256"], &size[..]].concat());
     for before in [
         &["--colors", "256", "snapshot", "--format", "ansi"][..],
         &["--format", "ansi", "--colors=256", "snapshot"],

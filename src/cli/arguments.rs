@@ -33,12 +33,12 @@ pub(super) use self::bench::{Bench, BenchFormat};
 pub(super) use self::cast::Cast;
 pub(super) use self::generated::Generated;
 pub(super) use self::map::STANDARD_INPUT;
+use self::option::Described;
 pub(super) use self::play::{FidelityChoice, Play};
 pub(super) use self::replay::Replay;
 pub(super) use self::snapshot::{Format, Snapshot};
 pub(super) use self::value::Size;
 pub(super) use self::wire::{Wire, WireFormat};
-use self::option::Described;
 use super::Error;
 
 /// What is asked for.

@@ -75,7 +75,10 @@ impl Player {
     /// The same player in another world, standing still; `None` where there is no room for them.
     pub(super) fn placed_in(self, world: &World) -> Option<Self> {
         let Cell { column, row } = self.cell();
-        world.grid().tile(column.into(), row.into())?;
+        let (column, row) = (i64::from(column), i64::from(row));
+        if world.grid().tile(column, row).is_none() || world.grid().is_solid(column, row) {
+            return None;
+        }
         let still = Self {
             body: Body { velocity: DVec2::ZERO, ..self.body },
             rising: 0.0,

@@ -234,12 +234,15 @@ fn in_a_changed_world_the_player_keeps_their_place_while_there_is_room() {
     let view = FieldOfView::default();
     let before = game.camera(view);
     let again = game.begun_again_in(world(&["########", "#@.....#", "#......#", "########"], 0.0));
-    assert_eq!(again.camera(view).position(), before.position());
-    assert_eq!(again.camera(view).heading(), before.heading());
+    assert_eq!(again.camera(view), before);
     assert_eq!(again.elapsed(), 0.0);
 
     // A wall, an exit, and nothing at all where they stand.
-    for rows in [["#######", "#@#####", "#....E#"], ["#######", "#@EEE##", "#....E#"], ["###", "#@#", "###"]] {
+    for rows in [
+        ["#######", "#@#####", "#....E#"],
+        ["#######", "#@EEE##", "#....E#"],
+        ["###", "#@#", "###"],
+    ] {
         let changed = world(&rows, 0.0);
         assert_eq!(game.begun_again_in(changed.clone()), Game::new(changed), "{rows:?}");
     }

@@ -75,4 +75,5 @@ const FORMAT: Valued<BenchFormat> = Valued {
     repeats: false,
 };
 
-const PLOT: FileOption = FileOption { name: "plot", help: "Draw plots of it in FILE, besides, as SVG" };
+const PLOT: FileOption =
+    FileOption { name: "plot", help: "Draw plots of it in FILE, besides, as SVG" };

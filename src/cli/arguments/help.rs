@@ -42,7 +42,6 @@ pub(super) fn examples(subcommand: &Subcommand) -> String {
     format!("Examples:\n{}", lines.concat())
 }
 
-
 const EXIT_STATUS: &str = "
 Exit status: 0; 2 for a mistake in the arguments or a map; 1 where the machine
 refuses something.";

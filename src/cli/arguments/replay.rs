@@ -84,4 +84,3 @@ const SCRIPT: Positional = Positional {
 
 const CAST: FileOption =
     FileOption { name: "cast", help: "Where to write [default: standard output]" };
-

@@ -182,5 +182,7 @@ pub(super) const FIDELITY: Valued<Fidelity> = Valued {
     repeats: false,
 };
 
-pub(super) const WATCH: Flag =
-    Flag { name: "watch", help: "Load the map anew whenever its file, or a PNG that it uses, changes" };
+pub(super) const WATCH: Flag = Flag {
+    name: "watch",
+    help: "Load the map anew whenever its file, or a PNG that it uses, changes",
+};

@@ -64,7 +64,8 @@ impl Place {
     }
 
     fn has_another_size(&self, options: &Snapshot) -> bool {
-        self.fits_window && window().map(arguments::Size::cells) != options.size.map(arguments::Size::cells)
+        self.fits_window
+            && window().map(arguments::Size::cells) != options.size.map(arguments::Size::cells)
     }
 
     fn tell(&self, faults: &Faults) -> Result<(), Error> {
