@@ -46,5 +46,5 @@ pub use bindings::Bindings;
 pub use canvas::Canvas;
 pub use first_person::{FirstPerson, View};
 pub use glyphs::{CellAspect, GlyphMode};
-pub use minimap::Minimap;
+pub use minimap::{Explored, Minimap};
 pub use space_view::{SpaceMemory, SpaceView};
