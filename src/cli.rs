@@ -10,6 +10,7 @@ mod asciicast;
 mod bench;
 mod cast;
 mod check;
+mod config;
 mod error;
 mod help;
 mod level;
@@ -45,6 +46,7 @@ impl Command {
             Self::Snapshot(options) => snapshot::run(&options),
             Self::Cast(options) => cast::run(&options),
             Self::Check(maps) => check::run(&maps),
+            Self::Config(options) => config::run(options),
             Self::Accuracy(options) => accuracy::run(&options),
             Self::Bench(options) => bench::run(&options),
             Self::Replay(options) => replay::run(&options),

@@ -4,6 +4,7 @@ mod accuracy;
 mod bench;
 mod cast;
 mod check;
+mod config;
 mod generated;
 mod play;
 mod replay;
@@ -18,6 +19,7 @@ use lexopt::{Arg, Parser};
 pub(super) use self::accuracy::{Accuracy, ReportFormat};
 pub(super) use self::bench::{Bench, BenchFormat};
 pub(super) use self::cast::Cast;
+pub(super) use self::config::Config;
 pub(super) use self::generated::Generated;
 pub(super) use self::play::Play;
 pub(super) use self::replay::Replay;
@@ -35,6 +37,7 @@ pub(super) enum Command {
     Snapshot(Snapshot),
     Cast(Cast),
     Check(Vec<OsString>),
+    Config(Config),
     Accuracy(Accuracy),
     Bench(Bench),
     Replay(Replay),
@@ -54,6 +57,7 @@ impl Command {
             "snapshot" => snapshot::parse(parser),
             "cast" => cast::parse(parser),
             "check" => check::parse(parser),
+            "config" => config::parse(parser),
             "accuracy" => accuracy::parse(parser),
             "bench" => bench::parse(parser),
             "replay" => replay::parse(parser),
@@ -64,8 +68,8 @@ impl Command {
     }
 }
 
-pub(super) const COMMANDS: [&str; 9] =
-    ["play", "snapshot", "cast", "check", "accuracy", "bench", "replay", "wire", "help"];
+pub(super) const COMMANDS: [&str; 10] =
+    ["play", "snapshot", "cast", "check", "config", "accuracy", "bench", "replay", "wire", "help"];
 
 fn is_command(argument: &OsStr) -> bool {
     COMMANDS.iter().any(|&command| argument == command)

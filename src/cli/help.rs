@@ -23,6 +23,7 @@ USAGE
   cellcaster snapshot [MAP] [OPTIONS]  one frame to standard output
   cellcaster cast [MAP] [OPTIONS]      rays from standard input, hits to standard output
   cellcaster check MAP...              say everything that is wrong with maps
+  cellcaster config [--config FILE]    the settings in force, as a file with comments
   cellcaster accuracy [MAP] [OPTIONS]  error against run time, for every way to cast
   cellcaster bench [OPTIONS]           how fast this machine draws, and a link shows it
   cellcaster replay SCRIPT [MAP] [OPTIONS]  a script, off screen, as asciicast
@@ -44,7 +45,7 @@ KEYS
 
 OPTIONS OF PLAY
   --fps N           at most N frames a second, 1 to 240            [30]
-  --config FILE     key bindings        [cellcaster/config.toml in the
+  --config FILE     keys and settings   [cellcaster/config.toml in the
                     folder for configuration files]
   --fidelity LEVEL  how exact colours are while something moves: auto (as the
                     link allows), exact, high, low or 0 to 255     [auto]

@@ -223,9 +223,9 @@ impl Picture<'_> {
 
 /// The character for two places, one above the other, where there are no colours: things are letters.
 fn in_mono((top, bottom): (Place, Place), (x, y): (u32, u32)) -> char {
-    let letter = [top, bottom].into_iter().find(|place| {
-        matches!(place, Place::Exit | Place::Key | Place::Ornament)
-    });
+    let letter = [top, bottom]
+        .into_iter()
+        .find(|place| matches!(place, Place::Exit | Place::Key | Place::Ornament));
     letter.map_or_else(
         || half_blocks::lit_glyph(top.is_lit(x, y), bottom.is_lit(x, y + 1)),
         Place::character,

@@ -22,14 +22,15 @@ pub(in crate::cli) struct Play {
     /// What to dig in place of a map.
     pub(in crate::cli) generated: Option<Generated>,
     pub(in crate::cli) config: Option<PathBuf>,
-    pub(in crate::cli) frames_per_second: FramesPerSecond,
-    pub(in crate::cli) field_of_view: FieldOfView,
+    pub(in crate::cli) frames_per_second: Option<FramesPerSecond>,
+    pub(in crate::cli) field_of_view: Option<FieldOfView>,
     pub(in crate::cli) cell_aspect: Option<CellAspect>,
-    pub(in crate::cli) glyphs: GlyphMode,
+    pub(in crate::cli) glyphs: Option<GlyphMode>,
     pub(in crate::cli) depth: Option<ColorDepth>,
     pub(in crate::cli) method: Method,
     pub(in crate::cli) filter: Filter,
-    pub(in crate::cli) fidelity: Option<Fidelity>,
+    /// `Some(None)` for what the link allows.
+    pub(in crate::cli) fidelity: Option<Option<Fidelity>>,
     pub(in crate::cli) shows_stats: bool,
     /// Where to write what happens.
     pub(in crate::cli) record: Option<PathBuf>,
@@ -47,17 +48,17 @@ pub(super) fn parse(mut parser: Parser) -> Result<Command, Error> {
                 play.config = Some(word(&mut parser, "--config", "a file")?.into());
             }
             Arg::Long("fps") => {
-                play.frames_per_second = value::FRAMES_PER_SECOND.value(&mut parser)?;
+                play.frames_per_second = Some(value::FRAMES_PER_SECOND.value(&mut parser)?);
             }
-            Arg::Long("fov") => play.field_of_view = value::FIELD_OF_VIEW.value(&mut parser)?,
+            Arg::Long("fov") => play.field_of_view = Some(value::FIELD_OF_VIEW.value(&mut parser)?),
             Arg::Long("cell-aspect") => {
                 play.cell_aspect = Some(value::CELL_ASPECT.value(&mut parser)?);
             }
-            Arg::Long("glyphs") => play.glyphs = value::GLYPHS.value(&mut parser)?,
+            Arg::Long("glyphs") => play.glyphs = Some(value::GLYPHS.value(&mut parser)?),
             Arg::Long("colors") => play.depth = Some(value::COLORS.value(&mut parser)?),
             Arg::Long("caster") => play.method = value::method(&mut parser)?,
             Arg::Long("filter") => play.filter = value::FILTER.value(&mut parser)?,
-            Arg::Long("fidelity") => play.fidelity = value::fidelity_or_auto(&mut parser)?,
+            Arg::Long("fidelity") => play.fidelity = Some(value::fidelity_or_auto(&mut parser)?),
             Arg::Long("stats") => play.shows_stats = true,
             Arg::Long("record") => {
                 play.record = Some(word(&mut parser, "--record", "a file")?.into());

@@ -92,7 +92,8 @@ impl Explored {
         let elsewhere = std::mem::take(&mut self.elsewhere);
         for row in 0..height {
             let (site_row, first) = self.site(Cell { column: 0, row });
-            let words = first.div_euclid(WORD.into())..=(first + i64::from(width)).div_euclid(WORD.into());
+            let words =
+                first.div_euclid(WORD.into())..=(first + i64::from(width)).div_euclid(WORD.into());
             let known = elsewhere.range((site_row, *words.start())..=(site_row, *words.end()));
             for (&(_, index), &word) in known {
                 for bit in (0..WORD).filter(|bit| word >> bit & 1 == 1) {
@@ -226,7 +227,8 @@ impl Look<'_> {
             }
             sight = sight.and(seen_of_gap);
             let Some((cell, tile)) = crossed.into else { return };
-            if sight.is_closed() || self.slope(self.top, t) <= sight.low || self.is_hidden_by_fog(t) {
+            if sight.is_closed() || self.slope(self.top, t) <= sight.low || self.is_hidden_by_fog(t)
+            {
                 return;
             }
             let kind = self.world.tile(tile).kind;
