@@ -236,7 +236,7 @@ mod tests {
             " The Museum of Walls  brass key  ? help ",
             " The Museum of Walls  ? ",
             " The Museum of Wa  ? ",
-            " ?  ",
+            "  ? ",
         ];
         for expected in expected {
             assert_eq!(shown(&line, expected.len() as u16).trim_end(), expected.trim_end());
