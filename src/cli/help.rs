@@ -41,7 +41,7 @@ KEYS
   R                 run, on and off     I       show frames and link
   E, Space          open a door         ?       help
   Space             jump                Q, Esc  leave
-  C                 duck, X: on and off
+  C                 duck, X: on and off 9 3, 8 4 6 2, 5  zoom the map, move it, back
 
 OPTIONS OF PLAY
   --fps N           at most N frames a second, 1 to 240            [30]

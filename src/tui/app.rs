@@ -288,3 +288,6 @@ impl App {
         }
     }
 }
+
+#[cfg(test)]
+mod tests;

@@ -89,6 +89,34 @@ fn help_names_the_keys_until_it_is_closed() {
 }
 
 #[test]
+fn the_goal_shows_at_first_and_goes_when_the_player_has_moved() {
+    let game = Game::start();
+    game.wait_for("Find the way out");
+    game.wait_for("level 1 of 5");
+    game.press(Key::Right);
+    game.wait_until("stopped telling the goal", |emulator| {
+        !emulator.text().contains("Find the way out")
+    });
+    game.wait_for("level 1 of 5");
+}
+
+#[test]
+fn help_scrolls_in_a_small_window() {
+    let game = Game::with(Speaks::Plain, (40, 12), None, &[], &[]);
+    game.send("?");
+    game.wait_for("? closes; q leaves");
+    game.wait_for("1-7 of ");
+    game.send("\x1b[B");
+    game.wait_for("2-8 of ");
+    for _ in 0..9 {
+        game.send("\x1b[6~");
+    }
+    game.wait_for("frames and link");
+    game.send("?");
+    game.wait_until("closed help", |emulator| !emulator.text().contains("closes"));
+}
+
+#[test]
 fn plus_and_minus_change_the_field_of_view() {
     let game = Game::start();
     game.tap(Key::Char('+'));

@@ -308,3 +308,6 @@ struct Entered {
 fn is_wall(kind: TileKind) -> bool {
     matches!(kind, TileKind::Wall(_) | TileKind::Mirror(_))
 }
+
+#[cfg(test)]
+mod tests;
