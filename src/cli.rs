@@ -11,6 +11,7 @@ mod bench;
 mod cast;
 mod check;
 mod completions;
+mod config;
 mod error;
 mod level;
 mod manual;
@@ -49,6 +50,7 @@ impl Command {
             Self::Snapshot(options) => snapshot::run(options),
             Self::Cast(options) => cast::run(&options),
             Self::Check(maps) => check::run(&maps),
+            Self::Config(options) => config::run(options),
             Self::Accuracy(options) => accuracy::run(&options),
             Self::Bench(options) => bench::run(&options),
             Self::Replay(options) => replay::run(&options),

@@ -92,6 +92,17 @@ impl Game {
         Some(self.window.as_ref()?.site(self.player.cell()))
     }
 
+    /// Which cell of a level that is dug the world's first one is, in the north-west; `None` on a map.
+    pub fn corner(&self) -> Option<Site> {
+        Some(self.window.as_ref()?.site(Cell { column: 0, row: 0 }))
+    }
+
+    /// Whether there is a way out, near or far.
+    pub fn has_exit(&self) -> bool {
+        let is_far = self.window.as_ref().is_some_and(|window| window.level().exit().is_some());
+        is_far || self.world.things().iter().any(|thing| thing.kind == ThingKind::Exit)
+    }
+
     /// Where the game takes place, as it is now: with its doors as far open as they are, and without
     /// the keys that were taken.
     pub fn world(&self) -> &World {

@@ -257,6 +257,7 @@ fn read(text: &str, files: &dyn TextureFiles, faults: &mut Vec<Fault>) -> Option
     let layout = Layout::of(&drawing, legend, ground, faces, textures_mut, faults)?;
     Some(Level::from(World::from_parts(Parts {
         title: definitions.title,
+        goal: definitions.goal,
         grid: layout.grid,
         tiles: layout.tiles,
         textures: textures.into_list(),

@@ -37,14 +37,18 @@ mod half_blocks;
 mod held;
 mod minimap;
 mod ramp;
+#[cfg(feature = "terminal")]
+mod settings;
 mod space_view;
 
 #[cfg(feature = "terminal")]
-pub use app::{Levels, Recording, Replay, Settings, play};
+pub use app::{Levels, Recording, Replay, play};
 #[cfg(feature = "terminal")]
 pub use bindings::Bindings;
 pub use canvas::Canvas;
 pub use first_person::{FirstPerson, View};
 pub use glyphs::{CellAspect, GlyphMode};
-pub use minimap::Minimap;
+pub use minimap::{Explored, Minimap};
+#[cfg(feature = "terminal")]
+pub use settings::{Configuration, MapDisplay, Settings};
 pub use space_view::{SpaceMemory, SpaceView};

@@ -52,6 +52,7 @@ pub use tile::{Glass, Paint, TextureId, Tile, TileKind};
 #[derive(Clone, Debug, PartialEq)]
 pub struct World {
     title: String,
+    goal: Option<String>,
     grid: Grid,
     tiles: Vec<Tile>,
     textures: Vec<Texture>,
@@ -80,6 +81,11 @@ impl World {
     /// The level's name; empty where the map gives none.
     pub fn title(&self) -> &str {
         &self.title
+    }
+
+    /// What the map tells the player to do, if it says so.
+    pub fn goal(&self) -> Option<&str> {
+        self.goal.as_deref()
     }
 
     /// Which tile each cell holds.

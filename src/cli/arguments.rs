@@ -9,6 +9,7 @@ mod accuracy;
 mod bench;
 mod cast;
 mod check;
+mod config;
 mod generated;
 mod help;
 mod map;
@@ -31,6 +32,7 @@ use clap_complete::Shell;
 pub(super) use self::accuracy::{Accuracy, ReportFormat};
 pub(super) use self::bench::{Bench, BenchFormat};
 pub(super) use self::cast::Cast;
+pub(super) use self::config::Config;
 pub(super) use self::generated::Generated;
 pub(super) use self::map::STANDARD_INPUT;
 use self::option::Described;
@@ -52,6 +54,7 @@ pub(super) enum Command {
     Snapshot(Snapshot),
     Cast(Cast),
     Check(Vec<OsString>),
+    Config(Config),
     Accuracy(Accuracy),
     Bench(Bench),
     Replay(Replay),
@@ -83,11 +86,12 @@ impl Command {
 }
 
 /// The subcommands, in the order of the help.
-const SUBCOMMANDS: [&Subcommand; 11] = [
+const SUBCOMMANDS: [&Subcommand; 12] = [
     &play::SUBCOMMAND,
     &snapshot::SUBCOMMAND,
     &cast::SUBCOMMAND,
     &check::SUBCOMMAND,
+    &config::SUBCOMMAND,
     &accuracy::SUBCOMMAND,
     &bench::SUBCOMMAND,
     &replay::SUBCOMMAND,

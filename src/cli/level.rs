@@ -76,7 +76,11 @@ pub(super) fn load_series(argument: Option<&OsStr>) -> Result<Levels, Error> {
     let index = argument.map_or(Some(0), builtin_level);
     let following = index.map_or(&[][..], |index| &builtin::LEVELS[index + 1..]);
     let following = following.iter().map_while(|level| level.world().ok());
-    Ok(Levels::new(first, following.map(Level::from)))
+    let levels = Levels::new(first, following.map(Level::from));
+    Ok(match index {
+        Some(index) => levels.numbered(index + 1, builtin::LEVELS.len()),
+        None => levels,
+    })
 }
 
 /// As [`load_series`], or the level to dig, and after it those of the seeds that follow.

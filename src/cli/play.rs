@@ -1,34 +1,34 @@
 //! `cellcaster play`: the game on the terminal.
 
 use std::env;
-use std::fs;
 use std::io::{self, IsTerminal};
-use std::path::PathBuf;
 use std::time::Duration;
-
-use etcetera::{BaseStrategy, choose_base_strategy};
 
 use super::arguments::{FidelityChoice, Play, STANDARD_INPUT};
 use super::recording::RecordingFile;
-use super::{Error, level};
+use super::{Error, config, level};
 use crate::terminal::{self, take_keys_from_terminal};
-use crate::tui::{self, Bindings, Levels, Settings};
+use crate::tui::{self, Levels, Settings};
 
 /// Plays until the player has had enough.
 pub(super) fn run(options: Play) -> Result<(), Error> {
     let levels = levels(&options)?;
+    let configuration = config::load(options.config)?.configuration;
+    let frames_per_second =
+        options.frames_per_second.map_or(configuration.frames_per_second, |it| it.get());
     let settings = Settings {
-        bindings: bindings(options.config)?,
-        frame_time: Duration::from_secs(1)
-            / options.frames_per_second.unwrap_or_default().get().get(),
-        field_of_view: options.field_of_view.unwrap_or_default(),
+        bindings: configuration.bindings,
+        frame_time: Duration::from_secs(1) / frames_per_second.get(),
+        field_of_view: options.field_of_view.unwrap_or(configuration.field_of_view),
         cell_aspect: options.cell_aspect,
-        glyphs: options.glyphs.unwrap_or_default(),
-        depth: options.depth,
+        glyphs: options.glyphs.or(configuration.glyphs).unwrap_or_default(),
+        depth: options.depth.or(configuration.colors),
         method: options.method.unwrap_or_default(),
         filter: options.filter.unwrap_or_default(),
-        fidelity: options.fidelity.and_then(FidelityChoice::fixed),
+        fidelity: options.fidelity.map_or(configuration.fidelity, FidelityChoice::fixed),
         shows_stats: options.shows_stats,
+        minimap: configuration.minimap,
+        mouse: configuration.mouse,
     };
     let file = options.record.as_deref();
     let file = file.map(|path| RecordingFile::create(path, options.overwrites)).transpose()?;
@@ -73,24 +73,4 @@ fn about_the_terminal(error: terminal::Error) -> Error {
         );
     }
     error.into()
-}
-
-/// The bindings in the file that was named, or in the user's own if there is one.
-fn bindings(named: Option<PathBuf>) -> Result<Bindings, Error> {
-    let is_named = named.is_some();
-    let Some(path) = named.or_else(default_path) else { return Ok(Bindings::default()) };
-    let name = path.display().to_string();
-    match fs::read_to_string(&path) {
-        Ok(text) => Ok(Bindings::parse(&text, &name)?),
-        Err(error) if error.kind() == io::ErrorKind::NotFound && !is_named => {
-            Ok(Bindings::default())
-        }
-        Err(error) => Err(Error::mistake(format!("{name} can't be read: {error}"))),
-    }
-}
-
-/// `cellcaster/config.toml` where the platform keeps configuration.
-fn default_path() -> Option<PathBuf> {
-    let folder = choose_base_strategy().ok()?.config_dir();
-    Some(folder.join("cellcaster").join("config.toml"))
 }

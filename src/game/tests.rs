@@ -33,6 +33,7 @@ fn world(rows: &[&str], degrees: f64) -> World {
         lintel: gray,
     };
     World::from_parts(Parts {
+        goal: None,
         title: String::new(),
         grid: Grid::sketch(&floors).unwrap(),
         tiles: vec![

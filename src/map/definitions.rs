@@ -14,6 +14,7 @@ use crate::world::{Fog, Heights, Light, Rgb};
 /// The keys of a map.
 pub(super) const KEYS: &[&str] = &[
     "title",
+    "goal",
     "ceiling",
     "ceiling_height",
     "floor",
@@ -32,6 +33,7 @@ const DEFAULT_FLOOR: Rgb = Rgb::new(0x58, 0x58, 0x58);
 /// What a map says besides drawing its grid.
 pub(super) struct Definitions<'a, 't> {
     pub(super) title: String,
+    pub(super) goal: Option<String>,
     pub(super) ceiling: CeilingText<'a>,
     /// How high the ceiling is, and how high walls are.
     pub(super) ceiling_height: f64,
@@ -54,6 +56,7 @@ impl<'a, 't> Definitions<'a, 't> {
     pub(super) fn read(document: &'a DeTable<'t>, faults: &mut Vec<Fault>) -> Self {
         let mut definitions = Self {
             title: String::new(),
+            goal: None,
             ceiling: CeilingText::plain(DEFAULT_CEILING),
             ceiling_height: Heights::LEVEL.ceiling(),
             floor: CoveringText::plain(DEFAULT_FLOOR),
@@ -74,6 +77,7 @@ impl<'a, 't> Definitions<'a, 't> {
     fn read_entry(&mut self, entry: Entry<'a, 't>, faults: &mut Vec<Fault>) {
         match entry.key {
             "title" => self.title = title(&entry, faults).unwrap_or_default(),
+            "goal" => self.goal = goal(&entry, faults),
             "ceiling" => {
                 if let Some(ceiling) = CeilingText::read(&entry, r##"ceiling = "#202028""##, faults)
                 {
@@ -101,6 +105,25 @@ impl<'a, 't> Definitions<'a, 't> {
             _ => faults.push(entry.unknown_key("a map", KEYS)),
         }
     }
+}
+
+/// What the player is told to do: a line of up to [`LONGEST_GOAL`] characters.
+fn goal(entry: &Entry<'_, '_>, faults: &mut Vec<Fault>) -> Option<String> {
+    const LONGEST_GOAL: usize = 40;
+    let goal = entry.string(r#"goal = "Find the way out""#, faults)?;
+    let length = goal.chars().count();
+    let message = if goal.contains(char::is_control) {
+        "the goal has a line break or another control character".to_owned()
+    } else if goal.trim().is_empty() {
+        "the goal is empty".to_owned()
+    } else if length > LONGEST_GOAL {
+        format!("the goal has {length} characters, and {LONGEST_GOAL} fit the screen")
+    } else {
+        return Some(goal.to_owned());
+    };
+    let help = "write what to do in one short line, or leave it out";
+    faults.push(Fault::new(entry.value_place.clone(), message).help(help));
+    None
 }
 
 pub(super) fn title(entry: &Entry<'_, '_>, faults: &mut Vec<Fault>) -> Option<String> {

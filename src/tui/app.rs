@@ -4,8 +4,11 @@
 //! it off screen. [`play`] is the loop around it that has both.
 
 mod clock;
+mod goal;
+mod help;
 mod keys;
 mod levels;
+mod map_panel;
 mod panels;
 mod played;
 mod recording;
@@ -17,52 +20,29 @@ mod status;
 
 use std::time::Duration;
 
+use goal::Goal;
+use help::HelpScroll;
+use levels::LevelNumber;
 pub use levels::Levels;
+use map_panel::MapPanel;
 use ratatui::layout::Rect;
 pub use recording::Recording;
 pub use replay::Replay;
 pub use run::play;
 
-use super::bindings::Bindings;
 use super::held::HeldKeys;
-use super::{Canvas, CellAspect, GlyphMode, Minimap, View};
-use crate::cast::Method;
+use super::settings::Settings;
+use super::{Canvas, CellAspect, GlyphMode, View};
 use crate::game::{Intents, STEP};
 use crate::palette::ColorDepth;
 use crate::render::Filter;
-use crate::terminal::Fidelity;
 use crate::world::FieldOfView;
 use clock::Clock;
 use played::{Eye, Memory, Played};
 use recording::ScriptRecorder;
 use reload::Reload;
 use stats::Stats;
-use status::{Gait, StatusLine};
-
-/// How the game is shown and steered.
-#[derive(Clone, Debug, Default)]
-pub struct Settings {
-    /// Which key does what.
-    pub bindings: Bindings,
-    /// The time between two frames, while something moves.
-    pub frame_time: Duration,
-    /// How wide the view is at first.
-    pub field_of_view: FieldOfView,
-    /// The shape of a cell; `None` for what the terminal says.
-    pub cell_aspect: Option<CellAspect>,
-    /// Which characters stand for pixels.
-    pub glyphs: GlyphMode,
-    /// How many colours there are; `None` for what the terminal has.
-    pub depth: Option<ColorDepth>,
-    /// How walls are found.
-    pub method: Method,
-    /// How textures are looked up.
-    pub filter: Filter,
-    /// How exact frames are; `None` for as exact as the link to the terminal allows.
-    pub fidelity: Option<Fidelity>,
-    /// Whether the status line tells of frames and the link at first.
-    pub shows_stats: bool,
-}
+use status::{Gait, StatusLine, Told};
 
 /// What shows besides the picture, and what keys do meanwhile.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -93,6 +73,8 @@ struct Look {
 struct App {
     later_levels: Box<dyn Iterator<Item = Played>>,
     game: Played,
+    level: LevelNumber,
+    goal: Goal,
     /// Seconds taken by the levels before this one.
     earlier: f64,
     screen: Screen,
@@ -104,7 +86,10 @@ struct App {
     gait: Gait,
     /// What counts for the next step even if its key is up again by then.
     pressed: Intents,
-    shows_minimap: bool,
+    map: MapPanel,
+    help: HelpScroll,
+    /// What was found out about the terminal and what would make it better, for the end of the help.
+    remedy: Option<String>,
     has_left: bool,
     clock: Clock,
     memory: Memory,
@@ -123,9 +108,14 @@ struct App {
 
 impl App {
     fn new(levels: Levels, settings: Settings) -> Self {
-        let Levels { first, rest, changes } = levels;
+        let Levels { first, rest, number, changes } = levels;
         Self {
             later_levels: rest,
+            level: number,
+            goal: Goal::of(&first, settings.minimap),
+            map: MapPanel::new(settings.minimap),
+            help: HelpScroll::default(),
+            remedy: None,
             game: first,
             earlier: 0.0,
             screen: Screen::Playing,
@@ -141,7 +131,6 @@ impl App {
             held: HeldKeys::default(),
             gait: Gait::default(),
             pressed: Intents::new(),
-            shows_minimap: true,
             has_left: false,
             clock: Clock::default(),
             shown: None,
@@ -168,6 +157,7 @@ impl App {
             self.game.step(intents);
             moving += 1;
         }
+        self.goal.moved(moving);
         self.record(intents, quiet + moving);
         if steps > 0 {
             self.pressed = Intents::new();
@@ -224,6 +214,9 @@ impl App {
         let Some(level) = self.later_levels.next() else { return self.show(Screen::End) };
         self.earlier += self.game.elapsed();
         self.game = level;
+        self.level = self.level.next();
+        self.goal = Goal::of(&self.game, self.settings.minimap);
+        self.map.begin_level();
         self.held.clear();
         self.show(Screen::Playing);
     }
@@ -249,15 +242,29 @@ impl App {
         }
         let [picture, status] = panels::picture_and_status(area);
         self.draw_picture(canvas, picture);
-        let stats = self.stats.as_ref().filter(|_| self.shows_stats);
-        self.status.update(&self.game, self.gait, stats, &self.settings.bindings);
+        self.status.update(&Told {
+            game: &self.game,
+            goal: &self.goal,
+            level: self.level,
+            seen: self.game.grid().and_then(|game| self.map.share_seen(game)),
+            gait: self.gait,
+            stats: self.stats.as_ref().filter(|_| self.shows_stats),
+            bindings: &self.settings.bindings,
+        });
         canvas.draw_widget(&self.status, status);
         let seconds = self.game.elapsed();
+        let bindings = &self.settings.bindings;
         match self.screen {
             Screen::Playing => {}
-            Screen::Paused => panels::paused(canvas, picture, &self.settings.bindings),
-            Screen::Help => panels::help(canvas, picture, &self.settings.bindings),
-            Screen::LevelDone => panels::level_done(canvas, picture, self.game.title(), seconds),
+            Screen::Paused => {
+                let told = panels::Progress { game: &self.game, level: self.level };
+                panels::paused(canvas, picture, &told, &self.goal, bindings);
+            }
+            Screen::Help => self.help.draw(canvas, picture, bindings, self.remedy.as_deref()),
+            Screen::LevelDone => {
+                let told = panels::Progress { game: &self.game, level: self.level };
+                panels::level_done(canvas, picture, &told);
+            }
             Screen::End => panels::end(canvas, picture, self.earlier + seconds),
         }
         self.draw_fault(canvas, picture);
@@ -273,16 +280,20 @@ impl App {
         };
         self.game.draw(&eye, look, (canvas, area), &mut self.memory);
         let (Played::Grid(game), Eye::Grid(camera)) = (&self.game, &eye) else { return };
-        if !self.shows_minimap {
+        self.map.look(game, camera, area.width);
+        if !self.map.is_shown {
             return;
         }
-        let map = Minimap::new(game.world(), camera)
-            .seen(self.memory.grid.columns())
-            .glyphs(self.settings.glyphs)
-            .color_depth(self.depth);
+        let map = self.map.minimap(game, camera, &self.memory.grid);
+        let map = map.glyphs(self.settings.glyphs).color_depth(self.depth);
         if let Some(panel) = panels::minimap(area, &map) {
             let inside = panels::framed(canvas, panel, "map");
             map.paint(inside, canvas);
+            let extent = map.extent_within(inside.as_size());
+            self.map.shown(extent, game, camera);
         }
     }
 }
+
+#[cfg(test)]
+mod tests;

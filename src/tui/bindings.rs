@@ -1,21 +1,5 @@
-//! Which key does what: presets, and a file to change them.
-//!
-//! ```toml
-//! preset = "azerty"            # or "qwerty"
-//!
-//! [keys]                       # the keys of an action, in place of the preset's
-//! forward = ["z", "up"]
-//! toggle-run = "c"
-//! ```
-//!
-//! A key that the file gives to an action is taken from the one that the preset gave it to; one that
-//! it gives to two actions is a fault.
+//! Which key does what: the actions, and presets of keys for them.
 
-use std::ops::Range;
-
-use toml::de::{DeTable, DeValue};
-
-use crate::fault::{Fault, Faults, document, nearest, quoted};
 use crate::game::Intent;
 use crate::terminal::Key;
 
@@ -30,6 +14,8 @@ pub(crate) enum Action {
     ToggleDuck,
     /// Showing or hiding the minimap.
     ToggleMinimap,
+    /// Showing the minimap larger, smaller, or another part of it.
+    ChangeMap(MapChange),
     /// Showing or hiding the keys.
     ToggleHelp,
     /// Pausing, or going on.
@@ -44,9 +30,22 @@ pub(crate) enum Action {
     Leave,
 }
 
+/// How the minimap can be changed.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
+pub(crate) enum MapChange {
+    Larger,
+    Smaller,
+    North,
+    South,
+    West,
+    East,
+    /// Around the player, in its usual size.
+    Center,
+}
+
 impl Action {
     /// Every action: its name in a file, what it does in a word or two, and itself.
-    pub(crate) const ALL: [(&'static str, &'static str, Self); 22] = [
+    pub(crate) const ALL: [(&'static str, &'static str, Self); 29] = [
         ("forward", "walk", Self::Want(Intent::Forward)),
         ("back", "walk back", Self::Want(Intent::Back)),
         ("strafe-left", "strafe left", Self::Want(Intent::StrafeLeft)),
@@ -63,6 +62,13 @@ impl Action {
         ("toggle-run", "run, on and off", Self::ToggleRun),
         ("toggle-duck", "duck, on and off", Self::ToggleDuck),
         ("minimap", "map", Self::ToggleMinimap),
+        ("map-larger", "larger map", Self::ChangeMap(MapChange::Larger)),
+        ("map-smaller", "smaller map", Self::ChangeMap(MapChange::Smaller)),
+        ("map-north", "move it north", Self::ChangeMap(MapChange::North)),
+        ("map-south", "move it south", Self::ChangeMap(MapChange::South)),
+        ("map-west", "move it west", Self::ChangeMap(MapChange::West)),
+        ("map-east", "move it east", Self::ChangeMap(MapChange::East)),
+        ("map-center", "map around you", Self::ChangeMap(MapChange::Center)),
         ("help", "this help", Self::ToggleHelp),
         ("pause", "pause", Self::TogglePause),
         ("wider", "wider view", Self::WidenView),
@@ -71,7 +77,8 @@ impl Action {
         ("leave", "leave", Self::Leave),
     ];
 
-    fn named(name: &str) -> Option<Self> {
+    /// The action of that name.
+    pub(super) fn named(name: &str) -> Option<Self> {
         Self::ALL.into_iter().find(|&(known, ..)| known == name).map(|(.., action)| action)
     }
 
@@ -109,7 +116,9 @@ struct Letters {
     leave: char,
 }
 
-const PRESETS: [&str; 2] = ["qwerty", "azerty"];
+/// The presets, the default first.
+pub(super) const PRESETS: [(&str, fn() -> Bindings); 2] =
+    [("qwerty", Bindings::default), ("azerty", Bindings::azerty)];
 
 impl Bindings {
     /// For AZERTY keyboards: Z, Q, S and D lie where W, A, S and D do on others; A leaves.
@@ -148,6 +157,14 @@ impl Bindings {
             (Key::Char('x'), Action::ToggleDuck),
             (Key::Char('m'), Action::ToggleMinimap),
             (Key::Tab, Action::ToggleMinimap),
+            // As on a number pad.
+            (Key::Char('9'), Action::ChangeMap(MapChange::Larger)),
+            (Key::Char('3'), Action::ChangeMap(MapChange::Smaller)),
+            (Key::Char('8'), Action::ChangeMap(MapChange::North)),
+            (Key::Char('2'), Action::ChangeMap(MapChange::South)),
+            (Key::Char('4'), Action::ChangeMap(MapChange::West)),
+            (Key::Char('6'), Action::ChangeMap(MapChange::East)),
+            (Key::Char('5'), Action::ChangeMap(MapChange::Center)),
             (Key::Char('?'), Action::ToggleHelp),
             (Key::Char('p'), Action::TogglePause),
             (Key::Char('+'), Action::WidenView),
@@ -157,19 +174,22 @@ impl Bindings {
             (Key::Char(letters.leave), Action::Leave),
             (Key::Escape, Action::Leave),
         ];
-        Self { keys }
+        Self { keys }.in_order()
     }
 
-    /// Reads a file of bindings, which faults call `name`.
-    ///
-    /// # Errors
-    /// Everything that is wrong with the file.
-    pub fn parse(text: &str, name: &str) -> Result<Self, Faults> {
-        let mut faults = Vec::new();
-        let document = document::parse(text, &mut faults);
-        let bindings =
-            if faults.is_empty() { read(&document, &mut faults) } else { Self::default() };
-        if faults.is_empty() { Ok(bindings) } else { Err(Faults::new(name, text, faults)) }
+    /// The same, but that `bound` are the keys of the actions in `rebound`, and of no others.
+    pub(super) fn rebound(mut self, rebound: &[Action], bound: Vec<(Key, Action)>) -> Self {
+        let taken = |key| bound.iter().any(|&(bound, _)| bound == key);
+        self.keys.retain(|&(key, action)| !rebound.contains(&action) && !taken(key));
+        self.keys.extend(bound);
+        self.in_order()
+    }
+
+    /// In the order of their actions.
+    fn in_order(mut self) -> Self {
+        let place = |action| Action::ALL.iter().position(|&(.., known)| known == action);
+        self.keys.sort_by_key(|&(_, action)| place(action));
+        self
     }
 
     /// What `key` does.
@@ -183,126 +203,16 @@ impl Bindings {
     }
 }
 
-fn read(document: &DeTable, faults: &mut Vec<Fault>) -> Bindings {
-    let mut bindings = Bindings::default();
-    let mut bound = Vec::new();
-    for entry in document::entries(document) {
-        match entry.key {
-            "preset" => match entry.string("preset = \"azerty\"", faults) {
-                Some("azerty") => bindings = Bindings::azerty(),
-                Some("qwerty") | None => {}
-                Some(other) => faults.push(unknown_preset(other, entry.value_place)),
-            },
-            "keys" => {
-                if let Some(table) = entry.table("[keys]", faults) {
-                    bound = read_keys(table, faults);
-                }
-            }
-            _ => faults.push(entry.unknown_key("a file of key bindings", &["preset", "keys"])),
-        }
-    }
-    let rebinds = |action| bound.iter().any(|&(_, bound)| bound == action);
-    let taken = |key| bound.iter().any(|&(bound, _)| bound == key);
-    bindings.keys.retain(|&(key, action)| !rebinds(action) && !taken(key));
-    bindings.keys.extend(bound);
-    bindings
-}
-
-/// What the table `[keys]` binds.
-fn read_keys(table: &DeTable, faults: &mut Vec<Fault>) -> Vec<(Key, Action)> {
-    const EXAMPLE: &str = "forward = [\"z\", \"up\"]";
-    let names = Action::ALL.map(|(name, ..)| name);
-    let mut bound: Vec<(Key, Action)> = Vec::new();
-    for entry in document::entries(table) {
-        let Some(action) = Action::named(entry.key) else {
-            faults.push(entry.unknown_key("the table of keys", &names));
-            continue;
-        };
-        let values = match entry.value {
-            DeValue::Array(values) => {
-                values.iter().map(|value| (value.get_ref(), value.span())).collect()
-            }
-            single => vec![(single, entry.value_place.clone())],
-        };
-        for (value, place) in values {
-            let Some(name) = value.as_str() else {
-                faults.push(entry.wrong_type("the name of a key, or a list of names", EXAMPLE));
-                break;
-            };
-            match name.parse::<Key>() {
-                Err(error) => {
-                    faults.push(Fault::new(place, error.to_string()).label("unknown key"));
-                }
-                Ok(key) if bound.iter().any(|&(other, to)| other == key && to != action) => {
-                    faults.push(bound_twice(key, place));
-                }
-                Ok(key) => bound.push((key, action)),
-            }
-        }
-    }
-    bound
-}
-
-fn unknown_preset(name: &str, place: Range<usize>) -> Fault {
-    let help = match nearest(name, &PRESETS) {
-        Some(meant) => format!("the nearest preset is {}", quoted(meant)),
-        None => format!("the presets are {}", PRESETS.join(" and ")),
-    };
-    Fault::new(place, format!("there is no preset {}", quoted(name))).help(help)
-}
-
-fn bound_twice(key: Key, place: Range<usize>) -> Fault {
-    Fault::new(place, format!("the key {} is bound to two actions", quoted(&key.to_string())))
-        .label("another action has it too")
-        .help("give each key to one action")
-}
-
 #[cfg(test)]
 mod tests {
     use super::*;
 
-    fn faults(text: &str) -> String {
-        Bindings::parse(text, "config.toml").unwrap_err().to_string()
-    }
-
-    #[test]
-    fn an_empty_file_changes_nothing() {
-        assert_eq!(Bindings::parse("", "config.toml").unwrap(), Bindings::default());
-    }
-
     #[test]
     fn every_action_has_a_key_in_every_preset() {
-        for bindings in [Bindings::default(), Bindings::azerty()] {
+        for (preset, bindings) in PRESETS {
             for (name, _, action) in Action::ALL {
-                assert!(bindings.keys(action).next().is_some(), "{name}");
+                assert!(bindings().keys(action).next().is_some(), "{name} in {preset}");
             }
         }
-    }
-
-    #[test]
-    fn a_file_replaces_the_keys_of_an_action() {
-        let text = "preset = \"azerty\"\n[keys]\nforward = [\"e\", \"UP\"]\nleave = \"m\"\n";
-        let bindings = Bindings::parse(text, "config.toml").unwrap();
-        assert_eq!(bindings.action(Key::Char('e')), Some(Action::Want(Intent::Forward)));
-        assert_eq!(bindings.action(Key::Char('z')), None);
-        assert_eq!(bindings.action(Key::Char('q')), Some(Action::Want(Intent::StrafeLeft)));
-        assert_eq!(bindings.action(Key::Char('m')), Some(Action::Leave));
-        assert_eq!(bindings.keys(Action::ToggleMinimap).collect::<Vec<_>>(), [Key::Tab]);
-    }
-
-    #[test]
-    fn every_fault_is_named_with_its_place() {
-        let text = r#"
-preset = "azertie"
-colour = 3
-[keys]
-foward = "w"
-back = "hyperspace"
-run = 7
-wider = "x"
-narrower = ["y", "x"]
-"#;
-        insta::assert_snapshot!(faults(text));
-        insta::assert_snapshot!(faults("[keys"));
     }
 }

@@ -51,7 +51,7 @@ pub(super) fn draw<Row: Iterator<Item = Rgb>>(
 }
 
 /// The character whose halves are lit or not.
-fn lit_glyph(top: bool, bottom: bool) -> char {
+pub(super) fn lit_glyph(top: bool, bottom: bool) -> char {
     match (top, bottom) {
         (true, true) => '█',
         (true, false) => '▀',

@@ -1,10 +1,18 @@
 //! The minimap: the map from above, north up.
+//!
+//! Floor is shaded by its height, and what has not been seen can be left out: [`Explored`] is what has. Nothing on it
+//! is as bright as the arrow that stands for the player.
 
 mod chart;
+mod explored;
+mod place;
+mod window;
 
 use glam::DVec2;
 use ratatui::buffer::Buffer;
-use ratatui::layout::{Rect, Size};
+use ratatui::layout::Rect;
+#[cfg(feature = "terminal")]
+use ratatui::layout::Size;
 use ratatui::style::Color;
 use ratatui::widgets::Widget;
 
@@ -14,9 +22,12 @@ use crate::palette::ColorDepth;
 use crate::render::Column;
 use crate::world::{Camera, Rgb, World};
 use chart::Chart;
+pub use explored::Explored;
+use place::Place;
+use window::Window;
 
-/// A widget that shows the map from above: walls in their colours, the player as an arrow, and the
-/// part of the floor that is seen, by the rays that the picture was drawn from.
+/// A widget that shows the map from above: walls in their colours, floor by its height, the player as an arrow, and
+/// the part of the floor that is in view, by the rays that the picture was drawn from.
 ///
 /// It is as large as fits its area, in whole pixels a cell. A map that is too large for that scrolls
 /// with the player.
@@ -25,8 +36,11 @@ pub struct Minimap<'a> {
     world: &'a World,
     camera: &'a Camera,
     columns: &'a [Column],
+    explored: Option<&'a Explored>,
     glyphs: GlyphMode,
     depth: ColorDepth,
+    zoom: i32,
+    offset: DVec2,
 }
 
 impl<'a> Minimap<'a> {
@@ -36,8 +50,11 @@ impl<'a> Minimap<'a> {
             world,
             camera,
             columns: &[],
+            explored: None,
             glyphs: GlyphMode::default(),
             depth: ColorDepth::default(),
+            zoom: 0,
+            offset: DVec2::ZERO,
         }
     }
 
@@ -45,6 +62,25 @@ impl<'a> Minimap<'a> {
     #[must_use]
     pub fn seen(self, columns: &'a [Column]) -> Self {
         Self { columns, ..self }
+    }
+
+    /// With nothing but what is `explored`; without this, all of the map shows.
+    #[must_use]
+    pub fn explored(self, explored: &'a Explored) -> Self {
+        Self { explored: Some(explored), ..self }
+    }
+
+    /// So many levels larger than fits the area, or smaller where that is not all of the map: a level doubles or
+    /// halves it, about.
+    #[must_use]
+    pub fn zoom(self, levels: i32) -> Self {
+        Self { zoom: levels, ..self }
+    }
+
+    /// Around a place so many cells to the east and the south of the player, as far as the map goes on there.
+    #[must_use]
+    pub fn offset(self, cells: DVec2) -> Self {
+        Self { offset: cells, ..self }
     }
 
     /// With those characters.
@@ -60,9 +96,6 @@ impl<'a> Minimap<'a> {
     }
 }
 
-/// The arrow.
-const PLAYER: Color = Color::Yellow;
-
 impl Widget for Minimap<'_> {
     fn render(self, area: Rect, buffer: &mut Buffer) {
         self.paint(area, buffer);
@@ -76,123 +109,125 @@ impl Minimap<'_> {
         if area.is_empty() {
             return;
         }
-        let window = Window::new(area, self.glyphs, self.world, self.camera.position());
-        let chart = Chart::new(self.world, self.camera, self.columns, window.pixel());
-        let place = |x, y| {
-            let point = window.point(x, y);
-            chart.row(point.y).place(point.x)
-        };
+        let window = self.window(area);
+        let seen = (self.columns, self.explored);
+        let chart = Chart::new(self.world, self.camera, seen, window.pixel());
+        let picture = Picture { chart, window };
         match self.glyphs {
-            GlyphMode::Half => half_blocks::draw(area, canvas, self.depth, 0, |y| {
-                let row = chart.row(window.point(0, y).y);
-                let points = (0..area.width.into()).map(move |x| window.point(x, y));
-                points.map(move |point| row.place(point.x).color())
-            }),
+            GlyphMode::Half => self.draw_halves(&picture, area, canvas),
             GlyphMode::Ascii | GlyphMode::Ramp => ascii::draw(area, canvas, self.depth, |x, y| {
-                let place = place(x, y);
+                let place = picture.place(x, y);
                 (place.color(), place.character())
             }),
         }
         if let Some((x, y)) = window.cell(self.camera.position()) {
-            let ground = match self.glyphs {
-                GlyphMode::Half => place(x.into(), 2 * u32::from(y) + 1).color(),
-                GlyphMode::Ascii | GlyphMode::Ramp => Rgb::BLACK,
-            };
-            self.draw_player((area.x + x, area.y + y), ground, canvas);
+            self.draw_player((area.x + x, area.y + y), canvas);
         }
     }
 
     /// How much of `room` shows something of the map; the rest would be blank.
     #[cfg(feature = "terminal")]
     pub(super) fn size_within(&self, room: Size) -> Size {
-        let pixels_per_cell = f64::from(self.glyphs.pixels_per_cell());
-        let pixels = pixels_within(room, self.glyphs);
-        let needed = map_size(self.world) * scale(self.world, pixels, self.glyphs);
-        let needed = needed.min(pixels);
-        Size::new(needed.x as u16, (needed.y / pixels_per_cell).ceil() as u16)
+        window::size_within(room, self.glyphs, self.world, self.zoom)
     }
 
-    /// Draws the arrow at `place`, on ground of that colour.
-    fn draw_player(&self, (x, y): (u16, u16), ground: Rgb, canvas: &mut impl Canvas) {
+    /// How many cells of the map an area of that size shows.
+    #[cfg(feature = "terminal")]
+    pub(super) fn extent_within(&self, room: Size) -> DVec2 {
+        self.window(Rect::from(room)).extent()
+    }
+
+    fn window(&self, area: Rect) -> Window {
+        let center = self.camera.position() + self.offset;
+        Window::new(area, self.glyphs, self.world, center, self.zoom)
+    }
+
+    fn draw_halves(&self, picture: &Picture, area: Rect, canvas: &mut impl Canvas) {
+        let row = |y| (0..u32::from(area.width)).map(move |x| picture.place(x, y));
+        match self.depth {
+            ColorDepth::True | ColorDepth::Indexed256 => {
+                for (y, upper) in (area.top()..area.bottom()).zip((0..).step_by(2)) {
+                    let color = |place: Place| color_at(self.depth, place.color());
+                    let halves = row(upper).zip(row(upper + 1));
+                    let colors = halves.map(|(top, bottom)| [color(top), color(bottom)]);
+                    canvas.draw_halves(area.x, y, colors);
+                }
+            }
+            ColorDepth::Indexed16 => {
+                for (y, upper) in (area.top()..area.bottom()).zip((0..).step_by(2)) {
+                    let color = |place: Place| Color::Indexed(place.index_of_16());
+                    let halves = row(upper).zip(row(upper + 1));
+                    let colors = halves.map(|(top, bottom)| [color(top), color(bottom)]);
+                    canvas.draw_halves(area.x, y, colors);
+                }
+            }
+            ColorDepth::Mono => {
+                for (y, upper) in (area.top()..area.bottom()).zip((0..).step_by(2)) {
+                    for (x, (top, bottom)) in (0..).zip(row(upper).zip(row(upper + 1))) {
+                        let character = in_mono((top, bottom), (x, upper));
+                        canvas.draw_character(area.x + x as u16, y, character, [Color::Reset; 2]);
+                    }
+                }
+            }
+        }
+    }
+
+    /// Draws the arrow at `place`.
+    fn draw_player(&self, (x, y): (u16, u16), canvas: &mut impl Canvas) {
         let arrows = match self.glyphs {
             GlyphMode::Half => ['→', '↘', '↓', '↙', '←', '↖', '↑', '↗'],
             GlyphMode::Ascii | GlyphMode::Ramp => ['>', '\\', 'v', '/', '<', '\\', '^', '/'],
         };
         let eighth = (self.camera.heading.degrees() / 45.0).round() as usize % arrows.len();
-        let text = if self.depth == ColorDepth::Mono { Color::Reset } else { PLAYER };
-        canvas.draw_character(x, y, arrows[eighth], [text, color_at(self.depth, ground)]);
-    }
-}
-
-/// The part of the map that shows in an area.
-#[derive(Clone, Copy, Debug)]
-struct Window {
-    /// Pixels of the area from left to right and from top to bottom.
-    size: DVec2,
-    /// Pixels for a cell of the map.
-    scale: DVec2,
-    /// Where the area's top left corner is, in pixels from the map's.
-    corner: DVec2,
-    pixels_per_cell: u32,
-}
-
-impl Window {
-    /// All of the map and as large as possible, or as much as fits around `center`.
-    fn new(area: Rect, glyphs: GlyphMode, world: &World, center: DVec2) -> Self {
-        let pixels_per_cell = glyphs.pixels_per_cell();
-        let size = pixels_within(area.as_size(), glyphs);
-        let map = map_size(world);
-        let scale = scale(world, size, glyphs);
-        let spare = size - map * scale;
-        let corner_along = |spare: f64, center: f64, size: f64| {
-            if spare >= 0.0 {
-                -(spare / 2.0).floor()
-            } else {
-                (center - size / 2.0).floor().clamp(0.0, -spare)
+        let colors = match self.depth {
+            ColorDepth::Mono => [Color::Reset; 2],
+            ColorDepth::Indexed16 => [Color::Indexed(0), Color::Indexed(11)],
+            ColorDepth::Indexed256 | ColorDepth::True => {
+                [Rgb::BLACK, PLAYER].map(|color| color_at(self.depth, color))
             }
         };
-        let center = center * scale;
-        let corner = DVec2::new(
-            corner_along(spare.x, center.x, size.x),
-            corner_along(spare.y, center.y, size.y),
-        );
-        Self { size, scale, corner, pixels_per_cell }
-    }
-
-    /// How many cells of the map a pixel is wide.
-    fn pixel(&self) -> f64 {
-        1.0 / self.scale.x
-    }
-
-    /// The point of the map that the centre of a pixel shows.
-    fn point(&self, x: u32, y: u32) -> DVec2 {
-        (DVec2::new(f64::from(x), f64::from(y)) + 0.5 + self.corner) / self.scale
-    }
-
-    /// The cell of the area that shows `point`.
-    fn cell(&self, point: DVec2) -> Option<(u16, u16)> {
-        let pixel = (point * self.scale - self.corner).floor();
-        let shows = pixel.cmpge(DVec2::ZERO).all() && pixel.cmplt(self.size).all();
-        shows.then(|| (pixel.x as u16, (pixel.y as u32 / self.pixels_per_cell) as u16))
+        canvas.draw_character(x, y, arrows[eighth], colors);
     }
 }
 
-/// Cells of the map from left to right and from top to bottom.
-fn map_size(world: &World) -> DVec2 {
-    DVec2::new(f64::from(world.grid().width()), f64::from(world.grid().height()))
+/// What the arrow is drawn on.
+const PLAYER: Rgb = Rgb::new(0xff, 0xf0, 0x50);
+
+/// What pixels are asked of.
+struct Picture<'a> {
+    chart: Chart<'a>,
+    window: Window,
 }
 
-fn pixels_within(cells: Size, glyphs: GlyphMode) -> DVec2 {
-    let height = u32::from(cells.height) * glyphs.pixels_per_cell();
-    DVec2::new(f64::from(cells.width), f64::from(height))
+impl Picture<'_> {
+    /// What a pixel shows: of several cells, what matters most.
+    #[inline]
+    fn place(&self, x: u32, y: u32) -> Place {
+        let point = self.window.point(x, y);
+        let [columns, rows] = self.window.cells_per_pixel();
+        if (columns, rows) == (1, 1) {
+            return self.chart.row(point.y).place(point.x);
+        }
+        // The middles of as many cells around the pixel's own.
+        let along = |point: f64, count: u32| {
+            let first = point - f64::from(count - 1) / 2.0;
+            (0..count).map(move |index| first + f64::from(index))
+        };
+        let places = along(point.y, rows).flat_map(|y| {
+            let row = self.chart.row(y);
+            along(point.x, columns).map(move |x| row.place(x))
+        });
+        places.max_by_key(|place| place.importance()).unwrap_or(Place::Void)
+    }
 }
 
-/// How many of `pixels` a cell of the map gets: as many whole ones as let all of the map be seen.
-fn scale(world: &World, pixels: DVec2, glyphs: GlyphMode) -> DVec2 {
-    // A pixel of half blocks is about square; a whole cell is about twice as high as wide.
-    let smallest = match glyphs {
-        GlyphMode::Half => DVec2::new(1.0, 1.0),
-        GlyphMode::Ascii | GlyphMode::Ramp => DVec2::new(2.0, 1.0),
-    };
-    smallest * (pixels / (map_size(world) * smallest)).min_element().floor().max(1.0)
+/// The character for two places, one above the other, where there are no colours: things are letters.
+fn in_mono((top, bottom): (Place, Place), (x, y): (u32, u32)) -> char {
+    let letter = [top, bottom]
+        .into_iter()
+        .find(|place| matches!(place, Place::Exit | Place::Key | Place::Ornament));
+    letter.map_or_else(
+        || half_blocks::lit_glyph(top.is_lit(x, y), bottom.is_lit(x, y + 1)),
+        Place::character,
+    )
 }

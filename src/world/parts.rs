@@ -13,6 +13,7 @@ use super::{
 /// The pieces of a world, not yet known to fit together.
 pub(crate) struct Parts {
     pub(crate) title: String,
+    pub(crate) goal: Option<String>,
     pub(crate) grid: Grid,
     pub(crate) tiles: Vec<Tile>,
     pub(crate) textures: Vec<Texture>,
@@ -36,6 +37,7 @@ impl World {
     pub(crate) fn from_parts(parts: Parts) -> Self {
         let Parts {
             title,
+            goal,
             mut grid,
             tiles,
             textures,
@@ -52,6 +54,7 @@ impl World {
         clear(&mut grid, &tiles);
         let world = Self {
             title,
+            goal,
             grid,
             tiles,
             textures,

@@ -7,7 +7,9 @@ use crate::game::{Game, Key};
 fn whereabouts(emulator: &Emulator) -> String {
     let text = emulator.text();
     let line = text.lines().last().unwrap_or_default();
-    line.split("? help").next().unwrap_or_default().trim().to_owned()
+    // Two blanks are between what the line tells.
+    let parts: Vec<&str> = line.trim().split("  ").take(2).collect();
+    parts.join("  ")
 }
 
 fn start(options: &[&str]) -> Game {

@@ -6,7 +6,7 @@ use std::path::PathBuf;
 use crate::emulator::{Modes, Speaks};
 use crate::game::{ENVIRONMENT, Game, Key, PROGRAM};
 use crate::player::Player;
-use crate::support::complaint_about;
+use crate::support::{complaint_about, output_of};
 
 fn file(name: &str, text: &str) -> PathBuf {
     let path = PathBuf::from(env!("CARGO_TARGET_TMPDIR")).join(name);
@@ -34,6 +34,40 @@ fn the_users_own_configuration_is_found() {
     let before = game.arrow();
     game.press(Key::Char('e'));
     game.wait_for_arrow("walked", |arrow| arrow.column > before.column);
+}
+
+#[test]
+fn settings_of_a_file_hold_and_options_go_before_them() {
+    let text = "glyphs = \"ascii\"\nminimap = \"off\"\nfov = 90\n";
+    let config = file("settings.toml", text);
+    let config = ["--config", config.to_str().unwrap()];
+    let game = Game::with(Speaks::Kitty, (80, 24), None, &config, &[]);
+    assert!(!game.text().contains("┌map") && !game.text().contains('▀'), "{}", game.text());
+    game.wait_for("Find the way out");
+    let options = [&config[..], &["--glyphs", "half"]].concat();
+    let game = Game::with(Speaks::Kitty, (80, 24), None, &options, &[]);
+    game.wait_for_bare_picture(&["--fov", "90"]);
+}
+
+#[test]
+fn config_prints_a_file_that_says_the_same() {
+    let text = "preset = \"azerty\"\nfps = 60\ncolors = 16\n[keys]\nleave = \"f10\"\n";
+    let written = file("written.toml", text);
+    let config = |path: &PathBuf| {
+        let printed = output_of(&["config", "--config", path.to_str().unwrap()]);
+        let printed = String::from_utf8(printed).unwrap();
+        let (place, settings) = printed.split_once('\n').unwrap();
+        assert!(place.starts_with("# ") && place.ends_with(path.to_str().unwrap()), "{place}");
+        (printed.clone(), settings.to_owned())
+    };
+    let (printed, settings) = config(&written);
+    for line in ["preset = \"azerty\"", "fps = 60", "colors = \"16\"", "leave = [\"f10\"]"] {
+        assert!(settings.contains(line), "{line} is not in\n{settings}");
+    }
+    let (_, again) = config(&file("printed.toml", &printed));
+    assert_eq!(again, settings);
+    let complaint = complaint_about(&["config", "cellar"]);
+    assert!(complaint.contains("config takes no map"), "{complaint}");
 }
 
 #[test]

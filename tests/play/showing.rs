@@ -30,7 +30,7 @@ fn the_picture_fills_the_window_whatever_size_it_gets() {
     for (columns, rows) in [(120, 40), (33, 9), (500, 200), (20, 6), (80, 24)] {
         game.resize(columns, rows);
         game.wait_for_bare_picture(&[]);
-        game.wait_for("Cellar");
+        game.wait_for("Find the");
     }
 }
 
@@ -86,6 +86,34 @@ fn help_names_the_keys_until_it_is_closed() {
         game.send(close);
         game.wait_for_picture(&[]);
     }
+}
+
+#[test]
+fn the_goal_shows_at_first_and_goes_when_the_player_has_moved() {
+    let game = Game::start();
+    game.wait_for("Find the way out");
+    game.wait_for("level 1 of 5");
+    game.press(Key::Right);
+    game.wait_until("stopped telling the goal", |emulator| {
+        !emulator.text().contains("Find the way out")
+    });
+    game.wait_for("level 1 of 5");
+}
+
+#[test]
+fn help_scrolls_in_a_small_window() {
+    let game = Game::with(Speaks::Plain, (40, 12), None, &[], &[]);
+    game.send("?");
+    game.wait_for("? closes; q leaves");
+    game.wait_for("1-7 of ");
+    game.send("\x1b[B");
+    game.wait_for("2-8 of ");
+    for _ in 0..9 {
+        game.send("\x1b[6~");
+    }
+    game.wait_for("frames and link");
+    game.send("?");
+    game.wait_until("closed help", |emulator| !emulator.text().contains("closes"));
 }
 
 #[test]

@@ -116,7 +116,7 @@ fn read(mut matches: ArgMatches) -> Result<Play, Error> {
     })
 }
 
-const CONFIG: FileOption = FileOption {
+pub(super) const CONFIG: FileOption = FileOption {
     name: "config",
     help: "The settings [default: cellcaster/config.toml in the folder for configuration files]",
 };

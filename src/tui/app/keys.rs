@@ -32,6 +32,7 @@ impl App {
 
     fn press(&mut self, key: Key, action: Option<Action>) {
         match (self.screen, action) {
+            (Screen::Help, _) if self.scroll_help(key) => {}
             (Screen::LevelDone, _) if is_confirmation(key) => self.next_level(),
             (Screen::End, _) if is_confirmation(key) => self.has_left = true,
             (Screen::Help, Some(Action::Leave)) if key == Key::Escape => self.show(Screen::Playing),
@@ -41,7 +42,11 @@ impl App {
             (Screen::Help, Some(Action::ToggleHelp))
             | (Screen::Paused, Some(Action::TogglePause)) => self.show(Screen::Playing),
             (_, Some(Action::ToggleMinimap)) => {
-                self.shows_minimap = !self.shows_minimap;
+                self.map.is_shown = !self.map.is_shown;
+                self.shown = None;
+            }
+            (_, Some(Action::ChangeMap(change))) => {
+                self.map.change(change);
                 self.shown = None;
             }
             (

@@ -1,10 +1,15 @@
 //! What shows on the picture and around it: the minimap's frame, and messages.
 
+use std::fmt::{self, Display};
+
 use ratatui::buffer::Buffer;
 use ratatui::layout::{Constraint, Flex, Layout, Margin, Rect, Size};
-use ratatui::text::{Line, Span, Text};
+use ratatui::text::{Span, Text};
 use ratatui::widgets::{Block, Borders, Padding, Paragraph, Widget, Wrap};
 
+use super::goal::Goal;
+use super::levels::LevelNumber;
+use super::played::Played;
 use crate::tui::bindings::{Action, Bindings};
 use crate::tui::{Canvas, Minimap};
 
@@ -16,9 +21,9 @@ const LEAST_WITH_MINIMAP: (u16, u16) = (36, 12);
 /// The largest minimap: more would hide too much of the picture.
 const LARGEST_MINIMAP: (u16, u16) = (40, 20);
 /// What the borders of a panel take of its width and height.
-const BORDERS: u16 = 2;
+pub(super) const BORDERS: u16 = 2;
 /// What a message leaves blank to its left and right.
-const PADDING: u16 = 2;
+pub(super) const PADDING: u16 = 2;
 
 /// Whether `area` is too small to play in.
 pub(super) fn is_too_small(area: Rect) -> bool {
@@ -84,38 +89,44 @@ impl Widget for Lid<'_> {
     }
 }
 
-/// That the game waits.
-pub(super) fn paused(canvas: &mut impl Canvas, picture: Rect, bindings: &Bindings) {
-    let keys = key_names(bindings, Action::TogglePause);
-    message(canvas, picture, "paused", Text::from(format!("{keys} goes on")).centered());
+/// A level, and how far the player is in it.
+pub(super) struct Progress<'a> {
+    pub(super) game: &'a Played,
+    pub(super) level: LevelNumber,
 }
 
-/// Which key does what: in as many columns as it takes, or as much as there is room for.
-pub(super) fn help(canvas: &mut impl Canvas, picture: Rect, bindings: &Bindings) {
-    const GAP: usize = 3;
-    let lines: Vec<String> = Action::ALL
-        .into_iter()
-        .map(|(_, does, action)| format!("{:<10}  {does}", key_names(bindings, action)))
-        .collect();
-    let width = lines.iter().map(|line| line.chars().count()).max().unwrap_or_default() + GAP;
-    let room = usize::from(picture.height.saturating_sub(BORDERS)).max(1);
-    let most_columns = usize::from(picture.width.saturating_sub(BORDERS + PADDING)) + GAP;
-    let columns = lines.len().div_ceil(room).clamp(1, (most_columns / width).max(1));
-    let height = lines.len().div_ceil(columns);
-    let mut rows: Vec<String> = (0..height)
-        .map(|row| lines[row..].iter().step_by(height).map(|line| format!("{line:<width$}")))
-        .map(|cells| cells.collect::<Vec<_>>().concat().trim_end().to_owned())
-        .collect();
-    if height > room {
-        rows.truncate(room - 1);
-        rows.push("more in a larger window".to_owned());
+impl Progress<'_> {
+    /// The level's title, and its number where it is one of several.
+    fn level(&self) -> String {
+        let title = self.game.title();
+        if self.level.is_one_of_several() {
+            format!("{title}\n{}", self.level)
+        } else {
+            title.to_owned()
+        }
     }
-    message(canvas, picture, "keys", rows.into_iter().map(Line::from).collect());
+}
+
+/// That the game waits; what there is to do, and how far it is.
+pub(super) fn paused(
+    canvas: &mut impl Canvas,
+    picture: Rect,
+    progress: &Progress,
+    goal: &Goal,
+    bindings: &Bindings,
+) {
+    let keys = key_names(bindings, Action::TogglePause);
+    let has: String = progress.game.keys().map(|key| format!("{key} key\n")).collect();
+    let seconds = whole_seconds(progress.game.elapsed());
+    let (level, goal) = (progress.level(), goal.text());
+    let text = format!("{keys} goes on\n{goal}\n{level}\n{seconds}\n{has}");
+    message(canvas, picture, "paused", Text::from(text).centered());
 }
 
 /// That the exit was reached, and how soon.
-pub(super) fn level_done(canvas: &mut impl Canvas, picture: Rect, title: &str, seconds: f64) {
-    let text = format!("{title}\nin {}\nEnter goes on", time(seconds));
+pub(super) fn level_done(canvas: &mut impl Canvas, picture: Rect, progress: &Progress) {
+    let seconds = time(progress.game.elapsed());
+    let text = format!("{}\nin {seconds}\nEnter goes on", progress.level());
     message(canvas, picture, "you found the way out", Text::from(text).centered());
 }
 
@@ -137,9 +148,26 @@ fn message(canvas: &mut impl Canvas, picture: Rect, title: &str, text: Text) {
     canvas.draw_widget(Paragraph::new(text).block(padded), inside);
 }
 
-fn key_names(bindings: &Bindings, action: Action) -> String {
+pub(super) fn key_names(bindings: &Bindings, action: Action) -> String {
     let names: Vec<String> = bindings.keys(action).map(|key| key.to_string()).collect();
     names.join(" ")
+}
+
+/// Minutes and seconds.
+pub(super) fn whole_seconds(seconds: f64) -> impl Display {
+    let seconds = seconds as u64;
+    WholeSeconds { minutes: seconds / 60, seconds: seconds % 60 }
+}
+
+struct WholeSeconds {
+    minutes: u64,
+    seconds: u64,
+}
+
+impl Display for WholeSeconds {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        write!(f, "{}:{:02}", self.minutes, self.seconds)
+    }
 }
 
 /// Minutes, seconds and tenths.
@@ -150,29 +178,7 @@ fn time(seconds: f64) -> String {
 
 #[cfg(test)]
 mod tests {
-    use ratatui::buffer::{Buffer, Cell};
-
     use super::*;
-
-    fn shown(columns: u16, rows: u16, draw: impl FnOnce(&mut Buffer)) -> String {
-        let mut buffer = Buffer::empty(Rect::new(0, 0, columns, rows));
-        draw(&mut buffer);
-        let lines = buffer.content().chunks(columns.into());
-        lines.flat_map(|line| line.iter().map(Cell::symbol).chain(["\n"])).collect()
-    }
-
-    #[test]
-    fn help_is_whole_or_says_that_there_is_more() {
-        let bindings = Bindings::default();
-        for (columns, rows, is_whole) in
-            [(32, 24, true), (64, 13, true), (200, 60, true), (60, 9, false), (20, 5, false)]
-        {
-            let text = shown(columns, rows, |canvas| help(canvas, canvas.bounds(), &bindings));
-            let is_so = Action::ALL.iter().all(|(_, does, _)| text.contains(does));
-            assert_eq!(is_so, is_whole, "{columns} by {rows}:\n{text}");
-            assert_eq!(text.contains("more in a"), !is_whole, "{columns} by {rows}:\n{text}");
-        }
-    }
 
     #[test]
     fn times_are_minutes_seconds_and_tenths() {

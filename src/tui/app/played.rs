@@ -74,6 +74,16 @@ impl Played {
         }
     }
 
+    /// What the map tells the player to do.
+    pub(super) fn goal(&self) -> Option<&str> {
+        self.grid()?.world().goal()
+    }
+
+    /// Whether there is a way out to find.
+    pub(super) fn has_exit(&self) -> bool {
+        self.grid().is_some_and(Game::has_exit)
+    }
+
     /// Where the player is in a level that is dug.
     pub(super) fn site(&self) -> Option<Site> {
         self.grid()?.site()
@@ -89,7 +99,7 @@ impl Played {
         self.grid()?.message()
     }
 
-    fn grid(&self) -> Option<&Game> {
+    pub(super) fn grid(&self) -> Option<&Game> {
         match self {
             Self::Grid(game) => Some(game),
             Self::Space(_) => None,

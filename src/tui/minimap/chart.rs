@@ -5,13 +5,18 @@
 
 use glam::DVec2;
 
+use super::explored::Explored;
+use super::place::{self, Ground, Place};
 use crate::render::Column;
-use crate::world::{Camera, Cell, Paint, Rgb, Shape, Thing, ThingKind, TileId, TileKind, World};
+use crate::world::{
+    Camera, Cell, Paint, Rgb, Shape, Thing, ThingKind, Tile, TileId, TileKind, World,
+};
 
 /// All that points are asked of.
 pub(super) struct Chart<'a> {
     world: &'a World,
     sight: Sight<'a>,
+    explored: Option<&'a Explored>,
     /// What each tile looks like.
     tiles: [Drawn; TileId::MOST],
     /// How many cells a pixel is wide.
@@ -21,52 +26,32 @@ pub(super) struct Chart<'a> {
 /// What a tile looks like.
 #[derive(Clone, Copy)]
 enum Drawn {
-    Floor,
-    Solid(Rgb),
-    /// Solid where the shape is.
-    Shape(Rgb),
-}
-
-/// What is at a point of the map.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub(super) enum Place {
-    Void,
+    Floor(Ground),
     Wall(Rgb),
-    Floor,
-    Seen,
-    Exit,
-    Key,
-    Ornament,
+    Door(Rgb),
+    /// Solid where the shape is, and floor around it.
+    Shape(Rgb, Ground),
 }
 
-/// The floor that nobody sees just now.
-const FLOOR: Rgb = Rgb::new(0x24, 0x24, 0x2c);
-/// The floor in the field of view.
-const SEEN: Rgb = Rgb::new(0x6c, 0x66, 0x4a);
-/// What is not on the map.
-const VOID: Rgb = Rgb::BLACK;
-/// The cell to reach.
-const EXIT: Rgb = Rgb::new(0x3c, 0xc8, 0x64);
-/// A key to take.
-const KEY: Rgb = Rgb::new(0xf0, 0xc0, 0x40);
-/// Something to walk around, or past.
-const ORNAMENT: Rgb = Rgb::new(0x9c, 0x8c, 0x74);
+/// The floor below glass, as far as that can be told apart.
+const BELOW_GLASS: Rgb = Rgb::new(0x24, 0x24, 0x2c);
 /// How opaque glass is at least, so that clear glass can be told from floor.
 const MIST: u8 = 96;
 
 impl<'a> Chart<'a> {
-    /// A chart of `world`, of which `camera` saw `columns`, whose pixels are so many cells wide.
+    /// A chart of `world`, of which `camera` saw `columns` and what is `explored`, whose pixels are so many
+    /// cells wide.
     pub(super) fn new(
         world: &'a World,
         camera: &Camera,
-        columns: &'a [Column],
+        (columns, explored): (&'a [Column], Option<&'a Explored>),
         pixel: f64,
     ) -> Self {
-        let mut tiles = [Drawn::Floor; TileId::MOST];
+        let mut tiles = [Drawn::Wall(Rgb::BLACK); TileId::MOST];
         for (drawn, tile) in tiles.iter_mut().zip(world.tiles()) {
-            *drawn = drawn_as(tile.kind, world);
+            *drawn = drawn_as(tile, world, camera.eye());
         }
-        Self { world, sight: Sight::new(camera, columns), tiles, pixel }
+        Self { world, sight: Sight::new(camera, columns), explored, tiles, pixel }
     }
 
     /// What lies at the points whose distance from the map's northern edge is `y`.
@@ -110,20 +95,31 @@ impl Row<'_> {
         let Some(&tile) = self.tiles.get(column) else { return Place::Void };
         let cell = Cell { column: column as u32, row: self.number };
         let point = DVec2::new(x, self.y);
-        match self.chart.tiles[usize::from(tile.0)] {
-            Drawn::Solid(color) => return Place::Wall(color),
-            Drawn::Shape(color) if self.chart.is_covered(tile, cell, point) => {
+        if self.chart.explored.is_some_and(|explored| !explored.contains(cell)) {
+            return Place::Void;
+        }
+        let ground = match self.chart.tiles[usize::from(tile.0)] {
+            Drawn::Wall(color) => return Place::Wall(color),
+            Drawn::Door(color) => return Place::Door(color),
+            Drawn::Shape(color, _) if self.chart.is_covered(tile, cell, point) => {
                 return Place::Wall(color);
             }
-            Drawn::Shape(_) | Drawn::Floor => {}
-        }
+            Drawn::Shape(_, ground) | Drawn::Floor(ground) => ground,
+        };
         match self.thing(cell) {
             Some(ThingKind::Exit) => Place::Exit,
-            Some(ThingKind::Key(_)) if is_on_dot(point, cell) => Place::Key,
-            Some(ThingKind::Ornament) if is_on_dot(point, cell) => Place::Ornament,
-            _ if self.chart.sight.reaches(point) => Place::Seen,
-            _ => Place::Floor,
+            Some(ThingKind::Key(_)) if self.is_on_dot(point, cell) => Place::Key,
+            Some(ThingKind::Ornament) if self.is_on_dot(point, cell) => Place::Ornament,
+            _ if self.chart.sight.reaches(point) => Place::InView(ground),
+            _ => Place::Floor(ground),
         }
+    }
+
+    /// Whether `point` is on the dot that stands for a thing in `cell`; where pixels are cells or larger, all of it
+    /// is.
+    fn is_on_dot(&self, point: DVec2, cell: Cell) -> bool {
+        const RADIUS: f64 = 0.3;
+        self.chart.pixel >= 1.0 || (point - cell.center()).abs().max_element() <= RADIUS
     }
 
     /// The first thing that stands in a cell of the row.
@@ -137,15 +133,24 @@ impl Row<'_> {
     }
 }
 
-fn drawn_as(kind: TileKind, world: &World) -> Drawn {
-    match kind {
-        TileKind::Open | TileKind::Doorway(_) => Drawn::Floor,
-        TileKind::Wall(paint) => Drawn::Solid(world.mean_color(paint)),
-        TileKind::Shape(Shape { paint, .. }) => Drawn::Shape(world.mean_color(paint)),
-        TileKind::Door(door) => Drawn::Solid(world.mean_color(door.leaf)),
-        TileKind::Mirror(tint) => Drawn::Solid(tint.color),
-        TileKind::Mask(texture) => Drawn::Solid(world.mean_color(Paint::Texture(texture))),
-        TileKind::Glass(glass) => Drawn::Solid(glass.color.over(FLOOR, glass.opacity.max(MIST))),
+/// What `tile` looks like to who has their eye at that height: the top of a wall that they look down on is floor.
+fn drawn_as(tile: &Tile, world: &World, eye: f64) -> Drawn {
+    let wall = |paint| place::of_wall(world.mean_color(paint));
+    let height = tile.heights.floor();
+    let ground = Ground::new(height, world.mean_color(tile.floor.pattern.first_paint()));
+    let is_top_seen = || height < eye && tile.gaps().next().is_some_and(|gap| gap.bottom <= height);
+    match tile.kind {
+        TileKind::Open | TileKind::Doorway(_) => Drawn::Floor(ground),
+        TileKind::Wall(_) if is_top_seen() => Drawn::Floor(ground),
+        TileKind::Wall(paint) => Drawn::Wall(wall(paint)),
+        TileKind::Shape(Shape { paint, .. }) => Drawn::Shape(wall(paint), ground),
+        TileKind::Door(door) => Drawn::Door(wall(door.leaf)),
+        TileKind::Mirror(tint) => Drawn::Wall(place::of_wall(tint.color)),
+        TileKind::Mask(texture) => Drawn::Wall(wall(Paint::Texture(texture))),
+        TileKind::Glass(glass) => {
+            let color = glass.color.over(BELOW_GLASS, glass.opacity.max(MIST));
+            Drawn::Door(place::of_wall(color))
+        }
     }
 }
 
@@ -192,35 +197,4 @@ impl<'a> Sight<'a> {
 /// down is a call.
 fn cell_at(place: f64) -> i64 {
     place as i64 - i64::from(place < 0.0)
-}
-
-/// Whether `point` is on the dot that stands for a thing in `cell`.
-fn is_on_dot(point: DVec2, cell: Cell) -> bool {
-    const RADIUS: f64 = 0.3;
-    (point - cell.center()).abs().max_element() <= RADIUS
-}
-
-impl Place {
-    pub(super) fn color(self) -> Rgb {
-        match self {
-            Self::Void => VOID,
-            Self::Wall(color) => color,
-            Self::Floor => FLOOR,
-            Self::Seen => SEEN,
-            Self::Exit => EXIT,
-            Self::Key => KEY,
-            Self::Ornament => ORNAMENT,
-        }
-    }
-
-    pub(super) fn character(self) -> char {
-        match self {
-            Self::Void | Self::Floor => ' ',
-            Self::Wall(_) => '#',
-            Self::Seen => '.',
-            Self::Exit => 'X',
-            Self::Key => 'k',
-            Self::Ornament => 'o',
-        }
-    }
 }

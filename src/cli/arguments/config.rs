@@ -1,0 +1,25 @@
+//! What `config` is asked for.
+
+use std::path::PathBuf;
+
+use super::play::CONFIG;
+use super::{Command, Subcommand};
+
+/// Options of `config`.
+#[derive(Debug, Default)]
+pub(in crate::cli) struct Config {
+    pub(in crate::cli) config: Option<PathBuf>,
+}
+
+pub(super) const SUBCOMMAND: Subcommand = Subcommand {
+    name: "config",
+    about: "Print the settings in force, as a file with comments",
+    details: "Says where the file lies and what each setting means. What it prints may be written to that \
+              file, and changed there.",
+    examples: "cellcaster config > config.toml",
+    positionals: &[],
+    options: &[&CONFIG],
+    surplus: "takes no map",
+    missing: "",
+    read: |mut matches| Ok(Command::Config(Config { config: CONFIG.of(&mut matches) })),
+};

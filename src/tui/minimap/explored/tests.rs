@@ -1,0 +1,156 @@
+use std::collections::BTreeSet;
+
+use glam::DVec2;
+use proptest::prelude::*;
+
+use super::*;
+use crate::map;
+use crate::world::{FieldOfView, Heading};
+
+const SIDE: usize = 12;
+
+/// A map of those rows, with tiles of several heights.
+fn world(rows: &[String]) -> World {
+    let text = format!(
+        "ceiling = 'sky'\ngrid = '''\n{}\n'''\n[tiles]\n'#' = {{ wall = 'brick' }}\n\
+         'H' = {{ wall = 'brick', height = 3 }}\n'l' = {{ wall = 'brick', height = 0.3 }}\n\
+         '_' = {{ floor_height = -2 }}\n'=' = {{ floor_height = 0.6 }}\n\
+         'm' = {{ mirror = true, height = 3 }}\n\
+         [things]\n'@' = {{ start = 0 }}\n",
+        rows.join("\n")
+    );
+    map::parse_str(&text).unwrap_or_else(|faults| panic!("{faults}"))
+}
+
+fn rows(drawing: &[&str]) -> Vec<String> {
+    drawing.iter().map(|&row| row.to_owned()).collect()
+}
+
+fn camera(position: DVec2, degrees: f64) -> Camera {
+    let heading = Heading::from_degrees(degrees).unwrap();
+    Camera::new(position, heading, FieldOfView::default()).unwrap()
+}
+
+fn seen(world: &World, camera: &Camera, rays: u32) -> BTreeSet<(u32, u32)> {
+    let mut explored = Explored::default();
+    explored.look(world, camera, rays);
+    explored.cells().into_iter().map(|Cell { column, row }| (column, row)).collect()
+}
+
+/// What a row of cells shows to who stands in the first one and looks along it: `x` for what they see.
+fn seen_along(row: &str, eye: f64) -> String {
+    let border = "#".repeat(row.chars().count());
+    let world = world(&rows(&[&border, row, &border]));
+    let camera = camera(DVec2::new(0.5, 1.5), 0.0).with_eye(eye).unwrap();
+    let seen = seen(&world, &camera, 1);
+    (0..row.len() as u32)
+        .map(|column| if seen.contains(&(column, 1)) { 'x' } else { '.' })
+        .collect()
+}
+
+#[test]
+fn what_stands_hides_what_is_behind_it() {
+    assert_eq!(seen_along("@....#..", 0.5), "xxxxxx..");
+    assert_eq!(seen_along("@..H....", 0.5), "xxxx....");
+}
+
+#[test]
+fn what_is_low_hides_the_floor_behind_it_for_a_while() {
+    // From an eye at half a cell, over a wall of 0.3 that ends 3.5 cells off, the floor shows from 8.75 cells off.
+    assert_eq!(seen_along("@..l............", 0.5), "xxxx.....xxxxxxx");
+    // What is higher than the low wall shows above it.
+    assert_eq!(seen_along("@..l..H.", 0.5), "xxxx..x.");
+}
+
+#[test]
+fn a_pit_shows_no_floor_from_afar_and_a_step_shows_its_face() {
+    assert_eq!(seen_along("@...__", 0.5), "xxxx..");
+    assert_eq!(seen_along("@__.", 0.5), "x..x");
+    assert_eq!(seen_along("@..=..", 0.5), "xxxx..");
+    assert_eq!(seen_along("@..=....", 1.5), "xxxx..xx");
+}
+
+#[test]
+fn a_mirror_shows_nothing_that_a_map_could_tell() {
+    assert_eq!(seen_along("@..m", 0.5), "xxxx");
+    let world = world(&rows(&["#####", "#..@m", "#####"]));
+    let seen = seen(&world, &camera(DVec2::new(3.5, 1.5), 0.0), 80);
+    assert!(!seen.contains(&(1, 1)) && !seen.contains(&(2, 1)), "{seen:?}");
+}
+
+#[test]
+fn what_was_seen_is_known_when_the_window_comes_back() {
+    let world = world(&rows(&["########", "#@.....#", "########"]));
+    let mut explored = Explored::default();
+    explored.look(&world, &camera(DVec2::new(1.5, 1.5), 0.0), 40);
+    let before = explored.cells();
+    assert!(!before.is_empty());
+    explored.follow(Site { column: 3, row: -1 });
+    let moved: Vec<Cell> = before
+        .iter()
+        .filter(|cell| cell.column >= 3 && cell.row < 2)
+        .map(|cell| Cell { column: cell.column - 3, row: cell.row + 1 })
+        .collect();
+    assert_eq!(explored.cells(), moved);
+    explored.follow(Site { column: -1000, row: 77 });
+    assert_eq!(explored.cells(), []);
+    explored.follow(Site::default());
+    assert_eq!(explored.cells(), before);
+}
+
+/// The cells that a ray is in up to the first wall: by the middles between the lines that it crosses.
+fn crossed(world: &World, origin: DVec2, direction: DVec2) -> Option<Vec<(u32, u32)>> {
+    let lines = |origin: f64, direction: f64| {
+        (0..=SIDE).map(move |line| (line as f64 - origin) / direction)
+    };
+    let mut places: Vec<f64> = lines(origin.x, direction.x)
+        .chain(lines(origin.y, direction.y))
+        .filter(|t| *t > 0.0)
+        .collect();
+    places.push(0.0);
+    places.sort_by(f64::total_cmp);
+    // Where a ray goes through a corner, rounding decides.
+    if places.windows(2).any(|pair| pair[1] - pair[0] < 1e-9) {
+        return None;
+    }
+    let mut cells = Vec::new();
+    for pair in places.windows(2) {
+        let point = origin + direction * f64::midpoint(pair[0], pair[1]);
+        let (column, row) = (point.x.floor() as i64, point.y.floor() as i64);
+        let Some(tile) = world.grid().tile(column, row) else { break };
+        cells.push((column as u32, row as u32));
+        if world.grid().is_solid_tile(tile) {
+            break;
+        }
+    }
+    Some(cells)
+}
+
+proptest! {
+    #[test]
+    fn on_a_level_map_what_rays_cross_is_seen_and_nothing_else(
+        walls in prop::collection::vec(prop::bool::weighted(0.2), SIDE * SIDE),
+        position in (1.01..10.99, 1.01..10.99),
+        degrees in 0.0..360.0,
+        rays in 1..60_u32,
+    ) {
+        let position = DVec2::from(position);
+        let own = position.y as usize * SIDE + position.x as usize;
+        let cell = |(place, &wall): (usize, &bool)| {
+            if place == own { '@' } else if wall { '#' } else { '.' }
+        };
+        let drawing: Vec<char> = walls.iter().enumerate().map(cell).collect();
+        let drawing: Vec<String> = drawing.chunks(SIDE).map(|row| row.iter().collect()).collect();
+        let world = world(&drawing);
+        let camera = camera(position, degrees);
+        let plane = camera.direction().perp() * camera.field_of_view.half_width();
+        let mut expected = BTreeSet::new();
+        for column in 0..rays {
+            let across = 2.0 * (f64::from(column) + 0.5) / f64::from(rays) - 1.0;
+            let cells = crossed(&world, position, camera.direction() + plane * across);
+            prop_assume!(cells.is_some());
+            expected.extend(cells.unwrap());
+        }
+        prop_assert_eq!(seen(&world, &camera, rays), expected);
+    }
+}
