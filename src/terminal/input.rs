@@ -83,7 +83,13 @@ mod tests {
     const ALT: Modifiers = Modifiers { alt: true, ..PLAIN };
 
     fn key(key: Key, modifiers: Modifiers, phase: Phase) -> Input {
-        Input::Key(KeyEvent { key, modifiers, phase })
+        Input::Key(KeyEvent { key, base: None, modifiers, phase })
+    }
+
+    /// A key of another layout than a Latin one, at the place of `base`.
+    fn elsewhere(name: char, base: char, modifiers: Modifiers, phase: Phase) -> Input {
+        let (key, base) = (Key::Char(name), Some(Key::Char(base)));
+        Input::Key(KeyEvent { key, base, modifiers, phase })
     }
 
     fn press(name: Key, modifiers: Modifiers) -> Input {
@@ -123,6 +129,19 @@ mod tests {
             ("\x1b[1;1:3A", key(Key::Up, PLAIN, Phase::Release)),
             ("\x1b[57441;2u", press(Key::Shift, SHIFT)),
             ("\x1b[57448;1:3u", key(Key::Control, CONTROL, Phase::Release)),
+            ("\x1b[1094::119;1:1u", elsewhere('ц', 'w', PLAIN, Phase::Press)),
+            ("\x1b[1094::119;1:3u", elsewhere('ц', 'w', PLAIN, Phase::Release)),
+            ("\x1b[1094:1062:119;2u", elsewhere('ц', 'w', PLAIN, Phase::Press)),
+            ("\x1b[1089::99;5u", elsewhere('с', 'c', CONTROL, Phase::Press)),
+            ("\x1b[1492::101u", elsewhere('ה', 'e', PLAIN, Phase::Press)),
+            ("\x1b[122::119;1:1u", press(Key::Char('z'), PLAIN)),
+            ("\x1b[59::122u", press(Key::Char(';'), PLAIN)),
+            ("\x1b[97::u", press(Key::Char('a'), PLAIN)),
+            ("\x1b[1094::1114112u", elsewhere('ц', 'w', PLAIN, Phase::Press)),
+            ("ц", elsewhere('ц', 'w', PLAIN, Phase::Press)),
+            ("Ц", elsewhere('ц', 'w', SHIFT, Phase::Press)),
+            ("ς", elsewhere('ς', 'w', PLAIN, Phase::Press)),
+            ("\x1bф", elsewhere('ф', 'a', ALT, Phase::Press)),
             ("\x1b[?0u", answer(Answer::KeyFlags)),
             ("\x1b[?11u", answer(Answer::KeyFlags)),
             ("\x1b[?62;4c", answer(Answer::Fence)),

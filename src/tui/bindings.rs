@@ -17,7 +17,7 @@ use toml::de::{DeTable, DeValue};
 
 use crate::fault::{Fault, Faults, document, nearest, quoted};
 use crate::game::Intent;
-use crate::terminal::Key;
+use crate::terminal::{Key, KeyEvent};
 
 /// What a key can do.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
@@ -168,6 +168,13 @@ impl Bindings {
         self.keys.iter().find(|&&(bound, _)| bound == key).map(|&(_, action)| action)
     }
 
+    /// `event`, of the key that does something: where the one pressed does nothing, of the one at its
+    /// place on a US keyboard.
+    pub(crate) fn resolve(&self, event: KeyEvent) -> KeyEvent {
+        let base = event.base.filter(|_| self.action(event.key).is_none());
+        KeyEvent { key: base.unwrap_or(event.key), ..event }
+    }
+
     /// The keys that do `action`, in the order in which they were bound.
     pub(crate) fn keys(&self, action: Action) -> impl Iterator<Item = Key> {
         self.keys.iter().filter(move |&&(_, bound)| bound == action).map(|&(key, _)| key)
@@ -251,6 +258,7 @@ fn bound_twice(key: Key, place: Range<usize>) -> Fault {
 #[cfg(test)]
 mod tests {
     use super::*;
+    use crate::terminal::{Modifiers, Phase};
 
     fn faults(text: &str) -> String {
         Bindings::parse(text, "config.toml").unwrap_err().to_string()
@@ -279,6 +287,20 @@ mod tests {
         assert_eq!(bindings.action(Key::Char('q')), Some(Action::Want(Intent::StrafeLeft)));
         assert_eq!(bindings.action(Key::Char('m')), Some(Action::Leave));
         assert_eq!(bindings.keys(Action::ToggleMinimap).collect::<Vec<_>>(), [Key::Tab]);
+    }
+
+    #[test]
+    fn a_key_does_what_it_types_and_else_what_its_place_does() {
+        let event = |key, base| KeyEvent {
+            key: Key::Char(key),
+            base: Some(Key::Char(base)),
+            modifiers: Modifiers::default(),
+            phase: Phase::Press,
+        };
+        let cyrillic = Bindings::parse("[keys]\nopen = \"ц\"", "config.toml").unwrap();
+        assert_eq!(cyrillic.resolve(event('ц', 'w')).key, Key::Char('ц'));
+        assert_eq!(cyrillic.resolve(event('ф', 'a')).key, Key::Char('a'));
+        assert_eq!(Bindings::default().resolve(event('ц', 'w')).key, Key::Char('w'));
     }
 
     #[test]

@@ -131,7 +131,7 @@ impl Session {
 /// What a key means to every program: raw mode leaves to us what the terminal would have done.
 fn meaning(event: KeyEvent) -> Event {
     let pressed = event.phase == Phase::Press && event.modifiers.control && !event.modifiers.alt;
-    match event.key {
+    match event.base.unwrap_or(event.key) {
         Key::Char('c') if pressed => Event::Quit(QuitReason::Interrupted),
         Key::Char('z') if pressed => Event::Suspend,
         _ => Event::Key(event),

@@ -17,6 +17,7 @@ impl App {
     /// A key was pressed, repeated or released at that time.
     pub(super) fn key(&mut self, event: KeyEvent, now: Duration) {
         self.advance(now);
+        let event = self.settings.bindings.resolve(event);
         let action = self.settings.bindings.action(event.key);
         if let Some(Action::Want(_)) = action {
             let bindings = &self.settings.bindings;
