@@ -19,6 +19,7 @@ mod flow;
 mod guard;
 mod input;
 mod key;
+mod mouse;
 mod recorder;
 mod sequence;
 mod session;
@@ -41,6 +42,7 @@ pub use self::error::Error;
 pub use self::event::{Event, QuitReason};
 pub use self::fidelity::{Fidelity, UnknownFidelity};
 pub use self::key::{Key, KeyEvent, Modifiers, Phase, UnknownKey};
+pub use self::mouse::{MouseButton, MouseEvent, MouseEventKind};
 #[cfg(feature = "cli")]
 pub(crate) use self::platform::peak_memory;
 pub use self::recorder::Recorder;

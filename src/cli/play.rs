@@ -25,6 +25,7 @@ pub(super) fn run(options: Play) -> Result<(), Error> {
         method: options.method,
         filter: options.filter,
         fidelity: options.fidelity,
+        mouse: false,
         shows_stats: options.shows_stats,
     };
     let file = options.record.as_deref().map(RecordingFile::create).transpose()?;

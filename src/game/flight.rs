@@ -105,7 +105,8 @@ impl Player {
         let target = speed * intents.balance(Intent::TurnRight, Intent::TurnLeft);
         let Glide { velocity, displacement } = approach(self.turning, target, TURN_FRICTION, STEP);
         let turning = if velocity.abs() < STILL { 0.0 } else { velocity };
-        Self { heading: self.heading.turned(displacement), turning, ..self }
+        let angle = displacement + intents.look().turn_radians();
+        Self { heading: self.heading.turned(angle), turning, ..self }
     }
 
     fn raised(self, intents: Intents) -> Self {
@@ -115,7 +116,7 @@ impl Player {
         let speed = if intents.contains(Intent::Aim) { AIM_UPWARDS } else { RAISE };
         let target = speed * intents.balance(Intent::LookUp, Intent::LookDown);
         let Glide { velocity, displacement } = approach(self.raising, target, TURN_FRICTION, STEP);
-        let elevation = self.elevation.raised(displacement);
+        let elevation = self.elevation.raised(displacement + intents.look().tilt_radians());
         let has_stopped = velocity.abs() < STILL || elevation == self.elevation;
         Self { elevation, raising: if has_stopped { 0.0 } else { velocity }, ..self }
     }

@@ -15,6 +15,7 @@ use super::flow::Flow;
 use super::guard::Guard;
 use super::input::Decoder;
 use super::platform::{Device, Signals};
+use super::mouse::MouseUnits;
 use super::{CellWriter, Detected, Error, Event, Fidelity, Recorder, WindowSize, sequence};
 use crate::palette::ColorDepth;
 
@@ -35,12 +36,24 @@ pub struct Session {
     size: WindowSize,
     color_depth: Detected,
     key_releases: KeyReleases,
+    mouse: Mouse,
     begun_at: Instant,
     flow: Flow,
     /// `None` for what the link allows.
     fidelity: Option<Fidelity>,
     /// Whether the program wants to know when a frame may be sent.
     awaits_readiness: bool,
+}
+
+/// What is reported of the mouse.
+#[derive(Clone, Copy, Debug, Default)]
+struct Mouse {
+    /// What its place is reported in; `None` where it is not.
+    units: Option<MouseUnits>,
+    /// Whether the terminal can report it in pixels.
+    has_pixels: bool,
+    /// Whether reports may still be in cells though pixels were asked for.
+    is_changing: bool,
 }
 
 /// Whether the terminal reports when keys are released.
@@ -89,6 +102,7 @@ impl Session {
             size,
             color_depth: options.color_depth,
             key_releases: KeyReleases::Unasked,
+            mouse: Mouse::default(),
             begun_at: Instant::now(),
             flow: Flow::default(),
             fidelity: options.fidelity,
@@ -104,6 +118,9 @@ impl Session {
         if options.ask_for_key_releases {
             queries.push_str(sequence::QUERY_KEY_FLAGS);
             self.key_releases = KeyReleases::Asked;
+        }
+        if options.ask_for_mouse_pixels {
+            queries.push_str(sequence::QUERY_MOUSE_PIXELS);
         }
         if let Detected::Guess(_) = options.color_depth {
             queries.push_str(sequence::QUERY_TRUE_COLOR);
@@ -139,6 +156,30 @@ impl Session {
                 Received::Nothing if is_past(deadline) => return Ok(None),
                 Received::Nothing | Received::Something => {}
             }
+        }
+    }
+
+    /// Has the mouse reported from now on, or not any more; at first it is not. Places are in pixels
+    /// where the terminal can tell them so.
+    ///
+    /// # Errors
+    /// Where the terminal cannot be written to.
+    pub fn set_mouse(&mut self, is_reported: bool) -> Result<(), Error> {
+        if self.mouse.units.is_some() == is_reported {
+            return Ok(());
+        }
+        self.mouse.units = is_reported.then(|| self.mouse_units());
+        self.mouse.is_changing = false;
+        let changed = self.guard.set_mouse(self.mouse.units);
+        changed.map_err(Error::while_doing("setting up the mouse"))
+    }
+
+    /// The finest unit in which the terminal reports places.
+    fn mouse_units(&self) -> MouseUnits {
+        if self.mouse.has_pixels && self.size.pixels.is_some() {
+            MouseUnits::Pixels
+        } else {
+            MouseUnits::Cells
         }
     }
 

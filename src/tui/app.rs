@@ -6,6 +6,7 @@
 mod clock;
 mod keys;
 mod levels;
+mod mouse;
 mod panels;
 mod played;
 mod recording;
@@ -32,6 +33,7 @@ use crate::render::Filter;
 use crate::terminal::Fidelity;
 use crate::world::FieldOfView;
 use clock::Clock;
+use mouse::Pointer;
 use played::{Eye, Memory, Played};
 use recording::ScriptRecorder;
 use stats::Stats;
@@ -58,6 +60,8 @@ pub struct Settings {
     pub filter: Filter,
     /// How exact frames are; `None` for as exact as the link to the terminal allows.
     pub fidelity: Option<Fidelity>,
+    /// Whether the mouse turns and tilts at first.
+    pub mouse: bool,
     /// Whether the status line tells of frames and the link at first.
     pub shows_stats: bool,
 }
@@ -100,6 +104,7 @@ struct App {
     field_of_view: FieldOfView,
     held: HeldKeys,
     gait: Gait,
+    pointer: Pointer,
     /// What counts for the next step even if its key is up again by then.
     pressed: Intents,
     shows_minimap: bool,
@@ -133,6 +138,7 @@ impl App {
                 ..Memory::default()
             },
             shows_stats: settings.shows_stats,
+            pointer: Pointer::new(settings.mouse),
             settings,
             held: HeldKeys::default(),
             gait: Gait::default(),
@@ -151,11 +157,12 @@ impl App {
     /// Lets the game go on until `now`.
     fn advance(&mut self, now: Duration) {
         self.held.expire(now);
-        let steps = self.clock.steps_until(now);
+        let passed = self.clock.steps_until(now);
         if self.screen != Screen::Playing {
             return;
         }
-        let intents = self.intents();
+        let steps = self.step_with_pointer(passed);
+        let intents = self.wanted();
         let quiet = self.game.quiet_steps(intents).min(steps);
         self.game.wait(quiet);
         let mut moving = 0;
@@ -164,7 +171,8 @@ impl App {
             moving += 1;
         }
         self.record(intents, quiet + moving);
-        if steps > 0 {
+        self.pointer.passed(quiet + moving);
+        if passed > 0 {
             self.pressed = Intents::new();
         }
         if self.game.is_finished() {
@@ -204,7 +212,7 @@ impl App {
         if self.screen != Screen::Playing {
             return None;
         }
-        let quiet = Some(self.game.quiet_steps(self.intents())).filter(|&quiet| quiet < u64::MAX);
+        let quiet = Some(self.game.quiet_steps(self.wanted())).filter(|&quiet| quiet < u64::MAX);
         let before_animation = self.steps_to_animation().map(|steps| steps.saturating_sub(1));
         let steps = quiet.into_iter().chain(before_animation).min()?;
         Some(self.clock.step_after(steps))
@@ -230,10 +238,18 @@ impl App {
         self.shown = None;
     }
 
+    /// What is typed goes to another window: keys may be let go of there.
+    fn focus_lost(&mut self, now: Duration) {
+        self.advance(now);
+        self.held.clear();
+        self.pointer.forget();
+    }
+
     /// The program was stopped, and goes on: the time in between does not count.
     fn resumed(&mut self, now: Duration) {
         self.clock.skip_to(now);
         self.held.clear();
+        self.pointer.forget();
         self.shown = None;
     }
 
@@ -245,7 +261,8 @@ impl App {
         let [picture, status] = panels::picture_and_status(area);
         self.draw_picture(canvas, picture);
         let stats = self.stats.as_ref().filter(|_| self.shows_stats);
-        self.status.update(&self.game, self.gait, stats, &self.settings.bindings);
+        let gait = Gait { mouse: self.pointer.is_on(), ..self.gait };
+        self.status.update(&self.game, gait, stats, &self.settings.bindings);
         canvas.draw_widget(&self.status, status);
         let seconds = self.game.elapsed();
         match self.screen {

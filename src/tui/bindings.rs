@@ -28,6 +28,8 @@ pub(crate) enum Action {
     ToggleRun,
     /// Ducking until it is pressed again.
     ToggleDuck,
+    /// Turning and tilting by the mouse, or not any more.
+    ToggleMouse,
     /// Showing or hiding the minimap.
     ToggleMinimap,
     /// Showing or hiding the keys.
@@ -46,7 +48,7 @@ pub(crate) enum Action {
 
 impl Action {
     /// Every action: its name in a file, what it does in a word or two, and itself.
-    pub(crate) const ALL: [(&'static str, &'static str, Self); 22] = [
+    pub(crate) const ALL: [(&'static str, &'static str, Self); 23] = [
         ("forward", "walk", Self::Want(Intent::Forward)),
         ("back", "walk back", Self::Want(Intent::Back)),
         ("strafe-left", "strafe left", Self::Want(Intent::StrafeLeft)),
@@ -62,6 +64,7 @@ impl Action {
         ("look-ahead", "look ahead", Self::Want(Intent::LookAhead)),
         ("toggle-run", "run, on and off", Self::ToggleRun),
         ("toggle-duck", "duck, on and off", Self::ToggleDuck),
+        ("mouse", "mouse, on and off", Self::ToggleMouse),
         ("minimap", "map", Self::ToggleMinimap),
         ("help", "this help", Self::ToggleHelp),
         ("pause", "pause", Self::TogglePause),
@@ -137,6 +140,7 @@ impl Bindings {
             (Key::Home, Action::Want(Intent::LookAhead)),
             (Key::Char('r'), Action::ToggleRun),
             (Key::Char('x'), Action::ToggleDuck),
+            (Key::Char('b'), Action::ToggleMouse),
             (Key::Char('m'), Action::ToggleMinimap),
             (Key::Tab, Action::ToggleMinimap),
             (Key::Char('?'), Action::ToggleHelp),

@@ -9,6 +9,8 @@ pub struct Options {
     pub color_depth: Detected,
     /// Whether to ask for reports of when keys are released.
     pub ask_for_key_releases: bool,
+    /// Whether to ask if places of the mouse can be in pixels.
+    pub ask_for_mouse_pixels: bool,
     /// How exact frames are; `None` for exact where the link keeps up, and less so where it lags.
     pub fidelity: Option<Fidelity>,
 }
@@ -17,7 +19,7 @@ impl Options {
     /// What `environment`, a lookup of variables by name, tells of the terminal.
     ///
     /// A terminal multiplexer is not asked for releases: those that agree lose some, and a key whose
-    /// release is lost is held for ever.
+    /// release is lost is held for ever. Nor is it asked for pixels, of which it has none of its own.
     pub fn from_environment(environment: impl Fn(&str) -> Option<String>) -> Self {
         let is_set = |name| environment(name).is_some_and(|value| !value.is_empty());
         let term = environment("TERM").unwrap_or_default();
@@ -27,6 +29,7 @@ impl Options {
         Self {
             color_depth: color_depth(environment),
             ask_for_key_releases: !multiplexed,
+            ask_for_mouse_pixels: !multiplexed,
             fidelity: None,
         }
     }

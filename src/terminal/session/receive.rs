@@ -8,6 +8,7 @@ use ratatui::backend::Backend;
 use super::{KeyReleases, Session};
 use crate::palette::ColorDepth;
 use crate::terminal::input::{Answer, Input};
+use crate::terminal::mouse::MouseReport;
 use crate::terminal::platform::Signal;
 use crate::terminal::{Detected, Event, Key, KeyEvent, Phase, QuitReason};
 
@@ -78,6 +79,10 @@ impl Session {
     fn take_input(&mut self, input: Input) -> io::Result<()> {
         match input {
             Input::Key(event) => self.events.push_back(meaning(event)),
+            Input::Focus(true) => self.events.push_back(Event::FocusGained),
+            Input::Focus(false) => self.events.push_back(Event::FocusLost),
+            Input::Mouse(report) => self.events.extend(self.mouse_event(report)),
+            Input::Answer(Answer::PixelMouse) => self.refine_mouse()?,
             Input::Answer(Answer::KeyFlags) => self.settle_key_releases(true)?,
             Input::Answer(Answer::TrueColor) => self.raise_color_depth(),
             Input::Answer(Answer::Status) => {
@@ -86,11 +91,33 @@ impl Session {
             }
             Input::Answer(Answer::Fence) => {
                 self.guard.fence_answered();
+                self.mouse.is_changing &= self.guard.awaits_answers();
                 self.flow.passed_over();
                 self.settle_key_releases(false)?;
             }
         }
         Ok(())
+    }
+
+    /// The event that `report` stands for; `None` for one that comes too late, or in units that nobody
+    /// knows.
+    fn mouse_event(&self, report: MouseReport) -> Option<Event> {
+        let units = self.mouse.units.filter(|_| !self.mouse.is_changing)?;
+        report.event(units, self.size).map(Event::Mouse)
+    }
+
+    /// The terminal can report the mouse in pixels.
+    fn refine_mouse(&mut self) -> io::Result<()> {
+        self.mouse.has_pixels = true;
+        let finest = self.mouse_units();
+        if self.mouse.units.is_none_or(|units| units == finest) {
+            return Ok(());
+        }
+        self.mouse.units = Some(finest);
+        self.mouse.is_changing = true;
+        self.guard.set_mouse(self.mouse.units)?;
+        // Reports that come after the answer are in pixels.
+        self.guard.ask("")
     }
 
     fn settle_key_releases(&mut self, agreed: bool) -> io::Result<()> {

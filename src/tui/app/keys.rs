@@ -57,6 +57,10 @@ impl App {
                 self.gait.runs = !self.gait.runs;
                 self.shown = None;
             }
+            (_, Some(Action::ToggleMouse)) => {
+                self.pointer.toggle();
+                self.shown = None;
+            }
             (_, Some(Action::ToggleStats)) => {
                 self.shows_stats = !self.shows_stats;
                 self.shown = None;

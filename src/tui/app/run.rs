@@ -32,6 +32,7 @@ pub fn play(levels: Levels, settings: Settings, recording: Recording) -> Result<
     let start = Instant::now();
     while !app.has_left {
         app.advance(start.elapsed());
+        session.set_mouse(app.pointer.is_on())?;
         presenter.update(&mut app, &mut session, start.elapsed())?;
         let wakes_at = presenter.wakes_at(&app, &session, start.elapsed());
         let timeout = wakes_at.map(|wakes| wakes.saturating_sub(start.elapsed()));
@@ -42,6 +43,9 @@ pub fn play(levels: Levels, settings: Settings, recording: Recording) -> Result<
                 panic_on_demand(event.key);
                 app.key(event, start.elapsed());
             }
+            Some(Event::Mouse(event)) => app.mouse(event, start.elapsed()),
+            Some(Event::FocusGained) => {}
+            Some(Event::FocusLost) => app.focus_lost(start.elapsed()),
             Some(Event::Resized | Event::ColorDepth(_)) => tell_terminal(&mut app, &session),
             Some(Event::KeyReleases(reported)) => app.held.set_reports_releases(reported),
             Some(Event::Suspend) => {
@@ -119,6 +123,7 @@ fn is_unfinished(app: &App, session: &Session) -> bool {
 fn tell_terminal(app: &mut App, session: &Session) {
     let aspect = session.size().cell_aspect.and_then(CellAspect::new);
     app.terminal_changed(aspect, session.color_depth());
+    app.pointer.set_columns(session.size().columns);
 }
 
 /// A fault in the middle of a game, for the tests that look at how it ends.

@@ -15,11 +15,13 @@ use super::played::Played;
 use super::stats::Stats;
 use crate::tui::bindings::{Action, Bindings};
 
-/// How the player walks, whatever keys are held.
+/// How the player walks and turns, whatever keys are held.
 #[derive(Clone, Copy, Debug, Default)]
 pub(super) struct Gait {
     pub(super) runs: bool,
     pub(super) ducks: bool,
+    /// Whether the mouse turns them.
+    pub(super) mouse: bool,
 }
 
 /// What the line says: where and how the player is to the left, and how to get help to the right.
@@ -69,6 +71,9 @@ fn write_left(text: &mut String, game: &Played, gait: Gait) -> fmt::Result {
     }
     if gait.ducks {
         text.push_str("  ducking");
+    }
+    if gait.mouse {
+        text.push_str("  mouse");
     }
     game.keys().try_for_each(|key| write!(text, "  {key} key"))?;
     game.message().map_or(Ok(()), |message| write!(text, "  {message}"))
