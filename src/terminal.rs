@@ -10,6 +10,7 @@
 
 mod cell_writer;
 mod depth;
+mod environment;
 mod error;
 mod event;
 mod fidelity;
@@ -37,7 +38,8 @@ use self::unsupported as platform;
 #[cfg(feature = "cli")]
 pub(crate) use self::cell_writer::{Bytes, Style};
 pub use self::cell_writer::{CellWriter, Screen};
-pub use self::depth::{Detected, color_depth};
+pub use self::depth::{ColorSource, Detected, color_depth, color_source};
+pub use self::environment::locale_without_utf8;
 pub use self::error::Error;
 pub use self::event::{Event, QuitReason};
 pub use self::fidelity::{Fidelity, UnknownFidelity};

@@ -1,5 +1,6 @@
 //! `cellcaster play`: the game on the terminal.
 
+use std::env;
 use std::fs;
 use std::io;
 use std::path::PathBuf;
@@ -10,7 +11,8 @@ use etcetera::{BaseStrategy, choose_base_strategy};
 use super::arguments::Play;
 use super::recording::RecordingFile;
 use super::{Error, level};
-use crate::tui::{self, Bindings, Settings};
+use crate::terminal::locale_without_utf8;
+use crate::tui::{self, Bindings, GlyphMode, Settings};
 
 /// Plays until the player has had enough.
 pub(super) fn run(options: Play) -> Result<(), Error> {
@@ -20,7 +22,7 @@ pub(super) fn run(options: Play) -> Result<(), Error> {
         frame_time: Duration::from_secs(1) / options.frames_per_second.get().get(),
         field_of_view: options.field_of_view,
         cell_aspect: options.cell_aspect,
-        glyphs: options.glyphs,
+        glyphs: options.glyphs.unwrap_or_else(glyphs_of_locale),
         depth: options.depth,
         method: options.method,
         filter: options.filter,
@@ -32,6 +34,14 @@ pub(super) fn run(options: Play) -> Result<(), Error> {
     let recording = file.as_ref().map(RecordingFile::recording).unwrap_or_default();
     tui::play(levels, settings, recording)?;
     file.map_or(Ok(()), RecordingFile::finish)
+}
+
+/// The glyphs that the locale can show.
+fn glyphs_of_locale() -> GlyphMode {
+    match locale_without_utf8(|name| env::var(name).ok()) {
+        Some(_) => GlyphMode::Ascii,
+        None => GlyphMode::default(),
+    }
 }
 
 /// The bindings in the file that was named, or in the user's own if there is one.

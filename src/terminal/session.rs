@@ -16,7 +16,7 @@ use super::guard::Guard;
 use super::input::Decoder;
 use super::platform::{Device, Signals};
 use super::mouse::MouseUnits;
-use super::{CellWriter, Detected, Error, Event, Fidelity, Recorder, WindowSize, sequence};
+use super::{CellWriter, ColorSource, Detected, Error, Event, Fidelity, Recorder, WindowSize, sequence};
 use crate::palette::ColorDepth;
 
 /// The terminal, taken over: keys come in, frames go out.
@@ -35,6 +35,7 @@ pub struct Session {
     events: VecDeque<Event>,
     size: WindowSize,
     color_depth: Detected,
+    color_source: ColorSource,
     key_releases: KeyReleases,
     mouse: Mouse,
     begun_at: Instant,
@@ -69,7 +70,7 @@ impl Session {
     /// for them.
     ///
     /// # Errors
-    /// Where standard input or output is not a terminal, where the process has a session already,
+    /// Where standard input or output is not a terminal or one that cannot move its cursor, where the process has a session already,
     /// where the platform has no Unix terminals, and where the terminal cannot be written to.
     pub fn enter(options: Options) -> Result<Self, Error> {
         Self::enter_recorded(options, None)
@@ -83,7 +84,11 @@ impl Session {
         options: Options,
         recorder: Option<Box<dyn Recorder>>,
     ) -> Result<Self, Error> {
-        let guard = Guard::install(Device::open()?, recorder)?;
+        let device = Device::open()?;
+        if let Some(term) = options.teletype {
+            return Err(Error::teletype(term));
+        }
+        let guard = Guard::install(device, recorder)?;
         Self::take(&guard, options).inspect_err(|_| guard.uninstall())
     }
 
@@ -101,6 +106,7 @@ impl Session {
             events: VecDeque::new(),
             size,
             color_depth: options.color_depth,
+            color_source: options.color_source,
             key_releases: KeyReleases::Unasked,
             mouse: Mouse::default(),
             begun_at: Instant::now(),
@@ -108,6 +114,7 @@ impl Session {
             fidelity: options.fidelity,
             awaits_readiness: false,
         };
+        session.writer.set_ascii(options.is_ascii);
         guard.take().map_err(Error::while_doing("taking the terminal"))?;
         session.ask(options).map_err(Error::while_doing("asking the terminal what it can do"))?;
         Ok(session)
@@ -210,6 +217,11 @@ impl Session {
     /// How many colours the terminal shows, as far as is known by now.
     pub fn color_depth(&self) -> ColorDepth {
         self.color_depth.depth()
+    }
+
+    /// What that is known by.
+    pub fn color_source(&self) -> ColorSource {
+        self.color_source
     }
 }
 

@@ -4,6 +4,7 @@
 //! it off screen. [`play`] is the loop around it that has both.
 
 mod clock;
+mod detection;
 mod keys;
 mod levels;
 mod mouse;
@@ -33,6 +34,7 @@ use crate::render::Filter;
 use crate::terminal::Fidelity;
 use crate::world::FieldOfView;
 use clock::Clock;
+use detection::Detection;
 use mouse::Pointer;
 use played::{Eye, Memory, Played};
 use recording::ScriptRecorder;
@@ -118,6 +120,8 @@ struct App {
     shows_stats: bool,
     stats: Option<Stats>,
     status: StatusLine,
+    /// What was found out about the terminal.
+    detection: Detection,
     /// Where what is wanted is noted down.
     script: Option<ScriptRecorder>,
 }
@@ -150,6 +154,7 @@ impl App {
             animates_at: None,
             stats: None,
             status: StatusLine::default(),
+            detection: Detection::default(),
             script: None,
         }
     }
@@ -268,7 +273,9 @@ impl App {
         match self.screen {
             Screen::Playing => {}
             Screen::Paused => panels::paused(canvas, picture, &self.settings.bindings),
-            Screen::Help => panels::help(canvas, picture, &self.settings.bindings),
+            Screen::Help => {
+                panels::help(canvas, picture, &self.settings.bindings, self.detection.lines());
+            }
             Screen::LevelDone => panels::level_done(canvas, picture, self.game.title(), seconds),
             Screen::End => panels::end(canvas, picture, self.earlier + seconds),
         }

@@ -25,7 +25,7 @@ pub(in crate::cli) struct Play {
     pub(in crate::cli) frames_per_second: FramesPerSecond,
     pub(in crate::cli) field_of_view: FieldOfView,
     pub(in crate::cli) cell_aspect: Option<CellAspect>,
-    pub(in crate::cli) glyphs: GlyphMode,
+    pub(in crate::cli) glyphs: Option<GlyphMode>,
     pub(in crate::cli) depth: Option<ColorDepth>,
     pub(in crate::cli) method: Method,
     pub(in crate::cli) filter: Filter,
@@ -53,7 +53,7 @@ pub(super) fn parse(mut parser: Parser) -> Result<Command, Error> {
             Arg::Long("cell-aspect") => {
                 play.cell_aspect = Some(value::CELL_ASPECT.value(&mut parser)?);
             }
-            Arg::Long("glyphs") => play.glyphs = value::GLYPHS.value(&mut parser)?,
+            Arg::Long("glyphs") => play.glyphs = Some(value::GLYPHS.value(&mut parser)?),
             Arg::Long("colors") => play.depth = Some(value::COLORS.value(&mut parser)?),
             Arg::Long("caster") => play.method = value::method(&mut parser)?,
             Arg::Long("filter") => play.filter = value::FILTER.value(&mut parser)?,

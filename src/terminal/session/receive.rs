@@ -10,7 +10,7 @@ use crate::palette::ColorDepth;
 use crate::terminal::input::{Answer, Input};
 use crate::terminal::mouse::MouseReport;
 use crate::terminal::platform::Signal;
-use crate::terminal::{Detected, Event, Key, KeyEvent, Phase, QuitReason};
+use crate::terminal::{ColorSource, Detected, Event, Key, KeyEvent, Phase, QuitReason};
 
 /// Whether something arrived.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -134,6 +134,7 @@ impl Session {
     fn raise_color_depth(&mut self) {
         if let Detected::Guess(_) = self.color_depth {
             self.color_depth = Detected::Certain(ColorDepth::True);
+            self.color_source = ColorSource::Answer;
             self.events.push_back(Event::ColorDepth(ColorDepth::True));
         }
     }

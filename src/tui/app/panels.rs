@@ -90,15 +90,22 @@ pub(super) fn paused(canvas: &mut impl Canvas, picture: Rect, bindings: &Binding
     message(canvas, picture, "paused", Text::from(format!("{keys} goes on")).centered());
 }
 
-/// Which key does what: in as many columns as it takes, or as much as there is room for.
-pub(super) fn help(canvas: &mut impl Canvas, picture: Rect, bindings: &Bindings) {
+/// Which key does what: in as many columns as it takes, or as much as there is room for. Below it,
+/// `notes` on the terminal.
+pub(super) fn help(
+    canvas: &mut impl Canvas,
+    picture: Rect,
+    bindings: &Bindings,
+    notes: impl Iterator<Item = String>,
+) {
     const GAP: usize = 3;
     let lines: Vec<String> = Action::ALL
         .into_iter()
         .map(|(_, does, action)| format!("{:<10}  {does}", key_names(bindings, action)))
         .collect();
     let width = lines.iter().map(|line| line.chars().count()).max().unwrap_or_default() + GAP;
-    let room = usize::from(picture.height.saturating_sub(BORDERS)).max(1);
+    let notes: Vec<String> = notes.collect();
+    let room = usize::from(picture.height.saturating_sub(BORDERS)).saturating_sub(notes.len()).max(1);
     let most_columns = usize::from(picture.width.saturating_sub(BORDERS + PADDING)) + GAP;
     let columns = lines.len().div_ceil(room).clamp(1, (most_columns / width).max(1));
     let height = lines.len().div_ceil(columns);
@@ -110,6 +117,7 @@ pub(super) fn help(canvas: &mut impl Canvas, picture: Rect, bindings: &Bindings)
         rows.truncate(room - 1);
         rows.push("more in a larger window".to_owned());
     }
+    rows.extend(notes);
     message(canvas, picture, "keys", rows.into_iter().map(Line::from).collect());
 }
 
@@ -167,7 +175,9 @@ mod tests {
         for (columns, rows, is_whole) in
             [(32, 24, true), (64, 13, true), (200, 60, true), (60, 9, false), (20, 5, false)]
         {
-            let text = shown(columns, rows, |canvas| help(canvas, canvas.bounds(), &bindings));
+            let text = shown(columns, rows, |canvas| {
+                help(canvas, canvas.bounds(), &bindings, std::iter::empty());
+            });
             let is_so = Action::ALL.iter().all(|(_, does, _)| text.contains(does));
             assert_eq!(is_so, is_whole, "{columns} by {rows}:\n{text}");
             assert_eq!(text.contains("more in a"), !is_whole, "{columns} by {rows}:\n{text}");
