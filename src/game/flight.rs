@@ -191,6 +191,7 @@ mod tests {
     use proptest::prelude::*;
 
     use super::*;
+    use crate::game::Look;
     use crate::space::{Block, Body, Coat, Plane, Shape, Sphere, Start};
     use crate::world::Rgb;
 
@@ -262,6 +263,11 @@ mod tests {
         assert!((flight.player.position.z - EYE_ROOM).abs() < 1e-6);
         flight.step(intents(&[Intent::LookAhead]));
         assert_eq!(flight.player.elevation, Elevation::LEVEL);
-        assert!((flight.elapsed() - 151.0 * STEP).abs() < 1e-12);
+        let before = flight.player.heading.degrees();
+        flight.step(Intents::new().with_look(Look { turn: -1550, tilt: 2025 }));
+        assert!((flight.player.elevation.degrees() - 20.25).abs() < 1e-12);
+        assert!((flight.player.heading.degrees() - before - 344.5).abs() < 1e-9);
+        flight.step(intents(&[Intent::LookAhead]));
+        assert!((flight.elapsed() - 153.0 * STEP).abs() < 1e-12);
     }
 }

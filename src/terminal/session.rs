@@ -53,7 +53,7 @@ struct Mouse {
     units: Option<MouseUnits>,
     /// Whether the terminal can report it in pixels.
     has_pixels: bool,
-    /// Whether reports may still be in cells though pixels were asked for.
+    /// Whether reports may still be in the unit from before.
     is_changing: bool,
 }
 
@@ -199,6 +199,7 @@ impl Session {
         self.guard.give_back();
         self.flow.forget();
         self.decoder = Decoder::default();
+        self.mouse.is_changing = false;
         self.signals.stop_until_continued().map_err(Error::while_doing("stopping the program"))?;
         self.take_again()
     }

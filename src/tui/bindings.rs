@@ -140,7 +140,7 @@ impl Bindings {
             (Key::Home, Action::Want(Intent::LookAhead)),
             (Key::Char('r'), Action::ToggleRun),
             (Key::Char('x'), Action::ToggleDuck),
-            (Key::Char('b'), Action::ToggleMouse),
+            (Key::Char('v'), Action::ToggleMouse),
             (Key::Char('m'), Action::ToggleMinimap),
             (Key::Tab, Action::ToggleMinimap),
             (Key::Char('?'), Action::ToggleHelp),

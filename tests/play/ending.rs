@@ -140,7 +140,7 @@ fn with_mouse() -> Game {
     game.wait_for_releases();
     game.resize_in_pixels((80, 24), (640, 384));
     game.wait_for_rest();
-    game.press(Key::Char('b'));
+    game.press(Key::Char('v'));
     game.wait_until("took the mouse", |emulator| emulator.modes() == TAKEN_WITH_MOUSE);
     game
 }
@@ -151,7 +151,7 @@ fn the_mouse_is_given_back_however_it_ends() {
     const MOTION: &str = "\x1b[<35;300;200M";
     type End = fn(&Game);
     let ends: [End; 5] = [
-        |game| game.press(Key::Char('b')),
+        |game| game.press(Key::Char('v')),
         |game| game.send("\x1b[99;5u"),
         |game| game.signal(Signal::TERM),
         |game| game.signal(Signal::HUP),

@@ -19,7 +19,7 @@ fn click(column: u16, row: u16) -> String {
 }
 
 fn switch_on(game: &Game) {
-    game.tap(Key::Char('b'));
+    game.tap(Key::Char('v'));
     game.wait_for("  mouse");
 }
 
@@ -90,7 +90,7 @@ fn what_is_off_turns_nothing() {
     assert!(!game.look(reports_the_mouse));
     switch_on(&game);
     assert!(game.look(reports_the_mouse));
-    game.tap(Key::Char('b'));
+    game.tap(Key::Char('v'));
     game.wait_until("gave the mouse back", |emulator| !reports_the_mouse(emulator));
     game.wait_for_rest();
     let written = game.bytes_written();
@@ -123,7 +123,7 @@ fn a_walk_by_mouse_replays_to_the_same_picture() {
     }
     game.wait_for_arrow("turned", |arrow| arrow.points != '→');
     game.release(Key::Char('w'));
-    game.tap(Key::Char('b'));
+    game.tap(Key::Char('v'));
     game.wait_for_rest();
     let played = game.look(crate::game::looks);
     game.press(Key::Char('q'));

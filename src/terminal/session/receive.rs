@@ -40,7 +40,10 @@ impl Session {
     fn receive_signals(&mut self) -> io::Result<()> {
         for signal in self.signals.take() {
             match signal {
-                Signal::Resized => self.repaint(),
+                Signal::Resized => {
+                    self.repaint();
+                    self.update_mouse_units()?;
+                }
                 Signal::Suspend => self.events.push_back(Event::Suspend),
                 Signal::Continued => {
                     // Stopped from outside, without a chance to give the terminal back.
@@ -82,7 +85,10 @@ impl Session {
             Input::Focus(true) => self.events.push_back(Event::FocusGained),
             Input::Focus(false) => self.events.push_back(Event::FocusLost),
             Input::Mouse(report) => self.events.extend(self.mouse_event(report)),
-            Input::Answer(Answer::PixelMouse) => self.refine_mouse()?,
+            Input::Answer(Answer::PixelMouse) => {
+                self.mouse.has_pixels = true;
+                self.update_mouse_units()?;
+            }
             Input::Answer(Answer::KeyFlags) => self.settle_key_releases(true)?,
             Input::Answer(Answer::TrueColor) => self.raise_color_depth(),
             Input::Answer(Answer::Status) => {
@@ -106,9 +112,8 @@ impl Session {
         report.event(units, self.size).map(Event::Mouse)
     }
 
-    /// The terminal can report the mouse in pixels.
-    fn refine_mouse(&mut self) -> io::Result<()> {
-        self.mouse.has_pixels = true;
+    /// Has the mouse, if it is reported, be reported in the finest unit that there is now.
+    fn update_mouse_units(&mut self) -> io::Result<()> {
         let finest = self.mouse_units();
         if self.mouse.units.is_none_or(|units| units == finest) {
             return Ok(());
@@ -116,7 +121,7 @@ impl Session {
         self.mouse.units = Some(finest);
         self.mouse.is_changing = true;
         self.guard.set_mouse(self.mouse.units)?;
-        // Reports that come after the answer are in pixels.
+        // Reports that come after the answer are in the new unit.
         self.guard.ask("")
     }
 
