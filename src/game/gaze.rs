@@ -32,7 +32,8 @@ impl Gaze {
     pub(super) fn after_a_step(self, intents: Intents) -> Self {
         let upwards = intents.balance(Intent::LookUp, Intent::LookDown);
         let tilt = intents.look().tilt_radians();
-        let returns = upwards == 0.0 && tilt == 0.0 && (self.returns || intents.contains(Intent::LookAhead));
+        let returns =
+            upwards == 0.0 && tilt == 0.0 && (self.returns || intents.contains(Intent::LookAhead));
         if returns {
             return Self { returns, ..self }.returned();
         }

@@ -147,8 +147,9 @@ mod tests {
             .prop_map(|(steps, intents)| Stretch { steps, intents: intents.into_iter().collect() });
         let amount = || prop_oneof![Just(0), -i16::MAX..=i16::MAX];
         let look = (amount(), amount()).prop_map(|(turn, tilt)| Look { turn, tilt });
-        let stretch = (stretch, look).prop_map(|(stretch, look)| {
-            Stretch { intents: stretch.intents.with_look(look), ..stretch }
+        let stretch = (stretch, look).prop_map(|(stretch, look)| Stretch {
+            intents: stretch.intents.with_look(look),
+            ..stretch
         });
         prop::collection::vec(stretch, 1..10)
     }

@@ -67,7 +67,9 @@ impl Decoder {
 
 fn meaning(kind: Kind, unit: &[u8]) -> Option<Input> {
     match kind {
-        Kind::ControlSequence if unit.starts_with(b"\x1b[<") => mouse::parse(unit).map(Input::Mouse),
+        Kind::ControlSequence if unit.starts_with(b"\x1b[<") => {
+            mouse::parse(unit).map(Input::Mouse)
+        }
         Kind::MouseBytes => mouse::parse_bytes(unit).map(Input::Mouse),
         Kind::ControlSequence if matches!(unit, b"\x1b[I" | b"\x1b[O") => {
             Some(Input::Focus(unit.ends_with(b"I")))

@@ -14,9 +14,11 @@ use self::receive::Received;
 use super::flow::Flow;
 use super::guard::Guard;
 use super::input::Decoder;
-use super::platform::{Device, Signals};
 use super::mouse::MouseUnits;
-use super::{CellWriter, ColorSource, Detected, Error, Event, Fidelity, Recorder, WindowSize, sequence};
+use super::platform::{Device, Signals};
+use super::{
+    CellWriter, ColorSource, Detected, Error, Event, Fidelity, Recorder, WindowSize, sequence,
+};
 use crate::palette::ColorDepth;
 
 /// The terminal, taken over: keys come in, frames go out.

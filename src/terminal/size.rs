@@ -22,7 +22,8 @@ impl WindowSize {
 
     /// What is assumed of a terminal that does not say.
     #[cfg(unix)]
-    pub(super) const UNKNOWN: Self = Self { columns: 80, rows: 24, cell_aspect: None, pixels: None };
+    pub(super) const UNKNOWN: Self =
+        Self { columns: 80, rows: 24, cell_aspect: None, pixels: None };
 
     /// The size of a window of so many columns and rows, and so many pixels across and down. Some
     /// terminals say that they have no pixels, some say nonsense.

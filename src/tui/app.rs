@@ -243,13 +243,6 @@ impl App {
         self.shown = None;
     }
 
-    /// What is typed goes to another window: keys may be let go of there.
-    fn focus_lost(&mut self, now: Duration) {
-        self.advance(now);
-        self.held.clear();
-        self.pointer.forget();
-    }
-
     /// The program was stopped, and goes on: the time in between does not count.
     fn resumed(&mut self, now: Duration) {
         self.clock.skip_to(now);

@@ -177,7 +177,8 @@ fn the_mouse_is_given_back_for_a_while_and_taken_again() {
     game.send("\x1b[122;5u");
     game.wait_until("took the terminal again", |emulator| {
         let enabled = b"\x1b[?1016h";
-        let times = emulator.bytes().windows(enabled.len()).filter(|bytes| bytes == enabled).count();
+        let times =
+            emulator.bytes().windows(enabled.len()).filter(|bytes| bytes == enabled).count();
         times == 2 && emulator.modes() == TAKEN_WITH_MOUSE
     });
     let bytes = game.bytes();

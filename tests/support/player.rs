@@ -82,7 +82,11 @@ impl Player {
     }
 
     /// As [`Player::resize`], and the terminal tells how many pixels wide and high it is.
-    pub(crate) fn resize_in_pixels(&self, (columns, rows): (u16, u16), (width, height): (u16, u16)) {
+    pub(crate) fn resize_in_pixels(
+        &self,
+        (columns, rows): (u16, u16),
+        (width, height): (u16, u16),
+    ) {
         self.state().emulator.resize(columns, rows);
         self.pty.resize(Size::new_with_pixel(rows, columns, width, height)).unwrap();
     }

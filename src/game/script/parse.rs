@@ -132,7 +132,7 @@ impl Reader<'_> {
                     return Err(Fault::new(place, "who stands wants nothing else")
                         .label("take this away, or all the rest"));
                 }
-                (word, _) if word.contains(':') => intents = self.looking(intents, word, place)?,
+                (word, _) if word.contains(':') => intents = looking(intents, word, place)?,
                 (word, _) => match Intent::named(word) {
                     None => return Err(unknown(word, place)),
                     Some(intent) if intents.contains(intent) => {
@@ -143,28 +143,6 @@ impl Reader<'_> {
             }
         }
         Ok(intents)
-    }
-
-    /// `intents`, turning or tilting as `word` says, such as `turn:-1.5`.
-    fn looking(&self, intents: Intents, word: &str, place: Range<usize>) -> Result<Intents, Fault> {
-        let (name, degrees) = word.split_once(':').unwrap_or((word, ""));
-        let mut look = intents.look();
-        let amount = match name {
-            look::TURN => &mut look.turn,
-            look::TILT => &mut look.tilt,
-            _ => return Err(unknown(word, place)),
-        };
-        if *amount != 0 {
-            return Err(wanted_twice(name, place));
-        }
-        let Some(hundredths) = look::hundredths(degrees) else {
-            let help = format!("write {name}:2.5, or {name}:-0.25; 327.67 is the most");
-            return Err(Fault::new(place, "an angle is in degrees, with two digits after the point")
-                .label("no such angle")
-                .help(help));
-        };
-        *amount = hundredths;
-        Ok(intents.with_look(look))
     }
 
     fn end(mut self, name: &str) -> Result<Script, Faults> {
@@ -188,6 +166,28 @@ impl Reader<'_> {
             Err(Faults::new(name, self.text, self.faults))
         }
     }
+}
+
+/// `intents`, turning or tilting as `word` says, such as `turn:-1.5`.
+fn looking(intents: Intents, word: &str, place: Range<usize>) -> Result<Intents, Fault> {
+    let (name, degrees) = word.split_once(':').unwrap_or((word, ""));
+    let mut look = intents.look();
+    let amount = match name {
+        look::TURN => &mut look.turn,
+        look::TILT => &mut look.tilt,
+        _ => return Err(unknown(word, place)),
+    };
+    if *amount != 0 {
+        return Err(wanted_twice(name, place));
+    }
+    let Some(hundredths) = look::hundredths(degrees) else {
+        let help = format!("write {name}:2.5, or {name}:-0.25; 327.67 is the most");
+        return Err(Fault::new(place, "an angle is in degrees, with two digits after the point")
+            .label("no such angle")
+            .help(help));
+    };
+    *amount = hundredths;
+    Ok(intents.with_look(look))
 }
 
 fn wanted_twice(word: &str, place: Range<usize>) -> Fault {

@@ -15,11 +15,10 @@ pub(super) fn substitute(symbol: &str) -> char {
         '↓' | '▼' | '▾' => 'v',
         '↗' | '↙' => '/',
         '↖' | '↘' => '\\',
-        '░' => '.',
+        '░' | '·' | '…' => '.',
         '▒' => ':',
         '\u{2580}'..='\u{259f}' => '#',
         '×' => 'x',
-        '·' | '…' => '.',
         '•' | '●' | '◆' | '■' => '*',
         '‘' | '’' | '′' => '\'',
         '“' | '”' | '„' | '«' | '»' | '″' => '"',
@@ -49,7 +48,9 @@ mod tests {
     fn a_panel_stays_a_panel() {
         let panel = ["┌──┐", "│→↗│", "└──┘"];
         let shown = panel.map(|row| {
-            row.chars().map(|symbol| substitute(symbol.encode_utf8(&mut [0; 4]))).collect::<String>()
+            row.chars()
+                .map(|symbol| substitute(symbol.encode_utf8(&mut [0; 4])))
+                .collect::<String>()
         });
         assert_eq!(shown, ["+--+", "|>/|", "+--+"]);
     }

@@ -51,7 +51,8 @@ fn push_mouse(text: &mut String, before: Option<MouseUnits>, mouse: Option<Mouse
         (Some(_), None) => text.push_str(sequence::DISABLE_MOUSE),
         _ => {}
     }
-    let [was_in_pixels, is_in_pixels] = [before, mouse].map(|units| units == Some(MouseUnits::Pixels));
+    let [was_in_pixels, is_in_pixels] =
+        [before, mouse].map(|units| units == Some(MouseUnits::Pixels));
     match (was_in_pixels, is_in_pixels) {
         (false, true) => text.push_str(sequence::ENABLE_MOUSE_PIXELS),
         (true, false) => text.push_str(sequence::DISABLE_MOUSE_PIXELS),

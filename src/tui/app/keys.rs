@@ -31,6 +31,13 @@ impl App {
         }
     }
 
+    /// What is typed goes to another window: keys may be let go of there.
+    pub(super) fn focus_lost(&mut self, now: Duration) {
+        self.advance(now);
+        self.held.clear();
+        self.pointer.forget();
+    }
+
     fn press(&mut self, key: Key, action: Option<Action>) {
         match (self.screen, action) {
             (Screen::LevelDone, _) if is_confirmation(key) => self.next_level(),

