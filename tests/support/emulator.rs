@@ -165,10 +165,10 @@ impl Callbacks for Extensions {
             (Some(b'?'), [[7]], 'h' | 'l') => self.modes.wrap = last == 'h',
             (Some(b'?'), [[1004]], 'h' | 'l') => self.modes.focus = last == 'h',
             (Some(b'?'), [[1016]], 'h' | 'l') => self.modes.mouse_pixels = last == 'h',
-            (Some(b'?'), [[1016]], 'p') if intermediate == Some(b'$') => {
-                if self.speaks == Speaks::Kitty {
-                    self.answers.extend(b"\x1b[?1016;2$y");
-                }
+            (Some(b'?'), [[1016]], 'p')
+                if intermediate == Some(b'$') && self.speaks == Speaks::Kitty =>
+            {
+                self.answers.extend(b"\x1b[?1016;2$y");
             }
             (Some(b'?'), [[2026]], 'h' | 'l') => self.modes.synchronized = last == 'h',
             (Some(b'>'), _, 'u') => *key_flags += 1,

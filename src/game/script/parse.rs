@@ -182,9 +182,12 @@ fn looking(intents: Intents, word: &str, place: Range<usize>) -> Result<Intents,
     }
     let Some(hundredths) = look::hundredths(degrees) else {
         let help = format!("write {name}:2.5, or {name}:-0.25; 327.67 is the most");
-        return Err(Fault::new(place, "an angle is in degrees, with two digits after the point")
-            .label("no such angle")
-            .help(help));
+        return Err(Fault::new(
+            place,
+            "an angle is in degrees and not 0, with two digits at most after the point",
+        )
+        .label("no such angle")
+        .help(help));
     };
     *amount = hundredths;
     Ok(intents.with_look(look))
