@@ -64,7 +64,7 @@ impl Action {
         ("look-ahead", "look ahead", Self::Want(Intent::LookAhead)),
         ("toggle-run", "run, on and off", Self::ToggleRun),
         ("toggle-duck", "duck, on and off", Self::ToggleDuck),
-        ("mouse", "mouse, on and off", Self::ToggleMouse),
+        ("mouse", "turn by mouse", Self::ToggleMouse),
         ("minimap", "map", Self::ToggleMinimap),
         ("help", "this help", Self::ToggleHelp),
         ("pause", "pause", Self::TogglePause),
