@@ -174,7 +174,7 @@ mod tests {
     fn help_is_whole_or_says_that_there_is_more() {
         let bindings = Bindings::default();
         for (columns, rows, is_whole) in
-            [(32, 25, true), (64, 13, true), (200, 60, true), (60, 9, false), (20, 5, false)]
+            [(32, 25, true), (64, 14, true), (200, 60, true), (60, 9, false), (20, 5, false)]
         {
             let text = shown(columns, rows, |canvas| {
                 help(canvas, canvas.bounds(), &bindings, std::iter::empty());
