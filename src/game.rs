@@ -12,6 +12,7 @@ mod fall;
 mod flight;
 mod gaze;
 mod intent;
+mod look;
 mod motion;
 mod notice;
 mod player;
@@ -28,6 +29,7 @@ use player::{AIM, FRICTION, Player, RUN, STILL, TURN, TURN_FRICTION, WALK};
 
 pub use flight::Flight;
 pub use intent::{Intent, Intents};
+pub use look::Look;
 #[cfg(feature = "accuracy")]
 pub(crate) use motion::approach;
 pub use script::{Recorder, Script, Section, Stretch};

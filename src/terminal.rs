@@ -10,6 +10,7 @@
 
 mod cell_writer;
 mod depth;
+mod environment;
 mod error;
 mod event;
 mod fidelity;
@@ -19,6 +20,7 @@ mod flow;
 mod guard;
 mod input;
 mod key;
+mod mouse;
 mod recorder;
 mod sequence;
 mod session;
@@ -36,11 +38,13 @@ use self::unsupported as platform;
 #[cfg(feature = "cli")]
 pub(crate) use self::cell_writer::{Bytes, Style};
 pub use self::cell_writer::{CellWriter, Screen};
-pub use self::depth::{Detected, color_depth};
+pub use self::depth::{ColorSource, Detected, color_depth, color_source};
+pub use self::environment::locale_without_utf8;
 pub use self::error::Error;
 pub use self::event::{Event, QuitReason};
 pub use self::fidelity::{Fidelity, UnknownFidelity};
 pub use self::key::{Key, KeyEvent, Modifiers, Phase, UnknownKey};
+pub use self::mouse::{MouseButton, MouseEvent, MouseEventKind};
 #[cfg(feature = "cli")]
 pub(crate) use self::platform::{peak_memory, take_keys_from_terminal};
 pub use self::recorder::Recorder;

@@ -25,10 +25,14 @@ mod game;
 mod holding;
 #[path = "play/lagging.rs"]
 mod lagging;
+#[path = "play/layouts.rs"]
+mod layouts;
 #[path = "play/levels.rs"]
 mod levels;
 #[path = "play/looking.rs"]
 mod looking;
+#[path = "play/mouse.rs"]
+mod mouse;
 #[path = "play/moving.rs"]
 mod moving;
 #[path = "play/recording.rs"]

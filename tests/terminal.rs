@@ -12,13 +12,14 @@ mod player;
 
 use std::env;
 use std::thread;
+use std::time::Duration;
 
 use cellcaster::terminal::{Event, Key, Options, Phase, Session};
 use cellcaster::tui::Canvas;
 use ratatui::widgets::{Paragraph, Wrap};
 use rustix::process::Signal;
 
-use self::emulator::Speaks;
+use self::emulator::{Modes, Speaks};
 use self::player::Player;
 
 const ROLE: &str = "PROGRAM_UNDER_TEST";
@@ -44,6 +45,7 @@ fn program() {
                 Key::Char('q') => return,
                 Key::Char('x') => drop(thread::spawn(|| panic!("beside")).join()),
                 Key::Char('h') => hang(&mut session),
+                Key::Char('m') => session.set_mouse(true).unwrap(),
                 _ => {}
             },
             _ => {}
@@ -78,6 +80,42 @@ fn answers_are_never_seen_as_keys() {
     player.send("w");
     player.wait_for("Char('w')");
     assert_eq!(player.text().matches("Key(").count(), 1, "{}", player.text());
+    player.send("q");
+    player.wait_for_end().assert_given_back();
+}
+
+#[test]
+fn the_mouse_is_in_pixels_as_soon_as_the_terminal_says_how_many_there_are() {
+    let mut player = start(Speaks::Kitty);
+    player.wait_for("KeyReleases(true)");
+    player.send("\x1b[109u");
+    let cells = "\x1b[<35;9;17M";
+    player.wait_until("took the mouse", |emulator| {
+        emulator.modes().mouse != Modes::default().mouse && !emulator.modes().mouse_pixels
+    });
+    player.send(cells);
+    player.wait_for("x: 544, y: 1056, kind: Moved");
+    player.resize_in_pixels((80, 24), (640, 384));
+    player.wait_until("asked for pixels", |emulator| emulator.modes().mouse_pixels);
+    // What comes before the terminal has changed units is dropped.
+    for _ in 0..500 {
+        player.send(cells);
+        thread::sleep(Duration::from_millis(10));
+        if player.text().contains("x: 64, y: 64, kind: Moved") {
+            player.send("\x1b[113u");
+            return player.wait_for_end().assert_given_back();
+        }
+    }
+    panic!("no place was in pixels; the screen:\n{}", player.text());
+}
+
+#[test]
+fn the_focus_is_told_of() {
+    let mut player = start(Speaks::Plain);
+    player.send("\x1b[O");
+    player.wait_for("FocusLost");
+    player.send("\x1b[I");
+    player.wait_for("FocusGained");
     player.send("q");
     player.wait_for_end().assert_given_back();
 }

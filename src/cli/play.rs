@@ -7,8 +7,8 @@ use std::time::Duration;
 use super::arguments::{FidelityChoice, Play, STANDARD_INPUT};
 use super::recording::RecordingFile;
 use super::{Error, config, level};
-use crate::terminal::{self, take_keys_from_terminal};
-use crate::tui::{self, Levels, Settings};
+use crate::terminal::{self, locale_without_utf8, take_keys_from_terminal};
+use crate::tui::{self, GlyphMode, Levels, Settings};
 
 /// Plays until the player has had enough.
 pub(super) fn run(options: Play) -> Result<(), Error> {
@@ -21,7 +21,7 @@ pub(super) fn run(options: Play) -> Result<(), Error> {
         frame_time: Duration::from_secs(1) / frames_per_second.get(),
         field_of_view: options.field_of_view.unwrap_or(configuration.field_of_view),
         cell_aspect: options.cell_aspect,
-        glyphs: options.glyphs.or(configuration.glyphs).unwrap_or_default(),
+        glyphs: options.glyphs.or(configuration.glyphs).unwrap_or_else(glyphs_of_locale),
         depth: options.depth.or(configuration.colors),
         method: options.method.unwrap_or_default(),
         filter: options.filter.unwrap_or_default(),
@@ -37,6 +37,14 @@ pub(super) fn run(options: Play) -> Result<(), Error> {
     let written = file.map_or(Ok(()), RecordingFile::finish);
     played.map_err(about_the_terminal)?;
     written
+}
+
+/// The glyphs that the locale can show.
+fn glyphs_of_locale() -> GlyphMode {
+    match locale_without_utf8(|name| env::var(name).ok()) {
+        Some(_) => GlyphMode::Ascii,
+        None => GlyphMode::default(),
+    }
 }
 
 /// The levels to play; where standard input is one, keys come from the terminal after that.

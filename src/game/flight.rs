@@ -119,7 +119,8 @@ impl Player {
         let target = speed * intents.balance(Intent::TurnRight, Intent::TurnLeft);
         let Glide { velocity, displacement } = approach(self.turning, target, TURN_FRICTION, STEP);
         let turning = if velocity.abs() < STILL { 0.0 } else { velocity };
-        Self { heading: self.heading.turned(displacement), turning, ..self }
+        let angle = displacement + intents.look().turn_radians();
+        Self { heading: self.heading.turned(angle), turning, ..self }
     }
 
     fn raised(self, intents: Intents) -> Self {
@@ -129,7 +130,7 @@ impl Player {
         let speed = if intents.contains(Intent::Aim) { AIM_UPWARDS } else { RAISE };
         let target = speed * intents.balance(Intent::LookUp, Intent::LookDown);
         let Glide { velocity, displacement } = approach(self.raising, target, TURN_FRICTION, STEP);
-        let elevation = self.elevation.raised(displacement);
+        let elevation = self.elevation.raised(displacement + intents.look().tilt_radians());
         let has_stopped = velocity.abs() < STILL || elevation == self.elevation;
         Self { elevation, raising: if has_stopped { 0.0 } else { velocity }, ..self }
     }
@@ -204,6 +205,7 @@ mod tests {
     use proptest::prelude::*;
 
     use super::*;
+    use crate::game::Look;
     use crate::space::{Block, Body, Coat, Plane, Shape, Sphere, Start};
     use crate::world::Rgb;
 
@@ -275,6 +277,11 @@ mod tests {
         assert!((flight.player.position.z - EYE_ROOM).abs() < 1e-6);
         flight.step(intents(&[Intent::LookAhead]));
         assert_eq!(flight.player.elevation, Elevation::LEVEL);
-        assert!((flight.elapsed() - 151.0 * STEP).abs() < 1e-12);
+        let before = flight.player.heading.degrees();
+        flight.step(Intents::new().with_look(Look { turn: -1550, tilt: 2025 }));
+        assert!((flight.player.elevation.degrees() - 20.25).abs() < 1e-12);
+        assert!((flight.player.heading.degrees() - before - 344.5).abs() < 1e-9);
+        flight.step(intents(&[Intent::LookAhead]));
+        assert!((flight.elapsed() - 153.0 * STEP).abs() < 1e-12);
     }
 }

@@ -31,13 +31,15 @@ impl Gaze {
     #[must_use]
     pub(super) fn after_a_step(self, intents: Intents) -> Self {
         let upwards = intents.balance(Intent::LookUp, Intent::LookDown);
-        let returns = upwards == 0.0 && (self.returns || intents.contains(Intent::LookAhead));
+        let tilt = intents.look().tilt_radians();
+        let returns =
+            upwards == 0.0 && tilt == 0.0 && (self.returns || intents.contains(Intent::LookAhead));
         if returns {
             return Self { returns, ..self }.returned();
         }
         let target = upwards * if intents.contains(Intent::Aim) { AIM } else { LOOK };
         let Glide { velocity, displacement } = approach(self.speed, target, FRICTION, STEP);
-        let pitch = self.pitch.tilted(displacement);
+        let pitch = self.pitch.tilted(displacement + tilt);
         let is_still = velocity.abs() < STILL || pitch == self.pitch;
         Self { pitch, speed: if is_still { 0.0 } else { velocity }, returns }
     }
@@ -54,6 +56,7 @@ impl Gaze {
 #[cfg(test)]
 mod tests {
     use super::*;
+    use crate::game::Look;
 
     fn after(gaze: Gaze, steps: usize, intents: &[Intent]) -> Gaze {
         let intents = intents.iter().copied().collect();
@@ -76,6 +79,8 @@ mod tests {
         let up = after(Gaze::default(), 40, &[Intent::LookUp]);
         let returning = after(up, 1, &[Intent::LookAhead]);
         assert_eq!(after(returning, 120, &[]), Gaze::default());
+        let tilted = returning.after_a_step(Intents::new().with_look(Look { turn: 0, tilt: 50 }));
+        assert!(after(tilted, 120, &[]).pitch.slope() > 0.0);
         let elsewhere = after(returning, 10, &[Intent::LookUp]);
         assert!(after(elsewhere, 120, &[]).pitch.slope() > 0.0);
     }

@@ -3,6 +3,8 @@
 
 use std::fmt;
 
+use super::look::Look;
+
 /// One thing that the player may want to do.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash, PartialOrd, Ord)]
 pub enum Intent {
@@ -81,17 +83,19 @@ impl Intent {
     }
 }
 
-/// A set of intents: all that the player wants at one time.
+/// A set of intents: all that the player wants at one time, and by how much they turn and tilt in each
+/// step of it.
 #[derive(Clone, Copy, PartialEq, Eq, Hash, Default)]
 pub struct Intents {
     /// One bit for each intent, by its place in the enum.
     bits: u16,
+    look: Look,
 }
 
 impl Intents {
     /// The empty set: the player wants nothing.
     pub const fn new() -> Self {
-        Self { bits: 0 }
+        Self { bits: 0, look: Look::NONE }
     }
 
     /// Adds `intent`.
@@ -107,6 +111,17 @@ impl Intents {
     /// Whether `intent` is among them.
     pub fn contains(self, intent: Intent) -> bool {
         self.bits & bit(intent) != 0
+    }
+
+    /// The same intents, and by how much the player turns and tilts in each step.
+    #[must_use]
+    pub fn with_look(self, look: Look) -> Self {
+        Self { look, ..self }
+    }
+
+    /// By how much the player turns and tilts in each step.
+    pub fn look(self) -> Look {
+        self.look
     }
 
     /// Whether the player wants nothing.
@@ -141,7 +156,8 @@ impl FromIterator<Intent> for Intents {
 
 impl fmt::Debug for Intents {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
-        f.debug_set().entries(self.iter()).finish()
+        let look = Some(self.look).filter(|&look| look != Look::NONE);
+        f.debug_set().entries(self.iter()).entries(look).finish()
     }
 }
 

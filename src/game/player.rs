@@ -152,7 +152,8 @@ impl Player {
         let target = speed * intents.balance(Intent::TurnRight, Intent::TurnLeft);
         let Glide { velocity, displacement } = approach(self.turning, target, TURN_FRICTION, STEP);
         let turning = if velocity.abs() < STILL { 0.0 } else { velocity };
-        Self { heading: self.heading.turned(displacement), turning, ..self }
+        let angle = displacement + intents.look().turn_radians();
+        Self { heading: self.heading.turned(angle), turning, ..self }
     }
 
     /// Nobody stands up where there is no room for it.

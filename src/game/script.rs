@@ -12,7 +12,8 @@
 //! ```
 //!
 //! A line is a stretch: how long, in seconds or steps, and all that is wanted meanwhile, or `stand`
-//! for nothing. A name in brackets begins a section, for who reports on parts; a `#` begins a
+//! for nothing; `turn:1.5` and `tilt:-0.25` are by how many degrees the player turns clockwise, and
+//! looks higher, in each step of it. A name in brackets begins a section, for who reports on parts; a `#` begins a
 //! comment. The same script in the same map gives the same states, bit for bit.
 //!
 //! Events at times, a press here and a release there, were refused: who writes such a list by hand
@@ -23,7 +24,7 @@ mod recorder;
 
 use std::fmt;
 
-use super::{Intent, Intents, STEPS_PER_SECOND};
+use super::{Intents, STEPS_PER_SECOND};
 use crate::fault::Faults;
 
 pub use recorder::Recorder;
@@ -124,9 +125,10 @@ impl fmt::Display for Stretch {
             }
             steps => format!("{steps} steps"),
         };
-        let mut wanted: Vec<&str> = self.intents.iter().map(Intent::name).collect();
+        let names = self.intents.iter().map(|intent| intent.name().to_owned());
+        let mut wanted: Vec<String> = names.chain(self.intents.look().words()).collect();
         if wanted.is_empty() {
-            wanted.push(STAND);
+            wanted.push(STAND.to_owned());
         }
         write!(f, "{duration:<9} {}", wanted.join(" "))
     }
@@ -137,11 +139,18 @@ mod tests {
     use proptest::prelude::*;
 
     use super::*;
+    use crate::game::{Intent, Look};
 
     pub(super) fn stretches() -> impl Strategy<Value = Vec<Stretch>> {
         let intents = prop::sample::subsequence(Intent::ALL.to_vec(), 0..=Intent::ALL.len());
         let stretch = (1..=Stretch::MOST_STEPS, intents)
             .prop_map(|(steps, intents)| Stretch { steps, intents: intents.into_iter().collect() });
+        let amount = || prop_oneof![Just(0), -i16::MAX..=i16::MAX];
+        let look = (amount(), amount()).prop_map(|(turn, tilt)| Look { turn, tilt });
+        let stretch = (stretch, look).prop_map(|(stretch, look)| Stretch {
+            intents: stretch.intents.with_look(look),
+            ..stretch
+        });
         prop::collection::vec(stretch, 1..10)
     }
 

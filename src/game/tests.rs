@@ -248,3 +248,27 @@ fn in_a_changed_world_the_player_keeps_their_place_while_there_is_room() {
         assert_eq!(game.begun_again_in(changed.clone()), Game::new(changed), "{rows:?}");
     }
 }
+
+#[test]
+fn a_look_turns_and_tilts_at_once_and_by_exactly_its_angle() {
+    let mut game = Game::new(world(&["#####", "#.@.#", "#####"], 0.0));
+    let start = game.camera(FieldOfView::default());
+    let looking = |turn, tilt| Intents::new().with_look(Look { turn, tilt });
+    let headings: Vec<f64> = (0..4)
+        .map(|_| {
+            game.step(looking(9000, 0));
+            game.camera(FieldOfView::default()).heading.degrees()
+        })
+        .collect();
+    assert_eq!(headings, [90.0, 180.0, 270.0, 0.0]);
+    assert_eq!(game.camera(FieldOfView::default()), start);
+
+    game.step(looking(0, 500));
+    let tilted = game.camera(FieldOfView::default());
+    assert!((tilted.pitch.slope() - 5_f64.to_radians()).abs() < 1e-12);
+    game.step(looking(0, i16::MAX));
+    assert_eq!(game.camera(FieldOfView::default()).pitch.degrees().round(), 30.0);
+    // There is no further up, so nothing happens.
+    assert!(game.is_at_rest(looking(0, 1)) && !game.is_at_rest(looking(0, -1)));
+    assert!(!game.is_at_rest(looking(1, 0)) && game.is_at_rest(Intents::new()));
+}

@@ -10,6 +10,7 @@
 //! moved sideways is moved by the terminal.
 
 mod alphabet;
+mod ascii;
 mod bytes;
 mod control;
 mod exact;
@@ -99,6 +100,11 @@ impl<W: Write> CellWriter<W> {
     /// From the next frame on, colours may be as far off as `fidelity` says.
     pub fn set_fidelity(&mut self, fidelity: Fidelity) {
         self.fidelity = fidelity;
+    }
+
+    /// From the next frame on, what is not ASCII is replaced by what looks like it, or is not.
+    pub fn set_ascii(&mut self, is_ascii: bool) {
+        self.screen.set_ascii(is_ascii);
     }
 
     /// Whether the terminal shows exactly what was drawn last. Where it does not, each further draw

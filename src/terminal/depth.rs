@@ -24,27 +24,56 @@ impl Detected {
     }
 }
 
+/// What it is known by how many colours there are.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum ColorSource {
+    /// The variable `NO_COLOR`.
+    NoColor,
+    /// The variable `FORCE_COLOR`, or `CLICOLOR_FORCE`.
+    ForceColor,
+    /// The variable `COLORTERM`.
+    ColorTerm,
+    /// The variable `TERM`.
+    Term,
+    /// The terminal's answer to a query.
+    Answer,
+    /// Nothing: it is what most terminals show.
+    Nothing,
+}
+
 /// The colour depth that `environment`, a lookup of variables by name, speaks for.
 pub fn color_depth(environment: impl Fn(&str) -> Option<String>) -> Detected {
+    detect(environment).0
+}
+
+/// What in `environment` the [`color_depth`] is known by.
+pub fn color_source(environment: impl Fn(&str) -> Option<String>) -> ColorSource {
+    detect(environment).1
+}
+
+fn detect(environment: impl Fn(&str) -> Option<String>) -> (Detected, ColorSource) {
+    use ColorSource::{ColorTerm, ForceColor, NoColor, Nothing, Term};
+    let certain = |depth, source| (Detected::Certain(depth), source);
     let variable = |name| environment(name).filter(|value| !value.is_empty());
     if variable("NO_COLOR").is_some() {
-        return Detected::Certain(ColorDepth::Mono);
+        return certain(ColorDepth::Mono, NoColor);
     }
     let forced = match environment("FORCE_COLOR").as_deref() {
-        Some("0" | "false") => return Detected::Certain(ColorDepth::Mono),
-        Some("1") => return Detected::Certain(ColorDepth::Indexed16),
-        Some("2") => return Detected::Certain(ColorDepth::Indexed256),
-        Some("3") => return Detected::Certain(ColorDepth::True),
+        Some("0" | "false") => return certain(ColorDepth::Mono, ForceColor),
+        Some("1") => return certain(ColorDepth::Indexed16, ForceColor),
+        Some("2") => return certain(ColorDepth::Indexed256, ForceColor),
+        Some("3") => return certain(ColorDepth::True, ForceColor),
         Some(_) => true,
         None => variable("CLICOLOR_FORCE").is_some_and(|value| value != "0"),
     };
     if matches!(variable("COLORTERM").as_deref(), Some("truecolor" | "24bit")) {
-        return Detected::Certain(ColorDepth::True);
+        return certain(ColorDepth::True, ColorTerm);
     }
     let named = variable("TERM").map_or(Detected::Guess(ColorDepth::Indexed256), |term| of(&term));
     match named {
-        Detected::Certain(ColorDepth::Mono) if forced => Detected::Certain(ColorDepth::Indexed16),
-        named => named,
+        Detected::Certain(ColorDepth::Mono) if forced => certain(ColorDepth::Indexed16, ForceColor),
+        Detected::Certain(depth) => certain(depth, Term),
+        Detected::Guess(depth) => (Detected::Guess(depth), Nothing),
     }
 }
 

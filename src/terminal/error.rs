@@ -16,6 +16,9 @@ enum Kind {
     },
     #[cfg(not(unix))]
     UnsupportedPlatform,
+    Teletype {
+        term: &'static str,
+    },
     AlreadyTaken,
     GivenBack,
     Io {
@@ -37,6 +40,11 @@ impl Error {
         Self(Kind::UnsupportedPlatform)
     }
 
+    /// The terminal cannot move its cursor, says this value of `TERM`.
+    pub(super) fn teletype(term: &'static str) -> Self {
+        Self(Kind::Teletype { term })
+    }
+
     /// This program has a session already.
     pub(super) fn already_taken() -> Self {
         Self(Kind::AlreadyTaken)
@@ -50,7 +58,7 @@ impl Error {
     /// Whether the user can do otherwise: play on a terminal, or on another platform.
     pub fn is_mistake(&self) -> bool {
         match self.0 {
-            Kind::NotATerminal { .. } => true,
+            Kind::NotATerminal { .. } | Kind::Teletype { .. } => true,
             #[cfg(not(unix))]
             Kind::UnsupportedPlatform => true,
             Kind::AlreadyTaken | Kind::GivenBack | Kind::Io { .. } => false,
@@ -76,6 +84,12 @@ impl fmt::Display for Error {
             Kind::UnsupportedPlatform => f.write_str(
                 "playing needs a Unix terminal for now; \
                  `cellcaster snapshot` draws a frame on every platform",
+            ),
+            Kind::Teletype { term } => write!(
+                f,
+                "TERM is {term:?}, a terminal that cannot move its cursor, which playing needs; set it \
+                 to what you have, such as TERM=xterm-256color, or draw a frame with \
+                 `cellcaster snapshot`"
             ),
             Kind::AlreadyTaken => {
                 f.write_str("this program has taken the terminal already, and has not left it yet")

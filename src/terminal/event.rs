@@ -1,6 +1,6 @@
 //! What the terminal tells the program.
 
-use super::KeyEvent;
+use super::{KeyEvent, MouseEvent};
 use crate::palette::ColorDepth;
 
 /// Something that happened to the terminal.
@@ -8,6 +8,13 @@ use crate::palette::ColorDepth;
 pub enum Event {
     /// A key was pressed, repeated or released.
     Key(KeyEvent),
+    /// The mouse was moved, or one of its buttons pressed: while
+    /// [`Session::set_mouse`](super::Session::set_mouse) has it reported.
+    Mouse(MouseEvent),
+    /// What is typed goes to this window again.
+    FocusGained,
+    /// What is typed goes elsewhere from now on. Keys that are held may be released unheard.
+    FocusLost,
     /// The window may have another size, and everything is painted again by the next frame.
     Resized,
     /// The terminal has said that it shows this many colours, which is more than was guessed.

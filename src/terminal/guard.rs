@@ -4,8 +4,10 @@
 //! first gives the terminal back; for the others there is nothing left to do. Restoring in each of
 //! them what it knows of was refused: what is pushed twice or popped twice is worse than neither.
 
+mod fences;
 mod outbox;
 mod panic_hook;
+mod reports;
 
 use std::io;
 use std::sync::atomic::{AtomicBool, Ordering};
@@ -18,17 +20,17 @@ use crossterm::terminal::{
     LeaveAlternateScreen,
 };
 
+use self::fences::Fences;
 use self::outbox::Outbox;
+use self::reports::Reports;
 use super::Error;
 use super::input::{Answer, Decoder, Input};
+use super::mouse::MouseUnits;
 use super::platform::Device;
 use super::recorder::{Recorder, Recording};
 use super::sequence;
 
-/// How long a terminal may take to answer.
-const ANSWER_PATIENCE: Duration = Duration::from_secs(1);
-
-/// How long it may take to accept what gives it back.
+/// How long a terminal may take to accept what gives it back.
 const WRITE_PATIENCE: Duration = Duration::from_millis(250);
 
 /// What is changed about the terminal, and how to undo it.
@@ -45,26 +47,10 @@ pub(super) struct Guard {
 #[derive(Debug)]
 struct State {
     taken: bool,
-    key_flags: KeyFlags,
+    reports: Reports,
     fences: Fences,
     /// Whether answers to status requests are on their way.
     awaits_statuses: bool,
-}
-
-/// Whether the terminal reports keys in the kitty protocol.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
-enum KeyFlags {
-    /// It has not been told to.
-    Untouched,
-    /// It does whenever it is taken.
-    Pushed,
-}
-
-/// The queries that the terminal has not answered yet.
-#[derive(Debug)]
-struct Fences {
-    open: u32,
-    last_sent: Instant,
 }
 
 impl Guard {
@@ -80,8 +66,8 @@ impl Guard {
             device,
             state: Mutex::new(State {
                 taken: false,
-                key_flags: KeyFlags::Untouched,
-                fences: Fences { open: 0, last_sent: Instant::now() },
+                reports: Reports::default(),
+                fences: Fences::none(),
                 awaits_statuses: false,
             }),
             given_back: Condvar::new(),
@@ -118,9 +104,7 @@ impl Guard {
         // What is too long for a line is cut, so a window made narrower does not scroll.
         text.push_str(&sequence::of(DisableLineWrap));
         text.push_str(sequence::RESET_STYLE);
-        if state.key_flags == KeyFlags::Pushed {
-            text.push_str(sequence::PUSH_KEY_FLAGS);
-        }
+        state.reports.push_start(&mut text);
         drop(state);
         self.write(text.as_bytes())
     }
@@ -136,9 +120,21 @@ impl Guard {
         self.lock().fences.answered();
     }
 
+    /// Whether the terminal has not answered yet all that it was asked.
+    pub(super) fn awaits_answers(&self) -> bool {
+        self.lock().fences.are_open()
+    }
+
+    /// Has the terminal report the mouse so, now and whenever it is taken.
+    pub(super) fn set_mouse(&self, mouse: Option<MouseUnits>) -> io::Result<()> {
+        let mut text = String::new();
+        self.lock().reports.change_mouse(mouse, &mut text);
+        self.write(text.as_bytes())
+    }
+
     /// Makes the terminal report keys in the kitty protocol, now and whenever it is taken.
     pub(super) fn push_key_flags(&self) -> io::Result<()> {
-        self.lock().key_flags = KeyFlags::Pushed;
+        self.lock().reports.has_key_flags = true;
         self.write(sequence::PUSH_KEY_FLAGS.as_bytes())
     }
 
@@ -217,12 +213,9 @@ impl Guard {
     /// has worked: there is nothing better to do about an error than the rest.
     fn leave(&self, state: &mut State) {
         let mut text = sequence::of(EndSynchronizedUpdate) + sequence::RESET_STYLE;
-        if state.key_flags == KeyFlags::Pushed {
-            text.push_str(sequence::POP_KEY_FLAGS);
-        }
-        if state.key_flags == KeyFlags::Pushed || state.awaits_statuses {
-            // What is typed before the flags are popped is sent in the old way, and frames are
-            // answered; the answer to this comes after all of it.
+        state.reports.push_end(&mut text);
+        if state.has_reports_on_their_way() {
+            // The answer to this comes after all of them.
             text.push_str(sequence::QUERY_FENCE);
             state.fences.sent();
             state.awaits_statuses = false;
@@ -272,19 +265,11 @@ impl Guard {
     }
 }
 
-impl Fences {
-    fn sent(&mut self) {
-        self.open += 1;
-        self.last_sent = Instant::now();
-    }
-
-    fn answered(&mut self) {
-        self.open = self.open.saturating_sub(1);
-    }
-
-    /// How much longer to wait for an answer; `None` where nothing is expected any more.
-    fn patience(&self) -> Option<Duration> {
-        let left = ANSWER_PATIENCE.checked_sub(self.last_sent.elapsed())?;
-        (self.open > 0).then_some(left)
+impl State {
+    /// Whether the terminal may have sent what nobody has read yet: a key's release, which it sends
+    /// until its flags are popped, a motion of the mouse, or the answer to a frame. A report of the
+    /// focus is not worth waiting for a terminal that answers nothing.
+    fn has_reports_on_their_way(&self) -> bool {
+        self.reports.are_frequent() || self.awaits_statuses || self.fences.are_answered()
     }
 }

@@ -4,14 +4,21 @@
 //! modifier. Passing on a parser's own types was refused: bindings are written in a file by these
 //! names, and outlive any parser.
 
+mod layout;
+
 use std::fmt;
 use std::str::FromStr;
+
+pub(super) use layout::base_key;
 
 /// Something happened to a key.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
 pub struct KeyEvent {
-    /// Which key.
+    /// Which key, by what the keyboard's layout has it type.
     pub key: Key,
+    /// Which key of a US keyboard is at the same place, where the layout types other letters than
+    /// Latin ones and the place is known.
+    pub base: Option<Key>,
     /// Which modifiers were down at that moment.
     pub modifiers: Modifiers,
     /// What happened to it.

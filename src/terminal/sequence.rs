@@ -20,6 +20,21 @@ pub(super) const PUSH_KEY_FLAGS: &str = "\x1b[>15u";
 /// Goes back to the flags from before.
 pub(super) const POP_KEY_FLAGS: &str = "\x1b[<u";
 
+/// Asks for reports of when the window gains or loses the focus.
+pub(super) const ENABLE_FOCUS_REPORTS: &str = "\x1b[?1004h";
+/// Ends them.
+pub(super) const DISABLE_FOCUS_REPORTS: &str = "\x1b[?1004l";
+/// Asks for reports of every motion of the mouse and of its buttons, as decimal numbers.
+pub(super) const ENABLE_MOUSE: &str = "\x1b[?1003h\x1b[?1006h";
+/// Ends them.
+pub(super) const DISABLE_MOUSE: &str = "\x1b[?1003l\x1b[?1006l";
+/// Has places of the mouse be in pixels: in place of mode 1006, so it is set after that.
+pub(super) const ENABLE_MOUSE_PIXELS: &str = "\x1b[?1016h";
+/// Ends that.
+pub(super) const DISABLE_MOUSE_PIXELS: &str = "\x1b[?1016l";
+/// Asks whether the terminal knows that mode (DECRQM).
+pub(super) const QUERY_MOUSE_PIXELS: &str = "\x1b[?1016$p";
+
 /// Colours and modifiers as they were at the start: a byte shorter than crossterm's, and in every
 /// frame.
 pub(super) const RESET_STYLE: &str = "\x1b[m";

@@ -14,8 +14,11 @@ use self::receive::Received;
 use super::flow::Flow;
 use super::guard::Guard;
 use super::input::Decoder;
+use super::mouse::MouseUnits;
 use super::platform::{Device, Signals};
-use super::{CellWriter, Detected, Error, Event, Fidelity, Recorder, WindowSize, sequence};
+use super::{
+    CellWriter, ColorSource, Detected, Error, Event, Fidelity, Recorder, WindowSize, sequence,
+};
 use crate::palette::ColorDepth;
 
 /// The terminal, taken over: keys come in, frames go out.
@@ -34,13 +37,26 @@ pub struct Session {
     events: VecDeque<Event>,
     size: WindowSize,
     color_depth: Detected,
+    color_source: ColorSource,
     key_releases: KeyReleases,
+    mouse: Mouse,
     begun_at: Instant,
     flow: Flow,
     /// `None` for what the link allows.
     fidelity: Option<Fidelity>,
     /// Whether the program wants to know when a frame may be sent.
     awaits_readiness: bool,
+}
+
+/// What is reported of the mouse.
+#[derive(Clone, Copy, Debug, Default)]
+struct Mouse {
+    /// What its place is reported in; `None` where it is not.
+    units: Option<MouseUnits>,
+    /// Whether the terminal can report it in pixels.
+    has_pixels: bool,
+    /// Whether reports may still be in the unit from before.
+    is_changing: bool,
 }
 
 /// Whether the terminal reports when keys are released.
@@ -56,7 +72,7 @@ impl Session {
     /// for them.
     ///
     /// # Errors
-    /// Where standard input or output is not a terminal, where the process has a session already,
+    /// Where standard input or output is not a terminal or one that cannot move its cursor, where the process has a session already,
     /// where the platform has no Unix terminals, and where the terminal cannot be written to.
     pub fn enter(options: Options) -> Result<Self, Error> {
         Self::enter_recorded(options, None)
@@ -70,7 +86,11 @@ impl Session {
         options: Options,
         recorder: Option<Box<dyn Recorder>>,
     ) -> Result<Self, Error> {
-        let guard = Guard::install(Device::open()?, recorder)?;
+        let device = Device::open()?;
+        if let Some(term) = options.teletype {
+            return Err(Error::teletype(term));
+        }
+        let guard = Guard::install(device, recorder)?;
         Self::take(&guard, options).inspect_err(|_| guard.uninstall())
     }
 
@@ -88,12 +108,15 @@ impl Session {
             events: VecDeque::new(),
             size,
             color_depth: options.color_depth,
+            color_source: options.color_source,
             key_releases: KeyReleases::Unasked,
+            mouse: Mouse::default(),
             begun_at: Instant::now(),
             flow: Flow::default(),
             fidelity: options.fidelity,
             awaits_readiness: false,
         };
+        session.writer.set_ascii(options.is_ascii);
         guard.take().map_err(Error::while_doing("taking the terminal"))?;
         session.ask(options).map_err(Error::while_doing("asking the terminal what it can do"))?;
         Ok(session)
@@ -104,6 +127,9 @@ impl Session {
         if options.ask_for_key_releases {
             queries.push_str(sequence::QUERY_KEY_FLAGS);
             self.key_releases = KeyReleases::Asked;
+        }
+        if options.ask_for_mouse_pixels {
+            queries.push_str(sequence::QUERY_MOUSE_PIXELS);
         }
         if let Detected::Guess(_) = options.color_depth {
             queries.push_str(sequence::QUERY_TRUE_COLOR);
@@ -142,6 +168,30 @@ impl Session {
         }
     }
 
+    /// Has the mouse reported from now on, or not any more; at first it is not. Places are in pixels
+    /// where the terminal can tell them so.
+    ///
+    /// # Errors
+    /// Where the terminal cannot be written to.
+    pub fn set_mouse(&mut self, is_reported: bool) -> Result<(), Error> {
+        if self.mouse.units.is_some() == is_reported {
+            return Ok(());
+        }
+        self.mouse.units = is_reported.then(|| self.mouse_units());
+        self.mouse.is_changing = false;
+        let changed = self.guard.set_mouse(self.mouse.units);
+        changed.map_err(Error::while_doing("setting up the mouse"))
+    }
+
+    /// The finest unit in which the terminal reports places.
+    fn mouse_units(&self) -> MouseUnits {
+        if self.mouse.has_pixels && self.size.pixels.is_some() {
+            MouseUnits::Pixels
+        } else {
+            MouseUnits::Cells
+        }
+    }
+
     /// Gives the terminal back, stops the program until the shell continues it, and takes the
     /// terminal again. Where no shell would continue it, only the screen is painted afresh.
     ///
@@ -151,6 +201,7 @@ impl Session {
         self.guard.give_back();
         self.flow.forget();
         self.decoder = Decoder::default();
+        self.mouse.is_changing = false;
         self.signals.stop_until_continued().map_err(Error::while_doing("stopping the program"))?;
         self.take_again()
     }
@@ -169,6 +220,11 @@ impl Session {
     /// How many colours the terminal shows, as far as is known by now.
     pub fn color_depth(&self) -> ColorDepth {
         self.color_depth.depth()
+    }
+
+    /// What that is known by.
+    pub fn color_source(&self) -> ColorSource {
+        self.color_source
     }
 }
 

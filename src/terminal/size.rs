@@ -9,6 +9,9 @@ pub struct WindowSize {
     pub rows: u16,
     /// A cell's height divided by its width, from 1.5 to 3, where the terminal says so.
     pub cell_aspect: Option<f64>,
+    /// How many pixels wide and high it is, where the terminal says so and its cells have a shape
+    /// that is believed.
+    pub pixels: Option<[u16; 2]>,
 }
 
 impl WindowSize {
@@ -19,7 +22,8 @@ impl WindowSize {
 
     /// What is assumed of a terminal that does not say.
     #[cfg(unix)]
-    pub(super) const UNKNOWN: Self = Self { columns: 80, rows: 24, cell_aspect: None };
+    pub(super) const UNKNOWN: Self =
+        Self { columns: 80, rows: 24, cell_aspect: None, pixels: None };
 
     /// The size of a window of so many columns and rows, and so many pixels across and down. Some
     /// terminals say that they have no pixels, some say nonsense.
@@ -27,11 +31,13 @@ impl WindowSize {
     pub(super) fn new((columns, rows): (u16, u16), (width, height): (u16, u16)) -> Self {
         let cell_width = f64::from(width) / f64::from(columns);
         let cell_height = f64::from(height) / f64::from(rows);
+        let cell_aspect =
+            Some(cell_height / cell_width).filter(|aspect| (1.5..=3.0).contains(aspect));
         Self {
             columns: columns.min(Self::MOST_COLUMNS),
             rows: rows.min(Self::MOST_ROWS),
-            cell_aspect: Some(cell_height / cell_width)
-                .filter(|aspect| (1.5..=3.0).contains(aspect)),
+            cell_aspect,
+            pixels: cell_aspect.map(|_| [width, height]),
         }
     }
 

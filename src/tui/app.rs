@@ -4,11 +4,13 @@
 //! it off screen. [`play`] is the loop around it that has both.
 
 mod clock;
+mod detection;
 mod goal;
 mod help;
 mod keys;
 mod levels;
 mod map_panel;
+mod mouse;
 mod panels;
 mod played;
 mod recording;
@@ -38,6 +40,8 @@ use crate::palette::ColorDepth;
 use crate::render::Filter;
 use crate::world::FieldOfView;
 use clock::Clock;
+use detection::Detection;
+use mouse::Pointer;
 use played::{Eye, Memory, Played};
 use recording::ScriptRecorder;
 use reload::Reload;
@@ -84,12 +88,11 @@ struct App {
     field_of_view: FieldOfView,
     held: HeldKeys,
     gait: Gait,
+    pointer: Pointer,
     /// What counts for the next step even if its key is up again by then.
     pressed: Intents,
     map: MapPanel,
     help: HelpScroll,
-    /// What was found out about the terminal and what would make it better, for the end of the help.
-    remedy: Option<String>,
     has_left: bool,
     clock: Clock,
     memory: Memory,
@@ -100,6 +103,8 @@ struct App {
     shows_stats: bool,
     stats: Option<Stats>,
     status: StatusLine,
+    /// What was found out about the terminal.
+    detection: Detection,
     /// Where what is wanted is noted down.
     script: Option<ScriptRecorder>,
     /// Where changes of the level come from.
@@ -115,7 +120,6 @@ impl App {
             goal: Goal::of(&first, settings.minimap),
             map: MapPanel::new(settings.minimap),
             help: HelpScroll::default(),
-            remedy: None,
             game: first,
             earlier: 0.0,
             screen: Screen::Playing,
@@ -127,6 +131,7 @@ impl App {
                 ..Memory::default()
             },
             shows_stats: settings.shows_stats,
+            pointer: Pointer::new(settings.mouse),
             settings,
             held: HeldKeys::default(),
             gait: Gait::default(),
@@ -137,6 +142,7 @@ impl App {
             animates_at: None,
             stats: None,
             status: StatusLine::default(),
+            detection: Detection::default(),
             script: None,
             reload: changes.map(Reload::from),
         }
@@ -145,11 +151,12 @@ impl App {
     /// Lets the game go on until `now`.
     fn advance(&mut self, now: Duration) {
         self.held.expire(now);
-        let steps = self.clock.steps_until(now);
+        let passed = self.clock.steps_until(now);
         if self.screen != Screen::Playing {
             return;
         }
-        let intents = self.intents();
+        let steps = self.step_with_pointer(passed);
+        let intents = self.wanted();
         let quiet = self.game.quiet_steps(intents).min(steps);
         self.game.wait(quiet);
         let mut moving = 0;
@@ -159,7 +166,8 @@ impl App {
         }
         self.goal.moved(moving);
         self.record(intents, quiet + moving);
-        if steps > 0 {
+        self.pointer.passed(quiet + moving);
+        if passed > 0 {
             self.pressed = Intents::new();
         }
         if self.game.is_finished() {
@@ -199,7 +207,7 @@ impl App {
         if self.screen != Screen::Playing {
             return None;
         }
-        let quiet = Some(self.game.quiet_steps(self.intents())).filter(|&quiet| quiet < u64::MAX);
+        let quiet = Some(self.game.quiet_steps(self.wanted())).filter(|&quiet| quiet < u64::MAX);
         let before_animation = self.steps_to_animation().map(|steps| steps.saturating_sub(1));
         let steps = quiet.into_iter().chain(before_animation).min()?;
         Some(self.clock.step_after(steps))
@@ -232,6 +240,7 @@ impl App {
     fn resumed(&mut self, now: Duration) {
         self.clock.skip_to(now);
         self.held.clear();
+        self.pointer.forget();
         self.shown = None;
     }
 
@@ -247,7 +256,7 @@ impl App {
             goal: &self.goal,
             level: self.level,
             seen: self.game.grid().and_then(|game| self.map.share_seen(game)),
-            gait: self.gait,
+            gait: Gait { mouse: self.pointer.is_on(), ..self.gait },
             stats: self.stats.as_ref().filter(|_| self.shows_stats),
             bindings: &self.settings.bindings,
         });
@@ -260,7 +269,7 @@ impl App {
                 let told = panels::Progress { game: &self.game, level: self.level };
                 panels::paused(canvas, picture, &told, &self.goal, bindings);
             }
-            Screen::Help => self.help.draw(canvas, picture, bindings, self.remedy.as_deref()),
+            Screen::Help => self.help.draw(canvas, picture, bindings, self.detection.lines()),
             Screen::LevelDone => {
                 let told = panels::Progress { game: &self.game, level: self.level };
                 panels::level_done(canvas, picture, &told);

@@ -1,7 +1,7 @@
 //! Which key does what: the actions, and presets of keys for them.
 
 use crate::game::Intent;
-use crate::terminal::Key;
+use crate::terminal::{Key, KeyEvent};
 
 /// What a key can do.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
@@ -12,6 +12,8 @@ pub(crate) enum Action {
     ToggleRun,
     /// Ducking until it is pressed again.
     ToggleDuck,
+    /// Turning and tilting by the mouse, or not any more.
+    ToggleMouse,
     /// Showing or hiding the minimap.
     ToggleMinimap,
     /// Showing the minimap larger, smaller, or another part of it.
@@ -45,7 +47,7 @@ pub(crate) enum MapChange {
 
 impl Action {
     /// Every action: its name in a file, what it does in a word or two, and itself.
-    pub(crate) const ALL: [(&'static str, &'static str, Self); 29] = [
+    pub(crate) const ALL: [(&'static str, &'static str, Self); 30] = [
         ("forward", "walk", Self::Want(Intent::Forward)),
         ("back", "walk back", Self::Want(Intent::Back)),
         ("strafe-left", "strafe left", Self::Want(Intent::StrafeLeft)),
@@ -61,6 +63,7 @@ impl Action {
         ("look-ahead", "look ahead", Self::Want(Intent::LookAhead)),
         ("toggle-run", "run, on and off", Self::ToggleRun),
         ("toggle-duck", "duck, on and off", Self::ToggleDuck),
+        ("mouse", "turn by mouse", Self::ToggleMouse),
         ("minimap", "map", Self::ToggleMinimap),
         ("map-larger", "larger map", Self::ChangeMap(MapChange::Larger)),
         ("map-smaller", "smaller map", Self::ChangeMap(MapChange::Smaller)),
@@ -155,6 +158,7 @@ impl Bindings {
             (Key::Home, Action::Want(Intent::LookAhead)),
             (Key::Char('r'), Action::ToggleRun),
             (Key::Char('x'), Action::ToggleDuck),
+            (Key::Char('v'), Action::ToggleMouse),
             (Key::Char('m'), Action::ToggleMinimap),
             (Key::Tab, Action::ToggleMinimap),
             // As on a number pad.
@@ -197,6 +201,13 @@ impl Bindings {
         self.keys.iter().find(|&&(bound, _)| bound == key).map(|&(_, action)| action)
     }
 
+    /// `event`, of the key that does something: where the one pressed does nothing, of the one at its
+    /// place on a US keyboard.
+    pub(crate) fn resolve(&self, event: KeyEvent) -> KeyEvent {
+        let base = event.base.filter(|_| self.action(event.key).is_none());
+        KeyEvent { key: base.unwrap_or(event.key), ..event }
+    }
+
     /// The keys that do `action`, in the order in which they were bound.
     pub(crate) fn keys(&self, action: Action) -> impl Iterator<Item = Key> {
         self.keys.iter().filter(move |&&(_, bound)| bound == action).map(|&(key, _)| key)
@@ -206,6 +217,8 @@ impl Bindings {
 #[cfg(test)]
 mod tests {
     use super::*;
+    use crate::terminal::{Modifiers, Phase};
+    use crate::tui::Configuration;
 
     #[test]
     fn every_action_has_a_key_in_every_preset() {
@@ -214,5 +227,20 @@ mod tests {
                 assert!(bindings().keys(action).next().is_some(), "{name} in {preset}");
             }
         }
+    }
+
+    #[test]
+    fn a_key_does_what_it_types_and_else_what_its_place_does() {
+        let event = |key, base| KeyEvent {
+            key: Key::Char(key),
+            base: Some(Key::Char(base)),
+            modifiers: Modifiers::default(),
+            phase: Phase::Press,
+        };
+        let text = "[keys]\nopen = \"ц\"";
+        let cyrillic = Configuration::parse(text, "config.toml").unwrap().bindings;
+        assert_eq!(cyrillic.resolve(event('ц', 'w')).key, Key::Char('ц'));
+        assert_eq!(cyrillic.resolve(event('ф', 'a')).key, Key::Char('a'));
+        assert_eq!(Bindings::default().resolve(event('ц', 'w')).key, Key::Char('w'));
     }
 }

@@ -139,7 +139,7 @@ mod tests {
     const NONE: fn(Key) -> bool = |_| false;
 
     fn event(key: char, phase: Phase) -> KeyEvent {
-        KeyEvent { key: Key::Char(key), modifiers: Modifiers::default(), phase }
+        KeyEvent { key: Key::Char(key), base: None, modifiers: Modifiers::default(), phase }
     }
 
     fn at(milliseconds: u64) -> Duration {

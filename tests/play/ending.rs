@@ -5,6 +5,7 @@ use std::thread;
 use std::time::{Duration, Instant};
 
 use rustix::process::{Pid, Signal, kill_process};
+use vt100::{MouseProtocolEncoding, MouseProtocolMode};
 
 use crate::emulator::{Modes, Speaks};
 use crate::game::{ENVIRONMENT, Game, Key, PROGRAM, looks};
@@ -23,6 +24,9 @@ const TAKEN: Modes = Modes {
     cursor_hidden: true,
     wrap: false,
     synchronized: false,
+    focus: true,
+    mouse: (MouseProtocolMode::None, MouseProtocolEncoding::Default),
+    mouse_pixels: false,
     key_flags: [0, 1],
 };
 
@@ -121,6 +125,65 @@ fn control_z_does_nothing_where_no_shell_would_continue_it() {
     game.wait_for_arrow("turned", |arrow| arrow.points != '→');
     game.press(Key::Char('q'));
     game.wait_for_end().assert_given_back();
+}
+
+/// Modes that are set while the mouse turns the player.
+const TAKEN_WITH_MOUSE: Modes = Modes {
+    mouse: (MouseProtocolMode::AnyMotion, MouseProtocolEncoding::Sgr),
+    mouse_pixels: true,
+    ..TAKEN
+};
+
+/// A game in a terminal that tells how many pixels it has, with the mouse on.
+fn with_mouse() -> Game {
+    let game = Game::with(Speaks::Kitty, (80, 24), None, &[], &[("CELLCASTER_PANIC", "1")]);
+    game.wait_for_releases();
+    game.resize_in_pixels((80, 24), (640, 384));
+    game.wait_for_rest();
+    game.press(Key::Char('v'));
+    game.wait_until("took the mouse", |emulator| emulator.modes() == TAKEN_WITH_MOUSE);
+    game
+}
+
+/// Motions are on their way whenever the game ends; the shell does not get them.
+#[test]
+fn the_mouse_is_given_back_however_it_ends() {
+    const MOTION: &str = "\x1b[<35;300;200M";
+    type End = fn(&Game);
+    let ends: [End; 5] = [
+        |game| game.press(Key::Char('v')),
+        |game| game.send("\x1b[99;5u"),
+        |game| game.signal(Signal::TERM),
+        |game| game.signal(Signal::HUP),
+        |game| game.send("\x1b[24~"),
+    ];
+    for (number, end) in ends.into_iter().enumerate() {
+        let mut game = with_mouse();
+        game.send(MOTION);
+        end(&game);
+        if number == 0 {
+            game.wait_until("gave the mouse back", |emulator| emulator.modes() == TAKEN);
+            game.press(Key::Char('q'));
+        } else {
+            game.send(MOTION);
+        }
+        game.wait_for_end().assert_given_back();
+    }
+}
+
+#[test]
+fn the_mouse_is_given_back_for_a_while_and_taken_again() {
+    let game = with_mouse();
+    game.send("\x1b[122;5u");
+    game.wait_until("took the terminal again", |emulator| {
+        let enabled = b"\x1b[?1016h";
+        let times =
+            emulator.bytes().windows(enabled.len()).filter(|bytes| bytes == enabled).count();
+        times == 2 && emulator.modes() == TAKEN_WITH_MOUSE
+    });
+    let bytes = game.bytes();
+    let left = b"\x1b[?1003l\x1b[?1006l\x1b[?1016l";
+    assert!(bytes.windows(left.len()).any(|bytes| bytes == left), "it was never given back");
 }
 
 /// The shell is killed, and its terminal goes with it.

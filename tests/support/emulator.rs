@@ -3,7 +3,7 @@
 
 use std::num::NonZeroU16;
 
-use vt100::{Callbacks, Parser, Screen};
+use vt100::{Callbacks, MouseProtocolEncoding, MouseProtocolMode, Parser, Screen};
 
 /// What a terminal answers.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -12,7 +12,8 @@ pub(crate) enum Speaks {
     Nothing,
     /// What device it is.
     Plain,
-    /// Status requests and the kitty keyboard protocol as well, and that it shows 24-bit colours. A key's release is always on its way when the program
+    /// Status requests and the kitty keyboard protocol as well, that it shows 24-bit colours, and that
+    /// it can report the mouse in pixels. A key's release is always on its way when the program
     /// turns the protocol off.
     Kitty,
 }
@@ -25,6 +26,12 @@ pub(crate) struct Modes {
     pub(crate) cursor_hidden: bool,
     pub(crate) wrap: bool,
     pub(crate) synchronized: bool,
+    /// Whether gaining and losing the focus is reported.
+    pub(crate) focus: bool,
+    /// What of the mouse is reported, and how.
+    pub(crate) mouse: (MouseProtocolMode, MouseProtocolEncoding),
+    /// Whether its place is reported in pixels.
+    pub(crate) mouse_pixels: bool,
     /// How many sets of keyboard flags are pushed, on the main and on the alternate screen.
     pub(crate) key_flags: [i32; 2],
 }
@@ -37,6 +44,9 @@ impl Default for Modes {
             cursor_hidden: false,
             wrap: true,
             synchronized: false,
+            focus: false,
+            mouse: (MouseProtocolMode::None, MouseProtocolEncoding::Default),
+            mouse_pixels: false,
             key_flags: [0, 0],
         }
     }
@@ -131,6 +141,7 @@ impl Emulator {
         Modes {
             alternate_screen: self.screen().alternate_screen(),
             cursor_hidden: self.screen().hide_cursor(),
+            mouse: (self.screen().mouse_protocol_mode(), self.screen().mouse_protocol_encoding()),
             ..self.parser.callbacks().modes
         }
     }
@@ -145,13 +156,20 @@ impl Callbacks for Extensions {
         &mut self,
         screen: &mut Screen,
         prefix: Option<u8>,
-        _: Option<u8>,
+        intermediate: Option<u8>,
         parameters: &[&[u16]],
         last: char,
     ) {
         let key_flags = &mut self.modes.key_flags[usize::from(screen.alternate_screen())];
         match (prefix, parameters, last) {
             (Some(b'?'), [[7]], 'h' | 'l') => self.modes.wrap = last == 'h',
+            (Some(b'?'), [[1004]], 'h' | 'l') => self.modes.focus = last == 'h',
+            (Some(b'?'), [[1016]], 'h' | 'l') => self.modes.mouse_pixels = last == 'h',
+            (Some(b'?'), [[1016]], 'p')
+                if intermediate == Some(b'$') && self.speaks == Speaks::Kitty =>
+            {
+                self.answers.extend(b"\x1b[?1016;2$y");
+            }
             (Some(b'?'), [[2026]], 'h' | 'l') => self.modes.synchronized = last == 'h',
             (Some(b'>'), _, 'u') => *key_flags += 1,
             (Some(b'<'), _, 'u') => {

@@ -81,6 +81,16 @@ impl Player {
         self.pty.resize(Size::new(rows, columns)).unwrap();
     }
 
+    /// As [`Player::resize`], and the terminal tells how many pixels wide and high it is.
+    pub(crate) fn resize_in_pixels(
+        &self,
+        (columns, rows): (u16, u16),
+        (width, height): (u16, u16),
+    ) {
+        self.state().emulator.resize(columns, rows);
+        self.pty.resize(Size::new_with_pixel(rows, columns, width, height)).unwrap();
+    }
+
     /// Waits until `condition` holds of the screen, between two frames, and fails with the screen if
     /// it never does.
     #[track_caller]

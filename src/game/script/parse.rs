@@ -4,7 +4,7 @@ use std::ops::Range;
 
 use super::{STAND, Script, Section, Stretch};
 use crate::fault::{Fault, Faults, nearest, quoted};
-use crate::game::{Intent, Intents, STEPS_PER_SECOND};
+use crate::game::{Intent, Intents, STEPS_PER_SECOND, look};
 
 pub(super) fn parse(text: &str, name: &str) -> Result<Script, Faults> {
     let mut reader = Reader { text, sections: Vec::new(), faults: Vec::new() };
@@ -132,11 +132,11 @@ impl Reader<'_> {
                     return Err(Fault::new(place, "who stands wants nothing else")
                         .label("take this away, or all the rest"));
                 }
+                (word, _) if word.contains(':') => intents = looking(intents, word, place)?,
                 (word, _) => match Intent::named(word) {
                     None => return Err(unknown(word, place)),
                     Some(intent) if intents.contains(intent) => {
-                        return Err(Fault::new(place, format!("{} is wanted twice", quoted(word)))
-                            .label("once is enough"));
+                        return Err(wanted_twice(word, place));
                     }
                     Some(intent) => intents.insert(intent),
                 },
@@ -166,6 +166,35 @@ impl Reader<'_> {
             Err(Faults::new(name, self.text, self.faults))
         }
     }
+}
+
+/// `intents`, turning or tilting as `word` says, such as `turn:-1.5`.
+fn looking(intents: Intents, word: &str, place: Range<usize>) -> Result<Intents, Fault> {
+    let (name, degrees) = word.split_once(':').unwrap_or((word, ""));
+    let mut look = intents.look();
+    let amount = match name {
+        look::TURN => &mut look.turn,
+        look::TILT => &mut look.tilt,
+        _ => return Err(unknown(word, place)),
+    };
+    if *amount != 0 {
+        return Err(wanted_twice(name, place));
+    }
+    let Some(hundredths) = look::hundredths(degrees) else {
+        let help = format!("write {name}:2.5, or {name}:-0.25; 327.67 is the most");
+        return Err(Fault::new(
+            place,
+            "an angle is in degrees and not 0, with two digits at most after the point",
+        )
+        .label("no such angle")
+        .help(help));
+    };
+    *amount = hundredths;
+    Ok(intents.with_look(look))
+}
+
+fn wanted_twice(word: &str, place: Range<usize>) -> Fault {
+    Fault::new(place, format!("{} is wanted twice", quoted(word))).label("once is enough")
 }
 
 fn unknown(word: &str, place: Range<usize>) -> Fault {

@@ -128,8 +128,7 @@ impl Look {
         colors: [Color; 2],
         alphabet: &mut Alphabet,
     ) -> Self {
-        let [text, ground] = colors.map(Shade::of);
-        let style = Style::plain(text, ground);
+        let style = Style::in_colors(colors);
         match Glyph::of(character.encode_utf8(&mut [0; 4])) {
             Some(glyph) => Self::of_glyph(glyph, style, alphabet),
             None => Self::of_letter(character, style, alphabet),
@@ -154,8 +153,9 @@ impl Look {
         }
     }
 
+    /// What a character looks like that may be the letter of a number, and is never drawn as a block.
     #[inline(never)]
-    fn of_letter(character: char, style: Style, alphabet: &mut Alphabet) -> Self {
+    pub(super) fn of_letter(character: char, style: Style, alphabet: &mut Alphabet) -> Self {
         let number = alphabet.number(Letter::new(character, style.modifier));
         let colors = [style.foreground, style.background];
         number.map_or(Self::INTRICATE, |number| Self::of_text(number, colors))

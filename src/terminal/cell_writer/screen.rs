@@ -7,8 +7,10 @@ use ratatui::style::Color;
 use ratatui::widgets::Widget;
 
 use super::alphabet::Alphabet;
+use super::ascii;
 use super::look::Look;
 use super::shift::{Mark, Shift};
+use super::style::Style;
 use crate::tui::Canvas;
 use crate::world::Rgb;
 
@@ -18,6 +20,8 @@ use crate::world::Rgb;
 #[derive(Debug, Default)]
 pub struct Screen {
     width: usize,
+    /// Whether it is to show nothing but ASCII.
+    is_ascii: bool,
     alphabet: Alphabet,
     shown: Vec<Look>,
     /// What it is to look like.
@@ -81,6 +85,13 @@ impl Screen {
         self.forget();
     }
 
+    /// It is to show nothing but ASCII from the next frame on, or any character.
+    pub(super) fn set_ascii(&mut self, is_ascii: bool) {
+        self.is_ascii = is_ascii;
+        self.forget();
+        self.changed.fill(true);
+    }
+
     /// Nothing is known of what it shows.
     pub(super) fn forget(&mut self) {
         self.shown.fill(Look::UNKNOWN);
@@ -116,7 +127,12 @@ impl Screen {
 
     #[inline]
     fn set(&mut self, place: usize, cell: &Cell) {
-        let look = Look::of(cell, &mut self.alphabet);
+        let look = if self.is_ascii {
+            let character = ascii::substitute(cell.symbol());
+            Look::of_letter(character, Style::of(cell), &mut self.alphabet)
+        } else {
+            Look::of(cell, &mut self.alphabet)
+        };
         self.looks[place] = look;
         if look.is_intricate() {
             self.want_intricate(place, cell);
@@ -154,6 +170,22 @@ impl Screen {
         let row = usize::from(y) * self.width;
         let cells = row + usize::from(x).min(self.width)..row + self.width;
         self.looks.get_mut(cells).unwrap_or_default()
+    }
+
+    /// Shows what stands for `character`.
+    fn draw_ascii(&mut self, x: u16, y: u16, character: char, colors: [Color; 2]) {
+        let character = ascii::substitute(character.encode_utf8(&mut [0; 4]));
+        let look = Look::of_letter(character, Style::in_colors(colors), &mut self.alphabet);
+        if let Some(place) = self.looks_from(x, y).first_mut() {
+            *place = look;
+        }
+    }
+
+    /// Shows cells of two colours without a block: in the lower one.
+    fn draw_grounds(&mut self, x: u16, y: u16, row: impl Iterator<Item = [Color; 2]>) {
+        for (x, colors) in (x..).zip(row) {
+            self.draw_ascii(x, y, ' ', colors);
+        }
     }
 
     /// Whether anything was wanted since the rows were drawn.
@@ -207,6 +239,9 @@ impl Canvas for Screen {
 
     #[inline]
     fn draw_halves(&mut self, x: u16, y: u16, row: impl Iterator<Item = [Color; 2]>) {
+        if self.is_ascii {
+            return self.draw_grounds(x, y, row);
+        }
         for (look, halves) in self.looks_from(x, y).iter_mut().zip(row) {
             *look = Look::of_colors(halves);
         }
@@ -214,12 +249,19 @@ impl Canvas for Screen {
 
     #[inline]
     fn draw_pixels(&mut self, x: u16, y: u16, row: impl Iterator<Item = [Rgb; 2]>) {
+        if self.is_ascii {
+            let rgb = |color: Rgb| Color::Rgb(color.red(), color.green(), color.blue());
+            return self.draw_grounds(x, y, row.map(|halves| halves.map(rgb)));
+        }
         for (look, pixels) in self.looks_from(x, y).iter_mut().zip(row) {
             *look = Look::of_pixels(pixels);
         }
     }
 
     fn draw_character(&mut self, x: u16, y: u16, character: char, colors: [Color; 2]) {
+        if self.is_ascii {
+            return self.draw_ascii(x, y, character, colors);
+        }
         let look = Look::of_character(character, colors, &mut self.alphabet);
         let Some(place) = self.looks_from(x, y).first_mut() else { return };
         *place = look;

@@ -84,6 +84,12 @@ impl Style {
         Self { foreground, background, modifier: Modifier::empty() }
     }
 
+    /// The same, as ratatui names the colours of a text and of its ground.
+    pub(super) fn in_colors(colors: [Color; 2]) -> Self {
+        let [foreground, background] = colors.map(Shade::of);
+        Self::plain(foreground, background)
+    }
+
     pub(super) fn has_no_modifiers(self) -> bool {
         self.modifier.is_empty()
     }

@@ -9,6 +9,8 @@ pub(in super::super) enum Answer {
     KeyFlags,
     /// It shows 24-bit colours.
     TrueColor,
+    /// It can report the place of the mouse in pixels.
+    PixelMouse,
     /// It has answered all that was asked before the fence.
     Fence,
     /// It has come as far as a status request.
@@ -25,6 +27,8 @@ pub(super) fn parse_report(unit: &[u8]) -> Option<Answer> {
     match unit {
         [_, _, b'?', b'0'..=b'9' | b';', .., b'c'] => Some(Answer::Fence),
         [_, _, b'?', b'0'..=b'9', .., b'u'] => Some(Answer::KeyFlags),
+        // Set, not set, or set for good; 0 is for a mode that it does not know.
+        b"\x1b[?1016;1$y" | b"\x1b[?1016;2$y" | b"\x1b[?1016;3$y" => Some(Answer::PixelMouse),
         [_, _, b'0'..=b'9', b'n'] => Some(Answer::Status),
         _ => None,
     }

@@ -2,7 +2,7 @@
 
 use termina::event::{KeyCode, KeyEventKind, ModifierKeyCode, Modifiers as Reported};
 
-use super::super::key::{Key, KeyEvent, Modifiers, Phase};
+use super::super::key::{Key, KeyEvent, Modifiers, Phase, base_key};
 
 /// The key event that `unit` stands for; `None` for what is no key, or none that a game binds.
 pub(super) fn parse(unit: &[u8]) -> Option<KeyEvent> {
@@ -11,8 +11,16 @@ pub(super) fn parse(unit: &[u8]) -> Option<KeyEvent> {
             let event = parse(&[*character])?;
             Some(KeyEvent { modifiers: Modifiers { alt: true, ..event.modifiers }, ..event })
         }
-        _ => translate(reported(unit)?),
+        _ => translate(reported(unit)?, told_base(unit)),
     }
+}
+
+/// The third part of the first number of `CSI … u`, in the kitty protocol: what the key types in the
+/// layout that a program knows by heart.
+fn told_base(unit: &[u8]) -> Option<char> {
+    let numbers = unit.strip_prefix(b"\x1b[")?.strip_suffix(b"u")?;
+    let number = numbers.split(|&byte| byte == b';').next()?.split(|&byte| byte == b':').nth(2)?;
+    char::from_u32(str::from_utf8(number).ok()?.parse().ok()?)
 }
 
 /// What the parser makes of `unit`. It is a fresh one each time: one that has kept something of a
@@ -26,7 +34,7 @@ fn reported(unit: &[u8]) -> Option<termina::event::KeyEvent> {
     }
 }
 
-fn translate(event: termina::event::KeyEvent) -> Option<KeyEvent> {
+fn translate(event: termina::event::KeyEvent, told_base: Option<char>) -> Option<KeyEvent> {
     let modifiers = Modifiers {
         shift: event.modifiers.contains(Reported::SHIFT),
         control: event.modifiers.contains(Reported::CONTROL),
@@ -37,7 +45,8 @@ fn translate(event: termina::event::KeyEvent) -> Option<KeyEvent> {
         KeyEventKind::Repeat => Phase::Repeat,
         KeyEventKind::Release => Phase::Release,
     };
-    Some(KeyEvent { key: name(event.code)?, modifiers, phase })
+    let key = name(event.code)?;
+    Some(KeyEvent { key, base: base_key(key, told_base), modifiers, phase })
 }
 
 fn name(code: KeyCode) -> Option<Key> {

@@ -11,6 +11,8 @@ pub(super) enum Kind {
     Key,
     /// `ESC [` to its final byte.
     ControlSequence,
+    /// `ESC [ M` and three bytes.
+    MouseBytes,
     /// `ESC P` to its terminator.
     DeviceControl,
     /// Any other string, such as a window's title.
@@ -51,6 +53,8 @@ enum State {
     ControlSequence,
     /// After `ESC [ [`, which the Linux console sends before a letter.
     ConsoleKey,
+    /// After `ESC [ M`; so many bytes are missing.
+    MouseBytes { missing: u8 },
     /// Inside a string.
     String(Kind),
     /// Inside a string, after an escape that may start its terminator.
@@ -158,6 +162,10 @@ fn step(state: State, byte: u8) -> Step {
         State::Escape => after_escape(byte),
         State::SingleShift | State::ConsoleKey => before_last_of_key(byte),
         State::ControlSequenceStart if byte == b'[' => Step::Continue(State::ConsoleKey),
+        State::ControlSequenceStart if byte == b'M' => {
+            Step::Continue(State::MouseBytes { missing: 3 })
+        }
+        State::MouseBytes { missing } => in_mouse_bytes(missing, byte),
         State::ControlSequenceStart | State::ControlSequence => in_control_sequence(byte),
         State::String(kind) => in_string(kind, byte),
         State::StringEscape(kind) if byte == b'\\' => Step::Complete(kind),
@@ -214,6 +222,14 @@ fn in_control_sequence(byte: u8) -> Step {
         b' '..=b'?' => Step::Continue(State::ControlSequence),
         b'@'..=b'~' => Step::Complete(Kind::ControlSequence),
         _ => Step::Restart,
+    }
+}
+
+fn in_mouse_bytes(missing: u8, byte: u8) -> Step {
+    match (missing, byte) {
+        (_, ..b' ') => Step::Restart,
+        (1, _) => Step::Complete(Kind::MouseBytes),
+        _ => Step::Continue(State::MouseBytes { missing: missing - 1 }),
     }
 }
 

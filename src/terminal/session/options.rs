@@ -1,14 +1,23 @@
 //! How to use the terminal.
 
-use super::super::{Detected, Fidelity, color_depth};
+use super::super::environment::teletype;
+use super::super::{ColorSource, Detected, Fidelity, color_depth, color_source};
 
 /// What is known of the terminal beforehand, and how it is to be used.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct Options {
     /// How many colours it shows. The terminal is asked where this is a guess.
     pub color_depth: Detected,
+    /// What that is known by.
+    pub color_source: ColorSource,
+    /// Its name in `TERM`, if it cannot move its cursor.
+    pub teletype: Option<&'static str>,
+    /// Whether it shows nothing but ASCII: other characters are replaced by what looks like them.
+    pub is_ascii: bool,
     /// Whether to ask for reports of when keys are released.
     pub ask_for_key_releases: bool,
+    /// Whether to ask if places of the mouse can be in pixels.
+    pub ask_for_mouse_pixels: bool,
     /// How exact frames are; `None` for exact where the link keeps up, and less so where it lags.
     pub fidelity: Option<Fidelity>,
 }
@@ -17,7 +26,7 @@ impl Options {
     /// What `environment`, a lookup of variables by name, tells of the terminal.
     ///
     /// A terminal multiplexer is not asked for releases: those that agree lose some, and a key whose
-    /// release is lost is held for ever.
+    /// release is lost is held for ever. Nor is it asked for pixels, of which it has none of its own.
     pub fn from_environment(environment: impl Fn(&str) -> Option<String>) -> Self {
         let is_set = |name| environment(name).is_some_and(|value| !value.is_empty());
         let term = environment("TERM").unwrap_or_default();
@@ -25,8 +34,12 @@ impl Options {
             || is_set("STY")
             || ["tmux", "screen"].iter().any(|name| term.starts_with(name));
         Self {
-            color_depth: color_depth(environment),
+            color_depth: color_depth(&environment),
+            color_source: color_source(&environment),
+            teletype: teletype(&environment),
+            is_ascii: false,
             ask_for_key_releases: !multiplexed,
+            ask_for_mouse_pixels: !multiplexed,
             fidelity: None,
         }
     }

@@ -8,8 +8,9 @@ use ratatui::backend::Backend;
 use super::{KeyReleases, Session};
 use crate::palette::ColorDepth;
 use crate::terminal::input::{Answer, Input};
+use crate::terminal::mouse::MouseReport;
 use crate::terminal::platform::Signal;
-use crate::terminal::{Detected, Event, Key, KeyEvent, Phase, QuitReason};
+use crate::terminal::{ColorSource, Detected, Event, Key, KeyEvent, Phase, QuitReason};
 
 /// Whether something arrived.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -39,7 +40,10 @@ impl Session {
     fn receive_signals(&mut self) -> io::Result<()> {
         for signal in self.signals.take() {
             match signal {
-                Signal::Resized => self.repaint(),
+                Signal::Resized => {
+                    self.repaint();
+                    self.update_mouse_units()?;
+                }
                 Signal::Suspend => self.events.push_back(Event::Suspend),
                 Signal::Continued => {
                     // Stopped from outside, without a chance to give the terminal back.
@@ -78,6 +82,13 @@ impl Session {
     fn take_input(&mut self, input: Input) -> io::Result<()> {
         match input {
             Input::Key(event) => self.events.push_back(meaning(event)),
+            Input::Focus(true) => self.events.push_back(Event::FocusGained),
+            Input::Focus(false) => self.events.push_back(Event::FocusLost),
+            Input::Mouse(report) => self.events.extend(self.mouse_event(report)),
+            Input::Answer(Answer::PixelMouse) => {
+                self.mouse.has_pixels = true;
+                self.update_mouse_units()?;
+            }
             Input::Answer(Answer::KeyFlags) => self.settle_key_releases(true)?,
             Input::Answer(Answer::TrueColor) => self.raise_color_depth(),
             Input::Answer(Answer::Status) => {
@@ -86,11 +97,32 @@ impl Session {
             }
             Input::Answer(Answer::Fence) => {
                 self.guard.fence_answered();
+                self.mouse.is_changing &= self.guard.awaits_answers();
                 self.flow.passed_over();
                 self.settle_key_releases(false)?;
             }
         }
         Ok(())
+    }
+
+    /// The event that `report` stands for; `None` for one that comes too late, or in units that nobody
+    /// knows.
+    fn mouse_event(&self, report: MouseReport) -> Option<Event> {
+        let units = self.mouse.units.filter(|_| !self.mouse.is_changing)?;
+        report.event(units, self.size).map(Event::Mouse)
+    }
+
+    /// Has the mouse, if it is reported, be reported in the finest unit that there is now.
+    fn update_mouse_units(&mut self) -> io::Result<()> {
+        let finest = self.mouse_units();
+        if self.mouse.units.is_none_or(|units| units == finest) {
+            return Ok(());
+        }
+        self.mouse.units = Some(finest);
+        self.mouse.is_changing = true;
+        self.guard.set_mouse(self.mouse.units)?;
+        // Reports that come after the answer are in the new unit.
+        self.guard.ask("")
     }
 
     fn settle_key_releases(&mut self, agreed: bool) -> io::Result<()> {
@@ -107,6 +139,7 @@ impl Session {
     fn raise_color_depth(&mut self) {
         if let Detected::Guess(_) = self.color_depth {
             self.color_depth = Detected::Certain(ColorDepth::True);
+            self.color_source = ColorSource::Answer;
             self.events.push_back(Event::ColorDepth(ColorDepth::True));
         }
     }
@@ -131,7 +164,7 @@ impl Session {
 /// What a key means to every program: raw mode leaves to us what the terminal would have done.
 fn meaning(event: KeyEvent) -> Event {
     let pressed = event.phase == Phase::Press && event.modifiers.control && !event.modifiers.alt;
-    match event.key {
+    match event.base.unwrap_or(event.key) {
         Key::Char('c') if pressed => Event::Quit(QuitReason::Interrupted),
         Key::Char('z') if pressed => Event::Suspend,
         _ => Event::Key(event),

@@ -53,20 +53,20 @@ impl HelpScroll {
         self.lines.saturating_sub(self.page)
     }
 
-    /// Draws the help, and at its end what there is to say of the terminal.
+    /// Draws the help, and at its end `notes` on the terminal.
     pub(super) fn draw(
         &mut self,
         canvas: &mut impl Canvas,
         picture: Rect,
         bindings: &Bindings,
-        remedy: Option<&str>,
+        notes: impl Iterator<Item = String>,
     ) {
         let room = usize::from(picture.height.saturating_sub(BORDERS)).max(1);
         let most_columns = usize::from(picture.width.saturating_sub(BORDERS + PADDING)).max(1);
         let leave = how_to_leave(bindings, most_columns);
         let keys = keys_in_columns(bindings, room.saturating_sub(1), most_columns);
-        let remedy = remedy.map(|remedy| wrapped(remedy, most_columns)).unwrap_or_default();
-        let body: Vec<String> = keys.into_iter().chain(remedy).collect();
+        let notes = notes.flat_map(|note| wrapped(&note, most_columns));
+        let body: Vec<String> = keys.into_iter().chain(notes).collect();
         self.lines = body.len();
         let fits = 1 + body.len() <= room;
         // What tells that there is more takes a line.
@@ -147,8 +147,9 @@ mod tests {
 
     fn shown(columns: u16, rows: u16, help: &mut HelpScroll) -> String {
         let mut buffer = Buffer::empty(Rect::new(0, 0, columns, rows));
-        let remedy = Some("256 colours: your terminal did not offer more; see docs/colors.md");
-        help.draw(&mut buffer, Rect::new(0, 0, columns, rows), &Bindings::default(), remedy);
+        let note = "256 colours: your terminal did not offer more; see docs/terminals.md".to_owned();
+        let notes = [note].into_iter();
+        help.draw(&mut buffer, Rect::new(0, 0, columns, rows), &Bindings::default(), notes);
         let lines = buffer.content().chunks(columns.into());
         lines.flat_map(|line| line.iter().map(Cell::symbol).chain(["\n"])).collect()
     }
@@ -175,7 +176,7 @@ mod tests {
             for (_, does, _) in Action::ALL {
                 assert!(shows(does), "{does}, {columns} by {rows}:\n{seen:?}");
             }
-            assert!(shows("did not offer more; see docs/colors.md"), "{columns} by {rows}");
+            assert!(shows("did not offer more; see docs/terminals.md"), "{columns} by {rows}");
         }
     }
 

@@ -17,6 +17,7 @@ impl App {
     /// A key was pressed, repeated or released at that time.
     pub(super) fn key(&mut self, event: KeyEvent, now: Duration) {
         self.advance(now);
+        let event = self.settings.bindings.resolve(event);
         let action = self.settings.bindings.action(event.key);
         if let Some(Action::Want(_)) = action {
             let bindings = &self.settings.bindings;
@@ -28,6 +29,13 @@ impl App {
         if event.phase != Phase::Release {
             self.press(event.key, action);
         }
+    }
+
+    /// What is typed goes to another window: keys may be let go of there.
+    pub(super) fn focus_lost(&mut self, now: Duration) {
+        self.advance(now);
+        self.held.clear();
+        self.pointer.forget();
     }
 
     fn press(&mut self, key: Key, action: Option<Action>) {
@@ -59,6 +67,10 @@ impl App {
             }
             (_, Some(Action::ToggleRun)) => {
                 self.gait.runs = !self.gait.runs;
+                self.shown = None;
+            }
+            (_, Some(Action::ToggleMouse)) => {
+                self.pointer.toggle();
                 self.shown = None;
             }
             (_, Some(Action::ToggleStats)) => {

@@ -10,8 +10,8 @@ use super::stats::{Meter, Stats};
 use super::{App, Levels, Recording, Settings};
 #[cfg(debug_assertions)]
 use crate::terminal::Key;
-use crate::terminal::{Detected, Error, Event, Options, Session};
-use crate::tui::CellAspect;
+use crate::terminal::{Detected, Error, Event, Options, Session, locale_without_utf8};
+use crate::tui::{CellAspect, GlyphMode};
 
 /// Plays `levels` on the terminal until the player leaves or somebody else ends the program, and
 /// notes down what `recording` asks for.
@@ -24,27 +24,37 @@ pub fn play(levels: Levels, settings: Settings, recording: Recording) -> Result<
         options.color_depth = Detected::Certain(depth);
     }
     options.fidelity = settings.fidelity;
+    let ascii_locale = ascii_locale(settings.glyphs);
+    options.is_ascii = ascii_locale.is_some();
     let mut session = Session::enter_recorded(options, recording.terminal)?;
     let mut presenter = Presenter::new(settings.frame_time);
     let mut app = App::new(levels, settings);
     app.script = recording.script;
+    app.detection.ascii_locale = ascii_locale;
+    app.detection.reports_releases = (!options.ask_for_key_releases).then_some(false);
     tell_terminal(&mut app, &session);
     let start = Instant::now();
     while !app.has_left {
         app.advance(start.elapsed());
         app.reload(start.elapsed());
+        session.set_mouse(app.pointer.is_on())?;
         presenter.update(&mut app, &mut session, start.elapsed())?;
         let wakes_at = presenter.wakes_at(&app, &session, start.elapsed());
         let timeout = wakes_at.map(|wakes| wakes.saturating_sub(start.elapsed()));
         match session.next_event(timeout)? {
-            None | Some(Event::Ready) => {}
+            None | Some(Event::Ready | Event::FocusGained) => {}
             Some(Event::Key(event)) => {
                 #[cfg(debug_assertions)]
                 panic_on_demand(event.key);
                 app.key(event, start.elapsed());
             }
+            Some(Event::Mouse(event)) => app.mouse(event, start.elapsed()),
+            Some(Event::FocusLost) => app.focus_lost(start.elapsed()),
             Some(Event::Resized | Event::ColorDepth(_)) => tell_terminal(&mut app, &session),
-            Some(Event::KeyReleases(reported)) => app.held.set_reports_releases(reported),
+            Some(Event::KeyReleases(reported)) => {
+                app.held.set_reports_releases(reported);
+                app.detection.reports_releases = Some(reported);
+            }
             Some(Event::Suspend) => {
                 session.suspend()?;
                 app.resumed(start.elapsed());
@@ -120,6 +130,18 @@ fn is_unfinished(app: &App, session: &Session) -> bool {
 fn tell_terminal(app: &mut App, session: &Session) {
     let aspect = session.size().cell_aspect.and_then(CellAspect::new);
     app.terminal_changed(aspect, session.color_depth());
+    app.pointer.set_columns(session.size().columns);
+    app.detection.depth = app.depth;
+    app.detection.source = app.settings.depth.is_none().then(|| session.color_source());
+}
+
+/// The setting of the locale because of which nothing but ASCII is sent; `None` where the locale allows
+/// more, or the glyphs that were chosen take more.
+fn ascii_locale(glyphs: GlyphMode) -> Option<String> {
+    match glyphs {
+        GlyphMode::Ascii | GlyphMode::Ramp => locale_without_utf8(|name| env::var(name).ok()),
+        GlyphMode::Half => None,
+    }
 }
 
 /// A fault in the middle of a game, for the tests that look at how it ends.

@@ -22,11 +22,13 @@ use super::played::Played;
 use super::stats::Stats;
 use crate::tui::bindings::{Action, Bindings};
 
-/// How the player walks, whatever keys are held.
+/// How the player walks and turns, whatever keys are held.
 #[derive(Clone, Copy, Debug, Default)]
 pub(super) struct Gait {
     pub(super) runs: bool,
     pub(super) ducks: bool,
+    /// Whether the mouse turns them.
+    pub(super) mouse: bool,
 }
 
 /// What the line tells of.
@@ -114,11 +116,10 @@ impl StatusLine {
         if let Some(site) = game.site() {
             self.both(Part::Site, format_args!("{}, {}", site.column, site.row))?;
         }
-        match (gait.runs, gait.ducks) {
-            (true, true) => self.both(Part::Gait, format_args!("running, ducking"))?,
-            (true, false) => self.both(Part::Gait, format_args!("running"))?,
-            (false, true) => self.both(Part::Gait, format_args!("ducking"))?,
-            (false, false) => {}
+        let modes = [(gait.runs, "running"), (gait.ducks, "ducking"), (gait.mouse, "mouse")];
+        for (index, (_, mode)) in modes.into_iter().filter(|(is_on, _)| *is_on).enumerate() {
+            let comma = if index > 0 { ", " } else { "" };
+            self.both(Part::Gait, format_args!("{comma}{mode}"))?;
         }
         for (index, key) in game.keys().enumerate() {
             let comma = if index > 0 { ", " } else { "" };

@@ -22,7 +22,7 @@ fn ascii(minimap: MapDisplay) -> Settings {
 
 fn press(app: &mut App, key: Key) {
     let modifiers = crate::terminal::Modifiers::default();
-    app.key(KeyEvent { key, modifiers, phase: Phase::Press }, Duration::ZERO);
+    app.key(KeyEvent { key, base: None, modifiers, phase: Phase::Press }, Duration::ZERO);
 }
 
 fn buffer(app: &mut App, (columns, rows): (u16, u16)) -> Buffer {

@@ -1,0 +1,46 @@
+//! The queries that the terminal has not answered yet.
+
+use std::time::{Duration, Instant};
+
+/// How long a terminal may take to answer.
+const PATIENCE: Duration = Duration::from_secs(1);
+
+/// How many fences, queries that every terminal answers, are open.
+#[derive(Debug)]
+pub(super) struct Fences {
+    open: u32,
+    last_sent: Instant,
+    are_answered: bool,
+}
+
+impl Fences {
+    pub(super) fn none() -> Self {
+        Self { open: 0, last_sent: Instant::now(), are_answered: false }
+    }
+
+    pub(super) fn sent(&mut self) {
+        self.open += 1;
+        self.last_sent = Instant::now();
+    }
+
+    pub(super) fn answered(&mut self) {
+        self.open = self.open.saturating_sub(1);
+        self.are_answered = true;
+    }
+
+    /// Whether the terminal has answered any.
+    pub(super) fn are_answered(&self) -> bool {
+        self.are_answered
+    }
+
+    /// Whether some are open.
+    pub(super) fn are_open(&self) -> bool {
+        self.open > 0
+    }
+
+    /// How much longer to wait for an answer; `None` where nothing is expected any more.
+    pub(super) fn patience(&self) -> Option<Duration> {
+        let left = PATIENCE.checked_sub(self.last_sent.elapsed())?;
+        self.are_open().then_some(left)
+    }
+}

@@ -1,0 +1,61 @@
+//! What the terminal is told to report while it is taken: the focus always, keys and the mouse where
+//! that was asked for.
+
+use super::super::mouse::MouseUnits;
+use super::super::sequence;
+
+/// What it reports whenever it is taken.
+#[derive(Debug, Default)]
+pub(super) struct Reports {
+    /// Whether keys are reported in the kitty protocol.
+    pub(super) has_key_flags: bool,
+    /// What the mouse's place is reported in; `None` where it is not.
+    mouse: Option<MouseUnits>,
+}
+
+impl Reports {
+    /// Whether something may be on its way at any time.
+    pub(super) fn are_frequent(&self) -> bool {
+        self.has_key_flags || self.mouse.is_some()
+    }
+
+    /// Has them begin.
+    pub(super) fn push_start(&self, text: &mut String) {
+        text.push_str(sequence::ENABLE_FOCUS_REPORTS);
+        if self.has_key_flags {
+            text.push_str(sequence::PUSH_KEY_FLAGS);
+        }
+        push_mouse(text, None, self.mouse);
+    }
+
+    /// Has them end, in the opposite order.
+    pub(super) fn push_end(&self, text: &mut String) {
+        push_mouse(text, self.mouse, None);
+        if self.has_key_flags {
+            text.push_str(sequence::POP_KEY_FLAGS);
+        }
+        text.push_str(sequence::DISABLE_FOCUS_REPORTS);
+    }
+
+    /// Has the mouse reported so from now on.
+    pub(super) fn change_mouse(&mut self, mouse: Option<MouseUnits>, text: &mut String) {
+        push_mouse(text, self.mouse, mouse);
+        self.mouse = mouse;
+    }
+}
+
+/// What it takes to have the mouse reported so, rather than as `before`.
+fn push_mouse(text: &mut String, before: Option<MouseUnits>, mouse: Option<MouseUnits>) {
+    match (before, mouse) {
+        (None, Some(_)) => text.push_str(sequence::ENABLE_MOUSE),
+        (Some(_), None) => text.push_str(sequence::DISABLE_MOUSE),
+        _ => {}
+    }
+    let [was_in_pixels, is_in_pixels] =
+        [before, mouse].map(|units| units == Some(MouseUnits::Pixels));
+    match (was_in_pixels, is_in_pixels) {
+        (false, true) => text.push_str(sequence::ENABLE_MOUSE_PIXELS),
+        (true, false) => text.push_str(sequence::DISABLE_MOUSE_PIXELS),
+        _ => {}
+    }
+}
