@@ -68,7 +68,7 @@ impl HelpScroll {
         let remedy = remedy.map(|remedy| wrapped(remedy, most_columns)).unwrap_or_default();
         let body: Vec<String> = keys.into_iter().chain(remedy).collect();
         self.lines = body.len();
-        let fits = 1 + body.len() <= room;
+        let fits = body.len() < room;
         // What tells that there is more takes a line.
         self.page = if fits { body.len() } else { room.saturating_sub(2).max(1) };
         self.first = self.first.min(self.last());
