@@ -119,8 +119,11 @@ struct Letters {
     leave: char,
 }
 
+/// The name of a preset, and what makes it.
+pub(super) type Preset = (&'static str, fn() -> Bindings);
+
 /// The presets, the default first.
-pub(super) const PRESETS: [(&str, fn() -> Bindings); 2] =
+pub(super) const PRESETS: [Preset; 2] =
     [("qwerty", Bindings::default), ("azerty", Bindings::azerty)];
 
 impl Bindings {

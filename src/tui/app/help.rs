@@ -68,7 +68,7 @@ impl HelpScroll {
         let notes = notes.flat_map(|note| wrapped(&note, most_columns));
         let body: Vec<String> = keys.into_iter().chain(notes).collect();
         self.lines = body.len();
-        let fits = 1 + body.len() <= room;
+        let fits = body.len() < room;
         // What tells that there is more takes a line.
         self.page = if fits { body.len() } else { room.saturating_sub(2).max(1) };
         self.first = self.first.min(self.last());

@@ -116,10 +116,10 @@ pub(super) fn paused(
     bindings: &Bindings,
 ) {
     let keys = key_names(bindings, Action::TogglePause);
-    let has: String = progress.game.keys().map(|key| format!("{key} key\n")).collect();
+    let has: Vec<String> = progress.game.keys().map(|key| format!("{key} key")).collect();
     let seconds = whole_seconds(progress.game.elapsed());
     let (level, goal) = (progress.level(), goal.text());
-    let text = format!("{keys} goes on\n{goal}\n{level}\n{seconds}\n{has}");
+    let text = format!("{keys} goes on\n{goal}\n{level}\n{seconds}\n{}", has.join("\n"));
     message(canvas, picture, "paused", Text::from(text).centered());
 }
 

@@ -39,13 +39,13 @@ impl Configuration {
                         (self.preset, preset) = (name, make);
                     }
                 }
-                "colors" => set(&mut self.colors, colors(&entry, faults)),
+                "colors" => read_colors(&entry, &mut self.colors, faults),
                 "glyphs" => set(&mut self.glyphs, named(&entry, &GLYPH_MODES, faults)),
                 "fov" => set(&mut self.field_of_view, field_of_view(&entry, faults)),
                 "fps" => set(&mut self.frames_per_second, frames_per_second(&entry, faults)),
                 "mouse" => set(&mut self.mouse, boolean(&entry, faults)),
                 "minimap" => set(&mut self.minimap, named(&entry, &DISPLAYS, faults)),
-                "fidelity" => set(&mut self.fidelity, fidelity(&entry, faults)),
+                "fidelity" => read_fidelity(&entry, &mut self.fidelity, faults),
                 "keys" => {
                     if let Some(table) = entry.table("[keys]", faults) {
                         bound = keys::read(table, faults);
@@ -88,12 +88,12 @@ fn named<T: Copy, const N: usize>(
     value
 }
 
-/// The number of colours by its name; 256 and 16 may do without quotes.
-fn colors(entry: &Entry<'_, '_>, faults: &mut Vec<Fault>) -> Option<Option<ColorDepth>> {
+/// Reads the number of colours by its name; 256 and 16 may do without quotes.
+fn read_colors(entry: &Entry<'_, '_>, colors: &mut Option<ColorDepth>, faults: &mut Vec<Fault>) {
     let number = entry.number().map(|number| number.to_string());
     match DEPTHS.iter().find(|&&(known, _)| Some(known) == number.as_deref()) {
-        Some(&(_, depth)) => Some(depth),
-        None => named(entry, &DEPTHS, faults),
+        Some(&(_, depth)) => *colors = depth,
+        None => set(colors, named(entry, &DEPTHS, faults)),
     }
 }
 
@@ -130,22 +130,24 @@ fn boolean(entry: &Entry<'_, '_>, faults: &mut Vec<Fault>) -> Option<bool> {
     Some(*boolean)
 }
 
-/// A fidelity by its name, or by its number.
-fn fidelity(entry: &Entry<'_, '_>, faults: &mut Vec<Fault>) -> Option<Option<Fidelity>> {
+/// Reads a fidelity by its name, or by its number.
+fn read_fidelity(entry: &Entry<'_, '_>, fidelity: &mut Option<Fidelity>, faults: &mut Vec<Fault>) {
     let example = format!("fidelity = \"{}\"", value::FIDELITY.default);
     let text = match entry.number() {
         Some(number) => number.to_string(),
-        None => entry.string(&example, faults)?.to_owned(),
+        None => match entry.string(&example, faults) {
+            Some(text) => text.to_owned(),
+            None => return,
+        },
     };
     if text == value::FIDELITY.default {
-        return Some(None);
-    }
-    let fidelity = text.parse().ok();
-    if fidelity.is_none() {
+        *fidelity = None;
+    } else if let Ok(read) = text.parse() {
+        *fidelity = Some(read);
+    } else {
         let values = "\"auto\", \"exact\", \"high\", \"low\" or a whole number from 0 to 255";
         faults.push(out_of_range(entry, values, &example));
     }
-    fidelity.map(Some)
 }
 
 fn out_of_range(entry: &Entry<'_, '_>, wanted: &str, example: &str) -> Fault {
