@@ -2,7 +2,8 @@
 //!
 //! [`FirstPerson`] shows what a camera sees, [`Minimap`] shows the map from above. Both are plain
 //! ratatui widgets that fill whatever area they are given and know nothing of keys or escape
-//! sequences:
+//! sequences. [`HeldKeys`] tells which keys are held, of whatever type, and [`wanted`] what that means for a
+//! [`Game`](crate::game::Game).
 //!
 //! ```
 //! use cellcaster::tui::{FirstPerson, Minimap, View};
@@ -33,11 +34,11 @@ mod canvas;
 mod first_person;
 mod glyphs;
 mod half_blocks;
-#[cfg(feature = "terminal")]
 mod held;
 mod minimap;
 mod ramp;
 mod space_view;
+mod wanted;
 
 #[cfg(feature = "terminal")]
 pub use app::{Levels, Recording, Replay, Settings, play};
@@ -46,5 +47,7 @@ pub use bindings::Bindings;
 pub use canvas::Canvas;
 pub use first_person::{FirstPerson, View};
 pub use glyphs::{CellAspect, GlyphMode};
+pub use held::{CHORD, HeldKeys, Hold, LINGER, Press};
 pub use minimap::Minimap;
 pub use space_view::{SpaceMemory, SpaceView};
+pub use wanted::{tap_steps, wanted};

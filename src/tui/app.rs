@@ -4,6 +4,7 @@
 //! it off screen. [`play`] is the loop around it that has both.
 
 mod clock;
+mod controls;
 mod keys;
 mod levels;
 mod panels;
@@ -23,19 +24,20 @@ pub use replay::Replay;
 pub use run::play;
 
 use super::bindings::Bindings;
-use super::held::HeldKeys;
 use super::{Canvas, CellAspect, GlyphMode, Minimap, View};
 use crate::cast::Method;
-use crate::game::{Intents, STEP};
+use crate::game::STEP;
 use crate::palette::ColorDepth;
 use crate::render::Filter;
 use crate::terminal::Fidelity;
 use crate::world::FieldOfView;
 use clock::Clock;
+use controls::Controls;
+use keys::Pending;
 use played::{Eye, Memory, Played};
 use recording::ScriptRecorder;
 use stats::Stats;
-use status::{Gait, StatusLine};
+use status::StatusLine;
 
 /// How the game is shown and steered.
 #[derive(Clone, Debug, Default)]
@@ -68,6 +70,8 @@ enum Screen {
     Playing,
     Paused,
     Help,
+    /// Whether to leave is asked.
+    Leaving,
     LevelDone,
     End,
 }
@@ -98,10 +102,13 @@ struct App {
     depth: ColorDepth,
     cell_aspect: CellAspect,
     field_of_view: FieldOfView,
-    held: HeldKeys,
-    gait: Gait,
-    /// What counts for the next step even if its key is up again by then.
-    pressed: Intents,
+    controls: Controls,
+    /// Where the player goes on who does not want to leave.
+    returns_to: Screen,
+    /// The time, as it was last told, and since when the screen is shown.
+    now: Duration,
+    shown_since: Duration,
+    pending: Option<Pending>,
     shows_minimap: bool,
     has_left: bool,
     clock: Clock,
@@ -134,9 +141,11 @@ impl App {
             },
             shows_stats: settings.shows_stats,
             settings,
-            held: HeldKeys::default(),
-            gait: Gait::default(),
-            pressed: Intents::new(),
+            controls: Controls::default(),
+            returns_to: Screen::Playing,
+            now: Duration::ZERO,
+            shown_since: Duration::ZERO,
+            pending: None,
             shows_minimap: true,
             has_left: false,
             clock: Clock::default(),
@@ -150,26 +159,38 @@ impl App {
 
     /// Lets the game go on until `now`.
     fn advance(&mut self, now: Duration) {
-        self.held.expire(now);
-        let steps = self.clock.steps_until(now);
-        if self.screen != Screen::Playing {
-            return;
+        self.now = now;
+        let mut step = self.clock.step_after(0);
+        let mut steps = self.clock.steps_until(now);
+        let mut moves = 0;
+        while steps > 0 && moves < Clock::MOST_STEPS && self.screen == Screen::Playing {
+            let passed = self.pass(step, steps, &mut moves);
+            step = clock::after(step, passed);
+            steps -= passed;
         }
+        self.controls.advance(now, self.stance());
+        self.settle(now);
+    }
+
+    /// Lets one step pass that ends at `now`, or some of up to `most` in which nothing happens; how many.
+    fn pass(&mut self, now: Duration, most: u64, moves: &mut u64) -> u64 {
+        let stance = self.stance();
+        self.controls.advance(now, stance);
         let intents = self.intents();
-        let quiet = self.game.quiet_steps(intents).min(steps);
-        self.game.wait(quiet);
-        let mut moving = 0;
-        while moving < (steps - quiet).min(Clock::MOST_STEPS) && !self.game.is_finished() {
+        let quiet = self.game.quiet_steps(intents);
+        let steps = self.controls.steady_steps(now, stance, most).min(quiet.max(1));
+        if quiet > 0 {
+            self.game.wait(steps);
+        } else {
             self.game.step(intents);
-            moving += 1;
+            *moves += 1;
         }
-        self.record(intents, quiet + moving);
-        if steps > 0 {
-            self.pressed = Intents::new();
-        }
+        self.controls.held.step();
+        self.record(intents, steps);
         if self.game.is_finished() {
             self.show(Screen::LevelDone);
         }
+        steps
     }
 
     /// What of the game a picture would show now.
@@ -202,7 +223,10 @@ impl App {
     /// When the game will change by itself; `None` for never.
     fn next_change(&self) -> Option<Duration> {
         if self.screen != Screen::Playing {
-            return None;
+            return self.pending.map(|pending| pending.until);
+        }
+        if self.controls.held.has_taps() {
+            return Some(self.clock.step_after(0));
         }
         let quiet = Some(self.game.quiet_steps(self.intents())).filter(|&quiet| quiet < u64::MAX);
         let before_animation = self.steps_to_animation().map(|steps| steps.saturating_sub(1));
@@ -212,6 +236,8 @@ impl App {
 
     fn show(&mut self, screen: Screen) {
         self.screen = screen;
+        self.shown_since = self.now;
+        self.pending = None;
         self.shown = None;
     }
 
@@ -219,7 +245,7 @@ impl App {
         let Some(level) = self.later_levels.next() else { return self.show(Screen::End) };
         self.earlier += self.game.elapsed();
         self.game = level;
-        self.held.clear();
+        self.release_keys();
         self.show(Screen::Playing);
     }
 
@@ -233,7 +259,7 @@ impl App {
     /// The program was stopped, and goes on: the time in between does not count.
     fn resumed(&mut self, now: Duration) {
         self.clock.skip_to(now);
-        self.held.clear();
+        self.release_keys();
         self.shown = None;
     }
 
@@ -245,13 +271,14 @@ impl App {
         let [picture, status] = panels::picture_and_status(area);
         self.draw_picture(canvas, picture);
         let stats = self.stats.as_ref().filter(|_| self.shows_stats);
-        self.status.update(&self.game, self.gait, stats, &self.settings.bindings);
+        self.status.update(&self.game, self.controls.gait, stats, &self.settings.bindings);
         canvas.draw_widget(&self.status, status);
         let seconds = self.game.elapsed();
         match self.screen {
             Screen::Playing => {}
             Screen::Paused => panels::paused(canvas, picture, &self.settings.bindings),
             Screen::Help => panels::help(canvas, picture, &self.settings.bindings),
+            Screen::Leaving => panels::leaving(canvas, picture, &self.settings.bindings),
             Screen::LevelDone => panels::level_done(canvas, picture, self.game.title(), seconds),
             Screen::End => panels::end(canvas, picture, self.earlier + seconds),
         }

@@ -1,7 +1,7 @@
 //! Which key does what: presets, and a file to change them.
 //!
 //! ```toml
-//! preset = "azerty"            # or "qwerty"
+//! preset = "azerty"            # or "qwerty", or "hjkl"
 //!
 //! [keys]                       # the keys of an action, in place of the preset's
 //! forward = ["z", "up"]
@@ -28,6 +28,8 @@ pub(crate) enum Action {
     ToggleRun,
     /// Ducking until it is pressed again.
     ToggleDuck,
+    /// Walking on until it, or a key to walk, is pressed.
+    ToggleWalkOn,
     /// Showing or hiding the minimap.
     ToggleMinimap,
     /// Showing or hiding the keys.
@@ -46,13 +48,17 @@ pub(crate) enum Action {
 
 impl Action {
     /// Every action: its name in a file, what it does in a word or two, and itself.
-    pub(crate) const ALL: [(&'static str, &'static str, Self); 22] = [
+    pub(crate) const ALL: [(&'static str, &'static str, Self); 26] = [
         ("forward", "walk", Self::Want(Intent::Forward)),
         ("back", "walk back", Self::Want(Intent::Back)),
         ("strafe-left", "strafe left", Self::Want(Intent::StrafeLeft)),
         ("strafe-right", "strafe right", Self::Want(Intent::StrafeRight)),
         ("turn-left", "turn left", Self::Want(Intent::TurnLeft)),
         ("turn-right", "turn right", Self::Want(Intent::TurnRight)),
+        ("fine-left", "turn left by 5°", Self::Want(Intent::FineLeft)),
+        ("fine-right", "turn right by 5°", Self::Want(Intent::FineRight)),
+        ("about-face", "turn around", Self::Want(Intent::AboutFace)),
+        ("walk-on", "walk on by itself", Self::ToggleWalkOn),
         ("run", "run while held", Self::Want(Intent::Run)),
         ("open", "open a door", Self::Want(Intent::Open)),
         ("jump", "jump, or open", Self::Want(Intent::Jump)),
@@ -98,35 +104,66 @@ pub struct Bindings {
 impl Default for Bindings {
     /// For QWERTY keyboards.
     fn default() -> Self {
-        Self::with_letters(&Letters { forward: 'w', strafe_left: 'a', leave: 'q' })
+        Self::with_letters(&Letters {
+            forward: 'w',
+            back: 's',
+            strafe_left: 'a',
+            leave: 'q',
+            turns: None,
+        })
     }
 }
 
 /// The keys in which the presets differ.
 struct Letters {
     forward: char,
+    back: char,
     strafe_left: char,
     leave: char,
+    /// The keys beside the arrows that turn to the left and to the right.
+    turns: Option<[char; 2]>,
 }
 
-const PRESETS: [&str; 2] = ["qwerty", "azerty"];
+const PRESETS: [&str; 3] = ["qwerty", "azerty", "hjkl"];
 
 impl Bindings {
     /// For AZERTY keyboards: Z, Q, S and D lie where W, A, S and D do on others; A leaves.
     pub fn azerty() -> Self {
-        Self::with_letters(&Letters { forward: 'z', strafe_left: 'q', leave: 'a' })
+        Self::with_letters(&Letters {
+            forward: 'z',
+            back: 's',
+            strafe_left: 'q',
+            leave: 'a',
+            turns: None,
+        })
+    }
+
+    /// For hands that know vi: H and L turn, J and K walk, A and D strafe.
+    pub fn hjkl() -> Self {
+        Self::with_letters(&Letters {
+            forward: 'k',
+            back: 'j',
+            strafe_left: 'a',
+            leave: 'q',
+            turns: Some(['h', 'l']),
+        })
     }
 
     fn with_letters(letters: &Letters) -> Self {
-        let keys = vec![
+        let mut keys = vec![
             (Key::Char(letters.forward), Action::Want(Intent::Forward)),
             (Key::Up, Action::Want(Intent::Forward)),
-            (Key::Char('s'), Action::Want(Intent::Back)),
+            (Key::Char(letters.back), Action::Want(Intent::Back)),
             (Key::Down, Action::Want(Intent::Back)),
             (Key::Char(letters.strafe_left), Action::Want(Intent::StrafeLeft)),
             (Key::Char('d'), Action::Want(Intent::StrafeRight)),
             (Key::Left, Action::Want(Intent::TurnLeft)),
             (Key::Right, Action::Want(Intent::TurnRight)),
+            // These letters lie on the same keys of nearly all layouts.
+            (Key::Char('u'), Action::Want(Intent::FineLeft)),
+            (Key::Char('o'), Action::Want(Intent::FineRight)),
+            (Key::Char('b'), Action::Want(Intent::AboutFace)),
+            (Key::Char('g'), Action::ToggleWalkOn),
             (Key::Shift, Action::Want(Intent::Run)),
             (Key::Char(' '), Action::Want(Intent::Jump)),
             (Key::Char('e'), Action::Want(Intent::Open)),
@@ -148,6 +185,10 @@ impl Bindings {
             (Key::Char(letters.leave), Action::Leave),
             (Key::Escape, Action::Leave),
         ];
+        if let Some([left, right]) = letters.turns {
+            keys.push((Key::Char(left), Action::Want(Intent::TurnLeft)));
+            keys.push((Key::Char(right), Action::Want(Intent::TurnRight)));
+        }
         Self { keys }
     }
 
@@ -181,6 +222,7 @@ fn read(document: &DeTable, faults: &mut Vec<Fault>) -> Bindings {
         match entry.key {
             "preset" => match entry.string("preset = \"azerty\"", faults) {
                 Some("azerty") => bindings = Bindings::azerty(),
+                Some("hjkl") => bindings = Bindings::hjkl(),
                 Some("qwerty") | None => {}
                 Some(other) => faults.push(unknown_preset(other, entry.value_place)),
             },
@@ -237,7 +279,7 @@ fn read_keys(table: &DeTable, faults: &mut Vec<Fault>) -> Vec<(Key, Action)> {
 fn unknown_preset(name: &str, place: Range<usize>) -> Fault {
     let help = match nearest(name, &PRESETS) {
         Some(meant) => format!("the nearest preset is {}", quoted(meant)),
-        None => format!("the presets are {}", PRESETS.join(" and ")),
+        None => format!("the presets are {}", PRESETS.join(", ")),
     };
     Fault::new(place, format!("there is no preset {}", quoted(name))).help(help)
 }
@@ -263,7 +305,7 @@ mod tests {
 
     #[test]
     fn every_action_has_a_key_in_every_preset() {
-        for bindings in [Bindings::default(), Bindings::azerty()] {
+        for bindings in [Bindings::default(), Bindings::azerty(), Bindings::hjkl()] {
             for (name, _, action) in Action::ALL {
                 assert!(bindings.keys(action).next().is_some(), "{name}");
             }

@@ -5,6 +5,7 @@ use ratatui::layout::{Constraint, Flex, Layout, Margin, Rect, Size};
 use ratatui::text::{Line, Span, Text};
 use ratatui::widgets::{Block, Borders, Padding, Paragraph, Widget, Wrap};
 
+use crate::terminal::Key;
 use crate::tui::bindings::{Action, Bindings};
 use crate::tui::{Canvas, Minimap};
 
@@ -113,6 +114,14 @@ pub(super) fn help(canvas: &mut impl Canvas, picture: Rect, bindings: &Bindings)
     message(canvas, picture, "keys", rows.into_iter().map(Line::from).collect());
 }
 
+/// Whether the player wants to leave.
+pub(super) fn leaving(canvas: &mut impl Canvas, picture: Rect, bindings: &Bindings) {
+    let leave = bindings.keys(Action::Leave).find(|&key| key != Key::Escape);
+    let keys = leave.map_or_else(String::new, |key| format!("{key} or "));
+    let text = format!("{keys}Enter leaves\nany other key goes on");
+    message(canvas, picture, "leave?", Text::from(text).centered());
+}
+
 /// That the exit was reached, and how soon.
 pub(super) fn level_done(canvas: &mut impl Canvas, picture: Rect, title: &str, seconds: f64) {
     let text = format!("{title}\nin {}\nEnter goes on", time(seconds));
@@ -165,7 +174,7 @@ mod tests {
     fn help_is_whole_or_says_that_there_is_more() {
         let bindings = Bindings::default();
         for (columns, rows, is_whole) in
-            [(32, 24, true), (64, 13, true), (200, 60, true), (60, 9, false), (20, 5, false)]
+            [(32, 30, true), (70, 16, true), (200, 60, true), (60, 9, false), (20, 5, false)]
         {
             let text = shown(columns, rows, |canvas| help(canvas, canvas.bounds(), &bindings));
             let is_so = Action::ALL.iter().all(|(_, does, _)| text.contains(does));

@@ -43,7 +43,9 @@ pub fn play(levels: Levels, settings: Settings, recording: Recording) -> Result<
                 app.key(event, start.elapsed());
             }
             Some(Event::Resized | Event::ColorDepth(_)) => tell_terminal(&mut app, &session),
-            Some(Event::KeyReleases(reported)) => app.held.set_reports_releases(reported),
+            Some(Event::KeyReleases(reported)) => {
+                app.controls.held.set_reports_releases(reported);
+            }
             Some(Event::Suspend) => {
                 session.suspend()?;
                 app.resumed(start.elapsed());
@@ -106,7 +108,7 @@ impl Presenter {
             (is_unfinished(app, session).then_some(self.next_frame), self.next_frame)
         };
         let change = app.next_change().map(|change| change.max(soonest));
-        frame.into_iter().chain(change).chain(app.held.next_expiry()).min()
+        frame.into_iter().chain(change).chain(app.controls.held.next_expiry()).min()
     }
 }
 

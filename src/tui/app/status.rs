@@ -20,6 +20,7 @@ use crate::tui::bindings::{Action, Bindings};
 pub(super) struct Gait {
     pub(super) runs: bool,
     pub(super) ducks: bool,
+    pub(super) walks_on: bool,
 }
 
 /// What the line says: where and how the player is to the left, and how to get help to the right.
@@ -69,6 +70,9 @@ fn write_left(text: &mut String, game: &Played, gait: Gait) -> fmt::Result {
     }
     if gait.ducks {
         text.push_str("  ducking");
+    }
+    if gait.walks_on {
+        text.push_str("  walking on");
     }
     game.keys().try_for_each(|key| write!(text, "  {key} key"))?;
     game.message().map_or(Ok(()), |message| write!(text, "  {message}"))
