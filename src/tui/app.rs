@@ -14,6 +14,8 @@ mod replay;
 mod run;
 mod stats;
 mod status;
+#[cfg(test)]
+mod tests;
 
 use std::time::Duration;
 

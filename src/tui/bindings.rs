@@ -58,7 +58,7 @@ impl Action {
         ("fine-left", "turn left by 5°", Self::Want(Intent::FineLeft)),
         ("fine-right", "turn right by 5°", Self::Want(Intent::FineRight)),
         ("about-face", "turn around", Self::Want(Intent::AboutFace)),
-        ("walk-on", "walk on by itself", Self::ToggleWalkOn),
+        ("walk-on", "keep walking", Self::ToggleWalkOn),
         ("run", "run while held", Self::Want(Intent::Run)),
         ("open", "open a door", Self::Want(Intent::Open)),
         ("jump", "jump, or open", Self::Want(Intent::Jump)),

@@ -76,7 +76,7 @@ impl Played {
         self.grid()?.message()
     }
 
-    fn grid(&self) -> Option<&Game> {
+    pub(super) fn grid(&self) -> Option<&Game> {
         match self {
             Self::Grid(game) => Some(game),
             Self::Space(_) => None,
