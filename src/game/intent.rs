@@ -64,6 +64,15 @@ impl Intent {
         Self::AboutFace,
     ];
 
+    /// Whether nobody wants both at once.
+    pub fn opposes(self, other: Self) -> bool {
+        use Intent::{Back, Forward, LookDown, LookUp, StrafeLeft, StrafeRight};
+        use Intent::{TurnLeft, TurnRight};
+        let pairs =
+            [(Forward, Back), (StrafeLeft, StrafeRight), (TurnLeft, TurnRight), (LookUp, LookDown)];
+        pairs.contains(&(self, other)) || pairs.contains(&(other, self))
+    }
+
     /// What files call it.
     pub fn name(self) -> &'static str {
         match self {

@@ -83,14 +83,7 @@ impl Action {
 
     /// Whether nobody wants both at once.
     pub(super) fn opposes(self, other: Self) -> bool {
-        use Intent::{Back, Forward, LookDown, LookUp, StrafeLeft, StrafeRight};
-        use Intent::{TurnLeft, TurnRight};
-        let pairs =
-            [(Forward, Back), (StrafeLeft, StrafeRight), (TurnLeft, TurnRight), (LookUp, LookDown)];
-        pairs.into_iter().any(|(one, another)| {
-            (self, other) == (Self::Want(one), Self::Want(another))
-                || (other, self) == (Self::Want(one), Self::Want(another))
-        })
+        matches!((self, other), (Self::Want(one), Self::Want(other)) if one.opposes(other))
     }
 }
 

@@ -174,6 +174,10 @@ fn who_loses_the_focus_lets_go_of_all_keys() {
         rig.press(Key::Right);
         rig.wait(100);
         rig.app.release_keys();
+        // Another window gets what comes of them from now on.
+        if let Some(keyboard) = &mut rig.keyboard {
+            keyboard.release(Key::Right);
+        }
         rig.wait(1200);
         let (position, degrees) = (rig.position(), rig.degrees());
         rig.wait(1000);

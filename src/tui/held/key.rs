@@ -107,12 +107,10 @@ impl<K: Copy + Eq> HeldKey<K> {
 
     /// It was pressed, or still is, where releases are reported.
     pub(super) fn press_until_release(&mut self, steps: u32) -> Press {
-        let press = if self.state == State::Down { Press::Repeat } else { Press::Fresh };
-        if press == Press::Fresh {
-            self.tap.add(steps, false);
-        }
+        let was_held = self.hold() == Hold::Held;
+        self.tap.add(steps, was_held);
         self.state = State::Down;
-        press
+        Press::Fresh
     }
 
     /// A byte of it came, where releases are not reported; `is_newest` if it did last time, too.
@@ -212,7 +210,7 @@ impl<K: Copy + Eq> HeldKey<K> {
 
     /// It is up, whatever the keyboard says.
     pub(super) fn drop(&mut self) {
-        let may_repeat = matches!(self.state, State::Repeats | State::Dropped);
+        let may_repeat = matches!(self.state, State::Down | State::Repeats | State::Dropped);
         self.state = if may_repeat { State::Dropped } else { State::Up };
         self.heard = self.heard.filter(|_| may_repeat);
         self.tap = Tap::default();

@@ -19,6 +19,8 @@ const AIMED: f64 = PI / 72.0;
 const FAR: f64 = 3.0;
 /// What is less far is walked by taps, in cells.
 const BY_TAPS: f64 = 1.2;
+/// What is further is jumped running, in cells.
+const FAR_JUMP: f64 = 2.4;
 
 /// A straight part of the way, from rest to rest.
 #[derive(Clone, Copy, Debug)]
@@ -144,22 +146,45 @@ impl Rig {
         self.shuffle(place);
     }
 
+    /// Taps quickly until `place` is reached: that is as fast as walking.
+    fn run_up(&mut self, place: DVec2) {
+        for millisecond in 0..1500 {
+            if self.way_to(place).x <= 0.0 {
+                break;
+            }
+            match millisecond % 85 {
+                0 => self.press(W),
+                45 => self.release(W),
+                _ => {}
+            }
+            self.wait(1);
+        }
+    }
+
     /// Jumps to `place`, `after` so many cells.
     fn jump(&mut self, after: f64, place: DVec2) {
         // The script jumps at the very edge; a key takes until the next step.
-        let takes_off = self.position() + self.direction() * (after - 0.12);
-        if after > 0.6 {
+        let takes_off = self.position() + self.direction() * (after - 0.06);
+        let runs = takes_off.distance(place) > FAR_JUMP;
+        if runs {
+            self.tap(Key::Char('r'), 60);
+        }
+        if after > BY_TAPS {
             self.press(W);
             self.wait_until_near(takes_off, 0.0);
         } else {
-            self.taps(W, (after / 0.25).round() as usize);
-            self.rest();
-            self.press(W);
-            self.wait(30);
+            self.run_up(takes_off);
+            if after < NEAR {
+                self.press(W);
+                self.wait(30);
+            }
         }
         self.tap(SPACE, 60);
         self.wait_until_near(place, 0.0);
         self.brake();
+        if runs {
+            self.tap(Key::Char('r'), 60);
+        }
         self.shuffle(place);
     }
 
