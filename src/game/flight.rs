@@ -111,7 +111,8 @@ impl Player {
         }
         let speed = if intents.contains(Intent::Aim) { AIM_UPWARDS } else { RAISE };
         let target = speed * intents.balance(Intent::LookUp, Intent::LookDown);
-        let Glide { velocity, displacement } = approach(self.raising, target, turning::FRICTION, STEP);
+        let Glide { velocity, displacement } =
+            approach(self.raising, target, turning::FRICTION, STEP);
         let elevation = self.elevation.raised(displacement);
         let has_stopped = velocity.abs() < STILL || elevation == self.elevation;
         Self { elevation, raising: if has_stopped { 0.0 } else { velocity }, ..self }

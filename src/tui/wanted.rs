@@ -7,10 +7,8 @@ use super::held::Hold;
 use crate::game::{Intent, Intents};
 
 /// Which intents turn the player, or how they look up and down.
-const TURNS: [Intent; 4] =
-    [Intent::TurnLeft, Intent::TurnRight, Intent::LookUp, Intent::LookDown];
-const WALKS: [Intent; 4] =
-    [Intent::Forward, Intent::Back, Intent::StrafeLeft, Intent::StrafeRight];
+const TURNS: [Intent; 4] = [Intent::TurnLeft, Intent::TurnRight, Intent::LookUp, Intent::LookDown];
+const WALKS: [Intent; 4] = [Intent::Forward, Intent::Back, Intent::StrafeLeft, Intent::StrafeRight];
 
 /// For how many steps a tap of a key wants `intent`: what [`HeldKeys::press`](super::HeldKeys::press) is
 /// told.

@@ -118,7 +118,8 @@ fn wanted(name: &str, map: &str, plays: impl Fn(&Game)) -> Vec<Intents> {
 /// Five steps of walking are a quarter of a cell, ten of aiming are 5 degrees.
 #[test]
 fn two_taps_are_twice_one_tap() {
-    let names = |steps: &[Intents], intent| steps.iter().filter(|step| step.contains(intent)).count();
+    let names =
+        |steps: &[Intents], intent| steps.iter().filter(|step| step.contains(intent)).count();
     for taps in 1..=3 {
         let steps = wanted(&format!("taps_{taps}.script"), "floor", |game| {
             game.send("w".repeat(taps));

@@ -34,8 +34,7 @@ impl Rig {
         let levels = Levels::new(Level::Grid(Box::new(world)), iter::empty());
         let mut app = App::new(levels, Settings::default());
         app.controls.held.set_reports_releases(rate.is_none());
-        let keyboard =
-            rate.map(|(delay, rate)| Keyboard::new(Duration::from_millis(delay), rate));
+        let keyboard = rate.map(|(delay, rate)| Keyboard::new(Duration::from_millis(delay), rate));
         let mut rig = Self { app, keyboard, now: Duration::ZERO };
         rig.wait(20);
         rig

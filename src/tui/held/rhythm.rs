@@ -32,10 +32,7 @@ pub(super) struct Rhythm {
 impl Rhythm {
     /// This, and what `prior` knows where it knows nothing.
     pub(super) fn or(self, prior: Self) -> Self {
-        Self {
-            delay: self.delay.or(prior.delay),
-            interval: self.interval.or(prior.interval),
-        }
+        Self { delay: self.delay.or(prior.delay), interval: self.interval.or(prior.interval) }
     }
 
     /// Whether a key that repeats for the first time may do so after `gap`.

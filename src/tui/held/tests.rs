@@ -4,10 +4,22 @@ use super::keyboard::Keyboard;
 use super::*;
 
 const KEYBOARDS: [(u64, u32); 16] = [
-    (250, 15), (250, 25), (250, 30), (250, 40),
-    (400, 15), (400, 25), (400, 30), (400, 40),
-    (500, 15), (500, 25), (500, 30), (500, 40),
-    (660, 15), (660, 25), (660, 30), (660, 40),
+    (250, 15),
+    (250, 25),
+    (250, 30),
+    (250, 40),
+    (400, 15),
+    (400, 25),
+    (400, 30),
+    (400, 40),
+    (500, 15),
+    (500, 25),
+    (500, 30),
+    (500, 40),
+    (660, 15),
+    (660, 25),
+    (660, 30),
+    (660, 40),
 ];
 const STEPS: u32 = 5;
 
@@ -63,7 +75,8 @@ impl Typist {
                 *count += u64::from(self.held.hold(key) == Hold::Held);
             }
             if self.now.is_multiple_of(16) {
-                self.tapped += self.held.iter().filter(|&(_, hold)| hold == Hold::Tap).count() as u32;
+                self.tapped +=
+                    self.held.iter().filter(|&(_, hold)| hold == Hold::Tap).count() as u32;
                 self.held.step();
             }
         }
@@ -298,8 +311,13 @@ fn what_is_let_go_of_stays_so_until_it_is_pressed_anew() {
 fn a_byte_says_whether_it_may_be_a_repetition() {
     let mut held = HeldKeys::default();
     let bytes = [
-        (0, Press::Fresh), (150, Press::Fresh), (600, Press::Unclear), (1000, Press::Unclear),
-        (1030, Press::Repeat), (1060, Press::Repeat), (4000, Press::Fresh),
+        (0, Press::Fresh),
+        (150, Press::Fresh),
+        (600, Press::Unclear),
+        (1000, Press::Unclear),
+        (1030, Press::Repeat),
+        (1060, Press::Repeat),
+        (4000, Press::Fresh),
     ];
     for (milliseconds, press_is) in bytes {
         assert_eq!(press(&mut held, ' ', milliseconds), press_is, "at {milliseconds} ms");
