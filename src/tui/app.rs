@@ -14,6 +14,7 @@ mod replay;
 mod run;
 mod stats;
 mod status;
+mod steps;
 #[cfg(test)]
 mod tests;
 
@@ -157,42 +158,6 @@ impl App {
             status: StatusLine::default(),
             script: None,
         }
-    }
-
-    /// Lets the game go on until `now`.
-    fn advance(&mut self, now: Duration) {
-        self.now = now;
-        let mut step = self.clock.step_after(0);
-        let mut steps = self.clock.steps_until(now);
-        let mut moves = 0;
-        while steps > 0 && moves < Clock::MOST_STEPS && self.screen == Screen::Playing {
-            let passed = self.pass(step, steps, &mut moves);
-            step = clock::after(step, passed);
-            steps -= passed;
-        }
-        self.controls.advance(now, self.stance());
-        self.settle(now);
-    }
-
-    /// Lets one step pass that ends at `now`, or some of up to `most` in which nothing happens; how many.
-    fn pass(&mut self, now: Duration, most: u64, moves: &mut u64) -> u64 {
-        let stance = self.stance();
-        self.controls.advance(now, stance);
-        let intents = self.intents();
-        let quiet = self.game.quiet_steps(intents);
-        let steps = self.controls.steady_steps(now, stance, most).min(quiet.max(1));
-        if quiet > 0 {
-            self.game.wait(steps);
-        } else {
-            self.game.step(intents);
-            *moves += 1;
-        }
-        self.controls.held.step();
-        self.record(intents, steps);
-        if self.game.is_finished() {
-            self.show(Screen::LevelDone);
-        }
-        steps
     }
 
     /// What of the game a picture would show now.

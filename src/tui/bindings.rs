@@ -11,6 +11,8 @@
 //! A key that the file gives to an action is taken from the one that the preset gave it to; one that
 //! it gives to two actions is a fault.
 
+mod presets;
+
 use std::ops::Range;
 
 use toml::de::{DeTable, DeValue};
@@ -18,6 +20,7 @@ use toml::de::{DeTable, DeValue};
 use crate::fault::{Fault, Faults, document, nearest, quoted};
 use crate::game::Intent;
 use crate::terminal::Key;
+use presets::PRESETS;
 
 /// What a key can do.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
@@ -94,97 +97,7 @@ pub struct Bindings {
     keys: Vec<(Key, Action)>,
 }
 
-impl Default for Bindings {
-    /// For QWERTY keyboards.
-    fn default() -> Self {
-        Self::with_letters(&Letters {
-            forward: 'w',
-            back: 's',
-            strafe_left: 'a',
-            leave: 'q',
-            turns: None,
-        })
-    }
-}
-
-/// The keys in which the presets differ.
-struct Letters {
-    forward: char,
-    back: char,
-    strafe_left: char,
-    leave: char,
-    /// The keys beside the arrows that turn to the left and to the right.
-    turns: Option<[char; 2]>,
-}
-
-const PRESETS: [&str; 3] = ["qwerty", "azerty", "hjkl"];
-
 impl Bindings {
-    /// For AZERTY keyboards: Z, Q, S and D lie where W, A, S and D do on others; A leaves.
-    pub fn azerty() -> Self {
-        Self::with_letters(&Letters {
-            forward: 'z',
-            back: 's',
-            strafe_left: 'q',
-            leave: 'a',
-            turns: None,
-        })
-    }
-
-    /// For hands that know vi: H and L turn, J and K walk, A and D strafe.
-    pub fn hjkl() -> Self {
-        Self::with_letters(&Letters {
-            forward: 'k',
-            back: 'j',
-            strafe_left: 'a',
-            leave: 'q',
-            turns: Some(['h', 'l']),
-        })
-    }
-
-    fn with_letters(letters: &Letters) -> Self {
-        let mut keys = vec![
-            (Key::Char(letters.forward), Action::Want(Intent::Forward)),
-            (Key::Up, Action::Want(Intent::Forward)),
-            (Key::Char(letters.back), Action::Want(Intent::Back)),
-            (Key::Down, Action::Want(Intent::Back)),
-            (Key::Char(letters.strafe_left), Action::Want(Intent::StrafeLeft)),
-            (Key::Char('d'), Action::Want(Intent::StrafeRight)),
-            (Key::Left, Action::Want(Intent::TurnLeft)),
-            (Key::Right, Action::Want(Intent::TurnRight)),
-            // These letters lie on the same keys of nearly all layouts.
-            (Key::Char('u'), Action::Want(Intent::FineLeft)),
-            (Key::Char('o'), Action::Want(Intent::FineRight)),
-            (Key::Char('b'), Action::Want(Intent::AboutFace)),
-            (Key::Char('g'), Action::ToggleWalkOn),
-            (Key::Shift, Action::Want(Intent::Run)),
-            (Key::Char(' '), Action::Want(Intent::Jump)),
-            (Key::Char('e'), Action::Want(Intent::Open)),
-            // Not Control: with another key held, it is a command to the terminal.
-            (Key::Char('c'), Action::Want(Intent::Duck)),
-            (Key::PageUp, Action::Want(Intent::LookUp)),
-            (Key::PageDown, Action::Want(Intent::LookDown)),
-            (Key::Home, Action::Want(Intent::LookAhead)),
-            (Key::Char('r'), Action::ToggleRun),
-            (Key::Char('x'), Action::ToggleDuck),
-            (Key::Char('m'), Action::ToggleMinimap),
-            (Key::Tab, Action::ToggleMinimap),
-            (Key::Char('?'), Action::ToggleHelp),
-            (Key::Char('p'), Action::TogglePause),
-            (Key::Char('+'), Action::WidenView),
-            (Key::Char('='), Action::WidenView),
-            (Key::Char('-'), Action::NarrowView),
-            (Key::Char('i'), Action::ToggleStats),
-            (Key::Char(letters.leave), Action::Leave),
-            (Key::Escape, Action::Leave),
-        ];
-        if let Some([left, right]) = letters.turns {
-            keys.push((Key::Char(left), Action::Want(Intent::TurnLeft)));
-            keys.push((Key::Char(right), Action::Want(Intent::TurnRight)));
-        }
-        Self { keys }
-    }
-
     /// Reads a file of bindings, which faults call `name`.
     ///
     /// # Errors

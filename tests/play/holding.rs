@@ -177,11 +177,11 @@ fn without_releases_six_of_six_running_jumps_succeed() {
         thread::spawn(move || {
             let game = Game::with(Speaks::Plain, LARGE, Some("pit"), &[], &[]);
             let start = game.arrow();
-            // The pit is five cells from the start.
-            hold(&game, "w", || game.arrow().column >= start.column + 4);
+            // A cell is three columns of the map. The pit begins at 6, and ends at 7.
+            hold(&game, "w", || game.arrow().column >= start.column + 11);
             thread::sleep(Duration::from_millis(milliseconds));
             game.send(" ");
-            game.wait_for_arrow("landed", |arrow| arrow.column >= start.column + 6);
+            game.wait_for_arrow("landed", |arrow| arrow.column >= start.column + 17);
         })
     });
     for jump in tries {

@@ -9,6 +9,7 @@ use std::f64::consts::PI;
 use super::*;
 use crate::game::{Intent, Script};
 use crate::map::builtin;
+use crate::world::Cell;
 
 /// As most systems have it.
 const RATE: Rate = (500, 30);
@@ -146,6 +147,17 @@ impl Rig {
         self.shuffle(place);
     }
 
+    /// How far ahead, at most `most` cells, the floor falls away.
+    fn edge(&self, most: f64) -> Option<f64> {
+        let (world, feet) = (self.game().world(), self.game().feet());
+        let places = (0..).map(|index| f64::from(index) * 0.01).take_while(|&ahead| ahead < most);
+        let falls_away = |ahead: &f64| {
+            let DVec2 { x, y } = self.position() + self.direction() * *ahead;
+            world.floor_at(Cell { column: x as u32, row: y as u32 }) < feet - 0.35
+        };
+        places.into_iter().find(falls_away)
+    }
+
     /// Taps quickly until `place` is reached: that is as fast as walking.
     fn run_up(&mut self, place: DVec2) {
         for millisecond in 0..1500 {
@@ -163,7 +175,8 @@ impl Rig {
 
     /// Jumps to `place`, `after` so many cells.
     fn jump(&mut self, after: f64, place: DVec2) {
-        // The script jumps at the very edge; a key takes until the next step.
+        let after = self.edge(after + 1.0).map_or(after, |edge| edge + 0.16);
+        // A key takes until the next step.
         let takes_off = self.position() + self.direction() * (after - 0.06);
         let runs = takes_off.distance(place) > FAR_JUMP;
         if runs {
