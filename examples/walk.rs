@@ -1,4 +1,4 @@
-//! A ratatui program in which one walks: W, A, S, D and the arrow keys, in any terminal. Any other key leaves.
+//! A ratatui program in which one walks: W and S walk, the arrow keys turn, in any terminal. Any other key leaves.
 
 use std::time::{Duration, Instant};
 
@@ -8,11 +8,9 @@ use cellcaster::tui::{FirstPerson, HeldKeys, View, tap_steps, wanted};
 use cellcaster::world::FieldOfView;
 use ratatui::crossterm::event::{self, Event, KeyCode};
 
-const KEYS: [(KeyCode, Intent); 6] = [
+const KEYS: [(KeyCode, Intent); 4] = [
     (KeyCode::Char('w'), Intent::Forward),
     (KeyCode::Char('s'), Intent::Back),
-    (KeyCode::Char('a'), Intent::StrafeLeft),
-    (KeyCode::Char('d'), Intent::StrafeRight),
     (KeyCode::Left, Intent::TurnLeft),
     (KeyCode::Right, Intent::TurnRight),
 ];

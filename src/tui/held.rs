@@ -208,7 +208,9 @@ impl<K: Copy + Eq> HeldKeys<K> {
     /// yet: who jumps right after pressing a key wants to jump that way.
     pub fn join_newest(&mut self) {
         let Some((newest, others)) = self.keys.split_last_mut() else { return };
-        others.iter_mut().for_each(|other| other.join_before_repetition(newest, self.rhythm));
+        for other in others {
+            other.join_before_repetition(newest, self.rhythm);
+        }
     }
 
     /// When the next key will be let go of, if nothing is heard of it until then.

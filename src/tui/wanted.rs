@@ -13,13 +13,12 @@ const WALKS: [Intent; 4] = [Intent::Forward, Intent::Back, Intent::StrafeLeft, I
 /// For how many steps a tap of a key wants `intent`: what [`HeldKeys::press`](super::HeldKeys::press) is
 /// told.
 pub fn tap_steps(intent: Intent) -> u32 {
+    use Intent::{AboutFace, FineLeft, FineRight, LookAhead, Open};
     match intent {
-        Intent::Forward | Intent::Back | Intent::StrafeLeft | Intent::StrafeRight => 5,
-        Intent::Jump | Intent::Duck => 5,
         Intent::TurnLeft | Intent::TurnRight | Intent::LookUp | Intent::LookDown => 10,
-        Intent::Open | Intent::LookAhead => 1,
-        Intent::FineLeft | Intent::FineRight | Intent::AboutFace => 1,
+        Open | LookAhead | FineLeft | FineRight | AboutFace => 1,
         Intent::Run | Intent::Aim => 0,
+        _ => 5,
     }
 }
 

@@ -10,7 +10,7 @@ const MOST_WAITING: u32 = 4;
 /// How far bytes are apart, at most, that may be a repetition.
 const LONGEST_INTERVAL: Duration = Duration::from_millis(150);
 /// A repetition that was cut off by a slow link goes on after no more than this.
-const LONGEST_STALL: Duration = Duration::from_millis(1000);
+const LONGEST_STALL: Duration = Duration::from_secs(1);
 /// Nobody taps so many times in a row as fast as a keyboard repeats, for so long.
 const SURE_COUNT: u32 = 4;
 const SURE_SPAN: Duration = Duration::from_millis(200);
@@ -230,7 +230,7 @@ impl<K: Copy + Eq> HeldKey<K> {
 impl Run {
     /// A byte came `gap` after the last one: whether that makes a repetition of the run.
     fn goes_on(&mut self, now: Duration, gap: Option<Duration>, rhythm: Rhythm) -> bool {
-        if !gap.is_some_and(|gap| gap <= LONGEST_INTERVAL) {
+        if gap.is_none_or(|gap| gap > LONGEST_INTERVAL) {
             *self = Self { start: now, count: 0, after: gap, is_suspect: false };
             return false;
         }

@@ -4,7 +4,7 @@ use std::time::Duration;
 
 /// No keyboard begins to repeat sooner, nor later.
 const SHORTEST_DELAY: Duration = Duration::from_millis(200);
-const LONGEST_DELAY: Duration = Duration::from_millis(1000);
+const LONGEST_DELAY: Duration = Duration::from_secs(1);
 /// The longest delay that is a system's default, X11's 660 ms, and an interval more.
 const USUAL_DELAY: Duration = Duration::from_millis(750);
 /// Most systems' default.

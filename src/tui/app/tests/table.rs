@@ -81,8 +81,12 @@ fn table() -> String {
         let turns = [taps(rate, Key::Right, 1), taps(rate, Key::Right, 2), held(rate, Key::Right)];
         let walks = [taps(rate, W, 1), taps(rate, W, 2), held(rate, W)];
         write!(text, "| {name} |").unwrap();
-        turns.iter().for_each(|(degrees, _)| write!(text, " {degrees:.1}° |").unwrap());
-        walks.iter().for_each(|(_, cells)| write!(text, " {cells:.2} |").unwrap());
+        for (degrees, _) in turns {
+            write!(text, " {degrees:.1}° |").unwrap();
+        }
+        for (_, cells) in walks {
+            write!(text, " {cells:.2} |").unwrap();
+        }
         let (degrees, cells) = chord(rate);
         writeln!(text, " {cells:.1} and {degrees:.0}° | {} of 6 |", jumps(rate)).unwrap();
     }
