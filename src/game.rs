@@ -18,6 +18,7 @@ mod notice;
 mod player;
 mod posture;
 mod script;
+mod turning;
 
 use std::collections::BTreeSet;
 
@@ -25,7 +26,7 @@ use crate::generate::{self, Site, Window};
 use crate::world::{Camera, Cell, Door, FieldOfView, KeyId, Thing, ThingKind, World};
 use doors::{Doors, door_ahead};
 use notice::Notice;
-use player::{AIM, FRICTION, Player, RUN, STILL, TURN, TURN_FRICTION, WALK};
+use player::{FRICTION, Player, RUN, STILL, WALK};
 
 pub use flight::Flight;
 pub use intent::{Intent, Intents};
@@ -122,6 +123,11 @@ impl Game {
     /// How high the player's feet are, in cells above the map's own floor.
     pub fn feet(&self) -> f64 {
         self.player.feet()
+    }
+
+    /// Whether the player jumps or falls: nothing is under their feet.
+    pub fn is_airborne(&self) -> bool {
+        !self.player.stands(&self.world)
     }
 
     /// Seconds that have passed in the game, counted in steps.

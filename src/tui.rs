@@ -2,7 +2,8 @@
 //!
 //! [`FirstPerson`] shows what a camera sees, [`Minimap`] shows the map from above. Both are plain
 //! ratatui widgets that fill whatever area they are given and know nothing of keys or escape
-//! sequences:
+//! sequences. [`HeldKeys`] tells which keys are held, of whatever type, and [`wanted`] what that means for a
+//! [`Game`](crate::game::Game).
 //!
 //! ```
 //! use cellcaster::tui::{FirstPerson, Minimap, View};
@@ -33,13 +34,13 @@ mod canvas;
 mod first_person;
 mod glyphs;
 mod half_blocks;
-#[cfg(feature = "terminal")]
 mod held;
 mod minimap;
 mod ramp;
 #[cfg(feature = "terminal")]
 mod settings;
 mod space_view;
+mod wanted;
 
 #[cfg(feature = "terminal")]
 pub use app::{Levels, Recording, Replay, play};
@@ -48,7 +49,9 @@ pub use bindings::Bindings;
 pub use canvas::Canvas;
 pub use first_person::{FirstPerson, View};
 pub use glyphs::{CellAspect, GlyphMode};
+pub use held::{CHORD, HeldKeys, Hold, LINGER, Press};
 pub use minimap::{Explored, Minimap};
 #[cfg(feature = "terminal")]
 pub use settings::{Configuration, MapDisplay, Settings};
 pub use space_view::{SpaceMemory, SpaceView};
+pub use wanted::{tap_steps, wanted};

@@ -9,7 +9,8 @@ use glam::{DVec2, DVec3};
 
 use super::intent::{Intent, Intents};
 use super::motion::{Glide, approach};
-use super::{AIM, FRICTION, RUN, STEP, STILL, TURN, TURN_FRICTION, WALK};
+use super::turning::{self, Turning};
+use super::{FRICTION, RUN, STEP, STILL, WALK};
 use crate::space::{Camera, EYE_ROOM, Elevation, Scene};
 use crate::world::{FieldOfView, Heading};
 
@@ -34,8 +35,7 @@ struct Player {
     /// Cells per second.
     velocity: DVec3,
     heading: Heading,
-    /// Radians per second, clockwise.
-    turning: f64,
+    turning: Turning,
     elevation: Elevation,
     /// Radians per second, upwards.
     raising: f64,
@@ -49,7 +49,7 @@ impl Flight {
             position: start.position(),
             velocity: DVec3::ZERO,
             heading: start.heading,
-            turning: 0.0,
+            turning: Turning::default(),
             elevation: start.elevation,
             raising: 0.0,
         };
@@ -115,11 +115,8 @@ impl Player {
     }
 
     fn turned(self, intents: Intents) -> Self {
-        let speed = if intents.contains(Intent::Aim) { AIM } else { TURN };
-        let target = speed * intents.balance(Intent::TurnRight, Intent::TurnLeft);
-        let Glide { velocity, displacement } = approach(self.turning, target, TURN_FRICTION, STEP);
-        let turning = if velocity.abs() < STILL { 0.0 } else { velocity };
-        let angle = displacement + intents.look().turn_radians();
+        let (turning, turned) = self.turning.after_a_step(intents);
+        let angle = turned + intents.look().turn_radians();
         Self { heading: self.heading.turned(angle), turning, ..self }
     }
 
@@ -129,7 +126,8 @@ impl Player {
         }
         let speed = if intents.contains(Intent::Aim) { AIM_UPWARDS } else { RAISE };
         let target = speed * intents.balance(Intent::LookUp, Intent::LookDown);
-        let Glide { velocity, displacement } = approach(self.raising, target, TURN_FRICTION, STEP);
+        let Glide { velocity, displacement } =
+            approach(self.raising, target, turning::FRICTION, STEP);
         let elevation = self.elevation.raised(displacement + intents.look().tilt_radians());
         let has_stopped = velocity.abs() < STILL || elevation == self.elevation;
         Self { elevation, raising: if has_stopped { 0.0 } else { velocity }, ..self }

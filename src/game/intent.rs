@@ -36,11 +36,17 @@ pub enum Intent {
     Jump,
     /// Make oneself small for as long as this is wanted.
     Duck,
+    /// Turn anticlockwise by exactly 5 degrees, once.
+    FineLeft,
+    /// Turn clockwise by exactly 5 degrees, once.
+    FineRight,
+    /// Turn around, by exactly 180 degrees, once.
+    AboutFace,
 }
 
 impl Intent {
     /// All of them.
-    pub const ALL: [Self; 14] = [
+    pub const ALL: [Self; 17] = [
         Self::Forward,
         Self::Back,
         Self::StrafeLeft,
@@ -55,7 +61,19 @@ impl Intent {
         Self::LookAhead,
         Self::Jump,
         Self::Duck,
+        Self::FineLeft,
+        Self::FineRight,
+        Self::AboutFace,
     ];
+
+    /// Whether nobody wants both at once.
+    pub fn opposes(self, other: Self) -> bool {
+        use Intent::{Back, Forward, LookDown, LookUp, StrafeLeft, StrafeRight};
+        use Intent::{TurnLeft, TurnRight};
+        let pairs =
+            [(Forward, Back), (StrafeLeft, StrafeRight), (TurnLeft, TurnRight), (LookUp, LookDown)];
+        pairs.contains(&(self, other)) || pairs.contains(&(other, self))
+    }
 
     /// What files call it.
     pub fn name(self) -> &'static str {
@@ -74,6 +92,9 @@ impl Intent {
             Self::LookAhead => "look-ahead",
             Self::Jump => "jump",
             Self::Duck => "duck",
+            Self::FineLeft => "fine-left",
+            Self::FineRight => "fine-right",
+            Self::AboutFace => "about-face",
         }
     }
 
@@ -88,7 +109,7 @@ impl Intent {
 #[derive(Clone, Copy, PartialEq, Eq, Hash, Default)]
 pub struct Intents {
     /// One bit for each intent, by its place in the enum.
-    bits: u16,
+    bits: u32,
     look: Look,
 }
 
@@ -140,7 +161,7 @@ impl Intents {
     }
 }
 
-const fn bit(intent: Intent) -> u16 {
+const fn bit(intent: Intent) -> u32 {
     1 << intent as u8
 }
 

@@ -7,8 +7,9 @@ use super::collision::{Body, Place, Radius, Stature, overlaps, slide};
 use super::fall::{Flight, GRAVITY, Room};
 use super::gaze::Gaze;
 use super::intent::{Intent, Intents};
-use super::motion::{Glide, approach, approach_in_plane};
+use super::motion::{Glide, approach_in_plane};
 use super::posture::Posture;
+use super::turning::Turning;
 use crate::generate::Shift;
 use crate::world::{Camera, Cell, FieldOfView, Heading, World};
 
@@ -19,15 +20,9 @@ const RADIUS: Radius = Radius::new(0.25).expect("a quarter is between nothing an
 pub(super) const WALK: f64 = 3.0;
 /// Cells per second, in any direction, for who runs.
 pub(super) const RUN: f64 = 5.5;
-/// Radians per second.
-pub(super) const TURN: f64 = 2.4;
-/// Radians per second, for who aims.
-pub(super) const AIM: f64 = 0.6;
 
 /// How fast the feet take hold, per second.
 pub(super) const FRICTION: f64 = 12.0;
-/// How fast a turn begins and ends, per second.
-pub(super) const TURN_FRICTION: f64 = 20.0;
 
 /// How much higher a floor may be for somebody to step onto it, or lower to step down, in cells.
 const STEP_HEIGHT: f64 = 0.35;
@@ -50,8 +45,7 @@ pub(super) struct Player {
     /// Whether they wanted to jump in the last step: each wish is for one jump.
     wanted_to_jump: bool,
     heading: Heading,
-    /// Radians per second, clockwise.
-    turning: f64,
+    turning: Turning,
 }
 
 impl Player {
@@ -68,7 +62,7 @@ impl Player {
             gaze: Gaze::default(),
             wanted_to_jump: false,
             heading: start.heading,
-            turning: 0.0,
+            turning: Turning::default(),
         }
     }
 
@@ -82,7 +76,7 @@ impl Player {
         let still = Self {
             body: Body { velocity: DVec2::ZERO, ..self.body },
             rising: 0.0,
-            turning: 0.0,
+            turning: Turning::default(),
             posture: Posture::default(),
             wanted_to_jump: false,
             ..self
@@ -148,11 +142,8 @@ impl Player {
     }
 
     fn turned(self, intents: Intents) -> Self {
-        let speed = if intents.contains(Intent::Aim) { AIM } else { TURN };
-        let target = speed * intents.balance(Intent::TurnRight, Intent::TurnLeft);
-        let Glide { velocity, displacement } = approach(self.turning, target, TURN_FRICTION, STEP);
-        let turning = if velocity.abs() < STILL { 0.0 } else { velocity };
-        let angle = displacement + intents.look().turn_radians();
+        let (turning, turned) = self.turning.after_a_step(intents);
+        let angle = turned + intents.look().turn_radians();
         Self { heading: self.heading.turned(angle), turning, ..self }
     }
 
@@ -169,7 +160,7 @@ impl Player {
 
     fn walked(self, world: &World, intents: Intents) -> Self {
         let wants_to_jump = intents.contains(Intent::Jump);
-        let stands = self.rising == 0.0 && self.feet == self.room(world).floor;
+        let stands = self.stands(world);
         let jumps = stands && wants_to_jump && !self.wanted_to_jump;
         let step = if stands && !jumps { STEP_HEIGHT } else { 0.0 };
 
@@ -190,6 +181,11 @@ impl Player {
             let speed = if jumps { libm::sqrt(2.0 * GRAVITY * JUMP_HEIGHT) } else { self.rising };
             walked.flying(Flight { height: feet, speed }, room)
         }
+    }
+
+    /// Whether they have the floor under their feet.
+    pub(super) fn stands(&self, world: &World) -> bool {
+        self.rising == 0.0 && self.feet == self.room(world).floor
     }
 
     fn standing_on(self, floor: f64) -> Self {

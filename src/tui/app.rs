@@ -4,6 +4,7 @@
 //! it off screen. [`play`] is the loop around it that has both.
 
 mod clock;
+mod controls;
 mod detection;
 mod goal;
 mod help;
@@ -19,6 +20,7 @@ mod replay;
 mod run;
 mod stats;
 mod status;
+mod steps;
 
 use std::time::Duration;
 
@@ -32,15 +34,16 @@ pub use recording::Recording;
 pub use replay::Replay;
 pub use run::play;
 
-use super::held::HeldKeys;
 use super::settings::Settings;
 use super::{Canvas, CellAspect, GlyphMode, View};
-use crate::game::{Intents, STEP};
+use crate::game::STEP;
 use crate::palette::ColorDepth;
 use crate::render::Filter;
 use crate::world::FieldOfView;
 use clock::Clock;
+use controls::Controls;
 use detection::Detection;
+use keys::Pending;
 use mouse::Pointer;
 use played::{Eye, Memory, Played};
 use recording::ScriptRecorder;
@@ -54,6 +57,8 @@ enum Screen {
     Playing,
     Paused,
     Help,
+    /// Whether to leave is asked.
+    Leaving,
     LevelDone,
     End,
 }
@@ -86,13 +91,16 @@ struct App {
     depth: ColorDepth,
     cell_aspect: CellAspect,
     field_of_view: FieldOfView,
-    held: HeldKeys,
-    gait: Gait,
+    controls: Controls,
     pointer: Pointer,
-    /// What counts for the next step even if its key is up again by then.
-    pressed: Intents,
     map: MapPanel,
     help: HelpScroll,
+    /// Where the player goes on who does not want to leave.
+    returns_to: Screen,
+    /// The time, as it was last told, and since when the screen is shown.
+    now: Duration,
+    shown_since: Duration,
+    pending: Option<Pending>,
     has_left: bool,
     clock: Clock,
     memory: Memory,
@@ -133,9 +141,11 @@ impl App {
             shows_stats: settings.shows_stats,
             pointer: Pointer::new(settings.mouse),
             settings,
-            held: HeldKeys::default(),
-            gait: Gait::default(),
-            pressed: Intents::new(),
+            controls: Controls::default(),
+            returns_to: Screen::Playing,
+            now: Duration::ZERO,
+            shown_since: Duration::ZERO,
+            pending: None,
             has_left: false,
             clock: Clock::default(),
             shown: None,
@@ -145,33 +155,6 @@ impl App {
             detection: Detection::default(),
             script: None,
             reload: changes.map(Reload::from),
-        }
-    }
-
-    /// Lets the game go on until `now`.
-    fn advance(&mut self, now: Duration) {
-        self.held.expire(now);
-        let passed = self.clock.steps_until(now);
-        if self.screen != Screen::Playing {
-            return;
-        }
-        let steps = self.step_with_pointer(passed);
-        let intents = self.wanted();
-        let quiet = self.game.quiet_steps(intents).min(steps);
-        self.game.wait(quiet);
-        let mut moving = 0;
-        while moving < (steps - quiet).min(Clock::MOST_STEPS) && !self.game.is_finished() {
-            self.game.step(intents);
-            moving += 1;
-        }
-        self.goal.moved(moving);
-        self.record(intents, quiet + moving);
-        self.pointer.passed(quiet + moving);
-        if passed > 0 {
-            self.pressed = Intents::new();
-        }
-        if self.game.is_finished() {
-            self.show(Screen::LevelDone);
         }
     }
 
@@ -205,7 +188,10 @@ impl App {
     /// When the game will change by itself; `None` for never.
     fn next_change(&self) -> Option<Duration> {
         if self.screen != Screen::Playing {
-            return None;
+            return self.pending.map(|pending| pending.until);
+        }
+        if self.controls.held.has_taps() {
+            return Some(self.clock.step_after(0));
         }
         let quiet = Some(self.game.quiet_steps(self.wanted())).filter(|&quiet| quiet < u64::MAX);
         let before_animation = self.steps_to_animation().map(|steps| steps.saturating_sub(1));
@@ -215,6 +201,8 @@ impl App {
 
     fn show(&mut self, screen: Screen) {
         self.screen = screen;
+        self.shown_since = self.now;
+        self.pending = None;
         self.shown = None;
     }
 
@@ -225,7 +213,7 @@ impl App {
         self.level = self.level.next();
         self.goal = Goal::of(&self.game, self.settings.minimap);
         self.map.begin_level();
-        self.held.clear();
+        self.release_keys();
         self.show(Screen::Playing);
     }
 
@@ -239,7 +227,7 @@ impl App {
     /// The program was stopped, and goes on: the time in between does not count.
     fn resumed(&mut self, now: Duration) {
         self.clock.skip_to(now);
-        self.held.clear();
+        self.release_keys();
         self.pointer.forget();
         self.shown = None;
     }
@@ -256,7 +244,7 @@ impl App {
             goal: &self.goal,
             level: self.level,
             seen: self.game.grid().and_then(|game| self.map.share_seen(game)),
-            gait: Gait { mouse: self.pointer.is_on(), ..self.gait },
+            gait: Gait { mouse: self.pointer.is_on(), ..self.controls.gait },
             stats: self.stats.as_ref().filter(|_| self.shows_stats),
             bindings: &self.settings.bindings,
         });
@@ -274,6 +262,7 @@ impl App {
                 let told = panels::Progress { game: &self.game, level: self.level };
                 panels::level_done(canvas, picture, &told);
             }
+            Screen::Leaving => panels::leaving(canvas, picture, bindings),
             Screen::End => panels::end(canvas, picture, self.earlier + seconds),
         }
         self.draw_fault(canvas, picture);

@@ -1,7 +1,10 @@
 //! Which key does what: the actions, and presets of keys for them.
 
+mod presets;
+
 use crate::game::Intent;
 use crate::terminal::{Key, KeyEvent};
+pub(super) use presets::PRESETS;
 
 /// What a key can do.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
@@ -14,6 +17,8 @@ pub(crate) enum Action {
     ToggleDuck,
     /// Turning and tilting by the mouse, or not any more.
     ToggleMouse,
+    /// Walking on until it, or a key to walk, is pressed.
+    ToggleWalkOn,
     /// Showing or hiding the minimap.
     ToggleMinimap,
     /// Showing the minimap larger, smaller, or another part of it.
@@ -47,13 +52,17 @@ pub(crate) enum MapChange {
 
 impl Action {
     /// Every action: its name in a file, what it does in a word or two, and itself.
-    pub(crate) const ALL: [(&'static str, &'static str, Self); 30] = [
+    pub(crate) const ALL: [(&'static str, &'static str, Self); 34] = [
         ("forward", "walk", Self::Want(Intent::Forward)),
         ("back", "walk back", Self::Want(Intent::Back)),
         ("strafe-left", "strafe left", Self::Want(Intent::StrafeLeft)),
         ("strafe-right", "strafe right", Self::Want(Intent::StrafeRight)),
         ("turn-left", "turn left", Self::Want(Intent::TurnLeft)),
         ("turn-right", "turn right", Self::Want(Intent::TurnRight)),
+        ("fine-left", "turn left by 5°", Self::Want(Intent::FineLeft)),
+        ("fine-right", "turn right by 5°", Self::Want(Intent::FineRight)),
+        ("about-face", "turn around", Self::Want(Intent::AboutFace)),
+        ("walk-on", "keep walking", Self::ToggleWalkOn),
         ("run", "run while held", Self::Want(Intent::Run)),
         ("open", "open a door", Self::Want(Intent::Open)),
         ("jump", "jump, or open", Self::Want(Intent::Jump)),
@@ -87,14 +96,7 @@ impl Action {
 
     /// Whether nobody wants both at once.
     pub(super) fn opposes(self, other: Self) -> bool {
-        use Intent::{Back, Forward, LookDown, LookUp, StrafeLeft, StrafeRight};
-        use Intent::{TurnLeft, TurnRight};
-        let pairs =
-            [(Forward, Back), (StrafeLeft, StrafeRight), (TurnLeft, TurnRight), (LookUp, LookDown)];
-        pairs.into_iter().any(|(one, another)| {
-            (self, other) == (Self::Want(one), Self::Want(another))
-                || (other, self) == (Self::Want(one), Self::Want(another))
-        })
+        matches!((self, other), (Self::Want(one), Self::Want(other)) if one.opposes(other))
     }
 }
 
@@ -105,33 +107,7 @@ pub struct Bindings {
     keys: Vec<(Key, Action)>,
 }
 
-impl Default for Bindings {
-    /// For QWERTY keyboards.
-    fn default() -> Self {
-        Self::with_letters(&Letters { forward: 'w', strafe_left: 'a', leave: 'q' })
-    }
-}
-
-/// The keys in which the presets differ.
-struct Letters {
-    forward: char,
-    strafe_left: char,
-    leave: char,
-}
-
-/// The name of a preset, and what makes it.
-pub(super) type Preset = (&'static str, fn() -> Bindings);
-
-/// The presets, the default first.
-pub(super) const PRESETS: [Preset; 2] =
-    [("qwerty", Bindings::default), ("azerty", Bindings::azerty)];
-
 impl Bindings {
-    /// For AZERTY keyboards: Z, Q, S and D lie where W, A, S and D do on others; A leaves.
-    pub fn azerty() -> Self {
-        Self::with_letters(&Letters { forward: 'z', strafe_left: 'q', leave: 'a' })
-    }
-
     /// Every action's keys, and what it does in a word or two, in the order of [`Action::ALL`].
     #[cfg(feature = "cli")]
     pub(crate) fn described(&self) -> impl Iterator<Item = (String, &'static str)> {
@@ -139,49 +115,6 @@ impl Bindings {
             let keys: Vec<String> = self.keys(action).map(|key| key.to_string()).collect();
             (keys.join(" "), does)
         })
-    }
-
-    fn with_letters(letters: &Letters) -> Self {
-        let keys = vec![
-            (Key::Char(letters.forward), Action::Want(Intent::Forward)),
-            (Key::Up, Action::Want(Intent::Forward)),
-            (Key::Char('s'), Action::Want(Intent::Back)),
-            (Key::Down, Action::Want(Intent::Back)),
-            (Key::Char(letters.strafe_left), Action::Want(Intent::StrafeLeft)),
-            (Key::Char('d'), Action::Want(Intent::StrafeRight)),
-            (Key::Left, Action::Want(Intent::TurnLeft)),
-            (Key::Right, Action::Want(Intent::TurnRight)),
-            (Key::Shift, Action::Want(Intent::Run)),
-            (Key::Char(' '), Action::Want(Intent::Jump)),
-            (Key::Char('e'), Action::Want(Intent::Open)),
-            // Not Control: with another key held, it is a command to the terminal.
-            (Key::Char('c'), Action::Want(Intent::Duck)),
-            (Key::PageUp, Action::Want(Intent::LookUp)),
-            (Key::PageDown, Action::Want(Intent::LookDown)),
-            (Key::Home, Action::Want(Intent::LookAhead)),
-            (Key::Char('r'), Action::ToggleRun),
-            (Key::Char('x'), Action::ToggleDuck),
-            (Key::Char('v'), Action::ToggleMouse),
-            (Key::Char('m'), Action::ToggleMinimap),
-            (Key::Tab, Action::ToggleMinimap),
-            // As on a number pad.
-            (Key::Char('9'), Action::ChangeMap(MapChange::Larger)),
-            (Key::Char('3'), Action::ChangeMap(MapChange::Smaller)),
-            (Key::Char('8'), Action::ChangeMap(MapChange::North)),
-            (Key::Char('2'), Action::ChangeMap(MapChange::South)),
-            (Key::Char('4'), Action::ChangeMap(MapChange::West)),
-            (Key::Char('6'), Action::ChangeMap(MapChange::East)),
-            (Key::Char('5'), Action::ChangeMap(MapChange::Center)),
-            (Key::Char('?'), Action::ToggleHelp),
-            (Key::Char('p'), Action::TogglePause),
-            (Key::Char('+'), Action::WidenView),
-            (Key::Char('='), Action::WidenView),
-            (Key::Char('-'), Action::NarrowView),
-            (Key::Char('i'), Action::ToggleStats),
-            (Key::Char(letters.leave), Action::Leave),
-            (Key::Escape, Action::Leave),
-        ];
-        Self { keys }.in_order()
     }
 
     /// The same, but that `bound` are the keys of the actions in `rebound`, and of no others.

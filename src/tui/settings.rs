@@ -1,7 +1,7 @@
 //! Settings: how the game is shown and steered, and the file that says so.
 //!
 //! ```toml
-//! preset = "azerty"            # or "qwerty"
+//! preset = "azerty"            # or "qwerty", or "hjkl"
 //! colors = "256"
 //! minimap = "all"
 //!

@@ -27,7 +27,7 @@ fn the_status_line_tells_which_level_it_is_and_the_cell_that_one_is_in() {
         place.starts_with("Maze 7  ") && place != "Maze 7  1, 1"
     });
     game.release(Key::Char('w'));
-    game.press(Key::Char('q'));
+    game.leave();
     let ending = game.wait_for_end();
     ending.assert_given_back();
     assert!(ending.status.success());
@@ -40,6 +40,6 @@ fn a_thousand_million_cells_from_home_is_a_place_like_any() {
     assert!(place.starts_with("Maze 7  10000000") && place.contains(", -"), "{place}");
     game.press(Key::Char('w'));
     game.wait_until("walked on", |emulator| whereabouts(emulator) != place);
-    game.press(Key::Char('q'));
+    game.leave();
     assert!(game.wait_for_end().status.success());
 }

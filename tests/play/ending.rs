@@ -32,8 +32,11 @@ const TAKEN: Modes = Modes {
 
 /// A release is always on its way when the game ends; the shell does not get it.
 #[test]
-fn q_escape_and_control_c_leave() {
-    for leave in [Key::Char('q').event(1), Key::Escape.event(1), "\x1b[99;5u".to_owned()] {
+fn q_and_escape_ask_and_leave_and_control_c_leaves() {
+    let (q, escape, enter) = (Key::Char('q').event(1), Key::Escape.event(1), Key::Enter.event(1));
+    let released = Key::Char('q').event(3);
+    let twice = format!("{q}{released}{q}");
+    for leave in [twice, q + &enter, escape + &enter, "\x1b[99;5u".to_owned()] {
         let mut game = Game::start();
         game.press(Key::Char('w'));
         game.send(leave);
@@ -41,11 +44,30 @@ fn q_escape_and_control_c_leave() {
         ending.assert_given_back();
         assert!(ending.status.success());
     }
-    for leave in ["q", "\x1b", "\x03"] {
+    for leave in ["qq", "q\r", "\x03"] {
         let mut game = Game::with(Speaks::Plain, (80, 24), None, &[], &[]);
         game.send(leave);
         game.wait_for_end().assert_given_back();
     }
+}
+
+#[test]
+fn a_question_is_asked_before_leaving_and_escape_goes_on() {
+    let mut game = Game::with(Speaks::Plain, (80, 24), None, &[], &[]);
+    for _ in 0..2 {
+        game.send("q");
+        game.wait_for("any other key goes on");
+        game.send("\x1b");
+        game.wait_until("went on", |emulator| !emulator.text().contains("goes on"));
+    }
+    game.send("?");
+    game.wait_for("strafe left");
+    game.send("\x1b");
+    game.wait_until("closed the help", |emulator| !emulator.text().contains("strafe left"));
+    game.send("\x1b");
+    game.wait_for("any other key goes on");
+    game.send("\r");
+    game.wait_for_end().assert_given_back();
 }
 
 #[test]
@@ -106,7 +128,7 @@ fn control_z_gives_the_terminal_to_the_shell_and_fg_paints_it_again() {
     player.send("\r");
     taken(&player);
     assert!(player.look(looks) == before, "it was painted otherwise");
-    player.send(Key::Char('q').event(1));
+    player.send(Key::Char('q').event(1) + &Key::Enter.event(1));
     player.wait_for("ended");
     player.wait_for_end().assert_given_back();
 }
@@ -123,7 +145,7 @@ fn control_z_does_nothing_where_no_shell_would_continue_it() {
     });
     game.press(Key::Right);
     game.wait_for_arrow("turned", |arrow| arrow.points != '→');
-    game.press(Key::Char('q'));
+    game.leave();
     game.wait_for_end().assert_given_back();
 }
 

@@ -3,6 +3,8 @@
 use std::fmt::{Display, Write};
 use std::ops::{Deref, DerefMut};
 use std::path::{Path, PathBuf};
+use std::thread;
+use std::time::Duration;
 
 use serde_json::Value;
 
@@ -105,6 +107,18 @@ impl Game {
     pub(crate) fn tap(&self, key: Key) {
         self.press(key);
         self.release(key);
+    }
+
+    /// Leaves the game: asks for it, and confirms.
+    pub(crate) fn leave(&self) {
+        self.press(Key::Char('q'));
+        self.press(Key::Enter);
+    }
+
+    /// Confirms a result, once it has been shown for half a second.
+    pub(crate) fn confirm(&self) {
+        thread::sleep(Duration::from_millis(700));
+        self.tap(Key::Enter);
     }
 
     /// Where the player stands on the minimap.

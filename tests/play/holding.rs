@@ -1,10 +1,17 @@
 //! How long a key counts as held: until its release, where the terminal tells of it.
 
+use std::fs;
+use std::path::Path;
 use std::thread;
 use std::time::Duration;
 
+use cellcaster::game::{self, Intent, Intents, Script};
+use cellcaster::map;
+use cellcaster::world::FieldOfView;
+use glam::DVec2;
+
 use crate::emulator::Speaks;
-use crate::game::{Arrow, Game, Key};
+use crate::game::{Arrow, Game, Key, test_map};
 
 const LARGE: (u16, u16) = (120, 40);
 
@@ -12,7 +19,7 @@ fn in_a_corridor(speaks: Speaks, environment: &[(&str, &str)]) -> Game {
     Game::with(speaks, LARGE, Some("corridor"), &[], environment)
 }
 
-/// Further than a key is taken to be held for that is not heard of again, at walking speed.
+/// Further than taps lead.
 const FAR: u16 = 4;
 
 #[test]
@@ -39,13 +46,14 @@ fn without_releases_a_tap_walks_a_little_and_stops() {
         let speaks = if environment.is_empty() { Speaks::Plain } else { Speaks::Kitty };
         let game = in_a_corridor(speaks, environment);
         let before = game.arrow();
-        game.send("w");
+        // Three quarters of a cell.
+        game.send("www");
         (environment, game, before)
     });
     for (environment, game, before) in games {
         game.wait_for_arrow("walked", |arrow| arrow.column > before.column);
         game.wait_for_rest();
-        assert!(game.arrow().column <= before.column + FAR, "it walked on by itself");
+        assert_eq!(game.arrow().column, before.column + 1, "it walked on by itself");
         if !environment.is_empty() {
             assert!(!speaks_kitty(&game.bytes()), "the protocol was asked for in {environment:?}");
         }
@@ -73,4 +81,110 @@ fn without_releases_repetition_walks_on_and_an_opposing_key_turns_back_at_once()
     };
     hold_until("w", &|arrow| arrow.column > before.column + FAR);
     hold_until("s", &|arrow| arrow.column <= before.column + 1);
+}
+
+/// A keyboard's delay, and the interval of its repetition.
+const DELAY: Duration = Duration::from_millis(500);
+const INTERVAL: Duration = Duration::from_millis(33);
+
+/// Holds a key at a terminal without releases until `condition` holds.
+fn hold(game: &Game, bytes: &str, condition: impl Fn() -> bool) {
+    game.send(bytes);
+    thread::sleep(DELAY);
+    for _ in 0..600 {
+        if condition() {
+            return;
+        }
+        game.send(bytes);
+        thread::sleep(INTERVAL);
+    }
+    panic!("holding {bytes:?} did not help; the screen:\n{}", game.text());
+}
+
+/// What the player wanted in each step of a game in which `plays` sent bytes.
+fn wanted(name: &str, map: &str, plays: impl Fn(&Game)) -> Vec<Intents> {
+    let path = Path::new(env!("CARGO_TARGET_TMPDIR")).join(name);
+    // What an earlier run has left.
+    _ = fs::remove_file(&path);
+    let options = ["--record", path.to_str().unwrap()];
+    let mut game = Game::with(Speaks::Plain, LARGE, Some(map), &options, &[]);
+    plays(&game);
+    game.send("q\r");
+    game.wait_for_end();
+    let script = Script::parse(&fs::read_to_string(path).unwrap(), name);
+    script.unwrap_or_else(|faults| panic!("{faults}")).iter().map(|(_, intents)| intents).collect()
+}
+
+/// Five steps of walking are a quarter of a cell, ten of aiming are 5 degrees.
+#[test]
+fn two_taps_are_twice_one_tap() {
+    let names =
+        |steps: &[Intents], intent| steps.iter().filter(|step| step.contains(intent)).count();
+    for taps in 1..=3 {
+        let steps = wanted(&format!("taps_{taps}.script"), "floor", |game| {
+            game.send("w".repeat(taps));
+            game.wait_for_rest();
+            game.send("\x1b[C".repeat(taps));
+            game.wait_for_rest();
+        });
+        assert_eq!(names(&steps, Intent::Forward), 5 * taps);
+        assert_eq!(names(&steps, Intent::TurnRight), 10 * taps);
+        assert_eq!(names(&steps, Intent::Aim), 10 * taps);
+    }
+}
+
+#[test]
+fn the_keys_for_exact_turns_turn_exactly() {
+    let game = Game::with(Speaks::Plain, LARGE, Some("floor"), &[], &[]);
+    game.send("oo");
+    game.wait_for_picture(&["--camera", "7.5,7.5,10"]);
+    game.send("uuu");
+    game.wait_for_picture(&["--camera", "7.5,7.5,355"]);
+    game.send("b");
+    game.wait_for_picture(&["--camera", "7.5,7.5,175"]);
+}
+
+#[test]
+fn without_releases_one_walks_and_turns_in_a_circle() {
+    let steps = wanted("circle.script", "floor", |game| {
+        let start = game.arrow();
+        hold(game, "w", || game.arrow().column > start.column);
+        // The other key ends the repetition of the first.
+        let turns = std::cell::Cell::new(0);
+        hold(game, "\x1b[C", || turns.replace(turns.get() + 1) > 90);
+    });
+    let world = map::load(&test_map("floor")).unwrap();
+    let mut game = game::Game::new(world);
+    let mut places = Vec::<DVec2>::new();
+    for intents in steps {
+        let both = [Intent::Forward, Intent::TurnRight].iter().all(|&one| intents.contains(one));
+        game.step(intents);
+        if both && !intents.contains(Intent::Aim) {
+            places.push(game.camera(FieldOfView::default()).position());
+        }
+    }
+    // 2.4 radians a second: half a turn takes 78.5 steps. After half a second, the circle is one.
+    assert!(places.len() > 30 + 79, "{}", places.len());
+    for (one, other) in places[30..].iter().zip(&places[30 + 79..]) {
+        assert!((one.distance(*other) - 2.5).abs() < 0.05, "{one} {other}");
+    }
+}
+
+/// Space ends the repetition of W, which is held all the same until one has landed.
+#[test]
+fn without_releases_six_of_six_running_jumps_succeed() {
+    let tries = [0, 20, 40, 60, 80, 100].map(|milliseconds| {
+        thread::spawn(move || {
+            let game = Game::with(Speaks::Plain, LARGE, Some("pit"), &[], &[]);
+            let start = game.arrow();
+            // A cell is three columns of the map. The pit begins at 6, and ends at 7.
+            hold(&game, "w", || game.arrow().column >= start.column + 11);
+            thread::sleep(Duration::from_millis(milliseconds));
+            game.send(" ");
+            game.wait_for_arrow("landed", |arrow| arrow.column >= start.column + 17);
+        })
+    });
+    for jump in tries {
+        jump.join().unwrap();
+    }
 }

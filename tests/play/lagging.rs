@@ -33,7 +33,7 @@ fn keys_act_while_the_link_is_stuck() {
     let mut game = turning();
     game.set_reading(false);
     game.wait_until_full();
-    game.send(Key::Char('q').event(1));
+    game.send(Key::Char('q').event(1) + &Key::Enter.event(1));
     let ending = game.wait_for_end();
     assert!(ending.status.success());
     assert_eq!(ending.modes, Modes::default());

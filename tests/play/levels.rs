@@ -9,11 +9,11 @@ fn the_exit_shows_the_time_and_a_single_map_is_followed_by_the_end() {
     game.press(Key::Char('w'));
     game.wait_for("you found the way out");
     game.wait_for(" in 0:");
-    game.tap(Key::Enter);
+    game.confirm();
     game.wait_for("the end");
     game.wait_for("all levels");
     game.wait_for(" in 0:");
-    game.press(Key::Enter);
+    game.confirm();
     let ending = game.wait_for_end();
     ending.assert_given_back();
     assert!(ending.status.success());
@@ -34,7 +34,7 @@ fn the_first_level_is_followed_by_the_second() {
     game.press(Key::Char('d'));
     game.wait_for("you found the way out");
     game.wait_for(" in 0:");
-    game.tap(Key::Enter);
+    game.confirm();
     game.wait_for("Museum");
     assert!(!game.text().contains("Cellar"));
 }

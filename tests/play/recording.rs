@@ -35,7 +35,7 @@ fn a_recording_holds_exactly_what_the_terminal_was_sent() {
     walk_a_little(&game);
     game.resize(100, 30);
     game.wait_for_rest();
-    game.press(Key::Char('q'));
+    game.leave();
     game.wait_for_end();
     let recording = Asciicast::read(&fs::read_to_string(path).unwrap());
     assert_eq!((recording.columns, recording.rows), (80, 24));
@@ -62,7 +62,7 @@ fn a_recorded_walk_replays_to_the_same_picture() {
     let (mut game, path) = recorded("walk.script");
     walk_a_little(&game);
     let played = game.look(|emulator| looks(emulator.screen()));
-    game.press(Key::Char('q'));
+    game.leave();
     game.wait_for_end();
 
     let file = output_of(&["replay", path.to_str().unwrap()]);

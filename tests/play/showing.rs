@@ -59,7 +59,7 @@ fn no_series_of_sizes_does_any_harm() {
     game.resize(80, 24);
     game.wait_for("Cellar");
     game.wait_for("┌map");
-    game.press(Key::Char('q'));
+    game.leave();
     game.wait_for_end().assert_given_back();
 }
 

@@ -19,8 +19,7 @@ impl Clock {
     /// How many steps have passed between the last call and `now`.
     pub(super) fn steps_until(&mut self, now: Duration) -> u64 {
         let steps = (now.saturating_sub(self.cut).as_nanos() / step().as_nanos()) as u64;
-        let nanoseconds = step().as_nanos() as u64;
-        self.cut += Duration::from_nanos(steps.saturating_mul(nanoseconds));
+        self.cut = after(self.cut, steps);
         steps
     }
 
@@ -31,12 +30,18 @@ impl Clock {
 
     /// When the step after `steps` steps to come will have passed.
     pub(super) fn step_after(&self, steps: u64) -> Duration {
-        let nanoseconds = step().as_nanos() as u64;
-        self.cut + Duration::from_nanos(nanoseconds.saturating_mul(steps.saturating_add(1)))
+        after(self.cut, steps.saturating_add(1))
     }
 }
 
-fn step() -> Duration {
+/// The time that many steps after `time`.
+pub(super) fn after(time: Duration, steps: u64) -> Duration {
+    let nanoseconds = step().as_nanos() as u64;
+    time + Duration::from_nanos(nanoseconds.saturating_mul(steps))
+}
+
+/// How long a step lasts.
+pub(super) fn step() -> Duration {
     Duration::from_secs_f64(STEP)
 }
 

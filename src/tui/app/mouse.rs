@@ -33,6 +33,8 @@ pub(super) struct Pointer {
     place: Option<[i32; 2]>,
     /// How far it has moved since the last step, likewise.
     moved: [i32; 2],
+    /// What its buttons want of the next step.
+    clicked: Intents,
     /// At which edge it rests, 1 for the right one, and for how many more steps that counts.
     edge: Option<(i16, u32)>,
 }
@@ -103,9 +105,9 @@ impl Pointer {
         Look { turn: within(self.moved[0] + at_edge), tilt: within(-self.moved[1]) }
     }
 
-    /// Whether it has moved since the last step.
-    fn has_moved(&self) -> bool {
-        self.moved != [0, 0]
+    /// Whether it was moved or clicked since the last step.
+    pub(super) fn has_news(&self) -> bool {
+        self.moved != [0, 0] || !self.clicked.is_empty()
     }
 
     /// So many steps have passed that took [`Pointer::look`] into account.
@@ -114,6 +116,7 @@ impl Pointer {
             return;
         }
         self.moved = [0, 0];
+        self.clicked = Intents::new();
         self.edge = self.edge.and_then(|(edge, left)| {
             let left = u64::from(left).saturating_sub(steps) as u32;
             (left > 0).then_some((edge, left))
@@ -134,28 +137,16 @@ impl App {
             return;
         }
         match event.kind {
-            MouseEventKind::Pressed(MouseButton::Left) => self.pressed.insert(Intent::Open),
-            MouseEventKind::Pressed(MouseButton::Right) => self.pressed.insert(Intent::Jump),
+            MouseEventKind::Pressed(MouseButton::Left) => self.pointer.clicked.insert(Intent::Open),
+            MouseEventKind::Pressed(MouseButton::Right) => self.pointer.clicked.insert(Intent::Jump),
             _ => {}
         }
     }
 
     /// What the player wants in the next step, by keys and by the mouse.
     pub(super) fn wanted(&self) -> Intents {
-        self.intents().with_look(self.pointer.look())
-    }
-
-    /// Lets the step pass in which the player turns as far as the pointer has moved, if it has and if
-    /// there are `steps` at all; how many are left.
-    pub(super) fn step_with_pointer(&mut self, steps: u64) -> u64 {
-        if steps == 0 || !self.pointer.has_moved() {
-            return steps;
-        }
-        let wanted = self.wanted();
-        self.game.step(wanted);
-        self.record(wanted, 1);
-        self.pointer.passed(1);
-        if self.game.is_finished() { 0 } else { steps - 1 }
+        let keys = self.intents();
+        keys.iter().chain(self.pointer.clicked.iter()).collect::<Intents>().with_look(self.pointer.look())
     }
 }
 

@@ -10,6 +10,7 @@ use ratatui::widgets::{Block, Borders, Padding, Paragraph, Widget, Wrap};
 use super::goal::Goal;
 use super::levels::LevelNumber;
 use super::played::Played;
+use crate::terminal::Key;
 use crate::tui::bindings::{Action, Bindings};
 use crate::tui::{Canvas, Minimap};
 
@@ -121,6 +122,14 @@ pub(super) fn paused(
     let (level, goal) = (progress.level(), goal.text());
     let text = format!("{keys} goes on\n{goal}\n{level}\n{seconds}\n{}", has.join("\n"));
     message(canvas, picture, "paused", Text::from(text).centered());
+}
+
+/// Whether the player wants to leave.
+pub(super) fn leaving(canvas: &mut impl Canvas, picture: Rect, bindings: &Bindings) {
+    let leave = bindings.keys(Action::Leave).find(|&key| key != Key::Escape);
+    let keys = leave.map_or_else(String::new, |key| format!("{key} or "));
+    let text = format!("{keys}Enter leaves\nany other key goes on");
+    message(canvas, picture, "leave?", Text::from(text).centered());
 }
 
 /// That the exit was reached, and how soon.

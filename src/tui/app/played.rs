@@ -121,6 +121,15 @@ impl Played {
         }
     }
 
+    pub(super) fn is_airborne(&self) -> bool {
+        self.grid().is_some_and(Game::is_airborne)
+    }
+
+    /// Whether there is no floor, and ducking leads downwards.
+    pub(super) fn flies(&self) -> bool {
+        self.grid().is_none()
+    }
+
     pub(super) fn elapsed(&self) -> f64 {
         match self {
             Self::Grid(game) => game.elapsed(),

@@ -52,7 +52,7 @@ pub fn play(levels: Levels, settings: Settings, recording: Recording) -> Result<
             Some(Event::FocusLost) => app.focus_lost(start.elapsed()),
             Some(Event::Resized | Event::ColorDepth(_)) => tell_terminal(&mut app, &session),
             Some(Event::KeyReleases(reported)) => {
-                app.held.set_reports_releases(reported);
+                app.controls.held.set_reports_releases(reported);
                 app.detection.reports_releases = Some(reported);
             }
             Some(Event::Suspend) => {
@@ -117,7 +117,8 @@ impl Presenter {
             (is_unfinished(app, session).then_some(self.next_frame), self.next_frame)
         };
         let change = app.next_change().map(|change| change.max(soonest));
-        frame.into_iter().chain(change).chain(app.held.next_expiry()).chain(app.next_reload()).min()
+        let expiry = app.controls.held.next_expiry();
+        frame.into_iter().chain(change).chain(expiry).chain(app.next_reload()).min()
     }
 }
 

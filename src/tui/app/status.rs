@@ -27,6 +27,7 @@ use crate::tui::bindings::{Action, Bindings};
 pub(super) struct Gait {
     pub(super) runs: bool,
     pub(super) ducks: bool,
+    pub(super) walks_on: bool,
     /// Whether the mouse turns them.
     pub(super) mouse: bool,
 }
@@ -116,7 +117,12 @@ impl StatusLine {
         if let Some(site) = game.site() {
             self.both(Part::Site, format_args!("{}, {}", site.column, site.row))?;
         }
-        let modes = [(gait.runs, "running"), (gait.ducks, "ducking"), (gait.mouse, "mouse")];
+        let modes = [
+            (gait.runs, "running"),
+            (gait.ducks, "ducking"),
+            (gait.walks_on, "walking on"),
+            (gait.mouse, "mouse"),
+        ];
         for (index, (_, mode)) in modes.into_iter().filter(|(is_on, _)| *is_on).enumerate() {
             let comma = if index > 0 { ", " } else { "" };
             self.both(Part::Gait, format_args!("{comma}{mode}"))?;

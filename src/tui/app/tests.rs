@@ -1,151 +1,210 @@
-//! What the screen shows, cell by cell.
+//! The keys of the game, from bytes at their times to what the player does, in simulated time.
 
-use ratatui::buffer::{Buffer, Cell};
-use ratatui::layout::Rect;
+mod levels;
+mod questions;
+mod screens;
+mod table;
+
+use std::iter;
+use std::time::Duration;
+
+use glam::DVec2;
 
 use super::*;
-use crate::map::{Level, builtin};
-use crate::terminal::{Key, KeyEvent, Phase};
-use crate::tui::MapDisplay;
+use crate::game::Game;
+use crate::map::{Level, parse_str};
+use crate::terminal::{Key, KeyEvent, Modifiers, Phase};
+use crate::tui::held::keyboard::Keyboard;
+use crate::world::World;
 
-fn app(level: &str, settings: Settings) -> App {
-    let index = builtin::LEVELS.iter().position(|known| known.name == level).unwrap();
-    let first = Level::from(builtin::LEVELS[index].world().unwrap());
-    let levels = Levels::new(first, std::iter::empty());
-    App::new(levels.numbered(index + 1, builtin::LEVELS.len()), settings)
+const W: Key = Key::Char('w');
+const SPACE: Key = Key::Char(' ');
+
+/// Delay in milliseconds, and repetitions a second.
+type Rate = (u64, u32);
+
+/// The game, and a keyboard at a terminal that reports releases or, where the keyboard's rate matters, none.
+struct Rig {
+    app: App,
+    keyboard: Option<Keyboard<Key>>,
+    now: Duration,
 }
 
-fn ascii(minimap: MapDisplay) -> Settings {
-    let depth = Some(ColorDepth::Mono);
-    Settings { glyphs: GlyphMode::Ascii, depth, minimap, ..Settings::default() }
-}
-
-fn press(app: &mut App, key: Key) {
-    let modifiers = crate::terminal::Modifiers::default();
-    app.key(KeyEvent { key, base: None, modifiers, phase: Phase::Press }, Duration::ZERO);
-}
-
-fn buffer(app: &mut App, (columns, rows): (u16, u16)) -> Buffer {
-    let mut buffer = Buffer::empty(Rect::new(0, 0, columns, rows));
-    app.draw(&mut buffer);
-    buffer
-}
-
-fn text(app: &mut App, size: (u16, u16)) -> String {
-    let buffer = buffer(app, size);
-    let lines = buffer.content().chunks(size.0.into());
-    lines.flat_map(|line| line.iter().map(Cell::symbol).chain(["\n"])).collect()
-}
-
-const SIZES: [(u16, u16); 3] = [(80, 24), (40, 12), (20, 6)];
-
-#[test]
-fn the_first_screen_says_what_to_do() {
-    for (columns, rows) in SIZES {
-        let mut app = app("museum", ascii(MapDisplay::Seen));
-        let name = format!("first_screen_{columns}x{rows}");
-        insta::assert_snapshot!(name, text(&mut app, (columns, rows)));
+impl Rig {
+    fn new(world: World, rate: Option<Rate>) -> Self {
+        let levels = Levels::new(Level::Grid(Box::new(world)), iter::empty());
+        let mut app = App::new(levels, Settings::default());
+        app.controls.held.set_reports_releases(rate.is_none());
+        let keyboard = rate.map(|(delay, rate)| Keyboard::new(Duration::from_millis(delay), rate));
+        let mut rig = Self { app, keyboard, now: Duration::ZERO };
+        rig.wait(20);
+        rig
     }
-}
 
-#[test]
-fn help_scrolls_where_it_does_not_fit() {
-    for (columns, rows) in SIZES {
-        let mut app = app("museum", ascii(MapDisplay::Seen));
-        press(&mut app, Key::Char('?'));
-        text(&mut app, (columns, rows));
-        press(&mut app, Key::PageDown);
-        press(&mut app, Key::Down);
-        let name = format!("help_scrolled_{columns}x{rows}");
-        insta::assert_snapshot!(name, text(&mut app, (columns, rows)));
+    fn send(&mut self, key: Key, phase: Phase) {
+        self.app.key(KeyEvent { key, base: None, modifiers: Modifiers::default(), phase }, self.now);
     }
-}
 
-#[test]
-fn maps_show_heights() {
-    for level in ["cistern", "observatory"] {
-        let mut app = app(level, ascii(MapDisplay::All));
-        press(&mut app, Key::Char('3'));
-        insta::assert_snapshot!(format!("map_of_{level}"), text(&mut app, (120, 40)));
+    fn press(&mut self, key: Key) {
+        let now = self.now;
+        let key = self.keyboard.as_mut().map_or(key, |keyboard| keyboard.press(key, now));
+        self.send(key, Phase::Press);
     }
-}
 
-#[test]
-fn the_goal_is_told_until_the_player_has_moved_for_a_while() {
-    let mut app = app("cellar", ascii(MapDisplay::Seen));
-    let size = (80, 24);
-    app.advance(Duration::from_secs(61));
-    assert!(text(&mut app, size).contains("Find the way out"), "nobody has moved");
-    app.goal.moved(4 * 60 - 1);
-    assert!(text(&mut app, size).contains("Find the way out"));
-    app.goal.moved(1);
-    let later = text(&mut app, size);
-    assert!(!later.contains("Find the way out"), "{later}");
-    assert!(later.contains("level 1 of 5") && later.contains("1:00"), "{later}");
-}
-
-#[test]
-fn the_part_that_was_seen_grows_and_the_exit_shows_once_seen() {
-    let size = (120, 40);
-    let mut app = app("cellar", ascii(MapDisplay::Seen));
-    text(&mut app, size);
-    let share = |app: &App| app.map.share_seen(app.game.grid().unwrap()).unwrap();
-    let mut before = share(&app);
-    assert!(before > 0.0 && before < 0.5, "{before}");
-    let turn = [crate::game::Intent::TurnRight].into_iter().collect();
-    for _ in 0..40 {
-        (0..4).for_each(|_| app.game.step(turn));
-        text(&mut app, size);
-        let after = share(&app);
-        assert!(after >= before);
-        before = after;
+    fn release(&mut self, key: Key) {
+        match &mut self.keyboard {
+            Some(keyboard) => keyboard.release(key),
+            None => self.send(key, Phase::Release),
+        }
     }
-    assert!(before < 0.9, "nobody sees through walls: {before}");
-}
 
-#[test]
-fn nothing_on_a_map_is_as_bright_as_the_arrow() {
-    use ratatui::style::Color;
-    for level in builtin::LEVELS {
-        for display in [MapDisplay::All, MapDisplay::Seen] {
-            let settings = Settings { minimap: display, ..Settings::default() };
-            let mut app = app(level.name, settings);
-            let buffer = buffer(&mut app, (120, 40));
-            let luma = |color: Color| match color {
-                Color::Rgb(red, green, blue) => crate::world::Rgb::new(red, green, blue).luma(),
-                _ => 0,
-            };
-            let left = (0..120).find(|&x| buffer[(x, 0)].symbol() == "┌").unwrap();
-            let bottom = (0..40).find(|&y| buffer[(left, y)].symbol() == "└").unwrap();
-            let cells = (1..bottom).flat_map(|y| (left + 1..119).map(move |x| (x, y)));
-            let mut arrows = 0;
-            for place in cells {
-                let cell = &buffer[place];
-                if "→↘↓↙←↖↑↗".contains(cell.symbol()) {
-                    arrows += 1;
-                    assert!(luma(cell.bg) > 220);
-                } else {
-                    let brightest = luma(cell.fg).max(luma(cell.bg));
-                    assert!(brightest < 190, "{} at {place:?}: {cell:?}", level.name);
-                }
+    fn tap(&mut self, key: Key, milliseconds: u64) {
+        self.press(key);
+        self.wait(milliseconds);
+        self.release(key);
+    }
+
+    fn wait(&mut self, milliseconds: u64) {
+        for _ in 0..milliseconds {
+            self.now += Duration::from_millis(1);
+            while let Some((key, due)) =
+                self.keyboard.as_mut().and_then(|keyboard| keyboard.next_byte(self.now))
+            {
+                let modifiers = Modifiers::default();
+                let event = KeyEvent { key, base: None, modifiers, phase: Phase::Press };
+                self.app.key(event, due);
             }
-            assert_eq!(arrows, 1, "{}", level.name);
+            self.app.advance(self.now);
+        }
+    }
+
+    fn game(&self) -> &Game {
+        self.app.game.grid().expect("tests play in grids")
+    }
+
+    fn position(&self) -> DVec2 {
+        self.game().camera(FieldOfView::default()).position()
+    }
+
+    fn degrees(&self) -> f64 {
+        self.game().camera(FieldOfView::default()).heading.degrees()
+    }
+}
+
+/// An open floor, with the start in its middle, looking east.
+fn floor() -> World {
+    let (wall, row) = ("#".repeat(61), format!("#{}#", ".".repeat(59)));
+    let middle = format!("#{}@{}#", ".".repeat(29), ".".repeat(29));
+    let mut rows = vec![wall.clone()];
+    rows.extend(iter::repeat_n(row.clone(), 29));
+    rows.push(middle);
+    rows.extend(iter::repeat_n(row, 29));
+    rows.push(wall);
+    let text = format!(
+        "grid = '''\n{}\n'''\n[tiles]\n\"#\" = {{ wall = \"brick\" }}\n[things]\n\"@\" = {{ start = 0 }}\n",
+        rows.join("\n")
+    );
+    parse_str(&text).unwrap_or_else(|faults| panic!("{faults}"))
+}
+
+/// A pit, one cell wide, that a running jump clears.
+const PIT: &str = r##"
+ceiling = "sky"
+grid = '''
+#############
+#@....~.....#
+#############
+'''
+[tiles]
+"#" = { wall = "brick" }
+"~" = { floor = "#204060", floor_height = -2 }
+[things]
+"@" = { start = 0 }
+"##;
+
+#[test]
+fn who_walks_and_turns_walks_a_circle() {
+    for (delay, rate) in [(250, 40), (500, 30), (660, 15)] {
+        let mut rig = Rig::new(floor(), Some((delay, rate)));
+        rig.press(W);
+        rig.wait(1000);
+        rig.press(Key::Right);
+        rig.wait(1500);
+        // 3 cells a second, and 2.4 radians: a circle with a radius of 1.25 cells.
+        let places: Vec<DVec2> = (0..6)
+            .map(|_| {
+                rig.wait(437);
+                rig.position()
+            })
+            .collect();
+        // Six times a sixth of a turn: opposite places are a diameter apart.
+        for (one, other) in places.iter().zip(&places[3..]) {
+            let diameter = one.distance(*other);
+            assert!((diameter - 2.5).abs() < 0.05, "{delay} ms, {rate} Hz: {places:?}");
         }
     }
 }
 
 #[test]
-fn the_map_is_zoomed_and_moved_and_comes_back() {
-    let size = (120, 40);
-    let mut app = app("citadel", ascii(MapDisplay::All));
-    let first = text(&mut app, size);
-    let mut shown = vec![first.clone()];
-    for key in ['9', '9', '4', '8', '6', '2'] {
-        press(&mut app, Key::Char(key));
-        let now = text(&mut app, size);
-        assert_ne!(Some(&now), shown.last(), "{key} changes nothing");
-        shown.push(now);
+fn two_taps_are_twice_one_tap_in_one_read_and_apart() {
+    for gap in [0, 1, 50, 150, 300, 500] {
+        for (key, one) in [(W, 0.25), (Key::Right, 5.0), (Key::Char('o'), 5.0)] {
+            for taps in 1..=4 {
+                let mut rig = Rig::new(floor(), Some((500, 30)));
+                let start = rig.position();
+                for _ in 0..taps {
+                    rig.press(key);
+                    rig.release(key);
+                    rig.wait(gap);
+                }
+                rig.wait(2500);
+                let done = rig.position().distance(start) + rig.degrees();
+                let expected = f64::from(taps) * one;
+                assert!((done - expected).abs() < 1e-3, "{key} {taps} times: {done}");
+            }
+        }
     }
-    press(&mut app, Key::Char('5'));
-    assert_eq!(text(&mut app, size), first);
+}
+
+#[test]
+fn who_loses_the_focus_lets_go_of_all_keys() {
+    for rate in [None, Some((500, 30))] {
+        let mut rig = Rig::new(floor(), rate);
+        rig.press(W);
+        rig.wait(1000);
+        rig.press(Key::Right);
+        rig.wait(100);
+        rig.app.release_keys();
+        // Another window gets what comes of them from now on.
+        if let Some(keyboard) = &mut rig.keyboard {
+            keyboard.release(Key::Right);
+        }
+        rig.wait(1200);
+        let (position, degrees) = (rig.position(), rig.degrees());
+        rig.wait(1000);
+        assert_eq!((rig.position(), rig.degrees()), (position, degrees));
+    }
+}
+
+#[test]
+fn walking_on_by_itself_ends_with_a_key_to_walk() {
+    let mut rig = Rig::new(floor(), Some((500, 30)));
+    rig.tap(Key::Char('g'), 50);
+    rig.wait(1000);
+    rig.tap(Key::Right, 50);
+    rig.wait(1000);
+    assert!(rig.position().distance(DVec2::new(30.5, 30.5)) > 5.0);
+    rig.tap(Key::Char('s'), 50);
+    rig.wait(1000);
+    let position = rig.position();
+    rig.wait(1000);
+    assert_eq!(rig.position(), position);
+}
+
+#[test]
+fn around_is_180_degrees() {
+    let mut rig = Rig::new(floor(), Some((500, 30)));
+    rig.tap(Key::Char('b'), 50);
+    rig.wait(1000);
+    assert!((rig.degrees() - 180.0).abs() < 1e-9, "{}", rig.degrees());
 }

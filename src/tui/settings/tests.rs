@@ -85,7 +85,7 @@ fn key() -> impl Strategy<Value = Key> {
 proptest! {
     #[test]
     fn what_is_printed_is_read_as_the_same(
-        preset in prop::sample::select(&["qwerty", "azerty"][..]),
+        preset in prop::sample::select(&["qwerty", "azerty", "hjkl"][..]),
         (colors, glyphs, minimap) in (0..5_usize, 0..4_usize, 0..3_usize),
         (fov, fps, mouse) in (0.001..179.9, 1..=240_u32, any::<bool>()),
         fidelity in prop::option::of(any::<u8>()),

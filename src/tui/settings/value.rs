@@ -15,7 +15,7 @@ pub(super) struct Setting {
 
 pub(super) const PRESET: Setting = Setting {
     name: "preset",
-    meaning: "the keyboard that keys are for, as a start: \"qwerty\" or \"azerty\"",
+    meaning: "the keyboard that keys are for, as a start: \"qwerty\", \"azerty\" or \"hjkl\"",
     default: "qwerty",
 };
 pub(super) const COLORS: Setting = Setting {

@@ -1,0 +1,344 @@
+use proptest::prelude::*;
+
+use super::keyboard::Keyboard;
+use super::*;
+
+const KEYBOARDS: [(u64, u32); 16] = [
+    (250, 15),
+    (250, 25),
+    (250, 30),
+    (250, 40),
+    (400, 15),
+    (400, 25),
+    (400, 30),
+    (400, 40),
+    (500, 15),
+    (500, 25),
+    (500, 30),
+    (500, 40),
+    (660, 15),
+    (660, 25),
+    (660, 30),
+    (660, 40),
+];
+const STEPS: u32 = 5;
+
+fn at(milliseconds: u64) -> Duration {
+    Duration::from_millis(milliseconds)
+}
+
+fn opposes(one: char, other: char) -> bool {
+    matches!((one, other), ('w', 's') | ('s', 'w'))
+}
+
+fn press(held: &mut HeldKeys<char>, key: char, milliseconds: u64) -> Press {
+    held.press(key, STEPS, at(milliseconds), |other| opposes(key, other))
+}
+
+/// Someone at a keyboard: what is held in each millisecond, a step every 16 of them.
+struct Typist {
+    held: HeldKeys<char>,
+    keyboard: Keyboard<char>,
+    now: u64,
+    tapped: u32,
+}
+
+impl Typist {
+    fn new((delay, per_second): (u64, u32)) -> Self {
+        Self {
+            held: HeldKeys::default(),
+            keyboard: Keyboard::new(at(delay), per_second),
+            now: 0,
+            tapped: 0,
+        }
+    }
+
+    fn press(&mut self, key: char) {
+        let key = self.keyboard.press(key, at(self.now));
+        press(&mut self.held, key, self.now);
+    }
+
+    fn release(&mut self, key: char) {
+        self.keyboard.release(key);
+    }
+
+    /// Lets time pass, and says in how many of its milliseconds each of `keys` was `Held`.
+    fn wait<const N: usize>(&mut self, milliseconds: u64, keys: [char; N]) -> [u64; N] {
+        let mut held_for = [0; N];
+        for _ in 0..milliseconds {
+            self.now += 1;
+            while let Some((key, due)) = self.keyboard.next_byte(at(self.now)) {
+                self.held.press(key, STEPS, due, |other| opposes(key, other));
+            }
+            self.held.advance(at(self.now));
+            for (count, key) in held_for.iter_mut().zip(keys) {
+                *count += u64::from(self.held.hold(key) == Hold::Held);
+            }
+            if self.now.is_multiple_of(16) {
+                self.tapped +=
+                    self.held.iter().filter(|&(_, hold)| hold == Hold::Tap).count() as u32;
+                self.held.step();
+            }
+        }
+        held_for
+    }
+}
+
+#[test]
+fn with_releases_a_key_is_held_from_the_end_of_its_tap_to_its_release() {
+    let mut held = HeldKeys::default();
+    held.set_reports_releases(true);
+    press(&mut held, 'w', 0);
+    assert_eq!(held.hold('w'), Hold::Tap);
+    (0..STEPS).for_each(|_| held.step());
+    held.advance(at(1_000_000));
+    assert_eq!((held.hold('w'), held.next_expiry()), (Hold::Held, None));
+    held.release('w');
+    assert_eq!(held.hold('w'), Hold::Up);
+}
+
+#[test]
+fn a_tap_that_is_released_goes_on_to_its_end() {
+    let mut held = HeldKeys::default();
+    held.set_reports_releases(true);
+    press(&mut held, 'w', 0);
+    held.release('w');
+    let steps = (0..20).filter(|_| {
+        let taps = held.hold('w') == Hold::Tap;
+        held.step();
+        taps
+    });
+    assert_eq!(steps.count() as u32, STEPS);
+}
+
+#[test]
+fn taps_are_counted_however_quick_they_are() {
+    for gap in [0, 1, 30, 60, 90, 130, 170, 230, 300, 450, 700] {
+        for taps in 1..=4 {
+            let mut typist = Typist::new((250, 30));
+            for _ in 0..taps {
+                typist.press('w');
+                typist.release('w');
+                assert_eq!(typist.wait(gap, ['w']), [0], "{taps} taps every {gap} ms");
+            }
+            typist.wait(2000, []);
+            assert_eq!(typist.tapped, taps * STEPS, "{taps} taps every {gap} ms");
+        }
+    }
+}
+
+#[test]
+fn a_key_is_held_from_its_second_repetition_without_a_gap() {
+    for keyboard in KEYBOARDS {
+        let mut typist = Typist::new(keyboard);
+        for _ in 0..3 {
+            typist.press('w');
+            let interval = 1000 / u64::from(keyboard.1);
+            let begins = keyboard.0 + interval + 1;
+            typist.wait(begins, []);
+            assert_eq!(typist.wait(2000, ['w']), [2000], "{keyboard:?}");
+            typist.release('w');
+            let [coasts] = typist.wait(1500, ['w']);
+            assert!(coasts <= (interval * 5 / 2 + 1).max(91), "{keyboard:?}: {coasts}");
+        }
+    }
+}
+
+#[test]
+fn a_newer_key_does_not_end_an_older_one() {
+    for keyboard in KEYBOARDS {
+        let mut typist = Typist::new(keyboard);
+        typist.press('w');
+        typist.wait(1000, []);
+        typist.press('d');
+        typist.wait(800, []);
+        assert_eq!(typist.wait(2000, ['w', 'd']), [2000, 2000], "{keyboard:?}");
+        typist.release('d');
+        typist.release('w');
+        let [walks, turns] = typist.wait(2000, ['w', 'd']);
+        assert!(turns < walks && walks <= turns + 301, "{keyboard:?}: {walks} {turns}");
+        // And a tap of the newer one.
+        typist.press('w');
+        typist.wait(1000, []);
+        typist.press('d');
+        typist.release('d');
+        assert_eq!(typist.wait(600, ['w', 'd']), [600, 0], "{keyboard:?}");
+        let [walks] = typist.wait(2000, ['w']);
+        assert!((1..=760).contains(&walks), "{keyboard:?}: {walks}");
+    }
+}
+
+#[test]
+fn pressing_it_again_ends_what_a_newer_key_has_cut_off() {
+    let mut typist = Typist::new((500, 30));
+    typist.press('w');
+    typist.wait(1000, []);
+    typist.press('d');
+    typist.release('d');
+    typist.wait(100, []);
+    typist.tapped = 0;
+    typist.press('w');
+    typist.release('w');
+    assert_eq!(typist.wait(2000, ['w']), [0]);
+    assert_eq!(typist.tapped, STEPS);
+}
+
+#[test]
+fn an_opposing_key_ends_a_hold_at_once_but_not_a_tap() {
+    for cut_off in [false, true] {
+        let mut typist = Typist::new((400, 30));
+        typist.press('w');
+        typist.wait(800, []);
+        if cut_off {
+            typist.press('d');
+            typist.wait(50, []);
+        }
+        assert_eq!(typist.held.hold('w'), Hold::Held);
+        typist.press('s');
+        assert_eq!(typist.held.hold('w'), Hold::Up);
+    }
+    let mut typist = Typist::new((400, 30));
+    typist.press('w');
+    typist.press('s');
+    typist.release('s');
+    typist.wait(1000, []);
+    assert_eq!(typist.tapped, 2 * STEPS);
+}
+
+#[test]
+fn two_keys_pressed_together_are_held_together_once_one_repeats() {
+    for keyboard in KEYBOARDS {
+        for (apart, joins) in [(0, true), (140, true), (200, false)] {
+            let mut typist = Typist::new(keyboard);
+            typist.press('w');
+            typist.wait(apart, []);
+            typist.press('d');
+            typist.wait(800, []);
+            let [walks, turns] = typist.wait(500, ['w', 'd']);
+            assert_eq!((walks == 500, turns), (joins, 500), "{keyboard:?}, {apart} ms apart");
+        }
+    }
+}
+
+#[test]
+fn a_jump_takes_along_what_could_not_have_repeated_yet() {
+    let mut typist = Typist::new((500, 30));
+    typist.press('w');
+    typist.wait(300, []);
+    typist.press(' ');
+    typist.release(' ');
+    typist.held.join_newest();
+    assert_eq!(typist.held.hold('w'), Hold::Held);
+    // Somebody in the air keeps what they hold.
+    for _ in 0..40 {
+        typist.held.keep(at(typist.now));
+        assert_eq!(typist.wait(50, ['w']), [50]);
+    }
+    assert!((1..=301).contains(&typist.wait(2000, ['w'])[0]));
+
+    let mut typist = Typist::new((500, 30));
+    typist.press('w');
+    typist.wait(550, []);
+    let mut tapped = Typist::new((500, 30));
+    tapped.press('w');
+    tapped.release('w');
+    tapped.wait(600, []);
+    tapped.press(' ');
+    tapped.held.join_newest();
+    assert_eq!(tapped.held.hold('w'), Hold::Unknown);
+}
+
+/// 15 bytes a second, each up to 60 ms late: some come in pairs.
+#[test]
+fn a_link_that_jitters_neither_lets_go_nor_adds_taps() {
+    for (delay, per_second) in KEYBOARDS {
+        let interval = 1000 / u64::from(per_second);
+        let mut held = HeldKeys::default();
+        press(&mut held, 'w', 0);
+        let mut arrival = 0;
+        for index in 0..60 {
+            let due = delay + index * interval + [0, 60, 10, 45, 5][index as usize % 5];
+            arrival = due.max(arrival);
+            held.advance(at(arrival));
+            if index > 3 {
+                assert_eq!(held.hold('w'), Hold::Held, "{delay} ms, {per_second} Hz, {index}");
+            }
+            press(&mut held, 'w', arrival);
+            (0..interval / 16).for_each(|_| held.step());
+        }
+        assert!(!held.has_taps());
+    }
+}
+
+#[test]
+fn a_stalled_link_delivers_a_repetition_and_no_taps() {
+    let mut typist = Typist::new((500, 30));
+    typist.press('w');
+    typist.wait(1500, []);
+    typist.release('w');
+    typist.wait(450, []);
+    typist.tapped = 0;
+    for _ in 0..14 {
+        press(&mut typist.held, 'w', typist.now);
+    }
+    assert_eq!(typist.held.hold('w'), Hold::Held);
+    typist.wait(1000, []);
+    assert_eq!(typist.tapped, 0);
+}
+
+#[test]
+fn a_repetition_that_nobody_saw_begin_is_one_all_the_same() {
+    let mut held = HeldKeys::default();
+    let presses = (0..20).map(|index| press(&mut held, 'w', index * 33)).collect::<Vec<_>>();
+    assert_eq!(presses[19], Press::Repeat);
+    assert_eq!(held.hold('w'), Hold::Held);
+}
+
+#[test]
+fn what_is_let_go_of_stays_so_until_it_is_pressed_anew() {
+    let mut typist = Typist::new((500, 30));
+    typist.press('w');
+    typist.wait(1000, []);
+    typist.held.release_all();
+    assert_eq!(typist.wait(1000, ['w']), [0]);
+    typist.release('w');
+    typist.wait(400, []);
+    typist.press('w');
+    assert_eq!(typist.held.hold('w'), Hold::Tap);
+}
+
+#[test]
+fn a_byte_says_whether_it_may_be_a_repetition() {
+    let mut held = HeldKeys::default();
+    let bytes = [
+        (0, Press::Fresh),
+        (150, Press::Fresh),
+        (600, Press::Unclear),
+        (1000, Press::Unclear),
+        (1030, Press::Repeat),
+        (1060, Press::Repeat),
+        (4000, Press::Fresh),
+    ];
+    for (milliseconds, press_is) in bytes {
+        assert_eq!(press(&mut held, ' ', milliseconds), press_is, "at {milliseconds} ms");
+    }
+}
+
+proptest! {
+    /// Whatever comes: nothing panics, everything ends, and memory is bounded.
+    #[test]
+    fn any_bytes_end_in_rest(bytes in prop::collection::vec((0..900_u64, prop::char::range('a', 'z')), 0..80)) {
+        let mut held = HeldKeys::default();
+        let mut now = 0;
+        for (gap, key) in bytes {
+            now += gap;
+            press(&mut held, key, now);
+            held.step();
+            prop_assert!(held.keys.len() <= MOST_KEYS);
+        }
+        (0..200).for_each(|_| held.step());
+        held.advance(at(now + 3000));
+        prop_assert_eq!(held.iter().count(), 0);
+        prop_assert_eq!((held.next_expiry(), held.has_taps()), (None, false));
+    }
+}
