@@ -8,6 +8,7 @@
 
 mod collision;
 mod doors;
+mod exits;
 mod fall;
 mod flight;
 mod gaze;
@@ -26,6 +27,7 @@ use doors::{Doors, door_ahead};
 use notice::Notice;
 use player::{AIM, FRICTION, Player, RUN, STILL, TURN, TURN_FRICTION, WALK};
 
+pub use exits::is_exit_out_of_reach;
 pub use flight::Flight;
 pub use intent::{Intent, Intents};
 #[cfg(feature = "accuracy")]
