@@ -9,6 +9,7 @@ mod picture;
 mod png;
 mod text;
 mod watched;
+mod whereabouts;
 
 use std::io::{self, BufWriter, IsTerminal, Write};
 
@@ -107,6 +108,10 @@ fn camera(world: &World, place: Option<(DVec2, Heading)>, options: &Snapshot) ->
         place.and_then(|(position, heading)| Camera::new(position, heading, options.field_of_view));
     let camera = camera.unwrap_or(start);
     let camera = options.eye.and_then(|eye| camera.with_eye(eye)).unwrap_or(camera);
+    let is_chosen = place.is_some() || options.eye.is_some();
+    if let Some(remark) = whereabouts::remark(world, &camera).filter(|_| is_chosen) {
+        Error::mistake(remark).warn();
+    }
     camera.with_pitch(options.pitch.unwrap_or_default())
 }
 

@@ -31,8 +31,8 @@ impl FaceLight {
 
     /// How bright it is at `u`, from 0 at its left end to 1 at its right.
     #[inline]
-    pub(crate) fn at(&self, u: f64) -> Light {
-        let Self { middle, beside: [left, right] } = *self;
+    pub(crate) fn at(self, u: f64) -> Light {
+        let Self { middle, beside: [left, right] } = self;
         if left == middle && right == middle {
             return middle;
         }
