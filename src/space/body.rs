@@ -165,13 +165,18 @@ impl Coat {
     ///
     /// It is looked up a little below the surface: one that lies between two layers of cubes would
     /// show both by chance.
-    pub(super) fn mean_color(&self, point: DVec3, normal: DVec3, footprint: Footprint) -> Rgb {
+    pub(super) fn mean_color(
+        &self,
+        point: DVec3,
+        normal: DVec3,
+        footprint: impl FnOnce() -> Footprint,
+    ) -> Rgb {
         /// A share of a cube that is larger than any rounding, and too small to see.
         const DEPTH: f64 = 1.0 / 1024.0;
         match *self {
             Self::Plain(color) => color,
             Self::Checker(colors, scale) => {
-                let Footprint(widths) = footprint;
+                let Footprint(widths) = footprint();
                 let below = point / scale.cells() - normal * DEPTH;
                 let mean = checker::mean(below, widths / scale.cells());
                 // The one at the origin is +1, the other -1.
@@ -182,7 +187,7 @@ impl Coat {
 
     /// The colour at `point`.
     pub fn color_at(&self, point: DVec3) -> Rgb {
-        self.mean_color(point, DVec3::ZERO, Footprint(DVec3::ZERO))
+        self.mean_color(point, DVec3::ZERO, || Footprint(DVec3::ZERO))
     }
 }
 

@@ -39,10 +39,10 @@ fn mean_along(place: f64, width: f64) -> f64 {
     /// Wider, the mean is nearer to 0 than a colour can tell.
     const WIDEST: f64 = 65_536.0;
     // A large place would leave no digits for what is between two ends that are near each other.
-    let place = place.rem_euclid(2.0);
+    let place = within_two(place);
     let (low, high) = (place - width / 2.0, place + width / 2.0);
     if low.floor() == high.floor() {
-        if low.floor().rem_euclid(2.0) == 0.0 { 1.0 } else { -1.0 }
+        if within_two(low.floor()) == 0.0 { 1.0 } else { -1.0 }
     } else if width < WIDEST {
         ((integral(high) - integral(low)) / width).clamp(-1.0, 1.0)
     } else {
@@ -52,7 +52,12 @@ fn mean_along(place: f64, width: f64) -> f64 {
 
 /// The integral of that wave from 0 to `place`.
 fn integral(place: f64) -> f64 {
-    1.0 - (place.rem_euclid(2.0) - 1.0).abs()
+    1.0 - (within_two(place) - 1.0).abs()
+}
+
+/// `place` less a multiple of 2, from 0 to 2: exact, and quicker than a remainder.
+fn within_two(place: f64) -> f64 {
+    place - 2.0 * (place / 2.0).floor()
 }
 
 #[cfg(test)]
