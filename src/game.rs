@@ -8,6 +8,7 @@
 
 mod collision;
 mod doors;
+mod exits;
 mod fall;
 mod flight;
 mod gaze;
@@ -28,6 +29,7 @@ use doors::{Doors, door_ahead};
 use notice::Notice;
 use player::{FRICTION, Player, RUN, STILL, WALK};
 
+pub use exits::is_exit_out_of_reach;
 pub use flight::Flight;
 pub use intent::{Intent, Intents};
 pub use look::Look;

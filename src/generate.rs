@@ -51,6 +51,12 @@ pub trait Terrain: fmt::Debug + Send + Sync {
     /// An open cell of the chunk from which one gets to the neighbours; `None` where the plot is too
     /// small to have any.
     fn hub(&self, plot: &Plot) -> Option<(usize, usize)>;
+
+    /// The cell of the chunk in which one starts who wants to start nowhere in particular: its corner,
+    /// unless a terrain knows a better one. If one cannot get away from there, the hub is used.
+    fn start(&self, _plot: &Plot) -> (usize, usize) {
+        (0, 0)
+    }
 }
 
 /// A built-in way to make levels.

@@ -5,7 +5,8 @@
 //! the south, z upwards, lengths in cells. Looking up turns the camera, as there are no columns here
 //! that it would cost.
 //!
-//! Rays are primary: what they hit is lit by how it faces the sun, and throws no shadow.
+//! What a ray hits is lit by how it faces the sun, if no other body is in between: see `shadows`. A
+//! checker shows the mean of what a pixel covers of it: see `checker`.
 //!
 //! A body is tested against the pixels that it can cover and no others: its bounds on the screen are
 //! found first, and a row of pixels asks only the bodies that reach it. A tree of bounding volumes was
@@ -14,12 +15,14 @@
 mod body;
 mod bounds;
 mod camera;
+mod checker;
 mod explanation;
 mod light;
 mod ray;
 mod renderer;
 mod scene;
 mod seen;
+mod shadows;
 
 pub use body::{Block, Body, Coat, FARTHEST, Plane, SMALLEST, Shape, Sphere};
 pub use camera::{Axes, Camera, EYE_ROOM, Elevation};

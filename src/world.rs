@@ -14,6 +14,7 @@ mod clearance;
 mod color;
 mod covering;
 mod door;
+mod face_light;
 mod grid;
 mod heights;
 mod lamplight;
@@ -34,6 +35,7 @@ pub use color::{NotAColor, Rgb};
 pub use covering::{Ceiling, Covering, Pattern, Scale};
 use door::Ajar;
 pub use door::{Door, KeyId, Opening};
+pub(crate) use face_light::FaceLight;
 pub use grid::{Cell, Grid, TileId};
 pub use heights::{Gap, Heights};
 pub(crate) use lamplight::Lamplight;
@@ -64,6 +66,8 @@ pub struct World {
     sprites: Vec<Sprite>,
     things: Things,
     lamplight: Lamplight,
+    /// Whether cells may be lit differently.
+    light_varies: bool,
     keys: Vec<String>,
     ajar: Ajar,
 }

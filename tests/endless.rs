@@ -185,3 +185,45 @@ proptest! {
         }
     }
 }
+
+/// A mean that one can read a picture by, and no more light than is left in a dungeon.
+#[test]
+fn first_views_are_neither_too_dark_nor_too_bright() {
+    for (generator, allowed) in
+        [(Generator::Maze, 53..=140), (Generator::Cave, 53..=100), (Generator::Office, 60..=180)]
+    {
+        for seed in 1..=8 {
+            let luma = mean_luma(&first_view(generator, seed));
+            assert!(allowed.contains(&luma), "{} {seed}: {luma}", generator.name());
+        }
+    }
+}
+
+/// No two first views of the next seeds are alike: where one starts, or what is built of what.
+#[test]
+fn offices_differ_from_the_first_step() {
+    let views: Vec<Frame> = (1..=8).map(|seed| first_view(Generator::Office, seed)).collect();
+    for (index, one) in views.iter().enumerate() {
+        for other in &views[index + 1..] {
+            let pixels = one.rows().flatten().zip(other.rows().flatten());
+            let differ =
+                pixels.filter(|(one, other)| one.luma().abs_diff(other.luma()) > 16).count();
+            assert!(differ > 80 * 48 / 5, "{differ} pixels from view {}", index + 1);
+        }
+    }
+}
+
+/// What somebody sees first, in a terminal of 80×24 cells.
+fn first_view(generator: Generator, seed: u64) -> Frame {
+    let level = generator.level(seed, Extent::Endless).unwrap();
+    let start = level.start().unwrap();
+    let game = Game::in_level(level, start).unwrap();
+    let mut frame = Frame::new(FrameSize::new(80, 48).unwrap(), PixelAspect::SQUARE);
+    Renderer::new().render(game.world(), &game.camera(FieldOfView::default()), &mut frame);
+    frame
+}
+
+fn mean_luma(frame: &Frame) -> u64 {
+    let pixels = || frame.rows().flatten();
+    pixels().map(|pixel| u64::from(pixel.luma())).sum::<u64>() / pixels().count() as u64
+}

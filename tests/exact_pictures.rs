@@ -5,7 +5,7 @@ use std::path::Path;
 
 use cellcaster::map;
 use cellcaster::render::{Frame, FrameSize, PixelAspect, Renderer};
-use cellcaster::world::{Camera, FieldOfView, Heading, Rgb, World};
+use cellcaster::world::{Camera, FieldOfView, Heading, Rgb, Tile, TileKind, World};
 use glam::DVec2;
 use num_rational::BigRational;
 use num_traits::{Signed, Zero};
@@ -36,6 +36,17 @@ aa.accc
 const FLOOR: Rgb = Rgb::new(0x10, 0x20, 0x30);
 const CEILING: Rgb = Rgb::new(0x40, 0x50, 0x60);
 
+/// The same map with floor of several lights, and a wall with one of its own.
+fn lit_map() -> String {
+    let cells = MAP
+        .replace("b.....c\na..d", "be..f.c\na.fd")
+        .replace("c.dc..b\nb.....b", "cedc.eb\nbf..ffb");
+    let d = r##""d" = { wall = "#fcfb07" }"##;
+    let lit = "\"e\" = { light = 0.2 }\n\"f\" = { light = 0.9 }\n\"d\" = { wall = \"#fcfb07\", light = 0.7 }";
+    assert!(cells.contains(d));
+    cells.replace(d, lit).replace("floor   =", "light = 0.5\nfloor   =")
+}
+
 /// How near to an edge a pixel's centre may be before its colour is anybody's guess, in pixels.
 const DOUBTFUL: f64 = 1e-6;
 
@@ -63,6 +74,30 @@ proptest! {
         let geometry = Geometry::new(&world, &camera, &frame);
         for (x, y) in (0..size.0).flat_map(|x| (0..size.1).map(move |y| (x, y))) {
             if let Some(color) = geometry.color(x, y) {
+                prop_assert_eq!(frame.pixel(x, y), color, "at ({}, {})", x, y);
+            }
+        }
+    }
+}
+
+proptest! {
+    #![proptest_config(ProptestConfig::with_cases(24))]
+
+    /// Along a wall, light goes over from the middle of one cell before it to that of the next.
+    #[test]
+    fn every_pixel_of_a_wall_is_as_bright_as_geometry_says(
+        position in (1.1..5.9, 1.1..5.9),
+        degrees in 0.0..360.0,
+        size in (1_u32..24, 1_u32..12),
+    ) {
+        let world = map::parse_str(&lit_map()).unwrap();
+        let heading = Heading::from_degrees(degrees).unwrap();
+        let camera = Camera::new(position.into(), heading, FieldOfView::default()).unwrap();
+        let mut frame = Frame::new(FrameSize::new(size.0, size.1).unwrap(), PixelAspect::SQUARE);
+        Renderer::new().render(&world, &camera, &mut frame);
+        let geometry = Geometry::new(&world, &camera, &frame);
+        for (x, y) in (0..size.0).flat_map(|x| (0..size.1).map(move |y| (x, y))) {
+            if let Some(color) = geometry.lit_color(x, y) {
                 prop_assert_eq!(frame.pixel(x, y), color, "at ({}, {})", x, y);
             }
         }
@@ -175,6 +210,68 @@ impl<'a> Geometry<'a> {
             None if below.is_negative() => Some(Rgb::SKY),
             None => Some(FLOOR),
         }
+    }
+
+    /// As [`Geometry::color`], of a wall in its light; `None` elsewhere, too.
+    fn lit_color(&self, x: u32, y: u32) -> Option<Rgb> {
+        let color = self.color(x, y)?;
+        let across = f64::from(x) + 0.5;
+        let met = self.cast(&exact(across));
+        let (column, row, face) = met.place?;
+        let below = exact(f64::from(y) + 0.5) - &self.height / exact(2.0);
+        if below.abs() > &self.focal_length / exact(2.0) / &met.distance {
+            return None;
+        }
+        let lights = [across - DOUBTFUL, across, across + DOUBTFUL]
+            .map(|across| self.light(&exact(across), (column, row, face)));
+        let [red, green, blue] = self.wall_color(column, row).channels();
+        let share = lights[1] / if face == Face::Y { 2 } else { 1 };
+        let lit = |channel: u8| (u32::from(channel) * share / 256) as u8;
+        assert!(color == self.wall_color(column, row) || face == Face::Y);
+        lights
+            .windows(2)
+            .all(|pair| pair[0] == pair[1])
+            .then(|| Rgb::new(lit(red), lit(green), lit(blue)))
+    }
+
+    /// The light, in 256ths, where the ray through `across` meets a face.
+    fn light(&self, across: &BigRational, (column, row, face): (i64, i64, Face)) -> u32 {
+        let tile_in = |column: i64, row: i64| {
+            self.world.grid().tile(column, row).map(|id| self.world.tile(id))
+        };
+        let own = tile_in(column, row).and_then(|tile| tile.light);
+        if let Some(own) = own {
+            return own.in_256ths();
+        }
+        let share = across * exact(2.0) / &self.width - exact(1.0);
+        let direction = Point {
+            x: &self.direction.x + &self.plane.x * &share,
+            y: &self.direction.y + &self.plane.y * &share,
+        };
+        let before = |along: &BigRational| if along.is_positive() { -1 } else { 1 };
+        let t = self.cast(across).distance;
+        // The cell before the face, the way along it, and how far along that is.
+        let (here, way, along) = match face {
+            Face::X => {
+                ((column + before(&direction.x), row), (0, 1), &self.origin.y + &t * &direction.y)
+            }
+            Face::Y => {
+                ((column, row + before(&direction.y)), (1, 0), &self.origin.x + &t * &direction.x)
+            }
+        };
+        let index = exact(if face == Face::X { row } else { column } as f64);
+        let from_middle = along - index - exact(0.5);
+        let sign = if from_middle.is_negative() { -1 } else { 1 };
+        let next = tile_in(here.0 + sign * way.0, here.1 + sign * way.1);
+        let light = |tile: Tile| exact(f64::from(tile.light.unwrap().in_256ths()));
+        let light_here = light(tile_in(here.0, here.1).unwrap());
+        let light_next = match next {
+            Some(next) if next.kind == TileKind::Open => light(next),
+            _ => light_here.clone(),
+        };
+        let share = from_middle.abs();
+        let light = &light_here * (exact(1.0) - &share) + light_next * share;
+        u32::try_from((light + exact(0.5)).to_integer()).unwrap()
     }
 
     fn wall_color(&self, column: i64, row: i64) -> Rgb {

@@ -123,7 +123,10 @@ const OUTLINES: [&str; 6] = [
 
 /// A map of tiles `a`, `b` and so on, with things on some of the first kind; the player starts in a corner
 /// that nobody looks at.
-fn map_of(kinds: &[Kind], cells: &[usize], is_covered: bool, look: Look) -> String {
+fn map_of(scene: &Scene, look: Look) -> String {
+    let Scene { kinds, cells, is_covered, lights, .. } = scene;
+    let is_covered = *is_covered;
+    let light = |kind: usize| lights.get(kind).map(|light| format!(", light = {light}"));
     let mut text = format!(
         "sky = {{ gradient = [\"{SKY}\", \"{SKY}\"] }}\nfloor = \"{}\"\nceiling = \"{}\"\n",
         look.paint('z', 0),
@@ -139,16 +142,21 @@ fn map_of(kinds: &[Kind], cells: &[usize], is_covered: bool, look: Look) -> Stri
         text.push('\n');
     }
     _ = writeln!(text, "@.....\n'''\n[tiles]");
-    for (character, kind) in ('a'..).zip(kinds) {
+    for (character, (index, kind)) in ('a'..).zip(kinds.iter().enumerate()) {
+        let light = light(index).unwrap_or_default();
         let [floor, ceiling, riser, lintel] = [0, 1, 2, 3].map(|part| look.paint(character, part));
         _ = match kind {
             Kind::Wall { height } => {
-                writeln!(text, "{character} = {{ wall = \"{riser}\", height = {height:?} }}")
+                writeln!(
+                    text,
+                    "{character} = {{ wall = \"{riser}\", height = {height:?}{} }}",
+                    if index == 1 { &light } else { "" }
+                )
             }
             Kind::Open { floor: height } => writeln!(
                 text,
                 "{character} = {{ floor = \"{floor}\", floor_height = {height:?}, riser = \"{riser}\", \
-                 ceiling = \"sky\" }}",
+                 ceiling = \"sky\"{light} }}",
             ),
             Kind::Covered { floor: height, room, rock } => {
                 let top = height + room.max(height.abs() * 1e-9);
@@ -156,7 +164,7 @@ fn map_of(kinds: &[Kind], cells: &[usize], is_covered: bool, look: Look) -> Stri
                     text,
                     "{character} = {{ floor = \"{floor}\", floor_height = {height:?}, \
                      riser = \"{riser}\", ceiling = \"{ceiling}\", ceiling_height = {top:?}, \
-                     roof_height = {:?}, lintel = \"{lintel}\" }}",
+                     roof_height = {:?}, lintel = \"{lintel}\"{light} }}",
                     top + rock
                 )
             }
@@ -188,6 +196,8 @@ fn direction(camera: &Camera, frame: &Frame, x: f64, y: f64) -> DVec3 {
 struct Scene {
     kinds: Vec<Kind>,
     cells: Vec<usize>,
+    /// How bright it is on each kind of tile; none where all is fully lit.
+    lights: Vec<f64>,
     is_covered: bool,
     position: DVec2,
     is_on_a_roof: bool,
@@ -208,6 +218,10 @@ prop_compose! {
             Look::Textures => prop::collection::vec(kind(ordinary_height), KINDS - 1).boxed(),
         },
         cells in prop::collection::vec(0..=KINDS, COLUMNS * ROWS),
+        lights in prop_oneof![
+            Just(Vec::new()),
+            prop::collection::vec(0.0..=1.0, KINDS),
+        ],
         is_covered in any::<bool>(),
         position in (0.0..6.0, 0.0..5.0),
         is_on_a_roof in any::<bool>(),
@@ -218,13 +232,13 @@ prop_compose! {
     ) -> Scene {
         let kinds = [vec![first], others].concat();
         let position = DVec2::from(position);
-        Scene { kinds, cells, is_covered, position, is_on_a_roof, up, degrees, pitch, size }
+        Scene { kinds, cells, lights, is_covered, position, is_on_a_roof, up, degrees, pitch, size }
     }
 }
 
 /// Compares every pixel of a picture but for those on an edge.
 fn compare(scene: &Scene, look: Look) -> Result<(), TestCaseError> {
-    let text = map_of(&scene.kinds, &scene.cells, scene.is_covered, look);
+    let text = map_of(scene, look);
     let world = map::parse(&text, "random", &Noise).unwrap_or_else(|it| panic!("{text}\n{it}"));
     let position = scene.position;
     let tile = world.grid().tile(position.x as i64, position.y as i64).unwrap();

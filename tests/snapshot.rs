@@ -126,8 +126,39 @@ fn a_letter_on_a_wall_reads_the_same_from_all_sides() {
 #[test]
 fn a_camera_can_stand_anywhere() {
     for camera in ["2.5,2.5,90", "-3,-4.5,45", "1e300,0,180", "0,0,1e300", "3,3,-0"] {
-        let picture = output_of(&["snapshot", "--camera", camera, "--size", "20x5"]);
-        assert_eq!(String::from_utf8(picture).unwrap().lines().count(), 5, "{camera}");
+        let arguments = ["snapshot", "--camera", camera, "--size", "20x5"];
+        let output = cellcaster(&arguments).output().unwrap();
+        assert_eq!(output.status.code(), Some(0), "{camera}");
+        assert_eq!(String::from_utf8(output.stdout).unwrap().lines().count(), 5, "{camera}");
+    }
+}
+
+#[test]
+fn a_camera_where_nobody_can_be_says_so() {
+    let remark = |arguments: &[&str]| {
+        let arguments = [&["snapshot", "--size", "20x5"], arguments].concat();
+        let output = cellcaster(&arguments).output().unwrap();
+        assert_eq!(output.status.code(), Some(0), "{arguments:?}");
+        String::from_utf8(output.stderr).unwrap()
+    };
+    assert_eq!(remark(&["--camera", "2.5,2.5,90"]), "");
+    assert!(remark(&["--camera", "0.5,0.5,90"]).contains("inside a wall"));
+    assert!(remark(&["--camera", "-3,-4.5,45"]).contains("off the map, which has"));
+    assert!(remark(&["--camera", "1e300,0,180"]).contains("off the map"));
+    assert!(remark(&["--camera", "2.5,2.5,90", "--eye", "-1"]).contains("below the floor"));
+    assert!(remark(&["maps/gallery/floor.toml", "--eye", "1.0"]).is_empty());
+}
+
+/// The map in which this was found.
+#[test]
+fn an_exit_that_nobody_can_reach_is_told_of() {
+    let check = |map: &str| String::from_utf8(output_of(&["check", map])).unwrap();
+    let reachable = check("tests/maps/way_out.toml");
+    assert!(!reachable.contains("exit"), "{reachable}");
+    let walled_in = check("tests/maps/walled_in.toml");
+    assert!(walled_in.contains("right, 16×10 cells; but nobody can reach an exit"), "{walled_in}");
+    for level in ["cellar", "museum", "cistern", "observatory", "citadel"] {
+        assert!(!check(level).contains("exit"), "{level}");
     }
 }
 

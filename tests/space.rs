@@ -2,9 +2,9 @@
 
 use cellcaster::render::{Frame, FrameSize, PixelAspect};
 use cellcaster::space::{
-    Block, Body, Camera, Coat, Elevation, Plane, Ray, Renderer, Scene, Shape, Sphere,
+    Block, Body, Camera, Coat, Elevation, Plane, Ray, Renderer, Scene, Shape, Share, Sphere, Sun,
 };
-use cellcaster::world::{FieldOfView, Heading, Rgb};
+use cellcaster::world::{FieldOfView, Heading, Rgb, Scale};
 use glam::DVec3;
 use proptest::prelude::*;
 
@@ -54,6 +54,17 @@ fn camera() -> impl Strategy<Value = Camera> {
             camera.with_elevation(Elevation::from_degrees(elevation).unwrap())
         },
     )
+}
+
+/// Whether another body hides the sun from `point` on `body`, by casting at each alone.
+fn is_in_shadow(scene: &Scene, body: usize, point: DVec3) -> bool {
+    let others = scene.bodies.iter().enumerate().filter(|&(index, _)| index != body);
+    others.map(|(_, &other)| other).any(|other| {
+        let alone = Scene { bodies: vec![other], ..Scene::default() };
+        let is_outside = other.shape.clearance(point).0 > 0.0;
+        let casts = !matches!(other.shape, Shape::Plane(_)) && is_outside;
+        casts && alone.cast(&Ray::new(point, scene.sun.toward())).is_some()
+    })
 }
 
 proptest! {
@@ -143,7 +154,12 @@ proptest! {
                     None => scene.sky.color(ray.direction),
                     Some(hit) => {
                         hits += 1;
-                        let share = (256.0 * scene.sun.brightness(hit.normal)).round() / 256.0;
+                        let brightness = if is_in_shadow(&scene, hit.body, ray.at(hit.t)) {
+                            scene.sun.ambient.get()
+                        } else {
+                            scene.sun.brightness(hit.normal)
+                        };
+                        let share = (256.0 * brightness).round() / 256.0;
                         let [red, ..] = pixel.channels();
                         prop_assert_eq!(red, (hit.body as f64 * share) as u8);
                         let level = (255.0 * share) as u8;
@@ -182,6 +198,82 @@ fn a_small_body_costs_few_tests() {
     assert!(explanation.hits > 100 && explanation.tests < 2 * explanation.hits);
     let behind = Camera::new(DVec3::X * 20.0, Heading::default(), FieldOfView::default()).unwrap();
     assert_eq!(Renderer::new().explain(&scene, &behind, &mut frame).tests, 0);
+}
+
+/// What a pixel of a checkered floor shows is the mean of what the rays through it meet.
+#[test]
+fn a_checkered_floor_is_the_mean_of_what_its_pixels_cover() {
+    const SAMPLES: u32 = 24;
+    let floor = Shape::Plane(Plane::new(DVec3::ZERO, DVec3::Z).unwrap());
+    let coat = Coat::Checker([Rgb::BLACK, Rgb::WHITE], Scale::ONE);
+    let sun = Sun::new(DVec3::Z, Share::new(0.5).unwrap()).unwrap();
+    let bodies = vec![Body { shape: floor, coat }];
+    let scene = Scene { bodies, sun, ..Scene::default() };
+    let camera = Camera::new(DVec3::Z * 1.7, Heading::default(), FieldOfView::default()).unwrap();
+    let (size, fine) = (FrameSize::new(48, 36), FrameSize::new(48 * SAMPLES, 36 * SAMPLES));
+    let (size, fine) = (size.unwrap(), fine.unwrap());
+    let mut frame = Frame::new(size, PixelAspect::SQUARE);
+    Renderer::new().render(&scene, &camera, &mut frame);
+    let is_white = |column: u32, row: u32| {
+        let ray = camera.ray(fine, PixelAspect::SQUARE, column, row);
+        let hit = scene.cast(&ray).unwrap();
+        coat.color_at(ray.at(hit.t) - DVec3::Z * 0.01) == Rgb::WHITE
+    };
+    let linear = |channel: u8| libm::pow((f64::from(channel) / 255.0 + 0.055) / 1.055, 2.4);
+    let (mut error, mut error_of_one_sample) = (0.0, 0.0);
+    // The row below the horizon is endless. What a pixel covers is not quite a box.
+    for row in 19..36 {
+        for column in 0..48 {
+            let samples = (0..SAMPLES * SAMPLES)
+                .filter(|index| {
+                    let (x, y) = (index % SAMPLES, index / SAMPLES);
+                    is_white(column * SAMPLES + x, row * SAMPLES + y)
+                })
+                .count();
+            let expected = samples as f64 / f64::from(SAMPLES * SAMPLES);
+            let shown = linear(frame.pixel(column, row).red()).max(0.0);
+            error += (shown - expected).abs();
+            let middle = SAMPLES / 2;
+            let sample = is_white(column * SAMPLES + middle, row * SAMPLES + middle);
+            error_of_one_sample += (f64::from(u8::from(sample)) - expected).abs();
+        }
+    }
+    let pixels = f64::from(17 * 48);
+    assert!(error / pixels < 0.08, "{}", error / pixels);
+    assert!(error_of_one_sample > 2.0 * error, "{error_of_one_sample} {error}");
+}
+
+#[test]
+fn far_squares_are_grey() {
+    let floor = Shape::Plane(Plane::new(DVec3::ZERO, DVec3::Z).unwrap());
+    let coat = Coat::Checker([Rgb::BLACK, Rgb::WHITE], Scale::ONE);
+    let sun = Sun::new(DVec3::Z, Share::new(0.0).unwrap()).unwrap();
+    let scene = Scene { bodies: vec![Body { shape: floor, coat }], sun, ..Scene::default() };
+    let camera = Camera::new(DVec3::Z * 1.7, Heading::default(), FieldOfView::default()).unwrap();
+    let mut frame = Frame::new(FrameSize::new(80, 400).unwrap(), PixelAspect::SQUARE);
+    Renderer::new().render(&scene, &camera, &mut frame);
+    for column in 0..80 {
+        // Half of white in linear light.
+        assert!(frame.pixel(column, 200).red().abs_diff(188) <= 6, "{}", frame.pixel(column, 200));
+    }
+}
+
+/// Shadows cost what is near the way to the sun, not what there is.
+#[test]
+fn a_thousand_balls_in_a_row_cast_few_shadow_rays_at_each_other() {
+    let ball = |index: u32| sphere(DVec3::new(8.0, f64::from(index) - 500.0, 0.5), 0.4);
+    let floor = Shape::Plane(Plane::new(DVec3::ZERO, DVec3::Z).unwrap());
+    let shapes = (0..1000).map(ball).chain([floor]);
+    let scene = Scene {
+        bodies: shapes.map(|shape| Body { shape, coat: Coat::Plain(Rgb::WHITE) }).collect(),
+        sun: Sun::new(DVec3::new(-1.0, 0.0, 1.0), Share::new(0.2).unwrap()).unwrap(),
+        ..Scene::default()
+    };
+    let camera = Camera::new(DVec3::Z * 2.0, Heading::default(), FieldOfView::default()).unwrap();
+    let mut frame = Frame::new(FrameSize::new(160, 96).unwrap(), PixelAspect::SQUARE);
+    let explanation = Renderer::new().explain(&scene, &camera, &mut frame);
+    assert!(explanation.shadow_rays > 1000);
+    assert!(explanation.shadow_tests < 2 * explanation.shadow_rays, "{explanation}");
 }
 
 #[test]

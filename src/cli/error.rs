@@ -52,6 +52,11 @@ impl Error {
         Self { cause: Cause::Machine(sentence.into()) }
     }
 
+    /// Prints what there is to say, for a command that goes on.
+    pub(super) fn warn(&self) {
+        print(self);
+    }
+
     /// Prints what there is to say, and tells the status to end with.
     pub(super) fn report(&self) -> ExitCode {
         match &self.cause {

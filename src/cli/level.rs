@@ -90,18 +90,20 @@ pub(super) fn load_or_dig(
 ) -> Result<Levels, Error> {
     let Some(generated) = generated else { return load_series(map) };
     let Generated { generator, seed, extent, start } = generated;
-    let game = move |seed: u64, start: Site| {
+    let game = move |seed: u64, start: Option<Site>| {
         let level = generator.level(seed, extent)?;
+        let start = start.or(level.start()).unwrap_or_default();
         Game::in_level(level, start).ok_or_else(|| Error::mistake(NO_START))
     };
-    let first = game(seed, start.unwrap_or_default())?;
-    let later = (1..).map_while(move |by| game(seed.wrapping_add(by), Site::default()).ok());
+    let first = game(seed, start)?;
+    let later = (1..).map_while(move |by| game(seed.wrapping_add(by), None).ok());
     Ok(Levels::of_games(first, later))
 }
 
-/// The part of a level to dig that is around `site`.
-pub(super) fn dig(generated: Generated, site: Site) -> Result<(Window, World), Error> {
+/// The part of a level to dig that is around `site`, or around its start.
+pub(super) fn dig(generated: Generated, site: Option<Site>) -> Result<(Window, World), Error> {
     let level = generated.generator.level(generated.seed, generated.extent)?;
+    let site = site.or(level.start()).unwrap_or_default();
     Window::open(level, site).ok_or_else(|| Error::mistake(NO_START))
 }
 

@@ -9,6 +9,7 @@ mod picture;
 mod png;
 mod text;
 mod watched;
+mod whereabouts;
 
 use std::io::{self, BufWriter, IsTerminal, Write};
 
@@ -88,13 +89,13 @@ fn draw(level: &Level, options: &Snapshot) -> Result<(), Error> {
 /// The part of a level to dig that is around the camera, and the camera in that.
 fn dug(generated: Generated, options: &Snapshot) -> Result<(World, Camera), Error> {
     let Some((position, heading)) = options.camera else {
-        let (_, world) = level::dig(generated, generated.start.unwrap_or_default())?;
+        let (_, world) = level::dig(generated, generated.start)?;
         let camera = camera(&world, None, options);
         return Ok((world, camera));
     };
     let whole = position.floor();
     let site = Site { column: whole.x as i64, row: whole.y as i64 };
-    let (window, world) = level::dig(generated, site)?;
+    let (window, world) = level::dig(generated, Some(site))?;
     // Exact: the corner of a cell of the window, and what is left of a double without its whole part.
     let corner = window.cell(site).map_or(DVec2::ZERO, |cell| cell.center() - 0.5);
     let camera = camera(&world, Some((corner + (position - whole), heading)), options);
@@ -107,6 +108,10 @@ fn camera(world: &World, place: Option<(DVec2, Heading)>, options: &Snapshot) ->
         place.and_then(|(position, heading)| Camera::new(position, heading, options.field_of_view));
     let camera = camera.unwrap_or(start);
     let camera = options.eye.and_then(|eye| camera.with_eye(eye)).unwrap_or(camera);
+    let is_chosen = place.is_some() || options.eye.is_some();
+    if let Some(remark) = whereabouts::remark(world, &camera).filter(|_| is_chosen) {
+        Error::mistake(remark).warn();
+    }
     camera.with_pitch(options.pitch.unwrap_or_default())
 }
 

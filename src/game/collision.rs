@@ -30,6 +30,11 @@ impl Radius {
     pub(super) const fn new(cells: f64) -> Option<Self> {
         if cells > 0.0 && cells <= 0.5 { Some(Self(cells)) } else { None }
     }
+
+    /// It in cells.
+    pub(super) const fn cells(self) -> f64 {
+        self.0
+    }
 }
 
 /// What may be in the way of a circle.

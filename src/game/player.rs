@@ -14,7 +14,8 @@ use crate::generate::Shift;
 use crate::world::{Camera, Cell, FieldOfView, Heading, World};
 
 /// How far from their middle the player touches a wall: doors are twice as wide as they are.
-const RADIUS: Radius = Radius::new(0.25).expect("a quarter is between nothing and a half");
+pub(super) const RADIUS: Radius =
+    Radius::new(0.25).expect("a quarter is between nothing and a half");
 
 /// Cells per second, in any direction.
 pub(super) const WALK: f64 = 3.0;
@@ -25,9 +26,9 @@ pub(super) const RUN: f64 = 5.5;
 pub(super) const FRICTION: f64 = 12.0;
 
 /// How much higher a floor may be for somebody to step onto it, or lower to step down, in cells.
-const STEP_HEIGHT: f64 = 0.35;
+pub(super) const STEP_HEIGHT: f64 = 0.35;
 /// How high somebody jumps, in cells.
-const JUMP_HEIGHT: f64 = 0.66;
+pub(super) const JUMP_HEIGHT: f64 = 0.66;
 
 /// What is slower stands still, in cells or radians per second. An exponential never ends, but a
 /// program that may sleep while nothing moves wants it to.

@@ -9,7 +9,7 @@ use crate::world::Camera;
 
 /// How tall somebody is, standing and ducking, in cells.
 const STANDING: f64 = 0.7;
-const DUCKING: f64 = 0.5;
+pub(super) const DUCKING: f64 = 0.5;
 /// How high the eye of somebody is who ducks, in cells above the feet.
 const EYE_DUCKING: f64 = 0.3;
 /// How much room there always is above the eye, in cells.

@@ -26,6 +26,8 @@ pub(super) enum Purpose {
     Dry = 9,
     /// Where the way out is.
     Exit = 8,
+    /// Where one starts.
+    Start = 10,
 }
 
 /// A number that looks random, of a seed, a purpose and a place.

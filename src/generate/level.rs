@@ -36,7 +36,9 @@ impl Level {
 
     /// Where one starts, in the chunk at home. `None` where a terrain has made nowhere to stand there.
     pub fn start(&self) -> Option<Site> {
-        self.start_near(Site::default())
+        let home = ChunkIndex::default();
+        let (column, row) = self.terrain.start(&self.extent.plot(home));
+        self.start_near(home.site(column as i64, row as i64))
     }
 
     /// Where one starts who wants to start at `site`: there, if one can get away from it, or else at

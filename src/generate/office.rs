@@ -9,11 +9,13 @@
 //! from any cell of a room to any other one: no furniture is in the way, and nothing need be checked.
 
 mod block;
+mod decor;
 
 use super::Terrain;
-use super::chunk::{Chunk, Plot};
+use super::chunk::{CHUNK_SIDE, Chunk, Plot, every_cell};
 use super::hash::{Chance, Purpose};
 use block::Block;
+use decor::Decor;
 
 /// An office of a seed.
 #[derive(Clone, Debug)]
@@ -26,6 +28,9 @@ const CORRIDOR: u8 = b',';
 const CORRIDOR_LAMP: u8 = b'L';
 const FIRE_DOOR: u8 = b'=';
 
+/// The floors of rooms, halls and gardens, but for stores, which are dark.
+const ROOM_FLOORS: [u8; 3] = [b'.', b'_', b'"'];
+
 /// Where the corridors are, and how wide.
 const CORRIDORS: std::ops::Range<usize> = 1..3;
 /// Cells between two lamps of a corridor.
@@ -37,7 +42,8 @@ impl Terrain for Office {
     }
 
     fn legend(&self) -> String {
-        format!("title = \"Office {}\"\n{}", self.seed, include_str!("office.toml"))
+        let legend = Decor::of(self.seed).legend(include_str!("office.toml"));
+        format!("title = \"Office {}\"\n{legend}", self.seed)
     }
 
     fn chunk(&self, plot: &Plot) -> Chunk {
@@ -58,6 +64,24 @@ impl Terrain for Office {
         let corner = (CORRIDORS.start, CORRIDORS.start);
         plot.contains(corner.0, corner.1).then_some(corner)
     }
+
+    /// In a room, where of some places one sees furthest.
+    fn start(&self, plot: &Plot) -> (usize, usize) {
+        /// So many places are looked at.
+        const PLACES: usize = 6;
+        let chunk = self.chunk(plot);
+        let is_in_room = |&(column, row): &(usize, usize)| {
+            // No furniture stands there, nor beside it.
+            column % 2 == 0 && row % 2 == 0 && ROOM_FLOORS.contains(&chunk.get(column, row))
+        };
+        let rooms: Vec<_> = every_cell().filter(is_in_room).collect();
+        if rooms.is_empty() {
+            return (0, 0);
+        }
+        let mut chance = Chance::of(self.seed, Purpose::Start, plot.chunk.column, plot.chunk.row);
+        let places = (0..PLACES).map(|_| rooms[chance.below(rooms.len())]);
+        places.max_by_key(|&place| longest_view(&chunk, place)).unwrap_or_default()
+    }
 }
 
 impl Office {
@@ -70,6 +94,24 @@ impl Office {
             chunk.set(CORRIDORS.start, 0, FIRE_DOOR);
         }
     }
+}
+
+/// How many cells of floor lie in a row from a place, along the grid.
+fn longest_view(chunk: &Chunk, (column, row): (usize, usize)) -> usize {
+    let is_floor = |&(column, row): &(usize, usize)| {
+        column < CHUNK_SIDE && row < CHUNK_SIDE && ROOM_FLOORS.contains(&chunk.get(column, row))
+    };
+    let along = |across: isize, down: isize| {
+        let step = move |&(column, row): &(usize, usize)| {
+            Some((column.wrapping_add_signed(across), row.wrapping_add_signed(down)))
+        };
+        std::iter::successors(Some((column, row)), step).take_while(is_floor).count()
+    };
+    [(1, 0), (-1, 0), (0, 1), (0, -1)]
+        .map(|(across, down)| along(across, down))
+        .into_iter()
+        .max()
+        .unwrap_or_default()
 }
 
 fn dig_corridors(chunk: &mut Chunk, plot: &Plot) {

@@ -15,7 +15,9 @@ use super::shade::{Faded, OfSide, Shade};
 use super::tally::{Pass, Tally};
 use crate::cast::{Hit, Side};
 use crate::world::texture::Level;
-use crate::world::{Cell, Light, Outline, Paint, Shape, TextureId, Tile, TileId, TileKind, World};
+use crate::world::{
+    Cell, FaceLight, Light, Outline, Paint, Shape, TextureId, Tile, TileId, TileKind, World,
+};
 
 /// Draws the wall of every column that has one. `wardrobe` is memory to work with.
 pub(super) fn draw<T: Tally>(
@@ -27,14 +29,16 @@ pub(super) fn draw<T: Tally>(
 ) {
     if plan.faded || scene.world.has_shapes() {
         #[expect(clippy::redundant_closure_for_method_calls, reason = "it is for any lifetime")]
-        draw_shaded(scene, plan, wardrobe, band, tally, |strip| strip.shade());
+        draw_shaded::<_, _, true>(scene, plan, wardrobe, band, tally, |strip| strip.shade());
     } else {
-        draw_shaded(scene, plan, wardrobe, band, tally, |strip| OfSide(strip.hit.side));
+        let shade = |strip: &Strip<'_, '_>| OfSide(strip.hit.side);
+        draw_shaded::<_, _, false>(scene, plan, wardrobe, band, tally, shade);
     }
 }
 
+/// Draws them in shades that depend on their light, or do not.
 #[inline]
-fn draw_shaded<'a, S: Shade, T: Tally>(
+fn draw_shaded<'a, S: Shade, T: Tally, const BY_LIGHT: bool>(
     scene: Scene<'a>,
     plan: WallLoop,
     wardrobe: &mut Wardrobe,
@@ -50,7 +54,7 @@ fn draw_shaded<'a, S: Shade, T: Tally>(
         let (face, paint) = match &mut latest {
             Some(latest) if latest.0.is_of(hit) => &*latest,
             latest => {
-                let face = Face::new(scene, x, hit);
+                let face = Face::new::<BY_LIGHT>(scene, x, hit);
                 latest.insert((face, face.paint(scene, plan, hit)))
             }
         };
@@ -76,25 +80,18 @@ struct Face<'a> {
     side: Side,
     /// What stands in the cell.
     tile: Option<&'a Tile>,
-    /// How bright the face is.
-    light: Light,
+    /// How bright the face is along it, if its shade depends on that.
+    light: FaceLight,
 }
 
 impl<'a> Face<'a> {
     /// The one that the ray of column `x` hit.
-    fn new(scene: Scene<'a>, x: u32, hit: &Hit) -> Self {
+    fn new<const BY_LIGHT: bool>(scene: Scene<'a>, x: u32, hit: &Hit) -> Self {
         let Cell { column, row } = hit.cell;
         let world = scene.world;
         let id = world.grid().tile(i64::from(column), i64::from(row));
         let tile = id.map(|TileId(index)| &world.tiles()[usize::from(index)]);
-        let seen_from = match tile.map(|tile| tile.kind) {
-            // It stands in a cell of its own.
-            Some(TileKind::Shape(_)) => Some(hit.cell),
-            _ => cell_before(hit, scene.projection.direction_of(x)),
-        };
-        let own = tile.and_then(|tile| tile.light);
-        let light =
-            own.unwrap_or_else(|| seen_from.map_or(Light::FULL, |cell| world.light_in(cell)));
+        let light = if BY_LIGHT { face_light(scene, x, hit, tile) } else { FaceLight::FULL };
         Self { cell: hit.cell, side: hit.side, tile, light }
     }
 
@@ -136,6 +133,23 @@ impl<'a> Face<'a> {
     }
 }
 
+/// How bright the face of `tile` is along it that the ray of column `x` hit.
+fn face_light(scene: Scene<'_>, x: u32, hit: &Hit, tile: Option<&Tile>) -> FaceLight {
+    let world = scene.world;
+    if let Some(own) = tile.and_then(|tile| tile.light) {
+        return FaceLight::even(own);
+    }
+    let before = || cell_before(hit, scene.projection.direction_of(x));
+    match tile.map(|tile| tile.kind) {
+        // It stands in a cell of its own.
+        Some(TileKind::Shape(_)) => FaceLight::even(world.light_in(hit.cell)),
+        Some(TileKind::Door(_)) => {
+            FaceLight::even(before().map_or(Light::FULL, |cell| world.light_in(cell)))
+        }
+        _ => before().map_or(FaceLight::FULL, |cell| world.face_light(hit.cell, cell)),
+    }
+}
+
 /// The cell that the side of a wall is seen from, along `direction`; `None` off the map's north and
 /// west.
 fn cell_before(hit: &Hit, direction: DVec2) -> Option<Cell> {
@@ -173,7 +187,8 @@ impl<'a> Strip<'_, 'a> {
 
     /// What becomes of its colours.
     fn shade(&self) -> Faded {
-        let (light, fog, distance) = (self.face.light, self.scene.world.fog(), self.hit.t);
+        let light = self.face.light.at(self.hit.u);
+        let (fog, distance) = (self.scene.world.fog(), self.hit.t);
         match self.face.shape() {
             None => Faded::of_wall(self.hit.side, light, fog, distance),
             Some(shape) => Faded::of_surface(self.normal(shape), light, fog, distance),
@@ -206,7 +221,7 @@ impl<'a> Strip<'_, 'a> {
 
 /// How bright what the ray of column `x` hit is.
 pub(super) fn light_of(scene: Scene<'_>, x: u32, hit: &Hit) -> Light {
-    Face::new(scene, x, hit).light
+    Face::new::<true>(scene, x, hit).light.at(hit.u)
 }
 
 /// The level of the texture `id` that suits the side of a cube that the ray of column `x` hit.

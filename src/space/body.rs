@@ -2,6 +2,8 @@
 
 use glam::DVec3;
 
+use super::checker::{self, Footprint};
+use crate::world::texture::mean_of_shares;
 use crate::world::{Rgb, Scale};
 
 /// The farthest from the origin that anything is, along each axis, and the largest radius, in cells.
@@ -158,30 +160,34 @@ impl Block {
 }
 
 impl Coat {
-    /// The colour of a surface at `point`, with that unit normal on the side of who looks.
+    /// The mean colour of what a pixel covers of a surface at `point`, with that unit normal on the
+    /// side of the eye.
     ///
     /// It is looked up a little below the surface: one that lies between two layers of cubes would
     /// show both by chance.
-    pub fn color_below(&self, point: DVec3, normal: DVec3) -> Rgb {
+    pub(super) fn mean_color(
+        &self,
+        point: DVec3,
+        normal: DVec3,
+        footprint: impl FnOnce() -> Footprint,
+    ) -> Rgb {
         /// A share of a cube that is larger than any rounding, and too small to see.
         const DEPTH: f64 = 1.0 / 1024.0;
-        match self {
-            Self::Plain(color) => *color,
-            Self::Checker(_, scale) => self.color_at(point - normal * (DEPTH * scale.cells())),
+        match *self {
+            Self::Plain(color) => color,
+            Self::Checker(colors, scale) => {
+                let Footprint(widths) = footprint();
+                let below = point / scale.cells() - normal * DEPTH;
+                let mean = checker::mean(below, widths / scale.cells());
+                // The one at the origin is +1, the other -1.
+                mean_of_shares(colors, (1.0 - mean) / 2.0)
+            }
         }
     }
 
     /// The colour at `point`.
     pub fn color_at(&self, point: DVec3) -> Rgb {
-        match self {
-            Self::Plain(color) => *color,
-            Self::Checker(colors, scale) => {
-                // The last bit of the sum of the cube's whole coordinates.
-                let cube = (point / scale.cells()).floor();
-                let is_second = (cube.x + cube.y + cube.z).rem_euclid(2.0) == 1.0;
-                colors[usize::from(is_second)]
-            }
-        }
+        self.mean_color(point, DVec3::ZERO, || Footprint(DVec3::ZERO))
     }
 }
 

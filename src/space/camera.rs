@@ -155,6 +155,11 @@ impl Projection {
         let slope = (f64::from(self.height) / 2.0 - f64::from(row) - 0.5) / self.rows_a_cell;
         self.axes.up * slope
     }
+
+    /// From the direction through a pixel to those through the next column and the next row up.
+    pub(super) fn steps(&self) -> [DVec3; 2] {
+        [self.axes.right / self.columns_a_cell, self.axes.up / self.rows_a_cell]
+    }
 }
 
 #[cfg(test)]

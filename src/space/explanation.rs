@@ -15,18 +15,23 @@ pub struct Explanation {
     pub tests: u64,
     /// Rays that hit one.
     pub hits: u64,
+    /// Rays that were cast from there towards the sun.
+    pub shadow_rays: u64,
+    /// How often one of these was tested against a body.
+    pub shadow_tests: u64,
 }
 
 impl fmt::Display for Explanation {
     /// Writes a few lines for people.
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
-        let Self { bodies, in_view, rays, tests, hits } = self;
+        let Self { bodies, in_view, rays, tests, hits, shadow_rays, shadow_tests } = self;
         let without_bounds = rays * bodies;
         writeln!(f, "bodies   {in_view:>10} of {bodies} in view")?;
         writeln!(f, "rays     {rays:>10} cast, one a pixel, {hits} of them hit a body")?;
         writeln!(
             f,
             "tests    {tests:>10} of a ray against a body, of {without_bounds} without bounds"
-        )
+        )?;
+        writeln!(f, "shadows  {shadow_rays:>10} rays cast towards the sun, {shadow_tests} tests")
     }
 }

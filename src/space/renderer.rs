@@ -4,9 +4,11 @@ use glam::DVec3;
 
 use super::bounds::Bounds;
 use super::camera::{Camera, Projection};
+use super::checker::Footprint;
 use super::explanation::Explanation;
 use super::scene::Scene;
 use super::seen::Seen;
+use super::shadows::Shadows;
 use crate::render::Frame;
 use crate::world::{Fog, Rgb};
 
@@ -19,6 +21,7 @@ pub struct Renderer {
     nearest: Vec<Option<Nearest>>,
     /// The directions of the rays of the row in the middle of the picture.
     directions: Vec<DVec3>,
+    shadows: Shadows,
 }
 
 #[derive(Clone, Debug)]
@@ -51,6 +54,7 @@ impl Renderer {
     pub fn explain(&mut self, scene: &Scene, camera: &Camera, frame: &mut Frame) -> Explanation {
         let projection = Projection::new(camera, frame.size(), frame.pixel_aspect());
         self.find_bodies(scene, &projection);
+        self.shadows.begin(&scene.bodies, &scene.sun);
         self.directions.clear();
         self.directions.extend((0..projection.width).map(|column| projection.across(column)));
         let mut explanation = Explanation {
@@ -59,13 +63,15 @@ impl Renderer {
             rays: u64::from(projection.width) * u64::from(projection.height),
             tests: 0,
             hits: 0,
+            shadow_rays: 0,
+            shadow_tests: 0,
         };
         let mut whole = frame.whole();
         for row in 0..projection.height {
             let up = projection.upwards(row);
             explanation.tests += self.cast_row(row, up);
             let pixels = whole.row_mut(row);
-            explanation.hits += self.shade_row(scene, projection.origin, up, pixels);
+            self.shade_row(scene, &projection, up, pixels, &mut explanation);
         }
         explanation
     }
@@ -82,7 +88,7 @@ impl Renderer {
 
     /// Finds what the rays of `row` hit, and tells how many tests that took.
     fn cast_row(&mut self, row: u32, up: DVec3) -> u64 {
-        let Self { in_view, nearest, directions } = self;
+        let Self { in_view, nearest, directions, .. } = self;
         nearest.clear();
         nearest.resize(directions.len(), None);
         let mut tests = 0;
@@ -110,9 +116,16 @@ impl Renderer {
         tests
     }
 
-    /// Gives the pixels of a row their colours, and tells how many show a body.
-    fn shade_row(&self, scene: &Scene, origin: DVec3, up: DVec3, pixels: &mut [Rgb]) -> u64 {
-        let mut hits = 0;
+    /// Gives the pixels of a row their colours.
+    fn shade_row(
+        &self,
+        scene: &Scene,
+        projection: &Projection,
+        up: DVec3,
+        pixels: &mut [Rgb],
+        explanation: &mut Explanation,
+    ) {
+        let steps = projection.steps();
         for ((pixel, nearest), &across) in
             pixels.iter_mut().zip(&self.nearest).zip(&self.directions)
         {
@@ -121,14 +134,36 @@ impl Renderer {
                 *pixel = scene.sky.color(direction);
                 continue;
             };
-            hits += 1;
-            let InView { body, seen, .. } = &self.in_view[index];
+            explanation.hits += 1;
+            let InView { body, seen, .. } = self.in_view[index];
             let normal = seen.normal(direction, t);
-            let point = origin + direction * t;
-            let color = scene.bodies[*body].coat.color_below(point, normal);
-            *pixel = lit(color, scene.sun.brightness(normal), scene.fog, t);
+            let point = projection.origin + direction * t;
+            let footprint = || Footprint::new(direction, t, normal, steps);
+            let color = scene.bodies[body].coat.mean_color(point, normal, footprint);
+            let brightness = self.brightness(scene, body, point, normal, explanation);
+            *pixel = lit(color, brightness, scene.fog, t);
         }
-        hits
+    }
+
+    /// How bright `point` on `body` is, whose surface has that `normal` there.
+    fn brightness(
+        &self,
+        scene: &Scene,
+        body: usize,
+        point: DVec3,
+        normal: DVec3,
+        explanation: &mut Explanation,
+    ) -> f64 {
+        let (in_sun, ambient) = (scene.sun.brightness(normal), scene.sun.ambient.get());
+        if in_sun <= ambient {
+            return ambient;
+        }
+        explanation.shadow_rays += 1;
+        if self.shadows.hides_sun(point, body, &mut explanation.shadow_tests) {
+            ambient
+        } else {
+            in_sun
+        }
     }
 }
 

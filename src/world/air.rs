@@ -29,6 +29,13 @@ impl Light {
         Self((self.0 + other.0).min(Self::FULL.0))
     }
 
+    /// On the way from this light to `other`: a share of that way, from 0 to 1.
+    #[must_use]
+    pub(crate) fn towards(self, other: Self, share: f64) -> Self {
+        let (from, to) = (f64::from(self.0), f64::from(other.0));
+        Self((from + (to - from) * share).round() as u16)
+    }
+
     /// A share of it, from 0 to 1.
     #[must_use]
     pub(crate) fn dimmed(self, share: f64) -> Self {

@@ -80,7 +80,9 @@ impl Lamplight {
     /// What lamps add in `cell`.
     #[inline]
     pub(crate) fn at(&self, cell: Cell) -> Light {
-        self.cells.get(self.place(cell)).copied().unwrap_or(Light::NONE)
+        let is_on_map = (cell.column as usize) < self.width;
+        let light = self.cells.get(self.place(cell)).filter(|_| is_on_map);
+        light.copied().unwrap_or(Light::NONE)
     }
 
     fn place(&self, cell: Cell) -> usize {

@@ -6,8 +6,8 @@
 use super::door::Ajar;
 use super::things::Things;
 use super::{
-    Ceiling, Cell, Covering, Door, Fog, Grid, Lamplight, Paint, Sky, Sprite, Start, Texture, Thing,
-    Tile, TileId, TileKind, World,
+    Ceiling, Cell, Covering, Door, Fog, Grid, Lamplight, Light, Paint, Sky, Sprite, Start, Texture,
+    Thing, Tile, TileId, TileKind, World,
 };
 
 /// The pieces of a world, not yet known to fit together.
@@ -52,6 +52,7 @@ impl World {
             keys,
         } = parts;
         clear(&mut grid, &tiles);
+        let light_varies = light_varies(&tiles, &lamplight);
         let world = Self {
             title,
             goal,
@@ -66,6 +67,7 @@ impl World {
             sprites,
             things: Things::new(things),
             lamplight,
+            light_varies,
             keys,
             ajar: Ajar::default(),
         };
@@ -86,6 +88,7 @@ impl World {
         clear(&mut self.grid, &self.tiles);
         self.start = start;
         self.things = Things::new(things);
+        self.light_varies = light_varies(&self.tiles, &lamplight);
         self.lamplight = lamplight;
         self.ajar = Ajar::default();
     }
@@ -142,6 +145,16 @@ impl World {
             && open(self.start.cell)
             && self.things().iter().all(|thing| open(thing.cell) && stands(thing))
     }
+}
+
+/// Whether some cells may be brighter than others.
+fn light_varies(tiles: &[Tile], lamplight: &Lamplight) -> bool {
+    // A wall that says nothing is as bright as what is before it.
+    let is_wall = |tile: &Tile| matches!(tile.kind, TileKind::Wall(_) | TileKind::Mirror(_));
+    let light = |tile: &Tile| tile.light.or((!is_wall(tile)).then_some(Light::FULL));
+    let mut lights = tiles.iter().filter_map(light);
+    let first = lights.next();
+    !lamplight.is_dark() || lights.any(|light| Some(light) != first)
 }
 
 /// Lets rays know what is empty in `grid`, where doors may close.

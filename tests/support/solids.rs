@@ -6,7 +6,7 @@
 use std::f64::consts::TAU;
 
 use cellcaster::world::{
-    Anchor, Camera, Ceiling, Cell, Gap, Outline, Paint, Rgb, Sprite, TileKind, World,
+    Anchor, Camera, Ceiling, Cell, Gap, Light, Outline, Paint, Rgb, Sprite, Tile, TileKind, World,
 };
 use glam::{DVec2, DVec3};
 
@@ -52,6 +52,12 @@ struct Block {
     side: Paint,
     top: Paint,
     bottom: Paint,
+    /// How bright its sides are, where that does not depend on what is before them.
+    side_light: Option<Light>,
+    /// Whether it is ground off the map: each cell before it lights its own part of it.
+    is_off_map: bool,
+    /// How bright its top and its bottom are.
+    flat_light: Light,
 }
 
 /// What a line meets, and where.
@@ -161,37 +167,85 @@ impl<'a> Solids<'a> {
 
     fn color(&self, solid: &Solid, face: Face, place: DVec3, direction: DVec3) -> Rgb {
         let flat = |paint| self.texel(paint, place.x, place.y);
+        let light_in = |center: DVec2| self.light_in((center.x.floor(), center.y.floor()));
         // Textures hang from whole heights.
         let upright = |paint, u: f64| self.texel(paint, u, -place.z);
         match *solid {
             Solid::Block(ref block) => match face {
-                Face::Top => flat(block.top),
-                Face::Bottom => flat(block.bottom),
-                Face::X => upright(block.side, if direction.x > 0.0 { place.y } else { -place.y }),
+                Face::Top => dimmed(flat(block.top), block.flat_light, DVec2::X),
+                Face::Bottom => dimmed(flat(block.bottom), block.flat_light, DVec2::X),
+                Face::X => {
+                    let u = if direction.x > 0.0 { place.y } else { -place.y };
+                    let before = place.x - direction.x.signum() / 2.0;
+                    let light = self.side_light(block, place.y, |row| (before.floor(), row));
+                    dimmed(upright(block.side, u), light, DVec2::X)
+                }
                 Face::Y | Face::Slanted => {
                     let u = if direction.y < 0.0 { place.x } else { -place.x };
-                    upright(block.side, u).halved()
+                    let before = place.y - direction.y.signum() / 2.0;
+                    let light = self.side_light(block, place.x, |column| (column, before.floor()));
+                    dimmed(upright(block.side, u), light, DVec2::Y)
                 }
             },
-            Solid::Pillar { paint, .. } if face == Face::Top => flat(paint),
+            Solid::Pillar { paint, center, .. } if face == Face::Top => {
+                dimmed(flat(paint), light_in(center), DVec2::X)
+            }
             Solid::Pillar { center, radius, paint, .. } => {
                 let outward = place.truncate() - center;
                 let times = (TAU * radius).round().max(1.0);
                 let turn = libm::atan2(-outward.y, outward.x) / TAU * times;
-                dimmed(upright(paint, turn), outward / radius)
+                dimmed(upright(paint, turn), light_in(center), outward / radius)
             }
             Solid::Panel { start, way, paint, .. } => {
                 let along = (place.truncate() - start).dot(way) / way.length_squared();
                 let is_from_the_left = direction.truncate().perp_dot(way) > 0.0;
                 let u = if is_from_the_left { along } else { -along };
-                dimmed(upright(paint, u), way.perp().normalize())
+                let light = light_in(start + way / 2.0);
+                dimmed(upright(paint, u), light, way.perp().normalize())
             }
             Solid::Picture { center, base, sprite } => {
                 let texel = self.texel_of(center, base, sprite, place);
                 let (x, y) = texel.unwrap_or_default();
-                self.picture(center, sprite).texel(x, y).0
+                dimmed(self.picture(center, sprite).texel(x, y).0, light_in(center), DVec2::X)
             }
         }
+    }
+
+    /// The tile in the cell with that corner.
+    fn tile_in(&self, (column, row): (f64, f64)) -> Option<Tile> {
+        let id = self.world.grid().tile(column as i64, row as i64)?;
+        Some(self.world.tile(id))
+    }
+
+    fn light_in(&self, corner: (f64, f64)) -> Light {
+        self.tile_in(corner).and_then(|tile| tile.light).unwrap_or(Light::FULL)
+    }
+
+    fn side_light(&self, block: &Block, along: f64, before: impl Fn(f64) -> (f64, f64)) -> Light {
+        match block.side_light {
+            Some(own) => own,
+            None if block.is_off_map => self.light_in(before(along.floor())),
+            None => self.light_along(along, before),
+        }
+    }
+
+    /// How bright a face is `along` its line, where `before` gives the cells before it: between their
+    /// middles it goes over from the one into the other, if both are open to each other.
+    fn light_along(&self, along: f64, before: impl Fn(f64) -> (f64, f64)) -> Light {
+        let first = (along - 0.5).floor();
+        let share = along - 0.5 - first;
+        let cells = [first, first + 1.0].map(before);
+        let tiles = cells.map(|corner| self.tile_in(corner));
+        let lights = cells.map(|corner| self.light_in(corner).in_256ths());
+        let [one, other] = lights.map(f64::from);
+        let mean = match tiles {
+            [Some(west), Some(east)] if are_open_to_each_other(&west, &east) => {
+                one * (1.0 - share) + other * share
+            }
+            _ if share < 0.5 => one,
+            _ => other,
+        };
+        Light::new(mean.round() / 256.0).unwrap()
     }
 
     /// What `paint` is so many cells from the left and from the top.
@@ -206,9 +260,21 @@ impl<'a> Solids<'a> {
     }
 }
 
-/// A colour as it is on what faces along `normal`.
-fn dimmed(color: Rgb, normal: DVec2) -> Rgb {
-    let share = (256.0 * f64::midpoint(1.0, normal.x * normal.x)) as u32;
+/// Whether light gets from one tile to the other: both are open, and above the lower ground of the two
+/// some of the other's air is beside it.
+fn are_open_to_each_other(one: &Tile, other: &Tile) -> bool {
+    let is_open = |tile: &Tile| matches!(tile.kind, TileKind::Open);
+    let meets = |one: &Tile, other: &Tile| {
+        let lowest = one.gaps().next().unwrap();
+        other.gaps().any(|gap| !(gap.top <= lowest.bottom || lowest.top <= gap.bottom))
+    };
+    is_open(one) && is_open(other) && (meets(one, other) || meets(other, one))
+}
+
+/// A colour as it is in such light on what faces along `normal`.
+fn dimmed(color: Rgb, light: Light, normal: DVec2) -> Rgb {
+    let share = f64::midpoint(1.0, normal.x * normal.x);
+    let share = (f64::from(light.in_256ths()) * share) as u32;
     let [red, green, blue] =
         color.channels().map(|channel| (u32::from(channel) * share / 256) as u8);
     Rgb::new(red, green, blue)
@@ -224,7 +290,18 @@ fn solids_in<'a>(world: &World, cell: Cell) -> Vec<Solid<'a>> {
         TileKind::Wall(_) => tile.riser,
         _ => tile.floor.pattern.first_paint(),
     };
-    let below = Block { low, high, side: tile.riser, top, bottom: top };
+    let side_light = tile.light.filter(|_| !matches!(tile.kind, TileKind::Open));
+    let flat_light = tile.light.unwrap_or(Light::FULL);
+    let below = Block {
+        low,
+        high,
+        side: tile.riser,
+        top,
+        bottom: top,
+        side_light,
+        is_off_map: false,
+        flat_light,
+    };
     let above = gaps.get(1).map(|gap| Block {
         low: low.with_z(gaps[0].top),
         high: high.with_z(gap.bottom),
@@ -234,6 +311,9 @@ fn solids_in<'a>(world: &World, cell: Cell) -> Vec<Solid<'a>> {
             Ceiling::Covered(covering) => covering.pattern.first_paint(),
             Ceiling::Sky => unreachable!("there is rock above"),
         },
+        side_light,
+        is_off_map: false,
+        flat_light,
     });
     let shape = match tile.kind {
         TileKind::Shape(shape) => Some(shape),
@@ -270,6 +350,9 @@ fn ground_around(world: &World) -> impl Iterator<Item = Block> {
         side: paint,
         top: paint,
         bottom: paint,
+        side_light: None,
+        is_off_map: true,
+        flat_light: world.ground().light.unwrap_or(Light::FULL),
     })
 }
 

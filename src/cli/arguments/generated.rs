@@ -14,7 +14,7 @@ pub(in crate::cli) struct Generated {
     pub(in crate::cli) generator: Generator,
     pub(in crate::cli) seed: u64,
     pub(in crate::cli) extent: Extent,
-    /// Where to start; in the level's first corner where there is none.
+    /// Where to start; where the level says, if there is none.
     pub(in crate::cli) start: Option<Site>,
 }
 

@@ -234,9 +234,20 @@ impl<'a> Look<'a> {
             return Light::FULL;
         }
         let is_solid = |tile: &&Tile| !matches!(tile.kind, TileKind::Open | TileKind::Doorway(_));
-        let own = self.tile(place).filter(is_solid).and_then(|tile| tile.light);
-        let there = |(cell, _)| self.scene.world.light_in(cell);
-        own.unwrap_or_else(|| met.before.map_or(Light::FULL, there))
+        let world = self.scene.world;
+        let tile = self.tile(place);
+        if let Some(own) = tile.filter(is_solid).and_then(|tile| tile.light) {
+            return own;
+        }
+        let Some((before, _)) = met.before else { return Light::FULL };
+        let is_door = tile.is_some_and(|tile| matches!(tile.kind, TileKind::Door(_)));
+        match place {
+            // Leaves have one light all over, as has a shape, which is met in its own cell.
+            Some((cell, _)) if cell != before && !is_door => {
+                world.face_light(cell, before).at(met.u)
+            }
+            _ => world.light_in(before),
+        }
     }
 
     pub(super) fn tile(&self, place: Place) -> Option<&'a Tile> {

@@ -11,6 +11,7 @@
 //! they would be larger than this code, and nobody could review a change to one.
 
 mod block;
+mod coffer;
 mod facing;
 mod hedge;
 mod ironwork;
@@ -73,7 +74,7 @@ const HOLE: Rgb = Rgb::new(0x1c, 0x1e, 0x22);
 const CLEAR: u8 = 0;
 const OPAQUE: u8 = u8::MAX;
 
-const PAINTERS: [(&str, Painter); 15] = [
+const PAINTERS: [(&str, Painter); 16] = [
     ("brick", Painter::Solid(masonry::brick)),
     ("stone", Painter::Solid(masonry::stone)),
     ("moss", Painter::Solid(masonry::moss)),
@@ -89,6 +90,7 @@ const PAINTERS: [(&str, Painter); 15] = [
     ("jamb", Painter::Solid(ironwork::jamb)),
     ("grate", Painter::WithHoles(ironwork::grate)),
     ("fence", Painter::WithHoles(timber::fence)),
+    ("coffer", Painter::Solid(coffer::coffer)),
 ];
 
 /// A difference between two places, the short way around the texture.
@@ -243,6 +245,7 @@ mod tests {
         jamb      #75767a bf2e1ee8
         grate     #56585c bce9d347
         fence     #6a5c47 bfff9378
+        coffer    #a39884 12742fe1
         ");
     }
 }

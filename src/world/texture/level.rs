@@ -8,8 +8,8 @@ use std::num::NonZeroU32;
 use std::ops::Range;
 
 use crate::world::Rgb;
-pub(crate) use light::mean_of_two;
 use light::{Light, linear, stored};
+pub(crate) use light::{mean_of_shares, mean_of_two};
 
 /// A picture in one size, at least one texel wide and high.
 #[derive(Clone, Debug, PartialEq, Eq)]

@@ -112,6 +112,22 @@ pub(crate) fn mean_of_two(one: Rgb, other: Rgb) -> Rgb {
     stored(std::array::from_fn(|channel| one[channel].midpoint(other[channel])))
 }
 
+/// The colour from far away of a surface that is partly of one of two colours and partly of the other: of the
+/// second for a `share` from 0 to 1.
+pub(crate) fn mean_of_shares([one, other]: [Rgb; 2], share: f64) -> Rgb {
+    if one == other || share <= 0.0 {
+        return one;
+    }
+    if share >= 1.0 {
+        return other;
+    }
+    let (one, other) = (linear(one), linear(other));
+    stored(std::array::from_fn(|channel| {
+        let [one, other] = [one[channel], other[channel]].map(f64::from);
+        (one + (other - one) * share).round() as u16
+    }))
+}
+
 /// What each stored channel is in linear light.
 static LINEAR: LazyLock<[u16; 256]> = LazyLock::new(|| {
     std::array::from_fn(|channel| {

@@ -1,0 +1,32 @@
+//! Whereabouts: what is unusual about the place of a camera.
+//!
+//! A camera can be anywhere, and its picture is drawn; but whoever chose a place inside a wall mostly
+//! meant another one, so that is said.
+
+use crate::world::{Camera, Cell, TileKind, World};
+
+/// A sentence about a `camera` that is off the map or inside something solid; `None` elsewhere.
+pub(super) fn remark(world: &World, camera: &Camera) -> Option<String> {
+    let (grid, position) = (world.grid(), camera.position());
+    let is_on_map = (0.0..f64::from(grid.width())).contains(&position.x)
+        && (0.0..f64::from(grid.height())).contains(&position.y);
+    if !is_on_map {
+        let (columns, rows) = (grid.width(), grid.height());
+        return Some(format!("the camera is off the map, which has {columns}×{rows} cells"));
+    }
+    let cell = Cell { column: position.x as u32, row: position.y as u32 };
+    let tile = world.tile(grid.tile(cell.column.into(), cell.row.into())?);
+    let (eye, floor, ceiling) = (camera.eye(), tile.heights.floor(), tile.heights.ceiling());
+    if tile.gaps().any(|gap| gap.holds(eye)) {
+        return None;
+    }
+    Some(if matches!(tile.kind, TileKind::Wall(_) | TileKind::Mirror(_)) {
+        "the camera is inside a wall".to_owned()
+    } else if eye < floor {
+        format!("the camera is below the floor: the eye at a height of {eye}, the floor at {floor}")
+    } else {
+        format!(
+            "the camera is inside what hangs overhead: the eye at a height of {eye}, the ceiling at {ceiling}"
+        )
+    })
+}

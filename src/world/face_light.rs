@@ -1,0 +1,170 @@
+//! The light along a face of a cell, from one end to the other.
+//!
+//! Light is kept by cell. In the middle of a face it is that of the cell in front; towards each end it
+//! goes over, linearly, into that of the next cell along the face, so that where two faces meet on one
+//! line both have the mean of the two: there are no bands. Light crosses only from open floor, masks and
+//! glass to the like, where one can pass at some height: not through a wall or a closed door.
+//!
+//! The corners of cells, each with the mean of the cells around it, were refused: a mean would reach
+//! around the end of a wall. Floors and ceilings keep one light for each cell, as a stretch of a row is
+//! laid in one shade.
+
+use super::{Cell, Light, Tile, TileKind, World};
+
+/// How bright a face is from its left end to its right, as its viewer sees it.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub(crate) struct FaceLight {
+    /// In the middle.
+    middle: Light,
+    /// In the middle of the next faces to the left and to the right.
+    beside: [Light; 2],
+}
+
+impl FaceLight {
+    /// All of it in full light.
+    pub(crate) const FULL: Self = Self::even(Light::FULL);
+
+    /// As bright at both ends as in the middle.
+    pub(crate) const fn even(light: Light) -> Self {
+        Self { middle: light, beside: [light; 2] }
+    }
+
+    /// How bright it is at `u`, from 0 at its left end to 1 at its right.
+    #[inline]
+    pub(crate) fn at(self, u: f64) -> Light {
+        let Self { middle, beside: [left, right] } = self;
+        if left == middle && right == middle {
+            return middle;
+        }
+        let (next, share) = if u < 0.5 { (left, 0.5 - u) } else { (right, u - 0.5) };
+        middle.towards(next, share)
+    }
+}
+
+impl World {
+    /// How bright the face of `cell` is that is seen from the cell `before`, which is beside it, where
+    /// the tile of `cell` has no light of its own.
+    pub(crate) fn face_light(&self, cell: Cell, before: Cell) -> FaceLight {
+        let middle = self.light_in(before);
+        let Some(tile) = self.tile_at(before).filter(|_| self.light_varies) else {
+            return FaceLight::even(middle);
+        };
+        // To the right of somebody who looks from `before` to `cell`, as y grows to the south.
+        let ahead = step(before, cell);
+        let right = (-ahead.1, ahead.0);
+        let beside = [(-right.0, -right.1), right].map(|way| {
+            let next = moved(before, way).and_then(|cell| Some((cell, self.tile_at(cell)?)));
+            next.filter(|(_, next)| is_lit_from(&tile, next))
+                .map_or(middle, |(cell, _)| self.light_in(cell))
+        });
+        FaceLight { middle, beside }
+    }
+}
+
+/// Whether light passes between two tiles beside each other: both let it through, and the gap above the
+/// floor of one is open to one of the other's.
+fn is_lit_from(one: &Tile, other: &Tile) -> bool {
+    let is_clear =
+        |tile: &Tile| matches!(tile.kind, TileKind::Open | TileKind::Mask(_) | TileKind::Glass(_));
+    is_clear(one) && is_clear(other) && (is_open_to(one, other) || is_open_to(other, one))
+}
+
+/// Whether the lowest gap of `one` is beside any gap of `other`.
+fn is_open_to(one: &Tile, other: &Tile) -> bool {
+    let lowest = one.gaps().next();
+    lowest.is_some_and(|lowest| {
+        other.gaps().any(|gap| lowest.bottom.max(gap.bottom) < lowest.top.min(gap.top))
+    })
+}
+
+/// Columns and rows from one cell to another.
+fn step(from: Cell, to: Cell) -> (i64, i64) {
+    (i64::from(to.column) - i64::from(from.column), i64::from(to.row) - i64::from(from.row))
+}
+
+fn moved(cell: Cell, (columns, rows): (i64, i64)) -> Option<Cell> {
+    let along = |index: u32, by: i64| u32::try_from(i64::from(index) + by).ok();
+    Some(Cell { column: along(cell.column, columns)?, row: along(cell.row, rows)? })
+}
+
+#[cfg(test)]
+mod tests {
+    use proptest::prelude::*;
+
+    use super::*;
+    use crate::map;
+
+    const SIDE: u32 = 5;
+
+    fn cell(column: u32, row: u32) -> Cell {
+        Cell { column, row }
+    }
+
+    /// Floor of several lights, and what light goes through or does not.
+    fn world(cells: &[char]) -> World {
+        let rows: Vec<String> =
+            cells.chunks(SIDE as usize).map(|row| row.iter().collect()).collect();
+        map::parse_str(&format!(
+            "light = 0.5\ngrid = '''\n{}\n@....\n'''\n[tiles]\n'#'.wall = '#ffffff'\n'g'.glass = '#88aaff'\n\
+             'a'.light = 0.1\n'b'.light = 0.9\n'h' = {{ floor_height = 9, light = 0.3, ceiling = 'sky' }}\n\
+             'o' = {{ pillar = '#ffffff', radius = 0.2 }}\n[things]\n'@'.start = 0\n",
+            rows.join("\n")
+        ))
+        .unwrap()
+    }
+
+    proptest! {
+        /// The ends of two faces that meet on one line are as bright as each other, and no face is
+        /// brighter or darker than the cells before it and beside that.
+        #[test]
+        fn faces_that_meet_on_one_line_have_one_light_there(
+            cells in prop::collection::vec(prop::sample::select(&['.', 'a', 'b', 'h', '#', 'g', 'o'][..]), 25),
+        ) {
+            let world = world(&cells);
+            let is_open = |cell: Cell| {
+                let tile = world.tile_at(cell).unwrap();
+                matches!(tile.kind, TileKind::Open | TileKind::Glass(_))
+            };
+            for row in 1..SIDE {
+                for column in 0..SIDE - 1 {
+                    // Both look south at the row below; the one in the east is to the left.
+                    let [west, east] = [cell(column, row - 1), cell(column + 1, row - 1)];
+                    let faces = [(cell(column, row), west), (cell(column + 1, row), east)];
+                    let [of_west, of_east] = faces.map(|(cell, before)| world.face_light(cell, before));
+                    let (at_west, at_east) = (of_west.at(0.0), of_east.at(1.0));
+                    let lights = [west, east].map(|cell| world.light_in(cell));
+                    prop_assert_eq!(of_west.at(0.5), lights[0]);
+                    if [west, east].into_iter().all(is_open) {
+                        let mean = (lights[0].in_256ths() + lights[1].in_256ths()).div_ceil(2);
+                        let is_joined = at_west.in_256ths() == mean;
+                        prop_assert_eq!(is_joined, at_east.in_256ths() == mean);
+                        prop_assert!(is_joined || [at_west, at_east] == lights);
+                    } else {
+                        prop_assert_eq!([at_west, at_east], lights);
+                    }
+                }
+            }
+        }
+    }
+
+    #[test]
+    fn light_goes_over_linearly_and_through_no_wall() {
+        let cells: Vec<char> = "ab#bag.....#####.........".chars().collect();
+        let world = world(&cells);
+        let face = world.face_light(cell(1, 1), cell(1, 0));
+        // To the left of somebody who looks south is the east: a wall. To the right it is darker.
+        let lights = [0.0, 0.25, 0.5, 0.75, 1.0].map(|u| face.at(u).in_256ths());
+        assert_eq!(lights, [230, 230, 230, 179, 128]);
+        let across = world.face_light(cell(3, 1), cell(3, 0));
+        assert_eq!(across.at(1.0).in_256ths(), 230);
+    }
+
+    #[test]
+    fn a_world_that_is_lit_alike_everywhere_asks_no_neighbours() {
+        let world = map::parse_str(
+            "light = 0.5\ngrid = '''\n@..\n###\n'''\n[tiles]\n'#'.wall = '#ffffff'\n[things]\n'@'.start = 0\n",
+        )
+        .unwrap();
+        assert!(!world.light_varies);
+    }
+}
