@@ -107,7 +107,7 @@ impl<'a> FirstPerson<'a> {
         let above = u32::from(first_row) * self.glyphs.pixels_per_cell();
         match self.glyphs {
             GlyphMode::Half => {
-                half_blocks::draw(area, canvas, self.depth, above, |y| frame.row(y));
+                half_blocks::draw_frame(area, canvas, self.depth, above, frame);
             }
             GlyphMode::Ascii => ascii::draw(area, canvas, self.depth, |x, y| {
                 let color = frame.pixel(x, above + y);

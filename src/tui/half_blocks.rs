@@ -5,13 +5,33 @@
 //! darker before the nearest colour is taken. So shades stay apart, and stand still while the picture
 //! does. Error diffusion was refused: there, one changed pixel changes all that follow.
 
+mod mixed;
+
 use ratatui::layout::Rect;
 use ratatui::style::Color;
 
 use super::Canvas;
 use super::glyphs::color_at;
 use crate::palette::ColorDepth;
+use crate::render::Frame;
 use crate::world::Rgb;
+
+/// Draws the pixels of `frame` on `area`, from `above` pixels under its top edge on.
+pub(super) fn draw_frame(
+    area: Rect,
+    canvas: &mut impl Canvas,
+    depth: ColorDepth,
+    above: u32,
+    frame: &Frame,
+) {
+    match depth {
+        ColorDepth::Indexed256 => mixed::draw(area, canvas, mixed::OF_256, above, frame),
+        ColorDepth::Indexed16 => mixed::draw(area, canvas, mixed::OF_16, above, frame),
+        ColorDepth::True | ColorDepth::Mono => {
+            draw(area, canvas, depth, above, |y| frame.row(y));
+        }
+    }
+}
 
 /// Draws the pixels of `area`, twice as many as cells from top to bottom: `row(y)` is a row of them from
 /// the left edge on, and counts from `above` pixels over the top edge.

@@ -82,7 +82,7 @@ impl<'a> SpaceView<'a> {
         let frame = &memory.frame;
         match self.glyphs {
             GlyphMode::Half => {
-                half_blocks::draw(area, canvas, self.depth, above, |y| frame.row(y));
+                half_blocks::draw_frame(area, canvas, self.depth, above, frame);
             }
             GlyphMode::Ascii | GlyphMode::Ramp => {
                 ascii::draw(area, canvas, self.depth, |x, y| {
