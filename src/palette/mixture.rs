@@ -22,13 +22,16 @@ use crate::world::Rgb;
 pub(crate) struct Mixture {
     /// The indices of the darker and of the brighter colour.
     pub(crate) colors: [u8; 2],
-    /// So many of [`Mixture::WHOLE`] pixels have the brighter one.
+    /// So many of [`Mixture::WHOLE`] pixels have the brighter one; fewer than all.
     pub(crate) share: u8,
+    /// The index of the one colour to show where there is room for one only.
+    pub(crate) single: u8,
 }
 
 impl Mixture {
     /// How many pixels a mixture is made for.
     pub(crate) const WHOLE: u8 = 4;
+    const NONE: Self = Self { colors: [0; 2], share: 0, single: 0 };
 }
 
 /// The mixtures for all colours, each found when it is first asked for.
@@ -39,20 +42,20 @@ pub(crate) struct Mixtures {
 
 /// So many bits of each channel are told apart.
 pub(crate) const BITS: u32 = 6;
-/// Entries that have been found have this bit.
-const FOUND: u32 = 1 << 31;
+/// Entries that have been found have this bit in their uppermost byte, beside the share.
+const FOUND: u8 = 1 << 7;
 
 /// The mixtures of the 240 fixed colours of xterm.
 pub(crate) static OF_256: Mixtures = Mixtures::new(|| {
     static PALETTE: LazyLock<Vec<Paint>> =
         LazyLock::new(|| (CUBE..=u8::MAX).map(Paint::of).collect());
-    Palette { paints: &PALETTE, taste: FINE }
+    Palette { paints: &PALETTE, taste: tuned() }
 });
 
 /// The mixtures of the 16 named colours.
 pub(crate) static OF_16: Mixtures = Mixtures::new(|| {
     static PALETTE: LazyLock<Vec<Paint>> = LazyLock::new(|| (0..CUBE).map(Paint::of).collect());
-    Palette { paints: &PALETTE, taste: COARSE }
+    Palette { paints: &PALETTE, taste: tuned16() }
 });
 
 /// What is mixed, and how.
@@ -65,16 +68,22 @@ struct Palette {
 /// What counts how much.
 #[derive(Clone, Copy)]
 struct Taste {
-    /// Of a difference in chroma, over one in lightness.
+    /// Of a difference in chroma, over one in lightness: of mixtures, and of single colours, which would
+    /// else be grey too often.
     chroma: f32,
+    single: f32,
     /// Of the differences in lightness and in chroma between the two colours.
     contrast: [f32; 2],
     /// How near the hue must be, as a cosine.
     hue: f32,
+    /// What has less chroma is mixed of greys only.
+    least_chroma: f32,
 }
 
-const FINE: Taste = Taste { chroma: 1.5, contrast: [0.03, 0.01], hue: 0.7 };
-const COARSE: Taste = Taste { chroma: 1.0, contrast: [0.02, 0.03], hue: 0.8 };
+const FINE: Taste =
+    Taste { chroma: 1.5, single: 2.5, contrast: [0.03, 0.01], hue: 0.7, least_chroma: 0.005 };
+const COARSE: Taste = coarse();
+const fn coarse() -> Taste { Taste { chroma: 1.0, single: 1.0, contrast: [0.008, 0.02], hue: 0.8, least_chroma: 0.035 } }
 
 /// So many colours are considered for a mixture: those that are nearest.
 const CONSIDERED: usize = 40;
@@ -115,18 +124,18 @@ impl Mixtures {
             .fold(0, |place, &channel| place << BITS | usize::from(channel) & mask);
         // Whoever finds an entry finds the same one, so it does not matter who is first.
         let known = self.entries[place].load(Ordering::Relaxed);
-        let entry = if known & FOUND == 0 { self.find(place, [red, green, blue]) } else { known };
-        let [_, share, brighter, darker] = entry.to_be_bytes();
-        Mixture { colors: [darker, brighter], share }
+        let entry = if known == 0 { self.find(place, [red, green, blue]) } else { known };
+        let [share, single, darker, brighter] = entry.to_be_bytes();
+        Mixture { colors: [darker, brighter], share: share ^ FOUND, single }
     }
 
     #[cold]
     fn find(&self, place: usize, levels: [u8; 3]) -> u32 {
         // Repeating the bits makes the lowest level black and the highest white.
         let [red, green, blue] = levels.map(|level| level << 2 | level >> (BITS - 2));
-        let Mixture { colors: [darker, brighter], share } =
+        let Mixture { colors: [darker, brighter], share, single } =
             (self.palette)().mixture(Rgb::new(red, green, blue));
-        let entry = FOUND | u32::from_be_bytes([0, share, brighter, darker]);
+        let entry = u32::from_be_bytes([FOUND | share, single, darker, brighter]);
         self.entries[place].store(entry, Ordering::Relaxed);
         entry
     }
@@ -136,24 +145,28 @@ impl Palette {
     fn mixture(self, color: Rgb) -> Mixture {
         let Target { considered, count } = Target::new(color, self);
         let considered = &considered[..count];
-        let mut best = Mixture { colors: [0; 2], share: 0 };
+        let single = considered.iter().min_by(|one, other| {
+            let cost = |candidate: &Candidate| self.cost(candidate.error, self.taste.single);
+            cost(one).total_cmp(&cost(other))
+        });
+        let mut best = Mixture { single: single.map_or(0, |single| single.index), ..Mixture::NONE };
         let mut least = f32::INFINITY;
         let mut consider = |cost: f32, colors: [u8; 2], share: u8| {
             if cost < least {
                 least = cost;
-                best = Mixture { colors, share };
+                best = Mixture { colors, share, ..best };
             }
         };
-        let square = |vector: [f32; 3]| vector.iter().map(|part| part * part).sum::<f32>();
         for (place, one) in considered.iter().enumerate() {
-            consider(square(one.error), [one.index; 2], 0);
+            consider(self.cost(one.error, self.taste.chroma), [one.index; 2], 0);
             for other in &considered[place + 1..] {
                 let contrast = self.contrast(one, other);
                 for share in 1..Mixture::WHOLE {
                     let part = f32::from(share) / f32::from(Mixture::WHOLE);
                     let error =
                         array::from_fn(|i| one.error[i] + (other.error[i] - one.error[i]) * part);
-                    let cost = square(error) + contrast * 4.0 * part * (1.0 - part);
+                    let cost = self.cost(error, self.taste.chroma)
+                        + contrast * 4.0 * part * (1.0 - part);
                     if one.lab[0] <= other.lab[0] {
                         consider(cost, [one.index, other.index], share);
                     } else {
@@ -163,6 +176,11 @@ impl Palette {
             }
         }
         best
+    }
+
+    /// What an error costs where one in chroma counts so much.
+    fn cost(&self, [lightness, red, yellow]: [f32; 3], chroma: f32) -> f32 {
+        lightness * lightness + chroma * chroma * (red * red + yellow * yellow)
     }
 
     fn contrast(&self, one: &Candidate, other: &Candidate) -> f32 {
@@ -204,7 +222,7 @@ impl Target {
             let cosine = lab[1] * wanted[1] + lab[2] * wanted[2];
             let its_chroma = chroma(lab);
             its_chroma < GREY
-                || own_chroma >= GREY / 2.0 && cosine >= taste.hue * its_chroma * own_chroma
+                || own_chroma >= taste.least_chroma && cosine >= taste.hue * its_chroma * own_chroma
         };
         let mut considered = [Candidate::default(); CONSIDERED];
         let mut count = 0;
@@ -218,8 +236,8 @@ impl Target {
                 array::from_fn(|i| (paint.cones[i] - cones[i]) * slopes[i]);
             let error = [
                 0.210_454_26 * long + 0.793_617_8 * medium - 0.004_072_05 * short,
-                taste.chroma * (1.977_998_5 * long - 2.428_592_2 * medium + 0.450_593_7 * short),
-                taste.chroma * (0.025_904_04 * long + 0.782_771_77 * medium - 0.808_675_77 * short),
+                1.977_998_5 * long - 2.428_592_2 * medium + 0.450_593_7 * short,
+                0.025_904_04 * long + 0.782_771_77 * medium - 0.808_675_77 * short,
             ];
             let candidate = Candidate { index: paint.index, distance, error, lab: paint.lab };
             count = (count + 1).min(CONSIDERED);
@@ -233,3 +251,7 @@ impl Target {
         Self { considered, count }
     }
 }
+
+fn tuned() -> Taste { static T: LazyLock<Taste> = LazyLock::new(|| { let v: Vec<f32> = std::env::var("TASTE").unwrap_or("1.5,0.03,0.01,0.7,2.5".into()).split(',').map(|x| x.parse().unwrap()).collect(); Taste { chroma: v[0], contrast: [v[1], v[2]], hue: v[3], single: v[4], least_chroma: 0.005 } }); *T }
+
+fn tuned16() -> Taste { static T: LazyLock<Taste> = LazyLock::new(|| { let v: Vec<f32> = std::env::var("TASTE16").unwrap_or("1,0.008,0.02,0.8,1,0.035".into()).split(',').map(|x| x.parse().unwrap()).collect(); Taste { chroma: v[0], contrast: [v[1], v[2]], hue: v[3], single: v[4], least_chroma: v[5] } }); *T }

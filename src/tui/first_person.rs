@@ -109,12 +109,12 @@ impl<'a> FirstPerson<'a> {
             GlyphMode::Half => {
                 half_blocks::draw_frame(area, canvas, self.depth, above, frame);
             }
-            GlyphMode::Ascii => ascii::draw(area, canvas, self.depth, |x, y| {
+            GlyphMode::Ascii => ascii::draw_picture(area, canvas, self.depth, |x, y| {
                 let color = frame.pixel(x, above + y);
                 let surface = renderer.surface(x, above + y).unwrap_or(Surface::Sky);
                 (color, ascii::character(surface, color))
             }),
-            GlyphMode::Ramp => ascii::draw(area, canvas, self.depth, |x, y| {
+            GlyphMode::Ramp => ascii::draw_picture(area, canvas, self.depth, |x, y| {
                 let color = frame.pixel(x, above + y);
                 (color, ramp::character(color))
             }),

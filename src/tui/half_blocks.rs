@@ -6,13 +6,14 @@
 //! does. Error diffusion was refused: there, one changed pixel changes all that follow.
 
 mod mixed;
+mod mono;
 
 use ratatui::layout::Rect;
 use ratatui::style::Color;
 
 use super::Canvas;
 use super::glyphs::color_at;
-use crate::palette::ColorDepth;
+use crate::palette::{ColorDepth, mixture};
 use crate::render::Frame;
 use crate::world::Rgb;
 
@@ -25,11 +26,10 @@ pub(super) fn draw_frame(
     frame: &Frame,
 ) {
     match depth {
-        ColorDepth::Indexed256 => mixed::draw(area, canvas, mixed::OF_256, above, frame),
-        ColorDepth::Indexed16 => mixed::draw(area, canvas, mixed::OF_16, above, frame),
-        ColorDepth::True | ColorDepth::Mono => {
-            draw(area, canvas, depth, above, |y| frame.row(y));
-        }
+        ColorDepth::Indexed256 => mixed::draw(area, canvas, &mixture::OF_256, above, frame),
+        ColorDepth::Indexed16 => mixed::draw(area, canvas, &mixture::OF_16, above, frame),
+        ColorDepth::True => draw(area, canvas, depth, above, |y| frame.row(y)),
+        ColorDepth::Mono => mono::draw(area, canvas, above, frame),
     }
 }
 
@@ -91,6 +91,13 @@ fn order(x: u32, y: u32) -> u8 {
 /// Whether a pixel of that colour is lit at that place.
 fn is_lit(color: Rgb, x: u32, y: u32) -> bool {
     color.luma() >= 16 * order(x, y) + 8
+}
+
+/// A shade as it is drawn without colour, from 0 to 255: halfway to its square root, since most of a
+/// room is dark.
+fn brighter(shade: u8) -> u8 {
+    let shade = u32::from(shade);
+    ((shade + (255 * shade).isqrt()) / 2) as u8
 }
 
 /// `color` made lighter or darker, by less than the named colours differ.

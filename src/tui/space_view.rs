@@ -85,7 +85,7 @@ impl<'a> SpaceView<'a> {
                 half_blocks::draw_frame(area, canvas, self.depth, above, frame);
             }
             GlyphMode::Ascii | GlyphMode::Ramp => {
-                ascii::draw(area, canvas, self.depth, |x, y| {
+                ascii::draw_picture(area, canvas, self.depth, |x, y| {
                     let color = frame.pixel(x, above + y);
                     (color, ramp::character(color))
                 });

@@ -23,25 +23,11 @@ use crate::render::Frame;
 use crate::tui::Canvas;
 use crate::world::Rgb;
 
-/// A palette, as blocks are drawn in it.
-#[derive(Clone, Copy)]
-pub(super) struct Palette {
-    mixtures: &'static Mixtures,
-    nearest: fn(Rgb) -> u8,
-}
-
-/// The fixed ones of 256 colours.
-pub(super) const OF_256: Palette =
-    Palette { mixtures: &mixture::OF_256, nearest: palette::nearest_of_256 };
-/// The 16 named colours.
-pub(super) const OF_16: Palette =
-    Palette { mixtures: &mixture::OF_16, nearest: palette::nearest_of_16 };
-
 /// So many cells are drawn at a time, and so need room: an even number.
 const CHUNK: usize = 64;
 
 /// Draws the pixels of `frame` as [`super::draw_frame`] does.
-pub(super) fn draw(area: Rect, canvas: &mut impl Canvas, palette: Palette, above: u32, frame: &Frame) {
+pub(super) fn draw(area: Rect, canvas: &mut impl Canvas, mixtures: &Mixtures, above: u32, frame: &Frame) {
     let tables = &*TABLES;
     let row = |y: u32| (y < frame.height()).then(|| frame.row_slice(y)).unwrap_or_default();
     let first_cells = above / 2;
@@ -56,7 +42,7 @@ pub(super) fn draw(area: Rect, canvas: &mut impl Canvas, palette: Palette, above
                 let mut owed = [0; 3];
                 for (rows, shown) in rows.iter().zip(&mut shown) {
                     let Some(block) = block(rows, left + x) else { continue };
-                    let colors = tables.draw(palette, block, &mut owed);
+                    let colors = tables.draw(mixtures, block, &mut owed);
                     shown[x] = [colors[0], colors[2]];
                     shown[x + 1] = [colors[1], colors[3]];
                 }
@@ -122,45 +108,44 @@ impl Tables {
     }
 
     /// What the pixels of a block show. It is drawn brighter by what is `owed`, and owes what it is off then.
-    fn draw(&self, palette: Palette, block: [Rgb; 4], owed: &mut Light) -> [u8; 4] {
+    fn draw(&self, mixtures: &Mixtures, block: [Rgb; 4], owed: &mut Light) -> [u8; 4] {
         let lumas = block.map(Rgb::luma);
         let [darkest, brightest] =
             lumas.iter().fold([u8::MAX, 0], |[low, high], &luma| [low.min(luma), high.max(luma)]);
         let lights = block.map(|pixel| {
             pixel.channels().map(|channel| self.of_channel[usize::from(channel)])
         });
-        let colors = if brightest - darkest > Self::EDGE {
-            self.draw_edge(palette, lumas.map(|luma| luma > darkest.midpoint(brightest)), &lights)
+        let colors = if brightest - darkest > tune(1) as u8 {
+            self.draw_edge(mixtures, lumas.map(|luma| luma > darkest.midpoint(brightest)), &lights)
         } else {
-            self.mix(palette, &lights, *owed)
+            self.mix(mixtures, &lights, *owed)
         };
         *owed = array::from_fn(|i| {
             let off: i32 = (0..4)
                 .map(|pixel| lights[pixel][i] - self.of_index[usize::from(colors[pixel])][i])
                 .sum();
             // Not all of it, as what is owed for many reasons is seldom owed by the next block.
-            off * 3 / 16
+            off * tune(0) / 16
         });
         colors
     }
 
     /// The colours nearest to the means of what is on either side of an edge.
-    fn draw_edge(&self, palette: Palette, is_bright: [bool; 4], lights: &[Light; 4]) -> [u8; 4] {
+    fn draw_edge(&self, mixtures: &Mixtures, is_bright: [bool; 4], lights: &[Light; 4]) -> [u8; 4] {
         let [dark, bright] = [false, true].map(|side| {
             let on_side = || lights.iter().zip(is_bright).filter(|&(_, is_bright)| is_bright == side);
             let count = on_side().count().max(1) as i32;
             let mean = array::from_fn(|i| on_side().map(|(light, _)| light[i]).sum::<i32>() / count);
-            let [red, green, blue] = self.levels(mean).map(|level| level << 2 | 2);
-            (palette.nearest)(Rgb::new(red, green, blue))
+            mixtures.of(self.levels(mean)).single
         });
         is_bright.map(|is_bright| if is_bright { bright } else { dark })
     }
 
     /// The mixture of the mean.
-    fn mix(&self, palette: Palette, lights: &[Light; 4], owed: Light) -> [u8; 4] {
+    fn mix(&self, mixtures: &Mixtures, lights: &[Light; 4], owed: Light) -> [u8; 4] {
         let mean: Light = array::from_fn(|i| lights.iter().map(|light| light[i]).sum::<i32>() / 4);
         let wanted = paid(mean, owed);
-        let Mixture { colors, share } = palette.mixtures.of(self.levels(wanted));
+        let Mixture { colors, share, .. } = mixtures.of(self.levels(wanted));
         if share == 0 {
             return [colors[0]; 4];
         }
@@ -171,7 +156,7 @@ impl Tables {
             let along: i64 =
                 (0..3).map(|i| i64::from(lights[pixel][i] - mean[i]) * way[i]).sum();
             // In eighths: what the mixture and the pixel itself want, against the pattern.
-            let wish = 2 * i64::from(share) * length + 8 * along;
+            let wish = 2 * i64::from(share) * length + i64::from(tune(2)) * along;
             let threshold = i64::from(2 * Self::ORDER[pixel] + 1) * length;
             colors[usize::from(wish > threshold)]
         })
@@ -192,3 +177,5 @@ fn paid(mean: Light, owed: Light) -> Light {
         .sum();
     if agreement > 0 { sum } else { [grey_of_sum; 3] }
 }
+
+fn tune(i: usize) -> i32 { static T: LazyLock<Vec<i32>> = LazyLock::new(|| std::env::var("TUNE").unwrap_or("3,32,8".into()).split(',').map(|x| x.parse().unwrap()).collect()); T[i] }
