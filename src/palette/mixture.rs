@@ -49,13 +49,13 @@ const FOUND: u8 = 1 << 7;
 pub(crate) static OF_256: Mixtures = Mixtures::new(|| {
     static PALETTE: LazyLock<Vec<Paint>> =
         LazyLock::new(|| (CUBE..=u8::MAX).map(Paint::of).collect());
-    Palette { paints: &PALETTE, taste: tuned() }
+    Palette { paints: &PALETTE, taste: FINE }
 });
 
 /// The mixtures of the 16 named colours.
 pub(crate) static OF_16: Mixtures = Mixtures::new(|| {
     static PALETTE: LazyLock<Vec<Paint>> = LazyLock::new(|| (0..CUBE).map(Paint::of).collect());
-    Palette { paints: &PALETTE, taste: tuned16() }
+    Palette { paints: &PALETTE, taste: COARSE }
 });
 
 /// What is mixed, and how.
@@ -80,10 +80,12 @@ struct Taste {
     least_chroma: f32,
 }
 
+/// Found by trying, with `cellcaster wire --colors 256`.
 const FINE: Taste =
-    Taste { chroma: 1.5, single: 2.5, contrast: [0.03, 0.01], hue: 0.7, least_chroma: 0.005 };
-const COARSE: Taste = coarse();
-const fn coarse() -> Taste { Taste { chroma: 1.0, single: 1.0, contrast: [0.008, 0.02], hue: 0.8, least_chroma: 0.035 } }
+    Taste { chroma: 2.0, single: 1.3, contrast: [0.02, 0.01], hue: 0.6, least_chroma: 0.005 };
+/// Of a few glaring colours, which users give shades of their own, as few as possible.
+const COARSE: Taste =
+    Taste { chroma: 1.0, single: 1.0, contrast: [0.008, 0.02], hue: 0.8, least_chroma: 0.045 };
 
 /// So many colours are considered for a mixture: those that are nearest.
 const CONSIDERED: usize = 40;
@@ -251,7 +253,3 @@ impl Target {
         Self { considered, count }
     }
 }
-
-fn tuned() -> Taste { static T: LazyLock<Taste> = LazyLock::new(|| { let v: Vec<f32> = std::env::var("TASTE").unwrap_or("1.5,0.03,0.01,0.7,2.5".into()).split(',').map(|x| x.parse().unwrap()).collect(); Taste { chroma: v[0], contrast: [v[1], v[2]], hue: v[3], single: v[4], least_chroma: 0.005 } }); *T }
-
-fn tuned16() -> Taste { static T: LazyLock<Taste> = LazyLock::new(|| { let v: Vec<f32> = std::env::var("TASTE16").unwrap_or("1,0.008,0.02,0.8,1,0.035".into()).split(',').map(|x| x.parse().unwrap()).collect(); Taste { chroma: v[0], contrast: [v[1], v[2]], hue: v[3], single: v[4], least_chroma: v[5] } }); *T }

@@ -1,9 +1,9 @@
 //! Half blocks: a cell shows two pixels, one above the other.
 //!
-//! Without colour a pixel is lit or it is not; which one is decided by comparing its brightness with
-//! a fixed 4×4 pattern of thresholds. With 16 colours the same pattern makes pixels lighter and
-//! darker before the nearest colour is taken. So shades stay apart, and stand still while the picture
-//! does. Error diffusion was refused: there, one changed pixel changes all that follow.
+//! A picture in few colours is drawn as a picture: [`mixed`] and [`mono`] look at more than one pixel. What is
+//! drawn in flat colours, such as a map, shows the nearest ones; without colour a pixel of it is lit or not by a
+//! fixed 4×4 pattern of thresholds. All patterns stand still while the picture does. Error diffusion was
+//! refused: there, one changed pixel changes all that follow.
 
 mod mixed;
 mod mono;
@@ -91,13 +91,6 @@ fn order(x: u32, y: u32) -> u8 {
 /// Whether a pixel of that colour is lit at that place.
 fn is_lit(color: Rgb, x: u32, y: u32) -> bool {
     color.luma() >= 16 * order(x, y) + 8
-}
-
-/// A shade as it is drawn without colour, from 0 to 255: halfway to its square root, since most of a
-/// room is dark.
-fn brighter(shade: u8) -> u8 {
-    let shade = u32::from(shade);
-    ((shade + (255 * shade).isqrt()) / 2) as u8
 }
 
 /// `color` made lighter or darker, by less than the named colours differ.

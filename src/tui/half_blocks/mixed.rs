@@ -86,7 +86,7 @@ impl Tables {
     /// Light is told apart in so many steps where it becomes a channel again.
     const STEPS: usize = 1 << 12;
     /// What is this much brighter than another pixel of its block, in parts of 255, is beyond an edge.
-    const EDGE: u8 = 32;
+    const EDGE: u8 = 36;
     /// In this order the pixels of a block get the brighter colour.
     const ORDER: [i32; 4] = [0, 2, 3, 1];
 
@@ -115,17 +115,14 @@ impl Tables {
         let lights = block.map(|pixel| {
             pixel.channels().map(|channel| self.of_channel[usize::from(channel)])
         });
-        let colors = if brightest - darkest > tune(1) as u8 {
+        let colors = if brightest - darkest > Self::EDGE {
             self.draw_edge(mixtures, lumas.map(|luma| luma > darkest.midpoint(brightest)), &lights)
         } else {
             self.mix(mixtures, &lights, *owed)
         };
         *owed = array::from_fn(|i| {
-            let off: i32 = (0..4)
-                .map(|pixel| lights[pixel][i] - self.of_index[usize::from(colors[pixel])][i])
-                .sum();
-            // Not all of it, as what is owed for many reasons is seldom owed by the next block.
-            off * tune(0) / 16
+            let shown = |pixel: usize| self.of_index[usize::from(colors[pixel])][i];
+            (0..4).map(|pixel| lights[pixel][i] - shown(pixel)).sum::<i32>() / 4
         });
         colors
     }
@@ -155,8 +152,9 @@ impl Tables {
         array::from_fn(|pixel| {
             let along: i64 =
                 (0..3).map(|i| i64::from(lights[pixel][i] - mean[i]) * way[i]).sum();
-            // In eighths: what the mixture and the pixel itself want, against the pattern.
-            let wish = 2 * i64::from(share) * length + i64::from(tune(2)) * along;
+            // In eighths: what the mixture wants, and three quarters of what the pixel itself does, against
+            // the pattern.
+            let wish = 2 * i64::from(share) * length + 6 * along;
             let threshold = i64::from(2 * Self::ORDER[pixel] + 1) * length;
             colors[usize::from(wish > threshold)]
         })
@@ -177,5 +175,3 @@ fn paid(mean: Light, owed: Light) -> Light {
         .sum();
     if agreement > 0 { sum } else { [grey_of_sum; 3] }
 }
-
-fn tune(i: usize) -> i32 { static T: LazyLock<Vec<i32>> = LazyLock::new(|| std::env::var("TUNE").unwrap_or("3,32,8".into()).split(',').map(|x| x.parse().unwrap()).collect()); T[i] }
