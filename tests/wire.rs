@@ -5,9 +5,9 @@ use std::num::NonZeroU32;
 
 use cellcaster::game::Script;
 use cellcaster::map::builtin;
+use cellcaster::palette::ColorDepth;
 use cellcaster::terminal::Fidelity;
 use cellcaster::tui::{Levels, Replay, Settings};
-use cellcaster::palette::ColorDepth;
 use cellcaster::wire::{self, EncoderReport, PalettePlan, PaletteRow, Part, Plan, Report};
 use ratatui::layout::Size;
 

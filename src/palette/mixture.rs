@@ -52,9 +52,13 @@ pub(crate) static OF_256: Mixtures = Mixtures::new(|| {
     Palette { paints: &PALETTE, taste: FINE }
 });
 
-/// The mixtures of the 16 named colours.
+/// The mixtures of twelve of the 16 named colours. Cyan and magenta are the hue of next to nothing in a room, and glare
+/// as stray dots where stone is a little blue.
 pub(crate) static OF_16: Mixtures = Mixtures::new(|| {
-    static PALETTE: LazyLock<Vec<Paint>> = LazyLock::new(|| (0..CUBE).map(Paint::of).collect());
+    const LEFT_OUT: [u8; 4] = [5, 6, 13, 14];
+    static PALETTE: LazyLock<Vec<Paint>> = LazyLock::new(|| {
+        (0..CUBE).filter(|index| !LEFT_OUT.contains(index)).map(Paint::of).collect()
+    });
     Palette { paints: &PALETTE, taste: COARSE }
 });
 
@@ -85,7 +89,7 @@ const FINE: Taste =
     Taste { chroma: 2.0, single: 1.3, contrast: [0.02, 0.01], hue: 0.6, least_chroma: 0.005 };
 /// Of a few glaring colours, which users give shades of their own, as few as possible.
 const COARSE: Taste =
-    Taste { chroma: 1.0, single: 1.0, contrast: [0.008, 0.02], hue: 0.8, least_chroma: 0.045 };
+    Taste { chroma: 1.0, single: 1.0, contrast: [0.008, 0.02], hue: 0.9, least_chroma: 0.045 };
 
 /// So many colours are considered for a mixture: those that are nearest.
 const CONSIDERED: usize = 40;
@@ -167,8 +171,8 @@ impl Palette {
                     let part = f32::from(share) / f32::from(Mixture::WHOLE);
                     let error =
                         array::from_fn(|i| one.error[i] + (other.error[i] - one.error[i]) * part);
-                    let cost = self.cost(error, self.taste.chroma)
-                        + contrast * 4.0 * part * (1.0 - part);
+                    let cost =
+                        self.cost(error, self.taste.chroma) + contrast * 4.0 * part * (1.0 - part);
                     if one.lab[0] <= other.lab[0] {
                         consider(cost, [one.index, other.index], share);
                     } else {
@@ -234,8 +238,7 @@ impl Target {
             if count == CONSIDERED && distance >= considered[count - 1].distance {
                 continue;
             }
-            let [long, medium, short] =
-                array::from_fn(|i| (paint.cones[i] - cones[i]) * slopes[i]);
+            let [long, medium, short] = array::from_fn(|i| (paint.cones[i] - cones[i]) * slopes[i]);
             let error = [
                 0.210_454_26 * long + 0.793_617_8 * medium - 0.004_072_05 * short,
                 1.977_998_5 * long - 2.428_592_2 * medium + 0.450_593_7 * short,
@@ -251,5 +254,53 @@ impl Target {
             }
         }
         Self { considered, count }
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    fn mixture(red: u8, green: u8, blue: u8) -> Mixture {
+        OF_256.of([red, green, blue].map(|channel| channel >> (u8::BITS - BITS)))
+    }
+
+    #[test]
+    fn dark_bricks_are_mixed_of_red_and_grey() {
+        let Mixture { colors, share, .. } = mixture(80, 32, 24);
+        let [darker, brighter] = colors.map(|index| Oklab::from(of_256(index)));
+        assert!(share > 0 && share < Mixture::WHOLE);
+        assert!(darker.0[0] <= brighter.0[0]);
+        assert!(darker.0[1].max(brighter.0[1]) > 0.05, "{colors:?}");
+    }
+
+    #[test]
+    fn greys_are_mixed_of_greys() {
+        for level in (0..=255).step_by(4) {
+            let Mixture { colors, single, .. } = mixture(level, level, level);
+            for index in [colors[0], colors[1], single] {
+                let [red, green, blue] = of_256(index).channels();
+                assert!(red == green && green == blue, "{level}: {index}");
+            }
+        }
+    }
+
+    #[test]
+    fn a_mixture_looks_more_like_the_colour_than_the_nearest_colour_does() {
+        let mut better = 0;
+        for color in [[100, 40, 30], [90, 80, 60], [60, 90, 120], [140, 130, 115], [40, 60, 40]] {
+            let wanted = Oklab::from(Rgb::new(color[0], color[1], color[2]));
+            let [red, green, blue] = color;
+            let Mixture { colors, share, .. } = mixture(red, green, blue);
+            let part = f64::from(share) / f64::from(Mixture::WHOLE);
+            let [darker, brighter] = colors.map(|index| oklab::light(of_256(index)));
+            let mixed: [f64; 3] = array::from_fn(|i| darker[i] + (brighter[i] - darker[i]) * part);
+            let mixed = Oklab::from_linear(mixed).distance_squared(&wanted);
+            let nearest = (CUBE..=u8::MAX)
+                .map(|index| Oklab::from(of_256(index)).distance_squared(&wanted))
+                .fold(f64::INFINITY, f64::min);
+            better += u32::from(mixed < 0.5 * nearest);
+        }
+        assert!(better >= 4, "{better} of 5");
     }
 }

@@ -46,9 +46,8 @@ impl NearestColors {
 
     #[cold]
     fn find(&self, place: usize, color: Rgb) -> u16 {
-        let middle = |channel: u8| {
-            channel >> DROPPED_BITS << DROPPED_BITS | 1 << (DROPPED_BITS - 1)
-        };
+        let middle =
+            |channel: u8| channel >> DROPPED_BITS << DROPPED_BITS | 1 << (DROPPED_BITS - 1);
         let [red, green, blue] = color.channels().map(middle);
         let color = Oklab::from(Rgb::new(red, green, blue));
         let by_distance = |(_, one): &&(u8, Oklab), (_, other): &&(u8, Oklab)| {

@@ -49,15 +49,9 @@ pub(super) fn draw<Row: Iterator<Item = Rgb>>(
             ColorDepth::True => {
                 canvas.draw_pixels(area.x, y, pixels.map(|(_, (top, bottom))| [top, bottom]));
             }
-            ColorDepth::Indexed256 => {
-                let color = |pixel| color_at(ColorDepth::Indexed256, pixel);
+            ColorDepth::Indexed256 | ColorDepth::Indexed16 => {
+                let color = |pixel| color_at(depth, pixel);
                 let colors = pixels.map(|(_, (top, bottom))| [color(top), color(bottom)]);
-                canvas.draw_halves(area.x, y, colors);
-            }
-            ColorDepth::Indexed16 => {
-                let color = |pixel, x, y| color_at(ColorDepth::Indexed16, dithered(pixel, x, y));
-                let colors = pixels
-                    .map(|(x, (top, bottom))| [color(top, x, upper), color(bottom, x, lower)]);
                 canvas.draw_halves(area.x, y, colors);
             }
             ColorDepth::Mono => {
@@ -91,15 +85,6 @@ fn order(x: u32, y: u32) -> u8 {
 /// Whether a pixel of that colour is lit at that place.
 fn is_lit(color: Rgb, x: u32, y: u32) -> bool {
     color.luma() >= 16 * order(x, y) + 8
-}
-
-/// `color` made lighter or darker, by less than the named colours differ.
-fn dithered(color: Rgb, x: u32, y: u32) -> Rgb {
-    const STRENGTH: i16 = 2;
-    let offset = STRENGTH * (2 * i16::from(order(x, y)) - 15);
-    let [red, green, blue] =
-        color.channels().map(|channel| (i16::from(channel) + offset).clamp(0, 255) as u8);
-    Rgb::new(red, green, blue)
 }
 
 #[cfg(test)]

@@ -14,14 +14,15 @@ use std::num::NonZeroU32;
 
 use ratatui::backend::Backend;
 use ratatui::layout::Size;
+use ratatui::style::Color;
 
 use crate::game::{Game, STEPS_PER_SECOND, Script};
 use crate::map::builtin;
-use crate::palette::ColorDepth;
+use crate::palette::{ColorDepth, of_256, oklab};
 use crate::render::{Frame, FrameSize, PixelAspect, Renderer};
 use crate::terminal::CellWriter;
 use crate::tui::Canvas;
-use crate::world::FieldOfView;
+use crate::world::{Camera, FieldOfView};
 use methods::{Method, method};
 use view::Seen;
 
@@ -109,7 +110,7 @@ fn report_level(plan: &PalettePlan, name: &str, mut game: Game) -> Vec<PaletteRo
             let pixels = frame.rows().flatten().copied();
             let is_compared = frames % COMPARED == 0;
             if is_compared {
-                truth.look(frame.width() as usize, pixels.map(crate::palette::oklab::light));
+                truth.look(frame.width() as usize, pixels.map(oklab::light));
             }
             for trial in &mut trials {
                 trial.take(&game, &camera, &frame, is_compared.then_some(&truth));
@@ -184,13 +185,7 @@ impl Trial {
         }
     }
 
-    fn take(
-        &mut self,
-        game: &Game,
-        camera: &crate::world::Camera,
-        frame: &Frame,
-        truth: Option<&Seen>,
-    ) {
+    fn take(&mut self, game: &Game, camera: &Camera, frame: &Frame, truth: Option<&Seen>) {
         self.indices.clear();
         self.method.draw(game.world(), camera, frame, &mut self.indices);
         let width = frame.width() as usize;
@@ -199,7 +194,7 @@ impl Trial {
             for (y, rows) in (0..).zip(indices.chunks_exact(2 * width)) {
                 let (upper, lower) = rows.split_at(width);
                 let halves = upper.iter().zip(lower);
-                let halves = halves.map(|(&top, &bottom)| [top, bottom].map(ratatui::style::Color::Indexed));
+                let halves = halves.map(|(&top, &bottom)| [top, bottom].map(Color::Indexed));
                 screen.draw_halves(0, y, halves);
             }
         });
@@ -207,7 +202,7 @@ impl Trial {
         _ = Backend::flush(&mut self.writer);
         self.bytes.push(self.writer.output_mut().drain(..).len());
         if let Some(truth) = truth {
-            let light = |&index: &u8| crate::palette::oklab::light(crate::palette::of_256(index));
+            let light = |&index: &u8| oklab::light(of_256(index));
             self.seen.look(width, self.indices.iter().map(light));
             self.error += self.seen.distances(truth).sum::<f64>();
             self.windows += self.seen.windows();

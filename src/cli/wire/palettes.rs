@@ -24,11 +24,7 @@ pub(super) fn run(depth: ColorDepth, options: &Wire) -> io::Result<()> {
     output.flush()
 }
 
-fn write_table(
-    plan: &PalettePlan,
-    rows: &[PaletteRow],
-    output: &mut impl Write,
-) -> io::Result<()> {
+fn write_table(plan: &PalettePlan, rows: &[PaletteRow], output: &mut impl Write) -> io::Result<()> {
     writeln!(
         output,
         "{}×{} cells, {} frames a second. Error: blurred over 2×2 cells, in Oklab. Grey: chroma below {GREY},\n\

@@ -27,7 +27,13 @@ use crate::world::Rgb;
 const CHUNK: usize = 64;
 
 /// Draws the pixels of `frame` as [`super::draw_frame`] does.
-pub(super) fn draw(area: Rect, canvas: &mut impl Canvas, mixtures: &Mixtures, above: u32, frame: &Frame) {
+pub(super) fn draw(
+    area: Rect,
+    canvas: &mut impl Canvas,
+    mixtures: &Mixtures,
+    above: u32,
+    frame: &Frame,
+) {
     let tables = &*TABLES;
     let row = |y: u32| (y < frame.height()).then(|| frame.row_slice(y)).unwrap_or_default();
     let first_cells = above / 2;
@@ -112,9 +118,8 @@ impl Tables {
         let lumas = block.map(Rgb::luma);
         let [darkest, brightest] =
             lumas.iter().fold([u8::MAX, 0], |[low, high], &luma| [low.min(luma), high.max(luma)]);
-        let lights = block.map(|pixel| {
-            pixel.channels().map(|channel| self.of_channel[usize::from(channel)])
-        });
+        let lights = block
+            .map(|pixel| pixel.channels().map(|channel| self.of_channel[usize::from(channel)]));
         let colors = if brightest - darkest > Self::EDGE {
             self.draw_edge(mixtures, lumas.map(|luma| luma > darkest.midpoint(brightest)), &lights)
         } else {
@@ -130,9 +135,11 @@ impl Tables {
     /// The colours nearest to the means of what is on either side of an edge.
     fn draw_edge(&self, mixtures: &Mixtures, is_bright: [bool; 4], lights: &[Light; 4]) -> [u8; 4] {
         let [dark, bright] = [false, true].map(|side| {
-            let on_side = || lights.iter().zip(is_bright).filter(|&(_, is_bright)| is_bright == side);
+            let on_side =
+                || lights.iter().zip(is_bright).filter(|&(_, is_bright)| is_bright == side);
             let count = on_side().count().max(1) as i32;
-            let mean = array::from_fn(|i| on_side().map(|(light, _)| light[i]).sum::<i32>() / count);
+            let mean =
+                array::from_fn(|i| on_side().map(|(light, _)| light[i]).sum::<i32>() / count);
             mixtures.of(self.levels(mean)).single
         });
         is_bright.map(|is_bright| if is_bright { bright } else { dark })
@@ -150,8 +157,7 @@ impl Tables {
         let way: [i64; 3] = array::from_fn(|i| i64::from(brighter[i] - darker[i]));
         let length: i64 = way.iter().map(|part| part * part).sum();
         array::from_fn(|pixel| {
-            let along: i64 =
-                (0..3).map(|i| i64::from(lights[pixel][i] - mean[i]) * way[i]).sum();
+            let along: i64 = (0..3).map(|i| i64::from(lights[pixel][i] - mean[i]) * way[i]).sum();
             // In eighths: what the mixture wants, and three quarters of what the pixel itself does, against
             // the pattern.
             let wish = 2 * i64::from(share) * length + 6 * along;
@@ -165,13 +171,16 @@ impl Tables {
     }
 }
 
-/// `mean` and what is owed: of the same hue, or grey.
+/// `mean` and what is owed: of about the same hue, or grey.
 fn paid(mean: Light, owed: Light) -> Light {
     let sum: Light = array::from_fn(|i| (mean[i] + owed[i]).clamp(0, Tables::WHITE));
     let grey = |light: Light| light.iter().sum::<i32>() / 3;
-    let (grey_of_mean, grey_of_sum) = (grey(mean), grey(sum));
-    let agreement: i64 = (0..3)
-        .map(|i| i64::from(mean[i] - grey_of_mean) * i64::from(sum[i] - grey_of_sum))
-        .sum();
-    if agreement > 0 { sum } else { [grey_of_sum; 3] }
+    let hue = |light: Light| light.map(|part| f64::from(part - grey(light)));
+    let dot = |one: [f64; 3], other: [f64; 3]| (0..3).map(|i| one[i] * other[i]).sum::<f64>();
+    let (wanted, summed) = (hue(mean), hue(sum));
+    let agreement = dot(wanted, summed);
+    // Within 45 degrees.
+    let agrees = agreement >= 0.0
+        && 2.0 * agreement * agreement >= dot(wanted, wanted) * dot(summed, summed);
+    if agrees { sum } else { [grey(sum); 3] }
 }

@@ -29,9 +29,9 @@ impl Seen {
         for y in (0..(height + 1).saturating_sub(down)).step_by(2) {
             for x in 0..(width + 1).saturating_sub(across) {
                 let rows = (y..y + down).map(|y| &self.light[y * width + x..][..across]);
-                let sum = rows.flatten().fold([0.0; 3], |sum, light| {
-                    std::array::from_fn(|i| sum[i] + light[i])
-                });
+                let sum = rows
+                    .flatten()
+                    .fold([0.0; 3], |sum, light| std::array::from_fn(|i| sum[i] + light[i]));
                 let mean = sum.map(|sum: f64| sum / (across * down) as f64);
                 self.blurred.push(Oklab::from_linear(mean));
             }
@@ -72,7 +72,8 @@ mod tests {
 
     #[test]
     fn a_checkerboard_looks_like_its_mean_and_as_grey_as_that() {
-        let checker = (0..8 * 8).map(|at| if (at + at / 8) % 2 == 0 { [0.8, 0.2, 0.2] } else { [0.2, 0.8, 0.8] });
+        let checker = (0..8 * 8)
+            .map(|at| if (at + at / 8) % 2 == 0 { [0.8, 0.2, 0.2] } else { [0.2, 0.8, 0.8] });
         let (mut dots, mut flat) = (Seen::default(), Seen::default());
         dots.look(8, checker);
         flat.look(8, (0..8 * 8).map(|_| [0.5; 3]));
