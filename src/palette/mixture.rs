@@ -117,6 +117,7 @@ impl Paint {
 }
 
 impl Mixtures {
+    #[expect(clippy::large_stack_arrays, reason = "it is made when the program is compiled")]
     const fn new(palette: fn() -> Palette) -> Self {
         Self { palette, entries: [const { AtomicU32::new(0) }; 1 << (3 * BITS)] }
     }
@@ -152,8 +153,8 @@ impl Palette {
         let Target { considered, count } = Target::new(color, self);
         let considered = &considered[..count];
         let single = considered.iter().min_by(|one, other| {
-            let cost = |candidate: &Candidate| self.cost(candidate.error, self.taste.single);
-            cost(one).total_cmp(&cost(other))
+            let alone = |candidate: &Candidate| cost(candidate.error, self.taste.single);
+            alone(one).total_cmp(&alone(other))
         });
         let mut best = Mixture { single: single.map_or(0, |single| single.index), ..Mixture::NONE };
         let mut least = f32::INFINITY;
@@ -164,7 +165,7 @@ impl Palette {
             }
         };
         for (place, one) in considered.iter().enumerate() {
-            consider(self.cost(one.error, self.taste.chroma), [one.index; 2], 0);
+            consider(cost(one.error, self.taste.chroma), [one.index; 2], 0);
             for other in &considered[place + 1..] {
                 let contrast = self.contrast(one, other);
                 for share in 1..Mixture::WHOLE {
@@ -172,11 +173,11 @@ impl Palette {
                     let error =
                         array::from_fn(|i| one.error[i] + (other.error[i] - one.error[i]) * part);
                     let cost =
-                        self.cost(error, self.taste.chroma) + contrast * 4.0 * part * (1.0 - part);
+                        cost(error, self.taste.chroma) + contrast * 4.0 * part * (1.0 - part);
                     if one.lab[0] <= other.lab[0] {
-                        consider(cost, [one.index, other.index], share);
+                        consider(price, [one.index, other.index], share);
                     } else {
-                        consider(cost, [other.index, one.index], Mixture::WHOLE - share);
+                        consider(price, [other.index, one.index], Mixture::WHOLE - share);
                     }
                 }
             }
@@ -184,15 +185,15 @@ impl Palette {
         best
     }
 
-    /// What an error costs where one in chroma counts so much.
-    fn cost(&self, [lightness, red, yellow]: [f32; 3], chroma: f32) -> f32 {
-        lightness * lightness + chroma * chroma * (red * red + yellow * yellow)
-    }
-
     fn contrast(&self, one: &Candidate, other: &Candidate) -> f32 {
         let square = |index: usize| (one.lab[index] - other.lab[index]).powi(2);
         self.taste.contrast[0] * square(0) + self.taste.contrast[1] * (square(1) + square(2))
     }
+}
+
+/// What an error costs where one in chroma counts so much.
+fn cost([lightness, red, yellow]: [f32; 3], chroma: f32) -> f32 {
+    lightness * lightness + chroma * chroma * (red * red + yellow * yellow)
 }
 
 /// A colour to be mixed, and what it may be mixed of.

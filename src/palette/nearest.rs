@@ -26,6 +26,7 @@ pub(super) struct NearestColors {
 
 impl NearestColors {
     /// The table for colours that [`palette`] has made.
+    #[expect(clippy::large_stack_arrays, reason = "it is made when the program is compiled")]
     pub(super) const fn among(palette: fn() -> Vec<(u8, Oklab)>) -> Self {
         Self {
             palette: LazyLock::new(palette),

@@ -35,7 +35,7 @@ pub(super) fn draw(
     frame: &Frame,
 ) {
     let tables = &*TABLES;
-    let row = |y: u32| (y < frame.height()).then(|| frame.row_slice(y)).unwrap_or_default();
+    let row = |y: u32| if y < frame.height() { frame.row_slice(y) } else { &[] };
     let first_cells = above / 2;
     let end_cells = first_cells + u32::from(area.height);
     for upper in (first_cells / 2 * 2..end_cells).step_by(2) {
