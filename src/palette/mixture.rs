@@ -172,7 +172,7 @@ impl Palette {
                     let part = f32::from(share) / f32::from(Mixture::WHOLE);
                     let error =
                         array::from_fn(|i| one.error[i] + (other.error[i] - one.error[i]) * part);
-                    let cost =
+                    let price =
                         cost(error, self.taste.chroma) + contrast * 4.0 * part * (1.0 - part);
                     if one.lab[0] <= other.lab[0] {
                         consider(price, [one.index, other.index], share);

@@ -27,11 +27,6 @@ impl Oklab {
     pub(crate) fn distance_squared(&self, other: &Self) -> f64 {
         self.0.iter().zip(other.0).map(|(one, other)| (one - other) * (one - other)).sum()
     }
-
-    /// How far from grey it is.
-    pub(crate) fn chroma(&self) -> f64 {
-        libm::sqrt(self.0[1] * self.0[1] + self.0[2] * self.0[2])
-    }
 }
 
 impl From<Rgb> for Oklab {

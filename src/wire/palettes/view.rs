@@ -36,7 +36,7 @@ impl Seen {
                 self.blurred.push(Oklab::from_linear(mean));
             }
         }
-        let is_grey = |color: &Oklab| color.chroma() < GREY;
+        let is_grey = |&Oklab([_, red, yellow]): &Oklab| red * red + yellow * yellow < GREY * GREY;
         self.windows += self.blurred.len();
         self.grey_windows += self.blurred.iter().filter(|color| is_grey(color)).count();
         let pixels = self.light.iter().map(|&light| Oklab::from_linear(light));
