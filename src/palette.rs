@@ -3,12 +3,13 @@
 //! Both the widgets, which pick colours, and the terminal, which finds out how many there are, need
 //! this; so it knows neither of them.
 
+#[cfg(feature = "tui")]
+pub(crate) mod mixture;
 mod nearest;
-
-use std::sync::LazyLock;
+pub(crate) mod oklab;
 
 use crate::world::Rgb;
-use nearest::NearestColors;
+use nearest::{NearestColors, palette};
 
 /// How many colours a terminal can show.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash, Default)]
@@ -54,13 +55,13 @@ const NAMED: [Rgb; 16] = [
 ///
 /// The first 16 of the 256 are left out, because users give them colours of their own.
 pub fn nearest_of_256(color: Rgb) -> u8 {
-    static TABLE: LazyLock<NearestColors> = LazyLock::new(|| NearestColors::among(CUBE..=u8::MAX));
+    static TABLE: NearestColors = NearestColors::among(|| palette(CUBE..=u8::MAX));
     TABLE.of(color)
 }
 
 /// The index of the one of the 16 named colours that looks nearest to `color`.
 pub fn nearest_of_16(color: Rgb) -> u8 {
-    static TABLE: LazyLock<NearestColors> = LazyLock::new(|| NearestColors::among(0..=CUBE - 1));
+    static TABLE: NearestColors = NearestColors::among(|| palette(0..=CUBE - 1));
     TABLE.of(color)
 }
 

@@ -13,6 +13,7 @@ mod compression;
 mod difference;
 mod encoder;
 mod lab;
+mod palettes;
 mod pipeline;
 mod tally;
 
@@ -27,6 +28,7 @@ use crate::tui::Replay;
 use encoder::{Encoder, Stock, Writer};
 use tally::Tally;
 
+pub use palettes::{GREY, PalettePlan, PaletteRow, report_palettes};
 pub use pipeline::{PipelineRow, measure_pipeline};
 pub use tally::{Bytes, Part, Seen};
 

@@ -5,9 +5,10 @@ use std::num::NonZeroU32;
 
 use cellcaster::game::Script;
 use cellcaster::map::builtin;
+use cellcaster::palette::ColorDepth;
 use cellcaster::terminal::Fidelity;
 use cellcaster::tui::{Levels, Replay, Settings};
-use cellcaster::wire::{self, EncoderReport, Part, Plan, Report};
+use cellcaster::wire::{self, EncoderReport, PalettePlan, PaletteRow, Part, Plan, Report};
 use ratatui::layout::Size;
 
 fn script() -> Script {
@@ -62,5 +63,37 @@ fn a_frame_takes_no_more_bytes_than_is_promised() {
         let bytes = part.bytes;
         assert!(bytes.median <= bytes.percentile_95 && bytes.percentile_95 <= bytes.largest);
         assert!(bytes.mean <= bytes.largest as f64);
+    }
+}
+
+fn palettes(depth: ColorDepth, frames_per_second: u32) -> Vec<PaletteRow> {
+    let frames_per_second = NonZeroU32::new(frames_per_second).unwrap();
+    wire::report_palettes(&PalettePlan { depth, size: Size::new(80, 24), frames_per_second })
+}
+
+/// The hue of true colour, and half of the error of nearest colours, for at most 1.3 times their bytes.
+#[test]
+fn colours_of_256_look_like_true_colour_from_a_little_farther_away() {
+    let rows = palettes(ColorDepth::Indexed256, 15);
+    let mixed: Vec<&PaletteRow> = rows.iter().filter(|row| row.method == "mixed").collect();
+    assert_eq!(mixed.len(), builtin::LEVELS.len() + 1);
+    for row in &mixed {
+        assert!((row.grey - row.true_grey).abs() <= 0.05, "{row:?}");
+        assert!(row.error_ratio <= 0.65, "{row:?}");
+        assert!(row.bytes_ratio <= 1.4, "{row:?}");
+    }
+    let all = mixed.last().unwrap();
+    assert_eq!(all.level, "all");
+    assert!(all.error_ratio <= 0.5 && all.bytes_ratio <= 1.3, "{all:?}");
+    let nearest = &rows[rows.len() - 4];
+    assert_eq!((&*nearest.level, nearest.method), ("all", "nearest"));
+    assert!(nearest.grey > all.grey + 0.3, "{nearest:?}");
+}
+
+#[test]
+fn sixteen_colours_look_more_like_true_colour_than_the_nearest_do() {
+    let rows = palettes(ColorDepth::Indexed16, 2);
+    for pair in rows.chunks(4) {
+        assert!(pair[3].error < 0.8 * pair[0].error, "{pair:?}");
     }
 }

@@ -2,6 +2,7 @@
 
 mod csv;
 mod json;
+mod palettes;
 mod table;
 
 use std::ffi::OsStr;
@@ -16,6 +17,9 @@ use crate::wire::{self, Plan, Report};
 
 /// Reports what `options` ask for.
 pub(super) fn run(options: &Wire) -> Result<(), Error> {
+    if let Some(depth) = options.palette {
+        return palettes::run(depth, options).map_err(|error| Error::of_output(&error));
+    }
     let (script, map) = match &options.script {
         Some(path) => (script::load(path)?, options.map.as_deref()),
         None => (SHOWCASE.script()?, options.map.as_deref().or(Some(OsStr::new(SHOWCASE.level)))),

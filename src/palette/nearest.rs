@@ -1,88 +1,67 @@
-//! A table of which colour of a palette looks nearest to any colour.
+//! Which colour of a palette looks nearest to any colour.
 //!
-//! Nearness is distance in Oklab (Björn Ottosson, "A perceptual color space for image processing",
-//! 2020). Squared distance of the channels, weighted or not, was refused: in a palette with few dark
-//! colours it takes dark bricks for grey and wood for pink.
+//! Nearness is distance in Oklab. Squared distance of the channels, weighted or not, was refused: in a
+//! palette with few dark colours it takes dark bricks for grey and wood for pink.
 
 use std::ops::RangeInclusive;
+use std::sync::LazyLock;
+use std::sync::atomic::{AtomicU16, Ordering};
 
 use super::of_256;
+use super::oklab::Oklab;
 use crate::world::Rgb;
 
-/// How much of each channel the table tells apart: 5 bits of 8. Its 32 KiB then stay in the cache,
-/// and it is made in a few milliseconds.
+/// How much of each channel is told apart: 5 bits of 8.
 const BITS: u32 = 5;
-const LEVELS: u8 = 1 << BITS;
 const DROPPED_BITS: u32 = u8::BITS - BITS;
+/// Entries that have been found have this bit.
+const FOUND: u16 = 1 << 15;
 
-/// The index of the nearest colour for every colour, by the upper bits of its channels.
+/// The index of the nearest colour for every colour, by the upper bits of its channels. Each is found when it is first
+/// asked for: all of them would take some milliseconds, which a program that draws one picture does not have.
 pub(super) struct NearestColors {
-    indices: Vec<u8>,
+    palette: LazyLock<Vec<(u8, Oklab)>>,
+    entries: [AtomicU16; 1 << (3 * BITS)],
 }
 
 impl NearestColors {
-    /// The table for those of the 256 colours.
-    pub(super) fn among(palette: RangeInclusive<u8>) -> Self {
-        let palette: Vec<(u8, Oklab)> =
-            palette.map(|index| (index, Oklab::from(of_256(index)))).collect();
-        let linear: Vec<f64> = (0..=u8::MAX).map(linear).collect();
-        let middle = |level: u8| usize::from(level << DROPPED_BITS | 1 << (DROPPED_BITS - 1));
-        let nearest = |red, green, blue| {
-            let channels = [red, green, blue].map(|level| linear[middle(level)]);
-            let color = Oklab::from_linear(channels);
-            let by_distance = |(_, one): &&(u8, Oklab), (_, other): &&(u8, Oklab)| {
-                color.distance(one).total_cmp(&color.distance(other))
-            };
-            palette.iter().min_by(by_distance).map_or(0, |&(index, _)| index)
-        };
-        let levels = || 0..LEVELS;
-        let indices = levels()
-            .flat_map(|red| levels().map(move |green| (red, green)))
-            .flat_map(|(red, green)| levels().map(move |blue| (red, green, blue)))
-            .map(|(red, green, blue)| nearest(red, green, blue))
-            .collect();
-        Self { indices }
+    /// The table for colours that [`palette`] has made.
+    #[expect(clippy::large_stack_arrays, reason = "it is made when the program is compiled")]
+    pub(super) const fn among(palette: fn() -> Vec<(u8, Oklab)>) -> Self {
+        Self {
+            palette: LazyLock::new(palette),
+            entries: [const { AtomicU16::new(0) }; 1 << (3 * BITS)],
+        }
     }
 
     /// The index of the one that is nearest to `color`.
+    #[inline]
     pub(super) fn of(&self, color: Rgb) -> u8 {
         let place = color
             .channels()
             .into_iter()
             .fold(0, |place, channel| place << BITS | usize::from(channel >> DROPPED_BITS));
-        self.indices[place]
+        let known = self.entries[place].load(Ordering::Relaxed);
+        (if known & FOUND == 0 { self.find(place, color) } else { known }) as u8
+    }
+
+    #[cold]
+    fn find(&self, place: usize, color: Rgb) -> u16 {
+        let middle =
+            |channel: u8| channel >> DROPPED_BITS << DROPPED_BITS | 1 << (DROPPED_BITS - 1);
+        let [red, green, blue] = color.channels().map(middle);
+        let color = Oklab::from(Rgb::new(red, green, blue));
+        let by_distance = |(_, one): &&(u8, Oklab), (_, other): &&(u8, Oklab)| {
+            color.distance_squared(one).total_cmp(&color.distance_squared(other))
+        };
+        let nearest = self.palette.iter().min_by(by_distance).map_or(0, |&(index, _)| index);
+        let entry = FOUND | u16::from(nearest);
+        self.entries[place].store(entry, Ordering::Relaxed);
+        entry
     }
 }
 
-/// A colour by how light, how red and how yellow it looks.
-#[derive(Clone, Copy)]
-struct Oklab([f64; 3]);
-
-impl Oklab {
-    fn from_linear([red, green, blue]: [f64; 3]) -> Self {
-        let long = libm::cbrt(0.412_221_47 * red + 0.536_332_54 * green + 0.051_445_99 * blue);
-        let medium = libm::cbrt(0.211_903_5 * red + 0.680_699_55 * green + 0.107_396_96 * blue);
-        let short = libm::cbrt(0.088_302_46 * red + 0.281_718_84 * green + 0.629_978_7 * blue);
-        Self([
-            0.210_454_26 * long + 0.793_617_8 * medium - 0.004_072_05 * short,
-            1.977_998_5 * long - 2.428_592_2 * medium + 0.450_593_7 * short,
-            0.025_904_04 * long + 0.782_771_77 * medium - 0.808_675_77 * short,
-        ])
-    }
-
-    fn distance(&self, other: &Self) -> f64 {
-        self.0.iter().zip(other.0).map(|(one, other)| (one - other) * (one - other)).sum()
-    }
-}
-
-impl From<Rgb> for Oklab {
-    fn from(color: Rgb) -> Self {
-        Self::from_linear(color.channels().map(linear))
-    }
-}
-
-/// A channel of sRGB as an amount of light, from 0 to 1.
-fn linear(channel: u8) -> f64 {
-    let share = f64::from(channel) / 255.0;
-    if share <= 0.040_45 { share / 12.92 } else { libm::pow((share + 0.055) / 1.055, 2.4) }
+/// Those of the 256 colours.
+pub(super) fn palette(indices: RangeInclusive<u8>) -> Vec<(u8, Oklab)> {
+    indices.map(|index| (index, Oklab::from(of_256(index)))).collect()
 }

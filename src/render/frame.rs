@@ -107,8 +107,13 @@ impl Frame {
     /// # Panics
     /// Where the frame has no such row.
     pub fn row(&self, y: u32) -> impl ExactSizeIterator<Item = Rgb> {
+        self.row_slice(y).iter().copied()
+    }
+
+    /// As [`Frame::row`].
+    pub(crate) fn row_slice(&self, y: u32) -> &[Rgb] {
         let start = y as usize * self.width() as usize;
-        self.pixels[start..][..self.width() as usize].iter().copied()
+        &self.pixels[start..][..self.width() as usize]
     }
 
     /// All of it.

@@ -107,14 +107,14 @@ impl<'a> FirstPerson<'a> {
         let above = u32::from(first_row) * self.glyphs.pixels_per_cell();
         match self.glyphs {
             GlyphMode::Half => {
-                half_blocks::draw(area, canvas, self.depth, above, |y| frame.row(y));
+                half_blocks::draw_frame(area, canvas, self.depth, above, frame);
             }
-            GlyphMode::Ascii => ascii::draw(area, canvas, self.depth, |x, y| {
+            GlyphMode::Ascii => ascii::draw_picture(area, canvas, self.depth, |x, y| {
                 let color = frame.pixel(x, above + y);
                 let surface = renderer.surface(x, above + y).unwrap_or(Surface::Sky);
                 (color, ascii::character(surface, color))
             }),
-            GlyphMode::Ramp => ascii::draw(area, canvas, self.depth, |x, y| {
+            GlyphMode::Ramp => ascii::draw_picture(area, canvas, self.depth, |x, y| {
                 let color = frame.pixel(x, above + y);
                 (color, ramp::character(color))
             }),

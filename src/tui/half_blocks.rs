@@ -1,17 +1,37 @@
 //! Half blocks: a cell shows two pixels, one above the other.
 //!
-//! Without colour a pixel is lit or it is not; which one is decided by comparing its brightness with
-//! a fixed 4×4 pattern of thresholds. With 16 colours the same pattern makes pixels lighter and
-//! darker before the nearest colour is taken. So shades stay apart, and stand still while the picture
-//! does. Error diffusion was refused: there, one changed pixel changes all that follow.
+//! A picture in few colours is drawn as a picture: [`mixed`] and [`mono`] look at more than one pixel. What is
+//! drawn in flat colours, such as a map, shows the nearest ones; without colour a pixel of it is lit or not by a
+//! fixed 4×4 pattern of thresholds. All patterns stand still while the picture does. Error diffusion was
+//! refused: there, one changed pixel changes all that follow.
+
+mod mixed;
+mod mono;
 
 use ratatui::layout::Rect;
 use ratatui::style::Color;
 
 use super::Canvas;
 use super::glyphs::color_at;
-use crate::palette::ColorDepth;
+use crate::palette::{ColorDepth, mixture};
+use crate::render::Frame;
 use crate::world::Rgb;
+
+/// Draws the pixels of `frame` on `area`, from `above` pixels under its top edge on.
+pub(super) fn draw_frame(
+    area: Rect,
+    canvas: &mut impl Canvas,
+    depth: ColorDepth,
+    above: u32,
+    frame: &Frame,
+) {
+    match depth {
+        ColorDepth::Indexed256 => mixed::draw(area, canvas, &mixture::OF_256, above, frame),
+        ColorDepth::Indexed16 => mixed::draw(area, canvas, &mixture::OF_16, above, frame),
+        ColorDepth::True => draw(area, canvas, depth, above, |y| frame.row(y)),
+        ColorDepth::Mono => mono::draw(area, canvas, above, frame),
+    }
+}
 
 /// Draws the pixels of `area`, twice as many as cells from top to bottom: `row(y)` is a row of them from
 /// the left edge on, and counts from `above` pixels over the top edge.
@@ -29,15 +49,9 @@ pub(super) fn draw<Row: Iterator<Item = Rgb>>(
             ColorDepth::True => {
                 canvas.draw_pixels(area.x, y, pixels.map(|(_, (top, bottom))| [top, bottom]));
             }
-            ColorDepth::Indexed256 => {
-                let color = |pixel| color_at(ColorDepth::Indexed256, pixel);
+            ColorDepth::Indexed256 | ColorDepth::Indexed16 => {
+                let color = |pixel| color_at(depth, pixel);
                 let colors = pixels.map(|(_, (top, bottom))| [color(top), color(bottom)]);
-                canvas.draw_halves(area.x, y, colors);
-            }
-            ColorDepth::Indexed16 => {
-                let color = |pixel, x, y| color_at(ColorDepth::Indexed16, dithered(pixel, x, y));
-                let colors = pixels
-                    .map(|(x, (top, bottom))| [color(top, x, upper), color(bottom, x, lower)]);
                 canvas.draw_halves(area.x, y, colors);
             }
             ColorDepth::Mono => {
@@ -71,15 +85,6 @@ fn order(x: u32, y: u32) -> u8 {
 /// Whether a pixel of that colour is lit at that place.
 fn is_lit(color: Rgb, x: u32, y: u32) -> bool {
     color.luma() >= 16 * order(x, y) + 8
-}
-
-/// `color` made lighter or darker, by less than the named colours differ.
-fn dithered(color: Rgb, x: u32, y: u32) -> Rgb {
-    const STRENGTH: i16 = 2;
-    let offset = STRENGTH * (2 * i16::from(order(x, y)) - 15);
-    let [red, green, blue] =
-        color.channels().map(|channel| (i16::from(channel) + offset).clamp(0, 255) as u8);
-    Rgb::new(red, green, blue)
 }
 
 #[cfg(test)]

@@ -82,10 +82,10 @@ impl<'a> SpaceView<'a> {
         let frame = &memory.frame;
         match self.glyphs {
             GlyphMode::Half => {
-                half_blocks::draw(area, canvas, self.depth, above, |y| frame.row(y));
+                half_blocks::draw_frame(area, canvas, self.depth, above, frame);
             }
             GlyphMode::Ascii | GlyphMode::Ramp => {
-                ascii::draw(area, canvas, self.depth, |x, y| {
+                ascii::draw_picture(area, canvas, self.depth, |x, y| {
                     let color = frame.pixel(x, above + y);
                     (color, ramp::character(color))
                 });

@@ -8,6 +8,7 @@ use clap::ArgMatches;
 use super::option::{FileOption, Read, Valued};
 use super::value::{self, FramesPerSecond, Size};
 use super::{Command, Error, Subcommand, map};
+use crate::palette::ColorDepth;
 use crate::terminal::Fidelity;
 
 /// Options of `wire`.
@@ -20,6 +21,8 @@ pub(in crate::cli) struct Wire {
     pub(in crate::cli) frames_per_second: FramesPerSecond,
     /// None for those that have a name.
     pub(in crate::cli) fidelities: Vec<Fidelity>,
+    /// The palette of which the ways to choose its colours are compared, in place of encoders.
+    pub(in crate::cli) palette: Option<ColorDepth>,
     pub(in crate::cli) format: WireFormat,
 }
 
@@ -39,21 +42,29 @@ pub(super) const SUBCOMMAND: Subcommand = Subcommand {
     examples: "cellcaster wire\n\
                cellcaster wire my.toml --script walk.script --fidelity high --fidelity 12",
     positionals: &[map::OPTIONAL],
-    options: &[&SCRIPT, &SIZE, &value::FRAMES_PER_SECOND, &FIDELITY, &FORMAT],
+    options: &[&SCRIPT, &SIZE, &value::FRAMES_PER_SECOND, &FIDELITY, &PALETTE, &FORMAT],
     surplus: "takes one map",
     missing: "",
     read,
 };
 
 fn read(mut matches: ArgMatches) -> Result<Command, Error> {
-    Ok(Command::Wire(Wire {
+    let wire = Wire {
         map: map::of(&mut matches),
         script: SCRIPT.of(&mut matches),
         size: SIZE.of(&mut matches).unwrap_or(Size { columns: 120, rows: 40 }),
         frames_per_second: value::FRAMES_PER_SECOND.of(&mut matches).unwrap_or_default(),
         fidelities: FIDELITY.all_of(&mut matches),
+        palette: PALETTE.of(&mut matches),
         format: FORMAT.of(&mut matches).unwrap_or_default(),
-    }))
+    };
+    let is_played = wire.map.is_some() || wire.script.is_some() || !wire.fidelities.is_empty();
+    if wire.palette.is_some() && is_played {
+        return Err(Error::mistake(
+            "--colors compares palettes in all levels: leave out the map, --script and --fidelity",
+        ));
+    }
+    Ok(Command::Wire(wire))
 }
 
 const SCRIPT: FileOption =
@@ -66,6 +77,21 @@ const FIDELITY: Valued<Fidelity> = Valued {
     default: "those that have a name",
     repeats: true,
     ..value::FIDELITY
+};
+
+const PALETTE: Valued<ColorDepth> = Valued {
+    name: "colors",
+    value: "DEPTH",
+    takes: "256 or 16",
+    help: "Compare ways to choose among so few colours, in all levels, in place of encoders",
+    default: "",
+    choices: &["256", "16"],
+    read: Read::Plainly(|text| match text {
+        "256" => Some(ColorDepth::Indexed256),
+        "16" => Some(ColorDepth::Indexed16),
+        _ => None,
+    }),
+    repeats: false,
 };
 
 const FORMAT: Valued<WireFormat> = Valued {
