@@ -14,8 +14,10 @@ use crate::tui::{self, GlyphMode, Levels, Settings};
 pub(super) fn run(options: Play) -> Result<(), Error> {
     let levels = levels(&options)?;
     let configuration = config::load(options.config)?.configuration;
-    let frames_per_second =
-        options.frames_per_second.map_or(configuration.frames_per_second, |it| it.get());
+    let frames_per_second = match options.frames_per_second {
+        Some(frames) => frames.get(),
+        None => configuration.frames_per_second,
+    };
     let settings = Settings {
         bindings: configuration.bindings,
         frame_time: Duration::from_secs(1) / frames_per_second.get(),
