@@ -7,7 +7,7 @@ use clap::ArgMatches;
 
 use super::option::{FileOption, Read, Valued};
 use super::value::{self, FramesPerSecond, Size};
-use super::{Command, Error, Subcommand, map};
+use super::{Command, Subcommand, map};
 use crate::terminal::Fidelity;
 
 /// Options of `wire`.
@@ -42,18 +42,18 @@ pub(super) const SUBCOMMAND: Subcommand = Subcommand {
     options: &[&SCRIPT, &SIZE, &value::FRAMES_PER_SECOND, &FIDELITY, &FORMAT],
     surplus: "takes one map",
     missing: "",
-    read,
+    read: |matches| Ok(Command::Wire(read(matches))),
 };
 
-fn read(mut matches: ArgMatches) -> Result<Command, Error> {
-    Ok(Command::Wire(Wire {
+fn read(mut matches: ArgMatches) -> Wire {
+    Wire {
         map: map::of(&mut matches),
         script: SCRIPT.of(&mut matches),
         size: SIZE.of(&mut matches).unwrap_or(Size { columns: 120, rows: 40 }),
         frames_per_second: value::FRAMES_PER_SECOND.of(&mut matches).unwrap_or_default(),
         fidelities: FIDELITY.all_of(&mut matches),
         format: FORMAT.of(&mut matches).unwrap_or_default(),
-    }))
+    }
 }
 
 const SCRIPT: FileOption =
