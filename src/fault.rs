@@ -57,14 +57,12 @@ impl Faults {
             1 => ", and 1 more fault".to_owned(),
             more => format!(", and {more} more faults"),
         };
-        match fault.place {
-            None => format!("{}{more}", fault.message),
-            Some(_) => {
-                let before = &self.text.as_bytes()[..fault.start().min(self.text.len())];
-                let line = before.iter().filter(|&&byte| byte == b'\n').count() + 1;
-                format!("{}:{line}: {}{more}", self.name, fault.message)
-            }
+        if fault.place.is_none() {
+            return format!("{}{more}", fault.message);
         }
+        let before = &self.text.as_bytes()[..fault.start().min(self.text.len())];
+        let line = before.split(|&byte| byte == b'\n').count();
+        format!("{}:{line}: {}{more}", self.name, fault.message)
     }
 }
 

@@ -16,7 +16,7 @@ pub(super) const COMPLETIONS: Subcommand = Subcommand {
     options: &[],
     surplus: "takes one shell",
     missing: "completions takes bash, zsh or fish, as in \"cellcaster completions bash\"",
-    read: completions,
+    read: |matches| Ok(Command::Completions(shell(matches))),
 };
 
 pub(super) const MAN: Subcommand = Subcommand {
@@ -62,11 +62,10 @@ const COMMAND: Positional = Positional {
     choices: &[],
 };
 
-fn completions(mut matches: ArgMatches) -> Result<Command, Error> {
+fn shell(mut matches: ArgMatches) -> Shell {
     let shell = SHELL.of(&mut matches).unwrap_or_default();
     // What is none of the choices does not get here.
-    let shell = shell.to_str().and_then(|name| name.parse().ok()).unwrap_or(Shell::Bash);
-    Ok(Command::Completions(shell))
+    shell.to_str().and_then(|name| name.parse().ok()).unwrap_or(Shell::Bash)
 }
 
 fn help(mut matches: ArgMatches) -> Result<Command, Error> {

@@ -5,7 +5,7 @@ use std::ffi::OsString;
 use clap::ArgMatches;
 
 use super::option::{Read, Valued};
-use super::{Command, Error, Subcommand, map, value};
+use super::{Command, Subcommand, map, value};
 use crate::cast::Method;
 
 /// Options of `accuracy`.
@@ -43,18 +43,18 @@ cellcaster accuracy --format svg > accuracy.svg"#,
     options: &[&CASTER, &SET, &RAYS, &SEED, &FORMAT],
     surplus: "takes one map",
     missing: "",
-    read,
+    read: |matches| Ok(Command::Accuracy(read(matches))),
 };
 
-fn read(mut matches: ArgMatches) -> Result<Command, Error> {
-    Ok(Command::Accuracy(Accuracy {
+fn read(mut matches: ArgMatches) -> Accuracy {
+    Accuracy {
         map: map::of(&mut matches),
         set: SET.of(&mut matches),
         methods: CASTER.all_of(&mut matches),
         rays: RAYS.of(&mut matches).unwrap_or(2000),
         seed: SEED.of(&mut matches).unwrap_or(1),
         format: FORMAT.of(&mut matches).unwrap_or_default(),
-    }))
+    }
 }
 
 const CASTER: Valued<Method> = Valued {

@@ -5,7 +5,7 @@ use std::path::PathBuf;
 use clap::ArgMatches;
 
 use super::option::{FileOption, Read, Valued};
-use super::{Command, Error, Subcommand};
+use super::{Command, Subcommand};
 
 /// Options of `bench`.
 #[derive(Debug)]
@@ -37,15 +37,15 @@ pub(super) const SUBCOMMAND: Subcommand = Subcommand {
     options: &[&SECONDS, &FORMAT, &PLOT],
     surplus: "takes no map",
     missing: "",
-    read,
+    read: |matches| Ok(Command::Bench(read(matches))),
 };
 
-fn read(mut matches: ArgMatches) -> Result<Command, Error> {
-    Ok(Command::Bench(Bench {
+fn read(mut matches: ArgMatches) -> Bench {
+    Bench {
         seconds: SECONDS.of(&mut matches).unwrap_or(10),
         format: FORMAT.of(&mut matches).unwrap_or_default(),
         plot: PLOT.of(&mut matches),
-    }))
+    }
 }
 
 const SECONDS: Valued<u8> = Valued {
