@@ -11,7 +11,7 @@ use std::process::Stdio;
 
 use support::{cellcaster, complaint_about, output_of, run_with_input};
 
-const SUBCOMMANDS: [&str; 11] = [
+const SUBCOMMANDS: [&str; 12] = [
     "play",
     "snapshot",
     "cast",
@@ -20,6 +20,7 @@ const SUBCOMMANDS: [&str; 11] = [
     "bench",
     "replay",
     "wire",
+    "config",
     "completions",
     "man",
     "help",

@@ -73,7 +73,10 @@ fn a_game_goes_on_in_the_map_as_it_is_saved() {
     fs::remove_file(&path).unwrap();
     wait_for_words(&player, "there is no file");
 
-    save(&path, &MAP.replace("First", "Fourth"));
+    // A larger map, with an exit to find now.
+    let larger = MAP.replace("#@......#", "#@......#\n#......X#");
+    let larger = larger.replace("{ start = 0 }", "{ start = 0 }\n\"X\" = { exit = true }");
+    save(&path, &larger.replace("First", "Fourth"));
     player.wait_until("was mended", |emulator| {
         emulator.text().contains("Fourth") && !emulator.text().contains("faults")
     });

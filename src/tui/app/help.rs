@@ -147,7 +147,8 @@ mod tests {
 
     fn shown(columns: u16, rows: u16, help: &mut HelpScroll) -> String {
         let mut buffer = Buffer::empty(Rect::new(0, 0, columns, rows));
-        let note = "256 colours: your terminal did not offer more; see docs/terminals.md".to_owned();
+        let note =
+            "256 colours: your terminal did not offer more; see docs/terminals.md".to_owned();
         let notes = [note].into_iter();
         help.draw(&mut buffer, Rect::new(0, 0, columns, rows), &Bindings::default(), notes);
         let lines = buffer.content().chunks(columns.into());

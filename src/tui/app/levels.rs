@@ -53,7 +53,12 @@ impl Levels {
     }
 
     fn played(first: Played, rest: impl Iterator<Item = Played> + 'static) -> Self {
-        Self { first, rest: Box::new(rest), number: LevelNumber { number: 1, of: None }, changes: None }
+        Self {
+            first,
+            rest: Box::new(rest),
+            number: LevelNumber { number: 1, of: None },
+            changes: None,
+        }
     }
 }
 

@@ -8,7 +8,7 @@ use std::time::Duration;
 use ratatui::layout::Rect;
 use ratatui::text::{Line, Text};
 
-use super::{App, Screen, panels};
+use super::{App, Goal, Screen, panels};
 use crate::fault::Faults;
 use crate::map::Level;
 use crate::tui::Canvas;
@@ -44,6 +44,8 @@ impl App {
             Some(Ok(level)) => {
                 reload.fault = None;
                 self.game = self.game.begun_again_in(level);
+                self.goal = Goal::of(&self.game, self.settings.minimap);
+                self.map.begin_level();
                 let screen = match self.screen {
                     Screen::LevelDone | Screen::End => Screen::Playing,
                     screen => screen,
