@@ -63,6 +63,7 @@ fn a_recording_shows_every_frame_of_the_game_at_its_time() {
     terminal.process(events.next().unwrap().data.as_bytes());
 
     let levels = Levels::new(builtin::LEVELS[1].world().unwrap().into(), std::iter::empty());
+    let levels = levels.numbered(2, builtin::LEVELS.len());
     let mut replay = Replay::new(levels, Settings::default(), SIZE);
     let mut last = 0;
     let shown = replay.play(

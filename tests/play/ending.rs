@@ -185,7 +185,7 @@ fn the_mouse_is_given_back_however_it_ends() {
         end(&game);
         if number == 0 {
             game.wait_until("gave the mouse back", |emulator| emulator.modes() == TAKEN);
-            game.press(Key::Char('q'));
+            game.leave();
         } else {
             game.send(MOTION);
         }

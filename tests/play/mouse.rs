@@ -114,7 +114,7 @@ fn a_button_opens_a_door() {
 #[test]
 fn a_walk_by_mouse_replays_to_the_same_picture() {
     let path = Path::new(env!("CARGO_TARGET_TMPDIR")).join("mouse.script");
-    let options = ["--record", path.to_str().unwrap()];
+    let options = ["--force", "--record", path.to_str().unwrap()];
     let mut game = Game::with(Speaks::Kitty, (80, 24), None, &options, &[]);
     switch_on(&game);
     game.press(Key::Char('w'));
@@ -126,7 +126,7 @@ fn a_walk_by_mouse_replays_to_the_same_picture() {
     game.tap(Key::Char('v'));
     game.wait_for_rest();
     let played = game.look(crate::game::looks);
-    game.press(Key::Char('q'));
+    game.leave();
     game.wait_for_end();
 
     let script = fs::read_to_string(&path).unwrap();

@@ -123,17 +123,19 @@ fn keys_in_columns(bindings: &Bindings, room: usize, most_columns: usize) -> Vec
         .collect()
 }
 
-/// `text` in lines of up to so many columns, broken between words.
+/// `text` in lines of up to so many columns, broken between words, and within one that is longer than a line.
 fn wrapped(text: &str, columns: usize) -> Vec<String> {
     let mut lines: Vec<String> = Vec::new();
     for word in text.split_whitespace() {
-        let length = word.chars().count();
-        match lines.last_mut() {
-            Some(line) if line.chars().count() + 1 + length <= columns => {
-                line.push(' ');
-                line.push_str(word);
+        let letters: Vec<char> = word.chars().collect();
+        for part in letters.chunks(columns.max(1)) {
+            match lines.last_mut() {
+                Some(line) if line.chars().count() + 1 + part.len() <= columns => {
+                    line.push(' ');
+                    line.extend(part);
+                }
+                _ => lines.push(part.iter().collect()),
             }
-            _ => lines.push(word.to_owned()),
         }
     }
     lines
@@ -155,6 +157,10 @@ mod tests {
         lines.flat_map(|line| line.iter().map(Cell::symbol).chain(["\n"])).collect()
     }
 
+    fn shows_words(seen: &str, line: &str) -> bool {
+        line.split_whitespace().all(|word| seen.contains(word))
+    }
+
     #[test]
     fn every_line_is_reached_in_any_window() {
         for (columns, rows) in [(80, 23), (32, 24), (64, 13), (200, 60), (60, 9), (20, 5)] {
@@ -163,17 +169,15 @@ mod tests {
             loop {
                 let text = shown(columns, rows, &mut help);
                 assert!(text.contains("? closes"), "{columns} by {rows}:\n{text}");
-                seen.push_str(&text.replace(['│', '\n'], " "));
+                seen.extend(text.chars().filter(|letter| !letter.is_whitespace() && *letter != '│'));
                 if help.first >= help.last() {
                     break;
                 }
                 help.first += help.page;
             }
-            let seen = seen.split_whitespace().collect::<Vec<_>>();
-            let shows = |text: &str| {
-                let words: Vec<&str> = text.split_whitespace().collect();
-                words.iter().all(|word| seen.contains(word))
-            };
+            // A word that is longer than a line is broken.
+            let most = usize::from(columns - BORDERS - PADDING);
+            let shows = |text: &str| wrapped(text, most).iter().all(|line| shows_words(&seen, line));
             for (_, does, _) in Action::ALL {
                 assert!(shows(does), "{does}, {columns} by {rows}:\n{seen:?}");
             }

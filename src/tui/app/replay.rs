@@ -69,10 +69,13 @@ impl Replay {
         self.app.draw(canvas);
     }
 
-    /// What the window shows now.
+    /// What the window shows now. As in a game, a picture stays as it is where nothing has moved.
     pub fn picture(&mut self) -> &Buffer {
-        self.picture.reset();
-        self.app.draw(&mut self.picture);
+        if self.app.is_stale() {
+            self.picture.reset();
+            self.app.draw(&mut self.picture);
+            self.app.drawn();
+        }
         &self.picture
     }
 }
