@@ -84,7 +84,7 @@ struct Taste {
     least_chroma: f32,
 }
 
-/// Found by trying, with `cellcaster wire --colors 256`.
+/// Found by trying, with `cellcaster wire --palette 256`.
 const FINE: Taste =
     Taste { chroma: 2.0, single: 1.3, contrast: [0.02, 0.01], hue: 0.6, least_chroma: 0.005 };
 /// Of a few glaring colours, which users give shades of their own, as few as possible.

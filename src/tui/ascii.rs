@@ -30,6 +30,9 @@ pub(super) fn draw(
     }
 }
 
+/// The corner of the cube: the nearest colour to black, among those that are nearly black, is a grey.
+const BLACK_OF_256: u8 = 16;
+
 /// Draws the pixels of a picture whose characters tell how bright they are: their colours are as bright as
 /// they get, or else a dark wall would be darkened twice.
 pub(super) fn draw_picture(
@@ -38,7 +41,10 @@ pub(super) fn draw_picture(
     depth: ColorDepth,
     pixel: impl Fn(u32, u32) -> (Rgb, char),
 ) {
-    let ground = color_at(depth, Rgb::BLACK);
+    let ground = match depth {
+        ColorDepth::Indexed256 => Color::Indexed(BLACK_OF_256),
+        _ => color_at(depth, Rgb::BLACK),
+    };
     for (row, y) in (0u32..).zip(area.top()..area.bottom()) {
         for (column, x) in (0u32..).zip(area.left()..area.right()) {
             let (color, character) = pixel(column, row);

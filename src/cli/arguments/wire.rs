@@ -61,7 +61,7 @@ fn read(mut matches: ArgMatches) -> Result<Command, Error> {
     let is_played = wire.map.is_some() || wire.script.is_some() || !wire.fidelities.is_empty();
     if wire.palette.is_some() && is_played {
         return Err(Error::mistake(
-            "--colors compares palettes in all levels: leave out the map, --script and --fidelity",
+            "--palette compares in all levels: leave out the map, --script and --fidelity",
         ));
     }
     Ok(Command::Wire(wire))
@@ -80,7 +80,7 @@ const FIDELITY: Valued<Fidelity> = Valued {
 };
 
 const PALETTE: Valued<ColorDepth> = Valued {
-    name: "colors",
+    name: "palette",
     value: "DEPTH",
     takes: "256 or 16",
     help: "Compare ways to choose among so few colours, in all levels, in place of encoders",

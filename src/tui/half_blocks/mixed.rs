@@ -9,7 +9,7 @@
 //! Since its colours are two, a block costs hardly more bytes than one cell: an encoder need but pick the glyphs. A
 //! pattern of its own for each pixel (Bayer's, or a mask of blue noise) was refused: it looks no better from
 //! a little farther away, and takes twice the bytes. So was error diffusion: there, one pixel changes all
-//! that follow. `cellcaster wire --colors 256` has the figures.
+//! that follow. `cellcaster wire --palette 256` has the figures.
 
 use std::array;
 use std::sync::LazyLock;
