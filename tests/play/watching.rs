@@ -80,7 +80,7 @@ fn a_game_goes_on_in_the_map_as_it_is_saved() {
     player.wait_until("was mended", |emulator| {
         emulator.text().contains("Fourth") && !emulator.text().contains("faults")
     });
-    player.send(Key::Char('q').event(1));
+    player.send(Key::Char('q').event(1) + &Key::Enter.event(1));
     player.wait_for_end().assert_given_back();
 }
 
@@ -113,7 +113,7 @@ fn whoever_plays_keeps_their_place_while_there_is_one() {
     player.wait_for("Third");
     player.wait_for_rest();
     assert_eq!(column(&player), start);
-    player.send(Key::Char('q').event(1));
+    player.send(Key::Char('q').event(1) + &Key::Enter.event(1));
     player.wait_for_end().assert_given_back();
 }
 
@@ -196,7 +196,7 @@ fn a_map_from_standard_input_is_played_with_the_keys_of_the_terminal() {
     let mut player = Player::start((80, 24), Speaks::Kitty, "/bin/sh", words, &ENVIRONMENT);
     player.wait_for("? help");
     player.wait_until("asked for releases", |emulator| emulator.modes().key_flags == [0, 1]);
-    player.send(Key::Char('q').event(1));
+    player.send(Key::Char('q').event(1) + &Key::Enter.event(1));
     player.wait_for_end().assert_given_back();
     player.wait_for("status 0");
 }
