@@ -82,14 +82,28 @@ struct Taste {
     hue: f32,
     /// What has less chroma is mixed of greys only.
     least_chroma: f32,
+    /// How much more chroma a colour of a mixture may have than the wanted one: what has more glares as dots.
+    most_excess: f32,
 }
 
 /// Found by trying, with `cellcaster wire --palette 256`.
-const FINE: Taste =
-    Taste { chroma: 2.0, single: 1.3, contrast: [0.02, 0.01], hue: 0.6, least_chroma: 0.005 };
+const FINE: Taste = Taste {
+    chroma: 2.0,
+    single: 1.0,
+    contrast: [0.03, 0.01],
+    hue: 0.5,
+    least_chroma: 0.005,
+    most_excess: 0.1,
+};
 /// Of a few glaring colours, which users give shades of their own, as few as possible.
-const COARSE: Taste =
-    Taste { chroma: 1.0, single: 1.0, contrast: [0.008, 0.02], hue: 0.9, least_chroma: 0.045 };
+const COARSE: Taste = Taste {
+    chroma: 1.0,
+    single: 1.0,
+    contrast: [0.008, 0.02],
+    hue: 0.9,
+    least_chroma: 0.045,
+    most_excess: 1.0,
+};
 
 /// So many colours are considered for a mixture: those that are nearest.
 const CONSIDERED: usize = 40;
@@ -229,7 +243,9 @@ impl Target {
             let cosine = lab[1] * wanted[1] + lab[2] * wanted[2];
             let its_chroma = chroma(lab);
             its_chroma < GREY
-                || own_chroma >= taste.least_chroma && cosine >= taste.hue * its_chroma * own_chroma
+                || own_chroma >= taste.least_chroma
+                    && its_chroma <= own_chroma + taste.most_excess
+                    && cosine >= taste.hue * its_chroma * own_chroma
         };
         let mut considered = [Candidate::default(); CONSIDERED];
         let mut count = 0;

@@ -169,7 +169,9 @@ mod tests {
             loop {
                 let text = shown(columns, rows, &mut help);
                 assert!(text.contains("? closes"), "{columns} by {rows}:\n{text}");
-                seen.extend(text.chars().filter(|letter| !letter.is_whitespace() && *letter != '│'));
+                seen.extend(
+                    text.chars().filter(|letter| !letter.is_whitespace() && *letter != '│'),
+                );
                 if help.first >= help.last() {
                     break;
                 }
@@ -177,7 +179,8 @@ mod tests {
             }
             // A word that is longer than a line is broken.
             let most = usize::from(columns - BORDERS - PADDING);
-            let shows = |text: &str| wrapped(text, most).iter().all(|line| shows_words(&seen, line));
+            let shows =
+                |text: &str| wrapped(text, most).iter().all(|line| shows_words(&seen, line));
             for (_, does, _) in Action::ALL {
                 assert!(shows(does), "{does}, {columns} by {rows}:\n{seen:?}");
             }

@@ -138,7 +138,9 @@ impl App {
         }
         match event.kind {
             MouseEventKind::Pressed(MouseButton::Left) => self.pointer.clicked.insert(Intent::Open),
-            MouseEventKind::Pressed(MouseButton::Right) => self.pointer.clicked.insert(Intent::Jump),
+            MouseEventKind::Pressed(MouseButton::Right) => {
+                self.pointer.clicked.insert(Intent::Jump)
+            }
             _ => {}
         }
     }
@@ -146,7 +148,10 @@ impl App {
     /// What the player wants in the next step, by keys and by the mouse.
     pub(super) fn wanted(&self) -> Intents {
         let keys = self.intents();
-        keys.iter().chain(self.pointer.clicked.iter()).collect::<Intents>().with_look(self.pointer.look())
+        keys.iter()
+            .chain(self.pointer.clicked.iter())
+            .collect::<Intents>()
+            .with_look(self.pointer.look())
     }
 }
 

@@ -42,7 +42,8 @@ impl Rig {
     }
 
     fn send(&mut self, key: Key, phase: Phase) {
-        self.app.key(KeyEvent { key, base: None, modifiers: Modifiers::default(), phase }, self.now);
+        self.app
+            .key(KeyEvent { key, base: None, modifiers: Modifiers::default(), phase }, self.now);
     }
 
     fn press(&mut self, key: Key) {

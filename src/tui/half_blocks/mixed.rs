@@ -92,7 +92,7 @@ impl Tables {
     /// Light is told apart in so many steps where it becomes a channel again.
     const STEPS: usize = 1 << 12;
     /// What is this much brighter than another pixel of its block, in parts of 255, is beyond an edge.
-    const EDGE: u8 = 36;
+    const EDGE: u8 = 46;
     /// In this order the pixels of a block get the brighter colour.
     const ORDER: [i32; 4] = [0, 2, 3, 1];
 
@@ -113,7 +113,8 @@ impl Tables {
         Self { of_channel, of_index, levels }
     }
 
-    /// What the pixels of a block show. It is drawn brighter by what is `owed`, and owes what it is off then.
+    /// What the pixels of a block show. It is drawn brighter by what is `owed`, and owes three quarters of what
+    /// it is off then: all of it would cost more bytes than it is worth.
     fn draw(&self, mixtures: &Mixtures, block: [Rgb; 4], owed: &mut Light) -> [u8; 4] {
         let lumas = block.map(Rgb::luma);
         let [darkest, brightest] =
@@ -127,7 +128,7 @@ impl Tables {
         };
         *owed = array::from_fn(|i| {
             let shown = |pixel: usize| self.of_index[usize::from(colors[pixel])][i];
-            (0..4).map(|pixel| lights[pixel][i] - shown(pixel)).sum::<i32>() / 4
+            (0..4).map(|pixel| lights[pixel][i] - shown(pixel)).sum::<i32>() * 3 / 16
         });
         colors
     }
@@ -158,9 +159,9 @@ impl Tables {
         let length: i64 = way.iter().map(|part| part * part).sum();
         array::from_fn(|pixel| {
             let along: i64 = (0..3).map(|i| i64::from(lights[pixel][i] - mean[i]) * way[i]).sum();
-            // In eighths: what the mixture wants, and three quarters of what the pixel itself does, against
+            // In eighths: what the mixture wants, and three eighths of what the pixel itself does, against
             // the pattern.
-            let wish = 2 * i64::from(share) * length + 6 * along;
+            let wish = 2 * i64::from(share) * length + 3 * along;
             let threshold = i64::from(2 * Self::ORDER[pixel] + 1) * length;
             colors[usize::from(wish > threshold)]
         })
