@@ -49,7 +49,7 @@ use played::{Eye, Memory, Played};
 use recording::ScriptRecorder;
 use reload::Reload;
 use stats::Stats;
-use status::{Gait, StatusLine, Told};
+use status::{StatusLine, Told};
 
 /// What shows besides the picture, and what keys do meanwhile.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -244,7 +244,8 @@ impl App {
             goal: &self.goal,
             level: self.level,
             seen: self.game.grid().and_then(|game| self.map.share_seen(game)),
-            gait: Gait { mouse: self.pointer.is_on(), ..self.controls.gait },
+            gait: self.controls.gait,
+            mouse: self.pointer.is_on(),
             stats: self.stats.as_ref().filter(|_| self.shows_stats),
             bindings: &self.settings.bindings,
         });

@@ -139,7 +139,7 @@ impl App {
         match event.kind {
             MouseEventKind::Pressed(MouseButton::Left) => self.pointer.clicked.insert(Intent::Open),
             MouseEventKind::Pressed(MouseButton::Right) => {
-                self.pointer.clicked.insert(Intent::Jump)
+                self.pointer.clicked.insert(Intent::Jump);
             }
             _ => {}
         }

@@ -28,8 +28,6 @@ pub(super) struct Gait {
     pub(super) runs: bool,
     pub(super) ducks: bool,
     pub(super) walks_on: bool,
-    /// Whether the mouse turns them.
-    pub(super) mouse: bool,
 }
 
 /// What the line tells of.
@@ -40,6 +38,8 @@ pub(super) struct Told<'a> {
     /// Which part of the level has been seen, from 0 to 1, where that is counted.
     pub(super) seen: Option<f64>,
     pub(super) gait: Gait,
+    /// Whether the mouse turns the player.
+    pub(super) mouse: bool,
     pub(super) stats: Option<&'a Stats>,
     pub(super) bindings: &'a Bindings,
 }
@@ -107,7 +107,7 @@ impl StatusLine {
     }
 
     fn write(&mut self, told: &Told) -> fmt::Result {
-        let Told { game, goal, level, seen, gait, stats, bindings } = *told;
+        let Told { game, goal, level, seen, gait, mouse, stats, bindings } = *told;
         self.both(Part::Title, format_args!("{}", game.title()))?;
         if level.is_one_of_several() {
             let [short, long] = &mut self.texts[Part::Level as usize];
@@ -121,7 +121,7 @@ impl StatusLine {
             (gait.runs, "running"),
             (gait.ducks, "ducking"),
             (gait.walks_on, "walking on"),
-            (gait.mouse, "mouse"),
+            (mouse, "mouse"),
         ];
         for (index, (_, mode)) in modes.into_iter().filter(|(is_on, _)| *is_on).enumerate() {
             let comma = if index > 0 { ", " } else { "" };
