@@ -199,4 +199,8 @@ impl Flow {
 }
 
 #[cfg(test)]
+mod scenarios;
+#[cfg(test)]
+mod simulation;
+#[cfg(test)]
 mod tests;
