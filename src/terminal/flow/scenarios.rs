@@ -84,7 +84,8 @@ fn percentile<T: Copy + Ord + Default>(values: impl Iterator<Item = T>, share: f
 
 fn row(player: &Player) -> String {
     let (begin, end) = (seconds(2), TIME);
-    let shown: Vec<_> = player.shown.iter().filter(|one| one.at.is_some_and(|at| at >= begin)).collect();
+    let mut shown = player.shown_since(Duration::ZERO);
+    shown.retain(|one| one.at.is_some_and(|at| at >= begin));
     let latencies = || player.latencies.iter().filter(|one| one.pressed_at >= begin);
     let latency = |share| percentile(latencies().map(|one| one.taken), share).as_millis();
     let fidelity = |share| percentile(shown.iter().map(|one| one.fidelity), share).tolerance();

@@ -39,8 +39,7 @@ pub(super) struct Frames {
 
 impl Frames {
     /// Those of a walk through the citadel at 120×40, as `cellcaster wire` measures them.
-    pub(super) const CITADEL: Self =
-        Self { exact: 27_000.0, spread: 0.6, compressed: [1.0, 1.0] };
+    pub(super) const CITADEL: Self = Self { exact: 27_000.0, spread: 0.6, compressed: [1.0, 1.0] };
     /// The same with `ssh -C`.
     pub(super) const COMPRESSED: Self = Self { compressed: [0.183, 0.225], ..Self::CITADEL };
 
@@ -82,7 +81,6 @@ pub(super) struct Player {
     /// From pressing a key to the first frame that reflects it, in order of pressing.
     pub(super) latencies: Vec<Latency>,
     frames: Frames,
-    is_moving: bool,
     due: Duration,
     next_key: Duration,
     /// On its way to the game: what it is, and when it is there.
@@ -95,7 +93,7 @@ pub(super) struct Player {
 
 #[derive(Clone, Copy, Debug, PartialEq)]
 enum Upward {
-    Answer,
+    Answer(Request),
     Key(Duration),
 }
 
@@ -113,8 +111,9 @@ pub(super) struct Shown {
     /// When it is on the screen; `None` where it has not arrived.
     pub(super) at: Option<Duration>,
     pub(super) fidelity: Fidelity,
-    bytes: usize,
+    pub(super) bytes: usize,
     keys: Vec<Duration>,
+    request: Request,
 }
 
 impl Shown {
@@ -148,19 +147,7 @@ impl Simulation {
 
     /// All players move for so long.
     pub(super) fn walk(&mut self, time: Duration) {
-        self.run(time, true);
-    }
-
-    /// All players stand for so long.
-    pub(super) fn stand(&mut self, time: Duration) {
-        self.run(time, false);
-    }
-
-    fn run(&mut self, time: Duration, is_moving: bool) {
         let until = self.now + time;
-        for player in &mut self.players {
-            player.is_moving = is_moving;
-        }
         while self.now < until {
             self.carry();
             for player in 0..self.players.len() {
@@ -178,8 +165,11 @@ impl Simulation {
             player.receive(now, upward);
         }
         self.press_keys(number);
+        if self.players[number].flow.probe_is_due(now) {
+            self.put(number, 0.0, Fidelity::EXACT, Request::Fence);
+        }
         let player = &mut self.players[number];
-        if player.is_moving && now >= player.due && player.flow.may_send(now) {
+        if now >= player.due && player.flow.may_send(now) {
             let fidelity = player.flow.fidelity();
             let bytes = player.frames.bytes(fidelity, self.chance.draw());
             self.send(number, bytes, fidelity);
@@ -190,7 +180,7 @@ impl Simulation {
     }
 
     fn press_keys(&mut self, number: usize) {
-        if self.players[number].is_moving && self.now >= self.players[number].next_key {
+        if self.now >= self.players[number].next_key {
             let pause = Duration::from_millis(300 + (self.chance.draw() * 200.0) as u64);
             self.players[number].next_key = self.now + pause;
             self.send_upward(number, self.now, Upward::Key(self.now));
@@ -199,13 +189,18 @@ impl Simulation {
 
     /// Sends a frame of so many bytes, and a request after it.
     fn send(&mut self, number: usize, bytes: f64, fidelity: Fidelity) {
+        let request = self.players[number].flow.request(self.now);
+        self.put(number, bytes, fidelity, request);
+    }
+
+    fn put(&mut self, number: usize, bytes: f64, fidelity: Fidelity, request: Request) {
         let player = &mut self.players[number];
-        player.flow.sent(self.now, bytes as usize);
+        player.flow.sent(self.now, bytes as usize, request);
         let frame = player.shown.len();
-        let keys = std::mem::take(&mut player.pressed);
-        let (sent_at, at) = (self.now, None);
-        player.shown.push(Shown { sent_at, at, fidelity, bytes: bytes as usize, keys });
-        let mut rest = bytes * player.frames.carried(fidelity);
+        let keys = if bytes > 0.0 { std::mem::take(&mut player.pressed) } else { Vec::new() };
+        let (sent_at, at, bytes) = (self.now, None, bytes as usize);
+        player.shown.push(Shown { sent_at, at, fidelity, bytes, keys, request });
+        let mut rest = bytes as f64 * player.frames.carried(fidelity);
         while rest > PACKET {
             self.queue.push_back((number, PACKET, None));
             rest -= PACKET;
@@ -238,7 +233,8 @@ impl Simulation {
         for &pressed_at in &shown.keys {
             player.latencies.push(Latency { pressed_at, taken: at - pressed_at });
         }
-        self.send_upward(number, at, Upward::Answer);
+        let request = shown.request;
+        self.send_upward(number, at, Upward::Answer(request));
     }
 
     fn send_upward(&mut self, number: usize, at: Duration, upward: Upward) {
@@ -258,11 +254,10 @@ impl Simulation {
 impl Player {
     fn new(frames: Frames) -> Self {
         Self {
-            flow: Flow::default(),
+            flow: Flow::new(true),
             shown: Vec::new(),
             latencies: Vec::new(),
             frames,
-            is_moving: false,
             due: Duration::ZERO,
             next_key: Duration::ZERO,
             upward: VecDeque::new(),
@@ -273,19 +268,25 @@ impl Player {
 
     fn receive(&mut self, now: Duration, upward: Upward) {
         match upward {
-            Upward::Answer => self.flow.answered(now),
-            Upward::Key(pressed_at) => self.pressed.push(pressed_at),
+            Upward::Answer(Request::Status) => self.flow.answered(now),
+            Upward::Answer(Request::Fence) => self.flow.fence_answered(now),
+            Upward::Answer(Request::Nothing) => {}
+            Upward::Key(pressed_at) => {
+                self.flow.heard();
+                self.pressed.push(pressed_at);
+            }
         }
     }
 
-    /// What was sent after `time`.
+    /// The frames that were sent after `time`.
     pub(super) fn shown_since(&self, time: Duration) -> Vec<&Shown> {
-        self.shown.iter().filter(|shown| shown.sent_at >= time).collect()
+        self.shown.iter().filter(|shown| shown.bytes > 0 && shown.sent_at >= time).collect()
     }
 
     /// The longest time between two frames that arrive from `begin` until `end`.
     pub(super) fn longest_freeze(&self, begin: Duration, end: Duration) -> Duration {
-        let arrivals = self.shown.iter().filter_map(|shown| shown.at);
+        let frames = self.shown.iter().filter(|shown| shown.bytes > 0);
+        let arrivals = frames.filter_map(|shown| shown.at);
         let within = arrivals.filter(|at| (begin..end).contains(at));
         let times: Vec<_> = [begin].into_iter().chain(within).chain([end]).collect();
         times.windows(2).map(|pair| pair[1] - pair[0]).max().unwrap_or_default()
@@ -294,9 +295,8 @@ impl Player {
     /// The most that was on its way at a time, in bytes.
     pub(super) fn most_in_flight(&self, begin: Duration) -> usize {
         let in_flight = |time| {
-            let is_there = |shown: &&Shown| {
-                shown.sent_at <= time && shown.at.is_none_or(|at| at > time)
-            };
+            let is_there =
+                |shown: &&Shown| shown.sent_at <= time && shown.at.is_none_or(|at| at > time);
             self.shown.iter().filter(is_there).map(|shown| shown.bytes).sum()
         };
         self.shown_since(begin).iter().map(|shown| in_flight(shown.sent_at)).max().unwrap_or(0)
