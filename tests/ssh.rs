@@ -193,12 +193,14 @@ fn a_link_that_jitters_shows_exact_frames() {
 }
 
 #[test]
-fn compressed_it_is_exact_on_a_slow_link() {
+fn compressed_it_is_about_exact_on_a_slow_link() {
     let guest = Guest::connect_with(&["-C"], SLOW, "play citadel --stats");
     let walk = guest.play(Duration::from_secs(20));
     walk.report("1 Mbit/s, 50 ms each way, with -C");
-    let exact = walk.fidelities.iter().filter(|fidelity| *fidelity == "exact").count();
-    assert!(exact * 2 > walk.fidelities.len());
+    // Without compression there is hardly one below 16.
+    let is_fine = |fidelity: &&String| matches!(fidelity.as_str(), "exact" | "1" | "2" | "3" | "4");
+    let fine = walk.fidelities.iter().filter(is_fine).count();
+    assert!(fine * 4 > walk.fidelities.len() * 3);
 }
 
 /// The server asks the client every 2 s, and gives it up after the third time. A game that goes on sending

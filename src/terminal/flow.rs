@@ -247,9 +247,12 @@ impl Flow {
         self.link.usable_rate().map_or(Fidelity::EXACT, |rate| self.demand.fidelity_within(rate))
     }
 
-    /// Takes note that something has moved, and that it took so many bytes to show it.
+    /// Takes note that something has moved, and that it took so many bytes to show it. The first frame,
+    /// which paints everything, is no motion.
     pub(super) fn showed_motion(&mut self, bytes: usize, fidelity: Fidelity) {
-        self.demand.showed_motion(bytes, fidelity);
+        if self.link.is_known() {
+            self.demand.showed_motion(bytes, fidelity);
+        }
     }
 
     /// How many frames are unanswered.

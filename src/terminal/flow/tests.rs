@@ -92,9 +92,7 @@ fn after_a_stall_answers_belong_to_their_frames() {
         let round_trip = line.players[0].flow.round_trip().unwrap();
         assert!(round_trip >= 100 * MILLISECOND, "{round_trip:?} at {:?}", line.now);
     }
-    let slow = |one: &&Latency| {
-        one.pressed_at >= 23 * SECOND && one.taken > 300 * MILLISECOND
-    };
+    let slow = |one: &&Latency| one.pressed_at >= 23 * SECOND && one.taken > 300 * MILLISECOND;
     assert_eq!(line.players[0].latencies.iter().find(slow).map(|one| one.taken), None);
 }
 
@@ -117,9 +115,12 @@ fn nothing_piles_up_before_a_link_that_has_become_slow() {
 fn the_first_frame_over_a_network_is_coarse() {
     assert_eq!(Flow::new(false).fidelity(), Fidelity::EXACT);
     let mut flow = Flow::new(true);
+    flow.sent(Duration::ZERO, 0, Request::Status);
+    flow.answered(100 * MILLISECOND);
     assert_eq!(flow.fidelity(), FIRST_FIDELITY);
-    send(&mut flow, Duration::ZERO, 14_000);
-    flow.answered(20 * MILLISECOND);
+    send(&mut flow, SECOND, 14_000);
+    flow.showed_motion(14_000, FIRST_FIDELITY);
+    flow.answered(SECOND + 128 * MILLISECOND);
     assert_eq!(flow.fidelity(), Fidelity::EXACT, "nothing has moved yet");
 }
 
