@@ -113,10 +113,9 @@ impl Flow {
     pub(super) fn request(&self, now: Duration) -> Request {
         match self.answers {
             Answers::Never => Request::Nothing,
-            Answers::Unknown => Request::Status,
             Answers::Given if self.misses > 0 => Request::Fence,
             Answers::Given if now.saturating_sub(self.fenced_at) >= FENCE_PERIOD => Request::Fence,
-            Answers::Given => Request::Status,
+            Answers::Unknown | Answers::Given => Request::Status,
         }
     }
 

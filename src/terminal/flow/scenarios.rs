@@ -67,9 +67,9 @@ impl Scenario {
         let mut line = Simulation::new(self.conditions, &vec![frames; self.players]);
         line.walk(HAPPENS);
         line.conditions.rate = self.rate_meanwhile.unwrap_or(line.conditions.rate);
-        line.walk(OVER - HAPPENS);
+        line.walk(OVER.saturating_sub(HAPPENS));
         line.conditions.rate = self.rate_then.unwrap_or(line.conditions.rate);
-        line.walk(TIME - OVER);
+        line.walk(TIME.saturating_sub(OVER));
         line
     }
 }
@@ -89,7 +89,7 @@ fn row(player: &Player) -> String {
     let latencies = || player.latencies.iter().filter(|one| one.pressed_at >= begin);
     let latency = |share| percentile(latencies().map(|one| one.taken), share).as_millis();
     let fidelity = |share| percentile(shown.iter().map(|one| one.fidelity), share).tolerance();
-    let frames = shown.len() as f64 / (end - begin).as_secs_f64();
+    let frames = shown.len() as f64 / end.saturating_sub(begin).as_secs_f64();
     let freeze = player.longest_freeze(begin, end).as_secs_f64();
     format!(
         "{frames:4.1} | {:4} | {:4} | {:2} | {:2} | {freeze:4.1} | {:3.0}",

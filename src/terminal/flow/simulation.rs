@@ -231,7 +231,7 @@ impl Simulation {
         let shown = &mut player.shown[frame];
         shown.at = Some(at);
         for &pressed_at in &shown.keys {
-            player.latencies.push(Latency { pressed_at, taken: at - pressed_at });
+            player.latencies.push(Latency { pressed_at, taken: at.saturating_sub(pressed_at) });
         }
         let request = shown.request;
         self.send_upward(number, at, Upward::Answer(request));
@@ -289,7 +289,7 @@ impl Player {
         let arrivals = frames.filter_map(|shown| shown.at);
         let within = arrivals.filter(|at| (begin..end).contains(at));
         let times: Vec<_> = [begin].into_iter().chain(within).chain([end]).collect();
-        times.windows(2).map(|pair| pair[1] - pair[0]).max().unwrap_or_default()
+        times.windows(2).map(|pair| pair[1].saturating_sub(pair[0])).max().unwrap_or_default()
     }
 
     /// The most that was on its way at a time, in bytes.
