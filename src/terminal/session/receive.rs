@@ -10,9 +10,7 @@ use crate::palette::ColorDepth;
 use crate::terminal::input::{Answer, Input};
 use crate::terminal::mouse::MouseReport;
 use crate::terminal::platform::Signal;
-use crate::terminal::{
-    ColorSource, Detected, Event, Key, KeyEvent, Phase, QuitReason, sequence,
-};
+use crate::terminal::{ColorSource, Detected, Event, Key, KeyEvent, Phase, QuitReason, sequence};
 
 /// Whether something arrived.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
