@@ -243,7 +243,9 @@ fn the_shell_behind_the_link_finds_no_answers() {
     let mut guest = Guest::connect(SLOW, "play citadel");
     guest.hold_right(true);
     thread::sleep(Duration::from_secs(1));
+    // Enter confirms it.
     guest.hold_letter('q', true);
+    guest.hold_letter('\r', true);
     let ending = guest.player.wait_for_end();
     ending.assert_given_back();
     guest.player.wait_for("the shell has read: \"\"");
