@@ -30,7 +30,7 @@ use tally::Tally;
 
 pub use palettes::{GREY, PalettePlan, PaletteRow, report_palettes};
 pub use pipeline::{PipelineRow, measure_pipeline};
-pub use tally::{Bytes, Part, Seen};
+pub use tally::{Bytes, Compressed, Part, Seen};
 
 /// What to measure.
 #[derive(Debug)]

@@ -31,9 +31,19 @@ const RIGHT_END: &str = "C";
 const LETTER_END: &str = "u";
 
 /// A link such as a phone has on a train.
-const SLOW: Link =
-    Link { delay: Duration::from_millis(50), bytes_per_second: Some(1_000_000.0 / 8.0) };
-const UNLIMITED: Link = Link { delay: Duration::ZERO, bytes_per_second: None };
+const SLOW: Link = Link {
+    delay: Duration::from_millis(50),
+    jitter: Duration::ZERO,
+    bytes_per_second: Some(1_000_000.0 / 8.0),
+};
+const UNLIMITED: Link =
+    Link { delay: Duration::ZERO, jitter: Duration::ZERO, bytes_per_second: None };
+/// One that carries anything, at times late.
+const JITTERY: Link = Link {
+    delay: Duration::from_millis(20),
+    jitter: Duration::from_millis(100),
+    bytes_per_second: None,
+};
 
 /// The game, as a guest plays it.
 struct Guest {
@@ -46,11 +56,17 @@ struct Guest {
 
 impl Guest {
     fn connect(link: Link, game: &str) -> Self {
+        Self::connect_with(&[], link, game)
+    }
+
+    /// As [`Guest::connect`], with more `options` for `ssh`.
+    fn connect_with(options: &[&str], link: Link, game: &str) -> Self {
         static ALONE: Mutex<()> = Mutex::new(());
         let alone = ALONE.lock().unwrap_or_else(PoisonError::into_inner);
         let server = Server::start(game);
         let proxy = Proxy::start(server.port(), link);
-        let arguments = server.client_arguments(proxy.port());
+        let options = options.iter().map(|option| (*option).to_owned());
+        let arguments = options.chain(server.client_arguments(proxy.port()));
         let player = Player::start(WINDOW, Speaks::Kitty, "ssh", arguments, &[]);
         player.wait_for("? help");
         player.wait_until("asked for releases", |emulator| emulator.modes().key_flags == [0, 1]);
@@ -167,6 +183,45 @@ fn on_a_fast_link_every_frame_is_there_and_exact() {
 }
 
 #[test]
+fn a_link_that_jitters_shows_exact_frames() {
+    let guest = Guest::connect(JITTERY, "play citadel --stats");
+    let walk = guest.play(Duration::from_secs(20));
+    walk.report("no limit, 20 ms and up to 100 ms of jitter each way");
+    let exact = walk.fidelities.iter().filter(|fidelity| *fidelity == "exact").count();
+    assert!(exact * 2 > walk.fidelities.len());
+    assert!(walk.frames_per_second >= 12.0);
+}
+
+#[test]
+fn compressed_it_is_about_exact_on_a_slow_link() {
+    let guest = Guest::connect_with(&["-C"], SLOW, "play citadel --stats");
+    let walk = guest.play(Duration::from_secs(20));
+    walk.report("1 Mbit/s, 50 ms each way, with -C");
+    // Without compression there is hardly one below 16.
+    let is_fine = |fidelity: &&String| matches!(fidelity.as_str(), "exact" | "1" | "2" | "3" | "4");
+    let fine = walk.fidelities.iter().filter(is_fine).count();
+    assert!(fine * 4 > walk.fidelities.len() * 3);
+}
+
+/// The server asks the client every 2 s, and gives it up after the third time. A game that goes on sending
+/// keeps it from asking.
+#[test]
+fn a_link_that_dies_silently_is_noticed() {
+    const END: Duration = Duration::from_secs(20);
+    let guest = Guest::connect(SLOW, "play citadel");
+    let game = guest.server.game();
+    guest.hold_right(true);
+    guest.player.wait_until("turned", |emulator| emulator.bytes().len() > 200_000);
+    guest.proxy.die();
+    let died = Instant::now();
+    while is_alive(game) {
+        assert!(died.elapsed() < END, "it lives on with a dead link");
+        thread::sleep(Duration::from_millis(50));
+    }
+    eprintln!("ended {:?} after the link died", died.elapsed());
+}
+
+#[test]
 fn when_the_link_is_cut_in_mid_frame_nothing_is_left() {
     const END: Duration = Duration::from_secs(5);
     let guest = Guest::connect(SLOW, "play citadel");
@@ -188,7 +243,9 @@ fn the_shell_behind_the_link_finds_no_answers() {
     let mut guest = Guest::connect(SLOW, "play citadel");
     guest.hold_right(true);
     thread::sleep(Duration::from_secs(1));
+    // Enter confirms it.
     guest.hold_letter('q', true);
+    guest.hold_letter('\r', true);
     let ending = guest.player.wait_for_end();
     ending.assert_given_back();
     guest.player.wait_for("the shell has read: \"\"");

@@ -115,6 +115,11 @@ impl Guard {
         self.write([queries, sequence::QUERY_FENCE].concat().as_bytes())
     }
 
+    /// Takes note that a fence was sent after a frame.
+    pub(super) fn fence_sent(&self) {
+        self.lock().fences.sent();
+    }
+
     /// Takes note that the terminal has answered all before a fence.
     pub(super) fn fence_answered(&self) {
         self.lock().fences.answered();

@@ -43,7 +43,10 @@ pub(super) const RESET_STYLE: &str = "\x1b[m";
 pub(super) const QUERY_KEY_FLAGS: &str = "\x1b[?u";
 /// The name of the capability to show 24-bit colours, in hexadecimal digits.
 pub(super) const RGB_CAPABILITY: &str = "524742";
-/// Asks for that capability.
+/// Asks for the terminal's name and version (XTVERSION), which a terminal that knows device control strings
+/// answers with one. As a control sequence, it is passed over by all others.
+pub(super) const QUERY_VERSION: &str = "\x1b[>q";
+/// Asks for that capability (XTGETTCAP).
 pub(super) const QUERY_TRUE_COLOR: &str = "\x1bP+q524742\x1b\\";
 /// Asks for the device's status; the answer tells that all before the query has been taken in.
 pub(super) const QUERY_STATUS: &str = "\x1b[5n";

@@ -11,7 +11,7 @@ use std::time::{Duration, Instant};
 
 pub use self::options::Options;
 use self::receive::Received;
-use super::flow::Flow;
+use super::flow::{Flow, Request};
 use super::guard::Guard;
 use super::input::Decoder;
 use super::mouse::MouseUnits;
@@ -44,6 +44,7 @@ pub struct Session {
     flow: Flow,
     /// `None` for what the link allows.
     fidelity: Option<Fidelity>,
+    is_remote: bool,
     /// Whether the program wants to know when a frame may be sent.
     awaits_readiness: bool,
 }
@@ -112,8 +113,9 @@ impl Session {
             key_releases: KeyReleases::Unasked,
             mouse: Mouse::default(),
             begun_at: Instant::now(),
-            flow: Flow::default(),
+            flow: Flow::new(options.is_remote),
             fidelity: options.fidelity,
+            is_remote: options.is_remote,
             awaits_readiness: false,
         };
         session.writer.set_ascii(options.is_ascii);
@@ -131,13 +133,13 @@ impl Session {
         if options.ask_for_mouse_pixels {
             queries.push_str(sequence::QUERY_MOUSE_PIXELS);
         }
-        if let Detected::Guess(_) = options.color_depth {
-            queries.push_str(sequence::QUERY_TRUE_COLOR);
+        if matches!(options.color_depth, Detected::Guess(_)) && options.ask_for_version {
+            queries.push_str(sequence::QUERY_VERSION);
         }
         // As after a frame: an answer that comes before that of the fence says that others will.
         queries.push_str(sequence::QUERY_STATUS);
-        self.flow.sent(self.now(), 0);
-        self.guard.ask(&queries)
+        self.flow.sent(self.now(), 0, Request::Status);
+        self.send_queries(&queries)
     }
 
     /// Waits for an event, at most for `timeout`, or for ever; `None` where there was none.
@@ -150,8 +152,11 @@ impl Session {
             if let Some(event) = self.events.pop_front() {
                 return Ok(Some(event));
             }
-            if self.awaits_readiness && self.is_ready() {
-                return Ok(Some(Event::Ready));
+            if self.awaits_readiness {
+                self.probe().map_err(Error::while_doing("asking whether the terminal is there"))?;
+                if self.is_ready() {
+                    return Ok(Some(Event::Ready));
+                }
             }
             if !self.guard.is_taken() {
                 return Err(Error::given_back());

@@ -5,7 +5,7 @@ use std::time::{Duration, Instant};
 use ratatui::buffer::Buffer;
 
 use super::EncoderReport;
-use super::compression::Stream;
+use super::compression::{LEVELS, Stream};
 use super::difference::Difference;
 use super::encoder::{Changes, Encoder};
 use crate::game::Script;
@@ -22,12 +22,21 @@ pub struct Part {
     /// How many bytes it takes for each that ratatui's own encoder does, in the mean; NaN where
     /// neither takes any.
     pub ratio: f64,
-    /// How many bytes a frame takes after the compression of `ssh -C`, in the mean.
-    pub compressed: f64,
+    /// What a frame takes after compression by zlib at level 1, and at level 6 as by `ssh -C`.
+    pub compressed: [Compressed; 2],
     /// How long encoding a frame took, in the mean.
     pub time: Duration,
     /// What the viewer saw.
     pub seen: Seen,
+}
+
+/// What a frame takes after compression, in the mean.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Compressed {
+    /// How many bytes.
+    pub bytes: f64,
+    /// How long compressing took.
+    pub time: Duration,
 }
 
 /// How many bytes a frame takes.
@@ -58,7 +67,7 @@ pub struct Seen {
 pub(super) struct Tally {
     name: String,
     encoder: Box<dyn Encoder>,
-    stream: Stream,
+    streams: [Stream; 2],
     /// The place in `sections` of each of the script's.
     places: Vec<usize>,
     sections: Vec<Sums>,
@@ -82,7 +91,7 @@ impl Tally {
         Self {
             name,
             encoder,
-            stream: Stream::new(),
+            streams: LEVELS.map(Stream::new),
             places,
             sections,
             all: Sums::new("all"),
@@ -98,7 +107,10 @@ impl Tally {
         let start = Instant::now();
         self.encoder.encode(changes, &mut self.bytes);
         let time = start.elapsed();
-        let compressed = self.stream.size_of(&self.bytes);
+        let compressed = self.streams.each_mut().map(|stream| {
+            let start = Instant::now();
+            (stream.size_of(&self.bytes), start.elapsed())
+        });
         let Some(section) = section else {
             self.first_frame = self.bytes.len();
             return;
@@ -106,7 +118,10 @@ impl Tally {
         let difference = Difference::of(&*self.encoder, drawn);
         for sums in [&mut self.sections[self.places[section]], &mut self.all] {
             sums.bytes.push(self.bytes.len());
-            sums.compressed += compressed;
+            for (sum, (bytes, time)) in sums.compressed.iter_mut().zip(compressed) {
+                sum.0 += bytes;
+                sum.1 += time;
+            }
             sums.time += time;
             sums.difference.add(difference);
         }
@@ -131,7 +146,7 @@ impl Tally {
 struct Sums {
     name: String,
     bytes: Vec<usize>,
-    compressed: usize,
+    compressed: [(usize, Duration); 2],
     time: Duration,
     difference: Difference,
 }
@@ -141,7 +156,7 @@ impl Sums {
         Self {
             name: name.to_owned(),
             bytes: Vec::new(),
-            compressed: 0,
+            compressed: [(0, Duration::ZERO); 2],
             time: Duration::ZERO,
             difference: Difference::default(),
         }
@@ -162,7 +177,10 @@ impl Sums {
                 largest: share(&self.bytes, 100),
             },
             ratio: mean / first.map_or(mean, |first| first.bytes.mean),
-            compressed: self.compressed as f64 / count,
+            compressed: self.compressed.map(|(bytes, time)| Compressed {
+                bytes: bytes as f64 / count,
+                time: time.div_f64(count),
+            }),
             time: self.time.div_f64(count),
             seen: Seen {
                 signal_to_noise: self.difference.signal_to_noise(),

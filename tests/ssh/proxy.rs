@@ -2,6 +2,7 @@
 
 use std::io::{Read, Write};
 use std::net::{Shutdown, TcpListener, TcpStream};
+use std::sync::atomic::{AtomicBool, Ordering};
 use std::sync::mpsc::{self, Receiver, Sender};
 use std::sync::{Arc, Condvar, Mutex};
 use std::thread;
@@ -12,6 +13,8 @@ use std::time::{Duration, Instant};
 pub(crate) struct Link {
     /// From one end to the other.
     pub(crate) delay: Duration,
+    /// The most that a packet takes longer, each way.
+    pub(crate) jitter: Duration,
     /// How much it carries towards the player; `None` for anything.
     pub(crate) bytes_per_second: Option<f64>,
 }
@@ -20,6 +23,7 @@ pub(crate) struct Link {
 pub(crate) struct Proxy {
     port: u16,
     ends: Arc<Mutex<Vec<TcpStream>>>,
+    is_dead: Arc<AtomicBool>,
     backlog: Arc<Backlog>,
 }
 
@@ -42,9 +46,11 @@ impl Proxy {
         let listener = TcpListener::bind(("127.0.0.1", 0)).unwrap();
         let port = listener.local_addr().unwrap().port();
         let ends = Arc::new(Mutex::new(Vec::new()));
+        let is_dead = Arc::new(AtomicBool::new(false));
         let backlog = Arc::new(Backlog::default());
         thread::spawn({
             let (ends, backlog) = (Arc::clone(&ends), Arc::clone(&backlog));
+            let is_dead = Arc::clone(&is_dead);
             move || {
                 let player = listener.accept().unwrap().0;
                 let server = TcpStream::connect(("127.0.0.1", server)).unwrap();
@@ -54,15 +60,20 @@ impl Proxy {
                 }
                 let clone = |end: &TcpStream| end.try_clone().unwrap();
                 let up = Link { bytes_per_second: None, ..link };
-                carry(clone(&player), clone(&server), up, Arc::default());
-                carry(server, player, link, backlog);
+                carry(clone(&player), clone(&server), up, Arc::default(), Arc::clone(&is_dead));
+                carry(server, player, link, backlog, is_dead);
             }
         });
-        Self { port, ends, backlog }
+        Self { port, ends, is_dead, backlog }
     }
 
     pub(crate) fn port(&self) -> u16 {
         self.port
+    }
+
+    /// From now on nothing is carried either way, and nobody is told.
+    pub(crate) fn die(&self) {
+        self.is_dead.store(true, Ordering::SeqCst);
     }
 
     /// Waits until part of a frame is on its way, and ends both connections.
@@ -81,32 +92,61 @@ impl Proxy {
 }
 
 /// Carries bytes one way, until there are no more.
-fn carry(from: TcpStream, to: TcpStream, link: Link, backlog: Arc<Backlog>) {
+fn carry(
+    from: TcpStream,
+    to: TcpStream,
+    link: Link,
+    backlog: Arc<Backlog>,
+    is_dead: Arc<AtomicBool>,
+) {
     let (sender, receiver) = mpsc::channel();
     thread::spawn({
-        let backlog = Arc::clone(&backlog);
-        move || take(from, link, &sender, &backlog)
+        let (backlog, is_dead) = (Arc::clone(&backlog), Arc::clone(&is_dead));
+        move || take(from, link, &sender, &backlog, &is_dead)
     });
-    thread::spawn(move || deliver(&receiver, to, &backlog));
+    thread::spawn(move || deliver(&receiver, to, &backlog, &is_dead));
 }
 
-fn take(mut from: TcpStream, link: Link, sender: &Sender<Packet>, backlog: &Backlog) {
+fn take(
+    mut from: TcpStream,
+    link: Link,
+    sender: &Sender<Packet>,
+    backlog: &Backlog,
+    is_dead: &AtomicBool,
+) {
     let mut carried_at = Instant::now();
+    let mut arrives_at = carried_at;
+    let mut chance: u32 = 7;
     let mut buffer = [0; PACKET];
     while let Ok(count @ 1..) = from.read(&mut buffer) {
         let busy = link.bytes_per_second.map_or(0.0, |rate| count as f64 / rate);
         carried_at = carried_at.max(Instant::now()) + Duration::from_secs_f64(busy);
         *backlog.bytes.lock().unwrap() += count;
         backlog.changed.notify_all();
-        if sender.send((carried_at + link.delay, buffer[..count].to_vec())).is_err() {
+        // Numerical Recipes' generator; its high bits are as good as is needed here.
+        chance = chance.wrapping_mul(1_664_525).wrapping_add(1_013_904_223);
+        let jitter = link.jitter.mul_f64(f64::from(chance >> 8) / f64::from(1 << 24));
+        arrives_at = arrives_at.max(carried_at + link.delay + jitter);
+        while is_dead.load(Ordering::SeqCst) {
+            thread::sleep(Duration::from_millis(50));
+        }
+        if sender.send((arrives_at, buffer[..count].to_vec())).is_err() {
             return;
         }
     }
 }
 
-fn deliver(receiver: &Receiver<Packet>, mut to: TcpStream, backlog: &Backlog) {
+fn deliver(
+    receiver: &Receiver<Packet>,
+    mut to: TcpStream,
+    backlog: &Backlog,
+    is_dead: &AtomicBool,
+) {
     while let Ok((arrives_at, bytes)) = receiver.recv() {
         thread::sleep(arrives_at.saturating_duration_since(Instant::now()));
+        while is_dead.load(Ordering::SeqCst) {
+            thread::sleep(Duration::from_millis(50));
+        }
         *backlog.bytes.lock().unwrap() -= bytes.len();
         if to.write_all(&bytes).is_err() {
             break;

@@ -115,7 +115,8 @@ fn configuration(folder: &Path, port: u16) -> String {
     format!(
         "ListenAddress 127.0.0.1\nPort {port}\nHostKey {folder}/host_key\n\
          AuthorizedKeysFile {folder}/user_key.pub\nPidFile none\nUsePAM no\nStrictModes no\n\
-         PermitRootLogin yes\nForceCommand /bin/sh {folder}/game.sh\n"
+         PermitRootLogin yes\nCompression yes\n\
+         ClientAliveInterval 2\nClientAliveCountMax 3\nForceCommand /bin/sh {folder}/game.sh\n"
     )
 }
 

@@ -171,6 +171,9 @@ impl Callbacks for Extensions {
                 self.answers.extend(b"\x1b[?1016;2$y");
             }
             (Some(b'?'), [[2026]], 'h' | 'l') => self.modes.synchronized = last == 'h',
+            (Some(b'>'), _, 'q') if self.speaks == Speaks::Kitty => {
+                self.answers.extend(b"\x1bP>|XTerm(400)\x1b\\");
+            }
             (Some(b'>'), _, 'u') => *key_flags += 1,
             (Some(b'<'), _, 'u') => {
                 *key_flags -= 1;

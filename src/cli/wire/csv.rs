@@ -7,15 +7,16 @@ use crate::wire::Report;
 
 const HEADER: &str = "section,encoder,frames,mean_bytes,ratio,median_bytes,percentile_95_bytes,\
                       largest_bytes,mean_compressed_bytes,mean_nanoseconds,psnr,mean_delta_e,\
-                      largest_delta_e";
+                      largest_delta_e,compression_nanoseconds,mean_level_1_bytes,level_1_nanoseconds";
 
 pub(super) fn write(report: &Report, output: &mut impl Write) -> io::Result<()> {
     writeln!(output, "{HEADER}")?;
     for encoder in &report.encoders {
         for part in encoder.sections.iter().chain([&encoder.all]) {
+            let [fast, usual] = part.compressed;
             writeln!(
                 output,
-                "{},{},{},{},{},{},{},{},{},{},{},{},{}",
+                "{},{},{},{},{},{},{},{},{},{},{},{},{},{},{},{}",
                 field(&part.name),
                 encoder.name,
                 part.frames,
@@ -24,11 +25,14 @@ pub(super) fn write(report: &Report, output: &mut impl Write) -> io::Result<()> 
                 part.bytes.median,
                 part.bytes.percentile_95,
                 part.bytes.largest,
-                part.compressed,
+                usual.bytes,
                 part.time.as_nanos(),
                 number(part.seen.signal_to_noise),
                 part.seen.mean_distance,
                 part.seen.largest_distance,
+                usual.time.as_nanos(),
+                fast.bytes,
+                fast.time.as_nanos(),
             )?;
         }
     }

@@ -32,6 +32,7 @@ pub(super) fn write(plan: &Plan, report: &Report, output: &mut impl Write) -> io
 }
 
 fn part(part: &Part) -> Value {
+    let [fast, usual] = part.compressed;
     json!({
         "section": part.name,
         "frames": part.frames,
@@ -42,7 +43,9 @@ fn part(part: &Part) -> Value {
             "largest": part.bytes.largest,
         },
         "ratio": finite(part.ratio),
-        "compressed": part.compressed,
+        "compressed": usual.bytes,
+        "compression_nanoseconds": usual.time.as_nanos() as u64,
+        "level_1": { "bytes": fast.bytes, "nanoseconds": fast.time.as_nanos() as u64 },
         "nanoseconds": part.time.as_nanos() as u64,
         "psnr": finite(part.seen.signal_to_noise),
         "delta_e": {

@@ -11,6 +11,8 @@ pub(in super::super) enum Answer {
     TrueColor,
     /// It can report the place of the mouse in pixels.
     PixelMouse,
+    /// It is xterm, and knows whether it shows 24-bit colours.
+    XtermVersion,
     /// It has answered all that was asked before the fence.
     Fence,
     /// It has come as far as a status request.
@@ -36,6 +38,29 @@ pub(super) fn parse_report(unit: &[u8]) -> Option<Answer> {
 
 /// What the device control string `unit` answers; `None` for a refusal, and for what was not asked.
 pub(super) fn parse_device_control(unit: &[u8]) -> Option<Answer> {
+    if let Some(name) = unit.strip_prefix(b"\x1bP>|") {
+        return version(name);
+    }
     let capability = unit.strip_prefix(b"\x1bP1+r")?;
     capability.starts_with(sequence::RGB_CAPABILITY.as_bytes()).then_some(Answer::TrueColor)
+}
+
+/// What a terminal of this name and version shows.
+///
+/// Asking for the capability itself (XTGETTCAP) is right for xterm alone, which can be built with and without it.
+/// Others print the query (blessed#382 names `QTerminal`, `PuTTY`, `ConEmu` and Apple's Terminal), so nobody is
+/// asked who has not said that it is xterm.
+fn version(name: &[u8]) -> Option<Answer> {
+    /// Terminals that show 24-bit colours in every version that answers.
+    const TRUE: [&[u8]; 10] = [
+        b"kitty", b"foot", b"wezterm", b"iterm2", b"ghostty", b"contour", b"mintty", b"rio",
+        b"konsole", b"vte(",
+    ];
+    let is =
+        |known: &[u8]| name.len() >= known.len() && name[..known.len()].eq_ignore_ascii_case(known);
+    if TRUE.into_iter().any(is) {
+        Some(Answer::TrueColor)
+    } else {
+        is(b"xterm(").then_some(Answer::XtermVersion)
+    }
 }

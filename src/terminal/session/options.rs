@@ -18,6 +18,10 @@ pub struct Options {
     pub ask_for_key_releases: bool,
     /// Whether to ask if places of the mouse can be in pixels.
     pub ask_for_mouse_pixels: bool,
+    /// Whether to ask for the terminal's version, where the colours are a guess.
+    pub ask_for_version: bool,
+    /// Whether there is a network on the way: the first frame is coarse then, and made exact after it.
+    pub is_remote: bool,
     /// How exact frames are; `None` for exact where the link keeps up, and less so where it lags.
     pub fidelity: Option<Fidelity>,
 }
@@ -27,7 +31,12 @@ impl Options {
     ///
     /// A terminal multiplexer is not asked for releases: those that agree lose some, and a key whose
     /// release is lost is held for ever. Nor is it asked for pixels, of which it has none of its own.
+    ///
+    /// A terminal that `TERM` tells nothing about is asked for nothing that some would print.
     pub fn from_environment(environment: impl Fn(&str) -> Option<String>) -> Self {
+        /// Terminals that pass over a control sequence that they do not know.
+        const KNOWN: [&str; 9] =
+            ["xterm", "vte", "gnome", "konsole", "mintty", "iterm", "st-", "tmux", "rxvt-unicode"];
         let is_set = |name| environment(name).is_some_and(|value| !value.is_empty());
         let term = environment("TERM").unwrap_or_default();
         let multiplexed = is_set("TMUX")
@@ -40,6 +49,8 @@ impl Options {
             is_ascii: false,
             ask_for_key_releases: !multiplexed,
             ask_for_mouse_pixels: !multiplexed,
+            ask_for_version: KNOWN.iter().any(|name| term.starts_with(name)),
+            is_remote: ["SSH_CONNECTION", "SSH_CLIENT", "SSH_TTY"].into_iter().any(is_set),
             fidelity: None,
         }
     }
@@ -48,6 +59,27 @@ impl Options {
 #[cfg(test)]
 mod tests {
     use super::*;
+
+    #[test]
+    fn a_terminal_that_nothing_is_known_of_is_not_asked_for_its_version() {
+        let asks = |term: &'static str| {
+            let environment = move |name: &str| (name == "TERM").then(|| term.to_owned());
+            Options::from_environment(environment).ask_for_version
+        };
+        assert!(["xterm", "xterm-256color", "tmux-256color", "konsole"].into_iter().all(asks));
+        assert!(!["", "ansi", "eterm-color", "unheard-of"].into_iter().any(asks));
+    }
+
+    #[test]
+    fn a_network_is_known_by_what_sshd_sets() {
+        let is_remote = |value: &'static str| {
+            let environment =
+                move |name: &str| (name == "SSH_CONNECTION").then(|| value.to_owned());
+            Options::from_environment(environment).is_remote
+        };
+        assert!(is_remote("192.0.2.1 50000 192.0.2.2 22"));
+        assert!(!is_remote(""));
+    }
 
     fn asks_for_releases(name: &str, value: &str) -> bool {
         let environment = |asked: &str| (asked == name).then(|| value.to_owned());

@@ -10,7 +10,7 @@ use crate::palette::ColorDepth;
 use crate::terminal::input::{Answer, Input};
 use crate::terminal::mouse::MouseReport;
 use crate::terminal::platform::Signal;
-use crate::terminal::{ColorSource, Detected, Event, Key, KeyEvent, Phase, QuitReason};
+use crate::terminal::{ColorSource, Detected, Event, Key, KeyEvent, Phase, QuitReason, sequence};
 
 /// Whether something arrived.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -81,16 +81,23 @@ impl Session {
 
     fn take_input(&mut self, input: Input) -> io::Result<()> {
         match input {
-            Input::Key(event) => self.events.push_back(meaning(event)),
+            Input::Key(event) => {
+                self.flow.heard();
+                self.events.push_back(meaning(event));
+            }
             Input::Focus(true) => self.events.push_back(Event::FocusGained),
             Input::Focus(false) => self.events.push_back(Event::FocusLost),
-            Input::Mouse(report) => self.events.extend(self.mouse_event(report)),
+            Input::Mouse(report) => {
+                self.flow.heard();
+                self.events.extend(self.mouse_event(report));
+            }
             Input::Answer(Answer::PixelMouse) => {
                 self.mouse.has_pixels = true;
                 self.update_mouse_units()?;
             }
             Input::Answer(Answer::KeyFlags) => self.settle_key_releases(true)?,
             Input::Answer(Answer::TrueColor) => self.raise_color_depth(),
+            Input::Answer(Answer::XtermVersion) => self.ask_for_true_color()?,
             Input::Answer(Answer::Status) => {
                 self.flow.answered(self.now());
                 self.guard.await_statuses(self.flow.awaits_answers());
@@ -98,7 +105,8 @@ impl Session {
             Input::Answer(Answer::Fence) => {
                 self.guard.fence_answered();
                 self.mouse.is_changing &= self.guard.awaits_answers();
-                self.flow.passed_over();
+                self.flow.fence_answered(self.now());
+                self.guard.await_statuses(self.flow.awaits_answers());
                 self.settle_key_releases(false)?;
             }
         }
@@ -122,7 +130,7 @@ impl Session {
         self.mouse.is_changing = true;
         self.guard.set_mouse(self.mouse.units)?;
         // Reports that come after the answer are in the new unit.
-        self.guard.ask("")
+        self.send_queries("")
     }
 
     fn settle_key_releases(&mut self, agreed: bool) -> io::Result<()> {
@@ -132,6 +140,13 @@ impl Session {
                 self.guard.push_key_flags()?;
             }
             self.events.push_back(Event::KeyReleases(agreed));
+        }
+        Ok(())
+    }
+
+    fn ask_for_true_color(&mut self) -> io::Result<()> {
+        if matches!(self.color_depth, Detected::Guess(_)) {
+            self.send_queries(sequence::QUERY_TRUE_COLOR)?;
         }
         Ok(())
     }

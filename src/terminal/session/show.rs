@@ -6,6 +6,7 @@ use std::time::{Duration, Instant};
 use ratatui::backend::Backend;
 
 use super::Session;
+use crate::terminal::flow::Request;
 use crate::terminal::{Error, Event, Fidelity, Screen, sequence};
 
 impl Session {
@@ -46,6 +47,12 @@ impl Session {
     /// How exact a frame of motion is at present.
     pub fn fidelity(&self) -> Fidelity {
         self.fidelity.unwrap_or_else(|| self.flow.fidelity())
+    }
+
+    /// Whether a network makes frames of motion coarser than they need to be; `ssh -C` helps then, if it is
+    /// not in use.
+    pub fn is_limited_by_network(&self) -> bool {
+        self.is_remote && self.fidelity.is_none() && self.flow.fidelity() > Fidelity::EXACT
     }
 
     /// How long the terminal has taken to answer of late; `None` where it does not.
@@ -94,6 +101,7 @@ impl Session {
             if self.is_ending() {
                 return Ok(false);
             }
+            self.probe()?;
             self.receive(self.opens_at())?;
         }
         Ok(true)
@@ -123,16 +131,36 @@ impl Session {
         if bytes == 0 {
             return Ok(0);
         }
-        if self.flow.asks() {
-            frame.extend_from_slice(sequence::QUERY_STATUS.as_bytes());
+        let request = self.flow.request(now);
+        match request {
+            Request::Nothing => {}
+            Request::Status => frame.extend_from_slice(sequence::QUERY_STATUS.as_bytes()),
+            Request::Fence => {
+                frame.extend_from_slice(sequence::QUERY_FENCE.as_bytes());
+                self.guard.fence_sent();
+            }
         }
         let written = self.guard.write(frame);
         frame.clear();
-        self.flow.sent(now, bytes);
+        self.flow.sent(now, bytes, request);
         self.guard.await_statuses(self.flow.awaits_answers());
         written?;
         self.note_what_is_taken();
         Ok(bytes)
+    }
+
+    /// Asks whether anybody is there, where an answer is overdue.
+    pub(super) fn probe(&mut self) -> io::Result<()> {
+        if self.guard.has_written_all() && self.flow.probe_is_due(self.now()) {
+            self.send_queries("")?;
+        }
+        Ok(())
+    }
+
+    /// Asks `queries`, and sends a fence after them.
+    pub(super) fn send_queries(&mut self, queries: &str) -> io::Result<()> {
+        self.flow.sent(self.now(), 0, Request::Fence);
+        self.guard.ask(queries)
     }
 
     /// Sends what the terminal has not taken yet.

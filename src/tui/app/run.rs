@@ -104,7 +104,8 @@ impl Presenter {
     fn measure(&mut self, app: &mut App, session: &Session, now: Duration) {
         if let Some(pace) = self.meter.frame(now, session.bytes_written()) {
             let (round_trip, fidelity) = (session.round_trip(), session.fidelity());
-            app.stats = Some(Stats { pace, round_trip, fidelity });
+            let wants_compression = session.is_limited_by_network();
+            app.stats = Some(Stats { pace, round_trip, fidelity, wants_compression });
         }
     }
 

@@ -12,6 +12,8 @@ pub(super) struct Stats {
     /// From sending a frame to the terminal's answer, where it answers.
     pub(super) round_trip: Option<Duration>,
     pub(super) fidelity: Fidelity,
+    /// Whether the link makes frames coarse, and compression would help.
+    pub(super) wants_compression: bool,
 }
 
 /// How many frames there are, and of how many bytes.
@@ -28,7 +30,8 @@ impl fmt::Display for Stats {
         if let Some(round_trip) = self.round_trip {
             write!(f, "{} ms  ", round_trip.as_millis())?;
         }
-        write!(f, "fidelity {}", self.fidelity)
+        write!(f, "fidelity {}", self.fidelity)?;
+        if self.wants_compression { f.write_str("  (ssh -C helps)") } else { Ok(()) }
     }
 }
 
@@ -93,9 +96,12 @@ mod tests {
     fn stats_are_short() {
         let pace = Pace { frames_per_second: 29.6, bytes_per_second: 118_432.0 };
         let round_trip = Some(Duration::from_micros(104_900));
-        let stats = Stats { pace, round_trip, fidelity: Fidelity::new(7) };
+        let fidelity = Fidelity::new(7);
+        let stats = Stats { pace, round_trip, fidelity, wants_compression: false };
         assert_eq!(stats.to_string(), "30 fps  118 kB/s  104 ms  fidelity 7");
         let stats = Stats { round_trip: None, fidelity: Fidelity::EXACT, ..stats };
         assert_eq!(stats.to_string(), "30 fps  118 kB/s  fidelity exact");
+        let stats = Stats { fidelity: Fidelity::HIGH, wants_compression: true, ..stats };
+        assert!(stats.to_string().ends_with("fidelity high  (ssh -C helps)"), "{stats}");
     }
 }
