@@ -4,7 +4,7 @@
 //! were sent twice, and the last of the frames had most of the bytes.
 
 use super::exact;
-use super::ink::Ink;
+use super::ink::Inks;
 use super::look::Look;
 use super::pen::Pen;
 use super::screen::{Row, Screen};
@@ -17,6 +17,7 @@ pub(super) struct Rest {
     frames: usize,
     /// How far off the inexact cells are, and where they are, row by row.
     inexact: Vec<Cell>,
+    inks: Inks,
 }
 
 /// How far off a cell is.
@@ -32,7 +33,7 @@ const FRAMES: usize = 10;
 
 impl Rest {
     pub(super) fn new() -> Self {
-        Self { frames: FRAMES, inexact: Vec::new() }
+        Self { frames: FRAMES, inexact: Vec::new(), inks: Inks::default() }
     }
 
     /// There is motion: the next picture comes to rest afresh.
@@ -48,7 +49,7 @@ impl Rest {
         self.inexact.clear();
         for row in screen.inexact_rows() {
             if row.is_near() {
-                self.inexact.extend(errors(&row));
+                self.inexact.extend(errors(&row, &mut self.inks));
             } else {
                 exact::draw_row(pen, shifts, row);
             }
@@ -77,19 +78,19 @@ impl Rest {
 }
 
 /// How far off the cells of a row are that are not exact.
-fn errors<'a>(row: &'a Row) -> impl Iterator<Item = Cell> + 'a {
+fn errors<'a>(row: &'a Row, inks: &'a mut Inks) -> impl Iterator<Item = Cell> + 'a {
     let looks = row.shown.iter().zip(row.looks);
-    (0..)
-        .zip(looks)
-        .filter(|(_, (shown, look))| shown != look)
-        .map(|(column, (&shown, &look))| Cell { error: error(shown, look), y: row.y, column })
+    (0..).zip(looks).filter(|(_, (shown, look))| shown != look).map(|(column, (&shown, &look))| {
+        let error = error(shown, look, inks);
+        Cell { error, y: row.y, column }
+    })
 }
 
 /// The larger distance of the two halves; infinite where it can't be told.
-fn error(shown: Look, wanted: Look) -> f32 {
+fn error(shown: Look, wanted: Look, inks: &mut Inks) -> f32 {
     let Some((shown, wanted)) = shown.halves().zip(wanted.halves()) else { return f32::INFINITY };
     let distances = shown.into_iter().zip(wanted).map(|(shown, wanted)| {
-        let inks = Ink::of(shown).zip(Ink::of(wanted));
+        let inks = inks.of(shown).zip(inks.of(wanted));
         inks.map_or(f32::INFINITY, |(shown, wanted)| shown.distance(wanted))
     });
     distances.fold(0.0, f32::max)
