@@ -18,6 +18,7 @@ mod inexact;
 mod ink;
 mod lab;
 mod look;
+mod motion;
 mod pen;
 mod rest;
 mod screen;
@@ -72,7 +73,7 @@ impl<W: Write> CellWriter<W> {
             output,
             size,
             screen: Screen::blank(size),
-            pen: Pen::new(size.width),
+            pen: Pen::new(size),
             cursor_visible: false,
             bytes_written: 0,
             fidelity: Fidelity::EXACT,
@@ -107,6 +108,12 @@ impl<W: Write> CellWriter<W> {
         self.screen.set_ascii(is_ascii);
     }
 
+    /// From the next frame on, characters that follow themselves are written once and repeated, where
+    /// `repeats`: the terminal must understand REP (`CSI n b`), also after half blocks.
+    pub fn set_repeats(&mut self, repeats: bool) {
+        self.pen.set_repeats(repeats);
+    }
+
     /// Whether the terminal shows exactly what was drawn last. Where it does not, each further draw
     /// without a changed cell brings it nearer, and after the tenth it is.
     pub fn is_settled(&self) -> bool {
@@ -129,7 +136,7 @@ impl<W: Write> CellWriter<W> {
     pub fn set_size(&mut self, size: Size) {
         self.size = size;
         self.screen.resize(size);
-        self.pen.set_width(size.width);
+        self.pen.set_size(size);
     }
 
     /// Takes note that others may have written to the terminal: nothing is known but that the

@@ -56,7 +56,8 @@ impl Draughtsman {
                 None => Wanted::Fixed { is_shown: shown == look },
             },
         ));
-        let actions = self.trellis.search(&self.cells, row.y, pen.style(), price, &mut self.inks);
+        let (style, repeats) = (pen.style(), pen.repeats());
+        let actions = self.trellis.search(&self.cells, style, price, repeats, &mut self.inks);
         *row.exact = true;
         for (column, &action) in actions.iter().enumerate() {
             match action {

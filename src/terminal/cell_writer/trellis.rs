@@ -22,6 +22,7 @@ use self::block::{Block, Fresh};
 use self::candidates::{Candidates, Turn};
 use super::ink::{Halves, Ink, Inks, Price};
 use super::look::Glyph;
+use super::motion::digits;
 use super::style::{Shade, Style};
 
 /// A cell of a row that is to be shown.
@@ -82,6 +83,8 @@ struct Ways {
     inks: [[Ink; 2]; KEPT],
     /// Where its cursor stands.
     cursor: [u16; KEPT],
+    /// What it has drawn last.
+    last: [Option<Glyph>; KEPT],
 }
 
 /// The cursor of which nobody knows where it stands.
@@ -94,13 +97,14 @@ const UNKNOWN: Ink = Ink { lab: [1e9; 3], shade: Shade::DEFAULT };
 const NEGLIGIBLE: f32 = 1.0;
 
 impl Trellis {
-    /// What is best done about each cell of row `y`, where the terminal draws in `style` so far.
+    /// What is best done about each cell of a row, where the terminal draws in `style` so far, and
+    /// repeats characters if it `repeats`.
     pub(super) fn search(
         &mut self,
         row: &[Wanted],
-        y: u16,
         style: Option<Style>,
         price: Price,
+        repeats: bool,
         inks: &mut Inks,
     ) -> &[Action] {
         self.steps.clear();
@@ -111,7 +115,7 @@ impl Trellis {
                     ways.keep(keep)
                 }
                 Wanted::Halves { wanted, keep } => {
-                    ways.past_halves(Place { x, y }, wanted, keep, price, inks)
+                    ways.past_halves(x, wanted, keep, price, repeats, inks)
                 }
                 Wanted::Fixed { is_shown: true } => ways.keep(0.0),
                 Wanted::Fixed { is_shown: false } => ways.past_text(x),
@@ -141,30 +145,18 @@ impl Trellis {
     }
 }
 
-/// A cell's column and row.
-#[derive(Clone, Copy)]
-struct Place {
-    x: u16,
-    y: u16,
-}
-
-impl Place {
-    /// How many bytes it takes to get the cursor here.
-    #[inline]
-    fn motion_from(self, cursor: u16) -> f32 {
-        let bytes = match self.x.wrapping_sub(cursor) {
-            0 => 0,
-            _ if cursor == NOWHERE => 4 + digits(self.x + 1) + digits(self.y + 1),
-            1 => 3,
-            distance => 3 + digits(distance),
-        };
-        bytes as f32
-    }
-}
-
+/// About how many bytes it takes to get from one column of a row to another.
 #[inline]
-fn digits(number: u16) -> u32 {
-    1 + u32::from(number > 9) + u32::from(number > 99) + u32::from(number > 999)
+fn motion(cursor: u16, x: u16) -> f32 {
+    let bytes = match x.wrapping_sub(cursor) {
+        0 => 0,
+        // Most come from the row above.
+        _ if cursor == NOWHERE && x == 0 => 2,
+        _ if cursor == NOWHERE => 5 + digits(x),
+        1 => 3,
+        distance => 3 + digits(distance),
+    };
+    bytes as f32
 }
 
 impl Ways {
@@ -177,7 +169,7 @@ impl Ways {
     fn one(cost: f32, inks: [Ink; 2], cursor: u16) -> Self {
         let mut costs = [f32::INFINITY; KEPT];
         costs[0] = cost;
-        Self { cost: costs, inks: [inks; KEPT], cursor: [cursor; KEPT] }
+        Self { cost: costs, inks: [inks; KEPT], cursor: [cursor; KEPT], last: [None; KEPT] }
     }
 
     fn cheapest(&self) -> usize {
@@ -205,10 +197,11 @@ impl Ways {
 
     fn past_halves(
         &mut self,
-        place: Place,
+        x: u16,
         wanted: Halves,
         keep: f32,
         price: Price,
+        repeats: bool,
         inks: &mut Inks,
     ) -> [Step; KEPT] {
         let mut candidates = Candidates::keeping(self, keep);
@@ -216,15 +209,21 @@ impl Ways {
         // What is right is drawn again only where that is a shorter way to the next cell.
         let start: [f32; KEPT] = std::array::from_fn(|way| {
             let cursor = self.cursor[way];
-            if is_right && cursor != place.x {
+            if is_right && cursor != x {
                 f32::INFINITY
             } else {
-                self.cost[way] + place.motion_from(cursor)
+                self.cost[way] + motion(cursor, x)
             }
         });
-        let block = Block::new(wanted, price, self, start, place.x + 1);
+        let repeated = if repeats { self.repeated(x) } else { [None; KEPT] };
+        let block = Block::new(wanted, price, self, start, repeated, x + 1);
         let fresh = block.draw(&mut candidates, (!is_right).then_some(inks));
-        self.go_on(&candidates, &fresh, place.x + 1)
+        self.go_on(&candidates, &fresh, x + 1)
+    }
+
+    /// What each way has drawn just before column `x`.
+    fn repeated(&self, x: u16) -> [Option<Glyph>; KEPT] {
+        std::array::from_fn(|way| if self.cursor[way] == x { self.last[way] } else { None })
     }
 
     /// Goes on by the cheapest.
@@ -239,7 +238,10 @@ impl Ways {
             let inks =
                 [fresh.ink(text).unwrap_or(old_text), fresh.ink(ground).unwrap_or(old_ground)];
             self.inks[way] = inks.map(|ink| *ink);
-            self.cursor[way] = if kind == StepKind::Keep { cursors[from_way] } else { cursor };
+            (self.cursor[way], self.last[way]) = match kind {
+                StepKind::Draw(glyph) => (cursor, Some(glyph)),
+                _ => (cursors[from_way], None),
+            };
             Step { kind, before: from, shades: inks.map(|ink| ink.shade) }
         })
     }

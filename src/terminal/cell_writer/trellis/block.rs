@@ -14,6 +14,8 @@ pub(super) struct Block<'a> {
     start: [f32; KEPT],
     /// The least of these.
     least: f32,
+    /// What is drawn again for less.
+    repeated: [Option<Glyph>; KEPT],
     /// Where the cursor is then.
     cursor: u16,
 }
@@ -79,10 +81,11 @@ impl<'a> Block<'a> {
         price: Price,
         ways: &'a Ways,
         start: [f32; KEPT],
+        repeated: [Option<Glyph>; KEPT],
         cursor: u16,
     ) -> Self {
         let least = start.into_iter().fold(f32::INFINITY, f32::min);
-        Self { wanted, price, ways, start, least, cursor }
+        Self { wanted, price, ways, start, least, repeated, cursor }
     }
 
     /// What it costs that each way's text and ground stand for each half.
@@ -104,7 +107,7 @@ impl<'a> Block<'a> {
     #[inline]
     pub(super) fn draw(&self, candidates: &mut Candidates, inks: Option<&mut Inks>) -> Fresh {
         let mut fresh = Fresh::of(self.wanted);
-        if !candidates.would_keep(self.least + SHORTEST_GLYPH) {
+        if !candidates.would_keep(self.least + REPETITION) {
             return fresh;
         }
         let errors = self.errors();
@@ -126,7 +129,11 @@ impl<'a> Block<'a> {
                 (Glyph::Upper, text_above[way] + ground_below[way]),
                 (Glyph::Lower, ground_above[way] + text_below[way]),
             ];
-            let blocks = blocks.map(|(glyph, error)| (glyph, error + bytes(glyph)));
+            let repeated = self.repeated[way];
+            let blocks = blocks.map(|(glyph, error)| {
+                let bytes = if repeated == Some(glyph) { REPETITION } else { bytes(glyph) };
+                (glyph, error + bytes)
+            });
             let cheapest = |one: (Glyph, f32), other: (Glyph, f32)| {
                 if other.1 < one.1 { other } else { one }
             };
@@ -248,5 +255,7 @@ fn bytes(glyph: Glyph) -> f32 {
 }
 
 const SHORTEST_GLYPH: f32 = 1.0;
+/// About how many bytes it takes to draw once more what was drawn just before.
+const REPETITION: f32 = 0.5;
 /// A colour takes no fewer bytes.
 const SHORTEST_INK: f32 = 7.0;
