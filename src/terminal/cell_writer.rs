@@ -19,6 +19,7 @@ mod ink;
 mod lab;
 mod look;
 mod motion;
+mod palette;
 mod pen;
 mod rest;
 mod screen;
@@ -46,6 +47,11 @@ use self::shift::Shifts;
 use self::style::Shade;
 pub(crate) use self::style::Style;
 use super::fidelity::Fidelity;
+
+/// A colour that no entry of the palette holds gets one where so many halves of cells are to show it, by a
+/// frame that is exact, and by one that is not: most of these are left as they are.
+const FREQUENT: u16 = 2;
+const FREQUENT_LOSSY: u16 = 4;
 
 /// A ratatui backend that writes to `W`.
 ///
@@ -112,6 +118,15 @@ impl<W: Write> CellWriter<W> {
     /// `repeats`: the terminal must understand REP (`CSI n b`), also after half blocks.
     pub fn set_repeats(&mut self, repeats: bool) {
         self.pen.set_repeats(repeats);
+    }
+
+    /// From the next frame on, frequent colours are defined as entries 16 to 255 of the terminal's palette (OSC 4)
+    /// where `uses_palette`, and used as these. Who turns that on gives the palette back (OSC 104) when all is
+    /// done.
+    ///
+    /// Ratatui's indexed colours from the sixteenth on are then shown as xterm's standard palette has them.
+    pub fn set_palette(&mut self, uses_palette: bool) {
+        self.pen.palette().set_on(uses_palette);
     }
 
     /// Whether the terminal shows exactly what was drawn last. Where it does not, each further draw
@@ -183,6 +198,7 @@ impl<W: Write> CellWriter<W> {
     fn draw_changed(&mut self) {
         let (pen, shifts) = (&mut self.pen, &mut self.shifts);
         let price = Price::at(self.fidelity);
+        pen.define_colors(&self.screen, if price.is_some() { FREQUENT_LOSSY } else { FREQUENT });
         for row in self.screen.changed_rows() {
             match price {
                 Some(price) => self.draughtsman.draw_row(pen, shifts, row, price),

@@ -8,7 +8,7 @@ use super::look::Look;
 use super::pen::Pen;
 use super::screen::Row;
 use super::shift::{BYTE, CELL, Loss, Shifts};
-use super::trellis::{Action, Trellis, Wanted};
+use super::trellis::{Action, Store, Trellis, Wanted};
 
 /// Draws rows inexactly, and keeps the memory that it takes.
 #[derive(Debug, Default)]
@@ -57,7 +57,8 @@ impl Draughtsman {
             },
         ));
         let (style, repeats) = (pen.style(), pen.repeats());
-        let actions = self.trellis.search(&self.cells, style, price, repeats, &mut self.inks);
+        let mut store = Store { inks: &mut self.inks, palette: pen.palette() };
+        let actions = self.trellis.search(&self.cells, style, price, repeats, &mut store);
         *row.exact = true;
         for (column, &action) in actions.iter().enumerate() {
             match action {

@@ -213,8 +213,9 @@ impl Look {
         (self.0 >> Self::KIND == 0).then(|| self.colors())
     }
 
+    /// Its two colours, whatever it is.
     #[inline]
-    fn colors(self) -> [Shade; 2] {
+    pub(super) fn colors(self) -> [Shade; 2] {
         [self.0 >> Shade::BITS, self.0].map(|bits| Shade::from_bits(bits as u32))
     }
 }

@@ -9,6 +9,8 @@ use super::bytes::Bytes;
 use super::control::ControlSequence;
 use super::look::Glyph;
 use super::motion;
+use super::palette::Palette;
+use super::screen::Screen;
 use super::shift::{Shift, Way};
 use super::style::Style;
 
@@ -28,6 +30,7 @@ pub(super) struct Pen {
     last: Option<Glyph>,
     /// How many more of that one are drawn, but not written yet.
     repeated: u16,
+    palette: Palette,
 }
 
 /// The last bytes of the sequences that delete characters, and insert blank ones.
@@ -47,12 +50,28 @@ impl Pen {
             repeats: false,
             last: None,
             repeated: 0,
+            palette: Palette::default(),
         }
     }
 
     /// From now on, a block that is drawn several times is written once, and repeated.
     pub(super) fn set_repeats(&mut self, repeats: bool) {
         self.repeats = repeats;
+    }
+
+    /// The terminal's palette.
+    pub(super) fn palette(&mut self) -> &mut Palette {
+        &mut self.palette
+    }
+
+    /// Defines entries of the palette for what `screen` is to show, if that is wanted by `least` halves of
+    /// cells.
+    pub(super) fn define_colors(&mut self, screen: &Screen, least: u16) {
+        if let Some(definitions) = self.palette.begin_frame(screen, self.style, least) {
+            // To borrow them from what is borrowed, they are taken, and given back.
+            self.frame().push_text(definitions.as_slice());
+            self.palette.keep(definitions);
+        }
     }
 
     /// Whether that is so.
@@ -92,9 +111,9 @@ impl Pen {
 
     /// Nothing is known of the terminal, and what was written has never been sent.
     pub(super) fn forget(&mut self) {
-        let repeats = self.repeats;
-        *self = Self { frame: std::mem::take(&mut self.frame), repeats, ..Self::new(self.size) };
         self.frame.clear();
+        self.palette.forget();
+        (self.style, self.cursor, self.last, self.repeated) = (None, None, None, 0);
     }
 
     /// Writes one of crossterm's commands that changes neither the cursor's place nor the style.
@@ -114,8 +133,10 @@ impl Pen {
     pub(super) fn set_style(&mut self, target: Style) {
         if self.style != Some(target) {
             let current = self.style;
-            let mut piece = self.frame().piece();
-            target.push_from(current, &mut piece);
+            self.frame();
+            let Self { frame, palette, .. } = self;
+            let mut piece = frame.piece();
+            target.push_from(current, |shade| palette.told(shade), &mut piece);
             piece.finish();
             self.style = Some(target);
         }
@@ -131,10 +152,12 @@ impl Pen {
             self.advance(position);
             return;
         }
-        let mut piece = self.frame().piece();
+        self.frame();
+        let Self { frame, palette, .. } = self;
+        let mut piece = frame.piece();
         motion::push(cursor, position, size, &mut piece);
         if current != Some(style) {
-            style.push_from(current, &mut piece);
+            style.push_from(current, |shade| palette.told(shade), &mut piece);
         }
         let (encoded, count) = glyph.encoded();
         piece.push(encoded, count);

@@ -204,6 +204,18 @@ impl Screen {
         (x < self.width).then(|| self.shown.get(y * self.width + x).copied()).flatten()
     }
 
+    /// What each row shows, and what it is to show.
+    pub(super) fn rows(&self) -> impl Iterator<Item = (&[Look], &[Look])> {
+        let width = self.width.max(1);
+        self.shown.chunks(width).zip(self.looks.chunks(width))
+    }
+
+    /// How the cells are drawn whose looks do not say it.
+    pub(super) fn intricate_styles(&self) -> impl Iterator<Item = Style> {
+        let rows = self.wanted.chunks(self.width.max(1)).zip(&self.intricate);
+        rows.filter(|(_, intricate)| **intricate).flat_map(|(cells, _)| cells.iter().map(Style::of))
+    }
+
     /// The rows that have changed, from the top; they count as changed no longer.
     pub(super) fn changed_rows(&mut self) -> impl Iterator<Item = Row<'_>> {
         self.rows_where(|_, changed| std::mem::take(changed))

@@ -23,6 +23,7 @@ use self::candidates::{Candidates, Turn};
 use super::ink::{Halves, Ink, Inks, Price};
 use super::look::Glyph;
 use super::motion::digits;
+use super::palette::Palette;
 use super::style::{Shade, Style};
 
 /// A cell of a row that is to be shown.
@@ -48,6 +49,12 @@ pub(super) enum Action {
 /// So many ways are kept at each cell. With twice as many, the same error takes a twentieth fewer
 /// bytes, and twice the time.
 const KEPT: usize = 4;
+
+/// Where colours are looked up.
+pub(super) struct Store<'a> {
+    pub(super) inks: &'a mut Inks,
+    pub(super) palette: &'a mut Palette,
+}
 
 /// A search, and its memory.
 #[derive(Debug, Default)]
@@ -105,17 +112,17 @@ impl Trellis {
         style: Option<Style>,
         price: Price,
         repeats: bool,
-        inks: &mut Inks,
+        store: &mut Store,
     ) -> &[Action] {
         self.steps.clear();
-        let mut ways = Ways::from_start(style, inks);
+        let mut ways = Ways::from_start(style, store.inks);
         for (x, cell) in (0..).zip(row) {
             let steps = match *cell {
                 Wanted::Halves { keep, .. } if keep < NEGLIGIBLE && !ways.cursor.contains(&x) => {
                     ways.keep(keep)
                 }
                 Wanted::Halves { wanted, keep } => {
-                    ways.past_halves(x, wanted, keep, price, repeats, inks)
+                    ways.past_halves(x, wanted, keep, price, repeats, store)
                 }
                 Wanted::Fixed { is_shown: true } => ways.keep(0.0),
                 Wanted::Fixed { is_shown: false } => ways.past_text(x),
@@ -202,7 +209,7 @@ impl Ways {
         keep: f32,
         price: Price,
         repeats: bool,
-        inks: &mut Inks,
+        store: &mut Store,
     ) -> [Step; KEPT] {
         let mut candidates = Candidates::keeping(self, keep);
         let is_right = keep == 0.0;
@@ -217,7 +224,7 @@ impl Ways {
         });
         let repeated = if repeats { self.repeated(x) } else { [None; KEPT] };
         let block = Block::new(wanted, price, self, start, repeated, x + 1);
-        let fresh = block.draw(&mut candidates, (!is_right).then_some(inks));
+        let fresh = block.draw(&mut candidates, (!is_right).then_some(store));
         self.go_on(&candidates, &fresh, x + 1)
     }
 

@@ -1,7 +1,9 @@
 //! The blocks that a cell may be drawn as.
 
-use super::super::ink::{Halves, Ink, Inks, Price};
+use super::super::ink::{Halves, Ink, Price};
 use super::super::look::Glyph;
+use super::super::palette::Telling;
+use super::Store;
 use super::candidates::{Candidates, Turn, key};
 use super::{KEPT, StepKind, Ways};
 
@@ -43,7 +45,7 @@ impl Labs {
 
 /// The colours that a block's halves may be told in, and one that may stand for both.
 #[derive(Clone, Copy)]
-pub(super) struct Fresh([Ink; 3]);
+pub(super) struct Fresh([Telling; 3]);
 
 /// Which colour the terminal is told.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -65,12 +67,13 @@ impl Fresh {
     /// That one, unless it stays.
     #[inline]
     pub(super) fn ink(&self, told: Told) -> Option<&Ink> {
-        self.0.get(told as usize)
+        self.0.get(told as usize).map(|telling| &telling.ink)
     }
 
     #[inline]
     pub(super) fn of(wanted: Halves) -> Self {
-        Self([wanted[0], wanted[1], wanted[0]])
+        let [upper, lower] = wanted.map(|ink| Telling { ink, bytes: 0.0, error: 0.0 });
+        Self([upper, lower, upper])
     }
 }
 
@@ -105,16 +108,23 @@ impl<'a> Block<'a> {
     /// In the text's colour and the ground's that the terminal draws in already, and where `inks` are
     /// there to find others in, in one new colour or in two.
     #[inline]
-    pub(super) fn draw(&self, candidates: &mut Candidates, inks: Option<&mut Inks>) -> Fresh {
+    pub(super) fn draw(&self, candidates: &mut Candidates, store: Option<&mut Store>) -> Fresh {
         let mut fresh = Fresh::of(self.wanted);
         if !candidates.would_keep(self.least + REPETITION) {
             return fresh;
         }
         let errors = self.errors();
         self.draw_in_old_colors(&errors, candidates);
-        if let Some(inks) = inks {
-            self.draw_in_one_color(&errors, candidates, &mut fresh, inks);
-            self.draw_in_two_colors(candidates);
+        // A colour that is told takes some bytes in any case.
+        if !candidates.would_keep(self.least + ONE_COLOR + SHORTEST_GLYPH + SHORTEST_INK) {
+            return fresh;
+        }
+        if let Some(store) = store {
+            let [upper, lower] = self.wanted.map(|wanted| store.palette.telling(wanted, self.price));
+            fresh.0[..2].copy_from_slice(&[upper, lower]);
+            self.draw_in_one_for_both(candidates, &mut fresh, store);
+            self.draw_in_one_color(&errors, candidates, [upper, lower]);
+            self.draw_in_two_colors(candidates, [upper, lower]);
         }
         fresh
     }
@@ -151,14 +161,11 @@ impl<'a> Block<'a> {
         &self,
         errors: &[[f32; KEPT]; 4],
         candidates: &mut Candidates,
-        fresh: &mut Fresh,
-        inks: &mut Inks,
+        [upper, lower]: [Telling; 2],
     ) {
         let [text_above, text_below, ground_above, ground_below] = errors;
-        let [upper, lower] = self.wanted;
-        self.draw_in_one_for_both(candidates, fresh, inks);
         let half = ONE_COLOR + bytes(Glyph::Upper);
-        let (above, below) = (half + upper.bytes(), half + lower.bytes());
+        let (above, below) = (half + upper.cost(), half + lower.cost());
         let mut offer = |glyph, cost: f32, errors: &[f32; KEPT], told, inks| {
             if candidates.would_keep(self.least + cost) {
                 for way in 0..KEPT {
@@ -169,7 +176,7 @@ impl<'a> Block<'a> {
                 }
             }
         };
-        let (upper, lower) = (Some(upper), Some(lower));
+        let (upper, lower) = (Some(upper.ink), Some(lower.ink));
         offer(Glyph::Upper, above, ground_below, [Told::Upper, Told::None], [upper, None]);
         offer(Glyph::Upper, below, text_above, [Told::None, Told::Lower], [None, lower]);
         offer(Glyph::Lower, above, text_below, [Told::None, Told::Upper], [None, upper]);
@@ -182,13 +189,14 @@ impl<'a> Block<'a> {
         &self,
         candidates: &mut Candidates,
         fresh: &mut Fresh,
-        inks: &mut Inks,
+        store: &mut Store,
     ) {
         let [upper, lower] = self.wanted;
         let apart = upper.distance(lower);
-        let cost = ONE_COLOR + bytes(Glyph::Space);
-        let mut offer = |ink: Ink, told, error: f32| {
-            let cost = cost + ink.bytes() + error;
+        let mut offer = |telling: Telling, told| {
+            let ink = telling.ink;
+            let error = self.price.of(ink, upper) + self.price.of(ink, lower);
+            let cost = ONE_COLOR + bytes(Glyph::Space) + telling.bytes + error;
             if candidates.would_keep(self.least + cost) {
                 for way in 0..KEPT {
                     let cost = self.start[way] + cost;
@@ -199,25 +207,25 @@ impl<'a> Block<'a> {
                 }
             }
         };
-        let error = self.price.of_distance(apart);
-        offer(upper, Told::Upper, error);
+        offer(fresh.0[0], Told::Upper);
         if upper.shade == lower.shade {
             return;
         }
-        offer(lower, Told::Lower, error);
+        offer(fresh.0[1], Told::Lower);
         // Halfway, the errors add up to no less than the distance.
         if apart <= 2.0 * self.price.farthest {
-            let both = inks.between(upper, lower);
+            let both = store.inks.between(upper, lower);
+            let both = store.palette.telling(both, self.price);
             fresh.0[Told::Both as usize] = both;
-            offer(both, Told::Both, self.price.of(both, upper) + self.price.of(both, lower));
+            offer(both, Told::Both);
         }
     }
 
     /// In two new colours, which lead to the same from everywhere.
     #[inline]
-    fn draw_in_two_colors(&self, candidates: &mut Candidates) {
-        let [upper, lower] = self.wanted;
-        let cost = self.least + TWO_COLORS + upper.bytes() + lower.bytes() + bytes(Glyph::Upper);
+    fn draw_in_two_colors(&self, candidates: &mut Candidates, [upper, lower]: [Telling; 2]) {
+        let cost = self.least + TWO_COLORS + upper.cost() + lower.cost() + bytes(Glyph::Upper);
+        let (upper, lower) = (upper.ink, lower.ink);
         if !candidates.would_keep(cost) {
             return;
         }
