@@ -48,11 +48,6 @@ use self::style::Shade;
 pub(crate) use self::style::Style;
 use super::fidelity::Fidelity;
 
-/// A colour that no entry of the palette holds gets one where so many halves of cells are to show it, by a
-/// frame that is exact, and by one that is not: most of these are left as they are.
-const FREQUENT: u16 = 2;
-const FREQUENT_LOSSY: u16 = 4;
-
 /// A ratatui backend that writes to `W`.
 ///
 /// The colours and the modifiers bold, dim, italic, underlined and reversed are written; ratatui's
@@ -120,7 +115,7 @@ impl<W: Write> CellWriter<W> {
         self.pen.set_repeats(repeats);
     }
 
-    /// From the next frame on, frequent colours are defined as entries 16 to 255 of the terminal's palette (OSC 4)
+    /// From the next frame on, frequent colours are defined as entries 24 to 255 of the terminal's palette (OSC 4)
     /// where `uses_palette`, and used as these. Who turns that on gives the palette back (OSC 104) when all is
     /// done.
     ///
@@ -196,9 +191,9 @@ impl<W: Write> CellWriter<W> {
 
     /// Makes every row that has changed look as it is wanted.
     fn draw_changed(&mut self) {
+        let price = Price::at(self.fidelity, self.pen.palette().is_on());
         let (pen, shifts) = (&mut self.pen, &mut self.shifts);
-        let price = Price::at(self.fidelity);
-        pen.define_colors(&self.screen, if price.is_some() { FREQUENT_LOSSY } else { FREQUENT });
+        pen.define_colors(&self.screen, price);
         for row in self.screen.changed_rows() {
             match price {
                 Some(price) => self.draughtsman.draw_row(pen, shifts, row, price),

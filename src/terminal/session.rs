@@ -1,5 +1,6 @@
 //! A stay in the terminal, from taking it to giving it back.
 
+mod brevity;
 mod options;
 mod receive;
 mod show;
@@ -9,6 +10,7 @@ use std::io;
 use std::sync::Arc;
 use std::time::{Duration, Instant};
 
+use self::brevity::Brevity;
 pub use self::options::Options;
 use self::receive::Received;
 use super::flow::Flow;
@@ -46,6 +48,7 @@ pub struct Session {
     fidelity: Option<Fidelity>,
     /// Whether the program wants to know when a frame may be sent.
     awaits_readiness: bool,
+    brevity: Brevity,
 }
 
 /// What is reported of the mouse.
@@ -115,6 +118,7 @@ impl Session {
             flow: Flow::default(),
             fidelity: options.fidelity,
             awaits_readiness: false,
+            brevity: Brevity::default(),
         };
         session.writer.set_ascii(options.is_ascii);
         guard.take().map_err(Error::while_doing("taking the terminal"))?;
@@ -133,6 +137,9 @@ impl Session {
         }
         if let Detected::Guess(_) = options.color_depth {
             queries.push_str(sequence::QUERY_TRUE_COLOR);
+        }
+        if options.try_brevity && !options.is_ascii && !self.guard.recording().is_on() {
+            self.try_brevity(&mut queries);
         }
         // As after a frame: an answer that comes before that of the fence says that others will.
         queries.push_str(sequence::QUERY_STATUS);

@@ -99,15 +99,18 @@ impl Default for Inks {
 pub(super) struct Price {
     /// No colour is farther off, in ΔE.
     pub(super) farthest: f32,
-    /// So many bytes are worth a ΔE of one of half a cell.
+    /// So many bytes are worth a ΔE of one of half a cell. Chosen so that the mean error at high and low
+    /// fidelity is what it is said to be.
     pub(super) bytes: f32,
 }
 
 impl Price {
-    /// At that fidelity; `None` if it is exact. The less is allowed, the more an error is worth.
-    pub(super) fn at(fidelity: Fidelity) -> Option<Self> {
+    /// At that fidelity, with a palette or without; `None` if it is exact. The less is allowed, the more an
+    /// error is worth; and the less colours cost, the less.
+    pub(super) fn at(fidelity: Fidelity, has_palette: bool) -> Option<Self> {
         let farthest = f32::from(fidelity.tolerance());
-        (fidelity > Fidelity::EXACT).then(|| Self { farthest, bytes: WORTH / farthest })
+        let worth = if has_palette { (9.0 - farthest / 16.0).max(5.0) } else { 10.5 };
+        (fidelity > Fidelity::EXACT).then(|| Self { farthest, bytes: worth / farthest })
     }
 
     /// What it is worth, in bytes, to be off by `distance`; infinite if too much.
@@ -122,6 +125,3 @@ impl Price {
         self.of_distance(shown.distance(wanted))
     }
 }
-
-/// So many bytes are worth an error as large as any that is allowed, of half a cell.
-const WORTH: f32 = 10.5;

@@ -13,6 +13,7 @@ use super::lab::Lab;
 use super::look::Look;
 use super::screen::Screen;
 use super::style::{Kind, Shade, Style};
+use crate::terminal::sequence;
 
 /// What the terminal's palette holds, as far as it was defined here.
 #[derive(Debug)]
@@ -74,11 +75,15 @@ impl Telling {
     }
 }
 
-/// The first entry that is defined: those before it have names, and users choose them.
-const FIRST: usize = 16;
 const ENTRIES: usize = 256;
 /// So many bits of a hash tell where a colour is looked up.
 const PLACE_BITS: u32 = 11;
+/// About how many bytes a use of an entry spares.
+const SPARED: f32 = 8.0;
+/// A colour is defined that was wanted by so many halves of cells, in a frame that is exact; and in one that
+/// is not, where most of them are left as they are, where it spares as much as so many.
+const LEAST_USES: f32 = 2.0;
+const LEAST_USES_INEXACT: f32 = 4.0;
 /// For so many frames, what was found nearest is not looked for anew.
 const KNOWN_FOR: u32 = 8;
 /// So many definitions are in one sequence: there are terminals that take sixteen parameters at most.
@@ -134,11 +139,7 @@ impl Palette {
             return Telling { bytes: Shade::indexed(entry).bytes() as f32, ..exact };
         }
         let Some(near) = self.nearest(wanted) else { return exact };
-        let index = usize::from(near);
-        let ink = Ink {
-            lab: [0, 1, 2].map(|component| self.labs[component][index]),
-            shade: self.colors[index],
-        };
+        let ink = self.ink(near);
         let bytes = Shade::indexed(near).bytes() as f32;
         let error = price.of(ink, wanted);
         if bytes + error < exact.bytes { Telling { ink, bytes, error } } else { exact }
@@ -183,7 +184,7 @@ impl Palette {
         &mut self,
         screen: &Screen,
         style: Option<Style>,
-        least: u16,
+        price: Option<Price>,
     ) -> Option<Bytes> {
         if !self.is_on {
             return None;
@@ -213,7 +214,7 @@ impl Palette {
         }
         let mut definitions = std::mem::take(&mut self.definitions);
         definitions.clear();
-        self.define_frequent(least, &mut definitions);
+        self.define_frequent(price, &mut definitions);
         if definitions.is_empty() {
             self.definitions = definitions;
             return None;
@@ -249,11 +250,42 @@ impl Palette {
         }
     }
 
-    /// Defines the colours that were wanted at least so often, as far as there are entries for them.
-    fn define_frequent(&mut self, least: u16, bytes: &mut Bytes) {
-        let counts = self.counts.iter().filter(|count| count.count >= 2 * least);
-        self.frequent.clear();
-        self.frequent.extend(counts.filter(|count| matches!(count.shade.kind(), Kind::Rgb(_))));
+    /// Whether to define a colour that was wanted so often spares more bytes than it takes, beside what is
+    /// nearest to it so far.
+    fn is_worth_defining(&mut self, Count { shade, count }: Count, price: Option<Price>) -> bool {
+        let Kind::Rgb(channels) = shade.kind() else { return false };
+        // Each unit is half a use.
+        let uses = f32::from(count) * 0.5;
+        let Some(price) = price else { return uses >= LEAST_USES };
+        if uses < LEAST_USES_INEXACT {
+            return false;
+        }
+        let wanted = Ink { lab: Lab::of(channels).components(), shade };
+        let spared = self.nearest(wanted).map_or(SPARED, |near| {
+            let near = self.ink(near);
+            price.of(near, wanted).min(SPARED)
+        });
+        uses * spared >= LEAST_USES_INEXACT * SPARED
+    }
+
+    /// The colour of an entry.
+    fn ink(&self, entry: u8) -> Ink {
+        let index = usize::from(entry);
+        let lab = [0, 1, 2].map(|component| self.labs[component][index]);
+        Ink { lab, shade: self.colors[index] }
+    }
+
+    /// Defines the colours that were wanted most, as far as that is worth it and there are entries for them.
+    fn define_frequent(&mut self, price: Option<Price>, bytes: &mut Bytes) {
+        let mut frequent = std::mem::take(&mut self.frequent);
+        frequent.clear();
+        for index in 0..self.counts.len() {
+            let count = self.counts[index];
+            if count.count >= 2 && self.is_worth_defining(count, price) {
+                frequent.push(count);
+            }
+        }
+        self.frequent = frequent;
         if self.frequent.is_empty() {
             return;
         }
@@ -261,7 +293,7 @@ impl Palette {
         let is_free =
             |entry: &u8| !is_shown[usize::from(*entry)] && wanted_at[usize::from(*entry)] < frame;
         self.free.clear();
-        self.free.extend((FIRST as u8..=u8::MAX).filter(is_free));
+        self.free.extend(sequence::PALETTE.filter(is_free));
         self.free.sort_unstable_by_key(|&entry| (wanted_at[usize::from(entry)], entry));
         self.frequent.sort_unstable_by_key(|count| (u16::MAX - count.count, count.shade.in_bits()));
         let definitions = self.free.len().min(self.frequent.len());

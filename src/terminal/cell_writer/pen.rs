@@ -7,6 +7,7 @@ use ratatui::layout::{Position, Size};
 
 use super::bytes::Bytes;
 use super::control::ControlSequence;
+use super::ink::Price;
 use super::look::Glyph;
 use super::motion;
 use super::palette::Palette;
@@ -64,10 +65,9 @@ impl Pen {
         &mut self.palette
     }
 
-    /// Defines entries of the palette for what `screen` is to show, if that is wanted by `least` halves of
-    /// cells.
-    pub(super) fn define_colors(&mut self, screen: &Screen, least: u16) {
-        if let Some(definitions) = self.palette.begin_frame(screen, self.style, least) {
+    /// Defines entries of the palette for what `screen` is to show, as far as that spares bytes.
+    pub(super) fn define_colors(&mut self, screen: &Screen, price: Option<Price>) {
+        if let Some(definitions) = self.palette.begin_frame(screen, self.style, price) {
             // To borrow them from what is borrowed, they are taken, and given back.
             self.frame().push_text(definitions.as_slice());
             self.palette.keep(definitions);

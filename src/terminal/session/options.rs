@@ -18,12 +18,17 @@ pub struct Options {
     pub ask_for_key_releases: bool,
     /// Whether to ask if places of the mouse can be in pixels.
     pub ask_for_mouse_pixels: bool,
+    /// Whether to try what makes frames shorter, repeated characters and a palette of its own, and to use it where the
+    /// terminal shows that it works.
+    pub try_brevity: bool,
     /// How exact frames are; `None` for exact where the link keeps up, and less so where it lags.
     pub fidelity: Option<Fidelity>,
 }
 
 impl Options {
     /// What `environment`, a lookup of variables by name, tells of the terminal.
+    ///
+    /// Neither a terminal multiplexer nor one that is unknown or has no windows is tried for shorter frames.
     ///
     /// A terminal multiplexer is not asked for releases: those that agree lose some, and a key whose
     /// release is lost is held for ever. Nor is it asked for pixels, of which it has none of its own.
@@ -33,6 +38,8 @@ impl Options {
         let multiplexed = is_set("TMUX")
             || is_set("STY")
             || ["tmux", "screen"].iter().any(|name| term.starts_with(name));
+        let is_plain =
+            ["", "dumb", "linux", "unknown"].contains(&&*term) || term.starts_with("vt");
         Self {
             color_depth: color_depth(&environment),
             color_source: color_source(&environment),
@@ -40,6 +47,7 @@ impl Options {
             is_ascii: false,
             ask_for_key_releases: !multiplexed,
             ask_for_mouse_pixels: !multiplexed,
+            try_brevity: !multiplexed && !is_plain,
             fidelity: None,
         }
     }
@@ -52,6 +60,23 @@ mod tests {
     fn asks_for_releases(name: &str, value: &str) -> bool {
         let environment = |asked: &str| (asked == name).then(|| value.to_owned());
         Options::from_environment(environment).ask_for_key_releases
+    }
+
+    #[test]
+    fn only_terminals_in_windows_are_tried() {
+        let tries = |term: &'static str, name: &'static str, value: &'static str| {
+            let environment = move |asked: &str| match asked {
+                "TERM" => Some(term.to_owned()),
+                _ => (asked == name).then(|| value.to_owned()),
+            };
+            Options::from_environment(environment).try_brevity
+        };
+        assert!(tries("xterm-256color", "", "") && tries("xterm-kitty", "TMUX", ""));
+        for term in ["", "dumb", "linux", "screen", "screen-256color", "tmux-256color"] {
+            assert!(!tries(term, "", ""), "{term}");
+        }
+        assert!(!tries("xterm-256color", "TMUX", "/tmp/tmux-1000/default,1,0"));
+        assert!(!tries("xterm-256color", "STY", "1.pts-0.host"));
     }
 
     #[test]
