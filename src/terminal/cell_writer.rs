@@ -183,7 +183,9 @@ impl<W: Write> CellWriter<W> {
     fn update(&mut self) {
         if self.screen.is_changed() {
             self.rest.disturb();
+            self.screen.count_rest();
             self.draw_changed();
+            self.rest.draw_resting(&mut self.pen, &mut self.shifts, &mut self.screen);
         } else {
             self.refine();
         }

@@ -1,6 +1,7 @@
 //! A picture that rests becomes exact, in a few frames of about the same size.
 //!
-//! The worst cells come first. To allow less and less error until none is allowed was refused: cells
+//! So does each row that rests for a while, whatever others do: where one cell blinks, or the time is shown,
+//! there is always a change somewhere. The worst cells come first. To allow less and less error until none is allowed was refused: cells
 //! were sent twice, and the last of the frames had most of the bytes.
 
 use super::exact;
@@ -31,6 +32,10 @@ struct Cell {
 /// In so many frames a resting picture becomes exact.
 const FRAMES: usize = 10;
 
+/// A row that has not changed for so many frames rests, while others change: what moves on soon would be
+/// drawn for nothing.
+const PATIENCE: usize = 10;
+
 impl Rest {
     pub(super) fn new() -> Self {
         Self { frames: FRAMES, inexact: Vec::new(), inks: Inks::default() }
@@ -54,7 +59,8 @@ impl Rest {
                 exact::draw_row(pen, shifts, row);
             }
         }
-        self.choose_worst();
+        self.choose_worst(self.frames);
+        self.frames = (self.frames - 1).max(1);
         let mut chosen = self.inexact.iter().peekable();
         for mut row in screen.inexact_rows() {
             while let Some(cell) = chosen.next_if(|cell| cell.y == row.y) {
@@ -64,10 +70,30 @@ impl Rest {
         }
     }
 
-    /// Leaves the share of this frame, in the order of the screen.
-    fn choose_worst(&mut self) {
-        let share = self.inexact.len().div_ceil(self.frames);
-        self.frames = (self.frames - 1).max(1);
+    /// Draws the next of the frames of those rows that rest while others change.
+    pub(super) fn draw_resting(&mut self, pen: &mut Pen, shifts: &mut Shifts, screen: &mut Screen) {
+        if screen.is_exact() {
+            return;
+        }
+        for mut row in screen.inexact_rows() {
+            let Some(drawn) = usize::from(row.rested).checked_sub(PATIENCE) else { continue };
+            if !row.is_near() {
+                exact::draw_row(pen, shifts, row);
+                continue;
+            }
+            self.inexact.clear();
+            self.inexact.extend(errors(&row, &mut self.inks));
+            self.choose_worst(FRAMES.saturating_sub(drawn).max(1));
+            for cell in &self.inexact {
+                exact::draw_cell(pen, &mut row, usize::from(cell.column));
+            }
+            *row.exact = row.shown == row.looks;
+        }
+    }
+
+    /// Leaves the share of a frame, of so many that are left, in the order of the screen.
+    fn choose_worst(&mut self, frames: usize) {
+        let share = self.inexact.len().div_ceil(frames);
         if share < self.inexact.len() {
             self.inexact
                 .select_nth_unstable_by(share, |one, other| other.error.total_cmp(&one.error));
