@@ -89,7 +89,7 @@ impl Inks {
 impl Default for Inks {
     fn default() -> Self {
         // No place knows a colour that has not been asked for.
-        let nothing = Ink { lab: [0.0; 3], shade: Shade::DEFAULT };
+        let nothing = Ink { lab: [0.0; 3], shade: Shade::NONE };
         Self { places: vec![nothing; 1 << PLACE_BITS] }
     }
 }
@@ -109,7 +109,7 @@ impl Price {
     /// error is worth; and the less colours cost, the less.
     pub(super) fn at(fidelity: Fidelity, has_palette: bool) -> Option<Self> {
         let farthest = f32::from(fidelity.tolerance());
-        let worth = if has_palette { (9.0 - farthest / 16.0).max(5.0) } else { 10.5 };
+        let worth = if has_palette { (9.2 - farthest / 14.0).max(5.0) } else { 10.5 };
         (fidelity > Fidelity::EXACT).then(|| Self { farthest, bytes: worth / farthest })
     }
 

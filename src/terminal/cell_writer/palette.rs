@@ -24,7 +24,7 @@ pub(super) struct Palette {
     colors: Vec<Shade>,
     /// Where those lie in L\*a\*b\*, component by component.
     labs: [Vec<f32>; 3],
-    /// The entry that may hold a colour, by the hash of it.
+    /// The entry that may hold a colour, by the hash of it. Of two colours with one hash, one has an entry.
     entries: Vec<u8>,
     /// How often colours were wanted of late that no entry holds, by the hash.
     counts: Vec<Count>,
@@ -76,7 +76,8 @@ impl Telling {
 }
 
 const ENTRIES: usize = 256;
-/// So many bits of a hash tell where a colour is looked up.
+/// So many bits of a hash tell where the entry of a colour is looked up, and where all else.
+const ENTRY_PLACE_BITS: u32 = 13;
 const PLACE_BITS: u32 = 11;
 /// About how many bytes a use of an entry spares.
 const SPARED: f32 = 8.0;
@@ -108,7 +109,7 @@ impl Palette {
     /// The entry that holds a colour.
     #[inline]
     fn entry(&self, shade: Shade) -> Option<u8> {
-        let entry = self.entries[place(shade)];
+        let entry = self.entries[entry_place(shade)];
         (self.colors[usize::from(entry)] == shade && shade != Shade::DEFAULT).then_some(entry)
     }
 
@@ -296,6 +297,13 @@ impl Palette {
         self.free.extend(sequence::PALETTE.filter(is_free));
         self.free.sort_unstable_by_key(|&entry| (wanted_at[usize::from(entry)], entry));
         self.frequent.sort_unstable_by_key(|count| (u16::MAX - count.count, count.shade.in_bits()));
+        let (entries, colors, is_shown) = (&self.entries, &self.colors, &self.is_shown);
+        // Each place tells of one entry: where that is shown, it must go on to.
+        let is_told_of = |shade: Shade| {
+            let entry = usize::from(entries[entry_place(shade)]);
+            is_shown[entry] && colors[entry] != Shade::DEFAULT
+        };
+        self.frequent.retain(|count| !is_told_of(count.shade));
         let definitions = self.free.len().min(self.frequent.len());
         for at in 0..definitions {
             let (entry, Count { shade, .. }) = (self.free[at], self.frequent[at]);
@@ -308,12 +316,18 @@ impl Palette {
     }
 
     fn define(&mut self, entry: u8, shade: Shade, channels: [u8; 3]) {
+        // Of the one that this place has told of, nobody knows any more.
+        let forgotten = usize::from(self.entries[entry_place(shade)]);
+        if entry_place(self.colors[forgotten]) == entry_place(shade) {
+            self.colors[forgotten] = Shade::DEFAULT;
+            self.labs.iter_mut().for_each(|labs| labs[forgotten] = 1e9);
+        }
         let index = usize::from(entry);
         self.colors[index] = shade;
         for (labs, component) in self.labs.iter_mut().zip(Lab::of(channels).components()) {
             labs[index] = component;
         }
-        self.entries[place(shade)] = entry;
+        self.entries[entry_place(shade)] = entry;
         self.wanted_at[index] = self.frame;
         self.counts[place(shade)] = Count { shade: Shade::DEFAULT, count: 0 };
     }
@@ -327,7 +341,7 @@ impl Default for Palette {
             is_on: false,
             colors: vec![shade; ENTRIES],
             labs: std::array::from_fn(|_| vec![1e9; ENTRIES]),
-            entries: vec![0; places],
+            entries: vec![0; 1 << ENTRY_PLACE_BITS],
             counts: vec![Count { shade, count: 0 }; places],
             nearest: vec![Near { shade, color: shade, entry: 0, found_at: 0 }; places],
             frame: KNOWN_FOR,
@@ -353,7 +367,14 @@ fn push_definition(entry: u8, channels: [u8; 3], bytes: &mut Bytes) {
     }
 }
 
-/// Where a colour is looked up.
+/// Where the entry of a colour is looked up.
+#[inline]
+fn entry_place(shade: Shade) -> usize {
+    (shade.in_bits().wrapping_mul(0x9E37_79B1) >> (u32::BITS - ENTRY_PLACE_BITS)) as usize
+}
+
+/// Where all else about a colour is looked up. Colours that share the place of their entries share this one,
+/// too.
 #[inline]
 fn place(shade: Shade) -> usize {
     (shade.in_bits().wrapping_mul(0x9E37_79B1) >> (u32::BITS - PLACE_BITS)) as usize

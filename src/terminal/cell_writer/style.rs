@@ -155,6 +155,8 @@ impl Style {
 impl Shade {
     /// The terminal's own colour.
     pub(super) const DEFAULT: Self = Self(0);
+    /// No colour is like this.
+    pub(super) const NONE: Self = Self(u32::MAX);
     /// So many bits tell one from all others.
     pub(super) const BITS: u32 = 26;
     const INDEXED: u32 = 1 << 24;
