@@ -341,14 +341,14 @@ fn only_what_differs_from_the_cell_before_is_sent() {
     ];
     insta::assert_snapshot!(readable(&row), @r"
     ESC[?2026h
-    ESC[1;1H
+    ESC[1H
     ESC[m
     ESC[38;2;200;0;0;48;2;0;0;200moo
     ESC[48;2;200;0;0mo
     ESC[38;2;0;0;200mo
     ESC[31;107mo
     ESC[38;5;100mo
-    ESC[1C
+    ESC[C
     ESC[mx
     ESC[?2026l
     ");
@@ -369,7 +369,7 @@ fn modifiers_are_switched_one_by_one_except_intensity() {
     ];
     insta::assert_snapshot!(readable(&row), @r"
     ESC[?2026h
-    ESC[1;1H
+    ESC[1H
     ESC[m
     ESC[1;2;7mx
     ESC[22;2mx
