@@ -108,7 +108,9 @@ impl vt100::Callbacks for Palette {
         assert!(parameters.len() <= 16 && parameters[0] == b"4", "{parameters:?}");
         let (definitions, rest) = parameters[1..].as_chunks();
         assert!(rest.is_empty());
-        for [entry, color] in definitions.iter().map(|pair| pair.map(|text| str::from_utf8(text).unwrap())) {
+        for [entry, color] in
+            definitions.iter().map(|pair| pair.map(|text| str::from_utf8(text).unwrap()))
+        {
             let color = u32::from_str_radix(color.strip_prefix('#').unwrap(), 16).unwrap();
             let [_, color @ ..] = color.to_be_bytes();
             let entry = entry.parse().unwrap();
@@ -251,7 +253,8 @@ fn kinds(text: &str) -> Vec<String> {
         if character == '\x1b' {
             let start = characters.next();
             if start == Some(']') {
-                let string: String = characters.by_ref().take_while(|&next| next != '\x07').collect();
+                let string: String =
+                    characters.by_ref().take_while(|&next| next != '\x07').collect();
                 kinds.push(format!("]{}", string.split(';').next().unwrap()));
                 continue;
             }
@@ -275,7 +278,9 @@ fn kinds(text: &str) -> Vec<String> {
 /// Those that terminals are known to understand: motions to a place, in a row and to the next one, erasing, deleting
 /// and inserting characters, colours, synchronized output, and the cursor's visibility.
 const SAFE: [&str; 15] = [
-    "H", "C", "D", "'\\r'", "'\\n'", "'\\u{8}'", "J", "K", "P", "@", "m", "?2026h", "?2026l", "?25h", "?25l"];
+    "H", "C", "D", "'\\r'", "'\\n'", "'\\u{8}'", "J", "K", "P", "@", "m", "?2026h", "?2026l",
+    "?25h", "?25l",
+];
 
 /// A picture of smooth stretches, sharp edges, noise and text.
 fn any_picture(size: Size) -> impl Strategy<Value = Buffer> {

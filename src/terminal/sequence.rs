@@ -54,7 +54,8 @@ pub(super) const TRY_REPETITION: &str = "\x1b[2;1H\u{2580}\x1b[3b\x1b[6n\x1b[2;1
 /// The answer where it was repeated as often. No key is reported like this: F3, which is much alike, says 1.
 pub(super) const REPEATED: &[u8] = b"\x1b[2;5R";
 /// Asks for an entry of the palette, defines it and another in one sequence, and asks again.
-pub(super) const TRY_PALETTE: &str = "\x1b]4;255;?\x07\x1b]4;254;#123456;255;#12ab56\x07\x1b]4;255;?\x07";
+pub(super) const TRY_PALETTE: &str =
+    "\x1b]4;255;?\x07\x1b]4;254;#123456;255;#12ab56\x07\x1b]4;255;?\x07";
 /// What the second answer has in it where they were defined, in sixteen bits a channel or in eight.
 pub(super) const DEFINED: [&[u8]; 2] = [b"]4;255;rgb:1212/abab/5656", b"]4;255;rgb:12/ab/56"];
 /// The entries of the palette that may be defined; those below are the user's, or of themes for shells.

@@ -159,9 +159,7 @@ impl Palette {
         let [ls, as_, bs] = &self.labs;
         let mut squares = [0.0_f32; ENTRIES];
         let [l, a, b] = wanted.lab;
-        for (square, ((&one, &two), &three)) in
-            squares.iter_mut().zip(ls.iter().zip(as_).zip(bs))
-        {
+        for (square, ((&one, &two), &three)) in squares.iter_mut().zip(ls.iter().zip(as_).zip(bs)) {
             let (l, a, b) = (one - l, two - a, three - b);
             *square = l * l + a * a + b * b;
         }
@@ -310,7 +308,11 @@ impl Palette {
             let Kind::Rgb(channels) = shade.kind() else { continue };
             bytes.push_text(if at % AT_ONCE == 0 { b"\x1b]4" } else { b"" });
             push_definition(entry, channels, bytes);
-            bytes.push_text(if (at + 1) % AT_ONCE == 0 || at + 1 == definitions { b"\x07" } else { b"" });
+            bytes.push_text(if (at + 1) % AT_ONCE == 0 || at + 1 == definitions {
+                b"\x07"
+            } else {
+                b""
+            });
             self.define(entry, shade, channels);
         }
     }

@@ -216,11 +216,7 @@ impl Ways {
         // What is right is drawn again only where that is a shorter way to the next cell.
         let start: [f32; KEPT] = std::array::from_fn(|way| {
             let cursor = self.cursor[way];
-            if is_right && cursor != x {
-                f32::INFINITY
-            } else {
-                self.cost[way] + motion(cursor, x)
-            }
+            if is_right && cursor != x { f32::INFINITY } else { self.cost[way] + motion(cursor, x) }
         });
         let repeated = if repeats { self.repeated(x) } else { [None; KEPT] };
         let block = Block::new(wanted, price, self, start, repeated, x + 1);

@@ -120,7 +120,8 @@ impl<'a> Block<'a> {
             return fresh;
         }
         if let Some(store) = store {
-            let [upper, lower] = self.wanted.map(|wanted| store.palette.telling(wanted, self.price));
+            let [upper, lower] =
+                self.wanted.map(|wanted| store.palette.telling(wanted, self.price));
             fresh.0[..2].copy_from_slice(&[upper, lower]);
             self.draw_in_one_for_both(candidates, &mut fresh, store);
             self.draw_in_one_color(&errors, candidates, [upper, lower]);
