@@ -185,7 +185,7 @@ impl Screens {
         let rgb = |color| match color {
             vt100::Color::Rgb(red, green, blue) => Some([red, green, blue]),
             vt100::Color::Idx(entry) => Some(palette[&entry]),
-            _ => None,
+            vt100::Color::Default => None,
         };
         let character = cell.contents().chars().next().unwrap_or(' ');
         let one = Shown::new(character, rgb(cell.fgcolor()), rgb(cell.bgcolor()));

@@ -65,8 +65,13 @@ pub(super) const PALETTE: RangeInclusive<u8> = 24..=255;
 pub(super) fn give_palette_back() -> String {
     /// There are terminals that take sixteen parameters at most.
     const AT_ONCE: usize = 15;
-    let entries: Vec<String> = PALETTE.map(|entry| entry.to_string()).collect();
-    entries.chunks(AT_ONCE).map(|entries| format!("\x1b]104;{}\x07", entries.join(";"))).collect()
+    let mut text = String::new();
+    for (index, entry) in PALETTE.enumerate() {
+        text.push_str(if index % AT_ONCE == 0 { "\x1b]104;" } else { ";" });
+        text.push_str(&entry.to_string());
+        text.push_str(if index % AT_ONCE == AT_ONCE - 1 || entry == u8::MAX { "\x07" } else { "" });
+    }
+    text
 }
 
 /// Asks for the device's attributes, which every terminal answers, and after all earlier queries.

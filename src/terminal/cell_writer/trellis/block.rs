@@ -3,6 +3,7 @@
 use super::super::ink::{Halves, Ink, Price};
 use super::super::look::Glyph;
 use super::super::palette::Telling;
+use super::super::style::Shade;
 use super::Store;
 use super::candidates::{Candidates, Turn, key};
 use super::{KEPT, StepKind, Ways};
@@ -169,8 +170,8 @@ impl<'a> Block<'a> {
         let (above, below) = (half + upper.cost(), half + lower.cost());
         let mut offer = |glyph, cost: f32, errors: &[f32; KEPT], told, inks| {
             if candidates.would_keep(self.least + cost) {
-                for way in 0..KEPT {
-                    let cost = self.start[way] + cost + errors[way];
+                for (way, error) in errors.iter().enumerate() {
+                    let cost = self.start[way] + cost + error;
                     if candidates.would_keep(cost) {
                         self.add(candidates, cost, way, glyph, told, inks);
                     }
@@ -252,7 +253,7 @@ impl<'a> Block<'a> {
     ) {
         let text_shade = text_ink.map_or(self.ways.inks[way][0].shade, |ink| ink.shade);
         let ground_shade = ground_ink.map_or(self.ways.inks[way][1].shade, |ink| ink.shade);
-        let key = key([text_shade, ground_shade].map(|shade| shade.in_bits()), self.cursor);
+        let key = key([text_shade, ground_shade].map(Shade::in_bits), self.cursor);
         let turn = Turn { kind: StepKind::Draw(glyph), before: way as u8, text, ground };
         candidates.add(cost, key, turn);
     }
