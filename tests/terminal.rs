@@ -80,7 +80,7 @@ fn assert_palette_given_back(player: &Player) {
     let lists = text.split("\x1b]104;").skip(1).map(|rest| rest.split_once('\x07').unwrap().0);
     let entries: Vec<u8> =
         lists.flat_map(|list| list.split(';').map(|entry| entry.parse().unwrap())).collect();
-    assert_eq!(entries, Vec::from_iter(24..=255));
+    assert_eq!(entries, (24..=255).collect::<Vec<u8>>());
 }
 
 #[test]

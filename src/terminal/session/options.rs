@@ -5,6 +5,7 @@ use super::super::{ColorSource, Detected, Fidelity, color_depth, color_source};
 
 /// What is known of the terminal beforehand, and how it is to be used.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
+#[expect(clippy::struct_excessive_bools, reason = "each is a question of its own")]
 pub struct Options {
     /// How many colours it shows. The terminal is asked where this is a guess.
     pub color_depth: Detected,
@@ -38,8 +39,7 @@ impl Options {
         let multiplexed = is_set("TMUX")
             || is_set("STY")
             || ["tmux", "screen"].iter().any(|name| term.starts_with(name));
-        let is_plain =
-            ["", "dumb", "linux", "unknown"].contains(&&*term) || term.starts_with("vt");
+        let is_plain = ["", "dumb", "linux", "unknown"].contains(&&*term) || term.starts_with("vt");
         Self {
             color_depth: color_depth(&environment),
             color_source: color_source(&environment),
