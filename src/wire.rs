@@ -25,7 +25,7 @@ use ratatui::layout::Size;
 use crate::game::Script;
 use crate::terminal::Fidelity;
 use crate::tui::Replay;
-use encoder::{Encoder, Stock, Writer};
+use encoder::{Brevity, Encoder, Stock, Writer};
 use tally::Tally;
 
 pub use palettes::{GREY, PalettePlan, PaletteRow, report_palettes};
@@ -50,14 +50,14 @@ pub struct Plan<'a> {
 pub struct Report {
     /// How many frames there were after the first.
     pub frames: usize,
-    /// Ratatui's encoder, and then ours at each fidelity.
+    /// Ratatui's encoder, then ours at each fidelity, and then ours at each with repeated characters and a palette.
     pub encoders: Vec<EncoderReport>,
 }
 
 /// What was measured of one encoder.
 #[derive(Clone, Debug)]
 pub struct EncoderReport {
-    /// What it is called: `stock`, or a fidelity.
+    /// What it is called: `stock`, a fidelity, or a fidelity and `+`: with repeated characters and a palette.
     pub name: String,
     /// What the first frame took, in bytes.
     pub first_frame: usize,
@@ -69,9 +69,11 @@ pub struct EncoderReport {
 
 /// Plays the script of `plan` and measures.
 pub fn report(plan: &Plan, replay: &mut Replay) -> Report {
-    let ours = plan.fidelities.iter().map(|&fidelity| {
-        let writer: Box<dyn Encoder> = Box::new(Writer::new(plan.size, fidelity));
-        (fidelity.to_string(), writer)
+    let ours = [Brevity::None, Brevity::Tried].into_iter().flat_map(|brevity| {
+        plan.fidelities.iter().map(move |&fidelity| {
+            let writer: Box<dyn Encoder> = Box::new(Writer::new(plan.size, fidelity, brevity));
+            (brevity.name(fidelity), writer)
+        })
     });
     let stock: Box<dyn Encoder> = Box::new(Stock::new());
     let mut tallies: Vec<Tally> = [("stock".to_owned(), stock)]

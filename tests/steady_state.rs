@@ -89,9 +89,12 @@ fn encoding_a_frame_allocates_nothing_once_its_memory_has_grown() {
     let world = builtin::LEVELS[1].world().unwrap();
     let mut camera = world.start_camera(FieldOfView::default());
     let picture = Rect::new(0, 0, 120, 40);
-    for fidelity in [Fidelity::EXACT, Fidelity::HIGH, Fidelity::LOW] {
+    let fidelities = [Fidelity::EXACT, Fidelity::HIGH, Fidelity::LOW];
+    for (fidelity, is_shorter) in fidelities.map(|it| [(it, false), (it, true)]).concat() {
         let mut writer = CellWriter::new(Vec::new(), picture.as_size());
         writer.set_fidelity(fidelity);
+        writer.set_repeats(is_shorter);
+        writer.set_palette(is_shorter);
         let mut view = View::default();
         let mut before = Buffer::empty(picture);
         let mut encode = |turn: usize| {

@@ -73,15 +73,28 @@ fn start(speaks: Speaks) -> Player {
     player
 }
 
+/// Whether every entry of the palette that may be defined was given back, and no other.
+fn assert_palette_given_back(player: &Player) {
+    let text = String::from_utf8(player.bytes()).unwrap();
+    assert!(text.contains("\x1b]4;255;?\x07"), "the palette was not asked for");
+    let lists = text.split("\x1b]104;").skip(1).map(|rest| rest.split_once('\x07').unwrap().0);
+    let entries: Vec<u8> =
+        lists.flat_map(|list| list.split(';').map(|entry| entry.parse().unwrap())).collect();
+    assert_eq!(entries, (24..=255).collect::<Vec<u8>>());
+}
+
 #[test]
 fn answers_are_never_seen_as_keys() {
     let mut player = start(Speaks::Plain);
     player.wait_for("KeyReleases(false)");
+    // That a half block was repeated, or not, and that the palette was defined.
+    player.send("\x1b[2;5R\x1b[2;2R\x1b]4;255;rgb:1212/abab/5656\x1b\\\x1b]4;255;rgb:0/0/0\x07");
     player.send("w");
     player.wait_for("Char('w')");
     assert_eq!(player.text().matches("Key(").count(), 1, "{}", player.text());
     player.send("q");
     player.wait_for_end().assert_given_back();
+    assert_palette_given_back(&player);
 }
 
 #[test]
@@ -125,6 +138,7 @@ fn a_panic_in_another_thread_ends_the_session() {
     let mut player = start(Speaks::Plain);
     player.send("x");
     player.wait_for_end().assert_given_back();
+    assert_palette_given_back(&player);
     player.wait_for("had to end: beside");
 }
 
@@ -138,4 +152,5 @@ fn a_program_that_hangs_is_ended_all_the_same() {
     let ending = player.wait_for_end();
     ending.assert_given_back();
     assert_eq!(ending.signal(), Some(Signal::TERM.as_raw()));
+    assert_palette_given_back(&player);
 }

@@ -18,6 +18,8 @@ mod inexact;
 mod ink;
 mod lab;
 mod look;
+mod motion;
+mod palette;
 mod pen;
 mod rest;
 mod screen;
@@ -72,7 +74,7 @@ impl<W: Write> CellWriter<W> {
             output,
             size,
             screen: Screen::blank(size),
-            pen: Pen::new(size.width),
+            pen: Pen::new(size),
             cursor_visible: false,
             bytes_written: 0,
             fidelity: Fidelity::EXACT,
@@ -107,6 +109,21 @@ impl<W: Write> CellWriter<W> {
         self.screen.set_ascii(is_ascii);
     }
 
+    /// From the next frame on, characters that follow themselves are written once and repeated, where
+    /// `repeats`: the terminal must understand REP (`CSI n b`), also after half blocks.
+    pub fn set_repeats(&mut self, repeats: bool) {
+        self.pen.set_repeats(repeats);
+    }
+
+    /// From the next frame on, frequent colours are defined as entries 24 to 255 of the terminal's palette (OSC 4)
+    /// where `uses_palette`, and used as these. Who turns that on gives the palette back (OSC 104) when all is
+    /// done.
+    ///
+    /// Ratatui's indexed colours from the sixteenth on are then shown as xterm's standard palette has them.
+    pub fn set_palette(&mut self, uses_palette: bool) {
+        self.pen.palette().set_on(uses_palette);
+    }
+
     /// Whether the terminal shows exactly what was drawn last. Where it does not, each further draw
     /// without a changed cell brings it nearer, and after the tenth it is.
     pub fn is_settled(&self) -> bool {
@@ -129,7 +146,7 @@ impl<W: Write> CellWriter<W> {
     pub fn set_size(&mut self, size: Size) {
         self.size = size;
         self.screen.resize(size);
-        self.pen.set_width(size.width);
+        self.pen.set_size(size);
     }
 
     /// Takes note that others may have written to the terminal: nothing is known but that the
@@ -166,7 +183,9 @@ impl<W: Write> CellWriter<W> {
     fn update(&mut self) {
         if self.screen.is_changed() {
             self.rest.disturb();
+            self.screen.count_rest();
             self.draw_changed();
+            self.rest.draw_resting(&mut self.pen, &mut self.shifts, &mut self.screen);
         } else {
             self.refine();
         }
@@ -174,8 +193,9 @@ impl<W: Write> CellWriter<W> {
 
     /// Makes every row that has changed look as it is wanted.
     fn draw_changed(&mut self) {
+        let price = Price::at(self.fidelity, self.pen.palette().is_on());
         let (pen, shifts) = (&mut self.pen, &mut self.shifts);
-        let price = Price::at(self.fidelity);
+        pen.define_colors(&self.screen, price);
         for row in self.screen.changed_rows() {
             match price {
                 Some(price) => self.draughtsman.draw_row(pen, shifts, row, price),

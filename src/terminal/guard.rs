@@ -51,6 +51,8 @@ struct State {
     fences: Fences,
     /// Whether answers to status requests are on their way.
     awaits_statuses: bool,
+    /// Whether entries of the palette may have been defined.
+    palette_defined: bool,
 }
 
 impl Guard {
@@ -69,6 +71,7 @@ impl Guard {
                 reports: Reports::default(),
                 fences: Fences::none(),
                 awaits_statuses: false,
+                palette_defined: false,
             }),
             given_back: Condvar::new(),
             hurried: AtomicBool::new(false),
@@ -174,6 +177,11 @@ impl Guard {
         self.lock().awaits_statuses = awaits;
     }
 
+    /// Takes note that entries of the palette may have been defined.
+    pub(super) fn palette_defined(&self) {
+        self.lock().palette_defined = true;
+    }
+
     /// From now on, nothing waits for a terminal that is not ready for a frame.
     pub(super) fn hurry(&self) {
         self.hurried.store(true, Ordering::SeqCst);
@@ -218,6 +226,9 @@ impl Guard {
     /// has worked: there is nothing better to do about an error than the rest.
     fn leave(&self, state: &mut State) {
         let mut text = sequence::of(EndSynchronizedUpdate) + sequence::RESET_STYLE;
+        if state.palette_defined {
+            text.push_str(&sequence::give_palette_back());
+        }
         state.reports.push_end(&mut text);
         if state.has_reports_on_their_way() {
             // The answer to this comes after all of them.

@@ -79,7 +79,7 @@ fn meaning(kind: Kind, unit: &[u8]) -> Option<Input> {
         }
         Kind::Key | Kind::ControlSequence => key::parse(unit).map(Input::Key),
         Kind::DeviceControl => answer::parse_device_control(unit).map(Input::Answer),
-        Kind::OtherString => None,
+        Kind::OtherString => answer::parse_string(unit).map(Input::Answer),
     }
 }
 

@@ -22,6 +22,11 @@ impl Recording {
         Self(recorder)
     }
 
+    /// Whether there is one.
+    pub(super) fn is_on(&self) -> bool {
+        self.0.is_some()
+    }
+
     pub(super) fn resized(&mut self, size: Size) {
         if let Some(recorder) = &mut self.0 {
             recorder.resized(size);
@@ -37,6 +42,6 @@ impl Recording {
 
 impl fmt::Debug for Recording {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
-        f.debug_tuple("Recording").field(&self.0.is_some()).finish()
+        f.debug_tuple("Recording").field(&self.is_on()).finish()
     }
 }

@@ -4,6 +4,8 @@
 //! was refused, and formats colours and motions in a way that would cost more than all else that a
 //! cell does.
 
+use std::ops::RangeInclusive;
+
 use crossterm::Command;
 
 /// The sequences of one of crossterm's commands.
@@ -50,6 +52,31 @@ pub(super) const QUERY_VERSION: &str = "\x1b[>q";
 pub(super) const QUERY_TRUE_COLOR: &str = "\x1bP+q524742\x1b\\";
 /// Asks for the device's status; the answer tells that all before the query has been taken in.
 pub(super) const QUERY_STATUS: &str = "\x1b[5n";
+/// Repeats a half block in the second row, asks where the cursor is then, and erases it all.
+pub(super) const TRY_REPETITION: &str = "\x1b[2;1H\u{2580}\x1b[3b\x1b[6n\x1b[2;1H\x1b[K";
+/// The answer where it was repeated as often. No key is reported like this: F3, which is much alike, says 1.
+pub(super) const REPEATED: &[u8] = b"\x1b[2;5R";
+/// Asks for an entry of the palette, defines it and another in one sequence, and asks again.
+pub(super) const TRY_PALETTE: &str =
+    "\x1b]4;255;?\x07\x1b]4;254;#123456;255;#12ab56\x07\x1b]4;255;?\x07";
+/// What the second answer has in it where they were defined, in sixteen bits a channel or in eight.
+pub(super) const DEFINED: [&[u8]; 2] = [b"]4;255;rgb:1212/abab/5656", b"]4;255;rgb:12/ab/56"];
+/// The entries of the palette that may be defined; those below are the user's, or of themes for shells.
+pub(super) const PALETTE: RangeInclusive<u8> = 24..=255;
+
+/// Gives back the entries of the palette that may have been defined.
+pub(super) fn give_palette_back() -> String {
+    /// There are terminals that take sixteen parameters at most.
+    const AT_ONCE: usize = 15;
+    let mut text = String::new();
+    for (index, entry) in PALETTE.enumerate() {
+        text.push_str(if index % AT_ONCE == 0 { "\x1b]104;" } else { ";" });
+        text.push_str(&entry.to_string());
+        text.push_str(if index % AT_ONCE == AT_ONCE - 1 || entry == u8::MAX { "\x07" } else { "" });
+    }
+    text
+}
+
 /// Asks for the device's attributes, which every terminal answers, and after all earlier queries.
 pub(super) const QUERY_FENCE: &str = "\x1b[c";
 

@@ -1,5 +1,6 @@
 //! A stay in the terminal, from taking it to giving it back.
 
+mod brevity;
 mod options;
 mod receive;
 mod show;
@@ -9,6 +10,7 @@ use std::io;
 use std::sync::Arc;
 use std::time::{Duration, Instant};
 
+use self::brevity::Brevity;
 pub use self::options::Options;
 use self::receive::Received;
 use super::flow::{Flow, Request};
@@ -47,6 +49,7 @@ pub struct Session {
     is_remote: bool,
     /// Whether the program wants to know when a frame may be sent.
     awaits_readiness: bool,
+    brevity: Brevity,
 }
 
 /// What is reported of the mouse.
@@ -117,6 +120,7 @@ impl Session {
             fidelity: options.fidelity,
             is_remote: options.is_remote,
             awaits_readiness: false,
+            brevity: Brevity::default(),
         };
         session.writer.set_ascii(options.is_ascii);
         guard.take().map_err(Error::while_doing("taking the terminal"))?;
@@ -135,6 +139,9 @@ impl Session {
         }
         if matches!(options.color_depth, Detected::Guess(_)) && options.ask_for_version {
             queries.push_str(sequence::QUERY_VERSION);
+        }
+        if options.try_brevity && !options.is_ascii && !self.guard.recording().is_on() {
+            self.try_brevity(&mut queries);
         }
         // As after a frame: an answer that comes before that of the fence says that others will.
         queries.push_str(sequence::QUERY_STATUS);

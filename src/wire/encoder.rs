@@ -78,6 +78,23 @@ impl Encoder for Stock {
     }
 }
 
+/// Whether the terminal repeats characters and has its palette defined.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub(super) enum Brevity {
+    None,
+    Tried,
+}
+
+impl Brevity {
+    /// What our encoder is called at `fidelity`.
+    pub(super) fn name(self, fidelity: Fidelity) -> String {
+        match self {
+            Self::None => fidelity.to_string(),
+            Self::Tried => format!("{fidelity}+"),
+        }
+    }
+}
+
 /// Ours.
 pub(super) struct Writer {
     sink: Sink,
@@ -85,10 +102,12 @@ pub(super) struct Writer {
 }
 
 impl Writer {
-    pub(super) fn new(size: Size, fidelity: Fidelity) -> Self {
+    pub(super) fn new(size: Size, fidelity: Fidelity, brevity: Brevity) -> Self {
         let sink = Sink::default();
         let mut backend = CellWriter::new(sink.clone(), size);
         backend.set_fidelity(fidelity);
+        backend.set_repeats(brevity == Brevity::Tried);
+        backend.set_palette(brevity == Brevity::Tried);
         Self { sink, backend }
     }
 }

@@ -201,14 +201,21 @@ impl Look {
         ((self.0 ^ self.0 >> 29) as u32).wrapping_mul(0x9E37_79B1)
     }
 
+    /// Three numbers of sixteen bits that all looks alike have in common.
+    pub(super) fn hashes(self) -> [u16; 3] {
+        let hash = self.0.wrapping_mul(0x9E37_79B9_7F4A_7C15);
+        [48, 32, 16].map(|from| (hash >> from) as u16)
+    }
+
     /// The colours of the upper and the lower half of a block.
     #[inline]
     pub(super) fn halves(self) -> Option<[Shade; 2]> {
         (self.0 >> Self::KIND == 0).then(|| self.colors())
     }
 
+    /// Its two colours, whatever it is.
     #[inline]
-    fn colors(self) -> [Shade; 2] {
+    pub(super) fn colors(self) -> [Shade; 2] {
         [self.0 >> Shade::BITS, self.0].map(|bits| Shade::from_bits(bits as u32))
     }
 }

@@ -3,11 +3,15 @@
 use crossterm::terminal::{BeginSynchronizedUpdate, EndSynchronizedUpdate};
 use crossterm::{Command, queue};
 use ratatui::buffer::CellWidth;
-use ratatui::layout::Position;
+use ratatui::layout::{Position, Size};
 
-use super::bytes::{Bytes, Piece};
+use super::bytes::Bytes;
 use super::control::ControlSequence;
+use super::ink::Price;
 use super::look::Glyph;
+use super::motion;
+use super::palette::Palette;
+use super::screen::Screen;
 use super::shift::{Shift, Way};
 use super::style::Style;
 
@@ -16,20 +20,63 @@ use super::style::Style;
 pub(super) struct Pen {
     /// It begins with the mark of synchronized output.
     frame: Bytes,
-    /// How wide the terminal is.
-    width: u16,
+    /// Of the terminal.
+    size: Size,
     style: Option<Style>,
-    position: Option<Position>,
+    /// Where the cursor stands; in the column behind the last one, it waits to wrap.
+    cursor: Option<Position>,
+    /// Whether the terminal repeats characters (REP).
+    repeats: bool,
+    /// The block that was drawn last, where nothing has been written since.
+    last: Option<Glyph>,
+    /// How many more of that one are drawn, but not written yet.
+    repeated: u16,
+    palette: Palette,
 }
 
 /// The last bytes of the sequences that delete characters, and insert blank ones.
 const DELETE: u8 = b'P';
 const INSERT: u8 = b'@';
+/// The last byte of the sequence that repeats the character before it (REP).
+const REPEAT: u8 = b'b';
 
 impl Pen {
-    /// For a terminal of that width of which nothing is known.
-    pub(super) fn new(width: u16) -> Self {
-        Self { frame: Bytes::default(), width, style: None, position: None }
+    /// For a terminal of that size of which nothing is known.
+    pub(super) fn new(size: Size) -> Self {
+        Self {
+            frame: Bytes::default(),
+            size,
+            style: None,
+            cursor: None,
+            repeats: false,
+            last: None,
+            repeated: 0,
+            palette: Palette::default(),
+        }
+    }
+
+    /// From now on, a block that is drawn several times is written once, and repeated.
+    pub(super) fn set_repeats(&mut self, repeats: bool) {
+        self.repeats = repeats;
+    }
+
+    /// The terminal's palette.
+    pub(super) fn palette(&mut self) -> &mut Palette {
+        &mut self.palette
+    }
+
+    /// Defines entries of the palette for what `screen` is to show, as far as that spares bytes.
+    pub(super) fn define_colors(&mut self, screen: &Screen, price: Option<Price>) {
+        if let Some(definitions) = self.palette.begin_frame(screen, self.style, price) {
+            // To borrow them from what is borrowed, they are taken, and given back.
+            self.frame().push_text(definitions.as_slice());
+            self.palette.keep(definitions);
+        }
+    }
+
+    /// Whether that is so.
+    pub(super) fn repeats(&self) -> bool {
+        self.repeats
     }
 
     /// What the terminal draws in; `None` where nobody knows.
@@ -39,12 +86,13 @@ impl Pen {
 
     /// Where the cursor stands; `None` where nobody knows.
     pub(super) fn position(&self) -> Option<Position> {
-        self.position
+        self.cursor.filter(|cursor| cursor.x < self.size.width)
     }
 
-    /// The terminal is now so wide.
-    pub(super) fn set_width(&mut self, width: u16) {
-        self.width = width;
+    /// The terminal is now of that size.
+    pub(super) fn set_size(&mut self, size: Size) {
+        self.size = size;
+        self.cursor = None;
     }
 
     /// The frame, if anything is in it; what is written next is in another one.
@@ -63,27 +111,32 @@ impl Pen {
 
     /// Nothing is known of the terminal, and what was written has never been sent.
     pub(super) fn forget(&mut self) {
-        *self = Self { frame: std::mem::take(&mut self.frame), ..Self::new(self.width) };
         self.frame.clear();
+        self.palette.forget();
+        (self.style, self.cursor, self.last, self.repeated) = (None, None, None, 0);
     }
 
     /// Writes one of crossterm's commands that changes neither the cursor's place nor the style.
     pub(super) fn command(&mut self, command: impl Command) {
         // Memory takes everything.
-        _ = queue!(begun(&mut self.frame), command);
+        _ = queue!(self.frame(), command);
     }
 
     pub(super) fn move_to(&mut self, target: Position) {
-        let mut piece = begun(&mut self.frame).piece();
-        push_motion(self.position, target, &mut piece);
+        let (cursor, size) = (self.cursor, self.size);
+        let mut piece = self.frame().piece();
+        motion::push(cursor, target, size, &mut piece);
         piece.finish();
-        self.position = Some(target);
+        self.cursor = Some(target);
     }
 
     pub(super) fn set_style(&mut self, target: Style) {
         if self.style != Some(target) {
-            let mut piece = begun(&mut self.frame).piece();
-            target.push_from(self.style, &mut piece);
+            let current = self.style;
+            self.frame();
+            let Self { frame, palette, .. } = self;
+            let mut piece = frame.piece();
+            target.push_from(current, |shade| palette.told(shade), &mut piece);
             piece.finish();
             self.style = Some(target);
         }
@@ -93,16 +146,61 @@ impl Pen {
     #[expect(clippy::inline_always, reason = "calls would take longer than what they do")]
     #[inline(always)]
     pub(super) fn draw_block(&mut self, position: Position, glyph: Glyph, style: Style) {
-        let mut piece = begun(&mut self.frame).piece();
-        push_motion(self.position, position, &mut piece);
-        if self.style != Some(style) {
-            style.push_from(self.style, &mut piece);
-            self.style = Some(style);
+        let (cursor, size, current) = (self.cursor, self.size, self.style);
+        if self.last == Some(glyph) && cursor == Some(position) && current == Some(style) {
+            self.repeated += 1;
+            self.advance(position);
+            return;
+        }
+        self.frame();
+        let Self { frame, palette, .. } = self;
+        let mut piece = frame.piece();
+        motion::push(cursor, position, size, &mut piece);
+        if current != Some(style) {
+            style.push_from(current, |shade| palette.told(shade), &mut piece);
         }
         let (encoded, count) = glyph.encoded();
         piece.push(encoded, count);
         piece.finish();
+        self.style = Some(style);
+        self.last = self.repeats.then_some(glyph);
         self.advance(position);
+    }
+
+    /// Writes what was drawn, but not written yet.
+    #[cold]
+    fn write_repeated(&mut self) {
+        let Some(glyph) = self.last else { return };
+        let count = usize::from(std::mem::take(&mut self.repeated));
+        let (encoded, bytes) = glyph.encoded();
+        let digits = if count > 1 { motion::digits(count as u16) } else { 0 };
+        if count * bytes <= 3 + digits {
+            (0..count).for_each(|_| self.frame.push_text(&encoded[..bytes]));
+        } else {
+            let mut piece = self.frame.piece();
+            if count > 1 {
+                let mut repetition = ControlSequence::begin(&mut piece);
+                repetition.place(count as u16);
+                repetition.end(REPEAT);
+            } else {
+                piece.push([b'\x1b', b'[', REPEAT], 3);
+            }
+            piece.finish();
+        }
+    }
+
+    /// The frame, begun if it was not, with all that was drawn.
+    #[inline]
+    fn frame(&mut self) -> &mut Bytes {
+        if self.repeated > 0 {
+            self.write_repeated();
+        }
+        self.last = None;
+        if self.frame.is_empty() {
+            // Memory takes everything.
+            _ = queue!(self.frame, BeginSynchronizedUpdate);
+        }
+        &mut self.frame
     }
 
     /// Draws any text. A control character is written as a space.
@@ -110,26 +208,25 @@ impl Pen {
         let text = if text.chars().any(char::is_control) { " " } else { text };
         self.move_to(position);
         self.set_style(style);
-        begun(&mut self.frame).push_text(text.as_bytes());
+        self.frame().push_text(text.as_bytes());
         if advances_by_one(text) {
             self.advance(position);
         } else {
-            self.position = None;
+            self.cursor = None;
         }
     }
 
     /// The cursor has moved on from there.
     #[inline]
     fn advance(&mut self, position: Position) {
-        let next = Position { x: position.x.saturating_add(1), ..position };
-        self.position = (next.x < self.width).then_some(next);
+        self.cursor = Some(Position { x: position.x.saturating_add(1), ..position });
     }
 
     /// Moves a stretch of row `y`. What is to the right of it moves back and forth.
     pub(super) fn shift_row(&mut self, shift: &Shift, y: u16) {
         let (start, end) = (shift.columns.start as u16, shift.columns.end as u16);
         let by = shift.by as u16;
-        let is_whole = end == self.width;
+        let is_whole = end == self.size.width;
         let (start, end) = (Position { x: start, y }, Position { x: end - by, y });
         match shift.way {
             Way::Left => {
@@ -150,42 +247,11 @@ impl Pen {
     /// Deletes or inserts `count` characters at a position; the cursor stays there.
     fn edit_row(&mut self, at: Position, count: u16, operation: u8) {
         self.move_to(at);
-        let mut piece = begun(&mut self.frame).piece();
+        let mut piece = self.frame().piece();
         let mut edit = ControlSequence::begin(&mut piece);
         edit.place(count);
         edit.end(operation);
         piece.finish();
-    }
-}
-
-/// The frame, begun if it was not.
-#[inline]
-fn begun(frame: &mut Bytes) -> &mut Bytes {
-    if frame.is_empty() {
-        // Memory takes everything.
-        _ = queue!(frame, BeginSynchronizedUpdate);
-    }
-    frame
-}
-
-/// Adds the motion from where the cursor stands to `target`.
-#[expect(clippy::inline_always, reason = "calls would take longer than what they do")]
-#[inline(always)]
-fn push_motion(position: Option<Position>, target: Position, piece: &mut Piece) {
-    if position == Some(target) {
-        return;
-    }
-    let mut motion = ControlSequence::begin(piece);
-    match position {
-        Some(position) if position.y == target.y && position.x < target.x => {
-            motion.place(target.x - position.x);
-            motion.end(b'C');
-        }
-        _ => {
-            motion.place(target.y.saturating_add(1));
-            motion.place(target.x.saturating_add(1));
-            motion.end(b'H');
-        }
     }
 }
 

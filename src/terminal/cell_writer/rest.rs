@@ -1,10 +1,11 @@
 //! A picture that rests becomes exact, in a few frames of about the same size.
 //!
-//! The worst cells come first. To allow less and less error until none is allowed was refused: cells
+//! So does each row that rests for a while, whatever others do: where one cell blinks, or the time is shown,
+//! there is always a change somewhere. The worst cells come first. To allow less and less error until none is allowed was refused: cells
 //! were sent twice, and the last of the frames had most of the bytes.
 
 use super::exact;
-use super::ink::Ink;
+use super::ink::Inks;
 use super::look::Look;
 use super::pen::Pen;
 use super::screen::{Row, Screen};
@@ -17,6 +18,7 @@ pub(super) struct Rest {
     frames: usize,
     /// How far off the inexact cells are, and where they are, row by row.
     inexact: Vec<Cell>,
+    inks: Inks,
 }
 
 /// How far off a cell is.
@@ -30,9 +32,13 @@ struct Cell {
 /// In so many frames a resting picture becomes exact.
 const FRAMES: usize = 10;
 
+/// A row that has not changed for so many frames rests, while others change: what moves on soon would be
+/// drawn for nothing.
+const PATIENCE: usize = 10;
+
 impl Rest {
     pub(super) fn new() -> Self {
-        Self { frames: FRAMES, inexact: Vec::new() }
+        Self { frames: FRAMES, inexact: Vec::new(), inks: Inks::default() }
     }
 
     /// There is motion: the next picture comes to rest afresh.
@@ -48,12 +54,13 @@ impl Rest {
         self.inexact.clear();
         for row in screen.inexact_rows() {
             if row.is_near() {
-                self.inexact.extend(errors(&row));
+                self.inexact.extend(errors(&row, &mut self.inks));
             } else {
                 exact::draw_row(pen, shifts, row);
             }
         }
-        self.choose_worst();
+        self.choose_worst(self.frames);
+        self.frames = (self.frames - 1).max(1);
         let mut chosen = self.inexact.iter().peekable();
         for mut row in screen.inexact_rows() {
             while let Some(cell) = chosen.next_if(|cell| cell.y == row.y) {
@@ -63,10 +70,30 @@ impl Rest {
         }
     }
 
-    /// Leaves the share of this frame, in the order of the screen.
-    fn choose_worst(&mut self) {
-        let share = self.inexact.len().div_ceil(self.frames);
-        self.frames = (self.frames - 1).max(1);
+    /// Draws the next of the frames of those rows that rest while others change.
+    pub(super) fn draw_resting(&mut self, pen: &mut Pen, shifts: &mut Shifts, screen: &mut Screen) {
+        if screen.is_exact() {
+            return;
+        }
+        for mut row in screen.inexact_rows() {
+            let Some(drawn) = usize::from(row.rested).checked_sub(PATIENCE) else { continue };
+            if !row.is_near() {
+                exact::draw_row(pen, shifts, row);
+                continue;
+            }
+            self.inexact.clear();
+            self.inexact.extend(errors(&row, &mut self.inks));
+            self.choose_worst(FRAMES.saturating_sub(drawn).max(1));
+            for cell in &self.inexact {
+                exact::draw_cell(pen, &mut row, usize::from(cell.column));
+            }
+            *row.exact = row.shown == row.looks;
+        }
+    }
+
+    /// Leaves the share of a frame, of so many that are left, in the order of the screen.
+    fn choose_worst(&mut self, frames: usize) {
+        let share = self.inexact.len().div_ceil(frames);
         if share < self.inexact.len() {
             self.inexact
                 .select_nth_unstable_by(share, |one, other| other.error.total_cmp(&one.error));
@@ -77,19 +104,19 @@ impl Rest {
 }
 
 /// How far off the cells of a row are that are not exact.
-fn errors<'a>(row: &'a Row) -> impl Iterator<Item = Cell> + 'a {
+fn errors<'a>(row: &'a Row, inks: &'a mut Inks) -> impl Iterator<Item = Cell> + 'a {
     let looks = row.shown.iter().zip(row.looks);
-    (0..)
-        .zip(looks)
-        .filter(|(_, (shown, look))| shown != look)
-        .map(|(column, (&shown, &look))| Cell { error: error(shown, look), y: row.y, column })
+    (0..).zip(looks).filter(|(_, (shown, look))| shown != look).map(|(column, (&shown, &look))| {
+        let error = error(shown, look, inks);
+        Cell { error, y: row.y, column }
+    })
 }
 
 /// The larger distance of the two halves; infinite where it can't be told.
-fn error(shown: Look, wanted: Look) -> f32 {
+fn error(shown: Look, wanted: Look, inks: &mut Inks) -> f32 {
     let Some((shown, wanted)) = shown.halves().zip(wanted.halves()) else { return f32::INFINITY };
     let distances = shown.into_iter().zip(wanted).map(|(shown, wanted)| {
-        let inks = Ink::of(shown).zip(Ink::of(wanted));
+        let inks = inks.of(shown).zip(inks.of(wanted));
         inks.map_or(f32::INFINITY, |(shown, wanted)| shown.distance(wanted))
     });
     distances.fold(0.0, f32::max)

@@ -38,6 +38,8 @@ pub struct Screen {
     intricate: Vec<bool>,
     /// Whether a row shows exactly what it is to show.
     exact: Vec<bool>,
+    /// For how many frames a row has not changed.
+    rested: Vec<u8>,
     /// Where widgets are drawn first.
     scratch: Buffer,
 }
@@ -53,6 +55,8 @@ pub(super) struct Row<'a> {
     pub(super) wanted: &'a [Cell],
     pub(super) intricate: &'a mut bool,
     pub(super) exact: &'a mut bool,
+    /// For how many frames it has not changed.
+    pub(super) rested: u8,
 }
 
 impl Screen {
@@ -82,6 +86,8 @@ impl Screen {
         self.intricate.clear();
         self.intricate.resize(height, false);
         self.exact.resize(height, false);
+        self.rested.clear();
+        self.rested.resize(height, 0);
         self.forget();
     }
 
@@ -204,9 +210,28 @@ impl Screen {
         (x < self.width).then(|| self.shown.get(y * self.width + x).copied()).flatten()
     }
 
+    /// What each row shows, and what it is to show.
+    pub(super) fn rows(&self) -> impl Iterator<Item = (&[Look], &[Look])> {
+        let width = self.width.max(1);
+        self.shown.chunks(width).zip(self.looks.chunks(width))
+    }
+
+    /// How the cells are drawn whose looks do not say it.
+    pub(super) fn intricate_styles(&self) -> impl Iterator<Item = Style> {
+        let rows = self.wanted.chunks(self.width.max(1)).zip(&self.intricate);
+        rows.filter(|(_, intricate)| **intricate).flat_map(|(cells, _)| cells.iter().map(Style::of))
+    }
+
     /// The rows that have changed, from the top; they count as changed no longer.
     pub(super) fn changed_rows(&mut self) -> impl Iterator<Item = Row<'_>> {
         self.rows_where(|_, changed| std::mem::take(changed))
+    }
+
+    /// Counts a frame in which rows rest that do not change.
+    pub(super) fn count_rest(&mut self) {
+        for (rested, &changed) in self.rested.iter_mut().zip(&self.changed) {
+            *rested = if changed { 0 } else { rested.saturating_add(1) };
+        }
     }
 
     /// The rows that do not show exactly what they are to show.
@@ -223,10 +248,11 @@ impl Screen {
         let wanted = self.looks.chunks(width).zip(self.wanted.chunks(width));
         let known = self.shown.chunks_mut(width).zip(self.marks.chunks_mut(width));
         let states = self.changed.iter_mut().zip(&mut self.intricate).zip(&mut self.exact);
+        let states = states.zip(&self.rested);
         (0..).zip(known.zip(wanted).zip(states)).filter_map(move |(y, (cells, state))| {
             let ((shown, marks), (looks, wanted)) = cells;
-            let ((changed, intricate), exact) = state;
-            let row = Row { y, alphabet, shown, looks, marks, wanted, intricate, exact };
+            let (((changed, intricate), exact), &rested) = state;
+            let row = Row { y, alphabet, shown, looks, marks, wanted, intricate, exact, rested };
             is_asked(*row.exact, changed).then_some(row)
         })
     }

@@ -186,6 +186,7 @@ mod tests {
             wanted: &[],
             intricate: &mut false,
             exact: &mut false,
+            rested: 0,
         };
         let mut shifts = Shifts::default();
         let lose = |from: usize, to: usize, losses: &mut Vec<Loss>| {

@@ -103,14 +103,19 @@ impl Style {
     #[cfg(feature = "cli")]
     pub(crate) fn write_from(self, current: Option<Self>, bytes: &mut Bytes) {
         let mut piece = bytes.piece();
-        self.push_from(current, &mut piece);
+        self.push_from(current, |shade| shade, &mut piece);
         piece.finish();
     }
 
-    /// Adds what turns `current`, or an unknown style, into this one.
+    /// Adds what turns `current`, or an unknown style, into this one, where colours are told as `told` says.
     #[expect(clippy::inline_always, reason = "calls would take longer than what they do")]
     #[inline(always)]
-    pub(super) fn push_from(self, current: Option<Self>, piece: &mut Piece) {
+    pub(super) fn push_from(
+        self,
+        current: Option<Self>,
+        told: impl Fn(Shade) -> Shade,
+        piece: &mut Piece,
+    ) {
         let known = match current {
             Some(style) if self != Self::RESET => style,
             _ => {
@@ -123,10 +128,10 @@ impl Style {
             self.switch_modifiers(known.modifier, &mut rendition);
         }
         rendition.add_if(self.foreground != known.foreground, |rendition| {
-            self.foreground.write(Ground::Fore, rendition);
+            told(self.foreground).write(Ground::Fore, rendition);
         });
         rendition.add_if(self.background != known.background, |rendition| {
-            self.background.write(Ground::Back, rendition);
+            told(self.background).write(Ground::Back, rendition);
         });
         rendition.end(b'm');
     }
@@ -150,12 +155,14 @@ impl Style {
 impl Shade {
     /// The terminal's own colour.
     pub(super) const DEFAULT: Self = Self(0);
+    /// No colour is like this.
+    pub(super) const NONE: Self = Self(u32::MAX);
     /// So many bits tell one from all others.
     pub(super) const BITS: u32 = 26;
     const INDEXED: u32 = 1 << 24;
     const RGB: u32 = 2 << 24;
 
-    const fn indexed(index: u8) -> Self {
+    pub(super) const fn indexed(index: u8) -> Self {
         Self(Self::INDEXED | index as u32)
     }
 

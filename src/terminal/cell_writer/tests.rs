@@ -341,14 +341,14 @@ fn only_what_differs_from_the_cell_before_is_sent() {
     ];
     insta::assert_snapshot!(readable(&row), @r"
     ESC[?2026h
-    ESC[1;1H
+    ESC[1H
     ESC[m
     ESC[38;2;200;0;0;48;2;0;0;200moo
     ESC[48;2;200;0;0mo
     ESC[38;2;0;0;200mo
     ESC[31;107mo
     ESC[38;5;100mo
-    ESC[1C
+    ESC[C
     ESC[mx
     ESC[?2026l
     ");
@@ -369,7 +369,7 @@ fn modifiers_are_switched_one_by_one_except_intensity() {
     ];
     insta::assert_snapshot!(readable(&row), @r"
     ESC[?2026h
-    ESC[1;1H
+    ESC[1H
     ESC[m
     ESC[1;2;7mx
     ESC[22;2mx
@@ -435,4 +435,33 @@ fn a_window_of_no_size_is_drawn_without_complaint() {
     let screen = Screen::new(Size::new(1, 1));
     let mut terminal = Terminal::new(CellWriter::new(screen, Size::ZERO)).unwrap();
     terminal.draw(|_| ()).unwrap();
+}
+
+/// One cell that blinks does not keep all others from becoming exact.
+#[test]
+fn rows_that_rest_become_exact_while_another_changes() {
+    let size = Size::new(40, 6);
+    let (mut terminal, screen) = terminal(size);
+    terminal.backend_mut().set_fidelity(Fidelity::LOW);
+    let picture = |offset: u16, blink: u16| {
+        let cells = (0..40 * 6).map(|place: u16| {
+            let value = (place % 40 + offset + if place == 5 { 100 * blink } else { 0 }) as u8;
+            colored("▀", Color::Rgb(value, 100, value), Color::Rgb(value, 90, value))
+        });
+        Buffer { area: Rect::from(size), content: cells.collect() }
+    };
+    draw(&mut terminal, &picture(0, 0));
+    for frame in 0..25 {
+        draw(&mut terminal, &picture(1, frame % 2));
+    }
+    let expected = picture(1, 0);
+    let shown = screen.0.borrow();
+    for y in 1..6 {
+        for x in 0..40 {
+            let cell = shown.parser.screen().cell(y, x).unwrap();
+            let Color::Rgb(red, green, blue) = expected[(x, y)].fg else { unreachable!() };
+            let upper = if cell.contents() == "▄" { cell.bgcolor() } else { cell.fgcolor() };
+            assert_eq!(upper, vt100::Color::Rgb(red, green, blue), "at {x}, {y}");
+        }
+    }
 }

@@ -17,11 +17,15 @@ pub(in super::super) enum Answer {
     Fence,
     /// It has come as far as a status request.
     Status,
+    /// It has repeated a half block.
+    Repeats,
+    /// It has defined entries of the palette.
+    Palette,
 }
 
 /// Whether `unit`, a control sequence, has a shape that only reports have, and no key.
 pub(super) fn is_report(unit: &[u8]) -> bool {
-    matches!(unit, [_, _, b'<'..=b'?', ..] | [.., b'n'])
+    matches!(unit, [_, _, b'<'..=b'?', ..] | [.., b'n'] | [_, _, b'2', b';', .., b'R'])
 }
 
 /// What the report `unit` answers; `None` for what was not asked.
@@ -32,8 +36,16 @@ pub(super) fn parse_report(unit: &[u8]) -> Option<Answer> {
         // Set, not set, or set for good; 0 is for a mode that it does not know.
         b"\x1b[?1016;1$y" | b"\x1b[?1016;2$y" | b"\x1b[?1016;3$y" => Some(Answer::PixelMouse),
         [_, _, b'0'..=b'9', b'n'] => Some(Answer::Status),
+        _ if unit == sequence::REPEATED => Some(Answer::Repeats),
         _ => None,
     }
+}
+
+/// What the string `unit` answers, that is neither a control sequence nor a device control string.
+pub(super) fn parse_string(unit: &[u8]) -> Option<Answer> {
+    let text = unit.strip_prefix(b"\x1b")?;
+    let is_defined = sequence::DEFINED.iter().any(|defined| text.starts_with(defined));
+    is_defined.then_some(Answer::Palette)
 }
 
 /// What the device control string `unit` answers; `None` for a refusal, and for what was not asked.

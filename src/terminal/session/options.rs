@@ -5,6 +5,7 @@ use super::super::{ColorSource, Detected, Fidelity, color_depth, color_source};
 
 /// What is known of the terminal beforehand, and how it is to be used.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
+#[expect(clippy::struct_excessive_bools, reason = "each is a question of its own")]
 pub struct Options {
     /// How many colours it shows. The terminal is asked where this is a guess.
     pub color_depth: Detected,
@@ -22,12 +23,17 @@ pub struct Options {
     pub ask_for_version: bool,
     /// Whether there is a network on the way: the first frame is coarse then, and made exact after it.
     pub is_remote: bool,
+    /// Whether to try what makes frames shorter, repeated characters and a palette of its own, and to use it where the
+    /// terminal shows that it works.
+    pub try_brevity: bool,
     /// How exact frames are; `None` for exact where the link keeps up, and less so where it lags.
     pub fidelity: Option<Fidelity>,
 }
 
 impl Options {
     /// What `environment`, a lookup of variables by name, tells of the terminal.
+    ///
+    /// Neither a terminal multiplexer nor one that is unknown or has no windows is tried for shorter frames.
     ///
     /// A terminal multiplexer is not asked for releases: those that agree lose some, and a key whose
     /// release is lost is held for ever. Nor is it asked for pixels, of which it has none of its own.
@@ -42,6 +48,7 @@ impl Options {
         let multiplexed = is_set("TMUX")
             || is_set("STY")
             || ["tmux", "screen"].iter().any(|name| term.starts_with(name));
+        let is_plain = ["", "dumb", "linux", "unknown"].contains(&&*term) || term.starts_with("vt");
         Self {
             color_depth: color_depth(&environment),
             color_source: color_source(&environment),
@@ -51,6 +58,7 @@ impl Options {
             ask_for_mouse_pixels: !multiplexed,
             ask_for_version: KNOWN.iter().any(|name| term.starts_with(name)),
             is_remote: ["SSH_CONNECTION", "SSH_CLIENT", "SSH_TTY"].into_iter().any(is_set),
+            try_brevity: !multiplexed && !is_plain,
             fidelity: None,
         }
     }
@@ -84,6 +92,23 @@ mod tests {
     fn asks_for_releases(name: &str, value: &str) -> bool {
         let environment = |asked: &str| (asked == name).then(|| value.to_owned());
         Options::from_environment(environment).ask_for_key_releases
+    }
+
+    #[test]
+    fn only_terminals_in_windows_are_tried() {
+        let tries = |term: &'static str, name: &'static str, value: &'static str| {
+            let environment = move |asked: &str| match asked {
+                "TERM" => Some(term.to_owned()),
+                _ => (asked == name).then(|| value.to_owned()),
+            };
+            Options::from_environment(environment).try_brevity
+        };
+        assert!(tries("xterm-256color", "", "") && tries("xterm-kitty", "TMUX", ""));
+        for term in ["", "dumb", "linux", "screen", "screen-256color", "tmux-256color"] {
+            assert!(!tries(term, "", ""), "{term}");
+        }
+        assert!(!tries("xterm-256color", "TMUX", "/tmp/tmux-1000/default,1,0"));
+        assert!(!tries("xterm-256color", "STY", "1.pts-0.host"));
     }
 
     #[test]

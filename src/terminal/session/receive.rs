@@ -98,6 +98,8 @@ impl Session {
             Input::Answer(Answer::KeyFlags) => self.settle_key_releases(true)?,
             Input::Answer(Answer::TrueColor) => self.raise_color_depth(),
             Input::Answer(Answer::XtermVersion) => self.ask_for_true_color()?,
+            Input::Answer(Answer::Repeats) => self.repeats_blocks(),
+            Input::Answer(Answer::Palette) => self.defines_palette(),
             Input::Answer(Answer::Status) => {
                 self.flow.answered(self.now());
                 self.guard.await_statuses(self.flow.awaits_answers());
@@ -156,6 +158,7 @@ impl Session {
             self.color_depth = Detected::Certain(ColorDepth::True);
             self.color_source = ColorSource::Answer;
             self.events.push_back(Event::ColorDepth(ColorDepth::True));
+            self.use_palette();
         }
     }
 
