@@ -51,11 +51,12 @@ fn after_a_stuck_link_the_newest_frame_comes_next() {
     thread::sleep(Duration::from_millis(200));
     game.set_reading(true);
     game.wait_for_rest();
-    // What was stuck, and the frames that make the newest exact: none of the second in between.
+    // What was stuck, a few coarse ones after the stall, and those that make the newest exact: none of the
+    // second in between, which had 36.
     let frames = game.look(|emulator| {
         emulator.bytes()[before..].windows(8).filter(|bytes| bytes == b"\x1b[?2026l").count()
     });
-    assert!(frames <= 16, "{frames} frames");
+    assert!(frames <= 22, "{frames} frames");
 }
 
 #[test]

@@ -29,6 +29,8 @@ const LEAST_BUSY: Duration = Duration::from_micros(100);
 /// many seconds.
 const SURPRISING: f64 = 4.0;
 const SURPRISING_SECONDS: f64 = 0.25;
+/// A surprise of so many seconds is a stall; one of fewer may be jitter.
+const STALL_SECONDS: f64 = 1.0;
 /// How many standard errors steeper than the likeliest line the one is that counts. Where nobody can tell
 /// delay from rate, it is the rate that is doubted: too much on a line that others share delays all of them.
 const DOUBT: f64 = 0.75;
@@ -69,7 +71,9 @@ impl Link {
         match self.surprise.take() {
             None if self.is_surprising(busy) => {
                 self.surprise = Some(busy);
-                self.stalled_at = Some(now);
+                if seconds >= STALL_SECONDS {
+                    self.stalled_at = Some(now);
+                }
             }
             Some(before) if self.is_surprising(busy) => {
                 self.fit = Fit::default();
