@@ -296,3 +296,4 @@ impl App {
 
 #[cfg(test)]
 mod tests;
+mod wrap;

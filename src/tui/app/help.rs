@@ -8,6 +8,7 @@ use ratatui::widgets::{Block, Padding, Paragraph};
 
 use super::App;
 use super::panels::{BORDERS, PADDING, framed, key_names};
+use super::wrap::wrapped;
 use crate::terminal::Key;
 use crate::tui::Canvas;
 use crate::tui::bindings::{Action, Bindings};
@@ -121,24 +122,6 @@ fn keys_in_columns(bindings: &Bindings, room: usize, most_columns: usize) -> Vec
         .map(|row| padded[row..].iter().step_by(height).map(|line| format!("{line:<width$}")))
         .map(|cells| cells.collect::<Vec<_>>().concat().trim_end().to_owned())
         .collect()
-}
-
-/// `text` in lines of up to so many columns, broken between words, and within one that is longer than a line.
-fn wrapped(text: &str, columns: usize) -> Vec<String> {
-    let mut lines: Vec<String> = Vec::new();
-    for word in text.split_whitespace() {
-        let letters: Vec<char> = word.chars().collect();
-        for part in letters.chunks(columns.max(1)) {
-            match lines.last_mut() {
-                Some(line) if line.chars().count() + 1 + part.len() <= columns => {
-                    line.push(' ');
-                    line.extend(part);
-                }
-                _ => lines.push(part.iter().collect()),
-            }
-        }
-    }
-    lines
 }
 
 #[cfg(test)]
