@@ -12,9 +12,9 @@ use super::clearance::Clearance;
 /// The place of a cell: column from the west, row from the north, both from 0.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash, PartialOrd, Ord)]
 pub struct Cell {
-    /// Cells to the west of this one.
+    /// The number of cells to the west of this one.
     pub column: u32,
-    /// Cells to the north of this one.
+    /// The number of cells to the north of this one.
     pub row: u32,
 }
 
@@ -25,35 +25,35 @@ impl Cell {
     }
 }
 
-/// Which kind of tile a cell holds: an index into the world's list of tiles.
+/// A kind of tile: an index into the world's list of tiles.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash, PartialOrd, Ord)]
 pub struct TileId(pub u8);
 
 impl TileId {
-    /// A world has no more tiles.
+    /// The largest number of tiles in a world.
     #[cfg_attr(not(feature = "tui"), expect(dead_code, reason = "only the minimap has a table"))]
     pub(crate) const MOST: usize = 1 << u8::BITS;
 }
 
-/// Which tile each cell holds, and which tiles are solid.
+/// The tile of each cell, and which tiles are solid.
 ///
-/// Tiles are numbered with the open ones first, so that asking whether a cell is solid is one
-/// comparison and needs no table.
+/// Open tiles have the lower numbers, so that the test for a solid cell is one comparison without a
+/// table.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub struct Grid {
     width: NonZeroU32,
     height: NonZeroU32,
     first_solid: TileId,
     cells: Vec<TileId>,
-    /// Where something stands that is in the way.
+    /// The cells with things that block.
     occupied: BTreeSet<Cell>,
-    /// Where rays need not look. It is shared, as it never changes.
+    /// The distance field. It is shared, since it never changes.
     clearance: Arc<Clearance>,
 }
 
 impl Grid {
-    /// A grid of `width` × `height` cells, row by row from the north, where tiles from
-    /// `first_solid` on are solid. `None` where `cells` is not as long as that.
+    /// A grid of `width` × `height` cells, row by row from the north. Tiles from `first_solid` on
+    /// are solid. `None` if `cells` does not have that length.
     pub fn new(
         width: NonZeroU32,
         height: NonZeroU32,
@@ -77,8 +77,8 @@ impl Grid {
         })
     }
 
-    /// A grid drawn in characters: `.` and a space are open floor (tile 0), anything else is solid
-    /// (tile 1). `None` where it is empty or its rows are not of one length.
+    /// A grid drawn with characters: `.` and a space are open floor (tile 0), all others are solid
+    /// (tile 1). `None` if it is empty, or if its rows differ in length.
     ///
     /// ```
     /// let grid = cellcaster::world::Grid::sketch(&["###", "#.#", "###"]).unwrap();
@@ -95,13 +95,13 @@ impl Grid {
         Self::new(width, height, TileId(1), cells)
     }
 
-    /// Lets rays skip what is empty, where the map is empty enough, though some of its open tiles
+    /// Computes the distance field, if the map is empty enough to gain by it. Some open tiles
     /// `may_become_solid`.
     pub(super) fn clear(&mut self, may_become_solid: impl Fn(TileId) -> bool) {
         self.clearance = Arc::new(self.near(may_become_solid).measured_if_worthwhile());
     }
 
-    /// As [`Grid::clear`], however many walls there are.
+    /// Computes the distance field as [`Grid::clear`] does, whatever the map.
     #[cfg(test)]
     pub(crate) fn measure_clearance(&mut self, may_become_solid: impl Fn(TileId) -> bool) {
         self.clearance = Arc::new(self.near(may_become_solid).measured());
