@@ -1,7 +1,7 @@
-//! The kit: what the characters of chunks stand for, learnt from a map in which each is drawn.
+//! The tileset: the meanings of the characters of chunks, read from a map that has each of them.
 //!
-//! So a level's tiles, textures, sprites and air are read, and found fault with, as those of any map.
-//! The map is read once; what is dug later takes its tiles from there by their number.
+//! Tiles, textures, sprites, sky and fog of a level are therefore parsed and checked like those of
+//! any map. The map is read once; chunks refer to its tiles by their number.
 
 use std::num::NonZeroU32;
 
@@ -11,15 +11,15 @@ use crate::world::{
     Cell, Grid, Lamplight, SpriteId, Start, Thing, ThingKind, Tile, TileId, TileKind, World,
 };
 
-/// What fills all that is not dug.
+/// The character of cells outside the plots.
 pub(super) const ROCK: u8 = b'#';
 
-/// What the characters of chunks stand for.
+/// The meanings of the characters of chunks.
 #[derive(Clone, Debug)]
 pub(super) struct Kit {
-    /// The legend's own world.
+    /// The world of the legend's map.
     world: World,
-    /// By character; what has no meaning is rock.
+    /// By character. Characters without a meaning are rock.
     meanings: Vec<Meaning>,
     exits: Vec<u8>,
 }
@@ -28,15 +28,15 @@ pub(super) struct Kit {
 struct Meaning {
     tile: TileId,
     thing: Option<(ThingKind, SpriteId)>,
-    /// Whether one can walk there: of a door, once it is open.
+    /// Whether the player can walk there; of a door, when it is open.
     is_walkable: bool,
 }
 
 impl Kit {
-    /// The kit that the map `legend` shows.
+    /// The tileset of the map `legend`.
     ///
     /// # Errors
-    /// Everything that is wrong with the map, or that it shows no rock.
+    /// All faults of the map, or that it has no rock.
     pub(super) fn of(legend: &str) -> Result<Self, Faults> {
         const NAME: &str = "the legend";
         let world = map::parse(legend, NAME, &NoFiles)?;
@@ -57,13 +57,13 @@ impl Kit {
         Ok(Self { world, meanings, exits })
     }
 
-    /// A world to draw in.
+    /// A world whose cells can be replaced.
     pub(super) fn world(&self) -> World {
         self.world.clone()
     }
 
-    /// The character of an exit that stands on such floor as `character`, or on another one if there
-    /// is none; `None` where there is no exit at all.
+    /// The character of an exit that stands on the floor `character`, or else on any other; `None`
+    /// if the legend has no exit.
     pub(super) fn exit_on(&self, character: u8) -> Option<u8> {
         let floor = self.meaning(character).tile;
         let fits = |&&exit: &&u8| self.meaning(exit).tile == floor;

@@ -8,7 +8,6 @@
 //! Interpolating between corners, each with the mean of its four cells, was refused: the light
 //! would reach around the end of a wall. Floors and ceilings have one light for each cell, because
 //! spans are drawn with one light.
-//! laid in one shade.
 
 use super::{Cell, Light, Tile, TileKind, World};
 
