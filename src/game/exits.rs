@@ -264,7 +264,7 @@ mod tests {
     fn what_is_walled_in_is_out_of_reach() {
         assert!(!is_out_of_reach("@..X", ""));
         assert!(is_out_of_reach("@.#X", ""));
-        // Nobody slips between two corners.
+        // There is no way between two corners.
         assert!(is_out_of_reach("@#\n#X", ""));
         assert!(!is_out_of_reach("@#\n.X", ""));
         assert!(is_out_of_reach("@gX", "'g'.glass = '#ffffff'"));

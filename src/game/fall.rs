@@ -96,7 +96,7 @@ mod tests {
             let flight = Flight { height, speed };
             let twice = flight.after(first, room).after(second, room);
             let once = flight.after(first + second, room);
-            // How fast it is at the ceiling tells little of when it was there.
+            // The speed at the ceiling says little about the time there.
             prop_assert!((twice.height - once.height).abs() < 1e-6, "{twice:?}, {once:?}");
             let is_landing = twice.height < 1e-6;
             prop_assert!(is_landing || (twice.speed - once.speed).abs() < 1e-6);

@@ -207,7 +207,7 @@ mod tests {
     use crate::space::{Block, Body, Coat, Plane, Shape, Sphere, Start};
     use crate::world::Rgb;
 
-    /// A start between a floor, a ball, a wall that leans, and a box.
+    /// A start between a floor, a ball, an inclined wall and a box.
     fn scene(degrees: f64) -> Scene {
         let shapes = [
             Shape::Plane(Plane::new(DVec3::ZERO, DVec3::Z).unwrap()),
@@ -257,7 +257,7 @@ mod tests {
         }
     }
 
-    /// On which side of its planes a place is.
+    /// On which side of the planes a position is.
     fn flight_sides(scene: &Scene, at: DVec3) -> Vec<bool> {
         let planes = scene.bodies.iter().filter_map(|body| match body.shape {
             Shape::Plane(plane) => Some(plane.normal().dot(at - plane.point()) > 0.0),

@@ -80,7 +80,7 @@ impl Turning {
 mod tests {
     use super::*;
 
-    /// By how many degrees `steps` steps turn.
+    /// The degrees that `steps` steps turn.
     fn degrees(turning: &mut Turning, steps: usize, intents: &[Intent]) -> f64 {
         let intents = intents.iter().copied().collect();
         let mut sum = 0.0;
@@ -106,7 +106,7 @@ mod tests {
             // However long it is wanted, it is one turn.
             let turned = degrees(&mut turning, 90, wants);
             assert!((turned - expected).abs() < 1e-9, "{wants:?}: {turned}");
-            // Once more, and again before that is over.
+            // Again, and once more before the first is over.
             let twice = [&[][..], wants, &[], wants].map(|wants| degrees(&mut turning, 1, wants));
             let twice = twice.iter().sum::<f64>() + degrees(&mut turning, 90, &[]);
             assert!((twice - 2.0 * expected).abs() < 1e-9, "{wants:?}: {twice}");

@@ -75,23 +75,23 @@ impl Kit {
         self.exits.contains(&character)
     }
 
-    /// Whether one can walk where `character` is drawn.
+    /// Whether the player can walk on a cell with `character`.
     pub(super) fn is_walkable(&self, character: u8) -> bool {
         self.meaning(character).is_walkable
     }
 
-    /// Whether `character` is floor, with something on it or not.
+    /// Whether `character` is floor, with or without a thing on it.
     pub(super) fn is_floor(&self, character: u8) -> bool {
         matches!(self.world.tile(self.meaning(character).tile).kind, TileKind::Open)
     }
 
-    /// Whether `character` is floor on which nothing stands.
+    /// Whether `character` is floor without a thing on it.
     pub(super) fn is_bare(&self, character: u8) -> bool {
         self.is_floor(character) && self.meaning(character).thing.is_none()
     }
 
-    /// Makes `world`, one of the kit's own, show `rows`, which are of one length, `width`. All its
-    /// doors are closed.
+    /// Replaces the cells of `world`, a world of this tileset, by `rows`, which all have the length
+    /// `width`. All its doors are closed.
     pub(super) fn draw<'a>(
         &self,
         world: &mut World,
@@ -128,7 +128,7 @@ impl Kit {
     }
 }
 
-/// What is drawn in `legend`, whose world is `world`.
+/// The characters in the grid of `legend`, whose world is `world`.
 fn drawn(world: &World, legend: &str) -> Vec<(u8, Meaning)> {
     let rows = map::rows_of_grid(legend);
     let cells = rows.iter().zip(0..).flat_map(|(line, row)| {

@@ -101,7 +101,7 @@ mod tests {
         Cell { column, row }
     }
 
-    /// Floor of several lights, and what light goes through or does not.
+    /// Floor with several lights, and tiles that let light through or do not.
     fn world(cells: &[char]) -> World {
         let rows: Vec<String> =
             cells.chunks(SIDE as usize).map(|row| row.iter().collect()).collect();
@@ -115,7 +115,7 @@ mod tests {
     }
 
     proptest! {
-        /// The ends of two faces that meet on one line are as bright as each other, and no face is
+        /// Two faces that meet on one line have equal lights at the common end, and no face is
         /// brighter or darker than the cells before it and beside that.
         #[test]
         fn faces_that_meet_on_one_line_have_one_light_there(
@@ -128,7 +128,7 @@ mod tests {
             };
             for row in 1..SIDE {
                 for column in 0..SIDE - 1 {
-                    // Both look south at the row below; the one in the east is to the left.
+                    // Both face the row in the south; the one in the east is to the left.
                     let [west, east] = [cell(column, row - 1), cell(column + 1, row - 1)];
                     let faces = [(cell(column, row), west), (cell(column + 1, row), east)];
                     let [of_west, of_east] = faces.map(|(cell, before)| world.face_light(cell, before));
@@ -153,7 +153,7 @@ mod tests {
         let cells: Vec<char> = "ab#bag.....#####.........".chars().collect();
         let world = world(&cells);
         let face = world.face_light(cell(1, 1), cell(1, 0));
-        // To the left of somebody who looks south is the east: a wall. To the right it is darker.
+        // For an observer who looks south, left is east: a wall. It is darker to the right.
         let lights = [0.0, 0.25, 0.5, 0.75, 1.0].map(|u| face.at(u).in_256ths());
         assert_eq!(lights, [230, 230, 230, 179, 128]);
         let across = world.face_light(cell(3, 1), cell(3, 0));

@@ -107,81 +107,81 @@ impl Grid {
         self.clearance = Arc::new(self.near(may_become_solid).measured());
     }
 
-    /// As [`Grid::measure_clearance`], with shafts.
+    /// Computes the distance field as [`Grid::measure_clearance`] does, with beam tables.
     #[cfg(test)]
     pub(crate) fn make_shafts(&mut self, may_become_solid: impl Fn(TileId) -> bool) {
         self.clearance = Arc::new(self.near(may_become_solid).measured().with_shafts());
     }
 
-    /// How clear it is where one looks one cell far.
+    /// The distance field of zeros and ones.
     fn near(&self, may_become_solid: impl Fn(TileId) -> bool) -> Clearance {
         let may_be_solid = |&tile: &TileId| self.is_solid_tile(tile) || may_become_solid(tile);
         Clearance::new(self.rows().map(|row| row.iter().map(may_be_solid)))
     }
 
-    /// Where rays need not look.
+    /// The distance field.
     #[inline]
     pub(crate) fn clearance(&self) -> &Clearance {
         &self.clearance
     }
 
-    /// Lamplight for as many cells, in which no lamp shines yet.
+    /// Lamplight for the cells of this grid, without any light yet.
     pub(crate) fn lamplight(&self) -> Lamplight {
         Lamplight::new(self.width, self.height)
     }
 
-    /// Columns, from west to east.
+    /// The number of columns.
     pub fn width(&self) -> u32 {
         self.width.get()
     }
 
-    /// Rows, from north to south.
+    /// The number of rows.
     pub fn height(&self) -> u32 {
         self.height.get()
     }
 
-    /// The tile at a place, or `None` off the map.
+    /// The tile at a column and a row; `None` outside the map.
     #[inline]
     pub fn tile(&self, column: i64, row: i64) -> Option<TileId> {
-        // As unsigned numbers, those below 0 are beyond any width.
+        // As unsigned numbers, negative ones are greater than any width.
         let (column, row) = (column as u64, row as u64);
         let is_on_map = column < u64::from(self.width()) && row < u64::from(self.height());
         is_on_map.then(|| self.cells[row as usize * self.width() as usize + column as usize])
     }
 
-    /// Puts `tile` into `cell`, which must be on the map.
+    /// Sets the tile of `cell`, which must be on the map.
     pub(super) fn set(&mut self, cell: Cell, tile: TileId) {
         let width = self.width() as usize;
         self.cells[cell.row as usize * width + cell.column as usize] = tile;
     }
 
-    /// Notes that something stands in `cell` that one cannot walk through.
+    /// Records that a thing in `cell` blocks.
     pub(crate) fn occupy(&mut self, cell: Cell) {
         self.occupied.insert(cell);
     }
 
-    /// Whether something stands at a place, on the map, that nobody can walk through.
+    /// Whether a thing blocks a cell of the map.
     pub fn is_occupied(&self, column: i64, row: i64) -> bool {
         let cell = Cell { column: column as u32, row: row as u32 };
         !self.occupied.is_empty() && self.occupied.contains(&cell)
     }
 
-    /// Whether there is something solid at a place; off the map there is nothing.
+    /// Whether a cell is solid; `false` outside the map.
     pub fn is_solid(&self, column: i64, row: i64) -> bool {
         self.tile(column, row).is_some_and(|tile| self.is_solid_tile(tile))
     }
 
-    /// The first tile that is solid; so are all that come after it.
+    /// The first solid tile; all later ones are solid, too.
     pub(crate) fn first_solid(&self) -> TileId {
         self.first_solid
     }
 
-    /// Whether cells that hold `tile` are solid.
+    /// Whether cells with `tile` are solid.
     pub fn is_solid_tile(&self, tile: TileId) -> bool {
         tile >= self.first_solid
     }
 
-    /// How many bytes it takes in memory: its cells, and what rays know of them.
+    /// The size in memory, in bytes: of the cells and of the distance field.
     pub fn bytes(&self) -> usize {
         size_of_val(self.cells.as_slice()) + self.clearance.bytes()
     }

@@ -223,7 +223,7 @@ mod tests {
 
     #[test]
     fn facings_go_clockwise_from_the_front() {
-        // Its front looks east; who stands in the south sees what is a quarter further.
+        // Its front faces east; a viewer in the south sees the facing after a quarter turn.
         let four = sprite(4, Facings::Four);
         let sides = [(1.0, 0.1), (0.1, 1.0), (-1.0, 0.1), (0.1, -1.0)];
         assert_eq!(sides.map(|side| shown(&four, 0.0, side)), [0, 1, 2, 3]);

@@ -220,7 +220,7 @@ mod tests {
             }
         }
 
-        /// A wall of diagonals has joints, and its sides are no places that doubles know.
+        /// A wall of diagonals has joints, and doubles do not represent positions on its sides.
         #[test]
         fn diagonals_are_slid_along_without_a_catch(
             x in 0.3..1.5,

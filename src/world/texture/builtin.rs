@@ -132,8 +132,8 @@ mod tests {
         one.iter().zip(other).map(|(&one, other)| u32::from(one.abs_diff(other))).sum()
     }
 
-    /// Whether the last of `lines` beside the first differs at most twice as much as neighbours do
-    /// on average.
+    /// Whether the last of `lines` and the first differ at most twice as much as neighbours do on
+    /// average.
     fn wraps(lines: &[Vec<Rgb>]) -> bool {
         let between: u32 = lines.windows(2).map(|pair| difference(&pair[0], &pair[1])).sum();
         let seam = difference(&lines[lines.len() - 1], &lines[0]);
