@@ -42,6 +42,21 @@ pub const STEP: f64 = 1.0 / STEPS_PER_SECOND as f64;
 pub(crate) const STEPS_PER_SECOND: u32 = 60;
 
 /// A world, a player in it, and the time since the start.
+///
+/// ```
+/// use cellcaster::game::{Game, Intent};
+/// use cellcaster::map::builtin;
+/// use cellcaster::world::FieldOfView;
+///
+/// let mut game = Game::new(builtin::LEVELS[0].world()?);
+/// let start = game.camera(FieldOfView::default()).position();
+/// for _ in 0..60 {
+///     game.step([Intent::Forward].into_iter().collect());
+/// }
+/// assert_eq!(game.elapsed(), 1.0);
+/// assert!(game.camera(FieldOfView::default()).position().x > start.x + 2.0);
+/// # Ok::<(), cellcaster::fault::Faults>(())
+/// ```
 #[derive(Clone, Debug, PartialEq)]
 pub struct Game {
     world: World,

@@ -51,6 +51,18 @@ pub use things::{Thing, ThingKind};
 pub use tile::{Glass, Paint, TextureId, Tile, TileKind};
 
 /// The contents of a level.
+///
+/// ```
+/// use cellcaster::map::builtin;
+/// use cellcaster::world::{Cell, FieldOfView};
+///
+/// let world = builtin::LEVELS[0].world()?;
+/// assert!(world.grid().is_solid(0, 0));
+/// assert_eq!(world.start().cell, Cell { column: 1, row: 1 });
+/// let camera = world.start_camera(FieldOfView::default());
+/// assert_eq!(camera.position(), world.start().cell.center());
+/// # Ok::<(), cellcaster::fault::Faults>(())
+/// ```
 #[derive(Clone, Debug, PartialEq)]
 pub struct World {
     title: String,

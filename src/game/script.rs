@@ -30,6 +30,19 @@ use crate::fault::Faults;
 pub use recorder::Recorder;
 
 /// A script.
+///
+/// ```
+/// use cellcaster::game::{Game, Script};
+/// use cellcaster::map::builtin;
+///
+/// let script = Script::parse("1 s forward\n30 steps turn-left run\n", "walk.script")?;
+/// let mut game = Game::new(builtin::LEVELS[0].world()?);
+/// for (_section, intents) in script.iter() {
+///     game.step(intents);
+/// }
+/// assert_eq!((script.steps(), game.elapsed()), (90, 1.5));
+/// # Ok::<(), cellcaster::fault::Faults>(())
+/// ```
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub struct Script {
     sections: Vec<Section>,

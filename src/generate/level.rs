@@ -9,6 +9,17 @@ use super::{Generator, Terrain};
 use crate::fault::Faults;
 
 /// A generated level.
+///
+/// ```
+/// use cellcaster::game::Game;
+/// use cellcaster::generate::{Extent, Generator, Level};
+///
+/// let level = Level::new(Generator::Maze.terrain(7), Extent::Endless)?;
+/// let start = level.start().unwrap();
+/// let game = Game::in_level(level, start).unwrap();
+/// assert_eq!(game.site(), Some(start));
+/// # Ok::<(), cellcaster::fault::Faults>(())
+/// ```
 #[derive(Clone, Debug)]
 pub struct Level {
     terrain: Arc<dyn Terrain>,
