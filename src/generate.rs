@@ -10,8 +10,8 @@
 //! chunks. At a million cells the picture is as stable as at the start. A world with 64-bit columns
 //! was refused, since every ray on every map would pay for it.
 //!
-//! Random numbers are hashes of the seed, a purpose and a position, in integers; see `hash`. The
-//! same seed is the same level on every machine.
+//! Random numbers are hashes of the seed, a purpose and a position, in integers. The same seed is
+//! the same level on every machine.
 
 mod cave;
 mod chunk;
