@@ -26,8 +26,7 @@ const CHUNKS: usize = 6;
 const SIDE: usize = CHUNKS * CHUNK_SIDE;
 /// The range of positions along each side for which the window need not move.
 const MIDDLE: std::ops::Range<u32> = 72..120;
-/// The chunk of the window that the player is in while they are in the eastern or southern half of
-/// it.
+/// The chunk of the window that the player is in, if they are in its eastern or southern half.
 const PLAYERS_CHUNK: usize = 2;
 
 /// The current part of a level.

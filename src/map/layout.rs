@@ -167,7 +167,7 @@ fn things(
             _ => None,
         };
         if let Some((kind, look)) = of_kind {
-            // There is at most one for each character.
+            // There is at most one for each character, far fewer than 65,536.
             let sprite = SpriteId(sprites.len() as u16);
             sprites.push(look);
             things.extend(drawing.cells_of(character).map(|cell| Thing { kind, cell, sprite }));

@@ -22,7 +22,8 @@ pub struct Tile {
     /// The surface of the sides below its floor, seen from a lower floor; of a wall, its sides and
     /// its top.
     pub riser: Paint,
-    /// The surface of the sides above its ceiling, seen from a higher ceiling; and of its roof.
+    /// The surface of the sides above its ceiling, seen from below a higher ceiling; and of its
+    /// roof.
     pub lintel: Paint,
 }
 
