@@ -1,9 +1,9 @@
-//! Our drawing beside the classic loop and a fill, at five sizes.
+//! Drawing compared with the classic loop and with a fill, at five sizes.
 //!
-//! `cargo bench --no-default-features --features speed --bench drawing` writes the table of
-//! `PERFORMANCE.md`: what `cellcaster bench` says of drawing, from more cameras and more often. One
-//! thread draws, but for the last two columns: they tell with how many threads a picture of that size
-//! is drawn here, and how many times faster that is.
+//! `cargo bench --no-default-features --features lab --bench drawing` measures what the table of
+//! drawing in `cellcaster bench` has, from more cameras and more often. One thread draws; the last
+//! two columns are the number of threads that the renderer uses for a picture of that size, and how
+//! many times faster that is.
 
 use std::time::Duration;
 

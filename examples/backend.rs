@@ -1,4 +1,4 @@
-//! A program of ratatui's on the backend that sends little: `cargo run --example backend | wc -c`.
+//! A ratatui program with Cellcaster's encoder as its backend: `cargo run --example backend | wc -c`.
 
 use std::io::{self, Write};
 

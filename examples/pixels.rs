@@ -1,4 +1,4 @@
-//! The engine alone, without any feature: what a map's player sees first, as a PPM picture.
+//! The engine alone, without any feature: writes the view from the start of a level as a PPM picture.
 //!
 //! `cargo run --no-default-features --example pixels > cellar.ppm`
 

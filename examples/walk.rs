@@ -1,4 +1,5 @@
-//! A ratatui program in which one walks: W and S walk, the arrow keys turn, in any terminal. Any other key leaves.
+//! A ratatui program with a level to walk through, in any terminal. W and S walk, the arrow keys turn, any other
+//! key leaves.
 
 use std::time::{Duration, Instant};
 

@@ -1,10 +1,9 @@
-//! What happens: a player walks through a world, in fixed steps, finds keys, opens doors, and reaches
-//! the exit.
+//! The rules of the game: a player walks through a world in fixed steps, finds keys, opens doors
+//! and reaches the exit.
 //!
-//! A step lasts [`STEP`] seconds whatever the machine does meanwhile, and takes nothing but
-//! [`Intents`]: the same intents give the same states, bit for bit, on every machine. Steps as long
-//! as the frame took were refused, since a slow machine would then play another game than a fast
-//! one, and no walk could be repeated.
+//! A step lasts [`STEP`] seconds and depends on the [`Intents`] only. The same intents give the
+//! same states, bit for bit, on every machine. Steps as long as the last frame were refused: a slow
+//! machine would play another game than a fast one, and no game could be repeated.
 
 mod collision;
 mod doors;
@@ -37,16 +36,31 @@ pub use look::Look;
 pub(crate) use motion::approach;
 pub use script::{Recorder, Script, Section, Stretch};
 
-/// How long one step lasts, in seconds.
+/// The duration of a step, in seconds.
 pub const STEP: f64 = 1.0 / STEPS_PER_SECOND as f64;
 
 pub(crate) const STEPS_PER_SECOND: u32 = 60;
 
-/// A world, who walks in it, and for how long they have.
+/// A world, a player in it, and the time since the start.
+///
+/// ```
+/// use cellcaster::game::{Game, Intent};
+/// use cellcaster::map::builtin;
+/// use cellcaster::world::FieldOfView;
+///
+/// let mut game = Game::new(builtin::LEVELS[0].world()?);
+/// let start = game.camera(FieldOfView::default()).position();
+/// for _ in 0..60 {
+///     game.step([Intent::Forward].into_iter().collect());
+/// }
+/// assert_eq!(game.elapsed(), 1.0);
+/// assert!(game.camera(FieldOfView::default()).position().x > start.x + 2.0);
+/// # Ok::<(), cellcaster::fault::Faults>(())
+/// ```
 #[derive(Clone, Debug, PartialEq)]
 pub struct Game {
     world: World,
-    /// Of a level that is dug, which part of it the world is.
+    /// The window of a generated level, of which `world` shows a part.
     window: Option<Window>,
     player: Player,
     doors: Doors,
@@ -57,7 +71,7 @@ pub struct Game {
 }
 
 impl Game {
-    /// A game at its beginning: the player stands still at the world's start.
+    /// A game at its start: the player stands still at the world's start.
     pub fn new(world: World) -> Self {
         Self {
             player: Player::new(&world),
@@ -71,16 +85,16 @@ impl Game {
         }
     }
 
-    /// A game in a level that is dug where the player is, who starts at `site` or near it. `None`
-    /// where there is nowhere to stand, as outside the level.
+    /// A game in a generated level, which starts at `site` or near it. `None` if there is nowhere
+    /// to stand, such as outside the level.
     pub fn in_level(level: generate::Level, site: Site) -> Option<Self> {
         let (window, world) = Window::open(level, site)?;
         Some(Self { window: Some(window), ..Self::new(world) })
     }
 
-    /// A game in `world` that begins where this one is: the player stands still in the same place and
-    /// looks the same way, if there is room for that; otherwise they are at the world's start, as
-    /// where the place is an exit.
+    /// A game in another world that continues this one: the player stands still at the same
+    /// position with the same heading. If there is no room, or if the position is an exit, the
+    /// player is at the world's start.
     #[must_use]
     pub fn begun_again_in(&self, world: World) -> Self {
         let player = self.player.placed_in(&world);
@@ -91,30 +105,29 @@ impl Game {
         }
     }
 
-    /// Which cell of a level that is dug the player is in; `None` on a map, whose cells are the
-    /// world's.
+    /// The cell of a generated level that the player is in; `None` on a map.
     pub fn site(&self) -> Option<Site> {
         Some(self.window.as_ref()?.site(self.player.cell()))
     }
 
-    /// Which cell of a level that is dug the world's first one is, in the north-west; `None` on a map.
+    /// The cell of a generated level that is the world's north-west cell; `None` on a map.
     pub fn corner(&self) -> Option<Site> {
         Some(self.window.as_ref()?.site(Cell { column: 0, row: 0 }))
     }
 
-    /// Whether there is a way out, near or far.
+    /// Whether the level has an exit, inside or outside the window.
     pub fn has_exit(&self) -> bool {
         let is_far = self.window.as_ref().is_some_and(|window| window.level().exit().is_some());
         is_far || self.world.things().iter().any(|thing| thing.kind == ThingKind::Exit)
     }
 
-    /// Where the game takes place, as it is now: with its doors as far open as they are, and without
-    /// the keys that were taken.
+    /// The world in its present state: with its doors as they are, and without the keys that were
+    /// taken.
     pub fn world(&self) -> &World {
         &self.world
     }
 
-    /// What the player sees.
+    /// The player's camera.
     #[expect(clippy::missing_panics_doc, reason = "the player stands inside the map")]
     pub fn camera(&self, field_of_view: FieldOfView) -> Camera {
         self.player
@@ -122,43 +135,44 @@ impl Game {
             .expect("the player stands inside the map, where all places are finite")
     }
 
-    /// How high the player's feet are, in cells above the map's own floor.
+    /// The height of the player's feet, in cells above the map's own floor.
     pub fn feet(&self) -> f64 {
         self.player.feet()
     }
 
-    /// Whether the player jumps or falls: nothing is under their feet.
+    /// Whether the player is in the air: jumping or falling.
     pub fn is_airborne(&self) -> bool {
         !self.player.stands(&self.world)
     }
 
-    /// Seconds that have passed in the game, counted in steps.
+    /// The time in the game in seconds, counted in steps.
     pub fn elapsed(&self) -> f64 {
         self.steps as f64 * STEP
     }
 
-    /// What there is to tell the player, such as why a door does not open; for a few seconds.
+    /// A message to the player, such as why a door does not open. It lasts for a few seconds.
     pub fn message(&self) -> Option<&str> {
         self.notice.text()
     }
 
-    /// The names of the keys that the player has found.
+    /// The names of the keys that the player has.
     pub fn keys(&self) -> impl Iterator<Item = &str> {
         self.keys.iter().map(|&key| self.world.key_name(key))
     }
 
-    /// A number that grows whenever anything changes that can be seen, other than what the camera
-    /// tells: a door moves, a key is taken, there is something else to tell.
+    /// A number that grows with every visible change other than the camera: a door moves, a key is
+    /// taken, the message changes.
     pub fn revision(&self) -> u64 {
         self.revision
     }
 
-    /// Whether the player has reached the exit. Nothing moves after that, nor does the clock.
+    /// Whether the player has reached the exit. Nothing moves after that, and the clock stops.
     pub fn is_finished(&self) -> bool {
         self.things_reached().any(|thing| thing.kind == ThingKind::Exit)
     }
 
-    /// The things in the player's cell that are neither above their head nor below their feet.
+    /// The things in the player's cell that are neither above the player's head nor below their
+    /// feet.
     fn things_reached(&self) -> impl Iterator<Item = &Thing> {
         let cell = self.player.cell();
         let heights = self.world.room_in(cell);
@@ -170,15 +184,14 @@ impl Game {
         })
     }
 
-    /// Whether steps with these intents, however many, would change nothing but the clock: the player
-    /// stands still and wants no more, or pushes against what does not give way, all doors are closed,
-    /// and nothing is being told.
+    /// Whether any number of steps with these intents would change nothing but the clock: the
+    /// player stands still or pushes against a wall, all doors are closed, and there is no message.
     pub fn is_at_rest(&self, intents: Intents) -> bool {
         self.quiet_steps(intents) == u64::MAX
     }
 
-    /// For how many steps with these intents nothing happens but that clocks run: the game's own, and
-    /// those of doors that wait to close and of what is being told. [`u64::MAX`] where the game is [at
+    /// The number of steps with these intents in which nothing changes but clocks: the game's own,
+    /// and those of waiting doors and of the message. [`u64::MAX`] if the game is [at
     /// rest](Game::is_at_rest).
     pub fn quiet_steps(&self, intents: Intents) -> u64 {
         if self.is_finished() {
@@ -195,7 +208,7 @@ impl Game {
         waits.into_iter().flatten().min().unwrap_or(u64::MAX)
     }
 
-    /// Lets one step pass, of [`STEP`] seconds, in which the player wants what `intents` says.
+    /// Advances the game by one step of [`STEP`] seconds with these intents.
     pub fn step(&mut self, intents: Intents) {
         if self.is_finished() {
             return;
@@ -214,7 +227,7 @@ impl Game {
         self.steps = self.steps.saturating_add(1);
     }
 
-    /// Moves the window to where the player has gone.
+    /// Moves the window after the player.
     fn dig(&mut self) {
         let Some(window) = &mut self.window else { return };
         if let Some(shift) = window.follow(&mut self.world, self.player.cell()) {
@@ -223,8 +236,8 @@ impl Game {
         }
     }
 
-    /// Lets the clocks run for `steps` steps in which nobody moves: all that as many calls of
-    /// [`Game::step`] do where there are no more of them than [`Game::quiet_steps`].
+    /// Advances the clocks by `steps` steps in which nothing moves. Has the effect of as many calls
+    /// of [`Game::step`] if `steps` is at most [`Game::quiet_steps`].
     pub fn wait(&mut self, steps: u64) {
         if !self.is_finished() {
             self.steps = self.steps.saturating_add(steps);
@@ -233,7 +246,7 @@ impl Game {
         }
     }
 
-    /// The same intents, but that who wants to jump before a door wants to open it.
+    /// The intents, with a jump in front of a door replaced by opening it.
     fn at_a_door(&self, mut intents: Intents) -> Intents {
         let looking = self.player.heading().direction();
         if intents.contains(Intent::Jump)
@@ -246,7 +259,7 @@ impl Game {
         intents
     }
 
-    /// The door that the player is before, if they want to open it or to walk through it.
+    /// The door in front of the player, if they want to open it or walk through it.
     fn door_wanted(&self, intents: Intents) -> Option<(Cell, Door)> {
         if self.world.is_of_walls() {
             return None;
@@ -285,7 +298,7 @@ impl Game {
         }
     }
 
-    /// What a locked door says to who does not have its key.
+    /// The message of a locked door.
     fn refusal(&self, door: Door) -> String {
         let name = door.key.map_or("right", |key| self.world.key_name(key));
         format!("This door needs the {name} key.")

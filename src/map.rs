@@ -18,11 +18,12 @@
 //! assert_eq!((world.grid().width(), world.grid().height()), (4, 3));
 //! ```
 //!
-//! Reading goes in stages, each of which adds what it finds wrong to one list: the TOML, the
-//! definitions of characters, the grid that is drawn with them, and the textures that the grid
-//! uses. A stage works with what the earlier ones could make out, and is silent about
-//! anything that an earlier one has found fault with. Rows of unequal length are a fault: padding
-//! short ones was refused, as a lost character then moves half a wall without a word.
+//! Reading has stages: the TOML, the definitions of the characters, the grid, and the textures that
+//! the grid uses. Each stage adds its faults to one list. A stage uses what the earlier ones could
+//! read, and reports nothing that follows from an earlier fault.
+//!
+//! Rows of unequal length are a fault. Padding short rows was refused: a lost character would
+//! silently move half a wall.
 
 mod air;
 pub mod builtin;
@@ -59,12 +60,12 @@ use layout::Layout;
 pub use textures::{Folder, NoFiles, TextureFileError, TextureFiles};
 use textures::{Surface, Textures};
 
-/// The largest map file, in bytes. The largest grid, in characters of three bytes, has room.
+/// The largest map file, in bytes: room for the largest grid in characters of three bytes.
 pub const MAX_BYTES: usize = 64 << 20;
-/// The most columns, and the most rows, of a grid.
+/// The largest number of columns, and of rows, of a grid.
 pub const MAX_SIDE: u32 = 4096;
 
-/// What a map describes: there are two kinds.
+/// What a map describes.
 #[derive(Clone, Debug, PartialEq)]
 pub enum Level {
     /// A grid of tiles.
@@ -73,19 +74,20 @@ pub enum Level {
     Space(Scene),
 }
 
-/// The world that the map `text` describes. Faults call the map `name`; textures that are not
-/// built in come from `files`.
+/// Parses the map `text` with a grid into a world.
+///
+/// Faults call the map `name`. Textures that are not built in come from `files`.
 ///
 /// # Errors
-/// Everything that is wrong with the map, or that it has no grid but bodies.
+/// All faults of the map. A map of bodies, which has no grid, is a fault.
 pub fn parse(text: &str, name: &str, files: &dyn TextureFiles) -> Result<World, Faults> {
     parse_level(text, name, files)?.into_world(name)
 }
 
-/// As [`parse`], for a map of either kind.
+/// Parses a map of either kind, as [`parse`] does.
 ///
 /// # Errors
-/// Everything that is wrong with the map.
+/// All faults of the map.
 pub fn parse_level(text: &str, name: &str, files: &dyn TextureFiles) -> Result<Level, Faults> {
     if text.len() > MAX_BYTES {
         return Err(too_large(name));
@@ -97,32 +99,32 @@ pub fn parse_level(text: &str, name: &str, files: &dyn TextureFiles) -> Result<L
     }
 }
 
-/// As [`parse`], for a map whose textures are all built in.
+/// Parses a map that uses built-in textures only, as [`parse`] does.
 ///
 /// # Errors
-/// Everything that is wrong with the map, which they call `map`.
+/// All faults of the map, which they call `map`.
 pub fn parse_str(text: &str) -> Result<World, Faults> {
     parse(text, "map", &NoFiles)
 }
 
-/// The world that the map file at `path` describes. Textures that are not built in are files in
-/// its folder, or in folders within that.
+/// Reads the map file at `path`, which has a grid. Textures that are not built in are files in its
+/// folder or below it.
 ///
 /// # Errors
-/// Everything that is wrong with the map, or why the file cannot be read.
+/// All faults of the map, or the reason why the file cannot be read.
 pub fn load(path: &Path) -> Result<World, Faults> {
     load_level(path)?.into_world(&path.display().to_string())
 }
 
-/// As [`load`], for a map of either kind.
+/// Reads a map file of either kind, as [`load`] does.
 ///
 /// # Errors
-/// Everything that is wrong with the map, or why the file cannot be read.
+/// All faults of the map, or the reason why the file cannot be read.
 pub fn load_level(path: &Path) -> Result<Level, Faults> {
     load_level_with(path, &Folder::of(path))
 }
 
-/// As [`load_level`], with textures from elsewhere than the map's folder.
+/// Reads a map file as [`load_level`] does, with textures from `files`.
 ///
 /// # Errors
 /// As [`load_level`].
@@ -137,11 +139,12 @@ pub fn load_level_with(path: &Path, files: &dyn TextureFiles) -> Result<Level, F
     read_level(file.map_err(|error| unreadable(&name, &error))?, &name, files)
 }
 
-/// The level that the map in `input` describes. Faults call the map `name`; textures that are not
-/// built in come from `files`. Of an input that is larger than [`MAX_BYTES`], the rest is not read.
+/// Reads a map of either kind from `input`, at most [`MAX_BYTES`] of it.
+///
+/// Faults call the map `name`. Textures that are not built in come from `files`.
 ///
 /// # Errors
-/// Everything that is wrong with the map, or why it cannot be read.
+/// All faults of the map, or the reason why it cannot be read.
 pub fn read_level(input: impl Read, name: &str, files: &dyn TextureFiles) -> Result<Level, Faults> {
     parse_level(&read_text(input, name)?, name, files)
 }
@@ -187,7 +190,7 @@ fn read_text(input: impl Read, name: &str) -> Result<String, Faults> {
     })
 }
 
-/// At most `limit` bytes of a file: what lies beyond is not read.
+/// Reads at most `limit` bytes of a file.
 fn read_up_to(path: &Path, limit: usize) -> io::Result<Vec<u8>> {
     if fs::metadata(path)?.is_dir() {
         return Err(io::ErrorKind::IsADirectory.into());
@@ -214,7 +217,7 @@ fn unreadable(name: &str, error: &io::Error) -> Faults {
     Faults::of_whole_file(name, message, help)
 }
 
-/// What `text` describes. Where it is not a map, that is added to `faults`.
+/// The level that `text` describes. Where it is not a map, adds that to `faults`.
 fn read(text: &str, files: &dyn TextureFiles, faults: &mut Vec<Fault>) -> Option<Level> {
     let document = document::parse(text, faults);
     let not_toml = std::mem::take(faults);
@@ -237,7 +240,7 @@ fn read(text: &str, files: &dyn TextureFiles, faults: &mut Vec<Fault>) -> Option
         return None;
     };
     let drawing = Drawing::read(grid, text, faults)?;
-    // Where one of the two has a fault, nothing will come of the tiles but further faults.
+    // After a fault in one of the two, tiles would only cause further faults.
     let plain = Covering::from(Paint::Color(Rgb::BLACK));
     let (floor, ceiling) = (floor.unwrap_or(plain), ceiling.unwrap_or(Ceiling::Covered(plain)));
     let mut face = |surface: &Option<Surface<'_>>| textures.paint(surface.as_ref()?, faults);
@@ -273,7 +276,7 @@ fn read(text: &str, files: &dyn TextureFiles, faults: &mut Vec<Fault>) -> Option
     })))
 }
 
-/// The rows of the grid that the map `text` draws, from the north; none where it draws none.
+/// The rows of the grid that the map `text` draws, from the north; none if it has no grid.
 pub(crate) fn rows_of_grid(text: &str) -> Vec<String> {
     let document = document::parse(text, &mut Vec::new());
     let grid = document::entries(&document).find(|entry| entry.key == "grid");
@@ -281,8 +284,8 @@ pub(crate) fn rows_of_grid(text: &str) -> Vec<String> {
     drawn.unwrap_or_default().lines().map(str::to_owned).collect()
 }
 
-/// Adds the places that are not TOML to `faults`, and drops what was found in the same lines: the
-/// table holds a guess at what they mean.
+/// Adds the faults of the TOML to `faults`, and removes other faults in the same lines: the parser
+/// guesses what such lines mean.
 fn keep_apart(faults: &mut Vec<Fault>, not_toml: Vec<Fault>, text: &str) {
     let line_ends: Vec<_> = text.match_indices('\n').map(|(at, _)| at).collect();
     let line = |fault: &Fault| line_ends.partition_point(|&end| end < fault.start());

@@ -1,12 +1,12 @@
-//! What exists: a grid of tiles, the things that stand on it, their colours and textures.
+//! A world: a grid of tiles, the things that stand on it, and their colours and textures.
 //!
-//! A [`World`] is valid by construction: every index in it points at something, its start is on
-//! open floor, and no later stage checks again. It is made by [`map::parse`](crate::map::parse)
-//! and its siblings, which name every fault of a map with its place; building one by hand, with
-//! faults that have no place to name, was refused.
+//! A [`World`] is valid by construction: every index in it points at something, and its start is on
+//! open floor. No later stage checks it again. [`map::parse`](crate::map::parse) and its siblings
+//! make worlds, and report every fault of a map with its place. Building a world by hand was
+//! refused, since its faults would have no place to report.
 //!
-//! A map's world has all doors closed and all keys in their places. What happens to them happens in
-//! a game's own world, so that whoever draws it needs to be handed nothing else.
+//! In the world of a map, all doors are closed and all keys are in their places. A game opens doors
+//! and takes keys in its own copy of the world, so that a renderer needs nothing else.
 
 mod air;
 mod camera;
@@ -50,7 +50,19 @@ use things::Things;
 pub use things::{Thing, ThingKind};
 pub use tile::{Glass, Paint, TextureId, Tile, TileKind};
 
-/// What a level consists of.
+/// The contents of a level.
+///
+/// ```
+/// use cellcaster::map::builtin;
+/// use cellcaster::world::{Cell, FieldOfView};
+///
+/// let world = builtin::LEVELS[0].world()?;
+/// assert!(world.grid().is_solid(0, 0));
+/// assert_eq!(world.start().cell, Cell { column: 1, row: 1 });
+/// let camera = world.start_camera(FieldOfView::default());
+/// assert_eq!(camera.position(), world.start().cell.center());
+/// # Ok::<(), cellcaster::fault::Faults>(())
+/// ```
 #[derive(Clone, Debug, PartialEq)]
 pub struct World {
     title: String,
@@ -66,33 +78,33 @@ pub struct World {
     sprites: Vec<Sprite>,
     things: Things,
     lamplight: Lamplight,
-    /// Whether cells may be lit differently.
+    /// Whether cells may differ in light.
     light_varies: bool,
     keys: Vec<String>,
     ajar: Ajar,
 }
 
-/// Where the player starts.
+/// The place where the player starts.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Start {
     /// The cell in whose middle the player stands.
     pub cell: Cell,
-    /// Which way the player looks.
+    /// The direction in which the player looks.
     pub heading: Heading,
 }
 
 impl World {
-    /// The level's name; empty where the map gives none.
+    /// The name of the level; empty if the map has none.
     pub fn title(&self) -> &str {
         &self.title
     }
 
-    /// What the map tells the player to do, if it says so.
+    /// The goal that the map names, if it does.
     pub fn goal(&self) -> Option<&str> {
         self.goal.as_deref()
     }
 
-    /// Which tile each cell holds.
+    /// The grid: the tile of each cell.
     pub fn grid(&self) -> &Grid {
         &self.grid
     }
@@ -102,26 +114,26 @@ impl World {
         &self.tiles
     }
 
-    /// What `id`, a tile of this world's grid, stands for.
+    /// The tile `id` of the grid.
     ///
     /// # Panics
-    /// Where `id` is from another world that has more tiles.
+    /// If `id` comes from another world that has more tiles.
     pub fn tile(&self, id: TileId) -> Tile {
         self.tiles[usize::from(id.0)]
     }
 
-    /// The heights of the floor and the ceiling in `cell`; off the map, those of the map's own floor.
+    /// The heights of floor and ceiling in `cell`; outside the map, those of the map's own floor.
     pub fn room_in(&self, cell: Cell) -> Heights {
         self.tile_at(cell).unwrap_or(self.ground()).heights
     }
 
-    /// How high the floor in `cell` is, or the top of a wall; 0 off the map.
+    /// The height of the floor in `cell`, or of the top of a wall; 0 outside the map.
     pub fn floor_at(&self, cell: Cell) -> f64 {
         self.tile_at(cell).map_or(0.0, |tile| tile.heights.floor())
     }
 
-    /// How bright it is in `cell`: as its tile says, and what lamps add; of a wall, as its own sides
-    /// are, where it says so.
+    /// The light in `cell`: that of its tile, and what lamps add. For a wall with a light of its
+    /// own, that light.
     pub fn light_in(&self, cell: Cell) -> Light {
         let own = self.tile_at(cell).unwrap_or(self.ground()).light;
         own.unwrap_or(Light::FULL).plus(self.lamplight.at(cell))
@@ -133,15 +145,15 @@ impl World {
         self.lamplight.at(cell)
     }
 
-    /// The texture `id` of this world.
+    /// The texture `id`.
     ///
     /// # Panics
-    /// Where `id` is from another world that has more textures.
+    /// If `id` comes from another world that has more textures.
     pub fn texture(&self, id: TextureId) -> &Texture {
         &self.textures[usize::from(id.0)]
     }
 
-    /// The one colour that stands for `paint`: itself, or the mean of its texture.
+    /// The colour that represents `paint`: itself, or the mean of its texture.
     pub fn mean_color(&self, paint: Paint) -> Rgb {
         match paint {
             Paint::Color(color) => color,
@@ -149,46 +161,46 @@ impl World {
         }
     }
 
-    /// What the floor is laid with where no tile has its own, and beyond the edge of the map.
+    /// The floor of tiles without their own, and outside the map.
     pub fn floor(&self) -> Covering {
         self.floor
     }
 
-    /// What is overhead where no tile has its own ceiling. Beyond the edge of the map is sky.
+    /// The ceiling of tiles without their own. Outside the map there is sky.
     pub fn ceiling(&self) -> Ceiling {
         self.ceiling
     }
 
-    /// The open floor that is as the map says: what `.` stands for.
+    /// The map's own open floor: the tile of `.`.
     pub fn ground(&self) -> Tile {
         self.tiles[0]
     }
 
-    /// What the sky looks like.
+    /// The sky.
     pub fn sky(&self) -> Sky {
         self.sky
     }
 
-    /// What everything fades into, if anything.
+    /// The fog, if the map has any.
     pub fn fog(&self) -> Option<Fog> {
         self.fog
     }
 
-    /// Where the player starts.
+    /// The place where the player starts.
     pub fn start(&self) -> Start {
         self.start
     }
 
-    /// A camera where the player starts.
+    /// A camera at the start.
     pub fn start_camera(&self, field_of_view: FieldOfView) -> Camera {
         let camera = Camera::in_cell(self.start.cell, self.start.heading, field_of_view);
         camera.with_eye(self.floor_at(self.start.cell) + Camera::STANDING).unwrap_or(camera)
     }
 
-    /// The sprite `id` of this world.
+    /// The sprite `id`.
     ///
     /// # Panics
-    /// Where `id` is from another world that has more sprites.
+    /// If `id` comes from another world that has more sprites.
     pub fn sprite(&self, id: SpriteId) -> &Sprite {
         &self.sprites[usize::from(id.0)]
     }

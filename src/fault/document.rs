@@ -1,7 +1,7 @@
-//! TOML with the place of every key and value.
+//! TOML with the place of each key and value.
 //!
-//! Reading into structs through serde was refused: it stops at the first fault, and has lost the
-//! places by the time that the values are looked at together.
+//! Deserializing into structs with serde was refused: it stops at the first fault, and its values
+//! have no places.
 
 use std::collections::BTreeSet;
 use std::ops::Range;
@@ -11,10 +11,11 @@ use toml::de::{DeTable, DeValue};
 
 use super::{Fault, nearest, quoted};
 
-/// In bytes. Of a longer text that is not TOML only the first fault is named: it may have millions.
+/// In bytes. Of a longer text that is not TOML, only the first fault is reported: it may have
+/// millions.
 const LONGEST_RECOVERED: usize = 1 << 20;
 
-/// The document that `text` holds, as far as it is TOML; where it is not is added to `faults`.
+/// Parses `text` as TOML as far as possible; adds faults to `faults`.
 pub(crate) fn parse<'t>(text: &'t str, faults: &mut Vec<Fault>) -> DeTable<'t> {
     let (table, errors) = if text.len() <= LONGEST_RECOVERED {
         DeTable::parse_recoverable(text)
@@ -54,8 +55,7 @@ pub(crate) fn entries<'a, 't>(table: &'a DeTable<'t>) -> impl Iterator<Item = En
 }
 
 impl<'a, 't> Entry<'a, 't> {
-    /// The value as a string; where it is none, that is added to `faults`. The `example` is a whole
-    /// entry.
+    /// The value as a string; adds to `faults` where it is not one. `example` is a whole entry.
     pub(crate) fn string(&self, example: &str, faults: &mut Vec<Fault>) -> Option<&'a str> {
         let DeValue::String(string) = self.value else {
             faults.push(self.wrong_type("a string", example));
@@ -64,7 +64,7 @@ impl<'a, 't> Entry<'a, 't> {
         Some(string)
     }
 
-    /// The value as a table, as [`Entry::string`].
+    /// The value as a table; faults as in [`Entry::string`].
     pub(crate) fn table(&self, example: &str, faults: &mut Vec<Fault>) -> Option<&'a DeTable<'t>> {
         let DeValue::Table(table) = self.value else {
             faults.push(self.wrong_type("a table", example));
@@ -73,7 +73,7 @@ impl<'a, 't> Entry<'a, 't> {
         Some(table)
     }
 
-    /// The value as a number; `None` where it is none.
+    /// The value as a number; `None` if it is not one.
     pub(crate) fn number(&self) -> Option<f64> {
         match self.value {
             DeValue::Integer(integer) => i64::from_str_radix(integer.as_str(), integer.radix())
@@ -84,8 +84,8 @@ impl<'a, 't> Entry<'a, 't> {
         }
     }
 
-    /// The value as a list of two, each as an entry of the same key; where it is something else,
-    /// that is added to `faults`.
+    /// The value as a list of two, each as an entry with the same key; adds to `faults` where it is
+    /// not one.
     pub(crate) fn pair(&self, example: &str, faults: &mut Vec<Fault>) -> Option<[Self; 2]> {
         let DeValue::Array(list) = self.value else {
             faults.push(self.wrong_type("a list of two", example));
@@ -110,7 +110,7 @@ impl<'a, 't> Entry<'a, 't> {
         None
     }
 
-    /// The fault that the value is not what is `wanted`, with an `example` of a whole entry.
+    /// The fault that the value is not what is `wanted`; `example` is a whole entry.
     pub(crate) fn wrong_type(&self, wanted: &str, example: &str) -> Fault {
         let found = match self.value {
             DeValue::String(_) => "a string",
@@ -126,7 +126,7 @@ impl<'a, 't> Entry<'a, 't> {
             .help(format!("write {example}"))
     }
 
-    /// The fault that the key is none of `known`, which are what `owner` may hold.
+    /// The fault that the key is not one of `known`, the keys of `owner`.
     pub(crate) fn unknown_key(&self, owner: &str, known: &[&str]) -> Fault {
         let fault =
             Fault::new(self.key_place.clone(), format!("{owner} has no key {}", quoted(self.key)))

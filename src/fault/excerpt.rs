@@ -1,8 +1,8 @@
-//! The report: each fault with the line that it is in.
+//! The report: each fault with its line.
 //!
-//! Only that line is shown, and of a place that spans several only the first: a map's grid may
-//! have thousands of rows. A long line is cut around the place by the renderer; where it is too
-//! long even to look at, the place stands alone.
+//! Of a place that spans several lines, only the first is shown: the grid of a map may have
+//! thousands. The renderer cuts a long line around the place; if it is too long to be searched, the
+//! place is shown without it.
 
 use std::fmt;
 use std::ops::Range;
@@ -11,12 +11,12 @@ use annotate_snippets::{AnnotationKind, Group, Level, Origin, Renderer, Snippet}
 
 use super::Fault;
 
-/// More than anybody mends in one go.
+/// More faults than anybody corrects in one go.
 const MOST_FAULTS: usize = 100;
-/// In bytes: four times the widest row of a map, in the longest characters.
+/// In bytes: four times the widest row of a map in the longest characters.
 const LONGEST_LINE: usize = 1 << 16;
 
-/// Writes the report on `faults`, which are in the order of their places.
+/// Writes the report on `faults`, which are sorted by place.
 pub(super) fn report(
     f: &mut fmt::Formatter<'_>,
     name: &str,
@@ -56,24 +56,24 @@ fn group<'a>(name: &'a str, fault: &'a Fault, place: Option<Excerpt<'a>>) -> Gro
     group
 }
 
-/// A line and the bytes of it to underline.
+/// A line, and the bytes of it to underline.
 struct Excerpt<'a> {
     line: &'a str,
     number: usize,
     span: Range<usize>,
 }
 
-/// The lines of a text, walked once from its start.
+/// The lines of a text, in one pass from its start.
 struct Lines<'a> {
     text: &'a str,
-    /// Where the current line starts.
+    /// The start of the current line.
     start: usize,
     /// The number of the current line, from 1.
     number: usize,
 }
 
 impl<'a> Lines<'a> {
-    /// The first line of `place`, which does not start before the place asked for last.
+    /// The first line of `place`, which does not start before the last place asked for.
     fn excerpt(&mut self, place: &Range<usize>) -> Excerpt<'a> {
         let place_start = boundary_before(self.text, place.start);
         while let Some(length) = self.text[self.start..place_start].find('\n') {
@@ -87,7 +87,7 @@ impl<'a> Lines<'a> {
     }
 }
 
-/// The last place up to `at` where a character of `text` starts or the text ends.
+/// The last position up to `at` where a character of `text` starts or the text ends.
 fn boundary_before(text: &str, at: usize) -> usize {
     let is_boundary = |&at: &usize| text.is_char_boundary(at);
     (0..=at.min(text.len())).rev().find(is_boundary).unwrap_or_default()

@@ -1,10 +1,10 @@
-//! How a fault speaks of words that somebody wrote: quoted, and with the word they may have meant.
+//! Words in diagnostics: in quotes, and with the most similar known word.
 
-/// Longer than anything that could be a misspelt name.
+/// Longer than any misspelt name.
 const LONGEST_NAME: usize = 40;
 
-/// The one of `known` that `word` most likely was meant to be, if any is near: at most one slip
-/// for every three letters.
+/// The most similar of `known` to `word`, if any is similar: with at most one edit for every three
+/// letters.
 pub(crate) fn nearest<'a>(word: &str, known: &[&'a str]) -> Option<&'a str> {
     if word.len() > LONGEST_NAME {
         return None;
@@ -15,7 +15,7 @@ pub(crate) fn nearest<'a>(word: &str, known: &[&'a str]) -> Option<&'a str> {
     (slips(&name) <= slips_allowed && name.len() > slips_allowed).then_some(name)
 }
 
-/// `word` between double quotes, what does not print escaped, and what is long cut short.
+/// `word` in double quotes, with non-printing characters escaped, shortened if it is long.
 pub(crate) fn quoted(word: &str) -> String {
     match word.char_indices().nth(LONGEST_NAME) {
         Some((end, _)) => format!("{:?}…", &word[..end]),

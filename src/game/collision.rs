@@ -1,9 +1,10 @@
-//! A circle among what blocks: never inside it, never through it, and along it without a catch.
+//! Collision of a circle with what blocks: it is never inside anything, never passes through
+//! anything, and slides along walls.
 //!
-//! One predicate, [`is_clear`], says where the circle may be, and no place is ever accepted that
-//! fails it: a contact that rounding has put a hair inside is backed off along the way that led to
-//! it, to a point that passes. So the circle is clear after a step because it was before. Moving
-//! first and pushing out of walls afterwards was refused: it finds the wrong side of a wall at
+//! The predicate [`is_clear`] says where the circle may be, and no position that fails it is ever
+//! accepted. If rounding puts a contact slightly inside, the circle is moved back along its path to
+//! a position that passes. So the circle is clear after a step because it was clear before. Moving
+//! first and pushing out of walls afterwards was refused: it picks the wrong side of a wall at
 //! speed, and jitters in corners.
 
 mod outline;
@@ -16,55 +17,55 @@ use crate::world::{Cell, Outline};
 pub(super) use place::{Place, Stature};
 use sweep::{Path, first_contact};
 
-/// How many walls a body may touch in one step. A corner is two; who touches more is stuck between
-/// them, and stops.
+/// The number of walls that a body may touch in one step. A corner has two; a body that touches
+/// more is stuck between them, and stops.
 const MOST_CONTACTS: usize = 4;
 
-/// The radius of a circle that can stand in the middle of any open cell: above 0 and at most half
-/// a cell, so that only the eight cells around its own are ever in reach.
+/// The radius of a circle that can stand in the middle of any open cell: above 0 and at most half a
+/// cell, so that only the eight cells around its own are in reach.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub(super) struct Radius(f64);
 
 impl Radius {
-    /// A radius in cells, or `None` where that is outside the range.
+    /// A radius in cells; `None` outside the range.
     pub(super) const fn new(cells: f64) -> Option<Self> {
         if cells > 0.0 && cells <= 0.5 { Some(Self(cells)) } else { None }
     }
 
-    /// It in cells.
+    /// The radius in cells.
     pub(super) const fn cells(self) -> f64 {
         self.0
     }
 }
 
-/// What may be in the way of a circle.
+/// What may block a circle.
 pub(super) trait Obstacles {
-    /// Whether a cell is solid; everything off the map is: nobody walks off the edge of the world.
+    /// Whether a cell is solid. Cells outside the map are: nobody leaves the map.
     fn blocks(&self, column: i64, row: i64) -> bool;
 
-    /// The shape that stands in a cell that does not block, if there is one.
+    /// The shape in a cell that does not block, if there is one.
     fn outline(&self, cell: Cell) -> Option<Outline> {
         _ = cell;
         None
     }
 
-    /// Whether a cell that was touched by a circle around `center` is so no more, because it gives
-    /// way, or because the circle has been lifted onto it.
+    /// Whether a cell touched by a circle around `center` does not block any more, because it gives
+    /// way or because the circle has been lifted onto it.
     fn gives_way(&mut self, column: i64, row: i64, center: DVec2, radius: Radius) -> bool {
         _ = (column, row, center, radius);
         false
     }
 }
 
-/// Where a body is, in cells, and its velocity, in cells per second.
+/// The position of a body, in cells, and its velocity, in cells per second.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub(super) struct Body {
     pub(super) position: DVec2,
     pub(super) velocity: DVec2,
 }
 
-/// Moves a body by `displacement`, however long, and along what stands in its way. It loses the
-/// part of its velocity that points into what it touches.
+/// Moves a body by `displacement`, of any length, and along what blocks it. The body loses the part
+/// of its velocity that points into what it touches.
 pub(super) fn slide<O: Obstacles>(
     obstacles: &mut O,
     body: Body,
@@ -95,7 +96,7 @@ pub(super) fn slide<O: Obstacles>(
     Body { position, velocity: DVec2::ZERO }
 }
 
-/// `vector` without the part that points against `normal`, a unit vector.
+/// `vector` without its part against `normal`, a unit vector.
 fn without_inward(vector: DVec2, normal: DVec2) -> DVec2 {
     vector - normal * vector.dot(normal).min(0.0)
 }
@@ -116,7 +117,7 @@ fn is_clear<O: Obstacles>(obstacles: &O, center: DVec2, radius: Radius) -> bool 
     )
 }
 
-/// Whether a circle around `center` overlaps `cell`, solid or not; it may touch.
+/// Whether a circle around `center` overlaps `cell`, solid or not. Touching is not overlapping.
 pub(super) fn overlaps(center: DVec2, cell: Cell, radius: Radius) -> bool {
     !is_clear_of(center, i64::from(cell.column), i64::from(cell.row), radius)
 }
@@ -125,13 +126,13 @@ fn is_clear_of(center: DVec2, column: i64, row: i64, Radius(radius): Radius) -> 
     square_distance(center, column, row) >= radius * radius
 }
 
-/// The square of the distance from `point` to the nearest point of a cell.
+/// The squared distance from `point` to the nearest point of a cell.
 fn square_distance(point: DVec2, column: i64, row: i64) -> f64 {
     let low = DVec2::new(column as f64, row as f64);
     (low - point).max(point - (low + DVec2::ONE)).max(DVec2::ZERO).length_squared()
 }
 
-/// The cell at a place that may be off the map to the west or to the north.
+/// The cell at a column and a row; `None` where one of them is negative.
 fn cell_on_map(column: i64, row: i64) -> Option<Cell> {
     Some(Cell { column: u32::try_from(column).ok()?, row: u32::try_from(row).ok()? })
 }

@@ -1,13 +1,13 @@
-//! What doors do: they open to who walks up to them, wait, and close behind them.
+//! Doors: they open, wait and close.
 //!
-//! A door is opened by the wish to open it, or by walking into it, within [`REACH`]. It takes
-//! [`TRAVEL`] steps to open, stays open for [`STAY`], and closes as slowly as it opened; one that is
-//! wanted open again turns back. How far it is open is computed from the steps that it has moved, not
-//! from how far it was before.
+//! A door opens when the player wants to open it or walks into it, within [`REACH`]. It takes
+//! [`TRAVEL`] steps to open, stays open for [`STAY`] steps, and closes in [`TRAVEL`] steps. A
+//! closing door that is opened turns back. Its position is computed from the number of steps, not
+//! from its last position.
 //!
-//! Nobody is ever inside a door: its cell is solid unless the door is all open, and it does not begin
-//! to close while anybody touches the cell. A door that pushes people out of its way was refused:
-//! they may have nowhere to go.
+//! Nobody is ever inside a door: its cell is solid unless the door is fully open, and the door does
+//! not begin to close while anybody touches the cell. A door that pushes players away was refused:
+//! there may be no room for them.
 
 use glam::DVec2;
 
@@ -19,10 +19,10 @@ use crate::world::{Cell, Door, Opening, TileKind, World};
 const TRAVEL: u32 = 36;
 /// Steps that a door stays open: 4 seconds.
 const STAY: u32 = 240;
-/// How far a door's cell may be from who opens it, in cells.
+/// How far a door's cell may be from the player who opens it, in cells.
 const REACH: f64 = 0.75;
 
-/// The doors that are not closed and at rest, in the order in which they were opened.
+/// The doors that are not closed, in the order in which they were opened.
 #[derive(Clone, Debug, PartialEq, Default)]
 pub(super) struct Doors {
     moving: Vec<MovingDoor>,
@@ -36,16 +36,16 @@ struct MovingDoor {
 
 #[derive(Clone, Copy, Debug, PartialEq)]
 enum Phase {
-    /// So many steps from closed.
+    /// The number of steps from closed.
     Opening(u32),
-    /// For so many steps to come.
+    /// The number of steps left.
     Open(u32),
-    /// So many steps from closed.
+    /// The number of steps from closed.
     Closing(u32),
 }
 
 impl Doors {
-    /// Opens the door in `cell`, unless it is being opened already.
+    /// Opens the door in `cell`, unless it is opening already.
     pub(super) fn open(&mut self, cell: Cell) {
         match self.moving.iter_mut().find(|door| door.cell == cell) {
             None => self.moving.push(MovingDoor { cell, phase: Phase::Opening(0) }),
@@ -63,8 +63,8 @@ impl Doors {
         door.is_none_or(|door| matches!(door.phase, Phase::Closing(_)))
     }
 
-    /// Lets one step pass for the doors of `world`, where `is_occupied` tells which cells somebody
-    /// touches. Tells whether any door has moved.
+    /// Advances the doors of `world` by one step; `is_occupied` says which cells a player touches.
+    /// Returns whether any door has moved.
     pub(super) fn step(&mut self, world: &mut World, is_occupied: impl Fn(Cell) -> bool) -> bool {
         let mut has_moved = false;
         self.moving.retain_mut(|door| {
@@ -80,8 +80,8 @@ impl Doors {
         has_moved
     }
 
-    /// Opens the doors of `world`, the same ones in a window that has moved and shows them closed, as
-    /// far as they were open. Those that are out of it are closed.
+    /// Opens the doors of `world` as far as they were open, after the window has moved by `shift`
+    /// and shows them closed. Doors outside it are closed.
     pub(super) fn shift(&mut self, world: &mut World, shift: Shift) {
         self.moving.retain_mut(|door| match shift.cell(door.cell) {
             Some(cell) => {
@@ -93,7 +93,7 @@ impl Doors {
         });
     }
 
-    /// For how many steps no door begins, continues or ends to move; `None` for ever.
+    /// The number of steps in which no door moves; `None` if none ever will.
     pub(super) fn quiet_steps(&self) -> Option<u64> {
         let quiet = self.moving.iter().map(|door| match door.phase {
             Phase::Open(steps) => u64::from(steps),
@@ -102,7 +102,7 @@ impl Doors {
         quiet.min()
     }
 
-    /// Lets `steps` steps pass, no more than [`Doors::quiet_steps`].
+    /// Advances the doors by `steps`, at most [`Doors::quiet_steps`].
     pub(super) fn wait(&mut self, steps: u64) {
         for door in &mut self.moving {
             if let Phase::Open(left) = &mut door.phase {
@@ -113,7 +113,7 @@ impl Doors {
 }
 
 impl MovingDoor {
-    /// Lets one step pass, and tells whether the door is still anything but closed.
+    /// Advances the door by one step, and returns whether it is not closed yet.
     fn step(&mut self, is_occupied: bool) -> bool {
         self.phase = match self.phase {
             Phase::Opening(steps) if steps + 1 < TRAVEL => Phase::Opening(steps + 1),
@@ -137,13 +137,13 @@ impl Phase {
     }
 }
 
-/// From 0 to 1 as `part` does, but slow at both ends.
+/// Maps `part` from 0..1 to 0..1 with a slow start and end.
 fn eased(part: f64) -> f64 {
     part * part * (3.0 - 2.0 * part)
 }
 
-/// The door that somebody at `position` is before who looks or walks along `direction`, a vector of
-/// length 1. `None` where none is within reach.
+/// The door in front of a player at `position` who looks or walks along `direction`, a unit vector;
+/// `None` if none is within reach.
 pub(super) fn door_ahead(world: &World, position: DVec2, direction: DVec2) -> Option<(Cell, Door)> {
     let ray = Ray::new(position, direction).ok()?;
     let cell = Walk::new(world.grid(), &ray).first_solid()?;

@@ -1,11 +1,12 @@
-//! Exits: whether the player can get to one at all.
+//! Whether the player can reach an exit.
 //!
-//! What the player can reach is taken too large, so that no exit is said to be out of reach that is
-//! not: they run, jump and fly as far as speed and gravity ever carry them, over whatever leaves a gap to
-//! duck into, past every shape, through every door whose key they have found. A flight is followed from a
-//! cell only where the floor beside it is lower; elsewhere the cells beside it fly as far.
+//! The search overestimates what the player can reach, so that it never reports a reachable exit as
+//! out of reach: the player runs, jumps and flies as far as speed and gravity allow, through every
+//! gap high enough to duck into, past every shape, and through every door whose key they have
+//! found. A flight is followed only from cells next to a lower floor; the neighbours of other cells
+//! can fly as far.
 //!
-//! Playing at random was refused: that it finds no way says little.
+//! Random play was refused: not finding a way proves little.
 
 use std::collections::BTreeSet;
 
@@ -14,8 +15,7 @@ use super::player::{JUMP_HEIGHT, RADIUS, RUN, STEP_HEIGHT};
 use super::posture::DUCKING;
 use crate::world::{Cell, Door, Gap, KeyId, ThingKind, Tile, TileKind, World};
 
-/// Whether `world` has an exit and the player can reach none, whatever they do. `false` where there is
-/// no exit: it is a world to walk around in.
+/// Whether `world` has an exit and the player cannot reach any. `false` if there is no exit.
 ///
 /// ```
 /// let level = |grid: &str| {
@@ -32,32 +32,32 @@ pub fn is_exit_out_of_reach(world: &World) -> bool {
     has_exit && !Reach::new(world).everywhere(is_exit)
 }
 
-/// Where somebody gets who has some keys.
+/// The search with a set of keys.
 struct Reach<'a> {
     world: &'a World,
     keys: BTreeSet<KeyId>,
-    /// What is open where each tile is and nothing stands.
+    /// The gaps of each tile.
     of_tiles: Vec<Gaps>,
-    /// For each cell, on which of its floors they have stood, a bit for each.
+    /// For each cell, the floors that have been reached, one bit for each.
     stood: Vec<u8>,
-    /// For each cell, the last flight that passed it.
+    /// For each cell, the last flight that has passed it.
     passed: Vec<u32>,
     flights: u32,
     waiting: Vec<Place>,
-    /// The cells that the flight goes on from.
+    /// The cells from which the flight goes on.
     ahead: Vec<Cell>,
 }
 
-/// Where somebody stands.
+/// A position that has been reached.
 #[derive(Clone, Copy)]
 struct Place {
     cell: Cell,
-    /// How high the feet are, in cells.
+    /// The height of the feet, in cells.
     height: f64,
 }
 
-/// What is open in a cell. A tile has two gaps, a shape may cut one and leave a way beside it, and a
-/// thing may cut one more.
+/// The gaps of a cell. A tile has two. A shape may divide one and leave a way beside it, and a
+/// thing may divide one more.
 type Gaps = [Option<Gap>; 8];
 
 impl<'a> Reach<'a> {
@@ -75,7 +75,7 @@ impl<'a> Reach<'a> {
         }
     }
 
-    /// Goes everywhere, until that `is_goal`; tells whether it got there.
+    /// Searches everything, or until `is_goal`; returns whether it was found.
     fn everywhere(mut self, is_goal: impl Fn(Cell) -> bool) -> bool {
         loop {
             let keys = self.keys.len();
@@ -95,14 +95,14 @@ impl<'a> Reach<'a> {
                 }
                 self.go_on(place);
             }
-            // A door that is open now may lead on from anywhere.
+            // A door that opens now may lead on from anywhere.
             if self.keys.len() == keys {
                 return false;
             }
         }
     }
 
-    /// Goes to the cells beside a place, and as far as a flight from there leads.
+    /// Visits the cells beside a position, and those that a flight from it reaches.
     fn go_on(&mut self, from: Place) {
         self.flights += 1;
         self.pass(from.cell);
@@ -128,7 +128,7 @@ impl<'a> Reach<'a> {
         }
     }
 
-    /// Stands on all floors of `cell` that are not higher than that; tells whether there are any.
+    /// Reaches all floors of `cell` up to a height; returns whether there are any.
     fn land(&mut self, cell: Cell, highest: f64) -> bool {
         let Some(index) = self.index(cell) else { return false };
         let gaps = self.gaps(cell);
@@ -159,7 +159,7 @@ impl<'a> Reach<'a> {
         is_on_map.then(|| cell.row as usize * width as usize + cell.column as usize)
     }
 
-    /// What is open in a cell to somebody, and high enough to duck in.
+    /// The gaps of a cell that are high enough to duck in.
     fn gaps(&self, cell: Cell) -> Gaps {
         let Some(id) = self.world.grid().tile(cell.column.into(), cell.row.into()) else {
             return Gaps::default();
@@ -180,7 +180,7 @@ impl<'a> Reach<'a> {
     }
 }
 
-/// What is open where such a tile is, to somebody who has those keys.
+/// The gaps of a tile for a player with these keys.
 fn open_in(tile: &Tile, keys: &BTreeSet<KeyId>) -> Vec<Gap> {
     let gaps: Vec<Gap> = tile.gaps().collect();
     let standing = Gap { bottom: tile.heights.floor(), top: tile.top_of_what_stands() };
@@ -189,7 +189,7 @@ fn open_in(tile: &Tile, keys: &BTreeSet<KeyId>) -> Vec<Gap> {
             without(&gaps, standing)
         }
         TileKind::Mask(_) | TileKind::Glass(_) => without(&gaps, standing),
-        // There may be a way beside it, and its top is a floor as well.
+        // There may be a way beside it, and its top is a floor.
         TileKind::Shape(_) => [without(&gaps, standing), gaps].concat(),
         TileKind::Open
         | TileKind::Door(_)
@@ -199,7 +199,7 @@ fn open_in(tile: &Tile, keys: &BTreeSet<KeyId>) -> Vec<Gap> {
     }
 }
 
-/// Those of `gaps` in which there is room for somebody who ducks.
+/// The `gaps` that are high enough to duck in.
 fn high_enough(gaps: Vec<Gap>) -> Gaps {
     let mut left = Gaps::default();
     let high = gaps.into_iter().filter(|gap| gap.height() >= DUCKING);
@@ -207,7 +207,7 @@ fn high_enough(gaps: Vec<Gap>) -> Gaps {
     left
 }
 
-/// How high the feet may be of somebody who leaves a place and touches `cell` for the first time.
+/// How high the feet may be when a player who leaves a position first touches `cell`.
 fn highest(from: Place, cell: Cell) -> f64 {
     let apart = |one: u32, other: u32| f64::from(one.abs_diff(other).saturating_sub(1));
     let columns = apart(from.cell.column, cell.column);
@@ -222,7 +222,7 @@ fn highest(from: Place, cell: Cell) -> f64 {
     from.height + JUMP_HEIGHT - GRAVITY / 2.0 * falling * falling
 }
 
-/// The cells to the west, the east, the north and the south of one.
+/// The neighbours of a cell in the west, east, north and south.
 fn beside(Cell { column, row }: Cell) -> impl Iterator<Item = Cell> {
     let at = |column: Option<u32>, row: Option<u32>| Some(Cell { column: column?, row: row? });
     [
@@ -235,7 +235,7 @@ fn beside(Cell { column, row }: Cell) -> impl Iterator<Item = Cell> {
     .flatten()
 }
 
-/// What is left of gaps below and above what fills a part of them.
+/// The parts of gaps below and above what fills a part of them.
 fn without(gaps: &[Gap], filled: Gap) -> Vec<Gap> {
     let left = gaps.iter().flat_map(|&gap| {
         let is_apart = filled.top <= gap.bottom || gap.top <= filled.bottom;
@@ -264,7 +264,7 @@ mod tests {
     fn what_is_walled_in_is_out_of_reach() {
         assert!(!is_out_of_reach("@..X", ""));
         assert!(is_out_of_reach("@.#X", ""));
-        // Nobody slips between two corners.
+        // There is no way between two corners.
         assert!(is_out_of_reach("@#\n#X", ""));
         assert!(!is_out_of_reach("@#\n.X", ""));
         assert!(is_out_of_reach("@gX", "'g'.glass = '#ffffff'"));

@@ -1,15 +1,15 @@
-//! Falling and rising: a parabola between a floor and a ceiling.
+//! Falling and jumping: a parabola between a floor and a ceiling.
 //!
-//! Its times are known: when it lands, when it hits its head, when it is at its highest. A step is
-//! solved up to the first of them and on from there, so no step is too long and none too short, two
-//! steps are the same as one of their sum, and nobody falls through a floor. Adding `gravity * dt` to
-//! the speed and that to the height was refused: how high one jumps then depends on the step, and
-//! a fast fall has to be stopped after it has gone too far.
+//! The times of landing, of hitting the ceiling and of the highest point are known in closed form.
+//! A step is solved up to the first of them, and on from there. Therefore the result does not
+//! depend on the length of steps, and nobody falls through a floor. Adding `gravity * dt` to the
+//! speed was refused: the height of a jump would depend on the step, and a fast fall would have to
+//! be stopped after going too far.
 
-/// Cells per second, each second.
+/// Cells per second squared.
 pub(super) const GRAVITY: f64 = 12.0;
 
-/// How high something is that falls or rises, and how fast.
+/// The height and the vertical speed of a body.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub(super) struct Flight {
     /// In cells.
@@ -18,7 +18,7 @@ pub(super) struct Flight {
     pub(super) speed: f64,
 }
 
-/// How low and how high something may be: both included, the ceiling no lower than the floor, and
+/// The lowest and the highest position, both included. The ceiling is not below the floor; both are
 /// infinite where there is none.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub(super) struct Room {
@@ -27,8 +27,8 @@ pub(super) struct Room {
 }
 
 impl Flight {
-    /// The flight after `duration` seconds in `room`, in which it is as yet. It ends on the floor,
-    /// and begins to fall where it meets the ceiling.
+    /// The flight after `duration` seconds in `room`, where it is now. It ends on the floor, and
+    /// begins to fall at the ceiling.
     pub(super) fn after(self, duration: f64, room: Room) -> Self {
         match self.time_to_ceiling(room.ceiling) {
             Some(time) if time < duration => {
@@ -39,14 +39,14 @@ impl Flight {
         }
     }
 
-    /// When it meets a ceiling on its way up, in seconds.
+    /// The time until it meets a ceiling on the way up, in seconds.
     fn time_to_ceiling(self, ceiling: f64) -> Option<f64> {
         let way = ceiling - self.height;
         let left = self.speed * self.speed - 2.0 * GRAVITY * way;
         (self.speed > 0.0 && left > 0.0).then(|| 2.0 * way / (self.speed + left.sqrt()))
     }
 
-    /// The flight after `duration` seconds, on a way that no ceiling ends.
+    /// The flight after `duration` seconds without a ceiling.
     fn falling(self, duration: f64, room: Room) -> Self {
         if duration >= self.time_to_floor(room.floor) {
             return Self { height: room.floor, speed: 0.0 };
@@ -56,11 +56,11 @@ impl Flight {
         Self { height: height.clamp(room.floor, room.ceiling), speed }
     }
 
-    /// When it lands, in seconds.
+    /// The time until it lands, in seconds.
     fn time_to_floor(self, floor: f64) -> f64 {
         let way = self.height - floor;
         let at_floor = (self.speed * self.speed + 2.0 * GRAVITY * way).sqrt();
-        // Of the two ways to write the solution, the one that adds up what has one sign.
+        // Of the two forms of the solution, this one adds terms of the same sign.
         if self.speed > 0.0 {
             (self.speed + at_floor) / GRAVITY
         } else if way > 0.0 {
@@ -96,7 +96,7 @@ mod tests {
             let flight = Flight { height, speed };
             let twice = flight.after(first, room).after(second, room);
             let once = flight.after(first + second, room);
-            // How fast it is at the ceiling tells little of when it was there.
+            // The speed at the ceiling says little about the time there.
             prop_assert!((twice.height - once.height).abs() < 1e-6, "{twice:?}, {once:?}");
             let is_landing = twice.height < 1e-6;
             prop_assert!(is_landing || (twice.speed - once.speed).abs() < 1e-6);

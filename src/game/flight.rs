@@ -1,9 +1,9 @@
-//! A flight through a scene of bodies: who looks around floats, and enters no body.
+//! Flying through a scene of bodies: the player floats, and enters no body.
 //!
-//! All bodies are convex. From where the player is, each is therefore behind a plane through its
-//! nearest point, and a way that stays on the near side of all those planes enters none of them,
-//! however long it is: the way is cut down to that, which makes it slide along what it meets. Moving
-//! first and pushing out afterwards was refused: between two bodies that ends inside one of them.
+//! All bodies are convex. Each is therefore behind a plane through its point nearest to the player,
+//! and a path on the near side of all these planes enters none of them. The path is clipped to
+//! these half-spaces, which makes the player slide along bodies. Moving first and pushing out
+//! afterwards was refused: between two bodies that ends inside one of them.
 
 use glam::{DVec2, DVec3};
 
@@ -16,12 +16,12 @@ use crate::world::{FieldOfView, Heading};
 
 /// How fast the eye is raised or lowered, in radians per second.
 const RAISE: f64 = 0.8;
-/// The same, for who aims.
+/// The same while aiming.
 const AIM_UPWARDS: f64 = 0.2;
-/// How often the way is cut down, at most: between two planes, some is cut off each time.
+/// The most clips of one path: between two planes, each clip removes a part.
 const CUTS: usize = 8;
 
-/// A scene, who moves in it, and for how long.
+/// A scene, a player in it, and the time since the start.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Flight {
     scene: Scene,
@@ -42,7 +42,7 @@ struct Player {
 }
 
 impl Flight {
-    /// A flight at its beginning: the player is still, at the scene's start.
+    /// A flight at its start: the player is still, at the scene's start.
     pub fn new(scene: Scene) -> Self {
         let start = scene.start;
         let player = Player {
@@ -56,8 +56,8 @@ impl Flight {
         Self { scene, player, steps: 0 }
     }
 
-    /// A flight through `scene` that begins where this one is: the player is still, in the same place,
-    /// and looks the same way, if there is room for that; otherwise they are at the scene's start.
+    /// A flight in another scene that continues this one: the player is still, at the same position
+    /// with the same view. If there is no room, the player is at the scene's start.
     #[must_use]
     pub fn begun_again_in(&self, scene: Scene) -> Self {
         let Player { position, heading, elevation, .. } = self.player;
@@ -70,40 +70,40 @@ impl Flight {
         Self { player, ..begun }
     }
 
-    /// Where the flight takes place.
+    /// The scene.
     pub fn scene(&self) -> &Scene {
         &self.scene
     }
 
-    /// What the player sees.
+    /// The player's camera.
     pub fn camera(&self, field_of_view: FieldOfView) -> Camera {
         let Player { position, heading, elevation, .. } = self.player;
-        // Nobody gets to where no camera can be.
+        // The player is never where no camera can be.
         Camera::new(position, heading, field_of_view)
             .unwrap_or_else(|| self.scene.start_camera(field_of_view))
             .with_elevation(elevation)
     }
 
-    /// Seconds that have passed, counted in steps.
+    /// The time in seconds, counted in steps.
     pub fn elapsed(&self) -> f64 {
         self.steps as f64 * STEP
     }
 
-    /// For how many steps with these intents nothing happens but that the clock runs: none, or
+    /// The number of steps with these intents in which nothing changes but the clock: 0 or
     /// [`u64::MAX`].
     pub fn quiet_steps(&self, intents: Intents) -> u64 {
         let is_at_rest = self.player.stepped(&self.scene, intents) == self.player;
         if is_at_rest { u64::MAX } else { 0 }
     }
 
-    /// Lets one step pass, of [`STEP`] seconds, in which the player wants what `intents` says. Who
-    /// wants to jump, or to open something, rises; who wants to duck sinks.
+    /// Advances the flight by one step of [`STEP`] seconds with these intents. Jumping and opening
+    /// rise, ducking sinks.
     pub fn step(&mut self, intents: Intents) {
         self.player = self.player.stepped(&self.scene, intents);
         self.wait(1);
     }
 
-    /// Lets the clock run for `steps` steps in which nobody moves.
+    /// Advances the clock by `steps` steps in which nothing moves.
     pub fn wait(&mut self, steps: u64) {
         self.steps = self.steps.saturating_add(steps);
     }
@@ -156,13 +156,13 @@ impl Player {
         }
     }
 
-    /// `way` and `velocity` without what leads into bodies.
+    /// `way` and `velocity` without their parts into bodies.
     fn cut_down(self, scene: &Scene, mut way: DVec3, mut velocity: DVec3) -> (DVec3, DVec3) {
         for _ in 0..CUTS {
             let before = way;
             for body in &scene.bodies {
                 let (clearance, outwards) = body.shape.clearance(self.position);
-                // What is left of it, so that rounding leads no further.
+                // The rest of it, so that rounding leads no further.
                 let room = (clearance - EYE_ROOM - SLACK).max(0.0);
                 let too_far = -outwards.dot(way) - room;
                 if too_far > 0.0 {
@@ -178,7 +178,7 @@ impl Player {
     }
 }
 
-/// How much further from bodies than they must the player stops, in cells.
+/// How much farther from bodies than necessary the player stops, in cells.
 const SLACK: f64 = 1e-9;
 
 /// Whether the player can be at `position`.
@@ -187,7 +187,7 @@ fn is_free(scene: &Scene, position: DVec3) -> bool {
         && Camera::new(position, Heading::default(), FieldOfView::default()).is_some()
 }
 
-/// The velocity that the player would have after a while in empty space.
+/// The velocity that the player approaches in empty space.
 fn wanted_velocity(heading: Heading, intents: Intents) -> DVec3 {
     let forward = intents.balance(Intent::Forward, Intent::Back);
     let right = intents.balance(Intent::StrafeRight, Intent::StrafeLeft);
@@ -207,7 +207,7 @@ mod tests {
     use crate::space::{Block, Body, Coat, Plane, Shape, Sphere, Start};
     use crate::world::Rgb;
 
-    /// A start between a floor, a ball, a wall that leans, and a box.
+    /// A start between a floor, a ball, an inclined wall and a box.
     fn scene(degrees: f64) -> Scene {
         let shapes = [
             Shape::Plane(Plane::new(DVec3::ZERO, DVec3::Z).unwrap()),
@@ -257,7 +257,7 @@ mod tests {
         }
     }
 
-    /// On which side of its planes a place is.
+    /// On which side of the planes a position is.
     fn flight_sides(scene: &Scene, at: DVec3) -> Vec<bool> {
         let planes = scene.bodies.iter().filter_map(|body| match body.shape {
             Shape::Plane(plane) => Some(plane.normal().dot(at - plane.point()) > 0.0),

@@ -1,21 +1,21 @@
-//! How far up or down the player looks.
+//! Pitch control: looking up and down.
 //!
-//! Nobody's gaze wanders back by itself: who looks up at something may want to walk around it. A key
-//! to look straight ahead again takes it back, all the way, even if it is only tapped.
+//! The pitch never returns by itself, since the player may want to walk around something that they
+//! look up at. A key to look ahead returns it fully, even if it is only tapped.
 
 use super::STEP;
 use super::intent::{Intent, Intents};
 use super::motion::{Glide, approach};
 use crate::world::Pitch;
 
-/// How fast it moves, as a slope, per second; and for who aims.
+/// How fast the pitch changes, as a slope per second; and while aiming.
 const LOOK: f64 = 0.8;
 const AIM: f64 = 0.2;
 /// How fast such a motion begins and ends, per second.
 const FRICTION: f64 = 20.0;
-/// How fast it goes back to straight ahead, per second.
+/// How fast it returns to straight ahead, per second.
 const RETURN: f64 = 10.0;
-/// What is less is nothing, as a slope or a slope per second: less than a row of pixels.
+/// Less than this is nothing, as a slope or a slope per second: it is less than a row of pixels.
 const STILL: f64 = 1e-3;
 
 #[derive(Clone, Copy, Debug, PartialEq, Default)]
@@ -27,7 +27,7 @@ pub(super) struct Gaze {
 }
 
 impl Gaze {
-    /// The gaze one step later.
+    /// The pitch after one step.
     #[must_use]
     pub(super) fn after_a_step(self, intents: Intents) -> Self {
         let upwards = intents.balance(Intent::LookUp, Intent::LookDown);

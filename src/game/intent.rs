@@ -1,14 +1,14 @@
-//! What the player wants, free of keys: which key means what, and for how long it counts as held,
-//! is decided where keys are read.
+//! Intents: what the player wants, independent of keys. The bindings of keys, and how long a key
+//! counts as held, are decided elsewhere.
 
 use std::fmt;
 
 use super::look::Look;
 
-/// One thing that the player may want to do.
+/// One action that the player may want.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash, PartialOrd, Ord)]
 pub enum Intent {
-    /// Walk where the player looks.
+    /// Walk ahead.
     Forward,
     /// Walk backwards.
     Back,
@@ -30,11 +30,11 @@ pub enum Intent {
     LookUp,
     /// Look further down.
     LookDown,
-    /// Look level again, neither up nor down.
+    /// Look straight ahead.
     LookAhead,
-    /// Jump; before a door that is not open, open it instead.
+    /// Jump; in front of a door that is not open, open it instead.
     Jump,
-    /// Make oneself small for as long as this is wanted.
+    /// Duck while this is wanted.
     Duck,
     /// Turn anticlockwise by exactly 5 degrees, once.
     FineLeft,
@@ -45,7 +45,7 @@ pub enum Intent {
 }
 
 impl Intent {
-    /// All of them.
+    /// All intents.
     pub const ALL: [Self; 17] = [
         Self::Forward,
         Self::Back,
@@ -66,7 +66,7 @@ impl Intent {
         Self::AboutFace,
     ];
 
-    /// Whether nobody wants both at once.
+    /// Whether the two exclude each other.
     pub fn opposes(self, other: Self) -> bool {
         use Intent::{Back, Forward, LookDown, LookUp, StrafeLeft, StrafeRight};
         use Intent::{TurnLeft, TurnRight};
@@ -75,7 +75,7 @@ impl Intent {
         pairs.contains(&(self, other)) || pairs.contains(&(other, self))
     }
 
-    /// What files call it.
+    /// The name in files.
     pub fn name(self) -> &'static str {
         match self {
             Self::Forward => "forward",
@@ -98,23 +98,22 @@ impl Intent {
         }
     }
 
-    /// The one of that name.
+    /// The intent with that name.
     pub(super) fn named(name: &str) -> Option<Self> {
         Self::ALL.into_iter().find(|intent| intent.name() == name)
     }
 }
 
-/// A set of intents: all that the player wants at one time, and by how much they turn and tilt in each
-/// step of it.
+/// A set of intents, and the angles by which the player turns and tilts in each step.
 #[derive(Clone, Copy, PartialEq, Eq, Hash, Default)]
 pub struct Intents {
-    /// One bit for each intent, by its place in the enum.
+    /// One bit for each intent, by its position in the enum.
     bits: u32,
     look: Look,
 }
 
 impl Intents {
-    /// The empty set: the player wants nothing.
+    /// The empty set.
     pub const fn new() -> Self {
         Self { bits: 0, look: Look::NONE }
     }
@@ -124,23 +123,23 @@ impl Intents {
         self.bits |= bit(intent);
     }
 
-    /// Takes `intent` out.
+    /// Removes `intent`.
     pub fn remove(&mut self, intent: Intent) {
         self.bits &= !bit(intent);
     }
 
-    /// Whether `intent` is among them.
+    /// Whether `intent` is in the set.
     pub fn contains(self, intent: Intent) -> bool {
         self.bits & bit(intent) != 0
     }
 
-    /// The same intents, and by how much the player turns and tilts in each step.
+    /// The intents with these angles in each step.
     #[must_use]
     pub fn with_look(self, look: Look) -> Self {
         Self { look, ..self }
     }
 
-    /// By how much the player turns and tilts in each step.
+    /// The angles by which the player turns and tilts in each step.
     pub fn look(self) -> Look {
         self.look
     }
@@ -150,12 +149,12 @@ impl Intents {
         self == Self::new()
     }
 
-    /// The intents in it, in the order of [`Intent::ALL`].
+    /// The intents of the set, in the order of [`Intent::ALL`].
     pub fn iter(self) -> impl Iterator<Item = Intent> {
         Intent::ALL.into_iter().filter(move |&intent| self.contains(intent))
     }
 
-    /// 1 where only `toward` is wanted, -1 where only `against` is, and 0 where they cancel.
+    /// 1 if only `toward` is wanted, −1 if only `against` is, 0 otherwise.
     pub(super) fn balance(self, toward: Intent, against: Intent) -> f64 {
         f64::from(i8::from(self.contains(toward)) - i8::from(self.contains(against)))
     }

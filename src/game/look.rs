@@ -1,29 +1,30 @@
-//! Turning and tilting by an amount, rather than for a time: what a pointer does.
+//! Turning and tilting by an angle rather than for a time, as a pointer does.
 //!
-//! An amount is in whole hundredths of a degree, so that a script holds every digit of it and plays
-//! the same again, bit for bit. It takes effect at once: the pointer's own motion begins and ends
-//! smoothly. Turning it into a time to turn for was refused: a step is 2.3°, more than a hand aims by.
+//! Angles are whole hundredths of a degree, so that a script stores them without loss and replays
+//! them bit for bit. They take effect at once, because a pointer's motion is smooth already.
+//! Converting an angle into a time of turning was refused: a step turns by 2.3°, which is coarser
+//! than a hand can aim.
 
 use std::fmt;
 
-/// By how much the player turns and tilts within one step.
+/// The angles by which the player turns and tilts in one step.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Hash)]
 pub struct Look {
     /// Clockwise as seen from above, in hundredths of a degree.
     pub turn: i16,
-    /// Upwards, in hundredths of a degree: of the horizon in a grid, of the eye in a scene of bodies.
+    /// Upwards, in hundredths of a degree: the horizon in a grid, the eye in a scene of bodies.
     pub tilt: i16,
 }
 
-/// What files call the two.
+/// The names of both in files.
 pub(super) const TURN: &str = "turn";
 pub(super) const TILT: &str = "tilt";
 
 impl Look {
-    /// Neither turns nor tilts.
+    /// No turn and no tilt.
     pub const NONE: Self = Self { turn: 0, tilt: 0 };
 
-    /// How many units make a degree.
+    /// Units in a degree.
     pub const PER_DEGREE: i16 = 100;
 
     /// Clockwise, in radians.
@@ -36,7 +37,7 @@ impl Look {
         radians(self.tilt)
     }
 
-    /// The words that a script has for it: none, one or two.
+    /// The words of a script for it: none, one or two.
     pub(super) fn words(self) -> impl Iterator<Item = String> {
         let amounts = [(TURN, self.turn), (TILT, self.tilt)];
         let amounts = amounts.into_iter().filter(|&(_, amount)| amount != 0);
@@ -48,7 +49,7 @@ fn radians(hundredths: i16) -> f64 {
     (f64::from(hundredths) / f64::from(Look::PER_DEGREE)).to_radians()
 }
 
-/// Hundredths of a degree, written as degrees: all digits, and no more.
+/// Hundredths of a degree, written in degrees with the necessary digits.
 struct Degrees(i16);
 
 impl fmt::Display for Degrees {
@@ -57,8 +58,8 @@ impl fmt::Display for Degrees {
     }
 }
 
-/// The hundredths of a degree that `text` says in degrees; `None` for what is no number, has parts of
-/// a hundredth, is nothing or too much.
+/// The hundredths of a degree that `text` gives in degrees; `None` if it is not a number, is not a
+/// whole number of hundredths, is 0 or is too large.
 pub(super) fn hundredths(text: &str) -> Option<i16> {
     let degrees: f64 = text.parse().ok()?;
     let hundredths = (degrees * f64::from(Look::PER_DEGREE)).round();

@@ -1,9 +1,9 @@
-//! What the game has to say, for a while.
+//! Messages to the player, shown for some time.
 
-/// How long something is said, in steps: 3 seconds.
+/// The duration of a message in steps: 3 seconds.
 const DURATION: u64 = 180;
 
-/// A sentence that is shown for some more steps.
+/// A message that is shown for some more steps.
 #[derive(Clone, Debug, PartialEq, Default)]
 pub(super) struct Notice {
     text: String,
@@ -11,22 +11,22 @@ pub(super) struct Notice {
 }
 
 impl Notice {
-    /// Says `text` from now on.
+    /// Shows `text` from now on.
     pub(super) fn new(text: String) -> Self {
         Self { text, steps_left: DURATION }
     }
 
-    /// What is being said.
+    /// The current message.
     pub(super) fn text(&self) -> Option<&str> {
         (self.steps_left > 0).then_some(&self.text)
     }
 
-    /// How many steps may pass before something else is said; `None` for any number.
+    /// The number of steps until the message ends; `None` if there is none.
     pub(super) fn quiet_steps(&self) -> Option<u64> {
         self.steps_left.checked_sub(1)
     }
 
-    /// Lets `steps` steps pass, and tells whether that was the end of what was being said.
+    /// Advances by `steps` steps, and returns whether the message ended.
     pub(super) fn wait(&mut self, steps: u64) -> bool {
         let was_said = self.steps_left > 0;
         self.steps_left = self.steps_left.saturating_sub(steps);

@@ -1,4 +1,4 @@
-//! Who plays: where they are, how they move, and what a step makes of that.
+//! The player: position, motion, and what a step changes.
 
 use glam::DVec2;
 
@@ -13,37 +13,37 @@ use super::turning::Turning;
 use crate::generate::Shift;
 use crate::world::{Camera, Cell, FieldOfView, Heading, World};
 
-/// How far from their middle the player touches a wall: doors are twice as wide as they are.
+/// The player's radius, in cells: a door is twice as wide as the player.
 pub(super) const RADIUS: Radius =
     Radius::new(0.25).expect("a quarter is between nothing and a half");
 
-/// Cells per second, in any direction.
+/// Walking speed in any direction, in cells per second.
 pub(super) const WALK: f64 = 3.0;
-/// Cells per second, in any direction, for who runs.
+/// Running speed in any direction, in cells per second.
 pub(super) const RUN: f64 = 5.5;
 
-/// How fast the feet take hold, per second.
+/// How fast the player reaches that speed, per second.
 pub(super) const FRICTION: f64 = 12.0;
 
-/// How much higher a floor may be for somebody to step onto it, or lower to step down, in cells.
+/// The height of a step that the player climbs or descends by walking, in cells.
 pub(super) const STEP_HEIGHT: f64 = 0.35;
-/// How high somebody jumps, in cells.
+/// The height of a jump, in cells.
 pub(super) const JUMP_HEIGHT: f64 = 0.66;
 
-/// What is slower stands still, in cells or radians per second. An exponential never ends, but a
-/// program that may sleep while nothing moves wants it to.
+/// Below this speed the player stands still, in cells or radians per second. An exponential decay
+/// never ends, but a program should be able to sleep when nothing moves.
 pub(super) const STILL: f64 = 1e-4;
 
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub(super) struct Player {
     body: Body,
-    /// How high their feet are, in cells.
+    /// The height of the feet, in cells.
     feet: f64,
     /// Cells per second, upwards.
     rising: f64,
     posture: Posture,
     gaze: Gaze,
-    /// Whether they wanted to jump in the last step: each wish is for one jump.
+    /// Whether a jump was wanted in the last step: each press is one jump.
     wanted_to_jump: bool,
     heading: Heading,
     turning: Turning,
@@ -67,7 +67,7 @@ impl Player {
         }
     }
 
-    /// The same player in another world, standing still; `None` where there is no room for them.
+    /// The player in another world, standing still; `None` if there is no room.
     pub(super) fn placed_in(self, world: &World) -> Option<Self> {
         let Cell { column, row } = self.cell();
         let (column, row) = (i64::from(column), i64::from(row));
@@ -87,7 +87,7 @@ impl Player {
         placed.into_iter().find(|player| player.has_room(world))
     }
 
-    /// What the player sees of `world`.
+    /// The player's view of `world`.
     pub(super) fn camera(&self, world: &World, field_of_view: FieldOfView) -> Option<Camera> {
         let ceiling = self.room(world).ceiling + self.posture.height();
         let eye = self.feet + self.posture.eye(ceiling - self.feet);
@@ -103,7 +103,7 @@ impl Player {
         self.feet
     }
 
-    /// How high the top of their head is, in cells.
+    /// The height of the top of the head, in cells.
     pub(super) fn head(&self) -> f64 {
         self.feet + self.posture.height()
     }
@@ -112,30 +112,30 @@ impl Player {
         self.heading
     }
 
-    /// The same player, in a window that has moved.
+    /// The player in a window that has moved.
     #[must_use]
     pub(super) fn shifted(self, shift: Shift) -> Self {
         let position = shift.position(self.body.position);
         Self { body: Body { position, ..self.body }, ..self }
     }
 
-    /// The cell that the player's middle is in.
+    /// The cell of the player's centre.
     pub(super) fn cell(&self) -> Cell {
         let DVec2 { x, y } = self.body.position;
         Cell { column: x as u32, row: y as u32 }
     }
 
-    /// Whether the player would be inside `cell` if it were solid.
+    /// Whether the player would overlap `cell` if it were solid.
     pub(super) fn touches(&self, cell: Cell) -> bool {
         overlaps(self.body.position, cell, RADIUS)
     }
 
-    /// Which way the player wants to walk, as a vector of length 1; `None` for nowhere.
+    /// The direction in which the player wants to walk, as a unit vector; `None` for none.
     pub(super) fn wanted_direction(&self, intents: Intents) -> Option<DVec2> {
         wanted_velocity(self.heading, intents).try_normalize()
     }
 
-    /// The player one step later: turned first, then ducked, then walked.
+    /// The player after one step: turned, then ducked, then moved.
     #[must_use]
     pub(super) fn stepped(self, world: &World, intents: Intents) -> Self {
         let gaze = self.gaze.after_a_step(intents);
@@ -148,7 +148,7 @@ impl Player {
         Self { heading: self.heading.turned(angle), turning, ..self }
     }
 
-    /// Nobody stands up where there is no room for it.
+    /// The player stands up only where there is room.
     fn ducked(self, world: &World, intents: Intents) -> Self {
         let posture = self.posture.after_a_step(intents.contains(Intent::Duck));
         let ducked = Self { posture, ..self };
@@ -184,7 +184,7 @@ impl Player {
         }
     }
 
-    /// Whether they have the floor under their feet.
+    /// Whether the player stands on the floor.
     pub(super) fn stands(&self, world: &World) -> bool {
         self.rising == 0.0 && self.feet == self.room(world).floor
     }
@@ -203,7 +203,7 @@ impl Player {
         Self { feet: height, rising: speed, posture: self.posture.following(0.0), ..self }
     }
 
-    /// How low and how high the feet may be where the player is.
+    /// The lowest and the highest position of the feet here.
     fn room(&self, world: &World) -> Room {
         self.place(world).room(self.body.position, RADIUS)
     }
@@ -218,7 +218,7 @@ impl Player {
     }
 }
 
-/// The velocity that the player would have after a while on open floor.
+/// The velocity that the player approaches on open floor.
 fn wanted_velocity(heading: Heading, intents: Intents) -> DVec2 {
     let forward = intents.balance(Intent::Forward, Intent::Back);
     let right = intents.balance(Intent::StrafeRight, Intent::StrafeLeft);

@@ -1,48 +1,48 @@
-//! How tall the player is just now, and how high their eye is above their feet.
+//! Stance: the present height of the player, and of the eye above the feet.
 //!
-//! The eye follows the feet smoothly over steps: it lags behind by what they climb, and catches up.
-//! What is tall enough to bump a head, though, is the body, and that is where the feet are.
+//! The eye follows the feet smoothly over steps: it lags by the height of the step and catches up.
+//! The body, which collides with ceilings, moves with the feet.
 
 use super::STEP;
 use super::motion::approach;
 use crate::world::Camera;
 
-/// How tall somebody is, standing and ducking, in cells.
+/// The height of the body, standing and ducking, in cells.
 const STANDING: f64 = 0.7;
 pub(super) const DUCKING: f64 = 0.5;
-/// How high the eye of somebody is who ducks, in cells above the feet.
+/// The height of the eye above the feet when ducking, in cells.
 const EYE_DUCKING: f64 = 0.3;
-/// How much room there always is above the eye, in cells.
+/// The least room above the eye, in cells.
 const FOREHEAD: f64 = 0.05;
 
-/// How fast somebody ducks and rises, per second.
+/// How fast the player ducks and rises, per second.
 const SUPPLENESS: f64 = 14.0;
 /// How fast the eye follows the feet, per second.
 const FOLLOWING: f64 = 14.0;
-/// What is less is nothing, in cells.
+/// Less than this is nothing, in cells.
 const STILL: f64 = 1e-4;
 
 #[derive(Clone, Copy, Debug, PartialEq, Default)]
 pub(super) struct Posture {
-    /// From 0 for upright to 1 for as small as can be.
+    /// From 0 for standing to 1 for ducking.
     ducking: f64,
-    /// By how much the eye is higher than it will be, in cells.
+    /// How much higher the eye is than it will be, in cells.
     lag: f64,
 }
 
 impl Posture {
-    /// How tall the body is, in cells.
+    /// The height of the body, in cells.
     pub(super) fn height(self) -> f64 {
         STANDING + (DUCKING - STANDING) * self.ducking
     }
 
-    /// How high the eye is above the feet, in cells, under a ceiling that is so high above them.
+    /// The height of the eye above the feet, in cells, below a ceiling at that height above them.
     pub(super) fn eye(self, headroom: f64) -> f64 {
         let eye = Camera::STANDING + (EYE_DUCKING - Camera::STANDING) * self.ducking + self.lag;
         eye.min(headroom - FOREHEAD).max(FOREHEAD)
     }
 
-    /// The posture one step later of who wants to duck, or to stand.
+    /// The stance after one step of ducking or standing up.
     #[must_use]
     pub(super) fn after_a_step(self, wants_to_duck: bool) -> Self {
         let target = f64::from(u8::from(wants_to_duck));
@@ -51,8 +51,8 @@ impl Posture {
         Self { ducking: if is_there { target } else { ducking }, ..self }
     }
 
-    /// The posture one step later of whose feet have gone up a step by `climbed` cells, or down where
-    /// that is negative.
+    /// The stance after a step in which the feet have risen by `climbed` cells; negative for
+    /// falling.
     #[must_use]
     pub(super) fn following(self, climbed: f64) -> Self {
         let lag = approach(self.lag - climbed, 0.0, FOLLOWING, STEP).velocity;

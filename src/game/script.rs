@@ -1,4 +1,4 @@
-//! Scripts: what a player wants, and for how long, as a text that people write and read.
+//! Scripts: what a player wants, and for how long, as text.
 //!
 //! ```text
 //! # Out of the gate, and once around.
@@ -11,13 +11,13 @@
 //! 4 s       turn-left
 //! ```
 //!
-//! A line is a stretch: how long, in seconds or steps, and all that is wanted meanwhile, or `stand`
-//! for nothing; `turn:1.5` and `tilt:-0.25` are by how many degrees the player turns clockwise, and
-//! looks higher, in each step of it. A name in brackets begins a section, for who reports on parts; a `#` begins a
-//! comment. The same script in the same map gives the same states, bit for bit.
+//! A line has a duration, in seconds or steps, and everything that is wanted meanwhile, or `stand`
+//! for nothing. `turn:1.5` and `tilt:-0.25` are the degrees by which the player turns clockwise and
+//! tilts up in each step. A name in brackets begins a section, for reports on parts of a script. A
+//! `#` begins a comment. The same script in the same map gives the same states, bit for bit.
 //!
-//! Events at times, a press here and a release there, were refused: who writes such a list by hand
-//! adds up times, and a line left out holds a key for ever.
+//! Lists of presses and releases with times were refused: their authors would have to add up times,
+//! and a missing line would hold a key for ever.
 
 mod parse;
 mod recorder;
@@ -29,28 +29,40 @@ use crate::fault::Faults;
 
 pub use recorder::Recorder;
 
-/// What a player wants, stretch after stretch.
+/// A script.
+///
+/// ```
+/// use cellcaster::game::{Game, Script};
+/// use cellcaster::map::builtin;
+///
+/// let script = Script::parse("1 s forward\n30 steps turn-left run\n", "walk.script")?;
+/// let mut game = Game::new(builtin::LEVELS[0].world()?);
+/// for (_section, intents) in script.iter() {
+///     game.step(intents);
+/// }
+/// assert_eq!((script.steps(), game.elapsed()), (90, 1.5));
+/// # Ok::<(), cellcaster::fault::Faults>(())
+/// ```
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub struct Script {
     sections: Vec<Section>,
 }
 
-/// A part of a script, at least one stretch long.
+/// A section of a script, with at least one stretch.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub struct Section {
     /// Empty for what comes before the first name.
     pub name: String,
-    /// What is wanted in it.
+    /// The stretches of the section.
     pub stretches: Vec<Stretch>,
 }
 
-/// A time during which the player wants the same things.
+/// A time during which the wanted intents do not change.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct Stretch {
-    /// How long it lasts, in steps of [`STEP`](super::STEP) seconds: from 1 to
-    /// [`Stretch::MOST_STEPS`].
+    /// The duration in steps of [`STEP`](super::STEP) seconds, from 1 to [`Stretch::MOST_STEPS`].
     pub steps: u32,
-    /// What is wanted.
+    /// The wanted intents.
     pub intents: Intents,
 }
 
@@ -58,22 +70,22 @@ impl Script {
     /// Reads a script, which faults call `name`.
     ///
     /// # Errors
-    /// Everything that is wrong with the text.
+    /// All faults of the text.
     pub fn parse(text: &str, name: &str) -> Result<Self, Faults> {
         parse::parse(text, name)
     }
 
-    /// Its sections, in their order; there is at least one, and none is empty.
+    /// The sections in their order; there is at least one, and none is empty.
     pub fn sections(&self) -> &[Section] {
         &self.sections
     }
 
-    /// How long all of it lasts, in steps.
+    /// The duration of the script, in steps.
     pub fn steps(&self) -> u64 {
         self.sections.iter().map(Section::steps).sum()
     }
 
-    /// What is wanted in each step, with the place of its section.
+    /// The intents of each step, with the index of its section.
     pub fn iter(&self) -> impl Iterator<Item = (usize, Intents)> {
         let stretches = self.sections.iter().enumerate().flat_map(|(index, section)| {
             section.stretches.iter().map(move |&stretch| (index, stretch))
@@ -85,20 +97,20 @@ impl Script {
 }
 
 impl Section {
-    /// How long it lasts, in steps.
+    /// The duration in steps.
     pub fn steps(&self) -> u64 {
         self.stretches.iter().map(|stretch| u64::from(stretch.steps)).sum()
     }
 }
 
 impl Stretch {
-    /// An hour.
+    /// One hour.
     pub const MOST_STEPS: u32 = 60 * 60 * STEPS_PER_SECOND;
 }
 
-/// Times of so many steps are written as seconds with one digit, and no digit is lost.
+/// Multiples of this many steps are written in seconds with one digit, without loss.
 const STEPS_PER_TENTH: u32 = STEPS_PER_SECOND / 10;
-/// What stands for wanting nothing.
+/// The word for wanting nothing.
 const STAND: &str = "stand";
 
 impl fmt::Display for Script {
@@ -116,7 +128,7 @@ impl fmt::Display for Script {
 }
 
 impl fmt::Display for Stretch {
-    /// A line, without its end.
+    /// A line without its end.
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
         let duration = match self.steps {
             1 => "1 step".to_owned(),

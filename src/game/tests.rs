@@ -1,4 +1,4 @@
-//! What players rely on, in small levels.
+//! Properties of the game, in small levels.
 
 use glam::DVec2;
 use proptest::prelude::*;
@@ -238,7 +238,7 @@ fn in_a_changed_world_the_player_keeps_their_place_while_there_is_room() {
     assert_eq!(again.camera(view), before);
     assert_eq!(again.elapsed(), 0.0);
 
-    // A wall, an exit, and nothing at all where they stand.
+    // A wall, an exit, and no map at all at the player's position.
     for rows in [
         ["#######", "#@#####", "#....E#"],
         ["#######", "#@EEE##", "#....E#"],
@@ -268,7 +268,7 @@ fn a_look_turns_and_tilts_at_once_and_by_exactly_its_angle() {
     assert!((tilted.pitch.slope() - 5_f64.to_radians()).abs() < 1e-12);
     game.step(looking(0, i16::MAX));
     assert_eq!(game.camera(FieldOfView::default()).pitch.degrees().round(), 30.0);
-    // There is no further up, so nothing happens.
+    // The pitch is at its limit, so nothing happens.
     assert!(game.is_at_rest(looking(0, 1)) && !game.is_at_rest(looking(0, -1)));
     assert!(!game.is_at_rest(looking(1, 0)) && game.is_at_rest(Intents::new()));
 }

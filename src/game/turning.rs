@@ -1,7 +1,7 @@
-//! How the player turns: for as long as they want, or by an exact angle.
+//! Turning: for as long as it is wanted, or by an exact angle.
 //!
-//! An exact turn is a whole number of steps that each turn by the same angle, and takes no part of the
-//! motion that begins and ends smoothly: however the two are mixed, their angles add up.
+//! An exact turn is a whole number of steps of the same angle, independent of the motion that
+//! begins and ends smoothly. However the two are mixed, their angles add up.
 
 use std::f64::consts::PI;
 
@@ -11,39 +11,39 @@ use super::motion::{Glide, approach};
 
 /// Radians per second.
 const TURN: f64 = 2.4;
-/// Radians per second, for who aims: 10 steps are 5 degrees.
+/// Radians per second while aiming: 10 steps are 5 degrees.
 const AIM: f64 = PI / 6.0;
 /// How fast a turn begins and ends, per second.
 pub(super) const FRICTION: f64 = 20.0;
-/// What is slower stands still, in radians per second.
+/// Below this the player does not turn, in radians per second.
 const STILL: f64 = 1e-4;
 
-/// In how many steps an exact turn of 5 degrees is made, and by how much each of them turns.
+/// The number of steps of an exact turn by 5 degrees, and the angle of each.
 const FINE_STEPS: i32 = 6;
 const FINE_ANGLE: f64 = PI / 36.0 / FINE_STEPS as f64;
-/// The same, for who turns around.
+/// The same for turning around.
 const ABOUT_STEPS: u32 = 30;
 const ABOUT_ANGLE: f64 = PI / ABOUT_STEPS as f64;
-/// How many exact turns wait for one another, at most.
+/// The most exact turns that wait.
 const MOST_WAITING: u32 = 72;
 
-/// Each wish for one of these is for one turn.
+/// Each press of these is one turn.
 const EXACT: [Intent; 3] = [Intent::FineLeft, Intent::FineRight, Intent::AboutFace];
 
 #[derive(Clone, Copy, Debug, PartialEq, Default)]
 pub(super) struct Turning {
     /// Radians per second, clockwise.
     speed: f64,
-    /// Steps that are left of turns by 5 degrees, clockwise.
+    /// The steps left of turns by 5 degrees, clockwise.
     fine: i32,
-    /// Steps that are left of turning around.
+    /// The steps left of turning around.
     about: u32,
-    /// Which exact turns were wanted in the last step.
+    /// The exact turns that were wanted in the last step.
     wanted: Intents,
 }
 
 impl Turning {
-    /// The turning one step later, and by how many radians, clockwise, the step has turned.
+    /// The state after one step, and the angle of that step in radians, clockwise.
     #[must_use]
     pub(super) fn after_a_step(self, intents: Intents) -> (Self, f64) {
         let speed = if intents.contains(Intent::Aim) { AIM } else { TURN };
@@ -80,7 +80,7 @@ impl Turning {
 mod tests {
     use super::*;
 
-    /// By how many degrees `steps` steps turn.
+    /// The degrees that `steps` steps turn.
     fn degrees(turning: &mut Turning, steps: usize, intents: &[Intent]) -> f64 {
         let intents = intents.iter().copied().collect();
         let mut sum = 0.0;
@@ -106,7 +106,7 @@ mod tests {
             // However long it is wanted, it is one turn.
             let turned = degrees(&mut turning, 90, wants);
             assert!((turned - expected).abs() < 1e-9, "{wants:?}: {turned}");
-            // Once more, and again before that is over.
+            // Again, and once more before the first is over.
             let twice = [&[][..], wants, &[], wants].map(|wants| degrees(&mut turning, 1, wants));
             let twice = twice.iter().sum::<f64>() + degrees(&mut turning, 90, &[]);
             assert!((twice - 2.0 * expected).abs() < 1e-9, "{wants:?}: {twice}");

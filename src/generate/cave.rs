@@ -1,18 +1,18 @@
-//! A cave: rock that has settled, tunnels that connect it, and stalagmites.
+//! Caves: a cellular automaton, tunnels that connect its caverns, and stalagmites.
 //!
-//! Chance decides for each cell whether it is rock; then, several times over, each becomes what most
-//! of those around it are. A cell depends on others as far away as there were generations: a chunk is
-//! worked out with that margin around it, and fits its neighbours without a seam.
+//! Each cell is rock at random at first. Then, for several generations, each becomes what most of
+//! the cells around it are. A cell depends on cells as far away as there are generations, so a
+//! chunk is computed with that margin, and fits its neighbours without a seam.
 //!
-//! What settles is not connected. Each chunk has a hub, and winding tunnels from there to a gate in
-//! each of its sides, whose place is that of the side: so every hub is connected with every other one.
-//! Hollows beside the tunnels stay as they are; from some of them nobody ever gets out, nor in.
+//! The caverns of the automaton are not connected. Each chunk has a hub with winding tunnels to a
+//! gate in each of its sides. The place of a gate depends on the position of the side only, so that
+//! all hubs are connected. Caverns beside the tunnels stay as they are, and some cannot be reached.
 
 use super::Terrain;
 use super::chunk::{CHUNK_SIDE, Chunk, Plot, every_cell};
 use super::hash::{Chance, Purpose, hash};
 
-/// A cave of a seed.
+/// The cave of a seed.
 #[derive(Clone, Debug)]
 pub(super) struct Cave {
     pub(super) seed: u64,
@@ -29,22 +29,22 @@ const HERB: u8 = b'm';
 const TUNNEL: u8 = b':';
 const POOL: u8 = b'~';
 
-/// How many times the rock settles.
+/// The number of generations.
 const GENERATIONS: usize = 4;
-/// Cells along each side of what a chunk is worked out from.
+/// The cells along each side of the area from which a chunk is computed.
 const WITH_MARGIN: usize = CHUNK_SIDE + 2 * GENERATIONS;
-/// How many cells of a hundred are rock at first.
+/// The percentage of cells that are rock at first.
 const ROCK_IN_100: u64 = 49;
-/// How many are dry.
+/// The percentage of cells that are dry.
 const DRY_IN_100: u64 = 60;
-/// With so many cells of rock around it, itself included, a cell is rock.
+/// A cell with this many cells of rock around it, itself included, becomes rock.
 const MOST_OF_NINE: usize = 5;
 
-/// The smallest plot that has a hub.
+/// The smallest plot with a hub.
 const LEAST: usize = 6;
-/// How far around a hub is floor.
+/// The radius of the floor around a hub.
 const HUB_RADIUS: usize = 2;
-/// Steps that a tunnel may wind, before it goes straight on.
+/// The steps that a tunnel may wind before it goes straight.
 const WINDING: usize = 160;
 
 type Place = (usize, usize);
@@ -92,8 +92,7 @@ impl Terrain for Cave {
 }
 
 impl Cave {
-    /// Which cells are such, of the chunk and of the margin around it, where at first so many of a
-    /// hundred are, by chance.
+    /// Random cells of the chunk and its margin, with this percentage, after all generations.
     fn settled(
         &self,
         plot: &Plot,
@@ -121,7 +120,7 @@ impl Cave {
         rock
     }
 
-    /// Where one leaves the chunk to the north, the west, the south and the east.
+    /// The gates in the north, west, south and east.
     fn gates(&self, plot: &Plot) -> [Option<Place>; 4] {
         let last = CHUNK_SIDE - 1;
         let (column, row) = (plot.chunk.column, plot.chunk.row);
@@ -140,7 +139,7 @@ impl Cave {
         ]
     }
 
-    /// Puts stalagmites and things where one can walk around them, though not on the hub.
+    /// Places stalagmites and things where the player can walk around them, but not on the hub.
     fn furnish(&self, chunk: &mut Chunk, plot: &Plot, hub: Place) {
         let (column, row) = (plot.chunk.column, plot.chunk.row);
         let mut chance = Chance::of(self.seed, Purpose::Furniture, column, row);
@@ -168,7 +167,7 @@ fn is_floor_of(chunk: &Chunk, plot: &Plot, column: usize, row: usize) -> bool {
     plot.contains(column, row) && chunk.get(column, row) == FLOOR
 }
 
-/// Digs all of the plot that is rock and within `radius` of a cell, but for the corners.
+/// Clears rock within `radius` of a cell in the plot, except in the corners.
 fn dig_around(chunk: &mut Chunk, plot: &Plot, (column, row): Place, radius: usize) {
     let near = |(x, y): Place| {
         let (across, down) = (x.abs_diff(column), y.abs_diff(row));
@@ -181,7 +180,7 @@ fn dig_around(chunk: &mut Chunk, plot: &Plot, (column, row): Place, radius: usiz
     }
 }
 
-/// Digs a winding way from one cell of the plot to another.
+/// Clears a winding tunnel from one cell of the plot to another.
 fn dig_tunnel(chunk: &mut Chunk, plot: &Plot, from: Place, to: Place, chance: &mut Chance) {
     let (mut column, mut row) = from;
     let mut steps = 0;
@@ -208,7 +207,7 @@ fn dig_tunnel(chunk: &mut Chunk, plot: &Plot, from: Place, to: Place, chance: &m
     }
 }
 
-/// One nearer to `to`.
+/// A position one step nearer to `to`.
 fn stepped(from: usize, to: usize) -> usize {
     if from < to { from + 1 } else { from - usize::from(from > to) }
 }

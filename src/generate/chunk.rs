@@ -1,41 +1,43 @@
-//! Chunks: the squares that a level is dug in.
+//! Chunks: squares in which a level is generated.
 //!
-//! A chunk is a function of the seed and its own place alone, so that a level is the same however one
-//! gets there; what two neighbours must agree about, such as where one passes between them, is decided
-//! by the place of the side that they share. A function of single cells was refused: a cave
-//! that settles over several generations would be worked out anew for every cell, and nothing that
-//! takes more than a cell, a room or a spanning tree, could be promised.
+//! A chunk is a function of the seed and its own position, so that the level does not depend on the
+//! player's way. What two neighbours must agree about, such as a passage between them, is a
+//! function of the position of their common side. A function of single cells was refused: a cave of
+//! several generations would be computed again for every cell, and structures larger than a cell,
+//! such as rooms or spanning trees, would not be possible.
 //!
-//! Places wrap around: beyond the last cell that a number can name comes the first one. So no
-//! arithmetic on them can fail.
+//! Positions wrap around: after the last cell that a number can name comes the first one, so that
+//! no arithmetic on them overflows.
 
 use std::collections::VecDeque;
 use std::fmt;
 use std::ops::Range;
 
-/// Cells along each side of a chunk.
+/// The cells along each side of a chunk.
 pub const CHUNK_SIDE: usize = 32;
 
-/// A cell of a level that has no edges: columns from the west, rows from the north, home at `(0, 0)`.
+/// A cell of a level without edges: columns from the west, rows from the north. The level's first
+/// corner is at `(0, 0)`.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash, PartialOrd, Ord, Default)]
 pub struct Site {
-    /// Cells to the east of home.
+    /// The cells to the east of the first corner.
     pub column: i64,
-    /// Cells to the south of home.
+    /// The cells to the south of the first corner.
     pub row: i64,
 }
 
-/// Which chunk: columns and rows of chunks, from the one whose north-west cell is home.
+/// The position of a chunk: columns and rows of chunks, from the one whose north-west cell is the
+/// first corner.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash, PartialOrd, Ord, Default)]
 pub struct ChunkIndex {
-    /// Chunks to the east of home's.
+    /// The chunks to the east of the first one.
     pub column: i64,
-    /// Chunks to the south of home's.
+    /// The chunks to the south of the first one.
     pub row: i64,
 }
 
 impl Site {
-    /// The chunk that the cell is in, and which of its cells it is: column and row.
+    /// The chunk that contains the cell, and the cell's column and row in it.
     pub fn chunk(self) -> (ChunkIndex, (usize, usize)) {
         const SIDE: i64 = CHUNK_SIDE as i64;
         let index =
@@ -46,16 +48,16 @@ impl Site {
 }
 
 impl ChunkIndex {
-    /// The chunk so many further to the east and the south.
+    /// The chunk at an offset to the east and to the south.
     #[must_use]
     pub fn offset(self, columns: i64, rows: i64) -> Self {
-        // As many chunks as there are cells for: so an index wraps where cells do.
+        // Indices wrap where cells do.
         const SPARE_BITS: u32 = CHUNK_SIDE.trailing_zeros();
         let wrapped = |index: i64, by: i64| (index.wrapping_add(by) << SPARE_BITS) >> SPARE_BITS;
         Self { column: wrapped(self.column, columns), row: wrapped(self.row, rows) }
     }
 
-    /// A cell of the chunk, so many to the east and the south of its north-west one.
+    /// A cell of the chunk, at an offset from its north-west cell.
     pub fn site(self, column: i64, row: i64) -> Site {
         const SIDE: i64 = CHUNK_SIDE as i64;
         let place = |index: i64, by: i64| index.wrapping_mul(SIDE).wrapping_add(by);
@@ -63,13 +65,13 @@ impl ChunkIndex {
     }
 }
 
-/// How large a level is.
+/// The size of a level.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Default)]
 pub enum Extent {
-    /// It has no end.
+    /// No end.
     #[default]
     Endless,
-    /// So many cells to the east and the south of home, the outermost of which are wall.
+    /// This many cells to the east and south of the first corner. The outermost are wall.
     Cells {
         /// At least [`Extent::LEAST`].
         columns: u32,
@@ -79,18 +81,18 @@ pub enum Extent {
 }
 
 impl Extent {
-    /// The fewest cells along a side.
+    /// The least number of cells along a side.
     pub const LEAST: u32 = 8;
-    /// The most cells along a side.
+    /// The largest number of cells along a side.
     pub const MOST: u32 = 1_000_000_000;
 
-    /// A level of so many cells. `None` where one side is out of range.
+    /// A level of this size. `None` if a side is out of range.
     pub fn new(columns: u32, rows: u32) -> Option<Self> {
         let is_in_range = |side: u32| (Self::LEAST..=Self::MOST).contains(&side);
         (is_in_range(columns) && is_in_range(rows)).then_some(Self::Cells { columns, rows })
     }
 
-    /// The part of the level that is in a chunk.
+    /// The part of the level in a chunk.
     pub fn plot(self, chunk: ChunkIndex) -> Plot {
         let (columns, rows) = match self {
             Self::Endless => (0..CHUNK_SIDE, 0..CHUNK_SIDE),
@@ -102,7 +104,7 @@ impl Extent {
     }
 }
 
-/// Which cells of the chunk `index` are within an outermost wall around `side` cells.
+/// The cells of the chunk `index` that are inside the outermost wall around `side` cells.
 fn inside(index: i64, side: u32) -> Range<usize> {
     const SIDE: i64 = CHUNK_SIDE as i64;
     let first = index.saturating_mul(SIDE);
@@ -111,65 +113,65 @@ fn inside(index: i64, side: u32) -> Range<usize> {
     start.min(end)..end
 }
 
-/// The part of a chunk that may be dug.
+/// The part of a chunk that may be filled by a terrain.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub struct Plot {
     extent: Extent,
-    /// Which chunk it is a part of.
+    /// The chunk.
     pub chunk: ChunkIndex,
-    /// Which columns of the chunk; none where the chunk is outside the level.
+    /// Its columns; none if the chunk is outside the level.
     pub columns: Range<usize>,
-    /// Which of its rows, likewise.
+    /// Its rows; none if the chunk is outside the level.
     pub rows: Range<usize>,
 }
 
 impl Plot {
-    /// The plot of a chunk so many further to the east and the south.
+    /// The plot of the chunk at an offset to the east and to the south.
     #[must_use]
     pub fn neighbor(&self, columns: i64, rows: i64) -> Self {
         self.extent.plot(self.chunk.offset(columns, rows))
     }
 
-    /// Whether no cell is part of it: it is outside the level.
+    /// Whether the plot has no cells: it is outside the level.
     pub fn is_empty(&self) -> bool {
         self.columns.is_empty() || self.rows.is_empty()
     }
 
-    /// Whether all of the plot is at least `side` cells long and wide.
+    /// Whether the plot has at least `side` columns and rows.
     pub fn holds(&self, side: usize) -> bool {
         self.columns.len() >= side && self.rows.len() >= side
     }
 
-    /// Whether a cell is part of it.
+    /// Whether a cell is in the plot.
     pub fn contains(&self, column: usize, row: usize) -> bool {
         self.columns.contains(&column) && self.rows.contains(&row)
     }
 }
 
-/// What the cells of a chunk hold, as the characters of a map.
+/// The cells of a chunk, as the characters of a map.
 #[derive(Clone, PartialEq, Eq)]
 pub struct Chunk {
     cells: [[u8; CHUNK_SIDE]; CHUNK_SIDE],
 }
 
 impl Chunk {
-    /// A chunk that is full of `character`.
+    /// A chunk filled with `character`.
     pub fn full_of(character: u8) -> Self {
         Self { cells: [[character; CHUNK_SIDE]; CHUNK_SIDE] }
     }
 
-    /// What is in a cell.
+    /// The character of a cell.
     ///
     /// # Panics
-    /// Where that is not in the chunk.
+    /// If the cell is not in the chunk.
     pub fn get(&self, column: usize, row: usize) -> u8 {
         self.cells[row][column]
     }
 
-    /// Puts `character` into a cell.
+    /// Sets the character of a cell.
     ///
     /// # Panics
-    /// Where that is not in the chunk.
+    /// If the cell is not in the chunk.
     pub fn set(&mut self, column: usize, row: usize, character: u8) {
         self.cells[row][column] = character;
     }
@@ -177,20 +179,20 @@ impl Chunk {
     /// The cells of a row from the west.
     ///
     /// # Panics
-    /// Where there is no such row.
+    /// If there is no such row.
     pub fn row(&self, row: usize) -> &[u8; CHUNK_SIDE] {
         &self.cells[row]
     }
 
-    /// Fills what is not part of `plot`.
+    /// Fills what is not in `plot` with wall.
     pub(super) fn clip(&mut self, plot: &Plot, character: u8) {
         for (column, row) in every_cell().filter(|&(column, row)| !plot.contains(column, row)) {
             self.set(column, row, character);
         }
     }
 
-    /// The cells that one gets to from `start` without leaving the chunk, in the order of their
-    /// distance, where one walks through what `is_open` says so of.
+    /// The cells that can be reached from `start` inside the chunk through characters for which
+    /// `is_open` is true, in the order of their distance.
     pub(super) fn reachable(
         &self,
         start: (usize, usize),
@@ -218,7 +220,7 @@ pub(super) fn every_cell() -> impl Iterator<Item = (usize, usize)> {
     (0..CHUNK_SIDE).flat_map(|row| (0..CHUNK_SIDE).map(move |column| (column, row)))
 }
 
-/// The cells of a chunk in the west, the east, the north and the south of one.
+/// The neighbours of a cell in the west, east, north and south, in the same chunk.
 fn beside(column: usize, row: usize) -> impl Iterator<Item = (usize, usize)> {
     let places = [
         (column.wrapping_sub(1), row),
@@ -229,7 +231,7 @@ fn beside(column: usize, row: usize) -> impl Iterator<Item = (usize, usize)> {
     places.into_iter().filter(|&(column, row)| column < CHUNK_SIDE && row < CHUNK_SIDE)
 }
 
-/// The rows as one would draw them.
+/// The rows as text.
 impl fmt::Display for Chunk {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
         self.cells.iter().try_for_each(|row| writeln!(f, "{}", String::from_utf8_lossy(row)))

@@ -1,7 +1,7 @@
-//! The kit: what the characters of chunks stand for, learnt from a map in which each is drawn.
+//! The tileset: the meanings of the characters of chunks, read from a map that has each of them.
 //!
-//! So a level's tiles, textures, sprites and air are read, and found fault with, as those of any map.
-//! The map is read once; what is dug later takes its tiles from there by their number.
+//! Tiles, textures, sprites, sky and fog of a level are therefore parsed and checked like those of
+//! any map. The map is read once; chunks refer to its tiles by their number.
 
 use std::num::NonZeroU32;
 
@@ -11,15 +11,15 @@ use crate::world::{
     Cell, Grid, Lamplight, SpriteId, Start, Thing, ThingKind, Tile, TileId, TileKind, World,
 };
 
-/// What fills all that is not dug.
+/// The character of cells outside the plots.
 pub(super) const ROCK: u8 = b'#';
 
-/// What the characters of chunks stand for.
+/// The meanings of the characters of chunks.
 #[derive(Clone, Debug)]
 pub(super) struct Kit {
-    /// The legend's own world.
+    /// The world of the legend's map.
     world: World,
-    /// By character; what has no meaning is rock.
+    /// By character. Characters without a meaning are rock.
     meanings: Vec<Meaning>,
     exits: Vec<u8>,
 }
@@ -28,15 +28,15 @@ pub(super) struct Kit {
 struct Meaning {
     tile: TileId,
     thing: Option<(ThingKind, SpriteId)>,
-    /// Whether one can walk there: of a door, once it is open.
+    /// Whether the player can walk there; of a door, when it is open.
     is_walkable: bool,
 }
 
 impl Kit {
-    /// The kit that the map `legend` shows.
+    /// The tileset of the map `legend`.
     ///
     /// # Errors
-    /// Everything that is wrong with the map, or that it shows no rock.
+    /// All faults of the map, or that it has no rock.
     pub(super) fn of(legend: &str) -> Result<Self, Faults> {
         const NAME: &str = "the legend";
         let world = map::parse(legend, NAME, &NoFiles)?;
@@ -57,13 +57,13 @@ impl Kit {
         Ok(Self { world, meanings, exits })
     }
 
-    /// A world to draw in.
+    /// A world whose cells can be replaced.
     pub(super) fn world(&self) -> World {
         self.world.clone()
     }
 
-    /// The character of an exit that stands on such floor as `character`, or on another one if there
-    /// is none; `None` where there is no exit at all.
+    /// The character of an exit that stands on the floor `character`, or else on any other; `None`
+    /// if the legend has no exit.
     pub(super) fn exit_on(&self, character: u8) -> Option<u8> {
         let floor = self.meaning(character).tile;
         let fits = |&&exit: &&u8| self.meaning(exit).tile == floor;
@@ -75,23 +75,23 @@ impl Kit {
         self.exits.contains(&character)
     }
 
-    /// Whether one can walk where `character` is drawn.
+    /// Whether the player can walk on a cell with `character`.
     pub(super) fn is_walkable(&self, character: u8) -> bool {
         self.meaning(character).is_walkable
     }
 
-    /// Whether `character` is floor, with something on it or not.
+    /// Whether `character` is floor, with or without a thing on it.
     pub(super) fn is_floor(&self, character: u8) -> bool {
         matches!(self.world.tile(self.meaning(character).tile).kind, TileKind::Open)
     }
 
-    /// Whether `character` is floor on which nothing stands.
+    /// Whether `character` is floor without a thing on it.
     pub(super) fn is_bare(&self, character: u8) -> bool {
         self.is_floor(character) && self.meaning(character).thing.is_none()
     }
 
-    /// Makes `world`, one of the kit's own, show `rows`, which are of one length, `width`. All its
-    /// doors are closed.
+    /// Replaces the cells of `world`, a world of this tileset, by `rows`, which all have the length
+    /// `width`. All its doors are closed.
     pub(super) fn draw<'a>(
         &self,
         world: &mut World,
@@ -128,7 +128,7 @@ impl Kit {
     }
 }
 
-/// What is drawn in `legend`, whose world is `world`.
+/// The characters in the grid of `legend`, whose world is `world`.
 fn drawn(world: &World, legend: &str) -> Vec<(u8, Meaning)> {
     let rows = map::rows_of_grid(legend);
     let cells = rows.iter().zip(0..).flat_map(|(line, row)| {

@@ -1,4 +1,4 @@
-//! A level: a terrain, how much of it there is, and the way out.
+//! A level: a terrain, its extent and its exit.
 
 use std::sync::Arc;
 
@@ -8,7 +8,18 @@ use super::kit::{Kit, ROCK};
 use super::{Generator, Terrain};
 use crate::fault::Faults;
 
-/// A level that is dug where somebody is.
+/// A generated level.
+///
+/// ```
+/// use cellcaster::game::Game;
+/// use cellcaster::generate::{Extent, Generator, Level};
+///
+/// let level = Level::new(Generator::Maze.terrain(7), Extent::Endless)?;
+/// let start = level.start().unwrap();
+/// let game = Game::in_level(level, start).unwrap();
+/// assert_eq!(game.site(), Some(start));
+/// # Ok::<(), cellcaster::fault::Faults>(())
+/// ```
 #[derive(Clone, Debug)]
 pub struct Level {
     terrain: Arc<dyn Terrain>,
@@ -18,10 +29,10 @@ pub struct Level {
 }
 
 impl Level {
-    /// The level that `terrain` makes of `extent`. One with an end has an exit.
+    /// The level that `terrain` makes of `extent`. A level with an end has an exit.
     ///
     /// # Errors
-    /// Everything that is wrong with the terrain's legend.
+    /// All faults of the terrain's legend.
     pub fn new(terrain: Arc<dyn Terrain>, extent: Extent) -> Result<Self, Faults> {
         let kit = Arc::new(Kit::of(&terrain.legend())?);
         let endless = Self { terrain, kit, extent, exit: None };
@@ -29,37 +40,37 @@ impl Level {
         Ok(Self { exit, ..endless })
     }
 
-    /// How large it is.
+    /// The size of the level.
     pub fn extent(&self) -> Extent {
         self.extent
     }
 
-    /// Where one starts, in the chunk at home. `None` where a terrain has made nowhere to stand there.
+    /// The start, in the first chunk. `None` if the terrain leaves nowhere to stand there.
     pub fn start(&self) -> Option<Site> {
         let home = ChunkIndex::default();
         let (column, row) = self.terrain.start(&self.extent.plot(home));
         self.start_near(home.site(column as i64, row as i64))
     }
 
-    /// Where one starts who wants to start at `site`: there, if one can get away from it, or else at
-    /// the hub of its chunk. `None` where that has none, as outside the level.
+    /// The start for a player who wants to start at `site`: that cell if there is a way out of it,
+    /// or else the hub of its chunk. `None` if the chunk has none, as outside the level.
     pub fn start_near(&self, site: Site) -> Option<Site> {
         let (index, place) = site.chunk();
         let hub = self.terrain.hub(&self.extent.plot(index))?;
         let chunk = self.chunk(index);
-        // A door is closed at first.
+        // Doors are closed at first.
         let is_connected = self.kit.is_floor(chunk.get(place.0, place.1))
             && self.walk(&chunk, hub).contains(&place);
         let (column, row) = if is_connected { place } else { hub };
         Some(index.site(column as i64, row as i64))
     }
 
-    /// Where the way out is; `None` of a level without an end.
+    /// The cell of the exit; `None` for a level without an end.
     pub fn exit(&self) -> Option<Site> {
         self.exit
     }
 
-    /// A chunk of it.
+    /// A chunk of the level.
     pub fn chunk(&self, index: ChunkIndex) -> Chunk {
         let mut chunk = self.without_exit(index);
         if let Some((chunk_of_exit, (column, row))) = self.exit.map(Site::chunk)
@@ -85,12 +96,12 @@ impl Level {
         chunk
     }
 
-    /// The cells of a chunk that one gets to from `start` without leaving it, the nearest first.
+    /// The cells of a chunk that can be reached from `start` inside it, the nearest first.
     fn walk(&self, chunk: &Chunk, start: (usize, usize)) -> Vec<(usize, usize)> {
         chunk.reachable(start, |character| self.kit.is_walkable(character))
     }
 
-    /// A cell far from home, and as far from the hub of its chunk as one can be in that.
+    /// A cell far from the start, as far from the hub of its chunk as possible.
     fn place_for_exit(&self) -> Option<Site> {
         let index = self.chunk_for_exit()?;
         let hub = self.terrain.hub(&self.extent.plot(index))?;
@@ -103,7 +114,7 @@ impl Level {
         Some(index.site(column as i64, row as i64))
     }
 
-    /// A chunk with a hub at the eastern or the southern end.
+    /// A chunk with a hub at the eastern or southern end.
     fn chunk_for_exit(&self) -> Option<ChunkIndex> {
         let Extent::Cells { columns, rows } = self.extent else { return None };
         let mut chance = Chance::of(self.terrain.seed(), Purpose::Exit, 0, 0);
@@ -111,7 +122,7 @@ impl Level {
         let (columns, rows) = (chunks(columns), chunks(rows));
         let (across, down) = (chance.below(columns), chance.below(rows));
         let is_in_the_east = chance.one_in(2);
-        // The outermost chunks may be too narrow to have one.
+        // The outermost chunks may be too narrow for one.
         let places = (1..=columns.min(2)).flat_map(|from_east| {
             (1..=rows.min(2)).flat_map(move |from_south| {
                 let (last_column, last_row) = (columns - from_east, rows - from_south);
@@ -129,16 +140,16 @@ impl Level {
 }
 
 impl Generator {
-    /// The level of that extent that it makes of a seed.
+    /// The level of that extent and a seed.
     ///
     /// # Errors
-    /// None: the tests read the legend of every generator.
+    /// None in practice: the tests read the legend of every generator.
     pub fn level(self, seed: u64, extent: Extent) -> Result<Level, Faults> {
         Level::new(self.terrain(seed), extent)
     }
 }
 
-/// Two levels are equal that come from one call of [`Level::new`].
+/// Two levels are equal if they come from one call of [`Level::new`].
 impl PartialEq for Level {
     fn eq(&self, other: &Self) -> bool {
         Arc::ptr_eq(&self.kit, &other.kit)

@@ -1,33 +1,33 @@
-//! A maze: passages a cell wide between walls a cell thick, halls, and torches.
+//! Mazes: passages one cell wide between walls one cell thick, halls, and torches.
 //!
-//! Cells whose place in the chunk is odd both ways are nodes; what is between two of them is dug or
-//! not. Each chunk has a spanning tree of its own nodes, and passages to its northern and western
-//! neighbours: so every node is connected with every other one, by a way that stays among the chunks
-//! between them, and the passages from chunk to chunk close loops that can be walked. A tree over the
-//! whole level was refused: a local rule that makes one is as lopsided as a comb.
+//! Cells with an odd column and an odd row in the chunk are nodes. The cell between two nodes is
+//! open or wall. Each chunk has a random spanning tree of its nodes (depth-first search with
+//! backtracking), and passages to its northern and western neighbours. So all nodes are connected
+//! through the chunks between them, and the passages between chunks close loops. A spanning tree of
+//! the whole level was refused: a local rule for one gives a comb, with long parallel passages.
 //!
-//! No straight line of sight crosses two chunk borders: the passages in the one are in the half of the
-//! border that those in the next are not.
+//! No straight view crosses two borders of chunks: passages are in the first half of every other
+//! border, and in the second half of the ones between.
 
 use super::Terrain;
 use super::chunk::{CHUNK_SIDE, Chunk, Plot};
 use super::hash::{Chance, Purpose, hash};
 
-/// A maze of a seed.
+/// The maze of a seed.
 #[derive(Clone, Debug)]
 pub(super) struct Maze {
     pub(super) seed: u64,
 }
 
-/// What a district consists of.
+/// The contents of a district.
 #[derive(Clone, Copy, Debug)]
 struct District {
     wall: u8,
     floor: u8,
-    /// What may be at the end of a blind alley.
+    /// Things at dead ends.
     torch: u8,
     bones: u8,
-    /// What may be in the middle of a hall, and in the way there.
+    /// Things in the middle of a hall, and beside it.
     landmark: u8,
 }
 
@@ -44,9 +44,9 @@ const DISTRICTS: [District; 5] = [
     District { wall: b'B', ..DUNGEON },
     District { wall: b'M', ..DUNGEON },
 ];
-/// Chunks along each side of a district, as a power of two.
+/// The chunks along each side of a district, as a power of two.
 const DISTRICT_BITS: u32 = 1;
-/// Passages to each neighbour.
+/// The number of passages to each neighbour.
 const PASSAGES: usize = 2;
 
 impl Terrain for Maze {
@@ -105,28 +105,27 @@ impl Maze {
     }
 }
 
-/// One of `nodes` nodes along a border: of the first half where the `border` is even, of the second
-/// half where it is odd.
+/// One of `nodes` nodes along a border: in the first half if `border` is even, in the second half
+/// if it is odd.
 fn in_half(nodes: usize, border: i64, chance: &mut Chance) -> usize {
     let first = nodes / 2;
     if border % 2 == 0 { chance.below(first.max(1)) } else { first + chance.below(nodes - first) }
 }
 
-/// A chunk that is being dug.
+/// A chunk in the making.
 struct Digging {
     chunk: Chunk,
     district: District,
-    /// Nodes from west to east and from north to south, of which there are some.
+    /// The number of nodes from west to east and from north to south, both above 0.
     nodes: (usize, usize),
     chance: Chance,
 }
 
-/// A node by its column and row among the nodes of its chunk.
+/// The column and row of a node among the nodes of its chunk.
 type Node = (usize, usize);
 
 impl Digging {
-    /// Digs ways to all nodes from the first, going on from where it dug last until there is nothing
-    /// left beside that.
+    /// Connects all nodes with the first one by depth-first search.
     fn grow_tree(&mut self) {
         let mut way = vec![(0, 0)];
         self.dig((1, 1));
@@ -144,7 +143,7 @@ impl Digging {
         }
     }
 
-    /// Opens some of the nodes that only one way leads to, and leaves something in others.
+    /// Opens some dead ends, and places things in others.
     fn open_dead_ends(&mut self) {
         for node in self.all() {
             let beside = self.beside(node);
@@ -166,7 +165,7 @@ impl Digging {
         }
     }
 
-    /// Digs halls of three nodes by two or three, around a statue or a torch.
+    /// Clears halls of three by two or three nodes, with a statue or a torch.
     fn dig_halls(&mut self) {
         for _ in 0..2 {
             let (width, height) = (3, 2 + self.chance.below(2));
@@ -216,7 +215,7 @@ fn cell((column, row): Node) -> (usize, usize) {
     (2 * column + 1, 2 * row + 1)
 }
 
-/// The cell between two nodes that are beside each other.
+/// The cell between two neighbouring nodes.
 fn between(one: Node, other: Node) -> (usize, usize) {
     (one.0 + other.0 + 1, one.1 + other.1 + 1)
 }

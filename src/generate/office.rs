@@ -1,12 +1,12 @@
-//! An office: corridors with fire doors, rooms, stores, halls of desks, and a garden here and there.
+//! Offices: corridors with fire doors, rooms, store rooms, halls of desks, and gardens.
 //!
 //! Each chunk has a corridor along its northern and its western side, with a door to the next chunk
-//! at its end: so all corridors are connected, and no sight goes further than the doors. The rest of
-//! the chunk is a [`Block`], reached from the corridors.
+//! at its end. So all corridors are connected, and no view goes beyond the doors. The rest of the
+//! chunk is a [`Block`], with doors to the corridors.
 //!
-//! Walls stand in columns and rows that are odd, doors in even ones, and furniture where both are odd.
-//! So no wall ever ends in a door, each door stands between walls, and what is even is a way
-//! from any cell of a room to any other one: no furniture is in the way, and nothing need be checked.
+//! Walls are in odd columns and rows, doors in even ones, and furniture where both are odd. So no
+//! wall ends at a door, each door stands between walls, and the even columns and rows connect all
+//! cells of a room: furniture is never in the way, and no check is necessary.
 
 mod block;
 mod decor;
@@ -17,7 +17,7 @@ use super::hash::{Chance, Purpose};
 use block::Block;
 use decor::Decor;
 
-/// An office of a seed.
+/// The office of a seed.
 #[derive(Clone, Debug)]
 pub(super) struct Office {
     pub(super) seed: u64,
@@ -28,12 +28,12 @@ const CORRIDOR: u8 = b',';
 const CORRIDOR_LAMP: u8 = b'L';
 const FIRE_DOOR: u8 = b'=';
 
-/// The floors of rooms, halls and gardens, but for stores, which are dark.
+/// The floors of rooms, halls and gardens; store rooms are dark.
 const ROOM_FLOORS: [u8; 3] = [b'.', b'_', b'"'];
 
-/// Where the corridors are, and how wide.
+/// The place and the width of the corridors.
 const CORRIDORS: std::ops::Range<usize> = 1..3;
-/// Cells between two lamps of a corridor.
+/// The cells between two lamps of a corridor.
 const LAMP_SPACING: usize = 7;
 
 impl Terrain for Office {
@@ -65,13 +65,13 @@ impl Terrain for Office {
         plot.contains(corner.0, corner.1).then_some(corner)
     }
 
-    /// In a room, where of some places one sees furthest.
+    /// In a room, at the one of some cells with the farthest view.
     fn start(&self, plot: &Plot) -> (usize, usize) {
-        /// So many places are looked at.
+        /// The number of cells that are compared.
         const PLACES: usize = 6;
         let chunk = self.chunk(plot);
         let is_in_room = |&(column, row): &(usize, usize)| {
-            // No furniture stands there, nor beside it.
+            // Furniture is never here or beside it.
             column % 2 == 0 && row % 2 == 0 && ROOM_FLOORS.contains(&chunk.get(column, row))
         };
         let rooms: Vec<_> = every_cell().filter(is_in_room).collect();
@@ -96,7 +96,7 @@ impl Office {
     }
 }
 
-/// How many cells of floor lie in a row from a place, along the grid.
+/// The number of cells of floor in a row from a position along the grid.
 fn longest_view(chunk: &Chunk, (column, row): (usize, usize)) -> usize {
     let is_floor = |&(column, row): &(usize, usize)| {
         column < CHUNK_SIDE && row < CHUNK_SIDE && ROOM_FLOORS.contains(&chunk.get(column, row))

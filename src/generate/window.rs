@@ -1,15 +1,15 @@
-//! The window: the part of a level that is around the player, as a world.
+//! The window: the part of a level around the player, as a world.
 //!
-//! It is [`CHUNKS`] chunks along each side, and moves by whole chunks as soon as the player has left
-//! the middle of it. The player is always between columns 64 and 128 of it, and rows, where two doubles
-//! that follow each other are always as far apart: so adding a whole number of cells to a position is
-//! exact, and a step from one window to the next leaves no trace in the picture.
+//! It has [`CHUNKS`] chunks along each side, and moves by whole chunks when the player leaves its
+//! middle. The player is always between columns 64 and 128 and rows 64 and 128 of it, where
+//! neighbouring doubles have one spacing. So adding a whole number of cells to a position is exact,
+//! and moving the window does not change the picture.
 //!
-//! The outermost cells are wall. They are 72 cells away or more, which is further than one sees: every
-//! generator's sight is cut off before that, or sinks into its fog.
+//! The outermost cells are wall. They are at least 72 cells away, farther than the player can see:
+//! every generator blocks the view before that, or hides it in fog.
 //!
-//! Doors close behind whoever opened them, and are closed when they come back into the window. Nothing
-//! else changes in a level that is dug.
+//! Doors close behind the player, and are closed when they come back into the window. Nothing else
+//! changes in a generated level.
 
 use std::num::NonZeroU32;
 
@@ -20,26 +20,27 @@ use super::chunk::{CHUNK_SIDE, Chunk, ChunkIndex, Site};
 use super::kit::ROCK;
 use crate::world::{Cell, Grid, Heading, Start, World};
 
-/// Chunks along each side of a window.
+/// The chunks along each side of a window.
 const CHUNKS: usize = 6;
-/// Cells along each side of a window.
+/// The cells along each side of a window.
 const SIDE: usize = CHUNKS * CHUNK_SIDE;
-/// Where a player is, along each side, for whom the window need not move.
+/// The range of positions along each side for which the window need not move.
 const MIDDLE: std::ops::Range<u32> = 72..120;
-/// Which of the window's chunks the player is in, if they are in the east or south of that.
+/// The chunk of the window that the player is in, if they are in its eastern or southern half.
 const PLAYERS_CHUNK: usize = 2;
 
-/// What of a level there is, at the moment.
+/// The current part of a level.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Window {
     level: Level,
-    /// The one in the north-west.
+    /// The north-west chunk.
     first: ChunkIndex,
     /// Row by row from the north.
     chunks: Vec<Chunk>,
 }
 
-/// By how many cells everything in a window is further to the east and the south than it was.
+/// The cells by which a window has moved: everything is this much farther to the east and to the
+/// south in it.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub(crate) struct Shift {
     columns: i64,
@@ -47,7 +48,7 @@ pub(crate) struct Shift {
 }
 
 impl Shift {
-    /// Where `cell` is now, if it is in the window.
+    /// The cell that was `cell` before, if it is in the window.
     pub(crate) fn cell(self, cell: Cell) -> Option<Cell> {
         let along = |place: u32, by: i64| {
             let place = u32::try_from(i64::from(place) + by).ok()?;
@@ -56,20 +57,21 @@ impl Shift {
         Some(Cell { column: along(cell.column, self.columns)?, row: along(cell.row, self.rows)? })
     }
 
-    /// Where `position` is now.
+    /// The position that was `position` before.
     pub(crate) fn position(self, position: DVec2) -> DVec2 {
         position + DVec2::new(self.columns as f64, self.rows as f64)
     }
 }
 
 impl Window {
-    /// A window around `site`, and a world that shows what is in it, where one starts at `site`, or
-    /// near it if one cannot get away from there; looking where there is most to see. `None` where
-    /// there is nowhere to start near that, as outside the level.
+    /// A window around `site`, and its world. The player starts at `site`, or near it if there is
+    /// no way out of it, and looks where they see farthest. `None` if there is nowhere to start, as
+    /// outside the level.
     pub fn open(level: Level, site: Site) -> Option<(Self, World)> {
         let site = level.start_near(site)?;
         let (index, (column, row)) = site.chunk();
-        // Whoever is in the west of their chunk is in the window's next one: in the middle, that is.
+        // A player in the western half of their chunk is in the window's next one, which is the
+        // middle, too.
         let before = |place: usize| PLAYERS_CHUNK + usize::from(place < CHUNK_SIDE / 2);
         let first = index.offset(-(before(column) as i64), -(before(row) as i64));
         let places = every_chunk(first);
@@ -83,17 +85,17 @@ impl Window {
         Some((window, world))
     }
 
-    /// The level that it shows a part of.
+    /// The level.
     pub fn level(&self) -> &Level {
         &self.level
     }
 
-    /// Which cell of the level a cell of the window's world is.
+    /// The cell of the level that is a cell of the window's world.
     pub fn site(&self, cell: Cell) -> Site {
         self.first.site(cell.column.into(), cell.row.into())
     }
 
-    /// Which cell of the window's world a cell of the level is, if it is in the window.
+    /// The cell of the window's world that is a cell of the level, if it is in the window.
     pub fn cell(&self, site: Site) -> Option<Cell> {
         let first = self.first.site(0, 0);
         let along = |place: i64, first: i64| {
@@ -102,8 +104,8 @@ impl Window {
         Some(Cell { column: along(site.column, first.column)?, row: along(site.row, first.row)? })
     }
 
-    /// Moves so that the player, who is in `cell`, is in the middle, and lets `world` show what is
-    /// there now, all doors closed. `None` where they are there already.
+    /// Moves the window so that `cell`, the player's, is in its middle, and shows that part of the
+    /// level in `world`, with all doors closed. `None` if it need not move.
     pub(crate) fn follow(&mut self, world: &mut World, cell: Cell) -> Option<Shift> {
         let (columns, rows) = (chunks_off(cell.column), chunks_off(cell.row));
         if (columns, rows) == (0, 0) {
@@ -150,13 +152,13 @@ impl Window {
 
 const CENTER: Cell = Cell { column: SIDE as u32 / 2, row: SIDE as u32 / 2 };
 
-/// The chunks of a window, row by row from the north, the one in the north-west being `first`.
+/// The chunks of a window, row by row from the north; `first` is the one in the north-west.
 fn every_chunk(first: ChunkIndex) -> impl Iterator<Item = ((usize, usize), ChunkIndex)> {
     let places = (0..CHUNKS).flat_map(|row| (0..CHUNKS).map(move |column| (column, row)));
     places.map(move |(column, row)| ((column, row), first.offset(column as i64, row as i64)))
 }
 
-/// By how many chunks a window has to move so that `place`, along one side, is in its middle.
+/// The chunks by which a window must move so that `place`, along one side, is in its middle.
 fn chunks_off(place: u32) -> i64 {
     if MIDDLE.contains(&place) {
         0
@@ -167,7 +169,7 @@ fn chunks_off(place: u32) -> i64 {
     }
 }
 
-/// The heading, of the four along the grid, in which one sees furthest from `cell`.
+/// The direction, of the four along the grid, with the farthest view from `cell`.
 fn best_heading(grid: &Grid, cell: Cell) -> Heading {
     let ways = [(0.0, (1, 0)), (90.0, (0, 1)), (180.0, (-1, 0)), (270.0, (0, -1))];
     let is_open =

@@ -10,14 +10,14 @@ const SKY_EXAMPLE: &str = r##"sky = { gradient = ["#5080c0", "#c0d8f0"] }"##;
 const FOG_KEYS: &[&str] = &["color", "distance"];
 const FOG_EXAMPLE: &str = r##"fog = { color = "#101018", distance = 12.0 }"##;
 
-/// A sky, as the map says it.
+/// The sky as the map writes it.
 pub(super) enum SkyText<'a> {
     Gradient { zenith: Rgb, horizon: Rgb },
     Panorama(Surface<'a>),
 }
 
 impl<'a> SkyText<'a> {
-    /// The sky that `entry` describes; where it describes none, that is added to `faults`.
+    /// Reads the sky in `entry`; adds to `faults` where there is none.
     pub(super) fn read(entry: &Entry<'a, '_>, faults: &mut Vec<Fault>) -> Option<Self> {
         let table = entry.table(SKY_EXAMPLE, faults)?;
         let faults_before = faults.len();
@@ -46,7 +46,7 @@ impl<'a> SkyText<'a> {
         skies.pop()
     }
 
-    /// The sky itself. Where its texture cannot be had, that is added to `faults`.
+    /// The sky itself. Adds to `faults` where its texture is missing.
     pub(super) fn sky(&self, textures: &mut Textures<'_>, faults: &mut Vec<Fault>) -> Option<Sky> {
         match self {
             &Self::Gradient { zenith, horizon } => Some(Sky::Gradient { zenith, horizon }),
@@ -75,7 +75,7 @@ pub(super) fn color(entry: &Entry<'_, '_>, example: &str, faults: &mut Vec<Fault
         .ok()
 }
 
-/// The fog that `entry` describes; where it describes none, that is added to `faults`.
+/// Reads the fog in `entry`; adds to `faults` where there is none.
 pub(super) fn fog(entry: &Entry<'_, '_>, faults: &mut Vec<Fault>) -> Option<Fog> {
     let table = entry.table(FOG_EXAMPLE, faults)?;
     let faults_before = faults.len();

@@ -8,17 +8,17 @@ use crate::world::World;
 /// A built-in level.
 #[derive(Clone, Copy, Debug)]
 pub struct Level {
-    /// What it is asked for by.
+    /// The name on the command line.
     pub name: &'static str,
-    /// Its map; every texture it uses is built in.
+    /// The text of its map; all its textures are built in.
     pub text: &'static str,
 }
 
 impl Level {
-    /// What the map describes.
+    /// The world that the map describes.
     ///
     /// # Errors
-    /// None: the tests read every built-in level.
+    /// None in practice: the tests read every built-in level.
     pub fn world(&self) -> Result<World, Faults> {
         parse(self.text, self.name, &NoFiles)
     }

@@ -1,4 +1,4 @@
-//! Floors and ceilings: one surface by its name, or a table that says how it is laid.
+//! Floors and ceilings: one surface by its name, or a table with a pattern and a scale.
 
 use toml::de::{DeTable, DeValue};
 
@@ -10,7 +10,7 @@ use crate::world::{Ceiling, Covering, Pattern, Rgb, Scale};
 const KEYS: &[&str] = &["texture", "checker", "stripes", "scale"];
 const EXAMPLE: &str = r#"{ texture = "tile" }"#;
 
-/// A floor or a ceiling, as the map says it.
+/// A floor or a ceiling as the map writes it.
 pub(super) struct CoveringText<'a> {
     pattern: PatternText<'a>,
     scale: Scale,
@@ -23,13 +23,13 @@ enum PatternText<'a> {
 }
 
 impl<'a> CoveringText<'a> {
-    /// One colour that the map does not mention.
+    /// One colour, for maps that do not name any.
     pub(super) fn plain(color: Rgb) -> Self {
         Self { pattern: PatternText::Plain(Surface::plain(color)), scale: Scale::ONE }
     }
 
-    /// What `entry` describes; where it describes nothing, that is added to `faults`. The `example`
-    /// is a whole entry.
+    /// Reads the covering in `entry`; adds to `faults` where there is none. `example` is a whole
+    /// entry.
     pub(super) fn read(
         entry: &Entry<'a, '_>,
         example: &str,
@@ -84,7 +84,7 @@ impl<'a> CoveringText<'a> {
         }
     }
 
-    /// The covering itself. Where its textures cannot be had, that is added to `faults`.
+    /// The covering itself. Adds to `faults` where a texture is missing.
     pub(super) fn covering(
         &self,
         textures: &mut Textures<'_>,
@@ -104,7 +104,7 @@ impl<'a> CoveringText<'a> {
 }
 
 impl<'a> PatternText<'a> {
-    /// The pattern that a key of a covering's table describes.
+    /// Reads the pattern in `entry`, one of a covering's table.
     fn read(entry: &Entry<'a, '_>, faults: &mut Vec<Fault>) -> Option<Self> {
         if entry.key == "texture" {
             return Surface::read(entry, r#"texture = "tile""#, faults).map(Self::Plain);
@@ -133,19 +133,19 @@ fn read_scale(entry: &Entry<'_, '_>, faults: &mut Vec<Fault>) -> Option<Scale> {
     scale
 }
 
-/// What is overhead, as the map says it.
+/// A ceiling as the map writes it.
 pub(super) enum CeilingText<'a> {
     Sky,
     Covered(CoveringText<'a>),
 }
 
 impl<'a> CeilingText<'a> {
-    /// One colour that the map does not mention.
+    /// One colour, for maps that do not name any.
     pub(super) fn plain(color: Rgb) -> Self {
         Self::Covered(CoveringText::plain(color))
     }
 
-    /// As [`CoveringText::read`]; `"sky"` is none.
+    /// Reads the ceiling in `entry` as [`CoveringText::read`] does; `"sky"` is no ceiling.
     pub(super) fn read(
         entry: &Entry<'a, '_>,
         example: &str,

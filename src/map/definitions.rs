@@ -1,4 +1,4 @@
-//! The definitions: everything in a map but its grid, each read on its own.
+//! Definitions: all keys of a map except its grid, each read by itself.
 
 use toml::de::DeTable;
 
@@ -30,29 +30,29 @@ pub(super) const KEYS: &[&str] = &[
 const DEFAULT_CEILING: Rgb = Rgb::new(0x30, 0x30, 0x30);
 const DEFAULT_FLOOR: Rgb = Rgb::new(0x58, 0x58, 0x58);
 
-/// What a map says besides drawing its grid.
+/// All that a map defines besides its grid.
 pub(super) struct Definitions<'a, 't> {
     pub(super) title: String,
     pub(super) goal: Option<String>,
     pub(super) ceiling: CeilingText<'a>,
-    /// How high the ceiling is, and how high walls are.
+    /// The height of the ceiling and of walls.
     pub(super) ceiling_height: f64,
     pub(super) floor: CoveringText<'a>,
-    /// The sides of floors, where a tile does not say.
+    /// The sides of raised floors, for tiles without their own.
     pub(super) riser: Option<Surface<'a>>,
-    /// The sides of what hangs above ceilings, where a tile does not say.
+    /// The sides of what is above lowered ceilings, for tiles without their own.
     pub(super) lintel: Option<Surface<'a>>,
     pub(super) sky: Option<SkyText<'a>>,
     pub(super) fog: Option<Fog>,
-    /// How bright it is where no tile says otherwise.
+    /// The light of tiles without their own.
     pub(super) light: Option<Light>,
     pub(super) grid: Option<Entry<'a, 't>>,
     pub(super) legend: Legend<'a>,
 }
 
 impl<'a, 't> Definitions<'a, 't> {
-    /// The definitions of `document`. What is wrong with one is added to `faults`, and the
-    /// definition stands with a default.
+    /// Reads the definitions in `document`. Faults are added to `faults`, and their definitions
+    /// replaced by defaults.
     pub(super) fn read(document: &'a DeTable<'t>, faults: &mut Vec<Fault>) -> Self {
         let mut definitions = Self {
             title: String::new(),
@@ -107,7 +107,7 @@ impl<'a, 't> Definitions<'a, 't> {
     }
 }
 
-/// What the player is told to do: a line of up to [`LONGEST_GOAL`] characters.
+/// Reads the goal, a line of at most [`LONGEST_GOAL`] characters.
 fn goal(entry: &Entry<'_, '_>, faults: &mut Vec<Fault>) -> Option<String> {
     const LONGEST_GOAL: usize = 40;
     let goal = entry.string(r#"goal = "Find the way out""#, faults)?;

@@ -1,8 +1,7 @@
-//! Doors and keys: what the legend says of them, and whether the drawing lets them work.
+//! Doors and keys: reads their definitions, and checks that the grid lets them work.
 //!
-//! A door slides into a wall, so it stands between two; and it leads from somewhere to somewhere, so
-//! there is open floor before and behind it. A locked one must be worth walking up to: its key lies
-//! where the player gets without opening it.
+//! A door slides into a wall, so it stands between two walls, with open floor before and behind it.
+//! The key of a locked door must be reachable without opening that door.
 
 mod reach;
 
@@ -19,13 +18,13 @@ use crate::fault::{Fault, quoted};
 use crate::world::{Cell, Grid, KeyId, Start, Tile, TileKind};
 use reach::Reach;
 
-/// A door, as the legend has it.
+/// A door as the legend defines it.
 pub(super) struct DoorSymbol<'a> {
     pub(super) leaf: Surface<'a>,
     pub(super) key: Option<KeySymbol<'a>>,
 }
 
-/// The name of a key, and where the map says it.
+/// The name of a key, and its place in the map.
 #[derive(Clone)]
 pub(super) struct KeySymbol<'a> {
     pub(super) name: &'a str,
@@ -33,7 +32,7 @@ pub(super) struct KeySymbol<'a> {
 }
 
 impl<'a> DoorSymbol<'a> {
-    /// The door that `entry` of `table` describes, with the key that the table names.
+    /// Reads the door in `entry` of `table`, with the key that the table names.
     pub(super) fn read(
         entry: &Entry<'a, '_>,
         table: &'a DeTable<'_>,
@@ -52,7 +51,7 @@ impl<'a> DoorSymbol<'a> {
 }
 
 impl<'a> KeySymbol<'a> {
-    /// The name that `entry` holds.
+    /// Reads the name in `entry`.
     pub(super) fn read(
         entry: &Entry<'a, '_>,
         example: &str,
@@ -69,20 +68,20 @@ impl<'a> KeySymbol<'a> {
     }
 }
 
-/// The names of the keys that the doors of a drawing ask for; each key is an index into them.
+/// The names of the keys that doors in the grid need. A [`KeyId`] is an index into them.
 pub(super) struct Keys {
     names: Vec<String>,
 }
 
 impl Keys {
-    /// Those of the doors that are drawn. No more than there are kinds of tile.
+    /// Collects the keys of the doors in the grid. There are at most as many as kinds of tile.
     pub(super) fn of(drawing: &Drawing<'_>, legend: &Legend<'_>) -> Self {
         let doors = locked_doors(drawing, legend);
         let names: BTreeSet<&str> = doors.map(|(_, key)| key.name).collect();
         Self { names: names.into_iter().map(str::to_owned).collect() }
     }
 
-    /// The key of that name, if a door asks for it.
+    /// The key of that name, if a door needs it.
     pub(super) fn id(&self, name: &str) -> Option<KeyId> {
         let index = self.names.iter().position(|known| known == name)?;
         u8::try_from(index).ok().map(KeyId)
@@ -93,7 +92,7 @@ impl Keys {
     }
 }
 
-/// What is wrong with the doors and keys of a drawing whose cells are those of `grid`.
+/// All faults of doors and keys in a drawing whose cells are those of `grid`.
 pub(super) fn faults(
     drawing: &Drawing<'_>,
     legend: &Legend<'_>,
@@ -105,7 +104,7 @@ pub(super) fn faults(
     let doors = drawn_doors(drawing, legend);
     let mut faults: Vec<Fault> =
         doors.filter_map(|door| misplaced(drawing, grid, tiles, door)).collect();
-    // Where doors are misplaced, what lies behind them is anybody's guess.
+    // Behind a misplaced door, reachability means nothing.
     if faults.is_empty() {
         faults = keys_out_of_reach(drawing, legend, grid, start, low_things);
     }
@@ -113,12 +112,12 @@ pub(super) fn faults(
     faults
 }
 
-/// The characters of the doors in a drawing.
+/// The characters in the grid that are doors.
 fn drawn_doors(drawing: &Drawing<'_>, legend: &Legend<'_>) -> impl Iterator<Item = char> {
     drawn(drawing, legend, |meaning| matches!(meaning, Meaning::Door(_)))
 }
 
-/// The characters in a drawing that mean what is wanted.
+/// The characters in the grid whose meaning `is_wanted`.
 fn drawn(
     drawing: &Drawing<'_>,
     legend: &Legend<'_>,
@@ -130,7 +129,7 @@ fn drawn(
     })
 }
 
-/// The characters of the locked doors in a drawing, and their keys.
+/// The characters in the grid that are locked doors, with their keys.
 fn locked_doors<'l, 'a>(
     drawing: &'l Drawing<'_>,
     legend: &'l Legend<'a>,
@@ -143,7 +142,7 @@ fn locked_doors<'l, 'a>(
     })
 }
 
-/// The characters of the keys in a drawing, and which they are.
+/// The characters in the grid that are keys, with their names.
 fn drawn_keys<'l, 'a>(
     drawing: &'l Drawing<'_>,
     legend: &'l Legend<'a>,
@@ -156,7 +155,7 @@ fn drawn_keys<'l, 'a>(
     })
 }
 
-/// The fault that the doors drawn as `character` include some that can't slide, or lead nowhere.
+/// The fault of doors drawn as `character` that cannot slide or lead nowhere.
 fn misplaced(drawing: &Drawing<'_>, grid: &Grid, tiles: &[Tile], character: char) -> Option<Fault> {
     let mut wrong =
         drawing.cells_of(character).filter(|&cell| !is_between_jambs(grid, tiles, cell));
@@ -193,7 +192,7 @@ fn is_between_jambs(grid: &Grid, tiles: &[Tile], cell: Cell) -> bool {
         || one.into_iter().all(is_open) && other.into_iter().all(holds)
 }
 
-/// The faults that keys are drawn that no drawn door asks for.
+/// The faults of keys that no door in the grid needs.
 fn useless_keys(drawing: &Drawing<'_>, legend: &Legend<'_>) -> Vec<Fault> {
     let asked: BTreeSet<&str> = locked_doors(drawing, legend).map(|(_, key)| key.name).collect();
     let useless = drawn_keys(drawing, legend).filter(|(_, key)| !asked.contains(key.name));
@@ -208,7 +207,7 @@ fn useless_keys(drawing: &Drawing<'_>, legend: &Legend<'_>) -> Vec<Fault> {
         .collect()
 }
 
-/// The faults that doors are drawn whose key nobody gets at.
+/// The faults of doors whose key the player cannot reach.
 fn keys_out_of_reach(
     drawing: &Drawing<'_>,
     legend: &Legend<'_>,

@@ -1,4 +1,4 @@
-//! The drawing: the text of the grid, its rows, and how often each character is in it.
+//! The drawing: the text of the grid, with the places of its characters.
 
 use std::collections::BTreeMap;
 use std::num::NonZeroU32;
@@ -12,28 +12,28 @@ use crate::world::Cell;
 
 const EXAMPLE: &str = "grid = ''' on a line, the rows below it, and ''' again";
 
-/// A grid as it is drawn. No side is longer than allowed; rows may be of unequal length, and
-/// characters undefined.
+/// The grid as it is drawn. Its sides are within the limits; rows may differ in length, and
+/// characters may be undefined.
 pub(super) struct Drawing<'a> {
     text: DrawnText<'a>,
     pub(super) width: NonZeroU32,
     pub(super) height: NonZeroU32,
-    /// Where the map says `grid`.
+    /// The place of the key `grid`.
     pub(super) key_place: Range<usize>,
     sightings: PerCharacter<Sightings>,
 }
 
-/// Where a character is in the grid.
+/// The occurrences of a character in the grid.
 #[derive(Clone, Copy, Default)]
 pub(super) struct Sightings {
     pub(super) count: usize,
-    /// Of the first two: bytes from the start of the grid's text.
+    /// The first two, as bytes from the start of the grid's text.
     places: [usize; 2],
 }
 
 impl<'a> Drawing<'a> {
-    /// The drawing that `entry` of the map `text` holds. `None` where it has no width and height
-    /// to speak of; anything wrong with it is added to `faults`.
+    /// Reads the drawing in `entry` of the map `text`; adds faults to `faults`. `None` where it has
+    /// no usable width and height.
     pub(super) fn read(entry: &Entry<'a, '_>, text: &str, faults: &mut Vec<Fault>) -> Option<Self> {
         let value = entry.string(EXAMPLE, faults)?;
         let text = DrawnText::new(value, entry.value_place.clone(), text);
@@ -59,22 +59,22 @@ impl<'a> Drawing<'a> {
         Some(Self { text, width, height, key_place: entry.key_place.clone(), sightings })
     }
 
-    /// The characters that are in the grid, in their order.
+    /// The characters of the grid with their occurrences, in the order of the characters.
     pub(super) fn characters(&self) -> impl Iterator<Item = (char, Sightings)> {
         self.sightings.iter().filter(|(_, sightings)| sightings.count > 0)
     }
 
-    /// Where a character is in the grid.
+    /// The occurrences of a character.
     pub(super) fn sightings(&self, character: char) -> Sightings {
         self.sightings.get(character)
     }
 
-    /// The place in the map of a `character` that is in the grid at byte `at` of its text.
+    /// The place in the map of a `character` at byte `at` of the grid's text.
     pub(super) fn place(&self, character: char, at: usize) -> Range<usize> {
         self.text.place(at..at + character.len_utf8())
     }
 
-    /// The place in the map of what is drawn in `cell`.
+    /// The place in the map of a cell.
     pub(super) fn place_of(&self, cell: Cell) -> Range<usize> {
         let row = self.text.rows().nth(cell.row as usize);
         let drawn = row.and_then(|(start, row)| {
@@ -89,7 +89,7 @@ impl<'a> Drawing<'a> {
         self.text.rows().map(|(_, row)| row)
     }
 
-    /// The cells that `character` is drawn in, row by row from the north.
+    /// The cells with `character`, row by row from the north.
     pub(super) fn cells_of(&self, character: char) -> impl Iterator<Item = Cell> {
         self.rows().zip(0..).flat_map(move |(line, row)| {
             let drawn = line.chars().zip(0..).filter(move |&(drawn, _)| drawn == character);
@@ -106,18 +106,18 @@ impl Sightings {
         self.count += 1;
     }
 
-    /// The first places, two at most.
+    /// The first places, at most two.
     pub(super) fn first_places(&self) -> &[usize] {
         &self.places[..self.count.min(2)]
     }
 }
 
-/// The text of the grid, which knows its place in the map.
+/// The text of the grid, with its place in the map.
 struct DrawnText<'a> {
     value: &'a str,
     /// The place of the whole TOML string, with its quotes.
     string_place: Range<usize>,
-    /// Where the value starts in the map; `None` where the map spells it differently, with
+    /// The place of the value's first byte in the map; `None` where the map writes the value with
     /// escapes.
     start: Option<usize>,
 }
@@ -129,7 +129,8 @@ impl<'a> DrawnText<'a> {
         Self { value, string_place, start }
     }
 
-    /// The place in the map of bytes of the value: the whole string where it has no own.
+    /// The place of some bytes of the value in the map; the whole string where the map writes it
+    /// with escapes.
     fn place(&self, bytes: Range<usize>) -> Range<usize> {
         match self.start {
             Some(start) => start + bytes.start..start + bytes.end,
@@ -137,7 +138,7 @@ impl<'a> DrawnText<'a> {
         }
     }
 
-    /// The rows from the north, each with the byte of the value that it starts at.
+    /// The rows from the north, each with the place of its first byte in the value.
     fn rows(&self) -> impl Iterator<Item = (usize, &'a str)> + use<'a> {
         let mut next_start = 0;
         self.value.split_inclusive('\n').map(move |line| {
@@ -148,7 +149,7 @@ impl<'a> DrawnText<'a> {
         })
     }
 
-    /// The width of each row in cells, and where each character is.
+    /// The width of each row in cells, and the occurrences of each character.
     fn survey(&self) -> (Vec<u32>, PerCharacter<Sightings>) {
         let mut sightings = PerCharacter::<Sightings>::new();
         let widths = self.rows().map(|(start, row)| {
@@ -187,7 +188,7 @@ impl<'a> DrawnText<'a> {
     }
 }
 
-/// The most common of `widths` but 0; of several, the one that comes first.
+/// The most common of `widths` except 0; the first of them where several are.
 fn usual_width(widths: &[u32]) -> Option<NonZeroU32> {
     let widths = widths.iter().copied().filter_map(NonZeroU32::new);
     let mut counts = BTreeMap::<NonZeroU32, usize>::new();
@@ -202,8 +203,8 @@ fn cells(count: u32) -> String {
     if count == 1 { "1 cell".to_owned() } else { format!("{count} cells") }
 }
 
-/// Where `value` starts in `literal`, the TOML string that stands for it; `None` where it is
-/// spelt differently there.
+/// The place where `value` starts in `literal`, its TOML string; `None` where the literal has
+/// escapes.
 fn value_start(literal: &str, value: &str) -> Option<usize> {
     ["'''", "\"\"\"", "'", "\""].into_iter().find_map(|quotes| {
         let inner = literal.strip_prefix(quotes)?.strip_suffix(quotes)?;

@@ -1,4 +1,4 @@
-//! Heights: what a map and its tiles say of them.
+//! Heights of a map and of its tiles, as the map writes them.
 
 use std::ops::Range;
 
@@ -9,10 +9,10 @@ use crate::fault::Fault;
 use crate::fault::document::{Entry, entries};
 use crate::world::{Ceiling, Covering, Heights, Paint};
 
-/// The least height of a ceiling above the floor that the player starts on, and of the map's own.
+/// The least headroom where the player starts, and the least height of the map's ceiling.
 pub(super) const LEAST_HEADROOM: f64 = 0.75;
 
-/// What a tile says of its heights; the rest is as the map says.
+/// The heights that a tile has of its own.
 #[derive(Default)]
 pub(super) struct HeightsText<'a> {
     floor: Option<Height>,
@@ -22,14 +22,14 @@ pub(super) struct HeightsText<'a> {
     pub(super) lintel: Option<Surface<'a>>,
 }
 
-/// How upright faces look that a tile says nothing of, as far as the map does.
+/// The surfaces of risers and lintels that the map names for tiles without their own.
 #[derive(Clone, Copy)]
 pub(super) struct Faces {
     pub(super) riser: Option<Paint>,
     pub(super) lintel: Option<Paint>,
 }
 
-/// A height, and where the map says it.
+/// A height, and its place in the map.
 #[derive(Clone)]
 pub(super) struct Height {
     cells: f64,
@@ -37,7 +37,7 @@ pub(super) struct Height {
 }
 
 impl<'a> HeightsText<'a> {
-    /// Takes the property that `entry` is; `false` where it says nothing of heights.
+    /// Reads `entry` if it is one of the heights, risers and lintels; returns whether it is.
     pub(super) fn take(&mut self, entry: &Entry<'a, '_>, faults: &mut Vec<Fault>) -> bool {
         match entry.key {
             "floor_height" => self.floor = Height::read(entry, faults),
@@ -57,8 +57,8 @@ impl<'a> HeightsText<'a> {
             && lintel.is_none()
     }
 
-    /// The heights of a tile under `overhead`, in a map whose ceiling is at `map_ceiling`. Where they
-    /// contradict each other, that is added to `faults`.
+    /// The heights of a tile below `overhead`, in a map whose ceiling is at `map_ceiling`. Adds to
+    /// `faults` where they contradict each other.
     pub(super) fn heights(
         &self,
         overhead: Ceiling,
@@ -79,7 +79,7 @@ impl<'a> HeightsText<'a> {
         Heights::new(floor, ceiling, roof)
     }
 
-    /// What is wrong with a tile whose floor and ceiling are there.
+    /// The fault of a tile that contradicts itself, if it does.
     fn contradiction(&self, overhead: Ceiling, floor: f64, ceiling: f64) -> Option<Fault> {
         let is_open = overhead == Ceiling::Sky;
         match (&self.ceiling, &self.floor, &self.roof) {
@@ -109,12 +109,12 @@ impl<'a> HeightsText<'a> {
 }
 
 impl Faces {
-    /// The sides of that floor: like the floor, unless the map says otherwise.
+    /// The riser below `floor`: the map's, or the surface of the floor.
     pub(super) fn riser(self, floor: Covering) -> Paint {
         self.riser.unwrap_or(floor.pattern.first_paint())
     }
 
-    /// The sides of what hangs above that ceiling: like the ceiling, unless the map says otherwise.
+    /// The lintel above `ceiling`: the map's, or the surface of the ceiling.
     pub(super) fn lintel(self, floor: Covering, ceiling: Ceiling) -> Paint {
         let below = match ceiling {
             Ceiling::Covered(covering) => covering,
@@ -125,7 +125,7 @@ impl Faces {
 }
 
 impl Height {
-    /// The height that `entry` holds.
+    /// Reads the height in `entry`.
     fn read(entry: &Entry<'_, '_>, faults: &mut Vec<Fault>) -> Option<Self> {
         let cells = entry.number().filter(|height| height.abs() <= Heights::MOST);
         if cells.is_none() {
@@ -141,7 +141,7 @@ impl Height {
     }
 }
 
-/// The height that the map gives its ceiling, and its walls.
+/// Reads the height of the map's ceiling, which is also the height of walls.
 pub(super) fn map_ceiling(entry: &Entry<'_, '_>, faults: &mut Vec<Fault>) -> Option<f64> {
     let height = Height::read(entry, faults)?;
     if height.cells >= LEAST_HEADROOM {
@@ -156,7 +156,7 @@ pub(super) fn map_ceiling(entry: &Entry<'_, '_>, faults: &mut Vec<Fault>) -> Opt
     None
 }
 
-/// The height that `table` gives a wall, if it does.
+/// Reads the height of a wall in `table`, if it has one.
 pub(super) fn of_wall(table: &DeTable<'_>, faults: &mut Vec<Fault>) -> Option<f64> {
     let entry = entries(table).find(|entry| entry.key == "height")?;
     let height = Height::read(&entry, faults)?;

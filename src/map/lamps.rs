@@ -1,14 +1,15 @@
-//! Lamps: which cells they shine into.
+//! Lamplight: which cells each lamp lights.
 //!
-//! A cell is lit where a straight line leads from the middle of the lamp's cell to the middle of that
-//! one through nothing but open floor and what can be seen through; doors count as closed.
+//! A cell is lit if the straight line from the middle of the lamp's cell to its own middle passes
+//! only through open floor, masks and glass. Doors count as closed.
 
 mod glow;
 
 use crate::world::{Cell, Grid, Lamplight, Light, Sprite, Thing, Tile, TileId, TileKind};
 use glow::Glow;
 
-/// What the lamps among `things` add to the light of each cell: nothing where all is fully lit.
+/// What the lamps among `things` add to the light of each cell; nothing if all cells are fully lit
+/// anyway.
 pub(crate) fn lamplight(
     grid: &Grid,
     tiles: &[Tile],

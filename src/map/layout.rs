@@ -1,4 +1,4 @@
-//! The layout: what the drawing shows, by the definitions of its characters.
+//! The layout: the drawing with the meanings of its characters.
 
 use std::collections::BTreeSet;
 use std::ops::Range;
@@ -18,14 +18,14 @@ use crate::world::{
     TileKind,
 };
 
-/// The most kinds of tile in a grid, open floor among them.
+/// The largest number of kinds of tile, the map's own floor included.
 const MAX_TILES: usize = 255;
 
-/// What a drawing shows.
+/// The contents of a drawing.
 pub(super) struct Layout {
     pub(super) grid: Grid,
-    /// The map's own open floor, then other open floor and the doorways, then what is solid in the
-    /// grid, each in the order of their characters.
+    /// The map's own floor, then other open floor and doorways, then solid tiles, each in the order
+    /// of their characters.
     pub(super) tiles: Vec<Tile>,
     pub(super) start: Start,
     pub(super) lamplight: Lamplight,
@@ -36,8 +36,8 @@ pub(super) struct Layout {
 }
 
 impl Layout {
-    /// What `drawing` shows, on open floor like `ground`. `None` where anything is wrong with the map; what is wrong with this
-    /// part of it is added to `faults`.
+    /// The contents of `drawing`, in a map whose open floor is `ground`. Adds faults to `faults`,
+    /// and returns `None` if the map has any.
     pub(super) fn of(
         drawing: &Drawing<'_>,
         legend: &Legend<'_>,
@@ -95,7 +95,7 @@ fn undefined_characters(drawing: &Drawing<'_>, legend: &Legend<'_>) -> impl Iter
     })
 }
 
-/// The fault that the player starts nowhere, or in several places.
+/// The fault that there is no start, or more than one.
 fn wrong_start(drawing: &Drawing<'_>, legend: &Legend<'_>) -> Option<Fault> {
     let mut drawn: Vec<_> = starts(legend)
         .flat_map(|(character, _)| {
@@ -121,7 +121,7 @@ fn starts(legend: &Legend<'_>) -> impl Iterator<Item = (char, Range<usize>)> {
     starts.map(|(&character, symbol)| (character, symbol.place.clone()))
 }
 
-/// The fault that the grid has no start; `None` where a fault already found may be the cause.
+/// The fault that there is no start; `None` where an earlier fault may be the reason.
 fn no_start(drawing: &Drawing<'_>, legend: &Legend<'_>) -> Option<Fault> {
     if let Some((character, place)) = starts(legend).next() {
         let message = format!("the start {character:?} is not drawn in the grid");
@@ -133,7 +133,7 @@ fn no_start(drawing: &Drawing<'_>, legend: &Legend<'_>) -> Option<Fault> {
     legend.is_clear().then(|| Fault::new(drawing.key_place.clone(), message).help(help))
 }
 
-/// Where the player of a drawing that has one start starts.
+/// The start of a drawing that has exactly one.
 fn start(drawing: &Drawing<'_>, legend: &Legend<'_>) -> Option<Start> {
     let (character, heading) = drawing.characters().find_map(|(character, _)| {
         match legend.symbols.get(&character)?.meaning {
@@ -145,7 +145,7 @@ fn start(drawing: &Drawing<'_>, legend: &Legend<'_>) -> Option<Start> {
     Some(Start { cell, heading })
 }
 
-/// What stands in the drawing, the start excepted, and how that looks.
+/// The things in the drawing except the start, and their sprites.
 fn things(
     drawing: &Drawing<'_>,
     legend: &Legend<'_>,
@@ -167,7 +167,7 @@ fn things(
             _ => None,
         };
         if let Some((kind, look)) = of_kind {
-            // There is one for each character at most, and far fewer of those than that.
+            // There is at most one for each character, far fewer than 65,536.
             let sprite = SpriteId(sprites.len() as u16);
             sprites.push(look);
             things.extend(drawing.cells_of(character).map(|cell| Thing { kind, cell, sprite }));
@@ -176,7 +176,7 @@ fn things(
     (things, sprites)
 }
 
-/// The kinds of tile in the drawing, open ones first; `ground` is the map's own.
+/// The kinds of tile in the drawing, open ones first. The first is `ground`, the map's own floor.
 fn tiles(
     drawing: &Drawing<'_>,
     legend: &Legend<'_>,
@@ -211,7 +211,7 @@ fn tiles(
     open
 }
 
-/// A tile like the map's own, `ground`, but for what `symbol` says.
+/// A tile with what `symbol` defines, and otherwise like `ground`.
 fn tile(
     character: char,
     kind: TileKind,
@@ -246,15 +246,14 @@ fn tile(
         _ => heights.heights(ceiling, map_ceiling, faults)?,
     };
     let light = match kind {
-        // Where a wall does not say, it is as bright as what it is seen from.
+        // A wall without a light is as bright as the floor that it is seen from.
         TileKind::Wall(_) => *light,
         _ => light.or(ground.light),
     };
     Some(Tile { character, kind, floor, ceiling, light, heights, riser, lintel })
 }
 
-/// The kind of solid tile that a character stands for; `None` where it stands for none, or where a
-/// fault has been found with it.
+/// The solid tile that a character means; `None` if it means another thing, or has a fault.
 fn solid_kind(
     meaning: &Meaning<'_>,
     keys: &Keys,
@@ -282,7 +281,7 @@ fn solid_kind(
     }
 }
 
-/// The grid of a drawing whose tiles are all in `tiles`: of a door, the solid one.
+/// The grid of a drawing whose tiles are all in `tiles`. Doors are closed.
 fn grid(drawing: &Drawing<'_>, legend: &Legend<'_>, tiles: &[Tile]) -> Option<Grid> {
     let mut tile_of = PerCharacter::<u8>::new();
     let is_open = |tile: &Tile| matches!(tile.kind, TileKind::Open | TileKind::Doorway(_));

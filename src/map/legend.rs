@@ -23,54 +23,53 @@ pub(super) use property::light;
 use property::property;
 pub(super) use section::Section;
 
-/// What the characters mean that the grid may be drawn with.
+/// The meanings of the characters that the grid may use.
 pub(super) struct Legend<'a> {
     pub(super) symbols: BTreeMap<char, Symbol<'a>>,
-    /// Whether every definition is in `symbols`: false where the map has one without a character
-    /// to find it by.
+    /// Whether `symbols` has all definitions: not those without a valid character.
     pub(super) is_complete: bool,
 }
 
 /// What a character means.
 pub(super) struct Symbol<'a> {
-    /// Where it is defined.
+    /// The place of its definition.
     pub(super) place: Range<usize>,
     pub(super) meaning: Meaning<'a>,
     pub(super) surroundings: Surroundings<'a>,
-    /// Of a thing, which tile it stands on; the map's own floor, if it does not say.
+    /// The tile that a thing stands on, if it names one.
     pub(super) support: Option<Support>,
 }
 
 /// The tile that a thing stands on.
 pub(super) struct Support {
-    /// What it is drawn with elsewhere.
+    /// The character of the tile.
     pub(super) tile: char,
-    /// Where the map says it.
+    /// The place of the name in the map.
     pub(super) place: Range<usize>,
 }
 
-/// What a character stands for in the grid.
+/// What a character means in the grid.
 pub(super) enum Meaning<'a> {
     Open,
-    /// With a height of its own, if any.
+    /// With its own height, if it has one.
     Wall(Surface<'a>, Option<f64>),
-    /// Open floor that is not like the map's, but as the symbol's surroundings say.
+    /// Open floor with surroundings of its own.
     Floor,
     Door(DoorSymbol<'a>),
     Mask(MaskSymbol<'a>),
     Glass(Glass),
-    /// With a height of its own, if any.
+    /// With its own height, if it has one.
     Mirror(Glass, Option<f64>),
     Shape(ShapeSymbol<'a>),
     Start(Heading),
     Exit,
     Key(KeySymbol<'a>),
     Ornament(SpriteSymbol<'a>),
-    /// Something that a fault has been found with already.
+    /// A definition with a fault.
     Unclear,
 }
 
-/// What a tile has of its own; the rest is as the map says.
+/// What a tile has of its own; the rest is the map's.
 #[derive(Default)]
 pub(super) struct Surroundings<'a> {
     pub(super) floor: Option<CoveringText<'a>>,
@@ -80,7 +79,7 @@ pub(super) struct Surroundings<'a> {
 }
 
 impl<'a> Legend<'a> {
-    /// The characters that mean the same in every map.
+    /// The characters with the same meaning in every map.
     pub(super) fn new() -> Self {
         let open = |character| {
             let (meaning, surroundings) = (Meaning::Open, Surroundings::default());
@@ -89,14 +88,13 @@ impl<'a> Legend<'a> {
         Self { symbols: ['.', ' '].map(open).into(), is_complete: true }
     }
 
-    /// Whether every definition is known, and what it means.
+    /// Whether no definition has a fault.
     pub(super) fn is_clear(&self) -> bool {
         let is_unclear = |symbol: &Symbol<'_>| matches!(symbol.meaning, Meaning::Unclear);
         self.is_complete && !self.symbols.values().any(is_unclear)
     }
 
-    /// Adds the definitions in the table that `entry` holds; what is wrong there is added to
-    /// `faults`.
+    /// Reads the definitions in the table of `entry`; adds faults to `faults`.
     pub(super) fn read_section(
         &mut self,
         section: Section,
@@ -132,7 +130,7 @@ impl<'a> Legend<'a> {
 }
 
 impl Support {
-    /// The tile that the table of a thing names, if it does.
+    /// Reads the tile that the table of a thing names, if it does.
     fn read(thing: &DeTable<'_>, faults: &mut Vec<Fault>) -> Option<Self> {
         let entry = entries(thing).find(|entry| entry.key == "on")?;
         let text = entry.string(r#"on = ",""#, faults)?;
@@ -151,7 +149,7 @@ impl Support {
     }
 }
 
-/// The character that `entry` defines.
+/// Reads the character that `entry` defines.
 fn character(section: Section, entry: &Entry<'_, '_>) -> Result<char, Fault> {
     const ANOTHER: &str = "draw it with another character";
     let fault = |message: String| Fault::new(entry.key_place.clone(), message);
@@ -176,7 +174,7 @@ fn character(section: Section, entry: &Entry<'_, '_>) -> Result<char, Fault> {
     }
 }
 
-/// What the character of `entry` stands for, and what there is around it.
+/// Reads the meaning and the surroundings in `entry`.
 fn meaning<'a>(
     section: Section,
     entry: &Entry<'a, '_>,
@@ -213,7 +211,7 @@ fn meaning<'a>(
     (Meaning::Unclear, surroundings)
 }
 
-/// Whether a property was one of the [`Surroundings`].
+/// Whether an entry was one of the [`Surroundings`].
 #[derive(Clone, Copy, PartialEq, Eq)]
 enum Taken {
     Yes,
@@ -225,7 +223,7 @@ impl<'a> Surroundings<'a> {
         !self.has_covering() && self.light.is_none() && self.heights.is_empty()
     }
 
-    /// Whether a tile of that meaning can have these.
+    /// Whether a tile with that meaning can have these.
     fn suit(&self, meaning: &Meaning<'_>) -> bool {
         match meaning {
             Meaning::Wall(..) | Meaning::Mirror(..) => {
@@ -241,7 +239,7 @@ impl<'a> Surroundings<'a> {
         self.floor.is_some() || self.ceiling.is_some()
     }
 
-    /// Takes the property that `entry` is, if it is one of a tile's surroundings.
+    /// Reads `entry` if it is one of a tile's surroundings.
     fn take(&mut self, section: Section, entry: &Entry<'a, '_>, faults: &mut Vec<Fault>) -> Taken {
         match (section, entry.key) {
             (Section::Tiles, "floor") => {

@@ -1,10 +1,10 @@
-//! A value for each character, found at once for the characters of most maps.
+//! A value for each character: an array for ASCII, a tree for other characters.
 
 use std::collections::BTreeMap;
 
 const ASCII_COUNT: usize = 128;
 
-/// A value for each character: the default, unless another was written.
+/// A value for each character, the default at first.
 pub(super) struct PerCharacter<T> {
     ascii: [T; ASCII_COUNT],
     others: BTreeMap<char, T>,

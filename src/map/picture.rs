@@ -1,4 +1,4 @@
-//! PNG files to textures.
+//! PNG files as textures.
 
 use std::fmt;
 use std::io::Cursor;
@@ -8,12 +8,12 @@ use png::{ColorType, Decoder, DecodingError, Limits, Transformations};
 
 use crate::world::{Rgb, Texture};
 
-/// The most texels in a row or a column of a texture.
+/// The largest number of texels in a row or a column of a texture.
 const MAX_SIDE: u32 = 1024;
-/// Twice the largest picture in 16-bit RGBA.
+/// Twice the size of the largest picture in 16-bit RGBA.
 const DECODER_LIMITS: Limits = Limits { bytes: 2 * 8 * (MAX_SIDE * MAX_SIDE) as usize };
 
-/// Why bytes are no texture.
+/// Why bytes are not a texture.
 #[derive(Debug)]
 pub(super) enum PictureError {
     Broken(DecodingError),
@@ -21,7 +21,7 @@ pub(super) enum PictureError {
 }
 
 impl fmt::Display for PictureError {
-    /// Writes what is true of the file, to follow its name.
+    /// Writes the reason, to follow the name of the file.
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
         match self {
             Self::Broken(error) => {
@@ -51,8 +51,8 @@ impl From<DecodingError> for PictureError {
     }
 }
 
-/// The texture that a PNG file holds, of any colour type and depth; of an animation, its first
-/// picture. The size is looked at before memory is taken for it.
+/// Decodes a PNG file of any colour type and depth; the first picture of an animation. The size is
+/// checked before memory is allocated.
 pub(super) fn decode(bytes: &[u8]) -> Result<Texture, PictureError> {
     let mut decoder = Decoder::new_with_limits(Cursor::new(bytes), DECODER_LIMITS);
     decoder.set_ignore_text_chunk(true);

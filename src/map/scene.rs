@@ -1,7 +1,7 @@
-//! The other kind of map: bodies in place of a grid.
+//! Maps of bodies: spheres, planes and boxes instead of a grid.
 //!
-//! What is said of a map as a whole is read here, of one body in `body`, and places, directions and
-//! numbers in `vector`.
+//! This file reads the keys of the whole map, `body` reads bodies, and `vector` positions,
+//! directions and numbers.
 
 mod body;
 mod vector;
@@ -23,13 +23,12 @@ const LIGHT_EXAMPLE: &str = "light = { toward = [-1, -1, 2], ambient = 0.2 }";
 const START_KEYS: &[&str] = &["at", "heading", "pitch"];
 const START_EXAMPLE: &str = "start = { at = [0, 0, 0.5], heading = 0 }";
 
-/// Whether `document` has bodies, and so is no map of a grid.
+/// Whether `document` has bodies, and so is not a map with a grid.
 pub(super) fn has_bodies(document: &DeTable) -> bool {
     entries(document).any(|entry| Kind::of_key(entry.key).is_some())
 }
 
-/// The scene that `document` describes; `None` where it describes none. What is wrong with it is added
-/// to `faults`.
+/// Reads the scene in `document`; adds faults to `faults`. `None` where there is no scene.
 pub(super) fn read(document: &DeTable, faults: &mut Vec<Fault>) -> Option<Scene> {
     let mut scene = Scene::default();
     let mut start = None;
@@ -154,12 +153,12 @@ fn number_wanted(entry: &Entry<'_, '_>, message: &str) -> Fault {
     Fault::new(entry.value_place.clone(), message).label("this is none")
 }
 
-/// What a coordinate may be, in words.
+/// The range of coordinates, in words.
 fn coordinates() -> String {
     format!("from -{FARTHEST:e} to {FARTHEST:e}")
 }
 
-/// The tables of `entry`, which is written as `[[key]]` for each.
+/// The tables of `entry`, each of which the map writes as `[[key]]`.
 fn tables<'a, 't>(
     entry: &Entry<'a, 't>,
     example: &str,

@@ -1,4 +1,4 @@
-//! Walls to see through, or to see oneself in: what the legend says of them.
+//! Masks, glass and mirrors, as the legend defines them.
 
 use toml::de::{DeTable, DeValue};
 
@@ -13,7 +13,7 @@ const MIRROR_EXAMPLE: &str = "{ mirror = true }";
 const MIRROR_OPACITY: f64 = 0.1;
 const SILVER: Rgb = Rgb::new(0xb8, 0xc8, 0xd0);
 
-/// A wall with holes, as the legend has it.
+/// A wall with holes as the legend defines it.
 pub(super) struct MaskSymbol<'a>(Surface<'a>);
 
 impl<'a> MaskSymbol<'a> {
@@ -21,8 +21,8 @@ impl<'a> MaskSymbol<'a> {
         Surface::read(entry, r#"{ mask = "grate" }"#, faults).map(Self)
     }
 
-    /// The texture with the holes. What has none is a wall, and calling it a mask a fault: nobody
-    /// would know why they can't see through it.
+    /// The texture with holes. A texture without holes is a fault, since the author would not know
+    /// why it cannot be seen through.
     pub(super) fn texture(
         &self,
         textures: &mut Textures<'_>,
@@ -41,7 +41,7 @@ impl<'a> MaskSymbol<'a> {
     }
 }
 
-/// The glass that `entry` of `table` describes, with the opacity that the table gives.
+/// Reads the glass in `entry` of `table`, with the opacity in the table.
 pub(super) fn glass(
     entry: &Entry<'_, '_>,
     table: &DeTable<'_>,
@@ -51,7 +51,7 @@ pub(super) fn glass(
     tinted(color, GLASS_OPACITY, table, faults)
 }
 
-/// The tint of the mirror that `entry` of `table` describes, with the opacity that the table gives.
+/// Reads the tint of the mirror in `entry` of `table`, with the opacity in the table.
 pub(super) fn mirror(
     entry: &Entry<'_, '_>,
     table: &DeTable<'_>,
@@ -64,7 +64,7 @@ pub(super) fn mirror(
     tinted(color, MIRROR_OPACITY, table, faults)
 }
 
-/// Glass of that color, with the opacity that the table gives or, without, the usual one.
+/// Glass of that color, with the opacity in the table or else `usual_opacity`.
 fn tinted(
     color: Option<Rgb>,
     usual_opacity: f64,

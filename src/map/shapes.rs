@@ -1,4 +1,4 @@
-//! Shapes: what the legend says of walls that do not fill their cell.
+//! Shapes: walls that do not fill their cell, as the legend defines them.
 
 use toml::de::DeTable;
 
@@ -9,7 +9,7 @@ use crate::world::{Heights, Line, Outline, PillarRadius, Shape, ShapeHeight};
 
 const DEFAULT_RADIUS: PillarRadius = PillarRadius::new(0.3).expect("it fits a cell");
 
-/// Where a thin wall may be in its cell.
+/// The places of a thin wall in its cell.
 const PLACES: [(&str, Line); 6] = [
     ("north", Line::North),
     ("east", Line::East),
@@ -19,7 +19,7 @@ const PLACES: [(&str, Line); 6] = [
     ("north-south", Line::NorthSouth),
 ];
 
-/// Where a diagonal may begin.
+/// The corners where a diagonal begins.
 const CORNERS: [(&str, Line); 4] = [
     ("north-west", Line::FromNorthWest),
     ("south-east", Line::FromNorthWest),
@@ -27,7 +27,7 @@ const CORNERS: [(&str, Line); 4] = [
     ("south-west", Line::FromNorthEast),
 ];
 
-/// A shape, as the legend has it.
+/// A shape as the legend defines it.
 pub(super) struct ShapeSymbol<'a> {
     outline: Outline,
     surface: Surface<'a>,
@@ -35,7 +35,7 @@ pub(super) struct ShapeSymbol<'a> {
 }
 
 impl<'a> ShapeSymbol<'a> {
-    /// The shape that `entry` of `table` names, with what the table says of where it stands.
+    /// Reads the shape in `entry` of `table`.
     pub(super) fn read(
         entry: &Entry<'a, '_>,
         table: &DeTable<'_>,
@@ -73,7 +73,7 @@ impl<'a> ShapeSymbol<'a> {
         Some(Self { outline: outline?, surface: surface?, height })
     }
 
-    /// The shape, papered with one of `textures`.
+    /// The shape with its texture.
     pub(super) fn shape(
         &self,
         textures: &mut Textures<'_>,
@@ -103,7 +103,7 @@ fn read_height(entry: &Entry<'_, '_>, faults: &mut Vec<Fault>) -> Option<ShapeHe
     height
 }
 
-/// The line that `entry` names: one of `lines`, each of which is `what`.
+/// Reads the line that `entry` names: one of `lines`, each of which is a `what`.
 fn named(
     entry: &Entry<'_, '_>,
     what: &str,

@@ -1,4 +1,4 @@
-//! Sprites: what a map says of how its things look.
+//! Sprites, as the legend defines them.
 
 use std::num::NonZeroU32;
 use std::ops::Range;
@@ -14,7 +14,7 @@ use crate::world::{
     Anchor, Facings, FrameTime, Heading, Lamp, Light, Reach, Sprite, SpriteHeight, Texture,
 };
 
-/// The keys that say more of a sprite.
+/// The keys that belong to a sprite.
 pub(super) const ADDITIONS: [(&str, &str); 9] = [
     ("anchor", "sprite"),
     ("blocks", "sprite"),
@@ -27,10 +27,10 @@ pub(super) const ADDITIONS: [(&str, &str); 9] = [
     ("reach", "sprite"),
 ];
 
-/// The most frames of a sheet.
+/// The largest number of frames of a sheet.
 const MOST_FRAMES: f64 = 64.0;
 
-/// A sprite, as the legend has it.
+/// A sprite as the legend defines it.
 pub(super) struct SpriteSymbol<'a> {
     name: &'a str,
     place: Range<usize>,
@@ -46,7 +46,7 @@ pub(super) struct SpriteSymbol<'a> {
 }
 
 impl<'a> SpriteSymbol<'a> {
-    /// The sprite that `entry` of `table` names, as the table says more of it.
+    /// Reads the sprite in `entry` of `table`.
     pub(super) fn read(
         entry: &Entry<'a, '_>,
         table: &'a DeTable<'_>,
@@ -115,7 +115,7 @@ impl<'a> SpriteSymbol<'a> {
         }
     }
 
-    /// The sprite. Where its sheet cannot be had, or cut, that is added to `faults`.
+    /// The sprite itself. Adds to `faults` where its sheet is missing or cannot be divided.
     pub(super) fn sprite(
         &self,
         textures: &Textures<'_>,
@@ -142,7 +142,7 @@ impl<'a> SpriteSymbol<'a> {
         })
     }
 
-    /// The fault that a sprite is to be cut whose pictures are known.
+    /// The fault that a built-in sprite is given frames or facings.
     fn cut_of_built_in(&self) -> Option<Fault> {
         let frames = self.frames.as_ref().map(|(_, place)| ("frames", place));
         let facings = self.facings.as_ref().map(|(_, place)| ("facings", place));
@@ -161,7 +161,7 @@ impl<'a> SpriteSymbol<'a> {
             .ok()
     }
 
-    /// The sprite on `sheet`: frames from left to right, facings from top to bottom.
+    /// Divides `sheet`: frames from left to right, facings from top to bottom.
     fn cut(&self, sheet: &Texture, faults: &mut Vec<Fault>) -> Option<Sprite> {
         let (frames, facings) = (self.frames.as_ref(), self.facings.as_ref());
         let facing_count = facings.map_or(1, |(facings, _)| facings.count());
@@ -200,7 +200,7 @@ impl<'a> SpriteSymbol<'a> {
     }
 }
 
-/// What is wrong with `name`, if it names no sprite. Whether there is such a file is not asked yet.
+/// The fault of a name that is no sprite. Does not check whether the file exists.
 fn wrong_name(name: &str, place: Range<usize>) -> Option<Fault> {
     if builtin::NAMES.contains(&name) || is_png(name) && stays_inside(name) {
         return None;
@@ -237,7 +237,7 @@ fn boolean(entry: &Entry<'_, '_>, faults: &mut Vec<Fault>) -> Option<bool> {
     known(value, entry, "true or false", "true", faults)
 }
 
-/// `value`; where there is none, the fault that `entry` is not what is `wanted` is added to `faults`.
+/// `value`; if there is none, adds the fault that `entry` is not what is `wanted`.
 fn known<T>(
     value: Option<T>,
     entry: &Entry<'_, '_>,

@@ -1,4 +1,4 @@
-//! What things stand on: floor as the map says, or the floor of a tile that they name.
+//! Supports: the floor that things stand on, the map's own or that of a tile that they name.
 
 use std::collections::BTreeSet;
 
@@ -8,7 +8,7 @@ use super::legend::{Legend, Meaning, Support};
 use crate::fault::Fault;
 use crate::world::{Cell, Grid, Sprite, Start, Thing, Tile};
 
-/// The faults that things in the drawing stand on what is no open floor.
+/// The faults of things whose support is not open floor.
 pub(super) fn faults(drawing: &Drawing<'_>, legend: &Legend<'_>) -> Vec<Fault> {
     let wrong = of(drawing, legend).filter_map(|(_, support)| {
         let tile = legend.symbols.get(&support.tile).map(|symbol| &symbol.meaning);
@@ -21,7 +21,7 @@ pub(super) fn faults(drawing: &Drawing<'_>, legend: &Legend<'_>) -> Vec<Fault> {
     wrong.collect()
 }
 
-/// The things in the drawing that do not stand on the map's own floor.
+/// The things in the drawing that name a support.
 pub(super) fn of<'l>(
     drawing: &'l Drawing<'_>,
     legend: &'l Legend<'_>,
@@ -32,14 +32,14 @@ pub(super) fn of<'l>(
     })
 }
 
-/// The cells of things that are in the way, but leave room above them for who jumps that high.
+/// The cells of things that block, but leave room above them to jump over.
 pub(super) fn low_things(
     grid: &Grid,
     tiles: &[Tile],
     sprites: &[Sprite],
     things: &[Thing],
 ) -> BTreeSet<Cell> {
-    /// How tall a player is who ducks, in cells.
+    /// The height of a player who ducks, in cells.
     const DUCKING: f64 = 0.5;
     let is_low = |thing: &&Thing| {
         let (column, row) = (i64::from(thing.cell.column), i64::from(thing.cell.row));
@@ -56,7 +56,7 @@ pub(super) fn low_things(
     things.iter().filter(is_low).map(|thing| thing.cell).collect()
 }
 
-/// The fault that the player has no room to stand where they start.
+/// The fault that the player has no room to stand at the start.
 pub(super) fn low_start(
     drawing: &Drawing<'_>,
     grid: &Grid,

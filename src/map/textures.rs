@@ -1,6 +1,6 @@
-//! Textures by name: built in, or a PNG beside the map.
+//! Textures by name: built in, or a PNG file beside the map.
 //!
-//! A texture is painted or decoded once, and only where the map uses it.
+//! A texture is computed or decoded once, and only if the map uses it.
 
 mod files;
 mod surface;
@@ -16,7 +16,7 @@ pub(super) use files::{is_png, stays_inside};
 use surface::Source;
 pub(super) use surface::Surface;
 
-/// Why there is no picture: what is true of it, to follow its name, and what to do.
+/// Why there is no picture: the reason, to follow its name, and what to do.
 pub(super) struct SheetError {
     pub(super) why: String,
     pub(super) help: &'static str,
@@ -26,7 +26,7 @@ pub(super) struct SheetError {
 pub(super) struct Textures<'f> {
     files: &'f dyn TextureFiles,
     list: Vec<Texture>,
-    /// Which texture a name stands for; `None` where it had a fault.
+    /// The texture of a name; `None` where it has a fault.
     known: BTreeMap<String, Option<TextureId>>,
 }
 
@@ -35,8 +35,8 @@ impl<'f> Textures<'f> {
         Self { files, list: Vec::new(), known: BTreeMap::new() }
     }
 
-    /// The paint for `surface`. Where its texture cannot be had, that is added to `faults`, once
-    /// for each texture.
+    /// The paint for `surface`. Adds to `faults` where its texture is missing, once for each
+    /// texture.
     pub(super) fn paint(
         &mut self,
         surface: &Surface<'_>,
@@ -95,7 +95,7 @@ impl<'f> Textures<'f> {
         picture::decode(&bytes).map_err(|error| fault(error.to_string()).help(error.help()))
     }
 
-    /// The picture in the file `name`, as it is: for sprites.
+    /// The picture in the file `name`, for sprites.
     pub(super) fn sheet(&self, name: &str) -> Result<Texture, SheetError> {
         let bytes = self.files.read(name).map_err(|error| SheetError {
             why: error.to_string(),
@@ -105,14 +105,14 @@ impl<'f> Textures<'f> {
             .map_err(|error| SheetError { why: error.to_string(), help: error.help() })
     }
 
-    /// The texture of the walls that a door is set between.
+    /// The texture of the walls on both sides of a door.
     pub(super) fn jamb(&mut self) -> Paint {
         let surface = Surface { source: Source::BuiltIn("jamb"), place: 0..0 };
-        // It is built in, so no fault is found with it.
+        // It is built in, and has no fault.
         self.paint(&surface, &mut Vec::new()).unwrap_or(Paint::Color(Rgb::BLACK))
     }
 
-    /// A texture that [`Textures::paint`] has given out.
+    /// A texture that [`Textures::paint`] returned.
     pub(super) fn get(&self, id: TextureId) -> &Texture {
         &self.list[usize::from(id.0)]
     }

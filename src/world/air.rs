@@ -1,93 +1,93 @@
-//! What is between the eye and the walls, and behind them all: light, fog and the sky.
+//! Light, fog and sky.
 
 use super::{Rgb, TextureId};
 
-/// How bright a surface is lit, in 256ths of full brightness.
+/// The light on a surface, in 256ths of full brightness.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct Light(u16);
 
 impl Light {
-    /// Every colour as it is.
+    /// Full brightness: colours are unchanged.
     pub const FULL: Self = Self(256);
-    /// Every colour black.
+    /// Darkness: every colour is black.
     pub const NONE: Self = Self(0);
 
-    /// A light of `share`, from 0 for darkness to 1 for full brightness. `None` outside that.
+    /// A light from 0 (darkness) to 1 (full brightness). `None` outside that range.
     pub fn new(share: f64) -> Option<Self> {
         let full = f64::from(Self::FULL.0);
         (0.0..=1.0).contains(&share).then(|| Self((share * full).round() as u16))
     }
 
-    /// From 0 to 256.
+    /// The light as a number from 0 to 256.
     pub const fn in_256ths(self) -> u32 {
         self.0 as u32
     }
 
-    /// Both together, full at most.
+    /// The sum of two lights, at most full brightness.
     #[must_use]
     pub fn plus(self, other: Self) -> Self {
         Self((self.0 + other.0).min(Self::FULL.0))
     }
 
-    /// On the way from this light to `other`: a share of that way, from 0 to 1.
+    /// A light between this one and `other`: this one for a `share` of 0, `other` for 1.
     #[must_use]
     pub(crate) fn towards(self, other: Self, share: f64) -> Self {
         let (from, to) = (f64::from(self.0), f64::from(other.0));
         Self((from + (to - from) * share).round() as u16)
     }
 
-    /// A share of it, from 0 to 1.
+    /// The light multiplied by a share from 0 to 1.
     #[must_use]
     pub(crate) fn dimmed(self, share: f64) -> Self {
         Self((f64::from(self.0) * share).round() as u16)
     }
 }
 
-/// A colour that everything fades into with the distance.
+/// A colour that everything fades into with distance.
 ///
-/// At distance `t` the share of a surface's own colour is `1 / (1 + (t / distance)²)`: nearly all of
-/// it close by, half at `distance`, a fifth at twice that. It is smooth, ends nowhere, and costs a
-/// division. An exponential was refused: it looks much the same, and takes a table to be as cheap.
-/// `t` is the distance to the camera plane, as it is one number for a whole row of the floor.
+/// At distance `t`, the share of a surface's own colour is `1 / (1 + (t / distance)²)`: nearly 1
+/// nearby, a half at `distance`, a fifth at twice that. The function is smooth and costs one
+/// division. An exponential was refused: it looks much the same, and needs a table to be as cheap.
+/// `t` is the distance to the camera plane, which is the same for a whole row of the floor.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Fog {
-    /// What is infinitely far away.
+    /// The colour at an infinite distance.
     pub color: Rgb,
     distance: f64,
 }
 
 impl Fog {
-    /// Fog that hides half of what is `distance` cells away. `None` where that is not above 0 and
-    /// finite.
+    /// Fog that hides half of what is `distance` cells away. `None` unless `distance` is finite and
+    /// above 0.
     pub fn new(color: Rgb, distance: f64) -> Option<Self> {
         (distance > 0.0 && distance.is_finite()).then_some(Self { color, distance })
     }
 
-    /// How much shows of a surface at distance `t`, in cells: from 1 at 0 down to 0.
+    /// The share of a surface's own colour at distance `t`, in cells: from 1 at 0 down to 0.
     pub fn clearness(&self, t: f64) -> f64 {
         let relative = t / self.distance;
         1.0 / (1.0 + relative * relative)
     }
 }
 
-/// What is seen overhead where there is no ceiling, and beyond the edge of the map.
+/// The sky: what shows where there is no ceiling, and outside the map.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Sky {
-    /// From one colour, high up, to another, at the horizon.
+    /// From one colour overhead to another at the horizon.
     Gradient {
-        /// At half a cell up for each cell away, and above.
+        /// The colour at a slope of 1/2 and above.
         zenith: Rgb,
-        /// At the height of the eye.
+        /// The colour at the height of the eye.
         horizon: Rgb,
     },
-    /// A texture all around, as on the inside of a cylinder: its left edge in the east, its bottom
-    /// at the horizon, and above its top edge the colours of that. It turns with the heading, and
-    /// its texels are as high as they are wide.
+    /// A texture on the inside of a cylinder around the camera. Its left edge is east, its bottom
+    /// is the horizon, and above it the colours of its top edge continue. It turns with the
+    /// heading; its texels are square.
     Panorama(TextureId),
 }
 
 impl Default for Sky {
-    /// A fair day.
+    /// A blue sky by day.
     fn default() -> Self {
         Self::Gradient { zenith: Rgb::new(0x5f, 0x97, 0xcc), horizon: Rgb::new(0xb4, 0xd2, 0xe6) }
     }

@@ -1,4 +1,4 @@
-//! The camera: where somebody stands and how high, which way they look, and how wide.
+//! The camera: position, height of the eye, heading, pitch and field of view.
 
 use std::f64::consts::{FRAC_PI_2, FRAC_PI_4};
 use std::fmt;
@@ -9,10 +9,10 @@ use super::{Cell, Pitch};
 
 /// A direction on the map: 0° is east, 90° south, clockwise.
 ///
-/// It is a whole number of quarter turns and an angle of at most an eighth of a turn beside it, so
-/// that the four axes are exact (looking south, `x` is 0 and not 6e-17), and no number of turns
-/// makes it drift: its sine and cosine are computed afresh from that angle. A unit vector that is
-/// rotated at every step was refused for its drift in length.
+/// It is stored as a number of quarter turns and an angle of at most an eighth of a turn. Therefore
+/// the four axes are exact (to the south, `x` is 0 and not 6e-17), and turning never accumulates an
+/// error in length: sine and cosine are computed from that angle. A unit vector that is rotated in
+/// each step was refused, since its length drifts.
 #[derive(Clone, Copy, Debug, PartialEq, Default)]
 pub struct Heading {
     quarter_turns: u8,
@@ -21,32 +21,32 @@ pub struct Heading {
 }
 
 impl Heading {
-    /// A heading from degrees of any size. `None` where they are not finite.
+    /// A heading from any number of degrees. `None` if the number is not finite.
     pub fn from_degrees(degrees: f64) -> Option<Self> {
         if !degrees.is_finite() {
             return None;
         }
-        // The remainder of a division is exact in floating point.
+        // The remainder of a floating-point division is exact.
         let degrees = degrees % 360.0;
         let quarters = (degrees / 90.0).round();
         let beside = (degrees - 90.0 * quarters).to_radians();
         Some(Self { quarter_turns: quarters.rem_euclid(4.0) as u8, beside })
     }
 
-    /// Degrees, from 0 up to 360.
+    /// Degrees, at least 0 and below 360.
     pub fn degrees(self) -> f64 {
         let degrees = 90.0 * f64::from(self.quarter_turns) + self.beside.to_degrees();
         if degrees < 0.0 { degrees + 360.0 } else { degrees }
     }
 
-    /// Turned clockwise by `radians`; anything but a finite angle turns nothing.
+    /// The heading turned clockwise by `radians`; unchanged if `radians` is not finite.
     #[must_use]
     pub fn turned(self, radians: f64) -> Self {
         if !radians.is_finite() {
             return self;
         }
         let beside = self.beside + radians % (4.0 * FRAC_PI_2);
-        // On a diagonal the next quarter is as near, and to change to it would be to turn for ever.
+        // On a diagonal two quarters are equally near; changing between them would never end.
         let quarters = if beside.abs() <= FRAC_PI_4 { 0.0 } else { (beside / FRAC_PI_2).round() };
         Self {
             quarter_turns: (f64::from(self.quarter_turns) + quarters).rem_euclid(4.0) as u8,
@@ -54,7 +54,7 @@ impl Heading {
         }
     }
 
-    /// The unit vector that points this way.
+    /// The unit vector in this direction.
     pub fn direction(self) -> DVec2 {
         let (sin, cos) = (libm::sin(self.beside), libm::cos(self.beside));
         match self.quarter_turns {
@@ -66,14 +66,14 @@ impl Heading {
     }
 }
 
-/// How wide the camera sees: the angle between the left and the right edge of the picture.
+/// The field of view: the angle between the left and the right edge of the picture.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct FieldOfView {
     degrees: f64,
 }
 
 impl FieldOfView {
-    /// A field of view from degrees, above 0 and below 180. `None` outside that.
+    /// A field of view above 0 and below 180 degrees. `None` outside that range.
     pub fn from_degrees(degrees: f64) -> Option<Self> {
         (degrees > 0.0 && degrees < 180.0).then_some(Self { degrees })
     }
@@ -83,14 +83,15 @@ impl FieldOfView {
         self.degrees
     }
 
-    /// The tangent of half the angle: half the width of a picture at distance 1. Above 0 and finite.
+    /// The tangent of half the angle, which is half the width of the picture at distance 1. Finite
+    /// and above 0.
     pub fn half_width(self) -> f64 {
         libm::tan(self.degrees.to_radians() / 2.0).max(f64::MIN_POSITIVE)
     }
 }
 
 impl Default for FieldOfView {
-    /// 66°, whose half width is close to 0.65.
+    /// 66°, with a half width close to 0.65.
     fn default() -> Self {
         Self { degrees: 66.0 }
     }
@@ -102,31 +103,31 @@ impl fmt::Display for FieldOfView {
     }
 }
 
-/// Where somebody stands and how high, which way they look, and how wide.
+/// The position, height, direction and field of view of an observer.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Camera {
     position: DVec2,
     eye: f64,
-    /// Which way it looks.
+    /// The heading.
     pub heading: Heading,
-    /// How far up or down it looks.
+    /// The pitch.
     pub pitch: Pitch,
-    /// How wide it sees.
+    /// The field of view.
     pub field_of_view: FieldOfView,
 }
 
 impl Camera {
-    /// How high the eye of somebody is who stands on a floor, in cells above it.
+    /// The height of the eye of a standing player, in cells above the floor.
     pub const STANDING: f64 = 0.5;
 
-    /// A camera at `position`, in cells, that looks straight ahead from [`Camera::STANDING`] above
-    /// 0. `None` where the position is not finite.
+    /// A camera at `position`, in cells, with its eye at [`Camera::STANDING`] and no pitch. `None`
+    /// if the position is not finite.
     pub fn new(position: DVec2, heading: Heading, field_of_view: FieldOfView) -> Option<Self> {
         let camera = Self::at(position, heading, field_of_view);
         position.is_finite().then_some(camera)
     }
 
-    /// As [`Camera::new`], in the middle of `cell`.
+    /// A camera in the middle of `cell`, otherwise as [`Camera::new`].
     pub fn in_cell(cell: Cell, heading: Heading, field_of_view: FieldOfView) -> Self {
         Self::at(cell.center(), heading, field_of_view)
     }
@@ -135,24 +136,24 @@ impl Camera {
         Self { position, eye: Self::STANDING, heading, pitch: Pitch::LEVEL, field_of_view }
     }
 
-    /// The same camera with its eye at that height, in cells above 0. `None` where that is not
+    /// The camera with its eye at another height, in cells above 0. `None` if the height is not
     /// finite.
     pub fn with_eye(self, eye: f64) -> Option<Self> {
         eye.is_finite().then_some(Self { eye, ..self })
     }
 
-    /// The same camera, looking up or down.
+    /// The camera with another pitch.
     #[must_use]
     pub fn with_pitch(self, pitch: Pitch) -> Self {
         Self { pitch, ..self }
     }
 
-    /// Where it stands, in cells.
+    /// The position, in cells.
     pub fn position(&self) -> DVec2 {
         self.position
     }
 
-    /// How high its eye is, in cells above 0, the height of a floor where a map says no other.
+    /// The height of the eye, in cells above the map's own floor.
     pub fn eye(&self) -> f64 {
         self.eye
     }
@@ -162,7 +163,7 @@ impl Camera {
         self.heading.direction()
     }
 
-    /// The vector from straight ahead, at distance 1, to the right edge of the picture.
+    /// The vector from the point straight ahead, at distance 1, to the right edge of the picture.
     pub fn plane(&self) -> DVec2 {
         self.direction().perp() * self.field_of_view.half_width()
     }

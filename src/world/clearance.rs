@@ -1,50 +1,51 @@
-//! Clearance: how far rays may go from each cell without looking.
+//! The distance field: how far a ray may go from each cell without a test.
 //!
-//! A byte a cell says whether there is anything to look at, so that a ray looks at little memory, and at
-//! nothing else until it comes to something. Around the map is a border of cells that are not clear,
-//! and a ray that leaves needs no other test.
+//! For each cell, one byte says whether a ray has to test it. Around the map is a border of such
+//! cells, so that a ray that leaves the map needs no other check.
 //!
-//! On an empty map the byte says more: how far the cell is from the nearest that may be solid. A ray
-//! that knows it crosses as many lines in one step. That is measured once, when a map is read, and only
-//! where it pays: among rooms a ray is at a wall before it has saved anything. What may become solid
-//! counts as solid from the start, so a door that opens or closes changes nothing here.
+//! On mostly empty maps the byte is a distance, in the maximum norm, to the nearest cell that may
+//! be solid. A ray leaps that many grid lines. The field is computed once, when a map is read, and
+//! only where it pays: among rooms, a ray reaches a wall before it gains anything. Cells that may
+//! become solid count as solid, so that a door that opens or closes changes nothing.
 //!
-//! A measured map has a byte more for each block of 8 by 8 cells, the least that is said in it. Far
-//! from anything solid a ray asks no cell: the blocks of a large map fit a cache that its cells do not.
+//! Fields with distances have a second level, the minimum of each block of 8×8 cells. On a large
+//! map these fit into the cache, and the cells do not.
 //!
-//! A large map on which little is solid has [shafts](Shafts), too, which tell how far it is clear ahead,
-//! and not only around.
+//! Large maps with few solid cells have a [beam table](Shafts) as well, which says how far the way
+//! ahead is clear.
 //!
-//! Only to skip blocks that are empty, and blocks of blocks, was refused: a ray stops at the edge of
-//! each block, and a single pillar fills all that hold it.
+//! The distances are found in two passes over the cells, as in the distance transform of Rosenfeld
+//! and Pfaltz ("Sequential Operations in Digital Picture Processing", 1966). Skipping only empty
+//! blocks, and blocks of blocks, was refused: a ray would stop at the edge of each block, and one
+//! pillar fills all blocks that contain it.
 
 use std::fmt;
 
 use super::Shafts;
 
-/// For each cell, and those around the map, how many lines of the grid a ray can cross at once that is
-/// in it: no cell that is nearer than that is, or may become, solid. 0 where the cell itself may be.
+/// For each cell and the border, how many grid lines a ray in it may cross at once: no nearer cell
+/// is or may become solid. 0 if the cell itself may be solid.
 #[derive(Clone, PartialEq, Eq)]
 pub(crate) struct Clearance {
-    /// Row by row from the one north of the map, each from the cell west of it.
+    /// Row by row from the border row in the north, each from the border cell in the west.
     cells: Vec<Coded>,
-    /// How many cells are in a row.
+    /// The number of cells in a row.
     width: usize,
-    /// For each block of cells, the least that any of them says; nothing where that is at most 1.
+    /// The minimum of each block of cells; empty where no minimum is above 1.
     ///
-    /// Of a large map these are in the cache, and the cells are not.
+    /// On a large map these are in the cache, and the cells are not.
     blocks: Vec<Coded>,
-    /// How many blocks are in a row.
+    /// The number of blocks in a row.
     width_in_blocks: usize,
-    /// Of rays that are fastest along rows, and along columns.
+    /// The beam tables for rays along rows and along columns.
     shafts: Option<Box<[Shafts; 2]>>,
 }
 
-/// How many cells a block has along each axis.
+/// The number of cells of a block along each axis.
 const BLOCK: usize = 1 << BLOCK_BITS;
 const BLOCK_BITS: u32 = 3;
 
-/// A number of lines in a byte: exact as far as [`Coded::EXACT`], then rounded down to a multiple of
+/// A number of lines in a byte: exact up to [`Coded::EXACT`], then rounded down to a multiple of
 /// [`Coded::STEP`], up to more than a map has.
 #[derive(Clone, Copy, PartialEq, Eq)]
 struct Coded(u8);
@@ -70,10 +71,10 @@ impl Coded {
 }
 
 impl Clearance {
-    /// Where a ray crosses as many lines at a time, in the mean, it is faster for it.
+    /// The mean number of lines crossed at once from which rays gain by distances.
     const WORTHWHILE: f64 = 4.0;
 
-    /// Looks one cell far. `rows` are as long as each other, of cells that `may_be_solid`.
+    /// A field of zeros and ones. `rows` have equal lengths, and cells that `may_be_solid` are 0.
     pub(super) fn new<Row: ExactSizeIterator<Item = bool>>(
         rows: impl ExactSizeIterator<Item = Row>,
     ) -> Self {
@@ -94,13 +95,13 @@ impl Clearance {
         Self { cells, width, blocks: Vec::new(), width_in_blocks: 0, shafts: None }
     }
 
-    /// How many bytes it takes in memory.
+    /// The size in memory, in bytes.
     pub(super) fn bytes(&self) -> usize {
         let of_shafts = self.shafts().into_iter().flatten().map(Shafts::bytes).sum::<usize>();
         size_of_val(self.cells.as_slice()) + size_of_val(self.blocks.as_slice()) + of_shafts
     }
 
-    /// The same, which looks as far as there is anything to see, if rays gain by it.
+    /// The field with distances, if rays gain by them.
     pub(super) fn measured_if_worthwhile(self) -> Self {
         let measured = self.measured();
         if !measured.is_worthwhile() {
@@ -112,7 +113,7 @@ impl Clearance {
         }
     }
 
-    /// The cell that is nearest to one comes before it in the order of reading, or after it.
+    /// The nearest solid cell comes before the cell in reading order, or after it.
     pub(super) fn measured(&self) -> Self {
         let width = self.width;
         let farthest = |&cell: &Coded| if cell == Coded::NONE { 0 } else { Coded::MOST };
@@ -141,7 +142,7 @@ impl Clearance {
         Self { cells, width, blocks, width_in_blocks, shafts: None }
     }
 
-    /// The same, with shafts.
+    /// The field with beam tables.
     pub(super) fn with_shafts(self) -> Self {
         let [columns, rows] = self.size();
         let along_rows = Shafts::new([columns, rows], self.solid());
@@ -155,12 +156,12 @@ impl Clearance {
         Shafts::are_worthwhile(self.size(), solid as i64)
     }
 
-    /// The map's columns and rows.
+    /// The columns and rows of the map.
     fn size(&self) -> [i64; 2] {
         [self.width as i64 - 2, (self.cells.len() / self.width) as i64 - 2]
     }
 
-    /// The column and row of each cell that is or may be solid, with those around the map.
+    /// The columns and rows of cells that may be solid, the border included.
     fn solid(&self) -> impl Iterator<Item = [i64; 2]> {
         let rows = self.cells.chunks_exact(self.width).zip(-1..);
         rows.flat_map(|(cells, row)| {
@@ -169,8 +170,7 @@ impl Clearance {
         })
     }
 
-    /// Whether a ray crosses more than a few lines at a time, in the mean of all cells that it may be
-    /// in.
+    /// Whether the mean of the distances is large enough for rays to gain by them.
     fn is_worthwhile(&self) -> bool {
         let mut counts = [0_u64; u8::MAX as usize + 1];
         for &Coded(code) in &self.cells {
@@ -182,13 +182,13 @@ impl Clearance {
         clear as f64 > Self::WORTHWHILE * looks
     }
 
-    /// How many lines can be crossed at once from the cell at `index`.
+    /// The number of lines that a ray can cross at once from the cell at `index`.
     #[inline]
     pub(crate) fn lines_at(&self, index: i64) -> i64 {
         i64::from(self.at(index).lines())
     }
 
-    /// Whether the cell at `index` is not solid, and will never be.
+    /// Whether the cell at `index` is not solid, and cannot become so.
     #[inline]
     pub(crate) fn is_clear(&self, index: i64) -> bool {
         self.at(index) != Coded::NONE
@@ -199,8 +199,9 @@ impl Clearance {
         self.cells.get(index as usize).copied().unwrap_or(Coded::NONE)
     }
 
-    /// At least how many lines can be crossed at once from the cell at those `places` along two axes, of
-    /// which `strides` are the [strides](Clearance::strides_of_blocks). 0 means that it is not known.
+    /// A lower bound of the number of lines that a ray can cross at once from the cell at these
+    /// `places` along two axes, of which `strides` are the [strides](Clearance::strides_of_blocks).
+    /// 0 if it is not known.
     #[inline]
     pub(crate) fn lines_of_block(&self, places: [i64; 2], strides: [i64; 2]) -> i64 {
         let [one, other] = places.map(|place| (place + 1) >> BLOCK_BITS);
@@ -208,31 +209,31 @@ impl Clearance {
         i64::from(self.blocks.get(index as usize).copied().unwrap_or(Coded::NONE).lines())
     }
 
-    /// As [`Clearance::strides`], of blocks.
+    /// The strides of blocks, as [`Clearance::strides`].
     #[inline]
     pub(crate) fn strides_of_blocks(&self) -> [i64; 2] {
         [1, self.width_in_blocks as i64]
     }
 
-    /// The index of the cell in the map's north-west.
+    /// The index of the map's cell in the north-west.
     #[inline]
     pub(crate) fn first(&self) -> i64 {
         self.width as i64 + 1
     }
 
-    /// From a cell's index to that of the one to the east, and to that of the one to the south.
+    /// The differences of the indices of a cell and its neighbours to the east and to the south.
     #[inline]
     pub(crate) fn strides(&self) -> [i64; 2] {
         [1, self.width as i64]
     }
 
-    /// Whether it is told how far a ray can go, and not only whether.
+    /// Whether the field has distances.
     #[inline]
     pub(crate) fn is_measured(&self) -> bool {
         !self.blocks.is_empty()
     }
 
-    /// The shafts of rays that are fastest along rows, and of those along columns, if any.
+    /// The beam tables for rays along rows and along columns, if there are any.
     #[inline]
     pub(crate) fn shafts(&self) -> Option<&[Shafts; 2]> {
         self.shafts.as_deref()
@@ -247,7 +248,8 @@ impl fmt::Debug for Clearance {
     }
 }
 
-/// Brings each cell of a row, but the first and the last, as near as its neighbours in the row beside.
+/// Lowers the distance of each cell in a row, except the first and the last, to one above the least
+/// of its neighbours in the row beside.
 fn approach(row: &mut [u16], beside: &[u16]) {
     let inner = row.len() - 1;
     for (cell, neighbours) in row[1..inner].iter_mut().zip(beside.windows(3)) {
@@ -256,7 +258,7 @@ fn approach(row: &mut [u16], beside: &[u16]) {
     }
 }
 
-/// Brings each cell as near as the one before it, the first of which is not clear.
+/// Lowers the distance of each cell to one above that of the cell before it; the first is 0.
 fn spread<'row>(cells: impl Iterator<Item = &'row mut u16>) {
     cells.fold(0, |before, cell| {
         *cell = (*cell).min(before + 1);

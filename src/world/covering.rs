@@ -1,51 +1,51 @@
-//! Coverings: what a floor or a ceiling is laid with.
+//! Coverings: the surfaces of floors and ceilings.
 
 use super::Paint;
 
-/// What a floor or a ceiling is laid with: paints, and how large they are laid.
+/// The surface of a floor or a ceiling: paints in a pattern, and the scale of the pattern.
 ///
-/// A texture lies as it looks from above, north up, with its corner at the map's; a ceiling shows
-/// the same texel as a floor would, straight above it.
+/// A texture is oriented with its top in the north, and its corner at the corner of the map. A
+/// ceiling has the same texel as a floor below it would have.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Covering {
-    /// Which paint lies where.
+    /// Which paint is where.
     pub pattern: Pattern,
-    /// How large a piece of the pattern is.
+    /// The size of a piece of the pattern.
     pub scale: Scale,
 }
 
-/// Which paint lies where. A piece is a square of the covering's [`Scale`].
+/// An arrangement of paints in pieces. A piece is a square with sides of the covering's [`Scale`].
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Pattern {
-    /// The same everywhere.
+    /// One paint everywhere.
     Plain(Paint),
-    /// By turns from piece to piece, like a chessboard; the first in the north-west corner.
+    /// Two paints alternating like a chessboard, the first in the north-west corner.
     Checker([Paint; 2]),
-    /// By turns from one row of pieces to the next, the first in the north.
+    /// Two paints alternating from row to row, the first in the north.
     Stripes([Paint; 2]),
 }
 
-/// Cells that one repeat of a texture stretches over, along both axes: above 0, and finite.
+/// The number of cells that one repeat of a texture covers along both axes: finite and above 0.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Scale(f64);
 
 impl Scale {
-    /// A cell for each repeat.
+    /// One cell.
     pub const ONE: Self = Self(1.0);
 
-    /// A scale of `cells`. `None` where that is not above 0 and finite.
+    /// A scale of `cells`. `None` unless that is finite and above 0.
     pub fn new(cells: f64) -> Option<Self> {
         (cells > 0.0 && cells.is_finite()).then_some(Self(cells))
     }
 
-    /// Cells for each repeat.
+    /// The number of cells.
     pub fn cells(self) -> f64 {
         self.0
     }
 }
 
 impl From<Paint> for Covering {
-    /// One paint everywhere, in its own size.
+    /// One paint everywhere, at a scale of one cell.
     fn from(paint: Paint) -> Self {
         Self { pattern: Pattern::Plain(paint), scale: Scale::ONE }
     }
@@ -59,7 +59,7 @@ impl Pattern {
         }
     }
 
-    /// The paints it consists of.
+    /// The paints of the pattern.
     pub fn paints(&self) -> &[Paint] {
         match self {
             Self::Plain(paint) => std::slice::from_ref(paint),
@@ -68,11 +68,11 @@ impl Pattern {
     }
 }
 
-/// What is overhead.
+/// A ceiling, or its absence.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub enum Ceiling {
-    /// Nothing but the sky.
+    /// No ceiling: the sky shows.
     Sky,
-    /// A ceiling.
+    /// A ceiling with this covering.
     Covered(Covering),
 }

@@ -1,53 +1,53 @@
-//! Doors: how they look, which key they ask for, and how far each of them is open.
+//! Doors: their surfaces, their keys, and how far each of them is open.
 //!
-//! A door's leaf stands in the middle of its cell and slides aside into a jamb. Two kinds of tile
-//! belong to it: [`Door`](super::TileKind::Door), which is solid, as long as any of the leaf is in
-//! the way, and [`Doorway`](super::TileKind::Doorway), which is open floor between two jambs, once
-//! all of it is gone. So a door that is open costs no more than the floor, one that is closed no more
-//! than a wall, and nobody who asks what is solid needs to know of doors. A door that is solid just
-//! where its leaf is was refused: whoever stands beside the leaf as it comes back would be inside it.
+//! A door stands in the middle of its cell and slides aside into a jamb. It has two kinds of tile:
+//! [`Door`](super::TileKind::Door), which is solid, while any part of it is in the way, and
+//! [`Doorway`](super::TileKind::Doorway), which is open floor between two jambs, when it is fully
+//! open. So an open door costs no more than floor, a closed one no more than a wall, and collision
+//! need not know of doors. A door that is solid only where its leaf is was refused: a player beside
+//! the leaf would be inside it when it closes.
 
 use super::{Cell, Paint, Tile, TileId, TileKind, World};
 
 /// A kind of door.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct Door {
-    /// How its leaf looks.
+    /// The surface of its leaf.
     pub leaf: Paint,
-    /// How the walls look that it is set between, where they face its cell.
+    /// The surface of the neighbouring walls where they face the door's cell.
     pub jamb: Paint,
-    /// Which key opens it; `None` where it is not locked.
+    /// The key that opens it; `None` if it is not locked.
     pub key: Option<KeyId>,
 }
 
-/// Which key: an index into the world's list of their names.
+/// A key: an index into the world's list of their names.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash, PartialOrd, Ord)]
 pub struct KeyId(pub u8);
 
-/// How far a door is open: the part of its leaf that has gone into the jamb, from 0 to 1.
+/// How far a door is open, from 0 to 1: the part of its leaf that is in the jamb.
 #[derive(Clone, Copy, Debug, PartialEq, PartialOrd)]
 pub struct Opening(f64);
 
 impl Opening {
-    /// All of the leaf is in the way.
+    /// Closed.
     pub const CLOSED: Self = Self(0.0);
-    /// None of it is.
+    /// Fully open.
     pub const OPEN: Self = Self(1.0);
 
-    /// An opening by that part, from 0 to 1. `None` outside that.
+    /// An opening from 0 to 1. `None` outside that range.
     pub fn new(part: f64) -> Option<Self> {
-        // Zero is added to be rid of its sign.
+        // Adding zero removes the sign of a negative zero.
         (0.0..=1.0).contains(&part).then_some(Self(part + 0.0))
     }
 
-    /// The part of the leaf that is gone, from 0 to 1.
+    /// The open part, from 0 to 1.
     pub fn part(self) -> f64 {
         self.0
     }
 }
 
 impl World {
-    /// The door in `cell`, however far it is open; `None` where there is none.
+    /// The door in `cell`, open or closed; `None` if there is none.
     pub fn door(&self, cell: Cell) -> Option<Door> {
         match self.kind_at(cell)? {
             TileKind::Door(door) | TileKind::Doorway(door) => Some(door),
@@ -55,7 +55,7 @@ impl World {
         }
     }
 
-    /// How far the door in `cell` is open; closed where there is none.
+    /// How far the door in `cell` is open; closed if there is none.
     pub fn opening(&self, cell: Cell) -> Opening {
         match self.kind_at(cell) {
             Some(TileKind::Doorway(_)) => Opening::OPEN,
@@ -63,8 +63,8 @@ impl World {
         }
     }
 
-    /// Moves the door in `cell`; does nothing where there is none. The cell is open floor where the
-    /// door is all open, and solid otherwise.
+    /// Sets the opening of the door in `cell`; does nothing if there is none. The cell becomes open
+    /// floor if the door is fully open, and solid otherwise.
     pub fn set_opening(&mut self, cell: Cell, opening: Opening) {
         let Some(tile) = self.tile_at(cell) else { return };
         if !matches!(tile.kind, TileKind::Door(_) | TileKind::Doorway(_)) {
@@ -81,10 +81,10 @@ impl World {
         }
     }
 
-    /// What the key `id` of this world is called, such as "brass".
+    /// The name of the key `id`, such as "brass".
     ///
     /// # Panics
-    /// Where `id` is from another world that has more keys.
+    /// If `id` comes from another world that has more keys.
     pub fn key_name(&self, id: KeyId) -> &str {
         &self.keys[usize::from(id.0)]
     }
@@ -93,7 +93,7 @@ impl World {
         self.tile_at(cell).map(|tile| tile.kind)
     }
 
-    /// The open floor that a door drawn with `character` leaves.
+    /// The doorway of the door with `character`.
     pub(super) fn doorway(&self, character: char) -> Option<TileId> {
         self.tile_id(character, |kind| matches!(kind, TileKind::Doorway(_)))
     }
@@ -104,20 +104,20 @@ impl World {
     }
 }
 
-/// The doors that are neither closed nor open, and how far they are open.
+/// The doors that are partly open.
 #[derive(Clone, Debug, PartialEq, Default)]
 pub(super) struct Ajar {
-    /// In the order of their cells: few at any time.
+    /// Sorted by cell. There are few at any time.
     openings: Vec<(Cell, Opening)>,
 }
 
 impl Ajar {
-    /// How far the door in `cell` is open, if it is one of them.
+    /// The opening of the door in `cell`, if it is partly open.
     fn opening(&self, cell: Cell) -> Option<Opening> {
         self.find(cell).ok().map(|index| self.openings[index].1)
     }
 
-    /// Takes note that the door in `cell` is open by `opening`.
+    /// Records the opening of the door in `cell`.
     fn set(&mut self, cell: Cell, opening: Opening) {
         let is_ajar = Opening::CLOSED < opening && opening < Opening::OPEN;
         match self.find(cell) {

@@ -1,17 +1,17 @@
-//! The light along a face of a cell, from one end to the other.
+//! The light along a face of a cell.
 //!
-//! Light is kept by cell. In the middle of a face it is that of the cell in front; towards each end it
-//! goes over, linearly, into that of the next cell along the face, so that where two faces meet on one
-//! line both have the mean of the two: there are no bands. Light crosses only from open floor, masks and
-//! glass to the like, where one can pass at some height: not through a wall or a closed door.
+//! Each cell has one light. The middle of a face has the light of the cell in front of it. Towards
+//! both ends the light changes linearly into that of the next cell along the face, so that
+//! adjoining faces agree on the mean and no bands show. Light passes only between cells of open
+//! floor, masks and glass that have a common open height: not through walls or closed doors.
 //!
-//! The corners of cells, each with the mean of the cells around it, were refused: a mean would reach
-//! around the end of a wall. Floors and ceilings keep one light for each cell, as a stretch of a row is
-//! laid in one shade.
+//! Interpolating between corners, each with the mean of its four cells, was refused: the light
+//! would reach around the end of a wall. Floors and ceilings have one light for each cell, because
+//! spans are drawn with one light.
 
 use super::{Cell, Light, Tile, TileKind, World};
 
-/// How bright a face is from its left end to its right, as its viewer sees it.
+/// The light of a face from its left to its right end, as seen from in front of it.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub(crate) struct FaceLight {
     /// In the middle.
@@ -21,15 +21,15 @@ pub(crate) struct FaceLight {
 }
 
 impl FaceLight {
-    /// All of it in full light.
+    /// Full light everywhere.
     pub(crate) const FULL: Self = Self::even(Light::FULL);
 
-    /// As bright at both ends as in the middle.
+    /// The same light everywhere.
     pub(crate) const fn even(light: Light) -> Self {
         Self { middle: light, beside: [light; 2] }
     }
 
-    /// How bright it is at `u`, from 0 at its left end to 1 at its right.
+    /// The light at `u`, from 0 at the left end to 1 at the right one.
     #[inline]
     pub(crate) fn at(self, u: f64) -> Light {
         let Self { middle, beside: [left, right] } = self;
@@ -42,14 +42,15 @@ impl FaceLight {
 }
 
 impl World {
-    /// How bright the face of `cell` is that is seen from the cell `before`, which is beside it, where
-    /// the tile of `cell` has no light of its own.
+    /// The light of the face of `cell` as seen from the neighbouring cell `before`, if the tile of
+    /// `cell` has no light of its own.
     pub(crate) fn face_light(&self, cell: Cell, before: Cell) -> FaceLight {
         let middle = self.light_in(before);
         let Some(tile) = self.tile_at(before).filter(|_| self.light_varies) else {
             return FaceLight::even(middle);
         };
-        // To the right of somebody who looks from `before` to `cell`, as y grows to the south.
+        // To the right for an observer who looks from `before` to `cell`, since y grows to the
+        // south.
         let ahead = step(before, cell);
         let right = (-ahead.1, ahead.0);
         let beside = [(-right.0, -right.1), right].map(|way| {
@@ -61,15 +62,15 @@ impl World {
     }
 }
 
-/// Whether light passes between two tiles beside each other: both let it through, and the gap above the
-/// floor of one is open to one of the other's.
+/// Whether light passes between two neighbouring tiles: both let it through, and the gap above the
+/// floor of one overlaps one of the other's.
 fn is_lit_from(one: &Tile, other: &Tile) -> bool {
     let is_clear =
         |tile: &Tile| matches!(tile.kind, TileKind::Open | TileKind::Mask(_) | TileKind::Glass(_));
     is_clear(one) && is_clear(other) && (is_open_to(one, other) || is_open_to(other, one))
 }
 
-/// Whether the lowest gap of `one` is beside any gap of `other`.
+/// Whether the lowest gap of `one` overlaps any gap of `other`.
 fn is_open_to(one: &Tile, other: &Tile) -> bool {
     let lowest = one.gaps().next();
     lowest.is_some_and(|lowest| {
@@ -77,7 +78,7 @@ fn is_open_to(one: &Tile, other: &Tile) -> bool {
     })
 }
 
-/// Columns and rows from one cell to another.
+/// The columns and rows from one cell to another.
 fn step(from: Cell, to: Cell) -> (i64, i64) {
     (i64::from(to.column) - i64::from(from.column), i64::from(to.row) - i64::from(from.row))
 }
@@ -100,7 +101,7 @@ mod tests {
         Cell { column, row }
     }
 
-    /// Floor of several lights, and what light goes through or does not.
+    /// Floor with several lights, and tiles that let light through or do not.
     fn world(cells: &[char]) -> World {
         let rows: Vec<String> =
             cells.chunks(SIDE as usize).map(|row| row.iter().collect()).collect();
@@ -114,7 +115,7 @@ mod tests {
     }
 
     proptest! {
-        /// The ends of two faces that meet on one line are as bright as each other, and no face is
+        /// Two faces that meet on one line have equal lights at the common end, and no face is
         /// brighter or darker than the cells before it and beside that.
         #[test]
         fn faces_that_meet_on_one_line_have_one_light_there(
@@ -127,7 +128,7 @@ mod tests {
             };
             for row in 1..SIDE {
                 for column in 0..SIDE - 1 {
-                    // Both look south at the row below; the one in the east is to the left.
+                    // Both face the row in the south; the one in the east is to the left.
                     let [west, east] = [cell(column, row - 1), cell(column + 1, row - 1)];
                     let faces = [(cell(column, row), west), (cell(column + 1, row), east)];
                     let [of_west, of_east] = faces.map(|(cell, before)| world.face_light(cell, before));
@@ -152,7 +153,7 @@ mod tests {
         let cells: Vec<char> = "ab#bag.....#####.........".chars().collect();
         let world = world(&cells);
         let face = world.face_light(cell(1, 1), cell(1, 0));
-        // To the left of somebody who looks south is the east: a wall. To the right it is darker.
+        // For an observer who looks south, left is east: a wall. It is darker to the right.
         let lights = [0.0, 0.25, 0.5, 0.75, 1.0].map(|u| face.at(u).in_256ths());
         assert_eq!(lights, [230, 230, 230, 179, 128]);
         let across = world.face_light(cell(3, 1), cell(3, 0));

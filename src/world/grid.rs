@@ -12,9 +12,9 @@ use super::clearance::Clearance;
 /// The place of a cell: column from the west, row from the north, both from 0.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash, PartialOrd, Ord)]
 pub struct Cell {
-    /// Cells to the west of this one.
+    /// The number of cells to the west of this one.
     pub column: u32,
-    /// Cells to the north of this one.
+    /// The number of cells to the north of this one.
     pub row: u32,
 }
 
@@ -25,35 +25,35 @@ impl Cell {
     }
 }
 
-/// Which kind of tile a cell holds: an index into the world's list of tiles.
+/// A kind of tile: an index into the world's list of tiles.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash, PartialOrd, Ord)]
 pub struct TileId(pub u8);
 
 impl TileId {
-    /// A world has no more tiles.
+    /// The largest number of tiles in a world.
     #[cfg_attr(not(feature = "tui"), expect(dead_code, reason = "only the minimap has a table"))]
     pub(crate) const MOST: usize = 1 << u8::BITS;
 }
 
-/// Which tile each cell holds, and which tiles are solid.
+/// The tile of each cell, and which tiles are solid.
 ///
-/// Tiles are numbered with the open ones first, so that asking whether a cell is solid is one
-/// comparison and needs no table.
+/// Open tiles have the lower numbers, so that the test for a solid cell is one comparison without a
+/// table.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub struct Grid {
     width: NonZeroU32,
     height: NonZeroU32,
     first_solid: TileId,
     cells: Vec<TileId>,
-    /// Where something stands that is in the way.
+    /// The cells with things that block.
     occupied: BTreeSet<Cell>,
-    /// Where rays need not look. It is shared, as it never changes.
+    /// The distance field. It is shared, since it never changes.
     clearance: Arc<Clearance>,
 }
 
 impl Grid {
-    /// A grid of `width` × `height` cells, row by row from the north, where tiles from
-    /// `first_solid` on are solid. `None` where `cells` is not as long as that.
+    /// A grid of `width` × `height` cells, row by row from the north. Tiles from `first_solid` on
+    /// are solid. `None` if `cells` does not have that length.
     pub fn new(
         width: NonZeroU32,
         height: NonZeroU32,
@@ -77,8 +77,8 @@ impl Grid {
         })
     }
 
-    /// A grid drawn in characters: `.` and a space are open floor (tile 0), anything else is solid
-    /// (tile 1). `None` where it is empty or its rows are not of one length.
+    /// A grid drawn with characters: `.` and a space are open floor (tile 0), all others are solid
+    /// (tile 1). `None` if it is empty, or if its rows differ in length.
     ///
     /// ```
     /// let grid = cellcaster::world::Grid::sketch(&["###", "#.#", "###"]).unwrap();
@@ -95,93 +95,93 @@ impl Grid {
         Self::new(width, height, TileId(1), cells)
     }
 
-    /// Lets rays skip what is empty, where the map is empty enough, though some of its open tiles
+    /// Computes the distance field, if the map is empty enough to gain by it. Some open tiles
     /// `may_become_solid`.
     pub(super) fn clear(&mut self, may_become_solid: impl Fn(TileId) -> bool) {
         self.clearance = Arc::new(self.near(may_become_solid).measured_if_worthwhile());
     }
 
-    /// As [`Grid::clear`], however many walls there are.
+    /// Computes the distance field as [`Grid::clear`] does, whatever the map.
     #[cfg(test)]
     pub(crate) fn measure_clearance(&mut self, may_become_solid: impl Fn(TileId) -> bool) {
         self.clearance = Arc::new(self.near(may_become_solid).measured());
     }
 
-    /// As [`Grid::measure_clearance`], with shafts.
+    /// Computes the distance field as [`Grid::measure_clearance`] does, with beam tables.
     #[cfg(test)]
     pub(crate) fn make_shafts(&mut self, may_become_solid: impl Fn(TileId) -> bool) {
         self.clearance = Arc::new(self.near(may_become_solid).measured().with_shafts());
     }
 
-    /// How clear it is where one looks one cell far.
+    /// The distance field of zeros and ones.
     fn near(&self, may_become_solid: impl Fn(TileId) -> bool) -> Clearance {
         let may_be_solid = |&tile: &TileId| self.is_solid_tile(tile) || may_become_solid(tile);
         Clearance::new(self.rows().map(|row| row.iter().map(may_be_solid)))
     }
 
-    /// Where rays need not look.
+    /// The distance field.
     #[inline]
     pub(crate) fn clearance(&self) -> &Clearance {
         &self.clearance
     }
 
-    /// Lamplight for as many cells, in which no lamp shines yet.
+    /// Lamplight for the cells of this grid, without any light yet.
     pub(crate) fn lamplight(&self) -> Lamplight {
         Lamplight::new(self.width, self.height)
     }
 
-    /// Columns, from west to east.
+    /// The number of columns.
     pub fn width(&self) -> u32 {
         self.width.get()
     }
 
-    /// Rows, from north to south.
+    /// The number of rows.
     pub fn height(&self) -> u32 {
         self.height.get()
     }
 
-    /// The tile at a place, or `None` off the map.
+    /// The tile at a column and a row; `None` outside the map.
     #[inline]
     pub fn tile(&self, column: i64, row: i64) -> Option<TileId> {
-        // As unsigned numbers, those below 0 are beyond any width.
+        // As unsigned numbers, negative ones are greater than any width.
         let (column, row) = (column as u64, row as u64);
         let is_on_map = column < u64::from(self.width()) && row < u64::from(self.height());
         is_on_map.then(|| self.cells[row as usize * self.width() as usize + column as usize])
     }
 
-    /// Puts `tile` into `cell`, which must be on the map.
+    /// Sets the tile of `cell`, which must be on the map.
     pub(super) fn set(&mut self, cell: Cell, tile: TileId) {
         let width = self.width() as usize;
         self.cells[cell.row as usize * width + cell.column as usize] = tile;
     }
 
-    /// Notes that something stands in `cell` that one cannot walk through.
+    /// Records that a thing in `cell` blocks.
     pub(crate) fn occupy(&mut self, cell: Cell) {
         self.occupied.insert(cell);
     }
 
-    /// Whether something stands at a place, on the map, that nobody can walk through.
+    /// Whether a thing blocks a cell of the map.
     pub fn is_occupied(&self, column: i64, row: i64) -> bool {
         let cell = Cell { column: column as u32, row: row as u32 };
         !self.occupied.is_empty() && self.occupied.contains(&cell)
     }
 
-    /// Whether there is something solid at a place; off the map there is nothing.
+    /// Whether a cell is solid; `false` outside the map.
     pub fn is_solid(&self, column: i64, row: i64) -> bool {
         self.tile(column, row).is_some_and(|tile| self.is_solid_tile(tile))
     }
 
-    /// The first tile that is solid; so are all that come after it.
+    /// The first solid tile; all later ones are solid, too.
     pub(crate) fn first_solid(&self) -> TileId {
         self.first_solid
     }
 
-    /// Whether cells that hold `tile` are solid.
+    /// Whether cells with `tile` are solid.
     pub fn is_solid_tile(&self, tile: TileId) -> bool {
         tile >= self.first_solid
     }
 
-    /// How many bytes it takes in memory: its cells, and what rays know of them.
+    /// The size in memory, in bytes: of the cells and of the distance field.
     pub fn bytes(&self) -> usize {
         size_of_val(self.cells.as_slice()) + self.clearance.bytes()
     }

@@ -1,15 +1,14 @@
-//! Heights: how high floors, ceilings and walls are, and the gaps that they leave.
+//! Heights of floors, ceilings and walls, and the gaps between them.
 //!
-//! A cell is a column of rock with gaps in it: one between floor and ceiling, and one above the roof;
-//! a single one under the sky; above a wall, if it is a low one. Whoever draws, walks or falls asks for
-//! the gaps, and need not know what kind of tile makes them. A list of blocks for each cell was
-//! refused: a floor, a ceiling and a roof say all that a raycaster's levels are made of, and there
-//! are never more than two gaps.
+//! A cell is a solid column with gaps: one between floor and ceiling and one above the roof, or a
+//! single one under the sky or above a low wall. Drawing, walking and falling use the gaps, and
+//! need not know which kind of tile makes them. A list of solid blocks for each cell was refused:
+//! floor, ceiling and roof describe all that the levels of a raycaster need, with at most two gaps.
 
 use super::{Ceiling, Shape, Tile, TileKind};
 
-/// How high the parts of a tile are, in cells above the map's own floor: finite, and within
-/// [`Heights::MOST`] of it.
+/// The heights of a tile, in cells above the map's own floor: finite, and at most [`Heights::MOST`]
+/// in absolute value.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Heights {
     floor: f64,
@@ -17,27 +16,27 @@ pub struct Heights {
     roof: f64,
 }
 
-/// What is open in a cell, from one height to another: empty space over a floor.
+/// An open range of heights in a cell.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Gap {
-    /// The height of what is below it.
+    /// The height of the floor below it.
     pub bottom: f64,
-    /// The height of what is above it; infinite for the sky.
+    /// The height of the ceiling above it; infinite under the sky.
     pub top: f64,
 }
 
 impl Heights {
-    /// A floor at 0, and all else a cell above it.
+    /// A floor at 0, with ceiling and roof at 1.
     pub const LEVEL: Self = Self { floor: 0.0, ceiling: 1.0, roof: 1.0 };
-    /// The same, filled up to the ceiling by a wall.
+    /// The same as a solid wall.
     pub const LEVEL_WALL: Self = Self { floor: 1.0, ..Self::LEVEL };
-    /// How far up or down anything may be.
+    /// The largest absolute value of a height.
     pub const MOST: f64 = 1e9;
 
-    /// A floor, a ceiling and a roof at those heights. `None` where one of them is out of range.
+    /// Heights of a floor, a ceiling and a roof. `None` if one of them is out of range.
     pub fn new(floor: f64, ceiling: f64, roof: f64) -> Option<Self> {
         let is_in_range = |height: f64| height.abs() <= Self::MOST;
-        // Zero is added to be rid of its sign.
+        // Adding zero removes the sign of a negative zero.
         let heights = Self { floor: floor + 0.0, ceiling: ceiling + 0.0, roof: roof + 0.0 };
         [floor, ceiling, roof].into_iter().all(is_in_range).then_some(heights)
     }
@@ -47,33 +46,33 @@ impl Heights {
         self.floor
     }
 
-    /// The height of the ceiling, or where it would be under the sky: doors, glass and walls with
-    /// holes reach up to it.
+    /// The height of the ceiling, or under the sky where it would be. Doors, glass and masks reach
+    /// up to it.
     pub fn ceiling(self) -> f64 {
         self.ceiling
     }
 
-    /// The height of the top of what hangs above the ceiling.
+    /// The height of the top of the solid part above the ceiling.
     pub fn roof(self) -> f64 {
         self.roof
     }
 }
 
 impl Gap {
-    /// From the bottom to the top; infinite under the sky.
+    /// The difference of top and bottom; infinite under the sky.
     pub fn height(self) -> f64 {
         self.top - self.bottom
     }
 
-    /// Whether `height` is in it, its bottom and its top included.
+    /// Whether `height` is in the gap or at one of its ends.
     pub fn holds(self, height: f64) -> bool {
         (self.bottom..=self.top).contains(&height)
     }
 }
 
 impl Tile {
-    /// What is open in a cell of this tile, from the lowest gap up: at least one, as nothing reaches
-    /// up to the sky. Doors, glass and masks stand in a gap and are not counted as rock.
+    /// The gaps of this tile, from the lowest up; there is at least one. Doors, glass and masks
+    /// stand in a gap and do not count as solid.
     pub fn gaps(&self) -> impl DoubleEndedIterator<Item = Gap> + use<> {
         let Heights { floor, ceiling, roof } = self.heights;
         let up_from = |bottom| Gap { bottom, top: f64::INFINITY };
@@ -87,7 +86,7 @@ impl Tile {
         inside.into_iter().chain([above])
     }
 
-    /// Up to where a door, glass, a wall with holes or a shape stands here, from the floor.
+    /// The height up to which a door, glass, a mask or a shape reaches here.
     pub fn top_of_what_stands(&self) -> f64 {
         let Heights { floor, ceiling, .. } = self.heights;
         match (self.kind, self.ceiling) {

@@ -1,28 +1,28 @@
-//! Lamplight: what lamps add to the light of the cells near them.
+//! Lamplight: what lamps add to the light of nearby cells.
 //!
-//! It is found out once, when a map is read, and kept as a number for each cell; a map whose lamps
-//! make nothing brighter keeps none. Light that follows an opening door was refused: every lamp would
-//! have to be asked again at every step, for a difference that few would see.
+//! It is computed once, when a map is read, and stored as one light for each cell; maps in which it
+//! changes nothing store none. Lamplight that passes through opening doors was refused: every lamp
+//! would have to be computed again in each step, for a small difference.
 
 use std::num::NonZeroU32;
 
 use super::{Cell, Light};
 
-/// How a lamp shines.
+/// The light of a lamp.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Lamp {
     /// What it adds in its own cell.
     pub light: Light,
-    /// How many cells away there is nothing left of that.
+    /// How far its light reaches.
     pub reach: Reach,
 }
 
-/// How far a lamp shines, in cells.
+/// A distance that light reaches, in cells.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Reach(f64);
 
 impl Reach {
-    /// From 1 cell to 32. `None` outside that.
+    /// A reach from 1 to 32 cells. `None` outside that range.
     pub fn new(cells: f64) -> Option<Self> {
         (1.0..=32.0).contains(&cells).then_some(Self(cells))
     }
@@ -41,30 +41,30 @@ impl Default for Reach {
 }
 
 impl Lamp {
-    /// What it adds in a cell whose middle is `distance` cells from its own: less and less, without
-    /// an edge to see.
+    /// What it adds in a cell whose middle is `distance` cells away: `light · (1 − (distance /
+    /// reach)²)²`, which ends smoothly at the reach.
     pub(crate) fn light_at(&self, distance: f64) -> Light {
         let nearness = 1.0 - (distance / self.reach.0).min(1.0).powi(2);
         self.light.dimmed(nearness * nearness)
     }
 }
 
-/// What lamps add to each cell.
+/// What lamps add in each cell.
 #[derive(Clone, Debug, PartialEq, Default)]
 pub(crate) struct Lamplight {
     width: usize,
-    /// Row by row from the north; empty where no lamp shines.
+    /// Row by row from the north; empty if no lamp adds anything.
     cells: Vec<Light>,
 }
 
 impl Lamplight {
-    /// For a map of that size in which no lamp shines yet.
+    /// No light, for a map of that size.
     pub(crate) fn new(width: NonZeroU32, height: NonZeroU32) -> Self {
         let width = width.get() as usize;
         Self { width, cells: vec![Light::NONE; width * height.get() as usize] }
     }
 
-    /// Whether no lamp shines.
+    /// Whether no lamp adds anything.
     pub(crate) fn is_dark(&self) -> bool {
         self.cells.is_empty()
     }

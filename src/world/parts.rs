@@ -1,7 +1,7 @@
-//! Parts: what a world is put together from, and what has to fit.
+//! Parts: the pieces that a world is made of.
 //!
-//! That they fit is for the map to see to, which can say where something does not; here it is only
-//! asserted, so that a fault of this program's own is found where it was made.
+//! The map reader verifies that they fit together, and reports what does not. Assertions here find
+//! errors of this program where they are made.
 
 use super::door::Ajar;
 use super::things::Things;
@@ -10,7 +10,7 @@ use super::{
     Thing, Tile, TileId, TileKind, World,
 };
 
-/// The pieces of a world, not yet known to fit together.
+/// The pieces of a world, before they are known to fit together.
 pub(crate) struct Parts {
     pub(crate) title: String,
     pub(crate) goal: Option<String>,
@@ -29,11 +29,15 @@ pub(crate) struct Parts {
 }
 
 impl World {
-    /// A world of `parts` that fit together: every tile of the grid and every texture is in its
-    /// list, open tiles come before solid ones, the map's own floor first, the start and all things
-    /// stand on open floor, those that block are known to the grid, every door has a doorway by the
-    /// same character, and stands between solid cells that are no doors. The map's own checks
-    /// establish all of that, and name what does not fit.
+    /// A world of `parts` that fit together:
+    ///
+    /// - Every tile of the grid and every texture is in its list.
+    /// - Open tiles come before solid ones, and the map's own floor is the first.
+    /// - The start and all things are on open floor, and the grid knows which things block.
+    /// - Every door has a doorway with the same character, and stands between solid cells that are
+    ///   not doors.
+    ///
+    /// The map reader establishes all of that.
     pub(crate) fn from_parts(parts: Parts) -> Self {
         let Parts {
             title,
@@ -75,8 +79,8 @@ impl World {
         world
     }
 
-    /// Shows other cells of the same kinds: `grid`, with no door that is ajar, and what stands there.
-    /// They fit together with the rest as in [`World::from_parts`].
+    /// Shows other cells of the same kinds: `grid`, in which no door is partly open, with its start,
+    /// things and lamplight. They fit the other parts as in [`World::from_parts`].
     pub(crate) fn redraw(
         &mut self,
         grid: Grid,
@@ -147,9 +151,9 @@ impl World {
     }
 }
 
-/// Whether some cells may be brighter than others.
+/// Whether cells may differ in light.
 fn light_varies(tiles: &[Tile], lamplight: &Lamplight) -> bool {
-    // A wall that says nothing is as bright as what is before it.
+    // A wall without a light is as bright as the floor before it.
     let is_wall = |tile: &Tile| matches!(tile.kind, TileKind::Wall(_) | TileKind::Mirror(_));
     let light = |tile: &Tile| tile.light.or((!is_wall(tile)).then_some(Light::FULL));
     let mut lights = tiles.iter().filter_map(light);
@@ -157,7 +161,7 @@ fn light_varies(tiles: &[Tile], lamplight: &Lamplight) -> bool {
     !lamplight.is_dark() || lights.any(|light| Some(light) != first)
 }
 
-/// Lets rays know what is empty in `grid`, where doors may close.
+/// Computes the distance field of `grid`, where doors may close.
 fn clear(grid: &mut Grid, tiles: &[Tile]) {
     let is_doorway = |id: TileId| matches!(tiles[usize::from(id.0)].kind, TileKind::Doorway(_));
     grid.clear(is_doorway);

@@ -1,12 +1,12 @@
-//! The pitch: how far up or down somebody looks.
+//! Pitch: looking up and down.
 //!
-//! The picture is sheared, not turned: all of it moves up or down by whole rows of pixels, and what
-//! stays in view looks as it did. A true rotation was refused: walls would lean, a column of pixels
-//! would no longer be one ray, and every pass would pay for it. A sheared picture is the true one of
-//! a camera that looks straight ahead and whose film is shifted, as architects take it; it looks
-//! wrong only where it shows what is far above or below, and so it ends at [`Pitch::MOST_DEGREES`].
+//! The picture is sheared, not rotated: it moves up or down by whole rows of pixels. A rotation was
+//! refused: walls would lean, a column of pixels would no longer be one ray, and every stage would
+//! pay for it. The shear is the picture of a camera that looks straight ahead with its image plane
+//! shifted, as in architectural photography. It looks distorted at large angles, so it is limited
+//! to [`Pitch::MOST_DEGREES`].
 
-/// How far up or down somebody looks: within ±30°.
+/// How far the camera looks up or down: within ±30°.
 #[derive(Clone, Copy, Debug, PartialEq, Default)]
 pub struct Pitch {
     slope: f64,
@@ -18,10 +18,10 @@ const STEEPEST: f64 = 0.577_350_269_189_625_7;
 impl Pitch {
     /// Straight ahead.
     pub const LEVEL: Self = Self { slope: 0.0 };
-    /// Further up or down than that, the horizon is far out of view, and walls look stretched.
+    /// The limit, in degrees. Beyond it the horizon is far out of view, and walls look stretched.
     pub const MOST_DEGREES: f64 = 30.0;
 
-    /// A pitch from degrees, positive for up, within ±[`Pitch::MOST_DEGREES`]. `None` outside that.
+    /// A pitch in degrees, positive for up. `None` beyond ±[`Pitch::MOST_DEGREES`].
     pub fn from_degrees(degrees: f64) -> Option<Self> {
         let is_within = degrees.abs() <= Self::MOST_DEGREES;
         is_within.then(|| Self::LEVEL.tilted(libm::tan(degrees.to_radians())))
@@ -32,20 +32,18 @@ impl Pitch {
         libm::atan(self.slope).to_degrees()
     }
 
-    /// How much higher than the eye something is in the middle of the picture, for each cell that it
-    /// is away; negative for lower.
+    /// The slope of the ray through the middle of the picture: cells up for each cell ahead.
     pub fn slope(self) -> f64 {
         self.slope
     }
 
-    /// Looking higher by `slope`, or lower where that is negative, up to the limit; what is no number
-    /// changes nothing.
+    /// The pitch with `slope` added, within the limit; unchanged if `slope` is NaN.
     #[must_use]
     pub fn tilted(self, slope: f64) -> Self {
         if slope.is_nan() {
             return self;
         }
-        // Zero is added to be rid of its sign.
+        // Adding zero removes the sign of a negative zero.
         Self { slope: (self.slope + slope).clamp(-STEEPEST, STEEPEST) + 0.0 }
     }
 }

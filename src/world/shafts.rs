@@ -1,92 +1,95 @@
-//! Shafts: how far rays may go ahead without looking, between what stands to their left and right.
+//! Beam tables: how far the way ahead of a ray is clear.
 //!
-//! A map is cut into strips of columns. All lines that cross the middle of a strip in nearly one place,
-//! with nearly one slope, are a shaft; two bytes for each say which columns of its strip what is solid
-//! in it begins and ends in. The other columns a ray crosses without a look, however near pillars are
-//! that it passes. Rays that are faster along columns than along rows have shafts of their own, in
-//! strips of rows.
+//! A map is divided into strips of columns. A beam is the set of all lines that cross the middle of
+//! a strip at about one position with about one slope. For each beam, two bytes say in which
+//! columns of the strip solid cells begin and end. A ray crosses the other columns without a test,
+//! however near the pillars that it passes. Rays that are faster along columns have a table of
+//! their own, with strips of rows.
 //!
-//! Nothing solid is left out. The slopes of a shaft are between two fractions and columns are between two
-//! integers, so that which rows its lines reach in a column is between products of them, and all of that is
-//! integers; the rows are then taken to be [wider](SLACK) on both sides by more than a ray's own
-//! place and slope can be rounded. All around the map counts as solid, so a ray that leaves is seen to.
+//! No solid cell is missed. The slopes of a beam are between two fractions and columns are between
+//! two integers, so that the rows which its lines reach in a column are bounded by products of
+//! integers. These rows are [widened](SLACK) on both sides by more than the rounding of a ray's
+//! position and slope. All cells around the map count as solid, so that a ray that leaves the map
+//! is noticed.
 //!
-//! Shafts come to a byte for each cell, and to as much again for margins where a map has 1024 cells on
-//! a side; at 4096 to 1.25 bytes in all. They are made only for maps as large as that on which little
-//! is solid: among rooms, rays end before they gain by it.
+//! The tables take one byte for each cell, and as much again for margins on maps of 1024 cells on a
+//! side; at 4096 they take 1.25 bytes. Only maps of at least that size with few solid cells have
+//! them: among rooms, rays end before they gain by it.
 //!
-//! To say of each block of cells how far it is clear in each of many directions was refused: a ray
-//! may be anywhere in a wedge, which grows wider as it goes, and the same void is told once for each
-//! block in it. By our reckoning, leaps would be half as long for the same memory.
+//! Storing for each block of cells how far it is clear in many directions was refused: a ray may be
+//! anywhere in a wedge that widens with distance, and the same void is stored once for each block
+//! in it. By estimate, leaps would be half as long for the same memory.
 
-/// The shafts of rays that are fastest along one axis.
+/// The beams of rays that are fastest along one axis.
 ///
-/// The lines that rays cross are across that axis, and bands are between those of the other.
+/// Rays cross *lines*, which are perpendicular to that axis; *bands* are the rows or columns
+/// between the lines of the other axis.
 #[derive(Clone, PartialEq, Eq)]
 pub(crate) struct Shafts {
-    /// Group by group, slope by slope, place by place, strip by strip.
+    /// Ordered by group, slope, position and strip.
     ///
-    /// A line that is as steep as the slope says is in one place in all strips of a group. So what one ray
-    /// asks for lies together in memory.
+    /// A line with exactly the slope of a beam has the same position in all strips of a group, so
+    /// that what one ray looks up is contiguous.
     solid: Vec<Solid>,
-    /// How many places there are for a slope.
+    /// The number of positions for each slope.
     places: i64,
 }
 
-/// All shafts of about one slope, for rays of one direction.
+/// All beams of about one slope, for rays of one direction.
 #[derive(Clone, Copy)]
 pub(crate) struct Bundle<'shafts> {
     shafts: &'shafts Shafts,
-    /// Its middle slope, in units.
+    /// The middle slope, in units.
     slope: i64,
-    /// The index of its place 0 in a group.
+    /// The index of position 0 in a group.
     start: i64,
     is_backward: bool,
 }
 
-/// From which line of a strip on there may be something solid, and from which on there is nothing.
+/// The first line of a strip at which there may be something solid, and the first after which there
+/// is nothing.
 #[derive(Clone, Copy, PartialEq, Eq)]
 struct Solid {
     first: u8,
     end: u8,
 }
 
-/// How many lines a strip has.
+/// The number of lines of a strip.
 pub(crate) const STRIP: i64 = 128;
-/// Places and slopes of rays are in units of 2⁻³² of a cell.
+/// Positions and slopes of rays are in units of 2⁻³² of a cell.
 pub(crate) const FRACTION_BITS: u32 = 32;
-/// How many strips a group has.
+/// The number of strips of a group.
 const GROUP: i64 = 1 << GROUP_BITS;
 const GROUP_BITS: u32 = 3;
-/// How many bands wide a shaft is, in the middle of its strip.
+/// The width of a beam in the middle of its strip, in bands.
 const WIDTH: i64 = 1 << WIDTH_BITS;
 const WIDTH_BITS: u32 = 1;
-/// How many slopes there are from 0 to 1, and as many to −1.
+/// The number of slopes from 0 to 1, and from 0 to −1.
 const STEEPEST: i64 = 1 << SLOPE_BITS;
 const SLOPE_BITS: u32 = 5;
 const SLOPES: i64 = 2 * STEEPEST;
-/// How much wider than it is a shaft is taken to be on both sides, in [`STEEPEST`]ths of a band: a
-/// ray's place and slope are rounded by less than a thousandth of that.
+/// How far a beam is widened on both sides, in [`STEEPEST`]ths of a band. A ray's position and
+/// slope are rounded by less than a thousandth of that.
 const SLACK: i64 = 1;
-/// How many places of a slope are on either side of the map. As far can a line be from the map in the
-/// middle of a group that is on the map elsewhere in it.
+/// The number of positions of a slope on either side of the map: a line that is on the map
+/// elsewhere in a group may be that far from it in the group's middle.
 const MARGIN: i64 = GROUP * STRIP / 2 / WIDTH + 1;
 
 impl Shafts {
-    /// On maps with less than that from side to side, rays do not gain by it.
+    /// The least side of a map on which rays gain by beams.
     const LEAST_SIDE: i64 = 8 * STRIP;
-    /// Nor where more than one cell in so many is solid, besides walls around the map.
+    /// The most solid cells on which rays gain: one in this many, walls around the map aside.
     const SPARSE: i64 = 1024;
 
-    /// Whether rays gain by shafts on a map of so many columns and rows where so many cells are or may
-    /// become solid, those around the map among them.
+    /// Whether rays gain by beams on a map with these columns and rows and this number of cells
+    /// that may be solid, the border included.
     pub(super) fn are_worthwhile([columns, rows]: [i64; 2], solid: i64) -> bool {
         let around = 4 * (columns + rows);
         columns.min(rows) >= Self::LEAST_SIDE && solid <= around + columns * rows / Self::SPARSE
     }
 
-    /// The shafts of a map of so many lines and bands, among the cells that are or may become `solid`,
-    /// each behind a line and in a band; those around the map are among them.
+    /// The beams of a map with these lines and bands. `solid` are the lines and bands of the cells
+    /// that may be solid, the border included.
     pub(super) fn new([lines, bands]: [i64; 2], solid: impl Iterator<Item = [i64; 2]>) -> Self {
         let lines_in_group = GROUP * STRIP;
         let groups = (lines + lines_in_group - 1) / lines_in_group;
@@ -102,16 +105,16 @@ impl Shafts {
         shafts
     }
 
-    /// How many bytes they take in memory.
+    /// The size in memory, in bytes.
     pub(super) fn bytes(&self) -> usize {
         size_of_val(self) + size_of_val(self.solid.as_slice())
     }
 
-    /// Notes a solid cell in all shafts from one slope to the next that it is in.
+    /// Records a solid cell in all beams with slopes from `slope` to `slope + 1` that contain it.
     fn add(&mut self, line: i64, band: i64, slope: i64) {
         let (strip, within) = (line / STRIP, line % STRIP);
-        // How far a line that goes through the cell may have moved since the middle of the strip, in
-        // parts of a band.
+        // How far a line through the cell can have moved since the middle of the strip, in parts of
+        // a band.
         let from_middle = within - STRIP / 2;
         let moves =
             [from_middle, from_middle + 1].map(|lines| [lines * slope, lines * (slope + 1)]);
@@ -130,7 +133,8 @@ impl Shafts {
         }
     }
 
-    /// The shafts of that slope, in units, for rays that cross the lines in this order or the other.
+    /// The beams of a slope, in units, for rays that cross the lines in ascending or descending
+    /// order.
     #[inline]
     pub(crate) fn bundle(&self, slope: i64, is_backward: bool) -> Bundle<'_> {
         let least = (slope >> (FRACTION_BITS - SLOPE_BITS)).min(STEEPEST - 1);
@@ -138,13 +142,13 @@ impl Shafts {
         Bundle { shafts: self, slope, start: self.start(least), is_backward }
     }
 
-    /// The index of place 0 of that slope, in [`STEEPEST`]ths, among the places of a group.
+    /// The index of position 0 of a slope, in [`STEEPEST`]ths, among the positions of a group.
     #[inline]
     fn start(&self, slope: i64) -> i64 {
         (slope + STEEPEST) * self.places + MARGIN
     }
 
-    /// The index of a place in a strip, where place 0 is at `start`.
+    /// The index of a position in a strip, where position 0 is at `start`.
     #[inline]
     fn index(&self, start: i64, strip: i64, place: i64) -> i64 {
         let group = (strip >> GROUP_BITS) * SLOPES * self.places;
@@ -152,18 +156,19 @@ impl Shafts {
     }
 }
 
-/// How many lines it is from the middle of a strip's group to the middle of the strip.
+/// The number of lines from the middle of a strip's group to the middle of the strip.
 #[inline]
 fn from_middle_of_group(strip: i64) -> i64 {
     ((strip & (GROUP - 1)) * 2 + 1 - GROUP) * (STRIP / 2)
 }
 
 impl Bundle<'_> {
-    /// How many lines of a strip a ray can cross at once that has crossed those `within` it; all that are
-    /// left, where it is clear up to the next strip. Lines are counted as the ray crosses them, and its
-    /// `place`, in units, is the one in the middle of the strip.
+    /// The number of lines of a strip that a ray can cross at once after it has crossed `within` of
+    /// them; all that are left if the way to the next strip is clear. Lines are counted in the
+    /// order in which the ray crosses them. `place` is the ray's position in the middle of the
+    /// strip, in units.
     ///
-    /// Somewhere in the strip the ray is on the map, or at its edge.
+    /// The ray must be on the map, or at its edge, somewhere in the strip.
     #[inline]
     pub(crate) fn lines_ahead(self, strip: i64, within: i64, place: i64) -> i64 {
         let place = place - self.slope * from_middle_of_group(strip);

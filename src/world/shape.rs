@@ -1,9 +1,9 @@
-//! Shapes: walls that do not fill their cell. Around them is floor, and a ceiling above.
+//! Shapes: walls that do not fill their cell.
 //!
-//! There are round pillars, and lines: thin walls along an edge of the cell, across its middle, or
-//! from corner to corner. Each is a curve on the map whose equation is solved, as exactly as lines of
-//! the grid are. Polygons were refused: a curve that is cut into lines shows its corners, and a level
-//! of polygons is no longer a picture that one draws with characters.
+//! A shape is a round pillar, or a line: a thin wall along an edge or across the middle of the
+//! cell, or a diagonal. Each is a curve whose equation is solved as exactly as the lines of the
+//! grid. Polygons were refused: a curve made of lines shows its corners, and a level of polygons
+//! can no longer be drawn with characters.
 
 use glam::DVec2;
 
@@ -12,32 +12,32 @@ use super::{Cell, Heights, Paint};
 /// A wall that does not fill its cell.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Shape {
-    /// Where in its cell it stands.
+    /// The place in its cell.
     pub outline: Outline,
-    /// How it looks: papered once along a line, and as often around a pillar as fits best.
+    /// The surface. It repeats once along a line, and around a pillar as often as fits best.
     pub paint: Paint,
-    /// How high it is; `None` where it reaches up to the ceiling.
+    /// The height; `None` if it reaches up to the ceiling.
     pub height: Option<ShapeHeight>,
 }
 
-/// How high a shape is, in cells above the floor that it stands on: above 0, and at most
+/// The height of a shape above the floor that it stands on, in cells: above 0, at most
 /// [`Heights::MOST`].
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct ShapeHeight(f64);
 
 impl ShapeHeight {
-    /// A height in cells. `None` where a shape of that height is none, or absurd.
+    /// A height in cells. `None` outside that range.
     pub const fn new(cells: f64) -> Option<Self> {
         if cells > 0.0 && cells <= Heights::MOST { Some(Self(cells)) } else { None }
     }
 
-    /// In cells.
+    /// The height in cells.
     pub fn cells(self) -> f64 {
         self.0
     }
 }
 
-/// What a shape looks like from above.
+/// The outline of a shape from above.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub enum Outline {
     /// A circle in the middle of the cell.
@@ -46,23 +46,23 @@ pub enum Outline {
     Line(Line),
 }
 
-/// The radius of a pillar, in cells: above 0, and at most half a cell.
+/// The radius of a pillar, in cells: above 0, at most half a cell.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct PillarRadius(f64);
 
 impl PillarRadius {
-    /// A radius in cells. `None` where a pillar of that radius is none, or does not fit.
+    /// A radius in cells. `None` outside that range.
     pub const fn new(cells: f64) -> Option<Self> {
         if cells > 0.0 && cells <= 0.5 { Some(Self(cells)) } else { None }
     }
 
-    /// In cells.
+    /// The radius in cells.
     pub fn cells(self) -> f64 {
         self.0
     }
 }
 
-/// Which line through a cell.
+/// A line through a cell.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
 pub enum Line {
     /// The northern edge.
@@ -84,7 +84,7 @@ pub enum Line {
 }
 
 impl Line {
-    /// All of them.
+    /// All lines.
     pub const ALL: [Self; 8] = [
         Self::North,
         Self::East,
@@ -96,7 +96,7 @@ impl Line {
         Self::FromNorthEast,
     ];
 
-    /// Where the line in `cell` begins.
+    /// The start of the line in `cell`.
     pub fn start(self, cell: Cell) -> DVec2 {
         let within = match self {
             Self::North | Self::West | Self::FromNorthWest => DVec2::ZERO,
@@ -108,7 +108,7 @@ impl Line {
         DVec2::new(f64::from(cell.column), f64::from(cell.row)) + within
     }
 
-    /// The way from its start to its end, whose components are −1, 0 or 1.
+    /// The vector from its start to its end, with components of −1, 0 or 1.
     pub fn stretch(self) -> DVec2 {
         match self {
             Self::North | Self::South | Self::EastWest => DVec2::X,
@@ -120,7 +120,7 @@ impl Line {
 }
 
 impl Outline {
-    /// How far `point` is from the outline in `cell`: negative inside a pillar.
+    /// The distance of `point` from the outline in `cell`; negative inside a pillar.
     pub fn distance(self, cell: Cell, point: DVec2) -> f64 {
         match self {
             Self::Pillar(radius) => point.distance(cell.center()) - radius.0,

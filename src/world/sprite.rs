@@ -1,8 +1,8 @@
-//! Sprites: how things look, as flat pictures that turn with the viewer.
+//! Sprites: flat pictures that always face the camera.
 //!
-//! A sprite has a picture for each of its frames, which follow each other in time, and for each of
-//! its facings, which are the sides it is seen from. Sheets are cut into pictures when they are
-//! loaded: each has levels of its own, which a sheet's would mix across the cuts.
+//! A sprite has a picture for each frame of its animation and for each facing, the side from which
+//! it is seen. Sheets are divided into pictures when they are loaded, because the mip levels of a
+//! whole sheet would mix neighbouring pictures.
 
 pub mod builtin;
 
@@ -12,43 +12,43 @@ use glam::DVec2;
 
 use super::{Heading, Heights, Lamp, Texture};
 
-/// How a thing looks, and where in its cell.
+/// The pictures of a thing, and their place in the cell.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Sprite {
-    /// Frame by frame, and in each facing by facing.
+    /// Frame by frame, and within each frame facing by facing.
     pictures: Vec<Texture>,
     facings: Facings,
     frame_time: FrameTime,
-    /// Where its front looks.
+    /// The direction of its front.
     pub heading: Heading,
-    /// Where it begins.
+    /// Where it is fixed.
     pub anchor: Anchor,
-    /// How high it is, in cells.
+    /// The height, in cells.
     pub height: SpriteHeight,
-    /// Whether it is in everybody's way.
+    /// Whether it stops players.
     pub blocks: bool,
-    /// How it shines, if it does.
+    /// Its light, if it is a lamp.
     pub lamp: Option<Lamp>,
 }
 
-/// Which sprite: an index into the world's list of sprites.
+/// A sprite: an index into the world's list of sprites.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
 pub struct SpriteId(pub u16);
 
-/// From how many sides a sprite looks different.
+/// The number of sides with pictures of their own.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash, Default)]
 pub enum Facings {
-    /// The same from everywhere.
+    /// The same picture from everywhere.
     #[default]
     One,
-    /// From its front, its right, its back and its left.
+    /// Front, right, back and left.
     Four,
     /// Those, and the sides between them.
     Eight,
 }
 
 impl Facings {
-    /// How many they are.
+    /// The number of facings.
     pub const fn count(self) -> u32 {
         match self {
             Self::One => 1,
@@ -57,31 +57,31 @@ impl Facings {
         }
     }
 
-    /// That many facings. `None` for anything but 1, 4 and 8.
+    /// That number of facings. `None` for anything but 1, 4 and 8.
     pub fn new(count: u32) -> Option<Self> {
         [Self::One, Self::Four, Self::Eight].into_iter().find(|facings| facings.count() == count)
     }
 }
 
-/// What a sprite is fixed to.
+/// Where a sprite is fixed.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash, Default)]
 pub enum Anchor {
-    /// It stands on the floor.
+    /// On the floor.
     #[default]
     Floor,
-    /// It hangs from the ceiling.
+    /// At the ceiling.
     Ceiling,
 }
 
-/// How high a sprite is, in cells.
+/// The height of a sprite, in cells.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct SpriteHeight(f64);
 
 impl SpriteHeight {
-    /// As high as the walls of most maps.
+    /// One cell.
     pub const FULL: Self = Self(1.0);
 
-    /// A height above 0, and 4 at most. `None` outside that.
+    /// A height above 0, at most 4. `None` outside that range.
     pub fn new(cells: f64) -> Option<Self> {
         (cells > 0.0 && cells <= 4.0).then_some(Self(cells))
     }
@@ -92,27 +92,27 @@ impl SpriteHeight {
     }
 }
 
-/// How long a frame of a sprite is shown, in seconds.
+/// How long a frame of an animation shows, in seconds.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct FrameTime(f64);
 
 impl FrameTime {
-    /// From a twentieth of a second, which is as fast as most terminals follow, to a minute. `None`
-    /// outside that.
+    /// A time from 0.05 s, which is as fast as most terminals can follow, to 60 s. `None` outside
+    /// that range.
     pub fn new(seconds: f64) -> Option<Self> {
         (0.05..=60.0).contains(&seconds).then_some(Self(seconds))
     }
 }
 
 impl Default for FrameTime {
-    /// A fifth of a second.
+    /// 0.2 s.
     fn default() -> Self {
         Self(0.2)
     }
 }
 
 impl Sprite {
-    /// How high its lower edge is in a cell of those heights.
+    /// The height of its lower edge in a cell with those heights.
     pub fn base(&self, heights: Heights) -> f64 {
         match self.anchor {
             Anchor::Floor => heights.floor(),
@@ -120,8 +120,8 @@ impl Sprite {
         }
     }
 
-    /// A sprite of `pictures`, frame by frame and in each facing by facing, that stands on the floor
-    /// and is in nobody's way. `None` where there is no whole frame.
+    /// A sprite of `pictures`, frame by frame and within each frame facing by facing. It stands on
+    /// the floor and does not block. `None` if there is no whole frame.
     pub fn new(pictures: Vec<Texture>, facings: Facings) -> Option<Self> {
         let is_whole = pictures.len().is_multiple_of(facings.count() as usize);
         (is_whole && !pictures.is_empty()).then(|| Self {
@@ -136,47 +136,48 @@ impl Sprite {
         })
     }
 
-    /// With frames that are shown for so long.
+    /// The sprite with another frame time.
     #[must_use]
     pub fn with_frame_time(self, frame_time: FrameTime) -> Self {
         Self { frame_time, ..self }
     }
 
-    /// How many frames it has; with one it does not move.
+    /// The number of frames; 1 for a sprite that is not animated.
     pub fn frames(&self) -> usize {
         self.pictures.len() / self.facings.count() as usize
     }
 
-    /// How wide it is, in cells: as its picture is to be shown with that height.
+    /// The width in cells, by the proportions of its picture.
     pub fn width(&self) -> f64 {
         let picture = &self.pictures[0];
         self.height.cells() * f64::from(picture.width()) / f64::from(picture.height())
     }
 
-    /// What it looks like after `seconds`, to a viewer who is in the direction `to_viewer` of it.
+    /// The picture after `seconds`, for a viewer in the direction `to_viewer`.
     pub fn picture(&self, seconds: f64, to_viewer: DVec2) -> &Texture {
         &self.pictures[self.picture_index(seconds, to_viewer)]
     }
 
-    /// Which of its pictures [`Sprite::picture`] is.
+    /// The index of that picture.
     pub(crate) fn picture_index(&self, seconds: f64, to_viewer: DVec2) -> usize {
         let frame = (seconds.max(0.0) / self.frame_time.0) as u64 % self.frames() as u64;
         let facings = self.facings.count() as usize;
         frame as usize * facings + self.facing(to_viewer)
     }
 
-    /// All that it looks like.
+    /// All pictures.
     pub(crate) fn pictures(&self) -> &[Texture] {
         &self.pictures
     }
 
-    /// When it begins to look different from what it looks like after `seconds`; `None` for never.
+    /// The time at which the picture next changes after `seconds`; `None` if it never does.
     pub fn next_change(&self, seconds: f64) -> Option<f64> {
         let frame = (seconds.max(0.0) / self.frame_time.0).floor();
         (self.frames() > 1).then_some((frame + 1.0) * self.frame_time.0)
     }
 
-    /// Which side a viewer sees: 0 for the front, then clockwise as the viewer walks around it.
+    /// The index of the facing that a viewer sees: 0 for the front, then clockwise around the
+    /// sprite.
     fn facing(&self, to_viewer: DVec2) -> usize {
         let count = self.facings.count();
         if count == 1 {
@@ -222,7 +223,7 @@ mod tests {
 
     #[test]
     fn facings_go_clockwise_from_the_front() {
-        // Its front looks east; who stands in the south sees what is a quarter further.
+        // Its front faces east; a viewer in the south sees the facing after a quarter turn.
         let four = sprite(4, Facings::Four);
         let sides = [(1.0, 0.1), (0.1, 1.0), (-1.0, 0.1), (0.1, -1.0)];
         assert_eq!(sides.map(|side| shown(&four, 0.0, side)), [0, 1, 2, 3]);

@@ -1,13 +1,13 @@
-//! Summary: what is true of a world as a whole.
+//! Summary: properties of a world as a whole.
 //!
-//! Whoever draws a world, or walks in it, asks these to leave out what it has no need of. They go by
-//! the kinds of tile and sprite, of which there are few, and never by the cells.
+//! Rendering and collision use them to leave out what a world does not have. They depend on the
+//! kinds of tile and sprite, of which there are few, and not on the cells.
 
 use super::{Heights, Sprite, Tile, TileKind, World};
 
 impl World {
-    /// Whether all floors are at 0, and all ceilings, walls and shapes a cell above that: every ray ends
-    /// where it meets the first of those.
+    /// Whether all floors are at 0, and all ceilings, walls and shapes reach 1, so that every ray
+    /// ends at the first of them.
     pub fn is_level(&self) -> bool {
         let level = |tile: &Tile| match tile.kind {
             TileKind::Wall(_) | TileKind::Mirror(_) => Heights::LEVEL_WALL,
@@ -30,23 +30,23 @@ impl World {
         self.tiles.iter().any(|tile| matches!(tile.kind, TileKind::Shape(_)))
     }
 
-    /// Whether all that is solid is walls, which show one side each and hide what is behind.
+    /// Whether everything solid is a wall, which shows one side and hides what is behind it.
     pub(crate) fn is_of_walls(&self) -> bool {
         let is_plain = |tile: &Tile| matches!(tile.kind, TileKind::Open | TileKind::Wall(_));
         self.tiles.iter().all(is_plain)
     }
 
-    /// Whether lamps add anything anywhere.
+    /// Whether lamps add light anywhere.
     pub(crate) fn has_lamplight(&self) -> bool {
         !self.lamplight.is_dark()
     }
 
-    /// How wide the widest sprite is, in cells; 0 where nothing stands anywhere.
+    /// The width of the widest sprite, in cells; 0 if there is none.
     pub(crate) fn widest_sprite(&self) -> f64 {
         self.sprites.iter().map(Sprite::width).fold(0.0, f64::max)
     }
 
-    /// How high the highest sprite is, in cells; 0 where nothing stands anywhere.
+    /// The height of the highest sprite, in cells; 0 if there is none.
     pub(crate) fn tallest_sprite(&self) -> f64 {
         self.sprites.iter().map(|sprite| sprite.height.cells()).fold(0.0, f64::max)
     }

@@ -1,8 +1,9 @@
-//! Textures: pictures that surfaces are papered with.
+//! Textures: pictures on surfaces.
 //!
-//! Texels are stored column by column, top to bottom, because a wall is drawn column by column and
-//! then reads one stretch of memory. A texture is a list of levels, each half as large as the one
-//! before: what is far away is drawn from a level whose texels are about as large as pixels.
+//! Texels are stored column by column, from top to bottom, because walls are drawn column by column
+//! and then read contiguous memory. A texture has mip levels (Williams, "Pyramidal Parametrics",
+//! 1983), each half the size of the one before: distant surfaces use a level whose texels are about
+//! as large as pixels.
 
 pub mod builtin;
 mod level;
@@ -22,7 +23,7 @@ pub struct Texture {
 }
 
 impl Texture {
-    /// An opaque texture whose texel at `(x, y)` is `texel(x, y)`, `x` from the left and `y` from
+    /// An opaque texture with the texel `texel(x, y)` at `(x, y)`, `x` from the left and `y` from
     /// the top.
     pub fn from_fn(
         width: NonZeroU32,
@@ -32,7 +33,8 @@ impl Texture {
         Self::from_fn_with_alpha(width, height, |x, y| (texel(x, y), u8::MAX))
     }
 
-    /// As [`Texture::from_fn`], each texel with its alpha: 0 for clear, 255 for opaque.
+    /// A texture as [`Texture::from_fn`], in which each texel has an alpha: 0 is transparent, 255
+    /// opaque.
     pub fn from_fn_with_alpha(
         width: NonZeroU32,
         height: NonZeroU32,
@@ -49,56 +51,56 @@ impl Texture {
         Self { levels: level::pyramid(width, height, texels, alpha), mean }
     }
 
-    /// Texels from left to right.
+    /// The width in texels.
     pub fn width(&self) -> u32 {
         self.levels[0].width()
     }
 
-    /// Texels from top to bottom.
+    /// The height in texels.
     pub fn height(&self) -> u32 {
         self.levels[0].height()
     }
 
-    /// The column that holds `u`, from 0 at the left edge to 1 at the right one, top to bottom. A
-    /// `u` outside that range, or not a number, means the nearest column.
+    /// The column at `u`, from 0 at the left edge to 1 at the right one, from top to bottom. A `u`
+    /// outside that range, or NaN, means the nearest column.
     pub fn column(&self, u: f64) -> &[Rgb] {
         self.levels[0].column(u)
     }
 
-    /// Whether any of it can be seen through.
+    /// Whether any texel is not opaque.
     pub fn has_alpha(&self) -> bool {
         self.levels[0].has_alpha()
     }
 
-    /// The colour of the texel at `(x, y)`, and its alpha: 0 for clear, 255 for opaque.
+    /// The colour of the texel at `(x, y)`, and its alpha: 0 is transparent, 255 opaque.
     ///
     /// # Panics
-    /// Where the texture has no such texel.
+    /// If the texture has no such texel.
     pub fn texel(&self, x: u32, y: u32) -> (Rgb, u8) {
         assert!(x < self.width() && y < self.height(), "no texel at ({x}, {y})");
         self.levels[0].texel(x, y)
     }
 
-    /// A part of it, from `(left, top)` on, as a texture of its own.
+    /// The part from `(left, top)` on, as a texture.
     ///
     /// # Panics
-    /// Where the part reaches beyond an edge.
+    /// If the part reaches beyond an edge.
     #[must_use]
     pub fn part(&self, left: u32, top: u32, width: NonZeroU32, height: NonZeroU32) -> Self {
         Self::from_fn_with_alpha(width, height, |x, y| self.texel(left + x, top + y))
     }
 
-    /// The texture itself, halved `halvings` times: along each axis, and down to one texel.
+    /// The mip level after `halvings`, at most the one with a single texel.
     pub fn level(&self, halvings: usize) -> &Level {
         &self.levels[halvings.min(self.levels.len() - 1)]
     }
 
-    /// The texture itself and all halvings of it; the last one is a single texel.
+    /// All mip levels, from the texture itself to a single texel.
     pub fn levels(&self) -> &[Level] {
         &self.levels
     }
 
-    /// The mean colour of all texels: what the texture looks like on a map.
+    /// The mean colour of all texels, which represents the texture on the minimap.
     pub fn mean(&self) -> Rgb {
         self.mean
     }

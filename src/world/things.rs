@@ -1,51 +1,51 @@
 //! Things: what stands in the cells.
 //!
-//! They are sorted by row and column, so that what stands in a stretch of cells is one slice; where each
-//! row begins is known, and within it the slice is found by halving. A frame looks at the things in the
-//! cells that it shows, and pays for no others. A list for each cell was refused: most cells are empty,
-//! and a map has millions.
+//! Things are sorted by row and column, so that the things in a range of cells are one slice. The
+//! start of each row is known; within it the slice is found by binary search. A frame looks at the
+//! things in the cells that it shows, and others cost nothing. A list for each cell was refused:
+//! most cells are empty, and a map has millions.
 
 use super::{Cell, KeyId, SpriteId, World};
 
 /// Something that stands in a cell.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct Thing {
-    /// What it is.
+    /// The kind of thing.
     pub kind: ThingKind,
-    /// Where it stands: in the middle.
+    /// The cell in whose middle it stands.
     pub cell: Cell,
-    /// How it looks.
+    /// Its sprite.
     pub sprite: SpriteId,
 }
 
-/// What a thing is.
+/// A kind of thing.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum ThingKind {
-    /// Who reaches it has finished the level.
+    /// Reaching it finishes the level.
     Exit,
-    /// Who reaches it takes it, and can open the doors that ask for it.
+    /// Reaching it takes it; it opens the doors that need it.
     Key(KeyId),
-    /// To be looked at.
+    /// Decoration.
     Ornament,
 }
 
 impl World {
-    /// What stands in the cells, the start excepted: row by row from the north, each from the west.
+    /// The things, row by row from the north, and within a row from the west.
     pub fn things(&self) -> &[Thing] {
         self.things.all()
     }
 
-    /// What stands in `cell`.
+    /// The things in `cell`.
     pub fn things_in(&self, cell: Cell) -> &[Thing] {
         self.things.between(cell.row, cell.column, cell.column)
     }
 
-    /// What stands in `row` between two columns, themselves included.
+    /// The things in `row` between two columns, both included.
     pub(crate) fn things_between(&self, row: u32, first: u32, last: u32) -> &[Thing] {
         self.things.between(row, first, last)
     }
 
-    /// Takes away all things in `cell` of which `is_taken` says so.
+    /// Removes the things in `cell` for which `is_taken` is true.
     pub(crate) fn take_things(&mut self, cell: Cell, is_taken: impl Fn(ThingKind) -> bool) {
         self.things.remove(|thing| thing.cell == cell && is_taken(thing.kind));
     }
@@ -55,7 +55,7 @@ impl World {
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub(super) struct Things {
     sorted: Vec<Thing>,
-    /// How many things come before each row, up to the last one with any.
+    /// The number of things before each row, up to the last row with any.
     before_row: Vec<usize>,
 }
 
@@ -71,7 +71,7 @@ impl Things {
         &self.sorted
     }
 
-    /// Those in `row` between two columns, themselves included.
+    /// The things in `row` between two columns, both included.
     fn between(&self, row: u32, first: u32, last: u32) -> &[Thing] {
         let in_row = &self.sorted[self.before_row(row)..self.before_row(row.saturating_add(1))];
         let start = in_row.partition_point(|thing| thing.cell.column < first);

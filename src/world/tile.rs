@@ -1,4 +1,4 @@
-//! Tiles: what a cell of the grid may be, and how its surfaces look.
+//! Tiles: the kinds of cell, and the look of their surfaces.
 
 use super::{Ceiling, Covering, Door, Heights, Light, Rgb, Shape};
 
@@ -7,68 +7,68 @@ use super::{Ceiling, Covering, Door, Heights, Light, Rgb, Shape};
 pub struct Tile {
     /// The character that draws it in a map.
     pub character: char,
-    /// What it is.
+    /// The kind of tile.
     pub kind: TileKind,
-    /// What its floor is laid with: its own, or the map's.
+    /// The floor: its own, or the map's.
     pub floor: Covering,
-    /// What is overhead there: its own ceiling, or the map's.
+    /// The ceiling: its own, or the map's.
     pub ceiling: Ceiling,
-    /// Of open floor, how bright it is, and the walls that it is seen from; of a wall, how bright its
-    /// own sides are. `None` where the map does not say: full for open floor, and for a wall as
-    /// bright as the floor before it.
+    /// For open floor, the light on it and on the walls around it; for a wall, the light on its
+    /// sides. `None` if the map does not say: full light for open floor, and for a wall the light
+    /// of the floor before it.
     pub light: Option<Light>,
-    /// How high its floor, its ceiling and what hangs above that are.
+    /// The heights of its floor, its ceiling and its roof.
     pub heights: Heights,
-    /// How the sides look of what its floor lies on, where they are seen from a lower one; a wall's
-    /// own sides, and its top.
+    /// The surface of the sides below its floor, seen from a lower floor; of a wall, its sides and
+    /// its top.
     pub riser: Paint,
-    /// How the sides look of what hangs above its ceiling, where they are seen from below a higher
-    /// one; and its roof.
+    /// The surface of the sides above its ceiling, seen from below a higher ceiling; and of its
+    /// roof.
     pub lintel: Paint,
 }
 
-/// What a tile is.
+/// A kind of tile.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub enum TileKind {
-    /// Floor to walk on, and to see across.
+    /// Floor.
     Open,
-    /// Where a door is that is all open: floor between two jambs.
+    /// A door that is fully open: floor between two jambs.
     Doorway(Door),
-    /// A solid block, as high as its floor says: what is above it is open.
+    /// A solid block up to the height of its floor.
     Wall(Paint),
-    /// A door that is closed, or not all open. It stands between two solid cells, open floor before
-    /// and behind it.
+    /// A door that is not fully open. It stands between two solid cells, with open floor before and
+    /// behind it.
     Door(Door),
-    /// A solid cube whose sides have holes where the texture is clear.
+    /// A solid cube with a texture that has holes.
     Mask(TextureId),
     /// A solid cube of tinted glass.
     Glass(Glass),
-    /// A block as a wall's, with sides that reflect under a tint.
+    /// A solid block like a wall, whose sides reflect under a tint.
     Mirror(Glass),
-    /// A wall that does not fill the cell, and may be lower than its ceiling. Rays and walkers that
-    /// know no shapes take the cell for solid; the others pass it by.
+    /// A wall that does not fill the cell, and may be lower than its ceiling. Casters and movement
+    /// that do not support shapes treat the cell as solid.
     Shape(Shape),
 }
 
-/// Glass to look through, or into.
+/// The tint of glass or of a mirror.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct Glass {
-    /// Its tint.
+    /// The colour of the tint.
     pub color: Rgb,
-    /// How much of the tint is seen in place of what is behind, or reflected: from 0 for none to 255
+    /// How much of the tint shows instead of what is behind, or reflected: from 0 for none to 255
     /// for all.
     pub opacity: u8,
 }
 
-/// How a surface looks.
+/// The look of a surface.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Paint {
-    /// The same colour all over.
+    /// One colour.
     Color(Rgb),
     /// A texture.
     Texture(TextureId),
 }
 
-/// Which texture: an index into the world's list of textures.
+/// A texture: an index into the world's list of textures.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
 pub struct TextureId(pub u16);

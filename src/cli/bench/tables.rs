@@ -40,8 +40,8 @@ fn drawing(report: &Report) -> Table {
     Table {
         title: "Drawing",
         about:
-            "on one thread, nanoseconds a pixel, beside the loop that tutorials teach and a fill;\n\
-                how many threads draw such a picture otherwise, and how many times faster."
+            "nanoseconds a pixel on one thread, beside the loop that tutorials teach and a fill;\n\
+             the threads that the renderer uses by default, and how many times faster they are."
                 .to_owned(),
         columns: words([
             "scene",
@@ -71,8 +71,8 @@ fn rays(report: &Report) -> Table {
     Table {
         title: "Rays",
         about: format!(
-            "nanoseconds a ray that crosses so many cells of an empty hall, and of a plain with a\n\
-             pillar in one cell of 4096; ratios are to {USUAL_SIDE} cells."
+            "nanoseconds a ray, by the number of cells that it crosses, in an empty hall and on a plain\n\
+             with a pillar in one cell of 4096. Ratios are to {USUAL_SIDE} cells."
         ),
         columns: words(["cells", "hall", "ratio", "plain", "ratio"]),
         labels: 1,
@@ -94,8 +94,8 @@ fn maps(report: &Report) -> Table {
     Table {
         title: "Maps",
         about: format!(
-            "microseconds a frame of 160x90 that looks across a map of so many cells on a side;\n\
-             ratios are to {USUAL_SIDE}. Of the plain, milliseconds to read it, and bytes a cell of its grid."
+            "microseconds a frame of 160x90 with a view across the map, by the cells along its side.\n\
+             Ratios are to {USUAL_SIDE}. For the plain: milliseconds to read it, and bytes a cell of its grid."
         ),
         columns: words(["side", "hall", "ratio", "plain", "ratio", "reading", "bytes"]),
         labels: 1,
@@ -115,8 +115,8 @@ fn crowds(report: &Report) -> Table {
     Table {
         title: "Things",
         about: format!(
-            "microseconds a frame of 160x90 among so many things, some sixty of them in view, along\n\
-             a straight hall and a diagonal one; ratios are to {}.",
+            "microseconds a frame of 160x90, by the number of things on the map, some sixty of them in\n\
+             view, in a straight hall and in a diagonal one. Ratios are to {}.",
             CROWDS[0]
         ),
         columns: words(["things", "straight", "ratio", "diagonal", "ratio"]),
@@ -143,8 +143,8 @@ fn pipeline(report: &Report) -> Table {
     Table {
         title: "Pipeline",
         about: format!(
-            "from what the player wants to bytes, microseconds and bytes a frame, beside\n\
-             ratatui's own encoder; and frames a second over a link of {first}, {second} and {third} Mbit/s."
+            "microseconds and bytes a frame from the player's intents to bytes, compared with ratatui's\n\
+             own encoder (stock); frames a second over a link of {first}, {second} and {third} Mbit/s."
         ),
         columns: columns.collect(),
         labels: 2,
@@ -160,8 +160,8 @@ fn footprint(report: &Report) -> Table {
     Table {
         title: "Footprint",
         about: format!(
-            "a start is one of `cellcaster snapshot`, of {} cells, until its first byte,\n\
-             the median of {STARTS}; memory is the most that a game of {} takes.",
+            "start is the time until `cellcaster snapshot` of {} cells writes its first byte, the\n\
+             median of {STARTS}; memory is the peak of a game of {}.",
             window(FIRST_WINDOW),
             window(GAME_WINDOW)
         ),

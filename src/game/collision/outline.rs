@@ -1,8 +1,8 @@
 //! A circle that meets a shape: a disc around a pillar, or a line with round ends.
 //!
-//! Along a line the centre keeps a hair more than the radius away from it, [`SKIN`]: a place exactly
-//! so far from a slanted line is no place that doubles know, and who slides along it would be caught
-//! by rounding at every step.
+//! Along a line, the centre stays [`SKIN`] farther away than the radius. A position at exactly that
+//! distance from a slanted line cannot be represented in doubles, and a player who slides along it
+//! would be stopped by rounding in every step.
 
 use glam::DVec2;
 
@@ -10,29 +10,29 @@ use super::Radius;
 use super::sweep::{Path, distance_to_disc};
 use crate::world::{Cell, Line, Outline};
 
-/// How much further than its radius a circle that touches a line stays away from it, in cells.
+/// How much farther than its radius a circle stays away from a line, in cells.
 const SKIN: f64 = 1e-9;
-/// A path that approaches a line by less than that, for each cell of its way, runs along it.
+/// A path that approaches a line by less than this for each cell is parallel to it.
 const PARALLEL: f64 = 1e-12;
 
-/// Where a circle touches a shape.
+/// A contact of a circle with a shape.
 #[derive(Clone, Copy, Debug)]
 pub(super) struct Touch {
-    /// Distance along the path.
+    /// The distance along the path.
     pub(super) distance: f64,
-    /// What of the shape is nearest to the circle's centre then.
+    /// The part of the shape nearest to the circle's centre then.
     pub(super) kind: TouchKind,
 }
 
 #[derive(Clone, Copy, Debug)]
 pub(super) enum TouchKind {
-    /// A round part, by its centre: a pillar, or an end of a line.
+    /// A round part around its centre: a pillar, or an end of a line.
     Round(DVec2),
-    /// The side of a line, from a `position`; the `normal` points to it.
+    /// The side of a line, seen from a `position`; `normal` points there.
     Flat { position: DVec2, normal: DVec2 },
 }
 
-/// Whether a circle around `center` overlaps an outline in `cell`; it may touch.
+/// Whether a circle around `center` does not overlap an outline in `cell`; it may touch.
 pub(super) fn is_clear_of(
     outline: Outline,
     cell: Cell,
@@ -42,7 +42,7 @@ pub(super) fn is_clear_of(
     outline.distance(cell, center) >= radius
 }
 
-/// What a circle on `path` touches first of an outline in `cell`.
+/// The first contact of a circle on `path` with an outline in `cell`.
 pub(super) fn first_touch(
     outline: Outline,
     cell: Cell,
@@ -84,7 +84,7 @@ fn first_touch_of_side(line: Line, start: DVec2, path: Path, radius: f64) -> Opt
     let distance = (away / approach).max(0.0);
     let point = path.at(distance);
     let along = (point - start).dot(stretch) / length;
-    // Off by rounding, or by what the path began inside the skin.
+    // Off by rounding, or because the path began inside the skin.
     let position = point + normal * (radius + SKIN - (point - start).dot(normal));
     let kind = TouchKind::Flat { position, normal };
     (0.0..=length).contains(&along).then_some(Touch { distance, kind })
@@ -220,7 +220,7 @@ mod tests {
             }
         }
 
-        /// A wall of diagonals has joints, and its sides are no places that doubles know.
+        /// A wall of diagonals has joints, and doubles do not represent positions on its sides.
         #[test]
         fn diagonals_are_slid_along_without_a_catch(
             x in 0.3..1.5,

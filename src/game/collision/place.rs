@@ -1,13 +1,12 @@
-//! What is in the way of somebody, by how high they stand and how tall they are.
+//! What blocks a player, by the height of the feet and of the body.
 //!
-//! A cell has gaps, between a floor and a ceiling or above a roof. Somebody is clear of it where one
-//! of them holds all of them, from feet to head. So for feet at one height the world is flat again:
-//! some cells block and the others do not, and the sweep needs to know of nothing else.
+//! A cell has gaps, between a floor and a ceiling or above a roof. A player is clear of the cell if
+//! one gap contains the whole body. So for feet at one height the world is two-dimensional: some
+//! cells block and the others do not, and the sweep needs nothing else.
 //!
-//! A thing that blocks fills its cell, but only as high as it is: who jumps lands on it, or passes over
-//! it. Nobody walks up onto one, however low it is; what is to be stepped onto is drawn as a floor. A
-//! box as wide as the picture was refused: a map says of a cell whether it is free, and the level's
-//! author sees that in the grid.
+//! A thing that blocks fills its cell up to its height: a player can jump onto it or over it.
+//! Nobody walks up onto one, however low it is; use a floor for that. A box as wide as the picture
+//! was refused: a map says for each cell whether it is free, and the author sees that in the grid.
 
 use std::array::IntoIter;
 use std::iter::Flatten;
@@ -18,7 +17,7 @@ use super::{Obstacles, Radius, cell_of, cell_on_map, is_clear, is_clear_of, outl
 use crate::game::fall::Room;
 use crate::world::{Cell, Gap, Outline, Tile, TileKind, World};
 
-/// How high somebody stands, and how tall they are just now, in cells.
+/// The height of the feet and of the body, in cells.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub(in crate::game) struct Stature {
     pub(in crate::game) feet: f64,
@@ -26,21 +25,21 @@ pub(in crate::game) struct Stature {
 }
 
 impl Stature {
-    /// Whether all of somebody is in `gap`.
+    /// Whether `gap` contains the body.
     fn fits(self, gap: Gap) -> bool {
-        // The same difference as in `room`, so that who hits their head is clear.
+        // The same difference as in `room`, so that a player whose head touches is clear.
         gap.bottom <= self.feet && self.feet <= gap.top - self.height
     }
 }
 
-/// The world as somebody finds it.
+/// The world for a player of some stature.
 #[derive(Clone, Copy)]
 pub(in crate::game) struct Place<'a> {
     pub(in crate::game) world: &'a World,
     pub(in crate::game) stature: Stature,
-    /// How much higher a floor may be for them to step onto it; 0 for who is in the air.
+    /// The highest step that the player can climb; 0 in the air.
     pub(in crate::game) step: f64,
-    /// Whether there are any shapes to look for.
+    /// Whether the world has shapes.
     pub(in crate::game) has_shapes: bool,
 }
 
@@ -55,8 +54,7 @@ impl Obstacles for Place<'_> {
         }
         let tile = self.tile(i64::from(cell.column), i64::from(cell.row))?;
         match tile.kind {
-            // It reaches no further than to the ceiling.
-            // It reaches no further than to the ceiling.
+            // It reaches up to the ceiling at most.
             TileKind::Shape(shape) if self.stature.feet < tile.top_of_what_stands() => {
                 Some(shape.outline)
             }
@@ -64,7 +62,7 @@ impl Obstacles for Place<'_> {
         }
     }
 
-    /// Steps up, where there is room for it.
+    /// Steps up, if there is room.
     fn gives_way(&mut self, column: i64, row: i64, center: DVec2, radius: Radius) -> bool {
         let at = |feet| Self { stature: Stature { feet, ..self.stature }, ..*self };
         let mut steps = self.steps_up(column, row).map(at);
@@ -77,7 +75,7 @@ impl Obstacles for Place<'_> {
 }
 
 impl Place<'_> {
-    /// The gap of a cell that holds all of somebody.
+    /// The gap of a cell that contains the body.
     fn gap(&self, column: i64, row: i64) -> Option<Gap> {
         let tile = self.tile(column, row)?;
         let fits = |gap: &Gap| self.stature.fits(*gap);
@@ -87,13 +85,13 @@ impl Place<'_> {
         gaps(tile).flat_map(|gap| around(gap, thing)).find(fits)
     }
 
-    /// The tile of a cell; `None` where that is off the map.
+    /// The tile of a cell; `None` outside the map.
     fn tile(&self, column: i64, row: i64) -> Option<Tile> {
         let id = self.world.grid().tile(column, row)?;
         Some(self.world.tile(id))
     }
 
-    /// From where to where a thing blocks a cell of `tile`, if one does.
+    /// The range of heights at which a thing blocks a cell of `tile`, if one does.
     fn thing_in_the_way(&self, column: i64, row: i64, tile: Tile) -> Option<Gap> {
         if !self.world.grid().is_occupied(column, row) {
             return None;
@@ -104,8 +102,8 @@ impl Place<'_> {
         Some(Gap { bottom: base, top: base + sprite.height.cells() })
     }
 
-    /// The heights in a cell that are a step up from here: its floor, and the top of its shape. Nobody
-    /// steps onto a thing.
+    /// The heights in a cell that are one step up: its floors and the top of its shape. Things are
+    /// no steps.
     fn steps_up(&self, column: i64, row: i64) -> impl Iterator<Item = f64> + use<> {
         let Stature { feet, .. } = self.stature;
         let most = feet + self.step;
@@ -116,12 +114,12 @@ impl Place<'_> {
         floors.chain(tops).filter(move |&height| height > feet && height <= most)
     }
 
-    /// Whether somebody has room around `center`.
+    /// Whether the player has room around `center`.
     pub(in crate::game) fn is_clear(&self, center: DVec2, radius: Radius) -> bool {
         is_clear(self, center, radius)
     }
 
-    /// How low and how high the feet may be of somebody whose circle is around `center`, which is
+    /// The lowest and the highest position of the feet of a player whose circle around `center` is
     /// clear.
     pub(in crate::game) fn room(&self, center: DVec2, radius: Radius) -> Room {
         let (column, row) = cell_of(center);
@@ -137,8 +135,8 @@ impl Place<'_> {
         })
     }
 
-    /// The gap of a cell that holds all of somebody whose circle is around `center`: above the shape
-    /// there, if the circle is.
+    /// The gap of a cell that contains the body of a player whose circle is around `center`: only
+    /// its part above the shape, if the circle overlaps that.
     fn gap_above_shapes(
         &self,
         column: i64,
@@ -164,8 +162,7 @@ impl Place<'_> {
     }
 }
 
-/// What is open in a cell of `tile` to who walks: a door, glass or a wall with holes fills a gap up to
-/// its top.
+/// The gaps of `tile` for a player: a door, glass or a mask fills a gap up to its top.
 fn gaps(tile: Tile) -> impl Iterator<Item = Gap> {
     let filled = match tile.kind {
         TileKind::Open
@@ -183,7 +180,7 @@ fn gaps(tile: Tile) -> impl Iterator<Item = Gap> {
     })
 }
 
-/// What is left of a gap below and above what fills a part of it.
+/// The parts of a gap below and above what fills a part of it.
 fn around(gap: Gap, filled: Gap) -> Flatten<IntoIter<Option<Gap>, 2>> {
     let below = Gap { top: gap.top.min(filled.bottom), ..gap };
     let above = Gap { bottom: gap.bottom.max(filled.top), ..gap };

@@ -1,18 +1,19 @@
-//! How far a circle gets on a straight path before it touches something.
+//! How far a circle moves along a straight path before it touches something.
 //!
-//! Its centre walks the grid from cell to cell, so that the longest path costs no more than the map
-//! has columns and rows. In each open cell the question is small: a solid neighbour beside the cell
-//! is a wall, moved inwards by the radius; a solid neighbour across a corner is a quarter disc
-//! around that corner, unless a wall beside it covers it. Rounding off every solid cell by itself
-//! was refused: that makes a quarter disc at each joint of a straight wall, for rounding to trip on.
+//! Its centre traverses the grid from cell to cell, so that the longest path costs at most the
+//! columns and rows of the map. In each open cell the problem is small. A solid neighbour beside
+//! the cell is a wall, moved inwards by the radius. A solid neighbour across a corner is a quarter
+//! disc around that corner, unless a wall beside it covers the disc. Rounding every solid cell by
+//! itself was refused: each joint of a straight wall would have a quarter disc, at which rounding
+//! errors could stop the player.
 
 use glam::DVec2;
 
 use super::outline::{TouchKind, first_touch};
 use super::{Obstacles, Radius, cell_of, cell_on_map, is_clear};
 
-/// How deep a path cuts into a corner's disc, as a part of the radius, before it counts as touching.
-/// Who slides around a corner leaves it along its tangent, and that is exact to about 1e-16.
+/// How deep a path enters a corner's disc, relative to the radius, before it counts as a contact. A
+/// player who slides around a corner leaves it along the tangent, exact to about 1e-16.
 const GRAZE: f64 = 1e-14;
 
 /// A straight path.
@@ -25,9 +26,9 @@ pub(super) struct Path {
 }
 
 impl Path {
-    /// The path from a place by a displacement; `None` where it leads nowhere.
+    /// The path from a position by a displacement; `None` if that is zero.
     pub(super) fn new(from: DVec2, displacement: DVec2) -> Option<Self> {
-        // Unlike a square root of squares, this neither overflows nor underflows.
+        // Unlike the root of a sum of squares, this neither overflows nor underflows.
         let length = libm::hypot(displacement.x, displacement.y);
         (length > 0.0).then(|| Self { from, direction: displacement / length, length })
     }
@@ -44,9 +45,9 @@ impl Path {
         self.from + self.direction * distance
     }
 
-    /// The place at `distance` along the path, or if a circle is not clear there, one a little
-    /// before it, where it is. The path begins at such a place, and is free of obstacles up to
-    /// `distance` but for rounding.
+    /// The position at `distance` along the path, or one shortly before it if a circle is not clear
+    /// there. The path begins at a clear position, and is free of obstacles up to `distance` except
+    /// for rounding.
     pub(super) fn last_clear<O: Obstacles>(
         self,
         obstacles: &O,
@@ -63,20 +64,20 @@ impl Path {
     }
 }
 
-/// The first touch between a circle on a path and something solid.
+/// The first contact between a circle on a path and something solid.
 #[derive(Clone, Copy, Debug)]
 pub(super) struct Contact {
-    /// Where the circle's centre is then, and is clear.
+    /// The position of the circle's centre, which is clear.
     pub(super) position: DVec2,
-    /// The unit vector from what is touched to the centre.
+    /// The unit vector from the obstacle to the centre.
     pub(super) normal: DVec2,
-    /// The displacement that is left of the path.
+    /// The rest of the displacement.
     pub(super) remaining: DVec2,
-    /// The column and the row of what is touched.
+    /// The column and the row of the obstacle.
     pub(super) cell: (i64, i64),
 }
 
-/// Where a circle that follows `path` touches something first, if it does.
+/// The first contact of a circle on `path`, if there is one.
 pub(super) fn first_contact<O: Obstacles>(
     obstacles: &O,
     path: Path,
@@ -105,7 +106,7 @@ pub(super) fn first_contact<O: Obstacles>(
     }
 }
 
-/// An open cell, as the centre of a circle finds it.
+/// An open cell around the centre of a circle.
 struct Room<'a, O> {
     obstacles: &'a O,
     column: i64,
@@ -113,38 +114,38 @@ struct Room<'a, O> {
     radius: Radius,
 }
 
-/// What happens to a circle next.
+/// The next event on a path.
 struct Event {
-    /// Distance along the path.
+    /// The distance along the path.
     distance: f64,
     kind: EventKind,
 }
 
 enum EventKind {
-    /// Its centre crosses into an open cell beside this one.
+    /// The centre crosses into a neighbouring open cell.
     Leave { columns: i64, rows: i64 },
-    /// It touches something solid.
+    /// The circle touches something solid.
     Touch(Obstacle),
 }
 
 enum Obstacle {
     /// A flat wall, touched from `position`.
     Wall { position: DVec2, normal: DVec2 },
-    /// The corner of a solid cell, so many columns and rows from this one.
+    /// The corner of a solid cell at an offset of columns and rows.
     Corner { vertex: DVec2, cell: (i64, i64) },
-    /// The shape in a cell, so many columns and rows from this one.
+    /// The shape in a cell at an offset of columns and rows.
     Shape { touch: TouchKind, cell: (i64, i64) },
 }
 
-/// The side of a room that a path makes for along one axis.
+/// The side of a room that a path approaches along one axis.
 struct Side {
-    /// The cell behind it, as columns and rows from this one.
+    /// The cell behind it, as an offset of columns and rows.
     neighbor: (i64, i64),
-    /// Whether that is solid.
+    /// Whether that cell is solid.
     is_wall: bool,
     /// How far the centre may go along the axis in this room.
     line: f64,
-    /// Distance along the path.
+    /// The distance along the path.
     distance: f64,
 }
 
@@ -153,9 +154,10 @@ impl<O: Obstacles> Room<'_, O> {
         self.obstacles.blocks(self.column + columns, self.row + rows)
     }
 
-    /// The first of: either side ahead, any corner, any shape. `None` for a path without a direction.
+    /// The first of: either side ahead, any corner, any shape. `None` for a path without a
+    /// direction.
     fn next_event(&self, path: Path) -> Option<Event> {
-        // Either of two equals will do: the other is met again in the next room, or on the slide.
+        // Of two equal events either will do: the other follows in the next room, or on the slide.
         let sides = [self.event_along_y(path), self.event_along_x(path)];
         let events = sides.into_iter().flatten();
         let events = events.chain(self.corner_events(path)).chain(self.shape_events(path));
@@ -174,8 +176,8 @@ impl<O: Obstacles> Room<'_, O> {
         Some(side.event(position))
     }
 
-    /// The side that a path makes for along `axis`, on which this room is the cell `index`. `None`
-    /// where it keeps its place on that axis.
+    /// The side that a path approaches along `axis`, on which this room is the cell `index`; `None`
+    /// if the path is perpendicular to the axis.
     fn side(&self, index: i64, from: f64, direction: f64, axis: (i64, i64)) -> Option<Side> {
         if direction == 0.0 {
             return None;
@@ -217,7 +219,7 @@ impl<O: Obstacles> Room<'_, O> {
 }
 
 impl Side {
-    /// What happens at this side, to a centre that is then at `position`.
+    /// The event at this side, for a centre that is then at `position`.
     fn event(&self, position: DVec2) -> Event {
         let (columns, rows) = self.neighbor;
         let kind = if self.is_wall {
@@ -230,7 +232,7 @@ impl Side {
     }
 }
 
-/// How far along a path it enters a disc.
+/// The distance along a path at which it enters a disc.
 pub(super) fn distance_to_disc(path: Path, center: DVec2, radius: f64) -> Option<f64> {
     let offset = path.from - center;
     let closest = -path.direction.dot(offset);
@@ -243,7 +245,7 @@ pub(super) fn distance_to_disc(path: Path, center: DVec2, radius: f64) -> Option
 }
 
 impl Obstacle {
-    /// The cell that is touched, as columns and rows from the one that the circle's centre is in.
+    /// The obstacle's cell, as an offset of columns and rows from that of the centre.
     fn cell(&self) -> (i64, i64) {
         match *self {
             Self::Wall { normal, .. } => (-normal.x as i64, -normal.y as i64),
@@ -251,7 +253,8 @@ impl Obstacle {
         }
     }
 
-    /// Where a circle is that touches this at `distance` on its path, and the contact's normal.
+    /// The position of a circle that touches this at `distance` on its path, and the normal of the
+    /// contact.
     fn touched<O: Obstacles>(
         &self,
         obstacles: &O,

@@ -1,4 +1,4 @@
-//! What walkers rely on, tried on random grids.
+//! Properties of collision, on random grids.
 
 use std::f64::consts::TAU;
 use std::ops::Range;
@@ -88,7 +88,7 @@ fn any_radius() -> impl Strategy<Value = Radius> {
     prop_oneof![Just(0.25), Just(0.5), 0.01..0.5].prop_map(radius)
 }
 
-/// The distance from a point on the map to the nearest solid cell, off the map included.
+/// The distance from a point on the map to the nearest solid cell; cells outside the map are solid.
 fn clearance(grid: &Grid, point: DVec2) -> f64 {
     let (width, height) = (i64::from(grid.width()), i64::from(grid.height()));
     let cells = (-1..=height).flat_map(|row| (-1..=width).map(move |column| (column, row)));
@@ -101,7 +101,7 @@ fn clearance(grid: &Grid, point: DVec2) -> f64 {
         .fold(f64::INFINITY, f64::min)
 }
 
-/// The cells that can be walked to from `start`, by their sides.
+/// The cells that can be reached from `start` through sides.
 fn reachable(grid: &Grid, start: (i64, i64)) -> Vec<(i64, i64)> {
     let mut found = vec![start];
     let mut next = 0;
@@ -154,7 +154,7 @@ proptest! {
             prop_assert!(clearance(&grid, end) <= radius.0 + 1e-6, "{end}");
             prop_assert!(displacement.dot(contact.normal) < 0.0);
             let wall = end - contact.normal * (radius.0 + 1e-5);
-            // At the very end of a face, rounding may put the probe an ulp beside it.
+            // At the very end of a face, rounding may put the probe one ulp beside it.
             prop_assert!(clearance(&grid, wall) < 1e-9, "nothing solid at {wall}");
         }
     }

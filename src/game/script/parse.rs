@@ -1,4 +1,4 @@
-//! A script's text to its stretches, with every fault in one run.
+//! Parses a script; reports all its faults in one run.
 
 use std::ops::Range;
 
@@ -24,7 +24,7 @@ struct Reader<'t> {
     faults: Vec<Fault>,
 }
 
-/// A section and where its name stands.
+/// A section, and the place of its name.
 struct Named {
     section: Section,
     place: Range<usize>,
@@ -41,13 +41,13 @@ impl Reader<'_> {
         match self.stretch(line) {
             Ok(stretch) => self.section().stretches.push(stretch),
             Err(fault) => {
-                // One fault is enough: the section would have a stretch if this line were one.
+                // One fault is enough: if this line were correct, the section would not be empty.
                 self.faults.push(fault);
             }
         }
     }
 
-    /// The section that lines belong to now.
+    /// The current section.
     fn section(&mut self) -> &mut Section {
         if self.sections.is_empty() {
             self.begin_section(String::new(), 0..0);
@@ -88,7 +88,7 @@ impl Reader<'_> {
         Ok(Stretch { steps, intents: self.intents(&words)? })
     }
 
-    /// How many steps a line lasts, and what follows.
+    /// The number of steps of a line, and the rest of the line.
     fn duration(&self, line: Range<usize>) -> Result<(u32, Range<usize>), Fault> {
         let text = &self.text[line.clone()];
         let length = text.find(|c: char| !c.is_ascii_digit() && c != '.').unwrap_or(text.len());
@@ -168,7 +168,7 @@ impl Reader<'_> {
     }
 }
 
-/// `intents`, turning or tilting as `word` says, such as `turn:-1.5`.
+/// `intents` with the turn or tilt of `word`, such as `turn:-1.5`.
 fn looking(intents: Intents, word: &str, place: Range<usize>) -> Result<Intents, Fault> {
     let (name, degrees) = word.split_once(':').unwrap_or((word, ""));
     let mut look = intents.look();
@@ -220,7 +220,7 @@ fn words(text: &str, part: Range<usize>) -> Vec<Range<usize>> {
     words
 }
 
-/// A part of `text` without the blanks around it.
+/// A part of `text` without surrounding blanks.
 fn trimmed(text: &str, part: Range<usize>) -> Range<usize> {
     let whole = &text[part.clone()];
     let start = part.start + (whole.len() - whole.trim_start().len());

@@ -1,14 +1,14 @@
-//! Writing down what a player wants while they play.
+//! Records what a player wants as a script.
 
 use std::io::{self, Write};
 
 use super::Stretch;
 use crate::game::Intents;
 
-/// Writes a script as it happens.
+/// Writes a script while the game is played.
 ///
-/// A stretch is written when it ends, in one piece, so what has been written is a script at any
-/// time; the last stretch is written when the recorder is [finished](Recorder::finish) or dropped.
+/// A stretch is written when it ends, in one piece, so that the output is a script at any time. The
+/// last stretch is written when the recorder is [finished](Recorder::finish) or dropped.
 #[derive(Debug)]
 pub struct Recorder<W: Write> {
     output: W,
@@ -21,10 +21,10 @@ impl<W: Write> Recorder<W> {
         Self { output, current: None }
     }
 
-    /// Takes note that the player wants `intents` for `steps` steps more.
+    /// Records that the player wants `intents` for `steps` more steps.
     ///
     /// # Errors
-    /// Where `output` fails.
+    /// If `output` fails.
     pub fn record(&mut self, intents: Intents, mut steps: u64) -> io::Result<()> {
         while steps > 0 {
             let before = match self.current {
@@ -44,10 +44,10 @@ impl<W: Write> Recorder<W> {
         Ok(())
     }
 
-    /// Writes what has not been written.
+    /// Writes the last stretch.
     ///
     /// # Errors
-    /// Where `output` fails.
+    /// If `output` fails.
     pub fn finish(&mut self) -> io::Result<()> {
         self.write_current()?;
         self.output.flush()
@@ -61,7 +61,7 @@ impl<W: Write> Recorder<W> {
 
 impl<W: Write> Drop for Recorder<W> {
     fn drop(&mut self) {
-        // Who wants to know whether it could be written has called `finish`.
+        // Callers who need the error have called `finish`.
         _ = self.finish();
     }
 }

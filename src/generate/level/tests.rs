@@ -1,4 +1,4 @@
-//! What holds of every level: ways out, connections, doors.
+//! Properties of every level: exits, connections, doors.
 
 use std::collections::{BTreeSet, VecDeque};
 

@@ -1,44 +1,44 @@
-//! A block: what is between the corridors of a chunk, as rooms or as one.
+//! Blocks: the area between the corridors of a chunk, divided into rooms or not.
 
 use std::ops::Range;
 
 use super::super::chunk::{Chunk, Plot};
 use super::super::hash::Chance;
 
-/// What is between the corridors of a chunk.
+/// The area between the corridors of a chunk.
 #[derive(Clone, Debug)]
 pub(super) struct Block {
-    /// Its inside, from west to east: what is between walls in odd columns, but for the last one,
-    /// which may be anywhere.
+    /// Its inside, from west to east, between walls in odd columns. The last wall may be in any
+    /// column.
     columns: Range<usize>,
-    /// From north to south, likewise.
+    /// The same from north to south.
     rows: Range<usize>,
 }
 
 const GLASS: u8 = b'G';
 const DOOR: u8 = b'+';
 
-/// The least inside of a room, along each side.
+/// The least inside of a room along each side.
 const LEAST: usize = 3;
-/// What is longer or wider is always divided.
+/// Longer or wider areas are always divided.
 const LONGEST: usize = 11;
-/// Columns and rows from one pillar of a hall to the next.
+/// The columns and rows between pillars of a hall.
 const PILLAR_SPACING: usize = 6;
 
-/// How a room is furnished.
+/// The furniture of a room.
 #[derive(Clone, Copy, Debug)]
 struct Furniture {
     floor: u8,
-    /// What may stand where it is in nobody's way, and how many of [`PLACES`] have it.
+    /// The furniture, and how many of [`PLACES`] have it.
     pieces: &'static [(u8, usize)],
-    /// What hangs where one can walk.
+    /// What hangs from the ceiling where the player can walk.
     lamp: Option<u8>,
-    /// What holds the ceiling, in a hall.
+    /// The pillars of a hall.
     pillar: u8,
 }
 
 const PLACES: usize = 32;
-/// Cells from one lamp to the next.
+/// The cells between lamps.
 const LAMP_SPACING: usize = 8;
 
 const CARPETED: Furniture =
@@ -52,14 +52,14 @@ const GARDEN: Furniture =
     Furniture { floor: b'"', pieces: &[(b'y', 10), (b's', 1)], lamp: None, pillar: b'O' };
 
 impl Block {
-    /// The block of a plot whose corridors end before `first`, if there is room for one.
+    /// The block of a plot whose corridors end before `first`, if there is room for it.
     pub(super) fn of(plot: &Plot, first: usize) -> Option<Self> {
         let inside = |range: &Range<usize>| first + 1..range.end;
         let block = Self { columns: inside(&plot.columns), rows: inside(&plot.rows) };
         (block.columns.len() >= LEAST && block.rows.len() >= LEAST).then_some(block)
     }
 
-    /// Builds it.
+    /// Builds the block.
     pub(super) fn build(self, chunk: &mut Chunk, chance: Chance) {
         let mut building = Building { chunk, chance };
         match building.chance.below(8) {
@@ -70,7 +70,7 @@ impl Block {
         building.open_to_corridors(&self);
     }
 
-    /// Where a wall from north to south could divide it.
+    /// The columns where a wall from north to south could divide it.
     fn cuts_across(&self) -> Vec<usize> {
         cuts(&self.columns)
     }
@@ -80,7 +80,7 @@ impl Block {
     }
 }
 
-/// The odd places that leave enough on both sides.
+/// The odd positions that leave enough room on both sides.
 fn cuts(inside: &Range<usize>) -> Vec<usize> {
     let places = inside.start + LEAST..(inside.end).saturating_sub(LEAST);
     places.filter(|place| place % 2 == 1).collect()
@@ -92,7 +92,7 @@ struct Building<'c> {
 }
 
 impl Building<'_> {
-    /// One room, however large, with pillars.
+    /// One room of any size, with pillars.
     fn hall(&mut self, block: &Block, furniture: Furniture) {
         self.furnish(block, furniture);
         let is_pillars = |place: usize| place % PILLAR_SPACING == 1;
@@ -103,7 +103,7 @@ impl Building<'_> {
         }
     }
 
-    /// Divides what is large into two, with a door between them; furnishes what is not.
+    /// Divides large areas into two, with a door between them, and furnishes the others.
     fn divide(&mut self, block: Block) {
         let (across, down) = (block.cuts_across(), block.cuts_down());
         let longest = block.columns.len().max(block.rows.len());
@@ -145,7 +145,7 @@ impl Building<'_> {
         }
     }
 
-    /// Puts so many doors into a wall that begins where it may have one, and glass where it has none.
+    /// Places doors into a wall, beginning where it may have one, and glass elsewhere.
     fn open_wall(&mut self, wall: &[(usize, usize)], doors: usize) {
         let openings: Vec<_> = wall.iter().copied().step_by(2).collect();
         if self.chance.one_in(2) {

@@ -1,6 +1,6 @@
-//! Decor: what the walls, floors and ceilings of an office are made of.
+//! Decor: the surfaces of an office.
 
-/// What the walls, floors and ceilings of an office are made of, as values of a map file.
+/// The surfaces of an office, as values of a map file.
 #[derive(Clone, Copy, Debug)]
 pub(super) struct Decor {
     wall: &'static str,
@@ -49,12 +49,12 @@ const DECORS: [Decor; 5] = [
 ];
 
 impl Decor {
-    /// That of a seed; the next seed has another one.
+    /// The decor of a seed. The next seed has another one.
     pub(super) fn of(seed: u64) -> Self {
         DECORS[(seed % DECORS.len() as u64) as usize]
     }
 
-    /// `legend`, a map file, with this decor: what belongs above its grid, and below it.
+    /// The map file `legend` with this decor: keys above its grid, and tiles below it.
     pub(super) fn legend(self, legend: &str) -> String {
         let Self { wall, carpet, corridor, ceiling, fog } = self;
         format!(

@@ -1,4 +1,4 @@
-//! Windows that move, and what is seen of it.
+//! Windows that move, and their pictures.
 
 use proptest::prelude::*;
 
@@ -88,7 +88,7 @@ proptest! {
             camera.with_eye(floor + Camera::STANDING).unwrap()
         };
         let before = picture(&world, &camera(position, &world));
-        // As if the middle were elsewhere: somebody in another cell makes it move.
+        // As if the middle were elsewhere: a player in another cell makes it move.
         let elsewhere = Cell {
             column: if cell.column < CENTER.column { MIDDLE.start - 1 } else { MIDDLE.end },
             row: cell.row,

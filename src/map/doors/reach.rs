@@ -1,23 +1,24 @@
-//! Where the player gets: from the start through open floor, doors, and doors whose keys they find.
+//! Reachable keys: a search from the start through open floor, doors, and locked doors whose keys
+//! have been found.
 
 use std::collections::{BTreeMap, BTreeSet};
 
 use crate::world::{Cell, Grid};
 
-/// A map, as somebody finds it who looks for keys.
+/// A map for the search.
 pub(super) struct Reach<'a> {
     pub(super) grid: &'a Grid,
-    /// The solid cells that one gets through: doors; shapes, which may leave room beside them; and things
-    /// that may be jumped over.
+    /// Solid cells that can be passed: doors; shapes, which may leave room beside them; and things
+    /// that the player may jump over.
     pub(super) passable: &'a BTreeSet<Cell>,
-    /// The locked ones, and the names of their keys.
+    /// Locked doors, and the names of their keys.
     pub(super) locks: &'a BTreeMap<Cell, &'a str>,
-    /// The keys that lie about.
+    /// Keys in the grid, and their names.
     pub(super) keys: &'a BTreeMap<Cell, &'a str>,
 }
 
 impl<'a> Reach<'a> {
-    /// The names of the keys that somebody gets who starts at `start`.
+    /// The names of the keys that the player can reach from `start`.
     pub(super) fn keys_from(&self, start: Cell) -> BTreeSet<&'a str> {
         let mut taken = BTreeSet::new();
         let mut waiting = BTreeMap::<&str, Vec<Cell>>::new();
@@ -50,7 +51,7 @@ impl<'a> Reach<'a> {
         cell.row as usize * self.grid.width() as usize + cell.column as usize
     }
 
-    /// The cells beside `cell` where one can walk, if only through a door.
+    /// The neighbours of `cell` that the player can enter.
     fn neighbors(&self, cell: Cell) -> impl Iterator<Item = Cell> {
         let sides = [(-1, 0), (1, 0), (0, -1), (0, 1)];
         sides.into_iter().filter_map(move |(columns, rows)| {

@@ -1,39 +1,39 @@
-//! A glow: where a lamp's light goes, cell by cell, as long as nothing is in its way.
+//! Glow: the cells that one kind of lamp lights, as a tree.
 //!
-//! The lines from one lamp to all the cells that it reaches are the same wherever it stands, and many of
-//! them begin in the same cells. So they are found out once, as a tree, and a lamp follows its branches
-//! until each meets something. Walking along every line by itself was refused: a level that is dug has
-//! hundreds of lamps, and that took most of the time that its window needs to move.
+//! The lines from a lamp to the cells within its reach are the same at every position, and many of
+//! them share their first cells. They are computed once, as a tree. Each lamp follows the branches
+//! of the tree until they meet an obstacle. Following every line by itself was refused: a generated
+//! level has hundreds of lamps, and that took most of the time in which its window moves.
 
 use std::num::NonZeroU32;
 
 use crate::cast::{Ray, Walk};
 use crate::world::{Cell, Grid, Lamp, Light, TileId};
 
-/// All that a kind of lamp shines into where nothing stands around it.
+/// The cells that a kind of lamp lights where nothing stands around it.
 #[derive(Debug)]
 pub(super) struct Glow {
     /// What it adds in its own cell.
     light: Light,
-    /// A tree of cells: each comes before those that are behind it.
+    /// The cells as a tree: each comes before those behind it.
     branches: Vec<Branch>,
 }
 
-/// A cell that light passes, coming from the one before.
+/// A cell that light passes, coming from the cell before it in the tree.
 #[derive(Debug)]
 struct Branch {
     /// Columns to the east of the lamp, and rows to the south.
     offset: (i64, i64),
-    /// What the lamp adds there; nothing, where its light only passes on the way to other cells.
+    /// What the lamp adds there; nothing, if its light only passes through.
     light: Light,
-    /// The index of the first branch that does not lead through this cell.
+    /// The index of the first cell whose line does not lead through this one.
     next_beside: usize,
 }
 
 impl Glow {
     pub(super) fn of(lamp: &Lamp) -> Self {
         let mut lines = lines(lamp);
-        // Lines that begin in the same cells come after each other, the shorter ones first.
+        // Lines that share their first cells are neighbours, and shorter ones come first.
         lines.sort_by(|one, other| one.cells.cmp(&other.cells));
         let mut branches: Vec<Branch> = Vec::new();
         let mut open: Vec<usize> = Vec::new();
@@ -54,8 +54,8 @@ impl Glow {
         Self { light: lamp.light_at(0.0), branches }
     }
 
-    /// Has `add` called with what a lamp in `place` adds to the cells of `grid` that it shines into,
-    /// through whatever `is_clear`.
+    /// Calls `add` for each cell of `grid` that a lamp at `place` lights, with what it adds there.
+    /// Light passes through tiles for which `is_clear` is true.
     pub(super) fn shine(
         &self,
         grid: &Grid,
@@ -78,7 +78,7 @@ impl Glow {
     }
 }
 
-/// Notes that no more branches lead through those at `indices`.
+/// Ends the branches at `indices`: no later cell's line leads through them.
 fn close(branches: &mut [Branch], indices: impl Iterator<Item = usize>) {
     let end = branches.len();
     indices.for_each(|index| branches[index].next_beside = end);
@@ -86,13 +86,13 @@ fn close(branches: &mut [Branch], indices: impl Iterator<Item = usize>) {
 
 type Offset = (i64, i64);
 
-/// The cells between a lamp and one that it reaches, that one included.
+/// The cells on the line from a lamp to a cell, without the first and with the last one.
 struct Line {
     cells: Vec<Offset>,
     light: Light,
 }
 
-/// The lines from a lamp to all cells that it reaches, but for its own.
+/// The lines from a lamp to all other cells within its reach.
 fn lines(lamp: &Lamp) -> Vec<Line> {
     let reach = lamp.reach.cells() as u32;
     let side = NonZeroU32::MIN.saturating_add(2 * reach);

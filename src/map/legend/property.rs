@@ -1,4 +1,4 @@
-//! Properties: what one entry in the definition of a tile or thing makes of it.
+//! Properties: what one entry of a definition means.
 
 use toml::de::{DeTable, DeValue};
 
@@ -13,7 +13,7 @@ use crate::map::sprites::SpriteSymbol;
 use crate::map::textures::Surface;
 use crate::world::{Heading, Light};
 
-/// What one property of a tile or thing makes of it.
+/// Reads one property of a tile or a thing.
 pub(super) fn property<'a>(
     section: Section,
     entry: &Entry<'a, '_>,
@@ -68,7 +68,7 @@ fn heading(entry: &Entry<'_, '_>, faults: &mut Vec<Fault>) -> Option<Heading> {
     heading
 }
 
-/// How bright something is, from a number between 0 and 1.
+/// Reads a light, a number from 0 to 1.
 pub(in crate::map) fn light(entry: &Entry<'_, '_>, faults: &mut Vec<Fault>) -> Option<Light> {
     let light = entry.number().and_then(Light::new);
     if light.is_none() {

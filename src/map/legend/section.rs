@@ -1,10 +1,10 @@
-//! The two tables of the legend, and which keys their entries have.
+//! The two tables of the legend, and the keys of their entries.
 
 use crate::fault::Fault;
 use crate::fault::document::Entry;
 use crate::map::sprites;
 
-/// What other raycasters have in their cells and this one has not.
+/// Common features of other raycasters that do not exist here.
 const NOT_YET: &[(&str, &str)] = &[
     ("guard", "guards"),
     ("pushwall", "moving walls"),
@@ -75,7 +75,7 @@ impl Section {
         }
     }
 
-    /// The keys that say more of what another one makes: each with that one.
+    /// The keys that belong to another key, with that key.
     pub(super) fn additions(self) -> impl Iterator<Item = (&'static str, &'static str)> {
         let (additions, more): (&[_], &[_]) = match self {
             Self::Tiles => (OF_TILES, &[]),
@@ -98,7 +98,7 @@ impl Section {
         }
     }
 
-    /// The fault that a tile or thing has no such property.
+    /// The fault of a key that a tile or a thing does not have.
     pub(super) fn unknown_property(self, entry: &Entry<'_, '_>) -> Fault {
         let place = || entry.key_place.clone();
         if let Some((_, plural)) = NOT_YET.iter().find(|(key, _)| *key == entry.key) {
@@ -128,7 +128,7 @@ impl Section {
     }
 }
 
-/// `names`, each in quotes, as one says which of them there are to choose from.
+/// `names` in quotes, as a choice.
 fn alternatives(names: &[&str]) -> String {
     let quoted: Vec<String> = names.iter().map(|name| format!("\"{name}\"")).collect();
     match quoted.split_last() {

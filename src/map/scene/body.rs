@@ -1,4 +1,4 @@
-//! Bodies: their shapes and colours, as a map says them.
+//! Bodies: their shapes and colours, as the map writes them.
 
 use std::ops::Range;
 
@@ -12,7 +12,7 @@ use crate::map::air;
 use crate::space::{Block, Body, Coat, FARTHEST, Plane, SMALLEST, Shape, Sphere};
 use crate::world::{Rgb, Scale};
 
-/// What a body is called in a map.
+/// The kinds of body.
 #[derive(Clone, Copy)]
 pub(super) enum Kind {
     Sphere,
@@ -20,7 +20,7 @@ pub(super) enum Kind {
     Box,
 }
 
-/// What the table of a body says, each with its place.
+/// The entries of a body's table.
 #[derive(Default)]
 struct Said {
     vectors: Vec<(&'static str, DVec3)>,
@@ -40,7 +40,7 @@ impl Kind {
         }
     }
 
-    /// The bodies of `entry`; what is wrong with one is added to `faults`.
+    /// Reads the bodies of `entry`; adds faults to `faults`.
     pub(super) fn read_all(self, entry: &Entry<'_, '_>, faults: &mut Vec<Fault>) -> Vec<Body> {
         tables(entry, self.example(), faults)
             .into_iter()
@@ -64,7 +64,7 @@ impl Kind {
         }
     }
 
-    /// The vectors and the number that say its shape.
+    /// The keys of the vectors and of the number that define the shape.
     fn shape_keys(self) -> (&'static [&'static str], &'static str) {
         match self {
             Self::Sphere => (&["center"], "radius"),

@@ -1,4 +1,4 @@
-//! Places and directions: lists of three numbers.
+//! Positions and directions: lists of three numbers.
 
 use glam::DVec3;
 use toml::de::DeValue;
@@ -8,7 +8,7 @@ use crate::fault::document::Entry;
 use crate::fault::{Fault, quoted};
 use crate::space::FARTHEST;
 
-/// The place that `entry` gives, as near as bodies and cameras must be.
+/// Reads the position in `entry`, within the limits of bodies and cameras.
 pub(super) fn place(entry: &Entry<'_, '_>, faults: &mut Vec<Fault>) -> Option<DVec3> {
     let place = three(entry, &format!("{} = [2, 0, 0.5]", entry.key), faults)?;
     if place.abs().max_element() <= FARTHEST {
@@ -19,7 +19,7 @@ pub(super) fn place(entry: &Entry<'_, '_>, faults: &mut Vec<Fault>) -> Option<DV
     None
 }
 
-/// The direction that `entry` gives, of any length.
+/// Reads the direction in `entry`, of any length.
 pub(super) fn direction(
     entry: &Entry<'_, '_>,
     example: &str,

@@ -1,15 +1,15 @@
-//! Files: where the pictures beside a map are read from.
+//! Files: where the pictures of a map come from.
 
 use std::path::{Path, PathBuf};
 use std::{fmt, fs, io};
 
-/// The most bytes that a PNG file may have.
+/// The largest PNG file, in bytes.
 const MAX_FILE_BYTES: usize = 16 << 20;
 
-/// Where a map's own textures come from.
+/// The source of a map's own textures.
 ///
-/// The folder of the map is a [`Folder`]; a program that has its pictures compiled in, or in an
-/// archive, looks them up by name:
+/// [`Folder`] reads from the folder of the map. A program can also look up pictures that are
+/// compiled in or in an archive:
 ///
 /// ```
 /// use cellcaster::map::{TextureFileError, TextureFiles};
@@ -25,23 +25,23 @@ const MAX_FILE_BYTES: usize = 16 << 20;
 /// }
 /// ```
 pub trait TextureFiles {
-    /// The bytes of the PNG file `name`, which ends in `.png`, may lie in folders (`a/b.png`) and
+    /// The bytes of the PNG file `name`. The name ends in `.png`, may have folders (`a/b.png`), and
     /// never leads out of them.
     ///
     /// # Errors
-    /// Why there are none.
+    /// The reason why there are none.
     fn read(&self, name: &str) -> Result<Vec<u8>, TextureFileError>;
 }
 
-/// Why a texture's file has no bytes.
+/// Why the file of a texture has no bytes.
 #[derive(Debug)]
 #[non_exhaustive]
 pub enum TextureFileError {
-    /// There is no such file.
+    /// The file does not exist.
     Missing,
-    /// A link leads out of the map's folder.
+    /// The file is a link out of the map's folder.
     Outside,
-    /// It is no regular file, but a folder or a device.
+    /// It is a folder or a device.
     NotAFile,
     /// It is larger than any PNG of an allowed size.
     TooLarge,
@@ -50,7 +50,7 @@ pub enum TextureFileError {
 }
 
 impl fmt::Display for TextureFileError {
-    /// Writes what is true of the file, to follow its name.
+    /// Writes the reason, to follow the name of the file.
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
         match self {
             Self::Missing => f.write_str("is not there"),
@@ -64,7 +64,7 @@ impl fmt::Display for TextureFileError {
 
 impl std::error::Error for TextureFileError {}
 
-/// No files: every texture is built in.
+/// No files: all textures are built in.
 #[derive(Clone, Copy, Debug)]
 pub struct NoFiles;
 
@@ -74,14 +74,14 @@ impl TextureFiles for NoFiles {
     }
 }
 
-/// The files of one folder and of those within it. Links that lead out of it are not followed.
+/// The files of one folder and below it. Links that lead out of it are not followed.
 #[derive(Clone, Debug)]
 pub struct Folder {
     path: PathBuf,
 }
 
 impl Folder {
-    /// The folder that the map file at `map` lies in.
+    /// The folder of the map file at `map`.
     pub fn of(map: &Path) -> Self {
         match map.parent() {
             Some(parent) if parent != Path::new("") => Self { path: parent.to_owned() },
@@ -121,12 +121,12 @@ impl From<io::Error> for TextureFileError {
     }
 }
 
-/// Whether a file of that name is a picture.
+/// Whether the name is that of a PNG file.
 pub(in crate::map) fn is_png(name: &str) -> bool {
     Path::new(name).extension().is_some_and(|extension| extension.eq_ignore_ascii_case("png"))
 }
 
-/// Whether `name` means the same file within a folder on every system.
+/// Whether `name` is a file below a folder, and the same one on every system.
 pub(in crate::map) fn stays_inside(name: &str) -> bool {
     !name.contains(['\\', ':']) && name.split('/').all(|part| !matches!(part, "" | "." | ".."))
 }

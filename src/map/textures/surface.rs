@@ -1,4 +1,4 @@
-//! Surfaces: what a map says that walls, floors and skies look like.
+//! Surfaces: walls, floors and skies, as the map writes them.
 
 use std::ops::Range;
 
@@ -8,14 +8,14 @@ use crate::fault::{Fault, nearest, quoted};
 use crate::world::Rgb;
 use crate::world::texture::builtin;
 
-/// How a surface is to look, as the map says it.
+/// A surface as the map writes it.
 pub(in crate::map) struct Surface<'a> {
     pub(super) source: Source<'a>,
-    /// Where the map says it.
+    /// Its place in the map.
     pub(super) place: Range<usize>,
 }
 
-/// What a surface's look is made from.
+/// The source of a surface.
 pub(super) enum Source<'a> {
     Color(Rgb),
     BuiltIn(&'a str),
@@ -23,13 +23,13 @@ pub(super) enum Source<'a> {
 }
 
 impl<'a> Surface<'a> {
-    /// A surface of one colour that the map does not mention.
+    /// A surface of one colour, for maps that do not name any.
     pub(in crate::map) fn plain(color: Rgb) -> Self {
         Self { source: Source::Color(color), place: 0..0 }
     }
 
-    /// The surface that `entry` describes; where it describes none, that is added to `faults`. The
-    /// `example` is a whole entry.
+    /// Reads the surface in `entry`; adds to `faults` where there is none. `example` is a whole
+    /// entry.
     pub(in crate::map) fn read(
         entry: &Entry<'a, '_>,
         example: &str,
@@ -39,7 +39,7 @@ impl<'a> Surface<'a> {
         Self::from_source(Source::read(text, entry.value_place.clone()), entry, faults)
     }
 
-    /// As [`Surface::read`], for the picture of a sky.
+    /// Reads the panorama in `entry`, as [`Surface::read`].
     pub(in crate::map) fn read_panorama(
         entry: &Entry<'a, '_>,
         example: &str,
@@ -73,15 +73,15 @@ impl<'a> Surface<'a> {
 }
 
 impl Surface<'_> {
-    /// Where the map says it.
+    /// Its place in the map.
     pub(in crate::map) fn place(&self) -> Range<usize> {
         self.place.clone()
     }
 }
 
 impl<'a> Source<'a> {
-    /// What `text`, written at `place`, names: a colour, a built-in texture or a PNG file. Whether
-    /// there is such a file is not asked yet.
+    /// Reads `text`, written at `place`: a colour, a built-in texture or a PNG file. Does not check
+    /// whether the file exists.
     fn read(text: &'a str, place: Range<usize>) -> Result<Self, Fault> {
         match text.parse() {
             Ok(color) => Ok(Self::Color(color)),

@@ -1,4 +1,4 @@
-//! How clear the cells of small maps are.
+//! Distance fields of small maps.
 
 use proptest::prelude::*;
 
@@ -12,7 +12,7 @@ fn of<Row: AsRef<str>>(rows: &[Row]) -> Clearance {
     )
 }
 
-/// How clear the cells of the map are, without those around.
+/// The distances of the cells of the map, without the border.
 fn inner(clearance: &Clearance) -> Vec<Vec<u16>> {
     let rows: Vec<&[Coded]> = clearance.cells.chunks_exact(clearance.width).collect();
     let lines = |row: &&[Coded]| row[1..row.len() - 1].iter().map(|cell| cell.lines()).collect();
@@ -45,7 +45,7 @@ fn halls_are_worth_measuring_and_rooms_are_not() {
 }
 
 proptest! {
-    /// It is the distance of the nearest, by looking at them all.
+    /// It is the distance of the nearest solid cell, by brute force.
     #[test]
     fn it_is_as_far_as_a_king_walks(
         rows in prop::collection::vec("[.......#]{9}", 1..9_usize),

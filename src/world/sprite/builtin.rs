@@ -1,8 +1,8 @@
-//! The built-in sprites: drawn by characters, or painted by code, when a map asks for one.
+//! The built-in sprites, drawn with characters or computed when a map uses one.
 //!
-//! They are few texels large, with a dark outline and one light from the upper left, so that they can
-//! be told from each other when they are ten pixels high. A drawing is text: a change to it shows in a
-//! review, which one to a picture file would not.
+//! They have few texels, a dark outline, and light from the upper left, so that they can be told
+//! apart at a height of ten pixels. A drawing is text, so that changes to it can be reviewed,
+//! unlike those of a picture file.
 
 mod figure;
 mod furniture;
@@ -15,7 +15,7 @@ use std::num::NonZeroU32;
 use super::{Anchor, Facings, FrameTime, Sprite, SpriteHeight};
 use crate::world::{Lamp, Light, Reach, Rgb, Texture};
 
-/// The names that [`named`] knows, those for things that a map asks for by other words left out.
+/// The names that maps may use.
 pub const NAMES: &[&str] =
     &["barrel", "bones", "column", "lamp", "plant", "statue", "table", "torch"];
 
@@ -23,10 +23,10 @@ pub const NAMES: &[&str] =
 pub const EXIT: &str = "portal";
 /// The sprite of a key.
 pub const KEY: &str = "key";
-/// The sprite of whoever looks into a mirror.
+/// The sprite of the player, seen in mirrors.
 pub const PLAYER: &str = "player";
 
-/// The built-in sprite of that name, or `None` where there is none.
+/// The built-in sprite of that name; `None` if there is none.
 pub fn named(name: &str) -> Option<Sprite> {
     let Design { pictures, facings, seconds, anchor, height, blocks, shines } = match name {
         "barrel" => furniture::barrel(),
@@ -52,11 +52,11 @@ pub fn named(name: &str) -> Option<Sprite> {
     Some(sprite)
 }
 
-/// What a sprite is made from.
+/// The definition of a sprite.
 struct Design {
     pictures: Vec<Texture>,
     facings: Facings,
-    /// For each frame.
+    /// The time of each frame.
     seconds: f64,
     anchor: Anchor,
     /// In cells.
@@ -67,14 +67,14 @@ struct Design {
 }
 
 impl Design {
-    /// Pictures of one facing that stand on the floor, in nobody's way.
+    /// Pictures with one facing that stand on the floor and do not block.
     fn standing(height: f64, pictures: Vec<Texture>) -> Self {
         let (facings, anchor) = (Facings::One, Anchor::Floor);
         Self { pictures, facings, seconds: 0.2, anchor, height, blocks: false, shines: 0.0 }
     }
 }
 
-/// Which colour a character stands for; all others are clear.
+/// The colours of characters; all other characters are transparent.
 type Palette = [(char, Rgb)];
 
 /// The picture that lines of characters draw, all of one length.
@@ -86,14 +86,14 @@ fn drawn(lines: &[&str], palette: &Palette) -> Texture {
     })
 }
 
-/// The same seen from the other side: left and right are swapped.
+/// The mirror image of a drawing.
 fn mirrored(lines: &[&str], palette: &Palette) -> Texture {
     let lines: Vec<String> = lines.iter().map(|line| line.chars().rev().collect()).collect();
     let lines: Vec<&str> = lines.iter().map(String::as_str).collect();
     drawn(&lines, palette)
 }
 
-/// The picture whose texel at `(x, y)` is `paint(x, y)`, or clear where that is none.
+/// The picture whose texel at `(x, y)` is `paint(x, y)`, transparent where that is `None`.
 fn painted(width: u32, height: u32, paint: impl Fn(i32, i32) -> Option<Rgb>) -> Texture {
     const CLEAR: (Rgb, u8) = (Rgb::BLACK, 0);
     let side = |side| NonZeroU32::new(side).unwrap_or(NonZeroU32::MIN);
@@ -102,7 +102,7 @@ fn painted(width: u32, height: u32, paint: impl Fn(i32, i32) -> Option<Rgb>) -> 
     })
 }
 
-/// What outlines are drawn in.
+/// The colour of outlines.
 const INK: Rgb = Rgb::new(0x1c, 0x18, 0x20);
 
 #[cfg(test)]

@@ -1,14 +1,13 @@
-//! The built-in textures: painted by code when a map asks for one.
+//! The built-in textures, computed when a map uses one.
 //!
-//! All are 64 texels square and lit from the upper left. Each is a function from a texel's place to
-//! its colour, in integers only, so that it is the same on every machine. Noise wraps around and
-//! joints are centred on the edges, so that walls stand side by side without a seam; all but
-//! `plaster`, which has a rail above and a skirting below, and `fence`, which stands on the ground,
-//! tile from top to bottom as well. `grate` and `fence` have holes.
+//! All are 64 texels square and lit from the upper left. Each is a function from a texel's position
+//! to its colour, in integers only, so that it is the same on every machine. They tile horizontally
+//! without a seam, and vertically except for `plaster`, which has a rail and a skirting board, and
+//! `fence`, which stands on the ground. `grate` and `fence` have holes.
 //!
-//! Shapes are large and grain is faint: a wall is rarely more than thirty pixels high in a
-//! terminal, where grain shimmers and costs bytes. Pictures compiled in from files were refused:
-//! they would be larger than this code, and nobody could review a change to one.
+//! Features are large and noise is faint: a wall is rarely more than thirty pixels high in a
+//! terminal, where noise shimmers and costs bytes. Compiled-in picture files were refused: they
+//! would be larger than this code, and changes to them could not be reviewed.
 
 mod block;
 mod coffer;
@@ -31,7 +30,7 @@ use crate::world::Rgb;
 /// The names that [`named`] knows.
 pub const NAMES: &[&str] = &names();
 
-/// The built-in texture of that name, or `None` where there is none.
+/// The built-in texture of that name; `None` if there is none.
 pub fn named(name: &str) -> Option<Texture> {
     let (_, painter) = PAINTERS.iter().find(|(known, _)| *known == name)?;
     Some(match *painter {
@@ -49,7 +48,7 @@ pub fn named(name: &str) -> Option<Texture> {
 /// The names that [`panorama`] knows.
 pub const PANORAMAS: &[&str] = &["hills"];
 
-/// The built-in picture of a whole sky of that name, or `None` where there is none.
+/// The built-in panorama of that name; `None` if there is none.
 pub fn panorama(name: &str) -> Option<Texture> {
     const WIDTH: NonZeroU32 = NonZeroU32::new(panorama::WIDTH as u32).expect("it is not 0");
     const HEIGHT: NonZeroU32 = NonZeroU32::new(panorama::HEIGHT as u32).expect("it is not 0");
@@ -57,19 +56,19 @@ pub fn panorama(name: &str) -> Option<Texture> {
     Some(Texture::from_fn(WIDTH, HEIGHT, |x, y| paint(x as i32, y as i32)))
 }
 
-/// Texels along each side of a texture.
+/// The number of texels along each side.
 const SIDE: i32 = SIDE_LENGTH.get() as i32;
 const SIDE_LENGTH: NonZeroU32 = NonZeroU32::new(64).expect("64 is not 0");
 
-/// What gives the texel at `(x, y)`, both from 0 up to [`SIDE`], its colour.
+/// The function from a texel `(x, y)`, both from 0 up to [`SIDE`], to its colour.
 #[derive(Clone, Copy)]
 enum Painter {
     Solid(fn(i32, i32) -> Rgb),
-    /// There is a hole where it gives none.
+    /// `None` is a hole.
     WithHoles(fn(i32, i32) -> Option<Rgb>),
 }
 
-/// What is seen in a hole where a texture with holes is used for a wall.
+/// The colour of holes where such a texture is used for a wall.
 const HOLE: Rgb = Rgb::new(0x1c, 0x1e, 0x22);
 const CLEAR: u8 = 0;
 const OPAQUE: u8 = u8::MAX;
@@ -93,7 +92,7 @@ const PAINTERS: [(&str, Painter); 16] = [
     ("coffer", Painter::Solid(coffer::coffer)),
 ];
 
-/// A difference between two places, the short way around the texture.
+/// The difference of two positions, the shorter way around the texture.
 fn wrapped(difference: i32) -> i32 {
     (difference + SIDE / 2).rem_euclid(SIDE) - SIDE / 2
 }
@@ -133,8 +132,8 @@ mod tests {
         one.iter().zip(other).map(|(&one, other)| u32::from(one.abs_diff(other))).sum()
     }
 
-    /// Whether the last of `lines` beside the first differs at most twice as much as neighbours do
-    /// on average.
+    /// Whether the last of `lines` and the first differ at most twice as much as neighbours do on
+    /// average.
     fn wraps(lines: &[Vec<Rgb>]) -> bool {
         let between: u32 = lines.windows(2).map(|pair| difference(&pair[0], &pair[1])).sum();
         let seam = difference(&lines[lines.len() - 1], &lines[0]);

@@ -1,12 +1,12 @@
-//! Figures: what has a front and a back.
+//! Figures, which have a front and a back.
 
 use super::{Design, INK, Palette, drawn, mirrored};
 use crate::world::Rgb;
 use crate::world::sprite::Facings;
 
-/// A knight of stone with a shield and a spear.
+/// A statue of a knight with a shield and a spear.
 pub(super) fn statue() -> Design {
-    // From the front, then from where the shield is, and on around it.
+    // From the front, then from the side of the shield, and so on around it.
     let pictures = vec![
         drawn(&FRONT, COLORS),
         mirrored(&SHIELD_SIDE, COLORS),

@@ -1,4 +1,4 @@
-//! What stands and hangs in rooms.
+//! Furniture and lamps.
 
 use super::{Anchor, Design, INK, Palette, drawn, painted};
 use crate::world::Rgb;
@@ -220,7 +220,7 @@ pub(super) fn column() -> Design {
     Design { blocks: true, ..Design::standing(1.0, vec![picture]) }
 }
 
-/// A table that one sees the front edge of.
+/// A table, seen from the front.
 pub(super) fn table() -> Design {
     const LINES: [&str; 12] = [
         "..kkkkkkkkkkkkkkkkkkkk..",
@@ -244,7 +244,7 @@ pub(super) fn table() -> Design {
     Design { blocks: true, ..Design::standing(0.42, vec![drawn(&LINES, COLORS)]) }
 }
 
-/// `color` made brighter or darker: by so many 128ths of itself.
+/// `color` made brighter or darker by this many 128ths of itself.
 fn lit(color: Rgb, light: i32) -> Rgb {
     let channel = |channel: u8| (i32::from(channel) * (128 + light) / 128).clamp(0, 255) as u8;
     let [red, green, blue] = color.channels().map(channel);

@@ -1,10 +1,10 @@
-//! The player, as they see themselves in a mirror: a traveller with a hat and a cloak.
+//! The player, as seen in a mirror: a traveller with a hat and a cloak.
 
 use super::{Design, INK, Palette, drawn, mirrored};
 use crate::world::Rgb;
 use crate::world::sprite::Facings;
 
-/// The player's own figure, whose eyes are where a camera is.
+/// The player's figure. Its eyes are at the height of the camera.
 pub(super) fn player() -> Design {
     const FRONT: [&str; 24] = [
         "................",

@@ -1,9 +1,9 @@
-//! The way out.
+//! The exit.
 
 use super::{Design, painted};
 use crate::world::Rgb;
 
-/// An arch of stone with green light that rises in it.
+/// An arch of stone with green light rising in it.
 pub(super) fn portal() -> Design {
     const FRAMES: i32 = 4;
     let pictures = (0..FRAMES).map(|frame| {
@@ -14,14 +14,15 @@ pub(super) fn portal() -> Design {
 
 const WIDTH: i32 = 24;
 const HEIGHT: i32 = 36;
-/// How wide the stones of the arch are.
+/// The width of the stones of the arch.
 const STONE: i32 = 4;
-/// How high a band of light is.
+/// The height of a band of light.
 const BAND: i32 = 6;
 
 fn texel(x: i32, y: i32, risen: i32) -> Option<Rgb> {
     const OUTSIDE: i32 = WIDTH / 2;
-    // Distances to the middle of the arch, in halves of a texel: above it a circle, below it upright.
+    // Distances from the middle of the arch, in half texels: a circle above the middle, upright
+    // below.
     let (across, above) = (2 * x + 1 - WIDTH, (2 * (OUTSIDE - y) - 1).max(0));
     let squared = across * across + above * above;
     let is_within = |radius: i32| squared < 4 * radius * radius;
@@ -29,7 +30,7 @@ fn texel(x: i32, y: i32, risen: i32) -> Option<Rgb> {
         return None;
     }
     if is_within(OUTSIDE - STONE) {
-        // Bands that bend upwards in the middle.
+        // Bands bend upwards in the middle.
         let phase = (y + risen + across * across / 24).rem_euclid(2 * BAND) - BAND;
         let glow = BAND - phase.abs();
         let core = (2 * (OUTSIDE - STONE) - across.abs()) / 2;

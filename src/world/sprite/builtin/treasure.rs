@@ -1,4 +1,4 @@
-//! What lies about.
+//! Keys and bones.
 
 use super::{Design, INK, Palette, drawn};
 use crate::world::Rgb;

@@ -2,27 +2,27 @@
 
 use super::SIDE;
 
-/// A texel's place in a rectangle.
+/// The position of a texel in a rectangle.
 #[derive(Clone, Copy)]
 pub(super) struct Block {
-    /// Texels from the rectangle's left edge.
+    /// Texels from the left edge.
     pub(super) x: i32,
-    /// Texels from its top edge.
+    /// Texels from the top edge.
     pub(super) y: i32,
     pub(super) width: i32,
     pub(super) height: i32,
-    /// Which rectangle of the texture it is.
+    /// The number of the rectangle in the texture.
     pub(super) id: i32,
 }
 
 impl Block {
-    /// The square that holds the texel `(x, y)` of those `side` texels wide.
+    /// The square with sides of `side` texels that contains `(x, y)`.
     pub(super) fn in_squares(side: i32, x: i32, y: i32) -> Self {
         let id = y / side * (SIDE / side) + x / side;
         Self { x: x % side, y: y % side, width: side, height: side, id }
     }
 
-    /// The one of `areas` that holds the texel `(x, y)`.
+    /// The one of `areas` that contains `(x, y)`.
     pub(super) fn among(areas: &[Area], x: i32, y: i32) -> Option<Self> {
         (0..).zip(areas).find_map(|(id, &Area { left, top, width, height })| {
             let (x, y) = (x - left, y - top);
@@ -31,14 +31,14 @@ impl Block {
         })
     }
 
-    /// Texels to the nearest edge: 0 for those along it.
+    /// Texels to the nearest edge: 0 along it.
     pub(super) fn rim(self) -> i32 {
         let [left, right, top, bottom] = self.to_edges();
         left.min(right).min(top).min(bottom)
     }
 
-    /// How much light falls on a slope down to the nearest edge: from 3, the brightest, at the top
-    /// to −3, the darkest, at the bottom.
+    /// The light on a slope down to the nearest edge: from 3, the brightest, at the top to −3, the
+    /// darkest, at the bottom.
     pub(super) fn slope(self) -> i32 {
         let rim = self.rim();
         let [_, right, top, bottom] = self.to_edges();
@@ -53,8 +53,8 @@ impl Block {
         }
     }
 
-    /// The light on a bevel just inside the joint around the rectangle: `strength` for each step of
-    /// [`Block::slope`]; 0 off the bevel.
+    /// The light on a bevel inside the joint around the rectangle: `strength` times
+    /// [`Block::slope`]; 0 elsewhere.
     pub(super) fn bevel(self, strength: i32) -> i32 {
         if self.rim() == 1 { self.slope() * strength } else { 0 }
     }
@@ -74,23 +74,23 @@ pub(super) struct Area {
     pub(super) height: i32,
 }
 
-/// How blocks are laid: courses from top to bottom that cover the whole texture.
+/// A bond: courses of blocks, from top to bottom, that cover the whole texture.
 pub(super) struct Bond(&'static [Course]);
 
 /// A course of blocks.
 pub(super) struct Course {
     pub(super) height: i32,
-    /// Where the first block begins; the last one wraps around to there.
+    /// The left edge of the first block; the last block wraps around to it.
     pub(super) start: i32,
     pub(super) widths: &'static [i32],
 }
 
-/// More than any course has blocks.
+/// More than the number of blocks in any course.
 const IDS_A_COURSE: usize = 16;
 
 impl Bond {
-    /// The bond of these courses, whose heights, and whose widths in each, come to the texture's
-    /// side: otherwise it does not compile, as long as it is a constant.
+    /// The bond of these courses. Their heights, and the widths in each, must add up to the side of
+    /// the texture: a constant that does not fails to compile.
     pub(super) const fn new(courses: &'static [Course]) -> Self {
         let (mut index, mut height) = (0, 0);
         while index < courses.len() {
@@ -104,7 +104,7 @@ impl Bond {
         Self(courses)
     }
 
-    /// The block that holds the texel `(x, y)`.
+    /// The block that contains `(x, y)`.
     pub(super) fn block(&self, x: i32, y: i32) -> Block {
         let (row, y, height) = stretch(self.0.iter().map(|course| course.height), y);
         let Course { start, widths, .. } = self.0[row];
@@ -122,8 +122,7 @@ const fn sum(lengths: &[i32]) -> i32 {
     sum
 }
 
-/// Which of the stretches of those `lengths`, end to end, holds `place`, how far into it, and how
-/// long it is.
+/// Which of the consecutive `lengths` contains `place`, the offset in it, and its length.
 fn stretch(lengths: impl Iterator<Item = i32>, place: i32) -> (usize, i32, i32) {
     let mut end = 0;
     lengths

@@ -10,20 +10,20 @@ const PLASTER: Rgb = Rgb::new(0xa9, 0xa0, 0x8c);
 const GILT: Rgb = Rgb::new(0xc2, 0x9c, 0x54);
 const GRAIN: Noise = Noise::new(31, 16, 16);
 
-/// How far from the middle of the beam each part of the coffer begins, in texels.
+/// The distance of each part of the coffer from the middle of the beam, in texels.
 const MOULDING: i32 = 5;
 const LEDGE: i32 = 9;
 const FILLET: i32 = 13;
 const PANEL: i32 = 15;
 
-/// Half the width of the rosette, and of the bud in its middle, in half texels.
+/// Half the widths of the rosette and of the bud in its middle, in half texels.
 const ROSETTE: i32 = 17;
 const BUD: i32 = 6;
 
 /// A coffer as large as the texture; the beams are centred on its edges.
 pub(super) fn coffer(x: i32, y: i32) -> Rgb {
     let block = Block::in_squares(SIDE, x, y);
-    // What is sunk turns its lower and its right side to the light.
+    // The lower and the right side of a sunken panel face the light.
     let toward_light = -block.slope();
     let grain = GRAIN.at(x, y, 8);
     match block.rim() {
@@ -36,15 +36,15 @@ pub(super) fn coffer(x: i32, y: i32) -> Rgb {
     }
 }
 
-/// The rosette, so many half texels from its middle to the right and down; `None` beside it.
+/// The rosette at these half texels right of and below its middle; `None` outside it.
 fn rosette(x: i32, y: i32) -> Option<Rgb> {
     let (square, most) = (x * x + y * y, ROSETTE * ROSETTE);
     if square > most {
         return None;
     }
-    // A dome: its upper left is in the light.
+    // A dome: its upper left is lit.
     let dome = -(x + y) * 4;
-    // The sign of the cosine of four times the angle: there are four petals, and a gap after each.
+    // The sign of the cosine of four times the angle: four petals, with gaps between them.
     let is_petal = x * x * x * x - 6 * x * x * y * y + y * y * y * y > 0;
     Some(match square {
         _ if square <= BUD * BUD => shade(GILT, 40 + dome),

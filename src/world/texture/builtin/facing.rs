@@ -1,4 +1,4 @@
-//! What walls are faced with: glazed tiles, plaster, marble.
+//! Facings of walls: glazed tiles, plaster, marble.
 
 use super::block::Block;
 use super::noise::Noise;
@@ -65,7 +65,7 @@ fn crack(x: i32, y: i32) -> i32 {
     }
 }
 
-/// White slabs with grey veins, a slab to a wall.
+/// White slabs with grey veins, one slab for each wall.
 pub(super) fn marble(x: i32, y: i32) -> Rgb {
     const WHITE: Rgb = Rgb::new(0xd4, 0xd6, 0xda);
     const VEIN: Rgb = Rgb::new(0x5c, 0x66, 0x7a);
@@ -84,7 +84,8 @@ pub(super) fn marble(x: i32, y: i32) -> Rgb {
     shade(mix(WHITE, VEIN, broad.max(fine).max(cloud)), slab.bevel(12) + CLOUDS.at(x, y, 6))
 }
 
-/// How near `place` is to `line`, both around the texture: [`FULL`] on it, 0 from `reach` on.
+/// How near `place` is to `line`, around the texture: [`FULL`] on it, 0 at a distance of `reach` or
+/// more.
 fn near(place: i32, line: i32, reach: i32) -> i32 {
     const STEP: i32 = FULL / 8;
     let distance = wrapped(place - line).abs();

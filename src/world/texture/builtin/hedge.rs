@@ -7,7 +7,7 @@ use super::shade::{pick, shade};
 use super::{SIDE, wrapped};
 use crate::world::Rgb;
 
-/// Leaves upon leaves, on boughs that swell and recede.
+/// Layers of leaves on boughs of varying depth.
 pub(super) fn hedge(x: i32, y: i32) -> Rgb {
     const DEPTH: Rgb = Rgb::new(0x1c, 0x38, 0x1e);
     const GREEN: [Rgb; 3] =
@@ -23,10 +23,10 @@ pub(super) fn hedge(x: i32, y: i32) -> Rgb {
 }
 
 struct Leaf {
-    /// The place of its middle.
+    /// The position of its middle.
     x: i32,
     y: i32,
-    /// The way from there to its tip, about [`TIP`] texels long.
+    /// The vector from there to its tip, about [`TIP`] texels long.
     tip: (i32, i32),
     id: i32,
 }
@@ -34,8 +34,8 @@ struct Leaf {
 const TIP: i32 = 8;
 
 impl Leaf {
-    /// The light on the leaf at a texel, or `None` beside it: the half above the midrib is
-    /// brighter than the one below; an upright leaf is dim.
+    /// The light on the leaf at a texel; `None` outside it. The half above the midrib is brighter
+    /// than the one below; an upright leaf is dim.
     fn light_at(&self, x: i32, y: i32) -> Option<i32> {
         let (x, y) = (wrapped(x - self.x), wrapped(y - self.y));
         // Most leaves are elsewhere.
@@ -43,7 +43,7 @@ impl Leaf {
             return None;
         }
         let (tip_x, tip_y) = self.tip;
-        // In texels times TIP, along the midrib and across it.
+        // In texels times TIP, along and across the midrib.
         let along = x * tip_x + y * tip_y;
         let across = x * tip_y - y * tip_x;
         let half_width = (TIP * TIP - along * along / (TIP * TIP)) / 2;
@@ -51,14 +51,13 @@ impl Leaf {
     }
 }
 
-/// The leaves, those in front first: one or two in each square of a coarse grid,
-/// anywhere in it.
+/// The leaves, front ones first: one or two at a random position in each square of a coarse grid.
 static LEAVES: LazyLock<[Leaf; 104]> = LazyLock::new(|| {
     const SPACING: i32 = 8;
     const TIPS: [(i32, i32); 6] = [(8, 0), (7, 4), (4, 7), (0, 8), (4, -7), (7, -4)];
     const SQUARES: i32 = SIDE / SPACING;
-    // Without a divisor in common with the number of squares: it visits all of them, and leaves
-    // that are neighbours in the hedge are not in depth.
+    // Coprime to the number of squares, so that it visits all of them and neighbouring leaves
+    // differ in depth.
     const STRIDE: i32 = 37;
 
     std::array::from_fn(|index| {

@@ -1,4 +1,4 @@
-//! What blacksmiths make: grates, and the frames that doors slide in.
+//! Ironwork: grates, and the frames in which doors slide.
 
 use super::noise::Noise;
 use super::shade::shade;
@@ -31,12 +31,12 @@ pub(super) fn grate(x: i32, y: i32) -> Option<Rgb> {
     Some(shade(IRON, light + rust))
 }
 
-/// The light on a round bar, so far from its middle, lit from the upper left.
+/// The light on a round bar at a distance from its middle, lit from the upper left.
 fn round(from_middle: i32, half: i32) -> i32 {
     36 - (from_middle + half / 2).abs() * 120 / (2 * half)
 }
 
-/// A frame of iron with an upright slot in the middle, which the leaf of a door runs in.
+/// An iron frame with an upright slot in the middle for the leaf of a door.
 pub(super) fn jamb(x: i32, y: i32) -> Rgb {
     const SLOT_HALF: i32 = 6;
     const LIP: i32 = 4;

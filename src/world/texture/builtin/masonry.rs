@@ -1,4 +1,4 @@
-//! What masons lay: brick, stone, mossy stone, sandstone, flagstones.
+//! Masonry: brick, stone, mossy stone, sandstone, flagstones.
 
 use super::block::{Bond, Course};
 use super::noise::{Noise, hash};
@@ -62,7 +62,7 @@ pub(super) fn stone(x: i32, y: i32) -> Rgb {
     shade(pick(HEWN, block.id), edge + from_above + FACE.at(x, y, 16))
 }
 
-/// The same wall as [`stone`], after a hundred wet years.
+/// The wall of [`stone`], with moss.
 pub(super) fn moss(x: i32, y: i32) -> Rgb {
     const GREEN: Rgb = Rgb::new(0x52, 0x7a, 0x30);
     const CUSHIONS: Noise = Noise::new(4, 16, 16);
@@ -78,7 +78,7 @@ pub(super) fn moss(x: i32, y: i32) -> Rgb {
     shade(GREEN, swell * 2 + here / 3 - 20)
 }
 
-/// Tall and flat courses by turns, with the layers of the sea floor that they were.
+/// High and low courses in turn, with visible layers.
 pub(super) fn sandstone(x: i32, y: i32) -> Rgb {
     const BOND: Bond = Bond::new(&[
         Course { height: 20, start: 0, widths: &[40, 24] },
@@ -98,7 +98,7 @@ pub(super) fn sandstone(x: i32, y: i32) -> Rgb {
     shade(pick(CUT, block.id), block.bevel(12) + LAYERS.at(x + block.id * 5, y, 34))
 }
 
-/// Flat stones of no particular shape, fitted together.
+/// Flat irregular stones, fitted together.
 pub(super) fn flagstone(x: i32, y: i32) -> Rgb {
     const POINTS: [(i32, i32); 9] =
         [(14, 6), (39, 3), (57, 14), (26, 26), (48, 31), (5, 30), (15, 47), (37, 51), (60, 49)];

@@ -1,4 +1,4 @@
-//! What smiths make: riveted plates.
+//! Riveted metal plates.
 
 use super::block::Block;
 use super::noise::Noise;
@@ -22,7 +22,7 @@ pub(super) fn metal(x: i32, y: i32) -> Rgb {
     shade(STEEL, light + TARNISH.at(x, y, 10))
 }
 
-/// The light on the rivet in the nearest corner and on what it shadows, or `None` beside them.
+/// The light on the nearest rivet and in its shadow; `None` elsewhere.
 fn rivet(plate: Block) -> Option<i32> {
     const FROM_EDGE: i32 = 6;
     const RADIUS_SQUARED: i32 = 5;

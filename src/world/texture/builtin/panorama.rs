@@ -1,27 +1,27 @@
-//! Skies to stand under.
+//! Panoramas: pictures of the whole sky.
 
 use super::noise::hash;
 use super::shade::mix;
 use crate::world::Rgb;
 
-/// Texels all around, and from the horizon to the top.
+/// The width, all around, and the height from the horizon up, in texels.
 pub(super) const WIDTH: i32 = 512;
 pub(super) const HEIGHT: i32 = 64;
 
-/// Three ranges of hills, the further the paler, under a morning sky.
+/// Three ranges of hills under a morning sky, the farther the paler.
 pub(super) fn hills() -> impl Fn(i32, i32) -> Rgb {
     let skylines = RANGES.map(|range| (range.color, skyline(&range)));
     move |x, y| {
         let up = HEIGHT - 1 - y;
         match skylines.iter().find(|(_, heights)| up < heights[x as usize]) {
-            // The foot of a range lies in the mist.
+            // The foot of a range is in mist.
             Some(&(color, _)) => mix(MIST, color, 170 + 14 * up.min(6)),
             None => sky(x, up),
         }
     }
 }
 
-/// How high the range is at each `x`.
+/// The height of the range at each `x`.
 fn skyline(range: &Range) -> Vec<i32> {
     (0..WIDTH).map(|x| range.height_at(x)).collect()
 }
@@ -32,10 +32,10 @@ const MIST: Rgb = Rgb::new(0xd2, 0xce, 0xc0);
 const CLOUD: Rgb = Rgb::new(0xf8, 0xf0, 0xe4);
 
 fn sky(x: i32, up: i32) -> Rgb {
-    // Fast at first, slowly higher up.
+    // Fast at first, then slower.
     let share = 256 - (HEIGHT - up) * (HEIGHT - up) * 256 / (HEIGHT * HEIGHT);
     let clear = mix(HORIZON, ZENITH, share);
-    // Clouds are flat: three times as wide as high.
+    // Clouds are three times as wide as high.
     let cover = wave(x, up * 3, 64, 21) + wave(x, up * 3, 32, 22) / 2 - 84;
     mix(clear, CLOUD, (cover * 9).clamp(0, 204) / 34 * 34)
 }
@@ -56,7 +56,7 @@ const RANGES: [Range; 3] = [
 ];
 
 impl Range {
-    /// How high the range is at `x`.
+    /// The height of the range at `x`.
     fn height_at(&self, x: i32) -> i32 {
         let broad = wave(x, 0, self.spacing, self.seed);
         let fine = wave(x, 0, self.spacing / 4, self.seed + 50);
@@ -64,7 +64,7 @@ impl Range {
     }
 }
 
-/// Smooth noise from 0 to 100 that wraps around, `spacing` texels from one lattice point to the next.
+/// Smooth noise from 0 to 100 that wraps around, with `spacing` texels between lattice points.
 fn wave(x: i32, y: i32, spacing: i32, seed: u32) -> i32 {
     const STEPS: i32 = 256;
     let point =

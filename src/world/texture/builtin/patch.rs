@@ -1,22 +1,23 @@
-//! Irregular patches: every texel belongs to the nearest of some points, and the texture wraps.
+//! Irregular patches (a Voronoi diagram that wraps around): every texel belongs to the nearest
+//! point.
 
 use super::{SIDE, wrapped};
 
-/// A texel's place in a patch.
+/// The position of a texel in a patch.
 #[derive(Clone, Copy)]
 pub(super) struct Patch {
-    /// Texels from the patch's point to the right.
+    /// Texels right of the patch's point.
     pub(super) x: i32,
-    /// Texels from the patch's point down.
+    /// Texels below the patch's point.
     pub(super) y: i32,
-    /// Sixteenths of a texel to the border with the nearest other patch.
+    /// Sixteenths of a texel to the border of the next patch.
     pub(super) rim: i32,
-    /// Which patch it is: the index of its point.
+    /// The index of the patch's point.
     pub(super) id: i32,
 }
 
 impl Patch {
-    /// The patch that holds the texel `(x, y)`, of those around `points`.
+    /// The patch around one of `points` that contains `(x, y)`.
     pub(super) fn around(points: impl Iterator<Item = (i32, i32)>, x: i32, y: i32) -> Self {
         let mut nearest = FAR;
         let mut next = FAR;
@@ -32,7 +33,7 @@ impl Patch {
     }
 }
 
-/// A point as seen from a texel, or rather the way back from it.
+/// The vector from a texel to a point.
 #[derive(Clone, Copy)]
 struct Site {
     x: i32,
@@ -49,7 +50,7 @@ impl Site {
     }
 }
 
-/// Sixteenths of a texel to the line that is as near to one site as to the other.
+/// Sixteenths of a texel to the line that is equally near to both points.
 fn to_border(nearest: Site, next: Site) -> i32 {
     let (x, y) = (next.x - nearest.x, next.y - nearest.y);
     (next.square() - nearest.square()) * 8 / (x * x + y * y).isqrt().max(1)

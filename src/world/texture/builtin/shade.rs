@@ -3,24 +3,24 @@
 use super::noise::hash;
 use crate::world::Rgb;
 
-/// What full light turns every colour into: a warm white.
+/// The colour of full light: a warm white.
 const LIGHT: Rgb = Rgb::new(0xff, 0xf4, 0xdc);
-/// What full shadow turns every colour into: a cool black.
+/// The colour of full shadow: a cool black.
 const SHADOW: Rgb = Rgb::new(0x10, 0x0e, 0x18);
 
-/// Full light, and as a negative number full shadow.
+/// Full light; negative for full shadow.
 pub(super) const FULL: i32 = 256;
 
-/// Light comes in steps of this size, so that a surface has few colours and large flat areas.
+/// The step between lights, so that a surface has few colours and large areas of one.
 const STEP: i32 = 6;
 
-/// `color` in `light`: from `-FULL`, where it is black, through 0, where it is itself, to `FULL`.
+/// `color` in `light`: black at `-FULL`, unchanged at 0, brightest at `FULL`.
 pub(super) fn shade(color: Rgb, light: i32) -> Rgb {
     let light = (light / STEP * STEP).clamp(-FULL, FULL);
     mix(color, if light < 0 { SHADOW } else { LIGHT }, light.abs())
 }
 
-/// `share` parts of `to` in `from`, out of [`FULL`].
+/// A mixture of `from` and `share` parts of `to`, out of [`FULL`].
 pub(super) fn mix(from: Rgb, to: Rgb, share: i32) -> Rgb {
     let channel = |from: u8, to: u8| {
         let (from, to) = (i32::from(from), i32::from(to));
@@ -33,7 +33,7 @@ pub(super) fn mix(from: Rgb, to: Rgb, share: i32) -> Rgb {
     )
 }
 
-/// One of `colors`, always the same for the same `id`.
+/// One of `colors`, always the same for an `id`.
 pub(super) fn pick<const COUNT: usize>(colors: [Rgb; COUNT], id: i32) -> Rgb {
     const { assert!(COUNT > 0, "there is nothing to pick from") };
     colors[hash(id, 0, 0) as usize % COUNT]

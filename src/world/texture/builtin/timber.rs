@@ -1,4 +1,4 @@
-//! What carpenters make: planks, a panelled door, a picket fence.
+//! Timber: planks, a panelled door, a picket fence.
 
 use std::ops::Range;
 
@@ -65,7 +65,7 @@ pub(super) fn oak(x: i32, y: i32) -> Rgb {
     }
 }
 
-/// From the upright timber at the left of the door to that at its right.
+/// Between the upright timbers at the left and at the right of the door.
 const RAILS: Range<i32> = 9..SIDE - 9;
 
 const PANELS: [Area; 4] = [
@@ -75,7 +75,7 @@ const PANELS: [Area; 4] = [
     Area { left: 35, top: 42, width: 20, height: 13 },
 ];
 
-/// A panel lies deep in the frame, and its field stands up from it again.
+/// A panel is recessed, with a raised field in it.
 fn panel_light(panel: Block) -> i32 {
     match panel.rim() {
         0 => -130,
@@ -86,7 +86,7 @@ fn panel_light(panel: Block) -> i32 {
     }
 }
 
-/// The brass knob and the shadow that it throws on the door, or `None` beside them.
+/// The brass knob and its shadow on the door; `None` elsewhere.
 fn knob(x: i32, y: i32) -> Option<Rgb> {
     const BRASS: Rgb = Rgb::new(0xd8, 0xa8, 0x3c);
     const SHADOW: Rgb = Rgb::new(0x4a, 0x2e, 0x18);

@@ -1,10 +1,9 @@
-//! Linear light: what pictures are halved in.
+//! Linear light: the colour space in which pictures are halved.
 //!
-//! A texel of the half is the mean of those it covers in the whole, by the area of each, so that
-//! sides which are no powers of two lose nothing. The mean is taken in linear light, because that is
-//! what the eye does from far away; taken of the numbers as they are stored, a black and white
-//! chessboard would turn too dark with the distance. What is clear lends its colour to nobody: texels
-//! count by their alpha as well as by their area.
+//! A texel of the half is the mean of the texels that it covers, weighted by area, so that sides
+//! which are not even lose nothing. The mean is taken in linear light, as the eye does at a
+//! distance; the mean of stored values would make a black and white chessboard too dark. Texels are
+//! also weighted by their alpha, so that transparent ones have no influence on the colour.
 
 use std::num::NonZeroU32;
 use std::sync::LazyLock;
@@ -21,7 +20,7 @@ pub(super) struct Light {
 }
 
 impl Light {
-    /// Half as wide and half as high.
+    /// A picture of half the width and height.
     pub(super) fn halved(&self) -> Self {
         let half = |side: NonZeroU32| NonZeroU32::new(side.get() / 2).unwrap_or(NonZeroU32::MIN);
         let (width, height) = (half(self.width), half(self.height));
@@ -33,7 +32,7 @@ impl Light {
         }
     }
 
-    /// The means of squares of four texels, all opaque, where both sides are even.
+    /// The means of squares of four opaque texels, for even sides.
     fn means_of_four(&self) -> Vec<[u16; 3]> {
         let height = self.height.get() as usize;
         let pairs = self.texels.chunks_exact(2 * height).flat_map(|columns| {
@@ -50,7 +49,7 @@ impl Light {
         pairs.map(mean).collect()
     }
 
-    /// So wide and high.
+    /// A picture of this width and height.
     fn resized(&self, width: NonZeroU32, height: NonZeroU32) -> Self {
         let places = (0..width.get()).flat_map(|x| (0..height.get()).map(move |y| (x, y)));
         let (texels, mut alpha): (Vec<_>, Vec<u8>) = places
@@ -64,7 +63,7 @@ impl Light {
         Self { width, height, texels, alpha }
     }
 
-    /// The mean of the texels in some columns and rows, each with its weight, and of their alpha.
+    /// The weighted mean of the texels in some columns and rows, and of their alpha.
     fn mean(
         &self,
         columns: impl Iterator<Item = (u32, u64)>,
@@ -91,14 +90,14 @@ impl Light {
     }
 }
 
-/// The texels, of `from` in a row, that texel `index` of `to` covers, and how much of each.
+/// The texels, of `from` in a row, that texel `index` of `to` covers, with their weights.
 fn covered(
     index: u32,
     from: NonZeroU32,
     to: NonZeroU32,
 ) -> impl Iterator<Item = (u32, u64)> + Clone {
     let (from, to) = (u64::from(from.get()), u64::from(to.get()));
-    // In such units that both kinds of texel are whole.
+    // In units in which both kinds of texel are whole.
     let (start, end) = (u64::from(index) * from, (u64::from(index) + 1) * from);
     (start / to..end.div_ceil(to)).map(move |texel| {
         let covered = end.min((texel + 1) * to) - start.max(texel * to);
