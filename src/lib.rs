@@ -27,3 +27,8 @@ pub mod tui;
 #[cfg(feature = "cli")]
 pub mod wire;
 pub mod world;
+
+/// The examples of the README, compiled and run as tests.
+#[cfg(all(doctest, feature = "cli"))]
+#[doc = include_str!("../README.md")]
+struct Readme;

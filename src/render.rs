@@ -26,6 +26,7 @@ mod paper;
 mod plan;
 mod planes;
 mod projection;
+mod renderable;
 mod runs;
 mod see_through;
 mod shade;
@@ -45,6 +46,7 @@ pub use frame::{Frame, FrameSize, PixelAspect};
 pub use plan::{
     CeilingLoop, Geometry, Plan, PlaneLoop, RayLoop, SkyLoop, ThingLoop, WallLoop, WhyWindows,
 };
+pub use renderable::{Options, Renderable};
 pub use tally::{Counts, Pass, PassCounts};
 pub use threads::{Threads, WhyOne};
 

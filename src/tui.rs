@@ -1,6 +1,6 @@
 //! Widgets: what ratatui programs put on their screens.
 //!
-//! [`FirstPerson`] shows what a camera sees, [`Minimap`] shows the map from above. Both are plain
+//! [`FirstPerson`] shows what a camera sees of a grid or of bodies, [`Minimap`] shows the map from above. Both are plain
 //! ratatui widgets that fill whatever area they are given and know nothing of keys or escape
 //! sequences. [`HeldKeys`] tells which keys are held, of whatever type, and [`wanted`] what that means for a
 //! [`Game`](crate::game::Game).
@@ -39,7 +39,6 @@ mod minimap;
 mod ramp;
 #[cfg(feature = "terminal")]
 mod settings;
-mod space_view;
 mod wanted;
 
 #[cfg(feature = "terminal")]
@@ -53,5 +52,4 @@ pub use held::{CHORD, HeldKeys, Hold, LINGER, Press};
 pub use minimap::{Explored, Minimap};
 #[cfg(feature = "terminal")]
 pub use settings::{Configuration, MapDisplay, Settings};
-pub use space_view::{SpaceMemory, SpaceView};
 pub use wanted::{tap_steps, wanted};

@@ -13,14 +13,7 @@ pub(super) fn run(maps: &[OsString]) -> Result<(), Error> {
     for map in maps {
         match level::load(Some(map)) {
             Ok(level) => {
-                let size = match &level {
-                    Level::Grid(world) => {
-                        format!("{}×{} cells", world.grid().width(), world.grid().height())
-                    }
-                    Level::Space(scene) => format!("{} bodies", scene.bodies.len()),
-                };
-                let note = note(&level);
-                writeln!(io::stdout(), "{}: right, {size}{note}", map.display())
+                writeln!(io::stdout(), "{}: right, {}", map.display(), summary(&level))
                     .map_err(|error| Error::of_output(&error))?;
             }
             Err(error) => {
@@ -36,12 +29,16 @@ pub(super) fn run(maps: &[OsString]) -> Result<(), Error> {
     }
 }
 
-/// What the author of a map may want to know that is no fault.
-fn note(level: &Level) -> &'static str {
-    match level {
-        Level::Grid(world) if is_exit_out_of_reach(world) => {
-            "; but nobody can reach an exit: no way leads there from the start, not even by jumps"
-        }
-        _ => "",
-    }
+/// The size of a level, and what its author may want to know that is no fault.
+fn summary(level: &Level) -> String {
+    let world = match level {
+        Level::Grid(world) => world,
+        Level::Space(scene) => return format!("{} bodies", scene.bodies.len()),
+    };
+    let (width, height) = (world.grid().width(), world.grid().height());
+    let note = if is_exit_out_of_reach(world) { UNREACHABLE_EXIT } else { "" };
+    format!("{width}×{height} cells{note}")
 }
+
+const UNREACHABLE_EXIT: &str =
+    "; but nobody can reach an exit: no way leads there from the start, not even by jumps";

@@ -23,10 +23,11 @@ use super::{Error, level};
 use crate::generate::Site;
 use crate::map::Level;
 use crate::palette;
+use crate::render::Renderable;
 use crate::space::{self, Elevation, Scene};
 use crate::tui::View;
 use crate::world::{Camera, Heading, Rgb, World};
-use picture::{OfGrid, OfSpace, Picture};
+use picture::Picture;
 
 /// Rows of cells that are made at a time: a multiple of the height of the pattern that dithers.
 const BAND: u16 = 64;
@@ -56,7 +57,7 @@ pub(super) fn run(options: Snapshot) -> Result<(), Error> {
     if let Some(generated) = options.generated {
         let (world, camera) = dug(generated, &options)?;
         let view = View::with_method(options.method.clone());
-        return output(&mut OfGrid::new(&world, &camera, view, &options), &options)
+        return output(Picture::new(&world, &camera, view, &options), &options)
             .map_err(|error| Error::of_output(&error));
     }
     draw(&level::load(options.map.as_deref())?, &options)
@@ -76,11 +77,11 @@ fn draw(level: &Level, options: &Snapshot) -> Result<(), Error> {
         Level::Grid(world) => {
             let camera = camera(world, options.camera, options);
             let view = View::with_method(options.method.clone());
-            output(&mut OfGrid::new(world, &camera, view, options), options)
+            output(Picture::new(&**world, &camera, view, options), options)
         }
         Level::Space(scene) => {
             let camera = scene_camera(scene, options)?;
-            output(&mut OfSpace::new(scene, &camera, options), options)
+            output(Picture::new(scene, &camera, View::default(), options), options)
         }
     }
     .map_err(|error| Error::of_output(&error))
@@ -128,22 +129,22 @@ fn scene_camera(scene: &Scene, options: &Snapshot) -> Result<space::Camera, Erro
     )
 }
 
-fn output(picture: &mut dyn Picture, options: &Snapshot) -> io::Result<()> {
+fn output<S: Renderable>(mut picture: Picture<'_, S>, options: &Snapshot) -> io::Result<()> {
     let mut output = BufWriter::new(io::stdout().lock());
-    let explanation = picture.draw(size(options), options.explain);
     if options.explain {
-        write!(output, "{explanation}")?;
+        write!(output, "{}", picture.explain(size(options)))?;
         return output.flush();
     }
-    write(picture, options, output)
+    picture.draw(size(options));
+    write(&picture, options, output)
 }
 
 fn size(options: &Snapshot) -> Size {
     options.size.unwrap_or_default().cells()
 }
 
-fn write(
-    picture: &dyn Picture,
+fn write<S: Renderable>(
+    picture: &Picture<'_, S>,
     options: &Snapshot,
     output: impl Write + 'static,
 ) -> io::Result<()> {

@@ -7,6 +7,8 @@ use super::camera::{Camera, Elevation};
 use super::light::{Sky, Sun};
 use super::ray::{Hit, Ray};
 use super::seen::Seen;
+use super::{Explanation, Renderer};
+use crate::render::{Frame, Options, Renderable};
 use crate::world::{FieldOfView, Fog, Heading};
 
 /// What a level of bodies consists of. It is valid by construction: each body is, and they may overlap.
@@ -72,5 +74,30 @@ impl Scene {
         Camera::new(position, heading, field_of_view)
             .expect("a start is where a camera can be")
             .with_elevation(elevation)
+    }
+}
+
+impl Renderable for Scene {
+    type Camera = Camera;
+    type Renderer = Renderer;
+    type Explanation = Explanation;
+
+    fn start_camera(&self, field_of_view: FieldOfView) -> Camera {
+        Self::start_camera(self, field_of_view)
+    }
+
+    /// Bodies have no textures and nothing animated: of `options` nothing applies.
+    fn render(&self, camera: &Camera, _: Options, renderer: &mut Renderer, frame: &mut Frame) {
+        renderer.render(self, camera, frame);
+    }
+
+    fn explain(
+        &self,
+        camera: &Camera,
+        _: Options,
+        renderer: &mut Renderer,
+        frame: &mut Frame,
+    ) -> Explanation {
+        renderer.explain(self, camera, frame)
     }
 }

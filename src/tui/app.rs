@@ -45,7 +45,7 @@ use controls::Controls;
 use detection::Detection;
 use keys::Pending;
 use mouse::Pointer;
-use played::{Eye, Memory, Played};
+use played::{Memory, Played, Viewpoint};
 use recording::ScriptRecorder;
 use reload::Reload;
 use stats::Stats;
@@ -65,8 +65,8 @@ enum Screen {
 
 /// What of the game shows in a picture of it.
 #[derive(Clone, Copy, Debug, PartialEq)]
-struct Scene {
-    eye: Eye,
+struct Shown {
+    viewpoint: Viewpoint,
     revision: u64,
 }
 
@@ -77,6 +77,7 @@ struct Look {
     depth: ColorDepth,
     cell_aspect: CellAspect,
     filter: Filter,
+    field_of_view: FieldOfView,
 }
 
 struct App {
@@ -105,7 +106,7 @@ struct App {
     clock: Clock,
     memory: Memory,
     /// What the screen shows; `None` where it must be drawn again.
-    shown: Option<Scene>,
+    shown: Option<Shown>,
     /// When, by the game's clock, something in the picture looks different by itself.
     animates_at: Option<f64>,
     shows_stats: bool,
@@ -134,10 +135,7 @@ impl App {
             field_of_view: settings.field_of_view,
             depth: settings.depth.unwrap_or_default(),
             cell_aspect: settings.cell_aspect.unwrap_or_default(),
-            memory: Memory {
-                grid: View::with_method(settings.method.clone()),
-                ..Memory::default()
-            },
+            memory: Memory::new(View::with_method(settings.method.clone())),
             shows_stats: settings.shows_stats,
             pointer: Pointer::new(settings.mouse),
             settings,
@@ -159,17 +157,13 @@ impl App {
     }
 
     /// What of the game a picture would show now.
-    fn scene(&self) -> Scene {
-        Scene { eye: self.eye(), revision: self.game.revision() }
-    }
-
-    fn eye(&self) -> Eye {
-        self.game.eye(self.field_of_view)
+    fn visible(&self) -> Shown {
+        Shown { viewpoint: self.game.viewpoint(self.field_of_view), revision: self.game.revision() }
     }
 
     /// Whether the screen shows something that is no longer so.
     fn is_stale(&self) -> bool {
-        self.shown != Some(self.scene()) || self.steps_to_animation() == Some(0)
+        self.shown != Some(self.visible()) || self.steps_to_animation() == Some(0)
     }
 
     /// In how many steps something in the picture looks different by itself; `None` for never.
@@ -180,7 +174,7 @@ impl App {
 
     /// Takes note that the screen shows what there is.
     fn drawn(&mut self) {
-        self.shown = Some(self.scene());
+        self.shown = Some(self.visible());
         let soonest = self.game.elapsed() + STEP;
         self.animates_at = self.memory.next_change().map(|change| change.max(soonest));
     }
@@ -270,15 +264,16 @@ impl App {
     }
 
     fn draw_picture(&mut self, canvas: &mut impl Canvas, area: Rect) {
-        let eye = self.eye();
         let look = Look {
             glyphs: self.settings.glyphs,
             depth: self.depth,
             cell_aspect: self.cell_aspect,
             filter: self.settings.filter,
+            field_of_view: self.field_of_view,
         };
-        self.game.draw(&eye, look, (canvas, area), &mut self.memory);
-        let (Played::Grid(game), Eye::Grid(camera)) = (&self.game, &eye) else { return };
+        self.game.draw(&look, canvas, area, &mut self.memory);
+        let Some(game) = self.game.grid() else { return };
+        let camera = &game.camera(self.field_of_view);
         self.map.look(game, camera, area.width);
         if !self.map.is_shown {
             return;

@@ -9,18 +9,31 @@ use ratatui::widgets::StatefulWidget;
 use super::{Canvas, CellAspect, GlyphMode, ascii, half_blocks, ramp};
 use crate::cast::Method;
 use crate::palette::ColorDepth;
-use crate::render::{
-    Column, Explanation, Filter, Frame, FrameSize, PixelAspect, Renderer, Surface,
-};
-use crate::world::{Camera, World};
+use crate::render::{Column, Filter, Frame, FrameSize, Options, PixelAspect, Renderable, Renderer};
+use crate::world::World;
 
-/// A widget that shows what a camera sees.
+/// A widget that shows what a camera sees of a [`World`], or of a [`Scene`](crate::space::Scene) of bodies.
 ///
-/// Its state, a [`View`], keeps the memory for the picture from one drawing to the next.
-#[derive(Clone, Copy, Debug)]
-pub struct FirstPerson<'a> {
-    world: &'a World,
-    camera: &'a Camera,
+/// Its state, a [`View`], keeps the picture and the renderer's memory from one drawing to the next.
+///
+/// ```
+/// use cellcaster::tui::{FirstPerson, View};
+/// use cellcaster::world::FieldOfView;
+/// use ratatui::buffer::Buffer;
+/// use ratatui::layout::Rect;
+/// use ratatui::widgets::StatefulWidget;
+///
+/// let world = cellcaster::map::builtin::LEVELS[0].world()?;
+/// let camera = world.start_camera(FieldOfView::default());
+/// let mut buffer = Buffer::empty(Rect::new(0, 0, 80, 24));
+/// FirstPerson::new(&world, &camera).render(buffer.area, &mut buffer, &mut View::default());
+/// assert_eq!(buffer[(0, 0)].symbol(), "▀");
+/// # Ok::<(), Box<dyn std::error::Error>>(())
+/// ```
+#[derive(Debug)]
+pub struct FirstPerson<'a, S: Renderable = World> {
+    scene: &'a S,
+    camera: &'a S::Camera,
     glyphs: GlyphMode,
     depth: ColorDepth,
     cell_aspect: CellAspect,
@@ -28,11 +41,11 @@ pub struct FirstPerson<'a> {
     seconds: f64,
 }
 
-impl<'a> FirstPerson<'a> {
-    /// What `camera` sees of `world`: half blocks in true colour, on cells twice as high as wide.
-    pub fn new(world: &'a World, camera: &'a Camera) -> Self {
+impl<'a, S: Renderable> FirstPerson<'a, S> {
+    /// What `camera` sees of `scene`: half blocks in true colour, on cells twice as high as wide.
+    pub fn new(scene: &'a S, camera: &'a S::Camera) -> Self {
         Self {
-            world,
+            scene,
             camera,
             glyphs: GlyphMode::default(),
             depth: ColorDepth::default(),
@@ -42,7 +55,8 @@ impl<'a> FirstPerson<'a> {
         }
     }
 
-    /// With those characters.
+    /// With those characters. In [`GlyphMode::Ascii`] a cell of a grid shows its surface, and a cell of
+    /// bodies its brightness: shading gives a body its shape, and a surface has four characters only.
     #[must_use]
     pub fn glyphs(self, glyphs: GlyphMode) -> Self {
         Self { glyphs, ..self }
@@ -66,7 +80,7 @@ impl<'a> FirstPerson<'a> {
         Self { filter, ..self }
     }
 
-    /// With things as they are after so many seconds; [`View::next_change`] tells when to draw again.
+    /// With things as they are at that time; [`View::next_change`] returns when to draw again.
     #[must_use]
     pub fn time(self, seconds: f64) -> Self {
         Self { seconds, ..self }
@@ -74,35 +88,27 @@ impl<'a> FirstPerson<'a> {
 
     /// Draws the picture for an area of that size into `view`, as pixels only.
     ///
-    /// With [`FirstPerson::paint`] this is what rendering the widget does. Apart, they serve who has
-    /// no room for the cells of the whole picture at once.
-    pub fn draw(&self, size: Size, view: &mut View) {
-        let Some(View { renderer, frame }) = self.prepare(size, view) else { return };
-        renderer.render(self.world, self.camera, frame);
+    /// Rendering the widget is this and [`FirstPerson::paint`]. Call the two yourself to paint a large
+    /// picture in bands of rows.
+    pub fn draw(&self, size: Size, view: &mut View<S>) {
+        let Some(View { renderer, frame }) = self.resized(size, view) else { return };
+        self.scene.render(self.camera, self.options(), renderer, frame);
     }
 
-    /// As [`FirstPerson::draw`], and tells how it went; `None` where the area has no cells.
-    pub fn explain(&self, size: Size, view: &mut View) -> Option<Explanation> {
-        let View { renderer, frame } = self.prepare(size, view)?;
-        Some(renderer.explain(self.world, self.camera, frame))
-    }
-
-    /// `view`, ready to be drawn to; `None` where the area has no cells.
-    fn prepare<'v>(&self, size: Size, view: &'v mut View) -> Option<&'v mut View> {
-        let height = u32::from(size.height) * self.glyphs.pixels_per_cell();
-        let size = FrameSize::new(u32::from(size.width), height)?;
-        view.frame.resize(size, self.cell_aspect.of_pixels(self.glyphs));
-        view.renderer.set_filter(self.filter);
-        view.renderer.set_time(self.seconds);
-        view.renderer.keep_surfaces(self.glyphs == GlyphMode::Ascii);
-        Some(view)
+    /// As [`FirstPerson::draw`], and returns what the frame cost; `None` where the area has no cells.
+    pub fn explain(&self, size: Size, view: &mut View<S>) -> Option<S::Explanation> {
+        let View { renderer, frame } = self.resized(size, view)?;
+        Some(self.scene.explain(self.camera, self.options(), renderer, frame))
     }
 
     /// Fills `area` with the cells of the picture in `view`, from its row of cells `first_row` on.
     ///
     /// # Panics
     /// Where the picture has fewer cells than that.
-    pub fn paint(&self, view: &View, first_row: u16, area: Rect, canvas: &mut impl Canvas) {
+    pub fn paint(&self, view: &View<S>, first_row: u16, area: Rect, canvas: &mut impl Canvas) {
+        if area.is_empty() {
+            return;
+        }
         let View { renderer, frame } = view;
         let above = u32::from(first_row) * self.glyphs.pixels_per_cell();
         match self.glyphs {
@@ -111,8 +117,11 @@ impl<'a> FirstPerson<'a> {
             }
             GlyphMode::Ascii => ascii::draw_picture(area, canvas, self.depth, |x, y| {
                 let color = frame.pixel(x, above + y);
-                let surface = renderer.surface(x, above + y).unwrap_or(Surface::Sky);
-                (color, ascii::character(surface, color))
+                let character = match S::surface(renderer, x, above + y) {
+                    Some(surface) => ascii::character(surface, color),
+                    None => ramp::character(color),
+                };
+                (color, character)
             }),
             GlyphMode::Ramp => ascii::draw_picture(area, canvas, self.depth, |x, y| {
                 let color = frame.pixel(x, above + y);
@@ -120,19 +129,49 @@ impl<'a> FirstPerson<'a> {
             }),
         }
     }
+
+    /// `view`, with a frame of the size of that area; `None` where the area has no cells.
+    fn resized<'v>(&self, size: Size, view: &'v mut View<S>) -> Option<&'v mut View<S>> {
+        let height = u32::from(size.height) * self.glyphs.pixels_per_cell();
+        let size = FrameSize::new(u32::from(size.width), height)?;
+        view.frame.resize(size, self.cell_aspect.of_pixels(self.glyphs));
+        Some(view)
+    }
+
+    fn options(&self) -> Options {
+        let keeps_surfaces = self.glyphs == GlyphMode::Ascii;
+        Options { filter: self.filter, seconds: self.seconds, keeps_surfaces }
+    }
 }
 
-/// What a [`FirstPerson`] keeps between drawings: the picture, and what the rays met.
+impl<S: Renderable> Clone for FirstPerson<'_, S> {
+    fn clone(&self) -> Self {
+        *self
+    }
+}
+
+impl<S: Renderable> Copy for FirstPerson<'_, S> {}
+
+/// What a [`FirstPerson`] keeps between drawings: the picture, and the renderer with its memory.
 #[derive(Clone, Debug)]
-pub struct View {
-    renderer: Renderer,
+pub struct View<S: Renderable = World> {
+    renderer: S::Renderer,
     frame: Frame,
 }
 
-impl Default for View {
+impl<S: Renderable> Default for View<S> {
     fn default() -> Self {
         let smallest = FrameSize { width: NonZeroU32::MIN, height: NonZeroU32::MIN };
-        Self { renderer: Renderer::new(), frame: Frame::new(smallest, PixelAspect::SQUARE) }
+        let frame = Frame::new(smallest, PixelAspect::SQUARE);
+        Self { renderer: S::Renderer::default(), frame }
+    }
+}
+
+impl<S: Renderable> View<S> {
+    /// The time on the clock of [`FirstPerson::time`] at which something in the last picture begins to
+    /// look different by itself; `None` for never.
+    pub fn next_change(&self) -> Option<f64> {
+        S::next_change(&self.renderer)
     }
 }
 
@@ -142,24 +181,54 @@ impl View {
         Self { renderer: Renderer::with_method(method), ..Self::default() }
     }
 
-    /// When something in the last picture begins to look different, by the clock of
-    /// [`FirstPerson::time`]; `None` for never.
-    pub fn next_change(&self) -> Option<f64> {
-        self.renderer.next_change()
-    }
-
     /// What the rays of the last drawing met, from left to right.
     pub fn columns(&self) -> &[Column] {
         self.renderer.columns()
     }
 }
 
-impl StatefulWidget for FirstPerson<'_> {
-    type State = View;
+impl<S: Renderable> StatefulWidget for FirstPerson<'_, S> {
+    type State = View<S>;
 
-    fn render(self, area: Rect, buffer: &mut Buffer, view: &mut View) {
+    fn render(self, area: Rect, buffer: &mut Buffer, view: &mut View<S>) {
         let area = area.intersection(buffer.area);
         self.draw(area.as_size(), view);
         self.paint(view, 0, area, buffer);
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use ratatui::style::Color;
+
+    use super::*;
+    use crate::map::builtin;
+    use crate::space::Scene;
+    use crate::world::FieldOfView;
+
+    /// Draws areas of 0 to 3 columns and rows, each after a large one, in every glyph mode.
+    fn draw_small_areas<S: Renderable>(scene: &S) {
+        let camera = scene.start_camera(FieldOfView::default());
+        let mut view = View::<S>::default();
+        let mut buffer = Buffer::empty(Rect::new(0, 0, 9, 5));
+        for glyphs in [GlyphMode::Half, GlyphMode::Ascii, GlyphMode::Ramp] {
+            for (width, height) in
+                (0..4).flat_map(|width| (0..4).map(move |height| (width, height)))
+            {
+                let widget = FirstPerson::new(scene, &camera).glyphs(glyphs);
+                widget.render(buffer.area, &mut buffer, &mut view);
+                buffer.reset();
+                let area = Rect::new(1, 1, width, height);
+                widget.render(area, &mut buffer, &mut view);
+                let written = buffer.content.iter().filter(|cell| cell.bg != Color::Reset).count();
+                assert_eq!(written, area.area() as usize, "{glyphs:?} {width}x{height}");
+            }
+        }
+    }
+
+    #[test]
+    fn every_area_is_filled_and_nothing_beside_it() {
+        draw_small_areas(&builtin::LEVELS[0].world().unwrap());
+        draw_small_areas(&Scene::default());
     }
 }

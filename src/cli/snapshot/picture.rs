@@ -1,82 +1,47 @@
-//! What is drawn: a grid, or bodies.
+//! What is drawn, whether it is a grid or bodies.
 
 use ratatui::buffer::Buffer;
 use ratatui::layout::{Rect, Size};
 
 use crate::cli::arguments::Snapshot;
-use crate::space::{self, Scene};
-use crate::tui::{FirstPerson, SpaceMemory, SpaceView, View};
-use crate::world::{Camera, World};
+use crate::render::Renderable;
+use crate::tui::{FirstPerson, View};
 
-/// A picture that is drawn once, and painted a band of rows at a time.
-pub(super) trait Picture {
-    /// Draws it; the answer tells how, if that `is_explained`.
-    fn draw(&mut self, size: Size, is_explained: bool) -> String;
-
-    /// Fills `area` with its cells from the row `first_row` on.
-    fn paint(&self, first_row: u16, area: Rect, buffer: &mut Buffer);
+/// A picture that is drawn once, and painted one band of rows after the other.
+pub(super) struct Picture<'a, S: Renderable> {
+    widget: FirstPerson<'a, S>,
+    view: View<S>,
 }
 
-/// The picture of a grid.
-pub(super) struct OfGrid<'a> {
-    widget: FirstPerson<'a>,
-    view: View,
-}
-
-/// The picture of bodies.
-pub(super) struct OfSpace<'a> {
-    widget: SpaceView<'a>,
-    memory: SpaceMemory,
-}
-
-impl<'a> OfGrid<'a> {
+impl<'a, S: Renderable> Picture<'a, S> {
+    /// What `camera` sees of `scene`, to be drawn into `view`.
     pub(super) fn new(
-        world: &'a World,
-        camera: &'a Camera,
-        view: View,
+        scene: &'a S,
+        camera: &'a S::Camera,
+        view: View<S>,
         options: &Snapshot,
     ) -> Self {
-        let widget = FirstPerson::new(world, camera)
+        let widget = FirstPerson::new(scene, camera)
             .glyphs(options.glyphs)
             .color_depth(options.depth)
             .cell_aspect(options.cell_aspect)
             .filter(options.filter);
         Self { widget, view }
     }
-}
 
-impl<'a> OfSpace<'a> {
-    pub(super) fn new(scene: &'a Scene, camera: &'a space::Camera, options: &Snapshot) -> Self {
-        let widget = SpaceView::new(scene, camera)
-            .glyphs(options.glyphs)
-            .color_depth(options.depth)
-            .cell_aspect(options.cell_aspect);
-        Self { widget, memory: SpaceMemory::default() }
-    }
-}
-
-impl Picture for OfGrid<'_> {
-    fn draw(&mut self, size: Size, is_explained: bool) -> String {
-        if is_explained {
-            let explanation = self.widget.explain(size, &mut self.view);
-            return explanation.map(|it| it.to_string()).unwrap_or_default();
-        }
+    /// Draws it for an area of that size.
+    pub(super) fn draw(&mut self, size: Size) {
         self.widget.draw(size, &mut self.view);
-        String::new()
     }
 
-    fn paint(&self, first_row: u16, area: Rect, buffer: &mut Buffer) {
+    /// Draws it, and returns what that cost, in lines for people.
+    pub(super) fn explain(&mut self, size: Size) -> String {
+        let explanation = self.widget.explain(size, &mut self.view);
+        explanation.map(|explanation| explanation.to_string()).unwrap_or_default()
+    }
+
+    /// Fills `area` with its cells from the row `first_row` on.
+    pub(super) fn paint(&self, first_row: u16, area: Rect, buffer: &mut Buffer) {
         self.widget.paint(&self.view, first_row, area, buffer);
-    }
-}
-
-impl Picture for OfSpace<'_> {
-    fn draw(&mut self, size: Size, _: bool) -> String {
-        let explanation = self.widget.draw(size, &mut self.memory);
-        explanation.map(|it| it.to_string()).unwrap_or_default()
-    }
-
-    fn paint(&self, first_row: u16, area: Rect, buffer: &mut Buffer) {
-        self.widget.paint(&self.memory, first_row, area, buffer);
     }
 }

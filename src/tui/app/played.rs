@@ -1,13 +1,21 @@
 //! What is played: a walk in a grid, or a flight among bodies.
+//!
+//! Whatever both have goes through [`Simulation`]. What only a grid has goes through [`Played::grid`].
 
+use std::fmt;
+use std::ops::{Deref, DerefMut};
+
+use glam::DVec3;
 use ratatui::layout::Rect;
 
+use super::Look;
 use crate::game::{Flight, Game, Intents};
 use crate::generate::Site;
 use crate::map::Level;
+use crate::render::Renderable;
 use crate::space;
-use crate::tui::{Canvas, FirstPerson, SpaceMemory, SpaceView, View};
-use crate::world::{Camera, FieldOfView};
+use crate::tui::{Canvas, FirstPerson, View};
+use crate::world::{FieldOfView, Heading};
 
 /// A level, as far as it has been played.
 #[derive(Debug)]
@@ -16,23 +24,55 @@ pub(super) enum Played {
     Space(Box<Flight>),
 }
 
-/// Where the player looks from.
+/// A level that advances in steps.
+pub(super) trait Simulation: fmt::Debug {
+    /// The level's title, or what stands for it where the map gives none.
+    fn title(&self) -> &str;
+
+    /// Where the player looks from.
+    fn viewpoint(&self, field_of_view: FieldOfView) -> Viewpoint;
+
+    /// Seconds since the level began, counted in steps.
+    fn elapsed(&self) -> f64;
+
+    /// A number that grows whenever anything visible changes, other than the viewpoint.
+    fn revision(&self) -> u64;
+
+    fn is_finished(&self) -> bool;
+
+    /// For how many steps with these intents only the clock changes.
+    fn quiet_steps(&self, intents: Intents) -> u64;
+
+    fn step(&mut self, intents: Intents);
+
+    /// Advances the clock by `steps` in which nothing moves.
+    fn wait(&mut self, steps: u64);
+}
+
+/// Where the player looks from, in a grid and among bodies alike.
 #[derive(Clone, Copy, Debug, PartialEq)]
-pub(super) enum Eye {
-    Grid(Camera),
-    Space(space::Camera),
+pub(super) struct Viewpoint {
+    position: DVec3,
+    heading: Heading,
+    /// How far up: the slope of a pitch, or the radians of an elevation.
+    upwards: f64,
+    field_of_view: FieldOfView,
 }
 
 /// What drawing keeps from one frame to the next.
 #[derive(Default)]
 pub(super) struct Memory {
     pub(super) grid: View,
-    pub(super) space: SpaceMemory,
+    space: View<space::Scene>,
 }
 
 impl Memory {
-    /// When, by the game's clock, something that was drawn last looks different by itself; `None` for
-    /// never.
+    pub(super) fn new(grid: View) -> Self {
+        Self { grid, ..Self::default() }
+    }
+
+    /// The time on the game's clock at which something in the last picture looks different by itself;
+    /// `None` for never.
     pub(super) fn next_change(&self) -> Option<f64> {
         self.grid.next_change()
     }
@@ -59,18 +99,11 @@ impl Played {
         }
     }
 
-    pub(super) fn title(&self) -> &str {
-        let title = match self {
-            Self::Grid(game) => game.world().title(),
-            Self::Space(flight) => &flight.scene().title,
-        };
-        if title.is_empty() { "a level without a name" } else { title }
-    }
-
-    pub(super) fn eye(&self, field_of_view: FieldOfView) -> Eye {
+    /// The game, where it is one in a grid.
+    pub(super) fn grid(&self) -> Option<&Game> {
         match self {
-            Self::Grid(game) => Eye::Grid(game.camera(field_of_view)),
-            Self::Space(flight) => Eye::Space(flight.camera(field_of_view)),
+            Self::Grid(game) => Some(game),
+            Self::Space(_) => None,
         }
     }
 
@@ -84,7 +117,7 @@ impl Played {
         self.grid().is_some_and(Game::has_exit)
     }
 
-    /// Where the player is in a level that is dug.
+    /// Where the player is in a generated level.
     pub(super) fn site(&self) -> Option<Site> {
         self.grid()?.site()
     }
@@ -99,28 +132,6 @@ impl Played {
         self.grid()?.message()
     }
 
-    pub(super) fn grid(&self) -> Option<&Game> {
-        match self {
-            Self::Grid(game) => Some(game),
-            Self::Space(_) => None,
-        }
-    }
-
-    /// A number that grows whenever anything changes that can be seen, other than what the eye tells.
-    pub(super) fn revision(&self) -> u64 {
-        match self {
-            Self::Grid(game) => game.revision(),
-            Self::Space(_) => 0,
-        }
-    }
-
-    pub(super) fn is_finished(&self) -> bool {
-        match self {
-            Self::Grid(game) => game.is_finished(),
-            Self::Space(_) => false,
-        }
-    }
-
     pub(super) fn is_airborne(&self) -> bool {
         self.grid().is_some_and(Game::is_airborne)
     }
@@ -130,63 +141,152 @@ impl Played {
         self.grid().is_none()
     }
 
-    pub(super) fn elapsed(&self) -> f64 {
-        match self {
-            Self::Grid(game) => game.elapsed(),
-            Self::Space(flight) => flight.elapsed(),
-        }
-    }
-
-    pub(super) fn quiet_steps(&self, intents: Intents) -> u64 {
-        match self {
-            Self::Grid(game) => game.quiet_steps(intents),
-            Self::Space(flight) => flight.quiet_steps(intents),
-        }
-    }
-
-    pub(super) fn step(&mut self, intents: Intents) {
-        match self {
-            Self::Grid(game) => game.step(intents),
-            Self::Space(flight) => flight.step(intents),
-        }
-    }
-
-    pub(super) fn wait(&mut self, steps: u64) {
-        match self {
-            Self::Grid(game) => game.wait(steps),
-            Self::Space(flight) => flight.wait(steps),
-        }
-    }
-
-    /// Draws what `eye`, one of its own, sees.
+    /// Draws what the player sees.
     pub(super) fn draw(
         &self,
-        eye: &Eye,
-        look: super::Look,
-        (canvas, area): (&mut impl Canvas, Rect),
+        look: &Look,
+        canvas: &mut impl Canvas,
+        area: Rect,
         memory: &mut Memory,
     ) {
-        match (self, eye) {
-            (Self::Grid(game), Eye::Grid(camera)) => {
-                let picture = FirstPerson::new(game.world(), camera)
-                    .glyphs(look.glyphs)
-                    .color_depth(look.depth)
-                    .cell_aspect(look.cell_aspect)
-                    .filter(look.filter)
-                    .time(game.elapsed());
-                picture.draw(area.as_size(), &mut memory.grid);
-                picture.paint(&memory.grid, 0, area, canvas);
+        let seconds = self.elapsed();
+        match self {
+            Self::Grid(game) => {
+                let camera = game.camera(look.field_of_view);
+                look.draw(game.world(), &camera, seconds, canvas, area, &mut memory.grid);
             }
-            (Self::Space(flight), Eye::Space(camera)) => {
-                let picture = SpaceView::new(flight.scene(), camera)
-                    .glyphs(look.glyphs)
-                    .color_depth(look.depth)
-                    .cell_aspect(look.cell_aspect);
-                picture.draw(area.as_size(), &mut memory.space);
-                picture.paint(&memory.space, 0, area, canvas);
+            Self::Space(flight) => {
+                let camera = flight.camera(look.field_of_view);
+                look.draw(flight.scene(), &camera, seconds, canvas, area, &mut memory.space);
             }
-            // An eye is that of what is played.
-            (Self::Grid(_), Eye::Space(_)) | (Self::Space(_), Eye::Grid(_)) => {}
         }
     }
+}
+
+impl Deref for Played {
+    type Target = dyn Simulation;
+
+    fn deref(&self) -> &(dyn Simulation + 'static) {
+        match self {
+            Self::Grid(game) => &**game,
+            Self::Space(flight) => &**flight,
+        }
+    }
+}
+
+impl DerefMut for Played {
+    fn deref_mut(&mut self) -> &mut (dyn Simulation + 'static) {
+        match self {
+            Self::Grid(game) => &mut **game,
+            Self::Space(flight) => &mut **flight,
+        }
+    }
+}
+
+impl Look {
+    /// Draws what `camera` sees of `scene` at that time.
+    fn draw<S: Renderable>(
+        &self,
+        scene: &S,
+        camera: &S::Camera,
+        seconds: f64,
+        canvas: &mut impl Canvas,
+        area: Rect,
+        view: &mut View<S>,
+    ) {
+        let picture = FirstPerson::new(scene, camera)
+            .glyphs(self.glyphs)
+            .color_depth(self.depth)
+            .cell_aspect(self.cell_aspect)
+            .filter(self.filter)
+            .time(seconds);
+        picture.draw(area.as_size(), view);
+        picture.paint(view, 0, area, canvas);
+    }
+}
+
+impl Simulation for Game {
+    fn title(&self) -> &str {
+        or_untitled(self.world().title())
+    }
+
+    fn viewpoint(&self, field_of_view: FieldOfView) -> Viewpoint {
+        let camera = self.camera(field_of_view);
+        Viewpoint {
+            position: camera.position().extend(camera.eye()),
+            heading: camera.heading,
+            upwards: camera.pitch.slope(),
+            field_of_view,
+        }
+    }
+
+    fn elapsed(&self) -> f64 {
+        Self::elapsed(self)
+    }
+
+    fn revision(&self) -> u64 {
+        Self::revision(self)
+    }
+
+    fn is_finished(&self) -> bool {
+        Self::is_finished(self)
+    }
+
+    fn quiet_steps(&self, intents: Intents) -> u64 {
+        Self::quiet_steps(self, intents)
+    }
+
+    fn step(&mut self, intents: Intents) {
+        Self::step(self, intents);
+    }
+
+    fn wait(&mut self, steps: u64) {
+        Self::wait(self, steps);
+    }
+}
+
+impl Simulation for Flight {
+    fn title(&self) -> &str {
+        or_untitled(&self.scene().title)
+    }
+
+    fn viewpoint(&self, field_of_view: FieldOfView) -> Viewpoint {
+        let camera = self.camera(field_of_view);
+        Viewpoint {
+            position: camera.position(),
+            heading: camera.heading,
+            upwards: camera.elevation.radians(),
+            field_of_view,
+        }
+    }
+
+    fn elapsed(&self) -> f64 {
+        Self::elapsed(self)
+    }
+
+    /// Bodies do not change.
+    fn revision(&self) -> u64 {
+        0
+    }
+
+    /// A flight has no exit.
+    fn is_finished(&self) -> bool {
+        false
+    }
+
+    fn quiet_steps(&self, intents: Intents) -> u64 {
+        Self::quiet_steps(self, intents)
+    }
+
+    fn step(&mut self, intents: Intents) {
+        Self::step(self, intents);
+    }
+
+    fn wait(&mut self, steps: u64) {
+        Self::wait(self, steps);
+    }
+}
+
+fn or_untitled(title: &str) -> &str {
+    if title.is_empty() { "a level without a name" } else { title }
 }

@@ -1,0 +1,14 @@
+//! The command line, from arguments to standard output.
+
+mod arguments;
+mod bench;
+mod recordings;
+mod replay;
+mod wire;
+
+#[path = "../support/asciicast.rs"]
+mod asciicast;
+#[path = "../support/looks.rs"]
+mod looks;
+#[path = "../support/mod.rs"]
+mod support;

@@ -1,0 +1,274 @@
+//! Steps, ledges, low ceilings and deep falls: what the player gets onto, over and under, and that
+//! they are never inside anything.
+
+use crate::walker::{SKY, corridor, position, walk, want};
+use cellcaster::game::{Game, Intent, Intents, STEP};
+use cellcaster::map;
+use cellcaster::world::{Anchor, Ceiling, Cell, FieldOfView, Gap, ShapeHeight, TileKind, World};
+use glam::DVec2;
+use proptest::prelude::*;
+
+const RADIUS: f64 = 0.25;
+/// How tall the player is at least.
+const DUCKING: f64 = 0.5;
+
+#[test]
+fn a_step_is_climbed_up_to_the_limit() {
+    let walk_to = |height: f64| {
+        let mut game = corridor(SKY, &[&format!("floor_height = {height}")]);
+        walk(&mut game, 240, &[Intent::Forward]);
+        game.feet()
+    };
+    for low in [1e-9, 0.1, 0.35] {
+        assert_eq!(walk_to(low), low);
+    }
+    for high in [0.35_f64.next_up(), 0.36, 1.0, 1e9] {
+        assert_eq!(walk_to(high), 0.0);
+    }
+}
+
+#[test]
+fn stairs_are_climbed_at_a_run_and_walked_down_without_a_jump() {
+    let heights = [0.3, 0.6, 0.9, 1.2, 1.5, 1.2, 0.9, 0.6, 0.3];
+    let tiles = heights.map(|height| format!("floor_height = {height}"));
+    let mut game = corridor(SKY, &tiles.each_ref().map(String::as_str));
+    let mut highest: f64 = 0.0;
+    let mut eye = game.camera(FieldOfView::default()).eye();
+    for _ in 0..400 {
+        walk(&mut game, 1, &[Intent::Forward, Intent::Run]);
+        highest = highest.max(game.feet());
+        // Whatever the feet do, the eye goes smoothly.
+        let next = game.camera(FieldOfView::default()).eye();
+        assert!((next - eye).abs() < 0.1, "from {eye} to {next}");
+        eye = next;
+        let floor = game.feet();
+        assert!(heights.contains(&floor) || floor == 0.0, "in the air at {floor}");
+    }
+    assert_eq!(highest, 1.5);
+    assert_eq!(game.feet(), 0.3);
+}
+
+#[test]
+fn a_jump_clears_a_ledge_of_six_tenths_and_none_of_seven() {
+    let jump_onto = |height: f64| {
+        let mut game = corridor(SKY, &[&format!("floor_height = {height}")]);
+        walk(&mut game, 240, &[Intent::Forward]);
+        walk(&mut game, 120, &[Intent::Forward, Intent::Jump]);
+        game.feet()
+    };
+    assert_eq!(jump_onto(0.6), 0.6);
+    assert_eq!(jump_onto(0.7), 0.0);
+}
+
+#[test]
+fn each_wish_to_jump_is_for_one_jump() {
+    let mut game = corridor(SKY, &["light = 1"]);
+    walk(&mut game, 120, &[Intent::Jump]);
+    assert!(game.is_at_rest(want(&[Intent::Jump])));
+    assert_eq!(game.feet(), 0.0);
+    walk(&mut game, 1, &[]);
+    walk(&mut game, 10, &[Intent::Jump]);
+    assert!(game.feet() > 0.3);
+}
+
+#[test]
+fn a_jump_under_a_low_ceiling_is_a_low_jump() {
+    let mut game = corridor("ceiling_height = 0.75", &["light = 1"]);
+    let mut highest: f64 = 0.0;
+    let mut landed_after = 0;
+    for step in 0..60 {
+        walk(&mut game, 1, &[Intent::Jump]);
+        highest = highest.max(game.feet());
+        if game.feet() > 0.0 {
+            landed_after = step;
+        }
+    }
+    assert!((0.04..=0.05).contains(&highest), "{highest}");
+    assert!(landed_after < 15, "it hangs below the ceiling until step {landed_after}");
+}
+
+#[test]
+fn who_ducks_gets_under_a_beam_and_stands_up_only_behind_it() {
+    let beam = "ceiling_height = 0.6";
+    let mut game = corridor("ceiling_height = 2", &[beam, beam, "light = 1"]);
+    walk(&mut game, 240, &[Intent::Forward]);
+    assert_eq!(position(&game).x, 4.75);
+    let standing = game.camera(FieldOfView::default()).eye();
+    walk(&mut game, 30, &[Intent::Forward, Intent::Duck]);
+    assert!((5.0..7.0).contains(&position(&game).x), "{}", position(&game));
+    walk(&mut game, 60, &[]);
+    let eye = game.camera(FieldOfView::default()).eye();
+    assert!(eye < 0.55 && eye < standing, "the eye is at {eye}, in the beam");
+    walk(&mut game, 60, &[Intent::Forward]);
+    walk(&mut game, 60, &[]);
+    assert_eq!(game.camera(FieldOfView::default()).eye(), standing);
+    assert!(position(&game).x >= 7.25);
+}
+
+#[test]
+fn a_fall_of_a_thousand_cells_takes_its_time_and_ends() {
+    let mut game = corridor(SKY, &["floor_height = -1000", "floor_height = -1000"]);
+    walk(&mut game, 100, &[Intent::Forward]);
+    let mut steps = 0;
+    while game.feet() > -1000.0 {
+        let quiet = game.quiet_steps(Intents::new());
+        assert!(quiet == 0, "at rest in the air, at {}", game.feet());
+        walk(&mut game, 1, &[]);
+        steps += 1;
+    }
+    let seconds = libm::sqrt(2.0 * 1000.0 / 12.0);
+    assert!((f64::from(steps) * STEP - seconds).abs() < 1.0, "{steps}");
+    walk(&mut game, 60, &[]);
+    assert_eq!(game.feet(), -1000.0);
+    assert!(game.is_at_rest(Intents::new()));
+}
+
+/// A closed room with cells of eight kinds, whose heights are drawn, and with shapes and things.
+fn any_world() -> impl Strategy<Value = World> {
+    let floor = prop::sample::select(vec![
+        0.0_f64, 1e-9, 0.1, 0.3, 0.35, 0.36, 0.5, 0.6, 0.9, -0.3, -2.0, -1e9, 1e9, 3.0,
+    ]);
+    let headroom = prop::sample::select(vec![1e-9, 0.3, 0.5, 0.55, 0.7, 0.75, 1.0, 2.5]);
+    let tile = (floor, prop::option::of(headroom));
+    let cells = prop::collection::vec(prop::sample::select(&b"abcdefgh......#|%oO/-tTBH"[..]), 35);
+    let height = prop::sample::select(vec![1e-9_f64, 0.1, 0.3, 0.36, 0.6, 0.9, 1.0, 2.0]);
+    (prop::collection::vec(tile, 8), cells, height).prop_map(|(tiles, mut cells, height)| {
+        cells[17] = b'@';
+        let rows: Vec<String> =
+            cells.chunks(7).map(|row| format!("#{}#\n", String::from_utf8_lossy(row))).collect();
+        let rows = rows.concat();
+        let legend: Vec<String> = tiles
+            .iter()
+            .zip('a'..)
+            .map(|(&(floor, headroom), letter)| match headroom {
+                Some(headroom) if floor + headroom > floor && floor.abs() < 1e8 => format!(
+                    "\"{letter}\" = {{ floor_height = {floor:?}, ceiling_height = {:?} }}\n",
+                    floor + headroom
+                ),
+                _ => format!("\"{letter}\" = {{ floor_height = {floor:?}, ceiling = \"sky\" }}\n"),
+            })
+            .collect();
+        let legend = legend.concat();
+        let text = format!(
+            "ceiling_height = 1.5\ngrid = '''\n#########\n{rows}#########\n'''\n[tiles]\n\
+             \"#\" = {{ wall = \"brick\" }}\n\"%\" = {{ wall = \"brick\", height = 0.5 }}\n\
+             \"|\" = {{ glass = \"#ffffff\" }}\n{legend}\
+             \"o\" = {{ pillar = \"brick\", height = {height:?} }}\n\
+             \"O\" = {{ pillar = \"brick\", radius = 0.5, ceiling = \"sky\" }}\n\
+             \"/\" = {{ diagonal = \"brick\", from = \"north-east\", height = {height:?} }}\n\
+             \"-\" = {{ thin = \"brick\", at = \"north\", floor_height = 0.3, height = 0.3 }}\n\
+             [things]\n\"@\" = {{ start = 0 }}\n\"t\" = {{ sprite = \"table\" }}\n\
+             \"T\" = {{ sprite = \"table\", height = 0.2, on = \"a\" }}\n\
+             \"B\" = {{ sprite = \"barrel\", height = {:?} }}\n\
+             \"H\" = {{ sprite = \"lamp\", anchor = \"ceiling\", blocks = true, height = 0.8 }}\n",
+            height.max(0.01)
+        );
+        map::parse_str(&text).unwrap_or_else(|faults| panic!("{text}\n{faults}"))
+    })
+}
+
+/// The gaps of a cell, as far as nothing stands in them; none off the map.
+fn gaps(world: &World, column: i64, row: i64) -> Vec<Gap> {
+    use cellcaster::world::TileKind::{Door, Glass, Mask};
+    let Some(tile) = world.grid().tile(column, row).map(|id| world.tile(id)) else {
+        return Vec::new();
+    };
+    let is_filled = matches!(tile.kind, Door(_) | Mask(_) | Glass(_));
+    let stands_in = |gap: &Gap| is_filled && gap.bottom < tile.heights.ceiling();
+    let gaps = tile.gaps().filter(|gap| !stands_in(gap));
+    let things = world.things_in(Cell { column: column as u32, row: row as u32 }).iter();
+    let mut sprites = things.map(|thing| world.sprite(thing.sprite));
+    let Some(sprite) = sprites.find(|sprite| sprite.blocks) else { return gaps.collect() };
+    let (low, high) = match sprite.anchor {
+        Anchor::Floor => (tile.heights.floor(), tile.heights.floor() + sprite.height.cells()),
+        Anchor::Ceiling => (tile.heights.ceiling() - sprite.height.cells(), tile.heights.ceiling()),
+    };
+    gaps.flat_map(|gap| {
+        [Gap { top: gap.top.min(low), ..gap }, Gap { bottom: gap.bottom.max(high), ..gap }]
+    })
+    .collect()
+}
+
+/// Whether somebody is beside or above the shape in a cell, if there is one.
+fn is_beside_shape(world: &World, column: i64, row: i64, position: DVec2, feet: f64) -> bool {
+    let Some(tile) = world.grid().tile(column, row).map(|id| world.tile(id)) else { return true };
+    let TileKind::Shape(shape) = tile.kind else { return true };
+    let cell = Cell { column: column as u32, row: row as u32 };
+    let height = shape.height.map_or(f64::INFINITY, ShapeHeight::cells);
+    let top = tile.heights.floor() + height;
+    let top = match tile.ceiling {
+        Ceiling::Sky if shape.height.is_some() => top,
+        _ => top.min(tile.heights.ceiling()),
+    };
+    feet >= top || shape.outline.distance(cell, position) >= RADIUS
+}
+
+/// Whether all of somebody, as small as they can be, is in gaps of the cells that they are in.
+fn is_in_the_open(world: &World, position: DVec2, feet: f64) -> bool {
+    let (column, row) = (position.x.floor() as i64, position.y.floor() as i64);
+    let around =
+        (row - 1..=row + 1).flat_map(|row| (column - 1..=column + 1).map(move |c| (c, row)));
+    around
+        .filter(|&(column, row)| {
+            let corner = DVec2::new(column as f64, row as f64);
+            position.distance_squared(position.clamp(corner, corner + 1.0)) < RADIUS * RADIUS
+        })
+        .all(|(column, row)| {
+            let holds = |gap: &Gap| gap.bottom <= feet && feet <= gap.top - DUCKING;
+            gaps(world, column, row).iter().any(holds)
+                && is_beside_shape(world, column, row, position, feet)
+        })
+}
+
+/// Intents that are held for a while each.
+fn script() -> impl Strategy<Value = Vec<(usize, Vec<Intent>)>> {
+    let held = prop::sample::subsequence(Intent::ALL.to_vec(), 0..=6);
+    prop::collection::vec((1..50_usize, held), 1..25)
+}
+
+proptest! {
+    #![proptest_config(ProptestConfig::with_cases(400))]
+
+    #[test]
+    fn nobody_is_ever_inside_anything(world in any_world(), script in script()) {
+        let mut game = Game::new(world);
+        for (steps, wanted) in &script {
+            for _ in 0..*steps {
+                game.step(want(wanted));
+                let (place, feet) = (position(&game), game.feet());
+                prop_assert!(is_in_the_open(game.world(), place, feet), "{place}, {feet}");
+                let eye = game.camera(FieldOfView::default()).eye();
+                prop_assert!(feet < eye || feet.abs() > 1e8, "an eye at {eye}, feet at {feet}");
+            }
+        }
+    }
+
+    #[test]
+    fn the_same_intents_give_the_same_states(world in any_world(), script in script()) {
+        let mut games = [Game::new(world.clone()), Game::new(world)];
+        for (steps, wanted) in &script {
+            for game in &mut games {
+                walk(game, *steps, wanted);
+            }
+        }
+        prop_assert!(games[0] == games[1]);
+    }
+
+    #[test]
+    fn who_is_at_rest_stays_as_they_are(world in any_world(), script in script()) {
+        let mut game = Game::new(world);
+        for (steps, wanted) in &script {
+            walk(&mut game, *steps, wanted);
+        }
+        walk(&mut game, 300, &[]);
+        // Who still falls after that is further down by now.
+        if game.feet() > -100.0 {
+            prop_assert!(game.is_at_rest(Intents::new()));
+        }
+        let mut waiting = game.clone();
+        let quiet = game.quiet_steps(Intents::new()).min(100);
+        walk(&mut game, quiet as usize, &[]);
+        waiting.wait(quiet);
+        prop_assert!(game == waiting);
+    }
+}

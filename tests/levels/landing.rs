@@ -1,0 +1,95 @@
+//! Low things and low shapes: what the player jumps onto and over, and what they walk into.
+
+use crate::walker::{SKY, corridor, position, walk};
+use cellcaster::game::{Game, Intent};
+use cellcaster::map;
+
+/// What somebody stands on in the end who walks up to a thing, and then jumps.
+fn jump_onto(thing: &str) -> [f64; 2] {
+    let map = format!(
+        "{SKY}\ngrid = '''\n#######\n#@..tt#\n#######\n'''\n[tiles]\n\
+         \"#\" = {{ wall = \"brick\", height = 99 }}\n[things]\n\"@\" = {{ start = 0 }}\n\
+         \"t\" = {{ {thing} }}\n"
+    );
+    let mut game = Game::new(map::parse_str(&map).unwrap_or_else(|faults| panic!("{faults}")));
+    walk(&mut game, 120, &[Intent::Forward]);
+    let after_walking = game.feet();
+    walk(&mut game, 120, &[Intent::Forward, Intent::Jump]);
+    [after_walking, game.feet()]
+}
+
+#[test]
+fn who_jumps_stands_on_a_low_thing_and_nobody_walks_onto_one() {
+    assert_eq!(jump_onto("sprite = \"table\""), [0.0, 0.42]);
+    assert_eq!(jump_onto("sprite = \"barrel\""), [0.0, 0.58]);
+    assert_eq!(jump_onto("sprite = \"bones\", blocks = true, height = 0.1"), [0.0, 0.1]);
+    assert_eq!(jump_onto("sprite = \"statue\""), [0.0, 0.0]);
+    assert_eq!(jump_onto("sprite = \"bones\""), [0.0, 0.0]);
+}
+
+#[test]
+fn who_jumps_passes_over_a_thing_and_who_ducks_under_one() {
+    let past = |thing: &str, wanted: &[Intent]| {
+        let map = format!(
+            "ceiling_height = 1.5\ngrid = '''\n########\n#@.t...#\n########\n'''\n[tiles]\n\
+             \"#\" = {{ wall = \"brick\" }}\n[things]\n\"@\" = {{ start = 0 }}\n\
+             \"t\" = {{ {thing} }}\n"
+        );
+        let mut game = Game::new(map::parse_str(&map).unwrap_or_else(|faults| panic!("{faults}")));
+        walk(&mut game, 60, &[Intent::Forward]);
+        walk(&mut game, 120, wanted);
+        position(&game).x > 4.25
+    };
+    let hanging = "sprite = \"lamp\", anchor = \"ceiling\", blocks = true, height = 0.9";
+    assert!(past("sprite = \"table\"", &[Intent::Forward, Intent::Jump]));
+    assert!(!past("sprite = \"table\"", &[Intent::Forward]));
+    assert!(past(hanging, &[Intent::Forward, Intent::Duck]));
+    assert!(!past(hanging, &[Intent::Forward]));
+}
+
+#[test]
+fn a_low_pillar_is_a_step_and_a_higher_one_is_jumped_onto() {
+    let walk_and_jump = |height: f64| {
+        let pillar = format!("pillar = \"marble\", radius = 0.5, height = {height}");
+        let mut game = corridor(SKY, &[&pillar]);
+        walk(&mut game, 120, &[Intent::Forward]);
+        let after_walking = game.feet();
+        walk(&mut game, 120, &[Intent::Forward, Intent::Jump]);
+        [after_walking, game.feet()]
+    };
+    assert_eq!(walk_and_jump(0.35), [0.35, 0.35]);
+    assert_eq!(walk_and_jump(0.6), [0.0, 0.6]);
+    assert_eq!(walk_and_jump(0.7), [0.0, 0.0]);
+}
+
+#[test]
+fn who_falls_onto_a_pillar_stands_on_it() {
+    let ledge = "floor_height = 3";
+    let pillar = "pillar = \"marble\", radius = 0.5, height = 2";
+    let map = format!(
+        "{SKY}\ngrid = '''\n######\n#@o..#\n######\n'''\n[tiles]\n\
+         \"#\" = {{ wall = \"brick\", height = 99 }}\n\"l\" = {{ {ledge} }}\n\
+         \"o\" = {{ {pillar} }}\n[things]\n\"@\" = {{ start = 0, on = \"l\" }}\n"
+    );
+    let mut game = Game::new(map::parse_str(&map).unwrap());
+    walk(&mut game, 20, &[Intent::Forward]);
+    walk(&mut game, 60, &[]);
+    assert_eq!(game.feet(), 2.0, "at {}", position(&game));
+    walk(&mut game, 60, &[Intent::Forward]);
+    assert_eq!(game.feet(), 0.0);
+}
+
+#[test]
+fn a_key_is_taken_by_who_is_as_high_as_it_is() {
+    let text = "ceiling = \"sky\"\ngrid = '''\n#######\n#@.k..#\n####+##\n####.##\n#######\n'''\n[tiles]\n\
+                \"#\" = { wall = \"brick\", height = 99 }\n\"+\" = { door = \"oak\", key = \"brass\" }\n\
+                \"=\" = { floor_height = -2, ceiling = \"wood\", ceiling_height = -0.5, roof_height = 0 }\n\
+                [things]\n\"@\" = { start = 0 }\n";
+    let keys_on_the_way = |key: &str| {
+        let mut game = Game::new(map::parse_str(&format!("{text}{key}")).unwrap());
+        walk(&mut game, 200, &[Intent::Forward]);
+        game.keys().count()
+    };
+    assert_eq!(keys_on_the_way("k = { key = \"brass\" }"), 1);
+    assert_eq!(keys_on_the_way("k = { key = \"brass\", on = \"=\" }"), 0, "it is under a roof");
+}

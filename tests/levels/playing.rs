@@ -1,0 +1,145 @@
+//! The built-in levels: that they can be finished, that nobody gets stuck in them, and that the way
+//! out leads where it was meant to.
+
+use std::collections::BTreeSet;
+
+use crate::reach::{Gait, Keys, Place, Reach};
+use crate::support::output_of;
+use cellcaster::game::{Game, Script};
+use cellcaster::map::{self, builtin};
+use cellcaster::render::{Frame, FrameSize, PixelAspect, Renderer};
+use cellcaster::world::{Camera, FieldOfView, Heading, Pitch, World};
+use glam::DVec2;
+
+/// The levels that need jumping, mirrors and heights, and how each is walked through.
+const WALKS: [(&str, &str); 2] = [
+    ("cistern", include_str!("../../maps/cistern.script")),
+    ("observatory", include_str!("../../maps/observatory.script")),
+];
+
+fn world(name: &str) -> World {
+    let level = builtin::LEVELS.iter().find(|level| level.name == name);
+    level.unwrap_or_else(|| panic!("no level {name}")).world().unwrap()
+}
+
+fn reach(world: &World, gait: Gait) -> Reach<'_> {
+    Reach { world, gait, keys: Keys::new(), takes_keys: true }
+}
+
+#[test]
+fn a_script_leads_through_each_to_its_exit() {
+    for (name, text) in WALKS {
+        let script = Script::parse(text, name).unwrap_or_else(|faults| panic!("{faults}"));
+        let mut game = Game::new(world(name));
+        for (_, intents) in script.iter() {
+            game.step(intents);
+        }
+        assert!(game.is_finished(), "{name}");
+    }
+}
+
+#[test]
+fn nobody_reaches_the_exit_without_a_jump() {
+    for (name, _) in WALKS {
+        let world = world(name);
+        let mut reach = reach(&world, Gait::Walks);
+        let places = reach.from(reach.start());
+        assert!(!reach.has_exit(&places), "{name}");
+    }
+}
+
+/// However well somebody jumps.
+#[test]
+fn nobody_reaches_the_exit_without_the_key() {
+    for name in ["citadel", "cistern", "observatory"] {
+        let world = world(name);
+        let mut reach = Reach { takes_keys: false, ..reach(&world, Gait::Jumps) };
+        let places = reach.from(reach.start());
+        assert!(!reach.has_exit(&places), "{name}");
+    }
+}
+
+/// Wherever somebody gets, however well they jump, there is a way to the exit that anybody manages.
+#[test]
+fn nobody_gets_stuck() {
+    for (name, _) in WALKS {
+        let world = world(name);
+        let mut safe = BTreeSet::<Place>::new();
+        let mut keys = Keys::new();
+        loop {
+            let lucky = Reach { keys: keys.clone(), ..reach(&world, Gait::Jumps) };
+            let places = Reach { takes_keys: false, ..lucky.clone() }.from(lucky.start());
+            for place in places {
+                let mut sure = Reach { keys: keys.clone(), ..reach(&world, Gait::IsSure) };
+                assert!(sure.gets_out(place, &safe), "{name}: {place:?} with the keys {keys:?}");
+                safe.insert(place);
+            }
+            // On with all that lies about where one gets so far.
+            let mut lucky = lucky;
+            lucky.from(lucky.start());
+            if lucky.keys == keys {
+                break;
+            }
+            keys = lucky.keys;
+        }
+    }
+}
+
+/// What somebody sees at the edge of the balcony above one of the shafts.
+fn picture(world: &World, row: f64, degrees: f64) -> Frame {
+    let heading = Heading::from_degrees(degrees).unwrap();
+    let camera = Camera::new(DVec2::new(36.7, row), heading, FieldOfView::default()).unwrap();
+    let camera = camera.with_pitch(Pitch::from_degrees(-15.0).unwrap());
+    let mut frame = Frame::new(FrameSize::new(80, 48).unwrap(), PixelAspect::SQUARE);
+    Renderer::new().render(world, &camera, &mut frame);
+    frame
+}
+
+/// Which of the shafts in the cistern is lit is seen in the mirror opposite, and by no other means.
+#[test]
+fn a_mirror_shows_which_shaft_to_take() {
+    const MIRROR: &str = "\"M\" = { mirror = \"#a8c0c0\", opacity = 0.1, height = 2 }";
+    const TORCH: &str = "\"i\" = { sprite = \"torch\", on = \"T\", reach = 5, light = 0.9 }";
+    let text = builtin::LEVELS.iter().find(|level| level.name == "cistern").unwrap().text;
+    assert!(text.contains(MIRROR) && text.contains(TORCH));
+    // A torch that sheds no light elsewhere, and none at all.
+    let unlit = |text: &str| text.replace(TORCH, &TORCH.replace("0.9", "0"));
+    let without = |text: &str| unlit(text).replace("Ti", "TT");
+    let shows_torch = |text: &str, row: f64, degrees: f64| {
+        let [with, without] =
+            [unlit(text), without(text)].map(|text| map::parse_str(&text).unwrap());
+        picture(&with, row, degrees) != picture(&without, row, degrees)
+    };
+    assert!(shows_torch(text, 12.0, 0.0), "it is above the lit one");
+    for row in [15.0, 18.0, 21.0] {
+        assert!(!shows_torch(text, row, 0.0), "it is above another, in row {row}");
+    }
+    let walled = text.replace(MIRROR, "\"M\" = { wall = \"moss\", height = 2 }");
+    for degrees in [0.0, 45.0, 90.0, 135.0, 180.0, 225.0, 270.0, 315.0] {
+        assert!(!shows_torch(&walled, 12.0, degrees), "without a mirror, at {degrees} degrees");
+    }
+}
+
+#[test]
+fn the_sights_look_as_they_did() {
+    let sights: [(&str, &str, &[&str]); 10] = [
+        ("cistern", "hall", &["--camera", "12.6,16.5,0"]),
+        ("cistern", "window", &["--camera", "24,16,270", "--pitch", "8"]),
+        ("cistern", "lit_shaft", &["--camera", "36.7,12.2,0", "--pitch", "-12"]),
+        ("cistern", "dark_shaft", &["--camera", "36.7,15,0", "--pitch", "-12"]),
+        ("cistern", "ledges", &["--camera", "30.5,5.5,180", "--eye", "-1.5", "--pitch", "8"]),
+        ("observatory", "bridge", &["--camera", "21.5,30.5,270", "--pitch", "8"]),
+        ("observatory", "stumps", &["--camera", "10.5,35.5,235"]),
+        ("observatory", "grotto", &["--camera", "32.5,31.5,0", "--pitch", "-10"]),
+        ("observatory", "mirrors", &["--camera", "24.5,14.5,100"]),
+        ("observatory", "terrace", &["--camera", "16.5,22.5,310", "--eye", "4.5"]),
+    ];
+    for (level, sight, view) in sights {
+        for size in ["80x24", "200x60"] {
+            let arguments =
+                [&["snapshot", level, "--size", size, "--format", "png"], view].concat();
+            let name = format!("{level}_{sight}_{size}.png");
+            insta::assert_binary_snapshot!(&name, output_of(&arguments));
+        }
+    }
+}

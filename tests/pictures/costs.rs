@@ -1,0 +1,266 @@
+//! A frame costs what its scene shows: counts of what is read and written, for each map of the gallery.
+
+use std::path::Path;
+
+use allocation_counter::measure;
+use cellcaster::map::{self, Level};
+use cellcaster::render::{
+    CeilingLoop, Counts, Explanation, Frame, FrameSize, PassCounts, PixelAspect, PlaneLoop,
+    Renderer, ThingLoop,
+};
+use cellcaster::space::{self, Scene};
+use cellcaster::world::{FieldOfView, World};
+
+const WIDTH: u32 = 160;
+const HEIGHT: u32 = 90;
+const PIXELS: u64 = WIDTH as u64 * HEIGHT as u64;
+
+fn gallery(name: &str) -> World {
+    map::load(Path::new(&format!("maps/gallery/{name}.toml"))).unwrap()
+}
+
+fn frame() -> Frame {
+    Frame::new(FrameSize::new(WIDTH, HEIGHT).unwrap(), PixelAspect::SQUARE)
+}
+
+fn explained(world: &World) -> Explanation {
+    let camera = world.start_camera(FieldOfView::default());
+    Renderer::new().explain(world, &camera, &mut frame())
+}
+
+#[test]
+fn a_flat_scene_reads_texels_for_its_walls_alone() {
+    let Explanation { plan, counts } = explained(&gallery("flat"));
+    assert!(matches!(plan.floor, PlaneLoop::Fill(_)));
+    assert!(matches!(plan.ceiling, CeilingLoop::Laid(PlaneLoop::Fill(_))));
+    assert_eq!((counts.floor.texels, counts.ceiling.texels, counts.sky.pixels), (0, 0, 0));
+    assert_eq!(counts.walls.texels, counts.walls.pixels);
+    // What goes between two that hit the same face need not be cast.
+    assert!((2..u64::from(WIDTH) / 2).contains(&counts.rays));
+    // Two fills of half the picture each, and the walls over them.
+    assert_eq!(counts.floor.pixels + counts.ceiling.pixels, PIXELS);
+    assert_eq!(counts.overwritten, counts.walls.pixels);
+}
+
+#[test]
+fn walls_of_one_colour_read_no_texel_at_all() {
+    let text = include_str!("../../maps/gallery/flat.toml")
+        .replace("brick", "#804030")
+        .replace("stone", "#606468");
+    let counts = explained(&map::parse_str(&text).unwrap()).counts;
+    assert_eq!(counts.walls.texels, 0);
+}
+
+#[test]
+fn textures_are_read_once_for_each_pixel_that_shows_them() {
+    let counts = explained(&gallery("floor")).counts;
+    assert_eq!(counts.overwritten, 0);
+    assert_eq!(counts.floor.texels, counts.floor.pixels);
+    assert_eq!(counts.ceiling.texels, counts.ceiling.pixels);
+}
+
+#[test]
+fn a_texture_on_the_floor_alone_costs_the_floor_alone() {
+    let text = include_str!("../../maps/gallery/floor.toml").replace("\"wood\"", "\"#26262c\"");
+    let Explanation { plan, counts } = explained(&map::parse_str(&text).unwrap());
+    assert!(matches!(plan.ceiling, CeilingLoop::Laid(PlaneLoop::Fill(_))));
+    assert_eq!(counts.ceiling.texels, 0);
+    assert_eq!(counts.floor, explained(&gallery("floor")).counts.floor);
+}
+
+#[test]
+fn a_gradient_reads_no_texel_and_a_panorama_one_a_pixel() {
+    let gradient = explained(&gallery("gradient")).counts.sky;
+    assert_eq!((gradient.texels, gradient.pixels), (0, PIXELS / 2));
+    let panorama = explained(&gallery("panorama")).counts.sky;
+    assert_eq!(panorama.texels, panorama.pixels);
+}
+
+#[test]
+fn what_cannot_be_seen_through_keeps_one_hit_a_column() {
+    for name in ["flat", "floor", "doors"] {
+        let world = gallery(name);
+        let camera = world.start_camera(FieldOfView::default());
+        let mut renderer = Renderer::new();
+        let counts = renderer.explain(&world, &camera, &mut frame()).counts;
+        assert_eq!(counts.see_through, PassCounts::default());
+        assert_eq!(renderer.columns().len(), WIDTH as usize, "{name}");
+    }
+}
+
+#[test]
+fn a_still_door_costs_what_a_wall_does() {
+    let map = |tile: &str| {
+        let text = format!(
+            "grid = '''\n#########\n#@..+...#\n#########\n'''\n\
+             tiles = {{ '#'.wall = 'brick', '+'.{tile} = 'oak' }}\nthings.'@'.start = 0\n"
+        );
+        map::parse_str(&text).unwrap()
+    };
+    let [door, wall] = ["door", "wall"].map(|tile| explained(&map(tile)).counts);
+    // What may be a leaf is cast anew, column by column, when all around it is known.
+    assert!(door.rays <= wall.rays + u64::from(WIDTH));
+    assert_eq!(door.see_through, wall.see_through);
+    assert_eq!(door.walls.texels, door.walls.pixels);
+    // It stands half a cell further back, and so shows a little less of itself.
+    assert!(door.walls.pixels <= wall.walls.pixels && door.pixels() <= wall.pixels());
+}
+
+#[test]
+fn a_scene_without_things_considers_none() {
+    for name in ["flat", "floor", "masks"] {
+        let Explanation { plan, counts } = explained(&gallery(name));
+        assert_eq!(plan.things, ThingLoop::None, "{name}");
+        let things = (counts.things_considered, counts.things_drawn, counts.things);
+        assert_eq!(things, (0, 0, PassCounts::default()), "{name}");
+    }
+}
+
+#[test]
+fn a_single_lamp_costs_the_pixels_that_it_covers() {
+    let with_lamp = include_str!("../../maps/gallery/flat.toml")
+        .replace("[things]", "[things]\n\"l\" = { sprite = \"lamp\" }")
+        .replace("@..", "@.l");
+    let flat = explained(&gallery("flat")).counts;
+    let Explanation { plan, counts } = explained(&map::parse_str(&with_lamp).unwrap());
+    // All is fully lit: there is nothing to add to, and the floor is one fill as before.
+    assert!(matches!(plan.floor, PlaneLoop::Fill(_)));
+    assert_eq!((counts.things_considered, counts.things_drawn), (1, 1));
+    let without_lamp = Counts {
+        things: PassCounts::default(),
+        things_considered: 0,
+        things_drawn: 0,
+        overwritten: counts.overwritten - counts.things.pixels,
+        ..counts
+    };
+    assert_eq!(without_lamp, flat);
+    assert!((1..PIXELS / 20).contains(&counts.things.pixels), "{}", counts.things.pixels);
+}
+
+#[test]
+fn lamplight_reads_and_writes_nothing_more() {
+    let lit = gallery("lamps");
+    let text = include_str!("../../maps/gallery/lamps.toml");
+    let sprites =
+        text.replace("lamp\"", "plant\"").replace("torch\", light = 0.8, reach = 5", "plant\"");
+    let unlit = map::parse_str(&sprites).unwrap();
+    let (lit, unlit) = (explained(&lit), explained(&unlit));
+    assert_eq!(lit.plan, unlit.plan);
+    let same = |counts: Counts| (counts.floor, counts.ceiling, counts.walls, counts.cells);
+    assert_eq!(same(lit.counts), same(unlit.counts));
+}
+
+/// What the tile `u` of a map may be, out of sight: it decides which passes draw the map.
+const OUT_OF_SIGHT: [&str; 3] = ["wall = 'brick'", "floor_height = 0.25", "mirror = true"];
+
+#[test]
+fn ten_thousand_things_elsewhere_are_not_considered() {
+    let row = format!("#{}#\n", "b".repeat(398));
+    let hall = "#@...b...#".to_owned() + &"#".repeat(389) + "u\n";
+    let wall = "#".repeat(400) + "\n";
+    for tile in OUT_OF_SIGHT {
+        let text = |rows: usize| {
+            format!(
+                "grid = '''\n{wall}{hall}{wall}{}{wall}'''\n\
+                 tiles = {{ '#'.wall = 'brick', u.{tile} }}\n\
+                 things = {{ '@'.start = 0, 'b'.sprite = 'barrel' }}\n",
+                row.repeat(rows)
+            )
+        };
+        let [few, many] = [0, 26].map(|rows| map::parse_str(&text(rows)).unwrap());
+        assert!(many.things().len() > 10_000);
+        let (few, many) = (explained(&few).counts, explained(&many).counts);
+        assert_eq!((few.things_considered, few.things_drawn), (1, 1), "{tile}");
+        assert_eq!(few, many, "{tile}");
+    }
+}
+
+#[test]
+fn things_on_both_sides_of_a_diagonal_view_are_not_considered() {
+    const SIDE: u32 = 100;
+    let character = |column: u32, row: u32| match column.abs_diff(row) {
+        _ if (column, row) == (1, 1) => '@',
+        _ if (column, row) == (0, SIDE - 1) => 'u',
+        _ if [column, row].iter().any(|place| [0, SIDE - 1].contains(place)) => '#',
+        0 | 1 => '.',
+        2 => '#',
+        _ => 'b',
+    };
+    let line = |row| (0..SIDE).map(|column| character(column, row)).collect::<String>() + "\n";
+    for tile in OUT_OF_SIGHT {
+        let text = format!(
+            "grid = '''\n{}'''\ntiles = {{ '#'.wall = 'brick', u.{tile} }}\n\
+             things = {{ '@'.start = 45, 'b'.sprite = 'bones' }}\n",
+            (0..SIDE).map(line).collect::<String>()
+        );
+        let world = map::parse_str(&text).unwrap();
+        assert!(world.things().len() > 9_000);
+        let counts = explained(&world).counts;
+        assert_eq!(counts.things_drawn, 0, "{tile}");
+        assert!(counts.things_considered < u64::from(SIDE), "{}", counts.things_considered);
+    }
+}
+
+/// Between two walls of mirror, with thousands of things behind them: what is considered is the one
+/// barrel, once as it is and once in each mirror image of it.
+#[test]
+fn things_behind_mirrors_are_not_considered() {
+    let hall = "bbbMMMMMMMMMMbbb\n";
+    let text = |row: &str| {
+        let rows = row.repeat(500);
+        format!(
+            "grid = '''\n{rows}{hall}bbbM@....b..Mbbb\n{hall}{rows}'''\ntiles.M.mirror = true\n\
+             things = {{ '@'.start = 0, 'b'.sprite = 'barrel' }}\n"
+        )
+    };
+    let [few, many] = ["################\n", "bbbbbbbbbbbbbbbb\n"]
+        .map(|row| map::parse_str(&(text(row) + "tiles.'#'.wall = 'brick'\n")).unwrap());
+    assert!(many.things().len() > 10_000);
+    let [few, many] = [few, many].map(|world| explained(&world).counts);
+    assert_eq!(few, many);
+    assert!(many.things_drawn > 8 && many.things_considered < 400, "{many:?}");
+}
+
+#[test]
+fn explaining_draws_the_same_frame() {
+    for name in ["flat", "tiles", "fog", "panorama", "light"] {
+        let world = gallery(name);
+        let camera = world.start_camera(FieldOfView::default());
+        let (mut drawn, mut explained) = (frame(), frame());
+        Renderer::new().render(&world, &camera, &mut drawn);
+        Renderer::new().explain(&world, &camera, &mut explained);
+        assert!(drawn == explained, "{name}");
+    }
+}
+
+#[test]
+fn no_feature_allocates_once_the_first_frame_is_drawn() {
+    for entry in std::fs::read_dir("maps/gallery").unwrap() {
+        let world = match map::load_level(&entry.unwrap().path()).unwrap() {
+            Level::Grid(world) => world,
+            Level::Space(scene) => {
+                assert_no_allocation_in_space(&scene);
+                continue;
+            }
+        };
+        let mut camera = world.start_camera(FieldOfView::default());
+        let (mut renderer, mut frame) = (Renderer::new(), frame());
+        renderer.render(&world, &camera, &mut frame);
+        for _ in 0..20 {
+            camera.heading = camera.heading.turned(0.3);
+            let counted = measure(|| renderer.render(&world, &camera, &mut frame));
+            assert_eq!(counted.count_total, 0, "{}", world.title());
+        }
+    }
+}
+
+fn assert_no_allocation_in_space(scene: &Scene) {
+    let mut camera = scene.start_camera(FieldOfView::default());
+    let (mut renderer, mut frame) = (space::Renderer::new(), frame());
+    renderer.render(scene, &camera, &mut frame);
+    for _ in 0..20 {
+        camera.heading = camera.heading.turned(0.3);
+        let counted = measure(|| renderer.render(scene, &camera, &mut frame));
+        assert_eq!(counted.count_total, 0, "{}", scene.title);
+    }
+}

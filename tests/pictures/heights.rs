@@ -1,0 +1,284 @@
+//! Worlds that are not level, against geometry: every pixel of small random ones, computed again by
+//! asking everything in them what a line through the pixel meets first.
+
+use std::fmt::Write as _;
+
+use crate::solids::Solids;
+use cellcaster::map::{self, TextureFileError, TextureFiles};
+use cellcaster::render::{Filter, Frame, FrameSize, PixelAspect, Renderer};
+use cellcaster::world::{Camera, FieldOfView, Heading, Pitch, Rgb};
+use glam::{DVec2, DVec3};
+use proptest::prelude::*;
+
+/// How near to an edge a pixel's centre may be before its colour is anybody's guess, in pixels.
+const DOUBTFUL: f64 = 1e-5;
+const SKY: Rgb = Rgb::new(1, 2, 3);
+const COLUMNS: usize = 6;
+const ROWS: usize = 5;
+/// How many kinds of tile there are; things stand on the first.
+const KINDS: usize = 5;
+
+/// Pictures of noise, each in a colour of its own.
+struct Noise;
+
+impl TextureFiles for Noise {
+    fn read(&self, name: &str) -> Result<Vec<u8>, TextureFileError> {
+        let number = name.bytes().fold(0_u8, |sum, byte| sum.wrapping_mul(31).wrapping_add(byte));
+        let is_thing = name.starts_with("thing");
+        let mut bytes = Vec::new();
+        let mut encoder = png::Encoder::new(&mut bytes, 8, 8);
+        encoder.set_color(png::ColorType::Rgba);
+        let places = (0..8_u8).flat_map(|y| (0..8_u8).map(move |x| (x, y)));
+        let texels: Vec<u8> = places
+            .flat_map(|(x, y)| {
+                // A thing has holes and no edges.
+                let is_clear = is_thing && (x ^ y) % 3 == 0;
+                [x * 32 + 7, y * 32 + 7, number | 1, if is_clear { 0 } else { u8::MAX }]
+            })
+            .collect();
+        encoder.write_header().unwrap().write_image_data(&texels).unwrap();
+        Ok(bytes)
+    }
+}
+
+/// What a tile of a random world is like.
+#[derive(Clone, Copy, Debug)]
+enum Kind {
+    Wall { height: f64 },
+    Open { floor: f64 },
+    Covered { floor: f64, room: f64, rock: f64 },
+    Shape { floor: f64, height: f64, outline: &'static str },
+}
+
+/// How things in a world are painted.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+enum Look {
+    Colors,
+    Textures,
+}
+
+impl Look {
+    /// What a map says of the paint of one part of the tile `character`.
+    fn paint(self, character: char, part: u8) -> String {
+        match self {
+            Self::Colors => {
+                let kind = character as u8 - b'a';
+                Rgb::new(9 * kind + 20, 50 * part, 200).to_string()
+            }
+            Self::Textures => format!("{character}{part}.png"),
+        }
+    }
+}
+
+fn ordinary_height() -> impl Strategy<Value = f64> {
+    prop_oneof![
+        2 => (-4..=8_i32).prop_map(|quarters| f64::from(quarters) / 4.0),
+        1 => -1.0..2.0,
+    ]
+}
+
+fn height() -> impl Strategy<Value = f64> {
+    prop_oneof![
+        6 => ordinary_height(),
+        1 => prop::sample::select(vec![1e-9, -1e-9, 0.5 + 1e-9, 1e3, -1e3, 1e9, -1e9]),
+    ]
+}
+
+fn open_kind<H: Strategy<Value = f64>>(height: impl Fn() -> H) -> impl Strategy<Value = Kind> {
+    let above = || prop_oneof![4 => 0.25..2.0, 1 => Just(1e-9), 1 => Just(1e3)];
+    let rock = prop_oneof![Just(0.0), 0.1..1.0];
+    prop_oneof![
+        height().prop_map(|floor| Kind::Open { floor }),
+        // No ceiling is higher than a map may say.
+        (height(), above(), rock).prop_map(|(floor, room, rock)| Kind::Covered {
+            floor: floor.min(1e9 - 2e3),
+            room,
+            rock
+        }),
+    ]
+}
+
+fn kind<H: Strategy<Value = f64>>(height: impl Fn() -> H) -> impl Strategy<Value = Kind> {
+    let outline = prop::sample::select(&OUTLINES[..]);
+    let shape = (ordinary_height(), 0.1..2.0, outline);
+    prop_oneof![
+        1 => height().prop_map(|height| Kind::Wall { height: height.abs().max(1e-9) }),
+        2 => open_kind(height),
+        1 => shape.prop_map(|(floor, height, outline)| Kind::Shape { floor, height, outline }),
+    ]
+}
+
+/// What a map says of a shape after its kind and its paint.
+const OUTLINES: [&str; 6] = [
+    "pillar = ; radius = 0.5",
+    "pillar = ; radius = 0.3",
+    "pillar = ; radius = 0.11",
+    "diagonal = ; from = \"north-east\"",
+    "diagonal = ; from = \"north-west\"",
+    "thin = ; at = \"north-south\"",
+];
+
+/// A map of tiles `a`, `b` and so on, with things on some of the first kind; the player starts in a corner
+/// that nobody looks at.
+fn map_of(scene: &Scene, look: Look) -> String {
+    let Scene { kinds, cells, is_covered, lights, .. } = scene;
+    let is_covered = *is_covered;
+    let light = |kind: usize| lights.get(kind).map(|light| format!(", light = {light}"));
+    let mut text = format!(
+        "sky = {{ gradient = [\"{SKY}\", \"{SKY}\"] }}\nfloor = \"{}\"\nceiling = \"{}\"\n",
+        look.paint('z', 0),
+        if is_covered { look.paint('z', 1) } else { "sky".to_owned() }
+    );
+    text += "ceiling_height = 1.25\ngrid = '''\n";
+    for row in cells.chunks(COLUMNS) {
+        let character = |&kind: &usize| match kind {
+            KINDS.. => 't',
+            kind => char::from(b'a' + kind as u8),
+        };
+        text.extend(row.iter().map(character));
+        text.push('\n');
+    }
+    _ = writeln!(text, "@.....\n'''\n[tiles]");
+    for (character, (index, kind)) in ('a'..).zip(kinds.iter().enumerate()) {
+        let light = light(index).unwrap_or_default();
+        let [floor, ceiling, riser, lintel] = [0, 1, 2, 3].map(|part| look.paint(character, part));
+        _ = match kind {
+            Kind::Wall { height } => {
+                writeln!(
+                    text,
+                    "{character} = {{ wall = \"{riser}\", height = {height:?}{} }}",
+                    if index == 1 { &light } else { "" }
+                )
+            }
+            Kind::Open { floor: height } => writeln!(
+                text,
+                "{character} = {{ floor = \"{floor}\", floor_height = {height:?}, riser = \"{riser}\", \
+                 ceiling = \"sky\"{light} }}",
+            ),
+            Kind::Covered { floor: height, room, rock } => {
+                let top = height + room.max(height.abs() * 1e-9);
+                writeln!(
+                    text,
+                    "{character} = {{ floor = \"{floor}\", floor_height = {height:?}, \
+                     riser = \"{riser}\", ceiling = \"{ceiling}\", ceiling_height = {top:?}, \
+                     roof_height = {:?}, lintel = \"{lintel}\"{light} }}",
+                    top + rock
+                )
+            }
+            Kind::Shape { floor: floor_height, height, outline } => {
+                let outline = outline.replace(';', &format!("\"{lintel}\","));
+                writeln!(
+                    text,
+                    "{character} = {{ {outline}, height = {height:?}, floor = \"{floor}\", \
+                     floor_height = {floor_height:?}, riser = \"{riser}\", ceiling = \"sky\" }}"
+                )
+            }
+        };
+    }
+    text + "[things]\n\"@\" = { start = 0 }\n\
+            t = { sprite = \"thing.png\", height = 0.8, on = \"a\" }\n"
+}
+
+/// The line through a place in a picture.
+fn direction(camera: &Camera, frame: &Frame, x: f64, y: f64) -> DVec3 {
+    let (width, height) = (f64::from(frame.width()), f64::from(frame.height()));
+    let focal_length = width / 2.0 / camera.field_of_view.half_width();
+    let horizon = height / 2.0 + (camera.pitch.slope() * focal_length).round();
+    let across = camera.direction() + camera.plane() * (2.0 * x / width - 1.0);
+    across.extend((horizon - y) / focal_length)
+}
+
+/// A world of tiles, and from where and how it is looked at.
+#[derive(Clone, Debug)]
+struct Scene {
+    kinds: Vec<Kind>,
+    cells: Vec<usize>,
+    /// How bright it is on each kind of tile; none where all is fully lit.
+    lights: Vec<f64>,
+    is_covered: bool,
+    position: DVec2,
+    is_on_a_roof: bool,
+    up: f64,
+    degrees: f64,
+    pitch: f64,
+    size: (u32, u32),
+}
+
+prop_compose! {
+    fn scene(of: Look)(
+        first in match of {
+            Look::Colors => open_kind(height).boxed(),
+            Look::Textures => open_kind(ordinary_height).boxed(),
+        },
+        others in match of {
+            Look::Colors => prop::collection::vec(kind(height), KINDS - 1).boxed(),
+            Look::Textures => prop::collection::vec(kind(ordinary_height), KINDS - 1).boxed(),
+        },
+        cells in prop::collection::vec(0..=KINDS, COLUMNS * ROWS),
+        lights in prop_oneof![
+            Just(Vec::new()),
+            prop::collection::vec(0.0..=1.0, KINDS),
+        ],
+        is_covered in any::<bool>(),
+        position in (0.0..6.0, 0.0..5.0),
+        is_on_a_roof in any::<bool>(),
+        up in 0.01..0.99,
+        degrees in prop_oneof![0.0..360.0, (0..8).prop_map(|eighth| 45.0 * f64::from(eighth))],
+        pitch in prop_oneof![Just(0.0), -30.0..30.0],
+        size in (1_u32..40, 1_u32..40),
+    ) -> Scene {
+        let kinds = [vec![first], others].concat();
+        let position = DVec2::from(position);
+        Scene { kinds, cells, lights, is_covered, position, is_on_a_roof, up, degrees, pitch, size }
+    }
+}
+
+/// Compares every pixel of a picture but for those on an edge.
+fn compare(scene: &Scene, look: Look) -> Result<(), TestCaseError> {
+    let text = map_of(scene, look);
+    let world = map::parse(&text, "random", &Noise).unwrap_or_else(|it| panic!("{text}\n{it}"));
+    let position = scene.position;
+    let tile = world.grid().tile(position.x as i64, position.y as i64).unwrap();
+    let mut gaps = world.tile(tile).gaps();
+    let gap = if scene.is_on_a_roof { gaps.next_back() } else { gaps.next() }.unwrap();
+    let eye = gap.bottom + scene.up * gap.height().min(3.0);
+    let heading = Heading::from_degrees(scene.degrees).unwrap();
+    let camera = Camera::new(position, heading, FieldOfView::default()).unwrap();
+    let camera = camera.with_eye(eye).unwrap();
+    let camera = camera.with_pitch(Pitch::from_degrees(scene.pitch).unwrap());
+    let solids = Solids::of(&world, &camera);
+    prop_assume!(!solids.is_in_pillar(position.extend(eye)));
+
+    let size = FrameSize::new(scene.size.0, scene.size.1).unwrap();
+    let mut frame = Frame::new(size, PixelAspect::SQUARE);
+    let mut renderer = Renderer::new();
+    renderer.set_filter(Filter::Nearest);
+    renderer.render(&world, &camera, &mut frame);
+    for (x, y) in (0..scene.size.0).flat_map(|x| (0..scene.size.1).map(move |y| (x, y))) {
+        let meet_beside = |right: f64, down: f64| {
+            let (x, y) = (f64::from(x) + 0.5 + right, f64::from(y) + 0.5 + down);
+            solids.meet(direction(&camera, &frame, x, y))
+        };
+        let met = meet_beside(0.0, 0.0);
+        let beside = [(-DOUBTFUL, 0.0), (DOUBTFUL, 0.0), (0.0, -DOUBTFUL), (0.0, DOUBTFUL)];
+        if beside.into_iter().all(|(right, down)| meet_beside(right, down) == met) {
+            let color = met.map_or(SKY, |met| met.color);
+            prop_assert_eq!(frame.pixel(x, y), color, "at ({}, {}): {:?}", x, y, met);
+        }
+    }
+    Ok(())
+}
+
+proptest! {
+    #![proptest_config(ProptestConfig::with_cases(256))]
+
+    #[test]
+    fn every_pixel_is_where_geometry_says(scene in scene(Look::Colors)) {
+        compare(&scene, Look::Colors)?;
+    }
+
+    #[test]
+    fn every_texel_is_where_geometry_says(scene in scene(Look::Textures)) {
+        compare(&scene, Look::Textures)?;
+    }
+}

@@ -1,0 +1,23 @@
+//! Pictures: golden frames, every pixel against an independent tracer, and what a frame costs.
+
+mod costs;
+mod doors;
+mod exact_pictures;
+mod gallery;
+mod heights;
+mod looking;
+mod mirrors;
+mod opening;
+mod planes;
+mod see_through;
+mod shapes;
+mod snapshot;
+mod space;
+mod steady_state;
+mod things;
+mod threads;
+
+#[path = "../support/solids.rs"]
+mod solids;
+#[path = "../support/mod.rs"]
+mod support;

@@ -1,0 +1,241 @@
+//! `cellcaster snapshot`: golden pictures, and what scripts rely on.
+
+use std::io::Read;
+use std::num::NonZeroU16;
+use std::process::Stdio;
+
+use crate::support::{cellcaster, complaint_about, output_of};
+use cellcaster::map::builtin;
+use cellcaster::palette::ColorDepth;
+use cellcaster::tui::{FirstPerson, View};
+use cellcaster::world::FieldOfView;
+use ratatui::buffer::Buffer;
+use ratatui::layout::Rect;
+use ratatui::style::Color;
+use ratatui::widgets::StatefulWidget;
+use serde_json::Value;
+
+/// A golden file each: the bytes are the same on every machine.
+fn assert_golden(level: &str, size: &str, options: &[(&str, &str)], format: &str) {
+    let mut arguments = vec!["snapshot", level, "--size", size, "--format", format];
+    arguments.extend(options.iter().flat_map(|&(name, value)| [name, value]));
+    let picture = output_of(&arguments);
+    let values = options.iter().map(|&(_, value)| value);
+    let name: Vec<&str> = [level, size].into_iter().chain(values).chain([format]).collect();
+    let name = format!("{}.{format}", name.join("_"));
+    insta::assert_binary_snapshot!(&name, picture);
+}
+
+#[test]
+fn every_level_looks_as_it_did() {
+    for level in builtin::LEVELS {
+        for size in ["80x24", "120x40", "33x9"] {
+            for format in ["json", "text", "ansi", "png"] {
+                assert_golden(level.name, size, &[], format);
+            }
+        }
+    }
+}
+
+#[test]
+fn every_depth_and_glyph_mode_looks_as_it_did() {
+    for level in builtin::LEVELS {
+        for depth in ["true", "256", "16", "mono"] {
+            for glyphs in ["half", "ascii"] {
+                for format in ["ansi", "png"] {
+                    let options = [("--colors", depth), ("--glyphs", glyphs)];
+                    assert_golden(level.name, "80x24", &options, format);
+                }
+            }
+        }
+    }
+}
+
+#[test]
+fn json_has_the_cells_of_the_widget() {
+    let json: Value =
+        serde_json::from_slice(&output_of(&["snapshot", "museum", "--format", "json"])).unwrap();
+    assert_eq!((json["cols"].as_u64(), json["rows"].as_u64()), (Some(80), Some(24)));
+
+    let world = builtin::LEVELS[1].world().unwrap();
+    let camera = world.start_camera(FieldOfView::default());
+    let area = Rect::new(0, 0, 80, 24);
+    let mut buffer = Buffer::empty(area);
+    FirstPerson::new(&world, &camera).color_depth(ColorDepth::True).render(
+        area,
+        &mut buffer,
+        &mut View::default(),
+    );
+    let hex = |color: Color| match color {
+        Color::Rgb(red, green, blue) => format!("#{red:02x}{green:02x}{blue:02x}"),
+        other => panic!("{other} is no colour of its own"),
+    };
+    for (x, y) in (0..80).flat_map(|x| (0..24).map(move |y| (x, y))) {
+        let cell = &buffer[(x, y)];
+        let shown = &json["cells"][usize::from(y)][usize::from(x)];
+        assert_eq!(shown["ch"], cell.symbol());
+        assert_eq!((&shown["fg"], &shown["bg"]), (&hex(cell.fg).into(), &hex(cell.bg).into()));
+    }
+}
+
+#[test]
+fn mono_names_no_colours() {
+    let arguments = ["snapshot", "--colors", "mono", "--format", "json", "--size", "9x4"];
+    let json: Value = serde_json::from_slice(&output_of(&arguments)).unwrap();
+    let cells: Vec<&Value> =
+        json["cells"].as_array().unwrap().iter().flat_map(|row| row.as_array().unwrap()).collect();
+    assert_eq!(cells.len(), 36);
+    assert!(cells.iter().all(|cell| cell["fg"].is_null() && cell["bg"].is_null()));
+    let ansi = output_of(&["snapshot", "--colors", "mono", "--format", "ansi"]);
+    assert!(!ansi.contains(&0x1b));
+}
+
+#[test]
+fn ansi_shows_the_same_cells_in_a_terminal() {
+    for depth in ["true", "256", "16", "mono"] {
+        let arguments = |format| ["snapshot", "citadel", "--colors", depth, "--format", format];
+        let text = String::from_utf8(output_of(&arguments("text"))).unwrap();
+        let ansi = output_of(&arguments("ansi"));
+        let mut terminal =
+            vt100::Parser::new(NonZeroU16::new(24).unwrap(), NonZeroU16::new(80).unwrap(), 0);
+        terminal.process(&String::from_utf8(ansi).unwrap().replace('\n', "\r\n").into_bytes()[..]);
+        let shown: Vec<String> = terminal.screen().rows(0, 80).collect();
+        // The last line break scrolled the first row away.
+        for (row, line) in text.lines().skip(1).enumerate() {
+            assert_eq!(shown[row].trim_end(), line.trim_end(), "{depth}, row {row}");
+        }
+    }
+}
+
+#[test]
+fn a_letter_on_a_wall_reads_the_same_from_all_sides() {
+    let seen_from = |camera| {
+        let map = "tests/maps/letter.toml";
+        let picture = output_of(&["snapshot", map, "--size", "40x20", "--camera", camera]);
+        String::from_utf8(picture).unwrap()
+    };
+    let from_the_west = seen_from("1.5,3.5,0");
+    insta::assert_snapshot!(from_the_west);
+    for camera in ["5.5,3.5,180", "3.5,1.5,90", "3.5,5.5,270"] {
+        assert_eq!(seen_from(camera), from_the_west, "{camera}");
+    }
+}
+
+#[test]
+fn a_camera_can_stand_anywhere() {
+    for camera in ["2.5,2.5,90", "-3,-4.5,45", "1e300,0,180", "0,0,1e300", "3,3,-0"] {
+        let arguments = ["snapshot", "--camera", camera, "--size", "20x5"];
+        let output = cellcaster(&arguments).output().unwrap();
+        assert_eq!(output.status.code(), Some(0), "{camera}");
+        assert_eq!(String::from_utf8(output.stdout).unwrap().lines().count(), 5, "{camera}");
+    }
+}
+
+#[test]
+fn a_camera_where_nobody_can_be_says_so() {
+    let remark = |arguments: &[&str]| {
+        let arguments = [&["snapshot", "--size", "20x5"], arguments].concat();
+        let output = cellcaster(&arguments).output().unwrap();
+        assert_eq!(output.status.code(), Some(0), "{arguments:?}");
+        String::from_utf8(output.stderr).unwrap()
+    };
+    assert_eq!(remark(&["--camera", "2.5,2.5,90"]), "");
+    assert!(remark(&["--camera", "0.5,0.5,90"]).contains("inside a wall"));
+    assert!(remark(&["--camera", "-3,-4.5,45"]).contains("off the map, which has"));
+    assert!(remark(&["--camera", "1e300,0,180"]).contains("off the map"));
+    assert!(remark(&["--camera", "2.5,2.5,90", "--eye", "-1"]).contains("below the floor"));
+    assert!(remark(&["maps/gallery/floor.toml", "--eye", "1.0"]).is_empty());
+}
+
+/// The map in which this was found.
+#[test]
+fn an_exit_that_nobody_can_reach_is_told_of() {
+    let check = |map: &str| String::from_utf8(output_of(&["check", map])).unwrap();
+    let reachable = check("tests/maps/way_out.toml");
+    assert!(!reachable.contains("exit"), "{reachable}");
+    let walled_in = check("tests/maps/walled_in.toml");
+    assert!(walled_in.contains("right, 16×10 cells; but nobody can reach an exit"), "{walled_in}");
+    for level in ["cellar", "museum", "cistern", "observatory", "citadel"] {
+        assert!(!check(level).contains("exit"), "{level}");
+    }
+}
+
+#[test]
+fn extreme_pictures_are_drawn() {
+    for (size, fov, aspect) in [
+        ("1x1", "66", "2"),
+        ("1x300", "0.001", "0.1"),
+        ("300x1", "179.9", "10"),
+        ("4096x2", "1e-300", "2"),
+    ] {
+        for format in ["text", "png"] {
+            let options = [
+                "snapshot",
+                "--size",
+                size,
+                "--fov",
+                fov,
+                "--cell-aspect",
+                aspect,
+                "--format",
+                format,
+            ];
+            assert!(!output_of(&options).is_empty());
+        }
+    }
+}
+
+#[test]
+fn a_closed_pipe_ends_it_quietly() {
+    let mut child = cellcaster(&["snapshot", "--size", "4096x500", "--format", "json"])
+        .stdout(Stdio::piped())
+        .stderr(Stdio::piped())
+        .spawn()
+        .unwrap();
+    let mut first = [0; 100];
+    child.stdout.take().unwrap().read_exact(&mut first).unwrap();
+    let output = child.wait_with_output().unwrap();
+    assert_eq!(String::from_utf8_lossy(&output.stderr), "");
+    assert!(output.status.success());
+}
+
+#[test]
+fn mistakes_are_one_sentence_each() {
+    let mistakes: [&[&str]; 25] = [
+        &["--size", "80"],
+        &["--size", "0x24"],
+        &["--size", "80x4097"],
+        &["--size", "-1x2"],
+        &["--size"],
+        &["--camera", "1,2"],
+        &["--camera", "1,nan,3"],
+        &["--camera", "1,2,3,4"],
+        &["--eye", "high"],
+        &["--eye", "inf"],
+        &["--pitch", "31"],
+        &["--pitch", "nan"],
+        &["--fov", "0"],
+        &["--fov", "180"],
+        &["--fov", "wide"],
+        &["--cell-aspect", "0.05"],
+        &["--glyphs", "braille"],
+        &["--colors", "17"],
+        &["--format", "jpeg"],
+        &["--fromat", "png"],
+        &["--walls"],
+        &["-x"],
+        &["cellar", "museum"],
+        &["no-such-map.toml"],
+        &["musuem"],
+    ];
+    let complaints: Vec<String> = mistakes
+        .into_iter()
+        .map(|mistake| {
+            let arguments = [&["snapshot"], mistake].concat();
+            let complaint = complaint_about(&arguments);
+            assert_eq!(complaint.lines().count(), 1, "{complaint}");
+            format!("{}\n  {complaint}", arguments.join(" "))
+        })
+        .collect();
+    insta::assert_snapshot!(complaints.concat());
+}

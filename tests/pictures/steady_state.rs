@@ -1,0 +1,160 @@
+//! What a frame costs once everything has grown to its size: no allocation at all.
+
+use allocation_counter::measure;
+use cellcaster::map::{self, builtin};
+use cellcaster::palette::ColorDepth;
+use cellcaster::render::{Frame, FrameSize, PixelAspect, Renderer};
+use cellcaster::tui::{FirstPerson, GlyphMode, Minimap, View};
+use cellcaster::world::{Camera, Cell, FieldOfView, Heading, Opening};
+use glam::DVec2;
+use ratatui::buffer::Buffer;
+use ratatui::layout::Rect;
+use ratatui::widgets::{StatefulWidget, Widget};
+
+#[test]
+fn drawing_a_frame_allocates_nothing_after_the_first() {
+    for level in builtin::LEVELS {
+        let world = level.world().unwrap();
+        let mut camera = world.start_camera(FieldOfView::default());
+        let mut renderer = Renderer::new();
+        let mut frame = Frame::new(FrameSize::new(160, 90).unwrap(), PixelAspect::SQUARE);
+        renderer.render(&world, &camera, &mut frame);
+        for _ in 0..100 {
+            camera.heading = camera.heading.turned(0.1);
+            let counted = measure(|| renderer.render(&world, &camera, &mut frame));
+            assert_eq!(counted.count_total, 0, "{}", level.name);
+        }
+    }
+}
+
+#[test]
+fn doors_ajar_masks_and_glass_allocate_nothing_after_the_first_frame() {
+    for map in ["doors", "masks", "glass"] {
+        let mut world = map::load(format!("maps/gallery/{map}.toml").as_ref()).unwrap();
+        world.set_opening(Cell { column: 4, row: 2 }, Opening::new(0.4).unwrap());
+        let heading = Heading::from_degrees(0.0).unwrap();
+        let mut renderer = Renderer::new();
+        let mut frame = Frame::new(FrameSize::new(160, 90).unwrap(), PixelAspect::SQUARE);
+        let mut draw = |turn: u32| {
+            let heading = heading.turned(f64::from(turn) * 0.1);
+            let camera =
+                Camera::new(DVec2::new(2.5, 2.5), heading, FieldOfView::default()).unwrap();
+            measure(|| renderer.render(&world, &camera, &mut frame)).count_total
+        };
+        // Once around, and the list of what is seen through is as long as it gets.
+        (0..63).for_each(|turn| _ = draw(turn));
+        assert_eq!((0..63).map(&mut draw).sum::<u64>(), 0, "{map}");
+    }
+}
+
+#[test]
+fn drawing_the_widgets_allocates_nothing_after_the_first_time() {
+    let world = builtin::LEVELS[1].world().unwrap();
+    let mut camera = world.start_camera(FieldOfView::default());
+    let picture = Rect::new(0, 0, 120, 40);
+    let map = Rect::new(80, 0, 40, 20);
+    let mut buffer = Buffer::empty(picture);
+    let depths =
+        [ColorDepth::True, ColorDepth::Indexed256, ColorDepth::Indexed16, ColorDepth::Mono];
+    for (glyphs, depth) in depths
+        .into_iter()
+        .flat_map(|depth| [GlyphMode::Half, GlyphMode::Ascii].map(|glyphs| (glyphs, depth)))
+    {
+        let mut view = View::default();
+        for turn in 0..20 {
+            camera.heading = camera.heading.turned(0.3);
+            let counted = measure(|| {
+                FirstPerson::new(&world, &camera).glyphs(glyphs).color_depth(depth).render(
+                    picture,
+                    &mut buffer,
+                    &mut view,
+                );
+                Minimap::new(&world, &camera)
+                    .seen(view.columns())
+                    .glyphs(glyphs)
+                    .color_depth(depth)
+                    .render(map, &mut buffer);
+            });
+            assert!(turn == 0 || counted.count_total == 0, "{glyphs:?} {depth:?}");
+        }
+    }
+}
+
+#[test]
+#[cfg(feature = "terminal")]
+fn encoding_a_frame_allocates_nothing_once_its_memory_has_grown() {
+    use cellcaster::terminal::{CellWriter, Fidelity};
+    use ratatui::backend::Backend;
+
+    let world = builtin::LEVELS[1].world().unwrap();
+    let mut camera = world.start_camera(FieldOfView::default());
+    let picture = Rect::new(0, 0, 120, 40);
+    let fidelities = [Fidelity::EXACT, Fidelity::HIGH, Fidelity::LOW];
+    for (fidelity, is_shorter) in fidelities.map(|it| [(it, false), (it, true)]).concat() {
+        let mut writer = CellWriter::new(Vec::new(), picture.as_size());
+        writer.set_fidelity(fidelity);
+        writer.set_repeats(is_shorter);
+        writer.set_palette(is_shorter);
+        let mut view = View::default();
+        let mut before = Buffer::empty(picture);
+        let mut encode = |turn: usize| {
+            camera.heading = camera.heading.turned(if turn % 8 < 6 { 0.1 } else { 0.0 });
+            let mut buffer = Buffer::empty(picture);
+            FirstPerson::new(&world, &camera).render(picture, &mut buffer, &mut view);
+            let changes = before.diff(&buffer);
+            writer.output_mut().clear();
+            let counted = measure(|| {
+                writer.draw(changes.iter().copied()).unwrap();
+                Backend::flush(&mut writer).unwrap();
+            });
+            before = buffer;
+            counted.count_total
+        };
+        // Twice around, so that every buffer is as large as it gets.
+        (0..170).for_each(|turn| _ = encode(turn));
+        assert_eq!((0..80).map(&mut encode).sum::<u64>(), 0, "{fidelity}");
+    }
+}
+
+/// From what the player wants to the bytes of a frame, as a game has it: two steps, everything that
+/// shows, and the encoding of it.
+#[test]
+#[cfg(feature = "terminal")]
+fn the_whole_pipeline_allocates_nothing_once_its_memory_has_grown() {
+    use cellcaster::game::{Intents, Script};
+    use cellcaster::map::Level;
+    use cellcaster::terminal::{CellWriter, Fidelity};
+    use cellcaster::tui::{Levels, Replay, Settings};
+    use ratatui::backend::Backend;
+    use ratatui::layout::Size;
+
+    const SIZE: Size = Size::new(120, 40);
+    let script = include_str!("../../maps/showcase.script");
+    let script = Script::parse(script, "showcase.script").unwrap();
+    let intents: Vec<Intents> = script.iter().map(|(_, intents)| intents).collect();
+    let citadel = builtin::LEVELS.iter().find(|level| level.name == "citadel").unwrap();
+    for fidelity in [Fidelity::EXACT, Fidelity::HIGH, Fidelity::LOW] {
+        let level = Level::Grid(Box::new(citadel.world().unwrap()));
+        let levels = Levels::new(level, std::iter::empty());
+        let mut replay = Replay::new(levels, Settings::default(), SIZE);
+        let mut writer = CellWriter::new(Vec::new(), SIZE);
+        writer.set_fidelity(fidelity);
+        let mut pass = || {
+            let frames = intents.chunks_exact(2).map(|steps| {
+                writer.output_mut().clear();
+                measure(|| {
+                    for &intents in steps {
+                        replay.step(intents);
+                    }
+                    writer.draw_frame(|screen| replay.draw(screen));
+                    Backend::flush(&mut writer).unwrap();
+                })
+                .count_total
+            });
+            frames.sum::<u64>()
+        };
+        // The second walk begins where the first has ended, and sees other things.
+        pass();
+        assert_eq!(pass(), 0, "{fidelity}");
+    }
+}

@@ -1,0 +1,74 @@
+//! `cellcaster cast`: a ray a line in, a hit a line out.
+
+use std::io::{BufRead, BufReader, Write};
+use std::process::Stdio;
+
+use crate::support::{cellcaster, run_with_input};
+
+const MAP: &str = "tests/maps/cross.toml";
+
+fn answers(rays: &str) -> String {
+    let output = run_with_input(&["cast", MAP], rays.as_bytes());
+    assert_eq!(String::from_utf8_lossy(&output.stderr), "");
+    assert!(output.status.success());
+    String::from_utf8(output.stdout).unwrap()
+}
+
+#[test]
+fn every_line_gets_an_answer() {
+    let rays = [
+        "2.5 2.5 1 0",
+        "2.5 2.25 -1 0",
+        "2.5 2.5 0 -2",
+        "2.5 2.5 1 1",
+        "2.5 2.5 -3 1",
+        "-7 2.5 1 0",
+        "-7 2.5 -1 0",
+        "2.5 2.5 0 0",
+        "2.5 nan 1 0",
+        "2.5 2.5 inf 0",
+        "2.5 2.5 1",
+        "2.5 2.5 1 0 7",
+        "2.5 2.5 east 0",
+        "",
+        "0.1 1e-1 5e-324 1e308",
+    ];
+    let answers = answers(&(rays.join("\n") + "\n"));
+    assert_eq!(answers.lines().count(), rays.len());
+    let dialogue: Vec<String> = rays
+        .iter()
+        .zip(answers.lines())
+        .map(|(ray, answer)| format!("{ray}\n  {answer}\n"))
+        .collect();
+    insta::assert_snapshot!(dialogue.concat());
+}
+
+#[test]
+fn a_last_line_without_an_end_counts() {
+    assert_eq!(answers("2.5 2.5 1 0").lines().count(), 1);
+    assert_eq!(answers(""), "");
+}
+
+#[test]
+fn bytes_that_are_no_text_are_no_ray() {
+    let output = run_with_input(&["cast", MAP], b"\xff\xfe 1 2 3\n2.5 2.5 1 0\n");
+    let answers = String::from_utf8(output.stdout).unwrap();
+    assert!(answers.lines().next().unwrap().starts_with(r#"{"error":"#));
+    assert!(answers.lines().nth(1).unwrap().starts_with(r#"{"cell":"#));
+}
+
+#[test]
+fn an_answer_comes_before_the_next_ray_is_asked_for() {
+    let mut child =
+        cellcaster(&["cast", MAP]).stdin(Stdio::piped()).stdout(Stdio::piped()).spawn().unwrap();
+    let mut rays = child.stdin.take().unwrap();
+    let mut hits = BufReader::new(child.stdout.take().unwrap());
+    for _ in 0..3 {
+        rays.write_all(b"2.5 2.5 1 0\n").unwrap();
+        let mut hit = String::new();
+        hits.read_line(&mut hit).unwrap();
+        assert!(hit.starts_with(r#"{"cell":"#));
+    }
+    drop(rays);
+    assert!(child.wait().unwrap().success());
+}

@@ -1,0 +1,16 @@
+//! The program in a terminal: bytes to screens through emulators, and whole games through a pseudo-terminal.
+
+mod encoding;
+mod play;
+mod session;
+
+#[path = "../support/asciicast.rs"]
+mod asciicast;
+#[path = "../support/emulator.rs"]
+mod emulator;
+#[path = "../support/looks.rs"]
+mod looks;
+#[path = "../support/player.rs"]
+mod player;
+#[path = "../support/mod.rs"]
+mod support;

@@ -1,0 +1,19 @@
+//! The whole program in a real terminal: what it shows, what keys do, and how it ends.
+#![cfg(all(unix, feature = "cli"))]
+
+mod digging;
+mod doors;
+mod ending;
+mod game;
+mod holding;
+mod lagging;
+mod layouts;
+mod levels;
+mod looking;
+mod mouse;
+mod moving;
+mod recording;
+mod resting;
+mod settings;
+mod showing;
+mod watching;

@@ -1,0 +1,45 @@
+//! Levels that are dug while one walks.
+
+use super::game::{Game, Key};
+use crate::emulator::{Emulator, Speaks};
+
+/// What the status line says of the level, and where in it the player is.
+fn whereabouts(emulator: &Emulator) -> String {
+    let text = emulator.text();
+    let line = text.lines().last().unwrap_or_default();
+    // Two blanks are between what the line tells.
+    let parts: Vec<&str> = line.trim().split("  ").take(2).collect();
+    parts.join("  ")
+}
+
+fn start(options: &[&str]) -> Game {
+    let options = [&["--generate", "maze", "--seed", "7"], options].concat();
+    Game::with(Speaks::Kitty, (80, 24), None, &options, &[])
+}
+
+#[test]
+fn the_status_line_tells_which_level_it_is_and_the_cell_that_one_is_in() {
+    let mut game = start(&[]);
+    assert_eq!(game.look(whereabouts), "Maze 7  1, 1");
+    game.press(Key::Char('w'));
+    game.wait_until("walked out of the first cell", |emulator| {
+        let place = whereabouts(emulator);
+        place.starts_with("Maze 7  ") && place != "Maze 7  1, 1"
+    });
+    game.release(Key::Char('w'));
+    game.leave();
+    let ending = game.wait_for_end();
+    ending.assert_given_back();
+    assert!(ending.status.success());
+}
+
+#[test]
+fn a_thousand_million_cells_from_home_is_a_place_like_any() {
+    let mut game = start(&["--start", "1000000000,-1000000000"]);
+    let place = game.look(whereabouts);
+    assert!(place.starts_with("Maze 7  10000000") && place.contains(", -"), "{place}");
+    game.press(Key::Char('w'));
+    game.wait_until("walked on", |emulator| whereabouts(emulator) != place);
+    game.leave();
+    assert!(game.wait_for_end().status.success());
+}

@@ -1,0 +1,236 @@
+//! However it ends, the terminal is as it was.
+
+use std::fs;
+use std::thread;
+use std::time::{Duration, Instant};
+
+use rustix::process::{Pid, Signal, kill_process};
+use vt100::{MouseProtocolEncoding, MouseProtocolMode};
+
+use super::game::{ENVIRONMENT, Game, Key, PROGRAM, looks};
+use crate::emulator::{Modes, Speaks};
+use crate::player::Player;
+
+#[test]
+fn the_terminal_is_taken_while_the_game_is_played() {
+    let game = Game::start();
+    game.wait_for_releases();
+    assert_eq!(game.modes(), TAKEN);
+    assert!(!game.attributes_restored());
+}
+
+const TAKEN: Modes = Modes {
+    alternate_screen: true,
+    cursor_hidden: true,
+    wrap: false,
+    synchronized: false,
+    focus: true,
+    mouse: (MouseProtocolMode::None, MouseProtocolEncoding::Default),
+    mouse_pixels: false,
+    key_flags: [0, 1],
+};
+
+/// A release is always on its way when the game ends; the shell does not get it.
+#[test]
+fn q_and_escape_ask_and_leave_and_control_c_leaves() {
+    let (q, escape, enter) = (Key::Char('q').event(1), Key::Escape.event(1), Key::Enter.event(1));
+    let released = Key::Char('q').event(3);
+    let twice = format!("{q}{released}{q}");
+    for leave in [twice, q + &enter, escape + &enter, "\x1b[99;5u".to_owned()] {
+        let mut game = Game::start();
+        game.press(Key::Char('w'));
+        game.send(leave);
+        let ending = game.wait_for_end();
+        ending.assert_given_back();
+        assert!(ending.status.success());
+    }
+    for leave in ["qq", "q\r", "\x03"] {
+        let mut game = Game::with(Speaks::Plain, (80, 24), None, &[], &[]);
+        game.send(leave);
+        game.wait_for_end().assert_given_back();
+    }
+}
+
+#[test]
+fn a_question_is_asked_before_leaving_and_escape_goes_on() {
+    let mut game = Game::with(Speaks::Plain, (80, 24), None, &[], &[]);
+    for _ in 0..2 {
+        game.send("q");
+        game.wait_for("any other key goes on");
+        game.send("\x1b");
+        game.wait_until("went on", |emulator| !emulator.text().contains("goes on"));
+    }
+    game.send("?");
+    game.wait_for("strafe left");
+    game.send("\x1b");
+    game.wait_until("closed the help", |emulator| !emulator.text().contains("strafe left"));
+    game.send("\x1b");
+    game.wait_for("any other key goes on");
+    game.send("\r");
+    game.wait_for_end().assert_given_back();
+}
+
+#[test]
+fn signals_end_it_in_the_middle_of_a_walk() {
+    for signal in [Signal::TERM, Signal::HUP, Signal::INT] {
+        let mut game = Game::start();
+        game.press(Key::Right);
+        game.wait_for_arrow("turned", |arrow| arrow.points != '→');
+        game.signal(signal);
+        let ending = game.wait_for_end();
+        ending.assert_given_back();
+        assert!(ending.status.success(), "{ending:?}");
+    }
+}
+
+#[test]
+fn it_ends_even_while_the_link_is_down() {
+    let mut game = Game::start();
+    game.press(Key::Right);
+    game.wait_for_arrow("turned", |arrow| arrow.points != '→');
+    game.set_reading(false);
+    game.wait_until_full();
+    game.signal(Signal::TERM);
+    let ending = game.wait_for_end();
+    assert_eq!(ending.modes, Modes::default());
+    assert!(ending.attributes_restored);
+}
+
+#[cfg(debug_assertions)]
+#[test]
+fn a_panic_gives_the_terminal_back_and_then_says_one_sentence() {
+    const F12: &str = "\x1b[24~";
+    let demand = [("CELLCASTER_PANIC", "1")];
+    let mut game = Game::with(Speaks::Kitty, (120, 40), None, &[], &demand);
+    game.wait_for_releases();
+    game.send(F12);
+    let ending = game.wait_for_end();
+    ending.assert_given_back();
+    assert_eq!(ending.status.code(), Some(101));
+    game.wait_for("had to end: CELLCASTER_PANIC is set, and F12 was pressed (at");
+}
+
+#[test]
+fn control_z_gives_the_terminal_to_the_shell_and_fg_paints_it_again() {
+    let script = "set -m; \"$0\" play; echo stopped; read line; fg; echo ended";
+    let arguments = ["-c", script, PROGRAM];
+    let mut player = Player::start((80, 24), Speaks::Kitty, "/bin/sh", arguments, &ENVIRONMENT);
+    let taken = |player: &Player| {
+        player.wait_until("took the terminal", |emulator| emulator.modes() == TAKEN);
+        player.wait_for("? help");
+    };
+    taken(&player);
+    let before = player.look(looks);
+    player.send("\x1b[122;5u");
+    player.wait_for("stopped");
+    assert_eq!(player.modes(), Modes::default());
+    assert!(player.attributes_restored());
+    player.send("\r");
+    taken(&player);
+    assert!(player.look(looks) == before, "it was painted otherwise");
+    player.send(Key::Char('q').event(1) + &Key::Enter.event(1));
+    player.wait_for("ended");
+    player.wait_for_end().assert_given_back();
+}
+
+#[test]
+fn control_z_does_nothing_where_no_shell_would_continue_it() {
+    let mut game = Game::start();
+    game.wait_for_releases();
+    game.send("\x1b[122;5u");
+    game.wait_until("took the terminal again", |emulator| {
+        let taken = b"\x1b[?1049h";
+        let times = emulator.bytes().windows(taken.len()).filter(|bytes| bytes == taken).count();
+        times == 2 && emulator.modes() == TAKEN
+    });
+    game.press(Key::Right);
+    game.wait_for_arrow("turned", |arrow| arrow.points != '→');
+    game.leave();
+    game.wait_for_end().assert_given_back();
+}
+
+/// Modes that are set while the mouse turns the player.
+const TAKEN_WITH_MOUSE: Modes = Modes {
+    mouse: (MouseProtocolMode::AnyMotion, MouseProtocolEncoding::Sgr),
+    mouse_pixels: true,
+    ..TAKEN
+};
+
+/// A game in a terminal that tells how many pixels it has, with the mouse on.
+fn with_mouse() -> Game {
+    let game = Game::with(Speaks::Kitty, (80, 24), None, &[], &[("CELLCASTER_PANIC", "1")]);
+    game.wait_for_releases();
+    game.resize_in_pixels((80, 24), (640, 384));
+    game.wait_for_rest();
+    game.press(Key::Char('v'));
+    game.wait_until("took the mouse", |emulator| emulator.modes() == TAKEN_WITH_MOUSE);
+    game
+}
+
+/// Motions are on their way whenever the game ends; the shell does not get them.
+#[test]
+fn the_mouse_is_given_back_however_it_ends() {
+    const MOTION: &str = "\x1b[<35;300;200M";
+    type End = fn(&Game);
+    let ends: [End; 5] = [
+        |game| game.press(Key::Char('v')),
+        |game| game.send("\x1b[99;5u"),
+        |game| game.signal(Signal::TERM),
+        |game| game.signal(Signal::HUP),
+        |game| game.send("\x1b[24~"),
+    ];
+    for (number, end) in ends.into_iter().enumerate() {
+        let mut game = with_mouse();
+        game.send(MOTION);
+        end(&game);
+        if number == 0 {
+            game.wait_until("gave the mouse back", |emulator| emulator.modes() == TAKEN);
+            game.leave();
+        } else {
+            game.send(MOTION);
+        }
+        game.wait_for_end().assert_given_back();
+    }
+}
+
+#[test]
+fn the_mouse_is_given_back_for_a_while_and_taken_again() {
+    let game = with_mouse();
+    game.send("\x1b[122;5u");
+    game.wait_until("took the terminal again", |emulator| {
+        let enabled = b"\x1b[?1016h";
+        let times =
+            emulator.bytes().windows(enabled.len()).filter(|bytes| bytes == enabled).count();
+        times == 2 && emulator.modes() == TAKEN_WITH_MOUSE
+    });
+    let bytes = game.bytes();
+    let left = b"\x1b[?1003l\x1b[?1006l\x1b[?1016l";
+    assert!(bytes.windows(left.len()).any(|bytes| bytes == left), "it was never given back");
+}
+
+/// The shell is killed, and its terminal goes with it.
+#[cfg(target_os = "linux")]
+#[test]
+fn it_ends_when_the_terminal_is_gone() {
+    let arguments = ["-c", "\"$0\" play; true", PROGRAM];
+    let player = Player::start((80, 24), Speaks::Kitty, "/bin/sh", arguments, &ENVIRONMENT);
+    player.wait_for("? help");
+    let shell = player.process();
+    let children = fs::read_to_string(format!("/proc/{shell}/task/{shell}/children")).unwrap();
+    let game = children.trim();
+    let is_alive = || {
+        let status = fs::read_to_string(format!("/proc/{game}/stat"));
+        status.is_ok_and(|status| !status.contains(") Z "))
+    };
+    assert!(is_alive());
+    player.signal(Signal::KILL);
+    let deadline = Instant::now() + Duration::from_secs(20);
+    while is_alive() {
+        if Instant::now() > deadline {
+            let game = Pid::from_raw(game.parse().unwrap()).unwrap();
+            kill_process(game, Signal::KILL).unwrap();
+            panic!("it lives on without a terminal");
+        }
+        thread::sleep(Duration::from_millis(5));
+    }
+}

@@ -1,0 +1,227 @@
+//! How long a key counts as held: until its release, where the terminal tells of it.
+
+use std::cell::Cell;
+use std::fs;
+use std::path::Path;
+use std::thread;
+use std::time::{Duration, Instant};
+
+use cellcaster::game::{self, Intent, Intents, Script};
+use cellcaster::map;
+use cellcaster::world::FieldOfView;
+use glam::DVec2;
+
+use super::game::{Arrow, Game, Key, test_map};
+use crate::emulator::Speaks;
+
+const LARGE: (u16, u16) = (120, 40);
+
+fn in_a_corridor(speaks: Speaks, environment: &[(&str, &str)]) -> Game {
+    Game::with(speaks, LARGE, Some("corridor"), &[], environment)
+}
+
+/// Further than taps lead.
+const FAR: u16 = 4;
+
+#[test]
+fn a_key_is_held_without_repetition_until_its_release() {
+    let game = in_a_corridor(Speaks::Kitty, &[]);
+    let before = game.arrow();
+    game.press(Key::Char('w'));
+    game.wait_for_arrow("walked far", |arrow| arrow.column > before.column + FAR);
+    game.release(Key::Char('w'));
+    game.wait_for_rest();
+    assert!(game.arrow().column < before.column + 32, "it walked to the end");
+}
+
+/// Without releases, in a plain terminal and inside of a multiplexer that claims to report them.
+#[test]
+fn without_releases_a_tap_walks_a_little_and_stops() {
+    let multiplexers: [&[_]; 4] = [
+        &[],
+        &[("TMUX", "/tmp/socket,1,0")],
+        &[("STY", "1.pts-0.host")],
+        &[("TERM", "screen-256color")],
+    ];
+    let games = multiplexers.map(|environment| {
+        let speaks = if environment.is_empty() { Speaks::Plain } else { Speaks::Kitty };
+        let game = in_a_corridor(speaks, environment);
+        let before = game.arrow();
+        // Three quarters of a cell.
+        game.send("www");
+        (environment, game, before)
+    });
+    for (environment, game, before) in games {
+        game.wait_for_arrow("walked", |arrow| arrow.column > before.column);
+        game.wait_for_rest();
+        assert_eq!(game.arrow().column, before.column + 1, "it walked on by itself");
+        if !environment.is_empty() {
+            assert!(!speaks_kitty(&game.bytes()), "the protocol was asked for in {environment:?}");
+        }
+    }
+}
+
+fn speaks_kitty(bytes: &[u8]) -> bool {
+    [&b"\x1b[?u"[..], b"\x1b[>"].iter().any(|query| bytes.windows(query.len()).any(|w| w == *query))
+}
+
+#[test]
+fn without_releases_repetition_walks_on_and_an_opposing_key_turns_back_at_once() {
+    const REPETITION: Duration = Duration::from_millis(30);
+    let game = in_a_corridor(Speaks::Plain, &[]);
+    let before = game.arrow();
+    let hold_until = |key: &str, condition: &dyn Fn(Arrow) -> bool| {
+        for _ in 0..600 {
+            if condition(game.arrow()) {
+                return;
+            }
+            game.send(key);
+            thread::sleep(REPETITION);
+        }
+        panic!("holding {key} did not help");
+    };
+    hold_until("w", &|arrow| arrow.column > before.column + FAR);
+    hold_until("s", &|arrow| arrow.column <= before.column + 1);
+}
+
+/// A keyboard's delay, and the interval of its repetition.
+const DELAY: Duration = Duration::from_millis(500);
+const INTERVAL: Duration = Duration::from_millis(33);
+
+/// Holds a key at a terminal without releases until `condition` holds; the longest time between two of its
+/// repetitions.
+fn hold(game: &Game, bytes: &str, condition: impl Fn() -> bool) -> Duration {
+    game.send(bytes);
+    thread::sleep(DELAY);
+    let (mut last, mut longest) = (Instant::now(), Duration::ZERO);
+    for _ in 0..600 {
+        longest = longest.max(last.elapsed());
+        if condition() {
+            return longest;
+        }
+        last = Instant::now();
+        game.send(bytes);
+        thread::sleep(INTERVAL);
+    }
+    panic!("holding {bytes:?} did not help; the screen:\n{}", game.text());
+}
+
+/// What the player wanted in each step of a game in which `plays` sent bytes.
+fn wanted(name: &str, map: &str, plays: impl Fn(&Game)) -> Vec<Intents> {
+    let path = Path::new(env!("CARGO_TARGET_TMPDIR")).join(name);
+    // What an earlier run has left.
+    _ = fs::remove_file(&path);
+    let options = ["--record", path.to_str().unwrap()];
+    let mut game = Game::with(Speaks::Plain, LARGE, Some(map), &options, &[]);
+    plays(&game);
+    game.send("q\r");
+    game.wait_for_end();
+    let script = Script::parse(&fs::read_to_string(path).unwrap(), name);
+    script.unwrap_or_else(|faults| panic!("{faults}")).iter().map(|(_, intents)| intents).collect()
+}
+
+/// Five steps of walking are a quarter of a cell, ten of aiming are 5 degrees.
+#[test]
+fn two_taps_are_twice_one_tap() {
+    let names =
+        |steps: &[Intents], intent| steps.iter().filter(|step| step.contains(intent)).count();
+    for taps in 1..=3 {
+        let steps = wanted(&format!("taps_{taps}.script"), "floor", |game| {
+            game.send("w".repeat(taps));
+            game.wait_for_rest();
+            game.send("\x1b[C".repeat(taps));
+            game.wait_for_rest();
+        });
+        assert_eq!(names(&steps, Intent::Forward), 5 * taps);
+        assert_eq!(names(&steps, Intent::TurnRight), 10 * taps);
+        assert_eq!(names(&steps, Intent::Aim), 10 * taps);
+    }
+}
+
+#[test]
+fn the_keys_for_exact_turns_turn_exactly() {
+    let game = Game::with(Speaks::Plain, LARGE, Some("floor"), &[], &[]);
+    game.send("oo");
+    game.wait_for_picture(&["--camera", "7.5,7.5,10"]);
+    game.send("uuu");
+    game.wait_for_picture(&["--camera", "7.5,7.5,355"]);
+    game.send("b");
+    game.wait_for_picture(&["--camera", "7.5,7.5,175"]);
+}
+
+#[test]
+fn without_releases_one_walks_and_turns_in_a_circle() {
+    // Where this machine was too busy to type, one has let go of a key in between.
+    let places = (0..5).map(|_| circle()).find(|places| places.len() > 30 + HALF_TURN);
+    let places = places.expect("this machine is too busy to type");
+    // After half a second, the circle is one, with a radius of 3 cells by 2.4 radians a second.
+    for (one, other) in places[30..].iter().zip(&places[30 + HALF_TURN..]) {
+        assert!((one.distance(*other) - 2.5).abs() < 0.05, "{one} {other}");
+    }
+}
+
+/// In steps, at 2.4 radians a second.
+const HALF_TURN: usize = 79;
+
+/// The places of somebody who walks, and turns as well, for as long as they do both.
+fn circle() -> Vec<DVec2> {
+    let steps = wanted("circle.script", "floor", |game| {
+        let start = game.arrow();
+        _ = hold(game, "w", || game.arrow().column > start.column);
+        // The other key ends the repetition of the first.
+        let turns = Cell::new(0);
+        _ = hold(game, "\x1b[C", || turns.replace(turns.get() + 1) > 90);
+    });
+    let mut game = game::Game::new(map::load(&test_map("floor")).unwrap());
+    let (mut places, mut longest) = (Vec::new(), Vec::new());
+    for intents in steps {
+        let both = [Intent::Forward, Intent::TurnRight].iter().all(|&one| intents.contains(one));
+        game.step(intents);
+        if both && !intents.contains(Intent::Aim) {
+            places.push(game.camera(FieldOfView::default()).position());
+        } else {
+            places.clear();
+        }
+        if places.len() > longest.len() {
+            longest.clone_from(&places);
+        }
+    }
+    longest
+}
+
+/// Space ends the repetition of W, which is held all the same until one has landed.
+#[test]
+fn without_releases_six_of_six_running_jumps_succeed() {
+    // A cell is three columns of the map, and the pit begins at 6: from 5 cells to 5.7.
+    for columns in [11, 11, 12, 12, 13, 13] {
+        let jumped = (0..10).any(|_| running_jump(columns));
+        assert!(jumped, "this machine is too busy to type");
+    }
+}
+
+/// Jumps once the player is seen so many columns from the start, and lands behind the pit. Where this machine was
+/// so slow that no keyboard would have sent such bytes, or that one saw the pit too late, nobody has jumped.
+fn running_jump(columns: u16) -> bool {
+    let longest = Cell::new(Duration::ZERO);
+    let steps = wanted(&format!("jump_{columns}.script"), "pit", |game| {
+        let start = game.arrow();
+        longest.set(hold(game, "w", || game.arrow().column >= start.column + columns));
+        game.send(" ");
+        game.wait_for_rest();
+    });
+    let mut game = game::Game::new(map::load(&test_map("pit")).unwrap());
+    let place = |game: &game::Game| game.camera(FieldOfView::default()).position().x;
+    let mut takes_off = None;
+    for intents in steps {
+        if intents.contains(Intent::Jump) && takes_off.is_none() {
+            takes_off = Some(place(&game));
+        }
+        game.step(intents);
+    }
+    let takes_off = takes_off.expect("Space jumps");
+    if longest.get() > 2 * INTERVAL || takes_off > 6.2 {
+        return false;
+    }
+    assert!(place(&game) > 7.0 && game.feet() == 0.0, "{takes_off} led to {}", place(&game));
+    true
+}

@@ -1,0 +1,213 @@
+//! Maps that change while they are shown, and maps that come from standard input.
+
+use std::fs;
+use std::path::{Path, PathBuf};
+
+use rustix::process::Signal;
+
+use super::game::{ENVIRONMENT, Key, PROGRAM, test_map};
+use crate::emulator::Speaks;
+use crate::player::Player;
+
+const MAP: &str = r##"
+title = "First"
+grid = '''
+#########
+#@......#
+#.......#
+#########
+'''
+[tiles]
+"#" = { wall = "#a04030" }
+[things]
+"@" = { start = 0 }
+"##;
+
+/// A map of its own for the test `name`.
+fn map(name: &str) -> PathBuf {
+    let folder = PathBuf::from(env!("CARGO_TARGET_TMPDIR")).join("watching").join(name);
+    _ = fs::remove_dir_all(&folder);
+    fs::create_dir_all(&folder).unwrap();
+    let path = folder.join("map.toml");
+    fs::write(&path, MAP).unwrap();
+    path
+}
+
+/// Writes `text` as editors do: into another file, which then takes the place of the map.
+fn save(path: &Path, text: &str) {
+    let draft = path.with_extension("draft");
+    fs::write(&draft, text).unwrap();
+    fs::rename(draft, path).unwrap();
+}
+
+fn start(words: &[&str], path: &Path) -> Player {
+    let words = words.iter().copied().chain([path.to_str().unwrap()]);
+    Player::start((80, 24), Speaks::Kitty, PROGRAM, words, &ENVIRONMENT)
+}
+
+/// Waits until a panel shows `text`, wherever its lines are broken.
+#[track_caller]
+fn wait_for_words(player: &Player, text: &str) {
+    player.wait_until(&format!("said {text:?}"), |emulator| {
+        let screen = emulator.text().replace('│', " ");
+        let words: Vec<&str> = screen.split_whitespace().collect();
+        words.join(" ").contains(text)
+    });
+}
+
+#[test]
+fn a_game_goes_on_in_the_map_as_it_is_saved() {
+    let path = map("play");
+    let mut player = start(&["play", "--watch"], &path);
+    player.wait_for("First");
+    player.wait_for("? help");
+
+    save(&path, &MAP.replace("First", "Second"));
+    player.wait_for("Second");
+
+    save(&path, &MAP.replace("First", "Third").replace("#@......#", "#@.....#"));
+    player.wait_for("the map has faults");
+    wait_for_words(&player, "row 2 of the grid has 8 cells");
+    player.wait_for("Second");
+
+    fs::remove_file(&path).unwrap();
+    wait_for_words(&player, "there is no file");
+
+    // A larger map, with an exit to find now.
+    let larger = MAP.replace("#@......#", "#@......#\n#......X#");
+    let larger = larger.replace("{ start = 0 }", "{ start = 0 }\n\"X\" = { exit = true }");
+    save(&path, &larger.replace("First", "Fourth"));
+    player.wait_until("was mended", |emulator| {
+        emulator.text().contains("Fourth") && !emulator.text().contains("faults")
+    });
+    player.send(Key::Char('q').event(1) + &Key::Enter.event(1));
+    player.wait_for_end().assert_given_back();
+}
+
+#[test]
+fn whoever_plays_keeps_their_place_while_there_is_one() {
+    let path = map("place");
+    let mut player = start(&["play", "--watch"], &path);
+    player.wait_for("? help");
+    player.wait_until("asked for releases", |it| it.modes().key_flags == [0, 1]);
+    let column = |player: &Player| {
+        player.look(|emulator| {
+            let row = emulator.text().lines().find(|line| line.contains('→'))?.to_owned();
+            row.chars().position(|symbol| symbol == '→')
+        })
+    };
+    let start = column(&player);
+    player.send(Key::Char('w').event(1));
+    player.wait_for_rest();
+    player.send(Key::Char('w').event(3));
+    let walked = column(&player);
+    assert!(start.is_some() && walked > start, "{start:?} {walked:?}");
+
+    save(&path, &MAP.replace("First", "Second").replace("a04030", "3040a0"));
+    player.wait_for("Second");
+    player.wait_for_rest();
+    assert_eq!(column(&player), walked);
+
+    // A wall where they stand.
+    save(&path, &MAP.replace("First", "Third").replace("#@......#", "#@...####"));
+    player.wait_for("Third");
+    player.wait_for_rest();
+    assert_eq!(column(&player), start);
+    player.send(Key::Char('q').event(1) + &Key::Enter.event(1));
+    player.wait_for_end().assert_given_back();
+}
+
+#[test]
+fn a_picture_is_drawn_again_when_the_map_or_its_texture_changes() {
+    let path = map("snapshot");
+    let texture = path.with_file_name("wall.png");
+    let textured = MAP.replace("\"#a04030\"", "\"wall.png\"");
+    let pictures = Path::new(env!("CARGO_MANIFEST_DIR")).join("tests/maps");
+    fs::copy(pictures.join("rows.png"), &texture).unwrap();
+    fs::write(&path, &textured).unwrap();
+    let words = ["snapshot", "--watch", "--format", "ansi", "--colors", "true"];
+    let mut player = start(&words, &path);
+    let picture = |player: &Player| player.look(super::game::looks);
+    let wait_for_another = |player: &Player, before: &[String]| {
+        player
+            .wait_until("drew another picture", |emulator| super::game::looks(emulator) != before);
+        player.wait_for_rest();
+    };
+    player.wait_for_rest();
+    let first = picture(&player);
+
+    fs::copy(pictures.join("letter.png"), &texture).unwrap();
+    wait_for_another(&player, &first);
+    let second = picture(&player);
+
+    save(&path, &textured.replace("#@......#", "#@.....#"));
+    player.wait_for("row 2 of the grid has 8 cells");
+    player.wait_for_rest();
+    let faulty = picture(&player);
+    let (foot, foot_before) = (&faulty[80 * 12..], &second[80 * 12..]);
+    assert!(foot == foot_before, "the last picture stays below what is said of the fault");
+
+    save(&path, &textured);
+    wait_for_another(&player, &faulty);
+    assert!(picture(&player) == second);
+
+    let written = player.bytes_written();
+    player.wait_for_rest();
+    assert_eq!(player.bytes_written(), written, "nothing is drawn while nothing changes");
+    player.send("\x03");
+    assert_eq!(player.wait_for_end().signal(), Some(Signal::INT.as_raw()));
+}
+
+#[test]
+fn faults_go_to_standard_error_where_that_is_a_file() {
+    let path = map("pipe");
+    let (out, err) = (path.with_file_name("out"), path.with_file_name("err"));
+    let script = format!(
+        "exec \"$0\" snapshot --watch --size 10x3 \"$1\" > {} 2> {}",
+        out.display(),
+        err.display()
+    );
+    let words = ["-c", &script, PROGRAM, path.to_str().unwrap()];
+    let mut player = Player::start((80, 24), Speaks::Plain, "/bin/sh", words, &ENVIRONMENT);
+    let wait_for = |what: &str, file: &Path, holds: &dyn Fn(&str) -> bool| {
+        for _ in 0..2000 {
+            if fs::read_to_string(file).is_ok_and(|text| holds(&text)) {
+                return;
+            }
+            std::thread::sleep(std::time::Duration::from_millis(10));
+        }
+        panic!("never {what}");
+    };
+    wait_for("drew", &out, &|text| text.lines().count() == 3);
+    save(&path, "grid = 3");
+    wait_for("told of the fault", &err, &|text| text.contains("\"grid\" must be a string"));
+    save(&path, &MAP.replace("@......", ".....@."));
+    wait_for("drew again", &out, &|text| text.lines().count() == 6);
+    assert_eq!(fs::read_to_string(&err).unwrap().matches("error:").count(), 1);
+    player.signal(Signal::INT);
+    player.wait_for_end();
+}
+
+#[test]
+fn a_map_from_standard_input_is_played_with_the_keys_of_the_terminal() {
+    let script = "cat \"$1\" | \"$0\" play -; echo status $?";
+    let map = test_map("corridor");
+    let words = ["-c", script, PROGRAM, map.to_str().unwrap()];
+    let mut player = Player::start((80, 24), Speaks::Kitty, "/bin/sh", words, &ENVIRONMENT);
+    player.wait_for("? help");
+    player.wait_until("asked for releases", |emulator| emulator.modes().key_flags == [0, 1]);
+    player.send(Key::Char('q').event(1) + &Key::Enter.event(1));
+    player.wait_for_end().assert_given_back();
+    player.wait_for("status 0");
+}
+
+#[test]
+fn a_png_is_not_written_to_a_terminal() {
+    for command in ["snapshot", "accuracy"] {
+        let words = [command, "--format", "png"];
+        let mut player = Player::start((200, 24), Speaks::Plain, PROGRAM, words, &ENVIRONMENT);
+        assert_eq!(player.wait_for_end().status.code(), Some(2));
+        player.wait_for("redirect it to a file");
+        assert!(player.bytes_written() < 300, "{}", player.text());
+    }
+}

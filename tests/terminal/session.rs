@@ -1,0 +1,151 @@
+//! What a session in a real terminal promises and no game shows: how a program ends that hangs, or
+//! fails beside its session.
+//!
+//! The program under test is this one: it starts itself again, under a pseudo-terminal, to run
+//! nothing but [`program`].
+#![cfg(all(unix, feature = "terminal"))]
+
+use std::env;
+use std::thread;
+use std::time::Duration;
+
+use cellcaster::terminal::{Event, Key, Options, Phase, Session};
+use cellcaster::tui::Canvas;
+use ratatui::widgets::{Paragraph, Wrap};
+use rustix::process::Signal;
+
+use crate::emulator::{Modes, Speaks};
+use crate::player::Player;
+
+const ROLE: &str = "PROGRAM_UNDER_TEST";
+const ITSELF: [&str; 4] = ["--exact", "program", "--nocapture", "--test-threads=1"];
+
+/// Shows the events that arrive, and does what the keys say. Only a process that was started for
+/// it has the role.
+#[test]
+fn program() {
+    if env::var_os(ROLE).is_none() {
+        return;
+    }
+    let variable = |name: &str| env::var(name).ok();
+    let mut session = Session::enter(Options::from_environment(variable)).unwrap();
+    let mut lines = vec!["ready".to_owned()];
+    loop {
+        show(&mut session, &lines.join("\n"));
+        let Some(event) = session.next_event(None).unwrap() else { continue };
+        lines.push(format!("{event:?}"));
+        match event {
+            Event::Quit(_) => return,
+            Event::Key(key) if key.phase == Phase::Press => match key.key {
+                Key::Char('q') => return,
+                Key::Char('x') => drop(thread::spawn(|| panic!("beside")).join()),
+                Key::Char('h') => hang(&mut session),
+                Key::Char('m') => session.set_mouse(true).unwrap(),
+                _ => {}
+            },
+            _ => {}
+        }
+    }
+}
+
+/// Neither draws nor listens any more.
+fn hang(session: &mut Session) -> ! {
+    show(session, "hanging");
+    loop {
+        thread::park();
+    }
+}
+
+fn show(session: &mut Session, text: &str) {
+    let text = Paragraph::new(text).wrap(Wrap { trim: false });
+    session.draw(|screen| screen.draw_widget(text, screen.bounds())).unwrap();
+}
+
+fn start(speaks: Speaks) -> Player {
+    let itself = env::current_exe().unwrap();
+    let player = Player::start((80, 24), speaks, itself, ITSELF, &[(ROLE, "yes")]);
+    player.wait_for("ready");
+    player
+}
+
+/// Whether every entry of the palette that may be defined was given back, and no other.
+fn assert_palette_given_back(player: &Player) {
+    let text = String::from_utf8(player.bytes()).unwrap();
+    assert!(text.contains("\x1b]4;255;?\x07"), "the palette was not asked for");
+    let lists = text.split("\x1b]104;").skip(1).map(|rest| rest.split_once('\x07').unwrap().0);
+    let entries: Vec<u8> =
+        lists.flat_map(|list| list.split(';').map(|entry| entry.parse().unwrap())).collect();
+    assert_eq!(entries, (24..=255).collect::<Vec<u8>>());
+}
+
+#[test]
+fn answers_are_never_seen_as_keys() {
+    let mut player = start(Speaks::Plain);
+    player.wait_for("KeyReleases(false)");
+    // That a half block was repeated, or not, and that the palette was defined.
+    player.send("\x1b[2;5R\x1b[2;2R\x1b]4;255;rgb:1212/abab/5656\x1b\\\x1b]4;255;rgb:0/0/0\x07");
+    player.send("w");
+    player.wait_for("Char('w')");
+    assert_eq!(player.text().matches("Key(").count(), 1, "{}", player.text());
+    player.send("q");
+    player.wait_for_end().assert_given_back();
+    assert_palette_given_back(&player);
+}
+
+#[test]
+fn the_mouse_is_in_pixels_as_soon_as_the_terminal_says_how_many_there_are() {
+    let mut player = start(Speaks::Kitty);
+    player.wait_for("KeyReleases(true)");
+    player.send("\x1b[109u");
+    let cells = "\x1b[<35;9;17M";
+    player.wait_until("took the mouse", |emulator| {
+        emulator.modes().mouse != Modes::default().mouse && !emulator.modes().mouse_pixels
+    });
+    player.send(cells);
+    player.wait_for("x: 544, y: 1056, kind: Moved");
+    player.resize_in_pixels((80, 24), (640, 384));
+    player.wait_until("asked for pixels", |emulator| emulator.modes().mouse_pixels);
+    // What comes before the terminal has changed units is dropped.
+    for _ in 0..500 {
+        player.send(cells);
+        thread::sleep(Duration::from_millis(10));
+        if player.text().contains("x: 64, y: 64, kind: Moved") {
+            player.send("\x1b[113u");
+            return player.wait_for_end().assert_given_back();
+        }
+    }
+    panic!("no place was in pixels; the screen:\n{}", player.text());
+}
+
+#[test]
+fn the_focus_is_told_of() {
+    let mut player = start(Speaks::Plain);
+    player.send("\x1b[O");
+    player.wait_for("FocusLost");
+    player.send("\x1b[I");
+    player.wait_for("FocusGained");
+    player.send("q");
+    player.wait_for_end().assert_given_back();
+}
+
+#[test]
+fn a_panic_in_another_thread_ends_the_session() {
+    let mut player = start(Speaks::Plain);
+    player.send("x");
+    player.wait_for_end().assert_given_back();
+    assert_palette_given_back(&player);
+    player.wait_for("had to end: beside");
+}
+
+#[test]
+fn a_program_that_hangs_is_ended_all_the_same() {
+    let mut player = start(Speaks::Kitty);
+    player.wait_for("KeyReleases(true)");
+    player.send("\x1b[104u");
+    player.wait_for("hanging");
+    player.signal(Signal::TERM);
+    let ending = player.wait_for_end();
+    ending.assert_given_back();
+    assert_eq!(ending.signal(), Some(Signal::TERM.as_raw()));
+    assert_palette_given_back(&player);
+}
