@@ -11,11 +11,11 @@ pub mod accuracy;
 pub mod cast;
 #[cfg(feature = "cli")]
 pub mod cli;
+pub mod color;
 pub mod fault;
 pub mod game;
 pub mod generate;
 pub mod map;
-pub mod palette;
 pub mod render;
 pub mod space;
 #[cfg(feature = "speed")]

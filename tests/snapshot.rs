@@ -6,8 +6,8 @@ use std::io::Read;
 use std::num::NonZeroU16;
 use std::process::Stdio;
 
+use cellcaster::color::palette::ColorDepth;
 use cellcaster::map::builtin;
-use cellcaster::palette::ColorDepth;
 use cellcaster::tui::{FirstPerson, View};
 use cellcaster::world::FieldOfView;
 use ratatui::buffer::Buffer;

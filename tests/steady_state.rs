@@ -1,8 +1,8 @@
 //! What a frame costs once everything has grown to its size: no allocation at all.
 
 use allocation_counter::measure;
+use cellcaster::color::palette::ColorDepth;
 use cellcaster::map::{self, builtin};
-use cellcaster::palette::ColorDepth;
 use cellcaster::render::{Frame, FrameSize, PixelAspect, Renderer};
 use cellcaster::tui::{FirstPerson, GlyphMode, Minimap, View};
 use cellcaster::world::{Camera, Cell, FieldOfView, Heading, Opening};

@@ -3,9 +3,9 @@
 
 use std::num::NonZeroU32;
 
+use cellcaster::color::palette::ColorDepth;
 use cellcaster::game::Script;
 use cellcaster::map::builtin;
-use cellcaster::palette::ColorDepth;
 use cellcaster::terminal::Fidelity;
 use cellcaster::tui::{Levels, Replay, Settings};
 use cellcaster::wire::{self, EncoderReport, PalettePlan, PaletteRow, Part, Plan, Report};

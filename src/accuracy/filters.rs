@@ -9,8 +9,9 @@
 use std::num::NonZeroU32;
 
 use super::pictures::cameras;
+use crate::color::Rgb;
 use crate::render::{Filter, Frame, FrameSize, PixelAspect, Renderer};
-use crate::world::{Camera, Rgb, Texture, World};
+use crate::world::{Camera, Texture, World};
 
 /// The filters, by their names on the command line.
 const FILTERS: [(&str, Filter); 2] = [("mip", Filter::Mip), ("nearest", Filter::Nearest)];

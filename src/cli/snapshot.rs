@@ -20,12 +20,13 @@ use ratatui::style::Color;
 
 use super::arguments::{Format, Generated, Snapshot};
 use super::{Error, level};
+use crate::color::Rgb;
+use crate::color::palette;
 use crate::generate::Site;
 use crate::map::Level;
-use crate::palette;
 use crate::space::{self, Elevation, Scene};
 use crate::tui::View;
-use crate::world::{Camera, Heading, Rgb, World};
+use crate::world::{Camera, Heading, World};
 use picture::{OfGrid, OfSpace, Picture};
 
 /// Rows of cells that are made at a time: a multiple of the height of the pattern that dithers.

@@ -203,9 +203,9 @@ mod tests {
     use proptest::prelude::*;
 
     use super::*;
+    use crate::color::Rgb;
     use crate::game::Look;
     use crate::space::{Block, Body, Coat, Plane, Shape, Sphere, Start};
-    use crate::world::Rgb;
 
     /// A start between a floor, a ball, a wall that leans, and a box.
     fn scene(degrees: f64) -> Scene {

@@ -4,8 +4,9 @@
 //! textures row by row, a picture row by row that is written column by column. It knows plain walls
 //! only, and must be drawn inside a map that is closed.
 
+use crate::color::Rgb;
 use crate::world::texture::Level;
-use crate::world::{Camera, Ceiling, Covering, Paint, Rgb, TileId, TileKind, World};
+use crate::world::{Camera, Ceiling, Covering, Paint, TileId, TileKind, World};
 
 /// How the classic loop draws floor and ceiling.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]

@@ -36,8 +36,8 @@ pub use run::play;
 
 use super::settings::Settings;
 use super::{Canvas, CellAspect, GlyphMode, View};
+use crate::color::palette::ColorDepth;
 use crate::game::STEP;
-use crate::palette::ColorDepth;
 use crate::render::Filter;
 use crate::world::FieldOfView;
 use clock::Clock;

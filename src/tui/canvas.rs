@@ -14,7 +14,7 @@ use ratatui::style::Color;
 use ratatui::widgets::{Clear, Widget};
 
 use super::glyphs::true_color;
-use crate::world::Rgb;
+use crate::color::Rgb;
 
 /// Cells that one draws on; places off it take nothing.
 pub trait Canvas {

@@ -8,7 +8,7 @@ use ratatui::widgets::StatefulWidget;
 
 use super::{Canvas, CellAspect, GlyphMode, ascii, half_blocks, ramp};
 use crate::cast::Method;
-use crate::palette::ColorDepth;
+use crate::color::palette::ColorDepth;
 use crate::render::{
     Column, Explanation, Filter, Frame, FrameSize, PixelAspect, Renderer, Surface,
 };

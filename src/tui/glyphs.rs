@@ -2,9 +2,9 @@
 
 use ratatui::style::Color;
 
-use crate::palette::{self, ColorDepth};
+use crate::color::Rgb;
+use crate::color::palette::{self, ColorDepth};
 use crate::render::PixelAspect;
-use crate::world::Rgb;
 
 /// Which characters stand for pixels.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash, Default)]

@@ -18,9 +18,10 @@ use ratatui::widgets::Widget;
 
 use super::glyphs::color_at;
 use super::{Canvas, GlyphMode, ascii, half_blocks};
-use crate::palette::ColorDepth;
+use crate::color::Rgb;
+use crate::color::palette::ColorDepth;
 use crate::render::Column;
-use crate::world::{Camera, Rgb, World};
+use crate::world::{Camera, World};
 use chart::Chart;
 pub use explored::Explored;
 use place::Place;

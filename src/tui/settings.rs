@@ -24,7 +24,7 @@ use std::time::Duration;
 use super::bindings::Bindings;
 use super::{CellAspect, GlyphMode};
 use crate::cast::Method;
-use crate::palette::ColorDepth;
+use crate::color::palette::ColorDepth;
 use crate::render::Filter;
 use crate::terminal::Fidelity;
 use crate::world::FieldOfView;

@@ -7,7 +7,7 @@ use ratatui::layout::{Rect, Size};
 use ratatui::widgets::StatefulWidget;
 
 use super::{Canvas, CellAspect, GlyphMode, ascii, half_blocks, ramp};
-use crate::palette::ColorDepth;
+use crate::color::palette::ColorDepth;
 use crate::render::{Frame, FrameSize, PixelAspect};
 use crate::space::{Camera, Explanation, Renderer, Scene};
 

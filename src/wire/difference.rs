@@ -5,7 +5,7 @@ use ratatui::style::{Color, Modifier};
 
 use super::encoder::Encoder;
 use super::lab;
-use crate::world::Rgb;
+use crate::color::Rgb;
 
 /// Differences of pixels, added up. A cell is two pixels; a cell of text is as it was drawn.
 #[derive(Clone, Copy, Debug, Default)]

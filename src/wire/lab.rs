@@ -2,7 +2,7 @@
 
 use std::sync::LazyLock;
 
-use crate::world::Rgb;
+use crate::color::Rgb;
 
 /// The distance of two colours, CIE76's ΔE: about 2.3 is the least that most people notice.
 pub(super) fn distance(one: Rgb, other: Rgb) -> f64 {

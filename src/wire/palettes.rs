@@ -16,9 +16,10 @@ use ratatui::backend::Backend;
 use ratatui::layout::Size;
 use ratatui::style::Color;
 
+use crate::color::oklab;
+use crate::color::palette::{ColorDepth, of_256};
 use crate::game::{Game, STEPS_PER_SECOND, Script};
 use crate::map::builtin;
-use crate::palette::{ColorDepth, of_256, oklab};
 use crate::render::{Frame, FrameSize, PixelAspect, Renderer};
 use crate::terminal::CellWriter;
 use crate::tui::Canvas;

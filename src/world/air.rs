@@ -1,6 +1,7 @@
 //! What is between the eye and the walls, and behind them all: light, fog and the sky.
 
-use super::{Rgb, TextureId};
+use super::TextureId;
+use crate::color::Rgb;
 
 /// How bright a surface is lit, in 256ths of full brightness.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]

@@ -9,7 +9,7 @@ mod level;
 
 use std::num::NonZeroU32;
 
-use super::Rgb;
+use crate::color::Rgb;
 pub use level::Level;
 pub(crate) use level::{LevelByShifts, mean_of_shares, mean_of_two};
 

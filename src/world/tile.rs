@@ -1,6 +1,7 @@
 //! Tiles: what a cell of the grid may be, and how its surfaces look.
 
-use super::{Ceiling, Covering, Door, Heights, Light, Rgb, Shape};
+use super::{Ceiling, Covering, Door, Heights, Light, Shape};
+use crate::color::Rgb;
 
 /// One kind of tile.
 #[derive(Clone, Copy, Debug, PartialEq)]

@@ -10,7 +10,7 @@ use super::option::{FileOption, Flag, Read, Valued};
 use super::value::{self, FramesPerSecond};
 use super::{Command, Error, Subcommand, map};
 use crate::cast::Method;
-use crate::palette::ColorDepth;
+use crate::color::palette::ColorDepth;
 use crate::render::Filter;
 use crate::terminal::{Fidelity, UnknownFidelity};
 use crate::tui::{CellAspect, GlyphMode};

@@ -10,7 +10,7 @@ use super::option::{Flag, Read, Valued};
 use super::value::{self, Size};
 use super::{Command, Error, Subcommand, map};
 use crate::cast::Method;
-use crate::palette::ColorDepth;
+use crate::color::palette::ColorDepth;
 use crate::render::Filter;
 use crate::tui::{CellAspect, GlyphMode};
 use crate::world::{FieldOfView, Heading, Pitch};

@@ -5,7 +5,7 @@ use std::io::{self, BufWriter, Write};
 use serde_json::{Value, json};
 
 use crate::cli::arguments::{Wire, WireFormat};
-use crate::palette::ColorDepth;
+use crate::color::palette::ColorDepth;
 use crate::wire::{GREY, PalettePlan, PaletteRow, report_palettes};
 
 pub(super) fn run(depth: ColorDepth, options: &Wire) -> io::Result<()> {

@@ -1,7 +1,7 @@
 //! What was found out about the terminal that makes the game look or feel worse than it could, why that
 //! is so, and what helps: lines for the help, where people look.
 
-use crate::palette::ColorDepth;
+use crate::color::palette::ColorDepth;
 use crate::terminal::ColorSource;
 
 /// What is known of the terminal.

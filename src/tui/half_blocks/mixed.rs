@@ -17,11 +17,12 @@ use std::sync::LazyLock;
 use ratatui::layout::Rect;
 use ratatui::style::Color;
 
-use crate::palette::mixture::{self, Mixture, Mixtures};
-use crate::palette::{self, oklab};
+use crate::color::Rgb;
+use crate::color::oklab;
+use crate::color::palette;
+use crate::color::palette::mixture::{self, Mixture, Mixtures};
 use crate::render::Frame;
 use crate::tui::Canvas;
-use crate::world::Rgb;
 
 /// So many cells are drawn at a time, and so need room: an even number.
 const CHUNK: usize = 64;

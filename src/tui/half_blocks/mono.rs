@@ -47,8 +47,8 @@ fn is_lit(frame: &Frame, x: u32, y: u32) -> bool {
 #[cfg(test)]
 mod tests {
     use super::*;
+    use crate::color::Rgb;
     use crate::render::{FrameSize, PixelAspect};
-    use crate::world::Rgb;
 
     /// A wall of that shade with a joint across it, in row 8.
     fn wall(brick: u8, joint: u8) -> Frame {

@@ -6,9 +6,9 @@ use toml::de::{DeTable, DeValue};
 
 use super::value::{self, DEPTHS, DISPLAYS, GLYPH_MODES, Names, SETTINGS};
 use super::{Configuration, keys};
+use crate::color::palette::ColorDepth;
 use crate::fault::document::{self, Entry};
 use crate::fault::{Fault, Faults, nearest, quoted};
-use crate::palette::ColorDepth;
 use crate::terminal::Fidelity;
 use crate::tui::bindings::PRESETS;
 use crate::world::FieldOfView;

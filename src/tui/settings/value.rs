@@ -1,7 +1,7 @@
 //! What each setting is called, what it is for, and the words for its values.
 
 use super::MapDisplay;
-use crate::palette::ColorDepth;
+use crate::color::palette::ColorDepth;
 use crate::tui::GlyphMode;
 
 /// A setting as a file has it.

@@ -7,11 +7,12 @@ use ratatui::layout::Rect;
 use ratatui::style::Color;
 use ratatui::widgets::StatefulWidget;
 
-use crate::palette::oklab::Oklab;
-use crate::palette::{self, ColorDepth};
+use crate::color::Rgb;
+use crate::color::oklab::Oklab;
+use crate::color::palette::{self, ColorDepth};
 use crate::render::Frame;
 use crate::tui::{FirstPerson, View};
-use crate::world::{Camera, Rgb, World};
+use crate::world::{Camera, World};
 
 /// What the methods are called; the first is what the others are compared with.
 pub(super) const NAMES: &[&str] = &["nearest", "chroma", "bayer", "mixed"];

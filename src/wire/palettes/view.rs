@@ -1,7 +1,7 @@
 //! A picture as it is seen at arm's length.
 
 use super::GREY;
-use crate::palette::oklab::Oklab;
+use crate::color::oklab::Oklab;
 
 /// The pixels of a window: two cells by two.
 const WINDOW: [usize; 2] = [2, 4];

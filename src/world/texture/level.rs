@@ -7,7 +7,7 @@ mod light;
 use std::num::NonZeroU32;
 use std::ops::Range;
 
-use crate::world::Rgb;
+use crate::color::Rgb;
 use light::{Light, linear, stored};
 pub(crate) use light::{mean_of_shares, mean_of_two};
 

@@ -112,7 +112,7 @@ fn nothing_on_a_map_is_as_bright_as_the_arrow() {
             let mut app = app(level.name, settings);
             let buffer = buffer(&mut app, (120, 40));
             let luma = |color: Color| match color {
-                Color::Rgb(red, green, blue) => crate::world::Rgb::new(red, green, blue).luma(),
+                Color::Rgb(red, green, blue) => crate::color::Rgb::new(red, green, blue).luma(),
                 _ => 0,
             };
             let left = (0..120).find(|&x| buffer[(x, 0)].symbol() == "┌").unwrap();

@@ -1,7 +1,7 @@
 //! Figures: what has a front and a back.
 
 use super::{Design, INK, Palette, drawn, mirrored};
-use crate::world::Rgb;
+use crate::color::Rgb;
 use crate::world::sprite::Facings;
 
 /// A knight of stone with a shield and a spear.

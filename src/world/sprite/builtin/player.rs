@@ -1,7 +1,7 @@
 //! The player, as they see themselves in a mirror: a traveller with a hat and a cloak.
 
 use super::{Design, INK, Palette, drawn, mirrored};
-use crate::world::Rgb;
+use crate::color::Rgb;
 use crate::world::sprite::Facings;
 
 /// The player's own figure, whose eyes are where a camera is.

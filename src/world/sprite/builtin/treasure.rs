@@ -1,7 +1,7 @@
 //! What lies about.
 
 use super::{Design, INK, Palette, drawn};
-use crate::world::Rgb;
+use crate::color::Rgb;
 
 /// A key that glints.
 pub(super) fn key() -> Design {

@@ -2,7 +2,7 @@
 
 use super::noise::hash;
 use super::shade::mix;
-use crate::world::Rgb;
+use crate::color::Rgb;
 
 /// Texels all around, and from the horizon to the top.
 pub(super) const WIDTH: i32 = 512;

@@ -9,7 +9,7 @@
 use std::num::NonZeroU32;
 use std::sync::LazyLock;
 
-use crate::world::Rgb;
+use crate::color::Rgb;
 
 /// A picture in linear light: 16 bits for each of red, green and blue.
 pub(super) struct Light {

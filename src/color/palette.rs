@@ -6,9 +6,8 @@
 #[cfg(feature = "tui")]
 pub(crate) mod mixture;
 mod nearest;
-pub(crate) mod oklab;
 
-use crate::world::Rgb;
+use super::Rgb;
 use nearest::{NearestColors, palette};
 
 /// How many colours a terminal can show.

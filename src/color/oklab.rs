@@ -6,7 +6,7 @@
 
 use std::sync::LazyLock;
 
-use crate::world::Rgb;
+use super::Rgb;
 
 /// A colour by how light, how red and how yellow it looks.
 #[derive(Clone, Copy, Debug, PartialEq)]

@@ -13,9 +13,9 @@ use std::array;
 use std::sync::LazyLock;
 use std::sync::atomic::{AtomicU32, Ordering};
 
-use super::oklab::{self, Oklab};
 use super::{CUBE, of_256};
-use crate::world::Rgb;
+use crate::color::Rgb;
+use crate::color::oklab::{self, Oklab};
 
 /// Two colours and how much there is of each.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]

@@ -8,8 +8,8 @@ use std::sync::LazyLock;
 use std::sync::atomic::{AtomicU16, Ordering};
 
 use super::of_256;
-use super::oklab::Oklab;
-use crate::world::Rgb;
+use crate::color::Rgb;
+use crate::color::oklab::Oklab;
 
 /// How much of each channel is told apart: 5 bits of 8.
 const BITS: u32 = 5;

@@ -114,29 +114,29 @@ impl fmt::Debug for Rgb {
 
 /// The error of [`Rgb::from_str`]: the text is no colour.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub struct NotAColor;
+pub struct ParseColorError;
 
-impl fmt::Display for NotAColor {
+impl fmt::Display for ParseColorError {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
         f.write_str("a colour is written as \"#rrggbb\", such as \"#a04030\", or as \"sky\"")
     }
 }
 
-impl std::error::Error for NotAColor {}
+impl std::error::Error for ParseColorError {}
 
 impl FromStr for Rgb {
-    type Err = NotAColor;
+    type Err = ParseColorError;
 
     /// Reads `#rrggbb`, in either case, or `sky`.
-    fn from_str(text: &str) -> Result<Self, NotAColor> {
+    fn from_str(text: &str) -> Result<Self, ParseColorError> {
         if text == "sky" {
             return Ok(Self::SKY);
         }
-        let digits = text.strip_prefix('#').ok_or(NotAColor)?;
+        let digits = text.strip_prefix('#').ok_or(ParseColorError)?;
         if digits.len() != 6 || !digits.bytes().all(|byte| byte.is_ascii_hexdigit()) {
-            return Err(NotAColor);
+            return Err(ParseColorError);
         }
-        u32::from_str_radix(digits, 16).map(Self).map_err(|_| NotAColor)
+        u32::from_str_radix(digits, 16).map(Self).map_err(|_| ParseColorError)
     }
 }
 
@@ -152,7 +152,7 @@ mod tests {
         assert_eq!("#A04030".parse(), Ok(Rgb::new(0xa0, 0x40, 0x30)));
         for text in ["", "#", "a04030", "#a0403", "#a040300", "#+12345", "#gg0000", "#ä0000", "red"]
         {
-            assert_eq!(text.parse::<Rgb>(), Err(NotAColor), "{text}");
+            assert_eq!(text.parse::<Rgb>(), Err(ParseColorError), "{text}");
         }
     }
 
