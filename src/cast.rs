@@ -44,11 +44,9 @@
 
 mod accumulate;
 mod approach;
-mod cross;
 mod dda;
 mod dda32;
 mod door;
-mod double;
 mod exact;
 mod fixed;
 mod hit;

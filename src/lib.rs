@@ -16,6 +16,7 @@ pub mod fault;
 pub mod game;
 pub mod generate;
 pub mod map;
+mod numeric;
 pub mod render;
 pub mod space;
 #[cfg(feature = "speed")]

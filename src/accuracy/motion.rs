@@ -9,7 +9,7 @@ use std::time::Instant;
 
 use num_bigint::BigInt;
 
-use crate::game::approach;
+use crate::numeric::damped_motion::approach;
 
 /// A way to move.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]

@@ -19,8 +19,8 @@ use std::iter;
 
 use glam::DVec2;
 
-use super::cross::cross;
 use super::{Caster, Crossing, DdaOrder, Hit, Order, Ray, Side, Sweep, Walk, through};
+use crate::numeric::cross;
 use crate::world::{Grid, World};
 
 /// Casts by walking the grid in the exact order; the default.

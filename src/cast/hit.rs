@@ -3,7 +3,7 @@
 use glam::DVec2;
 
 use super::Ray;
-use super::cross::cross;
+use crate::numeric::cross;
 use crate::world::Cell;
 
 /// Which kind of grid line a ray crossed.

@@ -4,7 +4,7 @@
 //! What is tall enough to bump a head, though, is the body, and that is where the feet are.
 
 use super::STEP;
-use super::motion::approach;
+use crate::numeric::damped_motion::approach;
 use crate::world::Camera;
 
 /// How tall somebody is, standing and ducking, in cells.

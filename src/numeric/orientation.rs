@@ -1,24 +1,28 @@
-//! On which side of a ray a corner of the grid lies, without rounding.
+//! The orientation predicate: on which side of a ray a point lies, with an exact sign.
 //!
-//! The cross product of the way to a corner and the ray's direction is a difference of two
-//! products, and where it is nearly nothing, rounding makes up its sign. Here each way is split into
+//! The cross product of the vector to a point and the ray's direction is a difference of two
+//! products, and where it is nearly zero, rounding decides its sign. A filter comes first: doubles tell the sign where the
+//! result is larger than the bound of its error (J. R. Shewchuk, "Adaptive Precision Floating-Point Arithmetic and
+//! Fast Robust Geometric Predicates", 1997). Elsewhere each component is split into
 //! two doubles that add up to it exactly, so the cross product is a sum of four products of two
 //! doubles, each an integer of 106 bits at most times a power of two. They are added from the
 //! largest power down, in one 128-bit integer: it holds all of the sum, or else what it holds is so
-//! much larger than what is still to come that rounding the rest does no harm.
+//! much larger than the remaining terms that rounding these does no harm.
 //!
-//! Expansions of doubles were refused: their products overflow and vanish at the ends of the range,
+//! Shewchuk's expansions of doubles were refused: their products overflow and vanish at the ends of the range,
 //! which is where this is needed. So were integers of any length: four terms never need them.
 
 use std::cmp::Reverse;
 
 use glam::DVec2;
 
+use super::error_free::two_sum;
+
 /// The cross product of the way from `origin` to `corner` and `direction`: positive where a ray, y
 /// growing to the south, passes the corner on its left.
-pub(super) fn cross(origin: DVec2, direction: DVec2, corner: DVec2) -> Scaled {
-    let [x, x_rest] = exact_sum(corner.x, -origin.x);
-    let [y, y_rest] = exact_sum(origin.y, -corner.y);
+pub(crate) fn cross(origin: DVec2, direction: DVec2, corner: DVec2) -> Scaled {
+    let [x, x_rest] = two_sum(corner.x, -origin.x);
+    let [y, y_rest] = two_sum(origin.y, -corner.y);
     sum([
         Integer::product(x, direction.y),
         Integer::product(x_rest, direction.y),
@@ -31,7 +35,7 @@ pub(super) fn cross(origin: DVec2, direction: DVec2, corner: DVec2) -> Scaled {
 ///
 /// Most signs are told by doubles: where what they come to is larger than all their rounding.
 #[inline]
-pub(super) fn sign_of_cross(origin: DVec2, direction: DVec2, corner: DVec2) -> f64 {
+pub(crate) fn sign_of_cross(origin: DVec2, direction: DVec2, corner: DVec2) -> f64 {
     /// Each product is rounded three times, and so is their difference once.
     const ROUNDING: f64 = 4.0 * f64::EPSILON;
     let way = corner - origin;
@@ -46,31 +50,23 @@ pub(super) fn sign_of_cross(origin: DVec2, direction: DVec2, corner: DVec2) -> f
 ///
 /// Its sign is right, zero included; its value is right to 50 bits.
 #[derive(Clone, Copy, Debug, PartialEq)]
-pub(super) struct Scaled {
+pub(crate) struct Scaled {
     mantissa: f64,
     exponent: i32,
 }
 
 impl Scaled {
     /// Less than 0, 0, or more than 0.
-    pub(super) fn sign(self) -> f64 {
+    pub(crate) fn sign(self) -> f64 {
         self.mantissa
     }
 
     /// Its quotient by `divisor`.
-    pub(super) fn over(self, divisor: f64) -> f64 {
+    pub(crate) fn over(self, divisor: f64) -> f64 {
         let divisor = Integer::from_double(divisor);
         let quotient = self.mantissa / divisor.mantissa as f64;
         libm::scalbn(quotient, self.exponent - divisor.exponent)
     }
-}
-
-/// The sum of `a` and `b` as two doubles that add up to it exactly, the first of them rounded.
-fn exact_sum(a: f64, b: f64) -> [f64; 2] {
-    let sum = a + b;
-    let of_b = sum - a;
-    let of_a = sum - of_b;
-    [sum, (a - of_a) + (b - of_b)]
 }
 
 /// `mantissa` · 2^`exponent`.

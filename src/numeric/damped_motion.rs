@@ -1,44 +1,44 @@
-//! How a velocity comes to be the one that is wanted.
+//! Damped motion in closed form: a velocity that approaches a target.
 //!
-//! The difference between the two dies away exponentially, and both the velocity at the end of a
-//! step and the way covered until then are the exact solution, not an approximation by small
-//! steps: no step is too long and no friction too strong, and two steps are the same as one of
-//! their sum. Adding `acceleration * dt` was refused: it overshoots as soon as `rate * dt` passes 1.
+//! The velocity v obeys dv/dt = rate · (target − v), so the difference decays exponentially. Both the velocity at the
+//! end of a step and the displacement until then are the analytic solution of that equation, not an approximation by
+//! small steps: no step is too long and no rate too high, and two steps are the same as one of
+//! their sum. The explicit Euler method was refused: it overshoots as soon as `rate * dt` passes 1.
 
 use glam::DVec2;
 
-/// The state of a motion after a while, and the way covered meanwhile.
+/// The state of a motion at the end of a step, and the displacement during it.
 #[derive(Clone, Copy, Debug, PartialEq)]
-pub(crate) struct Glide<V> {
+pub(crate) struct DampedMotion<V> {
     /// Units per second.
     pub(crate) velocity: V,
     /// Units.
     pub(crate) displacement: V,
 }
 
-/// What becomes of `velocity` within `duration` seconds on its way to `target`, where the
+/// The motion after `duration` seconds that begins with `velocity` and approaches `target`, where the
 /// difference between the two shrinks by the factor e in 1 / `rate` seconds. Where all four are
 /// finite, `rate` above 0 and `duration` at least 0, so is the result.
-pub(crate) fn approach(velocity: f64, target: f64, rate: f64, duration: f64) -> Glide<f64> {
+pub(crate) fn approach(velocity: f64, target: f64, rate: f64, duration: f64) -> DampedMotion<f64> {
     let remains = libm::exp(-rate * duration);
     // For how long the first velocity would cover its share of the way, and the target the rest.
     let coasting = (-libm::expm1(-rate * duration) / rate).min(duration);
-    Glide {
+    DampedMotion {
         velocity: target + (velocity - target) * remains,
         displacement: velocity * coasting + target * (duration - coasting),
     }
 }
 
 /// As [`approach`], in the plane.
-pub(super) fn approach_in_plane(
+pub(crate) fn approach_in_plane(
     velocity: DVec2,
     target: DVec2,
     rate: f64,
     duration: f64,
-) -> Glide<DVec2> {
+) -> DampedMotion<DVec2> {
     let x = approach(velocity.x, target.x, rate, duration);
     let y = approach(velocity.y, target.y, rate, duration);
-    Glide {
+    DampedMotion {
         velocity: DVec2::new(x.velocity, y.velocity),
         displacement: DVec2::new(x.displacement, y.displacement),
     }
