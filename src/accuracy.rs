@@ -4,7 +4,6 @@
 //! [`crate::cast`]. [`sets`] names the stiff and extreme cases; [`random_ray`] and
 //! [`adversarial_ray`] make as many more as one likes, from a seed.
 
-mod chance;
 mod filters;
 mod motion;
 mod pictures;
@@ -14,7 +13,6 @@ mod report;
 mod sets;
 mod trial;
 
-pub use chance::Chance;
 pub use filters::{FilterErrors, FilterRow, compare_filters, shimmer};
 pub use motion::{Integrator, MotionCase, MotionResult, compare_motions};
 pub use pictures::{Gallery, Reference};

@@ -14,11 +14,11 @@
 
 mod cave;
 mod chunk;
-mod hash;
 mod kit;
 mod level;
 mod maze;
 mod office;
+mod purpose;
 mod window;
 
 use std::fmt;
@@ -33,7 +33,7 @@ pub use window::Window;
 ///
 /// The same plot always has the same chunk, whatever was dug before.
 pub trait Terrain: fmt::Debug + Send + Sync {
-    /// Where chance begins, for what is not the terrain's to decide, such as where the way out is.
+    /// Where random begins, for what is not the terrain's to decide, such as where the way out is.
     fn seed(&self) -> u64;
 
     /// A map file that gives the characters of its chunks their meaning: every one of them is drawn

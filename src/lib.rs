@@ -18,6 +18,7 @@ pub mod generate;
 pub mod map;
 mod numeric;
 pub mod render;
+pub mod rng;
 pub mod space;
 #[cfg(feature = "speed")]
 pub mod speed;

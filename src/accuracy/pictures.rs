@@ -1,8 +1,9 @@
 //! Whole pictures: how many pixels a method gets wrong.
 
-use super::{Chance, cast};
+use super::cast;
 use crate::cast::{Caster, Hit, Method, Ray, Visitor};
 use crate::render::{Frame, FrameSize, PixelAspect, Renderer};
+use crate::rng::SplitMix64;
 use crate::world::{Camera, Cell, FieldOfView, Grid, Heading, World};
 
 /// Casts by rational arithmetic: never wrong, and thousands of times slower than a caster should be.
@@ -40,23 +41,23 @@ impl<'world> Gallery<'world> {
 
 /// Where pictures of `world` are taken: from its start, and then from anywhere.
 pub(super) fn cameras(world: &World, seed: u64) -> impl Iterator<Item = Camera> {
-    let mut chance = Chance::new(seed);
+    let mut random = SplitMix64::new(seed);
     let start = world.start_camera(FieldOfView::default());
-    std::iter::once(start).chain(std::iter::repeat_with(move || random_camera(world, &mut chance)))
+    std::iter::once(start).chain(std::iter::repeat_with(move || random_camera(world, &mut random)))
 }
 
 /// A camera anywhere on open floor.
-fn random_camera(world: &World, chance: &mut Chance) -> Camera {
+fn random_camera(world: &World, random: &mut SplitMix64) -> Camera {
     let grid = world.grid();
-    let on_floor = |chance: &mut Chance| {
-        let column = chance.whole(0, grid.width() as i32 - 1);
-        let row = chance.whole(0, grid.height() as i32 - 1);
+    let on_floor = |random: &mut SplitMix64| {
+        let column = random.whole(0, grid.width() as i32 - 1);
+        let row = random.whole(0, grid.height() as i32 - 1);
         let cell = Cell { column: column as u32, row: row as u32 };
         (!grid.is_solid(column as i64, row as i64)).then_some(cell)
     };
     // There is open floor: the start is on it.
-    let cell = std::iter::repeat_with(|| on_floor(chance)).flatten().next();
-    let heading = Heading::default().turned(chance.between(0.0, std::f64::consts::TAU));
+    let cell = std::iter::repeat_with(|| on_floor(random)).flatten().next();
+    let heading = Heading::default().turned(random.between(0.0, std::f64::consts::TAU));
     Camera::in_cell(cell.unwrap_or(world.start().cell), heading, FieldOfView::default())
 }
 

@@ -3,11 +3,12 @@
 use std::num::NonZeroU32;
 
 use super::{
-    Chance, Errors, FilterRow, Gallery, MotionResult, Set, Timing, Trial, compare_filters,
-    compare_motions, ordinary, random_ray, sets, time_in_turns,
+    Errors, FilterRow, Gallery, MotionResult, Set, Timing, Trial, compare_filters, compare_motions,
+    ordinary, random_ray, sets, time_in_turns,
 };
 use crate::cast::Method;
 use crate::render::FrameSize;
+use crate::rng::SplitMix64;
 use crate::world::World;
 
 /// What to report on.
@@ -21,7 +22,7 @@ pub struct Plan<'world> {
     pub methods: Vec<Method>,
     /// How many rays each scene has.
     pub count: usize,
-    /// Where chance begins.
+    /// Where random begins.
     pub seed: u64,
 }
 
@@ -170,8 +171,8 @@ impl Plan<'_> {
 
     fn rays_in_world(&self) -> Set {
         let grid = self.world.grid().clone();
-        let mut chance = Chance::new(self.seed);
-        let rays = (0..self.count).map(|_| random_ray(&grid, &mut chance)).collect();
+        let mut random = SplitMix64::new(self.seed);
+        let rays = (0..self.count).map(|_| random_ray(&grid, &mut random)).collect();
         Set { name: "map", grid, rays }
     }
 }

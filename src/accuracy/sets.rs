@@ -10,8 +10,8 @@ pub use ordinary::ordinary;
 
 use glam::DVec2;
 
-use super::Chance;
 use crate::cast::Ray;
+use crate::rng::SplitMix64;
 use crate::world::{Grid, TileId};
 
 /// Rays that have something in common, and the grid they are cast in.
@@ -28,10 +28,10 @@ pub struct Set {
 /// All stiff and extreme sets. The largest has some thousands of rays; those on maps of a million
 /// cells have a few.
 pub fn sets(seed: u64) -> Vec<Set> {
-    let mut chance = Chance::new(seed);
-    let mut sets = directions::sets(&mut chance);
-    sets.extend(origins::sets(&mut chance));
-    sets.extend(lengths::sets(&mut chance));
+    let mut random = SplitMix64::new(seed);
+    let mut sets = directions::sets(&mut random);
+    sets.extend(origins::sets(&mut random));
+    sets.extend(lengths::sets(&mut random));
     sets.extend(cameras::sets());
     sets
 }

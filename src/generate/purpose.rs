@@ -1,9 +1,9 @@
-//! Chance that is the same every time: a function of a seed, of what it decides, and of a place.
+//! Random decisions about a level: a function of its seed, of the purpose of the decision, and of a place.
 //!
-//! It is all integers: a finalizer of shifts and odd multiplications, which maps 64 bits one to one and
-//! lets each bit of the input change half of the output, over a counter. What has been dug is
-//! therefore the same on every machine, and in every later version: the numbers are held by tests.
-//! The standard hasher was refused, as it promises neither.
+//! All is integers, so a generated level is the same on every machine and in every later version: tests hold the
+//! numbers.
+
+use crate::rng::{self, SplitMix64};
 
 /// What is being decided. Each has numbers of its own, so that no decision tells about another.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -30,48 +30,14 @@ pub(super) enum Purpose {
     Start = 10,
 }
 
-/// A number that looks random, of a seed, a purpose and a place.
+/// A number that looks random, determined by a seed, a purpose and a place.
 pub(super) fn hash(seed: u64, purpose: Purpose, column: i64, row: i64) -> u64 {
-    [purpose as u64, column as u64, row as u64]
-        .into_iter()
-        .fold(seed, |bits, word| mixed(bits.wrapping_add(INCREMENT) ^ mixed(word)))
+    rng::hash(seed, [purpose as u64, column as u64, row as u64])
 }
 
-/// A series of numbers that look random.
-#[derive(Clone, Debug)]
-pub(super) struct Chance {
-    state: u64,
-}
-
-impl Chance {
-    /// The series of a seed, a purpose and a place.
-    pub(super) fn of(seed: u64, purpose: Purpose, column: i64, row: i64) -> Self {
-        Self { state: hash(seed, purpose, column, row) }
-    }
-
-    /// A number below `count`, which is not 0; all are equally likely, but for one part in 2^32.
-    pub(super) fn below(&mut self, count: usize) -> usize {
-        ((u64::from(self.next()) * count as u64) >> 32) as usize
-    }
-
-    /// Whether the one of `count` possible things happens.
-    pub(super) fn one_in(&mut self, count: usize) -> bool {
-        self.below(count) == 0
-    }
-
-    fn next(&mut self) -> u32 {
-        self.state = self.state.wrapping_add(INCREMENT);
-        (mixed(self.state) >> 32) as u32
-    }
-}
-
-/// Odd, and without a pattern in its bits: 2^64 over the golden ratio.
-const INCREMENT: u64 = 0x9e37_79b9_7f4a_7c15;
-
-fn mixed(mut bits: u64) -> u64 {
-    bits = (bits ^ (bits >> 30)).wrapping_mul(0xbf58_476d_1ce4_e5b9);
-    bits = (bits ^ (bits >> 27)).wrapping_mul(0x94d0_49bb_1331_11eb);
-    bits ^ (bits >> 31)
+/// The generator that a seed, a purpose and a place determine.
+pub(super) fn generator(seed: u64, purpose: Purpose, column: i64, row: i64) -> SplitMix64 {
+    SplitMix64::new(hash(seed, purpose, column, row))
 }
 
 #[cfg(test)]
@@ -86,8 +52,8 @@ mod tests {
             hash(u64::MAX, Purpose::Hub, i64::MIN, i64::MAX),
         ];
         insta::assert_snapshot!(numbers.map(|number| format!("{number:016x}")).join(" "), @"b2db672e8f70d7ff 30a9b53430236bf9 4ba6d1388998120a");
-        let mut chance = Chance::of(7, Purpose::Plan, -3, 5);
-        assert_eq!([(); 8].map(|()| chance.below(100)), [35, 57, 88, 99, 17, 48, 0, 67]);
+        let mut random = generator(7, Purpose::Plan, -3, 5);
+        assert_eq!([(); 8].map(|()| random.below(100)), [35, 57, 88, 99, 17, 48, 0, 67]);
     }
 
     #[test]
@@ -105,13 +71,5 @@ mod tests {
         ] {
             assert!((30..=33).contains(&mean), "{mean} of 64 bits differ");
         }
-    }
-
-    #[test]
-    fn chance_is_fair() {
-        let mut chance = Chance::of(1, Purpose::Plan, 0, 0);
-        let mut counts = [0; 6];
-        (0..6000).for_each(|_| counts[chance.below(6)] += 1);
-        assert!(counts.iter().all(|count| (900..1100).contains(count)), "{counts:?}");
     }
 }

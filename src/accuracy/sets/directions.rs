@@ -2,11 +2,11 @@
 
 use glam::DVec2;
 
-use super::super::Chance;
 use super::{Set, all, hall, places, turned};
 use crate::cast::Ray;
+use crate::rng::SplitMix64;
 
-pub(super) fn sets(chance: &mut Chance) -> Vec<Set> {
+pub(super) fn sets(random: &mut SplitMix64) -> Vec<Set> {
     vec![
         set("axis-parallel", all(&places(), &turned(1.0, 0.0))),
         set("negative zero", all(&places(), &negative_zeros())),
@@ -14,7 +14,7 @@ pub(super) fn sets(chance: &mut Chance) -> Vec<Set> {
         set("tiny", all(&places(), &tiny())),
         set("unlike components", all(&places(), &unlike())),
         set("nearly parallel", all(&places(), &beside_one(&powers_of_ten(3..=17)))),
-        set("through corners", through_corners(chance)),
+        set("through corners", through_corners(random)),
         set("between diagonal walls", between_diagonal_walls()),
         set("along lines", along_lines()),
     ]
@@ -47,8 +47,8 @@ fn unlike() -> Vec<DVec2> {
 }
 
 /// From anywhere to every corner of the grid, and an ulp beside it.
-fn through_corners(chance: &mut Chance) -> Vec<Ray> {
-    let anywhere = DVec2::new(chance.between(1.0, 3.0), chance.between(8.0, 10.0));
+fn through_corners(random: &mut SplitMix64) -> Vec<Ray> {
+    let anywhere = DVec2::new(random.between(1.0, 3.0), random.between(8.0, 10.0));
     let mut rays = Vec::new();
     for origin in places().into_iter().chain([anywhere]) {
         for corner in (0..=12).flat_map(|y| (0..=16).map(move |x| DVec2::new(x.into(), y.into()))) {

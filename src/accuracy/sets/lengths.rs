@@ -4,12 +4,12 @@ use std::f64::consts::TAU;
 
 use glam::DVec2;
 
-use super::super::Chance;
 use super::{Set, all, made};
 use crate::cast::Ray;
+use crate::rng::SplitMix64;
 
-pub(super) fn sets(chance: &mut Chance) -> Vec<Set> {
-    vec![corridor(), long_map(), plain(chance)]
+pub(super) fn sets(random: &mut SplitMix64) -> Vec<Set> {
+    vec![corridor(), long_map(), plain(random)]
 }
 
 /// A corridor of 10⁵ cells, one wide.
@@ -32,7 +32,7 @@ fn long_map() -> Set {
 }
 
 /// An open plain of 4096 × 4096, with a wall around it.
-fn plain(chance: &mut Chance) -> Set {
+fn plain(random: &mut SplitMix64) -> Set {
     let size = 4096;
     let is_edge = |index: u32| index == 0 || index == size - 1;
     let grid = made(size, size, |column, row| is_edge(column) || is_edge(row));
@@ -41,8 +41,8 @@ fn plain(chance: &mut Chance) -> Set {
         &[(1.0, 1.0), (2.0, 1.0), (-1.0, -1.0), (1.0, 1.0 + f64::EPSILON)].map(DVec2::from),
     );
     for _ in 0..30 {
-        let origin = DVec2::new(chance.between(1.0, 4095.0), chance.between(1.0, 4095.0));
-        let (sine, cosine) = libm::sincos(chance.between(0.0, TAU));
+        let origin = DVec2::new(random.between(1.0, 4095.0), random.between(1.0, 4095.0));
+        let (sine, cosine) = libm::sincos(random.between(0.0, TAU));
         rays.extend(Ray::new(origin, DVec2::new(cosine, sine)));
     }
     Set { name: "plain", grid, rays }

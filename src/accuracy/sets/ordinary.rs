@@ -1,24 +1,25 @@
 //! Scenes that people play in, seen by cameras at eye height among the walls.
 
-use super::super::{Chance, random_ray};
+use super::super::random_ray;
 use super::{Set, drawn, made};
 use crate::cast::Ray;
+use crate::rng::SplitMix64;
 use crate::world::Grid;
 
 /// Three ordinary scenes, each with `count` rays from open floor: rooms, pillars, corridors.
 pub fn ordinary(seed: u64, count: usize) -> Vec<Set> {
-    let mut chance = Chance::new(seed);
+    let mut random = SplitMix64::new(seed);
     let scenes = [("rooms", rooms()), ("pillars", pillars()), ("corridors", corridors())];
     scenes
         .map(|(name, grid)| {
-            let rays = rays_from_floor(&grid, count, &mut chance);
+            let rays = rays_from_floor(&grid, count, &mut random);
             Set { name, grid, rays }
         })
         .into()
 }
 
-fn rays_from_floor(grid: &Grid, count: usize, chance: &mut Chance) -> Vec<Ray> {
-    let rays = std::iter::repeat_with(|| random_ray(grid, chance));
+fn rays_from_floor(grid: &Grid, count: usize, random: &mut SplitMix64) -> Vec<Ray> {
+    let rays = std::iter::repeat_with(|| random_ray(grid, random));
     let is_on_floor = |ray: &Ray| {
         let cell = ray.origin().floor();
         !grid.is_solid(cell.x as i64, cell.y as i64)

@@ -2,11 +2,11 @@
 
 use glam::DVec2;
 
-use super::super::Chance;
 use super::{Set, all, hall, made, turned};
 use crate::cast::Ray;
+use crate::rng::SplitMix64;
 
-pub(super) fn sets(chance: &mut Chance) -> Vec<Set> {
+pub(super) fn sets(random: &mut SplitMix64) -> Vec<Set> {
     let set = |name, rays| Set { name, grid: hall(), rays };
     vec![
         set("on lines", all(&on_lines(), &slopes())),
@@ -14,7 +14,7 @@ pub(super) fn sets(chance: &mut Chance) -> Vec<Set> {
         set("beside zero", all(&beside_zero(), &slopes())),
         set("inside walls", all(&inside_walls(), &slopes())),
         far_end(),
-        set("off the map", off_the_map(chance)),
+        set("off the map", off_the_map(random)),
         set("very far off the map", very_far()),
     ]
 }
@@ -70,11 +70,11 @@ fn far_end() -> Set {
 }
 
 /// From outside towards the map, past it and away from it.
-fn off_the_map(chance: &mut Chance) -> Vec<Ray> {
+fn off_the_map(random: &mut SplitMix64) -> Vec<Ray> {
     let mut rays = Vec::new();
     for distance in [1.0, 1e3, 1e6, 1e9, 1e12, 1e15] {
         for way in turned(1.0, 0.25).into_iter().chain(turned(1.0, 0.0)).chain(turned(1.0, 1.0)) {
-            let target = DVec2::new(chance.whole(0, 16), chance.between(0.0, 12.0));
+            let target = DVec2::new(random.whole(0, 16), random.between(0.0, 12.0));
             rays.extend(all(&[target - way * distance], &[way, -way, way * 1e-3]));
         }
     }
