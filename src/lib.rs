@@ -8,6 +8,10 @@
 
 #[cfg(feature = "accuracy")]
 pub mod accuracy;
+#[cfg(feature = "terminal")]
+pub mod app;
+#[cfg(feature = "tui")]
+pub mod canvas;
 pub mod cast;
 #[cfg(feature = "cli")]
 pub mod cli;

@@ -22,9 +22,9 @@ use std::num::NonZeroU32;
 use ratatui::buffer::Buffer;
 use ratatui::layout::Size;
 
+use crate::app::Replay;
 use crate::game::Script;
 use crate::terminal::Fidelity;
-use crate::tui::Replay;
 use encoder::{Brevity, Encoder, Stock, Writer};
 use tally::Tally;
 

@@ -13,10 +13,10 @@ use std::num::{NonZeroU16, NonZeroU32};
 use std::path::Path;
 
 use asciicast::Asciicast;
+use cellcaster::app::{Levels, Replay, Settings};
 use cellcaster::game::Script;
 use cellcaster::map::builtin;
 use cellcaster::terminal::CellWriter;
-use cellcaster::tui::{Levels, Replay, Settings};
 use looks::{Look, looks};
 use ratatui::backend::Backend;
 use ratatui::buffer::Buffer;

@@ -121,10 +121,10 @@ fn encoding_a_frame_allocates_nothing_once_its_memory_has_grown() {
 #[test]
 #[cfg(feature = "terminal")]
 fn the_whole_pipeline_allocates_nothing_once_its_memory_has_grown() {
+    use cellcaster::app::{Levels, Replay, Settings};
     use cellcaster::game::{Intents, Script};
     use cellcaster::map::Level;
     use cellcaster::terminal::{CellWriter, Fidelity};
-    use cellcaster::tui::{Levels, Replay, Settings};
     use ratatui::backend::Backend;
     use ratatui::layout::Size;
 

@@ -3,11 +3,11 @@
 
 use std::num::NonZeroU32;
 
+use cellcaster::app::{Levels, Replay, Settings};
 use cellcaster::color::palette::ColorDepth;
 use cellcaster::game::Script;
 use cellcaster::map::builtin;
 use cellcaster::terminal::Fidelity;
-use cellcaster::tui::{Levels, Replay, Settings};
 use cellcaster::wire::{self, EncoderReport, PalettePlan, PaletteRow, Part, Plan, Report};
 use ratatui::layout::Size;
 

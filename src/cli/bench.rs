@@ -17,8 +17,8 @@ use super::arguments::{Bench, BenchFormat};
 use super::recording::unwritable;
 use super::script::SHOWCASE;
 use super::{Error, level};
+use crate::app::{Replay, Settings};
 use crate::speed::{DrawingRow, Growth, measure_drawing, measure_growth};
-use crate::tui::{Replay, Settings};
 use crate::wire::{PipelineRow, measure_pipeline};
 use footprint::Footprint;
 

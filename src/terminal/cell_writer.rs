@@ -162,7 +162,7 @@ impl<W: Write> CellWriter<W> {
     ///
     /// ```
     /// use cellcaster::terminal::CellWriter;
-    /// use cellcaster::tui::Canvas;
+    /// use cellcaster::canvas::Canvas;
     /// use ratatui::backend::Backend;
     /// use ratatui::layout::Size;
     ///

@@ -8,8 +8,8 @@
 use ratatui::layout::Rect;
 use ratatui::style::Color;
 
-use super::Canvas;
 use super::glyphs::color_at;
+use crate::canvas::Canvas;
 use crate::color::Rgb;
 use crate::color::palette::ColorDepth;
 use crate::render::Surface;

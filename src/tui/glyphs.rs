@@ -2,6 +2,7 @@
 
 use ratatui::style::Color;
 
+use crate::canvas::true_color;
 use crate::color::Rgb;
 use crate::color::palette::{self, ColorDepth};
 use crate::render::PixelAspect;
@@ -67,10 +68,4 @@ pub(super) fn color_at(depth: ColorDepth, color: Rgb) -> Color {
         ColorDepth::Indexed16 => Color::Indexed(palette::nearest_of_16(color)),
         ColorDepth::Mono => Color::Reset,
     }
-}
-
-/// `color`, as ratatui names it.
-#[inline]
-pub(super) fn true_color(color: Rgb) -> Color {
-    Color::Rgb(color.red(), color.green(), color.blue())
 }

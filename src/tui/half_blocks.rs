@@ -11,8 +11,8 @@ mod mono;
 use ratatui::layout::Rect;
 use ratatui::style::Color;
 
-use super::Canvas;
 use super::glyphs::color_at;
+use crate::canvas::Canvas;
 use crate::color::Rgb;
 use crate::color::palette::{ColorDepth, mixture};
 use crate::render::Frame;

@@ -6,7 +6,8 @@ use ratatui::buffer::Buffer;
 use ratatui::layout::{Rect, Size};
 use ratatui::widgets::StatefulWidget;
 
-use super::{Canvas, CellAspect, GlyphMode, ascii, half_blocks, ramp};
+use super::{CellAspect, GlyphMode, ascii, half_blocks, ramp};
+use crate::canvas::Canvas;
 use crate::color::palette::ColorDepth;
 use crate::render::{Frame, FrameSize, PixelAspect};
 use crate::space::{Camera, Explanation, Renderer, Scene};

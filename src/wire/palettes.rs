@@ -16,13 +16,13 @@ use ratatui::backend::Backend;
 use ratatui::layout::Size;
 use ratatui::style::Color;
 
+use crate::canvas::Canvas;
 use crate::color::oklab;
 use crate::color::palette::{ColorDepth, of_256};
 use crate::game::{Game, STEPS_PER_SECOND, Script};
 use crate::map::builtin;
 use crate::render::{Frame, FrameSize, PixelAspect, Renderer};
 use crate::terminal::CellWriter;
-use crate::tui::Canvas;
 use crate::world::{Camera, FieldOfView};
 use methods::{Method, method};
 use view::Seen;

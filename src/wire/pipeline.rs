@@ -10,10 +10,10 @@ use ratatui::layout::Size;
 use ratatui::{Terminal, TerminalOptions, Viewport};
 
 use super::encoder::Sink;
+use crate::app::Replay;
 use crate::game::{Intents, STEPS_PER_SECOND, Script};
 use crate::speed::median;
 use crate::terminal::{CellWriter, Fidelity};
-use crate::tui::Replay;
 
 /// What was measured of one encoder in a window of one size.
 #[derive(Clone, Debug, PartialEq)]

@@ -11,8 +11,8 @@ use super::ascii;
 use super::look::Look;
 use super::shift::{Mark, Shift};
 use super::style::Style;
+use crate::canvas::Canvas;
 use crate::color::Rgb;
-use crate::tui::Canvas;
 
 /// A terminal's screen: what it shows, and what it is to show, cell by cell.
 ///

@@ -17,12 +17,12 @@ use std::sync::LazyLock;
 use ratatui::layout::Rect;
 use ratatui::style::Color;
 
+use crate::canvas::Canvas;
 use crate::color::Rgb;
 use crate::color::oklab;
 use crate::color::palette;
 use crate::color::palette::mixture::{self, Mixture, Mixtures};
 use crate::render::Frame;
-use crate::tui::Canvas;
 
 /// So many cells are drawn at a time, and so need room: an even number.
 const CHUNK: usize = 64;

@@ -8,8 +8,8 @@ use ratatui::layout::Rect;
 use ratatui::style::Color;
 
 use super::{lit_glyph, order};
+use crate::canvas::Canvas;
 use crate::render::Frame;
-use crate::tui::Canvas;
 
 /// Draws the pixels of `frame` as [`super::draw_frame`] does.
 pub(super) fn draw(area: Rect, canvas: &mut impl Canvas, above: u32, frame: &Frame) {
