@@ -12,7 +12,6 @@
 mod compression;
 mod difference;
 mod encoder;
-mod lab;
 mod palettes;
 mod pipeline;
 mod tally;

@@ -1,12 +1,11 @@
-//! Colours as people tell them apart: Oklab, and the amounts of light that it is made of.
+//! Oklab, a colour space in which distance is difference as people see it.
 //!
-//! Oklab is Björn Ottosson's ("A perceptual color space for image processing", 2020): a difference of
-//! 0.02 is about the least that people notice. CIE L\*a\*b\* was refused here, as its blues turn purple
-//! where they are mixed with grey.
+//! Source: Björn Ottosson, "A perceptual color space for image processing" (2020). A difference of
+//! 0.02 is about the least that people notice. CIE L\*a\*b\* was refused for choosing among few colours, as its blues
+//! turn purple where they are mixed with grey.
 
-use std::sync::LazyLock;
-
-use super::Rgb;
+use super::srgb::linear;
+use super::{Rgb, product};
 
 /// A colour by how light, how red and how yellow it looks.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -15,12 +14,7 @@ pub(crate) struct Oklab(pub(crate) [f64; 3]);
 impl Oklab {
     /// The colour of red, green and blue light, each from 0 to 1.
     pub(crate) fn from_linear(light: [f64; 3]) -> Self {
-        let [long, medium, short] = cones(light).map(libm::cbrt);
-        Self([
-            0.210_454_26 * long + 0.793_617_8 * medium - 0.004_072_05 * short,
-            1.977_998_5 * long - 2.428_592_2 * medium + 0.450_593_7 * short,
-            0.025_904_04 * long + 0.782_771_77 * medium - 0.808_675_77 * short,
-        ])
+        Self(product(&FROM_CONE_ROOTS, cones(light).map(libm::cbrt)))
     }
 
     /// The square of the distance of two colours.
@@ -31,29 +25,28 @@ impl Oklab {
 
 impl From<Rgb> for Oklab {
     fn from(color: Rgb) -> Self {
-        Self::from_linear(light(color))
+        Self::from_linear(linear(color))
     }
 }
 
-/// What the eye's three kinds of cones take of light.
-pub(super) fn cones([red, green, blue]: [f64; 3]) -> [f64; 3] {
-    [
-        0.412_221_47 * red + 0.536_332_54 * green + 0.051_445_99 * blue,
-        0.211_903_5 * red + 0.680_699_55 * green + 0.107_396_96 * blue,
-        0.088_302_46 * red + 0.281_718_84 * green + 0.629_978_7 * blue,
-    ]
+/// The responses of the eye's three kinds of cones, for long, medium and short waves, to linear sRGB.
+pub(super) fn cones(light: [f64; 3]) -> [f64; 3] {
+    product(&FROM_LINEAR, light)
 }
 
-/// The red, green and blue light of a colour, each from 0 to 1.
-pub(crate) fn light(color: Rgb) -> [f64; 3] {
-    static LIGHT: LazyLock<[f64; 256]> = LazyLock::new(|| {
-        std::array::from_fn(|value| {
-            let share = value as f64 / 255.0;
-            if share <= 0.040_45 { share / 12.92 } else { libm::pow((share + 0.055) / 1.055, 2.4) }
-        })
-    });
-    color.channels().map(|channel| LIGHT[usize::from(channel)])
-}
+/// From the cube roots of cone responses to Oklab.
+pub(super) const FROM_CONE_ROOTS: [[f64; 3]; 3] = [
+    [0.210_454_26, 0.793_617_8, -0.004_072_05],
+    [1.977_998_5, -2.428_592_2, 0.450_593_7],
+    [0.025_904_04, 0.782_771_77, -0.808_675_77],
+];
+
+/// From linear sRGB to cone responses.
+const FROM_LINEAR: [[f64; 3]; 3] = [
+    [0.412_221_47, 0.536_332_54, 0.051_445_99],
+    [0.211_903_5, 0.680_699_55, 0.107_396_96],
+    [0.088_302_46, 0.281_718_84, 0.629_978_7],
+];
 
 #[cfg(test)]
 mod tests {

@@ -6,7 +6,8 @@ use super::shade::{Bright, Faded, Shade};
 use super::tally::{Pass, Tally};
 use super::track::{Places, Track};
 use crate::color::Rgb;
-use crate::world::texture::{Level, LevelByShifts, mean_of_two};
+use crate::color::srgb::mean_of_two;
+use crate::world::texture::{Level, LevelByShifts};
 use crate::world::{Covering, Light, Paint, Pattern, World};
 
 /// What all of a floor's or a ceiling's spans have in common.

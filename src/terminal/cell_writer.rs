@@ -16,7 +16,6 @@ mod control;
 mod exact;
 mod inexact;
 mod ink;
-mod lab;
 mod look;
 mod motion;
 mod palette;

@@ -4,8 +4,8 @@ use ratatui::buffer::{Buffer, Cell};
 use ratatui::style::{Color, Modifier};
 
 use super::encoder::Encoder;
-use super::lab;
 use crate::color::Rgb;
+use crate::color::lab::Lab;
 
 /// Differences of pixels, added up. A cell is two pixels; a cell of text is as it was drawn.
 #[derive(Clone, Copy, Debug, Default)]
@@ -43,7 +43,7 @@ impl Difference {
         let channels = shown.channels().into_iter().zip(wanted.channels());
         let squares = channels.map(|(one, other)| u64::from(one.abs_diff(other)).pow(2));
         self.squares += squares.sum::<u64>();
-        let distance = lab::distance(shown, wanted);
+        let distance = Lab::from(shown).distance(wanted.into());
         self.distances += distance;
         self.largest = self.largest.max(distance);
     }

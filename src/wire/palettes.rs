@@ -17,8 +17,8 @@ use ratatui::layout::Size;
 use ratatui::style::Color;
 
 use crate::canvas::Canvas;
-use crate::color::oklab;
 use crate::color::palette::{ColorDepth, of_256};
+use crate::color::srgb::linear;
 use crate::game::{Game, STEPS_PER_SECOND, Script};
 use crate::map::builtin;
 use crate::render::{Frame, FrameSize, PixelAspect, Renderer};
@@ -111,7 +111,7 @@ fn report_level(plan: &PalettePlan, name: &str, mut game: Game) -> Vec<PaletteRo
             let pixels = frame.rows().flatten().copied();
             let is_compared = frames % COMPARED == 0;
             if is_compared {
-                truth.look(frame.width() as usize, pixels.map(oklab::light));
+                truth.look(frame.width() as usize, pixels.map(linear));
             }
             for trial in &mut trials {
                 trial.take(&game, &camera, &frame, is_compared.then_some(&truth));
@@ -203,7 +203,7 @@ impl Trial {
         _ = Backend::flush(&mut self.writer);
         self.bytes.push(self.writer.output_mut().drain(..).len());
         if let Some(truth) = truth {
-            let light = |&index: &u8| oklab::light(of_256(index));
+            let light = |&index: &u8| linear(of_256(index));
             self.seen.look(width, self.indices.iter().map(light));
             self.error += self.seen.distances(truth).sum::<f64>();
             self.windows += self.seen.windows();

@@ -223,8 +223,8 @@ impl Rig {
 #[test]
 fn cistern_and_observatory_are_played_to_the_exit() {
     for (name, text) in [
-        ("cistern", include_str!("../../../../maps/cistern.script")),
-        ("observatory", include_str!("../../../../maps/observatory.script")),
+        ("cistern", include_str!("../../../maps/cistern.script")),
+        ("observatory", include_str!("../../../maps/observatory.script")),
     ] {
         let level = builtin::LEVELS.iter().find(|level| level.name == name).unwrap();
         let script = Script::parse(text, name).unwrap_or_else(|faults| panic!("{faults}"));

@@ -4,7 +4,7 @@ use std::fmt::Write;
 
 use super::*;
 
-const DOCUMENT: &str = include_str!("../../../../docs/keys.md");
+const DOCUMENT: &str = include_str!("../../../docs/keys.md");
 const DELAYS: [u64; 4] = [250, 400, 500, 660];
 const RATES: [u32; 4] = [15, 25, 30, 40];
 /// For how long people press a key that they tap.

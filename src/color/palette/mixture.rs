@@ -14,8 +14,9 @@ use std::sync::LazyLock;
 use std::sync::atomic::{AtomicU32, Ordering};
 
 use super::{CUBE, of_256};
-use crate::color::Rgb;
 use crate::color::oklab::{self, Oklab};
+use crate::color::srgb::linear;
+use crate::color::{Rgb, product};
 
 /// Two colours and how much there is of each.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -120,7 +121,7 @@ struct Paint {
 
 impl Paint {
     fn of(index: u8) -> Self {
-        let light = oklab::light(of_256(index));
+        let light = linear(of_256(index));
         let Oklab(lab) = Oklab::from_linear(light);
         Self {
             index,
@@ -228,7 +229,7 @@ struct Candidate {
 
 impl Target {
     fn new(color: Rgb, Palette { paints, taste }: Palette) -> Self {
-        let light = oklab::light(color);
+        let light = linear(color);
         let Oklab(wanted) = Oklab::from_linear(light);
         let wanted = wanted.map(|part| part as f32);
         let cones = oklab::cones(light).map(|share| share as f32);
@@ -247,6 +248,7 @@ impl Target {
                     && its_chroma <= own_chroma + taste.most_excess
                     && cosine >= taste.hue * its_chroma * own_chroma
         };
+        let from_cone_roots = oklab::FROM_CONE_ROOTS.map(|row| row.map(|factor| factor as f32));
         let mut considered = [Candidate::default(); CONSIDERED];
         let mut count = 0;
         for paint in paints.iter().filter(|paint| fits(paint.lab)) {
@@ -255,12 +257,8 @@ impl Target {
             if count == CONSIDERED && distance >= considered[count - 1].distance {
                 continue;
             }
-            let [long, medium, short] = array::from_fn(|i| (paint.cones[i] - cones[i]) * slopes[i]);
-            let error = [
-                0.210_454_26 * long + 0.793_617_8 * medium - 0.004_072_05 * short,
-                1.977_998_5 * long - 2.428_592_2 * medium + 0.450_593_7 * short,
-                0.025_904_04 * long + 0.782_771_77 * medium - 0.808_675_77 * short,
-            ];
+            let roots = array::from_fn(|i| (paint.cones[i] - cones[i]) * slopes[i]);
+            let error = product(&from_cone_roots, roots);
             let candidate = Candidate { index: paint.index, distance, error, lab: paint.lab };
             count = (count + 1).min(CONSIDERED);
             considered[count - 1] = candidate;
@@ -310,7 +308,7 @@ mod tests {
             let [red, green, blue] = color;
             let Mixture { colors, share, .. } = mixture(red, green, blue);
             let part = f64::from(share) / f64::from(Mixture::WHOLE);
-            let [darker, brighter] = colors.map(|index| oklab::light(of_256(index)));
+            let [darker, brighter] = colors.map(|index| linear(of_256(index)));
             let mixed: [f64; 3] = array::from_fn(|i| darker[i] + (brighter[i] - darker[i]) * part);
             let mixed = Oklab::from_linear(mixed).distance_squared(&wanted);
             let nearest = (CUBE..=u8::MAX)

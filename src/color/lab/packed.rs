@@ -1,22 +1,24 @@
-//! How colours look to the eye, in integers.
+//! L\*a\*b\* in integers, for code that converts millions of colours a second.
 //!
-//! A colour is taken to CIE L*a*b* under the light D65, where the distance of two is the straight one,
-//! CIE76's ΔE. Both of its bends, sRGB's and the eye's, are tables that the compiler works out; what
-//! comes out is within 0.1 of what doubles say. A weighted distance of red, green and blue was
-//! refused: at the same mean ΔE it took a third more bytes, most of them for dark colours.
+//! Both nonlinear functions, sRGB's and the eye's, are tables that the compiler works out; distances
+//! are within 0.1 of those of [`Lab`](super::Lab). A weighted distance of red, green and blue was
+//! refused: at the same mean ΔE the encoder took a third more bytes, most of them for dark colours.
+
+use super::super::srgb::LINEAR_16;
+use super::response as response_to;
 
 /// A colour in L*a*b*, in sixty-fourths.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
-pub(super) struct Lab([i16; 3]);
+pub(crate) struct PackedLab([i16; 3]);
 
 /// How many steps a ΔE of 1 has.
 const STEPS: f32 = 64.0;
 
-impl Lab {
+impl PackedLab {
     /// The sRGB colour of these channels.
     #[inline]
-    pub(super) fn of(channels: [u8; 3]) -> Self {
-        let light = |channel: usize| u32::from(LIGHT[usize::from(channels[channel])]);
+    pub(crate) fn of(channels: [u8; 3]) -> Self {
+        let light = |channel: usize| u32::from(LINEAR_16[usize::from(channels[channel])]);
         let (red, green, blue) = (light(0), light(1), light(2));
         let tristimulus = |[r, g, b]: [u32; 3]| response((r * red + g * green + b * blue) >> 16);
         let [to_x, to_y, to_z] = LIGHT_TO_XYZ;
@@ -28,7 +30,7 @@ impl Lab {
 
     /// L*, a* and b*.
     #[inline]
-    pub(super) fn components(self) -> [f32; 3] {
+    pub(crate) fn components(self) -> [f32; 3] {
         self.0.map(|steps| f32::from(steps) * (1.0 / STEPS))
     }
 }
@@ -37,41 +39,16 @@ impl Lab {
 const LIGHT_TO_XYZ: [[u32; 3]; 3] =
     [[28_440, 24_656, 12_440], [13_938, 46_868, 4_730], [1_164, 7_174, 57_198]];
 
-/// Linear light of each value of a channel, in 65535ths.
-static LIGHT: [u16; 256] = {
-    let mut table = [0; 256];
-    let mut value = 0;
-    while value < table.len() {
-        let signal = value as f64 / 255.0;
-        let light = if signal <= 0.040_45 {
-            signal / 12.92
-        } else {
-            // To the power of 12/5.
-            let base = (signal + 0.055) / 1.055;
-            let square = base * base;
-            square * fifth_root(square)
-        };
-        table[value] = (light * 65_535.0 + 0.5) as u16;
-        value += 1;
-    }
-    table
-};
-
 /// How many steps of light lie between two entries of [`RESPONSE`].
 const SPACING: u32 = 64;
 
 /// The eye's answer to light, at every 64th of its steps, in 32768ths.
 static RESPONSE: [u16; 1025] = {
-    const KNEE: f64 = 6.0 / 29.0;
     let mut table = [0; 1025];
     let mut index = 0;
     while index < table.len() {
         let light = index as f64 * SPACING as f64 / 65_535.0;
-        let response = if light > KNEE * KNEE * KNEE {
-            cube_root(light)
-        } else {
-            light / (3.0 * KNEE * KNEE) + 4.0 / 29.0
-        };
+        let response = response_to(light, cube_root(light));
         table[index] = (response * 32_768.0 + 0.5) as u16;
         index += 1;
     }
@@ -97,16 +74,6 @@ const fn cube_root(number: f64) -> f64 {
     root
 }
 
-const fn fifth_root(number: f64) -> f64 {
-    let mut root = 1.0;
-    let mut step = 0;
-    while step < NEWTON_STEPS {
-        root = (4.0 * root + number / (root * root * root * root)) / 5.0;
-        step += 1;
-    }
-    root
-}
-
 const NEWTON_STEPS: u32 = 32;
 
 #[cfg(test)]
@@ -115,7 +82,11 @@ mod tests {
 
     use super::*;
 
-    /// By the formulas of the standard, in doubles.
+    fn distance(one: [f64; 3], other: [f64; 3]) -> f64 {
+        libm::sqrt(one.into_iter().zip(other).map(|(a, b)| (a - b) * (a - b)).sum())
+    }
+
+    /// The oracle: the formulas of the standard in doubles, sharing no table with the rest.
     fn exact([red, green, blue]: [u8; 3]) -> [f64; 3] {
         let linear = |channel: u8| {
             let signal = f64::from(channel) / 255.0;
@@ -144,10 +115,9 @@ mod tests {
 
         #[test]
         fn distances_are_those_of_the_standard(one: [u8; 3], other: [u8; 3]) {
-            let [found, other_found] = [one, other].map(|color| Lab::of(color).components());
-            let found = f64::from(super::super::ink::distance(found, other_found));
-            let squares = exact(one).into_iter().zip(exact(other)).map(|(a, b)| (a - b) * (a - b));
-            let expected = libm::sqrt(squares.sum());
+            let [found, other_found] = [one, other].map(|color| PackedLab::of(color).components());
+            let found = distance(found.map(f64::from), other_found.map(f64::from));
+            let expected = distance(exact(one), exact(other));
             prop_assert!((found - expected).abs() < 0.1, "{} {}", found, expected);
         }
     }
@@ -155,7 +125,7 @@ mod tests {
     #[test]
     fn greys_have_no_hue() {
         for value in 0..=255 {
-            let Lab([lightness, a, b]) = Lab::of([value; 3]);
+            let PackedLab([lightness, a, b]) = PackedLab::of([value; 3]);
             assert_eq!((a, b), (0, 0), "{value}");
             assert!((0..=6400).contains(&lightness), "{value}: {lightness}");
         }
