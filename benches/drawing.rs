@@ -1,13 +1,13 @@
 //! Our drawing beside the classic loop and a fill, at five sizes.
 //!
-//! `cargo bench --no-default-features --features speed --bench drawing` writes the table of
+//! `cargo bench --no-default-features --features lab --bench drawing` writes the table of
 //! `PERFORMANCE.md`: what `cellcaster bench` says of drawing, from more cameras and more often. One
 //! thread draws, but for the last two columns: they tell with how many threads a picture of that size
 //! is drawn here, and how many times faster that is.
 
 use std::time::Duration;
 
-use cellcaster::speed::{self, Scene};
+use cellcaster::lab::speed::{self, Scene};
 
 /// For all of them together.
 const TIME: Duration = Duration::from_secs(100);

@@ -139,7 +139,7 @@ impl App {
             depth: settings.depth.unwrap_or_default(),
             cell_aspect: settings.cell_aspect.unwrap_or_default(),
             memory: Memory {
-                grid: View::with_method(settings.method.clone()),
+                grid: View::with_caster(settings.caster.clone()),
                 ..Memory::default()
             },
             shows_stats: settings.shows_stats,

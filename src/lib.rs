@@ -6,8 +6,6 @@
 //! maps/*.toml ─ map ─▶ World ─ game ─▶ World + Camera ─ render ─▶ Frame ─ tui ─▶ Buffer ─ terminal ─▶ bytes
 //! ```
 
-#[cfg(feature = "accuracy")]
-pub mod accuracy;
 #[cfg(feature = "terminal")]
 pub mod app;
 #[cfg(feature = "tui")]
@@ -19,17 +17,15 @@ pub mod color;
 pub mod fault;
 pub mod game;
 pub mod generate;
+#[cfg(feature = "lab")]
+pub mod lab;
 pub mod map;
 mod numeric;
 pub mod render;
 pub mod rng;
 pub mod space;
-#[cfg(feature = "speed")]
-pub mod speed;
 #[cfg(feature = "terminal")]
 pub mod terminal;
 #[cfg(feature = "tui")]
 pub mod tui;
-#[cfg(feature = "cli")]
-pub mod wire;
 pub mod world;

@@ -1,8 +1,9 @@
 //! What every method keeps, right or wrong: it ends, and what it hits is a wall of the map, at a
 //! distance and at a place on its face.
 
-use cellcaster::accuracy::{self, Set, adversarial_ray};
-use cellcaster::cast::{Caster, Hit, Method, Ray, Visitor};
+use cellcaster::cast::{Caster, Hit, Ray};
+use cellcaster::lab::accuracy::{self, Set, adversarial_ray};
+use cellcaster::lab::casters::{Method, Visitor};
 use cellcaster::rng::SplitMix64;
 use cellcaster::world::Grid;
 use proptest::prelude::*;

@@ -1,9 +1,9 @@
 //! The leaves of doors against rational arithmetic: of a ray that meets one, whether it does, where,
 //! and at which place of its texture.
 
-use cellcaster::accuracy;
 use cellcaster::cast::{Caster, Exact, Hit, Ray, Side};
 use cellcaster::color::Rgb;
+use cellcaster::lab::accuracy;
 use cellcaster::map;
 use cellcaster::render::{Frame, FrameSize, PixelAspect, Renderer};
 use cellcaster::world::{Camera, Cell, FieldOfView, Grid, Heading, Opening, World};

@@ -1,8 +1,8 @@
 //! The exact caster against rational arithmetic: cell and side are the same, the distance is within
 //! two units in its last place, the texture coordinate within 10⁻¹².
 
-use cellcaster::accuracy::{self, adversarial_ray, random_ray};
 use cellcaster::cast::{Caster, Exact, Ray};
+use cellcaster::lab::accuracy::{self, adversarial_ray, random_ray};
 use cellcaster::rng::SplitMix64;
 use cellcaster::world::Grid;
 use proptest::prelude::*;

@@ -6,9 +6,9 @@ use std::num::NonZeroU32;
 use cellcaster::app::{Levels, Replay, Settings};
 use cellcaster::color::palette::ColorDepth;
 use cellcaster::game::Script;
+use cellcaster::lab::wire::{self, EncoderReport, PalettePlan, PaletteRow, Part, Plan, Report};
 use cellcaster::map::builtin;
 use cellcaster::terminal::Fidelity;
-use cellcaster::wire::{self, EncoderReport, PalettePlan, PaletteRow, Part, Plan, Report};
 use ratatui::layout::Size;
 
 fn script() -> Script {

@@ -22,9 +22,8 @@ use std::num::NonZeroU32;
 use std::time::Duration;
 
 use super::bindings::Bindings;
-use crate::cast::Method;
 use crate::color::palette::ColorDepth;
-use crate::render::Filter;
+use crate::render::{DynCaster, Filter};
 use crate::terminal::Fidelity;
 use crate::tui::{CellAspect, GlyphMode};
 use crate::world::FieldOfView;
@@ -45,8 +44,8 @@ pub struct Settings {
     pub glyphs: GlyphMode,
     /// How many colours there are; `None` for what the terminal has.
     pub depth: Option<ColorDepth>,
-    /// How walls are found.
-    pub method: Method,
+    /// The caster that finds the walls.
+    pub caster: DynCaster,
     /// How textures are looked up.
     pub filter: Filter,
     /// How exact frames are; `None` for as exact as the link to the terminal allows.

@@ -18,8 +18,8 @@ use super::recording::unwritable;
 use super::script::SHOWCASE;
 use super::{Error, level};
 use crate::app::{Replay, Settings};
-use crate::speed::{DrawingRow, Growth, measure_drawing, measure_growth};
-use crate::wire::{PipelineRow, measure_pipeline};
+use crate::lab::speed::{DrawingRow, Growth, measure_drawing, measure_growth};
+use crate::lab::wire::{PipelineRow, measure_pipeline};
 use footprint::Footprint;
 
 /// What was measured.

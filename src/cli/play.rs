@@ -27,7 +27,7 @@ pub(super) fn run(options: Play) -> Result<(), Error> {
         cell_aspect: options.cell_aspect,
         glyphs: options.glyphs.or(configuration.glyphs).unwrap_or_else(glyphs_of_locale),
         depth: options.depth.or(configuration.colors),
-        method: options.method.unwrap_or_default(),
+        caster: options.method.unwrap_or_default().caster(),
         filter: options.filter.unwrap_or_default(),
         fidelity: options.fidelity.map_or(configuration.fidelity, FidelityChoice::fixed),
         shows_stats: options.shows_stats,

@@ -56,7 +56,7 @@ pub(super) fn run(options: Snapshot) -> Result<(), Error> {
     }
     if let Some(generated) = options.generated {
         let (world, camera) = dug(generated, &options)?;
-        let view = View::with_method(options.method.clone());
+        let view = View::with_caster(options.method.caster());
         return output(&mut OfGrid::new(&world, &camera, view, &options), &options)
             .map_err(|error| Error::of_output(&error));
     }
@@ -76,7 +76,7 @@ fn draw(level: &Level, options: &Snapshot) -> Result<(), Error> {
     match level {
         Level::Grid(world) => {
             let camera = camera(world, options.camera, options);
-            let view = View::with_method(options.method.clone());
+            let view = View::with_caster(options.method.caster());
             output(&mut OfGrid::new(world, &camera, view, options), options)
         }
         Level::Space(scene) => {

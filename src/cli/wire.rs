@@ -12,8 +12,8 @@ use super::arguments::{Wire, WireFormat};
 use super::script::{self, SHOWCASE};
 use super::{Error, level};
 use crate::app::{Replay, Settings};
+use crate::lab::wire::{self, Plan, Report};
 use crate::terminal::Fidelity;
-use crate::wire::{self, Plan, Report};
 
 /// Reports what `options` ask for.
 pub(super) fn run(options: &Wire) -> Result<(), Error> {

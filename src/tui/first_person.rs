@@ -8,10 +8,9 @@ use ratatui::widgets::StatefulWidget;
 
 use super::{CellAspect, GlyphMode, ascii, half_blocks, ramp};
 use crate::canvas::Canvas;
-use crate::cast::Method;
 use crate::color::palette::ColorDepth;
 use crate::render::{
-    Column, Explanation, Filter, Frame, FrameSize, PixelAspect, Renderer, Surface,
+    Column, DynCaster, Explanation, Filter, Frame, FrameSize, PixelAspect, Renderer, Surface,
 };
 use crate::world::{Camera, World};
 
@@ -138,9 +137,9 @@ impl Default for View {
 }
 
 impl View {
-    /// A view whose renderer finds the walls by `method`.
-    pub fn with_method(method: Method) -> Self {
-        Self { renderer: Renderer::with_method(method), ..Self::default() }
+    /// A view whose renderer finds the walls by `caster`.
+    pub fn with_caster(caster: DynCaster) -> Self {
+        Self { renderer: Renderer::with_caster(caster), ..Self::default() }
     }
 
     /// When something in the last picture begins to look different, by the clock of

@@ -6,7 +6,7 @@ use serde_json::{Value, json};
 
 use crate::cli::arguments::{Wire, WireFormat};
 use crate::color::palette::ColorDepth;
-use crate::wire::{GREY, PalettePlan, PaletteRow, report_palettes};
+use crate::lab::wire::{GREY, PalettePlan, PaletteRow, report_palettes};
 
 pub(super) fn run(depth: ColorDepth, options: &Wire) -> io::Result<()> {
     let plan = PalettePlan {

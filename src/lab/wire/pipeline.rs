@@ -12,7 +12,7 @@ use ratatui::{Terminal, TerminalOptions, Viewport};
 use super::encoder::Sink;
 use crate::app::Replay;
 use crate::game::{Intents, STEPS_PER_SECOND, Script};
-use crate::speed::median;
+use crate::lab::speed::median;
 use crate::terminal::{CellWriter, Fidelity};
 
 /// What was measured of one encoder in a window of one size.

@@ -1,7 +1,8 @@
 //! Whole pictures: how many pixels a method gets wrong.
 
 use super::cast;
-use crate::cast::{Caster, Hit, Method, Ray, Visitor};
+use crate::cast::{Caster, Hit, Ray};
+use crate::lab::casters::{Method, Visitor};
 use crate::render::{Frame, FrameSize, PixelAspect, Renderer};
 use crate::rng::SplitMix64;
 use crate::world::{Camera, Cell, FieldOfView, Grid, Heading, World};

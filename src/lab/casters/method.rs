@@ -1,13 +1,16 @@
 //! The choice of a method, by name.
 //!
-//! A [`Method`] is no caster itself: it hands one to a [`Visitor`], once for a frame or a file of
-//! rays, and the visitor's loop is compiled for each of them. A caster that looks up its own method
+//! A [`Method`] is no caster itself: it hands one to a [`Visitor`], once for a file of
+//! rays, and the visitor's loop is compiled for each of them; a renderer gets its caster from
+//! [`Method::caster`]. A caster that looks up its own method
 //! for each ray was refused: the look-up would cost as much as a short ray.
 
 use std::fmt;
 use std::str::FromStr;
 
-use super::{Accumulate, Caster, Dda, Dda32, Exact, Fixed, March, Table};
+use super::{Accumulate, Dda, Dda32, Fixed, March, Table};
+use crate::cast::{Caster, Exact};
+use crate::render::DynCaster;
 
 /// A method of casting, ready to cast.
 ///
@@ -33,12 +36,12 @@ pub enum Method {
     March(March),
 }
 
-/// What is to be done with a caster, whichever it is.
+/// A function that is generic over the caster.
 pub trait Visitor {
-    /// What comes of it.
+    /// Its result.
     type Output;
 
-    /// Does it with `caster`.
+    /// Calls it with `caster`.
     fn visit<C: Caster>(self, caster: &C) -> Self::Output;
 }
 
@@ -56,6 +59,19 @@ impl Method {
             Self::Fixed(fixed) => visitor.visit(fixed),
             Self::Table(table) => visitor.visit(table),
             Self::March(march) => visitor.visit(march),
+        }
+    }
+
+    /// The caster, for a [renderer](crate::render::Renderer::with_caster).
+    pub fn caster(&self) -> DynCaster {
+        match self {
+            Self::Exact => DynCaster::default(),
+            Self::Dda => DynCaster::new(Dda),
+            Self::Dda32 => DynCaster::new(Dda32),
+            Self::Accumulate => DynCaster::new(Accumulate),
+            Self::Fixed(fixed) => DynCaster::new(fixed.clone()),
+            Self::Table(table) => DynCaster::new(table.clone()),
+            Self::March(march) => DynCaster::new(march.clone()),
         }
     }
 }

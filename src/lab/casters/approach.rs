@@ -7,8 +7,8 @@
 
 use glam::DVec2;
 
-use super::hit::texture_coordinate;
-use super::{Hit, Ray, Side};
+use crate::cast::texture_coordinate;
+use crate::cast::{Hit, Ray, Side};
 use crate::world::{Cell, Grid};
 
 /// A ray that starts on the map or at its edge, its larger component between 1/2 and 1.

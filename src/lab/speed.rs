@@ -15,7 +15,6 @@ mod growth;
 
 pub use classic::{Classic, ClassicFloor};
 pub use crowd::Vista;
-#[cfg(feature = "cli")]
 pub(crate) use drawing::median;
 pub use drawing::{DrawingRow, SIZES, Scene, measure_drawing};
 pub use ground::{Ground, crossing_rays};

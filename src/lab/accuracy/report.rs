@@ -6,7 +6,7 @@ use super::{
     Errors, FilterRow, Gallery, MotionResult, Set, Timing, Trial, compare_filters, compare_motions,
     ordinary, random_ray, sets, time_in_turns,
 };
-use crate::cast::Method;
+use crate::lab::casters::Method;
 use crate::render::FrameSize;
 use crate::rng::SplitMix64;
 use crate::world::World;

@@ -12,8 +12,8 @@ use std::ops::RangeInclusive;
 use glam::DVec2;
 
 use super::approach::Approach;
-use super::walk::first_line;
-use super::{Caster, Hit, Ray, Side};
+use crate::cast::first_line;
+use crate::cast::{Caster, Hit, Ray, Side};
 use crate::world::{Cell, Grid};
 
 /// Casts by steps of one length.

@@ -4,7 +4,8 @@ use std::hint::black_box;
 use std::time::{Duration, Instant};
 
 use super::{Set, Truth, cast};
-use crate::cast::{Caster, Hit, Method, Ray, Visitor};
+use crate::cast::{Caster, Hit, Ray};
+use crate::lab::casters::{Method, Visitor};
 use crate::world::Grid;
 
 /// Rays and what they truly hit.

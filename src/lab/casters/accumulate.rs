@@ -10,8 +10,8 @@
 use glam::DVec2;
 
 use super::approach::Approach;
-use super::walk::first_line;
-use super::{Caster, Hit, Order, Ray, Side, Walk};
+use crate::cast::first_line;
+use crate::cast::{Caster, Hit, Order, Ray, Side, Walk};
 use crate::world::Grid;
 
 /// Casts by adding up the distances between lines.

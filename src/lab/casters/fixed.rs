@@ -13,8 +13,8 @@
 use std::ops::RangeInclusive;
 
 use super::approach::Approach;
-use super::walk::first_line;
-use super::{Caster, Hit, Order, Ray, Side, Walk};
+use crate::cast::first_line;
+use crate::cast::{Caster, Hit, Order, Ray, Side, Walk};
 use crate::world::Grid;
 
 /// Casts by walking the grid in integers.

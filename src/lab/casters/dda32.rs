@@ -9,7 +9,7 @@
 use glam::{DVec2, Vec2};
 
 use super::approach::Approach;
-use super::{Caster, Hit, Order, Ray, Side, Walk};
+use crate::cast::{Caster, Hit, Order, Ray, Side, Walk};
 use crate::world::Grid;
 
 /// Casts by walking the grid in single precision.
