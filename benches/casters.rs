@@ -1,12 +1,13 @@
 //! All methods on the same rays, in three ordinary scenes.
 //!
-//! `cargo bench --no-default-features --features accuracy --bench casters`. An element is a ray. The
+//! `cargo bench --no-default-features --features lab --bench casters`. An element is a ray. The
 //! methods take turns within a scene, so compare within one run only.
 
 use std::hint::black_box;
 
-use cellcaster::accuracy::{self, Set};
-use cellcaster::cast::{Caster, Method, Ray, Visitor};
+use cellcaster::cast::{Caster, Ray};
+use cellcaster::lab::accuracy::{self, Set};
+use cellcaster::lab::casters::{Method, Visitor};
 use cellcaster::world::Grid;
 use criterion::{Bencher, BenchmarkId, Criterion, Throughput, criterion_group, criterion_main};
 

@@ -7,7 +7,7 @@
 
 use std::time::Duration;
 
-use cellcaster::speed::{self, Scene};
+use cellcaster::lab::speed::{self, Scene};
 
 /// For all of them together.
 const TIME: Duration = Duration::from_secs(100);

@@ -8,10 +8,10 @@ use std::fmt::Write as _;
 use std::hint::black_box;
 use std::num::NonZeroU32;
 
+use cellcaster::app::{Levels, Replay, Settings};
 use cellcaster::game::{Script, Stretch};
 use cellcaster::map::builtin;
 use cellcaster::terminal::{CellWriter, Fidelity};
-use cellcaster::tui::{Levels, Replay, Settings};
 use criterion::{Criterion, Throughput, criterion_group, criterion_main};
 use ratatui::backend::{Backend, CrosstermBackend};
 use ratatui::buffer::{Buffer, Cell};

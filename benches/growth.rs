@@ -1,6 +1,6 @@
 //! What grows with the map: a ray with the open distance, a frame and the loading with the area.
 //!
-//! `cargo bench --no-default-features --features speed --bench growth`, on the maps of
+//! `cargo bench --no-default-features --features lab --bench growth`, on the maps of
 //! `cellcaster bench`. A hall is empty but for the walls around it; a plain has, besides, a pillar in one
 //! cell of 4096. In a map of `n` × `n` cells each of the rays goes nearly `n` cells across. An element is
 //! a ray. All maps take their turns one after the other, so compare within one run only.
@@ -8,9 +8,9 @@
 use std::hint::black_box;
 
 use cellcaster::cast::{Caster, Exact, Walk};
+use cellcaster::lab::speed::{Ground, SIDES, crossing_rays};
 use cellcaster::map;
 use cellcaster::render::{Frame, FrameSize, PixelAspect, Renderer};
-use cellcaster::speed::{Ground, SIDES, crossing_rays};
 use cellcaster::world::FieldOfView;
 use criterion::{
     BatchSize, BenchmarkId, Criterion, SamplingMode, Throughput, criterion_group, criterion_main,

@@ -1,12 +1,12 @@
 //! The same things in view, among few and among many that are not.
 //!
-//! `cargo bench --no-default-features --features speed --bench things`, on the maps of
+//! `cargo bench --no-default-features --features lab --bench things`, on the maps of
 //! `cellcaster bench`. All numbers of things take turns within a hall, so compare within one run only.
 
 use std::hint::black_box;
 
+use cellcaster::lab::speed::{CROWDS, Vista};
 use cellcaster::render::{Frame, FrameSize, PixelAspect, Renderer};
-use cellcaster::speed::{CROWDS, Vista};
 use cellcaster::world::FieldOfView;
 use criterion::{BenchmarkId, Criterion, criterion_group, criterion_main};
 

@@ -11,16 +11,6 @@
 //! - There is nothing off the map: a ray may start there and enter, and a ray that leaves escapes.
 //! - Every ray ends, and no hit has a NaN in it.
 //!
-//! | method | finds the hit by | from |
-//! |---|---|---|
-//! | [`Exact`] | the lines in their true order: integers, and longer ones where those can't tell | here |
-//! | [`Dda`] | the lines in order, in double precision | Lode Vandevenne, "Raycasting II" |
-//! | [`Dda32`] | the same in single precision | the same |
-//! | [`Accumulate`] | a running sum of distances | Lode Vandevenne, "Raycasting" |
-//! | [`Fixed`] | the lines in order, in fixed point | drummyfish, LRS, "Raycasting" |
-//! | [`Table`] | x and y lines apart, along the nearest of so many angles | F. Permadi, "Ray-Casting Tutorial" |
-//! | [`March`] | constant steps | what Lode Vandevenne warns of |
-//!
 //! Besides walls there are doors, whose leaf stands back in its cell, cubes that are seen through, and
 //! shapes that do not fill their cell.
 //! [`Caster::cast_through`] knows them:
@@ -34,45 +24,32 @@
 //!   otherwise goes on. A line has no thickness, and both its ends belong to it: a ray along it meets
 //!   nothing, one through an end does. A ray that starts inside a pillar leaves it.
 //!
-//! Only [`Exact`] does that; to the others all of these are walls.
+//! [`Exact`] keeps all of these rules for every ray: it crosses the lines in their true order, by integers, and by longer
+//! ones where those cannot tell. A caster without a [`Caster::cast_through`] of its own takes all of these cells for walls.
 //!
-//! Only [`Exact`] keeps the rules for every ray; the others are here to be compared with it.
-//!
-//! Each method of casting is one file and one type that implements [`Caster`]; callers are generic
-//! over it, and a [`Method`] picks one by name. A method picked through a pointer for each ray was
+//! Callers are generic over the [`Caster`]. One that is picked through a pointer for each ray was
 //! refused: the call would cost as much as a short ray.
 
-mod accumulate;
-mod approach;
-mod cross;
-mod dda;
-mod dda32;
 mod door;
-mod double;
 mod exact;
-mod fixed;
 mod hit;
-mod march;
-mod method;
 mod ray;
+mod rounded;
 mod shape;
 mod sweep;
-mod table;
 mod through;
 mod walk;
 
-pub use accumulate::Accumulate;
-pub use dda::{Dda, DdaOrder};
-pub use dda32::Dda32;
 pub use exact::{Exact, ExactOrder};
-pub use fixed::Fixed;
+#[cfg(feature = "lab")]
+pub(crate) use hit::texture_coordinate;
 pub use hit::{Hit, Side};
-pub use march::March;
-pub use method::{Method, NotAMethod, Visitor};
 pub use ray::{NotARay, Ray};
+pub use rounded::RoundedOrder;
 pub(crate) use shape::Passage;
 pub(crate) use sweep::Sweep;
-pub use table::Table;
+#[cfg(feature = "lab")]
+pub(crate) use walk::first_line;
 pub use walk::{Crossing, Order, Walk};
 pub(crate) use walk::{UnfoldedWalk, Unfolding};
 

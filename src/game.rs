@@ -13,7 +13,6 @@ mod flight;
 mod gaze;
 mod intent;
 mod look;
-mod motion;
 mod notice;
 mod player;
 mod posture;
@@ -32,8 +31,6 @@ pub use exits::is_exit_out_of_reach;
 pub use flight::Flight;
 pub use intent::{Intent, Intents};
 pub use look::Look;
-#[cfg(feature = "accuracy")]
-pub(crate) use motion::approach;
 pub use script::{Recorder, Script, Section, Stretch};
 
 /// The duration of a step, in seconds.

@@ -15,11 +15,11 @@
 
 mod cave;
 mod chunk;
-mod hash;
 mod kit;
 mod level;
 mod maze;
 mod office;
+mod purpose;
 mod window;
 
 use std::fmt;

@@ -49,9 +49,10 @@ use std::fs::{self, File};
 use std::io::{self, Read};
 use std::path::Path;
 
+use crate::color::Rgb;
 use crate::fault::{Fault, Faults, document};
 use crate::space::Scene;
-use crate::world::{Ceiling, Covering, Heights, Paint, Parts, Rgb, Sky, Tile, TileKind, World};
+use crate::world::{Ceiling, Covering, Heights, Paint, Parts, Sky, Tile, TileKind, World};
 use definitions::Definitions;
 use drawing::Drawing;
 use heights::Faces;

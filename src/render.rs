@@ -16,6 +16,7 @@ mod band;
 mod coat;
 mod columns;
 mod doors;
+mod dyn_caster;
 mod explanation;
 mod filter;
 mod frame;
@@ -40,6 +41,7 @@ mod walls;
 mod windows;
 
 pub use columns::{Column, Surface};
+pub use dyn_caster::DynCaster;
 pub use explanation::Explanation;
 pub use filter::Filter;
 pub use frame::{Frame, FrameSize, PixelAspect};
@@ -52,7 +54,7 @@ pub use threads::{Threads, WhyOne};
 
 use std::num::NonZero;
 
-use crate::cast::{Caster, Method, Visitor};
+use crate::cast::Caster;
 use crate::world::{Camera, World};
 use explanation::RaysOf;
 use level::Worker;
@@ -68,7 +70,7 @@ use windows::Windows;
 /// Draws frames, and keeps what is worth keeping from one to the next.
 #[derive(Clone, Debug, Default)]
 pub struct Renderer {
-    method: Method,
+    caster: DynCaster,
     filter: Filter,
     seconds: f64,
     /// How many there may be; `None` for as many as the machine has.
@@ -99,9 +101,9 @@ impl Renderer {
         Self::default()
     }
 
-    /// A renderer that finds the walls by `method`, where [`Renderer::new`] finds them exactly.
-    pub fn with_method(method: Method) -> Self {
-        Self { method, ..Self::default() }
+    /// A renderer that finds the walls by `caster`, where [`Renderer::new`] finds them exactly.
+    pub fn with_caster(caster: DynCaster) -> Self {
+        Self { caster, ..Self::default() }
     }
 
     /// Looks textures up by `filter` from now on.
@@ -133,9 +135,9 @@ impl Renderer {
 
     /// Draws what `camera` sees of `world` into all of `frame`.
     pub fn render(&mut self, world: &World, camera: &Camera, frame: &mut Frame) {
-        let Self { method, filter, seconds, threads, memory } = self;
+        let Self { caster, filter, seconds, threads, memory } = self;
         let (filter, seconds, threads, tally) = (*filter, *seconds, *threads, &mut ());
-        method.accept(Picture { world, camera, filter, seconds, threads, memory, frame, tally });
+        caster.draw(Picture { world, camera, filter, seconds, threads, memory, frame, tally });
     }
 
     /// As [`Renderer::render`], with the walls that `caster` finds.
@@ -148,21 +150,21 @@ impl Renderer {
     ) {
         let Self { filter, seconds, threads, memory, .. } = self;
         let (filter, seconds, threads, tally) = (*filter, *seconds, *threads, &mut ());
-        Picture { world, camera, filter, seconds, threads, memory, frame, tally }.visit(caster);
+        Picture { world, camera, filter, seconds, threads, memory, frame, tally }.draw(caster);
     }
 
     /// As [`Renderer::render`], and tells how it went. Cells are counted along exact rays, whatever
-    /// the method of finding walls.
+    /// the caster.
     pub fn explain(&mut self, world: &World, camera: &Camera, frame: &mut Frame) -> Explanation {
-        let Self { method, filter, seconds, threads, memory } = self;
+        let Self { caster, filter, seconds, threads, memory } = self;
         let mut counts = Counts::default();
         let (filter, seconds, threads, tally) = (*filter, *seconds, *threads, &mut counts);
         let picture = Picture { world, camera, filter, seconds, threads, memory, frame, tally };
-        let plan = method.accept(picture);
+        let plan = caster.draw_counted(picture);
         let projection = Projection::new(camera, frame.size(), frame.pixel_aspect());
         match plan.geometry {
             Geometry::Level => {
-                let rays = method.accept(RaysOf { world, projection: &projection });
+                let rays = caster.count_rays(RaysOf { world, projection: &projection });
                 (counts.rays, counts.cells, counts.looks) = (rays.rays, rays.cells, rays.looks);
             }
             Geometry::Windows(_) => {
@@ -216,10 +218,8 @@ struct Scene<'a> {
     filter: Filter,
 }
 
-impl<T: Tally> Visitor for Picture<'_, T> {
-    type Output = Plan;
-
-    fn visit<C: Caster>(self, caster: &C) -> Plan {
+impl<T: Tally> Picture<'_, T> {
+    fn draw<C: Caster>(self, caster: &C) -> Plan {
         let Self { world, camera, filter, threads, .. } = self;
         let plan = Plan::new(world, camera, filter, self.frame.size(), threads);
         match plan.geometry {
@@ -228,9 +228,7 @@ impl<T: Tally> Visitor for Picture<'_, T> {
         }
         plan
     }
-}
 
-impl<T: Tally> Picture<'_, T> {
     /// Draws by exact rays, whatever the caster: the others know nothing but walls.
     fn draw_windows(self, plan: Plan) {
         let Self { world, camera, filter, seconds, memory, frame, tally, .. } = self;

@@ -25,31 +25,17 @@
 //! # Ok::<(), Box<dyn std::error::Error>>(())
 //! ```
 
-#[cfg(feature = "terminal")]
-mod app;
 mod ascii;
-#[cfg(feature = "terminal")]
-mod bindings;
-mod canvas;
 mod first_person;
 mod glyphs;
 mod half_blocks;
-mod held;
+pub(crate) mod held;
 mod minimap;
 mod ramp;
-#[cfg(feature = "terminal")]
-mod settings;
 mod wanted;
 
-#[cfg(feature = "terminal")]
-pub use app::{Levels, Recording, Replay, play};
-#[cfg(feature = "terminal")]
-pub use bindings::Bindings;
-pub use canvas::Canvas;
 pub use first_person::{FirstPerson, View};
 pub use glyphs::{CellAspect, GlyphMode};
 pub use held::{CHORD, HeldKeys, Hold, LINGER, Press};
 pub use minimap::{Explored, Minimap};
-#[cfg(feature = "terminal")]
-pub use settings::{Configuration, MapDisplay, Settings};
 pub use wanted::{tap_steps, wanted};

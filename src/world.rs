@@ -11,7 +11,6 @@
 mod air;
 mod camera;
 mod clearance;
-mod color;
 mod covering;
 mod door;
 mod face_light;
@@ -28,10 +27,10 @@ pub mod texture;
 mod things;
 mod tile;
 
+use crate::color::Rgb;
 pub use air::{Fog, Light, Sky};
 pub use camera::{Camera, FieldOfView, Heading};
 pub(crate) use clearance::Clearance;
-pub use color::{NotAColor, Rgb};
 pub use covering::{Ceiling, Covering, Pattern, Scale};
 use door::Ajar;
 pub use door::{Door, KeyId, Opening};

@@ -7,8 +7,9 @@
 use std::ops::Range;
 
 use cellcaster::cast::{Caster, Exact, Hit, Ray, Side};
+use cellcaster::color::Rgb;
 use cellcaster::render::FrameSize;
-use cellcaster::world::{Camera, Ceiling, Paint, Rgb, TileKind, World};
+use cellcaster::world::{Camera, Ceiling, Paint, TileKind, World};
 use glam::DVec2;
 
 /// Draws walls between two fills, on square pixels.

@@ -6,9 +6,9 @@
 
 use glam::DVec2;
 
-use super::cross::cross;
 use super::hit::{meeting, texture_coordinate};
 use super::{Hit, Ray, Side};
+use crate::numeric::cross;
 use crate::world::{Cell, Grid, Opening};
 
 /// Where `ray`, which is in `cell` for a while, meets the leaf of the door there. `None` where it

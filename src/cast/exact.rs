@@ -19,8 +19,8 @@ use std::iter;
 
 use glam::DVec2;
 
-use super::cross::cross;
-use super::{Caster, Crossing, DdaOrder, Hit, Order, Ray, Side, Sweep, Walk, through};
+use super::{Caster, Crossing, Hit, Order, Ray, RoundedOrder, Side, Sweep, Walk, through};
+use crate::numeric::cross;
 use crate::world::{Grid, World};
 
 /// Casts by walking the grid in the exact order; the default.
@@ -67,7 +67,7 @@ fn walk_to_first_solid(grid: &Grid, ray: &Ray) -> Option<Crossing> {
 #[derive(Clone, Debug)]
 pub struct ExactOrder {
     ray: Ray,
-    rounded: DdaOrder,
+    rounded: RoundedOrder,
     /// Two rounded distances that are further apart than this are in the right order.
     doubt: f64,
 }
@@ -80,7 +80,7 @@ impl ExactOrder {
 
     /// The order for `ray` among lines that are no further from 0 than `size`.
     pub(super) fn within(size: DVec2, ray: &Ray) -> Self {
-        let rounded = DdaOrder::new(ray);
+        let rounded = RoundedOrder::new(ray);
         // No line is further than that. A distance to one is rounded once when it is taken and once
         // when it is weighed; all together, twice an epsilon is twice as much as that comes to. What
         // vanishes for being too small a double is less than the second term.

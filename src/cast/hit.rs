@@ -3,7 +3,7 @@
 use glam::DVec2;
 
 use super::Ray;
-use super::cross::cross;
+use crate::numeric::cross;
 use crate::world::Cell;
 
 /// Which kind of grid line a ray crossed.
@@ -101,7 +101,7 @@ fn corner_of_face(direction: DVec2, cell: Cell, side: Side) -> DVec2 {
 /// The texture coordinate of a place on a face, `along` cells from its north or west end, as a
 /// viewer sees it who looks along `direction`.
 #[inline]
-pub(super) fn texture_coordinate(direction: DVec2, side: Side, along: f64) -> f64 {
+pub(crate) fn texture_coordinate(direction: DVec2, side: Side, along: f64) -> f64 {
     // Zero is added to be rid of its sign.
     let along = along.clamp(0.0, 1.0) + 0.0;
     let from_left = match side {

@@ -46,14 +46,14 @@ impl Ray {
     /// The direction with its larger component between 1/2 and 1, and the exponent of the power of
     /// two that it was divided by. The smaller component vanishes where it is too small beside the
     /// larger one to be a double.
-    pub(super) fn scaled_direction(&self) -> (DVec2, i32) {
+    pub(crate) fn scaled_direction(&self) -> (DVec2, i32) {
         let exponent = libm::ilogb(self.direction.abs().max_element()) + 1;
         let scale = |component| libm::scalbn(component, -exponent);
         (DVec2::new(scale(self.direction.x), scale(self.direction.y)), exponent)
     }
 
     /// The same line begun elsewhere, and `t` measured in another length.
-    pub(super) fn moved(origin: DVec2, direction: DVec2) -> Self {
+    pub(crate) fn moved(origin: DVec2, direction: DVec2) -> Self {
         Self { origin, direction }
     }
 }

@@ -10,9 +10,8 @@ use std::f64::consts::TAU;
 
 use glam::DVec2;
 
-use super::cross::{cross, sign_of_cross};
-use super::double::Double;
 use super::{Hit, Ray, Side};
+use crate::numeric::{DoubleDouble, cross, sign_of_cross};
 use crate::world::{Cell, Line, Outline, PillarRadius};
 
 /// Where a ray passes through a shape.
@@ -93,16 +92,16 @@ impl Chord {
         if is_clearly_beside(center - ray.origin(), direction, radius) {
             return None;
         }
-        let x = Double::sum(center.x, -ray.origin().x);
-        let y = Double::sum(center.y, -ray.origin().y);
+        let x = DoubleDouble::sum(center.x, -ray.origin().x);
+        let y = DoubleDouble::sum(center.y, -ray.origin().y);
         if x.rounded().abs().max(y.rounded().abs()) > FARTHEST {
             return None;
         }
-        let (along_x, along_y) = (Double::from(direction.x), Double::from(direction.y));
+        let (along_x, along_y) = (DoubleDouble::from(direction.x), DoubleDouble::from(direction.y));
         let to_closest = (x * along_x + y * along_y).rounded();
         let miss = x * along_y - y * along_x;
         let length_squared = along_x.square() + along_y.square();
-        let radius_squared = Double::product(radius, radius);
+        let radius_squared = DoubleDouble::product(radius, radius);
         let half_length_squared = (radius_squared * length_squared - miss.square()).rounded();
         let outside = (x.square() + y.square() - radius_squared).rounded();
         (half_length_squared >= 0.0).then(|| Self {

@@ -154,7 +154,7 @@ impl Axis {
 ///
 /// A ray that is still off the map begins with its edge: what it crosses until there is nothing,
 /// however far away it starts.
-pub(super) fn first_line(origin: f64, direction: f64, count: u32) -> f64 {
+pub(crate) fn first_line(origin: f64, direction: f64, count: u32) -> f64 {
     if direction > 0.0 {
         origin.ceil().max(0.0)
     } else if direction < 0.0 {

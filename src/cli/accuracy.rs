@@ -10,7 +10,7 @@ use std::io::{self, BufWriter, IsTerminal, Write};
 
 use super::arguments::{Accuracy, ReportFormat};
 use super::{Error, level, snapshot};
-use crate::accuracy::{Plan, RaySource, Report, report, set_names};
+use crate::lab::accuracy::{Plan, RaySource, Report, report, set_names};
 use progress::Progress;
 
 /// Reports what `options` ask for.

@@ -17,9 +17,9 @@ use super::arguments::{Bench, BenchFormat};
 use super::recording::unwritable;
 use super::script::SHOWCASE;
 use super::{Error, level};
-use crate::speed::{DrawingRow, Growth, measure_drawing, measure_growth};
-use crate::tui::{Replay, Settings};
-use crate::wire::{PipelineRow, measure_pipeline};
+use crate::app::{Replay, Settings};
+use crate::lab::speed::{DrawingRow, Growth, measure_drawing, measure_growth};
+use crate::lab::wire::{PipelineRow, measure_pipeline};
 use footprint::Footprint;
 
 /// What was measured.

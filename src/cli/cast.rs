@@ -7,7 +7,8 @@ use serde::Serialize;
 
 use super::arguments::Cast;
 use super::{Error, level};
-use crate::cast::{Caster, Ray, Side, Visitor};
+use crate::cast::{Caster, Ray, Side};
+use crate::lab::casters::Visitor;
 use crate::world::World;
 
 /// Answers every line of standard input until it ends.

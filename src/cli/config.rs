@@ -8,7 +8,7 @@ use etcetera::{BaseStrategy, choose_base_strategy};
 
 use super::Error;
 use super::arguments::Config;
-use crate::tui::Configuration;
+use crate::app::Configuration;
 
 /// The configuration in force, and where its file lies.
 pub(super) struct InForce {

@@ -7,11 +7,11 @@ use std::path::Path;
 use super::Error;
 use super::arguments::{Generated, STANDARD_INPUT, subcommand_names};
 use super::watch::Watch;
+use crate::app::Levels;
 use crate::fault::nearest;
 use crate::game::Game;
 use crate::generate::{Site, Window};
 use crate::map::{self, Folder, Level, builtin};
-use crate::tui::Levels;
 use crate::world::World;
 
 /// As [`load`], for a command that needs a grid.

@@ -7,8 +7,10 @@ use std::time::Duration;
 use super::arguments::{FidelityChoice, Play, STANDARD_INPUT};
 use super::recording::RecordingFile;
 use super::{Error, config, level};
+use crate::app;
+use crate::app::{Levels, Settings};
 use crate::terminal::{self, locale_without_utf8, take_keys_from_terminal};
-use crate::tui::{self, GlyphMode, Levels, Settings};
+use crate::tui::GlyphMode;
 
 /// Plays until the player has had enough.
 pub(super) fn run(options: Play) -> Result<(), Error> {
@@ -25,7 +27,7 @@ pub(super) fn run(options: Play) -> Result<(), Error> {
         cell_aspect: options.cell_aspect,
         glyphs: options.glyphs.or(configuration.glyphs).unwrap_or_else(glyphs_of_locale),
         depth: options.depth.or(configuration.colors),
-        method: options.method.unwrap_or_default(),
+        caster: options.method.unwrap_or_default().caster(),
         filter: options.filter.unwrap_or_default(),
         fidelity: options.fidelity.map_or(configuration.fidelity, FidelityChoice::fixed),
         shows_stats: options.shows_stats,
@@ -35,7 +37,7 @@ pub(super) fn run(options: Play) -> Result<(), Error> {
     let file = options.record.as_deref();
     let file = file.map(|path| RecordingFile::create(path, options.overwrites)).transpose()?;
     let recording = file.as_ref().map(RecordingFile::recording).unwrap_or_default();
-    let played = tui::play(levels, settings, recording);
+    let played = app::play(levels, settings, recording);
     let written = file.map_or(Ok(()), RecordingFile::finish);
     played.map_err(about_the_terminal)?;
     written

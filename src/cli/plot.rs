@@ -10,7 +10,7 @@ mod svg;
 
 pub(super) use self::png::write as write_png;
 pub(super) use self::svg::write as write_svg;
-use crate::world::Rgb;
+use crate::color::Rgb;
 
 /// A page and what is on it; places are from its top left corner.
 pub(super) struct Page {

@@ -10,7 +10,7 @@ use ratatui::layout::Size;
 
 use super::Error;
 use super::asciicast::Asciicast;
-use crate::{game, terminal, tui};
+use crate::{app, game, terminal};
 
 /// What a file holds, by its ending.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -55,14 +55,14 @@ impl RecordingFile {
     }
 
     /// What writes it.
-    pub(super) fn recording(&self) -> tui::Recording {
+    pub(super) fn recording(&self) -> app::Recording {
         let output = self.output.clone();
         if self.kind == Kind::Asciicast {
             let terminal = TerminalRecorder { output, asciicast: None, start: Instant::now() };
-            tui::Recording { terminal: Some(Box::new(terminal)), script: None }
+            app::Recording { terminal: Some(Box::new(terminal)), script: None }
         } else {
             let script = game::Recorder::new(Box::new(output) as Box<dyn Write>);
-            tui::Recording { terminal: None, script: Some(script) }
+            app::Recording { terminal: None, script: Some(script) }
         }
     }
 

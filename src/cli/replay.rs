@@ -16,9 +16,10 @@ use super::arguments::Replay;
 use super::asciicast::Asciicast;
 use super::recording::unwritable;
 use super::{Error, level, script};
+use crate::app;
+use crate::app::Settings;
 use crate::game::Script;
 use crate::terminal::CellWriter;
-use crate::tui::{self, Settings};
 
 /// Writes the recording that `options` ask for.
 pub(super) fn run(options: &Replay) -> Result<(), Error> {
@@ -30,7 +31,7 @@ pub(super) fn run(options: &Replay) -> Result<(), Error> {
         ..Settings::default()
     };
     let size = options.size.cells();
-    let mut replay = tui::Replay::new(levels, settings, size);
+    let mut replay = app::Replay::new(levels, settings, size);
     match &options.cast {
         None => write(&mut replay, &script, options, BufWriter::new(io::stdout().lock()))
             .map_err(|error| Error::of_output(&error)),
@@ -41,7 +42,7 @@ pub(super) fn run(options: &Replay) -> Result<(), Error> {
 }
 
 fn write(
-    replay: &mut tui::Replay,
+    replay: &mut app::Replay,
     script: &Script,
     options: &Replay,
     output: impl Write,

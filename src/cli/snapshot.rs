@@ -20,13 +20,14 @@ use ratatui::style::Color;
 
 use super::arguments::{Format, Generated, Snapshot};
 use super::{Error, level};
+use crate::color::Rgb;
+use crate::color::palette;
 use crate::generate::Site;
 use crate::map::Level;
-use crate::palette;
 use crate::render::Renderable;
 use crate::space::{self, Elevation, Scene};
 use crate::tui::View;
-use crate::world::{Camera, Heading, Rgb, World};
+use crate::world::{Camera, Heading, World};
 use picture::Picture;
 
 /// Rows of cells that are made at a time: a multiple of the height of the pattern that dithers.
@@ -56,7 +57,7 @@ pub(super) fn run(options: Snapshot) -> Result<(), Error> {
     }
     if let Some(generated) = options.generated {
         let (world, camera) = dug(generated, &options)?;
-        let view = View::with_method(options.method.clone());
+        let view = View::with_caster(options.method.caster());
         return output(Picture::new(&world, &camera, view, &options), &options)
             .map_err(|error| Error::of_output(&error));
     }
@@ -76,7 +77,7 @@ fn draw(level: &Level, options: &Snapshot) -> Result<(), Error> {
     match level {
         Level::Grid(world) => {
             let camera = camera(world, options.camera, options);
-            let view = View::with_method(options.method.clone());
+            let view = View::with_caster(options.method.caster());
             output(Picture::new(&**world, &camera, view, options), options)
         }
         Level::Space(scene) => {

@@ -11,9 +11,9 @@ use std::io::{self, BufWriter, Write};
 use super::arguments::{Wire, WireFormat};
 use super::script::{self, SHOWCASE};
 use super::{Error, level};
+use crate::app::{Replay, Settings};
+use crate::lab::wire::{self, Plan, Report};
 use crate::terminal::Fidelity;
-use crate::tui::{Replay, Settings};
-use crate::wire::{self, Plan, Report};
 
 /// Reports what `options` ask for.
 pub(super) fn run(options: &Wire) -> Result<(), Error> {

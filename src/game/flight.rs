@@ -8,9 +8,9 @@
 use glam::{DVec2, DVec3};
 
 use super::intent::{Intent, Intents};
-use super::motion::{Glide, approach};
 use super::turning::{self, Turning};
 use super::{FRICTION, RUN, STEP, STILL, WALK};
+use crate::numeric::damped_motion::{DampedMotion, approach};
 use crate::space::{Camera, EYE_ROOM, Elevation, Scene};
 use crate::world::{FieldOfView, Heading};
 
@@ -126,7 +126,7 @@ impl Player {
         }
         let speed = if intents.contains(Intent::Aim) { AIM_UPWARDS } else { RAISE };
         let target = speed * intents.balance(Intent::LookUp, Intent::LookDown);
-        let Glide { velocity, displacement } =
+        let DampedMotion { velocity, displacement } =
             approach(self.raising, target, turning::FRICTION, STEP);
         let elevation = self.elevation.raised(displacement + intents.look().tilt_radians());
         let has_stopped = velocity.abs() < STILL || elevation == self.elevation;
@@ -203,9 +203,9 @@ mod tests {
     use proptest::prelude::*;
 
     use super::*;
+    use crate::color::Rgb;
     use crate::game::Look;
     use crate::space::{Block, Body, Coat, Plane, Shape, Sphere, Start};
-    use crate::world::Rgb;
 
     /// A start between a floor, a ball, an inclined wall and a box.
     fn scene(degrees: f64) -> Scene {

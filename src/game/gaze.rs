@@ -5,7 +5,7 @@
 
 use super::STEP;
 use super::intent::{Intent, Intents};
-use super::motion::{Glide, approach};
+use crate::numeric::damped_motion::{DampedMotion, approach};
 use crate::world::Pitch;
 
 /// How fast the pitch changes, as a slope per second; and while aiming.
@@ -38,7 +38,7 @@ impl Gaze {
             return Self { returns, ..self }.returned();
         }
         let target = upwards * if intents.contains(Intent::Aim) { AIM } else { LOOK };
-        let Glide { velocity, displacement } = approach(self.speed, target, FRICTION, STEP);
+        let DampedMotion { velocity, displacement } = approach(self.speed, target, FRICTION, STEP);
         let pitch = self.pitch.tilted(displacement + tilt);
         let is_still = velocity.abs() < STILL || pitch == self.pitch;
         Self { pitch, speed: if is_still { 0.0 } else { velocity }, returns }

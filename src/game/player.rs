@@ -7,10 +7,10 @@ use super::collision::{Body, Place, Radius, Stature, overlaps, slide};
 use super::fall::{Flight, GRAVITY, Room};
 use super::gaze::Gaze;
 use super::intent::{Intent, Intents};
-use super::motion::{Glide, approach_in_plane};
 use super::posture::Posture;
 use super::turning::Turning;
 use crate::generate::Shift;
+use crate::numeric::damped_motion::{DampedMotion, approach_in_plane};
 use crate::world::{Camera, Cell, FieldOfView, Heading, World};
 
 /// The player's radius, in cells: a door is twice as wide as the player.
@@ -166,7 +166,7 @@ impl Player {
         let step = if stands && !jumps { STEP_HEIGHT } else { 0.0 };
 
         let target = wanted_velocity(self.heading, intents);
-        let Glide { velocity, displacement } =
+        let DampedMotion { velocity, displacement } =
             approach_in_plane(self.body.velocity, target, FRICTION, STEP);
         let mut place = Place { step, ..self.place(world) };
         let mut body = slide(&mut place, Body { velocity, ..self.body }, displacement, RADIUS);

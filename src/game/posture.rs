@@ -4,7 +4,7 @@
 //! The body, which collides with ceilings, moves with the feet.
 
 use super::STEP;
-use super::motion::approach;
+use crate::numeric::damped_motion::approach;
 use crate::world::Camera;
 
 /// The height of the body, standing and ducking, in cells.

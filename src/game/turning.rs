@@ -7,7 +7,7 @@ use std::f64::consts::PI;
 
 use super::STEP;
 use super::intent::{Intent, Intents};
-use super::motion::{Glide, approach};
+use crate::numeric::damped_motion::{DampedMotion, approach};
 
 /// Radians per second.
 const TURN: f64 = 2.4;
@@ -48,7 +48,7 @@ impl Turning {
     pub(super) fn after_a_step(self, intents: Intents) -> (Self, f64) {
         let speed = if intents.contains(Intent::Aim) { AIM } else { TURN };
         let target = speed * intents.balance(Intent::TurnRight, Intent::TurnLeft);
-        let Glide { velocity, displacement } = approach(self.speed, target, FRICTION, STEP);
+        let DampedMotion { velocity, displacement } = approach(self.speed, target, FRICTION, STEP);
         let speed = if velocity.abs() < STILL { 0.0 } else { velocity };
         let (turning, angle) = Self { speed, ..self }.wanting(intents).after_an_exact_step();
         (turning, displacement + angle)

@@ -10,7 +10,8 @@
 
 use super::Terrain;
 use super::chunk::{CHUNK_SIDE, Chunk, Plot, every_cell};
-use super::hash::{Chance, Purpose, hash};
+use super::purpose::{Purpose, generator, hash};
+use crate::rng::SplitMix64;
 
 /// The cave of a seed.
 #[derive(Clone, Debug)]
@@ -71,9 +72,9 @@ impl Terrain for Cave {
         let Some(hub) = self.hub(plot) else { return chunk };
         dig_around(&mut chunk, plot, hub, HUB_RADIUS);
         chunk.set(hub.0, hub.1, FLOOR);
-        let mut chance = Chance::of(self.seed, Purpose::Plan, column, row);
+        let mut random = generator(self.seed, Purpose::Plan, column, row);
         for gate in self.gates(plot).into_iter().flatten() {
-            dig_tunnel(&mut chunk, plot, hub, gate, &mut chance);
+            dig_tunnel(&mut chunk, plot, hub, gate, &mut random);
         }
         self.furnish(&mut chunk, plot, hub);
         chunk
@@ -83,9 +84,9 @@ impl Terrain for Cave {
         if !plot.holds(LEAST) {
             return None;
         }
-        let mut chance = Chance::of(self.seed, Purpose::Hub, plot.chunk.column, plot.chunk.row);
+        let mut random = generator(self.seed, Purpose::Hub, plot.chunk.column, plot.chunk.row);
         let mut within = |range: &std::ops::Range<usize>| {
-            range.start + range.len() / 4 + chance.below(range.len() / 2)
+            range.start + range.len() / 4 + random.below(range.len() / 2)
         };
         Some((within(&plot.columns), within(&plot.rows)))
     }
@@ -126,7 +127,7 @@ impl Cave {
         let (column, row) = (plot.chunk.column, plot.chunk.row);
         let has_hub = |columns, rows| self.hub(&plot.neighbor(columns, rows)).is_some();
         let along = |range: &std::ops::Range<usize>, purpose, column, row| {
-            range.start + Chance::of(self.seed, purpose, column, row).below(range.len())
+            range.start + generator(self.seed, purpose, column, row).below(range.len())
         };
         let across = |column, row| along(&plot.columns, Purpose::NorthPassage, column, row);
         let down = |column, row| along(&plot.rows, Purpose::WestPassage, column, row);
@@ -142,7 +143,7 @@ impl Cave {
     /// Places stalagmites and things where the player can walk around them, but not on the hub.
     fn furnish(&self, chunk: &mut Chunk, plot: &Plot, hub: Place) {
         let (column, row) = (plot.chunk.column, plot.chunk.row);
-        let mut chance = Chance::of(self.seed, Purpose::Furniture, column, row);
+        let mut random = generator(self.seed, Purpose::Furniture, column, row);
         let inner = 1..CHUNK_SIDE - 1;
         let places = inner.clone().flat_map(|y| inner.clone().map(move |x| (x, y)));
         for (x, y) in places.filter(|&place| place != hub) {
@@ -151,7 +152,7 @@ impl Cave {
             if !is_free {
                 continue;
             }
-            match chance.below(60) {
+            match random.below(60) {
                 0..5 => chunk.set(x, y, STALAGMITE),
                 5 => chunk.set(x, y, CRYSTAL),
                 6..9 => chunk.set(x, y, TORCH),
@@ -181,15 +182,15 @@ fn dig_around(chunk: &mut Chunk, plot: &Plot, (column, row): Place, radius: usiz
 }
 
 /// Clears a winding tunnel from one cell of the plot to another.
-fn dig_tunnel(chunk: &mut Chunk, plot: &Plot, from: Place, to: Place, chance: &mut Chance) {
+fn dig_tunnel(chunk: &mut Chunk, plot: &Plot, from: Place, to: Place, random: &mut SplitMix64) {
     let (mut column, mut row) = from;
     let mut steps = 0;
     while (column, row) != to {
         steps += 1;
         let (across, down) = (to.0.abs_diff(column), to.1.abs_diff(row));
-        let goes_across = chance.below(across + down) < across;
-        if steps < WINDING && chance.one_in(3) {
-            let back_and_forth = chance.one_in(2);
+        let goes_across = random.below(across + down) < across;
+        if steps < WINDING && random.one_in(3) {
+            let back_and_forth = random.one_in(2);
             let beside = |place, range: &std::ops::Range<usize>| {
                 stepped(place, if back_and_forth { range.start } else { range.end - 1 })
             };
@@ -203,7 +204,7 @@ fn dig_tunnel(chunk: &mut Chunk, plot: &Plot, from: Place, to: Place, chance: &m
         } else {
             row = stepped(row, to.1);
         }
-        dig_around(chunk, plot, (column, row), usize::from(chance.one_in(3)));
+        dig_around(chunk, plot, (column, row), usize::from(random.one_in(3)));
     }
 }
 

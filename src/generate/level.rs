@@ -3,8 +3,8 @@
 use std::sync::Arc;
 
 use super::chunk::{CHUNK_SIDE, Chunk, ChunkIndex, Extent, Site};
-use super::hash::{Chance, Purpose};
 use super::kit::{Kit, ROCK};
+use super::purpose::{Purpose, generator};
 use super::{Generator, Terrain};
 use crate::fault::Faults;
 
@@ -117,12 +117,11 @@ impl Level {
     /// A chunk with a hub at the eastern or southern end.
     fn chunk_for_exit(&self) -> Option<ChunkIndex> {
         let Extent::Cells { columns, rows } = self.extent else { return None };
-        let mut chance = Chance::of(self.terrain.seed(), Purpose::Exit, 0, 0);
+        let mut random = generator(self.terrain.seed(), Purpose::Exit, 0, 0);
         let chunks = |side: u32| (side as usize).div_ceil(CHUNK_SIDE);
         let (columns, rows) = (chunks(columns), chunks(rows));
-        let (across, down) = (chance.below(columns), chance.below(rows));
-        let is_in_the_east = chance.one_in(2);
-        // The outermost chunks may be too narrow for one.
+        let (across, down) = (random.below(columns), random.below(rows));
+        let is_in_the_east = random.one_in(2);
         let places = (1..=columns.min(2)).flat_map(|from_east| {
             (1..=rows.min(2)).flat_map(move |from_south| {
                 let (last_column, last_row) = (columns - from_east, rows - from_south);

@@ -11,7 +11,8 @@
 
 use super::Terrain;
 use super::chunk::{CHUNK_SIDE, Chunk, Plot};
-use super::hash::{Chance, Purpose, hash};
+use super::purpose::{Purpose, generator, hash};
+use crate::rng::SplitMix64;
 
 /// The maze of a seed.
 #[derive(Clone, Debug)]
@@ -67,7 +68,7 @@ impl Terrain for Maze {
             chunk: Chunk::full_of(district.wall),
             district,
             nodes: (plot.columns.end / 2, plot.rows.end / 2),
-            chance: Chance::of(self.seed, Purpose::Plan, column, row),
+            random: generator(self.seed, Purpose::Plan, column, row),
         };
         if self.hub(plot).is_some() {
             digging.grow_tree();
@@ -89,16 +90,16 @@ impl Maze {
         let (columns, rows) = digging.nodes;
         let (column, row) = (plot.chunk.column, plot.chunk.row);
         if self.hub(&plot.neighbor(-1, 0)).is_some() {
-            let mut chance = Chance::of(self.seed, Purpose::WestPassage, column, row);
+            let mut random = generator(self.seed, Purpose::WestPassage, column, row);
             for _ in 0..PASSAGES {
-                let node = in_half(rows, column, &mut chance);
+                let node = in_half(rows, column, &mut random);
                 digging.dig((0, 2 * node + 1));
             }
         }
         if self.hub(&plot.neighbor(0, -1)).is_some() {
-            let mut chance = Chance::of(self.seed, Purpose::NorthPassage, column, row);
+            let mut random = generator(self.seed, Purpose::NorthPassage, column, row);
             for _ in 0..PASSAGES {
-                let node = in_half(columns, row, &mut chance);
+                let node = in_half(columns, row, &mut random);
                 digging.dig((2 * node + 1, 0));
             }
         }
@@ -107,9 +108,9 @@ impl Maze {
 
 /// One of `nodes` nodes along a border: in the first half if `border` is even, in the second half
 /// if it is odd.
-fn in_half(nodes: usize, border: i64, chance: &mut Chance) -> usize {
+fn in_half(nodes: usize, border: i64, random: &mut SplitMix64) -> usize {
     let first = nodes / 2;
-    if border % 2 == 0 { chance.below(first.max(1)) } else { first + chance.below(nodes - first) }
+    if border % 2 == 0 { random.below(first.max(1)) } else { first + random.below(nodes - first) }
 }
 
 /// A chunk in the making.
@@ -118,7 +119,7 @@ struct Digging {
     district: District,
     /// The number of nodes from west to east and from north to south, both above 0.
     nodes: (usize, usize),
-    chance: Chance,
+    random: SplitMix64,
 }
 
 /// The column and row of a node among the nodes of its chunk.
@@ -136,7 +137,7 @@ impl Digging {
                 way.pop();
                 continue;
             }
-            let next = undug[self.chance.below(undug.len())];
+            let next = undug[self.random.below(undug.len())];
             self.dig(between(node, next));
             self.dig(cell(next));
             way.push(next);
@@ -153,9 +154,9 @@ impl Digging {
                 continue;
             }
             let (column, row) = cell(node);
-            match self.chance.below(6) {
+            match self.random.below(6) {
                 0..3 if !walls.is_empty() => {
-                    let next = walls[self.chance.below(walls.len())];
+                    let next = walls[self.random.below(walls.len())];
                     self.dig(between(node, next));
                 }
                 3 => self.chunk.set(column, row, self.district.torch),
@@ -168,19 +169,19 @@ impl Digging {
     /// Clears halls of three by two or three nodes, with a statue or a torch.
     fn dig_halls(&mut self) {
         for _ in 0..2 {
-            let (width, height) = (3, 2 + self.chance.below(2));
-            if self.nodes.0 < width || self.nodes.1 < height || self.chance.one_in(3) {
+            let (width, height) = (3, 2 + self.random.below(2));
+            if self.nodes.0 < width || self.nodes.1 < height || self.random.one_in(3) {
                 continue;
             }
-            let column = self.chance.below(self.nodes.0 - width + 1);
-            let row = self.chance.below(self.nodes.1 - height + 1);
+            let column = self.random.below(self.nodes.0 - width + 1);
+            let row = self.random.below(self.nodes.1 - height + 1);
             let ((west, north), (east, south)) =
                 (cell((column, row)), cell((column + width - 1, row + height - 1)));
             let cells = (north..=south).flat_map(|row| (west..=east).map(move |x| (x, row)));
             cells.for_each(|place| self.dig(place));
             let center = (usize::midpoint(west, east), usize::midpoint(north, south));
             let District { landmark, torch, .. } = self.district;
-            let landmark = if self.chance.one_in(2) { landmark } else { torch };
+            let landmark = if self.random.one_in(2) { landmark } else { torch };
             self.chunk.set(center.0, center.1, landmark);
         }
     }

@@ -13,7 +13,7 @@ mod decor;
 
 use super::Terrain;
 use super::chunk::{CHUNK_SIDE, Chunk, Plot, every_cell};
-use super::hash::{Chance, Purpose};
+use super::purpose::{Purpose, generator};
 use block::Block;
 use decor::Decor;
 
@@ -53,9 +53,9 @@ impl Terrain for Office {
         }
         dig_corridors(&mut chunk, plot);
         self.set_fire_doors(&mut chunk, plot);
-        let chance = Chance::of(self.seed, Purpose::Plan, plot.chunk.column, plot.chunk.row);
+        let random = generator(self.seed, Purpose::Plan, plot.chunk.column, plot.chunk.row);
         if let Some(block) = Block::of(plot, CORRIDORS.end) {
-            block.build(&mut chunk, chance);
+            block.build(&mut chunk, random);
         }
         chunk
     }
@@ -78,8 +78,8 @@ impl Terrain for Office {
         if rooms.is_empty() {
             return (0, 0);
         }
-        let mut chance = Chance::of(self.seed, Purpose::Start, plot.chunk.column, plot.chunk.row);
-        let places = (0..PLACES).map(|_| rooms[chance.below(rooms.len())]);
+        let mut random = generator(self.seed, Purpose::Start, plot.chunk.column, plot.chunk.row);
+        let places = (0..PLACES).map(|_| rooms[random.below(rooms.len())]);
         places.max_by_key(|&place| longest_view(&chunk, place)).unwrap_or_default()
     }
 }

@@ -1,9 +1,10 @@
 //! The sky and the fog of a map.
 
 use super::textures::{Surface, Textures};
+use crate::color::Rgb;
 use crate::fault::document::{Entry, entries};
 use crate::fault::{Fault, quoted};
-use crate::world::{Fog, Paint, Rgb, Sky};
+use crate::world::{Fog, Paint, Sky};
 
 const SKY_KEYS: &[&str] = &["gradient", "panorama"];
 const SKY_EXAMPLE: &str = r##"sky = { gradient = ["#5080c0", "#c0d8f0"] }"##;

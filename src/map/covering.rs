@@ -3,9 +3,10 @@
 use toml::de::{DeTable, DeValue};
 
 use super::textures::{Surface, Textures};
+use crate::color::Rgb;
 use crate::fault::Fault;
 use crate::fault::document::{Entry, entries};
-use crate::world::{Ceiling, Covering, Pattern, Rgb, Scale};
+use crate::world::{Ceiling, Covering, Pattern, Scale};
 
 const KEYS: &[&str] = &["texture", "checker", "stripes", "scale"];
 const EXAMPLE: &str = r#"{ texture = "tile" }"#;

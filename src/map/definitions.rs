@@ -7,9 +7,10 @@ use super::covering::{CeilingText, CoveringText};
 use super::heights;
 use super::legend::{self, Legend, Section};
 use super::textures::Surface;
+use crate::color::Rgb;
 use crate::fault::Fault;
 use crate::fault::document::{Entry, entries};
-use crate::world::{Fog, Heights, Light, Rgb};
+use crate::world::{Fog, Heights, Light};
 
 /// The keys of a map.
 pub(super) const KEYS: &[&str] = &[

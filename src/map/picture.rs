@@ -6,7 +6,8 @@ use std::num::NonZeroU32;
 
 use png::{ColorType, Decoder, DecodingError, Limits, Transformations};
 
-use crate::world::{Rgb, Texture};
+use crate::color::Rgb;
+use crate::world::Texture;
 
 /// The largest number of texels in a row or a column of a texture.
 const MAX_SIDE: u32 = 1024;

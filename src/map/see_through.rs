@@ -3,9 +3,10 @@
 use toml::de::{DeTable, DeValue};
 
 use super::textures::{Surface, Textures};
+use crate::color::Rgb;
 use crate::fault::document::{Entry, entries};
 use crate::fault::{Fault, quoted};
-use crate::world::{Glass, Paint, Rgb, TextureId};
+use crate::world::{Glass, Paint, TextureId};
 
 const GLASS_EXAMPLE: &str = r##"{ glass = "#80c0ff", opacity = 0.3 }"##;
 const GLASS_OPACITY: f64 = 0.3;

@@ -8,9 +8,10 @@ mod surface;
 use std::collections::BTreeMap;
 
 use super::picture;
+use crate::color::Rgb;
 use crate::fault::{Fault, quoted};
 use crate::world::texture::builtin;
-use crate::world::{Paint, Rgb, Texture, TextureId};
+use crate::world::{Paint, Texture, TextureId};
 pub use files::{Folder, NoFiles, TextureFileError, TextureFiles};
 pub(super) use files::{is_png, stays_inside};
 use surface::Source;

@@ -6,7 +6,7 @@
 
 use std::ops::Range;
 
-use crate::world::Rgb;
+use crate::color::Rgb;
 
 /// Some rows of a frame.
 #[derive(Debug)]

@@ -12,7 +12,7 @@ use super::band::Band;
 use super::paper::{Paper, Papers, Place};
 use super::shade::Shade;
 use super::texels_down::TexelsDown;
-use crate::world::Rgb;
+use crate::color::Rgb;
 
 /// So many columns are drawn together at most.
 pub(super) const COLUMNS_AT_ONCE: usize = 15 * LANES;

@@ -7,7 +7,7 @@ use super::projection::Projection;
 use super::see_through::Passed;
 use super::tally::{Counts, Pass};
 use super::{Geometry, Plan, WindowCounts, columns};
-use crate::cast::{Caster, Hit, Ray, Sweep, Visitor, Walk};
+use crate::cast::{Caster, Hit, Ray, Sweep, Walk};
 use crate::world::{Grid, World};
 
 /// How a frame was drawn, and what it cost.
@@ -62,16 +62,14 @@ pub(super) struct RayCounts {
     pub(super) looks: u64,
 }
 
-/// Counts the rays of a picture of `world` that is level, by a caster that it [visits](Visitor).
+/// Counts the rays of a picture of `world` that is level.
 pub(super) struct RaysOf<'a> {
     pub(super) world: &'a World,
     pub(super) projection: &'a Projection,
 }
 
-impl Visitor for RaysOf<'_> {
-    type Output = RayCounts;
-
-    fn visit<C: Caster>(self, caster: &C) -> RayCounts {
+impl RaysOf<'_> {
+    pub(super) fn count<C: Caster>(self, caster: &C) -> RayCounts {
         let counting = Counting { caster, counts: Cell::default() };
         let (mut columns, mut passed) = (Vec::new(), Passed::default());
         columns::cast(&counting, self.world, self.projection, &mut columns, &mut passed);

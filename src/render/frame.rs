@@ -3,7 +3,7 @@
 use std::num::NonZeroU32;
 
 use super::band::Band;
-use crate::world::Rgb;
+use crate::color::Rgb;
 
 /// How many pixels a frame has.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]

@@ -5,8 +5,10 @@ use super::runs::Runs;
 use super::shade::{Bright, Faded, Shade};
 use super::tally::{Pass, Tally};
 use super::track::{Places, Track};
-use crate::world::texture::{Level, LevelByShifts, mean_of_two};
-use crate::world::{Covering, Light, Paint, Pattern, Rgb, World};
+use crate::color::Rgb;
+use crate::color::srgb::mean_of_two;
+use crate::world::texture::{Level, LevelByShifts};
+use crate::world::{Covering, Light, Paint, Pattern, World};
 
 /// What all of a floor's or a ceiling's spans have in common.
 #[derive(Clone, Copy)]

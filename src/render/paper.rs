@@ -6,7 +6,7 @@
 //! paper between them.
 
 use super::texels_down::TexelsDown;
-use crate::world::Rgb;
+use crate::color::Rgb;
 
 /// From one texel to the next, in [`Place`]s.
 const TEXEL: u64 = 1 << (u64::BITS - BITS);

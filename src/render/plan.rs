@@ -9,8 +9,9 @@ use std::num::NonZero;
 
 use super::threads::Threads;
 use super::{Filter, FrameSize};
+use crate::color::Rgb;
 use crate::world::{
-    Camera, Ceiling, Covering, Heights, Light, Paint, Pattern, Rgb, Sky, Tile, TileKind, World,
+    Camera, Ceiling, Covering, Heights, Light, Paint, Pattern, Sky, Tile, TileKind, World,
 };
 
 /// Which passes draw a frame, and how.

@@ -18,7 +18,8 @@ use super::sky::SkyView;
 use super::tally::{Pass, Tally};
 use super::track::Track;
 use super::{Column, Scene};
-use crate::world::{Ceiling, Cell, Covering, Light, Rgb, TileId};
+use crate::color::Rgb;
+use crate::world::{Ceiling, Cell, Covering, Light, TileId};
 
 /// One of the two planes, and what there is to know to draw it.
 pub(super) struct Plane<'a> {

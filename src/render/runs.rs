@@ -9,7 +9,7 @@
 
 use super::shade::Shade;
 use super::track::Places;
-use crate::world::Rgb;
+use crate::color::Rgb;
 use crate::world::texture::LevelByShifts;
 
 /// The runs of a span.

@@ -6,7 +6,8 @@
 use glam::DVec2;
 
 use crate::cast::Side;
-use crate::world::{Fog, Light, Rgb};
+use crate::color::Rgb;
+use crate::world::{Fog, Light};
 
 /// What becomes of a colour.
 pub(super) trait Shade: Copy + PartialEq {

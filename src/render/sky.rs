@@ -11,8 +11,9 @@ use super::projection::Projection;
 use super::tally::{Pass, Tally};
 use super::{Column, Filter, Scene};
 use crate::cast::Unfolding;
+use crate::color::Rgb;
 use crate::world::texture::Level;
-use crate::world::{Rgb, Sky, World};
+use crate::world::{Sky, World};
 
 /// The sky as one camera sees it.
 pub(super) enum SkyView<'a> {

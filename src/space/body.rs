@@ -3,8 +3,9 @@
 use glam::DVec3;
 
 use super::checker::{self, Footprint};
-use crate::world::texture::mean_of_shares;
-use crate::world::{Rgb, Scale};
+use crate::color::Rgb;
+use crate::color::srgb::mean_of_shares;
+use crate::world::Scale;
 
 /// The farthest from the origin that anything is, along each axis, and the largest radius, in cells.
 pub const FARTHEST: f64 = 1e9;

@@ -2,7 +2,7 @@
 
 use glam::DVec3;
 
-use crate::world::Rgb;
+use crate::color::Rgb;
 
 /// A share, from 0 for none to 1 for all.
 #[derive(Clone, Copy, Debug, PartialEq)]

@@ -9,8 +9,9 @@ use super::explanation::Explanation;
 use super::scene::Scene;
 use super::seen::Seen;
 use super::shadows::Shadows;
+use crate::color::Rgb;
 use crate::render::Frame;
-use crate::world::{Fog, Rgb};
+use crate::world::Fog;
 
 /// Draws frames, and keeps the memory for it from one to the next.
 #[derive(Clone, Debug, Default)]

@@ -8,6 +8,7 @@
 use glam::DVec3;
 
 use super::body::{Block, Plane, Shape, Sphere};
+use crate::numeric::{two_product, two_sum};
 
 /// A shape as seen from one place.
 #[derive(Clone, Copy, Debug)]
@@ -107,7 +108,7 @@ impl SeenSphere {
 fn power(point: DVec3, center: DVec3, radius: f64) -> f64 {
     let mut sum = Sum::default();
     for (one, other) in [(center.x, point.x), (center.y, point.y), (center.z, point.z)] {
-        let (difference, error) = exact_difference(one, other);
+        let [difference, error] = two_sum(one, -other);
         sum.add_product(difference, difference);
         sum.add_product(2.0 * difference, error);
         sum.add_product(error, error);
@@ -125,23 +126,16 @@ struct Sum {
 
 impl Sum {
     fn add(&mut self, term: f64) {
-        let (total, error) = exact_difference(self.total, -term);
+        let [total, error] = two_sum(self.total, term);
         self.total = total;
         self.error += error;
     }
 
     fn add_product(&mut self, one: f64, other: f64) {
-        let product = one * other;
+        let [product, error] = two_product(one, other);
         self.add(product);
-        self.add(libm::fma(one, other, -product));
+        self.add(error);
     }
-}
-
-/// The difference as it is rounded, and what that is short of the true one.
-fn exact_difference(one: f64, other: f64) -> (f64, f64) {
-    let difference = one - other;
-    let taken = one - difference;
-    (difference, (one - (difference + taken)) + (taken - other))
 }
 
 impl SeenPlane {

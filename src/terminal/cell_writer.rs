@@ -16,7 +16,6 @@ mod control;
 mod exact;
 mod inexact;
 mod ink;
-mod lab;
 mod look;
 mod motion;
 mod palette;
@@ -162,7 +161,7 @@ impl<W: Write> CellWriter<W> {
     ///
     /// ```
     /// use cellcaster::terminal::CellWriter;
-    /// use cellcaster::tui::Canvas;
+    /// use cellcaster::canvas::Canvas;
     /// use ratatui::backend::Backend;
     /// use ratatui::layout::Size;
     ///

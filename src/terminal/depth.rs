@@ -4,7 +4,7 @@
 //! terminal says of itself (`COLORTERM`, `TERM`), then a guess that a query may raise. A database
 //! of terminals was refused: it is missing on half the machines, and wrong about colours on others.
 
-use crate::palette::ColorDepth;
+use crate::color::palette::ColorDepth;
 
 /// What an environment tells of the colour depth.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]

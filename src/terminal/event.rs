@@ -1,7 +1,7 @@
 //! What the terminal tells the program.
 
 use super::{KeyEvent, MouseEvent};
-use crate::palette::ColorDepth;
+use crate::color::palette::ColorDepth;
 
 /// Something that happened to the terminal.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]

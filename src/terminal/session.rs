@@ -21,7 +21,7 @@ use super::platform::{Device, Signals};
 use super::{
     CellWriter, ColorSource, Detected, Error, Event, Fidelity, Recorder, WindowSize, sequence,
 };
-use crate::palette::ColorDepth;
+use crate::color::palette::ColorDepth;
 
 /// The terminal, taken over: keys come in, frames go out.
 ///

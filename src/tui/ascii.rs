@@ -8,11 +8,11 @@
 use ratatui::layout::Rect;
 use ratatui::style::Color;
 
-use super::Canvas;
 use super::glyphs::color_at;
-use crate::palette::ColorDepth;
+use crate::canvas::Canvas;
+use crate::color::Rgb;
+use crate::color::palette::ColorDepth;
 use crate::render::Surface;
-use crate::world::Rgb;
 
 /// Draws the pixels of `area`, as many as cells: `pixel(x, y)` counts from its top left corner.
 pub(super) fn draw(

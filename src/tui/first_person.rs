@@ -6,10 +6,12 @@ use ratatui::buffer::Buffer;
 use ratatui::layout::{Rect, Size};
 use ratatui::widgets::StatefulWidget;
 
-use super::{Canvas, CellAspect, GlyphMode, ascii, half_blocks, ramp};
-use crate::cast::Method;
-use crate::palette::ColorDepth;
-use crate::render::{Column, Filter, Frame, FrameSize, Options, PixelAspect, Renderable, Renderer};
+use super::{CellAspect, GlyphMode, ascii, half_blocks, ramp};
+use crate::canvas::Canvas;
+use crate::color::palette::ColorDepth;
+use crate::render::{
+    Column, DynCaster, Filter, Frame, FrameSize, Options, PixelAspect, Renderable, Renderer,
+};
 use crate::world::World;
 
 /// A widget that shows what a camera sees of a [`World`], or of a [`Scene`](crate::space::Scene) of bodies.
@@ -176,9 +178,9 @@ impl<S: Renderable> View<S> {
 }
 
 impl View {
-    /// A view whose renderer finds the walls by `method`.
-    pub fn with_method(method: Method) -> Self {
-        Self { renderer: Renderer::with_method(method), ..Self::default() }
+    /// A view whose renderer finds the walls by `caster`.
+    pub fn with_caster(caster: DynCaster) -> Self {
+        Self { renderer: Renderer::with_caster(caster), ..Self::default() }
     }
 
     /// What the rays of the last drawing met, from left to right.

@@ -2,9 +2,10 @@
 
 use ratatui::style::Color;
 
-use crate::palette::{self, ColorDepth};
+use crate::canvas::true_color;
+use crate::color::Rgb;
+use crate::color::palette::{self, ColorDepth};
 use crate::render::PixelAspect;
-use crate::world::Rgb;
 
 /// Which characters stand for pixels.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash, Default)]
@@ -67,10 +68,4 @@ pub(super) fn color_at(depth: ColorDepth, color: Rgb) -> Color {
         ColorDepth::Indexed16 => Color::Indexed(palette::nearest_of_16(color)),
         ColorDepth::Mono => Color::Reset,
     }
-}
-
-/// `color`, as ratatui names it.
-#[inline]
-pub(super) fn true_color(color: Rgb) -> Color {
-    Color::Rgb(color.red(), color.green(), color.blue())
 }

@@ -11,11 +11,11 @@ mod mono;
 use ratatui::layout::Rect;
 use ratatui::style::Color;
 
-use super::Canvas;
 use super::glyphs::color_at;
-use crate::palette::{ColorDepth, mixture};
+use crate::canvas::Canvas;
+use crate::color::Rgb;
+use crate::color::palette::{ColorDepth, mixture};
 use crate::render::Frame;
-use crate::world::Rgb;
 
 /// Draws the pixels of `frame` on `area`, from `above` pixels under its top edge on.
 pub(super) fn draw_frame(

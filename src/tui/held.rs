@@ -22,7 +22,7 @@
 
 mod key;
 #[cfg(test)]
-pub(super) mod keyboard;
+pub(crate) mod keyboard;
 mod rhythm;
 #[cfg(test)]
 mod tests;

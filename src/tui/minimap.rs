@@ -17,10 +17,12 @@ use ratatui::style::Color;
 use ratatui::widgets::Widget;
 
 use super::glyphs::color_at;
-use super::{Canvas, GlyphMode, ascii, half_blocks};
-use crate::palette::ColorDepth;
+use super::{GlyphMode, ascii, half_blocks};
+use crate::canvas::Canvas;
+use crate::color::Rgb;
+use crate::color::palette::ColorDepth;
 use crate::render::Column;
-use crate::world::{Camera, Rgb, World};
+use crate::world::{Camera, World};
 use chart::Chart;
 pub use explored::Explored;
 use place::Place;
@@ -127,13 +129,13 @@ impl Minimap<'_> {
 
     /// How much of `room` shows something of the map; the rest would be blank.
     #[cfg(feature = "terminal")]
-    pub(super) fn size_within(&self, room: Size) -> Size {
+    pub(crate) fn size_within(&self, room: Size) -> Size {
         window::size_within(room, self.glyphs, self.world, self.zoom)
     }
 
     /// How many cells of the map an area of that size shows.
     #[cfg(feature = "terminal")]
-    pub(super) fn extent_within(&self, room: Size) -> DVec2 {
+    pub(crate) fn extent_within(&self, room: Size) -> DVec2 {
         self.window(Rect::from(room)).extent()
     }
 

@@ -1,6 +1,6 @@
 //! The ramp: a character for each of sixteen shades, whatever it is that has them.
 
-use crate::world::Rgb;
+use crate::color::Rgb;
 
 /// From the one that lights most of its cell to the one that lights nothing.
 const RAMP: &[u8; 16] = b"WM0KXkxocl;:,'. ";

@@ -1,6 +1,7 @@
 //! Light, fog and sky.
 
-use super::{Rgb, TextureId};
+use super::TextureId;
+use crate::color::Rgb;
 
 /// The light on a surface, in 256ths of full brightness.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]

@@ -104,7 +104,8 @@ impl Tile {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::world::{Covering, Paint, Rgb, TileKind};
+    use crate::color::Rgb;
+    use crate::world::{Covering, Paint, TileKind};
 
     fn gaps(covered: bool, floor: f64, ceiling: f64, roof: f64) -> Vec<(f64, f64)> {
         let paint = Paint::Color(Rgb::BLACK);

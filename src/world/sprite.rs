@@ -194,7 +194,7 @@ mod tests {
     use std::num::NonZeroU32;
 
     use super::*;
-    use crate::world::Rgb;
+    use crate::color::Rgb;
 
     fn sprite(count: u8, facings: Facings) -> Sprite {
         let side = NonZeroU32::new(2).unwrap();

@@ -10,9 +10,9 @@ mod level;
 
 use std::num::NonZeroU32;
 
-use super::Rgb;
+use crate::color::Rgb;
 pub use level::Level;
-pub(crate) use level::{LevelByShifts, mean_of_shares, mean_of_two};
+pub(crate) use level::LevelByShifts;
 
 /// A picture, at least one texel wide and high.
 #[derive(Clone, Debug, PartialEq, Eq)]

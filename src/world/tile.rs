@@ -1,6 +1,7 @@
 //! Tiles: the kinds of cell, and the look of their surfaces.
 
-use super::{Ceiling, Covering, Door, Heights, Light, Rgb, Shape};
+use super::{Ceiling, Covering, Door, Heights, Light, Shape};
+use crate::color::Rgb;
 
 /// One kind of tile.
 #[derive(Clone, Copy, Debug, PartialEq)]

@@ -3,12 +3,12 @@
 
 use std::num::NonZeroU32;
 
+use cellcaster::app::{Levels, Replay, Settings};
+use cellcaster::color::palette::ColorDepth;
 use cellcaster::game::Script;
+use cellcaster::lab::wire::{self, EncoderReport, PalettePlan, PaletteRow, Part, Plan, Report};
 use cellcaster::map::builtin;
-use cellcaster::palette::ColorDepth;
 use cellcaster::terminal::Fidelity;
-use cellcaster::tui::{Levels, Replay, Settings};
-use cellcaster::wire::{self, EncoderReport, PalettePlan, PaletteRow, Part, Plan, Report};
 use ratatui::layout::Size;
 
 fn script() -> Script {

@@ -3,9 +3,10 @@
 use std::cell::RefCell;
 use std::io;
 
+use cellcaster::color::Rgb;
 use cellcaster::map::{self, TextureFileError, TextureFiles, builtin};
 use cellcaster::world::{
-    Ceiling, Cell, Covering, Glass, Paint, Pattern, Rgb, ThingKind, TileKind, World,
+    Ceiling, Cell, Covering, Glass, Paint, Pattern, ThingKind, TileKind, World,
 };
 use proptest::prelude::*;
 

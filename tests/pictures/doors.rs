@@ -1,11 +1,12 @@
 //! The leaves of doors against rational arithmetic: of a ray that meets one, whether it does, where,
 //! and at which place of its texture.
 
-use cellcaster::accuracy;
 use cellcaster::cast::{Caster, Exact, Hit, Ray, Side};
+use cellcaster::color::Rgb;
+use cellcaster::lab::accuracy;
 use cellcaster::map;
 use cellcaster::render::{Frame, FrameSize, PixelAspect, Renderer};
-use cellcaster::world::{Camera, Cell, FieldOfView, Grid, Heading, Opening, Rgb, World};
+use cellcaster::world::{Camera, Cell, FieldOfView, Grid, Heading, Opening, World};
 use glam::DVec2;
 use num_rational::BigRational;
 use num_traits::{Signed, ToPrimitive};

@@ -3,9 +3,10 @@
 
 use std::path::Path;
 
+use cellcaster::color::Rgb;
 use cellcaster::map;
 use cellcaster::render::{Frame, FrameSize, PixelAspect, Renderer};
-use cellcaster::world::{Camera, FieldOfView, Heading, Rgb, Tile, TileKind, World};
+use cellcaster::world::{Camera, FieldOfView, Heading, Tile, TileKind, World};
 use glam::DVec2;
 use num_rational::BigRational;
 use num_traits::{Signed, Zero};

@@ -4,9 +4,10 @@
 use std::fmt::Write as _;
 
 use crate::solids::Solids;
+use cellcaster::color::Rgb;
 use cellcaster::map::{self, TextureFileError, TextureFiles};
 use cellcaster::render::{Filter, Frame, FrameSize, PixelAspect, Renderer};
-use cellcaster::world::{Camera, FieldOfView, Heading, Pitch, Rgb};
+use cellcaster::world::{Camera, FieldOfView, Heading, Pitch};
 use glam::{DVec2, DVec3};
 use proptest::prelude::*;
 

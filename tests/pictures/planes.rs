@@ -2,11 +2,12 @@
 //! nothing but the camera, wherever no edge of a texel, a tile or a wall is near.
 
 use cellcaster::cast::{Caster, Exact, Ray};
+use cellcaster::color::Rgb;
 use cellcaster::map;
 use cellcaster::render::{Filter, Frame, FrameSize, PixelAspect, Renderer};
 use cellcaster::world::{
     Camera, Ceiling, Cell, Covering, FieldOfView, Heading, Light, Opening, Paint, Pattern, Pitch,
-    Rgb, World,
+    World,
 };
 use glam::DVec2;
 use proptest::prelude::*;

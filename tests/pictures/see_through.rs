@@ -1,9 +1,10 @@
 //! Masks and glass against a picture made the slow way: for each pixel, all that is before it, found
 //! by asking every face of every cell, and laid over one another from far to near.
 
+use cellcaster::color::Rgb;
 use cellcaster::map;
 use cellcaster::render::{Filter, Frame, FrameSize, PixelAspect, Renderer};
-use cellcaster::world::{Camera, FieldOfView, Heading, Rgb, TileKind, World};
+use cellcaster::world::{Camera, FieldOfView, Heading, TileKind, World};
 use glam::DVec2;
 use proptest::prelude::*;
 

@@ -5,8 +5,8 @@ use std::num::NonZeroU16;
 use std::process::Stdio;
 
 use crate::support::{cellcaster, complaint_about, output_of};
+use cellcaster::color::palette::ColorDepth;
 use cellcaster::map::builtin;
-use cellcaster::palette::ColorDepth;
 use cellcaster::tui::{FirstPerson, View};
 use cellcaster::world::FieldOfView;
 use ratatui::buffer::Buffer;

@@ -1,10 +1,11 @@
 //! The 3-D caster: bodies are where geometry says, at any size, and a picture shows what its rays hit.
 
+use cellcaster::color::Rgb;
 use cellcaster::render::{Frame, FrameSize, PixelAspect};
 use cellcaster::space::{
     Block, Body, Camera, Coat, Elevation, Plane, Ray, Renderer, Scene, Shape, Share, Sphere, Sun,
 };
-use cellcaster::world::{FieldOfView, Heading, Rgb, Scale};
+use cellcaster::world::{FieldOfView, Heading, Scale};
 use glam::DVec3;
 use proptest::prelude::*;
 

@@ -1,8 +1,8 @@
 //! What a frame costs once everything has grown to its size: no allocation at all.
 
 use allocation_counter::measure;
+use cellcaster::color::palette::ColorDepth;
 use cellcaster::map::{self, builtin};
-use cellcaster::palette::ColorDepth;
 use cellcaster::render::{Frame, FrameSize, PixelAspect, Renderer};
 use cellcaster::tui::{FirstPerson, GlyphMode, Minimap, View};
 use cellcaster::world::{Camera, Cell, FieldOfView, Heading, Opening};
@@ -121,10 +121,10 @@ fn encoding_a_frame_allocates_nothing_once_its_memory_has_grown() {
 #[test]
 #[cfg(feature = "terminal")]
 fn the_whole_pipeline_allocates_nothing_once_its_memory_has_grown() {
+    use cellcaster::app::{Levels, Replay, Settings};
     use cellcaster::game::{Intents, Script};
     use cellcaster::map::Level;
     use cellcaster::terminal::{CellWriter, Fidelity};
-    use cellcaster::tui::{Levels, Replay, Settings};
     use ratatui::backend::Backend;
     use ratatui::layout::Size;
 

@@ -1,9 +1,10 @@
 //! Things: what is seen of them, and what is not, against a calculation for each pixel.
 
+use cellcaster::color::Rgb;
 use cellcaster::game::{Game, Intent, Intents};
 use cellcaster::map;
 use cellcaster::render::{Filter, Frame, FrameSize, PixelAspect, Renderer};
-use cellcaster::world::{Camera, FieldOfView, Heading, Rgb, Thing, World};
+use cellcaster::world::{Camera, FieldOfView, Heading, Thing, World};
 use glam::DVec2;
 use proptest::prelude::*;
 

@@ -1,8 +1,9 @@
 //! The exact caster against rational arithmetic: cell and side are the same, the distance is within
 //! two units in its last place, the texture coordinate within 10⁻¹².
 
-use cellcaster::accuracy::{self, Chance, adversarial_ray, random_ray};
 use cellcaster::cast::{Caster, Exact, Ray};
+use cellcaster::lab::accuracy::{self, adversarial_ray, random_ray};
+use cellcaster::rng::SplitMix64;
 use cellcaster::world::Grid;
 use proptest::prelude::*;
 
@@ -25,10 +26,10 @@ fn fault(grid: &Grid, ray: &Ray) -> Option<String> {
 }
 
 /// Mazes of all sizes to 17 × 13, with walls in every third cell or so.
-fn maze(chance: &mut Chance) -> Grid {
-    let (width, height) = (chance.whole(1, 17) as usize, chance.whole(1, 13) as usize);
+fn maze(random: &mut SplitMix64) -> Grid {
+    let (width, height) = (random.whole(1, 17) as usize, random.whole(1, 13) as usize);
     let rows: Vec<String> = (0..height)
-        .map(|_| (0..width).map(|_| if chance.whole(0, 2) == 0.0 { '#' } else { '.' }).collect())
+        .map(|_| (0..width).map(|_| if random.whole(0, 2) == 0.0 { '#' } else { '.' }).collect())
         .collect();
     let rows: Vec<&str> = rows.iter().map(String::as_str).collect();
     Grid::sketch(&rows).expect("a maze is a rectangle")
@@ -47,11 +48,11 @@ proptest! {
 
     #[test]
     fn random_and_adversarial_rays(seed in any::<u64>()) {
-        let mut chance = Chance::new(seed);
-        let grid = maze(&mut chance);
+        let mut random = SplitMix64::new(seed);
+        let grid = maze(&mut random);
         for _ in 0..5 {
-            prop_assert_eq!(fault(&grid, &random_ray(&grid, &mut chance)), None);
-            prop_assert_eq!(fault(&grid, &adversarial_ray(&grid, &mut chance)), None);
+            prop_assert_eq!(fault(&grid, &random_ray(&grid, &mut random)), None);
+            prop_assert_eq!(fault(&grid, &adversarial_ray(&grid, &mut random)), None);
         }
     }
 
@@ -63,18 +64,18 @@ proptest! {
     ) {
         let ray = Ray::new(origin.into(), direction.into());
         prop_assume!(ray.is_ok());
-        prop_assert_eq!(fault(&maze(&mut Chance::new(seed)), &ray.unwrap()), None);
+        prop_assert_eq!(fault(&maze(&mut SplitMix64::new(seed)), &ray.unwrap()), None);
     }
 }
 
 #[test]
 fn a_million_rays() {
-    let mut chance = Chance::new(2026);
+    let mut random = SplitMix64::new(2026);
     for _ in 0..10_000 {
-        let grid = maze(&mut chance);
+        let grid = maze(&mut random);
         for _ in 0..50 {
-            assert_eq!(fault(&grid, &random_ray(&grid, &mut chance)), None);
-            assert_eq!(fault(&grid, &adversarial_ray(&grid, &mut chance)), None);
+            assert_eq!(fault(&grid, &random_ray(&grid, &mut random)), None);
+            assert_eq!(fault(&grid, &adversarial_ray(&grid, &mut random)), None);
         }
     }
 }

@@ -3,7 +3,7 @@
 
 use std::path::Path;
 
-use cellcaster::accuracy::shimmer;
+use cellcaster::lab::accuracy::shimmer;
 use cellcaster::map::{self, builtin};
 use cellcaster::render::{Filter, FrameSize};
 use cellcaster::world::{FieldOfView, World};

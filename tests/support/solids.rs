@@ -5,8 +5,9 @@
 
 use std::f64::consts::TAU;
 
+use cellcaster::color::Rgb;
 use cellcaster::world::{
-    Anchor, Camera, Ceiling, Cell, Gap, Light, Outline, Paint, Rgb, Sprite, Tile, TileKind, World,
+    Anchor, Camera, Ceiling, Cell, Gap, Light, Outline, Paint, Sprite, Tile, TileKind, World,
 };
 use glam::{DVec2, DVec3};
 

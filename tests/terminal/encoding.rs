@@ -4,9 +4,9 @@
 
 use std::collections::{BTreeMap, BTreeSet};
 
+use cellcaster::canvas::Canvas;
+use cellcaster::color::Rgb as Pixel;
 use cellcaster::terminal::{CellWriter, Fidelity};
-use cellcaster::tui::Canvas;
-use cellcaster::world::Rgb as Pixel;
 use proptest::prelude::*;
 use ratatui::Terminal;
 use ratatui::backend::Backend;

@@ -2,7 +2,7 @@
 
 use std::io::{self, Write};
 
-use crate::accuracy::{Report, Row};
+use crate::lab::accuracy::{Report, Row};
 
 pub(super) fn write(report: &Report, output: &mut impl Write) -> io::Result<()> {
     writeln!(

@@ -4,7 +4,7 @@ use std::io::{self, Write};
 
 use serde_json::{Value, json};
 
-use crate::accuracy::{Errors, FilterErrors, Report};
+use crate::lab::accuracy::{Errors, FilterErrors, Report};
 
 pub(super) fn write(report: &Report, output: &mut impl Write) -> io::Result<()> {
     let methods: Vec<Value> = report

@@ -4,8 +4,8 @@ mod text;
 
 use std::io::{self, Write};
 
-use crate::accuracy::Report;
 use crate::cli::plot::{self, Align, Axis, Ink, Mark, Page};
+use crate::lab::accuracy::Report;
 
 /// Writes the plot in characters.
 pub(super) fn write_text(report: &Report, output: &mut impl Write) -> io::Result<()> {

@@ -3,7 +3,7 @@
 use std::io::{self, Write};
 
 use super::plot;
-use crate::accuracy::{Errors, FilterRow, MotionResult, Report, Row, SetRow};
+use crate::lab::accuracy::{Errors, FilterRow, MotionResult, Report, Row, SetRow};
 
 pub(super) fn write(report: &Report, output: &mut impl Write) -> io::Result<()> {
     write_methods(&report.rows, output)?;

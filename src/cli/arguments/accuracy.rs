@@ -6,7 +6,7 @@ use clap::ArgMatches;
 
 use super::option::{Read, Valued};
 use super::{Command, Subcommand, map, value};
-use crate::cast::Method;
+use crate::lab::casters::Method;
 
 /// Options of `accuracy`.
 #[derive(Debug)]

@@ -5,7 +5,7 @@ use std::ffi::OsString;
 use clap::ArgMatches;
 
 use super::{Command, Error, Subcommand, map, value};
-use crate::cast::Method;
+use crate::lab::casters::Method;
 
 /// Options of `cast`.
 #[derive(Debug)]

@@ -4,7 +4,7 @@ use std::fmt::Write;
 
 use super::option::Described;
 use super::{SUBCOMMANDS, Subcommand, play};
-use crate::tui::Bindings;
+use crate::app::Bindings;
 
 /// In columns: help is no wider, however wide the window is.
 pub(super) const WIDTH: usize = 80;

@@ -9,7 +9,7 @@ use super::generated::{self, Generated};
 use super::option::FileOption;
 use super::value::{self, FramesPerSecond, Size};
 use super::{Command, Error, Positional, Subcommand, map};
-use crate::palette::ColorDepth;
+use crate::color::palette::ColorDepth;
 use crate::terminal::Fidelity;
 use crate::world::FieldOfView;
 

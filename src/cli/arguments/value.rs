@@ -3,8 +3,8 @@
 use std::num::NonZeroU32;
 
 use super::option::{Flag, Read, Valued};
-use crate::cast::{Method, NotAMethod};
-use crate::palette::ColorDepth;
+use crate::color::palette::ColorDepth;
+use crate::lab::casters::{Method, NotAMethod};
 use crate::render::Filter;
 use crate::terminal::{Fidelity, UnknownFidelity};
 use crate::tui::{CellAspect, GlyphMode};

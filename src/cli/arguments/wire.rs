@@ -8,7 +8,7 @@ use clap::ArgMatches;
 use super::option::{FileOption, Read, Valued};
 use super::value::{self, FramesPerSecond, Size};
 use super::{Command, Error, Subcommand, map};
-use crate::palette::ColorDepth;
+use crate::color::palette::ColorDepth;
 use crate::terminal::Fidelity;
 
 /// Options of `wire`.

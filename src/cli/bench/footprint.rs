@@ -15,7 +15,7 @@ use super::begin;
 use crate::cli::Error;
 use crate::cli::script::SHOWCASE;
 use crate::game::{Intents, STEPS_PER_SECOND};
-use crate::speed::median;
+use crate::lab::speed::median;
 use crate::terminal::{CellWriter, peak_memory};
 
 /// What is taken; `None` for what this system does not tell.

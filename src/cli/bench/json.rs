@@ -7,8 +7,8 @@ use serde_json::{Map, Value, json};
 
 use super::footprint::Footprint;
 use super::{LINKS, Report, frames_per_second, share_of_stock};
-use crate::speed::{CrowdRow, DrawingRow, MapRow, Scene};
-use crate::wire::PipelineRow;
+use crate::lab::speed::{CrowdRow, DrawingRow, MapRow, Scene};
+use crate::lab::wire::PipelineRow;
 
 pub(super) fn write(report: &Report, output: &mut impl Write) -> io::Result<()> {
     let value = json!({

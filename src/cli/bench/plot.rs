@@ -6,8 +6,8 @@ use ratatui::layout::Size;
 
 use super::{Report, WINDOWS};
 use crate::cli::plot::{self, Align, Axis, Ink, Mark, Page};
-use crate::speed::{DrawingRow, Ground, SIDES, Scene};
-use crate::wire::PipelineRow;
+use crate::lab::speed::{DrawingRow, Ground, SIDES, Scene};
+use crate::lab::wire::PipelineRow;
 
 /// Writes the page as an SVG file.
 pub(super) fn write(report: &Report, output: impl Write) -> io::Result<()> {

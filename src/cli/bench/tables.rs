@@ -5,7 +5,7 @@ use std::time::Duration;
 use super::footprint::{FIRST_WINDOW, GAME_WINDOW, STARTS};
 use super::table::Table;
 use super::{LINKS, Report, frames_per_second, share_of_stock};
-use crate::speed::{CROWDS, Ground, Measured, SIDES, Scene, USUAL_SIDE, Vista};
+use crate::lab::speed::{CROWDS, Ground, Measured, SIDES, Scene, USUAL_SIDE, Vista};
 
 /// All tables, in the order in which they are read.
 pub(super) fn of(report: &Report) -> Vec<Table> {

@@ -6,7 +6,7 @@ use font8x8::{BASIC_FONTS, UnicodeFonts};
 use png::{BitDepth, ColorType, Encoder};
 
 use super::{Align, Ink, Mark, Page};
-use crate::world::Rgb;
+use crate::color::Rgb;
 
 const PAPER: Rgb = Rgb::WHITE;
 const INK: Rgb = Rgb::new(0x20, 0x20, 0x20);

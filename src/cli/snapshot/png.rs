@@ -8,8 +8,8 @@ use ratatui::buffer::Cell;
 use ratatui::layout::Size;
 
 use super::rgb;
+use crate::color::Rgb;
 use crate::tui::CellAspect;
-use crate::world::Rgb;
 
 /// Pixels of a glyph in either direction, before it is stretched to the cell.
 const GLYPH_SIDE: u32 = 8;

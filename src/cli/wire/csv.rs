@@ -3,7 +3,7 @@
 use std::io::{self, Write};
 
 use super::finite;
-use crate::wire::Report;
+use crate::lab::wire::Report;
 
 const HEADER: &str = "section,encoder,frames,mean_bytes,ratio,median_bytes,percentile_95_bytes,\
                       largest_bytes,mean_compressed_bytes,mean_nanoseconds,psnr,mean_delta_e,\

@@ -5,8 +5,8 @@ use std::io::{self, BufWriter, Write};
 use serde_json::{Value, json};
 
 use crate::cli::arguments::{Wire, WireFormat};
-use crate::palette::ColorDepth;
-use crate::wire::{GREY, PalettePlan, PaletteRow, report_palettes};
+use crate::color::palette::ColorDepth;
+use crate::lab::wire::{GREY, PalettePlan, PaletteRow, report_palettes};
 
 pub(super) fn run(depth: ColorDepth, options: &Wire) -> io::Result<()> {
     let plan = PalettePlan {

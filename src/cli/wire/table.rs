@@ -3,7 +3,7 @@
 use std::io::{self, Write};
 
 use super::finite;
-use crate::wire::{Part, Plan, Report};
+use crate::lab::wire::{Part, Plan, Report};
 
 pub(super) fn write(plan: &Plan, report: &Report, output: &mut impl Write) -> io::Result<()> {
     writeln!(

@@ -3,7 +3,7 @@
 use std::ops::Range;
 
 use super::super::chunk::{Chunk, Plot};
-use super::super::hash::Chance;
+use crate::rng::SplitMix64;
 
 /// The area between the corridors of a chunk.
 #[derive(Clone, Debug)]
@@ -60,9 +60,9 @@ impl Block {
     }
 
     /// Builds the block.
-    pub(super) fn build(self, chunk: &mut Chunk, chance: Chance) {
-        let mut building = Building { chunk, chance };
-        match building.chance.below(8) {
+    pub(super) fn build(self, chunk: &mut Chunk, random: SplitMix64) {
+        let mut building = Building { chunk, random };
+        match building.random.below(8) {
             0 => building.hall(&self, HALL),
             1 => building.hall(&self, GARDEN),
             _ => building.divide(self.clone()),
@@ -88,7 +88,7 @@ fn cuts(inside: &Range<usize>) -> Vec<usize> {
 
 struct Building<'c> {
     chunk: &'c mut Chunk,
-    chance: Chance,
+    random: SplitMix64,
 }
 
 impl Building<'_> {
@@ -107,7 +107,7 @@ impl Building<'_> {
     fn divide(&mut self, block: Block) {
         let (across, down) = (block.cuts_across(), block.cuts_down());
         let longest = block.columns.len().max(block.rows.len());
-        let is_done = longest <= LONGEST && self.chance.one_in(3);
+        let is_done = longest <= LONGEST && self.random.one_in(3);
         let is_wide = block.columns.len() > block.rows.len();
         let (cuts, is_across) = match (across.is_empty(), down.is_empty()) {
             _ if is_done => (Vec::new(), true),
@@ -117,10 +117,10 @@ impl Building<'_> {
         };
         if cuts.is_empty() {
             let kinds = [CARPETED, CARPETED, PANELLED, STORE];
-            let furniture = kinds[self.chance.below(kinds.len())];
+            let furniture = kinds[self.random.below(kinds.len())];
             return self.furnish(&block, furniture);
         }
-        let cut = cuts[self.chance.below(cuts.len())];
+        let cut = cuts[self.random.below(cuts.len())];
         let Block { columns, rows } = block;
         if is_across {
             self.divide(Block { columns: columns.start..cut, rows: rows.clone() });
@@ -148,15 +148,15 @@ impl Building<'_> {
     /// Places doors into a wall, beginning where it may have one, and glass elsewhere.
     fn open_wall(&mut self, wall: &[(usize, usize)], doors: usize) {
         let openings: Vec<_> = wall.iter().copied().step_by(2).collect();
-        if self.chance.one_in(2) {
+        if self.random.one_in(2) {
             for &(column, row) in &openings {
-                if !self.chance.one_in(3) {
+                if !self.random.one_in(3) {
                     self.chunk.set(column, row, GLASS);
                 }
             }
         }
         for _ in 0..doors {
-            let (column, row) = openings[self.chance.below(openings.len())];
+            let (column, row) = openings[self.random.below(openings.len())];
             self.chunk.set(column, row, DOOR);
         }
     }
@@ -180,7 +180,7 @@ impl Building<'_> {
 
     /// One of the pieces, or none.
     fn piece(&mut self, furniture: Furniture) -> Option<u8> {
-        let mut number = self.chance.below(PLACES);
+        let mut number = self.random.below(PLACES);
         furniture.pieces.iter().find_map(|&(character, count)| {
             let is_it = number < count;
             number = number.saturating_sub(count);

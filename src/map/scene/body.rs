@@ -6,11 +6,12 @@ use glam::DVec3;
 use toml::de::DeTable;
 
 use super::{coordinates, tables, vector};
+use crate::color::Rgb;
 use crate::fault::document::{Entry, entries};
 use crate::fault::{Fault, quoted};
 use crate::map::air;
 use crate::space::{Block, Body, Coat, FARTHEST, Plane, SMALLEST, Shape, Sphere};
-use crate::world::{Rgb, Scale};
+use crate::world::Scale;
 
 /// The kinds of body.
 #[derive(Clone, Copy)]

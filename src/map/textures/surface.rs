@@ -3,9 +3,9 @@
 use std::ops::Range;
 
 use super::files::{is_png, stays_inside};
+use crate::color::Rgb;
 use crate::fault::document::Entry;
 use crate::fault::{Fault, nearest, quoted};
-use crate::world::Rgb;
 use crate::world::texture::builtin;
 
 /// A surface as the map writes it.

@@ -13,11 +13,11 @@ use super::notes::Notes;
 use super::profile::Profiles;
 use super::things::{Billboards, Strip};
 use super::veils::{Film, Pane, Veil};
+use crate::color::Rgb;
 use crate::render::band::Band;
 use crate::render::marks::MarksOfBand;
 use crate::render::shade::Shade;
 use crate::render::tally::{Pass, Tally};
-use crate::world::Rgb;
 
 /// What is painted over what is behind it, as wide as a pixel.
 #[derive(Clone, Debug)]

@@ -6,11 +6,12 @@ use glam::DVec2;
 
 use super::notes::{Notes, Run, Shown};
 use super::{Part, Piece, Reflection, Scene};
+use crate::color::Rgb;
 use crate::render::band::Band;
 use crate::render::lay::Layer;
 use crate::render::sky::SkyView;
 use crate::render::tally::{Pass, Tally};
-use crate::world::{Ceiling, Cell, Covering, Light, Rgb, Tile, TileKind, World};
+use crate::world::{Ceiling, Cell, Covering, Light, Tile, TileKind, World};
 
 /// Draws every span. `starts` is memory to work with.
 ///

@@ -1,7 +1,7 @@
 //! Colours that may be shown for each other, what they cost, and what it costs to be off.
 
-use super::lab::Lab;
 use super::style::{Kind, Shade};
+use crate::color::lab::PackedLab;
 use crate::terminal::Fidelity;
 
 /// A colour, and where it lies in CIE L\*a\*b\*.
@@ -16,7 +16,7 @@ impl Ink {
     #[inline]
     fn new(shade: Shade) -> Option<Self> {
         let Kind::Rgb(channels) = shade.kind() else { return None };
-        let lab = Lab::of(channels).components();
+        let lab = PackedLab::of(channels).components();
         Some(Self { lab, shade })
     }
 

@@ -12,7 +12,7 @@ use ratatui::style::Color;
 
 use super::alphabet::{Alphabet, Letter, Number};
 use super::style::{Shade, Style};
-use crate::world::Rgb;
+use crate::color::Rgb;
 
 /// A character that shows two colours at most, each in a whole half of its cell.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]

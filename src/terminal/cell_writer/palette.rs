@@ -9,10 +9,10 @@
 
 use super::bytes::Bytes;
 use super::ink::{Ink, Price};
-use super::lab::Lab;
 use super::look::Look;
 use super::screen::Screen;
 use super::style::{Kind, Shade, Style};
+use crate::color::lab::PackedLab;
 use crate::terminal::sequence;
 
 /// What the terminal's palette holds, as far as it was defined here.
@@ -259,7 +259,7 @@ impl Palette {
         if uses < LEAST_USES_INEXACT {
             return false;
         }
-        let wanted = Ink { lab: Lab::of(channels).components(), shade };
+        let wanted = Ink { lab: PackedLab::of(channels).components(), shade };
         let spared = self.nearest(wanted).map_or(SPARED, |near| {
             let near = self.ink(near);
             price.of(near, wanted).min(SPARED)
@@ -326,7 +326,7 @@ impl Palette {
         }
         let index = usize::from(entry);
         self.colors[index] = shade;
-        for (labs, component) in self.labs.iter_mut().zip(Lab::of(channels).components()) {
+        for (labs, component) in self.labs.iter_mut().zip(PackedLab::of(channels).components()) {
             labs[index] = component;
         }
         self.entries[entry_place(shade)] = entry;

@@ -11,8 +11,8 @@ use super::ascii;
 use super::look::Look;
 use super::shift::{Mark, Shift};
 use super::style::Style;
-use crate::tui::Canvas;
-use crate::world::Rgb;
+use crate::canvas::Canvas;
+use crate::color::Rgb;
 
 /// A terminal's screen: what it shows, and what it is to show, cell by cell.
 ///

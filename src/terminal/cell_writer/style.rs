@@ -10,7 +10,7 @@ use super::super::sequence;
 use super::bytes::Bytes;
 use super::bytes::Piece;
 use super::control::{self, ControlSequence};
-use crate::world::Rgb;
+use crate::color::Rgb;
 
 /// How a character is drawn.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]

@@ -9,7 +9,7 @@ use ratatui::layout::Rect;
 use ratatui::style::{Color, Modifier};
 
 use super::*;
-use crate::tui::Canvas;
+use crate::canvas::Canvas;
 
 /// A terminal's screen that counts the writes that reach it.
 #[derive(Clone)]

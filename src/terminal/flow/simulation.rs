@@ -7,6 +7,7 @@
 use std::collections::VecDeque;
 
 use super::*;
+use crate::rng::SplitMix64;
 
 const TICK: Duration = Duration::from_millis(1);
 const FRAME_TIME: Duration = Duration::from_millis(33);
@@ -71,7 +72,7 @@ pub(super) struct Simulation {
     queue: VecDeque<(usize, f64, Option<usize>)>,
     /// How much of the first in the queue has been carried.
     carried: f64,
-    chance: Chance,
+    chance: SplitMix64,
 }
 
 /// A player in motion, and the game at the other end.
@@ -133,7 +134,7 @@ impl Simulation {
             players,
             queue: VecDeque::new(),
             carried: 0.0,
-            chance: Chance(7),
+            chance: SplitMix64::new(7),
         };
         for player in 0..simulation.players.len() {
             simulation.send(player, 0.0, Fidelity::EXACT);
@@ -171,7 +172,7 @@ impl Simulation {
         let player = &mut self.players[number];
         if now >= player.due && player.flow.may_send(now) {
             let fidelity = player.flow.fidelity();
-            let bytes = player.frames.bytes(fidelity, self.chance.draw());
+            let bytes = player.frames.bytes(fidelity, self.chance.unit());
             self.send(number, bytes, fidelity);
             let player = &mut self.players[number];
             player.flow.showed_motion(bytes as usize, fidelity);
@@ -181,7 +182,7 @@ impl Simulation {
 
     fn press_keys(&mut self, number: usize) {
         if self.now >= self.players[number].next_key {
-            let pause = Duration::from_millis(300 + (self.chance.draw() * 200.0) as u64);
+            let pause = Duration::from_millis(300 + (self.chance.unit() * 200.0) as u64);
             self.players[number].next_key = self.now + pause;
             self.send_upward(number, self.now, Upward::Key(self.now));
         }
@@ -246,7 +247,7 @@ impl Simulation {
     fn arrival(&mut self, number: usize, direction: usize, at: Duration) -> Duration {
         let Conditions { delay, jitter, .. } = self.conditions;
         let last = &mut self.players[number].last[direction];
-        *last = (at + delay + jitter.mul_f64(self.chance.draw())).max(*last);
+        *last = (at + delay + jitter.mul_f64(self.chance.unit())).max(*last);
         *last
     }
 }
@@ -300,18 +301,5 @@ impl Player {
             self.shown.iter().filter(is_there).map(|shown| shown.bytes).sum()
         };
         self.shown_since(begin).iter().map(|shown| in_flight(shown.sent_at)).max().unwrap_or(0)
-    }
-}
-
-/// Seeded chance: Steele, Lea and Flood's `SplitMix64`.
-struct Chance(u64);
-
-impl Chance {
-    /// From 0 to 1.
-    fn draw(&mut self) -> f64 {
-        self.0 = self.0.wrapping_add(0x9e37_79b9_7f4a_7c15);
-        let mut mixed = (self.0 ^ (self.0 >> 30)).wrapping_mul(0xbf58_476d_1ce4_e5b9);
-        mixed = (mixed ^ (mixed >> 27)).wrapping_mul(0x94d0_49bb_1331_11eb);
-        ((mixed ^ (mixed >> 31)) >> 11) as f64 / (1_u64 << 53) as f64
     }
 }

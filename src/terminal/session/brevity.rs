@@ -9,7 +9,7 @@
 //! recorded: a recording is to play on any terminal.
 
 use super::Session;
-use crate::palette::ColorDepth;
+use crate::color::palette::ColorDepth;
 use crate::terminal::sequence;
 
 /// What is known of it.

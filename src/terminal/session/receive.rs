@@ -6,7 +6,7 @@ use std::time::Instant;
 use ratatui::backend::Backend;
 
 use super::{KeyReleases, Session};
-use crate::palette::ColorDepth;
+use crate::color::palette::ColorDepth;
 use crate::terminal::input::{Answer, Input};
 use crate::terminal::mouse::MouseReport;
 use crate::terminal::platform::Signal;

@@ -17,11 +17,12 @@ use std::sync::LazyLock;
 use ratatui::layout::Rect;
 use ratatui::style::Color;
 
-use crate::palette::mixture::{self, Mixture, Mixtures};
-use crate::palette::{self, oklab};
+use crate::canvas::Canvas;
+use crate::color::Rgb;
+use crate::color::palette;
+use crate::color::palette::mixture::{self, Mixture, Mixtures};
+use crate::color::srgb::linear;
 use crate::render::Frame;
-use crate::tui::Canvas;
-use crate::world::Rgb;
 
 /// So many cells are drawn at a time, and so need room: an even number.
 const CHUNK: usize = 64;
@@ -98,7 +99,7 @@ impl Tables {
 
     fn new() -> Self {
         let scaled = |share: f64| libm::round(share * f64::from(Self::WHITE)) as i32;
-        let of = |color| oklab::light(color).map(scaled);
+        let of = |color| linear(color).map(scaled);
         let of_channel = array::from_fn(|value| of(Rgb::new(value as u8, 0, 0))[0]);
         let of_index = array::from_fn(|index| of(palette::of_256(index as u8)));
         let mut levels = [0; Self::STEPS + 1];

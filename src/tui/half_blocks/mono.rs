@@ -8,8 +8,8 @@ use ratatui::layout::Rect;
 use ratatui::style::Color;
 
 use super::{lit_glyph, order};
+use crate::canvas::Canvas;
 use crate::render::Frame;
-use crate::tui::Canvas;
 
 /// Draws the pixels of `frame` as [`super::draw_frame`] does.
 pub(super) fn draw(area: Rect, canvas: &mut impl Canvas, above: u32, frame: &Frame) {
@@ -47,8 +47,8 @@ fn is_lit(frame: &Frame, x: u32, y: u32) -> bool {
 #[cfg(test)]
 mod tests {
     use super::*;
+    use crate::color::Rgb;
     use crate::render::{FrameSize, PixelAspect};
-    use crate::world::Rgb;
 
     /// A wall of that shade with a joint across it, in row 8.
     fn wall(brick: u8, joint: u8) -> Frame {

@@ -7,10 +7,9 @@ use glam::DVec2;
 
 use super::explored::Explored;
 use super::place::{self, Ground, Place};
+use crate::color::Rgb;
 use crate::render::Column;
-use crate::world::{
-    Camera, Cell, Paint, Rgb, Shape, Thing, ThingKind, Tile, TileId, TileKind, World,
-};
+use crate::world::{Camera, Cell, Paint, Shape, Thing, ThingKind, Tile, TileId, TileKind, World};
 
 /// All that points are asked of.
 pub(super) struct Chart<'a> {

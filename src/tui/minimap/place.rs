@@ -4,7 +4,7 @@
 //! colours, which people choose themselves, and with none, each kind has a colour or a pattern of its own: to look
 //! for the nearest of 16 would give walls and floors the same.
 
-use crate::world::Rgb;
+use crate::color::Rgb;
 
 /// What is at a point of the map.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]

@@ -13,7 +13,8 @@ mod treasure;
 use std::num::NonZeroU32;
 
 use super::{Anchor, Facings, FrameTime, Sprite, SpriteHeight};
-use crate::world::{Lamp, Light, Reach, Rgb, Texture};
+use crate::color::Rgb;
+use crate::world::{Lamp, Light, Reach, Texture};
 
 /// The names that maps may use.
 pub const NAMES: &[&str] =

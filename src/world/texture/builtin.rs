@@ -25,7 +25,7 @@ mod timber;
 use std::num::NonZeroU32;
 
 use super::Texture;
-use crate::world::Rgb;
+use crate::color::Rgb;
 
 /// The names that [`named`] knows.
 pub const NAMES: &[&str] = &names();

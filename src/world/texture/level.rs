@@ -7,9 +7,9 @@ mod light;
 use std::num::NonZeroU32;
 use std::ops::Range;
 
-use crate::world::Rgb;
-use light::{Light, linear, stored};
-pub(crate) use light::{mean_of_shares, mean_of_two};
+use crate::color::Rgb;
+use crate::color::srgb::{from_linear_16, linear_16};
+use light::Light;
 
 /// A picture in one size, at least one texel wide and high.
 #[derive(Clone, Debug, PartialEq, Eq)]
@@ -131,12 +131,12 @@ pub(super) fn pyramid(
     texels: Vec<Rgb>,
     alpha: Vec<u8>,
 ) -> Vec<Level> {
-    let light_texels = texels.iter().copied().map(linear).collect();
+    let light_texels = texels.iter().copied().map(linear_16).collect();
     let mut light = Light { width, height, texels: light_texels, alpha: alpha.clone() };
     let mut levels = vec![Level { width, height, texels, alpha }];
     while light.texels.len() > 1 {
         light = light.halved();
-        let texels = light.texels.iter().copied().map(stored).collect();
+        let texels = light.texels.iter().copied().map(from_linear_16).collect();
         let (width, height, alpha) = (light.width, light.height, light.alpha.clone());
         levels.push(Level { width, height, texels, alpha });
     }

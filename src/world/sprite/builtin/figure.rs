@@ -1,7 +1,7 @@
 //! Figures, which have a front and a back.
 
 use super::{Design, INK, Palette, drawn, mirrored};
-use crate::world::Rgb;
+use crate::color::Rgb;
 use crate::world::sprite::Facings;
 
 /// A statue of a knight with a shield and a spear.

@@ -1,7 +1,7 @@
 //! Furniture and lamps.
 
 use super::{Anchor, Design, INK, Palette, drawn, painted};
-use crate::world::Rgb;
+use crate::color::Rgb;
 
 /// A lantern on a chain, whose flame flickers.
 pub(super) fn lamp() -> Design {

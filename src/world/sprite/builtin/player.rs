@@ -1,7 +1,7 @@
 //! The player, as seen in a mirror: a traveller with a hat and a cloak.
 
 use super::{Design, INK, Palette, drawn, mirrored};
-use crate::world::Rgb;
+use crate::color::Rgb;
 use crate::world::sprite::Facings;
 
 /// The player's figure. Its eyes are at the height of the camera.

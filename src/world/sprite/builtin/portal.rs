@@ -1,7 +1,7 @@
 //! The exit.
 
 use super::{Design, painted};
-use crate::world::Rgb;
+use crate::color::Rgb;
 
 /// An arch of stone with green light rising in it.
 pub(super) fn portal() -> Design {

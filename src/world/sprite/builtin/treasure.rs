@@ -1,7 +1,7 @@
 //! Keys and bones.
 
 use super::{Design, INK, Palette, drawn};
-use crate::world::Rgb;
+use crate::color::Rgb;
 
 /// A key that glints.
 pub(super) fn key() -> Design {

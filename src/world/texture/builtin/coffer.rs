@@ -4,7 +4,7 @@ use super::SIDE;
 use super::block::Block;
 use super::noise::Noise;
 use super::shade::shade;
-use crate::world::Rgb;
+use crate::color::Rgb;
 
 const PLASTER: Rgb = Rgb::new(0xa9, 0xa0, 0x8c);
 const GILT: Rgb = Rgb::new(0xc2, 0x9c, 0x54);

@@ -4,7 +4,7 @@ use super::block::Block;
 use super::noise::Noise;
 use super::shade::{FULL, mix, shade};
 use super::{SIDE, wrapped};
-use crate::world::Rgb;
+use crate::color::Rgb;
 
 /// A chequerboard of glazed tiles.
 pub(super) fn tile(x: i32, y: i32) -> Rgb {

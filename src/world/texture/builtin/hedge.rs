@@ -5,7 +5,7 @@ use std::sync::LazyLock;
 use super::noise::{Noise, hash};
 use super::shade::{pick, shade};
 use super::{SIDE, wrapped};
-use crate::world::Rgb;
+use crate::color::Rgb;
 
 /// Layers of leaves on boughs of varying depth.
 pub(super) fn hedge(x: i32, y: i32) -> Rgb {

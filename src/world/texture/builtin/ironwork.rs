@@ -3,7 +3,7 @@
 use super::noise::Noise;
 use super::shade::shade;
 use super::{SIDE, wrapped};
-use crate::world::Rgb;
+use crate::color::Rgb;
 
 const IRON: Rgb = Rgb::new(0x86, 0x88, 0x8c);
 const RUST: Noise = Noise::new(17, 16, 8);

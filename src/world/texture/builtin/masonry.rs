@@ -4,7 +4,7 @@ use super::block::{Bond, Course};
 use super::noise::{Noise, hash};
 use super::patch::Patch;
 use super::shade::{mix, pick, shade};
-use crate::world::Rgb;
+use crate::color::Rgb;
 
 /// Stretchers in running bond, three to a course, in pale mortar.
 pub(super) fn brick(x: i32, y: i32) -> Rgb {

@@ -3,7 +3,7 @@
 use super::block::Block;
 use super::noise::Noise;
 use super::shade::shade;
-use crate::world::Rgb;
+use crate::color::Rgb;
 
 /// Steel plates, a rivet in each corner.
 pub(super) fn metal(x: i32, y: i32) -> Rgb {

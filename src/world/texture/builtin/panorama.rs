@@ -2,7 +2,7 @@
 
 use super::noise::hash;
 use super::shade::mix;
-use crate::world::Rgb;
+use crate::color::Rgb;
 
 /// The width, all around, and the height from the horizon up, in texels.
 pub(super) const WIDTH: i32 = 512;

@@ -1,7 +1,7 @@
 //! Light and shadow.
 
 use super::noise::hash;
-use crate::world::Rgb;
+use crate::color::Rgb;
 
 /// The colour of full light: a warm white.
 const LIGHT: Rgb = Rgb::new(0xff, 0xf4, 0xdc);

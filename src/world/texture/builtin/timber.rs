@@ -6,7 +6,7 @@ use super::SIDE;
 use super::block::{Area, Block};
 use super::noise::Noise;
 use super::shade::shade;
-use crate::world::Rgb;
+use crate::color::Rgb;
 
 /// Upright planks, each nailed where it meets the next one.
 pub(super) fn wood(x: i32, y: i32) -> Rgb {

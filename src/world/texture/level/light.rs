@@ -6,9 +6,6 @@
 //! also weighted by their alpha, so that transparent ones have no influence on the colour.
 
 use std::num::NonZeroU32;
-use std::sync::LazyLock;
-
-use crate::world::Rgb;
 
 /// A picture in linear light: 16 bits for each of red, green and blue.
 pub(super) struct Light {
@@ -105,91 +102,11 @@ fn covered(
     })
 }
 
-/// The colour of a surface that is half of the one and half of the other, from far away.
-pub(crate) fn mean_of_two(one: Rgb, other: Rgb) -> Rgb {
-    let (one, other) = (linear(one), linear(other));
-    stored(std::array::from_fn(|channel| one[channel].midpoint(other[channel])))
-}
-
-/// The colour from far away of a surface that is partly of one of two colours and partly of the other: of the
-/// second for a `share` from 0 to 1.
-pub(crate) fn mean_of_shares([one, other]: [Rgb; 2], share: f64) -> Rgb {
-    if one == other || share <= 0.0 {
-        return one;
-    }
-    if share >= 1.0 {
-        return other;
-    }
-    let (one, other) = (linear(one), linear(other));
-    stored(std::array::from_fn(|channel| {
-        let [one, other] = [one[channel], other[channel]].map(f64::from);
-        (one + (other - one) * share).round() as u16
-    }))
-}
-
-/// What each stored channel is in linear light.
-static LINEAR: LazyLock<[u16; 256]> = LazyLock::new(|| {
-    std::array::from_fn(|channel| {
-        let stored = channel as f64 / 255.0;
-        let linear = if stored <= 0.040_45 {
-            stored / 12.92
-        } else {
-            libm::pow((stored + 0.055) / 1.055, 2.4)
-        };
-        (linear * f64::from(u16::MAX)).round() as u16
-    })
-});
-
-pub(super) fn linear(color: Rgb) -> [u16; 3] {
-    color.channels().map(|channel| LINEAR[usize::from(channel)])
-}
-
-/// The first stored channel that is as light as each multiple of [`SPACING`] or lighter.
-static FIRST: LazyLock<[u8; (u16::MAX / SPACING) as usize + 1]> = LazyLock::new(|| {
-    std::array::from_fn(|index| {
-        let channel = index as u16 * SPACING;
-        LINEAR.partition_point(|&linear| linear < channel) as u8
-    })
-});
-
-/// About three times the distance of the darkest two channels.
-const SPACING: u16 = 64;
-
-/// The stored colour that is nearest to one in linear light.
-pub(super) fn stored(light: [u16; 3]) -> Rgb {
-    let [red, green, blue] = light.map(|channel| {
-        let first = usize::from(FIRST[usize::from(channel / SPACING)]);
-        let mut lighter = LINEAR[first..].iter();
-        let above = first + lighter.position(|&linear| linear >= channel).unwrap_or_default();
-        let below = above.saturating_sub(1);
-        let is_below = channel - LINEAR[below].min(channel) < LINEAR[above] - channel;
-        (if is_below { below } else { above }) as u8
-    });
-    Rgb::new(red, green, blue)
-}
-
 #[cfg(test)]
 mod tests {
     use proptest::prelude::*;
 
     use super::*;
-
-    #[test]
-    fn every_channel_comes_back_from_linear_light() {
-        for channel in 0..=255 {
-            let gray = Rgb::new(channel, channel, channel);
-            assert_eq!(stored(linear(gray)), gray);
-        }
-    }
-
-    #[test]
-    fn the_nearest_stored_channel_is_found() {
-        for light in 0..=u16::MAX {
-            let found = stored([light; 3]).red();
-            let least = LINEAR.iter().map(|linear| linear.abs_diff(light)).min().unwrap();
-            assert_eq!(LINEAR[usize::from(found)].abs_diff(light), least, "{light}");
-        }
-    }
 
     proptest! {
         #[test]

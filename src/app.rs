@@ -1,0 +1,298 @@
+//! The game as a program: a state that keys and time change, and that draws itself.
+//!
+//! The state knows no terminal and no clock: keys and times are handed to it, and a [`Replay`] plays
+//! it off screen. [`play`] is the loop around it that has both.
+
+mod bindings;
+mod clock;
+mod controls;
+mod detection;
+mod goal;
+mod help;
+mod keys;
+mod levels;
+mod map_panel;
+mod mouse;
+mod panels;
+mod played;
+mod recording;
+mod reload;
+mod replay;
+mod run;
+mod settings;
+mod stats;
+mod status;
+mod steps;
+
+use std::time::Duration;
+
+pub use bindings::Bindings;
+use goal::Goal;
+use help::HelpScroll;
+use levels::LevelNumber;
+pub use levels::Levels;
+use map_panel::MapPanel;
+use ratatui::layout::Rect;
+pub use recording::Recording;
+pub use replay::Replay;
+pub use run::play;
+pub use settings::{Configuration, MapDisplay, Settings};
+
+use crate::canvas::Canvas;
+use crate::color::palette::ColorDepth;
+use crate::game::STEP;
+use crate::render::Filter;
+use crate::tui::{CellAspect, GlyphMode, View};
+use crate::world::FieldOfView;
+use clock::Clock;
+use controls::Controls;
+use detection::Detection;
+use keys::Pending;
+use mouse::Pointer;
+use played::{Memory, Played, Viewpoint};
+use recording::ScriptRecorder;
+use reload::Reload;
+use stats::Stats;
+use status::{StatusLine, Told};
+
+/// What shows besides the picture, and what keys do meanwhile.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+enum Screen {
+    Playing,
+    Paused,
+    Help,
+    /// Whether to leave is asked.
+    Leaving,
+    LevelDone,
+    End,
+}
+
+/// What of the game shows in a picture of it.
+#[derive(Clone, Copy, Debug, PartialEq)]
+struct Shown {
+    viewpoint: Viewpoint,
+    revision: u64,
+}
+
+/// How a picture is shown.
+#[derive(Clone, Copy, Debug)]
+struct Look {
+    glyphs: GlyphMode,
+    depth: ColorDepth,
+    cell_aspect: CellAspect,
+    filter: Filter,
+    field_of_view: FieldOfView,
+}
+
+struct App {
+    later_levels: Box<dyn Iterator<Item = Played>>,
+    game: Played,
+    level: LevelNumber,
+    goal: Goal,
+    /// Seconds taken by the levels before this one.
+    earlier: f64,
+    screen: Screen,
+    settings: Settings,
+    depth: ColorDepth,
+    cell_aspect: CellAspect,
+    field_of_view: FieldOfView,
+    controls: Controls,
+    pointer: Pointer,
+    map: MapPanel,
+    help: HelpScroll,
+    /// Where the player goes on who does not want to leave.
+    returns_to: Screen,
+    /// The time, as it was last told, and since when the screen is shown.
+    now: Duration,
+    shown_since: Duration,
+    pending: Option<Pending>,
+    has_left: bool,
+    clock: Clock,
+    memory: Memory,
+    /// What the screen shows; `None` where it must be drawn again.
+    shown: Option<Shown>,
+    /// When, by the game's clock, something in the picture looks different by itself.
+    animates_at: Option<f64>,
+    shows_stats: bool,
+    stats: Option<Stats>,
+    status: StatusLine,
+    /// What was found out about the terminal.
+    detection: Detection,
+    /// Where what is wanted is noted down.
+    script: Option<ScriptRecorder>,
+    /// Where changes of the level come from.
+    reload: Option<Reload>,
+}
+
+impl App {
+    fn new(levels: Levels, settings: Settings) -> Self {
+        let Levels { first, rest, number, changes } = levels;
+        Self {
+            later_levels: rest,
+            level: number,
+            goal: Goal::of(&first, settings.minimap),
+            map: MapPanel::new(settings.minimap),
+            help: HelpScroll::default(),
+            game: first,
+            earlier: 0.0,
+            screen: Screen::Playing,
+            field_of_view: settings.field_of_view,
+            depth: settings.depth.unwrap_or_default(),
+            cell_aspect: settings.cell_aspect.unwrap_or_default(),
+            memory: Memory::new(View::with_caster(settings.caster.clone())),
+            shows_stats: settings.shows_stats,
+            pointer: Pointer::new(settings.mouse),
+            settings,
+            controls: Controls::default(),
+            returns_to: Screen::Playing,
+            now: Duration::ZERO,
+            shown_since: Duration::ZERO,
+            pending: None,
+            has_left: false,
+            clock: Clock::default(),
+            shown: None,
+            animates_at: None,
+            stats: None,
+            status: StatusLine::default(),
+            detection: Detection::default(),
+            script: None,
+            reload: changes.map(Reload::from),
+        }
+    }
+
+    /// What of the game a picture would show now.
+    fn visible(&self) -> Shown {
+        Shown { viewpoint: self.game.viewpoint(self.field_of_view), revision: self.game.revision() }
+    }
+
+    /// Whether the screen shows something that is no longer so.
+    fn is_stale(&self) -> bool {
+        self.shown != Some(self.visible()) || self.steps_to_animation() == Some(0)
+    }
+
+    /// In how many steps something in the picture looks different by itself; `None` for never.
+    fn steps_to_animation(&self) -> Option<u64> {
+        let steps = (self.animates_at? - self.game.elapsed()) / STEP;
+        Some(steps.round().max(0.0) as u64)
+    }
+
+    /// Takes note that the screen shows what there is.
+    fn drawn(&mut self) {
+        self.shown = Some(self.visible());
+        let soonest = self.game.elapsed() + STEP;
+        self.animates_at = self.memory.next_change().map(|change| change.max(soonest));
+    }
+
+    /// When the game will change by itself; `None` for never.
+    fn next_change(&self) -> Option<Duration> {
+        if self.screen != Screen::Playing {
+            return self.pending.map(|pending| pending.until);
+        }
+        if self.controls.held.has_taps() {
+            return Some(self.clock.step_after(0));
+        }
+        let quiet = Some(self.game.quiet_steps(self.wanted())).filter(|&quiet| quiet < u64::MAX);
+        let before_animation = self.steps_to_animation().map(|steps| steps.saturating_sub(1));
+        let steps = quiet.into_iter().chain(before_animation).min()?;
+        Some(self.clock.step_after(steps))
+    }
+
+    fn show(&mut self, screen: Screen) {
+        self.screen = screen;
+        self.shown_since = self.now;
+        self.pending = None;
+        self.shown = None;
+    }
+
+    fn next_level(&mut self) {
+        let Some(level) = self.later_levels.next() else { return self.show(Screen::End) };
+        self.earlier += self.game.elapsed();
+        self.game = level;
+        self.level = self.level.next();
+        self.goal = Goal::of(&self.game, self.settings.minimap);
+        self.map.begin_level();
+        self.release_keys();
+        self.show(Screen::Playing);
+    }
+
+    /// The terminal has another size, or has told more about itself.
+    fn terminal_changed(&mut self, told_aspect: Option<CellAspect>, told_depth: ColorDepth) {
+        self.cell_aspect = self.settings.cell_aspect.or(told_aspect).unwrap_or_default();
+        self.depth = self.settings.depth.unwrap_or(told_depth);
+        self.shown = None;
+    }
+
+    /// The program was stopped, and goes on: the time in between does not count.
+    fn resumed(&mut self, now: Duration) {
+        self.clock.skip_to(now);
+        self.release_keys();
+        self.pointer.forget();
+        self.shown = None;
+    }
+
+    fn draw(&mut self, canvas: &mut impl Canvas) {
+        let area = canvas.bounds();
+        if panels::is_too_small(area) {
+            return panels::too_small(canvas);
+        }
+        let [picture, status] = panels::picture_and_status(area);
+        self.draw_picture(canvas, picture);
+        self.status.update(&Told {
+            game: &self.game,
+            goal: &self.goal,
+            level: self.level,
+            seen: self.game.grid().and_then(|game| self.map.share_seen(game)),
+            gait: self.controls.gait,
+            mouse: self.pointer.is_on(),
+            stats: self.stats.as_ref().filter(|_| self.shows_stats),
+            bindings: &self.settings.bindings,
+        });
+        canvas.draw_widget(&self.status, status);
+        let seconds = self.game.elapsed();
+        let bindings = &self.settings.bindings;
+        match self.screen {
+            Screen::Playing => {}
+            Screen::Paused => {
+                let told = panels::Progress { game: &self.game, level: self.level };
+                panels::paused(canvas, picture, &told, &self.goal, bindings);
+            }
+            Screen::Help => self.help.draw(canvas, picture, bindings, self.detection.lines()),
+            Screen::LevelDone => {
+                let told = panels::Progress { game: &self.game, level: self.level };
+                panels::level_done(canvas, picture, &told);
+            }
+            Screen::Leaving => panels::leaving(canvas, picture, bindings),
+            Screen::End => panels::end(canvas, picture, self.earlier + seconds),
+        }
+        self.draw_fault(canvas, picture);
+    }
+
+    fn draw_picture(&mut self, canvas: &mut impl Canvas, area: Rect) {
+        let look = Look {
+            glyphs: self.settings.glyphs,
+            depth: self.depth,
+            cell_aspect: self.cell_aspect,
+            filter: self.settings.filter,
+            field_of_view: self.field_of_view,
+        };
+        self.game.draw(&look, canvas, area, &mut self.memory);
+        let Some(game) = self.game.grid() else { return };
+        let camera = &game.camera(self.field_of_view);
+        self.map.look(game, camera, area.width);
+        if !self.map.is_shown {
+            return;
+        }
+        let map = self.map.minimap(game, camera, &self.memory.grid);
+        let map = map.glyphs(self.settings.glyphs).color_depth(self.depth);
+        if let Some(panel) = panels::minimap(area, &map) {
+            let inside = panels::framed(canvas, panel, "map");
+            map.paint(inside, canvas);
+            let extent = map.extent_within(inside.as_size());
+            self.map.shown(extent, game, camera);
+        }
+    }
+}
+
+#[cfg(test)]
+mod tests;
+mod wrap;

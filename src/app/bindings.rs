@@ -1,0 +1,182 @@
+//! Which key does what: the actions, and presets of keys for them.
+
+mod presets;
+
+use crate::game::Intent;
+use crate::terminal::{Key, KeyEvent};
+pub(super) use presets::PRESETS;
+
+/// What a key can do.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
+pub(crate) enum Action {
+    /// Wanting something for as long as the key is held.
+    Want(Intent),
+    /// Running until it is pressed again.
+    ToggleRun,
+    /// Ducking until it is pressed again.
+    ToggleDuck,
+    /// Turning and tilting by the mouse, or not any more.
+    ToggleMouse,
+    /// Walking on until it, or a key to walk, is pressed.
+    ToggleWalkOn,
+    /// Showing or hiding the minimap.
+    ToggleMinimap,
+    /// Showing the minimap larger, smaller, or another part of it.
+    ChangeMap(MapChange),
+    /// Showing or hiding the keys.
+    ToggleHelp,
+    /// Pausing, or going on.
+    TogglePause,
+    /// Seeing more at once.
+    WidenView,
+    /// Seeing less at once.
+    NarrowView,
+    /// Showing or hiding what frames take.
+    ToggleStats,
+    /// Leaving the game.
+    Leave,
+}
+
+/// How the minimap can be changed.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
+pub(crate) enum MapChange {
+    Larger,
+    Smaller,
+    North,
+    South,
+    West,
+    East,
+    /// Around the player, in its usual size.
+    Center,
+}
+
+impl Action {
+    /// Every action: its name in a file, what it does in a word or two, and itself.
+    pub(crate) const ALL: [(&'static str, &'static str, Self); 34] = [
+        ("forward", "walk", Self::Want(Intent::Forward)),
+        ("back", "walk back", Self::Want(Intent::Back)),
+        ("strafe-left", "strafe left", Self::Want(Intent::StrafeLeft)),
+        ("strafe-right", "strafe right", Self::Want(Intent::StrafeRight)),
+        ("turn-left", "turn left", Self::Want(Intent::TurnLeft)),
+        ("turn-right", "turn right", Self::Want(Intent::TurnRight)),
+        ("fine-left", "turn left by 5°", Self::Want(Intent::FineLeft)),
+        ("fine-right", "turn right by 5°", Self::Want(Intent::FineRight)),
+        ("about-face", "turn around", Self::Want(Intent::AboutFace)),
+        ("walk-on", "keep walking", Self::ToggleWalkOn),
+        ("run", "run while held", Self::Want(Intent::Run)),
+        ("open", "open a door", Self::Want(Intent::Open)),
+        ("jump", "jump, or open", Self::Want(Intent::Jump)),
+        ("duck", "duck while held", Self::Want(Intent::Duck)),
+        ("look-up", "look up", Self::Want(Intent::LookUp)),
+        ("look-down", "look down", Self::Want(Intent::LookDown)),
+        ("look-ahead", "look ahead", Self::Want(Intent::LookAhead)),
+        ("toggle-run", "run, on and off", Self::ToggleRun),
+        ("toggle-duck", "duck, on and off", Self::ToggleDuck),
+        ("mouse", "turn by mouse", Self::ToggleMouse),
+        ("minimap", "map", Self::ToggleMinimap),
+        ("map-larger", "larger map", Self::ChangeMap(MapChange::Larger)),
+        ("map-smaller", "smaller map", Self::ChangeMap(MapChange::Smaller)),
+        ("map-north", "move it north", Self::ChangeMap(MapChange::North)),
+        ("map-south", "move it south", Self::ChangeMap(MapChange::South)),
+        ("map-west", "move it west", Self::ChangeMap(MapChange::West)),
+        ("map-east", "move it east", Self::ChangeMap(MapChange::East)),
+        ("map-center", "map around you", Self::ChangeMap(MapChange::Center)),
+        ("help", "this help", Self::ToggleHelp),
+        ("pause", "pause", Self::TogglePause),
+        ("wider", "wider view", Self::WidenView),
+        ("narrower", "narrower view", Self::NarrowView),
+        ("stats", "frames and link", Self::ToggleStats),
+        ("leave", "leave", Self::Leave),
+    ];
+
+    /// The action of that name.
+    pub(super) fn named(name: &str) -> Option<Self> {
+        Self::ALL.into_iter().find(|&(known, ..)| known == name).map(|(.., action)| action)
+    }
+
+    /// Whether nobody wants both at once.
+    pub(super) fn opposes(self, other: Self) -> bool {
+        matches!((self, other), (Self::Want(one), Self::Want(other)) if one.opposes(other))
+    }
+}
+
+/// Which key does what.
+#[derive(Clone, Debug, PartialEq, Eq)]
+pub struct Bindings {
+    /// Each key once.
+    keys: Vec<(Key, Action)>,
+}
+
+impl Bindings {
+    /// Every action's keys, and what it does in a word or two, in the order of [`Action::ALL`].
+    #[cfg(feature = "cli")]
+    pub(crate) fn described(&self) -> impl Iterator<Item = (String, &'static str)> {
+        Action::ALL.into_iter().map(|(_, does, action)| {
+            let keys: Vec<String> = self.keys(action).map(|key| key.to_string()).collect();
+            (keys.join(" "), does)
+        })
+    }
+
+    /// The same, but that `bound` are the keys of the actions in `rebound`, and of no others.
+    pub(super) fn rebound(mut self, rebound: &[Action], bound: Vec<(Key, Action)>) -> Self {
+        let taken = |key| bound.iter().any(|&(bound, _)| bound == key);
+        self.keys.retain(|&(key, action)| !rebound.contains(&action) && !taken(key));
+        self.keys.extend(bound);
+        self.in_order()
+    }
+
+    /// In the order of their actions.
+    fn in_order(mut self) -> Self {
+        let place = |action| Action::ALL.iter().position(|&(.., known)| known == action);
+        self.keys.sort_by_key(|&(_, action)| place(action));
+        self
+    }
+
+    /// What `key` does.
+    pub(crate) fn action(&self, key: Key) -> Option<Action> {
+        self.keys.iter().find(|&&(bound, _)| bound == key).map(|&(_, action)| action)
+    }
+
+    /// `event`, of the key that does something: where the one pressed does nothing, of the one at its
+    /// place on a US keyboard.
+    pub(crate) fn resolve(&self, event: KeyEvent) -> KeyEvent {
+        let base = event.base.filter(|_| self.action(event.key).is_none());
+        KeyEvent { key: base.unwrap_or(event.key), ..event }
+    }
+
+    /// The keys that do `action`, in the order in which they were bound.
+    pub(crate) fn keys(&self, action: Action) -> impl Iterator<Item = Key> {
+        self.keys.iter().filter(move |&&(_, bound)| bound == action).map(|&(key, _)| key)
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::app::Configuration;
+    use crate::terminal::{Modifiers, Phase};
+
+    #[test]
+    fn every_action_has_a_key_in_every_preset() {
+        for (preset, bindings) in PRESETS {
+            for (name, _, action) in Action::ALL {
+                assert!(bindings().keys(action).next().is_some(), "{name} in {preset}");
+            }
+        }
+    }
+
+    #[test]
+    fn a_key_does_what_it_types_and_else_what_its_place_does() {
+        let event = |key, base| KeyEvent {
+            key: Key::Char(key),
+            base: Some(Key::Char(base)),
+            modifiers: Modifiers::default(),
+            phase: Phase::Press,
+        };
+        let text = "[keys]\nopen = \"ц\"";
+        let cyrillic = Configuration::parse(text, "config.toml").unwrap().bindings;
+        assert_eq!(cyrillic.resolve(event('ц', 'w')).key, Key::Char('ц'));
+        assert_eq!(cyrillic.resolve(event('ф', 'a')).key, Key::Char('a'));
+        assert_eq!(Bindings::default().resolve(event('ц', 'w')).key, Key::Char('w'));
+    }
+}

@@ -1,0 +1,181 @@
+//! The help: which key does what, in a panel that scrolls where it is too high for the window.
+//!
+//! It says first how to leave it. Keys that every terminal has scroll it: the arrows, the page keys, and the space bar.
+
+use ratatui::layout::{Constraint, Flex, Layout, Rect};
+use ratatui::text::{Line, Text};
+use ratatui::widgets::{Block, Padding, Paragraph};
+
+use super::App;
+use super::panels::{BORDERS, PADDING, framed, key_names};
+use super::wrap::wrapped;
+use crate::app::bindings::{Action, Bindings};
+use crate::canvas::Canvas;
+use crate::terminal::Key;
+
+/// How far the help has been scrolled.
+#[derive(Clone, Copy, Debug, Default)]
+pub(super) struct HelpScroll {
+    /// The first line that shows, below those that always do.
+    first: usize,
+    /// How many lines showed last, and how many there were.
+    page: usize,
+    lines: usize,
+}
+
+/// Blank columns between two columns of text.
+const GAP: usize = 3;
+
+impl App {
+    /// Scrolls the help where `key` is for that; whether it is.
+    pub(super) fn scroll_help(&mut self, key: Key) -> bool {
+        let page = self.help.page.max(1);
+        let first = self.help.first;
+        let wanted = match key {
+            Key::Up => first.saturating_sub(1),
+            Key::Down => first + 1,
+            Key::PageUp => first.saturating_sub(page),
+            Key::PageDown | Key::Char(' ') => first + page,
+            Key::Home => 0,
+            _ => return false,
+        };
+        let wanted = wanted.min(self.help.last());
+        if wanted != first {
+            self.help.first = wanted;
+            self.shown = None;
+        }
+        true
+    }
+}
+
+impl HelpScroll {
+    /// The furthest that one can scroll.
+    fn last(&self) -> usize {
+        self.lines.saturating_sub(self.page)
+    }
+
+    /// Draws the help, and at its end `notes` on the terminal.
+    pub(super) fn draw(
+        &mut self,
+        canvas: &mut impl Canvas,
+        picture: Rect,
+        bindings: &Bindings,
+        notes: impl Iterator<Item = String>,
+    ) {
+        let room = usize::from(picture.height.saturating_sub(BORDERS)).max(1);
+        let most_columns = usize::from(picture.width.saturating_sub(BORDERS + PADDING)).max(1);
+        let leave = how_to_leave(bindings, most_columns);
+        let keys = keys_in_columns(bindings, room.saturating_sub(1), most_columns);
+        let notes = notes.flat_map(|note| wrapped(&note, most_columns));
+        let body: Vec<String> = keys.into_iter().chain(notes).collect();
+        self.lines = body.len();
+        let fits = body.len() < room;
+        // What tells that there is more takes a line.
+        self.page = if fits { body.len() } else { room.saturating_sub(2).max(1) };
+        self.first = self.first.min(self.last());
+        let shown = body.iter().skip(self.first).take(self.page).cloned();
+        let more = (!fits).then(|| {
+            let last = (self.first + self.page).min(self.lines);
+            let long = format!("{}-{last} of {}: up down", self.first + 1, self.lines);
+            if long.len() <= most_columns { long } else { format!("{last}/{} up down", self.lines) }
+        });
+        let lines: Vec<Line> =
+            [leave].into_iter().chain(shown).chain(more).map(Line::from).collect();
+        let widest = lines.iter().map(Line::width).max().unwrap_or_default() as u16;
+        let width = Constraint::Length(widest.saturating_add(BORDERS + PADDING));
+        let height = Constraint::Length((lines.len() as u16).saturating_add(BORDERS));
+        let [area] = Layout::horizontal([width]).flex(Flex::Center).areas(picture);
+        let [area] = Layout::vertical([height]).flex(Flex::Center).areas(area);
+        let inside = framed(canvas, area, "keys");
+        let padded = Block::new().padding(Padding::horizontal(PADDING / 2));
+        canvas.draw_widget(Paragraph::new(Text::from(lines)).block(padded), inside);
+    }
+}
+
+/// How to leave the help, and the game where that fits.
+fn how_to_leave(bindings: &Bindings, most_columns: usize) -> String {
+    let first = |action| bindings.keys(action).next().map(|key| key.to_string());
+    let close = first(Action::ToggleHelp).unwrap_or_else(|| Key::Escape.to_string());
+    let leave = first(Action::Leave).map(|leave| format!("{close} closes; {leave} leaves"));
+    leave
+        .filter(|text| text.chars().count() <= most_columns)
+        .unwrap_or_else(|| format!("{close} closes"))
+}
+
+/// Each action with its keys, in as many columns as it takes to fit into `room` lines, or as there are columns for.
+/// Where there is not room for one, lines are broken.
+fn keys_in_columns(bindings: &Bindings, room: usize, most_columns: usize) -> Vec<String> {
+    let lines = Action::ALL.map(|(_, does, action)| (key_names(bindings, action), does));
+    let padded = lines.each_ref().map(|(keys, does)| format!("{keys:<10}  {does}"));
+    let widest = padded.iter().map(|line| line.chars().count()).max().unwrap_or_default();
+    if widest > most_columns {
+        let lines = lines.iter();
+        return lines
+            .flat_map(|(keys, does)| wrapped(&format!("{keys}: {does}"), most_columns))
+            .collect();
+    }
+    let width = widest + GAP;
+    let columns =
+        padded.len().div_ceil(room.max(1)).clamp(1, ((most_columns + GAP) / width).max(1));
+    let height = padded.len().div_ceil(columns);
+    (0..height)
+        .map(|row| padded[row..].iter().step_by(height).map(|line| format!("{line:<width$}")))
+        .map(|cells| cells.collect::<Vec<_>>().concat().trim_end().to_owned())
+        .collect()
+}
+
+#[cfg(test)]
+mod tests {
+    use ratatui::buffer::{Buffer, Cell};
+
+    use super::*;
+
+    fn shown(columns: u16, rows: u16, help: &mut HelpScroll) -> String {
+        let mut buffer = Buffer::empty(Rect::new(0, 0, columns, rows));
+        let note =
+            "256 colours: your terminal did not offer more; see docs/terminals.md".to_owned();
+        let notes = [note].into_iter();
+        help.draw(&mut buffer, Rect::new(0, 0, columns, rows), &Bindings::default(), notes);
+        let lines = buffer.content().chunks(columns.into());
+        lines.flat_map(|line| line.iter().map(Cell::symbol).chain(["\n"])).collect()
+    }
+
+    fn shows_words(seen: &str, line: &str) -> bool {
+        line.split_whitespace().all(|word| seen.contains(word))
+    }
+
+    #[test]
+    fn every_line_is_reached_in_any_window() {
+        for (columns, rows) in [(80, 23), (32, 24), (64, 13), (200, 60), (60, 9), (20, 5)] {
+            let mut help = HelpScroll::default();
+            let mut seen = String::new();
+            loop {
+                let text = shown(columns, rows, &mut help);
+                assert!(text.contains("? closes"), "{columns} by {rows}:\n{text}");
+                seen.extend(
+                    text.chars().filter(|letter| !letter.is_whitespace() && *letter != '│'),
+                );
+                if help.first >= help.last() {
+                    break;
+                }
+                help.first += help.page;
+            }
+            // A word that is longer than a line is broken.
+            let most = usize::from(columns - BORDERS - PADDING);
+            let shows =
+                |text: &str| wrapped(text, most).iter().all(|line| shows_words(&seen, line));
+            for (_, does, _) in Action::ALL {
+                assert!(shows(does), "{does}, {columns} by {rows}:\n{seen:?}");
+            }
+            assert!(shows("did not offer more; see docs/terminals.md"), "{columns} by {rows}");
+        }
+    }
+
+    #[test]
+    fn nothing_scrolls_where_all_of_it_shows() {
+        let mut help = HelpScroll::default();
+        let text = shown(80, 23, &mut help);
+        assert_eq!(help.last(), 0, "{text}");
+        assert!(!text.contains(" of "), "{text}");
+    }
+}

@@ -1,0 +1,199 @@
+//! What shows on the picture and around it: the minimap's frame, and messages.
+
+use std::fmt::{self, Display};
+
+use ratatui::buffer::Buffer;
+use ratatui::layout::{Constraint, Flex, Layout, Margin, Rect, Size};
+use ratatui::text::{Span, Text};
+use ratatui::widgets::{Block, Borders, Padding, Paragraph, Widget, Wrap};
+
+use super::goal::Goal;
+use super::levels::LevelNumber;
+use super::played::Played;
+use crate::app::bindings::{Action, Bindings};
+use crate::canvas::Canvas;
+use crate::terminal::Key;
+use crate::tui::Minimap;
+
+/// The least that can be played in.
+const LEAST_COLUMNS: u16 = 20;
+const LEAST_ROWS: u16 = 6;
+/// The least picture that leaves room for a minimap.
+const LEAST_WITH_MINIMAP: (u16, u16) = (36, 12);
+/// The largest minimap: more would hide too much of the picture.
+const LARGEST_MINIMAP: (u16, u16) = (40, 20);
+/// What the borders of a panel take of its width and height.
+pub(super) const BORDERS: u16 = 2;
+/// What a message leaves blank to its left and right.
+pub(super) const PADDING: u16 = 2;
+
+/// Whether `area` is too small to play in.
+pub(super) fn is_too_small(area: Rect) -> bool {
+    area.width < LEAST_COLUMNS || area.height < LEAST_ROWS
+}
+
+/// Says so.
+pub(super) fn too_small(canvas: &mut impl Canvas) {
+    let text = format!("Too small to play: {LEAST_COLUMNS}×{LEAST_ROWS} at least.");
+    canvas.draw_widget(Paragraph::new(text).wrap(Wrap { trim: true }), canvas.bounds());
+}
+
+/// Where the picture and the status line go.
+pub(super) fn picture_and_status(area: Rect) -> [Rect; 2] {
+    let picture = Rect { height: area.height.saturating_sub(1), ..area };
+    let status = Rect { y: picture.bottom(), height: area.height - picture.height, ..area };
+    [picture, status]
+}
+
+/// Where the panel of `map` goes, in the upper right corner of the picture, if there is room for it.
+pub(super) fn minimap(picture: Rect, map: &Minimap) -> Option<Rect> {
+    let (least_columns, least_rows) = LEAST_WITH_MINIMAP;
+    if picture.width < least_columns || picture.height < least_rows {
+        return None;
+    }
+    let room = Size {
+        width: (picture.width / 3).min(LARGEST_MINIMAP.0),
+        height: (picture.height / 2 - BORDERS).min(LARGEST_MINIMAP.1),
+    };
+    let size = map.size_within(room);
+    let (width, height) = (size.width + BORDERS, size.height + BORDERS);
+    Some(Rect { x: picture.right() - width, y: picture.y, width, height })
+}
+
+/// Draws the border of a panel, with a title, and tells where its inside is.
+///
+/// It goes side by side: what is inside a minimap would be blanked for nothing.
+pub(super) fn framed(canvas: &mut impl Canvas, area: Rect, title: &str) -> Rect {
+    let inside = Block::bordered().inner(area);
+    let row = |y| Rect { y, height: area.height.min(1), ..area };
+    let column = |x| Rect { x, width: area.width.min(1), ..inside };
+    for (sides, area) in [
+        (Borders::LEFT, column(area.left())),
+        (Borders::RIGHT, column(area.right().saturating_sub(1))),
+        (Borders::BOTTOM | Borders::LEFT | Borders::RIGHT, row(area.bottom().saturating_sub(1))),
+    ] {
+        canvas.draw_widget(Block::new().borders(sides), area);
+    }
+    canvas.draw_widget(Lid { title }, row(area.top()));
+    inside
+}
+
+/// The upper side of a panel, with a title. A block of ratatui's keeps its title in a list, which is too
+/// much for what is drawn with each frame.
+struct Lid<'a> {
+    title: &'a str,
+}
+
+impl Widget for Lid<'_> {
+    fn render(self, area: Rect, buffer: &mut Buffer) {
+        Block::new().borders(Borders::TOP | Borders::LEFT | Borders::RIGHT).render(area, buffer);
+        Span::raw(self.title).render(area.inner(Margin::new(1, 0)), buffer);
+    }
+}
+
+/// A level, and how far the player is in it.
+pub(super) struct Progress<'a> {
+    pub(super) game: &'a Played,
+    pub(super) level: LevelNumber,
+}
+
+impl Progress<'_> {
+    /// The level's title, and its number where it is one of several.
+    fn level(&self) -> String {
+        let title = self.game.title();
+        if self.level.is_one_of_several() {
+            format!("{title}\n{}", self.level)
+        } else {
+            title.to_owned()
+        }
+    }
+}
+
+/// That the game waits; what there is to do, and how far it is.
+pub(super) fn paused(
+    canvas: &mut impl Canvas,
+    picture: Rect,
+    progress: &Progress,
+    goal: &Goal,
+    bindings: &Bindings,
+) {
+    let keys = key_names(bindings, Action::TogglePause);
+    let has: Vec<String> = progress.game.keys().map(|key| format!("{key} key")).collect();
+    let seconds = whole_seconds(progress.game.elapsed());
+    let (level, goal) = (progress.level(), goal.text());
+    let text = format!("{keys} goes on\n{goal}\n{level}\n{seconds}\n{}", has.join("\n"));
+    message(canvas, picture, "paused", Text::from(text).centered());
+}
+
+/// Whether the player wants to leave.
+pub(super) fn leaving(canvas: &mut impl Canvas, picture: Rect, bindings: &Bindings) {
+    let leave = bindings.keys(Action::Leave).find(|&key| key != Key::Escape);
+    let keys = leave.map_or_else(String::new, |key| format!("{key} or "));
+    let text = format!("{keys}Enter leaves\nany other key goes on");
+    message(canvas, picture, "leave?", Text::from(text).centered());
+}
+
+/// That the exit was reached, and how soon.
+pub(super) fn level_done(canvas: &mut impl Canvas, picture: Rect, progress: &Progress) {
+    let seconds = time(progress.game.elapsed());
+    let text = format!("{}\nin {seconds}\nEnter goes on", progress.level());
+    message(canvas, picture, "you found the way out", Text::from(text).centered());
+}
+
+/// That there are no more levels, and how soon the player got through them.
+pub(super) fn end(canvas: &mut impl Canvas, picture: Rect, seconds: f64) {
+    let text = format!("all levels\nin {}\nEnter leaves", time(seconds));
+    message(canvas, picture, "the end", Text::from(text).centered());
+}
+
+/// A panel in the middle of the picture, as large as `text` needs.
+fn message(canvas: &mut impl Canvas, picture: Rect, title: &str, text: Text) {
+    let widest = text.width().max(title.len()) as u16;
+    let width = Constraint::Length(widest.saturating_add(BORDERS + PADDING));
+    let height = Constraint::Length((text.height() as u16).saturating_add(BORDERS));
+    let [area] = Layout::horizontal([width]).flex(Flex::Center).areas(picture);
+    let [area] = Layout::vertical([height]).flex(Flex::Center).areas(area);
+    let inside = framed(canvas, area, title);
+    let padded = Block::new().padding(Padding::horizontal(PADDING / 2));
+    canvas.draw_widget(Paragraph::new(text).block(padded), inside);
+}
+
+pub(super) fn key_names(bindings: &Bindings, action: Action) -> String {
+    let names: Vec<String> = bindings.keys(action).map(|key| key.to_string()).collect();
+    names.join(" ")
+}
+
+/// Minutes and seconds.
+pub(super) fn whole_seconds(seconds: f64) -> impl Display {
+    let seconds = seconds as u64;
+    WholeSeconds { minutes: seconds / 60, seconds: seconds % 60 }
+}
+
+struct WholeSeconds {
+    minutes: u64,
+    seconds: u64,
+}
+
+impl Display for WholeSeconds {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        write!(f, "{}:{:02}", self.minutes, self.seconds)
+    }
+}
+
+/// Minutes, seconds and tenths.
+fn time(seconds: f64) -> String {
+    let tenths = (seconds * 10.0) as u64;
+    format!("{}:{:02}.{}", tenths / 600, tenths / 10 % 60, tenths % 10)
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn times_are_minutes_seconds_and_tenths() {
+        assert_eq!(time(0.0), "0:00.0");
+        assert_eq!(time(61.26), "1:01.2");
+        assert_eq!(time(3600.0), "60:00.0");
+    }
+}

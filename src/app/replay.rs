@@ -1,0 +1,87 @@
+//! The game played by a script, off screen.
+
+use std::fmt;
+use std::num::NonZeroU32;
+
+use ratatui::buffer::Buffer;
+use ratatui::layout::{Rect, Size};
+
+use super::{App, Levels, Screen, Settings};
+use crate::canvas::Canvas;
+use crate::game::{Intents, STEPS_PER_SECOND, Script};
+
+/// A game that no terminal shows, one step at a time: the picture, minimap and status line that a
+/// player would see who wants the same things.
+///
+/// Where a level's exit is reached, the next step is the first one of the next level.
+pub struct Replay {
+    app: App,
+    picture: Buffer,
+}
+
+impl Replay {
+    /// The beginning of `levels`, in a window of `size`.
+    pub fn new(levels: Levels, settings: Settings, size: Size) -> Self {
+        let area = Rect::from(size);
+        Self { app: App::new(levels, settings), picture: Buffer::empty(area) }
+    }
+
+    /// Lets a step pass in which the player wants `intents`.
+    pub fn step(&mut self, intents: Intents) {
+        if self.app.screen == Screen::LevelDone {
+            self.app.next_level();
+        }
+        if self.app.screen == Screen::Playing {
+            self.app.game.step(intents);
+            self.app.goal.moved(1);
+            if self.app.game.is_finished() {
+                self.app.show(Screen::LevelDone);
+            }
+        }
+    }
+
+    /// Plays `script`, and shows its pictures, so many a second: the first from before the first
+    /// step, each with its number and the place of the section that led to it.
+    ///
+    /// # Errors
+    /// The first that `show` has.
+    pub fn play<E>(
+        &mut self,
+        script: &Script,
+        frames_per_second: NonZeroU32,
+        mut show: impl FnMut(u64, usize, &Buffer) -> Result<(), E>,
+    ) -> Result<(), E> {
+        let mut frame = 0;
+        show(frame, 0, self.picture())?;
+        for (steps, (section, intents)) in (1..).zip(script.iter()) {
+            self.step(intents);
+            let frames = steps * u64::from(frames_per_second.get()) / u64::from(STEPS_PER_SECOND);
+            while frame < frames {
+                frame += 1;
+                show(frame, section, self.picture())?;
+            }
+        }
+        Ok(())
+    }
+
+    /// Draws what there is to see now.
+    pub fn draw(&mut self, canvas: &mut impl Canvas) {
+        self.app.draw(canvas);
+    }
+
+    /// What the window shows now. As in a game, a picture stays as it is where nothing has moved.
+    pub fn picture(&mut self) -> &Buffer {
+        if self.app.is_stale() {
+            self.picture.reset();
+            self.app.draw(&mut self.picture);
+            self.app.drawn();
+        }
+        &self.picture
+    }
+}
+
+impl fmt::Debug for Replay {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        f.debug_struct("Replay").field("game", &self.app.game).finish_non_exhaustive()
+    }
+}

@@ -1,0 +1,62 @@
+//! The table `[keys]`: which keys a file gives to which actions.
+//!
+//! A key that the file gives to an action is taken from the one that the preset gave it to; one that
+//! it gives to two actions is a fault. An empty list leaves an action without a key.
+
+use std::ops::Range;
+
+use toml::de::{DeTable, DeValue};
+
+use crate::app::bindings::Action;
+use crate::fault::{Fault, document, quoted};
+use crate::terminal::Key;
+
+/// What the table binds.
+#[derive(Default)]
+pub(super) struct Bound {
+    /// The actions that it names.
+    pub(super) actions: Vec<Action>,
+    pub(super) keys: Vec<(Key, Action)>,
+}
+
+/// What the table `[keys]` binds.
+pub(super) fn read(table: &DeTable, faults: &mut Vec<Fault>) -> Bound {
+    const EXAMPLE: &str = "forward = [\"z\", \"up\"]";
+    let names = Action::ALL.map(|(name, ..)| name);
+    let mut bound = Bound::default();
+    for entry in document::entries(table) {
+        let Some(action) = Action::named(entry.key) else {
+            faults.push(entry.unknown_key("the table of keys", &names));
+            continue;
+        };
+        bound.actions.push(action);
+        let values = match entry.value {
+            DeValue::Array(values) => {
+                values.iter().map(|value| (value.get_ref(), value.span())).collect()
+            }
+            single => vec![(single, entry.value_place.clone())],
+        };
+        for (value, place) in values {
+            let Some(name) = value.as_str() else {
+                faults.push(entry.wrong_type("the name of a key, or a list of names", EXAMPLE));
+                break;
+            };
+            match name.parse::<Key>() {
+                Err(error) => {
+                    faults.push(Fault::new(place, error.to_string()).label("unknown key"));
+                }
+                Ok(key) if bound.keys.iter().any(|&(other, to)| other == key && to != action) => {
+                    faults.push(bound_twice(key, place));
+                }
+                Ok(key) => bound.keys.push((key, action)),
+            }
+        }
+    }
+    bound
+}
+
+fn bound_twice(key: Key, place: Range<usize>) -> Fault {
+    Fault::new(place, format!("the key {} is bound to two actions", quoted(&key.to_string())))
+        .label("another action has it too")
+        .help("give each key to one action")
+}

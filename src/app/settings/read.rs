@@ -1,0 +1,156 @@
+//! From a file to a configuration.
+
+use std::num::NonZeroU32;
+
+use toml::de::{DeTable, DeValue};
+
+use super::value::{self, DEPTHS, DISPLAYS, GLYPH_MODES, Names, SETTINGS};
+use super::{Configuration, keys};
+use crate::app::bindings::PRESETS;
+use crate::color::palette::ColorDepth;
+use crate::fault::document::{self, Entry};
+use crate::fault::{Fault, Faults, nearest, quoted};
+use crate::terminal::Fidelity;
+use crate::world::FieldOfView;
+
+impl Configuration {
+    /// Reads a configuration file, which faults call `name`.
+    ///
+    /// # Errors
+    /// Everything that is wrong with the file.
+    pub fn parse(text: &str, name: &str) -> Result<Self, Faults> {
+        let mut faults = Vec::new();
+        let document = document::parse(text, &mut faults);
+        let mut configuration = Self::default();
+        if faults.is_empty() {
+            configuration.read(&document, &mut faults);
+        }
+        if faults.is_empty() { Ok(configuration) } else { Err(Faults::new(name, text, faults)) }
+    }
+
+    fn read(&mut self, document: &DeTable, faults: &mut Vec<Fault>) {
+        let mut bound = keys::Bound::default();
+        let mut preset = PRESETS[0].1;
+        for entry in document::entries(document) {
+            match entry.key {
+                "preset" => {
+                    let presets = PRESETS.map(|(name, make)| (name, (name, make)));
+                    if let Some((name, make)) = named(&entry, &presets, faults) {
+                        (self.preset, preset) = (name, make);
+                    }
+                }
+                "colors" => read_colors(&entry, &mut self.colors, faults),
+                "glyphs" => set(&mut self.glyphs, named(&entry, &GLYPH_MODES, faults)),
+                "fov" => set(&mut self.field_of_view, field_of_view(&entry, faults)),
+                "fps" => set(&mut self.frames_per_second, frames_per_second(&entry, faults)),
+                "mouse" => set(&mut self.mouse, boolean(&entry, faults)),
+                "minimap" => set(&mut self.minimap, named(&entry, &DISPLAYS, faults)),
+                "fidelity" => read_fidelity(&entry, &mut self.fidelity, faults),
+                "keys" => {
+                    if let Some(table) = entry.table("[keys]", faults) {
+                        bound = keys::read(table, faults);
+                    }
+                }
+                _ => {
+                    let names = SETTINGS.map(|setting| setting.name);
+                    let known: Vec<&str> = names.into_iter().chain(["keys"]).collect();
+                    faults.push(entry.unknown_key("the configuration", &known));
+                }
+            }
+        }
+        self.bindings = preset().rebound(&bound.actions, bound.keys);
+    }
+}
+
+fn set<T>(setting: &mut T, value: Option<T>) {
+    if let Some(value) = value {
+        *setting = value;
+    }
+}
+
+/// The value that `names` has for the entry's string.
+fn named<T: Copy, const N: usize>(
+    entry: &Entry<'_, '_>,
+    names: &Names<T, N>,
+    faults: &mut Vec<Fault>,
+) -> Option<T> {
+    let name = entry.string(&format!("{} = \"{}\"", entry.key, names[0].0), faults)?;
+    let value = names.iter().find(|&&(known, _)| known == name).map(|&(_, value)| value);
+    if value.is_none() {
+        let known = names.map(|(known, _)| known);
+        let help = match nearest(name, &known) {
+            Some(meant) => format!("the nearest is {}", quoted(meant)),
+            None => format!("write one of {}", known.map(quoted).join(", ")),
+        };
+        let message = format!("{} is no value of {}", quoted(name), quoted(entry.key));
+        faults.push(Fault::new(entry.value_place.clone(), message).help(help));
+    }
+    value
+}
+
+/// Reads the number of colours by its name; 256 and 16 may do without quotes.
+fn read_colors(entry: &Entry<'_, '_>, colors: &mut Option<ColorDepth>, faults: &mut Vec<Fault>) {
+    let number = entry.number().map(|number| number.to_string());
+    match DEPTHS.iter().find(|&&(known, _)| Some(known) == number.as_deref()) {
+        Some(&(_, depth)) => *colors = depth,
+        None => set(colors, named(entry, &DEPTHS, faults)),
+    }
+}
+
+fn field_of_view(entry: &Entry<'_, '_>, faults: &mut Vec<Fault>) -> Option<FieldOfView> {
+    let Some(degrees) = entry.number() else {
+        faults.push(entry.wrong_type("a number of degrees", "fov = 66"));
+        return None;
+    };
+    let view = FieldOfView::from_degrees(degrees);
+    if view.is_none() {
+        faults.push(out_of_range(entry, "degrees above 0 and below 180", "fov = 66"));
+    }
+    view
+}
+
+fn frames_per_second(entry: &Entry<'_, '_>, faults: &mut Vec<Fault>) -> Option<NonZeroU32> {
+    let DeValue::Integer(_) = entry.value else {
+        faults.push(entry.wrong_type("a whole number", "fps = 30"));
+        return None;
+    };
+    let number = entry.number().filter(|number| (1.0..=240.0).contains(number));
+    let frames = number.and_then(|number| NonZeroU32::new(number as u32));
+    if frames.is_none() {
+        faults.push(out_of_range(entry, "a whole number from 1 to 240", "fps = 30"));
+    }
+    frames
+}
+
+fn boolean(entry: &Entry<'_, '_>, faults: &mut Vec<Fault>) -> Option<bool> {
+    let DeValue::Boolean(boolean) = entry.value else {
+        faults.push(entry.wrong_type("true or false", &format!("{} = true", entry.key)));
+        return None;
+    };
+    Some(*boolean)
+}
+
+/// Reads a fidelity by its name, or by its number.
+fn read_fidelity(entry: &Entry<'_, '_>, fidelity: &mut Option<Fidelity>, faults: &mut Vec<Fault>) {
+    let example = format!("fidelity = \"{}\"", value::FIDELITY.default);
+    let text = match entry.number() {
+        Some(number) => number.to_string(),
+        None => match entry.string(&example, faults) {
+            Some(text) => text.to_owned(),
+            None => return,
+        },
+    };
+    if text == value::FIDELITY.default {
+        *fidelity = None;
+    } else if let Ok(read) = text.parse() {
+        *fidelity = Some(read);
+    } else {
+        let values = "\"auto\", \"exact\", \"high\", \"low\" or a whole number from 0 to 255";
+        faults.push(out_of_range(entry, values, &example));
+    }
+}
+
+fn out_of_range(entry: &Entry<'_, '_>, wanted: &str, example: &str) -> Fault {
+    let message = format!("{} must be {wanted}", quoted(entry.key));
+    Fault::new(entry.value_place.clone(), message).help(format!("write {example}"))
+}

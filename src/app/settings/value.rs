@@ -1,0 +1,77 @@
+//! What each setting is called, what it is for, and the words for its values.
+
+use super::MapDisplay;
+use crate::color::palette::ColorDepth;
+use crate::tui::GlyphMode;
+
+/// A setting as a file has it.
+pub(super) struct Setting {
+    pub(super) name: &'static str,
+    /// What it is for, in lines of a comment.
+    pub(super) meaning: &'static str,
+    /// Its value where the file says nothing, as the file would say it.
+    pub(super) default: &'static str,
+}
+
+pub(super) const PRESET: Setting = Setting {
+    name: "preset",
+    meaning: "the keyboard that keys are for, as a start: \"qwerty\", \"azerty\" or \"hjkl\"",
+    default: "qwerty",
+};
+pub(super) const COLORS: Setting = Setting {
+    name: "colors",
+    meaning: "how many colours: \"true\", \"256\", \"16\", \"mono\", or \"auto\" for what the\nterminal has",
+    default: "auto",
+};
+pub(super) const GLYPHS: Setting = Setting {
+    name: "glyphs",
+    meaning: "characters for pixels: \"half\" (two a cell), \"ascii\", \"ramp\" (by brightness),\n\
+              or \"auto\" for what the terminal can show",
+    default: "auto",
+};
+pub(super) const FOV: Setting = Setting {
+    name: "fov",
+    meaning: "the field of view in degrees, above 0 and below 180",
+    default: "66",
+};
+pub(super) const FPS: Setting =
+    Setting { name: "fps", meaning: "the most frames a second, from 1 to 240", default: "30" };
+pub(super) const MOUSE: Setting = Setting {
+    name: "mouse",
+    meaning: "whether the mouse turns the player at first: true or false",
+    default: "false",
+};
+pub(super) const MINIMAP: Setting = Setting {
+    name: "minimap",
+    meaning: "the map in the corner: \"seen\" (what has been seen so far), \"all\" or \"off\"",
+    default: "seen",
+};
+pub(super) const FIDELITY: Setting = Setting {
+    name: "fidelity",
+    meaning: "how exact colours are while something moves: \"exact\", \"high\", \"low\", a\n\
+              tolerance from 0 to 255, or \"auto\" for what the link allows",
+    default: "auto",
+};
+
+/// The settings, in the order of a file.
+pub(super) const SETTINGS: [&Setting; 8] =
+    [&PRESET, &COLORS, &GLYPHS, &FOV, &FPS, &MOUSE, &MINIMAP, &FIDELITY];
+
+/// What each value of a setting is called.
+pub(super) type Names<T, const N: usize> = [(&'static str, T); N];
+
+pub(super) const DEPTHS: Names<Option<ColorDepth>, 5> = [
+    ("auto", None),
+    ("true", Some(ColorDepth::True)),
+    ("256", Some(ColorDepth::Indexed256)),
+    ("16", Some(ColorDepth::Indexed16)),
+    ("mono", Some(ColorDepth::Mono)),
+];
+pub(super) const GLYPH_MODES: Names<Option<GlyphMode>, 4> = [
+    ("auto", None),
+    ("half", Some(GlyphMode::Half)),
+    ("ascii", Some(GlyphMode::Ascii)),
+    ("ramp", Some(GlyphMode::Ramp)),
+];
+pub(super) const DISPLAYS: Names<MapDisplay, 3> =
+    [("seen", MapDisplay::Seen), ("all", MapDisplay::All), ("off", MapDisplay::Off)];

@@ -1,0 +1,277 @@
+//! The line below the picture.
+//!
+//! It is written anew for each frame, into memory that is kept: nothing has to know when it changes,
+//! and nothing is allocated for it. So the time that it shows is that of the last frame: while nothing moves, no
+//! frame is drawn to show another second.
+//!
+//! What does not fit is left out as a whole, what matters least first. To cut the line at its end was refused: in a
+//! narrow window the end is where help is told of.
+
+use std::fmt::{self, Write};
+
+use ratatui::buffer::Buffer;
+use ratatui::layout::Rect;
+use ratatui::style::{Modifier, Style};
+use ratatui::text::Span;
+use ratatui::widgets::Widget;
+
+use super::goal::Goal;
+use super::levels::LevelNumber;
+use super::panels::whole_seconds;
+use super::played::Played;
+use super::stats::Stats;
+use crate::app::bindings::{Action, Bindings};
+
+/// How the player walks and turns, whatever keys are held.
+#[derive(Clone, Copy, Debug, Default)]
+pub(super) struct Gait {
+    pub(super) runs: bool,
+    pub(super) ducks: bool,
+    pub(super) walks_on: bool,
+}
+
+/// What the line tells of.
+pub(super) struct Told<'a> {
+    pub(super) game: &'a Played,
+    pub(super) goal: &'a Goal,
+    pub(super) level: LevelNumber,
+    /// Which part of the level has been seen, from 0 to 1, where that is counted.
+    pub(super) seen: Option<f64>,
+    pub(super) gait: Gait,
+    /// Whether the mouse turns the player.
+    pub(super) mouse: bool,
+    pub(super) stats: Option<&'a Stats>,
+    pub(super) bindings: &'a Bindings,
+}
+
+/// What the line says: where and how the player is to the left; how far, and how to get help to the right.
+#[derive(Clone, Debug, Default)]
+pub(super) struct StatusLine {
+    texts: [[String; 2]; PARTS],
+}
+
+/// The parts of the line, from left to right.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+enum Part {
+    Title,
+    Level,
+    Site,
+    Gait,
+    Keys,
+    Notice,
+    Stats,
+    Seen,
+    Time,
+    Help,
+}
+
+const PARTS: usize = 10;
+/// The first part that goes to the right end of the line.
+const FIRST_TO_THE_RIGHT: usize = Part::Stats as usize;
+
+/// A part has a short form and a long one, which may be the same.
+#[derive(Clone, Copy, Debug)]
+enum Form {
+    Short,
+    Long,
+}
+
+/// What is given room, what matters most first.
+const CLAIMS: [(Part, Form); 14] = [
+    (Part::Help, Form::Short),
+    (Part::Notice, Form::Short),
+    (Part::Title, Form::Short),
+    (Part::Help, Form::Long),
+    (Part::Keys, Form::Short),
+    (Part::Gait, Form::Short),
+    (Part::Notice, Form::Long),
+    (Part::Time, Form::Short),
+    (Part::Level, Form::Short),
+    (Part::Stats, Form::Short),
+    (Part::Site, Form::Short),
+    (Part::Level, Form::Long),
+    (Part::Seen, Form::Short),
+    (Part::Keys, Form::Long),
+];
+/// Blank columns that go with each part.
+const GAP: u16 = 2;
+/// A part is not cut to less than this.
+const LEAST_CUT: u16 = 3;
+
+impl StatusLine {
+    /// Says how things are.
+    pub(super) fn update(&mut self, told: &Told) {
+        self.texts.iter_mut().flatten().for_each(String::clear);
+        // A string takes whatever is written.
+        _ = self.write(told);
+    }
+
+    fn write(&mut self, told: &Told) -> fmt::Result {
+        let Told { game, goal, level, seen, gait, mouse, stats, bindings } = *told;
+        self.both(Part::Title, format_args!("{}", game.title()))?;
+        if level.is_one_of_several() {
+            let [short, long] = &mut self.texts[Part::Level as usize];
+            level.write_short(short)?;
+            write!(long, "{level}")?;
+        }
+        if let Some(site) = game.site() {
+            self.both(Part::Site, format_args!("{}, {}", site.column, site.row))?;
+        }
+        let modes = [
+            (gait.runs, "running"),
+            (gait.ducks, "ducking"),
+            (gait.walks_on, "walking on"),
+            (mouse, "mouse"),
+        ];
+        for (index, (_, mode)) in modes.into_iter().filter(|(is_on, _)| *is_on).enumerate() {
+            let comma = if index > 0 { ", " } else { "" };
+            self.both(Part::Gait, format_args!("{comma}{mode}"))?;
+        }
+        for (index, key) in game.keys().enumerate() {
+            let comma = if index > 0 { ", " } else { "" };
+            self.both(Part::Keys, format_args!("{comma}{key} key"))?;
+        }
+        if let Some(message) = game.message() {
+            self.both(Part::Notice, format_args!("{message}"))?;
+        } else if goal.is_told() {
+            let [short, long] = &mut self.texts[Part::Notice as usize];
+            short.push_str(goal.short());
+            long.push_str(goal.text());
+        }
+        if let Some(stats) = stats {
+            self.both(Part::Stats, format_args!("{stats}"))?;
+        }
+        if let Some(seen) = seen {
+            self.both(Part::Seen, format_args!("{:.0} % seen", (seen * 100.0).floor()))?;
+        }
+        self.both(Part::Time, format_args!("{}", whole_seconds(game.elapsed())))?;
+        let [short, long] = &mut self.texts[Part::Help as usize];
+        for (index, key) in bindings.keys(Action::ToggleHelp).enumerate() {
+            let blank = if index > 0 { " " } else { "" };
+            write!(long, "{blank}{key}")?;
+        }
+        short.push_str(long);
+        long.push_str(" help");
+        Ok(())
+    }
+
+    /// Adds to both forms of `part`.
+    fn both(&mut self, part: Part, text: fmt::Arguments) -> fmt::Result {
+        self.texts[part as usize].iter_mut().try_for_each(|form| form.write_fmt(text))
+    }
+
+    /// The text of each part, with its width, where a line of `width` columns has room for it.
+    fn fitted(&self, width: u16) -> [(&str, u16); PARTS] {
+        let mut fitted = [("", 0); PARTS];
+        let mut room = width;
+        for (part, form) in CLAIMS {
+            let text = self.texts[part as usize][form as usize].as_str();
+            let (_, taken) = fitted[part as usize];
+            let columns = Span::raw(text).width() as u16;
+            if columns == 0 || (taken == 0 && matches!(form, Form::Long) && part == Part::Notice) {
+                continue;
+            }
+            let before = if taken == 0 { 0 } else { taken + GAP };
+            let free = room + before;
+            let granted = if columns + GAP <= free {
+                columns
+            } else if taken == 0
+                && matches!(part, Part::Title | Part::Notice)
+                && free >= LEAST_CUT + GAP
+            {
+                free - GAP
+            } else {
+                continue;
+            };
+            fitted[part as usize] = (text, granted);
+            room = free - granted - GAP;
+        }
+        fitted
+    }
+}
+
+impl Widget for &StatusLine {
+    fn render(self, area: Rect, buffer: &mut Buffer) {
+        let fitted = self.fitted(area.width);
+        let (left, right) = fitted.split_at(FIRST_TO_THE_RIGHT);
+        let shown = |parts: &[(&str, u16)]| parts.iter().filter(|part| part.1 > 0).count();
+        let columns: u16 = right.iter().map(|&(_, columns)| columns).sum();
+        let gaps = (shown(right) as u16).saturating_mul(GAP);
+        let to_the_right = area.right().saturating_sub((columns + gaps).saturating_sub(1));
+        for (mut x, parts) in [(area.x + 1, left), (to_the_right, right)] {
+            for &(text, width) in parts.iter().filter(|part| part.1 > 0) {
+                Span::raw(text).render(Rect { x, width, ..area }, buffer);
+                x += width + GAP;
+            }
+        }
+        buffer.set_style(area, Style::new().add_modifier(Modifier::REVERSED));
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use ratatui::buffer::Cell;
+
+    use super::*;
+
+    fn line(parts: &[(Part, &str, &str)]) -> StatusLine {
+        let mut line = StatusLine::default();
+        for &(part, short, long) in parts {
+            line.texts[part as usize] = [short.to_owned(), long.to_owned()];
+        }
+        line
+    }
+
+    fn shown(line: &StatusLine, columns: u16) -> String {
+        let mut buffer = Buffer::empty(Rect::new(0, 0, columns, 1));
+        line.render(buffer.area, &mut buffer);
+        buffer.content().iter().map(Cell::symbol).collect()
+    }
+
+    #[test]
+    fn what_matters_less_gives_way() {
+        let line = line(&[
+            (Part::Title, "The Museum of Walls", "The Museum of Walls"),
+            (Part::Level, "2/5", "level 2 of 5"),
+            (Part::Keys, "brass key", "brass key"),
+            (Part::Time, "1:05", "1:05"),
+            (Part::Help, "?", "? help"),
+        ]);
+        let expected = [
+            " The Museum of Walls  level 2 of 5  brass key         1:05  ? help ",
+            " The Museum of Walls  2/5  brass key   1:05  ? help ",
+            " The Museum of Walls  brass key  ? help ",
+            " The Museum of Walls  ? ",
+            " The Museum of Wa  ? ",
+            "  ? ",
+        ];
+        for expected in expected {
+            assert_eq!(shown(&line, expected.len() as u16).trim_end(), expected.trim_end());
+        }
+    }
+
+    #[test]
+    fn what_to_do_is_said_before_where_one_is() {
+        let line = line(&[
+            (Part::Title, "Cellar", "Cellar"),
+            (Part::Notice, "Find the exit", "Find the way out: green on the map"),
+            (Part::Time, "0:00", "0:00"),
+            (Part::Help, "?", "? help"),
+        ]);
+        for expected in [
+            " Cellar  Find the way out: green on the map  0:00  ? help ",
+            " Cellar  Find the exit  0:00  ? help ",
+            " Find the exit   ? ",
+        ] {
+            assert_eq!(shown(&line, expected.len() as u16), expected);
+        }
+    }
+
+    #[test]
+    fn no_width_is_too_small() {
+        let line = line(&[(Part::Title, "Cellar", "Cellar"), (Part::Help, "?", "? help")]);
+        for columns in 0..10 {
+            shown(&line, columns);
+        }
+    }
+}

@@ -1,0 +1,107 @@
+//! How many colours a terminal can show, and which of them is nearest to a given one.
+//!
+//! Both the widgets, which pick colours, and the terminal, which finds out how many there are, need
+//! this; so it knows neither of them.
+
+#[cfg(feature = "tui")]
+pub(crate) mod mixture;
+mod nearest;
+
+use super::Rgb;
+use nearest::{NearestColors, palette};
+
+/// How many colours a terminal can show.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Hash, Default)]
+pub enum ColorDepth {
+    /// 24 bits: every colour as it is.
+    #[default]
+    True,
+    /// The 256 of xterm: 16 named ones, a 6×6×6 cube, and 24 greys.
+    Indexed256,
+    /// The 16 named ones.
+    Indexed16,
+    /// None: a cell is lit or it is not.
+    Mono,
+}
+
+/// The first colour of the cube; those before it are the named ones, which users redefine.
+const CUBE: u8 = 16;
+/// The first of the greys.
+const GREYS: u8 = 232;
+/// The channel values of the cube.
+const CUBE_LEVELS: [u8; 6] = [0, 95, 135, 175, 215, 255];
+/// The named colours as xterm has them.
+const NAMED: [Rgb; 16] = [
+    Rgb::new(0, 0, 0),
+    Rgb::new(205, 0, 0),
+    Rgb::new(0, 205, 0),
+    Rgb::new(205, 205, 0),
+    Rgb::new(0, 0, 238),
+    Rgb::new(205, 0, 205),
+    Rgb::new(0, 205, 205),
+    Rgb::new(229, 229, 229),
+    Rgb::new(127, 127, 127),
+    Rgb::new(255, 0, 0),
+    Rgb::new(0, 255, 0),
+    Rgb::new(255, 255, 0),
+    Rgb::new(92, 92, 255),
+    Rgb::new(255, 0, 255),
+    Rgb::new(0, 255, 255),
+    Rgb::new(255, 255, 255),
+];
+
+/// The index of the one of the 240 fixed colours of xterm that looks nearest to `color`.
+///
+/// The first 16 of the 256 are left out, because users give them colours of their own.
+pub fn nearest_of_256(color: Rgb) -> u8 {
+    static TABLE: NearestColors = NearestColors::among(|| palette(CUBE..=u8::MAX));
+    TABLE.of(color)
+}
+
+/// The index of the one of the 16 named colours that looks nearest to `color`.
+pub fn nearest_of_16(color: Rgb) -> u8 {
+    static TABLE: NearestColors = NearestColors::among(|| palette(0..=CUBE - 1));
+    TABLE.of(color)
+}
+
+/// What colour `index` of the 256 is, by xterm's defaults.
+pub fn of_256(index: u8) -> Rgb {
+    if let Some(&named) = NAMED.get(usize::from(index)) {
+        named
+    } else if index >= GREYS {
+        let level = 8 + 10 * (index - GREYS);
+        Rgb::new(level, level, level)
+    } else {
+        // Red, green and blue are the digits of a number to the base 6.
+        let index = usize::from(index - CUBE);
+        Rgb::new(CUBE_LEVELS[index / 36], CUBE_LEVELS[index / 6 % 6], CUBE_LEVELS[index % 6])
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn a_colour_that_there_is_stays_what_it_is_or_nearly() {
+        for index in 16..=255 {
+            let shown = of_256(nearest_of_256(of_256(index)));
+            for (channel, shown) in of_256(index).channels().into_iter().zip(shown.channels()) {
+                assert!(channel.abs_diff(shown) <= 10, "{index}");
+            }
+        }
+        for index in 0..16 {
+            assert_eq!(nearest_of_16(of_256(index)), index);
+        }
+    }
+
+    #[test]
+    fn browns_and_dark_reds_keep_their_hue() {
+        let hue_is_kept = |color: Rgb| {
+            let [red, green, blue] = of_256(nearest_of_256(color)).channels();
+            red > green && green >= blue
+        };
+        assert!(hue_is_kept(Rgb::new(133, 90, 50)));
+        assert!(hue_is_kept(Rgb::new(80, 32, 24)));
+    }
+}

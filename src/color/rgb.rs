@@ -1,0 +1,204 @@
+//! Colours: 8-bit sRGB, packed so that a pixel is one machine word.
+
+use std::fmt;
+use std::str::FromStr;
+
+/// An opaque sRGB colour with 8 bits a channel.
+///
+/// It is stored as `0x00RRGGBB` in one word: a pixel is then one store, and halving all channels
+/// one shift and one mask. Three separate bytes were refused, as they cost three of each.
+#[derive(Clone, Copy, PartialEq, Eq, Hash, Default)]
+pub struct Rgb(u32);
+
+impl Rgb {
+    /// The darkest colour.
+    pub const BLACK: Self = Self::new(0, 0, 0);
+    /// The brightest colour.
+    pub const WHITE: Self = Self::new(255, 255, 255);
+    /// What the colour name `sky` stands for.
+    pub const SKY: Self = Self::new(0x87, 0xb5, 0xd9);
+
+    /// A colour from its red, green and blue channels.
+    pub const fn new(red: u8, green: u8, blue: u8) -> Self {
+        Self((red as u32) << 16 | (green as u32) << 8 | blue as u32)
+    }
+
+    /// The red channel.
+    pub const fn red(self) -> u8 {
+        (self.0 >> 16) as u8
+    }
+
+    /// The green channel.
+    pub const fn green(self) -> u8 {
+        (self.0 >> 8) as u8
+    }
+
+    /// The blue channel.
+    pub const fn blue(self) -> u8 {
+        self.0 as u8
+    }
+
+    /// The colour as a number, `0x00RRGGBB`, as windows take pixels.
+    #[inline]
+    pub const fn to_bits(self) -> u32 {
+        self.0
+    }
+
+    /// Red, green and blue.
+    pub const fn channels(self) -> [u8; 3] {
+        [self.red(), self.green(), self.blue()]
+    }
+
+    /// Half as bright: each channel divided by two, rounded down.
+    #[must_use]
+    pub const fn halved(self) -> Self {
+        const LOW_SEVEN_BITS_OF_EACH_CHANNEL: u32 = 0x007f_7f7f;
+        Self(self.0 >> 1 & LOW_SEVEN_BITS_OF_EACH_CHANNEL)
+    }
+
+    /// It in front of `behind`, of which it hides `alpha` parts in 255: each channel rounded to the
+    /// nearest.
+    #[inline]
+    #[must_use]
+    pub const fn over(self, behind: Self, alpha: u8) -> Self {
+        const WHOLE: u32 = 255;
+        const RED_AND_BLUE: u32 = 0x00ff_00ff;
+        /// A 255th of both halves of a word, rounded to the nearest, where none is above 255 · 255.
+        const fn shared(sums: u32) -> u32 {
+            const HALF_OF_EACH: u32 = 0x007f_007f;
+            const ONE_OF_EACH: u32 = 0x0001_0001;
+            let sums = sums + HALF_OF_EACH;
+            (sums + ONE_OF_EACH + (sums >> 8 & RED_AND_BLUE)) >> 8 & RED_AND_BLUE
+        }
+        let (own, rest) = (alpha as u32, WHOLE - alpha as u32);
+        let red_and_blue = (self.0 & RED_AND_BLUE) * own + (behind.0 & RED_AND_BLUE) * rest;
+        let green = self.green() as u32 * own + behind.green() as u32 * rest;
+        Self(shared(red_and_blue) | shared(green) << 8)
+    }
+
+    /// The sum of `own` 256ths of this colour and `share` 256ths of `other`, rounded down.
+    ///
+    /// Together they are at most 256, so that no channel overflows into the next.
+    #[inline]
+    #[must_use]
+    pub(crate) const fn blended(self, own: u32, other: Self, share: u32) -> Self {
+        const RED_AND_BLUE: u32 = 0x00ff_00ff;
+        const GREEN: u32 = 0x0000_ff00;
+        let red_and_blue = (self.0 & RED_AND_BLUE) * own + (other.0 & RED_AND_BLUE) * share;
+        let green = (self.0 & GREEN) * own + (other.0 & GREEN) * share;
+        Self(red_and_blue >> 8 & RED_AND_BLUE | green >> 8 & GREEN)
+    }
+
+    /// How bright the colour looks, from 0 to 255, by the Rec. 709 weights in 16-bit fixed point.
+    pub const fn luma(self) -> u8 {
+        const RED: u32 = 13_933;
+        const GREEN: u32 = 46_871;
+        const BLUE: u32 = 4_732;
+        let sum = RED * self.red() as u32 + GREEN * self.green() as u32 + BLUE * self.blue() as u32;
+        (sum >> 16) as u8
+    }
+}
+
+impl fmt::Display for Rgb {
+    /// Writes `#rrggbb`.
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        write!(f, "#{:06x}", self.0)
+    }
+}
+
+impl fmt::Debug for Rgb {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        fmt::Display::fmt(self, f)
+    }
+}
+
+/// The error of [`Rgb::from_str`]: the text is no colour.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub struct ParseColorError;
+
+impl fmt::Display for ParseColorError {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        f.write_str("a colour is written as \"#rrggbb\", such as \"#a04030\", or as \"sky\"")
+    }
+}
+
+impl std::error::Error for ParseColorError {}
+
+impl FromStr for Rgb {
+    type Err = ParseColorError;
+
+    /// Reads `#rrggbb`, in either case, or `sky`.
+    fn from_str(text: &str) -> Result<Self, ParseColorError> {
+        if text == "sky" {
+            return Ok(Self::SKY);
+        }
+        let digits = text.strip_prefix('#').ok_or(ParseColorError)?;
+        if digits.len() != 6 || !digits.bytes().all(|byte| byte.is_ascii_hexdigit()) {
+            return Err(ParseColorError);
+        }
+        u32::from_str_radix(digits, 16).map(Self).map_err(|_| ParseColorError)
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn text_and_colour_agree() {
+        for text in ["#000000", "#a04030", "#ffffff"] {
+            assert_eq!(text.parse::<Rgb>().unwrap().to_string(), text);
+        }
+        assert_eq!("#A04030".parse(), Ok(Rgb::new(0xa0, 0x40, 0x30)));
+        for text in ["", "#", "a04030", "#a0403", "#a040300", "#+12345", "#gg0000", "#ä0000", "red"]
+        {
+            assert_eq!(text.parse::<Rgb>(), Err(ParseColorError), "{text}");
+        }
+    }
+
+    #[test]
+    fn halving_never_borrows_from_the_next_channel() {
+        assert_eq!(Rgb::new(255, 1, 3).halved(), Rgb::new(127, 0, 1));
+    }
+
+    #[test]
+    fn what_is_in_front_hides_its_share() {
+        let (front, behind) = (Rgb::new(255, 0, 10), Rgb::new(0, 255, 20));
+        assert_eq!(front.over(behind, 0), behind);
+        assert_eq!(front.over(behind, 255), front);
+        assert_eq!(front.over(behind, 51), Rgb::new(51, 204, 18));
+    }
+
+    #[test]
+    fn every_share_is_rounded_to_the_nearest() {
+        for (alpha, front) in (0..=255).flat_map(|alpha| (0..=255).map(move |front| (alpha, front)))
+        {
+            for behind in (0..=255).step_by(3).chain([254, 255]) {
+                let sum = u32::from(front) * u32::from(alpha)
+                    + u32::from(behind) * (255 - u32::from(alpha));
+                let mixed = ((sum + 127) / 255) as u8;
+                let drawn = Rgb::new(front, behind, front).over(Rgb::new(behind, behind, 0), alpha);
+                assert_eq!(
+                    (drawn.red(), drawn.green()),
+                    (mixed, behind),
+                    "{front} {behind} {alpha}"
+                );
+            }
+        }
+    }
+
+    #[test]
+    fn blending_is_by_channel() {
+        let (one, other) = (Rgb::new(200, 0, 255), Rgb::new(100, 255, 1));
+        assert_eq!(one.blended(256, other, 0), one);
+        assert_eq!(one.blended(0, other, 256), other);
+        assert_eq!(one.blended(128, other, 128), Rgb::new(150, 127, 128));
+        assert_eq!(one.blended(128, other, 0), one.halved());
+    }
+
+    #[test]
+    fn luma_spans_its_range() {
+        assert_eq!(Rgb::BLACK.luma(), 0);
+        assert_eq!(Rgb::WHITE.luma(), 255);
+    }
+}

@@ -1,0 +1,150 @@
+//! sRGB's transfer function: from stored channels to amounts of light, and back.
+//!
+//! Source: IEC 61966-2-1 (1999). One table of doubles holds the function; it is worked out when the program is
+//! compiled, and all other tables are made from it. A power function at run time was refused: pictures are
+//! averaged in linear light by the million texels.
+
+use super::Rgb;
+
+/// The red, green and blue light of a colour, each from 0 to 1.
+pub(crate) fn linear(color: Rgb) -> [f64; 3] {
+    color.channels().map(|channel| LINEAR[usize::from(channel)])
+}
+
+/// The same in 65535ths, rounded to the nearest.
+pub(crate) fn linear_16(color: Rgb) -> [u16; 3] {
+    color.channels().map(|channel| LINEAR_16[usize::from(channel)])
+}
+
+/// The stored colour that is nearest to one in linear light.
+pub(crate) fn from_linear_16(light: [u16; 3]) -> Rgb {
+    let [red, green, blue] = light.map(|channel| {
+        let first = usize::from(FIRST[usize::from(channel / SPACING)]);
+        let mut lighter = LINEAR_16[first..].iter();
+        let above = first + lighter.position(|&linear| linear >= channel).unwrap_or_default();
+        let below = above.saturating_sub(1);
+        let is_below = channel - LINEAR_16[below].min(channel) < LINEAR_16[above] - channel;
+        (if is_below { below } else { above }) as u8
+    });
+    Rgb::new(red, green, blue)
+}
+
+/// The mean of two colours in linear light: a surface that is half of each, from far away.
+pub(crate) fn mean_of_two(one: Rgb, other: Rgb) -> Rgb {
+    let (one, other) = (linear_16(one), linear_16(other));
+    from_linear_16(std::array::from_fn(|channel| one[channel].midpoint(other[channel])))
+}
+
+/// The weighted mean of two colours in linear light, where the second has a `share` from 0 to 1.
+pub(crate) fn mean_of_shares([one, other]: [Rgb; 2], share: f64) -> Rgb {
+    if one == other || share <= 0.0 {
+        return one;
+    }
+    if share >= 1.0 {
+        return other;
+    }
+    let (one, other) = (linear_16(one), linear_16(other));
+    from_linear_16(std::array::from_fn(|channel| {
+        let [one, other] = [one[channel], other[channel]].map(f64::from);
+        (one + (other - one) * share).round() as u16
+    }))
+}
+
+/// The light of each value of a channel, from 0 to 1.
+pub(super) static LINEAR: [f64; 256] = {
+    let mut table = [0.0; 256];
+    let mut value = 0;
+    while value < table.len() {
+        table[value] = transfer(value as f64 / 255.0);
+        value += 1;
+    }
+    table
+};
+
+/// The same in 65535ths, rounded to the nearest.
+pub(super) static LINEAR_16: [u16; 256] = {
+    let mut table = [0; 256];
+    let mut value = 0;
+    while value < table.len() {
+        table[value] = (transfer(value as f64 / 255.0) * u16::MAX as f64 + 0.5) as u16;
+        value += 1;
+    }
+    table
+};
+
+/// The amount of light that a signal from 0 to 1 stands for.
+const fn transfer(signal: f64) -> f64 {
+    if signal <= 0.040_45 {
+        return signal / 12.92;
+    }
+    // To the power of 2.4.
+    let base = (signal + 0.055) / 1.055;
+    let square = base * base;
+    square * fifth_root(square)
+}
+
+/// The fifth root of a number between a thousandth and two, by Newton's method.
+const fn fifth_root(number: f64) -> f64 {
+    const STEPS: u32 = 32;
+    let mut root = 1.0;
+    let mut step = 0;
+    while step < STEPS {
+        root = (4.0 * root + number / (root * root * root * root)) / 5.0;
+        step += 1;
+    }
+    root
+}
+
+/// The first stored channel that is as light as each multiple of [`SPACING`] or lighter.
+static FIRST: [u8; (u16::MAX / SPACING) as usize + 1] = {
+    let mut table = [0; (u16::MAX / SPACING) as usize + 1];
+    let (mut index, mut channel) = (0, 0);
+    while index < table.len() {
+        while LINEAR_16[channel] < index as u16 * SPACING {
+            channel += 1;
+        }
+        table[index] = channel as u8;
+        index += 1;
+    }
+    table
+};
+
+/// About three times the distance of the darkest two channels.
+const SPACING: u16 = 64;
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    /// The power function is the oracle.
+    #[test]
+    fn the_table_is_the_standard_function() {
+        for (value, &light) in LINEAR.iter().enumerate() {
+            let signal = value as f64 / 255.0;
+            let expected = if signal <= 0.040_45 {
+                signal / 12.92
+            } else {
+                libm::pow((signal + 0.055) / 1.055, 2.4)
+            };
+            assert!((light - expected).abs() <= 4.0 * f64::EPSILON * expected, "{value}");
+            assert_eq!(LINEAR_16[value], (expected * f64::from(u16::MAX)).round() as u16);
+        }
+    }
+
+    #[test]
+    fn every_channel_comes_back_from_linear_light() {
+        for channel in 0..=255 {
+            let gray = Rgb::new(channel, channel, channel);
+            assert_eq!(from_linear_16(linear_16(gray)), gray);
+        }
+    }
+
+    #[test]
+    fn the_nearest_stored_channel_is_found() {
+        for light in 0..=u16::MAX {
+            let found = from_linear_16([light; 3]).red();
+            let least = LINEAR_16.iter().map(|linear| linear.abs_diff(light)).min().unwrap();
+            assert_eq!(LINEAR_16[usize::from(found)].abs_diff(light), least, "{light}");
+        }
+    }
+}

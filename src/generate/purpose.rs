@@ -1,0 +1,75 @@
+//! Random decisions about a level: a function of its seed, of the purpose of the decision, and of a place.
+//!
+//! All is integers, so a generated level is the same on every machine and in every later version: tests hold the
+//! numbers.
+
+use crate::rng::{self, SplitMix64};
+
+/// What is being decided. Each has numbers of its own, so that no decision tells about another.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub(super) enum Purpose {
+    /// How a chunk is dug.
+    Plan = 1,
+    /// Where one passes to the chunk in the north.
+    NorthPassage = 2,
+    /// Where one passes to the chunk in the west.
+    WestPassage = 3,
+    /// How a district looks.
+    District = 4,
+    /// Whether there is rock in a cell at first.
+    Rock = 5,
+    /// What stands around.
+    Furniture = 6,
+    /// Where the middle of a chunk is.
+    Hub = 7,
+    /// Whether a cell is dry at first.
+    Dry = 9,
+    /// Where the way out is.
+    Exit = 8,
+    /// Where one starts.
+    Start = 10,
+}
+
+/// A number that looks random, determined by a seed, a purpose and a place.
+pub(super) fn hash(seed: u64, purpose: Purpose, column: i64, row: i64) -> u64 {
+    rng::hash(seed, [purpose as u64, column as u64, row as u64])
+}
+
+/// The generator that a seed, a purpose and a place determine.
+pub(super) fn generator(seed: u64, purpose: Purpose, column: i64, row: i64) -> SplitMix64 {
+    SplitMix64::new(hash(seed, purpose, column, row))
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn numbers_are_the_same_everywhere() {
+        let numbers = [
+            hash(0, Purpose::Plan, 0, 0),
+            hash(7, Purpose::Rock, 1_000_000_000, -1_000_000_000),
+            hash(u64::MAX, Purpose::Hub, i64::MIN, i64::MAX),
+        ];
+        insta::assert_snapshot!(numbers.map(|number| format!("{number:016x}")).join(" "), @"b2db672e8f70d7ff 30a9b53430236bf9 4ba6d1388998120a");
+        let mut random = generator(7, Purpose::Plan, -3, 5);
+        assert_eq!([(); 8].map(|()| random.below(100)), [35, 57, 88, 99, 17, 48, 0, 67]);
+    }
+
+    #[test]
+    fn a_neighbour_a_purpose_and_a_seed_tell_nothing_of_each_other() {
+        let ones = |one: u64, other: u64| (one ^ other).count_ones();
+        let mean = |pairs: &dyn Fn(i64) -> (u64, u64)| {
+            (0..1000).map(pairs).map(|(one, other)| ones(one, other)).sum::<u32>() / 1000
+        };
+        let at = |column, row| hash(7, Purpose::Rock, column, row);
+        for mean in [
+            mean(&|index| (at(index, 0), at(index + 1, 0))),
+            mean(&|index| (at(index, 9), at(9, index))),
+            mean(&|index| (at(0, index), hash(8, Purpose::Rock, 0, index))),
+            mean(&|index| (at(0, index), hash(7, Purpose::Plan, 0, index))),
+        ] {
+            assert!((30..=33).contains(&mean), "{mean} of 64 bits differ");
+        }
+    }
+}

@@ -1,0 +1,23 @@
+//! How wrong a caster is: the truth, and the rays that are hardest on it.
+//!
+//! [`cast`] answers in rational arithmetic and shares nothing with the casters but the rules in
+//! [`crate::cast`]. [`sets`] names the stiff and extreme cases; [`random_ray`] and
+//! [`adversarial_ray`] make as many more as one likes, from a seed.
+
+mod filters;
+mod motion;
+mod pictures;
+mod rays;
+mod reference;
+mod report;
+mod sets;
+mod trial;
+
+pub use filters::{FilterErrors, FilterRow, compare_filters, shimmer};
+pub use motion::{Integrator, MotionCase, MotionResult, compare_motions};
+pub use pictures::{Gallery, Reference};
+pub use rays::{adversarial_ray, random_ray};
+pub use reference::{Rational, Truth, cast};
+pub use report::{PICTURES, Plan, RaySource, Report, Row, SetRow, report, set_names};
+pub use sets::{Set, ordinary, sets};
+pub use trial::{Errors, Timing, Trial, time_in_turns};

@@ -1,0 +1,114 @@
+//! Whole pictures: how many pixels a method gets wrong.
+
+use super::cast;
+use crate::cast::{Caster, Hit, Ray};
+use crate::lab::casters::{Method, Visitor};
+use crate::render::{Frame, FrameSize, PixelAspect, Renderer};
+use crate::rng::SplitMix64;
+use crate::world::{Camera, Cell, FieldOfView, Grid, Heading, World};
+
+/// Casts by rational arithmetic: never wrong, and thousands of times slower than a caster should be.
+#[derive(Clone, Copy, Debug, Default)]
+pub struct Reference;
+
+impl Caster for Reference {
+    fn cast(&self, grid: &Grid, ray: &Ray) -> Option<Hit> {
+        let truth = cast(grid, ray)?;
+        Some(Hit { cell: truth.cell, side: truth.side, t: truth.t.to_f64(), u: truth.u.to_f64() })
+    }
+}
+
+/// Pictures of a world as they ought to be.
+#[derive(Clone, Debug)]
+pub struct Gallery<'world> {
+    world: &'world World,
+    pictures: Vec<(Camera, Frame)>,
+}
+
+impl<'world> Gallery<'world> {
+    /// `count` pictures of `world` in that size: one from its start, the others from anywhere.
+    pub fn new(world: &'world World, size: FrameSize, count: usize, seed: u64) -> Self {
+        let pictures = cameras(world, seed)
+            .take(count)
+            .map(|camera| (camera, draw(world, &camera, size, &Reference)));
+        Self { world, pictures: pictures.collect() }
+    }
+
+    /// The share of pixels that differ where `method` finds the walls, from 0 to 1.
+    pub fn share_wrong(&self, method: &Method) -> f64 {
+        method.accept(Comparison { gallery: self })
+    }
+}
+
+/// Where pictures of `world` are taken: from its start, and then from anywhere.
+pub(super) fn cameras(world: &World, seed: u64) -> impl Iterator<Item = Camera> {
+    let mut random = SplitMix64::new(seed);
+    let start = world.start_camera(FieldOfView::default());
+    std::iter::once(start).chain(std::iter::repeat_with(move || random_camera(world, &mut random)))
+}
+
+/// A camera anywhere on open floor.
+fn random_camera(world: &World, random: &mut SplitMix64) -> Camera {
+    let grid = world.grid();
+    let on_floor = |random: &mut SplitMix64| {
+        let column = random.whole(0, grid.width() as i32 - 1);
+        let row = random.whole(0, grid.height() as i32 - 1);
+        let cell = Cell { column: column as u32, row: row as u32 };
+        (!grid.is_solid(column as i64, row as i64)).then_some(cell)
+    };
+    // There is open floor: the start is on it.
+    let cell = std::iter::repeat_with(|| on_floor(random)).flatten().next();
+    let heading = Heading::default().turned(random.between(0.0, std::f64::consts::TAU));
+    Camera::in_cell(cell.unwrap_or(world.start().cell), heading, FieldOfView::default())
+}
+
+fn draw<C: Caster>(world: &World, camera: &Camera, size: FrameSize, caster: &C) -> Frame {
+    let mut frame = Frame::new(size, PixelAspect::SQUARE);
+    Renderer::new().render_with(&OnlyWalls(caster), world, camera, &mut frame);
+    frame
+}
+
+/// Takes doors and what is seen through for walls, as most methods do anyway: what is compared is
+/// where the rays end.
+struct OnlyWalls<'a, C>(&'a C);
+
+impl<C: Caster> Caster for OnlyWalls<'_, C> {
+    fn cast(&self, grid: &Grid, ray: &Ray) -> Option<Hit> {
+        self.0.cast(grid, ray)
+    }
+}
+
+struct Comparison<'a> {
+    gallery: &'a Gallery<'a>,
+}
+
+impl Visitor for Comparison<'_> {
+    type Output = f64;
+
+    fn visit<C: Caster>(self, caster: &C) -> f64 {
+        let Gallery { world, pictures } = self.gallery;
+        let (mut wrong, mut all) = (0_usize, 0_usize);
+        for (camera, truth) in pictures {
+            let picture = draw(world, camera, truth.size(), caster);
+            let pairs = picture.rows().flatten().zip(truth.rows().flatten());
+            wrong += pairs.filter(|(shown, truth)| shown != truth).count();
+            all += picture.rows().flatten().count();
+        }
+        wrong as f64 / all.max(1) as f64
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::map::builtin;
+
+    #[test]
+    fn exact_pictures_have_no_wrong_pixel_and_coarse_ones_have() {
+        let world = builtin::LEVELS[1].world().unwrap();
+        let size = FrameSize::new(40, 24).unwrap();
+        let gallery = Gallery::new(&world, size, 3, 7);
+        assert_eq!(gallery.share_wrong(&Method::Exact), 0.0);
+        assert!(gallery.share_wrong(&"march:0.2".parse().unwrap()) > 0.0);
+    }
+}

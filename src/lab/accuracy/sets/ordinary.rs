@@ -1,0 +1,62 @@
+//! Scenes that people play in, seen by cameras at eye height among the walls.
+
+use super::super::random_ray;
+use super::{Set, drawn, made};
+use crate::cast::Ray;
+use crate::rng::SplitMix64;
+use crate::world::Grid;
+
+/// Three ordinary scenes, each with `count` rays from open floor: rooms, pillars, corridors.
+pub fn ordinary(seed: u64, count: usize) -> Vec<Set> {
+    let mut random = SplitMix64::new(seed);
+    let scenes = [("rooms", rooms()), ("pillars", pillars()), ("corridors", corridors())];
+    scenes
+        .map(|(name, grid)| {
+            let rays = rays_from_floor(&grid, count, &mut random);
+            Set { name, grid, rays }
+        })
+        .into()
+}
+
+fn rays_from_floor(grid: &Grid, count: usize, random: &mut SplitMix64) -> Vec<Ray> {
+    let rays = std::iter::repeat_with(|| random_ray(grid, random));
+    let is_on_floor = |ray: &Ray| {
+        let cell = ray.origin().floor();
+        !grid.is_solid(cell.x as i64, cell.y as i64)
+    };
+    rays.filter(is_on_floor).take(count).collect()
+}
+
+/// A level of rooms with doorways.
+fn rooms() -> Grid {
+    drawn(&[
+        "########################",
+        "#.......#......#.......#",
+        "#..............#.......#",
+        "#.......#......#.......#",
+        "#.......#......####.####",
+        "####.####..#...........#",
+        "#..........#...#.......#",
+        "#.......#......#..##...#",
+        "#..##...#......#..##...#",
+        "#..##...####.###.......#",
+        "#.......#......#.......#",
+        "#.......#..............#",
+        "####.####......####.####",
+        "#..............#.......#",
+        "#.......#......#.......#",
+        "########################",
+    ])
+}
+
+/// An open square of 64 × 64 with a pillar in every fourth cell both ways.
+fn pillars() -> Grid {
+    let is_edge = |index: u32| index == 0 || index == 63;
+    made(64, 64, |column, row| is_edge(column) || is_edge(row) || (column % 4 == 2 && row % 4 == 2))
+}
+
+/// Corridors of 62 cells, one wide, that cross every eighth cell.
+fn corridors() -> Grid {
+    let is_edge = |index: u32| index == 0 || index == 63;
+    made(64, 64, |column, row| is_edge(column) || is_edge(row) || (column % 8 != 4 && row % 8 != 4))
+}

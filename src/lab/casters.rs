@@ -1,0 +1,32 @@
+//! Methods of casting to compare the exact caster with, as tutorials and other programs have them.
+//!
+//! | method | finds the hit by | source |
+//! |---|---|---|
+//! | [`Exact`](crate::cast::Exact) | the lines in their true order: integers, and longer ones where those can't tell | [`crate::cast`] |
+//! | [`Dda`] | the lines in order, in double precision | Lode Vandevenne, "Raycasting II" |
+//! | [`Dda32`] | the same in single precision | the same |
+//! | [`Accumulate`] | a running sum of distances | Lode Vandevenne, "Raycasting" |
+//! | [`Fixed`] | the lines in order, in fixed point | drummyfish, LRS, "Raycasting" |
+//! | [`Table`] | x and y lines apart, along the nearest of a fixed number of angles | F. Permadi, "Ray-Casting Tutorial" |
+//! | [`March`] | constant steps | the method that Lode Vandevenne warns of |
+//!
+//! Doors, glass, masks and shapes are walls to all but the exact one, and only that one keeps the rules of
+//! [`crate::cast`] for every ray. Each method is one file and one type that implements
+//! [`Caster`](crate::cast::Caster); a [`Method`] picks one by name.
+
+mod accumulate;
+mod approach;
+mod dda;
+mod dda32;
+mod fixed;
+mod march;
+mod method;
+mod table;
+
+pub use accumulate::Accumulate;
+pub use dda::Dda;
+pub use dda32::Dda32;
+pub use fixed::Fixed;
+pub use march::March;
+pub use method::{Method, NotAMethod, Visitor};
+pub use table::Table;

@@ -1,0 +1,209 @@
+//! The choice of a method, by name.
+//!
+//! A [`Method`] is no caster itself: it hands one to a [`Visitor`], once for a file of
+//! rays, and the visitor's loop is compiled for each of them; a renderer gets its caster from
+//! [`Method::caster`]. A caster that looks up its own method
+//! for each ray was refused: the look-up would cost as much as a short ray.
+
+use std::fmt;
+use std::str::FromStr;
+
+use super::{Accumulate, Dda, Dda32, Fixed, March, Table};
+use crate::cast::{Caster, Exact};
+use crate::render::DynCaster;
+
+/// A method of casting, ready to cast.
+///
+/// It is written as a name, and where the method has a parameter, a colon and its value: `exact`,
+/// `dda`, `dda32`, `accumulate`, `fixed:10`, `table:1920`, `march:0.01`. Read without one, a
+/// parameter has the value shown.
+#[derive(Clone, Debug, Default, PartialEq)]
+pub enum Method {
+    /// [`Exact`].
+    #[default]
+    Exact,
+    /// [`Dda`].
+    Dda,
+    /// [`Dda32`].
+    Dda32,
+    /// [`Accumulate`].
+    Accumulate,
+    /// [`Fixed`].
+    Fixed(Fixed),
+    /// [`Table`].
+    Table(Table),
+    /// [`March`].
+    March(March),
+}
+
+/// A function that is generic over the caster.
+pub trait Visitor {
+    /// Its result.
+    type Output;
+
+    /// Calls it with `caster`.
+    fn visit<C: Caster>(self, caster: &C) -> Self::Output;
+}
+
+impl Method {
+    /// The names of all methods, the default first.
+    pub const NAMES: [&str; 7] = ["exact", "dda", "dda32", "accumulate", "fixed", "table", "march"];
+
+    /// Hands the caster to `visitor`.
+    pub fn accept<V: Visitor>(&self, visitor: V) -> V::Output {
+        match self {
+            Self::Exact => visitor.visit(&Exact),
+            Self::Dda => visitor.visit(&Dda),
+            Self::Dda32 => visitor.visit(&Dda32),
+            Self::Accumulate => visitor.visit(&Accumulate),
+            Self::Fixed(fixed) => visitor.visit(fixed),
+            Self::Table(table) => visitor.visit(table),
+            Self::March(march) => visitor.visit(march),
+        }
+    }
+
+    /// The caster, for a [renderer](crate::render::Renderer::with_caster).
+    pub fn caster(&self) -> DynCaster {
+        match self {
+            Self::Exact => DynCaster::default(),
+            Self::Dda => DynCaster::new(Dda),
+            Self::Dda32 => DynCaster::new(Dda32),
+            Self::Accumulate => DynCaster::new(Accumulate),
+            Self::Fixed(fixed) => DynCaster::new(fixed.clone()),
+            Self::Table(table) => DynCaster::new(table.clone()),
+            Self::March(march) => DynCaster::new(march.clone()),
+        }
+    }
+}
+
+impl fmt::Display for Method {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        match self {
+            Self::Exact => f.write_str("exact"),
+            Self::Dda => f.write_str("dda"),
+            Self::Dda32 => f.write_str("dda32"),
+            Self::Accumulate => f.write_str("accumulate"),
+            Self::Fixed(fixed) => write!(f, "fixed:{}", fixed.fraction_bits()),
+            Self::Table(table) => write!(f, "table:{}", table.angles()),
+            Self::March(march) => write!(f, "march:{}", march.step()),
+        }
+    }
+}
+
+impl FromStr for Method {
+    type Err = NotAMethod;
+
+    /// Reads what [`Display`](fmt::Display) writes; a parameter may be left out.
+    ///
+    /// # Errors
+    /// Where there is no such method, or its parameter is none or out of range.
+    fn from_str(text: &str) -> Result<Self, NotAMethod> {
+        let (name, parameter) = match text.split_once(':') {
+            Some((name, parameter)) => (name, Some(parameter)),
+            None => (text, None),
+        };
+        let plain = |method| match parameter {
+            None => Ok(method),
+            Some(_) => Err(NotAMethod(format!("the caster \"{name}\" has no parameter"))),
+        };
+        match name {
+            "exact" => plain(Self::Exact),
+            "dda" => plain(Self::Dda),
+            "dda32" => plain(Self::Dda32),
+            "accumulate" => plain(Self::Accumulate),
+            "fixed" => Ok(Self::Fixed(parse(parameter, Fixed::new, || {
+                let range = Fixed::FRACTION_BITS;
+                format!("\"fixed\" takes {} to {} fraction bits", range.start(), range.end())
+            })?)),
+            "table" => Ok(Self::Table(parse(parameter, Table::new, || {
+                let range = Table::ANGLES;
+                format!("\"table\" takes {} to {} angles", range.start(), range.end())
+            })?)),
+            "march" => Ok(Self::March(parse(parameter, March::new, || {
+                let range = March::STEP;
+                format!("\"march\" takes steps of {} to {} cells", range.start(), range.end())
+            })?)),
+            _ => {
+                let names = Self::NAMES.join(", ");
+                Err(NotAMethod(format!("there is no caster \"{name}\"; there are {names}")))
+            }
+        }
+    }
+}
+
+/// The caster for a parameter, or the default one without; `demand` is what a bad one is told.
+fn parse<T: FromStr, C: Default>(
+    parameter: Option<&str>,
+    new: impl Fn(T) -> Option<C>,
+    demand: impl Fn() -> String,
+) -> Result<C, NotAMethod> {
+    let Some(text) = parameter else { return Ok(C::default()) };
+    let caster = text.parse().ok().and_then(new);
+    caster.ok_or_else(|| NotAMethod(format!("the caster {}, not \"{text}\"", demand())))
+}
+
+/// The error of reading a [`Method`].
+#[derive(Clone, Debug, PartialEq, Eq)]
+pub struct NotAMethod(String);
+
+impl fmt::Display for NotAMethod {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        f.write_str(&self.0)
+    }
+}
+
+impl std::error::Error for NotAMethod {}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn every_name_is_read_and_written() {
+        for name in Method::NAMES {
+            let method: Method = name.parse().unwrap();
+            let written = method.to_string();
+            assert!(written.starts_with(name));
+            assert_eq!(written.parse(), Ok(method));
+        }
+        for written in ["fixed:16", "table:360", "march:0.0625"] {
+            assert_eq!(written.parse::<Method>().unwrap().to_string(), written);
+        }
+        assert_eq!("exact".parse(), Ok(Method::default()));
+    }
+
+    #[test]
+    fn a_bad_name_is_told_what_is_wrong() {
+        let error = |text: &str| text.parse::<Method>().unwrap_err().to_string();
+        let errors = [
+            "bresenham",
+            "",
+            "dda:64",
+            "fixed:3",
+            "fixed:27",
+            "fixed:",
+            "table:7",
+            "table:-1",
+            "march:0",
+            "march:NaN",
+            "march:inf",
+            "march:1.5",
+        ]
+        .map(error)
+        .join("\n");
+        insta::assert_snapshot!(errors, @r#"
+        there is no caster "bresenham"; there are exact, dda, dda32, accumulate, fixed, table, march
+        there is no caster ""; there are exact, dda, dda32, accumulate, fixed, table, march
+        the caster "dda" has no parameter
+        the caster "fixed" takes 4 to 26 fraction bits, not "3"
+        the caster "fixed" takes 4 to 26 fraction bits, not "27"
+        the caster "fixed" takes 4 to 26 fraction bits, not ""
+        the caster "table" takes 8 to 65536 angles, not "7"
+        the caster "table" takes 8 to 65536 angles, not "-1"
+        the caster "march" takes steps of 0.0001 to 1 cells, not "0"
+        the caster "march" takes steps of 0.0001 to 1 cells, not "NaN"
+        the caster "march" takes steps of 0.0001 to 1 cells, not "inf"
+        the caster "march" takes steps of 0.0001 to 1 cells, not "1.5"
+        "#);
+    }
+}

@@ -1,0 +1,116 @@
+//! Damped motion in closed form: a velocity that approaches a target.
+//!
+//! The velocity v obeys dv/dt = rate · (target − v), so the difference decays exponentially. Both the velocity at the
+//! end of a step and the displacement until then are the analytic solution of that equation, not an approximation by
+//! small steps: no step is too long and no rate too high, and two steps are the same as one of
+//! their sum. The explicit Euler method was refused: it overshoots as soon as `rate * dt` passes 1.
+
+use glam::DVec2;
+
+/// The state of a motion at the end of a step, and the displacement during it.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub(crate) struct DampedMotion<V> {
+    /// Units per second.
+    pub(crate) velocity: V,
+    /// Units.
+    pub(crate) displacement: V,
+}
+
+/// The motion after `duration` seconds that begins with `velocity` and approaches `target`, where the
+/// difference between the two shrinks by the factor e in 1 / `rate` seconds. Where all four are
+/// finite, `rate` above 0 and `duration` at least 0, so is the result.
+pub(crate) fn approach(velocity: f64, target: f64, rate: f64, duration: f64) -> DampedMotion<f64> {
+    let remains = libm::exp(-rate * duration);
+    // For how long the first velocity would cover its share of the way, and the target the rest.
+    let coasting = (-libm::expm1(-rate * duration) / rate).min(duration);
+    DampedMotion {
+        velocity: target + (velocity - target) * remains,
+        displacement: velocity * coasting + target * (duration - coasting),
+    }
+}
+
+/// As [`approach`], in the plane.
+pub(crate) fn approach_in_plane(
+    velocity: DVec2,
+    target: DVec2,
+    rate: f64,
+    duration: f64,
+) -> DampedMotion<DVec2> {
+    let x = approach(velocity.x, target.x, rate, duration);
+    let y = approach(velocity.y, target.y, rate, duration);
+    DampedMotion {
+        velocity: DVec2::new(x.velocity, y.velocity),
+        displacement: DVec2::new(x.displacement, y.displacement),
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use proptest::prelude::*;
+
+    use super::*;
+
+    const ROUNDING: f64 = 1e-12;
+
+    fn speed() -> impl Strategy<Value = f64> {
+        prop_oneof![Just(0.0), -1e3..1e3, -1e-6..1e-6]
+    }
+
+    fn power_of_ten(exponents: std::ops::Range<f64>) -> impl Strategy<Value = f64> {
+        exponents.prop_map(|exponent| libm::pow(10.0, exponent))
+    }
+
+    proptest! {
+        #[test]
+        fn two_steps_are_one_step_of_their_sum(
+            velocity in speed(),
+            target in speed(),
+            rate in power_of_ten(-3.0..6.0),
+            first in power_of_ten(-9.0..3.0),
+            second in power_of_ten(-9.0..3.0),
+        ) {
+            let halfway = approach(velocity, target, rate, first);
+            let twice = approach(halfway.velocity, target, rate, second);
+            let once = approach(velocity, target, rate, first + second);
+            let displacement = halfway.displacement + twice.displacement;
+            let scale = velocity.abs() + target.abs();
+            prop_assert!((twice.velocity - once.velocity).abs() <= ROUNDING * scale);
+            prop_assert!(
+                (displacement - once.displacement).abs() <= ROUNDING * scale * (first + second)
+            );
+        }
+
+        #[test]
+        fn never_passes_its_target(
+            velocity in speed(),
+            target in speed(),
+            rate in power_of_ten(-3.0..6.0),
+            duration in power_of_ten(-9.0..3.0),
+        ) {
+            let glide = approach(velocity, target, rate, duration);
+            let (low, high) = (velocity.min(target), velocity.max(target));
+            let slack = ROUNDING * (velocity.abs() + target.abs());
+            if velocity <= target {
+                prop_assert!(glide.velocity <= target && glide.velocity >= velocity - slack);
+            } else {
+                prop_assert!(glide.velocity >= target && glide.velocity <= velocity + slack);
+            }
+            let mean = glide.displacement / duration;
+            prop_assert!(low - slack <= mean && mean <= high + slack);
+        }
+    }
+
+    #[test]
+    fn agrees_with_the_integral_in_small_steps() {
+        let (velocity, target, rate, duration) = (-2.0, 3.0, 12.0, 0.5);
+        let steps = 10_000;
+        let tick = duration / f64::from(steps);
+        let mut displacement = 0.0;
+        for step in 0..steps {
+            let middle = (f64::from(step) + 0.5) * tick;
+            displacement += approach(velocity, target, rate, middle).velocity * tick;
+        }
+        let exact = approach(velocity, target, rate, duration).displacement;
+        assert!((displacement - exact).abs() < 1e-6);
+    }
+}

@@ -1,0 +1,194 @@
+//! The orientation predicate: on which side of a ray a point lies, with an exact sign.
+//!
+//! The cross product of the vector to a point and the ray's direction is a difference of two
+//! products, and where it is nearly zero, rounding decides its sign. A filter comes first: doubles tell the sign where the
+//! result is larger than the bound of its error (J. R. Shewchuk, "Adaptive Precision Floating-Point Arithmetic and
+//! Fast Robust Geometric Predicates", 1997). Elsewhere each component is split into
+//! two doubles that add up to it exactly, so the cross product is a sum of four products of two
+//! doubles, each an integer of 106 bits at most times a power of two. They are added from the
+//! largest power down, in one 128-bit integer: it holds all of the sum, or else what it holds is so
+//! much larger than the remaining terms that rounding these does no harm.
+//!
+//! Shewchuk's expansions of doubles were refused: their products overflow and vanish at the ends of the range,
+//! which is where this is needed. So were integers of any length: four terms never need them.
+
+use std::cmp::Reverse;
+
+use glam::DVec2;
+
+use super::error_free::two_sum;
+
+/// The cross product of the way from `origin` to `corner` and `direction`: positive where a ray, y
+/// growing to the south, passes the corner on its left.
+pub(crate) fn cross(origin: DVec2, direction: DVec2, corner: DVec2) -> Scaled {
+    let [x, x_rest] = two_sum(corner.x, -origin.x);
+    let [y, y_rest] = two_sum(origin.y, -corner.y);
+    sum([
+        Integer::product(x, direction.y),
+        Integer::product(x_rest, direction.y),
+        Integer::product(y, direction.x),
+        Integer::product(y_rest, direction.x),
+    ])
+}
+
+/// A number with the sign of [`cross`].
+///
+/// Most signs are told by doubles: where what they come to is larger than all their rounding.
+#[inline]
+pub(crate) fn sign_of_cross(origin: DVec2, direction: DVec2, corner: DVec2) -> f64 {
+    /// Each product is rounded three times, and so is their difference once.
+    const ROUNDING: f64 = 4.0 * f64::EPSILON;
+    let way = corner - origin;
+    let (one, other) = (way.x * direction.y, way.y * direction.x);
+    // What vanishes for being too small a double is less than the second term.
+    let doubt = (one.abs() + other.abs()) * ROUNDING + f64::MIN_POSITIVE;
+    let rounded = one - other;
+    if rounded.abs() > doubt { rounded } else { cross(origin, direction, corner).sign() }
+}
+
+/// A number that may be too large or too small for a double: `mantissa` · 2^`exponent`.
+///
+/// Its sign is right, zero included; its value is right to 50 bits.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub(crate) struct Scaled {
+    mantissa: f64,
+    exponent: i32,
+}
+
+impl Scaled {
+    /// Less than 0, 0, or more than 0.
+    pub(crate) fn sign(self) -> f64 {
+        self.mantissa
+    }
+
+    /// Its quotient by `divisor`.
+    pub(crate) fn over(self, divisor: f64) -> f64 {
+        let divisor = Integer::from_double(divisor);
+        let quotient = self.mantissa / divisor.mantissa as f64;
+        libm::scalbn(quotient, self.exponent - divisor.exponent)
+    }
+}
+
+/// `mantissa` · 2^`exponent`.
+#[derive(Clone, Copy, Debug)]
+struct Integer {
+    mantissa: i128,
+    exponent: i32,
+}
+
+impl Integer {
+    /// The bits of the mantissa of a double, the leading one included.
+    const DOUBLE_BITS: u32 = f64::MANTISSA_DIGITS;
+
+    fn from_double(value: f64) -> Self {
+        const LEADING_ONE: u64 = 1 << (Integer::DOUBLE_BITS - 1);
+        const EXPONENT_OF_SUBNORMALS: i32 = f64::MIN_EXP - Integer::DOUBLE_BITS as i32;
+        let bits = value.abs().to_bits();
+        let biased_exponent = (bits / LEADING_ONE) as i32;
+        let fraction = bits % LEADING_ONE;
+        let (magnitude, exponent) = if biased_exponent == 0 {
+            (fraction, EXPONENT_OF_SUBNORMALS)
+        } else {
+            (fraction + LEADING_ONE, EXPONENT_OF_SUBNORMALS + biased_exponent - 1)
+        };
+        let magnitude = i128::from(magnitude);
+        Self { mantissa: if value < 0.0 { -magnitude } else { magnitude }, exponent }
+    }
+
+    /// The product of two doubles, of at most 106 bits.
+    fn product(a: f64, b: f64) -> Self {
+        let (a, b) = (Self::from_double(a), Self::from_double(b));
+        Self { mantissa: a.mantissa * b.mantissa, exponent: a.exponent + b.exponent }
+    }
+
+    /// The length of the mantissa.
+    fn bits(self) -> i32 {
+        (i128::BITS - self.mantissa.unsigned_abs().leading_zeros()) as i32
+    }
+}
+
+/// The sum of four products of two doubles.
+fn sum(mut terms: [Integer; 4]) -> Scaled {
+    /// Longer than the sum of all terms, and short enough to add them to.
+    const ROOM: i32 = 124;
+    terms.sort_unstable_by_key(|term| Reverse(term.exponent));
+    let mut sum = terms[0];
+    for (index, &term) in terms.iter().enumerate().skip(1) {
+        let shift = sum.exponent - term.exponent;
+        if sum.mantissa == 0 {
+            sum = term;
+        } else if sum.bits() + shift <= ROOM {
+            let mantissa = (sum.mantissa << shift) + term.mantissa;
+            sum = Integer { mantissa, exponent: term.exponent };
+        } else {
+            let scaled =
+                |term: &Integer| libm::scalbn(term.mantissa as f64, term.exponent - sum.exponent);
+            let rest: f64 = terms[index..].iter().map(scaled).sum();
+            return Scaled { mantissa: sum.mantissa as f64 + rest, exponent: sum.exponent };
+        }
+    }
+    Scaled { mantissa: sum.mantissa as f64, exponent: sum.exponent }
+}
+
+#[cfg(test)]
+mod tests {
+    use proptest::prelude::*;
+
+    use super::*;
+
+    #[test]
+    fn the_least_difference_counts() {
+        let least = 5e-324;
+        for (origin, direction, sign) in [
+            ((0.0, 0.0), (1.0, 1.0), 0.0),
+            ((0.0, least), (1.0, 1.0), 1.0),
+            ((0.0, -least), (1.0, 1.0), -1.0),
+            ((0.0, least), (1e300, 1e300), 1.0),
+            ((0.0, 1.0), (1e300, least), 1.0),
+            ((0.0, 1.0), (1e300, -least), -1.0),
+            ((-1e308, -1e308), (1e308, 1e308), 0.0),
+            ((-1e308, -1e308), (least, least), 0.0),
+            ((f64::MAX, f64::MAX.next_down()), (1.0, 1.0), -1.0),
+        ] {
+            let cross = cross(DVec2::from(origin), DVec2::from(direction), DVec2::ONE);
+            assert_eq!(cross.sign().partial_cmp(&0.0), sign.partial_cmp(&0.0), "{origin:?}");
+        }
+    }
+
+    proptest! {
+        /// However near to the corner the ray passes.
+        #[test]
+        fn the_sign_by_doubles_is_the_sign(
+            (x, y) in (-9.0..9.0, -9.0..9.0),
+            corner in (-9_i32..9, -9_i32..9),
+            ulps in (-9_i64..9, -9_i64..9),
+            exponent in prop_oneof![Just(0), -1060..900],
+        ) {
+            let (origin, corner) = (DVec2::new(x, y), DVec2::new(corner.0.into(), corner.1.into()));
+            let moved = |part: f64, ulps| f64::from_bits((part.to_bits() as i64 + ulps) as u64);
+            let way = corner - origin;
+            let direction = DVec2::new(moved(way.x, ulps.0), moved(way.y, ulps.1));
+            let direction = direction * libm::scalbn(1.0, exponent);
+            let signs = [sign_of_cross, |o, d, c| cross(o, d, c).sign()]
+                .map(|sign| sign(origin, direction, corner).partial_cmp(&0.0));
+            prop_assert_eq!(signs[0], signs[1]);
+        }
+
+        /// Where nothing is rounded, it is the formula.
+        #[test]
+        fn agrees_with_integers(
+            numbers in prop::array::uniform4(-(1_i64 << 30)..1 << 30),
+            corner in (0..1_i64 << 20, 0..1_i64 << 20),
+            exponent in -900..900,
+        ) {
+            let [x, y, dx, dy] = numbers;
+            prop_assume!((dx, dy) != (0, 0));
+            let unit = libm::scalbn(1.0, exponent);
+            let origin = DVec2::new(x as f64, y as f64);
+            let direction = DVec2::new(dx as f64, dy as f64) * unit;
+            let expected = (corner.0 - x) * dy - (corner.1 - y) * dx;
+            let corner = DVec2::new(corner.0 as f64, corner.1 as f64);
+            prop_assert_eq!(cross(origin, direction, corner).over(unit), expected as f64);
+        }
+    }
+}

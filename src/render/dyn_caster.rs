@@ -1,0 +1,63 @@
+//! A caster of any type.
+//!
+//! Drawing is compiled for each caster, and its pointer is followed once for a picture. A pointer that is
+//! followed for each ray was refused: the call would cost as much as a short ray.
+
+use std::fmt::Debug;
+use std::sync::Arc;
+
+use super::explanation::{RayCounts, RaysOf};
+use super::{Counts, Picture, Plan};
+use crate::cast::{Caster, Exact};
+
+/// A caster whose type is not known where a renderer is kept: [`Exact`] by default.
+#[derive(Clone, Debug)]
+pub struct DynCaster(Arc<dyn Pictures>);
+
+impl DynCaster {
+    /// Any caster.
+    pub fn new(caster: impl Caster + Debug + Send + Sync + 'static) -> Self {
+        Self(Arc::new(caster))
+    }
+
+    pub(super) fn draw(&self, picture: Picture<'_, ()>) -> Plan {
+        self.0.draw(picture)
+    }
+
+    pub(super) fn draw_counted(&self, picture: Picture<'_, Counts>) -> Plan {
+        self.0.draw_counted(picture)
+    }
+
+    pub(super) fn count_rays(&self, rays: RaysOf<'_>) -> RayCounts {
+        self.0.count_rays(rays)
+    }
+}
+
+impl Default for DynCaster {
+    fn default() -> Self {
+        Self::new(Exact)
+    }
+}
+
+/// What is compiled for each caster.
+trait Pictures: Debug + Send + Sync {
+    fn draw(&self, picture: Picture<'_, ()>) -> Plan;
+
+    fn draw_counted(&self, picture: Picture<'_, Counts>) -> Plan;
+
+    fn count_rays(&self, rays: RaysOf<'_>) -> RayCounts;
+}
+
+impl<C: Caster + Debug + Send + Sync> Pictures for C {
+    fn draw(&self, picture: Picture<'_, ()>) -> Plan {
+        picture.draw(self)
+    }
+
+    fn draw_counted(&self, picture: Picture<'_, Counts>) -> Plan {
+        picture.draw(self)
+    }
+
+    fn count_rays(&self, rays: RaysOf<'_>) -> RayCounts {
+        rays.count(self)
+    }
+}

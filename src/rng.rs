@@ -1,0 +1,105 @@
+//! Random numbers from a seed: the same seed, the same numbers, on every machine and in every later version.
+//!
+//! The generator is SplitMix64 (G. L. Steele Jr., D. Lea and C. H. Flood, "Fast Splittable Pseudorandom Number
+//! Generators", 2014): a counter, and a finalizer that maps 64 bits one to one and lets each bit of the input
+//! change half of the output. A crate for it was refused: these are ten lines, and they never
+//! change. So was the standard hasher, which promises neither.
+
+/// A generator of random numbers that only its seed determines.
+#[derive(Clone, Debug)]
+pub struct SplitMix64 {
+    state: u64,
+}
+
+impl SplitMix64 {
+    /// The generator with that seed.
+    pub const fn new(seed: u64) -> Self {
+        Self { state: seed }
+    }
+
+    /// Any 64 bits.
+    pub fn bits(&mut self) -> u64 {
+        self.state = self.state.wrapping_add(INCREMENT);
+        mixed(self.state)
+    }
+
+    /// A number from 0 up to 1, a multiple of 2⁻⁵³.
+    pub fn unit(&mut self) -> f64 {
+        (self.bits() >> 11) as f64 / (1_u64 << 53) as f64
+    }
+
+    /// A number from `low` up to `high`, a multiple of 2⁻⁵³ of their distance.
+    pub fn between(&mut self, low: f64, high: f64) -> f64 {
+        low + (high - low) * self.unit()
+    }
+
+    /// A whole number from `low` to `high`, both included.
+    pub fn whole(&mut self, low: i32, high: i32) -> f64 {
+        let count = i64::from(high) - i64::from(low) + 1;
+        let offset = self.bits() % count.max(1) as u64;
+        (i64::from(low) + offset as i64) as f64
+    }
+
+    /// Any finite double, all exponents alike.
+    pub fn double(&mut self) -> f64 {
+        loop {
+            let double = f64::from_bits(self.bits());
+            if double.is_finite() {
+                return double;
+            }
+        }
+    }
+
+    /// One of `choices`.
+    pub fn pick<const N: usize>(&mut self, choices: [f64; N]) -> f64 {
+        choices[(self.bits() % N.max(1) as u64) as usize]
+    }
+
+    /// A number below `count`; all are equally likely, but for one part in 2³². 0 where `count` is.
+    pub fn below(&mut self, count: usize) -> usize {
+        (((self.bits() >> 32) * count as u64) >> 32) as usize
+    }
+
+    /// Whether one of `count` equally likely events happens.
+    pub fn one_in(&mut self, count: usize) -> bool {
+        self.below(count) == 0
+    }
+}
+
+/// A number that looks random, determined by a seed and some words.
+pub(crate) fn hash(seed: u64, words: impl IntoIterator<Item = u64>) -> u64 {
+    words.into_iter().fold(seed, |bits, word| mixed(bits.wrapping_add(INCREMENT) ^ mixed(word)))
+}
+
+/// Odd, and without a pattern in its bits: 2^64 over the golden ratio.
+const INCREMENT: u64 = 0x9e37_79b9_7f4a_7c15;
+
+/// David Stafford's finalizer "Mix13", as `SplitMix64` has it.
+fn mixed(mut bits: u64) -> u64 {
+    bits = (bits ^ (bits >> 30)).wrapping_mul(0xbf58_476d_1ce4_e5b9);
+    bits = (bits ^ (bits >> 27)).wrapping_mul(0x94d0_49bb_1331_11eb);
+    bits ^ (bits >> 31)
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    /// The first numbers of the reference implementation, with the seed 1234567.
+    #[test]
+    fn numbers_are_those_of_the_reference() {
+        let mut random = SplitMix64::new(1_234_567);
+        assert_eq!(
+            [(); 3].map(|()| random.bits()),
+            [6_457_827_717_110_365_317, 3_203_168_211_198_807_973, 9_817_491_932_198_370_423]
+        );
+    }
+
+    #[test]
+    fn every_number_below_a_bound_is_equally_likely() {
+        let mut random = SplitMix64::new(1);
+        let mut counts = [0; 6];
+        (0..6000).for_each(|_| counts[random.below(6)] += 1);
+        assert!(counts.iter().all(|count| (900..1100).contains(count)), "{counts:?}");
+    }
+}
