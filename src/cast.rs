@@ -33,10 +33,10 @@
 mod door;
 mod exact;
 mod hit;
+mod major_axis;
 mod ray;
 mod rounded;
 mod shape;
-mod sweep;
 mod through;
 mod walk;
 
@@ -44,10 +44,10 @@ pub use exact::{Exact, ExactOrder};
 #[cfg(feature = "lab")]
 pub(crate) use hit::texture_coordinate;
 pub use hit::{Hit, Side};
+pub(crate) use major_axis::MajorAxisTraversal;
 pub use ray::{NotARay, Ray};
 pub use rounded::RoundedOrder;
 pub(crate) use shape::Passage;
-pub(crate) use sweep::Sweep;
 #[cfg(feature = "lab")]
 pub(crate) use walk::first_line;
 pub use walk::{Crossing, Order, Walk};

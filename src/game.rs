@@ -10,13 +10,13 @@ mod doors;
 mod exits;
 mod fall;
 mod flight;
-mod gaze;
 mod intent;
 mod look;
 mod notice;
+mod pitch_control;
 mod player;
-mod posture;
 mod script;
+mod stance;
 mod turning;
 
 use std::collections::BTreeSet;
@@ -220,12 +220,12 @@ impl Game {
         if let Some((cell, door)) = self.door_wanted(intents) {
             self.try_to_open(cell, door);
         }
-        self.dig();
+        self.move_window();
         self.steps = self.steps.saturating_add(1);
     }
 
     /// Moves the window after the player.
-    fn dig(&mut self) {
+    fn move_window(&mut self) {
         let Some(window) = &mut self.window else { return };
         if let Some(shift) = window.follow(&mut self.world, self.player.cell()) {
             self.player = self.player.shifted(shift);

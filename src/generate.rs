@@ -15,24 +15,24 @@
 
 mod cave;
 mod chunk;
-mod kit;
 mod level;
 mod maze;
 mod office;
 mod purpose;
+mod tileset;
 mod window;
 
 use std::fmt;
 use std::sync::Arc;
 
-pub use chunk::{CHUNK_SIDE, Chunk, ChunkIndex, Extent, Plot, Site};
+pub use chunk::{CHUNK_SIDE, Chunk, ChunkArea, ChunkIndex, Extent, Site};
 pub use level::Level;
 pub(crate) use window::Shift;
 pub use window::Window;
 
 /// The contents of a level, as a function of the position.
 ///
-/// The same plot always has the same chunk, whatever was generated before.
+/// The same area always has the same chunk, whatever was generated before.
 pub trait Terrain: fmt::Debug + Send + Sync {
     /// The seed for decisions outside the terrain, such as the place of the exit.
     fn seed(&self) -> u64;
@@ -42,19 +42,19 @@ pub trait Terrain: fmt::Debug + Send + Sync {
     /// must have a scale that is a power of two up to 16: others would jump when the window moves.
     fn legend(&self) -> String;
 
-    /// The cells of a chunk. Cells outside `plot` do not matter: they become wall.
+    /// The cells of a chunk. Cells outside `area` do not matter: they become wall.
     ///
-    /// Doors stand between solid cells, with open floor before and behind them. Chunks whose plots
+    /// Doors stand between solid cells, with open floor before and behind them. Chunks whose areas
     /// have a [hub](Terrain::hub) are connected with their neighbours that have one.
-    fn chunk(&self, plot: &Plot) -> Chunk;
+    fn chunk(&self, area: &ChunkArea) -> Chunk;
 
-    /// An open cell of the chunk from which the player can reach the neighbours; `None` if the plot
+    /// An open cell of the chunk from which the player can reach the neighbours; `None` if the area
     /// is too small to have one.
-    fn hub(&self, plot: &Plot) -> Option<(usize, usize)>;
+    fn hub(&self, area: &ChunkArea) -> Option<(usize, usize)>;
 
     /// The cell of the chunk at which the player starts by default: its corner, unless the terrain
     /// knows a better one. If there is no way out of that cell, the hub is used.
-    fn start(&self, _plot: &Plot) -> (usize, usize) {
+    fn start(&self, _plot: &ChunkArea) -> (usize, usize) {
         (0, 0)
     }
 }

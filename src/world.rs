@@ -9,9 +9,10 @@
 //! and takes keys in its own copy of the world, so that a renderer needs nothing else.
 
 mod air;
+mod beam_table;
 mod camera;
-mod clearance;
 mod covering;
+mod distance_field;
 mod door;
 mod face_light;
 mod grid;
@@ -19,7 +20,6 @@ mod heights;
 mod lamplight;
 mod parts;
 mod pitch;
-mod shafts;
 mod shape;
 pub mod sprite;
 mod summary;
@@ -29,9 +29,10 @@ mod tile;
 
 use crate::color::Rgb;
 pub use air::{Fog, Light, Sky};
+pub(crate) use beam_table::{BeamTable, Beams, FRACTION_BITS, STRIP};
 pub use camera::{Camera, FieldOfView, Heading};
-pub(crate) use clearance::Clearance;
 pub use covering::{Ceiling, Covering, Pattern, Scale};
+pub(crate) use distance_field::DistanceField;
 use door::Ajar;
 pub use door::{Door, KeyId, Opening};
 pub(crate) use face_light::FaceLight;
@@ -41,7 +42,6 @@ pub(crate) use lamplight::Lamplight;
 pub use lamplight::{Lamp, Reach};
 pub(crate) use parts::Parts;
 pub use pitch::Pitch;
-pub(crate) use shafts::{Bundle, FRACTION_BITS, STRIP, Shafts};
 pub use shape::{Line, Outline, PillarRadius, Shape, ShapeHeight};
 pub use sprite::{Anchor, Facings, FrameTime, Sprite, SpriteHeight, SpriteId};
 pub use texture::Texture;

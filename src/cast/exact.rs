@@ -1,6 +1,6 @@
 //! The exact order of lines: what rational arithmetic says, at the price of doubles.
 //!
-//! Walls are found by the [`Sweep`], which need not stop in every cell; a ray from outside the map, or on
+//! Walls are found by the [`MajorAxisTraversal`], which need not stop in every cell; a ray from outside the map, or on
 //! a very large one, [walks](Walk). Both ask the same question of the same corners in case of doubt, so
 //! which of them it was cannot be told from the answer. In rooms, among pillars and in corridors
 //! (`benches/casters.rs`) a ray takes 0.6 to 0.9 times what it takes `dda`. That is why this is the
@@ -19,7 +19,9 @@ use std::iter;
 
 use glam::DVec2;
 
-use super::{Caster, Crossing, Hit, Order, Ray, RoundedOrder, Side, Sweep, Walk, through};
+use super::{
+    Caster, Crossing, Hit, MajorAxisTraversal, Order, Ray, RoundedOrder, Side, Walk, through,
+};
 use crate::numeric::cross;
 use crate::world::{Grid, World};
 
@@ -31,8 +33,8 @@ pub struct Exact;
 
 impl Caster for Exact {
     fn cast(&self, grid: &Grid, ray: &Ray) -> Option<Hit> {
-        let wall = match Sweep::new(grid, ray) {
-            Some(mut sweep) => sweep.next()?,
+        let wall = match MajorAxisTraversal::new(grid, ray) {
+            Some(mut traversal) => traversal.next()?,
             None => walk_to_first_solid(grid, ray)?,
         };
         Some(Hit::entering(ray, wall.cell, wall.side))
@@ -47,8 +49,8 @@ impl Caster for Exact {
 
     fn cast_through(&self, world: &World, ray: &Ray, passed: impl FnMut(Hit)) -> Option<Hit> {
         let grid = world.grid();
-        if let Some(sweep) = Sweep::new(grid, ray) {
-            return through::cast(sweep.cell(), sweep, world, ray, passed);
+        if let Some(traversal) = MajorAxisTraversal::new(grid, ray) {
+            return through::cast(traversal.cell(), traversal, world, ray, passed);
         }
         let mut walk = Walk::new(grid, ray);
         let (start, solid_cells) = (walk.cell(), iter::from_fn(|| walk.first_solid()));

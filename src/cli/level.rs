@@ -83,8 +83,8 @@ pub(super) fn load_series(argument: Option<&OsStr>) -> Result<Levels, Error> {
     })
 }
 
-/// As [`load_series`], or the level to dig, and after it those of the seeds that follow.
-pub(super) fn load_or_dig(
+/// As [`load_series`], or the generated level, followed by those of the next seeds.
+pub(super) fn load_or_generate(
     map: Option<&OsStr>,
     generated: Option<Generated>,
 ) -> Result<Levels, Error> {
@@ -100,8 +100,8 @@ pub(super) fn load_or_dig(
     Ok(Levels::of_games(first, later))
 }
 
-/// The part of a level to dig that is around `site`, or around its start.
-pub(super) fn dig(generated: Generated, site: Option<Site>) -> Result<(Window, World), Error> {
+/// The part of a generated level around `site`, or around its start.
+pub(super) fn generate(generated: Generated, site: Option<Site>) -> Result<(Window, World), Error> {
     let level = generated.generator.level(generated.seed, generated.extent)?;
     let site = site.or(level.start()).unwrap_or_default();
     Window::open(level, site).ok_or_else(|| Error::mistake(NO_START))

@@ -63,7 +63,7 @@ fn levels(options: &Play) -> Result<Levels, Error> {
         let (level, mut watch) = level::watch(options.map.as_deref(), options.generated)?;
         return Ok(Levels::changing(level, move || watch.change()));
     }
-    let levels = level::load_or_dig(options.map.as_deref(), options.generated)?;
+    let levels = level::load_or_generate(options.map.as_deref(), options.generated)?;
     if options.map.as_ref().is_some_and(|map| map == STANDARD_INPUT) && !io::stdin().is_terminal() {
         take_keys_from_terminal().map_err(|_| {
             Error::mistake(

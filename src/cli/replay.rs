@@ -24,7 +24,7 @@ use crate::terminal::CellWriter;
 /// Writes the recording that `options` ask for.
 pub(super) fn run(options: &Replay) -> Result<(), Error> {
     let script = script::load(&options.script)?;
-    let levels = level::load_or_dig(options.map.as_deref(), options.generated)?;
+    let levels = level::load_or_generate(options.map.as_deref(), options.generated)?;
     let settings = Settings {
         field_of_view: options.field_of_view,
         depth: Some(options.depth),

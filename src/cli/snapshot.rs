@@ -56,7 +56,7 @@ pub(super) fn run(options: Snapshot) -> Result<(), Error> {
         return watched::run(options);
     }
     if let Some(generated) = options.generated {
-        let (world, camera) = dug(generated, &options)?;
+        let (world, camera) = generated_world(generated, &options)?;
         let view = View::with_caster(options.method.caster());
         return output(Picture::new(&world, &camera, view, &options), &options)
             .map_err(|error| Error::of_output(&error));
@@ -88,16 +88,16 @@ fn draw(level: &Level, options: &Snapshot) -> Result<(), Error> {
     .map_err(|error| Error::of_output(&error))
 }
 
-/// The part of a level to dig that is around the camera, and the camera in that.
-fn dug(generated: Generated, options: &Snapshot) -> Result<(World, Camera), Error> {
+/// The part of a generated level around the camera, and the camera in it.
+fn generated_world(generated: Generated, options: &Snapshot) -> Result<(World, Camera), Error> {
     let Some((position, heading)) = options.camera else {
-        let (_, world) = level::dig(generated, generated.start)?;
+        let (_, world) = level::generate(generated, generated.start)?;
         let camera = camera(&world, None, options);
         return Ok((world, camera));
     };
     let whole = position.floor();
     let site = Site { column: whole.x as i64, row: whole.y as i64 };
-    let (window, world) = level::dig(generated, Some(site))?;
+    let (window, world) = level::generate(generated, Some(site))?;
     // Exact: the corner of a cell of the window, and what is left of a double without its whole part.
     let corner = window.cell(site).map_or(DVec2::ZERO, |cell| cell.center() - 0.5);
     let camera = camera(&world, Some((corner + (position - whole), heading)), options);

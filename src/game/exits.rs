@@ -12,7 +12,7 @@ use std::collections::BTreeSet;
 
 use super::fall::GRAVITY;
 use super::player::{JUMP_HEIGHT, RADIUS, RUN, STEP_HEIGHT};
-use super::posture::DUCKING;
+use super::stance::DUCKING;
 use crate::world::{Cell, Door, Gap, KeyId, ThingKind, Tile, TileKind, World};
 
 /// Whether `world` has an exit and the player cannot reach any. `false` if there is no exit.

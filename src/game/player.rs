@@ -5,9 +5,9 @@ use glam::DVec2;
 use super::STEP;
 use super::collision::{Body, Place, Radius, Stature, overlaps, slide};
 use super::fall::{Flight, GRAVITY, Room};
-use super::gaze::Gaze;
 use super::intent::{Intent, Intents};
-use super::posture::Posture;
+use super::pitch_control::PitchControl;
+use super::stance::Stance;
 use super::turning::Turning;
 use crate::generate::Shift;
 use crate::numeric::damped_motion::{DampedMotion, approach_in_plane};
@@ -41,8 +41,8 @@ pub(super) struct Player {
     feet: f64,
     /// Cells per second, upwards.
     rising: f64,
-    posture: Posture,
-    gaze: Gaze,
+    stance: Stance,
+    pitch_control: PitchControl,
     /// Whether a jump was wanted in the last step: each press is one jump.
     wanted_to_jump: bool,
     heading: Heading,
@@ -59,8 +59,8 @@ impl Player {
             // The start has headroom.
             feet: world.floor_at(start.cell),
             rising: 0.0,
-            posture: Posture::default(),
-            gaze: Gaze::default(),
+            stance: Stance::default(),
+            pitch_control: PitchControl::default(),
             wanted_to_jump: false,
             heading: start.heading,
             turning: Turning::default(),
@@ -78,7 +78,7 @@ impl Player {
             body: Body { velocity: DVec2::ZERO, ..self.body },
             rising: 0.0,
             turning: Turning::default(),
-            posture: Posture::default(),
+            stance: Stance::default(),
             wanted_to_jump: false,
             ..self
         };
@@ -89,10 +89,10 @@ impl Player {
 
     /// The player's view of `world`.
     pub(super) fn camera(&self, world: &World, field_of_view: FieldOfView) -> Option<Camera> {
-        let ceiling = self.room(world).ceiling + self.posture.height();
-        let eye = self.feet + self.posture.eye(ceiling - self.feet);
+        let ceiling = self.room(world).ceiling + self.stance.height();
+        let eye = self.feet + self.stance.eye(ceiling - self.feet);
         let camera = Camera::new(self.position(), self.heading, field_of_view)?.with_eye(eye)?;
-        Some(camera.with_pitch(self.gaze.pitch))
+        Some(camera.with_pitch(self.pitch_control.pitch))
     }
 
     pub(super) fn position(&self) -> DVec2 {
@@ -105,7 +105,7 @@ impl Player {
 
     /// The height of the top of the head, in cells.
     pub(super) fn head(&self) -> f64 {
-        self.feet + self.posture.height()
+        self.feet + self.stance.height()
     }
 
     pub(super) fn heading(&self) -> Heading {
@@ -138,8 +138,8 @@ impl Player {
     /// The player after one step: turned, then ducked, then moved.
     #[must_use]
     pub(super) fn stepped(self, world: &World, intents: Intents) -> Self {
-        let gaze = self.gaze.after_a_step(intents);
-        Self { gaze, ..self }.turned(intents).ducked(world, intents).walked(world, intents)
+        let pitch_control = self.pitch_control.after_a_step(intents);
+        Self { pitch_control, ..self }.turned(intents).ducked(world, intents).walked(world, intents)
     }
 
     fn turned(self, intents: Intents) -> Self {
@@ -150,9 +150,9 @@ impl Player {
 
     /// The player stands up only where there is room.
     fn ducked(self, world: &World, intents: Intents) -> Self {
-        let posture = self.posture.after_a_step(intents.contains(Intent::Duck));
-        let ducked = Self { posture, ..self };
-        if posture.height() <= self.posture.height() || ducked.has_room(world) {
+        let stance = self.stance.after_a_step(intents.contains(Intent::Duck));
+        let ducked = Self { stance, ..self };
+        if stance.height() <= self.stance.height() || ducked.has_room(world) {
             ducked
         } else {
             self
@@ -190,17 +190,12 @@ impl Player {
     }
 
     fn standing_on(self, floor: f64) -> Self {
-        Self {
-            feet: floor,
-            rising: 0.0,
-            posture: self.posture.following(floor - self.feet),
-            ..self
-        }
+        Self { feet: floor, rising: 0.0, stance: self.stance.following(floor - self.feet), ..self }
     }
 
     fn flying(self, flight: Flight, room: Room) -> Self {
         let Flight { height, speed } = flight.after(STEP, room);
-        Self { feet: height, rising: speed, posture: self.posture.following(0.0), ..self }
+        Self { feet: height, rising: speed, stance: self.stance.following(0.0), ..self }
     }
 
     /// The lowest and the highest position of the feet here.
@@ -213,7 +208,7 @@ impl Player {
     }
 
     fn place<'a>(&self, world: &'a World) -> Place<'a> {
-        let stature = Stature { feet: self.feet, height: self.posture.height() };
+        let stature = Stature { feet: self.feet, height: self.stance.height() };
         Place { world, stature, step: 0.0, has_shapes: world.has_shapes() }
     }
 }

@@ -9,7 +9,7 @@
 //! all hubs are connected. Caverns beside the tunnels stay as they are, and some cannot be reached.
 
 use super::Terrain;
-use super::chunk::{CHUNK_SIDE, Chunk, Plot, every_cell};
+use super::chunk::{CHUNK_SIDE, Chunk, ChunkArea, every_cell};
 use super::purpose::{Purpose, generator, hash};
 use crate::rng::SplitMix64;
 
@@ -41,7 +41,7 @@ const DRY_IN_100: u64 = 60;
 /// A cell with this many cells of rock around it, itself included, becomes rock.
 const MOST_OF_NINE: usize = 5;
 
-/// The smallest plot with a hub.
+/// The smallest area with a hub.
 const LEAST: usize = 6;
 /// The radius of the floor around a hub.
 const HUB_RADIUS: usize = 2;
@@ -59,36 +59,36 @@ impl Terrain for Cave {
         format!("title = \"Cave {}\"\n{}", self.seed, include_str!("cave.toml"))
     }
 
-    fn chunk(&self, plot: &Plot) -> Chunk {
-        let (column, row) = (plot.chunk.column, plot.chunk.row);
-        let rock = self.settled(plot, Purpose::Rock, ROCK_IN_100);
-        let dry = self.settled(plot, Purpose::Dry, DRY_IN_100);
+    fn chunk(&self, area: &ChunkArea) -> Chunk {
+        let (column, row) = (area.chunk.column, area.chunk.row);
+        let rock = self.settled(area, Purpose::Rock, ROCK_IN_100);
+        let dry = self.settled(area, Purpose::Dry, DRY_IN_100);
         let mossy = hash(self.seed, Purpose::District, column >> 1, row >> 1).is_multiple_of(3);
         let mut chunk = Chunk::full_of(if mossy { MOSS } else { STONE });
         for (x, y) in every_cell().filter(|&(x, y)| !rock[y + GENERATIONS][x + GENERATIONS]) {
             let is_dry = dry[y + GENERATIONS][x + GENERATIONS];
             chunk.set(x, y, if is_dry { FLOOR } else { POOL });
         }
-        let Some(hub) = self.hub(plot) else { return chunk };
-        dig_around(&mut chunk, plot, hub, HUB_RADIUS);
+        let Some(hub) = self.hub(area) else { return chunk };
+        carve_around(&mut chunk, area, hub, HUB_RADIUS);
         chunk.set(hub.0, hub.1, FLOOR);
         let mut random = generator(self.seed, Purpose::Plan, column, row);
-        for gate in self.gates(plot).into_iter().flatten() {
-            dig_tunnel(&mut chunk, plot, hub, gate, &mut random);
+        for gate in self.gates(area).into_iter().flatten() {
+            carve_tunnel(&mut chunk, area, hub, gate, &mut random);
         }
-        self.furnish(&mut chunk, plot, hub);
+        self.furnish(&mut chunk, area, hub);
         chunk
     }
 
-    fn hub(&self, plot: &Plot) -> Option<Place> {
-        if !plot.holds(LEAST) {
+    fn hub(&self, area: &ChunkArea) -> Option<Place> {
+        if !area.holds(LEAST) {
             return None;
         }
-        let mut random = generator(self.seed, Purpose::Hub, plot.chunk.column, plot.chunk.row);
+        let mut random = generator(self.seed, Purpose::Hub, area.chunk.column, area.chunk.row);
         let mut within = |range: &std::ops::Range<usize>| {
             range.start + range.len() / 4 + random.below(range.len() / 2)
         };
-        Some((within(&plot.columns), within(&plot.rows)))
+        Some((within(&area.columns), within(&area.rows)))
     }
 }
 
@@ -96,7 +96,7 @@ impl Cave {
     /// Random cells of the chunk and its margin, with this percentage, after all generations.
     fn settled(
         &self,
-        plot: &Plot,
+        area: &ChunkArea,
         purpose: Purpose,
         in_100: u64,
     ) -> [[bool; WITH_MARGIN]; WITH_MARGIN] {
@@ -104,7 +104,7 @@ impl Cave {
         let mut rock = [[false; WITH_MARGIN]; WITH_MARGIN];
         for (row, y) in rock.iter_mut().zip(-margin..) {
             for (cell, x) in row.iter_mut().zip(-margin..) {
-                let site = plot.chunk.site(x, y);
+                let site = area.chunk.site(x, y);
                 *cell = hash(self.seed, purpose, site.column, site.row) % 100 < in_100;
             }
         }
@@ -122,16 +122,16 @@ impl Cave {
     }
 
     /// The gates in the north, west, south and east.
-    fn gates(&self, plot: &Plot) -> [Option<Place>; 4] {
+    fn gates(&self, area: &ChunkArea) -> [Option<Place>; 4] {
         let last = CHUNK_SIDE - 1;
-        let (column, row) = (plot.chunk.column, plot.chunk.row);
-        let has_hub = |columns, rows| self.hub(&plot.neighbor(columns, rows)).is_some();
+        let (column, row) = (area.chunk.column, area.chunk.row);
+        let has_hub = |columns, rows| self.hub(&area.neighbor(columns, rows)).is_some();
         let along = |range: &std::ops::Range<usize>, purpose, column, row| {
             range.start + generator(self.seed, purpose, column, row).below(range.len())
         };
-        let across = |column, row| along(&plot.columns, Purpose::NorthPassage, column, row);
-        let down = |column, row| along(&plot.rows, Purpose::WestPassage, column, row);
-        let (south, east) = (plot.chunk.offset(0, 1).row, plot.chunk.offset(1, 0).column);
+        let across = |column, row| along(&area.columns, Purpose::NorthPassage, column, row);
+        let down = |column, row| along(&area.rows, Purpose::WestPassage, column, row);
+        let (south, east) = (area.chunk.offset(0, 1).row, area.chunk.offset(1, 0).column);
         [
             has_hub(0, -1).then(|| (across(column, row), 0)),
             has_hub(-1, 0).then(|| (0, down(column, row))),
@@ -141,14 +141,14 @@ impl Cave {
     }
 
     /// Places stalagmites and things where the player can walk around them, but not on the hub.
-    fn furnish(&self, chunk: &mut Chunk, plot: &Plot, hub: Place) {
-        let (column, row) = (plot.chunk.column, plot.chunk.row);
+    fn furnish(&self, chunk: &mut Chunk, area: &ChunkArea, hub: Place) {
+        let (column, row) = (area.chunk.column, area.chunk.row);
         let mut random = generator(self.seed, Purpose::Furniture, column, row);
         let inner = 1..CHUNK_SIDE - 1;
         let places = inner.clone().flat_map(|y| inner.clone().map(move |x| (x, y)));
         for (x, y) in places.filter(|&place| place != hub) {
             let is_free = (y - 1..=y + 1)
-                .all(|row| (x - 1..=x + 1).all(|column| is_floor_of(chunk, plot, column, row)));
+                .all(|row| (x - 1..=x + 1).all(|column| is_floor_of(chunk, area, column, row)));
             if !is_free {
                 continue;
             }
@@ -164,25 +164,31 @@ impl Cave {
     }
 }
 
-fn is_floor_of(chunk: &Chunk, plot: &Plot, column: usize, row: usize) -> bool {
-    plot.contains(column, row) && chunk.get(column, row) == FLOOR
+fn is_floor_of(chunk: &Chunk, area: &ChunkArea, column: usize, row: usize) -> bool {
+    area.contains(column, row) && chunk.get(column, row) == FLOOR
 }
 
-/// Clears rock within `radius` of a cell in the plot, except in the corners.
-fn dig_around(chunk: &mut Chunk, plot: &Plot, (column, row): Place, radius: usize) {
+/// Clears rock within `radius` of a cell in the area, except in the corners.
+fn carve_around(chunk: &mut Chunk, area: &ChunkArea, (column, row): Place, radius: usize) {
     let near = |(x, y): Place| {
         let (across, down) = (x.abs_diff(column), y.abs_diff(row));
         across * across + down * down <= radius * radius + 1
     };
-    let is_rock = |(x, y): Place| plot.contains(x, y) && [STONE, MOSS].contains(&chunk.get(x, y));
-    let dug: Vec<_> = every_cell().filter(|&place| near(place) && is_rock(place)).collect();
-    for (x, y) in dug {
+    let is_rock = |(x, y): Place| area.contains(x, y) && [STONE, MOSS].contains(&chunk.get(x, y));
+    let carved: Vec<_> = every_cell().filter(|&place| near(place) && is_rock(place)).collect();
+    for (x, y) in carved {
         chunk.set(x, y, TUNNEL);
     }
 }
 
-/// Clears a winding tunnel from one cell of the plot to another.
-fn dig_tunnel(chunk: &mut Chunk, plot: &Plot, from: Place, to: Place, random: &mut SplitMix64) {
+/// Clears a winding tunnel from one cell of the area to another.
+fn carve_tunnel(
+    chunk: &mut Chunk,
+    area: &ChunkArea,
+    from: Place,
+    to: Place,
+    random: &mut SplitMix64,
+) {
     let (mut column, mut row) = from;
     let mut steps = 0;
     while (column, row) != to {
@@ -195,16 +201,16 @@ fn dig_tunnel(chunk: &mut Chunk, plot: &Plot, from: Place, to: Place, random: &m
                 stepped(place, if back_and_forth { range.start } else { range.end - 1 })
             };
             if goes_across {
-                row = beside(row, &plot.rows);
+                row = beside(row, &area.rows);
             } else {
-                column = beside(column, &plot.columns);
+                column = beside(column, &area.columns);
             }
         } else if goes_across {
             column = stepped(column, to.0);
         } else {
             row = stepped(row, to.1);
         }
-        dig_around(chunk, plot, (column, row), usize::from(random.one_in(3)));
+        carve_around(chunk, area, (column, row), usize::from(random.one_in(3)));
     }
 }
 

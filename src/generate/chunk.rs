@@ -93,14 +93,14 @@ impl Extent {
     }
 
     /// The part of the level in a chunk.
-    pub fn plot(self, chunk: ChunkIndex) -> Plot {
+    pub fn area(self, chunk: ChunkIndex) -> ChunkArea {
         let (columns, rows) = match self {
             Self::Endless => (0..CHUNK_SIDE, 0..CHUNK_SIDE),
             Self::Cells { columns, rows } => {
                 (inside(chunk.column, columns), inside(chunk.row, rows))
             }
         };
-        Plot { extent: self, chunk, columns, rows }
+        ChunkArea { extent: self, chunk, columns, rows }
     }
 }
 
@@ -115,7 +115,7 @@ fn inside(index: i64, side: u32) -> Range<usize> {
 
 /// The part of a chunk that may be filled by a terrain.
 #[derive(Clone, Debug, PartialEq, Eq)]
-pub struct Plot {
+pub struct ChunkArea {
     extent: Extent,
     /// The chunk.
     pub chunk: ChunkIndex,
@@ -125,24 +125,24 @@ pub struct Plot {
     pub rows: Range<usize>,
 }
 
-impl Plot {
-    /// The plot of the chunk at an offset to the east and to the south.
+impl ChunkArea {
+    /// The area of the chunk at an offset to the east and to the south.
     #[must_use]
     pub fn neighbor(&self, columns: i64, rows: i64) -> Self {
-        self.extent.plot(self.chunk.offset(columns, rows))
+        self.extent.area(self.chunk.offset(columns, rows))
     }
 
-    /// Whether the plot has no cells: it is outside the level.
+    /// Whether the area has no cells: it is outside the level.
     pub fn is_empty(&self) -> bool {
         self.columns.is_empty() || self.rows.is_empty()
     }
 
-    /// Whether the plot has at least `side` columns and rows.
+    /// Whether the area has at least `side` columns and rows.
     pub fn holds(&self, side: usize) -> bool {
         self.columns.len() >= side && self.rows.len() >= side
     }
 
-    /// Whether a cell is in the plot.
+    /// Whether a cell is in the area.
     pub fn contains(&self, column: usize, row: usize) -> bool {
         self.columns.contains(&column) && self.rows.contains(&row)
     }
@@ -184,9 +184,9 @@ impl Chunk {
         &self.cells[row]
     }
 
-    /// Fills what is not in `plot` with wall.
-    pub(super) fn clip(&mut self, plot: &Plot, character: u8) {
-        for (column, row) in every_cell().filter(|&(column, row)| !plot.contains(column, row)) {
+    /// Fills what is not in `area` with wall.
+    pub(super) fn clip(&mut self, area: &ChunkArea, character: u8) {
+        for (column, row) in every_cell().filter(|&(column, row)| !area.contains(column, row)) {
             self.set(column, row, character);
         }
     }
@@ -266,8 +266,8 @@ mod tests {
         #[test]
         fn plots_are_what_is_within_the_outermost_wall(columns in 8_u32..200, rows in 8_u32..200) {
             let extent = Extent::new(columns, rows).unwrap();
-            let plots = (-1..8).flat_map(|row| (-1..8).map(move |column| ChunkIndex { column, row }));
-            let area: usize = plots.map(|index| extent.plot(index)).map(|plot| plot.columns.len() * plot.rows.len()).sum();
+            let areas = (-1..8).flat_map(|row| (-1..8).map(move |column| ChunkIndex { column, row }));
+            let area: usize = areas.map(|index| extent.area(index)).map(|area| area.columns.len() * area.rows.len()).sum();
             prop_assert_eq!(area, (columns as usize - 2) * (rows as usize - 2));
         }
     }

@@ -3,8 +3,8 @@
 use std::sync::Arc;
 
 use super::chunk::{CHUNK_SIDE, Chunk, ChunkIndex, Extent, Site};
-use super::kit::{Kit, ROCK};
 use super::purpose::{Purpose, generator};
+use super::tileset::{ROCK, Tileset};
 use super::{Generator, Terrain};
 use crate::fault::Faults;
 
@@ -23,7 +23,7 @@ use crate::fault::Faults;
 #[derive(Clone, Debug)]
 pub struct Level {
     terrain: Arc<dyn Terrain>,
-    kit: Arc<Kit>,
+    tileset: Arc<Tileset>,
     extent: Extent,
     exit: Option<Site>,
 }
@@ -34,8 +34,8 @@ impl Level {
     /// # Errors
     /// All faults of the terrain's legend.
     pub fn new(terrain: Arc<dyn Terrain>, extent: Extent) -> Result<Self, Faults> {
-        let kit = Arc::new(Kit::of(&terrain.legend())?);
-        let endless = Self { terrain, kit, extent, exit: None };
+        let tileset = Arc::new(Tileset::of(&terrain.legend())?);
+        let endless = Self { terrain, tileset, extent, exit: None };
         let exit = endless.place_for_exit();
         Ok(Self { exit, ..endless })
     }
@@ -48,7 +48,7 @@ impl Level {
     /// The start, in the first chunk. `None` if the terrain leaves nowhere to stand there.
     pub fn start(&self) -> Option<Site> {
         let home = ChunkIndex::default();
-        let (column, row) = self.terrain.start(&self.extent.plot(home));
+        let (column, row) = self.terrain.start(&self.extent.area(home));
         self.start_near(home.site(column as i64, row as i64))
     }
 
@@ -56,10 +56,10 @@ impl Level {
     /// or else the hub of its chunk. `None` if the chunk has none, as outside the level.
     pub fn start_near(&self, site: Site) -> Option<Site> {
         let (index, place) = site.chunk();
-        let hub = self.terrain.hub(&self.extent.plot(index))?;
+        let hub = self.terrain.hub(&self.extent.area(index))?;
         let chunk = self.chunk(index);
         // Doors are closed at first.
-        let is_connected = self.kit.is_floor(chunk.get(place.0, place.1))
+        let is_connected = self.tileset.is_floor(chunk.get(place.0, place.1))
             && self.walk(&chunk, hub).contains(&place);
         let (column, row) = if is_connected { place } else { hub };
         Some(index.site(column as i64, row as i64))
@@ -75,39 +75,39 @@ impl Level {
         let mut chunk = self.without_exit(index);
         if let Some((chunk_of_exit, (column, row))) = self.exit.map(Site::chunk)
             && chunk_of_exit == index
-            && let Some(exit) = self.kit.exit_on(chunk.get(column, row))
+            && let Some(exit) = self.tileset.exit_on(chunk.get(column, row))
         {
             chunk.set(column, row, exit);
         }
         chunk
     }
 
-    pub(super) fn kit(&self) -> &Kit {
-        &self.kit
+    pub(super) fn tileset(&self) -> &Tileset {
+        &self.tileset
     }
 
     fn without_exit(&self, index: ChunkIndex) -> Chunk {
-        let plot = self.extent.plot(index);
-        if plot.is_empty() {
+        let area = self.extent.area(index);
+        if area.is_empty() {
             return Chunk::full_of(ROCK);
         }
-        let mut chunk = self.terrain.chunk(&plot);
-        chunk.clip(&plot, ROCK);
+        let mut chunk = self.terrain.chunk(&area);
+        chunk.clip(&area, ROCK);
         chunk
     }
 
     /// The cells of a chunk that can be reached from `start` inside it, the nearest first.
     fn walk(&self, chunk: &Chunk, start: (usize, usize)) -> Vec<(usize, usize)> {
-        chunk.reachable(start, |character| self.kit.is_walkable(character))
+        chunk.reachable(start, |character| self.tileset.is_walkable(character))
     }
 
     /// A cell far from the start, as far from the hub of its chunk as possible.
     fn place_for_exit(&self) -> Option<Site> {
         let index = self.chunk_for_exit()?;
-        let hub = self.terrain.hub(&self.extent.plot(index))?;
+        let hub = self.terrain.hub(&self.extent.area(index))?;
         let chunk = self.without_exit(index);
         let is_free = |&&(column, row): &&(usize, usize)| {
-            (column, row) != hub && self.kit.is_bare(chunk.get(column, row))
+            (column, row) != hub && self.tileset.is_bare(chunk.get(column, row))
         };
         let reachable = self.walk(&chunk, hub);
         let &(column, row) = reachable.iter().rev().find(is_free)?;
@@ -134,7 +134,7 @@ impl Level {
             })
         });
         let index = |(column, row)| ChunkIndex { column: column as i64, row: row as i64 };
-        places.map(index).find(|&index| self.terrain.hub(&self.extent.plot(index)).is_some())
+        places.map(index).find(|&index| self.terrain.hub(&self.extent.area(index)).is_some())
     }
 }
 
@@ -151,7 +151,7 @@ impl Generator {
 /// Two levels are equal if they come from one call of [`Level::new`].
 impl PartialEq for Level {
     fn eq(&self, other: &Self) -> bool {
-        Arc::ptr_eq(&self.kit, &other.kit)
+        Arc::ptr_eq(&self.tileset, &other.tileset)
     }
 }
 

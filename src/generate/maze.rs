@@ -10,7 +10,7 @@
 //! border, and in the second half of the ones between.
 
 use super::Terrain;
-use super::chunk::{CHUNK_SIDE, Chunk, Plot};
+use super::chunk::{CHUNK_SIDE, Chunk, ChunkArea};
 use super::purpose::{Purpose, generator, hash};
 use crate::rng::SplitMix64;
 
@@ -59,48 +59,48 @@ impl Terrain for Maze {
         format!("title = \"Maze {}\"\n{}", self.seed, include_str!("maze.toml"))
     }
 
-    fn chunk(&self, plot: &Plot) -> Chunk {
-        let (column, row) = (plot.chunk.column, plot.chunk.row);
+    fn chunk(&self, area: &ChunkArea) -> Chunk {
+        let (column, row) = (area.chunk.column, area.chunk.row);
         let district =
             hash(self.seed, Purpose::District, column >> DISTRICT_BITS, row >> DISTRICT_BITS);
         let district = DISTRICTS[(district % DISTRICTS.len() as u64) as usize];
-        let mut digging = Digging {
+        let mut carving = Carving {
             chunk: Chunk::full_of(district.wall),
             district,
-            nodes: (plot.columns.end / 2, plot.rows.end / 2),
+            nodes: (area.columns.end / 2, area.rows.end / 2),
             random: generator(self.seed, Purpose::Plan, column, row),
         };
-        if self.hub(plot).is_some() {
-            digging.grow_tree();
-            digging.open_dead_ends();
-            digging.dig_halls();
-            self.dig_passages(plot, &mut digging);
+        if self.hub(area).is_some() {
+            carving.grow_tree();
+            carving.open_dead_ends();
+            carving.carve_halls();
+            self.carve_passages(area, &mut carving);
         }
-        digging.chunk
+        carving.chunk
     }
 
-    fn hub(&self, plot: &Plot) -> Option<(usize, usize)> {
-        let has_node = plot.columns.end >= 2 && plot.rows.end >= 2;
-        (has_node && plot.contains(1, 1)).then_some((1, 1))
+    fn hub(&self, area: &ChunkArea) -> Option<(usize, usize)> {
+        let has_node = area.columns.end >= 2 && area.rows.end >= 2;
+        (has_node && area.contains(1, 1)).then_some((1, 1))
     }
 }
 
 impl Maze {
-    fn dig_passages(&self, plot: &Plot, digging: &mut Digging) {
-        let (columns, rows) = digging.nodes;
-        let (column, row) = (plot.chunk.column, plot.chunk.row);
-        if self.hub(&plot.neighbor(-1, 0)).is_some() {
+    fn carve_passages(&self, area: &ChunkArea, carving: &mut Carving) {
+        let (columns, rows) = carving.nodes;
+        let (column, row) = (area.chunk.column, area.chunk.row);
+        if self.hub(&area.neighbor(-1, 0)).is_some() {
             let mut random = generator(self.seed, Purpose::WestPassage, column, row);
             for _ in 0..PASSAGES {
                 let node = in_half(rows, column, &mut random);
-                digging.dig((0, 2 * node + 1));
+                carving.carve((0, 2 * node + 1));
             }
         }
-        if self.hub(&plot.neighbor(0, -1)).is_some() {
+        if self.hub(&area.neighbor(0, -1)).is_some() {
             let mut random = generator(self.seed, Purpose::NorthPassage, column, row);
             for _ in 0..PASSAGES {
                 let node = in_half(columns, row, &mut random);
-                digging.dig((2 * node + 1, 0));
+                carving.carve((2 * node + 1, 0));
             }
         }
     }
@@ -114,7 +114,7 @@ fn in_half(nodes: usize, border: i64, random: &mut SplitMix64) -> usize {
 }
 
 /// A chunk in the making.
-struct Digging {
+struct Carving {
     chunk: Chunk,
     district: District,
     /// The number of nodes from west to east and from north to south, both above 0.
@@ -125,21 +125,21 @@ struct Digging {
 /// The column and row of a node among the nodes of its chunk.
 type Node = (usize, usize);
 
-impl Digging {
+impl Carving {
     /// Connects all nodes with the first one by depth-first search.
     fn grow_tree(&mut self) {
         let mut way = vec![(0, 0)];
-        self.dig((1, 1));
+        self.carve((1, 1));
         while let Some(&node) = way.last() {
-            let undug: Vec<Node> =
+            let uncarved: Vec<Node> =
                 self.beside(node).into_iter().filter(|&next| !self.is_dug(cell(next))).collect();
-            if undug.is_empty() {
+            if uncarved.is_empty() {
                 way.pop();
                 continue;
             }
-            let next = undug[self.random.below(undug.len())];
-            self.dig(between(node, next));
-            self.dig(cell(next));
+            let next = uncarved[self.random.below(uncarved.len())];
+            self.carve(between(node, next));
+            self.carve(cell(next));
             way.push(next);
         }
     }
@@ -157,7 +157,7 @@ impl Digging {
             match self.random.below(6) {
                 0..3 if !walls.is_empty() => {
                     let next = walls[self.random.below(walls.len())];
-                    self.dig(between(node, next));
+                    self.carve(between(node, next));
                 }
                 3 => self.chunk.set(column, row, self.district.torch),
                 4 => self.chunk.set(column, row, self.district.bones),
@@ -167,7 +167,7 @@ impl Digging {
     }
 
     /// Clears halls of three by two or three nodes, with a statue or a torch.
-    fn dig_halls(&mut self) {
+    fn carve_halls(&mut self) {
         for _ in 0..2 {
             let (width, height) = (3, 2 + self.random.below(2));
             if self.nodes.0 < width || self.nodes.1 < height || self.random.one_in(3) {
@@ -178,7 +178,7 @@ impl Digging {
             let ((west, north), (east, south)) =
                 (cell((column, row)), cell((column + width - 1, row + height - 1)));
             let cells = (north..=south).flat_map(|row| (west..=east).map(move |x| (x, row)));
-            cells.for_each(|place| self.dig(place));
+            cells.for_each(|place| self.carve(place));
             let center = (usize::midpoint(west, east), usize::midpoint(north, south));
             let District { landmark, torch, .. } = self.district;
             let landmark = if self.random.one_in(2) { landmark } else { torch };
@@ -186,7 +186,7 @@ impl Digging {
         }
     }
 
-    fn dig(&mut self, (column, row): (usize, usize)) {
+    fn carve(&mut self, (column, row): (usize, usize)) {
         self.chunk.set(column, row, self.district.floor);
     }
 

@@ -12,7 +12,7 @@ mod block;
 mod decor;
 
 use super::Terrain;
-use super::chunk::{CHUNK_SIDE, Chunk, Plot, every_cell};
+use super::chunk::{CHUNK_SIDE, Chunk, ChunkArea, every_cell};
 use super::purpose::{Purpose, generator};
 use block::Block;
 use decor::Decor;
@@ -46,30 +46,30 @@ impl Terrain for Office {
         format!("title = \"Office {}\"\n{legend}", self.seed)
     }
 
-    fn chunk(&self, plot: &Plot) -> Chunk {
+    fn chunk(&self, area: &ChunkArea) -> Chunk {
         let mut chunk = Chunk::full_of(WALL);
-        if self.hub(plot).is_none() {
+        if self.hub(area).is_none() {
             return chunk;
         }
-        dig_corridors(&mut chunk, plot);
-        self.set_fire_doors(&mut chunk, plot);
-        let random = generator(self.seed, Purpose::Plan, plot.chunk.column, plot.chunk.row);
-        if let Some(block) = Block::of(plot, CORRIDORS.end) {
+        carve_corridors(&mut chunk, area);
+        self.set_fire_doors(&mut chunk, area);
+        let random = generator(self.seed, Purpose::Plan, area.chunk.column, area.chunk.row);
+        if let Some(block) = Block::of(area, CORRIDORS.end) {
             block.build(&mut chunk, random);
         }
         chunk
     }
 
-    fn hub(&self, plot: &Plot) -> Option<(usize, usize)> {
+    fn hub(&self, area: &ChunkArea) -> Option<(usize, usize)> {
         let corner = (CORRIDORS.start, CORRIDORS.start);
-        plot.contains(corner.0, corner.1).then_some(corner)
+        area.contains(corner.0, corner.1).then_some(corner)
     }
 
     /// In a room, at the one of some cells with the farthest view.
-    fn start(&self, plot: &Plot) -> (usize, usize) {
+    fn start(&self, area: &ChunkArea) -> (usize, usize) {
         /// The number of cells that are compared.
         const PLACES: usize = 6;
-        let chunk = self.chunk(plot);
+        let chunk = self.chunk(area);
         let is_in_room = |&(column, row): &(usize, usize)| {
             // Furniture is never here or beside it.
             column % 2 == 0 && row % 2 == 0 && ROOM_FLOORS.contains(&chunk.get(column, row))
@@ -78,15 +78,15 @@ impl Terrain for Office {
         if rooms.is_empty() {
             return (0, 0);
         }
-        let mut random = generator(self.seed, Purpose::Start, plot.chunk.column, plot.chunk.row);
+        let mut random = generator(self.seed, Purpose::Start, area.chunk.column, area.chunk.row);
         let places = (0..PLACES).map(|_| rooms[random.below(rooms.len())]);
         places.max_by_key(|&place| longest_view(&chunk, place)).unwrap_or_default()
     }
 }
 
 impl Office {
-    fn set_fire_doors(&self, chunk: &mut Chunk, plot: &Plot) {
-        let has_hub = |columns, rows| self.hub(&plot.neighbor(columns, rows)).is_some();
+    fn set_fire_doors(&self, chunk: &mut Chunk, area: &ChunkArea) {
+        let has_hub = |columns, rows| self.hub(&area.neighbor(columns, rows)).is_some();
         if has_hub(-1, 0) {
             chunk.set(0, CORRIDORS.start, FIRE_DOOR);
         }
@@ -114,17 +114,17 @@ fn longest_view(chunk: &Chunk, (column, row): (usize, usize)) -> usize {
         .unwrap_or_default()
 }
 
-fn dig_corridors(chunk: &mut Chunk, plot: &Plot) {
+fn carve_corridors(chunk: &mut Chunk, area: &ChunkArea) {
     let inside = |range: &std::ops::Range<usize>| range.start.max(1)..range.end;
     let lamp_at = |along: usize| along % LAMP_SPACING == LAMP_SPACING / 2;
     let floor = |along, across: usize| {
         if lamp_at(along) && across == CORRIDORS.start { CORRIDOR_LAMP } else { CORRIDOR }
     };
     for across in CORRIDORS {
-        for row in inside(&plot.rows).filter(|&row| plot.contains(across, row)) {
+        for row in inside(&area.rows).filter(|&row| area.contains(across, row)) {
             chunk.set(across, row, floor(row, across));
         }
-        for column in inside(&plot.columns).filter(|&column| plot.contains(column, across)) {
+        for column in inside(&area.columns).filter(|&column| area.contains(column, across)) {
             chunk.set(column, across, floor(column, across));
         }
     }

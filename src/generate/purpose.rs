@@ -8,7 +8,7 @@ use crate::rng::{self, SplitMix64};
 /// What is being decided. Each has numbers of its own, so that no decision tells about another.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub(super) enum Purpose {
-    /// How a chunk is dug.
+    /// The layout of a chunk.
     Plan = 1,
     /// Where one passes to the chunk in the north.
     NorthPassage = 2,

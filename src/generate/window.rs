@@ -17,7 +17,7 @@ use glam::DVec2;
 
 use super::Level;
 use super::chunk::{CHUNK_SIDE, Chunk, ChunkIndex, Site};
-use super::kit::ROCK;
+use super::tileset::ROCK;
 use crate::world::{Cell, Grid, Heading, Start, World};
 
 /// The chunks along each side of a window.
@@ -77,7 +77,7 @@ impl Window {
         let places = every_chunk(first);
         let chunks = places.map(|(_, index)| level.chunk(index)).collect();
         let window = Self { level, first, chunks };
-        let mut world = window.level.kit().world();
+        let mut world = window.level.tileset().world();
         window.draw(&mut world, |grid| {
             let cell = window.cell(site).unwrap_or(CENTER);
             Start { cell, heading: best_heading(grid, cell) }
@@ -134,7 +134,7 @@ impl Window {
     fn draw(&self, world: &mut World, start: impl FnOnce(&Grid) -> Start) {
         const WIDTH: NonZeroU32 = NonZeroU32::new(SIDE as u32).expect("there are chunks");
         let rows = (0..SIDE).map(|row| self.row(row));
-        self.level.kit().draw(world, WIDTH, rows, start);
+        self.level.tileset().draw(world, WIDTH, rows, start);
     }
 
     /// The characters of a row.

@@ -7,7 +7,7 @@ use super::projection::Projection;
 use super::see_through::Passed;
 use super::tally::{Counts, Pass};
 use super::{Geometry, Plan, WindowCounts, columns};
-use crate::cast::{Caster, Hit, Ray, Sweep, Walk};
+use crate::cast::{Caster, Hit, MajorAxisTraversal, Ray, Walk};
 use crate::world::{Grid, World};
 
 /// How a frame was drawn, and what it cost.
@@ -92,9 +92,9 @@ impl<C> Counting<'_, C> {
                 break;
             }
         }
-        let looked = Sweep::new(grid, ray).map_or(entered, |mut sweep| {
-            sweep.next();
-            sweep.looks()
+        let looked = MajorAxisTraversal::new(grid, ray).map_or(entered, |mut traversal| {
+            traversal.next();
+            traversal.lookups()
         });
         let RayCounts { rays, cells, looks } = self.counts.get();
         let counts = RayCounts { rays: rays + 1, cells: cells + entered, looks: looks + looked };

@@ -146,7 +146,7 @@ impl Plan {
             geometry,
             rays: match geometry {
                 Geometry::Windows(_) => RayLoop::Cells,
-                Geometry::Level if world.grid().clearance().is_measured() => RayLoop::Leaps,
+                Geometry::Level if world.grid().distance_field().is_measured() => RayLoop::Leaps,
                 Geometry::Level => RayLoop::Lines,
             },
             floor: PlaneLoop::new(world.floor(), floor_varies, is_foggy),

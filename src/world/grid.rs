@@ -7,7 +7,7 @@ use std::sync::Arc;
 use glam::DVec2;
 
 use super::Lamplight;
-use super::clearance::Clearance;
+use super::distance_field::DistanceField;
 
 /// The place of a cell: column from the west, row from the north, both from 0.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash, PartialOrd, Ord)]
@@ -48,7 +48,7 @@ pub struct Grid {
     /// The cells with things that block.
     occupied: BTreeSet<Cell>,
     /// The distance field. It is shared, since it never changes.
-    clearance: Arc<Clearance>,
+    distance_field: Arc<DistanceField>,
 }
 
 impl Grid {
@@ -66,13 +66,13 @@ impl Grid {
         }
         let is_solid = |&tile: &TileId| tile >= first_solid;
         let rows = cells.chunks_exact(width.get() as usize);
-        let clearance = Clearance::new(rows.map(|row| row.iter().map(is_solid)));
+        let distance_field = DistanceField::new(rows.map(|row| row.iter().map(is_solid)));
         Some(Self {
             width,
             height,
             first_solid,
             occupied: BTreeSet::new(),
-            clearance: Arc::new(clearance),
+            distance_field: Arc::new(distance_field),
             cells,
         })
     }
@@ -98,31 +98,31 @@ impl Grid {
     /// Computes the distance field, if the map is empty enough to gain by it. Some open tiles
     /// `may_become_solid`.
     pub(super) fn clear(&mut self, may_become_solid: impl Fn(TileId) -> bool) {
-        self.clearance = Arc::new(self.near(may_become_solid).measured_if_worthwhile());
+        self.distance_field = Arc::new(self.near(may_become_solid).measured_if_worthwhile());
     }
 
     /// Computes the distance field as [`Grid::clear`] does, whatever the map.
     #[cfg(test)]
-    pub(crate) fn measure_clearance(&mut self, may_become_solid: impl Fn(TileId) -> bool) {
-        self.clearance = Arc::new(self.near(may_become_solid).measured());
+    pub(crate) fn measure_distances(&mut self, may_become_solid: impl Fn(TileId) -> bool) {
+        self.distance_field = Arc::new(self.near(may_become_solid).measured());
     }
 
-    /// Computes the distance field as [`Grid::measure_clearance`] does, with beam tables.
+    /// Computes the distance field as [`Grid::measure_distances`] does, with beam tables.
     #[cfg(test)]
-    pub(crate) fn make_shafts(&mut self, may_become_solid: impl Fn(TileId) -> bool) {
-        self.clearance = Arc::new(self.near(may_become_solid).measured().with_shafts());
+    pub(crate) fn measure_with_beams(&mut self, may_become_solid: impl Fn(TileId) -> bool) {
+        self.distance_field = Arc::new(self.near(may_become_solid).measured().with_beams());
     }
 
     /// The distance field of zeros and ones.
-    fn near(&self, may_become_solid: impl Fn(TileId) -> bool) -> Clearance {
+    fn near(&self, may_become_solid: impl Fn(TileId) -> bool) -> DistanceField {
         let may_be_solid = |&tile: &TileId| self.is_solid_tile(tile) || may_become_solid(tile);
-        Clearance::new(self.rows().map(|row| row.iter().map(may_be_solid)))
+        DistanceField::new(self.rows().map(|row| row.iter().map(may_be_solid)))
     }
 
     /// The distance field.
     #[inline]
-    pub(crate) fn clearance(&self) -> &Clearance {
-        &self.clearance
+    pub(crate) fn distance_field(&self) -> &DistanceField {
+        &self.distance_field
     }
 
     /// Lamplight for the cells of this grid, without any light yet.
@@ -183,7 +183,7 @@ impl Grid {
 
     /// The size in memory, in bytes: of the cells and of the distance field.
     pub fn bytes(&self) -> usize {
-        size_of_val(self.cells.as_slice()) + self.clearance.bytes()
+        size_of_val(self.cells.as_slice()) + self.distance_field.bytes()
     }
 
     /// The tiles row by row from the north, each row from the west.

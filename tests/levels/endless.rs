@@ -1,4 +1,4 @@
-//! Levels that are dug: how they look, that they are the same everywhere, and what it says about
+//! Generated levels: how they look, that they are the same everywhere, and what it says about
 //! options that make none.
 
 use std::fmt::Write as _;
@@ -6,7 +6,7 @@ use std::sync::Arc;
 
 use crate::support::{complaint_about, output_of};
 use cellcaster::game::{Game, Intent, Intents};
-use cellcaster::generate::{CHUNK_SIDE, Chunk, Extent, Generator, Level, Plot, Site, Terrain};
+use cellcaster::generate::{CHUNK_SIDE, Chunk, ChunkArea, Extent, Generator, Level, Site, Terrain};
 use cellcaster::render::{Frame, FrameSize, PixelAspect, Renderer};
 use cellcaster::world::FieldOfView;
 use proptest::prelude::*;
@@ -96,7 +96,7 @@ impl Terrain for Repeated {
             .to_owned()
     }
 
-    fn chunk(&self, _: &Plot) -> Chunk {
+    fn chunk(&self, _: &ChunkArea) -> Chunk {
         let mut chunk = Chunk::full_of(b'.');
         for place in (0..CHUNK_SIDE).step_by(5) {
             chunk.set(place, 7, b'#');
@@ -105,7 +105,7 @@ impl Terrain for Repeated {
         chunk
     }
 
-    fn hub(&self, _: &Plot) -> Option<(usize, usize)> {
+    fn hub(&self, _: &ChunkArea) -> Option<(usize, usize)> {
         Some((3, 3))
     }
 }

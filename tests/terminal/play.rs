@@ -1,10 +1,10 @@
 //! The whole program in a real terminal: what it shows, what keys do, and how it ends.
 #![cfg(all(unix, feature = "cli"))]
 
-mod digging;
 mod doors;
 mod ending;
 mod game;
+mod generated;
 mod holding;
 mod lagging;
 mod layouts;

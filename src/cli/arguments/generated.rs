@@ -1,4 +1,4 @@
-//! Which level to dig: options of every command that shows one.
+//! The generated level to show: options of every command that shows one.
 
 use std::ffi::OsStr;
 
@@ -8,7 +8,7 @@ use super::Error;
 use super::option::{Read, Valued};
 use crate::generate::{Extent, Generator, Site};
 
-/// A level that is dug in place of a map.
+/// A generated level in place of a map.
 #[derive(Clone, Copy, Debug)]
 pub(in crate::cli) struct Generated {
     pub(in crate::cli) generator: Generator,
@@ -29,7 +29,7 @@ pub(super) fn of(
     let said = [extent.map(|_| "--level-size"), seed.map(|_| "--seed"), start.map(|_| "--start")];
     match (generator, said.into_iter().flatten().next(), map) {
         (Some(_), _, Some(map)) => Err(Error::mistake(format!(
-            "--generate digs a level of its own, and \"{}\" is a map: leave one of them out",
+            "--generate makes a level of its own, and \"{}\" is a map: leave one of them out",
             map.display()
         ))),
         (None, Some(name), _) => {
@@ -49,7 +49,7 @@ pub(super) const GENERATE: Valued<Generator> = Valued {
     name: "generate",
     value: "KIND",
     takes: "maze, cave or office",
-    help: "Dig a level in place of MAP",
+    help: "Generate a level in place of MAP",
     default: "",
     choices: &["maze", "cave", "office"],
     read: Read::Plainly(Generator::named),
@@ -60,7 +60,7 @@ pub(super) const SEED: Valued<u64> = Valued {
     name: "seed",
     value: "N",
     takes: "a whole number from 0 to 18446744073709551615",
-    help: "Which level to dig",
+    help: "The seed of the generated level",
     default: "1",
     choices: &[],
     read: Read::Plainly(|text| text.parse().ok()),
@@ -71,7 +71,7 @@ pub(super) const LEVEL_SIZE: Valued<Extent> = Valued {
     name: "level-size",
     value: "COLSxROWS",
     takes: "COLSxROWS from 8x8 to 1000000000x1000000000, such as 64x64",
-    help: "Dig a level with walls around it, and an exit",
+    help: "Generate a level with walls around it, and an exit",
     default: "without an end",
     choices: &[],
     read: Read::Plainly(|text| {
@@ -85,7 +85,7 @@ pub(super) const START: Valued<Site> = Valued {
     name: "start",
     value: "COLUMN,ROW",
     takes: "COLUMN,ROW, the cell to start at, such as 1000000,-1000000",
-    help: "The cell of a level to dig to start at",
+    help: "The cell of the generated level to start at",
     default: "the first corner",
     choices: &[],
     read: Read::Plainly(|text| {

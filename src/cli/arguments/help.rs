@@ -13,7 +13,7 @@ pub(super) const ABOUT: &str = "\
 A raycaster game in the terminal, and its pictures in scripts.
 
 MAP is a map file, \"-\" for standard input, or a built-in level: cellar, museum, citadel, cistern \
-or observatory; --generate maze, cave or office digs one in its place. An option may also stand \
+or observatory; --generate maze, cave or office makes one in its place. An option may also stand \
 before the command.";
 
 pub(super) const WHERE_TO_READ_ON: &str = "\

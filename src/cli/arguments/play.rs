@@ -20,7 +20,7 @@ use crate::world::FieldOfView;
 #[derive(Debug)]
 pub(in crate::cli) struct Play {
     pub(in crate::cli) map: Option<OsString>,
-    /// What to dig in place of a map.
+    /// The generated level in place of a map.
     pub(in crate::cli) generated: Option<Generated>,
     pub(in crate::cli) config: Option<PathBuf>,
     pub(in crate::cli) frames_per_second: Option<FramesPerSecond>,

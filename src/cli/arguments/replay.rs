@@ -18,7 +18,7 @@ use crate::world::FieldOfView;
 pub(in crate::cli) struct Replay {
     pub(in crate::cli) script: PathBuf,
     pub(in crate::cli) map: Option<OsString>,
-    /// What to dig in place of a map.
+    /// The generated level in place of a map.
     pub(in crate::cli) generated: Option<Generated>,
     /// Where to write; standard output where there is none.
     pub(in crate::cli) cast: Option<PathBuf>,

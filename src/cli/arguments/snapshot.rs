@@ -19,7 +19,7 @@ use crate::world::{FieldOfView, Heading, Pitch};
 #[derive(Debug)]
 pub(in crate::cli) struct Snapshot {
     pub(in crate::cli) map: Option<OsString>,
-    /// What to dig in place of a map.
+    /// The generated level in place of a map.
     pub(in crate::cli) generated: Option<Generated>,
     /// How large the picture is; 80x24, or as large as the window where that is redrawn, if there is
     /// none.

@@ -33,7 +33,7 @@ impl Drawing {
     }
 
     fn is_walkable(&self, column: usize, row: usize) -> bool {
-        self.get(column, row).is_some_and(|character| self.level.kit.is_walkable(character))
+        self.get(column, row).is_some_and(|character| self.level.tileset.is_walkable(character))
     }
 
     fn reachable(&self, start: (usize, usize)) -> BTreeSet<(usize, usize)> {
@@ -69,7 +69,7 @@ proptest! {
         prop_assert!(drawing.reachable(cell(start)).contains(&cell(exit)));
         prop_assert_ne!(start, exit);
         let exits = drawing.chunks.iter().flat_map(|chunk| (0..CHUNK_SIDE).map(|row| chunk.row(row)));
-        let exits = exits.flatten().filter(|&&character| level.kit.is_exit(character)).count();
+        let exits = exits.flatten().filter(|&&character| level.tileset.is_exit(character)).count();
         prop_assert_eq!(exits, 1);
         for along in 0..4 * CHUNK_SIDE {
             for (column, row) in [
@@ -94,7 +94,7 @@ proptest! {
         let level = generator.level(seed, Extent::Endless).unwrap();
         let hub = |column: usize, row: usize| {
             let index = first.offset(column as i64, row as i64);
-            let (x, y) = level.terrain.hub(&level.extent.plot(index)).unwrap();
+            let (x, y) = level.terrain.hub(&level.extent.area(index)).unwrap();
             (column * CHUNK_SIDE + x, row * CHUNK_SIDE + y)
         };
         let drawing = Drawing::of(level.clone(), first, 2);
@@ -134,9 +134,9 @@ proptest! {
 #[test]
 fn every_legend_is_a_map_with_an_exit() {
     for generator in Generator::ALL {
-        let kit = Kit::of(&generator.terrain(7).legend()).unwrap();
-        assert!(kit.exit_on(b'.').is_some_and(|exit| kit.is_walkable(exit)));
-        assert!(!kit.is_walkable(ROCK) && kit.is_walkable(b'.'));
+        let tileset = Tileset::of(&generator.terrain(7).legend()).unwrap();
+        assert!(tileset.exit_on(b'.').is_some_and(|exit| tileset.is_walkable(exit)));
+        assert!(!tileset.is_walkable(ROCK) && tileset.is_walkable(b'.'));
     }
 }
 

@@ -2,7 +2,7 @@
 
 use std::ops::Range;
 
-use super::super::chunk::{Chunk, Plot};
+use super::super::chunk::{Chunk, ChunkArea};
 use crate::rng::SplitMix64;
 
 /// The area between the corridors of a chunk.
@@ -52,10 +52,10 @@ const GARDEN: Furniture =
     Furniture { floor: b'"', pieces: &[(b'y', 10), (b's', 1)], lamp: None, pillar: b'O' };
 
 impl Block {
-    /// The block of a plot whose corridors end before `first`, if there is room for it.
-    pub(super) fn of(plot: &Plot, first: usize) -> Option<Self> {
+    /// The block of a area whose corridors end before `first`, if there is room for it.
+    pub(super) fn of(area: &ChunkArea, first: usize) -> Option<Self> {
         let inside = |range: &Range<usize>| first + 1..range.end;
-        let block = Self { columns: inside(&plot.columns), rows: inside(&plot.rows) };
+        let block = Self { columns: inside(&area.columns), rows: inside(&area.rows) };
         (block.columns.len() >= LEAST && block.rows.len() >= LEAST).then_some(block)
     }
 

@@ -65,7 +65,7 @@ proptest! {
         let mut fresh = window.clone();
         fresh.chunks =
             every_chunk(window.first).map(|(_, index)| window.level.chunk(index)).collect();
-        let mut afresh = window.level.kit().world();
+        let mut afresh = window.level.tileset().world();
         fresh.draw(&mut afresh, |_| world.start());
         prop_assert!(world == afresh);
     }

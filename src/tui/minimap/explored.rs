@@ -43,7 +43,7 @@ pub struct Explored {
     /// How many cells that are no wall there are, and how many of them have been seen.
     open: u32,
     open_seen: u32,
-    /// Which cell of a level that is dug the world's first one is.
+    /// The cell of a generated level at which the world begins.
     corner: Site,
     /// What has been seen of such a level before its window moved: 32 cells of a row by the row and the first
     /// column.
@@ -75,7 +75,7 @@ impl Explored {
         }
     }
 
-    /// Keeps what was seen when the window of a level that is dug moves: the world's first cell, in the north-west,
+    /// Keeps what was seen when the window of a generated level moves: the world's first cell, in the north-west,
     /// is that of `corner` now.
     pub fn follow(&mut self, corner: Site) {
         if corner == self.corner {

@@ -1,4 +1,4 @@
-//! The sweep against the walk.
+//! The traversal against the walk.
 
 use proptest::prelude::*;
 
@@ -43,11 +43,11 @@ proptest! {
         prop_assume!(ray.is_ok());
         let (grid, ray) = (grid(&map), ray.unwrap());
         let mut measured = grid.clone();
-        measured.measure_clearance(|tile| tile == TileId(1));
+        measured.measure_distances(|tile| tile == TileId(1));
         for grid in [&grid, &measured] {
             let walk = Walk::new(grid, &ray).filter(|met| grid.is_solid_tile(met.tile));
-            let Some(sweep) = Sweep::new(grid, &ray) else { continue };
-            prop_assert_eq!(sweep.collect::<Vec<_>>(), walk.collect::<Vec<_>>());
+            let Some(traversal) = MajorAxisTraversal::new(grid, &ray) else { continue };
+            prop_assert_eq!(traversal.collect::<Vec<_>>(), walk.collect::<Vec<_>>());
         }
     }
 }
@@ -67,14 +67,14 @@ proptest! {
         }
         let sides = [width, height].map(|side| side.try_into().unwrap());
         let mut grid = Grid::new(sides[0], sides[1], TileId(1), cells).unwrap();
-        grid.measure_clearance(|_| false);
+        grid.measure_distances(|_| false);
         let size = DVec2::new(f64::from(width), f64::from(height));
         let ray = Ray::new(DVec2::from(share) * size, direction.into());
         prop_assume!(ray.is_ok());
         let ray = ray.unwrap();
         let walk = Walk::new(&grid, &ray).filter(|met| grid.is_solid_tile(met.tile));
-        let Some(sweep) = Sweep::new(&grid, &ray) else { return Ok(()) };
-        prop_assert_eq!(sweep.collect::<Vec<_>>(), walk.collect::<Vec<_>>());
+        let Some(traversal) = MajorAxisTraversal::new(&grid, &ray) else { return Ok(()) };
+        prop_assert_eq!(traversal.collect::<Vec<_>>(), walk.collect::<Vec<_>>());
     }
 }
 
@@ -86,17 +86,17 @@ fn an_empty_hall_is_crossed_in_few_leaps() {
     let cells = (0..side * side).map(|index| is_edge(index % side) || is_edge(index / side));
     let cells = cells.map(|is_edge| TileId(u8::from(is_edge))).collect();
     let mut hall = Grid::new(count, count, TileId(1), cells).unwrap();
-    let looks = |grid: &Grid, direction| {
+    let lookups = |grid: &Grid, direction| {
         let ray = Ray::new(DVec2::new(1.5, 2048.5), direction).unwrap();
-        let mut sweep = Sweep::new(grid, &ray).unwrap();
-        assert_eq!(sweep.next().map(|met| met.cell.column), Some(4095));
-        sweep.looks()
+        let mut traversal = MajorAxisTraversal::new(grid, &ray).unwrap();
+        assert_eq!(traversal.next().map(|met| met.cell.column), Some(4095));
+        traversal.lookups()
     };
     for direction in [DVec2::X, DVec2::new(1.0, 0.3), DVec2::new(1.0, -0.45)] {
-        assert_eq!(looks(&hall, direction), 4094);
+        assert_eq!(lookups(&hall, direction), 4094);
     }
-    hall.measure_clearance(|_| false);
+    hall.measure_distances(|_| false);
     for direction in [DVec2::X, DVec2::new(1.0, 0.3), DVec2::new(1.0, -0.45)] {
-        assert!(looks(&hall, direction) < 40, "{}", looks(&hall, direction));
+        assert!(lookups(&hall, direction) < 40, "{}", lookups(&hall, direction));
     }
 }

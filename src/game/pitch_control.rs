@@ -19,14 +19,14 @@ const RETURN: f64 = 10.0;
 const STILL: f64 = 1e-3;
 
 #[derive(Clone, Copy, Debug, PartialEq, Default)]
-pub(super) struct Gaze {
+pub(super) struct PitchControl {
     pub(super) pitch: Pitch,
     /// Slope per second, upwards.
     speed: f64,
     returns: bool,
 }
 
-impl Gaze {
+impl PitchControl {
     /// The pitch after one step.
     #[must_use]
     pub(super) fn after_a_step(self, intents: Intents) -> Self {
@@ -58,14 +58,14 @@ mod tests {
     use super::*;
     use crate::game::Look;
 
-    fn after(gaze: Gaze, steps: usize, intents: &[Intent]) -> Gaze {
+    fn after(pitch_control: PitchControl, steps: usize, intents: &[Intent]) -> PitchControl {
         let intents = intents.iter().copied().collect();
-        (0..steps).fold(gaze, |gaze, _| gaze.after_a_step(intents))
+        (0..steps).fold(pitch_control, |pitch_control, _| pitch_control.after_a_step(intents))
     }
 
     #[test]
     fn it_goes_as_far_as_it_goes_and_comes_to_rest() {
-        let up = after(Gaze::default(), 600, &[Intent::LookUp]);
+        let up = after(PitchControl::default(), 600, &[Intent::LookUp]);
         assert_eq!(up.pitch, Pitch::from_degrees(Pitch::MOST_DEGREES).unwrap());
         assert_eq!(after(up, 1, &[Intent::LookUp]), up);
         assert_eq!(after(up, 600, &[]), up);
@@ -76,9 +76,9 @@ mod tests {
 
     #[test]
     fn a_tap_takes_it_back_unless_one_looks_elsewhere() {
-        let up = after(Gaze::default(), 40, &[Intent::LookUp]);
+        let up = after(PitchControl::default(), 40, &[Intent::LookUp]);
         let returning = after(up, 1, &[Intent::LookAhead]);
-        assert_eq!(after(returning, 120, &[]), Gaze::default());
+        assert_eq!(after(returning, 120, &[]), PitchControl::default());
         let tilted = returning.after_a_step(Intents::new().with_look(Look { turn: 0, tilt: 50 }));
         assert!(after(tilted, 120, &[]).pitch.slope() > 0.0);
         let elsewhere = after(returning, 10, &[Intent::LookUp]);

@@ -11,7 +11,7 @@
 //! Fields with distances have a second level, the minimum of each block of 8×8 cells. On a large
 //! map these fit into the cache, and the cells do not.
 //!
-//! Large maps with few solid cells have a [beam table](Shafts) as well, which says how far the way
+//! Large maps with few solid cells have a [beam table](BeamTable) as well, which says how far the way
 //! ahead is clear.
 //!
 //! The distances are found in two passes over the cells, as in the distance transform of Rosenfeld
@@ -21,12 +21,12 @@
 
 use std::fmt;
 
-use super::Shafts;
+use super::BeamTable;
 
 /// For each cell and the border, how many grid lines a ray in it may cross at once: no nearer cell
 /// is or may become solid. 0 if the cell itself may be solid.
 #[derive(Clone, PartialEq, Eq)]
-pub(crate) struct Clearance {
+pub(crate) struct DistanceField {
     /// Row by row from the border row in the north, each from the border cell in the west.
     cells: Vec<Coded>,
     /// The number of cells in a row.
@@ -38,7 +38,7 @@ pub(crate) struct Clearance {
     /// The number of blocks in a row.
     width_in_blocks: usize,
     /// The beam tables for rays along rows and along columns.
-    shafts: Option<Box<[Shafts; 2]>>,
+    beam_tables: Option<Box<[BeamTable; 2]>>,
 }
 
 /// The number of cells of a block along each axis.
@@ -70,7 +70,7 @@ impl Coded {
     }
 }
 
-impl Clearance {
+impl DistanceField {
     /// The mean number of lines crossed at once from which rays gain by distances.
     const WORTHWHILE: f64 = 4.0;
 
@@ -92,13 +92,14 @@ impl Clearance {
             cells.push(Coded::NONE);
         }
         cells.resize(width * height, Coded::NONE);
-        Self { cells, width, blocks: Vec::new(), width_in_blocks: 0, shafts: None }
+        Self { cells, width, blocks: Vec::new(), width_in_blocks: 0, beam_tables: None }
     }
 
     /// The size in memory, in bytes.
     pub(super) fn bytes(&self) -> usize {
-        let of_shafts = self.shafts().into_iter().flatten().map(Shafts::bytes).sum::<usize>();
-        size_of_val(self.cells.as_slice()) + size_of_val(self.blocks.as_slice()) + of_shafts
+        let of_beams =
+            self.beam_tables().into_iter().flatten().map(BeamTable::bytes).sum::<usize>();
+        size_of_val(self.cells.as_slice()) + size_of_val(self.blocks.as_slice()) + of_beams
     }
 
     /// The field with distances, if rays gain by them.
@@ -106,8 +107,8 @@ impl Clearance {
         let measured = self.measured();
         if !measured.is_worthwhile() {
             self
-        } else if measured.are_shafts_worthwhile() {
-            measured.with_shafts()
+        } else if measured.are_beams_worthwhile() {
+            measured.with_beams()
         } else {
             measured
         }
@@ -139,21 +140,21 @@ impl Clearance {
         });
         let blocks = blocks.collect();
         let cells = cells.into_iter().map(Coded::new).collect();
-        Self { cells, width, blocks, width_in_blocks, shafts: None }
+        Self { cells, width, blocks, width_in_blocks, beam_tables: None }
     }
 
     /// The field with beam tables.
-    pub(super) fn with_shafts(self) -> Self {
+    pub(super) fn with_beams(self) -> Self {
         let [columns, rows] = self.size();
-        let along_rows = Shafts::new([columns, rows], self.solid());
+        let along_rows = BeamTable::new([columns, rows], self.solid());
         let swapped = self.solid().map(|[column, row]| [row, column]);
-        let along_columns = Shafts::new([rows, columns], swapped);
-        Self { shafts: Some(Box::new([along_rows, along_columns])), ..self }
+        let along_columns = BeamTable::new([rows, columns], swapped);
+        Self { beam_tables: Some(Box::new([along_rows, along_columns])), ..self }
     }
 
-    fn are_shafts_worthwhile(&self) -> bool {
+    fn are_beams_worthwhile(&self) -> bool {
         let solid = self.cells.iter().filter(|&&cell| cell == Coded::NONE).count();
-        Shafts::are_worthwhile(self.size(), solid as i64)
+        BeamTable::are_worthwhile(self.size(), solid as i64)
     }
 
     /// The columns and rows of the map.
@@ -200,7 +201,7 @@ impl Clearance {
     }
 
     /// A lower bound of the number of lines that a ray can cross at once from the cell at these
-    /// `places` along two axes, of which `strides` are the [strides](Clearance::strides_of_blocks).
+    /// `places` along two axes, of which `strides` are the [strides](DistanceField::strides_of_blocks).
     /// 0 if it is not known.
     #[inline]
     pub(crate) fn lines_of_block(&self, places: [i64; 2], strides: [i64; 2]) -> i64 {
@@ -209,7 +210,7 @@ impl Clearance {
         i64::from(self.blocks.get(index as usize).copied().unwrap_or(Coded::NONE).lines())
     }
 
-    /// The strides of blocks, as [`Clearance::strides`].
+    /// The strides of blocks, as [`DistanceField::strides`].
     #[inline]
     pub(crate) fn strides_of_blocks(&self) -> [i64; 2] {
         [1, self.width_in_blocks as i64]
@@ -235,14 +236,14 @@ impl Clearance {
 
     /// The beam tables for rays along rows and along columns, if there are any.
     #[inline]
-    pub(crate) fn shafts(&self) -> Option<&[Shafts; 2]> {
-        self.shafts.as_deref()
+    pub(crate) fn beam_tables(&self) -> Option<&[BeamTable; 2]> {
+        self.beam_tables.as_deref()
     }
 }
 
-impl fmt::Debug for Clearance {
+impl fmt::Debug for DistanceField {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
-        f.debug_struct("Clearance")
+        f.debug_struct("DistanceField")
             .field("is_measured", &self.is_measured())
             .finish_non_exhaustive()
     }

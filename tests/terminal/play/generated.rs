@@ -1,4 +1,4 @@
-//! Levels that are dug while one walks.
+//! Levels that are generated while the player walks.
 
 use super::game::{Game, Key};
 use crate::emulator::{Emulator, Speaks};

@@ -11,12 +11,12 @@ use crate::world::{
     Cell, Grid, Lamplight, SpriteId, Start, Thing, ThingKind, Tile, TileId, TileKind, World,
 };
 
-/// The character of cells outside the plots.
+/// The character of cells outside the areas.
 pub(super) const ROCK: u8 = b'#';
 
 /// The meanings of the characters of chunks.
 #[derive(Clone, Debug)]
-pub(super) struct Kit {
+pub(super) struct Tileset {
     /// The world of the legend's map.
     world: World,
     /// By character. Characters without a meaning are rock.
@@ -32,7 +32,7 @@ struct Meaning {
     is_walkable: bool,
 }
 
-impl Kit {
+impl Tileset {
     /// The tileset of the map `legend`.
     ///
     /// # Errors

@@ -25,20 +25,20 @@
 /// Rays cross *lines*, which are perpendicular to that axis; *bands* are the rows or columns
 /// between the lines of the other axis.
 #[derive(Clone, PartialEq, Eq)]
-pub(crate) struct Shafts {
+pub(crate) struct BeamTable {
     /// Ordered by group, slope, position and strip.
     ///
     /// A line with exactly the slope of a beam has the same position in all strips of a group, so
     /// that what one ray looks up is contiguous.
     solid: Vec<Solid>,
     /// The number of positions for each slope.
-    places: i64,
+    positions: i64,
 }
 
 /// All beams of about one slope, for rays of one direction.
 #[derive(Clone, Copy)]
-pub(crate) struct Bundle<'shafts> {
-    shafts: &'shafts Shafts,
+pub(crate) struct Beams<'table> {
+    table: &'table BeamTable,
     /// The middle slope, in units.
     slope: i64,
     /// The index of position 0 in a group.
@@ -75,7 +75,7 @@ const SLACK: i64 = 1;
 /// elsewhere in a group may be that far from it in the group's middle.
 const MARGIN: i64 = GROUP * STRIP / 2 / WIDTH + 1;
 
-impl Shafts {
+impl BeamTable {
     /// The least side of a map on which rays gain by beams.
     const LEAST_SIDE: i64 = 8 * STRIP;
     /// The most solid cells on which rays gain: one in this many, walls around the map aside.
@@ -93,16 +93,16 @@ impl Shafts {
     pub(super) fn new([lines, bands]: [i64; 2], solid: impl Iterator<Item = [i64; 2]>) -> Self {
         let lines_in_group = GROUP * STRIP;
         let groups = (lines + lines_in_group - 1) / lines_in_group;
-        let places = bands / WIDTH + 1 + 2 * MARGIN;
-        let count = groups * SLOPES * places * GROUP;
-        let mut shafts = Self { solid: vec![Solid::NOTHING; count as usize], places };
+        let positions = bands / WIDTH + 1 + 2 * MARGIN;
+        let count = groups * SLOPES * positions * GROUP;
+        let mut table = Self { solid: vec![Solid::NOTHING; count as usize], positions };
         let has_strip = |line: i64| (0..groups * lines_in_group).contains(&line);
         for [line, band] in solid.filter(|&[line, _]| has_strip(line)) {
             for slope in -STEEPEST..STEEPEST {
-                shafts.add(line, band, slope);
+                table.add(line, band, slope);
             }
         }
-        shafts
+        table
     }
 
     /// The size in memory, in bytes.
@@ -123,12 +123,12 @@ impl Shafts {
             (least.min(moved), most.max(moved))
         });
         let sheared = (2 * slope + 1) * from_middle_of_group(strip) / 2;
-        let place = |parts: i64| (parts - sheared).div_euclid(STEEPEST * WIDTH);
-        let first = place(band * STEEPEST - most - SLACK).max(-MARGIN);
-        let last = place((band + 1) * STEEPEST - least + SLACK).min(self.places - MARGIN - 1);
+        let position = |parts: i64| (parts - sheared).div_euclid(STEEPEST * WIDTH);
+        let first = position(band * STEEPEST - most - SLACK).max(-MARGIN);
+        let last = position((band + 1) * STEEPEST - least + SLACK).min(self.positions - MARGIN - 1);
         let start = self.start(slope);
-        for place in first..=last {
-            let index = self.index(start, strip, place);
+        for position in first..=last {
+            let index = self.index(start, strip, position);
             self.solid[index as usize].add(within as u8);
         }
     }
@@ -136,23 +136,23 @@ impl Shafts {
     /// The beams of a slope, in units, for rays that cross the lines in ascending or descending
     /// order.
     #[inline]
-    pub(crate) fn bundle(&self, slope: i64, is_backward: bool) -> Bundle<'_> {
+    pub(crate) fn beams(&self, slope: i64, is_backward: bool) -> Beams<'_> {
         let least = (slope >> (FRACTION_BITS - SLOPE_BITS)).min(STEEPEST - 1);
         let slope = (2 * least + 1) << (FRACTION_BITS - SLOPE_BITS - 1);
-        Bundle { shafts: self, slope, start: self.start(least), is_backward }
+        Beams { table: self, slope, start: self.start(least), is_backward }
     }
 
     /// The index of position 0 of a slope, in [`STEEPEST`]ths, among the positions of a group.
     #[inline]
     fn start(&self, slope: i64) -> i64 {
-        (slope + STEEPEST) * self.places + MARGIN
+        (slope + STEEPEST) * self.positions + MARGIN
     }
 
     /// The index of a position in a strip, where position 0 is at `start`.
     #[inline]
-    fn index(&self, start: i64, strip: i64, place: i64) -> i64 {
-        let group = (strip >> GROUP_BITS) * SLOPES * self.places;
-        ((group + start + place) << GROUP_BITS) + (strip & (GROUP - 1))
+    fn index(&self, start: i64, strip: i64, position: i64) -> i64 {
+        let group = (strip >> GROUP_BITS) * SLOPES * self.positions;
+        ((group + start + position) << GROUP_BITS) + (strip & (GROUP - 1))
     }
 }
 
@@ -162,18 +162,18 @@ fn from_middle_of_group(strip: i64) -> i64 {
     ((strip & (GROUP - 1)) * 2 + 1 - GROUP) * (STRIP / 2)
 }
 
-impl Bundle<'_> {
+impl Beams<'_> {
     /// The number of lines of a strip that a ray can cross at once after it has crossed `within` of
     /// them; all that are left if the way to the next strip is clear. Lines are counted in the
-    /// order in which the ray crosses them. `place` is the ray's position in the middle of the
+    /// order in which the ray crosses them. `position` is the ray's position in the middle of the
     /// strip, in units.
     ///
     /// The ray must be on the map, or at its edge, somewhere in the strip.
     #[inline]
-    pub(crate) fn lines_ahead(self, strip: i64, within: i64, place: i64) -> i64 {
-        let place = place - self.slope * from_middle_of_group(strip);
-        let index = self.shafts.index(self.start, strip, place >> (FRACTION_BITS + WIDTH_BITS));
-        let solid = self.shafts.solid.get(index as usize).copied().unwrap_or(Solid::EVERYWHERE);
+    pub(crate) fn lines_ahead(self, strip: i64, within: i64, position: i64) -> i64 {
+        let position = position - self.slope * from_middle_of_group(strip);
+        let index = self.table.index(self.start, strip, position >> (FRACTION_BITS + WIDTH_BITS));
+        let solid = self.table.solid.get(index as usize).copied().unwrap_or(Solid::EVERYWHERE);
         let (first, end) = (i64::from(solid.first), i64::from(solid.end));
         let (first, end) =
             if self.is_backward { (STRIP - end, STRIP - first) } else { (first, end) };
@@ -199,9 +199,9 @@ mod tests {
 
     /// A ray straight ahead through the middle of a band, among nothing but a pillar behind line 200.
     fn lines_ahead(band: i64, is_backward: bool, within: i64) -> i64 {
-        let shafts = Shafts::new([256, 64], iter::once([200, 30]));
-        let place = (2 * band + 1) << (FRACTION_BITS - 1);
-        shafts.bundle(0, is_backward).lines_ahead(1, within, place)
+        let table = BeamTable::new([256, 64], iter::once([200, 30]));
+        let position = (2 * band + 1) << (FRACTION_BITS - 1);
+        table.beams(0, is_backward).lines_ahead(1, within, position)
     }
 
     #[test]
@@ -216,7 +216,7 @@ mod tests {
     }
 
     #[test]
-    fn what_stands_beside_a_shaft_is_not_in_it() {
+    fn what_stands_beside_a_beam_is_not_in_it() {
         for band in [20, 40] {
             assert_eq!(lines_ahead(band, false, 0), STRIP);
             assert_eq!(lines_ahead(band, true, 9), STRIP - 9);
@@ -225,17 +225,17 @@ mod tests {
 
     #[test]
     fn beyond_the_map_nothing_is_known() {
-        let shafts = Shafts::new([1024, 64], iter::empty());
-        assert_eq!(shafts.bundle(0, false).lines_ahead(7, 0, 0), STRIP);
-        assert_eq!(shafts.bundle(0, false).lines_ahead(8, 0, 0), 0);
-        assert_eq!(shafts.bundle(0, true).lines_ahead(-1, 0, 0), 0);
+        let table = BeamTable::new([1024, 64], iter::empty());
+        assert_eq!(table.beams(0, false).lines_ahead(7, 0, 0), STRIP);
+        assert_eq!(table.beams(0, false).lines_ahead(8, 0, 0), 0);
+        assert_eq!(table.beams(0, true).lines_ahead(-1, 0, 0), 0);
     }
 
     #[test]
     fn large_maps_are_worth_it_where_little_is_solid() {
         let around = 8 * 1024;
-        assert!(Shafts::are_worthwhile([1024, 1024], around + 1024));
-        assert!(!Shafts::are_worthwhile([1024, 1024], around + 1025));
-        assert!(!Shafts::are_worthwhile([4096, 1023], 0));
+        assert!(BeamTable::are_worthwhile([1024, 1024], around + 1024));
+        assert!(!BeamTable::are_worthwhile([1024, 1024], around + 1025));
+        assert!(!BeamTable::are_worthwhile([4096, 1023], 0));
     }
 }

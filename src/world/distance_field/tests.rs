@@ -4,28 +4,28 @@ use proptest::prelude::*;
 
 use super::*;
 
-fn of<Row: AsRef<str>>(rows: &[Row]) -> Clearance {
+fn of<Row: AsRef<str>>(rows: &[Row]) -> DistanceField {
     let may_be_solid = |drawn: char| drawn == '#';
-    Clearance::new(
+    DistanceField::new(
         rows.iter()
             .map(|row| row.as_ref().chars().map(may_be_solid).collect::<Vec<_>>().into_iter()),
     )
 }
 
 /// The distances of the cells of the map, without the border.
-fn inner(clearance: &Clearance) -> Vec<Vec<u16>> {
-    let rows: Vec<&[Coded]> = clearance.cells.chunks_exact(clearance.width).collect();
+fn inner(distance_field: &DistanceField) -> Vec<Vec<u16>> {
+    let rows: Vec<&[Coded]> = distance_field.cells.chunks_exact(distance_field.width).collect();
     let lines = |row: &&[Coded]| row[1..row.len() - 1].iter().map(|cell| cell.lines()).collect();
     rows[1..rows.len() - 1].iter().map(lines).collect()
 }
 
 #[test]
 fn around_the_map_nothing_is_clear() {
-    let clearance = of(&["....", "...#"]);
-    assert_eq!(inner(&clearance), [[1, 1, 1, 1], [1, 1, 1, 0]]);
-    assert_eq!(clearance.cells.iter().filter(|&&cell| cell != Coded::NONE).count(), 7);
+    let distance_field = of(&["....", "...#"]);
+    assert_eq!(inner(&distance_field), [[1, 1, 1, 1], [1, 1, 1, 0]]);
+    assert_eq!(distance_field.cells.iter().filter(|&&cell| cell != Coded::NONE).count(), 7);
     assert_eq!(inner(&of(&[".....", ".....", "....."]).measured())[1], [1, 2, 2, 2, 1]);
-    assert!(!clearance.is_clear(-1));
+    assert!(!distance_field.is_clear(-1));
 }
 
 #[test]

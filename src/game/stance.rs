@@ -23,14 +23,14 @@ const FOLLOWING: f64 = 14.0;
 const STILL: f64 = 1e-4;
 
 #[derive(Clone, Copy, Debug, PartialEq, Default)]
-pub(super) struct Posture {
+pub(super) struct Stance {
     /// From 0 for standing to 1 for ducking.
     ducking: f64,
     /// How much higher the eye is than it will be, in cells.
     lag: f64,
 }
 
-impl Posture {
+impl Stance {
     /// The height of the body, in cells.
     pub(super) fn height(self) -> f64 {
         STANDING + (DUCKING - STANDING) * self.ducking
@@ -67,21 +67,20 @@ mod tests {
 
     #[test]
     fn who_ducks_gets_small_and_who_stands_up_tall_again() {
-        let after = |posture: Posture, ducks| {
-            (0..60).fold(posture, |posture, _| posture.after_a_step(ducks))
-        };
-        let small = after(Posture::default(), true);
-        assert_eq!(small, Posture { ducking: 1.0, lag: 0.0 });
-        assert_eq!(after(small, false), Posture::default());
+        let after =
+            |stance: Stance, ducks| (0..60).fold(stance, |stance, _| stance.after_a_step(ducks));
+        let small = after(Stance::default(), true);
+        assert_eq!(small, Stance { ducking: 1.0, lag: 0.0 });
+        assert_eq!(after(small, false), Stance::default());
         assert!(small.height() < 0.6 && small.eye(f64::INFINITY) < small.height());
     }
 
     #[test]
     fn an_eye_is_between_floor_and_ceiling() {
         for climbed in [-1e9, -0.3, 0.0, 0.3, 1e9] {
-            let eye = Posture::default().following(climbed).eye(0.7);
+            let eye = Stance::default().following(climbed).eye(0.7);
             assert!(0.0 < eye && eye < 0.7, "{eye}");
         }
-        assert_eq!(Posture::default().eye(1.0), Camera::STANDING);
+        assert_eq!(Stance::default().eye(1.0), Camera::STANDING);
     }
 }

@@ -1,77 +1,76 @@
-//! The flight: a sweep that knows from [shafts](crate::world::Shafts) how far it is clear ahead.
+//! Leaps along beams: how a traversal uses the [beam tables](crate::world::BeamTable) of a large map.
 //!
-//! A shaft takes it across a strip of the map, or to the line where something solid begins in the shaft.
-//! Only there it looks at the cell, and leaps as others do until the shaft has nothing more.
+//! A beam takes the ray across a strip of the map, or to the line at which something solid begins in the
+//! beam. There the ray reads the distance field, and leaps by it until the beam is clear again.
 
-use super::{Course, FAR, Progress};
+use super::{FAR, Path, Progress};
 use crate::cast::Side;
-use crate::world::{Bundle, Clearance, STRIP, Shafts};
+use crate::world::{BeamTable, Beams, DistanceField, STRIP};
 
-impl Course {
-    /// As [`Course::leap`], and across all that is clear ahead.
+impl Path {
+    /// As [`Path::leap`], and across everything that a beam says is clear.
     #[inline]
-    pub(super) fn fly(
+    pub(super) fn leap_along_beams(
         self,
-        clearance: &Clearance,
-        [along_rows, along_columns]: &[Shafts; 2],
+        distance_field: &DistanceField,
+        [along_rows, along_columns]: &[BeamTable; 2],
         from: Progress,
     ) -> (i64, Progress) {
-        let shafts = match self.side {
+        let table = match self.side {
             Side::X => along_rows,
             Side::Y => along_columns,
         };
-        let bundle = shafts.bundle(self.slope * self.step, self.step < 0);
-        let Progress { mut line, mut band, mut looks } = from;
+        let beams = table.beams(self.slope * self.step, self.step < 0);
+        let Progress { mut line, mut band, mut lookups } = from;
         let mut clear = 1;
         loop {
             line += clear;
-            // The shaft is asked about what is before the line, too: on the other side of it, the ray may have
-            // crossed into another band.
-            let (end, shafts_seen) = self.end_of_flight(bundle, line - 1);
-            let is_landing = end >= line;
+            // The beam is read from one line back: behind `line`, the ray may have entered another band.
+            let (end, beams_read) = self.end_of_beam(beams, line - 1);
+            let is_past_beam = end >= line;
             line = line.max(end);
-            looks += shafts_seen + 1;
+            lookups += beams_read + 1;
             let mut band_before = band;
-            band = self.band_at(self.place + self.slope * line, line);
-            if is_landing {
-                // What is beside the cell is clear, too.
+            band = self.band_at(self.position + self.slope * line, line);
+            if is_past_beam {
+                // The beam is wider than the cell: its neighbour is clear, too.
                 band_before = band;
             } else {
                 let along = self.start + self.step * line;
-                clear = clearance.lines_of_block([along, band], self.block_strides);
+                clear = distance_field.lines_of_block([along, band], self.block_strides);
                 if clear >= FAR {
                     continue;
                 }
             }
             let ahead = self.corner + self.line_stride * line + self.band_stride * band;
-            clear = clearance.lines_at(ahead);
+            clear = distance_field.lines_at(ahead);
             let is_clear_beside =
-                || is_landing || clear >= 2 || clearance.is_clear(ahead - self.line_stride);
+                || is_past_beam || clear >= 2 || distance_field.is_clear(ahead - self.line_stride);
             if clear == 0 || !is_clear_beside() {
-                return (band_before, Progress { line, band, looks });
+                return (band_before, Progress { line, band, lookups });
             }
         }
     }
 
-    /// The first line that shafts cannot take it across that is at `line`, and how many shafts it asks.
+    /// The first line from `line` on that no beam crosses, and the number of beams read.
     #[inline]
-    fn end_of_flight(self, bundle: Bundle<'_>, mut line: i64) -> (i64, u64) {
+    fn end_of_beam(self, beams: Beams<'_>, mut line: i64) -> (i64, u64) {
         let along = self.start + self.step * line;
         let within = along.rem_euclid(STRIP);
         let mut within = if self.step > 0 { within } else { STRIP - 1 - within };
         let mut strip = along.div_euclid(STRIP);
-        let mut place = self.place + self.slope * (line + STRIP / 2 - within);
-        let mut shafts_seen = 0;
+        let mut position = self.position + self.slope * (line + STRIP / 2 - within);
+        let mut beams_read = 0;
         loop {
-            shafts_seen += 1;
-            let ahead = bundle.lines_ahead(strip, within, place);
+            beams_read += 1;
+            let ahead = beams.lines_ahead(strip, within, position);
             line += ahead;
             if ahead < STRIP - within {
-                return (line, shafts_seen);
+                return (line, beams_read);
             }
             within = 0;
             strip += self.step;
-            place += self.slope * STRIP;
+            position += self.slope * STRIP;
         }
     }
 }
@@ -81,15 +80,15 @@ mod tests {
     use glam::DVec2;
     use proptest::prelude::*;
 
-    use crate::cast::sweep::Sweep;
+    use crate::cast::major_axis::MajorAxisTraversal;
     use crate::cast::{Ray, Walk};
     use crate::world::{Grid, TileId};
 
     const DOORWAY: TileId = TileId(1);
     const WALL: TileId = TileId(2);
 
-    /// Places on a map of that size, of which many are on lines, or an ulp beside them, where strips begin.
-    fn place(size: u32) -> impl Strategy<Value = f64> {
+    /// Positions on a map of that size, many of them on a line where a strip begins, or an ulp beside it.
+    fn position(size: u32) -> impl Strategy<Value = f64> {
         let line = prop_oneof![(0..size), (0..=size / 64).prop_map(|index| index * 64)];
         let beside = |(line, ulps): (u32, i64)| {
             f64::from_bits((f64::from(line).to_bits() as i64 + ulps).max(0) as u64)
@@ -101,7 +100,7 @@ mod tests {
         ]
     }
 
-    /// Directions to all sides; along the axes and the diagonals, as steep as a slope begins, and nearly so.
+    /// Directions to all sides: along the axes and diagonals, at the bounds of slopes, and close to those.
     fn direction() -> impl Strategy<Value = DVec2> {
         let slope = prop_oneof![
             -1.0..1.0_f64,
@@ -115,7 +114,7 @@ mod tests {
         })
     }
 
-    /// What stands on an open map: from a place to the south and to the east.
+    /// A solid block on an open map, from a cell to the south and to the east.
     type Block = (TileId, (u32, u32), (u32, u32));
 
     fn block() -> impl Strategy<Value = Block> {
@@ -143,7 +142,7 @@ mod tests {
         Grid::new(width, height, WALL, cells).unwrap()
     }
 
-    /// Maps of some strips, and of some groups of strips, with a ray in each.
+    /// Maps of several strips, and of several groups of strips, each with a ray.
     fn scene() -> impl Strategy<Value = ([u32; 2], Vec<Block>, DVec2, DVec2)> {
         let side = || prop_oneof![4 => 1..600_u32, 1 => Just(128_u32), 1 => Just(256_u32)];
         let long = prop_oneof![900..2400_u32, Just(1024_u32)];
@@ -153,35 +152,35 @@ mod tests {
             1 => (side(), long),
         ];
         size.prop_map(<[u32; 2]>::from).prop_flat_map(|size| {
-            let origin = (place(size[0]), place(size[1])).prop_map(DVec2::from);
+            let origin = (position(size[0]), position(size[1])).prop_map(DVec2::from);
             let blocks = prop::collection::vec(block(), 0..50);
             (Just(size), blocks, origin, direction())
         })
     }
 
     proptest! {
-        /// Through all that is solid, as far as there is map.
+        /// Through everything solid, up to the end of the map.
         #[test]
         fn it_meets_what_the_walk_meets((size, blocks, origin, direction) in scene()) {
             let mut grid = grid(size, &blocks);
-            grid.make_shafts(|tile| tile == DOORWAY);
+            grid.measure_with_beams(|tile| tile == DOORWAY);
             let ray = Ray::new(origin, direction).unwrap();
             let walk = Walk::new(&grid, &ray).filter(|met| grid.is_solid_tile(met.tile));
-            let Some(sweep) = Sweep::new(&grid, &ray) else { return Ok(()) };
-            prop_assert_eq!(sweep.collect::<Vec<_>>(), walk.collect::<Vec<_>>());
+            let Some(traversal) = MajorAxisTraversal::new(&grid, &ray) else { return Ok(()) };
+            prop_assert_eq!(traversal.collect::<Vec<_>>(), walk.collect::<Vec<_>>());
         }
     }
 
-    /// One at each strip, and a few more where something stands in the shaft.
+    /// One at each strip, and a few more where something stands in the beam.
     #[test]
-    fn it_looks_little_where_it_passes_a_pillar() {
+    fn it_computes_few_positions_where_it_passes_a_pillar() {
         let mut grid = grid([1024, 100], &[(WALL, (700, 50), (1, 1))]);
-        grid.make_shafts(|_| false);
+        grid.measure_with_beams(|_| false);
         for (y, met) in [(50.5, Some(700)), (49.5, None), (48.5, None), (40.5, None)] {
             let ray = Ray::new(DVec2::new(1.5, y), DVec2::X).unwrap();
-            let mut sweep = Sweep::new(&grid, &ray).unwrap();
-            assert_eq!(sweep.next().map(|met| met.cell.column), met);
-            assert!(sweep.looks() <= 14, "{} looks along y = {y}", sweep.looks());
+            let mut traversal = MajorAxisTraversal::new(&grid, &ray).unwrap();
+            assert_eq!(traversal.next().map(|met| met.cell.column), met);
+            assert!(traversal.lookups() <= 14, "{} lookups along y = {y}", traversal.lookups());
         }
     }
 }
