@@ -7,6 +7,32 @@
 //!   (text)            (what exists)   (what happens)             (pixels)       (cells)
 //! ```
 //!
+//! # Where to start
+//!
+//! | to | start with |
+//! |---|---|
+//! | read a map | [`map::load`], [`map::parse`], or [`map::builtin::LEVELS`] |
+//! | draw a frame | [`render::Renderer::render`], into a [`render::Frame`] |
+//! | show a frame in a ratatui program | `tui::FirstPerson`, beside `tui::Minimap` |
+//! | let a player walk | [`game::Game::step`], with the [`game::Intents`] of each step |
+//! | tell which keys are held, with or without releases | `tui::HeldKeys` |
+//! | send cells to a terminal in few bytes | `terminal::CellWriter` |
+//! | cast single rays | [`cast::Exact`] and the [`cast::Caster`] trait |
+//! | make levels | [`generate::Generator`] and [`generate::Window`] |
+//!
+//! ```
+//! use cellcaster::map::builtin;
+//! use cellcaster::render::{Frame, FrameSize, PixelAspect, Renderer};
+//! use cellcaster::world::FieldOfView;
+//!
+//! let world = builtin::LEVELS[0].world()?;
+//! let camera = world.start_camera(FieldOfView::default());
+//! let mut frame = Frame::new(FrameSize::new(160, 90).unwrap(), PixelAspect::SQUARE);
+//! Renderer::new().render(&world, &camera, &mut frame);
+//! println!("the pixel in the middle is {}", frame.pixel(80, 45));
+//! # Ok::<(), Box<dyn std::error::Error>>(())
+//! ```
+//!
 //! # Modules
 //!
 //! From the bottom up; a module knows only those above its line.
@@ -30,8 +56,8 @@
 //!
 //! # Features
 //!
-//! They stack: `cli`, the default, needs `lab`, which needs `terminal`, which needs `tui`. Without any of them there is the
-//! engine, which uses no terminal crate.
+//! Each feature needs the one before it: `tui`, `terminal`, `lab`, `cli`. `cli` is the default. Without features there is
+//! the engine, which uses no terminal crate.
 
 #[cfg(feature = "terminal")]
 pub mod app;
