@@ -1,7 +1,7 @@
-//! The game as a program: a state that keys and time change, and that draws itself.
+//! The game as a program: screens, settings, keys to intents, and the loop.
 //!
-//! The state knows no terminal and no clock: keys and times are handed to it, and a [`Replay`] plays
-//! it off screen. [`play`] is the loop around it that has both.
+//! The state takes keys and times as values and draws itself on a canvas. It knows no terminal and no clock, so a
+//! [`Replay`] plays it off screen. [`play`] is the loop around it that has both.
 
 mod bindings;
 mod clock;
@@ -248,21 +248,15 @@ impl App {
             bindings: &self.settings.bindings,
         });
         canvas.draw_widget(&self.status, status);
-        let seconds = self.game.elapsed();
         let bindings = &self.settings.bindings;
+        let progress = panels::Progress { game: &self.game, level: self.level };
         match self.screen {
             Screen::Playing => {}
-            Screen::Paused => {
-                let told = panels::Progress { game: &self.game, level: self.level };
-                panels::paused(canvas, picture, &told, &self.goal, bindings);
-            }
+            Screen::Paused => panels::paused(canvas, picture, &progress, &self.goal, bindings),
             Screen::Help => self.help.draw(canvas, picture, bindings, self.detection.lines()),
-            Screen::LevelDone => {
-                let told = panels::Progress { game: &self.game, level: self.level };
-                panels::level_done(canvas, picture, &told);
-            }
+            Screen::LevelDone => panels::level_done(canvas, picture, &progress),
             Screen::Leaving => panels::leaving(canvas, picture, bindings),
-            Screen::End => panels::end(canvas, picture, self.earlier + seconds),
+            Screen::End => panels::end(canvas, picture, self.earlier + self.game.elapsed()),
         }
         self.draw_fault(canvas, picture);
     }

@@ -37,6 +37,7 @@ mod layout;
 mod legend;
 mod per_character;
 mod picture;
+mod reader;
 mod scene;
 mod see_through;
 mod shapes;
@@ -50,6 +51,7 @@ use std::io::{self, Read};
 use std::path::Path;
 
 use crate::color::Rgb;
+use crate::fault::document::FaultList;
 use crate::fault::{Fault, Faults, document};
 use crate::space::Scene;
 use crate::world::{Ceiling, Covering, Heights, Paint, Parts, Sky, Tile, TileKind, World};
@@ -58,8 +60,9 @@ use drawing::Drawing;
 use heights::Faces;
 pub(crate) use lamps::lamplight;
 use layout::Layout;
+use reader::Reader;
+use textures::Surface;
 pub use textures::{Folder, NoFiles, TextureFileError, TextureFiles};
-use textures::{Surface, Textures};
 
 /// The largest map file, in bytes: room for the largest grid in characters of three bytes.
 pub const MAX_BYTES: usize = 64 << 20;
@@ -93,10 +96,10 @@ pub fn parse_level(text: &str, name: &str, files: &dyn TextureFiles) -> Result<L
     if text.len() > MAX_BYTES {
         return Err(too_large(name));
     }
-    let mut faults = Vec::new();
-    match read(text, files, &mut faults) {
+    let faults = FaultList::default();
+    match read(text, files, &faults) {
         Some(level) if faults.is_empty() => Ok(level),
-        _ => Err(Faults::new(name, text, faults)),
+        _ => Err(Faults::new(name, text, faults.take())),
     }
 }
 
@@ -219,9 +222,9 @@ fn unreadable(name: &str, error: &io::Error) -> Faults {
 }
 
 /// The level that `text` describes. Where it is not a map, adds that to `faults`.
-fn read(text: &str, files: &dyn TextureFiles, faults: &mut Vec<Fault>) -> Option<Level> {
+fn read(text: &str, files: &dyn TextureFiles, faults: &FaultList) -> Option<Level> {
     let document = document::parse(text, faults);
-    let not_toml = std::mem::take(faults);
+    let not_toml = faults.take();
     if scene::has_bodies(&document) {
         let scene = scene::read(&document, faults);
         keep_apart(faults, not_toml, text);
@@ -232,19 +235,19 @@ fn read(text: &str, files: &dyn TextureFiles, faults: &mut Vec<Fault>) -> Option
         keep_apart(faults, not_toml, text);
         return None;
     }
-    let mut textures = Textures::new(files);
-    let floor = definitions.floor.covering(&mut textures, faults);
-    let ceiling = definitions.ceiling.ceiling(&mut textures, faults);
-    let sky = definitions.sky.as_ref().map(|sky| sky.sky(&mut textures, faults));
+    let mut reader = Reader::new(text, faults, files);
+    let floor = definitions.floor.covering(&mut reader);
+    let ceiling = definitions.ceiling.ceiling(&mut reader);
+    let sky = definitions.sky.as_ref().map(|sky| sky.sky(&mut reader));
     let Some(grid) = &definitions.grid else {
         faults.push(no_grid());
         return None;
     };
-    let drawing = Drawing::read(grid, text, faults)?;
+    let drawing = Drawing::read(grid, reader.text)?;
     // After a fault in one of the two, tiles would only cause further faults.
     let plain = Covering::from(Paint::Color(Rgb::BLACK));
     let (floor, ceiling) = (floor.unwrap_or(plain), ceiling.unwrap_or(Ceiling::Covered(plain)));
-    let mut face = |surface: &Option<Surface<'_>>| textures.paint(surface.as_ref()?, faults);
+    let mut face = |surface: &Option<Surface<'_>>| reader.paint(surface.as_ref()?);
     let faces = Faces { riser: face(&definitions.riser), lintel: face(&definitions.lintel) };
     let map_ceiling = definitions.ceiling_height;
     let ground = Tile {
@@ -257,14 +260,13 @@ fn read(text: &str, files: &dyn TextureFiles, faults: &mut Vec<Fault>) -> Option
         riser: faces.riser(floor),
         lintel: faces.lintel(floor, ceiling),
     };
-    let (legend, textures_mut) = (&definitions.legend, &mut textures);
-    let layout = Layout::of(&drawing, legend, ground, faces, textures_mut, faults)?;
+    let layout = Layout::of(&drawing, &definitions.legend, ground, faces, &mut reader)?;
     Some(Level::from(World::from_parts(Parts {
         title: definitions.title,
         goal: definitions.goal,
         grid: layout.grid,
         tiles: layout.tiles,
-        textures: textures.into_list(),
+        textures: reader.textures.into_list(),
         floor: ground.floor,
         ceiling: ground.ceiling,
         sky: sky.unwrap_or_else(|| Some(Sky::default()))?,
@@ -279,20 +281,21 @@ fn read(text: &str, files: &dyn TextureFiles, faults: &mut Vec<Fault>) -> Option
 
 /// The rows of the grid that the map `text` draws, from the north; none if it has no grid.
 pub(crate) fn rows_of_grid(text: &str) -> Vec<String> {
-    let document = document::parse(text, &mut Vec::new());
-    let grid = document::entries(&document).find(|entry| entry.key == "grid");
-    let drawn = grid.and_then(|entry| entry.string("", &mut Vec::new()));
+    let faults = FaultList::default();
+    let document = document::parse(text, &faults);
+    let grid = document::entries(&document, &faults).find(|entry| entry.key == "grid");
+    let drawn = grid.and_then(|entry| entry.string(""));
     drawn.unwrap_or_default().lines().map(str::to_owned).collect()
 }
 
 /// Adds the faults of the TOML to `faults`, and removes other faults in the same lines: the parser
 /// guesses what such lines mean.
-fn keep_apart(faults: &mut Vec<Fault>, not_toml: Vec<Fault>, text: &str) {
+fn keep_apart(faults: &FaultList, not_toml: Vec<Fault>, text: &str) {
     let line_ends: Vec<_> = text.match_indices('\n').map(|(at, _)| at).collect();
     let line = |fault: &Fault| line_ends.partition_point(|&end| end < fault.start());
     let broken: BTreeSet<_> = not_toml.iter().map(line).collect();
-    faults.retain(|fault| !broken.contains(&line(fault)));
-    faults.extend(not_toml);
+    let sound = faults.take().into_iter().filter(|fault| !broken.contains(&line(fault)));
+    faults.extend(sound.chain(not_toml));
 }
 
 fn no_grid() -> Fault {

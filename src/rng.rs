@@ -1,6 +1,6 @@
 //! Random numbers from a seed: the same seed, the same numbers, on every machine and in every later version.
 //!
-//! The generator is SplitMix64 (G. L. Steele Jr., D. Lea and C. H. Flood, "Fast Splittable Pseudorandom Number
+//! The generator is [`SplitMix64`] (G. L. Steele Jr., D. Lea and C. H. Flood, "Fast Splittable Pseudorandom Number
 //! Generators", 2014): a counter, and a finalizer that maps 64 bits one to one and lets each bit of the input
 //! change half of the output. A crate for it was refused: these are ten lines, and they never
 //! change. So was the standard hasher, which promises neither.

@@ -1,7 +1,7 @@
-//! How many colours a terminal can show, and which of them is nearest to a given one.
+//! Palettes: the colours of xterm, and the nearest of them to any colour.
 //!
-//! Both the widgets, which pick colours, and the terminal, which finds out how many there are, need
-//! this; so it knows neither of them.
+//! The widgets choose colours from a palette and the terminal detects which palette there is, so this module
+//! knows neither of them.
 
 #[cfg(feature = "tui")]
 pub(crate) mod mixture;
@@ -50,7 +50,7 @@ const NAMED: [Rgb; 16] = [
     Rgb::new(255, 255, 255),
 ];
 
-/// The index of the one of the 240 fixed colours of xterm that looks nearest to `color`.
+/// The index of the colour nearest to `color` in Oklab, among the 240 fixed colours of xterm.
 ///
 /// The first 16 of the 256 are left out, because users give them colours of their own.
 pub fn nearest_of_256(color: Rgb) -> u8 {
@@ -58,13 +58,13 @@ pub fn nearest_of_256(color: Rgb) -> u8 {
     TABLE.of(color)
 }
 
-/// The index of the one of the 16 named colours that looks nearest to `color`.
+/// The index of the colour nearest to `color` in Oklab, among the 16 named colours.
 pub fn nearest_of_16(color: Rgb) -> u8 {
     static TABLE: NearestColors = NearestColors::among(|| palette(0..=CUBE - 1));
     TABLE.of(color)
 }
 
-/// What colour `index` of the 256 is, by xterm's defaults.
+/// The colour with that index among the 256, by xterm's defaults.
 pub fn of_256(index: u8) -> Rgb {
     if let Some(&named) = NAMED.get(usize::from(index)) {
         named

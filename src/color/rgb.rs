@@ -15,7 +15,7 @@ impl Rgb {
     pub const BLACK: Self = Self::new(0, 0, 0);
     /// The brightest colour.
     pub const WHITE: Self = Self::new(255, 255, 255);
-    /// What the colour name `sky` stands for.
+    /// The colour with the name `sky`.
     pub const SKY: Self = Self::new(0x87, 0xb5, 0xd9);
 
     /// A colour from its red, green and blue channels.
@@ -56,8 +56,8 @@ impl Rgb {
         Self(self.0 >> 1 & LOW_SEVEN_BITS_OF_EACH_CHANNEL)
     }
 
-    /// It in front of `behind`, of which it hides `alpha` parts in 255: each channel rounded to the
-    /// nearest.
+    /// This colour over `behind`, with an opacity of `alpha` parts in 255 (Porter and Duff, "Compositing Digital
+    /// Images", 1984): each channel rounded to the nearest.
     #[inline]
     #[must_use]
     pub const fn over(self, behind: Self, alpha: u8) -> Self {
@@ -89,7 +89,7 @@ impl Rgb {
         Self(red_and_blue >> 8 & RED_AND_BLUE | green >> 8 & GREEN)
     }
 
-    /// How bright the colour looks, from 0 to 255, by the Rec. 709 weights in 16-bit fixed point.
+    /// The luma of the colour, from 0 to 255, by the weights of ITU-R BT.709 in 16-bit fixed point.
     pub const fn luma(self) -> u8 {
         const RED: u32 = 13_933;
         const GREEN: u32 = 46_871;

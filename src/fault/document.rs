@@ -3,6 +3,7 @@
 //! Deserializing into structs with serde was refused: it stops at the first fault, and its values
 //! have no places.
 
+use std::cell::RefCell;
 use std::collections::BTreeSet;
 use std::ops::Range;
 
@@ -15,8 +16,39 @@ use super::{Fault, nearest, quoted};
 /// millions.
 const LONGEST_RECOVERED: usize = 1 << 20;
 
+/// The faults of a document, collected while it is read.
+#[derive(Default)]
+pub(crate) struct FaultList(RefCell<Vec<Fault>>);
+
+impl FaultList {
+    /// Adds a fault.
+    pub(crate) fn push(&self, fault: Fault) {
+        self.0.borrow_mut().push(fault);
+    }
+
+    /// Adds several faults.
+    pub(crate) fn extend(&self, faults: impl IntoIterator<Item = Fault>) {
+        faults.into_iter().for_each(|fault| self.push(fault));
+    }
+
+    /// The number of faults so far.
+    pub(crate) fn len(&self) -> usize {
+        self.0.borrow().len()
+    }
+
+    /// Whether there is no fault so far.
+    pub(crate) fn is_empty(&self) -> bool {
+        self.len() == 0
+    }
+
+    /// The faults so far, which are no longer in the list.
+    pub(crate) fn take(&self) -> Vec<Fault> {
+        self.0.take()
+    }
+}
+
 /// Parses `text` as TOML as far as possible; adds faults to `faults`.
-pub(crate) fn parse<'t>(text: &'t str, faults: &mut Vec<Fault>) -> DeTable<'t> {
+pub(crate) fn parse<'t>(text: &'t str, faults: &FaultList) -> DeTable<'t> {
     let (table, errors) = if text.len() <= LONGEST_RECOVERED {
         DeTable::parse_recoverable(text)
     } else {
@@ -42,32 +74,46 @@ pub(crate) struct Entry<'a, 't> {
     pub(crate) key_place: Range<usize>,
     pub(crate) value: &'a DeValue<'t>,
     pub(crate) value_place: Range<usize>,
+    /// The faults of its document.
+    pub(crate) faults: &'a FaultList,
 }
 
-/// The entries of `table`, in the order of their keys.
-pub(crate) fn entries<'a, 't>(table: &'a DeTable<'t>) -> impl Iterator<Item = Entry<'a, 't>> {
-    table.iter().map(|(key, value)| Entry {
+/// The entries of `table`, in the order of their keys. Their faults go to `faults`.
+pub(crate) fn entries<'a, 't>(
+    table: &'a DeTable<'t>,
+    faults: &'a FaultList,
+) -> impl Iterator<Item = Entry<'a, 't>> {
+    table.iter().map(move |(key, value)| Entry {
         key: key.get_ref(),
         key_place: key.span(),
         value: value.get_ref(),
         value_place: value.span(),
+        faults,
     })
 }
 
 impl<'a, 't> Entry<'a, 't> {
-    /// The value as a string; adds to `faults` where it is not one. `example` is a whole entry.
-    pub(crate) fn string(&self, example: &str, faults: &mut Vec<Fault>) -> Option<&'a str> {
+    /// The entries of a table of the same document, in the order of their keys.
+    pub(crate) fn entries(
+        &self,
+        table: &'a DeTable<'t>,
+    ) -> impl Iterator<Item = Self> + use<'a, 't> {
+        entries(table, self.faults)
+    }
+
+    /// The value as a string; reports a fault where it is not one. `example` is a whole entry.
+    pub(crate) fn string(&self, example: &str) -> Option<&'a str> {
         let DeValue::String(string) = self.value else {
-            faults.push(self.wrong_type("a string", example));
+            self.faults.push(self.wrong_type("a string", example));
             return None;
         };
         Some(string)
     }
 
     /// The value as a table; faults as in [`Entry::string`].
-    pub(crate) fn table(&self, example: &str, faults: &mut Vec<Fault>) -> Option<&'a DeTable<'t>> {
+    pub(crate) fn table(&self, example: &str) -> Option<&'a DeTable<'t>> {
         let DeValue::Table(table) = self.value else {
-            faults.push(self.wrong_type("a table", example));
+            self.faults.push(self.wrong_type("a table", example));
             return None;
         };
         Some(table)
@@ -84,11 +130,11 @@ impl<'a, 't> Entry<'a, 't> {
         }
     }
 
-    /// The value as a list of two, each as an entry with the same key; adds to `faults` where it is
+    /// The value as a list of two, each as an entry with the same key; reports a fault where it is
     /// not one.
-    pub(crate) fn pair(&self, example: &str, faults: &mut Vec<Fault>) -> Option<[Self; 2]> {
+    pub(crate) fn pair(&self, example: &str) -> Option<[Self; 2]> {
         let DeValue::Array(list) = self.value else {
-            faults.push(self.wrong_type("a list of two", example));
+            self.faults.push(self.wrong_type("a list of two", example));
             return None;
         };
         let mut entries = list.iter().map(|value| Self {
@@ -96,13 +142,14 @@ impl<'a, 't> Entry<'a, 't> {
             key_place: self.key_place.clone(),
             value: value.get_ref(),
             value_place: value.span(),
+            faults: self.faults,
         });
         if let (Some(first), Some(second), None) = (entries.next(), entries.next(), entries.next())
         {
             return Some([first, second]);
         }
         let message = format!("{} must be a list of two", quoted(self.key));
-        faults.push(
+        self.faults.push(
             Fault::new(self.value_place.clone(), message)
                 .label(format!("this is a list of {}", list.len()))
                 .help(format!("write {example}")),

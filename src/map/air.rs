@@ -1,8 +1,9 @@
 //! The sky and the fog of a map.
 
-use super::textures::{Surface, Textures};
+use super::reader::Reader;
+use super::textures::Surface;
 use crate::color::Rgb;
-use crate::fault::document::{Entry, entries};
+use crate::fault::document::Entry;
 use crate::fault::{Fault, quoted};
 use crate::world::{Fog, Paint, Sky};
 
@@ -18,27 +19,27 @@ pub(super) enum SkyText<'a> {
 }
 
 impl<'a> SkyText<'a> {
-    /// Reads the sky in `entry`; adds to `faults` where there is none.
-    pub(super) fn read(entry: &Entry<'a, '_>, faults: &mut Vec<Fault>) -> Option<Self> {
-        let table = entry.table(SKY_EXAMPLE, faults)?;
-        let faults_before = faults.len();
+    /// Reads the sky in `entry`; reports a fault where there is none.
+    pub(super) fn read(entry: &Entry<'a, '_>) -> Option<Self> {
+        let table = entry.table(SKY_EXAMPLE)?;
+        let faults_before = entry.faults.len();
         let mut skies = Vec::new();
-        for entry in entries(table) {
+        for entry in entry.entries(table) {
             match entry.key {
-                "gradient" => skies.extend(gradient(&entry, faults)),
+                "gradient" => skies.extend(gradient(&entry)),
                 "panorama" => {
-                    let surface = Surface::read_panorama(&entry, r#"panorama = "hills""#, faults);
+                    let surface = Surface::read_panorama(&entry, r#"panorama = "hills""#);
                     skies.extend(surface.map(Self::Panorama));
                 }
-                _ => faults.push(entry.unknown_key("a sky", SKY_KEYS)),
+                _ => entry.faults.push(entry.unknown_key("a sky", SKY_KEYS)),
             }
         }
-        if faults.len() > faults_before {
+        if entry.faults.len() > faults_before {
             return None;
         }
         if skies.len() != 1 {
             let message = "a sky is either a gradient or a panorama";
-            faults.push(
+            entry.faults.push(
                 Fault::new(entry.value_place.clone(), message)
                     .label(if skies.is_empty() { "this is none" } else { "this is both" })
                     .help(format!("write {SKY_EXAMPLE}")),
@@ -47,11 +48,11 @@ impl<'a> SkyText<'a> {
         skies.pop()
     }
 
-    /// The sky itself. Adds to `faults` where its texture is missing.
-    pub(super) fn sky(&self, textures: &mut Textures<'_>, faults: &mut Vec<Fault>) -> Option<Sky> {
+    /// The sky itself. Reports a fault where its texture is missing.
+    pub(super) fn sky(&self, reader: &mut Reader<'_>) -> Option<Sky> {
         match self {
             &Self::Gradient { zenith, horizon } => Some(Sky::Gradient { zenith, horizon }),
-            Self::Panorama(surface) => match textures.paint(surface, faults)? {
+            Self::Panorama(surface) => match reader.paint(surface)? {
                 Paint::Texture(texture) => Some(Sky::Panorama(texture)),
                 Paint::Color(color) => Some(Sky::Gradient { zenith: color, horizon: color }),
             },
@@ -59,48 +60,50 @@ impl<'a> SkyText<'a> {
     }
 }
 
-fn gradient<'a>(entry: &Entry<'a, '_>, faults: &mut Vec<Fault>) -> Option<SkyText<'a>> {
+fn gradient<'a>(entry: &Entry<'a, '_>) -> Option<SkyText<'a>> {
     let example = r##"gradient = ["#5080c0", "#c0d8f0"]"##;
-    let pair = entry.pair(example, faults)?;
-    let [zenith, horizon] = pair.map(|entry| color(&entry, example, faults));
+    let pair = entry.pair(example)?;
+    let [zenith, horizon] = pair.map(|entry| color(&entry, example));
     Some(SkyText::Gradient { zenith: zenith?, horizon: horizon? })
 }
 
-pub(super) fn color(entry: &Entry<'_, '_>, example: &str, faults: &mut Vec<Fault>) -> Option<Rgb> {
-    let text = entry.string(example, faults)?;
+pub(super) fn color(entry: &Entry<'_, '_>, example: &str) -> Option<Rgb> {
+    let text = entry.string(example)?;
     text.parse()
         .map_err(|error| {
             let message = format!("{} is not a colour", quoted(text));
-            faults.push(Fault::new(entry.value_place.clone(), message).help(format!("{error}")));
+            entry
+                .faults
+                .push(Fault::new(entry.value_place.clone(), message).help(format!("{error}")));
         })
         .ok()
 }
 
-/// Reads the fog in `entry`; adds to `faults` where there is none.
-pub(super) fn fog(entry: &Entry<'_, '_>, faults: &mut Vec<Fault>) -> Option<Fog> {
-    let table = entry.table(FOG_EXAMPLE, faults)?;
-    let faults_before = faults.len();
+/// Reads the fog in `entry`; reports a fault where there is none.
+pub(super) fn fog(entry: &Entry<'_, '_>) -> Option<Fog> {
+    let table = entry.table(FOG_EXAMPLE)?;
+    let faults_before = entry.faults.len();
     let (mut fog_color, mut distance) = (None, None);
-    for entry in entries(table) {
+    for entry in entry.entries(table) {
         match entry.key {
-            "color" => fog_color = color(&entry, r##"color = "#101018""##, faults),
+            "color" => fog_color = color(&entry, r##"color = "#101018""##),
             "distance" => distance = Some(entry),
-            _ => faults.push(entry.unknown_key("a fog", FOG_KEYS)),
+            _ => entry.faults.push(entry.unknown_key("a fog", FOG_KEYS)),
         }
     }
-    if faults.len() > faults_before {
+    if entry.faults.len() > faults_before {
         return None;
     }
     let (Some(fog_color), Some(distance)) = (fog_color, distance) else {
         let message = "a fog has a colour and a distance";
         let place = entry.value_place.clone();
-        faults.push(Fault::new(place, message).help(format!("write {FOG_EXAMPLE}")));
+        entry.faults.push(Fault::new(place, message).help(format!("write {FOG_EXAMPLE}")));
         return None;
     };
     let fog = distance.number().and_then(|distance| Fog::new(fog_color, distance));
     if fog.is_none() {
         let message = "the distance of a fog must be a finite number of cells above 0";
-        faults.push(
+        entry.faults.push(
             Fault::new(distance.value_place, message)
                 .label("this is none")
                 .help("write 12.0 for a fog that hides half of what is twelve cells away"),

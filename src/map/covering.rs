@@ -2,10 +2,11 @@
 
 use toml::de::{DeTable, DeValue};
 
-use super::textures::{Surface, Textures};
+use super::reader::Reader;
+use super::textures::Surface;
 use crate::color::Rgb;
 use crate::fault::Fault;
-use crate::fault::document::{Entry, entries};
+use crate::fault::document::Entry;
 use crate::world::{Ceiling, Covering, Pattern, Scale};
 
 const KEYS: &[&str] = &["texture", "checker", "stripes", "scale"];
@@ -29,51 +30,43 @@ impl<'a> CoveringText<'a> {
         Self { pattern: PatternText::Plain(Surface::plain(color)), scale: Scale::ONE }
     }
 
-    /// Reads the covering in `entry`; adds to `faults` where there is none. `example` is a whole
+    /// Reads the covering in `entry`; reports a fault where there is none. `example` is a whole
     /// entry.
-    pub(super) fn read(
-        entry: &Entry<'a, '_>,
-        example: &str,
-        faults: &mut Vec<Fault>,
-    ) -> Option<Self> {
+    pub(super) fn read(entry: &Entry<'a, '_>, example: &str) -> Option<Self> {
         match entry.value {
             DeValue::String(_) => {
-                let surface = Surface::read(entry, example, faults)?;
+                let surface = Surface::read(entry, example)?;
                 Some(Self { pattern: PatternText::Plain(surface), scale: Scale::ONE })
             }
-            DeValue::Table(table) => Self::read_table(entry, table, faults),
+            DeValue::Table(table) => Self::read_table(entry, table),
             _ => {
-                faults.push(entry.wrong_type("a string or a table", example));
+                entry.faults.push(entry.wrong_type("a string or a table", example));
                 None
             }
         }
     }
 
-    fn read_table(
-        owner: &Entry<'a, '_>,
-        table: &'a DeTable<'_>,
-        faults: &mut Vec<Fault>,
-    ) -> Option<Self> {
-        let faults_before = faults.len();
+    fn read_table(owner: &Entry<'a, '_>, table: &'a DeTable<'_>) -> Option<Self> {
+        let faults_before = owner.faults.len();
         let mut patterns = Vec::new();
         let mut scale = Scale::ONE;
-        for entry in entries(table) {
+        for entry in owner.entries(table) {
             match entry.key {
-                "scale" => scale = read_scale(&entry, faults).unwrap_or(scale),
+                "scale" => scale = read_scale(&entry).unwrap_or(scale),
                 "texture" | "checker" | "stripes" => {
-                    patterns.extend(PatternText::read(&entry, faults));
+                    patterns.extend(PatternText::read(&entry));
                 }
-                _ => faults.push(entry.unknown_key(&format!("a {}", owner.key), KEYS)),
+                _ => entry.faults.push(entry.unknown_key(&format!("a {}", owner.key), KEYS)),
             }
         }
-        if faults.len() > faults_before {
+        if owner.faults.len() > faults_before {
             return None;
         }
         match (patterns.pop(), patterns.is_empty()) {
             (Some(pattern), true) => Some(Self { pattern, scale }),
             (found, _) => {
                 let fault = |message: String| Fault::new(owner.value_place.clone(), message);
-                faults.push(if found.is_none() {
+                owner.faults.push(if found.is_none() {
                     fault(format!("the {} does not say what it is laid with", owner.key))
                         .help(format!("write {} = {EXAMPLE}", owner.key))
                 } else {
@@ -85,20 +78,16 @@ impl<'a> CoveringText<'a> {
         }
     }
 
-    /// The covering itself. Adds to `faults` where a texture is missing.
-    pub(super) fn covering(
-        &self,
-        textures: &mut Textures<'_>,
-        faults: &mut Vec<Fault>,
-    ) -> Option<Covering> {
+    /// The covering itself. Reports a fault where a texture is missing.
+    pub(super) fn covering(&self, reader: &mut Reader<'_>) -> Option<Covering> {
         let mut both = |[first, second]: &[Surface<'_>; 2]| {
-            let paints = [textures.paint(first, faults), textures.paint(second, faults)];
+            let paints = [reader.paint(first), reader.paint(second)];
             Some([paints[0]?, paints[1]?])
         };
         let pattern = match &self.pattern {
             PatternText::Checker(surfaces) => Pattern::Checker(both(surfaces)?),
             PatternText::Stripes(surfaces) => Pattern::Stripes(both(surfaces)?),
-            PatternText::Plain(surface) => Pattern::Plain(textures.paint(surface, faults)?),
+            PatternText::Plain(surface) => Pattern::Plain(reader.paint(surface)?),
         };
         Some(Covering { pattern, scale: self.scale })
     }
@@ -106,13 +95,13 @@ impl<'a> CoveringText<'a> {
 
 impl<'a> PatternText<'a> {
     /// Reads the pattern in `entry`, one of a covering's table.
-    fn read(entry: &Entry<'a, '_>, faults: &mut Vec<Fault>) -> Option<Self> {
+    fn read(entry: &Entry<'a, '_>) -> Option<Self> {
         if entry.key == "texture" {
-            return Surface::read(entry, r#"texture = "tile""#, faults).map(Self::Plain);
+            return Surface::read(entry, r#"texture = "tile""#).map(Self::Plain);
         }
         let example = format!(r#"{} = ["tile", "marble"]"#, entry.key);
-        let pair = entry.pair(&example, faults)?;
-        let [first, second] = pair.map(|entry| Surface::read(&entry, &example, faults));
+        let pair = entry.pair(&example)?;
+        let [first, second] = pair.map(|entry| Surface::read(&entry, &example));
         let surfaces = [first?, second?];
         Some(match entry.key {
             "checker" => Self::Checker(surfaces),
@@ -121,11 +110,11 @@ impl<'a> PatternText<'a> {
     }
 }
 
-fn read_scale(entry: &Entry<'_, '_>, faults: &mut Vec<Fault>) -> Option<Scale> {
+fn read_scale(entry: &Entry<'_, '_>) -> Option<Scale> {
     let scale = entry.number().and_then(Scale::new);
     if scale.is_none() {
         let message = "a scale must be a finite number of cells above 0";
-        faults.push(
+        entry.faults.push(
             Fault::new(entry.value_place.clone(), message)
                 .label("this is none")
                 .help("write 2.0 to stretch a texture over two cells"),
@@ -147,26 +136,18 @@ impl<'a> CeilingText<'a> {
     }
 
     /// Reads the ceiling in `entry` as [`CoveringText::read`] does; `"sky"` is no ceiling.
-    pub(super) fn read(
-        entry: &Entry<'a, '_>,
-        example: &str,
-        faults: &mut Vec<Fault>,
-    ) -> Option<Self> {
+    pub(super) fn read(entry: &Entry<'a, '_>, example: &str) -> Option<Self> {
         match entry.value {
             DeValue::String(text) if text == "sky" => Some(Self::Sky),
-            _ => CoveringText::read(entry, example, faults).map(Self::Covered),
+            _ => CoveringText::read(entry, example).map(Self::Covered),
         }
     }
 
     /// The ceiling itself, as [`CoveringText::covering`].
-    pub(super) fn ceiling(
-        &self,
-        textures: &mut Textures<'_>,
-        faults: &mut Vec<Fault>,
-    ) -> Option<Ceiling> {
+    pub(super) fn ceiling(&self, reader: &mut Reader<'_>) -> Option<Ceiling> {
         match self {
             Self::Sky => Some(Ceiling::Sky),
-            Self::Covered(covering) => covering.covering(textures, faults).map(Ceiling::Covered),
+            Self::Covered(covering) => covering.covering(reader).map(Ceiling::Covered),
         }
     }
 }

@@ -9,7 +9,7 @@ use super::legend::{self, Legend, Section};
 use super::textures::Surface;
 use crate::color::Rgb;
 use crate::fault::Fault;
-use crate::fault::document::{Entry, entries};
+use crate::fault::document::{Entry, FaultList, entries};
 use crate::world::{Fog, Heights, Light};
 
 /// The keys of a map.
@@ -52,9 +52,9 @@ pub(super) struct Definitions<'a, 't> {
 }
 
 impl<'a, 't> Definitions<'a, 't> {
-    /// Reads the definitions in `document`. Faults are added to `faults`, and their definitions
+    /// Reads the definitions in `document`. Faults are reported, and their definitions
     /// replaced by defaults.
-    pub(super) fn read(document: &'a DeTable<'t>, faults: &mut Vec<Fault>) -> Self {
+    pub(super) fn read(document: &'a DeTable<'t>, faults: &'a FaultList) -> Self {
         let mut definitions = Self {
             title: String::new(),
             goal: None,
@@ -69,49 +69,48 @@ impl<'a, 't> Definitions<'a, 't> {
             grid: None,
             legend: Legend::new(),
         };
-        for entry in entries(document) {
-            definitions.read_entry(entry, faults);
+        for entry in entries(document, faults) {
+            definitions.read_entry(entry);
         }
         definitions
     }
 
-    fn read_entry(&mut self, entry: Entry<'a, 't>, faults: &mut Vec<Fault>) {
+    fn read_entry(&mut self, entry: Entry<'a, 't>) {
         match entry.key {
-            "title" => self.title = title(&entry, faults).unwrap_or_default(),
-            "goal" => self.goal = goal(&entry, faults),
+            "title" => self.title = title(&entry).unwrap_or_default(),
+            "goal" => self.goal = goal(&entry),
             "ceiling" => {
-                if let Some(ceiling) = CeilingText::read(&entry, r##"ceiling = "#202028""##, faults)
-                {
+                if let Some(ceiling) = CeilingText::read(&entry, r##"ceiling = "#202028""##) {
                     self.ceiling = ceiling;
                 }
             }
             "ceiling_height" => {
-                if let Some(height) = heights::map_ceiling(&entry, faults) {
+                if let Some(height) = heights::map_ceiling(&entry) {
                     self.ceiling_height = height;
                 }
             }
             "floor" => {
-                if let Some(floor) = CoveringText::read(&entry, r#"floor = "stone""#, faults) {
+                if let Some(floor) = CoveringText::read(&entry, r#"floor = "stone""#) {
                     self.floor = floor;
                 }
             }
-            "riser" => self.riser = Surface::read(&entry, r#"riser = "stone""#, faults),
-            "lintel" => self.lintel = Surface::read(&entry, r#"lintel = "brick""#, faults),
-            "sky" => self.sky = SkyText::read(&entry, faults),
-            "light" => self.light = legend::light(&entry, faults),
-            "fog" => self.fog = air::fog(&entry, faults),
+            "riser" => self.riser = Surface::read(&entry, r#"riser = "stone""#),
+            "lintel" => self.lintel = Surface::read(&entry, r#"lintel = "brick""#),
+            "sky" => self.sky = SkyText::read(&entry),
+            "light" => self.light = legend::light(&entry),
+            "fog" => self.fog = air::fog(&entry),
             "grid" => self.grid = Some(entry),
-            "tiles" => self.legend.read_section(Section::Tiles, &entry, faults),
-            "things" => self.legend.read_section(Section::Things, &entry, faults),
-            _ => faults.push(entry.unknown_key("a map", KEYS)),
+            "tiles" => self.legend.read_section(Section::Tiles, &entry),
+            "things" => self.legend.read_section(Section::Things, &entry),
+            _ => entry.faults.push(entry.unknown_key("a map", KEYS)),
         }
     }
 }
 
 /// Reads the goal, a line of at most [`LONGEST_GOAL`] characters.
-fn goal(entry: &Entry<'_, '_>, faults: &mut Vec<Fault>) -> Option<String> {
+fn goal(entry: &Entry<'_, '_>) -> Option<String> {
     const LONGEST_GOAL: usize = 40;
-    let goal = entry.string(r#"goal = "Find the way out""#, faults)?;
+    let goal = entry.string(r#"goal = "Find the way out""#)?;
     let length = goal.chars().count();
     let message = if goal.contains(char::is_control) {
         "the goal has a line break or another control character".to_owned()
@@ -123,15 +122,17 @@ fn goal(entry: &Entry<'_, '_>, faults: &mut Vec<Fault>) -> Option<String> {
         return Some(goal.to_owned());
     };
     let help = "write what to do in one short line, or leave it out";
-    faults.push(Fault::new(entry.value_place.clone(), message).help(help));
+    entry.faults.push(Fault::new(entry.value_place.clone(), message).help(help));
     None
 }
 
-pub(super) fn title(entry: &Entry<'_, '_>, faults: &mut Vec<Fault>) -> Option<String> {
-    let title = entry.string(r#"title = "Cellar""#, faults)?;
+pub(super) fn title(entry: &Entry<'_, '_>) -> Option<String> {
+    let title = entry.string(r#"title = "Cellar""#)?;
     if title.contains(char::is_control) {
         let message = "the title has a line break or another control character";
-        faults.push(Fault::new(entry.value_place.clone(), message).help("write it on one line"));
+        entry
+            .faults
+            .push(Fault::new(entry.value_place.clone(), message).help("write it on one line"));
         return None;
     }
     Some(title.to_owned())

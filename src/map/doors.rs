@@ -13,7 +13,7 @@ use toml::de::DeTable;
 use super::drawing::Drawing;
 use super::legend::{Legend, Meaning};
 use super::textures::Surface;
-use crate::fault::document::{Entry, entries};
+use crate::fault::document::Entry;
 use crate::fault::{Fault, quoted};
 use crate::world::{Cell, Grid, KeyId, Start, Tile, TileKind};
 use reach::Reach;
@@ -33,18 +33,12 @@ pub(super) struct KeySymbol<'a> {
 
 impl<'a> DoorSymbol<'a> {
     /// Reads the door in `entry` of `table`, with the key that the table names.
-    pub(super) fn read(
-        entry: &Entry<'a, '_>,
-        table: &'a DeTable<'_>,
-        faults: &mut Vec<Fault>,
-    ) -> Option<Self> {
-        let leaf = Surface::read(entry, r#"{ door = "oak" }"#, faults);
-        let key = entries(table).find(|entry| entry.key == "key");
+    pub(super) fn read(entry: &Entry<'a, '_>, table: &'a DeTable<'_>) -> Option<Self> {
+        let leaf = Surface::read(entry, r#"{ door = "oak" }"#);
+        let key = entry.entries(table).find(|entry| entry.key == "key");
         let key = match key {
             None => None,
-            Some(key) => {
-                Some(KeySymbol::read(&key, r#"{ door = "metal", key = "brass" }"#, faults)?)
-            }
+            Some(key) => Some(KeySymbol::read(&key, r#"{ door = "metal", key = "brass" }"#)?),
         };
         Some(Self { leaf: leaf?, key })
     }
@@ -52,16 +46,12 @@ impl<'a> DoorSymbol<'a> {
 
 impl<'a> KeySymbol<'a> {
     /// Reads the name in `entry`.
-    pub(super) fn read(
-        entry: &Entry<'a, '_>,
-        example: &str,
-        faults: &mut Vec<Fault>,
-    ) -> Option<Self> {
-        let name = entry.string(example, faults)?;
+    pub(super) fn read(entry: &Entry<'a, '_>, example: &str) -> Option<Self> {
+        let name = entry.string(example)?;
         let place = entry.value_place.clone();
         if name.is_empty() || name.contains(char::is_control) {
             let message = "a key's name is some characters on one line";
-            faults.push(Fault::new(place, message).help(format!("write {example}")));
+            entry.faults.push(Fault::new(place, message).help(format!("write {example}")));
             return None;
         }
         Some(Self { name, place })

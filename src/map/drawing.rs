@@ -32,16 +32,16 @@ pub(super) struct Sightings {
 }
 
 impl<'a> Drawing<'a> {
-    /// Reads the drawing in `entry` of the map `text`; adds faults to `faults`. `None` where it has
+    /// Reads the drawing in `entry` of the map `text`; reports its faults. `None` where it has
     /// no usable width and height.
-    pub(super) fn read(entry: &Entry<'a, '_>, text: &str, faults: &mut Vec<Fault>) -> Option<Self> {
-        let value = entry.string(EXAMPLE, faults)?;
+    pub(super) fn read(entry: &Entry<'a, '_>, text: &str) -> Option<Self> {
+        let value = entry.string(EXAMPLE)?;
         let text = DrawnText::new(value, entry.value_place.clone(), text);
         let (widths, sightings) = text.survey();
         let width = usual_width(&widths);
         let height = NonZeroU32::new(widths.len() as u32);
         let (Some(width), Some(height)) = (width, height) else {
-            faults.push(
+            entry.faults.push(
                 Fault::new(entry.value_place.clone(), "the grid is empty")
                     .help("draw at least one row"),
             );
@@ -52,10 +52,10 @@ impl<'a> Drawing<'a> {
             let message = format!(
                 "the grid is {widest}×{height} cells, and may be {MAX_SIDE}×{MAX_SIDE} at most"
             );
-            faults.push(Fault::new(entry.key_place.clone(), message));
+            entry.faults.push(Fault::new(entry.key_place.clone(), message));
             return None;
         }
-        faults.extend(text.ragged_rows(&widths, width));
+        entry.faults.extend(text.ragged_rows(&widths, width));
         Some(Self { text, width, height, key_place: entry.key_place.clone(), sightings })
     }
 

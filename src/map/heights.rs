@@ -4,9 +4,10 @@ use std::ops::Range;
 
 use toml::de::DeTable;
 
+use super::reader::Reader;
 use super::textures::Surface;
 use crate::fault::Fault;
-use crate::fault::document::{Entry, entries};
+use crate::fault::document::Entry;
 use crate::world::{Ceiling, Covering, Heights, Paint};
 
 /// The least headroom where the player starts, and the least height of the map's ceiling.
@@ -38,13 +39,13 @@ pub(super) struct Height {
 
 impl<'a> HeightsText<'a> {
     /// Reads `entry` if it is one of the heights, risers and lintels; returns whether it is.
-    pub(super) fn take(&mut self, entry: &Entry<'a, '_>, faults: &mut Vec<Fault>) -> bool {
+    pub(super) fn take(&mut self, entry: &Entry<'a, '_>) -> bool {
         match entry.key {
-            "floor_height" => self.floor = Height::read(entry, faults),
-            "ceiling_height" => self.ceiling = Height::read(entry, faults),
-            "roof_height" => self.roof = Height::read(entry, faults),
-            "riser" => self.riser = Surface::read(entry, r#"{ riser = "stone" }"#, faults),
-            "lintel" => self.lintel = Surface::read(entry, r#"{ lintel = "brick" }"#, faults),
+            "floor_height" => self.floor = Height::read(entry),
+            "ceiling_height" => self.ceiling = Height::read(entry),
+            "roof_height" => self.roof = Height::read(entry),
+            "riser" => self.riser = Surface::read(entry, r#"{ riser = "stone" }"#),
+            "lintel" => self.lintel = Surface::read(entry, r#"{ lintel = "brick" }"#),
             _ => return false,
         }
         true
@@ -63,7 +64,7 @@ impl<'a> HeightsText<'a> {
         &self,
         overhead: Ceiling,
         map_ceiling: f64,
-        faults: &mut Vec<Fault>,
+        reader: &Reader<'_>,
     ) -> Option<Heights> {
         let cells = |height: &Option<Height>| height.as_ref().map(|height| height.cells);
         let floor = cells(&self.floor).unwrap_or(0.0);
@@ -73,7 +74,7 @@ impl<'a> HeightsText<'a> {
         };
         let roof = cells(&self.roof).unwrap_or(map_ceiling.max(ceiling));
         if let Some(fault) = self.contradiction(overhead, floor, ceiling) {
-            faults.push(fault);
+            reader.faults.push(fault);
             return None;
         }
         Heights::new(floor, ceiling, roof)
@@ -126,12 +127,12 @@ impl Faces {
 
 impl Height {
     /// Reads the height in `entry`.
-    fn read(entry: &Entry<'_, '_>, faults: &mut Vec<Fault>) -> Option<Self> {
+    fn read(entry: &Entry<'_, '_>) -> Option<Self> {
         let cells = entry.number().filter(|height| height.abs() <= Heights::MOST);
         if cells.is_none() {
             let most = Heights::MOST;
             let message = format!("a height must be a number of cells from -{most} to {most}");
-            faults.push(
+            entry.faults.push(
                 Fault::new(entry.value_place.clone(), message)
                     .label("this is none")
                     .help("write 0.25 for a quarter of a cell above the map's floor"),
@@ -142,13 +143,13 @@ impl Height {
 }
 
 /// Reads the height of the map's ceiling, which is also the height of walls.
-pub(super) fn map_ceiling(entry: &Entry<'_, '_>, faults: &mut Vec<Fault>) -> Option<f64> {
-    let height = Height::read(entry, faults)?;
+pub(super) fn map_ceiling(entry: &Entry<'_, '_>) -> Option<f64> {
+    let height = Height::read(entry)?;
     if height.cells >= LEAST_HEADROOM {
         return Some(height.cells);
     }
     let message = format!("the ceiling of a map is at {LEAST_HEADROOM} cells or above");
-    faults.push(
+    entry.faults.push(
         Fault::new(height.place, message)
             .label("nobody has room to stand below this")
             .help("lower the ceiling in places, by a tile with a ceiling_height"),
@@ -157,14 +158,14 @@ pub(super) fn map_ceiling(entry: &Entry<'_, '_>, faults: &mut Vec<Fault>) -> Opt
 }
 
 /// Reads the height of a wall in `table`, if it has one.
-pub(super) fn of_wall(table: &DeTable<'_>, faults: &mut Vec<Fault>) -> Option<f64> {
-    let entry = entries(table).find(|entry| entry.key == "height")?;
-    let height = Height::read(&entry, faults)?;
+pub(super) fn of_wall(entry: &Entry<'_, '_>, table: &DeTable<'_>) -> Option<f64> {
+    let entry = entry.entries(table).find(|entry| entry.key == "height")?;
+    let height = Height::read(&entry)?;
     if height.cells > 0.0 {
         return Some(height.cells);
     }
     let message = "the height of a wall must be above 0";
-    faults.push(
+    entry.faults.push(
         Fault::new(height.place, message)
             .label("this is not")
             .help("write { floor_height = -1 } for a pit"),

@@ -9,8 +9,9 @@ use super::heights::Faces;
 use super::lamps;
 use super::legend::{Legend, Meaning, Surroundings, Symbol};
 use super::per_character::PerCharacter;
+use super::reader::Reader;
 use super::supports;
-use super::textures::{Surface, Textures};
+use super::textures::Surface;
 use crate::fault::Fault;
 use crate::world::sprite::builtin;
 use crate::world::{
@@ -36,33 +37,32 @@ pub(super) struct Layout {
 }
 
 impl Layout {
-    /// The contents of `drawing`, in a map whose open floor is `ground`. Adds faults to `faults`,
+    /// The contents of `drawing`, in a map whose open floor is `ground`. Reports faults,
     /// and returns `None` if the map has any.
     pub(super) fn of(
         drawing: &Drawing<'_>,
         legend: &Legend<'_>,
         ground: Tile,
         faces: Faces,
-        textures: &mut Textures<'_>,
-        faults: &mut Vec<Fault>,
+        reader: &mut Reader<'_>,
     ) -> Option<Self> {
-        faults.extend(undefined_characters(drawing, legend));
-        faults.extend(wrong_start(drawing, legend));
-        faults.extend(supports::faults(drawing, legend));
+        reader.faults.extend(undefined_characters(drawing, legend));
+        reader.faults.extend(wrong_start(drawing, legend));
+        reader.faults.extend(supports::faults(drawing, legend));
         let keys = Keys::of(drawing, legend);
-        let tiles = tiles(drawing, legend, &keys, ground, faces, textures, faults);
-        if !faults.is_empty() {
+        let tiles = tiles(drawing, legend, &keys, ground, faces, reader);
+        if !reader.faults.is_empty() {
             return None;
         }
         let start = start(drawing, legend)?;
         let mut grid = grid(drawing, legend, &tiles)?;
-        faults.extend(supports::low_start(drawing, &grid, &tiles, start));
-        let (things, sprites) = things(drawing, legend, &keys, textures, faults);
+        reader.faults.extend(supports::low_start(drawing, &grid, &tiles, start));
+        let (things, sprites) = things(drawing, legend, &keys, reader);
         let blocks = |thing: &&Thing| sprites[usize::from(thing.sprite.0)].blocks;
         things.iter().filter(blocks).for_each(|thing| grid.occupy(thing.cell));
         let low_things = supports::low_things(&grid, &tiles, &sprites, &things);
-        faults.extend(doors::faults(drawing, legend, &grid, &tiles, start, &low_things));
-        if !faults.is_empty() {
+        reader.faults.extend(doors::faults(drawing, legend, &grid, &tiles, start, &low_things));
+        if !reader.faults.is_empty() {
             return None;
         }
         let lamplight = lamps::lamplight(&grid, &tiles, &sprites, &things);
@@ -150,8 +150,7 @@ fn things(
     drawing: &Drawing<'_>,
     legend: &Legend<'_>,
     keys: &Keys,
-    textures: &Textures<'_>,
-    faults: &mut Vec<Fault>,
+    reader: &mut Reader<'_>,
 ) -> (Vec<Thing>, Vec<Sprite>) {
     let (mut things, mut sprites) = (Vec::new(), Vec::new());
     for (character, _) in drawing.characters() {
@@ -161,9 +160,7 @@ fn things(
             Meaning::Key(key) => {
                 keys.id(key.name).map(ThingKind::Key).zip(builtin::named(builtin::KEY))
             }
-            Meaning::Ornament(sprite) => {
-                Some(ThingKind::Ornament).zip(sprite.sprite(textures, faults))
-            }
+            Meaning::Ornament(sprite) => Some(ThingKind::Ornament).zip(sprite.sprite(reader)),
             _ => None,
         };
         if let Some((kind, look)) = of_kind {
@@ -183,8 +180,7 @@ fn tiles(
     keys: &Keys,
     ground: Tile,
     faces: Faces,
-    textures: &mut Textures<'_>,
-    faults: &mut Vec<Fault>,
+    reader: &mut Reader<'_>,
 ) -> Vec<Tile> {
     let mut open = vec![ground];
     let mut solid = Vec::new();
@@ -193,9 +189,9 @@ fn tiles(
     for character in drawn.chain(stood_on).collect::<BTreeSet<char>>() {
         let Some(symbol) = legend.symbols.get(&character) else { continue };
         if let Meaning::Floor = symbol.meaning {
-            open.extend(tile(character, TileKind::Open, symbol, ground, faces, textures, faults));
-        } else if let Some(kind) = solid_kind(&symbol.meaning, keys, textures, faults) {
-            let tile = tile(character, kind, symbol, ground, faces, textures, faults);
+            open.extend(tile(character, TileKind::Open, symbol, ground, faces, reader));
+        } else if let Some(kind) = solid_kind(&symbol.meaning, keys, reader) {
+            let tile = tile(character, kind, symbol, ground, faces, reader);
             if let TileKind::Door(door) = kind {
                 open.extend(tile.map(|tile| Tile { kind: TileKind::Doorway(door), ..tile }));
             }
@@ -203,7 +199,7 @@ fn tiles(
         }
         if open.len() + solid.len() > MAX_TILES {
             let message = format!("the grid has more than {} kinds of tile", MAX_TILES - 1);
-            faults.push(Fault::new(symbol.place.clone(), message).label("one too many"));
+            reader.faults.push(Fault::new(symbol.place.clone(), message).label("one too many"));
             break;
         }
     }
@@ -218,17 +214,16 @@ fn tile(
     symbol: &Symbol<'_>,
     ground: Tile,
     faces: Faces,
-    textures: &mut Textures<'_>,
-    faults: &mut Vec<Fault>,
+    reader: &mut Reader<'_>,
 ) -> Option<Tile> {
     let Surroundings { floor, ceiling, light, heights } = &symbol.surroundings;
-    let faults_before = faults.len();
+    let faults_before = reader.faults.len();
     let map_ceiling = ground.heights.ceiling();
-    let floor = floor.as_ref().and_then(|floor| floor.covering(textures, faults));
-    let ceiling = ceiling.as_ref().and_then(|ceiling| ceiling.ceiling(textures, faults));
+    let floor = floor.as_ref().and_then(|floor| floor.covering(reader));
+    let ceiling = ceiling.as_ref().and_then(|ceiling| ceiling.ceiling(reader));
     let (floor, ceiling) = (floor.unwrap_or(ground.floor), ceiling.unwrap_or(ground.ceiling));
     let mut face = |surface: &Option<Surface<'_>>, otherwise: Paint| {
-        surface.as_ref().and_then(|it| textures.paint(it, faults)).unwrap_or(otherwise)
+        surface.as_ref().and_then(|it| reader.paint(it)).unwrap_or(otherwise)
     };
     let riser = match kind {
         TileKind::Wall(paint) => paint,
@@ -236,14 +231,14 @@ fn tile(
         _ => face(&heights.riser, faces.riser(floor)),
     };
     let lintel = face(&heights.lintel, faces.lintel(floor, ceiling));
-    if faults.len() > faults_before {
+    if reader.faults.len() > faults_before {
         return None;
     }
     let heights = match &symbol.meaning {
         Meaning::Wall(_, height) | Meaning::Mirror(_, height) => {
             Heights::new(height.unwrap_or(map_ceiling), map_ceiling, map_ceiling)?
         }
-        _ => heights.heights(ceiling, map_ceiling, faults)?,
+        _ => heights.heights(ceiling, map_ceiling, reader)?,
     };
     let light = match kind {
         // A wall without a light is as bright as the floor that it is seen from.
@@ -254,23 +249,18 @@ fn tile(
 }
 
 /// The solid tile that a character means; `None` if it means another thing, or has a fault.
-fn solid_kind(
-    meaning: &Meaning<'_>,
-    keys: &Keys,
-    textures: &mut Textures<'_>,
-    faults: &mut Vec<Fault>,
-) -> Option<TileKind> {
+fn solid_kind(meaning: &Meaning<'_>, keys: &Keys, reader: &mut Reader<'_>) -> Option<TileKind> {
     match meaning {
-        Meaning::Wall(surface, _) => textures.paint(surface, faults).map(TileKind::Wall),
+        Meaning::Wall(surface, _) => reader.paint(surface).map(TileKind::Wall),
         Meaning::Door(door) => Some(TileKind::Door(Door {
-            leaf: textures.paint(&door.leaf, faults)?,
-            jamb: textures.jamb(),
+            leaf: reader.paint(&door.leaf)?,
+            jamb: reader.jamb(),
             key: door.key.as_ref().and_then(|key| keys.id(key.name)),
         })),
-        Meaning::Mask(mask) => mask.texture(textures, faults).map(TileKind::Mask),
+        Meaning::Mask(mask) => mask.texture(reader).map(TileKind::Mask),
         Meaning::Glass(glass) => Some(TileKind::Glass(*glass)),
         Meaning::Mirror(tint, _) => Some(TileKind::Mirror(*tint)),
-        Meaning::Shape(shape) => shape.shape(textures, faults).map(TileKind::Shape),
+        Meaning::Shape(shape) => shape.shape(reader).map(TileKind::Shape),
         Meaning::Open
         | Meaning::Floor
         | Meaning::Start(_)

@@ -16,7 +16,7 @@ use super::see_through::MaskSymbol;
 use super::shapes::ShapeSymbol;
 use super::sprites::SpriteSymbol;
 use super::textures::Surface;
-use crate::fault::document::{Entry, entries};
+use crate::fault::document::Entry;
 use crate::fault::{Fault, quoted};
 use crate::world::{Glass, Heading, Light};
 pub(super) use property::light;
@@ -94,33 +94,28 @@ impl<'a> Legend<'a> {
         self.is_complete && !self.symbols.values().any(is_unclear)
     }
 
-    /// Reads the definitions in the table of `entry`; adds faults to `faults`.
-    pub(super) fn read_section(
-        &mut self,
-        section: Section,
-        entry: &Entry<'a, '_>,
-        faults: &mut Vec<Fault>,
-    ) {
-        let Some(table) = entry.table(section.name(), faults) else {
+    /// Reads the definitions in the table of `entry`; reports its faults.
+    pub(super) fn read_section(&mut self, section: Section, entry: &Entry<'a, '_>) {
+        let Some(table) = entry.table(section.name()) else {
             self.is_complete = false;
             return;
         };
-        for entry in entries(table) {
+        for entry in entry.entries(table) {
             let character = match character(section, &entry) {
                 Ok(character) => character,
                 Err(fault) => {
-                    faults.push(fault);
+                    entry.faults.push(fault);
                     self.is_complete = false;
                     continue;
                 }
             };
-            let (mut meaning, surroundings) = meaning(section, &entry, faults);
+            let (mut meaning, surroundings) = meaning(section, &entry);
             if self.symbols.contains_key(&character) {
-                faults.push(defined_twice(character, entry.key_place.clone()));
+                entry.faults.push(defined_twice(character, entry.key_place.clone()));
                 meaning = Meaning::Unclear;
             }
             let support = match (section, entry.value) {
-                (Section::Things, DeValue::Table(thing)) => Support::read(thing, faults),
+                (Section::Things, DeValue::Table(thing)) => Support::read(&entry, thing),
                 _ => None,
             };
             let place = entry.key_place;
@@ -131,14 +126,14 @@ impl<'a> Legend<'a> {
 
 impl Support {
     /// Reads the tile that the table of a thing names, if it does.
-    fn read(thing: &DeTable<'_>, faults: &mut Vec<Fault>) -> Option<Self> {
-        let entry = entries(thing).find(|entry| entry.key == "on")?;
-        let text = entry.string(r#"on = ",""#, faults)?;
+    fn read(owner: &Entry<'_, '_>, thing: &DeTable<'_>) -> Option<Self> {
+        let entry = owner.entries(thing).find(|entry| entry.key == "on")?;
+        let text = entry.string(r#"on = ",""#)?;
         let mut characters = text.chars();
         if let (Some(tile), None) = (characters.next(), characters.next()) {
             return Some(Self { tile, place: entry.value_place });
         }
-        faults.push(
+        entry.faults.push(
             Fault::new(
                 entry.value_place,
                 format!("{} is not the character of a tile", quoted(text)),
@@ -175,23 +170,20 @@ fn character(section: Section, entry: &Entry<'_, '_>) -> Result<char, Fault> {
 }
 
 /// Reads the meaning and the surroundings in `entry`.
-fn meaning<'a>(
-    section: Section,
-    entry: &Entry<'a, '_>,
-    faults: &mut Vec<Fault>,
-) -> (Meaning<'a>, Surroundings<'a>) {
+fn meaning<'a>(section: Section, entry: &Entry<'a, '_>) -> (Meaning<'a>, Surroundings<'a>) {
     let mut surroundings = Surroundings::default();
-    let Some(table) = entry.table(section.example(), faults) else {
+    let Some(table) = entry.table(section.example()) else {
         return (Meaning::Unclear, surroundings);
     };
-    let faults_before = faults.len();
-    let mut meanings: Vec<_> = entries(table)
-        .filter_map(|entry| match surroundings.take(section, &entry, faults) {
+    let faults_before = entry.faults.len();
+    let mut meanings: Vec<_> = entry
+        .entries(table)
+        .filter_map(|entry| match surroundings.take(section, &entry) {
             Taken::Yes => None,
-            Taken::No => property(section, &entry, table, faults),
+            Taken::No => property(section, &entry, table),
         })
         .collect();
-    if faults.len() > faults_before {
+    if entry.faults.len() > faults_before {
         return (Meaning::Unclear, surroundings);
     }
     let place = || entry.key_place.clone();
@@ -202,8 +194,8 @@ fn meaning<'a>(
     match (meanings.pop(), meanings.is_empty()) {
         (Some(meaning), true) if surroundings.suit(&meaning) => return (meaning, surroundings),
         (None, _) if !surroundings.is_empty() => return (Meaning::Floor, surroundings),
-        (Some(_), _) => faults.push(several_at_once()),
-        (None, _) => faults.push(
+        (Some(_), _) => entry.faults.push(several_at_once()),
+        (None, _) => entry.faults.push(
             Fault::new(place(), format!("{:?} does not say what it is", entry.key))
                 .help(format!("write, for example, {}", section.example())),
         ),
@@ -240,16 +232,16 @@ impl<'a> Surroundings<'a> {
     }
 
     /// Reads `entry` if it is one of a tile's surroundings.
-    fn take(&mut self, section: Section, entry: &Entry<'a, '_>, faults: &mut Vec<Fault>) -> Taken {
+    fn take(&mut self, section: Section, entry: &Entry<'a, '_>) -> Taken {
         match (section, entry.key) {
             (Section::Tiles, "floor") => {
-                self.floor = CoveringText::read(entry, r#"{ floor = "moss" }"#, faults);
+                self.floor = CoveringText::read(entry, r#"{ floor = "moss" }"#);
             }
             (Section::Tiles, "ceiling") => {
-                self.ceiling = CeilingText::read(entry, r#"{ ceiling = "wood" }"#, faults);
+                self.ceiling = CeilingText::read(entry, r#"{ ceiling = "wood" }"#);
             }
-            (Section::Tiles, "light") => self.light = light(entry, faults),
-            (Section::Tiles, _) if self.heights.take(entry, faults) => {}
+            (Section::Tiles, "light") => self.light = light(entry),
+            (Section::Tiles, _) if self.heights.take(entry) => {}
             _ => return Taken::No,
         }
         Taken::Yes

@@ -12,7 +12,7 @@ use toml::de::{DeTable, DeValue};
 use super::air::{self, SkyText};
 use super::definitions;
 use crate::fault::Fault;
-use crate::fault::document::{Entry, entries};
+use crate::fault::document::{Entry, FaultList, entries};
 use crate::space::{EYE_ROOM, Elevation, FARTHEST, Scene, Share, Sky, Start, Sun};
 use crate::world::Heading;
 use body::Kind;
@@ -25,24 +25,24 @@ const START_EXAMPLE: &str = "start = { at = [0, 0, 0.5], heading = 0 }";
 
 /// Whether `document` has bodies, and so is not a map with a grid.
 pub(super) fn has_bodies(document: &DeTable) -> bool {
-    entries(document).any(|entry| Kind::of_key(entry.key).is_some())
+    document.keys().any(|key| Kind::of_key(key.get_ref()).is_some())
 }
 
-/// Reads the scene in `document`; adds faults to `faults`. `None` where there is no scene.
-pub(super) fn read(document: &DeTable, faults: &mut Vec<Fault>) -> Option<Scene> {
+/// Reads the scene in `document`; reports its faults. `None` where there is no scene.
+pub(super) fn read(document: &DeTable, faults: &FaultList) -> Option<Scene> {
     let mut scene = Scene::default();
     let mut start = None;
-    for entry in entries(document) {
+    for entry in entries(document, faults) {
         match entry.key {
-            "title" => scene.title = definitions::title(&entry, faults).unwrap_or_default(),
-            "sky" => scene.sky = sky(&entry, faults).unwrap_or_default(),
-            "fog" => scene.fog = air::fog(&entry, faults),
-            "light" => scene.sun = light(&entry, faults).unwrap_or_default(),
+            "title" => scene.title = definitions::title(&entry).unwrap_or_default(),
+            "sky" => scene.sky = sky(&entry).unwrap_or_default(),
+            "fog" => scene.fog = air::fog(&entry),
+            "light" => scene.sun = light(&entry).unwrap_or_default(),
             "start" => start = Some(entry),
-            "grid" | "tiles" | "things" => faults.push(both_kinds(&entry)),
+            "grid" | "tiles" | "things" => entry.faults.push(both_kinds(&entry)),
             key => match Kind::of_key(key) {
-                Some(kind) => scene.bodies.extend(kind.read_all(&entry, faults)),
-                None => faults.push(entry.unknown_key("a map of bodies", KEYS)),
+                Some(kind) => scene.bodies.extend(kind.read_all(&entry)),
+                None => entry.faults.push(entry.unknown_key("a map of bodies", KEYS)),
             },
         }
     }
@@ -54,7 +54,7 @@ pub(super) fn read(document: &DeTable, faults: &mut Vec<Fault>) -> Option<Scene>
         );
         return None;
     };
-    scene.start = read_start(&entry, &scene, faults)?;
+    scene.start = read_start(&entry, &scene)?;
     Some(scene)
 }
 
@@ -64,11 +64,11 @@ fn both_kinds(entry: &Entry<'_, '_>) -> Fault {
         .help("make two maps of it")
 }
 
-fn sky(entry: &Entry<'_, '_>, faults: &mut Vec<Fault>) -> Option<Sky> {
-    match SkyText::read(entry, faults)? {
+fn sky(entry: &Entry<'_, '_>) -> Option<Sky> {
+    match SkyText::read(entry)? {
         SkyText::Gradient { zenith, horizon } => Some(Sky { zenith, horizon }),
         SkyText::Panorama(surface) => {
-            faults.push(
+            entry.faults.push(
                 Fault::new(surface.place(), "the sky of a map of bodies has no panorama")
                     .help(r##"write sky = { gradient = ["#5080c0", "#c0d8f0"] }"##),
             );
@@ -77,74 +77,76 @@ fn sky(entry: &Entry<'_, '_>, faults: &mut Vec<Fault>) -> Option<Sky> {
     }
 }
 
-fn light(entry: &Entry<'_, '_>, faults: &mut Vec<Fault>) -> Option<Sun> {
-    let table = entry.table(LIGHT_EXAMPLE, faults)?;
+fn light(entry: &Entry<'_, '_>) -> Option<Sun> {
+    let table = entry.table(LIGHT_EXAMPLE)?;
     let mut sun = Sun::default();
-    for entry in entries(table) {
+    for entry in entry.entries(table) {
         match entry.key {
-            "toward" => sun = toward(&entry, sun, faults).unwrap_or(sun),
+            "toward" => sun = toward(&entry, sun).unwrap_or(sun),
             "ambient" => match entry.number().and_then(Share::new) {
                 Some(ambient) => sun.ambient = ambient,
-                None => faults.push(
+                None => entry.faults.push(
                     Fault::new(entry.value_place, "the ambient light must be a number from 0 to 1")
                         .label("this is none")
                         .help("write 0.2 for dark shades, 1 for none"),
                 ),
             },
-            _ => faults.push(entry.unknown_key("a light", LIGHT_KEYS)),
+            _ => entry.faults.push(entry.unknown_key("a light", LIGHT_KEYS)),
         }
     }
     Some(sun)
 }
 
-fn toward(entry: &Entry<'_, '_>, sun: Sun, faults: &mut Vec<Fault>) -> Option<Sun> {
-    let toward = vector::direction(entry, "toward = [-1, -1, 2]", faults)?;
+fn toward(entry: &Entry<'_, '_>, sun: Sun) -> Option<Sun> {
+    let toward = vector::direction(entry, "toward = [-1, -1, 2]")?;
     Sun::new(toward, sun.ambient)
 }
 
-fn read_start(entry: &Entry<'_, '_>, scene: &Scene, faults: &mut Vec<Fault>) -> Option<Start> {
-    let table = entry.table(START_EXAMPLE, faults)?;
-    let faults_before = faults.len();
+fn read_start(entry: &Entry<'_, '_>, scene: &Scene) -> Option<Start> {
+    let table = entry.table(START_EXAMPLE)?;
+    let faults_before = entry.faults.len();
     let mut place = None;
     let (mut heading, mut elevation) = (Heading::default(), Elevation::LEVEL);
-    for entry in entries(table) {
+    for entry in entry.entries(table) {
         match entry.key {
-            "at" => place = vector::place(&entry, faults).map(|at| (at, entry.value_place)),
-            "heading" => heading = read_heading(&entry, faults).unwrap_or_default(),
-            "pitch" => elevation = read_elevation(&entry, faults).unwrap_or_default(),
-            _ => faults.push(entry.unknown_key("a start", START_KEYS)),
+            "at" => place = vector::place(&entry).map(|at| (at, entry.value_place)),
+            "heading" => heading = read_heading(&entry).unwrap_or_default(),
+            "pitch" => elevation = read_elevation(&entry).unwrap_or_default(),
+            _ => entry.faults.push(entry.unknown_key("a start", START_KEYS)),
         }
     }
-    if faults.len() > faults_before {
+    if entry.faults.len() > faults_before {
         return None;
     }
     let Some((at, place)) = place else {
         let fault = Fault::new(entry.value_place.clone(), "the start does not say where it is");
-        faults.push(fault.help(format!("write {START_EXAMPLE}")));
+        entry.faults.push(fault.help(format!("write {START_EXAMPLE}")));
         return None;
     };
     let is_free =
         |at: DVec3| scene.bodies.iter().all(|body| body.shape.clearance(at).0 >= EYE_ROOM);
     if !is_free(at) {
         let message = format!("the start is less than {EYE_ROOM} cells from a body, or inside it");
-        faults.push(Fault::new(place, message).help("move one of the two"));
+        entry.faults.push(Fault::new(place, message).help("move one of the two"));
         return None;
     }
     Start::new(at, heading, elevation)
 }
 
-fn read_heading(entry: &Entry<'_, '_>, faults: &mut Vec<Fault>) -> Option<Heading> {
+fn read_heading(entry: &Entry<'_, '_>) -> Option<Heading> {
     let heading = entry.number().and_then(Heading::from_degrees);
     if heading.is_none() {
-        faults.push(number_wanted(entry, "a heading must be a finite number of degrees"));
+        entry.faults.push(number_wanted(entry, "a heading must be a finite number of degrees"));
     }
     heading
 }
 
-fn read_elevation(entry: &Entry<'_, '_>, faults: &mut Vec<Fault>) -> Option<Elevation> {
+fn read_elevation(entry: &Entry<'_, '_>) -> Option<Elevation> {
     let elevation = entry.number().and_then(Elevation::from_degrees);
     if elevation.is_none() {
-        faults.push(number_wanted(entry, "a pitch must be degrees from -90, down, to 90, up"));
+        entry
+            .faults
+            .push(number_wanted(entry, "a pitch must be degrees from -90, down, to 90, up"));
     }
     elevation
 }
@@ -162,18 +164,17 @@ fn coordinates() -> String {
 fn tables<'a, 't>(
     entry: &Entry<'a, 't>,
     example: &str,
-    faults: &mut Vec<Fault>,
 ) -> Vec<(&'a DeTable<'t>, std::ops::Range<usize>)> {
     let wrong = || entry.wrong_type("a list of tables", example);
     let DeValue::Array(list) = entry.value else {
-        faults.push(wrong());
+        entry.faults.push(wrong());
         return Vec::new();
     };
     let mut tables = Vec::new();
     for value in list {
         match value.get_ref() {
             DeValue::Table(table) => tables.push((table, value.span())),
-            _ => faults.push(wrong()),
+            _ => entry.faults.push(wrong()),
         }
     }
     tables

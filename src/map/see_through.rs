@@ -2,9 +2,10 @@
 
 use toml::de::{DeTable, DeValue};
 
-use super::textures::{Surface, Textures};
+use super::reader::Reader;
+use super::textures::Surface;
 use crate::color::Rgb;
-use crate::fault::document::{Entry, entries};
+use crate::fault::document::Entry;
 use crate::fault::{Fault, quoted};
 use crate::world::{Glass, Paint, TextureId};
 
@@ -18,22 +19,18 @@ const SILVER: Rgb = Rgb::new(0xb8, 0xc8, 0xd0);
 pub(super) struct MaskSymbol<'a>(Surface<'a>);
 
 impl<'a> MaskSymbol<'a> {
-    pub(super) fn read(entry: &Entry<'a, '_>, faults: &mut Vec<Fault>) -> Option<Self> {
-        Surface::read(entry, r#"{ mask = "grate" }"#, faults).map(Self)
+    pub(super) fn read(entry: &Entry<'a, '_>) -> Option<Self> {
+        Surface::read(entry, r#"{ mask = "grate" }"#).map(Self)
     }
 
     /// The texture with holes. A texture without holes is a fault, since the author would not know
     /// why it cannot be seen through.
-    pub(super) fn texture(
-        &self,
-        textures: &mut Textures<'_>,
-        faults: &mut Vec<Fault>,
-    ) -> Option<TextureId> {
+    pub(super) fn texture(&self, reader: &mut Reader<'_>) -> Option<TextureId> {
         let Self(surface) = self;
-        let paint = textures.paint(surface, faults)?;
+        let paint = reader.paint(surface)?;
         match paint {
-            Paint::Texture(id) if textures.get(id).has_alpha() => return Some(id),
-            _ => faults.push(
+            Paint::Texture(id) if reader.textures.get(id).has_alpha() => return Some(id),
+            _ => reader.faults.push(
                 Fault::new(surface.place(), "a mask needs a texture with holes, and this has none")
                     .help("write { mask = \"grate\" }, or { wall = … } for a wall without holes"),
             ),
@@ -43,55 +40,49 @@ impl<'a> MaskSymbol<'a> {
 }
 
 /// Reads the glass in `entry` of `table`, with the opacity in the table.
-pub(super) fn glass(
-    entry: &Entry<'_, '_>,
-    table: &DeTable<'_>,
-    faults: &mut Vec<Fault>,
-) -> Option<Glass> {
-    let color = color(entry, GLASS_EXAMPLE, faults);
-    tinted(color, GLASS_OPACITY, table, faults)
+pub(super) fn glass(entry: &Entry<'_, '_>, table: &DeTable<'_>) -> Option<Glass> {
+    let color = color(entry, GLASS_EXAMPLE);
+    tinted(entry, table, color, GLASS_OPACITY)
 }
 
 /// Reads the tint of the mirror in `entry` of `table`, with the opacity in the table.
-pub(super) fn mirror(
-    entry: &Entry<'_, '_>,
-    table: &DeTable<'_>,
-    faults: &mut Vec<Fault>,
-) -> Option<Glass> {
+pub(super) fn mirror(entry: &Entry<'_, '_>, table: &DeTable<'_>) -> Option<Glass> {
     let color = match entry.value {
         DeValue::Boolean(true) => Some(SILVER),
-        _ => color(entry, MIRROR_EXAMPLE, faults),
+        _ => color(entry, MIRROR_EXAMPLE),
     };
-    tinted(color, MIRROR_OPACITY, table, faults)
+    tinted(entry, table, color, MIRROR_OPACITY)
 }
 
 /// Glass of that color, with the opacity in the table or else `usual_opacity`.
 fn tinted(
+    entry: &Entry<'_, '_>,
+    table: &DeTable<'_>,
     color: Option<Rgb>,
     usual_opacity: f64,
-    table: &DeTable<'_>,
-    faults: &mut Vec<Fault>,
 ) -> Option<Glass> {
-    let opacity = entries(table).find(|entry| entry.key == "opacity");
+    let opacity = entry.entries(table).find(|entry| entry.key == "opacity");
     let opacity = match opacity {
         None => usual_opacity,
-        Some(entry) => opacity_of(&entry, faults)?,
+        Some(entry) => opacity_of(&entry)?,
     };
     Some(Glass { color: color?, opacity: (opacity * 255.0).round() as u8 })
 }
 
-fn color(entry: &Entry<'_, '_>, example: &str, faults: &mut Vec<Fault>) -> Option<Rgb> {
-    let text = entry.string(example, faults)?;
+fn color(entry: &Entry<'_, '_>, example: &str) -> Option<Rgb> {
+    let text = entry.string(example)?;
     let color = text.parse();
     color
         .map_err(|error| {
             let message = format!("{} is not a colour for a tint", quoted(text));
-            faults.push(Fault::new(entry.value_place.clone(), message).help(format!("{error}")));
+            entry
+                .faults
+                .push(Fault::new(entry.value_place.clone(), message).help(format!("{error}")));
         })
         .ok()
 }
 
-fn opacity_of(entry: &Entry<'_, '_>, faults: &mut Vec<Fault>) -> Option<f64> {
+fn opacity_of(entry: &Entry<'_, '_>) -> Option<f64> {
     let opacity = match entry.value {
         DeValue::Integer(integer) => match integer.as_str() {
             "0" => 0.0,
@@ -104,7 +95,7 @@ fn opacity_of(entry: &Entry<'_, '_>, faults: &mut Vec<Fault>) -> Option<f64> {
     if (0.0..=1.0).contains(&opacity) {
         return Some(opacity);
     }
-    faults.push(
+    entry.faults.push(
         Fault::new(entry.value_place.clone(), "an opacity must be a number from 0 to 1")
             .label("this is none")
             .help("write 0 for clear glass, 1 for glass that hides what is behind it"),

@@ -2,8 +2,9 @@
 
 use toml::de::DeTable;
 
-use super::textures::{Surface, Textures};
-use crate::fault::document::{Entry, entries};
+use super::reader::Reader;
+use super::textures::Surface;
+use crate::fault::document::Entry;
 use crate::fault::{Fault, nearest, quoted};
 use crate::world::{Heights, Line, Outline, PillarRadius, Shape, ShapeHeight};
 
@@ -36,31 +37,27 @@ pub(super) struct ShapeSymbol<'a> {
 
 impl<'a> ShapeSymbol<'a> {
     /// Reads the shape in `entry` of `table`.
-    pub(super) fn read(
-        entry: &Entry<'a, '_>,
-        table: &DeTable<'_>,
-        faults: &mut Vec<Fault>,
-    ) -> Option<Self> {
+    pub(super) fn read(entry: &Entry<'a, '_>, table: &DeTable<'_>) -> Option<Self> {
         let (addition, example) = match entry.key {
             "pillar" => ("radius", r#"{ pillar = "marble", radius = 0.3 }"#),
             "diagonal" => ("from", r#"{ diagonal = "brick", from = "north-west" }"#),
             _ => ("at", r#"{ thin = "wood", at = "north" }"#),
         };
-        let surface = Surface::read(entry, example, faults);
-        let said = entries(table).find(|entry| entry.key == addition);
+        let surface = Surface::read(entry, example);
+        let said = entry.entries(table).find(|entry| entry.key == addition);
         let outline = match (addition, said) {
             ("radius", None) => Some(Outline::Pillar(DEFAULT_RADIUS)),
-            ("radius", Some(radius)) => read_radius(&radius, faults).map(Outline::Pillar),
+            ("radius", Some(radius)) => read_radius(&radius).map(Outline::Pillar),
             ("from", Some(corner)) => {
-                named(&corner, "corner", &CORNERS, example, faults).map(Outline::Line)
+                named(&corner, "corner", &CORNERS, example).map(Outline::Line)
             }
             (_, Some(place)) => {
-                named(&place, "place in a cell", &PLACES, example, faults).map(Outline::Line)
+                named(&place, "place in a cell", &PLACES, example).map(Outline::Line)
             }
             (_, None) => {
                 let message = format!("a {} wall does not say where it is", entry.key);
                 let fault = Fault::new(entry.key_place.clone(), message);
-                faults.push(
+                entry.faults.push(
                     fault
                         .label(format!("{} is missing", quoted(addition)))
                         .help(format!("write, for example, {example}")),
@@ -68,50 +65,40 @@ impl<'a> ShapeSymbol<'a> {
                 None
             }
         };
-        let height = entries(table).find(|entry| entry.key == "height");
-        let height = height.and_then(|height| read_height(&height, faults));
+        let height = entry.entries(table).find(|entry| entry.key == "height");
+        let height = height.and_then(|height| read_height(&height));
         Some(Self { outline: outline?, surface: surface?, height })
     }
 
     /// The shape with its texture.
-    pub(super) fn shape(
-        &self,
-        textures: &mut Textures<'_>,
-        faults: &mut Vec<Fault>,
-    ) -> Option<Shape> {
-        let paint = textures.paint(&self.surface, faults)?;
+    pub(super) fn shape(&self, reader: &mut Reader<'_>) -> Option<Shape> {
+        let paint = reader.paint(&self.surface)?;
         Some(Shape { outline: self.outline, paint, height: self.height })
     }
 }
 
-fn read_radius(entry: &Entry<'_, '_>, faults: &mut Vec<Fault>) -> Option<PillarRadius> {
+fn read_radius(entry: &Entry<'_, '_>) -> Option<PillarRadius> {
     let radius = entry.number().and_then(PillarRadius::new);
     if radius.is_none() {
         let message = "the radius of a pillar is above 0 and at most 0.5, half a cell";
-        faults.push(Fault::new(entry.value_place.clone(), message).label("this is not"));
+        entry.faults.push(Fault::new(entry.value_place.clone(), message).label("this is not"));
     }
     radius
 }
 
-fn read_height(entry: &Entry<'_, '_>, faults: &mut Vec<Fault>) -> Option<ShapeHeight> {
+fn read_height(entry: &Entry<'_, '_>) -> Option<ShapeHeight> {
     let height = entry.number().and_then(ShapeHeight::new);
     if height.is_none() {
         let most = Heights::MOST;
         let message = format!("the height of a shape is above 0 and at most {most} cells");
-        faults.push(Fault::new(entry.value_place.clone(), message).label("this is not"));
+        entry.faults.push(Fault::new(entry.value_place.clone(), message).label("this is not"));
     }
     height
 }
 
 /// Reads the line that `entry` names: one of `lines`, each of which is a `what`.
-fn named(
-    entry: &Entry<'_, '_>,
-    what: &str,
-    lines: &[(&str, Line)],
-    example: &str,
-    faults: &mut Vec<Fault>,
-) -> Option<Line> {
-    let name = entry.string(example, faults)?;
+fn named(entry: &Entry<'_, '_>, what: &str, lines: &[(&str, Line)], example: &str) -> Option<Line> {
+    let name = entry.string(example)?;
     let line = lines.iter().find(|(known, _)| *known == name);
     if line.is_none() {
         let names: Vec<&str> = lines.iter().map(|&(name, _)| name).collect();
@@ -120,7 +107,7 @@ fn named(
             None => format!("write one of {}", names.join(", ")),
         };
         let message = format!("{} is no {what}", quoted(name));
-        faults.push(Fault::new(entry.value_place.clone(), message).help(help));
+        entry.faults.push(Fault::new(entry.value_place.clone(), message).help(help));
     }
     line.map(|&(_, line)| line)
 }

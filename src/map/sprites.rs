@@ -6,8 +6,9 @@ use std::ops::Range;
 use toml::de::{DeTable, DeValue};
 
 use super::legend;
-use super::textures::{SheetError, Textures, is_png, stays_inside};
-use crate::fault::document::{Entry, entries};
+use super::reader::Reader;
+use super::textures::{SheetError, is_png, stays_inside};
+use crate::fault::document::Entry;
 use crate::fault::{Fault, nearest, quoted};
 use crate::world::sprite::builtin;
 use crate::world::{
@@ -47,15 +48,11 @@ pub(super) struct SpriteSymbol<'a> {
 
 impl<'a> SpriteSymbol<'a> {
     /// Reads the sprite in `entry` of `table`.
-    pub(super) fn read(
-        entry: &Entry<'a, '_>,
-        table: &'a DeTable<'_>,
-        faults: &mut Vec<Fault>,
-    ) -> Option<Self> {
-        let faults_before = faults.len();
-        let name = entry.string(r#"{ sprite = "plant" }"#, faults)?;
+    pub(super) fn read(entry: &Entry<'a, '_>, table: &'a DeTable<'_>) -> Option<Self> {
+        let faults_before = entry.faults.len();
+        let name = entry.string(r#"{ sprite = "plant" }"#)?;
         let place = entry.value_place.clone();
-        faults.extend(wrong_name(name, place.clone()));
+        entry.faults.extend(wrong_name(name, place.clone()));
         let mut symbol = Self {
             name,
             place,
@@ -69,64 +66,59 @@ impl<'a> SpriteSymbol<'a> {
             frames: None,
             facings: None,
         };
-        for entry in entries(table) {
-            symbol.take(&entry, faults);
+        for entry in entry.entries(table) {
+            symbol.take(&entry);
         }
-        (faults.len() == faults_before).then_some(symbol)
+        (entry.faults.len() == faults_before).then_some(symbol)
     }
 
-    fn take(&mut self, entry: &Entry<'a, '_>, faults: &mut Vec<Fault>) {
+    fn take(&mut self, entry: &Entry<'a, '_>) {
         let place = || entry.value_place.clone();
         match entry.key {
-            "anchor" => self.anchor = anchor(entry, faults),
-            "blocks" => self.blocks = boolean(entry, faults),
+            "anchor" => self.anchor = anchor(entry),
+            "blocks" => self.blocks = boolean(entry),
             "height" => {
                 let height = entry.number().and_then(SpriteHeight::new);
-                self.height = known(height, entry, "a number above 0 and up to 4", "0.5", faults);
+                self.height = known(height, entry, "a number above 0 and up to 4", "0.5");
             }
             "heading" => {
                 let heading = entry.number().and_then(Heading::from_degrees);
-                self.heading = known(heading, entry, "a finite number of degrees", "90", faults);
+                self.heading = known(heading, entry, "a finite number of degrees", "90");
             }
-            "light" => self.light = legend::light(entry, faults),
+            "light" => self.light = legend::light(entry),
             "reach" => {
                 let reach = entry.number().and_then(Reach::new);
-                self.reach = known(reach, entry, "a number of cells from 1 to 32", "5", faults);
+                self.reach = known(reach, entry, "a number of cells from 1 to 32", "5");
             }
             "frame_time" => {
                 let time = entry.number().and_then(FrameTime::new);
-                self.frame_time =
-                    known(time, entry, "a number of seconds from 0.05 to 60", "0.2", faults);
+                self.frame_time = known(time, entry, "a number of seconds from 0.05 to 60", "0.2");
             }
             "frames" => {
                 let is_count =
                     |&number: &f64| number.fract() == 0.0 && (1.0..=MOST_FRAMES).contains(&number);
                 let frames = entry.number().filter(is_count).map(|number| number as u32);
-                let frames = known(frames, entry, "a whole number from 1 to 64", "4", faults);
+                let frames = known(frames, entry, "a whole number from 1 to 64", "4");
                 self.frames = frames.map(|frames| (frames, place()));
             }
             "facings" => {
                 let count = entry.number().filter(|number| number.fract() == 0.0);
                 let facings = count.and_then(|count| Facings::new(count as u32));
-                let facings = known(facings, entry, "1, 4 or 8", "4", faults);
+                let facings = known(facings, entry, "1, 4 or 8", "4");
                 self.facings = facings.map(|facings| (facings, place()));
             }
             _ => {}
         }
     }
 
-    /// The sprite itself. Adds to `faults` where its sheet is missing or cannot be divided.
-    pub(super) fn sprite(
-        &self,
-        textures: &Textures<'_>,
-        faults: &mut Vec<Fault>,
-    ) -> Option<Sprite> {
+    /// The sprite itself. Reports a fault where its sheet is missing or cannot be divided.
+    pub(super) fn sprite(&self, reader: &mut Reader<'_>) -> Option<Sprite> {
         let mut sprite = match builtin::named(self.name) {
             Some(sprite) => {
-                faults.extend(self.cut_of_built_in());
+                reader.faults.extend(self.cut_of_built_in());
                 sprite
             }
-            None => self.cut(&self.sheet(textures, faults)?, faults)?,
+            None => self.cut(&self.sheet(reader)?, reader)?,
         };
         sprite.anchor = self.anchor.unwrap_or(sprite.anchor);
         sprite.blocks = self.blocks.unwrap_or(sprite.blocks);
@@ -151,18 +143,18 @@ impl<'a> SpriteSymbol<'a> {
         Some(Fault::new(place.clone(), message).help(format!("leave {key} out")))
     }
 
-    fn sheet(&self, textures: &Textures<'_>, faults: &mut Vec<Fault>) -> Option<Texture> {
-        let sheet = textures.sheet(self.name);
+    fn sheet(&self, reader: &mut Reader<'_>) -> Option<Texture> {
+        let sheet = reader.textures.sheet(self.name);
         sheet
             .map_err(|SheetError { why, help }| {
                 let message = format!("the sprite {} {why}", quoted(self.name));
-                faults.push(Fault::new(self.place.clone(), message).help(help));
+                reader.faults.push(Fault::new(self.place.clone(), message).help(help));
             })
             .ok()
     }
 
     /// Divides `sheet`: frames from left to right, facings from top to bottom.
-    fn cut(&self, sheet: &Texture, faults: &mut Vec<Fault>) -> Option<Sprite> {
+    fn cut(&self, sheet: &Texture, reader: &Reader<'_>) -> Option<Sprite> {
         let (frames, facings) = (self.frames.as_ref(), self.facings.as_ref());
         let facing_count = facings.map_or(1, |(facings, _)| facings.count());
         let frame_count = frames.map_or(1, |&(frames, _)| frames);
@@ -187,7 +179,7 @@ impl<'a> SpriteSymbol<'a> {
         let (width, height) = match (width, height) {
             (Ok(width), Ok(height)) => (width, height),
             (width, height) => {
-                faults.extend(width.err().into_iter().chain(height.err()));
+                reader.faults.extend(width.err().into_iter().chain(height.err()));
                 return None;
             }
         };
@@ -220,34 +212,28 @@ fn wrong_name(name: &str, place: Range<usize>) -> Option<Fault> {
     })
 }
 
-fn anchor(entry: &Entry<'_, '_>, faults: &mut Vec<Fault>) -> Option<Anchor> {
+fn anchor(entry: &Entry<'_, '_>) -> Option<Anchor> {
     let anchor = match entry.value {
         DeValue::String(text) if text == "floor" => Some(Anchor::Floor),
         DeValue::String(text) if text == "ceiling" => Some(Anchor::Ceiling),
         _ => None,
     };
-    known(anchor, entry, "\"floor\" or \"ceiling\"", "\"ceiling\"", faults)
+    known(anchor, entry, "\"floor\" or \"ceiling\"", "\"ceiling\"")
 }
 
-fn boolean(entry: &Entry<'_, '_>, faults: &mut Vec<Fault>) -> Option<bool> {
+fn boolean(entry: &Entry<'_, '_>) -> Option<bool> {
     let value = match entry.value {
         DeValue::Boolean(value) => Some(*value),
         _ => None,
     };
-    known(value, entry, "true or false", "true", faults)
+    known(value, entry, "true or false", "true")
 }
 
 /// `value`; if there is none, adds the fault that `entry` is not what is `wanted`.
-fn known<T>(
-    value: Option<T>,
-    entry: &Entry<'_, '_>,
-    wanted: &str,
-    example: &str,
-    faults: &mut Vec<Fault>,
-) -> Option<T> {
+fn known<T>(value: Option<T>, entry: &Entry<'_, '_>, wanted: &str, example: &str) -> Option<T> {
     if value.is_none() {
         let message = format!("{} must be {wanted}", quoted(entry.key));
-        faults.push(
+        entry.faults.push(
             Fault::new(entry.value_place.clone(), message)
                 .label("this is not")
                 .help(format!("write, for example, {} = {example}", entry.key)),

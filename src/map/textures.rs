@@ -8,7 +8,6 @@ mod surface;
 use std::collections::BTreeMap;
 
 use super::picture;
-use crate::color::Rgb;
 use crate::fault::{Fault, quoted};
 use crate::world::texture::builtin;
 use crate::world::{Paint, Texture, TextureId};
@@ -36,51 +35,27 @@ impl<'f> Textures<'f> {
         Self { files, list: Vec::new(), known: BTreeMap::new() }
     }
 
-    /// The paint for `surface`. Adds to `faults` where its texture is missing, once for each
+    /// The paint for `surface`. Reports a fault where its texture is missing, once for each
     /// texture.
-    pub(super) fn paint(
-        &mut self,
-        surface: &Surface<'_>,
-        faults: &mut Vec<Fault>,
-    ) -> Option<Paint> {
+    pub(super) fn paint(&mut self, surface: &Surface<'_>) -> Result<Paint, Option<Fault>> {
         match surface.source {
-            Source::Color(color) => Some(Paint::Color(color)),
+            Source::Color(color) => Ok(Paint::Color(color)),
             Source::BuiltIn(name) | Source::File(name) => {
-                self.texture(name, surface, faults).map(Paint::Texture)
+                self.texture(name, surface).map(Paint::Texture)
             }
         }
     }
 
-    fn texture(
-        &mut self,
-        name: &str,
-        surface: &Surface<'_>,
-        faults: &mut Vec<Fault>,
-    ) -> Option<TextureId> {
-        match self.known.get(name) {
-            Some(id) => *id,
-            None => self.add(name, surface, faults),
+    fn texture(&mut self, name: &str, surface: &Surface<'_>) -> Result<TextureId, Option<Fault>> {
+        if let Some(id) = self.known.get(name) {
+            return id.ok_or(None);
         }
-    }
-
-    fn add(
-        &mut self,
-        name: &str,
-        surface: &Surface<'_>,
-        faults: &mut Vec<Fault>,
-    ) -> Option<TextureId> {
-        let id = match self.make(name, surface) {
-            Ok(texture) => {
-                self.list.push(texture);
-                Some(TextureId(self.list.len() as u16 - 1))
-            }
-            Err(fault) => {
-                faults.push(fault);
-                None
-            }
-        };
-        self.known.insert(name.to_owned(), id);
-        id
+        let made = self.make(name, surface).map(|texture| {
+            self.list.push(texture);
+            TextureId(self.list.len() as u16 - 1)
+        });
+        self.known.insert(name.to_owned(), made.as_ref().ok().copied());
+        made.map_err(Some)
     }
 
     fn make(&self, name: &str, surface: &Surface<'_>) -> Result<Texture, Fault> {
@@ -104,13 +79,6 @@ impl<'f> Textures<'f> {
         })?;
         picture::decode(&bytes)
             .map_err(|error| SheetError { why: error.to_string(), help: error.help() })
-    }
-
-    /// The texture of the walls on both sides of a door.
-    pub(super) fn jamb(&mut self) -> Paint {
-        let surface = Surface { source: Source::BuiltIn("jamb"), place: 0..0 };
-        // It is built in, and has no fault.
-        self.paint(&surface, &mut Vec::new()).unwrap_or(Paint::Color(Rgb::BLACK))
     }
 
     /// A texture that [`Textures::paint`] returned.

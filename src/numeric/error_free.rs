@@ -5,7 +5,7 @@
 //! product. The fused multiply-add, which gives the error of a product in one instruction, was refused:
 //! processors without it emulate it slowly.
 
-/// TwoSum: the rounded sum of `a` and `b`, and its error. The two add up to `a + b` exactly.
+/// `TwoSum`: the rounded sum of `a` and `b`, and its error. The two add up to `a + b` exactly.
 #[inline]
 pub(crate) fn two_sum(a: f64, b: f64) -> [f64; 2] {
     let sum = a + b;
@@ -14,7 +14,7 @@ pub(crate) fn two_sum(a: f64, b: f64) -> [f64; 2] {
     [sum, (a - of_a) + (b - of_b)]
 }
 
-/// TwoProduct: the rounded product of `a` and `b`, and its error. The two add up to `a * b` exactly, where
+/// `TwoProduct`: the rounded product of `a` and `b`, and its error. The two add up to `a * b` exactly, where
 /// neither factor is larger than 10³⁰⁰ and the error is no smaller than the least double.
 #[inline]
 pub(crate) fn two_product(a: f64, b: f64) -> [f64; 2] {

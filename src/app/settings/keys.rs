@@ -8,7 +8,8 @@ use std::ops::Range;
 use toml::de::{DeTable, DeValue};
 
 use crate::app::bindings::Action;
-use crate::fault::{Fault, document, quoted};
+use crate::fault::document::Entry;
+use crate::fault::{Fault, quoted};
 use crate::terminal::Key;
 
 /// What the table binds.
@@ -20,13 +21,13 @@ pub(super) struct Bound {
 }
 
 /// What the table `[keys]` binds.
-pub(super) fn read(table: &DeTable, faults: &mut Vec<Fault>) -> Bound {
+pub(super) fn read(owner: &Entry<'_, '_>, table: &DeTable<'_>) -> Bound {
     const EXAMPLE: &str = "forward = [\"z\", \"up\"]";
     let names = Action::ALL.map(|(name, ..)| name);
     let mut bound = Bound::default();
-    for entry in document::entries(table) {
+    for entry in owner.entries(table) {
         let Some(action) = Action::named(entry.key) else {
-            faults.push(entry.unknown_key("the table of keys", &names));
+            entry.faults.push(entry.unknown_key("the table of keys", &names));
             continue;
         };
         bound.actions.push(action);
@@ -38,15 +39,17 @@ pub(super) fn read(table: &DeTable, faults: &mut Vec<Fault>) -> Bound {
         };
         for (value, place) in values {
             let Some(name) = value.as_str() else {
-                faults.push(entry.wrong_type("the name of a key, or a list of names", EXAMPLE));
+                entry
+                    .faults
+                    .push(entry.wrong_type("the name of a key, or a list of names", EXAMPLE));
                 break;
             };
             match name.parse::<Key>() {
                 Err(error) => {
-                    faults.push(Fault::new(place, error.to_string()).label("unknown key"));
+                    entry.faults.push(Fault::new(place, error.to_string()).label("unknown key"));
                 }
                 Ok(key) if bound.keys.iter().any(|&(other, to)| other == key && to != action) => {
-                    faults.push(bound_twice(key, place));
+                    entry.faults.push(bound_twice(key, place));
                 }
                 Ok(key) => bound.keys.push((key, action)),
             }

@@ -1,13 +1,13 @@
-//! Which two colours of a palette, side by side, look like a given one from a little farther away.
+//! Dithering: the two colours of a palette that look like a third one where they stand side by side.
 //!
-//! Of every pair of colours that are near the wanted one, in each of a few shares, the one is taken whose
-//! sum of light looks nearest, in Oklab; what differs between the two counts as well, since it shows as dots. A
-//! colour of another hue than the wanted one is in no mixture: grey and one hue reach all that is
-//! between them, and a green dot in a brick is seen. The idea is Joel Yliluoma's ("Arbitrary-palette positional dithering
-//! algorithm", 2011). Sets of four colours were refused: a little nearer, but twice the bytes.
+//! The search takes each pair of colours near the wanted one, in a few proportions, and keeps the pair whose
+//! mixed light is nearest in Oklab. The contrast of the two adds to their cost, since it shows as dots. A
+//! colour of another hue than the wanted one is in no mixture: grey and one hue reach all colours
+//! between them, and a green dot in a brick is visible. Source: Joel Yliluoma, "Arbitrary-palette positional dithering
+//! algorithm" (2011). Sets of four colours were refused: they are a little nearer, but take twice the bytes.
 //!
-//! A mixture is looked up by the upper six bits of each channel, and found when it is first asked for:
-//! some hundreds of them are in a picture, and all 262,144 would take seconds.
+//! A mixture is looked up by the upper six bits of each channel, and computed at its first look-up:
+//! a picture has some hundreds of them, and all 262,144 take seconds.
 
 use std::array;
 use std::sync::LazyLock;
@@ -18,77 +18,77 @@ use crate::color::oklab::{self, Oklab};
 use crate::color::srgb::linear;
 use crate::color::{Rgb, product};
 
-/// Two colours and how much there is of each.
+/// Two colours and their proportion.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub(crate) struct Mixture {
     /// The indices of the darker and of the brighter colour.
     pub(crate) colors: [u8; 2],
-    /// So many of [`Mixture::WHOLE`] pixels have the brighter one; fewer than all.
+    /// The number of pixels with the brighter colour among [`Mixture::WHOLE`], and fewer than that.
     pub(crate) share: u8,
-    /// The index of the one colour to show where there is room for one only.
+    /// The index of the best single colour, for pixels that cannot be mixed.
     pub(crate) single: u8,
 }
 
 impl Mixture {
-    /// How many pixels a mixture is made for.
+    /// The number of pixels that a mixture is made for.
     pub(crate) const WHOLE: u8 = 4;
     const NONE: Self = Self { colors: [0; 2], share: 0, single: 0 };
 }
 
-/// The mixtures for all colours, each found when it is first asked for.
+/// The mixtures for all colours, each computed at its first look-up.
 pub(crate) struct Mixtures {
     palette: fn() -> Palette,
     entries: [AtomicU32; 1 << (3 * BITS)],
 }
 
-/// So many bits of each channel are told apart.
+/// The upper bits of each channel that the table distinguishes.
 pub(crate) const BITS: u32 = 6;
-/// Entries that have been found have this bit in their uppermost byte, beside the share.
+/// The bit that marks a computed entry, in its uppermost byte, beside the share.
 const FOUND: u8 = 1 << 7;
 
 /// The mixtures of the 240 fixed colours of xterm.
 pub(crate) static OF_256: Mixtures = Mixtures::new(|| {
     static PALETTE: LazyLock<Vec<Paint>> =
         LazyLock::new(|| (CUBE..=u8::MAX).map(Paint::of).collect());
-    Palette { paints: &PALETTE, taste: FINE }
+    Palette { paints: &PALETTE, weights: FINE }
 });
 
-/// The mixtures of twelve of the 16 named colours. Cyan and magenta are the hue of next to nothing in a room, and glare
-/// as stray dots where stone is a little blue.
+/// The mixtures of twelve of the 16 named colours, without cyan and magenta: next to nothing in a room has their hues, and
+/// they glare as stray dots where stone is a little blue.
 pub(crate) static OF_16: Mixtures = Mixtures::new(|| {
     const LEFT_OUT: [u8; 4] = [5, 6, 13, 14];
     static PALETTE: LazyLock<Vec<Paint>> = LazyLock::new(|| {
         (0..CUBE).filter(|index| !LEFT_OUT.contains(index)).map(Paint::of).collect()
     });
-    Palette { paints: &PALETTE, taste: COARSE }
+    Palette { paints: &PALETTE, weights: COARSE }
 });
 
-/// What is mixed, and how.
+/// The colours to mix, and the weights of the search.
 #[derive(Clone, Copy)]
 struct Palette {
     paints: &'static [Paint],
-    taste: Taste,
+    weights: Weights,
 }
 
-/// What counts how much.
+/// The weights and limits of the search.
 #[derive(Clone, Copy)]
-struct Taste {
-    /// Of a difference in chroma, over one in lightness: of mixtures, and of single colours, which would
-    /// else be grey too often.
+struct Weights {
+    /// The weight of a difference in chroma over one in lightness, for mixtures.
     chroma: f32,
+    /// The same for single colours.
     single: f32,
-    /// Of the differences in lightness and in chroma between the two colours.
+    /// The weights of the differences in lightness and in chroma between the two colours.
     contrast: [f32; 2],
-    /// How near the hue must be, as a cosine.
+    /// The least cosine of the angle between two hues in one mixture.
     hue: f32,
-    /// What has less chroma is mixed of greys only.
+    /// The chroma below which a colour is mixed of greys only.
     least_chroma: f32,
-    /// How much more chroma a colour of a mixture may have than the wanted one: what has more glares as dots.
+    /// The most chroma that a colour of a mixture may have beyond the wanted one: with more it glares as dots.
     most_excess: f32,
 }
 
 /// Found by trying, with `cellcaster wire --palette 256`.
-const FINE: Taste = Taste {
+const FINE: Weights = Weights {
     chroma: 2.0,
     single: 1.0,
     contrast: [0.03, 0.01],
@@ -96,8 +96,8 @@ const FINE: Taste = Taste {
     least_chroma: 0.005,
     most_excess: 0.1,
 };
-/// Of a few glaring colours, which users give shades of their own, as few as possible.
-const COARSE: Taste = Taste {
+/// These use as few as possible of the glaring colours, which users redefine.
+const COARSE: Weights = Weights {
     chroma: 1.0,
     single: 1.0,
     contrast: [0.008, 0.02],
@@ -106,9 +106,9 @@ const COARSE: Taste = Taste {
     most_excess: 1.0,
 };
 
-/// So many colours are considered for a mixture: those that are nearest.
+/// The number of nearest colours that are considered for a mixture.
 const CONSIDERED: usize = 40;
-/// What has less chroma is grey, and of every hue.
+/// The chroma below which a colour is grey, and fits every hue.
 const GREY: f32 = 0.01;
 
 /// A colour of the palette.
@@ -144,7 +144,7 @@ impl Mixtures {
         let place = [red, green, blue]
             .iter()
             .fold(0, |place, &channel| place << BITS | usize::from(channel) & mask);
-        // Whoever finds an entry finds the same one, so it does not matter who is first.
+        // Every thread computes the same entry, so it does not matter which one is first.
         let known = self.entries[place].load(Ordering::Relaxed);
         let entry = if known == 0 { self.find(place, [red, green, blue]) } else { known };
         let [share, single, darker, brighter] = entry.to_be_bytes();
@@ -168,7 +168,7 @@ impl Palette {
         let Target { considered, count } = Target::new(color, self);
         let considered = &considered[..count];
         let single = considered.iter().min_by(|one, other| {
-            let alone = |candidate: &Candidate| cost(candidate.error, self.taste.single);
+            let alone = |candidate: &Candidate| cost(candidate.error, self.weights.single);
             alone(one).total_cmp(&alone(other))
         });
         let mut best = Mixture { single: single.map_or(0, |single| single.index), ..Mixture::NONE };
@@ -180,7 +180,7 @@ impl Palette {
             }
         };
         for (place, one) in considered.iter().enumerate() {
-            consider(cost(one.error, self.taste.chroma), [one.index; 2], 0);
+            consider(cost(one.error, self.weights.chroma), [one.index; 2], 0);
             for other in &considered[place + 1..] {
                 let contrast = self.contrast(one, other);
                 for share in 1..Mixture::WHOLE {
@@ -188,7 +188,7 @@ impl Palette {
                     let error =
                         array::from_fn(|i| one.error[i] + (other.error[i] - one.error[i]) * part);
                     let price =
-                        cost(error, self.taste.chroma) + contrast * 4.0 * part * (1.0 - part);
+                        cost(error, self.weights.chroma) + contrast * 4.0 * part * (1.0 - part);
                     if one.lab[0] <= other.lab[0] {
                         consider(price, [one.index, other.index], share);
                     } else {
@@ -202,11 +202,11 @@ impl Palette {
 
     fn contrast(&self, one: &Candidate, other: &Candidate) -> f32 {
         let square = |index: usize| (one.lab[index] - other.lab[index]).powi(2);
-        self.taste.contrast[0] * square(0) + self.taste.contrast[1] * (square(1) + square(2))
+        self.weights.contrast[0] * square(0) + self.weights.contrast[1] * (square(1) + square(2))
     }
 }
 
-/// What an error costs where one in chroma counts so much.
+/// The cost of an error, with the weight of an error in chroma.
 fn cost([lightness, red, yellow]: [f32; 3], chroma: f32) -> f32 {
     lightness * lightness + chroma * chroma * (red * red + yellow * yellow)
 }
@@ -217,8 +217,8 @@ struct Target {
     count: usize,
 }
 
-/// A colour that may be in a mixture, and how far it is from the wanted one. Errors of a mixture are the
-/// mixed errors of its colours, since they are as cones take them, and only scaled as people see them.
+/// A colour that may be in a mixture, and its error against the wanted one. Errors are linear in light, and only scaled
+/// to Oklab, so the error of a mixture is the mixture of the errors.
 #[derive(Clone, Copy, Default)]
 struct Candidate {
     index: u8,
@@ -228,7 +228,7 @@ struct Candidate {
 }
 
 impl Target {
-    fn new(color: Rgb, Palette { paints, taste }: Palette) -> Self {
+    fn new(color: Rgb, Palette { paints, weights }: Palette) -> Self {
         let light = linear(color);
         let Oklab(wanted) = Oklab::from_linear(light);
         let wanted = wanted.map(|part| part as f32);
@@ -244,9 +244,9 @@ impl Target {
             let cosine = lab[1] * wanted[1] + lab[2] * wanted[2];
             let its_chroma = chroma(lab);
             its_chroma < GREY
-                || own_chroma >= taste.least_chroma
-                    && its_chroma <= own_chroma + taste.most_excess
-                    && cosine >= taste.hue * its_chroma * own_chroma
+                || own_chroma >= weights.least_chroma
+                    && its_chroma <= own_chroma + weights.most_excess
+                    && cosine >= weights.hue * its_chroma * own_chroma
         };
         let from_cone_roots = oklab::FROM_CONE_ROOTS.map(|row| row.map(|factor| factor as f32));
         let mut considered = [Candidate::default(); CONSIDERED];
@@ -273,49 +273,4 @@ impl Target {
 }
 
 #[cfg(test)]
-mod tests {
-    use super::*;
-
-    fn mixture(red: u8, green: u8, blue: u8) -> Mixture {
-        OF_256.of([red, green, blue].map(|channel| channel >> (u8::BITS - BITS)))
-    }
-
-    #[test]
-    fn dark_bricks_are_mixed_of_red_and_grey() {
-        let Mixture { colors, share, .. } = mixture(80, 32, 24);
-        let [darker, brighter] = colors.map(|index| Oklab::from(of_256(index)));
-        assert!(share > 0 && share < Mixture::WHOLE);
-        assert!(darker.0[0] <= brighter.0[0]);
-        assert!(darker.0[1].max(brighter.0[1]) > 0.05, "{colors:?}");
-    }
-
-    #[test]
-    fn greys_are_mixed_of_greys() {
-        for level in (0..=255).step_by(4) {
-            let Mixture { colors, single, .. } = mixture(level, level, level);
-            for index in [colors[0], colors[1], single] {
-                let [red, green, blue] = of_256(index).channels();
-                assert!(red == green && green == blue, "{level}: {index}");
-            }
-        }
-    }
-
-    #[test]
-    fn a_mixture_looks_more_like_the_colour_than_the_nearest_colour_does() {
-        let mut better = 0;
-        for color in [[100, 40, 30], [90, 80, 60], [60, 90, 120], [140, 130, 115], [40, 60, 40]] {
-            let wanted = Oklab::from(Rgb::new(color[0], color[1], color[2]));
-            let [red, green, blue] = color;
-            let Mixture { colors, share, .. } = mixture(red, green, blue);
-            let part = f64::from(share) / f64::from(Mixture::WHOLE);
-            let [darker, brighter] = colors.map(|index| linear(of_256(index)));
-            let mixed: [f64; 3] = array::from_fn(|i| darker[i] + (brighter[i] - darker[i]) * part);
-            let mixed = Oklab::from_linear(mixed).distance_squared(&wanted);
-            let nearest = (CUBE..=u8::MAX)
-                .map(|index| Oklab::from(of_256(index)).distance_squared(&wanted))
-                .fold(f64::INFINITY, f64::min);
-            better += u32::from(mixed < 0.5 * nearest);
-        }
-        assert!(better >= 4, "{better} of 5");
-    }
-}
+mod tests;

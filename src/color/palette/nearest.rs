@@ -1,6 +1,6 @@
-//! Which colour of a palette looks nearest to any colour.
+//! The nearest colour of a palette to any colour, from a table.
 //!
-//! Nearness is distance in Oklab. Squared distance of the channels, weighted or not, was refused: in a
+//! Distance is measured in Oklab. Squared distance of the channels, weighted or not, was refused: in a
 //! palette with few dark colours it takes dark bricks for grey and wood for pink.
 
 use std::ops::RangeInclusive;
@@ -11,21 +11,21 @@ use super::of_256;
 use crate::color::Rgb;
 use crate::color::oklab::Oklab;
 
-/// How much of each channel is told apart: 5 bits of 8.
+/// The upper bits of each channel that the table distinguishes.
 const BITS: u32 = 5;
 const DROPPED_BITS: u32 = u8::BITS - BITS;
-/// Entries that have been found have this bit.
+/// The bit that marks a computed entry.
 const FOUND: u16 = 1 << 15;
 
-/// The index of the nearest colour for every colour, by the upper bits of its channels. Each is found when it is first
-/// asked for: all of them would take some milliseconds, which a program that draws one picture does not have.
+/// The index of the nearest colour for every colour, by the upper bits of its channels. An entry is computed when it is
+/// first looked up: all of them take some milliseconds, which is long for a program that draws one picture.
 pub(super) struct NearestColors {
     palette: LazyLock<Vec<(u8, Oklab)>>,
     entries: [AtomicU16; 1 << (3 * BITS)],
 }
 
 impl NearestColors {
-    /// The table for colours that [`palette`] has made.
+    /// The table for a palette that [`palette`] makes.
     #[expect(clippy::large_stack_arrays, reason = "it is made when the program is compiled")]
     pub(super) const fn among(palette: fn() -> Vec<(u8, Oklab)>) -> Self {
         Self {
@@ -34,7 +34,7 @@ impl NearestColors {
         }
     }
 
-    /// The index of the one that is nearest to `color`.
+    /// The index of the colour nearest to `color`.
     #[inline]
     pub(super) fn of(&self, color: Rgb) -> u8 {
         let place = color
@@ -61,7 +61,7 @@ impl NearestColors {
     }
 }
 
-/// Those of the 256 colours.
+/// The colours with these indices among the 256, in Oklab.
 pub(super) fn palette(indices: RangeInclusive<u8>) -> Vec<(u8, Oklab)> {
     indices.map(|index| (index, Oklab::from(of_256(index)))).collect()
 }

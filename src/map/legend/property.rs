@@ -18,7 +18,6 @@ pub(super) fn property<'a>(
     section: Section,
     entry: &Entry<'a, '_>,
     table: &'a DeTable<'_>,
-    faults: &mut Vec<Fault>,
 ) -> Option<Meaning<'a>> {
     let is_addition = |(key, to): (&str, &str)| key == entry.key && table.contains_key(to);
     if section.additions().any(is_addition) {
@@ -26,40 +25,38 @@ pub(super) fn property<'a>(
     }
     match (section, entry.key) {
         (Section::Tiles, "wall") => {
-            let surface = Surface::read(entry, r#"{ wall = "brick" }"#, faults);
-            let height = heights::of_wall(table, faults);
+            let surface = Surface::read(entry, r#"{ wall = "brick" }"#);
+            let height = heights::of_wall(entry, table);
             surface.map(|surface| Meaning::Wall(surface, height))
         }
-        (Section::Tiles, "door") => DoorSymbol::read(entry, table, faults).map(Meaning::Door),
-        (Section::Tiles, "mask") => MaskSymbol::read(entry, faults).map(Meaning::Mask),
-        (Section::Tiles, "glass") => see_through::glass(entry, table, faults).map(Meaning::Glass),
+        (Section::Tiles, "door") => DoorSymbol::read(entry, table).map(Meaning::Door),
+        (Section::Tiles, "mask") => MaskSymbol::read(entry).map(Meaning::Mask),
+        (Section::Tiles, "glass") => see_through::glass(entry, table).map(Meaning::Glass),
         (Section::Tiles, "mirror") => {
-            let tint = see_through::mirror(entry, table, faults);
-            let height = heights::of_wall(table, faults);
+            let tint = see_through::mirror(entry, table);
+            let height = heights::of_wall(entry, table);
             tint.map(|tint| Meaning::Mirror(tint, height))
         }
         (Section::Tiles, "pillar" | "diagonal" | "thin") => {
-            ShapeSymbol::read(entry, table, faults).map(Meaning::Shape)
+            ShapeSymbol::read(entry, table).map(Meaning::Shape)
         }
         (Section::Things, "key") => {
-            KeySymbol::read(entry, r#"{ key = "brass" }"#, faults).map(Meaning::Key)
+            KeySymbol::read(entry, r#"{ key = "brass" }"#).map(Meaning::Key)
         }
-        (Section::Things, "sprite") => {
-            SpriteSymbol::read(entry, table, faults).map(Meaning::Ornament)
-        }
-        (Section::Things, "start") => Some(Meaning::Start(heading(entry, faults)?)),
-        (Section::Things, "exit") => exit(entry, faults),
+        (Section::Things, "sprite") => SpriteSymbol::read(entry, table).map(Meaning::Ornament),
+        (Section::Things, "start") => Some(Meaning::Start(heading(entry)?)),
+        (Section::Things, "exit") => exit(entry),
         _ => {
-            faults.push(section.unknown_property(entry));
+            entry.faults.push(section.unknown_property(entry));
             None
         }
     }
 }
 
-fn heading(entry: &Entry<'_, '_>, faults: &mut Vec<Fault>) -> Option<Heading> {
+fn heading(entry: &Entry<'_, '_>) -> Option<Heading> {
     let heading = entry.number().and_then(Heading::from_degrees);
     if heading.is_none() {
-        faults.push(
+        entry.faults.push(
             Fault::new(entry.value_place.clone(), "a heading must be a finite number of degrees")
                 .label("this is none")
                 .help("write 0 for east, 90 for south, 180 for west, 270 for north"),
@@ -69,10 +66,10 @@ fn heading(entry: &Entry<'_, '_>, faults: &mut Vec<Fault>) -> Option<Heading> {
 }
 
 /// Reads a light, a number from 0 to 1.
-pub(in crate::map) fn light(entry: &Entry<'_, '_>, faults: &mut Vec<Fault>) -> Option<Light> {
+pub(in crate::map) fn light(entry: &Entry<'_, '_>) -> Option<Light> {
     let light = entry.number().and_then(Light::new);
     if light.is_none() {
-        faults.push(
+        entry.faults.push(
             Fault::new(entry.value_place.clone(), "a light must be a number from 0 to 1")
                 .label("this is none")
                 .help("write 0 for darkness, 1 for full brightness"),
@@ -81,11 +78,11 @@ pub(in crate::map) fn light(entry: &Entry<'_, '_>, faults: &mut Vec<Fault>) -> O
     light
 }
 
-fn exit<'a>(entry: &Entry<'a, '_>, faults: &mut Vec<Fault>) -> Option<Meaning<'a>> {
+fn exit<'a>(entry: &Entry<'a, '_>) -> Option<Meaning<'a>> {
     if let DeValue::Boolean(true) = entry.value {
         return Some(Meaning::Exit);
     }
-    faults.push(
+    entry.faults.push(
         Fault::new(entry.value_place.clone(), "\"exit\" must be true")
             .help("write { exit = true }"),
     );

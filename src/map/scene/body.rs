@@ -7,7 +7,7 @@ use toml::de::DeTable;
 
 use super::{coordinates, tables, vector};
 use crate::color::Rgb;
-use crate::fault::document::{Entry, entries};
+use crate::fault::document::Entry;
 use crate::fault::{Fault, quoted};
 use crate::map::air;
 use crate::space::{Block, Body, Coat, FARTHEST, Plane, SMALLEST, Shape, Sphere};
@@ -41,11 +41,11 @@ impl Kind {
         }
     }
 
-    /// Reads the bodies of `entry`; adds faults to `faults`.
-    pub(super) fn read_all(self, entry: &Entry<'_, '_>, faults: &mut Vec<Fault>) -> Vec<Body> {
-        tables(entry, self.example(), faults)
+    /// Reads the bodies of `entry`; reports its faults.
+    pub(super) fn read_all(self, entry: &Entry<'_, '_>) -> Vec<Body> {
+        tables(entry, self.example())
             .into_iter()
-            .filter_map(|(table, place)| self.read(table, place, faults))
+            .filter_map(|(table, place)| self.read(entry, table, place))
             .collect()
     }
 
@@ -74,10 +74,10 @@ impl Kind {
         }
     }
 
-    fn read(self, table: &DeTable, place: Range<usize>, faults: &mut Vec<Fault>) -> Option<Body> {
-        let faults_before = faults.len();
-        let said = self.read_entries(table, faults);
-        if faults.len() > faults_before {
+    fn read(self, entry: &Entry<'_, '_>, table: &DeTable<'_>, place: Range<usize>) -> Option<Body> {
+        let faults_before = entry.faults.len();
+        let said = self.read_entries(entry, table);
+        if entry.faults.len() > faults_before {
             return None;
         }
         let fault = |message: String| {
@@ -92,7 +92,7 @@ impl Kind {
                 (fault(format!("{} {message}", self.name())), None)
             }
         };
-        faults.extend(fault);
+        entry.faults.extend(fault);
         body
     }
 
@@ -104,32 +104,34 @@ impl Kind {
         }
     }
 
-    fn read_entries(self, table: &DeTable, faults: &mut Vec<Fault>) -> Said {
+    fn read_entries(self, entry: &Entry<'_, '_>, table: &DeTable<'_>) -> Said {
         let (vectors, number) = self.shape_keys();
         let mut said = Said::default();
-        for entry in entries(table) {
+        for entry in entry.entries(table) {
             if let Some(&key) = vectors.iter().find(|&&key| key == entry.key) {
                 let vector = if key == "normal" {
-                    vector::direction(&entry, "normal = [0, 0, 1]", faults)
+                    vector::direction(&entry, "normal = [0, 0, 1]")
                 } else {
-                    vector::place(&entry, faults)
+                    vector::place(&entry)
                 };
                 said.vectors.extend(vector.map(|vector| (key, vector)));
                 continue;
             }
             match entry.key {
-                "color" => said.color = air::color(&entry, r##"color = "#c04030""##, faults),
-                "checker" => said.checker = checker(&entry, faults),
-                "scale" => said.scale = scale(&entry, faults),
+                "color" => said.color = air::color(&entry, r##"color = "#c04030""##),
+                "checker" => said.checker = checker(&entry),
+                "scale" => said.scale = scale(&entry),
                 key if key == number => match entry.number() {
                     Some(found) => said.number = Some((found, entry.value_place)),
-                    None => faults.push(entry.wrong_type("a number", &format!("{key} = 1.0"))),
+                    None => {
+                        entry.faults.push(entry.wrong_type("a number", &format!("{key} = 1.0")));
+                    }
                 },
                 _ => {
                     let known = [vectors, &["color", "checker", "scale"]].concat();
                     let own = (!number.is_empty()).then_some(number);
                     let known: Vec<&str> = own.into_iter().chain(known).collect();
-                    faults.push(entry.unknown_key(self.name(), &known));
+                    entry.faults.push(entry.unknown_key(self.name(), &known));
                 }
             }
         }
@@ -164,18 +166,17 @@ impl Said {
     }
 }
 
-fn checker(entry: &Entry<'_, '_>, faults: &mut Vec<Fault>) -> Option<[Rgb; 2]> {
+fn checker(entry: &Entry<'_, '_>) -> Option<[Rgb; 2]> {
     let example = r##"checker = ["#e0e0e0", "#404040"]"##;
-    let [one, other] =
-        entry.pair(example, faults)?.map(|entry| air::color(&entry, example, faults));
+    let [one, other] = entry.pair(example)?.map(|entry| air::color(&entry, example));
     Some([one?, other?])
 }
 
-fn scale(entry: &Entry<'_, '_>, faults: &mut Vec<Fault>) -> Option<Scale> {
+fn scale(entry: &Entry<'_, '_>) -> Option<Scale> {
     let scale = entry.number().and_then(Scale::new);
     if scale.is_none() {
         let message = format!("{} must be a finite number above 0", quoted(entry.key));
-        faults.push(Fault::new(entry.value_place.clone(), message).help("write scale = 1.0"));
+        entry.faults.push(Fault::new(entry.value_place.clone(), message).help("write scale = 1.0"));
     }
     scale
 }

@@ -28,24 +28,20 @@ impl<'a> Surface<'a> {
         Self { source: Source::Color(color), place: 0..0 }
     }
 
-    /// Reads the surface in `entry`; adds to `faults` where there is none. `example` is a whole
-    /// entry.
-    pub(in crate::map) fn read(
-        entry: &Entry<'a, '_>,
-        example: &str,
-        faults: &mut Vec<Fault>,
-    ) -> Option<Self> {
-        let text = entry.string(example, faults)?;
-        Self::from_source(Source::read(text, entry.value_place.clone()), entry, faults)
+    /// The walls that a door is set between.
+    pub(in crate::map) fn jamb() -> Self {
+        Self { source: Source::BuiltIn("jamb"), place: 0..0 }
+    }
+
+    /// Reads the surface in `entry`; reports a fault where there is none. `example` is a whole entry.
+    pub(in crate::map) fn read(entry: &Entry<'a, '_>, example: &str) -> Option<Self> {
+        let text = entry.string(example)?;
+        Self::from_source(Source::read(text, entry.value_place.clone()), entry)
     }
 
     /// Reads the panorama in `entry`, as [`Surface::read`].
-    pub(in crate::map) fn read_panorama(
-        entry: &Entry<'a, '_>,
-        example: &str,
-        faults: &mut Vec<Fault>,
-    ) -> Option<Self> {
-        let text = entry.string(example, faults)?;
+    pub(in crate::map) fn read_panorama(entry: &Entry<'a, '_>, example: &str) -> Option<Self> {
+        let text = entry.string(example)?;
         let place = entry.value_place.clone();
         let source = if builtin::PANORAMAS.contains(&text) {
             Ok(Source::BuiltIn(text))
@@ -54,18 +50,14 @@ impl<'a> Surface<'a> {
         } else {
             Err(unknown_panorama(text, place))
         };
-        Self::from_source(source, entry, faults)
+        Self::from_source(source, entry)
     }
 
-    fn from_source(
-        source: Result<Source<'a>, Fault>,
-        entry: &Entry<'_, '_>,
-        faults: &mut Vec<Fault>,
-    ) -> Option<Self> {
+    fn from_source(source: Result<Source<'a>, Fault>, entry: &Entry<'_, '_>) -> Option<Self> {
         match source {
             Ok(source) => Some(Self { source, place: entry.value_place.clone() }),
             Err(fault) => {
-                faults.push(fault);
+                entry.faults.push(fault);
                 None
             }
         }

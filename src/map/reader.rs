@@ -1,0 +1,32 @@
+//! The reader: what all stages after the definitions share.
+
+use super::textures::{Surface, TextureFiles, Textures};
+use crate::color::Rgb;
+use crate::fault::document::FaultList;
+use crate::world::Paint;
+
+/// A map's text, the faults found in it, and the textures that it uses.
+pub(super) struct Reader<'m> {
+    pub(super) text: &'m str,
+    pub(super) faults: &'m FaultList,
+    pub(super) textures: Textures<'m>,
+}
+
+impl<'m> Reader<'m> {
+    /// A reader of `text` whose textures come from `files` where they are not built in.
+    pub(super) fn new(text: &'m str, faults: &'m FaultList, files: &'m dyn TextureFiles) -> Self {
+        Self { text, faults, textures: Textures::new(files) }
+    }
+
+    /// The paint for `surface`. Where its texture cannot be had, that is reported, once
+    /// for each texture.
+    pub(super) fn paint(&mut self, surface: &Surface<'_>) -> Option<Paint> {
+        self.textures.paint(surface).map_err(|fault| self.faults.extend(fault)).ok()
+    }
+
+    /// The texture of the walls that a door is set between.
+    pub(super) fn jamb(&mut self) -> Paint {
+        // It is built in, so no fault is found with it.
+        self.paint(&Surface::jamb()).unwrap_or(Paint::Color(Rgb::BLACK))
+    }
+}
