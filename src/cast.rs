@@ -73,8 +73,8 @@ pub use ray::{NotARay, Ray};
 pub(crate) use shape::Passage;
 pub(crate) use sweep::Sweep;
 pub use table::Table;
+pub(crate) use walk::{Crossed, MirrorTransform, MirroredWalk};
 pub use walk::{Crossing, Order, Walk};
-pub(crate) use walk::{UnfoldedWalk, Unfolding};
 
 use crate::world::{Grid, World};
 

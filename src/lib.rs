@@ -16,6 +16,7 @@ pub mod game;
 pub mod generate;
 pub mod map;
 pub mod palette;
+mod raster;
 pub mod render;
 pub mod space;
 #[cfg(feature = "speed")]
@@ -24,6 +25,7 @@ pub mod speed;
 pub mod terminal;
 #[cfg(feature = "tui")]
 pub mod tui;
+mod visibility;
 #[cfg(feature = "cli")]
 pub mod wire;
 pub mod world;

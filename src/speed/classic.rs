@@ -4,7 +4,7 @@
 //! textures row by row, a picture row by row that is written column by column. It knows plain walls
 //! only, and must be drawn inside a map that is closed.
 
-use crate::world::texture::Level;
+use crate::world::texture::MipLevel;
 use crate::world::{Camera, Ceiling, Covering, Paint, Rgb, TileId, TileKind, World};
 
 /// How the classic loop draws floor and ceiling.
@@ -198,7 +198,7 @@ impl Picture {
         }
     }
 
-    fn of_level(level: &Level) -> Self {
+    fn of_level(level: &MipLevel) -> Self {
         let (width, height) = (level.width(), level.height());
         let at = |x: u32, y: u32| {
             let middle = |index: u32, count: u32| {

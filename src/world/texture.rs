@@ -5,19 +5,19 @@
 //! before: what is far away is drawn from a level whose texels are about as large as pixels.
 
 pub mod builtin;
-mod level;
+mod mip_level;
 
 use std::num::NonZeroU32;
 
 use super::Rgb;
-pub use level::Level;
-pub(crate) use level::{LevelByShifts, mean_of_shares, mean_of_two};
+pub use mip_level::MipLevel;
+pub(crate) use mip_level::{MipLevelByShifts, mean_of_shares, mean_of_two};
 
 /// A picture, at least one texel wide and high.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub struct Texture {
     /// From the picture itself down to one texel.
-    levels: Vec<Level>,
+    levels: Vec<MipLevel>,
     mean: Rgb,
 }
 
@@ -46,7 +46,7 @@ impl Texture {
             alpha = Vec::new();
         }
         let mean = mean(&texels);
-        Self { levels: level::pyramid(width, height, texels, alpha), mean }
+        Self { levels: mip_level::pyramid(width, height, texels, alpha), mean }
     }
 
     /// Texels from left to right.
@@ -88,13 +88,13 @@ impl Texture {
         Self::from_fn_with_alpha(width, height, |x, y| self.texel(left + x, top + y))
     }
 
-    /// The texture itself, halved `halvings` times: along each axis, and down to one texel.
-    pub fn level(&self, halvings: usize) -> &Level {
-        &self.levels[halvings.min(self.levels.len() - 1)]
+    /// The texture itself, halved `lod` times: along each axis, and down to one texel.
+    pub fn level(&self, lod: usize) -> &MipLevel {
+        &self.levels[lod.min(self.levels.len() - 1)]
     }
 
-    /// The texture itself and all halvings of it; the last one is a single texel.
-    pub fn levels(&self) -> &[Level] {
+    /// The texture itself and all lod of it; the last one is a single texel.
+    pub fn levels(&self) -> &[MipLevel] {
         &self.levels
     }
 
