@@ -50,8 +50,8 @@ pub use rounded::RoundedOrder;
 pub(crate) use shape::Passage;
 #[cfg(feature = "lab")]
 pub(crate) use walk::first_line;
+pub(crate) use walk::{Crossed, MirrorTransform, MirroredWalk};
 pub use walk::{Crossing, Order, Walk};
-pub(crate) use walk::{UnfoldedWalk, Unfolding};
 
 use crate::world::{Grid, World};
 

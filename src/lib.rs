@@ -74,6 +74,7 @@ pub mod generate;
 pub mod lab;
 pub mod map;
 mod numeric;
+mod raster;
 pub mod render;
 pub mod rng;
 pub mod space;
@@ -81,6 +82,7 @@ pub mod space;
 pub mod terminal;
 #[cfg(feature = "tui")]
 pub mod tui;
+mod visibility;
 pub mod world;
 
 /// The examples of the README, compiled and run as tests.

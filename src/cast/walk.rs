@@ -6,9 +6,9 @@
 //! looks up what is off the map, and ends after at most one step for each line of the map. One loop
 //! for each method was refused: each would have to get all of that right again.
 
-mod unfolded;
+mod mirrored;
 
-pub(crate) use unfolded::{UnfoldedWalk, Unfolding};
+pub(crate) use mirrored::{Crossed, MirrorTransform, MirroredWalk};
 
 use super::{ExactOrder, Ray, Side};
 use crate::world::{Cell, Grid, TileId};

@@ -6,8 +6,7 @@
 use std::fmt::Debug;
 use std::sync::Arc;
 
-use super::explanation::{RayCounts, RaysOf};
-use super::{Counts, Picture, Plan};
+use super::{FramePlan, FrameStats, Picture, Threads};
 use crate::cast::{Caster, Exact};
 
 /// A caster whose type is not known where a renderer is kept: [`Exact`] by default.
@@ -20,16 +19,12 @@ impl DynCaster {
         Self(Arc::new(caster))
     }
 
-    pub(super) fn draw(&self, picture: Picture<'_, ()>) -> Plan {
+    pub(super) fn draw(&self, picture: Picture<'_, ()>) -> (FramePlan, Threads) {
         self.0.draw(picture)
     }
 
-    pub(super) fn draw_counted(&self, picture: Picture<'_, Counts>) -> Plan {
+    pub(super) fn draw_counted(&self, picture: Picture<'_, FrameStats>) -> (FramePlan, Threads) {
         self.0.draw_counted(picture)
-    }
-
-    pub(super) fn count_rays(&self, rays: RaysOf<'_>) -> RayCounts {
-        self.0.count_rays(rays)
     }
 }
 
@@ -41,23 +36,17 @@ impl Default for DynCaster {
 
 /// What is compiled for each caster.
 trait Pictures: Debug + Send + Sync {
-    fn draw(&self, picture: Picture<'_, ()>) -> Plan;
+    fn draw(&self, picture: Picture<'_, ()>) -> (FramePlan, Threads);
 
-    fn draw_counted(&self, picture: Picture<'_, Counts>) -> Plan;
-
-    fn count_rays(&self, rays: RaysOf<'_>) -> RayCounts;
+    fn draw_counted(&self, picture: Picture<'_, FrameStats>) -> (FramePlan, Threads);
 }
 
 impl<C: Caster + Debug + Send + Sync> Pictures for C {
-    fn draw(&self, picture: Picture<'_, ()>) -> Plan {
+    fn draw(&self, picture: Picture<'_, ()>) -> (FramePlan, Threads) {
         picture.draw(self)
     }
 
-    fn draw_counted(&self, picture: Picture<'_, Counts>) -> Plan {
+    fn draw_counted(&self, picture: Picture<'_, FrameStats>) -> (FramePlan, Threads) {
         picture.draw(self)
-    }
-
-    fn count_rays(&self, rays: RaysOf<'_>) -> RayCounts {
-        rays.count(self)
     }
 }

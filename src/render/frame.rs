@@ -2,48 +2,9 @@
 
 use std::num::NonZeroU32;
 
-use super::band::Band;
 use crate::color::Rgb;
-
-/// How many pixels a frame has.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub struct FrameSize {
-    /// Pixels from left to right.
-    pub width: NonZeroU32,
-    /// Pixels from top to bottom.
-    pub height: NonZeroU32,
-}
-
-impl FrameSize {
-    /// A size of `width` × `height` pixels. `None` where one of them is zero.
-    pub fn new(width: u32, height: u32) -> Option<Self> {
-        Some(Self { width: NonZeroU32::new(width)?, height: NonZeroU32::new(height)? })
-    }
-
-    fn area(self) -> usize {
-        self.width.get() as usize * self.height.get() as usize
-    }
-}
-
-/// The height of a pixel over its width.
-#[derive(Clone, Copy, Debug, PartialEq)]
-pub struct PixelAspect(f64);
-
-impl PixelAspect {
-    /// Pixels as wide as they are high.
-    pub const SQUARE: Self = Self(1.0);
-
-    /// A ratio above 0 and finite. `None` for anything else.
-    pub fn new(height_over_width: f64) -> Option<Self> {
-        (height_over_width > 0.0 && height_over_width.is_finite())
-            .then_some(Self(height_over_width))
-    }
-
-    /// The height of a pixel over its width.
-    pub fn height_over_width(self) -> f64 {
-        self.0
-    }
-}
+use crate::raster::Band;
+use crate::visibility::{FrameSize, PixelAspect};
 
 /// A picture in memory, owned by the caller and drawn over from frame to frame.
 #[derive(Clone, Debug, PartialEq)]
@@ -122,7 +83,7 @@ impl Frame {
     }
 
     /// All of it, in bands of `rows` rows, the last one of as many as are left.
-    pub(super) fn bands(&mut self, rows: NonZeroU32) -> impl Iterator<Item = Band<'_>> {
+    pub(crate) fn bands(&mut self, rows: NonZeroU32) -> impl Iterator<Item = Band<'_>> {
         let (width, rows) = (self.width() as usize, rows.get());
         let bands = self.pixels.chunks_mut(width * rows as usize);
         (0..)

@@ -9,10 +9,9 @@ use std::num::{NonZero, NonZeroU32};
 use std::sync::{LazyLock, Mutex, PoisonError};
 use std::thread;
 
-use super::band::Band;
-use super::marks::{Marks, MarksOfBand};
-use super::tally::Tally;
 use super::{Frame, FrameSize};
+use crate::raster::{SurfaceBuffer, Target};
+use crate::visibility::Stats;
 
 /// A thread for each so many pixels: with fewer, starting it takes longer than it saves.
 const PIXELS_OF_A_THREAD: usize = 1 << 19;
@@ -89,26 +88,27 @@ impl fmt::Display for Threads {
     }
 }
 
-/// Draws all bands of `frame`, by as many threads as that, each with a worker of its own. To `draw` one
-/// tells what it cost.
-pub(super) fn draw_bands<W: Default + Send, T: Tally>(
+/// Draws all bands of `frame` and its surface buffer, by as many threads as that, each with a memory of its
+/// own. Adds what it cost to `stats`.
+pub(super) fn draw_bands<M: Default + Send, S: Stats>(
     threads: Threads,
-    (frame, marks): (&mut Frame, &mut Marks),
-    workers: &mut Vec<W>,
-    tally: &mut T,
-    draw: impl Fn(&mut W, &mut Band<'_>, &mut MarksOfBand<'_>) -> T + Sync,
+    (frame, surfaces): (&mut Frame, &mut SurfaceBuffer),
+    memories: &mut Vec<M>,
+    stats: &mut S,
+    draw: impl Fn(&mut M, &mut Target<'_, S>) + Sync,
 ) {
     let count = threads.count();
-    if workers.len() < count {
-        workers.resize_with(count, W::default);
+    if memories.len() < count {
+        memories.resize_with(count, M::default);
     }
-    marks.begin(frame.width(), frame.height());
+    surfaces.begin(frame.width(), frame.height());
     let rows = threads.rows_of_band(frame.size().height);
-    let bands = frame.bands(rows).zip(marks.bands(rows));
-    let tally = Mutex::new(tally);
-    share_out(bands, &mut workers[..count], |(mut band, mut marks), worker| {
-        let spent = draw(worker, &mut band, &mut marks);
-        tally.lock().unwrap_or_else(PoisonError::into_inner).add(spent);
+    let bands = frame.bands(rows).zip(surfaces.bands(rows));
+    let stats = Mutex::new(stats);
+    share_out(bands, &mut memories[..count], |(band, surfaces), memory| {
+        let mut target = Target::new(band, surfaces);
+        draw(memory, &mut target);
+        stats.lock().unwrap_or_else(PoisonError::into_inner).add(target.into_stats());
     });
 }
 

@@ -6,19 +6,19 @@
 //! as large as pixels.
 
 pub mod builtin;
-mod level;
+mod mip_level;
 
 use std::num::NonZeroU32;
 
 use crate::color::Rgb;
-pub use level::Level;
-pub(crate) use level::LevelByShifts;
+pub use mip_level::MipLevel;
+pub(crate) use mip_level::MipLevelByShifts;
 
 /// A picture, at least one texel wide and high.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub struct Texture {
     /// From the picture itself down to one texel.
-    levels: Vec<Level>,
+    levels: Vec<MipLevel>,
     mean: Rgb,
 }
 
@@ -48,7 +48,7 @@ impl Texture {
             alpha = Vec::new();
         }
         let mean = mean(&texels);
-        Self { levels: level::pyramid(width, height, texels, alpha), mean }
+        Self { levels: mip_level::pyramid(width, height, texels, alpha), mean }
     }
 
     /// The width in texels.
@@ -90,13 +90,13 @@ impl Texture {
         Self::from_fn_with_alpha(width, height, |x, y| self.texel(left + x, top + y))
     }
 
-    /// The mip level after `halvings`, at most the one with a single texel.
-    pub fn level(&self, halvings: usize) -> &Level {
-        &self.levels[halvings.min(self.levels.len() - 1)]
+    /// The mip level after `lod` halvings, at most the one with a single texel.
+    pub fn level(&self, lod: usize) -> &MipLevel {
+        &self.levels[lod.min(self.levels.len() - 1)]
     }
 
     /// All mip levels, from the texture itself to a single texel.
-    pub fn levels(&self) -> &[Level] {
+    pub fn levels(&self) -> &[MipLevel] {
         &self.levels
     }
 

@@ -50,18 +50,18 @@ fn among_rooms_rays_go_line_by_line() {
     let rooms = square(66, |column, row| {
         (column % 8 == 0 && row % 8 != 4 || row % 8 == 0 && column % 8 != 4).then_some('#')
     });
-    let Explanation { plan, counts } = explained(&rooms);
+    let Explanation { plan, stats, .. } = explained(&rooms);
     assert_eq!(plan.rays, RayLoop::Lines);
-    assert!(counts.looks < counts.cells);
+    assert!(stats.looks < stats.cells);
 }
 
 #[test]
 fn a_hall_sixteen_times_as_wide_takes_twice_the_looks_at_most() {
     let [small, large] = [64, 1024].map(|side| explained(&square(side, |_, _| None)));
     assert_eq!((small.plan.rays, large.plan.rays), (RayLoop::Leaps, RayLoop::Leaps));
-    assert!(large.counts.cells > 10 * small.counts.cells);
-    assert!(large.counts.looks <= 2 * small.counts.looks, "{:?}", (small.counts, large.counts));
-    assert!(small.counts.looks < small.counts.cells / 3);
+    assert!(large.stats.cells > 10 * small.stats.cells);
+    assert!(large.stats.looks <= 2 * small.stats.looks, "{:?}", (small.stats, large.stats));
+    assert!(small.stats.looks < small.stats.cells / 3);
 }
 
 /// A pillar stands in one cell of each 64 by 64, not in the middle.
@@ -71,7 +71,7 @@ fn a_plain_sixty_four_times_as_wide_takes_four_times_the_looks_at_most() {
         let moved = |by: u32| 16 + (column / 64 * 37 + row / 64 * 101 + by * 53) % 32;
         ((column % 64, row % 64) == (moved(0), moved(1))).then_some('#')
     };
-    let [small, large] = [64, 4096].map(|side| explained(&square(side, pillar)).counts);
+    let [small, large] = [64, 4096].map(|side| explained(&square(side, pillar)).stats);
     assert!(large.cells > 1000 * large.rays, "{large:?}");
     assert!(large.looks < 40 * large.rays, "{large:?}");
     assert!(large.looks <= 4 * small.looks, "{:?}", (small, large));

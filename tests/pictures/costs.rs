@@ -1,11 +1,11 @@
-//! A frame costs what its scene shows: counts of what is read and written, for each map of the gallery.
+//! A frame costs what its scene shows: stats of what is read and written, for each map of the gallery.
 
 use std::path::Path;
 
 use allocation_counter::measure;
 use cellcaster::map::{self, Level};
 use cellcaster::render::{
-    CeilingLoop, Counts, Explanation, Frame, FrameSize, PassCounts, PixelAspect, PlaneLoop,
+    CeilingLoop, Explanation, Frame, FrameSize, FrameStats, PassStats, PixelAspect, PlaneLoop,
     Renderer, ThingLoop,
 };
 use cellcaster::space::{self, Scene};
@@ -30,16 +30,16 @@ fn explained(world: &World) -> Explanation {
 
 #[test]
 fn a_flat_scene_reads_texels_for_its_walls_alone() {
-    let Explanation { plan, counts } = explained(&gallery("flat"));
+    let Explanation { plan, stats, .. } = explained(&gallery("flat"));
     assert!(matches!(plan.floor, PlaneLoop::Fill(_)));
     assert!(matches!(plan.ceiling, CeilingLoop::Laid(PlaneLoop::Fill(_))));
-    assert_eq!((counts.floor.texels, counts.ceiling.texels, counts.sky.pixels), (0, 0, 0));
-    assert_eq!(counts.walls.texels, counts.walls.pixels);
+    assert_eq!((stats.floor.texels, stats.ceiling.texels, stats.sky.pixels), (0, 0, 0));
+    assert_eq!(stats.walls.texels, stats.walls.pixels);
     // What goes between two that hit the same face need not be cast.
-    assert!((2..u64::from(WIDTH) / 2).contains(&counts.rays));
+    assert!((2..u64::from(WIDTH) / 2).contains(&stats.rays));
     // Two fills of half the picture each, and the walls over them.
-    assert_eq!(counts.floor.pixels + counts.ceiling.pixels, PIXELS);
-    assert_eq!(counts.overwritten, counts.walls.pixels);
+    assert_eq!(stats.floor.pixels + stats.ceiling.pixels, PIXELS);
+    assert_eq!(stats.overwritten, stats.walls.pixels);
 }
 
 #[test]
@@ -47,32 +47,32 @@ fn walls_of_one_colour_read_no_texel_at_all() {
     let text = include_str!("../../maps/gallery/flat.toml")
         .replace("brick", "#804030")
         .replace("stone", "#606468");
-    let counts = explained(&map::parse_str(&text).unwrap()).counts;
-    assert_eq!(counts.walls.texels, 0);
+    let stats = explained(&map::parse_str(&text).unwrap()).stats;
+    assert_eq!(stats.walls.texels, 0);
 }
 
 #[test]
 fn textures_are_read_once_for_each_pixel_that_shows_them() {
-    let counts = explained(&gallery("floor")).counts;
-    assert_eq!(counts.overwritten, 0);
-    assert_eq!(counts.floor.texels, counts.floor.pixels);
-    assert_eq!(counts.ceiling.texels, counts.ceiling.pixels);
+    let stats = explained(&gallery("floor")).stats;
+    assert_eq!(stats.overwritten, 0);
+    assert_eq!(stats.floor.texels, stats.floor.pixels);
+    assert_eq!(stats.ceiling.texels, stats.ceiling.pixels);
 }
 
 #[test]
 fn a_texture_on_the_floor_alone_costs_the_floor_alone() {
     let text = include_str!("../../maps/gallery/floor.toml").replace("\"wood\"", "\"#26262c\"");
-    let Explanation { plan, counts } = explained(&map::parse_str(&text).unwrap());
+    let Explanation { plan, stats, .. } = explained(&map::parse_str(&text).unwrap());
     assert!(matches!(plan.ceiling, CeilingLoop::Laid(PlaneLoop::Fill(_))));
-    assert_eq!(counts.ceiling.texels, 0);
-    assert_eq!(counts.floor, explained(&gallery("floor")).counts.floor);
+    assert_eq!(stats.ceiling.texels, 0);
+    assert_eq!(stats.floor, explained(&gallery("floor")).stats.floor);
 }
 
 #[test]
 fn a_gradient_reads_no_texel_and_a_panorama_one_a_pixel() {
-    let gradient = explained(&gallery("gradient")).counts.sky;
+    let gradient = explained(&gallery("gradient")).stats.sky;
     assert_eq!((gradient.texels, gradient.pixels), (0, PIXELS / 2));
-    let panorama = explained(&gallery("panorama")).counts.sky;
+    let panorama = explained(&gallery("panorama")).stats.sky;
     assert_eq!(panorama.texels, panorama.pixels);
 }
 
@@ -82,8 +82,8 @@ fn what_cannot_be_seen_through_keeps_one_hit_a_column() {
         let world = gallery(name);
         let camera = world.start_camera(FieldOfView::default());
         let mut renderer = Renderer::new();
-        let counts = renderer.explain(&world, &camera, &mut frame()).counts;
-        assert_eq!(counts.see_through, PassCounts::default());
+        let stats = renderer.explain(&world, &camera, &mut frame()).stats;
+        assert_eq!(stats.see_through, PassStats::default());
         assert_eq!(renderer.columns().len(), WIDTH as usize, "{name}");
     }
 }
@@ -97,7 +97,7 @@ fn a_still_door_costs_what_a_wall_does() {
         );
         map::parse_str(&text).unwrap()
     };
-    let [door, wall] = ["door", "wall"].map(|tile| explained(&map(tile)).counts);
+    let [door, wall] = ["door", "wall"].map(|tile| explained(&map(tile)).stats);
     // What may be a leaf is cast anew, column by column, when all around it is known.
     assert!(door.rays <= wall.rays + u64::from(WIDTH));
     assert_eq!(door.see_through, wall.see_through);
@@ -109,10 +109,10 @@ fn a_still_door_costs_what_a_wall_does() {
 #[test]
 fn a_scene_without_things_considers_none() {
     for name in ["flat", "floor", "masks"] {
-        let Explanation { plan, counts } = explained(&gallery(name));
+        let Explanation { plan, stats, .. } = explained(&gallery(name));
         assert_eq!(plan.things, ThingLoop::None, "{name}");
-        let things = (counts.things_considered, counts.things_drawn, counts.things);
-        assert_eq!(things, (0, 0, PassCounts::default()), "{name}");
+        let things = (stats.things_considered, stats.things_drawn, stats.things);
+        assert_eq!(things, (0, 0, PassStats::default()), "{name}");
     }
 }
 
@@ -121,20 +121,20 @@ fn a_single_lamp_costs_the_pixels_that_it_covers() {
     let with_lamp = include_str!("../../maps/gallery/flat.toml")
         .replace("[things]", "[things]\n\"l\" = { sprite = \"lamp\" }")
         .replace("@..", "@.l");
-    let flat = explained(&gallery("flat")).counts;
-    let Explanation { plan, counts } = explained(&map::parse_str(&with_lamp).unwrap());
+    let flat = explained(&gallery("flat")).stats;
+    let Explanation { plan, stats, .. } = explained(&map::parse_str(&with_lamp).unwrap());
     // All is fully lit: there is nothing to add to, and the floor is one fill as before.
     assert!(matches!(plan.floor, PlaneLoop::Fill(_)));
-    assert_eq!((counts.things_considered, counts.things_drawn), (1, 1));
-    let without_lamp = Counts {
-        things: PassCounts::default(),
+    assert_eq!((stats.things_considered, stats.things_drawn), (1, 1));
+    let without_lamp = FrameStats {
+        things: PassStats::default(),
         things_considered: 0,
         things_drawn: 0,
-        overwritten: counts.overwritten - counts.things.pixels,
-        ..counts
+        overwritten: stats.overwritten - stats.things.pixels,
+        ..stats
     };
     assert_eq!(without_lamp, flat);
-    assert!((1..PIXELS / 20).contains(&counts.things.pixels), "{}", counts.things.pixels);
+    assert!((1..PIXELS / 20).contains(&stats.things.pixels), "{}", stats.things.pixels);
 }
 
 #[test]
@@ -146,8 +146,8 @@ fn lamplight_reads_and_writes_nothing_more() {
     let unlit = map::parse_str(&sprites).unwrap();
     let (lit, unlit) = (explained(&lit), explained(&unlit));
     assert_eq!(lit.plan, unlit.plan);
-    let same = |counts: Counts| (counts.floor, counts.ceiling, counts.walls, counts.cells);
-    assert_eq!(same(lit.counts), same(unlit.counts));
+    let same = |stats: FrameStats| (stats.floor, stats.ceiling, stats.walls, stats.cells);
+    assert_eq!(same(lit.stats), same(unlit.stats));
 }
 
 /// What the tile `u` of a map may be, out of sight: it decides which passes draw the map.
@@ -169,7 +169,7 @@ fn ten_thousand_things_elsewhere_are_not_considered() {
         };
         let [few, many] = [0, 26].map(|rows| map::parse_str(&text(rows)).unwrap());
         assert!(many.things().len() > 10_000);
-        let (few, many) = (explained(&few).counts, explained(&many).counts);
+        let (few, many) = (explained(&few).stats, explained(&many).stats);
         assert_eq!((few.things_considered, few.things_drawn), (1, 1), "{tile}");
         assert_eq!(few, many, "{tile}");
     }
@@ -195,9 +195,9 @@ fn things_on_both_sides_of_a_diagonal_view_are_not_considered() {
         );
         let world = map::parse_str(&text).unwrap();
         assert!(world.things().len() > 9_000);
-        let counts = explained(&world).counts;
-        assert_eq!(counts.things_drawn, 0, "{tile}");
-        assert!(counts.things_considered < u64::from(SIDE), "{}", counts.things_considered);
+        let stats = explained(&world).stats;
+        assert_eq!(stats.things_drawn, 0, "{tile}");
+        assert!(stats.things_considered < u64::from(SIDE), "{}", stats.things_considered);
     }
 }
 
@@ -216,7 +216,7 @@ fn things_behind_mirrors_are_not_considered() {
     let [few, many] = ["################\n", "bbbbbbbbbbbbbbbb\n"]
         .map(|row| map::parse_str(&(text(row) + "tiles.'#'.wall = 'brick'\n")).unwrap());
     assert!(many.things().len() > 10_000);
-    let [few, many] = [few, many].map(|world| explained(&world).counts);
+    let [few, many] = [few, many].map(|world| explained(&world).stats);
     assert_eq!(few, many);
     assert!(many.things_drawn > 8 && many.things_considered < 400, "{many:?}");
 }

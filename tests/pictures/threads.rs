@@ -69,13 +69,13 @@ fn a_frame_is_the_same_by_however_many_threads() {
             let mut expected = frame();
             let mut alone = renderer(1);
             let explained = alone.explain(&world, &camera, &mut expected);
-            assert_eq!(explained.plan.threads, Threads::One(WhyOne::Only), "{name}");
+            assert_eq!(explained.threads, Threads::One(WhyOne::Only), "{name}");
             let surfaces_alone = surfaces(&alone);
             for count in [2, 3, 7] {
                 let (mut drawn, mut several) = (frame(), renderer(count));
-                let counts = several.explain(&world, &camera, &mut drawn).counts;
+                let stats = several.explain(&world, &camera, &mut drawn).stats;
                 assert!(drawn == expected, "{name}, {count} threads");
-                assert_eq!(counts, explained.counts, "{name}, {count} threads");
+                assert_eq!(stats, explained.stats, "{name}, {count} threads");
                 assert_eq!(several.next_change(), alone.next_change(), "{name}, {count} threads");
                 assert!(surfaces(&several) == surfaces_alone, "{name}, {count} threads");
             }
@@ -88,7 +88,7 @@ fn threads_are_for_large_pictures() {
     let world = &worlds()[0].1;
     let camera = world.start_camera(FieldOfView::default());
     let mut small = Frame::new(FrameSize::new(160, 90).unwrap(), PixelAspect::SQUARE);
-    let threads = |frame: &mut Frame| renderer(7).explain(world, &camera, frame).plan.threads;
+    let threads = |frame: &mut Frame| renderer(7).explain(world, &camera, frame).threads;
     assert_eq!(threads(&mut small), Threads::One(WhyOne::Small));
     assert_eq!(threads(&mut frame()), Threads::Bands(NonZero::new(7).unwrap()));
 }

@@ -5,7 +5,7 @@
 //! only, and must be drawn inside a map that is closed.
 
 use crate::color::Rgb;
-use crate::world::texture::Level;
+use crate::world::texture::MipLevel;
 use crate::world::{Camera, Ceiling, Covering, Paint, TileId, TileKind, World};
 
 /// How the classic loop draws floor and ceiling.
@@ -199,7 +199,7 @@ impl Picture {
         }
     }
 
-    fn of_level(level: &Level) -> Self {
+    fn of_level(level: &MipLevel) -> Self {
         let (width, height) = (level.width(), level.height());
         let at = |x: u32, y: u32| {
             let middle = |index: u32, count: u32| {

@@ -117,7 +117,7 @@ impl<'a> Contest<'a> {
         let (mut alone, mut together) = (Renderer::new(), Renderer::new());
         alone.set_threads(NonZero::<usize>::MIN);
         let start = world.start_camera(FieldOfView::default());
-        let threads = together.explain(world, &start, &mut frame).plan.threads.count();
+        let threads = together.explain(world, &start, &mut frame).threads.count();
         let pixels = vec![0; frame.width() as usize * frame.height() as usize];
         let classic = Classic::new(world);
         Self { scene, world, size, alone, together, threads, classic, frame, pixels }

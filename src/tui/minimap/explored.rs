@@ -13,7 +13,7 @@
 
 use std::collections::BTreeMap;
 
-use crate::cast::{Ray, UnfoldedWalk};
+use crate::cast::{MirroredWalk, Ray};
 use crate::generate::Site;
 use crate::world::{Camera, Cell, Gap, TileId, TileKind, World};
 
@@ -201,7 +201,7 @@ impl Look<'_> {
     /// Tells `see` each cell that `ray` sees, and whether it is no wall.
     fn follow(&self, ray: &Ray, mut see: impl FnMut(Cell, bool)) {
         let grid = self.world.grid();
-        let mut walk = UnfoldedWalk::new(grid, ray, 0);
+        let mut walk = MirroredWalk::new(grid, ray, 0);
         let mut place = walk.cell(grid);
         let mut gap = self.gap_around_the_eye(place);
         let mut sight = Sight { low: f64::NEG_INFINITY, high: f64::INFINITY };
@@ -217,7 +217,7 @@ impl Look<'_> {
                 sight.low = sight.low.max(self.slope(top, t));
             }
             let crossed = walk.cross(grid);
-            let (t, _) = walk.meeting(&crossed);
+            let t = walk.distance(&crossed);
             let seen_of_gap = self.seen_of(gap, t);
             if let Some((cell, tile)) = place {
                 let floor = Sight { low: self.slope(gap.bottom, from), high: seen_of_gap.low };
@@ -277,7 +277,7 @@ impl Look<'_> {
     }
 
     /// Where the ray meets what stands in `cell` and can't be seen through, and how high that is.
-    fn standing(&self, walk: &UnfoldedWalk, cell: Cell, tile: TileId) -> Option<(f64, f64)> {
+    fn standing(&self, walk: &MirroredWalk, cell: Cell, tile: TileId) -> Option<(f64, f64)> {
         let tile = &self.world.tiles()[usize::from(tile.0)];
         if !matches!(tile.kind, TileKind::Door(_) | TileKind::Shape(_)) {
             return None;

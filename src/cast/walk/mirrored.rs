@@ -1,0 +1,294 @@
+//! The walk through a hall of mirrors, unfolded: the ray goes straight on, and the map is turned over.
+//!
+//! Behind a mirror is the map once more, the other way round. So a ray that meets one is not bent:
+//! it keeps its origin, its direction and its `t`, goes on crossing the same lines in the same exact
+//! order, and only which cell of the map it is in is looked up mirrored. What is seen in a mirror is
+//! computed as it would be in a room that is built behind it, bit for bit. A new ray that starts at
+//! the mirror was refused: its origin would be rounded, and each bounce would add to the error.
+
+use glam::DVec2;
+
+use super::Axis;
+use crate::cast::hit::{meeting, texture_coordinate};
+use crate::cast::{ExactOrder, Order, Passage, Ray, Side, door};
+use crate::world::{Cell, Grid, TileId, TileKind, World};
+
+/// Where places of the unfolded map are on the map itself.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Default)]
+pub(crate) struct MirrorTransform {
+    x: AxisTransform,
+    y: AxisTransform,
+}
+
+/// Where the lines of one axis are on the map itself: so many to the east or south of their unfolded
+/// places, or mirrored and then so many.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Default)]
+struct AxisTransform {
+    is_mirrored: bool,
+    offset: i64,
+}
+
+/// A line that a walk crossed.
+#[derive(Clone, Copy, Debug)]
+pub(crate) struct Crossed {
+    /// The kind of line.
+    pub(crate) side: Side,
+    /// What it leads into; `None` where it is the edge of the map, and the walk ends.
+    pub(crate) into: Option<(Cell, TileId)>,
+    /// Where the line is, unfolded.
+    line: f64,
+}
+
+/// The cells that a ray enters, mirrors and all, in the exact order.
+#[derive(Clone, Debug)]
+pub(crate) struct MirroredWalk {
+    ray: Ray,
+    order: ExactOrder,
+    x: Axis,
+    y: Axis,
+    transform: MirrorTransform,
+    column: OnMap,
+    row: OnMap,
+    bounces: u32,
+}
+
+/// The column or the row of the map that a ray is in, after all reflections.
+#[derive(Clone, Copy, Debug)]
+struct OnMap {
+    index: i64,
+    /// From there to the next one.
+    step: i64,
+}
+
+impl MirroredWalk {
+    /// The walk of `ray` through `grid`, which is reflected so often at most.
+    pub(crate) fn new(grid: &Grid, ray: &Ray, most_bounces: u32) -> Self {
+        let size = DVec2::new(f64::from(grid.width()), f64::from(grid.height()));
+        let (origin, direction) = (ray.origin(), ray.direction());
+        let x = Axis::new(origin.x, direction.x, grid.width());
+        let y = Axis::new(origin.y, direction.y, grid.height());
+        Self {
+            ray: *ray,
+            order: ExactOrder::within(size * f64::from(most_bounces + 1), ray),
+            transform: MirrorTransform::default(),
+            column: OnMap { index: x.index, step: x.step },
+            row: OnMap { index: y.index, step: y.step },
+            x,
+            y,
+            bounces: 0,
+        }
+    }
+
+    /// The cell that the ray is in; `None` off the map.
+    #[inline]
+    pub(crate) fn cell(&self, grid: &Grid) -> Option<(Cell, TileId)> {
+        let (column, row) = (self.column.index, self.row.index);
+        let tile = grid.tile(column, row)?;
+        Some((Cell { column: column as u32, row: row as u32 }, tile))
+    }
+
+    /// Goes on until the ray enters a cell, or leaves the map for good.
+    pub(crate) fn cross(&mut self, grid: &Grid) -> Crossed {
+        loop {
+            let side = self.order.next(self.x.line, self.y.line);
+            let (axis, on_map) = match side {
+                Side::X => (&mut self.x, &mut self.column),
+                Side::Y => (&mut self.y, &mut self.row),
+            };
+            let line = axis.line;
+            axis.cross();
+            on_map.index += on_map.step;
+            let into = self.cell(grid);
+            if into.is_some() || !self.is_on_map_along(side) {
+                return Crossed { side, into, line };
+            }
+        }
+    }
+
+    /// Whether the ray is on the map, as far as the axis tells that crosses such lines.
+    fn is_on_map_along(&self, side: Side) -> bool {
+        match side {
+            Side::X => (0..self.x.count).contains(&self.column.index),
+            Side::Y => (0..self.y.count).contains(&self.row.index),
+        }
+    }
+
+    /// How far along the ray a line is that it has just crossed, as [`Hit`](crate::cast::Hit) has it.
+    #[inline]
+    pub(crate) fn distance(&self, crossed: &Crossed) -> f64 {
+        meeting(&self.ray, crossed.side, self.corner(crossed)).0
+    }
+
+    /// How far along the face at a line it is met that the ray has just crossed, as
+    /// [`Hit`](crate::cast::Hit) has it.
+    pub(crate) fn along_face(&self, crossed: &Crossed) -> f64 {
+        let (_, along) = meeting(&self.ray, crossed.side, self.corner(crossed));
+        let transform = match crossed.side {
+            Side::X => self.transform.y,
+            Side::Y => self.transform.x,
+        };
+        let along = along.clamp(0.0, 1.0);
+        let along = if transform.is_mirrored { 1.0 - along } else { along };
+        texture_coordinate(self.direction(), crossed.side, along)
+    }
+
+    /// The north or west end of a face that the ray has just crossed.
+    #[inline]
+    fn corner(&self, crossed: &Crossed) -> DVec2 {
+        match crossed.side {
+            Side::X => DVec2::new(crossed.line, self.y.index as f64),
+            Side::Y => DVec2::new(self.x.index as f64, crossed.line),
+        }
+    }
+
+    /// Turns the ray back at the line of that kind that it has just crossed.
+    pub(crate) fn reflect(&mut self, side: Side) {
+        let (axis, transform, on_map) = match side {
+            Side::X => (&self.x, &mut self.transform.x, &mut self.column),
+            Side::Y => (&self.y, &mut self.transform.y, &mut self.row),
+        };
+        *transform = transform.mirrored_at(axis.line as i64 - axis.step);
+        *on_map = OnMap { index: transform.real_index(axis.index), step: -on_map.step };
+        self.bounces += 1;
+    }
+
+    /// Where the ray passes through what stands in `cell`, where it is now, and does not fill it: a
+    /// door's leaf, which has no inside, or a shape.
+    pub(crate) fn standing(&self, world: &World, cell: Cell, kind: TileKind) -> Passage {
+        let ray = self.real_ray();
+        match kind {
+            TileKind::Door(_) => {
+                let hit = door::meet(world.grid(), &ray, cell, world.opening(cell));
+                Passage { hit, end: None }
+            }
+            TileKind::Shape(it) => Passage::new(&ray, cell, it.outline),
+            _ => Passage::NONE,
+        }
+    }
+
+    /// The ray as it is on the map after all reflections, as if it had come straight.
+    pub(crate) fn real_ray(&self) -> Ray {
+        Ray::moved(self.transform.real_point(self.ray.origin()), self.direction())
+    }
+
+    /// Where the unfolded places around the ray are on the map.
+    pub(crate) fn transform(&self) -> MirrorTransform {
+        self.transform
+    }
+
+    /// How often the ray has been reflected.
+    pub(crate) fn bounces(&self) -> u32 {
+        self.bounces
+    }
+
+    /// Where the ray goes on the map, after all reflections.
+    fn direction(&self) -> DVec2 {
+        self.transform.real_direction(self.ray.direction())
+    }
+}
+
+impl MirrorTransform {
+    /// Where an unfolded point is on the map.
+    pub(crate) fn real_point(self, point: DVec2) -> DVec2 {
+        DVec2::new(self.x.real_place(point.x), self.y.real_place(point.y))
+    }
+
+    /// Where a point of the map is, unfolded.
+    pub(crate) fn mirrored_point(self, point: DVec2) -> DVec2 {
+        DVec2::new(self.x.unfolded_place(point.x), self.y.unfolded_place(point.y))
+    }
+
+    /// Whether left and right are swapped.
+    pub(crate) fn swaps_sides(self) -> bool {
+        self.x.is_mirrored != self.y.is_mirrored
+    }
+
+    /// Which way an unfolded direction is on the map.
+    pub(crate) fn real_direction(self, direction: DVec2) -> DVec2 {
+        let along =
+            |transform: AxisTransform, part: f64| if transform.is_mirrored { -part } else { part };
+        DVec2::new(along(self.x, direction.x), along(self.y, direction.y))
+    }
+}
+
+impl AxisTransform {
+    fn real_place(self, place: f64) -> f64 {
+        let offset = self.offset as f64;
+        if self.is_mirrored { offset - place } else { offset + place }
+    }
+
+    fn unfolded_place(self, place: f64) -> f64 {
+        let offset = self.offset as f64;
+        if self.is_mirrored { offset - place } else { place - offset }
+    }
+
+    /// The column or row that the unfolded one at `index` is.
+    fn real_index(self, index: i64) -> i64 {
+        if self.is_mirrored { self.offset - 1 - index } else { self.offset + index }
+    }
+
+    /// The transform behind a mirror at the unfolded `line`.
+    fn mirrored_at(self, line: i64) -> Self {
+        let moved = if self.is_mirrored { -2 * line } else { 2 * line };
+        Self { is_mirrored: !self.is_mirrored, offset: self.offset + moved }
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use proptest::prelude::*;
+
+    use super::*;
+    use crate::cast::{Hit, Walk};
+
+    proptest! {
+        /// Without a mirror it is the walk in the exact order, and meets what that meets.
+        #[test]
+        fn unreflected_it_is_the_plain_walk(
+            origin in (-3.0..9.0, -3.0..7.0),
+            direction in (-1.0..1.0, -1.0..1.0),
+        ) {
+            let grid = Grid::sketch(&["......", "......", "......", "......"]).unwrap();
+            let ray = Ray::new(DVec2::from(origin), DVec2::from(direction));
+            prop_assume!(ray.is_ok());
+            let ray = ray.unwrap();
+            let mut mirrored = MirroredWalk::new(&grid, &ray, 0);
+            for crossing in Walk::new(&grid, &ray) {
+                let crossed = mirrored.cross(&grid);
+                let hit = Hit::entering(&ray, crossing.cell, crossing.side);
+                prop_assert_eq!(crossed.into, Some((crossing.cell, crossing.tile)));
+                prop_assert_eq!(crossed.side, crossing.side);
+                prop_assert_eq!(mirrored.distance(&crossed), hit.t);
+                prop_assert_eq!(mirrored.along_face(&crossed), hit.u);
+            }
+            prop_assert!(mirrored.cross(&grid).into.is_none());
+        }
+
+        /// A ray between two mirrors goes to and fro, and ends where it leaves by the open sides.
+        #[test]
+        fn a_reflected_ray_stays_between_the_mirrors(
+            origin in (1.0..3.0, 0.0..2.0),
+            direction in (-1.0..1.0, -1.0..1.0),
+        ) {
+            let grid = Grid::sketch(&["#..#", "#..#"]).unwrap();
+            let ray = Ray::new(DVec2::from(origin), DVec2::from(direction));
+            prop_assume!(ray.is_ok());
+            let mut walk = MirroredWalk::new(&grid, &ray.unwrap(), 100);
+            let mut last = 0.0;
+            while let Some((cell, tile)) = walk.cross(&grid).into {
+                if grid.is_solid_tile(tile) {
+                    walk.reflect(Side::X);
+                    let (before, _) = walk.cell(&grid).unwrap();
+                    prop_assert_eq!(before.column, if cell.column == 0 { 1 } else { 2 });
+                }
+                let crossed = walk.clone().cross(&grid);
+                let (t, u) = (walk.distance(&crossed), walk.along_face(&crossed));
+                prop_assert!(t >= last && (0.0..=1.0).contains(&u));
+                last = t;
+                if walk.bounces() == 100 {
+                    break;
+                }
+            }
+        }
+    }
+}

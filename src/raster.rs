@@ -1,0 +1,83 @@
+//! Raster: a draw list to pixels, one file for each kind of item.
+//!
+//! [`draw`] draws what a [`Target`] shows of a [`DrawList`]: spans first, then wall columns, then the
+//! layers that are painted over them. It does not know which way the list was filled. Rules:
+//!
+//! - What is drawn of a band of rows does not depend on where it begins and ends.
+//! - Every pixel's texel is computed in fixed point from its own row or column.
+//! - What pixels and texels cost is counted by the target, where they are written.
+//!
+//! One loop that asks for each pixel what it shows was refused: a kind of item that a scene lacks is
+//! absent from these loops, and not a branch in them.
+
+mod band;
+mod column_batch;
+mod masked;
+mod shaded_texels;
+mod sky;
+mod span;
+mod sprite;
+mod surface_buffer;
+mod target;
+mod texel_runs;
+mod translucent;
+mod wall_column;
+
+pub(crate) use band::Band;
+use column_batch::BatchMemory;
+pub(crate) use sky::{SkyColumn, SkyView};
+pub(crate) use surface_buffer::SurfaceBuffer;
+pub(crate) use target::Target;
+
+use crate::visibility::{DrawList, Layer, Material, Scene, Span, SpanMemory, Stats};
+use translucent::Tints;
+
+/// Memory for drawing, one for each thread.
+#[derive(Clone, Debug, Default)]
+pub(crate) struct RasterMemory {
+    spans: SpanMemory,
+    batch: BatchMemory,
+}
+
+/// Draws what `target` shows of `list`.
+pub(crate) fn draw<S: Stats>(
+    scene: Scene<'_>,
+    list: &DrawList,
+    sky: &SkyView<'_>,
+    memory: &mut RasterMemory,
+    target: &mut Target<'_, S>,
+) {
+    let RasterMemory { spans, batch } = memory;
+    let rows = target.rows();
+    list.for_each_span(scene, &rows, spans, |span| match span {
+        Span::Fill { pass, rows, color } => target.whole_rows_mut(pass, rows).fill(color),
+        Span::Plane(span) => span::draw(scene, &span, target),
+        Span::Sky { row, columns, image } => sky.draw(row, columns, image, target),
+    });
+    wall_column::draw(scene, list, batch, target);
+    draw_layers(scene, list, target);
+}
+
+/// Paints the layers of `list`, one over the other.
+fn draw_layers<S: Stats>(scene: Scene<'_>, list: &DrawList, target: &mut Target<'_, S>) {
+    let mut tints = Tints::default();
+    for layer in &list.layers {
+        match layer {
+            Layer::Billboard(column) => {
+                tints.draw_before(column.column, target);
+                sprite::draw(scene, list, column, target);
+            }
+            &Layer::SeeThrough(index) => {
+                let column = &list.see_through[index];
+                match column.material {
+                    Material::Masked(texture) => {
+                        tints.draw_before(column.column, target);
+                        masked::draw(scene, column, texture, target);
+                    }
+                    Material::Translucent(glass) => tints.add(scene, column, glass, target),
+                }
+            }
+        }
+    }
+    tints.draw(target);
+}

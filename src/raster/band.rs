@@ -1,0 +1,88 @@
+//! Bands: some rows of a frame, which are drawn by one thread.
+//!
+//! All passes draw into a band, and what they draw of it does not depend on where it begins and ends:
+//! a picture is the same in one band and in many. Rows were chosen, and not columns, because they lie
+//! together in memory: bands are slices that nobody else can write to, and no lock is needed.
+
+use std::ops::Range;
+
+use crate::color::Rgb;
+
+/// Some rows of a frame.
+#[derive(Debug)]
+pub(crate) struct Band<'a> {
+    width: usize,
+    /// Which rows of the frame.
+    rows: Range<u32>,
+    /// Row by row from the top, each from the left.
+    pixels: &'a mut [Rgb],
+}
+
+impl<'a> Band<'a> {
+    /// The rows from `first` on of a frame that is `width` pixels wide: as many as there are `pixels`.
+    pub(crate) fn new(width: usize, first: u32, pixels: &'a mut [Rgb]) -> Self {
+        let end = first + (pixels.len() / width) as u32;
+        Self { width, rows: first..end, pixels }
+    }
+
+    /// Which rows of the frame they are.
+    pub(crate) fn rows(&self) -> Range<u32> {
+        self.rows.clone()
+    }
+
+    /// Those of `rows` that are in the band.
+    #[inline]
+    pub(crate) fn clip(&self, rows: &Range<u32>) -> Range<u32> {
+        let Range { start, end } = self.rows;
+        rows.start.clamp(start, end)..rows.end.clamp(start, end)
+    }
+
+    /// The pixels of row `y`, which is in the band, from the left.
+    pub(crate) fn row_mut(&mut self, y: u32) -> &mut [Rgb] {
+        self.rows_mut(y..y + 1)
+    }
+
+    /// The pixels of `rows`, which are in the band.
+    #[inline]
+    pub(crate) fn rows_mut(&mut self, rows: Range<u32>) -> &mut [Rgb] {
+        let pixels = self.places(rows);
+        &mut self.pixels[pixels]
+    }
+
+    /// The pixels of column `x` in those rows, which are in the band, from the top.
+    #[inline]
+    pub(crate) fn column_mut(
+        &mut self,
+        x: u32,
+        rows: Range<u32>,
+    ) -> impl Iterator<Item = &mut Rgb> {
+        let (count, width) = (rows.len(), self.width);
+        let first = (self.places(rows).start + x as usize).min(self.pixels.len());
+        self.pixels[first..].iter_mut().step_by(width).take(count)
+    }
+
+    /// Hands the pixels of `N` columns from `x` on in those rows, which are in the band, to `draw`, row
+    /// by row.
+    #[inline]
+    pub(crate) fn for_each_in_block<const N: usize>(
+        &mut self,
+        x: u32,
+        rows: Range<u32>,
+        mut draw: impl FnMut(&mut [Rgb; N]),
+    ) {
+        let first = self.places(rows.clone()).start + x as usize;
+        let mut rest = self.pixels.get_mut(first..).unwrap_or_default();
+        for _ in rows {
+            let Some(pixels) = rest.first_chunk_mut() else { return };
+            draw(pixels);
+            rest = rest.get_mut(self.width..).unwrap_or_default();
+        }
+    }
+
+    /// Where the pixels of `rows` are among those of the band.
+    #[inline]
+    fn places(&self, rows: Range<u32>) -> Range<usize> {
+        let place = |row: u32| (row - self.rows.start) as usize * self.width;
+        place(rows.start)..place(rows.end)
+    }
+}

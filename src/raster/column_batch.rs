@@ -1,0 +1,337 @@
+//! Column batches: wall columns side by side that are drawn together, row by row.
+//!
+//! What a row of them shows lies side by side in memory, and a processor sees where that leads and
+//! fetches it in time. One column after the other was refused: every pixel would be in another stretch
+//! of memory than the one before, which in large pictures took most of the time of a frame.
+
+use std::ops::Range;
+use std::ptr;
+
+use super::band::Band;
+use super::shaded_texels::{ShadedRange, ShadedTexels, TexelAddress};
+use super::target::Target;
+use crate::color::Rgb;
+use crate::visibility::{Lighting, Pass, Stats, TextureStepper};
+use crate::world::Paint;
+
+/// The most columns that are drawn together.
+const MOST_COLUMNS: usize = 15 * LANES;
+/// So many rows of some columns are drawn before it is the turn of the columns beside them.
+const ROWS_AT_ONCE: u32 = 8;
+/// So many columns have what their loop needs in registers.
+const LANES: usize = 8;
+
+/// Memory for columns that are drawn together, so that it is allocated once.
+#[derive(Clone, Debug, Default)]
+pub(crate) struct BatchMemory {
+    shaded: ShadedTexels,
+    columns: Vec<QueuedColumn>,
+    lanes: Vec<Lanes>,
+}
+
+/// Columns of texels in a lighting `L`, queued until they are drawn.
+pub(super) struct ColumnBatch<'m, 't, 'a, L, S> {
+    memory: &'m mut BatchMemory,
+    target: &'m mut Target<'t, S>,
+    /// The texels and the lighting of the latest shaded range.
+    latest: Option<(&'a [Rgb], L, ShadedRange)>,
+    /// The columns before this one are not queued any more: those of a batch do not overlap.
+    next: u32,
+}
+
+impl<'m, 't, 'a, L: Lighting, S: Stats> ColumnBatch<'m, 't, 'a, L, S> {
+    pub(super) fn new(memory: &'m mut BatchMemory, target: &'m mut Target<'t, S>) -> Self {
+        let mut batch = Self { memory, target, latest: None, next: 0 };
+        batch.clear();
+        // However much of a wall shows later, there is room.
+        batch.memory.columns.reserve(MOST_COLUMNS);
+        batch.memory.lanes.reserve(MOST_COLUMNS / LANES);
+        batch
+    }
+
+    /// Which rows can be drawn in.
+    pub(super) fn rows(&self) -> Range<u32> {
+        self.target.rows()
+    }
+
+    /// Those of `rows` that can be drawn in.
+    #[inline]
+    pub(super) fn clip(&self, rows: &Range<u32>) -> Range<u32> {
+        self.target.clip(rows)
+    }
+
+    /// Counts a column of `pixels` pixels in `paint`.
+    #[inline]
+    pub(super) fn count(&mut self, pass: Pass, pixels: usize, paint: Paint) {
+        self.target.count_pixels(pass, pixels);
+        if let Paint::Texture(_) = paint {
+            self.target.count_texels(pass, pixels);
+        }
+    }
+
+    /// Queues `rows` of column `x`, to be filled with one colour.
+    pub(super) fn queue_color(&mut self, x: u32, rows: Range<u32>, color: Rgb, lighting: L) {
+        self.make_room_for(x, 1);
+        let shaded = &mut self.memory.shaded;
+        let address = shaded.make(&[color], |color| lighting.apply(color)).start();
+        self.memory.columns.push(QueuedColumn { x, rows, address, step: 0 });
+    }
+
+    /// Queues `rows` of column `x`, to be filled with `texels`.
+    #[expect(clippy::inline_always, reason = "a call would cost a fifth of it")]
+    #[inline(always)]
+    pub(super) fn queue_texels(
+        &mut self,
+        x: u32,
+        rows: Range<u32>,
+        texels: &'a [Rgb],
+        stepper: TextureStepper,
+        lighting: L,
+    ) {
+        if texels.len() > 2 * rows.len() || texels.len() > ShadedTexels::MOST {
+            self.draw_at_once(x, rows, texels, stepper, lighting);
+            return;
+        }
+        self.make_room_for(x, texels.len());
+        let range = match self.latest {
+            Some((latest, of_lighting, range))
+                if ptr::eq(latest, texels) && of_lighting == lighting =>
+            {
+                range
+            }
+            _ => self.memory.shaded.make(texels, |texel| lighting.apply(texel)),
+        };
+        self.latest = Some((texels, lighting, range));
+        self.push(x, rows, range, stepper);
+    }
+
+    /// Queues `rows` of column `x`, to be filled with `texels` that a face may show again and again, or
+    /// of which it shows only some.
+    pub(super) fn queue_repeating(
+        &mut self,
+        x: u32,
+        rows: Range<u32>,
+        texels: &'a [Rgb],
+        stepper: TextureStepper,
+        lighting: L,
+    ) {
+        let most = ShadedTexels::MOST.min(2 * rows.len()) as i64;
+        let places = stepper.places(&rows).filter(|places| places.end - places.start <= most);
+        let Some(places) = places else {
+            self.draw_at_once(x, rows, texels, stepper, lighting);
+            return;
+        };
+        self.make_room_for(x, (places.end - places.start) as usize);
+        let first = places.start;
+        let pieces = stepper.pieces(texels, places);
+        let range = self.memory.shaded.make_of_pieces(first, pieces, |it| lighting.apply(it));
+        self.push(x, rows, range, stepper);
+    }
+
+    #[inline]
+    fn push(&mut self, x: u32, rows: Range<u32>, range: ShadedRange, stepper: TextureStepper) {
+        let (address, step) = range.address_and_step(stepper, rows.start);
+        self.memory.columns.push(QueuedColumn { x, rows, address, step });
+    }
+
+    /// Draws `rows` of column `x` at once: shading the texels first is not worth it, or they are too many.
+    fn draw_at_once(
+        &mut self,
+        x: u32,
+        rows: Range<u32>,
+        texels: &[Rgb],
+        stepper: TextureStepper,
+        lighting: L,
+    ) {
+        let first = rows.start;
+        for (pixel, row) in self.target.column_mut(x, rows).zip(first..) {
+            *pixel = lighting.apply(texels[stepper.at(row)]);
+        }
+    }
+
+    /// Makes room for column `x` with that many shaded texels.
+    #[inline]
+    fn make_room_for(&mut self, x: u32, texels: usize) {
+        let BatchMemory { shaded, columns, .. } = &self.memory;
+        let is_full = columns.len() == MOST_COLUMNS || !shaded.have_room_for(texels);
+        if is_full || x < self.next {
+            self.draw();
+        }
+        self.next = x + 1;
+    }
+
+    /// Draws the columns that are queued.
+    pub(super) fn draw(&mut self) {
+        let BatchMemory { shaded, columns, lanes } = &mut *self.memory;
+        let band = self.target.band_mut();
+        let mut rest = columns.as_slice();
+        while let [column, more @ ..] = rest {
+            let Some(together) = rest.first_chunk().and_then(Lanes::new) else {
+                column.draw(shaded, column.rows.clone(), band);
+                rest = more;
+                continue;
+            };
+            let (columns, more) = rest.split_at(LANES);
+            for column in columns {
+                column.draw(shaded, column.rows.start..together.rows.start, band);
+                column.draw(shaded, together.rows.end..column.rows.end, band);
+            }
+            lanes.push(together);
+            rest = more;
+        }
+        let start = lanes.iter().map(|lanes| lanes.rows.start).min().unwrap_or_default();
+        let end = lanes.iter().map(|lanes| lanes.rows.end).max().unwrap_or_default();
+        for first in (start..end).step_by(ROWS_AT_ONCE as usize) {
+            for lanes in &mut *lanes {
+                lanes.draw(shaded, first..end.min(first + ROWS_AT_ONCE), band);
+            }
+        }
+        self.clear();
+    }
+
+    fn clear(&mut self) {
+        let BatchMemory { shaded, columns, lanes } = &mut *self.memory;
+        shaded.clear();
+        columns.clear();
+        lanes.clear();
+        self.latest = None;
+        self.next = 0;
+    }
+}
+
+/// A column of pixels that is queued.
+#[derive(Clone, Debug)]
+struct QueuedColumn {
+    x: u32,
+    rows: Range<u32>,
+    /// The texel of the first of the rows, and how far it is from each row to the next.
+    address: TexelAddress,
+    step: u64,
+}
+
+impl QueuedColumn {
+    /// Draws it in those of its `rows`.
+    #[inline]
+    fn draw(&self, shaded: &ShadedTexels, rows: Range<u32>, band: &mut Band<'_>) {
+        let mut address = self.address_in(rows.start);
+        for pixel in band.column_mut(self.x, rows) {
+            *pixel = shaded.at(address);
+            address = address.further(self.step);
+        }
+    }
+
+    #[inline]
+    fn address_in(&self, row: u32) -> TexelAddress {
+        self.address.further(self.step.wrapping_mul(u64::from(row - self.rows.start)))
+    }
+}
+
+/// Columns side by side, in the rows that all of them have.
+#[derive(Clone, Debug)]
+struct Lanes {
+    x: u32,
+    rows: Range<u32>,
+    /// The texel of each of them in the next row to be drawn.
+    addresses: [TexelAddress; LANES],
+    /// From one row to the next.
+    steps: [u64; LANES],
+}
+
+impl Lanes {
+    /// `None` where they are not side by side, or have no row in common.
+    #[inline]
+    fn new(columns: &[QueuedColumn; LANES]) -> Option<Self> {
+        let [QueuedColumn { x, .. }, .., last] = columns;
+        let rows = columns.iter().map(|column| column.rows.clone()).reduce(common)?;
+        // There are no two at one `x`.
+        let are_side_by_side = last.x - x == LANES as u32 - 1;
+        (are_side_by_side && !rows.is_empty()).then(|| Self {
+            x: *x,
+            addresses: columns.each_ref().map(|column| column.address_in(rows.start)),
+            steps: columns.each_ref().map(|column| column.step),
+            rows,
+        })
+    }
+
+    /// Draws what of it is in `rows`, which follow those that were drawn before.
+    #[inline]
+    fn draw(&mut self, shaded: &ShadedTexels, rows: Range<u32>, band: &mut Band<'_>) {
+        let Self { x, mut addresses, steps, .. } = *self;
+        band.for_each_in_block(x, common(rows, self.rows.clone()), |pixels: &mut [Rgb; LANES]| {
+            for lane in 0..LANES {
+                pixels[lane] = shaded.at(addresses[lane]);
+                addresses[lane] = addresses[lane].further(steps[lane]);
+            }
+        });
+        self.addresses = addresses;
+    }
+}
+
+/// The rows that both have.
+fn common(one: Range<u32>, other: Range<u32>) -> Range<u32> {
+    let start = one.start.max(other.start);
+    start..one.end.min(other.end).max(start)
+}
+
+#[cfg(test)]
+mod tests {
+    use proptest::prelude::*;
+
+    use super::*;
+    use crate::cast::Side;
+    use crate::raster::SurfaceBuffer;
+    use crate::render::Frame;
+    use crate::visibility::{FrameSize, PixelAspect, Projection, SideLit};
+    use crate::world::{Camera, FieldOfView, Heading};
+
+    const HEIGHT: u32 = 90;
+
+    /// A column of a wall: none at all, or its distance, its side, and which of its texels it shows.
+    fn column() -> impl Strategy<Value = Option<(f64, Side, Range<usize>)>> {
+        let side = prop::sample::select(&[Side::X, Side::Y][..]);
+        let texels = prop::sample::select(&[0..64, 64..128, 0..1, 128..1128, 0..9000][..]);
+        prop::option::weighted(0.95, (0.01..20.0, side, texels))
+    }
+
+    proptest! {
+        #[test]
+        fn columns_show_their_texels(
+            columns in prop::collection::vec(column(), 1..400),
+            repeats in 1_usize..20,
+        ) {
+            let texels: Vec<_> =
+                (0..9000).map(|texel| Rgb::new(1, (texel >> 8) as u8, texel as u8)).collect();
+            let columns: Vec<_> =
+                columns.iter().flat_map(|column| vec![column; repeats]).take(400).collect();
+            let size = FrameSize::new(columns.len() as u32, HEIGHT).unwrap();
+            let east = Heading::from_degrees(0.0).unwrap();
+            let camera = Camera::new((0.0, 0.0).into(), east, FieldOfView::default()).unwrap();
+            let projection = Projection::new(&camera, size, PixelAspect::SQUARE);
+            let mut frame = Frame::new(size, PixelAspect::SQUARE);
+            let mut memory = BatchMemory::default();
+            let mut surfaces = SurfaceBuffer::default();
+            let rows = surfaces.bands(size.height).next().unwrap();
+            let mut target = Target::<()>::new(frame.whole(), rows);
+            let mut batch = ColumnBatch::new(&mut memory, &mut target);
+            let walls = || (0..).zip(&columns).filter_map(|(x, column)| Some((x, column.as_ref()?)));
+            let down = |t: f64, range: &Range<usize>| projection.texels_down_the_wall(t, range.len());
+            for (x, (t, side, range)) in walls() {
+                let (rows, lighting) = (projection.wall_rows(*t), SideLit(*side));
+                match texels[range.clone()] {
+                    [color] => batch.queue_color(x, rows, color, lighting),
+                    ref texels => batch.queue_texels(x, rows, texels, down(*t, range), lighting),
+                }
+            }
+            batch.draw();
+            let mut shown = vec![vec![Rgb::BLACK; columns.len()]; HEIGHT as usize];
+            for (x, (t, side, range)) in walls() {
+                let texels = &texels[range.clone()];
+                for row in projection.wall_rows(*t) {
+                    let texel = texels[down(*t, range).at(row)];
+                    shown[row as usize][x as usize] = SideLit(*side).apply(texel);
+                }
+            }
+            prop_assert!(frame.rows().eq(shown));
+        }
+    }
+}

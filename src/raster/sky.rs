@@ -1,0 +1,123 @@
+//! The sky: in place of a ceiling, and beyond the edge of the map.
+
+use std::f64::consts::TAU;
+use std::ops::Range;
+
+use glam::DVec2;
+
+use super::target::Target;
+use crate::cast::MirrorTransform;
+use crate::color::Rgb;
+use crate::visibility::{Pass, Projection, Scene, Stats};
+use crate::world::Sky;
+use crate::world::texture::MipLevel;
+
+/// The sky as one camera sees it.
+pub(crate) enum SkyView<'a> {
+    Gradient { projection: &'a Projection, zenith: Rgb, horizon: Rgb },
+    Panorama { projection: &'a Projection, level: &'a MipLevel, columns: &'a [SkyColumn] },
+}
+
+/// Where a column of pixels looks on a panorama.
+#[derive(Clone, Copy, Debug)]
+pub(crate) struct SkyColumn {
+    /// From its left edge, in 2⁻⁶⁴ths of its width.
+    across: u64,
+    /// How far up a pixel is, as a share of its height, for each unit of the pixel's slope.
+    up_for_slope: f64,
+}
+
+/// What 1 is in 2⁻⁶⁴ths.
+const WHOLE: f64 = 18_446_744_073_709_551_616.0;
+
+impl<'a> SkyView<'a> {
+    /// The sky of `scene`; `columns` is memory to work with.
+    pub(crate) fn new(scene: Scene<'a>, columns: &'a mut Vec<SkyColumn>) -> Self {
+        let Scene { world, projection, plan, .. } = scene;
+        match world.sky() {
+            Sky::Gradient { zenith, horizon } => Self::Gradient { projection, zenith, horizon },
+            Sky::Panorama(id) => {
+                let texture = world.texture(id);
+                // Along the horizon a texel is as high as it is wide.
+                let texels_per_radian = f64::from(texture.width()) / TAU;
+                let area = projection.pixel_angles() * texels_per_radian;
+                let level = texture.level(plan.filter.lod(area.x * area.y));
+                let height = f64::from(texture.height()) / texels_per_radian;
+                columns.clear();
+                columns
+                    .extend(projection.rays().map(|ray| SkyColumn::new(ray.direction(), height)));
+                Self::Panorama { projection, level, columns }
+            }
+        }
+    }
+
+    /// Draws what `columns` of `row` show of it, seen in `image` if not directly.
+    pub(super) fn draw<S: Stats>(
+        &self,
+        row: u32,
+        columns: Range<usize>,
+        image: Option<MirrorTransform>,
+        target: &mut Target<'_, S>,
+    ) {
+        let across = columns.clone();
+        match *self {
+            Self::Gradient { projection, zenith, horizon } => {
+                let color = gradient(zenith, horizon, projection.slope(row));
+                target.span_mut(Pass::Sky, row, columns).fill(color);
+            }
+            Self::Panorama { projection, level, columns: ref places } => {
+                target.count_texels(Pass::Sky, columns.len());
+                let slope = projection.slope(row);
+                let pixels = target.span_mut(Pass::Sky, row, columns);
+                for (pixel, column) in pixels.iter_mut().zip(&places[across]) {
+                    let down = 1.0 - slope * column.up_for_slope;
+                    let across =
+                        image.map_or(column.across, |image| column.reflected_across(image));
+                    *pixel = level.at_fraction(across, (down * WHOLE) as u64);
+                }
+            }
+        }
+    }
+}
+
+impl SkyColumn {
+    /// Where a ray along `direction` looks on a cylinder of radius 1 that is `height` high.
+    fn new(direction: DVec2, height: f64) -> Self {
+        let turn = libm::atan2(direction.y, direction.x) / TAU;
+        let turn = if turn < 0.0 { turn + 1.0 } else { turn };
+        Self { across: (turn * WHOLE) as u64, up_for_slope: 1.0 / (direction.length() * height) }
+    }
+
+    /// Where it looks after the reflections that unfold the map by `transform`: a turn is taken from
+    /// the east, so that a mirror that faces north or south negates it.
+    fn reflected_across(&self, transform: MirrorTransform) -> u64 {
+        const HALF: u64 = 1 << 63;
+        let direction = transform.real_direction(DVec2::ONE);
+        let across = if direction.y < 0.0 { self.across.wrapping_neg() } else { self.across };
+        if direction.x < 0.0 { HALF.wrapping_sub(across) } else { across }
+    }
+}
+
+/// The colour of a gradient at that slope: it changes quickly at the horizon and slowly higher up.
+fn gradient(zenith: Rgb, horizon: Rgb, slope: f64) -> Rgb {
+    let up = (slope / SLOPE_OF_ZENITH).clamp(0.0, 1.0);
+    let share = (up * (2.0 - up) * 256.0) as u32;
+    horizon.blended(256 - share, zenith, share)
+}
+
+/// From which slope on a gradient is all zenith.
+const SLOPE_OF_ZENITH: f64 = 0.5;
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn a_gradient_goes_from_one_colour_to_the_other() {
+        let colors =
+            [-1.0, 0.0, 0.5, f64::INFINITY].map(|slope| gradient(Rgb::BLACK, Rgb::WHITE, slope));
+        assert_eq!(colors, [Rgb::WHITE, Rgb::WHITE, Rgb::BLACK, Rgb::BLACK]);
+        let middle = gradient(Rgb::BLACK, Rgb::WHITE, 0.1);
+        assert!((100..200).contains(&middle.red()), "{middle}");
+    }
+}

@@ -1,0 +1,204 @@
+//! Spans of floor and ceiling: inner loops for each kind of pattern and lighting.
+
+use super::target::Target;
+use super::texel_runs::TexelRuns;
+use crate::color::Rgb;
+use crate::color::srgb::mean_of_two;
+use crate::visibility::{
+    Faded, FullyLit, Lighting, PlaneSpan, Scene, SpanMapping, Stats, TexelPlaces,
+};
+use crate::world::texture::{MipLevel, MipLevelByShifts};
+use crate::world::{Paint, Pattern};
+
+/// Draws `span`.
+pub(super) fn draw<S: Stats>(scene: Scene<'_>, span: &PlaneSpan<'_>, target: &mut Target<'_, S>) {
+    match Faded::of_plane(span.light, scene.world.fog(), span.mapping.distance) {
+        None => draw_lit(scene, span, FullyLit, target),
+        Some(faded) => draw_lit(scene, span, faded, target),
+    }
+}
+
+fn draw_lit<L: Lighting, S: Stats>(
+    scene: Scene<'_>,
+    span: &PlaneSpan<'_>,
+    lighting: L,
+    target: &mut Target<'_, S>,
+) {
+    let &PlaneSpan { pass, row, ref columns, covering, mapping, .. } = span;
+    let x = columns.start;
+    let per_cell = 1.0 / covering.scale.cells();
+    let sampler = Sampler { scene, mapping, per_cell };
+    let count = columns.len();
+    match covering.pattern {
+        Pattern::Checker(paints) | Pattern::Stripes(paints) if sampler.is_blurred() => {
+            let [one, other] = paints.map(|paint| sampler.mean(paint));
+            let color = lighting.apply(mean_of_two(one, other));
+            target.span_mut(pass, row, columns.clone()).fill(color);
+        }
+        Pattern::Plain(paint) => match sampler.sample(paint) {
+            Sample::Color(color) => {
+                target.span_mut(pass, row, columns.clone()).fill(lighting.apply(color));
+            }
+            Sample::Level(level) => {
+                target.count_texels(pass, count);
+                let places = mapping.places(x, per_cell);
+                let pixels = target.span_mut(pass, row, columns.clone());
+                draw_level(level, lighting, places, pixels);
+            }
+        },
+        Pattern::Checker(paints) => {
+            draw_pieces(span, paints.map(|it| sampler.sample(it)), lighting, |x, y| x ^ y, target)
+        }
+        Pattern::Stripes(paints) => {
+            draw_pieces(span, paints.map(|it| sampler.sample(it)), lighting, |_, y| y, target)
+        }
+    }
+}
+
+/// Draws `span` in two samples by turns: the first bit of what `piece` makes of a place tells which.
+fn draw_pieces<L: Lighting, S: Stats>(
+    span: &PlaneSpan<'_>,
+    samples: [Sample<'_>; 2],
+    lighting: L,
+    piece: impl Fn(u64, u64) -> u64,
+    target: &mut Target<'_, S>,
+) {
+    let &PlaneSpan { pass, row, ref columns, covering, mapping, .. } = span;
+    // The pattern repeats after two pieces: the first bit of a place tells which piece it is in, the
+    // others where in that.
+    let places = mapping.places(columns.start, 1.0 / covering.scale.cells() / 2.0);
+    let mut texels = 0;
+    let pixels = target.span_mut(pass, row, columns.clone());
+    for (pixel, (x, y)) in pixels.iter_mut().zip(places) {
+        let sample = &samples[(piece(x, y) >> 63) as usize];
+        *pixel = lighting.apply(sample.at_fraction(x << 1, y << 1));
+        if S::ARE_KEPT {
+            texels += usize::from(matches!(sample, Sample::Level(_)));
+        }
+    }
+    target.count_texels(pass, texels);
+}
+
+/// Draws `level` on `pixels`.
+fn draw_level<L: Lighting>(level: &MipLevel, lighting: L, places: TexelPlaces, pixels: &mut [Rgb]) {
+    match level.by_shifts() {
+        Some(level) => match TexelRuns::of(level, &places, pixels.len()) {
+            Some(runs) => runs.draw(level, lighting, pixels),
+            None => draw_by_shifts(level, lighting, places, pixels),
+        },
+        None => {
+            for (pixel, (x, y)) in pixels.iter_mut().zip(places) {
+                *pixel = lighting.apply(level.at_fraction(x, y));
+            }
+        }
+    }
+}
+
+/// Draws `level` on `pixels`, many at a time: which texels they show is computed first, in a loop that
+/// reads no texel, so that a compiler has several of them computed at once.
+fn draw_by_shifts<L: Lighting>(
+    level: MipLevelByShifts<'_>,
+    lighting: L,
+    mut places: TexelPlaces,
+    pixels: &mut [Rgb],
+) {
+    let mut texels = [0; AT_ONCE];
+    for pixels in pixels.chunks_mut(AT_ONCE) {
+        // A few too many take less time than a few that are computed one by one.
+        let texels = &mut texels[..pixels.len().next_multiple_of(LANES)];
+        for (texel, (x, y)) in texels.iter_mut().zip(places.clone()) {
+            *texel = level.index(x, y);
+        }
+        look_up(level, lighting, texels, pixels);
+        places.skip_pixels(AT_ONCE as u64);
+    }
+}
+
+/// Colours `pixels` by the indices of their texels, of which there are at least as many.
+#[inline]
+fn look_up<L: Lighting>(
+    level: MipLevelByShifts<'_>,
+    lighting: L,
+    texels: &[u32],
+    pixels: &mut [Rgb],
+) {
+    // Each may be the last, for all that a compiler knows, and so it does not unroll this by itself.
+    let (pixels, rest) = pixels.as_chunks_mut::<UNROLLED>();
+    let (texels, rest_of_texels) = texels.split_at(pixels.as_flattened().len());
+    for (pixels, texels) in pixels.iter_mut().zip(texels.as_chunks::<UNROLLED>().0) {
+        for (pixel, &texel) in pixels.iter_mut().zip(texels) {
+            *pixel = lighting.apply(level.at_index(texel));
+        }
+    }
+    for (pixel, &texel) in rest.iter_mut().zip(rest_of_texels) {
+        *pixel = lighting.apply(level.at_index(texel));
+    }
+}
+
+/// So many pixels are drawn at once, at most.
+const AT_ONCE: usize = 64;
+/// A multiple of how many texels a processor computes at once.
+const LANES: usize = 16;
+const UNROLLED: usize = 8;
+
+/// What the paints of a span look like.
+#[derive(Clone, Copy)]
+struct Sampler<'a> {
+    scene: Scene<'a>,
+    mapping: &'a SpanMapping,
+    /// How often they repeat in a cell.
+    per_cell: f64,
+}
+
+/// A paint as it is at one distance.
+enum Sample<'a> {
+    Color(Rgb),
+    Level(&'a MipLevel),
+}
+
+/// Where a pixel covers half a piece of a pattern, it shows the mean of both paints: this many times
+/// the pieces in a pixel are as many as the texels from which on a texture is halved.
+const PIECES_IN_A_PIXEL: f64 = 4.0;
+
+impl<'a> Sampler<'a> {
+    /// Whether the pieces of a pattern are too small to tell them apart.
+    fn is_blurred(self) -> bool {
+        self.lod(PIECES_IN_A_PIXEL) > 0
+    }
+
+    /// What `paint` is infinitely far away.
+    fn mean(self, paint: Paint) -> Rgb {
+        match paint {
+            Paint::Color(color) => color,
+            Paint::Texture(id) => self.scene.world.texture(id).level(usize::MAX).at_fraction(0, 0),
+        }
+    }
+
+    /// What `paint` is at the distance of the span.
+    fn sample(self, paint: Paint) -> Sample<'a> {
+        match paint {
+            Paint::Color(color) => Sample::Color(color),
+            Paint::Texture(id) => {
+                let texture = self.scene.world.texture(id);
+                let texels = f64::from(texture.width()) * f64::from(texture.height());
+                Sample::Level(texture.level(self.lod(texels)))
+            }
+        }
+    }
+
+    /// The level of detail of something of which a repeat has `texels`.
+    fn lod(self, texels: f64) -> usize {
+        let area = self.mapping.pixel_area * self.per_cell * self.per_cell;
+        self.scene.plan.filter.lod(area * texels)
+    }
+}
+
+impl Sample<'_> {
+    #[inline]
+    fn at_fraction(&self, x: u64, y: u64) -> Rgb {
+        match self {
+            Self::Color(color) => *color,
+            Self::Level(level) => level.at_fraction(x, y),
+        }
+    }
+}

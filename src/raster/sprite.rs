@@ -1,0 +1,47 @@
+//! Sprites: the columns of billboards.
+
+use super::target::Target;
+use crate::visibility::{
+    BillboardColumn, DrawList, FullyLit, Lighting, Pass, Scene, Stats, Surface,
+};
+
+/// Draws `column` of a billboard of `list` over what is there.
+pub(super) fn draw<S: Stats>(
+    scene: Scene<'_>,
+    list: &DrawList,
+    column: &BillboardColumn,
+    target: &mut Target<'_, S>,
+) {
+    match list.billboards[column.billboard].lighting {
+        None => draw_lit(scene, list, column, FullyLit, target),
+        Some(faded) => draw_lit(scene, list, column, faded, target),
+    }
+}
+
+fn draw_lit<L: Lighting, S: Stats>(
+    scene: Scene<'_>,
+    list: &DrawList,
+    column: &BillboardColumn,
+    lighting: L,
+    target: &mut Target<'_, S>,
+) {
+    let billboard = &list.billboards[column.billboard];
+    let Some(level) = billboard.level(scene, list.player.as_ref()) else { return };
+    let (x, rows) = (column.column, target.clip(&column.rows));
+    target.count_pixels(Pass::Things, rows.len());
+    target.count_texels(Pass::Things, rows.len());
+    let u = billboard.u(x);
+    let (texels, alphas) = (level.column(u), level.alpha_column(u));
+    let texel = |row: u32| billboard.texel(row).min(texels.len() - 1);
+    let alpha = |texel: usize| alphas.map_or(u8::MAX, |alphas| alphas[texel]);
+    for (row, pixel) in rows.clone().zip(target.column_mut(x, rows.clone())) {
+        let texel = texel(row);
+        *pixel = match alpha(texel) {
+            0 => *pixel,
+            u8::MAX => lighting.apply(texels[texel]),
+            alpha => lighting.apply(texels[texel]).over(*pixel, alpha),
+        };
+    }
+    let shown = rows.clone().map(|row| alpha(texel(row)) > u8::MAX / 2);
+    target.mark(x, rows.start, Surface::Thing, shown);
+}

@@ -1,0 +1,95 @@
+//! The target: what is drawn to.
+
+use std::ops::Range;
+
+use super::band::Band;
+use super::surface_buffer::SurfaceRows;
+use crate::color::Rgb;
+use crate::visibility::{Pass, Stats, Surface};
+
+/// A band of a frame with its part of the surface buffer, and what drawing it costs.
+///
+/// Rows that items are drawn in have to be [clipped](Target::clip) to the band before.
+pub(crate) struct Target<'a, S> {
+    band: Band<'a>,
+    surfaces: SurfaceRows<'a>,
+    stats: S,
+}
+
+impl<'a, S: Stats> Target<'a, S> {
+    pub(crate) fn new(band: Band<'a>, surfaces: SurfaceRows<'a>) -> Self {
+        Self { band, surfaces, stats: S::default() }
+    }
+
+    /// What drawing has cost.
+    pub(crate) fn into_stats(self) -> S {
+        self.stats
+    }
+
+    /// Which rows of the frame it shows.
+    pub(super) fn rows(&self) -> Range<u32> {
+        self.band.rows()
+    }
+
+    /// Those of `rows` that it shows.
+    #[inline]
+    pub(super) fn clip(&self, rows: &Range<u32>) -> Range<u32> {
+        self.band.clip(rows)
+    }
+
+    /// All pixels of `rows`, to be written for `pass`.
+    pub(super) fn whole_rows_mut(&mut self, pass: Pass, rows: Range<u32>) -> &mut [Rgb] {
+        let pixels = self.band.rows_mut(rows);
+        self.stats.change(|stats| stats.of_mut(pass).pixels += pixels.len() as u64);
+        pixels
+    }
+
+    /// The pixels of `columns` in `row`, to be written for `pass`.
+    #[inline]
+    pub(super) fn span_mut(&mut self, pass: Pass, row: u32, columns: Range<usize>) -> &mut [Rgb] {
+        self.stats.change(|stats| {
+            stats.spans += 1;
+            stats.of_mut(pass).pixels += columns.len() as u64;
+        });
+        &mut self.band.row_mut(row)[columns]
+    }
+
+    /// The pixels of `rows` in column `x`, from the top.
+    #[inline]
+    pub(super) fn column_mut(
+        &mut self,
+        x: u32,
+        rows: Range<u32>,
+    ) -> impl Iterator<Item = &mut Rgb> {
+        self.band.column_mut(x, rows)
+    }
+
+    /// The band itself, for what counts its pixels by itself.
+    #[inline]
+    pub(super) fn band_mut(&mut self) -> &mut Band<'a> {
+        &mut self.band
+    }
+
+    /// Counts `count` pixels that are written for `pass`.
+    #[inline]
+    pub(super) fn count_pixels(&mut self, pass: Pass, count: usize) {
+        self.stats.change(|stats| stats.of_mut(pass).pixels += count as u64);
+    }
+
+    /// Counts `count` texels that are read for `pass`.
+    #[inline]
+    pub(super) fn count_texels(&mut self, pass: Pass, count: usize) {
+        self.stats.change(|stats| stats.of_mut(pass).texels += count as u64);
+    }
+
+    /// Marks those pixels of column `x` from `row` on as showing `surface` of which `shown` says so.
+    pub(super) fn mark(
+        &mut self,
+        x: u32,
+        row: u32,
+        surface: Surface,
+        shown: impl Iterator<Item = bool>,
+    ) {
+        self.surfaces.mark(x as usize, row, surface, shown);
+    }
+}

@@ -1,0 +1,204 @@
+//! Runs: pixels side by side that show the same texel.
+//!
+//! In a large picture, what is near shows its texels dozens of pixels wide. Where each of them ends
+//! is computed then, and not which one each pixel shows: in whole steps and what is left over of them,
+//! as a straight line is drawn on a grid, so that the pixels are the same to the last one. To take
+//! eight pixels for one run if the first and the last show the same texel was refused: where texels
+//! are sixteen pixels wide, nearly half of the eights have an edge in them, no processor foresees
+//! which, and those have to be drawn one by one after all.
+
+use crate::color::Rgb;
+use crate::visibility::{Lighting, TexelPlaces};
+use crate::world::texture::MipLevelByShifts;
+
+/// The runs of a span.
+#[derive(Clone, Debug)]
+pub(crate) struct TexelRuns {
+    east: Edges,
+    south: Edges,
+}
+
+/// If they are shorter than that in the mean, each pixel by itself takes less time.
+const SHORTEST: f64 = 6.0;
+/// For so few pixels it is not worth a division.
+const FEWEST_PIXELS: usize = 32;
+/// So many pixels are set at a time, those beyond the end of a run as well: another one follows.
+const AT_ONCE: usize = 16;
+
+impl TexelRuns {
+    /// The runs of so many pixels at `places` that show `level`. `None` where they are too short.
+    #[inline]
+    pub(crate) fn of(
+        level: MipLevelByShifts<'_>,
+        places: &TexelPlaces,
+        pixels: usize,
+    ) -> Option<Self> {
+        let (masks, steps) = (level.masks(), places.steps());
+        let edges_a_pixel = edges_a_pixel(steps[0], masks[0]) + edges_a_pixel(steps[1], masks[1]);
+        let is_worth_it = pixels >= FEWEST_PIXELS && edges_a_pixel * SHORTEST <= 1.0;
+        is_worth_it.then(|| Self::new(level, places)).flatten()
+    }
+
+    fn new(level: MipLevelByShifts<'_>, places: &TexelPlaces) -> Option<Self> {
+        let ([mask_x, mask_y], [step_x, step_y], [x, y]) =
+            (level.masks(), places.steps(), places.first());
+        Some(Self {
+            east: Edges::new(x, step_x, level.index(x, 0), mask_x)?,
+            south: Edges::new(y, step_y, level.index(0, y), mask_y)?,
+        })
+    }
+
+    /// Draws `level` on `pixels`.
+    pub(crate) fn draw<L: Lighting>(
+        self,
+        level: MipLevelByShifts<'_>,
+        lighting: L,
+        pixels: &mut [Rgb],
+    ) {
+        let Self { mut east, mut south } = self;
+        let count = pixels.len() as u64;
+        let mut start = 0;
+        while start < count {
+            let end = east.next.min(south.next).min(count);
+            let color = lighting.apply(level.at_index(east.index | south.index));
+            fill(&mut pixels[start as usize..], (end - start) as usize, color);
+            east.pass(end);
+            south.pass(end);
+            start = end;
+        }
+    }
+}
+
+/// Sets the first `count` of `pixels`, and some that follow.
+#[inline]
+fn fill(pixels: &mut [Rgb], count: usize, color: Rgb) {
+    let (blocks, rest) = pixels.as_chunks_mut::<AT_ONCE>();
+    let full = count.div_ceil(AT_ONCE);
+    if full <= blocks.len() {
+        for block in &mut blocks[..full] {
+            *block = [color; AT_ONCE];
+        }
+    } else {
+        blocks.as_flattened_mut().fill(color);
+        rest.fill(color);
+    }
+}
+
+/// How many edges there are between two pixels in the mean, along one axis.
+fn edges_a_pixel(step: u64, mask: u32) -> f64 {
+    let texels = 1_u64 << mask.count_ones();
+    let step = step.cast_signed().unsigned_abs();
+    step as f64 * (texels as f64 / 2.0_f64.powi(64))
+}
+
+/// Where one texel ends and the next begins, along one axis.
+#[derive(Clone, Debug)]
+struct Edges {
+    /// The first pixel behind the next edge.
+    next: u64,
+    /// How far behind the edge its place is: less than a step.
+    behind: u64,
+    /// From one pixel to the next.
+    step: u64,
+    /// How many whole steps a texel takes, and what is left of it.
+    steps: u64,
+    rest: u64,
+    /// What this axis adds to the index of the texel.
+    index: u32,
+    /// From one texel to the next, modulo all of them.
+    index_step: u32,
+    mask: u32,
+}
+
+impl Edges {
+    /// The edges from `place` on, by such a `step` from each pixel to the next, where a place adds to the
+    /// index of a texel what is in `mask`, at first `index`. `None` where there is but one texel.
+    fn new(place: u64, step: u64, index: u32, mask: u32) -> Option<Self> {
+        let texel = 1_u64.checked_shl(u64::BITS - mask.count_ones())?;
+        let to_next = mask & mask.wrapping_neg();
+        // Who goes back is seen in a mirror to go on.
+        let (place, step, index_step) = if step.cast_signed() < 0 {
+            (!place, step.wrapping_neg(), to_next.wrapping_neg())
+        } else {
+            (place, step, to_next)
+        };
+        let last_of_texel = texel - 1 - (place & (texel - 1));
+        let along =
+            Self { next: u64::MAX, behind: 0, step, steps: 0, rest: 0, index, index_step, mask };
+        Some(match last_of_texel.checked_div(step) {
+            // It is beside an axis, and stays there.
+            None => along,
+            Some(steps) => Self {
+                next: steps + 1,
+                behind: step - 1 - last_of_texel % step,
+                steps: texel / step,
+                rest: texel % step,
+                ..along
+            },
+        })
+    }
+
+    /// Goes on to the next edge if this one is before the pixel `end`.
+    #[inline]
+    fn pass(&mut self, end: u64) {
+        // What is foreseen by nobody is computed both ways.
+        let passes = u64::from(self.next == end).wrapping_neg();
+        let is_one_more = u64::from(self.rest > self.behind);
+        let moved = self.steps + is_one_more;
+        let further = (is_one_more.wrapping_neg() & self.step).wrapping_sub(self.rest);
+        self.next += moved & passes;
+        self.behind = self.behind.wrapping_add(further & passes);
+        self.index = self.index.wrapping_add(self.index_step & passes as u32) & self.mask;
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use std::num::NonZeroU32;
+
+    use glam::DVec2;
+    use proptest::prelude::*;
+
+    use super::*;
+    use crate::visibility::{FullyLit, SpanMapping};
+    use crate::world::Texture;
+
+    fn half_step() -> impl Strategy<Value = f64> {
+        prop_oneof![Just(0.0), Just(-0.0), Just(1.0 / 4096.0), -1e-3..1e-3, -1e-18..1e-18]
+    }
+
+    proptest! {
+        #[test]
+        fn runs_show_what_each_pixel_shows(
+            sides in (0_u32..6, 0_u32..6),
+            middle in (-50.0..50.0, -50.0..50.0),
+            on_edges in any::<bool>(),
+            half_step in (half_step(), half_step()),
+            (width, first) in (1_u32..3000, 0_u32..200),
+        ) {
+            let side = |bits: u32| NonZeroU32::MIN.saturating_add((1 << bits) - 1);
+            let texture = Texture::from_fn(side(sides.0), side(sides.1), |x, y| {
+                Rgb::new(x as u8, y as u8, 0)
+            });
+            let level = texture.level(0);
+            let by_shifts = level.by_shifts().unwrap();
+            let middle = DVec2::from(middle);
+            let middle = if on_edges { middle.floor() } else { middle };
+            let half_step = DVec2::from(half_step);
+            let mapping = SpanMapping { distance: 1.0, pixel_area: 1.0, middle, half_step, width };
+            let places = mapping.places(first as usize, 1.0);
+            let mut pixels = vec![Rgb::WHITE; width as usize];
+            let Some(runs) = TexelRuns::of(by_shifts, &places, pixels.len()) else {
+                // A texel is 32 pixels wide then, or there is but one.
+                let is_near = half_step.abs().max_element() <= 0.5 / 64.0 / 32.0;
+                let is_one = sides.0 == 0 || sides.1 == 0;
+                prop_assert!(pixels.len() < FEWEST_PIXELS || !is_near || is_one);
+                return Ok(());
+            };
+            runs.draw(by_shifts, FullyLit, &mut pixels);
+            for (pixel, (x, y)) in pixels.into_iter().zip(places) {
+                prop_assert_eq!(pixel, level.at_fraction(x, y));
+            }
+        }
+    }
+}

@@ -1,0 +1,95 @@
+//! Wall columns: upright faces as wide as a pixel.
+//!
+//! A wall column is one column of its texture, stretched. The texel of each pixel is computed from its
+//! row, not from the texel above it, so that no error adds up down the picture; and where a wall is so
+//! near that only a few texels of it fill the screen, they are the right ones.
+
+use super::column_batch::{BatchMemory, ColumnBatch};
+use super::target::Target;
+use crate::cast::Side;
+use crate::visibility::{
+    DrawList, Extent, Facing, Faded, Lighting, Pass, Scene, SideLit, Stats, WallColumn, WallSink,
+};
+use crate::world::{Light, Paint};
+
+/// Draws all wall columns of `list`.
+pub(super) fn draw<S: Stats>(
+    scene: Scene<'_>,
+    list: &DrawList,
+    memory: &mut BatchMemory,
+    target: &mut Target<'_, S>,
+) {
+    if scene.plan.walls.faded || scene.world.has_shapes() {
+        let lighting = |wall: &WallColumn| lighting_of(scene, wall.facing, wall.light, wall.t);
+        draw_lit(scene, list, true, ColumnBatch::new(memory, target), lighting);
+    } else {
+        let lighting = |wall: &WallColumn| match wall.facing {
+            Facing::Side(side) => SideLit(side),
+            // Only shapes look that way, and there are none.
+            Facing::Normal(_) => SideLit(Side::X),
+        };
+        draw_lit(scene, list, false, ColumnBatch::new(memory, target), lighting);
+    }
+}
+
+/// What becomes of the colours of a face.
+pub(super) fn lighting_of(scene: Scene<'_>, facing: Facing, light: Light, t: f64) -> Faded {
+    let fog = scene.world.fog();
+    match facing {
+        Facing::Side(side) => Faded::of_wall(side, light, fog, t),
+        Facing::Normal(normal) => Faded::of_surface(normal, light, fog, t),
+    }
+}
+
+fn draw_lit<'a, L: Lighting, S: Stats>(
+    scene: Scene<'a>,
+    list: &DrawList,
+    is_lit: bool,
+    batch: ColumnBatch<'_, '_, 'a, L, S>,
+    lighting: impl Fn(&WallColumn) -> L,
+) {
+    let rows = batch.rows();
+    let mut queue = Queue { scene, batch, lighting };
+    list.for_each_wall_column(scene, &rows, is_lit, &mut queue);
+    queue.batch.draw();
+}
+
+/// Queues wall columns in a lighting that depends on each.
+struct Queue<'m, 't, 'a, L, S, F> {
+    scene: Scene<'a>,
+    batch: ColumnBatch<'m, 't, 'a, L, S>,
+    lighting: F,
+}
+
+impl<L: Lighting, S: Stats, F: Fn(&WallColumn) -> L> WallSink for Queue<'_, '_, '_, L, S, F> {
+    #[expect(clippy::inline_always, reason = "elsewhere every wall column would go through memory")]
+    #[inline(always)]
+    fn take(&mut self, wall: &WallColumn) {
+        let Self { scene, batch, lighting } = self;
+        let (column, t) = (wall.column, wall.t);
+        let rows = batch.clip(&wall.rows);
+        if rows.is_empty() {
+            return;
+        }
+        batch.count(Pass::Walls, rows.len(), wall.paint);
+        let texture = match wall.paint {
+            Paint::Color(color) => {
+                batch.queue_color(column, rows, color, lighting(wall));
+                return;
+            }
+            Paint::Texture(texture) => texture,
+        };
+        let texels = scene.level_on_face(texture, t, wall.slope).column(wall.u);
+        let projection = scene.projection;
+        match wall.extent {
+            Extent::Level => {
+                let stepper = projection.texels_down_the_wall(t, texels.len());
+                batch.queue_texels(column, rows, texels, stepper, lighting(wall));
+            }
+            Extent::Heights { bottom, top } => {
+                let stepper = projection.texels_down_the_face(t, texels.len(), bottom, top);
+                batch.queue_repeating(column, rows, texels, stepper, lighting(wall));
+            }
+        }
+    }
+}

@@ -1,0 +1,97 @@
+use std::path::Path;
+use std::sync::LazyLock;
+
+use glam::DVec2;
+use proptest::prelude::*;
+
+use super::{
+    Filter, Frame, FramePlan, FrameSize, Memory, Picture, PixelAspect, Threads, Visibility,
+    WhyPortals,
+};
+use crate::cast::Exact;
+use crate::map::{self, Level, builtin};
+use crate::visibility::Projection;
+use crate::world::{Camera, Cell, FieldOfView, Heading, Opening, Pitch, World};
+
+/// All maps that are level, with doors ajar where there are any.
+static LEVEL_MAPS: LazyLock<Vec<(String, World)>> = LazyLock::new(|| {
+    let builtin =
+        builtin::LEVELS.iter().map(|level| (level.name.to_owned(), level.world().unwrap()));
+    let gallery = std::fs::read_dir("maps/gallery").unwrap().filter_map(|entry| {
+        let path = entry.unwrap().path();
+        match map::load_level(Path::new(&path)).unwrap() {
+            Level::Grid(world) => Some((path.display().to_string(), *world)),
+            Level::Space(_) => None,
+        }
+    });
+    let is_level = |(_, world): &(String, World)| world.is_level() && !world.has_mirrors();
+    let mut maps: Vec<(String, World)> = builtin.chain(gallery).filter(is_level).collect();
+    for (_, world) in &mut maps {
+        let (width, height) = (world.grid().width(), world.grid().height());
+        for (column, row) in (0..width).flat_map(|column| (0..height).map(move |row| (column, row)))
+        {
+            let part = f64::from((column + row) % 5) / 4.0;
+            world.set_opening(Cell { column, row }, Opening::new(part).unwrap());
+        }
+    }
+    maps.sort_by(|(one, _), (other, _)| one.cmp(other));
+    maps
+});
+
+/// Both pictures of what `camera` sees: the flat way, and the portal way.
+fn both(world: &World, camera: &Camera, filter: Filter, size: FrameSize) -> [Frame; 2] {
+    [Visibility::Flat, Visibility::Portals(WhyPortals::Heights)].map(|visibility| {
+        let plan = FramePlan { visibility, ..FramePlan::new(world, camera, filter) };
+        let mut drawn = Frame::new(size, PixelAspect::SQUARE);
+        let (memory, frame, stats) = (&mut Memory::default(), &mut drawn, &mut ());
+        let (seconds, threads) = (0.0, None);
+        let picture = Picture { world, camera, filter, seconds, threads, memory, frame, stats };
+        picture.draw_planned(&Exact, plan, Threads::new(size, None));
+        drawn
+    })
+}
+
+proptest! {
+    #![proptest_config(ProptestConfig::with_cases(64))]
+
+    /// A level with all heights equal looks the same either way, bit for bit; but for the
+    /// centres of pixels that are on a line between two tiles.
+    #[test]
+    fn a_level_is_drawn_as_if_it_had_heights(
+        choice in any::<prop::sample::Index>(),
+        place in (0.0..1.0, 0.0..1.0),
+        is_in_the_middle in any::<bool>(),
+        degrees in prop_oneof![3 => 0.0..360.0, 1 => (0..8).prop_map(|eighth| 45.0 * f64::from(eighth))],
+        eye in prop_oneof![Just(0.5), 0.1..0.9],
+        pitch in prop_oneof![Just(0.0), -30.0..30.0],
+        size in (1_u32..120, 1_u32..90),
+        is_nearest in any::<bool>(),
+    ) {
+        let (name, world) = choice.get(&LEVEL_MAPS);
+        let extent = DVec2::new(f64::from(world.grid().width()), f64::from(world.grid().height()));
+        let mut position = DVec2::from(place) * extent;
+        if is_in_the_middle {
+            position = position.floor() + 0.5;
+        }
+        // Inside rock, neither has anything to be right about.
+        prop_assume!(!world.grid().is_solid(position.x as i64, position.y as i64));
+        let heading = Heading::from_degrees(degrees).unwrap();
+        let camera = Camera::new(position, heading, FieldOfView::default()).unwrap();
+        let camera = camera.with_eye(eye).unwrap().with_pitch(Pitch::from_degrees(pitch).unwrap());
+        let filter = if is_nearest { Filter::Nearest } else { Filter::Mip };
+        let size = FrameSize::new(size.0, size.1).unwrap();
+        let [flat, portals] = both(world, &camera, filter, size);
+        let projection = Projection::new(&camera, size, PixelAspect::SQUARE);
+        for (y, (one, other)) in (0..).zip(flat.rows().zip(portals.rows())) {
+            for (x, (one, other)) in one.iter().zip(other).enumerate() {
+                let is_doubtful = is_on_a_line(projection.mapping(y).point(x));
+                prop_assert!(one == other || is_doubtful, "at ({}, {}) of {}", x, y, name);
+            }
+        }
+    }
+}
+
+/// Whether nobody can tell in which cell `point` is.
+fn is_on_a_line(point: DVec2) -> bool {
+    (point - point.round()).abs().min_element() < 1e-9
+}

@@ -1,0 +1,154 @@
+//! Billboards: flat pictures of things that stand parallel to the camera plane.
+
+use std::ops::Range;
+
+use glam::DVec2;
+
+use super::{Faded, Scene};
+use crate::cast::MirrorTransform;
+use crate::world::texture::MipLevel;
+use crate::world::{Camera, Cell, Light, Sprite, SpriteId, Thing};
+
+/// Things that are nearer than that to the camera plane are not drawn: the player stands in them.
+const NEAREST: f64 = 0.2;
+
+/// A thing as it stands in the picture, seen directly or in mirrors.
+#[derive(Clone, Debug)]
+pub(crate) struct Billboard {
+    /// `None` for the player.
+    sprite: Option<SpriteId>,
+    /// Which of the sprite's pictures is drawn, and from which of its mip levels.
+    picture: usize,
+    lod: usize,
+    /// `None` where it is near and in full light.
+    pub(crate) lighting: Option<Faded>,
+    /// How far it is from the camera plane, in cells.
+    pub(crate) depth: f64,
+    /// Where its left edge is, in pixels, and how many pixels wide it is.
+    left: f64,
+    width: f64,
+    /// The columns of pixels whose centres are on it.
+    pub(crate) columns: Range<u32>,
+    /// Where its top is, in rows, and how many texels there are in a row.
+    top: f64,
+    texels_in_row: f64,
+    /// The rows of pixels whose centres are on it.
+    pub(crate) rows: Range<u32>,
+    is_mirrored: bool,
+    /// Whether any of it is in view.
+    pub(crate) is_drawn: bool,
+    /// Which comes first of those that are equally far away.
+    pub(crate) order: (u32, u32, u16),
+}
+
+impl Billboard {
+    /// How `thing` looks in an image; `None` where it is out of the picture.
+    pub(crate) fn of_thing(scene: Scene<'_>, image: MirrorTransform, thing: Thing) -> Option<Self> {
+        let world = scene.world;
+        let sprite = world.sprite(thing.sprite);
+        let base = sprite.base(world.room_in(thing.cell));
+        let light = world.light_in(thing.cell);
+        let place = (thing.cell.center(), base);
+        let billboard = Self::new(scene, image, sprite, scene.seconds, place, light)?;
+        let order = (thing.cell.row, thing.cell.column, thing.sprite.0);
+        Some(Self { sprite: Some(thing.sprite), order, ..billboard })
+    }
+
+    /// How the player looks in an image, as `figure` shows them.
+    pub(crate) fn of_player(
+        scene: Scene<'_>,
+        image: MirrorTransform,
+        figure: &Sprite,
+    ) -> Option<Self> {
+        let place = scene.projection.origin();
+        let base = scene.projection.eye() - Camera::STANDING;
+        let is_on_map = place.x >= 0.0 && place.y >= 0.0;
+        let cell = Cell { column: place.x as u32, row: place.y as u32 };
+        let light = if is_on_map { scene.world.light_in(cell) } else { Light::FULL };
+        Self::new(scene, image, figure, 0.0, (place, base), light)
+    }
+
+    /// How `sprite` looks that stands at a place on the map, on that height.
+    fn new(
+        scene: Scene<'_>,
+        image: MirrorTransform,
+        sprite: &Sprite,
+        seconds: f64,
+        (center, base): (DVec2, f64),
+        light: Light,
+    ) -> Option<Self> {
+        let Scene { world, projection, plan, .. } = scene;
+        let place = projection.place(image.mirrored_point(center));
+        let depth = place.depth;
+        if !(NEAREST..f64::INFINITY).contains(&depth) {
+            return None;
+        }
+        let width = projection.columns_for(sprite.width(), depth);
+        let left = place.column - width / 2.0;
+        let columns = projection.columns_between(left, left + width);
+        let top = projection.row_at(base + sprite.height.cells(), depth);
+        let bottom = projection.row_at(base, depth);
+        let rows = projection.rows_between(top, bottom);
+        if columns.is_empty() || rows.is_empty() {
+            return None;
+        }
+        let to_viewer = image.real_point(projection.origin()) - center;
+        let picture = sprite.picture_index(seconds, to_viewer);
+        let texture = &sprite.pictures()[picture];
+        let texels = f64::from(texture.width()) * f64::from(texture.height());
+        let lod = plan.filter.lod(texels / (width * (bottom - top)));
+        Some(Self {
+            sprite: None,
+            picture,
+            lod,
+            lighting: Faded::of_plane(light, world.fog(), depth),
+            depth,
+            left,
+            width,
+            columns,
+            top,
+            texels_in_row: f64::from(texture.level(lod).height()) / (bottom - top),
+            rows,
+            is_mirrored: image.swaps_sides(),
+            is_drawn: false,
+            order: (0, 0, 0),
+        })
+    }
+
+    /// Whether it is of a thing, and not of the player.
+    pub(crate) fn is_of_thing(&self) -> bool {
+        self.sprite.is_some()
+    }
+
+    /// The mip level that it is drawn from; that of `player`, where it is of the player.
+    pub(crate) fn level<'a>(
+        &self,
+        scene: Scene<'a>,
+        player: Option<&'a Sprite>,
+    ) -> Option<&'a MipLevel> {
+        let sprite = match self.sprite {
+            Some(id) => scene.world.sprite(id),
+            None => player?,
+        };
+        Some(sprite.pictures()[self.picture].level(self.lod))
+    }
+
+    /// How far along its picture the centres of the pixels of `column` are, from 0 to 1.
+    pub(crate) fn u(&self, column: u32) -> f64 {
+        let u = (f64::from(column) + 0.5 - self.left) / self.width;
+        if self.is_mirrored { 1.0 - u } else { u }
+    }
+
+    /// How many texels the centre of `row` is below the top.
+    #[inline]
+    pub(crate) fn texel(&self, row: u32) -> usize {
+        ((f64::from(row) + 0.5 - self.top) * self.texels_in_row) as usize
+    }
+
+    /// When one of `billboards` that are in view begins to look different; `None` for never.
+    pub(crate) fn next_change(billboards: &[Self], scene: Scene<'_>) -> Option<f64> {
+        let drawn = billboards.iter().filter(|it| it.is_drawn).filter_map(|it| it.sprite);
+        let changes = drawn.filter_map(|id| scene.world.sprite(id).next_change(scene.seconds));
+        changes.reduce(f64::min)
+    }
+}

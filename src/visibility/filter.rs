@@ -1,0 +1,45 @@
+//! The filter: which level of a texture a pixel is drawn from.
+
+/// How a texture is looked up where a pixel covers many texels.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Hash, Default)]
+pub enum Filter {
+    /// From the level whose texels are about as large as the pixel: far walls and floors are calm.
+    #[default]
+    Mip,
+    /// From the texture itself, whichever texel is at the pixel's centre: far ones shimmer.
+    Nearest,
+}
+
+impl Filter {
+    /// How often to halve a texture where a pixel covers an area of that many texels.
+    ///
+    /// A halving makes a texel four times as large. A pixel that is long and narrow counts by its
+    /// area: by its longer side, walls seen at an angle would blur across what is sharp on them; by
+    /// its shorter one, they would shimmer.
+    pub(crate) fn lod(self, area: f64) -> usize {
+        match self {
+            // The nearest power of four; the exponent of a double is exact on every machine.
+            Self::Mip if area >= 0.5 => (exponent(2.0 * area) / 2) as usize,
+            Self::Mip | Self::Nearest => 0,
+        }
+    }
+}
+
+/// The exponent of a double that is at least 1; above all others where it is infinite.
+fn exponent(number: f64) -> u64 {
+    const BIAS: u64 = f64::MAX_EXP as u64 - 1;
+    (number.to_bits() >> (f64::MANTISSA_DIGITS - 1)) - BIAS
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn a_level_is_for_areas_around_a_power_of_four() {
+        let lod = [0.0, f64::NAN, 1.9, 2.0, 4.0, 7.9, 8.0, 16.0].map(|area| Filter::Mip.lod(area));
+        assert_eq!(lod, [0, 0, 0, 1, 1, 1, 2, 2]);
+        assert!(Filter::Mip.lod(f64::INFINITY) > 100);
+        assert_eq!(Filter::Nearest.lod(1e9), 0);
+    }
+}

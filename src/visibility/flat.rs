@@ -1,0 +1,268 @@
+//! The flat way to fill a draw list: every ray ends at the first wall.
+//!
+//! Few rays are cast: from the ends of the picture to its middle, and on in each half, until two rays
+//! hit the same face of a wall. What goes between two such rays hits that face, too. Where they hit what
+//! may be passed, all are cast anew, and told what it is.
+
+mod layers;
+mod planes;
+mod wall;
+
+use glam::DVec2;
+
+use super::column::Column;
+use super::ray_counter::RayCounter;
+use super::{DrawList, Projection, Scene, Stats};
+use crate::cast::{Caster, Hit, Ray};
+use crate::world::{Cell, Grid, TileKind, World};
+pub(super) use layers::{FlatMemory, PassedHits};
+pub(super) use planes::{PlaneRow, for_each_span};
+pub(super) use wall::for_each_wall_column;
+
+/// Fills `list`, with the walls that `caster` finds. Returns when a thing in view will look different;
+/// `None` for never.
+pub(super) fn fill<C: Caster, S: Stats>(
+    scene: Scene<'_>,
+    caster: &C,
+    memory: &mut FlatMemory,
+    list: &mut DrawList,
+    stats: &mut S,
+) -> Option<f64> {
+    list.clear();
+    let (columns, passed) = (&mut list.columns, &mut memory.passed);
+    if S::ARE_KEPT {
+        let counter = RayCounter::new(caster);
+        cast(&counter, scene.world, scene.projection, columns, passed);
+        stats.change(|stats| counter.add_to(stats));
+    } else {
+        cast(caster, scene.world, scene.projection, columns, passed);
+    }
+    list.flat = 0..list.columns.len() as u32;
+    layers::fill(scene, memory, list, stats)
+}
+
+/// Casts the ray of every column into `columns`, and what it passes into `passed`, whatever they
+/// held before.
+fn cast<C: Caster>(
+    caster: &C,
+    world: &World,
+    projection: &Projection,
+    columns: &mut Vec<Column>,
+    passed: &mut PassedHits,
+) {
+    passed.clear();
+    let is_of_walls = world.is_of_walls();
+    if !is_of_walls {
+        passed.make_room_for(projection.columns());
+    }
+    let cast_through = |index: usize, passed: &mut PassedHits| {
+        let ray = projection.ray(index as u32);
+        let hit = caster.cast_through(world, &ray, |hit| passed.push(index, hit));
+        column_of(world.grid(), projection, &ray, hit)
+    };
+    if !projection.fans_out() || stands_in_what_may_be_hit(world, projection.origin()) {
+        columns.clear();
+        columns.extend((0..projection.columns()).map(|index| cast_through(index, passed)));
+        return;
+    }
+    columns.resize(projection.columns(), Column::UNKNOWN);
+    Fan { caster, grid: world.grid(), projection }.cast(columns);
+    if is_of_walls {
+        return;
+    }
+    for (index, column) in columns.iter_mut().enumerate() {
+        if column.hit.as_ref().is_some_and(|hit| may_be_passed(world, hit.cell)) {
+            *column = cast_through(index, passed);
+        }
+    }
+}
+
+/// Whether `cell`, which is solid, is no wall.
+fn may_be_passed(world: &World, cell: Cell) -> bool {
+    let tile = world.grid().tile(cell.column.into(), cell.row.into());
+    tile.is_some_and(|tile| !matches!(world.tile(tile).kind, TileKind::Wall(_)))
+}
+
+/// Whether `place` is in a cell of something that a ray may hit without entering a cell, or on its edge.
+fn stands_in_what_may_be_hit(world: &World, place: DVec2) -> bool {
+    let around = |along: f64| [along.floor() as i64, along.ceil() as i64 - 1];
+    let cells = around(place.x).map(|column| around(place.y).map(|row| (column, row)));
+    cells.as_flattened().iter().any(|&(column, row)| {
+        let tile = world.grid().tile(column, row);
+        let kind = tile.map(|tile| world.tile(tile).kind);
+        matches!(kind, Some(TileKind::Door(_) | TileKind::Shape(_)))
+    })
+}
+
+/// The rays of a picture, to which all that is solid is a wall.
+struct Fan<'a, C> {
+    caster: &'a C,
+    grid: &'a Grid,
+    projection: &'a Projection,
+}
+
+impl<C: Caster> Fan<'_, C> {
+    fn cast(&self, columns: &mut [Column]) {
+        let last = columns.len() - 1;
+        for index in [0, last].into_iter().take(columns.len()) {
+            columns[index] = self.cast_one(index);
+        }
+        self.cast_between(columns, 0);
+    }
+
+    /// Casts all but the first and the last of `columns`, which are known. `first` is the index of the
+    /// first.
+    fn cast_between(&self, columns: &mut [Column], first: usize) {
+        let [left, between @ .., right] = columns else { return };
+        if between.is_empty() {
+            return;
+        }
+        if let (Some(left), Some(right)) = (&left.hit, &right.hit)
+            && self.caster.follows_between(left, right)
+        {
+            for (index, column) in (first + 1..).zip(between) {
+                let ray = self.projection.ray(index as u32);
+                let hit = Hit::entering(&ray, left.cell, left.side);
+                *column = column_of(self.grid, self.projection, &ray, Some(hit));
+            }
+            return;
+        }
+        let middle = columns.len() / 2;
+        columns[middle] = self.cast_one(first + middle);
+        self.cast_between(&mut columns[..=middle], first);
+        self.cast_between(&mut columns[middle..], first + middle);
+    }
+
+    fn cast_one(&self, index: usize) -> Column {
+        let ray = self.projection.ray(index as u32);
+        column_of(self.grid, self.projection, &ray, self.caster.cast(self.grid, &ray))
+    }
+}
+
+/// The column whose `ray` has that hit.
+#[inline]
+fn column_of(grid: &Grid, projection: &Projection, ray: &Ray, hit: Option<Hit>) -> Column {
+    let distance = hit.map_or_else(|| distance_to_edge(grid, ray), |hit| hit.t);
+    Column { hit, distance, rows: projection.wall_rows(distance) }
+}
+
+/// How far along `ray` the map ends; 0 where the ray is off the map and never enters it.
+fn distance_to_edge(grid: &Grid, ray: &Ray) -> f64 {
+    let edges = DVec2::new(f64::from(grid.width()), f64::from(grid.height()));
+    let along = |origin: f64, direction: f64, edge: f64| {
+        if direction > 0.0 {
+            (edge - origin) / direction
+        } else if direction < 0.0 {
+            origin / -direction
+        } else {
+            f64::INFINITY
+        }
+    };
+    let (origin, direction) = (ray.origin(), ray.direction());
+    let leaves = along(origin.x, direction.x, edges.x).min(along(origin.y, direction.y, edges.y));
+    leaves.max(0.0)
+}
+
+#[cfg(test)]
+mod tests {
+    use proptest::prelude::*;
+
+    use super::*;
+    use crate::cast::Exact;
+    use crate::map;
+    use crate::visibility::{FrameSize, PixelAspect};
+    use crate::world::{Camera, FieldOfView, Heading};
+
+    const SIDE: usize = 12;
+    /// Floor and walls, and what may be passed.
+    const TILES: &[u8] = b".#+%~o/";
+
+    /// A map of those, and a start in the middle.
+    fn world(cells: &[u8]) -> World {
+        let mut cells = cells.to_vec();
+        hang_doors(&mut cells);
+        let rows: Vec<_> = cells.chunks(SIDE).map(String::from_utf8_lossy).collect();
+        let grid = rows.join("\n");
+        let text = format!(
+            "grid = \"\"\"\n{grid}\n\"\"\"
+            [tiles]
+            '#'.wall = 'brick'
+            '+'.door = 'oak'
+            '%'.mask = 'grate'
+            '~'.glass = '#406080'
+            'o' = {{ pillar = 'stone', radius = 0.3 }}
+            '/' = {{ diagonal = 'stone', from = 'south-west' }}
+            [things]
+            '@'.start = 0"
+        );
+        map::parse_str(&text).unwrap()
+    }
+
+    /// Puts a wall on either side of each door and floor before and behind it, or it away where another one
+    /// needs the place; and the start.
+    fn hang_doors(cells: &mut [u8]) {
+        let is_inside = |place: usize| {
+            [place % SIDE, place / SIDE].iter().all(|along| (1..SIDE - 1).contains(along))
+        };
+        let around = |place| [place - 1, place + 1, place - SIDE, place + SIDE];
+        for place in (0..cells.len()).filter(|&place| is_inside(place)) {
+            if cells[place] == b'+' {
+                around(place).into_iter().zip(*b"##..").for_each(|(at, tile)| cells[at] = tile);
+            }
+        }
+        cells[SIDE / 2 * SIDE + SIDE / 2] = b'@';
+        for place in 0..cells.len() {
+            let hangs = || around(place).map(|at| cells[at]) == *b"##..";
+            if cells[place] == b'+' && !(is_inside(place) && hangs()) {
+                cells[place] = b'.';
+            }
+        }
+    }
+
+    /// Anywhere on the map or near it, and on lines between cells.
+    fn place() -> impl Strategy<Value = f64> {
+        let line = (0..=SIDE).prop_map(|line| line as f64);
+        prop_oneof![2 => -2.0..SIDE as f64 + 2.0, 1 => line]
+    }
+
+    proptest! {
+        #[test]
+        fn few_rays_tell_what_all_of_them_hit(
+            (floor, walls) in (0.3..1.0, 0.0..1.0),
+            cells in prop::collection::vec(0.0..1.0, SIDE * SIDE),
+            position in (place(), place()),
+            degrees in prop_oneof![
+                0.0..360.0,
+                prop::sample::select(&[0.0, 45.0, 90.0, 180.0, 225.0, 270.0][..]),
+            ],
+            field_of_view in prop_oneof![Just(66.0), 0.001..179.9],
+            width in 1_u32..300,
+        ) {
+            let walls = floor + (1.0 - floor) * walls;
+            let tile = |cell: f64| match cell {
+                _ if cell < floor => b'.',
+                _ if cell < walls => b'#',
+                _ => TILES[2 + ((cell - walls) / (1.0 - walls) * 5.0) as usize],
+            };
+            let world = world(&cells.into_iter().map(tile).collect::<Vec<_>>());
+            let camera = Camera::new(
+                position.into(),
+                Heading::from_degrees(degrees).unwrap(),
+                FieldOfView::from_degrees(field_of_view).unwrap(),
+            )
+            .unwrap();
+            let size = FrameSize::new(width, 10).unwrap();
+            let projection = Projection::new(&camera, size, PixelAspect::SQUARE);
+            let (mut columns, mut passed) = (Vec::new(), PassedHits::default());
+            cast(&Exact, &world, &projection, &mut columns, &mut passed);
+            let mut expected_passed = PassedHits::default();
+            let expected = projection.rays().enumerate().map(|(index, ray)| {
+                Exact.cast_through(&world, &ray, |hit| expected_passed.push(index, hit))
+            });
+            let expected: Vec<_> = expected.collect();
+            let hits: Vec<_> = columns.into_iter().map(|column| column.hit).collect();
+            prop_assert_eq!(hits, expected);
+            prop_assert_eq!(passed, expected_passed);
+        }
+    }
+}

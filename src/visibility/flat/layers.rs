@@ -1,0 +1,216 @@
+//! The layers of a level scene: what the rays passed, and billboards between that.
+//!
+//! Where the rays ended is known by now, and with it the part of the map that is in view: only things
+//! there are considered. They are painted from far to near, column by column as far as the walls let
+//! them be seen; what a ray passed on its way, such as a grate, comes before the first thing that stands
+//! nearer. A depth for each pixel was refused: one for each column says the same, since walls reach from
+//! floor to ceiling.
+//!
+//! Colours are mixed as they are in the frame, as sRGB. Mixing light instead was refused: it needs a
+//! table each way for every pixel, and a tint looks no more like glass for it.
+
+use std::cmp::Ordering;
+use std::ops::Range;
+
+use super::wall::{across_line, light_of};
+use crate::cast::{Hit, MirrorTransform};
+use crate::visibility::layer_order::put_in_order;
+use crate::visibility::visible_cells::VisibleCells;
+use crate::visibility::{
+    Billboard, BillboardColumn, Column, DrawList, Extent, Facing, Layer, Material, Scene,
+    SeeThroughColumn, Stats, ThingLoop,
+};
+use crate::world::{Cell, TileKind};
+
+/// There is room for so many things in view from the first frame on, so that a camera that turns
+/// towards more of them needs no more memory.
+const MOST_AT_FIRST: usize = 4096;
+
+/// There is room for so many layers in each column from the first frame on, likewise.
+const LAYERS_OF_A_COLUMN: usize = 16;
+
+/// What the flat way remembers from one frame to the next; kept so that it is allocated once.
+#[derive(Clone, Debug, Default)]
+pub(crate) struct FlatMemory {
+    pub(super) passed: PassedHits,
+    left: PassedLeft,
+    visible: VisibleCells,
+    /// Layers before they are put in order.
+    by_column: Vec<Layer>,
+}
+
+/// What all rays of a frame passed: column by column from the left, and in each from near to far.
+///
+/// Read backwards, that is from far to near, the order in which it is painted. A list for each column
+/// was refused: it would be as many allocations.
+#[derive(Clone, Debug, Default, PartialEq)]
+pub(crate) struct PassedHits {
+    list: Vec<(usize, Hit)>,
+}
+
+/// For each column, the part of what its ray passed that is no layer yet; empty where no ray passed
+/// anything.
+#[derive(Clone, Debug, Default)]
+struct PassedLeft {
+    of_columns: Vec<Range<usize>>,
+}
+
+/// Fills the layers of `list`, whose columns are known. Returns when one of the billboards will look
+/// different; `None` for never.
+pub(super) fn fill<S: Stats>(
+    scene: Scene<'_>,
+    memory: &mut FlatMemory,
+    list: &mut DrawList,
+    stats: &mut S,
+) -> Option<f64> {
+    let FlatMemory { passed, left, visible, by_column } = memory;
+    if scene.plan.things == ThingLoop::None {
+        list.make_room_for_layers(passed.list.capacity());
+        for &(column, ref hit) in passed.list.iter().rev() {
+            push_hit(scene, column, hit, list);
+        }
+        std::mem::swap(&mut list.layers, by_column);
+        list.layers.clear();
+        list.layers.reserve(by_column.len());
+        put_in_order(by_column, &list.see_through, &mut list.layers);
+        return None;
+    }
+    let considered = find_billboards(scene, visible, list);
+    stats.change(|stats| {
+        stats.things_considered += considered;
+        stats.things_drawn += list.billboards.len() as u64;
+    });
+    left.begin(passed, list.columns.len());
+    list.make_room_for_layers(passed.list.capacity());
+    for index in 0..list.billboards.len() {
+        let Billboard { depth, ref columns, ref rows, .. } = list.billboards[index];
+        let rows = rows.clone();
+        for x in columns.clone() {
+            if depth >= list.columns[x as usize].distance {
+                continue;
+            }
+            push_behind(depth, x as usize, scene, (passed, left), list);
+            let rows = rows.clone();
+            list.layers.push(Layer::Billboard(BillboardColumn {
+                column: x,
+                rows,
+                billboard: index,
+            }));
+        }
+    }
+    for column in 0..left.of_columns.len() {
+        push_behind(0.0, column, scene, (passed, left), list);
+    }
+    Billboard::next_change(&list.billboards, scene)
+}
+
+/// Finds the billboards in view, from far to near. Returns how many things were considered.
+fn find_billboards(scene: Scene<'_>, visible: &mut VisibleCells, list: &mut DrawList) -> u64 {
+    let world = scene.world;
+    list.billboards.reserve(world.things().len().min(MOST_AT_FIRST));
+    list.layers.reserve(list.columns.len() * LAYERS_OF_A_COLUMN);
+    visible.outline(scene, &list.columns);
+    let mut considered = 0;
+    for &thing in visible.things(world) {
+        considered += 1;
+        let billboard = Billboard::of_thing(scene, MirrorTransform::default(), thing);
+        let is_in_view = |billboard: &Billboard| {
+            let is_before = |column: &Column| billboard.depth < column.distance;
+            let Range { start, end } = billboard.columns;
+            list.columns[start as usize..end as usize].iter().any(is_before)
+        };
+        list.billboards.extend(billboard.filter(is_in_view));
+    }
+    for billboard in &mut list.billboards {
+        billboard.is_drawn = true;
+    }
+    list.billboards.sort_unstable_by(from_far_to_near);
+    considered
+}
+
+fn from_far_to_near(one: &Billboard, other: &Billboard) -> Ordering {
+    other.depth.total_cmp(&one.depth).then_with(|| one.order.cmp(&other.order))
+}
+
+impl PassedHits {
+    /// Forgets everything but how much memory it took.
+    pub(super) fn clear(&mut self) {
+        self.list.clear();
+    }
+
+    /// Makes room for what so many rays pass in all but the strangest of maps, so that a camera that
+    /// turns towards more of it needs no more memory.
+    pub(super) fn make_room_for(&mut self, rays: usize) {
+        const OF_A_RAY: usize = 8;
+        self.list.reserve(rays * OF_A_RAY);
+    }
+
+    /// Adds what the ray of `column` passed: columns from the left, hits from near to far.
+    pub(super) fn push(&mut self, column: usize, hit: Hit) {
+        self.list.push((column, hit));
+    }
+}
+
+impl PassedLeft {
+    /// Finds out what belongs to each of `columns` columns: all of it is left.
+    fn begin(&mut self, passed: &PassedHits, columns: usize) {
+        let Self { of_columns } = self;
+        of_columns.clear();
+        of_columns.reserve(columns);
+        if passed.list.is_empty() {
+            return;
+        }
+        of_columns.resize(columns, 0..0);
+        for (index, &(column, _)) in passed.list.iter().enumerate() {
+            let left = &mut of_columns[column];
+            *left = if Range::is_empty(left) { index..index + 1 } else { left.start..index + 1 };
+        }
+    }
+
+    /// The furthest that is left in `column`, if it is `depth` away or more; it is left no longer.
+    fn take_behind(&mut self, passed: &PassedHits, column: usize, depth: f64) -> Option<Hit> {
+        let left = self.of_columns.get_mut(column).filter(|left| !Range::is_empty(left))?;
+        let (_, hit) = passed.list[left.end - 1];
+        (hit.t >= depth).then(|| {
+            left.end -= 1;
+            hit
+        })
+    }
+}
+
+/// Makes layers of what the ray of `column` passed at `depth` or further away, and is none yet.
+fn push_behind(
+    depth: f64,
+    column: usize,
+    scene: Scene<'_>,
+    (passed, left): (&PassedHits, &mut PassedLeft),
+    list: &mut DrawList,
+) {
+    while let Some(hit) = left.take_behind(passed, column, depth) {
+        push_hit(scene, column, &hit, list);
+    }
+}
+
+/// Makes a layer of a hit that the ray of `column` passed.
+fn push_hit(scene: Scene<'_>, column: usize, hit: &Hit, list: &mut DrawList) {
+    let Cell { column: x, row: y } = hit.cell;
+    let world = scene.world;
+    let material = match world.grid().tile(i64::from(x), i64::from(y)).map(|id| world.tile(id).kind)
+    {
+        Some(TileKind::Mask(texture)) => Material::Masked(texture),
+        Some(TileKind::Glass(glass)) => Material::Translucent(glass),
+        _ => return,
+    };
+    let column = column as u32;
+    list.push_see_through(SeeThroughColumn {
+        column,
+        rows: scene.projection.wall_rows(hit.t),
+        facing: Facing::Side(hit.side),
+        slope: across_line(hit.side, scene.projection.direction_of(column)),
+        t: hit.t,
+        u: hit.u,
+        light: light_of(scene, column, hit),
+        material,
+        extent: Extent::Level,
+    });
+}

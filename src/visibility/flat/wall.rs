@@ -1,0 +1,165 @@
+//! The wall columns of a level scene: one for each ray that hit something.
+
+use std::ops::Range;
+
+use glam::DVec2;
+
+use crate::cast::{Hit, Side};
+use crate::visibility::jamb::jamb;
+use crate::visibility::{Column, Extent, Facing, Scene, WallColumn, WallSink};
+use crate::world::{Cell, FaceLight, Light, Outline, Paint, Shape, Tile, TileId, TileKind, World};
+
+/// Hands the wall column of each of `columns` that has one in `rows` to `sink`, from left to right.
+/// The light is right only where it `is_lit`.
+#[inline]
+pub(crate) fn for_each_wall_column(
+    scene: Scene<'_>,
+    columns: &[Column],
+    rows: &Range<u32>,
+    is_lit: bool,
+    sink: &mut impl WallSink,
+) {
+    let mut latest: Option<(Face<'_>, Paint)> = None;
+    for (x, column) in (0..).zip(columns) {
+        let is_in_rows = column.rows.start.max(rows.start) < column.rows.end.min(rows.end);
+        let Some(hit) = column.hit.as_ref().filter(|_| is_in_rows) else { continue };
+        let (face, paint) = match &mut latest {
+            Some(latest) if latest.0.is_of(hit) => &*latest,
+            latest => {
+                let face = Face::new(scene, x, hit, is_lit);
+                latest.insert((face, face.paint(scene, hit)))
+            }
+        };
+        let (facing, slope) = face.facing_and_slope(scene, x, hit);
+        sink.take(&WallColumn {
+            column: x,
+            rows: column.rows.clone(),
+            facing,
+            slope,
+            t: hit.t,
+            u: hit.u,
+            paint: *paint,
+            light: if is_lit { face.light.at(hit.u) } else { Light::FULL },
+            extent: Extent::Level,
+        });
+    }
+}
+
+/// How bright what the ray of column `x` hit is.
+pub(super) fn light_of(scene: Scene<'_>, x: u32, hit: &Hit) -> Light {
+    Face::new(scene, x, hit, true).light.at(hit.u)
+}
+
+/// The part of a direction that leads straight at lines of that kind.
+pub(super) fn across_line(side: Side, direction: DVec2) -> f64 {
+    match side {
+        Side::X => direction.x,
+        Side::Y => direction.y,
+    }
+}
+
+/// What is the same for all columns that show one face of a cell.
+#[derive(Clone, Copy)]
+struct Face<'a> {
+    cell: Cell,
+    side: Side,
+    /// The tile of the cell.
+    tile: Option<&'a Tile>,
+    /// How bright the face is along it, if it is lit.
+    light: FaceLight,
+}
+
+impl<'a> Face<'a> {
+    /// The one that the ray of column `x` hit.
+    fn new(scene: Scene<'a>, x: u32, hit: &Hit, is_lit: bool) -> Self {
+        let Cell { column, row } = hit.cell;
+        let world = scene.world;
+        let id = world.grid().tile(i64::from(column), i64::from(row));
+        let tile = id.map(|TileId(index)| &world.tiles()[usize::from(index)]);
+        let light = if is_lit { face_light(scene, x, hit, tile) } else { FaceLight::FULL };
+        Self { cell: hit.cell, side: hit.side, tile, light }
+    }
+
+    /// Whether `hit` is on it, too.
+    #[inline]
+    fn is_of(&self, hit: &Hit) -> bool {
+        (self.cell, self.side) == (hit.cell, hit.side)
+    }
+
+    /// How it looks, where `hit` is on it: as a jamb, where it faces a door.
+    fn paint(&self, scene: Scene<'_>, hit: &Hit) -> Paint {
+        let Scene { world, projection, plan, .. } = scene;
+        let jamb = if plan.walls.jambs { jamb(world, projection, hit) } else { None };
+        jamb.unwrap_or_else(|| self.paint_of_tile(world))
+    }
+
+    /// How the tile itself looks.
+    fn paint_of_tile(&self, world: &World) -> Paint {
+        match self.tile.map(|tile| tile.kind) {
+            Some(TileKind::Wall(paint)) => paint,
+            Some(TileKind::Door(door)) => door.leaf,
+            Some(TileKind::Shape(shape)) => shape.paint,
+            // Casters that know no masks and no glass hit these.
+            Some(TileKind::Mask(texture)) => Paint::Texture(texture),
+            Some(TileKind::Glass(glass) | TileKind::Mirror(glass)) => Paint::Color(glass.color),
+            // No caster hits what is not solid; were one to, the floor is what is there.
+            Some(TileKind::Open | TileKind::Doorway(_)) | None => {
+                world.floor().pattern.first_paint()
+            }
+        }
+    }
+
+    /// Which way it faces where the ray of column `x` hit it, and how the ray approaches it.
+    #[inline]
+    fn facing_and_slope(&self, scene: Scene<'_>, x: u32, hit: &Hit) -> (Facing, f64) {
+        let direction = scene.projection.direction_of(x);
+        match self.tile.map(|tile| &tile.kind) {
+            Some(&TileKind::Shape(shape)) => {
+                let normal = normal(scene, shape, direction, hit);
+                (Facing::Normal(normal), normal.dot(direction))
+            }
+            _ => (Facing::Side(hit.side), across_line(hit.side, direction)),
+        }
+    }
+}
+
+/// Which way a shape faces where a ray along `direction` hit it, or the opposite way: a vector of
+/// length 1.
+fn normal(scene: Scene<'_>, shape: Shape, direction: DVec2, hit: &Hit) -> DVec2 {
+    match shape.outline {
+        Outline::Line(line) => line.stretch().perp().normalize(),
+        Outline::Pillar(_) => {
+            let point = scene.projection.origin() + direction * hit.t;
+            (point - hit.cell.center()).normalize_or_zero()
+        }
+    }
+}
+
+/// How bright the face of `tile` is along it that the ray of column `x` hit.
+fn face_light(scene: Scene<'_>, x: u32, hit: &Hit, tile: Option<&Tile>) -> FaceLight {
+    let world = scene.world;
+    if let Some(own) = tile.and_then(|tile| tile.light) {
+        return FaceLight::even(own);
+    }
+    let before = || cell_before(hit, scene.projection.direction_of(x));
+    match tile.map(|tile| tile.kind) {
+        // It stands in a cell of its own.
+        Some(TileKind::Shape(_)) => FaceLight::even(world.light_in(hit.cell)),
+        Some(TileKind::Door(_)) => {
+            FaceLight::even(before().map_or(Light::FULL, |cell| world.light_in(cell)))
+        }
+        _ => before().map_or(FaceLight::FULL, |cell| world.face_light(hit.cell, cell)),
+    }
+}
+
+/// The cell that the side of a wall is seen from, along `direction`; `None` off the map's north and
+/// west.
+fn cell_before(hit: &Hit, direction: DVec2) -> Option<Cell> {
+    let Cell { column, row } = hit.cell;
+    let is_ahead = across_line(hit.side, direction) > 0.0;
+    let before = |index: u32| if is_ahead { index.checked_sub(1) } else { index.checked_add(1) };
+    Some(match hit.side {
+        Side::X => Cell { column: before(column)?, row },
+        Side::Y => Cell { column, row: before(row)? },
+    })
+}

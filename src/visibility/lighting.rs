@@ -1,0 +1,125 @@
+//! Shades: what becomes of a texel's colour on its way to the eye.
+//!
+//! A row of the floor and a column of a wall have one shade each. The inner loops are compiled for
+//! each kind, so that a scene without fog and darkness has no trace of them there.
+
+use glam::DVec2;
+
+use crate::cast::Side;
+use crate::color::Rgb;
+use crate::world::{Fog, Light};
+
+/// What becomes of a colour.
+pub(crate) trait Lighting: Copy + PartialEq {
+    fn apply(self, color: Rgb) -> Rgb;
+}
+
+/// Nothing: it is near, and in full light.
+#[derive(Clone, Copy, PartialEq)]
+pub(crate) struct FullyLit;
+
+/// Half as bright on a y-side, so that the edge between the two kinds of side shows.
+#[derive(Clone, Copy, PartialEq)]
+pub(crate) struct SideLit(pub(crate) Side);
+
+/// It fades.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub(crate) struct Faded {
+    /// How much is left of its own, in 256ths.
+    own: u32,
+    fog: Rgb,
+    /// How much of the fog's colour comes instead, in 256ths; at most what is missing of the own.
+    share: u32,
+}
+
+impl Lighting for FullyLit {
+    #[inline]
+    fn apply(self, color: Rgb) -> Rgb {
+        color
+    }
+}
+
+impl Lighting for SideLit {
+    #[inline]
+    fn apply(self, color: Rgb) -> Rgb {
+        match self.0 {
+            Side::X => color,
+            Side::Y => color.halved(),
+        }
+    }
+}
+
+impl Lighting for Faded {
+    #[inline]
+    fn apply(self, color: Rgb) -> Rgb {
+        color.blended(self.own, self.fog, self.share)
+    }
+}
+
+impl Faded {
+    /// What becomes of the floor or the ceiling, in that light and at that distance; `None` where
+    /// nothing does.
+    pub(crate) fn of_plane(light: Light, fog: Option<Fog>, distance: f64) -> Option<Self> {
+        let faded = Self::new(light.in_256ths(), fog, distance);
+        (faded.own < FULL).then_some(faded)
+    }
+
+    /// What becomes of a side of a wall.
+    pub(crate) fn of_wall(side: Side, light: Light, fog: Option<Fog>, distance: f64) -> Self {
+        let light = match side {
+            Side::X => light.in_256ths(),
+            Side::Y => light.in_256ths() / 2,
+        };
+        Self::new(light, fog, distance)
+    }
+
+    /// What becomes of a surface that faces along `normal`, a vector of length 1: as an x-side or a
+    /// y-side where it runs along one, and in between where it runs across.
+    pub(crate) fn of_surface(normal: DVec2, light: Light, fog: Option<Fog>, distance: f64) -> Self {
+        let share = f64::midpoint(1.0, normal.x * normal.x);
+        Self::new((f64::from(light.in_256ths()) * share) as u32, fog, distance)
+    }
+
+    fn new(light: u32, fog: Option<Fog>, distance: f64) -> Self {
+        let Some(fog) = fog else { return Self { own: light, fog: Rgb::BLACK, share: 0 } };
+        let clear = (fog.clearness(distance) * f64::from(FULL)).round() as u32;
+        Self { own: light * clear / FULL, fog: fog.color, share: FULL - clear }
+    }
+}
+
+/// All of a colour, in 256ths.
+const FULL: u32 = Light::FULL.in_256ths();
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn what_is_near_and_lit_is_as_it_is() {
+        let fog = Fog::new(Rgb::new(9, 9, 9), 4.0);
+        assert_eq!(Faded::of_plane(Light::FULL, fog, 0.0), None);
+        assert_eq!(Faded::of_plane(Light::FULL, None, 100.0), None);
+        let wall = Faded::of_wall(Side::Y, Light::FULL, fog, 0.0);
+        assert_eq!(wall.apply(Rgb::WHITE), Rgb::WHITE.halved());
+    }
+
+    #[test]
+    fn a_surface_along_the_grid_is_as_bright_as_a_wall() {
+        let light = Light::new(0.7).unwrap();
+        for (normal, side) in [(DVec2::X, Side::X), (-DVec2::X, Side::X), (DVec2::Y, Side::Y)] {
+            let wall = Faded::of_wall(side, light, None, 3.0);
+            assert_eq!(Faded::of_surface(normal, light, None, 3.0), wall);
+        }
+    }
+
+    #[test]
+    fn what_is_far_is_fog_however_it_is_lit() {
+        let fog = Fog::new(Rgb::new(10, 20, 30), 4.0).unwrap();
+        for light in [0.0, 0.3, 1.0].map(|share| Light::new(share).unwrap()) {
+            let far = Faded::of_wall(Side::X, light, Some(fog), f64::INFINITY);
+            assert_eq!(far.apply(Rgb::WHITE), fog.color);
+            let half = Faded::of_plane(light, Some(fog), 4.0).unwrap();
+            assert!(half.apply(Rgb::WHITE).red() >= fog.color.red() / 2);
+        }
+    }
+}

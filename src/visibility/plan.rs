@@ -1,0 +1,283 @@
+//! The plan: which passes draw a frame, and with which inner loop.
+//!
+//! It is a small value, made from the world before anything is drawn, by looking at what each kind of
+//! tile consists of. The passes match on it once a frame, so that what a scene does not have is absent
+//! from their loops; what a single map has everywhere costs only that map.
+
+use std::fmt;
+
+use super::Filter;
+use crate::color::Rgb;
+use crate::world::{
+    Camera, Ceiling, Covering, Heights, Light, Paint, Pattern, Sky, Tile, TileKind, World,
+};
+
+/// Which passes draw a frame, and how.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub struct FramePlan {
+    /// Whether every ray ends where it meets the first wall, or goes on above, below and reflected.
+    pub visibility: Visibility,
+    /// How exact rays go from cell to cell.
+    pub rays: RayLoop,
+    /// How what is overhead is drawn.
+    pub ceiling: CeilingLoop,
+    /// How the floor is drawn.
+    pub floor: PlaneLoop,
+    /// How the sky is drawn, where there is any: in place of a ceiling, or beyond the edge.
+    pub sky: SkyLoop,
+    /// How the walls are drawn.
+    pub walls: WallLoop,
+    /// How things are drawn.
+    pub things: ThingLoop,
+    /// Which level of a texture is read.
+    pub filter: Filter,
+}
+
+/// Which passes draw what there is.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Visibility {
+    /// The flat way: one wall for each column, floor and ceiling around it.
+    Flat,
+    /// Those for floors, ceilings and walls of any height, and for mirrors.
+    Portals(WhyPortals),
+}
+
+/// Why a level's passes would not do.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum WhyPortals {
+    /// Floors, ceilings or walls are not all of one height.
+    Heights,
+    /// There are mirrors.
+    Mirrors,
+    /// The eye is not between floor and ceiling.
+    Eye,
+}
+
+/// How exact rays go from cell to cell.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum RayLoop {
+    /// They cross one line after the other and stop in every cell.
+    Cells,
+    /// They cross one line after the other, along one axis.
+    Lines,
+    /// They cross as many lines at once as no wall is near to: the map is mostly empty.
+    Leaps,
+}
+
+/// How the floor or the ceiling is drawn.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum PlaneLoop {
+    /// One colour everywhere: a single fill, walls or no walls.
+    Fill(Rgb),
+    /// One colour, in fog: a fill for each row.
+    FillRows(Rgb),
+    /// One covering everywhere: the spans of each row that no wall hides.
+    Spans,
+    /// By tile: the same spans, cut where the tile changes.
+    Tiles,
+}
+
+/// How what is overhead is drawn.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum CeilingLoop {
+    /// Nothing but sky.
+    Sky,
+    /// A ceiling, in places at least.
+    Laid(PlaneLoop),
+}
+
+/// How the sky is drawn.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum SkyLoop {
+    /// One colour a row.
+    Gradient,
+    /// A texel a pixel, along the spans of each row that nothing hides.
+    Panorama,
+}
+
+/// How the walls are drawn.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub struct WallLoop {
+    /// Whether any wall has a texture.
+    pub textured: bool,
+    /// Whether colours fade, by fog or for want of light.
+    pub faded: bool,
+    /// Whether a door may be set into them, and show its jamb.
+    pub jambs: bool,
+}
+
+/// How things are drawn.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum ThingLoop {
+    /// Not at all: there are none.
+    None,
+    /// Those in the cells in view, from far to near.
+    Billboards,
+}
+
+impl FramePlan {
+    /// The plan for what `camera` sees of `world`.
+    pub fn new(world: &World, camera: &Camera, filter: Filter) -> Self {
+        let tiles = world.tiles();
+        let is_open = |tile: &&Tile| !matches!(tile.kind, TileKind::Wall(_) | TileKind::Mirror(_));
+        let dims = |tile: &Tile| tile.light.is_some_and(|light| light != Light::FULL);
+        let open = || tiles.iter().filter(is_open);
+        let is_foggy = world.fog().is_some();
+        let is_lamplit = world.has_lamplight();
+        let floor_varies =
+            is_lamplit || open().any(|tile| dims(tile) || tile.floor != world.floor());
+        let ceiling_varies =
+            is_lamplit || open().any(|tile| dims(tile) || tile.ceiling != world.ceiling());
+        let is_textured = |tile: &Tile| matches!(tile.kind, TileKind::Wall(Paint::Texture(_)));
+        let is_door = |tile: &Tile| matches!(tile.kind, TileKind::Door(_) | TileKind::Doorway(_));
+        let visibility = Visibility::new(world, camera);
+        Self {
+            visibility,
+            rays: match visibility {
+                Visibility::Portals(_) => RayLoop::Cells,
+                Visibility::Flat if world.grid().distance_field().is_measured() => RayLoop::Leaps,
+                Visibility::Flat => RayLoop::Lines,
+            },
+            floor: PlaneLoop::new(world.floor(), floor_varies, is_foggy),
+            ceiling: match world.ceiling() {
+                Ceiling::Sky if open().all(|tile| tile.ceiling == Ceiling::Sky) => CeilingLoop::Sky,
+                Ceiling::Sky => CeilingLoop::Laid(PlaneLoop::Tiles),
+                Ceiling::Covered(covering) => {
+                    CeilingLoop::Laid(PlaneLoop::new(covering, ceiling_varies, is_foggy))
+                }
+            },
+            sky: match world.sky() {
+                Sky::Gradient { .. } => SkyLoop::Gradient,
+                Sky::Panorama(_) => SkyLoop::Panorama,
+            },
+            walls: WallLoop {
+                textured: tiles.iter().any(is_textured),
+                faded: is_foggy || tiles.iter().any(dims),
+                jambs: tiles.iter().any(is_door),
+            },
+            things: if world.things().is_empty() { ThingLoop::None } else { ThingLoop::Billboards },
+            filter,
+        }
+    }
+}
+
+impl Visibility {
+    fn new(world: &World, camera: &Camera) -> Self {
+        let level = Heights::LEVEL;
+        if !world.is_level() {
+            Self::Portals(WhyPortals::Heights)
+        } else if world.has_mirrors() {
+            Self::Portals(WhyPortals::Mirrors)
+        } else if level.floor() < camera.eye() && camera.eye() < level.ceiling() {
+            Self::Flat
+        } else {
+            Self::Portals(WhyPortals::Eye)
+        }
+    }
+}
+
+impl PlaneLoop {
+    fn new(covering: Covering, varies: bool, is_foggy: bool) -> Self {
+        match covering.pattern {
+            _ if varies => Self::Tiles,
+            Pattern::Plain(Paint::Color(color)) if is_foggy => Self::FillRows(color),
+            Pattern::Plain(Paint::Color(color)) => Self::Fill(color),
+            _ => Self::Spans,
+        }
+    }
+}
+
+impl fmt::Display for FramePlan {
+    /// Writes a line for each pass: how it runs, and why.
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        writeln!(f, "view     {}", self.visibility)?;
+        writeln!(f, "rays     {}", self.rays)?;
+        writeln!(f, "ceiling  {}", self.ceiling)?;
+        writeln!(f, "floor    {}", self.floor)?;
+        writeln!(f, "sky      {}", self.sky)?;
+        writeln!(f, "walls    {}", self.walls)?;
+        writeln!(f, "things   {}", self.things)?;
+        writeln!(f, "filter   {}", self.filter)
+    }
+}
+
+impl fmt::Display for Visibility {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        f.write_str(match self {
+            Self::Flat => "flat: a ray ends at the first wall",
+            Self::Portals(WhyPortals::Heights) => {
+                "portals: floors, ceilings or walls are not all of one height"
+            }
+            Self::Portals(WhyPortals::Mirrors) => "portals: there are mirrors",
+            Self::Portals(WhyPortals::Eye) => "portals: the eye is not between floor and ceiling",
+        })
+    }
+}
+
+impl fmt::Display for RayLoop {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        f.write_str(match self {
+            Self::Cells => "cell by cell: each is looked at",
+            Self::Lines => "line by line, along one axis: walls are near",
+            Self::Leaps => "many lines at once, along one axis: most of the map is empty",
+        })
+    }
+}
+
+impl fmt::Display for PlaneLoop {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        match self {
+            Self::Fill(color) => write!(f, "one fill: it is {color} everywhere"),
+            Self::FillRows(color) => write!(f, "a fill for each row: it is {color}, in fog"),
+            Self::Spans => f.write_str("visible spans: it is laid with the same everywhere"),
+            Self::Tiles => f.write_str("visible spans, cut by tile: tiles differ"),
+        }
+    }
+}
+
+impl fmt::Display for CeilingLoop {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        match self {
+            Self::Sky => f.write_str("not drawn: there is only sky"),
+            Self::Laid(plane) => plane.fmt(f),
+        }
+    }
+}
+
+impl fmt::Display for SkyLoop {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        f.write_str(match self {
+            Self::Gradient => "a colour for each row, where there is sky: it is a gradient",
+            Self::Panorama => "visible spans, where there is sky: it is a panorama",
+        })
+    }
+}
+
+impl fmt::Display for WallLoop {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        f.write_str(if self.textured { "columns of texels" } else { "columns of one colour" })?;
+        f.write_str(if self.faded {
+            ", faded: there is fog, or a tile that is not fully lit"
+        } else {
+            ", unfaded: there is no fog, and all is fully lit"
+        })
+    }
+}
+
+impl fmt::Display for ThingLoop {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        f.write_str(match self {
+            Self::None => "not drawn: there are none",
+            Self::Billboards => "those in view, from far to near",
+        })
+    }
+}
+
+impl fmt::Display for Filter {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        f.write_str(match self {
+            Self::Mip => "mip: far texels are averaged",
+            Self::Nearest => "nearest: every texel is one of the texture's own",
+        })
+    }
+}

@@ -1,0 +1,128 @@
+//! Billboards among portals: clipped to the gaps that they are seen in.
+//!
+//! A thing is seen once in each image, at its own depth. Along a ray, what is between two lines is behind
+//! the see-through faces at the first line and before all at the second; so a column keeps such a part of
+//! its ray, and the billboards in it are cut to columns. Drawing each billboard across all of its columns at
+//! once was refused: what hides it differs from one to the next.
+
+use std::cmp::Ordering;
+use std::ops::Range;
+
+use super::ImageId;
+use super::ray_segments::{ImagesInView, RaySegment};
+use super::tile_gaps::{GapId, TileGaps};
+use crate::visibility::runs::IMAGES_AT_ONCE;
+use crate::visibility::{Billboard, BillboardColumn, DrawList, Scene};
+use crate::world::sprite::builtin;
+
+/// A part of a ray that is in one gap.
+#[derive(Clone, Debug)]
+pub(super) struct RayPart {
+    pub(super) column: u32,
+    /// The rows that nothing nearer covers.
+    pub(super) rows: Range<u32>,
+    pub(super) from: f64,
+    pub(super) to: f64,
+    pub(super) gap: GapId,
+    pub(super) image: ImageId,
+}
+
+/// Finds the billboards in view; kept so that it is allocated once.
+#[derive(Clone, Debug, Default)]
+pub(super) struct Finder {
+    /// Which of the billboards are those of each image, from near to far.
+    of_image: Vec<Range<usize>>,
+    in_view: ImagesInView,
+    /// Which columns show any of them, if nothing is before it.
+    is_covered: Vec<bool>,
+}
+
+impl Finder {
+    /// Finds all that the `segments` of rays show. Returns how many things were considered.
+    pub(super) fn find(
+        &mut self,
+        scene: Scene<'_>,
+        segments: &[RaySegment],
+        list: &mut DrawList,
+    ) -> u64 {
+        const MOST_AT_FIRST: usize = 4096;
+        let world = scene.world;
+        let DrawList { billboards, player, runs, .. } = list;
+        let images = runs.images();
+        let players = images.len().max(IMAGES_AT_ONCE);
+        billboards.reserve(world.things().len().min(MOST_AT_FIRST) + players);
+        self.of_image.clear();
+        self.of_image.reserve(players);
+        if player.is_none() && world.has_mirrors() {
+            *player = builtin::named(builtin::PLAYER);
+        }
+        if let Some(player) = player {
+            player.heading = scene.camera.heading;
+        }
+        self.in_view.look(scene, images.len(), segments);
+        let mut considered = 0;
+        for (index, &image) in images.iter().enumerate() {
+            let start = billboards.len();
+            for &thing in self.in_view.things(index, world) {
+                considered += 1;
+                billboards.extend(Billboard::of_thing(scene, image, thing));
+            }
+            if let Some(player) = player.as_ref().filter(|_| index > 0) {
+                billboards.extend(Billboard::of_player(scene, image, player));
+            }
+            billboards[start..].sort_unstable_by(from_near_to_far);
+            self.of_image.push(start..billboards.len());
+        }
+        self.is_covered.clear();
+        self.is_covered.resize(scene.projection.columns(), false);
+        for billboard in billboards {
+            let Range { start, end } = billboard.columns;
+            self.is_covered[start as usize..end as usize].fill(true);
+        }
+        considered
+    }
+
+    /// Cuts out what shows in a part of a ray, from far to near.
+    pub(super) fn cut(
+        &self,
+        scene: Scene<'_>,
+        gaps: &TileGaps,
+        part: &RayPart,
+        billboards: &mut [Billboard],
+        mut cut_out: impl FnMut(BillboardColumn),
+    ) {
+        if !self.is_covered[part.column as usize] {
+            return;
+        }
+        let ImageId(image) = part.image;
+        let of_image = self.of_image[usize::from(image)].clone();
+        let first = of_image.start;
+        let list = &mut billboards[of_image];
+        let start = list.partition_point(|it| it.depth < part.from);
+        let end = list.partition_point(|it| it.depth < part.to).max(start);
+        for (index, billboard) in list.iter_mut().enumerate().take(end).skip(start).rev() {
+            let rows = rows_in(scene, gaps, billboard, part);
+            if !rows.is_empty() {
+                billboard.is_drawn = true;
+                let (column, billboard) = (part.column, first + index);
+                cut_out(BillboardColumn { column, rows, billboard });
+            }
+        }
+    }
+}
+
+fn from_near_to_far(one: &Billboard, other: &Billboard) -> Ordering {
+    one.depth.total_cmp(&other.depth).then_with(|| other.order.cmp(&one.order))
+}
+
+/// The rows in which `billboard` shows in a part of a ray.
+fn rows_in(scene: Scene<'_>, gaps: &TileGaps, billboard: &Billboard, part: &RayPart) -> Range<u32> {
+    if !billboard.columns.contains(&part.column) {
+        return 0..0;
+    }
+    let gap = gaps.gap(part.gap);
+    let top = gap.row_of_top(scene.projection, billboard.depth);
+    let bottom = gap.row_of_bottom(scene.projection, billboard.depth);
+    let start = billboard.rows.start.max(part.rows.start).max(top);
+    start..billboard.rows.end.min(part.rows.end).min(bottom)
+}

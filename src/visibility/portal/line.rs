@@ -1,0 +1,145 @@
+//! What is met at a line between two cells: faces, gaps, mirrors, and the edge of the map.
+
+use std::ops::Range;
+
+use super::tile_gaps::{BOTTOMLESS, GapId, Holds};
+use super::walk::{ColumnWalk, MOST_BOUNCES, Met, Place, PortalRay};
+use crate::cast::Hit;
+use crate::visibility::runs::{FlatSurface, ImageId, Part, Shown};
+use crate::visibility::{Extent, Material};
+use crate::world::{Glass, Tile, TileKind};
+
+impl ColumnWalk<'_> {
+    /// Divides the clip range of `ray` among what is met at a line into `place`, and tells whether the
+    /// ray goes on in one of the gaps. Others are left for later.
+    pub(super) fn cross_line(&mut self, ray: &mut PortalRay, place: Place, met: &Met) -> bool {
+        let projection = self.surroundings.scene.projection;
+        let Range { start, end } = ray.rows;
+        if self.is_above_everything(end, met.t) {
+            self.list.runs.show(start..end, Shown::Sky(ray.image));
+            return false;
+        }
+        let mut goes_on: Option<(GapId, Range<u32>)> = None;
+        // The rock that is below the next gap, and the row below it.
+        let (mut rock_from, mut rock_end) = (f64::NEG_INFINITY, end);
+        let gaps = self.surroundings.gaps;
+        for (id, gap) in gaps.of(place) {
+            let bottom = gap.row_of_bottom(projection, met.t);
+            let top = gap.row_of_top(projection, met.t);
+            let rock = start.max(bottom)..rock_end;
+            self.meet_rock(ray, place, met, rock, rock_from..gap.gap.bottom);
+            (rock_from, rock_end) = (gap.gap.top, end.min(top));
+            let rows = start.max(top)..end.min(bottom);
+            if rows.is_empty() {
+                continue;
+            }
+            if place.is_none() {
+                self.show_beyond_edge(rows, ray.image);
+                continue;
+            }
+            if gap.holds == Holds::Cube {
+                self.pass_cube(ray, place, &rows, met);
+            }
+            if let Some((gap, rows)) = goes_on.replace((id, rows)) {
+                self.memory.rays.push(PortalRay { place, gap, rows, ..ray.clone() });
+            }
+        }
+        let Some((gap, rows)) = goes_on else { return false };
+        (ray.place, ray.gap, ray.rows) = (place, gap, rows);
+        true
+    }
+
+    /// Whether there is only sky above row `end`, as far as `t` and further.
+    fn is_above_everything(&self, end: u32, t: f64) -> bool {
+        let projection = self.surroundings.scene.projection;
+        end <= projection.first_row_of_ground()
+            && end <= projection.row_of(self.surroundings.top, t)
+    }
+
+    /// Meets what is solid in `place` between two heights, which shows in `rows`: a face, or a mirror.
+    fn meet_rock(
+        &mut self,
+        ray: &PortalRay,
+        place: Place,
+        met: &Met,
+        rows: Range<u32>,
+        heights: Range<f64>,
+    ) {
+        if rows.is_empty() {
+            return;
+        }
+        let is_lowest = heights.start == f64::NEG_INFINITY;
+        let surroundings = self.surroundings;
+        let tile = surroundings.tile(place).unwrap_or(&surroundings.scene.world.tiles()[0]);
+        if is_lowest
+            && let TileKind::Mirror(tint) = tile.kind
+            && ray.walk.bounces() < MOST_BOUNCES
+        {
+            self.reflect(PortalRay { rows, ..ray.clone() }, place, met, tint);
+            return;
+        }
+        let before = surroundings.tile(met.before).map(|tile| &tile.kind);
+        let paint = match (is_lowest, before, &tile.kind) {
+            (true, Some(TileKind::Door(door) | TileKind::Doorway(door)), TileKind::Wall(_)) => {
+                door.jamb
+            }
+            (true, ..) => tile.riser,
+            (false, ..) => tile.lintel,
+        };
+        // As far as it is in the gap that it is seen from.
+        let gap = surroundings.gaps.gap(ray.gap).gap;
+        let extent = Extent::Heights {
+            bottom: heights.start.max(gap.bottom),
+            top: heights.end.min(gap.top),
+        };
+        let u = met.u(ray);
+        self.show_face(rows, met, u, (paint, self.light(place, met, u)), extent);
+        if ray.image == ImageId::NONE {
+            self.hit = place.map(|(cell, _)| Hit { cell, side: met.side, t: met.t, u });
+        }
+    }
+
+    /// Follows the mirror image later, behind the mirror's tint.
+    fn reflect(&mut self, mut image: PortalRay, place: Place, met: &Met, tint: Glass) {
+        self.memory.stats.bounces += 1;
+        let everywhere = Extent::Heights { bottom: BOTTOMLESS.bottom, top: BOTTOMLESS.top };
+        let tint = Material::Translucent(tint);
+        self.pass(&image, image.rows.clone(), met, place, tint, everywhere);
+        image.walk.reflect(met.side);
+        image.image = self.list.runs.image_id(image.walk.transform());
+        self.memory.rays.push(image);
+    }
+
+    /// Passes the face of the cube in `place` that is seen through.
+    fn pass_cube(&mut self, ray: &PortalRay, place: Place, rows: &Range<u32>, met: &Met) {
+        let Some(Tile { heights, kind, .. }) = self.surroundings.tile(place) else { return };
+        let material = match *kind {
+            TileKind::Mask(texture) => Material::Masked(texture),
+            TileKind::Glass(glass) => Material::Translucent(glass),
+            _ => return,
+        };
+        let (bottom, top) = (heights.floor(), heights.ceiling());
+        let rows = self.rows_between(rows, bottom..top, met.t);
+        self.pass(ray, rows, met, place, material, Extent::Heights { bottom, top });
+    }
+
+    /// The part of `rows` that shows what is between two heights at distance `t`.
+    pub(super) fn rows_between(
+        &self,
+        rows: &Range<u32>,
+        heights: Range<f64>,
+        t: f64,
+    ) -> Range<u32> {
+        let row_of = |height| self.surroundings.scene.projection.row_of_height(height, t);
+        rows.start.max(row_of(heights.end))..rows.end.min(row_of(heights.start))
+    }
+
+    /// Shows what is beyond the edge of the map: the sky, and the ground below the horizon.
+    fn show_beyond_edge(&mut self, rows: Range<u32>, image: ImageId) {
+        let Range { start, end } = rows;
+        let horizon = self.surroundings.scene.projection.first_row_of_ground().clamp(start, end);
+        self.list.runs.show(start..horizon, Shown::Sky(image));
+        let ground = FlatSurface { tile: None, part: Part::Floor, image };
+        self.list.runs.show(horizon..end, Shown::Plane(ground));
+    }
+}

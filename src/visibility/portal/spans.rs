@@ -1,0 +1,132 @@
+//! The spans of what the portal way found: along rows, where neighbouring columns show the same.
+//!
+//! A span ends where the next column shows something else: one step for each span, and no row is searched.
+
+use std::ops::Range;
+use std::{iter, mem};
+
+use glam::DVec2;
+
+use crate::visibility::runs::{ColumnRuns, FlatSurface, ImageId, Part, Run, Shown};
+use crate::visibility::{Pass, PlaneSpan, Scene, Span};
+use crate::world::{Ceiling, Cell, Covering, Light, Tile, TileKind, World};
+
+/// Hands every span of `runs` in `rows` to `emit`. `starts` is memory to work with.
+pub(crate) fn for_each_span(
+    scene: Scene<'_>,
+    runs: &ColumnRuns,
+    rows: &Range<u32>,
+    starts: &mut Vec<usize>,
+    emit: &mut impl FnMut(Span<'_>),
+) {
+    starts.clear();
+    starts.resize(rows.len(), 0);
+    let mut end_spans = |of: &Run, x: usize| {
+        let Range { start, end } = *rows;
+        for row in of.rows.start.clamp(start, end)..of.rows.end.clamp(start, end) {
+            let columns = mem::replace(&mut starts[(row - start) as usize], x)..x;
+            match of.shown {
+                Shown::Face(_) => {}
+                Shown::Sky(ImageId::NONE) => emit(Span::Sky { row, columns, image: None }),
+                Shown::Sky(id) => emit(Span::Sky { row, columns, image: Some(runs.image(id)) }),
+                Shown::Plane(surface) => emit_plane(scene, runs, surface, row, columns, emit),
+            }
+        }
+    };
+    let mut before: &[Run] = &[];
+    for (x, column) in runs.columns().enumerate() {
+        for change in changes(before, column) {
+            end_spans(&change, x);
+        }
+        before = column;
+    }
+    for run in before {
+        end_spans(run, scene.projection.columns());
+    }
+}
+
+/// What `one` column shows that its neighbour does not show in the same rows.
+fn changes(mut one: &[Run], mut other: &[Run]) -> impl Iterator<Item = Run> {
+    let mut start = 0;
+    iter::from_fn(move || {
+        loop {
+            let (this, that) = (one.first()?, other.first()?);
+            let end = this.rows.end.min(that.rows.end);
+            let rows = mem::replace(&mut start, end)..end;
+            one = &one[usize::from(this.rows.end == end)..];
+            other = &other[usize::from(that.rows.end == end)..];
+            if this.shown != that.shown {
+                return Some(Run { rows, shown: this.shown });
+            }
+        }
+    })
+}
+
+/// Emits what `columns` of `row` show of `surface`: a span for each stretch of one light.
+fn emit_plane(
+    scene: Scene<'_>,
+    runs: &ColumnRuns,
+    surface: FlatSurface,
+    row: u32,
+    columns: Range<usize>,
+    emit: &mut impl FnMut(Span<'_>),
+) {
+    let Scene { world, projection, .. } = scene;
+    let FlatSurface { tile: id, part, image } = surface;
+    let ground = world.ground();
+    let tile = id.map_or(&ground, |id| &world.tiles()[usize::from(id.0)]);
+    let light = tile.light.unwrap_or(Light::FULL);
+    let (height, covering) = match id {
+        None => (0.0, world.floor()),
+        Some(_) => height_and_covering(tile, part),
+    };
+    let mut mapping = projection.mapping_at(row, height);
+    if image != ImageId::NONE {
+        mapping = mapping.seen_in_mirrors(runs.image(image));
+    }
+    let pass = match part {
+        Part::Ceiling => Pass::Ceiling,
+        Part::Floor | Part::Roof | Part::Top => Pass::Floor,
+    };
+    let mapping = &mapping;
+    let span =
+        |columns, light| Span::Plane(PlaneSpan { pass, row, columns, covering, light, mapping });
+    if !world.has_lamplight() || id.is_none() {
+        emit(span(columns, light));
+        return;
+    }
+    // Lamps light each cell as it is.
+    let lamplight = |x: usize| lamplight_at(world, mapping.point(x));
+    let Range { mut start, end } = columns;
+    while start < end {
+        let here = lamplight(start);
+        let next = (start + 1..end).find(|&x| lamplight(x) != here).unwrap_or(end);
+        emit(span(start..next, light.plus(here)));
+        start = next;
+    }
+}
+
+/// What lamps add to the light at `point`.
+fn lamplight_at(world: &World, point: DVec2) -> Light {
+    let is_on_map = point.x >= 0.0 && point.y >= 0.0;
+    let cell = Cell { column: point.x as u32, row: point.y as u32 };
+    if is_on_map { world.lamplight_in(cell) } else { Light::NONE }
+}
+
+/// How high a part of a tile is, and what it is covered with.
+fn height_and_covering(tile: &Tile, part: Part) -> (f64, Covering) {
+    let mut gaps = tile.gaps();
+    match (part, tile.ceiling, tile.kind) {
+        (Part::Ceiling, Ceiling::Covered(covering), _) => (tile.heights.ceiling(), covering),
+        (Part::Top, _, TileKind::Shape(shape)) => {
+            (tile.top_of_what_stands(), Covering::from(shape.paint))
+        }
+        (Part::Roof, ..) => {
+            (gaps.next_back().map_or(0.0, |gap| gap.bottom), Covering::from(tile.lintel))
+        }
+        (_, _, TileKind::Wall(_) | TileKind::Mirror(_)) => {
+            (gaps.next().map_or(0.0, |gap| gap.bottom), Covering::from(tile.riser))
+        }
+        (..) => (gaps.next().map_or(0.0, |gap| gap.bottom), tile.floor),
+    }
+}

@@ -1,0 +1,100 @@
+//! What stands in a cell and does not fill it: the leaves of doors, and shapes.
+
+use std::ops::Range;
+
+use glam::DVec2;
+
+use super::walk::{AlongFace, ColumnWalk, Met, Place, PortalRay};
+use crate::cast::{Hit, Passage, Ray, Side};
+use crate::visibility::runs::{FlatSurface, ImageId, Part, Shown};
+use crate::visibility::{Extent, Facing};
+use crate::world::{Cell, Outline, Tile, TileKind};
+
+impl ColumnWalk<'_> {
+    /// Meets what stands in the gap that `ray` is in. What is above it, if anything, stays open.
+    pub(super) fn meet_standing(&mut self, ray: &mut PortalRay) {
+        let surroundings = self.surroundings;
+        let (Some((cell, _)), Some(tile)) = (ray.place, surroundings.tile(ray.place)) else {
+            return;
+        };
+        let kind = tile.kind;
+        let Passage { hit, end } = ray.walk.standing(surroundings.scene.world, cell, kind);
+        if let Some(hit) = hit {
+            // A ray that was reflected in this cell may have been nowhere near before that.
+            if ray.image != ImageId::NONE && hit.t < ray.from {
+                return;
+            }
+            self.meet_side(ray, kind, tile, hit);
+        }
+        if let Some(end) = end {
+            self.look_down_at(ray, tile.top_of_what_stands(), end);
+        }
+    }
+
+    /// Meets a leaf or a shape where `hit` says.
+    fn meet_side(&mut self, ray: &mut PortalRay, kind: TileKind, tile: &Tile, hit: Hit) {
+        let (bottom, top) = (tile.heights.floor(), tile.top_of_what_stands());
+        self.close(ray, hit.t);
+        let real = ray.walk.real_ray();
+        let (paint, facing) = match kind {
+            TileKind::Door(door) => (door.leaf, Facing::Side(hit.side)),
+            TileKind::Shape(it) => (it.paint, Facing::Normal(normal(it.outline, &real, &hit))),
+            _ => return,
+        };
+        let before = match kind {
+            TileKind::Door(_) => self.place_before(&real, &hit),
+            // It stands in a cell of its own.
+            _ => ray.place,
+        };
+        let slope = match facing {
+            Facing::Side(Side::X) => real.direction().x,
+            Facing::Side(Side::Y) => real.direction().y,
+            Facing::Normal(normal) => normal.dot(real.direction()),
+        };
+        let u = AlongFace::Known(hit.u);
+        let met = Met { side: hit.side, facing, slope, t: hit.t, u, before };
+        let rows = self.rows_between(&ray.rows, bottom..top, hit.t);
+        let above = self.surroundings.scene.projection.row_of_height(top, hit.t);
+        ray.rows.end = ray.rows.end.min(above);
+        let light = self.light(ray.place, &met, hit.u);
+        self.show_face(rows, &met, hit.u, (paint, light), Extent::Heights { bottom, top });
+        if ray.image == ImageId::NONE {
+            self.hit = Some(hit);
+        }
+    }
+
+    /// Shows the top of a pillar, which ends at `end`, to an eye that is above it.
+    fn look_down_at(&mut self, ray: &mut PortalRay, top: f64, end: f64) {
+        let projection = self.surroundings.scene.projection;
+        let is_seen = projection.eye() > top && ray.from <= end;
+        if !is_seen || ray.rows.is_empty() {
+            return;
+        }
+        let tile = ray.place.map(|(_, tile)| tile);
+        let surface = FlatSurface { tile, part: Part::Top, image: ray.image };
+        let Range { start, end: bottom } = ray.rows;
+        let row = projection.row_of_height(top, end).clamp(start, bottom);
+        self.list.runs.show(row..bottom, Shown::Plane(surface));
+        ray.rows = start..row;
+    }
+
+    /// The cell before the one of a leaf, on the side that `ray` comes from.
+    fn place_before(&self, ray: &Ray, hit: &Hit) -> Place {
+        let back = |direction: f64| if direction > 0.0 { -1 } else { 1 };
+        let (columns, rows) = match hit.side {
+            Side::X => (back(ray.direction().x), 0),
+            Side::Y => (0, back(ray.direction().y)),
+        };
+        let (column, row) = (i64::from(hit.cell.column) + columns, i64::from(hit.cell.row) + rows);
+        let tile = self.surroundings.scene.world.grid().tile(column, row)?;
+        Some((Cell { column: column as u32, row: row as u32 }, tile))
+    }
+}
+
+/// Which way a shape faces where `ray` hit it, or the opposite way: a vector of length 1.
+fn normal(outline: Outline, ray: &Ray, hit: &Hit) -> DVec2 {
+    match outline {
+        Outline::Line(line) => line.stretch().perp().normalize(),
+        Outline::Pillar(_) => (ray.at(hit.t) - hit.cell.center()).normalize_or_zero(),
+    }
+}

@@ -1,0 +1,127 @@
+//! Tile gaps: what a ray needs to know of a tile in every cell that it crosses.
+//!
+//! They are made once a frame, from where the eye is. To ask the tile itself in each cell was refused: it
+//! is a large value of many cases, and a ray mostly needs to know where its gaps are.
+
+use std::ops::Range;
+
+use super::walk::Place;
+use crate::visibility::projection::Rise;
+use crate::visibility::runs::Part;
+use crate::visibility::{Projection, Scene};
+use crate::world::{Gap, Heights, Tile, TileKind};
+
+/// Those of all tiles.
+#[derive(Clone, Debug, Default)]
+pub(crate) struct TileGaps {
+    /// Those of each tile together, from the lowest up.
+    gaps: Vec<VisibleGap>,
+    /// Which of them are those of what is off the map, and then of each tile.
+    of_tiles: Vec<Range<usize>>,
+}
+
+/// Which gap of which tile.
+#[derive(Clone, Copy, Debug)]
+pub(crate) struct GapId(usize);
+
+/// A gap as the eye sees it.
+#[derive(Clone, Copy, Debug)]
+pub(crate) struct VisibleGap {
+    pub(crate) gap: Gap,
+    bottom: Rise,
+    /// `None` for the sky.
+    top: Option<Rise>,
+    /// What its bottom is.
+    pub(crate) below: Part,
+    pub(crate) holds: Holds,
+}
+
+/// What stands on the bottom of a gap.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub(crate) enum Holds {
+    Nothing,
+    /// The leaf of a door, or a shape: it does not fill the cell.
+    Standing,
+    /// Glass or a mask, which fill it.
+    Cube,
+}
+
+impl TileGaps {
+    /// Makes those of all tiles in `scene`.
+    pub(crate) fn begin(&mut self, scene: Scene<'_>) {
+        self.gaps.clear();
+        self.of_tiles.clear();
+        self.gaps.push(VisibleGap::new(scene, BOTTOMLESS, Part::Roof, Holds::Nothing));
+        self.push([VisibleGap::new(scene, BEYOND, Part::Floor, Holds::Nothing)]);
+        for tile in scene.world.tiles() {
+            let parts = [Part::Floor, Part::Roof];
+            let gaps = tile.gaps().zip(parts);
+            self.push(
+                gaps.map(|(gap, below)| VisibleGap::new(scene, gap, below, Holds::new(tile, gap))),
+            );
+        }
+    }
+
+    fn push(&mut self, gaps: impl IntoIterator<Item = VisibleGap>) {
+        let first = self.gaps.len();
+        self.gaps.extend(gaps);
+        self.of_tiles.push(first..self.gaps.len());
+    }
+
+    /// The gaps of what is in `place`, from the lowest up.
+    #[inline]
+    pub(crate) fn of(&self, place: Place) -> impl Iterator<Item = (GapId, &VisibleGap)> {
+        let range = self.of_tiles[place.map_or(0, |(_, tile)| usize::from(tile.0) + 1)].clone();
+        range.clone().map(GapId).zip(&self.gaps[range])
+    }
+
+    /// One of them.
+    #[inline]
+    pub(crate) fn gap(&self, GapId(index): GapId) -> &VisibleGap {
+        &self.gaps[index]
+    }
+}
+
+impl GapId {
+    /// Where an eye is that is in no gap at all.
+    pub(crate) const BOTTOMLESS: Self = Self(0);
+}
+
+impl VisibleGap {
+    fn new(scene: Scene<'_>, gap: Gap, below: Part, holds: Holds) -> Self {
+        let rise_to = |height| scene.projection.rise_to(height);
+        let top = (gap.top < f64::INFINITY).then(|| rise_to(gap.top));
+        Self { gap, bottom: rise_to(gap.bottom), top, below, holds }
+    }
+
+    /// The first row that shows none of what is above it, at distance `t`.
+    #[inline]
+    pub(crate) fn row_of_top(&self, projection: &Projection, t: f64) -> u32 {
+        self.top.map_or(0, |top| projection.row_of(top, t))
+    }
+
+    /// The first row that shows none of it but what is below it, at distance `t`.
+    #[inline]
+    pub(crate) fn row_of_bottom(&self, projection: &Projection, t: f64) -> u32 {
+        projection.row_of(self.bottom, t)
+    }
+}
+
+impl Holds {
+    fn new(tile: &Tile, gap: Gap) -> Self {
+        match tile.kind {
+            _ if gap.bottom != tile.heights.floor() => Self::Nothing,
+            TileKind::Door(_) | TileKind::Shape(_) => Self::Standing,
+            TileKind::Mask(_) | TileKind::Glass(_) => Self::Cube,
+            TileKind::Open | TileKind::Doorway(_) | TileKind::Wall(_) | TileKind::Mirror(_) => {
+                Self::Nothing
+            }
+        }
+    }
+}
+
+/// What is open off the map.
+const BEYOND: Gap = Gap { bottom: 0.0, top: f64::INFINITY };
+
+/// Everything that there may be.
+pub(crate) const BOTTOMLESS: Gap = Gap { bottom: -2.0 * Heights::MOST, top: 2.0 * Heights::MOST };

@@ -1,0 +1,339 @@
+//! The walk: a column of pixels, and its ray through the gaps.
+
+use std::ops::Range;
+
+use glam::DVec2;
+
+use super::billboards::RayPart;
+use super::layers::Passed;
+use super::ray_segments::RaySegment;
+use super::tile_gaps::{GapId, Holds, TileGaps};
+use crate::cast::{Crossed, Hit, MirroredWalk, Ray, Side};
+use crate::visibility::projection::Rise;
+use crate::visibility::runs::{FlatSurface, ImageId, Part, Shown};
+use crate::visibility::{
+    Column, DrawList, Extent, Facing, Material, PortalStats, Scene, SeeThroughColumn, WallColumn,
+};
+use crate::world::{Camera, Cell, Light, Paint, Tile, TileId, TileKind};
+
+/// How often a ray is reflected; the mirror after that shows its tint.
+pub(super) const MOST_BOUNCES: u32 = 8;
+
+/// What is the same for all rays of a frame.
+pub(super) struct Surroundings<'a> {
+    pub(super) scene: Scene<'a>,
+    pub(super) gaps: &'a TileGaps,
+    /// Above this there is only sky.
+    pub(super) top: Rise,
+    /// Whether anything stands anywhere, be it the player before a mirror.
+    pub(super) has_things: bool,
+    most_bounces: u32,
+}
+
+/// A ray that is followed on in one gap.
+#[derive(Clone, Debug)]
+pub(super) struct PortalRay {
+    pub(super) walk: MirroredWalk,
+    pub(super) place: Place,
+    pub(super) gap: GapId,
+    /// The clip range: the rows that nothing nearer covers.
+    pub(super) rows: Range<u32>,
+    /// Where on the ray it begins.
+    pub(super) from: f64,
+    pub(super) image: ImageId,
+}
+
+/// Where a ray is: in a cell, or off the map.
+pub(super) type Place = Option<(Cell, TileId)>;
+
+/// An upright face that a ray meets.
+pub(super) struct Met {
+    /// The kind of line that it is on, or runs along most.
+    pub(super) side: Side,
+    pub(super) facing: Facing,
+    /// How many cells the ray comes nearer to it for each unit of `t`.
+    pub(super) slope: f64,
+    pub(super) t: f64,
+    pub(super) u: AlongFace,
+    /// From where it is met.
+    pub(super) before: Place,
+}
+
+/// How far along a face it is met.
+pub(super) enum AlongFace {
+    Known(f64),
+    /// To be computed from the line that the ray has just crossed: most lines have no face in view.
+    AtLine(Crossed),
+}
+
+/// What walks leave besides the draw list; kept so that it is allocated once.
+#[derive(Clone, Debug, Default)]
+pub(super) struct WalkMemory {
+    /// Where a ray still has to be followed.
+    pub(super) rays: Vec<PortalRay>,
+    /// What is seen through, and where billboards may show: in each column, what is further comes later.
+    pub(super) passed: Vec<Passed>,
+    /// Where the rays are on the map.
+    pub(super) segments: Vec<RaySegment>,
+    pub(super) stats: PortalStats,
+}
+
+/// The walk of one column.
+pub(super) struct ColumnWalk<'a> {
+    pub(super) surroundings: &'a Surroundings<'a>,
+    column: u32,
+    direction: DVec2,
+    pub(super) memory: &'a mut WalkMemory,
+    pub(super) list: &'a mut DrawList,
+    /// What it hit last before it was reflected, and how far it got.
+    pub(super) hit: Option<Hit>,
+    pub(super) distance: f64,
+}
+
+impl WalkMemory {
+    /// Forgets the last frame. There is room for all but the strangest maps.
+    pub(super) fn begin(&mut self, width: usize) {
+        const RAYS_AT_ONCE: usize = 64;
+        const OF_A_COLUMN: usize = 16;
+        self.rays.reserve(RAYS_AT_ONCE);
+        self.passed.clear();
+        self.passed.reserve(width * OF_A_COLUMN);
+        self.segments.clear();
+        self.segments.reserve(width * OF_A_COLUMN);
+        self.stats = PortalStats { rays: width as u64, ..PortalStats::default() };
+    }
+}
+
+impl<'a> Surroundings<'a> {
+    pub(super) fn new(scene: Scene<'a>, gaps: &'a TileGaps) -> Self {
+        let world = scene.world;
+        let has_things = !world.things().is_empty() || world.has_mirrors();
+        let tallest_thing =
+            if has_things { world.tallest_sprite().max(Camera::STANDING) } else { 0.0 };
+        let top_of = |tile: &Tile| match tile.kind {
+            TileKind::Open | TileKind::Doorway(_) => tile.heights.floor() + tallest_thing,
+            TileKind::Wall(_) | TileKind::Mirror(_) => tile.heights.floor(),
+            TileKind::Door(_) | TileKind::Mask(_) | TileKind::Glass(_) | TileKind::Shape(_) => {
+                tile.top_of_what_stands()
+            }
+        };
+        let roof_of = |tile: &Tile| tile.gaps().next_back().map_or(0.0, |gap| gap.bottom);
+        let tops = world.tiles().iter().map(|tile| top_of(tile).max(roof_of(tile)));
+        let top = scene.projection.rise_to(tops.fold(0.0, f64::max));
+        let most_bounces = if world.has_mirrors() { MOST_BOUNCES } else { 0 };
+        Self { scene, gaps, top, has_things, most_bounces }
+    }
+
+    pub(super) fn tile(&self, place: Place) -> Option<&'a Tile> {
+        let (_, id) = place?;
+        self.scene.world.tiles().get(usize::from(id.0))
+    }
+}
+
+impl<'a> ColumnWalk<'a> {
+    /// Of `column` of the picture.
+    pub(super) fn new(
+        surroundings: &'a Surroundings<'a>,
+        column: u32,
+        memory: &'a mut WalkMemory,
+        list: &'a mut DrawList,
+    ) -> Self {
+        let direction = surroundings.scene.projection.direction_of(column);
+        Self { surroundings, column, direction, memory, list, hit: None, distance: 0.0 }
+    }
+
+    /// Follows `ray`, which is that of the column, to the end of all its parts. Tells what it hit and how
+    /// far it got before it was reflected.
+    pub(super) fn follow(mut self, ray: &Ray) -> Column {
+        let mut ray = self.start(ray);
+        loop {
+            self.follow_one(&mut ray);
+            match self.memory.rays.pop() {
+                Some(next) => ray = next,
+                None => break,
+            }
+        }
+        let projection = self.surroundings.scene.projection;
+        self.list.runs.end_column(projection.rows());
+        let Self { hit, distance, .. } = self;
+        let row_of = |height| projection.row_of_height(height, distance);
+        Column { hit, distance, rows: row_of(1.0)..row_of(0.0) }
+    }
+
+    fn start(&self, ray: &Ray) -> PortalRay {
+        let &Surroundings { scene, gaps, most_bounces, .. } = self.surroundings;
+        let grid = scene.world.grid();
+        let eye = scene.projection.eye();
+        let walk = MirroredWalk::new(grid, ray, most_bounces);
+        let place = walk.cell(grid);
+        let gap_in = |place| gaps.of(place).find(|(_, it)| it.gap.holds(eye)).map(|(id, _)| id);
+        // An eye inside the rock sees as if the cell were like the map's own floor.
+        let ground = place.map(|(cell, _)| (cell, TileId(0)));
+        let (place, gap) = match (gap_in(place), gap_in(ground)) {
+            (Some(gap), _) => (place, gap),
+            (None, Some(gap)) => (ground, gap),
+            (None, None) => (ground, GapId::BOTTOMLESS),
+        };
+        let rows = 0..scene.projection.rows();
+        PortalRay { walk, place, gap, rows, from: 0.0, image: ImageId::NONE }
+    }
+
+    /// Follows `ray` as far as it goes, and keeps its segment.
+    fn follow_one(&mut self, ray: &mut PortalRay) {
+        let start = ray.from;
+        self.follow_on(ray);
+        if self.surroundings.has_things {
+            let origin = self.surroundings.scene.projection.origin();
+            let transform = ray.walk.transform();
+            let end = |t: f64| transform.real_point(origin + self.direction * t);
+            self.memory
+                .segments
+                .push(RaySegment { ends: [start, ray.from].map(end), image: ray.image });
+        }
+    }
+
+    /// Follows `ray` as far as it goes.
+    fn follow_on(&mut self, ray: &mut PortalRay) {
+        let grid = self.surroundings.scene.world.grid();
+        loop {
+            if self.surroundings.gaps.gap(ray.gap).holds == Holds::Standing {
+                self.meet_standing(ray);
+                if ray.rows.is_empty() {
+                    return;
+                }
+            }
+            let crossed = ray.walk.cross(grid);
+            self.memory.stats.cells += u64::from(crossed.into.is_some());
+            let tile = |(_, tile): (Cell, TileId)| tile;
+            if crossed.into.is_some() && crossed.into.map(tile) == ray.place.map(tile) {
+                // All of its heights are the same.
+                ray.place = crossed.into;
+                continue;
+            }
+            let t = ray.walk.distance(&crossed);
+            self.close(ray, t);
+            if ray.rows.is_empty() {
+                return;
+            }
+            let side = crossed.side;
+            let slope = match side {
+                Side::X => self.direction.x,
+                Side::Y => self.direction.y,
+            };
+            let (into, u) = (crossed.into, AlongFace::AtLine(crossed));
+            let met = Met { side, facing: Facing::Side(side), slope, t, u, before: ray.place };
+            if !self.cross_line(ray, into, &met) {
+                return;
+            }
+        }
+    }
+
+    /// Shows floor and ceiling of the cell that `ray` is in, which it leaves at `t`, and closes its clip
+    /// range over them.
+    pub(super) fn close(&mut self, ray: &mut PortalRay, t: f64) {
+        self.keep_part(ray, t);
+        let projection = self.surroundings.scene.projection;
+        let (eye, gap) = (projection.eye(), self.surroundings.gaps.gap(ray.gap));
+        let Range { start, end } = ray.rows;
+        let tile = ray.place.map(|(_, tile)| tile);
+        let image = ray.image;
+        let surface = |part| Shown::Plane(FlatSurface { tile, part, image });
+        let bottom = gap.row_of_bottom(projection, t);
+        let top = gap.row_of_top(projection, t);
+        if eye > gap.gap.bottom {
+            self.list.runs.show(bottom.max(start)..end, surface(gap.below));
+        }
+        if eye < gap.gap.top && gap.gap.top < f64::INFINITY {
+            self.list.runs.show(start..top.min(end), surface(Part::Ceiling));
+        }
+        ray.rows = start.max(top)..end.min(bottom);
+        ray.from = t;
+        if image == ImageId::NONE {
+            self.distance = self.distance.max(t);
+        }
+    }
+
+    /// Keeps the part of `ray` up to `to`, where billboards may show.
+    fn keep_part(&mut self, ray: &PortalRay, to: f64) {
+        if !self.surroundings.has_things {
+            return;
+        }
+        let &PortalRay { ref rows, gap, from, image, .. } = ray;
+        let (column, rows) = (self.column, rows.clone());
+        self.memory.passed.push(Passed::Billboards(RayPart { column, rows, from, to, gap, image }));
+    }
+
+    /// Shows a face in `rows`.
+    pub(super) fn show_face(
+        &mut self,
+        rows: Range<u32>,
+        met: &Met,
+        u: f64,
+        (paint, light): (Paint, Light),
+        extent: Extent,
+    ) {
+        if rows.is_empty() {
+            return;
+        }
+        self.list.runs.show(rows.clone(), Shown::Face(met.side));
+        let &Met { facing, slope, t, .. } = met;
+        let column = self.column;
+        let wall = WallColumn { column, rows, facing, slope, t, u, paint, light, extent };
+        self.list.walls.push(wall);
+    }
+
+    /// Keeps a face that is seen through in `rows`.
+    pub(super) fn pass(
+        &mut self,
+        ray: &PortalRay,
+        rows: Range<u32>,
+        met: &Met,
+        place: Place,
+        material: Material,
+        extent: Extent,
+    ) {
+        if rows.is_empty() {
+            return;
+        }
+        let u = met.u(ray);
+        let light = self.light(place, met, u);
+        let &Met { facing, slope, t, .. } = met;
+        self.memory.passed.push(Passed::SeeThrough(self.list.see_through.len()));
+        let column = self.column;
+        let face = SeeThroughColumn { column, rows, facing, slope, t, u, light, material, extent };
+        self.list.see_through.push(face);
+    }
+
+    /// How bright what is in `place` is at `u`, seen from where it is met: by its own light, if it is
+    /// solid, else as it is there.
+    pub(super) fn light(&self, place: Place, met: &Met, u: f64) -> Light {
+        let scene = self.surroundings.scene;
+        if !scene.plan.walls.faded {
+            return Light::FULL;
+        }
+        let is_solid = |tile: &&Tile| !matches!(tile.kind, TileKind::Open | TileKind::Doorway(_));
+        let tile = self.surroundings.tile(place);
+        if let Some(own) = tile.filter(is_solid).and_then(|tile| tile.light) {
+            return own;
+        }
+        let Some((before, _)) = met.before else { return Light::FULL };
+        let is_door = tile.is_some_and(|tile| matches!(tile.kind, TileKind::Door(_)));
+        match place {
+            // Leaves have one light all over, as has a shape, which is met in its own cell.
+            Some((cell, _)) if cell != before && !is_door => {
+                scene.world.face_light(cell, before).at(u)
+            }
+            _ => scene.world.light_in(before),
+        }
+    }
+}
+
+impl Met {
+    /// How far along the face `ray` meets it, from 0 at its left end to 1 at its right.
+    pub(super) fn u(&self, ray: &PortalRay) -> f64 {
+        match &self.u {
+            AlongFace::Known(u) => *u,
+            AlongFace::AtLine(crossed) => ray.walk.along_face(crossed),
+        }
+    }
+}

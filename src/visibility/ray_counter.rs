@@ -1,0 +1,61 @@
+//! A caster that counts the rays that it casts, for frame stats.
+
+use std::cell::Cell;
+
+use super::FrameStats;
+use crate::cast::{Caster, Hit, MajorAxisTraversal, Ray, Walk};
+use crate::world::{Grid, World};
+
+/// Casts as another caster does, and counts along the exact rays, whatever that caster's method.
+pub(super) struct RayCounter<'a, C> {
+    caster: &'a C,
+    rays: Cell<u64>,
+    cells: Cell<u64>,
+    looks: Cell<u64>,
+}
+
+impl<'a, C> RayCounter<'a, C> {
+    pub(super) fn new(caster: &'a C) -> Self {
+        Self { caster, rays: Cell::default(), cells: Cell::default(), looks: Cell::default() }
+    }
+
+    /// Adds what it counted to `stats`.
+    pub(super) fn add_to(&self, stats: &mut FrameStats) {
+        stats.rays += self.rays.get();
+        stats.cells += self.cells.get();
+        stats.looks += self.looks.get();
+    }
+
+    fn count(&self, grid: &Grid, ray: &Ray) {
+        let mut entered = 0;
+        for crossing in Walk::new(grid, ray) {
+            entered += 1;
+            if grid.is_solid_tile(crossing.tile) {
+                break;
+            }
+        }
+        let looked = MajorAxisTraversal::new(grid, ray).map_or(entered, |mut traversal| {
+            traversal.next();
+            traversal.lookups()
+        });
+        self.rays.update(|rays| rays + 1);
+        self.cells.update(|cells| cells + entered);
+        self.looks.update(|looks| looks + looked);
+    }
+}
+
+impl<C: Caster> Caster for RayCounter<'_, C> {
+    fn cast(&self, grid: &Grid, ray: &Ray) -> Option<Hit> {
+        self.count(grid, ray);
+        self.caster.cast(grid, ray)
+    }
+
+    fn follows_between(&self, left: &Hit, right: &Hit) -> bool {
+        self.caster.follows_between(left, right)
+    }
+
+    fn cast_through(&self, world: &World, ray: &Ray, passed: impl FnMut(Hit)) -> Option<Hit> {
+        self.count(world.grid(), ray);
+        self.caster.cast_through(world, ray, passed)
+    }
+}

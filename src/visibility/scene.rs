@@ -1,0 +1,28 @@
+//! The scene: what a frame is made from.
+
+use super::{FramePlan, Projection};
+use crate::world::texture::MipLevel;
+use crate::world::{Camera, TextureId, World};
+
+/// A world, the camera that sees it, and how that is drawn.
+#[derive(Clone, Copy)]
+pub(crate) struct Scene<'a> {
+    pub(crate) world: &'a World,
+    pub(crate) camera: &'a Camera,
+    /// The time for which sprites are drawn.
+    pub(crate) seconds: f64,
+    pub(crate) projection: &'a Projection,
+    pub(crate) plan: &'a FramePlan,
+}
+
+impl<'a> Scene<'a> {
+    /// The mip level of the texture `id` for a face at distance `t`, which the ray approaches by
+    /// `slope` cells for each unit of `t`.
+    #[inline]
+    pub(crate) fn level_on_face(self, id: TextureId, t: f64, slope: f64) -> &'a MipLevel {
+        let texture = self.world.texture(id);
+        let texels = f64::from(texture.width()) * f64::from(texture.height());
+        let area = self.projection.pixel_area_on_wall(t, slope);
+        texture.level(self.plan.filter.lod(area * texels))
+    }
+}

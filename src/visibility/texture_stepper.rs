@@ -1,0 +1,234 @@
+//! FaceTexels down a face: which one the centre of a row of pixels is on.
+//!
+//! They are counted from eye height, so that however near a face is, what is above the horizon shows
+//! what is above the eye; and in fixed point, by the row's own index, so that no error adds up and a
+//! step is one addition. Counting in doubles was refused: a conversion and a floor for each pixel
+//! took half the time of a whole frame.
+
+use std::iter;
+use std::ops::Range;
+
+/// The texels of an upright face.
+#[derive(Clone, Copy, Debug)]
+pub(crate) struct FaceTexels {
+    /// How many there are in a cell of height; at least one.
+    pub(crate) count: usize,
+    /// From where to where the face reaches, in cells down from the top of its uppermost texture.
+    pub(crate) of_cells: (f64, f64),
+    /// Where the eye is, likewise.
+    pub(crate) at_eye: f64,
+}
+
+/// The texels of an upright face, by rows of pixels.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub(crate) struct TextureStepper {
+    /// Where the centre of row 0 is, even where that is not on the face.
+    first: i64,
+    /// From one row to the next.
+    step: i64,
+    /// The uppermost and the lowest one on the face.
+    range: (i64, i64),
+    count: i64,
+}
+
+impl TextureStepper {
+    /// Of `texels` in a picture whose horizon is `half_rows_to_horizon` halves of a row below its
+    /// top, and where a row covers `height_of_row` cells of the face.
+    pub(crate) fn new(half_rows_to_horizon: f64, height_of_row: f64, texels: FaceTexels) -> Self {
+        let FaceTexels { count, of_cells: (top, bottom), at_eye } = texels;
+        let in_texels = |cells: f64| cells * count as f64;
+        let uppermost = floor(in_texels(top));
+        let lowest = (ceil(in_texels(bottom)) - 1).max(uppermost);
+        Self {
+            range: (uppermost, lowest),
+            ..Self::of_wall(half_rows_to_horizon, height_of_row, count, at_eye)
+        }
+    }
+
+    /// Likewise, of a wall that is 1 high and covered by one texture, `count` texels high.
+    #[inline]
+    pub(crate) fn of_wall(
+        half_rows_to_horizon: f64,
+        height_of_row: f64,
+        count: usize,
+        at_eye: f64,
+    ) -> Self {
+        let in_texels = |cells: f64| cells * count as f64;
+        let texels_in_row = in_texels(height_of_row).min(MOST_TEXELS);
+        // A smaller step would not get past the hair, and a row above the horizon below it.
+        let half_step = rounded(texels_in_row / 2.0 * TEXEL).max(2 * HAIR);
+        // What is far above or below the face wraps around, and is back where the face begins.
+        let at_horizon = rounded(in_texels(at_eye) * TEXEL);
+        let half_rows_to_first = 1 - half_rows_to_horizon as i64;
+        let from_horizon = half_step.wrapping_mul(half_rows_to_first);
+        let count = count as i64;
+        Self {
+            first: at_horizon.wrapping_add(HAIR).wrapping_add(from_horizon),
+            step: 2 * half_step,
+            range: (0, count - 1),
+            count,
+        }
+    }
+
+    /// Which texel of its texture the centre of `row` is on: the nearest one where it is above or
+    /// below the face by less than rounding.
+    #[inline]
+    pub(crate) fn at(self, row: u32) -> usize {
+        self.texel_at(self.place(row) >> TEXEL_BITS)
+    }
+
+    /// Which texel of its texture the one at `place` is, counted from the top of the uppermost texture.
+    #[inline]
+    fn texel_at(self, place: i64) -> usize {
+        let (uppermost, lowest) = self.range;
+        let texel = place.clamp(uppermost, lowest);
+        // A division takes as long as all the rest.
+        let is_first = (0..self.count).contains(&texel);
+        (if is_first { texel } else { texel.rem_euclid(self.count) }) as usize
+    }
+
+    /// The texels that the centres of `rows` are on, counted from the top of the uppermost texture; `None`
+    /// where there is no row, or they wrap around.
+    #[inline]
+    pub(crate) fn places(self, rows: &Range<u32>) -> Option<Range<i64>> {
+        let further_down = i64::from(rows.end.checked_sub(rows.start + 1)?);
+        let first = self.place(rows.start);
+        let last = first.checked_add(self.step.checked_mul(further_down)?)?;
+        Some(first >> TEXEL_BITS..(last >> TEXEL_BITS) + 1)
+    }
+
+    /// What of `texels`, those of the texture, is at `places`, in pieces.
+    #[inline]
+    pub(crate) fn pieces<T>(self, texels: &[T], places: Range<i64>) -> impl Iterator<Item = &[T]> {
+        let Range { mut start, end } = places;
+        iter::from_fn(move || {
+            let (first, count) = (start < end).then(|| self.texels_at(start..end))?;
+            start += count as i64;
+            Some(&texels[first..first + count])
+        })
+    }
+
+    /// Which texel of its texture the first one of `places` is, and how many of them follow each other in the
+    /// texture as well.
+    #[inline]
+    fn texels_at(self, places: Range<i64>) -> (usize, usize) {
+        let (uppermost, lowest) = self.range;
+        let first = self.texel_at(places.start);
+        let is_on_face = (uppermost..=lowest).contains(&places.start);
+        let end = if is_on_face { places.end.min(lowest + 1) } else { places.start + 1 };
+        (first, (end - places.start).min(self.count - first as i64) as usize)
+    }
+
+    /// Where the centre of `row` is and how far it is to the next one, such that the texel is what
+    /// the uppermost `BITS` bits say, modulo 2 to the power of `BITS`.
+    #[inline]
+    pub(crate) fn in_uppermost<const BITS: u32>(self, row: u32) -> (u64, u64) {
+        let to_the_top = u64::BITS - TEXEL_BITS - BITS;
+        ((self.place(row) as u64) << to_the_top, (self.step as u64) << to_the_top)
+    }
+
+    #[inline]
+    fn place(self, row: u32) -> i64 {
+        self.first.wrapping_add(self.step.wrapping_mul(i64::from(row)))
+    }
+}
+
+/// The nearest whole number, the further one from 0 of two; what is beyond 64 bits wraps around.
+///
+/// Where a processor may be old, `f64::round` is a call, and so is `f64::floor`.
+#[inline]
+fn rounded(number: f64) -> i64 {
+    const LARGE: f64 = (1_u64 << 62) as f64;
+    if number.abs() >= LARGE {
+        // It is whole.
+        return number as i128 as i64;
+    }
+    let whole = number as i64;
+    let rest = number - whole as f64;
+    whole + i64::from(rest >= 0.5) - i64::from(rest <= -0.5)
+}
+
+/// The largest whole number that is not above `number`, of those in the middle half of 64 bits.
+#[inline]
+fn floor(number: f64) -> i64 {
+    const MOST: f64 = (1_u64 << 62) as f64;
+    let whole = number.clamp(-MOST, MOST) as i64;
+    whole - i64::from(whole as f64 > number)
+}
+
+/// The least whole number that is not below `number`, likewise.
+#[inline]
+pub(crate) fn ceil(number: f64) -> i64 {
+    -floor(-number)
+}
+
+/// A texel, in fixed point.
+const TEXEL: f64 = (1_u64 << TEXEL_BITS) as f64;
+const TEXEL_BITS: u32 = 40;
+/// The most texels from one row to the next; where there are more, only one row shows the face.
+const MOST_TEXELS: f64 = 65_536.0;
+/// Where the centre of a row is on the line between two texels it is on the lower one, however the
+/// step to it was rounded: 4096 rows of rounding by half a unit are half as much.
+const HAIR: i64 = 1 << 12;
+
+#[cfg(test)]
+mod tests {
+    use proptest::prelude::*;
+
+    use super::*;
+
+    fn wall(count: usize) -> FaceTexels {
+        FaceTexels { count, of_cells: (0.0, 1.0), at_eye: 0.5 }
+    }
+
+    #[test]
+    fn the_halves_of_the_picture_show_the_halves_of_a_wall_however_near() {
+        for near in [0.0, f64::MIN_POSITIVE, 1e-30, 1e-9] {
+            let texels = TextureStepper::new(90.0, near, wall(64));
+            assert_eq!((texels.at(44), texels.at(45)), (31, 32), "{near}");
+        }
+    }
+
+    #[test]
+    fn a_row_between_two_texels_is_on_the_lower_one() {
+        // Thirds and sevenths are not to be had in binary.
+        for (rows, count) in [(3_u32, 1_u32), (7, 3), (21, 5), (63, 64), (4095, 3)] {
+            let height_of_row = 1.0 / f64::from(rows);
+            let texels = TextureStepper::new(f64::from(rows), height_of_row, wall(count as usize));
+            for row in 0..rows {
+                let exact = (2 * row + 1) * count / (2 * rows);
+                assert_eq!(texels.at(row), exact as usize, "{row} of {rows}");
+            }
+        }
+    }
+
+    #[test]
+    fn a_high_face_repeats_its_texture_from_one_whole_height_to_the_next() {
+        // From 0.25 to 2.5, seen from 1: its uppermost texture has its top at 3.
+        let texels = FaceTexels { count: 4, of_cells: (0.5, 2.75), at_eye: 2.0 };
+        let texels = TextureStepper::new(12.0, 0.25, texels);
+        let seen: Vec<usize> = (0..9).map(|row| texels.at(row)).collect();
+        assert_eq!(seen, [2, 3, 0, 1, 2, 3, 0, 1, 2]);
+    }
+
+    proptest! {
+        #[test]
+        fn a_row_is_on_the_texel_that_doubles_say(
+            height in 1_u32..4096,
+            rows in 0.01..9000.0_f64,
+            at_eye in 0.02..0.98,
+            count in 1_usize..4097,
+        ) {
+            let texels = FaceTexels { at_eye, ..wall(count) };
+            let texels = TextureStepper::new(f64::from(height), 1.0 / rows, texels);
+            for row in 0..height {
+                let from_horizon = f64::from(2 * row + 1) / 2.0 - f64::from(height) / 2.0;
+                let place = (from_horizon / rows + at_eye) * count as f64;
+                let is_on_wall = place >= 0.0 && place < count as f64;
+                if is_on_wall && (place - place.round()).abs() > 1e-6 {
+                    prop_assert_eq!(texels.at(row), place as usize);
+                }
+            }
+        }
+    }
+}

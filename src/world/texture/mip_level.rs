@@ -1,0 +1,208 @@
+//! Levels: a texture in half its size, a quarter, and so on.
+//!
+//! Each is the one before, halved in [linear light](light).
+
+mod light;
+
+use std::num::NonZeroU32;
+use std::ops::Range;
+
+use crate::color::Rgb;
+use crate::color::srgb::{from_linear_16, linear_16};
+use light::Light;
+
+/// A picture in one size, at least one texel wide and high.
+#[derive(Clone, Debug, PartialEq, Eq)]
+pub struct MipLevel {
+    width: NonZeroU32,
+    height: NonZeroU32,
+    /// Column by column, each from top to bottom.
+    texels: Vec<Rgb>,
+    /// 0 for clear, 255 for opaque, in the same order; empty where all is opaque.
+    alpha: Vec<u8>,
+}
+
+impl MipLevel {
+    /// Texels from left to right.
+    pub fn width(&self) -> u32 {
+        self.width.get()
+    }
+
+    /// Texels from top to bottom.
+    pub fn height(&self) -> u32 {
+        self.height.get()
+    }
+
+    /// The column that holds `u`, from 0 at the left edge to 1 at the right one, top to bottom. A
+    /// `u` outside that range, or not a number, means the nearest column.
+    pub fn column(&self, u: f64) -> &[Rgb] {
+        &self.texels[self.column_range(u)]
+    }
+
+    /// The alpha of the texels of [`MipLevel::column`]; `None` where all of the level is opaque.
+    pub fn alpha_column(&self, u: f64) -> Option<&[u8]> {
+        self.alpha.get(self.column_range(u))
+    }
+
+    /// The texel at `(x, y)`, and its alpha.
+    pub(super) fn texel(&self, x: u32, y: u32) -> (Rgb, u8) {
+        let index = x as usize * self.height.get() as usize + y as usize;
+        (self.texels[index], self.alpha.get(index).copied().unwrap_or(u8::MAX))
+    }
+
+    pub(super) fn has_alpha(&self) -> bool {
+        !self.alpha.is_empty()
+    }
+
+    /// Where the texels of that column are among all of them.
+    fn column_range(&self, u: f64) -> Range<usize> {
+        let height = self.height.get() as usize;
+        let start = texel_index(u, self.width.get()) * height;
+        start..start + height
+    }
+
+    /// The texel at a place given in 2⁻⁶⁴ths of the way from left to right and from top to bottom.
+    #[inline]
+    pub fn at_fraction(&self, x: u64, y: u64) -> Rgb {
+        let index = |fraction: u64, count: NonZeroU32| {
+            (((fraction >> u32::BITS) * u64::from(count.get())) >> u32::BITS) as usize
+        };
+        self.texels[index(x, self.width) * self.height.get() as usize + index(y, self.height)]
+    }
+
+    /// The same without a multiplication, where both sides are powers of two; `None` elsewhere.
+    #[inline]
+    pub(crate) fn by_shifts(&self) -> Option<MipLevelByShifts<'_>> {
+        let bits = |side: NonZeroU32| side.is_power_of_two().then(|| side.trailing_zeros());
+        let (width, height) = (bits(self.width)?, bits(self.height)?);
+        (width + height < u32::BITS).then(|| MipLevelByShifts {
+            texels: &self.texels,
+            // What is shifted out by all 32 bits, or is left of nothing, is masked away.
+            shift_x: (u32::BITS - width - height).min(u32::BITS - 1),
+            mask_x: (self.width.get() - 1) << height,
+            shift_y: (u32::BITS - height).min(u32::BITS - 1),
+            mask_y: self.height.get() - 1,
+        })
+    }
+}
+
+/// A level whose width and height are powers of two, so that the place of a texel among all of them
+/// consists of bits of its place along both axes.
+#[derive(Clone, Copy)]
+pub(crate) struct MipLevelByShifts<'a> {
+    texels: &'a [Rgb],
+    shift_x: u32,
+    mask_x: u32,
+    shift_y: u32,
+    mask_y: u32,
+}
+
+impl MipLevelByShifts<'_> {
+    /// Which texel [`MipLevel::at_fraction`] would look up.
+    #[inline]
+    pub(crate) fn index(self, x: u64, y: u64) -> u32 {
+        let (x, y) = ((x >> u32::BITS) as u32, (y >> u32::BITS) as u32);
+        x >> self.shift_x & self.mask_x | y >> self.shift_y & self.mask_y
+    }
+
+    /// Which bits of that index are due to the place along each axis.
+    pub(crate) fn masks(self) -> [u32; 2] {
+        [self.mask_x, self.mask_y]
+    }
+
+    /// The texel at one of those indices.
+    #[inline]
+    pub(crate) fn at_index(self, index: u32) -> Rgb {
+        self.texels[index as usize]
+    }
+}
+
+/// The texel of `count` in a row that holds `coordinate`, from 0 to 1; the nearest one outside.
+fn texel_index(coordinate: f64, count: u32) -> usize {
+    let index = (coordinate * f64::from(count)) as usize;
+    index.min(count as usize - 1)
+}
+
+/// A picture of these texels, column by column, and its lod down to one texel. `alpha` is in
+/// the same order, or empty where all is opaque.
+pub(super) fn pyramid(
+    width: NonZeroU32,
+    height: NonZeroU32,
+    texels: Vec<Rgb>,
+    alpha: Vec<u8>,
+) -> Vec<MipLevel> {
+    let light_texels = texels.iter().copied().map(linear_16).collect();
+    let mut light = Light { width, height, texels: light_texels, alpha: alpha.clone() };
+    let mut levels = vec![MipLevel { width, height, texels, alpha }];
+    while light.texels.len() > 1 {
+        light = light.halved();
+        let texels = light.texels.iter().copied().map(from_linear_16).collect();
+        let (width, height, alpha) = (light.width, light.height, light.alpha.clone());
+        levels.push(MipLevel { width, height, texels, alpha });
+    }
+    levels
+}
+
+#[cfg(test)]
+mod tests {
+    use proptest::prelude::*;
+
+    use super::*;
+
+    fn size(side: u32) -> NonZeroU32 {
+        NonZeroU32::new(side).unwrap()
+    }
+
+    #[test]
+    fn a_chessboard_turns_into_the_gray_it_looks_like() {
+        let texels = (0..16).map(|index| if (index + index / 4) % 2 == 0 { 0 } else { 255 });
+        let texels = texels.map(|gray| Rgb::new(gray, gray, gray)).collect();
+        let levels = pyramid(size(4), size(4), texels, vec![]);
+        assert_eq!(levels.len(), 3);
+        // Half the light, which is far more than half the number.
+        assert!(
+            levels[1..]
+                .iter()
+                .flat_map(|level| &level.texels)
+                .all(|&texel| { texel == Rgb::new(188, 188, 188) })
+        );
+    }
+
+    #[test]
+    fn a_fraction_names_the_texel_that_holds_it() {
+        let level = &pyramid(size(2), size(1), vec![Rgb::BLACK, Rgb::WHITE], vec![])[0];
+        let half = 1 << 63;
+        let seen = [0, half - 1, half, u64::MAX].map(|x| level.at_fraction(x, u64::MAX));
+        assert_eq!(seen, [Rgb::BLACK, Rgb::BLACK, Rgb::WHITE, Rgb::WHITE]);
+    }
+
+    proptest! {
+        #[test]
+        fn shifts_find_the_texel_that_fractions_name(
+            sides in (0_u32..8, 0_u32..8),
+            places in prop::collection::vec(any::<(u64, u64)>(), 1..20),
+        ) {
+            let (width, height) = (1 << sides.0, 1 << sides.1);
+            let texels = (0..width * height).map(|texel| Rgb::new(0, (texel >> 8) as u8, texel as u8));
+            let level = MipLevel {
+                width: size(width),
+                height: size(height),
+                texels: texels.collect(),
+                alpha: vec![],
+            };
+            let shifts = level.by_shifts().unwrap();
+            for (x, y) in places.into_iter().chain([(0, u64::MAX), (u64::MAX, 0)]) {
+                prop_assert_eq!(shifts.at_index(shifts.index(x, y)), level.at_fraction(x, y));
+            }
+        }
+    }
+
+    #[test]
+    fn what_is_clear_lends_no_colour() {
+        let texels = vec![Rgb::WHITE, Rgb::BLACK, Rgb::WHITE, Rgb::BLACK];
+        let level = &pyramid(size(2), size(2), texels, vec![255, 0, 255, 0])[1];
+        assert_eq!(level.texel(0, 0), (Rgb::WHITE, 128));
+        let level = &pyramid(size(2), size(1), vec![Rgb::WHITE; 2], vec![0, 0])[1];
+        assert_eq!(level.texel(0, 0).1, 0);
+    }
+}
