@@ -82,13 +82,13 @@ impl Session {
     fn take_input(&mut self, input: Input) -> io::Result<()> {
         match input {
             Input::Key(event) => {
-                self.flow.heard();
+                self.flow.received_input();
                 self.events.push_back(meaning(event));
             }
             Input::Focus(true) => self.events.push_back(Event::FocusGained),
             Input::Focus(false) => self.events.push_back(Event::FocusLost),
             Input::Mouse(report) => {
-                self.flow.heard();
+                self.flow.received_input();
                 self.events.extend(self.mouse_event(report));
             }
             Input::Answer(Answer::PixelMouse) => {

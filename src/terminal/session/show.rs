@@ -72,7 +72,7 @@ impl Session {
             self.writer.draw_frame(render);
             Backend::flush(&mut self.writer)?;
             let bytes = self.send()?;
-            self.flow.showed_motion(bytes, fidelity);
+            self.flow.sent_motion(bytes, fidelity);
         }
         Ok(())
     }
@@ -172,7 +172,7 @@ impl Session {
 
     fn note_what_is_taken(&mut self) {
         if self.guard.has_written_all() {
-            self.flow.taken(self.now());
+            self.flow.written(self.now());
         }
     }
 
