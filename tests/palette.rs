@@ -94,7 +94,7 @@ impl Screen {
             match *cell {
                 Cell::Halves(wanted) => {
                     let said = self.writer.shown_colors(x, y).map(|halves| halves.map(rgb));
-                    assert_eq!(self.halves(x, y), said, "at {x}, {y}");
+                    assert_eq!(self.terminal.halves(x, y), said, "at {x}, {y}");
                     assert!(!is_exact || said == Some(wanted.map(rgb)), "at {x}, {y}");
                 }
                 Cell::Text(character, colors) => {
@@ -103,18 +103,6 @@ impl Screen {
                     assert_eq!(self.terminal.colors(x, y), wanted, "at {x}, {y}");
                 }
             }
-        }
-    }
-
-    /// What the terminal shows in the halves of a cell.
-    fn halves(&self, x: u16, y: u16) -> Option<[Rgb; 2]> {
-        let [text, ground] = self.terminal.colors(x, y);
-        match self.terminal.character(x, y) {
-            '▀' => Some([text?, ground?]),
-            '▄' => Some([ground?, text?]),
-            '█' => Some([text?; 2]),
-            ' ' => Some([ground?; 2]),
-            _ => None,
         }
     }
 }

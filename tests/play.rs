@@ -35,6 +35,8 @@ mod looking;
 mod mouse;
 #[path = "play/moving.rs"]
 mod moving;
+#[path = "play/palette.rs"]
+mod palette;
 #[path = "play/recording.rs"]
 mod recording;
 #[path = "play/resting.rs"]

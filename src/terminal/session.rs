@@ -1,6 +1,6 @@
-//! A stay in the terminal, from taking it to giving it back.
+//! A session: the time from taking the terminal to giving it back.
 
-mod brevity;
+mod extensions;
 mod options;
 mod receive;
 mod show;
@@ -10,7 +10,7 @@ use std::io;
 use std::sync::Arc;
 use std::time::{Duration, Instant};
 
-use self::brevity::Brevity;
+use self::extensions::Extensions;
 pub use self::options::Options;
 use self::receive::Received;
 use super::flow::{Flow, Request};
@@ -49,7 +49,7 @@ pub struct Session {
     is_remote: bool,
     /// Whether the program wants to know when a frame may be sent.
     awaits_readiness: bool,
-    brevity: Brevity,
+    extensions: Extensions,
 }
 
 /// What is reported of the mouse.
@@ -120,7 +120,7 @@ impl Session {
             fidelity: options.fidelity,
             is_remote: options.is_remote,
             awaits_readiness: false,
-            brevity: Brevity::default(),
+            extensions: Extensions::default(),
         };
         session.writer.set_ascii(options.is_ascii);
         guard.take().map_err(Error::while_doing("taking the terminal"))?;
@@ -140,8 +140,8 @@ impl Session {
         if matches!(options.color_depth, Detected::Guess(_)) && options.ask_for_version {
             queries.push_str(sequence::QUERY_VERSION);
         }
-        if options.try_brevity && !options.is_ascii && !self.guard.recording().is_on() {
-            self.try_brevity(&mut queries);
+        if options.probe_extensions && !options.is_ascii && !self.guard.recording().is_on() {
+            self.probe_extensions(&mut queries);
         }
         // As after a frame: an answer that comes before that of the fence says that others will.
         queries.push_str(sequence::QUERY_STATUS);

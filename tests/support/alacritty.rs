@@ -105,6 +105,19 @@ impl Alacritty {
         })
     }
 
+    /// What a cell shows in its upper and its lower half; `None` for other characters than blocks, and for the
+    /// terminal's own colours.
+    pub(crate) fn halves(&self, column: u16, row: u16) -> Option<[[u8; 3]; 2]> {
+        let [text, ground] = self.colors(column, row);
+        match self.character(column, row) {
+            '▀' => Some([text?, ground?]),
+            '▄' => Some([ground?, text?]),
+            '█' => Some([text?; 2]),
+            ' ' => Some([ground?; 2]),
+            _ => None,
+        }
+    }
+
     /// The entries of the palette that cells are shown in, or that the next character would be.
     pub(crate) fn entries_in_use(&self) -> BTreeSet<u8> {
         let rows = 0..self.terminal.screen_lines() as u16;

@@ -92,6 +92,12 @@ fn vocabulary() -> Vec<(&'static str, Option<Input>)> {
         ("\x1b[O", Input::Focus(false)),
         ("\x1b[0n", answer(Answer::Status)),
         ("\x1b[3n", answer(Answer::Status)),
+        (
+            "\x1b]4;255;rgb:1212/abab/5656\x1b\\",
+            answer(Answer::PaletteEntry([0x1212, 0xabab, 0x5656])),
+        ),
+        ("\x1b]4;255;rgb:12/ab/56\x07", answer(Answer::PaletteEntry([0x1212, 0xabab, 0x5656]))),
+        ("\x1b]4;255;rgb:f/0/000\x07", answer(Answer::PaletteEntry([0xffff, 0, 0]))),
         ("\x1bP1+r524742=382F382F38\x1b\\", answer(Answer::TrueColor)),
         ("\x1bP1+r524742\x1b\\", answer(Answer::TrueColor)),
         ("\x1bP>|XTerm(390)\x1b\\", answer(Answer::XtermVersion)),
@@ -114,6 +120,11 @@ fn vocabulary() -> Vec<(&'static str, Option<Input>)> {
         "\x1b[M`!!",
         "\x1b]11;rgb:0000/0000/0000\x1b\\",
         "\x1b]11;rgb:0000/0000/0000\x07",
+        "\x1b]4;254;rgb:0000/0000/0000\x07",
+        "\x1b]4;255;rgb:00000/0000/0000\x07",
+        "\x1b]4;255;rgb:0000/0000\x07",
+        "\x1b]4;255;rgb:00/00/00/00\x07",
+        "\x1b]4;255;rgb://\x07",
         "\x1b_Gi=1;OK\x1b\\",
     ];
     meaningful

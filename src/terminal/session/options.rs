@@ -23,9 +23,9 @@ pub struct Options {
     pub ask_for_version: bool,
     /// Whether there is a network on the way: the first frame is coarse then, and made exact after it.
     pub is_remote: bool,
-    /// Whether to try what makes frames shorter, repeated characters and a palette of its own, and to use it where the
-    /// terminal shows that it works.
-    pub try_brevity: bool,
+    /// Whether to probe control sequences that make frames shorter, repeated characters and the palette, and to use
+    /// them where the terminal proves that they work.
+    pub probe_extensions: bool,
     /// How exact frames are; `None` for exact where the link keeps up, and less so where it lags.
     pub fidelity: Option<Fidelity>,
 }
@@ -33,12 +33,13 @@ pub struct Options {
 impl Options {
     /// What `environment`, a lookup of variables by name, tells of the terminal.
     ///
-    /// Neither a terminal multiplexer nor one that is unknown or has no windows is tried for shorter frames.
+    /// Control sequences that make frames shorter are not probed in a terminal multiplexer, nor in a terminal that is
+    /// unknown or has no window.
     ///
-    /// A terminal multiplexer is not asked for releases: those that agree lose some, and a key whose
-    /// release is lost is held for ever. Nor is it asked for pixels, of which it has none of its own.
+    /// A multiplexer is not asked for releases: those that agree lose some, and a key whose release is lost is
+    /// held for ever. Nor is it asked for pixels, of which it has none of its own.
     ///
-    /// A terminal that `TERM` tells nothing about is asked for nothing that some would print.
+    /// A terminal that `TERM` tells nothing about is not asked for its version, which some would print.
     pub fn from_environment(environment: impl Fn(&str) -> Option<String>) -> Self {
         /// Terminals that pass over a control sequence that they do not know.
         const KNOWN: [&str; 9] =
@@ -58,7 +59,7 @@ impl Options {
             ask_for_mouse_pixels: !multiplexed,
             ask_for_version: KNOWN.iter().any(|name| term.starts_with(name)),
             is_remote: ["SSH_CONNECTION", "SSH_CLIENT", "SSH_TTY"].into_iter().any(is_set),
-            try_brevity: !multiplexed && !is_plain,
+            probe_extensions: !multiplexed && !is_plain,
             fidelity: None,
         }
     }
@@ -95,20 +96,20 @@ mod tests {
     }
 
     #[test]
-    fn only_terminals_in_windows_are_tried() {
-        let tries = |term: &'static str, name: &'static str, value: &'static str| {
+    fn only_terminals_in_windows_are_probed() {
+        let probes = |term: &'static str, name: &'static str, value: &'static str| {
             let environment = move |asked: &str| match asked {
                 "TERM" => Some(term.to_owned()),
                 _ => (asked == name).then(|| value.to_owned()),
             };
-            Options::from_environment(environment).try_brevity
+            Options::from_environment(environment).probe_extensions
         };
-        assert!(tries("xterm-256color", "", "") && tries("xterm-kitty", "TMUX", ""));
+        assert!(probes("xterm-256color", "", "") && probes("xterm-kitty", "TMUX", ""));
         for term in ["", "dumb", "linux", "screen", "screen-256color", "tmux-256color"] {
-            assert!(!tries(term, "", ""), "{term}");
+            assert!(!probes(term, "", ""), "{term}");
         }
-        assert!(!tries("xterm-256color", "TMUX", "/tmp/tmux-1000/default,1,0"));
-        assert!(!tries("xterm-256color", "STY", "1.pts-0.host"));
+        assert!(!probes("xterm-256color", "TMUX", "/tmp/tmux-1000/default,1,0"));
+        assert!(!probes("xterm-256color", "STY", "1.pts-0.host"));
     }
 
     #[test]

@@ -99,7 +99,7 @@ impl Session {
             Input::Answer(Answer::TrueColor) => self.raise_color_depth(),
             Input::Answer(Answer::XtermVersion) => self.ask_for_true_color()?,
             Input::Answer(Answer::Repeats) => self.repeats_blocks(),
-            Input::Answer(Answer::Palette) => self.defines_palette(),
+            Input::Answer(Answer::PaletteEntry(color)) => self.palette_reported(color),
             Input::Answer(Answer::Status) => {
                 self.flow.answered(self.now());
                 self.guard.await_statuses(self.flow.awaits_answers());
