@@ -56,6 +56,8 @@ pub(super) const QUERY_STATUS: &str = "\x1b[5n";
 pub(super) const PROBE_REPETITION: &str = "\x1b[2;1H\u{2580}\x1b[3b\x1b[6n\x1b[2;1H\x1b[K";
 /// The answer where it was repeated as often. No key is reported like this: F3, which is much alike, says 1.
 pub(super) const REPEATED: &[u8] = b"\x1b[2;5R";
+/// Moves the cursor to the upper left corner, and erases the screen.
+pub(super) const ERASE: &str = "\x1b[H\x1b[J";
 /// Asks for the colour of an entry of the palette, defines it and another in one sequence, asks again, resets both
 /// and asks once more.
 pub(super) const PROBE_PALETTE: &str = "\x1b]4;255;?\x07\

@@ -143,6 +143,8 @@ impl Session {
         if options.probe_extensions && !options.is_ascii && !self.guard.recording().is_on() {
             self.probe_extensions(&mut queries);
         }
+        // A terminal that does not understand a query may print a part of it.
+        queries.push_str(sequence::ERASE);
         // As after a frame: an answer that comes before that of the fence says that others will.
         queries.push_str(sequence::QUERY_STATUS);
         self.flow.sent(self.now(), 0, Request::Status);

@@ -39,7 +39,8 @@ impl Options {
     /// A multiplexer is not asked for releases: those that agree lose some, and a key whose release is lost is
     /// held for ever. Nor is it asked for pixels, of which it has none of its own.
     ///
-    /// A terminal that `TERM` tells nothing about is not asked for its version, which some would print.
+    /// Apple's Terminal is not asked for pixels: it prints the last character of that query (DECRQM). A terminal that
+    /// `TERM` tells nothing about is not asked for its version, which some would print.
     pub fn from_environment(environment: impl Fn(&str) -> Option<String>) -> Self {
         /// Terminals that pass over a control sequence that they do not know.
         const KNOWN: [&str; 9] =
@@ -56,7 +57,8 @@ impl Options {
             teletype: teletype(&environment),
             is_ascii: false,
             ask_for_key_releases: !multiplexed,
-            ask_for_mouse_pixels: !multiplexed,
+            ask_for_mouse_pixels: !multiplexed
+                && environment("TERM_PROGRAM").as_deref() != Some("Apple_Terminal"),
             ask_for_version: KNOWN.iter().any(|name| term.starts_with(name)),
             is_remote: ["SSH_CONNECTION", "SSH_CLIENT", "SSH_TTY"].into_iter().any(is_set),
             probe_extensions: !multiplexed && !is_plain,
@@ -77,6 +79,16 @@ mod tests {
         };
         assert!(["xterm", "xterm-256color", "tmux-256color", "konsole"].into_iter().all(asks));
         assert!(!["", "ansi", "eterm-color", "unheard-of"].into_iter().any(asks));
+    }
+
+    #[test]
+    fn a_terminal_that_prints_the_query_is_not_asked_for_pixels() {
+        let asks = |name: &'static str, value: &'static str| {
+            let environment = move |asked: &str| (asked == name).then(|| value.to_owned());
+            Options::from_environment(environment).ask_for_mouse_pixels
+        };
+        assert!(!asks("TERM_PROGRAM", "Apple_Terminal"));
+        assert!(asks("TERM_PROGRAM", "iTerm.app") && asks("TERM", "xterm-256color"));
     }
 
     #[test]
