@@ -1,19 +1,19 @@
-//! How to use the terminal.
+//! Options of a session.
 
 use super::super::environment::teletype;
 use super::super::{ColorSource, Detected, Fidelity, color_depth, color_source};
 
-/// What is known of the terminal beforehand, and how it is to be used.
+/// What is known of the terminal, and how to use it.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 #[expect(clippy::struct_excessive_bools, reason = "each is a question of its own")]
 pub struct Options {
     /// How many colours it shows. The terminal is asked where this is a guess.
     pub color_depth: Detected,
-    /// What that is known by.
+    /// The source of this.
     pub color_source: ColorSource,
     /// Its name in `TERM`, if it cannot move its cursor.
     pub teletype: Option<&'static str>,
-    /// Whether it shows nothing but ASCII: other characters are replaced by what looks like them.
+    /// Whether it shows only ASCII. Other characters are replaced by similar ones.
     pub is_ascii: bool,
     /// Whether to ask for reports of when keys are released.
     pub ask_for_key_releases: bool,
@@ -21,17 +21,17 @@ pub struct Options {
     pub ask_for_mouse_pixels: bool,
     /// Whether to ask for the terminal's version, where the colours are a guess.
     pub ask_for_version: bool,
-    /// Whether there is a network on the way: the first frame is coarse then, and made exact after it.
+    /// Whether the terminal is at the other end of a network. The first frame is then coarse, and made exact after it.
     pub is_remote: bool,
     /// Whether to probe control sequences that make frames shorter, repeated characters and the palette, and to use
     /// them where the terminal proves that they work.
     pub probe_extensions: bool,
-    /// How exact frames are; `None` for exact where the link keeps up, and less so where it lags.
+    /// The fidelity of frames; `None` for the best that the link allows.
     pub fidelity: Option<Fidelity>,
 }
 
 impl Options {
-    /// What `environment`, a lookup of variables by name, tells of the terminal.
+    /// Options from `environment`, which looks up variables by name.
     ///
     /// Control sequences that make frames shorter are not probed in a terminal multiplexer, nor in a terminal that is
     /// unknown or has no window.
@@ -42,7 +42,7 @@ impl Options {
     /// Apple's Terminal is not asked for pixels: it prints the last character of that query (DECRQM). A terminal that
     /// `TERM` tells nothing about is not asked for its version, which some would print.
     pub fn from_environment(environment: impl Fn(&str) -> Option<String>) -> Self {
-        /// Terminals that pass over a control sequence that they do not know.
+        /// Terminals that ignore a control sequence that they do not know.
         const KNOWN: [&str; 9] =
             ["xterm", "vte", "gnome", "konsole", "mintty", "iterm", "st-", "tmux", "rxvt-unicode"];
         let is_set = |name| environment(name).is_some_and(|value| !value.is_empty());
