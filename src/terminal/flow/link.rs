@@ -34,9 +34,9 @@ const STALL_SECONDS: f64 = 1.0;
 /// How much longer than the slope says a byte is taken to occupy the link, as long as the line through the origin
 /// allows it. Where time grows with the bytes, the link is narrow, and the part of the time that does not grow may
 /// be the frames of others on it: without the margin, two sessions on 2 Mbit/s send finer frames than their shares
-/// carry, 12.5 a second in place of 22. With all of it (the line through the origin), jitter is taken for
-/// slowness: at 1 Mbit/s with 0 to 50 ms of it, the largest error of frames is 41 in place of 27.
-const SLOPE_MARGIN: f64 = 1.7;
+/// carry, 12.5 a second in place of 20. With all of it (the line through the origin), jitter is taken for
+/// slowness: at 1 Mbit/s with 0 to 50 ms of it, the largest error of frames is 41 in place of 21.
+const SLOPE_MARGIN: f64 = 1.5;
 /// How many standard deviations an answer may be late: Jacobson and Karels, RFC 6298.
 const LATE_DEVIATIONS: f64 = 4.0;
 /// How exactly the time of an answer can be told.
