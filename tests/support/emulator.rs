@@ -109,7 +109,7 @@ impl Emulator {
             return alacritty.process(bytes);
         }
         let answers = std::mem::take(&mut self.parser.callbacks_mut().answers);
-        [self.answer_about_colors(), answers].concat()
+        [last_motion(bytes), &self.answer_about_colors(), &answers].concat()
     }
 
     /// Answers the query for 24-bit colours, a kind of string that the parser passes over.
@@ -235,6 +235,13 @@ impl Callbacks for Extensions {
             _ => {}
         }
     }
+}
+
+/// The motion of the mouse that is always in flight when a program disables its reports.
+fn last_motion(bytes: &[u8]) -> &'static [u8] {
+    const DISABLE: &[u8] = b"\x1b[?1003l";
+    let is_disabled = bytes.windows(DISABLE.len()).any(|window| window == DISABLE);
+    if is_disabled { b"\x1b[<35;300;200M" } else { b"" }
 }
 
 fn length(cells: u16) -> NonZeroU16 {
