@@ -181,7 +181,7 @@ fn entries_are_used_again_for_other_colours() {
             let cells = 0..size.width * size.height;
             let frame: Vec<Cell> = cells
                 .map(|index| {
-                    let step = (index / 4 % 60 + 40 * number) as u32 * 2_654_435;
+                    let step = u32::from(index / 4 % 60 + 40 * number) * 2_654_435;
                     let [_, red, green, blue] = step.to_be_bytes();
                     Cell::Halves([Color::Rgb(red, green, blue), Color::Rgb(blue, red, green)])
                 })

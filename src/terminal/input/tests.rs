@@ -92,12 +92,6 @@ fn vocabulary() -> Vec<(&'static str, Option<Input>)> {
         ("\x1b[O", Input::Focus(false)),
         ("\x1b[0n", answer(Answer::Status)),
         ("\x1b[3n", answer(Answer::Status)),
-        (
-            "\x1b]4;255;rgb:1212/abab/5656\x1b\\",
-            answer(Answer::PaletteEntry([0x1212, 0xabab, 0x5656])),
-        ),
-        ("\x1b]4;255;rgb:12/ab/56\x07", answer(Answer::PaletteEntry([0x1212, 0xabab, 0x5656]))),
-        ("\x1b]4;255;rgb:f/0/000\x07", answer(Answer::PaletteEntry([0xffff, 0, 0]))),
         ("\x1bP1+r524742=382F382F38\x1b\\", answer(Answer::TrueColor)),
         ("\x1bP1+r524742\x1b\\", answer(Answer::TrueColor)),
         ("\x1bP>|XTerm(390)\x1b\\", answer(Answer::XtermVersion)),
@@ -120,11 +114,6 @@ fn vocabulary() -> Vec<(&'static str, Option<Input>)> {
         "\x1b[M`!!",
         "\x1b]11;rgb:0000/0000/0000\x1b\\",
         "\x1b]11;rgb:0000/0000/0000\x07",
-        "\x1b]4;254;rgb:0000/0000/0000\x07",
-        "\x1b]4;255;rgb:00000/0000/0000\x07",
-        "\x1b]4;255;rgb:0000/0000\x07",
-        "\x1b]4;255;rgb:00/00/00/00\x07",
-        "\x1b]4;255;rgb://\x07",
         "\x1b_Gi=1;OK\x1b\\",
     ];
     meaningful
@@ -154,6 +143,23 @@ fn settle(decoder: &mut Decoder) -> Vec<Input> {
 fn every_unit_means_what_it_should() {
     for (text, expected) in vocabulary() {
         assert_eq!(decode([text.as_bytes()]), Vec::from_iter(expected), "{text:?}");
+    }
+}
+
+#[test]
+fn an_entry_of_the_palette_is_reported_in_one_to_four_digits() {
+    let entry = |color| vec![Input::Answer(Answer::PaletteEntry(color))];
+    for (text, expected) in [
+        ("\x1b]4;255;rgb:1212/abab/5656\x1b\\", entry([0x1212, 0xabab, 0x5656])),
+        ("\x1b]4;255;rgb:12/ab/56\x07", entry([0x1212, 0xabab, 0x5656])),
+        ("\x1b]4;255;rgb:f/0/000\x07", entry([0xffff, 0, 0])),
+        ("\x1b]4;254;rgb:0000/0000/0000\x07", Vec::new()),
+        ("\x1b]4;255;rgb:00000/0000/0000\x07", Vec::new()),
+        ("\x1b]4;255;rgb:0000/0000\x07", Vec::new()),
+        ("\x1b]4;255;rgb:00/00/00/00\x07", Vec::new()),
+        ("\x1b]4;255;rgb://\x07", Vec::new()),
+    ] {
+        assert_eq!(decode([text.as_bytes()]), expected, "{text:?}");
     }
 }
 
