@@ -116,11 +116,11 @@ fn rgb(color: Color) -> Rgb {
     }
 }
 
-/// Colours of which many are alike, and some are entries that a program asks for.
+/// Colours of which some are alike, some are entries that a program asks for, and many have no entry left.
 fn any_color() -> impl Strategy<Value = Color> {
     prop_oneof![
         8 => (0..30_u8).prop_map(|step| Color::Rgb(90 + 4 * step, 60 + step, 40)),
-        2 => any::<Rgb>().prop_map(|[red, green, blue]| Color::Rgb(red, green, blue)),
+        6 => any::<Rgb>().prop_map(|[red, green, blue]| Color::Rgb(red, green, blue)),
         1 => (16..=u8::MAX).prop_map(Color::Indexed),
     ]
 }
@@ -136,10 +136,10 @@ fn any_cell() -> impl Strategy<Value = Cell> {
 /// Frames of runs of cells, in colours that come and go, so that entries are defined, used and defined
 /// anew.
 fn any_history() -> impl Strategy<Value = History> {
-    let size = (1..40_u16, 1..7_u16).prop_map(Size::from);
+    let size = (1..60_u16, 1..13_u16).prop_map(Size::from);
     size.prop_flat_map(|size| {
         let cells = usize::from(size.width) * usize::from(size.height);
-        let runs = prop::collection::vec((any_cell(), 1..6_usize), cells);
+        let runs = prop::collection::vec((any_cell(), 1..4_usize), cells);
         let frame = runs.prop_map(move |runs| {
             let repeated =
                 runs.into_iter().flat_map(|(cell, times)| std::iter::repeat_n(cell, times));
