@@ -1,11 +1,11 @@
 //! Takes the terminal, and gives it back as it was found.
 //!
-//! A guard is shared by the session, the panic hook and the thread that takes signals. Whichever is
-//! first gives the terminal back; for the others there is nothing left to do. Restoring in each of
-//! them what it knows of was refused: what is pushed twice or popped twice is worse than neither.
+//! The session, the panic hook and the thread that handles signals share a guard. The first of them that ends
+//! gives the terminal back, and the others do nothing. Restoring a part of the state in each was refused: a mode
+//! that is pushed or popped twice is worse than neither.
 
 mod fences;
-mod outbox;
+mod output_queue;
 mod panic_hook;
 mod reports;
 
@@ -21,7 +21,7 @@ use crossterm::terminal::{
 };
 
 use self::fences::Fences;
-use self::outbox::Outbox;
+use self::output_queue::OutputQueue;
 use self::reports::Reports;
 use super::Error;
 use super::input::{Answer, Decoder, Input};
@@ -30,8 +30,8 @@ use super::platform::Device;
 use super::recorder::{Recorder, Recording};
 use super::sequence;
 
-/// How long a terminal may take to accept what gives it back.
-const WRITE_PATIENCE: Duration = Duration::from_millis(250);
+/// How long a terminal may take to accept the bytes that give it back.
+const WRITE_TIMEOUT: Duration = Duration::from_millis(250);
 
 /// What is changed about the terminal, and how to undo it.
 #[derive(Debug)]
@@ -39,8 +39,8 @@ pub(super) struct Guard {
     device: Device,
     state: Mutex<State>,
     given_back: Condvar,
-    hurried: AtomicBool,
-    outbox: Mutex<Outbox>,
+    shutting_down: AtomicBool,
+    output_queue: Mutex<OutputQueue>,
     recording: Mutex<Recording>,
 }
 
@@ -49,7 +49,7 @@ struct State {
     taken: bool,
     reports: Reports,
     fences: Fences,
-    /// Whether answers to status requests are on their way.
+    /// Whether answers to status requests may arrive.
     awaits_statuses: bool,
     /// Whether entries of the palette may have been defined.
     palette_defined: bool,
@@ -74,8 +74,8 @@ impl Guard {
                 palette_defined: false,
             }),
             given_back: Condvar::new(),
-            hurried: AtomicBool::new(false),
-            outbox: Mutex::default(),
+            shutting_down: AtomicBool::new(false),
+            output_queue: Mutex::default(),
             recording: Mutex::new(Recording::by(recorder)),
         });
         panic_hook::protect(&guard)?;
@@ -92,7 +92,7 @@ impl Guard {
         &self.device
     }
 
-    /// What takes note of what is sent.
+    /// What records the bytes that are sent.
     pub(super) fn recording(&self) -> MutexGuard<'_, Recording> {
         self.recording.lock().unwrap_or_else(PoisonError::into_inner)
     }
@@ -102,7 +102,7 @@ impl Guard {
         let mut state = self.lock();
         self.device.make_raw()?;
         state.taken = true;
-        self.outbox().clear();
+        self.output_queue().clear();
         let mut text = sequence::of(EnterAlternateScreen) + &sequence::of(Hide);
         // What is too long for a line is cut, so a window made narrower does not scroll.
         text.push_str(&sequence::of(DisableLineWrap));
@@ -118,12 +118,12 @@ impl Guard {
         self.write([queries, sequence::QUERY_FENCE].concat().as_bytes())
     }
 
-    /// Takes note that a fence was sent after a frame.
+    /// A fence was sent after a frame.
     pub(super) fn fence_sent(&self) {
         self.lock().fences.sent();
     }
 
-    /// Takes note that the terminal has answered all before a fence.
+    /// The terminal has answered all before a fence.
     pub(super) fn fence_answered(&self) {
         self.lock().fences.answered();
     }
@@ -133,7 +133,7 @@ impl Guard {
         self.lock().fences.are_open()
     }
 
-    /// Has the terminal report the mouse so, now and whenever it is taken.
+    /// Sets how the terminal reports the mouse, now and whenever it is taken.
     pub(super) fn set_mouse(&self, mouse: Option<MouseUnits>) -> io::Result<()> {
         let mut text = String::new();
         self.lock().reports.change_mouse(mouse, &mut text);
@@ -151,45 +151,45 @@ impl Guard {
         self.lock().taken
     }
 
-    /// Writes `bytes` after all that was written before, as far as the terminal takes them at once;
-    /// the rest when it [has room](Self::write_rest).
+    /// Writes `bytes` after all that was written before, as far as the terminal accepts them at once. The rest is
+    /// [written later](Self::write_queued).
     pub(super) fn write(&self, bytes: &[u8]) -> io::Result<()> {
         self.check_taken()?;
         self.recording().sent(bytes);
-        let mut outbox = self.outbox();
-        outbox.push(bytes);
-        outbox.write_to(&self.device)
+        let mut output_queue = self.output_queue();
+        output_queue.push(bytes);
+        output_queue.write_to(&self.device)
     }
 
-    /// Writes what the terminal has not taken yet, as far as it does now.
-    pub(super) fn write_rest(&self) -> io::Result<()> {
+    /// Writes what the terminal has not accepted yet, as far as it does now.
+    pub(super) fn write_queued(&self) -> io::Result<()> {
         self.check_taken()?;
-        self.outbox().write_to(&self.device)
+        self.output_queue().write_to(&self.device)
     }
 
-    /// Whether the terminal has taken all that was written.
+    /// Whether the terminal has accepted all that was written.
     pub(super) fn has_written_all(&self) -> bool {
-        self.outbox().is_empty()
+        self.output_queue().is_empty()
     }
 
-    /// Takes note whether answers to status requests are on their way.
+    /// Sets whether answers to status requests may arrive.
     pub(super) fn await_statuses(&self, awaits: bool) {
         self.lock().awaits_statuses = awaits;
     }
 
-    /// Takes note that entries of the palette may have been defined.
+    /// Entries of the palette may have been defined.
     pub(super) fn palette_defined(&self) {
         self.lock().palette_defined = true;
     }
 
-    /// From now on, nothing waits for a terminal that is not ready for a frame.
-    pub(super) fn hurry(&self) {
-        self.hurried.store(true, Ordering::SeqCst);
+    /// From now on, no function waits for a terminal that is not ready for a frame.
+    pub(super) fn shut_down(&self) {
+        self.shutting_down.store(true, Ordering::SeqCst);
     }
 
     /// Whether that is so.
-    pub(super) fn is_hurried(&self) -> bool {
-        self.hurried.load(Ordering::SeqCst)
+    pub(super) fn is_shutting_down(&self) -> bool {
+        self.shutting_down.load(Ordering::SeqCst)
     }
 
     /// Gives the terminal back, if that has not been done. Takes two seconds at the most.
@@ -213,11 +213,11 @@ impl Guard {
         if self.is_taken() { Ok(()) } else { Err(io::Error::other(Error::given_back())) }
     }
 
-    fn outbox(&self) -> MutexGuard<'_, Outbox> {
-        self.outbox.lock().unwrap_or_else(PoisonError::into_inner)
+    fn output_queue(&self) -> MutexGuard<'_, OutputQueue> {
+        self.output_queue.lock().unwrap_or_else(PoisonError::into_inner)
     }
 
-    /// A panic while it is held changes nothing that matters: what is left to undo is still told.
+    /// A panic while it is held leaves the state consistent, so the lock is used all the same.
     fn lock(&self) -> MutexGuard<'_, State> {
         self.state.lock().unwrap_or_else(PoisonError::into_inner)
     }
@@ -230,7 +230,7 @@ impl Guard {
             text.push_str(&sequence::give_palette_back());
         }
         state.reports.push_end(&mut text);
-        if state.has_reports_on_their_way() {
+        if state.has_pending_reports() {
             // The answer to this comes after all of them.
             text.push_str(sequence::QUERY_FENCE);
             state.fences.sent();
@@ -239,7 +239,7 @@ impl Guard {
         text.push_str(&sequence::of(EnableLineWrap));
         text.push_str(&sequence::of(Show));
         if self.write_or_discard(&text).is_ok() {
-            self.swallow_answers(&mut state.fences);
+            self.discard_answers(&mut state.fences);
             _ = self.write_or_discard(&sequence::of(LeaveAlternateScreen));
         }
         _ = self.device.restore_attributes();
@@ -249,7 +249,7 @@ impl Guard {
     fn write_or_discard(&self, text: &str) -> io::Result<()> {
         self.recording().sent(text.as_bytes());
         let patiently = || {
-            let deadline = Instant::now() + WRITE_PATIENCE;
+            let deadline = Instant::now() + WRITE_TIMEOUT;
             self.device.write(text.as_bytes(), || Instant::now() < deadline)
         };
         patiently().or_else(|_| {
@@ -258,13 +258,12 @@ impl Guard {
         })
     }
 
-    /// Reads until every query is answered, so that no answer and no key's release is typed into
-    /// the shell.
-    fn swallow_answers(&self, fences: &mut Fences) {
+    /// Reads until every query is answered, so that the shell receives no answer and no key's release.
+    fn discard_answers(&self, fences: &mut Fences) {
         let mut decoder = Decoder::default();
         let mut buffer = [0; 256];
-        while let Some(patience) = fences.patience() {
-            match self.device.wait_for_input(patience) {
+        while let Some(timeout) = fences.time_left() {
+            match self.device.wait_for_input(timeout) {
                 Ok(true) => {}
                 Ok(false) | Err(_) => return,
             }
@@ -282,10 +281,10 @@ impl Guard {
 }
 
 impl State {
-    /// Whether the terminal may have sent what nobody has read yet: a key's release, which it sends
-    /// until its flags are popped, a motion of the mouse, or the answer to a frame. A report of the
-    /// focus is not worth waiting for a terminal that answers nothing.
-    fn has_reports_on_their_way(&self) -> bool {
+    /// Whether the terminal may have sent input that is not read yet: a key's release, which it sends until its
+    /// flags are popped, a motion of the mouse, or the answer to a frame. A report of the focus does not count: few
+    /// are sent, and waiting for a terminal that answers nothing takes a second.
+    fn has_pending_reports(&self) -> bool {
         self.reports.are_frequent() || self.awaits_statuses || self.fences.are_answered()
     }
 }

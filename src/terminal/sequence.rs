@@ -53,14 +53,20 @@ pub(super) const QUERY_TRUE_COLOR: &str = "\x1bP+q524742\x1b\\";
 /// Asks for the device's status; the answer tells that all before the query has been taken in.
 pub(super) const QUERY_STATUS: &str = "\x1b[5n";
 /// Repeats a half block in the second row, asks where the cursor is then, and erases it all.
-pub(super) const TRY_REPETITION: &str = "\x1b[2;1H\u{2580}\x1b[3b\x1b[6n\x1b[2;1H\x1b[K";
+pub(super) const PROBE_REPETITION: &str = "\x1b[2;1H\u{2580}\x1b[3b\x1b[6n\x1b[2;1H\x1b[K";
 /// The answer where it was repeated as often. No key is reported like this: F3, which is much alike, says 1.
 pub(super) const REPEATED: &[u8] = b"\x1b[2;5R";
-/// Asks for an entry of the palette, defines it and another in one sequence, and asks again.
-pub(super) const TRY_PALETTE: &str =
-    "\x1b]4;255;?\x07\x1b]4;254;#123456;255;#12ab56\x07\x1b]4;255;?\x07";
-/// What the second answer has in it where they were defined, in sixteen bits a channel or in eight.
-pub(super) const DEFINED: [&[u8]; 2] = [b"]4;255;rgb:1212/abab/5656", b"]4;255;rgb:12/ab/56"];
+/// Moves the cursor to the upper left corner, and erases the screen.
+pub(super) const ERASE: &str = "\x1b[H\x1b[J";
+/// Asks for the colour of an entry of the palette, defines it and another in one sequence, asks again, resets both
+/// and asks once more.
+pub(super) const PROBE_PALETTE: &str = "\x1b]4;255;?\x07\
+    \x1b]4;254;#123456;255;#12ab56\x07\x1b]4;255;?\x07\
+    \x1b]104;254;255\x07\x1b]4;255;?\x07";
+/// How the answers begin; a colour follows as `rgb:` and three hexadecimal numbers.
+pub(super) const PALETTE_REPORT: &[u8] = b"]4;255;rgb:";
+/// The colour that the second answer reports where they were defined, in 16 bits a channel.
+pub(super) const DEFINED: [u16; 3] = [0x1212, 0xabab, 0x5656];
 /// The entries of the palette that may be defined; those below are the user's, or of themes for shells.
 pub(super) const PALETTE: RangeInclusive<u8> = 24..=255;
 

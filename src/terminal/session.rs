@@ -1,6 +1,6 @@
-//! A stay in the terminal, from taking it to giving it back.
+//! A session: the time from taking the terminal to giving it back.
 
-mod brevity;
+mod extensions;
 mod options;
 mod receive;
 mod show;
@@ -10,7 +10,7 @@ use std::io;
 use std::sync::Arc;
 use std::time::{Duration, Instant};
 
-use self::brevity::Brevity;
+use self::extensions::Extensions;
 pub use self::options::Options;
 use self::receive::Received;
 use super::flow::{Flow, Request};
@@ -23,7 +23,7 @@ use super::{
 };
 use crate::color::palette::ColorDepth;
 
-/// The terminal, taken over: keys come in, frames go out.
+/// The terminal, taken over: it delivers keys and shows frames.
 ///
 /// While there is one, the terminal is in raw mode and shows its alternate screen without a cursor.
 /// It is given back as it was found when the session is dropped, on a panic in any thread, and on
@@ -32,10 +32,10 @@ use crate::color::palette::ColorDepth;
 pub struct Session {
     guard: Arc<Guard>,
     signals: Signals,
-    /// What it writes is sent by the session.
+    /// The session sends the bytes that it writes.
     writer: CellWriter<Vec<u8>>,
     decoder: Decoder,
-    heard_at: Instant,
+    received_at: Instant,
     events: VecDeque<Event>,
     size: WindowSize,
     color_depth: Detected,
@@ -44,22 +44,22 @@ pub struct Session {
     mouse: Mouse,
     begun_at: Instant,
     flow: Flow,
-    /// `None` for what the link allows.
+    /// `None` for the best that the link allows.
     fidelity: Option<Fidelity>,
     is_remote: bool,
-    /// Whether the program wants to know when a frame may be sent.
+    /// Whether to report when a frame may be sent.
     awaits_readiness: bool,
-    brevity: Brevity,
+    extensions: Extensions,
 }
 
-/// What is reported of the mouse.
+/// How the mouse is reported.
 #[derive(Clone, Copy, Debug, Default)]
 struct Mouse {
-    /// What its place is reported in; `None` where it is not.
+    /// The unit of its place; `None` where it is not reported.
     units: Option<MouseUnits>,
     /// Whether the terminal can report it in pixels.
     has_pixels: bool,
-    /// Whether reports may still be in the unit from before.
+    /// Whether reports may still be in the previous unit.
     is_changing: bool,
 }
 
@@ -72,7 +72,7 @@ enum KeyReleases {
 }
 
 impl Session {
-    /// Takes the terminal, and asks it what it can do. The answers arrive as events; nothing waits
+    /// Takes the terminal, and asks for its capabilities. The answers arrive as events; this function does not wait
     /// for them.
     ///
     /// # Errors
@@ -82,7 +82,7 @@ impl Session {
         Self::enter_recorded(options, None)
     }
 
-    /// As [`Session::enter`], and `recorder` takes note of everything that is sent.
+    /// As [`Session::enter`], and `recorder` receives everything that is sent.
     ///
     /// # Errors
     /// As [`Session::enter`].
@@ -108,7 +108,7 @@ impl Session {
             signals,
             writer: CellWriter::new(Vec::new(), size.cells()),
             decoder: Decoder::default(),
-            heard_at: Instant::now(),
+            received_at: Instant::now(),
             events: VecDeque::new(),
             size,
             color_depth: options.color_depth,
@@ -120,7 +120,7 @@ impl Session {
             fidelity: options.fidelity,
             is_remote: options.is_remote,
             awaits_readiness: false,
-            brevity: Brevity::default(),
+            extensions: Extensions::default(),
         };
         session.writer.set_ascii(options.is_ascii);
         guard.take().map_err(Error::while_doing("taking the terminal"))?;
@@ -140,9 +140,11 @@ impl Session {
         if matches!(options.color_depth, Detected::Guess(_)) && options.ask_for_version {
             queries.push_str(sequence::QUERY_VERSION);
         }
-        if options.try_brevity && !options.is_ascii && !self.guard.recording().is_on() {
-            self.try_brevity(&mut queries);
+        if options.probe_extensions && !options.is_ascii && !self.guard.recording().is_on() {
+            self.probe_extensions(&mut queries);
         }
+        // A terminal that does not understand a query may print a part of it.
+        queries.push_str(sequence::ERASE);
         // As after a frame: an answer that comes before that of the fence says that others will.
         queries.push_str(sequence::QUERY_STATUS);
         self.flow.sent(self.now(), 0, Request::Status);
@@ -168,7 +170,7 @@ impl Session {
             if !self.guard.is_taken() {
                 return Err(Error::given_back());
             }
-            let gives_up_at = self.decoder.patience().map(|patience| self.heard_at + patience);
+            let gives_up_at = self.decoder.patience().map(|patience| self.received_at + patience);
             let opens_at = if self.awaits_readiness { self.opens_at() } else { None };
             let wake_at = deadline.into_iter().chain(gives_up_at).chain(opens_at).min();
             let is_past = |time: Option<Instant>| time.is_some_and(|time| time <= Instant::now());
@@ -180,8 +182,8 @@ impl Session {
         }
     }
 
-    /// Has the mouse reported from now on, or not any more; at first it is not. Places are in pixels
-    /// where the terminal can tell them so.
+    /// Sets whether the mouse is reported; at first it is not. Places are in pixels where the terminal can report
+    /// them.
     ///
     /// # Errors
     /// Where the terminal cannot be written to.
@@ -224,17 +226,17 @@ impl Session {
         Ok(())
     }
 
-    /// The size of the window, and the shape of its cells.
+    /// The size of the window in cells, and in pixels where it is known.
     pub fn size(&self) -> WindowSize {
         self.size
     }
 
-    /// How many colours the terminal shows, as far as is known by now.
+    /// How many colours the terminal shows, as far as it is known.
     pub fn color_depth(&self) -> ColorDepth {
         self.color_depth.depth()
     }
 
-    /// What that is known by.
+    /// The source of [`Session::color_depth`].
     pub fn color_source(&self) -> ColorSource {
         self.color_source
     }

@@ -1,9 +1,14 @@
 //! A terminal emulator: what it shows, the modes that are set, and what it answers.
 #![allow(dead_code, reason = "every test file uses its own share of this")]
 
+#[path = "alacritty.rs"]
+pub(crate) mod alacritty;
+
 use std::num::NonZeroU16;
 
-use vt100::{Callbacks, MouseProtocolEncoding, MouseProtocolMode, Parser, Screen};
+use vt100::{Callbacks, Color, MouseProtocolEncoding, MouseProtocolMode, Parser, Screen};
+
+pub(crate) use self::alacritty::Alacritty;
 
 /// What a terminal answers.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -16,6 +21,9 @@ pub(crate) enum Speaks {
     /// it can report the mouse in pixels. A key's release is always on its way when the program
     /// turns the protocol off.
     Kitty,
+    /// What Alacritty does, whose palette can be defined, and which repeats characters. The screen is
+    /// [its own](Emulator::alacritty).
+    Alacritty,
 }
 
 /// The modes that a program sets, and should set back.
@@ -55,6 +63,7 @@ impl Default for Modes {
 /// A terminal emulator.
 pub(crate) struct Emulator {
     parser: Parser<Extensions>,
+    alacritty: Option<Box<Alacritty>>,
     bytes: Vec<u8>,
     answered_about_colors: bool,
 }
@@ -87,15 +96,20 @@ impl Emulator {
             statuses: Statuses::default(),
         };
         let parser = Parser::new_with_callbacks(length(rows), length(columns), 0, extensions);
-        Self { parser, bytes: Vec::new(), answered_about_colors: false }
+        let alacritty =
+            (speaks == Speaks::Alacritty).then(|| Box::new(Alacritty::new(columns, rows)));
+        Self { parser, alacritty, bytes: Vec::new(), answered_about_colors: false }
     }
 
     /// Takes `bytes`, and returns what the terminal answers.
     pub(crate) fn process(&mut self, bytes: &[u8]) -> Vec<u8> {
         self.bytes.extend_from_slice(bytes);
         self.parser.process(bytes);
+        if let Some(alacritty) = &mut self.alacritty {
+            return alacritty.process(bytes);
+        }
         let answers = std::mem::take(&mut self.parser.callbacks_mut().answers);
-        [self.answer_about_colors(), answers].concat()
+        [last_motion(bytes), &self.answer_about_colors(), &answers].concat()
     }
 
     /// Answers the query for 24-bit colours, a kind of string that the parser passes over.
@@ -115,14 +129,45 @@ impl Emulator {
 
     pub(crate) fn resize(&mut self, columns: u16, rows: u16) {
         self.parser.set_size(length(rows), length(columns));
+        if let Some(alacritty) = &mut self.alacritty {
+            alacritty.resize(columns, rows);
+        }
     }
 
     pub(crate) fn screen(&self) -> &Screen {
         self.parser.screen()
     }
 
+    /// The colours of the upper and the lower half of a cell; `None` for other characters than blocks, and for
+    /// the terminal's own colours.
+    pub(crate) fn halves(&self, column: u16, row: u16) -> Option<[[u8; 3]; 2]> {
+        if let Some(alacritty) = &self.alacritty {
+            return alacritty.halves(column, row);
+        }
+        let cell = self.screen().cell(row, column)?;
+        let [text, ground] = [cell.fgcolor(), cell.bgcolor()].map(|color| match color {
+            Color::Rgb(red, green, blue) => Some([red, green, blue]),
+            Color::Idx(_) | Color::Default => None,
+        });
+        match cell.contents() {
+            "▀" => Some([text?, ground?]),
+            "▄" => Some([ground?, text?]),
+            "█" => Some([text?; 2]),
+            " " | "" => Some([ground?; 2]),
+            _ => None,
+        }
+    }
+
+    /// The emulator of a terminal that speaks as Alacritty does.
+    pub(crate) fn alacritty(&self) -> &Alacritty {
+        self.alacritty.as_ref().unwrap()
+    }
+
     pub(crate) fn text(&self) -> String {
-        self.screen().contents()
+        match &self.alacritty {
+            Some(alacritty) => alacritty.text(),
+            None => self.screen().contents(),
+        }
     }
 
     pub(crate) fn title(&self) -> &str {
@@ -190,6 +235,13 @@ impl Callbacks for Extensions {
             _ => {}
         }
     }
+}
+
+/// The motion of the mouse that is always in flight when a program disables its reports.
+fn last_motion(bytes: &[u8]) -> &'static [u8] {
+    const DISABLE: &[u8] = b"\x1b[?1003l";
+    let is_disabled = bytes.windows(DISABLE.len()).any(|window| window == DISABLE);
+    if is_disabled { b"\x1b[<35;300;200M" } else { b"" }
 }
 
 fn length(cells: u16) -> NonZeroU16 {

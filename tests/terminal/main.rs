@@ -1,6 +1,7 @@
 //! The program in a terminal: bytes to screens through emulators, and whole games through a pseudo-terminal.
 
 mod encoding;
+mod palette;
 mod play;
 mod session;
 

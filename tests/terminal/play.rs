@@ -12,6 +12,7 @@ mod levels;
 mod looking;
 mod mouse;
 mod moving;
+mod palette;
 mod recording;
 mod resting;
 mod settings;

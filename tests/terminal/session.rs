@@ -68,13 +68,17 @@ fn start(speaks: Speaks) -> Player {
     player
 }
 
+/// The entries of the palette that are probed, and reset at once.
+const PROBED: &str = "254;255";
+
 /// Whether every entry of the palette that may be defined was given back, and no other.
 fn assert_palette_given_back(player: &Player) {
     let text = String::from_utf8(player.bytes()).unwrap();
     assert!(text.contains("\x1b]4;255;?\x07"), "the palette was not asked for");
     let lists = text.split("\x1b]104;").skip(1).map(|rest| rest.split_once('\x07').unwrap().0);
+    let all = lists.skip_while(|list| *list == PROBED);
     let entries: Vec<u8> =
-        lists.flat_map(|list| list.split(';').map(|entry| entry.parse().unwrap())).collect();
+        all.flat_map(|list| list.split(';').map(|entry| entry.parse().unwrap())).collect();
     assert_eq!(entries, (24..=255).collect::<Vec<u8>>());
 }
 
@@ -115,6 +119,25 @@ fn the_mouse_is_in_pixels_as_soon_as_the_terminal_says_how_many_there_are() {
         }
     }
     panic!("no place was in pixels; the screen:\n{}", player.text());
+}
+
+/// Apple's Terminal prints the last character of a query that it does not understand (DECRQM).
+#[test]
+fn what_a_terminal_prints_of_a_query_is_erased() {
+    const QUERY: &str = "\x1b[?1016$p";
+    let written = |environment: &[(&str, &str)]| {
+        let environment = [&[(ROLE, "yes")], environment].concat();
+        let itself = env::current_exe().unwrap();
+        let player = Player::start((80, 24), Speaks::Plain, itself, ITSELF, &environment);
+        player.wait_for("ready");
+        String::from_utf8(player.bytes()).unwrap()
+    };
+    let text = written(&[]);
+    let (_, after) = text.split_once(QUERY).unwrap();
+    let (before_frame, _) = after.split_once("\x1b[?2026h").unwrap();
+    let (_, after) = before_frame.split_once("\x1b[H\x1b[J").unwrap();
+    assert_eq!(after, "\x1b[5n\x1b[c");
+    assert!(!written(&[("TERM_PROGRAM", "Apple_Terminal")]).contains(QUERY));
 }
 
 #[test]

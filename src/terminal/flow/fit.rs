@@ -1,14 +1,13 @@
-//! How long a link is busy with bytes, and how long it takes besides: a line through recent frames.
+//! How long a link takes for a frame, as a function of its bytes: a line through recent frames.
 //!
-//! A frame of b bytes takes c + b / rate. Weighted least squares finds both, where a frame counts
-//! the less the more there were after it (exponential forgetting; Haykin, *Adaptive Filter Theory*,
-//! "recursive least squares"). What Google's congestion control estimates is the same pair:
-//! draft-alvestrand-rmcat-congestion, "arrival-time filter", with a Kalman filter over differences.
-//! Bytes over busy time was refused: jitter is then taken for slowness, frames are made smaller,
-//! jitter weighs the more, and so on to the smallest ones.
+//! A frame of b bytes takes c + b / rate. Weighted least squares finds both coefficients, with weights that fall
+//! exponentially with age (Haykin, *Adaptive Filter Theory*, "recursive least squares"). Google's congestion
+//! control estimates the same pair with a Kalman filter over differences (draft-alvestrand-rmcat-congestion,
+//! "arrival-time filter"). Bytes over time as the rate was refused: jitter then counts as slowness, so frames
+//! are made smaller, so jitter counts more, and so on to the smallest frames.
 //!
-//! Frames that are alike say nothing of c. A point at no bytes and no time stands for what is to be
-//! expected then, that there is no jitter; it counts little, and frames that differ outweigh it.
+//! Frames of one size do not determine c. A point at no bytes and no time represents the expectation that there is
+//! no jitter; its weight is small, and frames of different sizes outweigh it.
 
 /// Sums over frames, of bytes and seconds.
 #[derive(Clone, Copy, Debug, Default)]
@@ -24,30 +23,29 @@ pub(super) struct Fit {
 /// The line, in seconds and seconds a byte.
 #[derive(Clone, Copy, Debug)]
 pub(super) struct Line {
-    /// What a frame takes whatever its size.
+    /// The time of a frame of no bytes.
     pub(super) constant: f64,
     pub(super) per_byte: f64,
-    /// Seconds a byte of the line through the origin: as many as there can be.
+    /// The slope of the line through the origin: the largest one possible.
     pub(super) through_origin: f64,
-    /// The standard error of the slope.
-    pub(super) error: f64,
     /// The standard deviation of frames from the line.
     pub(super) deviation: f64,
 }
 
-/// How much of the past counts after one more frame.
-const KEPT: f64 = 0.97;
-/// What the point at the origin counts, beside 1 for the latest frame.
-const ORIGIN: f64 = 0.25;
+/// The weight of the past after one more frame.
+const FORGETTING_FACTOR: f64 = 0.97;
+/// The weight of the point at the origin, where the latest frame has 1.
+const ORIGIN_WEIGHT: f64 = 0.25;
 
 impl Fit {
+    /// Takes a frame into account.
     pub(super) fn add(&mut self, bytes: f64, seconds: f64) {
-        self.weight = self.weight * KEPT + 1.0;
-        self.bytes = self.bytes * KEPT + bytes;
-        self.seconds = self.seconds * KEPT + seconds;
-        self.bytes_squared = self.bytes_squared * KEPT + bytes * bytes;
-        self.products = self.products * KEPT + bytes * seconds;
-        self.seconds_squared = self.seconds_squared * KEPT + seconds * seconds;
+        self.weight = self.weight * FORGETTING_FACTOR + 1.0;
+        self.bytes = self.bytes * FORGETTING_FACTOR + bytes;
+        self.seconds = self.seconds * FORGETTING_FACTOR + seconds;
+        self.bytes_squared = self.bytes_squared * FORGETTING_FACTOR + bytes * bytes;
+        self.products = self.products * FORGETTING_FACTOR + bytes * seconds;
+        self.seconds_squared = self.seconds_squared * FORGETTING_FACTOR + seconds * seconds;
     }
 
     /// The mean bytes and seconds of a frame; `None` where there was none.
@@ -58,7 +56,7 @@ impl Fit {
     /// The line, with neither coefficient below zero; `None` where there was no frame.
     pub(super) fn line(&self) -> Option<Line> {
         let (mean_bytes, mean_seconds) = self.mean()?;
-        let weight = self.weight + ORIGIN;
+        let weight = self.weight + ORIGIN_WEIGHT;
         let (center_bytes, center_seconds) = (self.bytes / weight, self.seconds / weight);
         let variance = self.bytes_squared - center_bytes * self.bytes;
         let covariance = self.products - center_bytes * self.seconds;
@@ -72,12 +70,7 @@ impl Fit {
         let residual = (total - 2.0 * per_byte * covariance + per_byte * per_byte * variance)
             .max(0.0)
             / weight;
-        Some(Line {
-            constant: constant.max(0.0),
-            per_byte,
-            through_origin,
-            error: (residual / variance).sqrt(),
-            deviation: residual.sqrt(),
-        })
+        let deviation = residual.sqrt();
+        Some(Line { constant: constant.max(0.0), per_byte, through_origin, deviation })
     }
 }

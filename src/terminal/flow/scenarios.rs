@@ -1,4 +1,4 @@
-//! The table of links in `docs/links.md`, simulated.
+//! The tables of `docs/links.md`, simulated.
 
 use std::fmt::Write;
 
@@ -15,11 +15,11 @@ const fn seconds(time: u64) -> Duration {
 
 /// How long each scenario takes.
 const TIME: Duration = seconds(60);
-/// When something happens to the line, where anything does, and when it is over.
+/// When the rate changes, where it does, and when it is as before.
 const HAPPENS: Duration = seconds(20);
 const OVER: Duration = seconds(32);
 
-/// What happens to a line.
+/// A link, and how it changes.
 struct Scenario {
     name: &'static str,
     conditions: Conditions,
@@ -112,6 +112,49 @@ pub(super) fn table() -> String {
                 let name = scenario.name;
                 writeln!(table, "| {name} | {compressed} | {} |", row(player)).unwrap();
             }
+        }
+    }
+    table
+}
+
+/// The delay of a link of 10 Mbit/s in milliseconds, and the rate that it drops to, in kbit/s.
+const DROPS: [(u64, u32); 3] = [(20, 20), (50, 20), (50, 8)];
+
+/// How many bytes wait for a link after its rate has dropped: the median of drops at different times, and the
+/// maximum.
+pub(super) fn queued_after_drop(delay: u64, kilobits: u32, frames: Frames) -> [f64; 2] {
+    let mut queued: Vec<f64> = (0..21)
+        .map(|phase| {
+            let mut link = Simulation::of_one(milliseconds(delay), 10.0 * 125_000.0, frames);
+            link.walk(seconds(5) + milliseconds(37) * phase);
+            link.conditions.rate = f64::from(kilobits) * 125.0;
+            let waits = (0..100).map(|_| {
+                link.walk(milliseconds(10));
+                link.queued()
+            });
+            waits.fold(0.0, f64::max)
+        })
+        .collect();
+    queued.sort_by(f64::total_cmp);
+    [queued[10], queued[20]]
+}
+
+pub(super) fn table_of_drops() -> String {
+    let mut table = String::from(
+        "| 10 Mbit/s, delay | drops to | `-C` | in flight then, median kB | most | arrives after, median s | at \
+         most |\n|---|---|---|---|---|---|---|\n",
+    );
+    for (delay, kilobits) in DROPS {
+        for (compressed, frames) in [("no", Frames::CITADEL), ("yes", Frames::COMPRESSED)] {
+            let bytes = queued_after_drop(delay, kilobits, frames);
+            let [median, most] = bytes.map(|bytes| bytes / 1000.0);
+            let [usual, longest] = bytes.map(|bytes| bytes / (f64::from(kilobits) * 125.0));
+            writeln!(
+                table,
+                "| {delay} ms | {kilobits} kbit/s | {compressed} | {median:3.0} | {most:3.0} | \
+                 {usual:3.0} | {longest:3.0} |"
+            )
+            .unwrap();
         }
     }
     table

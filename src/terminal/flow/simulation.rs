@@ -1,11 +1,15 @@
-//! A line, the players who share it, and their terminals: bytes and times in, decisions of the flow
-//! out. Nothing here has a clock, and chance is seeded, so a run repeats itself everywhere.
+//! A simulated link, the players who share it and their terminals. It has no clock, and random numbers are
+//! seeded, so every run gives the same result on every machine.
 //!
-//! The line carries packets one after another, at a rate that a scenario may change. Each way has a
-//! delay and jitter, drawn anew for each packet; as in TCP, nothing overtakes what was sent before.
+//! The link carries packets one after another, at a rate that a scenario may change. Each direction has a delay and
+//! jitter, drawn for each packet; as in TCP, no packet overtakes another.
+
+mod player;
 
 use std::collections::VecDeque;
 
+use self::player::Upward;
+pub(super) use self::player::{Latency, Player, Shown};
 use super::*;
 use crate::rng::SplitMix64;
 
@@ -13,15 +17,15 @@ const TICK: Duration = Duration::from_millis(1);
 const FRAME_TIME: Duration = Duration::from_millis(33);
 /// The most that travels in one piece.
 const PACKET: f64 = 1400.0;
-/// What a line carries that nobody can fill: bytes a second.
+/// A rate that no player can use up, in bytes a second.
 pub(super) const UNLIMITED: f64 = 1e9;
 
-/// What the line is like.
+/// The properties of a link.
 #[derive(Clone, Copy, Debug)]
 pub(super) struct Conditions {
-    /// From one end to the other.
+    /// In each direction.
     pub(super) delay: Duration,
-    /// The most that a packet takes longer than that, each way.
+    /// By how much longer a packet takes at most.
     pub(super) jitter: Duration,
     /// Towards the players, in bytes a second.
     pub(super) rate: f64,
@@ -34,7 +38,7 @@ pub(super) struct Frames {
     pub(super) exact: f64,
     /// How far one may be from the mean, as a share of it.
     pub(super) spread: f64,
-    /// Which share of a frame is left after compression: of an exact one, and of a coarse one.
+    /// The share of a frame that compression leaves: of an exact one, and of a coarse one.
     pub(super) compressed: [f64; 2],
 }
 
@@ -63,65 +67,16 @@ pub(super) fn saving(fidelity: Fidelity) -> f64 {
     1.0 + f64::from(fidelity.tolerance()) * 0.3
 }
 
-/// A line with players at its end.
+/// A link with players at its end.
 pub(super) struct Simulation {
     pub(super) now: Duration,
     pub(super) conditions: Conditions,
     pub(super) players: Vec<Player>,
-    /// What waits for the line: whose it is, how many bytes, and which frame it ends.
+    /// Packets that wait for the link: the player's number, the bytes, and the frame that ends with it.
     queue: VecDeque<(usize, f64, Option<usize>)>,
     /// How much of the first in the queue has been carried.
     carried: f64,
-    chance: SplitMix64,
-}
-
-/// A player in motion, and the game at the other end.
-pub(super) struct Player {
-    pub(super) flow: Flow,
-    pub(super) shown: Vec<Shown>,
-    /// From pressing a key to the first frame that reflects it, in order of pressing.
-    pub(super) latencies: Vec<Latency>,
-    frames: Frames,
-    due: Duration,
-    next_key: Duration,
-    /// On its way to the game: what it is, and when it is there.
-    upward: VecDeque<(Duration, Upward)>,
-    /// When what was sent last arrives, upward and downward.
-    last: [Duration; 2],
-    /// Which keys are in the next frame.
-    pressed: Vec<Duration>,
-}
-
-#[derive(Clone, Copy, Debug, PartialEq)]
-enum Upward {
-    Answer(Request),
-    Key(Duration),
-}
-
-/// A key that was pressed, and how long it took to be seen.
-#[derive(Clone, Copy, Debug)]
-pub(super) struct Latency {
-    pub(super) pressed_at: Duration,
-    pub(super) taken: Duration,
-}
-
-/// A frame that was sent.
-#[derive(Clone, Debug)]
-pub(super) struct Shown {
-    pub(super) sent_at: Duration,
-    /// When it is on the screen; `None` where it has not arrived.
-    pub(super) at: Option<Duration>,
-    pub(super) fidelity: Fidelity,
-    pub(super) bytes: usize,
-    keys: Vec<Duration>,
-    request: Request,
-}
-
-impl Shown {
-    /// How old it is when it is seen; for ever where it is not.
-    pub(super) fn age(&self) -> Duration {
-        self.at.map_or(Duration::MAX, |at| at.saturating_sub(self.sent_at))
-    }
+    random: SplitMix64,
 }
 
 impl Simulation {
@@ -134,7 +89,7 @@ impl Simulation {
             players,
             queue: VecDeque::new(),
             carried: 0.0,
-            chance: SplitMix64::new(7),
+            random: SplitMix64::new(7),
         };
         for player in 0..simulation.players.len() {
             simulation.send(player, 0.0, Fidelity::EXACT);
@@ -146,7 +101,7 @@ impl Simulation {
         Self::new(Conditions { delay, jitter: Duration::ZERO, rate }, &[frames])
     }
 
-    /// All players move for so long.
+    /// Simulates so much time, in which all players move.
     pub(super) fn walk(&mut self, time: Duration) {
         let until = self.now + time;
         while self.now < until {
@@ -156,6 +111,11 @@ impl Simulation {
             }
             self.now += TICK;
         }
+    }
+
+    /// How many bytes wait for the link.
+    pub(super) fn queued(&self) -> f64 {
+        self.queue.iter().map(|packet| packet.1).sum::<f64>() - self.carried
     }
 
     fn play(&mut self, number: usize) {
@@ -172,17 +132,17 @@ impl Simulation {
         let player = &mut self.players[number];
         if now >= player.due && player.flow.may_send(now) {
             let fidelity = player.flow.fidelity();
-            let bytes = player.frames.bytes(fidelity, self.chance.unit());
+            let bytes = player.frames.bytes(fidelity, self.random.unit());
             self.send(number, bytes, fidelity);
             let player = &mut self.players[number];
-            player.flow.showed_motion(bytes as usize, fidelity);
+            player.flow.sent_motion(bytes as usize, fidelity);
             player.due = now + FRAME_TIME;
         }
     }
 
     fn press_keys(&mut self, number: usize) {
         if self.now >= self.players[number].next_key {
-            let pause = Duration::from_millis(300 + (self.chance.unit() * 200.0) as u64);
+            let pause = Duration::from_millis(300 + (self.random.unit() * 200.0) as u64);
             self.players[number].next_key = self.now + pause;
             self.send_upward(number, self.now, Upward::Key(self.now));
         }
@@ -209,7 +169,7 @@ impl Simulation {
         self.queue.push_back((number, rest, Some(frame)));
     }
 
-    /// Carries as much as the line does in a tick.
+    /// Carries as much as the link does in a tick.
     fn carry(&mut self) {
         self.carried += self.conditions.rate * TICK.as_secs_f64();
         while let Some(&(number, bytes, frame)) =
@@ -243,63 +203,11 @@ impl Simulation {
         self.players[number].upward.push_back((arrives_at, upward));
     }
 
-    /// When what is sent now arrives, after all that was sent before in the same direction.
+    /// When a packet that is sent now arrives: after all that were sent before in the same direction.
     fn arrival(&mut self, number: usize, direction: usize, at: Duration) -> Duration {
         let Conditions { delay, jitter, .. } = self.conditions;
         let last = &mut self.players[number].last[direction];
-        *last = (at + delay + jitter.mul_f64(self.chance.unit())).max(*last);
+        *last = (at + delay + jitter.mul_f64(self.random.unit())).max(*last);
         *last
-    }
-}
-
-impl Player {
-    fn new(frames: Frames) -> Self {
-        Self {
-            flow: Flow::new(true),
-            shown: Vec::new(),
-            latencies: Vec::new(),
-            frames,
-            due: Duration::ZERO,
-            next_key: Duration::ZERO,
-            upward: VecDeque::new(),
-            last: [Duration::ZERO; 2],
-            pressed: Vec::new(),
-        }
-    }
-
-    fn receive(&mut self, now: Duration, upward: Upward) {
-        match upward {
-            Upward::Answer(Request::Status) => self.flow.answered(now),
-            Upward::Answer(Request::Fence) => self.flow.fence_answered(now),
-            Upward::Answer(Request::Nothing) => {}
-            Upward::Key(pressed_at) => {
-                self.flow.heard();
-                self.pressed.push(pressed_at);
-            }
-        }
-    }
-
-    /// The frames that were sent after `time`.
-    pub(super) fn shown_since(&self, time: Duration) -> Vec<&Shown> {
-        self.shown.iter().filter(|shown| shown.bytes > 0 && shown.sent_at >= time).collect()
-    }
-
-    /// The longest time between two frames that arrive from `begin` until `end`.
-    pub(super) fn longest_freeze(&self, begin: Duration, end: Duration) -> Duration {
-        let frames = self.shown.iter().filter(|shown| shown.bytes > 0);
-        let arrivals = frames.filter_map(|shown| shown.at);
-        let within = arrivals.filter(|at| (begin..end).contains(at));
-        let times: Vec<_> = [begin].into_iter().chain(within).chain([end]).collect();
-        times.windows(2).map(|pair| pair[1].saturating_sub(pair[0])).max().unwrap_or_default()
-    }
-
-    /// The most that was on its way at a time, in bytes.
-    pub(super) fn most_in_flight(&self, begin: Duration) -> usize {
-        let in_flight = |time| {
-            let is_there =
-                |shown: &&Shown| shown.sent_at <= time && shown.at.is_none_or(|at| at > time);
-            self.shown.iter().filter(is_there).map(|shown| shown.bytes).sum()
-        };
-        self.shown_since(begin).iter().map(|shown| in_flight(shown.sent_at)).max().unwrap_or(0)
     }
 }

@@ -1,11 +1,11 @@
-//! The queries that the terminal has not answered yet.
+//! Fences, queries that every terminal answers, that are not answered yet.
 
 use std::time::{Duration, Instant};
 
 /// How long a terminal may take to answer.
-const PATIENCE: Duration = Duration::from_secs(1);
+const TIMEOUT: Duration = Duration::from_secs(1);
 
-/// How many fences, queries that every terminal answers, are open.
+/// How many fences are open.
 #[derive(Debug)]
 pub(super) struct Fences {
     open: u32,
@@ -39,8 +39,8 @@ impl Fences {
     }
 
     /// How much longer to wait for an answer; `None` where nothing is expected any more.
-    pub(super) fn patience(&self) -> Option<Duration> {
-        let left = PATIENCE.checked_sub(self.last_sent.elapsed())?;
+    pub(super) fn time_left(&self) -> Option<Duration> {
+        let left = TIMEOUT.checked_sub(self.last_sent.elapsed())?;
         self.are_open().then_some(left)
     }
 }

@@ -1,4 +1,4 @@
-//! A panic gives the terminal back before it says anything.
+//! A panic gives the terminal back before it prints its message.
 
 use std::any::Any;
 use std::io::{self, Write};
@@ -8,11 +8,11 @@ use std::sync::{Arc, Mutex, MutexGuard, Once, PoisonError};
 use super::super::Error;
 use super::Guard;
 
-/// The guard of the session that there is. Panics reach the hook from all threads, so it is the
-/// process that has it, not the session.
+/// The guard of the current session. The hook is called in all threads, so this belongs to the process and not
+/// to the session.
 static CURRENT: Mutex<Option<Arc<Guard>>> = Mutex::new(None);
 
-/// Makes `guard` the one that a panic uses.
+/// Sets the guard that a panic uses.
 pub(super) fn protect(guard: &Arc<Guard>) -> Result<(), Error> {
     static HOOK: Once = Once::new();
     let mut current = lock();
@@ -24,7 +24,7 @@ pub(super) fn protect(guard: &Arc<Guard>) -> Result<(), Error> {
     Ok(())
 }
 
-/// After this, a panic is what it was before.
+/// Removes `guard`; a panic then does what it did before.
 pub(super) fn release(guard: &Guard) {
     let mut current = lock();
     if current.as_ref().is_some_and(|known| std::ptr::eq(Arc::as_ptr(known), guard)) {
@@ -32,8 +32,8 @@ pub(super) fn release(guard: &Guard) {
     }
 }
 
-/// Puts a hook in front of the one there is, which goes on to serve panics outside of sessions. It
-/// is never taken out again: a hook that others have put in front of it would go with it.
+/// Installs a hook that calls the previous one for panics outside of sessions. It is never removed: a hook that was
+/// installed after it would be removed with it.
 fn install_hook() {
     let outside = panic::take_hook();
     panic::set_hook(Box::new(move |info| match lock().clone() {
@@ -45,7 +45,7 @@ fn install_hook() {
     }));
 }
 
-/// One sentence. There is nobody to tell where standard error is gone as well.
+/// Prints one sentence. Where standard error is closed, nothing can be reported.
 fn report(info: &PanicHookInfo) {
     let message = message(info.payload());
     _ = match info.location() {

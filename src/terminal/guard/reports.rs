@@ -1,25 +1,24 @@
-//! What the terminal is told to report while it is taken: the focus always, keys and the mouse where
-//! that was asked for.
+//! The reports that the terminal sends while it is taken: of the focus always, of keys and the mouse on request.
 
 use super::super::mouse::MouseUnits;
 use super::super::sequence;
 
-/// What it reports whenever it is taken.
+/// The reports that are enabled whenever the terminal is taken.
 #[derive(Debug, Default)]
 pub(super) struct Reports {
     /// Whether keys are reported in the kitty protocol.
     pub(super) has_key_flags: bool,
-    /// What the mouse's place is reported in; `None` where it is not.
+    /// The unit of the mouse's place; `None` where it is not reported.
     mouse: Option<MouseUnits>,
 }
 
 impl Reports {
-    /// Whether something may be on its way at any time.
+    /// Whether a report may arrive at any time.
     pub(super) fn are_frequent(&self) -> bool {
         self.has_key_flags || self.mouse.is_some()
     }
 
-    /// Has them begin.
+    /// Enables them.
     pub(super) fn push_start(&self, text: &mut String) {
         text.push_str(sequence::ENABLE_FOCUS_REPORTS);
         if self.has_key_flags {
@@ -28,7 +27,7 @@ impl Reports {
         push_mouse(text, None, self.mouse);
     }
 
-    /// Has them end, in the opposite order.
+    /// Disables them, in the opposite order.
     pub(super) fn push_end(&self, text: &mut String) {
         push_mouse(text, self.mouse, None);
         if self.has_key_flags {
@@ -37,7 +36,7 @@ impl Reports {
         text.push_str(sequence::DISABLE_FOCUS_REPORTS);
     }
 
-    /// Has the mouse reported so from now on.
+    /// Sets whether and how the mouse is reported.
     pub(super) fn change_mouse(&mut self, mouse: Option<MouseUnits>, text: &mut String) {
         push_mouse(text, self.mouse, mouse);
         self.mouse = mouse;

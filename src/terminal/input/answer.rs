@@ -19,8 +19,8 @@ pub(in super::super) enum Answer {
     Status,
     /// It has repeated a half block.
     Repeats,
-    /// It has defined entries of the palette.
-    Palette,
+    /// An entry of its palette has this colour, in 16 bits a channel.
+    PaletteEntry([u16; 3]),
 }
 
 /// Whether `unit`, a control sequence, has a shape that only reports have, and no key.
@@ -43,9 +43,18 @@ pub(super) fn parse_report(unit: &[u8]) -> Option<Answer> {
 
 /// What the string `unit` answers, that is neither a control sequence nor a device control string.
 pub(super) fn parse_string(unit: &[u8]) -> Option<Answer> {
-    let text = unit.strip_prefix(b"\x1b")?;
-    let is_defined = sequence::DEFINED.iter().any(|defined| text.starts_with(defined));
-    is_defined.then_some(Answer::Palette)
+    let color = unit.strip_prefix(b"\x1b")?.strip_prefix(sequence::PALETTE_REPORT)?;
+    let end = color.iter().position(|byte| !byte.is_ascii_hexdigit() && *byte != b'/');
+    let mut channels = color[..end.unwrap_or(color.len())].split(|byte| *byte == b'/').map(channel);
+    let color = [channels.next()??, channels.next()??, channels.next()??];
+    channels.next().is_none().then_some(Answer::PaletteEntry(color))
+}
+
+/// A channel of one to four hexadecimal digits, scaled to 16 bits (Xlib's `XParseColor`).
+fn channel(digits: &[u8]) -> Option<u16> {
+    let most = (1_u32 << (4 * u32::try_from(digits.len()).ok().filter(|count| *count <= 4)?)) - 1;
+    let value = u32::from_str_radix(str::from_utf8(digits).ok()?, 16).ok()?;
+    u16::try_from(value * u32::from(u16::MAX) / most).ok()
 }
 
 /// What the device control string `unit` answers; `None` for a refusal, and for what was not asked.

@@ -147,6 +147,23 @@ fn every_unit_means_what_it_should() {
 }
 
 #[test]
+fn an_entry_of_the_palette_is_reported_in_one_to_four_digits() {
+    let entry = |color| vec![Input::Answer(Answer::PaletteEntry(color))];
+    for (text, expected) in [
+        ("\x1b]4;255;rgb:1212/abab/5656\x1b\\", entry([0x1212, 0xabab, 0x5656])),
+        ("\x1b]4;255;rgb:12/ab/56\x07", entry([0x1212, 0xabab, 0x5656])),
+        ("\x1b]4;255;rgb:f/0/000\x07", entry([0xffff, 0, 0])),
+        ("\x1b]4;254;rgb:0000/0000/0000\x07", Vec::new()),
+        ("\x1b]4;255;rgb:00000/0000/0000\x07", Vec::new()),
+        ("\x1b]4;255;rgb:0000/0000\x07", Vec::new()),
+        ("\x1b]4;255;rgb:00/00/00/00\x07", Vec::new()),
+        ("\x1b]4;255;rgb://\x07", Vec::new()),
+    ] {
+        assert_eq!(decode([text.as_bytes()]), expected, "{text:?}");
+    }
+}
+
+#[test]
 fn an_escape_that_nothing_follows_is_the_escape_key() {
     let mut decoder = Decoder::default();
     decoder.feed(b"\x1b", |input| panic!("{input:?} came too early"));

@@ -1,19 +1,19 @@
-//! How to use the terminal.
+//! Options of a session.
 
 use super::super::environment::teletype;
 use super::super::{ColorSource, Detected, Fidelity, color_depth, color_source};
 
-/// What is known of the terminal beforehand, and how it is to be used.
+/// What is known of the terminal, and how to use it.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 #[expect(clippy::struct_excessive_bools, reason = "each is a question of its own")]
 pub struct Options {
     /// How many colours it shows. The terminal is asked where this is a guess.
     pub color_depth: Detected,
-    /// What that is known by.
+    /// The source of this.
     pub color_source: ColorSource,
     /// Its name in `TERM`, if it cannot move its cursor.
     pub teletype: Option<&'static str>,
-    /// Whether it shows nothing but ASCII: other characters are replaced by what looks like them.
+    /// Whether it shows only ASCII. Other characters are replaced by similar ones.
     pub is_ascii: bool,
     /// Whether to ask for reports of when keys are released.
     pub ask_for_key_releases: bool,
@@ -21,26 +21,28 @@ pub struct Options {
     pub ask_for_mouse_pixels: bool,
     /// Whether to ask for the terminal's version, where the colours are a guess.
     pub ask_for_version: bool,
-    /// Whether there is a network on the way: the first frame is coarse then, and made exact after it.
+    /// Whether the terminal is at the other end of a network. The first frame is then coarse, and made exact after it.
     pub is_remote: bool,
-    /// Whether to try what makes frames shorter, repeated characters and a palette of its own, and to use it where the
-    /// terminal shows that it works.
-    pub try_brevity: bool,
-    /// How exact frames are; `None` for exact where the link keeps up, and less so where it lags.
+    /// Whether to probe control sequences that make frames shorter, repeated characters and the palette, and to use
+    /// them where the terminal proves that they work.
+    pub probe_extensions: bool,
+    /// The fidelity of frames; `None` for the best that the link allows.
     pub fidelity: Option<Fidelity>,
 }
 
 impl Options {
-    /// What `environment`, a lookup of variables by name, tells of the terminal.
+    /// Options from `environment`, which looks up variables by name.
     ///
-    /// Neither a terminal multiplexer nor one that is unknown or has no windows is tried for shorter frames.
+    /// Control sequences that make frames shorter are not probed in a terminal multiplexer, nor in a terminal that is
+    /// unknown or has no window.
     ///
-    /// A terminal multiplexer is not asked for releases: those that agree lose some, and a key whose
-    /// release is lost is held for ever. Nor is it asked for pixels, of which it has none of its own.
+    /// A multiplexer is not asked for releases: those that agree lose some, and a key whose release is lost is
+    /// held for ever. Nor is it asked for pixels, of which it has none of its own.
     ///
-    /// A terminal that `TERM` tells nothing about is asked for nothing that some would print.
+    /// Apple's Terminal is not asked for pixels: it prints the last character of that query (DECRQM). A terminal that
+    /// `TERM` tells nothing about is not asked for its version, which some would print.
     pub fn from_environment(environment: impl Fn(&str) -> Option<String>) -> Self {
-        /// Terminals that pass over a control sequence that they do not know.
+        /// Terminals that ignore a control sequence that they do not know.
         const KNOWN: [&str; 9] =
             ["xterm", "vte", "gnome", "konsole", "mintty", "iterm", "st-", "tmux", "rxvt-unicode"];
         let is_set = |name| environment(name).is_some_and(|value| !value.is_empty());
@@ -55,10 +57,11 @@ impl Options {
             teletype: teletype(&environment),
             is_ascii: false,
             ask_for_key_releases: !multiplexed,
-            ask_for_mouse_pixels: !multiplexed,
+            ask_for_mouse_pixels: !multiplexed
+                && environment("TERM_PROGRAM").as_deref() != Some("Apple_Terminal"),
             ask_for_version: KNOWN.iter().any(|name| term.starts_with(name)),
             is_remote: ["SSH_CONNECTION", "SSH_CLIENT", "SSH_TTY"].into_iter().any(is_set),
-            try_brevity: !multiplexed && !is_plain,
+            probe_extensions: !multiplexed && !is_plain,
             fidelity: None,
         }
     }
@@ -79,6 +82,16 @@ mod tests {
     }
 
     #[test]
+    fn a_terminal_that_prints_the_query_is_not_asked_for_pixels() {
+        let asks = |name: &'static str, value: &'static str| {
+            let environment = move |asked: &str| (asked == name).then(|| value.to_owned());
+            Options::from_environment(environment).ask_for_mouse_pixels
+        };
+        assert!(!asks("TERM_PROGRAM", "Apple_Terminal"));
+        assert!(asks("TERM_PROGRAM", "iTerm.app") && asks("TERM", "xterm-256color"));
+    }
+
+    #[test]
     fn a_network_is_known_by_what_sshd_sets() {
         let is_remote = |value: &'static str| {
             let environment =
@@ -95,20 +108,20 @@ mod tests {
     }
 
     #[test]
-    fn only_terminals_in_windows_are_tried() {
-        let tries = |term: &'static str, name: &'static str, value: &'static str| {
+    fn only_terminals_in_windows_are_probed() {
+        let probes = |term: &'static str, name: &'static str, value: &'static str| {
             let environment = move |asked: &str| match asked {
                 "TERM" => Some(term.to_owned()),
                 _ => (asked == name).then(|| value.to_owned()),
             };
-            Options::from_environment(environment).try_brevity
+            Options::from_environment(environment).probe_extensions
         };
-        assert!(tries("xterm-256color", "", "") && tries("xterm-kitty", "TMUX", ""));
+        assert!(probes("xterm-256color", "", "") && probes("xterm-kitty", "TMUX", ""));
         for term in ["", "dumb", "linux", "screen", "screen-256color", "tmux-256color"] {
-            assert!(!tries(term, "", ""), "{term}");
+            assert!(!probes(term, "", ""), "{term}");
         }
-        assert!(!tries("xterm-256color", "TMUX", "/tmp/tmux-1000/default,1,0"));
-        assert!(!tries("xterm-256color", "STY", "1.pts-0.host"));
+        assert!(!probes("xterm-256color", "TMUX", "/tmp/tmux-1000/default,1,0"));
+        assert!(!probes("xterm-256color", "STY", "1.pts-0.host"));
     }
 
     #[test]

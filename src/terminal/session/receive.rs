@@ -1,4 +1,4 @@
-//! What arrives, and what is made of it.
+//! Receiving input and signals, and turning them into events.
 
 use std::io;
 use std::time::Instant;
@@ -22,8 +22,8 @@ pub(super) enum Received {
 impl Session {
     pub(super) fn receive(&mut self, wake_at: Option<Instant>) -> io::Result<Received> {
         let timeout = wake_at.map(|time| time.saturating_duration_since(Instant::now()));
-        let has_rest = !self.guard.has_written_all();
-        let ready = self.guard.device().wait(&self.signals, has_rest, timeout)?;
+        let has_queued = !self.guard.has_written_all();
+        let ready = self.guard.device().wait(&self.signals, has_queued, timeout)?;
         if ready.signals {
             self.receive_signals()?;
         }
@@ -31,7 +31,7 @@ impl Session {
             self.receive_input()?;
         }
         if ready.output && !self.is_ending() {
-            self.send_rest()?;
+            self.send_queued()?;
         }
         let something = ready.input || ready.signals || ready.output;
         Ok(if something { Received::Something } else { Received::Nothing })
@@ -46,7 +46,7 @@ impl Session {
                 }
                 Signal::Suspend => self.events.push_back(Event::Suspend),
                 Signal::Continued => {
-                    // Stopped from outside, without a chance to give the terminal back.
+                    // SIGSTOP cannot be caught, so the terminal was not given back.
                     self.guard.device().make_raw()?;
                     self.repaint();
                 }
@@ -63,7 +63,7 @@ impl Session {
             self.events.push_back(Event::Quit(QuitReason::InputClosed));
             return Ok(());
         }
-        self.heard_at = Instant::now();
+        self.received_at = Instant::now();
         let mut inputs = Vec::new();
         self.decoder.feed(&buffer[..count], |input| inputs.push(input));
         inputs.into_iter().try_for_each(|input| self.take_input(input))
@@ -82,13 +82,13 @@ impl Session {
     fn take_input(&mut self, input: Input) -> io::Result<()> {
         match input {
             Input::Key(event) => {
-                self.flow.heard();
+                self.flow.received_input();
                 self.events.push_back(meaning(event));
             }
             Input::Focus(true) => self.events.push_back(Event::FocusGained),
             Input::Focus(false) => self.events.push_back(Event::FocusLost),
             Input::Mouse(report) => {
-                self.flow.heard();
+                self.flow.received_input();
                 self.events.extend(self.mouse_event(report));
             }
             Input::Answer(Answer::PixelMouse) => {
@@ -99,7 +99,7 @@ impl Session {
             Input::Answer(Answer::TrueColor) => self.raise_color_depth(),
             Input::Answer(Answer::XtermVersion) => self.ask_for_true_color()?,
             Input::Answer(Answer::Repeats) => self.repeats_blocks(),
-            Input::Answer(Answer::Palette) => self.defines_palette(),
+            Input::Answer(Answer::PaletteEntry(color)) => self.palette_reported(color),
             Input::Answer(Answer::Status) => {
                 self.flow.answered(self.now());
                 self.guard.await_statuses(self.flow.awaits_answers());
@@ -115,8 +115,7 @@ impl Session {
         Ok(())
     }
 
-    /// The event that `report` stands for; `None` for one that comes too late, or in units that nobody
-    /// knows.
+    /// The event of `report`; `None` while the mouse is not reported, or its unit is changing.
     fn mouse_event(&self, report: MouseReport) -> Option<Event> {
         let units = self.mouse.units.filter(|_| !self.mouse.is_changing)?;
         report.event(units, self.size).map(Event::Mouse)
@@ -179,7 +178,7 @@ impl Session {
     }
 }
 
-/// What a key means to every program: raw mode leaves to us what the terminal would have done.
+/// The event of a key. In raw mode, Ctrl-C and Ctrl-Z are keys like others.
 fn meaning(event: KeyEvent) -> Event {
     let pressed = event.phase == Phase::Press && event.modifiers.control && !event.modifiers.alt;
     match event.base.unwrap_or(event.key) {

@@ -1,4 +1,4 @@
-//! Showing frames: when, how exactly, and what that takes.
+//! Sending frames: when, at which fidelity, and how many bytes they take.
 
 use std::io;
 use std::time::{Duration, Instant};
@@ -18,7 +18,7 @@ impl Session {
     /// Where the terminal cannot be written to, or a panic in another thread has given it back.
     pub fn draw(&mut self, render: impl FnOnce(&mut Screen)) -> Result<(), Error> {
         let drawn = self.try_draw(render);
-        self.unless_hurried(drawn)
+        self.unless_shutting_down(drawn)
     }
 
     /// Shows the last frame more exactly, if it is not shown exactly. Waits as [`Session::draw`].
@@ -27,7 +27,7 @@ impl Session {
     /// As [`Session::draw`].
     pub fn refine(&mut self) -> Result<(), Error> {
         let refined = self.try_refine();
-        self.unless_hurried(refined)
+        self.unless_shutting_down(refined)
     }
 
     /// Whether the terminal shows exactly what was drawn last. Where it does not, a few calls of
@@ -36,15 +36,15 @@ impl Session {
         self.writer.is_settled()
     }
 
-    /// Whether a frame that is drawn now is shown soon, rather than behind others that are still on
-    /// their way. Where it is not, [`Event::Ready`] comes when it is.
+    /// Whether a frame that is drawn now is shown at once, rather than behind others that are in flight. If
+    /// not, [`Event::Ready`] follows.
     pub fn is_ready(&mut self) -> bool {
         let is_ready = self.may_send();
         self.awaits_readiness = !is_ready;
         is_ready
     }
 
-    /// How exact a frame of motion is at present.
+    /// The fidelity of a frame of motion at present.
     pub fn fidelity(&self) -> Fidelity {
         self.fidelity.unwrap_or_else(|| self.flow.fidelity())
     }
@@ -55,12 +55,12 @@ impl Session {
         self.is_remote && self.fidelity.is_none() && self.flow.fidelity() > Fidelity::EXACT
     }
 
-    /// How long the terminal has taken to answer of late; `None` where it does not.
+    /// The round-trip time of the terminal's latest answer; `None` where it does not answer.
     pub fn round_trip(&self) -> Option<Duration> {
         self.flow.round_trip()
     }
 
-    /// How many bytes all frames together have taken.
+    /// How many bytes have been written for frames.
     pub fn bytes_written(&self) -> u64 {
         self.writer.bytes_written()
     }
@@ -72,7 +72,7 @@ impl Session {
             self.writer.draw_frame(render);
             Backend::flush(&mut self.writer)?;
             let bytes = self.send()?;
-            self.flow.showed_motion(bytes, fidelity);
+            self.flow.sent_motion(bytes, fidelity);
         }
         Ok(())
     }
@@ -86,16 +86,16 @@ impl Session {
         Ok(())
     }
 
-    fn unless_hurried(&self, done: io::Result<()>) -> Result<(), Error> {
+    fn unless_shutting_down(&self, done: io::Result<()>) -> Result<(), Error> {
         match done {
             Ok(()) => Ok(()),
-            // To report this on standard error could take for ever: it leads to the same terminal.
-            Err(_) if self.guard.is_hurried() => Ok(()),
+            // Standard error leads to the same terminal, which may never accept a message.
+            Err(_) if self.guard.is_shutting_down() => Ok(()),
             Err(error) => Err(Error::while_doing("drawing a frame")(error)),
         }
     }
 
-    /// Whether it is; not where the program is to end meanwhile.
+    /// Waits until a frame may be sent; returns whether it may, and not that the program should end.
     fn wait_until_ready(&mut self) -> io::Result<bool> {
         while !self.may_send() {
             if self.is_ending() {
@@ -110,7 +110,7 @@ impl Session {
     /// Whether the program has been asked to end.
     pub(super) fn is_ending(&self) -> bool {
         let is_quit = |event: &Event| matches!(event, Event::Quit(_));
-        self.guard.is_hurried() || self.events.iter().any(is_quit)
+        self.guard.is_shutting_down() || self.events.iter().any(is_quit)
     }
 
     fn may_send(&self) -> bool {
@@ -123,7 +123,7 @@ impl Session {
         time.map(|time| self.begun_at + time)
     }
 
-    /// Sends what has been written, if anything has, and tells how many bytes that is.
+    /// Sends the bytes of the frame, if there are any, and returns how many there are.
     fn send(&mut self) -> io::Result<usize> {
         let now = self.now();
         let frame = self.writer.output_mut();
@@ -145,11 +145,11 @@ impl Session {
         self.flow.sent(now, bytes, request);
         self.guard.await_statuses(self.flow.awaits_answers());
         written?;
-        self.note_what_is_taken();
+        self.update_written();
         Ok(bytes)
     }
 
-    /// Asks whether anybody is there, where an answer is overdue.
+    /// Sends a fence alone after a timeout, to learn whether the terminal is still there.
     pub(super) fn probe(&mut self) -> io::Result<()> {
         if self.guard.has_written_all() && self.flow.probe_is_due(self.now()) {
             self.send_queries("")?;
@@ -163,16 +163,16 @@ impl Session {
         self.guard.ask(queries)
     }
 
-    /// Sends what the terminal has not taken yet.
-    pub(super) fn send_rest(&mut self) -> io::Result<()> {
-        self.guard.write_rest()?;
-        self.note_what_is_taken();
+    /// Sends the bytes that the terminal has not accepted yet.
+    pub(super) fn send_queued(&mut self) -> io::Result<()> {
+        self.guard.write_queued()?;
+        self.update_written();
         Ok(())
     }
 
-    fn note_what_is_taken(&mut self) {
+    fn update_written(&mut self) {
         if self.guard.has_written_all() {
-            self.flow.taken(self.now());
+            self.flow.written(self.now());
         }
     }
 

@@ -148,7 +148,7 @@ fn pass_on(mut incoming: Incoming, mut sender: &UnixStream, guard: &Guard) {
         // It fails where thousands are waiting already: then nobody listens any more.
         _ = sender.write(&[number as u8]);
         if let Some(Signal::Quit(_)) = meaning(number) {
-            guard.hurry();
+            guard.shut_down();
             if !guard.wait_until_given_back(GRACE) {
                 guard.give_back();
                 // Does not return, unless the signal's name is wrong.

@@ -88,7 +88,7 @@ impl Game {
     /// Presses `key`, and holds it.
     pub(crate) fn press(&self, key: Key) {
         match self.speaks {
-            Speaks::Kitty => {
+            Speaks::Kitty | Speaks::Alacritty => {
                 self.wait_for_releases();
                 self.send(key.event(1));
             }
@@ -98,7 +98,7 @@ impl Game {
 
     /// Lets go of `key`; nobody tells where the terminal does not.
     pub(crate) fn release(&self, key: Key) {
-        if self.speaks == Speaks::Kitty {
+        if matches!(self.speaks, Speaks::Kitty | Speaks::Alacritty) {
             self.send(key.event(3));
         }
     }
@@ -265,6 +265,13 @@ pub(crate) fn looks(emulator: &Emulator) -> Vec<String> {
             }
         })
         .collect()
+}
+
+/// The colours of the halves of each cell, in any emulator; `None` where there is a character.
+pub(crate) fn halves_shown(emulator: &Emulator) -> Vec<Option<[[u8; 3]; 2]>> {
+    let (columns, rows) = size(emulator);
+    let cells = (0..rows).flat_map(|row| (0..columns).map(move |column| (column, row)));
+    cells.map(|(column, row)| emulator.halves(column, row)).collect()
 }
 
 fn shows_cell(emulator: &Emulator, column: u16, row: u16, cell: &Value) -> bool {

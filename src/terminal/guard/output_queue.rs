@@ -1,24 +1,23 @@
-//! What was written, and what of it the terminal has not taken yet.
+//! Bytes that were written and that the terminal has not accepted yet.
 
 use std::io;
 
 use super::Device;
 
-/// Bytes for a terminal that takes no more at present. There are not many: no frame is drawn while
-/// there are any.
+/// Bytes for a terminal that accepts no more at present. They are few: no frame is drawn while there are any.
 #[derive(Debug, Default)]
-pub(super) struct Outbox {
+pub(super) struct OutputQueue {
     bytes: Vec<u8>,
-    /// How many of them have been taken.
+    /// How many of them have been accepted.
     taken: usize,
 }
 
-impl Outbox {
+impl OutputQueue {
     pub(super) fn push(&mut self, bytes: &[u8]) {
         self.bytes.extend_from_slice(bytes);
     }
 
-    /// Writes as much as `device` takes at once.
+    /// Writes as much as `device` accepts at once.
     pub(super) fn write_to(&mut self, device: &Device) -> io::Result<()> {
         self.taken += device.write_some(&self.bytes[self.taken..])?;
         if self.taken == self.bytes.len() {

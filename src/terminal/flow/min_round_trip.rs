@@ -1,0 +1,34 @@
+//! The minimum of the recent round-trip times: the delay of the link there and back, without queues.
+//!
+//! The minimum of all times would stay wrong once the route has become longer. This is the windowed minimum
+//! filter of BBR (draft-cardwell-iccrg-bbr-congestion-control, "`BBR.min_rtt`"), over two halves of a window.
+
+use std::time::Duration;
+
+/// The minimum of this half of the window and of the one before it.
+#[derive(Clone, Copy, Debug)]
+pub(super) struct MinRoundTrip {
+    since: Duration,
+    current: Duration,
+    previous: Duration,
+}
+
+/// How long half of the window is.
+const HALF_WINDOW: Duration = Duration::from_secs(30);
+
+impl MinRoundTrip {
+    /// The minimum of `before` and `round_trip`, which ended `now`.
+    pub(super) fn with(before: Option<Self>, now: Duration, round_trip: Duration) -> Self {
+        match before {
+            None => Self { since: now, current: round_trip, previous: round_trip },
+            Some(old) if now.saturating_sub(old.since) > HALF_WINDOW => {
+                Self { since: now, current: round_trip, previous: old.current }
+            }
+            Some(old) => Self { current: old.current.min(round_trip), ..old },
+        }
+    }
+
+    pub(super) fn get(self) -> Duration {
+        self.current.min(self.previous)
+    }
+}

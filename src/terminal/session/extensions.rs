@@ -1,0 +1,108 @@
+//! Control sequences that make frames shorter, used where the terminal proves that they work.
+//!
+//! Both are probed when the session begins. A half block that is repeated (REP) must move the cursor as far as it
+//! should. An entry of the palette that is defined (OSC 4), in the form that frames use, must be reported as defined,
+//! and as before once it is reset (OSC 104). Some terminals claim to repeat characters and fail on half blocks;
+//! so no terminal is trusted by its name or version.
+//!
+//! Neither is probed in a multiplexer, which would answer for itself, nor while a recorder receives what is sent: a
+//! recording is to play on any terminal.
+
+use super::Session;
+use crate::color::palette::ColorDepth;
+use crate::terminal::sequence;
+
+/// What the probes have shown.
+#[derive(Clone, Copy, Debug, Default)]
+pub(super) struct Extensions {
+    is_probed: bool,
+    palette: Palette,
+}
+
+/// What the terminal has reported of an entry of its palette: a colour of 16 bits a channel.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+enum Palette {
+    #[default]
+    Unknown,
+    /// Its own colour.
+    Own([u16; 3]),
+    /// The colour that was defined, in place of its own.
+    Defined { own: [u16; 3] },
+    /// Its own colour again.
+    Reset,
+    /// Another one than it should be.
+    Refused,
+}
+
+impl Palette {
+    /// The state after a report of `color`.
+    fn after_report(self, color: [u16; 3]) -> Self {
+        match self {
+            Self::Unknown => Self::Own(color),
+            Self::Own(own) if color == sequence::DEFINED => Self::Defined { own },
+            Self::Defined { own } if color == own => Self::Reset,
+            Self::Own(_) | Self::Defined { .. } | Self::Reset | Self::Refused => Self::Refused,
+        }
+    }
+}
+
+impl Session {
+    /// Adds the probes to `queries`.
+    pub(super) fn probe_extensions(&mut self, queries: &mut String) {
+        self.extensions.is_probed = true;
+        queries.push_str(sequence::PROBE_PALETTE);
+        queries.push_str(sequence::PROBE_REPETITION);
+        self.guard.palette_defined();
+    }
+
+    /// The terminal has repeated a half block.
+    pub(super) fn repeats_blocks(&mut self) {
+        if self.extensions.is_probed {
+            self.writer.set_repeats(true);
+        }
+    }
+
+    /// The terminal has reported the colour of the entry of its palette that was probed.
+    pub(super) fn palette_reported(&mut self, color: [u16; 3]) {
+        if self.extensions.is_probed {
+            self.extensions.palette = self.extensions.palette.after_report(color);
+            self.use_palette();
+        }
+    }
+
+    /// Uses the palette where it can be defined and reset, and the terminal shows 24-bit colours.
+    pub(super) fn use_palette(&mut self) {
+        if self.extensions.palette == Palette::Reset && self.color_depth() == ColorDepth::True {
+            self.writer.set_palette(true);
+        }
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    const OWN: [u16; 3] = [0xeeee; 3];
+    const DEFINED: [u16; 3] = sequence::DEFINED;
+
+    fn after(reports: &[[u16; 3]]) -> Palette {
+        reports.iter().fold(Palette::default(), |palette, color| palette.after_report(*color))
+    }
+
+    #[test]
+    fn a_palette_is_usable_that_is_defined_and_reset() {
+        assert_eq!(after(&[OWN, DEFINED, OWN]), Palette::Reset);
+        for reports in [
+            &[OWN][..],
+            &[OWN, DEFINED],
+            &[OWN, OWN],
+            &[OWN, OWN, OWN],
+            &[OWN, DEFINED, DEFINED],
+            &[OWN, [0; 3], OWN],
+            &[DEFINED, DEFINED, OWN],
+            &[OWN, DEFINED, OWN, OWN],
+        ] {
+            assert_ne!(after(reports), Palette::Reset, "{reports:x?}");
+        }
+    }
+}
