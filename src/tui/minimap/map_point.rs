@@ -1,98 +1,99 @@
-//! What a point of the map looks like, in every colour depth and in characters.
+//! The content of one point of the map, and its appearance in every colour depth and in characters.
 //!
-//! Walls are between two brightnesses, floors below the lower one, and the player's arrow above everything. With 16
-//! colours, which people choose themselves, and with none, each kind has a colour or a pattern of its own: to look
-//! for the nearest of 16 would give walls and floors the same.
+//! The brightness of walls is between two limits, floors are darker, and the player's arrow is
+//! brighter than both. With 16 colours, which users redefine, and without colour, each kind of
+//! point has its own colour or pattern: choosing the nearest of 16 colours would make walls and
+//! floors equal.
 
 use crate::color::Rgb;
 
-/// What is at a point of the map.
+/// The content of a point of the map.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub(super) enum Place {
-    /// Nothing, or nothing that is known.
+pub(super) enum MapPoint {
+    /// Outside of the map, or unexplored.
     Void,
     Wall(Rgb),
     /// A door, or glass.
     Door(Rgb),
-    Floor(Ground),
+    Floor(Floor),
     /// Floor in the field of view.
-    InView(Ground),
+    InView(Floor),
     Exit,
     Key,
     Ornament,
 }
 
-/// Floor, by its height.
+/// Floor, with a colour by its height.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub(super) struct Ground {
-    pub(super) kind: GroundKind,
+pub(super) struct Floor {
+    pub(super) kind: FloorKind,
     color: Rgb,
 }
 
-/// What kind of floor that is.
+/// The kinds of floor.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub(super) enum GroundKind {
-    /// As high as the map's own floor.
-    Level,
-    /// Higher.
+pub(super) enum FloorKind {
+    /// At the height of the map's own floor.
+    Base,
+    /// Above it.
     Ledge,
-    /// Lower, and dry.
+    /// Below it, without water.
     Pit,
     Water,
 }
 
-/// Floor as high as the map's own.
-const FLOOR: Rgb = Rgb::new(0x24, 0x24, 0x2c);
-/// What higher floor comes close to, and what lower floor and water do.
+/// Floor at the height of the map's own floor.
+const BASE: Rgb = Rgb::new(0x24, 0x24, 0x2c);
+/// The colours that raised floor, lowered floor and water approach.
 const LEDGE: Rgb = Rgb::new(0x66, 0x66, 0x70);
 const PIT: Rgb = Rgb::new(0x54, 0x18, 0x1c);
 const WATER: Rgb = Rgb::new(0x10, 0x48, 0x80);
-/// What floor in the field of view is tinted with, and how much.
-const LIGHT: Rgb = Rgb::new(0x7a, 0x72, 0x50);
-const TINT: f64 = 0.7;
-/// What is not on the map.
+/// The tint of visible floor, and its share.
+const TINT: Rgb = Rgb::new(0x7a, 0x72, 0x50);
+const TINT_SHARE: f64 = 0.7;
+/// Points outside of the map.
 const VOID: Rgb = Rgb::BLACK;
 /// The cell to reach.
 const EXIT: Rgb = Rgb::new(0x3c, 0xc8, 0x64);
 /// A key to take.
 const KEY: Rgb = Rgb::new(0xe0, 0xa0, 0x28);
-/// Something to walk around, or past.
+/// An obstacle, or a decoration.
 const ORNAMENT: Rgb = Rgb::new(0x9c, 0x8c, 0x74);
-/// How bright walls are at least and at most.
+/// The least and the greatest brightness of walls.
 const WALLS: (u8, u8) = (0x60, 0xb0);
 
-/// Floor that differs by less from the map's own, in cells, is as high.
-const LEVEL: f64 = 0.05;
+/// Floor whose height differs by less from the map's own floor, in cells, counts as equal.
+const SAME_HEIGHT: f64 = 0.05;
 
-impl Ground {
-    /// Floor at `height` that is laid with `color` on the average.
+impl Floor {
+    /// Floor at `height` with the mean colour `color`.
     pub(super) fn new(height: f64, color: Rgb) -> Self {
-        // It comes half as close to its colour at these heights and depths.
+        // The share is one half at the height or depth `half`.
         let share = |half: f64| height.abs() / (height.abs() + half);
-        if height > LEVEL {
-            Self { kind: GroundKind::Ledge, color: mix(FLOOR, LEDGE, share(0.6)) }
-        } else if height >= -LEVEL {
-            Self { kind: GroundKind::Level, color: FLOOR }
+        if height > SAME_HEIGHT {
+            Self { kind: FloorKind::Ledge, color: mix(BASE, LEDGE, share(0.6)) }
+        } else if height >= -SAME_HEIGHT {
+            Self { kind: FloorKind::Base, color: BASE }
         } else if is_watery(color) {
-            Self { kind: GroundKind::Water, color: mix(FLOOR, WATER, share(0.3)) }
+            Self { kind: FloorKind::Water, color: mix(BASE, WATER, share(0.3)) }
         } else {
-            Self { kind: GroundKind::Pit, color: mix(FLOOR, PIT, share(0.5)) }
+            Self { kind: FloorKind::Pit, color: mix(BASE, PIT, share(0.5)) }
         }
     }
 
-    /// Its colour in the field of view.
+    /// The colour of the floor if it is visible.
     fn lit(self) -> Rgb {
-        mix(self.color, LIGHT, TINT)
+        mix(self.color, TINT, TINT_SHARE)
     }
 }
 
-/// Whether a floor of that colour is taken for water: one that is much more blue than red. The map file has no word
-/// for water, as it is floor like any other.
+/// Whether a lowered floor with that colour counts as water: if it is much more blue than red. The
+/// map file has no word for water; it is floor like any other.
 fn is_watery(color: Rgb) -> bool {
     u16::from(color.blue()) >= 2 * u16::from(color.red())
 }
 
-/// The first colour, and a share of the second.
+/// The mean of two colours, where the second has the weight `share`.
 fn mix(one: Rgb, other: Rgb, share: f64) -> Rgb {
     let channel = |one: u8, other: u8| {
         (f64::from(one) + (f64::from(other) - f64::from(one)) * share).round() as u8
@@ -104,8 +105,8 @@ fn mix(one: Rgb, other: Rgb, share: f64) -> Rgb {
     )
 }
 
-/// The colour of a wall that has `color` on the average: as that, but neither as dark as floor nor as bright as the
-/// arrow.
+/// The colour of a wall with the mean colour `color`: the same, but neither as dark as floor nor as
+/// bright as the arrow.
 pub(super) fn of_wall(color: Rgb) -> Rgb {
     let (least, most) = WALLS;
     let luma = color.luma();
@@ -119,31 +120,31 @@ pub(super) fn of_wall(color: Rgb) -> Rgb {
     }
 }
 
-impl Place {
+impl MapPoint {
     pub(super) fn color(self) -> Rgb {
         match self {
             Self::Void => VOID,
             Self::Wall(color) | Self::Door(color) => color,
-            Self::Floor(ground) => ground.color,
-            Self::InView(ground) => ground.lit(),
+            Self::Floor(floor) => floor.color,
+            Self::InView(floor) => floor.lit(),
             Self::Exit => EXIT,
             Self::Key => KEY,
             Self::Ornament => ORNAMENT,
         }
     }
 
-    /// Which of the 16 colours shows it.
+    /// The index of the point's colour among the 16.
     pub(super) fn index_of_16(self) -> u8 {
         match self {
             Self::Void => 0,
             Self::Wall(_) => 7,
             Self::Door(_) => 5,
-            Self::Floor(Ground { kind, .. }) | Self::InView(Ground { kind, .. }) => match kind {
-                GroundKind::Level if matches!(self, Self::InView(_)) => 3,
-                GroundKind::Level => 8,
-                GroundKind::Ledge => 6,
-                GroundKind::Pit => 1,
-                GroundKind::Water => 4,
+            Self::Floor(Floor { kind, .. }) | Self::InView(Floor { kind, .. }) => match kind {
+                FloorKind::Base if matches!(self, Self::InView(_)) => 3,
+                FloorKind::Base => 8,
+                FloorKind::Ledge => 6,
+                FloorKind::Pit => 1,
+                FloorKind::Water => 4,
             },
             Self::Exit => 10,
             Self::Key => 13,
@@ -151,17 +152,17 @@ impl Place {
         }
     }
 
-    /// Whether the pixel at that place of the screen is lit where there are no colours.
+    /// Whether the point's pixel at that position of the screen is lit if there are no colours.
     pub(super) fn is_lit(self, x: u32, y: u32) -> bool {
         match self {
             Self::Wall(_) | Self::Door(_) => true,
-            Self::Floor(Ground { kind, .. }) | Self::InView(Ground { kind, .. }) => match kind {
-                GroundKind::Ledge => (x + y).is_multiple_of(2),
-                GroundKind::Water => y.is_multiple_of(2) && !x.is_multiple_of(3),
-                GroundKind::Level if matches!(self, Self::InView(_)) => {
+            Self::Floor(Floor { kind, .. }) | Self::InView(Floor { kind, .. }) => match kind {
+                FloorKind::Ledge => (x + y).is_multiple_of(2),
+                FloorKind::Water => y.is_multiple_of(2) && !x.is_multiple_of(3),
+                FloorKind::Base if matches!(self, Self::InView(_)) => {
                     x.is_multiple_of(2) && y.is_multiple_of(2)
                 }
-                GroundKind::Level | GroundKind::Pit => false,
+                FloorKind::Base | FloorKind::Pit => false,
             },
             Self::Void | Self::Exit | Self::Key | Self::Ornament => false,
         }
@@ -172,12 +173,12 @@ impl Place {
             Self::Void => ' ',
             Self::Wall(_) => '#',
             Self::Door(_) => '+',
-            Self::Floor(Ground { kind, .. }) | Self::InView(Ground { kind, .. }) => match kind {
-                GroundKind::Level if matches!(self, Self::InView(_)) => ':',
-                GroundKind::Level => '.',
-                GroundKind::Ledge => '=',
-                GroundKind::Pit => '_',
-                GroundKind::Water => '~',
+            Self::Floor(Floor { kind, .. }) | Self::InView(Floor { kind, .. }) => match kind {
+                FloorKind::Base if matches!(self, Self::InView(_)) => ':',
+                FloorKind::Base => '.',
+                FloorKind::Ledge => '=',
+                FloorKind::Pit => '_',
+                FloorKind::Water => '~',
             },
             Self::Exit => 'X',
             Self::Key => 'k',
@@ -185,7 +186,8 @@ impl Place {
         }
     }
 
-    /// Which of several that one pixel shows it is: the greatest.
+    /// The importance of the point: a pixel that covers several points shows the most important
+    /// one.
     pub(super) fn importance(self) -> u8 {
         match self {
             Self::Void => 0,

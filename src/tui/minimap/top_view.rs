@@ -1,63 +1,63 @@
-//! What a point of the map shows from above.
+//! The top view: the map point at each position of the map.
 //!
-//! What tiles look like is found out once a picture, and what stands in a row once a row of pixels: most
-//! pixels need no more than a look into a table.
+//! The appearance of tiles is computed once per picture, and the things in a row once per row of
+//! pixels, so that most pixels need only a table lookup.
 
 use glam::DVec2;
 
 use super::explored::Explored;
-use super::place::{self, Ground, Place};
+use super::map_point::{self, Floor, MapPoint};
 use crate::color::Rgb;
 use crate::render::Column;
 use crate::world::{Camera, Cell, Paint, Shape, Thing, ThingKind, Tile, TileId, TileKind, World};
 
-/// All that points are asked of.
-pub(super) struct Chart<'a> {
+/// A world seen from above.
+pub(super) struct TopView<'a> {
     world: &'a World,
-    sight: Sight<'a>,
+    visible_floor: VisibleFloor<'a>,
     explored: Option<&'a Explored>,
-    /// What each tile looks like.
-    tiles: [Drawn; TileId::MOST],
-    /// How many cells a pixel is wide.
+    /// The appearance of each tile.
+    tiles: [TileAppearance; TileId::MOST],
+    /// The width of a pixel in cells.
     pixel: f64,
 }
 
-/// What a tile looks like.
+/// The appearance of a tile from above.
 #[derive(Clone, Copy)]
-enum Drawn {
-    Floor(Ground),
+enum TileAppearance {
+    Floor(Floor),
     Wall(Rgb),
     Door(Rgb),
-    /// Solid where the shape is, and floor around it.
-    Shape(Rgb, Ground),
+    /// Solid inside of the shape, and floor around it.
+    Shape(Rgb, Floor),
 }
 
-/// The floor below glass, as far as that can be told apart.
+/// The colour that shows through glass.
 const BELOW_GLASS: Rgb = Rgb::new(0x24, 0x24, 0x2c);
-/// How opaque glass is at least, so that clear glass can be told from floor.
-const MIST: u8 = 96;
+/// The least opacity of glass, so that clear glass differs from floor.
+const LEAST_GLASS_OPACITY: u8 = 96;
 
-impl<'a> Chart<'a> {
-    /// A chart of `world`, of which `camera` saw `columns` and what is `explored`, whose pixels are so many
-    /// cells wide.
+impl<'a> TopView<'a> {
+    /// A top view of `world`. `columns` are the hits of the picture from `camera`, cells that are
+    /// not `explored` are hidden, and `pixel` is the width of a pixel in cells.
     pub(super) fn new(
         world: &'a World,
         camera: &Camera,
         (columns, explored): (&'a [Column], Option<&'a Explored>),
         pixel: f64,
     ) -> Self {
-        let mut tiles = [Drawn::Wall(Rgb::BLACK); TileId::MOST];
-        for (drawn, tile) in tiles.iter_mut().zip(world.tiles()) {
-            *drawn = drawn_as(tile, world, camera.eye());
+        let mut tiles = [TileAppearance::Wall(Rgb::BLACK); TileId::MOST];
+        for (appearance, tile) in tiles.iter_mut().zip(world.tiles()) {
+            *appearance = appearance_of(tile, world, camera.eye());
         }
-        Self { world, sight: Sight::new(camera, columns), explored, tiles, pixel }
+        Self { world, visible_floor: VisibleFloor::new(camera, columns), explored, tiles, pixel }
     }
 
-    /// What lies at the points whose distance from the map's northern edge is `y`.
+    /// The row of points at the distance `y` from the map's northern edge.
     pub(super) fn row(&self, y: f64) -> Row<'_> {
         let row = u32::try_from(cell_at(y)).ok();
         Row {
-            chart: self,
+            view: self,
             tiles: row
                 .and_then(|row| self.world.grid().rows().nth(row as usize))
                 .unwrap_or_default(),
@@ -67,7 +67,7 @@ impl<'a> Chart<'a> {
         }
     }
 
-    /// Whether a pixel around `point`, in a cell of a tile with a shape, shows that.
+    /// Whether a pixel around `point` shows the shape of `tile`, which is in `cell`.
     fn is_covered(&self, tile: TileId, cell: Cell, point: DVec2) -> bool {
         let TileKind::Shape(Shape { outline, .. }) = self.world.tile(tile).kind else {
             return true;
@@ -76,52 +76,53 @@ impl<'a> Chart<'a> {
     }
 }
 
-/// What lies on a line from west to east.
+/// The points on a line from west to east.
 pub(super) struct Row<'a> {
-    chart: &'a Chart<'a>,
+    view: &'a TopView<'a>,
     tiles: &'a [TileId],
     things: &'a [Thing],
     y: f64,
-    /// Which of the map's rows that is, if there are tiles.
+    /// The number of the row, if there are tiles.
     number: u32,
 }
 
 impl Row<'_> {
-    /// What is there so far from the map's western edge, in the middle of a pixel.
+    /// The map point at the distance `x` from the map's western edge, which is the middle of a
+    /// pixel.
     #[inline]
-    pub(super) fn place(&self, x: f64) -> Place {
+    pub(super) fn point(&self, x: f64) -> MapPoint {
         let column = cell_at(x) as usize;
-        let Some(&tile) = self.tiles.get(column) else { return Place::Void };
+        let Some(&tile) = self.tiles.get(column) else { return MapPoint::Void };
         let cell = Cell { column: column as u32, row: self.number };
         let point = DVec2::new(x, self.y);
-        if self.chart.explored.is_some_and(|explored| !explored.contains(cell)) {
-            return Place::Void;
+        if self.view.explored.is_some_and(|explored| !explored.contains(cell)) {
+            return MapPoint::Void;
         }
-        let ground = match self.chart.tiles[usize::from(tile.0)] {
-            Drawn::Wall(color) => return Place::Wall(color),
-            Drawn::Door(color) => return Place::Door(color),
-            Drawn::Shape(color, _) if self.chart.is_covered(tile, cell, point) => {
-                return Place::Wall(color);
+        let floor = match self.view.tiles[usize::from(tile.0)] {
+            TileAppearance::Wall(color) => return MapPoint::Wall(color),
+            TileAppearance::Door(color) => return MapPoint::Door(color),
+            TileAppearance::Shape(color, _) if self.view.is_covered(tile, cell, point) => {
+                return MapPoint::Wall(color);
             }
-            Drawn::Shape(_, ground) | Drawn::Floor(ground) => ground,
+            TileAppearance::Shape(_, floor) | TileAppearance::Floor(floor) => floor,
         };
         match self.thing(cell) {
-            Some(ThingKind::Exit) => Place::Exit,
-            Some(ThingKind::Key(_)) if self.is_on_dot(point, cell) => Place::Key,
-            Some(ThingKind::Ornament) if self.is_on_dot(point, cell) => Place::Ornament,
-            _ if self.chart.sight.reaches(point) => Place::InView(ground),
-            _ => Place::Floor(ground),
+            Some(ThingKind::Exit) => MapPoint::Exit,
+            Some(ThingKind::Key(_)) if self.is_on_dot(point, cell) => MapPoint::Key,
+            Some(ThingKind::Ornament) if self.is_on_dot(point, cell) => MapPoint::Ornament,
+            _ if self.view.visible_floor.contains(point) => MapPoint::InView(floor),
+            _ => MapPoint::Floor(floor),
         }
     }
 
-    /// Whether `point` is on the dot that stands for a thing in `cell`; where pixels are cells or larger, all of it
-    /// is.
+    /// Whether `point` is on the dot for a thing in `cell`. If pixels are as large as cells, the
+    /// whole cell is.
     fn is_on_dot(&self, point: DVec2, cell: Cell) -> bool {
         const RADIUS: f64 = 0.3;
-        self.chart.pixel >= 1.0 || (point - cell.center()).abs().max_element() <= RADIUS
+        self.view.pixel >= 1.0 || (point - cell.center()).abs().max_element() <= RADIUS
     }
 
-    /// The first thing that stands in a cell of the row.
+    /// The first thing in a cell of the row.
     #[inline]
     fn thing(&self, cell: Cell) -> Option<ThingKind> {
         if self.things.is_empty() {
@@ -132,36 +133,36 @@ impl Row<'_> {
     }
 }
 
-/// What `tile` looks like to who has their eye at that height: the top of a wall that they look down on is floor.
-fn drawn_as(tile: &Tile, world: &World, eye: f64) -> Drawn {
-    let wall = |paint| place::of_wall(world.mean_color(paint));
+/// The appearance of `tile` from an eye at that height. The top of a wall below the eye is floor.
+fn appearance_of(tile: &Tile, world: &World, eye: f64) -> TileAppearance {
+    let wall = |paint| map_point::of_wall(world.mean_color(paint));
     let height = tile.heights.floor();
-    let ground = Ground::new(height, world.mean_color(tile.floor.pattern.first_paint()));
+    let floor = Floor::new(height, world.mean_color(tile.floor.pattern.first_paint()));
     let is_top_seen = || height < eye && tile.gaps().next().is_some_and(|gap| gap.bottom <= height);
     match tile.kind {
-        TileKind::Open | TileKind::Doorway(_) => Drawn::Floor(ground),
-        TileKind::Wall(_) if is_top_seen() => Drawn::Floor(ground),
-        TileKind::Wall(paint) => Drawn::Wall(wall(paint)),
-        TileKind::Shape(Shape { paint, .. }) => Drawn::Shape(wall(paint), ground),
-        TileKind::Door(door) => Drawn::Door(wall(door.leaf)),
-        TileKind::Mirror(tint) => Drawn::Wall(place::of_wall(tint.color)),
-        TileKind::Mask(texture) => Drawn::Wall(wall(Paint::Texture(texture))),
+        TileKind::Open | TileKind::Doorway(_) => TileAppearance::Floor(floor),
+        TileKind::Wall(_) if is_top_seen() => TileAppearance::Floor(floor),
+        TileKind::Wall(paint) => TileAppearance::Wall(wall(paint)),
+        TileKind::Shape(Shape { paint, .. }) => TileAppearance::Shape(wall(paint), floor),
+        TileKind::Door(door) => TileAppearance::Door(wall(door.leaf)),
+        TileKind::Mirror(tint) => TileAppearance::Wall(map_point::of_wall(tint.color)),
+        TileKind::Mask(texture) => TileAppearance::Wall(wall(Paint::Texture(texture))),
         TileKind::Glass(glass) => {
-            let color = glass.color.over(BELOW_GLASS, glass.opacity.max(MIST));
-            Drawn::Door(place::of_wall(color))
+            let color = glass.color.over(BELOW_GLASS, glass.opacity.max(LEAST_GLASS_OPACITY));
+            TileAppearance::Door(map_point::of_wall(color))
         }
     }
 }
 
-/// What the player sees of the floor.
-struct Sight<'a> {
+/// The visible part of the floor.
+struct VisibleFloor<'a> {
     position: DVec2,
     direction: DVec2,
     half_width: f64,
     columns: &'a [Column],
 }
 
-impl<'a> Sight<'a> {
+impl<'a> VisibleFloor<'a> {
     fn new(camera: &Camera, columns: &'a [Column]) -> Self {
         Self {
             position: camera.position(),
@@ -171,9 +172,9 @@ impl<'a> Sight<'a> {
         }
     }
 
-    /// Whether the ray of the column that `point` falls in gets as far as that.
+    /// Whether the ray of the picture's column at `point` reaches it.
     #[inline]
-    fn reaches(&self, point: DVec2) -> bool {
+    fn contains(&self, point: DVec2) -> bool {
         let to_point = point - self.position;
         let distance = to_point.dot(self.direction);
         if distance <= 0.0 || self.columns.is_empty() {
@@ -181,7 +182,7 @@ impl<'a> Sight<'a> {
         }
         let (across, half_width) =
             (to_point.dot(self.direction.perp()), distance * self.half_width);
-        // Most of what is not in view is found out without a division.
+        // Most points out of view need no division.
         if across.abs() > 2.0 * half_width {
             return false;
         }
@@ -192,8 +193,8 @@ impl<'a> Sight<'a> {
     }
 }
 
-/// The column or row that a place is in; before the map, a negative one. Where processors may be old, rounding
-/// down is a call.
-fn cell_at(place: f64) -> i64 {
-    place as i64 - i64::from(place < 0.0)
+/// The column or row of a position; negative west or north of the map. Rounding down is a function
+/// call on older processors.
+fn cell_at(position: f64) -> i64 {
+    position as i64 - i64::from(position < 0.0)
 }
