@@ -56,7 +56,7 @@ mod tests {
         assert_eq!(steps, 59);
         assert!(clock.step_after(0) > Duration::from_millis(997));
         assert_eq!(clock.step_after(2), clock.step_after(0) + 2 * step());
-        clock.skip_to(Duration::from_secs(3600));
-        assert_eq!(clock.steps_until(Duration::from_secs(3600)), 0);
+        clock.skip_to(Duration::from_hours(1));
+        assert_eq!(clock.steps_until(Duration::from_hours(1)), 0);
     }
 }
