@@ -1,7 +1,7 @@
 //! The game as a program: screens, settings, keys to intents, and the loop.
 //!
-//! The state takes keys and times as values and draws itself on a canvas. It knows no terminal and no clock, so a
-//! [`Replay`] plays it off screen. [`play`] is the loop around it that has both.
+//! The state has neither a terminal nor a clock. Keys and times are arguments, so that a [`Replay`]
+//! can play it off screen. [`play`] is the main loop, which has both.
 
 mod bindings;
 mod clock;
@@ -49,34 +49,34 @@ use controls::Controls;
 use detection::Detection;
 use keys::Pending;
 use mouse::Pointer;
-use played::{Memory, Played, Viewpoint};
+use played::{Played, Viewpoint, Views};
 use recording::ScriptRecorder;
 use reload::Reload;
 use stats::Stats;
-use status::{StatusLine, Told};
+use status::{StatusLine, StatusValues};
 
-/// What shows besides the picture, and what keys do meanwhile.
+/// The panel on the picture. The effect of keys depends on it.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 enum Screen {
     Playing,
     Paused,
     Help,
-    /// Whether to leave is asked.
+    /// The question whether to leave.
     Leaving,
     LevelDone,
     End,
 }
 
-/// What of the game shows in a picture of it.
+/// The part of the game's state that a picture depends on.
 #[derive(Clone, Copy, Debug, PartialEq)]
 struct Shown {
     viewpoint: Viewpoint,
     revision: u64,
 }
 
-/// How a picture is shown.
+/// How a picture is drawn.
 #[derive(Clone, Copy, Debug)]
-struct Look {
+struct DrawOptions {
     glyphs: GlyphMode,
     depth: ColorDepth,
     cell_aspect: CellAspect,
@@ -89,7 +89,7 @@ struct App {
     game: Played,
     level: LevelNumber,
     goal: Goal,
-    /// Seconds taken by the levels before this one.
+    /// The seconds that the earlier levels took.
     earlier: f64,
     screen: Screen,
     settings: Settings,
@@ -100,27 +100,27 @@ struct App {
     pointer: Pointer,
     map: MapPanel,
     help: HelpScroll,
-    /// Where the player goes on who does not want to leave.
+    /// The screen to return to if the player does not leave.
     returns_to: Screen,
-    /// The time, as it was last told, and since when the screen is shown.
+    /// The time of the last event, and the time since which the screen is shown.
     now: Duration,
     shown_since: Duration,
     pending: Option<Pending>,
     has_left: bool,
     clock: Clock,
-    memory: Memory,
-    /// What the screen shows; `None` where it must be drawn again.
+    views: Views,
+    /// The state that the screen shows; `None` if it must be redrawn.
     shown: Option<Shown>,
-    /// When, by the game's clock, something in the picture looks different by itself.
+    /// The game time of the next change in the picture that the player does not cause.
     animates_at: Option<f64>,
     shows_stats: bool,
     stats: Option<Stats>,
     status: StatusLine,
-    /// What was found out about the terminal.
+    /// The known properties of the terminal.
     detection: Detection,
-    /// Where what is wanted is noted down.
+    /// Records the player's intents.
     script: Option<ScriptRecorder>,
-    /// Where changes of the level come from.
+    /// The source of changes of the level.
     reload: Option<Reload>,
 }
 
@@ -139,7 +139,7 @@ impl App {
             field_of_view: settings.field_of_view,
             depth: settings.depth.unwrap_or_default(),
             cell_aspect: settings.cell_aspect.unwrap_or_default(),
-            memory: Memory::new(View::with_caster(settings.caster.clone())),
+            views: Views::new(View::with_caster(settings.caster.clone())),
             shows_stats: settings.shows_stats,
             pointer: Pointer::new(settings.mouse),
             settings,
@@ -160,30 +160,30 @@ impl App {
         }
     }
 
-    /// What of the game a picture would show now.
+    /// The state that a picture would show now.
     fn visible(&self) -> Shown {
         Shown { viewpoint: self.game.viewpoint(self.field_of_view), revision: self.game.revision() }
     }
 
-    /// Whether the screen shows something that is no longer so.
+    /// Whether the screen is out of date.
     fn is_stale(&self) -> bool {
         self.shown != Some(self.visible()) || self.steps_to_animation() == Some(0)
     }
 
-    /// In how many steps something in the picture looks different by itself; `None` for never.
+    /// The number of steps until that change; `None` for never.
     fn steps_to_animation(&self) -> Option<u64> {
         let steps = (self.animates_at? - self.game.elapsed()) / STEP;
         Some(steps.round().max(0.0) as u64)
     }
 
-    /// Takes note that the screen shows what there is.
+    /// Records that the screen is up to date.
     fn drawn(&mut self) {
         self.shown = Some(self.visible());
         let soonest = self.game.elapsed() + STEP;
-        self.animates_at = self.memory.next_change().map(|change| change.max(soonest));
+        self.animates_at = self.views.next_change().map(|change| change.max(soonest));
     }
 
-    /// When the game will change by itself; `None` for never.
+    /// The time at which the game changes without an event; `None` for never.
     fn next_change(&self) -> Option<Duration> {
         if self.screen != Screen::Playing {
             return self.pending.map(|pending| pending.until);
@@ -215,14 +215,14 @@ impl App {
         self.show(Screen::Playing);
     }
 
-    /// The terminal has another size, or has told more about itself.
-    fn terminal_changed(&mut self, told_aspect: Option<CellAspect>, told_depth: ColorDepth) {
-        self.cell_aspect = self.settings.cell_aspect.or(told_aspect).unwrap_or_default();
-        self.depth = self.settings.depth.unwrap_or(told_depth);
+    /// Handles a new size or new properties of the terminal.
+    fn terminal_changed(&mut self, aspect: Option<CellAspect>, depth: ColorDepth) {
+        self.cell_aspect = self.settings.cell_aspect.or(aspect).unwrap_or_default();
+        self.depth = self.settings.depth.unwrap_or(depth);
         self.shown = None;
     }
 
-    /// The program was stopped, and goes on: the time in between does not count.
+    /// Continues after a suspension, whose time does not count.
     fn resumed(&mut self, now: Duration) {
         self.clock.skip_to(now);
         self.release_keys();
@@ -237,12 +237,12 @@ impl App {
         }
         let [picture, status] = panels::picture_and_status(area);
         self.draw_picture(canvas, picture);
-        self.status.update(&Told {
+        self.status.update(&StatusValues {
             game: &self.game,
             goal: &self.goal,
             level: self.level,
-            seen: self.game.grid().and_then(|game| self.map.share_seen(game)),
-            gait: self.controls.gait,
+            share_seen: self.game.grid().and_then(|game| self.map.share_seen(game)),
+            toggles: self.controls.toggles,
             mouse: self.pointer.is_on(),
             stats: self.stats.as_ref().filter(|_| self.shows_stats),
             bindings: &self.settings.bindings,
@@ -262,21 +262,21 @@ impl App {
     }
 
     fn draw_picture(&mut self, canvas: &mut impl Canvas, area: Rect) {
-        let look = Look {
+        let options = DrawOptions {
             glyphs: self.settings.glyphs,
             depth: self.depth,
             cell_aspect: self.cell_aspect,
             filter: self.settings.filter,
             field_of_view: self.field_of_view,
         };
-        self.game.draw(&look, canvas, area, &mut self.memory);
+        self.game.draw(&options, canvas, area, &mut self.views);
         let Some(game) = self.game.grid() else { return };
         let camera = &game.camera(self.field_of_view);
-        self.map.look(game, camera, area.width);
+        self.map.explore(game, camera, area.width);
         if !self.map.is_shown {
             return;
         }
-        let map = self.map.minimap(game, camera, &self.memory.grid);
+        let map = self.map.minimap(game, camera, &self.views.grid);
         let map = map.glyphs(self.settings.glyphs).color_depth(self.depth);
         if let Some(panel) = panels::minimap(area, &map) {
             let inside = panels::framed(canvas, panel, "map");

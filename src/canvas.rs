@@ -1,12 +1,12 @@
 //! The canvas: cells that pictures and widgets are drawn on.
 //!
-//! Ratatui's [`Buffer`] is a canvas, so that what this crate draws are ordinary widgets. The screen of
-//! our own encoder is the other: what is drawn there never becomes ratatui's cells, of forty bytes and
-//! a text each, that are blanked, filled, compared and taken apart again, which was half the time of a
-//! frame of the game.
+//! Ratatui's [`Buffer`] is a canvas, so that this crate's pictures are ordinary widgets. The
+//! encoder's own screen is the other canvas: it draws cells directly and never builds ratatui's
+//! cells. Those take forty bytes and a string each, and clearing, filling, comparing and decoding
+//! them took half the time of a frame of the game.
 //!
-//! A third kind of cell between the two, that both are made from, was refused: it would be one more
-//! copy of each picture for everybody.
+//! An intermediate type of cell, from which both canvases are filled, was refused: it would be one
+//! more copy of each picture.
 
 use ratatui::buffer::Buffer;
 use ratatui::layout::Rect;
@@ -15,24 +15,25 @@ use ratatui::widgets::{Clear, Widget};
 
 use crate::color::Rgb;
 
-/// Cells that one draws on; places off it take nothing.
+/// Cells to draw on. Positions outside of the bounds are ignored.
 pub trait Canvas {
-    /// The cells that there are.
+    /// The area of the canvas, in cells.
     fn bounds(&self) -> Rect;
 
-    /// Shows two colours in each of the cells from `(x, y)` to the right, the first above the second.
+    /// Draws two colours in each cell from `(x, y)` to the right, the first above the second.
     fn draw_halves(&mut self, x: u16, y: u16, row: impl Iterator<Item = [Color; 2]>);
 
-    /// As [`Canvas::draw_halves`], in true colour: most cells of most pictures.
+    /// Does the same as [`Canvas::draw_halves`] in true colour, which most cells of most pictures
+    /// use.
     #[inline]
     fn draw_pixels(&mut self, x: u16, y: u16, row: impl Iterator<Item = [Rgb; 2]>) {
         self.draw_halves(x, y, row.map(|halves| halves.map(true_color)));
     }
 
-    /// Shows a character that is one cell wide, in the colours of its text and of its ground.
+    /// Draws a character that is one cell wide, in a foreground and a background colour.
     fn draw_character(&mut self, x: u16, y: u16, character: char, colors: [Color; 2]);
 
-    /// Shows a widget, on blank ground.
+    /// Clears `area` and draws a widget there.
     fn draw_widget(&mut self, widget: impl Widget, area: Rect);
 }
 
@@ -41,21 +42,27 @@ impl Canvas for Buffer {
         self.area
     }
 
-    /// Of the glyphs that show the same two colours, the one is taken that shares more colours with
-    /// the cell before it: most encoders need not send those again. Two colours alike are a space.
+    /// Two glyphs show the same two colours. Chooses the one that shares more colours with the cell
+    /// to the left, since most encoders need not send those again. A cell of one colour is a space.
     fn draw_halves(&mut self, x: u16, y: u16, row: impl Iterator<Item = [Color; 2]>) {
         let mut before = [Color::Reset; 2];
         for (x, [top, bottom]) in (x..self.area.right()).zip(row) {
-            let (glyph, colors) = likest_glyph([top, bottom], before);
+            let (glyph, colors) = glyph_sharing_most([top, bottom], before);
             self.draw_character(x, y, glyph, colors);
             before = colors;
         }
     }
 
-    fn draw_character(&mut self, x: u16, y: u16, character: char, [text, ground]: [Color; 2]) {
+    fn draw_character(
+        &mut self,
+        x: u16,
+        y: u16,
+        character: char,
+        [foreground, background]: [Color; 2],
+    ) {
         if let Some(cell) = self.cell_mut((x, y)) {
             cell.reset();
-            cell.set_char(character).set_fg(text).set_bg(ground);
+            cell.set_char(character).set_fg(foreground).set_bg(background);
         }
     }
 
@@ -66,17 +73,18 @@ impl Canvas for Buffer {
     }
 }
 
-/// `color`, as ratatui names it.
+/// `color` as a ratatui colour.
 #[inline]
 pub(crate) fn true_color(color: Rgb) -> Color {
     Color::Rgb(color.red(), color.green(), color.blue())
 }
 
-/// The glyph that shows two halves, and the colours of its text and ground, of which as many as
-/// possible are those from `before`.
-fn likest_glyph([top, bottom]: [Color; 2], before: [Color; 2]) -> (char, [Color; 2]) {
-    let shared =
-        |[text, ground]: [Color; 2]| u8::from(text == before[0]) + u8::from(ground == before[1]);
+/// The glyph that shows two halves, and its foreground and background colours. Shares as many
+/// colours as possible with `before`.
+fn glyph_sharing_most([top, bottom]: [Color; 2], before: [Color; 2]) -> (char, [Color; 2]) {
+    let shared = |[foreground, background]: [Color; 2]| {
+        u8::from(foreground == before[0]) + u8::from(background == before[1])
+    };
     if top == bottom {
         (' ', [top, top])
     } else if shared([bottom, top]) > shared([top, bottom]) {

@@ -1,9 +1,9 @@
-//! Colours: sRGB as it is stored, the light that it stands for, palettes, and spaces in which distance is
-//! difference as people see it.
+//! Colours: sRGB, linear light, palettes, and colour spaces in which distance is perceived
+//! difference.
 //!
-//! Each conversion is here once, with its source. Pictures are made of [`Rgb`]; the other modules serve code that
-//! averages, compares or reduces colours. A crate for colour spaces was refused: pictures must come out the same on every
-//! machine and with every version, bit for bit.
+//! Each conversion exists once, with its source. Pictures consist of [`Rgb`]; the other modules
+//! serve code that averages, compares or reduces colours. A crate for colour spaces was refused:
+//! pictures must be the same, bit for bit, on every machine and with every version.
 
 pub mod lab;
 pub(crate) mod oklab;
@@ -15,7 +15,7 @@ use std::ops::{Add, Mul};
 
 pub use rgb::{ParseColorError, Rgb};
 
-/// The product of a matrix, row by row, and a vector.
+/// The product of a matrix, given by rows, and a vector.
 #[inline]
 fn product<T: Copy + Add<Output = T> + Mul<Output = T>>(
     rows: &[[T; 3]; 3],

@@ -1,8 +1,8 @@
-//! Arithmetic that the rest builds on and that is about no raycaster: sums and products without rounding error,
-//! a predicate with an exact sign, and motion in closed form.
+//! Arithmetic for the other modules: sums and products without rounding error, a predicate with an
+//! exact sign, and damped motion in closed form.
 //!
-//! Each method is here once, and names its source. Crates for them were refused: what is needed is a hundred
-//! lines, and every picture depends on each bit of their results.
+//! Each method exists once and names its source. Crates were refused: the module needs about a
+//! hundred lines of them, and every picture depends on each bit of the results.
 
 pub(crate) mod damped_motion;
 mod double_double;

@@ -1,34 +1,36 @@
-//! Random numbers from a seed: the same seed, the same numbers, on every machine and in every later version.
+//! Random numbers from a seed. The same seed gives the same numbers on every machine and in every
+//! later version.
 //!
-//! The generator is [`SplitMix64`] (G. L. Steele Jr., D. Lea and C. H. Flood, "Fast Splittable Pseudorandom Number
-//! Generators", 2014): a counter, and a finalizer that maps 64 bits one to one and lets each bit of the input
-//! change half of the output. A crate for it was refused: these are ten lines, and they never
-//! change. So was the standard hasher, which promises neither.
+//! The generator is [`SplitMix64`] (G. L. Steele Jr., D. Lea and C. H. Flood, "Fast Splittable
+//! Pseudorandom Number Generators", 2014): a counter, and a finalizer that maps 64 bits one to one,
+//! so that each bit of the input changes half of the output on average. A crate was refused: the
+//! generator has ten lines, which never change. The standard library's hasher was refused, too: it
+//! may change.
 
-/// A generator of random numbers that only its seed determines.
+/// A generator of random numbers. The seed alone determines them.
 #[derive(Clone, Debug)]
 pub struct SplitMix64 {
     state: u64,
 }
 
 impl SplitMix64 {
-    /// The generator with that seed.
+    /// A generator with that seed.
     pub const fn new(seed: u64) -> Self {
         Self { state: seed }
     }
 
-    /// Any 64 bits.
+    /// The next 64 random bits.
     pub fn bits(&mut self) -> u64 {
         self.state = self.state.wrapping_add(INCREMENT);
         mixed(self.state)
     }
 
-    /// A number from 0 up to 1, a multiple of 2⁻⁵³.
+    /// A number in [0, 1), a multiple of 2⁻⁵³.
     pub fn unit(&mut self) -> f64 {
         (self.bits() >> 11) as f64 / (1_u64 << 53) as f64
     }
 
-    /// A number from `low` up to `high`, a multiple of 2⁻⁵³ of their distance.
+    /// A number in [`low`, `high`), `low` plus a multiple of 2⁻⁵³ of their distance.
     pub fn between(&mut self, low: f64, high: f64) -> f64 {
         low + (high - low) * self.unit()
     }
@@ -40,7 +42,7 @@ impl SplitMix64 {
         (i64::from(low) + offset as i64) as f64
     }
 
-    /// Any finite double, all exponents alike.
+    /// A finite double; all exponents are equally likely.
     pub fn double(&mut self) -> f64 {
         loop {
             let double = f64::from_bits(self.bits());
@@ -55,26 +57,27 @@ impl SplitMix64 {
         choices[(self.bits() % N.max(1) as u64) as usize]
     }
 
-    /// A number below `count`; all are equally likely, but for one part in 2³². 0 where `count` is.
+    /// A number below `count`, or 0 if `count` is 0. The probabilities differ by at most one part
+    /// in 2³².
     pub fn below(&mut self, count: usize) -> usize {
         (((self.bits() >> 32) * count as u64) >> 32) as usize
     }
 
-    /// Whether one of `count` equally likely events happens.
+    /// `true` with a probability of one in `count`.
     pub fn one_in(&mut self, count: usize) -> bool {
         self.below(count) == 0
     }
 }
 
-/// A number that looks random, determined by a seed and some words.
+/// A pseudorandom number that a seed and words determine.
 pub(crate) fn hash(seed: u64, words: impl IntoIterator<Item = u64>) -> u64 {
     words.into_iter().fold(seed, |bits, word| mixed(bits.wrapping_add(INCREMENT) ^ mixed(word)))
 }
 
-/// Odd, and without a pattern in its bits: 2^64 over the golden ratio.
+/// 2^64 divided by the golden ratio, rounded to an odd number.
 const INCREMENT: u64 = 0x9e37_79b9_7f4a_7c15;
 
-/// David Stafford's finalizer "Mix13", as `SplitMix64` has it.
+/// David Stafford's finalizer "Mix13", which `SplitMix64` uses.
 fn mixed(mut bits: u64) -> u64 {
     bits = (bits ^ (bits >> 30)).wrapping_mul(0xbf58_476d_1ce4_e5b9);
     bits = (bits ^ (bits >> 27)).wrapping_mul(0x94d0_49bb_1331_11eb);
@@ -85,7 +88,7 @@ fn mixed(mut bits: u64) -> u64 {
 mod tests {
     use super::*;
 
-    /// The first numbers of the reference implementation, with the seed 1234567.
+    /// The expected numbers are the first of the reference implementation with the seed 1234567.
     #[test]
     fn numbers_are_those_of_the_reference() {
         let mut random = SplitMix64::new(1_234_567);

@@ -1,9 +1,9 @@
-//! Widgets: what ratatui programs put on their screens.
+//! Ratatui widgets for levels and maps, and the state of held keys.
 //!
-//! [`FirstPerson`] shows what a camera sees of a grid or of bodies, [`Minimap`] shows the map from above. Both are plain
-//! ratatui widgets that fill whatever area they are given and know nothing of keys or escape
-//! sequences. [`HeldKeys`] tells which keys are held, of whatever type, and [`wanted`] what that means for a
-//! [`Game`](crate::game::Game).
+//! [`FirstPerson`] shows what a camera sees of a grid or of bodies, and [`Minimap`] shows a map
+//! from above. Both fill any area that they are given, and depend on neither keys nor escape
+//! sequences. [`HeldKeys`] tracks which keys are held, for keys of any type; [`wanted()`] converts
+//! them to the intents of a [`Game`](crate::game::Game).
 //!
 //! ```
 //! use cellcaster::tui::{FirstPerson, Minimap, View};

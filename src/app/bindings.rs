@@ -1,4 +1,4 @@
-//! Which key does what: the actions, and presets of keys for them.
+//! Key bindings: the actions, and presets of keys for them.
 
 mod presets;
 
@@ -6,38 +6,38 @@ use crate::game::Intent;
 use crate::terminal::{Key, KeyEvent};
 pub(super) use presets::PRESETS;
 
-/// What a key can do.
+/// An action that a key can be bound to.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
 pub(crate) enum Action {
-    /// Wanting something for as long as the key is held.
+    /// Want something for as long as the key is held.
     Want(Intent),
-    /// Running until it is pressed again.
+    /// Run until the key is pressed again.
     ToggleRun,
-    /// Ducking until it is pressed again.
+    /// Duck until the key is pressed again.
     ToggleDuck,
-    /// Turning and tilting by the mouse, or not any more.
+    /// Turn and tilt by the mouse, or stop that.
     ToggleMouse,
-    /// Walking on until it, or a key to walk, is pressed.
+    /// Walk until this key or a key to walk is pressed.
     ToggleWalkOn,
-    /// Showing or hiding the minimap.
+    /// Show or hide the minimap.
     ToggleMinimap,
-    /// Showing the minimap larger, smaller, or another part of it.
+    /// Show the minimap larger or smaller, or another part of it.
     ChangeMap(MapChange),
-    /// Showing or hiding the keys.
+    /// Show or hide the keys.
     ToggleHelp,
-    /// Pausing, or going on.
+    /// Pause, or continue.
     TogglePause,
-    /// Seeing more at once.
+    /// Widen the field of view.
     WidenView,
-    /// Seeing less at once.
+    /// Narrow the field of view.
     NarrowView,
-    /// Showing or hiding what frames take.
+    /// Show or hide the figures of frames and the link.
     ToggleStats,
-    /// Leaving the game.
+    /// Leave the game.
     Leave,
 }
 
-/// How the minimap can be changed.
+/// A change of the minimap.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
 pub(crate) enum MapChange {
     Larger,
@@ -46,12 +46,12 @@ pub(crate) enum MapChange {
     South,
     West,
     East,
-    /// Around the player, in its usual size.
+    /// Show the player in the middle, at the usual size.
     Center,
 }
 
 impl Action {
-    /// Every action: its name in a file, what it does in a word or two, and itself.
+    /// Every action with its name in a file and a short description.
     pub(crate) const ALL: [(&'static str, &'static str, Self); 34] = [
         ("forward", "walk", Self::Want(Intent::Forward)),
         ("back", "walk back", Self::Want(Intent::Back)),
@@ -89,26 +89,26 @@ impl Action {
         ("leave", "leave", Self::Leave),
     ];
 
-    /// The action of that name.
+    /// The action with that name.
     pub(super) fn named(name: &str) -> Option<Self> {
         Self::ALL.into_iter().find(|&(known, ..)| known == name).map(|(.., action)| action)
     }
 
-    /// Whether nobody wants both at once.
+    /// Whether the actions exclude each other.
     pub(super) fn opposes(self, other: Self) -> bool {
         matches!((self, other), (Self::Want(one), Self::Want(other)) if one.opposes(other))
     }
 }
 
-/// Which key does what.
+/// The actions of all keys.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub struct Bindings {
-    /// Each key once.
+    /// Each key occurs once.
     keys: Vec<(Key, Action)>,
 }
 
 impl Bindings {
-    /// Every action's keys, and what it does in a word or two, in the order of [`Action::ALL`].
+    /// The keys of every action with a short description, in the order of [`Action::ALL`].
     #[cfg(feature = "cli")]
     pub(crate) fn described(&self) -> impl Iterator<Item = (String, &'static str)> {
         Action::ALL.into_iter().map(|(_, does, action)| {
@@ -117,34 +117,35 @@ impl Bindings {
         })
     }
 
-    /// The same, but that `bound` are the keys of the actions in `rebound`, and of no others.
+    /// Replaces the keys of the actions in `rebound` by `bound`. Keys in `bound` are removed from
+    /// other actions.
     pub(super) fn rebound(mut self, rebound: &[Action], bound: Vec<(Key, Action)>) -> Self {
-        let taken = |key| bound.iter().any(|&(bound, _)| bound == key);
-        self.keys.retain(|&(key, action)| !rebound.contains(&action) && !taken(key));
+        let is_bound = |key| bound.iter().any(|&(bound, _)| bound == key);
+        self.keys.retain(|&(key, action)| !rebound.contains(&action) && !is_bound(key));
         self.keys.extend(bound);
         self.in_order()
     }
 
-    /// In the order of their actions.
+    /// Sorts the keys by their actions.
     fn in_order(mut self) -> Self {
-        let place = |action| Action::ALL.iter().position(|&(.., known)| known == action);
-        self.keys.sort_by_key(|&(_, action)| place(action));
+        let index = |action| Action::ALL.iter().position(|&(.., known)| known == action);
+        self.keys.sort_by_key(|&(_, action)| index(action));
         self
     }
 
-    /// What `key` does.
+    /// The action of `key`.
     pub(crate) fn action(&self, key: Key) -> Option<Action> {
         self.keys.iter().find(|&&(bound, _)| bound == key).map(|&(_, action)| action)
     }
 
-    /// `event`, of the key that does something: where the one pressed does nothing, of the one at its
-    /// place on a US keyboard.
+    /// The event with the key whose action counts: the pressed one, or if that has no action, the
+    /// key at its position on a US keyboard.
     pub(crate) fn resolve(&self, event: KeyEvent) -> KeyEvent {
         let base = event.base.filter(|_| self.action(event.key).is_none());
         KeyEvent { key: base.unwrap_or(event.key), ..event }
     }
 
-    /// The keys that do `action`, in the order in which they were bound.
+    /// The keys of `action`, in the order in which they were bound.
     pub(crate) fn keys(&self, action: Action) -> impl Iterator<Item = Key> {
         self.keys.iter().filter(move |&&(_, bound)| bound == action).map(|&(key, _)| key)
     }
@@ -166,7 +167,7 @@ mod tests {
     }
 
     #[test]
-    fn a_key_does_what_it_types_and_else_what_its_place_does() {
+    fn the_character_of_a_key_counts_before_its_position() {
         let event = |key, base| KeyEvent {
             key: Key::Char(key),
             base: Some(Key::Char(base)),

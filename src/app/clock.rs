@@ -1,46 +1,46 @@
-//! From time to steps.
+//! The clock: converts time to steps of the game.
 
 use std::time::Duration;
 
 use crate::game::STEP;
 
-/// Cuts time into the steps of the game; what is left over counts for the next one.
+/// Divides time into steps of the game. A remainder counts for the next step.
 #[derive(Clone, Debug, Default)]
 pub(super) struct Clock {
-    /// Up to when time has been cut into steps.
-    cut: Duration,
+    /// The time up to which steps have been counted.
+    counted: Duration,
 }
 
 impl Clock {
-    /// The most steps that are made up for at once, a quarter of a second: a machine that can't keep
-    /// up plays slower, rather than later and later.
+    /// The most steps computed at once, a quarter of a second: a machine that is too slow plays
+    /// more slowly and does not fall behind further and further.
     pub(super) const MOST_STEPS: u64 = 15;
 
-    /// How many steps have passed between the last call and `now`.
+    /// The number of steps since the last call.
     pub(super) fn steps_until(&mut self, now: Duration) -> u64 {
-        let steps = (now.saturating_sub(self.cut).as_nanos() / step().as_nanos()) as u64;
-        self.cut = after(self.cut, steps);
+        let steps = (now.saturating_sub(self.counted).as_nanos() / step().as_nanos()) as u64;
+        self.counted = after(self.counted, steps);
         steps
     }
 
-    /// Lets the time up to `now` pass without steps.
+    /// Skips the time up to `now`.
     pub(super) fn skip_to(&mut self, now: Duration) {
-        self.cut = now;
+        self.counted = now;
     }
 
-    /// When the step after `steps` steps to come will have passed.
+    /// The time at which the step after `steps` further steps ends.
     pub(super) fn step_after(&self, steps: u64) -> Duration {
-        after(self.cut, steps.saturating_add(1))
+        after(self.counted, steps.saturating_add(1))
     }
 }
 
-/// The time that many steps after `time`.
+/// The time `steps` steps after `time`.
 pub(super) fn after(time: Duration, steps: u64) -> Duration {
     let nanoseconds = step().as_nanos() as u64;
     time + Duration::from_nanos(nanoseconds.saturating_mul(steps))
 }
 
-/// How long a step lasts.
+/// The duration of a step.
 pub(super) fn step() -> Duration {
     Duration::from_secs_f64(STEP)
 }
@@ -56,7 +56,7 @@ mod tests {
         assert_eq!(steps, 59);
         assert!(clock.step_after(0) > Duration::from_millis(997));
         assert_eq!(clock.step_after(2), clock.step_after(0) + 2 * step());
-        clock.skip_to(Duration::from_secs(3600));
-        assert_eq!(clock.steps_until(Duration::from_secs(3600)), 0);
+        clock.skip_to(Duration::from_hours(1));
+        assert_eq!(clock.steps_until(Duration::from_hours(1)), 0);
     }
 }

@@ -1,42 +1,42 @@
-//! From keys to what the player wants, step by step.
+//! Controls: converts keys to the intents of each step.
 
 use std::time::Duration;
 
 use super::clock::step;
-use super::status::Gait;
+use super::status::Toggles;
 use crate::app::bindings::{Action, Bindings};
 use crate::game::{Intent, Intents};
 use crate::terminal::{Key, KeyEvent, Phase};
 use crate::tui::{HeldKeys, Hold, Press, tap_steps, wanted};
 
-/// The keys that are held, and what was switched on.
+/// The keys that are held, and the modes that are switched on.
 #[derive(Clone, Debug, Default)]
 pub(super) struct Controls {
     pub(super) held: HeldKeys<Key>,
-    pub(super) gait: Gait,
-    /// The key that was pressed with Shift, where only that shows that Shift is held.
+    pub(super) toggles: Toggles,
+    /// The key that was pressed with Shift, for terminals that do not report Shift itself.
     shifted: Option<Key>,
 }
 
-/// What of a game matters for its keys.
+/// The state of the game that keys depend on.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub(super) struct Stance {
-    /// Whether the game is played, and not waiting.
+pub(super) struct KeyContext {
+    /// Whether the game runs and is not paused.
     pub(super) plays: bool,
-    /// Whether the player has no floor under their feet.
+    /// Whether the player is in the air.
     pub(super) is_airborne: bool,
-    /// Whether the player flies: ducking moves them.
+    /// Whether the player flies, so that ducking moves them.
     pub(super) flies: bool,
 }
 
 impl Controls {
-    /// Takes note of an event, and says what it means for its key; `None` for a release.
-    pub(super) fn note(
+    /// Handles an event. Returns its meaning, or `None` for a release.
+    pub(super) fn handle(
         &mut self,
         event: KeyEvent,
         now: Duration,
         bindings: &Bindings,
-        stance: Stance,
+        context: KeyContext,
     ) -> Option<Press> {
         let KeyEvent { key, modifiers, phase, .. } = event;
         match phase {
@@ -55,7 +55,7 @@ impl Controls {
             Some(Action::Want(intent)) => Some(intent),
             _ => None,
         };
-        let steps = wants.filter(|_| stance.plays).map_or(0, tap_steps);
+        let steps = wants.filter(|_| context.plays).map_or(0, tap_steps);
         let opposes = |other| {
             action.zip(bindings.action(other)).is_some_and(|(one, other)| one.opposes(other))
         };
@@ -69,25 +69,25 @@ impl Controls {
             return Some(press);
         }
         if wants.is_some_and(walks) {
-            self.gait.walks_on = false;
+            self.toggles.keeps_walking = false;
         }
-        if wants == Some(Intent::Jump) && stance.plays && !stance.is_airborne {
+        if wants == Some(Intent::Jump) && context.plays && !context.is_airborne {
             self.held.join_newest();
         }
         Some(press)
     }
 
-    /// Lets go of what is no longer held at time `now`.
-    pub(super) fn advance(&mut self, now: Duration, stance: Stance) {
-        if stance.is_airborne {
+    /// Releases the keys that are no longer held at time `now`.
+    pub(super) fn advance(&mut self, now: Duration, context: KeyContext) {
+        if context.is_airborne {
             self.held.keep(now);
         }
         self.held.advance(now);
     }
 
-    /// For how many steps from `now` on, at most `most` and at least one, the player wants the same.
-    pub(super) fn steady_steps(&self, now: Duration, stance: Stance, most: u64) -> u64 {
-        if self.held.has_taps() || stance.is_airborne {
+    /// The number of steps from `now`, from one to `most`, in which the intents do not change.
+    pub(super) fn steady_steps(&self, now: Duration, context: KeyContext, most: u64) -> u64 {
+        if self.held.has_taps() || context.is_airborne {
             return 1;
         }
         let until = self.held.next_expiry().unwrap_or(Duration::MAX);
@@ -95,25 +95,25 @@ impl Controls {
         u64::try_from(steps).unwrap_or(u64::MAX).saturating_add(1).min(most)
     }
 
-    /// What the player wants.
-    pub(super) fn intents(&self, bindings: &Bindings, stance: Stance) -> Intents {
+    /// The player's intents.
+    pub(super) fn intents(&self, bindings: &Bindings, context: KeyContext) -> Intents {
         let keys = self.held.iter().filter_map(|(key, hold)| match bindings.action(key) {
-            Some(Action::Want(Intent::Duck)) if stance.flies && hold == Hold::Unknown => None,
+            Some(Action::Want(Intent::Duck)) if context.flies && hold == Hold::Unknown => None,
             Some(Action::Want(intent)) => Some((intent, hold)),
             _ => None,
         });
         let shifted = self.shifted.filter(|_| !self.held.reports_releases());
-        let runs = self.gait.runs || shifted.is_some_and(|key| self.held.hold(key) != Hold::Up);
+        let runs = self.toggles.runs || shifted.is_some_and(|key| self.held.hold(key) != Hold::Up);
         let others = [
             runs.then_some(Intent::Run),
-            self.gait.ducks.then_some(Intent::Duck),
-            self.gait.walks_on.then_some(Intent::Forward),
+            self.toggles.ducks.then_some(Intent::Duck),
+            self.toggles.keeps_walking.then_some(Intent::Forward),
         ];
         wanted(keys.chain(others.into_iter().flatten().map(|intent| (intent, Hold::Held))))
     }
 }
 
-/// Whether `intent` takes the player elsewhere.
+/// Whether `intent` is to walk.
 fn walks(intent: Intent) -> bool {
     use Intent::{Back, Forward, StrafeLeft, StrafeRight};
     matches!(intent, Forward | Back | StrafeLeft | StrafeRight)

@@ -1,28 +1,28 @@
-//! What was found out about the terminal that makes the game look or feel worse than it could, why that
-//! is so, and what helps: lines for the help, where people look.
+//! Limits of the terminal that make the game look or feel worse, with their reasons and remedies.
+//! The help shows these lines, where users look for them.
 
 use crate::color::palette::ColorDepth;
 use crate::terminal::ColorSource;
 
-/// What is known of the terminal.
+/// The known properties of the terminal.
 #[derive(Clone, Debug, Default)]
 pub(super) struct Detection {
     pub(super) depth: ColorDepth,
-    /// What said how many colours there are; `None` for the command line or the configuration.
+    /// The source of the colour depth; `None` if it is the command line or the configuration.
     pub(super) source: Option<ColorSource>,
-    /// Whether it reports when keys are released; `None` where it has not said yet.
+    /// Whether key releases are reported; `None` if that is not known yet.
     pub(super) reports_releases: Option<bool>,
-    /// The setting of the locale because of which everything is shown in ASCII.
+    /// The locale setting that restricts output to ASCII.
     pub(super) ascii_locale: Option<String>,
 }
 
 impl Detection {
-    /// A line for each thing that could be better.
+    /// A line for each limit.
     pub(super) fn lines(&self) -> impl Iterator<Item = String> {
         [self.colors(), self.releases(), self.characters()].into_iter().flatten()
     }
 
-    /// Why there are not all colours.
+    /// The reason why there are not all colours.
     fn colors(&self) -> Option<String> {
         let count = match self.depth {
             ColorDepth::True => return None,
@@ -42,14 +42,14 @@ impl Detection {
         Some(format!("{count}: {reason}"))
     }
 
-    /// That keys are guessed.
+    /// The line about missing key releases.
     fn releases(&self) -> Option<String> {
         (self.reports_releases == Some(false)).then(|| {
             "no key releases: keys are held while they repeat; see docs/keys.md".to_owned()
         })
     }
 
-    /// Why there are no blocks and lines.
+    /// The reason why only ASCII is shown.
     fn characters(&self) -> Option<String> {
         let setting = self.ascii_locale.as_ref()?;
         Some(format!("ASCII only: {setting} is not UTF-8; try --glyphs half"))
@@ -65,7 +65,7 @@ mod tests {
     }
 
     #[test]
-    fn the_best_terminal_needs_no_line() {
+    fn a_terminal_without_limits_has_no_lines() {
         let best = Detection {
             depth: ColorDepth::True,
             source: Some(ColorSource::Answer),
@@ -76,7 +76,7 @@ mod tests {
     }
 
     #[test]
-    fn every_line_says_what_is_so_and_why() {
+    fn every_line_names_a_limit_and_its_reason() {
         let plain = Detection {
             depth: ColorDepth::Indexed256,
             source: Some(ColorSource::Nothing),

@@ -1,16 +1,16 @@
-//! What the player is to do in a level, said in one line when it begins.
+//! The goal of a level, shown in one line when it begins.
 //!
-//! It is told until the player has moved for some time. A clock that hides it was refused: it would draw a frame while
-//! nobody moves, and hide it from whoever reads slowly.
+//! It is shown until the player has moved for some time. Hiding it by the clock was refused: that
+//! would draw a frame while nothing moves, and hide it from slow readers.
 
 use super::played::Played;
 use crate::app::MapDisplay;
 use crate::game::STEPS_PER_SECOND;
 
-/// Steps in which something moves, until the goal is not told any more: four seconds.
-const TOLD_FOR: u64 = 4 * STEPS_PER_SECOND as u64;
+/// The number of steps with motion for which the goal is shown: four seconds.
+const SHOWN_FOR: u64 = 4 * STEPS_PER_SECOND as u64;
 
-/// What the player is to do, and for how long that is told.
+/// A goal, and how much longer it is shown.
 #[derive(Clone, Debug)]
 pub(super) struct Goal {
     text: String,
@@ -19,7 +19,7 @@ pub(super) struct Goal {
 }
 
 impl Goal {
-    /// The goal of `game`, by its map if that names one.
+    /// The goal of `game`, from its map if that has one.
     pub(super) fn of(game: &Played, display: MapDisplay) -> Self {
         let (text, short) = match game.goal() {
             Some(own) => (own, own),
@@ -29,25 +29,25 @@ impl Goal {
             None if game.has_exit() => ("Find the way out: green on the map", "Find the exit"),
             None => ("Roam as you like: no exit here", "Roam around"),
         };
-        Self { text: text.to_owned(), short: short.to_owned(), steps_left: TOLD_FOR }
+        Self { text: text.to_owned(), short: short.to_owned(), steps_left: SHOWN_FOR }
     }
 
-    /// A whole sentence without its full stop.
+    /// A sentence without its full stop.
     pub(super) fn text(&self) -> &str {
         &self.text
     }
 
-    /// For where there is not much room.
+    /// A shorter form for narrow windows.
     pub(super) fn short(&self) -> &str {
         &self.short
     }
 
-    /// Whether it still is to be told.
-    pub(super) fn is_told(&self) -> bool {
+    /// Whether the goal is still shown.
+    pub(super) fn is_shown(&self) -> bool {
         self.steps_left > 0
     }
 
-    /// Takes note that so many steps have passed in which something moved.
+    /// Counts `steps` steps in which something moved.
     pub(super) fn moved(&mut self, steps: u64) {
         self.steps_left = self.steps_left.saturating_sub(steps);
     }

@@ -1,6 +1,7 @@
-//! The help: which key does what, in a panel that scrolls where it is too high for the window.
+//! The help: a panel with the keys of all actions. It scrolls if it is higher than the window.
 //!
-//! It says first how to leave it. Keys that every terminal has scroll it: the arrows, the page keys, and the space bar.
+//! The first line says how to close it. Keys that every terminal has scroll it: the arrows, the
+//! page keys, and the space bar.
 
 use ratatui::layout::{Constraint, Flex, Layout, Rect};
 use ratatui::text::{Line, Text};
@@ -13,21 +14,21 @@ use crate::app::bindings::{Action, Bindings};
 use crate::canvas::Canvas;
 use crate::terminal::Key;
 
-/// How far the help has been scrolled.
+/// The scroll position of the help.
 #[derive(Clone, Copy, Debug, Default)]
 pub(super) struct HelpScroll {
-    /// The first line that shows, below those that always do.
+    /// The first line shown, below those that are always shown.
     first: usize,
-    /// How many lines showed last, and how many there were.
+    /// The number of lines shown last, and the number of all lines.
     page: usize,
     lines: usize,
 }
 
-/// Blank columns between two columns of text.
+/// The number of blank columns between two columns of text.
 const GAP: usize = 3;
 
 impl App {
-    /// Scrolls the help where `key` is for that; whether it is.
+    /// Scrolls the help if `key` does that. Returns whether it does.
     pub(super) fn scroll_help(&mut self, key: Key) -> bool {
         let page = self.help.page.max(1);
         let first = self.help.first;
@@ -49,12 +50,12 @@ impl App {
 }
 
 impl HelpScroll {
-    /// The furthest that one can scroll.
+    /// The last scroll position.
     fn last(&self) -> usize {
         self.lines.saturating_sub(self.page)
     }
 
-    /// Draws the help, and at its end `notes` on the terminal.
+    /// Draws the help, with `notes` about the terminal at its end.
     pub(super) fn draw(
         &mut self,
         canvas: &mut impl Canvas,
@@ -70,7 +71,7 @@ impl HelpScroll {
         let body: Vec<String> = keys.into_iter().chain(notes).collect();
         self.lines = body.len();
         let fits = body.len() < room;
-        // What tells that there is more takes a line.
+        // The line that says how to scroll takes a line.
         self.page = if fits { body.len() } else { room.saturating_sub(2).max(1) };
         self.first = self.first.min(self.last());
         let shown = body.iter().skip(self.first).take(self.page).cloned();
@@ -92,7 +93,7 @@ impl HelpScroll {
     }
 }
 
-/// How to leave the help, and the game where that fits.
+/// The line that says how to close the help and, if it fits, how to leave the game.
 fn how_to_leave(bindings: &Bindings, most_columns: usize) -> String {
     let first = |action| bindings.keys(action).next().map(|key| key.to_string());
     let close = first(Action::ToggleHelp).unwrap_or_else(|| Key::Escape.to_string());
@@ -102,8 +103,8 @@ fn how_to_leave(bindings: &Bindings, most_columns: usize) -> String {
         .unwrap_or_else(|| format!("{close} closes"))
 }
 
-/// Each action with its keys, in as many columns as it takes to fit into `room` lines, or as there are columns for.
-/// Where there is not room for one, lines are broken.
+/// Each action with its keys, in as many columns as are needed to fit into `room` lines and
+/// possible in `most_columns`. If not even one column fits, lines are wrapped.
 fn keys_in_columns(bindings: &Bindings, room: usize, most_columns: usize) -> Vec<String> {
     let lines = Action::ALL.map(|(_, does, action)| (key_names(bindings, action), does));
     let padded = lines.each_ref().map(|(keys, does)| format!("{keys:<10}  {does}"));
@@ -145,7 +146,7 @@ mod tests {
     }
 
     #[test]
-    fn every_line_is_reached_in_any_window() {
+    fn every_line_can_be_reached_in_any_window() {
         for (columns, rows) in [(80, 23), (32, 24), (64, 13), (200, 60), (60, 9), (20, 5)] {
             let mut help = HelpScroll::default();
             let mut seen = String::new();
@@ -160,7 +161,7 @@ mod tests {
                 }
                 help.first += help.page;
             }
-            // A word that is longer than a line is broken.
+            // Words longer than a line are broken.
             let most = usize::from(columns - BORDERS - PADDING);
             let shows =
                 |text: &str| wrapped(text, most).iter().all(|line| shows_words(&seen, line));
@@ -172,7 +173,7 @@ mod tests {
     }
 
     #[test]
-    fn nothing_scrolls_where_all_of_it_shows() {
+    fn a_help_that_fits_does_not_scroll() {
         let mut help = HelpScroll::default();
         let text = shown(80, 23, &mut help);
         assert_eq!(help.last(), 0, "{text}");

@@ -1,12 +1,12 @@
-//! What keys do.
+//! Keys: the effect of each key on each screen.
 //!
-//! What can't be taken back wants a press that is certain: a repetition never answers a question, nor does
-//! anything in the first half second of a panel that shows a result. A byte that may be the first
-//! repetition of a key counts once no other has followed it for as long as repetitions are apart.
+//! Irreversible actions require a certain press. A repetition never answers a question, and nothing
+//! does in the first half second of a panel that shows a result. A byte that may be the first
+//! repetition of a key counts if no other byte follows within the interval of repetitions.
 
 use std::time::Duration;
 
-use super::controls::Stance;
+use super::controls::KeyContext;
 use super::{App, Screen};
 use crate::app::bindings::Action;
 use crate::game::Intents;
@@ -14,17 +14,17 @@ use crate::terminal::{Key, KeyEvent};
 use crate::tui::Press;
 use crate::world::FieldOfView;
 
-/// By how much a key widens or narrows the view, and how far, in degrees.
+/// The step by which a key widens or narrows the view, and its limits, in degrees.
 const VIEW_STEP: f64 = 6.0;
 const NARROWEST_VIEW: f64 = 30.0;
 const WIDEST_VIEW: f64 = 120.0;
 
-/// How long a result shows before a key takes it away.
+/// The least time for which a result is shown.
 const LEAST_SHOWN: Duration = Duration::from_millis(500);
-/// Repetitions are no further apart.
+/// The longest interval between repetitions.
 const REPETITION: Duration = Duration::from_millis(150);
 
-/// A key that may answer the question on the screen, unless it repeats before the time is up.
+/// A key that answers the question on the screen if it does not repeat until that time.
 #[derive(Clone, Copy, Debug)]
 pub(super) struct Pending {
     key: Key,
@@ -32,38 +32,38 @@ pub(super) struct Pending {
 }
 
 impl App {
-    /// A key was pressed, repeated or released at that time.
+    /// Handles a press, a repetition or a release at time `now`.
     pub(super) fn key(&mut self, event: KeyEvent, now: Duration) {
         self.advance(now);
         let event = self.settings.bindings.resolve(event);
-        let stance = self.stance();
-        let press = self.controls.note(event, now, &self.settings.bindings, stance);
+        let key_context = self.key_context();
+        let press = self.controls.handle(event, now, &self.settings.bindings, key_context);
         if let Some(press) = press {
             self.press(event.key, press);
         }
     }
 
-    /// What is typed goes to another window: keys may be let go of there.
+    /// Handles the loss of the focus: keys may be released in another window.
     pub(super) fn focus_lost(&mut self, now: Duration) {
         self.advance(now);
         self.release_keys();
         self.pointer.forget();
     }
 
-    /// Lets go of all keys, as when another window gets them.
+    /// Releases all keys.
     pub(super) fn release_keys(&mut self) {
         self.controls.held.release_all();
     }
 
-    /// Answers the question on the screen by the key that turned out not to repeat.
+    /// Answers the question on the screen by a pending key that did not repeat.
     pub(super) fn settle(&mut self, now: Duration) {
         if let Some(Pending { key, .. }) = self.pending.take_if(|pending| pending.until <= now) {
             self.answer(key);
         }
     }
 
-    pub(super) fn stance(&self) -> Stance {
-        Stance {
+    pub(super) fn key_context(&self) -> KeyContext {
+        KeyContext {
             plays: self.screen == Screen::Playing,
             is_airborne: self.game.is_airborne(),
             flies: self.game.flies(),
@@ -99,11 +99,11 @@ impl App {
                 self.show(Screen::Playing);
             }
             (_, Action::ToggleMinimap) => toggle(&mut self.map.is_shown, &mut self.shown),
-            (_, Action::ToggleDuck) => toggle(&mut self.controls.gait.ducks, &mut self.shown),
-            (_, Action::ToggleRun) => toggle(&mut self.controls.gait.runs, &mut self.shown),
+            (_, Action::ToggleDuck) => toggle(&mut self.controls.toggles.ducks, &mut self.shown),
+            (_, Action::ToggleRun) => toggle(&mut self.controls.toggles.runs, &mut self.shown),
             (_, Action::ToggleStats) => toggle(&mut self.shows_stats, &mut self.shown),
             (Screen::Playing, Action::ToggleWalkOn) => {
-                toggle(&mut self.controls.gait.walks_on, &mut self.shown);
+                toggle(&mut self.controls.toggles.keeps_walking, &mut self.shown);
             }
             (_, Action::ToggleMouse) => {
                 self.pointer.toggle();
@@ -153,9 +153,9 @@ impl App {
         }
     }
 
-    /// What the player wants, by the keys that are held.
+    /// The player's intents by the held keys.
     pub(super) fn intents(&self) -> Intents {
-        self.controls.intents(&self.settings.bindings, self.stance())
+        self.controls.intents(&self.settings.bindings, self.key_context())
     }
 
     fn widen_view(&mut self, degrees: f64) {
@@ -166,7 +166,7 @@ impl App {
     }
 }
 
-/// Switches something that shows on the screen.
+/// Toggles a switch that is visible on the screen.
 fn toggle<T>(switch: &mut bool, shown: &mut Option<T>) {
     *switch = !*switch;
     *shown = None;

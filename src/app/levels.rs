@@ -1,4 +1,4 @@
-//! The levels of a game, one after the other.
+//! The levels of a game, in order.
 
 use std::{fmt, iter};
 
@@ -8,7 +8,7 @@ use crate::fault::Faults;
 use crate::game::Game;
 use crate::map::Level;
 
-/// The levels of a game, in order; each but the first is made when it is reached.
+/// The levels of a game, in order. Each but the first is created when it is reached.
 pub struct Levels {
     pub(super) first: Played,
     pub(super) rest: Box<dyn Iterator<Item = Played>>,
@@ -16,29 +16,28 @@ pub struct Levels {
     pub(super) number: LevelNumber,
 }
 
-/// Which level of how many that is, as players count.
+/// The number of a level, counted from 1, and the number of levels.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub(super) struct LevelNumber {
     number: usize,
-    /// `None` where there is always another one, or nobody knows.
+    /// `None` if the number is unlimited or unknown.
     of: Option<usize>,
 }
 
 impl Levels {
-    /// `first`, and then `rest`.
+    /// The levels `first` and `rest`.
     pub fn new(first: Level, rest: impl Iterator<Item = Level> + 'static) -> Self {
         Self::played(Played::new(first), rest.map(Played::new))
     }
 
-    /// Games that have begun elsewhere: `first`, and then `rest`.
+    /// The games `first` and `rest`, which have already begun.
     pub fn of_games(first: Game, rest: impl Iterator<Item = Game> + 'static) -> Self {
         let played = |game| Played::Grid(Box::new(game));
         Self::played(played(first), rest.map(played))
     }
 
-    /// One level that may change while it is played. `changes` is asked a few times a second: it
-    /// answers with the level as it is now, or with what is wrong with it, where it has changed since
-    /// it was asked last.
+    /// One level that may change during the game. `changes` is called a few times a second. If the
+    /// level has changed since the last call, it returns the new level or its faults.
     pub fn changing(
         level: Level,
         changes: impl FnMut() -> Option<Result<Level, Faults>> + 'static,
@@ -46,7 +45,7 @@ impl Levels {
         Self { changes: Some(Box::new(changes)), ..Self::new(level, iter::empty()) }
     }
 
-    /// With the first being `number`, counted from 1, of so many levels.
+    /// Sets the number of the first level, counted from 1, and the number of levels.
     #[must_use]
     pub fn numbered(self, number: usize, of: usize) -> Self {
         Self { number: LevelNumber { number, of: Some(of) }, ..self }
@@ -63,18 +62,18 @@ impl Levels {
 }
 
 impl LevelNumber {
-    /// That of the level after this one.
+    /// The number of the next level.
     #[must_use]
     pub(super) fn next(self) -> Self {
         Self { number: self.number + 1, ..self }
     }
 
-    /// Whether there are several levels, as far as anybody knows.
+    /// Whether there are several levels, as far as known.
     pub(super) fn is_one_of_several(self) -> bool {
         self.number > 1 || self.of.is_some_and(|count| count > 1)
     }
 
-    /// As `2/5`.
+    /// Writes the number as `2/5`.
     pub(super) fn write_short(self, to: &mut impl fmt::Write) -> fmt::Result {
         match self.of {
             Some(count) => write!(to, "{}/{count}", self.number),

@@ -1,4 +1,4 @@
-//! The minimap in its panel: what of the map has been seen, how large it is, and which part shows.
+//! The minimap's panel: the seen cells, the zoom, and the part that is shown.
 
 use glam::DVec2;
 
@@ -8,22 +8,22 @@ use crate::game::Game;
 use crate::tui::{Explored, Minimap, View};
 use crate::world::Camera;
 
-/// What the minimap keeps from one frame to the next.
+/// The state of the minimap between frames.
 #[derive(Clone, Debug)]
 pub(super) struct MapPanel {
     pub(super) is_shown: bool,
     display: MapDisplay,
     explored: Explored,
     zoom: i32,
-    /// How far the part that shows has been moved away from the player, in cells.
+    /// How far the shown part has been moved away from the player, in cells.
     offset: DVec2,
-    /// How many cells showed last from left to right and from top to bottom.
+    /// The numbers of cells shown last from left to right and from top to bottom.
     extent: DVec2,
 }
 
-/// How far one can zoom in or out, in levels.
+/// The most levels of zoom in each direction.
 const MOST_ZOOM: i32 = 6;
-/// Which part of what shows the map is moved by at once.
+/// The share of the shown part by which the map is moved at once.
 const MOVED_BY: f64 = 0.25;
 
 impl MapPanel {
@@ -38,14 +38,14 @@ impl MapPanel {
         }
     }
 
-    /// Forgets the level.
+    /// Resets the panel for a new level.
     pub(super) fn begin_level(&mut self) {
         self.explored = Explored::default();
         self.offset = DVec2::ZERO;
     }
 
-    /// Takes note of what `camera` sees in a picture of so many columns.
-    pub(super) fn look(&mut self, game: &Game, camera: &Camera, columns: u16) {
+    /// Adds the cells that `camera` sees in a picture with that many columns.
+    pub(super) fn explore(&mut self, game: &Game, camera: &Camera, columns: u16) {
         if self.display == MapDisplay::All {
             return;
         }
@@ -55,13 +55,13 @@ impl MapPanel {
         self.explored.look(game.world(), camera, columns.into());
     }
 
-    /// Which part of the level has been seen, where that is counted.
+    /// The share of the level that has been seen, if that is counted.
     pub(super) fn share_seen(&self, game: &Game) -> Option<f64> {
         let is_counted = self.display != MapDisplay::All && game.corner().is_none();
         is_counted.then(|| self.explored.share())
     }
 
-    /// Shows it larger, smaller, or another part of it.
+    /// Applies a change of the zoom or of the shown part.
     pub(super) fn change(&mut self, change: MapChange) {
         let by = self.extent * MOVED_BY;
         match change {
@@ -75,7 +75,7 @@ impl MapPanel {
         }
     }
 
-    /// The map of `game` as `camera` and the rays of `view` have it.
+    /// The minimap of `game`, with the camera and the rays of the picture.
     pub(super) fn minimap<'a>(
         &'a self,
         game: &'a Game,
@@ -92,7 +92,8 @@ impl MapPanel {
         }
     }
 
-    /// Takes note that so many cells showed. What is off the map is no further away to move back from.
+    /// Records that `extent` cells were shown. The offset is limited to the map, so that no key
+    /// presses are needed to come back from outside.
     pub(super) fn shown(&mut self, extent: DVec2, game: &Game, camera: &Camera) {
         let grid = game.world().grid();
         let size = DVec2::new(f64::from(grid.width()), f64::from(grid.height()));

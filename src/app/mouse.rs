@@ -1,12 +1,12 @@
-//! The mouse: moving its pointer turns and tilts, its buttons open and jump.
+//! The mouse: its motion turns and tilts the view, its buttons open and jump.
 //!
-//! Terminals tell where the pointer is and never how far the mouse was moved, so the player turns by
-//! the difference between two places. Where the pointer rests at the left or the right edge of the
-//! window, it can go no further, and the player goes on turning; once around at the most, since nobody
-//! tells that the pointer has left the window for good.
+//! Terminals report the position of the pointer, not the motion of the mouse, so the player turns
+//! by the difference of two positions. At the left and the right edge of the window the pointer can
+//! go no further, and the player keeps turning while it rests there. That ends after one full turn,
+//! since terminals do not report that the pointer has left the window.
 //!
-//! Places become angles first, and angles are subtracted: what is rounded never adds up, and a pointer
-//! that comes back to where it was has turned nothing.
+//! Positions are converted to angles first, and then subtracted: rounding errors do not add up, and
+//! a pointer that returns to its position has turned the player by nothing.
 
 use std::time::Duration;
 
@@ -14,76 +14,77 @@ use super::{App, Screen};
 use crate::game::{Intent, Intents, Look, STEPS_PER_SECOND};
 use crate::terminal::{MouseButton, MouseEvent, MouseEventKind};
 
-/// By how much a motion across a cell turns, and one along its height tilts, in degrees.
+/// The angle by which a motion across a cell turns or tilts, in degrees.
 const DEGREES_PER_CELL: i32 = 2;
-/// How fast the player turns while the pointer rests at an edge, in degrees per second.
+/// The speed of turning while the pointer is at an edge, in degrees per second.
 const DEGREES_PER_SECOND: i32 = 90;
-/// For so many steps: once around.
+/// The number of steps of turning at an edge: one full turn.
 const EDGE_STEPS: u32 = 360 * STEPS_PER_SECOND / DEGREES_PER_SECOND as u32;
-/// One in so many columns is at an edge, and one more: a pointer that leaves the window quickly is last
-/// seen a little before it.
+/// The width of an edge is one column, plus one for each 80 columns: the last reported position of
+/// a pointer that leaves the window quickly is a little inside of it.
 const COLUMNS_PER_EDGE_COLUMN: i32 = 80;
 
-/// Where the pointer is, and what it has done that no step knows of yet.
+/// The position of the pointer, and its motion and clicks since the last step.
 #[derive(Clone, Copy, Debug, Default)]
 pub(super) struct Pointer {
     is_on: bool,
     columns: u16,
-    /// From the upper left corner, in units of [`Look`]; `None` where nobody knows.
-    place: Option<[i32; 2]>,
-    /// How far it has moved since the last step, likewise.
+    /// Measured from the upper left corner, in units of [`Look`]; `None` if unknown.
+    position: Option<[i32; 2]>,
+    /// The motion since the last step, in the same units.
     moved: [i32; 2],
-    /// What its buttons want of the next step.
+    /// The intents of the buttons for the next step.
     clicked: Intents,
-    /// At which edge it rests, 1 for the right one, and for how many more steps that counts.
+    /// The edge at which the pointer rests, −1 for the left and 1 for the right one, and the
+    /// remaining number of steps for which it turns the player.
     edge: Option<(i16, u32)>,
 }
 
 impl Pointer {
-    /// One that is on from the start, or off.
+    /// A pointer that is on or off at first.
     pub(super) fn new(is_on: bool) -> Self {
         Self { is_on, ..Self::default() }
     }
 
-    /// Whether it turns the player.
+    /// Whether the mouse turns the player.
     pub(super) fn is_on(&self) -> bool {
         self.is_on
     }
 
-    /// On where it was off, and off where it was on.
+    /// Switches between on and off.
     pub(super) fn toggle(&mut self) {
         *self = Self { is_on: !self.is_on, columns: self.columns, ..Self::default() };
     }
 
-    /// Nobody knows where it is.
+    /// Forgets the position.
     pub(super) fn forget(&mut self) {
         *self = Self { is_on: self.is_on, columns: self.columns, ..Self::default() };
     }
 
-    /// The window is so wide now.
+    /// Sets the width of the window.
     pub(super) fn set_columns(&mut self, columns: u16) {
         self.columns = columns;
         self.forget();
     }
 
-    /// It is at that place now, in the units of [`MouseEvent`].
+    /// Moves the pointer to a position in units of [`MouseEvent`].
     fn move_to(&mut self, x: u32, y: u32) {
         let units_per_cell = MouseEvent::UNITS_PER_CELL as i32;
-        let place = [x, y].map(|units| {
+        let position = [x, y].map(|units| {
             units as i32 * DEGREES_PER_CELL * i32::from(Look::PER_DEGREE) / units_per_cell
         });
-        let before = self.place.replace(place).unwrap_or(place);
-        let [right, down] = [place[0] - before[0], place[1] - before[1]];
+        let before = self.position.replace(position).unwrap_or(position);
+        let [right, down] = [position[0] - before[0], position[1] - before[1]];
         let half_a_window =
             i32::from(self.columns) * DEGREES_PER_CELL * i32::from(Look::PER_DEGREE) / 2;
-        // What is further was outside of the window meanwhile.
+        // For a longer motion, the pointer was outside of the window.
         if right.abs() <= half_a_window {
             self.moved = [self.moved[0] + right, self.moved[1] + down];
         }
         self.edge = self.edge_at(x as i32 / units_per_cell).map(|edge| (edge, EDGE_STEPS));
     }
 
-    /// The edge that `column` is at.
+    /// The edge at `column`.
     fn edge_at(&self, column: i32) -> Option<i16> {
         let columns = i32::from(self.columns);
         let at_edge = 1 + columns / COLUMNS_PER_EDGE_COLUMN;
@@ -95,7 +96,7 @@ impl Pointer {
         (to_the_left || to_the_right).then_some(if to_the_left { -1 } else { 1 })
     }
 
-    /// By how much the player turns and tilts in the next step.
+    /// The turn and tilt of the next step.
     fn look(&self) -> Look {
         let at_edge = self.edge.map_or(0, |(edge, _)| {
             i32::from(edge) * DEGREES_PER_SECOND * i32::from(Look::PER_DEGREE)
@@ -105,12 +106,12 @@ impl Pointer {
         Look { turn: within(self.moved[0] + at_edge), tilt: within(-self.moved[1]) }
     }
 
-    /// Whether it was moved or clicked since the last step.
-    pub(super) fn has_news(&self) -> bool {
+    /// Whether there was motion or a click since the last step.
+    pub(super) fn has_input(&self) -> bool {
         self.moved != [0, 0] || !self.clicked.is_empty()
     }
 
-    /// So many steps have passed that took [`Pointer::look`] into account.
+    /// Records that `steps` steps have used [`Pointer::look`].
     pub(super) fn passed(&mut self, steps: u64) {
         if steps == 0 {
             return;
@@ -125,7 +126,7 @@ impl Pointer {
 }
 
 impl App {
-    /// The mouse was moved, or a button pressed, at that time.
+    /// Handles an event of the mouse at time `now`.
     pub(super) fn mouse(&mut self, event: MouseEvent, now: Duration) {
         self.advance(now);
         if !self.pointer.is_on {
@@ -145,7 +146,7 @@ impl App {
         }
     }
 
-    /// What the player wants in the next step, by keys and by the mouse.
+    /// The player's intents for the next step, by keys and mouse.
     pub(super) fn wanted(&self) -> Intents {
         let keys = self.intents();
         keys.iter()
@@ -170,7 +171,7 @@ mod tests {
     const CELL: u32 = MouseEvent::UNITS_PER_CELL;
 
     #[test]
-    fn the_first_place_turns_nothing_and_a_cell_is_two_degrees() {
+    fn the_first_position_turns_nothing_and_a_cell_is_two_degrees() {
         let mut pointer = on(80);
         pointer.move_to(40 * CELL, 10 * CELL);
         assert_eq!(pointer.look(), Look::NONE);
@@ -183,7 +184,7 @@ mod tests {
     }
 
     #[test]
-    fn at_an_edge_the_player_turns_on_but_not_for_ever() {
+    fn at_an_edge_the_player_makes_one_turn() {
         let mut pointer = on(80);
         pointer.move_to(50 * CELL, 10 * CELL);
         pointer.move_to(79 * CELL, 10 * CELL);
@@ -193,7 +194,7 @@ mod tests {
             turned += i32::from(pointer.look().turn);
             pointer.passed(1);
         }
-        // The step that took the motion was one of them.
+        // The first step is the one that used the motion.
         assert_eq!(turned, 360 * 100 - 150);
         pointer.move_to(0, 10 * CELL);
         assert_eq!(pointer.look().turn, -150, "it came from the other side of the window");
@@ -213,13 +214,13 @@ mod tests {
 
     proptest! {
         #[test]
-        fn who_comes_back_has_turned_nothing(
-            places in prop::collection::vec((20 * CELL..60 * CELL, 0..24 * CELL), 1..40),
+        fn returning_to_a_position_turns_nothing(
+            positions in prop::collection::vec((20 * CELL..60 * CELL, 0..24 * CELL), 1..40),
             cuts in prop::collection::vec(any::<bool>(), 40),
         ) {
             let mut pointer = on(80);
             let mut sum = [0, 0];
-            for (&(x, y), &cut) in places.iter().chain(&places[..1]).zip(cuts.iter().chain(&cuts)) {
+            for (&(x, y), &cut) in positions.iter().chain(&positions[..1]).zip(cuts.iter().chain(&cuts)) {
                 pointer.move_to(x, y);
                 if cut {
                     let look = pointer.look();

@@ -1,4 +1,4 @@
-//! What shows on the picture and around it: the minimap's frame, and messages.
+//! Panels on the picture: the minimap's frame, and messages.
 
 use std::fmt::{self, Display};
 
@@ -15,16 +15,16 @@ use crate::canvas::Canvas;
 use crate::terminal::Key;
 use crate::tui::Minimap;
 
-/// The least that can be played in.
+/// The smallest window to play in.
 const LEAST_COLUMNS: u16 = 20;
 const LEAST_ROWS: u16 = 6;
-/// The least picture that leaves room for a minimap.
+/// The smallest picture with room for a minimap.
 const LEAST_WITH_MINIMAP: (u16, u16) = (36, 12);
-/// The largest minimap: more would hide too much of the picture.
+/// The largest minimap: a larger one would hide too much of the picture.
 const LARGEST_MINIMAP: (u16, u16) = (40, 20);
-/// What the borders of a panel take of its width and height.
+/// The columns or rows that the borders of a panel take.
 pub(super) const BORDERS: u16 = 2;
-/// What a message leaves blank to its left and right.
+/// The columns that a message leaves blank at both sides.
 pub(super) const PADDING: u16 = 2;
 
 /// Whether `area` is too small to play in.
@@ -32,20 +32,21 @@ pub(super) fn is_too_small(area: Rect) -> bool {
     area.width < LEAST_COLUMNS || area.height < LEAST_ROWS
 }
 
-/// Says so.
+/// Draws the message that the window is too small.
 pub(super) fn too_small(canvas: &mut impl Canvas) {
     let text = format!("Too small to play: {LEAST_COLUMNS}×{LEAST_ROWS} at least.");
     canvas.draw_widget(Paragraph::new(text).wrap(Wrap { trim: true }), canvas.bounds());
 }
 
-/// Where the picture and the status line go.
+/// The areas of the picture and of the status line.
 pub(super) fn picture_and_status(area: Rect) -> [Rect; 2] {
     let picture = Rect { height: area.height.saturating_sub(1), ..area };
     let status = Rect { y: picture.bottom(), height: area.height - picture.height, ..area };
     [picture, status]
 }
 
-/// Where the panel of `map` goes, in the upper right corner of the picture, if there is room for it.
+/// The area of the panel of `map`, in the upper right corner of the picture, if there is room for
+/// it.
 pub(super) fn minimap(picture: Rect, map: &Minimap) -> Option<Rect> {
     let (least_columns, least_rows) = LEAST_WITH_MINIMAP;
     if picture.width < least_columns || picture.height < least_rows {
@@ -60,9 +61,10 @@ pub(super) fn minimap(picture: Rect, map: &Minimap) -> Option<Rect> {
     Some(Rect { x: picture.right() - width, y: picture.y, width, height })
 }
 
-/// Draws the border of a panel, with a title, and tells where its inside is.
+/// Draws the border of a panel with a title, and returns the area inside.
 ///
-/// It goes side by side: what is inside a minimap would be blanked for nothing.
+/// Each side is drawn separately, because a whole block would also clear the inside, which a
+/// minimap fills anyway.
 pub(super) fn framed(canvas: &mut impl Canvas, area: Rect, title: &str) -> Rect {
     let inside = Block::bordered().inner(area);
     let row = |y| Rect { y, height: area.height.min(1), ..area };
@@ -74,31 +76,31 @@ pub(super) fn framed(canvas: &mut impl Canvas, area: Rect, title: &str) -> Rect 
     ] {
         canvas.draw_widget(Block::new().borders(sides), area);
     }
-    canvas.draw_widget(Lid { title }, row(area.top()));
+    canvas.draw_widget(TopBorder { title }, row(area.top()));
     inside
 }
 
-/// The upper side of a panel, with a title. A block of ratatui's keeps its title in a list, which is too
-/// much for what is drawn with each frame.
-struct Lid<'a> {
+/// The upper side of a panel, with a title. A ratatui block allocates a list for its titles, which
+/// costs too much in each frame.
+struct TopBorder<'a> {
     title: &'a str,
 }
 
-impl Widget for Lid<'_> {
+impl Widget for TopBorder<'_> {
     fn render(self, area: Rect, buffer: &mut Buffer) {
         Block::new().borders(Borders::TOP | Borders::LEFT | Borders::RIGHT).render(area, buffer);
         Span::raw(self.title).render(area.inner(Margin::new(1, 0)), buffer);
     }
 }
 
-/// A level, and how far the player is in it.
+/// A level and the player's progress in it.
 pub(super) struct Progress<'a> {
     pub(super) game: &'a Played,
     pub(super) level: LevelNumber,
 }
 
 impl Progress<'_> {
-    /// The level's title, and its number where it is one of several.
+    /// The level's title and, if there are several levels, its number.
     fn level(&self) -> String {
         let title = self.game.title();
         if self.level.is_one_of_several() {
@@ -109,7 +111,7 @@ impl Progress<'_> {
     }
 }
 
-/// That the game waits; what there is to do, and how far it is.
+/// Draws the panel of a paused game: the goal, the level and the progress.
 pub(super) fn paused(
     canvas: &mut impl Canvas,
     picture: Rect,
@@ -125,7 +127,7 @@ pub(super) fn paused(
     message(canvas, picture, "paused", Text::from(text).centered());
 }
 
-/// Whether the player wants to leave.
+/// Draws the question whether to leave.
 pub(super) fn leaving(canvas: &mut impl Canvas, picture: Rect, bindings: &Bindings) {
     let leave = bindings.keys(Action::Leave).find(|&key| key != Key::Escape);
     let keys = leave.map_or_else(String::new, |key| format!("{key} or "));
@@ -133,20 +135,20 @@ pub(super) fn leaving(canvas: &mut impl Canvas, picture: Rect, bindings: &Bindin
     message(canvas, picture, "leave?", Text::from(text).centered());
 }
 
-/// That the exit was reached, and how soon.
+/// Draws the message that the exit was reached, with the time.
 pub(super) fn level_done(canvas: &mut impl Canvas, picture: Rect, progress: &Progress) {
     let seconds = time(progress.game.elapsed());
     let text = format!("{}\nin {seconds}\nEnter goes on", progress.level());
     message(canvas, picture, "you found the way out", Text::from(text).centered());
 }
 
-/// That there are no more levels, and how soon the player got through them.
+/// Draws the message after the last level, with the time of all levels.
 pub(super) fn end(canvas: &mut impl Canvas, picture: Rect, seconds: f64) {
     let text = format!("all levels\nin {}\nEnter leaves", time(seconds));
     message(canvas, picture, "the end", Text::from(text).centered());
 }
 
-/// A panel in the middle of the picture, as large as `text` needs.
+/// Draws a panel in the middle of the picture, as large as `text` needs.
 fn message(canvas: &mut impl Canvas, picture: Rect, title: &str, text: Text) {
     let widest = text.width().max(title.len()) as u16;
     let width = Constraint::Length(widest.saturating_add(BORDERS + PADDING));
@@ -163,7 +165,7 @@ pub(super) fn key_names(bindings: &Bindings, action: Action) -> String {
     names.join(" ")
 }
 
-/// Minutes and seconds.
+/// Formats minutes and seconds.
 pub(super) fn whole_seconds(seconds: f64) -> impl Display {
     let seconds = seconds as u64;
     WholeSeconds { minutes: seconds / 60, seconds: seconds % 60 }
@@ -180,7 +182,7 @@ impl Display for WholeSeconds {
     }
 }
 
-/// Minutes, seconds and tenths.
+/// Formats minutes, seconds and tenths.
 fn time(seconds: f64) -> String {
     let tenths = (seconds * 10.0) as u64;
     format!("{}:{:02}.{}", tenths / 600, tenths / 10 % 60, tenths % 10)

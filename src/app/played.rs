@@ -1,6 +1,7 @@
-//! What is played: a walk in a grid, or a flight among bodies.
+//! The level that is played: a game in a grid, or a flight among bodies.
 //!
-//! Whatever both have goes through [`Simulation`]. What only a grid has goes through [`Played::grid`].
+//! [`Simulation`] is the interface of both, and [`Played::grid`] gives access to the rest of a game
+//! in a grid.
 
 use std::fmt;
 use std::ops::{Deref, DerefMut};
@@ -8,7 +9,7 @@ use std::ops::{Deref, DerefMut};
 use glam::DVec3;
 use ratatui::layout::Rect;
 
-use super::Look;
+use super::DrawOptions;
 use crate::canvas::Canvas;
 use crate::game::{Flight, Game, Intents};
 use crate::generate::Site;
@@ -18,62 +19,62 @@ use crate::space;
 use crate::tui::{FirstPerson, View};
 use crate::world::{FieldOfView, Heading};
 
-/// A level, as far as it has been played.
+/// A level that is being played.
 #[derive(Debug)]
 pub(super) enum Played {
     Grid(Box<Game>),
     Space(Box<Flight>),
 }
 
-/// A level that advances in steps.
+/// A game that advances in steps.
 pub(super) trait Simulation: fmt::Debug {
-    /// The level's title, or what stands for it where the map gives none.
+    /// The level's title, or a substitute if the map gives none.
     fn title(&self) -> &str;
 
-    /// Where the player looks from.
+    /// The player's position and direction of view.
     fn viewpoint(&self, field_of_view: FieldOfView) -> Viewpoint;
 
-    /// Seconds since the level began, counted in steps.
+    /// The seconds since the level began, counted in steps.
     fn elapsed(&self) -> f64;
 
-    /// A number that grows whenever anything visible changes, other than the viewpoint.
+    /// A number that grows with every visible change other than that of the viewpoint.
     fn revision(&self) -> u64;
 
     fn is_finished(&self) -> bool;
 
-    /// For how many steps with these intents only the clock changes.
+    /// The number of steps with these intents in which only the clock changes.
     fn quiet_steps(&self, intents: Intents) -> u64;
 
     fn step(&mut self, intents: Intents);
 
-    /// Advances the clock by `steps` in which nothing moves.
+    /// Advances the clock by `steps` steps in which nothing moves.
     fn wait(&mut self, steps: u64);
 }
 
-/// Where the player looks from, in a grid and among bodies alike.
+/// The player's position and direction of view, in a grid or among bodies.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub(super) struct Viewpoint {
     position: DVec3,
     heading: Heading,
-    /// How far up: the slope of a pitch, or the radians of an elevation.
+    /// The direction upwards: the slope of a pitch, or an elevation in radians.
     upwards: f64,
     field_of_view: FieldOfView,
 }
 
-/// What drawing keeps from one frame to the next.
+/// The state of both views between frames.
 #[derive(Default)]
-pub(super) struct Memory {
+pub(super) struct Views {
     pub(super) grid: View,
     space: View<space::Scene>,
 }
 
-impl Memory {
+impl Views {
     pub(super) fn new(grid: View) -> Self {
         Self { grid, ..Self::default() }
     }
 
-    /// The time on the game's clock at which something in the last picture looks different by itself;
-    /// `None` for never.
+    /// The game time of the next change in the last picture that the player does not cause; `None`
+    /// for never.
     pub(super) fn next_change(&self) -> Option<f64> {
         self.grid.next_change()
     }
@@ -87,7 +88,7 @@ impl Played {
         }
     }
 
-    /// A game of `level` that begins where this one is, if it can.
+    /// Begins `level` at the player's position in this game, if possible.
     pub(super) fn begun_again_in(&self, level: Level) -> Self {
         match (self, level) {
             (Self::Grid(game), Level::Grid(world)) => {
@@ -100,7 +101,7 @@ impl Played {
         }
     }
 
-    /// The game, where it is one in a grid.
+    /// The game, if it is in a grid.
     pub(super) fn grid(&self) -> Option<&Game> {
         match self {
             Self::Grid(game) => Some(game),
@@ -108,17 +109,17 @@ impl Played {
         }
     }
 
-    /// What the map tells the player to do.
+    /// The goal that the map gives.
     pub(super) fn goal(&self) -> Option<&str> {
         self.grid()?.world().goal()
     }
 
-    /// Whether there is a way out to find.
+    /// Whether the level has an exit.
     pub(super) fn has_exit(&self) -> bool {
         self.grid().is_some_and(Game::has_exit)
     }
 
-    /// Where the player is in a generated level.
+    /// The player's cell in a generated level.
     pub(super) fn site(&self) -> Option<Site> {
         self.grid()?.site()
     }
@@ -128,7 +129,7 @@ impl Played {
         self.grid().into_iter().flat_map(Game::keys)
     }
 
-    /// What there is to tell the player.
+    /// The message for the player.
     pub(super) fn message(&self) -> Option<&str> {
         self.grid()?.message()
     }
@@ -137,28 +138,28 @@ impl Played {
         self.grid().is_some_and(Game::is_airborne)
     }
 
-    /// Whether there is no floor, and ducking leads downwards.
+    /// Whether the player flies, so that ducking moves down.
     pub(super) fn flies(&self) -> bool {
         self.grid().is_none()
     }
 
-    /// Draws what the player sees.
+    /// Draws the player's view.
     pub(super) fn draw(
         &self,
-        look: &Look,
+        options: &DrawOptions,
         canvas: &mut impl Canvas,
         area: Rect,
-        memory: &mut Memory,
+        views: &mut Views,
     ) {
         let seconds = self.elapsed();
         match self {
             Self::Grid(game) => {
-                let camera = game.camera(look.field_of_view);
-                look.draw(game.world(), &camera, seconds, canvas, area, &mut memory.grid);
+                let camera = game.camera(options.field_of_view);
+                options.draw(game.world(), &camera, seconds, canvas, area, &mut views.grid);
             }
             Self::Space(flight) => {
-                let camera = flight.camera(look.field_of_view);
-                look.draw(flight.scene(), &camera, seconds, canvas, area, &mut memory.space);
+                let camera = flight.camera(options.field_of_view);
+                options.draw(flight.scene(), &camera, seconds, canvas, area, &mut views.space);
             }
         }
     }
@@ -184,8 +185,8 @@ impl DerefMut for Played {
     }
 }
 
-impl Look {
-    /// Draws what `camera` sees of `scene` at that time.
+impl DrawOptions {
+    /// Draws `scene` from `camera` at the time `seconds`.
     fn draw<S: Renderable>(
         &self,
         scene: &S,

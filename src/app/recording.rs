@@ -1,4 +1,4 @@
-//! What is noted down while the game is played.
+//! Recordings of a game while it is played.
 
 use std::fmt;
 use std::io::Write;
@@ -7,19 +7,19 @@ use super::App;
 use crate::game::{self, Intents};
 use crate::terminal;
 
-/// What of a game is to be noted down; by default, nothing.
+/// The recordings to make of a game; by default, none.
 #[derive(Default)]
 pub struct Recording {
-    /// Everything that the terminal is sent.
+    /// Receives every byte that is sent to the terminal.
     pub terminal: Option<Box<dyn terminal::Recorder>>,
-    /// What the player wants, as a script that gives the same game when it is [replayed]. What only
-    /// concerns the view, and the time that passes while the game waits, is not in it.
+    /// Receives the player's intents, as a script that gives the same game when it is [replayed].
+    /// Changes of the view only, and time during a pause, are not part of it.
     ///
     /// [replayed]: super::Replay
     pub script: Option<ScriptRecorder>,
 }
 
-/// What writes a script while the game is played.
+/// Writes a script while the game is played.
 pub(super) type ScriptRecorder = game::Recorder<Box<dyn Write>>;
 
 impl fmt::Debug for Recording {
@@ -32,10 +32,11 @@ impl fmt::Debug for Recording {
 }
 
 impl App {
-    /// Notes down that the player has wanted `intents` for `steps` steps.
+    /// Records that the player had `intents` for `steps` steps.
     pub(super) fn record(&mut self, intents: Intents, steps: u64) {
         if let Some(script) = &mut self.script {
-            // The game goes on where the recording can't: who gave the file asks it how it went.
+            // The game continues if recording fails. The owner of the file asks for the error
+            // later.
             _ = script.record(intents, steps);
         }
     }

@@ -1,7 +1,8 @@
-//! A level that changes while it is played: its author edits the map.
+//! Reloading: a level that changes while it is played, because its author edits the map.
 //!
-//! The game asks for changes a few times a second. To be told of them by the system was refused: an
-//! event library takes a thread and a wakeup of the loop, and has to follow files that editors replace.
+//! The game checks for changes a few times a second. File events of the system were refused: a
+//! library for them needs a thread and wakes the loop, and has to follow files that editors
+//! replace.
 
 use std::time::Duration;
 
@@ -14,32 +15,32 @@ use crate::canvas::Canvas;
 use crate::fault::Faults;
 use crate::map::Level;
 
-/// Between two looks for changes.
+/// The time between two checks.
 const INTERVAL: Duration = Duration::from_millis(200);
 
-/// Answers with the level, or with what is wrong with it, where it has changed.
+/// Returns the level or its faults, if it has changed.
 pub(super) type Changes = Box<dyn FnMut() -> Option<Result<Level, Faults>>>;
 
-/// Where changes come from, and what was wrong with the last one.
+/// The source of changes, and the faults of the last one.
 pub(super) struct Reload {
     changes: Changes,
-    next_look: Duration,
+    next_check: Duration,
     fault: Option<String>,
 }
 
 impl Reload {
     pub(super) fn from(changes: Changes) -> Self {
-        Self { changes, next_look: INTERVAL, fault: None }
+        Self { changes, next_check: INTERVAL, fault: None }
     }
 }
 
 impl App {
-    /// Goes on in the level as it is now, if it is time to look for changes and there is one.
+    /// Checks for a change when it is time, and continues in the changed level.
     pub(super) fn reload(&mut self, now: Duration) {
-        let Some(reload) = self.reload.as_mut().filter(|reload| now >= reload.next_look) else {
+        let Some(reload) = self.reload.as_mut().filter(|reload| now >= reload.next_check) else {
             return;
         };
-        reload.next_look = now + INTERVAL;
+        reload.next_check = now + INTERVAL;
         match (reload.changes)() {
             None => {}
             Some(Ok(level)) => {
@@ -60,12 +61,12 @@ impl App {
         }
     }
 
-    /// When to look for changes again; `None` for never.
+    /// The time of the next check; `None` for never.
     pub(super) fn next_reload(&self) -> Option<Duration> {
-        self.reload.as_ref().map(|reload| reload.next_look)
+        self.reload.as_ref().map(|reload| reload.next_check)
     }
 
-    /// Draws what is wrong with the level, if anything is, over the foot of the picture.
+    /// Draws the faults of the level, if any, over the bottom of the picture.
     pub(super) fn draw_fault(&self, canvas: &mut impl Canvas, picture: Rect) {
         let fault = self.reload.as_ref().and_then(|reload| reload.fault.as_ref());
         let Some(fault) = fault else { return };

@@ -1,4 +1,4 @@
-//! The game played by a script, off screen.
+//! Replays: the game played by a script, off screen.
 
 use std::fmt;
 use std::num::NonZeroU32;
@@ -10,23 +10,23 @@ use super::{App, Levels, Screen, Settings};
 use crate::canvas::Canvas;
 use crate::game::{Intents, STEPS_PER_SECOND, Script};
 
-/// A game that no terminal shows, one step at a time: the picture, minimap and status line that a
-/// player would see who wants the same things.
+/// A game without a terminal, one step at a time. It draws the picture, minimap and status line
+/// that a player with the same intents would see.
 ///
-/// Where a level's exit is reached, the next step is the first one of the next level.
+/// After a level's exit is reached, the next step is the first one of the next level.
 pub struct Replay {
     app: App,
     picture: Buffer,
 }
 
 impl Replay {
-    /// The beginning of `levels`, in a window of `size`.
+    /// Begins `levels` in a window of `size`.
     pub fn new(levels: Levels, settings: Settings, size: Size) -> Self {
         let area = Rect::from(size);
         Self { app: App::new(levels, settings), picture: Buffer::empty(area) }
     }
 
-    /// Lets a step pass in which the player wants `intents`.
+    /// Advances by one step with `intents`.
     pub fn step(&mut self, intents: Intents) {
         if self.app.screen == Screen::LevelDone {
             self.app.next_level();
@@ -40,11 +40,12 @@ impl Replay {
         }
     }
 
-    /// Plays `script`, and shows its pictures, so many a second: the first from before the first
-    /// step, each with its number and the place of the section that led to it.
+    /// Plays `script` and calls `show` with its frames, `frames_per_second` per second; the first
+    /// shows the state before the first step. The arguments are the frame's number, the section of
+    /// the script that led to it, and its cells.
     ///
     /// # Errors
-    /// The first that `show` has.
+    /// The first error of `show`.
     pub fn play<E>(
         &mut self,
         script: &Script,
@@ -64,12 +65,12 @@ impl Replay {
         Ok(())
     }
 
-    /// Draws what there is to see now.
+    /// Draws the current state.
     pub fn draw(&mut self, canvas: &mut impl Canvas) {
         self.app.draw(canvas);
     }
 
-    /// What the window shows now. As in a game, a picture stays as it is where nothing has moved.
+    /// The current picture. As in a game, it is redrawn only if something has changed.
     pub fn picture(&mut self) -> &Buffer {
         if self.app.is_stale() {
             self.picture.reset();

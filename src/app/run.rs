@@ -1,7 +1,7 @@
-//! The loop around the game: it has a terminal and a clock.
+//! The main loop, which has a terminal and a clock.
 //!
-//! It sleeps until a key, a signal or the next frame is due; while nothing moves there is no next
-//! frame, so nothing is computed and nothing written.
+//! It sleeps until a key, a signal or the next frame is due. While nothing moves there is no next
+//! frame, so that nothing is computed or written.
 
 use std::env;
 use std::time::{Duration, Instant};
@@ -13,11 +13,11 @@ use crate::terminal::Key;
 use crate::terminal::{Detected, Error, Event, Options, Session, locale_without_utf8};
 use crate::tui::{CellAspect, GlyphMode};
 
-/// Plays `levels` on the terminal until the player leaves or somebody else ends the program, and
-/// notes down what `recording` asks for.
+/// Plays `levels` on the terminal until the player leaves or the program is ended from outside, and
+/// makes the recordings in `recording`.
 ///
 /// # Errors
-/// Where there is no terminal, or it fails.
+/// If there is no terminal, or if it fails.
 pub fn play(levels: Levels, settings: Settings, recording: Recording) -> Result<(), Error> {
     let mut options = Options::from_environment(|name| env::var(name).ok());
     if let Some(depth) = settings.depth {
@@ -32,7 +32,7 @@ pub fn play(levels: Levels, settings: Settings, recording: Recording) -> Result<
     app.script = recording.script;
     app.detection.ascii_locale = ascii_locale;
     app.detection.reports_releases = (!options.ask_for_key_releases).then_some(false);
-    tell_terminal(&mut app, &session);
+    update_terminal(&mut app, &session);
     let start = Instant::now();
     while !app.has_left {
         app.advance(start.elapsed());
@@ -50,7 +50,7 @@ pub fn play(levels: Levels, settings: Settings, recording: Recording) -> Result<
             }
             Some(Event::Mouse(event)) => app.mouse(event, start.elapsed()),
             Some(Event::FocusLost) => app.focus_lost(start.elapsed()),
-            Some(Event::Resized | Event::ColorDepth(_)) => tell_terminal(&mut app, &session),
+            Some(Event::Resized | Event::ColorDepth(_)) => update_terminal(&mut app, &session),
             Some(Event::KeyReleases(reported)) => {
                 app.controls.held.set_reports_releases(reported);
                 app.detection.reports_releases = Some(reported);
@@ -65,11 +65,12 @@ pub fn play(levels: Levels, settings: Settings, recording: Recording) -> Result<
     Ok(())
 }
 
-/// What shows the game: no sooner than the pace allows and the terminal is ready, always the newest.
+/// Shows the newest state of the game, at most at the given frame rate and only when the terminal
+/// is ready.
 struct Presenter {
     frame_time: Duration,
     next_frame: Duration,
-    /// Whether the terminal was not ready when a frame was due, and will tell when it is.
+    /// Whether a frame is due and the terminal is not ready; it will report when it is.
     waits: bool,
     meter: Meter,
 }
@@ -80,7 +81,7 @@ impl Presenter {
         Self { frame_time, next_frame: Duration::ZERO, waits: false, meter }
     }
 
-    /// Shows what there is to show, if it is time for it.
+    /// Draws or refines a frame, if one is due.
     fn update(&mut self, app: &mut App, session: &mut Session, now: Duration) -> Result<(), Error> {
         let is_due = is_unfinished(app, session) && now >= self.next_frame;
         self.waits = is_due && !session.is_ready();
@@ -94,7 +95,8 @@ impl Presenter {
         } else {
             session.refine()?;
         }
-        // Counted from when this frame was due, or the time that drawing takes would slow them down.
+        // Counted from the time at which this frame was due: the time for drawing must not slow
+        // frames down.
         self.next_frame = Some(self.next_frame + self.frame_time)
             .filter(|&next| now < next)
             .unwrap_or(now + self.frame_time);
@@ -102,17 +104,17 @@ impl Presenter {
     }
 
     fn measure(&mut self, app: &mut App, session: &Session, now: Duration) {
-        if let Some(pace) = self.meter.frame(now, session.bytes_written()) {
+        if let Some(rates) = self.meter.frame(now, session.bytes_written()) {
             let (round_trip, fidelity) = (session.round_trip(), session.fidelity());
             let wants_compression = session.is_limited_by_network();
-            app.stats = Some(Stats { pace, round_trip, fidelity, wants_compression });
+            app.stats = Some(Stats { rates, round_trip, fidelity, wants_compression });
         }
     }
 
-    /// When something will happen without an event; `None` for never.
+    /// The time of the next change without an event; `None` for never.
     fn wakes_at(&self, app: &App, session: &Session, now: Duration) -> Option<Duration> {
         let (frame, soonest) = if self.waits {
-            // The game goes on meanwhile.
+            // The game continues while the terminal is not ready.
             (None, now + self.frame_time)
         } else {
             (is_unfinished(app, session).then_some(self.next_frame), self.next_frame)
@@ -123,13 +125,13 @@ impl Presenter {
     }
 }
 
-/// Whether the terminal does not show what there is, or not exactly.
+/// Whether the terminal does not show the current state, or not exactly.
 fn is_unfinished(app: &App, session: &Session) -> bool {
     app.is_stale() || !session.is_settled()
 }
 
-/// Tells `app` what the terminal is like.
-fn tell_terminal(app: &mut App, session: &Session) {
+/// Passes the properties of the terminal to `app`.
+fn update_terminal(app: &mut App, session: &Session) {
     let aspect = session.size().cell_aspect.and_then(CellAspect::new);
     app.terminal_changed(aspect, session.color_depth());
     app.pointer.set_columns(session.size().columns);
@@ -137,8 +139,8 @@ fn tell_terminal(app: &mut App, session: &Session) {
     app.detection.source = app.settings.depth.is_none().then(|| session.color_source());
 }
 
-/// The setting of the locale because of which nothing but ASCII is sent; `None` where the locale allows
-/// more, or the glyphs that were chosen take more.
+/// The locale setting that restricts output to ASCII; `None` if there is none, or if the chosen
+/// glyphs need more than ASCII.
 fn ascii_locale(glyphs: GlyphMode) -> Option<String> {
     match glyphs {
         GlyphMode::Ascii | GlyphMode::Ramp => locale_without_utf8(|name| env::var(name).ok()),
@@ -146,7 +148,7 @@ fn ascii_locale(glyphs: GlyphMode) -> Option<String> {
     }
 }
 
-/// A fault in the middle of a game, for the tests that look at how it ends.
+/// Panics in the middle of a game, for tests of how it ends.
 #[cfg(debug_assertions)]
 fn panic_on_demand(key: Key) {
     let demanded = key == Key::Function(12) && env::var_os("CELLCASTER_PANIC").is_some();

@@ -1,4 +1,4 @@
-//! Settings: how the game is shown and steered, and the file that says so.
+//! Settings: how the game is shown and controlled, and the file for them.
 //!
 //! ```toml
 //! preset = "azerty"            # or "qwerty", or "hjkl"
@@ -10,8 +10,9 @@
 //! toggle-run = "c"
 //! ```
 //!
-//! A [`Configuration`] is what such a file says; the command line goes before it. All of a file's faults are named in
-//! one run, each with its place. To read it by serde was refused, as the map is not read so either: it stops at the first fault.
+//! A [`Configuration`] is the content of such a file; the command line takes precedence. All faults
+//! of a file are reported in one run, each with its place. Reading it by serde was refused, as for
+//! maps: serde stops at the first fault.
 
 mod keys;
 mod read;
@@ -29,50 +30,50 @@ use crate::tui::{CellAspect, GlyphMode};
 use crate::world::FieldOfView;
 use value::PRESET;
 
-/// How the game is shown and steered.
+/// How the game is shown and controlled.
 #[derive(Clone, Debug, Default)]
 pub struct Settings {
-    /// Which key does what.
+    /// The actions of keys.
     pub bindings: Bindings,
-    /// The time between two frames, while something moves.
+    /// The time between two frames while something moves.
     pub frame_time: Duration,
-    /// How wide the view is at first.
+    /// The field of view at first.
     pub field_of_view: FieldOfView,
-    /// The shape of a cell; `None` for what the terminal says.
+    /// The shape of a cell; `None` for that of the terminal.
     pub cell_aspect: Option<CellAspect>,
-    /// Which characters stand for pixels.
+    /// The glyph mode.
     pub glyphs: GlyphMode,
-    /// How many colours there are; `None` for what the terminal has.
+    /// The colour depth; `None` for that of the terminal.
     pub depth: Option<ColorDepth>,
     /// The caster that finds the walls.
     pub caster: DynCaster,
-    /// How textures are looked up.
+    /// The texture filter.
     pub filter: Filter,
-    /// How exact frames are; `None` for as exact as the link to the terminal allows.
+    /// The fidelity of frames; `None` for the highest that the link to the terminal allows.
     pub fidelity: Option<Fidelity>,
-    /// Whether the status line tells of frames and the link at first.
+    /// Whether the status line shows the figures of frames and the link at first.
     pub shows_stats: bool,
-    /// What the minimap shows at first.
+    /// The content of the minimap at first.
     pub minimap: MapDisplay,
     /// Whether the mouse turns the player at first.
     pub mouse: bool,
 }
 
-/// What the minimap shows.
+/// The content of the minimap.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash, Default)]
 pub enum MapDisplay {
-    /// What the player has seen so far.
+    /// The cells that the player has seen so far.
     #[default]
     Seen,
-    /// All of the map.
+    /// The whole map.
     All,
-    /// Nothing, until the player asks for it; then what they have seen.
+    /// Nothing, until the player switches it on; then the seen cells.
     Off,
 }
 
-/// What a configuration file says, and the default where it says nothing.
+/// The content of a configuration file, with defaults for missing settings.
 ///
-/// It is printed as a whole file with comments, from which the same is read again:
+/// Its `Display` output is a complete file with comments, which parses to the same configuration:
 ///
 /// ```
 /// use cellcaster::app::Configuration;
@@ -85,23 +86,23 @@ pub enum MapDisplay {
 /// ```
 #[derive(Clone, Debug, PartialEq)]
 pub struct Configuration {
-    /// The name of the preset that the keys are changed from.
+    /// The name of the preset that the bindings are based on.
     preset: &'static str,
-    /// Which key does what.
+    /// The actions of keys.
     pub bindings: Bindings,
-    /// How many colours there are; `None` for what the terminal has.
+    /// The colour depth; `None` for that of the terminal.
     pub colors: Option<ColorDepth>,
-    /// Which characters stand for pixels; `None` for those that the terminal can show.
+    /// The glyph mode; `None` for the best that the terminal can show.
     pub glyphs: Option<GlyphMode>,
-    /// How wide the view is at first.
+    /// The field of view at first.
     pub field_of_view: FieldOfView,
-    /// The most frames a second, from 1 to 240.
+    /// The most frames per second, from 1 to 240.
     pub frames_per_second: NonZeroU32,
     /// Whether the mouse turns the player at first.
     pub mouse: bool,
-    /// What the minimap shows at first.
+    /// The content of the minimap at first.
     pub minimap: MapDisplay,
-    /// How exact frames are; `None` for as exact as the link to the terminal allows.
+    /// The fidelity of frames; `None` for the highest that the link to the terminal allows.
     pub fidelity: Option<Fidelity>,
 }
 

@@ -1,31 +1,31 @@
-//! What frames take: how many there are, how large, and how long until they are seen.
+//! Figures of frames: their rate, their bytes, and their delay.
 
 use std::fmt;
 use std::time::Duration;
 
 use crate::terminal::Fidelity;
 
-/// What frames take at present.
+/// The current figures.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub(super) struct Stats {
-    pub(super) pace: Pace,
-    /// From sending a frame to the terminal's answer, where it answers.
+    pub(super) rates: Rates,
+    /// The time from sending a frame to the terminal's answer, if it answers.
     pub(super) round_trip: Option<Duration>,
     pub(super) fidelity: Fidelity,
-    /// Whether the link makes frames coarse, and compression would help.
+    /// Whether the link limits the fidelity, so that compression would help.
     pub(super) wants_compression: bool,
 }
 
-/// How many frames there are, and of how many bytes.
+/// The rates of frames and bytes.
 #[derive(Clone, Copy, Debug, PartialEq)]
-pub(super) struct Pace {
+pub(super) struct Rates {
     pub(super) frames_per_second: f64,
     pub(super) bytes_per_second: f64,
 }
 
 impl fmt::Display for Stats {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
-        let Pace { frames_per_second, bytes_per_second } = self.pace;
+        let Rates { frames_per_second, bytes_per_second } = self.rates;
         write!(f, "{frames_per_second:.0} fps  {:.0} kB/s  ", bytes_per_second / 1000.0)?;
         if let Some(round_trip) = self.round_trip {
             write!(f, "{} ms  ", round_trip.as_millis())?;
@@ -35,8 +35,8 @@ impl fmt::Display for Stats {
     }
 }
 
-/// Measures the pace while frames follow one another. What is between two motions does not count,
-/// so nobody has to look again when nothing moves any more.
+/// Measures the rates while frames follow one another. Pauses between motions do not count, so that
+/// the figures need no update when motion ends.
 #[derive(Debug, Default)]
 pub(super) struct Meter {
     begun: Duration,
@@ -45,15 +45,14 @@ pub(super) struct Meter {
     last: Duration,
 }
 
-/// How often figures are renewed.
+/// The time between two figures.
 const PERIOD: Duration = Duration::from_millis(500);
-/// How long there is no frame where one motion has ended.
+/// The shortest time without frames that counts as a pause.
 const PAUSE: Duration = Duration::from_millis(500);
 
 impl Meter {
-    /// Takes note of a frame, with which there have been `bytes` in all. Returns new figures when it
-    /// is time for some.
-    pub(super) fn frame(&mut self, now: Duration, bytes: u64) -> Option<Pace> {
+    /// Counts a frame; `bytes` is the total so far. Returns new figures when they are due.
+    pub(super) fn frame(&mut self, now: Duration, bytes: u64) -> Option<Rates> {
         let pauses = now.saturating_sub(self.last) > PAUSE;
         let elapsed = now.saturating_sub(self.begun);
         self.frames += 1;
@@ -61,13 +60,13 @@ impl Meter {
         if !pauses && elapsed < PERIOD {
             return None;
         }
-        let pace = Pace {
+        let rates = Rates {
             frames_per_second: f64::from(self.frames) / elapsed.as_secs_f64(),
             bytes_per_second: bytes.saturating_sub(self.bytes_before) as f64
                 / elapsed.as_secs_f64(),
         };
         *self = Self { begun: now, bytes_before: bytes, frames: 0, last: now };
-        (!pauses).then_some(pace)
+        (!pauses).then_some(rates)
     }
 }
 
@@ -76,17 +75,17 @@ mod tests {
     use super::*;
 
     #[test]
-    fn the_pace_is_that_of_motion() {
+    fn pauses_do_not_count() {
         let mut meter = Meter::default();
         let figures: Vec<_> = (0..40_u64)
             .filter_map(|frame| {
-                // Two seconds of ten frames each second, a minute apart.
+                // Two times two seconds with ten frames per second, a minute apart.
                 let time = frame * 100 + if frame < 20 { 1_000 } else { 61_000 };
                 meter.frame(Duration::from_millis(time), frame * 500)
             })
             .collect();
         assert_eq!(figures.len(), 6);
-        for Pace { frames_per_second, bytes_per_second } in figures {
+        for Rates { frames_per_second, bytes_per_second } in figures {
             assert!((frames_per_second - 10.0).abs() < 0.1, "{frames_per_second}");
             assert!((bytes_per_second - 5000.0).abs() < 1.0, "{bytes_per_second}");
         }
@@ -94,10 +93,10 @@ mod tests {
 
     #[test]
     fn stats_are_short() {
-        let pace = Pace { frames_per_second: 29.6, bytes_per_second: 118_432.0 };
+        let rates = Rates { frames_per_second: 29.6, bytes_per_second: 118_432.0 };
         let round_trip = Some(Duration::from_micros(104_900));
         let fidelity = Fidelity::new(7);
-        let stats = Stats { pace, round_trip, fidelity, wants_compression: false };
+        let stats = Stats { rates, round_trip, fidelity, wants_compression: false };
         assert_eq!(stats.to_string(), "30 fps  118 kB/s  104 ms  fidelity 7");
         let stats = Stats { round_trip: None, fidelity: Fidelity::EXACT, ..stats };
         assert_eq!(stats.to_string(), "30 fps  118 kB/s  fidelity exact");

@@ -1,11 +1,11 @@
-//! The line below the picture.
+//! The status line below the picture.
 //!
-//! It is written anew for each frame, into memory that is kept: nothing has to know when it changes,
-//! and nothing is allocated for it. So the time that it shows is that of the last frame: while nothing moves, no
-//! frame is drawn to show another second.
+//! It is rewritten in each frame, into memory that is kept: no change must be tracked, and nothing
+//! is allocated. Its time is therefore that of the last frame: while nothing moves, no frame is
+//! drawn to show another second.
 //!
-//! What does not fit is left out as a whole, what matters least first. To cut the line at its end was refused: in a
-//! narrow window the end is where help is told of.
+//! Parts that do not fit are left out as a whole, the least important first. Cutting the line at
+//! its end was refused: in a narrow window, the key for help would be lost.
 
 use std::fmt::{self, Write};
 
@@ -22,29 +22,30 @@ use super::played::Played;
 use super::stats::Stats;
 use crate::app::bindings::{Action, Bindings};
 
-/// How the player walks and turns, whatever keys are held.
+/// The modes of motion that are switched on.
 #[derive(Clone, Copy, Debug, Default)]
-pub(super) struct Gait {
+pub(super) struct Toggles {
     pub(super) runs: bool,
     pub(super) ducks: bool,
-    pub(super) walks_on: bool,
+    pub(super) keeps_walking: bool,
 }
 
-/// What the line tells of.
-pub(super) struct Told<'a> {
+/// The values that the line shows.
+pub(super) struct StatusValues<'a> {
     pub(super) game: &'a Played,
     pub(super) goal: &'a Goal,
     pub(super) level: LevelNumber,
-    /// Which part of the level has been seen, from 0 to 1, where that is counted.
-    pub(super) seen: Option<f64>,
-    pub(super) gait: Gait,
+    /// The share of the level that has been seen, from 0 to 1, if that is counted.
+    pub(super) share_seen: Option<f64>,
+    pub(super) toggles: Toggles,
     /// Whether the mouse turns the player.
     pub(super) mouse: bool,
     pub(super) stats: Option<&'a Stats>,
     pub(super) bindings: &'a Bindings,
 }
 
-/// What the line says: where and how the player is to the left; how far, and how to get help to the right.
+/// The texts of the line: place and state of the player at the left; progress and help at the
+/// right.
 #[derive(Clone, Debug, Default)]
 pub(super) struct StatusLine {
     texts: [[String; 2]; PARTS],
@@ -56,7 +57,7 @@ enum Part {
     Title,
     Level,
     Site,
-    Gait,
+    Modes,
     Keys,
     Notice,
     Stats,
@@ -66,24 +67,24 @@ enum Part {
 }
 
 const PARTS: usize = 10;
-/// The first part that goes to the right end of the line.
+/// The first part at the right end of the line.
 const FIRST_TO_THE_RIGHT: usize = Part::Stats as usize;
 
-/// A part has a short form and a long one, which may be the same.
+/// A part has a short and a long form, which may be equal.
 #[derive(Clone, Copy, Debug)]
 enum Form {
     Short,
     Long,
 }
 
-/// What is given room, what matters most first.
-const CLAIMS: [(Part, Form); 14] = [
+/// The forms in the order in which they get room, the most important first.
+const PRIORITIES: [(Part, Form); 14] = [
     (Part::Help, Form::Short),
     (Part::Notice, Form::Short),
     (Part::Title, Form::Short),
     (Part::Help, Form::Long),
     (Part::Keys, Form::Short),
-    (Part::Gait, Form::Short),
+    (Part::Modes, Form::Short),
     (Part::Notice, Form::Long),
     (Part::Time, Form::Short),
     (Part::Level, Form::Short),
@@ -93,21 +94,22 @@ const CLAIMS: [(Part, Form); 14] = [
     (Part::Seen, Form::Short),
     (Part::Keys, Form::Long),
 ];
-/// Blank columns that go with each part.
+/// The number of blank columns of each part.
 const GAP: u16 = 2;
-/// A part is not cut to less than this.
+/// The least width to which a part is cut.
 const LEAST_CUT: u16 = 3;
 
 impl StatusLine {
-    /// Says how things are.
-    pub(super) fn update(&mut self, told: &Told) {
+    /// Updates the texts.
+    pub(super) fn update(&mut self, values: &StatusValues) {
         self.texts.iter_mut().flatten().for_each(String::clear);
-        // A string takes whatever is written.
-        _ = self.write(told);
+        // Writing to a string never fails.
+        _ = self.write(values);
     }
 
-    fn write(&mut self, told: &Told) -> fmt::Result {
-        let Told { game, goal, level, seen, gait, mouse, stats, bindings } = *told;
+    fn write(&mut self, values: &StatusValues) -> fmt::Result {
+        let StatusValues { game, goal, level, share_seen, toggles, mouse, stats, bindings } =
+            *values;
         self.both(Part::Title, format_args!("{}", game.title()))?;
         if level.is_one_of_several() {
             let [short, long] = &mut self.texts[Part::Level as usize];
@@ -118,14 +120,14 @@ impl StatusLine {
             self.both(Part::Site, format_args!("{}, {}", site.column, site.row))?;
         }
         let modes = [
-            (gait.runs, "running"),
-            (gait.ducks, "ducking"),
-            (gait.walks_on, "walking on"),
+            (toggles.runs, "running"),
+            (toggles.ducks, "ducking"),
+            (toggles.keeps_walking, "walking on"),
             (mouse, "mouse"),
         ];
         for (index, (_, mode)) in modes.into_iter().filter(|(is_on, _)| *is_on).enumerate() {
             let comma = if index > 0 { ", " } else { "" };
-            self.both(Part::Gait, format_args!("{comma}{mode}"))?;
+            self.both(Part::Modes, format_args!("{comma}{mode}"))?;
         }
         for (index, key) in game.keys().enumerate() {
             let comma = if index > 0 { ", " } else { "" };
@@ -133,7 +135,7 @@ impl StatusLine {
         }
         if let Some(message) = game.message() {
             self.both(Part::Notice, format_args!("{message}"))?;
-        } else if goal.is_told() {
+        } else if goal.is_shown() {
             let [short, long] = &mut self.texts[Part::Notice as usize];
             short.push_str(goal.short());
             long.push_str(goal.text());
@@ -141,8 +143,8 @@ impl StatusLine {
         if let Some(stats) = stats {
             self.both(Part::Stats, format_args!("{stats}"))?;
         }
-        if let Some(seen) = seen {
-            self.both(Part::Seen, format_args!("{:.0} % seen", (seen * 100.0).floor()))?;
+        if let Some(share) = share_seen {
+            self.both(Part::Seen, format_args!("{:.0} % seen", (share * 100.0).floor()))?;
         }
         self.both(Part::Time, format_args!("{}", whole_seconds(game.elapsed())))?;
         let [short, long] = &mut self.texts[Part::Help as usize];
@@ -155,16 +157,16 @@ impl StatusLine {
         Ok(())
     }
 
-    /// Adds to both forms of `part`.
+    /// Appends to both forms of `part`.
     fn both(&mut self, part: Part, text: fmt::Arguments) -> fmt::Result {
         self.texts[part as usize].iter_mut().try_for_each(|form| form.write_fmt(text))
     }
 
-    /// The text of each part, with its width, where a line of `width` columns has room for it.
+    /// The text and the width of each part that a line of `width` columns has room for.
     fn fitted(&self, width: u16) -> [(&str, u16); PARTS] {
         let mut fitted = [("", 0); PARTS];
         let mut room = width;
-        for (part, form) in CLAIMS {
+        for (part, form) in PRIORITIES {
             let text = self.texts[part as usize][form as usize].as_str();
             let (_, taken) = fitted[part as usize];
             let columns = Span::raw(text).width() as u16;
@@ -229,7 +231,7 @@ mod tests {
     }
 
     #[test]
-    fn what_matters_less_gives_way() {
+    fn less_important_parts_are_left_out() {
         let line = line(&[
             (Part::Title, "The Museum of Walls", "The Museum of Walls"),
             (Part::Level, "2/5", "level 2 of 5"),
@@ -251,7 +253,7 @@ mod tests {
     }
 
     #[test]
-    fn what_to_do_is_said_before_where_one_is() {
+    fn the_goal_is_more_important_than_the_title() {
         let line = line(&[
             (Part::Title, "Cellar", "Cellar"),
             (Part::Notice, "Find the exit", "Find the way out: green on the map"),
@@ -268,7 +270,7 @@ mod tests {
     }
 
     #[test]
-    fn no_width_is_too_small() {
+    fn any_width_is_possible() {
         let line = line(&[(Part::Title, "Cellar", "Cellar"), (Part::Help, "?", "? help")]);
         for columns in 0..10 {
             shown(&line, columns);

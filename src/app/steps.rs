@@ -1,7 +1,7 @@
-//! How time becomes steps of the game.
+//! The steps of the game that pass with time.
 //!
-//! Each step finds the keys that are held at its own time, however many of them pass between two frames: a
-//! tap lasts as many steps on a slow machine as on a fast one.
+//! Each step uses the keys held at its own time, even if several steps pass between two frames: a
+//! tap lasts the same number of steps on a slow machine as on a fast one.
 
 use std::time::Duration;
 
@@ -9,7 +9,7 @@ use super::clock::{self, Clock};
 use super::{App, Screen};
 
 impl App {
-    /// Lets the game go on until `now`.
+    /// Advances the game to `now`.
     pub(super) fn advance(&mut self, now: Duration) {
         self.now = now;
         let mut step = self.clock.step_after(0);
@@ -20,18 +20,19 @@ impl App {
             step = clock::after(step, passed);
             steps -= passed;
         }
-        self.controls.advance(now, self.stance());
+        self.controls.advance(now, self.key_context());
         self.settle(now);
     }
 
-    /// Lets one step pass that ends at `now`, or some of up to `most` in which nothing happens; how many.
+    /// Advances by one step that ends at `now`, or by up to `most` steps in which nothing happens.
+    /// Returns their number.
     fn pass(&mut self, now: Duration, most: u64, moves: &mut u64) -> u64 {
-        let stance = self.stance();
-        self.controls.advance(now, stance);
+        let context = self.key_context();
+        self.controls.advance(now, context);
         let intents = self.wanted();
         let quiet = self.game.quiet_steps(intents);
-        let steady = self.controls.steady_steps(now, stance, most);
-        let steps = if self.pointer.has_news() { 1 } else { steady.min(quiet.max(1)) };
+        let steady = self.controls.steady_steps(now, context, most);
+        let steps = if self.pointer.has_input() { 1 } else { steady.min(quiet.max(1)) };
         if quiet > 0 {
             self.game.wait(steps);
         } else {

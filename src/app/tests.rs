@@ -1,4 +1,4 @@
-//! The keys of the game, from bytes at their times to what the player does, in simulated time.
+//! The keys of the game, from timed bytes to the player's motion, in simulated time.
 
 mod levels;
 mod questions;
@@ -20,10 +20,10 @@ use crate::world::World;
 const W: Key = Key::Char('w');
 const SPACE: Key = Key::Char(' ');
 
-/// Delay in milliseconds, and repetitions a second.
+/// The delay in milliseconds, and repetitions per second.
 type Rate = (u64, u32);
 
-/// The game, and a keyboard at a terminal that reports releases or, where the keyboard's rate matters, none.
+/// The game and a keyboard. Without a keyboard rate, the terminal reports releases.
 struct Rig {
     app: App,
     keyboard: Option<Keyboard<Key>>,
@@ -92,7 +92,7 @@ impl Rig {
     }
 }
 
-/// An open floor, with the start in its middle, looking east.
+/// An open floor with the start in its middle, looking east.
 fn floor() -> World {
     let (wall, row) = ("#".repeat(61), format!("#{}#", ".".repeat(59)));
     let middle = format!("#{}@{}#", ".".repeat(29), ".".repeat(29));
@@ -108,7 +108,7 @@ fn floor() -> World {
     parse_str(&text).unwrap_or_else(|faults| panic!("{faults}"))
 }
 
-/// A pit, one cell wide, that a running jump clears.
+/// A pit one cell wide, which a running jump crosses.
 const PIT: &str = r##"
 ceiling = "sky"
 grid = '''
@@ -124,24 +124,24 @@ grid = '''
 "##;
 
 #[test]
-fn who_walks_and_turns_walks_a_circle() {
+fn walking_and_turning_is_a_circle() {
     for (delay, rate) in [(250, 40), (500, 30), (660, 15)] {
         let mut rig = Rig::new(floor(), Some((delay, rate)));
         rig.press(W);
         rig.wait(1000);
         rig.press(Key::Right);
         rig.wait(1500);
-        // 3 cells a second, and 2.4 radians: a circle with a radius of 1.25 cells.
-        let places: Vec<DVec2> = (0..6)
+        // 3 cells and 2.4 radians per second: a circle with a radius of 1.25 cells.
+        let positions: Vec<DVec2> = (0..6)
             .map(|_| {
                 rig.wait(437);
                 rig.position()
             })
             .collect();
-        // Six times a sixth of a turn: opposite places are a diameter apart.
-        for (one, other) in places.iter().zip(&places[3..]) {
+        // Six positions a sixth of a turn apart: opposite ones are a diameter apart.
+        for (one, other) in positions.iter().zip(&positions[3..]) {
             let diameter = one.distance(*other);
-            assert!((diameter - 2.5).abs() < 0.05, "{delay} ms, {rate} Hz: {places:?}");
+            assert!((diameter - 2.5).abs() < 0.05, "{delay} ms, {rate} Hz: {positions:?}");
         }
     }
 }
@@ -168,7 +168,7 @@ fn two_taps_are_twice_one_tap_in_one_read_and_apart() {
 }
 
 #[test]
-fn who_loses_the_focus_lets_go_of_all_keys() {
+fn losing_the_focus_releases_all_keys() {
     for rate in [None, Some((500, 30))] {
         let mut rig = Rig::new(floor(), rate);
         rig.press(W);
@@ -176,7 +176,7 @@ fn who_loses_the_focus_lets_go_of_all_keys() {
         rig.press(Key::Right);
         rig.wait(100);
         rig.app.release_keys();
-        // Another window gets what comes of them from now on.
+        // From now on, another window gets the keyboard's bytes.
         if let Some(keyboard) = &mut rig.keyboard {
             keyboard.release(Key::Right);
         }
@@ -188,7 +188,7 @@ fn who_loses_the_focus_lets_go_of_all_keys() {
 }
 
 #[test]
-fn walking_on_by_itself_ends_with_a_key_to_walk() {
+fn a_key_to_walk_ends_walking_without_a_key() {
     let mut rig = Rig::new(floor(), Some((500, 30)));
     rig.tap(Key::Char('g'), 50);
     rig.wait(1000);
@@ -203,7 +203,7 @@ fn walking_on_by_itself_ends_with_a_key_to_walk() {
 }
 
 #[test]
-fn around_is_180_degrees() {
+fn turning_around_is_180_degrees() {
     let mut rig = Rig::new(floor(), Some((500, 30)));
     rig.tap(Key::Char('b'), 50);
     rig.wait(1000);

@@ -1,6 +1,6 @@
-//! Text in lines, for panels.
+//! Line wrapping for panels.
 
-/// `text` in lines of up to `width` characters, broken between words, and within those that are
+/// Wraps `text` into lines of up to `width` characters, between words, and within words that are
 /// longer.
 pub(super) fn wrapped(text: &str, width: usize) -> Vec<String> {
     let mut lines = vec![String::new()];
@@ -33,7 +33,7 @@ mod tests {
     use super::*;
 
     #[test]
-    fn lines_are_as_wide_as_there_is_room() {
+    fn lines_are_filled_to_the_width() {
         for (text, width, lines) in [
             ("", 5, &[""][..]),
             ("one two three", 7, &["one two", "three"]),

@@ -1,7 +1,7 @@
 //! CIE L\*a\*b\* under the standard illuminant D65, in which distance is CIE76's ΔE.
 //!
-//! Sources: CIE 15 (2004) for L\*a\*b\*; IEC 61966-2-1 (1999) for sRGB's primaries. Measurements take the doubles
-//! here, the encoder its own integers.
+//! Sources: CIE 15 (2004) for L\*a\*b\*; IEC 61966-2-1 (1999) for the primaries of sRGB.
+//! Measurements use the doubles of this module, the encoder the integers of `packed`.
 
 #[cfg(feature = "terminal")]
 mod packed;
@@ -17,7 +17,8 @@ use super::{Rgb, product};
 pub struct Lab([f64; 3]);
 
 impl Lab {
-    /// The distance of two colours, CIE76's ΔE: about 2.3 is the least that most people notice.
+    /// The distance of two colours by CIE76, ΔE. Most people notice a difference of about 2.3 or
+    /// more.
     pub fn distance(self, other: Self) -> f64 {
         let squares = self.0.iter().zip(other.0).map(|(one, other)| (one - other) * (one - other));
         libm::sqrt(squares.sum())
@@ -33,16 +34,17 @@ impl From<Rgb> for Lab {
     }
 }
 
-/// sRGB's primaries in XYZ, by row.
+/// The matrix from linear sRGB to XYZ, by rows.
 const SRGB_TO_XYZ: [[f64; 3]; 3] = [
     [0.412_456_4, 0.357_576_1, 0.180_437_5],
     [0.212_672_9, 0.715_152_2, 0.072_175_0],
     [0.019_333_9, 0.119_192_0, 0.950_304_1],
 ];
-/// D65, which is sRGB's white.
+/// The illuminant D65, the white of sRGB, in XYZ.
 const WHITE: [f64; 3] = [0.950_470, 1.0, 1.088_830];
 
-/// The eye's response to light: its cube root, and a line where that would be too steep.
+/// The nonlinear function of L\*a\*b\*: the cube root, with a linear segment where the root would
+/// be too steep.
 const fn response(light: f64, cube_root: f64) -> f64 {
     const KNEE: f64 = 6.0 / 29.0;
     if light > KNEE * KNEE * KNEE { cube_root } else { light / (3.0 * KNEE * KNEE) + 4.0 / 29.0 }
@@ -68,7 +70,7 @@ mod tests {
     }
 
     #[test]
-    fn the_distance_of_black_and_white_is_100() {
+    fn black_and_white_are_100_apart() {
         let [black, white] = [Rgb::BLACK, Rgb::WHITE].map(Lab::from);
         assert!((black.distance(white) - 100.0).abs() < 0.01);
         assert_eq!(white.distance(white), 0.0);

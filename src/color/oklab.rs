@@ -1,18 +1,19 @@
-//! Oklab, a colour space in which distance is difference as people see it.
+//! Oklab, a colour space in which distance is perceived difference.
 //!
-//! Source: Björn Ottosson, "A perceptual color space for image processing" (2020). A difference of
-//! 0.02 is about the least that people notice. CIE L\*a\*b\* was refused for choosing among few colours, as its blues
-//! turn purple where they are mixed with grey.
+//! Source: Björn Ottosson, "A perceptual color space for image processing" (2020),
+//! <https://bottosson.github.io/posts/oklab/>. People notice a difference of about 0.02 or more. CIE
+//! L\*a\*b\* was refused for choosing among few colours: its blues turn purple when they are mixed
+//! with grey.
 
 use super::srgb::linear;
 use super::{Rgb, product};
 
-/// A colour by how light, how red and how yellow it looks.
+/// A colour by its lightness, its red–green and its yellow–blue component.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub(crate) struct Oklab(pub(crate) [f64; 3]);
 
 impl Oklab {
-    /// The colour of red, green and blue light, each from 0 to 1.
+    /// Converts red, green and blue light, each from 0 to 1.
     pub(crate) fn from_linear(light: [f64; 3]) -> Self {
         Self(product(&FROM_CONE_ROOTS, cones(light).map(libm::cbrt)))
     }
@@ -29,19 +30,19 @@ impl From<Rgb> for Oklab {
     }
 }
 
-/// The responses of the eye's three kinds of cones, for long, medium and short waves, to linear sRGB.
+/// The responses of the long, medium and short wave cones to linear sRGB.
 pub(super) fn cones(light: [f64; 3]) -> [f64; 3] {
     product(&FROM_LINEAR, light)
 }
 
-/// From the cube roots of cone responses to Oklab.
+/// The matrix from the cube roots of cone responses to Oklab.
 pub(super) const FROM_CONE_ROOTS: [[f64; 3]; 3] = [
     [0.210_454_26, 0.793_617_8, -0.004_072_05],
     [1.977_998_5, -2.428_592_2, 0.450_593_7],
     [0.025_904_04, 0.782_771_77, -0.808_675_77],
 ];
 
-/// From linear sRGB to cone responses.
+/// The matrix from linear sRGB to cone responses.
 const FROM_LINEAR: [[f64; 3]; 3] = [
     [0.412_221_47, 0.536_332_54, 0.051_445_99],
     [0.211_903_5, 0.680_699_55, 0.107_396_96],
@@ -52,7 +53,7 @@ const FROM_LINEAR: [[f64; 3]; 3] = [
 mod tests {
     use super::*;
 
-    /// The values of Ottosson's page.
+    /// The expected values are those of Ottosson's page.
     #[test]
     fn known_colours_have_their_known_values() {
         for (color, expected) in [

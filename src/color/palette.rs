@@ -1,7 +1,7 @@
-//! Palettes: the colours of xterm, and the nearest of them to any colour.
+//! Colour depths of terminals, and the colour of a palette that is nearest to a given one.
 //!
-//! The widgets choose colours from a palette and the terminal detects which palette there is, so this module
-//! knows neither of them.
+//! The widgets choose colours, and the terminal detects the colour depth. Both need this module, so
+//! that it depends on neither.
 
 #[cfg(feature = "tui")]
 pub(crate) mod mixture;
@@ -13,24 +13,25 @@ use nearest::{NearestColors, palette};
 /// How many colours a terminal can show.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash, Default)]
 pub enum ColorDepth {
-    /// 24 bits: every colour as it is.
+    /// 24 bits: every colour is exact.
     #[default]
     True,
-    /// The 256 of xterm: 16 named ones, a 6×6×6 cube, and 24 greys.
+    /// The 256 colours of xterm: 16 named ones, a 6×6×6 cube, and 24 greys.
     Indexed256,
-    /// The 16 named ones.
+    /// The 16 named colours.
     Indexed16,
-    /// None: a cell is lit or it is not.
+    /// No colours: a pixel is lit or unlit.
     Mono,
 }
 
-/// The first colour of the cube; those before it are the named ones, which users redefine.
+/// The index of the cube's first colour. The colours before it are the named ones, which users
+/// redefine.
 const CUBE: u8 = 16;
-/// The first of the greys.
+/// The index of the first grey.
 const GREYS: u8 = 232;
 /// The channel values of the cube.
 const CUBE_LEVELS: [u8; 6] = [0, 95, 135, 175, 215, 255];
-/// The named colours as xterm has them.
+/// The named colours, by xterm's defaults.
 const NAMED: [Rgb; 16] = [
     Rgb::new(0, 0, 0),
     Rgb::new(205, 0, 0),
@@ -52,7 +53,7 @@ const NAMED: [Rgb; 16] = [
 
 /// The index of the colour nearest to `color` in Oklab, among the 240 fixed colours of xterm.
 ///
-/// The first 16 of the 256 are left out, because users give them colours of their own.
+/// The first 16 of the 256 are left out, because users redefine them.
 pub fn nearest_of_256(color: Rgb) -> u8 {
     static TABLE: NearestColors = NearestColors::among(|| palette(CUBE..=u8::MAX));
     TABLE.of(color)
@@ -83,7 +84,7 @@ mod tests {
     use super::*;
 
     #[test]
-    fn a_colour_that_there_is_stays_what_it_is_or_nearly() {
+    fn the_nearest_colour_of_a_palette_colour_is_itself_or_almost() {
         for index in 16..=255 {
             let shown = of_256(nearest_of_256(of_256(index)));
             for (channel, shown) in of_256(index).channels().into_iter().zip(shown.channels()) {

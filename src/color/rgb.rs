@@ -5,15 +5,15 @@ use std::str::FromStr;
 
 /// An opaque sRGB colour with 8 bits a channel.
 ///
-/// It is stored as `0x00RRGGBB` in one word: a pixel is then one store, and halving all channels
-/// one shift and one mask. Three separate bytes were refused, as they cost three of each.
+/// It is stored as `0x00RRGGBB` in one word: writing a pixel is one store, and halving all channels
+/// is one shift and one mask. Three separate bytes were refused: they take three of each.
 #[derive(Clone, Copy, PartialEq, Eq, Hash, Default)]
 pub struct Rgb(u32);
 
 impl Rgb {
-    /// The darkest colour.
+    /// Black.
     pub const BLACK: Self = Self::new(0, 0, 0);
-    /// The brightest colour.
+    /// White.
     pub const WHITE: Self = Self::new(255, 255, 255);
     /// The colour with the name `sky`.
     pub const SKY: Self = Self::new(0x87, 0xb5, 0xd9);
@@ -38,32 +38,33 @@ impl Rgb {
         self.0 as u8
     }
 
-    /// The colour as a number, `0x00RRGGBB`, as windows take pixels.
+    /// The colour as a number, `0x00RRGGBB`, a common pixel format of windows.
     #[inline]
     pub const fn to_bits(self) -> u32 {
         self.0
     }
 
-    /// Red, green and blue.
+    /// The channels in the order red, green, blue.
     pub const fn channels(self) -> [u8; 3] {
         [self.red(), self.green(), self.blue()]
     }
 
-    /// Half as bright: each channel divided by two, rounded down.
+    /// The colour at half brightness: each channel is divided by two and rounded down.
     #[must_use]
     pub const fn halved(self) -> Self {
         const LOW_SEVEN_BITS_OF_EACH_CHANNEL: u32 = 0x007f_7f7f;
         Self(self.0 >> 1 & LOW_SEVEN_BITS_OF_EACH_CHANNEL)
     }
 
-    /// This colour over `behind`, with an opacity of `alpha` parts in 255 (Porter and Duff, "Compositing Digital
-    /// Images", 1984): each channel rounded to the nearest.
+    /// Blends this colour over `behind` with an opacity of `alpha` / 255 (Porter and Duff,
+    /// "Compositing Digital Images", 1984). Each channel is rounded to the nearest.
     #[inline]
     #[must_use]
     pub const fn over(self, behind: Self, alpha: u8) -> Self {
         const WHOLE: u32 = 255;
         const RED_AND_BLUE: u32 = 0x00ff_00ff;
-        /// A 255th of both halves of a word, rounded to the nearest, where none is above 255 · 255.
+        /// Divides both halves of a word by 255 and rounds to the nearest; neither is above 255 ·
+        /// 255.
         const fn shared(sums: u32) -> u32 {
             const HALF_OF_EACH: u32 = 0x007f_007f;
             const ONE_OF_EACH: u32 = 0x0001_0001;
@@ -78,7 +79,7 @@ impl Rgb {
 
     /// The sum of `own` 256ths of this colour and `share` 256ths of `other`, rounded down.
     ///
-    /// Together they are at most 256, so that no channel overflows into the next.
+    /// `own + share` must be at most 256, so that no channel overflows into the next.
     #[inline]
     #[must_use]
     pub(crate) const fn blended(self, own: u32, other: Self, share: u32) -> Self {
@@ -112,7 +113,7 @@ impl fmt::Debug for Rgb {
     }
 }
 
-/// The error of [`Rgb::from_str`]: the text is no colour.
+/// The error of [`Rgb::from_str`]: the text is not a colour.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct ParseColorError;
 
@@ -162,7 +163,7 @@ mod tests {
     }
 
     #[test]
-    fn what_is_in_front_hides_its_share() {
+    fn opacity_is_a_share_of_255() {
         let (front, behind) = (Rgb::new(255, 0, 10), Rgb::new(0, 255, 20));
         assert_eq!(front.over(behind, 0), behind);
         assert_eq!(front.over(behind, 255), front);

@@ -1,22 +1,22 @@
-//! sRGB's transfer function: from stored channels to amounts of light, and back.
+//! The transfer function of sRGB: from stored channels to linear light, and back.
 //!
-//! Source: IEC 61966-2-1 (1999). One table of doubles holds the function; it is worked out when the program is
-//! compiled, and all other tables are made from it. A power function at run time was refused: pictures are
-//! averaged in linear light by the million texels.
+//! Source: IEC 61966-2-1 (1999). One table of doubles holds the function; it is computed at compile
+//! time, and all other tables derive from it. A power function at run time was refused: millions of
+//! texels are averaged in linear light.
 
 use super::Rgb;
 
-/// The red, green and blue light of a colour, each from 0 to 1.
+/// Converts a colour to red, green and blue light, each from 0 to 1.
 pub(crate) fn linear(color: Rgb) -> [f64; 3] {
     color.channels().map(|channel| LINEAR[usize::from(channel)])
 }
 
-/// The same in 65535ths, rounded to the nearest.
+/// Converts a colour to red, green and blue light in 65535ths, rounded to the nearest.
 pub(crate) fn linear_16(color: Rgb) -> [u16; 3] {
     color.channels().map(|channel| LINEAR_16[usize::from(channel)])
 }
 
-/// The stored colour that is nearest to one in linear light.
+/// Converts linear light in 65535ths to the nearest colour.
 pub(crate) fn from_linear_16(light: [u16; 3]) -> Rgb {
     let [red, green, blue] = light.map(|channel| {
         let first = usize::from(FIRST[usize::from(channel / SPACING)]);
@@ -29,13 +29,15 @@ pub(crate) fn from_linear_16(light: [u16; 3]) -> Rgb {
     Rgb::new(red, green, blue)
 }
 
-/// The mean of two colours in linear light: a surface that is half of each, from far away.
+/// The mean of two colours in linear light, as of a surface that is half of each, seen from far
+/// away.
 pub(crate) fn mean_of_two(one: Rgb, other: Rgb) -> Rgb {
     let (one, other) = (linear_16(one), linear_16(other));
     from_linear_16(std::array::from_fn(|channel| one[channel].midpoint(other[channel])))
 }
 
-/// The weighted mean of two colours in linear light, where the second has a `share` from 0 to 1.
+/// The weighted mean of two colours in linear light. The weight of the second is `share`, from 0 to
+/// 1.
 pub(crate) fn mean_of_shares([one, other]: [Rgb; 2], share: f64) -> Rgb {
     if one == other || share <= 0.0 {
         return one;
@@ -61,7 +63,7 @@ pub(super) static LINEAR: [f64; 256] = {
     table
 };
 
-/// The same in 65535ths, rounded to the nearest.
+/// The light of each value of a channel in 65535ths, rounded to the nearest.
 pub(super) static LINEAR_16: [u16; 256] = {
     let mut table = [0; 256];
     let mut value = 0;
@@ -72,12 +74,12 @@ pub(super) static LINEAR_16: [u16; 256] = {
     table
 };
 
-/// The amount of light that a signal from 0 to 1 stands for.
+/// The transfer function for a signal from 0 to 1.
 const fn transfer(signal: f64) -> f64 {
     if signal <= 0.040_45 {
         return signal / 12.92;
     }
-    // To the power of 2.4.
+    // base^2.4 = base² · (base²)^(1/5)
     let base = (signal + 0.055) / 1.055;
     let square = base * base;
     square * fifth_root(square)
@@ -95,7 +97,7 @@ const fn fifth_root(number: f64) -> f64 {
     root
 }
 
-/// The first stored channel that is as light as each multiple of [`SPACING`] or lighter.
+/// For each multiple of [`SPACING`], the first channel value with at least that much light.
 static FIRST: [u8; (u16::MAX / SPACING) as usize + 1] = {
     let mut table = [0; (u16::MAX / SPACING) as usize + 1];
     let (mut index, mut channel) = (0, 0);
@@ -109,7 +111,8 @@ static FIRST: [u8; (u16::MAX / SPACING) as usize + 1] = {
     table
 };
 
-/// About three times the distance of the darkest two channels.
+/// The distance of two entries of [`FIRST`]: about three times that of the two darkest channel
+/// values.
 const SPACING: u16 = 64;
 
 #[cfg(test)]

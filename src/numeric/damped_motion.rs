@@ -1,9 +1,9 @@
 //! Damped motion in closed form: a velocity that approaches a target.
 //!
-//! The velocity v obeys dv/dt = rate · (target − v), so the difference decays exponentially. Both the velocity at the
-//! end of a step and the displacement until then are the analytic solution of that equation, not an approximation by
-//! small steps: no step is too long and no rate too high, and two steps are the same as one of
-//! their sum. The explicit Euler method was refused: it overshoots as soon as `rate * dt` passes 1.
+//! The velocity v obeys dv/dt = rate · (target − v), so that the difference decays exponentially.
+//! Velocity and displacement at the end of a step are the analytic solution of that equation: steps
+//! may be of any length and rates of any size, and two steps equal one step of their sum. The
+//! explicit Euler method was refused: it overshoots as soon as `rate * dt` exceeds 1.
 
 use glam::DVec2;
 
@@ -16,20 +16,20 @@ pub(crate) struct DampedMotion<V> {
     pub(crate) displacement: V,
 }
 
-/// The motion after `duration` seconds that begins with `velocity` and approaches `target`, where the
-/// difference between the two shrinks by the factor e in 1 / `rate` seconds. Where all four are
-/// finite, `rate` above 0 and `duration` at least 0, so is the result.
+/// The motion after `duration` seconds. It begins with `velocity` and approaches `target`; the
+/// difference between the two shrinks by the factor e every 1 / `rate` seconds. The result is
+/// finite if all arguments are finite, `rate` is above 0 and `duration` at least 0.
 pub(crate) fn approach(velocity: f64, target: f64, rate: f64, duration: f64) -> DampedMotion<f64> {
     let remains = libm::exp(-rate * duration);
-    // For how long the first velocity would cover its share of the way, and the target the rest.
-    let coasting = (-libm::expm1(-rate * duration) / rate).min(duration);
+    // The displacement is that of the first velocity for this time, and of the target for the rest.
+    let first_part = (-libm::expm1(-rate * duration) / rate).min(duration);
     DampedMotion {
         velocity: target + (velocity - target) * remains,
-        displacement: velocity * coasting + target * (duration - coasting),
+        displacement: velocity * first_part + target * (duration - first_part),
     }
 }
 
-/// As [`approach`], in the plane.
+/// Does the same as [`approach`] in the plane.
 pub(crate) fn approach_in_plane(
     velocity: DVec2,
     target: DVec2,
@@ -87,15 +87,15 @@ mod tests {
             rate in power_of_ten(-3.0..6.0),
             duration in power_of_ten(-9.0..3.0),
         ) {
-            let glide = approach(velocity, target, rate, duration);
+            let motion = approach(velocity, target, rate, duration);
             let (low, high) = (velocity.min(target), velocity.max(target));
             let slack = ROUNDING * (velocity.abs() + target.abs());
             if velocity <= target {
-                prop_assert!(glide.velocity <= target && glide.velocity >= velocity - slack);
+                prop_assert!(motion.velocity <= target && motion.velocity >= velocity - slack);
             } else {
-                prop_assert!(glide.velocity >= target && glide.velocity <= velocity + slack);
+                prop_assert!(motion.velocity >= target && motion.velocity <= velocity + slack);
             }
-            let mean = glide.displacement / duration;
+            let mean = motion.displacement / duration;
             prop_assert!(low - slack <= mean && mean <= high + slack);
         }
     }

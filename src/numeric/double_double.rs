@@ -1,9 +1,9 @@
-//! DoubleDouble-double arithmetic: numbers of two doubles, with twice the digits of one.
+//! Double-double arithmetic: each number is the sum of two doubles and has twice the digits of one.
 //!
-//! Where a ray just grazes a pillar, the difference of two squares decides whether and where it
-//! hits, and the square root of that difference turns the sixteenth digit into the eighth. The
-//! integers of `orientation` were refused here: these are products of four doubles, and no integer of the
-//! machine holds their size.
+//! If a ray only just touches a pillar, the difference of two squares decides whether and where it
+//! hits, and the square root of that difference turns an error in the sixteenth digit into one in
+//! the eighth. The integers of `orientation` were refused here: these are products of four doubles,
+//! which exceed every integer type.
 //!
 //! Source: T. J. Dekker, "A Floating-Point Technique for Extending the Available Precision" (1971).
 
@@ -11,7 +11,7 @@ use std::ops::{Add, Mul, Sub};
 
 use super::error_free::{two_product, two_sum};
 
-/// The sum of two doubles, of which the second is at most half a unit in the last place of the first.
+/// The sum of two doubles. The second is at most half a unit in the last place of the first.
 #[derive(Clone, Copy, Debug)]
 pub(crate) struct DoubleDouble {
     high: f64,
@@ -25,13 +25,13 @@ impl DoubleDouble {
         Self { high, low }
     }
 
-    /// `a · b`, exactly, where neither is larger than 10³⁰⁰.
+    /// `a · b`, exactly, if neither exceeds 10³⁰⁰.
     pub(crate) fn product(a: f64, b: f64) -> Self {
         let [high, low] = two_product(a, b);
         Self { high, low }
     }
 
-    /// Its square.
+    /// The square of the number.
     pub(crate) fn square(self) -> Self {
         self * self
     }

@@ -1,9 +1,9 @@
-//! Sums and products of two doubles together with their rounding errors, which are doubles as well.
+//! Sums and products of two doubles with their rounding errors, which are doubles, too.
 //!
-//! Sources: D. E. Knuth, *The Art of Computer Programming*, volume 2 (1969), section 4.2.2, theorem B, for the
-//! sum; T. J. Dekker, "A Floating-Point Technique for Extending the Available Precision" (1971), for the
-//! product. The fused multiply-add, which gives the error of a product in one instruction, was refused:
-//! processors without it emulate it slowly.
+//! Sources: D. E. Knuth, *The Art of Computer Programming*, volume 2 (1969), section 4.2.2, theorem
+//! B, for the sum; T. J. Dekker, "A Floating-Point Technique for Extending the Available Precision"
+//! (1971), for the product. The fused multiply-add, which computes the error of a product in one
+//! instruction, was refused: on processors without it, its emulation is slow.
 
 /// `TwoSum`: the rounded sum of `a` and `b`, and its error. The two add up to `a + b` exactly.
 #[inline]
@@ -14,8 +14,8 @@ pub(crate) fn two_sum(a: f64, b: f64) -> [f64; 2] {
     [sum, (a - of_a) + (b - of_b)]
 }
 
-/// `TwoProduct`: the rounded product of `a` and `b`, and its error. The two add up to `a * b` exactly, where
-/// neither factor is larger than 10³⁰⁰ and the error is no smaller than the least double.
+/// `TwoProduct`: the rounded product of `a` and `b`, and its error. The two add up to `a * b`
+/// exactly if neither factor exceeds 10³⁰⁰ and the error is not below the least double.
 #[inline]
 pub(crate) fn two_product(a: f64, b: f64) -> [f64; 2] {
     let product = a * b;
@@ -24,7 +24,7 @@ pub(crate) fn two_product(a: f64, b: f64) -> [f64; 2] {
     [product, error]
 }
 
-/// Two doubles of half as many digits, whose sum is `value` (Veltkamp's splitting).
+/// Veltkamp's splitting: two doubles with half the digits, whose sum is `value`.
 fn split(value: f64) -> [f64; 2] {
     const SPLITTER: f64 = 134_217_729.0;
     let scaled = value * SPLITTER;

@@ -1,16 +1,18 @@
 //! The orientation predicate: on which side of a ray a point lies, with an exact sign.
 //!
 //! The cross product of the vector to a point and the ray's direction is a difference of two
-//! products, and where it is nearly zero, rounding decides its sign. A filter comes first: doubles tell the sign where the
-//! result is larger than the bound of its error (J. R. Shewchuk, "Adaptive Precision Floating-Point Arithmetic and
-//! Fast Robust Geometric Predicates", 1997). Elsewhere each component is split into
-//! two doubles that add up to it exactly, so the cross product is a sum of four products of two
-//! doubles, each an integer of 106 bits at most times a power of two. They are added from the
-//! largest power down, in one 128-bit integer: it holds all of the sum, or else what it holds is so
-//! much larger than the remaining terms that rounding these does no harm.
+//! products. If it is almost zero, rounding decides its sign. A filter comes first: the sign of the
+//! rounded result is right if the result exceeds its error bound (J. R. Shewchuk, "Adaptive
+//! Precision Floating-Point Arithmetic and Fast Robust Geometric Predicates", 1997). Otherwise each
+//! component is split into two doubles that add up to it exactly, so that the cross product is a
+//! sum of four products of two doubles, each an integer of at most 106 bits times a power of two.
+//! They are added in a 128-bit integer, from the largest power down. Either it holds the whole sum,
+//! or its value is so much larger than the remaining terms that rounding them does not change the
+//! sign.
 //!
-//! Shewchuk's expansions of doubles were refused: their products overflow and vanish at the ends of the range,
-//! which is where this is needed. So were integers of any length: four terms never need them.
+//! Shewchuk's expansions of doubles were refused: their products overflow and underflow at the ends
+//! of the range, where this module is needed. Integers of arbitrary length were refused, too: four
+//! terms never need them.
 
 use std::cmp::Reverse;
 
@@ -18,8 +20,8 @@ use glam::DVec2;
 
 use super::error_free::two_sum;
 
-/// The cross product of the way from `origin` to `corner` and `direction`: positive where a ray, y
-/// growing to the south, passes the corner on its left.
+/// The cross product of the vector from `origin` to `corner` and `direction`. It is positive if the
+/// ray passes the corner on the left, with y to the south.
 pub(crate) fn cross(origin: DVec2, direction: DVec2, corner: DVec2) -> Scaled {
     let [x, x_rest] = two_sum(corner.x, -origin.x);
     let [y, y_rest] = two_sum(origin.y, -corner.y);
@@ -33,22 +35,22 @@ pub(crate) fn cross(origin: DVec2, direction: DVec2, corner: DVec2) -> Scaled {
 
 /// A number with the sign of [`cross`].
 ///
-/// Most signs are told by doubles: where what they come to is larger than all their rounding.
+/// Doubles decide most signs: those of results that exceed their rounding errors.
 #[inline]
 pub(crate) fn sign_of_cross(origin: DVec2, direction: DVec2, corner: DVec2) -> f64 {
-    /// Each product is rounded three times, and so is their difference once.
+    /// Each product is rounded three times, and their difference once.
     const ROUNDING: f64 = 4.0 * f64::EPSILON;
-    let way = corner - origin;
-    let (one, other) = (way.x * direction.y, way.y * direction.x);
-    // What vanishes for being too small a double is less than the second term.
-    let doubt = (one.abs() + other.abs()) * ROUNDING + f64::MIN_POSITIVE;
+    let to_corner = corner - origin;
+    let (one, other) = (to_corner.x * direction.y, to_corner.y * direction.x);
+    // An underflow loses less than the second term.
+    let error_bound = (one.abs() + other.abs()) * ROUNDING + f64::MIN_POSITIVE;
     let rounded = one - other;
-    if rounded.abs() > doubt { rounded } else { cross(origin, direction, corner).sign() }
+    if rounded.abs() > error_bound { rounded } else { cross(origin, direction, corner).sign() }
 }
 
-/// A number that may be too large or too small for a double: `mantissa` · 2^`exponent`.
+/// A number that may exceed the range of a double: `mantissa` · 2^`exponent`.
 ///
-/// Its sign is right, zero included; its value is right to 50 bits.
+/// The sign is exact, zero included; the value has 50 exact bits.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub(crate) struct Scaled {
     mantissa: f64,
@@ -56,12 +58,12 @@ pub(crate) struct Scaled {
 }
 
 impl Scaled {
-    /// Less than 0, 0, or more than 0.
+    /// A number below 0, 0, or a number above 0.
     pub(crate) fn sign(self) -> f64 {
         self.mantissa
     }
 
-    /// Its quotient by `divisor`.
+    /// The quotient by `divisor`.
     pub(crate) fn over(self, divisor: f64) -> f64 {
         let divisor = Integer::from_double(divisor);
         let quotient = self.mantissa / divisor.mantissa as f64;
@@ -77,7 +79,7 @@ struct Integer {
 }
 
 impl Integer {
-    /// The bits of the mantissa of a double, the leading one included.
+    /// The number of bits of a double's mantissa, including the leading one.
     const DOUBLE_BITS: u32 = f64::MANTISSA_DIGITS;
 
     fn from_double(value: f64) -> Self {
@@ -101,7 +103,7 @@ impl Integer {
         Self { mantissa: a.mantissa * b.mantissa, exponent: a.exponent + b.exponent }
     }
 
-    /// The length of the mantissa.
+    /// The number of bits of the mantissa.
     fn bits(self) -> i32 {
         (i128::BITS - self.mantissa.unsigned_abs().leading_zeros()) as i32
     }
@@ -109,7 +111,7 @@ impl Integer {
 
 /// The sum of four products of two doubles.
 fn sum(mut terms: [Integer; 4]) -> Scaled {
-    /// Longer than the sum of all terms, and short enough to add them to.
+    /// More bits than the sum of all terms takes, and few enough to add them to.
     const ROOM: i32 = 124;
     terms.sort_unstable_by_key(|term| Reverse(term.exponent));
     let mut sum = terms[0];
@@ -137,7 +139,7 @@ mod tests {
     use super::*;
 
     #[test]
-    fn the_least_difference_counts() {
+    fn the_smallest_difference_decides_the_sign() {
         let least = 5e-324;
         for (origin, direction, sign) in [
             ((0.0, 0.0), (1.0, 1.0), 0.0),
@@ -156,9 +158,9 @@ mod tests {
     }
 
     proptest! {
-        /// However near to the corner the ray passes.
+        /// Rays pass the corner at any distance.
         #[test]
-        fn the_sign_by_doubles_is_the_sign(
+        fn the_filter_agrees_with_the_exact_sign(
             (x, y) in (-9.0..9.0, -9.0..9.0),
             corner in (-9_i32..9, -9_i32..9),
             ulps in (-9_i64..9, -9_i64..9),
@@ -174,7 +176,7 @@ mod tests {
             prop_assert_eq!(signs[0], signs[1]);
         }
 
-        /// Where nothing is rounded, it is the formula.
+        /// Where nothing is rounded, the result is that of the formula.
         #[test]
         fn agrees_with_integers(
             numbers in prop::array::uniform4(-(1_i64 << 30)..1 << 30),

@@ -1,9 +1,10 @@
-//! ASCII: a cell shows one pixel, by a character that tells what it is before it tells how bright.
+//! The ASCII glyph mode: a cell shows one pixel. Its character says first which surface it is, and
+//! then how bright.
 //!
-//! Each surface has characters of its own, so that walls of either side, floor, ceiling and sky can
-//! be told apart without any colour; within a surface four characters stand for four shades. One
-//! ramp of brightness for all was refused: a dark wall before a bright one and a bright floor
-//! before a dark wall looked the same.
+//! Each surface has its own characters, so that x sides and y sides of walls, floor, ceiling and
+//! sky differ without colour. Within a surface, four characters stand for four shades. One ramp of
+//! brightness for all surfaces was refused: a dark wall in front of a bright one looked the same as
+//! a bright floor in front of a dark wall.
 
 use ratatui::layout::Rect;
 use ratatui::style::Color;
@@ -14,7 +15,7 @@ use crate::color::Rgb;
 use crate::color::palette::ColorDepth;
 use crate::render::Surface;
 
-/// Draws the pixels of `area`, as many as cells: `pixel(x, y)` counts from its top left corner.
+/// Draws one pixel in each cell of `area`. `pixel(x, y)` counts from its top left corner.
 pub(super) fn draw(
     area: Rect,
     canvas: &mut impl Canvas,
@@ -30,18 +31,18 @@ pub(super) fn draw(
     }
 }
 
-/// The corner of the cube: the nearest colour to black, among those that are nearly black, is a grey.
+/// The black corner of the cube. The nearest colour to an almost black one is a grey.
 const BLACK_OF_256: u8 = 16;
 
-/// Draws the pixels of a picture whose characters tell how bright they are: their colours are as bright as
-/// they get, or else a dark wall would be darkened twice.
+/// Does the same as [`draw`] for a picture whose characters show the brightness. Colours are drawn
+/// at full brightness, because a dark wall would otherwise be darkened twice.
 pub(super) fn draw_picture(
     area: Rect,
     canvas: &mut impl Canvas,
     depth: ColorDepth,
     pixel: impl Fn(u32, u32) -> (Rgb, char),
 ) {
-    let ground = match depth {
+    let background = match depth {
         ColorDepth::Indexed256 => Color::Indexed(BLACK_OF_256),
         _ => color_at(depth, Rgb::BLACK),
     };
@@ -49,16 +50,16 @@ pub(super) fn draw_picture(
         for (column, x) in (0u32..).zip(area.left()..area.right()) {
             let (color, character) = pixel(column, row);
             let text = match depth {
-                ColorDepth::Indexed16 => Color::Indexed(name(brightened(color))),
+                ColorDepth::Indexed16 => Color::Indexed(named_color(brightened(color))),
                 _ => color_at(depth, brightened(color)),
             };
-            canvas.draw_character(x, y, character, [text, ground]);
+            canvas.draw_character(x, y, character, [text, background]);
         }
     }
 }
 
-/// `color` with its brightest channel at the most. The hue of what is nearly black is not to be
-/// trusted, and fades.
+/// `color` with its brightest channel at the maximum. An almost black colour has an unreliable hue,
+/// and becomes paler.
 fn brightened(color: Rgb) -> Rgb {
     const FADE: u32 = 12;
     let channels = color.channels().map(u32::from);
@@ -68,9 +69,10 @@ fn brightened(color: Rgb) -> Rgb {
     Rgb::new(red, green, blue)
 }
 
-/// The index of the named colour that has about the hue of a bright `color`, or is white. Users give the sixteen
-/// colours of their own, but red stays red; blue is the bright one, as the other can hardly be read.
-fn name(color: Rgb) -> u8 {
+/// The index of the named colour whose hue is nearest to that of a bright `color`, or white. Users
+/// redefine the sixteen colours, but red stays red. Blue is the bright one, because the dark one is
+/// hard to read.
+fn named_color(color: Rgb) -> u8 {
     const WHITE: u8 = 7;
     const NAMES: [u8; 8] = [WHITE, 1, 2, 3, 12, 5, 6, WHITE];
     const IS_ON: u8 = 190;
@@ -83,18 +85,18 @@ fn name(color: Rgb) -> u8 {
     NAMES[on[0] | on[1] << 1 | on[2] << 2]
 }
 
-/// The character for a pixel of `surface` in that colour.
+/// The character for a pixel of `surface` with that colour.
 pub(super) fn character(surface: Surface, color: Rgb) -> char {
     let shades = shades(surface);
     let brightness = match surface {
-        // It is drawn at half brightness; its four characters are for the brightness before that.
+        // A y side is drawn at half brightness. Its characters are chosen by the full brightness.
         Surface::WallY => color.luma().saturating_mul(2),
         _ => color.luma(),
     };
     shades[usize::from(brightness) * shades.len() / 256]
 }
 
-/// A surface's characters, from dark to bright.
+/// The characters of a surface, from dark to bright.
 fn shades(surface: Surface) -> [char; 4] {
     match surface {
         Surface::Ceiling => ['`', '\'', '"', '^'],
@@ -113,7 +115,7 @@ mod tests {
     use super::*;
 
     #[test]
-    fn no_character_stands_for_two_surfaces() {
+    fn surfaces_share_no_character() {
         let surfaces = [
             Surface::Ceiling,
             Surface::Sky,
@@ -130,7 +132,7 @@ mod tests {
     }
 
     #[test]
-    fn brightness_counts_once() {
+    fn colours_of_one_hue_have_the_same_brightness() {
         let [dark, bright] = [Rgb::new(80, 32, 24), Rgb::new(160, 64, 48)].map(brightened);
         assert_eq!((dark.red(), bright.red()), (255, 255));
         assert!(dark.green().abs_diff(bright.green()) < 24);
@@ -138,16 +140,16 @@ mod tests {
     }
 
     #[test]
-    fn hues_have_the_names_that_people_give_them() {
-        let named = |red, green, blue| name(brightened(Rgb::new(red, green, blue)));
+    fn colours_map_to_the_named_colour_of_their_hue() {
+        let named = |red, green, blue| named_color(brightened(Rgb::new(red, green, blue)));
         assert_eq!((named(120, 40, 30), named(130, 100, 50)), (1, 3));
         assert_eq!((named(40, 110, 50), named(30, 40, 120)), (2, 12));
-        // Stone that is a little blue, and moss that is a little green, are no bright spots.
+        // Stone that is slightly blue and moss that is slightly green stay white.
         assert_eq!((named(110, 115, 130), named(90, 100, 85), named(0, 0, 0)), (7, 7, 7));
     }
 
     #[test]
-    fn a_y_side_of_a_white_wall_is_as_bright_as_a_y_side_gets() {
+    fn a_y_side_of_a_white_wall_has_the_brightest_character_of_y_sides() {
         assert_eq!(character(Surface::WallX, Rgb::WHITE), '@');
         assert_eq!(character(Surface::WallY, Rgb::WHITE.halved()), 'H');
         assert_eq!(character(Surface::Floor, Rgb::BLACK), '.');

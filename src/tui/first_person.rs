@@ -1,4 +1,4 @@
-//! The first-person view: what a camera sees, in cells.
+//! The first-person view: a widget that shows what a camera sees.
 
 use std::num::NonZeroU32;
 
@@ -14,9 +14,10 @@ use crate::render::{
 };
 use crate::world::World;
 
-/// A widget that shows what a camera sees of a [`World`], or of a [`Scene`](crate::space::Scene) of bodies.
+/// A widget that shows what a camera sees of a [`World`], or of a [`Scene`](crate::space::Scene) of
+/// bodies.
 ///
-/// Its state, a [`View`], keeps the picture and the renderer's memory from one drawing to the next.
+/// Its state, a [`View`], keeps the picture and the renderer's memory between frames.
 ///
 /// ```
 /// use cellcaster::tui::{FirstPerson, View};
@@ -44,7 +45,8 @@ pub struct FirstPerson<'a, S: Renderable = World> {
 }
 
 impl<'a, S: Renderable> FirstPerson<'a, S> {
-    /// What `camera` sees of `scene`: half blocks in true colour, on cells twice as high as wide.
+    /// A widget that shows `scene` from `camera` in half blocks and true colour, on cells twice as
+    /// high as wide.
     pub fn new(scene: &'a S, camera: &'a S::Camera) -> Self {
         Self {
             scene,
@@ -57,56 +59,60 @@ impl<'a, S: Renderable> FirstPerson<'a, S> {
         }
     }
 
-    /// With those characters. In [`GlyphMode::Ascii`] a cell of a grid shows its surface, and a cell of
-    /// bodies its brightness: shading gives a body its shape, and a surface has four characters only.
+    /// Sets the glyph mode. In [`GlyphMode::Ascii`] the characters of a grid show surfaces, and
+    /// those of bodies show brightness: shading gives a body its shape, and a surface has four
+    /// characters only.
     #[must_use]
     pub fn glyphs(self, glyphs: GlyphMode) -> Self {
         Self { glyphs, ..self }
     }
 
-    /// With that many colours.
+    /// Sets the colour depth.
     #[must_use]
     pub fn color_depth(self, depth: ColorDepth) -> Self {
         Self { depth, ..self }
     }
 
-    /// On cells of that shape.
+    /// Sets the shape of a cell.
     #[must_use]
     pub fn cell_aspect(self, cell_aspect: CellAspect) -> Self {
         Self { cell_aspect, ..self }
     }
 
-    /// With textures looked up like that.
+    /// Sets the texture filter.
     #[must_use]
     pub fn filter(self, filter: Filter) -> Self {
         Self { filter, ..self }
     }
 
-    /// With things as they are at that time; [`View::next_change`] returns when to draw again.
+    /// Sets the time, on which animated things depend. [`View::next_change`] returns the time of
+    /// the next change.
     #[must_use]
     pub fn time(self, seconds: f64) -> Self {
         Self { seconds, ..self }
     }
 
-    /// Draws the picture for an area of that size into `view`, as pixels only.
+    /// Renders the picture for an area of that size into `view`, as pixels only.
     ///
-    /// Rendering the widget is this and [`FirstPerson::paint`]. Call the two yourself to paint a large
-    /// picture in bands of rows.
+    /// Rendering the widget calls this function and [`FirstPerson::paint`]. Call them separately to
+    /// paint a large picture in bands of rows.
     pub fn draw(&self, size: Size, view: &mut View<S>) {
         let Some(View { renderer, frame }) = self.resized(size, view) else { return };
         self.scene.render(self.camera, self.options(), renderer, frame);
     }
 
-    /// As [`FirstPerson::draw`], and returns what the frame cost; `None` where the area has no cells.
+    /// Does the same as [`FirstPerson::draw`] and returns the frame's cost, or `None` if the area
+    /// has no cells.
     pub fn explain(&self, size: Size, view: &mut View<S>) -> Option<S::Explanation> {
         let View { renderer, frame } = self.resized(size, view)?;
         Some(self.scene.explain(self.camera, self.options(), renderer, frame))
     }
 
-    /// Fills `area` with the cells of the picture in `view`, from its row of cells `first_row` on.
+    /// Fills `area` with cells of the picture in `view`, beginning with its row of cells
+    /// `first_row`.
     ///
     /// # Panics
-    /// Where the picture has fewer cells than that.
+    /// If the picture has fewer cells than that.
     pub fn paint(&self, view: &View<S>, first_row: u16, area: Rect, canvas: &mut impl Canvas) {
         if area.is_empty() {
             return;
@@ -132,7 +138,8 @@ impl<'a, S: Renderable> FirstPerson<'a, S> {
         }
     }
 
-    /// `view`, with a frame of the size of that area; `None` where the area has no cells.
+    /// Resizes the frame of `view` to an area of that size. Returns `None` if the area has no
+    /// cells.
     fn resized<'v>(&self, size: Size, view: &'v mut View<S>) -> Option<&'v mut View<S>> {
         let height = u32::from(size.height) * self.glyphs.pixels_per_cell();
         let size = FrameSize::new(u32::from(size.width), height)?;
@@ -154,7 +161,7 @@ impl<S: Renderable> Clone for FirstPerson<'_, S> {
 
 impl<S: Renderable> Copy for FirstPerson<'_, S> {}
 
-/// What a [`FirstPerson`] keeps between drawings: the picture, and the renderer with its memory.
+/// The state of a [`FirstPerson`]: the last picture, and the renderer with its memory.
 #[derive(Clone, Debug)]
 pub struct View<S: Renderable = World> {
     renderer: S::Renderer,
@@ -170,20 +177,20 @@ impl<S: Renderable> Default for View<S> {
 }
 
 impl<S: Renderable> View<S> {
-    /// The time on the clock of [`FirstPerson::time`] at which something in the last picture begins to
-    /// look different by itself; `None` for never.
+    /// The time, as in [`FirstPerson::time`], of the next change in the last picture that does not
+    /// depend on the camera; `None` if there is none.
     pub fn next_change(&self) -> Option<f64> {
         S::next_change(&self.renderer)
     }
 }
 
 impl View {
-    /// A view whose renderer finds the walls by `caster`.
+    /// A view whose renderer finds walls by `caster`.
     pub fn with_caster(caster: DynCaster) -> Self {
         Self { renderer: Renderer::with_caster(caster), ..Self::default() }
     }
 
-    /// What the rays of the last drawing met, from left to right.
+    /// The hits of the last picture's rays, from left to right.
     pub fn columns(&self) -> &[Column] {
         self.renderer.columns()
     }
@@ -208,7 +215,7 @@ mod tests {
     use crate::space::Scene;
     use crate::world::FieldOfView;
 
-    /// Draws areas of 0 to 3 columns and rows, each after a large one, in every glyph mode.
+    /// Draws areas of 0 to 3 columns and rows in every glyph mode, each after a large one.
     fn draw_small_areas<S: Renderable>(scene: &S) {
         let camera = scene.start_camera(FieldOfView::default());
         let mut view = View::<S>::default();
@@ -229,7 +236,7 @@ mod tests {
     }
 
     #[test]
-    fn every_area_is_filled_and_nothing_beside_it() {
+    fn exactly_the_area_is_filled() {
         draw_small_areas(&builtin::LEVELS[0].world().unwrap());
         draw_small_areas(&Scene::default());
     }

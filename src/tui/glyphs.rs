@@ -1,4 +1,4 @@
-//! How pixels become the characters of cells.
+//! Glyph modes and the shape of cells: how pixels become characters.
 
 use ratatui::style::Color;
 
@@ -7,21 +7,21 @@ use crate::color::Rgb;
 use crate::color::palette::{self, ColorDepth};
 use crate::render::PixelAspect;
 
-/// Which characters stand for pixels.
+/// The characters that pixels are drawn with.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash, Default)]
 pub enum GlyphMode {
-    /// Two pixels a cell, one above the other: `▀`, `▄`, `█` and space.
+    /// Two pixels per cell, one above the other: `▀`, `▄`, `█` and space.
     #[default]
     Half,
-    /// One pixel a cell, as a character that tells by its shape what it shows, for terminals and
-    /// fonts without block characters and for readers without colour.
+    /// One pixel per cell. The shape of the character shows which surface it is: for terminals and
+    /// fonts without block characters, and for readers without colour.
     Ascii,
-    /// One pixel a cell, as one of sixteen characters that tell how bright it is and no more.
+    /// One pixel per cell, as one of sixteen characters for its brightness.
     Ramp,
 }
 
 impl GlyphMode {
-    /// How many pixels a cell holds, one above the other.
+    /// The number of pixels in a cell, one above the other.
     pub const fn pixels_per_cell(self) -> u32 {
         match self {
             Self::Half => 2,
@@ -30,22 +30,22 @@ impl GlyphMode {
     }
 }
 
-/// The height of a terminal's cell over its width, from 0.1 to 10.
+/// The ratio of a cell's height to its width, from 0.1 to 10.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct CellAspect(f64);
 
 impl CellAspect {
-    /// A ratio from 0.1 to 10. `None` for anything else.
+    /// A ratio from 0.1 to 10, or `None` for any other number.
     pub fn new(height_over_width: f64) -> Option<Self> {
         (0.1..=10.0).contains(&height_over_width).then_some(Self(height_over_width))
     }
 
-    /// The height of a cell over its width.
+    /// The height of a cell divided by its width.
     pub fn height_over_width(self) -> f64 {
         self.0
     }
 
-    /// The shape of the pixels that `glyphs` divide such a cell into.
+    /// The shape of the pixels into which `glyphs` divides such a cell.
     pub fn of_pixels(self, glyphs: GlyphMode) -> PixelAspect {
         PixelAspect::new(self.0 / f64::from(glyphs.pixels_per_cell()))
             .unwrap_or(PixelAspect::SQUARE)
@@ -59,7 +59,7 @@ impl Default for CellAspect {
     }
 }
 
-/// `color`, as nearly as a terminal of that depth can show it.
+/// `color` as a terminal of that depth shows it best.
 #[inline]
 pub(super) fn color_at(depth: ColorDepth, color: Rgb) -> Color {
     match depth {

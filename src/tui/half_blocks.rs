@@ -1,9 +1,10 @@
-//! Half blocks: a cell shows two pixels, one above the other.
+//! The half-block glyph mode: a cell shows two pixels, one above the other.
 //!
-//! A picture in few colours is drawn as a picture: [`mixed`] and [`mono`] look at more than one pixel. What is
-//! drawn in flat colours, such as a map, shows the nearest ones; without colour a pixel of it is lit or not by a
-//! fixed 4×4 pattern of thresholds. All patterns stand still while the picture does. Error diffusion was
-//! refused: there, one changed pixel changes all that follow.
+//! Frames in few colours are drawn by [`mixed`] and [`mono`], which consider several pixels at
+//! once. Flat colours, such as those of a map, become the nearest colours; without colour, a fixed
+//! 4×4 matrix of thresholds decides whether a pixel is lit. All patterns are fixed to the screen,
+//! so that a still picture stays still. Error diffusion was refused: one changed pixel changes all
+//! pixels after it.
 
 mod mixed;
 mod mono;
@@ -17,7 +18,7 @@ use crate::color::Rgb;
 use crate::color::palette::{ColorDepth, mixture};
 use crate::render::Frame;
 
-/// Draws the pixels of `frame` on `area`, from `above` pixels under its top edge on.
+/// Draws the pixels of `frame` on `area`. The first `above` rows of pixels are above its top edge.
 pub(super) fn draw_frame(
     area: Rect,
     canvas: &mut impl Canvas,
@@ -33,8 +34,8 @@ pub(super) fn draw_frame(
     }
 }
 
-/// Draws the pixels of `area`, twice as many as cells from top to bottom: `row(y)` is a row of them from
-/// the left edge on, and counts from `above` pixels over the top edge.
+/// Draws two pixels in each cell of `area`. `row(y)` is a row of pixels from the left edge; the
+/// first `above` rows are above the top edge.
 pub(super) fn draw<Row: Iterator<Item = Rgb>>(
     area: Rect,
     canvas: &mut impl Canvas,
@@ -64,7 +65,7 @@ pub(super) fn draw<Row: Iterator<Item = Rgb>>(
     }
 }
 
-/// The character whose halves are lit or not.
+/// The character whose halves are lit or unlit.
 pub(super) fn lit_glyph(top: bool, bottom: bool) -> char {
     match (top, bottom) {
         (true, true) => '█',
@@ -74,17 +75,21 @@ pub(super) fn lit_glyph(top: bool, bottom: bool) -> char {
     }
 }
 
-/// Bayer's ordered dither: every 2×2 part of it has two of the lower and two of the upper half.
-const ORDER: [[u8; 4]; 4] = [[0, 8, 2, 10], [12, 4, 14, 6], [3, 11, 1, 9], [15, 7, 13, 5]];
+/// The threshold matrix of ordered dither. In each 2×2 part of it, two thresholds are in the lower
+/// half of the range and two in the upper.
+///
+/// Source: B. E. Bayer, "An Optimum Method for Two-Level Rendition of Continuous-Tone Pictures"
+/// (1973).
+const THRESHOLDS: [[u8; 4]; 4] = [[0, 8, 2, 10], [12, 4, 14, 6], [3, 11, 1, 9], [15, 7, 13, 5]];
 
-/// The place of a pixel in that order, from 0 to 15.
-fn order(x: u32, y: u32) -> u8 {
-    ORDER[(y % 4) as usize][(x % 4) as usize]
+/// The rank of a pixel's threshold, from 0 to 15.
+fn threshold_rank(x: u32, y: u32) -> u8 {
+    THRESHOLDS[(y % 4) as usize][(x % 4) as usize]
 }
 
-/// Whether a pixel of that colour is lit at that place.
+/// Whether a pixel with that colour and position is lit.
 fn is_lit(color: Rgb, x: u32, y: u32) -> bool {
-    color.luma() >= 16 * order(x, y) + 8
+    color.luma() >= 16 * threshold_rank(x, y) + 8
 }
 
 #[cfg(test)]
@@ -101,7 +106,7 @@ mod tests {
     }
 
     #[test]
-    fn brightness_without_colour_is_how_many_pixels_are_lit() {
+    fn brightness_without_colour_is_the_share_of_lit_pixels() {
         let lit = |level| {
             let grey = Rgb::new(level, level, level);
             (0..16).filter(|index| is_lit(grey, index % 4, index / 4)).count()

@@ -1,46 +1,48 @@
-//! Which keys are held: the one place that knows how little terminals tell of it.
+//! The keys that are held, in terminals with and without key releases.
 //!
-//! A terminal that reports releases tells all there is. Others send a byte when a key is pressed, send it
-//! again while the key is held, and stop for good when another key is pressed. [`HeldKeys`] makes both
-//! the same: a press is a tap of a number of steps, and a key that stays down is held after that.
+//! Some terminals report when a key is released. Others send a byte when a key is pressed, send it
+//! again while the key is held, and stop for good when another key is pressed. [`HeldKeys`] gives
+//! both the same behaviour: a press is a tap of a number of steps, and a key that stays down is
+//! held after its tap.
 //!
 //! Without releases:
 //!
-//! - A press is a tap. Taps wait for one another, so two of them are exactly twice one.
+//! - A press is a tap. Taps are queued, so that two of them have exactly twice the effect of one.
 //! - A second byte counts as another tap. It may be the first repetition: if the next byte follows
-//!   sooner than people tap, the key is held. The delay and the interval are learned from that.
-//! - A held key is let go of when its repetition fails to come for a few of its intervals.
-//! - A held key whose repetition is cut off by another key stays held as long as the other may be held, and
-//!   [`LINGER`] after that; until it is pressed again, or a key that opposes it is pressed.
+//!   sooner than people tap, the key is held. The repeat delay and interval are learned from that.
+//! - A held key is released when no repetition comes for a few of its intervals.
+//! - A held key whose repetition is ended by another key stays held while the other key may be
+//!   held, and for [`LINGER`] after that. It is released earlier if it is pressed again, or if an
+//!   opposing key is pressed.
 //! - Two keys pressed within [`CHORD`] of each other are both held once one of them repeats.
 //!
-//! To take a byte at the learned delay for a repetition at once was refused: it gains one interval, and
-//! whoever taps in that rhythm walks on. To count a tap as held until the first repetition could have come
-//! was refused, too: one tap then walks 1.75 cells.
+//! Taking a byte at the learned delay for a repetition at once was refused: it gains one interval,
+//! and people who tap at that rate keep walking. Counting a tap as held until the first repetition
+//! could have come was refused, too: one tap then walks 1.75 cells.
 //!
-//! Time is handed in, as the time since some fixed moment, so that tests need not wait.
+//! The time is an argument, measured from a fixed moment, so that tests need not wait.
 
 mod key;
 #[cfg(test)]
 pub(crate) mod keyboard;
-mod rhythm;
+mod repeat_timing;
 #[cfg(test)]
 mod tests;
 
 use std::time::Duration;
 
 use key::{HeldKey, State};
-use rhythm::Rhythm;
+use repeat_timing::RepeatTiming;
 
-/// How much longer than the newer key a key is held that the newer one has cut off.
+/// How long a key stays held after the newer key that ended its repetition is released.
 pub const LINGER: Duration = Duration::from_millis(300);
-/// How soon after one another two keys are pressed that are meant to be held together.
+/// Two keys pressed within this time are meant to be held together.
 pub const CHORD: Duration = Duration::from_millis(150);
 
-/// How many keys are remembered: more than there are fingers.
+/// The most keys that are stored: more than there are fingers.
 const MOST_KEYS: usize = 16;
 
-/// The keys that are held, of any type that names keys.
+/// The keys that are held. `K` is any type that identifies keys.
 ///
 /// ```
 /// use std::time::Duration;
@@ -53,7 +55,7 @@ const MOST_KEYS: usize = 16;
 /// held.step();
 /// held.step();
 /// assert_eq!(held.hold('w'), Hold::Unknown);
-/// // The keyboard begins to repeat it.
+/// // The keyboard begins to repeat the key.
 /// held.press('w', 2, at(500), |_| false);
 /// held.press('w', 2, at(530), |_| false);
 /// assert_eq!(held.hold('w'), Hold::Held);
@@ -63,33 +65,34 @@ const MOST_KEYS: usize = 16;
 #[derive(Clone, Debug)]
 pub struct HeldKeys<K> {
     reports_releases: bool,
-    /// The one that was heard of last is the last.
+    /// The last element is the key whose event came last.
     keys: Vec<HeldKey<K>>,
-    /// Of any key, for those that have not repeated yet.
-    rhythm: Rhythm,
-    /// Until when keys are held that a newer one has cut off.
+    /// The timing of any key, for keys that have not repeated yet.
+    timing: RepeatTiming,
+    /// Keys whose repetition a newer key has ended are held until then.
     lingers_until: Duration,
 }
 
 /// How a key is held.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Hold {
-    /// It is up.
+    /// The key is up.
     Up,
-    /// It was pressed, and the steps of its tap are not over.
+    /// The key was pressed, and the steps of its tap are not over.
     Tap,
-    /// It was pressed, its tap is over, and it is up or down: the terminal does not tell.
+    /// The key was pressed, and its tap is over. The terminal does not report whether it is still
+    /// down.
     Unknown,
-    /// It is down, for longer than a tap.
+    /// The key is down for longer than a tap.
     Held,
 }
 
-/// What a byte of a key means.
+/// The meaning of a byte that a key sends.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Press {
     /// The key was up, and was pressed.
     Fresh,
-    /// Either: the key was pressed again, or begins to repeat.
+    /// The key was pressed again, or begins to repeat.
     Unclear,
     /// The key is down, and repeats.
     Repeat,
@@ -101,14 +104,14 @@ impl<K> Default for HeldKeys<K> {
         Self {
             reports_releases: false,
             keys: Vec::with_capacity(MOST_KEYS),
-            rhythm: Rhythm::default(),
+            timing: RepeatTiming::default(),
             lingers_until: Duration::ZERO,
         }
     }
 }
 
 impl<K: Copy + Eq> HeldKeys<K> {
-    /// From now on releases are reported, or are not. Where that is news, every key counts as up.
+    /// Sets whether releases are reported. If that changes, all keys count as up.
     pub fn set_reports_releases(&mut self, reports_releases: bool) {
         if self.reports_releases != reports_releases {
             self.reports_releases = reports_releases;
@@ -121,8 +124,9 @@ impl<K: Copy + Eq> HeldKeys<K> {
         self.reports_releases
     }
 
-    /// Takes note that `key` was pressed, or repeats, at time `now`: a tap of `steps` steps, or none. Where
-    /// releases are not reported, keys that `opposes` names are let go of.
+    /// Handles a press or a repetition of `key` at time `now`. A press is a tap of `steps` steps,
+    /// or no tap if `steps` is 0. If releases are not reported, the keys for which `opposes` is
+    /// true are released.
     pub fn press(
         &mut self,
         key: K,
@@ -138,27 +142,27 @@ impl<K: Copy + Eq> HeldKeys<K> {
             self.keys.push(held);
             return press;
         }
-        let press = held.byte(steps, now, is_newest, self.rhythm);
+        let press = held.byte(steps, now, is_newest, self.timing);
         for other in &mut self.keys {
             if opposes(other.key) {
-                other.let_go();
+                other.mark_as_up();
             } else if press == Press::Repeat && held.is_held() {
                 other.join(&held);
             } else if press == Press::Fresh {
-                other.cut_off();
+                other.end_repetition();
             }
         }
         if held.is_held() {
-            self.rhythm = held.rhythm;
+            self.timing = held.timing;
         }
-        if let Some(expiry) = held.expiry(self.rhythm) {
+        if let Some(expiry) = held.expiry(self.timing) {
             self.lingers_until = expiry + LINGER;
         }
         self.keys.push(held);
         press
     }
 
-    /// Takes note that `key` is still down, says a terminal that reports releases.
+    /// Handles a repetition of `key` from a terminal that reports releases.
     pub fn repeat(&mut self, key: K) {
         let mut held = self.take(key);
         if held.state == State::Up {
@@ -167,78 +171,81 @@ impl<K: Copy + Eq> HeldKeys<K> {
         self.keys.push(held);
     }
 
-    /// Takes note that `key` was released. Its tap goes on to its end.
+    /// Handles the release of `key`. Its tap continues to its end.
     pub fn release(&mut self, key: K) {
         if let Some(held) = self.keys.iter_mut().find(|held| held.key == key) {
             held.state = State::Up;
         }
     }
 
-    /// Lets go of all keys, as when the window loses the focus. A key that goes on repeating is up until it
-    /// is pressed anew.
+    /// Releases all keys, for example when the window loses the focus. A key that continues to
+    /// repeat is up until it is pressed again.
     pub fn release_all(&mut self) {
-        self.keys.iter_mut().for_each(HeldKey::drop);
+        self.keys.iter_mut().for_each(HeldKey::suppress);
     }
 
-    /// Lets go of the keys whose repetition has failed to come by `now`.
+    /// Releases the keys whose repetition has not come by `now`.
     pub fn advance(&mut self, now: Duration) {
         for held in &mut self.keys {
             let expiry = match held.state {
-                State::CutOff => Some(self.lingers_until),
-                _ => held.expiry(self.rhythm),
+                State::Lingers => Some(self.lingers_until),
+                _ => held.expiry(self.timing),
             };
             if expiry.is_some_and(|expiry| expiry <= now) {
-                held.let_go();
+                held.mark_as_up();
             }
         }
     }
 
-    /// Takes note that a step of the game has passed.
+    /// Advances taps by one step of the game.
     pub fn step(&mut self) {
         self.keys.iter_mut().for_each(HeldKey::step);
     }
 
-    /// Keeps the keys that a newer one has cut off held for [`LINGER`] after `now`: called in each step in
-    /// which the player is in the air, it lets them land as they jumped.
+    /// Holds the keys whose repetition a newer key has ended until [`LINGER`] after `now`. Call it
+    /// in each step in which the player is in the air, so that they keep their direction until they
+    /// land.
     pub fn keep(&mut self, now: Duration) {
         self.lingers_until = self.lingers_until.max(now + LINGER);
     }
 
-    /// Holds the keys that were pressed so shortly before the newest one that they could not have repeated
-    /// yet: who jumps right after pressing a key wants to jump that way.
+    /// Holds the keys that were pressed so shortly before the newest one that they could not have
+    /// repeated yet. A player who presses a direction and then jumps wants to jump in that
+    /// direction.
     pub fn join_newest(&mut self) {
         let Some((newest, others)) = self.keys.split_last_mut() else { return };
         for other in others {
-            other.join_before_repetition(newest, self.rhythm);
+            other.join_before_repetition(newest, self.timing);
         }
     }
 
-    /// When the next key will be let go of, if nothing is heard of it until then.
+    /// When the next key expires if no event of it comes until then.
     pub fn next_expiry(&self) -> Option<Duration> {
         let expiries = self.keys.iter().filter_map(|held| match held.state {
-            State::CutOff => Some(self.lingers_until),
-            _ => held.expiry(self.rhythm),
+            State::Lingers => Some(self.lingers_until),
+            _ => held.expiry(self.timing),
         });
         expiries.min()
     }
 
-    /// Whether any key is in the steps of its tap, so that the next step may find another state.
+    /// Whether any key is in the steps of its tap, so that its state may change with the next step.
     pub fn has_taps(&self) -> bool {
         self.keys.iter().any(HeldKey::has_taps)
     }
 
-    /// How `key` is held.
+    /// The state of `key`.
     pub fn hold(&self, key: K) -> Hold {
         self.keys.iter().find(|held| held.key == key).map_or(Hold::Up, HeldKey::hold)
     }
 
-    /// The keys that are not up, and how each is held.
+    /// The keys that are not up, with their states.
     pub fn iter(&self) -> impl Iterator<Item = (K, Hold)> {
         let holds = self.keys.iter().map(|held| (held.key, held.hold()));
         holds.filter(|&(_, hold)| hold != Hold::Up)
     }
 
-    /// What is known of `key`, taken out of the list; the oldest makes room for one that is new.
+    /// Removes the state of `key` from the list, or creates it. If the list is full, the oldest key
+    /// makes room.
     fn take(&mut self, key: K) -> HeldKey<K> {
         if let Some(index) = self.keys.iter().position(|held| held.key == key) {
             return self.keys.remove(index);

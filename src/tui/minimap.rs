@@ -1,11 +1,11 @@
-//! The minimap: the map from above, north up.
+//! The minimap: the map from above, with north at the top.
 //!
-//! Floor is shaded by its height, and what has not been seen can be left out: [`Explored`] is what has. Nothing on it
-//! is as bright as the arrow that stands for the player.
+//! Floor is shaded by its height. Cells that the player has not seen can be hidden; [`Explored`]
+//! stores the seen ones. Nothing on the map is as bright as the arrow for the player.
 
-mod chart;
 mod explored;
-mod place;
+mod map_point;
+mod top_view;
 mod window;
 
 use glam::DVec2;
@@ -23,16 +23,16 @@ use crate::color::Rgb;
 use crate::color::palette::ColorDepth;
 use crate::render::Column;
 use crate::world::{Camera, World};
-use chart::Chart;
 pub use explored::Explored;
-use place::Place;
+use map_point::MapPoint;
+use top_view::TopView;
 use window::Window;
 
-/// A widget that shows the map from above: walls in their colours, floor by its height, the player as an arrow, and
-/// the part of the floor that is in view, by the rays that the picture was drawn from.
+/// A widget that shows the map from above: walls in their colours, floor by its height, the player
+/// as an arrow, and the visible part of the floor, by the rays of the picture.
 ///
-/// It is as large as fits its area, in whole pixels a cell. A map that is too large for that scrolls
-/// with the player.
+/// The map is as large as its area allows, with a whole number of pixels per cell. A map that does
+/// not fit scrolls with the player.
 #[derive(Clone, Copy, Debug)]
 pub struct Minimap<'a> {
     world: &'a World,
@@ -46,7 +46,7 @@ pub struct Minimap<'a> {
 }
 
 impl<'a> Minimap<'a> {
-    /// The map of `world` with `camera` on it, in half blocks and true colour.
+    /// A map of `world` with `camera` on it, in half blocks and true colour.
     pub fn new(world: &'a World, camera: &'a Camera) -> Self {
         Self {
             world,
@@ -60,38 +60,40 @@ impl<'a> Minimap<'a> {
         }
     }
 
-    /// With the field of view that `columns` saw; they are those of a picture by the same camera.
+    /// Sets the hits that bound the visible floor. They must be those of a picture by the same
+    /// camera.
     #[must_use]
     pub fn seen(self, columns: &'a [Column]) -> Self {
         Self { columns, ..self }
     }
 
-    /// With nothing but what is `explored`; without this, all of the map shows.
+    /// Shows only the cells in `explored`. By default, the whole map is shown.
     #[must_use]
     pub fn explored(self, explored: &'a Explored) -> Self {
         Self { explored: Some(explored), ..self }
     }
 
-    /// So many levels larger than fits the area, or smaller where that is not all of the map: a level doubles or
-    /// halves it, about.
+    /// Sets the zoom. Each level about doubles or halves the map's size; 0 is the size that fits.
+    /// The map is not made smaller than the size that shows all of it.
     #[must_use]
     pub fn zoom(self, levels: i32) -> Self {
         Self { zoom: levels, ..self }
     }
 
-    /// Around a place so many cells to the east and the south of the player, as far as the map goes on there.
+    /// Moves the shown part by that many cells to the east and the south of the player, up to the
+    /// edge of the map.
     #[must_use]
     pub fn offset(self, cells: DVec2) -> Self {
         Self { offset: cells, ..self }
     }
 
-    /// With those characters.
+    /// Sets the glyph mode.
     #[must_use]
     pub fn glyphs(self, glyphs: GlyphMode) -> Self {
         Self { glyphs, ..self }
     }
 
-    /// With that many colours.
+    /// Sets the colour depth.
     #[must_use]
     pub fn color_depth(self, depth: ColorDepth) -> Self {
         Self { depth, ..self }
@@ -105,7 +107,7 @@ impl Widget for Minimap<'_> {
 }
 
 impl Minimap<'_> {
-    /// Draws it on `area`, as rendering the widget does on that of a buffer.
+    /// Draws the map on `area` of any canvas, as rendering the widget does on a buffer.
     pub fn paint(&self, area: Rect, canvas: &mut impl Canvas) {
         let area = area.intersection(canvas.bounds());
         if area.is_empty() {
@@ -113,13 +115,13 @@ impl Minimap<'_> {
         }
         let window = self.window(area);
         let seen = (self.columns, self.explored);
-        let chart = Chart::new(self.world, self.camera, seen, window.pixel());
-        let picture = Picture { chart, window };
+        let top_view = TopView::new(self.world, self.camera, seen, window.pixel());
+        let picture = Picture { top_view, window };
         match self.glyphs {
             GlyphMode::Half => self.draw_halves(&picture, area, canvas),
             GlyphMode::Ascii | GlyphMode::Ramp => ascii::draw(area, canvas, self.depth, |x, y| {
-                let place = picture.place(x, y);
-                (place.color(), place.character())
+                let point = picture.point(x, y);
+                (point.color(), point.character())
             }),
         }
         if let Some((x, y)) = window.cell(self.camera.position()) {
@@ -127,13 +129,13 @@ impl Minimap<'_> {
         }
     }
 
-    /// How much of `room` shows something of the map; the rest would be blank.
+    /// The part of `room` that the map fills; the rest would be blank.
     #[cfg(feature = "terminal")]
     pub(crate) fn size_within(&self, room: Size) -> Size {
         window::size_within(room, self.glyphs, self.world, self.zoom)
     }
 
-    /// How many cells of the map an area of that size shows.
+    /// The number of the map's cells that an area of that size shows.
     #[cfg(feature = "terminal")]
     pub(crate) fn extent_within(&self, room: Size) -> DVec2 {
         self.window(Rect::from(room)).extent()
@@ -145,11 +147,11 @@ impl Minimap<'_> {
     }
 
     fn draw_halves(&self, picture: &Picture, area: Rect, canvas: &mut impl Canvas) {
-        let row = |y| (0..u32::from(area.width)).map(move |x| picture.place(x, y));
+        let row = |y| (0..u32::from(area.width)).map(move |x| picture.point(x, y));
         match self.depth {
             ColorDepth::True | ColorDepth::Indexed256 => {
                 for (y, upper) in (area.top()..area.bottom()).zip((0..).step_by(2)) {
-                    let color = |place: Place| color_at(self.depth, place.color());
+                    let color = |point: MapPoint| color_at(self.depth, point.color());
                     let halves = row(upper).zip(row(upper + 1));
                     let colors = halves.map(|(top, bottom)| [color(top), color(bottom)]);
                     canvas.draw_halves(area.x, y, colors);
@@ -157,7 +159,7 @@ impl Minimap<'_> {
             }
             ColorDepth::Indexed16 => {
                 for (y, upper) in (area.top()..area.bottom()).zip((0..).step_by(2)) {
-                    let color = |place: Place| Color::Indexed(place.index_of_16());
+                    let color = |point: MapPoint| Color::Indexed(point.index_of_16());
                     let halves = row(upper).zip(row(upper + 1));
                     let colors = halves.map(|(top, bottom)| [color(top), color(bottom)]);
                     canvas.draw_halves(area.x, y, colors);
@@ -174,7 +176,7 @@ impl Minimap<'_> {
         }
     }
 
-    /// Draws the arrow at `place`.
+    /// Draws the arrow in the cell at `x` and `y`.
     fn draw_player(&self, (x, y): (u16, u16), canvas: &mut impl Canvas) {
         let arrows = match self.glyphs {
             GlyphMode::Half => ['→', '↘', '↓', '↙', '←', '↖', '↑', '↗'],
@@ -192,44 +194,44 @@ impl Minimap<'_> {
     }
 }
 
-/// What the arrow is drawn on.
+/// The background of the arrow.
 const PLAYER: Rgb = Rgb::new(0xff, 0xf0, 0x50);
 
-/// What pixels are asked of.
+/// A map and the part of it that is shown.
 struct Picture<'a> {
-    chart: Chart<'a>,
+    top_view: TopView<'a>,
     window: Window,
 }
 
 impl Picture<'_> {
-    /// What a pixel shows: of several cells, what matters most.
+    /// The map point at a pixel. If a pixel covers several cells, it is the most important one.
     #[inline]
-    fn place(&self, x: u32, y: u32) -> Place {
-        let point = self.window.point(x, y);
+    fn point(&self, x: u32, y: u32) -> MapPoint {
+        let position = self.window.position(x, y);
         let [columns, rows] = self.window.cells_per_pixel();
         if (columns, rows) == (1, 1) {
-            return self.chart.row(point.y).place(point.x);
+            return self.top_view.row(position.y).point(position.x);
         }
-        // The middles of as many cells around the pixel's own.
-        let along = |point: f64, count: u32| {
-            let first = point - f64::from(count - 1) / 2.0;
+        // The pixel covers this number of cells in each direction; each is sampled at its middle.
+        let along = |middle: f64, count: u32| {
+            let first = middle - f64::from(count - 1) / 2.0;
             (0..count).map(move |index| first + f64::from(index))
         };
-        let places = along(point.y, rows).flat_map(|y| {
-            let row = self.chart.row(y);
-            along(point.x, columns).map(move |x| row.place(x))
+        let points = along(position.y, rows).flat_map(|y| {
+            let row = self.top_view.row(y);
+            along(position.x, columns).map(move |x| row.point(x))
         });
-        places.max_by_key(|place| place.importance()).unwrap_or(Place::Void)
+        points.max_by_key(|point| point.importance()).unwrap_or(MapPoint::Void)
     }
 }
 
-/// The character for two places, one above the other, where there are no colours: things are letters.
-fn in_mono((top, bottom): (Place, Place), (x, y): (u32, u32)) -> char {
+/// The character for two map points, one above the other, without colour. Things are letters.
+fn in_mono((top, bottom): (MapPoint, MapPoint), (x, y): (u32, u32)) -> char {
     let letter = [top, bottom]
         .into_iter()
-        .find(|place| matches!(place, Place::Exit | Place::Key | Place::Ornament));
+        .find(|point| matches!(point, MapPoint::Exit | MapPoint::Key | MapPoint::Ornament));
     letter.map_or_else(
         || half_blocks::lit_glyph(top.is_lit(x, y), bottom.is_lit(x, y + 1)),
-        Place::character,
+        MapPoint::character,
     )
 }

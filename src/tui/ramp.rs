@@ -1,11 +1,11 @@
-//! The ramp: a character for each of sixteen shades, whatever it is that has them.
+//! The ramp glyph mode: a character for each of sixteen shades, for every surface.
 
 use crate::color::Rgb;
 
-/// From the one that lights most of its cell to the one that lights nothing.
+/// From the character that lights most of its cell to the one that lights nothing.
 const RAMP: &[u8; 16] = b"WM0KXkxocl;:,'. ";
 
-/// The character for a pixel of that colour.
+/// The character for a pixel with that colour.
 pub(super) fn character(color: Rgb) -> char {
     let darkness = usize::from(u8::MAX - color.luma());
     char::from(RAMP[darkness * RAMP.len() / 256])

@@ -1,17 +1,18 @@
-//! What the player wants, by the keys that are held.
+//! From held keys to the intents of a step.
 //!
-//! A tap is a small, exact thing, since motion that begins and ends smoothly covers as much as one that
-//! does not: 5 steps of walking are a quarter of a cell, 10 steps of turning slowly are 5 degrees.
+//! A tap has a small, exact effect, because motion that starts and stops smoothly covers the same
+//! distance as motion that does not: 5 steps of walking are a quarter of a cell, and 10 steps of
+//! turning slowly are 5 degrees.
 
 use super::held::Hold;
 use crate::game::{Intent, Intents};
 
-/// Which intents turn the player, or how they look up and down.
+/// The intents that turn the camera.
 const TURNS: [Intent; 4] = [Intent::TurnLeft, Intent::TurnRight, Intent::LookUp, Intent::LookDown];
 const WALKS: [Intent; 4] = [Intent::Forward, Intent::Back, Intent::StrafeLeft, Intent::StrafeRight];
 
-/// For how many steps a tap of a key wants `intent`: what [`HeldKeys::press`](super::HeldKeys::press) is
-/// told.
+/// The number of steps for which a tap of a key wants `intent`, as an argument of
+/// [`HeldKeys::press`](super::HeldKeys::press).
 pub fn tap_steps(intent: Intent) -> u32 {
     use Intent::{AboutFace, FineLeft, FineRight, LookAhead, Open};
     match intent {
@@ -22,9 +23,9 @@ pub fn tap_steps(intent: Intent) -> u32 {
     }
 }
 
-/// What is wanted in a step by somebody whose keys mean these intents, each held as it says.
+/// The intents of a step, given the intents that are bound to keys and how each key is held.
 ///
-/// Taps turn slowly, and do not run. Who may hold the key to duck ducks.
+/// Taps turn slowly and never run. A key to duck that may be down counts as held.
 pub fn wanted(keys: impl Iterator<Item = (Intent, Hold)>) -> Intents {
     let mut wanted = Intents::new();
     let mut held = Intents::new();
@@ -45,11 +46,11 @@ pub fn wanted(keys: impl Iterator<Item = (Intent, Hold)>) -> Intents {
         intents.iter().any(|&one| wanted.contains(one))
             && !intents.iter().any(|&one| held.contains(one))
     };
-    let (aims, steps) = (taps(TURNS), taps(WALKS));
-    if aims {
+    let (turns_by_taps, walks_by_taps) = (taps(TURNS), taps(WALKS));
+    if turns_by_taps {
         wanted.insert(Intent::Aim);
     }
-    if steps {
+    if walks_by_taps {
         wanted.remove(Intent::Run);
     }
     wanted

@@ -1,4 +1,4 @@
-//! Recordings in the format asciicast v3, read back.
+//! A parser for recordings in the format asciicast v3.
 #![allow(dead_code, reason = "every test file uses its own share of this")]
 
 use serde_json::Value;
@@ -10,17 +10,17 @@ pub(crate) struct Asciicast {
     pub(crate) events: Vec<Event>,
 }
 
-/// What happened, and when.
+/// An event and its time.
 #[derive(Clone, Debug)]
 pub(crate) struct Event {
-    /// Milliseconds since the beginning.
+    /// The time since the start, in milliseconds.
     pub(crate) time: u64,
     pub(crate) code: String,
     pub(crate) data: String,
 }
 
 impl Asciicast {
-    /// Reads `file`, every line of which is JSON.
+    /// Parses `file`, each line of which is JSON.
     pub(crate) fn read(file: &str) -> Self {
         let mut lines = file.lines().map(|line| serde_json::from_str::<Value>(line).unwrap());
         let header = lines.next().unwrap();
@@ -35,7 +35,7 @@ impl Asciicast {
         Self { columns: number("cols"), rows: number("rows"), events: events.collect() }
     }
 
-    /// All that the terminal was sent.
+    /// Everything that was sent to the terminal.
     pub(crate) fn sent(&self) -> String {
         let sent = self.events.iter().filter(|event| event.code == "o");
         sent.map(|event| event.data.as_str()).collect()

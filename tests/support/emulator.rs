@@ -1,4 +1,4 @@
-//! A terminal emulator: what it shows, the modes that are set, and what it answers.
+//! A terminal emulator: its screen, its modes, and its answers.
 #![allow(dead_code, reason = "every test file uses its own share of this")]
 
 #[path = "alacritty.rs"]
@@ -10,23 +10,23 @@ use vt100::{Callbacks, Color, MouseProtocolEncoding, MouseProtocolMode, Parser, 
 
 pub(crate) use self::alacritty::Alacritty;
 
-/// What a terminal answers.
+/// The queries that a terminal answers.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub(crate) enum Speaks {
     /// Nothing.
     Nothing,
-    /// What device it is.
+    /// Queries for the device's identity.
     Plain,
-    /// Status requests and the kitty keyboard protocol as well, that it shows 24-bit colours, and that
-    /// it can report the mouse in pixels. A key's release is always on its way when the program
-    /// turns the protocol off.
+    /// Also status requests, the kitty keyboard protocol, and the queries for 24-bit colours and
+    /// for mouse positions in pixels. A key release arrives whenever the program switches the
+    /// protocol off.
     Kitty,
     /// What Alacritty does, whose palette can be defined, and which repeats characters. The screen is
     /// [its own](Emulator::alacritty).
     Alacritty,
 }
 
-/// The modes that a program sets, and should set back.
+/// The modes that a program sets and should reset.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 #[expect(clippy::struct_excessive_bools, reason = "each mode is set or not, by itself")]
 pub(crate) struct Modes {
@@ -34,18 +34,18 @@ pub(crate) struct Modes {
     pub(crate) cursor_hidden: bool,
     pub(crate) wrap: bool,
     pub(crate) synchronized: bool,
-    /// Whether gaining and losing the focus is reported.
+    /// Whether changes of the focus are reported.
     pub(crate) focus: bool,
-    /// What of the mouse is reported, and how.
+    /// The events of the mouse that are reported, and their encoding.
     pub(crate) mouse: (MouseProtocolMode, MouseProtocolEncoding),
-    /// Whether its place is reported in pixels.
+    /// Whether its position is reported in pixels.
     pub(crate) mouse_pixels: bool,
-    /// How many sets of keyboard flags are pushed, on the main and on the alternate screen.
+    /// The number of sets of keyboard flags on the stack of the main and of the alternate screen.
     pub(crate) key_flags: [i32; 2],
 }
 
 impl Default for Modes {
-    /// As a terminal starts.
+    /// The modes of a new terminal.
     fn default() -> Self {
         Self {
             alternate_screen: false,
@@ -68,7 +68,7 @@ pub(crate) struct Emulator {
     answered_about_colors: bool,
 }
 
-/// What the parser leaves to us.
+/// The parts that the parser does not handle.
 struct Extensions {
     speaks: Speaks,
     modes: Modes,
@@ -80,9 +80,9 @@ struct Extensions {
 /// The requests for the terminal's status.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub(crate) struct Statuses {
-    /// Whether answers are lost on the way.
+    /// Whether answers are lost.
     pub(crate) lost: bool,
-    /// How many requests have not been answered.
+    /// The number of unanswered requests.
     pub(crate) unanswered: usize,
 }
 
@@ -101,7 +101,7 @@ impl Emulator {
         Self { parser, alacritty, bytes: Vec::new(), answered_about_colors: false }
     }
 
-    /// Takes `bytes`, and returns what the terminal answers.
+    /// Processes `bytes` and returns the terminal's answers.
     pub(crate) fn process(&mut self, bytes: &[u8]) -> Vec<u8> {
         self.bytes.extend_from_slice(bytes);
         self.parser.process(bytes);
@@ -112,7 +112,7 @@ impl Emulator {
         [last_motion(bytes), &self.answer_about_colors(), &answers].concat()
     }
 
-    /// Answers the query for 24-bit colours, a kind of string that the parser passes over.
+    /// Answers the query for 24-bit colours, in a kind of string that the parser ignores.
     fn answer_about_colors(&mut self) -> Vec<u8> {
         const QUERY: &[u8] = b"\x1bP+q524742\x1b\\";
         const ANSWER: &[u8] = b"\x1bP1+r524742=38\x1b\\";

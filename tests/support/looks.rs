@@ -1,18 +1,18 @@
-//! What the cells of a screen look like, whichever glyph draws them.
+//! The appearance of a screen's cells, independent of their glyphs.
 #![allow(dead_code, reason = "every test file uses its own share of this")]
 
 use vt100::{Color, Screen};
 
-/// What one cell looks like.
+/// The appearance of a cell.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub(crate) enum Look {
-    /// An upper and a lower pixel.
+    /// The colours of an upper and a lower pixel.
     Pixels([Color; 2]),
     /// A character, its colours, and whether they are reversed.
     Text(String, [Color; 2], bool),
 }
 
-/// All cells of `screen`, row by row.
+/// The appearance of all cells of `screen`, row by row.
 pub(crate) fn looks(screen: &Screen) -> Vec<Look> {
     let (rows, columns) = screen.size();
     let places =

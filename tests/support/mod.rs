@@ -1,17 +1,17 @@
-//! What the tests of the whole program share.
+//! Functions that tests of the whole program share.
 #![allow(dead_code, reason = "every test file uses its own share of this")]
 
 use std::io::Write;
 use std::process::{Command, Output, Stdio};
 
-/// The program, in a clean environment.
+/// The program in an empty environment.
 pub(crate) fn cellcaster(arguments: &[&str]) -> Command {
     let mut command = Command::new(env!("CARGO_BIN_EXE_cellcaster"));
     command.args(arguments).env_clear();
     command
 }
 
-/// What the program does, given that input.
+/// Runs the program with that standard input.
 pub(crate) fn run_with_input(arguments: &[&str], input: &[u8]) -> Output {
     let mut child = cellcaster(arguments)
         .stdin(Stdio::piped())
@@ -23,7 +23,7 @@ pub(crate) fn run_with_input(arguments: &[&str], input: &[u8]) -> Output {
     child.wait_with_output().unwrap()
 }
 
-/// What the program writes to standard output, after ending well and without a word on the other.
+/// The program's standard output. Asserts success and an empty standard error.
 pub(crate) fn output_of(arguments: &[&str]) -> Vec<u8> {
     let output = cellcaster(arguments).output().unwrap();
     assert_eq!(String::from_utf8_lossy(&output.stderr), "", "{arguments:?}");
@@ -31,7 +31,7 @@ pub(crate) fn output_of(arguments: &[&str]) -> Vec<u8> {
     output.stdout
 }
 
-/// What the program has to say about a mistake.
+/// The program's standard error. Asserts the exit status 2.
 pub(crate) fn complaint_about(arguments: &[&str]) -> String {
     let output = cellcaster(arguments).output().unwrap();
     assert_eq!(output.status.code(), Some(2), "{arguments:?}");

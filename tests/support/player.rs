@@ -1,4 +1,4 @@
-//! A player at a terminal: starts a program under a pseudo-terminal, types, and looks.
+//! A player at a terminal: starts a program in a pseudo-terminal, types, and looks at the screen.
 #![allow(dead_code, reason = "every test file uses its own share of this")]
 
 use std::ffi::OsStr;
@@ -17,10 +17,10 @@ use rustix::termios::{OptionalActions, Termios, tcgetattr, tcsetattr};
 
 use super::emulator::{Emulator, Modes, Speaks};
 
-/// Long enough for a machine under load; what is waited for takes milliseconds.
+/// The longest wait. Expected events take milliseconds; a machine under load is slower.
 const PATIENCE: Duration = Duration::from_secs(20);
 
-/// A program, and the terminal that it runs in.
+/// A program and its terminal.
 pub(crate) struct Player {
     child: Child,
     pty: Arc<Pty>,
@@ -41,8 +41,8 @@ struct State {
 }
 
 impl Player {
-    /// Starts `program` in a terminal of `columns` by `rows` that `speaks` so. The program sees no
-    /// environment but `TERM` and `environment`.
+    /// Starts `program` in a terminal of `columns` by `rows` that answers as `speaks`. The
+    /// environment of the program consists of `TERM` and `environment`.
     pub(crate) fn start<A: AsRef<OsStr>>(
         (columns, rows): (u16, u16),
         speaks: Speaks,
@@ -70,18 +70,18 @@ impl Player {
         Self { child, pty, terminal, attributes_before, shared }
     }
 
-    /// Types `bytes`, as the terminal would send them for keys.
+    /// Sends `bytes`, as the terminal would for keys.
     pub(crate) fn send(&self, bytes: impl AsRef<[u8]>) {
         (&*self.pty).write_all(bytes.as_ref()).unwrap();
     }
 
-    /// Makes the window larger or smaller.
+    /// Changes the size of the window.
     pub(crate) fn resize(&self, columns: u16, rows: u16) {
         self.state().emulator.resize(columns, rows);
         self.pty.resize(Size::new(rows, columns)).unwrap();
     }
 
-    /// As [`Player::resize`], and the terminal tells how many pixels wide and high it is.
+    /// Does the same as [`Player::resize`] in a terminal that also reports its size in pixels.
     pub(crate) fn resize_in_pixels(
         &self,
         (columns, rows): (u16, u16),
@@ -91,8 +91,8 @@ impl Player {
         self.pty.resize(Size::new_with_pixel(rows, columns, width, height)).unwrap();
     }
 
-    /// Waits until `condition` holds of the screen, between two frames, and fails with the screen if
-    /// it never does.
+    /// Waits until the screen between two frames satisfies `condition`. Fails with the screen if it
+    /// never does.
     #[track_caller]
     pub(crate) fn wait_until(&self, what: &str, condition: impl Fn(&Emulator) -> bool) {
         let unmet =
@@ -108,23 +108,23 @@ impl Player {
         self.wait_until(&format!("showed {text:?}"), |emulator| emulator.text().contains(text));
     }
 
-    /// Stops or goes on taking what the program writes, as a link does that is down or up.
+    /// Sets whether the terminal reads the program's output; a link that is down does not.
     pub(crate) fn set_reading(&self, reading: bool) {
         self.state().reading = reading;
         self.shared.changed.notify_all();
     }
 
-    /// Loses the answers to status requests from now on, or does not any more.
+    /// Sets whether answers to status requests are lost.
     pub(crate) fn lose_statuses(&self, lost: bool) {
         self.state().emulator.statuses().lost = lost;
     }
 
-    /// How many status requests were lost.
+    /// The number of lost status requests.
     pub(crate) fn lost_statuses(&self) -> usize {
         self.state().emulator.statuses().unanswered
     }
 
-    /// Waits until the terminal, which is not being read, has no room for another byte.
+    /// Waits until the terminal, which does not read, has no room for another byte.
     #[track_caller]
     pub(crate) fn wait_until_full(&self) {
         let deadline = Instant::now() + PATIENCE;
@@ -140,7 +140,8 @@ impl Player {
         kill_process(id, signal).unwrap();
     }
 
-    /// Waits until the program has ended, and the terminal has taken what it wrote; how it ended.
+    /// Waits until the program has ended and the terminal has read its output. Returns how it
+    /// ended.
     pub(crate) fn wait_for_end(&mut self) -> Ending {
         let deadline = Instant::now() + PATIENCE;
         let status = loop {
@@ -151,7 +152,7 @@ impl Player {
             thread::sleep(Duration::from_millis(5));
         };
         self.set_reading(true);
-        // The terminal answers this, and by then it has taken all before it.
+        // When the terminal has processed this, it has processed everything before it.
         let mark = "\x1b]2;the end\x07";
         rustix::io::write(&self.terminal, mark.as_bytes()).unwrap();
         self.wait_until("reached the end", |emulator| emulator.title() == "the end");
@@ -176,17 +177,17 @@ impl Player {
         }
     }
 
-    /// The process that runs the program.
+    /// The process of the program.
     pub(crate) fn process(&self) -> u32 {
         self.child.id()
     }
 
-    /// What `look` finds on the screen.
+    /// The result of `look` for the screen.
     pub(crate) fn look<T>(&self, look: impl Fn(&Emulator) -> T) -> T {
         look(&self.state().emulator)
     }
 
-    /// What the screen shows.
+    /// The text of the screen.
     pub(crate) fn text(&self) -> String {
         self.state().emulator.text()
     }
@@ -201,12 +202,12 @@ impl Player {
         self.state().emulator.bytes().to_vec()
     }
 
-    /// How many bytes the program has written.
+    /// The number of bytes that the program has written.
     pub(crate) fn bytes_written(&self) -> usize {
         self.state().emulator.bytes().len()
     }
 
-    /// Whether raw mode and its like are as they were before the program.
+    /// Whether the terminal's attributes, such as raw mode, are those from before the program.
     pub(crate) fn attributes_restored(&self) -> bool {
         let now = tcgetattr(&*self.pty).unwrap();
         let before = &self.attributes_before;
@@ -216,7 +217,7 @@ impl Player {
             && now.local_modes == before.local_modes
     }
 
-    /// Whether something has been typed that nobody has read: a shell would find it.
+    /// Whether there is unread input, which a shell would get.
     fn leftover_input(&self) -> bool {
         let mut raw = tcgetattr(&self.terminal).unwrap();
         raw.make_raw();
@@ -231,13 +232,13 @@ impl Player {
 
 impl Drop for Player {
     fn drop(&mut self) {
-        // It has ended, unless the test has failed.
+        // The program has ended, unless the test has failed.
         _ = self.child.kill();
         _ = self.child.wait();
     }
 }
 
-/// How a program has left the terminal.
+/// The end of a program, and the state of the terminal after it.
 #[derive(Debug)]
 pub(crate) struct Ending {
     pub(crate) status: ExitStatus,
@@ -247,7 +248,7 @@ pub(crate) struct Ending {
 }
 
 impl Ending {
-    /// Fails unless the terminal is as it was found.
+    /// Asserts that the terminal was restored.
     #[track_caller]
     pub(crate) fn assert_given_back(&self) {
         assert_eq!(self.modes, Modes::default());
@@ -266,7 +267,7 @@ fn is_ready(terminal: &Pts, for_what: PollFlags) -> bool {
     poll(&mut terminal, Some(&Timespec { tv_sec: 0, tv_nsec: 0 })).unwrap() > 0
 }
 
-/// Takes what the program writes, and answers, for as long as the terminal exists.
+/// Reads and answers the program's output for as long as the terminal exists.
 fn receive(mut pty: &Pty, shared: &Shared) {
     let mut buffer = [0; 4096];
     loop {
@@ -276,7 +277,7 @@ fn receive(mut pty: &Pty, shared: &Shared) {
         let mut state = shared.state.lock().unwrap();
         let answers = state.emulator.process(&buffer[..count]);
         drop(state);
-        // The program may have ended without waiting for them.
+        // The program may have ended without waiting for the answers.
         _ = pty.write_all(&answers);
         shared.changed.notify_all();
     }

@@ -1,25 +1,26 @@
-//! Where in a level the player can get at all, and where they get for certain.
+//! The places in a level that a player may reach, and those that a player surely reaches.
 //!
-//! Both ask for places to stand: a cell, and a height in it. What the player [can](Gait::Jumps) reach is
-//! taken too large: they fly as far as their speed and their jump ever carry them, over whatever leaves a
-//! gap. What they reach [for certain](Gait::IsSure) is taken too small: steps, ledges and leaps that
-//! anybody makes. A search by playing at random was refused: that it finds no way says little.
+//! A place to stand is a cell and a height in it. The set of places that a player
+//! [may](Gait::Jumps) reach is too large: the player flies as far as speed and jump can carry them,
+//! over everything that leaves a gap. The set that a player [surely](Gait::IsSure) reaches is too
+//! small: only easy steps, ledges and jumps count. A search by random play was refused: finding no
+//! way would prove little.
 
 use std::cmp::Ordering;
 use std::collections::BTreeSet;
 
 use cellcaster::world::{Cell, Gap, KeyId, ThingKind, TileKind, World};
 
-/// How fast the player is at most, in cells per second; how much faster they fall each second; and how
-/// fast they leave the ground.
+/// The player's greatest speed in cells per second, their acceleration in falling, and their speed
+/// at take-off.
 const RUN: f64 = 5.5;
 const GRAVITY: f64 = 12.0;
 const TAKE_OFF: f64 = 3.98;
 const RADIUS: f64 = 0.25;
-/// How tall the player is at least, and how much they climb without a jump.
+/// The player's least height, and the height of a step that needs no jump.
 const DUCKING: f64 = 0.5;
 const STEP: f64 = 0.35;
-/// A ledge that anybody jumps onto.
+/// The height of a ledge that is easy to jump onto.
 const LEDGE: f64 = 0.6;
 const HAIR: f64 = 1e-9;
 
@@ -27,7 +28,7 @@ const HAIR: f64 = 1e-9;
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub(crate) struct Place {
     pub(crate) cell: Cell,
-    /// How high the feet are, in cells.
+    /// The height of the feet, in cells.
     pub(crate) height: f64,
 }
 
@@ -45,50 +46,50 @@ impl PartialOrd for Place {
     }
 }
 
-/// The keys that somebody has.
+/// The keys that a player has.
 pub(crate) type Keys = BTreeSet<u8>;
 
-/// What somebody can do.
+/// The abilities of a player.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub(crate) enum Gait {
     /// Run, and fall.
     Walks,
-    /// The same, and jump.
+    /// Run, fall and jump.
     Jumps,
-    /// Whatever anybody manages: steps, ledges, and leaps over one cell, or two at a run.
+    /// Easy moves: steps, ledges, and jumps over one cell, or over two cells with a run-up.
     IsSure,
 }
 
-/// A level, as somebody finds it who has some keys.
+/// A level and the keys of the player in it.
 #[derive(Clone, Debug)]
 pub(crate) struct Reach<'a> {
     pub(crate) world: &'a World,
     pub(crate) gait: Gait,
     pub(crate) keys: Keys,
-    /// Whether they pick up the keys that they come by.
+    /// Whether the player picks up keys on the way.
     pub(crate) takes_keys: bool,
 }
 
 impl Reach<'_> {
-    /// Where the player starts.
+    /// The place where the player starts.
     pub(crate) fn start(&self) -> Place {
         let cell = self.world.start().cell;
         Place { cell, height: self.world.floor_at(cell) }
     }
 
-    /// Everywhere they get from a place. What they pick up is added to their keys.
+    /// The places that the player reaches from a place. Picks up keys.
     pub(crate) fn from(&mut self, start: Place) -> BTreeSet<Place> {
         self.until(start, |_| false)
     }
 
-    /// Whether they get from a place to one of the `goals`, or to the exit.
+    /// Whether the player gets from a place to one of the `goals` or to the exit.
     pub(crate) fn gets_out(&mut self, start: Place, goals: &BTreeSet<Place>) -> bool {
         let world = self.world;
         let is_goal = |place: &Place| goals.contains(place) || is_exit(world, place.cell);
         self.until(start, is_goal).iter().any(is_goal)
     }
 
-    /// Everywhere they get from a place, until they get to a goal.
+    /// The places that the player reaches from a place, up to the first goal.
     fn until(&mut self, start: Place, is_goal: impl Fn(&Place) -> bool) -> BTreeSet<Place> {
         loop {
             let mut seen = BTreeSet::from([start]);
@@ -123,7 +124,7 @@ impl Reach<'_> {
         })
     }
 
-    /// Where somebody may get from a place by one flight, or one step, however lucky they are.
+    /// The places that the player may reach from a place by one flight or one step.
     fn flights(&self, from: Place) -> Vec<Place> {
         let mut seen = BTreeSet::from([from.cell]);
         let mut waiting = vec![from.cell];
@@ -136,7 +137,7 @@ impl Reach<'_> {
                     waiting.push(next);
                 }
             }
-            // Who touches two cells at their corner stands on both.
+            // A player at the corner of two cells stands on both.
             for next in AROUND.into_iter().filter_map(|way| moved(cell, way)) {
                 let highest = self.highest(from, next);
                 let floors = self.gaps(next).into_iter().map(|gap| gap.bottom);
@@ -147,7 +148,7 @@ impl Reach<'_> {
         places
     }
 
-    /// How high the feet may be of somebody who left a place and touches `cell` for the first time.
+    /// The greatest height of the feet when a player from `from` first touches `cell`.
     fn highest(&self, from: Place, cell: Cell) -> f64 {
         let apart = |one: u32, other: u32| f64::from(one.abs_diff(other).saturating_sub(1));
         let way = libm::hypot(apart(from.cell.column, cell.column), apart(from.cell.row, cell.row));
@@ -158,7 +159,7 @@ impl Reach<'_> {
         if way == 0.0 { flown.max(from.height + STEP) } else { flown }
     }
 
-    /// Where anybody gets from a place.
+    /// The places that the player surely reaches from a place.
     fn sure_steps(&self, from: Place) -> Vec<Place> {
         let mut places = Vec::new();
         for (leap, turn) in LEAPS.iter().flat_map(|leap| TURNS.map(|turn| (leap, turn))) {
@@ -177,14 +178,14 @@ impl Reach<'_> {
         places
     }
 
-    /// Whether somebody who jumps from a place gets over `cell`, with nothing to bump into.
+    /// Whether a player who jumps from a place gets over `cell` without touching anything.
     fn leaves_room(&self, from: Place, cell: Cell) -> bool {
         let is_open =
             |gap: Gap| gap.bottom <= from.height && gap.top - from.height >= DUCKING + LEDGE;
         self.gaps(cell).into_iter().any(is_open)
     }
 
-    /// What is open in a cell to somebody, and high enough to stand in.
+    /// The gaps of a cell that are open to the player and high enough to stand in.
     fn gaps(&self, cell: Cell) -> Vec<Gap> {
         let grid = self.world.grid();
         let Some(id) = grid.tile(i64::from(cell.column), i64::from(cell.row)) else {
@@ -211,7 +212,7 @@ impl Reach<'_> {
             gaps = gaps.into_iter().flat_map(|gap| without(gap, filled)).collect();
         }
         if is_shape && self.gait != Gait::IsSure {
-            // There may be a way beside it.
+            // The player may get past it.
             gaps.extend(tile.gaps());
         }
         gaps.retain(|gap| gap.height() >= DUCKING);
@@ -223,13 +224,13 @@ fn is_exit(world: &World, cell: Cell) -> bool {
     world.things_in(cell).iter().any(|thing| thing.kind == ThingKind::Exit)
 }
 
-/// A step, or a leap, that anybody manages.
+/// An easy step or jump.
 struct Leap {
-    /// So many cells ahead, and to the right.
+    /// The offset of the target in cells ahead and to the right.
     to: (i64, i64),
-    /// What is passed on the way.
+    /// The offsets of the cells on the way.
     over: &'static [(i64, i64)],
-    /// How much higher it may end.
+    /// The most by which the target may be higher.
     rise: f64,
 }
 
@@ -241,10 +242,11 @@ const LEAPS: [Leap; 5] = [
     Leap { to: (3, 0), over: &[(1, 0), (2, 0)], rise: 0.0 },
 ];
 
-/// The four ways to look, each by what is ahead.
+/// The four directions, each as the offset of the cell ahead.
 const TURNS: [(i64, i64); 4] = [(1, 0), (0, 1), (-1, 0), (0, -1)];
 
-/// `way` in columns and rows, for who looks along `turn`.
+/// Converts an offset ahead and to the right to columns and rows, for the direction of the second
+/// argument.
 fn turned((ahead, right): (i64, i64), (column, row): (i64, i64)) -> (i64, i64) {
     (ahead * column - right * row, ahead * row + right * column)
 }
@@ -252,14 +254,14 @@ fn turned((ahead, right): (i64, i64), (column, row): (i64, i64)) -> (i64, i64) {
 const AROUND: [(i64, i64); 8] =
     [(1, 0), (1, 1), (0, 1), (-1, 1), (-1, 0), (-1, -1), (0, -1), (1, -1)];
 
-/// The cell so many columns and rows from `cell`, if there may be one.
+/// The cell at that offset from `cell`, if its coordinates are not negative.
 fn moved(cell: Cell, (columns, rows): (i64, i64)) -> Option<Cell> {
     let column = u32::try_from(i64::from(cell.column) + columns).ok()?;
     let row = u32::try_from(i64::from(cell.row) + rows).ok()?;
     Some(Cell { column, row })
 }
 
-/// What is left of a gap below and above what fills a part of it.
+/// The parts of `gap` below and above `filled`.
 fn without(gap: Gap, filled: Gap) -> impl Iterator<Item = Gap> {
     let below = Gap { top: gap.top.min(filled.bottom), ..gap };
     let above = Gap { bottom: gap.bottom.max(filled.top), ..gap };

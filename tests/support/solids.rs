@@ -1,7 +1,8 @@
-//! A world as blocks of rock, pillars, thin walls and pictures, of which a line meets one first.
+//! A world as a set of solids: blocks, pillars, thin walls and pictures. A line hits the nearest of
+//! them.
 //!
-//! It knows nothing of windows, rows or cells to walk through: it asks everything there is, and takes what
-//! is nearest. What it finds it colours by the place alone.
+//! It uses no portals, rows or cells: it tests every solid and takes the nearest hit. The colour of
+//! a hit depends on its position only.
 
 use std::f64::consts::TAU;
 
@@ -11,12 +12,12 @@ use cellcaster::world::{
 };
 use glam::{DVec2, DVec3};
 
-/// Further than anything.
+/// A distance beyond everything.
 const FAR: f64 = 1e30;
-/// Things that are nearer than that are not drawn.
+/// Things nearer than this are not drawn.
 const NEAREST: f64 = 0.2;
 
-/// All that there is in a world, for somebody who looks at it.
+/// The solids of a world for one camera.
 pub(crate) struct Solids<'a> {
     world: &'a World,
     camera: &'a Camera,
@@ -31,14 +32,14 @@ enum Solid<'a> {
         heights: Gap,
         paint: Paint,
     },
-    /// A thin wall, from a place and along a way.
+    /// A thin wall, with its start and its extent.
     Panel {
         start: DVec2,
         way: DVec2,
         heights: Gap,
         paint: Paint,
     },
-    /// A picture that faces the viewer.
+    /// A picture that faces the camera.
     Picture {
         center: DVec2,
         base: f64,
@@ -46,46 +47,46 @@ enum Solid<'a> {
     },
 }
 
-/// A block of rock, and the paints of its sides, its top and its bottom.
+/// A block, with the paints of its sides, its top and its bottom.
 struct Block {
     low: DVec3,
     high: DVec3,
     side: Paint,
     top: Paint,
     bottom: Paint,
-    /// How bright its sides are, where that does not depend on what is before them.
+    /// The light of its sides, if it does not depend on the cells before them.
     side_light: Option<Light>,
-    /// Whether it is ground off the map: each cell before it lights its own part of it.
+    /// Whether it is ground outside of the map. Each cell before it lights its own part.
     is_off_map: bool,
-    /// How bright its top and its bottom are.
+    /// The light of its top and its bottom.
     flat_light: Light,
 }
 
-/// What a line meets, and where.
+/// A hit of a line.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub(crate) struct Met {
     solid: usize,
     face: Face,
-    /// What is seen there.
+    /// The colour at the hit.
     pub(crate) color: Rgb,
 }
 
-/// Which face of something a line enters.
+/// The face that a line enters by.
 #[derive(Clone, Copy, Debug, PartialEq)]
 enum Face {
     X,
     Y,
-    /// What faces along neither axis.
+    /// A face along neither axis.
     Slanted,
     Top,
     Bottom,
 }
 
-/// Where on a line something is met, and by which face.
+/// The distance along a line at which it enters a solid, and the face.
 type Entry = (f64, Face);
 
 impl<'a> Solids<'a> {
-    /// All that `camera` may see of `world`.
+    /// The solids of `world` that `camera` may see.
     pub(crate) fn of(world: &'a World, camera: &'a Camera) -> Self {
         let (width, height) = (world.grid().width(), world.grid().height());
         let cells = (0..height).flat_map(|row| (0..width).map(move |column| Cell { column, row }));
@@ -103,7 +104,7 @@ impl<'a> Solids<'a> {
         Self { world, camera, all }
     }
 
-    /// What a line from the camera along `direction` meets first; `None` where that is the sky.
+    /// The first hit of a line from the camera along `direction`; `None` for the sky.
     pub(crate) fn meet(&self, direction: DVec3) -> Option<Met> {
         let origin = self.camera.position().extend(self.camera.eye());
         let entries = self.all.iter().enumerate().filter_map(|(index, solid)| {
@@ -115,7 +116,7 @@ impl<'a> Solids<'a> {
         Some(Met { solid, face, color })
     }
 
-    /// Whether a place is inside a pillar, from where nothing is seen.
+    /// Whether a position is inside of a pillar, from where nothing is seen.
     pub(crate) fn is_in_pillar(&self, place: DVec3) -> bool {
         self.all.iter().any(|solid| match *solid {
             Solid::Pillar { center, radius, heights, .. } => {
@@ -135,7 +136,7 @@ impl<'a> Solids<'a> {
                 panel_entry(origin - start.extend(0.0), direction, way, heights)
             }
             Solid::Picture { center, base, sprite } => {
-                // The direction is one unit long along that of the camera.
+                // The component of the direction along the camera's direction is 1.
                 let t = (center - origin.truncate()).dot(self.camera.direction());
                 let (x, y) = self.texel_of(center, base, sprite, origin + direction * t)?;
                 let picture = self.picture(center, sprite);
@@ -145,7 +146,7 @@ impl<'a> Solids<'a> {
         }
     }
 
-    /// Which texel of a picture is at a place in its plane.
+    /// The texel at a position in a picture's plane.
     fn texel_of(
         &self,
         center: DVec2,
@@ -169,7 +170,7 @@ impl<'a> Solids<'a> {
     fn color(&self, solid: &Solid, face: Face, place: DVec3, direction: DVec3) -> Rgb {
         let flat = |paint| self.texel(paint, place.x, place.y);
         let light_in = |center: DVec2| self.light_in((center.x.floor(), center.y.floor()));
-        // Textures hang from whole heights.
+        // Textures begin at whole heights.
         let upright = |paint, u: f64| self.texel(paint, u, -place.z);
         match *solid {
             Solid::Block(ref block) => match face {
@@ -212,7 +213,7 @@ impl<'a> Solids<'a> {
         }
     }
 
-    /// The tile in the cell with that corner.
+    /// The tile of the cell with that corner.
     fn tile_in(&self, (column, row): (f64, f64)) -> Option<Tile> {
         let id = self.world.grid().tile(column as i64, row as i64)?;
         Some(self.world.tile(id))
@@ -230,8 +231,8 @@ impl<'a> Solids<'a> {
         }
     }
 
-    /// How bright a face is `along` its line, where `before` gives the cells before it: between their
-    /// middles it goes over from the one into the other, if both are open to each other.
+    /// The light of a face at `along`. `before` returns the cells before the face. Between the
+    /// middles of two cells that are open to each other, their light is interpolated.
     fn light_along(&self, along: f64, before: impl Fn(f64) -> (f64, f64)) -> Light {
         let first = (along - 0.5).floor();
         let share = along - 0.5 - first;
@@ -249,7 +250,7 @@ impl<'a> Solids<'a> {
         Light::new(mean.round() / 256.0).unwrap()
     }
 
-    /// What `paint` is so many cells from the left and from the top.
+    /// The colour of `paint` at a distance in cells from its left and its top.
     fn texel(&self, paint: Paint, x: f64, y: f64) -> Rgb {
         let Paint::Texture(id) = paint else { return self.world.mean_color(paint) };
         let texture = self.world.texture(id);
@@ -261,8 +262,8 @@ impl<'a> Solids<'a> {
     }
 }
 
-/// Whether light gets from one tile to the other: both are open, and above the lower ground of the two
-/// some of the other's air is beside it.
+/// Whether light passes between two tiles: both are open, and some of the other tile's open range
+/// is beside that above the lower ground of the two.
 fn are_open_to_each_other(one: &Tile, other: &Tile) -> bool {
     let is_open = |tile: &Tile| matches!(tile.kind, TileKind::Open);
     let meets = |one: &Tile, other: &Tile| {
@@ -272,7 +273,7 @@ fn are_open_to_each_other(one: &Tile, other: &Tile) -> bool {
     is_open(one) && is_open(other) && (meets(one, other) || meets(other, one))
 }
 
-/// A colour as it is in such light on what faces along `normal`.
+/// A colour in that light on a face with the normal `normal`.
 fn dimmed(color: Rgb, light: Light, normal: DVec2) -> Rgb {
     let share = f64::midpoint(1.0, normal.x * normal.x);
     let share = (f64::from(light.in_256ths()) * share) as u32;
@@ -281,7 +282,7 @@ fn dimmed(color: Rgb, light: Light, normal: DVec2) -> Rgb {
     Rgb::new(red, green, blue)
 }
 
-/// What is solid in a cell.
+/// The solids in a cell.
 fn solids_in<'a>(world: &World, cell: Cell) -> Vec<Solid<'a>> {
     let tile = world.tile(world.grid().tile(cell.column.into(), cell.row.into()).unwrap());
     let gaps: Vec<Gap> = tile.gaps().collect();
@@ -358,7 +359,7 @@ fn ground_around(world: &World) -> impl Iterator<Item = Block> {
 }
 
 impl Block {
-    /// Where a line from `origin` along `direction` enters.
+    /// The point at which a line from `origin` along `direction` enters.
     fn entry(&self, origin: DVec3, direction: DVec3) -> Option<Entry> {
         let mut enters = (f64::NEG_INFINITY, Face::X);
         let mut leaves = f64::INFINITY;
@@ -386,7 +387,7 @@ impl Block {
     }
 }
 
-/// Where a line enters a pillar, whose axis is the origin of all places.
+/// The point at which a line enters a pillar. Positions are relative to the pillar's axis.
 fn pillar_entry(origin: DVec3, direction: DVec3, radius: f64, heights: Gap) -> Option<Entry> {
     let (from, along) = (origin.truncate(), direction.truncate());
     let (a, b) = (along.length_squared(), from.dot(along));
@@ -406,7 +407,8 @@ fn pillar_entry(origin: DVec3, direction: DVec3, radius: f64, heights: Gap) -> O
     }
 }
 
-/// Where a line goes through a thin wall along `way`, which begins at the origin of all places.
+/// The point at which a line crosses a thin wall along `way`. Positions are relative to the wall's
+/// start.
 fn panel_entry(origin: DVec3, direction: DVec3, way: DVec2, heights: Gap) -> Option<Entry> {
     let (from, along) = (origin.truncate(), direction.truncate());
     let across = along.perp_dot(way);

@@ -5,7 +5,7 @@ use cellcaster::map;
 use cellcaster::world::FieldOfView;
 use glam::DVec2;
 
-/// A map's line for open sky.
+/// The line of a map for open sky.
 pub(crate) const SKY: &str = "ceiling = \"sky\"";
 
 /// A set of intents.
@@ -13,18 +13,18 @@ pub(crate) fn want(list: &[Intent]) -> Intents {
     list.iter().copied().collect()
 }
 
-/// Where the player is.
+/// The player's position.
 pub(crate) fn position(game: &Game) -> DVec2 {
     game.camera(FieldOfView::default()).position()
 }
 
-/// Lets steps pass in which the player wants the same.
+/// Advances by `steps` steps with the same intents.
 pub(crate) fn walk(game: &mut Game, steps: usize, wanted: &[Intent]) {
     (0..steps).for_each(|_| game.step(want(wanted)));
 }
 
-/// A corridor to the east under the sky, or below a ceiling: after the start come three cells of the
-/// map's own floor, and then one for each of `tiles`, which is what a map says of it.
+/// A corridor to the east, under the sky or below a ceiling. After the start come three cells of
+/// the map's own floor, and then one cell for each of `tiles`, the descriptions of tiles in a map.
 pub(crate) fn corridor(ceiling: &str, tiles: &[&str]) -> Game {
     let letters: String = ('a'..).take(tiles.len()).collect();
     let wall = "#".repeat(6 + tiles.len());

@@ -1,5 +1,6 @@
-//! What two emulators, of two projects, show of our bytes: at fidelity exact the very picture, within the
-//! stated distance otherwise, by nothing but sequences that every terminal understands.
+//! The encoder's bytes, read by two independent emulators. At fidelity exact they show the picture
+//! itself, otherwise a picture within the tolerance. The encoder uses only sequences that every
+//! terminal understands.
 #![cfg(feature = "terminal")]
 
 use std::collections::{BTreeMap, BTreeSet};
@@ -17,7 +18,7 @@ use ratatui::widgets::Widget;
 
 type Rgb = [u8; 3];
 
-/// What a cell shows: the colours of its halves, or a character in two colours.
+/// The content of a cell: the colours of its halves, or a character in two colours.
 #[derive(Clone, Copy, Debug, PartialEq)]
 enum Shown {
     Halves([Rgb; 2]),
@@ -43,7 +44,7 @@ impl Shown {
         Self::new(cell.symbol().chars().next().unwrap(), rgb(cell.fg), rgb(cell.bg))
     }
 
-    /// How far off it is: the larger ΔE of the two halves.
+    /// The error: the larger ΔE of the two halves.
     fn distance(self, wanted: Self) -> f64 {
         match (self, wanted) {
             (Self::Halves(shown), Self::Halves(wanted)) => {
@@ -56,7 +57,7 @@ impl Shown {
     }
 }
 
-/// CIE76's ΔE by the formulas of the standard.
+/// CIE76's ΔE, by the formulas of the standard (CIE 15).
 fn delta(one: Rgb, other: Rgb) -> f64 {
     let (one, other) = (lab(one), lab(other));
     one.iter().zip(other).map(|(one, other)| (one - other).powi(2)).sum::<f64>().sqrt()
@@ -76,19 +77,19 @@ fn lab(color: Rgb) -> [f64; 3] {
     [116.0 * y - 16.0, 500.0 * (x - y), 200.0 * (y - z)]
 }
 
-/// Integers are that much worse than the formulas.
+/// The error of the encoder's integers against the formulas.
 const ROUNDING: f64 = 0.1;
 
-/// How pictures get to our encoder.
+/// The ways to pass pictures to the encoder.
 #[derive(Clone, Copy, Debug)]
 enum Way {
-    /// As changed cells, from ratatui.
+    /// As changed cells from ratatui.
     Backend,
-    /// As whole pictures, drawn where it keeps what is to be shown.
+    /// As whole pictures, drawn on the encoder's own cells.
     Canvas,
 }
 
-/// Both emulators, and ratatui with our backend, which writes to them.
+/// Both emulators, and ratatui with this crate's backend, which writes to them.
 struct Screens {
     way: Way,
     terminal: Terminal<CellWriter<Vec<u8>>>,
@@ -98,12 +99,12 @@ struct Screens {
     sequences: BTreeSet<String>,
 }
 
-/// What a terminal's palette holds: the entries that were defined.
+/// The defined entries of a terminal's palette.
 #[derive(Debug, Default)]
 struct Palette(BTreeMap<u8, Rgb>);
 
 impl vt100::Callbacks for Palette {
-    /// `4;n;#rrggbb;…`, of which no terminal takes more than sixteen parameters for certain.
+    /// Handles `4;n;#rrggbb;…`. Not all terminals accept more than sixteen parameters.
     fn unhandled_osc(&mut self, _: &mut vt100::Screen, parameters: &[&[u8]]) {
         assert!(parameters.len() <= 16 && parameters[0] == b"4", "{parameters:?}");
         let (definitions, rest) = parameters[1..].as_chunks();
@@ -120,7 +121,7 @@ impl vt100::Callbacks for Palette {
     }
 }
 
-/// What is written with its repetitions (REP) written out, for an emulator that does not know them.
+/// `text` with its repetitions (REP) expanded, for an emulator without them.
 fn written_out(text: &str) -> String {
     let mut parts = text.split("\x1b[");
     let mut whole = parts.next().unwrap().to_owned();
@@ -144,7 +145,7 @@ impl Screens {
         Self::shorter(way, size, fidelity, false)
     }
 
-    /// Where `is_shorter`, with repetitions and a palette.
+    /// With repetitions and a palette if `is_shorter`.
     fn shorter(way: Way, size: Size, fidelity: Fidelity, is_shorter: bool) -> Self {
         let mut writer = CellWriter::new(Vec::new(), size);
         writer.set_fidelity(fidelity);
@@ -178,7 +179,7 @@ impl Screens {
         self.sequences.extend(kinds(&text));
     }
 
-    /// What a cell shows in both.
+    /// The content of a cell in both emulators.
     fn shown(&self, x: u16, y: u16) -> [Shown; 2] {
         let palette = &self.one.callbacks().0;
         let cell = self.one.screen().cell(y, x).unwrap();
@@ -200,7 +201,7 @@ impl Screens {
         [one, other]
     }
 
-    /// How far off the cells are, both emulators agreeing on each.
+    /// The largest error of all cells. Both emulators must agree on each cell.
     fn largest_distance(&self, picture: &Buffer) -> f64 {
         let distances = picture.area.positions().map(|position| {
             let [one, other] = self.shown(position.x, position.y);
@@ -211,7 +212,7 @@ impl Screens {
     }
 }
 
-/// Draws `picture` by each of the ways that there are, row by row.
+/// Draws `picture` row by row, by every method of a canvas.
 fn paint(picture: &Buffer, canvas: &mut impl Canvas) {
     for y in picture.area.rows().map(|row| row.y) {
         let cells = picture.area.positions().filter(|place| place.y == y);
@@ -235,7 +236,7 @@ fn paint(picture: &Buffer, canvas: &mut impl Canvas) {
     }
 }
 
-/// A widget of one cell.
+/// A widget with one cell.
 struct One<'a>(&'a Cell);
 
 impl Widget for One<'_> {
@@ -244,8 +245,8 @@ impl Widget for One<'_> {
     }
 }
 
-/// Of each control sequence in `text` its private mark and its last byte, and of each other control
-/// character that.
+/// For each control sequence in `text` its private mark and last byte, and each other control
+/// character.
 fn kinds(text: &str) -> Vec<String> {
     let mut kinds = Vec::new();
     let mut characters = text.chars();
@@ -275,14 +276,15 @@ fn kinds(text: &str) -> Vec<String> {
     kinds
 }
 
-/// Those that terminals are known to understand: motions to a place, in a row and to the next one, erasing, deleting
-/// and inserting characters, colours, synchronized output, and the cursor's visibility.
+/// The sequences that every terminal understands: moving the cursor to a position, in a row and to
+/// the next one, erasing, deleting and inserting characters, colours, synchronized output, and the
+/// cursor's visibility.
 const SAFE: [&str; 15] = [
     "H", "C", "D", "'\\r'", "'\\n'", "'\\u{8}'", "J", "K", "P", "@", "m", "?2026h", "?2026l",
     "?25h", "?25l",
 ];
 
-/// A picture of smooth stretches, sharp edges, noise and text.
+/// A picture with smooth gradients, sharp edges, noise and text.
 fn any_picture(size: Size) -> impl Strategy<Value = Buffer> {
     let cell = prop_oneof![
         6 => (0..12_u8, 0..12_u8).prop_map(|(upper, lower)| block([90 + 4 * upper, 60, 40 + upper], [90 + 3 * lower, 60, 45])),
@@ -303,7 +305,7 @@ fn block([r, g, b]: Rgb, lower: Rgb) -> Cell {
     cell
 }
 
-/// A picture, and how its rows move from frame to frame.
+/// A picture whose rows move from frame to frame.
 fn any_history() -> impl Strategy<Value = Vec<Buffer>> {
     let size = (1..50_u16, 1..7_u16).prop_map(Size::from);
     size.prop_flat_map(|size| {
@@ -345,7 +347,7 @@ proptest! {
             let stated = if tolerance == 0 { 0.0 } else { f64::from(tolerance) + ROUNDING };
             prop_assert!(distance <= stated, "{} at {}", distance, tolerance);
         }
-        // What rests becomes exact.
+        // A still picture becomes exact.
         let last = history.last().unwrap();
         for _ in 0..10 {
             screens.draw(last);
@@ -363,7 +365,8 @@ proptest! {
 fn a_resting_picture_becomes_exact_in_frames_of_about_one_size() {
     let size = Size::new(80, 24);
     let mut screens = Screens::new(Way::Backend, size, Fidelity::LOW);
-    // Two gradients, the second too near to the first for anything to be sent.
+    // Two gradients that differ by less than the tolerance, so that nothing is sent for the second
+    // one.
     let gradient = |offset: u16| {
         let cells = (0..size.width * size.height).map(|index| {
             let value = (index % size.width + offset) as u8;
@@ -386,5 +389,5 @@ fn a_resting_picture_becomes_exact_in_frames_of_about_one_size() {
     assert!(*most < cells / 10 * LONGEST_CELL, "{sizes:?}");
 }
 
-/// A motion, two colours and a glyph.
+/// The bytes of a cursor motion, two colours and a glyph.
 const LONGEST_CELL: u64 = 10 + 38 + 3;

@@ -1,4 +1,5 @@
-//! The program in a terminal: bytes to screens through emulators, and whole games through a pseudo-terminal.
+//! The program in a terminal: the encoder's bytes in emulators, and whole games in a
+//! pseudo-terminal.
 
 mod encoding;
 mod palette;

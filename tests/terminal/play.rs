@@ -1,4 +1,4 @@
-//! The whole program in a real terminal: what it shows, what keys do, and how it ends.
+//! The whole program in a pseudo-terminal: its screens, its keys, and its ends.
 #![cfg(all(unix, feature = "cli"))]
 
 mod doors;

@@ -1,8 +1,8 @@
-//! What a session in a real terminal promises and no game shows: how a program ends that hangs, or
-//! fails beside its session.
+//! Properties of a session that no game shows: the end of a program that hangs, or that panics
+//! outside of its session.
 //!
-//! The program under test is this one: it starts itself again, under a pseudo-terminal, to run
-//! nothing but [`program`].
+//! The program under test is this test program: it starts itself again, in a pseudo-terminal, to
+//! run only [`program`].
 #![cfg(all(unix, feature = "terminal"))]
 
 use std::env;
@@ -20,8 +20,8 @@ use crate::player::Player;
 const ROLE: &str = "PROGRAM_UNDER_TEST";
 const ITSELF: [&str; 4] = ["--exact", "program", "--nocapture", "--test-threads=1"];
 
-/// Shows the events that arrive, and does what the keys say. Only a process that was started for
-/// it has the role.
+/// Shows the events that arrive, and obeys keys. Does nothing unless the process was started for
+/// it.
 #[test]
 fn program() {
     if env::var_os(ROLE).is_none() {
@@ -48,7 +48,7 @@ fn program() {
     }
 }
 
-/// Neither draws nor listens any more.
+/// Stops drawing and reading.
 fn hang(session: &mut Session) -> ! {
     show(session, "hanging");
     loop {
@@ -71,7 +71,7 @@ fn start(speaks: Speaks) -> Player {
 /// The entries of the palette that are probed, and reset at once.
 const PROBED: &str = "254;255";
 
-/// Whether every entry of the palette that may be defined was given back, and no other.
+/// Asserts that exactly the entries of the palette that may be defined were reset.
 fn assert_palette_given_back(player: &Player) {
     let text = String::from_utf8(player.bytes()).unwrap();
     assert!(text.contains("\x1b]4;255;?\x07"), "the palette was not asked for");
@@ -86,7 +86,7 @@ fn assert_palette_given_back(player: &Player) {
 fn answers_are_never_seen_as_keys() {
     let mut player = start(Speaks::Plain);
     player.wait_for("KeyReleases(false)");
-    // That a half block was repeated, or not, and that the palette was defined.
+    // The answers that report whether a half block was repeated, and that the palette was defined.
     player.send("\x1b[2;5R\x1b[2;2R\x1b]4;255;rgb:1212/abab/5656\x1b\\\x1b]4;255;rgb:0/0/0\x07");
     player.send("w");
     player.wait_for("Char('w')");
@@ -109,7 +109,7 @@ fn the_mouse_is_in_pixels_as_soon_as_the_terminal_says_how_many_there_are() {
     player.wait_for("x: 544, y: 1056, kind: Moved");
     player.resize_in_pixels((80, 24), (640, 384));
     player.wait_until("asked for pixels", |emulator| emulator.modes().mouse_pixels);
-    // What comes before the terminal has changed units is dropped.
+    // Events before the terminal has changed units are dropped.
     for _ in 0..500 {
         player.send(cells);
         thread::sleep(Duration::from_millis(10));

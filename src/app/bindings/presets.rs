@@ -5,7 +5,7 @@ use crate::game::Intent;
 use crate::terminal::Key;
 
 impl Default for Bindings {
-    /// For QWERTY keyboards.
+    /// The bindings for QWERTY keyboards.
     fn default() -> Self {
         Self::with_letters(&Letters {
             forward: 'w',
@@ -17,17 +17,17 @@ impl Default for Bindings {
     }
 }
 
-/// The keys in which the presets differ.
+/// The keys that differ between presets.
 struct Letters {
     forward: char,
     back: char,
     strafe_left: char,
     leave: char,
-    /// The keys beside the arrows that turn to the left and to the right.
+    /// Further keys that turn left and right, besides the arrows.
     turns: Option<[char; 2]>,
 }
 
-/// The name of a preset, and what makes it.
+/// The name of a preset and its constructor.
 pub(in crate::app) type Preset = (&'static str, fn() -> Bindings);
 
 /// The presets, the default first.
@@ -35,7 +35,8 @@ pub(in crate::app) const PRESETS: [Preset; 3] =
     [("qwerty", Bindings::default), ("azerty", Bindings::azerty), ("hjkl", Bindings::hjkl)];
 
 impl Bindings {
-    /// For AZERTY keyboards: Z, Q, S and D lie where W, A, S and D do on others; A leaves.
+    /// The bindings for AZERTY keyboards: Z, Q, S and D are where W, A, S and D are on QWERTY
+    /// keyboards; A leaves.
     pub fn azerty() -> Self {
         Self::with_letters(&Letters {
             forward: 'z',
@@ -46,7 +47,7 @@ impl Bindings {
         })
     }
 
-    /// For hands that know vi: H and L turn, J and K walk, A and D strafe.
+    /// The bindings for users of vi: H and L turn, J and K walk, A and D strafe.
     pub fn hjkl() -> Self {
         Self::with_letters(&Letters {
             forward: 'k',
@@ -67,7 +68,7 @@ impl Bindings {
             (Key::Char('d'), Action::Want(Intent::StrafeRight)),
             (Key::Left, Action::Want(Intent::TurnLeft)),
             (Key::Right, Action::Want(Intent::TurnRight)),
-            // These letters lie on the same keys of nearly all layouts.
+            // These letters are on the same keys in nearly all layouts.
             (Key::Char('u'), Action::Want(Intent::FineLeft)),
             (Key::Char('o'), Action::Want(Intent::FineRight)),
             (Key::Char('b'), Action::Want(Intent::AboutFace)),
@@ -75,7 +76,7 @@ impl Bindings {
             (Key::Shift, Action::Want(Intent::Run)),
             (Key::Char(' '), Action::Want(Intent::Jump)),
             (Key::Char('e'), Action::Want(Intent::Open)),
-            // Not Control: with another key held, it is a command to the terminal.
+            // Control was refused: with another key held, it is a command to the terminal.
             (Key::Char('c'), Action::Want(Intent::Duck)),
             (Key::PageUp, Action::Want(Intent::LookUp)),
             (Key::PageDown, Action::Want(Intent::LookDown)),

@@ -1,7 +1,7 @@
-//! The table `[keys]`: which keys a file gives to which actions.
+//! The table `[keys]`: the keys that a file gives to actions.
 //!
-//! A key that the file gives to an action is taken from the one that the preset gave it to; one that
-//! it gives to two actions is a fault. An empty list leaves an action without a key.
+//! A key that the file gives to an action is removed from its action in the preset. A key given to
+//! two actions is a fault. An empty list leaves an action without a key.
 
 use std::ops::Range;
 
@@ -12,15 +12,15 @@ use crate::fault::document::Entry;
 use crate::fault::{Fault, quoted};
 use crate::terminal::Key;
 
-/// What the table binds.
+/// The bindings of the table.
 #[derive(Default)]
 pub(super) struct Bound {
-    /// The actions that it names.
+    /// The actions in the table.
     pub(super) actions: Vec<Action>,
     pub(super) keys: Vec<(Key, Action)>,
 }
 
-/// What the table `[keys]` binds.
+/// Reads the table `[keys]`.
 pub(super) fn read(owner: &Entry<'_, '_>, table: &DeTable<'_>) -> Bound {
     const EXAMPLE: &str = "forward = [\"z\", \"up\"]";
     let names = Action::ALL.map(|(name, ..)| name);

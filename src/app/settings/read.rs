@@ -1,4 +1,4 @@
-//! From a file to a configuration.
+//! Parsing: from a file to a configuration.
 
 use std::num::NonZeroU32;
 
@@ -14,10 +14,10 @@ use crate::terminal::Fidelity;
 use crate::world::FieldOfView;
 
 impl Configuration {
-    /// Reads a configuration file, which faults call `name`.
+    /// Parses a configuration file, which faults refer to as `name`.
     ///
     /// # Errors
-    /// Everything that is wrong with the file.
+    /// All faults of the file.
     pub fn parse(text: &str, name: &str) -> Result<Self, Faults> {
         let faults = FaultList::default();
         let document = document::parse(text, &faults);
@@ -72,7 +72,7 @@ fn set<T>(setting: &mut T, value: Option<T>) {
     }
 }
 
-/// The value that `names` has for the entry's string.
+/// The value with the entry's string as its name.
 fn named<T: Copy, const N: usize>(entry: &Entry<'_, '_>, names: &Names<T, N>) -> Option<T> {
     let name = entry.string(&format!("{} = \"{}\"", entry.key, names[0].0))?;
     let value = names.iter().find(|&&(known, _)| known == name).map(|&(_, value)| value);
@@ -88,7 +88,7 @@ fn named<T: Copy, const N: usize>(entry: &Entry<'_, '_>, names: &Names<T, N>) ->
     value
 }
 
-/// Reads the number of colours by its name; 256 and 16 may do without quotes.
+/// Reads a colour depth by its name. 256 and 16 may be written without quotes.
 fn read_colors(entry: &Entry<'_, '_>, colors: &mut Option<ColorDepth>) {
     let number = entry.number().map(|number| number.to_string());
     match DEPTHS.iter().find(|&&(known, _)| Some(known) == number.as_deref()) {
@@ -130,7 +130,7 @@ fn boolean(entry: &Entry<'_, '_>) -> Option<bool> {
     Some(*boolean)
 }
 
-/// Reads a fidelity by its name, or by its number.
+/// Reads a fidelity by its name or number.
 fn read_fidelity(entry: &Entry<'_, '_>, fidelity: &mut Option<Fidelity>) {
     let example = format!("fidelity = \"{}\"", value::FIDELITY.default);
     let text = match entry.number() {

@@ -14,7 +14,7 @@ fn faults(text: &str) -> String {
 }
 
 #[test]
-fn an_empty_file_changes_nothing() {
+fn an_empty_file_is_the_default() {
     assert_eq!(parse(""), Configuration::default());
 }
 
@@ -47,7 +47,7 @@ fn a_file_changes_every_setting() {
 }
 
 #[test]
-fn every_fault_is_named_with_its_place() {
+fn every_fault_is_reported_with_its_place() {
     let text = r#"
 preset = "azertie"
 colour = 3
@@ -70,7 +70,7 @@ narrower = ["y", "x"]
 }
 
 #[test]
-fn the_file_in_force_is_complete() {
+fn the_printed_file_is_complete() {
     insta::assert_snapshot!(parse("fov = 80\n[keys]\nleave = \"f10\"\njump = \"m\"\n").to_string());
 }
 
@@ -84,7 +84,7 @@ fn key() -> impl Strategy<Value = Key> {
 
 proptest! {
     #[test]
-    fn what_is_printed_is_read_as_the_same(
+    fn a_printed_configuration_parses_to_itself(
         preset in prop::sample::select(&["qwerty", "azerty", "hjkl"][..]),
         (colors, glyphs, minimap) in (0..5_usize, 0..4_usize, 0..3_usize),
         (fov, fps, mouse) in (0.001..179.9, 1..=240_u32, any::<bool>()),

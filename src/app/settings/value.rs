@@ -1,15 +1,15 @@
-//! What each setting is called, what it is for, and the words for its values.
+//! The names, descriptions and values of settings.
 
 use super::MapDisplay;
 use crate::color::palette::ColorDepth;
 use crate::tui::GlyphMode;
 
-/// A setting as a file has it.
+/// A setting in a file.
 pub(super) struct Setting {
     pub(super) name: &'static str,
-    /// What it is for, in lines of a comment.
+    /// Its description, in lines of a comment.
     pub(super) meaning: &'static str,
-    /// Its value where the file says nothing, as the file would say it.
+    /// Its default value, as written in a file.
     pub(super) default: &'static str,
 }
 
@@ -53,11 +53,11 @@ pub(super) const FIDELITY: Setting = Setting {
     default: "auto",
 };
 
-/// The settings, in the order of a file.
+/// The settings in the order of a file.
 pub(super) const SETTINGS: [&Setting; 8] =
     [&PRESET, &COLORS, &GLYPHS, &FOV, &FPS, &MOUSE, &MINIMAP, &FIDELITY];
 
-/// What each value of a setting is called.
+/// The names of a setting's values.
 pub(super) type Names<T, const N: usize> = [(&'static str, T); N];
 
 pub(super) const DEPTHS: Names<Option<ColorDepth>, 5> = [

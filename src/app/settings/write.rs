@@ -1,4 +1,4 @@
-//! From a configuration to a file that says the same, with comments.
+//! Printing: from a configuration to a file with the same content, with comments.
 
 use std::fmt;
 
@@ -8,8 +8,8 @@ use crate::app::Bindings;
 use crate::app::bindings::{Action, PRESETS};
 
 impl fmt::Display for Configuration {
-    /// Writes a whole file: each setting with what it is for, its default and its value. The keys that are the
-    /// preset's are comments, so that they change with it.
+    /// Writes a complete file: each setting with its description, its default and its value. Keys
+    /// of the preset are commented out, so that they follow the preset.
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
         write_setting(f, &value::PRESET, &quoted(self.preset))?;
         write_setting(f, &value::COLORS, &quoted(name(&DEPTHS, self.colors)))?;
@@ -51,18 +51,18 @@ fn write_setting(f: &mut fmt::Formatter<'_>, setting: &Setting, value: &str) -> 
     writeln!(f, "{name} = {value}\n")
 }
 
-/// What `names` call `value`.
+/// The name of `value` in `names`.
 fn name<T: PartialEq + Copy, const N: usize>(names: &Names<T, N>, value: T) -> &'static str {
     names.iter().find(|&&(_, named)| named == value).map_or("", |&(name, _)| name)
 }
 
-/// The keys of `action`, as an array.
+/// The keys of `action` as a TOML array.
 fn list(bindings: &Bindings, action: Action) -> String {
     let keys: Vec<String> = bindings.keys(action).map(|key| quoted(&key.to_string())).collect();
     format!("[{}]", keys.join(", "))
 }
 
-/// `text` as a string of TOML.
+/// `text` as a TOML string.
 fn quoted(text: &str) -> String {
     format!("\"{}\"", text.replace('\\', "\\\\").replace('"', "\\\""))
 }

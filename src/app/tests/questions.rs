@@ -1,4 +1,4 @@
-//! Questions, and what answers them.
+//! Questions, and the keys that answer them.
 
 use super::*;
 
@@ -22,7 +22,7 @@ fn start(rate: Option<Rate>) -> Rig {
     Rig::new(parse_str(WAY_OUT).unwrap(), rate)
 }
 
-/// At the exit, with `key` held for so long before the panel showed.
+/// A game at the exit, with `key` held for `milliseconds` before the panel appears.
 fn at_the_exit(rate: Option<Rate>, key: Key, milliseconds: u64) -> Rig {
     let mut rig = start(rate);
     rig.tap(Key::Char('g'), 10);
@@ -61,7 +61,7 @@ fn nothing_confirms_in_the_first_half_second() {
         rig.wait(300);
         rig.tap(ENTER, 50);
         assert_eq!(rig.app.screen, Screen::LevelDone);
-        // A second press, in a rhythm that could be the keyboard's.
+        // The time to the second press could be the keyboard's delay.
         rig.wait(400);
         rig.tap(ENTER, 50);
         rig.wait(200);
@@ -93,7 +93,7 @@ fn escape_closes_help_and_pause_and_leaving_is_asked_once() {
             assert_eq!((rig.app.screen, rig.app.has_left), (Screen::Playing, false));
             rig.wait(2000);
         }
-        // Held, it does not confirm itself.
+        // A held key does not confirm its own question.
         rig.press(Key::Char('q'));
         rig.wait(3000);
         assert_eq!((rig.app.screen, rig.app.has_left), (Screen::Leaving, false));

@@ -1,4 +1,4 @@
-//! What the screen shows, cell by cell.
+//! The cells of every screen.
 
 use ratatui::buffer::{Buffer, Cell};
 use ratatui::layout::Rect;
@@ -71,11 +71,11 @@ fn maps_show_heights() {
 }
 
 #[test]
-fn the_goal_is_told_until_the_player_has_moved_for_a_while() {
+fn the_goal_is_shown_until_the_player_has_moved_for_a_while() {
     let mut app = app("cellar", ascii(MapDisplay::Seen));
     let size = (80, 24);
     app.advance(Duration::from_secs(61));
-    assert!(text(&mut app, size).contains("Find the way out"), "nobody has moved");
+    assert!(text(&mut app, size).contains("Find the way out"), "nothing has moved");
     app.goal.moved(4 * 60 - 1);
     assert!(text(&mut app, size).contains("Find the way out"));
     app.goal.moved(1);
@@ -85,7 +85,7 @@ fn the_goal_is_told_until_the_player_has_moved_for_a_while() {
 }
 
 #[test]
-fn the_part_that_was_seen_grows_and_the_exit_shows_once_seen() {
+fn the_share_seen_grows() {
     let size = (120, 40);
     let mut app = app("cellar", ascii(MapDisplay::Seen));
     text(&mut app, size);
@@ -100,7 +100,7 @@ fn the_part_that_was_seen_grows_and_the_exit_shows_once_seen() {
         assert!(after >= before);
         before = after;
     }
-    assert!(before < 0.9, "nobody sees through walls: {before}");
+    assert!(before < 0.9, "walls hide cells: {before}");
 }
 
 #[test]
@@ -135,7 +135,7 @@ fn nothing_on_a_map_is_as_bright_as_the_arrow() {
 }
 
 #[test]
-fn the_map_is_zoomed_and_moved_and_comes_back() {
+fn the_map_zooms_moves_and_returns() {
     let size = (120, 40);
     let mut app = app("citadel", ascii(MapDisplay::All));
     let first = text(&mut app, size);

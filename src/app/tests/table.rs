@@ -1,4 +1,4 @@
-//! The table of docs/keys.md: what keys do, by keyboard.
+//! The table of docs/keys.md: the effect of keys by keyboard.
 
 use std::fmt::Write;
 
@@ -7,7 +7,7 @@ use super::*;
 const DOCUMENT: &str = include_str!("../../../docs/keys.md");
 const DELAYS: [u64; 4] = [250, 400, 500, 660];
 const RATES: [u32; 4] = [15, 25, 30, 40];
-/// For how long people press a key that they tap.
+/// The duration of a tap.
 const TAP: u64 = 80;
 
 fn rates() -> impl Iterator<Item = Option<Rate>> {
@@ -15,7 +15,7 @@ fn rates() -> impl Iterator<Item = Option<Rate>> {
     legacy.chain([None])
 }
 
-/// By how many degrees, and how many cells, `plays` turns and walks.
+/// The degrees and the cells by which `plays` turns and walks.
 fn measured(rate: Option<Rate>, plays: impl Fn(&mut Rig)) -> (f64, f64) {
     let mut rig = Rig::new(floor(), rate);
     let (start, degrees) = (rig.position(), rig.degrees());
@@ -37,7 +37,7 @@ fn held(rate: Option<Rate>, key: Key) -> (f64, f64) {
     measured(rate, |rig| rig.tap(key, 1000))
 }
 
-/// How far somebody walks and turns in 2 seconds who walks, and turns as well.
+/// The degrees and the cells in 2 seconds of walking and turning at the same time.
 fn chord(rate: Option<Rate>) -> (f64, f64) {
     let mut rig = Rig::new(floor(), rate);
     rig.press(W);
@@ -53,7 +53,7 @@ fn chord(rate: Option<Rate>) -> (f64, f64) {
     (turned, walked)
 }
 
-/// How many of six running jumps, from six places before it, clear a pit of one cell.
+/// The number of running jumps, of six from different positions, that cross a pit of one cell.
 fn jumps(rate: Option<Rate>) -> usize {
     let places = [5.1, 5.3, 5.5, 5.7, 5.9, 6.1];
     let clears = places.into_iter().filter(|&place| {
@@ -94,13 +94,13 @@ fn table() -> String {
 }
 
 #[test]
-fn docs_keys_has_the_table_as_it_is() {
+fn docs_keys_has_the_measured_table() {
     let table = table();
     assert!(DOCUMENT.contains(&table), "docs/keys.md should have this table:\n{table}");
 }
 
 #[test]
-fn a_tap_is_what_the_issue_wants_and_every_running_jump_succeeds() {
+fn taps_are_exact_and_every_running_jump_succeeds() {
     for rate in rates() {
         assert_eq!(jumps(rate), 6, "{rate:?}");
         let ((one, _), (two, _)) = (taps(rate, Key::Right, 1), taps(rate, Key::Right, 2));

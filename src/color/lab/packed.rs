@@ -1,21 +1,22 @@
-//! L\*a\*b\* in integers, for code that converts millions of colours a second.
+//! L\*a\*b\* in integers, for code that converts millions of colours per second.
 //!
-//! Both nonlinear functions, sRGB's and the eye's, are tables that the compiler works out; distances
-//! are within 0.1 of those of [`Lab`](super::Lab). A weighted distance of red, green and blue was
-//! refused: at the same mean ΔE the encoder took a third more bytes, most of them for dark colours.
+//! Both nonlinear functions, of sRGB and of L\*a\*b\*, are tables computed at compile time.
+//! Distances differ by less than 0.1 from those of [`Lab`](super::Lab). A weighted distance of red,
+//! green and blue was refused: at the same mean ΔE the encoder took a third more bytes, most of
+//! them for dark colours.
 
 use super::super::srgb::LINEAR_16;
 use super::response as response_to;
 
-/// A colour in L*a*b*, in sixty-fourths.
+/// A colour in L\*a\*b\*, in 64ths.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub(crate) struct PackedLab([i16; 3]);
 
-/// How many steps a ΔE of 1 has.
+/// The number of steps in a ΔE of 1.
 const STEPS: f32 = 64.0;
 
 impl PackedLab {
-    /// The sRGB colour of these channels.
+    /// Converts an sRGB colour.
     #[inline]
     pub(crate) fn of(channels: [u8; 3]) -> Self {
         let light = |channel: usize| u32::from(LINEAR_16[usize::from(channels[channel])]);
@@ -23,7 +24,7 @@ impl PackedLab {
         let tristimulus = |[r, g, b]: [u32; 3]| response((r * red + g * green + b * blue) >> 16);
         let [to_x, to_y, to_z] = LIGHT_TO_XYZ;
         let (x, y, z) = (tristimulus(to_x), tristimulus(to_y), tristimulus(to_z));
-        // A response has 21 binary digits after the point, and a step of these 6.
+        // A response has 21 fractional bits, a step 6.
         let steps = |response: i32| (response >> 15) as i16;
         Self([steps(116 * y) - 16 * STEPS as i16, steps(500 * (x - y)), steps(200 * (y - z))])
     }
@@ -35,14 +36,14 @@ impl PackedLab {
     }
 }
 
-/// From linear light to XYZ, each over what white has of it, in 65536ths; a row sums up to one.
+/// The matrix from linear light to XYZ relative to white, in 65536ths; each row sums to one.
 const LIGHT_TO_XYZ: [[u32; 3]; 3] =
     [[28_440, 24_656, 12_440], [13_938, 46_868, 4_730], [1_164, 7_174, 57_198]];
 
-/// How many steps of light lie between two entries of [`RESPONSE`].
+/// The amount of light between two entries of [`RESPONSE`], in 65535ths.
 const SPACING: u32 = 64;
 
-/// The eye's answer to light, at every 64th of its steps, in 32768ths.
+/// The nonlinear function of L\*a\*b\* at every multiple of [`SPACING`], in 32768ths.
 static RESPONSE: [u16; 1025] = {
     let mut table = [0; 1025];
     let mut index = 0;
@@ -55,7 +56,8 @@ static RESPONSE: [u16; 1025] = {
     table
 };
 
-/// The eye's answer to `light`, in 65536ths of all there is, with 21 binary digits after the point.
+/// The nonlinear function of L\*a\*b\* at `light` 65536ths, with 21 fractional bits, interpolated
+/// between two entries of [`RESPONSE`].
 #[inline]
 fn response(light: u32) -> i32 {
     let index = (light / SPACING) as usize;
@@ -63,7 +65,7 @@ fn response(light: u32) -> i32 {
     lower * SPACING as i32 + (upper - lower) * (light % SPACING) as i32
 }
 
-/// By Newton's method, for what the compiler works out; of numbers between a thousandth and two.
+/// The cube root of a number between 0.001 and 2, by Newton's method, at compile time.
 const fn cube_root(number: f64) -> f64 {
     let mut root = 1.0;
     let mut step = 0;
@@ -86,7 +88,7 @@ mod tests {
         libm::sqrt(one.into_iter().zip(other).map(|(a, b)| (a - b) * (a - b)).sum())
     }
 
-    /// The oracle: the formulas of the standard in doubles, sharing no table with the rest.
+    /// The oracle: the standard's formulas in doubles. It shares no table with the code.
     fn exact([red, green, blue]: [u8; 3]) -> [f64; 3] {
         let linear = |channel: u8| {
             let signal = f64::from(channel) / 255.0;
@@ -97,16 +99,16 @@ mod tests {
             }
         };
         let [r, g, b] = [linear(red), linear(green), linear(blue)];
-        let answer = |light: f64| {
+        let response = |light: f64| {
             if light > 0.008_856_451_679 {
                 libm::cbrt(light)
             } else {
                 7.787_037_037 * light + 4.0 / 29.0
             }
         };
-        let x = answer((0.412_456_4 * r + 0.357_576_1 * g + 0.180_437_5 * b) / 0.950_47);
-        let y = answer(0.212_672_9 * r + 0.715_152_2 * g + 0.072_175 * b);
-        let z = answer((0.019_333_9 * r + 0.119_192 * g + 0.950_304_1 * b) / 1.088_83);
+        let x = response((0.412_456_4 * r + 0.357_576_1 * g + 0.180_437_5 * b) / 0.950_47);
+        let y = response(0.212_672_9 * r + 0.715_152_2 * g + 0.072_175 * b);
+        let z = response((0.019_333_9 * r + 0.119_192 * g + 0.950_304_1 * b) / 1.088_83);
         [116.0 * y - 16.0, 500.0 * (x - y), 200.0 * (y - z)]
     }
 

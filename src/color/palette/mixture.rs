@@ -1,13 +1,16 @@
-//! Dithering: the two colours of a palette that look like a third one where they stand side by side.
+//! Mixtures: two colours of a palette that look like a given colour when they alternate in a
+//! pattern.
 //!
-//! The search takes each pair of colours near the wanted one, in a few proportions, and keeps the pair whose
-//! mixed light is nearest in Oklab. The contrast of the two adds to their cost, since it shows as dots. A
-//! colour of another hue than the wanted one is in no mixture: grey and one hue reach all colours
-//! between them, and a green dot in a brick is visible. Source: Joel Yliluoma, "Arbitrary-palette positional dithering
-//! algorithm" (2011). Sets of four colours were refused: they are a little nearer, but take twice the bytes.
+//! Each pair of colours near the wanted one is tried in a few shares. The best mixture is the one
+//! whose mean light is nearest to the wanted colour in Oklab; the contrast between its two colours
+//! counts as well, because it is visible as dots. Colours of another hue are not used: grey and one
+//! hue reach every colour between them, and a green dot on a brick is noticeable.
 //!
-//! A mixture is looked up by the upper six bits of each channel, and computed at its first look-up:
-//! a picture has some hundreds of them, and all 262,144 take seconds.
+//! The idea is Joel Yliluoma's ("Arbitrary-palette positional dithering algorithm", 2011). Sets of
+//! four colours were refused: they come a little nearer, for twice the bytes.
+//!
+//! Mixtures are stored by the upper six bits of each channel, and computed on first use: a picture
+//! needs some hundreds of them, and computing all 262,144 would take seconds.
 
 use std::array;
 use std::sync::LazyLock;
@@ -18,77 +21,78 @@ use crate::color::oklab::{self, Oklab};
 use crate::color::srgb::linear;
 use crate::color::{Rgb, product};
 
-/// Two colours and their proportion.
+/// Two colours and their shares.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub(crate) struct Mixture {
-    /// The indices of the darker and of the brighter colour.
+    /// The indices of the darker and the brighter colour.
     pub(crate) colors: [u8; 2],
-    /// The number of pixels with the brighter colour among [`Mixture::WHOLE`], and fewer than that.
+    /// The number of pixels, of [`Mixture::WHOLE`], that have the brighter colour; less than all.
     pub(crate) share: u8,
-    /// The index of the best single colour, for pixels that cannot be mixed.
+    /// The index of the nearest single colour, for pixels that are not mixed.
     pub(crate) single: u8,
 }
 
 impl Mixture {
-    /// The number of pixels that a mixture is made for.
+    /// The number of pixels of a mixture.
     pub(crate) const WHOLE: u8 = 4;
     const NONE: Self = Self { colors: [0; 2], share: 0, single: 0 };
 }
 
-/// The mixtures for all colours, each computed at its first look-up.
+/// The mixtures for all colours, each computed on first use.
 pub(crate) struct Mixtures {
     palette: fn() -> Palette,
     entries: [AtomicU32; 1 << (3 * BITS)],
 }
 
-/// The upper bits of each channel that the table distinguishes.
+/// The number of bits of each channel by which mixtures are stored.
 pub(crate) const BITS: u32 = 6;
-/// The bit that marks a computed entry, in its uppermost byte, beside the share.
+/// The bit that marks an entry as computed, in its uppermost byte, beside the share.
 const FOUND: u8 = 1 << 7;
 
 /// The mixtures of the 240 fixed colours of xterm.
 pub(crate) static OF_256: Mixtures = Mixtures::new(|| {
-    static PALETTE: LazyLock<Vec<Paint>> =
-        LazyLock::new(|| (CUBE..=u8::MAX).map(Paint::of).collect());
-    Palette { paints: &PALETTE, weights: FINE }
+    static PALETTE: LazyLock<Vec<PaletteColor>> =
+        LazyLock::new(|| (CUBE..=u8::MAX).map(PaletteColor::of).collect());
+    Palette { colors: &PALETTE, weights: WEIGHTS_OF_256 }
 });
 
-/// The mixtures of twelve of the 16 named colours, without cyan and magenta: next to nothing in a room has their hues, and
-/// they glare as stray dots where stone is a little blue.
+/// The mixtures of twelve of the 16 named colours. Cyan and magenta are left out: hardly anything
+/// in a room has their hue, and they show as stray dots on stone that is slightly blue.
 pub(crate) static OF_16: Mixtures = Mixtures::new(|| {
     const LEFT_OUT: [u8; 4] = [5, 6, 13, 14];
-    static PALETTE: LazyLock<Vec<Paint>> = LazyLock::new(|| {
-        (0..CUBE).filter(|index| !LEFT_OUT.contains(index)).map(Paint::of).collect()
+    static PALETTE: LazyLock<Vec<PaletteColor>> = LazyLock::new(|| {
+        (0..CUBE).filter(|index| !LEFT_OUT.contains(index)).map(PaletteColor::of).collect()
     });
-    Palette { paints: &PALETTE, weights: COARSE }
+    Palette { colors: &PALETTE, weights: WEIGHTS_OF_16 }
 });
 
-/// The colours to mix, and the weights of the search.
+/// The colours to mix, and the weights of differences.
 #[derive(Clone, Copy)]
 struct Palette {
-    paints: &'static [Paint],
+    colors: &'static [PaletteColor],
     weights: Weights,
 }
 
-/// The weights and limits of the search.
+/// The weights and limits by which mixtures are rated.
 #[derive(Clone, Copy)]
 struct Weights {
-    /// The weight of a difference in chroma over one in lightness, for mixtures.
+    /// The weight of a difference in chroma relative to one in lightness, for mixtures.
     chroma: f32,
-    /// The same for single colours.
+    /// The same for single colours, which would otherwise be grey too often.
     single: f32,
     /// The weights of the differences in lightness and in chroma between the two colours.
     contrast: [f32; 2],
-    /// The least cosine of the angle between two hues in one mixture.
+    /// The least cosine between the hues of a colour and of the wanted one.
     hue: f32,
-    /// The chroma below which a colour is mixed of greys only.
+    /// Colours with less chroma are mixed of greys only.
     least_chroma: f32,
-    /// The most chroma that a colour of a mixture may have beyond the wanted one: with more it glares as dots.
+    /// The most by which the chroma of a colour may exceed that of the wanted one: more shows as
+    /// dots.
     most_excess: f32,
 }
 
-/// Found by trying, with `cellcaster wire --palette 256`.
-const FINE: Weights = Weights {
+/// Chosen by experiment with `cellcaster wire --palette 256`.
+const WEIGHTS_OF_256: Weights = Weights {
     chroma: 2.0,
     single: 1.0,
     contrast: [0.03, 0.01],
@@ -96,8 +100,8 @@ const FINE: Weights = Weights {
     least_chroma: 0.005,
     most_excess: 0.1,
 };
-/// These use as few as possible of the glaring colours, which users redefine.
-const COARSE: Weights = Weights {
+/// For a few saturated colours, which users redefine: they are used sparingly.
+const WEIGHTS_OF_16: Weights = Weights {
     chroma: 1.0,
     single: 1.0,
     contrast: [0.008, 0.02],
@@ -106,20 +110,20 @@ const COARSE: Weights = Weights {
     most_excess: 1.0,
 };
 
-/// The number of nearest colours that are considered for a mixture.
-const CONSIDERED: usize = 40;
-/// The chroma below which a colour is grey, and fits every hue.
+/// The most candidates for a mixture: the nearest colours.
+const MOST_CANDIDATES: usize = 40;
+/// Colours with less chroma are grey and fit every hue.
 const GREY: f32 = 0.01;
 
 /// A colour of the palette.
 #[derive(Clone, Copy)]
-struct Paint {
+struct PaletteColor {
     index: u8,
     cones: [f32; 3],
     lab: [f32; 3],
 }
 
-impl Paint {
+impl PaletteColor {
     fn of(index: u8) -> Self {
         let light = linear(of_256(index));
         let Oklab(lab) = Oklab::from_linear(light);
@@ -132,42 +136,42 @@ impl Paint {
 }
 
 impl Mixtures {
-    #[expect(clippy::large_stack_arrays, reason = "it is made when the program is compiled")]
+    #[expect(clippy::large_stack_arrays, reason = "it is evaluated at compile time")]
     const fn new(palette: fn() -> Palette) -> Self {
         Self { palette, entries: [const { AtomicU32::new(0) }; 1 << (3 * BITS)] }
     }
 
-    /// The mixture for a colour of which the upper bits of red, green and blue are given.
+    /// The mixture for a colour, given the upper bits of red, green and blue.
     #[inline]
     pub(crate) fn of(&self, [red, green, blue]: [u8; 3]) -> Mixture {
         let mask = (1 << BITS) - 1;
-        let place = [red, green, blue]
+        let index = [red, green, blue]
             .iter()
-            .fold(0, |place, &channel| place << BITS | usize::from(channel) & mask);
-        // Every thread computes the same entry, so it does not matter which one is first.
-        let known = self.entries[place].load(Ordering::Relaxed);
-        let entry = if known == 0 { self.find(place, [red, green, blue]) } else { known };
+            .fold(0, |index, &channel| index << BITS | usize::from(channel) & mask);
+        // Every thread computes the same entry, so that it does not matter which one stores it.
+        let stored = self.entries[index].load(Ordering::Relaxed);
+        let entry = if stored == 0 { self.find(index, [red, green, blue]) } else { stored };
         let [share, single, darker, brighter] = entry.to_be_bytes();
         Mixture { colors: [darker, brighter], share: share ^ FOUND, single }
     }
 
     #[cold]
-    fn find(&self, place: usize, levels: [u8; 3]) -> u32 {
+    fn find(&self, index: usize, levels: [u8; 3]) -> u32 {
         // Repeating the bits makes the lowest level black and the highest white.
         let [red, green, blue] = levels.map(|level| level << 2 | level >> (BITS - 2));
         let Mixture { colors: [darker, brighter], share, single } =
             (self.palette)().mixture(Rgb::new(red, green, blue));
         let entry = u32::from_be_bytes([FOUND | share, single, darker, brighter]);
-        self.entries[place].store(entry, Ordering::Relaxed);
+        self.entries[index].store(entry, Ordering::Relaxed);
         entry
     }
 }
 
 impl Palette {
     fn mixture(self, color: Rgb) -> Mixture {
-        let Target { considered, count } = Target::new(color, self);
-        let considered = &considered[..count];
-        let single = considered.iter().min_by(|one, other| {
+        let Candidates { nearest, count } = Candidates::new(color, self);
+        let candidates = &nearest[..count];
+        let single = candidates.iter().min_by(|one, other| {
             let alone = |candidate: &Candidate| cost(candidate.error, self.weights.single);
             alone(one).total_cmp(&alone(other))
         });
@@ -179,20 +183,20 @@ impl Palette {
                 best = Mixture { colors, share, ..best };
             }
         };
-        for (place, one) in considered.iter().enumerate() {
+        for (index, one) in candidates.iter().enumerate() {
             consider(cost(one.error, self.weights.chroma), [one.index; 2], 0);
-            for other in &considered[place + 1..] {
+            for other in &candidates[index + 1..] {
                 let contrast = self.contrast(one, other);
                 for share in 1..Mixture::WHOLE {
                     let part = f32::from(share) / f32::from(Mixture::WHOLE);
                     let error =
                         array::from_fn(|i| one.error[i] + (other.error[i] - one.error[i]) * part);
-                    let price =
+                    let total =
                         cost(error, self.weights.chroma) + contrast * 4.0 * part * (1.0 - part);
                     if one.lab[0] <= other.lab[0] {
-                        consider(price, [one.index, other.index], share);
+                        consider(total, [one.index, other.index], share);
                     } else {
-                        consider(price, [other.index, one.index], Mixture::WHOLE - share);
+                        consider(total, [other.index, one.index], Mixture::WHOLE - share);
                     }
                 }
             }
@@ -206,19 +210,20 @@ impl Palette {
     }
 }
 
-/// The cost of an error, with the weight of an error in chroma.
+/// The cost of an error in Oklab, where `chroma` is the weight of an error in chroma.
 fn cost([lightness, red, yellow]: [f32; 3], chroma: f32) -> f32 {
     lightness * lightness + chroma * chroma * (red * red + yellow * yellow)
 }
 
-/// A colour to be mixed, and what it may be mixed of.
-struct Target {
-    considered: [Candidate; CONSIDERED],
+/// The colours that may be mixed to give a colour.
+struct Candidates {
+    nearest: [Candidate; MOST_CANDIDATES],
     count: usize,
 }
 
-/// A colour that may be in a mixture, and its error against the wanted one. Errors are linear in light, and only scaled
-/// to Oklab, so the error of a mixture is the mixture of the errors.
+/// A colour that may be part of a mixture, and its difference from the wanted colour. The error of
+/// a mixture is the weighted mean of the errors of its colours: errors are linear in the responses
+/// of the cones, and only scaled to perceived differences.
 #[derive(Clone, Copy, Default)]
 struct Candidate {
     index: u8,
@@ -227,13 +232,13 @@ struct Candidate {
     lab: [f32; 3],
 }
 
-impl Target {
-    fn new(color: Rgb, Palette { paints, weights }: Palette) -> Self {
+impl Candidates {
+    fn new(color: Rgb, Palette { colors, weights }: Palette) -> Self {
         let light = linear(color);
         let Oklab(wanted) = Oklab::from_linear(light);
         let wanted = wanted.map(|part| part as f32);
         let cones = oklab::cones(light).map(|share| share as f32);
-        // The slope of the cube root, which is none at zero.
+        // The derivative of the cube root, bounded near zero.
         let slopes = cones.map(|share| {
             let root = libm::cbrtf(share + 0.003);
             1.0 / (3.0 * root * root)
@@ -242,33 +247,33 @@ impl Target {
         let own_chroma = chroma(wanted);
         let fits = |lab: [f32; 3]| {
             let cosine = lab[1] * wanted[1] + lab[2] * wanted[2];
-            let its_chroma = chroma(lab);
-            its_chroma < GREY
+            let chroma_of_other = chroma(lab);
+            chroma_of_other < GREY
                 || own_chroma >= weights.least_chroma
-                    && its_chroma <= own_chroma + weights.most_excess
-                    && cosine >= weights.hue * its_chroma * own_chroma
+                    && chroma_of_other <= own_chroma + weights.most_excess
+                    && cosine >= weights.hue * chroma_of_other * own_chroma
         };
         let from_cone_roots = oklab::FROM_CONE_ROOTS.map(|row| row.map(|factor| factor as f32));
-        let mut considered = [Candidate::default(); CONSIDERED];
+        let mut nearest = [Candidate::default(); MOST_CANDIDATES];
         let mut count = 0;
-        for paint in paints.iter().filter(|paint| fits(paint.lab)) {
+        for other in colors.iter().filter(|other| fits(other.lab)) {
             let distance =
-                paint.lab.iter().zip(wanted).map(|(one, other)| (one - other).powi(2)).sum();
-            if count == CONSIDERED && distance >= considered[count - 1].distance {
+                other.lab.iter().zip(wanted).map(|(part, wanted)| (part - wanted).powi(2)).sum();
+            if count == MOST_CANDIDATES && distance >= nearest[count - 1].distance {
                 continue;
             }
-            let roots = array::from_fn(|i| (paint.cones[i] - cones[i]) * slopes[i]);
+            let roots = array::from_fn(|i| (other.cones[i] - cones[i]) * slopes[i]);
             let error = product(&from_cone_roots, roots);
-            let candidate = Candidate { index: paint.index, distance, error, lab: paint.lab };
-            count = (count + 1).min(CONSIDERED);
-            considered[count - 1] = candidate;
+            let candidate = Candidate { index: other.index, distance, error, lab: other.lab };
+            count = (count + 1).min(MOST_CANDIDATES);
+            nearest[count - 1] = candidate;
             let mut at = count - 1;
-            while at > 0 && considered[at - 1].distance > distance {
-                considered.swap(at - 1, at);
+            while at > 0 && nearest[at - 1].distance > distance {
+                nearest.swap(at - 1, at);
                 at -= 1;
             }
         }
-        Self { considered, count }
+        Self { nearest, count }
     }
 }
 

@@ -1,7 +1,7 @@
-//! The nearest colour of a palette to any colour, from a table.
+//! The colour of a palette that is nearest to a given colour.
 //!
-//! Distance is measured in Oklab. Squared distance of the channels, weighted or not, was refused: in a
-//! palette with few dark colours it takes dark bricks for grey and wood for pink.
+//! The measure is distance in Oklab. Squared distance of the channels, weighted or not, was
+//! refused: in a palette with few dark colours it maps dark bricks to grey and wood to pink.
 
 use std::ops::RangeInclusive;
 use std::sync::LazyLock;
@@ -11,22 +11,23 @@ use super::of_256;
 use crate::color::Rgb;
 use crate::color::oklab::Oklab;
 
-/// The upper bits of each channel that the table distinguishes.
+/// Colours with the same upper 5 bits of each channel share an entry.
 const BITS: u32 = 5;
 const DROPPED_BITS: u32 = u8::BITS - BITS;
-/// The bit that marks a computed entry.
+/// The bit that marks an entry as computed.
 const FOUND: u16 = 1 << 15;
 
-/// The index of the nearest colour for every colour, by the upper bits of its channels. An entry is computed when it is
-/// first looked up: all of them take some milliseconds, which is long for a program that draws one picture.
+/// A table from the upper bits of the channels to the index of the nearest colour. An entry is
+/// computed on its first use: computing all of them would take some milliseconds, which matters to
+/// a program that draws one picture.
 pub(super) struct NearestColors {
     palette: LazyLock<Vec<(u8, Oklab)>>,
     entries: [AtomicU16; 1 << (3 * BITS)],
 }
 
 impl NearestColors {
-    /// The table for a palette that [`palette`] makes.
-    #[expect(clippy::large_stack_arrays, reason = "it is made when the program is compiled")]
+    /// A table for the colours that `palette` returns.
+    #[expect(clippy::large_stack_arrays, reason = "it is evaluated at compile time")]
     pub(super) const fn among(palette: fn() -> Vec<(u8, Oklab)>) -> Self {
         Self {
             palette: LazyLock::new(palette),
@@ -34,19 +35,19 @@ impl NearestColors {
         }
     }
 
-    /// The index of the colour nearest to `color`.
+    /// The index of the colour that is nearest to `color`.
     #[inline]
     pub(super) fn of(&self, color: Rgb) -> u8 {
-        let place = color
+        let index = color
             .channels()
             .into_iter()
-            .fold(0, |place, channel| place << BITS | usize::from(channel >> DROPPED_BITS));
-        let known = self.entries[place].load(Ordering::Relaxed);
-        (if known & FOUND == 0 { self.find(place, color) } else { known }) as u8
+            .fold(0, |index, channel| index << BITS | usize::from(channel >> DROPPED_BITS));
+        let entry = self.entries[index].load(Ordering::Relaxed);
+        (if entry & FOUND == 0 { self.find(index, color) } else { entry }) as u8
     }
 
     #[cold]
-    fn find(&self, place: usize, color: Rgb) -> u16 {
+    fn find(&self, entry_index: usize, color: Rgb) -> u16 {
         let middle =
             |channel: u8| channel >> DROPPED_BITS << DROPPED_BITS | 1 << (DROPPED_BITS - 1);
         let [red, green, blue] = color.channels().map(middle);
@@ -56,7 +57,7 @@ impl NearestColors {
         };
         let nearest = self.palette.iter().min_by(by_distance).map_or(0, |&(index, _)| index);
         let entry = FOUND | u16::from(nearest);
-        self.entries[place].store(entry, Ordering::Relaxed);
+        self.entries[entry_index].store(entry, Ordering::Relaxed);
         entry
     }
 }

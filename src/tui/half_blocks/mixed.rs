@@ -1,15 +1,18 @@
-//! Half blocks from a small palette: hues that it lacks are mixed from colours side by side.
+//! Half blocks in a small palette: other hues are mixed from two colours side by side.
 //!
-//! Two cells, one beside the other, are a block of four pixels that shares two colours. Of them, the [`Mixture`] of
-//! the block's mean, each pixel shows the one or the other: by a pattern that stands still on the screen, and
-//! by how near to either its own colour is, so that what is drawn on a wall remains. What the upper of two blocks is off, the lower one
-//! makes good, and then it ends: a pixel that changes changes no more than the eight of its two blocks. A block with an edge in
-//! it shows the nearest colours of either side.
+//! Two neighbouring cells are a block of four pixels that shares two colours: the [`Mixture`] of
+//! the block's mean. Each pixel shows one of them. The choice depends on Bayer's 2×2 matrix, which
+//! is fixed to the screen, and on the pixel's own colour, so that details of a wall remain visible.
+//! The error of the upper of two blocks is added to the lower one, as in error diffusion (R. W.
+//! Floyd and L. Steinberg, "An Adaptive Algorithm for Spatial Greyscale", 1976), but goes no
+//! further: a changed pixel changes at most the eight pixels of its two blocks. A block with an
+//! edge shows the nearest colours of both sides.
 //!
-//! Since its colours are two, a block costs hardly more bytes than one cell: an encoder need but pick the glyphs. A
-//! pattern of its own for each pixel (Bayer's, or a mask of blue noise) was refused: it looks no better from
-//! a little farther away, and takes twice the bytes. So was error diffusion: there, one pixel changes all
-//! that follow. `cellcaster wire --palette 256` has the figures.
+//! A block takes hardly more bytes than one cell, because its two cells differ in their glyphs
+//! only. Independent dithering of each pixel (by Bayer's matrix, or a mask of blue noise) was
+//! refused: it looks no better from some distance, and takes twice the bytes. Full error diffusion
+//! was refused, too: one changed pixel changes all pixels after it. `cellcaster wire --palette 256`
+//! prints the figures.
 
 use std::array;
 use std::sync::LazyLock;
@@ -24,7 +27,7 @@ use crate::color::palette::mixture::{self, Mixture, Mixtures};
 use crate::color::srgb::linear;
 use crate::render::Frame;
 
-/// So many cells are drawn at a time, and so need room: an even number.
+/// The number of cells of a row that are drawn at a time, and kept in a buffer; even.
 const CHUNK: usize = 64;
 
 /// Draws the pixels of `frame` as [`super::draw_frame`] does.
@@ -46,10 +49,10 @@ pub(super) fn draw(
             let width = CHUNK.min(usize::from(area.width) - left);
             let mut shown = [[[0; 2]; CHUNK]; 2];
             for x in (0..width).step_by(2) {
-                let mut owed = [0; 3];
+                let mut error = [0; 3];
                 for (rows, shown) in rows.iter().zip(&mut shown) {
                     let Some(block) = block(rows, left + x) else { continue };
-                    let colors = tables.draw(mixtures, block, &mut owed);
+                    let colors = tables.draw(mixtures, block, &mut error);
                     shown[x] = [colors[0], colors[2]];
                     shown[x + 1] = [colors[1], colors[3]];
                 }
@@ -65,7 +68,8 @@ pub(super) fn draw(
     }
 }
 
-/// The pixels of a block, row by row. The last one of a row may have to be both.
+/// The pixels of a block, row by row. If `x` is the last pixel of the row, it is in the block
+/// twice.
 fn block(rows: &[&[Rgb]; 2], x: usize) -> Option<[Rgb; 4]> {
     let pair = |row: &[Rgb]| {
         let left = *row.get(x)?;
@@ -78,11 +82,11 @@ fn block(rows: &[&[Rgb]; 2], x: usize) -> Option<[Rgb; 4]> {
 /// Red, green and blue light, each from 0 to [`Tables::WHITE`].
 type Light = [i32; 3];
 
-/// What colours are in light, and back.
+/// Tables that convert between colours and light.
 struct Tables {
     of_channel: [i32; 256],
     of_index: [Light; 256],
-    /// The upper bits of the channel that gives off so much light.
+    /// The upper bits of the channel with that amount of light.
     levels: [u8; Self::STEPS + 1],
 }
 
@@ -90,11 +94,12 @@ static TABLES: LazyLock<Tables> = LazyLock::new(Tables::new);
 
 impl Tables {
     const WHITE: i32 = 1 << 15;
-    /// Light is told apart in so many steps where it becomes a channel again.
+    /// The number of steps of light in `levels`.
     const STEPS: usize = 1 << 12;
-    /// What is this much brighter than another pixel of its block, in parts of 255, is beyond an edge.
+    /// Two pixels of a block are on different sides of an edge if their brightness, of 255, differs
+    /// by more.
     const EDGE: u8 = 46;
-    /// In this order the pixels of a block get the brighter colour.
+    /// The order in which pixels of a block get the brighter colour: Bayer's 2×2 matrix.
     const ORDER: [i32; 4] = [0, 2, 3, 1];
 
     fn new() -> Self {
@@ -114,9 +119,9 @@ impl Tables {
         Self { of_channel, of_index, levels }
     }
 
-    /// What the pixels of a block show. It is drawn brighter by what is `owed`, and owes three quarters of what
-    /// it is off then: all of it would cost more bytes than it is worth.
-    fn draw(&self, mixtures: &Mixtures, block: [Rgb; 4], owed: &mut Light) -> [u8; 4] {
+    /// Chooses the colours of a block's pixels. `error` is added to the block, and is set to three
+    /// quarters of the error that remains: all of it would cost more bytes than it is worth.
+    fn draw(&self, mixtures: &Mixtures, block: [Rgb; 4], error: &mut Light) -> [u8; 4] {
         let lumas = block.map(Rgb::luma);
         let [darkest, brightest] =
             lumas.iter().fold([u8::MAX, 0], |[low, high], &luma| [low.min(luma), high.max(luma)]);
@@ -125,16 +130,16 @@ impl Tables {
         let colors = if brightest - darkest > Self::EDGE {
             self.draw_edge(mixtures, lumas.map(|luma| luma > darkest.midpoint(brightest)), &lights)
         } else {
-            self.mix(mixtures, &lights, *owed)
+            self.mix(mixtures, &lights, *error)
         };
-        *owed = array::from_fn(|i| {
+        *error = array::from_fn(|i| {
             let shown = |pixel: usize| self.of_index[usize::from(colors[pixel])][i];
             (0..4).map(|pixel| lights[pixel][i] - shown(pixel)).sum::<i32>() * 3 / 16
         });
         colors
     }
 
-    /// The colours nearest to the means of what is on either side of an edge.
+    /// The nearest colour of each side of an edge, to the mean of its pixels.
     fn draw_edge(&self, mixtures: &Mixtures, is_bright: [bool; 4], lights: &[Light; 4]) -> [u8; 4] {
         let [dark, bright] = [false, true].map(|side| {
             let on_side =
@@ -147,24 +152,25 @@ impl Tables {
         is_bright.map(|is_bright| if is_bright { bright } else { dark })
     }
 
-    /// The mixture of the mean.
-    fn mix(&self, mixtures: &Mixtures, lights: &[Light; 4], owed: Light) -> [u8; 4] {
+    /// Mixes the mean of the block and `error`.
+    fn mix(&self, mixtures: &Mixtures, lights: &[Light; 4], error: Light) -> [u8; 4] {
         let mean: Light = array::from_fn(|i| lights.iter().map(|light| light[i]).sum::<i32>() / 4);
-        let wanted = paid(mean, owed);
+        let wanted = with_error(mean, error);
         let Mixture { colors, share, .. } = mixtures.of(self.levels(wanted));
         if share == 0 {
             return [colors[0]; 4];
         }
         let [darker, brighter] = colors.map(|index| self.of_index[usize::from(index)]);
-        let way: [i64; 3] = array::from_fn(|i| i64::from(brighter[i] - darker[i]));
-        let length: i64 = way.iter().map(|part| part * part).sum();
+        let difference: [i64; 3] = array::from_fn(|i| i64::from(brighter[i] - darker[i]));
+        let length: i64 = difference.iter().map(|part| part * part).sum();
         array::from_fn(|pixel| {
-            let along: i64 = (0..3).map(|i| i64::from(lights[pixel][i] - mean[i]) * way[i]).sum();
-            // In eighths: what the mixture wants, and three eighths of what the pixel itself does, against
-            // the pattern.
-            let wish = 2 * i64::from(share) * length + 3 * along;
+            let along: i64 =
+                (0..3).map(|i| i64::from(lights[pixel][i] - mean[i]) * difference[i]).sum();
+            // In eighths: the share of the brighter colour and three eighths of the pixel's own
+            // difference, compared with the pixel's threshold.
+            let level = 2 * i64::from(share) * length + 3 * along;
             let threshold = i64::from(2 * Self::ORDER[pixel] + 1) * length;
-            colors[usize::from(wish > threshold)]
+            colors[usize::from(level > threshold)]
         })
     }
 
@@ -173,15 +179,15 @@ impl Tables {
     }
 }
 
-/// `mean` and what is owed: of about the same hue, or grey.
-fn paid(mean: Light, owed: Light) -> Light {
-    let sum: Light = array::from_fn(|i| (mean[i] + owed[i]).clamp(0, Tables::WHITE));
+/// The sum of `mean` and `error`. If its hue differs much from that of `mean`, the sum is grey.
+fn with_error(mean: Light, error: Light) -> Light {
+    let sum: Light = array::from_fn(|i| (mean[i] + error[i]).clamp(0, Tables::WHITE));
     let grey = |light: Light| light.iter().sum::<i32>() / 3;
     let hue = |light: Light| light.map(|part| f64::from(part - grey(light)));
     let dot = |one: [f64; 3], other: [f64; 3]| (0..3).map(|i| one[i] * other[i]).sum::<f64>();
     let (wanted, summed) = (hue(mean), hue(sum));
     let agreement = dot(wanted, summed);
-    // Within 45 degrees.
+    // The hues differ by at most 45 degrees.
     let agrees = agreement >= 0.0
         && 2.0 * agreement * agreement >= dot(wanted, wanted) * dot(summed, summed);
     if agrees { sum } else { [grey(sum); 3] }

@@ -1,13 +1,14 @@
-//! Half blocks without colour: what differs from its surroundings is drawn before how bright it is.
+//! Half blocks without colour: contrast with the surroundings counts more than brightness.
 //!
-//! A pixel that is clearly brighter or darker than those around it is lit, or not: joints and edges become
-//! lines. All others are lit where they are brighter than their place in Bayer's pattern asks for. To measure
-//! a frame and spread its shades was refused: one lamp that comes into view would change every cell.
+//! A pixel clear brighter than those around it is lit, and a clear darker one is unlit, so that
+//! joints and edges become lines. Other pixels are lit if they exceed their threshold in Bayer's
+//! matrix. Measuring a frame and stretching its range of brightness was refused: one lamp that
+//! comes into view would change every cell.
 
 use ratatui::layout::Rect;
 use ratatui::style::Color;
 
-use super::{lit_glyph, order};
+use super::{lit_glyph, threshold_rank};
 use crate::canvas::Canvas;
 use crate::render::Frame;
 
@@ -23,24 +24,24 @@ pub(super) fn draw(area: Rect, canvas: &mut impl Canvas, above: u32, frame: &Fra
 
 /// Whether a pixel is lit.
 fn is_lit(frame: &Frame, x: u32, y: u32) -> bool {
-    /// The pixels around are those that far away.
-    const AWAY: u32 = 2;
+    /// The distance of the four pixels that are compared.
+    const DISTANCE: u32 = 2;
     let luma = |x: u32, y: u32| {
         u32::from(frame.pixel(x.min(frame.width() - 1), y.min(frame.height() - 1)).luma())
     };
-    let around = luma(x.saturating_sub(AWAY), y)
-        + luma(x + AWAY, y)
-        + luma(x, y.saturating_sub(AWAY))
-        + luma(x, y + AWAY);
+    let around = luma(x.saturating_sub(DISTANCE), y)
+        + luma(x + DISTANCE, y)
+        + luma(x, y.saturating_sub(DISTANCE))
+        + luma(x, y + DISTANCE);
     let own = luma(x, y);
-    // Four times as bright as the mean of the four; clearly is by a sixth and a little more.
-    let (own_four, clearly) = (4 * own, around / 6 + 16);
-    if own_four > around + clearly {
+    // The sums of four pixels are compared. The contrast is clear above a sixth plus 16.
+    let (own_four, clear) = (4 * own, around / 6 + 16);
+    if own_four > around + clear {
         true
-    } else if own_four + clearly < around {
+    } else if own_four + clear < around {
         false
     } else {
-        own >= 16 * u32::from(order(x, y)) + 8
+        own >= 16 * u32::from(threshold_rank(x, y)) + 8
     }
 }
 
@@ -50,7 +51,7 @@ mod tests {
     use crate::color::Rgb;
     use crate::render::{FrameSize, PixelAspect};
 
-    /// A wall of that shade with a joint across it, in row 8.
+    /// A wall of that shade with a joint across it in row 8.
     fn wall(brick: u8, joint: u8) -> Frame {
         let size = FrameSize::new(16, 16).unwrap();
         let mut frame = Frame::new(size, PixelAspect::SQUARE);
@@ -63,7 +64,7 @@ mod tests {
     }
 
     #[test]
-    fn a_joint_is_a_line_however_dark_the_wall_is() {
+    fn a_joint_is_a_line_on_dark_and_on_bright_walls() {
         for (brick, joint) in [(40, 70), (60, 100), (100, 160), (150, 230)] {
             let (light, dark) = (wall(brick, joint), wall(joint, brick));
             for x in 0..16 {
@@ -74,7 +75,7 @@ mod tests {
     }
 
     #[test]
-    fn a_flat_wall_is_as_bright_as_it_is() {
+    fn a_quarter_of_a_wall_of_a_quarter_of_full_brightness_is_lit() {
         let frame = wall(64, 64);
         let lit = (0..16).flat_map(|y| (0..16).map(move |x| (x, y)));
         assert_eq!(lit.filter(|&(x, y)| is_lit(&frame, x, y)).count(), 64);

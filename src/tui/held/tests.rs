@@ -1,8 +1,12 @@
+mod typist;
+
 use proptest::prelude::*;
+use typist::Typist;
 
 use super::keyboard::Keyboard;
 use super::*;
 
+/// Delays in milliseconds, and repetitions per second.
 const KEYBOARDS: [(u64, u32); 16] = [
     (250, 15),
     (250, 25),
@@ -35,55 +39,6 @@ fn press(held: &mut HeldKeys<char>, key: char, milliseconds: u64) -> Press {
     held.press(key, STEPS, at(milliseconds), |other| opposes(key, other))
 }
 
-/// Someone at a keyboard: what is held in each millisecond, a step every 16 of them.
-struct Typist {
-    held: HeldKeys<char>,
-    keyboard: Keyboard<char>,
-    now: u64,
-    tapped: u32,
-}
-
-impl Typist {
-    fn new((delay, per_second): (u64, u32)) -> Self {
-        Self {
-            held: HeldKeys::default(),
-            keyboard: Keyboard::new(at(delay), per_second),
-            now: 0,
-            tapped: 0,
-        }
-    }
-
-    fn press(&mut self, key: char) {
-        let key = self.keyboard.press(key, at(self.now));
-        press(&mut self.held, key, self.now);
-    }
-
-    fn release(&mut self, key: char) {
-        self.keyboard.release(key);
-    }
-
-    /// Lets time pass, and says in how many of its milliseconds each of `keys` was `Held`.
-    fn wait<const N: usize>(&mut self, milliseconds: u64, keys: [char; N]) -> [u64; N] {
-        let mut held_for = [0; N];
-        for _ in 0..milliseconds {
-            self.now += 1;
-            while let Some((key, due)) = self.keyboard.next_byte(at(self.now)) {
-                self.held.press(key, STEPS, due, |other| opposes(key, other));
-            }
-            self.held.advance(at(self.now));
-            for (count, key) in held_for.iter_mut().zip(keys) {
-                *count += u64::from(self.held.hold(key) == Hold::Held);
-            }
-            if self.now.is_multiple_of(16) {
-                self.tapped +=
-                    self.held.iter().filter(|&(_, hold)| hold == Hold::Tap).count() as u32;
-                self.held.step();
-            }
-        }
-        held_for
-    }
-}
-
 #[test]
 fn with_releases_a_key_is_held_from_the_end_of_its_tap_to_its_release() {
     let mut held = HeldKeys::default();
@@ -112,7 +67,7 @@ fn a_tap_that_is_released_goes_on_to_its_end() {
 }
 
 #[test]
-fn taps_are_counted_however_quick_they_are() {
+fn taps_are_counted_at_any_speed() {
     for gap in [0, 1, 30, 60, 90, 130, 170, 230, 300, 450, 700] {
         for taps in 1..=4 {
             let mut typist = Typist::new((250, 30));
@@ -157,7 +112,7 @@ fn a_newer_key_does_not_end_an_older_one() {
         typist.release('w');
         let [walks, turns] = typist.wait(2000, ['w', 'd']);
         assert!(turns < walks && walks <= turns + 301, "{keyboard:?}: {walks} {turns}");
-        // And a tap of the newer one.
+        // A tap of the newer key does not end the older one, either.
         typist.press('w');
         typist.wait(1000, []);
         typist.press('d');
@@ -169,7 +124,7 @@ fn a_newer_key_does_not_end_an_older_one() {
 }
 
 #[test]
-fn pressing_it_again_ends_what_a_newer_key_has_cut_off() {
+fn pressing_a_key_again_releases_it_after_a_newer_key_ended_its_repetition() {
     let mut typist = Typist::new((500, 30));
     typist.press('w');
     typist.wait(1000, []);
@@ -185,11 +140,11 @@ fn pressing_it_again_ends_what_a_newer_key_has_cut_off() {
 
 #[test]
 fn an_opposing_key_ends_a_hold_at_once_but_not_a_tap() {
-    for cut_off in [false, true] {
+    for is_interrupted in [false, true] {
         let mut typist = Typist::new((400, 30));
         typist.press('w');
         typist.wait(800, []);
-        if cut_off {
+        if is_interrupted {
             typist.press('d');
             typist.wait(50, []);
         }
@@ -221,7 +176,7 @@ fn two_keys_pressed_together_are_held_together_once_one_repeats() {
 }
 
 #[test]
-fn a_jump_takes_along_what_could_not_have_repeated_yet() {
+fn a_jump_holds_keys_that_could_not_have_repeated_yet() {
     let mut typist = Typist::new((500, 30));
     typist.press('w');
     typist.wait(300, []);
@@ -229,7 +184,7 @@ fn a_jump_takes_along_what_could_not_have_repeated_yet() {
     typist.release(' ');
     typist.held.join_newest();
     assert_eq!(typist.held.hold('w'), Hold::Held);
-    // Somebody in the air keeps what they hold.
+    // In the air, the player keeps holding the key.
     for _ in 0..40 {
         typist.held.keep(at(typist.now));
         assert_eq!(typist.wait(50, ['w']), [50]);
@@ -248,9 +203,9 @@ fn a_jump_takes_along_what_could_not_have_repeated_yet() {
     assert_eq!(tapped.held.hold('w'), Hold::Unknown);
 }
 
-/// 15 bytes a second, each up to 60 ms late: some come in pairs.
+/// Each byte is up to 60 ms late, so that some come in pairs.
 #[test]
-fn a_link_that_jitters_neither_lets_go_nor_adds_taps() {
+fn jitter_releases_no_key_and_adds_no_tap() {
     for (delay, per_second) in KEYBOARDS {
         let interval = 1000 / u64::from(per_second);
         let mut held = HeldKeys::default();
@@ -287,7 +242,7 @@ fn a_stalled_link_delivers_a_repetition_and_no_taps() {
 }
 
 #[test]
-fn a_repetition_that_nobody_saw_begin_is_one_all_the_same() {
+fn a_repetition_without_a_delay_is_recognized() {
     let mut held = HeldKeys::default();
     let presses = (0..20).map(|index| press(&mut held, 'w', index * 33)).collect::<Vec<_>>();
     assert_eq!(presses[19], Press::Repeat);
@@ -295,7 +250,7 @@ fn a_repetition_that_nobody_saw_begin_is_one_all_the_same() {
 }
 
 #[test]
-fn what_is_let_go_of_stays_so_until_it_is_pressed_anew() {
+fn a_released_key_stays_up_until_it_is_pressed_again() {
     let mut typist = Typist::new((500, 30));
     typist.press('w');
     typist.wait(1000, []);
@@ -308,7 +263,7 @@ fn what_is_let_go_of_stays_so_until_it_is_pressed_anew() {
 }
 
 #[test]
-fn a_byte_says_whether_it_may_be_a_repetition() {
+fn a_press_is_unclear_if_it_may_be_a_repetition() {
     let mut held = HeldKeys::default();
     let bytes = [
         (0, Press::Fresh),
@@ -325,9 +280,9 @@ fn a_byte_says_whether_it_may_be_a_repetition() {
 }
 
 proptest! {
-    /// Whatever comes: nothing panics, everything ends, and memory is bounded.
+    /// For any bytes, nothing panics, all keys come up, and memory is bounded.
     #[test]
-    fn any_bytes_end_in_rest(bytes in prop::collection::vec((0..900_u64, prop::char::range('a', 'z')), 0..80)) {
+    fn after_any_bytes_all_keys_come_up(bytes in prop::collection::vec((0..900_u64, prop::char::range('a', 'z')), 0..80)) {
         let mut held = HeldKeys::default();
         let mut now = 0;
         for (gap, key) in bytes {

@@ -1,25 +1,23 @@
-//! Which cells of a map have been seen so far.
+//! The cells of a map that the player has seen so far.
 //!
-//! One ray is followed for each column of pixels, in the exact order of the cells that it enters. It carries the
-//! slopes at which it still sees: what stands raises the lower one, what hangs lowers the upper one. A cell has
-//! been seen where its floor, or a face of what stands in it, is between the two. How far the picture reaches up
-//! and down does not count: the floor before one's feet is known without looking down.
+//! For each column of pixels, one ray is followed along its [line of sight](line_of_sight).
 //!
-//! What a mirror shows is not seen by this, since a map can't tell which of its cells it is; and it would give
-//! away what lies behind corners.
-//!
-//! To take the cells from the renderer's own rays was refused: on level maps it casts only few of them, and it
-//! would have to keep what nobody but a map asks for.
+//! Taking the cells from the renderer's own rays was refused: on flat maps it casts only few of
+//! them, and it would have to store cells that only the minimap needs.
+
+mod line_of_sight;
 
 use std::collections::BTreeMap;
 
-use crate::cast::{MirroredWalk, Ray};
+use crate::cast::Ray;
 use crate::generate::Site;
-use crate::world::{Camera, Cell, Gap, TileId, TileKind, World};
+use crate::world::{Camera, Cell, TileId, TileKind, World};
+use line_of_sight::Observer;
 
-/// The cells of a map that a player has seen so far, for a [`Minimap`](super::Minimap) to show.
+/// The cells of a map that a player has seen so far, for a [`Minimap`](super::Minimap).
 ///
-/// One belongs to one level: a world of another size is another level, of which nothing has been seen.
+/// A value belongs to one level. A world of another size is another level, of which nothing has
+/// been seen.
 ///
 /// ```
 /// use cellcaster::tui::{Explored, Minimap};
@@ -36,27 +34,26 @@ use crate::world::{Camera, Cell, Gap, TileId, TileKind, World};
 /// ```
 #[derive(Clone, Debug, Default)]
 pub struct Explored {
-    /// Columns and rows of the world.
+    /// The numbers of columns and rows of the world.
     size: (u32, u32),
-    /// A bit for each cell, row by row, each row in whole words.
+    /// A bit for each cell, row by row; each row begins with a new word.
     words: Vec<u32>,
-    /// How many cells that are no wall there are, and how many of them have been seen.
+    /// The number of cells that are not walls, and the number of those that have been seen.
     open: u32,
     open_seen: u32,
     /// The cell of a generated level at which the world begins.
     corner: Site,
-    /// What has been seen of such a level before its window moved: 32 cells of a row by the row and the first
-    /// column.
+    /// The seen cells of a generated level, stored whenever the window moves: 32 cells of a row, by
+    /// the row and the first column.
     elsewhere: BTreeMap<(i64, i64), u32>,
 }
 
-/// Cells in a word.
+/// The number of cells in a word.
 const WORD: u32 = u32::BITS;
-/// What fog leaves less of than this share is not seen.
-const FAINTEST: f64 = 1.0 / 32.0;
 
 impl Explored {
-    /// Adds what `camera` sees of `world` by so many `rays`, which are those of the columns of a picture as wide.
+    /// Adds the cells of `world` that `camera` sees. `rays` is the width of the picture: its
+    /// columns have the same rays.
     pub fn look(&mut self, world: &World, camera: &Camera, rays: u32) {
         self.begin(world);
         let heights = world.tiles().iter().map(|tile| {
@@ -64,19 +61,19 @@ impl Explored {
             top_gap.max(tile.top_of_what_stands())
         });
         let top = heights.fold(0.0, f64::max);
-        let look = Look { world, eye: camera.eye(), top };
+        let observer = Observer { world, eye: camera.eye(), top };
         let plane = camera.direction().perp() * camera.field_of_view.half_width();
         for column in 0..rays {
             let across = 2.0 * (f64::from(column) + 0.5) / f64::from(rays) - 1.0;
             let direction = camera.direction() + plane * across;
             if let Ok(ray) = Ray::new(camera.position(), direction) {
-                look.follow(&ray, |cell, is_open| self.insert(cell, is_open));
+                observer.follow(&ray, |cell, is_open| self.insert(cell, is_open));
             }
         }
     }
 
-    /// Keeps what was seen when the window of a generated level moves: the world's first cell, in the north-west,
-    /// is that of `corner` now.
+    /// Keeps the seen cells when the window of a generated level moves. `corner` is the new first
+    /// cell of the world, in the north-west.
     pub fn follow(&mut self, corner: Site) {
         if corner == self.corner {
             return;
@@ -114,12 +111,12 @@ impl Explored {
         is_on_map && self.words[self.word(cell)] >> (cell.column % WORD) & 1 == 1
     }
 
-    /// Which part of all cells that are no wall has been seen, from 0 to 1.
+    /// The share of cells seen, from 0 to 1, among those that are not walls.
     pub fn share(&self) -> f64 {
         f64::from(self.open_seen) / f64::from(self.open.max(1))
     }
 
-    /// Forgets another level.
+    /// Clears everything if `world` is another level.
     fn begin(&mut self, world: &World) {
         let grid = world.grid();
         let size = (grid.width(), grid.height());
@@ -141,7 +138,7 @@ impl Explored {
         }
     }
 
-    /// Notes that `cell`, which is on the map, has been seen; whether that is new.
+    /// Marks `cell`, which must be on the map, as seen. Returns `false` if it was before.
     fn set(&mut self, cell: Cell) -> bool {
         let (word, bit) = (self.word(cell), 1 << (cell.column % WORD));
         let is_new = self.words[word] & bit == 0;
@@ -155,9 +152,9 @@ impl Explored {
         all.filter(|&cell| self.contains(cell)).collect()
     }
 
-    /// The row and the column in the level of `cell` in the world.
+    /// The row and the column, in the level, of a cell of the world.
     fn site(&self, cell: Cell) -> (i64, i64) {
-        let along = |first: i64, place: u32| first.wrapping_add(place.into());
+        let along = |first: i64, offset: u32| first.wrapping_add(offset.into());
         (along(self.corner.row, cell.row), along(self.corner.column, cell.column))
     }
 
@@ -168,141 +165,6 @@ impl Explored {
     fn words_of_a_row(&self) -> usize {
         self.size.0.div_ceil(WORD) as usize
     }
-}
-
-/// What all rays of one look share.
-struct Look<'a> {
-    world: &'a World,
-    /// How high the eye is, in cells.
-    eye: f64,
-    /// The height that nothing reaches above.
-    top: f64,
-}
-
-/// The slopes at which a ray still sees, in heights per distance.
-#[derive(Clone, Copy)]
-struct Sight {
-    low: f64,
-    high: f64,
-}
-
-impl Sight {
-    fn is_closed(self) -> bool {
-        self.low >= self.high
-    }
-
-    /// What both see.
-    fn and(self, other: Self) -> Self {
-        Self { low: self.low.max(other.low), high: self.high.min(other.high) }
-    }
-}
-
-impl Look<'_> {
-    /// Tells `see` each cell that `ray` sees, and whether it is no wall.
-    fn follow(&self, ray: &Ray, mut see: impl FnMut(Cell, bool)) {
-        let grid = self.world.grid();
-        let mut walk = MirroredWalk::new(grid, ray, 0);
-        let mut place = walk.cell(grid);
-        let mut gap = self.gap_around_the_eye(place);
-        let mut sight = Sight { low: f64::NEG_INFINITY, high: f64::INFINITY };
-        let mut from = 0.0;
-        if let Some((cell, tile)) = place {
-            see(cell, !is_wall(self.world.tile(tile).kind));
-        }
-        loop {
-            if let Some((cell, tile)) = place
-                && let Some((t, top)) = self.standing(&walk, cell, tile)
-            {
-                see(cell, true);
-                sight.low = sight.low.max(self.slope(top, t));
-            }
-            let crossed = walk.cross(grid);
-            let t = walk.distance(&crossed);
-            let seen_of_gap = self.seen_of(gap, t);
-            if let Some((cell, tile)) = place {
-                let floor = Sight { low: self.slope(gap.bottom, from), high: seen_of_gap.low };
-                if self.eye > gap.bottom && !floor.and(sight).is_closed() {
-                    see(cell, !is_wall(self.world.tile(tile).kind));
-                }
-            }
-            sight = sight.and(seen_of_gap);
-            let Some((cell, tile)) = crossed.into else { return };
-            if sight.is_closed() || self.slope(self.top, t) <= sight.low || self.is_hidden_by_fog(t)
-            {
-                return;
-            }
-            let kind = self.world.tile(tile).kind;
-            match self.enter(tile, sight, t) {
-                Entered { gap: None, .. } => return see(cell, !is_wall(kind)),
-                Entered { gap: Some(next), shows_face } => {
-                    if shows_face {
-                        see(cell, !is_wall(kind));
-                    }
-                    gap = next;
-                    sight = sight.and(self.slopes(next, t));
-                }
-            }
-            (place, from) = (crossed.into, t);
-        }
-    }
-
-    /// The gap that a ray goes on in which enters `tile` at `t`: the lowest in view.
-    fn enter(&self, tile: TileId, sight: Sight, t: f64) -> Entered {
-        let gaps = self.world.tiles()[usize::from(tile.0)].gaps();
-        let gap = gaps.into_iter().find(|&gap| !self.slopes(gap, t).and(sight).is_closed());
-        let shows_face = gap.is_some_and(|gap| {
-            let Sight { low, high } = self.slopes(gap, t);
-            low > sight.low || high < sight.high
-        });
-        Entered { gap, shows_face }
-    }
-
-    /// The slopes of a gap that begins or ends at `t`.
-    fn slopes(&self, gap: Gap, t: f64) -> Sight {
-        Sight { low: self.slope(gap.bottom, t), high: self.slope(gap.top, t) }
-    }
-
-    /// The slopes at which one sees through a gap that ends at `t`.
-    fn seen_of(&self, gap: Gap, t: f64) -> Sight {
-        let Sight { low, high } = self.slopes(gap, t);
-        Sight {
-            low: if self.eye > gap.bottom { low } else { f64::NEG_INFINITY },
-            high: if self.eye < gap.top { high } else { f64::INFINITY },
-        }
-    }
-
-    fn slope(&self, height: f64, t: f64) -> f64 {
-        let rise = height - self.eye;
-        if rise == 0.0 { 0.0 } else { rise / t }
-    }
-
-    /// Where the ray meets what stands in `cell` and can't be seen through, and how high that is.
-    fn standing(&self, walk: &MirroredWalk, cell: Cell, tile: TileId) -> Option<(f64, f64)> {
-        let tile = &self.world.tiles()[usize::from(tile.0)];
-        if !matches!(tile.kind, TileKind::Door(_) | TileKind::Shape(_)) {
-            return None;
-        }
-        let hit = walk.standing(self.world, cell, tile.kind).hit?;
-        Some((hit.t, tile.top_of_what_stands()))
-    }
-
-    fn is_hidden_by_fog(&self, t: f64) -> bool {
-        self.world.fog().is_some_and(|fog| fog.clearness(t) < FAINTEST)
-    }
-
-    /// What is open where the eye is; inside rock, everything.
-    fn gap_around_the_eye(&self, place: Option<(Cell, TileId)>) -> Gap {
-        let tile = place.map_or(self.world.ground(), |(_, tile)| self.world.tile(tile));
-        let around = tile.gaps().find(|gap| gap.holds(self.eye));
-        around.unwrap_or(Gap { bottom: f64::NEG_INFINITY, top: f64::INFINITY })
-    }
-}
-
-/// What a ray meets where it enters a cell.
-struct Entered {
-    /// `None` where it ends there.
-    gap: Option<Gap>,
-    shows_face: bool,
 }
 
 fn is_wall(kind: TileKind) -> bool {

@@ -1,4 +1,4 @@
-//! The part of the map that shows in an area, and how large.
+//! The part of the map that an area shows, and its scale.
 
 use glam::DVec2;
 use ratatui::layout::{Rect, Size};
@@ -6,23 +6,24 @@ use ratatui::layout::{Rect, Size};
 use crate::tui::GlyphMode;
 use crate::world::World;
 
-/// How many pixels a cell of the map gets, from level to level of the zoom; below 1, pixels show several cells.
+/// The numbers of pixels per cell of the map, for the levels of the zoom; below 1, a pixel shows
+/// several cells.
 const SCALES: [f64; 10] = [0.125, 0.25, 0.5, 1.0, 2.0, 3.0, 4.0, 6.0, 8.0, 12.0];
 
-/// The part of the map that shows in an area.
+/// The part of the map that an area shows.
 #[derive(Clone, Copy, Debug)]
 pub(super) struct Window {
-    /// Pixels of the area from left to right and from top to bottom.
+    /// The width and the height of the area in pixels.
     size: DVec2,
-    /// Pixels for a cell of the map.
+    /// The number of pixels per cell of the map.
     scale: DVec2,
-    /// Where the area's top left corner is, in pixels from the map's.
+    /// The position of the area's top left corner, in pixels from the map's top left corner.
     corner: DVec2,
     pixels_per_cell: u32,
 }
 
 impl Window {
-    /// All of the map where it fits, or as much as does around `center`, by so many levels larger or smaller.
+    /// The whole map if it fits, or the part around `center`, enlarged or reduced by `zoom` levels.
     pub(super) fn new(
         area: Rect,
         glyphs: GlyphMode,
@@ -50,18 +51,18 @@ impl Window {
         Self { size, scale, corner, pixels_per_cell }
     }
 
-    /// How many cells of the map a pixel is wide.
+    /// The width of a pixel in cells of the map.
     pub(super) fn pixel(&self) -> f64 {
         1.0 / self.scale.x
     }
 
-    /// How many cells of the map a pixel shows, from left to right and from top to bottom.
+    /// The numbers of the map's cells that a pixel shows from left to right and from top to bottom.
     pub(super) fn cells_per_pixel(&self) -> [u32; 2] {
         [self.scale.x, self.scale.y].map(|scale| (1.0 / scale).ceil() as u32)
     }
 
-    /// The point of the map that the centre of a pixel shows.
-    pub(super) fn point(&self, x: u32, y: u32) -> DVec2 {
+    /// The position on the map of a pixel's centre.
+    pub(super) fn position(&self, x: u32, y: u32) -> DVec2 {
         (DVec2::new(f64::from(x), f64::from(y)) + 0.5 + self.corner) / self.scale
     }
 
@@ -72,14 +73,14 @@ impl Window {
         shows.then(|| (pixel.x as u16, (pixel.y as u32 / self.pixels_per_cell) as u16))
     }
 
-    /// How many cells of the map show from left to right and from top to bottom.
+    /// The numbers of the map's cells that are shown from left to right and from top to bottom.
     #[cfg(feature = "terminal")]
     pub(super) fn extent(&self) -> DVec2 {
         self.size / self.scale
     }
 }
 
-/// How many cells of `room` show something of the map; the rest would be blank.
+/// The part of `room` that the map fills; the rest would be blank.
 #[cfg(feature = "terminal")]
 pub(super) fn size_within(room: Size, glyphs: GlyphMode, world: &World, zoom: i32) -> Size {
     let pixels = pixels_within(room, glyphs);
@@ -89,7 +90,7 @@ pub(super) fn size_within(room: Size, glyphs: GlyphMode, world: &World, zoom: i3
     Size::new(needed.x as u16, rows.ceil() as u16)
 }
 
-/// Cells of the map from left to right and from top to bottom.
+/// The width and the height of the map in cells.
 pub(super) fn map_size(world: &World) -> DVec2 {
     DVec2::new(f64::from(world.grid().width()), f64::from(world.grid().height()))
 }
@@ -99,10 +100,11 @@ fn pixels_within(cells: Size, glyphs: GlyphMode) -> DVec2 {
     DVec2::new(f64::from(cells.width), f64::from(height))
 }
 
-/// How many of `pixels` a cell of the map gets: as many whole ones as let all of the map be seen, at least one,
-/// and so many levels of the zoom more or less. It is not zoomed out further than to see all of the map.
+/// The number of pixels per cell of the map: the largest whole number with which the whole map fits
+/// into `pixels`, but at least one, enlarged or reduced by `zoom` levels. The map is not reduced
+/// further than to fit.
 fn scale(world: &World, pixels: DVec2, glyphs: GlyphMode, zoom: i32) -> DVec2 {
-    // A pixel of half blocks is about square; a whole cell is about twice as high as wide.
+    // A half-block pixel is about square, a cell about twice as high as wide.
     let smallest = match glyphs {
         GlyphMode::Half => DVec2::new(1.0, 1.0),
         GlyphMode::Ascii | GlyphMode::Ramp => DVec2::new(2.0, 1.0),

@@ -1,4 +1,4 @@
-//! However it ends, the terminal is as it was.
+//! Every end of the program restores the terminal.
 
 use std::fs;
 use std::thread;
@@ -30,7 +30,7 @@ const TAKEN: Modes = Modes {
     key_flags: [0, 1],
 };
 
-/// A release is always on its way when the game ends; the shell does not get it.
+/// A key release arrives whenever the game ends; the shell does not get it.
 #[test]
 fn q_and_escape_ask_and_leave_and_control_c_leaves() {
     let (q, escape, enter) = (Key::Char('q').event(1), Key::Escape.event(1), Key::Enter.event(1));
@@ -149,14 +149,14 @@ fn control_z_does_nothing_where_no_shell_would_continue_it() {
     game.wait_for_end().assert_given_back();
 }
 
-/// Modes that are set while the mouse turns the player.
+/// The modes that are set while the mouse turns the player.
 const TAKEN_WITH_MOUSE: Modes = Modes {
     mouse: (MouseProtocolMode::AnyMotion, MouseProtocolEncoding::Sgr),
     mouse_pixels: true,
     ..TAKEN
 };
 
-/// A game in a terminal that tells how many pixels it has, with the mouse on.
+/// A game with the mouse on, in a terminal that reports its size in pixels.
 fn with_mouse() -> Game {
     let game = Game::with(Speaks::Kitty, (80, 24), None, &[], &[("CELLCASTER_PANIC", "1")]);
     game.wait_for_releases();
@@ -167,7 +167,7 @@ fn with_mouse() -> Game {
     game
 }
 
-/// A motion is always in flight when the game ends; the shell does not get it.
+/// Mouse motions arrive whenever the game ends; the shell does not get them.
 #[test]
 fn the_mouse_is_given_back_however_it_ends() {
     type End = fn(&Game);
@@ -205,7 +205,7 @@ fn the_mouse_is_given_back_for_a_while_and_taken_again() {
     assert!(bytes.windows(left.len()).any(|bytes| bytes == left), "it was never given back");
 }
 
-/// The shell is killed, and its terminal goes with it.
+/// Kills the shell, which closes its terminal.
 #[cfg(target_os = "linux")]
 #[test]
 fn it_ends_when_the_terminal_is_gone() {

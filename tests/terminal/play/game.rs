@@ -1,4 +1,4 @@
-//! The game that a test plays.
+//! A game that a test plays.
 
 use std::fmt::{Display, Write};
 use std::ops::{Deref, DerefMut};
@@ -14,22 +14,21 @@ use crate::support::output_of;
 
 pub(crate) const PROGRAM: &str = env!("CARGO_BIN_EXE_cellcaster");
 
-/// A terminal of all colours, and a folder that the game takes for the user's own; nobody has put a
-/// configuration there.
+/// A terminal with all colours, and an empty folder as the user's configuration folder.
 pub(crate) const ENVIRONMENT: [(&str, &str); 2] =
     [("COLORTERM", "truecolor"), ("HOME", env!("CARGO_TARGET_TMPDIR"))];
 
-/// The size of the window, if nothing else is said.
+/// The default size of the window.
 const SIZE: (u16, u16) = (80, 24);
 
-/// The game, and the terminal that it runs in.
+/// The game and its terminal.
 pub(crate) struct Game {
     player: Player,
     speaks: Speaks,
     map: Option<String>,
 }
 
-/// A key, by the number that the kitty protocol has for it.
+/// A key with its number in the kitty protocol.
 #[derive(Clone, Copy)]
 pub(crate) enum Key {
     Char(char),
@@ -50,18 +49,17 @@ pub(crate) struct Arrow {
 }
 
 impl Game {
-    /// Starts the first level in a terminal that reports when keys are released.
+    /// Starts the first level in a terminal that reports key releases.
     pub(crate) fn start() -> Self {
         Self::with(Speaks::Kitty, SIZE, None, &[], &[])
     }
 
-    /// Starts `map` of this project's tests in such a terminal.
+    /// Starts the test map `map` in such a terminal.
     pub(crate) fn start_map(map: &str) -> Self {
         Self::with(Speaks::Kitty, SIZE, Some(map), &[], &[])
     }
 
-    /// Starts a game, and waits until it is played: until it shows a picture, and knows what the
-    /// terminal can do.
+    /// Starts a game, and waits until it shows a picture and knows the terminal's capabilities.
     pub(crate) fn with(
         speaks: Speaks,
         size: (u16, u16),
@@ -85,7 +83,7 @@ impl Game {
         self.wait_until("asked for releases", pushed);
     }
 
-    /// Presses `key`, and holds it.
+    /// Presses and holds `key`.
     pub(crate) fn press(&self, key: Key) {
         match self.speaks {
             Speaks::Kitty | Speaks::Alacritty => {
@@ -96,45 +94,45 @@ impl Game {
         }
     }
 
-    /// Lets go of `key`; nobody tells where the terminal does not.
+    /// Releases `key`; the program learns of it only if the terminal reports releases.
     pub(crate) fn release(&self, key: Key) {
         if matches!(self.speaks, Speaks::Kitty | Speaks::Alacritty) {
             self.send(key.event(3));
         }
     }
 
-    /// Presses `key`, and lets go of it. One that ends the game is let go of by the terminal.
+    /// Presses and releases `key`. If the press ends the game, the terminal sends the release.
     pub(crate) fn tap(&self, key: Key) {
         self.press(key);
         self.release(key);
     }
 
-    /// Leaves the game: asks for it, and confirms.
+    /// Leaves the game, and confirms that.
     pub(crate) fn leave(&self) {
         self.press(Key::Char('q'));
         self.press(Key::Enter);
     }
 
-    /// Confirms a result, once it has been shown for half a second.
+    /// Confirms a result after it has been shown for half a second.
     pub(crate) fn confirm(&self) {
         thread::sleep(Duration::from_millis(700));
         self.tap(Key::Enter);
     }
 
-    /// Where the player stands on the minimap.
+    /// The player's arrow on the minimap.
     #[track_caller]
     pub(crate) fn arrow(&self) -> Arrow {
         self.wait_until("showed an arrow", |emulator| arrow(emulator).is_some());
         self.look(arrow).unwrap()
     }
 
-    /// Waits until the arrow is as `condition` says.
+    /// Waits until the arrow satisfies `condition`.
     #[track_caller]
     pub(crate) fn wait_for_arrow(&self, what: &str, condition: impl Fn(Arrow) -> bool) {
         self.wait_until(what, |emulator| arrow(emulator).is_some_and(&condition));
     }
 
-    /// Waits until the screen shows the status line, and above it, where no panel hides it, what
+    /// Waits until the screen shows the status line and, where no panel hides it, the picture that
     /// `snapshot` draws with `options`.
     #[track_caller]
     pub(crate) fn wait_for_picture(&self, options: &[&str]) {
@@ -149,7 +147,7 @@ impl Game {
         self.wait_until(&what, |emulator| shows(emulator, rows));
     }
 
-    /// Waits until the screen shows that picture and nothing else but the status line.
+    /// Waits until the screen shows that picture and only the status line besides.
     #[track_caller]
     pub(crate) fn wait_for_bare_picture(&self, options: &[&str]) {
         self.wait_until("hid the panels", |emulator| panel(emulator).is_none());
@@ -172,7 +170,8 @@ impl DerefMut for Game {
 }
 
 impl Key {
-    /// What the kitty protocol sends: `phase` is 1 for a press, 2 for a repetition, 3 for a release.
+    /// The bytes of the kitty protocol. `phase` is 1 for a press, 2 for a repetition, 3 for a
+    /// release.
     pub(crate) fn event(self, phase: u8) -> String {
         match self {
             Self::Char(character) => code(u32::from(character), phase),
@@ -185,7 +184,7 @@ impl Key {
         }
     }
 
-    /// What every terminal sends.
+    /// The bytes that every terminal sends.
     fn text(self) -> String {
         match self {
             Self::Char(character) => character.to_string(),
@@ -203,18 +202,18 @@ fn code(number: impl Display, phase: u8) -> String {
     format!("\x1b[{number};1:{phase}u")
 }
 
-/// A map of this project's tests.
+/// The path of a test map.
 pub(crate) fn test_map(name: &str) -> PathBuf {
     Path::new(env!("CARGO_MANIFEST_DIR")).join("tests/maps").join(name).with_extension("toml")
 }
 
-/// Columns and rows.
+/// The numbers of columns and rows.
 fn size(emulator: &Emulator) -> (u16, u16) {
     let (rows, columns) = emulator.screen().size();
     (columns.get(), rows.get())
 }
 
-/// What stands in a cell of the screen.
+/// The character in a cell of the screen.
 pub(crate) fn symbol(emulator: &Emulator, column: u16, row: u16) -> &str {
     emulator.screen().cell(row, column).map_or("", |cell| cell.contents())
 }
@@ -236,7 +235,7 @@ fn panel(emulator: &Emulator) -> Option<(u16, u16)> {
     Some((left, bottom))
 }
 
-/// Whether the screen shows the cells of `rows`, and below them a status line.
+/// Whether the screen shows the cells of `rows` and a status line below them.
 fn shows(emulator: &Emulator, rows: &[Value]) -> bool {
     let hidden = panel(emulator).unwrap_or((u16::MAX, 0));
     let is_hidden = |column, row| column >= hidden.0 && row <= hidden.1;
@@ -251,7 +250,7 @@ fn shows(emulator: &Emulator, rows: &[Value]) -> bool {
     picture && status.is_some_and(vt100::Cell::inverse)
 }
 
-/// What every cell of the screen looks like.
+/// The appearance of every cell of the screen.
 pub(crate) fn looks(emulator: &Emulator) -> Vec<String> {
     let (columns, rows) = size(emulator);
     let cells = (0..rows).flat_map(|row| (0..columns).map(move |column| (row, column)));
@@ -283,8 +282,8 @@ fn shows_cell(emulator: &Emulator, column: u16, row: u16, cell: &Value) -> bool 
     })
 }
 
-/// The colours of the upper and the lower half of a block character, several of which look the same;
-/// `None` for any other.
+/// The colours of the upper and the lower half of a block character; several such characters look
+/// the same. `None` for any other character.
 fn halves<'a>(symbol: &str, text: &'a str, ground: &'a str) -> Option<(&'a str, &'a str)> {
     match symbol {
         "▀" => Some((text, ground)),

@@ -3,11 +3,11 @@
 use super::game::{Game, Key};
 use crate::emulator::{Emulator, Speaks};
 
-/// What the status line says of the level, and where in it the player is.
+/// The level and the player's position, by the status line.
 fn whereabouts(emulator: &Emulator) -> String {
     let text = emulator.text();
     let line = text.lines().last().unwrap_or_default();
-    // Two blanks are between what the line tells.
+    // Two blanks separate the parts of the line.
     let parts: Vec<&str> = line.trim().split("  ").take(2).collect();
     parts.join("  ")
 }

@@ -1,4 +1,4 @@
-//! How long a key counts as held: until its release, where the terminal tells of it.
+//! How long a key counts as held, with and without key releases.
 
 use std::cell::Cell;
 use std::fs;
@@ -20,7 +20,7 @@ fn in_a_corridor(speaks: Speaks, environment: &[(&str, &str)]) -> Game {
     Game::with(speaks, LARGE, Some("corridor"), &[], environment)
 }
 
-/// Further than taps lead.
+/// A distance in columns that taps do not reach.
 const FAR: u16 = 4;
 
 #[test]
@@ -34,7 +34,7 @@ fn a_key_is_held_without_repetition_until_its_release() {
     assert!(game.arrow().column < before.column + 32, "it walked to the end");
 }
 
-/// Without releases, in a plain terminal and inside of a multiplexer that claims to report them.
+/// Without releases, in a plain terminal and in a multiplexer that claims to report them.
 #[test]
 fn without_releases_a_tap_walks_a_little_and_stops() {
     let multiplexers: [&[_]; 4] = [
@@ -47,7 +47,7 @@ fn without_releases_a_tap_walks_a_little_and_stops() {
         let speaks = if environment.is_empty() { Speaks::Plain } else { Speaks::Kitty };
         let game = in_a_corridor(speaks, environment);
         let before = game.arrow();
-        // Three quarters of a cell.
+        // Three taps are three quarters of a cell.
         game.send("www");
         (environment, game, before)
     });
@@ -84,12 +84,12 @@ fn without_releases_repetition_walks_on_and_an_opposing_key_turns_back_at_once()
     hold_until("s", &|arrow| arrow.column <= before.column + 1);
 }
 
-/// A keyboard's delay, and the interval of its repetition.
+/// The delay and the interval of a keyboard's repetition.
 const DELAY: Duration = Duration::from_millis(500);
 const INTERVAL: Duration = Duration::from_millis(33);
 
-/// Holds a key at a terminal without releases until `condition` holds; the longest time between two of its
-/// repetitions.
+/// Holds a key at a terminal without releases until `condition` holds. Returns the longest time
+/// between two of its repetitions.
 fn hold(game: &Game, bytes: &str, condition: impl Fn() -> bool) -> Duration {
     game.send(bytes);
     thread::sleep(DELAY);
@@ -106,10 +106,10 @@ fn hold(game: &Game, bytes: &str, condition: impl Fn() -> bool) -> Duration {
     panic!("holding {bytes:?} did not help; the screen:\n{}", game.text());
 }
 
-/// What the player wanted in each step of a game in which `plays` sent bytes.
+/// The player's intents in each step of a game in which `plays` sent bytes.
 fn wanted(name: &str, map: &str, plays: impl Fn(&Game)) -> Vec<Intents> {
     let path = Path::new(env!("CARGO_TARGET_TMPDIR")).join(name);
-    // What an earlier run has left.
+    // The file of an earlier run.
     _ = fs::remove_file(&path);
     let options = ["--record", path.to_str().unwrap()];
     let mut game = Game::with(Speaks::Plain, LARGE, Some(map), &options, &[]);
@@ -151,24 +151,24 @@ fn the_keys_for_exact_turns_turn_exactly() {
 
 #[test]
 fn without_releases_one_walks_and_turns_in_a_circle() {
-    // Where this machine was too busy to type, one has let go of a key in between.
+    // A machine that is too busy types too late, which releases a key.
     let places = (0..5).map(|_| circle()).find(|places| places.len() > 30 + HALF_TURN);
     let places = places.expect("this machine is too busy to type");
-    // After half a second, the circle is one, with a radius of 3 cells by 2.4 radians a second.
+    // After half a second it is a circle with a radius of 3 cells by 2.4 radians per second.
     for (one, other) in places[30..].iter().zip(&places[30 + HALF_TURN..]) {
         assert!((one.distance(*other) - 2.5).abs() < 0.05, "{one} {other}");
     }
 }
 
-/// In steps, at 2.4 radians a second.
+/// The number of steps of half a turn at 2.4 radians per second.
 const HALF_TURN: usize = 79;
 
-/// The places of somebody who walks, and turns as well, for as long as they do both.
+/// The positions of a player who walks and turns, for as long as both last.
 fn circle() -> Vec<DVec2> {
     let steps = wanted("circle.script", "floor", |game| {
         let start = game.arrow();
         _ = hold(game, "w", || game.arrow().column > start.column);
-        // The other key ends the repetition of the first.
+        // The second key ends the repetition of the first.
         let turns = Cell::new(0);
         _ = hold(game, "\x1b[C", || turns.replace(turns.get() + 1) > 90);
     });
@@ -189,18 +189,20 @@ fn circle() -> Vec<DVec2> {
     longest
 }
 
-/// Space ends the repetition of W, which is held all the same until one has landed.
+/// Space ends the repetition of W, which stays held until the player lands.
 #[test]
 fn without_releases_six_of_six_running_jumps_succeed() {
-    // A cell is three columns of the map, and the pit begins at 6: from 5 cells to 5.7.
+    // A cell has three columns on the map, and the pit begins at 6: the jumps begin between 5 and
+    // 5.7 cells.
     for columns in [11, 11, 12, 12, 13, 13] {
         let jumped = (0..10).any(|_| running_jump(columns));
         assert!(jumped, "this machine is too busy to type");
     }
 }
 
-/// Jumps once the player is seen so many columns from the start, and lands behind the pit. Where this machine was
-/// so slow that no keyboard would have sent such bytes, or that one saw the pit too late, nobody has jumped.
+/// Jumps when the player is that many columns from the start, and checks that the player lands
+/// behind the pit. Returns `false` without a jump if this machine was too slow to act as a
+/// keyboard.
 fn running_jump(columns: u16) -> bool {
     let longest = Cell::new(Duration::ZERO);
     let steps = wanted(&format!("jump_{columns}.script"), "pit", |game| {

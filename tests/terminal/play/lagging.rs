@@ -1,4 +1,4 @@
-//! What the game does on a link that lags, is stuck, or loses answers.
+//! The game on a link that lags, stalls, or loses answers.
 
 use std::thread;
 use std::time::Duration;
@@ -17,7 +17,7 @@ fn turning() -> Game {
 fn few_frames_are_on_their_way_and_lost_answers_do_not_end_the_game() {
     let game = turning();
     game.lose_statuses(true);
-    // Sooner than answers count as lost.
+    // Answers count as lost only later.
     thread::sleep(Duration::from_millis(800));
     let unanswered = game.lost_statuses();
     assert!((1..=4).contains(&unanswered), "{unanswered} frames are unanswered");
@@ -51,8 +51,8 @@ fn after_a_stuck_link_the_newest_frame_comes_next() {
     thread::sleep(Duration::from_millis(200));
     game.set_reading(true);
     game.wait_for_rest();
-    // What was stuck, a few coarse ones after the stall, and those that make the newest exact: none of the
-    // second in between, which had 36.
+    // The frames that were stuck, a few coarse ones after the stall, and those that make the newest
+    // one exact; none of the 36 frames in between.
     let frames = game.look(|emulator| {
         emulator.bytes()[before..].windows(8).filter(|bytes| bytes == b"\x1b[?2026l").count()
     });

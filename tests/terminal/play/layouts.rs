@@ -1,4 +1,4 @@
-//! Keyboards that type no Latin letters, and terminals that show none but ASCII.
+//! Keyboards without Latin letters, and terminals that show only ASCII.
 
 use std::thread;
 use std::time::Duration;
@@ -40,7 +40,7 @@ fn control_c_leaves_in_every_layout() {
     game.wait_for_end().assert_given_back();
 }
 
-/// Not even a byte is sent to it but the sentence.
+/// The terminal gets only the sentence.
 #[test]
 fn a_terminal_that_cannot_move_its_cursor_is_refused_with_a_sentence() {
     for term in ["dumb", "unknown"] {

@@ -1,4 +1,4 @@
-//! From level to level.
+//! Transitions between levels.
 
 use super::game::{Game, Key};
 use crate::emulator::Speaks;
@@ -19,7 +19,7 @@ fn the_exit_shows_the_time_and_a_single_map_is_followed_by_the_end() {
     assert!(ending.status.success());
 }
 
-/// Out of the cellar by its one long way, sliding along its walls.
+/// Leaves the cellar by its only way, sliding along the walls.
 #[test]
 fn the_first_level_is_followed_by_the_second() {
     let game = Game::with(Speaks::Kitty, (80, 24), None, &[], &[]);

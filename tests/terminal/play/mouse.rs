@@ -1,4 +1,4 @@
-//! Turning, tilting and opening by the mouse; and what happens when the window loses the focus.
+//! Turning, tilting and opening by the mouse, and the loss of the focus.
 
 use std::fs;
 use std::path::Path;
@@ -8,12 +8,12 @@ use crate::asciicast::Asciicast;
 use crate::emulator::{Emulator, Speaks};
 use crate::support::output_of;
 
-/// The pointer is moved to that cell, or pixel, counted from 1.
+/// A motion of the pointer to that cell, or pixel, counted from 1.
 fn motion(column: u16, row: u16) -> String {
     format!("\x1b[<35;{column};{row}M")
 }
 
-/// The left button is pressed there, and released.
+/// A press and release of the left button there.
 fn click(column: u16, row: u16) -> String {
     format!("\x1b[<0;{column};{row}M\x1b[<0;{column};{row}m")
 }
@@ -66,7 +66,7 @@ fn a_terminal_that_tells_pixels_turns_by_less_than_a_cell() {
     game.wait_until("asked for pixels", |emulator| emulator.modes().mouse_pixels);
     game.send(motion(320, 200));
     game.send(motion(346, 200));
-    // A cell is 8 pixels, and 2°.
+    // A cell is 8 pixels wide, and turns by 2°.
     game.wait_for_picture(&["--camera", "1.5,1.5,6.5"]);
 }
 
@@ -151,7 +151,7 @@ fn who_loses_the_focus_lets_go_of_all_keys() {
     game.wait_for_rest();
     let after = game.arrow();
     assert!(after.column < before.column + 16, "it walked on without the focus");
-    // The release was typed into another window.
+    // The release went to another window.
     game.send("\x1b[I");
     game.press(Key::Char('s'));
     game.wait_for_arrow("walked back", |arrow| arrow.column < after.column);

@@ -1,9 +1,9 @@
-//! Walking, strafing, turning; and walls.
+//! Walking, strafing, turning, and walls.
 
 use super::game::{Game, Key};
 
-/// Against the wall that the player looks at from the start, and against the one to the right: a
-/// quarter of a cell away from both, which is as near as one gets.
+/// The positions at the wall ahead of the start, and at the wall to its right: a quarter of a cell
+/// from each, which is the least distance.
 const AT_THE_WALL_AHEAD: [&str; 2] = ["--camera", "6.75,1.5,0"];
 const AT_THE_WALL_TO_THE_RIGHT: [&str; 2] = ["--camera", "1.5,3.75,0"];
 const AT_THE_WALL_BEHIND: [&str; 2] = ["--camera", "1.25,1.5,0"];

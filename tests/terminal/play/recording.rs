@@ -1,4 +1,4 @@
-//! Recordings of what is played.
+//! Recordings of games.
 
 use std::fs;
 use std::path::{Path, PathBuf};
@@ -12,7 +12,7 @@ use crate::emulator::Speaks;
 use crate::looks::looks;
 use crate::support::output_of;
 
-/// A game that is recorded in a new file of that name.
+/// A game that is recorded in a new file with that name.
 fn recorded(name: &str) -> (Game, PathBuf) {
     let path = Path::new(env!("CARGO_TARGET_TMPDIR")).join(name);
     let options = ["--force", "--record", path.to_str().unwrap()];

@@ -1,4 +1,4 @@
-//! What the program does to the machine and to the link.
+//! The program's load on the machine and the link.
 
 use std::thread;
 use std::time::{Duration, Instant};
@@ -43,10 +43,10 @@ fn what_flickers_is_drawn_when_it_does_and_only_while_it_is_in_view() {
     game.wait_for_releases();
     let (begun, before) = (Instant::now(), count(&game.bytes(), BEGIN));
     game.wait_until("flickered", |emulator| count(emulator.bytes(), BEGIN) >= before + FLICKERS);
-    // A quarter of a second each, but for the first, which may have been about to come.
+    // Each takes a quarter of a second; the first may come earlier.
     let elapsed = begun.elapsed();
     assert!(elapsed >= Duration::from_millis(700), "{FLICKERS} frames in {elapsed:?}");
-    // Past it, to the wall behind.
+    // Walk past it, to the wall behind.
     game.press(Key::Char('w'));
     game.wait_for_rest();
     let written = game.bytes_written();
@@ -54,7 +54,7 @@ fn what_flickers_is_drawn_when_it_does_and_only_while_it_is_in_view() {
     assert_eq!(game.bytes_written(), written, "the torch is behind the player");
 }
 
-/// In hundredths of a second, where the system has a file that says so.
+/// The processor time in hundredths of a second, if the system has a file with it.
 fn processor_time(game: &Game) -> Option<u64> {
     let status = std::fs::read_to_string(format!("/proc/{}/stat", game.process())).ok()?;
     let (_, fields) = status.rsplit_once(')')?;
@@ -85,8 +85,8 @@ fn every_frame_is_shown_at_once() {
     let first = bytes.windows(BEGIN.len()).position(|window| window == BEGIN).unwrap();
     let mut rest = &bytes[first..];
     let mut frames = 0;
-    // What follows the first one is nothing but frames with their status requests, and the request
-    // for releases.
+    // After the first frame come only frames with their status requests, and the request for
+    // releases.
     while let Some(end) = rest.windows(END.len()).position(|window| window == END) {
         let before = rest.windows(BEGIN.len()).position(|window| window == BEGIN).unwrap();
         let between = String::from_utf8_lossy(&rest[..before]);

@@ -1,4 +1,4 @@
-//! What the command line and the configuration change.
+//! The effect of the command line and of the configuration.
 
 use std::fs;
 use std::path::PathBuf;

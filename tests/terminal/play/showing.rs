@@ -1,4 +1,4 @@
-//! What the screen shows.
+//! The contents of the screen.
 
 use std::thread;
 use std::time::{Duration, Instant};
@@ -78,7 +78,7 @@ fn m_and_tab_hide_the_minimap_and_show_it_again() {
 #[test]
 fn help_names_the_keys_until_it_is_closed() {
     let game = Game::start();
-    // Shift makes it of the key that has the slash.
+    // The key with the slash gives it with Shift.
     for close in ["\x1b[47:63;2u", "\x1b[27u"] {
         game.press(Key::Char('?'));
         game.wait_for("strafe left");
@@ -150,7 +150,7 @@ fn a_pause_stops_the_clock_and_everything_else() {
     assert!(shown <= without_pause, "{shown} s are shown of {without_pause} s");
 }
 
-/// The time that the game says was taken: minutes, seconds, tenths.
+/// The time that the game reports: minutes, seconds, tenths.
 fn seconds(text: &str) -> f64 {
     let (_, time) = text.split_once(" in ").unwrap();
     let (minutes, seconds) = time.split_whitespace().next().unwrap().split_once(':').unwrap();

@@ -23,7 +23,7 @@ grid = '''
 "@" = { start = 0 }
 "##;
 
-/// A map of its own for the test `name`.
+/// A new map file for the test `name`.
 fn map(name: &str) -> PathBuf {
     let folder = PathBuf::from(env!("CARGO_TARGET_TMPDIR")).join("watching").join(name);
     _ = fs::remove_dir_all(&folder);
@@ -33,7 +33,7 @@ fn map(name: &str) -> PathBuf {
     path
 }
 
-/// Writes `text` as editors do: into another file, which then takes the place of the map.
+/// Writes `text` as editors do: to another file, which then replaces the map.
 fn save(path: &Path, text: &str) {
     let draft = path.with_extension("draft");
     fs::write(&draft, text).unwrap();
@@ -45,7 +45,7 @@ fn start(words: &[&str], path: &Path) -> Player {
     Player::start((80, 24), Speaks::Kitty, PROGRAM, words, &ENVIRONMENT)
 }
 
-/// Waits until a panel shows `text`, wherever its lines are broken.
+/// Waits until a panel shows `text`, with any line breaks.
 #[track_caller]
 fn wait_for_words(player: &Player, text: &str) {
     player.wait_until(&format!("said {text:?}"), |emulator| {
@@ -73,7 +73,7 @@ fn a_game_goes_on_in_the_map_as_it_is_saved() {
     fs::remove_file(&path).unwrap();
     wait_for_words(&player, "there is no file");
 
-    // A larger map, with an exit to find now.
+    // A larger map with an exit.
     let larger = MAP.replace("#@......#", "#@......#\n#......X#");
     let larger = larger.replace("{ start = 0 }", "{ start = 0 }\n\"X\" = { exit = true }");
     save(&path, &larger.replace("First", "Fourth"));
@@ -108,7 +108,7 @@ fn whoever_plays_keeps_their_place_while_there_is_one() {
     player.wait_for_rest();
     assert_eq!(column(&player), walked);
 
-    // A wall where they stand.
+    // A wall at the player's position.
     save(&path, &MAP.replace("First", "Third").replace("#@......#", "#@...####"));
     player.wait_for("Third");
     player.wait_for_rest();

@@ -37,7 +37,7 @@ fn seen(world: &World, camera: &Camera, rays: u32) -> BTreeSet<(u32, u32)> {
     explored.cells().into_iter().map(|Cell { column, row }| (column, row)).collect()
 }
 
-/// What a row of cells shows to who stands in the first one and looks along it: `x` for what they see.
+/// The cells of a row that are seen from the first one, looking along the row: `x` for seen cells.
 fn seen_along(row: &str, eye: f64) -> String {
     let border = "#".repeat(row.chars().count());
     let world = world(&rows(&[&border, row, &border]));
@@ -49,21 +49,22 @@ fn seen_along(row: &str, eye: f64) -> String {
 }
 
 #[test]
-fn what_stands_hides_what_is_behind_it() {
+fn walls_hide_the_cells_behind_them() {
     assert_eq!(seen_along("@....#..", 0.5), "xxxxxx..");
     assert_eq!(seen_along("@..H....", 0.5), "xxxx....");
 }
 
 #[test]
-fn what_is_low_hides_the_floor_behind_it_for_a_while() {
-    // From an eye at half a cell, over a wall of 0.3 that ends 3.5 cells off, the floor shows from 8.75 cells off.
+fn a_low_wall_hides_the_floor_just_behind_it() {
+    // From an eye at 0.5, over a wall of height 0.3 that ends 3.5 cells away, the floor shows from
+    // 8.75 cells on.
     assert_eq!(seen_along("@..l............", 0.5), "xxxx.....xxxxxxx");
-    // What is higher than the low wall shows above it.
+    // A higher wall shows above the low one.
     assert_eq!(seen_along("@..l..H.", 0.5), "xxxx..x.");
 }
 
 #[test]
-fn a_pit_shows_no_floor_from_afar_and_a_step_shows_its_face() {
+fn the_floor_of_a_pit_is_hidden_from_afar_and_the_face_of_a_step_is_seen() {
     assert_eq!(seen_along("@...__", 0.5), "xxxx..");
     assert_eq!(seen_along("@__.", 0.5), "x..x");
     assert_eq!(seen_along("@..=..", 0.5), "xxxx..");
@@ -71,7 +72,7 @@ fn a_pit_shows_no_floor_from_afar_and_a_step_shows_its_face() {
 }
 
 #[test]
-fn a_mirror_shows_nothing_that_a_map_could_tell() {
+fn a_mirror_adds_no_cells() {
     assert_eq!(seen_along("@..m", 0.5), "xxxx");
     let world = world(&rows(&["#####", "#..@m", "#####"]));
     let seen = seen(&world, &camera(DVec2::new(3.5, 1.5), 0.0), 80);
@@ -79,7 +80,7 @@ fn a_mirror_shows_nothing_that_a_map_could_tell() {
 }
 
 #[test]
-fn what_was_seen_is_known_when_the_window_comes_back() {
+fn seen_cells_are_kept_when_the_window_moves_back() {
     let world = world(&rows(&["########", "#@.....#", "########"]));
     let mut explored = Explored::default();
     explored.look(&world, &camera(DVec2::new(1.5, 1.5), 0.0), 40);
@@ -98,7 +99,8 @@ fn what_was_seen_is_known_when_the_window_comes_back() {
     assert_eq!(explored.cells(), before);
 }
 
-/// The cells that a ray is in up to the first wall: by the middles between the lines that it crosses.
+/// The cells that a ray crosses up to the first wall, from the midpoints between the lines that it
+/// crosses.
 fn crossed(world: &World, origin: DVec2, direction: DVec2) -> Option<Vec<(u32, u32)>> {
     let lines = |origin: f64, direction: f64| {
         (0..=SIDE).map(move |line| (line as f64 - origin) / direction)
@@ -109,7 +111,7 @@ fn crossed(world: &World, origin: DVec2, direction: DVec2) -> Option<Vec<(u32, u
         .collect();
     places.push(0.0);
     places.sort_by(f64::total_cmp);
-    // Where a ray goes through a corner, rounding decides.
+    // If a ray passes through a corner, rounding decides.
     if places.windows(2).any(|pair| pair[1] - pair[0] < 1e-9) {
         return None;
     }
@@ -128,7 +130,7 @@ fn crossed(world: &World, origin: DVec2, direction: DVec2) -> Option<Vec<(u32, u
 
 proptest! {
     #[test]
-    fn on_a_level_map_what_rays_cross_is_seen_and_nothing_else(
+    fn on_a_flat_map_exactly_the_cells_that_rays_cross_are_seen(
         walls in prop::collection::vec(prop::bool::weighted(0.2), SIDE * SIDE),
         position in (1.01..10.99, 1.01..10.99),
         degrees in 0.0..360.0,

@@ -1,0 +1,200 @@
+//! The top view: the map point at each position of the map.
+//!
+//! The appearance of tiles is computed once per picture, and the things in a row once per row of
+//! pixels, so that most pixels need only a table lookup.
+
+use glam::DVec2;
+
+use super::explored::Explored;
+use super::map_point::{self, Floor, MapPoint};
+use crate::color::Rgb;
+use crate::render::Column;
+use crate::world::{Camera, Cell, Paint, Shape, Thing, ThingKind, Tile, TileId, TileKind, World};
+
+/// A world seen from above.
+pub(super) struct TopView<'a> {
+    world: &'a World,
+    visible_floor: VisibleFloor<'a>,
+    explored: Option<&'a Explored>,
+    /// The appearance of each tile.
+    tiles: [TileAppearance; TileId::MOST],
+    /// The width of a pixel in cells.
+    pixel: f64,
+}
+
+/// The appearance of a tile from above.
+#[derive(Clone, Copy)]
+enum TileAppearance {
+    Floor(Floor),
+    Wall(Rgb),
+    Door(Rgb),
+    /// Solid inside of the shape, and floor around it.
+    Shape(Rgb, Floor),
+}
+
+/// The colour that shows through glass.
+const BELOW_GLASS: Rgb = Rgb::new(0x24, 0x24, 0x2c);
+/// The least opacity of glass, so that clear glass differs from floor.
+const LEAST_GLASS_OPACITY: u8 = 96;
+
+impl<'a> TopView<'a> {
+    /// A top view of `world`. `columns` are the hits of the picture from `camera`, cells that are
+    /// not `explored` are hidden, and `pixel` is the width of a pixel in cells.
+    pub(super) fn new(
+        world: &'a World,
+        camera: &Camera,
+        (columns, explored): (&'a [Column], Option<&'a Explored>),
+        pixel: f64,
+    ) -> Self {
+        let mut tiles = [TileAppearance::Wall(Rgb::BLACK); TileId::MOST];
+        for (appearance, tile) in tiles.iter_mut().zip(world.tiles()) {
+            *appearance = appearance_of(tile, world, camera.eye());
+        }
+        Self { world, visible_floor: VisibleFloor::new(camera, columns), explored, tiles, pixel }
+    }
+
+    /// The row of points at the distance `y` from the map's northern edge.
+    pub(super) fn row(&self, y: f64) -> Row<'_> {
+        let row = u32::try_from(cell_at(y)).ok();
+        Row {
+            view: self,
+            tiles: row
+                .and_then(|row| self.world.grid().rows().nth(row as usize))
+                .unwrap_or_default(),
+            things: row.map_or(&[], |row| self.world.things_between(row, 0, u32::MAX)),
+            y,
+            number: row.unwrap_or_default(),
+        }
+    }
+
+    /// Whether a pixel around `point` shows the shape of `tile`, which is in `cell`.
+    fn is_covered(&self, tile: TileId, cell: Cell, point: DVec2) -> bool {
+        let TileKind::Shape(Shape { outline, .. }) = self.world.tile(tile).kind else {
+            return true;
+        };
+        outline.distance(cell, point) <= self.pixel / 2.0
+    }
+}
+
+/// The points on a line from west to east.
+pub(super) struct Row<'a> {
+    view: &'a TopView<'a>,
+    tiles: &'a [TileId],
+    things: &'a [Thing],
+    y: f64,
+    /// The number of the row, if there are tiles.
+    number: u32,
+}
+
+impl Row<'_> {
+    /// The map point at the distance `x` from the map's western edge, which is the middle of a
+    /// pixel.
+    #[inline]
+    pub(super) fn point(&self, x: f64) -> MapPoint {
+        let column = cell_at(x) as usize;
+        let Some(&tile) = self.tiles.get(column) else { return MapPoint::Void };
+        let cell = Cell { column: column as u32, row: self.number };
+        let point = DVec2::new(x, self.y);
+        if self.view.explored.is_some_and(|explored| !explored.contains(cell)) {
+            return MapPoint::Void;
+        }
+        let floor = match self.view.tiles[usize::from(tile.0)] {
+            TileAppearance::Wall(color) => return MapPoint::Wall(color),
+            TileAppearance::Door(color) => return MapPoint::Door(color),
+            TileAppearance::Shape(color, _) if self.view.is_covered(tile, cell, point) => {
+                return MapPoint::Wall(color);
+            }
+            TileAppearance::Shape(_, floor) | TileAppearance::Floor(floor) => floor,
+        };
+        match self.thing(cell) {
+            Some(ThingKind::Exit) => MapPoint::Exit,
+            Some(ThingKind::Key(_)) if self.is_on_dot(point, cell) => MapPoint::Key,
+            Some(ThingKind::Ornament) if self.is_on_dot(point, cell) => MapPoint::Ornament,
+            _ if self.view.visible_floor.contains(point) => MapPoint::InView(floor),
+            _ => MapPoint::Floor(floor),
+        }
+    }
+
+    /// Whether `point` is on the dot for a thing in `cell`. If pixels are as large as cells, the
+    /// whole cell is.
+    fn is_on_dot(&self, point: DVec2, cell: Cell) -> bool {
+        const RADIUS: f64 = 0.3;
+        self.view.pixel >= 1.0 || (point - cell.center()).abs().max_element() <= RADIUS
+    }
+
+    /// The first thing in a cell of the row.
+    #[inline]
+    fn thing(&self, cell: Cell) -> Option<ThingKind> {
+        if self.things.is_empty() {
+            return None;
+        }
+        let first = self.things.partition_point(|thing| thing.cell.column < cell.column);
+        self.things.get(first).filter(|thing| thing.cell == cell).map(|thing| thing.kind)
+    }
+}
+
+/// The appearance of `tile` from an eye at that height. The top of a wall below the eye is floor.
+fn appearance_of(tile: &Tile, world: &World, eye: f64) -> TileAppearance {
+    let wall = |paint| map_point::of_wall(world.mean_color(paint));
+    let height = tile.heights.floor();
+    let floor = Floor::new(height, world.mean_color(tile.floor.pattern.first_paint()));
+    let is_top_seen = || height < eye && tile.gaps().next().is_some_and(|gap| gap.bottom <= height);
+    match tile.kind {
+        TileKind::Open | TileKind::Doorway(_) => TileAppearance::Floor(floor),
+        TileKind::Wall(_) if is_top_seen() => TileAppearance::Floor(floor),
+        TileKind::Wall(paint) => TileAppearance::Wall(wall(paint)),
+        TileKind::Shape(Shape { paint, .. }) => TileAppearance::Shape(wall(paint), floor),
+        TileKind::Door(door) => TileAppearance::Door(wall(door.leaf)),
+        TileKind::Mirror(tint) => TileAppearance::Wall(map_point::of_wall(tint.color)),
+        TileKind::Mask(texture) => TileAppearance::Wall(wall(Paint::Texture(texture))),
+        TileKind::Glass(glass) => {
+            let color = glass.color.over(BELOW_GLASS, glass.opacity.max(LEAST_GLASS_OPACITY));
+            TileAppearance::Door(map_point::of_wall(color))
+        }
+    }
+}
+
+/// The visible part of the floor.
+struct VisibleFloor<'a> {
+    position: DVec2,
+    direction: DVec2,
+    half_width: f64,
+    columns: &'a [Column],
+}
+
+impl<'a> VisibleFloor<'a> {
+    fn new(camera: &Camera, columns: &'a [Column]) -> Self {
+        Self {
+            position: camera.position(),
+            direction: camera.direction(),
+            half_width: camera.field_of_view.half_width(),
+            columns,
+        }
+    }
+
+    /// Whether the ray of the picture's column at `point` reaches it.
+    #[inline]
+    fn contains(&self, point: DVec2) -> bool {
+        let to_point = point - self.position;
+        let distance = to_point.dot(self.direction);
+        if distance <= 0.0 || self.columns.is_empty() {
+            return false;
+        }
+        let (across, half_width) =
+            (to_point.dot(self.direction.perp()), distance * self.half_width);
+        // Most points out of view need no division.
+        if across.abs() > 2.0 * half_width {
+            return false;
+        }
+        let across = across / half_width;
+        let index = f64::midpoint(across, 1.0) * self.columns.len() as f64;
+        index >= 0.0
+            && self.columns.get(index as usize).is_some_and(|column| distance <= column.distance)
+    }
+}
+
+/// The column or row of a position; negative west or north of the map. Rounding down is a function
+/// call on older processors.
+fn cell_at(position: f64) -> i64 {
+    position as i64 - i64::from(position < 0.0)
+}
