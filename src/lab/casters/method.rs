@@ -69,9 +69,9 @@ impl Method {
             Self::Dda => DynCaster::new(Dda),
             Self::Dda32 => DynCaster::new(Dda32),
             Self::Accumulate => DynCaster::new(Accumulate),
-            Self::Fixed(fixed) => DynCaster::new(fixed.clone()),
+            Self::Fixed(fixed) => DynCaster::new(*fixed),
             Self::Table(table) => DynCaster::new(table.clone()),
-            Self::March(march) => DynCaster::new(march.clone()),
+            Self::March(march) => DynCaster::new(*march),
         }
     }
 }
