@@ -35,7 +35,7 @@ pub(super) use self::cast::Cast;
 pub(super) use self::config::Config;
 pub(super) use self::generated::Generated;
 pub(super) use self::map::STANDARD_INPUT;
-use self::option::Described;
+use self::option::OptionSpec;
 pub(super) use self::play::{FidelityChoice, Play};
 pub(super) use self::replay::Replay;
 pub(super) use self::snapshot::{Format, Snapshot};
@@ -111,7 +111,7 @@ struct Subcommand {
     /// One command on each line.
     examples: &'static str,
     positionals: &'static [Positional],
-    options: &'static [&'static dyn Described],
+    options: &'static [&'static dyn OptionSpec],
     /// The arguments that it takes, for the sentence about a surplus word.
     surplus: &'static str,
     /// The sentence about a missing required argument; empty if none is required.
@@ -200,7 +200,7 @@ impl Subcommand {
     }
 
     /// The option of this name, with dashes.
-    fn option(&self, name: &str) -> Option<&'static dyn Described> {
+    fn option(&self, name: &str) -> Option<&'static dyn OptionSpec> {
         let name = name.strip_prefix("--")?;
         self.options.iter().copied().find(|option| option.name() == name)
     }

@@ -4,7 +4,7 @@ use std::ffi::OsString;
 
 use clap::ArgMatches;
 
-use super::option::{Parser, Valued};
+use super::option::{Parser, ValueOption};
 use super::{Command, Subcommand, map, value};
 use crate::lab::casters::Method;
 
@@ -57,7 +57,7 @@ fn read(mut matches: ArgMatches) -> Accuracy {
     }
 }
 
-const CASTER: Valued<Method> = Valued {
+const CASTER: ValueOption<Method> = ValueOption {
     help: "Report on this method; may be repeated: exact, dda, dda32, accumulate, fixed:BITS, \
            table:ANGLES or march:STEP",
     default: "all",
@@ -65,7 +65,7 @@ const CASTER: Valued<Method> = Valued {
     ..value::CASTER
 };
 
-const SET: Valued<String> = Valued {
+const SET: ValueOption<String> = ValueOption {
     name: "set",
     value: "NAME",
     takes: "the name of a set",
@@ -76,7 +76,7 @@ const SET: Valued<String> = Valued {
     repeats: false,
 };
 
-const RAYS: Valued<usize> = Valued {
+const RAYS: ValueOption<usize> = ValueOption {
     name: "rays",
     value: "N",
     takes: "a whole number from 1 to 10000000",
@@ -87,7 +87,7 @@ const RAYS: Valued<usize> = Valued {
     repeats: false,
 };
 
-const SEED: Valued<u64> = Valued {
+const SEED: ValueOption<u64> = ValueOption {
     name: "seed",
     value: "N",
     takes: "a whole number",
@@ -98,7 +98,7 @@ const SEED: Valued<u64> = Valued {
     repeats: false,
 };
 
-const FORMAT: Valued<ReportFormat> = Valued {
+const FORMAT: ValueOption<ReportFormat> = ValueOption {
     name: "format",
     value: "FORMAT",
     takes: "table, json, csv, svg or png",

@@ -4,7 +4,7 @@ use std::path::PathBuf;
 
 use clap::ArgMatches;
 
-use super::option::{FileOption, Parser, Valued};
+use super::option::{FileOption, Parser, ValueOption};
 use super::{Command, Subcommand};
 
 /// Options of `bench`.
@@ -48,7 +48,7 @@ fn read(mut matches: ArgMatches) -> Bench {
     }
 }
 
-const SECONDS: Valued<u8> = Valued {
+const SECONDS: ValueOption<u8> = ValueOption {
     name: "seconds",
     value: "N",
     takes: "a whole number from 1 to 60",
@@ -59,7 +59,7 @@ const SECONDS: Valued<u8> = Valued {
     repeats: false,
 };
 
-const FORMAT: Valued<BenchFormat> = Valued {
+const FORMAT: ValueOption<BenchFormat> = ValueOption {
     name: "format",
     value: "FORMAT",
     takes: "table, markdown or json",

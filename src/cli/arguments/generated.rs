@@ -5,7 +5,7 @@ use std::ffi::OsStr;
 use clap::ArgMatches;
 
 use super::Error;
-use super::option::{Parser, Valued};
+use super::option::{Parser, ValueOption};
 use crate::generate::{Extent, Generator, Site};
 
 /// A generated level instead of a map.
@@ -45,7 +45,7 @@ pub(super) fn of(
     }
 }
 
-pub(super) const GENERATE: Valued<Generator> = Valued {
+pub(super) const GENERATE: ValueOption<Generator> = ValueOption {
     name: "generate",
     value: "KIND",
     takes: "maze, cave or office",
@@ -56,7 +56,7 @@ pub(super) const GENERATE: Valued<Generator> = Valued {
     repeats: false,
 };
 
-pub(super) const SEED: Valued<u64> = Valued {
+pub(super) const SEED: ValueOption<u64> = ValueOption {
     name: "seed",
     value: "N",
     takes: "a whole number from 0 to 18446744073709551615",
@@ -67,7 +67,7 @@ pub(super) const SEED: Valued<u64> = Valued {
     repeats: false,
 };
 
-pub(super) const LEVEL_SIZE: Valued<Extent> = Valued {
+pub(super) const LEVEL_SIZE: ValueOption<Extent> = ValueOption {
     name: "level-size",
     value: "COLSxROWS",
     takes: "COLSxROWS from 8x8 to 1000000000x1000000000, such as 64x64",
@@ -81,7 +81,7 @@ pub(super) const LEVEL_SIZE: Valued<Extent> = Valued {
     repeats: false,
 };
 
-pub(super) const START: Valued<Site> = Valued {
+pub(super) const START: ValueOption<Site> = ValueOption {
     name: "start",
     value: "COLUMN,ROW",
     takes: "COLUMN,ROW, the cell to start at, such as 1000000,-1000000",

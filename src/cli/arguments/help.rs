@@ -2,7 +2,7 @@
 
 use std::fmt::Write;
 
-use super::option::Described;
+use super::option::OptionSpec;
 use super::{SUBCOMMANDS, Subcommand, play};
 use crate::app::Bindings;
 
@@ -62,7 +62,7 @@ fn push_details(text: &mut String, subcommand: &Subcommand) {
 /// The options of a command that `play` does not have, and the names of the others.
 fn push_options(text: &mut String, subcommand: &Subcommand) {
     let options = subcommand.options.iter();
-    let (shared, own): (Vec<&&dyn Described>, Vec<&&dyn Described>) =
+    let (shared, own): (Vec<&&dyn OptionSpec>, Vec<&&dyn OptionSpec>) =
         options.partition(|option| play::SUBCOMMAND.has(option.name()));
     for option in own {
         let choices = match option.choices() {

@@ -8,7 +8,7 @@ use clap::error::{ContextKind, ContextValue, ErrorKind};
 use clap::{Arg, ArgAction, ArgMatches, Command, ValueHint, value_parser};
 
 /// The description of an option of any type.
-pub(super) trait Described {
+pub(super) trait OptionSpec {
     /// The name after the two dashes.
     fn name(&self) -> &'static str;
 
@@ -30,7 +30,7 @@ pub(super) trait Described {
 }
 
 /// An option with a value.
-pub(super) struct Valued<T> {
+pub(super) struct ValueOption<T> {
     pub(super) name: &'static str,
     /// The placeholder of the value in help, such as `COLSxROWS`.
     pub(super) value: &'static str,
@@ -49,13 +49,13 @@ pub(super) struct Valued<T> {
 /// A parser of values.
 #[derive(Clone)]
 pub(super) enum Parser<T> {
-    /// Returns `None` for an invalid text.
+    /// A function that returns `None` for an invalid text.
     Optional(fn(&str) -> Option<T>),
-    /// Returns the reason why a text is invalid.
+    /// A function that returns the reason why a text is invalid.
     Fallible(fn(&str) -> Result<T, String>),
 }
 
-impl<T> Valued<T>
+impl<T> ValueOption<T>
 where
     T: Clone + Send + Sync + 'static,
 {
@@ -70,7 +70,7 @@ where
     }
 }
 
-impl<T> Described for Valued<T>
+impl<T> OptionSpec for ValueOption<T>
 where
     T: Clone + Send + Sync + 'static,
 {
@@ -172,7 +172,7 @@ impl FileOption {
     }
 }
 
-impl Described for FileOption {
+impl OptionSpec for FileOption {
     fn name(&self) -> &'static str {
         self.name
     }
@@ -213,7 +213,7 @@ impl Flag {
     }
 }
 
-impl Described for Flag {
+impl OptionSpec for Flag {
     fn name(&self) -> &'static str {
         self.name
     }

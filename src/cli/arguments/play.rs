@@ -6,7 +6,7 @@ use std::path::PathBuf;
 use clap::ArgMatches;
 
 use super::generated::{self, Generated};
-use super::option::{FileOption, Flag, Parser, Valued};
+use super::option::{FileOption, Flag, Parser, ValueOption};
 use super::value::{self, FramesPerSecond};
 use super::{Command, Error, Subcommand, map};
 use crate::color::palette::ColorDepth;
@@ -121,12 +121,13 @@ pub(super) const CONFIG: FileOption = FileOption {
     help: "The settings [default: cellcaster/config.toml in the folder for configuration files]",
 };
 
-const CELL_ASPECT: Valued<CellAspect> =
-    Valued { default: "what the terminal says, or 2", ..value::CELL_ASPECT };
+const CELL_ASPECT: ValueOption<CellAspect> =
+    ValueOption { default: "what the terminal says, or 2", ..value::CELL_ASPECT };
 
-const COLORS: Valued<ColorDepth> = Valued { default: "what the terminal has", ..value::COLORS };
+const COLORS: ValueOption<ColorDepth> =
+    ValueOption { default: "what the terminal has", ..value::COLORS };
 
-const FIDELITY: Valued<FidelityChoice> = Valued {
+const FIDELITY: ValueOption<FidelityChoice> = ValueOption {
     name: "fidelity",
     value: "LEVEL",
     takes: "auto, exact, high, low or a number up to 255",

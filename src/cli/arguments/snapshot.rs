@@ -6,7 +6,7 @@ use clap::ArgMatches;
 use glam::DVec2;
 
 use super::generated::{self, Generated};
-use super::option::{Flag, Parser, Valued};
+use super::option::{Flag, Parser, ValueOption};
 use super::value::{self, Size};
 use super::{Command, Error, Subcommand, map};
 use crate::color::palette::ColorDepth;
@@ -108,7 +108,7 @@ fn read(mut matches: ArgMatches) -> Result<Command, Error> {
     }))
 }
 
-const CAMERA: Valued<(DVec2, Heading)> = Valued {
+const CAMERA: ValueOption<(DVec2, Heading)> = ValueOption {
     name: "camera",
     value: "X,Y,HEADING",
     takes: "X,Y,HEADING, three finite numbers such as 2.5,3.5,90",
@@ -124,7 +124,7 @@ const CAMERA: Valued<(DVec2, Heading)> = Valued {
     repeats: false,
 };
 
-const EYE: Valued<f64> = Valued {
+const EYE: ValueOption<f64> = ValueOption {
     name: "eye",
     value: "HEIGHT",
     takes: "a finite height in cells, such as 0.5",
@@ -135,7 +135,7 @@ const EYE: Valued<f64> = Valued {
     repeats: false,
 };
 
-const PITCH: Valued<Pitch> = Valued {
+const PITCH: ValueOption<Pitch> = ValueOption {
     name: "pitch",
     value: "DEG",
     takes: "degrees from -30, down, to 30, up",
@@ -146,7 +146,7 @@ const PITCH: Valued<Pitch> = Valued {
     repeats: false,
 };
 
-const FORMAT: Valued<Format> = Valued {
+const FORMAT: ValueOption<Format> = ValueOption {
     name: "format",
     value: "FORMAT",
     takes: "text, ansi, json or png",

@@ -2,7 +2,7 @@
 
 use std::num::NonZeroU32;
 
-use super::option::{Flag, Parser, Valued};
+use super::option::{Flag, Parser, ValueOption};
 use crate::color::palette::ColorDepth;
 use crate::lab::casters::{Method, NotAMethod};
 use crate::render::Filter;
@@ -45,7 +45,7 @@ impl Default for Size {
     }
 }
 
-pub(super) const FRAMES_PER_SECOND: Valued<FramesPerSecond> = Valued {
+pub(super) const FRAMES_PER_SECOND: ValueOption<FramesPerSecond> = ValueOption {
     name: "fps",
     value: "N",
     takes: "a whole number from 1 to 240",
@@ -59,7 +59,7 @@ pub(super) const FRAMES_PER_SECOND: Valued<FramesPerSecond> = Valued {
     repeats: false,
 };
 
-pub(super) const FIELD_OF_VIEW: Valued<FieldOfView> = Valued {
+pub(super) const FIELD_OF_VIEW: ValueOption<FieldOfView> = ValueOption {
     name: "fov",
     value: "DEG",
     takes: "degrees above 0 and below 180",
@@ -70,7 +70,7 @@ pub(super) const FIELD_OF_VIEW: Valued<FieldOfView> = Valued {
     repeats: false,
 };
 
-pub(super) const CELL_ASPECT: Valued<CellAspect> = Valued {
+pub(super) const CELL_ASPECT: ValueOption<CellAspect> = ValueOption {
     name: "cell-aspect",
     value: "RATIO",
     takes: "the height of a cell over its width, from 0.1 to 10",
@@ -81,7 +81,7 @@ pub(super) const CELL_ASPECT: Valued<CellAspect> = Valued {
     repeats: false,
 };
 
-pub(super) const GLYPHS: Valued<GlyphMode> = Valued {
+pub(super) const GLYPHS: ValueOption<GlyphMode> = ValueOption {
     name: "glyphs",
     value: "MODE",
     takes: "half, ascii or ramp",
@@ -98,7 +98,7 @@ pub(super) const GLYPHS: Valued<GlyphMode> = Valued {
     repeats: false,
 };
 
-pub(super) const FILTER: Valued<Filter> = Valued {
+pub(super) const FILTER: ValueOption<Filter> = ValueOption {
     name: "filter",
     value: "FILTER",
     takes: "mip or nearest",
@@ -113,7 +113,7 @@ pub(super) const FILTER: Valued<Filter> = Valued {
     repeats: false,
 };
 
-pub(super) const COLORS: Valued<ColorDepth> = Valued {
+pub(super) const COLORS: ValueOption<ColorDepth> = ValueOption {
     name: "colors",
     value: "DEPTH",
     takes: "true, 256, 16 or mono",
@@ -130,7 +130,7 @@ pub(super) const COLORS: Valued<ColorDepth> = Valued {
     repeats: false,
 };
 
-pub(super) const SIZE: Valued<Size> = Valued {
+pub(super) const SIZE: ValueOption<Size> = ValueOption {
     name: "size",
     value: "COLSxROWS",
     takes: "COLSxROWS from 1x1 to 4096x4096, such as 80x24",
@@ -142,7 +142,7 @@ pub(super) const SIZE: Valued<Size> = Valued {
 };
 
 /// As [`SIZE`], but for a window with several buffers in memory, so that the limit is lower.
-pub(super) const WINDOW_SIZE: Valued<Size> = Valued {
+pub(super) const WINDOW_SIZE: ValueOption<Size> = ValueOption {
     takes: "COLSxROWS from 1x1 to 1000x1000, such as 120x40",
     help: "The size of the window in cells, from 1x1 to 1000x1000",
     read: Parser::Optional(|text| size(text).filter(|size| size.columns.max(size.rows) <= 1000)),
@@ -155,7 +155,7 @@ fn size(text: &str) -> Option<Size> {
     Some(Size { columns: side(columns)?, rows: side(rows)? })
 }
 
-pub(super) const CASTER: Valued<Method> = Valued {
+pub(super) const CASTER: ValueOption<Method> = ValueOption {
     name: "caster",
     value: "METHOD",
     takes: "the name of a method",
@@ -168,7 +168,7 @@ pub(super) const CASTER: Valued<Method> = Valued {
     repeats: false,
 };
 
-pub(super) const FIDELITY: Valued<Fidelity> = Valued {
+pub(super) const FIDELITY: ValueOption<Fidelity> = ValueOption {
     name: "fidelity",
     value: "LEVEL",
     takes: "exact, high, low or a number up to 255",

@@ -5,7 +5,7 @@ use std::path::PathBuf;
 
 use clap::ArgMatches;
 
-use super::option::{FileOption, Parser, Valued};
+use super::option::{FileOption, Parser, ValueOption};
 use super::value::{self, FramesPerSecond, Size};
 use super::{Command, Error, Subcommand, map};
 use crate::color::palette::ColorDepth;
@@ -70,16 +70,16 @@ fn read(mut matches: ArgMatches) -> Result<Command, Error> {
 const SCRIPT: FileOption =
     FileOption { name: "script", help: "What is played [default: a walk in citadel]" };
 
-const SIZE: Valued<Size> = Valued { default: "120x40", ..value::WINDOW_SIZE };
+const SIZE: ValueOption<Size> = ValueOption { default: "120x40", ..value::WINDOW_SIZE };
 
-const FIDELITY: Valued<Fidelity> = Valued {
+const FIDELITY: ValueOption<Fidelity> = ValueOption {
     help: "How far colours may be off: exact, high, low, or from 0 to 255; may be repeated",
     default: "those that have a name",
     repeats: true,
     ..value::FIDELITY
 };
 
-const PALETTE: Valued<ColorDepth> = Valued {
+const PALETTE: ValueOption<ColorDepth> = ValueOption {
     name: "palette",
     value: "DEPTH",
     takes: "256 or 16",
@@ -94,7 +94,7 @@ const PALETTE: Valued<ColorDepth> = Valued {
     repeats: false,
 };
 
-const FORMAT: Valued<WireFormat> = Valued {
+const FORMAT: ValueOption<WireFormat> = ValueOption {
     name: "format",
     value: "FORMAT",
     takes: "table, json or csv",

@@ -83,7 +83,7 @@ fn errors(world: &World, cameras: &[Camera], size: FrameSize, filter: Filter) ->
         for (y, row) in picture.rows().enumerate() {
             for (x, &pixel) in row.iter().enumerate() {
                 let across = (x as f64 + 0.5) / f64::from(picture.width());
-                differences.add(pixel, covered.level(HALVINGS).column(across)[y]);
+                differences.add(pixel, covered.level(MIP_LEVEL).column(across)[y]);
             }
         }
         sum_of_shimmer += shimmer(world, camera, size, filter);
@@ -97,12 +97,12 @@ fn errors(world: &World, cameras: &[Camera], size: FrameSize, filter: Filter) ->
 
 /// The factor by which the larger picture is wider and higher, and the number of mip levels to the
 /// original size.
-const TIMES: NonZeroU32 = NonZeroU32::new(1 << HALVINGS).unwrap();
-const HALVINGS: usize = 3;
+const SCALE: NonZeroU32 = NonZeroU32::new(1 << MIP_LEVEL).unwrap();
+const MIP_LEVEL: usize = 3;
 
 /// The larger picture. Its mip levels are the means over the pixels of a picture of `size`.
 fn covered(world: &World, camera: &Camera, size: FrameSize) -> Texture {
-    let [width, height] = [size.width, size.height].map(|side| side.saturating_mul(TIMES));
+    let [width, height] = [size.width, size.height].map(|side| side.saturating_mul(SCALE));
     let picture = draw(world, camera, FrameSize { width, height }, Filter::Nearest);
     Texture::from_fn(width, height, |x, y| picture.pixel(x, y))
 }

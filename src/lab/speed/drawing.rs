@@ -93,8 +93,8 @@ struct Comparison<'a> {
     scene: Scene,
     world: &'a World,
     size: FrameSize,
-    alone: Renderer,
-    together: Renderer,
+    single_threaded: Renderer,
+    multi_threaded: Renderer,
     threads: usize,
     classic: Classic,
     frame: Frame,
@@ -114,13 +114,23 @@ struct Times {
 impl<'a> Comparison<'a> {
     fn new(scene: Scene, world: &'a World, size: FrameSize) -> Self {
         let mut frame = Frame::new(size, pixel_aspect(size));
-        let (mut alone, mut together) = (Renderer::new(), Renderer::new());
-        alone.set_threads(NonZero::<usize>::MIN);
+        let (mut single_threaded, mut multi_threaded) = (Renderer::new(), Renderer::new());
+        single_threaded.set_threads(NonZero::<usize>::MIN);
         let start = world.start_camera(FieldOfView::default());
-        let threads = together.explain(world, &start, &mut frame).plan.threads.count();
+        let threads = multi_threaded.explain(world, &start, &mut frame).plan.threads.count();
         let pixels = vec![0; frame.width() as usize * frame.height() as usize];
         let classic = Classic::new(world);
-        Self { scene, world, size, alone, together, threads, classic, frame, pixels }
+        Self {
+            scene,
+            world,
+            size,
+            single_threaded,
+            multi_threaded,
+            threads,
+            classic,
+            frame,
+            pixels,
+        }
     }
 
     fn measure(mut self, time: Duration) -> DrawingRow {
@@ -140,13 +150,23 @@ impl<'a> Comparison<'a> {
 
     /// Draws `turns` times with each renderer from `camera`, in turns.
     fn take_turns(&mut self, camera: &Camera, turns: usize, times: &mut Times) {
-        let Self { scene, world, size, alone, together, threads, classic, frame, pixels } = self;
+        let Self {
+            scene,
+            world,
+            size,
+            single_threaded,
+            multi_threaded,
+            threads,
+            classic,
+            frame,
+            pixels,
+        } = self;
         let size = (size.width.get() as usize, size.height.get() as usize);
         for turn in 0..turns {
-            times.ours.push(seconds(|| alone.render(world, camera, black_box(frame))));
+            times.ours.push(seconds(|| single_threaded.render(world, camera, black_box(frame))));
             times.fill.push(seconds(|| fill(black_box(pixels), turn as u32)));
             if *threads > 1 {
-                let draw = || together.render(world, camera, black_box(frame));
+                let draw = || multi_threaded.render(world, camera, black_box(frame));
                 times.by_threads.push(seconds(draw));
             }
             for (times, &floor) in times.classic.iter_mut().zip(scene.floors()) {
@@ -158,11 +178,12 @@ impl<'a> Comparison<'a> {
     /// The result of the times for all cameras.
     fn row(&self, times: &[Times]) -> DrawingRow {
         let Self { scene, size, threads, .. } = *self;
-        let seen = || times.iter().filter(|times| !times.ours.is_empty());
+        let visited = || times.iter().filter(|times| !times.ours.is_empty());
         let a_pixel = 1e9 / self.pixels.len() as f64;
-        let ours = a_pixel * mean_of_medians(seen().map(|times| &times.ours));
-        let by_threads = a_pixel * mean_of_medians(seen().map(|times| &times.by_threads));
-        let with_floor = |floor| mean_of_medians(seen().map(|times: &Times| &times.classic[floor]));
+        let ours = a_pixel * mean_of_medians(visited().map(|times| &times.ours));
+        let by_threads = a_pixel * mean_of_medians(visited().map(|times| &times.by_threads));
+        let with_floor =
+            |floor| mean_of_medians(visited().map(|times: &Times| &times.classic[floor]));
         let classic = (0..scene.floors().len()).map(with_floor).fold(f64::INFINITY, f64::min);
         DrawingRow {
             scene,
@@ -171,7 +192,7 @@ impl<'a> Comparison<'a> {
             threads,
             by_threads: if threads > 1 { by_threads } else { ours },
             classic: a_pixel * classic,
-            fill: a_pixel * mean_of_medians(seen().map(|times| &times.fill)),
+            fill: a_pixel * mean_of_medians(visited().map(|times| &times.fill)),
         }
     }
 }
