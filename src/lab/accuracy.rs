@@ -1,7 +1,7 @@
 //! The accuracy of casters: a reference in rational arithmetic, and difficult rays.
 //!
 //! [`cast`] computes in rational arithmetic, and shares only the rules in [`crate::cast`] with the
-//! casters. [`sets`] has named sets of stiff and extreme cases; [`random_ray`] and
+//! casters. [`sets()`] returns named sets of stiff and extreme cases; [`random_ray`] and
 //! [`adversarial_ray`] generate any number of other rays from a seed.
 
 mod filters;
