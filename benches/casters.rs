@@ -1,7 +1,7 @@
 //! All methods on the same rays, in three ordinary scenes.
 //!
 //! `cargo bench --no-default-features --features lab --bench casters`. An element is a ray. The
-//! methods take turns within a scene, so compare within one run only.
+//! methods take turns within a scene, so that only figures of the same run are comparable.
 
 use std::hint::black_box;
 
@@ -13,7 +13,7 @@ use criterion::{Bencher, BenchmarkId, Criterion, Throughput, criterion_group, cr
 
 const RAYS: usize = 4096;
 
-/// Measures how long a caster takes for all rays.
+/// Measures the time of a caster for all rays.
 struct Measure<'a, 'b> {
     grid: &'a Grid,
     rays: &'a [Ray],

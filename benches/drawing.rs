@@ -1,19 +1,19 @@
 //! Drawing compared with the classic loop and with a fill, at five sizes.
 //!
-//! `cargo bench --no-default-features --features lab --bench drawing` measures what the table of
-//! drawing in `cellcaster bench` has, from more cameras and more often. One thread draws; the last
-//! two columns are the number of threads that the renderer uses for a picture of that size, and how
-//! many times faster that is.
+//! `cargo bench --no-default-features --features lab --bench drawing` measures the drawing table of
+//! `cellcaster bench` with more cameras and more repetitions. One thread draws. The last two
+//! columns are the number of threads that the renderer uses for a picture of that size, and the
+//! speed-up with them.
 
 use std::time::Duration;
 
 use cellcaster::lab::speed::{self, Scene};
 
-/// For all of them together.
+/// The time for all measurements together.
 const TIME: Duration = Duration::from_secs(100);
 
 fn main() {
-    // Asked for a test of the bench, once is enough.
+    // A test of the bench needs one short run.
     let is_test = std::env::args().any(|argument| argument == "--test");
     let time = if is_test { Duration::ZERO } else { TIME };
     println!(

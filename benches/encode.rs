@@ -1,7 +1,8 @@
-//! Our encoder beside ratatui's own for crossterm: the time from changed cells to bytes.
+//! Cellcaster's encoder and ratatui's own for crossterm: the time from changed cells to bytes.
 //!
-//! `cargo bench --bench encode`. One iteration is a walk through the citadel at 120×40, an element is
-//! a frame. They take turns, so compare within one run only.
+//! `cargo bench --bench encode`. One iteration is a walk through the citadel at 120×40, and an
+//! element is a frame. The encoders take turns, so that only figures of the same run are
+//! comparable.
 
 use std::convert::Infallible;
 use std::fmt::Write as _;
@@ -19,10 +20,10 @@ use ratatui::layout::Size;
 
 const SIZE: Size = Size::new(120, 40);
 
-/// How much of each stretch of the script is played.
+/// The divisor of the length of each stretch of the script.
 const SHARE: u32 = 4;
 
-/// The cells that change in a frame.
+/// The changed cells of a frame.
 type Changes = Vec<(u16, u16, Cell)>;
 
 fn encode(criterion: &mut Criterion) {
@@ -55,7 +56,7 @@ fn encode(criterion: &mut Criterion) {
     }
 }
 
-/// One frame, as ratatui sends it where no cursor shows. Memory takes everything, so nothing fails.
+/// Sends one frame as ratatui does without a cursor. Writing to memory cannot fail.
 fn send<B: Backend>(backend: &mut B, changes: &Changes) {
     _ = backend.draw(changes.iter().map(|(x, y, cell)| (*x, *y, cell)));
     _ = backend.hide_cursor();
@@ -79,7 +80,7 @@ fn frames() -> Vec<Changes> {
     frames
 }
 
-/// The committed script, each stretch cut short.
+/// The committed script, with each stretch shortened.
 fn script() -> Script {
     let whole = include_str!("../maps/showcase.script");
     let whole = Script::parse(whole, "showcase").expect("the committed script has no faults");

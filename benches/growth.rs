@@ -1,9 +1,9 @@
-//! What grows with the map: a ray with the open distance, a frame and the loading with the area.
+//! Costs that grow with the map: a ray with the open distance, a frame and loading with the area.
 //!
-//! `cargo bench --no-default-features --features lab --bench growth`, on the maps of
-//! `cellcaster bench`. A hall is empty but for the walls around it; a plain has, besides, a pillar in one
-//! cell of 4096. In a map of `n` × `n` cells each of the rays goes nearly `n` cells across. An element is
-//! a ray. All maps take their turns one after the other, so compare within one run only.
+//! `cargo bench --no-default-features --features lab --bench growth`, on the maps of `cellcaster
+//! bench`. A hall is empty except for the walls around it; a plain also has a pillar in one cell of
+//! 4096. In a map of `n` × `n` cells, each ray crosses nearly `n` cells. An element is a ray. All
+//! maps take turns, so that only figures of the same run are comparable.
 
 use std::hint::black_box;
 

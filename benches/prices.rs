@@ -1,37 +1,37 @@
-//! The price list: what a frame of each map of the gallery takes, as a multiple of the flat one's.
+//! The price list: the time of a frame of each map of the gallery, as a multiple of the flat one's.
 //!
-//! `cargo bench --no-default-features --bench prices` writes the table of `docs/prices.md`. All maps
-//! take their turns one after the other and are compared within a turn, and what counts of a turn is the
-//! median frame: a machine that is busy with something else slows all of them down, or stops in few
-//! of the frames. The table has the median turn and, in brackets, the quartiles.
+//! `cargo bench --no-default-features --bench prices` writes the table of `docs/prices.md`. All
+//! maps take turns and are compared within a turn, and the result of a turn is its median frame. A
+//! busy machine slows all of them, or interrupts few of the frames. The table has the median turn,
+//! with the quartiles in brackets.
 
 use std::hint::black_box;
 use std::time::Instant;
 
 use cellcaster::render::FrameSize;
 
-#[path = "frame/before.rs"]
-mod before;
+#[path = "frame/baseline.rs"]
+mod baseline;
 #[path = "frame/gallery.rs"]
 mod gallery;
 
-use before::Before;
-use gallery::{Easel, Scene, name_of, scenes, sizes};
+use baseline::Baseline;
+use gallery::{Drawing, Scene, name_of, scenes, sizes};
 
-/// How often each map has its turn.
+/// The number of turns.
 const TURNS: usize = 101;
-/// How many pixels are drawn in a turn, at least.
+/// The least number of pixels drawn in a turn.
 const PIXELS_IN_A_TURN: u32 = 1_000_000;
 
-/// What is compared: a scene, drawn by the renderer or as it was before.
+/// A subject of the comparison: a scene, drawn by the renderer or by the baseline.
 struct Row {
     name: String,
-    /// For each size, what each turn took, as a multiple of the flat scene's in the same turn.
+    /// For each size, the ratio to the flat scene in each turn.
     ratios: [Vec<f64>; 2],
 }
 
 fn main() {
-    // Asked for a test of the bench, once is enough.
+    // A test of the bench needs one turn.
     let turns = if std::env::args().any(|argument| argument == "--test") { 1 } else { TURNS };
     let scenes = scenes();
     let names = ["flat, before"].into_iter().chain(scenes.iter().map(|scene| scene.name.as_str()));
@@ -53,25 +53,25 @@ fn main() {
     print(rows, flat_nanoseconds);
 }
 
-/// Nanoseconds a frame of the flat scene as it was drawn before, and of each scene.
+/// Nanoseconds for a frame of the flat scene by the baseline, and for a frame of each scene.
 fn turn(scenes: &[Scene], size: FrameSize) -> Vec<f64> {
     let frames = PIXELS_IN_A_TURN.div_ceil(size.width.get() * size.height.get());
     let flat = &scenes[0];
-    let mut before = Before::new(size);
-    let mut easel = Easel::new(size);
+    let mut baseline = Baseline::new(size);
+    let mut drawing = Drawing::new(size);
     let mut times = vec![time(frames, || {
-        before.render(&flat.world, black_box(&flat.camera));
-        black_box(before.pixels());
+        baseline.render(&flat.world, black_box(&flat.camera));
+        black_box(baseline.pixels());
     })];
     times.extend(scenes.iter().map(|scene| {
         time(frames, || {
-            black_box(easel.draw(black_box(scene)));
+            black_box(drawing.draw(black_box(scene)));
         })
     }));
     times
 }
 
-/// Nanoseconds for the median one of so many `frames`, after one that is not counted.
+/// The median of this number of `frames` in nanoseconds, after one that is not counted.
 fn time(frames: u32, mut draw: impl FnMut()) -> f64 {
     draw();
     let times = (0..frames).map(|_| {

@@ -1,4 +1,4 @@
-//! The 3-D caster: what a pixel costs, in the scene of the gallery.
+//! The 3-D caster: the time for a pixel, in the gallery's scene.
 //!
 //! `cargo bench --no-default-features --bench space`. An element is a pixel.
 

@@ -1,7 +1,8 @@
-//! The same things in view, among few and among many that are not.
+//! The same things in view, with few and with many things elsewhere.
 //!
-//! `cargo bench --no-default-features --features lab --bench things`, on the maps of
-//! `cellcaster bench`. All numbers of things take turns within a hall, so compare within one run only.
+//! `cargo bench --no-default-features --features lab --bench things`, on the maps of `cellcaster
+//! bench`. All numbers of things take turns within a hall, so that only figures of the same run are
+//! comparable.
 
 use std::hint::black_box;
 

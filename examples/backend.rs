@@ -1,4 +1,5 @@
-//! A ratatui program with Cellcaster's encoder as its backend: `cargo run --example backend | wc -c`.
+//! A ratatui program with Cellcaster's encoder as its backend: `cargo run --example backend | wc
+//! -c`.
 
 use std::io::{self, Write};
 

@@ -1,4 +1,4 @@
-//! A ratatui program that shows a level beside its map. The arrow keys turn, any other key leaves.
+//! A ratatui program that shows a level beside its map. The arrow keys turn; any other key quits.
 
 use cellcaster::map::builtin;
 use cellcaster::tui::{FirstPerson, Minimap, View};

@@ -1,4 +1,4 @@
-//! The engine alone, without any feature: writes the view from the start of a level as a PPM picture.
+//! The engine without any feature: writes the view from the start of a level as a PPM picture.
 //!
 //! `cargo run --no-default-features --example pixels > cellar.ppm`
 

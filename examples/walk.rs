@@ -1,5 +1,5 @@
-//! A ratatui program with a level to walk through, in any terminal. W and S walk, the arrow keys turn, any other
-//! key leaves.
+//! A ratatui program for walking through a level, in any terminal. W and S walk, the arrow keys
+//! turn, and any other key quits.
 
 use std::time::{Duration, Instant};
 

@@ -1,33 +1,34 @@
-//! Casting: a ray and a grid in, the cell it hits out.
+//! Casting: finding the cell that a ray hits in a grid.
 //!
-//! The rules, the same for every caster:
+//! The rules are the same for every caster:
 //!
-//! - A hit is the first solid cell that the ray *enters* at `t ≥ 0`. A ray that starts inside a wall
-//!   has entered it already, so it hits the next one.
-//! - The lines of the grid are crossed in the order of their `t`; where the ray meets an x line and a
-//!   y line at once, the y line is crossed first.
-//! - A ray that starts on a line crosses that line at `t = 0`, unless it runs along it; then it is in
-//!   the cell to the east or to the south of the line.
-//! - There is nothing off the map: a ray may start there and enter, and a ray that leaves escapes.
-//! - Every ray ends, and no hit has a NaN in it.
+//! - A hit is the first solid cell that the ray *enters* at `t ≥ 0`. A ray that starts inside a
+//!   wall has already entered it, and hits the next one.
+//! - A ray crosses grid lines in the order of their `t`. Where it meets an x line and a y line at
+//!   once, it crosses the y line first.
+//! - A ray that starts on a line crosses that line at `t = 0`. If it runs along the line, it is in
+//!   the cell to the east or to the south.
+//! - The outside of the map is empty: a ray may start there and enter the map, and a ray that
+//!   leaves the map escapes.
+//! - Every ray ends, and no hit contains a NaN.
 //!
-//! Besides walls there are doors, whose leaf stands back in its cell, cubes that are seen through, and
-//! shapes that do not fill their cell.
-//! [`Caster::cast_through`] knows them:
+//! [`Caster::cast_through`] also knows doors, whose leaf is in the middle of the cell, transparent
+//! cubes, and shapes that do not fill their cell:
 //!
-//! - A ray that is in the cell of a door, whether it has entered it or starts there, hits its leaf
-//!   where it meets it, and otherwise goes on.
-//! - A ray that enters a cube of glass or one with holes passes through, and is told of it. Cells of
-//!   the same tile side by side are one cube: there is no face between them.
+//! - A ray that enters or starts in a door's cell hits the leaf where it meets it, and otherwise
+//!   goes on.
+//! - A ray that enters a cube of glass, or a cube with holes, passes through it and reports the
+//!   face. Adjacent cells with the same tile are one cube, without a face between them.
+//! - A ray that enters or starts in the cell of a shape, a pillar or a line, hits the shape where
+//!   it meets it, and otherwise goes on. A line has no thickness, and both its ends belong to it: a
+//!   ray along the line misses it, and a ray through an end hits it. A ray that starts inside a
+//!   pillar leaves it without a hit.
 //!
-//! - A ray that is in the cell of a shape, a pillar or a line, hits it where it meets it, and
-//!   otherwise goes on. A line has no thickness, and both its ends belong to it: a ray along it meets
-//!   nothing, one through an end does. A ray that starts inside a pillar leaves it.
+//! [`Exact`] keeps these rules for every ray: it crosses the lines in their true order, which it
+//! finds with integers, and with longer integers where those cannot decide. A caster without its
+//! own [`Caster::cast_through`] treats all of these cells as walls.
 //!
-//! [`Exact`] keeps all of these rules for every ray: it crosses the lines in their true order, by integers, and by longer
-//! ones where those cannot tell. A caster without a [`Caster::cast_through`] of its own takes all of these cells for walls.
-//!
-//! Callers are generic over the [`Caster`]. One that is picked through a pointer for each ray was
+//! Callers are generic over the [`Caster`]. Choosing a caster by dynamic dispatch for each ray was
 //! refused: the call would cost as much as a short ray.
 
 mod door;
@@ -57,21 +58,22 @@ use crate::world::{Grid, World};
 
 /// A method of finding what a ray hits.
 pub trait Caster {
-    /// What `ray` hits first in `grid`, or `None` where it escapes.
+    /// The first hit of `ray` in `grid`, or `None` if the ray escapes.
     fn cast(&self, grid: &Grid, ray: &Ray) -> Option<Hit>;
 
-    /// Whether all rays between two, far enough apart that rounding is nothing to it, hit the same side
-    /// of the same cell as both do: from one place, and as [`Caster::cast`] has it, to which all that is
-    /// solid is a wall. Else each has to be cast.
+    /// Whether every ray between two rays from one point hits the same side of the same cell as
+    /// both of them. The two rays are far enough apart that rounding does not matter, and hits are
+    /// those of [`Caster::cast`], which treats everything solid as a wall. If the answer is
+    /// `false`, each ray between them has to be cast.
     fn follows_between(&self, left: &Hit, right: &Hit) -> bool {
         _ = (left, right);
         false
     }
 
-    /// What `ray` hits first in `world` that cannot be seen through, or `None` where it escapes. What
-    /// it enters before that and is seen through, it tells to `passed`, from near to far.
+    /// The first hit of `ray` in `world` that is not transparent, or `None` if the ray escapes.
+    /// Transparent faces that it enters before that hit are passed to `passed`, from near to far.
     ///
-    /// A method that does not know better takes everything solid for a wall.
+    /// The default treats everything solid as a wall.
     fn cast_through(&self, world: &World, ray: &Ray, passed: impl FnMut(Hit)) -> Option<Hit> {
         _ = passed;
         self.cast(world.grid(), ray)

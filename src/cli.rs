@@ -1,8 +1,8 @@
-//! The command line: one file for each subcommand, each thin.
+//! The command line: one thin file for each subcommand.
 //!
-//! A mistake of the user is one clear sentence on standard error and exit status 2; what the machine
-//! refuses is a sentence and status 1. A reader that closes the pipe is neither: the program ends
-//! quietly. Nothing here panics on any argument.
+//! A user error is reported in one sentence on standard error, with exit status 2. An error of the
+//! system is one sentence with status 1. If a reader closes the pipe, the program ends silently. No
+//! argument causes a panic.
 
 mod accuracy;
 mod arguments;
@@ -31,8 +31,8 @@ use std::process::ExitCode;
 use arguments::Command;
 pub use error::Error;
 
-/// Runs the command that `arguments` ask for, the program's own name first, and tells the status to
-/// end with.
+/// Runs the command that `arguments` request, and returns the exit status. The first argument is
+/// the program's own name.
 pub fn run(arguments: impl IntoIterator<Item = OsString>) -> ExitCode {
     match Command::parse(arguments).and_then(Command::run) {
         Ok(()) => ExitCode::SUCCESS,

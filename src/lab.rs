@@ -1,12 +1,12 @@
-//! Measurements: the casters compared, their errors, the speed of drawing, and the bytes of a game.
+//! Measurements: comparison casters, accuracy, the speed of drawing, and the bytes of a game.
 //!
-//! Nothing here is needed to play or to draw. The command line reports the figures, and tests and benchmarks
-//! repeat them; no other module knows this one.
+//! Playing and drawing need none of it. The command line reports the figures, and tests and
+//! benchmarks repeat them. No other module depends on this one.
 //!
-//! - [`casters`]: methods of casting besides the exact one.
-//! - [`accuracy`]: rational arithmetic as the truth, and the rays that are hardest on a caster.
-//! - [`speed`]: scenes, and the loops that drawing is compared with.
-//! - [`wire`]: bytes against error, for ways to encode a game's frames.
+//! - [`casters`]: casters to compare with the exact one.
+//! - [`accuracy`]: rational arithmetic as the reference, and rays that are difficult for a caster.
+//! - [`speed`]: scenes, and the loops with which drawing is compared.
+//! - [`wire`]: bytes and colour errors of encoders for a game's frames.
 
 pub mod accuracy;
 pub mod casters;

@@ -1,16 +1,16 @@
-//! The 3-D caster: spheres, planes and boxes, and a ray for every pixel.
+//! The 3-D caster: spheres, planes and boxes, and one ray for each pixel.
 //!
-//! It stands beside the grid's renderer and shares nothing with it but the frame: a [`Scene`] and a
-//! [`Camera`] in, pixels out. The conventions are the grid's, with a third axis: x to the east, y to
-//! the south, z upwards, lengths in cells. Looking up turns the camera, as there are no columns here
-//! that it would cost.
+//! This renderer shares only the [`Frame`](crate::render::Frame) with the grid's renderer. It draws
+//! what a [`Camera`] sees of a [`Scene`]. The conventions are those of grids with a third axis: x
+//! points east, y south and z up, and lengths are in cells. Looking up turns the camera: without
+//! columns, this costs no more than a level view.
 //!
-//! What a ray hits is lit by how it faces the sun, if no other body is in between: see `shadows`. A
-//! checker shows the mean of what a pixel covers of it: see `checker`.
+//! A surface is lit by its angle to the sun, unless another body is in between: see `shadows`. A
+//! checker pattern shows its mean over the area of a pixel: see `checker`.
 //!
-//! A body is tested against the pixels that it can cover and no others: its bounds on the screen are
-//! found first, and a row of pixels asks only the bodies that reach it. A tree of bounding volumes was
-//! refused: it pays off with thousands of bodies, and a map is written by hand.
+//! A body is tested only against the pixels that it can cover. Its bounds on the screen are
+//! computed first, and a row of pixels tests only the bodies that reach it. A bounding volume
+//! hierarchy was refused: it pays with thousands of bodies, and maps are written by hand.
 
 mod body;
 mod bounds;
@@ -19,9 +19,9 @@ mod checker;
 mod explanation;
 mod light;
 mod ray;
+mod relative_shape;
 mod renderer;
 mod scene;
-mod seen;
 mod shadows;
 
 pub use body::{Block, Body, Coat, FARTHEST, Plane, SMALLEST, Shape, Sphere};

@@ -1,19 +1,22 @@
-//! The exact order of lines: what rational arithmetic says, at the price of doubles.
+//! The exact caster: the order of lines that rational arithmetic gives, mostly at the price of
+//! doubles.
 //!
-//! Walls are found by the [`MajorAxisTraversal`], which need not stop in every cell; a ray from outside the map, or on
-//! a very large one, [walks](Walk). Both ask the same question of the same corners in case of doubt, so
-//! which of them it was cannot be told from the answer. In rooms, among pillars and in corridors
-//! (`benches/casters.rs`) a ray takes 0.6 to 0.9 times what it takes `dda`. That is why this is the
-//! default.
+//! [`MajorAxisTraversal`] finds the walls, without stopping in every cell. A ray that starts off
+//! the map, or on a very large map, uses the [`Walk`] instead. Where rounding leaves a doubt, both
+//! evaluate the same exact predicate at the same corners, so that their results are equal. In
+//! rooms, among pillars and in corridors (`benches/casters.rs`), a ray takes 0.6 to 0.9 times the
+//! time of `dda`, which is why this caster is the default.
 //!
-//! In the walk, the order of the next two lines is computed in double precision first, as in `dda`, and
-//! believed where the two are further apart than all rounding can have moved them. Else the ray passes
-//! so near to the corner where the two lines meet that only the sign of a cross product tells on which
-//! side, and that one is computed without rounding. Ordinary rays never get there, and pay one
-//! comparison a line.
+//! The walk compares the next two lines in double precision first, as `dda` does. It accepts the
+//! result if the distances differ by more than a bound on their rounding. Otherwise the ray passes
+//! so close to the corner of the two lines that only the sign of a cross product, computed without
+//! rounding, can tell the side. Ordinary rays never need it, and pay one comparison for each line.
+//! This is a floating-point filter before an exact predicate, as in Shewchuk, "Adaptive Precision
+//! Floating-Point Arithmetic and Fast Robust Geometric Predicates" (1997).
 //!
-//! The bound on the rounding is computed once for each ray, from the size of the map. One for each
-//! line, tighter near the start, was refused: it costs more than the exact cross products it saves.
+//! The bound on the rounding is computed once for each ray, from the size of the map. A bound for
+//! each line, tighter near the start, was refused: it costs more than the exact cross products that
+//! it saves.
 
 use std::iter;
 
@@ -25,9 +28,9 @@ use super::{
 use crate::numeric::cross;
 use crate::world::{Grid, World};
 
-/// Casts by walking the grid in the exact order; the default.
+/// The exact caster, and the default.
 ///
-/// It hits the cell and side that rational arithmetic says, for every ray.
+/// It hits the cell and side that rational arithmetic gives, for every ray.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub struct Exact;
 
@@ -40,8 +43,8 @@ impl Caster for Exact {
         Some(Hit::entering(ray, wall.cell, wall.side))
     }
 
-    /// If both hit one face, nothing is in the way of what goes between them. It would be as wide as the
-    /// face and nearer, so that it would be in the way of one of the two.
+    /// If both rays hit one face, no solid cell is between them: it would be at least as wide as
+    /// the face and nearer, and one of the two rays would have hit it.
     #[inline]
     fn follows_between(&self, left: &Hit, right: &Hit) -> bool {
         (left.cell, left.side) == (right.cell, right.side)
@@ -70,8 +73,8 @@ fn walk_to_first_solid(grid: &Grid, ray: &Ray) -> Option<Crossing> {
 pub struct ExactOrder {
     ray: Ray,
     rounded: RoundedOrder,
-    /// Two rounded distances that are further apart than this are in the right order.
-    doubt: f64,
+    /// Rounded distances that differ by more than this are in the correct order.
+    uncertainty: f64,
 }
 
 impl ExactOrder {
@@ -80,26 +83,26 @@ impl ExactOrder {
         Self::within(DVec2::new(f64::from(grid.width()), f64::from(grid.height())), ray)
     }
 
-    /// The order for `ray` among lines that are no further from 0 than `size`.
+    /// The order for `ray` among lines that are at most `size` from 0.
     pub(super) fn within(size: DVec2, ray: &Ray) -> Self {
         let rounded = RoundedOrder::new(ray);
-        // No line is further than that. A distance to one is rounded once when it is taken and once
-        // when it is weighed; all together, twice an epsilon is twice as much as that comes to. What
-        // vanishes for being too small a double is less than the second term.
+        // No line is farther than `furthest`. A distance is rounded once by the subtraction and
+        // once by the weighting; two epsilons are twice the sum of these errors. The second term
+        // bounds the error of underflow.
         let furthest = size + ray.origin().abs();
         let error = rounded.weight.abs() * (2.0 * f64::EPSILON) + DVec2::splat(f64::MIN_POSITIVE);
-        Self { ray: *ray, rounded, doubt: furthest.dot(error) }
+        Self { ray: *ray, rounded, uncertainty: furthest.dot(error) }
     }
 }
 
 /// Which of the lines at `x` and `y` the ray crosses first, without rounding.
 ///
-/// It takes the ray by its parts, because a reference would keep the walk in memory.
+/// The ray is passed in parts, because a reference would force the walk into memory.
 #[cold]
 #[inline(never)]
 pub(super) fn decide(origin: DVec2, direction: DVec2, x: f64, y: f64) -> Side {
     let cross = cross(origin, direction, DVec2::new(x, y)).sign();
-    // Seen from a ray to the north-east or to the south-west, left and right are swapped.
+    // For a ray to the north-east or to the south-west, left and right are swapped.
     let x_behind_y = if (direction.x > 0.0) == (direction.y > 0.0) { cross } else { -cross };
     if x_behind_y >= 0.0 { Side::Y } else { Side::X }
 }
@@ -107,11 +110,11 @@ pub(super) fn decide(origin: DVec2, direction: DVec2, x: f64, y: f64) -> Side {
 impl Order for ExactOrder {
     #[inline]
     fn next(&mut self, x: f64, y: f64) -> Side {
-        // The order is taken before the doubt, so that it can be selected and need not be predicted:
-        // which line is next looks random to a processor, and whether there is doubt does not.
+        // The order is computed before the doubt, so that the compiler can select it without a
+        // branch: the order looks random to a branch predictor, and the doubt does not.
         let (to_x, to_y) = self.rounded.distances(x, y);
         let side = if to_y <= to_x { Side::Y } else { Side::X };
-        if (to_x - to_y).abs() > self.doubt {
+        if (to_x - to_y).abs() > self.uncertainty {
             side
         } else {
             decide(self.ray.origin(), self.ray.direction(), x, y)
@@ -137,9 +140,9 @@ mod tests {
         assert_eq!(enters_by(0.5_f64.next_up()), Some(Side::X));
     }
 
-    /// A component so small that it vanishes when scaled still moves a ray from afar.
+    /// A component that underflows when it is scaled still moves a ray that starts far away.
     #[test]
-    fn what_vanishes_is_in_the_doubt() {
+    fn the_uncertainty_covers_underflow() {
         assert_eq!(side(&["#"], (-1.7e308, -6e-16), (1.0, 5e-324)), Some(Side::X));
         assert_eq!(side(&["#"], (-6e-16, -1.7e308), (5e-324, 1.0)), Some(Side::Y));
     }

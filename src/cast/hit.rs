@@ -1,4 +1,4 @@
-//! What a ray hits, and where on its face.
+//! The hit of a ray, and its position on the face.
 
 use glam::DVec2;
 
@@ -6,7 +6,7 @@ use super::Ray;
 use crate::numeric::cross;
 use crate::world::Cell;
 
-/// Which kind of grid line a ray crossed.
+/// The kind of grid line that a ray crosses.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
 pub enum Side {
     /// A line x = const: the west or the east face of a cell.
@@ -26,26 +26,27 @@ impl Side {
     }
 }
 
-/// Where a ray enters a solid cell.
+/// The point where a ray enters a solid cell.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Hit {
     /// The cell.
     pub cell: Cell,
-    /// The kind of line that was crossed into it.
+    /// The kind of line that the ray crosses to enter the cell.
     pub side: Side,
-    /// How far along the ray, in lengths of its direction; at least 0, and infinite only where that
-    /// is more than the largest double.
+    /// The distance along the ray, in lengths of its direction: at least 0. It is infinite only if
+    /// it exceeds the largest double.
     pub t: f64,
-    /// How far along the face, from 0 at its left end to 1 at its right, as its viewer sees it.
+    /// The texture coordinate: the position along the face, from 0 at its left end to 1 at its
+    /// right end, as the viewer sees it.
     pub u: f64,
 }
 
 impl Hit {
-    /// Where `ray` crosses a line of kind `side` into `cell`, which must be one that it does cross:
-    /// `t` within 2 units in its last place, `u` within 10⁻¹².
+    /// The hit of `ray` on `cell` by a line of kind `side`, which the ray must cross into the cell.
+    /// `t` is within 2 units in its last place, and `u` within 10⁻¹².
     ///
-    /// The distance comes from the index of the cell, by one subtraction and one division; a sum
-    /// that runs from line to line would gather an error at each of them.
+    /// The distance is computed from the index of the cell, by one subtraction and one division. A
+    /// running sum from line to line would accumulate an error for each line.
     #[inline]
     pub fn entering(ray: &Ray, cell: Cell, side: Side) -> Self {
         let direction = ray.direction();
@@ -54,8 +55,8 @@ impl Hit {
     }
 }
 
-/// How far along `ray` it meets the line of kind `side` through `corner`, which must not lie behind
-/// it, and how far from the corner that is, to the south or to the east.
+/// The distance along `ray` to the line of kind `side` through `corner`, and the distance from the
+/// corner to that point, to the south or to the east. The line must not be behind the ray's start.
 #[inline]
 pub(super) fn meeting(ray: &Ray, side: Side, corner: DVec2) -> (f64, f64) {
     let (origin, direction) = (ray.origin(), ray.direction());
@@ -73,7 +74,7 @@ pub(super) fn meeting(ray: &Ray, side: Side, corner: DVec2) -> (f64, f64) {
     (t, along)
 }
 
-/// How far from `corner` a line is met, where the two terms of that are large.
+/// The distance from `corner` to the crossing, if both terms of the sum are large.
 #[cold]
 #[inline(never)]
 fn far_along(origin: DVec2, direction: DVec2, side: Side, corner: DVec2) -> f64 {
@@ -84,10 +85,11 @@ fn far_along(origin: DVec2, direction: DVec2, side: Side, corner: DVec2) -> f64 
     }
 }
 
-/// Up to this many cells, two rounded terms of that size add up to within 10⁻¹² of their true sum.
+/// For terms of up to this many cells, the sum of two rounded terms is within 10⁻¹² of the true
+/// sum.
 const FAR: f64 = 1024.0;
 
-/// The north or west end of the face by which a ray along `direction` enters `cell`.
+/// The north or west end of the face through which a ray along `direction` enters `cell`.
 #[inline]
 fn corner_of_face(direction: DVec2, cell: Cell, side: Side) -> DVec2 {
     let (column, row) = (f64::from(cell.column), f64::from(cell.row));
@@ -98,11 +100,11 @@ fn corner_of_face(direction: DVec2, cell: Cell, side: Side) -> DVec2 {
     }
 }
 
-/// The texture coordinate of a place on a face, `along` cells from its north or west end, as a
-/// viewer sees it who looks along `direction`.
+/// The texture coordinate of a point `along` cells from the north or west end of a face, for a
+/// viewer who looks along `direction`.
 #[inline]
 pub(crate) fn texture_coordinate(direction: DVec2, side: Side, along: f64) -> f64 {
-    // Zero is added to be rid of its sign.
+    // Adding zero turns −0 into +0.
     let along = along.clamp(0.0, 1.0) + 0.0;
     let from_left = match side {
         Side::X => direction.x > 0.0,

@@ -1,10 +1,11 @@
 //! Traversal along the major axis: the exact walk's cells, several grid lines at a time.
 //!
-//! The major axis is the one along which the ray moves faster; *lines* are the grid lines across it, and
-//! *bands* are the rows or columns between the lines of the other axis. Between two lines the ray crosses
-//! at most one line of the other axis, so its band at each line tells everything: a band that differs from
-//! the one before was entered just before this line. No step depends on what the last one found, so a
-//! processor computes several at once. The walk has to know which line it crossed to find the next.
+//! The major axis is the one along which the ray moves faster; *lines* are the grid lines across
+//! it, and *bands* are the rows or columns between the lines of the other axis. Between two lines
+//! the ray crosses at most one line of the other axis, so that its bands at the lines determine its
+//! cells: a band that differs from the previous one was entered just before this line. No step
+//! depends on the result of the previous one, so that a processor computes several at once. The
+//! walk has to know which line it crossed to find the next.
 //!
 //! The traversal need not stop at every line. A ray that crosses n lines changes its band by at most n,
 //! so it may leap as far as the [distance field](crate::world::DistanceField) says.

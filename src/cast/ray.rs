@@ -1,10 +1,10 @@
-//! The ray, and what every method wants to know of it first.
+//! The ray, and the scaling of its direction.
 
 use std::fmt;
 
 use glam::DVec2;
 
-/// A half-line on the map: a finite origin, and a finite direction that is not zero.
+/// A half-line on the map, with a finite origin and a finite direction that is not zero.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Ray {
     origin: DVec2,
@@ -12,10 +12,10 @@ pub struct Ray {
 }
 
 impl Ray {
-    /// The ray from `origin`, in cells, along `direction`, of any length but zero.
+    /// The ray from `origin`, in cells, along `direction`, which may have any length but zero.
     ///
     /// # Errors
-    /// Where either is not finite, or the direction is zero.
+    /// Returns an error if either is not finite, or if the direction is zero.
     pub fn new(origin: DVec2, direction: DVec2) -> Result<Self, NotARay> {
         if !origin.is_finite() {
             Err(NotARay::Origin)
@@ -28,12 +28,12 @@ impl Ray {
         }
     }
 
-    /// Where it starts.
+    /// The start.
     pub fn origin(&self) -> DVec2 {
         self.origin
     }
 
-    /// Where it goes, and the length that `t` is measured in.
+    /// The direction, whose length is the unit of `t`.
     pub fn direction(&self) -> DVec2 {
         self.direction
     }
@@ -43,22 +43,22 @@ impl Ray {
         self.origin + self.direction * t
     }
 
-    /// The direction with its larger component between 1/2 and 1, and the exponent of the power of
-    /// two that it was divided by. The smaller component vanishes where it is too small beside the
-    /// larger one to be a double.
+    /// The direction scaled by a power of two so that its larger component is between 1/2 and 1,
+    /// and the exponent of the divisor. The smaller component underflows to 0 if it is too small
+    /// relative to the larger one.
     pub(crate) fn scaled_direction(&self) -> (DVec2, i32) {
         let exponent = libm::ilogb(self.direction.abs().max_element()) + 1;
         let scale = |component| libm::scalbn(component, -exponent);
         (DVec2::new(scale(self.direction.x), scale(self.direction.y)), exponent)
     }
 
-    /// The same line begun elsewhere, and `t` measured in another length.
+    /// The ray of the same line with another origin and another unit of `t`.
     pub(crate) fn moved(origin: DVec2, direction: DVec2) -> Self {
         Self { origin, direction }
     }
 }
 
-/// The error of [`Ray::new`]: what keeps the numbers from being a ray.
+/// The error of [`Ray::new`].
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum NotARay {
     /// The origin is not finite.

@@ -1,10 +1,10 @@
 //! The order of lines by their distances in double precision.
 //!
-//! The ray meets the next x line at `(x - origin.x) / direction.x` and the next y line at
-//! `(y - origin.y) / direction.y`. Only their order matters while walking, so both are multiplied by
-//! `|direction.x · direction.y|`: two products are compared, nothing is divided, and a ray through a
-//! corner compares equal. Both are computed from the index of the line; adding up a length from line
-//! to line was refused because its error grows with the distance.
+//! The ray meets the next x line at `(x - origin.x) / direction.x`, and the next y line at `(y -
+//! origin.y) / direction.y`. A walk only needs their order, so that both are multiplied by
+//! `|direction.x · direction.y|`: two products are compared, without a division, and at a corner
+//! both are equal. Both are computed from the index of the line. Adding up lengths from line to
+//! line was refused, because the error grows with the distance.
 
 use glam::DVec2;
 
@@ -14,14 +14,14 @@ use super::{Order, Ray, Side};
 #[derive(Clone, Debug)]
 pub struct RoundedOrder {
     origin: DVec2,
-    /// For each axis the share of the direction that the other one has, with the sign of its own.
+    /// For each axis, the size of the direction along the other axis, with the sign of this axis.
     pub(super) weight: DVec2,
 }
 
 impl RoundedOrder {
     /// The order for `ray`.
     pub fn new(ray: &Ray) -> Self {
-        // Scaled, so that no product of a length and a direction overflows.
+        // The direction is scaled, so that no product of a length and a direction overflows.
         let (scaled, _) = ray.scaled_direction();
         let direction = ray.direction();
         let weight = |own: f64, other: f64| if own < 0.0 { -other.abs() } else { other.abs() };
@@ -29,7 +29,7 @@ impl RoundedOrder {
         Self { origin: ray.origin(), weight }
     }
 
-    /// How far the lines at `x` and `y` are, in a measure that both share.
+    /// The distances to the lines at `x` and `y`, in a common unit.
     #[inline]
     pub(super) fn distances(&self, x: f64, y: f64) -> (f64, f64) {
         ((x - self.origin.x) * self.weight.x, (y - self.origin.y) * self.weight.y)

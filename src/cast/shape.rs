@@ -1,10 +1,10 @@
-//! Shapes within a cell: where a ray meets a pillar or a line.
+//! Shapes within a cell: the hit of a ray on a pillar or a line.
 //!
-//! Both are solved from the ray's own start, and neither by steps: a line by the quotient of two cross
-//! products, whose signs tell without rounding on which side of its ends the ray passes; a pillar by a
-//! quadratic equation in numbers of twice the digits. The ends belong to the line, and a ray that
-//! just touches a pillar hits it. One that runs along a line, or starts inside a pillar, meets
-//! nothing.
+//! Both are solved in closed form from the ray's origin. For a line, the distance is the quotient
+//! of two cross products, whose exact signs tell on which side of an end the ray passes. For a
+//! pillar, it is the root of a quadratic equation in double-double arithmetic. The ends belong to
+//! the line, and a ray that touches a pillar hits it. A ray along the line, or from inside the
+//! pillar, hits nothing.
 
 use std::f64::consts::TAU;
 
@@ -14,19 +14,20 @@ use super::{Hit, Ray, Side};
 use crate::numeric::{DoubleDouble, cross, sign_of_cross};
 use crate::world::{Cell, Line, Outline, PillarRadius};
 
-/// Where a ray passes through a shape.
+/// The intersection of a ray with a shape.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub(crate) struct Passage {
-    /// Where it meets the outside; `None` where it passes by, or starts inside.
+    /// The hit on the outside; `None` if the ray misses the shape or starts inside.
     pub(crate) hit: Option<Hit>,
-    /// How far along the ray it comes out, if it has been inside: a line has no inside.
+    /// The `t` at which the ray leaves the shape, if it was inside. A line has no inside.
     pub(crate) end: Option<f64>,
 }
 
 impl Passage {
     pub(crate) const NONE: Self = Self { hit: None, end: None };
 
-    /// The one of `ray`, which is in `cell` for a while, through the shape of that outline there.
+    /// The intersection of `ray`, which passes through `cell`, with the shape of this `outline`
+    /// there.
     #[inline]
     pub(super) fn new(ray: &Ray, cell: Cell, outline: Outline) -> Self {
         match outline {
@@ -39,24 +40,24 @@ impl Passage {
     }
 }
 
-/// Where `ray`, which is in `cell` for a while, meets the shape of that outline there. `None` where it
-/// passes it by.
+/// The hit of `ray`, which passes through `cell`, on the shape of this `outline` there. `None` if
+/// it misses.
 pub(super) fn meet(ray: &Ray, cell: Cell, outline: Outline) -> Option<Hit> {
     Passage::new(ray, cell, outline).hit
 }
 
 fn meet_line(ray: &Ray, cell: Cell, line: Line) -> Option<Hit> {
-    let (start, stretch) = (line.start(cell), line.stretch());
+    let (start, extent) = (line.start(cell), line.stretch());
     let (direction, exponent) = ray.scaled_direction();
-    // How fast the line is approached, from its left or its right; rounded at most once.
-    let across = direction.x * stretch.y - direction.y * stretch.x;
+    // The speed towards the line, from its left or its right; rounded at most once.
+    let across = direction.x * extent.y - direction.y * extent.x;
     let side_of = |end| sign_of_cross(ray.origin(), ray.direction(), end);
-    let (from_start, from_end) = (side_of(start), side_of(start + stretch));
+    let (from_start, from_end) = (side_of(start), side_of(start + extent));
     let is_beside = from_start > 0.0 && from_end > 0.0 || from_start < 0.0 && from_end < 0.0;
     if across == 0.0 || is_beside {
         return None;
     }
-    let to_line = cross(ray.origin(), stretch, start);
+    let to_line = cross(ray.origin(), extent, start);
     let is_ahead = to_line.sign() == 0.0 || (to_line.sign() > 0.0) == (across > 0.0);
     if !is_ahead {
         return None;
@@ -64,28 +65,28 @@ fn meet_line(ray: &Ray, cell: Cell, line: Line) -> Option<Hit> {
     let t = libm::scalbn(to_line.over(across), -exponent).abs();
     let along = cross(ray.origin(), direction, start).over(across).clamp(0.0, 1.0) + 0.0;
     let u = if across > 0.0 { along } else { 1.0 - along };
-    Some(Hit { cell, side: facing(stretch.perp()), t, u })
+    Some(Hit { cell, side: facing(extent.perp()), t, u })
 }
 
-/// The part of a line that is in a pillar, in numbers that are larger by the length of the ray's scaled
+/// The chord of a pillar on a line. All values are multiplied by the length of the ray's scaled
 /// direction.
 struct Chord {
-    /// The way from the ray's start to the middle of the chord.
+    /// The distance from the ray's origin to the middle of the chord.
     to_closest: f64,
     half_length: f64,
-    /// By how much the square of the start's distance from the axis is larger than that of the radius;
-    /// not larger by anything.
+    /// The squared distance of the origin from the axis minus the squared radius. This one is not
+    /// multiplied.
     outside: f64,
-    /// By how much the line misses the axis, to one side.
+    /// The signed distance of the line from the axis.
     miss: f64,
-    /// The square of the length that it all is larger by.
+    /// The square of the factor by which the others are multiplied.
     scale_squared: f64,
 }
 
 impl Chord {
-    /// The chord of the line that `ray` is part of; `None` where that passes by.
+    /// The chord on the line of `ray`; `None` if the line misses the pillar.
     fn new(ray: &Ray, cell: Cell, radius: PillarRadius) -> Option<Self> {
-        /// From further away than that, squares are beyond what a double holds.
+        /// Beyond this distance, squares overflow.
         const FARTHEST: f64 = 1e100;
         let (center, radius) = (cell.center(), radius.cells());
         let (direction, _) = ray.scaled_direction();
@@ -113,7 +114,7 @@ impl Chord {
         })
     }
 
-    /// Where `ray`, from outside, meets the pillar of that `radius` in `cell`.
+    /// The hit of `ray`, from outside, on the pillar with this `radius` in `cell`.
     fn hit(&self, ray: &Ray, cell: Cell, radius: PillarRadius) -> Option<Hit> {
         let &Self { to_closest, half_length, outside, miss, .. } = self;
         if outside < 0.0 || to_closest <= 0.0 {
@@ -125,9 +126,9 @@ impl Chord {
         Some(Hit { cell, side: facing(outward), t, u: around_pillar(outward, radius.cells()) })
     }
 
-    /// How far along `ray` it comes out; `None` where that is behind it.
+    /// The `t` at which `ray` leaves the pillar; `None` if that is behind the origin.
     fn end(&self, ray: &Ray) -> Option<f64> {
-        // Of the two ways to write the solution, the one that adds up what has one sign.
+        // Of the two forms of the solution, this one adds terms of the same sign.
         let scaled = if self.to_closest > 0.0 {
             (self.to_closest + self.half_length) / self.scale_squared
         } else {
@@ -139,8 +140,8 @@ impl Chord {
     }
 }
 
-/// Whether a line along `direction` passes a circle at `way` by more than all rounding of doubles
-/// amounts to: most of those that pass it do, and need no more digits.
+/// Whether a line along `direction` misses a circle at `way` by more than the rounding of doubles.
+/// This holds for most lines that miss, which then need no double-double arithmetic.
 fn is_clearly_beside(way: DVec2, direction: DVec2, radius: f64) -> bool {
     const ROUNDING: f64 = 1e-12;
     let miss = (way.x * direction.y - way.y * direction.x).abs();
@@ -148,16 +149,16 @@ fn is_clearly_beside(way: DVec2, direction: DVec2, radius: f64) -> bool {
     miss > reach + (reach + way.x.abs() + way.y.abs()) * ROUNDING
 }
 
-/// How far along its paper a pillar shows where it faces `outward`. The paper is pasted around it as
-/// many times as lets a cell of it be nearest to a cell wide.
+/// The texture coordinate where a pillar faces `outward`. The texture is repeated around the pillar
+/// a whole number of times, so that each copy is as close as possible to one cell wide.
 fn around_pillar(outward: DVec2, radius: f64) -> f64 {
     let times = (TAU * radius).round().max(1.0);
     let turn = libm::atan2(-outward.y, outward.x) / TAU * times;
-    // What is just below 0 would be rounded to 1, the left edge of the next sheet.
+    // A value just below 0 would be rounded to 1, the left edge of the next copy.
     Some(turn - turn.floor()).filter(|&u| u < 1.0).unwrap_or_default()
 }
 
-/// The kind of grid line that something runs along most, which faces along `normal`.
+/// The kind of grid line closest in direction to a surface with this `normal`.
 fn facing(normal: DVec2) -> Side {
     if normal.x.abs() >= normal.y.abs() { Side::X } else { Side::Y }
 }

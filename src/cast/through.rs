@@ -1,13 +1,13 @@
-//! The walk past what a ray may pass: doors that are ajar, shapes, glass, and holes.
+//! Casting through doors that are ajar, shapes, glass, and masks.
 //!
-//! It stops at every solid cell and asks what that is; between two of them it is the walk that looks
-//! for walls, and costs the same.
+//! The traversal stops at every solid cell, and this module decides whether the ray goes on.
+//! Between solid cells the cost is that of casting at walls.
 
 use super::{Crossing, Hit, Ray, Side, door, shape};
 use crate::world::{Cell, TileId, TileKind, World};
 
-/// What `ray` hits in `world`, where it starts in one cell and enters those `solid_cells`; it tells
-/// `passed` what it passes.
+/// The hit of `ray` in `world`. The ray starts in the cell `start` and enters `solid_cells`; the
+/// transparent faces that it enters are passed to `passed`.
 pub(super) fn cast(
     start: Option<(Cell, TileId)>,
     solid_cells: impl Iterator<Item = Crossing>,
@@ -50,7 +50,7 @@ pub(super) fn cast(
     None
 }
 
-/// What the cell holds that `ray` leaves by a crossing.
+/// The tile of the cell that `ray` leaves by a crossing.
 fn tile_before(world: &World, ray: &Ray, crossing: Crossing) -> Option<TileId> {
     let back = |direction: f64| if direction > 0.0 { -1 } else { 1 };
     let (columns, rows) = match crossing.side {

@@ -13,14 +13,14 @@ use super::{Error, level, snapshot};
 use crate::lab::accuracy::{Plan, RaySource, Report, report, set_names};
 use progress::Progress;
 
-/// Reports what `options` ask for.
+/// Writes the report that `options` request.
 pub(super) fn run(options: &Accuracy) -> Result<(), Error> {
     if matches!(options.format, ReportFormat::Png) && io::stdout().is_terminal() {
         return Err(snapshot::no_png_here("accuracy"));
     }
     let world = match &options.map {
         Some(map) => level::load_grid(Some(map))?,
-        // The built-in level in which there is most to see.
+        // The built-in level with the most features.
         None => level::load_grid(Some("museum".as_ref()))?,
     };
     let rays = match (&options.set, &options.map) {

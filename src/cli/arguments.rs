@@ -1,8 +1,8 @@
-//! The arguments: words to typed options, each mistake one sentence.
+//! Argument parsing: from words to typed options, with one sentence for each mistake.
 //!
-//! Every subcommand is described once, by a [`Subcommand`]: parsing, help, completions and the manual
-//! page come from that. clap's derive was refused: what an option takes, for the sentences about
-//! mistakes, has no place in it.
+//! Every subcommand is described once, by a [`Subcommand`]. Parsing, help, completions and the
+//! manual page use this description. clap's derive macro was refused: it has no field for the text
+//! about an option's valid values, which the sentences about mistakes need.
 
 mod about;
 mod accuracy;
@@ -35,7 +35,7 @@ pub(super) use self::cast::Cast;
 pub(super) use self::config::Config;
 pub(super) use self::generated::Generated;
 pub(super) use self::map::STANDARD_INPUT;
-use self::option::Described;
+use self::option::OptionSpec;
 pub(super) use self::play::{FidelityChoice, Play};
 pub(super) use self::replay::Replay;
 pub(super) use self::snapshot::{Format, Snapshot};
@@ -43,7 +43,7 @@ pub(super) use self::value::Size;
 pub(super) use self::wire::{Wire, WireFormat};
 use super::Error;
 
-/// What is asked for.
+/// The requested command.
 #[derive(Debug)]
 pub(super) enum Command {
     /// A text to print: help, or the version.
@@ -62,7 +62,7 @@ pub(super) enum Command {
 }
 
 impl Command {
-    /// What `arguments` ask for, the program's own name first.
+    /// The command that `arguments` request. The first argument is the program's own name.
     pub(super) fn parse(arguments: impl IntoIterator<Item = OsString>) -> Result<Self, Error> {
         let (words, subcommand) = order::subcommand_first(arguments.into_iter().collect());
         let mut program = description();
@@ -85,7 +85,7 @@ impl Command {
     }
 }
 
-/// The subcommands, in the order of the help.
+/// The subcommands in the order of the help.
 const SUBCOMMANDS: [&Subcommand; 12] = [
     &play::SUBCOMMAND,
     &snapshot::SUBCOMMAND,
@@ -101,32 +101,32 @@ const SUBCOMMANDS: [&Subcommand; 12] = [
     &about::HELP,
 ];
 
-/// A subcommand, and all that is said of it anywhere.
+/// The description of a subcommand.
 struct Subcommand {
     name: &'static str,
-    /// What it does, in a line.
+    /// The action in one line.
     about: &'static str,
-    /// More about that, for the long help; may be empty.
+    /// More for the long help; may be empty.
     details: &'static str,
-    /// A command a line.
+    /// One command on each line.
     examples: &'static str,
     positionals: &'static [Positional],
-    options: &'static [&'static dyn Described],
-    /// What it takes, to say so where a word is too many.
+    options: &'static [&'static dyn OptionSpec],
+    /// The arguments that it takes, for the sentence about a surplus word.
     surplus: &'static str,
-    /// The sentence on what it can't do without; empty where it needs nothing.
+    /// The sentence about a missing required argument; empty if none is required.
     missing: &'static str,
     read: fn(ArgMatches) -> Result<Command, Error>,
 }
 
-/// An argument that is no option.
+/// A positional argument.
 struct Positional {
     name: &'static str,
     help: &'static str,
     is_required: bool,
     action: ArgAction,
     hint: ValueHint,
-    /// The values, where a list can name them all.
+    /// The possible values, if they are a fixed list.
     choices: &'static [&'static str],
 }
 
@@ -194,13 +194,13 @@ impl Subcommand {
         positionals.chain(self.options.iter().map(|option| option.argument()))
     }
 
-    /// Whether it has an option `name`, which is without dashes.
+    /// Whether it has an option `name`, without dashes.
     fn has(&self, name: &str) -> bool {
         self.options.iter().any(|option| option.name() == name)
     }
 
-    /// The option of that name, dashes and all.
-    fn option(&self, name: &str) -> Option<&'static dyn Described> {
+    /// The option of this name, with dashes.
+    fn option(&self, name: &str) -> Option<&'static dyn OptionSpec> {
         let name = name.strip_prefix("--")?;
         self.options.iter().copied().find(|option| option.name() == name)
     }
@@ -221,7 +221,7 @@ impl Positional {
         }
     }
 
-    /// The value that was given.
+    /// The given value.
     fn of(&self, matches: &mut ArgMatches) -> Option<OsString> {
         matches.remove_one(self.name)
     }

@@ -1,10 +1,10 @@
-//! Recordings of what a terminal was sent, in the format asciicast v3.
+//! Recordings of a terminal's output in the format asciicast v3.
 //!
-//! The first line is a header, and each line after it an event: the seconds since the event before
-//! it, what kind it is, and its data. A line is written in one piece and nothing is held back, so
-//! the file is whole after each of them, whatever becomes of the program.
+//! The first line is a header. Each following line is an event: the seconds since the previous
+//! event, the kind of event, and its data. Each line is written at once and without buffering, so
+//! that the file is valid after each line, even if the program is killed.
 //!
-//! A file says nothing of the time of day: the same play makes the same file.
+//! A file does not contain the time of day: the same play makes the same file.
 
 use std::io::{self, Write};
 use std::time::Duration;
@@ -12,16 +12,16 @@ use std::time::Duration;
 use ratatui::layout::Size;
 use serde_json::json;
 
-/// Writes a recording.
+/// A writer of a recording.
 #[derive(Debug)]
 pub(super) struct Asciicast<W> {
     output: W,
-    /// When the event before was, in milliseconds, as the file has it.
+    /// The time of the previous event in milliseconds, as in the file.
     last: u128,
 }
 
 impl<W: Write> Asciicast<W> {
-    /// Begins a recording of a terminal of `size`.
+    /// Starts a recording of a terminal of `size`.
     pub(super) fn begin(output: W, size: Size) -> io::Result<Self> {
         let mut asciicast = Self { output, last: 0 };
         let terminal = json!({ "cols": size.width, "rows": size.height });
@@ -29,24 +29,23 @@ impl<W: Write> Asciicast<W> {
         Ok(asciicast)
     }
 
-    /// The terminal was sent `bytes` at `time`, counted from the beginning. They hold whole
-    /// characters.
+    /// Records that `bytes` were sent at `time`, counted from the start. They are whole characters.
     pub(super) fn sent(&mut self, time: Duration, bytes: &[u8]) -> io::Result<()> {
         self.write_event(time, "o", &String::from_utf8_lossy(bytes))
     }
 
-    /// The terminal was of another size from `time` on.
+    /// Records that the terminal's size changed at `time`.
     pub(super) fn resized(&mut self, time: Duration, size: Size) -> io::Result<()> {
         self.write_event(time, "r", &format!("{}x{}", size.width, size.height))
     }
 
-    /// Writes what `output` has held back.
+    /// Flushes `output`.
     pub(super) fn finish(mut self) -> io::Result<()> {
         self.output.flush()
     }
 
     fn write_event(&mut self, time: Duration, code: &str, data: &str) -> io::Result<()> {
-        // Rounded as times, not as intervals: the errors of those would add up.
+        // Times are rounded, not intervals, whose errors would add up.
         let now = time.as_millis().max(self.last);
         let interval = now - self.last;
         self.last = now;

@@ -1,4 +1,4 @@
-//! `cellcaster bench`: how fast this machine is at it.
+//! `cellcaster bench`: the speed on this machine.
 
 mod footprint;
 mod json;
@@ -22,7 +22,7 @@ use crate::lab::speed::{DrawingRow, Growth, measure_drawing, measure_growth};
 use crate::lab::wire::{PipelineRow, measure_pipeline};
 use footprint::Footprint;
 
-/// What was measured.
+/// The results.
 struct Report {
     footprint: Footprint,
     drawing: Vec<DrawingRow>,
@@ -30,12 +30,12 @@ struct Report {
     pipeline: Vec<PipelineRow>,
 }
 
-/// The windows that the pipeline is measured in.
+/// The windows in which the pipeline is measured.
 const WINDOWS: [Size; 3] = [Size::new(80, 24), Size::new(120, 40), Size::new(200, 60)];
 
-/// Reports what `options` ask for.
+/// Writes the report that `options` request.
 pub(super) fn run(options: &Bench) -> Result<(), Error> {
-    // Who gives a file that can't be written is told so at once.
+    // A file that cannot be written is reported before the measurement.
     let plot = match &options.plot {
         Some(path) => Some((path, File::create(path).map_err(|error| unwritable(path, &error))?)),
         None => None,
@@ -62,10 +62,10 @@ fn write(report: &Report, format: BenchFormat, mut output: impl Write) -> io::Re
 }
 
 impl Report {
-    /// Measures for about that `time`.
+    /// Measures for about `time`.
     fn measure(time: Duration) -> Result<Self, Error> {
         Ok(Self {
-            // First of all: nothing else has taken any memory yet.
+            // First, because nothing has allocated memory yet.
             footprint: Footprint::measure()?,
             drawing: measure_drawing(time * 2 / 5),
             growth: measure_growth(time / 5),
@@ -74,7 +74,7 @@ impl Report {
     }
 }
 
-/// A game of the level that the showcase is about.
+/// A game of the showcase's level.
 fn begin(size: Size) -> Result<Replay, Error> {
     let levels = level::load_series(Some(OsStr::new(SHOWCASE.level)))?;
     Ok(Replay::new(levels, Settings::default(), size))
@@ -88,23 +88,23 @@ fn pipeline(time: Duration) -> Result<Vec<PipelineRow>, Error> {
     Ok(rows?.into_iter().flatten().collect())
 }
 
-/// Megabits a second of the links that frame rates are told for.
+/// The speeds of the links for which frame rates are reported, in megabits per second.
 const LINKS: [u32; 3] = [1, 10, 100];
 
-/// How many frames of `row` a second go over a link of so many megabits a second: as many as are
-/// drawn in that time, at most.
+/// The number of frames of `row` per second on a link of this speed, limited by the time to draw
+/// them.
 fn frames_per_second(row: &PipelineRow, megabits: u32) -> f64 {
     let bits = row.bytes * 8.0;
     let sending = bits / (f64::from(megabits) * 1e6);
     1.0 / sending.max(row.time.as_secs_f64()).max(f64::MIN_POSITIVE)
 }
 
-/// The row of ratatui's own encoder in the window of `row`.
+/// The row of ratatui's own encoder in the same window as `row`.
 fn stock<'a>(report: &'a Report, row: &PipelineRow) -> Option<&'a PipelineRow> {
     report.pipeline.iter().find(|other| other.size == row.size)
 }
 
-/// How long a frame of `row` takes, as a share of what it takes ratatui's own encoder.
+/// The ratio of a frame's time to that of ratatui's own encoder.
 fn share_of_stock(report: &Report, row: &PipelineRow) -> f64 {
     let stock = stock(report, row).unwrap_or(row);
     row.time.as_secs_f64() / stock.time.as_secs_f64().max(f64::MIN_POSITIVE)

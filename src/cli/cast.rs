@@ -1,4 +1,4 @@
-//! `cellcaster cast`: rays in, hits out, a line each.
+//! `cellcaster cast`: one line of output for each ray on standard input.
 
 use std::io::{self, BufRead, BufReader, BufWriter, Write};
 
@@ -14,15 +14,15 @@ use crate::world::World;
 /// Answers every line of standard input until it ends.
 pub(super) fn run(options: &Cast) -> Result<(), Error> {
     let world = level::load_grid(options.map.as_deref())?;
-    options.method.accept(Dialogue { world: &world })
+    options.method.accept(RayLoop { world: &world })
 }
 
-/// Rays from standard input and hits to standard output, with whichever caster.
-struct Dialogue<'a> {
+/// Reads rays from standard input and writes hits to standard output.
+struct RayLoop<'a> {
     world: &'a World,
 }
 
-impl Visitor for Dialogue<'_> {
+impl Visitor for RayLoop<'_> {
     type Output = Result<(), Error>;
 
     fn visit<C: Caster>(self, caster: &C) -> Result<(), Error> {
@@ -39,7 +39,7 @@ impl Visitor for Dialogue<'_> {
             }
             let answer = answer(self.world, caster, &line);
             write(&answer, &mut output).map_err(|error| Error::of_output(&error))?;
-            // Somebody may be waiting for this answer before they ask on.
+            // The other program may wait for this answer before it sends the next ray.
             if input.buffer().is_empty() {
                 output.flush().map_err(|error| Error::of_output(&error))?;
             }
@@ -47,7 +47,7 @@ impl Visitor for Dialogue<'_> {
     }
 }
 
-/// What is written for one ray.
+/// The line of output for one ray.
 #[derive(Debug, Serialize)]
 #[serde(untagged)]
 enum Answer {

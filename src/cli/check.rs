@@ -1,4 +1,4 @@
-//! `cellcaster check`: everything that is wrong with maps.
+//! `cellcaster check`: all faults of maps.
 
 use std::ffi::OsString;
 use std::io::{self, Write};
@@ -7,7 +7,7 @@ use super::{Error, level};
 use crate::game::is_exit_out_of_reach;
 use crate::map::Level;
 
-/// Checks all `maps`, whatever the faults of the first, and says which ones are right.
+/// Checks all `maps`, even after a fault, and lists the valid ones.
 pub(super) fn run(maps: &[OsString]) -> Result<(), Error> {
     let mut wrong = 0_usize;
     for map in maps {
@@ -24,12 +24,12 @@ pub(super) fn run(maps: &[OsString]) -> Result<(), Error> {
     }
     match (wrong, maps.len()) {
         (0, _) => Ok(()),
-        (1, 1) => Err(Error::told()),
+        (1, 1) => Err(Error::reported()),
         (_, all) => Err(Error::mistake(format!("{wrong} of {all} maps are wrong, as said above"))),
     }
 }
 
-/// The size of a level, and what its author may want to know that is no fault.
+/// The size of a level, and remarks that are not faults.
 fn summary(level: &Level) -> String {
     let world = match level {
         Level::Grid(world) => world,

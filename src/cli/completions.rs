@@ -1,4 +1,4 @@
-//! `cellcaster completions`: what a shell completes, from the description of the arguments.
+//! `cellcaster completions`: shell completions from the description of the arguments.
 
 use std::io::{self, Write};
 

@@ -1,4 +1,4 @@
-//! `cellcaster config`: the settings in force, as a file.
+//! `cellcaster config`: the settings in force, as a configuration file.
 
 use std::fs;
 use std::io::{self, Write};
@@ -10,15 +10,15 @@ use super::Error;
 use super::arguments::Config;
 use crate::app::Configuration;
 
-/// The configuration in force, and where its file lies.
+/// The configuration in force, and the path of its file.
 pub(super) struct InForce {
     pub(super) configuration: Configuration,
     path: Option<PathBuf>,
-    /// Whether there is a file at all.
+    /// Whether the file exists.
     is_there: bool,
 }
 
-/// Prints the configuration as a file that says the same.
+/// Prints the configuration as a file with the same effect.
 pub(super) fn run(options: Config) -> Result<(), Error> {
     let InForce { configuration, path, is_there } = load(options.config)?;
     let place = match path {
@@ -35,7 +35,7 @@ pub(super) fn run(options: Config) -> Result<(), Error> {
     io::stdout().write_all(text.as_bytes()).map_err(|error| Error::of_output(&error))
 }
 
-/// What the file says that was named, or the user's own if there is one.
+/// The configuration of the named file, or of the user's own file if it exists.
 pub(super) fn load(named: Option<PathBuf>) -> Result<InForce, Error> {
     let is_named = named.is_some();
     let Some(path) = named.or_else(default_path) else {
@@ -56,7 +56,7 @@ pub(super) fn load(named: Option<PathBuf>) -> Result<InForce, Error> {
     Ok(InForce { configuration, path: Some(path), is_there })
 }
 
-/// `cellcaster/config.toml` where the platform keeps configuration.
+/// `cellcaster/config.toml` in the platform's folder for configuration.
 fn default_path() -> Option<PathBuf> {
     let folder = choose_base_strategy().ok()?.config_dir();
     Some(folder.join("cellcaster").join("config.toml"))

@@ -1,4 +1,4 @@
-//! Why a command ended early.
+//! The errors of commands.
 
 use std::fmt;
 use std::io;
@@ -7,7 +7,7 @@ use std::process::ExitCode;
 use crate::fault::Faults;
 use crate::terminal;
 
-/// Why a command ended early: a whole sentence, or a report of several, and the status to end with.
+/// The error of a command: a sentence, or a report of several faults, and the exit status.
 #[derive(Debug)]
 pub struct Error {
     cause: Cause,
@@ -15,30 +15,30 @@ pub struct Error {
 
 #[derive(Debug)]
 enum Cause {
-    /// The user asked for something that can't be done.
+    /// An invalid request.
     Mistake(String),
-    /// A file that the user wrote is wrong.
+    /// A file of the user with faults.
     Faults(Faults),
-    /// The machine refused something.
+    /// A failure of the system.
     Machine(String),
-    /// A mistake that has been told of.
-    Told,
-    /// Nobody reads what is written any more.
+    /// A mistake that has already been reported.
+    Reported,
+    /// The reader of the output has closed the pipe.
     ClosedPipe,
 }
 
 impl Error {
-    /// The user asked for something that can't be done, as `sentence` says.
+    /// An invalid request, described by `sentence`.
     pub(super) fn mistake(sentence: impl Into<String>) -> Self {
         Self { cause: Cause::Mistake(sentence.into()) }
     }
 
-    /// A mistake that has been told of already.
-    pub(super) fn told() -> Self {
-        Self { cause: Cause::Told }
+    /// A mistake that has already been reported.
+    pub(super) fn reported() -> Self {
+        Self { cause: Cause::Reported }
     }
 
-    /// Standard output took no more.
+    /// The error of writing to standard output.
     pub(super) fn of_output(error: &io::Error) -> Self {
         let cause = match error.kind() {
             io::ErrorKind::BrokenPipe => Cause::ClosedPipe,
@@ -47,21 +47,21 @@ impl Error {
         Self { cause }
     }
 
-    /// The machine refused something, as `sentence` says.
+    /// A failure of the system, described by `sentence`.
     pub(super) fn machine(sentence: impl Into<String>) -> Self {
         Self { cause: Cause::Machine(sentence.into()) }
     }
 
-    /// Prints what there is to say, for a command that goes on.
+    /// Prints the message of a command that continues.
     pub(super) fn warn(&self) {
         print(self);
     }
 
-    /// Prints what there is to say, and tells the status to end with.
+    /// Prints the message, and returns the exit status.
     pub(super) fn report(&self) -> ExitCode {
         match &self.cause {
             Cause::ClosedPipe => ExitCode::SUCCESS,
-            Cause::Told => ExitCode::from(2),
+            Cause::Reported => ExitCode::from(2),
             Cause::Mistake(_) | Cause::Faults(_) => {
                 print(self);
                 ExitCode::from(2)
@@ -74,7 +74,7 @@ impl Error {
     }
 }
 
-/// Writes to standard error; where even that is closed, nobody is there to be told.
+/// Writes to standard error. If that is closed, too, the message is lost.
 fn print(error: &Error) {
     use io::Write;
     let _ = writeln!(io::stderr(), "{error}");
@@ -103,7 +103,7 @@ impl fmt::Display for Error {
                 write!(f, "cellcaster: {sentence}")
             }
             Cause::Faults(faults) => faults.fmt(f),
-            Cause::Told => f.write_str("cellcaster: told already"),
+            Cause::Reported => f.write_str("cellcaster: already reported"),
             Cause::ClosedPipe => f.write_str("cellcaster: the output was closed"),
         }
     }

@@ -1,4 +1,4 @@
-//! Which level a command is about.
+//! The level of a command.
 
 use std::ffi::OsStr;
 use std::io;
@@ -26,7 +26,8 @@ pub(super) fn load_grid(argument: Option<&OsStr>) -> Result<World, Error> {
     }
 }
 
-/// The level that `argument` names: a built-in one or a map file; without it, the first built-in.
+/// The level that `argument` names: a built-in level or a map file; without it, the first built-in
+/// level.
 pub(super) fn load(argument: Option<&OsStr>) -> Result<Level, Error> {
     let of_grid = |level: &builtin::Level| Ok(Level::from(level.world()?));
     let Some(argument) = argument else { return of_grid(&builtin::LEVELS[0]) };
@@ -38,7 +39,7 @@ pub(super) fn load(argument: Option<&OsStr>) -> Result<Level, Error> {
         return Ok(map::read_level(input, "<standard input>", &Folder::of(Path::new("")))?);
     }
     let path = Path::new(argument);
-    match misspelt(argument).filter(|_| !path.exists()) {
+    match similar_name(argument).filter(|_| !path.exists()) {
         Some(meant) => Err(Error::mistake(format!(
             "there is no map \"{}\"; did you mean {meant}?",
             argument.display()
@@ -47,8 +48,7 @@ pub(super) fn load(argument: Option<&OsStr>) -> Result<Level, Error> {
     }
 }
 
-/// The level in the file that `argument` names, and what tells when that changes. Nothing else can
-/// change.
+/// The level in the file that `argument` names, and its [`Watch`]. Only files can change.
 pub(super) fn watch(
     argument: Option<&OsStr>,
     generated: Option<Generated>,
@@ -59,7 +59,7 @@ pub(super) fn watch(
             let (level, watch) = Watch::load(Path::new(name));
             Ok((level?, watch))
         }
-        // Why it is none, if it is to be one.
+        // A name that looks like a map reports why it cannot be loaded.
         Some(name) if name != STANDARD_INPUT && builtin_level(name).is_none() => {
             load(argument).and_then(|_| Err(Error::mistake(NOTHING_TO_WATCH)))
         }
@@ -70,7 +70,7 @@ pub(super) fn watch(
 const NOTHING_TO_WATCH: &str =
     "--watch needs a map file, as in \"cellcaster play my.toml --watch\": nothing else changes";
 
-/// The level that `argument` names, and the built-in ones that follow it if it is one.
+/// The level that `argument` names; if it is built in, followed by the later ones.
 pub(super) fn load_series(argument: Option<&OsStr>) -> Result<Levels, Error> {
     let first = load(argument)?;
     let index = argument.map_or(Some(0), builtin_level);
@@ -83,7 +83,7 @@ pub(super) fn load_series(argument: Option<&OsStr>) -> Result<Levels, Error> {
     })
 }
 
-/// As [`load_series`], or the generated level, followed by those of the next seeds.
+/// As [`load_series`], or the generated level followed by those of the next seeds.
 pub(super) fn load_or_generate(
     map: Option<&OsStr>,
     generated: Option<Generated>,
@@ -110,14 +110,14 @@ pub(super) fn generate(generated: Generated, site: Option<Site>) -> Result<(Wind
 const NO_START: &str =
     "there is nowhere to stand at --start or --camera: that is outside the level";
 
-/// The place among the built-in levels of the one called `name`; a file of that name goes first.
+/// The index of the built-in level `name`. A file of this name takes precedence.
 fn builtin_level(name: &OsStr) -> Option<usize> {
     let index = builtin::LEVELS.iter().position(|level| name == level.name)?;
     (!Path::new(name).exists()).then_some(index)
 }
 
-/// The command or built-in level that somebody may have meant by `name`.
-fn misspelt(name: &OsStr) -> Option<&'static str> {
+/// The command or built-in level with a name similar to `name`.
+fn similar_name(name: &OsStr) -> Option<&'static str> {
     let levels = builtin::LEVELS.iter().map(|level| level.name);
     let known: Vec<&str> = subcommand_names().chain(levels).collect();
     nearest(name.to_str()?, &known)

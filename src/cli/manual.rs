@@ -1,6 +1,7 @@
 //! `cellcaster man`: the manual page, from the description of the arguments.
 //!
-//! One page for all: a page for each command would have to be installed with all others.
+//! There is one page for everything, because separate pages for commands would all have to be
+//! installed.
 
 use std::io::{self, Write};
 
@@ -8,14 +9,14 @@ use clap_mangen::Man;
 
 use super::{Error, arguments};
 
-/// Writes the page, in roff.
+/// Writes the page in roff.
 pub(super) fn run() -> Result<(), Error> {
     let page = page().map_err(|error| Error::machine(format!("no manual page: {error}")))?;
     io::stdout().write_all(&page).map_err(|error| Error::of_output(&error))
 }
 
 fn page() -> io::Result<Vec<u8>> {
-    // What follows the options at length is for those who have no pages to turn.
+    // The text after the options repeats the other sections of the page.
     let mut program = arguments::description().after_help(None).after_long_help(None);
     program.build();
     let subcommands: Vec<_> = program.get_subcommands().cloned().collect();
@@ -32,7 +33,7 @@ fn page() -> io::Result<Vec<u8>> {
     Ok(page)
 }
 
-/// A section for a command, in place of the several that a page of its own would have.
+/// A section for a command, instead of the several sections of a separate page.
 fn render_subcommand(command: clap::Command, page: &mut Vec<u8>) -> io::Result<()> {
     let name = command.get_name().to_uppercase();
     let man = Man::new(command);

@@ -1,4 +1,4 @@
-//! `cellcaster play`: the game on the terminal.
+//! `cellcaster play`: the game in the terminal.
 
 use std::env;
 use std::io::{self, IsTerminal};
@@ -12,7 +12,7 @@ use crate::app::{Levels, Settings};
 use crate::terminal::{self, locale_without_utf8, take_keys_from_terminal};
 use crate::tui::GlyphMode;
 
-/// Plays until the player has had enough.
+/// Plays until the player quits.
 pub(super) fn run(options: Play) -> Result<(), Error> {
     let levels = levels(&options)?;
     let configuration = config::load(options.config)?.configuration;
@@ -51,7 +51,7 @@ fn glyphs_of_locale() -> GlyphMode {
     }
 }
 
-/// The levels to play; where standard input is one, keys come from the terminal after that.
+/// The levels to play. If the map is on standard input, keys then come from the terminal.
 fn levels(options: &Play) -> Result<Levels, Error> {
     if options.watches {
         if options.record.as_deref().is_some_and(RecordingFile::is_script) {
@@ -75,7 +75,7 @@ fn levels(options: &Play) -> Result<Levels, Error> {
     Ok(levels)
 }
 
-/// What is wrong with the terminal; who came by SSH is told how to bring one.
+/// The fault of the terminal, with a hint for players who connect by SSH.
 fn about_the_terminal(error: terminal::Error) -> Error {
     let came_by_ssh = env::var_os("SSH_CONNECTION").is_some();
     if error.is_mistake() && came_by_ssh && !io::stdin().is_terminal() {

@@ -1,9 +1,9 @@
-//! Plots: marks on a page, and two ways to put them into a file.
+//! Plots: marks on a page, and two file formats to write them in.
 //!
-//! Who draws a plot makes a list of marks; an SVG file and a picture in pixels each know how to put
-//! marks down, and nothing of what they are about. Every page is white paper, so that it is read the
-//! same on a bright page and on a dark one. A library for charts was refused: those that draw text into
-//! pixels bring a font engine along.
+//! A plot is a list of marks. The SVG writer and the PNG writer draw marks without knowing their
+//! meaning. The background of every page is white, so that it looks the same on a light and on a
+//! dark page. A charting library was refused: those that draw text into pixels include a font
+//! engine.
 
 mod png;
 mod svg;
@@ -12,27 +12,28 @@ pub(super) use self::png::write as write_png;
 pub(super) use self::svg::write as write_svg;
 use crate::color::Rgb;
 
-/// A page and what is on it; places are from its top left corner.
+/// A page and its marks. Positions are relative to the top left corner.
 pub(super) struct Page {
     pub(super) width: f64,
     pub(super) height: f64,
     pub(super) marks: Vec<Mark>,
 }
 
-/// What is put on a page.
+/// A mark on a page.
 pub(super) enum Mark {
     /// A straight line.
-    Line { from: (f64, f64), to: (f64, f64), ink: Ink },
+    Line { from: (f64, f64), to: (f64, f64), color: PlotColor },
     /// A point.
-    Dot { at: (f64, f64), ink: Ink },
-    /// Text that begins, is in the middle, or ends there; no character of it means anything to XML.
+    Dot { at: (f64, f64), color: PlotColor },
+    /// Text that starts, is centered, or ends at a point. It has no character that is special in
+    /// XML.
     Text { at: (f64, f64), align: Align, text: String },
 }
 
-/// The colour of a line or a dot. All but the first are as bright as each other, and bold.
+/// The colour of a line or a dot. All but the first have similar lightness and high chroma.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub(super) enum Ink {
-    /// What is hardly seen: of the lines behind a plot.
+pub(super) enum PlotColor {
+    /// Almost white: for grid lines.
     Pale,
     Orange,
     Blue,
@@ -40,8 +41,8 @@ pub(super) enum Ink {
     Gray,
 }
 
-impl Ink {
-    fn color(self) -> Rgb {
+impl PlotColor {
+    fn rgb(self) -> Rgb {
         match self {
             Self::Pale => Rgb::new(0xdd, 0xdd, 0xdd),
             Self::Orange => Rgb::new(0xd0, 0x60, 0x10),
@@ -61,15 +62,15 @@ pub(super) enum Align {
 
 /// A logarithmic axis.
 pub(super) struct Axis {
-    /// The decimal logarithms of its ends.
+    /// The decimal logarithms of the ends.
     first: f64,
     last: f64,
 }
 
 impl Axis {
-    /// From the least of `values`, which are above 0, to the greatest.
+    /// The axis from the least to the greatest of `values`, which must be positive.
     pub(super) fn between(values: impl Iterator<Item = f64>) -> Self {
-        // What a clock was too coarse for took next to nothing.
+        // A time below the clock's resolution is 0.
         let powers = values.map(|value| value.max(f64::MIN_POSITIVE).log10());
         let (first, last) = powers
             .fold((f64::INFINITY, f64::NEG_INFINITY), |(low, high), power| {
@@ -78,19 +79,19 @@ impl Axis {
         Self { first, last }
     }
 
-    /// From one power of ten to another, around `values`, which are above 0.
+    /// The axis between the powers of ten around `values`, which must be positive.
     pub(super) fn around(values: impl Iterator<Item = f64>) -> Self {
         let Self { first, last } = Self::between(values);
         let first = first.floor();
         Self { first, last: last.ceil().max(first + 1.0) }
     }
 
-    /// How far along the axis `value` is, from 0 to 1.
+    /// The position of `value` along the axis, from 0 to 1.
     pub(super) fn share(&self, value: f64) -> f64 {
         ((value.log10() - self.first) / (self.last - self.first)).clamp(0.0, 1.0)
     }
 
-    /// The powers of ten to label, at most about `most` of them.
+    /// About `most` powers of ten to label.
     pub(super) fn powers(&self, most: usize) -> impl Iterator<Item = i32> {
         let (first, last) = (self.first.ceil() as i32, self.last.floor() as i32);
         let step = ((last - first) as usize).div_ceil(most).max(1);

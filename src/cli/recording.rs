@@ -1,4 +1,4 @@
-//! `--record`: a file that takes note of a game.
+//! `--record`: a recording of a game in a file.
 
 use std::fs::{self, File, OpenOptions};
 use std::io::{self, Write};
@@ -12,16 +12,16 @@ use super::Error;
 use super::asciicast::Asciicast;
 use crate::{app, game, terminal};
 
-/// What a file holds, by its ending.
+/// The content of a file, by its extension.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 enum Kind {
-    /// What the terminal was sent.
+    /// The terminal's output.
     Asciicast,
-    /// What the player did.
+    /// The player's intents.
     Script,
 }
 
-/// A file that is written while the game is played.
+/// A file that is written during the game.
 #[derive(Debug)]
 pub(super) struct RecordingFile {
     path: PathBuf,
@@ -30,7 +30,7 @@ pub(super) struct RecordingFile {
 }
 
 impl RecordingFile {
-    /// Makes the file, empty. One that is there already is replaced only if this `overwrites`.
+    /// Creates an empty file. An existing file is replaced only if `overwrites` is set.
     pub(super) fn create(path: &Path, overwrites: bool) -> Result<Self, Error> {
         let kind = Kind::of(path)?;
         let mut options = OpenOptions::new();
@@ -49,12 +49,12 @@ impl RecordingFile {
         Ok(Self { path: path.to_owned(), kind, output: Output::to(file) })
     }
 
-    /// Whether a file of that name holds what the player did.
+    /// Whether a file with this name contains intents.
     pub(super) fn is_script(path: &Path) -> bool {
         Kind::of(path).is_ok_and(|kind| kind == Kind::Script)
     }
 
-    /// What writes it.
+    /// The recorder that writes the file.
     pub(super) fn recording(&self) -> app::Recording {
         let output = self.output.clone();
         if self.kind == Kind::Asciicast {
@@ -66,11 +66,11 @@ impl RecordingFile {
         }
     }
 
-    /// Whether all could be written. A file that nothing was written to is removed: the game did not
-    /// begin.
+    /// Returns the first error of writing, if there was one. A file without content is removed,
+    /// because the game did not start.
     pub(super) fn finish(self) -> Result<(), Error> {
         if fs::metadata(&self.path).is_ok_and(|file| file.is_file() && file.len() == 0) {
-            // It only would have been in the way of the next one.
+            // The empty file would prevent the next recording.
             _ = fs::remove_file(&self.path);
         }
         match self.output.lock().fault.take() {
@@ -97,13 +97,13 @@ impl Kind {
     }
 }
 
-/// That a file can't be written.
+/// The error for a file that cannot be written.
 pub(super) fn unwritable(path: &Path, error: &io::Error) -> Error {
     Error::machine(format!("{} can't be written: {error}", path.display()))
 }
 
-/// A file that takes everything, and keeps to itself what it could not: a full disk is told of when
-/// the game is over.
+/// A file that accepts all writes and stores the first error. A full disk is reported after the
+/// game.
 #[derive(Clone, Debug)]
 struct Output(Arc<Mutex<State>>);
 
@@ -137,14 +137,14 @@ impl Write for Output {
     }
 }
 
-/// Writes what the terminal is sent, at the time when it is.
+/// Records the terminal's output with its times.
 struct TerminalRecorder {
     output: Output,
     asciicast: Option<Asciicast<Output>>,
     start: Instant,
 }
 
-// The output takes everything, so there are no errors to look at.
+// The output accepts all writes, so there are no errors to handle.
 impl terminal::Recorder for TerminalRecorder {
     fn resized(&mut self, size: Size) {
         let now = self.start.elapsed();

@@ -1,4 +1,4 @@
-//! `cellcaster replay`: a script, played off screen into a recording.
+//! `cellcaster replay`: plays a script off screen into a recording.
 
 use std::cell::Cell;
 use std::fs::File;
@@ -21,7 +21,7 @@ use crate::app::Settings;
 use crate::game::Script;
 use crate::terminal::CellWriter;
 
-/// Writes the recording that `options` ask for.
+/// Writes the recording that `options` request.
 pub(super) fn run(options: &Replay) -> Result<(), Error> {
     let script = script::load(&options.script)?;
     let levels = level::load_or_generate(options.map.as_deref(), options.generated)?;
@@ -67,7 +67,7 @@ fn write(
     screen.asciicast.finish()
 }
 
-/// Takes what is written to it at once as one event, at the time that `now` says.
+/// A terminal whose output becomes events: each write is one event at the time `now`.
 struct Screen<W> {
     asciicast: Asciicast<W>,
     now: Rc<Cell<Duration>>,

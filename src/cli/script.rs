@@ -1,4 +1,4 @@
-//! Which script a command is about.
+//! The script of a command.
 
 use std::fs::File;
 use std::io::Read;
@@ -7,21 +7,22 @@ use std::path::Path;
 use super::Error;
 use crate::game::Script;
 
-/// In bytes: more than a week of play takes. What is longer is not read to its end.
+/// The largest size of a script in bytes, more than a week of play. A larger file is not read to
+/// its end.
 const LONGEST: u64 = 1 << 26;
 
-/// A walk through the level in which there is most to see, for who brings no script.
+/// A walk through the built-in level with the most features, for commands without a script.
 pub(super) const SHOWCASE: Showcase =
     Showcase { level: "citadel", script: include_str!("../../maps/showcase.script") };
 
-/// A script that is compiled in, and the built-in level that it is made for.
+/// A compiled-in script, and its built-in level.
 pub(super) struct Showcase {
     pub(super) level: &'static str,
     script: &'static str,
 }
 
 impl Showcase {
-    /// What the script says.
+    /// The parsed script.
     pub(super) fn script(&self) -> Result<Script, Error> {
         Ok(Script::parse(self.script, "showcase.script")?)
     }

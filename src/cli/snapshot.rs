@@ -1,15 +1,15 @@
-//! `cellcaster snapshot`: one frame to standard output, no terminal needed.
+//! `cellcaster snapshot`: one frame on standard output, without a terminal.
 //!
-//! The cells are those that the game shows, made by the same widget. They are made and written a
-//! band of rows at a time: the cells of 4096×4096 at once would take most of a gigabyte.
+//! The game's widget draws the cells. They are made and written in bands of rows, because 4096×4096
+//! cells at once would take most of a gigabyte.
 
 mod ansi;
+mod camera_remark;
 mod json;
 mod picture;
 mod png;
 mod text;
 mod watched;
-mod whereabouts;
 
 use std::io::{self, BufWriter, IsTerminal, Write};
 
@@ -30,18 +30,18 @@ use crate::tui::View;
 use crate::world::{Camera, Heading, World};
 use picture::Picture;
 
-/// Rows of cells that are made at a time: a multiple of the height of the pattern that dithers.
+/// The number of rows of cells made at a time: a multiple of the height of the dither pattern.
 const BAND: u16 = 64;
 
-/// A way of writing cells, row by row from the top.
+/// A format for cells, row by row from the top.
 trait Writer {
     fn write_row(&mut self, cells: &[Cell]) -> io::Result<()>;
 
-    /// After the last row.
+    /// Writes the part after the last row.
     fn finish(self: Box<Self>) -> io::Result<()>;
 }
 
-/// Writes the frame that `options` ask for.
+/// Writes the frame that `options` request.
 pub(super) fn run(options: Snapshot) -> Result<(), Error> {
     let is_png = options.format == Format::Png && !options.explain;
     if is_png && options.watches {
@@ -64,7 +64,7 @@ pub(super) fn run(options: Snapshot) -> Result<(), Error> {
     draw(&level::load(options.map.as_deref())?, &options)
 }
 
-/// That a PNG would be noise in a terminal, of a command that writes one.
+/// The error of `command`, which writes a PNG, if the output is a terminal.
 pub(super) fn no_png_here(command: &str) -> Error {
     Error::mistake(format!(
         "a PNG is no text, and standard output is a terminal: redirect it to a file, as in \
@@ -98,7 +98,7 @@ fn generated_world(generated: Generated, options: &Snapshot) -> Result<(World, C
     let whole = position.floor();
     let site = Site { column: whole.x as i64, row: whole.y as i64 };
     let (window, world) = level::generate(generated, Some(site))?;
-    // Exact: the corner of a cell of the window, and what is left of a double without its whole part.
+    // This is exact: the sum of a cell's corner in the window and the fraction of the coordinate.
     let corner = window.cell(site).map_or(DVec2::ZERO, |cell| cell.center() - 0.5);
     let camera = camera(&world, Some((corner + (position - whole), heading)), options);
     Ok((world, camera))
@@ -111,13 +111,13 @@ fn camera(world: &World, place: Option<(DVec2, Heading)>, options: &Snapshot) ->
     let camera = camera.unwrap_or(start);
     let camera = options.eye.and_then(|eye| camera.with_eye(eye)).unwrap_or(camera);
     let is_chosen = place.is_some() || options.eye.is_some();
-    if let Some(remark) = whereabouts::remark(world, &camera).filter(|_| is_chosen) {
+    if let Some(remark) = camera_remark::camera_remark(world, &camera).filter(|_| is_chosen) {
         Error::mistake(remark).warn();
     }
     camera.with_pitch(options.pitch.unwrap_or_default())
 }
 
-/// What is not asked for is as at the start, the height too.
+/// Values that are not given, including the height, are those of the start.
 fn scene_camera(scene: &Scene, options: &Snapshot) -> Result<space::Camera, Error> {
     let start = scene.start_camera(options.field_of_view);
     let (position, heading) =
@@ -176,7 +176,7 @@ fn writer(
     })
 }
 
-/// The colour that stands for `color` outside a terminal; `None` for the terminal's own.
+/// The colour that represents `color` outside a terminal; `None` for the terminal's default.
 fn rgb(color: Color) -> Option<Rgb> {
     match color {
         Color::Rgb(red, green, blue) => Some(Rgb::new(red, green, blue)),

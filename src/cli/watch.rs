@@ -1,9 +1,9 @@
-//! `--watch`: a map file that is looked at again and again, and loaded anew when it changes.
+//! `--watch`: polling a map file, and reloading it when it changes.
 //!
-//! What is compared is the time of the last change and the length, of the map and of every PNG that it
-//! asks for, whether or not there is one. A library that is told of changes by the system was refused:
-//! it brings a thread and some dozens of crates on each platform, for a few calls a second, and loses
-//! files that an editor replaces.
+//! Two versions of a file differ if their modification time or their length differs. The map and
+//! every PNG that it names are compared, including those that do not exist. A library for file
+//! system notifications was refused: it adds a thread and dozens of crates on each platform to save
+//! a few calls per second, and it loses files that an editor replaces.
 
 use std::cell::RefCell;
 use std::fs;
@@ -13,30 +13,30 @@ use std::time::SystemTime;
 use crate::fault::Faults;
 use crate::map::{self, Folder, Level, TextureFileError, TextureFiles};
 
-/// A map file, and what it and its textures were like when it was loaded last.
+/// A map file, and the versions of it and its textures at the last load.
 pub(super) struct Watch {
     map: PathBuf,
-    seen: Vec<Seen>,
-    /// What is wrong with a file that has just changed: it may not have been written to its end.
+    watched: Vec<WatchedFile>,
+    /// The faults of a file that has just changed, and may be incomplete.
     unconfirmed: Option<Faults>,
 }
 
 impl Watch {
-    /// Loads the level that the file at `map` describes, and keeps an eye on it.
+    /// Loads the level in the file at `map`, and starts to watch it.
     pub(super) fn load(map: &Path) -> (Result<Level, Faults>, Self) {
-        let (level, seen) = load(map);
-        (level, Self { map: map.to_owned(), seen, unconfirmed: None })
+        let (level, watched) = load(map);
+        (level, Self { map: map.to_owned(), watched, unconfirmed: None })
     }
 
-    /// The level as it is now, or what is wrong with it, if it has changed since the last call. Of a
-    /// level with faults this tells only when it has stayed the same from one call to the next: an
-    /// editor may be writing the file, or replacing it.
+    /// The current level or its faults, if it has changed since the last call. Faults are returned
+    /// only if the file has not changed between two calls, because an editor may be writing or
+    /// replacing it.
     pub(super) fn change(&mut self) -> Option<Result<Level, Faults>> {
-        if self.seen.iter().all(Seen::is_up_to_date) {
+        if self.watched.iter().all(WatchedFile::is_up_to_date) {
             return self.unconfirmed.take().map(Err);
         }
-        let (level, seen) = load(&self.map);
-        self.seen = seen;
+        let (level, watched) = load(&self.map);
+        self.watched = watched;
         match level {
             Ok(level) => {
                 self.unconfirmed = None;
@@ -50,56 +50,57 @@ impl Watch {
     }
 }
 
-fn load(map: &Path) -> (Result<Level, Faults>, Vec<Seen>) {
-    let files = NotedFiles {
+fn load(map: &Path) -> (Result<Level, Faults>, Vec<WatchedFile>) {
+    let files = TrackedFiles {
         files: Folder::of(map),
         folder: map.parent().unwrap_or(Path::new("")),
-        // Before it is read: what changes meanwhile is loaded again.
-        seen: RefCell::new(vec![Seen::now(map.to_owned())]),
+        // The version is taken before the file is read, so that a change in between causes a
+        // reload.
+        watched: RefCell::new(vec![WatchedFile::now(map.to_owned())]),
     };
     let level = map::load_level_with(map, &files);
-    (level, files.seen.into_inner())
+    (level, files.watched.into_inner())
 }
 
-/// The files of a folder, with a note of each that is read.
-struct NotedFiles<'a> {
+/// The files of a folder. Each read is recorded.
+struct TrackedFiles<'a> {
     files: Folder,
     folder: &'a Path,
-    seen: RefCell<Vec<Seen>>,
+    watched: RefCell<Vec<WatchedFile>>,
 }
 
-impl TextureFiles for NotedFiles<'_> {
+impl TextureFiles for TrackedFiles<'_> {
     fn read(&self, name: &str) -> Result<Vec<u8>, TextureFileError> {
-        self.seen.borrow_mut().push(Seen::now(self.folder.join(name)));
+        self.watched.borrow_mut().push(WatchedFile::now(self.folder.join(name)));
         self.files.read(name)
     }
 }
 
-/// What a file was like at some time.
-struct Seen {
+/// A file and the version of it that was last read.
+struct WatchedFile {
     path: PathBuf,
-    stamp: Option<Stamp>,
+    version: Option<FileVersion>,
 }
 
-impl Seen {
+impl WatchedFile {
     fn now(path: PathBuf) -> Self {
-        Self { stamp: Stamp::of(&path), path }
+        Self { version: FileVersion::of(&path), path }
     }
 
     fn is_up_to_date(&self) -> bool {
-        Stamp::of(&self.path) == self.stamp
+        FileVersion::of(&self.path) == self.version
     }
 }
 
-/// What tells one version of a file from another.
+/// The properties that distinguish two versions of a file.
 #[derive(PartialEq)]
-struct Stamp {
+struct FileVersion {
     modified: Option<SystemTime>,
     length: u64,
 }
 
-impl Stamp {
-    /// `None` for a file that is not there.
+impl FileVersion {
+    /// `None` if the file does not exist.
     fn of(path: &Path) -> Option<Self> {
         let metadata = fs::metadata(path).ok()?;
         Some(Self { modified: metadata.modified().ok(), length: metadata.len() })
@@ -117,7 +118,7 @@ mod tests {
     const ANOTHER_PNG: &[u8] = include_bytes!("../../tests/maps/letter.png");
 
     #[test]
-    fn every_change_is_told_of_once_and_a_fault_when_it_lasts() {
+    fn every_change_is_reported_once_and_faults_when_they_last() {
         let folder = env::temp_dir().join(format!("cellcaster-watch-{}", std::process::id()));
         fs::create_dir_all(&folder).unwrap();
         let (map, texture) = (folder.join("map.toml"), folder.join("floor.png"));
@@ -132,7 +133,7 @@ mod tests {
         assert!(second != first);
         assert!(watch.change().is_none());
 
-        // Gone for a moment only, as where an editor replaces it.
+        // The file is missing for a moment, as when an editor replaces it.
         fs::remove_file(&map).unwrap();
         assert!(watch.change().is_none());
         fs::write(&map, MAP).unwrap();

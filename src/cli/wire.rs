@@ -15,7 +15,7 @@ use crate::app::{Replay, Settings};
 use crate::lab::wire::{self, Plan, Report};
 use crate::terminal::Fidelity;
 
-/// Reports what `options` ask for.
+/// Writes the report that `options` request.
 pub(super) fn run(options: &Wire) -> Result<(), Error> {
     if let Some(depth) = options.palette {
         return palettes::run(depth, options).map_err(|error| Error::of_output(&error));
@@ -53,7 +53,7 @@ fn write(
     output.flush()
 }
 
-/// `number`, where it is one.
+/// `number`, if it is finite.
 fn finite(number: f64) -> Option<f64> {
     number.is_finite().then_some(number)
 }

@@ -1,8 +1,8 @@
-//! How wrong a caster is: the truth, and the rays that are hardest on it.
+//! The accuracy of casters: a reference in rational arithmetic, and difficult rays.
 //!
-//! [`cast`] answers in rational arithmetic and shares nothing with the casters but the rules in
-//! [`crate::cast`]. [`sets`] names the stiff and extreme cases; [`random_ray`] and
-//! [`adversarial_ray`] make as many more as one likes, from a seed.
+//! [`cast`] computes in rational arithmetic, and shares only the rules in [`crate::cast`] with the
+//! casters. [`sets()`] returns named sets of stiff and extreme cases; [`random_ray`] and
+//! [`adversarial_ray`] generate any number of other rays from a seed.
 
 mod filters;
 mod motion;

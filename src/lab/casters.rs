@@ -1,21 +1,21 @@
-//! Methods of casting to compare the exact caster with, as tutorials and other programs have them.
+//! Casters to compare with the exact one, as tutorials and other programs have them.
 //!
 //! | method | finds the hit by | source |
 //! |---|---|---|
-//! | [`Exact`](crate::cast::Exact) | the lines in their true order: integers, and longer ones where those can't tell | [`crate::cast`] |
-//! | [`Dda`] | the lines in order, in double precision | Lode Vandevenne, "Raycasting II" |
+//! | [`Exact`](crate::cast::Exact) | lines in their true order: integers, and longer integers where those cannot decide | [`crate::cast`] |
+//! | [`Dda`] | lines in order, in double precision | Lode Vandevenne, "Raycasting II" |
 //! | [`Dda32`] | the same in single precision | the same |
 //! | [`Accumulate`] | a running sum of distances | Lode Vandevenne, "Raycasting" |
-//! | [`Fixed`] | the lines in order, in fixed point | drummyfish, LRS, "Raycasting" |
-//! | [`Table`] | x and y lines apart, along the nearest of a fixed number of angles | F. Permadi, "Ray-Casting Tutorial" |
+//! | [`Fixed`] | lines in order, in fixed point | drummyfish, LRS, "Raycasting" |
+//! | [`Table`] | x and y lines separately, along the nearest of a fixed number of angles | F. Permadi, "Ray-Casting Tutorial" |
 //! | [`March`] | constant steps | the method that Lode Vandevenne warns of |
 //!
-//! Doors, glass, masks and shapes are walls to all but the exact one, and only that one keeps the rules of
-//! [`crate::cast`] for every ray. Each method is one file and one type that implements
-//! [`Caster`](crate::cast::Caster); a [`Method`] picks one by name.
+//! All but the exact caster treat doors, glass, masks and shapes as walls, and only the exact
+//! caster keeps the rules of [`crate::cast`] for every ray. Each method is one file and one type
+//! that implements [`Caster`](crate::cast::Caster); a [`Method`] is chosen by name.
 
 mod accumulate;
-mod approach;
+mod clipped_ray;
 mod dda;
 mod dda32;
 mod fixed;

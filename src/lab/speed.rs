@@ -1,11 +1,11 @@
-//! How fast drawing is: the scene, the walk through it, and two loops to compare with; and what it
-//! costs that a map is large, or full.
+//! The speed of drawing: scenes, a walk through them, two loops for comparison, and the costs of
+//! large and crowded maps.
 //!
-//! A time says little on a machine that the reader does not have, so every report gives ratios: to
-//! the [`Classic`] loop, as tutorials write it down, and to the [`fill`] of as many pixels, which no
-//! renderer outruns. All three draw the same map with the same textures from the same cameras, and
-//! [`pixel_aspect`] gives our picture the classic one's proportions, so that each has the same
-//! pixels to draw.
+//! A time means little on an unknown machine. Reports therefore have ratios: to the [`Classic`]
+//! loop, as in tutorials, and to the [`fill`] of the same number of pixels, which no renderer can
+//! beat. All three draw the same map with the same textures from the same cameras. [`pixel_aspect`]
+//! gives the renderer's picture the proportions of the classic one, so that both draw the same
+//! pixels.
 
 mod classic;
 mod crowd;
@@ -25,10 +25,10 @@ use crate::map;
 use crate::render::{FrameSize, PixelAspect};
 use crate::world::{Camera, FieldOfView, World};
 
-/// A level of rooms and pillars with five textures on its walls, its floor and its ceiling textured.
+/// A level of rooms and pillars, with five wall textures and a textured floor and ceiling.
 ///
 /// # Panics
-/// Never: the map is written below, and a test parses it.
+/// Never: the map is a constant, and a test parses it.
 pub fn textured_scene() -> World {
     scene("\"flagstone\"", "\"wood\"")
 }
@@ -36,7 +36,7 @@ pub fn textured_scene() -> World {
 /// The same level with a floor and a ceiling of one colour each.
 ///
 /// # Panics
-/// Never: the map is written below, and a test parses it.
+/// Never: the map is a constant, and a test parses it.
 pub fn plain_scene() -> World {
     scene("\"#403830\"", "\"#202028\"")
 }
@@ -85,14 +85,15 @@ mmmmmmmmmmmmmmmooooooooo
 "@" = { start = 0 }
 "#;
 
-/// `count` cameras along a walk through `world` that turns all the while, and so looks everywhere.
+/// `count` cameras along a walk through `world` that turns continually, and so looks in all
+/// directions.
 pub fn walk(world: &World, count: usize) -> Vec<Camera> {
     const STEPS_BETWEEN: usize = 6;
     let mut game = Game::new(world.clone());
     let turning: Intents = [Intent::Forward, Intent::TurnRight, Intent::Aim].into_iter().collect();
     let straight: Intents = [Intent::Forward].into_iter().collect();
     let mut view = |camera: usize| {
-        // Pushing into a wall shows little but that wall; a turn leads away from it.
+        // The view while pushing into a wall shows little else; a turn leads away from the wall.
         let intents = if camera % 16 < 10 { straight } else { turning };
         for _ in 0..STEPS_BETWEEN {
             game.step(intents);
@@ -102,15 +103,15 @@ pub fn walk(world: &World, count: usize) -> Vec<Camera> {
     (0..count).map(&mut view).collect()
 }
 
-/// The shape of pixels with which a wall is as high in our picture as in the classic one, where a
-/// cube right before the camera at distance 1 fills the picture from top to bottom.
+/// The pixel shape for which a wall is as high as in the classic picture, where a cube at distance
+/// 1 in front of the camera fills the picture from top to bottom.
 pub fn pixel_aspect(size: FrameSize) -> PixelAspect {
     let (width, height) = (f64::from(size.width.get()), f64::from(size.height.get()));
     let across = width / 2.0 / FieldOfView::default().half_width();
     PixelAspect::new(across / height).unwrap_or(PixelAspect::SQUARE)
 }
 
-/// Sets every pixel: the least that a renderer does.
+/// Sets every pixel, which is a lower bound for a renderer.
 pub fn fill(pixels: &mut [u32], color: u32) {
     pixels.fill(color);
 }
@@ -122,7 +123,7 @@ mod tests {
 
     const SIZE: (u32, u32) = (160, 90);
 
-    /// Compared with a renderer that draws another picture, nothing would be said.
+    /// A comparison is only meaningful if both renderers draw the same picture.
     #[test]
     fn the_classic_loop_draws_the_same_walls() {
         for (world, floor) in [
@@ -145,7 +146,8 @@ mod tests {
                     let apart = ours.channels().into_iter().zip(&theirs[1..]);
                     apart.into_iter().all(|(one, &other)| one.abs_diff(other) <= 48)
                 });
-                // It casts through the edges of pixels where we cast through their middles.
+                // The classic loop casts through the edges of pixels, the renderer through their
+                // centres.
                 let share = alike.count() as f64 / pixels.len() as f64;
                 assert!(share > 0.7, "{floor:?}: {share}");
             }

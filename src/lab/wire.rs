@@ -1,20 +1,21 @@
-//! Error against bytes: what a game costs on the wire, and what of it the viewer sees.
+//! Bytes and colour errors: the size of a game's frames on the wire, and the colours that the
+//! viewer sees.
 //!
-//! A script is played once, and each of its frames goes through every encoder: ratatui's own for
-//! crossterm, which most programs use, and ours at several fidelities. Counted are bytes, and bytes
-//! after the compression of `ssh -C`; compared are the colours that the terminal shows with those
-//! that the game drew. The distance of two colours is CIE76's ΔE, the one of the figures that are
-//! published on terminal video; CIEDE2000 was refused, as it is meant for colours closer than most of
-//! these, and its sectors of hue have steps.
+//! A script is played once, and each of its frames passes through every encoder: ratatui's own for
+//! crossterm, which most programs use, and Cellcaster's at several fidelities. The report counts
+//! bytes, before and after the compression of `ssh -C`, and compares the colours on the terminal
+//! with those that the game drew. The distance of two colours is ΔE of CIE76, the Euclidean
+//! distance in CIELAB, which published figures on terminal video use. CIEDE2000 was refused: it is
+//! meant for colours closer than most of these, and its hue sectors have discontinuities.
 //!
-//! The first frame paints everything, whoever encodes it, and is told apart.
+//! The first frame paints everything with any encoder, and is reported separately.
 
 mod compression;
 mod difference;
 mod encoder;
+mod encoder_run;
 mod palettes;
 mod pipeline;
-mod tally;
 
 use std::num::NonZeroU32;
 
@@ -24,43 +25,45 @@ use ratatui::layout::Size;
 use crate::app::Replay;
 use crate::game::Script;
 use crate::terminal::Fidelity;
-use encoder::{Brevity, Encoder, Stock, Writer};
-use tally::Tally;
+use encoder::{Encoder, Extensions, Stock, Writer};
+use encoder_run::EncoderRun;
 
+pub use encoder_run::{Bytes, Compressed, Part, Seen};
 pub use palettes::{GREY, PalettePlan, PaletteRow, report_palettes};
 pub use pipeline::{PipelineRow, measure_pipeline};
-pub use tally::{Bytes, Compressed, Part, Seen};
 
-/// What to measure.
+/// The options of a measurement.
 #[derive(Debug)]
 pub struct Plan<'a> {
-    /// What is played.
+    /// The script to play.
     pub script: &'a Script,
-    /// The size of the window that `replay` plays in.
+    /// The size of the window in which `replay` plays.
     pub size: Size,
-    /// How many frames a second are sent.
+    /// The number of frames sent per second.
     pub frames_per_second: NonZeroU32,
-    /// The fidelities at which our encoder is measured.
+    /// The fidelities at which Cellcaster's encoder is measured.
     pub fidelities: Vec<Fidelity>,
 }
 
-/// What was measured.
+/// The results.
 #[derive(Clone, Debug)]
 pub struct Report {
-    /// How many frames there were after the first.
+    /// The number of frames after the first.
     pub frames: usize,
-    /// Ratatui's encoder, then ours at each fidelity, and then ours at each with repeated characters and a palette.
+    /// Ratatui's encoder, then Cellcaster's at each fidelity, and then Cellcaster's at each
+    /// fidelity with repeated characters and a defined palette.
     pub encoders: Vec<EncoderReport>,
 }
 
-/// What was measured of one encoder.
+/// The results of one encoder.
 #[derive(Clone, Debug)]
 pub struct EncoderReport {
-    /// What it is called: `stock`, a fidelity, or a fidelity and `+`: with repeated characters and a palette.
+    /// The name: `stock`, a fidelity, or a fidelity and `+`, which means with repeated characters
+    /// and a defined palette.
     pub name: String,
-    /// What the first frame took, in bytes.
+    /// The size of the first frame, in bytes.
     pub first_frame: usize,
-    /// Every section of the script that has a name, in order; one name is one section.
+    /// The named sections of the script, in order. Sections with the same name are one.
     pub sections: Vec<Part>,
     /// All frames but the first.
     pub all: Part,
@@ -68,33 +71,33 @@ pub struct EncoderReport {
 
 /// Plays the script of `plan` and measures.
 pub fn report(plan: &Plan, replay: &mut Replay) -> Report {
-    let ours = [Brevity::None, Brevity::Tried].into_iter().flat_map(|brevity| {
+    let ours = [Extensions::Off, Extensions::On].into_iter().flat_map(|extensions| {
         plan.fidelities.iter().map(move |&fidelity| {
-            let writer: Box<dyn Encoder> = Box::new(Writer::new(plan.size, fidelity, brevity));
-            (brevity.name(fidelity), writer)
+            let writer: Box<dyn Encoder> = Box::new(Writer::new(plan.size, fidelity, extensions));
+            (extensions.name(fidelity), writer)
         })
     });
     let stock: Box<dyn Encoder> = Box::new(Stock::new());
-    let mut tallies: Vec<Tally> = [("stock".to_owned(), stock)]
+    let mut runs: Vec<EncoderRun> = [("stock".to_owned(), stock)]
         .into_iter()
         .chain(ours)
-        .map(|(name, encoder)| Tally::new(name, encoder, plan.script))
+        .map(|(name, encoder)| EncoderRun::new(name, encoder, plan.script))
         .collect();
     let mut before = Buffer::empty(plan.size.into());
     let mut frames = 0;
     let Ok(()) = replay.play(plan.script, plan.frames_per_second, |frame, section, picture| {
         let changes = before.diff(picture);
         let section = (frame > 0).then_some(section);
-        for tally in &mut tallies {
-            tally.take(section, &changes, picture);
+        for run in &mut runs {
+            run.take(section, &changes, picture);
         }
         before.clone_from(picture);
         frames = frame as usize;
         Ok::<(), std::convert::Infallible>(())
     });
     let mut encoders: Vec<EncoderReport> = Vec::new();
-    for tally in tallies {
-        let report = tally.finish(encoders.first());
+    for run in runs {
+        let report = run.finish(encoders.first());
         encoders.push(report);
     }
     Report { frames, encoders }

@@ -1,4 +1,4 @@
-//! Bodies: what a scene consists of. All of them are convex.
+//! Bodies, of which a scene consists. All of them are convex.
 
 use glam::DVec3;
 
@@ -7,55 +7,56 @@ use crate::color::Rgb;
 use crate::color::srgb::mean_of_shares;
 use crate::world::Scale;
 
-/// The farthest from the origin that anything is, along each axis, and the largest radius, in cells.
+/// The largest absolute value of a coordinate along each axis, and the largest radius, in cells.
 pub const FARTHEST: f64 = 1e9;
 /// The smallest radius, and the shortest edge of a block, in cells.
 pub const SMALLEST: f64 = 1e-9;
 
-/// Something to be seen.
+/// A visible object.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Body {
-    /// Where it is, and of what shape.
+    /// The position and the shape.
     pub shape: Shape,
-    /// What colours it has.
+    /// The colours.
     pub coat: Coat,
 }
 
-/// Where a body is, and of what shape.
+/// The position and the shape of a body.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub enum Shape {
-    /// A ball, hollow to who is inside.
+    /// A sphere, which is hollow for a camera inside.
     Sphere(Sphere),
-    /// A plane without end, seen from both sides.
+    /// An infinite plane, which is visible from both sides.
     Plane(Plane),
-    /// A box along the axes, hollow to who is inside.
+    /// A box along the axes, which is hollow for a camera inside.
     Block(Block),
 }
 
-/// What colours a body has.
+/// The colours of a body.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub enum Coat {
-    /// The same all over.
+    /// One colour.
     Plain(Rgb),
-    /// Cubes of two colours by turns, as space is cut into them at whole multiples of the scale.
+    /// A checker pattern of two colours: space is divided into cubes at whole multiples of the
+    /// scale.
     Checker([Rgb; 2], Scale),
 }
 
-/// A ball.
+/// A sphere.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Sphere {
     center: DVec3,
     radius: f64,
 }
 
-/// A plane.
+/// An infinite plane.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Plane {
     point: DVec3,
     normal: DVec3,
 }
 
-/// A box whose edges are along the axes.
+/// A box whose edges are parallel to the axes.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Block {
     low: DVec3,
@@ -63,71 +64,73 @@ pub struct Block {
 }
 
 impl Sphere {
-    /// A ball of `radius` around `center`. `None` where the center is further away than [`FARTHEST`]
-    /// or the radius not between [`SMALLEST`] and that.
+    /// The sphere with this `center` and `radius`. `None` if a coordinate of the center is beyond
+    /// [`FARTHEST`], or if the radius is not between [`SMALLEST`] and [`FARTHEST`].
     pub fn new(center: DVec3, radius: f64) -> Option<Self> {
         let fits = is_near(center) && (SMALLEST..=FARTHEST).contains(&radius);
         fits.then_some(Self { center, radius })
     }
 
-    /// Its middle.
+    /// The center, in cells.
     pub fn center(&self) -> DVec3 {
         self.center
     }
 
-    /// In cells.
+    /// The radius, in cells.
     pub fn radius(&self) -> f64 {
         self.radius
     }
 }
 
 impl Plane {
-    /// The plane through `point` at a right angle to `normal`, of any length. `None` where the point
-    /// is further away than [`FARTHEST`], or the normal is zero or not finite.
+    /// The plane through `point` and perpendicular to `normal`, which may have any length. `None`
+    /// if a coordinate of the point is beyond [`FARTHEST`], or if the normal is zero or not finite.
     pub fn new(point: DVec3, normal: DVec3) -> Option<Self> {
         let largest = normal.abs().max_element();
         let has_direction = normal.is_finite() && largest > 0.0;
-        // Scaled first: the squares of the largest and the smallest doubles are none.
+        // Scaled first, because the squares of very large and very small doubles are not
+        // representable.
         let fits = is_near(point) && has_direction;
         fits.then(|| Self { point, normal: (normal / largest).normalize() })
     }
 
-    /// A point on it.
+    /// A point of the plane.
     pub fn point(&self) -> DVec3 {
         self.point
     }
 
-    /// The unit vector at a right angle to it.
+    /// The unit normal.
     pub fn normal(&self) -> DVec3 {
         self.normal
     }
 }
 
 impl Block {
-    /// The box between two opposite corners, in any order. `None` where one is further away than
-    /// [`FARTHEST`], or an edge is shorter than [`SMALLEST`].
+    /// The box with two opposite corners, in any order. `None` if a coordinate is beyond
+    /// [`FARTHEST`], or if an edge is shorter than [`SMALLEST`].
     pub fn new(corner: DVec3, opposite: DVec3) -> Option<Self> {
         let (low, high) = (corner.min(opposite), corner.max(opposite));
         let fits = is_near(corner) && is_near(opposite) && (high - low).min_element() >= SMALLEST;
         fits.then_some(Self { low, high })
     }
 
-    /// Its corner in the north-west, at the bottom.
+    /// The corner in the north-west, at the bottom.
     pub fn low(&self) -> DVec3 {
         self.low
     }
 
-    /// Its corner in the south-east, at the top.
+    /// The corner in the south-east, at the top.
     pub fn high(&self) -> DVec3 {
         self.high
     }
 }
 
 impl Shape {
-    /// How far `point` is from it, in cells, and the unit vector from its nearest point to there. The
-    /// distance is negative inside a sphere or a box, where the vector points outwards too.
+    /// The distance of `point` from the surface, in cells, and the unit vector from the nearest
+    /// point of the surface to `point`. Inside a sphere or a box, the distance is negative and the
+    /// vector still points outwards.
     ///
-    /// A plane has two outsides.
+    /// Both sides of a plane are outside.
     pub fn clearance(&self, point: DVec3) -> (f64, DVec3) {
         match self {
             Self::Sphere(sphere) => {
@@ -161,18 +164,18 @@ impl Block {
 }
 
 impl Coat {
-    /// The mean colour of what a pixel covers of a surface at `point`, with that unit normal on the
+    /// The mean colour of the surface in a pixel at `point`. `normal` is the unit normal on the
     /// side of the eye.
     ///
-    /// It is looked up a little below the surface: one that lies between two layers of cubes would
-    /// show both by chance.
+    /// The colour is looked up slightly below the surface. A surface between two layers of cubes
+    /// would otherwise show a random mixture of both.
     pub(super) fn mean_color(
         &self,
         point: DVec3,
         normal: DVec3,
         footprint: impl FnOnce() -> Footprint,
     ) -> Rgb {
-        /// A share of a cube that is larger than any rounding, and too small to see.
+        /// A part of a cube that is larger than any rounding and too small to be visible.
         const DEPTH: f64 = 1.0 / 1024.0;
         match *self {
             Self::Plain(color) => color,
@@ -180,7 +183,7 @@ impl Coat {
                 let Footprint(widths) = footprint();
                 let below = point / scale.cells() - normal * DEPTH;
                 let mean = checker::mean(below, widths / scale.cells());
-                // The one at the origin is +1, the other -1.
+                // The cube at the origin is +1, its neighbours −1.
                 mean_of_shares(colors, (1.0 - mean) / 2.0)
             }
         }
@@ -201,7 +204,7 @@ mod tests {
     use super::*;
 
     #[test]
-    fn what_has_no_size_or_no_place_is_no_body() {
+    fn shapes_without_a_size_or_a_position_are_refused() {
         let far = DVec3::new(0.0, 1.1e9, 0.0);
         assert_eq!(Sphere::new(DVec3::ZERO, 0.0), None);
         assert_eq!(Sphere::new(DVec3::ZERO, f64::NAN), None);

@@ -1,11 +1,11 @@
-//! Bounds: which pixels a body can cover at most.
+//! Bounds: the rectangle of pixels that a body can cover.
 
 use std::ops::Range;
 
 use glam::{DVec2, DVec3};
 
 use super::camera::Projection;
-use super::seen::{Seen, SeenBlock, SeenSphere};
+use super::relative_shape::{RelativeBlock, RelativeShape, RelativeSphere};
 
 /// A rectangle of pixels.
 #[derive(Clone, Debug)]
@@ -14,21 +14,21 @@ pub(super) struct Bounds {
     pub(super) rows: Range<u32>,
 }
 
-/// Slopes from the middle of the picture, to the right or upwards: from one to another.
+/// The least and the greatest slope relative to the middle of the picture, to the right or upwards.
 type Extent = (f64, f64);
 
 const EVERYWHERE: Extent = (f64::NEG_INFINITY, f64::INFINITY);
 
-/// What is nearer to the plane of the eye than this share of its distance has slopes without end.
+/// A point whose depth is less than this fraction of its distance has an unbounded slope.
 const NEAR: f64 = 1e-9;
 
 impl Bounds {
-    /// The pixels outside of which no ray meets `seen`; `None` where that is all of them.
-    pub(super) fn new(seen: &Seen, projection: &Projection) -> Option<Self> {
-        let (across, upwards) = match seen {
-            Seen::Plane(_) => (EVERYWHERE, EVERYWHERE),
-            Seen::Sphere(sphere) => of_sphere(sphere, projection)?,
-            Seen::Block(block) => of_block(block, projection)?,
+    /// The pixels whose rays may meet `shape`; `None` if there are none.
+    pub(super) fn new(shape: &RelativeShape, projection: &Projection) -> Option<Self> {
+        let (across, upwards) = match shape {
+            RelativeShape::Plane(_) => (EVERYWHERE, EVERYWHERE),
+            RelativeShape::Sphere(sphere) => of_sphere(sphere, projection)?,
+            RelativeShape::Block(block) => of_block(block, projection)?,
         };
         let columns = pixels(across, projection.columns_a_cell, projection.width);
         // Rows are counted downwards.
@@ -39,8 +39,8 @@ impl Bounds {
     }
 }
 
-/// The pixels along a side of the picture, `count` in all, with slopes of that extent; and one more on
-/// either side for what is rounded.
+/// The range of pixels, of `count` along a side of the picture, with slopes in this extent. It has
+/// one more pixel on either side because of rounding.
 fn pixels((low, high): Extent, per_slope: f64, count: u32) -> Range<u32> {
     let first = low * per_slope + f64::from(count) / 2.0 - 1.5;
     let last = high * per_slope + f64::from(count) / 2.0 + 1.5;
@@ -50,7 +50,7 @@ fn pixels((low, high): Extent, per_slope: f64, count: u32) -> Range<u32> {
     (first as u32).min(count)..(last as u32).min(count)
 }
 
-fn of_sphere(sphere: &SeenSphere, projection: &Projection) -> Option<(Extent, Extent)> {
+fn of_sphere(sphere: &RelativeSphere, projection: &Projection) -> Option<(Extent, Extent)> {
     let axes = &projection.axes;
     let depth = sphere.center.dot(axes.forward);
     let side = DVec2::new(sphere.center.dot(axes.right), depth);
@@ -59,8 +59,8 @@ fn of_sphere(sphere: &SeenSphere, projection: &Projection) -> Option<(Extent, Ex
     Some((tangents(side, farther_than_rounding)?, tangents(height, farther_than_rounding)?))
 }
 
-/// The slopes of the two lines through the origin that touch a circle, where `center` is how far it is
-/// aside, and ahead.
+/// The slopes of the two lines through the origin that touch a circle. The components of `center`
+/// are its offset to the side and its depth.
 fn tangents(center: DVec2, radius: f64) -> Option<Extent> {
     if center.y <= -radius {
         return None;
@@ -78,7 +78,7 @@ fn tangents(center: DVec2, radius: f64) -> Option<Extent> {
     Some((slope(left, f64::NEG_INFINITY), slope(right, f64::INFINITY)))
 }
 
-fn of_block(block: &SeenBlock, projection: &Projection) -> Option<(Extent, Extent)> {
+fn of_block(block: &RelativeBlock, projection: &Projection) -> Option<(Extent, Extent)> {
     let axes = &projection.axes;
     let sides = [block.low, block.high];
     let corners = (0..8).map(|corner| {

@@ -1,25 +1,24 @@
-//! The filtered checker: the mean of a chessboard of cubes over what a pixel covers.
+//! The filtered checker: the mean of a checkerboard of cubes over the area of a pixel.
 //!
-//! A chessboard of +1 and −1 is the product of a square wave along each axis, so its mean over a box
-//! is the product of three means, and the integral of a square wave is a triangle wave: the mean
-//! over the box is exact, whatever its size. The method is Íñigo Quílez's, "Filtering the
-//! checkerboard" (<https://iquilezles.org/articles/checkerfiltering/>), with a third axis. What a
-//! pixel covers follows from how a ray's end moves with the pixel (Igehy, "Tracing Ray
-//! Differentials", 1999), and along each axis the box is as wide as one of the same variance.
+//! A checkerboard of +1 and −1 is the product of one square wave for each axis, so that its mean
+//! over a box is the product of three means. The integral of a square wave is a triangle wave. The
+//! mean over the box is therefore exact for any size. The method is Íñigo Quílez's, "Filtering the
+//! checkerboard" (<https://iquilezles.org/articles/checkerfiltering/>), with a third axis. The area
+//! of a pixel on the surface follows from the movement of a ray's end from pixel to pixel (Igehy,
+//! "Tracing Ray Differentials", 1999). Along each axis, the box has the variance of that area.
 //!
-//! Several rays for each pixel were refused: near the horizon a pixel covers hundreds of squares, and
-//! any number of samples still shimmers there.
+//! Several rays for each pixel were refused: near the horizon a pixel covers hundreds of squares,
+//! and any number of samples still shimmers there.
 
 use glam::DVec3;
 
-/// What a pixel covers of a surface: the widths of a box along the axes, in cells.
+/// The area that a pixel covers on a surface, as the widths of a box along the axes, in cells.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub(super) struct Footprint(pub(super) DVec3);
 
 impl Footprint {
-    /// What a pixel covers of a surface with that `normal`, which `direction` meets after `t`.
-    /// `steps` are the differences between the direction and those through the next column and the
-    /// next row.
+    /// The footprint on a surface with this `normal`, which a ray with this `direction` meets at
+    /// `t`. `steps` are the changes of the direction to the next column and to the next row.
     pub(super) fn new(direction: DVec3, t: f64, normal: DVec3, steps: [DVec3; 2]) -> Self {
         let across = normal.dot(direction);
         let [column, row] = steps.map(|step| (step - direction * (normal.dot(step) / across)) * t);
@@ -28,17 +27,17 @@ impl Footprint {
     }
 }
 
-/// The mean of a chessboard of +1 and −1 over a box around `point`, `widths` wide: both in cubes,
-/// the one at the origin being +1.
+/// The mean of a checkerboard of +1 and −1 over a box with these `widths` around `point`. Both are
+/// in cubes; the cube at the origin is +1.
 pub(super) fn mean(point: DVec3, widths: DVec3) -> f64 {
     mean_along(point.x, widths.x) * mean_along(point.y, widths.y) * mean_along(point.z, widths.z)
 }
 
-/// The mean of a square wave, +1 from 0 to 1 and −1 from there to 2, over `width` around `place`.
+/// The mean of a square wave, +1 from 0 to 1 and −1 from 1 to 2, over `width` around `place`.
 fn mean_along(place: f64, width: f64) -> f64 {
-    /// Wider, the mean is nearer to 0 than a colour can tell.
+    /// For larger widths, the mean is closer to 0 than the resolution of colours.
     const WIDEST: f64 = 65_536.0;
-    // A large place would leave no digits for what is between two ends that are near each other.
+    // With a large place, the difference of two close ends would lose its digits.
     let place = within_two(place);
     let (low, high) = (place - width / 2.0, place + width / 2.0);
     if low.floor() == high.floor() {
@@ -50,12 +49,12 @@ fn mean_along(place: f64, width: f64) -> f64 {
     }
 }
 
-/// The integral of that wave from 0 to `place`.
+/// The integral of the square wave from 0 to `place`.
 fn integral(place: f64) -> f64 {
     1.0 - (within_two(place) - 1.0).abs()
 }
 
-/// `place` less a multiple of 2, from 0 to 2: exact, and quicker than a remainder.
+/// `place` modulo 2, from 0 to 2. This is exact, and faster than the remainder operator.
 fn within_two(place: f64) -> f64 {
     place - 2.0 * (place / 2.0).floor()
 }
@@ -83,7 +82,7 @@ mod tests {
         }
 
         #[test]
-        fn no_place_and_no_width_is_too_much(
+        fn any_place_and_any_width_have_a_mean(
             place in any::<f64>(), width in any::<f64>().prop_map(f64::abs),
         ) {
             let mean = mean_along(place, width);
@@ -92,7 +91,7 @@ mod tests {
     }
 
     #[test]
-    fn within_a_cube_nothing_is_mixed() {
+    fn within_a_cube_there_is_one_colour() {
         assert_eq!(mean(DVec3::new(0.5, 0.5, 0.5), DVec3::splat(0.9)), 1.0);
         assert_eq!(mean(DVec3::new(1e9 + 0.5, 1.5, -0.5), DVec3::splat(0.9)), 1.0);
         assert_eq!(mean(DVec3::new(1.5, 0.5, 0.5), DVec3::ZERO), -1.0);
@@ -100,11 +99,11 @@ mod tests {
     }
 
     #[test]
-    fn a_surface_at_a_right_angle_is_covered_by_as_much_as_rays_part() {
+    fn the_footprint_on_a_perpendicular_surface_is_the_distance_between_rays() {
         let steps = [DVec3::Y * 0.01, DVec3::Z * 0.02];
         let Footprint(widths) = Footprint::new(DVec3::X, 10.0, -DVec3::X, steps);
         assert!((widths - DVec3::new(0.0, 0.1, 0.2)).length() < 1e-12, "{widths}");
-        // A floor, seen at a slope of one in ten: ten times as much of it along the ray.
+        // A floor that is seen at a slope of one in ten is covered ten times as far along the ray.
         let direction = DVec3::new(1.0, 0.0, -0.1);
         let Footprint(widths) = Footprint::new(direction, 10.0, DVec3::Z, steps);
         assert!((widths - DVec3::new(2.0, 0.1, 0.0)).length() < 1e-12, "{widths}");

@@ -1,23 +1,23 @@
-//! An explanation: what a frame of a scene cost.
+//! The counts of a frame of a scene.
 
 use std::fmt;
 
-/// What a frame of a scene cost.
+/// The counts of a frame of a scene.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct Explanation {
     /// Bodies in the scene.
     pub bodies: u64,
-    /// Bodies that can be seen at all.
+    /// Bodies that can cover a pixel.
     pub in_view: u64,
-    /// Rays that were cast, one for each pixel.
+    /// Rays cast from the camera, one for each pixel.
     pub rays: u64,
-    /// How often a ray was tested against a body.
+    /// Tests of these rays against bodies.
     pub tests: u64,
-    /// Rays that hit one.
+    /// Rays that hit a body.
     pub hits: u64,
-    /// Rays that were cast from there towards the sun.
+    /// Rays cast from these hits towards the sun.
     pub shadow_rays: u64,
-    /// How often one of these was tested against a body.
+    /// Tests of shadow rays against bodies.
     pub shadow_tests: u64,
 }
 

@@ -1,48 +1,50 @@
-//! Light: a sun, what reaches the side that is turned away from it, and the sky.
+//! Light: the sun, the ambient light, and the sky.
 
 use glam::DVec3;
 
 use crate::color::Rgb;
 
-/// A share, from 0 for none to 1 for all.
+/// A fraction from 0 to 1.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Share(f64);
 
 impl Share {
-    /// A share from 0 to 1. `None` outside that.
+    /// The fraction, if it is from 0 to 1.
     pub fn new(share: f64) -> Option<Self> {
         (0.0..=1.0).contains(&share).then_some(Self(share))
     }
 
-    /// From 0 to 1.
+    /// The fraction, from 0 to 1.
     pub fn get(self) -> f64 {
         self.0
     }
 }
 
-/// The light of a scene, which comes from infinitely far away.
+/// The directional light of a scene.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Sun {
     toward: DVec3,
-    /// How bright a surface is that it does not reach.
+    /// The brightness of a surface that the sun does not reach.
     pub ambient: Share,
 }
 
 impl Sun {
-    /// A sun in the direction `toward`, of any length. `None` where that is zero or not finite.
+    /// A sun in the direction `toward`, of any length. `None` if the direction is zero or not
+    /// finite.
     pub fn new(toward: DVec3, ambient: Share) -> Option<Self> {
         let largest = toward.abs().max_element();
         let has_direction = toward.is_finite() && largest > 0.0;
         has_direction.then(|| Self { toward: (toward / largest).normalize(), ambient })
     }
 
-    /// The unit vector towards it.
+    /// The unit vector towards the sun.
     pub fn toward(&self) -> DVec3 {
         self.toward
     }
 
-    /// How bright a surface is with that unit vector for a normal, from the ambient share to 1: as
-    /// Lambert has it, by the cosine of the angle between the two.
+    /// The brightness of a surface with this unit normal, from the ambient fraction to 1. It is
+    /// Lambert's cosine law ("Photometria", 1760): proportional to the cosine of the angle to the
+    /// sun.
     pub fn brightness(&self, normal: DVec3) -> f64 {
         let Share(ambient) = self.ambient;
         ambient + (1.0 - ambient) * self.toward.dot(normal).clamp(0.0, 1.0)
@@ -50,36 +52,36 @@ impl Sun {
 }
 
 impl Default for Sun {
-    /// High in the north-west.
+    /// A sun high in the north-west.
     fn default() -> Self {
         const TOWARD: DVec3 = DVec3::new(-2.0 / 7.0, -3.0 / 7.0, 6.0 / 7.0);
         Self { toward: TOWARD, ambient: Share(0.2) }
     }
 }
 
-/// What is behind all bodies: from one colour, high up, to another, at the horizon and below.
+/// The background: a gradient from the zenith to the horizon.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct Sky {
-    /// At half a cell up for each cell away, and above.
+    /// The colour at and above a slope of one half.
     pub zenith: Rgb,
-    /// At the height of the eye.
+    /// The colour at and below the height of the eye.
     pub horizon: Rgb,
 }
 
 impl Sky {
-    /// The colour in that direction.
+    /// The colour in this direction.
     pub fn color(&self, direction: DVec3) -> Rgb {
         const STEEPEST: f64 = 0.5;
         let away = direction.truncate().length();
         let height = (direction.z / STEEPEST).clamp(0.0, away);
-        // Looking straight up, both are measured against nothing.
+        // Straight up or down, the horizontal distance is zero.
         let share = if away > 0.0 { height / away } else { f64::from(direction.z > 0.0) };
         self.zenith.over(self.horizon, (share * 255.0).round() as u8)
     }
 }
 
 impl Default for Sky {
-    /// A fair day.
+    /// A clear blue sky.
     fn default() -> Self {
         Self { zenith: Rgb::new(0x5f, 0x97, 0xcc), horizon: Rgb::new(0xb4, 0xd2, 0xe6) }
     }
@@ -90,7 +92,7 @@ mod tests {
     use super::*;
 
     #[test]
-    fn what_faces_the_sun_is_bright_and_what_does_not_is_ambient() {
+    fn surfaces_towards_the_sun_are_bright_and_others_ambient() {
         let sun = Sun::new(DVec3::new(0.0, 0.0, 1e-200), Share(0.25)).unwrap();
         assert_eq!(sun.brightness(DVec3::Z), 1.0);
         assert_eq!(sun.brightness(DVec3::X), 0.25);

@@ -1,35 +1,35 @@
-//! A ray, and what it hits.
+//! The ray, and its hit.
 
 use glam::DVec3;
 
-/// A half-line. One without a direction hits nothing.
+/// A half-line. A ray with a direction of zero hits nothing.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Ray {
-    /// Where it begins.
+    /// The start.
     pub origin: DVec3,
-    /// Where it goes, of any length.
+    /// The direction, of any length.
     pub direction: DVec3,
 }
 
 impl Ray {
-    /// The ray from `origin` in that direction.
+    /// The ray from `origin` in this direction.
     pub const fn new(origin: DVec3, direction: DVec3) -> Self {
         Self { origin, direction }
     }
 
-    /// Where it is at `t`.
+    /// The point at `t`.
     pub fn at(&self, t: f64) -> DVec3 {
         self.origin + self.direction * t
     }
 }
 
-/// What a ray hits first.
+/// The first intersection of a ray with a body.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Hit {
-    /// Which body, by its place in the scene.
+    /// The index of the body in the scene.
     pub body: usize,
-    /// How far along the ray, in lengths of its direction: 0 or more.
+    /// The distance along the ray, in lengths of its direction: 0 or more.
     pub t: f64,
-    /// The unit vector at a right angle to the body's surface there, on the side of the ray.
+    /// The unit normal of the body's surface, on the side of the ray's start.
     pub normal: DVec3,
 }

@@ -1,4 +1,5 @@
-//! Drawing: for each row of pixels the bodies that reach it, for each of them its pixels.
+//! The renderer of a scene: for each row of pixels, it tests each body that reaches the row against
+//! the pixels in the body's bounds.
 
 use glam::DVec3;
 
@@ -6,52 +7,52 @@ use super::bounds::Bounds;
 use super::camera::{Camera, Projection};
 use super::checker::Footprint;
 use super::explanation::Explanation;
+use super::relative_shape::RelativeShape;
 use super::scene::Scene;
-use super::seen::Seen;
 use super::shadows::Shadows;
 use crate::color::Rgb;
 use crate::render::Frame;
 use crate::world::Fog;
 
-/// Draws frames, and keeps the memory for it from one to the next.
+/// Draws frames, and reuses its memory from frame to frame.
 #[derive(Clone, Debug, Default)]
 pub struct Renderer {
-    /// The bodies that can be seen at all.
+    /// The bodies that can cover a pixel.
     in_view: Vec<InView>,
-    /// What the rays of a row have met so far.
+    /// The nearest hits so far of the rays of a row.
     nearest: Vec<Option<Nearest>>,
-    /// The directions of the rays of the row in the middle of the picture.
+    /// The directions of the rays of the middle row.
     directions: Vec<DVec3>,
     shadows: Shadows,
 }
 
 #[derive(Clone, Debug)]
 struct InView {
-    /// Its place in the scene.
+    /// The index in the scene.
     body: usize,
-    seen: Seen,
+    shape: RelativeShape,
     bounds: Bounds,
 }
 
 #[derive(Clone, Copy, Debug)]
 struct Nearest {
     t: f64,
-    /// Its place among the bodies in view.
+    /// The index among the bodies in view.
     index: usize,
 }
 
 impl Renderer {
-    /// A renderer that has drawn nothing yet.
+    /// A renderer without any allocated memory.
     pub fn new() -> Self {
         Self::default()
     }
 
-    /// Draws what `camera` sees of `scene` into all of `frame`.
+    /// Draws the view of `camera` into all of `frame`.
     pub fn render(&mut self, scene: &Scene, camera: &Camera, frame: &mut Frame) {
         self.explain(scene, camera, frame);
     }
 
-    /// As [`Renderer::render`], and tells how it went.
+    /// Draws as [`Renderer::render`] does, and returns the counts.
     pub fn explain(&mut self, scene: &Scene, camera: &Camera, frame: &mut Frame) -> Explanation {
         let projection = Projection::new(camera, frame.size(), frame.pixel_aspect());
         self.find_bodies(scene, &projection);
@@ -81,24 +82,24 @@ impl Renderer {
         self.in_view.clear();
         self.in_view.reserve(scene.bodies.len());
         self.in_view.extend(scene.bodies.iter().enumerate().filter_map(|(body, found)| {
-            let seen = Seen::new(&found.shape, projection.origin);
-            let bounds = Bounds::new(&seen, projection)?;
-            Some(InView { body, seen, bounds })
+            let shape = RelativeShape::new(&found.shape, projection.origin);
+            let bounds = Bounds::new(&shape, projection)?;
+            Some(InView { body, shape, bounds })
         }));
     }
 
-    /// Finds what the rays of `row` hit, and tells how many tests that took.
+    /// Finds the hits of the rays of `row`, and returns the number of tests.
     fn cast_row(&mut self, row: u32, up: DVec3) -> u64 {
         let Self { in_view, nearest, directions, .. } = self;
         nearest.clear();
         nearest.resize(directions.len(), None);
         let mut tests = 0;
-        for (index, InView { seen, bounds, .. }) in in_view.iter().enumerate() {
+        for (index, InView { shape, bounds, .. }) in in_view.iter().enumerate() {
             if !bounds.rows.contains(&row) {
                 continue;
             }
-            if let Seen::Plane(plane) = seen {
-                // What is behind both ends of a row is behind all of it.
+            if let RelativeShape::Plane(plane) = shape {
+                // If both end rays of a row point away from a plane, all rays between them do.
                 let ends = [directions.first(), directions.last()];
                 if !ends.into_iter().flatten().any(|&across| plane.is_ahead(across + up)) {
                     continue;
@@ -108,7 +109,7 @@ impl Renderer {
             tests += columns.len() as u64;
             for (nearest, &across) in nearest[columns.clone()].iter_mut().zip(&directions[columns])
             {
-                let Some(t) = seen.distance(across + up) else { continue };
+                let Some(t) = shape.distance(across + up) else { continue };
                 if nearest.is_none_or(|before| t < before.t) {
                     *nearest = Some(Nearest { t, index });
                 }
@@ -117,7 +118,7 @@ impl Renderer {
         tests
     }
 
-    /// Gives the pixels of a row their colours.
+    /// Colours the pixels of a row.
     fn shade_row(
         &self,
         scene: &Scene,
@@ -136,8 +137,8 @@ impl Renderer {
                 continue;
             };
             explanation.hits += 1;
-            let InView { body, seen, .. } = self.in_view[index];
-            let normal = seen.normal(direction, t);
+            let InView { body, shape, .. } = self.in_view[index];
+            let normal = shape.normal(direction, t);
             let point = projection.origin + direction * t;
             let footprint = || Footprint::new(direction, t, normal, steps);
             let color = scene.bodies[body].coat.mean_color(point, normal, footprint);
@@ -146,7 +147,7 @@ impl Renderer {
         }
     }
 
-    /// How bright `point` on `body` is, whose surface has that `normal` there.
+    /// The brightness of `point` on the surface of `body`, which has this `normal` there.
     fn brightness(
         &self,
         scene: &Scene,
@@ -168,7 +169,7 @@ impl Renderer {
     }
 }
 
-/// `color` in that brightness, seen through fog from a distance of `t`.
+/// `color` with this brightness, and with the fog of the distance `t`.
 fn lit(color: Rgb, brightness: f64, fog: Option<Fog>, t: f64) -> Rgb {
     const WHOLE: f64 = 256.0;
     let (behind, clearness) = match fog {

@@ -1,4 +1,4 @@
-//! A scene: bodies, light, and where the player starts.
+//! A scene: bodies, light, and the player's start.
 
 use glam::DVec3;
 
@@ -6,68 +6,68 @@ use super::body::Body;
 use super::camera::{Camera, Elevation};
 use super::light::{Sky, Sun};
 use super::ray::{Hit, Ray};
-use super::seen::Seen;
+use super::relative_shape::RelativeShape;
 use super::{Explanation, Renderer};
 use crate::render::{Frame, Options, Renderable};
 use crate::world::{FieldOfView, Fog, Heading};
 
-/// What a level of bodies consists of. It is valid by construction: each body is, and they may overlap.
+/// A level made of bodies. Each body is valid by construction, and bodies may overlap.
 #[derive(Clone, Debug, Default, PartialEq)]
 pub struct Scene {
-    /// The level's name; empty where the map gives none.
+    /// The level's name; empty if the map has none.
     pub title: String,
-    /// In the order of the map; of two that a ray hits at once, it shows the first.
+    /// The bodies in the order of the map. Where a ray hits two at once, the first is visible.
     pub bodies: Vec<Body>,
-    /// What lights them.
+    /// The directional light.
     pub sun: Sun,
-    /// What is behind them.
+    /// The background.
     pub sky: Sky,
-    /// What they fade into, if anything.
+    /// The fog, if there is any.
     pub fog: Option<Fog>,
-    /// Where the player starts.
+    /// The player's start.
     pub start: Start,
 }
 
-/// Where the player starts.
+/// The position and direction in which the player starts.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub struct Start {
-    /// Where the eye is; as near as a camera must be.
+    /// The position of the eye, within the limits of a camera.
     pub(crate) position: DVec3,
-    /// Which way they look.
+    /// The compass direction.
     pub heading: Heading,
-    /// How far up or down they look.
+    /// The angle above or below the horizon.
     pub elevation: Elevation,
 }
 
 impl Start {
-    /// A start at `position`, in cells. `None` where no [`Camera`] could be there.
+    /// A start at `position`, in cells. `None` if a [`Camera`] cannot be there.
     pub fn new(position: DVec3, heading: Heading, elevation: Elevation) -> Option<Self> {
         let camera = Camera::new(position, heading, FieldOfView::default());
         camera.map(|_| Self { position, heading, elevation })
     }
 
-    /// Where the eye is.
+    /// The position of the eye.
     pub fn position(&self) -> DVec3 {
         self.position
     }
 }
 
 impl Scene {
-    /// What `ray` hits first.
+    /// The first hit of `ray`.
     pub fn cast(&self, ray: &Ray) -> Option<Hit> {
-        let mut nearest: Option<(Seen, usize, f64)> = None;
+        let mut nearest: Option<(RelativeShape, usize, f64)> = None;
         for (index, body) in self.bodies.iter().enumerate() {
-            let seen = Seen::new(&body.shape, ray.origin);
-            let Some(t) = seen.distance(ray.direction) else { continue };
+            let relative = RelativeShape::new(&body.shape, ray.origin);
+            let Some(t) = relative.distance(ray.direction) else { continue };
             if nearest.is_none_or(|(_, _, before)| t < before) {
-                nearest = Some((seen, index, t));
+                nearest = Some((relative, index, t));
             }
         }
-        let (seen, body, t) = nearest?;
-        Some(Hit { body, t, normal: seen.normal(ray.direction, t) })
+        let (relative, body, t) = nearest?;
+        Some(Hit { body, t, normal: relative.normal(ray.direction, t) })
     }
 
-    /// A camera where the player starts.
+    /// A camera at the player's start.
     #[expect(clippy::missing_panics_doc, reason = "a start is where a camera can be")]
     pub fn start_camera(&self, field_of_view: FieldOfView) -> Camera {
         let Start { position, heading, elevation } = self.start;
@@ -86,7 +86,7 @@ impl Renderable for Scene {
         Self::start_camera(self, field_of_view)
     }
 
-    /// Bodies have no textures and nothing animated: of `options` nothing applies.
+    /// Draws the view of `camera`. No option applies: bodies have neither textures nor animations.
     fn render(&self, camera: &Camera, _: Options, renderer: &mut Renderer, frame: &mut Frame) {
         renderer.render(self, camera, frame);
     }

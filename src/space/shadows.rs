@@ -1,71 +1,73 @@
-//! Shadows: a ray from what a pixel shows towards the sun.
+//! Shadows: one ray from each visible surface point towards the sun.
 //!
-//! Spheres and boxes cast shadows. Planes cast none: they have no end, and one overhead would leave
-//! nothing in the light. A body casts none on itself, as what it turns away from the sun gets none
-//! of its light anyway, nor on what it encloses: a ball around a whole scene is its sky.
+//! Spheres and boxes cast shadows. Planes cast none: a plane overhead would put everything in
+//! shadow. A body casts no shadow on itself, as the side away from the sun is dark anyway, and none
+//! on the bodies that it encloses: a sphere around a whole scene is its sky.
 //!
-//! All these rays have one direction. Seen along it, a body covers an interval of any axis across,
-//! and only bodies whose interval holds the ray's place are tested: an interval tree in a sorted
-//! array (Li and Rong, "Bedtk", 2021, describe the layout) finds them. A grid across the
-//! light, Haines' light buffer, was refused: a few huge bodies would fill all of its cells.
+//! All shadow rays have the same direction. Projected along it, a body covers an interval of an
+//! axis perpendicular to the light. Only bodies whose interval contains the ray's position are
+//! tested. An interval tree in a sorted array finds them; Li and Rong ("Bedtk", 2021) describe this
+//! layout. A grid perpendicular to the light, as in the light buffer of Haines and Greenberg
+//! (1986), was refused: a few huge bodies would fill all its cells.
 
 use glam::DVec3;
 
 use super::body::{Body, Shape};
 use super::light::Sun;
 
-/// What casts shadows in a scene.
+/// The bodies of a scene that cast shadows.
 #[derive(Clone, Debug, Default)]
 pub(super) struct Shadows {
     toward_sun: DVec3,
-    /// At a right angle to that.
+    /// An axis perpendicular to the light.
     across: DVec3,
-    /// A tree in order: the one in the middle of a range is its root.
-    casters: Vec<Caster>,
+    /// The interval tree, in order: the middle of a range is its root.
+    occluders: Vec<Occluder>,
 }
 
 /// A body that casts a shadow.
 #[derive(Clone, Copy, Debug)]
-struct Caster {
-    /// Its place in the scene.
+struct Occluder {
+    /// The index in the scene.
     body: usize,
     shape: Shape,
-    /// What it covers of the axis across the light, from `low` to `high`.
+    /// The interval that the body covers on the axis perpendicular to the light, from `low` to
+    /// `high`.
     low: f64,
     high: f64,
-    /// The highest of those in the range that it is the root of.
+    /// The greatest `high` in the range whose root this is.
     highest: f64,
 }
 
 impl Shadows {
-    /// Begins a frame of `bodies` under `sun`.
+    /// Prepares the tree for `bodies` under `sun`.
     pub(super) fn begin(&mut self, bodies: &[Body], sun: &Sun) {
         self.toward_sun = sun.toward();
-        // Bodies lie beside each other more often than above each other.
+        // Bodies are more often side by side than above each other.
         self.across = self.toward_sun.cross(DVec3::Z).try_normalize().unwrap_or(DVec3::X);
-        self.casters.clear();
-        self.casters.reserve(bodies.len());
+        self.occluders.clear();
+        self.occluders.reserve(bodies.len());
         let across = self.across;
-        let caster = |(body, found): (usize, &Body)| Caster::new(body, found.shape, across);
-        self.casters.extend(bodies.iter().enumerate().filter_map(caster));
-        self.casters.sort_unstable_by(|one, other| one.low.total_cmp(&other.low));
-        note_highest(&mut self.casters);
+        let occluder = |(body, found): (usize, &Body)| Occluder::new(body, found.shape, across);
+        self.occluders.extend(bodies.iter().enumerate().filter_map(occluder));
+        self.occluders.sort_unstable_by(|one, other| one.low.total_cmp(&other.low));
+        set_highest(&mut self.occluders);
     }
 
-    /// Whether a body is between the sun and `point`, on the surface of `body`. Each test against
-    /// one is added to `tests`.
+    /// Whether a body is between the sun and `point`, which is on the surface of `body`. Each test
+    /// is counted in `tests`.
     pub(super) fn hides_sun(&self, point: DVec3, body: usize, tests: &mut u64) -> bool {
         let place = point.dot(self.across);
-        any_at(&self.casters, place, &mut |caster| {
+        any_at(&self.occluders, place, &mut |occluder| {
             *tests += 1;
-            caster.body != body && is_before(&caster.shape, point, self.toward_sun)
+            occluder.body != body && is_before(&occluder.shape, point, self.toward_sun)
         })
     }
 }
 
-impl Caster {
+impl Occluder {
     fn new(body: usize, shape: Shape, across: DVec3) -> Option<Self> {
-        /// More than rounding takes from a place, as a share of it.
+        /// A bound on the rounding of a position, as a fraction of it.
         const MARGIN: f64 = 1e-9;
         let (center, reach) = match shape {
             Shape::Plane(_) => return None,
@@ -82,17 +84,17 @@ impl Caster {
     }
 }
 
-/// Notes the highest end in each range of `casters`, and tells that of all.
-fn note_highest(casters: &mut [Caster]) -> f64 {
-    let (before, rest) = casters.split_at_mut(casters.len() / 2);
+/// Sets the greatest end of each range of `occluders`, and returns that of the whole.
+fn set_highest(occluders: &mut [Occluder]) -> f64 {
+    let (before, rest) = occluders.split_at_mut(occluders.len() / 2);
     let [root, after @ ..] = rest else { return f64::NEG_INFINITY };
-    root.highest = root.high.max(note_highest(before)).max(note_highest(after));
+    root.highest = root.high.max(set_highest(before)).max(set_highest(after));
     root.highest
 }
 
-/// Whether any of `casters` that are at `place` `is_such`.
-fn any_at(casters: &[Caster], place: f64, is_such: &mut impl FnMut(&Caster) -> bool) -> bool {
-    let (before, rest) = casters.split_at(casters.len() / 2);
+/// Whether `is_such` holds for any of `occluders` whose interval contains `place`.
+fn any_at(occluders: &[Occluder], place: f64, is_such: &mut impl FnMut(&Occluder) -> bool) -> bool {
+    let (before, rest) = occluders.split_at(occluders.len() / 2);
     let [root, after @ ..] = rest else { return false };
     if root.highest < place {
         return false;
@@ -102,7 +104,7 @@ fn any_at(casters: &[Caster], place: f64, is_such: &mut impl FnMut(&Caster) -> b
             && (place <= root.high && is_such(root) || any_at(after, place, is_such))
 }
 
-/// Whether a ray from `point` along `direction`, a unit vector, enters `shape` from outside.
+/// Whether a ray from `point` along the unit vector `direction` enters `shape` from outside.
 fn is_before(shape: &Shape, point: DVec3, direction: DVec3) -> bool {
     match shape {
         Shape::Plane(_) => false,

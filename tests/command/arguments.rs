@@ -1,5 +1,5 @@
-//! The command line: help, completions and the manual page, which come from one description; where
-//! options may stand; and what is refused, each with one sentence.
+//! The command line: help, completions and the manual page, which are made from one description;
+//! the position of options; and one sentence for each mistake.
 #![cfg(feature = "cli")]
 
 use std::collections::BTreeSet;
@@ -30,7 +30,7 @@ fn text_of(arguments: &[&str]) -> String {
     String::from_utf8(output_of(arguments)).unwrap()
 }
 
-/// A folder of its own for the test `name`, and empty.
+/// An empty folder for the test `name`.
 fn scratch(name: &str) -> PathBuf {
     let folder = PathBuf::from(env!("CARGO_TARGET_TMPDIR")).join("command").join(name);
     _ = fs::remove_dir_all(&folder);
@@ -38,7 +38,7 @@ fn scratch(name: &str) -> PathBuf {
     folder
 }
 
-/// The options that the help of `subcommand` lists.
+/// The options in the help of `subcommand`.
 fn options_of(subcommand: &str) -> BTreeSet<String> {
     let help = text_of(&[subcommand, "-h"]);
     let lines = help.lines().filter(|line| line.starts_with("  "));
@@ -147,7 +147,7 @@ fn the_last_of_an_option_that_is_repeated_counts() {
 }
 
 #[test]
-fn what_is_refused_is_told_in_a_sentence() {
+fn mistakes_are_one_sentence_each() {
     let refused: [&[&str]; 33] = [
         &["plya"],
         &["cellar", "snapshot"],
@@ -207,7 +207,7 @@ fn a_map_may_come_from_standard_input() {
 }
 
 #[test]
-fn a_missing_file_is_all_that_check_tells_of() {
+fn a_missing_file_is_the_only_fault() {
     assert_eq!(complaint_about(&["check", "absent.toml"]), "error: there is no file absent.toml\n");
     let complaint = complaint_about(&["check", "absent.toml", "absent2.toml"]);
     insta::assert_snapshot!(complaint, @r"
@@ -236,7 +236,7 @@ fn a_recording_replaces_no_file_and_has_an_ending_that_is_known() {
     assert_eq!(fs::read_to_string(&taken).unwrap(), "precious");
     insta::assert_snapshot!(told("walk.txt", &[]), @r#"cellcaster: --record takes a file that ends in .cast, for what the terminal is sent, or in .script, for what you do, not "walk.txt""#);
     assert_eq!(told("cast", &[]), told("walk.txt", &[]).replace("walk.txt", "cast"));
-    // With no terminal to play on, nothing is left behind that would be in the way next time.
+    // Without a terminal to play in, no file is left that would prevent the next recording.
     for name in ["new.cast", "new.script"] {
         assert!(told(name, &[]).contains("is not a terminal"));
         assert!(!folder.join(name).exists(), "{name} was left behind");
@@ -245,7 +245,7 @@ fn a_recording_replaces_no_file_and_has_an_ending_that_is_known() {
 }
 
 #[test]
-fn who_comes_by_ssh_without_a_terminal_is_told_of_its_option() {
+fn without_a_terminal_over_ssh_the_error_names_the_option() {
     let output = cellcaster(&[])
         .env("SSH_CONNECTION", "192.0.2.1 50000 192.0.2.2 22")
         .stdin(Stdio::null())

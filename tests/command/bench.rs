@@ -1,4 +1,4 @@
-//! `cellcaster bench`: its formats, and what they are about. How fast anything is, is no matter here.
+//! `cellcaster bench`: its formats and their contents. Speed is not tested.
 #![cfg(feature = "cli")]
 
 use std::fs;
@@ -60,7 +60,7 @@ fn has_every_map(report: &Value) {
         for row in maps {
             assert!(is_positive(&row["ray"]["nanoseconds"]), "{row}");
             assert!(is_positive(&row["frame"]["microseconds"]), "{row}");
-            // A byte says what is in a cell, and another one how far it is to what is not open.
+            // One byte is the content of a cell, another one is its distance to solid cells.
             assert!(row["bytes_a_cell"].as_f64().unwrap() > 2.0, "{row}");
         }
     }

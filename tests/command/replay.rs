@@ -1,4 +1,4 @@
-//! Any intents, any number of times: the same frames, and nobody inside a wall.
+//! Any intents, any number of times: the frames are equal, and the player is never inside a wall.
 
 use cellcaster::game::{Game, Intent, Intents};
 use cellcaster::map::builtin;
@@ -7,7 +7,7 @@ use cellcaster::world::{FieldOfView, Grid};
 use glam::DVec2;
 use proptest::prelude::*;
 
-/// The player's.
+/// The player's radius.
 const RADIUS: f64 = 0.25;
 
 fn wants() -> impl Strategy<Value = Vec<(Intents, u8)>> {
@@ -16,10 +16,10 @@ fn wants() -> impl Strategy<Value = Vec<(Intents, u8)>> {
     prop::collection::vec((held, 1_u8..40), 1..30)
 }
 
-/// Where the player was after a step, and how far from the nearest solid cell.
+/// The position of the player after a step, and the distance to the nearest solid cell.
 type Place = (DVec2, f64);
 
-/// Every place on the way, and a frame after each of `wants`.
+/// Every position on the way, and a frame after each of `wants`.
 fn play(level: usize, wants: &[(Intents, u8)]) -> (Vec<Place>, Vec<Frame>) {
     let mut game = Game::new(builtin::LEVELS[level].world().unwrap());
     let mut renderer = Renderer::new();
@@ -37,7 +37,7 @@ fn play(level: usize, wants: &[(Intents, u8)]) -> (Vec<Place>, Vec<Frame>) {
     (places, frames)
 }
 
-/// How far `point` is from the nearest solid cell around it.
+/// The distance of `point` to the nearest solid cell around it.
 fn clearance(grid: &Grid, point: DVec2) -> f64 {
     let (column, row) = (point.x as i64, point.y as i64);
     let around =
@@ -63,7 +63,7 @@ proptest! {
     }
 
     #[test]
-    fn nobody_is_ever_inside_a_wall(level in 0..builtin::LEVELS.len(), wants in wants()) {
+    fn the_player_is_never_inside_a_wall(level in 0..builtin::LEVELS.len(), wants in wants()) {
         for (position, clearance) in play(level, &wants).0 {
             prop_assert!(clearance >= RADIUS, "{} from a wall, at {}", clearance, position);
         }

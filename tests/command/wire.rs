@@ -1,4 +1,4 @@
-//! What a game costs on the wire, in bytes and in what the viewer sees.
+//! Bytes and colour errors of a game on the wire.
 #![cfg(feature = "cli")]
 
 use std::num::NonZeroU32;
@@ -34,8 +34,8 @@ fn section<'a>(encoder: &'a EncoderReport, name: &str) -> &'a Part {
     encoder.sections.iter().find(|part| part.name == name).unwrap()
 }
 
-/// What each of our encoders takes and shows in the mean of three levels; the figures are those of the
-/// report, and repeat.
+/// The bytes and the errors of each of Cellcaster's encoders, as means over three levels. The
+/// figures are those of the report, and are repeatable.
 #[test]
 fn three_levels_take_no_more_bytes_than_is_promised() {
     let reports = ["citadel", "museum", "observatory"].map(report);
@@ -54,7 +54,7 @@ fn three_levels_take_no_more_bytes_than_is_promised() {
     }
 }
 
-/// Of what is promised, a little more is let through than the figure says: the levels change.
+/// A tolerance for changes of the levels.
 const SLACK: f64 = 1.05;
 
 #[test]
@@ -91,7 +91,8 @@ fn palettes(depth: ColorDepth, frames_per_second: u32) -> Vec<PaletteRow> {
     wire::report_palettes(&PalettePlan { depth, size: Size::new(80, 24), frames_per_second })
 }
 
-/// The hue of true colour, and half of the error of nearest colours, for at most 1.3 times their bytes.
+/// The hue of true colour, with half of the error of nearest colours, for at most 1.3 times their
+/// bytes.
 #[test]
 fn colours_of_256_look_like_true_colour_from_a_little_farther_away() {
     let rows = palettes(ColorDepth::Indexed256, 30);

@@ -1,4 +1,4 @@
-//! The repository itself: its documents, and what they promise.
+//! The repository: its documents, and the claims in them.
 
 use std::collections::BTreeSet;
 use std::path::{Path, PathBuf};
@@ -26,7 +26,7 @@ fn is_markdown(path: &Path) -> bool {
     path.extension().is_some_and(|extension| extension == "md")
 }
 
-/// The anchors of a document, as GitHub makes them of its headings.
+/// The anchors of a document's headings, as GitHub makes them.
 fn anchors(text: &str) -> BTreeSet<String> {
     let headings =
         prose(text).filter_map(|line| Some(line.strip_prefix('#')?.trim_start_matches('#')));
@@ -38,7 +38,7 @@ fn anchors(text: &str) -> BTreeSet<String> {
         .collect()
 }
 
-/// The lines of a document that are not in a block of code.
+/// The lines of a document outside code blocks.
 fn prose(text: &str) -> impl Iterator<Item = &str> {
     let mut is_code = false;
     text.lines().filter(move |line| {
@@ -48,14 +48,14 @@ fn prose(text: &str) -> impl Iterator<Item = &str> {
     })
 }
 
-/// What the links of a document lead to.
+/// The targets of a document's links.
 fn links(text: &str) -> Vec<String> {
     let text: String = prose(text).flat_map(|line| [line, "\n"]).collect();
     let targets = text.split("](").skip(1).filter_map(|rest| rest.split_once(')'));
     targets.map(|(target, _)| target.to_owned()).collect()
 }
 
-/// The blocks of code in a document that are in `language`, each with the number of its first line.
+/// The code blocks of a document in `language`, each with the number of its first line.
 fn blocks(text: &str, language: &str) -> Vec<(usize, String)> {
     let mut blocks = Vec::new();
     let mut lines = (1..).zip(text.lines());
@@ -113,7 +113,7 @@ fn the_changelog_has_a_section_for_this_version() {
     assert!(sections.next().is_some_and(is_named), "the first section is neither");
 }
 
-/// A block that draws a grid is a whole map. Any other block is a part of one, and is TOML.
+/// A block with a grid is a whole map. Any other block is a part of one, and is TOML.
 #[test]
 fn maps_in_the_documents_are_right() {
     let mut maps = 0;

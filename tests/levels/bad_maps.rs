@@ -1,5 +1,5 @@
-//! What a map's author reads when something is wrong with the map: one report for each file in
-//! `tests/bad_maps`, and for what cannot be kept as a file there.
+//! The reports on maps with faults: one for each file in `tests/bad_maps`, and for maps that cannot
+//! be a file there.
 
 use std::error::Error;
 use std::fs;
@@ -15,14 +15,14 @@ fn faults(path: &Path) -> Result<Faults, String> {
     map::load_level(path).err().ok_or_else(|| format!("{} was accepted", path.display()))
 }
 
-/// A folder of its own for the test `name`.
+/// An empty folder for the test `name`.
 fn scratch(name: &str) -> std::io::Result<PathBuf> {
     let folder = Path::new(env!("CARGO_TARGET_TMPDIR")).join(name);
     fs::create_dir_all(&folder)?;
     Ok(folder)
 }
 
-/// A report without the folder that its file happens to be in.
+/// A report without the folder of its file.
 fn without_folder(faults: &Faults, folder: &Path) -> String {
     faults.to_string().replace(&format!("{}/", folder.display()), "")
 }

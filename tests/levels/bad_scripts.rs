@@ -1,5 +1,4 @@
-//! What a script's author reads when something is wrong with the script: one report for each file in
-//! `tests/bad_scripts`.
+//! The reports on scripts with faults: one for each file in `tests/bad_scripts`.
 
 use std::fs;
 

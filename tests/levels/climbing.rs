@@ -1,5 +1,5 @@
-//! Steps, ledges, low ceilings and deep falls: what the player gets onto, over and under, and that
-//! they are never inside anything.
+//! Steps, ledges, low ceilings and deep falls: which of them the player can climb and pass,
+//! and that the player is never inside anything.
 
 use crate::walker::{SKY, corridor, position, walk, want};
 use cellcaster::game::{Game, Intent, Intents, STEP};
@@ -9,7 +9,7 @@ use glam::DVec2;
 use proptest::prelude::*;
 
 const RADIUS: f64 = 0.25;
-/// How tall the player is at least.
+/// The player's least height.
 const DUCKING: f64 = 0.5;
 
 #[test]
@@ -37,7 +37,7 @@ fn stairs_are_climbed_at_a_run_and_walked_down_without_a_jump() {
     for _ in 0..400 {
         walk(&mut game, 1, &[Intent::Forward, Intent::Run]);
         highest = highest.max(game.feet());
-        // Whatever the feet do, the eye goes smoothly.
+        // The eye moves smoothly, even if the feet do not.
         let next = game.camera(FieldOfView::default()).eye();
         assert!((next - eye).abs() < 0.1, "from {eye} to {next}");
         eye = next;
@@ -61,7 +61,7 @@ fn a_jump_clears_a_ledge_of_six_tenths_and_none_of_seven() {
 }
 
 #[test]
-fn each_wish_to_jump_is_for_one_jump() {
+fn each_press_of_jump_is_one_jump() {
     let mut game = corridor(SKY, &["light = 1"]);
     walk(&mut game, 120, &[Intent::Jump]);
     assert!(game.is_at_rest(want(&[Intent::Jump])));
@@ -88,7 +88,7 @@ fn a_jump_under_a_low_ceiling_is_a_low_jump() {
 }
 
 #[test]
-fn who_ducks_gets_under_a_beam_and_stands_up_only_behind_it() {
+fn a_ducking_player_passes_under_a_beam_and_stands_up_behind_it() {
     let beam = "ceiling_height = 0.6";
     let mut game = corridor("ceiling_height = 2", &[beam, beam, "light = 1"]);
     walk(&mut game, 240, &[Intent::Forward]);
@@ -123,7 +123,7 @@ fn a_fall_of_a_thousand_cells_takes_its_time_and_ends() {
     assert!(game.is_at_rest(Intents::new()));
 }
 
-/// A closed room with cells of eight kinds, whose heights are drawn, and with shapes and things.
+/// A closed room with cells of eight kinds and random heights, and with shapes and things.
 fn any_world() -> impl Strategy<Value = World> {
     let floor = prop::sample::select(vec![
         0.0_f64, 1e-9, 0.1, 0.3, 0.35, 0.36, 0.5, 0.6, 0.9, -0.3, -2.0, -1e9, 1e9, 3.0,
@@ -167,7 +167,7 @@ fn any_world() -> impl Strategy<Value = World> {
     })
 }
 
-/// The gaps of a cell, as far as nothing stands in them; none off the map.
+/// The gaps of a cell without its things; none off the map.
 fn gaps(world: &World, column: i64, row: i64) -> Vec<Gap> {
     use cellcaster::world::TileKind::{Door, Glass, Mask};
     let Some(tile) = world.grid().tile(column, row).map(|id| world.tile(id)) else {
@@ -189,7 +189,7 @@ fn gaps(world: &World, column: i64, row: i64) -> Vec<Gap> {
     .collect()
 }
 
-/// Whether somebody is beside or above the shape in a cell, if there is one.
+/// Whether the player is beside or above the shape in a cell, if there is one.
 fn is_beside_shape(world: &World, column: i64, row: i64, position: DVec2, feet: f64) -> bool {
     let Some(tile) = world.grid().tile(column, row).map(|id| world.tile(id)) else { return true };
     let TileKind::Shape(shape) = tile.kind else { return true };
@@ -203,7 +203,7 @@ fn is_beside_shape(world: &World, column: i64, row: i64, position: DVec2, feet: 
     feet >= top || shape.outline.distance(cell, position) >= RADIUS
 }
 
-/// Whether all of somebody, as small as they can be, is in gaps of the cells that they are in.
+/// Whether the whole player, at the least height, is in gaps of the cells around the position.
 fn is_in_the_open(world: &World, position: DVec2, feet: f64) -> bool {
     let (column, row) = (position.x.floor() as i64, position.y.floor() as i64);
     let around =
@@ -220,7 +220,7 @@ fn is_in_the_open(world: &World, position: DVec2, feet: f64) -> bool {
         })
 }
 
-/// Intents that are held for a while each.
+/// Intents, each held for a while.
 fn script() -> impl Strategy<Value = Vec<(usize, Vec<Intent>)>> {
     let held = prop::sample::subsequence(Intent::ALL.to_vec(), 0..=6);
     prop::collection::vec((1..50_usize, held), 1..25)
@@ -230,7 +230,7 @@ proptest! {
     #![proptest_config(ProptestConfig::with_cases(400))]
 
     #[test]
-    fn nobody_is_ever_inside_anything(world in any_world(), script in script()) {
+    fn the_player_is_never_inside_anything(world in any_world(), script in script()) {
         let mut game = Game::new(world);
         for (steps, wanted) in &script {
             for _ in 0..*steps {
@@ -255,13 +255,13 @@ proptest! {
     }
 
     #[test]
-    fn who_is_at_rest_stays_as_they_are(world in any_world(), script in script()) {
+    fn a_player_at_rest_stays_at_rest(world in any_world(), script in script()) {
         let mut game = Game::new(world);
         for (steps, wanted) in &script {
             walk(&mut game, *steps, wanted);
         }
         walk(&mut game, 300, &[]);
-        // Who still falls after that is further down by now.
+        // A player who still falls has gone farther down since.
         if game.feet() > -100.0 {
             prop_assert!(game.is_at_rest(Intents::new()));
         }

@@ -1,5 +1,4 @@
-//! Generated levels: how they look, that they are the same everywhere, and what it says about
-//! options that make none.
+//! Generated levels: golden pictures, equality on all machines, and the mistakes in options.
 
 use std::fmt::Write as _;
 use std::sync::Arc;
@@ -31,7 +30,7 @@ fn every_generator_looks_as_it_did() {
 }
 
 #[test]
-fn the_same_seed_digs_the_same_level() {
+fn the_same_seed_gives_the_same_level() {
     let sites = [(0, 0), (1_000_000_000, -1_000_000_000), (i64::MIN, i64::MAX)];
     for generator in Generator::ALL {
         let level = generator.level(7, Extent::Endless).unwrap();
@@ -80,7 +79,7 @@ fn mistakes_are_one_sentence_each() {
     insta::assert_snapshot!(complaints.join("\n"));
 }
 
-/// A level that is the same in every chunk.
+/// A level with the same content in every chunk.
 #[derive(Debug)]
 struct Repeated;
 
@@ -126,9 +125,9 @@ fn picture(game: &Game) -> Frame {
 proptest! {
     #![proptest_config(ProptestConfig::with_cases(16))]
 
-    /// What is the same everywhere is walked through and looks the same, bit for bit, everywhere.
+    /// In a level that is the same everywhere, pictures are equal at every distance, bit for bit.
     #[test]
-    fn nothing_swims(
+    fn pictures_are_equal_in_equal_chunks(
         (column, row) in (
             prop::sample::select(vec![31_250_000_i64, -31_250_000, i64::MAX >> 5, i64::MIN >> 5]),
             prop_oneof![-1_000_000_i64..1_000_000, Just(i64::MIN >> 5)],
@@ -158,9 +157,9 @@ proptest! {
         }
     }
 
-    /// Whoever walks through a level is never inside anything, however far they get.
+    /// The player is never inside anything, at any distance from the start.
     #[test]
-    fn nobody_is_ever_inside_a_wall(
+    fn the_player_is_never_inside_a_wall(
         generator in prop::sample::select(&Generator::ALL),
         seed: u64,
         (column, row) in (any::<i64>(), any::<i64>()),
@@ -184,7 +183,7 @@ proptest! {
     }
 }
 
-/// A mean that one can read a picture by, and no more light than is left in a dungeon.
+/// A picture is neither too dark to read nor brighter than a dungeon.
 #[test]
 fn first_views_are_neither_too_dark_nor_too_bright() {
     for (generator, allowed) in
@@ -197,7 +196,7 @@ fn first_views_are_neither_too_dark_nor_too_bright() {
     }
 }
 
-/// No two first views of the next seeds are alike: where one starts, or what is built of what.
+/// The first views of consecutive seeds differ, in position or in materials.
 #[test]
 fn offices_differ_from_the_first_step() {
     let views: Vec<Frame> = (1..=8).map(|seed| first_view(Generator::Office, seed)).collect();
@@ -211,7 +210,7 @@ fn offices_differ_from_the_first_step() {
     }
 }
 
-/// What somebody sees first, in a terminal of 80×24 cells.
+/// The first view of a level, in a terminal of 80×24 cells.
 fn first_view(generator: Generator, seed: u64) -> Frame {
     let level = generator.level(seed, Extent::Endless).unwrap();
     let start = level.start().unwrap();

@@ -1,4 +1,4 @@
-//! What a ray and a frame cost as a map grows: how often rays look where they are, not how long it takes.
+//! The growth of costs with the map: counts of look-ups of rays, not times.
 
 use allocation_counter::measure;
 use cellcaster::cast::{Caster, Exact, Ray};
@@ -7,7 +7,7 @@ use cellcaster::render::{Explanation, Frame, FrameSize, PixelAspect, RayLoop, Re
 use cellcaster::world::{Cell, FieldOfView, Opening, World};
 use glam::DVec2;
 
-/// A square with walls around it and whatever else `drawn` puts in a cell.
+/// A square map with walls around it, and the cells that `drawn` returns.
 fn square(side: u32, drawn: impl Fn(u32, u32) -> Option<char>) -> World {
     let is_edge = |place: u32| place == 0 || place == side - 1;
     let mut text = String::from("grid = '''\n");
@@ -30,7 +30,8 @@ fn explained(world: &World) -> Explanation {
     Renderer::new().explain(world, &camera, &mut frame)
 }
 
-/// What a map of that side leaves allocated once it is read, and what its grid says.
+/// The bytes that stay allocated after a map of this side is read, and the bytes that its grid
+/// reports.
 fn bytes(side: u32) -> (i64, i64) {
     let mut world = None;
     let counted = measure(|| world = Some(square(side, |_, _| None)));
@@ -38,7 +39,7 @@ fn bytes(side: u32) -> (i64, i64) {
 }
 
 #[test]
-fn a_grid_tells_what_a_large_map_takes() {
+fn a_grid_reports_the_bytes_of_a_large_map() {
     let ((small, told_of_small), (large, told_of_large)) = (bytes(64), bytes(1024));
     let (taken, told) = (large - small, told_of_large - told_of_small);
     assert!((taken - told).abs() * 100 <= told, "{taken} bytes, and not {told}");
@@ -64,7 +65,7 @@ fn a_hall_sixteen_times_as_wide_takes_twice_the_looks_at_most() {
     assert!(small.stats.looks < small.stats.cells / 3);
 }
 
-/// A pillar stands in one cell of each 64 by 64, not in the middle.
+/// The pillars are in one cell of each 64 by 64, and not in its middle.
 #[test]
 fn a_plain_sixty_four_times_as_wide_takes_four_times_the_looks_at_most() {
     let pillar = |column: u32, row: u32| {
@@ -77,15 +78,15 @@ fn a_plain_sixty_four_times_as_wide_takes_four_times_the_looks_at_most() {
     assert!(large.looks <= 4 * small.looks, "{:?}", (small, large));
 }
 
-/// A door in a wall across a hall, wherever a ray leaps from.
+/// A door in a wall across a hall, at all distances from the start of a leap.
 #[test]
-fn nobody_leaps_across_a_door_that_closes() {
+fn no_ray_leaps_across_a_closing_door() {
     for side in [100, 1024] {
-        nobody_leaps_across_a_door(side);
+        no_ray_leaps_across_a_door(side);
     }
 }
 
-fn nobody_leaps_across_a_door(side: u32) {
+fn no_ray_leaps_across_a_door(side: u32) {
     let door = Cell { column: 50, row: side / 2 };
     let wall =
         |column, row| (column == door.column).then_some(if row == door.row { '+' } else { '#' });

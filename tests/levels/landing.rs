@@ -1,10 +1,10 @@
-//! Low things and low shapes: what the player jumps onto and over, and what they walk into.
+//! Low things and low shapes: which of them the player jumps onto or over, and which block the way.
 
 use crate::walker::{SKY, corridor, position, walk};
 use cellcaster::game::{Game, Intent};
 use cellcaster::map;
 
-/// What somebody stands on in the end who walks up to a thing, and then jumps.
+/// The final heights of a player who walks up to a thing, and then jumps.
 fn jump_onto(thing: &str) -> [f64; 2] {
     let map = format!(
         "{SKY}\ngrid = '''\n#######\n#@..tt#\n#######\n'''\n[tiles]\n\
@@ -19,7 +19,7 @@ fn jump_onto(thing: &str) -> [f64; 2] {
 }
 
 #[test]
-fn who_jumps_stands_on_a_low_thing_and_nobody_walks_onto_one() {
+fn a_low_thing_is_jumped_onto_and_not_walked_onto() {
     assert_eq!(jump_onto("sprite = \"table\""), [0.0, 0.42]);
     assert_eq!(jump_onto("sprite = \"barrel\""), [0.0, 0.58]);
     assert_eq!(jump_onto("sprite = \"bones\", blocks = true, height = 0.1"), [0.0, 0.1]);
@@ -28,7 +28,7 @@ fn who_jumps_stands_on_a_low_thing_and_nobody_walks_onto_one() {
 }
 
 #[test]
-fn who_jumps_passes_over_a_thing_and_who_ducks_under_one() {
+fn a_jumping_player_passes_over_a_thing_and_a_ducking_one_under_it() {
     let past = |thing: &str, wanted: &[Intent]| {
         let map = format!(
             "ceiling_height = 1.5\ngrid = '''\n########\n#@.t...#\n########\n'''\n[tiles]\n\
@@ -63,7 +63,7 @@ fn a_low_pillar_is_a_step_and_a_higher_one_is_jumped_onto() {
 }
 
 #[test]
-fn who_falls_onto_a_pillar_stands_on_it() {
+fn a_falling_player_lands_on_a_pillar() {
     let ledge = "floor_height = 3";
     let pillar = "pillar = \"marble\", radius = 0.5, height = 2";
     let map = format!(
@@ -80,7 +80,7 @@ fn who_falls_onto_a_pillar_stands_on_it() {
 }
 
 #[test]
-fn a_key_is_taken_by_who_is_as_high_as_it_is() {
+fn a_player_at_the_height_of_a_key_takes_it() {
     let text = "ceiling = \"sky\"\ngrid = '''\n#######\n#@.k..#\n####+##\n####.##\n#######\n'''\n[tiles]\n\
                 \"#\" = { wall = \"brick\", height = 99 }\n\"+\" = { door = \"oak\", key = \"brass\" }\n\
                 \"=\" = { floor_height = -2, ceiling = \"wood\", ceiling_height = -0.5, roof_height = 0 }\n\

@@ -1,4 +1,4 @@
-//! Maps, scripts and levels: what is read, what is refused, and that levels can be played to their end.
+//! Maps, scripts and levels: valid and invalid ones, and playing levels to their end.
 
 mod bad_maps;
 mod bad_scripts;

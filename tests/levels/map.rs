@@ -1,4 +1,4 @@
-//! What a map may be made of, and that nothing else brings the reader down.
+//! Valid maps of all kinds, and random texts, which never cause a panic.
 
 use std::cell::RefCell;
 use std::io;
@@ -32,7 +32,7 @@ grid = '''
 "X" = { exit = true }
 "##;
 
-/// The grid as the world has it, with open floor as `.`.
+/// The grid of the world, with open floor as `.`.
 fn drawn(world: &World) -> String {
     let row = |tiles: &[_]| tiles.iter().map(|&tile| world.tile(tile).character).collect();
     world.grid().rows().map(row).collect::<Vec<String>>().join("\n")
@@ -76,7 +76,7 @@ fn a_kind_of_tile_that_is_not_drawn_is_left_out() {
 }
 
 #[test]
-fn as_many_kinds_of_wall_as_there_are_numbers() {
+fn a_map_may_have_the_largest_number_of_kinds_of_walls() {
     let characters: String = ('\u{4e00}'..).take(254).collect();
     let mut text = format!("grid = '{characters}@'\nthings.'@'.start = 0\n[tiles]\n");
     for wall in characters.chars() {
@@ -106,7 +106,7 @@ fn exit_is_within_reach(world: &World) -> bool {
                 continue;
             }
             let cell = Cell { column: column as u32, row: row as u32 };
-            // A map whose keys cannot be reached would have been refused.
+            // A map with unreachable keys would have been refused.
             let open = !world.grid().is_solid(column, row) || world.door(cell).is_some();
             if open && !reached.contains(&cell) {
                 reached.push(cell);
@@ -120,7 +120,7 @@ fn exit_is_within_reach(world: &World) -> bool {
 }
 
 #[test]
-fn doors_keys_and_glass_are_what_the_map_says() {
+fn doors_keys_and_glass_are_as_in_the_map() {
     let world = map::parse_str(
         r##"
 grid = '''
@@ -157,7 +157,7 @@ grid = '''
     assert_eq!(drawn(&world).replace('=', "+").matches('+').count(), 2);
 }
 
-/// Answers every name with a picture of one red texel, and writes down what it was asked.
+/// Returns a picture of one red texel for every name, and records the names.
 #[derive(Default)]
 struct RedFiles {
     asked: RefCell<Vec<String>>,
@@ -192,7 +192,7 @@ fn a_texture_is_read_once_and_only_where_it_is_used() {
     assert_eq!(world.tiles()[1].kind, world.tiles()[2].kind);
 }
 
-/// A valid map with some bytes of it replaced, removed or repeated.
+/// A valid map with some bytes replaced, removed or repeated.
 fn mutated_map() -> impl Strategy<Value = String> {
     let edit = (any::<prop::sample::Index>(), 0..12_usize, "[\\[\\]{}='\"#@.X\n\ta0é\\\\]{0,4}");
     prop::collection::vec(edit, 1..6).prop_map(|edits| {
@@ -206,7 +206,7 @@ fn mutated_map() -> impl Strategy<Value = String> {
     })
 }
 
-/// Rows of one width that hold one `@`.
+/// Rows of equal width with one `@`.
 fn rows() -> impl Strategy<Value = Vec<String>> {
     (1..12_usize, 1..12_usize)
         .prop_flat_map(|(width, height)| {

@@ -1,5 +1,5 @@
-//! The built-in levels: that they can be finished, that nobody gets stuck in them, and that the way
-//! out leads where it was meant to.
+//! The built-in levels: each can be finished, the player cannot get stuck, and the solution is the
+//! intended one.
 
 use std::collections::BTreeSet;
 
@@ -11,7 +11,7 @@ use cellcaster::render::{Frame, FrameSize, PixelAspect, Renderer};
 use cellcaster::world::{Camera, FieldOfView, Heading, Pitch, World};
 use glam::DVec2;
 
-/// The levels that need jumping, mirrors and heights, and how each is walked through.
+/// The levels that need jumps, mirrors and heights, with a script for each.
 const WALKS: [(&str, &str); 2] = [
     ("cistern", include_str!("../../maps/cistern.script")),
     ("observatory", include_str!("../../maps/observatory.script")),
@@ -39,7 +39,7 @@ fn a_script_leads_through_each_to_its_exit() {
 }
 
 #[test]
-fn nobody_reaches_the_exit_without_a_jump() {
+fn the_exit_needs_a_jump() {
     for (name, _) in WALKS {
         let world = world(name);
         let mut reach = reach(&world, Gait::Walks);
@@ -48,9 +48,9 @@ fn nobody_reaches_the_exit_without_a_jump() {
     }
 }
 
-/// However well somebody jumps.
+/// For any skill in jumping.
 #[test]
-fn nobody_reaches_the_exit_without_the_key() {
+fn the_exit_needs_the_key() {
     for name in ["citadel", "cistern", "observatory"] {
         let world = world(name);
         let mut reach = Reach { takes_keys: false, ..reach(&world, Gait::Jumps) };
@@ -59,9 +59,9 @@ fn nobody_reaches_the_exit_without_the_key() {
     }
 }
 
-/// Wherever somebody gets, however well they jump, there is a way to the exit that anybody manages.
+/// From every position that the best jumper reaches, an average player can reach the exit.
 #[test]
-fn nobody_gets_stuck() {
+fn the_player_cannot_get_stuck() {
     for (name, _) in WALKS {
         let world = world(name);
         let mut safe = BTreeSet::<Place>::new();
@@ -74,7 +74,7 @@ fn nobody_gets_stuck() {
                 assert!(sure.gets_out(place, &safe), "{name}: {place:?} with the keys {keys:?}");
                 safe.insert(place);
             }
-            // On with all that lies about where one gets so far.
+            // With all keys that are in reach so far.
             let mut lucky = lucky;
             lucky.from(lucky.start());
             if lucky.keys == keys {
@@ -85,7 +85,7 @@ fn nobody_gets_stuck() {
     }
 }
 
-/// What somebody sees at the edge of the balcony above one of the shafts.
+/// The view from the edge of the balcony above one of the shafts.
 fn picture(world: &World, row: f64, degrees: f64) -> Frame {
     let heading = Heading::from_degrees(degrees).unwrap();
     let camera = Camera::new(DVec2::new(36.7, row), heading, FieldOfView::default()).unwrap();
@@ -95,14 +95,14 @@ fn picture(world: &World, row: f64, degrees: f64) -> Frame {
     frame
 }
 
-/// Which of the shafts in the cistern is lit is seen in the mirror opposite, and by no other means.
+/// The mirror opposite shows which of the shafts in the cistern is lit. Nothing else does.
 #[test]
 fn a_mirror_shows_which_shaft_to_take() {
     const MIRROR: &str = "\"M\" = { mirror = \"#a8c0c0\", opacity = 0.1, height = 2 }";
     const TORCH: &str = "\"i\" = { sprite = \"torch\", on = \"T\", reach = 5, light = 0.9 }";
     let text = builtin::LEVELS.iter().find(|level| level.name == "cistern").unwrap().text;
     assert!(text.contains(MIRROR) && text.contains(TORCH));
-    // A torch that sheds no light elsewhere, and none at all.
+    // A torch that lights nothing, instead of the one that lights a little.
     let unlit = |text: &str| text.replace(TORCH, &TORCH.replace("0.9", "0"));
     let without = |text: &str| unlit(text).replace("Ti", "TT");
     let shows_torch = |text: &str, row: f64, degrees: f64| {
@@ -121,7 +121,7 @@ fn a_mirror_shows_which_shaft_to_take() {
 }
 
 #[test]
-fn the_sights_look_as_they_did() {
+fn the_views_look_as_they_did() {
     let sights: [(&str, &str, &[&str]); 10] = [
         ("cistern", "hall", &["--camera", "12.6,16.5,0"]),
         ("cistern", "window", &["--camera", "24,16,270", "--pitch", "8"]),

@@ -1,4 +1,4 @@
-//! A frame costs what its scene shows: stats of what is read and written, for each map of the gallery.
+//! A frame costs what its scene shows: counts of reads and writes for each map of the gallery.
 
 use std::path::Path;
 
@@ -35,7 +35,7 @@ fn a_flat_scene_reads_texels_for_its_walls_alone() {
     assert!(matches!(plan.ceiling, CeilingLoop::Laid(PlaneLoop::Fill(_))));
     assert_eq!((stats.floor.texels, stats.ceiling.texels, stats.sky.pixels), (0, 0, 0));
     assert_eq!(stats.walls.texels, stats.walls.pixels);
-    // What goes between two that hit the same face need not be cast.
+    // Rays between two that hit the same face need not be cast.
     assert!((2..u64::from(WIDTH) / 2).contains(&stats.rays));
     // Two fills of half the picture each, and the walls over them.
     assert_eq!(stats.floor.pixels + stats.ceiling.pixels, PIXELS);
@@ -77,7 +77,7 @@ fn a_gradient_reads_no_texel_and_a_panorama_one_a_pixel() {
 }
 
 #[test]
-fn what_cannot_be_seen_through_keeps_one_hit_a_column() {
+fn opaque_tiles_keep_one_hit_a_column() {
     for name in ["flat", "floor", "doors"] {
         let world = gallery(name);
         let camera = world.start_camera(FieldOfView::default());
@@ -89,7 +89,7 @@ fn what_cannot_be_seen_through_keeps_one_hit_a_column() {
 }
 
 #[test]
-fn a_still_door_costs_what_a_wall_does() {
+fn a_still_door_costs_the_same_as_a_wall() {
     let map = |tile: &str| {
         let text = format!(
             "grid = '''\n#########\n#@..+...#\n#########\n'''\n\
@@ -98,11 +98,11 @@ fn a_still_door_costs_what_a_wall_does() {
         map::parse_str(&text).unwrap()
     };
     let [door, wall] = ["door", "wall"].map(|tile| explained(&map(tile)).stats);
-    // What may be a leaf is cast anew, column by column, when all around it is known.
+    // Columns that may show the leaf are cast one by one after the others.
     assert!(door.rays <= wall.rays + u64::from(WIDTH));
     assert_eq!(door.see_through, wall.see_through);
     assert_eq!(door.walls.texels, door.walls.pixels);
-    // It stands half a cell further back, and so shows a little less of itself.
+    // It is half a cell farther away, and covers slightly fewer pixels.
     assert!(door.walls.pixels <= wall.walls.pixels && door.pixels() <= wall.pixels());
 }
 
@@ -123,7 +123,7 @@ fn a_single_lamp_costs_the_pixels_that_it_covers() {
         .replace("@..", "@.l");
     let flat = explained(&gallery("flat")).stats;
     let Explanation { plan, stats, .. } = explained(&map::parse_str(&with_lamp).unwrap());
-    // All is fully lit: there is nothing to add to, and the floor is one fill as before.
+    // Everything is fully lit, so that the lamp adds no light and the floor is still one fill.
     assert!(matches!(plan.floor, PlaneLoop::Fill(_)));
     assert_eq!((stats.things_considered, stats.things_drawn), (1, 1));
     let without_lamp = FrameStats {
@@ -150,7 +150,7 @@ fn lamplight_reads_and_writes_nothing_more() {
     assert_eq!(same(lit.stats), same(unlit.stats));
 }
 
-/// What the tile `u` of a map may be, out of sight: it decides which passes draw the map.
+/// The variants of the tile `u`, which is out of view. They decide which passes draw the map.
 const OUT_OF_SIGHT: [&str; 3] = ["wall = 'brick'", "floor_height = 0.25", "mirror = true"];
 
 #[test]
@@ -201,8 +201,8 @@ fn things_on_both_sides_of_a_diagonal_view_are_not_considered() {
     }
 }
 
-/// Between two walls of mirror, with thousands of things behind them: what is considered is the one
-/// barrel, once as it is and once in each mirror image of it.
+/// Between two mirrors, with thousands of things behind them, only the barrel is considered: once
+/// directly, and once in each of its mirror images.
 #[test]
 fn things_behind_mirrors_are_not_considered() {
     let hall = "bbbMMMMMMMMMMbbb\n";

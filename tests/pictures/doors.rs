@@ -1,5 +1,5 @@
-//! The leaves of doors against rational arithmetic: of a ray that meets one, whether it does, where,
-//! and at which place of its texture.
+//! The leaves of doors compared with rational arithmetic: whether a ray hits a leaf, at which
+//! distance, and at which texture coordinate.
 
 use cellcaster::cast::{Caster, Exact, Hit, Ray, Side};
 use cellcaster::color::Rgb;
@@ -15,7 +15,7 @@ use proptest::prelude::*;
 const ROWS: [&str; 7] =
     ["#########", "#...#...#", "#...+...#", "#...#...#", "##+###+##", "#.......#", "#########"];
 
-/// The doors of `ROWS`, each with the kind of line that its leaf is on.
+/// The doors of `ROWS`, each with the kind of line that contains its leaf.
 const DOORS: [(Cell, Side); 3] = [
     (Cell { column: 4, row: 2 }, Side::X),
     (Cell { column: 2, row: 4 }, Side::Y),
@@ -36,7 +36,7 @@ fn world(part: f64) -> World {
     world
 }
 
-/// What a ray meets: a wall, or the leaf of a door.
+/// A hit on a wall or on the leaf of a door.
 #[derive(Clone, Debug, PartialEq, PartialOrd)]
 struct Met {
     t: BigRational,
@@ -46,7 +46,7 @@ struct Met {
     u: Option<BigRational>,
 }
 
-/// The nearest of all leaves and of the walls that there are without doors.
+/// The nearest hit on all leaves, and on the walls of the map without doors.
 fn truth(ray: &Ray, part: f64) -> Option<Met> {
     let rows = ROWS.map(|row| row.replace('+', "."));
     let grid = Grid::sketch(&rows.each_ref().map(String::as_str)).unwrap();
@@ -96,7 +96,7 @@ fn exact(number: f64) -> BigRational {
     BigRational::from_float(number).unwrap()
 }
 
-/// What is wrong with `hit`, if anything is.
+/// The error of `hit`, if there is one.
 fn fault(truth: Option<&Met>, hit: Option<&Hit>) -> Option<String> {
     let is_right = match (truth, hit) {
         (None, None) => true,
@@ -116,7 +116,7 @@ fn part() -> impl Strategy<Value = f64> {
     prop_oneof![prop::sample::select(vec![0.0, 0.25, 0.5, 1.0]), 0.0..=1.0]
 }
 
-/// On open floor or in a door's cell: who starts in a wall has entered it already.
+/// On open floor or in a door's cell, because a ray that starts in a wall has already entered it.
 fn origin() -> impl Strategy<Value = DVec2> {
     let cells = (0..).zip(ROWS).flat_map(|(row, line)| {
         let columns = (0..).zip(line.chars()).filter(|&(_, character)| character != '#');
@@ -132,7 +132,7 @@ fn coordinate() -> impl Strategy<Value = f64> {
     prop_oneof![(0..=72).prop_map(|eighths| f64::from(eighths) / 8.0), 0.0..9.0]
 }
 
-/// Where the leaf of a door may end.
+/// A possible end of a door's leaf.
 fn end(door: usize, part: f64, is_jamb: bool) -> DVec2 {
     let (Cell { column, row }, side) = DOORS[door];
     let (column, row) = (f64::from(column), f64::from(row));
@@ -177,7 +177,8 @@ fn a_closed_door_is_a_wall_that_is_set_back() {
     let middle = &renderer.columns()[20];
     assert_eq!(middle.distance, 2.0);
     assert_eq!(frame.pixel(20, 20), Rgb::new(0, 255, 0));
-    // Beside it is the jamb, which is neither the door nor the wall, and then the wall, nearer by half.
+    // The jamb beside it, which is neither the door nor the wall, and then the wall, nearer by half
+    // a cell.
     let distances: Vec<f64> = renderer.columns().iter().map(|column| column.distance).collect();
     assert!(distances[0] < 2.0 && distances.iter().any(|distance| (1.5..2.0).contains(distance)));
     let colors: Vec<Rgb> = (0..41).map(|x| frame.pixel(x, 20)).collect();
@@ -187,7 +188,7 @@ fn a_closed_door_is_a_wall_that_is_set_back() {
 }
 
 #[test]
-fn an_open_door_is_floor_to_everybody() {
+fn an_open_door_is_floor() {
     let world = world(1.0);
     for (Cell { column, row }, _) in DOORS {
         assert!(!world.grid().is_solid(column.into(), row.into()));

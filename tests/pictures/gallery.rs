@@ -1,4 +1,5 @@
-//! The gallery: a small map for each feature, with golden pictures; and the page about maps.
+//! The gallery: a small map for each feature, with golden pictures; and the examples of the page
+//! about maps.
 
 use std::fs;
 
@@ -57,7 +58,7 @@ fn every_example_on_the_page_about_maps_is_a_map() {
             assert!(shows_something(&scene_picture(example)), "{example}");
             continue;
         }
-        // An example of a feature is a part of a map; the rest is always the same.
+        // An example of a feature is a part of a map. The rest is always the same.
         let text = if example.contains("grid") { example.to_owned() } else { with_room(example) };
         let world = map::parse_str(&text).unwrap_or_else(|faults| panic!("{text}\n{faults}"));
         let mut frame = Frame::new(FrameSize::new(80, 48).unwrap(), PixelAspect::SQUARE);
@@ -82,7 +83,7 @@ fn scene_picture(text: &str) -> Frame {
     frame
 }
 
-/// A part of a map in a room of its own.
+/// A part of a map, completed by a room.
 fn with_room(part: &str) -> String {
     const ROOM: &str = "grid = '''\n######\n#@,;.#\n#....#\n######\n'''\n";
     const WALL: &str = "\"#\" = { wall = \"brick\" }\n";
@@ -101,7 +102,7 @@ fn with_room(part: &str) -> String {
     }
 }
 
-/// A golden file for the picture, and one for its characters.
+/// Compares with a golden file of the picture, and one of its characters.
 fn assert_golden(map: &str, name: &str, options: &[&str]) {
     let path = format!("maps/gallery/{map}.toml");
     for format in ["png", "text"] {
@@ -123,19 +124,19 @@ fn doors_stand_back_between_their_jambs() {
 }
 
 #[test]
-fn masks_show_what_is_behind_their_holes() {
+fn masks_are_transparent_in_their_holes() {
     assert_golden("masks", "masks_in_a_row", &["--camera", "2.5,2.5,4"]);
     assert_golden("masks", "masks_along_a_fence", &["--camera", "1.6,2.6,24"]);
 }
 
 #[test]
-fn panes_of_glass_add_up() {
+fn several_cubes_of_glass_blend() {
     assert_golden("glass", "glass_in_a_row", &["--camera", "4.6,2.6,10"]);
     assert_golden("glass", "glass_along_a_row", &["--camera", "8.4,5.6,250"]);
 }
 
 #[test]
-fn who_looks_up_and_down_sees_the_same_moved() {
+fn pitched_pictures_are_the_level_one_moved() {
     assert_golden("looking", "looking_up", &["--pitch", "14"]);
     assert_golden("looking", "looking_down", &["--pitch", "-14"]);
     assert_golden("looking", "looking_from_below", &["--eye", "0.2"]);

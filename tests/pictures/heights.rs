@@ -1,5 +1,5 @@
-//! Worlds that are not level, against geometry: every pixel of small random ones, computed again by
-//! asking everything in them what a line through the pixel meets first.
+//! Worlds with heights compared with geometry: every pixel of small random worlds is computed again
+//! by a test of the line through the pixel against everything in the world.
 
 use std::fmt::Write as _;
 
@@ -11,15 +11,15 @@ use cellcaster::world::{Camera, FieldOfView, Heading, Pitch};
 use glam::{DVec2, DVec3};
 use proptest::prelude::*;
 
-/// How near to an edge a pixel's centre may be before its colour is anybody's guess, in pixels.
+/// Pixels whose centres are closer than this to an edge are not compared, in pixels.
 const DOUBTFUL: f64 = 1e-5;
 const SKY: Rgb = Rgb::new(1, 2, 3);
 const COLUMNS: usize = 6;
 const ROWS: usize = 5;
-/// How many kinds of tile there are; things stand on the first.
+/// The number of kinds of tiles. Things stand on the first kind.
 const KINDS: usize = 5;
 
-/// Pictures of noise, each in a colour of its own.
+/// Textures of noise, each with its own hue.
 struct Noise;
 
 impl TextureFiles for Noise {
@@ -42,7 +42,7 @@ impl TextureFiles for Noise {
     }
 }
 
-/// What a tile of a random world is like.
+/// A tile of a random world.
 #[derive(Clone, Copy, Debug)]
 enum Kind {
     Wall { height: f64 },
@@ -51,7 +51,7 @@ enum Kind {
     Shape { floor: f64, height: f64, outline: &'static str },
 }
 
-/// How things in a world are painted.
+/// The paints of a world.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 enum Look {
     Colors,
@@ -59,7 +59,7 @@ enum Look {
 }
 
 impl Look {
-    /// What a map says of the paint of one part of the tile `character`.
+    /// The map text for the paint of one part of the tile `character`.
     fn paint(self, character: char, part: u8) -> String {
         match self {
             Self::Colors => {
@@ -90,7 +90,7 @@ fn open_kind<H: Strategy<Value = f64>>(height: impl Fn() -> H) -> impl Strategy<
     let rock = prop_oneof![Just(0.0), 0.1..1.0];
     prop_oneof![
         height().prop_map(|floor| Kind::Open { floor }),
-        // No ceiling is higher than a map may say.
+        // No ceiling is higher than a map may have.
         (height(), above(), rock).prop_map(|(floor, room, rock)| Kind::Covered {
             floor: floor.min(1e9 - 2e3),
             room,
@@ -109,7 +109,7 @@ fn kind<H: Strategy<Value = f64>>(height: impl Fn() -> H) -> impl Strategy<Value
     ]
 }
 
-/// What a map says of a shape after its kind and its paint.
+/// The map text of a shape after its kind and its paint.
 const OUTLINES: [&str; 6] = [
     "pillar = ; radius = 0.5",
     "pillar = ; radius = 0.3",
@@ -119,8 +119,8 @@ const OUTLINES: [&str; 6] = [
     "thin = ; at = \"north-south\"",
 ];
 
-/// A map of tiles `a`, `b` and so on, with things on some of the first kind; the player starts in a corner
-/// that nobody looks at.
+/// A map of tiles `a`, `b` and so on, with things on some tiles of the first kind. The player
+/// starts in a corner outside all pictures.
 fn map_of(scene: &Scene, look: Look) -> String {
     let Scene { kinds, cells, is_covered, lights, .. } = scene;
     let is_covered = *is_covered;
@@ -180,7 +180,7 @@ fn map_of(scene: &Scene, look: Look) -> String {
             t = { sprite = \"thing.png\", height = 0.8, on = \"a\" }\n"
 }
 
-/// The line through a place in a picture.
+/// The line through a point of a picture.
 fn direction(camera: &Camera, frame: &Frame, x: f64, y: f64) -> DVec3 {
     let (width, height) = (f64::from(frame.width()), f64::from(frame.height()));
     let focal_length = width / 2.0 / camera.field_of_view.half_width();
@@ -189,12 +189,12 @@ fn direction(camera: &Camera, frame: &Frame, x: f64, y: f64) -> DVec3 {
     across.extend((horizon - y) / focal_length)
 }
 
-/// A world of tiles, and from where and how it is looked at.
+/// A world of tiles, with a camera.
 #[derive(Clone, Debug)]
 struct Scene {
     kinds: Vec<Kind>,
     cells: Vec<usize>,
-    /// How bright it is on each kind of tile; none where all is fully lit.
+    /// The brightness of each kind of tile; empty if everything is fully lit.
     lights: Vec<f64>,
     is_covered: bool,
     position: DVec2,
@@ -234,7 +234,7 @@ prop_compose! {
     }
 }
 
-/// Compares every pixel of a picture but for those on an edge.
+/// Compares every pixel of a picture that is not on an edge.
 fn compare(scene: &Scene, look: Look) -> Result<(), TestCaseError> {
     let text = map_of(scene, look);
     let world = map::parse(&text, "random", &Noise).unwrap_or_else(|it| panic!("{text}\n{it}"));

@@ -1,4 +1,4 @@
-//! Looking up and down, and from any height: the picture moves, and what stays in view stays as it is.
+//! Pitch and eye height: the picture moves by rows, and pixels that stay in view do not change.
 
 use std::path::Path;
 
@@ -7,7 +7,7 @@ use cellcaster::render::{Frame, FrameSize, PixelAspect, Renderer};
 use cellcaster::world::{Camera, Cell, FieldOfView, Heading, Pitch, World};
 use proptest::prelude::*;
 
-/// Levels with doors, glass, masks, fog, a panorama, a gradient, and tiles that differ.
+/// Levels with doors, glass, masks, fog, a panorama, a gradient, and different tiles.
 fn world(index: usize) -> World {
     const GALLERY: [&str; 7] = ["doors", "glass", "masks", "fog", "panorama", "gradient", "tiles"];
     match GALLERY.get(index) {
@@ -28,8 +28,8 @@ fn picture(world: &World, camera: &Camera, size: (u32, u32), aspect: f64) -> Fra
 proptest! {
     #![proptest_config(ProptestConfig::with_cases(200))]
 
-    /// Bit for bit: a picture of who looks up is the picture of who looks ahead, some rows further
-    /// down.
+    /// The picture of a camera that looks up is the level picture moved down by some rows, bit for
+    /// bit.
     #[test]
     fn a_pitched_picture_is_the_level_one_moved_by_rows(
         index in 0..WORLDS,

@@ -1,4 +1,5 @@
-//! Pictures: golden frames, every pixel against an independent tracer, and what a frame costs.
+//! Pictures: golden frames, every pixel compared with an independent tracer, and the costs of
+//! frames.
 
 mod costs;
 mod doors;

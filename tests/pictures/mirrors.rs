@@ -1,5 +1,5 @@
-//! Mirrors, against the room that is seen in them: built behind the mirror, the other way round, it
-//! looks the same without one.
+//! Mirrors compared with a copy: a room behind the mirror's position, built in reverse, looks the
+//! same without a mirror.
 
 use cellcaster::map::{self, TextureFileError, TextureFiles};
 use cellcaster::render::{Filter, Frame, FrameSize, PixelAspect, Renderer, Surface};
@@ -9,15 +9,17 @@ use proptest::prelude::*;
 
 const COLUMNS: usize = 6;
 const ROWS: usize = 4;
-/// The kinds of cell in a room: floor of one colour, floor with a texture, a wall, a low wall, a step, a tall wall, glass.
+/// The kinds of cells in a room: plain floor, textured floor, a wall, a low wall, a step, a tall
+/// wall, and glass.
 const KINDS: [char; 7] = ['.', 'f', 'a', 'l', 's', 't', 'g'];
-/// How often a ray is reflected at most.
+/// The largest number of reflections of a ray.
 const MOST_BOUNCES: usize = 8;
 
-/// Whether a room is seen in a mirror that faces east or west, and in one that faces north or south.
+/// Whether a room is seen in a mirror that faces east or west, and in one that faces north or
+/// south.
 type Flips = (bool, bool);
 
-/// A picture of noise, and that picture the other way round.
+/// A texture of noise, and its mirror image.
 struct Noise;
 
 impl TextureFiles for Noise {
@@ -39,19 +41,19 @@ impl TextureFiles for Noise {
     }
 }
 
-/// The character for a cell of that kind in a room seen by those mirrors.
+/// The character for a cell of this kind in a room seen in these mirrors.
 fn character(kind: char, (x, y): Flips) -> char {
     let copies = ["#.glstfa", "Q.glBCDE", "q.glcdez", "R.glGHIJ"];
     let index = copies[0].find(kind).unwrap();
     char::from(copies[usize::from(x) + 2 * usize::from(y)].as_bytes()[index])
 }
 
-/// The tiles of a room seen by those mirrors.
+/// The tiles of a room seen in these mirrors.
 fn tiles(flips: Flips) -> String {
     let (x, y) = flips;
     let letters = |x, y| format!("{}{}", if x { "x" } else { "" }, if y { "y" } else { "" });
     let floor = format!("noise-{}.png", letters(x, y));
-    // Seen in two mirrors, left is left again.
+    // In two mirrors, left is left again.
     let wall = format!("noise-{}.png", letters(x != y, false));
     let of = |kind, what: String| format!("\"{}\" = {{ {what} }}\n", character(kind, flips));
     let tiles = of('#', format!("wall = \"{wall}\""))
@@ -62,14 +64,14 @@ fn tiles(flips: Flips) -> String {
     if x || y {
         return tiles;
     }
-    // Glass that touches a mirror is one cube with its image. Of a low wall the top is seen, too, and
-    // lies otherwise in a mirror than the sides stand.
+    // Glass that touches a mirror forms one cube with its image. The top of a low wall is visible,
+    // too, and its texture is mirrored differently from that of the sides.
     tiles
         + &of('g', "glass = \"#80c0ff\"".to_owned())
         + &of('l', "wall = \"#a07040\", height = 0.375".to_owned())
 }
 
-/// A map whose cells are those of a room, with the start outside, behind a wall.
+/// A map with the cells of a room, and with the start outside, behind a wall.
 fn parse(rows: &[String], tiles: &str, is_covered: bool) -> World {
     let start: String =
         std::iter::once('@').chain(std::iter::repeat_n('#', rows[0].chars().count() - 1)).collect();
@@ -82,19 +84,19 @@ fn parse(rows: &[String], tiles: &str, is_covered: bool) -> World {
     map::parse(&text, "room", &Noise).unwrap_or_else(|faults| panic!("{faults}"))
 }
 
-/// A room of `cells` between walls: what is at a column and a row of it.
+/// The cell of a walled room of `cells` at a column and a row.
 fn at(cells: &[char], column: usize, row: usize) -> char {
     let is_inside = (1..=COLUMNS).contains(&column) && (1..=ROWS).contains(&row);
     if is_inside { cells[(row - 1) * COLUMNS + column - 1] } else { '#' }
 }
 
-/// The same cells, but for floor around the camera.
+/// The same cells, with floor around the camera.
 fn with_room_for((x, y): (f64, f64), mut cells: Vec<char>) -> Vec<char> {
     cells[(y as usize - 1) * COLUMNS + x as usize - 1] = '.';
     cells
 }
 
-/// A picture, and what its pixels show.
+/// A picture, and the surfaces of its pixels.
 struct Picture {
     frame: Frame,
     renderer: Renderer,
@@ -105,14 +107,14 @@ fn picture(world: &World, position: DVec2, degrees: f64, eye: f64) -> Picture {
     let camera = Camera::new(position, heading, FieldOfView::default()).unwrap();
     let mut frame = Frame::new(FrameSize::new(72, 48).unwrap(), PixelAspect::SQUARE);
     let mut renderer = Renderer::new();
-    // Of a texture itself, a texel is seen or not; its averages are seen in part.
+    // A texel without filtering is visible or not. An average could be partly visible.
     renderer.set_filter(Filter::Nearest);
     renderer.keep_surfaces(true);
     renderer.render(world, &camera.with_eye(eye).unwrap(), &mut frame);
     Picture { frame, renderer }
 }
 
-/// Where two pictures differ first, but for the player's own image in one of them.
+/// The first difference of two pictures, except for the player's own image in one of them.
 fn first_difference(reflected: &Picture, straight: &Picture) -> Option<(u32, u32)> {
     let (width, height) = (straight.frame.width(), straight.frame.height());
     let mut places = (0..height).flat_map(|y| (0..width).map(move |x| (x, y)));
@@ -122,7 +124,7 @@ fn first_difference(reflected: &Picture, straight: &Picture) -> Option<(u32, u32
     })
 }
 
-/// A place that is a double to the last bit, wherever the map begins.
+/// A coordinate that a double represents exactly, wherever the map starts.
 fn place(cells: usize) -> impl Strategy<Value = f64> {
     (1025..1023 + 1024 * cells as u32).prop_map(|parts| f64::from(parts) / 1024.0)
 }
@@ -217,9 +219,9 @@ proptest! {
         prop_assert_eq!(first_difference(&reflected, &straight), None);
     }
 
-    /// Whatever the camera, also inside a mirror or touching one, a picture comes to an end.
+    /// Every picture ends, even with the camera inside a mirror or touching one.
     #[test]
-    fn no_camera_among_mirrors_is_too_much(
+    fn any_camera_among_mirrors_is_drawn(
         position in (-2.0..6.0, -2.0..6.0),
         is_on_a_line in any::<bool>(),
         degrees in prop_oneof![0.0..360.0, (0..8).prop_map(|eighth| 45.0 * f64::from(eighth))],

@@ -1,4 +1,5 @@
-//! Doors in a game: they open, wait, and close, but never on anybody; locked ones want their key.
+//! Doors in a game: they open, wait, and close, but never on the player; locked doors need their
+//! key.
 
 use cellcaster::game::{Game, Intent, Intents};
 use cellcaster::map;
@@ -6,12 +7,12 @@ use cellcaster::world::{Cell, FieldOfView, Grid, Opening};
 use glam::DVec2;
 use proptest::prelude::*;
 
-/// The player's.
+/// The player's radius.
 const RADIUS: f64 = 0.25;
-/// Steps in a second.
+/// The steps of a second.
 const SECOND: u64 = 60;
 
-/// A game in these rows: `+` is a door, `=` one that is locked, `k` its key.
+/// A game in these rows: `+` is a door, `=` a locked door, `k` its key.
 fn game(rows: &[&str], degrees: i32) -> Game {
     let text = format!(
         "grid = '''\n{}\n'''\n\
@@ -28,7 +29,7 @@ fn corridor() -> Game {
 
 const DOOR: Cell = Cell { column: 3, row: 1 };
 
-/// Rooms behind doors, with a locked one, and somewhere to run into all of them.
+/// Rooms behind doors, one of them locked, and walls on all sides.
 const ROOMS: [&str; 7] =
     ["#########", "#@..+...#", "#...#...#", "##+###+##", "#...=...#", "#.k.#...#", "#########"];
 
@@ -44,7 +45,7 @@ fn position(game: &Game) -> DVec2 {
     game.camera(FieldOfView::default()).position()
 }
 
-/// How far `point` is from the nearest solid cell around it.
+/// The distance of `point` to the nearest solid cell around it.
 fn clearance(grid: &Grid, point: DVec2) -> f64 {
     let (column, row) = (point.x as i64, point.y as i64);
     let around =
@@ -70,7 +71,7 @@ fn a_door_opens_waits_and_closes() {
     assert!(game.is_at_rest(Intents::new()));
     assert_eq!(game.world().opening(DOOR), Opening::CLOSED);
 
-    // From where the player starts, it is out of reach.
+    // From the start, the door is out of reach.
     walk(&mut game, 1, &[Intent::Open]);
     assert!(game.is_at_rest(intents(&[Intent::Open])));
     while position(&game).x < 2.1 {
@@ -99,7 +100,7 @@ fn a_door_opens_waits_and_closes() {
 }
 
 #[test]
-fn a_door_opens_to_who_walks_into_it_and_turns_back_for_them() {
+fn a_door_opens_and_reopens_for_a_player_who_walks_into_it() {
     let mut game = corridor();
     walk(&mut game, 3 * SECOND, &[Intent::Forward]);
     assert!(position(&game).x > 6.0, "{}", position(&game));
@@ -114,7 +115,7 @@ fn a_door_opens_to_who_walks_into_it_and_turns_back_for_them() {
 }
 
 #[test]
-fn a_door_waits_for_who_stands_in_it() {
+fn a_door_does_not_close_on_a_player() {
     let mut game = corridor();
     while position(&game).x < 3.0 {
         walk(&mut game, 1, &[Intent::Forward]);
@@ -160,7 +161,7 @@ proptest! {
     #![proptest_config(ProptestConfig::with_cases(128))]
 
     #[test]
-    fn nobody_is_ever_inside_a_door_or_a_wall(degrees in 0..360, wants in wants()) {
+    fn the_player_is_never_inside_a_door_or_a_wall(degrees in 0..360, wants in wants()) {
         let mut game = game(&ROOMS, degrees);
         for (held, steps) in wants {
             for _ in 0..steps {
@@ -172,7 +173,7 @@ proptest! {
     }
 
     #[test]
-    fn waiting_is_as_many_steps(degrees in 0..360, wants in wants()) {
+    fn waiting_is_a_number_of_steps(degrees in 0..360, wants in wants()) {
         let mut game = game(&ROOMS, degrees);
         for (held, steps) in wants {
             walk(&mut game, steps, &held);
@@ -187,7 +188,7 @@ proptest! {
     }
 
     #[test]
-    fn all_doors_close_behind_who_stands_still(degrees in 0..360, wants in wants()) {
+    fn all_doors_close_while_the_player_stands_still(degrees in 0..360, wants in wants()) {
         let mut game = game(&ROOMS, degrees);
         for (held, steps) in wants {
             walk(&mut game, steps, &held);
@@ -199,7 +200,7 @@ proptest! {
     }
 }
 
-/// How far the player is from the nearest door's cell, open or not.
+/// The distance of the player to the nearest door's cell, open or not.
 fn clearance_of_doors(game: &Game) -> f64 {
     let point = position(game);
     let cells = (0..7).flat_map(|row| (0..9).map(move |column| Cell { column, row }));

@@ -1,5 +1,5 @@
-//! Floor and ceiling against plain geometry: what every pixel shows of them, found pixel by pixel from
-//! nothing but the camera, wherever no edge of a texel, a tile or a wall is near.
+//! Floor and ceiling compared with geometry: the colour of every pixel is computed from the camera
+//! alone, except near the edges of texels, tiles and walls.
 
 use cellcaster::cast::{Caster, Exact, Ray};
 use cellcaster::color::Rgb;
@@ -33,7 +33,7 @@ grid = '''
 "@" = { start = 0 }
 "##;
 
-/// How near to an edge a point may be before its colour is anybody's guess, in cells or texels.
+/// Points closer than this to an edge are not compared, in cells or texels.
 const DOUBTFUL: f64 = 1e-5;
 
 /// The colour of `covering` at a point of the map; `None` near an edge.
@@ -64,8 +64,8 @@ fn near_a_line(place: DVec2) -> bool {
     (place - place.round()).abs().min_element() < DOUBTFUL
 }
 
-/// What the pixel `(x, y)` shows of the floor or the ceiling; `None` where it shows something else, or
-/// an edge is near.
+/// The colour of the pixel `(x, y)` if it shows floor or ceiling; `None` otherwise, and near an
+/// edge.
 fn expected(world: &World, camera: &Camera, frame: &Frame, x: u32, y: u32) -> Option<Rgb> {
     let (width, height) = (f64::from(frame.width()), f64::from(frame.height()));
     let half_width = camera.field_of_view.half_width();
@@ -128,7 +128,7 @@ proptest! {
     }
 }
 
-/// Most pixels are far from any edge, so that the property above is about something.
+/// Most pixels are compared, so that the property above is meaningful.
 #[test]
 fn most_pixels_are_certain() {
     let world = map::parse_str(MAP).unwrap();
@@ -141,7 +141,7 @@ fn most_pixels_are_certain() {
     assert!(certain > 80 * 48 / 2, "{certain}");
 }
 
-/// Seen from the middle of a cell, some pixels show the very line where floor and wall meet.
+/// From the middle of a cell, some pixels show exactly the line between floor and wall.
 #[test]
 fn the_foot_of_a_wall_is_as_dark_as_the_floor_before_it() {
     const ROOM: &str = r##"
@@ -167,9 +167,9 @@ things."@".start = 0
     assert!((120..=128).contains(&brightest), "{brightest}");
 }
 
-/// What is seen of the cell in the middle of a corridor that has a floor and a ceiling of its own.
+/// The visible floor and ceiling of a cell in the middle of a corridor.
 #[test]
-fn what_stands_in_a_cell_leaves_its_floor_and_its_ceiling_to_see() {
+fn floor_and_ceiling_of_a_cell_show_around_a_thing() {
     const FLOOR: Rgb = Rgb::new(200, 10, 10);
     const CEILING: Rgb = Rgb::new(10, 10, 200);
     for tile in ["door = \"oak\"", "glass = \"#808080\", opacity = 0.0", "mask = \"fence\""] {

@@ -1,5 +1,5 @@
-//! Masks and glass against a picture made the slow way: for each pixel, all that is before it, found
-//! by asking every face of every cell, and laid over one another from far to near.
+//! Masks and glass compared with a simple renderer: for each pixel, it tests every face of every
+//! cell, and blends the hits from far to near.
 
 use cellcaster::color::Rgb;
 use cellcaster::map;
@@ -31,18 +31,18 @@ grid = '''
 "@" = { start = 0 }
 "##;
 
-/// As the map has them.
+/// As in the map.
 const FLOOR: &str = "#102030";
 const CEILING: &str = "#405060";
 
-/// How near to an edge a pixel's centre may be before its colour is anybody's guess, in pixels.
+/// Pixels whose centres are closer than this to an edge are not compared, in pixels.
 const DOUBTFUL: f64 = 1e-6;
 
 proptest! {
     #![proptest_config(ProptestConfig::with_cases(64))]
 
     #[test]
-    fn any_number_in_a_row_is_laid_over_one_another(
+    fn any_number_of_faces_is_blended_in_order(
         position in (1.0..8.0, 1.0..6.0),
         degrees in 0.0..360.0,
         field_of_view in 30.0..=120.0,
@@ -71,14 +71,14 @@ proptest! {
     }
 }
 
-/// What a camera sees.
+/// The view of a camera.
 struct Picture<'a> {
     world: &'a World,
     camera: &'a Camera,
     size: (u32, u32),
 }
 
-/// A face that a ray meets.
+/// A hit of a ray on a face.
 struct Face {
     kind: TileKind,
     t: f64,
@@ -87,7 +87,7 @@ struct Face {
 }
 
 impl Picture<'_> {
-    /// The colour of a pixel; `None` where its centre is too near to an edge.
+    /// The colour of a pixel; `None` if its centre is too close to an edge.
     fn pixel(&self, x: u32, y: u32) -> Option<Rgb> {
         let (x, y) = (f64::from(x) + 0.5, f64::from(y) + 0.5);
         let color = self.color(x, y);
@@ -98,12 +98,12 @@ impl Picture<'_> {
         is_certain.then_some(color)
     }
 
-    /// The colour at a place of the picture, in pixels from its upper left corner.
+    /// The colour at a point of the picture, in pixels from its upper left corner.
     fn color(&self, x: f64, y: f64) -> Rgb {
         let (width, height) = (f64::from(self.size.0), f64::from(self.size.1));
         let ray = self.camera.direction() + self.camera.plane() * (2.0 * x / width - 1.0);
         let focal_length = width / 2.0 / self.camera.field_of_view.half_width();
-        // How far below the eye, where things are a cell away.
+        // The slope downwards, at a distance of one cell.
         let slope = (y - height / 2.0) / focal_length;
         let background: Rgb = if slope < 0.0 { CEILING } else { FLOOR }.parse().unwrap();
 
@@ -122,7 +122,8 @@ impl Picture<'_> {
         })
     }
 
-    /// All faces by which the ray enters a solid cell, but for those between two of one tile.
+    /// All faces through which the ray enters a solid cell, without those between two cells of one
+    /// tile.
     fn faces(&self, ray: DVec2) -> Vec<Face> {
         let grid = self.world.grid();
         let cells = (0..i64::from(grid.height()))
@@ -154,7 +155,7 @@ impl Picture<'_> {
         faces
     }
 
-    /// The colour of a face, and how much it hides in 255 parts.
+    /// The colour of a face, and its opacity in 255ths.
     fn texel(&self, face: &Face, from_top: f64) -> (Rgb, u8) {
         match face.kind {
             TileKind::Wall(paint) => (self.world.mean_color(paint), 255),

@@ -1,4 +1,4 @@
-//! Pillars and lines: every hit against rational arithmetic, which has no rounding to agree by.
+//! Pillars and lines: every hit compared with rational arithmetic, which does not round.
 
 use cellcaster::cast::{Caster, Exact, Hit, Ray, Side};
 use cellcaster::map;
@@ -35,7 +35,7 @@ grid = '''
 "@" = { start = 0 }
 "##;
 
-/// How far two ways of counting may be apart.
+/// The largest difference between the two results.
 const TOLERANCE: f64 = 1e-12;
 
 type Number = BigRational;
@@ -44,7 +44,7 @@ fn exact(value: f64) -> Number {
     BigRational::from_float(value).unwrap()
 }
 
-/// The square root of a number that is not negative, right to hundreds of bits.
+/// The square root of a nonnegative number, accurate to hundreds of bits.
 fn square_root(square: &Number) -> Number {
     const BITS: usize = 300;
     let scaled = (square.numer() * square.denom()) << (2 * BITS);
@@ -59,7 +59,7 @@ struct ExactRay {
     dy: Number,
 }
 
-/// Where it meets something.
+/// An exact hit.
 struct Meeting {
     cell: Cell,
     t: Number,
@@ -81,7 +81,7 @@ impl ExactRay {
         }
     }
 
-    /// Cramer's rule.
+    /// By Cramer's rule.
     fn meets_line(&self, cell: Cell, line: Line) -> Option<Meeting> {
         let [start_x, start_y] = line.start(cell).to_array().map(exact);
         let [stretch_x, stretch_y] = line.stretch().to_array().map(exact);
@@ -100,7 +100,7 @@ impl ExactRay {
         Some(Meeting { cell, t, u: u.to_f64().unwrap() })
     }
 
-    /// The quadratic formula.
+    /// By the quadratic formula.
     fn meets_pillar(&self, cell: Cell, radius: f64) -> Option<Meeting> {
         let [x, y] = cell.center().to_array().map(exact);
         let (x, y) = (&self.x - &x, &self.y - &y);
@@ -136,8 +136,8 @@ fn cast(world: &World, ray: &Ray) -> Option<Hit> {
     Exact.cast_through(world, ray, |_| panic!("there is nothing to see through"))
 }
 
-/// Half of the places are eighths of cells, and half of the ways between two such places, so that rays
-/// meet tips, run along lines and graze pillars exactly.
+/// Half of the points are multiples of an eighth of a cell, and half of the directions lead from
+/// one such point to another, so that rays hit ends, run along lines and touch pillars exactly.
 fn any_ray() -> impl Strategy<Value = Ray> {
     let coordinate =
         || prop_oneof![-1.0..8.0, (-8..64).prop_map(|eighths| f64::from(eighths) / 8.0)];
@@ -147,7 +147,7 @@ fn any_ray() -> impl Strategy<Value = Ray> {
     })
 }
 
-/// Two places on paper that is pasted around something.
+/// The distance of two positions on a repeated texture.
 fn apart(one: f64, other: f64) -> f64 {
     let apart = (one - other).abs();
     apart.min(1.0 - apart)
@@ -157,7 +157,7 @@ proptest! {
     #![proptest_config(ProptestConfig::with_cases(1000))]
 
     #[test]
-    fn hits_are_where_they_are(ray in any_ray()) {
+    fn hits_agree_with_exact_arithmetic(ray in any_ray()) {
         let world = map::parse_str(MAP).unwrap();
         let exact_ray = ExactRay::new(&ray);
         let mut meetings: Vec<Meeting> = shapes(&world)
@@ -165,8 +165,9 @@ proptest! {
             .collect();
         meetings.sort_by(|one, other| one.t.cmp(&other.t));
         let hit = cast(&world, &ray);
-        // A ray through a corner of the grid is in but one of the two cells beside it, so that it may
-        // miss the very tip of a line in the other; and one along a line of the grid, what touches that.
+        // A ray through a corner of the grid is in only one of the two cells beside it, so that it
+        // may miss the end of a line in the other. A ray along a grid line may miss shapes that
+        // touch the line.
         let is_corner = |meeting: &Meeting| {
             let x = &exact_ray.x + &meeting.t * &exact_ray.dx;
             let y = &exact_ray.y + &meeting.t * &exact_ray.dy;
@@ -199,7 +200,7 @@ proptest! {
     }
 }
 
-/// Whether a cell has a pillar so thin that what side of it one hits hangs on the last digit.
+/// Whether a cell has a pillar so thin that the hit side depends on the last digit.
 fn is_thin(world: &World, cell: Cell) -> bool {
     shapes(world).any(|(other, outline)| {
         other == cell && matches!(outline, Outline::Pillar(radius) if radius.cells() < 1e-6)
@@ -235,7 +236,7 @@ fn a_pillar_that_touches_the_edges_of_its_cell_is_met_there() {
     assert_eq!(hit(pillar, (2.5, 0.0), (0.0, 1.0)), Some((1.0, Side::Y)));
     // Along its edge, in the cell: it touches.
     assert_eq!(hit(pillar, (0.0, 1.0), (1.0, 0.0)), Some((2.5, Side::Y)));
-    // A hair beyond, in the next cell.
+    // An ulp beyond, in the next cell.
     assert_eq!(hit(pillar, (0.0, 1.0_f64.next_down()), (1.0, 0.0)), None);
 }
 
@@ -245,7 +246,7 @@ fn a_line_is_met_at_its_tips_and_not_along_itself() {
     assert_eq!(hit(diagonal, (1.0, 0.0), (1.0, 1.0)), None);
     let across = hit(diagonal, (3.0, 1.0), (-1.0, 1.0));
     assert_eq!(across, Some((0.5, Side::X)));
-    // Through the tip in the north-west, on ways through the cell.
+    // Through the end in the north-west, on rays through the cell.
     for direction in [(1.0, 0.5), (1.0, 0.0), (0.5, 1.0)] {
         let origin = (2.0 - direction.0, 1.0 - direction.1);
         assert_eq!(hit(diagonal, origin, direction).map(|(t, _)| t), Some(1.0), "{direction:?}");

@@ -1,4 +1,4 @@
-//! `cellcaster snapshot`: golden pictures, and what scripts rely on.
+//! `cellcaster snapshot`: golden pictures, and the behaviour that scripts rely on.
 
 use std::io::Read;
 use std::num::NonZeroU16;
@@ -15,7 +15,7 @@ use ratatui::style::Color;
 use ratatui::widgets::StatefulWidget;
 use serde_json::Value;
 
-/// A golden file each: the bytes are the same on every machine.
+/// Compares with a golden file, whose bytes are the same on every machine.
 fn assert_golden(level: &str, size: &str, options: &[(&str, &str)], format: &str) {
     let mut arguments = vec!["snapshot", level, "--size", size, "--format", format];
     arguments.extend(options.iter().flat_map(|&(name, value)| [name, value]));
@@ -132,7 +132,7 @@ fn a_camera_can_stand_anywhere() {
 }
 
 #[test]
-fn a_camera_where_nobody_can_be_says_so() {
+fn a_camera_in_a_wall_is_reported() {
     let remark = |arguments: &[&str]| {
         let arguments = [&["snapshot", "--size", "20x5"], arguments].concat();
         let output = cellcaster(&arguments).output().unwrap();
@@ -147,9 +147,9 @@ fn a_camera_where_nobody_can_be_says_so() {
     assert!(remark(&["maps/gallery/floor.toml", "--eye", "1.0"]).is_empty());
 }
 
-/// The map in which this was found.
+/// The map in which this fault was found.
 #[test]
-fn an_exit_that_nobody_can_reach_is_told_of() {
+fn an_unreachable_exit_is_reported() {
     let check = |map: &str| String::from_utf8(output_of(&["check", map])).unwrap();
     let reachable = check("tests/maps/way_out.toml");
     assert!(!reachable.contains("exit"), "{reachable}");

@@ -1,4 +1,4 @@
-//! The 3-D caster: bodies are where geometry says, at any size, and a picture shows what its rays hit.
+//! The 3-D caster: hits agree with geometry at any size, and a picture shows the hits of its rays.
 
 use cellcaster::color::Rgb;
 use cellcaster::render::{Frame, FrameSize, PixelAspect};
@@ -57,7 +57,8 @@ fn camera() -> impl Strategy<Value = Camera> {
     )
 }
 
-/// Whether another body hides the sun from `point` on `body`, by casting at each alone.
+/// Whether another body is between the sun and `point` on `body`, by casting at each body
+/// separately.
 fn is_in_shadow(scene: &Scene, body: usize, point: DVec3) -> bool {
     let others = scene.bodies.iter().enumerate().filter(|&(index, _)| index != body);
     others.map(|(_, &other)| other).any(|other| {
@@ -69,8 +70,8 @@ fn is_in_shadow(scene: &Scene, body: usize, point: DVec3) -> bool {
 }
 
 proptest! {
-    /// By an angle, where the caster solves a quadratic: a sphere of radius r at distance d covers
-    /// the cone of half-angle asin(r/d) around its center.
+    /// By an angle instead of a quadratic equation: a sphere of radius r at distance d covers the
+    /// cone of half-angle asin(r/d) around its center.
     #[test]
     fn a_spheres_outline_is_where_geometry_says(
         toward in direction(),
@@ -87,7 +88,7 @@ proptest! {
         prop_assert_eq!(hit.is_some(), beside < half_angle);
     }
 
-    /// A place on the sphere is chosen first, so that the distance to it is known.
+    /// A point on the sphere is chosen first, so that its distance is known.
     #[test]
     fn a_sphere_of_any_size_is_hit_at_the_distance_that_was_chosen(
         outwards in direction(),
@@ -95,24 +96,24 @@ proptest! {
         radius in power_of_ten(-9.0..9.0),
         height in power_of_ten(-6.0..3.0),
     ) {
-        // The camera is on the axis through the center, that far from the surface.
+        // The camera is on the axis through the center, at this distance from the surface.
         let distance = height.max(radius * 1e-6);
         let center = -outwards * (radius + distance);
         prop_assume!(center.abs().max_element() <= 1e9);
         let sphere = sphere(center, radius);
         let hit = scene([sphere]).cast(&Ray::new(DVec3::ZERO, -outwards)).unwrap();
-        // The center is rounded to a double, and with it the true distance.
+        // The rounding of the center changes the true distance.
         let rounding = ROUNDING * distance + f64::EPSILON * 4.0 * center.length();
         prop_assert!((hit.t - distance).abs() <= rounding, "{} for {distance}", hit.t);
         let tilt = 1e-6 + f64::EPSILON * 4.0 * center.length() / radius;
         prop_assert!((hit.normal - outwards).length() < tilt);
-        // From inside, through the center, it is the far side that is hit.
+        // From inside, a ray through the center hits the far side.
         let inside = scene([sphere]).cast(&Ray::new(center, aside)).unwrap();
         prop_assert!((inside.t / radius - 1.0).abs() <= ROUNDING);
     }
 
     #[test]
-    fn what_is_hit_is_on_the_surface_and_nothing_is_before_it(
+    fn hits_are_on_the_surface_and_nothing_is_before_them(
         shape in shape(),
         origin in point(10.0),
         direction in direction(),
@@ -135,9 +136,9 @@ proptest! {
         }
     }
 
-    /// Bounds, rows and memory change nothing: each pixel is what its own ray sees.
+    /// Bounds, rows and reused memory change nothing: each pixel has the colour of its own ray.
     #[test]
-    fn a_picture_shows_what_its_rays_hit(
+    fn a_picture_shows_the_hits_of_its_rays(
         shapes in prop::collection::vec(shape(), 0..6),
         camera in camera(),
         (width, height) in (1..24_u32, 1..24_u32),
@@ -174,7 +175,7 @@ proptest! {
     }
 
     #[test]
-    fn no_scene_and_no_camera_is_too_much(
+    fn any_scene_and_any_camera_is_drawn(
         center in [-1e9..=1e9, -1e9..=1e9, -1e9..=1e9],
         radius in power_of_ten(-9.0..9.0),
         field_of_view in prop_oneof![Just(1e-320), Just(180.0_f64.next_down()), 1.0..170.0],
@@ -201,9 +202,9 @@ fn a_small_body_costs_few_tests() {
     assert_eq!(Renderer::new().explain(&scene, &behind, &mut frame).tests, 0);
 }
 
-/// What a pixel of a checkered floor shows is the mean of what the rays through it meet.
+/// A pixel of a checkered floor shows the mean over the hits of rays through the pixel.
 #[test]
-fn a_checkered_floor_is_the_mean_of_what_its_pixels_cover() {
+fn a_checkered_floor_is_the_mean_over_each_pixel() {
     const SAMPLES: u32 = 24;
     let floor = Shape::Plane(Plane::new(DVec3::ZERO, DVec3::Z).unwrap());
     let coat = Coat::Checker([Rgb::BLACK, Rgb::WHITE], Scale::ONE);
@@ -222,7 +223,7 @@ fn a_checkered_floor_is_the_mean_of_what_its_pixels_cover() {
     };
     let linear = |channel: u8| libm::pow((f64::from(channel) / 255.0 + 0.055) / 1.055, 2.4);
     let (mut error, mut error_of_one_sample) = (0.0, 0.0);
-    // The row below the horizon is endless. What a pixel covers is not quite a box.
+    // The row below the horizon covers an unbounded area. The area of a pixel is not exactly a box.
     for row in 19..36 {
         for column in 0..48 {
             let samples = (0..SAMPLES * SAMPLES)
@@ -259,7 +260,7 @@ fn far_squares_are_grey() {
     }
 }
 
-/// Shadows cost what is near the way to the sun, not what there is.
+/// The cost of shadows depends on the bodies near the way to the sun, not on all bodies.
 #[test]
 fn a_thousand_balls_in_a_row_cast_few_shadow_rays_at_each_other() {
     let ball = |index: u32| sphere(DVec3::new(8.0, f64::from(index) - 500.0, 0.5), 0.4);

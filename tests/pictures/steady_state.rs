@@ -1,4 +1,4 @@
-//! What a frame costs once everything has grown to its size: no allocation at all.
+//! A frame allocates nothing once all buffers have grown.
 
 use allocation_counter::measure;
 use cellcaster::color::palette::ColorDepth;
@@ -41,7 +41,7 @@ fn doors_ajar_masks_and_glass_allocate_nothing_after_the_first_frame() {
                 Camera::new(DVec2::new(2.5, 2.5), heading, FieldOfView::default()).unwrap();
             measure(|| renderer.render(&world, &camera, &mut frame)).count_total
         };
-        // Once around, and the list of what is seen through is as long as it gets.
+        // After one full turn, the list of transparent hits has its final size.
         (0..63).for_each(|turn| _ = draw(turn));
         assert_eq!((0..63).map(&mut draw).sum::<u64>(), 0, "{map}");
     }
@@ -110,14 +110,14 @@ fn encoding_a_frame_allocates_nothing_once_its_memory_has_grown() {
             before = buffer;
             counted.count_total
         };
-        // Twice around, so that every buffer is as large as it gets.
+        // After two full turns, every buffer has its final size.
         (0..170).for_each(|turn| _ = encode(turn));
         assert_eq!((0..80).map(&mut encode).sum::<u64>(), 0, "{fidelity}");
     }
 }
 
-/// From what the player wants to the bytes of a frame, as a game has it: two steps, everything that
-/// shows, and the encoding of it.
+/// From the player's intents to the bytes of a frame, as in a game: two steps, the whole picture,
+/// and its encoding.
 #[test]
 #[cfg(feature = "terminal")]
 fn the_whole_pipeline_allocates_nothing_once_its_memory_has_grown() {
@@ -153,7 +153,7 @@ fn the_whole_pipeline_allocates_nothing_once_its_memory_has_grown() {
             });
             frames.sum::<u64>()
         };
-        // The second walk begins where the first has ended, and sees other things.
+        // The second walk starts where the first ended, and sees other things.
         pass();
         assert_eq!(pass(), 0, "{fidelity}");
     }

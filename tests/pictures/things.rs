@@ -1,4 +1,4 @@
-//! Things: what is seen of them, and what is not, against a calculation for each pixel.
+//! Things: visible and hidden pixels, compared with a calculation for each pixel.
 
 use cellcaster::color::Rgb;
 use cellcaster::game::{Game, Intent, Intents};
@@ -25,7 +25,7 @@ fn camera(position: (f64, f64), degrees: f64) -> Camera {
     Camera::new(position.into(), heading, FieldOfView::default()).unwrap()
 }
 
-/// A world drawn with `t` where there is a thing, and the same without it.
+/// A world with things at `t`, and the same world without them.
 fn with_and_without(grid: &str, thing: &str) -> [World; 2] {
     let world = |grid: &str| {
         let text = format!(
@@ -74,8 +74,7 @@ proptest! {
         prop_assert!(frame_of(&with, &camera) != frame_of(&without, &camera));
     }
 
-    /// Each pixel is asked by itself what its ray meets first: the picture of the thing, or what is
-    /// there without it.
+    /// Each pixel is computed separately: it shows the thing, or the picture without it.
     #[test]
     fn its_pixels_are_those_of_a_calculation_for_each(
         x in 1.3..4.5,
@@ -102,7 +101,7 @@ proptest! {
     }
 }
 
-/// What a pixel shows, by a ray through its middle.
+/// The colour of a pixel, from a ray through its centre.
 struct Oracle<'a> {
     world: &'a World,
     camera: &'a Camera,
@@ -118,7 +117,7 @@ impl<'a> Oracle<'a> {
         Self { world, camera, thing: world.things()[0], renderer }
     }
 
-    /// `None` where the pixel is so near to an edge that rounding may decide.
+    /// `None` if the pixel is so close to an edge that rounding may decide.
     fn pixel(&self, column: u32, row: u32, behind: Rgb) -> Option<Rgb> {
         const HAIR: f64 = 1e-9;
         let Self { world, camera, thing, renderer } = self;
@@ -156,7 +155,7 @@ impl<'a> Oracle<'a> {
 #[test]
 fn a_symmetrical_scene_is_symmetrical() {
     let grid = "#######\n#.....#\n#.t.t.#\n#..t..#\n#.....#\n#..@..#\n#######\n";
-    // The table is the built-in sprite that is its own mirror image; bricks are not theirs.
+    // The table is a built-in sprite that is its own mirror image; bricks are not symmetrical.
     let text = format!(
         "grid = '''\n{grid}'''\ntiles.'#'.wall = '#804030'\n\
          things = {{ '@'.start = 0, 't'.sprite = 'table' }}\n"
@@ -218,7 +217,7 @@ fn a_barrel_is_in_the_way_and_bones_are_not() {
 }
 
 #[test]
-fn a_lamp_lights_what_a_straight_line_leads_to() {
+fn a_lamp_lights_cells_in_line_of_sight() {
     let text = "light = 0.25\ngrid = '''\n#######\n#l..#.#\n#...#.#\n#@....#\n#######\n'''\n\
                 [tiles]\n'#' = { wall = 'brick' }\n\
                 [things]\n'@' = { start = 0 }\n'l' = { sprite = 'lamp', reach = 6 }\n";

@@ -1,4 +1,4 @@
-//! Several threads draw what one draws: the same frame, bit for bit, at the same cost.
+//! Several threads draw the same frame as one, bit for bit, with the same counts.
 
 use std::num::NonZero;
 use std::path::PathBuf;
@@ -7,11 +7,11 @@ use cellcaster::map::{self, Level, builtin};
 use cellcaster::render::{Frame, FrameSize, PixelAspect, Renderer, Surface, Threads, WhyOne};
 use cellcaster::world::{Camera, Cell, FieldOfView, Opening, Pitch, World};
 
-/// Large enough for seven threads, with a height that is divided by neither of their numbers.
+/// Large enough for seven threads, with a height that no tested number of threads divides.
 const WIDTH: u32 = 2555;
 const HEIGHT: u32 = 1441;
 
-/// All levels and all maps of the gallery that have a grid, with doors ajar.
+/// All levels, and all maps of the gallery with a grid, with doors ajar.
 fn worlds() -> Vec<(String, World)> {
     let builtin =
         builtin::LEVELS.iter().map(|level| (level.name.to_owned(), level.world().unwrap()));
@@ -45,7 +45,7 @@ fn renderer(threads: usize) -> Renderer {
     renderer
 }
 
-/// What some pixels show, of rows at and between the edges of bands.
+/// The surfaces of some pixels, in rows at and between the edges of bands.
 fn surfaces(renderer: &Renderer) -> Vec<Option<Surface>> {
     let columns = || (0..WIDTH).step_by(5);
     (0..HEIGHT)

@@ -1,4 +1,4 @@
-//! `cellcaster accuracy`: every format, and what it finds.
+//! `cellcaster accuracy`: its formats and its results.
 
 use crate::support::{complaint_about, output_of};
 use serde_json::Value;
@@ -53,7 +53,7 @@ fn csv_has_a_line_for_each_method() {
 }
 
 #[test]
-fn plots_are_pictures() {
+fn plots_are_images() {
     let svg = String::from_utf8(report("svg")).unwrap();
     assert!(svg.starts_with("<svg ") && svg.trim_end().ends_with("</svg>"));
     assert_eq!(svg.matches("<circle").count(), 2);

@@ -1,4 +1,4 @@
-//! `cellcaster cast`: a ray a line in, a hit a line out.
+//! `cellcaster cast`: one line of output for each ray.
 
 use std::io::{BufRead, BufReader, Write};
 use std::process::Stdio;

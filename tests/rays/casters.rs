@@ -1,5 +1,5 @@
-//! What every method keeps, right or wrong: it ends, and what it hits is a wall of the map, at a
-//! distance and at a place on its face.
+//! The contract of all casters, right or wrong: they end, and a hit is a wall of the map, at a
+//! distance and at a position on its face.
 
 use cellcaster::cast::{Caster, Hit, Ray};
 use cellcaster::lab::accuracy::{self, Set, adversarial_ray};
@@ -19,7 +19,7 @@ impl Visitor for Cast<'_> {
     }
 }
 
-/// Every method, those with a parameter at both ends of its range too.
+/// Every method, also with both ends of its parameter's range.
 fn methods() -> impl Iterator<Item = Method> {
     let ends = ["fixed:4", "fixed:26", "table:8", "table:65536", "march:1"];
     let names = Method::NAMES.into_iter().chain(ends);
@@ -36,7 +36,7 @@ fn is_sane(grid: &Grid, hit: &Hit) -> bool {
 fn every_method_on_every_stiff_set() {
     for Set { name, grid, rays } in accuracy::sets(1) {
         for method in methods() {
-            // A million cells at a hundred steps each are too many for a test.
+            // A million cells at a hundred steps each take too long for a test.
             let is_long = grid.width() > 5000;
             let method = match method {
                 Method::March(_) if is_long => "march:0.5".parse().unwrap(),

@@ -1,5 +1,5 @@
-//! The exact caster against rational arithmetic: cell and side are the same, the distance is within
-//! two units in its last place, the texture coordinate within 10⁻¹².
+//! The exact caster compared with rational arithmetic: cell and side are equal, the distance is
+//! within two units in its last place, and the texture coordinate is within 10⁻¹².
 
 use cellcaster::cast::{Caster, Exact, Ray};
 use cellcaster::lab::accuracy::{self, adversarial_ray, random_ray};
@@ -7,7 +7,7 @@ use cellcaster::rng::SplitMix64;
 use cellcaster::world::Grid;
 use proptest::prelude::*;
 
-/// What keeps the exact caster from being exact for `ray`, if anything does.
+/// The difference between the exact caster and rational arithmetic for `ray`, if there is one.
 fn fault(grid: &Grid, ray: &Ray) -> Option<String> {
     let (truth, hit) = (accuracy::cast(grid, ray), Exact.cast(grid, ray));
     let is_right = match (&truth, &hit) {
@@ -25,7 +25,7 @@ fn fault(grid: &Grid, ray: &Ray) -> Option<String> {
     (!is_right).then(explain)
 }
 
-/// Mazes of all sizes to 17 × 13, with walls in every third cell or so.
+/// Random mazes of at most 17 × 13 cells, with walls in about every third cell.
 fn maze(random: &mut SplitMix64) -> Grid {
     let (width, height) = (random.whole(1, 17) as usize, random.whole(1, 13) as usize);
     let rows: Vec<String> = (0..height)

@@ -1,5 +1,5 @@
-//! Levels of textures keep a turning view calm: they take away a quarter of what changes from frame to
-//! frame, or more, in the built-in levels and in the gallery.
+//! Mip levels reduce the shimmer of a turning view by at least a quarter, in the built-in levels
+//! and in the gallery.
 
 use std::path::Path;
 
@@ -8,10 +8,10 @@ use cellcaster::map::{self, builtin};
 use cellcaster::render::{Filter, FrameSize};
 use cellcaster::world::{FieldOfView, World};
 
-/// So much shimmer may be left.
+/// The largest allowed ratio.
 const MOST: f64 = 0.75;
 
-/// Shimmer with levels of textures, as a share of that without, seen from the start of `world`.
+/// The ratio of the shimmer with mip levels to that without, from the start of `world`.
 fn share_left(world: &World) -> f64 {
     let camera = world.start_camera(FieldOfView::default());
     let size = FrameSize::new(160, 90).unwrap();

@@ -1,4 +1,5 @@
-//! Rays: what each caster hits, against rational arithmetic, and the commands that report it.
+//! Rays: the hits of each caster compared with rational arithmetic, and the commands that report
+//! them.
 
 mod accuracy;
 mod cast;

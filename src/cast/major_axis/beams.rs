@@ -25,7 +25,8 @@ impl Path {
         let mut clear = 1;
         loop {
             line += clear;
-            // The beam is read from one line back: behind `line`, the ray may have entered another band.
+            // The beam is read one line back, because behind `line` the ray may have entered
+            // another band.
             let (end, beams_read) = self.end_of_beam(beams, line - 1);
             let is_past_beam = end >= line;
             line = line.max(end);
@@ -33,7 +34,7 @@ impl Path {
             let mut band_before = band;
             band = self.band_at(self.position + self.slope * line, line);
             if is_past_beam {
-                // The beam is wider than the cell: its neighbour is clear, too.
+                // The beam is wider than the cell, so that the neighbouring cell is clear, too.
                 band_before = band;
             } else {
                 let along = self.start + self.step * line;
@@ -159,9 +160,9 @@ mod tests {
     }
 
     proptest! {
-        /// Through everything solid, up to the end of the map.
+        /// Through every solid cell, up to the end of the map.
         #[test]
-        fn it_meets_what_the_walk_meets((size, blocks, origin, direction) in scene()) {
+        fn it_hits_the_same_cells_as_the_walk((size, blocks, origin, direction) in scene()) {
             let mut grid = grid(size, &blocks);
             grid.measure_with_beams(|tile| tile == DOORWAY);
             let ray = Ray::new(origin, direction).unwrap();
@@ -171,7 +172,7 @@ mod tests {
         }
     }
 
-    /// One at each strip, and a few more where something stands in the beam.
+    /// One position for each strip, and a few more where the beam has a solid cell.
     #[test]
     fn it_computes_few_positions_where_it_passes_a_pillar() {
         let mut grid = grid([1024, 100], &[(WALL, (700, 50), (1, 1))]);

@@ -1,11 +1,11 @@
-//! The traversal against the walk.
+//! The traversal compared with the walk.
 
 use proptest::prelude::*;
 
 use super::*;
 use crate::cast::Walk;
 
-/// Places and directions, of which many meet corners and run along lines.
+/// Positions and directions, many of which meet corners and run along lines.
 fn number() -> impl Strategy<Value = f64> {
     prop_oneof![
         -1.0..14.0_f64,
@@ -16,7 +16,7 @@ fn number() -> impl Strategy<Value = f64> {
     ]
 }
 
-/// Few walls, and doors that stand open.
+/// Maps with few walls, and open doors.
 fn map() -> impl Strategy<Value = Vec<Vec<u8>>> {
     let tile = prop_oneof![30 => Just(0_u8), 1 => Just(1_u8), 2 => Just(2_u8)];
     prop::collection::vec(prop::collection::vec(tile, 12), 1..12)
@@ -29,9 +29,9 @@ fn grid(map: &[Vec<u8>]) -> Grid {
 }
 
 proptest! {
-    /// Line by line or by leaps, it stops where the walk does.
+    /// Line by line or by leaps, the traversal stops where the walk does.
     #[test]
-    fn it_meets_what_the_walk_meets(
+    fn it_hits_the_same_cells_as_the_walk(
         map in map(),
         origin in (number(), number()),
         direction in (number(), number()),
@@ -53,9 +53,9 @@ proptest! {
 }
 
 proptest! {
-    /// Where it is so empty that it leaps by blocks, too.
+    /// On maps so empty that the traversal leaps by blocks, too.
     #[test]
-    fn it_meets_what_the_walk_meets_far_from_walls(
+    fn it_hits_the_same_cells_as_the_walk_far_from_walls(
         (width, height) in (30_u32..140, 30_u32..140),
         pillars in prop::collection::vec((any::<u32>(), any::<u32>()), 0..6),
         share in (0.0..1.0, 0.0..1.0),

@@ -1,4 +1,4 @@
-//! A line for each method.
+//! The report as CSV, with a line for each method.
 
 use std::io::{self, Write};
 

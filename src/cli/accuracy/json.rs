@@ -1,4 +1,4 @@
-//! One object: the methods, the filters, the sets and the motions.
+//! The report as one JSON object: methods, filters, sets and motions.
 
 use std::io::{self, Write};
 

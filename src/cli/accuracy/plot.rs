@@ -1,10 +1,10 @@
-//! Error over run time, both logarithmic: as marks on a page, or in characters.
+//! A plot of error over run time, both logarithmic, as an image or in characters.
 
 mod text;
 
 use std::io::{self, Write};
 
-use crate::cli::plot::{self, Align, Axis, Ink, Mark, Page};
+use crate::cli::plot::{self, Align, Axis, Mark, Page, PlotColor};
 use crate::lab::accuracy::Report;
 
 /// Writes the plot in characters.
@@ -22,23 +22,23 @@ pub(super) fn write_png(report: &Report, output: &mut impl Write) -> io::Result<
     plot::write_png(&Plot::of(report).page(), output)
 }
 
-/// Width and height of the page.
+/// The width and the height of the page.
 const PAGE: (f64, f64) = (960.0, 600.0);
-/// Where the axes are on it.
+/// The edges of the plot area.
 const LEFT: f64 = 90.0;
 const RIGHT: f64 = 930.0;
 const TOP: f64 = 50.0;
 const BOTTOM: f64 = 540.0;
-/// The methods that none is both faster and more exact than, and the line from one to the next.
-const FRONT: Ink = Ink::Orange;
-const OTHERS: Ink = Ink::Blue;
+/// The colour of the methods on the Pareto front, and of the line between them.
+const FRONT: PlotColor = PlotColor::Orange;
+const OTHERS: PlotColor = PlotColor::Blue;
 
-/// Methods by time and error.
+/// A scatter plot of methods by time and error.
 struct Plot {
     points: Vec<Point>,
-    /// Nanoseconds a ray.
+    /// Nanoseconds for each ray.
     time: Axis,
-    /// Root mean square of the relative error of the distance.
+    /// The root mean square of the relative error of the distance.
     error: Axis,
 }
 
@@ -49,23 +49,23 @@ struct Point {
     is_on_front: bool,
 }
 
-/// The part of a line of text, or the dot, that something takes up.
+/// The bounding box of a label or a dot.
 #[derive(Clone, Copy)]
-struct Span {
+struct BoundingBox {
     left: f64,
     right: f64,
     middle: f64,
 }
 
-impl Span {
-    /// Pixels of a character, from left to right and from top to bottom.
+impl BoundingBox {
+    /// The size of a character, in pixels.
     const CHARACTER: (f64, f64) = (8.0, 11.0);
 
     fn of_dot((x, y): (f64, f64)) -> Self {
         Self { left: x - 5.0, right: x + 5.0, middle: y }
     }
 
-    /// Where the label of a dot may go, the best place first.
+    /// The candidate positions for the label of a dot, best first.
     fn beside((x, y): (f64, f64), label: &str) -> [Self; 6] {
         const GAP: f64 = 9.0;
         let width = Self::CHARACTER.0 * label.chars().count() as f64;
@@ -90,7 +90,7 @@ impl Span {
 
 impl Plot {
     fn of(report: &Report) -> Self {
-        /// Where no error at all is drawn: below the rounding of a double.
+        /// The position of methods without any error: below the rounding of a double.
         const LEAST_ERROR: f64 = 1e-18;
         let points: Vec<Point> = report
             .rows
@@ -119,15 +119,16 @@ impl Plot {
         let dots = || self.points.iter().map(|point| self.place(point.time, point.error));
         marks.extend(self.points.iter().zip(dots()).map(|(point, at)| Mark::Dot {
             at,
-            ink: if point.is_on_front { FRONT } else { OTHERS },
+            color: if point.is_on_front { FRONT } else { OTHERS },
         }));
-        let mut taken: Vec<Span> = dots().map(Span::of_dot).collect();
+        let mut taken: Vec<BoundingBox> = dots().map(BoundingBox::of_dot).collect();
         for (point, dot) in self.points.iter().zip(dots()) {
-            let places = Span::beside(dot, &point.label);
-            let is_free = |span: &&Span| !taken.iter().any(|other| span.overlaps(other));
-            let span = *places.iter().find(is_free).unwrap_or(&places[0]);
-            taken.push(span);
-            let at = (span.left, span.middle + 4.0);
+            let places = BoundingBox::beside(dot, &point.label);
+            let is_free =
+                |candidate: &&BoundingBox| !taken.iter().any(|other| candidate.overlaps(other));
+            let label = *places.iter().find(is_free).unwrap_or(&places[0]);
+            taken.push(label);
+            let at = (label.left, label.middle + 4.0);
             marks.push(Mark::Text { at, align: Align::Start, text: point.label.clone() });
         }
         Page { width: PAGE.0, height: PAGE.1, marks }
@@ -136,7 +137,7 @@ impl Plot {
     fn axes(&self) -> Vec<Mark> {
         const MOST_TICKS: usize = 9;
         let text = |at, align, text: &str| Mark::Text { at, align, text: text.to_owned() };
-        let line = |from, to| Mark::Line { from, to, ink: Ink::Pale };
+        let line = |from, to| Mark::Line { from, to, color: PlotColor::Pale };
         let mut marks = vec![
             text((LEFT, 28.0), Align::Start, "relative error of the distance (rms) over time"),
             text((RIGHT, 582.0), Align::End, "nanoseconds a ray"),
@@ -154,7 +155,7 @@ impl Plot {
         marks
     }
 
-    /// The line from point to point of the front.
+    /// The line between the points of the front.
     fn front(&self) -> Vec<Mark> {
         let mut front: Vec<(f64, f64)> = self
             .points
@@ -164,6 +165,6 @@ impl Plot {
             .collect();
         front.sort_by(|one, other| one.0.total_cmp(&other.0));
         let pairs = front.windows(2);
-        pairs.map(|pair| Mark::Line { from: pair[0], to: pair[1], ink: FRONT }).collect()
+        pairs.map(|pair| Mark::Line { from: pair[0], to: pair[1], color: FRONT }).collect()
     }
 }

@@ -1,13 +1,13 @@
-//! A bar on standard error, while somebody waits there.
+//! A progress bar on standard error, if that is a terminal.
 
 use std::io::{self, IsTerminal, Write};
 use std::time::{Duration, Instant};
 
-/// What is done within this shows no bar.
-const PATIENCE: Duration = Duration::from_secs(1);
+/// The time before the bar appears.
+const DELAY: Duration = Duration::from_secs(1);
 const WIDTH: usize = 40;
 
-/// A bar that shows how much is done.
+/// A progress bar.
 pub(super) struct Progress {
     start: Instant,
     is_watched: bool,
@@ -19,18 +19,18 @@ impl Progress {
         Self { start: Instant::now(), is_watched: io::stderr().is_terminal(), shown: None }
     }
 
-    /// Shows that `share` is done, from 0 to 1, if it is time for that.
+    /// Shows the completed fraction, from 0 to 1, if it is time to draw.
     pub(super) fn show(&mut self, share: f64) {
         let filled = (share * WIDTH as f64) as usize;
-        if self.is_watched && self.start.elapsed() > PATIENCE && self.shown != Some(filled) {
+        if self.is_watched && self.start.elapsed() > DELAY && self.shown != Some(filled) {
             let (done, to_do) = ("#".repeat(filled), ".".repeat(WIDTH.saturating_sub(filled)));
-            // Nobody is served by an end because of a bar that can't be drawn.
+            // A bar that cannot be drawn is no reason to end the program.
             let _ = write!(io::stderr(), "\r[{done}{to_do}]");
             self.shown = Some(filled);
         }
     }
 
-    /// Takes the bar away.
+    /// Removes the bar.
     pub(super) fn finish(self) {
         if self.shown.is_some() {
             let _ = write!(io::stderr(), "\r{}\r", " ".repeat(WIDTH + 2));

@@ -1,4 +1,4 @@
-//! Tables and a plot, for people.
+//! The report as tables with a plot.
 
 use std::io::{self, Write};
 
@@ -139,7 +139,7 @@ fn write_motions(motions: &[MotionResult], output: &mut impl Write) -> io::Resul
     Ok(())
 }
 
-/// A share as a percentage, and whether it is nothing at all.
+/// A fraction as a percentage; zero is distinguished from a small number.
 fn share(share: f64) -> String {
     if share == 0.0 {
         "0".to_owned()

@@ -64,7 +64,7 @@ const COMMAND: Positional = Positional {
 
 fn shell(mut matches: ArgMatches) -> Shell {
     let shell = SHELL.of(&mut matches).unwrap_or_default();
-    // What is none of the choices does not get here.
+    // clap has refused other values.
     shell.to_str().and_then(|name| name.parse().ok()).unwrap_or(Shell::Bash)
 }
 

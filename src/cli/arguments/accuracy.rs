@@ -1,10 +1,10 @@
-//! What `accuracy` is asked for.
+//! The options of `accuracy`.
 
 use std::ffi::OsString;
 
 use clap::ArgMatches;
 
-use super::option::{Read, Valued};
+use super::option::{Parser, ValueOption};
 use super::{Command, Subcommand, map, value};
 use crate::lab::casters::Method;
 
@@ -13,15 +13,15 @@ use crate::lab::casters::Method;
 pub(in crate::cli) struct Accuracy {
     pub(in crate::cli) map: Option<OsString>,
     pub(in crate::cli) set: Option<String>,
-    /// None for all.
+    /// All methods if empty.
     pub(in crate::cli) methods: Vec<Method>,
-    /// Rays in each scene.
+    /// The number of rays in each scene.
     pub(in crate::cli) rays: usize,
     pub(in crate::cli) seed: u64,
     pub(in crate::cli) format: ReportFormat,
 }
 
-/// How a report is written.
+/// The format of a report.
 #[derive(Clone, Copy, Debug, Default)]
 pub(in crate::cli) enum ReportFormat {
     #[default]
@@ -57,7 +57,7 @@ fn read(mut matches: ArgMatches) -> Accuracy {
     }
 }
 
-const CASTER: Valued<Method> = Valued {
+const CASTER: ValueOption<Method> = ValueOption {
     help: "Report on this method; may be repeated: exact, dda, dda32, accumulate, fixed:BITS, \
            table:ANGLES or march:STEP",
     default: "all",
@@ -65,47 +65,47 @@ const CASTER: Valued<Method> = Valued {
     ..value::CASTER
 };
 
-const SET: Valued<String> = Valued {
+const SET: ValueOption<String> = ValueOption {
     name: "set",
     value: "NAME",
     takes: "the name of a set",
     help: "Cast the rays of one set, such as \"through corners\"",
     default: "",
     choices: &[],
-    read: Read::Plainly(|text| Some(text.to_owned())),
+    read: Parser::Optional(|text| Some(text.to_owned())),
     repeats: false,
 };
 
-const RAYS: Valued<usize> = Valued {
+const RAYS: ValueOption<usize> = ValueOption {
     name: "rays",
     value: "N",
     takes: "a whole number from 1 to 10000000",
     help: "How many rays each scene has, from 1 to 10000000",
     default: "2000",
     choices: &[],
-    read: Read::Plainly(|text| text.parse().ok().filter(|rays| (1..=10_000_000).contains(rays))),
+    read: Parser::Optional(|text| text.parse().ok().filter(|rays| (1..=10_000_000).contains(rays))),
     repeats: false,
 };
 
-const SEED: Valued<u64> = Valued {
+const SEED: ValueOption<u64> = ValueOption {
     name: "seed",
     value: "N",
     takes: "a whole number",
     help: "Where chance begins",
     default: "1",
     choices: &[],
-    read: Read::Plainly(|text| text.parse().ok()),
+    read: Parser::Optional(|text| text.parse().ok()),
     repeats: false,
 };
 
-const FORMAT: Valued<ReportFormat> = Valued {
+const FORMAT: ValueOption<ReportFormat> = ValueOption {
     name: "format",
     value: "FORMAT",
     takes: "table, json, csv, svg or png",
     help: "How the report is written",
     default: "table",
     choices: &["table", "json", "csv", "svg", "png"],
-    read: Read::Plainly(|text| match text {
+    read: Parser::Optional(|text| match text {
         "table" => Some(ReportFormat::Table),
         "json" => Some(ReportFormat::Json),
         "csv" => Some(ReportFormat::Csv),

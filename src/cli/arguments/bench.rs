@@ -1,23 +1,23 @@
-//! What `bench` is asked for.
+//! The options of `bench`.
 
 use std::path::PathBuf;
 
 use clap::ArgMatches;
 
-use super::option::{FileOption, Read, Valued};
+use super::option::{FileOption, Parser, ValueOption};
 use super::{Command, Subcommand};
 
 /// Options of `bench`.
 #[derive(Debug)]
 pub(in crate::cli) struct Bench {
-    /// How long to measure, roughly.
+    /// The approximate duration of the measurement, in seconds.
     pub(in crate::cli) seconds: u8,
     pub(in crate::cli) format: BenchFormat,
-    /// Where plots are drawn, besides.
+    /// The file for plots.
     pub(in crate::cli) plot: Option<PathBuf>,
 }
 
-/// How the report is written.
+/// The format of the report.
 #[derive(Clone, Copy, Debug, Default)]
 pub(in crate::cli) enum BenchFormat {
     #[default]
@@ -48,25 +48,25 @@ fn read(mut matches: ArgMatches) -> Bench {
     }
 }
 
-const SECONDS: Valued<u8> = Valued {
+const SECONDS: ValueOption<u8> = ValueOption {
     name: "seconds",
     value: "N",
     takes: "a whole number from 1 to 60",
     help: "How long to measure, from 1 to 60 seconds; preparing comes on top",
     default: "10",
     choices: &[],
-    read: Read::Plainly(|text| text.parse().ok().filter(|seconds| (1..=60).contains(seconds))),
+    read: Parser::Optional(|text| text.parse().ok().filter(|seconds| (1..=60).contains(seconds))),
     repeats: false,
 };
 
-const FORMAT: Valued<BenchFormat> = Valued {
+const FORMAT: ValueOption<BenchFormat> = ValueOption {
     name: "format",
     value: "FORMAT",
     takes: "table, markdown or json",
     help: "How the report is written",
     default: "table",
     choices: &["table", "markdown", "json"],
-    read: Read::Plainly(|text| match text {
+    read: Parser::Optional(|text| match text {
         "table" => Some(BenchFormat::Table),
         "markdown" => Some(BenchFormat::Markdown),
         "json" => Some(BenchFormat::Json),

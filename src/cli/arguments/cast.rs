@@ -1,4 +1,4 @@
-//! What `cast` is asked for.
+//! The options of `cast`.
 
 use std::ffi::OsString;
 

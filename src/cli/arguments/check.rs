@@ -1,4 +1,4 @@
-//! What `check` is asked for.
+//! The arguments of `check`.
 
 use clap::ArgMatches;
 

@@ -1,4 +1,4 @@
-//! What `config` is asked for.
+//! The options of `config`.
 
 use std::path::PathBuf;
 

@@ -1,24 +1,24 @@
-//! The generated level to show: options of every command that shows one.
+//! The options for a generated level, which several commands share.
 
 use std::ffi::OsStr;
 
 use clap::ArgMatches;
 
 use super::Error;
-use super::option::{Read, Valued};
+use super::option::{Parser, ValueOption};
 use crate::generate::{Extent, Generator, Site};
 
-/// A generated level in place of a map.
+/// A generated level instead of a map.
 #[derive(Clone, Copy, Debug)]
 pub(in crate::cli) struct Generated {
     pub(in crate::cli) generator: Generator,
     pub(in crate::cli) seed: u64,
     pub(in crate::cli) extent: Extent,
-    /// Where to start; where the level says, if there is none.
+    /// The start; that of the level if it is `None`.
     pub(in crate::cli) start: Option<Site>,
 }
 
-/// The level that the options are about, if they are about any; and then there is no `map`.
+/// The generated level that the options describe, if any. It excludes a `map`.
 pub(super) fn of(
     matches: &mut ArgMatches,
     map: Option<&OsStr>,
@@ -45,50 +45,50 @@ pub(super) fn of(
     }
 }
 
-pub(super) const GENERATE: Valued<Generator> = Valued {
+pub(super) const GENERATE: ValueOption<Generator> = ValueOption {
     name: "generate",
     value: "KIND",
     takes: "maze, cave or office",
     help: "Generate a level in place of MAP",
     default: "",
     choices: &["maze", "cave", "office"],
-    read: Read::Plainly(Generator::named),
+    read: Parser::Optional(Generator::named),
     repeats: false,
 };
 
-pub(super) const SEED: Valued<u64> = Valued {
+pub(super) const SEED: ValueOption<u64> = ValueOption {
     name: "seed",
     value: "N",
     takes: "a whole number from 0 to 18446744073709551615",
     help: "The seed of the generated level",
     default: "1",
     choices: &[],
-    read: Read::Plainly(|text| text.parse().ok()),
+    read: Parser::Optional(|text| text.parse().ok()),
     repeats: false,
 };
 
-pub(super) const LEVEL_SIZE: Valued<Extent> = Valued {
+pub(super) const LEVEL_SIZE: ValueOption<Extent> = ValueOption {
     name: "level-size",
     value: "COLSxROWS",
     takes: "COLSxROWS from 8x8 to 1000000000x1000000000, such as 64x64",
     help: "Generate a level with walls around it, and an exit",
     default: "without an end",
     choices: &[],
-    read: Read::Plainly(|text| {
+    read: Parser::Optional(|text| {
         let (columns, rows) = text.split_once('x')?;
         Extent::new(columns.parse().ok()?, rows.parse().ok()?)
     }),
     repeats: false,
 };
 
-pub(super) const START: Valued<Site> = Valued {
+pub(super) const START: ValueOption<Site> = ValueOption {
     name: "start",
     value: "COLUMN,ROW",
     takes: "COLUMN,ROW, the cell to start at, such as 1000000,-1000000",
     help: "The cell of the generated level to start at",
     default: "the first corner",
     choices: &[],
-    read: Read::Plainly(|text| {
+    read: Parser::Optional(|text| {
         let (column, row) = text.split_once(',')?;
         Some(Site { column: column.trim().parse().ok()?, row: row.trim().parse().ok()? })
     }),

@@ -1,12 +1,12 @@
-//! What help says besides the lists that clap makes of the descriptions.
+//! The help texts that clap does not generate from the descriptions.
 
 use std::fmt::Write;
 
-use super::option::Described;
+use super::option::OptionSpec;
 use super::{SUBCOMMANDS, Subcommand, play};
 use crate::app::Bindings;
 
-/// In columns: help is no wider, however wide the window is.
+/// The width of help in columns, in windows of any width.
 pub(super) const WIDTH: usize = 80;
 
 pub(super) const ABOUT: &str = "\
@@ -20,7 +20,7 @@ pub(super) const WHERE_TO_READ_ON: &str = "\
 \"cellcaster --help\" has all commands with their options, keys and examples; \"cellcaster COMMAND \
 --help\" tells of one command.";
 
-/// After the options of the game: those of the other commands, keys, examples.
+/// The text after the options of the game: options of other commands, keys, and examples.
 pub(super) fn more() -> String {
     let mut text = String::new();
     for subcommand in SUBCOMMANDS.into_iter().filter(|it| it.name != play::SUBCOMMAND.name) {
@@ -35,7 +35,7 @@ pub(super) fn more() -> String {
     text
 }
 
-/// After the options of a command.
+/// The text after the options of a command.
 pub(super) fn examples(subcommand: &Subcommand) -> String {
     let lines: Vec<String> =
         subcommand.examples.lines().map(|line| format!("  {line}\n")).collect();
@@ -46,7 +46,7 @@ const EXIT_STATUS: &str = "
 Exit status: 0; 2 for a mistake in the arguments or a map; 1 where the machine
 refuses something.";
 
-/// What there is to say of a command, if it is more than what it does.
+/// The details of a command, if there are more than its one line.
 fn push_details(text: &mut String, subcommand: &Subcommand) {
     if subcommand.details.is_empty() && subcommand.options.is_empty() {
         return;
@@ -59,10 +59,10 @@ fn push_details(text: &mut String, subcommand: &Subcommand) {
     text.push('\n');
 }
 
-/// The options of a command that play has not, and the names of those that it has.
+/// The options of a command that `play` does not have, and the names of the others.
 fn push_options(text: &mut String, subcommand: &Subcommand) {
     let options = subcommand.options.iter();
-    let (shared, own): (Vec<&&dyn Described>, Vec<&&dyn Described>) =
+    let (shared, own): (Vec<&&dyn OptionSpec>, Vec<&&dyn OptionSpec>) =
         options.partition(|option| play::SUBCOMMAND.has(option.name()));
     for option in own {
         let choices = match option.choices() {
@@ -86,7 +86,7 @@ fn push_keys(text: &mut String) {
     text.push('\n');
 }
 
-/// Two columns, the second one wrapped.
+/// A row of two columns, the second of which is wrapped.
 fn push_row(text: &mut String, first: &str, second: &str) {
     const SECOND: usize = 26;
     let mut line = format!("  {first:<width$}", width = SECOND - 2);
@@ -97,7 +97,7 @@ fn push_row(text: &mut String, first: &str, second: &str) {
     push_wrapped(text, line, SECOND, second);
 }
 
-/// Goes on with `line`, and where a word has no room there, in the column `indent` of the next one.
+/// Appends `words` to `line`, and wraps to the column `indent` of the next line.
 fn push_wrapped(text: &mut String, mut line: String, indent: usize, words: &str) {
     for word in words.split(' ') {
         if line.chars().count() + word.chars().count() > WIDTH {

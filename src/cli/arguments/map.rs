@@ -1,4 +1,4 @@
-//! The argument MAP, which most subcommands take.
+//! The argument MAP of most subcommands.
 
 use std::ffi::OsString;
 
@@ -6,7 +6,7 @@ use clap::{ArgAction, ArgMatches, ValueHint};
 
 use super::Positional;
 
-/// What stands for the map that standard input holds.
+/// The name for a map on standard input.
 pub(in crate::cli) const STANDARD_INPUT: &str = "-";
 
 /// A map, or the first built-in level.
@@ -20,7 +20,7 @@ pub(super) const OPTIONAL: Positional = Positional {
     choices: &[],
 };
 
-/// At least one map.
+/// One or more maps.
 pub(super) const SEVERAL: Positional = Positional {
     help: "Map files, or \"-\" for standard input",
     is_required: true,
@@ -30,12 +30,12 @@ pub(super) const SEVERAL: Positional = Positional {
 
 const NAME: &str = "MAP";
 
-/// The map that was named.
+/// The named map.
 pub(super) fn of(matches: &mut ArgMatches) -> Option<OsString> {
     matches.remove_one(NAME)
 }
 
-/// The maps that were named.
+/// The named maps.
 pub(super) fn all_of(matches: &mut ArgMatches) -> Vec<OsString> {
     matches.remove_many(NAME).map(Iterator::collect).unwrap_or_default()
 }

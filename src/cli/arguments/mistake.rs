@@ -1,13 +1,14 @@
 //! One sentence for each mistake in the arguments.
 //!
-//! clap's own messages were refused: they tell the usage besides, and not what an option takes.
+//! clap's own messages were refused: they include the usage, and omit the valid values of an
+//! option.
 
 use clap::error::{ContextKind, ContextValue, ErrorKind};
 
 use super::{Error, SUBCOMMANDS, Subcommand};
 use crate::fault;
 
-/// What is wrong with the arguments of `subcommand`, in a sentence.
+/// A sentence about the mistake in the arguments of `subcommand`.
 pub(super) fn of(error: &clap::Error, subcommand: &Subcommand) -> Error {
     if let Some(sentence) = text(error, ContextKind::Custom) {
         return Error::mistake(sentence);
@@ -15,7 +16,7 @@ pub(super) fn of(error: &clap::Error, subcommand: &Subcommand) -> Error {
     let argument = text(error, ContextKind::InvalidArg)
         .or_else(|| text(error, ContextKind::InvalidSubcommand))
         .unwrap_or_default();
-    // An option that is known comes with its value, as in "--fov <DEG>".
+    // A known option includes its value, as in "--fov <DEG>".
     let known = argument.split_once(' ').map_or(argument, |(name, _)| name);
     Error::mistake(match error.kind() {
         ErrorKind::MissingRequiredArgument => subcommand.missing.to_owned(),
@@ -57,7 +58,7 @@ fn unknown(argument: &str, subcommand: &Subcommand) -> String {
     format!("{name} has no option {argument}; {hint}")
 }
 
-/// That an argument which is no option is none of those that there are.
+/// The mistake for a positional argument that is not among the choices.
 fn no_choice(error: &clap::Error, subcommand: &Subcommand) -> String {
     let choices = match error.get(ContextKind::ValidValue) {
         Some(ContextValue::Strings(choices)) => choices.join(", "),
@@ -67,7 +68,7 @@ fn no_choice(error: &clap::Error, subcommand: &Subcommand) -> String {
     format!("{} takes one of {choices}, not \"{value}\"", subcommand.name)
 }
 
-/// That there is no command of that name.
+/// The mistake for an unknown command.
 pub(super) fn no_command(name: &str) -> Error {
     let names: Vec<&str> = SUBCOMMANDS.iter().map(|subcommand| subcommand.name).collect();
     let hint = match fault::nearest(name, &names) {
@@ -77,7 +78,7 @@ pub(super) fn no_command(name: &str) -> Error {
     Error::mistake(format!("there is no command \"{name}\"; {hint}"))
 }
 
-/// Where to read on.
+/// A reference to the help.
 fn help(name: Option<&str>) -> String {
     let words: Vec<&str> = ["cellcaster"].into_iter().chain(name).chain(["--help"]).collect();
     format!("\"{}\" lists what there is", words.join(" "))
@@ -90,7 +91,7 @@ fn text(error: &clap::Error, kind: ContextKind) -> Option<&str> {
     }
 }
 
-/// What clap says, without the usage: of what nobody has thought of.
+/// clap's own message without the usage, for any other mistake.
 fn first_line(error: &clap::Error) -> String {
     let text = error.to_string();
     let line = text.lines().next().unwrap_or_default();

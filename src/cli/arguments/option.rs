@@ -1,4 +1,4 @@
-//! Options: each is described once, and parsed, completed and explained by that.
+//! Options: one description for parsing, completion and help.
 
 use std::ffi::OsStr;
 use std::path::PathBuf;
@@ -7,21 +7,21 @@ use clap::builder::{PossibleValue, TypedValueParser};
 use clap::error::{ContextKind, ContextValue, ErrorKind};
 use clap::{Arg, ArgAction, ArgMatches, Command, ValueHint, value_parser};
 
-/// An option of whatever type, as far as its description goes.
-pub(super) trait Described {
-    /// What follows the two dashes.
+/// The description of an option of any type.
+pub(super) trait OptionSpec {
+    /// The name after the two dashes.
     fn name(&self) -> &'static str;
 
-    /// What has to follow it; `None` for an option that takes no value.
+    /// The required value; `None` for an option without a value.
     fn takes(&self) -> Option<&'static str>;
 
-    /// How it is written, such as `--size <COLSxROWS>`.
+    /// The usage, such as `--size <COLSxROWS>`.
     fn usage(&self) -> String;
 
-    /// What it does, and what holds without it.
+    /// The effect, and the default.
     fn help(&self) -> String;
 
-    /// The values, where a list can name them all.
+    /// The possible values, if they are a fixed list.
     fn choices(&self) -> &'static [&'static str] {
         &[]
     }
@@ -29,48 +29,48 @@ pub(super) trait Described {
     fn argument(&self) -> Arg;
 }
 
-/// An option that takes a value.
-pub(super) struct Valued<T> {
+/// An option with a value.
+pub(super) struct ValueOption<T> {
     pub(super) name: &'static str,
-    /// What stands for the value in help, such as `COLSxROWS`.
+    /// The placeholder of the value in help, such as `COLSxROWS`.
     pub(super) value: &'static str,
-    /// What it takes, for the sentence on something else.
+    /// The valid values, for the sentence about an invalid one.
     pub(super) takes: &'static str,
     pub(super) help: &'static str,
-    /// What holds without it, in the words of the help; may be empty.
+    /// The default in the words of the help; may be empty.
     pub(super) default: &'static str,
-    /// The values, where a list can name them all.
+    /// The possible values, if they are a fixed list.
     pub(super) choices: &'static [&'static str],
-    pub(super) read: Read<T>,
-    /// Whether several values may be given, an option for each.
+    pub(super) read: Parser<T>,
+    /// Whether the option may be repeated for several values.
     pub(super) repeats: bool,
 }
 
-/// How a value is read.
+/// A parser of values.
 #[derive(Clone)]
-pub(super) enum Read<T> {
-    /// `None` for a text that is not what the option takes.
-    Plainly(fn(&str) -> Option<T>),
-    /// The error says what is wrong with the text.
-    Explaining(fn(&str) -> Result<T, String>),
+pub(super) enum Parser<T> {
+    /// A function that returns `None` for an invalid text.
+    Optional(fn(&str) -> Option<T>),
+    /// A function that returns the reason why a text is invalid.
+    Fallible(fn(&str) -> Result<T, String>),
 }
 
-impl<T> Valued<T>
+impl<T> ValueOption<T>
 where
     T: Clone + Send + Sync + 'static,
 {
-    /// The value that was given; the last one of several.
+    /// The given value; the last one if there are several.
     pub(super) fn of(&self, matches: &mut ArgMatches) -> Option<T> {
         matches.remove_one(self.name)
     }
 
-    /// All values that were given, in their order.
+    /// All given values, in order.
     pub(super) fn all_of(&self, matches: &mut ArgMatches) -> Vec<T> {
         matches.remove_many(self.name).map(Iterator::collect).unwrap_or_default()
     }
 }
 
-impl<T> Described for Valued<T>
+impl<T> OptionSpec for ValueOption<T>
 where
     T: Clone + Send + Sync + 'static,
 {
@@ -104,7 +104,7 @@ where
             .value_name(self.value)
             .help(self.help())
             .action(action)
-            // A value may be negative; and what looks like an option is then told to be no value.
+            // A value may be negative. A text that looks like an option is then refused as a value.
             .allow_hyphen_values(true)
             .value_parser(ValueReader {
                 name: self.name,
@@ -115,13 +115,13 @@ where
     }
 }
 
-/// Reads a value for clap.
+/// Parses a value for clap.
 #[derive(Clone)]
 struct ValueReader<T> {
     name: &'static str,
     takes: &'static str,
     choices: &'static [&'static str],
-    read: Read<T>,
+    read: Parser<T>,
 }
 
 impl<T> TypedValueParser for ValueReader<T>
@@ -139,10 +139,10 @@ where
         let text = value.to_string_lossy();
         let Self { name, takes, .. } = self;
         let read = match self.read {
-            Read::Plainly(read) => {
+            Parser::Optional(read) => {
                 read(&text).ok_or_else(|| format!("--{name} takes {takes}, not \"{text}\""))
             }
-            Read::Explaining(read) => read(&text),
+            Parser::Fallible(read) => read(&text),
         };
         read.map_err(|sentence| {
             let mut error = clap::Error::new(ErrorKind::ValueValidation).with_cmd(command);
@@ -159,20 +159,20 @@ where
     }
 }
 
-/// An option that takes the name of a file.
+/// An option whose value is the name of a file.
 pub(super) struct FileOption {
     pub(super) name: &'static str,
     pub(super) help: &'static str,
 }
 
 impl FileOption {
-    /// The file that was given.
+    /// The given file.
     pub(super) fn of(&self, matches: &mut ArgMatches) -> Option<PathBuf> {
         matches.remove_one(self.name)
     }
 }
 
-impl Described for FileOption {
+impl OptionSpec for FileOption {
     fn name(&self) -> &'static str {
         self.name
     }
@@ -200,7 +200,7 @@ impl Described for FileOption {
     }
 }
 
-/// An option that is given or not.
+/// An option without a value.
 pub(super) struct Flag {
     pub(super) name: &'static str,
     pub(super) help: &'static str,
@@ -213,7 +213,7 @@ impl Flag {
     }
 }
 
-impl Described for Flag {
+impl OptionSpec for Flag {
     fn name(&self) -> &'static str {
         self.name
     }

@@ -1,14 +1,14 @@
-//! Options before the subcommand: `cellcaster --colors 256 snapshot` is `cellcaster snapshot --colors
-//! 256`.
+//! Options before the subcommand: `cellcaster --colors 256 snapshot` is `cellcaster snapshot
+//! --colors 256`.
 //!
-//! clap would have them be options of the program, which every subcommand then had to take.
+//! In clap they would have to be options of the program, which every subcommand would then accept.
 
 use std::ffi::OsString;
 
 use super::{SUBCOMMANDS, Subcommand, named};
 
-/// The same words, the program's own name first, with the subcommand right after that; and which
-/// subcommand it is, if one is named.
+/// The same words with the subcommand directly after the program's own name; and the subcommand, if
+/// one is named.
 pub(super) fn subcommand_first(
     mut words: Vec<OsString>,
 ) -> (Vec<OsString>, Option<&'static Subcommand>) {
@@ -18,7 +18,7 @@ pub(super) fn subcommand_first(
     (words, Some(subcommand))
 }
 
-/// The place of the subcommand: only options stand before it.
+/// The index of the subcommand. Only options precede it.
 fn find(words: &[OsString]) -> Option<(usize, &'static Subcommand)> {
     let mut index = 1;
     loop {
@@ -34,7 +34,7 @@ fn find(words: &[OsString]) -> Option<(usize, &'static Subcommand)> {
     }
 }
 
-/// Whether `word` is an option, of any subcommand, whose value is the next word.
+/// Whether `word` is an option of any subcommand whose value is the next word.
 fn takes_the_next_word(word: &str) -> bool {
     let options = SUBCOMMANDS.iter().flat_map(|subcommand| subcommand.options);
     let mut valued = options.filter(|option| option.takes().is_some());

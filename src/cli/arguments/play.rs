@@ -1,4 +1,4 @@
-//! What `play` is asked for.
+//! The options of `play`.
 
 use std::ffi::OsString;
 use std::path::PathBuf;
@@ -6,7 +6,7 @@ use std::path::PathBuf;
 use clap::ArgMatches;
 
 use super::generated::{self, Generated};
-use super::option::{FileOption, Flag, Read, Valued};
+use super::option::{FileOption, Flag, Parser, ValueOption};
 use super::value::{self, FramesPerSecond};
 use super::{Command, Error, Subcommand, map};
 use crate::color::palette::ColorDepth;
@@ -16,11 +16,11 @@ use crate::terminal::{Fidelity, UnknownFidelity};
 use crate::tui::{CellAspect, GlyphMode};
 use crate::world::FieldOfView;
 
-/// Options of `play`; `None` where they leave it to the configuration or the terminal.
+/// Options of `play`; `None` where the configuration or the terminal decides.
 #[derive(Debug)]
 pub(in crate::cli) struct Play {
     pub(in crate::cli) map: Option<OsString>,
-    /// The generated level in place of a map.
+    /// The generated level instead of a map.
     pub(in crate::cli) generated: Option<Generated>,
     pub(in crate::cli) config: Option<PathBuf>,
     pub(in crate::cli) frames_per_second: Option<FramesPerSecond>,
@@ -32,24 +32,24 @@ pub(in crate::cli) struct Play {
     pub(in crate::cli) filter: Option<Filter>,
     pub(in crate::cli) fidelity: Option<FidelityChoice>,
     pub(in crate::cli) shows_stats: bool,
-    /// Where to write what happens.
+    /// The file of the recording.
     pub(in crate::cli) record: Option<PathBuf>,
-    /// Whether that may replace a file.
+    /// Whether the recording may replace a file.
     pub(in crate::cli) overwrites: bool,
-    /// Whether to load the map anew when it changes.
+    /// Whether to reload the map when it changes.
     pub(in crate::cli) watches: bool,
 }
 
-/// What decides how exact frames are.
+/// The choice of fidelity.
 #[derive(Clone, Copy, Debug)]
 pub(in crate::cli) enum FidelityChoice {
-    /// What the link allows.
+    /// As the link allows.
     Auto,
     Fixed(Fidelity),
 }
 
 impl FidelityChoice {
-    /// `None` for what the link allows.
+    /// The fixed fidelity; `None` if the link decides.
     pub(in crate::cli) fn fixed(self) -> Option<Fidelity> {
         match self {
             Self::Auto => None,
@@ -121,12 +121,13 @@ pub(super) const CONFIG: FileOption = FileOption {
     help: "The settings [default: cellcaster/config.toml in the folder for configuration files]",
 };
 
-const CELL_ASPECT: Valued<CellAspect> =
-    Valued { default: "what the terminal says, or 2", ..value::CELL_ASPECT };
+const CELL_ASPECT: ValueOption<CellAspect> =
+    ValueOption { default: "what the terminal says, or 2", ..value::CELL_ASPECT };
 
-const COLORS: Valued<ColorDepth> = Valued { default: "what the terminal has", ..value::COLORS };
+const COLORS: ValueOption<ColorDepth> =
+    ValueOption { default: "what the terminal has", ..value::COLORS };
 
-const FIDELITY: Valued<FidelityChoice> = Valued {
+const FIDELITY: ValueOption<FidelityChoice> = ValueOption {
     name: "fidelity",
     value: "LEVEL",
     takes: "auto, exact, high, low or a number up to 255",
@@ -134,7 +135,7 @@ const FIDELITY: Valued<FidelityChoice> = Valued {
            or how far they may be off, from 0 to 255",
     default: "auto",
     choices: &[],
-    read: Read::Explaining(|text| match text {
+    read: Parser::Fallible(|text| match text {
         "auto" => Ok(FidelityChoice::Auto),
         _ => text
             .parse()

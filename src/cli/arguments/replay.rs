@@ -1,4 +1,4 @@
-//! What `replay` is asked for.
+//! The options of `replay`.
 
 use std::ffi::OsString;
 use std::path::PathBuf;
@@ -18,9 +18,9 @@ use crate::world::FieldOfView;
 pub(in crate::cli) struct Replay {
     pub(in crate::cli) script: PathBuf,
     pub(in crate::cli) map: Option<OsString>,
-    /// The generated level in place of a map.
+    /// The generated level instead of a map.
     pub(in crate::cli) generated: Option<Generated>,
-    /// Where to write; standard output where there is none.
+    /// The file of the recording; standard output if `None`.
     pub(in crate::cli) cast: Option<PathBuf>,
     pub(in crate::cli) size: Size,
     pub(in crate::cli) frames_per_second: FramesPerSecond,

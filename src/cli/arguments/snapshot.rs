@@ -1,4 +1,4 @@
-//! What `snapshot` is asked for.
+//! The options of `snapshot`.
 
 use std::ffi::OsString;
 
@@ -6,7 +6,7 @@ use clap::ArgMatches;
 use glam::DVec2;
 
 use super::generated::{self, Generated};
-use super::option::{Flag, Read, Valued};
+use super::option::{Flag, Parser, ValueOption};
 use super::value::{self, Size};
 use super::{Command, Error, Subcommand, map};
 use crate::color::palette::ColorDepth;
@@ -19,17 +19,15 @@ use crate::world::{FieldOfView, Heading, Pitch};
 #[derive(Debug)]
 pub(in crate::cli) struct Snapshot {
     pub(in crate::cli) map: Option<OsString>,
-    /// The generated level in place of a map.
+    /// The generated level instead of a map.
     pub(in crate::cli) generated: Option<Generated>,
-    /// How large the picture is; 80x24, or as large as the window where that is redrawn, if there is
-    /// none.
+    /// The size of the picture. If `None`, 80x24; with `--watch`, the size of the window.
     pub(in crate::cli) size: Option<Size>,
-    /// Where to look from; the map's start where there is none.
+    /// The position and heading; the map's start if `None`.
     pub(in crate::cli) camera: Option<(DVec2, Heading)>,
-    /// How high the eye is; where somebody's is who stands there if there is none.
+    /// The height of the eye; that of a player who stands there if `None`.
     pub(in crate::cli) eye: Option<f64>,
-    /// How far up or down to look; straight ahead, or as at the start of a map of bodies, if there is
-    /// none.
+    /// The pitch. If `None`, level, or in a map of bodies that of the start.
     pub(in crate::cli) pitch: Option<Pitch>,
     pub(in crate::cli) field_of_view: FieldOfView,
     pub(in crate::cli) cell_aspect: CellAspect,
@@ -38,13 +36,13 @@ pub(in crate::cli) struct Snapshot {
     pub(in crate::cli) format: Format,
     pub(in crate::cli) method: Method,
     pub(in crate::cli) filter: Filter,
-    /// Whether to tell how the frame is drawn instead of writing it.
+    /// Whether to write the frame's counts instead of the frame.
     pub(in crate::cli) explain: bool,
-    /// Whether to draw it again when the map changes.
+    /// Whether to draw again when the map changes.
     pub(in crate::cli) watches: bool,
 }
 
-/// How a snapshot is written.
+/// The format of a snapshot.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub(in crate::cli) enum Format {
     #[default]
@@ -110,14 +108,14 @@ fn read(mut matches: ArgMatches) -> Result<Command, Error> {
     }))
 }
 
-const CAMERA: Valued<(DVec2, Heading)> = Valued {
+const CAMERA: ValueOption<(DVec2, Heading)> = ValueOption {
     name: "camera",
     value: "X,Y,HEADING",
     takes: "X,Y,HEADING, three finite numbers such as 2.5,3.5,90",
     help: "Where to look from, in cells, and which way, in degrees: 0 is east, 90 south",
     default: "the map's start",
     choices: &[],
-    read: Read::Plainly(|text| {
+    read: Parser::Optional(|text| {
         let mut numbers = text.split(',').map(|number| number.trim().parse::<f64>().ok());
         let position = DVec2::new(numbers.next()??, numbers.next()??);
         let heading = Heading::from_degrees(numbers.next()??)?;
@@ -126,29 +124,29 @@ const CAMERA: Valued<(DVec2, Heading)> = Valued {
     repeats: false,
 };
 
-const EYE: Valued<f64> = Valued {
+const EYE: ValueOption<f64> = ValueOption {
     name: "eye",
     value: "HEIGHT",
     takes: "a finite height in cells, such as 0.5",
     help: "How high the eye is above floor level, in cells",
     default: "0.5",
     choices: &[],
-    read: Read::Plainly(|text| text.parse().ok().filter(|eye: &f64| eye.is_finite())),
+    read: Parser::Optional(|text| text.parse().ok().filter(|eye: &f64| eye.is_finite())),
     repeats: false,
 };
 
-const PITCH: Valued<Pitch> = Valued {
+const PITCH: ValueOption<Pitch> = ValueOption {
     name: "pitch",
     value: "DEG",
     takes: "degrees from -30, down, to 30, up",
     help: "Look down, from -30 degrees, or up, to 30",
     default: "0",
     choices: &[],
-    read: Read::Plainly(|text| Pitch::from_degrees(text.parse().ok()?)),
+    read: Parser::Optional(|text| Pitch::from_degrees(text.parse().ok()?)),
     repeats: false,
 };
 
-const FORMAT: Valued<Format> = Valued {
+const FORMAT: ValueOption<Format> = ValueOption {
     name: "format",
     value: "FORMAT",
     takes: "text, ansi, json or png",
@@ -156,7 +154,7 @@ const FORMAT: Valued<Format> = Valued {
            picture of them (png)",
     default: "text",
     choices: &["text", "ansi", "json", "png"],
-    read: Read::Plainly(|text| match text {
+    read: Parser::Optional(|text| match text {
         "text" => Some(Format::Text),
         "ansi" => Some(Format::Ansi),
         "json" => Some(Format::Json),

@@ -1,8 +1,8 @@
-//! Options that several commands take.
+//! Options that several commands share.
 
 use std::num::NonZeroU32;
 
-use super::option::{Flag, Read, Valued};
+use super::option::{Flag, Parser, ValueOption};
 use crate::color::palette::ColorDepth;
 use crate::lab::casters::{Method, NotAMethod};
 use crate::render::Filter;
@@ -10,7 +10,7 @@ use crate::terminal::{Fidelity, UnknownFidelity};
 use crate::tui::{CellAspect, GlyphMode};
 use crate::world::FieldOfView;
 
-/// The most frames a second, from 1 to 240.
+/// The largest number of frames per second, from 1 to 240.
 #[derive(Clone, Copy, Debug)]
 pub(in crate::cli) struct FramesPerSecond(NonZeroU32);
 
@@ -45,43 +45,43 @@ impl Default for Size {
     }
 }
 
-pub(super) const FRAMES_PER_SECOND: Valued<FramesPerSecond> = Valued {
+pub(super) const FRAMES_PER_SECOND: ValueOption<FramesPerSecond> = ValueOption {
     name: "fps",
     value: "N",
     takes: "a whole number from 1 to 240",
     help: "At most N frames a second, from 1 to 240",
     default: "30",
     choices: &[],
-    read: Read::Plainly(|text| {
+    read: Parser::Optional(|text| {
         let frames = text.parse::<NonZeroU32>().ok().filter(|frames| frames.get() <= 240);
         frames.map(FramesPerSecond)
     }),
     repeats: false,
 };
 
-pub(super) const FIELD_OF_VIEW: Valued<FieldOfView> = Valued {
+pub(super) const FIELD_OF_VIEW: ValueOption<FieldOfView> = ValueOption {
     name: "fov",
     value: "DEG",
     takes: "degrees above 0 and below 180",
     help: "The field of view from left to right, above 0 and below 180 degrees",
     default: "66",
     choices: &[],
-    read: Read::Plainly(|text| FieldOfView::from_degrees(text.parse().ok()?)),
+    read: Parser::Optional(|text| FieldOfView::from_degrees(text.parse().ok()?)),
     repeats: false,
 };
 
-pub(super) const CELL_ASPECT: Valued<CellAspect> = Valued {
+pub(super) const CELL_ASPECT: ValueOption<CellAspect> = ValueOption {
     name: "cell-aspect",
     value: "RATIO",
     takes: "the height of a cell over its width, from 0.1 to 10",
     help: "The height of a cell over its width, from 0.1 to 10",
     default: "2",
     choices: &[],
-    read: Read::Plainly(|text| CellAspect::new(text.parse().ok()?)),
+    read: Parser::Optional(|text| CellAspect::new(text.parse().ok()?)),
     repeats: false,
 };
 
-pub(super) const GLYPHS: Valued<GlyphMode> = Valued {
+pub(super) const GLYPHS: ValueOption<GlyphMode> = ValueOption {
     name: "glyphs",
     value: "MODE",
     takes: "half, ascii or ramp",
@@ -89,7 +89,7 @@ pub(super) const GLYPHS: Valued<GlyphMode> = Valued {
            for its brightness (ramp)",
     default: "half",
     choices: &["half", "ascii", "ramp"],
-    read: Read::Plainly(|text| match text {
+    read: Parser::Optional(|text| match text {
         "half" => Some(GlyphMode::Half),
         "ascii" => Some(GlyphMode::Ascii),
         "ramp" => Some(GlyphMode::Ramp),
@@ -98,14 +98,14 @@ pub(super) const GLYPHS: Valued<GlyphMode> = Valued {
     repeats: false,
 };
 
-pub(super) const FILTER: Valued<Filter> = Valued {
+pub(super) const FILTER: ValueOption<Filter> = ValueOption {
     name: "filter",
     value: "FILTER",
     takes: "mip or nearest",
     help: "How textures are looked up: averaged where they are far (mip), or as raw texels (nearest)",
     default: "mip",
     choices: &["mip", "nearest"],
-    read: Read::Plainly(|text| match text {
+    read: Parser::Optional(|text| match text {
         "mip" => Some(Filter::Mip),
         "nearest" => Some(Filter::Nearest),
         _ => None,
@@ -113,14 +113,14 @@ pub(super) const FILTER: Valued<Filter> = Valued {
     repeats: false,
 };
 
-pub(super) const COLORS: Valued<ColorDepth> = Valued {
+pub(super) const COLORS: ValueOption<ColorDepth> = ValueOption {
     name: "colors",
     value: "DEPTH",
     takes: "true, 256, 16 or mono",
     help: "How many colours there are",
     default: "true",
     choices: &["true", "256", "16", "mono"],
-    read: Read::Plainly(|text| match text {
+    read: Parser::Optional(|text| match text {
         "true" => Some(ColorDepth::True),
         "256" => Some(ColorDepth::Indexed256),
         "16" => Some(ColorDepth::Indexed16),
@@ -130,22 +130,22 @@ pub(super) const COLORS: Valued<ColorDepth> = Valued {
     repeats: false,
 };
 
-pub(super) const SIZE: Valued<Size> = Valued {
+pub(super) const SIZE: ValueOption<Size> = ValueOption {
     name: "size",
     value: "COLSxROWS",
     takes: "COLSxROWS from 1x1 to 4096x4096, such as 80x24",
     help: "The size of the picture in cells, from 1x1 to 4096x4096",
     default: "80x24",
     choices: &[],
-    read: Read::Plainly(size),
+    read: Parser::Optional(size),
     repeats: false,
 };
 
-/// As [`SIZE`], of a window that somebody may have, several of which are kept at once.
-pub(super) const WINDOW_SIZE: Valued<Size> = Valued {
+/// As [`SIZE`], but for a window with several buffers in memory, so that the limit is lower.
+pub(super) const WINDOW_SIZE: ValueOption<Size> = ValueOption {
     takes: "COLSxROWS from 1x1 to 1000x1000, such as 120x40",
     help: "The size of the window in cells, from 1x1 to 1000x1000",
-    read: Read::Plainly(|text| size(text).filter(|size| size.columns.max(size.rows) <= 1000)),
+    read: Parser::Optional(|text| size(text).filter(|size| size.columns.max(size.rows) <= 1000)),
     ..SIZE
 };
 
@@ -155,20 +155,20 @@ fn size(text: &str) -> Option<Size> {
     Some(Size { columns: side(columns)?, rows: side(rows)? })
 }
 
-pub(super) const CASTER: Valued<Method> = Valued {
+pub(super) const CASTER: ValueOption<Method> = ValueOption {
     name: "caster",
     value: "METHOD",
     takes: "the name of a method",
     help: "How walls are found: exact, dda, dda32, accumulate, fixed:BITS, table:ANGLES or march:STEP",
     default: "exact",
     choices: &[],
-    read: Read::Explaining(|text| {
+    read: Parser::Fallible(|text| {
         text.parse().map_err(|error: NotAMethod| format!("--caster {text}: {error}"))
     }),
     repeats: false,
 };
 
-pub(super) const FIDELITY: Valued<Fidelity> = Valued {
+pub(super) const FIDELITY: ValueOption<Fidelity> = ValueOption {
     name: "fidelity",
     value: "LEVEL",
     takes: "exact, high, low or a number up to 255",
@@ -176,7 +176,7 @@ pub(super) const FIDELITY: Valued<Fidelity> = Valued {
            from 0 to 255",
     default: "exact",
     choices: &[],
-    read: Read::Explaining(|text| {
+    read: Parser::Fallible(|text| {
         text.parse().map_err(|error: UnknownFidelity| format!("--fidelity: {error}"))
     }),
     repeats: false,

@@ -1,11 +1,11 @@
-//! What `wire` is asked for.
+//! The options of `wire`.
 
 use std::ffi::OsString;
 use std::path::PathBuf;
 
 use clap::ArgMatches;
 
-use super::option::{FileOption, Read, Valued};
+use super::option::{FileOption, Parser, ValueOption};
 use super::value::{self, FramesPerSecond, Size};
 use super::{Command, Error, Subcommand, map};
 use crate::color::palette::ColorDepth;
@@ -15,18 +15,18 @@ use crate::terminal::Fidelity;
 #[derive(Debug)]
 pub(in crate::cli) struct Wire {
     pub(in crate::cli) map: Option<OsString>,
-    /// What is played; the built-in walk where there is none.
+    /// The script; the built-in walk if `None`.
     pub(in crate::cli) script: Option<PathBuf>,
     pub(in crate::cli) size: Size,
     pub(in crate::cli) frames_per_second: FramesPerSecond,
-    /// None for those that have a name.
+    /// The named fidelities if empty.
     pub(in crate::cli) fidelities: Vec<Fidelity>,
-    /// The palette of which the ways to choose its colours are compared, in place of encoders.
+    /// The palette whose methods are compared, instead of encoders.
     pub(in crate::cli) palette: Option<ColorDepth>,
     pub(in crate::cli) format: WireFormat,
 }
 
-/// How the report is written.
+/// The format of the report.
 #[derive(Clone, Copy, Debug, Default)]
 pub(in crate::cli) enum WireFormat {
     #[default]
@@ -70,23 +70,23 @@ fn read(mut matches: ArgMatches) -> Result<Command, Error> {
 const SCRIPT: FileOption =
     FileOption { name: "script", help: "What is played [default: a walk in citadel]" };
 
-const SIZE: Valued<Size> = Valued { default: "120x40", ..value::WINDOW_SIZE };
+const SIZE: ValueOption<Size> = ValueOption { default: "120x40", ..value::WINDOW_SIZE };
 
-const FIDELITY: Valued<Fidelity> = Valued {
+const FIDELITY: ValueOption<Fidelity> = ValueOption {
     help: "How far colours may be off: exact, high, low, or from 0 to 255; may be repeated",
     default: "those that have a name",
     repeats: true,
     ..value::FIDELITY
 };
 
-const PALETTE: Valued<ColorDepth> = Valued {
+const PALETTE: ValueOption<ColorDepth> = ValueOption {
     name: "palette",
     value: "DEPTH",
     takes: "256 or 16",
     help: "Compare ways to choose among so few colours, in all levels, in place of encoders",
     default: "",
     choices: &["256", "16"],
-    read: Read::Plainly(|text| match text {
+    read: Parser::Optional(|text| match text {
         "256" => Some(ColorDepth::Indexed256),
         "16" => Some(ColorDepth::Indexed16),
         _ => None,
@@ -94,14 +94,14 @@ const PALETTE: Valued<ColorDepth> = Valued {
     repeats: false,
 };
 
-const FORMAT: Valued<WireFormat> = Valued {
+const FORMAT: ValueOption<WireFormat> = ValueOption {
     name: "format",
     value: "FORMAT",
     takes: "table, json or csv",
     help: "How the report is written",
     default: "table",
     choices: &["table", "json", "csv"],
-    read: Read::Plainly(|text| match text {
+    read: Parser::Optional(|text| match text {
         "table" => Some(WireFormat::Table),
         "json" => Some(WireFormat::Json),
         "csv" => Some(WireFormat::Csv),

@@ -1,4 +1,4 @@
-//! What the program takes before it is of any use: time, room on the disk, and memory.
+//! The costs of the program itself: start-up time, size on disk, and memory.
 
 use std::env;
 use std::fs;
@@ -18,27 +18,27 @@ use crate::game::{Intents, STEPS_PER_SECOND};
 use crate::lab::speed::median;
 use crate::terminal::{CellWriter, peak_memory};
 
-/// What is taken; `None` for what this system does not tell.
+/// The costs; `None` if this system does not report them.
 pub(super) struct Footprint {
-    /// From nothing to the first byte of a picture, as whoever starts the program sees it.
+    /// The time from the start of the process to the first byte of a picture.
     pub(super) start_up: Option<Duration>,
-    /// The same within a process that runs: reading the level, and drawing it.
+    /// The time to read the level and draw it in a running process.
     pub(super) first_frame: Duration,
     /// The size of the program, in bytes.
     pub(super) program: Option<u64>,
-    /// The most memory that a game has taken, in bytes.
+    /// The peak memory of a game, in bytes.
     pub(super) memory: Option<u64>,
 }
 
-/// The window that the first picture is in.
+/// The window of the first picture.
 pub(super) const FIRST_WINDOW: Size = Size::new(80, 24);
-/// The window that memory is measured in.
+/// The window in which memory is measured.
 pub(super) const GAME_WINDOW: Size = Size::new(120, 40);
-/// How often the program is started.
+/// The number of times the program is started.
 pub(super) const STARTS: usize = 9;
 
 impl Footprint {
-    /// Measures a process that has done nothing else yet.
+    /// Measures. The process must not have done anything else yet.
     pub(super) fn measure() -> Result<Self, Error> {
         let start = Instant::now();
         black_box(begin(FIRST_WINDOW)?.picture());
@@ -54,7 +54,7 @@ impl Footprint {
     }
 }
 
-/// Plays the showcase, as a player's process does.
+/// Plays the showcase as a player's process does.
 fn play() -> Result<(), Error> {
     const STEPS_A_FRAME: usize = STEPS_PER_SECOND as usize / 30;
     let script = SHOWCASE.script()?;
@@ -66,13 +66,13 @@ fn play() -> Result<(), Error> {
             replay.step(intents);
         }
         writer.draw_frame(|screen| replay.draw(screen));
-        // A sink takes everything.
+        // Writing to a sink cannot fail.
         _ = Backend::flush(&mut writer);
     }
     Ok(())
 }
 
-/// How long it takes the program at `path` to write the first byte of a picture, in seconds.
+/// The time until the program at `path` writes the first byte of a picture, in seconds.
 fn start_up(path: &Path) -> io::Result<f64> {
     let size = format!("{}x{}", FIRST_WINDOW.width, FIRST_WINDOW.height);
     let start = Instant::now();

@@ -1,4 +1,4 @@
-//! One object, with a list or an object for each table.
+//! The report as one JSON object, with a list or an object for each table.
 
 use std::io::{self, Write};
 use std::time::Duration;

@@ -1,11 +1,11 @@
-//! Three small plots of the report on one page, all axes logarithmic.
+//! Three plots of the report on one page, with logarithmic axes.
 
 use std::io::{self, BufWriter, Write};
 
 use ratatui::layout::Size;
 
 use super::{Report, WINDOWS};
-use crate::cli::plot::{self, Align, Axis, Ink, Mark, Page};
+use crate::cli::plot::{self, Align, Axis, Mark, Page, PlotColor};
 use crate::lab::speed::{DrawingRow, Ground, SIDES, Scene};
 use crate::lab::wire::PipelineRow;
 
@@ -16,31 +16,31 @@ pub(super) fn write(report: &Report, output: impl Write) -> io::Result<()> {
     output.flush()
 }
 
-/// Width and height of a plot.
+/// The width and the height of a plot.
 const PLOT: (f64, f64) = (350.0, 310.0);
-/// What is around the axes of a plot: room for what they are labelled with, and for the names of lines.
+/// The margins of a plot, with room for tick labels and the names of lines.
 const LEFT: f64 = 60.0;
 const RIGHT: f64 = 75.0;
 const TOP: f64 = 40.0;
 const BOTTOM: f64 = 50.0;
-/// How many powers of ten are labelled, about.
+/// The approximate maximum number of labelled powers of ten.
 const MOST_TICKS: usize = 6;
-/// How far lines of text are apart.
+/// The distance between lines of text.
 const LINE: f64 = 14.0;
 
-/// Something that is measured of several, in several places.
+/// A plot of several lines over common ticks.
 struct Plot {
     title: &'static str,
     across: &'static str,
-    /// Places along the axis to the right, and what they are called.
+    /// The positions of ticks on the horizontal axis, and their labels.
     ticks: Vec<(f64, String)>,
     lines: Vec<Line>,
 }
 
-/// What was measured of one of them.
+/// One line of a plot.
 struct Line {
     name: String,
-    ink: Ink,
+    color: PlotColor,
     points: Vec<(f64, f64)>,
 }
 
@@ -56,9 +56,9 @@ fn drawing(report: &Report) -> Plot {
     let rows = || report.drawing.iter().filter(|row| row.scene == Scene::Planes);
     let place =
         |row: &DrawingRow| f64::from(row.size.width.get()) * f64::from(row.size.height.get());
-    let line = |name: &str, ink, figure: fn(&DrawingRow) -> f64| Line {
+    let line = |name: &str, color, figure: fn(&DrawingRow) -> f64| Line {
         name: name.to_owned(),
-        ink,
+        color,
         points: rows().map(|row| (place(row), figure(row))).collect(),
     };
     Plot {
@@ -66,35 +66,36 @@ fn drawing(report: &Report) -> Plot {
         across: "width of the picture",
         ticks: rows().map(|row| (place(row), row.size.width.to_string())).collect(),
         lines: vec![
-            line("classic", Ink::Blue, |row| row.classic),
-            line("ours", Ink::Orange, |row| row.ours),
-            line("fill", Ink::Gray, |row| row.fill),
+            line("classic", PlotColor::Blue, |row| row.classic),
+            line("ours", PlotColor::Orange, |row| row.ours),
+            line("fill", PlotColor::Gray, |row| row.fill),
         ],
     }
 }
 
 fn rays(report: &Report) -> Plot {
-    let line = |ground: Ground, ink| {
+    let line = |ground: Ground, color| {
         let rows = report.growth.maps.iter().filter(|row| row.ground == ground);
         let points = rows.map(|row| (f64::from(row.side), row.ray.seconds * 1e9)).collect();
-        Line { name: ground.name().to_owned(), ink, points }
+        Line { name: ground.name().to_owned(), color, points }
     };
     Plot {
         title: "Rays: ns a ray",
         across: "open cells before it",
         ticks: SIDES.map(|side| (f64::from(side), side.to_string())).into(),
-        lines: vec![line(Ground::Plain, Ink::Blue), line(Ground::Hall, Ink::Orange)],
+        lines: vec![line(Ground::Plain, PlotColor::Blue), line(Ground::Hall, PlotColor::Orange)],
     }
 }
 
 fn pipeline(report: &Report) -> Plot {
-    const INKS: [Ink; 4] = [Ink::Blue, Ink::Orange, Ink::Green, Ink::Gray];
+    const COLORS: [PlotColor; 4] =
+        [PlotColor::Blue, PlotColor::Orange, PlotColor::Green, PlotColor::Gray];
     let encoders = report.pipeline.iter().filter(|row| row.size == WINDOWS[0]);
-    let lines = encoders.zip(INKS).map(|(PipelineRow { encoder, .. }, ink)| {
+    let lines = encoders.zip(COLORS).map(|(PipelineRow { encoder, .. }, color)| {
         let rows = report.pipeline.iter().filter(|row| row.encoder == *encoder);
         let points =
             rows.map(|row| (f64::from(row.size.area()), row.time.as_secs_f64() * 1e6)).collect();
-        Line { name: encoder.clone(), ink, points }
+        Line { name: encoder.clone(), color, points }
     });
     let window = |size: Size| (f64::from(size.area()), format!("{}x{}", size.width, size.height));
     Plot {
@@ -106,7 +107,7 @@ fn pipeline(report: &Report) -> Plot {
 }
 
 impl Plot {
-    /// On a page, so far from its left edge.
+    /// The marks of the plot at this `offset` from the left edge of the page.
     fn marks(&self, offset: f64) -> Vec<Mark> {
         let points = || self.lines.iter().flat_map(|line| &line.points);
         let (x_axis, y_axis) = (
@@ -124,7 +125,7 @@ impl Plot {
         ];
         for (value, label) in &self.ticks {
             let x = x(*value);
-            marks.push(Mark::Line { from: (x, top), to: (x, bottom), ink: Ink::Pale });
+            marks.push(Mark::Line { from: (x, top), to: (x, bottom), color: PlotColor::Pale });
             marks.push(text((x, bottom + 1.3 * LINE), Align::Middle, label));
         }
         for power in y_axis.powers(MOST_TICKS) {
@@ -132,15 +133,15 @@ impl Plot {
             marks.push(Mark::Line {
                 from: (left, y(value)),
                 to: (right, y(value)),
-                ink: Ink::Pale,
+                color: PlotColor::Pale,
             });
             marks.push(text((left - 8.0, y(value) + 4.0), Align::End, &value.to_string()));
         }
         for line in &self.lines {
             let places = || line.points.iter().map(|point| (x(point.0), y(point.1)));
             let segments = places().zip(places().skip(1));
-            marks.extend(segments.map(|(from, to)| Mark::Line { from, to, ink: line.ink }));
-            marks.extend(places().map(|at| Mark::Dot { at, ink: line.ink }));
+            marks.extend(segments.map(|(from, to)| Mark::Line { from, to, color: line.color }));
+            marks.extend(places().map(|at| Mark::Dot { at, color: line.color }));
         }
         let ends = self.lines.iter().filter_map(|line| Some((y(line.points.last()?.1), line)));
         marks.extend(names(ends.collect(), right + 10.0));
@@ -148,7 +149,7 @@ impl Plot {
     }
 }
 
-/// The names of lines beside their ends, the uppermost first, and none over another.
+/// The names of lines beside their ends, from the top, without overlaps.
 fn names(mut ends: Vec<(f64, &Line)>, x: f64) -> Vec<Mark> {
     ends.sort_by(|one, other| one.0.total_cmp(&other.0));
     let mut free = f64::NEG_INFINITY;

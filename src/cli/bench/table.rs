@@ -1,23 +1,23 @@
-//! A table: aligned, or in Markdown.
+//! A table, as aligned text or as Markdown.
 
 use std::io::{self, Write};
 
-/// What was measured, row by row.
+/// A table of results.
 pub(super) struct Table {
-    /// What it is about, in a word or two.
+    /// The subject in a word or two.
     pub(super) title: &'static str,
-    /// What the figures are; no line of it is too long for a terminal.
+    /// A description of the figures, with lines that fit a terminal.
     pub(super) about: String,
-    /// What each column is called.
+    /// The headings of the columns.
     pub(super) columns: Vec<String>,
-    /// How many columns, from the first on, say what a row is about. The others are figures.
+    /// The number of leading columns that label a row. The others are figures.
     pub(super) labels: usize,
-    /// As long as there are columns, each.
+    /// The rows, each with one cell for every column.
     pub(super) rows: Vec<Vec<String>>,
 }
 
 impl Table {
-    /// Writes it for a terminal, with a line to spare.
+    /// Writes the table for a terminal, followed by an empty line.
     pub(super) fn write_text(&self, output: &mut impl Write) -> io::Result<()> {
         writeln!(output, "{}: {}\n", self.title, self.about)?;
         for row in self.lines() {
@@ -34,7 +34,7 @@ impl Table {
         writeln!(output)
     }
 
-    /// Writes it for a page, with a line to spare.
+    /// Writes the table as Markdown, followed by an empty line.
     pub(super) fn write_markdown(&self, output: &mut impl Write) -> io::Result<()> {
         let mut lines = self.lines();
         let header = lines.next().unwrap_or_default();

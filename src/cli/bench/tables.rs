@@ -7,7 +7,7 @@ use super::table::Table;
 use super::{LINKS, Report, frames_per_second, share_of_stock};
 use crate::lab::speed::{CROWDS, Ground, Measured, SIDES, Scene, USUAL_SIDE, Vista};
 
-/// All tables, in the order in which they are read.
+/// All tables, in reading order.
 pub(super) fn of(report: &Report) -> Vec<Table> {
     vec![
         drawing(report),
@@ -184,14 +184,14 @@ fn labelled(label: &impl ToString, figures: &[String]) -> Vec<String> {
     [&[label.to_string()], figures].concat()
 }
 
-/// A time, in as many parts of a second, and its ratio.
+/// A time in a fraction of a second, and its ratio.
 fn times(measured: Option<Measured>, parts: f64) -> [String; 2] {
     let time = measured.map(|Measured { seconds, .. }| format!("{:.0}", seconds * parts));
     let ratio = measured.map(|Measured { ratio, .. }| format!("{ratio:.2}"));
     [known(time), known(ratio)]
 }
 
-/// What is told, or a dash.
+/// The figure, or a dash if it is unknown.
 fn known(figure: Option<String>) -> String {
     figure.unwrap_or_else(|| "–".to_owned())
 }

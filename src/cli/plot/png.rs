@@ -1,48 +1,48 @@
-//! A page as pixels.
+//! The PNG format of a page.
 
 use std::io::{self, Write};
 
 use font8x8::{BASIC_FONTS, UnicodeFonts};
 use png::{BitDepth, ColorType, Encoder};
 
-use super::{Align, Ink, Mark, Page};
+use super::{Align, Mark, Page, PlotColor};
 use crate::color::Rgb;
 
-const PAPER: Rgb = Rgb::WHITE;
-const INK: Rgb = Rgb::new(0x20, 0x20, 0x20);
+const BACKGROUND: Rgb = Rgb::WHITE;
+const FOREGROUND: Rgb = Rgb::new(0x20, 0x20, 0x20);
 const GLYPH_SIDE: i32 = 8;
 const DOT_RADIUS: i32 = 5;
 
 pub(in crate::cli) fn write(page: &Page, output: &mut impl Write) -> io::Result<()> {
-    let mut sheet = Sheet::blank(page);
+    let mut bitmap = Bitmap::blank(page);
     for mark in &page.marks {
-        sheet.put(mark);
+        bitmap.put(mark);
     }
-    let mut encoder = Encoder::new(output, sheet.width as u32, sheet.height as u32);
+    let mut encoder = Encoder::new(output, bitmap.width as u32, bitmap.height as u32);
     encoder.set_color(ColorType::Rgb);
     encoder.set_depth(BitDepth::Eight);
-    let bytes: Vec<u8> = sheet.pixels.iter().flat_map(|pixel| pixel.channels()).collect();
+    let bytes: Vec<u8> = bitmap.pixels.iter().flat_map(|pixel| pixel.channels()).collect();
     let mut writer = encoder.write_header()?;
     writer.write_image_data(&bytes)?;
     Ok(writer.finish()?)
 }
 
-struct Sheet {
+struct Bitmap {
     width: i32,
     height: i32,
     pixels: Vec<Rgb>,
 }
 
-impl Sheet {
+impl Bitmap {
     fn blank(page: &Page) -> Self {
         let (width, height) = (page.width as i32, page.height as i32);
-        Self { width, height, pixels: vec![PAPER; width as usize * height as usize] }
+        Self { width, height, pixels: vec![BACKGROUND; width as usize * height as usize] }
     }
 
     fn put(&mut self, mark: &Mark) {
         match mark {
-            Mark::Line { from, to, ink } => self.line(*from, *to, *ink),
-            Mark::Dot { at, ink } => self.dot(*at, ink.color()),
+            Mark::Line { from, to, color } => self.line(*from, *to, *color),
+            Mark::Dot { at, color } => self.dot(*at, color.rgb()),
             Mark::Text { at, align, text } => self.text(*at, *align, text),
         }
     }
@@ -53,15 +53,15 @@ impl Sheet {
         }
     }
 
-    fn line(&mut self, from: (f64, f64), to: (f64, f64), ink: Ink) {
+    fn line(&mut self, from: (f64, f64), to: (f64, f64), color: PlotColor) {
         let length = (to.0 - from.0).abs().max((to.1 - from.1).abs()).ceil().max(1.0);
         for step in 0..=length as i32 {
             let share = f64::from(step) / length;
             let x = (from.0 + share * (to.0 - from.0)).round() as i32;
             let y = (from.1 + share * (to.1 - from.1)).round() as i32;
-            self.set(x, y, ink.color());
-            if ink != Ink::Pale {
-                self.set(x, y + 1, ink.color());
+            self.set(x, y, color.rgb());
+            if color != PlotColor::Pale {
+                self.set(x, y + 1, color.rgb());
             }
         }
     }
@@ -88,7 +88,7 @@ impl Sheet {
             let rows = BASIC_FONTS.get(character).unwrap_or_default();
             for (row, dots) in (0..).zip(rows) {
                 for column in (0..GLYPH_SIDE).filter(|column| dots >> column & 1 == 1) {
-                    self.set(left + GLYPH_SIDE * index + column, top + row, INK);
+                    self.set(left + GLYPH_SIDE * index + column, top + row, FOREGROUND);
                 }
             }
         }

@@ -1,8 +1,8 @@
-//! A page as an SVG file.
+//! The SVG format of a page.
 
 use std::io::{self, Write};
 
-use super::{Align, Ink, Mark, Page};
+use super::{Align, Mark, Page, PlotColor};
 
 pub(in crate::cli) fn write(page: &Page, output: &mut impl Write) -> io::Result<()> {
     let Page { width, height, marks } = page;
@@ -18,21 +18,21 @@ pub(in crate::cli) fn write(page: &Page, output: &mut impl Write) -> io::Result<
 
 fn write_mark(mark: &Mark, output: &mut impl Write) -> io::Result<()> {
     match mark {
-        Mark::Line { from, to, ink } => {
-            let color = ink.color();
-            let width = if *ink == Ink::Pale { 1 } else { 2 };
+        Mark::Line { from, to, color } => {
+            let rgb = color.rgb();
+            let width = if *color == PlotColor::Pale { 1 } else { 2 };
             writeln!(
                 output,
-                "<line x1=\"{:.1}\" y1=\"{:.1}\" x2=\"{:.1}\" y2=\"{:.1}\" stroke=\"{color}\" \
+                "<line x1=\"{:.1}\" y1=\"{:.1}\" x2=\"{:.1}\" y2=\"{:.1}\" stroke=\"{rgb}\" \
                  stroke-width=\"{width}\"/>",
                 from.0, from.1, to.0, to.1
             )
         }
-        Mark::Dot { at, ink } => {
-            let color = ink.color();
+        Mark::Dot { at, color } => {
+            let rgb = color.rgb();
             writeln!(
                 output,
-                "<circle cx=\"{:.1}\" cy=\"{:.1}\" r=\"5\" fill=\"{color}\"/>",
+                "<circle cx=\"{:.1}\" cy=\"{:.1}\" r=\"5\" fill=\"{rgb}\"/>",
                 at.0, at.1
             )
         }

@@ -1,4 +1,4 @@
-//! Characters and colours, a line for each row, as a terminal takes them.
+//! Characters with colour sequences, one line for each row.
 
 use std::io::{self, Write};
 
@@ -6,8 +6,8 @@ use ratatui::buffer::Cell;
 
 use crate::terminal::{Bytes, Style};
 
-/// Writes cells as text with the sequences that colour it. Every line ends in the terminal's own
-/// colours, so that pagers and scrolling can cut between lines.
+/// Writes cells as text with the escape sequences of their colours. Every line ends in the
+/// terminal's default colours, so that pagers and scrolling can cut between lines.
 pub(super) struct Ansi<W> {
     output: W,
     line: Bytes,

@@ -8,7 +8,7 @@ use serde::Serialize;
 
 use super::rgb;
 
-/// Writes cells as JSON, a line for each row.
+/// Writes cells as JSON, one line for each row.
 pub(super) struct Json<W> {
     output: W,
     is_first: bool,

@@ -1,4 +1,4 @@
-//! What is drawn, whether it is a grid or bodies.
+//! The picture of a snapshot, for grids and for maps of bodies.
 
 use ratatui::buffer::Buffer;
 use ratatui::layout::{Rect, Size};
@@ -7,14 +7,14 @@ use crate::cli::arguments::Snapshot;
 use crate::render::Renderable;
 use crate::tui::{FirstPerson, View};
 
-/// A picture that is drawn once, and painted one band of rows after the other.
+/// A picture that is drawn once, and converted to cells band by band.
 pub(super) struct Picture<'a, S: Renderable> {
     widget: FirstPerson<'a, S>,
     view: View<S>,
 }
 
 impl<'a, S: Renderable> Picture<'a, S> {
-    /// What `camera` sees of `scene`, to be drawn into `view`.
+    /// The view of `camera` into `scene`, to be drawn into `view`.
     pub(super) fn new(
         scene: &'a S,
         camera: &'a S::Camera,
@@ -29,18 +29,18 @@ impl<'a, S: Renderable> Picture<'a, S> {
         Self { widget, view }
     }
 
-    /// Draws it for an area of that size.
+    /// Draws the picture for an area of this size.
     pub(super) fn draw(&mut self, size: Size) {
         self.widget.draw(size, &mut self.view);
     }
 
-    /// Draws it, and returns what that cost, in lines for people.
+    /// Draws the picture, and returns its counts in lines for people.
     pub(super) fn explain(&mut self, size: Size) -> String {
         let explanation = self.widget.explain(size, &mut self.view);
         explanation.map(|explanation| explanation.to_string()).unwrap_or_default()
     }
 
-    /// Fills `area` with its cells from the row `first_row` on.
+    /// Fills `area` with the cells of the rows from `first_row` on.
     pub(super) fn paint(&self, first_row: u16, area: Rect, buffer: &mut Buffer) {
         self.widget.paint(&self.view, first_row, area, buffer);
     }

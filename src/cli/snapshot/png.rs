@@ -1,4 +1,4 @@
-//! A picture of the cells, glyphs and all, as a terminal shows them.
+//! A PNG of the cells with their glyphs, as in a terminal.
 
 use std::io::{self, Write};
 
@@ -11,13 +11,13 @@ use super::rgb;
 use crate::color::Rgb;
 use crate::tui::CellAspect;
 
-/// Pixels of a glyph in either direction, before it is stretched to the cell.
+/// The width and height of a glyph in pixels, before it is scaled to the cell.
 const GLYPH_SIDE: u32 = 8;
-/// The most pixels of a picture: cells of one that would be larger become smaller.
+/// The largest number of pixels. For a larger picture, cells become smaller.
 const MOST_PIXELS: u64 = 1 << 26;
-/// What a terminal writes with, and on, where a cell names no colour.
-const INK: Rgb = Rgb::WHITE;
-const PAPER: Rgb = Rgb::BLACK;
+/// The terminal's default colours, for cells without a colour.
+const FOREGROUND: Rgb = Rgb::WHITE;
+const BACKGROUND: Rgb = Rgb::BLACK;
 
 /// Writes cells as pixels.
 pub(super) struct Png<W: Write + 'static> {
@@ -41,7 +41,7 @@ impl<W: Write + 'static> Png<W> {
     }
 }
 
-/// Pixels of a cell from left to right and from top to bottom.
+/// The width and height of a cell, in pixels.
 fn cell_size(size: Size, aspect: CellAspect) -> (u32, u32) {
     let cells = u64::from(size.width) * u64::from(size.height);
     let sizes = [GLYPH_SIDE, 4, 2].map(|width| {
@@ -59,11 +59,11 @@ impl<W: Write + 'static> super::Writer for Png<W> {
             self.line.clear();
             for cell in cells {
                 let dots = glyph(cell.symbol())[glyph_row];
-                let ink = rgb(cell.fg).unwrap_or(INK).channels();
-                let paper = rgb(cell.bg).unwrap_or(PAPER).channels();
+                let foreground = rgb(cell.fg).unwrap_or(FOREGROUND).channels();
+                let background = rgb(cell.bg).unwrap_or(BACKGROUND).channels();
                 for x in 0..self.cell_width {
-                    let is_ink = dots >> (x * GLYPH_SIDE / self.cell_width) & 1 == 1;
-                    self.line.extend(if is_ink { ink } else { paper });
+                    let is_set = dots >> (x * GLYPH_SIDE / self.cell_width) & 1 == 1;
+                    self.line.extend(if is_set { foreground } else { background });
                 }
             }
             self.stream.write_all(&self.line)?;
@@ -76,7 +76,7 @@ impl<W: Write + 'static> super::Writer for Png<W> {
     }
 }
 
-/// The rows of a glyph from the top, each with its leftmost dot in the lowest bit.
+/// The rows of a glyph from the top. The lowest bit of each is the leftmost dot.
 fn glyph(symbol: &str) -> [u8; GLYPH_SIDE as usize] {
     let character = symbol.chars().next().unwrap_or(' ');
     BLOCK_FONTS.get(character).or_else(|| BASIC_FONTS.get(character)).unwrap_or_default()

@@ -1,4 +1,4 @@
-//! Characters only, a line for each row.
+//! Characters only, one line for each row.
 
 use std::io::{self, Write};
 

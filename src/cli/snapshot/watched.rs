@@ -1,8 +1,8 @@
-//! `snapshot --watch`: the frame again whenever the map changes.
+//! `snapshot --watch`: the frame is drawn again whenever the map changes.
 //!
-//! Text in a terminal is drawn in the same place each time, and faults over it. Anywhere else, one
-//! picture follows the other, and faults go to standard error. Nothing about the terminal is changed, so
-//! there is nothing to give back when Ctrl-C ends it.
+//! In a terminal, text is drawn in the same place each time, with faults over it. In any other
+//! output, pictures follow each other, and faults go to standard error. The terminal's modes are
+//! not changed, so that nothing has to be restored when Ctrl-C ends the program.
 
 use std::io::{self, IsTerminal, Write};
 use std::thread;
@@ -16,37 +16,37 @@ use crate::cli::{Error, level};
 use crate::fault::Faults;
 use crate::map::Level;
 
-/// Between two looks for changes.
+/// The interval between checks for changes.
 const INTERVAL: Duration = Duration::from_millis(200);
 
-/// Shows the frame, and shows it again, until somebody ends the program.
+/// Draws the frame, and draws it again after each change, until the program is ended.
 pub(super) fn run(mut options: Snapshot) -> Result<(), Error> {
     let (mut level, mut watch) = level::watch(options.map.as_deref(), options.generated)?;
-    let place = Place::of(&options);
-    place.show(&level, &mut options)?;
+    let output = Output::of(&options);
+    output.show(&level, &mut options)?;
     loop {
         thread::sleep(INTERVAL);
         match watch.change() {
             Some(Ok(changed)) => {
                 level = changed;
-                place.show(&level, &mut options)?;
+                output.show(&level, &mut options)?;
             }
-            Some(Err(faults)) => place.tell(&faults)?,
-            None if place.has_another_size(&options) => place.show(&level, &mut options)?,
+            Some(Err(faults)) => output.report(&faults)?,
+            None if output.has_another_size(&options) => output.show(&level, &mut options)?,
             None => {}
         }
     }
 }
 
-/// Where the pictures go.
-struct Place {
-    /// Whether that is a terminal, in which they have one place.
+/// The output of the pictures.
+struct Output {
+    /// Whether the output is a terminal, where all pictures have the same place.
     is_terminal: bool,
-    /// Whether they are as large as its window.
+    /// Whether pictures have the size of the window.
     fits_window: bool,
 }
 
-impl Place {
+impl Output {
     fn of(options: &Snapshot) -> Self {
         let is_text = matches!(options.format, Format::Text | Format::Ansi) || options.explain;
         let is_terminal = is_text && io::stdout().is_terminal();
@@ -68,13 +68,13 @@ impl Place {
             && window().map(arguments::Size::cells) != options.size.map(arguments::Size::cells)
     }
 
-    fn tell(&self, faults: &Faults) -> Result<(), Error> {
+    fn report(&self, faults: &Faults) -> Result<(), Error> {
         if !self.is_terminal || !io::stderr().is_terminal() {
-            // Where even that is closed, nobody is there to be told.
+            // If standard error is closed, too, the message is lost.
             _ = writeln!(io::stderr(), "{faults}");
             return Ok(());
         }
-        // Over the picture's head: the cursor is kept below it.
+        // At the top of the picture. The cursor stays below the picture.
         write("\x1b7\x1b[H")?;
         let report = faults.to_string();
         let room = window().map_or(10, |size| usize::from(size.rows) / 2).max(1);
@@ -88,7 +88,7 @@ impl Place {
     }
 }
 
-/// The size of the window, but for a row that the cursor stands in.
+/// The size of the window, less one row for the cursor.
 fn window() -> Option<arguments::Size> {
     let (columns, rows) = crossterm::terminal::size().ok()?;
     let Size { width, height } = Size::new(columns.clamp(1, 4096), rows.clamp(2, 4096) - 1);

@@ -1,4 +1,4 @@
-//! One line for each section and encoder.
+//! The report as CSV, with a line for each section and encoder.
 
 use std::io::{self, Write};
 
@@ -39,12 +39,12 @@ pub(super) fn write(report: &Report, output: &mut impl Write) -> io::Result<()> 
     Ok(())
 }
 
-/// A number, or nothing where there is none.
+/// A number, or nothing if it is not finite.
 fn number(number: f64) -> String {
     finite(number).map(|number| number.to_string()).unwrap_or_default()
 }
 
-/// A text between quotation marks, if it needs them.
+/// A text, in quotation marks if necessary.
 fn field(text: &str) -> String {
     if text.contains(['"', ',']) {
         format!("\"{}\"", text.replace('"', "\"\""))

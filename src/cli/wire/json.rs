@@ -1,4 +1,4 @@
-//! One object: what was played, and the encoders with their sections.
+//! The report as one JSON object: the script, and the encoders with their sections.
 
 use std::io::{self, Write};
 

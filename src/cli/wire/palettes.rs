@@ -1,4 +1,4 @@
-//! The report on palettes, in each of its formats.
+//! The report on palettes in each format.
 
 use std::io::{self, BufWriter, Write};
 

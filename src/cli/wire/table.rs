@@ -1,4 +1,4 @@
-//! A table for people.
+//! The report as a table.
 
 use std::io::{self, Write};
 

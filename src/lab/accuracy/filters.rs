@@ -1,10 +1,11 @@
-//! Filters: how far each way of looking textures up is from what pixels cover, and how it shimmers.
+//! Texture filters: the error of each, and how much it shimmers.
 //!
-//! What the pixels of a picture cover is told by one that is eight times as wide and high and drawn
-//! from raw texels, 64 of whose pixels make up one, averaged in linear light. Edges of walls and
-//! things are smooth in it, and in no picture with one ray a column: that much is wrong with all
-//! filters. Shimmer is what changes from frame to frame while the camera slowly turns; what moves
-//! past changes pixels however it is drawn, so it is only to be compared, and is never nothing.
+//! The reference is a picture that is eight times as wide and high and drawn without filtering;
+//! each pixel is the mean of 64 of its pixels in linear light. It has smooth edges of walls and
+//! things, which no picture with one ray for each column has. This part of the error is the same
+//! for all filters. Shimmer is the change from frame to frame while the camera turns slowly. Moving
+//! edges change pixels with every filter, so that shimmer is never zero, and is only good for
+//! comparisons.
 
 use std::num::NonZeroU32;
 
@@ -13,30 +14,30 @@ use crate::color::Rgb;
 use crate::render::{Filter, Frame, FrameSize, PixelAspect, Renderer};
 use crate::world::{Camera, Texture, World};
 
-/// The filters, by their names on the command line.
+/// The filters and their names on the command line.
 const FILTERS: [(&str, Filter); 2] = [("mip", Filter::Mip), ("nearest", Filter::Nearest)];
 
-/// A filter, and how wrong it is.
+/// The errors of a filter.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct FilterRow {
-    /// Its name on the command line.
+    /// The name on the command line.
     pub name: &'static str,
-    /// How wrong it is in pictures of each of the sizes asked for.
+    /// The errors in pictures of each of the requested sizes.
     pub errors: [FilterErrors; 2],
 }
 
-/// How wrong a filter is about some pictures. Differences are between channels, in steps of 8 bits.
+/// The errors of a filter in some pictures. Differences are between channels, in steps of 8 bits.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub struct FilterErrors {
-    /// The mean difference from what the pixels cover.
+    /// The mean difference from the reference.
     pub mean: f64,
-    /// The largest one.
+    /// The largest difference.
     pub worst: u8,
-    /// The mean change from one frame to the next of a slow turn.
+    /// The mean change from frame to frame of a slow turn.
     pub shimmer: f64,
 }
 
-/// How wrong each filter is about `count` pictures of `world` in each of those sizes.
+/// The errors of each filter in `count` pictures of `world`, in each of these sizes.
 pub fn compare_filters(
     world: &World,
     sizes: [FrameSize; 2],
@@ -50,8 +51,8 @@ pub fn compare_filters(
     })
 }
 
-/// The mean change of a channel, in steps of 8 bits, from each of sixty frames to the next while
-/// `camera` turns by a ninth of a degree.
+/// The mean change of a channel from frame to frame, in steps of 8 bits, over sixty frames in which
+/// `camera` turns by a ninth of a degree each.
 pub fn shimmer(world: &World, camera: &Camera, size: FrameSize, filter: Filter) -> f64 {
     const TURNS: u32 = 60;
     const ANGLE: f64 = 0.002;
@@ -82,7 +83,7 @@ fn errors(world: &World, cameras: &[Camera], size: FrameSize, filter: Filter) ->
         for (y, row) in picture.rows().enumerate() {
             for (x, &pixel) in row.iter().enumerate() {
                 let across = (x as f64 + 0.5) / f64::from(picture.width());
-                differences.add(pixel, covered.level(HALVINGS).column(across)[y]);
+                differences.add(pixel, covered.level(MIP_LEVEL).column(across)[y]);
             }
         }
         sum_of_shimmer += shimmer(world, camera, size, filter);
@@ -94,13 +95,14 @@ fn errors(world: &World, cameras: &[Camera], size: FrameSize, filter: Filter) ->
     }
 }
 
-/// How much wider and higher the larger picture is, and how often that is halved to be as large.
-const TIMES: NonZeroU32 = NonZeroU32::new(1 << HALVINGS).unwrap();
-const HALVINGS: usize = 3;
+/// The factor by which the larger picture is wider and higher, and the number of mip levels to the
+/// original size.
+const SCALE: NonZeroU32 = NonZeroU32::new(1 << MIP_LEVEL).unwrap();
+const MIP_LEVEL: usize = 3;
 
-/// The larger picture, whose halvings are what the pixels of one of that `size` cover.
+/// The larger picture. Its mip levels are the means over the pixels of a picture of `size`.
 fn covered(world: &World, camera: &Camera, size: FrameSize) -> Texture {
-    let [width, height] = [size.width, size.height].map(|side| side.saturating_mul(TIMES));
+    let [width, height] = [size.width, size.height].map(|side| side.saturating_mul(SCALE));
     let picture = draw(world, camera, FrameSize { width, height }, Filter::Nearest);
     Texture::from_fn(width, height, |x, y| picture.pixel(x, y))
 }
@@ -156,13 +158,13 @@ mod tests {
     }
 
     #[test]
-    fn what_is_one_colour_is_right_and_still() {
+    fn plain_colours_have_no_error_and_no_shimmer() {
         let rows = compare(&room("#000000", "#000000"));
         assert!(rows.iter().all(|row| row.errors == [FilterErrors::default(); 2]));
     }
 
     #[test]
-    fn levels_are_nearer_to_what_pixels_cover_than_texels() {
+    fn mip_levels_have_less_error_than_texels() {
         let [mip, nearest] = compare(&room("brick", "tile"));
         assert_eq!((mip.name, nearest.name), ("mip", "nearest"));
         assert!(mip.errors[0].mean < nearest.errors[0].mean);

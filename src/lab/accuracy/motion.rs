@@ -1,8 +1,8 @@
-//! Motion: three ways to move what slows down, and how wrong each is.
+//! Damped motion: three integrators, and the error of each.
 //!
-//! A velocity v approaches a target w by dv/dt = rate · (w − v). The truth is the analytic solution,
-//! whose exponential is taken here from its series in rational arithmetic; the game's closed form, of
-//! which it shares nothing, is one of the three.
+//! A velocity v approaches a target w by dv/dt = rate · (w − v). The reference is the analytic
+//! solution, with the exponential computed from its series in rational arithmetic. The closed form
+//! of the game shares nothing with it, and is one of the three.
 
 use std::hint::black_box;
 use std::time::Instant;
@@ -11,22 +11,22 @@ use num_bigint::BigInt;
 
 use crate::numeric::damped_motion::approach;
 
-/// A way to move.
+/// A method to integrate the motion.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Integrator {
-    /// The exact solution over each step, as the game does it.
+    /// The exact solution over each step, as in the game.
     ClosedForm,
-    /// `x += v·dt; v += rate·(w − v)·dt`, everything from before the step.
+    /// Explicit Euler: `x += v·dt; v += rate·(w − v)·dt`, with all values from before the step.
     Explicit,
-    /// `v` first, from the equation after the step, then `x` with the new `v`.
+    /// Semi-implicit Euler: first `v`, with the rate after the step, and then `x` with the new `v`.
     SemiImplicit,
 }
 
 impl Integrator {
-    /// All of them.
+    /// All integrators.
     pub const ALL: [Self; 3] = [Self::ClosedForm, Self::Explicit, Self::SemiImplicit];
 
-    /// Its name.
+    /// The name.
     pub fn name(self) -> &'static str {
         match self {
             Self::ClosedForm => "closed form",
@@ -35,7 +35,7 @@ impl Integrator {
         }
     }
 
-    /// Velocity and place after a step of `dt` seconds.
+    /// The velocity and the position after a step of `dt` seconds.
     fn step(self, case: &MotionCase, (velocity, place): (f64, f64)) -> (f64, f64) {
         let MotionCase { rate, step, target, .. } = *case;
         match self {
@@ -54,39 +54,38 @@ impl Integrator {
     }
 }
 
-/// A motion from place 0.
+/// A motion from position 0.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct MotionCase {
-    /// Friction, per second.
+    /// The friction, per second.
     pub rate: f64,
-    /// Seconds a step.
+    /// The length of a step in seconds.
     pub step: f64,
-    /// How many steps.
+    /// The number of steps.
     pub steps: u32,
-    /// The velocity at first, in cells per second.
+    /// The initial velocity, in cells per second.
     pub velocity: f64,
     /// The velocity that is approached.
     pub target: f64,
 }
 
-/// How one way of moving did.
+/// The errors of one integrator in one case.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct MotionResult {
-    /// Which way.
+    /// The integrator.
     pub integrator: Integrator,
-    /// What was to be moved.
+    /// The motion.
     pub case: MotionCase,
-    /// How far the velocity at the end is from the true one, as a share of the largest speed.
+    /// The error of the final velocity, as a fraction of the largest speed.
     pub velocity_error: f64,
-    /// How far the place at the end is from the true one, as a share of the way at the largest
-    /// speed.
+    /// The error of the final position, as a fraction of the distance covered at the largest speed.
     pub place_error: f64,
-    /// Nanoseconds a step, the median of some runs.
+    /// Nanoseconds for each step, the median of several runs.
     pub nanoseconds: f64,
 }
 
-/// From soft to stiff: friction of 1e-3 to 1e6 per second, steps of 1e-9 to 1e3 seconds, speeds of
-/// up to 1e6 cells per second.
+/// Cases from soft to stiff: friction from 1e-3 to 1e6 per second, steps from 1e-9 to 1e3 seconds,
+/// and speeds up to 1e6 cells per second.
 pub(super) fn motion_cases() -> Vec<MotionCase> {
     let case =
         |rate, step, steps, velocity, target| MotionCase { rate, step, steps, velocity, target };
@@ -102,7 +101,7 @@ pub(super) fn motion_cases() -> Vec<MotionCase> {
     ]
 }
 
-/// How every way of moving does in every case.
+/// The errors of every integrator in every case.
 pub fn compare_motions() -> Vec<MotionResult> {
     let cases = motion_cases();
     let pairs = cases.iter().flat_map(|case| Integrator::ALL.map(|integrator| (integrator, *case)));
@@ -135,7 +134,7 @@ fn run(integrator: Integrator, case: MotionCase) -> MotionResult {
     }
 }
 
-/// Velocity and place at the end, to the last few places of a double.
+/// The final velocity and position, accurate to the last few digits of a double.
 fn truth(case: &MotionCase) -> (f64, f64) {
     let duration = case.step * f64::from(case.steps);
     let exponent = case.rate * duration;
@@ -152,7 +151,7 @@ fn truth(case: &MotionCase) -> (f64, f64) {
     (velocity, place)
 }
 
-/// e to the power of `-x`, for `x` of at least 0, by the series of e^(x/2^k) in fixed point.
+/// e to the power of `-x`, for `x ≥ 0`, from the series of e^(x/2^k) in fixed point.
 fn exponential_of_minus(x: f64) -> f64 {
     const BITS: u32 = 256;
     const HALVINGS: u32 = 40;
@@ -161,7 +160,7 @@ fn exponential_of_minus(x: f64) -> f64 {
         return 0.0;
     }
     let one = BigInt::from(1) << BITS;
-    // x has 53 bits: scaled by 2^80 it is whole, or what is cut off is below 2^-80.
+    // x has 53 bits, so that x · 2^80 is an integer, or the remainder is below 2^-80.
     let scaled = BigInt::from((x * 2_f64.powi(80)) as u128) << (BITS - 80) >> HALVINGS;
     let mut sum = one.clone();
     let mut term = one.clone();

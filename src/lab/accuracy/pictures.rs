@@ -1,4 +1,4 @@
-//! Whole pictures: how many pixels a method gets wrong.
+//! The fraction of wrong pixels in whole pictures.
 
 use super::cast;
 use crate::cast::{Caster, Hit, Ray};
@@ -7,7 +7,7 @@ use crate::render::{Frame, FrameSize, PixelAspect, Renderer};
 use crate::rng::SplitMix64;
 use crate::world::{Camera, Cell, FieldOfView, Grid, Heading, World};
 
-/// Casts by rational arithmetic: never wrong, and thousands of times slower than a caster should be.
+/// Casts in rational arithmetic: never wrong, and thousands of times slower than the casters.
 #[derive(Clone, Copy, Debug, Default)]
 pub struct Reference;
 
@@ -18,7 +18,7 @@ impl Caster for Reference {
     }
 }
 
-/// Pictures of a world as they ought to be.
+/// Reference pictures of a world.
 #[derive(Clone, Debug)]
 pub struct Gallery<'world> {
     world: &'world World,
@@ -26,7 +26,8 @@ pub struct Gallery<'world> {
 }
 
 impl<'world> Gallery<'world> {
-    /// `count` pictures of `world` in that size: one from its start, the others from anywhere.
+    /// `count` pictures of `world` in this size: one from its start, the others from random
+    /// positions.
     pub fn new(world: &'world World, size: FrameSize, count: usize, seed: u64) -> Self {
         let pictures = cameras(world, seed)
             .take(count)
@@ -34,20 +35,20 @@ impl<'world> Gallery<'world> {
         Self { world, pictures: pictures.collect() }
     }
 
-    /// The share of pixels that differ where `method` finds the walls, from 0 to 1.
+    /// The fraction of pixels that differ if `method` casts the rays, from 0 to 1.
     pub fn share_wrong(&self, method: &Method) -> f64 {
         method.accept(Comparison { gallery: self })
     }
 }
 
-/// Where pictures of `world` are taken: from its start, and then from anywhere.
+/// The cameras of the pictures: the start of `world`, and then random positions.
 pub(super) fn cameras(world: &World, seed: u64) -> impl Iterator<Item = Camera> {
     let mut random = SplitMix64::new(seed);
     let start = world.start_camera(FieldOfView::default());
     std::iter::once(start).chain(std::iter::repeat_with(move || random_camera(world, &mut random)))
 }
 
-/// A camera anywhere on open floor.
+/// A random camera on open floor.
 fn random_camera(world: &World, random: &mut SplitMix64) -> Camera {
     let grid = world.grid();
     let on_floor = |random: &mut SplitMix64| {
@@ -56,7 +57,7 @@ fn random_camera(world: &World, random: &mut SplitMix64) -> Camera {
         let cell = Cell { column: column as u32, row: row as u32 };
         (!grid.is_solid(column as i64, row as i64)).then_some(cell)
     };
-    // There is open floor: the start is on it.
+    // Open floor exists: the start is on it.
     let cell = std::iter::repeat_with(|| on_floor(random)).flatten().next();
     let heading = Heading::default().turned(random.between(0.0, std::f64::consts::TAU));
     Camera::in_cell(cell.unwrap_or(world.start().cell), heading, FieldOfView::default())
@@ -68,8 +69,8 @@ fn draw<C: Caster>(world: &World, camera: &Camera, size: FrameSize, caster: &C) 
     frame
 }
 
-/// Takes doors and what is seen through for walls, as most methods do anyway: what is compared is
-/// where the rays end.
+/// Treats doors and transparent cubes as walls, as most methods do. The pictures then differ only
+/// by where rays end.
 struct OnlyWalls<'a, C>(&'a C);
 
 impl<C: Caster> Caster for OnlyWalls<'_, C> {

@@ -1,4 +1,4 @@
-//! Random rays: such as a camera casts, and adversarial ones.
+//! Random rays: typical camera rays, and adversarial rays.
 
 use std::f64::consts::TAU;
 
@@ -8,7 +8,7 @@ use crate::cast::Ray;
 use crate::rng::SplitMix64;
 use crate::world::Grid;
 
-/// A ray such as a camera casts: from anywhere on the map, at any heading, about 1 long.
+/// A typical camera ray: from any point of the map, with any heading, and about 1 long.
 pub fn random_ray(grid: &Grid, random: &mut SplitMix64) -> Ray {
     one(|| {
         let size = size(grid);
@@ -19,8 +19,8 @@ pub fn random_ray(grid: &Grid, random: &mut SplitMix64) -> Ray {
     })
 }
 
-/// A ray made to be misjudged: through corners of the grid or an ulp beside them, of rational slope,
-/// along lines, from afar, or of any doubles at all.
+/// A ray that is hard to cast correctly: through corners of the grid or an ulp beside them, with a
+/// rational slope, along lines, from far away, or with random bits.
 pub fn adversarial_ray(grid: &Grid, random: &mut SplitMix64) -> Ray {
     let make = [
         through_a_corner,
@@ -35,7 +35,7 @@ pub fn adversarial_ray(grid: &Grid, random: &mut SplitMix64) -> Ray {
     one(|| make(size(grid), random))
 }
 
-/// The first of what `make` makes that is a ray.
+/// The first valid ray that `make` returns.
 fn one(mut make: impl FnMut() -> (DVec2, DVec2)) -> Ray {
     loop {
         let (origin, direction) = make();
@@ -57,7 +57,7 @@ fn corner(size: DVec2, random: &mut SplitMix64) -> DVec2 {
     DVec2::new(random.whole(0, size.x as i32), random.whole(0, size.y as i32))
 }
 
-/// `value` or the double beside it.
+/// `value` or an adjacent double.
 fn nudged(value: f64, random: &mut SplitMix64) -> f64 {
     match random.bits() % 4 {
         0 => value.next_up(),

@@ -1,13 +1,13 @@
-//! The truth: what a ray hits, in rational arithmetic.
+//! The reference: the hit of a ray in rational arithmetic.
 //!
-//! Doubles are integers over powers of two. So origin and direction are taken as integers over one
-//! common power each, and every crossing is found from its definition: for each x line of the map,
-//! the exact place where the ray meets it and from that the row; for each y line the column; and of
-//! the first solid cell behind an x line and the first behind a y line the nearer one. No state goes
-//! from one crossing to the next, and nothing is rounded.
+//! A double is an integer times a power of two. Origin and direction are each converted to integers
+//! with one common power. Crossings are computed from their definition: for each x line of the map,
+//! the exact point where the ray meets it, and from that the row; for each y line, the column. The
+//! hit is the nearer one of the first solid cell behind an x line and the first behind a y line. No
+//! state is carried from one crossing to the next, and nothing is rounded.
 //!
-//! Fractions in lowest terms were refused: their greatest common divisors would take most of the
-//! time, and nothing here needs them.
+//! Fractions in lowest terms were refused: greatest common divisors would take most of the time,
+//! and are not needed.
 
 use std::cmp::Ordering;
 
@@ -17,31 +17,31 @@ use num_bigint::{BigInt, Sign};
 use crate::cast::{Hit, Ray, Side};
 use crate::world::{Cell, Grid};
 
-/// What a ray truly hits.
+/// The exact hit of a ray.
 #[derive(Clone, Debug)]
 pub struct Truth {
     /// The cell.
     pub cell: Cell,
-    /// The kind of line that is crossed into it.
+    /// The kind of line that the ray crosses to enter the cell.
     pub side: Side,
-    /// How far along the ray, in lengths of its direction.
+    /// The distance along the ray, in lengths of its direction.
     pub t: Rational,
-    /// How far along the face, from 0 to 1.
+    /// The texture coordinate, from 0 to 1.
     pub u: Rational,
 }
 
 impl Truth {
-    /// Whether `hit` is the same cell, entered by the same side.
+    /// Whether `hit` has the same cell and side.
     pub fn is_met_by(&self, hit: &Hit) -> bool {
         (self.cell, self.side) == (hit.cell, hit.side)
     }
 }
 
-/// A rational number, exactly: `numerator` / `denominator` · 2^`exponent`.
+/// An exact rational number: `numerator` / `denominator` · 2^`exponent`.
 #[derive(Clone, Debug)]
 pub struct Rational {
     numerator: BigInt,
-    /// More than 0.
+    /// Greater than 0.
     denominator: BigInt,
     exponent: i64,
 }
@@ -54,7 +54,7 @@ impl Rational {
         }
     }
 
-    /// The double next to it, or one beside that; infinite beyond the largest double.
+    /// The nearest double, or the next one to it; infinite beyond the largest double.
     pub fn to_f64(&self) -> f64 {
         const QUOTIENT_BITS: i64 = 60;
         let excess = self.numerator.bits() as i64 - self.denominator.bits() as i64 - QUOTIENT_BITS;
@@ -64,19 +64,19 @@ impl Rational {
             (&self.numerator << -excess, self.denominator.clone())
         };
         let quotient = numerator / denominator;
-        // 59 to 61 bits: a single digit.
+        // A number of 59 to 61 bits has one digit of 64 bits.
         let magnitude = quotient.iter_u64_digits().next().unwrap_or(0) as f64;
         let quotient = if quotient.sign() == Sign::Minus { -magnitude } else { magnitude };
         libm::scalbn(quotient, (excess + self.exponent).clamp(-5000, 5000) as i32)
     }
 
-    /// How far a finite `value` is from it.
+    /// The absolute error of a finite `value`.
     pub fn error(&self, value: f64) -> f64 {
         self.difference(value).to_f64().abs()
     }
 
-    /// How far `value` is from it, in units of the last place of `value`. An infinite `value` is
-    /// taken for the number that would follow the largest double.
+    /// The absolute error of `value`, in units of its last place. Infinity counts as the number
+    /// after the largest double.
     pub fn error_in_ulps(&self, value: f64) -> f64 {
         let finite = value.min(f64::MAX);
         let (_, ulp) = integer(finite);
@@ -85,7 +85,7 @@ impl Rational {
         if value.is_finite() {
             return difference.to_f64().abs();
         }
-        // Beyond the largest double, infinity is as near as a double gets.
+        // Beyond the largest double, infinity is the nearest value.
         if difference.numerator.sign() == Sign::Plus {
             0.0
         } else {
@@ -93,7 +93,7 @@ impl Rational {
         }
     }
 
-    /// It, less `value`.
+    /// This number minus `value`.
     fn difference(&self, value: f64) -> Self {
         let (value, value_exponent) = integer(value);
         let value = value * &self.denominator;
@@ -107,7 +107,7 @@ impl Rational {
     }
 }
 
-/// A finite double as an integer times a power of two, whose exponent is that of its last place.
+/// A finite double as an integer times a power of two, whose exponent is that of the last place.
 fn integer(value: f64) -> (BigInt, i64) {
     const LEADING_ONE: u64 = 1 << 52;
     let biased_exponent = value.abs().to_bits() / LEADING_ONE;
@@ -118,7 +118,7 @@ fn integer(value: f64) -> (BigInt, i64) {
     (if value < 0.0 { -magnitude } else { magnitude }, exponent)
 }
 
-/// Two doubles as integers times one power of two, at most 2⁰.
+/// Two doubles as integers times a common power of two, which is at most 2⁰.
 fn integers(pair: DVec2) -> (BigInt, BigInt, i64) {
     let without_trailing_zeros = |value: f64| {
         let (integer, exponent) = integer(value);
@@ -131,7 +131,7 @@ fn integers(pair: DVec2) -> (BigInt, BigInt, i64) {
     (x << (x_exponent - exponent), y << (y_exponent - exponent), exponent)
 }
 
-/// What `ray` hits first in `grid`, or `None` where it escapes.
+/// The first hit of `ray` in `grid`, or `None` if the ray escapes.
 pub fn cast(grid: &Grid, ray: &Ray) -> Option<Truth> {
     let (x, y, exponent) = integers(ray.origin());
     let (dx, dy, direction_exponent) = integers(ray.direction());
@@ -164,25 +164,26 @@ pub fn cast(grid: &Grid, ray: &Ray) -> Option<Truth> {
     }
 }
 
-/// Compares two numbers of the same exponent that are not negative.
+/// Compares two nonnegative numbers with equal exponents.
 fn compare_positive(a: &Rational, b: &Rational) -> Ordering {
     (&a.numerator * &b.denominator).cmp(&(&b.numerator * &a.denominator))
 }
 
-/// The lines of one kind. Places are integers in parts of a cell, directions in a part of their own.
+/// The lines of one kind. Positions are integers in a fraction of a cell; directions have their own
+/// unit.
 struct Lines {
     side: Side,
-    /// Cells across the lines.
+    /// The number of cells across the lines.
     count: u32,
-    /// Cells along them.
+    /// The number of cells along the lines.
     breadth: u32,
-    /// What a cell is.
+    /// The length of a cell.
     unit: BigInt,
-    /// Origin and direction across the lines.
+    /// The origin and the direction across the lines.
     across: (BigInt, BigInt),
-    /// Origin and direction along them.
+    /// The origin and the direction along the lines.
     along: (BigInt, BigInt),
-    /// What makes a place over a direction a `t`.
+    /// The exponent that makes a `t` from a position divided by a direction.
     t_exponent: i64,
 }
 
@@ -196,7 +197,7 @@ impl Lines {
             return None;
         }
         for index in 0..self.count {
-            // The cell behind the line, as the ray sees it, and the line itself.
+            // The cell behind the line, as seen along the ray, and the line itself.
             let (cell, line) = if is_forward {
                 (index, index)
             } else {
@@ -240,8 +241,8 @@ impl Lines {
         None
     }
 
-    /// Which row or column the ray is in at `place` on one of these lines. On a corner, the y line
-    /// has been crossed, and the x line has not.
+    /// The row or column of the ray at `place` on one of these lines. At a corner, the ray has
+    /// crossed the y line, and has not crossed the x line.
     fn cell_along(&self, place: &Rational) -> BigInt {
         let Rational { numerator, denominator, .. } = place;
         let mut floor = numerator / denominator;
@@ -256,7 +257,7 @@ impl Lines {
         if is_corner && comes_from_below { floor - 1 } else { floor }
     }
 
-    /// Whether the ray, once in that row or column, can't come back to the map.
+    /// Whether the ray cannot return to the map once it is in this row or column.
     fn has_left(&self, cell: &BigInt) -> bool {
         match self.along.1.sign() {
             Sign::Plus => *cell >= BigInt::from(self.breadth),
@@ -267,45 +268,4 @@ impl Lines {
 }
 
 #[cfg(test)]
-mod tests {
-    use super::*;
-
-    fn truth(rows: &[&str], origin: (f64, f64), direction: (f64, f64)) -> Option<Truth> {
-        let ray = Ray::new(DVec2::from(origin), DVec2::from(direction)).unwrap();
-        cast(&Grid::sketch(rows).unwrap(), &ray)
-    }
-
-    #[test]
-    fn simple_rays() {
-        let room = ["###", "#.#", "###"];
-        for (origin, direction, cell, side, t, u) in [
-            ((1.5, 1.25), (1.0, 0.0), (2, 1), Side::X, 0.5, 0.25),
-            ((1.5, 1.25), (-1.0, 0.0), (0, 1), Side::X, 0.5, 0.75),
-            ((1.25, 1.5), (0.0, 1.0), (1, 2), Side::Y, 0.5, 0.75),
-            ((1.25, 1.5), (-0.0, -2.0), (1, 0), Side::Y, 0.25, 0.25),
-            ((1.5, 1.5), (1.0, 1.0), (1, 2), Side::Y, 0.5, 0.0),
-            ((1.5, 1.5), (-4.0, -4.0), (1, 0), Side::Y, 0.125, 0.0),
-            ((2.0, 1.5), (1.0, 0.0), (2, 1), Side::X, 0.0, 0.5),
-            ((0.5, 0.5), (1.0, 0.0), (1, 0), Side::X, 0.5, 0.5),
-            ((-7.0, 1.5), (2.0, 0.0), (0, 1), Side::X, 3.5, 0.5),
-        ] {
-            let truth = truth(&room, origin, direction).unwrap();
-            assert_eq!((truth.cell.column, truth.cell.row, truth.side), (cell.0, cell.1, side));
-            assert_eq!((truth.t.to_f64(), truth.u.to_f64()), (t, u));
-        }
-        assert!(truth(&room, (-7.0, 1.5), (-1.0, 0.0)).is_none());
-    }
-
-    #[test]
-    fn errors_are_exact() {
-        let third = Rational::new(BigInt::from(1), BigInt::from(-3), 0);
-        assert!(third.error_in_ulps(-1.0 / 3.0) < 0.5);
-        assert!((third.error_in_ulps((-1.0_f64 / 3.0).next_up()) - 1.0).abs() < 0.5);
-        assert_eq!(third.error(0.0), 1.0 / 3.0);
-        let beyond = Rational::new(BigInt::from(1), BigInt::from(1), 1024);
-        assert_eq!(beyond.to_f64(), f64::INFINITY);
-        assert_eq!(beyond.error_in_ulps(f64::INFINITY), 0.0);
-        let least = Rational::new(BigInt::from(1), BigInt::from(1), -1074);
-        assert_eq!((least.to_f64(), least.error_in_ulps(0.0)), (5e-324, 1.0));
-    }
-}
+mod tests;

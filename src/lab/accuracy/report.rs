@@ -1,4 +1,4 @@
-//! The report: every method with several values of its parameter, what it costs and how wrong it is.
+//! The report: the cost and the errors of every method, with several values of its parameter.
 
 use std::num::NonZeroU32;
 
@@ -11,70 +11,70 @@ use crate::render::FrameSize;
 use crate::rng::SplitMix64;
 use crate::world::World;
 
-/// What to report on.
+/// The options of a report.
 #[derive(Clone, Debug)]
 pub struct Plan<'world> {
-    /// Whose pictures are compared.
+    /// The world whose pictures are compared.
     pub world: &'world World,
-    /// Where the rays are cast.
+    /// The source of the rays.
     pub rays: RaySource,
-    /// The methods; none for all of them.
+    /// The methods; all of them if empty.
     pub methods: Vec<Method>,
-    /// How many rays each scene has.
+    /// The number of rays in each scene.
     pub count: usize,
-    /// Where random begins.
+    /// The seed of the random rays.
     pub seed: u64,
 }
 
-/// Where rays are cast.
+/// A source of rays.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub enum RaySource {
-    /// In three ordinary scenes; and the stiff sets are reported on too.
+    /// Three ordinary scenes. The report then includes the stiff sets.
     Scenes,
-    /// In the world whose pictures are compared.
+    /// The world whose pictures are compared.
     World,
-    /// In the set of that name.
+    /// The set with this name.
     Set(String),
 }
 
-/// What each method costs, and how wrong it is.
+/// The costs and the errors of the methods.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Report {
-    /// A row for each method, in the order in which they were asked for.
+    /// One row for each method, in the order of the request.
     pub rows: Vec<Row>,
-    /// The ways of looking textures up, in pictures of each of the sizes in [`PICTURES`].
+    /// The texture filters, in pictures of each of the sizes in [`PICTURES`].
     pub filters: [FilterRow; 2],
-    /// The stiff and extreme sets, where they were asked for.
+    /// The stiff and extreme sets, if they were requested.
     pub sets: Vec<SetRow>,
-    /// The ways of moving, where the sets were asked for.
+    /// The integrators, if the sets were requested.
     pub motions: Vec<MotionResult>,
 }
 
 /// A method on ordinary rays.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Row {
-    /// The method, as it is written on the command line.
+    /// The method, as on the command line.
     pub method: String,
-    /// What a ray takes.
+    /// The time for a ray.
     pub timing: Timing,
-    /// How wrong it is.
+    /// The errors.
     pub errors: Errors,
-    /// The share of wrong pixels in pictures of each of the sizes in [`PICTURES`].
+    /// The fraction of wrong pixels in pictures of each of the sizes in [`PICTURES`].
     pub wrong_pixels: [f64; 2],
-    /// Whether no other method is both faster and less wrong.
+    /// Whether no other method is both faster and less wrong: the Pareto front.
     pub is_on_front: bool,
 }
 
-/// A set of rays, and how wrong each method is about it.
+/// The errors of each method in a set of rays.
 #[derive(Clone, Debug, PartialEq)]
 pub struct SetRow {
     /// The set's name.
     pub name: &'static str,
-    /// How wrong each method is, by its name.
+    /// The name and the errors of each method.
     pub errors: Vec<(String, Errors)>,
 }
 
-/// The sizes of the pictures that are compared, in pixels.
+/// The sizes of the compared pictures, in pixels.
 pub const PICTURES: [FrameSize; 2] = [picture(160, 90), picture(400, 120)];
 const fn picture(width: u32, height: u32) -> FrameSize {
     match (NonZeroU32::new(width), NonZeroU32::new(height)) {
@@ -83,12 +83,12 @@ const fn picture(width: u32, height: u32) -> FrameSize {
     }
 }
 
-/// How many pictures of each size.
+/// The number of pictures of each size.
 const PICTURES_OF_A_SIZE: usize = 4;
-/// How often each method is timed.
+/// The number of timings of each method.
 const TURNS: usize = 15;
 
-/// What is reported on where nobody names a method.
+/// The methods of a report that names none.
 const METHODS: [&str; 15] = [
     "exact",
     "dda",
@@ -107,10 +107,10 @@ const METHODS: [&str; 15] = [
     "march:0.001",
 ];
 
-/// The report that `plan` asks for; `None` where there is no set of that name. `progress` is told
-/// the share that is done.
+/// The report for `plan`; `None` if no set has the requested name. `progress` is called with the
+/// completed fraction.
 pub fn report(plan: &Plan, mut progress: impl FnMut(f64)) -> Option<Report> {
-    // How much of the time the timing takes, and then the pictures.
+    // The fractions of progress at which timing and pictures end.
     const UNTIL_TIMED: f64 = 0.6;
     const UNTIL_PICTURED: f64 = 0.9;
     let methods = plan.methods_or_all();
@@ -142,7 +142,7 @@ pub fn report(plan: &Plan, mut progress: impl FnMut(f64)) -> Option<Report> {
     Some(report)
 }
 
-/// The names of all sets that rays can be cast in.
+/// The names of all sets of rays.
 pub fn set_names() -> Vec<&'static str> {
     let sets = ordinary(0, 0).into_iter().chain(sets(0));
     sets.map(|set| set.name).collect()
@@ -177,7 +177,7 @@ impl Plan<'_> {
     }
 }
 
-/// Each stiff set with each method, parameters as they are by default.
+/// The errors in each stiff set of each method with its default parameter.
 fn set_rows(seed: u64) -> Vec<SetRow> {
     let methods: Vec<Method> = Method::NAMES.iter().filter_map(|name| name.parse().ok()).collect();
     let row = |set| {
@@ -188,7 +188,7 @@ fn set_rows(seed: u64) -> Vec<SetRow> {
     sets(seed).into_iter().map(row).collect()
 }
 
-/// Marks the rows than which none is both faster and less wrong in the mean distance.
+/// Marks the rows of the Pareto front in time and mean error of the distance.
 fn mark_front(rows: &mut [Row]) {
     let points: Vec<(f64, f64)> =
         rows.iter().map(|row| (row.timing.median, row.errors.mean_distance)).collect();
@@ -206,7 +206,7 @@ mod tests {
     use crate::map::builtin;
 
     #[test]
-    fn the_front_is_what_nothing_beats() {
+    fn no_row_dominates_the_front() {
         let row = |median, mean_distance| Row {
             method: String::new(),
             timing: Timing { median, ..Timing::default() },

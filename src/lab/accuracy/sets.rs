@@ -1,4 +1,4 @@
-//! The named sets: ordinary scenes, and all that is stiff or extreme.
+//! Named sets of rays: ordinary scenes, and stiff or extreme cases.
 
 mod cameras;
 mod directions;
@@ -14,10 +14,10 @@ use crate::cast::Ray;
 use crate::rng::SplitMix64;
 use crate::world::{Grid, TileId};
 
-/// Rays that have something in common, and the grid they are cast in.
+/// Rays with a common property, and the grid in which they are cast.
 #[derive(Clone, Debug)]
 pub struct Set {
-    /// What they have in common, in a word or two.
+    /// The common property in one or two words.
     pub name: &'static str,
     /// The grid.
     pub grid: Grid,
@@ -25,8 +25,8 @@ pub struct Set {
     pub rays: Vec<Ray>,
 }
 
-/// All stiff and extreme sets. The largest has some thousands of rays; those on maps of a million
-/// cells have a few.
+/// All stiff and extreme sets. The largest has some thousands of rays; sets on maps of a million
+/// cells have few.
 pub fn sets(seed: u64) -> Vec<Set> {
     let mut random = SplitMix64::new(seed);
     let mut sets = directions::sets(&mut random);
@@ -36,7 +36,7 @@ pub fn sets(seed: u64) -> Vec<Set> {
     sets
 }
 
-/// A hall with pillars, walls that meet at corners only, and an open side to the east.
+/// A hall with pillars, walls that meet only at corners, and an open side to the east.
 fn hall() -> Grid {
     drawn(&[
         "################",
@@ -54,12 +54,12 @@ fn hall() -> Grid {
     ])
 }
 
-/// A grid from a drawing that is known to be one.
+/// The grid of a valid drawing.
 fn drawn(rows: &[&str]) -> Grid {
     Grid::sketch(rows).expect("the drawings in this module are rectangles")
 }
 
-/// A grid of so many cells, solid where `is_solid` says so of a column and a row.
+/// A grid of this size, which is solid where `is_solid` is true for the column and the row.
 fn made(width: u32, height: u32, is_solid: impl Fn(u32, u32) -> bool) -> Grid {
     let cell = |row| {
         let is_solid = &is_solid;
@@ -71,13 +71,13 @@ fn made(width: u32, height: u32, is_solid: impl Fn(u32, u32) -> bool) -> Grid {
     Grid::new(width, height, TileId(1), cells).expect("there is a cell for each column and row")
 }
 
-/// The rays from every origin along every direction.
+/// Rays from every origin along every direction.
 fn all(origins: &[DVec2], directions: &[DVec2]) -> Vec<Ray> {
     let along = |&origin| directions.iter().filter_map(move |&d| Ray::new(origin, d).ok());
     origins.iter().flat_map(along).collect()
 }
 
-/// A few places on the floor of the hall: in general position, in the middle of a cell, on lines.
+/// Points on the floor of the hall: in general position, in the middle of a cell, and on lines.
 fn places() -> [DVec2; 5] {
     [
         DVec2::new(2.37, 5.61),
@@ -88,7 +88,7 @@ fn places() -> [DVec2; 5] {
     ]
 }
 
-/// A direction and its reflections, with the axes swapped too.
+/// The eight images of a direction under reflections in the axes and the diagonals.
 fn turned(x: f64, y: f64) -> [DVec2; 8] {
     let signs = [(1.0, 1.0), (1.0, -1.0), (-1.0, 1.0), (-1.0, -1.0)];
     std::array::from_fn(|index| {

@@ -1,4 +1,4 @@
-//! A trial: rays whose truth is known, to cast by one method after the other.
+//! A trial: rays with known exact hits, to be cast by several methods.
 
 use std::hint::black_box;
 use std::time::{Duration, Instant};
@@ -8,38 +8,37 @@ use crate::cast::{Caster, Hit, Ray};
 use crate::lab::casters::{Method, Visitor};
 use crate::world::Grid;
 
-/// Rays and what they truly hit.
+/// Rays and their exact hits.
 #[derive(Clone, Debug)]
 pub struct Trial {
     set: Set,
     truths: Vec<Option<Truth>>,
 }
 
-/// How wrong a method is about some rays.
+/// The errors of a method over some rays.
 ///
-/// A ray is wrong that hits another cell than it should, or the right one by the other side, or
-/// escapes where it should not, or the other way round. The errors of distance count all rays: a ray
-/// that hits nothing where it should, or something where it should not, is off by all of its
-/// distance, which is 1. Texture coordinates are compared where the ray is right, and count as right
-/// where it is not.
+/// A ray is wrong if it hits another cell or side than it should, or if it escapes instead of
+/// hitting or hits instead of escaping. Distance errors include all rays: if only one of the two
+/// results is a hit, the relative error is 1. Texture coordinates are compared only where the ray
+/// is right, and count as exact elsewhere.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub struct Errors {
-    /// How many rays there were.
+    /// The number of rays.
     pub rays: usize,
-    /// How many of them were wrong.
+    /// The number of wrong rays.
     pub wrong: usize,
     /// The largest relative error of the distance.
     pub worst_distance: f64,
-    /// The root of the mean square of the relative errors of the distance.
+    /// The root mean square of the relative errors of the distance.
     pub mean_distance: f64,
-    /// The largest error of the place on a face, in texels of a wall with 64 of them.
+    /// The largest error of the texture coordinate, in texels of a wall with 64 of them.
     pub worst_texel: f64,
-    /// The root of the mean square of those.
+    /// The root mean square of these errors.
     pub mean_texel: f64,
 }
 
 impl Errors {
-    /// Those of several trials together.
+    /// The errors of several trials together.
     pub(super) fn of_all(trials: impl IntoIterator<Item = Self>) -> Self {
         let mut all = Self::default();
         let (mut distances, mut texels) = (0.0, 0.0);
@@ -57,38 +56,38 @@ impl Errors {
         all
     }
 
-    /// The share of rays that were wrong, from 0 to 1.
+    /// The fraction of wrong rays, from 0 to 1.
     pub fn share_wrong(&self) -> f64 {
         self.wrong as f64 / self.rays.max(1) as f64
     }
 }
 
-/// How long a method takes for a ray, in nanoseconds.
+/// The time of a method for one ray, in nanoseconds.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub struct Timing {
-    /// The median of all turns.
+    /// The median over all rounds.
     pub median: f64,
-    /// A quarter of the turns took less.
+    /// The lower quartile.
     pub lower_quartile: f64,
-    /// A quarter of the turns took more.
+    /// The upper quartile.
     pub upper_quartile: f64,
 }
 
 impl Trial {
-    /// The trial of the rays of `set`. Takes some ten microseconds a ray, to find the truth.
+    /// The trial of the rays of `set`. The exact hits take about ten microseconds for each ray.
     pub fn new(set: Set) -> Self {
         let truths = set.rays.iter().map(|ray| cast(&set.grid, ray)).collect();
         Self { set, truths }
     }
 
-    /// What its rays have in common.
+    /// The name of the set.
     pub fn name(&self) -> &'static str {
         self.set.name
     }
 
-    /// How wrong `method` is.
+    /// The errors of `method`.
     pub fn errors(&self, method: &Method) -> Errors {
-        method.accept(Errand { trial: self })
+        method.accept(ErrorsVisitor { trial: self })
     }
 
     fn errors_of<C: Caster>(&self, caster: &C) -> Errors {
@@ -112,7 +111,7 @@ impl Trial {
     }
 }
 
-/// Whether `hit` is the cell and the side that it should be, or there should be none.
+/// Whether `hit` has the exact cell and side, or correctly does not exist.
 fn is_right(truth: Option<&Truth>, hit: Option<Hit>) -> bool {
     match (truth, hit) {
         (None, None) => true,
@@ -121,8 +120,7 @@ fn is_right(truth: Option<&Truth>, hit: Option<Hit>) -> bool {
     }
 }
 
-/// How far the distance of `hit` is from the true one, as a share of that; 1 where only one of them
-/// is there.
+/// The relative error of the distance of `hit`; 1 if only one of the two exists.
 fn distance_error(truth: Option<&Truth>, hit: Option<Hit>) -> f64 {
     match (truth, hit) {
         (None, None) => 0.0,
@@ -130,7 +128,7 @@ fn distance_error(truth: Option<&Truth>, hit: Option<Hit>) -> f64 {
             let true_distance = truth.t.to_f64();
             let error =
                 if hit.t == true_distance { 0.0 } else { truth.t.error(hit.t.min(f64::MAX)) };
-            // At no distance at all, any error is all there is.
+            // At a distance of zero, the quotient is infinite; the largest double stands for it.
             if error == 0.0 { 0.0 } else { (error / true_distance).min(f64::MAX) }
         }
         _ => 1.0,
@@ -156,11 +154,11 @@ impl Mean {
     }
 }
 
-struct Errand<'a> {
+struct ErrorsVisitor<'a> {
     trial: &'a Trial,
 }
 
-impl Visitor for Errand<'_> {
+impl Visitor for ErrorsVisitor<'_> {
     type Output = Errors;
 
     fn visit<C: Caster>(self, caster: &C) -> Errors {
@@ -168,10 +166,10 @@ impl Visitor for Errand<'_> {
     }
 }
 
-/// How long each of `methods` takes for a ray of `trials`.
+/// The time of each of `methods` for one ray of `trials`.
 ///
-/// All of them are timed once in each of `turns`, one after the other, so that a machine that slows
-/// down slows all of them. `progress` is told the share that is done.
+/// In each of `turns` rounds, every method is timed once, so that a slow phase of the machine
+/// affects all of them. `progress` is called with the completed fraction.
 pub fn time_in_turns(
     methods: &[Method],
     trials: &[Trial],
@@ -183,7 +181,8 @@ pub fn time_in_turns(
     for turn in 0..turns {
         for (index, (method, times)) in methods.iter().zip(&mut times).enumerate() {
             progress((turn * methods.len() + index) as f64 / (turns * methods.len()) as f64);
-            let elapsed: Duration = trials.iter().map(|trial| method.accept(Race { trial })).sum();
+            let elapsed: Duration =
+                trials.iter().map(|trial| method.accept(TimingVisitor { trial })).sum();
             times.push(elapsed.as_secs_f64() * 1e9 / rays.max(1) as f64);
         }
     }
@@ -201,11 +200,11 @@ impl Timing {
     }
 }
 
-struct Race<'a> {
+struct TimingVisitor<'a> {
     trial: &'a Trial,
 }
 
-impl Visitor for Race<'_> {
+impl Visitor for TimingVisitor<'_> {
     type Output = Duration;
 
     fn visit<C: Caster>(self, caster: &C) -> Duration {

@@ -1,15 +1,17 @@
-//! The running sum: to each kind of line a distance that grows by the same amount at every crossing.
+//! The running sum: the distance to the next line of each kind grows by a constant at every
+//! crossing.
 //!
-//! One addition a line, and the distance of a hit is there when the walk ends. But each addition
-//! rounds, and the roundings add up: after many lines the smaller sum need not be the nearer line.
+//! Each line costs one addition, and the distance of a hit is known when the ray stops. But each
+//! addition rounds, and the errors accumulate: after many lines, the smaller sum need not be the
+//! nearer line.
 //!
-//! Source: Lode Vandevenne's "Raycasting", in its newer form (`sideDist += deltaDist`), and its
-//! Chinese-annotated edition. There the last addition is subtracted again; here the sum is kept as
-//! it was before, which is the same without a rounding.
+//! Source: Lode Vandevenne, "Raycasting", in its newer form (`sideDist += deltaDist`), and its
+//! edition with Chinese annotations. There the last addition is subtracted again; here the previous
+//! sum is kept, which is the same without a rounding.
 
 use glam::DVec2;
 
-use super::approach::Approach;
+use super::clipped_ray::ClippedRay;
 use crate::cast::first_line;
 use crate::cast::{Caster, Hit, Order, Ray, Side, Walk};
 use crate::world::Grid;
@@ -20,21 +22,21 @@ pub struct Accumulate;
 
 impl Caster for Accumulate {
     fn cast(&self, grid: &Grid, ray: &Ray) -> Option<Hit> {
-        let approach = Approach::new(grid, ray)?;
-        let mut walk = Walk::in_order(grid, &approach.ray, Sums::new(grid, &approach.ray));
+        let clipped = ClippedRay::new(grid, ray)?;
+        let mut walk = Walk::in_order(grid, &clipped.ray, Sums::new(grid, &clipped.ray));
         let wall = walk.first_solid()?;
-        Some(approach.hit_at(wall.cell, wall.side, walk.order().crossed))
+        Some(clipped.hit_at(wall.cell, wall.side, walk.order().crossed))
     }
 }
 
 /// The order of lines by sums of distances.
 #[derive(Clone, Debug)]
 struct Sums {
-    /// How far the next lines are.
+    /// The distances to the next lines.
     next: DVec2,
-    /// How far it is from one line to the next of its kind.
+    /// The distances between lines of the same kind.
     between: DVec2,
-    /// How far the line is that was crossed last.
+    /// The distance to the line crossed last.
     crossed: f64,
 }
 
@@ -43,7 +45,7 @@ impl Sums {
         let between = ray.direction().abs().recip();
         let first = |origin: f64, direction: f64, between: f64, count: u32| {
             let way = (first_line(origin, direction, count) - origin).abs();
-            // Where there is nothing to go, it takes no time even at no speed.
+            // A distance of zero takes no time at any speed, not even at zero.
             if way == 0.0 { 0.0 } else { way * between }
         };
         let (origin, direction) = (ray.origin(), ray.direction());

@@ -1,15 +1,16 @@
-//! The grid walk: from line to line, in double precision.
+//! The DDA: from line to line, in double precision.
 //!
-//! The order of the lines is [`RoundedOrder`], the one that the exact caster begins with; here it is not checked.
+//! The order of the lines is that of [`RoundedOrder`], with which the exact caster begins; here it
+//! is not checked.
 //!
-//! Source: the digital differential analyser of Lode Vandevenne's "Raycasting", in its older form
-//! whose distance comes from the cell (in "Raycasting II"); after Amanatides and Woo, "A Fast Voxel
-//! Traversal Algorithm" (1987).
+//! Source: the digital differential analyser of Lode Vandevenne, "Raycasting", in its older form,
+//! whose distance is computed from the cell (in "Raycasting II"); after Amanatides and Woo, "A Fast
+//! Voxel Traversal Algorithm" (1987).
 
 use crate::cast::{Caster, Hit, Ray, RoundedOrder, Walk};
 use crate::world::Grid;
 
-/// Casts by walking the grid in double precision.
+/// Casts by a DDA in double precision.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub struct Dda;
 
@@ -92,7 +93,7 @@ mod tests {
     }
 
     proptest! {
-        /// The distance and the place on the face are where the ray meets the line.
+        /// The distance and the position on the face are where the ray meets the line.
         #[test]
         fn a_hit_is_on_its_face(
             origin in (1.0..6.0, 1.0..4.0),

@@ -1,25 +1,25 @@
-//! The grid walk of `dda` in single precision.
+//! The DDA of `dda` in single precision.
 //!
-//! Lines, distances and the texture coordinate are all computed in 24 bits. Half of the memory and
-//! twice the lanes are what single precision is chosen for elsewhere; one ray at a time has no use
-//! for either, and this method is here to show what it would cost.
+//! Lines, distances and the texture coordinate have 24 bits. Single precision is chosen elsewhere
+//! for half the memory and twice the SIMD lanes. Casting one ray at a time uses neither; this
+//! method shows what single precision would cost in accuracy.
 //!
-//! Source: as for `dda`, with `float` for `double`.
+//! Source: as for `dda`, with `float` instead of `double`.
 
 use glam::{DVec2, Vec2};
 
-use super::approach::Approach;
+use super::clipped_ray::ClippedRay;
 use crate::cast::{Caster, Hit, Order, Ray, Side, Walk};
 use crate::world::Grid;
 
-/// Casts by walking the grid in single precision.
+/// Casts by a DDA in single precision.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub struct Dda32;
 
 impl Caster for Dda32 {
     fn cast(&self, grid: &Grid, ray: &Ray) -> Option<Hit> {
-        let approach = Approach::new(grid, ray)?;
-        let mut walk = Walk::in_order(grid, &approach.ray, Single::new(&approach.ray));
+        let clipped = ClippedRay::new(grid, ray)?;
+        let mut walk = Walk::in_order(grid, &clipped.ray, Single::new(&clipped.ray));
         let wall = walk.first_solid()?;
         let Single { origin, direction, .. } = *walk.order();
         let far_side = |direction: f32| if direction < 0.0 { 1.0 } else { 0.0 };
@@ -35,11 +35,12 @@ impl Caster for Dda32 {
                 (distance, distance * direction.x - offset.x)
             }
         };
-        Some(approach.hit(wall.cell, wall.side, distance.into(), along.into()))
+        Some(clipped.hit(wall.cell, wall.side, distance.into(), along.into()))
     }
 }
 
-/// How far it is to a line; no way at all, whatever the direction has been rounded to.
+/// The quotient of the offset to a line and the direction; 0 for no offset, even if the direction
+/// was rounded to 0.
 fn ratio(way: f32, direction: f32) -> f32 {
     if way == 0.0 { 0.0 } else { (way / direction).abs() }
 }
@@ -49,7 +50,7 @@ fn ratio(way: f32, direction: f32) -> f32 {
 struct Single {
     origin: Vec2,
     direction: Vec2,
-    /// For each axis the share of the direction that the other one has, with the sign of its own.
+    /// For each axis, the size of the direction along the other axis, with the sign of this axis.
     weight: Vec2,
 }
 

@@ -1,50 +1,51 @@
-//! The walk in fixed point: integers only, once the ray is one.
+//! The DDA in fixed point: integer arithmetic, once the ray is converted.
 //!
-//! Origin and direction are rounded to so many bits after the point, and from there on the ray goes
-//! from border to border of its cells with integer products and quotients. A quotient is rounded
-//! down, and can still reach a border that the ray has yet to come to; the guard keeps it one unit
-//! short of it.
+//! Origin and direction are rounded to a number of fractional bits. The ray then goes from border
+//! to border of its cells with integer products and quotients. Quotients are rounded down, so that
+//! the ray could reach the border of the other axis too early; a guard keeps it one unit away from
+//! that border.
 //!
-//! Source: the example program of drummyfish's LRS article on raycasting, which has 10 bits, and its
-//! guard. It mirrors a ray that goes west or north; here the way to the next border is kept instead
-//! of the place in the cell, which needs no mirror and is right on a border too. A component that
-//! rounds to zero is one unit, as there; one that is zero stays zero.
+//! Source: the example program of drummyfish's LRS article on raycasting, with 10 bits and the same
+//! guard. That program mirrors rays to the west or the north. Here the distance to the next border
+//! is stored instead of the position in the cell, which needs no mirror and is also correct on a
+//! border. As in the source, a component that rounds to zero becomes one unit; a component of zero
+//! stays zero.
 
 use std::ops::RangeInclusive;
 
-use super::approach::Approach;
+use super::clipped_ray::ClippedRay;
 use crate::cast::first_line;
 use crate::cast::{Caster, Hit, Order, Ray, Side, Walk};
 use crate::world::Grid;
 
-/// Casts by walking the grid in integers.
+/// Casts by a DDA in integers.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct Fixed {
     fraction_bits: u32,
 }
 
 impl Fixed {
-    /// How many bits there can be after the point.
+    /// The allowed numbers of fractional bits.
     pub const FRACTION_BITS: RangeInclusive<u32> = 4..=26;
 
-    /// With so many bits after the point; `None` out of range.
+    /// A caster with this number of fractional bits; `None` if it is out of range.
     pub fn new(fraction_bits: u32) -> Option<Self> {
         Self::FRACTION_BITS.contains(&fraction_bits).then_some(Self { fraction_bits })
     }
 
-    /// How many bits there are after the point.
+    /// The number of fractional bits.
     pub fn fraction_bits(self) -> u32 {
         self.fraction_bits
     }
 
-    /// What 1 is.
+    /// The value of 1, in units.
     fn unit(self) -> i64 {
         1 << self.fraction_bits
     }
 }
 
 impl Default for Fixed {
-    /// As in the document: 10 bits.
+    /// 10 bits, as in the source.
     fn default() -> Self {
         Self { fraction_bits: 10 }
     }
@@ -52,19 +53,19 @@ impl Default for Fixed {
 
 impl Caster for Fixed {
     fn cast(&self, grid: &Grid, ray: &Ray) -> Option<Hit> {
-        let approach = Approach::new(grid, ray)?;
-        let mut walk = Walk::in_order(grid, &approach.ray, Integers::new(*self, &approach.ray));
+        let clipped = ClippedRay::new(grid, ray)?;
+        let mut walk = Walk::in_order(grid, &clipped.ray, Integers::new(*self, &clipped.ray));
         let wall = walk.first_solid()?;
         let order = walk.order();
         let unit = self.unit() as f64;
         let (other, other_component) = match wall.side {
-            Side::X => (&order.y, approach.ray.direction().y),
-            Side::Y => (&order.x, approach.ray.direction().x),
+            Side::X => (&order.y, clipped.ray.direction().y),
+            Side::Y => (&order.x, clipped.ray.direction().x),
         };
         let left = other.ahead as f64 / unit;
         let along = if other_component < 0.0 { left } else { 1.0 - left };
         let distance = order.distance() as f64 / unit;
-        Some(approach.hit(wall.cell, wall.side, distance, along))
+        Some(clipped.hit(wall.cell, wall.side, distance, along))
     }
 }
 
@@ -87,8 +88,8 @@ impl Integers {
         }
     }
 
-    /// How far the ray is from its origin in lengths of its direction, by the axis that it moves
-    /// faster on.
+    /// The distance of the ray from its origin in lengths of its direction, computed along the axis
+    /// of the larger component.
     fn distance(&self) -> i128 {
         let axis = if self.x.speed >= self.y.speed { &self.x } else { &self.y };
         i128::from(axis.travelled) * i128::from(self.unit) / i128::from(axis.speed)
@@ -107,14 +108,14 @@ impl Order for Integers {
     }
 }
 
-/// How a ray gets on along one axis, in units.
+/// The progress of a ray along one axis, in units.
 #[derive(Clone, Debug)]
 struct Progress {
-    /// The size of the direction's component; for one of the two, at least half of 1.
+    /// The size of the direction's component. At least one of the two components is 1/2 or more.
     speed: i64,
-    /// How far the next border is; at most 1.
+    /// The distance to the next border; at most 1.
     ahead: i64,
-    /// How far it is from the origin.
+    /// The distance from the origin.
     travelled: i64,
 }
 
@@ -133,7 +134,8 @@ impl Progress {
         Self { speed, ahead, travelled: 0 }
     }
 
-    /// Goes to the next border of this axis, and as far as that takes it on the other one.
+    /// Moves to the next border of this axis, and moves the other axis by the corresponding
+    /// distance.
     fn cross(&mut self, other: &mut Self, unit: i64) {
         let rounded = other.speed * self.ahead / self.speed;
         let guarded = rounded.min(other.ahead - 1).max(0);

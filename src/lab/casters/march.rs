@@ -1,37 +1,37 @@
-//! Marching: a constant step at a time, and a look at the cell after each.
+//! Ray marching: constant steps, with a test of the cell after each.
 //!
-//! The wall is found at the first step that ends inside it, up to a step behind its face; one that
-//! the ray crosses for less than a step can be missed altogether. Which face it was is told from the
-//! lines between the last two steps.
+//! The wall is found at the first step that ends inside it, up to one step behind its face. A wall
+//! that the ray crosses for less than a step can be missed. The face is determined by the lines
+//! between the last two steps.
 //!
-//! Source: the method that Lode Vandevenne's "Raycasting" warns of before it presents its own, and
+//! Source: the method that Lode Vandevenne, "Raycasting", warns of before it presents its own, and
 //! that most first raycasters use.
 
 use std::ops::RangeInclusive;
 
 use glam::DVec2;
 
-use super::approach::Approach;
+use super::clipped_ray::ClippedRay;
 use crate::cast::first_line;
 use crate::cast::{Caster, Hit, Ray, Side};
 use crate::world::{Cell, Grid};
 
-/// Casts by steps of one length.
+/// Casts by steps of constant length.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct March {
     step: f64,
 }
 
 impl March {
-    /// How long a step can be, in cells.
+    /// The allowed lengths of a step, in cells.
     pub const STEP: RangeInclusive<f64> = 0.0001..=1.0;
 
-    /// With steps so long, in cells; `None` out of range.
+    /// A caster with this step length, in cells; `None` if it is out of range.
     pub fn new(step: f64) -> Option<Self> {
         Self::STEP.contains(&step).then_some(Self { step })
     }
 
-    /// How long a step is, in cells.
+    /// The length of a step, in cells.
     pub fn step(self) -> f64 {
         self.step
     }
@@ -46,8 +46,8 @@ impl Default for March {
 
 impl Caster for March {
     fn cast(&self, grid: &Grid, ray: &Ray) -> Option<Hit> {
-        let approach = Approach::new(grid, ray)?;
-        let (origin, direction) = (approach.ray.origin(), approach.ray.direction());
+        let clipped = ClippedRay::new(grid, ray)?;
+        let (origin, direction) = (clipped.ray.origin(), clipped.ray.direction());
         let size = DVec2::new(f64::from(grid.width()), f64::from(grid.height()));
         let length = direction.length();
         let stride = direction / length * self.step;
@@ -65,7 +65,7 @@ impl Caster for March {
                     let side = side_crossed(cell, entered, place, stride);
                     let cell = Cell { column: column as u32, row: row as u32 };
                     let distance = steps as f64 * self.step / length;
-                    return Some(approach.hit_at(cell, side, distance));
+                    return Some(clipped.hit_at(cell, side, distance));
                 }
                 if has_left(entered.x, stride.x, size.x) || has_left(entered.y, stride.y, size.y) {
                     return None;
@@ -78,17 +78,17 @@ impl Caster for March {
     }
 }
 
-/// The column or row that a ray is in at first: on a line, the one that it comes from.
+/// The column or row from which a ray starts; on a line, the one before the line.
 fn cell_before(origin: f64, direction: f64, count: u32) -> f64 {
     if direction > 0.0 { first_line(origin, direction, count) - 1.0 } else { origin.floor() }
 }
 
-/// Whether a column or row is off the map for good.
+/// Whether a column or row is off the map, and stays off it.
 fn has_left(index: f64, stride: f64, count: f64) -> bool {
     if stride > 0.0 { index >= count } else { index < 0.0 }
 }
 
-/// The kind of the last line between two cells that are a step apart.
+/// The kind of the last line between two positions that are a step apart.
 fn side_crossed(from: DVec2, to: DVec2, place: DVec2, stride: DVec2) -> Side {
     let since = |from: f64, to: f64, place: f64, stride: f64| {
         if from == to {

@@ -1,9 +1,9 @@
-//! The choice of a method, by name.
+//! Choosing a caster by name.
 //!
-//! A [`Method`] is no caster itself: it hands one to a [`Visitor`], once for a file of
-//! rays, and the visitor's loop is compiled for each of them; a renderer gets its caster from
-//! [`Method::caster`]. A caster that looks up its own method
-//! for each ray was refused: the look-up would cost as much as a short ray.
+//! A [`Method`] is not a caster. It passes one to a [`Visitor`], once for a whole set of rays, so
+//! that the visitor's loop is compiled for each caster. A renderer gets its caster from
+//! [`Method::caster`]. A caster that looks up its method for each ray was refused: the look-up
+//! would cost as much as a short ray.
 
 use std::fmt;
 use std::str::FromStr;
@@ -12,11 +12,11 @@ use super::{Accumulate, Dda, Dda32, Fixed, March, Table};
 use crate::cast::{Caster, Exact};
 use crate::render::DynCaster;
 
-/// A method of casting, ready to cast.
+/// A method of casting, with its parameter.
 ///
-/// It is written as a name, and where the method has a parameter, a colon and its value: `exact`,
-/// `dda`, `dda32`, `accumulate`, `fixed:10`, `table:1920`, `march:0.01`. Read without one, a
-/// parameter has the value shown.
+/// It is written as a name, followed by a colon and a value if the method has a parameter: `exact`,
+/// `dda`, `dda32`, `accumulate`, `fixed:10`, `table:1920`, `march:0.01`. A parameter that is left
+/// out has the value shown here.
 #[derive(Clone, Debug, Default, PartialEq)]
 pub enum Method {
     /// [`Exact`].
@@ -38,10 +38,10 @@ pub enum Method {
 
 /// A function that is generic over the caster.
 pub trait Visitor {
-    /// Its result.
+    /// The result.
     type Output;
 
-    /// Calls it with `caster`.
+    /// Calls the function with `caster`.
     fn visit<C: Caster>(self, caster: &C) -> Self::Output;
 }
 
@@ -49,7 +49,7 @@ impl Method {
     /// The names of all methods, the default first.
     pub const NAMES: [&str; 7] = ["exact", "dda", "dda32", "accumulate", "fixed", "table", "march"];
 
-    /// Hands the caster to `visitor`.
+    /// Passes the caster to `visitor`.
     pub fn accept<V: Visitor>(&self, visitor: V) -> V::Output {
         match self {
             Self::Exact => visitor.visit(&Exact),
@@ -93,10 +93,10 @@ impl fmt::Display for Method {
 impl FromStr for Method {
     type Err = NotAMethod;
 
-    /// Reads what [`Display`](fmt::Display) writes; a parameter may be left out.
+    /// Parses the format that [`Display`](fmt::Display) writes. The parameter is optional.
     ///
     /// # Errors
-    /// Where there is no such method, or its parameter is none or out of range.
+    /// Returns an error if there is no such method, or if its parameter is invalid or out of range.
     fn from_str(text: &str) -> Result<Self, NotAMethod> {
         let (name, parameter) = match text.split_once(':') {
             Some((name, parameter)) => (name, Some(parameter)),
@@ -131,7 +131,8 @@ impl FromStr for Method {
     }
 }
 
-/// The caster for a parameter, or the default one without; `demand` is what a bad one is told.
+/// The caster for a parameter, or the default caster without one. `demand` is the error message for
+/// an invalid parameter.
 fn parse<T: FromStr, C: Default>(
     parameter: Option<&str>,
     new: impl Fn(T) -> Option<C>,
@@ -142,7 +143,7 @@ fn parse<T: FromStr, C: Default>(
     caster.ok_or_else(|| NotAMethod(format!("the caster {}, not \"{text}\"", demand())))
 }
 
-/// The error of reading a [`Method`].
+/// The error of parsing a [`Method`].
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub struct NotAMethod(String);
 
@@ -173,7 +174,7 @@ mod tests {
     }
 
     #[test]
-    fn a_bad_name_is_told_what_is_wrong() {
+    fn a_bad_name_has_an_error_with_the_reason() {
         let error = |text: &str| text.parse::<Method>().unwrap_err().to_string();
         let errors = [
             "bresenham",

@@ -1,25 +1,25 @@
-//! Tables of angles: as many directions as the circle has entries, and nothing in between.
+//! Angle tables: rays along a fixed number of directions.
 //!
-//! The ray is turned to the nearest angle of the table. Then the lines y = const are followed until
-//! one of them is the border of a wall, from intersection to intersection by the cotangent; then the
-//! lines x = const, by the tangent; and the nearer of the two is kept. What that yields is a length
-//! in cells. Dividing it by the length of the ray's direction gives `t`: for a camera ray at the
-//! angle β to the view, which is 1/cos β long, that is the product with cos β that undoes the
-//! fishbowl.
+//! The direction is rounded to the nearest angle of the table. The lines y = const are followed by
+//! the cotangent from intersection to intersection, up to the border of a wall, then the lines x =
+//! const by the tangent. The nearer of the two is the hit. The result is a length in cells.
+//! Dividing it by the length of the ray's direction gives `t`. A camera ray at the angle β to the
+//! view is 1/cos β long, so that this division is the multiplication by cos β that corrects the
+//! fisheye distortion.
 //!
-//! Source: F. Permadi's "Ray-Casting Tutorial", with 1920 angles: 320 columns to 60°.
+//! Source: F. Permadi, "Ray-Casting Tutorial", with 1920 angles: 320 columns for 60°.
 
 use std::f64::consts::TAU;
 use std::ops::RangeInclusive;
 
 use glam::DVec2;
 
-use super::approach::Approach;
+use super::clipped_ray::ClippedRay;
 use crate::cast::first_line;
 use crate::cast::{Caster, Hit, Ray, Side};
 use crate::world::{Cell, Grid};
 
-/// Casts along the nearest of so many angles.
+/// Casts along the nearest angle of a table.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Table {
     angles: Box<[Angle]>,
@@ -34,16 +34,16 @@ struct Angle {
 }
 
 impl Table {
-    /// How many angles the circle can be divided into.
+    /// The allowed numbers of angles in the circle.
     pub const ANGLES: RangeInclusive<u32> = 8..=65_536;
 
-    /// With the circle divided into `count` angles; `None` out of range.
+    /// A caster with `count` angles in the circle; `None` if it is out of range.
     pub fn new(count: u32) -> Option<Self> {
         let angle = |index| Angle::new(index, count);
         Self::ANGLES.contains(&count).then(|| Self { angles: (0..count).map(angle).collect() })
     }
 
-    /// How many angles the circle is divided into.
+    /// The number of angles in the circle.
     pub fn angles(&self) -> u32 {
         self.angles.len() as u32
     }
@@ -58,7 +58,7 @@ impl Table {
 }
 
 impl Default for Table {
-    /// As in the document: 1920 angles.
+    /// 1920 angles, as in the source.
     fn default() -> Self {
         let count = 1920;
         Self { angles: (0..count).map(|index| Angle::new(index, count)).collect() }
@@ -67,7 +67,7 @@ impl Default for Table {
 
 impl Angle {
     fn new(index: u32, count: u32) -> Self {
-        // The document leaves the four quarters out of its tables; here they have exact entries.
+        // The source has no entries for the axes; here they are exact.
         let (sine, cosine) = match (4 * index % count, 4 * index / count) {
             (0, 0) => (0.0, 1.0),
             (0, 1) => (1.0, 0.0),
@@ -81,8 +81,8 @@ impl Angle {
 
 impl Caster for Table {
     fn cast(&self, grid: &Grid, ray: &Ray) -> Option<Hit> {
-        let approach = Approach::new(grid, ray)?;
-        let (origin, direction) = (approach.ray.origin(), approach.ray.direction());
+        let clipped = ClippedRay::new(grid, ray)?;
+        let (origin, direction) = (clipped.ray.origin(), clipped.ray.direction());
         let Angle { cosine, sine, tangent } = self.nearest(direction);
         let (east, south) = (cosine, sine);
         let y = Search { start: origin.y, heading: south, other: origin.x, other_heading: east };
@@ -100,36 +100,36 @@ impl Caster for Table {
             (x, y) => x.or(y)?,
         };
         let distance = wall.length / direction.length();
-        Some(approach.hit(wall.cell, wall.side, distance, wall.along))
+        Some(clipped.hit(wall.cell, wall.side, distance, wall.along))
     }
 }
 
 /// A search for the nearest wall behind the lines of one kind.
 #[derive(Clone, Copy, Debug)]
 struct Search {
-    /// Where it starts, across the lines.
+    /// The coordinate of the origin across the lines.
     start: f64,
-    /// The cosine of the angle between the ray and the way across the lines.
+    /// The cosine of the angle between the ray and the normal of the lines.
     heading: f64,
-    /// Where it starts, along the lines.
+    /// The coordinate of the origin along the lines.
     other: f64,
     /// The sine of that angle.
     other_heading: f64,
 }
 
-/// A wall that a search has found.
+/// A wall found by a search.
 #[derive(Clone, Copy, Debug)]
 struct Wall {
     cell: Cell,
     side: Side,
-    /// How far it is, in cells.
+    /// The distance, in cells.
     length: f64,
-    /// Where on its face, in cells from the north or west end.
+    /// The position on the face, in cells from its north or west end.
     along: f64,
 }
 
 impl Search {
-    /// The first wall, where the ray moves by `slope` along the lines for each cell across them.
+    /// The first wall, for a ray that moves by `slope` along the lines for each cell across them.
     fn first_wall(&self, slope: f64, side: Side, grid: &Grid) -> Option<Wall> {
         let (lines, breadth) = match side {
             Side::X => (grid.width(), grid.height()),

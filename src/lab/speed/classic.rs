@@ -1,35 +1,35 @@
-//! The classic loop: walls by column and floors by column or by row, as tutorials have it.
+//! The classic loop: walls by column, and floors by column or by row, as in tutorials.
 //!
-//! It is written down here from their formulas and deliberately not improved: double precision,
-//! textures row by row, a picture row by row that is written column by column. It knows plain walls
-//! only, and must be drawn inside a map that is closed.
+//! It follows their formulas and is deliberately not improved: double precision, row-major
+//! textures, and a row-major picture that is written column by column. It draws plain walls only,
+//! and the camera must be inside a closed map.
 
 use crate::color::Rgb;
 use crate::world::texture::MipLevel;
 use crate::world::{Camera, Ceiling, Covering, Paint, TileId, TileKind, World};
 
-/// How the classic loop draws floor and ceiling.
+/// The classic loop's method for floor and ceiling.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum ClassicFloor {
-    /// Not at all: one colour each.
+    /// One colour each.
     None,
-    /// Below and above each wall, as soon as that is drawn.
+    /// Below and above each wall, after the wall of the column.
     ByColumn,
     /// Row by row over the whole picture, before the walls.
     ByScanline,
 }
 
-/// The classic loop, with its own copy of a map.
+/// The classic loop with its own copy of a map.
 #[derive(Clone, Debug)]
 pub struct Classic {
-    /// 0 for floor, or one more than the wall's texture.
+    /// 0 for floor, otherwise the wall's texture plus 1.
     map: Vec<Vec<usize>>,
     textures: Vec<Picture>,
     floor: Picture,
     ceiling: Picture,
 }
 
-/// A texture, row by row.
+/// A row-major texture.
 #[derive(Clone, Debug)]
 struct Picture {
     width: usize,
@@ -38,7 +38,7 @@ struct Picture {
 }
 
 impl Classic {
-    /// The loop for `world`, of which it takes walls, and the map's own floor and ceiling.
+    /// The loop for `world`. It copies the walls, and the map's default floor and ceiling.
     pub fn new(world: &World) -> Self {
         let mut textures = Vec::new();
         let mut wall = |paint: Paint| {
@@ -64,10 +64,10 @@ impl Classic {
         Self { map, textures, floor, ceiling }
     }
 
-    /// Draws what `camera` sees into `pixels`, `width` × `height` of them, row by row.
+    /// Draws the view of `camera` into `pixels`, row by row, `width` × `height` of them.
     ///
     /// # Panics
-    /// Where there are fewer pixels, or a ray leaves the map.
+    /// Panics if there are fewer pixels, or if a ray leaves the map.
     pub fn draw(
         &self,
         camera: &Camera,
@@ -167,7 +167,7 @@ impl Classic {
                 pixels[y * width + x] = self.floor.at(floor_x, floor_y);
                 pixels[(height - y) * width + x] = self.ceiling.at(floor_x, floor_y);
             }
-            // The row that no floor row is the mirror image of.
+            // The middle row, which is not the mirror image of a floor row.
             if start > 0 {
                 pixels[x] = pixels[width + x];
             }

@@ -1,26 +1,26 @@
-//! The same things in view, among few and among many that are not.
+//! Crowded maps: the same things in view, with few or many others elsewhere.
 
 use crate::map;
 use crate::world::World;
 
-/// The part of a map that is seen: a hall with some sixty plants. The rest of the map is packed with
-/// more of them.
+/// The visible part of a map: a hall with about sixty plants. The rest of the map is full of
+/// plants.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Vista {
-    /// A hall along the axes, which leaves the others outside the rectangle that holds the view.
+    /// A hall along the axes. The other things are outside the rectangle that contains the view.
     Straight,
-    /// A diagonal hall, which has ten thousand of the others inside that rectangle.
+    /// A diagonal hall. Ten thousand other things are inside the rectangle that contains the view.
     Diagonal,
 }
 
-/// A map's side that has room for the longest hall, whatever else is in it.
+/// The least side of a map with room for the longest hall.
 const SHORTEST_SIDE: u32 = 100;
 
 impl Vista {
-    /// All there are.
+    /// All vistas.
     pub const ALL: [Self; 2] = [Self::Straight, Self::Diagonal];
 
-    /// What it is called.
+    /// The name.
     pub const fn name(self) -> &'static str {
         match self {
             Self::Straight => "straight",
@@ -28,10 +28,11 @@ impl Vista {
         }
     }
 
-    /// A map with this hall and `count` things, of which those in view are some.
+    /// A map with this hall and `count` things, including those in view.
     ///
     /// # Panics
-    /// Where there are to be fewer things than in view, or more than a map has room for.
+    /// Panics if `count` is less than the number of things in view, or more than the map has room
+    /// for.
     pub fn world(self, count: usize) -> World {
         let side = SHORTEST_SIDE.max((count as f64).sqrt() as u32 + 10);
         let places = || (0..side).flat_map(|row| (0..side).map(move |column| (column, row)));
@@ -62,7 +63,7 @@ impl Vista {
         map::parse_str(&text).expect("the map is sound, but for its size")
     }
 
-    /// Where the player looks, in degrees, from the cell (1, 1).
+    /// The player's heading in degrees, at the cell (1, 1).
     fn heading(self) -> u32 {
         match self {
             Self::Straight => 25,

@@ -1,4 +1,4 @@
-//! Open maps of any size, and the rays that cross them.
+//! Open maps of any size, and rays across them.
 
 use std::fmt::Write;
 
@@ -8,7 +8,7 @@ use crate::cast::Ray;
 use crate::map;
 use crate::world::World;
 
-/// What stands in an open map, besides the walls around it.
+/// The contents of an open map, besides the walls around it.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Ground {
     /// Nothing.
@@ -17,14 +17,14 @@ pub enum Ground {
     Plain,
 }
 
-/// How many rays are cast in a map.
+/// The number of rays cast in a map.
 pub(super) const RAYS: u32 = 256;
 
 impl Ground {
-    /// All there are.
+    /// All grounds.
     pub const ALL: [Self; 2] = [Self::Hall, Self::Plain];
 
-    /// What it is called.
+    /// The name.
     pub const fn name(self) -> &'static str {
         match self {
             Self::Hall => "hall",
@@ -32,7 +32,7 @@ impl Ground {
         }
     }
 
-    /// The map of `side` × `side` cells, 4 at least, as one writes it.
+    /// The text of the map of `side` × `side` cells; `side` is at least 4.
     pub fn map(self, side: u32) -> String {
         let last = side - 1;
         let mut text = String::from("grid = '''\n");
@@ -49,32 +49,32 @@ impl Ground {
             }));
             text.push('\n');
         }
-        // A string takes whatever is written.
+        // Writing to a string cannot fail.
         _ = writeln!(text, "'''\n[tiles]\n'#'.wall = 'brick'\n[things]\n'@'.start = 0");
         text
     }
 
-    /// The same map, read.
+    /// The same map, parsed.
     ///
     /// # Panics
-    /// Where no map is as small, or as large, as that.
+    /// Panics if a map cannot have this size.
     pub fn world(self, side: u32) -> World {
         map::parse_str(&self.map(side)).expect("the map is sound, but for its size")
     }
 }
 
-/// Whether a plain has a pillar there: in the middle of what is some 64 cells on a side, or a bit off.
+/// Whether a plain has a pillar there: one in each block of 64 × 64 cells, at or near its middle.
 fn is_pillar(column: u32, row: u32) -> bool {
     let (within, block) = (|place: u32| place % 64, |place: u32| place / 64);
     let moved = |by: u32| 16 + (block(column) * 37 + block(row) * 101 + by * 53) % 32;
     (within(column), within(row)) == (moved(0), moved(1))
 }
 
-/// Rays that cross a map of `side` × `side` cells, half of them along the rows and half along the
-/// columns. On a plain, it is a pillar's fault if one does not get across.
+/// Rays that cross a map of `side` × `side` cells, half of them along rows and half along columns.
+/// On a plain, pillars stop some of them.
 ///
 /// # Panics
-/// Never: they go somewhere.
+/// Never: their directions are not zero.
 pub fn crossing_rays(side: u32) -> Vec<Ray> {
     let ray = |index: u32| {
         let share = f64::from(index) / f64::from(RAYS);

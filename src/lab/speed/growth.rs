@@ -1,9 +1,9 @@
-//! What grows with the map: a ray with the open distance, a frame with the area and with all that
-//! stands on it.
+//! Costs that grow with the map: a ray with the open distance, a frame with the area and with the
+//! number of things.
 //!
-//! What is compared takes turns, so that a machine that is busy slows all of it down. In a turn it is
-//! done several times, of which the first does not count: a game stays in one map, and finds it in the
-//! caches.
+//! All subjects of a comparison take turns, so that a busy machine slows all of them. In each turn
+//! the work is repeated, and the first repetition is not counted: a game stays in one map, which is
+//! then in the caches.
 
 use std::hint::black_box;
 use std::time::{Duration, Instant};
@@ -16,77 +16,77 @@ use crate::map;
 use crate::render::{Frame, FrameSize, PixelAspect, Renderer};
 use crate::world::{Camera, FieldOfView, World};
 
-/// What was measured.
+/// The results.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Growth {
-    /// Open maps, ground by ground and from small to large.
+    /// Open maps, by ground, from small to large.
     pub maps: Vec<MapRow>,
-    /// Crowded ones, vista by vista and from few things to many.
+    /// Crowded maps, by vista, from few things to many.
     pub crowds: Vec<CrowdRow>,
 }
 
-/// What an open map takes: a ray that crosses it, a picture of it, and the map itself.
+/// The costs of an open map: of a ray across it, of a frame, and of the map itself.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct MapRow {
-    /// What the map is.
+    /// The contents of the map.
     pub ground: Ground,
-    /// How many cells it has on a side, and a ray before it.
+    /// The side of the map, in cells.
     pub side: u32,
-    /// How long a ray takes.
+    /// The time of a ray.
     pub ray: Measured,
-    /// How long a frame takes, of 160×90 pixels.
+    /// The time of a frame of 160×90 pixels.
     pub frame: Measured,
-    /// How long it took to read the map.
+    /// The time to read the map.
     pub loading: Duration,
-    /// How many bytes its [grid](crate::world::Grid::bytes) takes, a cell.
+    /// The size of its [grid](crate::world::Grid::bytes), in bytes for each cell.
     pub bytes_a_cell: f64,
 }
 
-/// What a frame takes among things, as many of which are in view every time.
+/// The time of a frame in a crowded map, with always the same number of things in view.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct CrowdRow {
-    /// What is seen.
+    /// The visible part.
     pub vista: Vista,
-    /// How many things there are.
+    /// The number of things.
     pub count: usize,
-    /// How long a frame takes, of 160×90 pixels.
+    /// The time of a frame of 160×90 pixels.
     pub frame: Measured,
 }
 
-/// A time, and how it compares.
+/// A time and its ratio to a base.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Measured {
-    /// In seconds, in the median.
+    /// The median, in seconds.
     pub seconds: f64,
-    /// The same, as a multiple of what it is with [`USUAL_SIDE`] cells, or the fewest things.
+    /// The ratio to the time with [`USUAL_SIDE`], or with the fewest things.
     pub ratio: f64,
 }
 
 /// The sides of the open maps.
 pub const SIDES: [u32; 5] = [16, 64, 256, 1024, 4096];
-/// The side that others are compared with.
+/// The side with which others are compared.
 pub const USUAL_SIDE: u32 = SIDES[USUAL];
 const USUAL: usize = 1;
-/// How many things there are in a crowded map.
+/// The numbers of things in a crowded map.
 pub const CROWDS: [usize; 3] = [100, 10_000, 100_000];
-/// The pictures that are drawn, in pixels.
+/// The size of the pictures, in pixels.
 const PICTURE: FrameSize = size(160, 90);
-/// How often everything is timed in a turn, and at least.
+/// The number of timings in a turn, and the least number in all.
 const A_TURN: usize = 8;
 const FEWEST: usize = 3 * A_TURN;
 
-/// Measures all of it for about so long altogether, besides the time that it takes to make the maps.
+/// Measures everything within about `time`, in addition to the time to make the maps.
 pub fn measure_growth(time: Duration) -> Growth {
     let share = time / 3;
     Growth { maps: measure_maps(share * 2), crowds: measure_crowds(share) }
 }
 
 fn measure_maps(time: Duration) -> Vec<MapRow> {
-    let loaded = |ground| SIDES.map(|side| Loaded::new(ground, side));
-    let mut loaded: Vec<Loaded> = Ground::ALL.into_iter().flat_map(loaded).collect();
-    let rays = in_turns(&mut loaded, time / 2, Loaded::cast);
+    let loaded = |ground| SIDES.map(|side| LoadedMap::new(ground, side));
+    let mut loaded: Vec<LoadedMap> = Ground::ALL.into_iter().flat_map(loaded).collect();
+    let rays = in_turns(&mut loaded, time / 2, LoadedMap::cast);
     let rays = rays.into_iter().map(|seconds| seconds / f64::from(RAYS)).collect();
-    let frames = in_turns(&mut loaded, time / 2, |map| map.easel.draw());
+    let frames = in_turns(&mut loaded, time / 2, |map| map.drawing.draw());
     let times = compared(rays, SIDES.len(), USUAL).zip(compared(frames, SIDES.len(), USUAL));
     let rows = loaded.iter().zip(times).map(|(map, (ray, frame))| MapRow {
         ground: map.ground,
@@ -100,52 +100,52 @@ fn measure_maps(time: Duration) -> Vec<MapRow> {
 }
 
 fn measure_crowds(time: Duration) -> Vec<CrowdRow> {
-    let crowd = |vista: Vista| CROWDS.map(|count| (vista, count, Easel::new(vista.world(count))));
+    let crowd = |vista: Vista| CROWDS.map(|count| (vista, count, Drawing::new(vista.world(count))));
     let mut crowds: Vec<_> = Vista::ALL.into_iter().flat_map(crowd).collect();
-    let frames = in_turns(&mut crowds, time, |(_, _, easel)| easel.draw());
+    let frames = in_turns(&mut crowds, time, |(_, _, drawing)| drawing.draw());
     let rows = crowds.iter().zip(compared(frames, CROWDS.len(), 0));
     rows.map(|(&(vista, count, _), frame)| CrowdRow { vista, count, frame }).collect()
 }
 
-/// A map, and what looks at it.
-struct Loaded {
+/// A map with its rays and its view.
+struct LoadedMap {
     ground: Ground,
     side: u32,
     loading: Duration,
     rays: Vec<Ray>,
-    easel: Easel,
+    drawing: Drawing,
 }
 
-impl Loaded {
+impl LoadedMap {
     fn new(ground: Ground, side: u32) -> Self {
         let text = ground.map(side);
         let start = Instant::now();
         let world =
             map::parse_str(&text).expect("the map is sound, and no larger than maps may be");
         let loading = start.elapsed();
-        Self { ground, side, loading, rays: crossing_rays(side), easel: Easel::new(world) }
+        Self { ground, side, loading, rays: crossing_rays(side), drawing: Drawing::new(world) }
     }
 
     fn cast(&mut self) {
         for ray in &self.rays {
-            black_box(Exact.cast(self.easel.world.grid(), black_box(ray)));
+            black_box(Exact.cast(self.drawing.world.grid(), black_box(ray)));
         }
     }
 
     fn bytes_a_cell(&self) -> f64 {
-        self.easel.world.grid().bytes() as f64 / (f64::from(self.side) * f64::from(self.side))
+        self.drawing.world.grid().bytes() as f64 / (f64::from(self.side) * f64::from(self.side))
     }
 }
 
-/// A world, the view from its start, and what draws it.
-struct Easel {
+/// A world, the camera at its start, and a renderer.
+struct Drawing {
     world: World,
     camera: Camera,
     renderer: Renderer,
     frame: Frame,
 }
 
-impl Easel {
+impl Drawing {
     fn new(world: World) -> Self {
         let camera = world.start_camera(FieldOfView::default());
         let frame = Frame::new(PICTURE, PixelAspect::SQUARE);
@@ -157,8 +157,7 @@ impl Easel {
     }
 }
 
-/// How long `work` takes on each of `subjects`, in seconds: the median of as many turns as there is
-/// time for.
+/// The median time of `work` on each of `subjects`, in seconds, over all turns within `time`.
 fn in_turns<T>(subjects: &mut [T], time: Duration, work: impl Fn(&mut T)) -> Vec<f64> {
     let mut times = vec![Vec::new(); subjects.len()];
     let begun = Instant::now();
@@ -171,7 +170,7 @@ fn in_turns<T>(subjects: &mut [T], time: Duration, work: impl Fn(&mut T)) -> Vec
     times.into_iter().map(median).collect()
 }
 
-/// Each of `times`, in groups of `size`, beside the one at `base` in its group.
+/// Each of `times`, in groups of `size`, with its ratio to the one at `base` in its group.
 fn compared(times: Vec<f64>, size: usize, base: usize) -> impl Iterator<Item = Measured> {
     let bases: Vec<f64> = times.chunks(size).map(|group| group[base]).collect();
     let measured =

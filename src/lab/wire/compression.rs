@@ -1,11 +1,11 @@
-//! What `ssh -C` makes of bytes: zlib, one stream, flushed after each frame. OpenSSH's level is 6; 1 is what a
-//! server of one's own could choose.
+//! The compression of `ssh -C`: one zlib stream that is flushed after each frame. OpenSSH uses
+//! level 6; another server could choose level 1.
 
 use flate2::{Compress, Compression, FlushCompress, Status};
 
-/// The levels that are reported: the fastest one, and the one that OpenSSH uses.
+/// The reported levels: the fastest one, and that of OpenSSH.
 pub(super) const LEVELS: [u32; 2] = [1, 6];
-/// More than zlib adds to what it can't make smaller.
+/// More bytes than zlib adds to incompressible data.
 const OVERHEAD: usize = 256;
 
 /// A compressed stream.
@@ -20,7 +20,7 @@ impl Stream {
         Self { compress: Compress::new(Compression::new(level), true), output: Vec::new() }
     }
 
-    /// How many bytes are sent for `frame`; none for an empty one.
+    /// The number of bytes sent for `frame`; 0 for an empty one.
     pub(super) fn size_of(&mut self, frame: &[u8]) -> usize {
         if frame.is_empty() {
             return 0;
@@ -44,7 +44,7 @@ mod tests {
     use super::*;
 
     #[test]
-    fn what_was_sent_before_costs_little_again() {
+    fn repeated_bytes_compress_well() {
         let mut stream = Stream::new(6);
         let noise: Vec<u8> =
             (0..5000_u32).map(|at| (at.wrapping_mul(2_654_435_761) >> 11) as u8).collect();

@@ -1,4 +1,4 @@
-//! How far what a viewer sees is from what was drawn.
+//! The difference between the colours that a viewer sees and those that were drawn.
 
 use ratatui::buffer::{Buffer, Cell};
 use ratatui::style::{Color, Modifier};
@@ -7,18 +7,18 @@ use super::encoder::Encoder;
 use crate::color::Rgb;
 use crate::color::lab::Lab;
 
-/// Differences of pixels, added up. A cell is two pixels; a cell of text is as it was drawn.
+/// The sum of pixel differences. A cell has two pixels; a cell with text has no difference.
 #[derive(Clone, Copy, Debug, Default)]
 pub(super) struct Difference {
     pixels: u64,
-    /// Of the differences of the channels.
+    /// The sum of squared differences of the channels.
     squares: u64,
     distances: f64,
     largest: f64,
 }
 
 impl Difference {
-    /// Of the frame `drawn`, as `encoder` has shown it.
+    /// The difference of the frame `drawn` to what `encoder` shows.
     pub(super) fn of(encoder: &dyn Encoder, drawn: &Buffer) -> Self {
         let mut difference = Self::default();
         let columns = usize::from(drawn.area.width).max(1);
@@ -28,15 +28,15 @@ impl Difference {
                 let shown = encoder.shown(column, row);
                 let shown = shown.and_then(|[upper, lower]| Some([rgb(upper)?, rgb(lower)?]));
                 if let Some((shown, wanted)) = shown.zip(pixels(cell)) {
-                    difference.note(shown[0], wanted[0]);
-                    difference.note(shown[1], wanted[1]);
+                    difference.add_pixel(shown[0], wanted[0]);
+                    difference.add_pixel(shown[1], wanted[1]);
                 }
             }
         }
         difference
     }
 
-    fn note(&mut self, shown: Rgb, wanted: Rgb) {
+    fn add_pixel(&mut self, shown: Rgb, wanted: Rgb) {
         if shown == wanted {
             return;
         }
@@ -55,7 +55,7 @@ impl Difference {
         self.largest = self.largest.max(other.largest);
     }
 
-    /// The peak signal-to-noise ratio in decibels; infinite where nothing differs.
+    /// The peak signal-to-noise ratio in decibels; infinite if there is no difference.
     pub(super) fn signal_to_noise(&self) -> f64 {
         let mean_square = self.squares as f64 / (3 * self.pixels.max(1)) as f64;
         10.0 * libm::log10(255.0 * 255.0 / mean_square)
@@ -70,7 +70,7 @@ impl Difference {
     }
 }
 
-/// The two pixels of a cell that has some.
+/// The two pixels of a cell; `None` for text.
 fn pixels(cell: &Cell) -> Option<[Rgb; 2]> {
     if cell.modifier != Modifier::empty() {
         return None;

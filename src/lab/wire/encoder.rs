@@ -1,4 +1,4 @@
-//! Encoders of frames, alike from outside.
+//! Encoders of frames behind one trait.
 
 use std::cell::RefCell;
 use std::io::{self, Write};
@@ -11,25 +11,26 @@ use ratatui::style::Color;
 
 use crate::terminal::{CellWriter, Fidelity};
 
-/// Cells that are not what they were, as ratatui's backends get them.
+/// The changed cells of a frame, in the form of ratatui's backends.
 pub(super) type Changes<'a> = [(u16, u16, &'a Cell)];
 
-/// What makes bytes of a frame.
+/// An encoder from cells to bytes.
 pub(super) trait Encoder {
-    /// The bytes that a frame takes, added to `bytes`: what ratatui's `Terminal` has its backend do.
+    /// Appends the bytes of a frame to `bytes`, with the calls that ratatui's `Terminal` makes to
+    /// its backend.
     fn encode(&mut self, changes: &Changes, bytes: &mut Vec<u8>);
 
-    /// The colours that the upper and the lower half of a cell show; `None` where they are what was
-    /// asked for.
+    /// The colours shown by the upper and the lower half of a cell; `None` if they are the
+    /// requested ones.
     fn shown(&self, column: u16, row: u16) -> Option<[Color; 2]>;
 }
 
-/// Where a backend writes to.
+/// A writer shared with a backend.
 #[derive(Clone, Debug, Default)]
 pub(super) struct Sink(Rc<RefCell<Vec<u8>>>);
 
 impl Sink {
-    /// How many bytes have been written since the last time.
+    /// The number of bytes written since the last call.
     pub(super) fn drain(&self) -> usize {
         self.0.borrow_mut().drain(..).len()
     }
@@ -46,7 +47,7 @@ impl Write for Sink {
     }
 }
 
-/// One frame, as ratatui sends it where no cursor shows. A sink takes everything, so nothing fails.
+/// Sends one frame as ratatui does without a cursor. A sink accepts everything, so nothing fails.
 fn send<B: Backend>(backend: &mut B, changes: &Changes) {
     _ = backend.draw(changes.iter().copied());
     _ = backend.hide_cursor();
@@ -78,36 +79,36 @@ impl Encoder for Stock {
     }
 }
 
-/// Whether the terminal repeats characters and has its palette defined.
+/// Whether the terminal repeats characters and lets its palette be defined.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub(super) enum Brevity {
-    None,
-    Tried,
+pub(super) enum Extensions {
+    Off,
+    On,
 }
 
-impl Brevity {
-    /// What our encoder is called at `fidelity`.
+impl Extensions {
+    /// The name of Cellcaster's encoder at `fidelity`.
     pub(super) fn name(self, fidelity: Fidelity) -> String {
         match self {
-            Self::None => fidelity.to_string(),
-            Self::Tried => format!("{fidelity}+"),
+            Self::Off => fidelity.to_string(),
+            Self::On => format!("{fidelity}+"),
         }
     }
 }
 
-/// Ours.
+/// Cellcaster's encoder.
 pub(super) struct Writer {
     sink: Sink,
     backend: CellWriter<Sink>,
 }
 
 impl Writer {
-    pub(super) fn new(size: Size, fidelity: Fidelity, brevity: Brevity) -> Self {
+    pub(super) fn new(size: Size, fidelity: Fidelity, extensions: Extensions) -> Self {
         let sink = Sink::default();
         let mut backend = CellWriter::new(sink.clone(), size);
         backend.set_fidelity(fidelity);
-        backend.set_repeats(brevity == Brevity::Tried);
-        backend.set_palette(brevity == Brevity::Tried);
+        backend.set_repeats(extensions == Extensions::On);
+        backend.set_palette(extensions == Extensions::On);
         Self { sink, backend }
     }
 }

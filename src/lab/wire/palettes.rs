@@ -1,14 +1,16 @@
-//! Error against bytes, for ways to choose among few colours.
+//! Bytes and colour errors of methods to choose colours from a small palette.
 //!
-//! A tour is walked through each level, and every frame of it is drawn in a small palette by each method. Compared with the frame in
-//! true colour are the two as they are seen at arm's length: the light of each window of 2×2 cells, which is
-//! 2×4 pixels, is averaged, and the error is the distance of the averages in Oklab. Nearest colours do best pixel by pixel, so an error
-//! without such a blur could not tell a wall without hue from one with it.
+//! A script walks through each level, and each method draws every frame in a small palette. The
+//! result is compared with the frame in true colour as both appear from a distance: the linear
+//! light of each window of 2×2 cells, which are 2×4 pixels, is averaged, and the error is the
+//! distance of the averages in Oklab. Choosing the nearest colour has the least error for each
+//! pixel, so that an error without such a blur could not tell a wall without hue from one with it.
 //!
-//! What has an Oklab chroma below [`GREY`] counts as grey: about what people can just tell from it.
+//! A colour with an Oklab chroma below [`GREY`] counts as grey: people can just tell such a colour
+//! from grey.
 
+mod blur;
 mod methods;
-mod view;
 
 use std::num::NonZeroU32;
 
@@ -24,13 +26,13 @@ use crate::map::builtin;
 use crate::render::{Frame, FrameSize, PixelAspect, Renderer};
 use crate::terminal::CellWriter;
 use crate::world::{Camera, FieldOfView};
+use blur::BlurredPicture;
 use methods::{Method, method};
-use view::Seen;
 
-/// Chroma in Oklab, below which a colour counts as grey.
+/// The Oklab chroma below which a colour counts as grey.
 pub const GREY: f64 = 0.02;
 
-/// What is walked in each level.
+/// The script for each level.
 const TOUR: &str = "\
 [tour]
 1 s    forward
@@ -40,47 +42,47 @@ const TOUR: &str = "\
 0.5 s  strafe-left
 ";
 
-/// One in so many frames is compared; the bytes of all are counted.
+/// One in this number of frames is compared; the bytes of all are counted.
 const COMPARED: usize = 6;
 
-/// What to measure.
+/// The options of a measurement.
 #[derive(Clone, Copy, Debug)]
 pub struct PalettePlan {
     /// The palette: 256 or 16 colours.
     pub depth: ColorDepth,
     /// The size of the picture, in cells.
     pub size: Size,
-    /// How many frames a second are sent.
+    /// The number of frames sent per second.
     pub frames_per_second: NonZeroU32,
 }
 
-/// What was measured of one method in one level.
+/// The results of one method in one level.
 #[derive(Clone, Debug, PartialEq)]
 pub struct PaletteRow {
     /// The level's name; `all` for all of them.
     pub level: String,
-    /// What the method is called; the first of a level is `nearest`, and `mixed` is what is played.
+    /// The method's name. The first row of a level is `nearest`; the game uses `mixed`.
     pub method: &'static str,
-    /// How much of the blurred picture is grey, from 0 to 1.
+    /// The grey fraction of the blurred picture, from 0 to 1.
     pub grey: f64,
-    /// How much of it is grey in true colour.
+    /// The grey fraction of the blurred picture in true colour.
     pub true_grey: f64,
-    /// How much of the pixels is grey before they are blurred.
+    /// The grey fraction of the pixels before the blur.
     pub grey_pixels: f64,
-    /// The mean distance of what is seen, in Oklab.
+    /// The mean error of the blurred picture, in Oklab.
     pub error: f64,
-    /// That over the one of `nearest`.
+    /// The ratio of the error to that of `nearest`.
     pub error_ratio: f64,
-    /// How many bytes a frame takes, in the mean, the first not counted.
+    /// The mean number of bytes per frame, without the first.
     pub bytes: f64,
-    /// That over those of `nearest`.
+    /// The ratio of the bytes to those of `nearest`.
     pub bytes_ratio: f64,
 }
 
-/// Walks the tour through all built-in levels and measures.
+/// Walks through all built-in levels and measures.
 ///
 /// # Panics
-/// Where the plan's size has no cells.
+/// Panics if the plan's size has no cells.
 pub fn report_palettes(plan: &PalettePlan) -> Vec<PaletteRow> {
     let mut rows: Vec<PaletteRow> = builtin::LEVELS
         .iter()
@@ -97,9 +99,9 @@ fn report_level(plan: &PalettePlan, name: &str, mut game: Game) -> Vec<PaletteRo
     let size = FrameSize::new(u32::from(plan.size.width), 2 * u32::from(plan.size.height));
     let mut frame = Frame::new(size.expect("a picture has cells"), PixelAspect::SQUARE);
     let mut renderer = Renderer::new();
-    let mut trials: Vec<Trial> =
-        methods::NAMES.iter().map(|&name| Trial::new(name, plan)).collect();
-    let mut truth = Seen::default();
+    let mut runs: Vec<MethodRun> =
+        methods::NAMES.iter().map(|&name| MethodRun::new(name, plan)).collect();
+    let mut truth = BlurredPicture::default();
     let mut is_due = true;
     let mut frames = 0;
     let mut steps = 0;
@@ -111,10 +113,10 @@ fn report_level(plan: &PalettePlan, name: &str, mut game: Game) -> Vec<PaletteRo
             let pixels = frame.rows().flatten().copied();
             let is_compared = frames % COMPARED == 0;
             if is_compared {
-                truth.look(frame.width() as usize, pixels.map(linear));
+                truth.add(frame.width() as usize, pixels.map(linear));
             }
-            for trial in &mut trials {
-                trial.take(&game, &camera, &frame, is_compared.then_some(&truth));
+            for run in &mut runs {
+                run.take(&game, &camera, &frame, is_compared.then_some(&truth));
             }
             frames += 1;
         }
@@ -126,14 +128,14 @@ fn report_level(plan: &PalettePlan, name: &str, mut game: Game) -> Vec<PaletteRo
         is_due = after > before;
     }
     let mut rows: Vec<PaletteRow> = Vec::new();
-    for trial in trials {
-        let row = trial.finish(name, truth.share_of_grey(), rows.first());
+    for run in runs {
+        let row = run.finish(name, truth.share_of_grey(), rows.first());
         rows.push(row);
     }
     rows
 }
 
-/// The means of all levels, a row for each method.
+/// The means over all levels, one row for each method.
 fn total(rows: &[PaletteRow]) -> Vec<PaletteRow> {
     let mut totals: Vec<PaletteRow> = Vec::new();
     for &method in methods::NAMES {
@@ -159,20 +161,20 @@ fn total(rows: &[PaletteRow]) -> Vec<PaletteRow> {
     totals
 }
 
-/// A method at work, and what it has come to so far.
-struct Trial {
+/// A method and its sums so far.
+struct MethodRun {
     name: &'static str,
     method: Box<dyn Method>,
     writer: CellWriter<Vec<u8>>,
     indices: Vec<u8>,
-    /// Of each frame.
+    /// The bytes of each frame.
     bytes: Vec<usize>,
-    seen: Seen,
+    blurred: BlurredPicture,
     error: f64,
     windows: usize,
 }
 
-impl Trial {
+impl MethodRun {
     fn new(name: &'static str, plan: &PalettePlan) -> Self {
         Self {
             name,
@@ -180,13 +182,19 @@ impl Trial {
             writer: CellWriter::new(Vec::new(), plan.size),
             indices: Vec::new(),
             bytes: Vec::new(),
-            seen: Seen::default(),
+            blurred: BlurredPicture::default(),
             error: 0.0,
             windows: 0,
         }
     }
 
-    fn take(&mut self, game: &Game, camera: &Camera, frame: &Frame, truth: Option<&Seen>) {
+    fn take(
+        &mut self,
+        game: &Game,
+        camera: &Camera,
+        frame: &Frame,
+        truth: Option<&BlurredPicture>,
+    ) {
         self.indices.clear();
         self.method.draw(game.world(), camera, frame, &mut self.indices);
         let width = frame.width() as usize;
@@ -199,14 +207,14 @@ impl Trial {
                 screen.draw_halves(0, y, halves);
             }
         });
-        // Memory takes everything.
+        // Writing to memory cannot fail.
         _ = Backend::flush(&mut self.writer);
         self.bytes.push(self.writer.output_mut().drain(..).len());
         if let Some(truth) = truth {
             let light = |&index: &u8| linear(of_256(index));
-            self.seen.look(width, self.indices.iter().map(light));
-            self.error += self.seen.distances(truth).sum::<f64>();
-            self.windows += self.seen.windows();
+            self.blurred.add(width, self.indices.iter().map(light));
+            self.error += self.blurred.distances(truth).sum::<f64>();
+            self.windows += self.blurred.windows();
         }
     }
 
@@ -217,9 +225,9 @@ impl Trial {
         PaletteRow {
             level: level.to_owned(),
             method: self.name,
-            grey: self.seen.share_of_grey(),
+            grey: self.blurred.share_of_grey(),
             true_grey,
-            grey_pixels: self.seen.share_of_grey_pixels(),
+            grey_pixels: self.blurred.share_of_grey_pixels(),
             error,
             error_ratio: error / first.map_or(error, |first| first.error),
             bytes,

@@ -1,7 +1,7 @@
-//! The whole pipeline: from what a player wants to the bytes that the terminal gets.
+//! The whole pipeline: from a player's intents to the bytes for the terminal.
 //!
-//! A script is played by several games at once, each with an encoder of its own, and they take their
-//! turns frame by frame: a machine that is busy slows all of them down.
+//! Several games play the same script, each with its own encoder. They take turns frame by frame,
+//! so that a busy machine slows all of them.
 
 use std::time::{Duration, Instant};
 
@@ -15,65 +15,65 @@ use crate::game::{Intents, STEPS_PER_SECOND, Script};
 use crate::lab::speed::median;
 use crate::terminal::{CellWriter, Fidelity};
 
-/// What was measured of one encoder in a window of one size.
+/// The results of one encoder in a window of one size.
 #[derive(Clone, Debug, PartialEq)]
 pub struct PipelineRow {
     /// The window, in cells.
     pub size: Size,
-    /// What the encoder is called: `stock`, or a fidelity.
+    /// The encoder's name: `stock`, or a fidelity.
     pub encoder: String,
-    /// How many frames were played, the first not among them.
+    /// The number of frames, without the first.
     pub frames: usize,
-    /// What a frame takes, in the median: two steps of the game, drawing, and encoding.
+    /// The median time of a frame: two steps of the game, drawing, and encoding.
     pub time: Duration,
-    /// What a frame takes in bytes, in the mean.
+    /// The mean number of bytes per frame.
     pub bytes: f64,
 }
 
-/// How many frames a second are drawn.
+/// The number of frames drawn per second.
 const FRAMES_PER_SECOND: u32 = 30;
 const STEPS_A_FRAME: usize = (STEPS_PER_SECOND / FRAMES_PER_SECOND) as usize;
-/// How many steps of a stretch are played at least, if it has as many.
+/// The least number of steps played of a stretch that has as many.
 const FEWEST_STEPS: u32 = 4;
 
-/// Plays `script` in games that `begin` makes, in a window of `size`: as much of
-/// each stretch as there is time for.
-/// The first row is ratatui's own encoder, the others are ours at the fidelities that have a name.
+/// Plays `script` in games that `begin` creates, in a window of `size`: as much of each stretch as
+/// `time` allows. The first row is ratatui's own encoder; the others are Cellcaster's at the named
+/// fidelities.
 ///
 /// # Errors
-/// The first that `begin` has.
+/// Returns the first error of `begin`.
 pub fn measure_pipeline<E>(
     script: &Script,
     size: Size,
     time: Duration,
     mut begin: impl FnMut(Size) -> Result<Replay, E>,
 ) -> Result<Vec<PipelineRow>, E> {
-    let mut players = Vec::new();
+    let mut playbacks = Vec::new();
     let stock = Stock::new(size);
-    players.push(Player::new("stock".to_owned(), begin(size)?, Box::new(stock)));
+    playbacks.push(Playback::new("stock".to_owned(), begin(size)?, Box::new(stock)));
     for fidelity in [Fidelity::EXACT, Fidelity::HIGH, Fidelity::LOW] {
         let mut writer = CellWriter::new(Sink::default(), size);
         writer.set_fidelity(fidelity);
-        players.push(Player::new(fidelity.to_string(), begin(size)?, Box::new(writer)));
+        playbacks.push(Playback::new(fidelity.to_string(), begin(size)?, Box::new(writer)));
     }
     let begun = Instant::now();
-    for player in &mut players {
-        player.play(&[]);
-        player.forget();
+    for playback in &mut playbacks {
+        playback.play(&[]);
+        playback.reset();
     }
     // The first frame, which paints everything, takes longer than most.
     let affordable = time.as_secs_f64() / begun.elapsed().as_secs_f64().max(f64::MIN_POSITIVE);
     let wanted = shortened(script, affordable as usize * STEPS_A_FRAME);
     for steps in wanted.chunks_exact(STEPS_A_FRAME) {
-        for player in &mut players {
-            player.play(steps);
+        for playback in &mut playbacks {
+            playback.play(steps);
         }
     }
-    Ok(players.into_iter().map(|player| player.finish(size)).collect())
+    Ok(playbacks.into_iter().map(|playback| playback.finish(size)).collect())
 }
 
-/// What `script` wants step by step, or the same share of each of its stretches, so that it is about
-/// `most` steps.
+/// The intents of `script` for each step, or the same fraction of each of its stretches, for a
+/// total of about `most` steps.
 fn shortened(script: &Script, most: usize) -> Vec<Intents> {
     let share = script.iter().count().div_ceil(most.max(1)) as u32;
     let stretches = script.sections().iter().flat_map(|section| &section.stretches);
@@ -84,32 +84,32 @@ fn shortened(script: &Script, most: usize) -> Vec<Intents> {
     steps.collect()
 }
 
-/// A game and what shows it.
-struct Player {
+/// A game and its screen.
+struct Playback {
     name: String,
     replay: Replay,
-    window: Box<dyn Show>,
+    screen: Box<dyn Screen>,
     times: Vec<f64>,
     bytes: usize,
 }
 
-impl Player {
-    fn new(name: String, replay: Replay, window: Box<dyn Show>) -> Self {
-        Self { name, replay, window, times: Vec::new(), bytes: 0 }
+impl Playback {
+    fn new(name: String, replay: Replay, screen: Box<dyn Screen>) -> Self {
+        Self { name, replay, screen, times: Vec::new(), bytes: 0 }
     }
 
-    /// Plays so many steps, and shows what has come of it.
+    /// Plays `steps`, and shows the result.
     fn play(&mut self, steps: &[Intents]) {
         let start = Instant::now();
         for &intents in steps {
             self.replay.step(intents);
         }
-        let bytes = self.window.show(&mut self.replay);
+        let bytes = self.screen.show(&mut self.replay);
         self.times.push(start.elapsed().as_secs_f64());
         self.bytes += bytes;
     }
 
-    fn forget(&mut self) {
+    fn reset(&mut self) {
         self.times.clear();
         self.bytes = 0;
     }
@@ -126,12 +126,12 @@ impl Player {
     }
 }
 
-/// What shows a game, and tells how many bytes that took.
-trait Show {
+/// A screen that shows a game, and returns the number of bytes sent.
+trait Screen {
     fn show(&mut self, replay: &mut Replay) -> usize;
 }
 
-/// Ratatui's window and its own encoder.
+/// Ratatui's terminal with its own encoder.
 struct Stock {
     terminal: Terminal<CrosstermBackend<Sink>>,
     sink: Sink,
@@ -140,7 +140,7 @@ struct Stock {
 impl Stock {
     fn new(size: Size) -> Self {
         let sink = Sink::default();
-        // A window whose size is given asks nobody for it.
+        // With a fixed viewport, ratatui does not query the size.
         let viewport = Viewport::Fixed(size.into());
         let backend = CrosstermBackend::new(sink.clone());
         let terminal = Terminal::with_options(backend, TerminalOptions { viewport });
@@ -148,15 +148,15 @@ impl Stock {
     }
 }
 
-impl Show for Stock {
+impl Screen for Stock {
     fn show(&mut self, replay: &mut Replay) -> usize {
-        // A sink takes everything.
+        // Writing to a sink cannot fail.
         _ = self.terminal.draw(|frame| replay.draw(frame.buffer_mut()));
         self.sink.drain()
     }
 }
 
-impl Show for CellWriter<Sink> {
+impl Screen for CellWriter<Sink> {
     fn show(&mut self, replay: &mut Replay) -> usize {
         self.draw_frame(|screen| replay.draw(screen));
         _ = Backend::flush(self);

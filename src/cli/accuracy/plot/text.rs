@@ -1,4 +1,4 @@
-//! The plot in characters: a letter for each method, and below what they stand for.
+//! The plot in characters: a letter for each method, and a legend below.
 
 use std::io::{self, Write};
 
@@ -14,7 +14,7 @@ pub(super) fn write(plot: &Plot, output: &mut impl Write) -> io::Result<()> {
         let column = plot.time.share(point.time) * (COLUMNS - 1) as f64;
         let row = (1.0 - plot.error.share(point.error)) * (ROWS - 1) as f64;
         let (column, row) = (column.round() as usize, row.round() as usize);
-        // Where several fall together, the next free place to the right.
+        // If the position is taken, the next free one to the right.
         let free = (column..COLUMNS).find(|&column| cells[row][column] == ' ');
         cells[row][free.unwrap_or(column)] = letter;
     }
@@ -34,7 +34,7 @@ pub(super) fn write(plot: &Plot, output: &mut impl Write) -> io::Result<()> {
     writeln!(output)
 }
 
-/// The power of ten in whose row this is, if any.
+/// The power of ten that labels this row, if there is one.
 fn label_of_row(plot: &Plot, row: usize) -> Option<String> {
     const MOST: usize = 10;
     let row_of = |power: i32| {

@@ -1,4 +1,4 @@
-//! The rays of cameras that hardly see anything, or nearly everything, or have a wall before the nose.
+//! Camera rays with extreme fields of view, or with a wall close to the camera.
 
 use glam::DVec2;
 
@@ -21,15 +21,16 @@ fn set(name: &'static str, rays: Vec<Ray>) -> Set {
     Set { name, grid: hall(), rays }
 }
 
-/// Where the nearest wall is from 1e-12 cells away to as near as a double can be to zero, and the
-/// heading towards it.
+/// Positions with the nearest wall at a distance from 1e-12 cells down to the smallest double, and
+/// the heading towards it.
 fn before_walls() -> Vec<(DVec2, f64)> {
     let mut places = Vec::new();
     for gap in [1e-12, 1e-15] {
         places.push((DVec2::new(1.0 + gap, 2.6), 180.0));
         places.push((DVec2::new(4.4, 1.0 + gap), 270.0));
     }
-    // Only beside zero are there doubles enough: off the map, before its first column and row.
+    // Only near zero are doubles close enough together: off the map, before its first column and
+    // row.
     for gap in [1e-12, 1e-30, 1e-100, 1e-300, 5e-324] {
         places.push((DVec2::new(-gap, 2.6), 0.0));
         places.push((DVec2::new(4.4, -gap), 90.0));

@@ -1,4 +1,4 @@
-//! Directions that are hard on a caster.
+//! Directions that are hard to cast.
 
 use glam::DVec2;
 
@@ -46,7 +46,7 @@ fn unlike() -> Vec<DVec2> {
     sizes.into_iter().flat_map(|(x, y)| turned(x, y)).collect()
 }
 
-/// From anywhere to every corner of the grid, and an ulp beside it.
+/// From random points to every corner of the grid, and an ulp beside it.
 fn through_corners(random: &mut SplitMix64) -> Vec<Ray> {
     let anywhere = DVec2::new(random.between(1.0, 3.0), random.between(8.0, 10.0));
     let mut rays = Vec::new();

@@ -1,4 +1,4 @@
-//! Rays that go a long way before they meet anything.
+//! Rays that cross many cells before they hit.
 
 use std::f64::consts::TAU;
 
@@ -12,7 +12,7 @@ pub(super) fn sets(random: &mut SplitMix64) -> Vec<Set> {
     vec![corridor(), long_map(), plain(random)]
 }
 
-/// A corridor of 10⁵ cells, one wide.
+/// A corridor of 10⁵ cells, one cell wide.
 fn corridor() -> Set {
     let length = 100_000;
     let last = length - 1;
@@ -22,7 +22,7 @@ fn corridor() -> Set {
     Set { name: "corridor", grid, rays: all(&origins, &directions.map(DVec2::from)) }
 }
 
-/// A map of 10⁶ cells whose walls close in on the ray where it crosses the line between two rows.
+/// A map of 10⁶ cells with walls close to the ray where it crosses the line between two rows.
 fn long_map() -> Set {
     let length = 1_000_000;
     let grid = made(length, 4, |column, row| row % 3 == 0 || column == length - 1);
@@ -31,7 +31,7 @@ fn long_map() -> Set {
     Set { name: "long map", grid, rays: all(&[DVec2::new(0.5, 1.0)], &directions) }
 }
 
-/// An open plain of 4096 × 4096, with a wall around it.
+/// An open plain of 4096 × 4096 cells, with a wall around it.
 fn plain(random: &mut SplitMix64) -> Set {
     let size = 4096;
     let is_edge = |index: u32| index == 0 || index == size - 1;

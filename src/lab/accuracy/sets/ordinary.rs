@@ -1,4 +1,4 @@
-//! Scenes that people play in, seen by cameras at eye height among the walls.
+//! Ordinary scenes, with rays from points on open floor.
 
 use super::super::random_ray;
 use super::{Set, drawn, made};
@@ -6,7 +6,7 @@ use crate::cast::Ray;
 use crate::rng::SplitMix64;
 use crate::world::Grid;
 
-/// Three ordinary scenes, each with `count` rays from open floor: rooms, pillars, corridors.
+/// Three ordinary scenes with `count` rays each: rooms, pillars and corridors.
 pub fn ordinary(seed: u64, count: usize) -> Vec<Set> {
     let mut random = SplitMix64::new(seed);
     let scenes = [("rooms", rooms()), ("pillars", pillars()), ("corridors", corridors())];
@@ -49,13 +49,13 @@ fn rooms() -> Grid {
     ])
 }
 
-/// An open square of 64 × 64 with a pillar in every fourth cell both ways.
+/// An open square of 64 × 64 cells with a pillar in every fourth column of every fourth row.
 fn pillars() -> Grid {
     let is_edge = |index: u32| index == 0 || index == 63;
     made(64, 64, |column, row| is_edge(column) || is_edge(row) || (column % 4 == 2 && row % 4 == 2))
 }
 
-/// Corridors of 62 cells, one wide, that cross every eighth cell.
+/// Corridors of 62 cells, one cell wide, with crossings at every eighth cell.
 fn corridors() -> Grid {
     let is_edge = |index: u32| index == 0 || index == 63;
     made(64, 64, |column, row| is_edge(column) || is_edge(row) || (column % 8 != 4 && row % 8 != 4))

@@ -1,4 +1,4 @@
-//! Origins that are hard on a caster.
+//! Origins that are hard to cast from.
 
 use glam::DVec2;
 
@@ -26,7 +26,7 @@ fn slopes() -> Vec<DVec2> {
         .collect()
 }
 
-/// On a line of either kind, on both, and on all edges of the map.
+/// On lines of either kind, on both, and on all edges of the map.
 fn on_lines() -> Vec<DVec2> {
     [
         (7.0, 5.3),
@@ -69,7 +69,7 @@ fn far_end() -> Set {
     Set { name: "far end", grid, rays: all(&origins, &directions.map(DVec2::from)) }
 }
 
-/// From outside towards the map, past it and away from it.
+/// From outside the map towards it, past it and away from it.
 fn off_the_map(random: &mut SplitMix64) -> Vec<Ray> {
     let mut rays = Vec::new();
     for distance in [1.0, 1e3, 1e6, 1e9, 1e12, 1e15] {

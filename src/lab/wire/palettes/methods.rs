@@ -1,4 +1,4 @@
-//! Ways to choose among few colours: the one that is played, and others to compare it with.
+//! Methods to choose colours from a small palette: that of the game, and others for comparison.
 
 use std::collections::HashMap;
 
@@ -14,17 +14,17 @@ use crate::render::Frame;
 use crate::tui::{FirstPerson, View};
 use crate::world::{Camera, World};
 
-/// What the methods are called; the first is what the others are compared with.
+/// The names of the methods; the others are compared with the first.
 pub(super) const NAMES: &[&str] = &["nearest", "chroma", "bayer", "mixed"];
 
-/// A way to choose among few colours.
+/// A method to choose colours from a small palette.
 pub(super) trait Method {
-    /// The indices of what the pixels of `frame` show, which is what `camera` sees of `world`, added to
-    /// `indices` row by row.
+    /// Appends the palette indices of the pixels of `frame` to `indices`, row by row. The frame is
+    /// the view of `camera` into `world`.
     fn draw(&mut self, world: &World, camera: &Camera, frame: &Frame, indices: &mut Vec<u8>);
 }
 
-/// The method of that name, one of [`NAMES`].
+/// The method with this name, one of [`NAMES`].
 pub(super) fn method(name: &str, depth: ColorDepth) -> Box<dyn Method> {
     let nearest = match depth {
         ColorDepth::Indexed16 => palette::nearest_of_16,
@@ -53,7 +53,7 @@ pub(super) fn method(name: &str, depth: ColorDepth) -> Box<dyn Method> {
     }
 }
 
-/// A method that asks for no pixel but the one to be shown, and its place.
+/// A method that needs only the pixel and its position.
 struct Pixels<F>(F);
 
 impl<F: FnMut(Rgb, usize, usize) -> u8> Method for Pixels<F> {
@@ -64,13 +64,15 @@ impl<F: FnMut(Rgb, usize, usize) -> u8> Method for Pixels<F> {
     }
 }
 
-/// In Oklab, with its chroma doubled.
+/// The colour in Oklab with its chroma doubled.
 fn weighted(color: Rgb) -> Oklab {
     let Oklab([lightness, red, yellow]) = color.into();
     Oklab([lightness, 2.0 * red, 2.0 * yellow])
 }
 
-/// Made lighter or darker by Bayer's pattern of 4×4, which spans about a step of the cube.
+/// The colour made lighter or darker by the 4×4 matrix of ordered dithering (Bayer, "An Optimum
+/// Method for Two-Level Rendition of Continuous-Tone Pictures", 1973). The matrix spans about one
+/// step of the colour cube.
 fn offset(color: Rgb, x: usize, y: usize) -> Rgb {
     const ORDER: [[i16; 4]; 4] = [[0, 8, 2, 10], [12, 4, 14, 6], [3, 11, 1, 9], [15, 7, 13, 5]];
     const SPAN: i16 = 40;
@@ -80,7 +82,7 @@ fn offset(color: Rgb, x: usize, y: usize) -> Rgb {
     Rgb::new(red, green, blue)
 }
 
-/// What is played.
+/// The game's method.
 struct Mixed {
     depth: ColorDepth,
     view: View,

@@ -1,14 +1,14 @@
-//! A picture as it is seen at arm's length.
+//! The blur of a picture seen from a distance.
 
 use super::GREY;
 use crate::color::oklab::Oklab;
 
-/// The pixels of a window: two cells by two.
+/// The pixels of a window, which is two by two cells.
 const WINDOW: [usize; 2] = [2, 4];
 
-/// The last picture that was looked at, blurred, and how much of all of them was grey.
+/// The last picture, blurred, and the grey fractions of all pictures so far.
 #[derive(Default)]
-pub(super) struct Seen {
+pub(super) struct BlurredPicture {
     blurred: Vec<Oklab>,
     light: Vec<[f64; 3]>,
     grey_windows: usize,
@@ -17,10 +17,10 @@ pub(super) struct Seen {
     pixels: usize,
 }
 
-impl Seen {
-    /// Looks at the pixels of a picture of that width, row by row, by their light. There is a window at each pixel
-    /// from left to right, and at each cell from top to bottom.
-    pub(super) fn look(&mut self, width: usize, light: impl Iterator<Item = [f64; 3]>) {
+impl BlurredPicture {
+    /// Blurs a picture of this width, given as linear light row by row, and counts its grey. There
+    /// is one window at each pixel column and at each cell row.
+    pub(super) fn add(&mut self, width: usize, light: impl Iterator<Item = [f64; 3]>) {
         self.light.clear();
         self.light.extend(light);
         self.blurred.clear();
@@ -44,23 +44,23 @@ impl Seen {
         self.pixels += self.light.len();
     }
 
-    /// How far each window is from the same one of `other`.
+    /// The distance of each window from the same window of `other`.
     pub(super) fn distances(&self, other: &Self) -> impl Iterator<Item = f64> {
         let pairs = self.blurred.iter().zip(&other.blurred);
         pairs.map(|(one, other)| libm::sqrt(one.distance_squared(other)))
     }
 
-    /// How many windows the last picture has.
+    /// The number of windows of the last picture.
     pub(super) fn windows(&self) -> usize {
         self.blurred.len()
     }
 
-    /// How much of all that was looked at was grey.
+    /// The grey fraction of all windows so far.
     pub(super) fn share_of_grey(&self) -> f64 {
         self.grey_windows as f64 / self.windows.max(1) as f64
     }
 
-    /// The same without the blur.
+    /// The grey fraction of all pixels so far.
     pub(super) fn share_of_grey_pixels(&self) -> f64 {
         self.grey_pixels as f64 / self.pixels.max(1) as f64
     }
@@ -74,9 +74,9 @@ mod tests {
     fn a_checkerboard_looks_like_its_mean_and_as_grey_as_that() {
         let checker = (0..8 * 8)
             .map(|at| if (at + at / 8) % 2 == 0 { [0.8, 0.2, 0.2] } else { [0.2, 0.8, 0.8] });
-        let (mut dots, mut flat) = (Seen::default(), Seen::default());
-        dots.look(8, checker);
-        flat.look(8, (0..8 * 8).map(|_| [0.5; 3]));
+        let (mut dots, mut flat) = (BlurredPicture::default(), BlurredPicture::default());
+        dots.add(8, checker);
+        flat.add(8, (0..8 * 8).map(|_| [0.5; 3]));
         assert_eq!((dots.windows(), dots.blurred.len()), (7 * 3, flat.blurred.len()));
         assert!(dots.distances(&flat).all(|distance| distance < 1e-9));
         assert_eq!((dots.share_of_grey(), dots.share_of_grey_pixels()), (1.0, 0.0));

@@ -1,9 +1,9 @@
-//! A ray in the shape that the approximate methods take it.
+//! Rays clipped to the map, for the approximate methods.
 //!
-//! A table, a running sum or a constant step can't cross 10¹⁵ cells of nothing, and single precision
-//! or a fixed point can't even say where that is. So a ray that starts off the map is first moved to
-//! its edge, in double precision, and its direction is scaled. What the methods are compared on is
-//! what they do on the map.
+//! A table, a running sum or constant steps cannot cross 10¹⁵ empty cells, and single precision or
+//! fixed point cannot represent such a position. A ray that starts off the map is therefore first
+//! moved to the edge of the map, in double precision, and its direction is scaled. The comparison
+//! is about the behaviour on the map.
 
 use glam::DVec2;
 
@@ -11,19 +11,20 @@ use crate::cast::texture_coordinate;
 use crate::cast::{Hit, Ray, Side};
 use crate::world::{Cell, Grid};
 
-/// A ray that starts on the map or at its edge, its larger component between 1/2 and 1.
+/// A ray that starts on the map or at its edge. The larger component of its direction is between
+/// 1/2 and 1.
 #[derive(Clone, Copy, Debug)]
-pub(super) struct Approach {
+pub(super) struct ClippedRay {
     /// The ray from there on.
     pub(super) ray: Ray,
-    /// How far it has come, in lengths of the scaled direction.
+    /// The distance from the original origin, in lengths of the scaled direction.
     skipped: f64,
-    /// The power of two that the direction was divided by.
+    /// The exponent of the power of two that divides the direction.
     exponent: i32,
 }
 
-impl Approach {
-    /// `ray` from where it is on the map; `None` where it never is.
+impl ClippedRay {
+    /// `ray` from its first point on the map; `None` if it misses the map.
     pub(super) fn new(grid: &Grid, ray: &Ray) -> Option<Self> {
         let (direction, exponent) = ray.scaled_direction();
         let size = DVec2::new(f64::from(grid.width()), f64::from(grid.height()));
@@ -49,14 +50,14 @@ impl Approach {
         is_at_edge.then(|| Self { ray: Ray::moved(start, direction), skipped, exponent })
     }
 
-    /// A hit at a distance that a method found, in lengths of the scaled direction from the start of
-    /// the approached ray, and at a place `along` cells from the north or west end of the face.
+    /// The hit at a distance that a method found, in lengths of the scaled direction from the
+    /// clipped origin, and at a position `along` cells from the north or west end of the face.
     pub(super) fn hit(&self, cell: Cell, side: Side, distance: f64, along: f64) -> Hit {
         let t = libm::scalbn(self.skipped + distance, -self.exponent);
         Hit { cell, side, t, u: texture_coordinate(self.ray.direction(), side, along) }
     }
 
-    /// A hit at a distance that a method found; its place on the face follows from it.
+    /// The hit at a distance that a method found. The position on the face is computed from it.
     pub(super) fn hit_at(&self, cell: Cell, side: Side, distance: f64) -> Hit {
         let point = self.ray.at(distance);
         let along = match side {

@@ -1,8 +1,9 @@
-//! A yardstick: a flat scene as it was drawn before there were floors with textures, sky, fog and things.
+//! The baseline renderer: it draws a flat scene as the program did before it had textured floors, a
+//! sky, fog and things.
 //!
-//! Each column is a ray, each half of the picture a fill, and each pixel of a wall a texel of the
-//! picture itself, nearest to its centre. It is kept as it was, to tell what all the rest costs a
-//! scene that has no use for it.
+//! Each column is a ray, each half of the picture is a fill, and each pixel of a wall is the
+//! nearest texel of the full-size texture. It is kept unchanged to measure the cost of all later
+//! features for a scene without them.
 
 use std::ops::Range;
 
@@ -13,39 +14,39 @@ use cellcaster::world::{Camera, Ceiling, Paint, TileKind, World};
 use glam::DVec2;
 
 /// Draws walls between two fills, on square pixels.
-pub(crate) struct Before {
+pub(crate) struct Baseline {
     width: u32,
     height: u32,
     columns: Vec<Column>,
     pixels: Vec<Rgb>,
 }
 
-/// What the ray of one column of pixels met.
+/// The hit of the ray of one pixel column.
 struct Column {
     hit: Option<Hit>,
     rows: Range<u32>,
 }
 
-impl Before {
-    /// For pictures of that size.
+impl Baseline {
+    /// A renderer for pictures of this size.
     pub(crate) fn new(size: FrameSize) -> Self {
         let (width, height) = (size.width.get(), size.height.get());
         let pixels = vec![Rgb::BLACK; width as usize * height as usize];
         Self { width, height, columns: Vec::new(), pixels }
     }
 
-    /// Draws what `camera` sees of `world`, all of which must be open floor and walls inside an
-    /// enclosing wall.
+    /// Draws the view of `camera` into `world`, which must consist of open floor and walls inside
+    /// an enclosing wall.
     pub(crate) fn render(&mut self, world: &World, camera: &Camera) {
-        let lens = Lens::new(camera, self.width, self.height);
+        let projection = Projection::new(camera, self.width, self.height);
         self.columns.clear();
         self.columns.extend((0..self.width).map(|column| {
-            let ray = lens.ray(column);
+            let ray = projection.ray(column);
             let hit = Exact.cast(world.grid(), &ray);
-            Column { hit, rows: lens.wall_rows(hit.map_or(f64::INFINITY, |hit| hit.t)) }
+            Column { hit, rows: projection.wall_rows(hit.map_or(f64::INFINITY, |hit| hit.t)) }
         }));
         self.fill(world);
-        self.paper(world, &lens);
+        self.draw_walls(world, &projection);
     }
 
     /// The pixels of the last picture, row by row from the top.
@@ -62,7 +63,7 @@ impl Before {
         below.fill(world.mean_color(world.floor().pattern.first_paint()));
     }
 
-    fn paper(&mut self, world: &World, lens: &Lens) {
+    fn draw_walls(&mut self, world: &World, projection: &Projection) {
         let width = self.width as usize;
         for (x, column) in self.columns.iter().enumerate() {
             let Some(hit) = &column.hit else { continue };
@@ -76,7 +77,7 @@ impl Before {
                 }
                 Paint::Texture(texture) => {
                     let texels = world.texture(texture).column(hit.u);
-                    let texel = lens.texel_on_the_wall(hit.t, texels.len());
+                    let texel = projection.texel_on_the_wall(hit.t, texels.len());
                     for (row, pixel) in rows.zip(pixels) {
                         *pixel = shaded(texels[texel(row)], hit.side);
                     }
@@ -101,8 +102,8 @@ fn shaded(color: Rgb, side: Side) -> Rgb {
     }
 }
 
-/// How the world maps to pixels.
-struct Lens {
+/// The mapping from the world to pixels.
+struct Projection {
     origin: DVec2,
     direction: DVec2,
     plane: DVec2,
@@ -112,7 +113,7 @@ struct Lens {
     focal_length: f64,
 }
 
-impl Lens {
+impl Projection {
     fn new(camera: &Camera, width: u32, height: u32) -> Self {
         let (width, height) = (f64::from(width), f64::from(height));
         Self {

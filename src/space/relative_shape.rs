@@ -1,57 +1,57 @@
-//! Bodies as seen from one place, from which all rays of a picture begin.
+//! Shapes relative to an eye, from which all rays of a picture start.
 //!
-//! What depends on that place only is computed once, and can afford to be exact: for a sphere the power
-//! of the place, which is the difference of two large squares where the sphere is large, in twice the
-//! digits. The roots of the quadratic are taken without a difference of like numbers, so that neither a
-//! planet underfoot nor a grain of sand on it loses digits.
+//! Values that depend only on the eye are computed once, with high precision. The power of the eye
+//! with respect to a sphere is a difference of squares, which are large for a large sphere; it is
+//! computed with compensated sums. The roots of the quadratic equation are taken without
+//! cancellation. Neither a planet under the eye nor a grain of sand on it loses digits.
 
 use glam::DVec3;
 
 use super::body::{Block, Plane, Shape, Sphere};
 use crate::numeric::{two_product, two_sum};
 
-/// A shape as seen from one place.
+/// A shape relative to an eye.
 #[derive(Clone, Copy, Debug)]
-pub(super) enum Seen {
-    Sphere(SeenSphere),
-    Plane(SeenPlane),
-    Block(SeenBlock),
+pub(super) enum RelativeShape {
+    Sphere(RelativeSphere),
+    Plane(RelativePlane),
+    Block(RelativeBlock),
 }
 
 #[derive(Clone, Copy, Debug)]
-pub(super) struct SeenSphere {
-    /// From the place to the center.
+pub(super) struct RelativeSphere {
+    /// The vector from the eye to the center.
     pub(super) center: DVec3,
     pub(super) radius: f64,
-    /// The square of the distance to the center less that of the radius: negative inside.
+    /// The squared distance to the center minus the squared radius: negative inside.
     power: f64,
 }
 
 #[derive(Clone, Copy, Debug)]
-pub(super) struct SeenPlane {
+pub(super) struct RelativePlane {
     normal: DVec3,
-    /// How far the plane is along its normal.
+    /// The distance of the plane along its normal.
     distance: f64,
 }
 
 #[derive(Clone, Copy, Debug)]
-pub(super) struct SeenBlock {
-    /// From the place to two corners.
+pub(super) struct RelativeBlock {
+    /// The vectors from the eye to two corners.
     pub(super) low: DVec3,
     pub(super) high: DVec3,
 }
 
-impl Seen {
-    /// `shape`, as seen from `origin`.
+impl RelativeShape {
+    /// `shape` relative to `origin`.
     pub(super) fn new(shape: &Shape, origin: DVec3) -> Self {
         match shape {
-            Shape::Sphere(sphere) => Self::Sphere(SeenSphere::new(sphere, origin)),
-            Shape::Plane(plane) => Self::Plane(SeenPlane::new(plane, origin)),
-            Shape::Block(block) => Self::Block(SeenBlock::new(block, origin)),
+            Shape::Sphere(sphere) => Self::Sphere(RelativeSphere::new(sphere, origin)),
+            Shape::Plane(plane) => Self::Plane(RelativePlane::new(plane, origin)),
+            Shape::Block(block) => Self::Block(RelativeBlock::new(block, origin)),
         }
     }
 
-    /// How many times `direction` it is to the shape: 0 or more, and finite.
+    /// The distance to the shape in lengths of `direction`: 0 or more, and finite.
     #[inline]
     pub(super) fn distance(&self, direction: DVec3) -> Option<f64> {
         let t = match self {
@@ -62,21 +62,20 @@ impl Seen {
         t.filter(|t| (0.0..f64::INFINITY).contains(t))
     }
 
-    /// The unit vector at a right angle to the shape, on this side of it, where `direction` meets it
-    /// after `t`.
+    /// The unit normal of the shape where `direction` meets it at `t`, on the side of the eye.
     pub(super) fn normal(&self, direction: DVec3, t: f64) -> DVec3 {
         let normal = match self {
             Self::Sphere(sphere) => direction * t - sphere.center,
             Self::Plane(plane) => plane.normal,
             Self::Block(block) => block.normal(direction),
         };
-        // Only the exact middle of a sphere has none, and it is not on the sphere.
+        // Only the exact center of a sphere has no normal, and it is not on the surface.
         let normal = normal.try_normalize().unwrap_or(DVec3::Z);
         if normal.dot(direction) > 0.0 { -normal } else { normal }
     }
 }
 
-impl SeenSphere {
+impl RelativeSphere {
     fn new(sphere: &Sphere, origin: DVec3) -> Self {
         let (center, radius) = (sphere.center(), sphere.radius());
         Self { center: center - origin, radius, power: power(origin, center, radius) }
@@ -86,8 +85,9 @@ impl SeenSphere {
         let Self { center, radius, power } = *self;
         let square = direction.dot(direction);
         let along = center.dot(direction);
-        // The square of half the chord, by way of how far the ray passes from the center: the textbook's
-        // `b² - 4ac` loses a small sphere far away.
+        // The squared half of the chord, from the distance between the ray and the center (Haines
+        // and others, "Precision Improvements for Ray/Sphere Intersection", 2019). The usual
+        // discriminant `b² - 4ac` would lose a small sphere far away.
         let beside = center - direction * (along / square);
         let half_chord = (radius * radius - beside.dot(beside)) * square;
         if half_chord < 0.0 {
@@ -104,7 +104,7 @@ impl SeenSphere {
     }
 }
 
-/// The power of `point` with respect to a sphere, correct to the last digits however much cancels.
+/// The power of `point` with respect to a sphere, accurate to the last digits for any cancellation.
 fn power(point: DVec3, center: DVec3, radius: f64) -> f64 {
     let mut sum = Sum::default();
     for (one, other) in [(center.x, point.x), (center.y, point.y), (center.z, point.z)] {
@@ -117,7 +117,8 @@ fn power(point: DVec3, center: DVec3, radius: f64) -> f64 {
     sum.total + sum.error
 }
 
-/// A sum of many numbers, and what was lost in adding them up.
+/// A compensated sum and its rounding error, as in the dot product of Ogita, Rump and Oishi
+/// ("Accurate Sum and Dot Product", 2005).
 #[derive(Default)]
 struct Sum {
     total: f64,
@@ -138,24 +139,24 @@ impl Sum {
     }
 }
 
-impl SeenPlane {
+impl RelativePlane {
     fn new(plane: &Plane, origin: DVec3) -> Self {
         let normal = plane.normal();
         Self { normal, distance: normal.dot(plane.point() - origin) }
     }
 
-    /// Infinite, or no number, along the plane.
+    /// The distance to the plane: infinite or NaN if the direction is parallel to the plane.
     fn distance(&self, direction: DVec3) -> f64 {
         self.distance / self.normal.dot(direction)
     }
 
-    /// Whether a ray in that direction goes towards the plane.
+    /// Whether a ray in this direction approaches the plane.
     pub(super) fn is_ahead(&self, direction: DVec3) -> bool {
         self.distance * self.normal.dot(direction) >= 0.0
     }
 }
 
-impl SeenBlock {
+impl RelativeBlock {
     fn new(block: &Block, origin: DVec3) -> Self {
         Self { low: block.low() - origin, high: block.high() - origin }
     }
@@ -166,7 +167,8 @@ impl SeenBlock {
         (enter <= leave && leave >= 0.0).then_some(if enter >= 0.0 { enter } else { leave })
     }
 
-    /// When a ray gets between the two sides of each axis, and when it gets out again.
+    /// The distances at which a ray enters and leaves the slab between the two faces of each axis,
+    /// as in the slab method of Kay and Kajiya ("Ray Tracing Complex Scenes", 1986).
     #[inline]
     fn crossings(&self, direction: DVec3) -> (DVec3, DVec3) {
         let slabs = [
@@ -192,8 +194,8 @@ impl SeenBlock {
     }
 }
 
-/// When a ray with that component of its direction is between `low` and `high`: for ever, or never,
-/// where it goes along them.
+/// The distances at which a ray is between `low` and `high`, for this component of its direction. A
+/// ray parallel to the slab is inside always or never.
 #[inline]
 fn slab(low: f64, high: f64, direction: f64) -> (f64, f64) {
     if direction == 0.0 {

@@ -1,4 +1,4 @@
-//! What one encoder makes of a script.
+//! The frames of a script through one encoder.
 
 use std::time::{Duration, Instant};
 
@@ -10,74 +10,73 @@ use super::difference::Difference;
 use super::encoder::{Changes, Encoder};
 use crate::game::Script;
 
-/// What was measured in a part of a script.
+/// The results of a part of a script.
 #[derive(Clone, Debug)]
 pub struct Part {
     /// The section's name; `all` for all of them.
     pub name: String,
-    /// How many frames it has.
+    /// The number of frames.
     pub frames: usize,
-    /// How many bytes a frame takes.
+    /// The number of bytes per frame.
     pub bytes: Bytes,
-    /// How many bytes it takes for each that ratatui's own encoder does, in the mean; NaN where
-    /// neither takes any.
+    /// The ratio of the mean number of bytes to that of ratatui's own encoder; NaN if both are 0.
     pub ratio: f64,
-    /// What a frame takes after compression by zlib at level 1, and at level 6 as by `ssh -C`.
+    /// The compressed frames, by zlib at level 1, and at level 6 as with `ssh -C`.
     pub compressed: [Compressed; 2],
-    /// How long encoding a frame took, in the mean.
+    /// The mean time to encode a frame.
     pub time: Duration,
-    /// What the viewer saw.
+    /// The colour errors that the viewer sees.
     pub seen: Seen,
 }
 
-/// What a frame takes after compression, in the mean.
+/// The mean of a compressed frame.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Compressed {
-    /// How many bytes.
+    /// The number of bytes.
     pub bytes: f64,
-    /// How long compressing took.
+    /// The time to compress.
     pub time: Duration,
 }
 
-/// How many bytes a frame takes.
+/// The number of bytes per frame.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Bytes {
-    /// In the mean.
+    /// The mean.
     pub mean: f64,
-    /// Half of the frames take no more.
+    /// The median.
     pub median: usize,
-    /// 19 of 20 frames take no more.
+    /// The 95th percentile.
     pub percentile_95: usize,
-    /// No frame takes more.
+    /// The maximum.
     pub largest: usize,
 }
 
-/// How far what the terminal shows is from what was drawn.
+/// The difference between the colours on the terminal and those that were drawn.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Seen {
-    /// The peak signal-to-noise ratio, in decibels; infinite where nothing differs.
+    /// The peak signal-to-noise ratio, in decibels; infinite if there is no difference.
     pub signal_to_noise: f64,
-    /// The mean distance of a pixel's colour, in CIE76's ΔE.
+    /// The mean distance of a pixel's colour, in ΔE of CIE76.
     pub mean_distance: f64,
-    /// The largest.
+    /// The largest distance.
     pub largest_distance: f64,
 }
 
-/// An encoder at work, and what it has taken so far.
-pub(super) struct Tally {
+/// An encoder and its sums so far.
+pub(super) struct EncoderRun {
     name: String,
     encoder: Box<dyn Encoder>,
     streams: [Stream; 2],
-    /// The place in `sections` of each of the script's.
+    /// For each section of the script, the index in `sections`.
     places: Vec<usize>,
     sections: Vec<Sums>,
     all: Sums,
     first_frame: usize,
-    /// What the encoder wrote last.
+    /// The bytes of the last frame.
     bytes: Vec<u8>,
 }
 
-impl Tally {
+impl EncoderRun {
     pub(super) fn new(name: String, encoder: Box<dyn Encoder>, script: &Script) -> Self {
         let mut sections: Vec<Sums> = Vec::new();
         let places = script.sections().iter().map(|section| {
@@ -100,8 +99,8 @@ impl Tally {
         }
     }
 
-    /// Encodes the frame `drawn`, which belongs to that section of the script; the first belongs to
-    /// none.
+    /// Encodes the frame `drawn`, which belongs to this section of the script; the first frame has
+    /// no section.
     pub(super) fn take(&mut self, section: Option<usize>, changes: &Changes, drawn: &Buffer) {
         self.bytes.clear();
         let start = Instant::now();
@@ -127,7 +126,7 @@ impl Tally {
         }
     }
 
-    /// What it has come to, beside what the first of the encoders has; `None` for that one itself.
+    /// The results, relative to those of the first encoder; `None` for the first encoder itself.
     pub(super) fn finish(self, first: Option<&EncoderReport>) -> EncoderReport {
         let sections = self.sections.into_iter().filter(|sums| !sums.name.is_empty());
         let sections = sections.enumerate();
@@ -142,7 +141,7 @@ impl Tally {
     }
 }
 
-/// What the frames of a part have taken so far.
+/// The sums over the frames of a part.
 struct Sums {
     name: String,
     bytes: Vec<usize>,
@@ -191,7 +190,7 @@ impl Sums {
     }
 }
 
-/// What so many percent of the `sorted` numbers do not exceed; 0 where there are none.
+/// The value that this percentage of the `sorted` numbers does not exceed; 0 if there are none.
 fn share(sorted: &[usize], percent: usize) -> usize {
     let rank = (sorted.len() * percent).div_ceil(100);
     sorted.get(rank.saturating_sub(1)).copied().unwrap_or_default()

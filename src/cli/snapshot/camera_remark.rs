@@ -1,12 +1,12 @@
-//! Whereabouts: what is unusual about the place of a camera.
+//! Remarks about unusual positions of a camera.
 //!
-//! A camera can be anywhere, and its picture is drawn; but whoever chose a place inside a wall mostly
-//! meant another one, so that is said.
+//! A camera may be anywhere, and its picture is drawn. But a position inside a wall is probably a
+//! mistake, and is therefore reported.
 
 use crate::world::{Camera, Cell, TileKind, World};
 
-/// A sentence about a `camera` that is off the map or inside something solid; `None` elsewhere.
-pub(super) fn remark(world: &World, camera: &Camera) -> Option<String> {
+/// A sentence about a `camera` that is off the map or inside a solid cell; `None` elsewhere.
+pub(super) fn camera_remark(world: &World, camera: &Camera) -> Option<String> {
     let (grid, position) = (world.grid(), camera.position());
     let is_on_map = (0.0..f64::from(grid.width())).contains(&position.x)
         && (0.0..f64::from(grid.height())).contains(&position.y);
