@@ -7,7 +7,7 @@ use cellcaster::game::Script;
 use cellcaster::map::builtin;
 use cellcaster::palette::ColorDepth;
 use cellcaster::terminal::Fidelity;
-use cellcaster::tui::{Levels, Replay, Settings};
+use cellcaster::tui::{GlyphMode, Levels, Replay, Settings};
 use cellcaster::wire::{self, EncoderReport, PalettePlan, PaletteRow, Part, Plan, Report};
 use ratatui::layout::Size;
 
@@ -16,14 +16,17 @@ fn script() -> Script {
 }
 
 fn report(level: &str) -> Report {
+    report_of(script(), level, Settings::default())
+}
+
+fn report_of(script: Script, level: &str, settings: Settings) -> Report {
     let level = builtin::LEVELS.iter().find(|known| known.name == level).unwrap();
     let levels = Levels::new(level.world().unwrap().into(), std::iter::empty());
     let size = Size::new(120, 40);
     let frames_per_second = NonZeroU32::new(30).unwrap();
-    let script = script();
     let fidelities = vec![Fidelity::EXACT, Fidelity::HIGH, Fidelity::LOW];
     let plan = Plan { script: &script, size, frames_per_second, fidelities };
-    wire::report(&plan, &mut Replay::new(levels, Settings::default(), size))
+    wire::report(&plan, &mut Replay::new(levels, settings, size))
 }
 
 fn encoder<'a>(report: &'a Report, name: &str) -> &'a EncoderReport {
@@ -83,6 +86,28 @@ fn a_frame_takes_no_more_bytes_than_is_promised() {
         let bytes = part.bytes;
         assert!(bytes.median <= bytes.percentile_95 && bytes.percentile_95 <= bytes.largest);
         assert!(bytes.mean <= bytes.largest as f64);
+    }
+}
+
+/// Fidelity spares bytes whatever cells are made of. Without colours there is nothing that could be about right.
+#[test]
+fn every_colour_depth_and_glyph_mode_takes_fewer_bytes_at_lower_fidelity() {
+    use ColorDepth::{Indexed16, Indexed256, Mono, True};
+    for (glyphs, depth, most) in [
+        (GlyphMode::Half, Indexed256, [0.75, 0.50]),
+        (GlyphMode::Half, Indexed16, [0.92, 0.92]),
+        (GlyphMode::Ascii, True, [0.32, 0.25]),
+        (GlyphMode::Ascii, Indexed256, [0.88, 0.76]),
+        (GlyphMode::Ramp, True, [0.40, 0.32]),
+        (GlyphMode::Half, Mono, [1.0, 1.0]),
+    ] {
+        let settings = Settings { depth: Some(depth), glyphs, ..Settings::default() };
+        let walk = Script::parse("1 s forward\n2 s turn-left", "walk").unwrap();
+        let report = report_of(walk, "citadel", settings);
+        let mean = |name| encoder(&report, name).all.bytes.mean;
+        let ratios = ["high", "low"].map(|name| mean(name) / mean("exact"));
+        let is_less = ratios.iter().zip(most).all(|(ratio, most)| *ratio <= most);
+        assert!(is_less, "{glyphs:?} {depth:?}: {ratios:?}");
     }
 }
 

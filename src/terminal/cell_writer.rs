@@ -39,7 +39,7 @@ use ratatui::style::Color;
 #[cfg(feature = "cli")]
 pub(crate) use self::bytes::Bytes;
 use self::inexact::Draughtsman;
-use self::ink::Price;
+use self::ink::{Notation, Price};
 use self::pen::Pen;
 use self::rest::Rest;
 pub use self::screen::Screen;
@@ -136,10 +136,10 @@ impl<W: Write> CellWriter<W> {
         self.rest.draw(&mut self.pen, &mut self.shifts, &mut self.screen);
     }
 
-    /// The colours that the terminal shows in the upper and the lower half of a cell; `None` where
-    /// it shows text in it, where nobody knows, and off the screen.
+    /// The colours that the terminal shows in the upper and the lower half of a cell, or of the text in it and of
+    /// its ground; `None` where nobody knows, and off the screen.
     pub fn shown_colors(&self, column: u16, row: u16) -> Option<[Color; 2]> {
-        Some(self.screen.shown(column, row)?.halves()?.map(Shade::color))
+        Some(self.screen.shown_colors(column, row)?.map(Shade::color))
     }
 
     /// Takes note that the window is now of `size`; ratatui clears it in the next frame.
@@ -193,13 +193,15 @@ impl<W: Write> CellWriter<W> {
 
     /// Makes every row that has changed look as it is wanted.
     fn draw_changed(&mut self) {
-        let price = Price::at(self.fidelity, self.pen.palette().is_on());
+        let is_exact = self.fidelity == Fidelity::EXACT;
         let (pen, shifts) = (&mut self.pen, &mut self.shifts);
+        let price = (!is_exact).then(|| Price::at(self.fidelity, Notation::Entry));
         pen.define_colors(&self.screen, price);
         for row in self.screen.changed_rows() {
-            match price {
-                Some(price) => self.draughtsman.draw_row(pen, shifts, row, price),
-                None => exact::draw_row(pen, shifts, row),
+            if is_exact {
+                exact::draw_row(pen, shifts, row);
+            } else {
+                self.draughtsman.draw_row(pen, shifts, row, self.fidelity);
             }
         }
     }

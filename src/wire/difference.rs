@@ -5,9 +5,10 @@ use ratatui::style::{Color, Modifier};
 
 use super::encoder::Encoder;
 use super::lab;
+use crate::palette::of_256;
 use crate::world::Rgb;
 
-/// Differences of pixels, added up. A cell is two pixels; a cell of text is as it was drawn.
+/// Differences of pixels, added up. A cell is two pixels: its halves, or the colours of its text and its ground.
 #[derive(Clone, Copy, Debug, Default)]
 pub(super) struct Difference {
     pixels: u64,
@@ -70,7 +71,8 @@ impl Difference {
     }
 }
 
-/// The two pixels of a cell that has some.
+/// The two pixels of a cell, unless it is in the terminal's own colours or has modifiers, and so is shown as it was
+/// drawn.
 fn pixels(cell: &Cell) -> Option<[Rgb; 2]> {
     if cell.modifier != Modifier::empty() {
         return None;
@@ -81,13 +83,14 @@ fn pixels(cell: &Cell) -> Option<[Rgb; 2]> {
         "▄" => Some([background?, foreground?]),
         "█" => Some([foreground?; 2]),
         " " => Some([background?; 2]),
-        _ => None,
+        _ => Some([foreground?, background?]),
     }
 }
 
 fn rgb(color: Color) -> Option<Rgb> {
     match color {
         Color::Rgb(red, green, blue) => Some(Rgb::new(red, green, blue)),
+        Color::Indexed(index) => Some(of_256(index)),
         _ => None,
     }
 }

@@ -2,9 +2,14 @@
 
 use super::lab::Lab;
 use super::style::{Kind, Shade};
+use crate::palette;
 use crate::terminal::Fidelity;
+use crate::world::Rgb;
 
 /// A colour, and where it lies in CIE L\*a\*b\*.
+///
+/// Users redefine the 16 named colours, and the terminal's own colours are unknown: these lie apart from all others,
+/// so that no tolerance takes one for another.
 #[derive(Clone, Copy, Debug)]
 pub(super) struct Ink {
     pub(super) lab: [f32; 3],
@@ -12,12 +17,18 @@ pub(super) struct Ink {
 }
 
 impl Ink {
-    /// That colour, if it is one of red, green and blue.
+    /// That colour; an indexed one as xterm's standard palette has it.
     #[inline]
-    fn new(shade: Shade) -> Option<Self> {
-        let Kind::Rgb(channels) = shade.kind() else { return None };
-        let lab = Lab::of(channels).components();
-        Some(Self { lab, shade })
+    fn new(shade: Shade) -> Self {
+        let lab = match shade.kind() {
+            Kind::Rgb(channels) => Lab::of(channels).components(),
+            Kind::Indexed(index) => {
+                let [l, a, b] = Lab::of(palette::of_256(index).channels()).components();
+                if index < FIRST_FIXED { [l + NAMED, a, b] } else { [l, a, b] }
+            }
+            Kind::Default => [OWN; 3],
+        };
+        Self { lab, shade }
     }
 
     /// How many bytes it takes as parameters.
@@ -32,6 +43,13 @@ impl Ink {
         distance(self.lab, other.lab)
     }
 }
+
+/// The first index after the named colours.
+const FIRST_FIXED: u8 = 16;
+/// How far from all others the named colours lie.
+const NAMED: f32 = 20_000.0;
+/// Where the terminal's own colours lie.
+const OWN: f32 = 1e6;
 
 /// CIE76's ΔE.
 #[inline]
@@ -56,34 +74,58 @@ pub(super) struct Inks {
 const PLACE_BITS: u32 = 10;
 
 impl Inks {
-    /// That of a colour, if it is one of red, green and blue.
+    /// That of a colour.
     #[inline]
-    pub(super) fn of(&mut self, shade: Shade) -> Option<Ink> {
+    pub(super) fn of(&mut self, shade: Shade) -> Ink {
         let place =
             (shade.in_bits().wrapping_mul(0x9E37_79B1) >> (u32::BITS - PLACE_BITS)) as usize;
-        let known = self.places.get_mut(place)?;
+        let known = &mut self.places[place];
         if known.shade != shade {
-            *known = Ink::new(shade)?;
+            *known = Ink::new(shade);
         }
-        Some(*known)
+        *known
     }
 
-    /// Those of two halves.
+    /// Those of two colours.
     #[inline]
-    pub(super) fn of_halves(&mut self, [upper, lower]: [Shade; 2]) -> Option<Halves> {
-        Some([self.of(upper)?, self.of(lower)?])
+    pub(super) fn of_both(&mut self, shades: [Shade; 2]) -> [Ink; 2] {
+        shades.map(|shade| self.of(shade))
     }
 
-    /// The colour that is halfway between two.
+    /// The colour halfway between two, or the nearest to it in the palette that both belong to.
     pub(super) fn between(&mut self, one: Ink, other: Ink) -> Ink {
-        match (one.shade.kind(), other.shade.kind()) {
-            (Kind::Rgb([r, g, b]), Kind::Rgb([red, green, blue])) => {
-                let middle = [r.midpoint(red), g.midpoint(green), b.midpoint(blue)];
-                self.of(Shade::rgb(middle)).unwrap_or(one)
+        let middle = |one: [u8; 3], other: [u8; 3]| -> [u8; 3] {
+            std::array::from_fn(|channel| one[channel].midpoint(other[channel]))
+        };
+        let of_indices = |one: u8, other: u8| {
+            let [one, other] = [one, other].map(|index| palette::of_256(index).channels());
+            let [red, green, blue] = middle(one, other);
+            Rgb::new(red, green, blue)
+        };
+        self.of(match (one.shade.kind(), other.shade.kind()) {
+            (Kind::Rgb(one), Kind::Rgb(other)) => Shade::rgb(middle(one, other)),
+            (Kind::Indexed(one @ FIRST_FIXED..), Kind::Indexed(other @ FIRST_FIXED..)) => {
+                Shade::indexed(palette::nearest_of_256(of_indices(one, other)))
             }
-            _ => one,
-        }
+            (Kind::Indexed(one @ ..FIRST_FIXED), Kind::Indexed(other @ ..FIRST_FIXED)) => {
+                Shade::indexed(palette::nearest_of_16(of_indices(one, other)))
+            }
+            _ => one.shade,
+        })
     }
+}
+
+/// How colours are written.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord)]
+pub(super) enum Notation {
+    /// As one of the 16 named ones, in two bytes.
+    Named,
+    /// As one of the 240 fixed ones, in up to eight.
+    Indexed,
+    /// As an entry of the palette where one holds it, in up to eight.
+    Entry,
+    /// As red, green and blue, in up to sixteen.
+    Rgb,
 }
 
 impl Default for Inks {
@@ -105,12 +147,17 @@ pub(super) struct Price {
 }
 
 impl Price {
-    /// At that fidelity, with a palette or without; `None` if it is exact. The less is allowed, the more an
-    /// error is worth; and the less colours cost, the less.
-    pub(super) fn at(fidelity: Fidelity, has_palette: bool) -> Option<Self> {
+    /// At that fidelity, which is not exact. The less is allowed, the more an error is worth; and the less colours
+    /// cost, the less.
+    pub(super) fn at(fidelity: Fidelity, notation: Notation) -> Self {
         let farthest = f32::from(fidelity.tolerance());
-        let worth = if has_palette { (9.2 - farthest / 14.0).max(5.0) } else { 10.5 };
-        (fidelity > Fidelity::EXACT).then(|| Self { farthest, bytes: worth / farthest })
+        let worth = match notation {
+            Notation::Named => 2.0,
+            Notation::Indexed => 6.0,
+            Notation::Entry => (9.2 - farthest / 14.0).max(5.0),
+            Notation::Rgb => 10.5,
+        };
+        Self { farthest, bytes: worth / farthest }
     }
 
     /// What it is worth, in bytes, to be off by `distance`; infinite if too much.

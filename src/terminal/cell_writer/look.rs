@@ -72,6 +72,15 @@ impl Glyph {
     }
 }
 
+/// What a cell is beside its two colours.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub(super) enum Form {
+    /// Two halves, of one colour each, by any of the glyphs.
+    Block,
+    /// A letter without modifiers, in one colour on another.
+    Letter(Number),
+}
+
 /// What a cell looks like, in one word: equal ones look the same.
 ///
 /// The uppermost twelve bits say what it is, and the rest are two colours: of the upper and the lower half,
@@ -205,6 +214,25 @@ impl Look {
     pub(super) fn hashes(self) -> [u16; 3] {
         let hash = self.0.wrapping_mul(0x9E37_79B9_7F4A_7C15);
         [48, 32, 16].map(|from| (hash >> from) as u16)
+    }
+
+    /// What it is beside its colours, and these; `None` where it may only be shown as it is.
+    #[inline]
+    pub(super) fn recolorable(self, alphabet: &Alphabet) -> Option<(Form, [Shade; 2])> {
+        let form = match self.0 >> Self::KIND {
+            0 => Form::Block,
+            number => {
+                let number = Number::new(number.checked_sub(Self::FIRST_LETTER)? as u16);
+                let letter = alphabet.letter(number);
+                letter.modifier().is_empty().then_some(Form::Letter(number))?
+            }
+        };
+        Some((form, self.colors()))
+    }
+
+    /// The same letter in other colours.
+    pub(super) fn recolored(self, colors: [Shade; 2]) -> Self {
+        Self(self.0 >> Self::KIND << Self::KIND | Self::of_halves(colors).0)
     }
 
     /// The colours of the upper and the lower half of a block.

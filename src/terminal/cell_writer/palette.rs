@@ -207,7 +207,7 @@ impl Palette {
                     last = shown;
                 }
                 if shown != look {
-                    look.halves().into_iter().flatten().for_each(|shade| self.note_wanted(shade));
+                    look.colors().into_iter().for_each(|shade| self.note_wanted(shade));
                 }
             }
         }

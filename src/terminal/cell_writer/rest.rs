@@ -4,6 +4,7 @@
 //! there is always a change somewhere. The worst cells come first. To allow less and less error until none is allowed was refused: cells
 //! were sent twice, and the last of the frames had most of the bytes.
 
+use super::alphabet::Alphabet;
 use super::exact;
 use super::ink::Inks;
 use super::look::Look;
@@ -107,17 +108,18 @@ impl Rest {
 fn errors<'a>(row: &'a Row, inks: &'a mut Inks) -> impl Iterator<Item = Cell> + 'a {
     let looks = row.shown.iter().zip(row.looks);
     (0..).zip(looks).filter(|(_, (shown, look))| shown != look).map(|(column, (&shown, &look))| {
-        let error = error(shown, look, inks);
+        let error = error(shown, look, row.alphabet, inks);
         Cell { error, y: row.y, column }
     })
 }
 
-/// The larger distance of the two halves; infinite where it can't be told.
-fn error(shown: Look, wanted: Look, inks: &mut Inks) -> f32 {
-    let Some((shown, wanted)) = shown.halves().zip(wanted.halves()) else { return f32::INFINITY };
-    let distances = shown.into_iter().zip(wanted).map(|(shown, wanted)| {
-        let inks = inks.of(shown).zip(inks.of(wanted));
-        inks.map_or(f32::INFINITY, |(shown, wanted)| shown.distance(wanted))
-    });
-    distances.fold(0.0, f32::max)
+/// The larger distance of the two colours; infinite where it can't be told.
+fn error(shown: Look, wanted: Look, alphabet: &Alphabet, inks: &mut Inks) -> f32 {
+    let parts = shown.recolorable(alphabet).zip(wanted.recolorable(alphabet));
+    let Some(((shown_form, shown), (form, wanted))) = parts else { return f32::INFINITY };
+    if shown_form != form {
+        return f32::INFINITY;
+    }
+    let pairs = shown.into_iter().zip(wanted);
+    pairs.map(|(shown, wanted)| inks.of(shown).distance(inks.of(wanted))).fold(0.0, f32::max)
 }

@@ -10,7 +10,7 @@ use super::alphabet::Alphabet;
 use super::ascii;
 use super::look::Look;
 use super::shift::{Mark, Shift};
-use super::style::Style;
+use super::style::{Shade, Style};
 use crate::tui::Canvas;
 use crate::world::Rgb;
 
@@ -204,10 +204,12 @@ impl Screen {
         !self.exact.contains(&false)
     }
 
-    /// What is shown there; `None` off the screen.
-    pub(super) fn shown(&self, x: u16, y: u16) -> Option<Look> {
+    /// The two colours that are shown there; `None` where they are unknown, and off the screen.
+    pub(super) fn shown_colors(&self, x: u16, y: u16) -> Option<[Shade; 2]> {
         let (x, y) = (usize::from(x), usize::from(y));
-        (x < self.width).then(|| self.shown.get(y * self.width + x).copied()).flatten()
+        let place = (x < self.width).then_some(y * self.width + x)?;
+        let (_, colors) = self.shown.get(place)?.recolorable(&self.alphabet)?;
+        Some(colors)
     }
 
     /// What each row shows, and what it is to show.
@@ -319,12 +321,12 @@ impl Row<'_> {
         self.looks.len()
     }
 
-    /// Whether it shows blocks wherever it does not show what it is to show, and is to show blocks
-    /// there.
+    /// Whether no cell differs from what it is to show in more than its colours.
     pub(super) fn is_near(&self) -> bool {
+        let form = |look: Look| look.recolorable(self.alphabet).map(|(form, _)| form);
         let mut looks = self.shown.iter().zip(self.looks);
-        looks.all(|(shown, look)| {
-            shown == look || shown.halves().is_some() && look.halves().is_some()
+        looks.all(|(&shown, &look)| {
+            shown == look || form(look).is_some() && form(shown) == form(look)
         })
     }
 

@@ -10,6 +10,7 @@ use super::super::sequence;
 use super::bytes::Bytes;
 use super::bytes::Piece;
 use super::control::{self, ControlSequence};
+use super::ink::Notation;
 use crate::world::Rgb;
 
 /// How a character is drawn.
@@ -238,6 +239,16 @@ impl Shade {
             Kind::Default => Color::Reset,
             Kind::Indexed(index) => Color::Indexed(index),
             Kind::Rgb([red, green, blue]) => Color::Rgb(red, green, blue),
+        }
+    }
+
+    /// How it is written.
+    #[inline]
+    pub(super) fn notation(self) -> Notation {
+        match self.kind() {
+            Kind::Default | Kind::Indexed(..16) => Notation::Named,
+            Kind::Indexed(_) => Notation::Indexed,
+            Kind::Rgb(_) => Notation::Rgb,
         }
     }
 

@@ -31,6 +31,8 @@ use super::style::{Shade, Style};
 pub(super) enum Wanted {
     /// These two halves, or about; to leave the cell as it is costs so many bytes.
     Halves { wanted: Halves, keep: f32 },
+    /// A letter in about these colours of its text and its ground; it takes so many bytes itself.
+    Letter { wanted: [Ink; 2], keep: f32, bytes: u8 },
     /// What can't be shown but exactly.
     Fixed { is_shown: bool },
 }
@@ -42,7 +44,7 @@ pub(super) enum Action {
     Keep,
     /// Draw it exactly.
     DrawExactly,
-    /// Draw it so.
+    /// Draw it so; a letter, whatever the glyph.
     Draw(Glyph, Style),
 }
 
@@ -118,11 +120,16 @@ impl Trellis {
         let mut ways = Ways::from_start(style, store.inks);
         for (x, cell) in (0..).zip(row) {
             let steps = match *cell {
-                Wanted::Halves { keep, .. } if keep < NEGLIGIBLE && !ways.cursor.contains(&x) => {
+                Wanted::Halves { keep, .. } | Wanted::Letter { keep, .. }
+                    if keep < NEGLIGIBLE && !ways.cursor.contains(&x) =>
+                {
                     ways.keep(keep)
                 }
                 Wanted::Halves { wanted, keep } => {
-                    ways.past_halves(x, wanted, keep, price, repeats, store)
+                    ways.past_halves(x, wanted, keep, None, price, repeats, store)
+                }
+                Wanted::Letter { wanted, keep, bytes } => {
+                    ways.past_halves(x, wanted, keep, Some(bytes), price, repeats, store)
                 }
                 Wanted::Fixed { is_shown: true } => ways.keep(0.0),
                 Wanted::Fixed { is_shown: false } => ways.past_text(x),
@@ -169,7 +176,7 @@ fn motion(cursor: u16, x: u16) -> f32 {
 impl Ways {
     /// The one way to the start of a row.
     fn from_start(style: Option<Style>, inks: &mut Inks) -> Self {
-        let told = style.and_then(|style| inks.of_halves(style.plain_colors()?));
+        let told = style.and_then(Style::plain_colors).map(|colors| inks.of_both(colors));
         Self::one(0.0, told.unwrap_or([UNKNOWN; 2]), NOWHERE)
     }
 
@@ -207,6 +214,7 @@ impl Ways {
         x: u16,
         wanted: Halves,
         keep: f32,
+        letter: Option<u8>,
         price: Price,
         repeats: bool,
         store: &mut Store,
@@ -219,9 +227,9 @@ impl Ways {
             if is_right && cursor != x { f32::INFINITY } else { self.cost[way] + motion(cursor, x) }
         });
         let repeated = if repeats { self.repeated(x) } else { [None; KEPT] };
-        let block = Block::new(wanted, price, self, start, repeated, x + 1);
+        let block = Block::new(wanted, letter, price, self, start, repeated, x + 1);
         let fresh = block.draw(&mut candidates, (!is_right).then_some(store));
-        self.go_on(&candidates, &fresh, x + 1)
+        self.go_on(&candidates, &fresh, letter.is_some(), x + 1)
     }
 
     /// What each way has drawn just before column `x`.
@@ -231,7 +239,13 @@ impl Ways {
 
     /// Goes on by the cheapest.
     #[inline]
-    fn go_on(&mut self, candidates: &Candidates, fresh: &Fresh, cursor: u16) -> [Step; KEPT] {
+    fn go_on(
+        &mut self,
+        candidates: &Candidates,
+        fresh: &Fresh,
+        is_letter: bool,
+        cursor: u16,
+    ) -> [Step; KEPT] {
         let (before, cursors) = (self.inks, self.cursor);
         self.cost = candidates.cost;
         std::array::from_fn(|way| {
@@ -242,7 +256,7 @@ impl Ways {
                 [fresh.ink(text).unwrap_or(old_text), fresh.ink(ground).unwrap_or(old_ground)];
             self.inks[way] = inks.map(|ink| *ink);
             (self.cursor[way], self.last[way]) = match kind {
-                StepKind::Draw(glyph) => (cursor, Some(glyph)),
+                StepKind::Draw(glyph) => (cursor, if is_letter { None } else { Some(glyph) }),
                 _ => (cursors[from_way], None),
             };
             Step { kind, before: from, shades: inks.map(|ink| ink.shade) }

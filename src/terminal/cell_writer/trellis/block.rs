@@ -11,6 +11,8 @@ use super::{KEPT, StepKind, Ways};
 /// A block to draw, after each of the ways to it.
 pub(super) struct Block<'a> {
     wanted: Halves,
+    /// How many bytes the only glyph takes that it may be drawn as; `None` for those of blocks.
+    letter: Option<u8>,
     price: Price,
     ways: &'a Ways,
     /// What it costs to come here by each way.
@@ -82,6 +84,7 @@ impl<'a> Block<'a> {
     #[inline]
     pub(super) fn new(
         wanted: Halves,
+        letter: Option<u8>,
         price: Price,
         ways: &'a Ways,
         start: [f32; KEPT],
@@ -89,7 +92,7 @@ impl<'a> Block<'a> {
         cursor: u16,
     ) -> Self {
         let least = start.into_iter().fold(f32::INFINITY, f32::min);
-        Self { wanted, price, ways, start, least, repeated, cursor }
+        Self { wanted, letter, price, ways, start, least, repeated, cursor }
     }
 
     /// What it costs that each way's text and ground stand for each half.
@@ -124,7 +127,9 @@ impl<'a> Block<'a> {
             let [upper, lower] =
                 self.wanted.map(|wanted| store.palette.telling(wanted, self.price));
             fresh.0[..2].copy_from_slice(&[upper, lower]);
-            self.draw_in_one_for_both(candidates, &mut fresh, store);
+            if self.letter.is_none() {
+                self.draw_in_one_for_both(candidates, &mut fresh, store);
+            }
             self.draw_in_one_color(&errors, candidates, [upper, lower]);
             self.draw_in_two_colors(candidates, [upper, lower]);
         }
@@ -134,6 +139,16 @@ impl<'a> Block<'a> {
     #[inline]
     fn draw_in_old_colors(&self, errors: &[[f32; KEPT]; 4], candidates: &mut Candidates) {
         let [text_above, text_below, ground_above, ground_below] = errors;
+        if let Some(bytes) = self.letter {
+            for way in 0..KEPT {
+                let error = text_above[way] + ground_below[way];
+                let cost = self.start[way] + f32::from(bytes) + error;
+                if candidates.would_keep(cost) {
+                    self.add(candidates, cost, way, Glyph::Upper, [Told::None; 2], [None; 2]);
+                }
+            }
+            return;
+        }
         for way in 0..KEPT {
             let blocks = [
                 (Glyph::Space, ground_above[way] + ground_below[way]),
@@ -166,7 +181,7 @@ impl<'a> Block<'a> {
         [upper, lower]: [Telling; 2],
     ) {
         let [text_above, text_below, ground_above, ground_below] = errors;
-        let half = ONE_COLOR + bytes(Glyph::Upper);
+        let half = ONE_COLOR + self.bytes_of_half();
         let (above, below) = (half + upper.cost(), half + lower.cost());
         let mut offer = |glyph, cost: f32, errors: &[f32; KEPT], told, inks| {
             if candidates.would_keep(self.least + cost) {
@@ -181,6 +196,9 @@ impl<'a> Block<'a> {
         let (upper, lower) = (Some(upper.ink), Some(lower.ink));
         offer(Glyph::Upper, above, ground_below, [Told::Upper, Told::None], [upper, None]);
         offer(Glyph::Upper, below, text_above, [Told::None, Told::Lower], [None, lower]);
+        if self.letter.is_some() {
+            return;
+        }
         offer(Glyph::Lower, above, text_below, [Told::None, Told::Upper], [None, upper]);
         offer(Glyph::Lower, below, ground_above, [Told::Lower, Told::None], [lower, None]);
     }
@@ -226,7 +244,7 @@ impl<'a> Block<'a> {
     /// In two new colours, which lead to the same from everywhere.
     #[inline]
     fn draw_in_two_colors(&self, candidates: &mut Candidates, [upper, lower]: [Telling; 2]) {
-        let cost = self.least + TWO_COLORS + upper.cost() + lower.cost() + bytes(Glyph::Upper);
+        let cost = self.least + TWO_COLORS + upper.cost() + lower.cost() + self.bytes_of_half();
         let (upper, lower) = (upper.ink, lower.ink);
         if !candidates.would_keep(cost) {
             return;
@@ -234,10 +252,16 @@ impl<'a> Block<'a> {
         let way = (0..KEPT).find(|&way| self.start[way] == self.least).unwrap_or(0);
         let (told, inks) = ([Told::Upper, Told::Lower], [Some(upper), Some(lower)]);
         self.add(candidates, cost, way, Glyph::Upper, told, inks);
-        if candidates.would_keep(cost) {
+        if self.letter.is_none() && candidates.would_keep(cost) {
             let (told, inks) = ([Told::Lower, Told::Upper], [Some(lower), Some(upper)]);
             self.add(candidates, cost, way, Glyph::Lower, told, inks);
         }
+    }
+
+    /// What a half block takes, or a letter.
+    #[inline]
+    fn bytes_of_half(&self) -> f32 {
+        self.letter.map_or(bytes(Glyph::Upper), f32::from)
     }
 
     /// Adds a way that draws `glyph`.
