@@ -16,16 +16,16 @@ fn script() -> Script {
 }
 
 fn report(level: &str) -> Report {
-    report_of(script(), level, Settings::default())
+    report_of(&script(), level, Settings::default())
 }
 
-fn report_of(script: Script, level: &str, settings: Settings) -> Report {
+fn report_of(script: &Script, level: &str, settings: Settings) -> Report {
     let level = builtin::LEVELS.iter().find(|known| known.name == level).unwrap();
     let levels = Levels::new(level.world().unwrap().into(), std::iter::empty());
     let size = Size::new(120, 40);
     let frames_per_second = NonZeroU32::new(30).unwrap();
     let fidelities = vec![Fidelity::EXACT, Fidelity::HIGH, Fidelity::LOW];
-    let plan = Plan { script: &script, size, frames_per_second, fidelities };
+    let plan = Plan { script, size, frames_per_second, fidelities };
     wire::report(&plan, &mut Replay::new(levels, settings, size))
 }
 
@@ -103,7 +103,7 @@ fn every_colour_depth_and_glyph_mode_takes_fewer_bytes_at_lower_fidelity() {
     ] {
         let settings = Settings { depth: Some(depth), glyphs, ..Settings::default() };
         let walk = Script::parse("1 s forward\n2 s turn-left", "walk").unwrap();
-        let report = report_of(walk, "citadel", settings);
+        let report = report_of(&walk, "citadel", settings);
         let mean = |name| encoder(&report, name).all.bytes.mean;
         let ratios = ["high", "low"].map(|name| mean(name) / mean("exact"));
         let is_less = ratios.iter().zip(most).all(|(ratio, most)| *ratio <= most);

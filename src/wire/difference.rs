@@ -79,7 +79,6 @@ fn pixels(cell: &Cell) -> Option<[Rgb; 2]> {
     }
     let (foreground, background) = (rgb(cell.fg), rgb(cell.bg));
     match cell.symbol() {
-        "▀" => Some([foreground?, background?]),
         "▄" => Some([background?, foreground?]),
         "█" => Some([foreground?; 2]),
         " " => Some([background?; 2]),

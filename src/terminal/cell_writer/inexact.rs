@@ -5,39 +5,38 @@ use ratatui::layout::Position;
 use super::alphabet::{Alphabet, Number};
 use super::exact;
 use super::ink::{Ink, Inks, Notation, Price};
-use super::look::{Form, Look};
+use super::look::{Form, Glyph, Look};
 use super::pen::Pen;
 use super::screen::Row;
 use super::shift::{BYTE, CELL, Loss, Shifts};
-use super::trellis::{Action, Store, Trellis, Wanted};
+use super::style::Style;
+use super::trellis::{Action, Store, Terms, Trellis, Wanted};
 use crate::terminal::Fidelity;
 
 /// Draws rows inexactly, and keeps the memory that it takes.
 #[derive(Debug, Default)]
 pub(super) struct Draughtsman {
     inks: Inks,
-    /// The cells that a row is to show; `None` where they must be exact.
-    parts: Vec<Option<Parts>>,
-    /// Where these lie, and those that it shows.
+    /// Where the colours lie that a row is to show, and those that it shows.
     wanted: Colors,
     shown: Colors,
-    cells: Vec<Wanted>,
+    /// What it costs to leave the two colours of each cell as they are.
+    keep: Vec<[f32; 2]>,
+    /// What it would cost where they have moved.
+    moved: Vec<[f32; 2]>,
     trellis: Trellis,
 }
-
-/// What a cell is, and its colours.
-type Parts = (Form, [Ink; 2]);
 
 /// Where the two colours of each cell lie in L\*a\*b\*, component by component, so that the distances of
 /// several are computed at once.
 ///
-/// Letters lie apart from blocks, and from other letters. What may only be shown exactly lies far from every colour
-/// and from everything that does not look the same.
+/// Characters lie apart from blocks, and from other characters. What may only be shown exactly lies far from every
+/// colour and from everything that does not look the same.
 #[derive(Debug, Default)]
 struct Colors([Vec<[f32; 2]>; 3]);
 
 impl Draughtsman {
-    /// Makes a row look as it is wanted, or so that it can't be told for that price.
+    /// Makes a row look as it is wanted, or about, as `fidelity` allows.
     pub(super) fn draw_row(
         &mut self,
         pen: &mut Pen,
@@ -49,82 +48,31 @@ impl Draughtsman {
             // Nobody knows how much of it a character covers.
             return exact::draw_row(pen, shifts, row);
         }
-        self.mix_inks(&row);
-        let price = Price::at(fidelity, self.notation(pen.palette().is_on()));
+        let notation = Notation::of(row.looks, pen.palette().is_on());
+        let price = Price::at(fidelity, notation);
+        self.wanted.fill(row.looks, row.alphabet, &mut self.inks);
+        self.shown.fill(row.shown, row.alphabet, &mut self.inks);
         self.shift(pen, shifts, &mut row, price);
-        self.cells.clear();
-        let errors = self.shown.distances(&self.wanted, 0, 0);
-        self.cells.extend(self.parts.iter().zip(errors).zip(row.shown.iter().zip(row.looks)).map(
-            |((parts, distances), (shown, look))| {
-                let keep = distances.map(|distance| price.of_distance(distance)).iter().sum();
-                match *parts {
-                    Some((Form::Block, wanted)) => Wanted::Halves { wanted, keep },
-                    Some((Form::Letter(number), wanted)) => {
-                        let bytes = row.alphabet.letter(number).character().len_utf8() as u8;
-                        Wanted::Letter { wanted, keep, bytes }
-                    }
-                    None => Wanted::Fixed { is_shown: shown == look },
-                }
-            },
-        ));
-        let (style, repeats) = (pen.style(), pen.repeats());
+        self.shown.costs(&self.wanted, [0, 0], price, &mut self.keep);
+        let terms = Terms { price, style: pen.style(), repeats: pen.repeats() };
         let mut store = Store { inks: &mut self.inks, palette: pen.palette() };
-        let actions = self.trellis.search(&self.cells, style, price, repeats, &mut store);
-        *row.exact = true;
-        for (column, &action) in actions.iter().enumerate() {
+        let wanted = |column: usize, inks: &mut Inks| wanted(row.looks[column], row.alphabet, inks);
+        let actions = self.trellis.search(&self.keep, wanted, terms, &mut store);
+        for &(column, action) in actions {
             match action {
-                Action::Keep => {}
-                Action::DrawExactly => exact::draw_cell(pen, &mut row, column),
-                Action::Draw(glyph, style) => {
-                    let position = Position { x: column as u16, y: row.y };
-                    match self.parts[column] {
-                        Some((Form::Letter(number), _)) => {
-                            let letter = row.alphabet.letter(number).character();
-                            pen.draw_text(position, letter.encode_utf8(&mut [0; 4]), style);
-                            let colors = [style.foreground, style.background];
-                            row.shown[column] = row.looks[column].recolored(colors);
-                        }
-                        _ => {
-                            pen.draw_block(position, glyph, style);
-                            row.shown[column] = Look::of_block(glyph, style);
-                        }
-                    }
-                }
+                Action::DrawExactly => exact::draw_cell(pen, &mut row, usize::from(column)),
+                Action::Draw(glyph, style) => draw_cell(pen, &mut row, column, glyph, style),
             }
-            *row.exact &= row.shown[column] == row.looks[column];
         }
-    }
-
-    fn mix_inks(&mut self, row: &Row) {
-        self.parts.clear();
-        self.wanted.clear();
-        self.shown.clear();
-        for (&shown, &look) in row.shown.iter().zip(row.looks) {
-            let wanted = parts(look, row.alphabet, &mut self.inks);
-            self.parts.push(wanted);
-            self.wanted.push(wanted, look);
-            let is_shown = shown == look;
-            let inks = if is_shown { wanted } else { parts(shown, row.alphabet, &mut self.inks) };
-            self.shown.push(inks, shown);
-        }
-    }
-
-    /// How the colours of the row's picture are written.
-    fn notation(&self, has_palette: bool) -> Notation {
-        let colors = self.parts.iter().flatten().flat_map(|(_, inks)| inks);
-        let longest = colors.map(|ink| ink.shade.notation()).max().unwrap_or(Notation::Named);
-        if has_palette { longest.min(Notation::Entry) } else { longest }
+        *row.exact = row.shown == row.looks;
     }
 
     /// Moves the stretches of a row that have only moved, or about.
     fn shift(&mut self, pen: &mut Pen, shifts: &mut Shifts, row: &mut Row, price: Price) {
-        let wanted = &self.wanted;
-        let lose = |shown: &Colors, [from, to]: [usize; 2], losses: &mut Vec<Loss>| {
-            losses.extend(shown.distances(wanted, from, to).map(|distances| {
-                let [upper, lower] = distances.map(|distance| price.of_distance(distance));
-                let loss = (upper + lower) * f32::from(BYTE);
-                loss.min(f32::from(CELL)) as Loss
-            }));
+        let (wanted, moved) = (&self.wanted, &mut self.moved);
+        let mut lose = |shown: &Colors, places: [usize; 2], losses: &mut Vec<Loss>| {
+            shown.costs(wanted, places, price, moved);
+            losses.extend(moved.iter().map(|[one, other]| loss(one + other)));
         };
         shifts.begin(row, |from, to, losses| lose(&self.shown, [from, to], losses));
         while let Some(shift) =
@@ -140,11 +88,61 @@ impl Draughtsman {
     }
 }
 
-/// What `look` is and its colours, unless it may only be shown exactly.
+/// The loss of so many bytes, at most that of a cell.
 #[inline]
-fn parts(look: Look, alphabet: &Alphabet, inks: &mut Inks) -> Option<Parts> {
+fn loss(bytes: f32) -> Loss {
+    /// Added to a small number, this leaves it in the lowest bits.
+    const INTEGER: f32 = 8_388_608.0;
+    let (loss, most) = (bytes * f32::from(BYTE), f32::from(CELL));
+    ((if loss < most { loss } else { most }) + INTEGER).to_bits() as Loss
+}
+
+/// L*, a* and b* of two colours.
+#[inline]
+fn components([one, other]: [Ink; 2]) -> [[f32; 2]; 3] {
+    [0, 1, 2].map(|index| [one.lab[index], other.lab[index]])
+}
+
+/// Where the colours of what is no block lie.
+#[inline(never)]
+fn of_character(look: Look, alphabet: &Alphabet, inks: &mut Inks) -> [[f32; 2]; 3] {
+    match look.recolorable(alphabet) {
+        Some((Form::Letter(number), colors)) => {
+            let (apart, components) = (apart(number), components(inks.of_both(colors)));
+            [0, 1, 2].map(|index| components[index].map(|component| component + apart[index]))
+        }
+        // Those that do not look the same are far from each other.
+        _ => look.hashes().map(|hash| [FAR * (1.0 + f32::from(hash)); 2]),
+    }
+}
+
+/// What a cell is to be for the search, unless it may only be drawn exactly.
+#[inline]
+fn wanted(look: Look, alphabet: &Alphabet, inks: &mut Inks) -> Option<Wanted> {
     let (form, colors) = look.recolorable(alphabet)?;
-    Some((form, inks.of_both(colors)))
+    let character = match form {
+        Form::Block => None,
+        Form::Letter(number) => Some(alphabet.letter(number).character().len_utf8() as u8),
+    };
+    Some(Wanted { inks: inks.of_both(colors), character })
+}
+
+/// Draws a cell as a block, or as the character that it is to be, in those colours.
+#[inline]
+fn draw_cell(pen: &mut Pen, row: &mut Row, column: u16, glyph: Glyph, style: Style) {
+    let position = Position { x: column, y: row.y };
+    let column = usize::from(column);
+    let look = row.looks[column];
+    row.shown[column] = match look.text(row.alphabet) {
+        None => {
+            pen.draw_block(position, glyph, style);
+            Look::of_block(glyph, style)
+        }
+        Some((character, _)) => {
+            pen.draw_text(position, character.encode_utf8(&mut [0; 4]), style);
+            look.recolored([style.foreground, style.background])
+        }
+    };
 }
 
 /// How far from blocks a letter lies: at a point of its own of a lattice whose points are farther apart than colours.
@@ -158,45 +156,46 @@ fn apart(number: Number) -> [f32; 3] {
 const FAR: f32 = 1e6;
 
 impl Colors {
-    fn clear(&mut self) {
-        self.0.iter_mut().for_each(Vec::clear);
-    }
-
-    /// Adds those of a cell.
-    #[inline]
-    fn push(&mut self, parts: Option<Parts>, look: Look) {
-        let colors = match parts {
-            Some((Form::Block, [upper, lower])) => {
-                [0, 1, 2].map(|index| [upper.lab[index], lower.lab[index]])
+    /// Finds where the colours of cells lie.
+    fn fill(&mut self, looks: &[Look], alphabet: &Alphabet, inks: &mut Inks) {
+        for components in &mut self.0 {
+            components.resize(looks.len(), [0.0; 2]);
+        }
+        let [ls, as_, bs] = &mut self.0;
+        let places = ls.iter_mut().zip(as_).zip(bs);
+        let mut last = (Look::UNKNOWN, [[FAR; 2]; 3]);
+        for (&look, ((l, a), b)) in looks.iter().zip(places) {
+            if look != last.0 {
+                last.0 = look;
+                last.1 = match look.halves() {
+                    Some(halves) => components(inks.of_both(halves)),
+                    None => of_character(look, alphabet, inks),
+                };
             }
-            Some((Form::Letter(number), [text, ground])) => {
-                let apart = apart(number);
-                [0, 1, 2].map(|index| {
-                    [text.lab[index], ground.lab[index]].map(|component| component + apart[index])
-                })
-            }
-            // Those that do not look the same are far from each other.
-            None => look.hashes().map(|hash| [FAR * (1.0 + f32::from(hash)); 2]),
-        };
-        for (components, component) in self.0.iter_mut().zip(colors) {
-            components.push(component);
+            [*l, *a, *b] = last.1;
         }
     }
 
-    /// How far the colours of the cells from the place `from` on are from those of `others` from `to` on.
-    #[inline]
-    fn distances<'a>(
-        &'a self,
-        others: &'a Self,
-        from: usize,
-        to: usize,
-    ) -> impl ExactSizeIterator<Item = [f32; 2]> + 'a {
-        let pairs = |index: usize| self.0[index][from..].iter().zip(&others.0[index][to..]);
-        pairs(0).zip(pairs(1)).zip(pairs(2)).map(|((l, a), b)| {
-            std::array::from_fn(|half| {
-                let [l, a, b] = [l, a, b].map(|(one, other)| one[half] - other[half]);
-                (l * l + a * a + b * b).sqrt()
-            })
-        })
+    /// What it costs that the cells of this row from the place `from` on stand for those of `others` from `to` on,
+    /// cell by cell.
+    fn costs(
+        &self,
+        others: &Self,
+        [from, to]: [usize; 2],
+        price: Price,
+        costs: &mut Vec<[f32; 2]>,
+    ) {
+        let count = others.0[0].len() - from.max(to);
+        costs.resize(count, [0.0; 2]);
+        let [ls, as_, bs] = self.0.each_ref().map(|shown| shown[from..][..count].as_flattened());
+        let wanted = others.0.each_ref().map(|wanted| wanted[to..][..count].as_flattened());
+        let shown = ls.iter().zip(as_).zip(bs);
+        let wanted = wanted[0].iter().zip(wanted[1]).zip(wanted[2]);
+        for (cost, (((l, a), b), ((l2, a2), b2))) in
+            costs.as_flattened_mut().iter_mut().zip(shown.zip(wanted))
+        {
+            let [l, a, b] = [l - l2, a - a2, b - b2];
+            *cost = price.of_distance((l * l + a * a + b * b).sqrt());
+        }
     }
 }

@@ -1,6 +1,7 @@
 //! Colours that may be shown for each other, what they cost, and what it costs to be off.
 
 use super::lab::Lab;
+use super::look::Look;
 use super::style::{Kind, Shade};
 use crate::palette;
 use crate::terminal::Fidelity;
@@ -18,7 +19,7 @@ pub(super) struct Ink {
 
 impl Ink {
     /// That colour; an indexed one as xterm's standard palette has it.
-    #[inline]
+    #[inline(never)]
     fn new(shade: Shade) -> Self {
         let lab = match shade.kind() {
             Kind::Rgb(channels) => Lab::of(channels).components(),
@@ -58,9 +59,6 @@ pub(super) fn distance(one: [f32; 3], other: [f32; 3]) -> f32 {
     (l * l + a * a + b * b).sqrt()
 }
 
-/// The colours of a block's halves, the upper one first.
-pub(super) type Halves = [Ink; 2];
-
 /// The inks of the colours that were asked for of late.
 ///
 /// A frame has some hundreds of colours and some ten thousand pixels. Each colour has one place, which
@@ -75,7 +73,8 @@ const PLACE_BITS: u32 = 10;
 
 impl Inks {
     /// That of a colour.
-    #[inline]
+    #[expect(clippy::inline_always, reason = "calls would take longer than what they do")]
+    #[inline(always)]
     pub(super) fn of(&mut self, shade: Shade) -> Ink {
         let place =
             (shade.in_bits().wrapping_mul(0x9E37_79B1) >> (u32::BITS - PLACE_BITS)) as usize;
@@ -133,6 +132,20 @@ impl Default for Inks {
         // No place knows a colour that has not been asked for.
         let nothing = Ink { lab: [0.0; 3], shade: Shade::NONE };
         Self { places: vec![nothing; 1 << PLACE_BITS] }
+    }
+}
+
+impl Notation {
+    /// That of the longest colour of a row of cells, on a terminal whose palette may be defined or not.
+    pub(super) fn of(looks: &[Look], has_palette: bool) -> Self {
+        let all = looks.iter().fold([0; 2], |all, look| {
+            let colors = look.colors().map(Shade::in_bits);
+            [all[0] | colors[0], all[1] | colors[1]]
+        });
+        match Shade::longest_of(all[0] | all[1]) {
+            Self::Rgb if has_palette => Self::Entry,
+            notation => notation,
+        }
     }
 }
 

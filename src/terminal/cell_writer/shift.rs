@@ -73,14 +73,17 @@ pub(super) struct Shifts {
 impl Shifts {
     /// Begins with a row. `lose` adds what is lost where the cells that are now at the first place and
     /// after it are shown at the second and after it.
-    pub(super) fn begin(&mut self, row: &Row, lose: impl Fn(usize, usize, &mut Vec<Loss>)) {
+    pub(super) fn begin(&mut self, row: &Row, mut lose: impl FnMut(usize, usize, &mut Vec<Loss>)) {
         self.landmarks.find(row.looks, row.marks);
         self.losses.clear();
         lose(0, 0, &mut self.losses);
     }
 
     /// The shift after which least is lost, if it spares more than it takes.
-    pub(super) fn next(&mut self, lose: impl Fn(usize, usize, &mut Vec<Loss>)) -> Option<Shift> {
+    pub(super) fn next(
+        &mut self,
+        mut lose: impl FnMut(usize, usize, &mut Vec<Loss>),
+    ) -> Option<Shift> {
         if sum(&self.losses) <= SHIFT {
             return None;
         }

@@ -242,13 +242,16 @@ impl Shade {
         }
     }
 
-    /// How it is written.
-    #[inline]
-    pub(super) fn notation(self) -> Notation {
-        match self.kind() {
-            Kind::Default | Kind::Indexed(..16) => Notation::Named,
-            Kind::Indexed(_) => Notation::Indexed,
-            Kind::Rgb(_) => Notation::Rgb,
+    /// How the longest of several colours is written, whose bits are united.
+    pub(super) fn longest_of(bits: u32) -> Notation {
+        /// What no index of a named colour has.
+        const ABOVE_NAMED: u32 = 0xF0;
+        if bits & Self::RGB != 0 {
+            Notation::Rgb
+        } else if bits & ABOVE_NAMED != 0 {
+            Notation::Indexed
+        } else {
+            Notation::Named
         }
     }
 
