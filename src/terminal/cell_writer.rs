@@ -6,8 +6,10 @@
 //! moved only where it does not already stand. Ratatui's own backends send both colours when one
 //! differs, and 25 bytes for a frame without a change.
 //!
-//! What the terminal shows is modelled cell by cell: what looks as it should is not sent, and what
-//! moved sideways is moved by the terminal.
+//! The writer keeps a model of the screen, cell by cell. A cell that looks as it should is not sent, and a part of
+//! a row that moved sideways is moved by the terminal. At a [`Fidelity`] that is not exact, each row is searched
+//! for the cheapest way to show it within the tolerance, whatever its cells are made of: half blocks or
+//! characters, in true colour or in a palette. A screen that does not change becomes exact in ten frames.
 
 mod alphabet;
 mod ascii;

@@ -1,4 +1,9 @@
-//! Draws a row about as it is wanted, for fewer bytes.
+//! Draws a row within a tolerance of what it is to show, for fewer bytes.
+//!
+//! Two cells are compared by the distance of their two colours in L\*a\*b\*, if they are both blocks or both the same
+//! character without modifiers. All other cells are drawn exactly. Another character in place of the wanted one, such
+//! as its neighbour on a ramp of brightness, was refused: in ascii mode a character also tells of a surface, and
+//! most of the bytes are colours.
 
 use ratatui::layout::Position;
 
