@@ -23,6 +23,7 @@ use ratatui::buffer::Buffer;
 use ratatui::layout::Size;
 
 use crate::game::Script;
+use crate::palette::ColorDepth;
 use crate::terminal::Fidelity;
 use crate::tui::Replay;
 use encoder::{Brevity, Encoder, Stock, Writer};
@@ -39,6 +40,8 @@ pub struct Plan<'a> {
     pub script: &'a Script,
     /// The size of the window that `replay` plays in.
     pub size: Size,
+    /// The colours that `replay` draws in. Only in true colour does an encoder define a palette.
+    pub depth: ColorDepth,
     /// How many frames a second are sent.
     pub frames_per_second: NonZeroU32,
     /// The fidelities at which our encoder is measured.
@@ -71,7 +74,8 @@ pub struct EncoderReport {
 pub fn report(plan: &Plan, replay: &mut Replay) -> Report {
     let ours = [Brevity::None, Brevity::Tried].into_iter().flat_map(|brevity| {
         plan.fidelities.iter().map(move |&fidelity| {
-            let writer: Box<dyn Encoder> = Box::new(Writer::new(plan.size, fidelity, brevity));
+            let writer: Box<dyn Encoder> =
+                Box::new(Writer::new(plan.size, plan.depth, fidelity, brevity));
             (brevity.name(fidelity), writer)
         })
     });

@@ -27,6 +27,7 @@ pub(super) fn run(options: &Wire) -> Result<(), Error> {
     let plan = Plan {
         script: &script,
         size: options.size.cells(),
+        depth: options.depth,
         frames_per_second: options.frames_per_second.get(),
         fidelities: match options.fidelities.as_slice() {
             [] => vec![Fidelity::EXACT, Fidelity::HIGH, Fidelity::LOW],

@@ -9,6 +9,7 @@ use ratatui::buffer::Cell;
 use ratatui::layout::Size;
 use ratatui::style::Color;
 
+use crate::palette::ColorDepth;
 use crate::terminal::{CellWriter, Fidelity};
 
 /// Cells that are not what they were, as ratatui's backends get them.
@@ -78,7 +79,7 @@ impl Encoder for Stock {
     }
 }
 
-/// Whether the terminal repeats characters and has its palette defined.
+/// Whether the terminal repeats characters and, in true colour, has its palette defined.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub(super) enum Brevity {
     None,
@@ -102,12 +103,12 @@ pub(super) struct Writer {
 }
 
 impl Writer {
-    pub(super) fn new(size: Size, fidelity: Fidelity, brevity: Brevity) -> Self {
+    pub(super) fn new(size: Size, depth: ColorDepth, fidelity: Fidelity, brevity: Brevity) -> Self {
         let sink = Sink::default();
         let mut backend = CellWriter::new(sink.clone(), size);
         backend.set_fidelity(fidelity);
         backend.set_repeats(brevity == Brevity::Tried);
-        backend.set_palette(brevity == Brevity::Tried);
+        backend.set_palette(brevity == Brevity::Tried && depth == ColorDepth::True);
         Self { sink, backend }
     }
 }
