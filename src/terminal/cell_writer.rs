@@ -11,19 +11,19 @@
 //! for the cheapest way to show it within the tolerance, whatever its cells are made of: half blocks or
 //! characters, in true colour or in a palette. A screen that does not change becomes exact in ten frames.
 
-mod alphabet;
 mod ascii;
 mod bytes;
 mod control;
 mod exact;
+mod glyph_table;
 mod inexact;
 mod ink;
 mod lab;
-mod look;
 mod motion;
+mod packed_cell;
 mod palette;
 mod pen;
-mod rest;
+mod refinement;
 mod screen;
 mod shift;
 mod style;
@@ -40,10 +40,10 @@ use ratatui::style::Color;
 
 #[cfg(feature = "cli")]
 pub(crate) use self::bytes::Bytes;
-use self::inexact::Draughtsman;
+use self::inexact::RowEncoder;
 use self::ink::{Notation, Price};
 use self::pen::Pen;
-use self::rest::Rest;
+use self::refinement::Refinement;
 pub use self::screen::Screen;
 use self::shift::Shifts;
 use self::style::Shade;
@@ -64,8 +64,8 @@ pub struct CellWriter<W> {
     bytes_written: u64,
     fidelity: Fidelity,
     shifts: Shifts,
-    draughtsman: Draughtsman,
-    rest: Rest,
+    row_encoder: RowEncoder,
+    refinement: Refinement,
 }
 
 impl<W: Write> CellWriter<W> {
@@ -81,8 +81,8 @@ impl<W: Write> CellWriter<W> {
             bytes_written: 0,
             fidelity: Fidelity::EXACT,
             shifts: Shifts::default(),
-            draughtsman: Draughtsman::default(),
-            rest: Rest::new(),
+            row_encoder: RowEncoder::default(),
+            refinement: Refinement::new(),
         }
     }
 
@@ -135,7 +135,7 @@ impl<W: Write> CellWriter<W> {
     /// Draws a part of what is shown inexactly anew, and exactly: what a draw without a changed cell
     /// does. It is written with the next flush.
     pub fn refine(&mut self) {
-        self.rest.draw(&mut self.pen, &mut self.shifts, &mut self.screen);
+        self.refinement.draw(&mut self.pen, &mut self.shifts, &mut self.screen);
     }
 
     /// The colours that the terminal shows in the upper and the lower half of a cell, or of the text in it and of
@@ -184,10 +184,10 @@ impl<W: Write> CellWriter<W> {
     /// Draws what has changed; where nothing has, refines.
     fn update(&mut self) {
         if self.screen.is_changed() {
-            self.rest.disturb();
+            self.refinement.disturb();
             self.screen.count_rest();
             self.draw_changed();
-            self.rest.draw_resting(&mut self.pen, &mut self.shifts, &mut self.screen);
+            self.refinement.draw_resting(&mut self.pen, &mut self.shifts, &mut self.screen);
         } else {
             self.refine();
         }
@@ -203,7 +203,7 @@ impl<W: Write> CellWriter<W> {
             if is_exact {
                 exact::draw_row(pen, shifts, row);
             } else {
-                self.draughtsman.draw_row(pen, shifts, row, self.fidelity);
+                self.row_encoder.draw_row(pen, shifts, row, self.fidelity);
             }
         }
     }

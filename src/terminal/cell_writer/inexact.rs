@@ -7,10 +7,10 @@
 
 use ratatui::layout::Position;
 
-use super::alphabet::{Alphabet, Number};
 use super::exact;
+use super::glyph_table::{GlyphId, GlyphTable};
 use super::ink::{Ink, Inks, Notation, Price};
-use super::look::{Form, Glyph, Look};
+use super::packed_cell::{BlockElement, Form, PackedCell};
 use super::pen::Pen;
 use super::screen::Row;
 use super::shift::{BYTE, CELL, Loss, Shifts};
@@ -20,7 +20,7 @@ use crate::terminal::Fidelity;
 
 /// Draws rows inexactly, and keeps the memory that it takes.
 #[derive(Debug, Default)]
-pub(super) struct Draughtsman {
+pub(super) struct RowEncoder {
     inks: Inks,
     /// Where the colours lie that a row is to show, and those that it shows.
     wanted: Colors,
@@ -40,7 +40,7 @@ pub(super) struct Draughtsman {
 #[derive(Debug, Default)]
 struct Colors([Vec<[f32; 2]>; 3]);
 
-impl Draughtsman {
+impl RowEncoder {
     /// Makes a row look as it is wanted, or about, as `fidelity` allows.
     pub(super) fn draw_row(
         &mut self,
@@ -53,23 +53,24 @@ impl Draughtsman {
             // Nobody knows how much of it a character covers.
             return exact::draw_row(pen, shifts, row);
         }
-        let notation = Notation::of(row.looks, pen.palette().is_on());
+        let notation = Notation::of(row.targets, pen.palette().is_on());
         let price = Price::at(fidelity, notation);
-        self.wanted.fill(row.looks, row.alphabet, &mut self.inks);
-        self.shown.fill(row.shown, row.alphabet, &mut self.inks);
+        self.wanted.fill(row.targets, row.glyph_table, &mut self.inks);
+        self.shown.fill(row.shown, row.glyph_table, &mut self.inks);
         self.shift(pen, shifts, &mut row, price);
         self.shown.costs(&self.wanted, [0, 0], price, &mut self.keep);
         let terms = Terms { price, style: pen.style(), repeats: pen.repeats() };
         let mut store = Store { inks: &mut self.inks, palette: pen.palette() };
-        let wanted = |column: usize, inks: &mut Inks| wanted(row.looks[column], row.alphabet, inks);
+        let wanted =
+            |column: usize, inks: &mut Inks| wanted(row.targets[column], row.glyph_table, inks);
         let actions = self.trellis.search(&self.keep, wanted, terms, &mut store);
         for &(column, action) in actions {
             match action {
                 Action::DrawExactly => exact::draw_cell(pen, &mut row, usize::from(column)),
-                Action::Draw(glyph, style) => draw_cell(pen, &mut row, column, glyph, style),
+                Action::Draw(element, style) => draw_cell(pen, &mut row, column, element, style),
             }
         }
-        *row.exact = row.shown == row.looks;
+        *row.exact = row.shown == row.targets;
     }
 
     /// Moves the stretches of a row that have only moved, or about.
@@ -110,51 +111,51 @@ fn components([one, other]: [Ink; 2]) -> [[f32; 2]; 3] {
 
 /// Where the colours of what is no block lie.
 #[inline(never)]
-fn of_character(look: Look, alphabet: &Alphabet, inks: &mut Inks) -> [[f32; 2]; 3] {
-    match look.recolorable(alphabet) {
-        Some((Form::Letter(number), colors)) => {
-            let (apart, components) = (apart(number), components(inks.of_both(colors)));
+fn of_character(target: PackedCell, glyph_table: &GlyphTable, inks: &mut Inks) -> [[f32; 2]; 3] {
+    match target.recolorable(glyph_table) {
+        Some((Form::Glyph(id), colors)) => {
+            let (apart, components) = (apart(id), components(inks.of_both(colors)));
             [0, 1, 2].map(|index| components[index].map(|component| component + apart[index]))
         }
         // Those that do not look the same are far from each other.
-        _ => look.hashes().map(|hash| [FAR * (1.0 + f32::from(hash)); 2]),
+        _ => target.hashes().map(|hash| [FAR * (1.0 + f32::from(hash)); 2]),
     }
 }
 
 /// What a cell is to be for the search, unless it may only be drawn exactly.
 #[inline]
-fn wanted(look: Look, alphabet: &Alphabet, inks: &mut Inks) -> Option<Wanted> {
-    let (form, colors) = look.recolorable(alphabet)?;
+fn wanted(target: PackedCell, glyph_table: &GlyphTable, inks: &mut Inks) -> Option<Wanted> {
+    let (form, colors) = target.recolorable(glyph_table)?;
     let character = match form {
         Form::Block => None,
-        Form::Letter(number) => Some(alphabet.letter(number).character().len_utf8() as u8),
+        Form::Glyph(id) => Some(glyph_table.glyph(id).character().len_utf8() as u8),
     };
     Some(Wanted { inks: inks.of_both(colors), character })
 }
 
 /// Draws a cell as a block, or as the character that it is to be, in those colours.
 #[inline]
-fn draw_cell(pen: &mut Pen, row: &mut Row, column: u16, glyph: Glyph, style: Style) {
+fn draw_cell(pen: &mut Pen, row: &mut Row, column: u16, element: BlockElement, style: Style) {
     let position = Position { x: column, y: row.y };
     let column = usize::from(column);
-    let look = row.looks[column];
-    row.shown[column] = match look.text(row.alphabet) {
+    let target = row.targets[column];
+    row.shown[column] = match target.text(row.glyph_table) {
         None => {
-            pen.draw_block(position, glyph, style);
-            Look::of_block(glyph, style)
+            pen.draw_block(position, element, style);
+            PackedCell::of_block(element, style)
         }
         Some((character, _)) => {
             pen.draw_text(position, character.encode_utf8(&mut [0; 4]), style);
-            look.recolored([style.foreground, style.background])
+            target.recolored([style.foreground, style.background])
         }
     };
 }
 
-/// How far from blocks a letter lies: at a point of its own of a lattice whose points are farther apart than colours.
-fn apart(number: Number) -> [f32; 3] {
+/// How far from blocks a glyph lies: at a point of its own of a lattice whose points are farther apart than colours.
+fn apart(id: GlyphId) -> [f32; 3] {
     const SPACING: f32 = 1000.0;
-    let number = number.get() + 1;
-    [number & 15, number >> 4 & 15, number >> 8].map(|digit| SPACING * f32::from(digit))
+    let id = id.get() + 1;
+    [id & 15, id >> 4 & 15, id >> 8].map(|digit| SPACING * f32::from(digit))
 }
 
 /// Farther from every colour than any tolerance.
@@ -162,19 +163,19 @@ const FAR: f32 = 1e6;
 
 impl Colors {
     /// Finds where the colours of cells lie.
-    fn fill(&mut self, looks: &[Look], alphabet: &Alphabet, inks: &mut Inks) {
+    fn fill(&mut self, targets: &[PackedCell], glyph_table: &GlyphTable, inks: &mut Inks) {
         for components in &mut self.0 {
-            components.resize(looks.len(), [0.0; 2]);
+            components.resize(targets.len(), [0.0; 2]);
         }
         let [ls, as_, bs] = &mut self.0;
         let places = ls.iter_mut().zip(as_).zip(bs);
-        let mut last = (Look::UNKNOWN, [[FAR; 2]; 3]);
-        for (&look, ((l, a), b)) in looks.iter().zip(places) {
-            if look != last.0 {
-                last.0 = look;
-                last.1 = match look.halves() {
+        let mut last = (PackedCell::UNKNOWN, [[FAR; 2]; 3]);
+        for (&target, ((l, a), b)) in targets.iter().zip(places) {
+            if target != last.0 {
+                last.0 = target;
+                last.1 = match target.halves() {
                     Some(halves) => components(inks.of_both(halves)),
-                    None => of_character(look, alphabet, inks),
+                    None => of_character(target, glyph_table, inks),
                 };
             }
             [*l, *a, *b] = last.1;

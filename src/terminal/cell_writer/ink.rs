@@ -1,7 +1,7 @@
 //! Colours that may be shown for each other, what they cost, and what it costs to be off.
 
 use super::lab::Lab;
-use super::look::Look;
+use super::packed_cell::PackedCell;
 use super::style::{Kind, Shade};
 use crate::palette;
 use crate::terminal::Fidelity;
@@ -137,9 +137,9 @@ impl Default for Inks {
 
 impl Notation {
     /// That of the longest colour of a row of cells, on a terminal whose palette may be defined or not.
-    pub(super) fn of(looks: &[Look], has_palette: bool) -> Self {
-        let all = looks.iter().fold([0; 2], |all, look| {
-            let colors = look.colors().map(Shade::in_bits);
+    pub(super) fn of(targets: &[PackedCell], has_palette: bool) -> Self {
+        let all = targets.iter().fold([0; 2], |all, target| {
+            let colors = target.colors().map(Shade::in_bits);
             [all[0] | colors[0], all[1] | colors[1]]
         });
         match Shade::longest_of(all[0] | all[1]) {

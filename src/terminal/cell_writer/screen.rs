@@ -6,9 +6,9 @@ use ratatui::backend::ClearType;
 use ratatui::buffer::{Buffer, Cell};
 use ratatui::layout::{Position, Size};
 
-use super::alphabet::Alphabet;
 use super::ascii;
-use super::look::Look;
+use super::glyph_table::GlyphTable;
+use super::packed_cell::PackedCell;
 use super::shift::{Mark, Shift};
 use super::style::{Shade, Style};
 
@@ -20,15 +20,15 @@ pub struct Screen {
     width: usize,
     /// Whether it is to show nothing but ASCII.
     is_ascii: bool,
-    alphabet: Alphabet,
-    shown: Vec<Look>,
+    glyph_table: GlyphTable,
+    shown: Vec<PackedCell>,
     /// What it is to look like.
-    looks: Vec<Look>,
+    targets: Vec<PackedCell>,
     /// What it was to look like before the frame that is being drawn.
-    looks_before: Vec<Look>,
+    targets_before: Vec<PackedCell>,
     /// The landmarks of what it was to look like when it was drawn last.
     marks: Vec<Mark>,
-    /// The intricate cells that are to be shown: their looks do not say all.
+    /// The intricate cells that are to be shown: packed cells do not say all of them.
     wanted: Vec<Cell>,
     /// Whether anything in a row is to be changed.
     changed: Vec<bool>,
@@ -45,9 +45,9 @@ pub struct Screen {
 /// A row of it.
 pub(super) struct Row<'a> {
     pub(super) y: u16,
-    pub(super) alphabet: &'a Alphabet,
-    pub(super) shown: &'a mut [Look],
-    pub(super) looks: &'a [Look],
+    pub(super) glyph_table: &'a GlyphTable,
+    pub(super) shown: &'a mut [PackedCell],
+    pub(super) targets: &'a [PackedCell],
     /// The landmarks of what it was to show in the last frame.
     pub(super) marks: &'a mut [Mark],
     pub(super) wanted: &'a [Cell],
@@ -71,9 +71,9 @@ impl Screen {
     pub(super) fn resize(&mut self, size: Size) {
         let (width, height) = (usize::from(size.width), usize::from(size.height));
         self.width = width;
-        for looks in [&mut self.shown, &mut self.looks, &mut self.looks_before] {
-            looks.clear();
-            looks.resize(width * height, Look::BLANK);
+        for targets in [&mut self.shown, &mut self.targets, &mut self.targets_before] {
+            targets.clear();
+            targets.resize(width * height, PackedCell::BLANK);
         }
         self.marks.clear();
         self.marks.resize(width * height, Mark::NONE);
@@ -98,7 +98,7 @@ impl Screen {
 
     /// Nothing is known of what it shows.
     pub(super) fn forget(&mut self) {
-        self.shown.fill(Look::UNKNOWN);
+        self.shown.fill(PackedCell::UNKNOWN);
         self.exact.fill(false);
     }
 
@@ -115,8 +115,8 @@ impl Screen {
             ClearType::UntilNewLine => at..row + self.width,
         };
         let cells = cells.start.min(end)..cells.end.min(end);
-        self.shown[cells.clone()].fill(Look::BLANK);
-        self.looks[cells].fill(Look::BLANK);
+        self.shown[cells.clone()].fill(PackedCell::BLANK);
+        self.targets[cells].fill(PackedCell::BLANK);
     }
 
     /// It is to show `cell` there; what is off the screen is nowhere.
@@ -131,14 +131,14 @@ impl Screen {
 
     #[inline]
     fn set(&mut self, place: usize, cell: &Cell) {
-        let look = if self.is_ascii {
+        let target = if self.is_ascii {
             let character = ascii::substitute(cell.symbol());
-            Look::of_letter(character, Style::of(cell), &mut self.alphabet)
+            PackedCell::of_glyph(character, Style::of(cell), &mut self.glyph_table)
         } else {
-            Look::of(cell, &mut self.alphabet)
+            PackedCell::of(cell, &mut self.glyph_table)
         };
-        self.looks[place] = look;
-        if look.is_intricate() {
+        self.targets[place] = target;
+        if target.is_intricate() {
             self.want_intricate(place, cell);
         }
     }
@@ -155,16 +155,16 @@ impl Screen {
 
     /// A whole frame is drawn, on blank ground.
     pub(super) fn begin_frame(&mut self) {
-        std::mem::swap(&mut self.looks, &mut self.looks_before);
-        self.looks.fill(Look::BLANK);
+        std::mem::swap(&mut self.targets, &mut self.targets_before);
+        self.targets.fill(PackedCell::BLANK);
     }
 
     /// The frame is whole: what is not as it was before has changed.
     pub(super) fn end_frame(&mut self) {
         let width = self.width.max(1);
-        let rows = self.looks.chunks(width).zip(self.looks_before.chunks(width));
-        for (changed, (looks, before)) in self.changed.iter_mut().zip(rows) {
-            *changed |= looks != before;
+        let rows = self.targets.chunks(width).zip(self.targets_before.chunks(width));
+        for (changed, (targets, before)) in self.changed.iter_mut().zip(rows) {
+            *changed |= targets != before;
         }
     }
 
@@ -182,17 +182,17 @@ impl Screen {
     pub(super) fn shown_colors(&self, x: u16, y: u16) -> Option<[Shade; 2]> {
         let (x, y) = (usize::from(x), usize::from(y));
         let place = (x < self.width).then_some(y * self.width + x)?;
-        let (_, colors) = self.shown.get(place)?.recolorable(&self.alphabet)?;
+        let (_, colors) = self.shown.get(place)?.recolorable(&self.glyph_table)?;
         Some(colors)
     }
 
     /// What each row shows, and what it is to show.
-    pub(super) fn rows(&self) -> impl Iterator<Item = (&[Look], &[Look])> {
+    pub(super) fn rows(&self) -> impl Iterator<Item = (&[PackedCell], &[PackedCell])> {
         let width = self.width.max(1);
-        self.shown.chunks(width).zip(self.looks.chunks(width))
+        self.shown.chunks(width).zip(self.targets.chunks(width))
     }
 
-    /// How the cells are drawn whose looks do not say it.
+    /// How the cells are drawn whose packed cells do not say it.
     pub(super) fn intricate_styles(&self) -> impl Iterator<Item = Style> {
         let rows = self.wanted.chunks(self.width.max(1)).zip(&self.intricate);
         rows.filter(|(_, intricate)| **intricate).flat_map(|(cells, _)| cells.iter().map(Style::of))
@@ -220,15 +220,16 @@ impl Screen {
         mut is_asked: impl FnMut(bool, &mut bool) -> bool,
     ) -> impl Iterator<Item = Row<'_>> {
         let width = self.width.max(1);
-        let alphabet = &self.alphabet;
-        let wanted = self.looks.chunks(width).zip(self.wanted.chunks(width));
+        let glyph_table = &self.glyph_table;
+        let wanted = self.targets.chunks(width).zip(self.wanted.chunks(width));
         let known = self.shown.chunks_mut(width).zip(self.marks.chunks_mut(width));
         let states = self.changed.iter_mut().zip(&mut self.intricate).zip(&mut self.exact);
         let states = states.zip(&self.rested);
         (0..).zip(known.zip(wanted).zip(states)).filter_map(move |(y, (cells, state))| {
-            let ((shown, marks), (looks, wanted)) = cells;
+            let ((shown, marks), (targets, wanted)) = cells;
             let (((changed, intricate), exact), &rested) = state;
-            let row = Row { y, alphabet, shown, looks, marks, wanted, intricate, exact, rested };
+            let row =
+                Row { y, glyph_table, shown, targets, marks, wanted, intricate, exact, rested };
             is_asked(*row.exact, changed).then_some(row)
         })
     }
@@ -237,20 +238,20 @@ impl Screen {
 impl Row<'_> {
     /// How many cells it has.
     pub(super) fn width(&self) -> usize {
-        self.looks.len()
+        self.targets.len()
     }
 
     /// Whether no cell differs from what it is to show in more than its colours.
     pub(super) fn is_near(&self) -> bool {
-        let form = |look: Look| look.recolorable(self.alphabet).map(|(form, _)| form);
-        let mut looks = self.shown.iter().zip(self.looks);
-        looks.all(|(&shown, &look)| {
-            shown == look || form(look).is_some() && form(shown) == form(look)
+        let form = |target: PackedCell| target.recolorable(self.glyph_table).map(|(form, _)| form);
+        let mut targets = self.shown.iter().zip(self.targets);
+        targets.all(|(&shown, &target)| {
+            shown == target || form(target).is_some() && form(shown) == form(target)
         })
     }
 
     /// The terminal has moved a part of it.
     pub(super) fn shift(&mut self, shift: &Shift) {
-        shift.apply(self.shown, Look::UNKNOWN);
+        shift.apply(self.shown, PackedCell::UNKNOWN);
     }
 }

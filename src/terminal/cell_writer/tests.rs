@@ -185,7 +185,7 @@ fn the_cursor_is_shown_where_a_frame_puts_it_and_hidden_again() {
     assert!(hidden(&screen));
 }
 
-/// What has no number any more is shown all the same, whichever way it is drawn.
+/// A glyph that finds no place in the table is shown all the same, whichever way it is drawn.
 #[test]
 fn more_letters_than_have_numbers_are_shown() {
     let intensities = [Modifier::empty(), Modifier::BOLD, Modifier::DIM];

@@ -23,7 +23,7 @@ use self::branches::Branches;
 use self::lanes::{Labs, Lanes};
 use self::survivors::{Survivors, Turn, colors_of, key};
 use super::ink::{Ink, Inks, Price};
-use super::look::Glyph;
+use super::packed_cell::BlockElement;
 use super::palette::Palette;
 use super::style::{Shade, Style};
 
@@ -41,7 +41,7 @@ pub(super) enum Action {
     /// Draw it exactly.
     DrawExactly,
     /// Draw it so; a character by its own glyph.
-    Draw(Glyph, Style),
+    Draw(BlockElement, Style),
 }
 
 /// How many paths are kept at each cell. With twice as many, the same error takes a twentieth fewer
@@ -85,7 +85,7 @@ struct Step {
 enum StepKind {
     Keep,
     DrawExactly,
-    Draw(Glyph),
+    Draw(BlockElement),
 }
 
 /// The cheapest paths past a cell, in no order; those that there are not cost infinitely much.
@@ -102,7 +102,7 @@ struct Paths {
     /// Where the cursor stands; [`NOWHERE`] if nobody knows.
     cursor: Lanes,
     /// What was drawn last.
-    last: [Option<Glyph>; KEPT],
+    last: [Option<BlockElement>; KEPT],
 }
 
 /// Where the cursor is taken to stand of which nobody knows it: far to the left.
@@ -157,9 +157,9 @@ impl Trellis {
             match kind {
                 StepKind::Keep => {}
                 StepKind::DrawExactly => self.actions.push((*column, Action::DrawExactly)),
-                StepKind::Draw(glyph) => {
+                StepKind::Draw(element) => {
                     let [text, ground] = colors_of(keys[at]);
-                    self.actions.push((*column, Action::Draw(glyph, Style::plain(text, ground))));
+                    self.actions.push((*column, Action::Draw(element, Style::plain(text, ground))));
                 }
             }
             at = usize::from(before);
@@ -208,7 +208,7 @@ impl Paths {
         self.keys = survivors.keys;
         for (path, turn) in survivors.turns.iter().enumerate() {
             // Those that leave the cell stay in their places.
-            let StepKind::Draw(glyph) = turn.kind else { continue };
+            let StepKind::Draw(element) = turn.kind else { continue };
             for (which, &source) in turn.sources.iter().enumerate() {
                 let source = usize::from(source);
                 let ink = match before.get(source) {
@@ -219,7 +219,7 @@ impl Paths {
                 let [ls, as_, bs] = &mut self.labs[which];
                 [ls[path], as_[path], bs[path]] = ink.lab;
             }
-            (self.cursor[path], self.last[path]) = (f32::from(x + 1), Some(glyph));
+            (self.cursor[path], self.last[path]) = (f32::from(x + 1), Some(element));
         }
         Step { column: x, turns: survivors.turns, keys: survivors.keys }
     }

@@ -3,7 +3,7 @@
 use super::super::bytes::Bytes;
 use super::super::ink::{Ink, Price};
 use super::super::lab::Lab;
-use super::super::look::Look;
+use super::super::packed_cell::PackedCell;
 use super::super::screen::Screen;
 use super::super::style::{Kind, Shade, Style};
 use super::{Count, Palette, entry_place, place};
@@ -43,15 +43,15 @@ impl Palette {
             self.note_shown(style.foreground);
             self.note_shown(style.background);
         }
-        for (shown, looks) in screen.rows() {
-            let mut last = Look::UNKNOWN;
-            for (&shown, &look) in shown.iter().zip(looks) {
+        for (shown, targets) in screen.rows() {
+            let mut last = PackedCell::UNKNOWN;
+            for (&shown, &target) in shown.iter().zip(targets) {
                 if shown != last {
                     shown.colors().into_iter().for_each(|shade| self.note_shown(shade));
                     last = shown;
                 }
-                if shown != look {
-                    look.colors().into_iter().for_each(|shade| self.note_wanted(shade));
+                if shown != target {
+                    target.colors().into_iter().for_each(|shade| self.note_wanted(shade));
                 }
             }
         }

@@ -6,7 +6,7 @@ use ratatui::style::Color;
 use ratatui::widgets::Widget;
 
 use super::super::ascii;
-use super::super::look::Look;
+use super::super::packed_cell::PackedCell;
 use super::super::style::Style;
 use super::Screen;
 use crate::tui::Canvas;
@@ -22,8 +22,8 @@ impl Canvas for Screen {
         if self.is_ascii {
             return self.draw_grounds(x, y, row);
         }
-        for (look, halves) in self.looks_from(x, y).iter_mut().zip(row) {
-            *look = Look::of_colors(halves);
+        for (target, halves) in self.targets_from(x, y).iter_mut().zip(row) {
+            *target = PackedCell::of_colors(halves);
         }
     }
 
@@ -33,8 +33,8 @@ impl Canvas for Screen {
             let rgb = |color: Rgb| Color::Rgb(color.red(), color.green(), color.blue());
             return self.draw_grounds(x, y, row.map(|halves| halves.map(rgb)));
         }
-        for (look, pixels) in self.looks_from(x, y).iter_mut().zip(row) {
-            *look = Look::of_pixels(pixels);
+        for (target, pixels) in self.targets_from(x, y).iter_mut().zip(row) {
+            *target = PackedCell::of_pixels(pixels);
         }
     }
 
@@ -42,10 +42,10 @@ impl Canvas for Screen {
         if self.is_ascii {
             return self.draw_ascii(x, y, character, colors);
         }
-        let look = Look::of_character(character, colors, &mut self.alphabet);
-        let Some(place) = self.looks_from(x, y).first_mut() else { return };
-        *place = look;
-        if look.is_intricate() {
+        let target = PackedCell::of_character(character, colors, &mut self.glyph_table);
+        let Some(place) = self.targets_from(x, y).first_mut() else { return };
+        *place = target;
+        if target.is_intricate() {
             let mut cell = Cell::EMPTY;
             cell.set_char(character).set_fg(colors[0]).set_bg(colors[1]);
             self.want_intricate(usize::from(y) * self.width + usize::from(x), &cell);
@@ -70,18 +70,19 @@ impl Canvas for Screen {
 impl Screen {
     /// The cells from `(x, y)` to the right; none off the screen.
     #[inline]
-    fn looks_from(&mut self, x: u16, y: u16) -> &mut [Look] {
+    fn targets_from(&mut self, x: u16, y: u16) -> &mut [PackedCell] {
         let row = usize::from(y) * self.width;
         let cells = row + usize::from(x).min(self.width)..row + self.width;
-        self.looks.get_mut(cells).unwrap_or_default()
+        self.targets.get_mut(cells).unwrap_or_default()
     }
 
     /// Shows what stands for `character`.
     fn draw_ascii(&mut self, x: u16, y: u16, character: char, colors: [Color; 2]) {
         let character = ascii::substitute(character.encode_utf8(&mut [0; 4]));
-        let look = Look::of_letter(character, Style::in_colors(colors), &mut self.alphabet);
-        if let Some(place) = self.looks_from(x, y).first_mut() {
-            *place = look;
+        let target =
+            PackedCell::of_glyph(character, Style::in_colors(colors), &mut self.glyph_table);
+        if let Some(place) = self.targets_from(x, y).first_mut() {
+            *place = target;
         }
     }
 

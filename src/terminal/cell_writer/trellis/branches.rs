@@ -1,7 +1,7 @@
 //! The glyphs and colours that a cell may be drawn in after each of the paths to it.
 
 use super::super::ink::{Ink, Price};
-use super::super::look::Glyph;
+use super::super::packed_cell::BlockElement;
 use super::super::palette::{Palette, Telling};
 use super::lanes::{
     Blocks, Errors, HALF_BLOCK, Lanes, SPACE, add_motions, choose, combine, least, measure, min,
@@ -81,7 +81,7 @@ impl<'a> Branches<'a> {
     #[inline]
     fn draw_character(&self, errors: &Errors, bytes: f32, survivors: &mut Survivors) {
         let costs = sum(&sum(&self.start, &errors.text_above), &errors.ground_below);
-        self.offer(survivors, &plus(&costs, bytes), Glyph::Upper, Told::NOTHING);
+        self.offer(survivors, &plus(&costs, bytes), BlockElement::Upper, Told::NOTHING);
     }
 
     #[inline]
@@ -100,17 +100,17 @@ impl<'a> Branches<'a> {
             if survivors.would_keep(costs[path]) {
                 let Blocks { space, full, upper, lower } = &blocks;
                 let (flat, flat_glyph) = if full[path] < space[path] {
-                    (full[path], Glyph::Full)
+                    (full[path], BlockElement::Full)
                 } else {
-                    (space[path], Glyph::Space)
+                    (space[path], BlockElement::Space)
                 };
                 let (split, split_glyph) = if lower[path] < upper[path] {
-                    (lower[path], Glyph::Lower)
+                    (lower[path], BlockElement::Lower)
                 } else {
-                    (upper[path], Glyph::Upper)
+                    (upper[path], BlockElement::Upper)
                 };
-                let glyph = if split < flat { split_glyph } else { flat_glyph };
-                self.add(survivors, costs[path], path, glyph, Told::NOTHING);
+                let element = if split < flat { split_glyph } else { flat_glyph };
+                self.add(survivors, costs[path], path, element, Told::NOTHING);
             }
         }
     }
@@ -123,10 +123,10 @@ impl<'a> Branches<'a> {
                 continue;
             }
             match self.paths.last[path] {
-                Some(Glyph::Space) => space[path] += REPETITION - SPACE,
-                Some(Glyph::Full) => full[path] += REPETITION - HALF_BLOCK,
-                Some(Glyph::Upper) => upper[path] += REPETITION - HALF_BLOCK,
-                Some(Glyph::Lower) => lower[path] += REPETITION - HALF_BLOCK,
+                Some(BlockElement::Space) => space[path] += REPETITION - SPACE,
+                Some(BlockElement::Full) => full[path] += REPETITION - HALF_BLOCK,
+                Some(BlockElement::Upper) => upper[path] += REPETITION - HALF_BLOCK,
+                Some(BlockElement::Lower) => lower[path] += REPETITION - HALF_BLOCK,
                 None => {}
             }
         }
@@ -158,16 +158,16 @@ impl<'a> Branches<'a> {
         let (above, below) = (half + upper.cost(), half + lower.cost());
         let (upper, lower) = (upper.ink.shade, lower.ink.shade);
         let Errors { text_above, text_below, ground_above, ground_below } = errors;
-        let mut offer = |glyph, cost: f32, errors: &Lanes, told| {
+        let mut offer = |element, cost: f32, errors: &Lanes, told| {
             if survivors.would_keep(self.least + cost) {
-                self.offer(survivors, &plus(&sum(&self.start, errors), cost), glyph, told);
+                self.offer(survivors, &plus(&sum(&self.start, errors), cost), element, told);
             }
         };
-        offer(Glyph::Upper, above, ground_below, Told::NOTHING.text(upper, UPPER));
-        offer(Glyph::Upper, below, text_above, Told::NOTHING.ground(lower, LOWER));
+        offer(BlockElement::Upper, above, ground_below, Told::NOTHING.text(upper, UPPER));
+        offer(BlockElement::Upper, below, text_above, Told::NOTHING.ground(lower, LOWER));
         if self.wanted.character.is_none() {
-            offer(Glyph::Lower, above, text_below, Told::NOTHING.ground(upper, UPPER));
-            offer(Glyph::Lower, below, ground_above, Told::NOTHING.text(lower, LOWER));
+            offer(BlockElement::Lower, above, text_below, Told::NOTHING.ground(upper, UPPER));
+            offer(BlockElement::Lower, below, ground_above, Told::NOTHING.text(lower, LOWER));
         }
     }
 
@@ -205,7 +205,7 @@ impl<'a> Branches<'a> {
         let cost = ONE_COLOR + SPACE + bytes + error;
         if survivors.would_keep(self.least + cost) {
             let told = Told::NOTHING.ground(ink.shade, source);
-            self.offer(survivors, &plus(&self.start, cost), Glyph::Space, told);
+            self.offer(survivors, &plus(&self.start, cost), BlockElement::Space, told);
         }
     }
 
@@ -219,10 +219,10 @@ impl<'a> Branches<'a> {
         let (upper, lower) = (upper.ink.shade, lower.ink.shade);
         let path = (0..KEPT).find(|&path| self.start[path] == self.least).unwrap_or(0);
         let told = Told::NOTHING.text(upper, UPPER).ground(lower, LOWER);
-        self.add(survivors, cost, path, Glyph::Upper, told);
+        self.add(survivors, cost, path, BlockElement::Upper, told);
         if self.wanted.character.is_none() && survivors.would_keep(cost) {
             let told = Told::NOTHING.text(lower, LOWER).ground(upper, UPPER);
-            self.add(survivors, cost, path, Glyph::Lower, told);
+            self.add(survivors, cost, path, BlockElement::Lower, told);
         }
     }
 
@@ -234,11 +234,11 @@ impl<'a> Branches<'a> {
 
     /// Adds those paths that draw `glyph` for so much and would survive.
     #[inline]
-    fn offer(&self, survivors: &mut Survivors, costs: &Lanes, glyph: Glyph, told: Told) {
+    fn offer(&self, survivors: &mut Survivors, costs: &Lanes, element: BlockElement, told: Told) {
         if survivors.would_keep(least(costs)) {
             for (path, &cost) in costs.iter().enumerate() {
                 if survivors.would_keep(cost) {
-                    self.add(survivors, cost, path, glyph, told);
+                    self.add(survivors, cost, path, element, told);
                 }
             }
         }
@@ -246,10 +246,17 @@ impl<'a> Branches<'a> {
 
     /// Adds a path that draws `glyph`.
     #[inline]
-    fn add(&self, survivors: &mut Survivors, cost: f32, path: usize, glyph: Glyph, told: Told) {
+    fn add(
+        &self,
+        survivors: &mut Survivors,
+        cost: f32,
+        path: usize,
+        element: BlockElement,
+        told: Told,
+    ) {
         let key = told.key(self.paths.keys[path], self.x + 1);
         let sources = told.sources(path);
-        let turn = Turn { kind: StepKind::Draw(glyph), before: path as u8, sources };
+        let turn = Turn { kind: StepKind::Draw(element), before: path as u8, sources };
         survivors.add(cost, key, turn);
     }
 }

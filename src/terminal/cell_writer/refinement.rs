@@ -1,20 +1,20 @@
-//! A picture that rests becomes exact, in a few frames of about the same size.
+//! Refinement: a picture that does not change becomes exact, in a few frames of about the same size.
 //!
-//! So does each row that rests for a while, whatever others do: where one cell blinks, or the time is shown,
+//! So does each row that has not changed for a while, whatever others do: where one cell blinks, or the time is shown,
 //! there is always a change somewhere. The worst cells come first. To allow less and less error until none is allowed was refused: cells
 //! were sent twice, and the last of the frames had most of the bytes.
 
-use super::alphabet::Alphabet;
 use super::exact;
+use super::glyph_table::GlyphTable;
 use super::ink::Inks;
-use super::look::Look;
+use super::packed_cell::PackedCell;
 use super::pen::Pen;
 use super::screen::{Row, Screen};
 use super::shift::Shifts;
 
 /// How far a picture has come to rest, and the memory that it takes.
 #[derive(Debug)]
-pub(super) struct Rest {
+pub(super) struct Refinement {
     /// In so many frames it is to be exact.
     frames: usize,
     /// How far off the inexact cells are, and where they are, row by row.
@@ -37,7 +37,7 @@ const FRAMES: usize = 10;
 /// drawn for nothing.
 const PATIENCE: usize = 10;
 
-impl Rest {
+impl Refinement {
     pub(super) fn new() -> Self {
         Self { frames: FRAMES, inexact: Vec::new(), inks: Inks::default() }
     }
@@ -67,7 +67,7 @@ impl Rest {
             while let Some(cell) = chosen.next_if(|cell| cell.y == row.y) {
                 exact::draw_cell(pen, &mut row, usize::from(cell.column));
             }
-            *row.exact = row.shown == row.looks;
+            *row.exact = row.shown == row.targets;
         }
     }
 
@@ -88,7 +88,7 @@ impl Rest {
             for cell in &self.inexact {
                 exact::draw_cell(pen, &mut row, usize::from(cell.column));
             }
-            *row.exact = row.shown == row.looks;
+            *row.exact = row.shown == row.targets;
         }
     }
 
@@ -106,16 +106,18 @@ impl Rest {
 
 /// How far off the cells of a row are that are not exact.
 fn errors<'a>(row: &'a Row, inks: &'a mut Inks) -> impl Iterator<Item = Cell> + 'a {
-    let looks = row.shown.iter().zip(row.looks);
-    (0..).zip(looks).filter(|(_, (shown, look))| shown != look).map(|(column, (&shown, &look))| {
-        let error = error(shown, look, row.alphabet, inks);
-        Cell { error, y: row.y, column }
-    })
+    let targets = row.shown.iter().zip(row.targets);
+    (0..).zip(targets).filter(|(_, (shown, target))| shown != target).map(
+        |(column, (&shown, &target))| {
+            let error = error(shown, target, row.glyph_table, inks);
+            Cell { error, y: row.y, column }
+        },
+    )
 }
 
 /// The larger distance of the two colours; infinite where it can't be told.
-fn error(shown: Look, wanted: Look, alphabet: &Alphabet, inks: &mut Inks) -> f32 {
-    let parts = shown.recolorable(alphabet).zip(wanted.recolorable(alphabet));
+fn error(shown: PackedCell, wanted: PackedCell, glyph_table: &GlyphTable, inks: &mut Inks) -> f32 {
+    let parts = shown.recolorable(glyph_table).zip(wanted.recolorable(glyph_table));
     let Some(((shown_form, shown), (form, wanted))) = parts else { return f32::INFINITY };
     if shown_form != form {
         return f32::INFINITY;
