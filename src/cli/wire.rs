@@ -27,13 +27,16 @@ pub(super) fn run(options: &Wire) -> Result<(), Error> {
     let plan = Plan {
         script: &script,
         size: options.size.cells(),
+        depth: options.depth,
         frames_per_second: options.frames_per_second.get(),
         fidelities: match options.fidelities.as_slice() {
             [] => vec![Fidelity::EXACT, Fidelity::HIGH, Fidelity::LOW],
             named => named.to_vec(),
         },
     };
-    let mut replay = Replay::new(level::load_series(map)?, Settings::default(), plan.size);
+    let settings =
+        Settings { depth: Some(options.depth), glyphs: options.glyphs, ..Settings::default() };
+    let mut replay = Replay::new(level::load_series(map)?, settings, plan.size);
     let report = wire::report(&plan, &mut replay);
     let output = BufWriter::new(io::stdout().lock());
     write(&plan, &report, options.format, output).map_err(|error| Error::of_output(&error))

@@ -23,6 +23,7 @@ use ratatui::buffer::Buffer;
 use ratatui::layout::Size;
 
 use crate::app::Replay;
+use crate::color::palette::ColorDepth;
 use crate::game::Script;
 use crate::terminal::Fidelity;
 use encoder::{Encoder, Extensions, Stock, Writer};
@@ -39,6 +40,8 @@ pub struct Plan<'a> {
     pub script: &'a Script,
     /// The size of the window in which `replay` plays.
     pub size: Size,
+    /// The colour depth in which `replay` draws. Only in true colour does an encoder define a palette.
+    pub depth: ColorDepth,
     /// The number of frames sent per second.
     pub frames_per_second: NonZeroU32,
     /// The fidelities at which Cellcaster's encoder is measured.
@@ -73,7 +76,8 @@ pub struct EncoderReport {
 pub fn report(plan: &Plan, replay: &mut Replay) -> Report {
     let ours = [Extensions::Off, Extensions::On].into_iter().flat_map(|extensions| {
         plan.fidelities.iter().map(move |&fidelity| {
-            let writer: Box<dyn Encoder> = Box::new(Writer::new(plan.size, fidelity, extensions));
+            let writer: Box<dyn Encoder> =
+                Box::new(Writer::new(plan.size, plan.depth, fidelity, extensions));
             (extensions.name(fidelity), writer)
         })
     });

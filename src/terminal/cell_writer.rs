@@ -6,21 +6,23 @@
 //! moved only where it does not already stand. Ratatui's own backends send both colours when one
 //! differs, and 25 bytes for a frame without a change.
 //!
-//! What the terminal shows is modelled cell by cell: what looks as it should is not sent, and what
-//! moved sideways is moved by the terminal.
+//! The writer keeps a model of the screen, cell by cell. A cell that looks as it should is not sent, and a part of
+//! a row that moved sideways is moved by the terminal. At a [`Fidelity`] that is not exact, each row is searched
+//! for the cheapest way to show it within the tolerance, whatever its cells are made of: half blocks or
+//! characters, in true colour or in a palette. A screen that does not change becomes exact in ten frames.
 
-mod alphabet;
 mod ascii;
 mod bytes;
 mod control;
 mod exact;
+mod glyph_table;
 mod inexact;
 mod ink;
-mod look;
 mod motion;
+mod packed_cell;
 mod palette;
 mod pen;
-mod rest;
+mod refinement;
 mod screen;
 mod shift;
 mod style;
@@ -37,10 +39,10 @@ use ratatui::style::Color;
 
 #[cfg(feature = "cli")]
 pub(crate) use self::bytes::Bytes;
-use self::inexact::Draughtsman;
-use self::ink::Price;
+use self::inexact::RowEncoder;
+use self::ink::{Notation, Price};
 use self::pen::Pen;
-use self::rest::Rest;
+use self::refinement::Refinement;
 pub use self::screen::Screen;
 use self::shift::Shifts;
 use self::style::Shade;
@@ -61,8 +63,8 @@ pub struct CellWriter<W> {
     bytes_written: u64,
     fidelity: Fidelity,
     shifts: Shifts,
-    draughtsman: Draughtsman,
-    rest: Rest,
+    row_encoder: RowEncoder,
+    refinement: Refinement,
 }
 
 impl<W: Write> CellWriter<W> {
@@ -78,8 +80,8 @@ impl<W: Write> CellWriter<W> {
             bytes_written: 0,
             fidelity: Fidelity::EXACT,
             shifts: Shifts::default(),
-            draughtsman: Draughtsman::default(),
-            rest: Rest::new(),
+            row_encoder: RowEncoder::default(),
+            refinement: Refinement::new(),
         }
     }
 
@@ -132,13 +134,13 @@ impl<W: Write> CellWriter<W> {
     /// Draws a part of what is shown inexactly anew, and exactly: what a draw without a changed cell
     /// does. It is written with the next flush.
     pub fn refine(&mut self) {
-        self.rest.draw(&mut self.pen, &mut self.shifts, &mut self.screen);
+        self.refinement.draw(&mut self.pen, &mut self.shifts, &mut self.screen);
     }
 
-    /// The colours that the terminal shows in the upper and the lower half of a cell; `None` where
-    /// it shows text in it, where nobody knows, and off the screen.
+    /// The colours that the terminal shows in the upper and the lower half of a cell, or of the text in it and of
+    /// its ground; `None` where nobody knows, and off the screen.
     pub fn shown_colors(&self, column: u16, row: u16) -> Option<[Color; 2]> {
-        Some(self.screen.shown(column, row)?.halves()?.map(Shade::color))
+        Some(self.screen.shown_colors(column, row)?.map(Shade::color))
     }
 
     /// Takes note that the window is now of `size`; ratatui clears it in the next frame.
@@ -181,10 +183,10 @@ impl<W: Write> CellWriter<W> {
     /// Draws what has changed; where nothing has, refines.
     fn update(&mut self) {
         if self.screen.is_changed() {
-            self.rest.disturb();
+            self.refinement.disturb();
             self.screen.count_rest();
             self.draw_changed();
-            self.rest.draw_resting(&mut self.pen, &mut self.shifts, &mut self.screen);
+            self.refinement.draw_resting(&mut self.pen, &mut self.shifts, &mut self.screen);
         } else {
             self.refine();
         }
@@ -192,13 +194,15 @@ impl<W: Write> CellWriter<W> {
 
     /// Makes every row that has changed look as it is wanted.
     fn draw_changed(&mut self) {
-        let price = Price::at(self.fidelity, self.pen.palette().is_on());
+        let is_exact = self.fidelity == Fidelity::EXACT;
         let (pen, shifts) = (&mut self.pen, &mut self.shifts);
+        let price = (!is_exact).then(|| Price::at(self.fidelity, Notation::Entry));
         pen.define_colors(&self.screen, price);
         for row in self.screen.changed_rows() {
-            match price {
-                Some(price) => self.draughtsman.draw_row(pen, shifts, row, price),
-                None => exact::draw_row(pen, shifts, row),
+            if is_exact {
+                exact::draw_row(pen, shifts, row);
+            } else {
+                self.row_encoder.draw_row(pen, shifts, row, self.fidelity);
             }
         }
     }

@@ -1,32 +1,41 @@
-//! How near to what is wanted a terminal must show it.
+//! How far the colours on a terminal may be from those that were drawn.
 
 use std::fmt;
 use std::str::FromStr;
 
-/// How far the colours that are shown may be from those that are wanted, to spare bytes.
+/// How far the colours that a terminal shows may be from those that were drawn, to save bytes.
 ///
 /// The tolerance is a distance between two colours in CIE L\*a\*b\*, CIE76's ΔE: 0 is exact, 2 can just be
-/// told apart side by side, and 100 is from black to white. No pixel is farther off; most are much
-/// nearer. Text and indexed colours are always exact.
+/// told apart side by side, and 100 is the distance from black to white. No colour is farther off, and most are
+/// much nearer.
+///
+/// The tolerance holds in every colour depth and glyph mode:
+///
+/// - Half blocks in true colour save most.
+/// - A picture in 256 or 16 colours is compared as the widget drew it, after the widget mixed the colours of the
+///   palette. An indexed colour stands for xterm's standard one. The 16 named colours, which users redefine, stand
+///   for each other only; since few of them are near each other, they save little.
+/// - A character keeps its glyph and its modifiers; without modifiers, its two colours may be off.
+/// - Without colours (`mono`), every cell is exact.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, PartialOrd, Ord, Hash)]
 pub struct Fidelity {
     tolerance: u8,
 }
 
 impl Fidelity {
-    /// What is shown is what is wanted.
+    /// Every colour is the one that was drawn.
     pub const EXACT: Self = Self::new(0);
-    /// In the mean a difference of less than 1, for an eighth of the bytes of ratatui's encoder.
+    /// A mean difference of about 1 in true colour, for an eighth of the bytes of ratatui's encoder.
     pub const HIGH: Self = Self::new(10);
-    /// In the mean a difference of less than 2, for a seventeenth of the bytes.
+    /// A mean difference of about 2 in true colour, for a sixteenth of the bytes.
     pub const LOW: Self = Self::new(24);
 
-    /// Colours up to `tolerance` from those that are wanted.
+    /// Colours up to `tolerance` from those that were drawn.
     pub const fn new(tolerance: u8) -> Self {
         Self { tolerance }
     }
 
-    /// How far a colour may be from the one that is wanted.
+    /// How far a colour may be from the one that was drawn.
     pub const fn tolerance(self) -> u8 {
         self.tolerance
     }

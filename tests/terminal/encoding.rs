@@ -7,6 +7,7 @@ use std::collections::{BTreeMap, BTreeSet};
 
 use cellcaster::canvas::Canvas;
 use cellcaster::color::Rgb as Pixel;
+use cellcaster::color::palette::{ColorDepth, of_256};
 use cellcaster::terminal::{CellWriter, Fidelity};
 use proptest::prelude::*;
 use ratatui::Terminal;
@@ -18,42 +19,83 @@ use ratatui::widgets::Widget;
 
 type Rgb = [u8; 3];
 
-/// The content of a cell: the colours of its halves, or a character in two colours.
+/// A colour that a terminal shows.
+#[derive(Clone, Copy, Debug, PartialEq)]
+enum Shade {
+    /// The terminal's own.
+    Own,
+    /// One of the sixteen that users redefine.
+    Named(u8),
+    Rgb(Rgb),
+}
+
+impl Shade {
+    fn of(color: Color) -> Self {
+        match color {
+            Color::Rgb(red, green, blue) => Self::Rgb([red, green, blue]),
+            Color::Indexed(index) => Self::of_index(index, &Palette::default()),
+            Color::Reset => Self::Own,
+            other => panic!("{other} is not among the test's colours"),
+        }
+    }
+
+    fn of_index(index: u8, palette: &Palette) -> Self {
+        match index {
+            0..16 => Self::Named(index),
+            _ => Self::Rgb(palette.0.get(&index).copied().unwrap_or(of_256(index).channels())),
+        }
+    }
+
+    fn distance(self, wanted: Self) -> f64 {
+        match (self, wanted) {
+            (Self::Named(shown), Self::Named(wanted)) => {
+                delta(of_256(shown).channels(), of_256(wanted).channels())
+            }
+            (Self::Rgb(shown), Self::Rgb(wanted)) => delta(shown, wanted),
+            _ if self == wanted => 0.0,
+            _ => f64::INFINITY,
+        }
+    }
+}
+
+/// What a cell shows: the colours of its halves, or a character in two colours.
 #[derive(Clone, Copy, Debug, PartialEq)]
 enum Shown {
-    Halves([Rgb; 2]),
-    Character(char, Option<Rgb>, Option<Rgb>),
+    Halves([Shade; 2]),
+    Character(char, [Shade; 2]),
 }
 
 impl Shown {
-    fn new(character: char, text: Option<Rgb>, ground: Option<Rgb>) -> Self {
-        match (character, text, ground) {
-            ('▀', Some(text), Some(ground)) => Self::Halves([text, ground]),
-            ('▄', Some(text), Some(ground)) => Self::Halves([ground, text]),
-            ('█', Some(text), _) => Self::Halves([text; 2]),
-            (' ', _, Some(ground)) => Self::Halves([ground; 2]),
-            _ => Self::Character(character, text, ground),
+    fn new(character: char, [text, ground]: [Shade; 2]) -> Self {
+        let halves = match character {
+            '▀' => [text, ground],
+            '▄' => [ground, text],
+            '█' => [text; 2],
+            ' ' => [ground; 2],
+            _ => return Self::Character(character, [text, ground]),
+        };
+        if halves.contains(&Shade::Own) {
+            Self::Character(character, [text, ground])
+        } else {
+            Self::Halves(halves)
         }
     }
 
     fn of(cell: &Cell) -> Self {
-        let rgb = |color| match color {
-            Color::Rgb(red, green, blue) => Some([red, green, blue]),
-            _ => None,
-        };
-        Self::new(cell.symbol().chars().next().unwrap(), rgb(cell.fg), rgb(cell.bg))
+        Self::new(cell.symbol().chars().next().unwrap(), [cell.fg, cell.bg].map(Shade::of))
     }
 
-    /// The error: the larger ΔE of the two halves.
+    /// How far off it is: the larger ΔE of its two colours.
     fn distance(self, wanted: Self) -> f64 {
-        match (self, wanted) {
-            (Self::Halves(shown), Self::Halves(wanted)) => {
-                let distances = shown.into_iter().zip(wanted).map(|(one, other)| delta(one, other));
-                distances.fold(0.0, f64::max)
+        let (shown, wanted) = match (self, wanted) {
+            (Self::Halves(shown), Self::Halves(wanted)) => (shown, wanted),
+            (Self::Character(one, shown), Self::Character(other, wanted)) if one == other => {
+                (shown, wanted)
             }
-            _ if self == wanted => 0.0,
-            _ => f64::INFINITY,
-        }
+            _ => return f64::INFINITY,
+        };
+        let distances = shown.into_iter().zip(wanted).map(|(one, other)| one.distance(other));
+        distances.fold(0.0, f64::max)
     }
 }
 
@@ -181,23 +223,23 @@ impl Screens {
 
     /// The content of a cell in both emulators.
     fn shown(&self, x: u16, y: u16) -> [Shown; 2] {
-        let palette = &self.one.callbacks().0;
+        let palette = self.one.callbacks();
         let cell = self.one.screen().cell(y, x).unwrap();
-        let rgb = |color| match color {
-            vt100::Color::Rgb(red, green, blue) => Some([red, green, blue]),
-            vt100::Color::Idx(entry) => Some(palette[&entry]),
-            vt100::Color::Default => None,
+        let shade = |color| match color {
+            vt100::Color::Rgb(red, green, blue) => Shade::Rgb([red, green, blue]),
+            vt100::Color::Idx(index) => Shade::of_index(index, palette),
+            vt100::Color::Default => Shade::Own,
         };
         let character = cell.contents().chars().next().unwrap_or(' ');
-        let one = Shown::new(character, rgb(cell.fgcolor()), rgb(cell.bgcolor()));
+        let one = Shown::new(character, [cell.fgcolor(), cell.bgcolor()].map(shade));
         let cell = &self.other.screen().line(y.into()).unwrap().cells()[usize::from(x)];
-        let rgb = |color| match color {
-            Some(avt::Color::RGB(rgb)) => Some([rgb.r, rgb.g, rgb.b]),
-            Some(avt::Color::Indexed(entry)) => Some(palette[&entry]),
-            _ => None,
+        let shade = |color| match color {
+            Some(avt::Color::RGB(rgb)) => Shade::Rgb([rgb.r, rgb.g, rgb.b]),
+            Some(avt::Color::Indexed(index)) => Shade::of_index(index, palette),
+            None => Shade::Own,
         };
         let pen = cell.pen();
-        let other = Shown::new(cell.char(), rgb(pen.foreground()), rgb(pen.background()));
+        let other = Shown::new(cell.char(), [pen.foreground(), pen.background()].map(shade));
         [one, other]
     }
 
@@ -217,15 +259,14 @@ fn paint(picture: &Buffer, canvas: &mut impl Canvas) {
     for y in picture.area.rows().map(|row| row.y) {
         let cells = picture.area.positions().filter(|place| place.y == y);
         for (x, cell) in cells.map(|place| (place.x, &picture[place])) {
-            match (y % 4, Shown::of(cell)) {
-                (0, _) => canvas.draw_widget(One(cell), Rect::new(x, y, 1, 1)),
-                (1, Shown::Halves(halves)) => {
-                    let rgb = |[red, green, blue]: Rgb| Color::Rgb(red, green, blue);
-                    canvas.draw_halves(x, y, std::iter::once(halves.map(rgb)));
+            match (y % 4, cell.symbol(), cell.fg, cell.bg) {
+                (0, ..) => canvas.draw_widget(One(cell), Rect::new(x, y, 1, 1)),
+                (1, "▀", upper, lower) => {
+                    canvas.draw_halves(x, y, std::iter::once([upper, lower]));
                 }
-                (2, Shown::Halves(halves)) => {
-                    let pixel = |[red, green, blue]: Rgb| Pixel::new(red, green, blue);
-                    canvas.draw_pixels(x, y, std::iter::once(halves.map(pixel)));
+                (2, "▀", Color::Rgb(r, g, b), Color::Rgb(red, green, blue)) => {
+                    let pixels = [Pixel::new(r, g, b), Pixel::new(red, green, blue)];
+                    canvas.draw_pixels(x, y, std::iter::once(pixels));
                 }
                 _ => {
                     let character = cell.symbol().chars().next().unwrap();
@@ -284,17 +325,39 @@ const SAFE: [&str; 15] = [
     "?25h", "?25l",
 ];
 
-/// A picture with smooth gradients, sharp edges, noise and text.
-fn any_picture(size: Size) -> impl Strategy<Value = Buffer> {
-    let cell = prop_oneof![
-        6 => (0..12_u8, 0..12_u8).prop_map(|(upper, lower)| block([90 + 4 * upper, 60, 40 + upper], [90 + 3 * lower, 60, 45])),
-        3 => (any::<Rgb>(), any::<Rgb>()).prop_map(|(upper, lower)| block(upper, lower)),
-        1 => prop::sample::select(vec!['a', '#', 'é']).prop_map(|character| {
-            let mut cell = Cell::default();
-            cell.set_char(character).set_fg(Color::Rgb(200, 200, 200)).set_bg(Color::Rgb(0, 0, 0));
-            cell
-        }),
+/// A colour of that depth: of a smooth stretch, or of noise.
+fn any_color(depth: ColorDepth) -> BoxedStrategy<Color> {
+    match depth {
+        ColorDepth::True => prop_oneof![
+            2 => (0..12_u8).prop_map(|level| Color::Rgb(90 + 4 * level, 60, 40 + level)),
+            1 => any::<Rgb>().prop_map(|[red, green, blue]| Color::Rgb(red, green, blue)),
+        ]
+        .boxed(),
+        ColorDepth::Indexed256 => {
+            prop_oneof![2 => 232..=255_u8, 1 => 16..=255_u8].prop_map(Color::Indexed).boxed()
+        }
+        ColorDepth::Indexed16 => (0..16_u8).prop_map(Color::Indexed).boxed(),
+        ColorDepth::Mono => Just(Color::Reset).boxed(),
+    }
+}
+
+/// A picture of half blocks and some text, or of text alone.
+fn any_picture(size: Size, depth: ColorDepth, is_text: bool) -> impl Strategy<Value = Buffer> {
+    let symbol = prop_oneof![
+        if is_text { 0 } else { 9 } => Just("▀"),
+        1 => prop::sample::select(vec![" ", ".", "a", "#", "é"]),
     ];
+    let ground = match (is_text, depth) {
+        (false, _) | (_, ColorDepth::Mono) => any_color(depth),
+        (_, ColorDepth::True) => Just(Color::Rgb(0, 0, 0)).boxed(),
+        (_, ColorDepth::Indexed256) => Just(Color::Indexed(16)).boxed(),
+        (_, ColorDepth::Indexed16) => Just(Color::Indexed(0)).boxed(),
+    };
+    let cell = (symbol, any_color(depth), ground).prop_map(|(symbol, text, ground)| {
+        let mut cell = Cell::new(symbol);
+        cell.set_fg(text).set_bg(ground);
+        cell
+    });
     prop::collection::vec(cell, usize::from(size.width) * usize::from(size.height))
         .prop_map(move |content| Buffer { area: Rect::from(size), content })
 }
@@ -308,27 +371,35 @@ fn block([r, g, b]: Rgb, lower: Rgb) -> Cell {
 /// A picture whose rows move from frame to frame.
 fn any_history() -> impl Strategy<Value = Vec<Buffer>> {
     let size = (1..50_u16, 1..7_u16).prop_map(Size::from);
-    size.prop_flat_map(|size| {
-        let moves = prop::collection::vec((any::<u16>(), 0..6_usize, any::<bool>()), 1..6);
-        (prop::collection::vec(any_picture(size), 1..3), moves)
-    })
-    .prop_map(|(mut pictures, moves)| {
-        let mut picture = pictures[0].clone();
-        let width = usize::from(picture.area.width);
-        for (row, by, is_left) in moves {
-            let rows = picture.content.chunks_mut(width);
-            let row = usize::from(row) % rows.len();
-            let row = &mut picture.content[row * width..][..width];
-            let by = by.min(width);
-            if is_left {
-                row.rotate_left(by);
-            } else {
-                row.rotate_right(by);
+    let depth = prop::sample::select(vec![
+        ColorDepth::True,
+        ColorDepth::True,
+        ColorDepth::Indexed256,
+        ColorDepth::Indexed16,
+        ColorDepth::Mono,
+    ]);
+    (size, depth, any::<bool>())
+        .prop_flat_map(|(size, depth, is_text)| {
+            let moves = prop::collection::vec((any::<u16>(), 0..6_usize, any::<bool>()), 1..6);
+            (prop::collection::vec(any_picture(size, depth, is_text), 1..3), moves)
+        })
+        .prop_map(|(mut pictures, moves)| {
+            let mut picture = pictures[0].clone();
+            let width = usize::from(picture.area.width);
+            for (row, by, is_left) in moves {
+                let rows = picture.content.chunks_mut(width);
+                let row = usize::from(row) % rows.len();
+                let row = &mut picture.content[row * width..][..width];
+                let by = by.min(width);
+                if is_left {
+                    row.rotate_left(by);
+                } else {
+                    row.rotate_right(by);
+                }
+                pictures.push(picture.clone());
             }
-            pictures.push(picture.clone());
-        }
-        pictures
-    })
+            pictures
+        })
 }
 
 proptest! {

@@ -10,6 +10,7 @@ use super::value::{self, FramesPerSecond, Size};
 use super::{Command, Error, Subcommand, map};
 use crate::color::palette::ColorDepth;
 use crate::terminal::Fidelity;
+use crate::tui::GlyphMode;
 
 /// Options of `wire`.
 #[derive(Debug)]
@@ -19,6 +20,8 @@ pub(in crate::cli) struct Wire {
     pub(in crate::cli) script: Option<PathBuf>,
     pub(in crate::cli) size: Size,
     pub(in crate::cli) frames_per_second: FramesPerSecond,
+    pub(in crate::cli) depth: ColorDepth,
+    pub(in crate::cli) glyphs: GlyphMode,
     /// The named fidelities if empty.
     pub(in crate::cli) fidelities: Vec<Fidelity>,
     /// The palette whose methods are compared, instead of encoders.
@@ -42,7 +45,16 @@ pub(super) const SUBCOMMAND: Subcommand = Subcommand {
     examples: "cellcaster wire\n\
                cellcaster wire my.toml --script walk.script --fidelity high --fidelity 12",
     positionals: &[map::OPTIONAL],
-    options: &[&SCRIPT, &SIZE, &value::FRAMES_PER_SECOND, &FIDELITY, &PALETTE, &FORMAT],
+    options: &[
+        &SCRIPT,
+        &SIZE,
+        &value::FRAMES_PER_SECOND,
+        &value::GLYPHS,
+        &value::COLORS,
+        &FIDELITY,
+        &PALETTE,
+        &FORMAT,
+    ],
     surplus: "takes one map",
     missing: "",
     read,
@@ -54,6 +66,8 @@ fn read(mut matches: ArgMatches) -> Result<Command, Error> {
         script: SCRIPT.of(&mut matches),
         size: SIZE.of(&mut matches).unwrap_or(Size { columns: 120, rows: 40 }),
         frames_per_second: value::FRAMES_PER_SECOND.of(&mut matches).unwrap_or_default(),
+        depth: value::COLORS.of(&mut matches).unwrap_or_default(),
+        glyphs: value::GLYPHS.of(&mut matches).unwrap_or_default(),
         fidelities: FIDELITY.all_of(&mut matches),
         palette: PALETTE.of(&mut matches),
         format: FORMAT.of(&mut matches).unwrap_or_default(),

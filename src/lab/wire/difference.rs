@@ -6,8 +6,9 @@ use ratatui::style::{Color, Modifier};
 use super::encoder::Encoder;
 use crate::color::Rgb;
 use crate::color::lab::Lab;
+use crate::color::palette::of_256;
 
-/// The sum of pixel differences. A cell has two pixels; a cell with text has no difference.
+/// The sum of pixel differences. A cell has two pixels: its halves, or the colours of its text and its background.
 #[derive(Clone, Copy, Debug, Default)]
 pub(super) struct Difference {
     pixels: u64,
@@ -70,24 +71,25 @@ impl Difference {
     }
 }
 
-/// The two pixels of a cell; `None` for text.
+/// The two pixels of a cell, unless it is in the terminal's own colours or has modifiers, and so is shown as it was
+/// drawn.
 fn pixels(cell: &Cell) -> Option<[Rgb; 2]> {
     if cell.modifier != Modifier::empty() {
         return None;
     }
     let (foreground, background) = (rgb(cell.fg), rgb(cell.bg));
     match cell.symbol() {
-        "▀" => Some([foreground?, background?]),
         "▄" => Some([background?, foreground?]),
         "█" => Some([foreground?; 2]),
         " " => Some([background?; 2]),
-        _ => None,
+        _ => Some([foreground?, background?]),
     }
 }
 
 fn rgb(color: Color) -> Option<Rgb> {
     match color {
         Color::Rgb(red, green, blue) => Some(Rgb::new(red, green, blue)),
+        Color::Indexed(index) => Some(of_256(index)),
         _ => None,
     }
 }

@@ -9,6 +9,7 @@ use ratatui::buffer::Cell;
 use ratatui::layout::Size;
 use ratatui::style::Color;
 
+use crate::color::palette::ColorDepth;
 use crate::terminal::{CellWriter, Fidelity};
 
 /// The changed cells of a frame, in the form of ratatui's backends.
@@ -79,7 +80,7 @@ impl Encoder for Stock {
     }
 }
 
-/// Whether the terminal repeats characters and lets its palette be defined.
+/// Whether the terminal repeats characters and, in true colour, has its palette defined.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub(super) enum Extensions {
     Off,
@@ -103,12 +104,17 @@ pub(super) struct Writer {
 }
 
 impl Writer {
-    pub(super) fn new(size: Size, fidelity: Fidelity, extensions: Extensions) -> Self {
+    pub(super) fn new(
+        size: Size,
+        depth: ColorDepth,
+        fidelity: Fidelity,
+        extensions: Extensions,
+    ) -> Self {
         let sink = Sink::default();
         let mut backend = CellWriter::new(sink.clone(), size);
         backend.set_fidelity(fidelity);
         backend.set_repeats(extensions == Extensions::On);
-        backend.set_palette(extensions == Extensions::On);
+        backend.set_palette(extensions == Extensions::On && depth == ColorDepth::True);
         Self { sink, backend }
     }
 }

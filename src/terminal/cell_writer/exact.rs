@@ -3,7 +3,7 @@
 use ratatui::buffer::CellWidth;
 use ratatui::layout::Position;
 
-use super::look::{self, Look};
+use super::packed_cell::{self, PackedCell};
 use super::pen::Pen;
 use super::screen::Row;
 use super::shift::{CELL, Loss, Shifts};
@@ -31,41 +31,41 @@ fn draw_intricate_row(pen: &mut Pen, row: &mut Row) {
         if covered > 0 {
             // The second half of a wide character.
             covered -= 1;
-            row.shown[column] = Look::UNKNOWN;
+            row.shown[column] = PackedCell::UNKNOWN;
             continue;
         }
-        if !row.shown[column].is(row.looks[column]) {
+        if !row.shown[column].is(row.targets[column]) {
             draw_cell(pen, row, column);
         }
-        if row.looks[column].is_intricate() {
+        if row.targets[column].is_intricate() {
             covered = row.wanted[column].cell_width().saturating_sub(1);
         }
     }
-    *row.intricate = row.shown.iter().chain(row.looks).any(|look| look.is_intricate());
+    *row.intricate = row.shown.iter().chain(row.targets).any(|target| target.is_intricate());
 }
 
 /// Draws one cell of a row.
 pub(super) fn draw_cell(pen: &mut Pen, row: &mut Row, column: usize) {
     let position = Position { x: column as u16, y: row.y };
-    if let Some(halves) = row.looks[column].halves() {
-        let (glyph, style) = look::cheapest(halves, pen.style());
-        pen.draw_block(position, glyph, style);
+    if let Some(halves) = row.targets[column].halves() {
+        let (element, style) = packed_cell::cheapest(halves, pen.style());
+        pen.draw_block(position, element, style);
     } else {
         let mut character = [0; 4];
-        let (text, style) = match row.looks[column].text(row.alphabet) {
+        let (text, style) = match row.targets[column].text(row.glyph_table) {
             Some((text, style)) => (&*text.encode_utf8(&mut character), style),
             None => (row.wanted[column].symbol(), Style::of(&row.wanted[column])),
         };
         pen.draw_text(position, text, style);
     }
-    row.shown[column] = row.looks[column];
+    row.shown[column] = row.targets[column];
 }
 
 /// Moves the stretches of a row that have only moved.
 fn shift(pen: &mut Pen, shifts: &mut Shifts, row: &mut Row) {
     let lose = |row: &Row, from: usize, to: usize, losses: &mut Vec<Loss>| {
-        let looks = row.shown[from..].iter().zip(&row.looks[to..]);
-        losses.extend(looks.map(|(shown, look)| if shown == look { 0 } else { CELL }));
+        let targets = row.shown[from..].iter().zip(&row.targets[to..]);
+        losses.extend(targets.map(|(shown, target)| if shown == target { 0 } else { CELL }));
     };
     shifts.begin(row, |from, to, losses| lose(row, from, to, losses));
     while let Some(shift) = shifts.next(|from, to, losses| lose(row, from, to, losses)) {

@@ -1,106 +1,84 @@
-//! Draws a row about as it is wanted, for fewer bytes.
+//! Draws a row within a tolerance of what it is to show, for fewer bytes.
+//!
+//! Two cells are compared by the distance of their two colours in L\*a\*b\*, if they are both blocks or both the same
+//! character without modifiers. All other cells are drawn exactly. Another character in place of the wanted one, such
+//! as its neighbour on a ramp of brightness, was refused: in ascii mode a character also tells of a surface, and
+//! most of the bytes are colours.
 
 use ratatui::layout::Position;
 
 use super::exact;
-use super::ink::{Halves, Inks, Price};
-use super::look::Look;
+use super::glyph_table::{GlyphId, GlyphTable};
+use super::ink::{Ink, Inks, Notation, Price};
+use super::packed_cell::{BlockElement, Form, PackedCell};
 use super::pen::Pen;
 use super::screen::Row;
 use super::shift::{BYTE, CELL, Loss, Shifts};
-use super::trellis::{Action, Store, Trellis, Wanted};
+use super::style::Style;
+use super::trellis::{Action, Store, Terms, Trellis, Wanted};
+use crate::terminal::Fidelity;
 
 /// Draws rows inexactly, and keeps the memory that it takes.
 #[derive(Debug, Default)]
-pub(super) struct Draughtsman {
+pub(super) struct RowEncoder {
     inks: Inks,
-    /// The colours that a row is to show; `None` where they must be exact.
-    halves: Vec<Option<Halves>>,
-    /// Where these lie, and those that it shows.
+    /// Where the colours lie that a row is to show, and those that it shows.
     wanted: Colors,
     shown: Colors,
-    cells: Vec<Wanted>,
+    /// What it costs to leave the two colours of each cell as they are.
+    keep: Vec<[f32; 2]>,
+    /// What it would cost where they have moved.
+    moved: Vec<[f32; 2]>,
     trellis: Trellis,
 }
 
 /// Where the two colours of each cell lie in L\*a\*b\*, component by component, so that the distances of
 /// several are computed at once.
 ///
-/// What is no block, or unknown, lies far from every colour and from everything that does not look the same.
+/// Characters lie apart from blocks, and from other characters. What may only be shown exactly lies far from every
+/// colour and from everything that does not look the same.
 #[derive(Debug, Default)]
 struct Colors([Vec<[f32; 2]>; 3]);
 
-impl Draughtsman {
-    /// Makes a row look as it is wanted, or so that it can't be told for that price.
+impl RowEncoder {
+    /// Makes a row look as it is wanted, or about, as `fidelity` allows.
     pub(super) fn draw_row(
         &mut self,
         pen: &mut Pen,
         shifts: &mut Shifts,
         mut row: Row,
-        price: Price,
+        fidelity: Fidelity,
     ) {
         if *row.intricate {
             // Nobody knows how much of it a character covers.
             return exact::draw_row(pen, shifts, row);
         }
-        self.mix_inks(&row);
+        let notation = Notation::of(row.targets, pen.palette().is_on());
+        let price = Price::at(fidelity, notation);
+        self.wanted.fill(row.targets, row.glyph_table, &mut self.inks);
+        self.shown.fill(row.shown, row.glyph_table, &mut self.inks);
         self.shift(pen, shifts, &mut row, price);
-        self.cells.clear();
-        let errors = self.shown.distances(&self.wanted, 0, 0);
-        self.cells.extend(self.halves.iter().zip(errors).zip(row.shown.iter().zip(row.looks)).map(
-            |((halves, distances), (shown, look))| match *halves {
-                Some(wanted) => {
-                    let [upper, lower] = distances.map(|distance| price.of_distance(distance));
-                    Wanted::Halves { wanted, keep: upper + lower }
-                }
-                None => Wanted::Fixed { is_shown: shown == look },
-            },
-        ));
-        let (style, repeats) = (pen.style(), pen.repeats());
+        self.shown.costs(&self.wanted, [0, 0], price, &mut self.keep);
+        let terms = Terms { price, style: pen.style(), repeats: pen.repeats() };
         let mut store = Store { inks: &mut self.inks, palette: pen.palette() };
-        let actions = self.trellis.search(&self.cells, style, price, repeats, &mut store);
-        *row.exact = true;
-        for (column, &action) in actions.iter().enumerate() {
+        let wanted =
+            |column: usize, inks: &mut Inks| wanted(row.targets[column], row.glyph_table, inks);
+        let actions = self.trellis.search(&self.keep, wanted, terms, &mut store);
+        for &(column, action) in actions {
             match action {
-                Action::Keep => {}
-                Action::DrawExactly => exact::draw_cell(pen, &mut row, column),
-                Action::Draw(glyph, style) => {
-                    let position = Position { x: column as u16, y: row.y };
-                    pen.draw_block(position, glyph, style);
-                    row.shown[column] = Look::of_block(glyph, style);
-                }
+                Action::DrawExactly => exact::draw_cell(pen, &mut row, usize::from(column)),
+                Action::Draw(element, style) => draw_cell(pen, &mut row, column, element, style),
             }
-            *row.exact &= row.shown[column] == row.looks[column];
         }
-    }
-
-    fn mix_inks(&mut self, row: &Row) {
-        self.halves.clear();
-        self.wanted.clear();
-        self.shown.clear();
-        for (&shown, &look) in row.shown.iter().zip(row.looks) {
-            let wanted = look.halves().and_then(|halves| self.inks.of_halves(halves));
-            self.halves.push(wanted);
-            self.wanted.push(wanted, look);
-            let is_shown = shown == look;
-            let inks = if is_shown {
-                wanted
-            } else {
-                shown.halves().and_then(|halves| self.inks.of_halves(halves))
-            };
-            self.shown.push(inks, shown);
-        }
+        *row.exact = row.shown == row.targets;
     }
 
     /// Moves the stretches of a row that have only moved, or about.
     fn shift(&mut self, pen: &mut Pen, shifts: &mut Shifts, row: &mut Row, price: Price) {
-        let wanted = &self.wanted;
-        let lose = |shown: &Colors, [from, to]: [usize; 2], losses: &mut Vec<Loss>| {
-            losses.extend(shown.distances(wanted, from, to).map(|distances| {
-                let [upper, lower] = distances.map(|distance| price.of_distance(distance));
-                let loss = (upper + lower) * f32::from(BYTE);
-                loss.min(f32::from(CELL)) as Loss
-            }));
+        let (wanted, moved) = (&self.wanted, &mut self.moved);
+        let mut lose = |shown: &Colors, places: [usize; 2], losses: &mut Vec<Loss>| {
+            shown.costs(wanted, places, price, moved);
+            losses.extend(moved.iter().map(|[one, other]| loss(one + other)));
         };
         shifts.begin(row, |from, to, losses| lose(&self.shown, [from, to], losses));
         while let Some(shift) =
@@ -116,41 +94,114 @@ impl Draughtsman {
     }
 }
 
+/// The loss of so many bytes, at most that of a cell.
+#[inline]
+fn loss(bytes: f32) -> Loss {
+    /// Added to a small number, this leaves it in the lowest bits.
+    const INTEGER: f32 = 8_388_608.0;
+    let (loss, most) = (bytes * f32::from(BYTE), f32::from(CELL));
+    ((if loss < most { loss } else { most }) + INTEGER).to_bits() as Loss
+}
+
+/// L*, a* and b* of two colours.
+#[inline]
+fn components([one, other]: [Ink; 2]) -> [[f32; 2]; 3] {
+    [0, 1, 2].map(|index| [one.lab[index], other.lab[index]])
+}
+
+/// Where the colours of what is no block lie.
+#[inline(never)]
+fn of_character(target: PackedCell, glyph_table: &GlyphTable, inks: &mut Inks) -> [[f32; 2]; 3] {
+    match target.recolorable(glyph_table) {
+        Some((Form::Glyph(id), colors)) => {
+            let (apart, components) = (apart(id), components(inks.of_both(colors)));
+            [0, 1, 2].map(|index| components[index].map(|component| component + apart[index]))
+        }
+        // Those that do not look the same are far from each other.
+        _ => target.hashes().map(|hash| [FAR * (1.0 + f32::from(hash)); 2]),
+    }
+}
+
+/// What a cell is to be for the search, unless it may only be drawn exactly.
+#[inline]
+fn wanted(target: PackedCell, glyph_table: &GlyphTable, inks: &mut Inks) -> Option<Wanted> {
+    let (form, colors) = target.recolorable(glyph_table)?;
+    let character = match form {
+        Form::Block => None,
+        Form::Glyph(id) => Some(glyph_table.glyph(id).character().len_utf8() as u8),
+    };
+    Some(Wanted { inks: inks.of_both(colors), character })
+}
+
+/// Draws a cell as a block, or as the character that it is to be, in those colours.
+#[inline]
+fn draw_cell(pen: &mut Pen, row: &mut Row, column: u16, element: BlockElement, style: Style) {
+    let position = Position { x: column, y: row.y };
+    let column = usize::from(column);
+    let target = row.targets[column];
+    row.shown[column] = match target.text(row.glyph_table) {
+        None => {
+            pen.draw_block(position, element, style);
+            PackedCell::of_block(element, style)
+        }
+        Some((character, _)) => {
+            pen.draw_text(position, character.encode_utf8(&mut [0; 4]), style);
+            target.recolored([style.foreground, style.background])
+        }
+    };
+}
+
+/// How far from blocks a glyph lies: at a point of its own of a lattice whose points are farther apart than colours.
+fn apart(id: GlyphId) -> [f32; 3] {
+    const SPACING: f32 = 1000.0;
+    let id = id.get() + 1;
+    [id & 15, id >> 4 & 15, id >> 8].map(|digit| SPACING * f32::from(digit))
+}
+
 /// Farther from every colour than any tolerance.
 const FAR: f32 = 1e6;
 
 impl Colors {
-    fn clear(&mut self) {
-        self.0.iter_mut().for_each(Vec::clear);
-    }
-
-    /// Adds those of a cell, whose colours are `inks` if it is a block.
-    #[inline]
-    fn push(&mut self, inks: Option<Halves>, look: Look) {
-        let colors = match inks {
-            Some([upper, lower]) => [0, 1, 2].map(|index| [upper.lab[index], lower.lab[index]]),
-            // Those that do not look the same are far from each other.
-            None => look.hashes().map(|hash| [FAR * (1.0 + f32::from(hash)); 2]),
-        };
-        for (components, component) in self.0.iter_mut().zip(colors) {
-            components.push(component);
+    /// Finds where the colours of cells lie.
+    fn fill(&mut self, targets: &[PackedCell], glyph_table: &GlyphTable, inks: &mut Inks) {
+        for components in &mut self.0 {
+            components.resize(targets.len(), [0.0; 2]);
+        }
+        let [ls, as_, bs] = &mut self.0;
+        let places = ls.iter_mut().zip(as_).zip(bs);
+        let mut last = (PackedCell::UNKNOWN, [[FAR; 2]; 3]);
+        for (&target, ((l, a), b)) in targets.iter().zip(places) {
+            if target != last.0 {
+                last.0 = target;
+                last.1 = match target.halves() {
+                    Some(halves) => components(inks.of_both(halves)),
+                    None => of_character(target, glyph_table, inks),
+                };
+            }
+            [*l, *a, *b] = last.1;
         }
     }
 
-    /// How far the colours of the cells from the place `from` on are from those of `others` from `to` on.
-    #[inline]
-    fn distances<'a>(
-        &'a self,
-        others: &'a Self,
-        from: usize,
-        to: usize,
-    ) -> impl ExactSizeIterator<Item = [f32; 2]> + 'a {
-        let pairs = |index: usize| self.0[index][from..].iter().zip(&others.0[index][to..]);
-        pairs(0).zip(pairs(1)).zip(pairs(2)).map(|((l, a), b)| {
-            std::array::from_fn(|half| {
-                let [l, a, b] = [l, a, b].map(|(one, other)| one[half] - other[half]);
-                (l * l + a * a + b * b).sqrt()
-            })
-        })
+    /// What it costs that the cells of this row from the place `from` on stand for those of `others` from `to` on,
+    /// cell by cell.
+    fn costs(
+        &self,
+        others: &Self,
+        [from, to]: [usize; 2],
+        price: Price,
+        costs: &mut Vec<[f32; 2]>,
+    ) {
+        let count = others.0[0].len() - from.max(to);
+        costs.resize(count, [0.0; 2]);
+        let [ls, as_, bs] = self.0.each_ref().map(|shown| shown[from..][..count].as_flattened());
+        let wanted = others.0.each_ref().map(|wanted| wanted[to..][..count].as_flattened());
+        let shown = ls.iter().zip(as_).zip(bs);
+        let wanted = wanted[0].iter().zip(wanted[1]).zip(wanted[2]);
+        for (cost, (((l, a), b), ((l2, a2), b2))) in
+            costs.as_flattened_mut().iter_mut().zip(shown.zip(wanted))
+        {
+            let [l, a, b] = [l - l2, a - a2, b - b2];
+            *cost = price.of_distance((l * l + a * a + b * b).sqrt());
+        }
     }
 }

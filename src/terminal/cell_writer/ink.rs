@@ -1,10 +1,16 @@
 //! Colours that may be shown for each other, what they cost, and what it costs to be off.
 
+use super::packed_cell::PackedCell;
 use super::style::{Kind, Shade};
+use crate::color::Rgb;
 use crate::color::lab::PackedLab;
+use crate::color::palette;
 use crate::terminal::Fidelity;
 
 /// A colour, and where it lies in CIE L\*a\*b\*.
+///
+/// Users redefine the 16 named colours, and the terminal's own colours are unknown: these lie apart from all others,
+/// so that no tolerance takes one for another.
 #[derive(Clone, Copy, Debug)]
 pub(super) struct Ink {
     pub(super) lab: [f32; 3],
@@ -12,12 +18,18 @@ pub(super) struct Ink {
 }
 
 impl Ink {
-    /// That colour, if it is one of red, green and blue.
-    #[inline]
-    fn new(shade: Shade) -> Option<Self> {
-        let Kind::Rgb(channels) = shade.kind() else { return None };
-        let lab = PackedLab::of(channels).components();
-        Some(Self { lab, shade })
+    /// That colour; an indexed one as xterm's standard palette has it.
+    #[inline(never)]
+    fn new(shade: Shade) -> Self {
+        let lab = match shade.kind() {
+            Kind::Rgb(channels) => PackedLab::of(channels).components(),
+            Kind::Indexed(index) => {
+                let [l, a, b] = PackedLab::of(palette::of_256(index).channels()).components();
+                if index < FIRST_FIXED { [l + NAMED, a, b] } else { [l, a, b] }
+            }
+            Kind::Default => [OWN; 3],
+        };
+        Self { lab, shade }
     }
 
     /// How many bytes it takes as parameters.
@@ -33,15 +45,19 @@ impl Ink {
     }
 }
 
+/// The first index after the named colours.
+const FIRST_FIXED: u8 = 16;
+/// How far from all others the named colours lie.
+const NAMED: f32 = 20_000.0;
+/// Where the terminal's own colours lie.
+const OWN: f32 = 1e6;
+
 /// CIE76's ΔE.
 #[inline]
 pub(super) fn distance(one: [f32; 3], other: [f32; 3]) -> f32 {
     let [l, a, b] = [one[0] - other[0], one[1] - other[1], one[2] - other[2]];
     (l * l + a * a + b * b).sqrt()
 }
-
-/// The colours of a block's halves, the upper one first.
-pub(super) type Halves = [Ink; 2];
 
 /// The inks of the colours that were asked for of late.
 ///
@@ -56,34 +72,59 @@ pub(super) struct Inks {
 const PLACE_BITS: u32 = 10;
 
 impl Inks {
-    /// That of a colour, if it is one of red, green and blue.
-    #[inline]
-    pub(super) fn of(&mut self, shade: Shade) -> Option<Ink> {
+    /// That of a colour.
+    #[expect(clippy::inline_always, reason = "calls would take longer than what they do")]
+    #[inline(always)]
+    pub(super) fn of(&mut self, shade: Shade) -> Ink {
         let place =
             (shade.in_bits().wrapping_mul(0x9E37_79B1) >> (u32::BITS - PLACE_BITS)) as usize;
-        let known = self.places.get_mut(place)?;
+        let known = &mut self.places[place];
         if known.shade != shade {
-            *known = Ink::new(shade)?;
+            *known = Ink::new(shade);
         }
-        Some(*known)
+        *known
     }
 
-    /// Those of two halves.
+    /// Those of two colours.
     #[inline]
-    pub(super) fn of_halves(&mut self, [upper, lower]: [Shade; 2]) -> Option<Halves> {
-        Some([self.of(upper)?, self.of(lower)?])
+    pub(super) fn of_both(&mut self, shades: [Shade; 2]) -> [Ink; 2] {
+        shades.map(|shade| self.of(shade))
     }
 
-    /// The colour that is halfway between two.
+    /// The colour halfway between two, or the nearest to it in the palette that both belong to.
     pub(super) fn between(&mut self, one: Ink, other: Ink) -> Ink {
-        match (one.shade.kind(), other.shade.kind()) {
-            (Kind::Rgb([r, g, b]), Kind::Rgb([red, green, blue])) => {
-                let middle = [r.midpoint(red), g.midpoint(green), b.midpoint(blue)];
-                self.of(Shade::rgb(middle)).unwrap_or(one)
+        let middle = |one: [u8; 3], other: [u8; 3]| -> [u8; 3] {
+            std::array::from_fn(|channel| one[channel].midpoint(other[channel]))
+        };
+        let of_indices = |one: u8, other: u8| {
+            let [one, other] = [one, other].map(|index| palette::of_256(index).channels());
+            let [red, green, blue] = middle(one, other);
+            Rgb::new(red, green, blue)
+        };
+        self.of(match (one.shade.kind(), other.shade.kind()) {
+            (Kind::Rgb(one), Kind::Rgb(other)) => Shade::rgb(middle(one, other)),
+            (Kind::Indexed(one @ FIRST_FIXED..), Kind::Indexed(other @ FIRST_FIXED..)) => {
+                Shade::indexed(palette::nearest_of_256(of_indices(one, other)))
             }
-            _ => one,
-        }
+            (Kind::Indexed(one @ ..FIRST_FIXED), Kind::Indexed(other @ ..FIRST_FIXED)) => {
+                Shade::indexed(palette::nearest_of_16(of_indices(one, other)))
+            }
+            _ => one.shade,
+        })
     }
+}
+
+/// How colours are written.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord)]
+pub(super) enum Notation {
+    /// As one of the 16 named ones, in two bytes.
+    Named,
+    /// As one of the 240 fixed ones, in up to eight.
+    Indexed,
+    /// As an entry of the palette where one holds it, in up to eight.
+    Entry,
+    /// As red, green and blue, in up to sixteen.
+    Rgb,
 }
 
 impl Default for Inks {
@@ -91,6 +132,20 @@ impl Default for Inks {
         // No place knows a colour that has not been asked for.
         let nothing = Ink { lab: [0.0; 3], shade: Shade::NONE };
         Self { places: vec![nothing; 1 << PLACE_BITS] }
+    }
+}
+
+impl Notation {
+    /// That of the longest colour of a row of cells, on a terminal whose palette may be defined or not.
+    pub(super) fn of(targets: &[PackedCell], has_palette: bool) -> Self {
+        let all = targets.iter().fold([0; 2], |all, target| {
+            let colors = target.colors().map(Shade::in_bits);
+            [all[0] | colors[0], all[1] | colors[1]]
+        });
+        match Shade::longest_of(all[0] | all[1]) {
+            Self::Rgb if has_palette => Self::Entry,
+            notation => notation,
+        }
     }
 }
 
@@ -105,12 +160,17 @@ pub(super) struct Price {
 }
 
 impl Price {
-    /// At that fidelity, with a palette or without; `None` if it is exact. The less is allowed, the more an
-    /// error is worth; and the less colours cost, the less.
-    pub(super) fn at(fidelity: Fidelity, has_palette: bool) -> Option<Self> {
+    /// At that fidelity, which is not exact. The less is allowed, the more an error is worth; and the less colours
+    /// cost, the less.
+    pub(super) fn at(fidelity: Fidelity, notation: Notation) -> Self {
         let farthest = f32::from(fidelity.tolerance());
-        let worth = if has_palette { (9.2 - farthest / 14.0).max(5.0) } else { 10.5 };
-        (fidelity > Fidelity::EXACT).then(|| Self { farthest, bytes: worth / farthest })
+        let worth = match notation {
+            Notation::Named => 2.0,
+            Notation::Indexed => 6.0,
+            Notation::Entry => (9.2 - farthest / 14.0).max(5.0),
+            Notation::Rgb => 10.5,
+        };
+        Self { farthest, bytes: worth / farthest }
     }
 
     /// What it is worth, in bytes, to be off by `distance`; infinite if too much.

@@ -8,8 +8,8 @@ use ratatui::layout::{Position, Size};
 use super::bytes::Bytes;
 use super::control::ControlSequence;
 use super::ink::Price;
-use super::look::Glyph;
 use super::motion;
+use super::packed_cell::BlockElement;
 use super::palette::Palette;
 use super::screen::Screen;
 use super::shift::{Shift, Way};
@@ -28,7 +28,7 @@ pub(super) struct Pen {
     /// Whether the terminal repeats characters (REP).
     repeats: bool,
     /// The block that was drawn last, where nothing has been written since.
-    last: Option<Glyph>,
+    last: Option<BlockElement>,
     /// How many more of that one are drawn, but not written yet.
     repeated: u16,
     palette: Palette,
@@ -145,9 +145,9 @@ impl Pen {
     /// Draws a block at a position on the screen.
     #[expect(clippy::inline_always, reason = "calls would take longer than what they do")]
     #[inline(always)]
-    pub(super) fn draw_block(&mut self, position: Position, glyph: Glyph, style: Style) {
+    pub(super) fn draw_block(&mut self, position: Position, element: BlockElement, style: Style) {
         let (cursor, size, current) = (self.cursor, self.size, self.style);
-        if self.last == Some(glyph) && cursor == Some(position) && current == Some(style) {
+        if self.last == Some(element) && cursor == Some(position) && current == Some(style) {
             self.repeated += 1;
             self.advance(position);
             return;
@@ -159,20 +159,20 @@ impl Pen {
         if current != Some(style) {
             style.push_from(current, |shade| palette.told(shade), &mut piece);
         }
-        let (encoded, count) = glyph.encoded();
+        let (encoded, count) = element.encoded();
         piece.push(encoded, count);
         piece.finish();
         self.style = Some(style);
-        self.last = self.repeats.then_some(glyph);
+        self.last = self.repeats.then_some(element);
         self.advance(position);
     }
 
     /// Writes what was drawn, but not written yet.
     #[cold]
     fn write_repeated(&mut self) {
-        let Some(glyph) = self.last else { return };
+        let Some(element) = self.last else { return };
         let count = usize::from(std::mem::take(&mut self.repeated));
-        let (encoded, bytes) = glyph.encoded();
+        let (encoded, bytes) = element.encoded();
         let digits = if count > 1 { motion::digits(count as u16) } else { 0 };
         if count * bytes <= 3 + digits {
             (0..count).for_each(|_| self.frame.push_text(&encoded[..bytes]));

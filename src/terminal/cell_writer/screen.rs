@@ -1,18 +1,16 @@
 //! What the terminal shows, and what it is to show.
 
+mod canvas;
+
 use ratatui::backend::ClearType;
 use ratatui::buffer::{Buffer, Cell};
-use ratatui::layout::{Position, Rect, Size};
-use ratatui::style::Color;
-use ratatui::widgets::Widget;
+use ratatui::layout::{Position, Size};
 
-use super::alphabet::Alphabet;
 use super::ascii;
-use super::look::Look;
+use super::glyph_table::GlyphTable;
+use super::packed_cell::PackedCell;
 use super::shift::{Mark, Shift};
-use super::style::Style;
-use crate::canvas::Canvas;
-use crate::color::Rgb;
+use super::style::{Shade, Style};
 
 /// A terminal's screen: what it shows, and what it is to show, cell by cell.
 ///
@@ -22,15 +20,15 @@ pub struct Screen {
     width: usize,
     /// Whether it is to show nothing but ASCII.
     is_ascii: bool,
-    alphabet: Alphabet,
-    shown: Vec<Look>,
+    glyph_table: GlyphTable,
+    shown: Vec<PackedCell>,
     /// What it is to look like.
-    looks: Vec<Look>,
+    targets: Vec<PackedCell>,
     /// What it was to look like before the frame that is being drawn.
-    looks_before: Vec<Look>,
+    targets_before: Vec<PackedCell>,
     /// The landmarks of what it was to look like when it was drawn last.
     marks: Vec<Mark>,
-    /// The intricate cells that are to be shown: their looks do not say all.
+    /// The intricate cells that are to be shown: packed cells do not say all of them.
     wanted: Vec<Cell>,
     /// Whether anything in a row is to be changed.
     changed: Vec<bool>,
@@ -47,9 +45,9 @@ pub struct Screen {
 /// A row of it.
 pub(super) struct Row<'a> {
     pub(super) y: u16,
-    pub(super) alphabet: &'a Alphabet,
-    pub(super) shown: &'a mut [Look],
-    pub(super) looks: &'a [Look],
+    pub(super) glyph_table: &'a GlyphTable,
+    pub(super) shown: &'a mut [PackedCell],
+    pub(super) targets: &'a [PackedCell],
     /// The landmarks of what it was to show in the last frame.
     pub(super) marks: &'a mut [Mark],
     pub(super) wanted: &'a [Cell],
@@ -73,9 +71,9 @@ impl Screen {
     pub(super) fn resize(&mut self, size: Size) {
         let (width, height) = (usize::from(size.width), usize::from(size.height));
         self.width = width;
-        for looks in [&mut self.shown, &mut self.looks, &mut self.looks_before] {
-            looks.clear();
-            looks.resize(width * height, Look::BLANK);
+        for targets in [&mut self.shown, &mut self.targets, &mut self.targets_before] {
+            targets.clear();
+            targets.resize(width * height, PackedCell::BLANK);
         }
         self.marks.clear();
         self.marks.resize(width * height, Mark::NONE);
@@ -100,7 +98,7 @@ impl Screen {
 
     /// Nothing is known of what it shows.
     pub(super) fn forget(&mut self) {
-        self.shown.fill(Look::UNKNOWN);
+        self.shown.fill(PackedCell::UNKNOWN);
         self.exact.fill(false);
     }
 
@@ -117,8 +115,8 @@ impl Screen {
             ClearType::UntilNewLine => at..row + self.width,
         };
         let cells = cells.start.min(end)..cells.end.min(end);
-        self.shown[cells.clone()].fill(Look::BLANK);
-        self.looks[cells].fill(Look::BLANK);
+        self.shown[cells.clone()].fill(PackedCell::BLANK);
+        self.targets[cells].fill(PackedCell::BLANK);
     }
 
     /// It is to show `cell` there; what is off the screen is nowhere.
@@ -133,14 +131,14 @@ impl Screen {
 
     #[inline]
     fn set(&mut self, place: usize, cell: &Cell) {
-        let look = if self.is_ascii {
+        let target = if self.is_ascii {
             let character = ascii::substitute(cell.symbol());
-            Look::of_letter(character, Style::of(cell), &mut self.alphabet)
+            PackedCell::of_glyph(character, Style::of(cell), &mut self.glyph_table)
         } else {
-            Look::of(cell, &mut self.alphabet)
+            PackedCell::of(cell, &mut self.glyph_table)
         };
-        self.looks[place] = look;
-        if look.is_intricate() {
+        self.targets[place] = target;
+        if target.is_intricate() {
             self.want_intricate(place, cell);
         }
     }
@@ -157,40 +155,16 @@ impl Screen {
 
     /// A whole frame is drawn, on blank ground.
     pub(super) fn begin_frame(&mut self) {
-        std::mem::swap(&mut self.looks, &mut self.looks_before);
-        self.looks.fill(Look::BLANK);
+        std::mem::swap(&mut self.targets, &mut self.targets_before);
+        self.targets.fill(PackedCell::BLANK);
     }
 
     /// The frame is whole: what is not as it was before has changed.
     pub(super) fn end_frame(&mut self) {
         let width = self.width.max(1);
-        let rows = self.looks.chunks(width).zip(self.looks_before.chunks(width));
-        for (changed, (looks, before)) in self.changed.iter_mut().zip(rows) {
-            *changed |= looks != before;
-        }
-    }
-
-    /// The cells from `(x, y)` to the right; none off the screen.
-    #[inline]
-    fn looks_from(&mut self, x: u16, y: u16) -> &mut [Look] {
-        let row = usize::from(y) * self.width;
-        let cells = row + usize::from(x).min(self.width)..row + self.width;
-        self.looks.get_mut(cells).unwrap_or_default()
-    }
-
-    /// Shows what stands for `character`.
-    fn draw_ascii(&mut self, x: u16, y: u16, character: char, colors: [Color; 2]) {
-        let character = ascii::substitute(character.encode_utf8(&mut [0; 4]));
-        let look = Look::of_letter(character, Style::in_colors(colors), &mut self.alphabet);
-        if let Some(place) = self.looks_from(x, y).first_mut() {
-            *place = look;
-        }
-    }
-
-    /// Shows cells of two colours without a block: in the lower one.
-    fn draw_grounds(&mut self, x: u16, y: u16, row: impl Iterator<Item = [Color; 2]>) {
-        for (x, colors) in (x..).zip(row) {
-            self.draw_ascii(x, y, ' ', colors);
+        let rows = self.targets.chunks(width).zip(self.targets_before.chunks(width));
+        for (changed, (targets, before)) in self.changed.iter_mut().zip(rows) {
+            *changed |= targets != before;
         }
     }
 
@@ -204,19 +178,21 @@ impl Screen {
         !self.exact.contains(&false)
     }
 
-    /// What is shown there; `None` off the screen.
-    pub(super) fn shown(&self, x: u16, y: u16) -> Option<Look> {
+    /// The two colours that are shown there; `None` where they are unknown, and off the screen.
+    pub(super) fn shown_colors(&self, x: u16, y: u16) -> Option<[Shade; 2]> {
         let (x, y) = (usize::from(x), usize::from(y));
-        (x < self.width).then(|| self.shown.get(y * self.width + x).copied()).flatten()
+        let place = (x < self.width).then_some(y * self.width + x)?;
+        let (_, colors) = self.shown.get(place)?.recolorable(&self.glyph_table)?;
+        Some(colors)
     }
 
     /// What each row shows, and what it is to show.
-    pub(super) fn rows(&self) -> impl Iterator<Item = (&[Look], &[Look])> {
+    pub(super) fn rows(&self) -> impl Iterator<Item = (&[PackedCell], &[PackedCell])> {
         let width = self.width.max(1);
-        self.shown.chunks(width).zip(self.looks.chunks(width))
+        self.shown.chunks(width).zip(self.targets.chunks(width))
     }
 
-    /// How the cells are drawn whose looks do not say it.
+    /// How the cells are drawn whose packed cells do not say it.
     pub(super) fn intricate_styles(&self) -> impl Iterator<Item = Style> {
         let rows = self.wanted.chunks(self.width.max(1)).zip(&self.intricate);
         rows.filter(|(_, intricate)| **intricate).flat_map(|(cells, _)| cells.iter().map(Style::of))
@@ -244,92 +220,38 @@ impl Screen {
         mut is_asked: impl FnMut(bool, &mut bool) -> bool,
     ) -> impl Iterator<Item = Row<'_>> {
         let width = self.width.max(1);
-        let alphabet = &self.alphabet;
-        let wanted = self.looks.chunks(width).zip(self.wanted.chunks(width));
+        let glyph_table = &self.glyph_table;
+        let wanted = self.targets.chunks(width).zip(self.wanted.chunks(width));
         let known = self.shown.chunks_mut(width).zip(self.marks.chunks_mut(width));
         let states = self.changed.iter_mut().zip(&mut self.intricate).zip(&mut self.exact);
         let states = states.zip(&self.rested);
         (0..).zip(known.zip(wanted).zip(states)).filter_map(move |(y, (cells, state))| {
-            let ((shown, marks), (looks, wanted)) = cells;
+            let ((shown, marks), (targets, wanted)) = cells;
             let (((changed, intricate), exact), &rested) = state;
-            let row = Row { y, alphabet, shown, looks, marks, wanted, intricate, exact, rested };
+            let row =
+                Row { y, glyph_table, shown, targets, marks, wanted, intricate, exact, rested };
             is_asked(*row.exact, changed).then_some(row)
         })
-    }
-}
-
-impl Canvas for Screen {
-    fn bounds(&self) -> Rect {
-        Rect::new(0, 0, self.width as u16, self.changed.len() as u16)
-    }
-
-    #[inline]
-    fn draw_halves(&mut self, x: u16, y: u16, row: impl Iterator<Item = [Color; 2]>) {
-        if self.is_ascii {
-            return self.draw_grounds(x, y, row);
-        }
-        for (look, halves) in self.looks_from(x, y).iter_mut().zip(row) {
-            *look = Look::of_colors(halves);
-        }
-    }
-
-    #[inline]
-    fn draw_pixels(&mut self, x: u16, y: u16, row: impl Iterator<Item = [Rgb; 2]>) {
-        if self.is_ascii {
-            let rgb = |color: Rgb| Color::Rgb(color.red(), color.green(), color.blue());
-            return self.draw_grounds(x, y, row.map(|halves| halves.map(rgb)));
-        }
-        for (look, pixels) in self.looks_from(x, y).iter_mut().zip(row) {
-            *look = Look::of_pixels(pixels);
-        }
-    }
-
-    fn draw_character(&mut self, x: u16, y: u16, character: char, colors: [Color; 2]) {
-        if self.is_ascii {
-            return self.draw_ascii(x, y, character, colors);
-        }
-        let look = Look::of_character(character, colors, &mut self.alphabet);
-        let Some(place) = self.looks_from(x, y).first_mut() else { return };
-        *place = look;
-        if look.is_intricate() {
-            let mut cell = Cell::EMPTY;
-            cell.set_char(character).set_fg(colors[0]).set_bg(colors[1]);
-            self.want_intricate(usize::from(y) * self.width + usize::from(x), &cell);
-        }
-    }
-
-    fn draw_widget(&mut self, widget: impl Widget, area: Rect) {
-        let area = area.intersection(self.bounds());
-        let mut scratch = std::mem::take(&mut self.scratch);
-        scratch.area = area;
-        scratch.content.clear();
-        scratch.content.resize(area.area() as usize, Cell::EMPTY);
-        widget.render(area, &mut scratch);
-        for (position, cell) in area.positions().zip(scratch.content()) {
-            let place = usize::from(position.y) * self.width + usize::from(position.x);
-            self.set(place, cell);
-        }
-        self.scratch = scratch;
     }
 }
 
 impl Row<'_> {
     /// How many cells it has.
     pub(super) fn width(&self) -> usize {
-        self.looks.len()
+        self.targets.len()
     }
 
-    /// Whether it shows blocks wherever it does not show what it is to show, and is to show blocks
-    /// there.
+    /// Whether no cell differs from what it is to show in more than its colours.
     pub(super) fn is_near(&self) -> bool {
-        let mut looks = self.shown.iter().zip(self.looks);
-        looks.all(|(shown, look)| {
-            shown == look || shown.halves().is_some() && look.halves().is_some()
+        let form = |target: PackedCell| target.recolorable(self.glyph_table).map(|(form, _)| form);
+        let mut targets = self.shown.iter().zip(self.targets);
+        targets.all(|(&shown, &target)| {
+            shown == target || form(target).is_some() && form(shown) == form(target)
         })
     }
 
     /// The terminal has moved a part of it.
     pub(super) fn shift(&mut self, shift: &Shift) {
-        shift.apply(self.shown, Look::UNKNOWN);
+        shift.apply(self.shown, PackedCell::UNKNOWN);
     }
 }

@@ -73,14 +73,17 @@ pub(super) struct Shifts {
 impl Shifts {
     /// Begins with a row. `lose` adds what is lost where the cells that are now at the first place and
     /// after it are shown at the second and after it.
-    pub(super) fn begin(&mut self, row: &Row, lose: impl Fn(usize, usize, &mut Vec<Loss>)) {
-        self.landmarks.find(row.looks, row.marks);
+    pub(super) fn begin(&mut self, row: &Row, mut lose: impl FnMut(usize, usize, &mut Vec<Loss>)) {
+        self.landmarks.find(row.targets, row.marks);
         self.losses.clear();
         lose(0, 0, &mut self.losses);
     }
 
     /// The shift after which least is lost, if it spares more than it takes.
-    pub(super) fn next(&mut self, lose: impl Fn(usize, usize, &mut Vec<Loss>)) -> Option<Shift> {
+    pub(super) fn next(
+        &mut self,
+        mut lose: impl FnMut(usize, usize, &mut Vec<Loss>),
+    ) -> Option<Shift> {
         if sum(&self.losses) <= SHIFT {
             return None;
         }
@@ -172,16 +175,16 @@ mod tests {
     use proptest::prelude::*;
     use ratatui::style::{Color, Modifier};
 
-    use super::super::alphabet::{Alphabet, Letter};
-    use super::super::look::Look;
+    use super::super::glyph_table::{Glyph, GlyphTable};
+    use super::super::packed_cell::PackedCell;
     use super::*;
 
-    fn best(shown: &[Look], wanted: &[Look]) -> Option<Shift> {
+    fn best(shown: &[PackedCell], wanted: &[PackedCell]) -> Option<Shift> {
         let row = Row {
             y: 0,
-            alphabet: &Alphabet::default(),
+            glyph_table: &GlyphTable::default(),
             shown: &mut shown.to_vec(),
-            looks: wanted,
+            targets: wanted,
             marks: &mut marks(shown),
             wanted: &[],
             intricate: &mut false,
@@ -190,24 +193,24 @@ mod tests {
         };
         let mut shifts = Shifts::default();
         let lose = |from: usize, to: usize, losses: &mut Vec<Loss>| {
-            let looks = shown[from..].iter().zip(&wanted[to..]);
-            losses.extend(looks.map(|(shown, wanted)| CELL * Loss::from(shown != wanted)));
+            let targets = shown[from..].iter().zip(&wanted[to..]);
+            losses.extend(targets.map(|(shown, wanted)| CELL * Loss::from(shown != wanted)));
         };
         shifts.begin(&row, lose);
         shifts.next(lose)
     }
 
-    fn marks(looks: &[Look]) -> Vec<Mark> {
-        let hashes: Vec<_> = looks.iter().map(|look| look.hash()).collect();
+    fn marks(targets: &[PackedCell]) -> Vec<Mark> {
+        let hashes: Vec<_> = targets.iter().map(|target| target.hash()).collect();
         Mark::all(&hashes).collect()
     }
 
-    fn row(text: &str) -> Vec<Look> {
-        let mut alphabet = Alphabet::default();
-        // In any text, the same letters have the same numbers then.
-        (' '..='~').for_each(|letter| _ = alphabet.number(Letter::new(letter, Modifier::empty())));
-        let look = |letter| Look::of_character(letter, [Color::Reset; 2], &mut alphabet);
-        text.chars().map(look).collect()
+    fn row(text: &str) -> Vec<PackedCell> {
+        let mut glyph_table = GlyphTable::default();
+        // In any text, the same letters have the same ids then.
+        (' '..='~').for_each(|letter| _ = glyph_table.id(Glyph::new(letter, Modifier::empty())));
+        let target = |letter| PackedCell::of_character(letter, [Color::Reset; 2], &mut glyph_table);
+        text.chars().map(target).collect()
     }
 
     #[test]
@@ -238,9 +241,9 @@ mod tests {
     #[test]
     fn a_shift_uncovers_what_nobody_knows() {
         let mut shown = row("abcdef");
-        Shift { columns: 1..5, by: 2, way: Way::Left }.apply(&mut shown, Look::UNKNOWN);
+        Shift { columns: 1..5, by: 2, way: Way::Left }.apply(&mut shown, PackedCell::UNKNOWN);
         assert_eq!(shown[..3], row("ade"));
-        assert_eq!((shown[3], shown[4]), (Look::UNKNOWN, Look::UNKNOWN));
+        assert_eq!((shown[3], shown[4]), (PackedCell::UNKNOWN, PackedCell::UNKNOWN));
         assert_eq!(shown[5..], row("f"));
     }
 
@@ -252,10 +255,10 @@ mod tests {
         ) {
             let (mut shown, wanted) = (row(&shown), row(&wanted));
             let wanted = &wanted[..shown.len()];
-            let to_send = |shown: &[Look]| shown.iter().zip(wanted).filter(|(a, b)| a != b).count();
+            let to_send = |shown: &[PackedCell]| shown.iter().zip(wanted).filter(|(a, b)| a != b).count();
             let before = to_send(&shown);
             if let Some(shift) = best(&shown, wanted) {
-                shift.apply(&mut shown, Look::UNKNOWN);
+                shift.apply(&mut shown, PackedCell::UNKNOWN);
                 prop_assert!(to_send(&shown) < before);
             }
         }

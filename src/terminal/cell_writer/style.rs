@@ -10,6 +10,7 @@ use super::super::sequence;
 use super::bytes::Bytes;
 use super::bytes::Piece;
 use super::control::{self, ControlSequence};
+use super::ink::Notation;
 use crate::color::Rgb;
 
 /// How a character is drawn.
@@ -238,6 +239,19 @@ impl Shade {
             Kind::Default => Color::Reset,
             Kind::Indexed(index) => Color::Indexed(index),
             Kind::Rgb([red, green, blue]) => Color::Rgb(red, green, blue),
+        }
+    }
+
+    /// How the longest of several colours is written, whose bits are united.
+    pub(super) fn longest_of(bits: u32) -> Notation {
+        /// What no index of a named colour has.
+        const ABOVE_NAMED: u32 = 0xF0;
+        if bits & Self::RGB != 0 {
+            Notation::Rgb
+        } else if bits & ABOVE_NAMED != 0 {
+            Notation::Indexed
+        } else {
+            Notation::Named
         }
     }
 

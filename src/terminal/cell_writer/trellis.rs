@@ -1,52 +1,50 @@
 //! What to send of a row that may be shown inexactly.
 //!
-//! Each cell can be left as it is, or drawn by any of several blocks, in the colours that the terminal
-//! draws in already or in others. What is best for a cell depends on the colours that the cells before
-//! it have left behind, so rows are searched as video encoders search theirs: through a trellis, cell
-//! by cell, with the few cheapest ways to get there kept (Viterbi's algorithm, over a beam). The cost of
-//! a way is its bytes, and what its errors are worth in bytes; no colour is farther off than the fidelity
-//! allows.
+//! Each cell is left as it is, or drawn by one of several glyphs, in the colours that the terminal draws in already
+//! or in new ones. What is best for a cell depends on the colours that the cells before it have left behind, so a
+//! row is searched as video encoders search theirs: through a trellis, cell by cell, with the few cheapest paths
+//! kept (Viterbi's algorithm, IEEE Transactions on Information Theory 13, 1967, over a beam). The cost of a path is
+//! its bytes, and what its errors are worth in bytes; no colour is farther off than the fidelity allows. A character
+//! is searched as a half block that has but one glyph: its own.
 //!
-//! What the ways have in common is computed for all of them at once, so each of their fields is an array.
-//! Nothing is drawn where to leave a cell costs less than a byte, and no cursor is there: to search these
-//! cells, too, took half as long again for the same bytes and error.
+//! Each field of the paths is an array, so that all paths are computed at once. Costs are relative: what all
+//! paths pay alike is not added. A cell that no cursor stands at is passed over where it costs less to leave than a
+//! motion of the cursor: to search these cells, too, took a fifth more instructions for the same bytes and error.
 //!
 //! To take cells in turn, leave what is within a threshold, and draw the rest in the colours at hand
 //! where these are within it, was refused: it took 1.7 times the bytes at the same mean error at
 //! high fidelity, and 2.3 times at low.
 
-mod block;
-mod candidates;
+mod branches;
+mod lanes;
+mod survivors;
 
-use self::block::{Block, Fresh};
-use self::candidates::{Candidates, Turn};
-use super::ink::{Halves, Ink, Inks, Price};
-use super::look::Glyph;
-use super::motion::digits;
+use self::branches::Branches;
+use self::lanes::{Labs, Lanes};
+use self::survivors::{Survivors, Turn, colors_of, key};
+use super::ink::{Ink, Inks, Price};
+use super::packed_cell::BlockElement;
 use super::palette::Palette;
 use super::style::{Shade, Style};
 
-/// A cell of a row that is to be shown.
+/// A cell that is to be shown, or about: the colours of its halves, or of its character and the ground.
 #[derive(Clone, Copy, Debug)]
-pub(super) enum Wanted {
-    /// These two halves, or about; to leave the cell as it is costs so many bytes.
-    Halves { wanted: Halves, keep: f32 },
-    /// What can't be shown but exactly.
-    Fixed { is_shown: bool },
+pub(super) struct Wanted {
+    pub(super) inks: [Ink; 2],
+    /// How many bytes its only glyph takes; `None` where it is any of the blocks.
+    pub(super) character: Option<u8>,
 }
 
-/// What to do about a cell.
+/// What to do about a cell that is not left as it is.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub(super) enum Action {
-    /// Leave it.
-    Keep,
     /// Draw it exactly.
     DrawExactly,
-    /// Draw it so.
-    Draw(Glyph, Style),
+    /// Draw it so; a character by its own glyph.
+    Draw(BlockElement, Style),
 }
 
-/// So many ways are kept at each cell. With twice as many, the same error takes a twentieth fewer
+/// How many paths are kept at each cell. With twice as many, the same error takes a twentieth fewer
 /// bytes, and twice the time.
 const KEPT: usize = 4;
 
@@ -56,196 +54,177 @@ pub(super) struct Store<'a> {
     pub(super) palette: &'a mut Palette,
 }
 
+/// What holds for a whole row.
+#[derive(Clone, Copy)]
+pub(super) struct Terms {
+    pub(super) price: Price,
+    /// What the terminal draws in before the row.
+    pub(super) style: Option<Style>,
+    /// Whether it repeats characters.
+    pub(super) repeats: bool,
+}
+
 /// A search, and its memory.
 #[derive(Debug, Default)]
 pub(super) struct Trellis {
-    /// The last step of each way past each cell.
-    steps: Vec<[Step; KEPT]>,
-    actions: Vec<Action>,
+    /// The cells that not all paths leave alone.
+    steps: Vec<Step>,
+    actions: Vec<(u16, Action)>,
 }
 
-/// What a way does about a cell.
+/// What the paths do about a cell.
 #[derive(Clone, Copy, Debug)]
 struct Step {
-    kind: StepKind,
-    /// Which of the ways past the cell before it goes on from.
-    before: u8,
-    /// What the terminal draws text in, and the ground.
-    shades: [Shade; 2],
+    column: u16,
+    turns: [Turn; KEPT],
+    /// Where they leave the terminal.
+    keys: [u64; KEPT],
 }
 
 #[derive(Clone, Copy, Debug, PartialEq)]
 enum StepKind {
     Keep,
     DrawExactly,
-    Draw(Glyph),
+    Draw(BlockElement),
 }
 
-/// The cheapest ways past a cell, in no order; those that there are not cost infinitely much.
+/// The cheapest paths past a cell, in no order; those that there are not cost infinitely much.
 #[derive(Clone, Copy, Debug)]
-struct Ways {
-    /// In bytes.
-    cost: [f32; KEPT],
-    /// What the terminal draws text in, and the ground; far from everything where that is unknown.
+struct Paths {
+    /// In bytes, beside what all of them cost.
+    cost: Lanes,
+    /// What the terminal draws text in, and the ground, and where its cursor stands.
+    keys: [u64; KEPT],
+    /// The colours of text and ground; far from everything where they are unknown.
     inks: [[Ink; 2]; KEPT],
-    /// Where its cursor stands.
-    cursor: [u16; KEPT],
-    /// What it has drawn last.
-    last: [Option<Glyph>; KEPT],
+    /// Where these lie.
+    labs: [Labs; 2],
+    /// Where the cursor stands; [`NOWHERE`] if nobody knows.
+    cursor: Lanes,
+    /// What was drawn last.
+    last: [Option<BlockElement>; KEPT],
 }
 
-/// The cursor of which nobody knows where it stands.
-const NOWHERE: u16 = u16::MAX;
+/// Where the cursor is taken to stand of which nobody knows it: far to the left.
+const NOWHERE: f32 = -1e6;
 
 /// A colour that nobody knows: no other is near.
 const UNKNOWN: Ink = Ink { lab: [1e9; 3], shade: Shade::DEFAULT };
 
-/// What is left as it is for less than this need not be drawn, in bytes.
-const NEGLIGIBLE: f32 = 1.0;
+/// A cell that costs less to leave, in bytes, is drawn only where a cursor stands at it.
+const NEGLIGIBLE: f32 = 4.0;
 
 impl Trellis {
-    /// What is best done about each cell of a row, where the terminal draws in `style` so far, and
-    /// repeats characters if it `repeats`.
+    /// What is best done about the cells of a row, where to leave them as they are costs `keep` each; those that
+    /// are left are left out. `wanted` tells what a cell is to be, or that it may only be drawn exactly.
     pub(super) fn search(
         &mut self,
-        row: &[Wanted],
-        style: Option<Style>,
-        price: Price,
-        repeats: bool,
+        keep: &[[f32; 2]],
+        wanted: impl Fn(usize, &mut Inks) -> Option<Wanted>,
+        terms: Terms,
         store: &mut Store,
-    ) -> &[Action] {
+    ) -> &[(u16, Action)] {
         self.steps.clear();
-        let mut ways = Ways::from_start(style, store.inks);
-        for (x, cell) in (0..).zip(row) {
-            let steps = match *cell {
-                Wanted::Halves { keep, .. } if keep < NEGLIGIBLE && !ways.cursor.contains(&x) => {
-                    ways.keep(keep)
-                }
-                Wanted::Halves { wanted, keep } => {
-                    ways.past_halves(x, wanted, keep, price, repeats, store)
-                }
-                Wanted::Fixed { is_shown: true } => ways.keep(0.0),
-                Wanted::Fixed { is_shown: false } => ways.past_text(x),
+        let mut paths = Paths::from_start(terms.style, store.inks);
+        let mut survivors = Survivors::of(&paths);
+        // Whether a path has drawn the cell before, so that its cursor stands at this one.
+        let mut is_drawn = false;
+        for (x, [one, other]) in keep.iter().enumerate() {
+            let keep = one + other;
+            if keep < NEGLIGIBLE && !is_drawn {
+                continue;
+            }
+            let column = x as u16;
+            let step = if let Some(wanted) = wanted(x, store.inks) {
+                survivors.begin(&paths, keep);
+                Branches::new(&wanted, terms, &paths, column).draw(&mut survivors, store);
+                survivors.is_changed().then(|| paths.go_on(&survivors, column))
+            } else {
+                (keep > 0.0).then(|| paths.past_fixed(column))
             };
-            self.steps.push(steps);
+            is_drawn = step.is_some();
+            self.steps.extend(step);
         }
-        self.trace_back(ways.cheapest())
+        self.trace_back(paths.cheapest())
     }
 
-    /// What that way has done.
-    fn trace_back(&mut self, way: usize) -> &[Action] {
+    /// What that path has done.
+    fn trace_back(&mut self, path: usize) -> &[(u16, Action)] {
         self.actions.clear();
-        let mut at = way;
-        for steps in self.steps.iter().rev() {
-            let step = &steps[at];
-            self.actions.push(match step.kind {
-                StepKind::Keep => Action::Keep,
-                StepKind::DrawExactly => Action::DrawExactly,
-                StepKind::Draw(glyph) => {
-                    Action::Draw(glyph, Style::plain(step.shades[0], step.shades[1]))
+        let mut at = path;
+        for Step { column, turns, keys } in self.steps.iter().rev() {
+            let Turn { kind, before, .. } = turns[at];
+            match kind {
+                StepKind::Keep => {}
+                StepKind::DrawExactly => self.actions.push((*column, Action::DrawExactly)),
+                StepKind::Draw(element) => {
+                    let [text, ground] = colors_of(keys[at]);
+                    self.actions.push((*column, Action::Draw(element, Style::plain(text, ground))));
                 }
-            });
-            at = usize::from(step.before);
+            }
+            at = usize::from(before);
         }
         self.actions.reverse();
         &self.actions
     }
 }
 
-/// About how many bytes it takes to get from one column of a row to another.
-#[inline]
-fn motion(cursor: u16, x: u16) -> f32 {
-    let bytes = match x.wrapping_sub(cursor) {
-        0 => 0,
-        // Most come from the row above.
-        _ if cursor == NOWHERE && x == 0 => 2,
-        _ if cursor == NOWHERE => 5 + digits(x),
-        1 => 3,
-        distance => 3 + digits(distance),
-    };
-    bytes as f32
-}
-
-impl Ways {
-    /// The one way to the start of a row.
+impl Paths {
+    /// The one path to the start of a row.
     fn from_start(style: Option<Style>, inks: &mut Inks) -> Self {
-        let told = style.and_then(|style| inks.of_halves(style.plain_colors()?));
-        Self::one(0.0, told.unwrap_or([UNKNOWN; 2]), NOWHERE)
+        let told = style.and_then(Style::plain_colors).map(|colors| inks.of_both(colors));
+        Self::one(0.0, told.unwrap_or([UNKNOWN; 2]), None)
     }
 
-    fn one(cost: f32, inks: [Ink; 2], cursor: u16) -> Self {
+    fn one(cost: f32, inks: [Ink; 2], cursor: Option<u16>) -> Self {
         let mut costs = [f32::INFINITY; KEPT];
         costs[0] = cost;
-        Self { cost: costs, inks: [inks; KEPT], cursor: [cursor; KEPT], last: [None; KEPT] }
+        Self {
+            cost: costs,
+            keys: [key(inks.map(|ink| ink.shade), cursor.unwrap_or(u16::MAX)); KEPT],
+            inks: [inks; KEPT],
+            labs: inks.map(|ink| ink.lab.map(|component| [component; KEPT])),
+            cursor: [cursor.map_or(NOWHERE, f32::from); KEPT],
+            last: [None; KEPT],
+        }
     }
 
     fn cheapest(&self) -> usize {
-        (1..KEPT).fold(0, |best, way| if self.cost[way] < self.cost[best] { way } else { best })
-    }
-
-    /// Past a cell that is left alone, for so many bytes.
-    #[inline]
-    fn keep(&mut self, error: f32) -> [Step; KEPT] {
-        self.cost = self.cost.map(|cost| cost + error);
-        std::array::from_fn(|way| Step {
-            kind: StepKind::Keep,
-            before: way as u8,
-            shades: [Shade::DEFAULT; 2],
-        })
+        (1..KEPT).fold(0, |best, path| if self.cost[path] < self.cost[best] { path } else { best })
     }
 
     /// Past a cell that is drawn in colours that matter to no other.
-    fn past_text(&mut self, x: u16) -> [Step; KEPT] {
+    fn past_fixed(&mut self, x: u16) -> Step {
         let before = self.cheapest();
-        *self = Self::one(self.cost[before], [UNKNOWN; 2], x + 1);
-        let shades = [Shade::DEFAULT; 2];
-        [Step { kind: StepKind::DrawExactly, before: before as u8, shades }; KEPT]
+        *self = Self::one(self.cost[before], [UNKNOWN; 2], Some(x + 1));
+        let turn = Turn { kind: StepKind::DrawExactly, before: before as u8, sources: [0; 2] };
+        Step { column: x, turns: [turn; KEPT], keys: self.keys }
     }
 
-    fn past_halves(
-        &mut self,
-        x: u16,
-        wanted: Halves,
-        keep: f32,
-        price: Price,
-        repeats: bool,
-        store: &mut Store,
-    ) -> [Step; KEPT] {
-        let mut candidates = Candidates::keeping(self, keep);
-        let is_right = keep == 0.0;
-        // What is right is drawn again only where that is a shorter way to the next cell.
-        let start: [f32; KEPT] = std::array::from_fn(|way| {
-            let cursor = self.cursor[way];
-            if is_right && cursor != x { f32::INFINITY } else { self.cost[way] + motion(cursor, x) }
-        });
-        let repeated = if repeats { self.repeated(x) } else { [None; KEPT] };
-        let block = Block::new(wanted, price, self, start, repeated, x + 1);
-        let fresh = block.draw(&mut candidates, (!is_right).then_some(store));
-        self.go_on(&candidates, &fresh, x + 1)
-    }
-
-    /// What each way has drawn just before column `x`.
-    fn repeated(&self, x: u16) -> [Option<Glyph>; KEPT] {
-        std::array::from_fn(|way| if self.cursor[way] == x { self.last[way] } else { None })
-    }
-
-    /// Goes on by the cheapest.
-    #[inline]
-    fn go_on(&mut self, candidates: &Candidates, fresh: &Fresh, cursor: u16) -> [Step; KEPT] {
-        let (before, cursors) = (self.inks, self.cursor);
-        self.cost = candidates.cost;
-        std::array::from_fn(|way| {
-            let Turn { kind, before: from, text, ground } = candidates.turns[way];
-            let from_way = usize::from(from);
-            let [old_text, old_ground] = &before[from_way];
-            let inks =
-                [fresh.ink(text).unwrap_or(old_text), fresh.ink(ground).unwrap_or(old_ground)];
-            self.inks[way] = inks.map(|ink| *ink);
-            (self.cursor[way], self.last[way]) = match kind {
-                StepKind::Draw(glyph) => (cursor, Some(glyph)),
-                _ => (cursors[from_way], None),
-            };
-            Step { kind, before: from, shades: inks.map(|ink| ink.shade) }
-        })
+    /// Goes on by the survivors past the cell in column `x`.
+    fn go_on(&mut self, survivors: &Survivors, x: u16) -> Step {
+        let before = self.inks;
+        self.cost = survivors.cost;
+        self.keys = survivors.keys;
+        for (path, turn) in survivors.turns.iter().enumerate() {
+            // Those that leave the cell stay in their places.
+            let StepKind::Draw(element) = turn.kind else { continue };
+            for (which, &source) in turn.sources.iter().enumerate() {
+                let source = usize::from(source);
+                let ink = match before.get(source) {
+                    Some(inks) => inks[which],
+                    None => survivors.fresh[(source - KEPT) % FRESH],
+                };
+                self.inks[path][which] = ink;
+                let [ls, as_, bs] = &mut self.labs[which];
+                [ls[path], as_[path], bs[path]] = ink.lab;
+            }
+            (self.cursor[path], self.last[path]) = (f32::from(x + 1), Some(element));
+        }
+        Step { column: x, turns: survivors.turns, keys: survivors.keys }
     }
 }
+
+/// How many colours a cell may be told in that the terminal does not draw in already: that of its upper half, of
+/// its lower half, and one for both.
+const FRESH: usize = 3;

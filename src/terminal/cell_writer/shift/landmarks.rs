@@ -5,7 +5,7 @@
 //! the moves that may have brought it there. To compare what cells look like took longer than all the rest
 //! of the encoder, and to look each up in a table missed those that are there several times.
 
-use super::super::look::Look;
+use super::super::packed_cell::PackedCell;
 use super::{Move, Shift, Way};
 
 /// The marks of a row's cells, as they are to be and as they were.
@@ -26,9 +26,9 @@ const CHANCE: u16 = 2;
 
 impl Landmarks {
     /// Finds those of a row that is to look like that, and had those marks before.
-    pub(super) fn find(&mut self, looks: &[Look], before: &[Mark]) {
+    pub(super) fn find(&mut self, targets: &[PackedCell], before: &[Mark]) {
         self.hashes.clear();
-        self.hashes.extend(looks.iter().map(|look| look.hash()));
+        self.hashes.extend(targets.iter().map(|target| target.hash()));
         self.now.clear();
         self.now.extend(Mark::all(&self.hashes));
         let nothing = Mark::NONE.before();
@@ -135,7 +135,7 @@ impl Mark {
         Self(self.0.max(1))
     }
 
-    /// The marks of a row's cells, whose looks have those hashes.
+    /// The marks of a row's cells, whose packed cells have those hashes.
     pub(super) fn all(hashes: &[u32]) -> impl Iterator<Item = Self> {
         let pairs = hashes.iter().zip(hashes.iter().skip(1));
         let marks = pairs.map(|(&last, &hash)| {

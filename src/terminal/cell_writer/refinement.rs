@@ -1,19 +1,20 @@
-//! A picture that rests becomes exact, in a few frames of about the same size.
+//! Refinement: a picture that does not change becomes exact, in a few frames of about the same size.
 //!
-//! So does each row that rests for a while, whatever others do: where one cell blinks, or the time is shown,
+//! So does each row that has not changed for a while, whatever others do: where one cell blinks, or the time is shown,
 //! there is always a change somewhere. The worst cells come first. To allow less and less error until none is allowed was refused: cells
 //! were sent twice, and the last of the frames had most of the bytes.
 
 use super::exact;
+use super::glyph_table::GlyphTable;
 use super::ink::Inks;
-use super::look::Look;
+use super::packed_cell::PackedCell;
 use super::pen::Pen;
 use super::screen::{Row, Screen};
 use super::shift::Shifts;
 
 /// How far a picture has come to rest, and the memory that it takes.
 #[derive(Debug)]
-pub(super) struct Rest {
+pub(super) struct Refinement {
     /// In so many frames it is to be exact.
     frames: usize,
     /// How far off the inexact cells are, and where they are, row by row.
@@ -36,7 +37,7 @@ const FRAMES: usize = 10;
 /// drawn for nothing.
 const PATIENCE: usize = 10;
 
-impl Rest {
+impl Refinement {
     pub(super) fn new() -> Self {
         Self { frames: FRAMES, inexact: Vec::new(), inks: Inks::default() }
     }
@@ -66,7 +67,7 @@ impl Rest {
             while let Some(cell) = chosen.next_if(|cell| cell.y == row.y) {
                 exact::draw_cell(pen, &mut row, usize::from(cell.column));
             }
-            *row.exact = row.shown == row.looks;
+            *row.exact = row.shown == row.targets;
         }
     }
 
@@ -87,7 +88,7 @@ impl Rest {
             for cell in &self.inexact {
                 exact::draw_cell(pen, &mut row, usize::from(cell.column));
             }
-            *row.exact = row.shown == row.looks;
+            *row.exact = row.shown == row.targets;
         }
     }
 
@@ -105,19 +106,22 @@ impl Rest {
 
 /// How far off the cells of a row are that are not exact.
 fn errors<'a>(row: &'a Row, inks: &'a mut Inks) -> impl Iterator<Item = Cell> + 'a {
-    let looks = row.shown.iter().zip(row.looks);
-    (0..).zip(looks).filter(|(_, (shown, look))| shown != look).map(|(column, (&shown, &look))| {
-        let error = error(shown, look, inks);
-        Cell { error, y: row.y, column }
-    })
+    let targets = row.shown.iter().zip(row.targets);
+    (0..).zip(targets).filter(|(_, (shown, target))| shown != target).map(
+        |(column, (&shown, &target))| {
+            let error = error(shown, target, row.glyph_table, inks);
+            Cell { error, y: row.y, column }
+        },
+    )
 }
 
-/// The larger distance of the two halves; infinite where it can't be told.
-fn error(shown: Look, wanted: Look, inks: &mut Inks) -> f32 {
-    let Some((shown, wanted)) = shown.halves().zip(wanted.halves()) else { return f32::INFINITY };
-    let distances = shown.into_iter().zip(wanted).map(|(shown, wanted)| {
-        let inks = inks.of(shown).zip(inks.of(wanted));
-        inks.map_or(f32::INFINITY, |(shown, wanted)| shown.distance(wanted))
-    });
-    distances.fold(0.0, f32::max)
+/// The larger distance of the two colours; infinite where it can't be told.
+fn error(shown: PackedCell, wanted: PackedCell, glyph_table: &GlyphTable, inks: &mut Inks) -> f32 {
+    let parts = shown.recolorable(glyph_table).zip(wanted.recolorable(glyph_table));
+    let Some(((shown_form, shown), (form, wanted))) = parts else { return f32::INFINITY };
+    if shown_form != form {
+        return f32::INFINITY;
+    }
+    let pairs = shown.into_iter().zip(wanted);
+    pairs.map(|(shown, wanted)| inks.of(shown).distance(inks.of(wanted))).fold(0.0, f32::max)
 }

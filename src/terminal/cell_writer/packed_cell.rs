@@ -1,4 +1,4 @@
-//! What a cell looks like, and the cheapest way to say so.
+//! A cell in one word, and the cheapest block element that shows it.
 //!
 //! A cell of two pixels can be written as an upper or a lower half block with the colours swapped, and
 //! one whose pixels are alike as a space or a full block. All of them look the same; the one is taken
@@ -10,13 +10,13 @@ use std::fmt;
 use ratatui::buffer::{Cell, CellWidth};
 use ratatui::style::Color;
 
-use super::alphabet::{Alphabet, Letter, Number};
+use super::glyph_table::{Glyph, GlyphId, GlyphTable};
 use super::style::{Shade, Style};
 use crate::color::Rgb;
 
 /// A character that shows two colours at most, each in a whole half of its cell.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub(super) enum Glyph {
+pub(super) enum BlockElement {
     /// The upper half in the text's colour, the lower one in the ground's.
     Upper,
     /// The other way about.
@@ -27,7 +27,7 @@ pub(super) enum Glyph {
     Space,
 }
 
-impl Glyph {
+impl BlockElement {
     /// Itself in UTF-8, and how many of the bytes that takes.
     #[inline]
     pub(super) const fn encoded(self) -> ([u8; 4], usize) {
@@ -72,98 +72,107 @@ impl Glyph {
     }
 }
 
-/// What a cell looks like, in one word: equal ones look the same.
+/// What a cell is beside its two colours.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub(super) enum Form {
+    /// Two halves, of one colour each, by any of the glyphs.
+    Block,
+    /// A glyph without modifiers, in one colour on another.
+    Glyph(GlyphId),
+}
+
+/// A cell in one word: equal ones look the same.
 ///
 /// The uppermost twelve bits say what it is, and the rest are two colours: of the upper and the lower half,
 /// or of the text and its ground.
 #[derive(Clone, Copy, PartialEq, Eq)]
-pub(super) struct Look(u64);
+pub(super) struct PackedCell(u64);
 
-impl Look {
+impl PackedCell {
     /// Nobody knows; no cell that is to be shown looks like this.
     pub(super) const UNKNOWN: Self = Self(1 << Self::KIND);
-    /// Of several characters, or wider than a cell, or of a character that has no number: sent whenever
+    /// Of several characters, or wider than a cell, or of a glyph that has no id: sent whenever
     /// its row changes.
     const INTRICATE: Self = Self(2 << Self::KIND);
     /// A space in the terminal's own colours.
-    pub(super) const BLANK: Self = Self::of_text(Number::SPACE, [Shade::DEFAULT; 2]);
+    pub(super) const BLANK: Self = Self::of_text(GlyphId::SPACE, [Shade::DEFAULT; 2]);
 
-    /// Where the kind is: none for blocks, and from here on letters by their numbers.
+    /// Where the kind is: none for blocks, and from here on glyphs by their ids.
     const KIND: u32 = 2 * Shade::BITS;
-    const FIRST_LETTER: u64 = 3;
+    const FIRST_GLYPH: u64 = 3;
     const _KINDS_FIT: () =
-        assert!(Self::FIRST_LETTER + (Number::COUNT as u64) < 1 << (u64::BITS - Self::KIND));
+        assert!(Self::FIRST_GLYPH + (GlyphId::COUNT as u64) < 1 << (u64::BITS - Self::KIND));
 
-    const LAST_LETTER: u64 = Self::FIRST_LETTER + Number::COUNT as u64 - 1;
+    const LAST_GLYPH: u64 = Self::FIRST_GLYPH + GlyphId::COUNT as u64 - 1;
 
-    /// What `cell` looks like.
+    /// `cell`, packed.
     #[inline]
-    pub(super) fn of(cell: &Cell, alphabet: &mut Alphabet) -> Self {
+    pub(super) fn of(cell: &Cell, glyph_table: &mut GlyphTable) -> Self {
         let (symbol, style) = (cell.symbol(), Style::of(cell));
-        match Glyph::of(symbol) {
-            Some(glyph) => Self::of_glyph(glyph, style, alphabet),
-            None => Self::of_symbol(cell, style, alphabet),
+        match BlockElement::of(symbol) {
+            Some(element) => Self::of_element(element, style, glyph_table),
+            None => Self::of_symbol(cell, style, glyph_table),
         }
     }
 
-    /// What two colours look like, the first above the second.
+    /// Two colours, the first above the second.
     #[inline]
     pub(super) fn of_colors(colors: [Color; 2]) -> Self {
         let shades = colors.map(Shade::of);
-        match halves(Glyph::Upper, Style::plain(shades[0], shades[1])) {
+        match halves(BlockElement::Upper, Style::plain(shades[0], shades[1])) {
             Some(halves) => Self::of_halves(halves),
-            None => Self::of_text(Number::UPPER_HALF, shades),
+            None => Self::of_text(GlyphId::UPPER_HALF, shades),
         }
     }
 
-    /// What two pixels look like, the first above the second.
+    /// Two pixels, the first above the second.
     #[inline]
     pub(super) fn of_pixels(pixels: [Rgb; 2]) -> Self {
         Self::of_halves(pixels.map(Shade::of_pixel))
     }
 
-    /// What a character that is one cell wide looks like, in the colours of its text and of its ground.
+    /// A character that is one cell wide, in the colours of its text and of its ground.
     pub(super) fn of_character(
         character: char,
         colors: [Color; 2],
-        alphabet: &mut Alphabet,
+        glyph_table: &mut GlyphTable,
     ) -> Self {
         let style = Style::in_colors(colors);
-        match Glyph::of(character.encode_utf8(&mut [0; 4])) {
-            Some(glyph) => Self::of_glyph(glyph, style, alphabet),
-            None => Self::of_letter(character, style, alphabet),
+        match BlockElement::of(character.encode_utf8(&mut [0; 4])) {
+            Some(element) => Self::of_element(element, style, glyph_table),
+            None => Self::of_glyph(character, style, glyph_table),
         }
     }
 
     #[inline]
-    fn of_glyph(glyph: Glyph, style: Style, alphabet: &mut Alphabet) -> Self {
-        match halves(glyph, style) {
+    fn of_element(element: BlockElement, style: Style, glyph_table: &mut GlyphTable) -> Self {
+        match halves(element, style) {
             Some(halves) => Self::of_halves(halves),
-            None => Self::of_letter(glyph.character(), style, alphabet),
+            None => Self::of_glyph(element.character(), style, glyph_table),
         }
     }
 
-    fn of_symbol(cell: &Cell, style: Style, alphabet: &mut Alphabet) -> Self {
+    fn of_symbol(cell: &Cell, style: Style, glyph_table: &mut GlyphTable) -> Self {
         let mut characters = cell.symbol().chars();
         match (characters.next(), characters.next()) {
             (Some(character), None) if character.is_ascii_graphic() || cell.cell_width() == 1 => {
-                Self::of_letter(character, style, alphabet)
+                Self::of_glyph(character, style, glyph_table)
             }
             _ => Self::INTRICATE,
         }
     }
 
-    /// What a character looks like that may be the letter of a number, and is never drawn as a block.
+    /// A character that is never drawn as a block.
     #[inline(never)]
-    pub(super) fn of_letter(character: char, style: Style, alphabet: &mut Alphabet) -> Self {
-        let number = alphabet.number(Letter::new(character, style.modifier));
+    pub(super) fn of_glyph(character: char, style: Style, glyph_table: &mut GlyphTable) -> Self {
+        let id = glyph_table.id(Glyph::new(character, style.modifier));
         let colors = [style.foreground, style.background];
-        number.map_or(Self::INTRICATE, |number| Self::of_text(number, colors))
+        id.map_or(Self::INTRICATE, |id| Self::of_text(id, colors))
     }
 
-    /// What a block looks like that is drawn so.
-    pub(super) fn of_block(glyph: Glyph, style: Style) -> Self {
-        Self::of_halves(glyph.halves(style.foreground, style.background))
+    /// A block element in that style.
+    pub(super) fn of_block(element: BlockElement, style: Style) -> Self {
+        Self::of_halves(element.halves(style.foreground, style.background))
     }
 
     #[inline]
@@ -171,18 +180,18 @@ impl Look {
         Self((top.in_bits() as u64) << Shade::BITS | bottom.in_bits() as u64)
     }
 
-    const fn of_text(number: Number, colors: [Shade; 2]) -> Self {
-        let kind = Self::FIRST_LETTER + number.get() as u64;
+    const fn of_text(id: GlyphId, colors: [Shade; 2]) -> Self {
+        let kind = Self::FIRST_GLYPH + id.get() as u64;
         Self(kind << Self::KIND | Self::of_halves(colors).0)
     }
 
-    /// The letter that it is, and how it is drawn; `None` for blocks and what is intricate.
-    pub(super) fn text(self, alphabet: &Alphabet) -> Option<(char, Style)> {
-        let number = (self.0 >> Self::KIND).checked_sub(Self::FIRST_LETTER)?;
-        let letter = alphabet.letter(Number::new(number as u16));
+    /// Its character, and how it is drawn; `None` for blocks and what is intricate.
+    pub(super) fn text(self, glyph_table: &GlyphTable) -> Option<(char, Style)> {
+        let id = (self.0 >> Self::KIND).checked_sub(Self::FIRST_GLYPH)?;
+        let glyph = glyph_table.glyph(GlyphId::new(id as u16));
         let [foreground, background] = self.colors();
-        let style = Style { foreground, background, modifier: letter.modifier() };
-        Some((letter.character(), style))
+        let style = Style { foreground, background, modifier: glyph.modifier() };
+        Some((glyph.character(), style))
     }
 
     /// Whether it may be wider than a cell.
@@ -201,10 +210,29 @@ impl Look {
         ((self.0 ^ self.0 >> 29) as u32).wrapping_mul(0x9E37_79B1)
     }
 
-    /// Three numbers of sixteen bits that all looks alike have in common.
+    /// Three hashes of sixteen bits.
     pub(super) fn hashes(self) -> [u16; 3] {
         let hash = self.0.wrapping_mul(0x9E37_79B9_7F4A_7C15);
         [48, 32, 16].map(|from| (hash >> from) as u16)
+    }
+
+    /// What it is beside its colours, and these; `None` where it may only be shown as it is.
+    #[inline]
+    pub(super) fn recolorable(self, glyph_table: &GlyphTable) -> Option<(Form, [Shade; 2])> {
+        let form = match self.0 >> Self::KIND {
+            0 => Form::Block,
+            id => {
+                let id = GlyphId::new(id.checked_sub(Self::FIRST_GLYPH)? as u16);
+                let glyph = glyph_table.glyph(id);
+                glyph.modifier().is_empty().then_some(Form::Glyph(id))?
+            }
+        };
+        Some((form, self.colors()))
+    }
+
+    /// The same glyph in other colours.
+    pub(super) fn recolored(self, colors: [Shade; 2]) -> Self {
+        Self(self.0 >> Self::KIND << Self::KIND | Self::of_halves(colors).0)
     }
 
     /// The colours of the upper and the lower half of a block.
@@ -220,34 +248,34 @@ impl Look {
     }
 }
 
-const _: () = assert!(Look::LAST_LETTER <= u64::MAX >> Look::KIND);
+const _: () = assert!(PackedCell::LAST_GLYPH <= u64::MAX >> PackedCell::KIND);
 
-impl fmt::Debug for Look {
+impl fmt::Debug for PackedCell {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
         write!(f, "{:x}", self.0)
     }
 }
 
 /// The cheapest block that looks like these two halves, and how it is drawn, after `current`.
-pub(super) fn cheapest([top, bottom]: [Shade; 2], current: Option<Style>) -> (Glyph, Style) {
-    let block = |glyph, text, ground| (glyph, Style::plain(text, ground));
-    let Some(current) = current else { return block(Glyph::Upper, top, bottom) };
+pub(super) fn cheapest([top, bottom]: [Shade; 2], current: Option<Style>) -> (BlockElement, Style) {
+    let block = |element, text, ground| (element, Style::plain(text, ground));
+    let Some(current) = current else { return block(BlockElement::Upper, top, bottom) };
     let (text, ground) = (current.foreground, current.background);
     let is_told = current.has_no_modifiers();
     if top == bottom {
         return if is_told && text == top && ground != top {
-            block(Glyph::Full, text, ground)
+            block(BlockElement::Full, text, ground)
         } else if !is_told && top.bytes() < text.bytes() {
-            block(Glyph::Space, top, top)
+            block(BlockElement::Space, top, top)
         } else {
-            block(Glyph::Space, text, top)
+            block(BlockElement::Space, text, top)
         };
     }
     let told = |new_text, new_ground| u8::from(new_text == text) + u8::from(new_ground == ground);
     if told(bottom, top) > told(top, bottom) {
-        block(Glyph::Lower, bottom, top)
+        block(BlockElement::Lower, bottom, top)
     } else {
-        block(Glyph::Upper, top, bottom)
+        block(BlockElement::Upper, top, bottom)
     }
 }
 
@@ -255,8 +283,8 @@ pub(super) fn cheapest([top, bottom]: [Shade; 2], current: Option<Style>) -> (Gl
 /// same: in the terminal's own colours, which are not the same two as text and as ground, and with
 /// modifiers.
 #[inline]
-fn halves(glyph: Glyph, style: Style) -> Option<[Shade; 2]> {
-    let halves = glyph.halves(style.foreground, style.background);
+fn halves(element: BlockElement, style: Style) -> Option<[Shade; 2]> {
+    let halves = element.halves(style.foreground, style.background);
     let has_own = halves.contains(&Shade::DEFAULT);
     (style.has_no_modifiers() && !has_own).then_some(halves)
 }

@@ -1,0 +1,109 @@
+//! The table of glyphs that a screen shows. A glyph has an id of few bits, so that a packed cell is one word.
+//!
+//! A character and its modifiers take 26 bits, and two colours 52. Most screens show some dozens of
+//! characters. Where the table is full, a character is shown all the same, but not compared.
+
+use std::collections::BTreeMap;
+
+use ratatui::style::Modifier;
+
+/// A character that is one cell wide, and the modifiers it is drawn with.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord)]
+pub(super) struct Glyph {
+    character: char,
+    /// As bits, which have an order.
+    modifiers: u16,
+}
+
+/// The id of a glyph.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub(super) struct GlyphId(u16);
+
+/// The glyphs that have an id.
+#[derive(Debug)]
+pub(super) struct GlyphTable {
+    glyphs: Vec<Glyph>,
+    ids: BTreeMap<Glyph, GlyphId>,
+}
+
+impl Glyph {
+    pub(super) const fn new(character: char, modifier: Modifier) -> Self {
+        Self { character, modifiers: modifier.bits() }
+    }
+
+    pub(super) fn character(self) -> char {
+        self.character
+    }
+
+    pub(super) fn modifier(self) -> Modifier {
+        Modifier::from_bits_truncate(self.modifiers)
+    }
+}
+
+impl GlyphId {
+    /// The id of a space without modifiers, in every table.
+    pub(super) const SPACE: Self = Self(0);
+    /// That of an upper half block, likewise.
+    pub(super) const UPPER_HALF: Self = Self(1);
+    /// How many glyphs a table holds.
+    pub(super) const COUNT: u16 = 4000;
+
+    /// Lower than their count.
+    pub(super) const fn get(self) -> u16 {
+        self.0
+    }
+
+    /// That id, if it is one that [`GlyphId::get`] gave.
+    pub(super) fn new(id: u16) -> Self {
+        Self(id)
+    }
+}
+
+impl GlyphTable {
+    /// The id of `glyph`, a new one if it has none yet; `None` where the table is full.
+    pub(super) fn id(&mut self, glyph: Glyph) -> Option<GlyphId> {
+        if let Some(&id) = self.ids.get(&glyph) {
+            return Some(id);
+        }
+        let next = u16::try_from(self.glyphs.len()).ok()?;
+        let id = (next < GlyphId::COUNT).then_some(GlyphId(next))?;
+        self.glyphs.push(glyph);
+        self.ids.insert(glyph, id);
+        Some(id)
+    }
+
+    /// The glyph that has that id.
+    pub(super) fn glyph(&self, id: GlyphId) -> Glyph {
+        self.glyphs[usize::from(id.0)]
+    }
+}
+
+impl Default for GlyphTable {
+    fn default() -> Self {
+        let mut glyph_table = Self { glyphs: Vec::new(), ids: BTreeMap::new() };
+        let mut id = |glyph| glyph_table.id(Glyph::new(glyph, Modifier::empty()));
+        let ids = [' ', '▀'].map(&mut id);
+        debug_assert_eq!(ids, [Some(GlyphId::SPACE), Some(GlyphId::UPPER_HALF)]);
+        glyph_table
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn letters_have_numbers_until_there_are_no_more() {
+        let mut glyph_table = GlyphTable::default();
+        // A half block has one from the start.
+        let glyphs =
+            || std::iter::once('▀').chain(' '..).map(|glyph| Glyph::new(glyph, Modifier::empty()));
+        let ids: Vec<_> =
+            glyphs().take(GlyphId::COUNT.into()).map(|glyph| glyph_table.id(glyph)).collect();
+        for (glyph, id) in glyphs().zip(&ids) {
+            assert_eq!(glyph_table.glyph(id.unwrap()), glyph);
+            assert_eq!(glyph_table.id(glyph), *id);
+        }
+        assert_eq!(glyph_table.id(Glyph::new('a', Modifier::BOLD)), None);
+    }
+}

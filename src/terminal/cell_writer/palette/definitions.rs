@@ -1,0 +1,186 @@
+//! Which colours become entries of the palette, and when.
+
+use super::super::bytes::Bytes;
+use super::super::ink::{Ink, Price};
+use super::super::packed_cell::PackedCell;
+use super::super::screen::Screen;
+use super::super::style::{Kind, Shade, Style};
+use super::{Count, Palette, entry_place, place};
+use crate::color::lab::PackedLab;
+use crate::terminal::sequence;
+
+/// About how many bytes a use of an entry spares.
+const SPARED: f32 = 8.0;
+/// A colour is defined that was wanted by so many halves of cells, in a frame that is exact; and in one that
+/// is not, where most of them are left as they are, where it spares as much as so many.
+const LEAST_USES: f32 = 2.0;
+const LEAST_USES_INEXACT: f32 = 4.0;
+/// So many definitions are in one sequence: there are terminals that take sixteen parameters at most.
+const AT_ONCE: usize = 7;
+
+impl Palette {
+    /// Begins a frame, on a terminal that draws in `style`: takes note of what its cells show and what they are
+    /// to show, row by row, and defines what is frequent.
+    ///
+    /// Yields the definitions, if there are any, which are to be given back with [`Palette::keep`].
+    pub(in super::super) fn begin_frame(
+        &mut self,
+        screen: &Screen,
+        style: Option<Style>,
+        price: Option<Price>,
+    ) -> Option<Bytes> {
+        if !self.is_on {
+            return None;
+        }
+        self.frame += 1;
+        self.is_shown.fill(false);
+        for count in &mut self.counts {
+            count.count /= 2;
+        }
+        let told = style.map(|style| [style.foreground, style.background]);
+        told.into_iter().flatten().for_each(|shade| self.note_shown(shade));
+        for style in screen.intricate_styles() {
+            self.note_shown(style.foreground);
+            self.note_shown(style.background);
+        }
+        for (shown, targets) in screen.rows() {
+            let mut last = PackedCell::UNKNOWN;
+            for (&shown, &target) in shown.iter().zip(targets) {
+                if shown != last {
+                    shown.colors().into_iter().for_each(|shade| self.note_shown(shade));
+                    last = shown;
+                }
+                if shown != target {
+                    target.colors().into_iter().for_each(|shade| self.note_wanted(shade));
+                }
+            }
+        }
+        let mut definitions = std::mem::take(&mut self.definitions);
+        definitions.clear();
+        self.define_frequent(price, &mut definitions);
+        if definitions.is_empty() {
+            self.definitions = definitions;
+            return None;
+        }
+        Some(definitions)
+    }
+
+    /// Keeps the memory of definitions.
+    pub(in super::super) fn keep(&mut self, definitions: Bytes) {
+        self.definitions = definitions;
+    }
+
+    #[inline]
+    fn note_shown(&mut self, shade: Shade) {
+        if let Some(entry) = self.entry(shade) {
+            self.is_shown[usize::from(entry)] = true;
+        }
+    }
+
+    #[inline]
+    fn note_wanted(&mut self, shade: Shade) {
+        if let Some(entry) = self.entry(shade) {
+            self.wanted_at[usize::from(entry)] = self.frame;
+            return;
+        }
+        let known = &mut self.counts[place(shade)];
+        if known.shade == shade {
+            known.count = known.count.saturating_add(2);
+        } else if known.count < 2 {
+            *known = Count { shade, count: 2 };
+        } else {
+            known.count -= 1;
+        }
+    }
+
+    /// Whether to define a colour that was wanted so often spares more bytes than it takes, beside what is
+    /// nearest to it so far.
+    fn is_worth_defining(&mut self, Count { shade, count }: Count, price: Option<Price>) -> bool {
+        let Kind::Rgb(channels) = shade.kind() else { return false };
+        // Each unit is half a use.
+        let uses = f32::from(count) * 0.5;
+        let Some(price) = price else { return uses >= LEAST_USES };
+        if uses < LEAST_USES_INEXACT {
+            return false;
+        }
+        let wanted = Ink { lab: PackedLab::of(channels).components(), shade };
+        let spared = self.nearest(wanted).map_or(SPARED, |near| {
+            let near = self.ink(near);
+            price.of(near, wanted).min(SPARED)
+        });
+        uses * spared >= LEAST_USES_INEXACT * SPARED
+    }
+
+    /// Defines the colours that were wanted most, as far as that is worth it and there are entries for them.
+    fn define_frequent(&mut self, price: Option<Price>, bytes: &mut Bytes) {
+        let mut frequent = std::mem::take(&mut self.frequent);
+        frequent.clear();
+        for index in 0..self.counts.len() {
+            let count = self.counts[index];
+            if count.count >= 2 && self.is_worth_defining(count, price) {
+                frequent.push(count);
+            }
+        }
+        self.frequent = frequent;
+        if self.frequent.is_empty() {
+            return;
+        }
+        let (is_shown, wanted_at, frame) = (&self.is_shown, &self.wanted_at, self.frame);
+        let is_free =
+            |entry: &u8| !is_shown[usize::from(*entry)] && wanted_at[usize::from(*entry)] < frame;
+        self.free.clear();
+        self.free.extend(sequence::PALETTE.filter(is_free));
+        self.free.sort_unstable_by_key(|&entry| (wanted_at[usize::from(entry)], entry));
+        self.frequent.sort_unstable_by_key(|count| (u16::MAX - count.count, count.shade.in_bits()));
+        let (entries, colors, is_shown) = (&self.entries, &self.colors, &self.is_shown);
+        // Each place tells of one entry: where that is shown, it must go on to.
+        let is_told_of = |shade: Shade| {
+            let entry = usize::from(entries[entry_place(shade)]);
+            is_shown[entry] && colors[entry] != Shade::DEFAULT
+        };
+        self.frequent.retain(|count| !is_told_of(count.shade));
+        let definitions = self.free.len().min(self.frequent.len());
+        for at in 0..definitions {
+            let (entry, Count { shade, .. }) = (self.free[at], self.frequent[at]);
+            let Kind::Rgb(channels) = shade.kind() else { continue };
+            bytes.push_text(if at % AT_ONCE == 0 { b"\x1b]4" } else { b"" });
+            push_definition(entry, channels, bytes);
+            bytes.push_text(if (at + 1) % AT_ONCE == 0 || at + 1 == definitions {
+                b"\x07"
+            } else {
+                b""
+            });
+            self.define(entry, shade, channels);
+        }
+    }
+
+    fn define(&mut self, entry: u8, shade: Shade, channels: [u8; 3]) {
+        // Of the one that this place has told of, nobody knows any more.
+        let forgotten = usize::from(self.entries[entry_place(shade)]);
+        if entry_place(self.colors[forgotten]) == entry_place(shade) {
+            self.colors[forgotten] = Shade::DEFAULT;
+            self.labs.iter_mut().for_each(|labs| labs[forgotten] = 1e9);
+        }
+        let index = usize::from(entry);
+        self.colors[index] = shade;
+        for (labs, component) in self.labs.iter_mut().zip(PackedLab::of(channels).components()) {
+            labs[index] = component;
+        }
+        self.entries[entry_place(shade)] = entry;
+        self.wanted_at[index] = self.frame;
+        self.counts[place(shade)] = Count { shade: Shade::DEFAULT, count: 0 };
+    }
+}
+
+/// `;n;#rrggbb`.
+fn push_definition(entry: u8, channels: [u8; 3], bytes: &mut Bytes) {
+    const DIGITS: &[u8; 16] = b"0123456789abcdef";
+    let decimal = [b'0' + entry / 100, b'0' + entry / 10 % 10, b'0' + entry % 10];
+    let digits = &decimal[usize::from(entry < 100)..];
+    bytes.push_text(b";");
+    bytes.push_text(digits);
+    bytes.push_text(b";#");
+    for channel in channels {
+        bytes.push_text(&[channel >> 4, channel & 15].map(|digit| DIGITS[usize::from(digit)]));
+    }
+}

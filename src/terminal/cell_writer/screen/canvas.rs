@@ -1,0 +1,95 @@
+//! Drawing on the screen that is to be shown.
+
+use ratatui::buffer::Cell;
+use ratatui::layout::Rect;
+use ratatui::style::Color;
+use ratatui::widgets::Widget;
+
+use super::super::ascii;
+use super::super::packed_cell::PackedCell;
+use super::super::style::Style;
+use super::Screen;
+use crate::canvas::Canvas;
+use crate::color::Rgb;
+
+impl Canvas for Screen {
+    fn bounds(&self) -> Rect {
+        Rect::new(0, 0, self.width as u16, self.changed.len() as u16)
+    }
+
+    #[inline]
+    fn draw_halves(&mut self, x: u16, y: u16, row: impl Iterator<Item = [Color; 2]>) {
+        if self.is_ascii {
+            return self.draw_grounds(x, y, row);
+        }
+        for (target, halves) in self.targets_from(x, y).iter_mut().zip(row) {
+            *target = PackedCell::of_colors(halves);
+        }
+    }
+
+    #[inline]
+    fn draw_pixels(&mut self, x: u16, y: u16, row: impl Iterator<Item = [Rgb; 2]>) {
+        if self.is_ascii {
+            let rgb = |color: Rgb| Color::Rgb(color.red(), color.green(), color.blue());
+            return self.draw_grounds(x, y, row.map(|halves| halves.map(rgb)));
+        }
+        for (target, pixels) in self.targets_from(x, y).iter_mut().zip(row) {
+            *target = PackedCell::of_pixels(pixels);
+        }
+    }
+
+    fn draw_character(&mut self, x: u16, y: u16, character: char, colors: [Color; 2]) {
+        if self.is_ascii {
+            return self.draw_ascii(x, y, character, colors);
+        }
+        let target = PackedCell::of_character(character, colors, &mut self.glyph_table);
+        let Some(place) = self.targets_from(x, y).first_mut() else { return };
+        *place = target;
+        if target.is_intricate() {
+            let mut cell = Cell::EMPTY;
+            cell.set_char(character).set_fg(colors[0]).set_bg(colors[1]);
+            self.want_intricate(usize::from(y) * self.width + usize::from(x), &cell);
+        }
+    }
+
+    fn draw_widget(&mut self, widget: impl Widget, area: Rect) {
+        let area = area.intersection(self.bounds());
+        let mut scratch = std::mem::take(&mut self.scratch);
+        scratch.area = area;
+        scratch.content.clear();
+        scratch.content.resize(area.area() as usize, Cell::EMPTY);
+        widget.render(area, &mut scratch);
+        for (position, cell) in area.positions().zip(scratch.content()) {
+            let place = usize::from(position.y) * self.width + usize::from(position.x);
+            self.set(place, cell);
+        }
+        self.scratch = scratch;
+    }
+}
+
+impl Screen {
+    /// The cells from `(x, y)` to the right; none off the screen.
+    #[inline]
+    fn targets_from(&mut self, x: u16, y: u16) -> &mut [PackedCell] {
+        let row = usize::from(y) * self.width;
+        let cells = row + usize::from(x).min(self.width)..row + self.width;
+        self.targets.get_mut(cells).unwrap_or_default()
+    }
+
+    /// Shows what stands for `character`.
+    fn draw_ascii(&mut self, x: u16, y: u16, character: char, colors: [Color; 2]) {
+        let character = ascii::substitute(character.encode_utf8(&mut [0; 4]));
+        let target =
+            PackedCell::of_glyph(character, Style::in_colors(colors), &mut self.glyph_table);
+        if let Some(place) = self.targets_from(x, y).first_mut() {
+            *place = target;
+        }
+    }
+
+    /// Shows cells of two colours without a block: in the lower one.
+    fn draw_grounds(&mut self, x: u16, y: u16, row: impl Iterator<Item = [Color; 2]>) {
+        for (x, colors) in (x..).zip(row) {
+            self.draw_ascii(x, y, ' ', colors);
+        }
+    }
+}

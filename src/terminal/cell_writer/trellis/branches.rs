@@ -1,0 +1,269 @@
+//! The glyphs and colours that a cell may be drawn in after each of the paths to it.
+
+use super::super::ink::{Ink, Price};
+use super::super::packed_cell::BlockElement;
+use super::super::palette::{Palette, Telling};
+use super::lanes::{
+    Blocks, Errors, HALF_BLOCK, Lanes, SPACE, add_motions, choose, combine, least, measure, min,
+    plus, sum,
+};
+use super::survivors::{Survivors, Told, Turn};
+use super::{KEPT, Paths, StepKind, Store, Terms, Wanted};
+
+/// A cell to draw.
+pub(super) struct Branches<'a> {
+    wanted: &'a Wanted,
+    price: Price,
+    paths: &'a Paths,
+    x: u16,
+    repeats: bool,
+    /// What it costs to come here by each path, and the least of these.
+    start: Lanes,
+    least: f32,
+}
+
+/// Which of the fresh colours is which.
+const UPPER: u8 = 0;
+const LOWER: u8 = 1;
+const BOTH: u8 = 2;
+
+/// The bytes of a sequence that sets one colour, without the colour, and of one that sets both.
+const ONE_COLOR: f32 = 3.0;
+const TWO_COLORS: f32 = 4.0;
+/// The least that a colour takes as parameters.
+const SHORTEST_COLOR: f32 = 2.0;
+/// The same of an entry of the palette.
+const SHORTEST_ENTRY: f32 = 7.0;
+/// About how many bytes it takes to draw once more what was drawn just before.
+const REPETITION: f32 = 0.5;
+
+impl<'a> Branches<'a> {
+    #[inline]
+    pub(super) fn new(wanted: &'a Wanted, terms: Terms, paths: &'a Paths, x: u16) -> Self {
+        let Terms { price, repeats, .. } = terms;
+        let mut start = [0.0; KEPT];
+        add_motions(paths, x, &mut start);
+        let least = least(&start);
+        Self { wanted, price, paths, x, repeats, start, least }
+    }
+
+    /// Draws in the colours of text and ground that the terminal draws in already, and in one new colour or
+    /// in two. What is right is drawn again only where that is a shorter way to the next cell.
+    #[inline]
+    pub(super) fn draw(&mut self, survivors: &mut Survivors, store: &mut Store) {
+        let is_right = survivors.is_right();
+        if is_right {
+            for (start, &cursor) in self.start.iter_mut().zip(&self.paths.cursor) {
+                *start = if cursor == f32::from(self.x) { *start } else { f32::INFINITY };
+            }
+            self.least = least(&self.start);
+        }
+        let shortest = if self.repeats { REPETITION } else { SPACE };
+        if !survivors.would_keep(self.least + shortest) {
+            return;
+        }
+        let mut errors = Errors::default();
+        let ([upper, lower], [text, ground]) = (&self.wanted.inks, &self.paths.labs);
+        measure(text, upper, self.price, &mut errors.text_above);
+        measure(text, lower, self.price, &mut errors.text_below);
+        measure(ground, upper, self.price, &mut errors.ground_above);
+        measure(ground, lower, self.price, &mut errors.ground_below);
+        match self.wanted.character {
+            Some(bytes) => self.draw_character(&errors, f32::from(bytes), survivors),
+            None => self.draw_in_old_colors(&errors, survivors),
+        }
+        if !is_right && survivors.would_keep(self.least + ONE_COLOR + SPACE + SHORTEST_COLOR) {
+            self.draw_in_new_colors(&errors, survivors, store);
+        }
+    }
+
+    /// The character in the old colours.
+    #[inline]
+    fn draw_character(&self, errors: &Errors, bytes: f32, survivors: &mut Survivors) {
+        let costs = sum(&sum(&self.start, &errors.text_above), &errors.ground_below);
+        self.offer(survivors, &plus(&costs, bytes), BlockElement::Upper, Told::NOTHING);
+    }
+
+    #[inline]
+    fn draw_in_old_colors(&self, errors: &Errors, survivors: &mut Survivors) {
+        let mut blocks = Blocks::default();
+        combine(errors, &mut blocks);
+        if self.repeats {
+            self.repeat(&mut blocks);
+        }
+        let mut costs = [0.0; KEPT];
+        choose(&blocks, &self.start, &mut costs);
+        if !survivors.would_keep(least(&costs)) {
+            return;
+        }
+        for path in 0..KEPT {
+            if survivors.would_keep(costs[path]) {
+                let Blocks { space, full, upper, lower } = &blocks;
+                let (flat, flat_glyph) = if full[path] < space[path] {
+                    (full[path], BlockElement::Full)
+                } else {
+                    (space[path], BlockElement::Space)
+                };
+                let (split, split_glyph) = if lower[path] < upper[path] {
+                    (lower[path], BlockElement::Lower)
+                } else {
+                    (upper[path], BlockElement::Upper)
+                };
+                let element = if split < flat { split_glyph } else { flat_glyph };
+                self.add(survivors, costs[path], path, element, Told::NOTHING);
+            }
+        }
+    }
+
+    /// What was drawn just before costs less to draw again.
+    #[inline]
+    fn repeat(&self, Blocks { space, full, upper, lower }: &mut Blocks) {
+        for path in 0..KEPT {
+            if self.paths.cursor[path] != f32::from(self.x) {
+                continue;
+            }
+            match self.paths.last[path] {
+                Some(BlockElement::Space) => space[path] += REPETITION - SPACE,
+                Some(BlockElement::Full) => full[path] += REPETITION - HALF_BLOCK,
+                Some(BlockElement::Upper) => upper[path] += REPETITION - HALF_BLOCK,
+                Some(BlockElement::Lower) => lower[path] += REPETITION - HALF_BLOCK,
+                None => {}
+            }
+        }
+    }
+
+    fn draw_in_new_colors(&self, errors: &Errors, survivors: &mut Survivors, store: &mut Store) {
+        let [upper, lower] = self.wanted.inks.map(|ink| shortest(ink, store.palette));
+        if !survivors.would_keep(self.least + ONE_COLOR + SPACE + min(upper, lower)) {
+            return;
+        }
+        let tellings = self.wanted.inks.map(|ink| store.palette.telling(ink, self.price));
+        survivors.fresh[usize::from(UPPER)] = tellings[0].ink;
+        survivors.fresh[usize::from(LOWER)] = tellings[1].ink;
+        if self.wanted.character.is_none() {
+            self.draw_in_one_for_both(survivors, tellings, store);
+        }
+        self.draw_in_one_color(errors, survivors, tellings);
+        self.draw_in_two_colors(survivors, tellings);
+    }
+
+    #[inline]
+    fn draw_in_one_color(
+        &self,
+        errors: &Errors,
+        survivors: &mut Survivors,
+        [upper, lower]: [Telling; 2],
+    ) {
+        let half = ONE_COLOR + self.bytes_of_half();
+        let (above, below) = (half + upper.cost(), half + lower.cost());
+        let (upper, lower) = (upper.ink.shade, lower.ink.shade);
+        let Errors { text_above, text_below, ground_above, ground_below } = errors;
+        let mut offer = |element, cost: f32, errors: &Lanes, told| {
+            if survivors.would_keep(self.least + cost) {
+                self.offer(survivors, &plus(&sum(&self.start, errors), cost), element, told);
+            }
+        };
+        offer(BlockElement::Upper, above, ground_below, Told::NOTHING.text(upper, UPPER));
+        offer(BlockElement::Upper, below, text_above, Told::NOTHING.ground(lower, LOWER));
+        if self.wanted.character.is_none() {
+            offer(BlockElement::Lower, above, text_below, Told::NOTHING.ground(upper, UPPER));
+            offer(BlockElement::Lower, below, ground_above, Told::NOTHING.text(lower, LOWER));
+        }
+    }
+
+    /// In one colour for both halves.
+    #[inline]
+    fn draw_in_one_for_both(
+        &self,
+        survivors: &mut Survivors,
+        [above, below]: [Telling; 2],
+        store: &mut Store,
+    ) {
+        let [upper, lower] = self.wanted.inks;
+        self.offer_for_both(survivors, above, UPPER);
+        if upper.shade == lower.shade {
+            return;
+        }
+        self.offer_for_both(survivors, below, LOWER);
+        // Halfway, the errors add up to no less than the distance.
+        let apart = upper.distance(lower);
+        let least = ONE_COLOR + SPACE + SHORTEST_COLOR + apart * self.price.bytes;
+        let is_needed = apart > self.price.farthest && apart <= 2.0 * self.price.farthest;
+        if is_needed && survivors.would_keep(self.least + least) {
+            let both = store.inks.between(upper, lower);
+            let both = store.palette.telling(both, self.price);
+            survivors.fresh[usize::from(BOTH)] = both.ink;
+            self.offer_for_both(survivors, both, BOTH);
+        }
+    }
+
+    #[inline]
+    fn offer_for_both(&self, survivors: &mut Survivors, telling: Telling, source: u8) {
+        let Telling { ink, bytes, .. } = telling;
+        let [upper, lower] = self.wanted.inks;
+        let error = self.price.of(ink, upper) + self.price.of(ink, lower);
+        let cost = ONE_COLOR + SPACE + bytes + error;
+        if survivors.would_keep(self.least + cost) {
+            let told = Told::NOTHING.ground(ink.shade, source);
+            self.offer(survivors, &plus(&self.start, cost), BlockElement::Space, told);
+        }
+    }
+
+    /// In two new colours, which lead to the same from everywhere.
+    #[inline]
+    fn draw_in_two_colors(&self, survivors: &mut Survivors, [upper, lower]: [Telling; 2]) {
+        let cost = self.least + TWO_COLORS + upper.cost() + lower.cost() + self.bytes_of_half();
+        if !survivors.would_keep(cost) {
+            return;
+        }
+        let (upper, lower) = (upper.ink.shade, lower.ink.shade);
+        let path = (0..KEPT).find(|&path| self.start[path] == self.least).unwrap_or(0);
+        let told = Told::NOTHING.text(upper, UPPER).ground(lower, LOWER);
+        self.add(survivors, cost, path, BlockElement::Upper, told);
+        if self.wanted.character.is_none() && survivors.would_keep(cost) {
+            let told = Told::NOTHING.text(lower, LOWER).ground(upper, UPPER);
+            self.add(survivors, cost, path, BlockElement::Lower, told);
+        }
+    }
+
+    /// What a half block takes, or the character.
+    #[inline]
+    fn bytes_of_half(&self) -> f32 {
+        self.wanted.character.map_or(HALF_BLOCK, f32::from)
+    }
+
+    /// Adds those paths that draw `glyph` for so much and would survive.
+    #[inline]
+    fn offer(&self, survivors: &mut Survivors, costs: &Lanes, element: BlockElement, told: Told) {
+        if survivors.would_keep(least(costs)) {
+            for (path, &cost) in costs.iter().enumerate() {
+                if survivors.would_keep(cost) {
+                    self.add(survivors, cost, path, element, told);
+                }
+            }
+        }
+    }
+
+    /// Adds a path that draws `glyph`.
+    #[inline]
+    fn add(
+        &self,
+        survivors: &mut Survivors,
+        cost: f32,
+        path: usize,
+        element: BlockElement,
+        told: Told,
+    ) {
+        let key = told.key(self.paths.keys[path], self.x + 1);
+        let sources = told.sources(path);
+        let turn = Turn { kind: StepKind::Draw(element), before: path as u8, sources };
+        survivors.add(cost, key, turn);
+    }
+}
+
+/// The least that a colour takes as parameters, itself or what may be told for it.
+#[inline]
+fn shortest(ink: Ink, palette: &Palette) -> f32 {
+    let bytes = ink.bytes();
+    if palette.is_on() { min(bytes, SHORTEST_ENTRY) } else { bytes }
+}

@@ -1,0 +1,101 @@
+//! What is computed for all paths at once.
+//!
+//! The longer functions are not inlined: by themselves they become vector instructions, four paths at a time;
+//! inlined, the compiler takes the paths apart again, and a cell took three times the instructions.
+
+use super::super::ink::{Ink, Price};
+use super::{KEPT, Paths};
+
+/// One number for each path.
+pub(super) type Lanes = [f32; KEPT];
+
+/// L*, a* and b* of a colour for each path.
+pub(super) type Labs = [Lanes; 3];
+
+/// The bytes of the glyphs that show one colour and two.
+pub(super) const SPACE: f32 = 1.0;
+pub(super) const HALF_BLOCK: f32 = 3.0;
+
+/// What it costs, path by path, that the colours of text and ground stand for each half.
+#[derive(Default)]
+pub(super) struct Errors {
+    pub(super) text_above: Lanes,
+    pub(super) text_below: Lanes,
+    pub(super) ground_above: Lanes,
+    pub(super) ground_below: Lanes,
+}
+
+/// What a block of the old colours takes, path by path.
+#[derive(Default)]
+pub(super) struct Blocks {
+    pub(super) space: Lanes,
+    pub(super) full: Lanes,
+    pub(super) upper: Lanes,
+    pub(super) lower: Lanes,
+}
+
+/// What the paths cost, and about how many bytes it takes to get from their cursors to column `x`.
+#[inline(never)]
+pub(super) fn add_motions(paths: &Paths, x: u16, start: &mut Lanes) {
+    let x = f32::from(x);
+    let is_above = |distance: f32, least: f32| if distance > least { 1.0 } else { 0.0 };
+    for (path, start) in start.iter_mut().enumerate() {
+        let distance = x - paths.cursor[path];
+        let digits = is_above(distance, 1.0) + is_above(distance, 9.0) + is_above(distance, 99.0);
+        *start = paths.cost[path] + 3.0 * is_above(distance, 0.0) + digits;
+    }
+}
+
+/// What it costs that the colours of the paths stand for `ink`.
+#[inline(never)]
+pub(super) fn measure([ls, as_, bs]: &Labs, ink: &Ink, price: Price, errors: &mut Lanes) {
+    let [l, a, b] = ink.lab;
+    for path in 0..KEPT {
+        let (l, a, b) = (ls[path] - l, as_[path] - a, bs[path] - b);
+        errors[path] = price.of_distance((l * l + a * a + b * b).sqrt());
+    }
+}
+
+/// What each of the blocks takes in the old colours.
+#[inline(never)]
+pub(super) fn combine(errors: &Errors, blocks: &mut Blocks) {
+    let Errors { text_above, text_below, ground_above, ground_below } = errors;
+    for path in 0..KEPT {
+        blocks.space[path] = ground_above[path] + ground_below[path] + SPACE;
+        blocks.full[path] = text_above[path] + text_below[path] + HALF_BLOCK;
+        blocks.upper[path] = text_above[path] + ground_below[path] + HALF_BLOCK;
+        blocks.lower[path] = ground_above[path] + text_below[path] + HALF_BLOCK;
+    }
+}
+
+/// What the cheapest of them costs.
+#[inline(never)]
+pub(super) fn choose(blocks: &Blocks, start: &Lanes, costs: &mut Lanes) {
+    let Blocks { space, full, upper, lower } = blocks;
+    for path in 0..KEPT {
+        let (flat, split) = (min(space[path], full[path]), min(upper[path], lower[path]));
+        costs[path] = start[path] + min(flat, split);
+    }
+}
+
+#[inline]
+pub(super) fn sum(one: &Lanes, other: &Lanes) -> Lanes {
+    std::array::from_fn(|path| one[path] + other[path])
+}
+
+#[inline]
+pub(super) fn plus(one: &Lanes, other: f32) -> Lanes {
+    one.map(|one| one + other)
+}
+
+/// The least of all paths.
+#[inline]
+pub(super) fn least(costs: &Lanes) -> f32 {
+    min(min(costs[0], costs[1]), min(costs[2], costs[3]))
+}
+
+/// The lesser of two numbers: one instruction, where `f32::min` also looks for what is no number.
+#[inline]
+pub(super) fn min(one: f32, other: f32) -> f32 {
+    if one < other { one } else { other }
+}
