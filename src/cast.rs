@@ -41,6 +41,7 @@ mod shape;
 mod through;
 mod walk;
 
+pub(crate) use exact::ExactOnLevel;
 pub use exact::{Exact, ExactOrder};
 #[cfg(feature = "lab")]
 pub(crate) use hit::texture_coordinate;

@@ -7,12 +7,13 @@ use super::{Crossing, Hit, Ray, Side, door, shape};
 use crate::world::{Cell, TileId, TileKind, World};
 
 /// The hit of `ray` in `world`. The ray starts in the cell `start` and enters `solid_cells`; the
-/// transparent faces that it enters are passed to `passed`.
+/// transparent faces that it enters are passed to `passed`. A tile that `ends` the ray is a hit.
 pub(super) fn cast(
     start: Option<(Cell, TileId)>,
     solid_cells: impl Iterator<Item = Crossing>,
     world: &World,
     ray: &Ray,
+    ends: impl Fn(TileId) -> bool,
     mut passed: impl FnMut(Hit),
 ) -> Option<Hit> {
     let grid = world.grid();
@@ -26,6 +27,9 @@ pub(super) fn cast(
         return start;
     }
     for crossing in solid_cells {
+        if ends(crossing.tile) {
+            return Some(Hit::entering(ray, crossing.cell, crossing.side));
+        }
         match world.tile(crossing.tile).kind {
             TileKind::Door(_) => {
                 if let Some(hit) = leaf_in(crossing.cell) {

@@ -5,7 +5,7 @@
 //! of memory than the one before, which in large pictures took most of the time of a frame.
 
 use std::ops::Range;
-use std::ptr;
+use std::{iter, ptr};
 
 use super::band::Band;
 use super::shaded_texels::{ShadedRange, ShadedTexels, TexelAddress};
@@ -52,12 +52,6 @@ impl<'m, 't, 'a, L: Lighting, S: Stats> ColumnBatch<'m, 't, 'a, L, S> {
     /// Which rows can be drawn in.
     pub(super) fn rows(&self) -> Range<u32> {
         self.target.rows()
-    }
-
-    /// Those of `rows` that can be drawn in.
-    #[inline]
-    pub(super) fn clip(&self, rows: &Range<u32>) -> Range<u32> {
-        self.target.clip(rows)
     }
 
     /// Counts a column of `pixels` pixels in `paint`.
@@ -123,8 +117,11 @@ impl<'m, 't, 'a, L: Lighting, S: Stats> ColumnBatch<'m, 't, 'a, L, S> {
         };
         self.make_room_for(x, (places.end - places.start) as usize);
         let first = places.start;
-        let pieces = stepper.pieces(texels, places);
-        let range = self.memory.shaded.make_of_pieces(first, pieces, |it| lighting.apply(it));
+        let (shaded, lit) = (&mut self.memory.shaded, |texel: Rgb| lighting.apply(texel));
+        let range = match stepper.slice(texels, &places) {
+            Some(piece) => shaded.make_of_pieces(first, iter::once(piece), lit),
+            None => shaded.make_of_pieces(first, stepper.pieces(texels, places), lit),
+        };
         self.push(x, rows, range, stepper);
     }
 

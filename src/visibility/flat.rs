@@ -11,45 +11,138 @@ mod wall;
 use glam::DVec2;
 
 use super::column::Column;
+use super::portal::PortalStart;
 use super::ray_counter::RayCounter;
 use super::{DrawList, Projection, Scene, Stats};
 use crate::cast::{Caster, Hit, Ray};
-use crate::world::{Cell, Grid, TileKind, World};
+use crate::world::{Ceiling, Cell, Grid, Tile, TileId, TileKind, World};
 pub(super) use layers::{FlatMemory, PassedHits};
 pub(super) use planes::{PlaneRow, for_each_span};
 pub(super) use wall::for_each_wall_column;
 
-/// Fills `list`, with the walls that `caster` finds. Returns when a thing in view will look different;
-/// `None` for never.
-pub(super) fn fill<C: Caster, S: Stats>(
+/// Finds the columns of `list`, with the walls that `caster` finds in `grid`, and those that are left to
+/// the portal way.
+pub(super) fn find_columns<C: Caster, S: Stats>(
     scene: Scene<'_>,
-    caster: &C,
+    (caster, grid): (&C, &Grid),
+    memory: &mut FlatMemory,
+    list: &mut DrawList,
+    stats: &mut S,
+) {
+    list.clear();
+    list.is_flat = true;
+    let (columns, passed) = (&mut list.columns, &mut memory.passed);
+    if S::ARE_KEPT {
+        let counter = RayCounter::new(caster, grid);
+        cast(&counter, grid, scene, columns, passed);
+        stats.change(|stats| counter.add_to(stats));
+    } else {
+        cast(caster, grid, scene, columns, passed);
+    }
+    if scene.world.level_grid().is_some() {
+        leave_to_portals(scene, list);
+    }
+}
+
+/// Fills the layers of `list`, whose columns are found: before all that are there already. Returns when a
+/// thing in view will look different; `None` for never.
+pub(super) fn fill_layers<S: Stats>(
+    scene: Scene<'_>,
     memory: &mut FlatMemory,
     list: &mut DrawList,
     stats: &mut S,
 ) -> Option<f64> {
-    list.clear();
-    let (columns, passed) = (&mut list.columns, &mut memory.passed);
-    if S::ARE_KEPT {
-        let counter = RayCounter::new(caster);
-        cast(&counter, scene.world, scene.projection, columns, passed);
-        stats.change(|stats| counter.add_to(stats));
-    } else {
-        cast(caster, scene.world, scene.projection, columns, passed);
+    if list.is_flat { layers::fill(scene, memory, list, stats) } else { None }
+}
+
+/// Where the portal way begins with each column of a scene.
+#[derive(Clone, Copy)]
+pub(super) struct PortalStarts<'a> {
+    world: &'a World,
+    overhead: Overhead,
+}
+
+/// What is overhead where the floor is level.
+#[derive(Clone, Copy, PartialEq, Eq)]
+enum Overhead {
+    Sky,
+    Ceiling,
+    Both,
+}
+
+impl<'a> PortalStarts<'a> {
+    pub(super) fn new(world: &'a World) -> Self {
+        let is_floor = |tile: &&Tile| tile.is_level() && !matches!(tile.kind, TileKind::Wall(_));
+        let is_open = |tile: &Tile| tile.ceiling == Ceiling::Sky;
+        let floors = || world.tiles().iter().filter(is_floor);
+        let overhead = match (floors().any(is_open), floors().all(is_open)) {
+            (false, _) => Overhead::Ceiling,
+            (true, true) => Overhead::Sky,
+            (true, false) => Overhead::Both,
+        };
+        Self { world, overhead }
     }
-    list.flat = 0..list.columns.len() as u32;
-    layers::fill(scene, memory, list, stats)
+
+    /// Where it begins with `column`; `None` where the flat way fills all of it.
+    pub(super) fn of(self, column: &Column) -> Option<PortalStart> {
+        let hit = column.hit.filter(|hit| !is_level(self.world, hit.cell))?;
+        Some(match self.overhead {
+            Overhead::Sky => PortalStart::Line { hit, rows: 0..column.rows.end },
+            Overhead::Ceiling => PortalStart::Line { hit, rows: column.rows.clone() },
+            // What is behind the first line may show above a ceiling, where the sky is.
+            Overhead::Both => PortalStart::Camera,
+        })
+    }
+
+    /// Whether all that is level is under a ceiling.
+    pub(super) fn are_under_ceilings(self) -> bool {
+        self.overhead == Overhead::Ceiling
+    }
+
+    /// Whether the flat way fills nothing of the columns that it leaves to the portal way.
+    fn are_at_camera(self) -> bool {
+        self.overhead == Overhead::Both
+    }
+}
+
+/// Takes from the columns of the flat way what is left to the portal way.
+fn leave_to_portals(scene: Scene<'_>, list: &mut DrawList) {
+    let DrawList { columns, flat_columns, is_flat, .. } = list;
+    let starts = PortalStarts::new(scene.world);
+    let is_left =
+        |column: &Column| column.hit.as_ref().is_some_and(|hit| !is_level(scene.world, hit.cell));
+    if !columns.iter().any(is_left) {
+        return;
+    }
+    *is_flat = !(starts.are_at_camera() && columns.iter().all(is_left));
+    let height = scene.projection.rows();
+    flat_columns.extend(columns.iter().map(|column| {
+        let (distance, rows) = match starts.of(column) {
+            None => return column.clone(),
+            Some(PortalStart::Camera) => (0.0, 0..height),
+            Some(PortalStart::Line { rows, .. }) => (column.distance, rows),
+        };
+        let hit = column.hit.map(|hit| Hit { t: -1.0, ..hit });
+        Column { hit, distance, rows }
+    }));
+}
+
+/// Whether what `cell` holds is level.
+fn is_level(world: &World, cell: Cell) -> bool {
+    let tile = world.grid().tile(cell.column.into(), cell.row.into());
+    tile.is_some_and(|TileId(index)| world.tiles()[usize::from(index)].is_level())
 }
 
 /// Casts the ray of every column into `columns`, and what it passes into `passed`, whatever they
 /// held before.
 fn cast<C: Caster>(
     caster: &C,
-    world: &World,
-    projection: &Projection,
+    grid: &Grid,
+    scene: Scene<'_>,
     columns: &mut Vec<Column>,
     passed: &mut PassedHits,
 ) {
+    let Scene { world, projection, .. } = scene;
     passed.clear();
     let is_of_walls = world.is_of_walls();
     if !is_of_walls {
@@ -58,7 +151,7 @@ fn cast<C: Caster>(
     let cast_through = |index: usize, passed: &mut PassedHits| {
         let ray = projection.ray(index as u32);
         let hit = caster.cast_through(world, &ray, |hit| passed.push(index, hit));
-        column_of(world.grid(), projection, &ray, hit)
+        column_of(grid, projection, &ray, hit)
     };
     if !projection.fans_out() || stands_in_what_may_be_hit(world, projection.origin()) {
         columns.clear();
@@ -66,7 +159,7 @@ fn cast<C: Caster>(
         return;
     }
     columns.resize(projection.columns(), Column::UNKNOWN);
-    Fan { caster, grid: world.grid(), projection }.cast(columns);
+    Fan { caster, grid, projection }.cast(columns);
     if is_of_walls {
         return;
     }
@@ -77,10 +170,11 @@ fn cast<C: Caster>(
     }
 }
 
-/// Whether `cell`, which is solid, is no wall.
+/// Whether `cell`, which ends rays, is no wall, and level.
 fn may_be_passed(world: &World, cell: Cell) -> bool {
     let tile = world.grid().tile(cell.column.into(), cell.row.into());
-    tile.is_some_and(|tile| !matches!(world.tile(tile).kind, TileKind::Wall(_)))
+    tile.map(|TileId(index)| &world.tiles()[usize::from(index)])
+        .is_some_and(|tile| !matches!(tile.kind, TileKind::Wall(_)) && tile.is_level())
 }
 
 /// Whether `place` is in a cell of something that a ray may hit without entering a cell, or on its edge.
@@ -170,7 +264,7 @@ mod tests {
     use super::*;
     use crate::cast::Exact;
     use crate::map;
-    use crate::visibility::{FrameSize, PixelAspect};
+    use crate::visibility::{Filter, FramePlan, FrameSize, PixelAspect};
     use crate::world::{Camera, FieldOfView, Heading};
 
     const SIDE: usize = 12;
@@ -252,9 +346,11 @@ mod tests {
             )
             .unwrap();
             let size = FrameSize::new(width, 10).unwrap();
-            let projection = Projection::new(&camera, size, PixelAspect::SQUARE);
+            let projection = &Projection::new(&camera, size, PixelAspect::SQUARE);
+            let plan = &FramePlan::new(&world, &camera, Filter::Mip);
+            let scene = Scene { world: &world, camera: &camera, seconds: 0.0, projection, plan };
             let (mut columns, mut passed) = (Vec::new(), PassedHits::default());
-            cast(&Exact, &world, &projection, &mut columns, &mut passed);
+            cast(&Exact, world.grid(), scene, &mut columns, &mut passed);
             let mut expected_passed = PassedHits::default();
             let expected = projection.rays().enumerate().map(|(index, ray)| {
                 Exact.cast_through(&world, &ray, |hit| expected_passed.push(index, hit))

@@ -6,7 +6,7 @@
 
 use std::fmt;
 
-use super::Filter;
+use super::{Filter, Projection};
 use crate::color::Rgb;
 use crate::world::{
     Camera, Ceiling, Covering, Heights, Light, Paint, Pattern, Sky, Tile, TileKind, World,
@@ -33,16 +33,18 @@ pub struct FramePlan {
     pub filter: Filter,
 }
 
-/// Which passes draw what there is.
+/// How it is found out what is in view.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Visibility {
     /// The flat way: one wall for each column, floor and ceiling around it.
     Flat,
-    /// Those for floors, ceilings and walls of any height, and for mirrors.
+    /// The flat way, and the portal way for the columns whose ray meets what is not level.
+    Mixed(WhyPortals),
+    /// The portal way: floors, ceilings and walls of any height, and mirrors.
     Portals(WhyPortals),
 }
 
-/// Why a level's passes would not do.
+/// Why the flat way does not do.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum WhyPortals {
     /// Floors, ceilings or walls are not all of one height.
@@ -131,12 +133,13 @@ impl FramePlan {
         let is_textured = |tile: &Tile| matches!(tile.kind, TileKind::Wall(Paint::Texture(_)));
         let is_door = |tile: &Tile| matches!(tile.kind, TileKind::Door(_) | TileKind::Doorway(_));
         let visibility = Visibility::new(world, camera);
+        let grid = world.level_grid().unwrap_or(world.grid());
         Self {
             visibility,
             rays: match visibility {
                 Visibility::Portals(_) => RayLoop::Cells,
-                Visibility::Flat if world.grid().distance_field().is_measured() => RayLoop::Leaps,
-                Visibility::Flat => RayLoop::Lines,
+                _ if grid.distance_field().is_measured() => RayLoop::Leaps,
+                _ => RayLoop::Lines,
             },
             floor: PlaneLoop::new(world.floor(), floor_varies, is_foggy),
             ceiling: match world.ceiling() {
@@ -161,19 +164,50 @@ impl FramePlan {
     }
 }
 
-impl Visibility {
-    fn new(world: &World, camera: &Camera) -> Self {
-        let level = Heights::LEVEL;
-        if !world.is_level() {
-            Self::Portals(WhyPortals::Heights)
-        } else if world.has_mirrors() {
-            Self::Portals(WhyPortals::Mirrors)
-        } else if level.floor() < camera.eye() && camera.eye() < level.ceiling() {
-            Self::Flat
-        } else {
-            Self::Portals(WhyPortals::Eye)
+impl FramePlan {
+    /// Has a frame of which only a part is level filled by portals, where any cell of `world` is open to the
+    /// sky: the flat way takes the sky for a ceiling when it is asked for surfaces.
+    pub(crate) fn tell_sky_from_ceilings(&mut self, world: &World) {
+        let is_open = |tile: &Tile| tile.ceiling == Ceiling::Sky;
+        if let Visibility::Mixed(why) = self.visibility
+            && world.tiles().iter().any(is_open)
+        {
+            self.visibility = Visibility::Portals(why);
         }
     }
+}
+
+impl Visibility {
+    fn new(world: &World, camera: &Camera) -> Self {
+        let why = match (world.is_level(), world.has_mirrors()) {
+            (true, false) => None,
+            (true, true) => Some(WhyPortals::Mirrors),
+            (false, _) => Some(WhyPortals::Heights),
+        };
+        let level = Heights::LEVEL;
+        let is_between = level.floor() < camera.eye() && camera.eye() < level.ceiling();
+        match why {
+            Some(why) if stands_on_level_floor(world, camera) => Self::Mixed(why),
+            Some(why) => Self::Portals(why),
+            None if is_between => Self::Flat,
+            None => Self::Portals(WhyPortals::Eye),
+        }
+    }
+}
+
+/// Whether `camera` is well inside a cell of level floor, between floor and ceiling: for all rays it is in
+/// that cell.
+fn stands_on_level_floor(world: &World, camera: &Camera) -> bool {
+    /// Far more than is rounded away.
+    const HAIR: f64 = 1e-6;
+    let (place, eye) = (camera.position(), camera.eye());
+    let inside = place - place.floor();
+    let is_inside = inside.min_element() > HAIR && inside.max_element() < 1.0 - HAIR;
+    let is_between = Projection::is_between_floor_and_ceiling(eye);
+    let tile = world.grid().tile(place.x.floor() as i64, place.y.floor() as i64);
+    let is_level_floor =
+        |tile: Tile| tile.is_level() && matches!(tile.kind, TileKind::Open | TileKind::Doorway(_));
+    is_inside && is_between && tile.is_some_and(|tile| is_level_floor(world.tile(tile)))
 }
 
 impl PlaneLoop {
@@ -203,13 +237,20 @@ impl fmt::Display for FramePlan {
 
 impl fmt::Display for Visibility {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        match self {
+            Self::Flat => f.write_str("flat: a ray ends at the first wall"),
+            Self::Mixed(why) => write!(f, "flat, and portals in part of it: {why}"),
+            Self::Portals(why) => write!(f, "portals: {why}"),
+        }
+    }
+}
+
+impl fmt::Display for WhyPortals {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
         f.write_str(match self {
-            Self::Flat => "flat: a ray ends at the first wall",
-            Self::Portals(WhyPortals::Heights) => {
-                "portals: floors, ceilings or walls are not all of one height"
-            }
-            Self::Portals(WhyPortals::Mirrors) => "portals: there are mirrors",
-            Self::Portals(WhyPortals::Eye) => "portals: the eye is not between floor and ceiling",
+            Self::Heights => "floors, ceilings or walls are not all of one height",
+            Self::Mirrors => "there are mirrors",
+            Self::Eye => "the eye is not between floor and ceiling",
         })
     }
 }

@@ -21,8 +21,12 @@ pub(crate) fn for_each_wall_column(
 ) {
     let mut latest: Option<(Face<'_>, Paint)> = None;
     for (x, column) in (0..).zip(columns) {
-        let is_in_rows = column.rows.start.max(rows.start) < column.rows.end.min(rows.end);
-        let Some(hit) = column.hit.as_ref().filter(|_| is_in_rows) else { continue };
+        let shown = column.rows.start.max(rows.start)..column.rows.end.min(rows.end);
+        let Some(hit) = column.hit.as_ref().filter(|_| !shown.is_empty()) else { continue };
+        if hit.t < 0.0 {
+            // The portal way fills that column.
+            continue;
+        }
         let (face, paint) = match &mut latest {
             Some(latest) if latest.0.is_of(hit) => &*latest,
             latest => {
@@ -31,7 +35,7 @@ pub(crate) fn for_each_wall_column(
             }
         };
         let (facing, slope) = face.facing_and_slope(scene, x, hit);
-        sink.take(&WallColumn {
+        let wall = WallColumn {
             column: x,
             rows: column.rows.clone(),
             facing,
@@ -41,7 +45,8 @@ pub(crate) fn for_each_wall_column(
             paint: *paint,
             light: if is_lit { face.light.at(hit.u) } else { Light::FULL },
             extent: Extent::Level,
-        });
+        };
+        sink.take(&wall, shown);
     }
 }
 

@@ -19,33 +19,36 @@ impl ColumnWalk<'_> {
             self.list.runs.show(start..end, Shown::Sky(ray.image));
             return false;
         }
-        let mut goes_on: Option<(GapId, Range<u32>)> = None;
+        let gaps = self.surroundings.gaps;
+        let mut goes_on: Option<(GapId, u32, u32)> = None;
         // The rock that is below the next gap, and the row below it.
         let (mut rock_from, mut rock_end) = (f64::NEG_INFINITY, end);
-        let gaps = self.surroundings.gaps;
-        for (id, gap) in gaps.of(place) {
+        for id in gaps.of(place) {
+            let gap = gaps.gap(id);
             let bottom = gap.row_of_bottom(projection, met.t);
             let top = gap.row_of_top(projection, met.t);
             let rock = start.max(bottom)..rock_end;
-            self.meet_rock(ray, place, met, rock, rock_from..gap.gap.bottom);
+            if !rock.is_empty() {
+                self.meet_rock(ray, place, met, rock, rock_from..gap.gap.bottom);
+            }
             (rock_from, rock_end) = (gap.gap.top, end.min(top));
-            let rows = start.max(top)..end.min(bottom);
-            if rows.is_empty() {
+            let (start, end) = (start.max(top), end.min(bottom));
+            if start >= end {
                 continue;
             }
             if place.is_none() {
-                self.show_beyond_edge(rows, ray.image);
+                self.show_beyond_edge(start..end, ray.image);
                 continue;
             }
             if gap.holds == Holds::Cube {
-                self.pass_cube(ray, place, &rows, met);
+                self.pass_cube(ray, place, &(start..end), met);
             }
-            if let Some((gap, rows)) = goes_on.replace((id, rows)) {
-                self.memory.rays.push(PortalRay { place, gap, rows, ..ray.clone() });
+            if let Some((gap, start, end)) = goes_on.replace((id, start, end)) {
+                self.memory.rays.push(PortalRay { place, gap, rows: start..end, ..ray.clone() });
             }
         }
-        let Some((gap, rows)) = goes_on else { return false };
-        (ray.place, ray.gap, ray.rows) = (place, gap, rows);
+        let Some((gap, start, end)) = goes_on else { return false };
+        (ray.place, ray.gap, ray.rows) = (place, gap, start..end);
         true
     }
 
@@ -57,6 +60,7 @@ impl ColumnWalk<'_> {
     }
 
     /// Meets what is solid in `place` between two heights, which shows in `rows`: a face, or a mirror.
+    #[inline(never)]
     fn meet_rock(
         &mut self,
         ray: &PortalRay,
@@ -65,9 +69,6 @@ impl ColumnWalk<'_> {
         rows: Range<u32>,
         heights: Range<f64>,
     ) {
-        if rows.is_empty() {
-            return;
-        }
         let is_lowest = heights.start == f64::NEG_INFINITY;
         let surroundings = self.surroundings;
         let tile = surroundings.tile(place).unwrap_or(&surroundings.scene.world.tiles()[0]);
@@ -111,6 +112,7 @@ impl ColumnWalk<'_> {
     }
 
     /// Passes the face of the cube in `place` that is seen through.
+    #[inline(never)]
     fn pass_cube(&mut self, ray: &PortalRay, place: Place, rows: &Range<u32>, met: &Met) {
         let Some(Tile { heights, kind, .. }) = self.surroundings.tile(place) else { return };
         let material = match *kind {
@@ -135,6 +137,7 @@ impl ColumnWalk<'_> {
     }
 
     /// Shows what is beyond the edge of the map: the sky, and the ground below the horizon.
+    #[inline(never)]
     fn show_beyond_edge(&mut self, rows: Range<u32>, image: ImageId) {
         let Range { start, end } = rows;
         let horizon = self.surroundings.scene.projection.first_row_of_ground().clamp(start, end);

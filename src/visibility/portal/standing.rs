@@ -4,7 +4,7 @@ use std::ops::Range;
 
 use glam::DVec2;
 
-use super::walk::{AlongFace, ColumnWalk, Met, Place, PortalRay};
+use super::walk::{AlongFace, ColumnWalk, Met, Place, PortalRay, cell_before};
 use crate::cast::{Hit, Passage, Ray, Side};
 use crate::visibility::runs::{FlatSurface, ImageId, Part, Shown};
 use crate::visibility::{Extent, Facing};
@@ -80,12 +80,7 @@ impl ColumnWalk<'_> {
 
     /// The cell before the one of a leaf, on the side that `ray` comes from.
     fn place_before(&self, ray: &Ray, hit: &Hit) -> Place {
-        let back = |direction: f64| if direction > 0.0 { -1 } else { 1 };
-        let (columns, rows) = match hit.side {
-            Side::X => (back(ray.direction().x), 0),
-            Side::Y => (0, back(ray.direction().y)),
-        };
-        let (column, row) = (i64::from(hit.cell.column) + columns, i64::from(hit.cell.row) + rows);
+        let [column, row] = cell_before(ray.direction(), hit);
         let tile = self.surroundings.scene.world.grid().tile(column, row)?;
         Some((Cell { column: column as u32, row: row as u32 }, tile))
     }

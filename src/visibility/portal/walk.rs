@@ -4,6 +4,7 @@ use std::ops::Range;
 
 use glam::DVec2;
 
+use super::PortalStart;
 use super::billboards::RayPart;
 use super::layers::Passed;
 use super::ray_segments::RaySegment;
@@ -91,16 +92,21 @@ pub(super) struct ColumnWalk<'a> {
 }
 
 impl WalkMemory {
-    /// Forgets the last frame. There is room for all but the strangest maps.
-    pub(super) fn begin(&mut self, width: usize) {
+    /// Forgets the last frame.
+    pub(super) fn begin(&mut self) {
+        self.passed.clear();
+        self.segments.clear();
+        self.stats = PortalStats::default();
+    }
+
+    /// Makes room for all but the strangest maps.
+    pub(super) fn make_room(&mut self, width: usize) {
         const RAYS_AT_ONCE: usize = 64;
         const OF_A_COLUMN: usize = 16;
+        self.begin();
         self.rays.reserve(RAYS_AT_ONCE);
-        self.passed.clear();
         self.passed.reserve(width * OF_A_COLUMN);
-        self.segments.clear();
         self.segments.reserve(width * OF_A_COLUMN);
-        self.stats = PortalStats { rays: width as u64, ..PortalStats::default() };
     }
 }
 
@@ -142,16 +148,17 @@ impl<'a> ColumnWalk<'a> {
         Self { surroundings, column, direction, memory, list, hit: None, distance: 0.0 }
     }
 
-    /// Follows `ray`, which is that of the column, to the end of all its parts. Tells what it hit and how
-    /// far it got before it was reflected.
-    pub(super) fn follow(mut self, ray: &Ray) -> Column {
-        let mut ray = self.start(ray);
-        loop {
+    /// Follows `ray`, which is that of the column, from `start` to the end of all its parts. Tells what it
+    /// hit and how far it got before it was reflected.
+    pub(super) fn follow(mut self, ray: &Ray, start: PortalStart) -> Column {
+        self.memory.stats.rays += 1;
+        let mut next = match start {
+            PortalStart::Camera => Some(self.start_at_camera(ray)),
+            PortalStart::Line { hit, rows } => self.start_at_line(ray, hit, rows),
+        };
+        while let Some(mut ray) = next.or_else(|| self.memory.rays.pop()) {
             self.follow_one(&mut ray);
-            match self.memory.rays.pop() {
-                Some(next) => ray = next,
-                None => break,
-            }
+            next = None;
         }
         let projection = self.surroundings.scene.projection;
         self.list.runs.end_column(projection.rows());
@@ -160,13 +167,46 @@ impl<'a> ColumnWalk<'a> {
         Column { hit, distance, rows: row_of(1.0)..row_of(0.0) }
     }
 
-    fn start(&self, ray: &Ray) -> PortalRay {
+    /// The ray from the line that `hit` is on, in what is left of `rows` behind it; `None` where nothing is.
+    fn start_at_line(&mut self, ray: &Ray, hit: Hit, rows: Range<u32>) -> Option<PortalRay> {
+        let &Surroundings { scene, gaps, most_bounces, .. } = self.surroundings;
+        let runs = &mut self.list.runs;
+        runs.show(0..rows.start, Shown::Flat);
+        runs.show(rows.end..scene.projection.rows(), Shown::Flat);
+        let Hit { cell, side, t, .. } = hit;
+        let grid = scene.world.grid();
+        let (walk, crossed) = MirroredWalk::entering(grid, ray, most_bounces, (cell, side));
+        let before = cell_before(self.direction, &hit);
+        let before = grid
+            .tile(before[0], before[1])
+            .map(|tile| (Cell { column: before[0] as u32, row: before[1] as u32 }, tile));
+        let gap = gaps.of(before).next()?;
+        let into = crossed.into;
+        let met = self.met_at(crossed, t, before);
+        self.distance = t;
+        let image = ImageId::NONE;
+        let mut ray = PortalRay { walk, place: before, gap, rows, from: t, image };
+        self.cross_line(&mut ray, into, &met).then_some(ray)
+    }
+
+    /// What is met at a line that is crossed at `t`.
+    fn met_at(&self, crossed: Crossed, t: f64, before: Place) -> Met {
+        let side = crossed.side;
+        let slope = match side {
+            Side::X => self.direction.x,
+            Side::Y => self.direction.y,
+        };
+        let u = AlongFace::AtLine(crossed);
+        Met { side, facing: Facing::Side(side), slope, t, u, before }
+    }
+
+    fn start_at_camera(&self, ray: &Ray) -> PortalRay {
         let &Surroundings { scene, gaps, most_bounces, .. } = self.surroundings;
         let grid = scene.world.grid();
         let eye = scene.projection.eye();
         let walk = MirroredWalk::new(grid, ray, most_bounces);
         let place = walk.cell(grid);
-        let gap_in = |place| gaps.of(place).find(|(_, it)| it.gap.holds(eye)).map(|(id, _)| id);
+        let gap_in = |place| gaps.of(place).find(|&id| gaps.gap(id).gap.holds(eye));
         // An eye inside the rock sees as if the cell were like the map's own floor.
         let ground = place.map(|(cell, _)| (cell, TileId(0)));
         let (place, gap) = match (gap_in(place), gap_in(ground)) {
@@ -215,13 +255,8 @@ impl<'a> ColumnWalk<'a> {
             if ray.rows.is_empty() {
                 return;
             }
-            let side = crossed.side;
-            let slope = match side {
-                Side::X => self.direction.x,
-                Side::Y => self.direction.y,
-            };
-            let (into, u) = (crossed.into, AlongFace::AtLine(crossed));
-            let met = Met { side, facing: Facing::Side(side), slope, t, u, before: ray.place };
+            let into = crossed.into;
+            let met = self.met_at(crossed, t, ray.place);
             if !self.cross_line(ray, into, &met) {
                 return;
             }
@@ -335,5 +370,15 @@ impl Met {
             AlongFace::Known(u) => *u,
             AlongFace::AtLine(crossed) => ray.walk.along_face(crossed),
         }
+    }
+}
+
+/// The column and the row of the cell before the one that `hit` is on, for a ray along `direction`.
+pub(super) fn cell_before(direction: DVec2, hit: &Hit) -> [i64; 2] {
+    let back = |direction: f64| if direction > 0.0 { -1 } else { 1 };
+    let (column, row) = (i64::from(hit.cell.column), i64::from(hit.cell.row));
+    match hit.side {
+        Side::X => [column + back(direction.x), row],
+        Side::Y => [column, row + back(direction.y)],
     }
 }
