@@ -3,8 +3,8 @@
 //! Data goes one way, and each stage is a module that can be called alone:
 //!
 //! ```text
-//! maps/*.toml ─ map ─▶ World ─ game ─▶ World + Camera ─ render ─▶ Frame ─ tui ─▶ Canvas ─ terminal ─▶ bytes
-//!   (text)            (what exists)   (what happens)             (pixels)       (cells)
+//! maps/*.toml ─ map ─▶ World ─ game ─▶ World + Camera ─ visibility ─▶ DrawList ─ raster ─▶ Frame ─ tui ─▶ Canvas ─ terminal ─▶ bytes
+//!   (text)            (what exists)   (what happens)                (what shows)         (pixels)       (cells)
 //! ```
 //!
 //! # Where to start
@@ -43,7 +43,7 @@
 //! | [`world`] | grid, tiles, things, sprites, textures, cameras | |
 //! | [`fault`], [`map`] | diagnostics; the map file: read, validate, diagnose | |
 //! | [`cast`] | a ray and a grid: where it hits, exactly | |
-//! | [`render`] | world and camera to pixels | |
+//! | `visibility`, `raster`, [`render`] | world and camera to a draw list, the list to pixels, both in turn | |
 //! | [`space`] | bodies and camera to pixels, a ray for each pixel | |
 //! | [`game`] | rules in fixed steps: player, collision, doors, goals | |
 //! | [`generate`] | levels as a function of seed and place | |
