@@ -47,7 +47,7 @@ pub use exact::{Exact, ExactOrder};
 pub(crate) use hit::texture_coordinate;
 pub use hit::{Hit, Side};
 pub(crate) use major_axis::MajorAxisTraversal;
-pub use ray::{NotARay, Ray};
+pub use ray::{Ray, RayError};
 pub use rounded::RoundedOrder;
 pub(crate) use shape::Passage;
 #[cfg(feature = "lab")]

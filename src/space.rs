@@ -24,10 +24,10 @@ mod renderer;
 mod scene;
 mod shadows;
 
-pub use body::{Block, Body, Coat, FARTHEST, Plane, SMALLEST, Shape, Sphere};
-pub use camera::{Axes, Camera, EYE_ROOM, Elevation};
+pub use body::{Block, Body, FARTHEST, Plane, SMALLEST, Shape, SolidTexture, Sphere};
+pub use camera::{Axes, Camera, EYE_CLEARANCE, Elevation};
 pub use explanation::Explanation;
-pub use light::{Share, Sky, Sun};
+pub use light::{Fraction, Sky, Sun};
 pub use ray::{Hit, Ray};
 pub use renderer::Renderer;
 pub use scene::{Scene, Start};

@@ -16,13 +16,13 @@ impl Ray {
     ///
     /// # Errors
     /// Returns an error if either is not finite, or if the direction is zero.
-    pub fn new(origin: DVec2, direction: DVec2) -> Result<Self, NotARay> {
+    pub fn new(origin: DVec2, direction: DVec2) -> Result<Self, RayError> {
         if !origin.is_finite() {
-            Err(NotARay::Origin)
+            Err(RayError::Origin)
         } else if !direction.is_finite() {
-            Err(NotARay::Direction)
+            Err(RayError::Direction)
         } else if direction == DVec2::ZERO {
-            Err(NotARay::NoDirection)
+            Err(RayError::NoDirection)
         } else {
             Ok(Self { origin, direction })
         }
@@ -60,7 +60,7 @@ impl Ray {
 
 /// The error of [`Ray::new`].
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub enum NotARay {
+pub enum RayError {
     /// The origin is not finite.
     Origin,
     /// The direction is not finite.
@@ -69,7 +69,7 @@ pub enum NotARay {
     NoDirection,
 }
 
-impl fmt::Display for NotARay {
+impl fmt::Display for RayError {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
         f.write_str(match self {
             Self::Origin => "a ray's origin must be two finite numbers",
@@ -79,7 +79,7 @@ impl fmt::Display for NotARay {
     }
 }
 
-impl std::error::Error for NotARay {}
+impl std::error::Error for RayError {}
 
 #[cfg(test)]
 mod tests {
@@ -88,9 +88,9 @@ mod tests {
     #[test]
     fn no_ray_without_a_direction() {
         let ray = |x, y, dx, dy| Ray::new(DVec2::new(x, y), DVec2::new(dx, dy));
-        assert_eq!(ray(0.0, 0.0, 0.0, -0.0), Err(NotARay::NoDirection));
-        assert_eq!(ray(0.0, f64::NAN, 1.0, 0.0), Err(NotARay::Origin));
-        assert_eq!(ray(0.0, 0.0, f64::INFINITY, 0.0), Err(NotARay::Direction));
+        assert_eq!(ray(0.0, 0.0, 0.0, -0.0), Err(RayError::NoDirection));
+        assert_eq!(ray(0.0, f64::NAN, 1.0, 0.0), Err(RayError::Origin));
+        assert_eq!(ray(0.0, 0.0, f64::INFINITY, 0.0), Err(RayError::Direction));
     }
 
     #[test]

@@ -11,7 +11,7 @@ use super::intent::{Intent, Intents};
 use super::turning::{self, Turning};
 use super::{FRICTION, RUN, STEP, STILL, WALK};
 use crate::numeric::damped_motion::{DampedMotion, approach};
-use crate::space::{Camera, EYE_ROOM, Elevation, Scene};
+use crate::space::{Camera, EYE_CLEARANCE, Elevation, Scene};
 use crate::world::{FieldOfView, Heading};
 
 /// How fast the eye is raised or lowered, in radians per second.
@@ -161,9 +161,9 @@ impl Player {
         for _ in 0..CUTS {
             let before = way;
             for body in &scene.bodies {
-                let (clearance, outwards) = body.shape.clearance(self.position);
+                let (clearance, outwards) = body.shape.signed_distance(self.position);
                 // The rest of it, so that rounding leads no further.
-                let room = (clearance - EYE_ROOM - SLACK).max(0.0);
+                let room = (clearance - EYE_CLEARANCE - SLACK).max(0.0);
                 let too_far = -outwards.dot(way) - room;
                 if too_far > 0.0 {
                     way += outwards * too_far;
@@ -183,7 +183,7 @@ const SLACK: f64 = 1e-9;
 
 /// Whether the player can be at `position`.
 fn is_free(scene: &Scene, position: DVec3) -> bool {
-    scene.bodies.iter().all(|body| body.shape.clearance(position).0 >= EYE_ROOM)
+    scene.bodies.iter().all(|body| body.shape.signed_distance(position).0 >= EYE_CLEARANCE)
         && Camera::new(position, Heading::default(), FieldOfView::default()).is_some()
 }
 
@@ -205,7 +205,7 @@ mod tests {
     use super::*;
     use crate::color::Rgb;
     use crate::game::Look;
-    use crate::space::{Block, Body, Coat, Plane, Shape, Sphere, Start};
+    use crate::space::{Block, Body, Plane, Shape, SolidTexture, Sphere, Start};
 
     /// A start between a floor, a ball, an inclined wall and a box.
     fn scene(degrees: f64) -> Scene {
@@ -218,9 +218,9 @@ mod tests {
             ),
         ];
         let heading = Heading::from_degrees(degrees).unwrap();
-        let coat = Coat::Plain(Rgb::WHITE);
+        let texture = SolidTexture::Plain(Rgb::WHITE);
         Scene {
-            bodies: shapes.map(|shape| Body { shape, coat }).to_vec(),
+            bodies: shapes.map(|shape| Body { shape, texture }).to_vec(),
             start: Start::new(DVec3::new(0.5, 0.0, 0.5), heading, Elevation::LEVEL).unwrap(),
             ..Scene::default()
         }
@@ -272,7 +272,7 @@ mod tests {
         (0..30).for_each(|_| flight.step(intents(&[Intent::Jump, Intent::LookUp])));
         assert!(flight.player.position.z > 1.0 && flight.player.elevation.degrees() > 10.0);
         (0..120).for_each(|_| flight.step(intents(&[Intent::Duck, Intent::LookDown])));
-        assert!((flight.player.position.z - EYE_ROOM).abs() < 1e-6);
+        assert!((flight.player.position.z - EYE_CLEARANCE).abs() < 1e-6);
         flight.step(intents(&[Intent::LookAhead]));
         assert_eq!(flight.player.elevation, Elevation::LEVEL);
         let before = flight.player.heading.degrees();

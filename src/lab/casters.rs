@@ -28,5 +28,5 @@ pub use dda::Dda;
 pub use dda32::Dda32;
 pub use fixed::Fixed;
 pub use march::March;
-pub use method::{Method, NotAMethod, Visitor};
+pub use method::{Method, ParseMethodError, Visitor};
 pub use table::Table;

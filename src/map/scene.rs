@@ -13,7 +13,7 @@ use super::air::{self, SkyText};
 use super::definitions;
 use crate::fault::Fault;
 use crate::fault::document::{Entry, FaultList, entries};
-use crate::space::{EYE_ROOM, Elevation, FARTHEST, Scene, Share, Sky, Start, Sun};
+use crate::space::{EYE_CLEARANCE, Elevation, FARTHEST, Fraction, Scene, Sky, Start, Sun};
 use crate::world::Heading;
 use body::Kind;
 
@@ -83,7 +83,7 @@ fn light(entry: &Entry<'_, '_>) -> Option<Sun> {
     for entry in entry.entries(table) {
         match entry.key {
             "toward" => sun = toward(&entry, sun).unwrap_or(sun),
-            "ambient" => match entry.number().and_then(Share::new) {
+            "ambient" => match entry.number().and_then(Fraction::new) {
                 Some(ambient) => sun.ambient = ambient,
                 None => entry.faults.push(
                     Fault::new(entry.value_place, "the ambient light must be a number from 0 to 1")
@@ -123,10 +123,12 @@ fn read_start(entry: &Entry<'_, '_>, scene: &Scene) -> Option<Start> {
         entry.faults.push(fault.help(format!("write {START_EXAMPLE}")));
         return None;
     };
-    let is_free =
-        |at: DVec3| scene.bodies.iter().all(|body| body.shape.clearance(at).0 >= EYE_ROOM);
+    let is_free = |at: DVec3| {
+        scene.bodies.iter().all(|body| body.shape.signed_distance(at).0 >= EYE_CLEARANCE)
+    };
     if !is_free(at) {
-        let message = format!("the start is less than {EYE_ROOM} cells from a body, or inside it");
+        let message =
+            format!("the start is less than {EYE_CLEARANCE} cells from a body, or inside it");
         entry.faults.push(Fault::new(place, message).help("move one of the two"));
         return None;
     }

@@ -18,7 +18,7 @@ pub struct Body {
     /// The position and the shape.
     pub shape: Shape,
     /// The colours.
-    pub coat: Coat,
+    pub texture: SolidTexture,
 }
 
 /// The position and the shape of a body.
@@ -32,9 +32,10 @@ pub enum Shape {
     Block(Block),
 }
 
-/// The colours of a body.
+/// The colours of a body, as a function of the position in space: solid texturing (Peachey, "Solid
+/// Texturing of Complex Surfaces", 1985).
 #[derive(Clone, Copy, Debug, PartialEq)]
-pub enum Coat {
+pub enum SolidTexture {
     /// One colour.
     Plain(Rgb),
     /// A checker pattern of two colours: space is divided into cubes at whole multiples of the
@@ -131,7 +132,7 @@ impl Shape {
     /// vector still points outwards.
     ///
     /// Both sides of a plane are outside.
-    pub fn clearance(&self, point: DVec3) -> (f64, DVec3) {
+    pub fn signed_distance(&self, point: DVec3) -> (f64, DVec3) {
         match self {
             Self::Sphere(sphere) => {
                 let from_center = point - sphere.center;
@@ -143,13 +144,13 @@ impl Shape {
                 let side = if distance < 0.0 { -1.0 } else { 1.0 };
                 (distance.abs(), plane.normal * side)
             }
-            Self::Block(block) => block.clearance(point),
+            Self::Block(block) => block.signed_distance(point),
         }
     }
 }
 
 impl Block {
-    fn clearance(&self, point: DVec3) -> (f64, DVec3) {
+    fn signed_distance(&self, point: DVec3) -> (f64, DVec3) {
         let beside = point - point.clamp(self.low, self.high);
         if let Some(outwards) = beside.try_normalize() {
             return (beside.length(), outwards);
@@ -163,7 +164,7 @@ impl Block {
     }
 }
 
-impl Coat {
+impl SolidTexture {
     /// The mean colour of the surface in a pixel at `point`. `normal` is the unit normal on the
     /// side of the eye.
     ///
@@ -225,14 +226,14 @@ mod tests {
     }
 
     #[test]
-    fn clearance_is_negative_inside() {
+    fn signed_distance_is_negative_inside() {
         let sphere = Shape::Sphere(Sphere::new(DVec3::ZERO, 2.0).unwrap());
-        assert_eq!(sphere.clearance(DVec3::new(3.0, 0.0, 0.0)), (1.0, DVec3::X));
-        assert_eq!(sphere.clearance(DVec3::new(0.0, -1.0, 0.0)), (-1.0, -DVec3::Y));
+        assert_eq!(sphere.signed_distance(DVec3::new(3.0, 0.0, 0.0)), (1.0, DVec3::X));
+        assert_eq!(sphere.signed_distance(DVec3::new(0.0, -1.0, 0.0)), (-1.0, -DVec3::Y));
         let block = Shape::Block(Block::new(DVec3::ZERO, DVec3::splat(4.0)).unwrap());
-        assert_eq!(block.clearance(DVec3::new(2.0, 2.0, 5.0)), (1.0, DVec3::Z));
-        assert_eq!(block.clearance(DVec3::new(2.0, 0.5, 2.0)), (-0.5, -DVec3::Y));
+        assert_eq!(block.signed_distance(DVec3::new(2.0, 2.0, 5.0)), (1.0, DVec3::Z));
+        assert_eq!(block.signed_distance(DVec3::new(2.0, 0.5, 2.0)), (-0.5, -DVec3::Y));
         let plane = Shape::Plane(Plane::new(DVec3::ZERO, DVec3::Z).unwrap());
-        assert_eq!(plane.clearance(DVec3::new(9.0, 9.0, -2.0)), (2.0, -DVec3::Z));
+        assert_eq!(plane.signed_distance(DVec3::new(9.0, 9.0, -2.0)), (2.0, -DVec3::Z));
     }
 }

@@ -10,7 +10,7 @@ use crate::render::{FrameSize, PixelAspect};
 use crate::world::{FieldOfView, Heading};
 
 /// The distance that the player's eye keeps from all bodies, in cells.
-pub const EYE_ROOM: f64 = 0.25;
+pub const EYE_CLEARANCE: f64 = 0.25;
 
 /// The angle by which a camera looks up or down, between straight down and straight up.
 ///

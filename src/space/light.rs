@@ -6,12 +6,12 @@ use crate::color::Rgb;
 
 /// A fraction from 0 to 1.
 #[derive(Clone, Copy, Debug, PartialEq)]
-pub struct Share(f64);
+pub struct Fraction(f64);
 
-impl Share {
+impl Fraction {
     /// The fraction, if it is from 0 to 1.
-    pub fn new(share: f64) -> Option<Self> {
-        (0.0..=1.0).contains(&share).then_some(Self(share))
+    pub fn new(fraction: f64) -> Option<Self> {
+        (0.0..=1.0).contains(&fraction).then_some(Self(fraction))
     }
 
     /// The fraction, from 0 to 1.
@@ -25,13 +25,13 @@ impl Share {
 pub struct Sun {
     toward: DVec3,
     /// The brightness of a surface that the sun does not reach.
-    pub ambient: Share,
+    pub ambient: Fraction,
 }
 
 impl Sun {
     /// A sun in the direction `toward`, of any length. `None` if the direction is zero or not
     /// finite.
-    pub fn new(toward: DVec3, ambient: Share) -> Option<Self> {
+    pub fn new(toward: DVec3, ambient: Fraction) -> Option<Self> {
         let largest = toward.abs().max_element();
         let has_direction = toward.is_finite() && largest > 0.0;
         has_direction.then(|| Self { toward: (toward / largest).normalize(), ambient })
@@ -46,7 +46,7 @@ impl Sun {
     /// Lambert's cosine law ("Photometria", 1760): proportional to the cosine of the angle to the
     /// sun.
     pub fn brightness(&self, normal: DVec3) -> f64 {
-        let Share(ambient) = self.ambient;
+        let Fraction(ambient) = self.ambient;
         ambient + (1.0 - ambient) * self.toward.dot(normal).clamp(0.0, 1.0)
     }
 }
@@ -55,7 +55,7 @@ impl Default for Sun {
     /// A sun high in the north-west.
     fn default() -> Self {
         const TOWARD: DVec3 = DVec3::new(-2.0 / 7.0, -3.0 / 7.0, 6.0 / 7.0);
-        Self { toward: TOWARD, ambient: Share(0.2) }
+        Self { toward: TOWARD, ambient: Fraction(0.2) }
     }
 }
 
@@ -93,11 +93,11 @@ mod tests {
 
     #[test]
     fn surfaces_towards_the_sun_are_bright_and_others_ambient() {
-        let sun = Sun::new(DVec3::new(0.0, 0.0, 1e-200), Share(0.25)).unwrap();
+        let sun = Sun::new(DVec3::new(0.0, 0.0, 1e-200), Fraction(0.25)).unwrap();
         assert_eq!(sun.brightness(DVec3::Z), 1.0);
         assert_eq!(sun.brightness(DVec3::X), 0.25);
         assert_eq!(sun.brightness(-DVec3::Z), 0.25);
-        assert_eq!(Sun::new(DVec3::ZERO, Share(0.0)), None);
+        assert_eq!(Sun::new(DVec3::ZERO, Fraction(0.0)), None);
     }
 
     #[test]

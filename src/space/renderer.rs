@@ -141,7 +141,7 @@ impl Renderer {
             let normal = shape.normal(direction, t);
             let point = projection.origin + direction * t;
             let footprint = || Footprint::new(direction, t, normal, steps);
-            let color = scene.bodies[body].coat.mean_color(point, normal, footprint);
+            let color = scene.bodies[body].texture.mean_color(point, normal, footprint);
             let brightness = self.brightness(scene, body, point, normal, explanation);
             *pixel = lit(color, brightness, scene.fog, t);
         }

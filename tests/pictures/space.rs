@@ -3,7 +3,8 @@
 use cellcaster::color::Rgb;
 use cellcaster::render::{Frame, FrameSize, PixelAspect};
 use cellcaster::space::{
-    Block, Body, Camera, Coat, Elevation, Plane, Ray, Renderer, Scene, Shape, Share, Sphere, Sun,
+    Block, Body, Camera, Elevation, Fraction, Plane, Ray, Renderer, Scene, Shape, SolidTexture,
+    Sphere, Sun,
 };
 use cellcaster::world::{FieldOfView, Heading, Scale};
 use glam::DVec3;
@@ -12,7 +13,8 @@ use proptest::prelude::*;
 const ROUNDING: f64 = 1e-12;
 
 fn scene(shapes: impl IntoIterator<Item = Shape>) -> Scene {
-    let body = |(index, shape)| Body { shape, coat: Coat::Plain(Rgb::new(index, 255, 255)) };
+    let body =
+        |(index, shape)| Body { shape, texture: SolidTexture::Plain(Rgb::new(index, 255, 255)) };
     Scene { bodies: (0..).zip(shapes).map(body).collect(), ..Scene::default() }
 }
 
@@ -63,7 +65,7 @@ fn is_in_shadow(scene: &Scene, body: usize, point: DVec3) -> bool {
     let others = scene.bodies.iter().enumerate().filter(|&(index, _)| index != body);
     others.map(|(_, &other)| other).any(|other| {
         let alone = Scene { bodies: vec![other], ..Scene::default() };
-        let is_outside = other.shape.clearance(point).0 > 0.0;
+        let is_outside = other.shape.signed_distance(point).0 > 0.0;
         let casts = !matches!(other.shape, Shape::Plane(_)) && is_outside;
         casts && alone.cast(&Ray::new(point, scene.sun.toward())).is_some()
     })
@@ -120,10 +122,10 @@ proptest! {
     ) {
         let scene = scene([shape]);
         let ray = Ray::new(origin, direction);
-        let (outside, _) = shape.clearance(origin);
+        let (outside, _) = shape.signed_distance(origin);
         let end = match scene.cast(&ray) {
             Some(hit) => {
-                let (off, _) = shape.clearance(ray.at(hit.t));
+                let (off, _) = shape.signed_distance(ray.at(hit.t));
                 prop_assert!(off.abs() <= ROUNDING * (1.0 + hit.t) * 10.0, "{off} off at {}", hit.t);
                 prop_assert!(hit.normal.dot(direction) <= 0.0);
                 hit.t
@@ -131,7 +133,7 @@ proptest! {
             None => 40.0,
         };
         for part in 1..32 {
-            let (clearance, _) = shape.clearance(ray.at(end * f64::from(part) / 32.0));
+            let (clearance, _) = shape.signed_distance(ray.at(end * f64::from(part) / 32.0));
             prop_assert!(clearance * outside.signum() >= -1e-9, "{clearance} at part {part}");
         }
     }
@@ -207,9 +209,9 @@ fn a_small_body_costs_few_tests() {
 fn a_checkered_floor_is_the_mean_over_each_pixel() {
     const SAMPLES: u32 = 24;
     let floor = Shape::Plane(Plane::new(DVec3::ZERO, DVec3::Z).unwrap());
-    let coat = Coat::Checker([Rgb::BLACK, Rgb::WHITE], Scale::ONE);
-    let sun = Sun::new(DVec3::Z, Share::new(0.5).unwrap()).unwrap();
-    let bodies = vec![Body { shape: floor, coat }];
+    let texture = SolidTexture::Checker([Rgb::BLACK, Rgb::WHITE], Scale::ONE);
+    let sun = Sun::new(DVec3::Z, Fraction::new(0.5).unwrap()).unwrap();
+    let bodies = vec![Body { shape: floor, texture }];
     let scene = Scene { bodies, sun, ..Scene::default() };
     let camera = Camera::new(DVec3::Z * 1.7, Heading::default(), FieldOfView::default()).unwrap();
     let (size, fine) = (FrameSize::new(48, 36), FrameSize::new(48 * SAMPLES, 36 * SAMPLES));
@@ -219,7 +221,7 @@ fn a_checkered_floor_is_the_mean_over_each_pixel() {
     let is_white = |column: u32, row: u32| {
         let ray = camera.ray(fine, PixelAspect::SQUARE, column, row);
         let hit = scene.cast(&ray).unwrap();
-        coat.color_at(ray.at(hit.t) - DVec3::Z * 0.01) == Rgb::WHITE
+        texture.color_at(ray.at(hit.t) - DVec3::Z * 0.01) == Rgb::WHITE
     };
     let linear = |channel: u8| libm::pow((f64::from(channel) / 255.0 + 0.055) / 1.055, 2.4);
     let (mut error, mut error_of_one_sample) = (0.0, 0.0);
@@ -248,9 +250,9 @@ fn a_checkered_floor_is_the_mean_over_each_pixel() {
 #[test]
 fn far_squares_are_grey() {
     let floor = Shape::Plane(Plane::new(DVec3::ZERO, DVec3::Z).unwrap());
-    let coat = Coat::Checker([Rgb::BLACK, Rgb::WHITE], Scale::ONE);
-    let sun = Sun::new(DVec3::Z, Share::new(0.0).unwrap()).unwrap();
-    let scene = Scene { bodies: vec![Body { shape: floor, coat }], sun, ..Scene::default() };
+    let texture = SolidTexture::Checker([Rgb::BLACK, Rgb::WHITE], Scale::ONE);
+    let sun = Sun::new(DVec3::Z, Fraction::new(0.0).unwrap()).unwrap();
+    let scene = Scene { bodies: vec![Body { shape: floor, texture }], sun, ..Scene::default() };
     let camera = Camera::new(DVec3::Z * 1.7, Heading::default(), FieldOfView::default()).unwrap();
     let mut frame = Frame::new(FrameSize::new(80, 400).unwrap(), PixelAspect::SQUARE);
     Renderer::new().render(&scene, &camera, &mut frame);
@@ -267,8 +269,10 @@ fn a_thousand_balls_in_a_row_cast_few_shadow_rays_at_each_other() {
     let floor = Shape::Plane(Plane::new(DVec3::ZERO, DVec3::Z).unwrap());
     let shapes = (0..1000).map(ball).chain([floor]);
     let scene = Scene {
-        bodies: shapes.map(|shape| Body { shape, coat: Coat::Plain(Rgb::WHITE) }).collect(),
-        sun: Sun::new(DVec3::new(-1.0, 0.0, 1.0), Share::new(0.2).unwrap()).unwrap(),
+        bodies: shapes
+            .map(|shape| Body { shape, texture: SolidTexture::Plain(Rgb::WHITE) })
+            .collect(),
+        sun: Sun::new(DVec3::new(-1.0, 0.0, 1.0), Fraction::new(0.2).unwrap()).unwrap(),
         ..Scene::default()
     };
     let camera = Camera::new(DVec3::Z * 2.0, Heading::default(), FieldOfView::default()).unwrap();

@@ -4,7 +4,7 @@ use std::num::NonZeroU32;
 
 use super::option::{Flag, Parser, ValueOption};
 use crate::color::palette::ColorDepth;
-use crate::lab::casters::{Method, NotAMethod};
+use crate::lab::casters::{Method, ParseMethodError};
 use crate::render::Filter;
 use crate::terminal::{Fidelity, UnknownFidelity};
 use crate::tui::{CellAspect, GlyphMode};
@@ -163,7 +163,7 @@ pub(super) const CASTER: ValueOption<Method> = ValueOption {
     default: "exact",
     choices: &[],
     read: Parser::Fallible(|text| {
-        text.parse().map_err(|error: NotAMethod| format!("--caster {text}: {error}"))
+        text.parse().map_err(|error: ParseMethodError| format!("--caster {text}: {error}"))
     }),
     repeats: false,
 };

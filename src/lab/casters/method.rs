@@ -91,20 +91,20 @@ impl fmt::Display for Method {
 }
 
 impl FromStr for Method {
-    type Err = NotAMethod;
+    type Err = ParseMethodError;
 
     /// Parses the format that [`Display`](fmt::Display) writes. The parameter is optional.
     ///
     /// # Errors
     /// Returns an error if there is no such method, or if its parameter is invalid or out of range.
-    fn from_str(text: &str) -> Result<Self, NotAMethod> {
+    fn from_str(text: &str) -> Result<Self, ParseMethodError> {
         let (name, parameter) = match text.split_once(':') {
             Some((name, parameter)) => (name, Some(parameter)),
             None => (text, None),
         };
         let plain = |method| match parameter {
             None => Ok(method),
-            Some(_) => Err(NotAMethod(format!("the caster \"{name}\" has no parameter"))),
+            Some(_) => Err(ParseMethodError(format!("the caster \"{name}\" has no parameter"))),
         };
         match name {
             "exact" => plain(Self::Exact),
@@ -125,7 +125,7 @@ impl FromStr for Method {
             })?)),
             _ => {
                 let names = Self::NAMES.join(", ");
-                Err(NotAMethod(format!("there is no caster \"{name}\"; there are {names}")))
+                Err(ParseMethodError(format!("there is no caster \"{name}\"; there are {names}")))
             }
         }
     }
@@ -137,23 +137,23 @@ fn parse<T: FromStr, C: Default>(
     parameter: Option<&str>,
     new: impl Fn(T) -> Option<C>,
     demand: impl Fn() -> String,
-) -> Result<C, NotAMethod> {
+) -> Result<C, ParseMethodError> {
     let Some(text) = parameter else { return Ok(C::default()) };
     let caster = text.parse().ok().and_then(new);
-    caster.ok_or_else(|| NotAMethod(format!("the caster {}, not \"{text}\"", demand())))
+    caster.ok_or_else(|| ParseMethodError(format!("the caster {}, not \"{text}\"", demand())))
 }
 
 /// The error of parsing a [`Method`].
 #[derive(Clone, Debug, PartialEq, Eq)]
-pub struct NotAMethod(String);
+pub struct ParseMethodError(String);
 
-impl fmt::Display for NotAMethod {
+impl fmt::Display for ParseMethodError {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
         f.write_str(&self.0)
     }
 }
 
-impl std::error::Error for NotAMethod {}
+impl std::error::Error for ParseMethodError {}
 
 #[cfg(test)]
 mod tests {

@@ -10,7 +10,7 @@ use crate::color::Rgb;
 use crate::fault::document::Entry;
 use crate::fault::{Fault, quoted};
 use crate::map::air;
-use crate::space::{Block, Body, Coat, FARTHEST, Plane, SMALLEST, Shape, Sphere};
+use crate::space::{Block, Body, FARTHEST, Plane, SMALLEST, Shape, SolidTexture, Sphere};
 use crate::world::Scale;
 
 /// The kinds of body.
@@ -83,9 +83,9 @@ impl Kind {
         let fault = |message: String| {
             Some(Fault::new(place, message).help(format!("write {}", self.example())))
         };
-        let (shape, coat) = (self.shape(&said), said.coat());
-        let (fault, body) = match (shape, coat) {
-            (Some(shape), Some(coat)) => (None, Some(Body { shape, coat })),
+        let (shape, texture) = (self.shape(&said), said.texture());
+        let (fault, body) = match (shape, texture) {
+            (Some(shape), Some(texture)) => (None, Some(Body { shape, texture })),
             (None, _) => (fault(format!("{} needs {}", self.name(), self.needs())), None),
             (_, None) => {
                 let message = "has either a color, or a checker of two and perhaps a scale";
@@ -155,11 +155,11 @@ impl Kind {
 }
 
 impl Said {
-    fn coat(&self) -> Option<Coat> {
+    fn texture(&self) -> Option<SolidTexture> {
         match (self.color, self.checker, self.scale) {
-            (Some(color), None, None) => Some(Coat::Plain(color)),
+            (Some(color), None, None) => Some(SolidTexture::Plain(color)),
             (None, Some(checker), scale) => {
-                Some(Coat::Checker(checker, scale.unwrap_or(Scale::ONE)))
+                Some(SolidTexture::Checker(checker, scale.unwrap_or(Scale::ONE)))
             }
             _ => None,
         }
