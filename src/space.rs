@@ -27,7 +27,7 @@ mod shadows;
 pub use body::{Block, Body, FARTHEST, Plane, SMALLEST, Shape, SolidTexture, Sphere};
 pub use camera::{Axes, Camera, EYE_CLEARANCE, Elevation};
 pub use explanation::Explanation;
-pub use light::{Fraction, Sky, Sun};
+pub use light::{Fraction, Sun};
 pub use ray::{Hit, Ray};
 pub use renderer::Renderer;
 pub use scene::{Scene, Start};

@@ -28,7 +28,7 @@ mod things;
 mod tile;
 
 use crate::color::Rgb;
-pub use air::{Fog, Light, Sky};
+pub use air::{Fog, Light, Sky, SkyGradient};
 pub(crate) use beam_table::{BeamTable, Beams, FRACTION_BITS, STRIP};
 pub use camera::{Camera, FieldOfView, Heading};
 pub use covering::{Ceiling, Covering, Pattern, Scale};

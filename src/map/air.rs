@@ -5,7 +5,7 @@ use super::textures::Surface;
 use crate::color::Rgb;
 use crate::fault::document::Entry;
 use crate::fault::{Fault, quoted};
-use crate::world::{Fog, Paint, Sky};
+use crate::world::{Fog, Paint, Sky, SkyGradient};
 
 const SKY_KEYS: &[&str] = &["gradient", "panorama"];
 const SKY_EXAMPLE: &str = r##"sky = { gradient = ["#5080c0", "#c0d8f0"] }"##;
@@ -14,7 +14,7 @@ const FOG_EXAMPLE: &str = r##"fog = { color = "#101018", distance = 12.0 }"##;
 
 /// The sky as the map writes it.
 pub(super) enum SkyText<'a> {
-    Gradient { zenith: Rgb, horizon: Rgb },
+    Gradient(SkyGradient),
     Panorama(Surface<'a>),
 }
 
@@ -51,10 +51,12 @@ impl<'a> SkyText<'a> {
     /// The sky itself. Reports a fault where its texture is missing.
     pub(super) fn sky(&self, reader: &mut Reader<'_>) -> Option<Sky> {
         match self {
-            &Self::Gradient { zenith, horizon } => Some(Sky::Gradient { zenith, horizon }),
+            &Self::Gradient(gradient) => Some(Sky::Gradient(gradient)),
             Self::Panorama(surface) => match reader.paint(surface)? {
                 Paint::Texture(texture) => Some(Sky::Panorama(texture)),
-                Paint::Color(color) => Some(Sky::Gradient { zenith: color, horizon: color }),
+                Paint::Color(color) => {
+                    Some(Sky::Gradient(SkyGradient { zenith: color, horizon: color }))
+                }
             },
         }
     }
@@ -64,7 +66,7 @@ fn gradient<'a>(entry: &Entry<'a, '_>) -> Option<SkyText<'a>> {
     let example = r##"gradient = ["#5080c0", "#c0d8f0"]"##;
     let pair = entry.pair(example)?;
     let [zenith, horizon] = pair.map(|entry| color(&entry, example));
-    Some(SkyText::Gradient { zenith: zenith?, horizon: horizon? })
+    Some(SkyText::Gradient(SkyGradient { zenith: zenith?, horizon: horizon? }))
 }
 
 pub(super) fn color(entry: &Entry<'_, '_>, example: &str) -> Option<Rgb> {

@@ -13,8 +13,8 @@ use super::air::{self, SkyText};
 use super::definitions;
 use crate::fault::Fault;
 use crate::fault::document::{Entry, FaultList, entries};
-use crate::space::{EYE_CLEARANCE, Elevation, FARTHEST, Fraction, Scene, Sky, Start, Sun};
-use crate::world::Heading;
+use crate::space::{EYE_CLEARANCE, Elevation, FARTHEST, Fraction, Scene, Start, Sun};
+use crate::world::{Heading, SkyGradient};
 use body::Kind;
 
 const KEYS: &[&str] = &["title", "sky", "fog", "light", "start", "sphere", "plane", "box"];
@@ -64,9 +64,9 @@ fn both_kinds(entry: &Entry<'_, '_>) -> Fault {
         .help("make two maps of it")
 }
 
-fn sky(entry: &Entry<'_, '_>) -> Option<Sky> {
+fn sky(entry: &Entry<'_, '_>) -> Option<SkyGradient> {
     match SkyText::read(entry)? {
-        SkyText::Gradient { zenith, horizon } => Some(Sky { zenith, horizon }),
+        SkyText::Gradient(gradient) => Some(gradient),
         SkyText::Panorama(surface) => {
             entry.faults.push(
                 Fault::new(surface.place(), "the sky of a map of bodies has no panorama")

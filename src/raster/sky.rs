@@ -9,8 +9,8 @@ use super::target::Target;
 use crate::cast::MirrorTransform;
 use crate::color::Rgb;
 use crate::visibility::{Pass, Projection, Scene, Stats};
-use crate::world::Sky;
 use crate::world::texture::MipLevel;
+use crate::world::{Sky, SkyGradient};
 
 /// The sky as one camera sees it.
 pub(crate) enum SkyView<'a> {
@@ -35,7 +35,9 @@ impl<'a> SkyView<'a> {
     pub(crate) fn new(scene: Scene<'a>, columns: &'a mut Vec<SkyColumn>) -> Self {
         let Scene { world, projection, plan, .. } = scene;
         match world.sky() {
-            Sky::Gradient { zenith, horizon } => Self::Gradient { projection, zenith, horizon },
+            Sky::Gradient(SkyGradient { zenith, horizon }) => {
+                Self::Gradient { projection, zenith, horizon }
+            }
             Sky::Panorama(id) => {
                 let texture = world.texture(id);
                 // Along the horizon a texel is as high as it is wide.

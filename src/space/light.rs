@@ -3,6 +3,7 @@
 use glam::DVec3;
 
 use crate::color::Rgb;
+use crate::world::SkyGradient;
 
 /// A fraction from 0 to 1.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -59,32 +60,14 @@ impl Default for Sun {
     }
 }
 
-/// The background: a gradient from the zenith to the horizon.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub struct Sky {
-    /// The colour at and above a slope of one half.
-    pub zenith: Rgb,
-    /// The colour at and below the height of the eye.
-    pub horizon: Rgb,
-}
-
-impl Sky {
-    /// The colour in this direction.
-    pub fn color(&self, direction: DVec3) -> Rgb {
-        const STEEPEST: f64 = 0.5;
-        let away = direction.truncate().length();
-        let height = (direction.z / STEEPEST).clamp(0.0, away);
-        // Straight up or down, the horizontal distance is zero.
-        let share = if away > 0.0 { height / away } else { f64::from(direction.z > 0.0) };
-        self.zenith.over(self.horizon, (share * 255.0).round() as u8)
-    }
-}
-
-impl Default for Sky {
-    /// A clear blue sky.
-    fn default() -> Self {
-        Self { zenith: Rgb::new(0x5f, 0x97, 0xcc), horizon: Rgb::new(0xb4, 0xd2, 0xe6) }
-    }
+/// The colour of a sky in this direction. It changes linearly with the slope.
+pub(super) fn sky_color(sky: SkyGradient, direction: DVec3) -> Rgb {
+    const STEEPEST: f64 = 0.5;
+    let away = direction.truncate().length();
+    let height = (direction.z / STEEPEST).clamp(0.0, away);
+    // Straight up or down, the horizontal distance is zero.
+    let share = if away > 0.0 { height / away } else { f64::from(direction.z > 0.0) };
+    sky.zenith.over(sky.horizon, (share * 255.0).round() as u8)
 }
 
 #[cfg(test)]
@@ -102,10 +85,10 @@ mod tests {
 
     #[test]
     fn the_sky_is_above() {
-        let sky = Sky::default();
-        assert_eq!(sky.color(DVec3::Z), sky.zenith);
-        assert_eq!(sky.color(DVec3::new(1.0, 0.0, 0.5)), sky.zenith);
-        assert_eq!(sky.color(DVec3::X), sky.horizon);
-        assert_eq!(sky.color(-DVec3::Z), sky.horizon);
+        let sky = SkyGradient::default();
+        assert_eq!(sky_color(sky, DVec3::Z), sky.zenith);
+        assert_eq!(sky_color(sky, DVec3::new(1.0, 0.0, 0.5)), sky.zenith);
+        assert_eq!(sky_color(sky, DVec3::X), sky.horizon);
+        assert_eq!(sky_color(sky, -DVec3::Z), sky.horizon);
     }
 }

@@ -133,7 +133,7 @@ impl Renderer {
         {
             let direction = across + up;
             let Some(Nearest { t, index }) = *nearest else {
-                *pixel = scene.sky.color(direction);
+                *pixel = scene.sky_color(direction);
                 continue;
             };
             explanation.hits += 1;

@@ -4,12 +4,13 @@ use glam::DVec3;
 
 use super::body::Body;
 use super::camera::{Camera, Elevation};
-use super::light::{Sky, Sun};
+use super::light::{Sun, sky_color};
 use super::ray::{Hit, Ray};
 use super::relative_shape::RelativeShape;
 use super::{Explanation, Renderer};
+use crate::color::Rgb;
 use crate::render::{Frame, Options, Renderable};
-use crate::world::{FieldOfView, Fog, Heading};
+use crate::world::{FieldOfView, Fog, Heading, SkyGradient};
 
 /// A level made of bodies. Each body is valid by construction, and bodies may overlap.
 #[derive(Clone, Debug, Default, PartialEq)]
@@ -21,7 +22,7 @@ pub struct Scene {
     /// The directional light.
     pub sun: Sun,
     /// The background.
-    pub sky: Sky,
+    pub sky: SkyGradient,
     /// The fog, if there is any.
     pub fog: Option<Fog>,
     /// The player's start.
@@ -65,6 +66,11 @@ impl Scene {
         }
         let (relative, body, t) = nearest?;
         Some(Hit { body, t, normal: relative.normal(ray.direction, t) })
+    }
+
+    /// The colour of the sky in this direction.
+    pub fn sky_color(&self, direction: DVec3) -> Rgb {
+        sky_color(self.sky, direction)
     }
 
     /// A camera at the player's start.

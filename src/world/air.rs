@@ -75,12 +75,7 @@ impl Fog {
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Sky {
     /// From one colour overhead to another at the horizon.
-    Gradient {
-        /// The colour at a slope of 1/2 and above.
-        zenith: Rgb,
-        /// The colour at the height of the eye.
-        horizon: Rgb,
-    },
+    Gradient(SkyGradient),
     /// A texture on the inside of a cylinder around the camera. Its left edge is east, its bottom
     /// is the horizon, and above it the colours of its top edge continue. It turns with the
     /// heading; its texels are square.
@@ -88,9 +83,24 @@ pub enum Sky {
 }
 
 impl Default for Sky {
+    fn default() -> Self {
+        Self::Gradient(SkyGradient::default())
+    }
+}
+
+/// A sky that changes from one colour to another between the horizon and a slope of 1/2.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub struct SkyGradient {
+    /// The colour at and above a slope of 1/2.
+    pub zenith: Rgb,
+    /// The colour at and below the height of the eye.
+    pub horizon: Rgb,
+}
+
+impl Default for SkyGradient {
     /// A blue sky by day.
     fn default() -> Self {
-        Self::Gradient { zenith: Rgb::new(0x5f, 0x97, 0xcc), horizon: Rgb::new(0xb4, 0xd2, 0xe6) }
+        Self { zenith: Rgb::new(0x5f, 0x97, 0xcc), horizon: Rgb::new(0xb4, 0xd2, 0xe6) }
     }
 }
 

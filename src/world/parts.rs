@@ -111,7 +111,7 @@ impl World {
             Ceiling::Covered(covering) => covers(covering),
         };
         let sky_is_known = match self.sky {
-            Sky::Gradient { .. } => true,
+            Sky::Gradient(_) => true,
             Sky::Panorama(id) => known(Paint::Texture(id)),
         };
         let open = |cell: Cell| {

@@ -155,7 +155,7 @@ proptest! {
             for (column, &pixel) in (0..).zip(pixels) {
                 let ray = camera.ray(size, aspect, column, row);
                 let expected = match scene.cast(&ray) {
-                    None => scene.sky.color(ray.direction),
+                    None => scene.sky_color(ray.direction),
                     Some(hit) => {
                         hits += 1;
                         let brightness = if is_in_shadow(&scene, hit.body, ray.at(hit.t)) {
