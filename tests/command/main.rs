@@ -8,6 +8,8 @@ mod wire;
 
 #[path = "../support/asciicast.rs"]
 mod asciicast;
+#[path = "../support/geometry.rs"]
+mod geometry;
 #[path = "../support/looks.rs"]
 mod looks;
 #[path = "../support/mod.rs"]

@@ -1,9 +1,10 @@
 //! Any intents, any number of times: the frames are equal, and the player is never inside a wall.
 
+use crate::geometry::clearance;
 use cellcaster::game::{Game, Intent, Intents};
 use cellcaster::map::builtin;
 use cellcaster::render::{Frame, FrameSize, PixelAspect, Renderer};
-use cellcaster::world::{FieldOfView, Grid};
+use cellcaster::world::FieldOfView;
 use glam::DVec2;
 use proptest::prelude::*;
 
@@ -35,20 +36,6 @@ fn play(level: usize, wants: &[(Intents, u8)]) -> (Vec<Place>, Vec<Frame>) {
         frames.push(frame);
     }
     (places, frames)
-}
-
-/// The distance of `point` to the nearest solid cell around it.
-fn clearance(grid: &Grid, point: DVec2) -> f64 {
-    let (column, row) = (point.x as i64, point.y as i64);
-    let around =
-        (row - 1..=row + 1).flat_map(|row| (column - 1..=column + 1).map(move |c| (c, row)));
-    around
-        .filter(|&(column, row)| grid.is_solid(column, row))
-        .map(|(column, row)| {
-            let corner = DVec2::new(column as f64, row as f64);
-            point.distance(point.clamp(corner, corner + 1.0))
-        })
-        .fold(f64::INFINITY, f64::min)
 }
 
 proptest! {

@@ -5,6 +5,7 @@ mod geometry;
 
 use std::path::Path;
 
+use crate::geometry::camera;
 use cellcaster::color::Rgb;
 use cellcaster::map;
 use cellcaster::render::{Frame, FrameSize, PixelAspect, Renderer};
@@ -65,11 +66,7 @@ proptest! {
         aspect in prop_oneof![Just(1.0), Just(2.0), 0.3..4.0],
     ) {
         let world = map::parse_str(MAP).unwrap();
-        let camera = Camera::new(
-            DVec2::from(position),
-            Heading::from_degrees(degrees).unwrap(),
-            FieldOfView::from_degrees(field_of_view).unwrap(),
-        ).unwrap();
+        let camera = camera(position, degrees, field_of_view);
         let pixel_aspect = PixelAspect::new(aspect).unwrap();
         let mut frame = Frame::new(FrameSize::new(size.0, size.1).unwrap(), pixel_aspect);
         Renderer::new().render(&world, &camera, &mut frame);

@@ -18,6 +18,8 @@ mod steady_state;
 mod things;
 mod threads;
 
+#[path = "../support/geometry.rs"]
+mod geometry;
 #[path = "../support/solids.rs"]
 mod solids;
 #[path = "../support/mod.rs"]

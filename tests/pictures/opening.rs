@@ -1,9 +1,10 @@
 //! Doors in a game: they open, wait, and close, but never on the player; locked doors need their
 //! key.
 
+use crate::geometry::clearance;
 use cellcaster::game::{Game, Intent, Intents};
 use cellcaster::map;
-use cellcaster::world::{Cell, FieldOfView, Grid, Opening};
+use cellcaster::world::{Cell, FieldOfView, Opening};
 use glam::DVec2;
 use proptest::prelude::*;
 
@@ -43,20 +44,6 @@ fn walk(game: &mut Game, steps: u64, list: &[Intent]) {
 
 fn position(game: &Game) -> DVec2 {
     game.camera(FieldOfView::default()).position()
-}
-
-/// The distance of `point` to the nearest solid cell around it.
-fn clearance(grid: &Grid, point: DVec2) -> f64 {
-    let (column, row) = (point.x as i64, point.y as i64);
-    let around =
-        (row - 1..=row + 1).flat_map(|row| (column - 1..=column + 1).map(move |c| (c, row)));
-    around
-        .filter(|&(column, row)| grid.is_solid(column, row))
-        .map(|(column, row)| {
-            let corner = DVec2::new(column as f64, row as f64);
-            point.distance(point.clamp(corner, corner + 1.0))
-        })
-        .fold(f64::INFINITY, f64::min)
 }
 
 fn wants() -> impl Strategy<Value = Vec<(Vec<Intent>, u64)>> {

@@ -1,13 +1,13 @@
 //! Floor and ceiling compared with geometry: the colour of every pixel is computed from the camera
 //! alone, except near the edges of texels, tiles and walls.
 
+use crate::geometry::camera;
 use cellcaster::cast::{Caster, Exact, Ray};
 use cellcaster::color::Rgb;
 use cellcaster::map;
 use cellcaster::render::{Filter, Frame, FrameSize, PixelAspect, Renderer};
 use cellcaster::world::{
-    Camera, Ceiling, Cell, Covering, FieldOfView, Heading, Light, Opening, Paint, Pattern, Pitch,
-    World,
+    Camera, Ceiling, Cell, Covering, FieldOfView, Light, Opening, Paint, Pattern, Pitch, World,
 };
 use glam::DVec2;
 use proptest::prelude::*;
@@ -109,11 +109,7 @@ proptest! {
         pitch in prop_oneof![Just(0.0), -30.0..=30.0],
     ) {
         let world = map::parse_str(MAP).unwrap();
-        let camera = Camera::new(
-            DVec2::from(position),
-            Heading::from_degrees(degrees).unwrap(),
-            FieldOfView::from_degrees(field_of_view).unwrap(),
-        ).unwrap();
+        let camera = camera(position, degrees, field_of_view);
         let camera = camera.with_eye(eye).unwrap().with_pitch(Pitch::from_degrees(pitch).unwrap());
         let size = FrameSize::new(size.0, size.1).unwrap();
         let mut frame = Frame::new(size, PixelAspect::new(aspect).unwrap());

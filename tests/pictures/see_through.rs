@@ -1,10 +1,11 @@
 //! Masks and glass compared with a simple renderer: for each pixel, it tests every face of every
 //! cell, and blends the hits from far to near.
 
+use crate::geometry::camera;
 use cellcaster::color::Rgb;
 use cellcaster::map;
 use cellcaster::render::{Filter, Frame, FrameSize, PixelAspect, Renderer};
-use cellcaster::world::{Camera, FieldOfView, Heading, TileKind, World};
+use cellcaster::world::{Camera, TileKind, World};
 use glam::DVec2;
 use proptest::prelude::*;
 
@@ -49,11 +50,7 @@ proptest! {
         size in (8_u32..40, 8_u32..40),
     ) {
         let world = map::parse_str(MAP).unwrap();
-        let camera = Camera::new(
-            DVec2::from(position),
-            Heading::from_degrees(degrees).unwrap(),
-            FieldOfView::from_degrees(field_of_view).unwrap(),
-        ).unwrap();
+        let camera = camera(position, degrees, field_of_view);
         let mut frame = Frame::new(FrameSize::new(size.0, size.1).unwrap(), PixelAspect::SQUARE);
         let mut renderer = Renderer::new();
         renderer.set_filter(Filter::Nearest);

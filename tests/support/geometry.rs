@@ -1,0 +1,26 @@
+//! Cameras and distances that several tests need.
+#![allow(dead_code, reason = "every test file uses its own share of this")]
+
+use cellcaster::world::{Camera, FieldOfView, Grid, Heading};
+use glam::DVec2;
+
+/// The camera at a position, with a heading and a field of view in degrees.
+pub(crate) fn camera(position: impl Into<DVec2>, degrees: f64, field_of_view: f64) -> Camera {
+    let heading = Heading::from_degrees(degrees).unwrap();
+    let field_of_view = FieldOfView::from_degrees(field_of_view).unwrap();
+    Camera::new(position.into(), heading, field_of_view).unwrap()
+}
+
+/// The distance of `point` to the nearest solid cell around it.
+pub(crate) fn clearance(grid: &Grid, point: DVec2) -> f64 {
+    let (column, row) = (point.x as i64, point.y as i64);
+    let around =
+        (row - 1..=row + 1).flat_map(|row| (column - 1..=column + 1).map(move |c| (c, row)));
+    around
+        .filter(|&(column, row)| grid.is_solid(column, row))
+        .map(|(column, row)| {
+            let corner = DVec2::new(column as f64, row as f64);
+            point.distance(point.clamp(corner, corner + 1.0))
+        })
+        .fold(f64::INFINITY, f64::min)
+}
