@@ -18,7 +18,7 @@ use crate::emulator::{Modes, Speaks};
 use crate::player::Player;
 
 const ROLE: &str = "PROGRAM_UNDER_TEST";
-const ITSELF: [&str; 4] = ["--exact", "program", "--nocapture", "--test-threads=1"];
+const ITSELF: [&str; 4] = ["--exact", "session::program", "--nocapture", "--test-threads=1"];
 
 /// Shows the events that arrive, and obeys keys. Does nothing unless the process was started for
 /// it.
