@@ -64,6 +64,7 @@ mod walk;
 pub use accumulate::Accumulate;
 pub use dda::{Dda, DdaOrder};
 pub use dda32::Dda32;
+pub(crate) use exact::ExactOnLevel;
 pub use exact::{Exact, ExactOrder};
 pub use fixed::Fixed;
 pub use hit::{Hit, Side};

@@ -157,7 +157,10 @@ impl<S: Stats> Visitor for Picture<'_, S> {
     type Output = (FramePlan, Threads);
 
     fn visit<C: Caster>(self, caster: &C) -> Self::Output {
-        let plan = FramePlan::new(self.world, self.camera, self.filter);
+        let mut plan = FramePlan::new(self.world, self.camera, self.filter);
+        if self.memory.surfaces.are_kept() {
+            plan.tell_sky_from_ceilings(self.world);
+        }
         let threads = Threads::new(self.frame.size(), self.threads);
         self.draw(caster, plan, threads);
         (plan, threads)
@@ -170,7 +173,7 @@ impl<S: Stats> Picture<'_, S> {
         let projection = Projection::new(camera, frame.size(), frame.pixel_aspect());
         let projection = &match plan.visibility {
             Visibility::Flat => projection.between_floor_and_ceiling(),
-            Visibility::Portals(_) => projection,
+            Visibility::Mixed(_) | Visibility::Portals(_) => projection,
         };
         let scene = Scene { world, camera, seconds, projection, plan: &plan };
         let list = &mut memory.list;

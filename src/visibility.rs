@@ -23,6 +23,7 @@
 mod billboard;
 mod column;
 mod draw_list;
+mod facing;
 mod filter;
 mod flat;
 mod frame_size;
@@ -43,9 +44,10 @@ mod visible_cells;
 pub(crate) use billboard::Billboard;
 pub use column::{Column, Surface};
 pub(crate) use draw_list::{
-    BillboardColumn, DrawList, Extent, Facing, Layer, Material, PlaneSpan, SeeThroughColumn, Span,
+    BillboardColumn, DrawList, Extent, Layer, Material, PlaneSpan, SeeThroughColumn, Span,
     SpanMemory, WallColumn, WallSink,
 };
+pub(crate) use facing::Facing;
 pub use filter::Filter;
 pub use frame_size::{FrameSize, PixelAspect};
 pub(crate) use lighting::{Faded, FullyLit, Lighting, SideLit};
@@ -60,8 +62,8 @@ pub(crate) use stats::Stats;
 pub use stats::{FrameStats, Pass, PassStats, PortalStats};
 pub(crate) use texture_stepper::TextureStepper;
 
-use crate::cast::Caster;
-use flat::FlatMemory;
+use crate::cast::{Caster, ExactOnLevel};
+use flat::{FlatMemory, PortalStarts};
 use portal::PortalMemory;
 
 /// What finding out what is in view needs from one frame to the next; kept so that it is allocated once.
@@ -71,7 +73,7 @@ pub(crate) struct VisibilityMemory {
     portal: PortalMemory,
 }
 
-/// Fills `list` with what `scene` shows, with the walls that `caster` finds, where the flat way serves.
+/// Fills `list` with what `scene` shows, with the walls that `caster` finds where the flat way serves alone.
 /// Returns when a thing in view will look different; `None` for never.
 pub(crate) fn fill<C: Caster, S: Stats>(
     scene: Scene<'_>,
@@ -80,8 +82,27 @@ pub(crate) fn fill<C: Caster, S: Stats>(
     list: &mut DrawList,
     stats: &mut S,
 ) -> Option<f64> {
+    let VisibilityMemory { flat, portal } = memory;
+    let world = scene.world;
     match scene.plan.visibility {
-        Visibility::Flat => flat::fill(scene, caster, &mut memory.flat, list, stats),
-        Visibility::Portals(_) => portal::fill(scene, &mut memory.portal, list, stats),
+        Visibility::Flat => {
+            flat::find_columns(scene, (caster, world.grid()), flat, list, stats);
+            flat::fill_layers(scene, flat, list, stats)
+        }
+        Visibility::Portals(_) => portal::fill(scene, portal, list, stats),
+        Visibility::Mixed(_) => {
+            let grid = world.level_grid().unwrap_or(world.grid());
+            portal.make_room(world, scene.projection.columns(), list);
+            flat::find_columns(scene, (&ExactOnLevel { grid }, grid), flat, list, stats);
+            // What the flat way finds is before what is behind a line.
+            let in_portals = if list.flat_columns.is_empty() {
+                None
+            } else {
+                let starts = PortalStarts::new(world);
+                portal::fill_columns(scene, portal, list, stats, |column| starts.of(column))
+            };
+            let in_flat = flat::fill_layers(scene, flat, list, stats);
+            [in_flat, in_portals].into_iter().flatten().reduce(f64::min)
+        }
     }
 }

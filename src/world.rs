@@ -56,6 +56,8 @@ pub struct World {
     title: String,
     goal: Option<String>,
     grid: Grid,
+    /// The same as rays see it that end at what is not level, where anything is not.
+    level_grid: Option<Grid>,
     tiles: Vec<Tile>,
     textures: Vec<Texture>,
     floor: Covering,
@@ -95,6 +97,12 @@ impl World {
     /// Which tile each cell holds.
     pub fn grid(&self) -> &Grid {
         &self.grid
+    }
+
+    /// The grid as rays see it that end at what is not level: that is solid in it. `None` where everything
+    /// is level.
+    pub(crate) fn level_grid(&self) -> Option<&Grid> {
+        self.level_grid.as_ref()
     }
 
     /// The kinds of tile that the grid refers to.

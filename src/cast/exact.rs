@@ -21,7 +21,7 @@ use glam::DVec2;
 
 use super::cross::cross;
 use super::{Caster, Crossing, DdaOrder, Hit, Order, Ray, Side, Sweep, Walk, through};
-use crate::world::{Grid, World};
+use crate::world::{Cell, Grid, TileId, World};
 
 /// Casts by walking the grid in the exact order; the default.
 ///
@@ -48,11 +48,41 @@ impl Caster for Exact {
     fn cast_through(&self, world: &World, ray: &Ray, passed: impl FnMut(Hit)) -> Option<Hit> {
         let grid = world.grid();
         if let Some(sweep) = Sweep::new(grid, ray) {
-            return through::cast(sweep.cell(), sweep, world, ray, passed);
+            return through::cast(sweep.cell(), sweep, world, ray, |_| false, passed);
         }
         let mut walk = Walk::new(grid, ray);
         let (start, solid_cells) = (walk.cell(), iter::from_fn(|| walk.first_solid()));
-        through::cast(start, solid_cells, world, ray, passed)
+        through::cast(start, solid_cells, world, ray, |_| false, passed)
+    }
+}
+
+/// Casts as [`Exact`] does, and ends where a ray enters what is not level: in `grid`, which has that for
+/// solid.
+#[derive(Clone, Copy, Debug)]
+pub(crate) struct ExactOnLevel<'a> {
+    pub(crate) grid: &'a Grid,
+}
+
+impl Caster for ExactOnLevel<'_> {
+    fn cast(&self, grid: &Grid, ray: &Ray) -> Option<Hit> {
+        Exact.cast(grid, ray)
+    }
+
+    #[inline]
+    fn follows_between(&self, left: &Hit, right: &Hit) -> bool {
+        Exact.follows_between(left, right)
+    }
+
+    fn cast_through(&self, world: &World, ray: &Ray, passed: impl FnMut(Hit)) -> Option<Hit> {
+        let tile_of = |cell: Cell| world.grid().tile(i64::from(cell.column), i64::from(cell.row));
+        let mut walk = Walk::new(self.grid, ray);
+        let start = walk.cell();
+        let solid_cells = iter::from_fn(|| {
+            let crossing = walk.first_solid()?;
+            Some(Crossing { tile: tile_of(crossing.cell)?, ..crossing })
+        });
+        let ends = |tile: TileId| !world.tile(tile).is_level();
+        through::cast(start, solid_cells, world, ray, ends, passed)
     }
 }
 

@@ -7,12 +7,13 @@ use super::{Crossing, Hit, Ray, Side, door, shape};
 use crate::world::{Cell, TileId, TileKind, World};
 
 /// What `ray` hits in `world`, where it starts in one cell and enters those `solid_cells`; it tells
-/// `passed` what it passes.
+/// `passed` what it passes, and passes no tile that `ends` it.
 pub(super) fn cast(
     start: Option<(Cell, TileId)>,
     solid_cells: impl Iterator<Item = Crossing>,
     world: &World,
     ray: &Ray,
+    ends: impl Fn(TileId) -> bool,
     mut passed: impl FnMut(Hit),
 ) -> Option<Hit> {
     let grid = world.grid();
@@ -26,6 +27,9 @@ pub(super) fn cast(
         return start;
     }
     for crossing in solid_cells {
+        if ends(crossing.tile) {
+            return Some(Hit::entering(ray, crossing.cell, crossing.side));
+        }
         match world.tile(crossing.tile).kind {
             TileKind::Door(_) => {
                 if let Some(hit) = leaf_in(crossing.cell) {

@@ -138,6 +138,15 @@ impl Axis {
         Self { index, line, step, stride: step as f64, count }
     }
 
+    /// Goes on to the column or row of that index, which must be ahead.
+    fn enter(&mut self, index: u32) {
+        let index = i64::from(index);
+        self.index = index;
+        if self.step != 0 {
+            self.line = if self.step > 0 { (index + 1) as f64 } else { index as f64 };
+        }
+    }
+
     fn cross(&mut self) {
         self.index += self.step;
         self.line += self.stride;

@@ -22,6 +22,11 @@ impl SurfaceBuffer {
         self.surfaces.clear();
     }
 
+    /// Whether any are kept.
+    pub(crate) fn are_kept(&self) -> bool {
+        self.are_kept
+    }
+
     /// Forgets all, for a frame of that size.
     pub(crate) fn begin(&mut self, width: u32, height: u32) {
         if self.are_kept {

@@ -4,6 +4,8 @@
 //! row, not from the texel above it, so that no error adds up down the picture; and where a wall is so
 //! near that only a few texels of it fill the screen, they are the right ones.
 
+use std::ops::Range;
+
 use super::column_batch::{BatchMemory, ColumnBatch};
 use super::target::Target;
 use crate::cast::Side;
@@ -64,13 +66,9 @@ struct Queue<'m, 't, 'a, L, S, F> {
 impl<L: Lighting, S: Stats, F: Fn(&WallColumn) -> L> WallSink for Queue<'_, '_, '_, L, S, F> {
     #[expect(clippy::inline_always, reason = "elsewhere every wall column would go through memory")]
     #[inline(always)]
-    fn take(&mut self, wall: &WallColumn) {
+    fn take(&mut self, wall: &WallColumn, rows: Range<u32>) {
         let Self { scene, batch, lighting } = self;
         let (column, t) = (wall.column, wall.t);
-        let rows = batch.clip(&wall.rows);
-        if rows.is_empty() {
-            return;
-        }
         batch.count(Pass::Walls, rows.len(), wall.paint);
         let texture = match wall.paint {
             Paint::Color(color) => {

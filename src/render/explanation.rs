@@ -24,9 +24,12 @@ impl fmt::Display for Explanation {
         writeln!(f)?;
         let FrameStats { rays, cells, looks, spans, .. } = stats;
         writeln!(f, "rays     {rays:>10} cast, into {cells} cells, by {looks} looks")?;
-        if let Visibility::Portals(_) = plan.visibility {
-            let PortalStats { faces, bounces, .. } = stats.portals;
-            writeln!(f, "portals  {faces:>10} faces, {spans} spans, {bounces} bounces")?;
+        if plan.visibility != Visibility::Flat {
+            let PortalStats { rays, faces, bounces, .. } = stats.portals;
+            writeln!(
+                f,
+                "portals  {rays:>10} rays, {faces} faces, {spans} spans, {bounces} bounces"
+            )?;
         }
         let passes = [
             ("ceiling", Pass::Ceiling),

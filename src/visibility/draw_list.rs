@@ -7,14 +7,12 @@
 
 use std::ops::Range;
 
-use glam::DVec2;
-
 use super::flat::{self, PlaneRow};
 use super::portal;
 use super::runs::{ColumnRuns, Shown};
 use super::stats::Pass;
-use super::{Billboard, Column, Scene, SpanMapping, Surface};
-use crate::cast::{MirrorTransform, Side};
+use super::{Billboard, Column, Facing, Scene, SpanMapping, Surface};
+use crate::cast::MirrorTransform;
 use crate::world::{Covering, Glass, Light, Paint, Rgb, Sprite, TextureId};
 
 /// What a frame shows; kept so that it is allocated once.
@@ -22,8 +20,10 @@ use crate::world::{Covering, Glass, Light, Paint, Rgb, Sprite, TextureId};
 pub(crate) struct DrawList {
     /// What the ray of each column of pixels met.
     pub(crate) columns: Vec<Column>,
-    /// The columns that the flat way filled.
-    pub(crate) flat: Range<u32>,
+    /// Whether the flat way filled any of them.
+    pub(super) is_flat: bool,
+    /// The columns as the flat way sees them, where the portal way filled some; else they are the same.
+    pub(super) flat_columns: Vec<Column>,
     /// The rows of floor, ceiling and sky that the portal way found.
     pub(crate) runs: ColumnRuns,
     /// The wall columns that the portal way found, those of a column of pixels together.
@@ -86,7 +86,8 @@ pub(crate) struct WallColumn {
 ///
 /// It is no closure, because each loop over wall columns has to have it inlined.
 pub(crate) trait WallSink {
-    fn take(&mut self, wall: &WallColumn);
+    /// Takes what of `wall` is in `rows`, which are some.
+    fn take(&mut self, wall: &WallColumn, rows: Range<u32>);
 }
 
 /// A masked or translucent face as wide as a pixel, or the tint of a mirror.
@@ -111,15 +112,6 @@ pub(crate) enum Material {
     Masked(TextureId),
     /// A tint.
     Translucent(Glass),
-}
-
-/// Which way a face looks.
-#[derive(Clone, Copy, Debug)]
-pub(crate) enum Facing {
-    /// Along an axis.
-    Side(Side),
-    /// Along a vector of length 1, or the opposite way.
-    Normal(DVec2),
 }
 
 /// From which height to which a face reaches.
@@ -153,7 +145,8 @@ impl DrawList {
     /// Forgets the last frame.
     pub(super) fn clear(&mut self) {
         self.columns.clear();
-        self.flat = 0..0;
+        self.is_flat = false;
+        self.flat_columns.clear();
         self.runs.clear();
         self.walls.clear();
         self.see_through.clear();
@@ -161,20 +154,21 @@ impl DrawList {
         self.billboards.clear();
     }
 
-    /// Forgets the last frame, for one that the portal way fills. There is room for all but the strangest
-    /// maps, so that a camera that turns towards more of it needs no more memory.
-    pub(super) fn begin_portals(&mut self, width: usize) {
+    /// Makes room for what the portal way finds in all but the strangest maps, so that a camera that turns
+    /// towards more of it needs no more memory.
+    pub(super) fn make_room_for_portals(&mut self, width: usize) {
         const OF_A_COLUMN: usize = 16;
-        self.clear();
-        self.runs.begin(width);
+        self.columns.reserve(width);
+        self.flat_columns.reserve(width);
+        self.runs.reserve(width);
         self.walls.reserve(width * OF_A_COLUMN);
         self.make_room_for_layers(width * OF_A_COLUMN);
     }
 
-    /// Makes room for that many layers.
+    /// Makes room for that many layers, those that there are included.
     pub(super) fn make_room_for_layers(&mut self, count: usize) {
-        self.see_through.reserve(count);
-        self.layers.reserve(count);
+        self.see_through.reserve(count.saturating_sub(self.see_through.len()));
+        self.layers.reserve(count.saturating_sub(self.layers.len()));
     }
 
     /// Adds a masked or translucent column as the next layer.
@@ -193,8 +187,14 @@ impl DrawList {
         memory: &mut SpanMemory,
         mut emit: impl FnMut(Span<'_>),
     ) {
-        if !self.flat.is_empty() {
-            flat::for_each_span(scene, &self.columns, rows, &mut memory.plane_rows, &mut emit);
+        if self.is_flat {
+            flat::for_each_span(
+                scene,
+                self.flat_columns(),
+                rows,
+                &mut memory.plane_rows,
+                &mut emit,
+            );
         }
         portal::for_each_span(scene, &self.runs, rows, &mut memory.starts, &mut emit);
     }
@@ -209,18 +209,21 @@ impl DrawList {
         is_lit: bool,
         sink: &mut impl WallSink,
     ) {
-        if !self.flat.is_empty() {
-            flat::for_each_wall_column(scene, &self.columns, rows, is_lit, sink);
+        if self.is_flat {
+            flat::for_each_wall_column(scene, self.flat_columns(), rows, is_lit, sink);
         }
-        portal::for_each_wall_column(&self.walls, sink);
+        portal::for_each_wall_column(&self.walls, rows, sink);
     }
 
-    /// What pixel `(x, y)` shows but for what is painted over it; `None` where there is no such pixel.
+    /// The columns as the flat way sees them.
+    pub(super) fn flat_columns(&self) -> &[Column] {
+        if self.flat_columns.is_empty() { &self.columns } else { &self.flat_columns }
+    }
+
+    /// What pixel `(x, y)` shows but for what is painted over it; `None` where there is no column `x`.
     pub(crate) fn surface(&self, x: u32, y: u32, ground: u32) -> Option<Surface> {
-        let column = self.columns.get(x as usize)?;
-        if self.flat.contains(&x) {
-            return Some(column.surface(y, ground));
-        }
-        self.runs.shown(x, y).map(Shown::surface)
+        let column = self.flat_columns().get(x as usize)?;
+        let shown = self.runs.shown(x, y).and_then(Shown::surface);
+        Some(shown.unwrap_or_else(|| column.surface(y, ground)))
     }
 }

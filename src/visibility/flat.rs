@@ -6,6 +6,7 @@
 
 mod layers;
 mod planes;
+mod portal_starts;
 mod wall;
 
 use glam::DVec2;
@@ -14,42 +15,57 @@ use super::column::Column;
 use super::ray_counter::RayCounter;
 use super::{DrawList, Projection, Scene, Stats};
 use crate::cast::{Caster, Hit, Ray};
-use crate::world::{Cell, Grid, TileKind, World};
+use crate::world::{Cell, Grid, TileId, TileKind, World};
 pub(super) use layers::{FlatMemory, PassedHits};
 pub(super) use planes::{PlaneRow, for_each_span};
+pub(super) use portal_starts::PortalStarts;
 pub(super) use wall::for_each_wall_column;
 
-/// Fills `list`, with the walls that `caster` finds. Returns when a thing in view will look different;
-/// `None` for never.
-pub(super) fn fill<C: Caster, S: Stats>(
+/// Finds the columns of `list`, with the walls that `caster` finds in `grid`, and those that are left to
+/// the portal way.
+pub(super) fn find_columns<C: Caster, S: Stats>(
     scene: Scene<'_>,
-    caster: &C,
+    (caster, grid): (&C, &Grid),
+    memory: &mut FlatMemory,
+    list: &mut DrawList,
+    stats: &mut S,
+) {
+    list.clear();
+    list.is_flat = true;
+    let (columns, passed) = (&mut list.columns, &mut memory.passed);
+    if S::ARE_KEPT {
+        let counter = RayCounter::new(caster, grid);
+        cast(&counter, grid, scene, columns, passed);
+        stats.change(|stats| counter.add_to(stats));
+    } else {
+        cast(caster, grid, scene, columns, passed);
+    }
+    if scene.world.level_grid().is_some() {
+        portal_starts::leave_to_portals(scene, list);
+    }
+}
+
+/// Fills the layers of `list`, whose columns are found: before all that are there already. Returns when a
+/// thing in view will look different; `None` for never.
+pub(super) fn fill_layers<S: Stats>(
+    scene: Scene<'_>,
     memory: &mut FlatMemory,
     list: &mut DrawList,
     stats: &mut S,
 ) -> Option<f64> {
-    list.clear();
-    let (columns, passed) = (&mut list.columns, &mut memory.passed);
-    if S::ARE_KEPT {
-        let counter = RayCounter::new(caster);
-        cast(&counter, scene.world, scene.projection, columns, passed);
-        stats.change(|stats| counter.add_to(stats));
-    } else {
-        cast(caster, scene.world, scene.projection, columns, passed);
-    }
-    list.flat = 0..list.columns.len() as u32;
-    layers::fill(scene, memory, list, stats)
+    if list.is_flat { layers::fill(scene, memory, list, stats) } else { None }
 }
 
 /// Casts the ray of every column into `columns`, and what it passes into `passed`, whatever they
 /// held before.
 fn cast<C: Caster>(
     caster: &C,
-    world: &World,
-    projection: &Projection,
+    grid: &Grid,
+    scene: Scene<'_>,
     columns: &mut Vec<Column>,
     passed: &mut PassedHits,
 ) {
+    let Scene { world, projection, .. } = scene;
     passed.clear();
     let is_of_walls = world.is_of_walls();
     if !is_of_walls {
@@ -58,7 +74,7 @@ fn cast<C: Caster>(
     let cast_through = |index: usize, passed: &mut PassedHits| {
         let ray = projection.ray(index as u32);
         let hit = caster.cast_through(world, &ray, |hit| passed.push(index, hit));
-        column_of(world.grid(), projection, &ray, hit)
+        column_of(grid, projection, &ray, hit)
     };
     if !projection.fans_out() || stands_in_what_may_be_hit(world, projection.origin()) {
         columns.clear();
@@ -66,7 +82,7 @@ fn cast<C: Caster>(
         return;
     }
     columns.resize(projection.columns(), Column::UNKNOWN);
-    Fan { caster, grid: world.grid(), projection }.cast(columns);
+    Fan { caster, grid, projection }.cast(columns);
     if is_of_walls {
         return;
     }
@@ -77,10 +93,11 @@ fn cast<C: Caster>(
     }
 }
 
-/// Whether `cell`, which is solid, is no wall.
+/// Whether `cell`, which ends rays, is no wall, and level.
 fn may_be_passed(world: &World, cell: Cell) -> bool {
     let tile = world.grid().tile(cell.column.into(), cell.row.into());
-    tile.is_some_and(|tile| !matches!(world.tile(tile).kind, TileKind::Wall(_)))
+    tile.map(|TileId(index)| &world.tiles()[usize::from(index)])
+        .is_some_and(|tile| !matches!(tile.kind, TileKind::Wall(_)) && tile.is_level())
 }
 
 /// Whether `place` is in a cell of something that a ray may hit without entering a cell, or on its edge.
@@ -170,7 +187,7 @@ mod tests {
     use super::*;
     use crate::cast::Exact;
     use crate::map;
-    use crate::visibility::{FrameSize, PixelAspect};
+    use crate::visibility::{Filter, FramePlan, FrameSize, PixelAspect};
     use crate::world::{Camera, FieldOfView, Heading};
 
     const SIDE: usize = 12;
@@ -252,9 +269,11 @@ mod tests {
             )
             .unwrap();
             let size = FrameSize::new(width, 10).unwrap();
-            let projection = Projection::new(&camera, size, PixelAspect::SQUARE);
+            let projection = &Projection::new(&camera, size, PixelAspect::SQUARE);
+            let plan = &FramePlan::new(&world, &camera, Filter::Mip);
+            let scene = Scene { world: &world, camera: &camera, seconds: 0.0, projection, plan };
             let (mut columns, mut passed) = (Vec::new(), PassedHits::default());
-            cast(&Exact, &world, &projection, &mut columns, &mut passed);
+            cast(&Exact, world.grid(), scene, &mut columns, &mut passed);
             let mut expected_passed = PassedHits::default();
             let expected = projection.rays().enumerate().map(|(index, ray)| {
                 Exact.cast_through(&world, &ray, |hit| expected_passed.push(index, hit))

@@ -4,9 +4,9 @@
 //! tile consists of. The passes match on it once a frame, so that what a scene does not have is absent
 //! from their loops; what a single map has everywhere costs only that map.
 
-use std::fmt;
+mod display;
 
-use super::Filter;
+use super::{Filter, Projection};
 use crate::world::{
     Camera, Ceiling, Covering, Heights, Light, Paint, Pattern, Rgb, Sky, Tile, TileKind, World,
 };
@@ -32,16 +32,18 @@ pub struct FramePlan {
     pub filter: Filter,
 }
 
-/// Which passes draw what there is.
+/// How it is found out what is in view.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Visibility {
     /// The flat way: one wall for each column, floor and ceiling around it.
     Flat,
-    /// Those for floors, ceilings and walls of any height, and for mirrors.
+    /// The flat way, and the portal way for the columns whose ray meets what is not level.
+    Mixed(WhyPortals),
+    /// The portal way: floors, ceilings and walls of any height, and mirrors.
     Portals(WhyPortals),
 }
 
-/// Why a level's passes would not do.
+/// Why the flat way does not do.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum WhyPortals {
     /// Floors, ceilings or walls are not all of one height.
@@ -130,12 +132,13 @@ impl FramePlan {
         let is_textured = |tile: &Tile| matches!(tile.kind, TileKind::Wall(Paint::Texture(_)));
         let is_door = |tile: &Tile| matches!(tile.kind, TileKind::Door(_) | TileKind::Doorway(_));
         let visibility = Visibility::new(world, camera);
+        let grid = world.level_grid().unwrap_or(world.grid());
         Self {
             visibility,
             rays: match visibility {
                 Visibility::Portals(_) => RayLoop::Cells,
-                Visibility::Flat if world.grid().clearance().is_measured() => RayLoop::Leaps,
-                Visibility::Flat => RayLoop::Lines,
+                _ if grid.clearance().is_measured() => RayLoop::Leaps,
+                _ => RayLoop::Lines,
             },
             floor: PlaneLoop::new(world.floor(), floor_varies, is_foggy),
             ceiling: match world.ceiling() {
@@ -160,19 +163,50 @@ impl FramePlan {
     }
 }
 
-impl Visibility {
-    fn new(world: &World, camera: &Camera) -> Self {
-        let level = Heights::LEVEL;
-        if !world.is_level() {
-            Self::Portals(WhyPortals::Heights)
-        } else if world.has_mirrors() {
-            Self::Portals(WhyPortals::Mirrors)
-        } else if level.floor() < camera.eye() && camera.eye() < level.ceiling() {
-            Self::Flat
-        } else {
-            Self::Portals(WhyPortals::Eye)
+impl FramePlan {
+    /// Has a frame of which only a part is level filled by portals, where any cell of `world` is open to the
+    /// sky: the flat way takes the sky for a ceiling when it is asked for surfaces.
+    pub(crate) fn tell_sky_from_ceilings(&mut self, world: &World) {
+        let is_open = |tile: &Tile| tile.ceiling == Ceiling::Sky;
+        if let Visibility::Mixed(why) = self.visibility
+            && world.tiles().iter().any(is_open)
+        {
+            self.visibility = Visibility::Portals(why);
         }
     }
+}
+
+impl Visibility {
+    fn new(world: &World, camera: &Camera) -> Self {
+        let why = match (world.is_level(), world.has_mirrors()) {
+            (true, false) => None,
+            (true, true) => Some(WhyPortals::Mirrors),
+            (false, _) => Some(WhyPortals::Heights),
+        };
+        let level = Heights::LEVEL;
+        let is_between = level.floor() < camera.eye() && camera.eye() < level.ceiling();
+        match why {
+            Some(why) if stands_on_level_floor(world, camera) => Self::Mixed(why),
+            Some(why) => Self::Portals(why),
+            None if is_between => Self::Flat,
+            None => Self::Portals(WhyPortals::Eye),
+        }
+    }
+}
+
+/// Whether `camera` is well inside a cell of level floor, between floor and ceiling: for all rays it is in
+/// that cell.
+fn stands_on_level_floor(world: &World, camera: &Camera) -> bool {
+    /// Far more than is rounded away.
+    const HAIR: f64 = 1e-6;
+    let (place, eye) = (camera.position(), camera.eye());
+    let inside = place - place.floor();
+    let is_inside = inside.min_element() > HAIR && inside.max_element() < 1.0 - HAIR;
+    let is_between = Projection::is_between_floor_and_ceiling(eye);
+    let tile = world.grid().tile(place.x.floor() as i64, place.y.floor() as i64);
+    let is_level_floor =
+        |tile: Tile| tile.is_level() && matches!(tile.kind, TileKind::Open | TileKind::Doorway(_));
+    is_inside && is_between && tile.is_some_and(|tile| is_level_floor(world.tile(tile)))
 }
 
 impl PlaneLoop {
@@ -183,100 +217,5 @@ impl PlaneLoop {
             Pattern::Plain(Paint::Color(color)) => Self::Fill(color),
             _ => Self::Spans,
         }
-    }
-}
-
-impl fmt::Display for FramePlan {
-    /// Writes a line for each pass: how it runs, and why.
-    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
-        writeln!(f, "view     {}", self.visibility)?;
-        writeln!(f, "rays     {}", self.rays)?;
-        writeln!(f, "ceiling  {}", self.ceiling)?;
-        writeln!(f, "floor    {}", self.floor)?;
-        writeln!(f, "sky      {}", self.sky)?;
-        writeln!(f, "walls    {}", self.walls)?;
-        writeln!(f, "things   {}", self.things)?;
-        writeln!(f, "filter   {}", self.filter)
-    }
-}
-
-impl fmt::Display for Visibility {
-    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
-        f.write_str(match self {
-            Self::Flat => "flat: a ray ends at the first wall",
-            Self::Portals(WhyPortals::Heights) => {
-                "portals: floors, ceilings or walls are not all of one height"
-            }
-            Self::Portals(WhyPortals::Mirrors) => "portals: there are mirrors",
-            Self::Portals(WhyPortals::Eye) => "portals: the eye is not between floor and ceiling",
-        })
-    }
-}
-
-impl fmt::Display for RayLoop {
-    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
-        f.write_str(match self {
-            Self::Cells => "cell by cell: each is looked at",
-            Self::Lines => "line by line, along one axis: walls are near",
-            Self::Leaps => "many lines at once, along one axis: most of the map is empty",
-        })
-    }
-}
-
-impl fmt::Display for PlaneLoop {
-    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
-        match self {
-            Self::Fill(color) => write!(f, "one fill: it is {color} everywhere"),
-            Self::FillRows(color) => write!(f, "a fill for each row: it is {color}, in fog"),
-            Self::Spans => f.write_str("visible spans: it is laid with the same everywhere"),
-            Self::Tiles => f.write_str("visible spans, cut by tile: tiles differ"),
-        }
-    }
-}
-
-impl fmt::Display for CeilingLoop {
-    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
-        match self {
-            Self::Sky => f.write_str("not drawn: there is only sky"),
-            Self::Laid(plane) => plane.fmt(f),
-        }
-    }
-}
-
-impl fmt::Display for SkyLoop {
-    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
-        f.write_str(match self {
-            Self::Gradient => "a colour for each row, where there is sky: it is a gradient",
-            Self::Panorama => "visible spans, where there is sky: it is a panorama",
-        })
-    }
-}
-
-impl fmt::Display for WallLoop {
-    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
-        f.write_str(if self.textured { "columns of texels" } else { "columns of one colour" })?;
-        f.write_str(if self.faded {
-            ", faded: there is fog, or a tile that is not fully lit"
-        } else {
-            ", unfaded: there is no fog, and all is fully lit"
-        })
-    }
-}
-
-impl fmt::Display for ThingLoop {
-    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
-        f.write_str(match self {
-            Self::None => "not drawn: there are none",
-            Self::Billboards => "those in view, from far to near",
-        })
-    }
-}
-
-impl fmt::Display for Filter {
-    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
-        f.write_str(match self {
-            Self::Mip => "mip: far texels are averaged",
-            Self::Nearest => "nearest: every texel is one of the texture's own",
-        })
     }
 }

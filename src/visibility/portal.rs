@@ -14,15 +14,21 @@
 mod billboards;
 mod layers;
 mod line;
+mod met;
 mod ray_segments;
 mod spans;
 mod standing;
 mod tile_gaps;
 mod walk;
 
+use std::ops::Range;
+
 use super::layer_order::by_columns;
+use super::runs::IMAGES_AT_ONCE;
 use super::runs::ImageId;
-use super::{Billboard, DrawList, PortalStats, Scene, Stats, WallColumn, WallSink};
+use super::{Billboard, Column, DrawList, PortalStats, Scene, Stats, WallColumn, WallSink};
+use crate::cast::Hit;
+use crate::world::World;
 use billboards::Finder;
 use layers::LayerMemory;
 pub(super) use spans::for_each_span;
@@ -31,6 +37,18 @@ use walk::{ColumnWalk, Surroundings, WalkMemory};
 
 /// How many columns of pixels are drawn together.
 const BLOCK: usize = 120;
+
+/// Where the portal way begins with a column.
+#[derive(Clone, Debug)]
+pub(super) enum PortalStart {
+    /// With all rows, where the camera is.
+    Camera,
+    /// With those rows, where the ray has crossed the first line into what is not level.
+    Line { hit: Hit, rows: Range<u32> },
+}
+
+/// There is room for so many things in view from the first frame on.
+const MOST_THINGS: usize = 4096;
 
 /// What the portal way remembers from one frame to the next; kept so that it is allocated once.
 #[derive(Clone, Debug, Default)]
@@ -41,28 +59,48 @@ pub(super) struct PortalMemory {
     layers: LayerMemory,
 }
 
-/// Fills `list` by exact rays. Returns when a thing in view will look different; `None` for never.
+/// Fills all of `list` by exact rays. Returns when a thing in view will look different; `None` for never.
 pub(super) fn fill<S: Stats>(
     scene: Scene<'_>,
     memory: &mut PortalMemory,
     list: &mut DrawList,
     stats: &mut S,
 ) -> Option<f64> {
-    let PortalMemory { gaps, walk, finder, layers } = memory;
     let width = scene.projection.columns();
-    list.begin_portals(width);
+    memory.make_room(scene.world, width, list);
+    list.columns.resize(width, Column::UNKNOWN);
+    fill_columns(scene, memory, list, stats, |_| Some(PortalStart::Camera))
+}
+
+/// Fills the columns of `list` that have a `start` by exact rays, from there on. Returns when a thing in view will look
+/// different; `None` for never.
+pub(super) fn fill_columns<S: Stats>(
+    scene: Scene<'_>,
+    memory: &mut PortalMemory,
+    list: &mut DrawList,
+    stats: &mut S,
+    start: impl Fn(&Column) -> Option<PortalStart>,
+) -> Option<f64> {
+    let PortalMemory { gaps, walk, finder, layers } = memory;
+    list.runs.begin();
     gaps.begin(scene);
-    walk.begin(width);
+    walk.begin();
     let surroundings = &Surroundings::new(scene, gaps);
-    for (x, ray) in (0..).zip(scene.projection.rays()) {
-        let column = ColumnWalk::new(surroundings, x, walk, list).follow(&ray);
-        list.columns.push(column);
+    for x in 0..list.columns.len() {
+        if let Some(start) = start(&list.columns[x]) {
+            let ray = scene.projection.ray(x as u32);
+            let walk = ColumnWalk::new(surroundings, x as u32, walk, list);
+            list.columns[x] = walk.follow(&ray, start);
+        } else {
+            list.runs.skip_column();
+        }
     }
+    let first = list.billboards.len();
     let has_things = surroundings.has_things;
     let considered = if has_things { finder.find(scene, &walk.segments, list) } else { 0 };
     layers::fill(scene, gaps, &walk.passed, finder, layers, list);
     stats.change(|stats| {
-        let drawn = list.billboards.iter().filter(|it| it.is_drawn && it.is_of_thing());
+        let drawn = list.billboards[first..].iter().filter(|it| it.is_drawn && it.is_of_thing());
         stats.things_considered += considered;
         stats.things_drawn += drawn.count() as u64;
         stats.rays += walk.stats.rays;
@@ -73,13 +111,34 @@ pub(super) fn fill<S: Stats>(
     Billboard::next_change(&list.billboards, scene)
 }
 
+impl PortalMemory {
+    /// Makes room for what is found in all but the strangest maps, here and in `list`, so that a camera
+    /// that turns towards more of it needs no more memory.
+    pub(super) fn make_room(&mut self, world: &World, width: usize, list: &mut DrawList) {
+        self.gaps.make_room(world);
+        self.walk.make_room(width);
+        self.finder.make_room(world, width);
+        list.clear();
+        list.make_room_for_portals(width);
+        list.billboards.reserve(2 * world.things().len().min(MOST_THINGS) + IMAGES_AT_ONCE);
+        self.layers.make_room(list);
+    }
+}
+
 /// Hands every one of `walls` to `sink`: neighbours in a block of columns one after the other, as the first
 /// faces of each mostly are parts of one wall or step, and so are those behind them.
-pub(super) fn for_each_wall_column(walls: &[WallColumn], sink: &mut impl WallSink) {
+pub(super) fn for_each_wall_column(
+    walls: &[WallColumn],
+    rows: &Range<u32>,
+    sink: &mut impl WallSink,
+) {
     for mut columns in by_columns::<BLOCK, _>(walls, |wall| wall.column as usize) {
         while columns.iter().any(|column| !column.is_empty()) {
             for wall in columns.iter_mut().filter_map(|column| column.split_off_first()) {
-                sink.take(wall);
+                let shown = wall.rows.start.max(rows.start)..wall.rows.end.min(rows.end);
+                if !shown.is_empty() {
+                    sink.take(wall, shown);
+                }
             }
         }
     }

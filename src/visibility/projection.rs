@@ -64,6 +64,11 @@ impl Projection {
         }
     }
 
+    /// Whether a level scene looks the same to an eye at that height either way.
+    pub(crate) fn is_between_floor_and_ceiling(eye: f64) -> bool {
+        (NEAREST..=1.0 - NEAREST).contains(&eye)
+    }
+
     /// As it is for a level scene: the eye is not in its floor or its ceiling.
     pub(crate) fn between_floor_and_ceiling(self) -> Self {
         Self { eye: self.eye.clamp(NEAREST, 1.0 - NEAREST), ..self }

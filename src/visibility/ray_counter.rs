@@ -9,14 +9,15 @@ use crate::world::{Grid, World};
 /// Casts as another caster does, and counts along the exact rays, whatever that caster's method.
 pub(super) struct RayCounter<'a, C> {
     caster: &'a C,
+    grid: &'a Grid,
     rays: Cell<u64>,
     cells: Cell<u64>,
     looks: Cell<u64>,
 }
 
 impl<'a, C> RayCounter<'a, C> {
-    pub(super) fn new(caster: &'a C) -> Self {
-        Self { caster, rays: Cell::default(), cells: Cell::default(), looks: Cell::default() }
+    pub(super) fn new(caster: &'a C, grid: &'a Grid) -> Self {
+        Self { caster, grid, rays: Cell::default(), cells: Cell::default(), looks: Cell::default() }
     }
 
     /// Adds what it counted to `stats`.
@@ -26,7 +27,8 @@ impl<'a, C> RayCounter<'a, C> {
         stats.looks += self.looks.get();
     }
 
-    fn count(&self, grid: &Grid, ray: &Ray) {
+    fn count(&self, ray: &Ray) {
+        let grid = self.grid;
         let mut entered = 0;
         for crossing in Walk::new(grid, ray) {
             entered += 1;
@@ -46,7 +48,7 @@ impl<'a, C> RayCounter<'a, C> {
 
 impl<C: Caster> Caster for RayCounter<'_, C> {
     fn cast(&self, grid: &Grid, ray: &Ray) -> Option<Hit> {
-        self.count(grid, ray);
+        self.count(ray);
         self.caster.cast(grid, ray)
     }
 
@@ -55,7 +57,7 @@ impl<C: Caster> Caster for RayCounter<'_, C> {
     }
 
     fn cast_through(&self, world: &World, ray: &Ray, passed: impl FnMut(Hit)) -> Option<Hit> {
-        self.count(world.grid(), ray);
+        self.count(ray);
         self.caster.cast_through(world, ray, passed)
     }
 }

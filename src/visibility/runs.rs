@@ -35,6 +35,8 @@ pub(crate) struct Run {
 /// What a pixel shows behind all that is seen through.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub(crate) enum Shown {
+    /// What the flat way fills.
+    Flat,
     Sky(ImageId),
     /// An upright face.
     Face(Side),
@@ -72,35 +74,45 @@ impl ImageId {
 }
 
 impl Shown {
-    pub(crate) fn surface(self) -> Surface {
-        match self {
+    /// Its surface; `None` for what the flat way fills.
+    pub(crate) fn surface(self) -> Option<Surface> {
+        Some(match self {
+            Self::Flat => return None,
             Self::Sky(_) => Surface::Sky,
             Self::Face(side) => Surface::of_wall(side),
             Self::Plane(FlatSurface { part: Part::Ceiling, .. }) => Surface::Ceiling,
             Self::Plane(_) => Surface::Floor,
-        }
+        })
     }
 }
 
 impl ColumnRuns {
-    /// Forgets the last frame. There is room for all but the strangest maps, so that a camera that
-    /// turns towards more of it needs no more memory.
-    pub(crate) fn begin(&mut self, width: usize) {
-        const OF_A_COLUMN: usize = 16;
-        self.clear();
-        self.runs.reserve(width * OF_A_COLUMN);
-        self.bounds.reserve(width + 1);
-        self.bounds.push(0);
-        self.unsorted.reserve(OF_A_COLUMN);
-        self.images.reserve(IMAGES_AT_ONCE);
-        self.images.push(MirrorTransform::default());
-    }
-
-    /// Forgets the last frame, for one without runs.
+    /// Forgets the last frame.
     pub(crate) fn clear(&mut self) {
         self.runs.clear();
         self.bounds.clear();
         self.images.clear();
+    }
+
+    /// Makes room for the runs of `width` columns in all but the strangest maps.
+    pub(crate) fn reserve(&mut self, width: usize) {
+        const OF_A_COLUMN: usize = 16;
+        self.runs.reserve(width * OF_A_COLUMN);
+        self.bounds.reserve(width + 1);
+        self.unsorted.reserve(OF_A_COLUMN);
+        self.images.reserve(IMAGES_AT_ONCE);
+    }
+
+    /// Begins with the first column.
+    pub(crate) fn begin(&mut self) {
+        self.clear();
+        self.bounds.push(0);
+        self.images.push(MirrorTransform::default());
+    }
+
+    /// Leaves a column without runs: the flat way fills it.
+    pub(crate) fn skip_column(&mut self) {
+        self.bounds.push(self.runs.len());
     }
 
     /// Takes note of what `rows` of the column that is being filled show.
@@ -129,6 +141,11 @@ impl ColumnRuns {
         }
         runs.extend(hole(above..height));
         bounds.push(runs.len());
+    }
+
+    /// Whether no column has any.
+    pub(crate) fn is_empty(&self) -> bool {
+        self.runs.is_empty()
     }
 
     /// The runs of each column, from left to right.

@@ -97,6 +97,16 @@ impl TextureStepper {
         Some(first >> TEXEL_BITS..(last >> TEXEL_BITS) + 1)
     }
 
+    /// What of `texels`, those of the texture, is at `places`, if all of it is on the face and in the uppermost
+    /// texture.
+    #[inline]
+    pub(crate) fn slice<'t, T>(self, texels: &'t [T], places: &Range<i64>) -> Option<&'t [T]> {
+        let (uppermost, lowest) = self.range;
+        let is_on_face = uppermost <= places.start && places.end <= lowest + 1;
+        let range = places.start as usize..places.end as usize;
+        if is_on_face { texels.get(range) } else { None }
+    }
+
     /// What of `texels`, those of the texture, is at `places`, in pieces.
     #[inline]
     pub(crate) fn pieces<T>(self, texels: &[T], places: Range<i64>) -> impl Iterator<Item = &[T]> {

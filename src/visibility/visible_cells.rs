@@ -25,6 +25,8 @@ pub(crate) struct VisibleCells {
     row_count: u32,
     first_row: u32,
     intervals: Vec<Interval>,
+    /// Whether all things are taken to be in view: there are so few that asking where takes longer.
+    shows_all: bool,
 }
 
 /// What is seen of a row, and up to a margin above and below it.
@@ -45,6 +47,9 @@ impl Interval {
 impl VisibleCells {
     /// Takes in what the rays of `columns` show, from the camera to their ends.
     pub(crate) fn outline(&mut self, scene: Scene<'_>, columns: &[Column]) {
+        if self.shows_all_of(scene.world) {
+            return;
+        }
         let origin = scene.projection.origin();
         let ends = || ends(scene, columns);
         let span = |(low, high): (f64, f64), end: DVec2| (low.min(end.y), high.max(end.y));
@@ -54,6 +59,13 @@ impl VisibleCells {
             self.follow(one, other);
             other
         });
+    }
+
+    /// Takes all things of `world` to be in view, if they are few.
+    pub(crate) fn shows_all_of(&mut self, world: &World) -> bool {
+        const FEW: usize = 16;
+        self.shows_all = world.things().len() <= FEW;
+        self.shows_all
     }
 
     /// Forgets what was seen, and is ready to follow lines between two places from north to south.
@@ -75,12 +87,16 @@ impl VisibleCells {
 
     /// The things of which a part may be in view, row by row.
     pub(crate) fn things<'a>(&self, world: &'a World) -> impl Iterator<Item = &'a Thing> {
+        let all: &[Thing] = if self.shows_all { world.things() } else { &[] };
+        let intervals: &[Interval] = if self.shows_all { &[] } else { &self.intervals };
         let width = world.grid().width();
-        let rows = (self.first_row..).zip(&self.intervals);
+        let rows = (self.first_row..).zip(intervals);
         let reached = rows
             .map(move |(row, interval)| (row, self.reached(interval.low, interval.high, width)));
         let reached = reached.filter(|(_, columns)| !columns.is_empty());
-        reached.flat_map(|(row, columns)| world.things_between(row, columns.start, columns.end - 1))
+        let reached = reached
+            .flat_map(|(row, columns)| world.things_between(row, columns.start, columns.end - 1));
+        all.iter().chain(reached)
     }
 
     /// Takes in what lies on the straight line between two places: corners of the outline, or the ends of
@@ -171,7 +187,8 @@ mod tests {
             let projection = &Projection::new(&camera, size, PixelAspect::SQUARE);
             let scene = Scene { world, camera: &camera, seconds: 0.0, projection, plan };
             let mut list = DrawList::default();
-            flat::fill(scene, &Exact, &mut FlatMemory::default(), &mut list, &mut ());
+            let memory = &mut FlatMemory::default();
+            flat::find_columns(scene, (&Exact, world.grid()), memory, &mut list, &mut ());
             let columns = &list.columns;
 
             let mut visible = VisibleCells::default();

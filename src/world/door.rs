@@ -77,6 +77,10 @@ impl World {
         };
         if let Some(id) = id {
             self.grid.set(cell, id);
+            let is_level = self.tile(id).is_level();
+            if let Some(grid) = self.level_grid.as_mut().filter(|_| is_level) {
+                grid.set(cell, id);
+            }
             self.ajar.set(cell, opening);
         }
     }

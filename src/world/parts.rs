@@ -53,10 +53,12 @@ impl World {
         } = parts;
         clear(&mut grid, &tiles);
         let light_varies = light_varies(&tiles, &lamplight);
+        let level_grid = level_grid(&grid, &tiles);
         let world = Self {
             title,
             goal,
             grid,
+            level_grid,
             tiles,
             textures,
             floor,
@@ -86,6 +88,7 @@ impl World {
     ) {
         self.grid = grid;
         clear(&mut self.grid, &self.tiles);
+        self.level_grid = level_grid(&self.grid, &self.tiles);
         self.start = start;
         self.things = Things::new(things);
         self.light_varies = light_varies(&self.tiles, &lamplight);
@@ -161,4 +164,14 @@ fn light_varies(tiles: &[Tile], lamplight: &Lamplight) -> bool {
 fn clear(grid: &mut Grid, tiles: &[Tile]) {
     let is_doorway = |id: TileId| matches!(tiles[usize::from(id.0)].kind, TileKind::Doorway(_));
     grid.clear(is_doorway);
+}
+
+/// `grid` as rays see it that end at what is not level; `None` where everything is.
+fn level_grid(grid: &Grid, tiles: &[Tile]) -> Option<Grid> {
+    if tiles.iter().all(Tile::is_level) {
+        return None;
+    }
+    let mut level = grid.ending_at_others(|TileId(index)| tiles[usize::from(index)].is_level());
+    clear(&mut level, tiles);
+    Some(level)
 }

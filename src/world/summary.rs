@@ -9,15 +9,7 @@ impl World {
     /// Whether all floors are at 0, and all ceilings, walls and shapes a cell above that: every ray ends
     /// where it meets the first of those.
     pub fn is_level(&self) -> bool {
-        let level = |tile: &Tile| match tile.kind {
-            TileKind::Wall(_) | TileKind::Mirror(_) => Heights::LEVEL_WALL,
-            _ => Heights::LEVEL,
-        };
-        let is_as_high = |tile: &Tile| match tile.kind {
-            TileKind::Shape(_) => tile.top_of_what_stands() == Heights::LEVEL.ceiling(),
-            _ => true,
-        };
-        self.tiles.iter().all(|tile| tile.heights == level(tile) && is_as_high(tile))
+        self.tiles.iter().all(Tile::has_level_heights)
     }
 
     /// Whether any tile is a mirror.
@@ -49,5 +41,25 @@ impl World {
     /// How high the highest sprite is, in cells; 0 where nothing stands anywhere.
     pub(crate) fn tallest_sprite(&self) -> f64 {
         self.sprites.iter().map(|sprite| sprite.height.cells()).fold(0.0, f64::max)
+    }
+}
+
+impl Tile {
+    /// Whether its floor is at 0, and its ceiling, or the wall or shape that it is, a cell above that.
+    fn has_level_heights(&self) -> bool {
+        let level = match self.kind {
+            TileKind::Wall(_) | TileKind::Mirror(_) => Heights::LEVEL_WALL,
+            _ => Heights::LEVEL,
+        };
+        let is_as_high = match self.kind {
+            TileKind::Shape(_) => self.top_of_what_stands() == Heights::LEVEL.ceiling(),
+            _ => true,
+        };
+        self.heights == level && is_as_high
+    }
+
+    /// Whether a ray through it goes neither above nor below anything, and is not reflected.
+    pub(crate) fn is_level(&self) -> bool {
+        self.has_level_heights() && !matches!(self.kind, TileKind::Mirror(_))
     }
 }

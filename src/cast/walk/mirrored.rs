@@ -79,6 +79,28 @@ impl MirroredWalk {
         }
     }
 
+    /// The walk of `ray` through `grid` from where it enters `cell` by a line of kind `side`, which it must
+    /// do; and that line, which it has just crossed.
+    pub(crate) fn entering(
+        grid: &Grid,
+        ray: &Ray,
+        most_bounces: u32,
+        (cell, side): (Cell, Side),
+    ) -> (Self, Crossed) {
+        let mut walk = Self::new(grid, ray, most_bounces);
+        walk.x.enter(cell.column);
+        walk.y.enter(cell.row);
+        walk.column.index = walk.x.index;
+        walk.row.index = walk.y.index;
+        let axis = match side {
+            Side::X => &walk.x,
+            Side::Y => &walk.y,
+        };
+        let line = axis.line - axis.stride;
+        let into = walk.cell(grid);
+        (walk, Crossed { side, into, line })
+    }
+
     /// The cell that the ray is in; `None` off the map.
     #[inline]
     pub(crate) fn cell(&self, grid: &Grid) -> Option<(Cell, TileId)> {

@@ -12,7 +12,8 @@
 use std::cmp::Ordering;
 use std::ops::Range;
 
-use super::wall::{across_line, light_of};
+use super::PortalStarts;
+use super::wall::light_of;
 use crate::cast::{Hit, MirrorTransform};
 use crate::visibility::layer_order::put_in_order;
 use crate::visibility::visible_cells::VisibleCells;
@@ -20,7 +21,7 @@ use crate::visibility::{
     Billboard, BillboardColumn, Column, DrawList, Extent, Facing, Layer, Material, Scene,
     SeeThroughColumn, Stats, ThingLoop,
 };
-use crate::world::{Cell, TileKind};
+use crate::world::{Cell, Tile, TileKind};
 
 /// There is room for so many things in view from the first frame on, so that a camera that turns
 /// towards more of them needs no more memory.
@@ -66,27 +67,32 @@ pub(super) fn fill<S: Stats>(
     let FlatMemory { passed, left, visible, by_column } = memory;
     if scene.plan.things == ThingLoop::None {
         list.make_room_for_layers(passed.list.capacity());
+        let first = list.layers.len();
         for &(column, ref hit) in passed.list.iter().rev() {
             push_hit(scene, column, hit, list);
         }
-        std::mem::swap(&mut list.layers, by_column);
-        list.layers.clear();
-        list.layers.reserve(by_column.len());
-        put_in_order(by_column, &list.see_through, &mut list.layers);
+        let is_glass = |tile: &Tile| matches!(tile.kind, TileKind::Glass(_));
+        if scene.world.tiles().iter().any(is_glass) {
+            by_column.clear();
+            by_column.reserve(list.layers.capacity());
+            by_column.extend(list.layers.drain(first..));
+            put_in_order(by_column, &list.see_through, &mut list.layers);
+        }
         return None;
     }
+    let first = list.billboards.len();
     let considered = find_billboards(scene, visible, list);
     stats.change(|stats| {
         stats.things_considered += considered;
-        stats.things_drawn += list.billboards.len() as u64;
+        stats.things_drawn += (list.billboards.len() - first) as u64;
     });
     left.begin(passed, list.columns.len());
     list.make_room_for_layers(passed.list.capacity());
-    for index in 0..list.billboards.len() {
+    for index in first..list.billboards.len() {
         let Billboard { depth, ref columns, ref rows, .. } = list.billboards[index];
         let rows = rows.clone();
         for x in columns.clone() {
-            if depth >= list.columns[x as usize].distance {
+            if depth >= list.flat_columns()[x as usize].distance {
                 continue;
             }
             push_behind(depth, x as usize, scene, (passed, left), list);
@@ -101,15 +107,19 @@ pub(super) fn fill<S: Stats>(
     for column in 0..left.of_columns.len() {
         push_behind(0.0, column, scene, (passed, left), list);
     }
-    Billboard::next_change(&list.billboards, scene)
+    Billboard::next_change(&list.billboards[first..], scene)
 }
 
 /// Finds the billboards in view, from far to near. Returns how many things were considered.
 fn find_billboards(scene: Scene<'_>, visible: &mut VisibleCells, list: &mut DrawList) -> u64 {
     let world = scene.world;
-    list.billboards.reserve(world.things().len().min(MOST_AT_FIRST));
-    list.layers.reserve(list.columns.len() * LAYERS_OF_A_COLUMN);
-    visible.outline(scene, &list.columns);
+    let first = list.billboards.len();
+    if first == 0 {
+        list.billboards.reserve(world.things().len().min(MOST_AT_FIRST));
+    }
+    let most_layers = list.columns.len() * LAYERS_OF_A_COLUMN;
+    list.layers.reserve(most_layers.saturating_sub(list.layers.len()));
+    visible.outline(scene, list.flat_columns());
     let mut considered = 0;
     for &thing in visible.things(world) {
         considered += 1;
@@ -117,14 +127,23 @@ fn find_billboards(scene: Scene<'_>, visible: &mut VisibleCells, list: &mut Draw
         let is_in_view = |billboard: &Billboard| {
             let is_before = |column: &Column| billboard.depth < column.distance;
             let Range { start, end } = billboard.columns;
-            list.columns[start as usize..end as usize].iter().any(is_before)
+            list.flat_columns()[start as usize..end as usize].iter().any(is_before)
         };
         list.billboards.extend(billboard.filter(is_in_view));
     }
-    for billboard in &mut list.billboards {
+    let found = &mut list.billboards[first..];
+    for billboard in &mut *found {
         billboard.is_drawn = true;
     }
-    list.billboards.sort_unstable_by(from_far_to_near);
+    if !list.flat_columns.is_empty() && PortalStarts::new(world).are_under_ceilings() {
+        // As portals do.
+        let projection = scene.projection;
+        for Billboard { rows, depth, .. } in &mut *found {
+            rows.start = rows.start.max(projection.row_of_height(1.0, *depth));
+            rows.end = rows.end.min(projection.row_of_height(0.0, *depth));
+        }
+    }
+    found.sort_unstable_by(from_far_to_near);
     considered
 }
 
@@ -193,6 +212,10 @@ fn push_behind(
 
 /// Makes a layer of a hit that the ray of `column` passed.
 fn push_hit(scene: Scene<'_>, column: usize, hit: &Hit, list: &mut DrawList) {
+    if hit.t > list.flat_columns()[column].distance {
+        // The portal way fills what is there.
+        return;
+    }
     let Cell { column: x, row: y } = hit.cell;
     let world = scene.world;
     let material = match world.grid().tile(i64::from(x), i64::from(y)).map(|id| world.tile(id).kind)
@@ -201,12 +224,12 @@ fn push_hit(scene: Scene<'_>, column: usize, hit: &Hit, list: &mut DrawList) {
         Some(TileKind::Glass(glass)) => Material::Translucent(glass),
         _ => return,
     };
-    let column = column as u32;
+    let (column, facing) = (column as u32, Facing::Side(hit.side));
     list.push_see_through(SeeThroughColumn {
         column,
         rows: scene.projection.wall_rows(hit.t),
-        facing: Facing::Side(hit.side),
-        slope: across_line(hit.side, scene.projection.direction_of(column)),
+        facing,
+        slope: facing.slope(scene.projection.direction_of(column)),
         t: hit.t,
         u: hit.u,
         light: light_of(scene, column, hit),

@@ -13,6 +13,7 @@ use super::ray_segments::{ImagesInView, RaySegment};
 use super::tile_gaps::{GapId, TileGaps};
 use crate::visibility::runs::IMAGES_AT_ONCE;
 use crate::visibility::{Billboard, BillboardColumn, DrawList, Scene};
+use crate::world::World;
 use crate::world::sprite::builtin;
 
 /// A part of a ray that is in one gap.
@@ -38,6 +39,15 @@ pub(super) struct Finder {
 }
 
 impl Finder {
+    /// Makes room for the images of all but the strangest maps.
+    pub(super) fn make_room(&mut self, world: &World, width: usize) {
+        self.of_image.clear();
+        self.of_image.reserve(IMAGES_AT_ONCE);
+        self.is_covered.clear();
+        self.is_covered.reserve(width);
+        self.in_view.make_room(world, 1);
+    }
+
     /// Finds all that the `segments` of rays show. Returns how many things were considered.
     pub(super) fn find(
         &mut self,
@@ -45,14 +55,11 @@ impl Finder {
         segments: &[RaySegment],
         list: &mut DrawList,
     ) -> u64 {
-        const MOST_AT_FIRST: usize = 4096;
         let world = scene.world;
         let DrawList { billboards, player, runs, .. } = list;
         let images = runs.images();
-        let players = images.len().max(IMAGES_AT_ONCE);
-        billboards.reserve(world.things().len().min(MOST_AT_FIRST) + players);
+        let first = billboards.len();
         self.of_image.clear();
-        self.of_image.reserve(players);
         if player.is_none() && world.has_mirrors() {
             *player = builtin::named(builtin::PLAYER);
         }
@@ -75,7 +82,7 @@ impl Finder {
         }
         self.is_covered.clear();
         self.is_covered.resize(scene.projection.columns(), false);
-        for billboard in billboards {
+        for billboard in &billboards[first..] {
             let Range { start, end } = billboard.columns;
             self.is_covered[start as usize..end as usize].fill(true);
         }

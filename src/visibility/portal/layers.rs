@@ -21,6 +21,14 @@ pub(super) struct LayerMemory {
     by_column: Vec<Layer>,
 }
 
+impl LayerMemory {
+    /// Makes room for as many layers as there is room for in `list`.
+    pub(super) fn make_room(&mut self, list: &DrawList) {
+        self.by_column.clear();
+        self.by_column.reserve(list.layers.capacity());
+    }
+}
+
 /// Makes the layers of `list` from what rays passed: in each column, what is nearer comes later.
 pub(super) fn fill(
     scene: Scene<'_>,
@@ -32,7 +40,6 @@ pub(super) fn fill(
 ) {
     let by_column = &mut memory.by_column;
     by_column.clear();
-    by_column.reserve(list.layers.capacity());
     for passed in passed.iter().rev() {
         match passed {
             &Passed::SeeThrough(index) => by_column.push(Layer::SeeThrough(index)),

@@ -2,8 +2,9 @@
 
 use std::ops::Range;
 
+use super::met::Met;
 use super::tile_gaps::{BOTTOMLESS, GapId, Holds};
-use super::walk::{ColumnWalk, MOST_BOUNCES, Met, Place, PortalRay};
+use super::walk::{ColumnWalk, MOST_BOUNCES, Place, PortalRay};
 use crate::cast::Hit;
 use crate::visibility::runs::{FlatSurface, ImageId, Part, Shown};
 use crate::visibility::{Extent, Material};
@@ -19,33 +20,37 @@ impl ColumnWalk<'_> {
             self.list.runs.show(start..end, Shown::Sky(ray.image));
             return false;
         }
-        let mut goes_on: Option<(GapId, Range<u32>)> = None;
+        let gaps = self.surroundings.gaps;
+        let mut goes_on: Option<(GapId, u32, u32)> = None;
         // The rock that is below the next gap, and the row below it.
         let (mut rock_from, mut rock_end) = (f64::NEG_INFINITY, end);
-        let gaps = self.surroundings.gaps;
-        for (id, gap) in gaps.of(place) {
+        for id in gaps.of(place) {
+            let gap = gaps.gap(id);
             let bottom = gap.row_of_bottom(projection, met.t);
             let top = gap.row_of_top(projection, met.t);
             let rock = start.max(bottom)..rock_end;
-            self.meet_rock(ray, place, met, rock, rock_from..gap.gap.bottom);
+            if !rock.is_empty() {
+                self.meet_rock(ray, place, met, rock, rock_from..gap.gap.bottom);
+            }
             (rock_from, rock_end) = (gap.gap.top, end.min(top));
-            let rows = start.max(top)..end.min(bottom);
-            if rows.is_empty() {
+            let (start, end) = (start.max(top), end.min(bottom));
+            if start >= end {
                 continue;
             }
             if place.is_none() {
-                self.show_beyond_edge(rows, ray.image);
+                self.show_beyond_edge(start..end, ray.image);
                 continue;
             }
             if gap.holds == Holds::Cube {
-                self.pass_cube(ray, place, &rows, met);
+                self.pass_cube(ray, place, &(start..end), met);
             }
-            if let Some((gap, rows)) = goes_on.replace((id, rows)) {
-                self.memory.rays.push(PortalRay { place, gap, rows, ..ray.clone() });
+            if let Some((gap, start, end)) = goes_on.replace((id, start, end)) {
+                let (walk, rows) = (ray.walk.clone(), start..end);
+                self.memory.rays.push(PortalRay { walk, place, gap, rows, ..*ray });
             }
         }
-        let Some((gap, rows)) = goes_on else { return false };
-        (ray.place, ray.gap, ray.rows) = (place, gap, rows);
+        let Some((gap, start, end)) = goes_on else { return false };
+        (ray.place, ray.gap, ray.rows) = (place, gap, start..end);
         true
     }
 
@@ -57,6 +62,7 @@ impl ColumnWalk<'_> {
     }
 
     /// Meets what is solid in `place` between two heights, which shows in `rows`: a face, or a mirror.
+    #[inline(never)]
     fn meet_rock(
         &mut self,
         ray: &PortalRay,
@@ -65,9 +71,6 @@ impl ColumnWalk<'_> {
         rows: Range<u32>,
         heights: Range<f64>,
     ) {
-        if rows.is_empty() {
-            return;
-        }
         let is_lowest = heights.start == f64::NEG_INFINITY;
         let surroundings = self.surroundings;
         let tile = surroundings.tile(place).unwrap_or(&surroundings.scene.world.tiles()[0]);
@@ -75,7 +78,7 @@ impl ColumnWalk<'_> {
             && let TileKind::Mirror(tint) = tile.kind
             && ray.walk.bounces() < MOST_BOUNCES
         {
-            self.reflect(PortalRay { rows, ..ray.clone() }, place, met, tint);
+            self.reflect(ray, rows, place, met, tint);
             return;
         }
         let before = surroundings.tile(met.before).map(|tile| &tile.kind);
@@ -99,18 +102,19 @@ impl ColumnWalk<'_> {
         }
     }
 
-    /// Follows the mirror image later, behind the mirror's tint.
-    fn reflect(&mut self, mut image: PortalRay, place: Place, met: &Met, tint: Glass) {
+    /// Has the mirror image followed later in those `rows`, behind the mirror's tint.
+    fn reflect(&mut self, ray: &PortalRay, rows: Range<u32>, place: Place, met: &Met, tint: Glass) {
         self.memory.stats.bounces += 1;
         let everywhere = Extent::Heights { bottom: BOTTOMLESS.bottom, top: BOTTOMLESS.top };
-        let tint = Material::Translucent(tint);
-        self.pass(&image, image.rows.clone(), met, place, tint, everywhere);
-        image.walk.reflect(met.side);
-        image.image = self.list.runs.image_id(image.walk.transform());
-        self.memory.rays.push(image);
+        self.pass(ray, rows.clone(), met, place, Material::Translucent(tint), everywhere);
+        let mut walk = ray.walk.clone();
+        walk.reflect(met.side);
+        let image = self.list.runs.image_id(walk.transform());
+        self.memory.rays.push(PortalRay { walk, rows, image, ..*ray });
     }
 
     /// Passes the face of the cube in `place` that is seen through.
+    #[inline(never)]
     fn pass_cube(&mut self, ray: &PortalRay, place: Place, rows: &Range<u32>, met: &Met) {
         let Some(Tile { heights, kind, .. }) = self.surroundings.tile(place) else { return };
         let material = match *kind {
@@ -135,6 +139,7 @@ impl ColumnWalk<'_> {
     }
 
     /// Shows what is beyond the edge of the map: the sky, and the ground below the horizon.
+    #[inline(never)]
     fn show_beyond_edge(&mut self, rows: Range<u32>, image: ImageId) {
         let Range { start, end } = rows;
         let horizon = self.surroundings.scene.projection.first_row_of_ground().clamp(start, end);

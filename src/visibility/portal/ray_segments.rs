@@ -49,6 +49,10 @@ impl ImagesInView {
     /// Finds out what is seen in so many images, by all `segments`.
     pub(crate) fn look(&mut self, scene: Scene<'_>, images: usize, segments: &[RaySegment]) {
         self.make_room(scene.world, images);
+        let list = &mut self.list[..images];
+        if list.iter_mut().all(|visible| visible.shows_all_of(scene.world)) {
+            return;
+        }
         self.extents.clear();
         self.extents.resize(images, NorthSouth::NONE);
         // Those that end nowhere near the map are left out.
@@ -76,7 +80,8 @@ impl ImagesInView {
         self.list[image].things(world)
     }
 
-    fn make_room(&mut self, world: &World, count: usize) {
+    /// Makes room for `count` images of `world` at least.
+    pub(super) fn make_room(&mut self, world: &World, count: usize) {
         let at_once = if world.has_mirrors() { count.max(IMAGES_AT_ONCE) } else { count };
         if self.list.len() < at_once {
             self.list.resize_with(at_once, VisibleCells::default);

@@ -20,13 +20,17 @@ pub(crate) fn for_each_span(
     emit: &mut impl FnMut(Span<'_>),
 ) {
     starts.clear();
+    starts.reserve(rows.len());
+    if runs.is_empty() {
+        return;
+    }
     starts.resize(rows.len(), 0);
-    let mut end_spans = |of: &Run, x: usize| {
+    let mut end_spans = |of: &Run, starts: &mut [usize], x: usize| {
         let Range { start, end } = *rows;
         for row in of.rows.start.clamp(start, end)..of.rows.end.clamp(start, end) {
             let columns = mem::replace(&mut starts[(row - start) as usize], x)..x;
             match of.shown {
-                Shown::Face(_) => {}
+                Shown::Flat | Shown::Face(_) => {}
                 Shown::Sky(ImageId::NONE) => emit(Span::Sky { row, columns, image: None }),
                 Shown::Sky(id) => emit(Span::Sky { row, columns, image: Some(runs.image(id)) }),
                 Shown::Plane(surface) => emit_plane(scene, runs, surface, row, columns, emit),
@@ -35,14 +39,16 @@ pub(crate) fn for_each_span(
     };
     let mut before: &[Run] = &[];
     for (x, column) in runs.columns().enumerate() {
-        for change in changes(before, column) {
-            end_spans(&change, x);
+        if before.is_empty() || column.is_empty() {
+            // One of them is not filled by the portal way.
+            before.iter().for_each(|run| end_spans(run, starts, x));
+            starts.fill(x);
+        } else {
+            changes(before, column).for_each(|change| end_spans(&change, starts, x));
         }
         before = column;
     }
-    for run in before {
-        end_spans(run, scene.projection.columns());
-    }
+    before.iter().for_each(|run| end_spans(run, starts, scene.projection.columns()));
 }
 
 /// What `one` column shows that its neighbour does not show in the same rows.

@@ -9,7 +9,7 @@ use super::walk::Place;
 use crate::visibility::projection::Rise;
 use crate::visibility::runs::Part;
 use crate::visibility::{Projection, Scene};
-use crate::world::{Gap, Heights, Tile, TileKind};
+use crate::world::{Gap, Heights, Tile, TileKind, World};
 
 /// Those of all tiles.
 #[derive(Clone, Debug, Default)]
@@ -17,12 +17,12 @@ pub(crate) struct TileGaps {
     /// Those of each tile together, from the lowest up.
     gaps: Vec<VisibleGap>,
     /// Which of them are those of what is off the map, and then of each tile.
-    of_tiles: Vec<Range<usize>>,
+    of_tiles: Vec<Range<u32>>,
 }
 
 /// Which gap of which tile.
 #[derive(Clone, Copy, Debug)]
-pub(crate) struct GapId(usize);
+pub(crate) struct GapId(u32);
 
 /// A gap as the eye sees it.
 #[derive(Clone, Copy, Debug)]
@@ -62,23 +62,32 @@ impl TileGaps {
         }
     }
 
+    /// Makes room for those of all tiles of `world`.
+    pub(super) fn make_room(&mut self, world: &World) {
+        const OF_A_TILE: usize = 2;
+        self.gaps.clear();
+        self.of_tiles.clear();
+        self.gaps.reserve((world.tiles().len() + 1) * OF_A_TILE);
+        self.of_tiles.reserve(world.tiles().len() + 1);
+    }
+
     fn push(&mut self, gaps: impl IntoIterator<Item = VisibleGap>) {
         let first = self.gaps.len();
         self.gaps.extend(gaps);
-        self.of_tiles.push(first..self.gaps.len());
+        self.of_tiles.push(first as u32..self.gaps.len() as u32);
     }
 
     /// The gaps of what is in `place`, from the lowest up.
     #[inline]
-    pub(crate) fn of(&self, place: Place) -> impl Iterator<Item = (GapId, &VisibleGap)> {
-        let range = self.of_tiles[place.map_or(0, |(_, tile)| usize::from(tile.0) + 1)].clone();
-        range.clone().map(GapId).zip(&self.gaps[range])
+    pub(crate) fn of(&self, place: Place) -> impl Iterator<Item = GapId> {
+        let tile = place.map_or(0, |(_, tile)| usize::from(tile.0) + 1);
+        self.of_tiles[tile].clone().map(GapId)
     }
 
     /// One of them.
     #[inline]
     pub(crate) fn gap(&self, GapId(index): GapId) -> &VisibleGap {
-        &self.gaps[index]
+        &self.gaps[index as usize]
     }
 }
 
