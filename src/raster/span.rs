@@ -66,15 +66,27 @@ fn draw_pieces<L: Lighting, S: Stats>(
     // others where in that.
     let places = mapping.places(columns.start, 1.0 / covering.scale.cells() / 2.0);
     let mut texels = 0;
+    if S::ARE_KEPT {
+        let sampled = places.clone().take(columns.len());
+        let sampled = sampled.map(|(x, y)| &samples[(piece(x, y) >> 63) as usize]);
+        texels = sampled.filter(|sample| matches!(sample, Sample::Level(_))).count();
+    }
+    target.count_texels(pass, texels);
+    let colors = samples.each_ref().map(Sample::color);
+    let levels = [0, 1].map(|index| samples[index].by_shifts(&colors[index]));
     let pixels = target.span_mut(pass, row, columns.clone());
+    if let [Some(one), Some(other)] = levels {
+        let levels = [one, other];
+        for (pixel, (x, y)) in pixels.iter_mut().zip(places) {
+            let level = &levels[(piece(x, y) >> 63) as usize];
+            *pixel = lighting.apply(level.at_index(level.index(x << 1, y << 1)));
+        }
+        return;
+    }
     for (pixel, (x, y)) in pixels.iter_mut().zip(places) {
         let sample = &samples[(piece(x, y) >> 63) as usize];
         *pixel = lighting.apply(sample.at_fraction(x << 1, y << 1));
-        if S::ARE_KEPT {
-            texels += usize::from(matches!(sample, Sample::Level(_)));
-        }
     }
-    target.count_texels(pass, texels);
 }
 
 /// Draws `level` on `pixels`.
@@ -192,6 +204,22 @@ impl<'a> Sampler<'a> {
 }
 
 impl Sample<'_> {
+    /// The colour, if it is one.
+    fn color(&self) -> [Rgb; 1] {
+        match self {
+            Self::Color(color) => [*color],
+            Self::Level(_) => [Rgb::BLACK],
+        }
+    }
+
+    /// The level, or one of a single `texel`; `None` where it needs multiplications.
+    fn by_shifts<'t>(&'t self, texel: &'t [Rgb; 1]) -> Option<MipLevelByShifts<'t>> {
+        match self {
+            Self::Color(_) => Some(MipLevelByShifts::of_one(texel)),
+            Self::Level(level) => level.by_shifts(),
+        }
+    }
+
     #[inline]
     fn at_fraction(&self, x: u64, y: u64) -> Rgb {
         match self {
