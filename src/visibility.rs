@@ -27,7 +27,6 @@ mod facing;
 mod filter;
 mod flat;
 mod frame_size;
-mod jamb;
 mod layer_order;
 mod lighting;
 mod plan;

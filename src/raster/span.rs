@@ -45,10 +45,10 @@ fn draw_lit<L: Lighting, S: Stats>(
             }
         },
         Pattern::Checker(paints) => {
-            draw_pieces(span, paints.map(|it| sampler.sample(it)), lighting, |x, y| x ^ y, target)
+            draw_pieces(span, &paints.map(|it| sampler.sample(it)), lighting, |x, y| x ^ y, target);
         }
         Pattern::Stripes(paints) => {
-            draw_pieces(span, paints.map(|it| sampler.sample(it)), lighting, |_, y| y, target)
+            draw_pieces(span, &paints.map(|it| sampler.sample(it)), lighting, |_, y| y, target);
         }
     }
 }
@@ -56,7 +56,7 @@ fn draw_lit<L: Lighting, S: Stats>(
 /// Draws `span` in two samples by turns: the first bit of what `piece` makes of a place tells which.
 fn draw_pieces<L: Lighting, S: Stats>(
     span: &PlaneSpan<'_>,
-    samples: [Sample<'_>; 2],
+    samples: &[Sample<'_>; 2],
     lighting: L,
     piece: impl Fn(u64, u64) -> u64,
     target: &mut Target<'_, S>,

@@ -1,8 +1,8 @@
-//! The plan: which passes draw a frame, and with which inner loop.
+//! The frame plan: how a frame is drawn, and with which inner loops.
 //!
-//! It is a small value, made from the world before anything is drawn, by looking at what each kind of
-//! tile consists of. The passes match on it once a frame, so that what a scene does not have is absent
-//! from their loops; what a single map has everywhere costs only that map.
+//! It is a small value, made from the world and the camera before anything is drawn, from what each kind
+//! of tile consists of. It is matched once a frame, so that what a scene does not have is absent from the
+//! loops.
 
 mod display;
 
@@ -11,10 +11,10 @@ use crate::world::{
     Camera, Ceiling, Covering, Heights, Light, Paint, Pattern, Rgb, Sky, Tile, TileKind, World,
 };
 
-/// Which passes draw a frame, and how.
+/// How a frame is drawn.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct FramePlan {
-    /// Whether every ray ends where it meets the first wall, or goes on above, below and reflected.
+    /// How it is found out what is in view.
     pub visibility: Visibility,
     /// How exact rays go from cell to cell.
     pub rays: RayLoop,
@@ -84,7 +84,7 @@ pub enum CeilingLoop {
     /// Nothing but sky.
     Sky,
     /// A ceiling, in places at least.
-    Laid(PlaneLoop),
+    Plane(PlaneLoop),
 }
 
 /// How the sky is drawn.
@@ -143,9 +143,9 @@ impl FramePlan {
             floor: PlaneLoop::new(world.floor(), floor_varies, is_foggy),
             ceiling: match world.ceiling() {
                 Ceiling::Sky if open().all(|tile| tile.ceiling == Ceiling::Sky) => CeilingLoop::Sky,
-                Ceiling::Sky => CeilingLoop::Laid(PlaneLoop::Tiles),
+                Ceiling::Sky => CeilingLoop::Plane(PlaneLoop::Tiles),
                 Ceiling::Covered(covering) => {
-                    CeilingLoop::Laid(PlaneLoop::new(covering, ceiling_varies, is_foggy))
+                    CeilingLoop::Plane(PlaneLoop::new(covering, ceiling_varies, is_foggy))
                 }
             },
             sky: match world.sky() {

@@ -1,4 +1,4 @@
-//! Textures: pictures that surfaces are papered with.
+//! Textures: pictures on surfaces.
 //!
 //! Texels are stored column by column, top to bottom, because a wall is drawn column by column and
 //! then reads one stretch of memory. A texture is a list of levels, each half as large as the one
@@ -88,7 +88,8 @@ impl Texture {
         Self::from_fn_with_alpha(width, height, |x, y| self.texel(left + x, top + y))
     }
 
-    /// The texture itself, halved `lod` times: along each axis, and down to one texel.
+    /// The mip level for the level of detail `lod`: the texture itself, halved `lod` times along each axis, down
+    /// to one texel.
     pub fn level(&self, lod: usize) -> &MipLevel {
         &self.levels[lod.min(self.levels.len() - 1)]
     }

@@ -23,11 +23,11 @@ use crate::visibility::{
 };
 use crate::world::{Cell, Tile, TileKind};
 
-/// There is room for so many things in view from the first frame on, so that a camera that turns
-/// towards more of them needs no more memory.
+/// The number of things in view for which there is room from the first frame on, so that a camera that
+/// turns towards more of them needs no more memory.
 const MOST_AT_FIRST: usize = 4096;
 
-/// There is room for so many layers in each column from the first frame on, likewise.
+/// The number of layers in each column, likewise.
 const LAYERS_OF_A_COLUMN: usize = 16;
 
 /// What the flat way remembers from one frame to the next; kept so that it is allocated once.
@@ -157,7 +157,7 @@ impl PassedHits {
         self.list.clear();
     }
 
-    /// Makes room for what so many rays pass in all but the strangest of maps, so that a camera that
+    /// Makes room for what that many `rays` pass in all but the strangest of maps, so that a camera that
     /// turns towards more of it needs no more memory.
     pub(super) fn make_room_for(&mut self, rays: usize) {
         const OF_A_RAY: usize = 8;

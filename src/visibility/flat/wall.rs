@@ -6,7 +6,6 @@ use glam::DVec2;
 
 use crate::cast::{Hit, Side};
 use crate::visibility::facing::cell_before;
-use crate::visibility::jamb::jamb;
 use crate::visibility::{Column, Extent, Facing, Scene, WallColumn, WallSink};
 use crate::world::{Cell, FaceLight, Light, Paint, Tile, TileId, TileKind, World};
 
@@ -32,7 +31,7 @@ pub(crate) fn for_each_wall_column(
             Some(latest) if latest.0.is_of(hit) => &*latest,
             latest => {
                 let face = Face::new(scene, x, hit, is_lit);
-                latest.insert((face, face.paint(scene, hit)))
+                latest.insert((face, face.paint(scene, x, hit)))
             }
         };
         let direction = scene.projection.direction_of(x);
@@ -85,11 +84,12 @@ impl<'a> Face<'a> {
         (self.cell, self.side) == (hit.cell, hit.side)
     }
 
-    /// How it looks, where `hit` is on it: as a jamb, where it faces a door.
-    fn paint(&self, scene: Scene<'_>, hit: &Hit) -> Paint {
-        let Scene { world, projection, plan, .. } = scene;
-        let jamb = if plan.walls.jambs { jamb(world, projection, hit) } else { None };
-        jamb.unwrap_or_else(|| self.paint_of_tile(world))
+    /// How it looks, where the ray of column `x` hit it: as a jamb, where it faces a door.
+    fn paint(&self, scene: Scene<'_>, x: u32, hit: &Hit) -> Paint {
+        let Scene { world, plan, .. } = scene;
+        let door = || world.door(place_before(scene, x, hit)?);
+        let door = if plan.walls.jambs { door() } else { None };
+        door.map_or_else(|| self.paint_of_tile(world), |door| door.jamb)
     }
 
     /// How the tile itself looks.
@@ -127,11 +127,7 @@ fn face_light(scene: Scene<'_>, x: u32, hit: &Hit, tile: Option<&Tile>) -> FaceL
     if let Some(own) = tile.and_then(|tile| tile.light) {
         return FaceLight::even(own);
     }
-    let before = || {
-        let [column, row] = cell_before(scene.projection.direction_of(x), hit);
-        let is_known = column >= 0 && row >= 0;
-        is_known.then_some(Cell { column: column as u32, row: row as u32 })
-    };
+    let before = || place_before(scene, x, hit);
     match tile.map(|tile| tile.kind) {
         // It stands in a cell of its own.
         Some(TileKind::Shape(_)) => FaceLight::even(world.light_in(hit.cell)),
@@ -140,4 +136,11 @@ fn face_light(scene: Scene<'_>, x: u32, hit: &Hit, tile: Option<&Tile>) -> FaceL
         }
         _ => before().map_or(FaceLight::FULL, |cell| world.face_light(hit.cell, cell)),
     }
+}
+
+/// The cell from which the ray of column `x` sees what it hit; `None` off the map's north and west.
+fn place_before(scene: Scene<'_>, x: u32, hit: &Hit) -> Option<Cell> {
+    let [column, row] = cell_before(scene.projection.direction_of(x), hit);
+    let is_known = column >= 0 && row >= 0;
+    is_known.then_some(Cell { column: column as u32, row: row as u32 })
 }

@@ -57,7 +57,7 @@ impl fmt::Display for PlaneLoop {
         match self {
             Self::Fill(color) => write!(f, "one fill: it is {color} everywhere"),
             Self::FillRows(color) => write!(f, "a fill for each row: it is {color}, in fog"),
-            Self::Spans => f.write_str("visible spans: it is laid with the same everywhere"),
+            Self::Spans => f.write_str("visible spans: its covering is the same everywhere"),
             Self::Tiles => f.write_str("visible spans, cut by tile: tiles differ"),
         }
     }
@@ -67,7 +67,7 @@ impl fmt::Display for CeilingLoop {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
         match self {
             Self::Sky => f.write_str("not drawn: there is only sky"),
-            Self::Laid(plane) => plane.fmt(f),
+            Self::Plane(plane) => plane.fmt(f),
         }
     }
 }

@@ -35,7 +35,7 @@ impl ColumnWalk<'_> {
     fn meet_side(&mut self, ray: &mut PortalRay, kind: TileKind, tile: &Tile, hit: Hit) {
         let (bottom, top) = (tile.heights.floor(), tile.top_of_what_stands());
         self.close(ray, hit.t);
-        let real = ray.walk.real_ray();
+        let real = ray.walk.ray_on_map();
         let (paint, facing) = match kind {
             TileKind::Door(door) => (door.leaf, Facing::Side(hit.side)),
             TileKind::Shape(it) => (it.paint, Facing::of_shape(it.outline, real.at(hit.t), &hit)),

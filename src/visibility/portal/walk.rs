@@ -205,7 +205,7 @@ impl<'a> ColumnWalk<'a> {
         if self.surroundings.has_things {
             let origin = self.surroundings.scene.projection.origin();
             let transform = ray.walk.transform();
-            let end = |t: f64| transform.real_point(origin + self.direction * t);
+            let end = |t: f64| transform.to_map(origin + self.direction * t);
             self.memory
                 .segments
                 .push(RaySegment { ends: [start, ray.from].map(end), image: ray.image });
