@@ -72,8 +72,7 @@ fn draw_pieces<L: Lighting, S: Stats>(
         texels = sampled.filter(|sample| matches!(sample, Sample::Level(_))).count();
     }
     target.count_texels(pass, texels);
-    let colors = samples.each_ref().map(Sample::color);
-    let levels = [0, 1].map(|index| samples[index].by_shifts(&colors[index]));
+    let levels = samples.each_ref().map(Sample::by_shifts);
     let pixels = target.span_mut(pass, row, columns.clone());
     if let [Some(one), Some(other)] = levels {
         let levels = [one, other];
@@ -204,18 +203,10 @@ impl<'a> Sampler<'a> {
 }
 
 impl Sample<'_> {
-    /// The colour, if it is one.
-    fn color(&self) -> [Rgb; 1] {
+    /// The level, if it needs no multiplications.
+    fn by_shifts(&self) -> Option<MipLevelByShifts<'_>> {
         match self {
-            Self::Color(color) => [*color],
-            Self::Level(_) => [Rgb::BLACK],
-        }
-    }
-
-    /// The level, or one of a single `texel`; `None` where it needs multiplications.
-    fn by_shifts<'t>(&'t self, texel: &'t [Rgb; 1]) -> Option<MipLevelByShifts<'t>> {
-        match self {
-            Self::Color(_) => Some(MipLevelByShifts::of_one(texel)),
+            Self::Color(_) => None,
             Self::Level(level) => level.by_shifts(),
         }
     }

@@ -21,7 +21,7 @@ use crate::visibility::{
     Billboard, BillboardColumn, Column, DrawList, Extent, Facing, Layer, Material, Scene,
     SeeThroughColumn, Stats, ThingLoop,
 };
-use crate::world::{Cell, Tile, TileKind};
+use crate::world::{Cell, Light, Tile, TileKind};
 
 /// The number of things in view for which there is room from the first frame on, so that a camera that
 /// turns towards more of them needs no more memory.
@@ -225,6 +225,7 @@ fn push_hit(scene: Scene<'_>, column: usize, hit: &Hit, list: &mut DrawList) {
         _ => return,
     };
     let (column, facing) = (column as u32, Facing::Side(hit.side));
+    let is_lit = scene.plan.walls.faded;
     list.push_see_through(SeeThroughColumn {
         column,
         rows: scene.projection.wall_rows(hit.t),
@@ -232,7 +233,7 @@ fn push_hit(scene: Scene<'_>, column: usize, hit: &Hit, list: &mut DrawList) {
         slope: facing.slope(scene.projection.direction_of(column)),
         t: hit.t,
         u: hit.u,
-        light: light_of(scene, column, hit),
+        light: if is_lit { light_of(scene, column, hit) } else { Light::FULL },
         material,
         extent: Extent::Level,
     });

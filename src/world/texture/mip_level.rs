@@ -98,11 +98,7 @@ pub(crate) struct MipLevelByShifts<'a> {
     mask_y: u32,
 }
 
-impl<'a> MipLevelByShifts<'a> {
-    /// A level of a single texel.
-    pub(crate) fn of_one(texel: &'a [Rgb; 1]) -> Self {
-        Self { texels: texel, shift_x: 0, mask_x: 0, shift_y: 0, mask_y: 0 }
-    }
+impl MipLevelByShifts<'_> {
     /// Which texel [`MipLevel::at_fraction`] would look up.
     #[inline]
     pub(crate) fn index(self, x: u64, y: u64) -> u32 {
