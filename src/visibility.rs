@@ -23,10 +23,10 @@
 mod billboard;
 mod column;
 mod draw_list;
+mod facing;
 mod filter;
 mod flat;
 mod frame_size;
-mod jamb;
 mod layer_order;
 mod lighting;
 mod plan;
@@ -43,9 +43,10 @@ mod visible_cells;
 pub(crate) use billboard::Billboard;
 pub use column::{Column, Surface};
 pub(crate) use draw_list::{
-    BillboardColumn, DrawList, Extent, Facing, Layer, Material, PlaneSpan, SeeThroughColumn, Span,
+    BillboardColumn, DrawList, Extent, Layer, Material, PlaneSpan, SeeThroughColumn, Span,
     SpanMemory, WallColumn, WallSink,
 };
+pub(crate) use facing::Facing;
 pub use filter::Filter;
 pub use frame_size::{FrameSize, PixelAspect};
 pub(crate) use lighting::{Faded, FullyLit, Lighting, SideLit};

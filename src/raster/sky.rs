@@ -67,7 +67,7 @@ impl<'a> SkyView<'a> {
                 let color = gradient(zenith, horizon, projection.slope(row));
                 target.span_mut(Pass::Sky, row, columns).fill(color);
             }
-            Self::Panorama { projection, level, columns: ref places } => {
+            Self::Panorama { projection, level, columns: places } => {
                 target.count_texels(Pass::Sky, columns.len());
                 let slope = projection.slope(row);
                 let pixels = target.span_mut(Pass::Sky, row, columns);
@@ -90,11 +90,11 @@ impl SkyColumn {
         Self { across: (turn * WHOLE) as u64, up_for_slope: 1.0 / (direction.length() * height) }
     }
 
-    /// Where it looks after the reflections that unfold the map by `transform`: a turn is taken from
+    /// Where it looks in the mirrors of `transform`: a turn is taken from
     /// the east, so that a mirror that faces north or south negates it.
     fn reflected_across(&self, transform: MirrorTransform) -> u64 {
         const HALF: u64 = 1 << 63;
-        let direction = transform.real_direction(DVec2::ONE);
+        let direction = transform.direction_to_map(DVec2::ONE);
         let across = if direction.y < 0.0 { self.across.wrapping_neg() } else { self.across };
         if direction.x < 0.0 { HALF.wrapping_sub(across) } else { across }
     }

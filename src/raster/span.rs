@@ -47,10 +47,10 @@ fn draw_lit<L: Lighting, S: Stats>(
             }
         },
         Pattern::Checker(paints) => {
-            draw_pieces(span, paints.map(|it| sampler.sample(it)), lighting, |x, y| x ^ y, target)
+            draw_pieces(span, &paints.map(|it| sampler.sample(it)), lighting, |x, y| x ^ y, target);
         }
         Pattern::Stripes(paints) => {
-            draw_pieces(span, paints.map(|it| sampler.sample(it)), lighting, |_, y| y, target)
+            draw_pieces(span, &paints.map(|it| sampler.sample(it)), lighting, |_, y| y, target);
         }
     }
 }
@@ -58,7 +58,7 @@ fn draw_lit<L: Lighting, S: Stats>(
 /// Draws `span` in two samples by turns: the first bit of what `piece` makes of a place tells which.
 fn draw_pieces<L: Lighting, S: Stats>(
     span: &PlaneSpan<'_>,
-    samples: [Sample<'_>; 2],
+    samples: &[Sample<'_>; 2],
     lighting: L,
     piece: impl Fn(u64, u64) -> u64,
     target: &mut Target<'_, S>,
@@ -68,15 +68,26 @@ fn draw_pieces<L: Lighting, S: Stats>(
     // others where in that.
     let places = mapping.places(columns.start, 1.0 / covering.scale.cells() / 2.0);
     let mut texels = 0;
+    if S::ARE_KEPT {
+        let sampled = places.clone().take(columns.len());
+        let sampled = sampled.map(|(x, y)| &samples[(piece(x, y) >> 63) as usize]);
+        texels = sampled.filter(|sample| matches!(sample, Sample::Level(_))).count();
+    }
+    target.count_texels(pass, texels);
+    let levels = samples.each_ref().map(Sample::by_shifts);
     let pixels = target.span_mut(pass, row, columns.clone());
+    if let [Some(one), Some(other)] = levels {
+        let levels = [one, other];
+        for (pixel, (x, y)) in pixels.iter_mut().zip(places) {
+            let level = &levels[(piece(x, y) >> 63) as usize];
+            *pixel = lighting.apply(level.at_index(level.index(x << 1, y << 1)));
+        }
+        return;
+    }
     for (pixel, (x, y)) in pixels.iter_mut().zip(places) {
         let sample = &samples[(piece(x, y) >> 63) as usize];
         *pixel = lighting.apply(sample.at_fraction(x << 1, y << 1));
-        if S::ARE_KEPT {
-            texels += usize::from(matches!(sample, Sample::Level(_)));
-        }
     }
-    target.count_texels(pass, texels);
 }
 
 /// Draws `level` on `pixels`.
@@ -194,6 +205,14 @@ impl<'a> Sampler<'a> {
 }
 
 impl Sample<'_> {
+    /// The level, if it needs no multiplications.
+    fn by_shifts(&self) -> Option<MipLevelByShifts<'_>> {
+        match self {
+            Self::Color(_) => None,
+            Self::Level(level) => level.by_shifts(),
+        }
+    }
+
     #[inline]
     fn at_fraction(&self, x: u64, y: u64) -> Rgb {
         match self {

@@ -26,7 +26,7 @@ const FEWEST_PIXELS: usize = 32;
 const AT_ONCE: usize = 16;
 
 impl TexelRuns {
-    /// The runs of so many pixels at `places` that show `level`. `None` where they are too short.
+    /// The runs of that many `pixels` at `places` that show `level`. `None` where they are too short.
     #[inline]
     pub(crate) fn of(
         level: MipLevelByShifts<'_>,

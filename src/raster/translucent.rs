@@ -11,7 +11,7 @@ use crate::color::Rgb;
 use crate::visibility::{Lighting, Pass, Scene, SeeThroughColumn, Stats};
 use crate::world::Glass;
 
-/// At most so many columns are drawn together.
+/// The most columns that are drawn together.
 const COLUMNS_AT_ONCE: usize = 32;
 
 /// Columns side by side of one tint that are not drawn yet.

@@ -13,7 +13,7 @@ use super::{Frame, FrameSize};
 use crate::raster::{SurfaceBuffer, Target};
 use crate::visibility::Stats;
 
-/// A thread for each so many pixels: with fewer, starting it takes longer than it saves.
+/// The pixels for which a thread is worth it: with fewer, starting it takes longer than it saves.
 const PIXELS_OF_A_THREAD: usize = 1 << 19;
 
 /// Bands for each thread. Each costs what it takes to prepare all columns.

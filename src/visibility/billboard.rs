@@ -78,7 +78,7 @@ impl Billboard {
         light: Light,
     ) -> Option<Self> {
         let Scene { world, projection, plan, .. } = scene;
-        let place = projection.place(image.mirrored_point(center));
+        let place = projection.place(image.in_image(center));
         let depth = place.depth;
         if !(NEAREST..f64::INFINITY).contains(&depth) {
             return None;
@@ -92,7 +92,7 @@ impl Billboard {
         if columns.is_empty() || rows.is_empty() {
             return None;
         }
-        let to_viewer = image.real_point(projection.origin()) - center;
+        let to_viewer = image.to_map(projection.origin()) - center;
         let picture = sprite.picture_index(seconds, to_viewer);
         let texture = &sprite.pictures()[picture];
         let texels = f64::from(texture.width()) * f64::from(texture.height());

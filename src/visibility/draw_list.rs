@@ -7,14 +7,12 @@
 
 use std::ops::Range;
 
-use glam::DVec2;
-
 use super::flat::{self, PlaneRow};
 use super::portal;
 use super::runs::{ColumnRuns, Shown};
 use super::stats::Pass;
-use super::{Billboard, Column, Scene, SpanMapping, Surface};
-use crate::cast::{MirrorTransform, Side};
+use super::{Billboard, Column, Facing, Scene, SpanMapping, Surface};
+use crate::cast::MirrorTransform;
 use crate::color::Rgb;
 use crate::world::{Covering, Glass, Light, Paint, Sprite, TextureId};
 
@@ -117,15 +115,6 @@ pub(crate) enum Material {
     Translucent(Glass),
 }
 
-/// Which way a face looks.
-#[derive(Clone, Copy, Debug)]
-pub(crate) enum Facing {
-    /// Along an axis.
-    Side(Side),
-    /// Along a vector of length 1, or the opposite way.
-    Normal(DVec2),
-}
-
 /// From which height to which a face reaches.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub(crate) enum Extent {
@@ -177,10 +166,10 @@ impl DrawList {
         self.make_room_for_layers(width * OF_A_COLUMN);
     }
 
-    /// Makes room for that many layers.
+    /// Makes room for that many layers, those that there are included.
     pub(super) fn make_room_for_layers(&mut self, count: usize) {
-        self.see_through.reserve(count);
-        self.layers.reserve(count);
+        self.see_through.reserve(count.saturating_sub(self.see_through.len()));
+        self.layers.reserve(count.saturating_sub(self.layers.len()));
     }
 
     /// Adds a masked or translucent column as the next layer.

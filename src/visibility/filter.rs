@@ -11,9 +11,9 @@ pub enum Filter {
 }
 
 impl Filter {
-    /// How often to halve a texture where a pixel covers an area of that many texels.
+    /// The level of detail for a pixel that covers an area of that many texels.
     ///
-    /// A halving makes a texel four times as large. A pixel that is long and narrow counts by its
+    /// A texel of each level covers four of the level before. A pixel that is long and narrow counts by its
     /// area: by its longer side, walls seen at an angle would blur across what is sharp on them; by
     /// its shorter one, they would shimmer.
     pub(crate) fn lod(self, area: f64) -> usize {

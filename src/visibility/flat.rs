@@ -6,18 +6,19 @@
 
 mod layers;
 mod planes;
+mod portal_starts;
 mod wall;
 
 use glam::DVec2;
 
 use super::column::Column;
-use super::portal::PortalStart;
 use super::ray_counter::RayCounter;
 use super::{DrawList, Projection, Scene, Stats};
 use crate::cast::{Caster, Hit, Ray};
-use crate::world::{Ceiling, Cell, Grid, Tile, TileId, TileKind, World};
+use crate::world::{Cell, Grid, TileId, TileKind, World};
 pub(super) use layers::{FlatMemory, PassedHits};
 pub(super) use planes::{PlaneRow, for_each_span};
+pub(super) use portal_starts::PortalStarts;
 pub(super) use wall::for_each_wall_column;
 
 /// Finds the columns of `list`, with the walls that `caster` finds in `grid`, and those that are left to
@@ -40,7 +41,7 @@ pub(super) fn find_columns<C: Caster, S: Stats>(
         cast(caster, grid, scene, columns, passed);
     }
     if scene.world.level_grid().is_some() {
-        leave_to_portals(scene, list);
+        portal_starts::leave_to_portals(scene, list);
     }
 }
 
@@ -53,84 +54,6 @@ pub(super) fn fill_layers<S: Stats>(
     stats: &mut S,
 ) -> Option<f64> {
     if list.is_flat { layers::fill(scene, memory, list, stats) } else { None }
-}
-
-/// Where the portal way begins with each column of a scene.
-#[derive(Clone, Copy)]
-pub(super) struct PortalStarts<'a> {
-    world: &'a World,
-    overhead: Overhead,
-}
-
-/// What is overhead where the floor is level.
-#[derive(Clone, Copy, PartialEq, Eq)]
-enum Overhead {
-    Sky,
-    Ceiling,
-    Both,
-}
-
-impl<'a> PortalStarts<'a> {
-    pub(super) fn new(world: &'a World) -> Self {
-        let is_floor = |tile: &&Tile| tile.is_level() && !matches!(tile.kind, TileKind::Wall(_));
-        let is_open = |tile: &Tile| tile.ceiling == Ceiling::Sky;
-        let floors = || world.tiles().iter().filter(is_floor);
-        let overhead = match (floors().any(is_open), floors().all(is_open)) {
-            (false, _) => Overhead::Ceiling,
-            (true, true) => Overhead::Sky,
-            (true, false) => Overhead::Both,
-        };
-        Self { world, overhead }
-    }
-
-    /// Where it begins with `column`; `None` where the flat way fills all of it.
-    pub(super) fn of(self, column: &Column) -> Option<PortalStart> {
-        let hit = column.hit.filter(|hit| !is_level(self.world, hit.cell))?;
-        Some(match self.overhead {
-            Overhead::Sky => PortalStart::Line { hit, rows: 0..column.rows.end },
-            Overhead::Ceiling => PortalStart::Line { hit, rows: column.rows.clone() },
-            // What is behind the first line may show above a ceiling, where the sky is.
-            Overhead::Both => PortalStart::Camera,
-        })
-    }
-
-    /// Whether all that is level is under a ceiling.
-    pub(super) fn are_under_ceilings(self) -> bool {
-        self.overhead == Overhead::Ceiling
-    }
-
-    /// Whether the flat way fills nothing of the columns that it leaves to the portal way.
-    fn are_at_camera(self) -> bool {
-        self.overhead == Overhead::Both
-    }
-}
-
-/// Takes from the columns of the flat way what is left to the portal way.
-fn leave_to_portals(scene: Scene<'_>, list: &mut DrawList) {
-    let DrawList { columns, flat_columns, is_flat, .. } = list;
-    let starts = PortalStarts::new(scene.world);
-    let is_left =
-        |column: &Column| column.hit.as_ref().is_some_and(|hit| !is_level(scene.world, hit.cell));
-    if !columns.iter().any(is_left) {
-        return;
-    }
-    *is_flat = !(starts.are_at_camera() && columns.iter().all(is_left));
-    let height = scene.projection.rows();
-    flat_columns.extend(columns.iter().map(|column| {
-        let (distance, rows) = match starts.of(column) {
-            None => return column.clone(),
-            Some(PortalStart::Camera) => (0.0, 0..height),
-            Some(PortalStart::Line { rows, .. }) => (column.distance, rows),
-        };
-        let hit = column.hit.map(|hit| Hit { t: -1.0, ..hit });
-        Column { hit, distance, rows }
-    }));
-}
-
-/// Whether what `cell` holds is level.
-fn is_level(world: &World, cell: Cell) -> bool {
-    let tile = world.grid().tile(cell.column.into(), cell.row.into());
-    tile.is_some_and(|TileId(index)| world.tiles()[usize::from(index)].is_level())
 }
 
 /// Casts the ray of every column into `columns`, and what it passes into `passed`, whatever they

@@ -1,6 +1,6 @@
-//! Shades: what becomes of a texel's colour on its way to the eye.
+//! Lighting: what light and fog make of a texel's colour.
 //!
-//! A row of the floor and a column of a wall have one shade each. The inner loops are compiled for
+//! A row of the floor and a column of a wall have one lighting each. The inner loops are compiled for
 //! each kind, so that a scene without fog and darkness has no trace of them there.
 
 use glam::DVec2;

@@ -1,10 +1,10 @@
-//! The plan: which passes draw a frame, and with which inner loop.
+//! The frame plan: how a frame is drawn, and with which inner loops.
 //!
-//! It is a small value, made from the world before anything is drawn, by looking at what each kind of
-//! tile consists of. The passes match on it once a frame, so that what a scene does not have is absent
-//! from their loops; what a single map has everywhere costs only that map.
+//! It is a small value, made from the world and the camera before anything is drawn, from what each kind
+//! of tile consists of. It is matched once a frame, so that what a scene does not have is absent from the
+//! loops.
 
-use std::fmt;
+mod display;
 
 use super::{Filter, Projection};
 use crate::color::Rgb;
@@ -12,10 +12,10 @@ use crate::world::{
     Camera, Ceiling, Covering, Heights, Light, Paint, Pattern, Sky, Tile, TileKind, World,
 };
 
-/// Which passes draw a frame, and how.
+/// How a frame is drawn.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct FramePlan {
-    /// Whether every ray ends where it meets the first wall, or goes on above, below and reflected.
+    /// How it is found out what is in view.
     pub visibility: Visibility,
     /// How exact rays go from cell to cell.
     pub rays: RayLoop,
@@ -85,7 +85,7 @@ pub enum CeilingLoop {
     /// Nothing but sky.
     Sky,
     /// A ceiling, in places at least.
-    Laid(PlaneLoop),
+    Plane(PlaneLoop),
 }
 
 /// How the sky is drawn.
@@ -144,9 +144,9 @@ impl FramePlan {
             floor: PlaneLoop::new(world.floor(), floor_varies, is_foggy),
             ceiling: match world.ceiling() {
                 Ceiling::Sky if open().all(|tile| tile.ceiling == Ceiling::Sky) => CeilingLoop::Sky,
-                Ceiling::Sky => CeilingLoop::Laid(PlaneLoop::Tiles),
+                Ceiling::Sky => CeilingLoop::Plane(PlaneLoop::Tiles),
                 Ceiling::Covered(covering) => {
-                    CeilingLoop::Laid(PlaneLoop::new(covering, ceiling_varies, is_foggy))
+                    CeilingLoop::Plane(PlaneLoop::new(covering, ceiling_varies, is_foggy))
                 }
             },
             sky: match world.sky() {
@@ -218,107 +218,5 @@ impl PlaneLoop {
             Pattern::Plain(Paint::Color(color)) => Self::Fill(color),
             _ => Self::Spans,
         }
-    }
-}
-
-impl fmt::Display for FramePlan {
-    /// Writes a line for each pass: how it runs, and why.
-    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
-        writeln!(f, "view     {}", self.visibility)?;
-        writeln!(f, "rays     {}", self.rays)?;
-        writeln!(f, "ceiling  {}", self.ceiling)?;
-        writeln!(f, "floor    {}", self.floor)?;
-        writeln!(f, "sky      {}", self.sky)?;
-        writeln!(f, "walls    {}", self.walls)?;
-        writeln!(f, "things   {}", self.things)?;
-        writeln!(f, "filter   {}", self.filter)
-    }
-}
-
-impl fmt::Display for Visibility {
-    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
-        match self {
-            Self::Flat => f.write_str("flat: a ray ends at the first wall"),
-            Self::Mixed(why) => write!(f, "flat, and portals in part of it: {why}"),
-            Self::Portals(why) => write!(f, "portals: {why}"),
-        }
-    }
-}
-
-impl fmt::Display for WhyPortals {
-    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
-        f.write_str(match self {
-            Self::Heights => "floors, ceilings or walls are not all of one height",
-            Self::Mirrors => "there are mirrors",
-            Self::Eye => "the eye is not between floor and ceiling",
-        })
-    }
-}
-
-impl fmt::Display for RayLoop {
-    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
-        f.write_str(match self {
-            Self::Cells => "cell by cell: each is looked at",
-            Self::Lines => "line by line, along one axis: walls are near",
-            Self::Leaps => "many lines at once, along one axis: most of the map is empty",
-        })
-    }
-}
-
-impl fmt::Display for PlaneLoop {
-    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
-        match self {
-            Self::Fill(color) => write!(f, "one fill: it is {color} everywhere"),
-            Self::FillRows(color) => write!(f, "a fill for each row: it is {color}, in fog"),
-            Self::Spans => f.write_str("visible spans: it is laid with the same everywhere"),
-            Self::Tiles => f.write_str("visible spans, cut by tile: tiles differ"),
-        }
-    }
-}
-
-impl fmt::Display for CeilingLoop {
-    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
-        match self {
-            Self::Sky => f.write_str("not drawn: there is only sky"),
-            Self::Laid(plane) => plane.fmt(f),
-        }
-    }
-}
-
-impl fmt::Display for SkyLoop {
-    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
-        f.write_str(match self {
-            Self::Gradient => "a colour for each row, where there is sky: it is a gradient",
-            Self::Panorama => "visible spans, where there is sky: it is a panorama",
-        })
-    }
-}
-
-impl fmt::Display for WallLoop {
-    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
-        f.write_str(if self.textured { "columns of texels" } else { "columns of one colour" })?;
-        f.write_str(if self.faded {
-            ", faded: there is fog, or a tile that is not fully lit"
-        } else {
-            ", unfaded: there is no fog, and all is fully lit"
-        })
-    }
-}
-
-impl fmt::Display for ThingLoop {
-    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
-        f.write_str(match self {
-            Self::None => "not drawn: there are none",
-            Self::Billboards => "those in view, from far to near",
-        })
-    }
-}
-
-impl fmt::Display for Filter {
-    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
-        f.write_str(match self {
-            Self::Mip => "mip: far texels are averaged",
-            Self::Nearest => "nearest: every texel is one of the texture's own",
-        })
     }
 }

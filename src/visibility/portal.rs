@@ -14,6 +14,7 @@
 mod billboards;
 mod layers;
 mod line;
+mod met;
 mod ray_segments;
 mod spans;
 mod standing;
@@ -46,7 +47,7 @@ pub(super) enum PortalStart {
     Line { hit: Hit, rows: Range<u32> },
 }
 
-/// There is room for so many things in view from the first frame on.
+/// The number of things in view for which there is room from the first frame on.
 const MOST_THINGS: usize = 4096;
 
 /// What the portal way remembers from one frame to the next; kept so that it is allocated once.

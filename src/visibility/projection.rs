@@ -112,7 +112,7 @@ impl Projection {
     pub(crate) fn fans_out(&self) -> bool {
         /// Half of that field of view is between 0.06° and 89.94°.
         const MODERATE: RangeInclusive<f64> = 1e-3..=1e3;
-        /// At most so many rays.
+        /// The most rays.
         const WIDEST: u32 = 1 << 16;
         MODERATE.contains(&self.plane.length()) && self.width <= WIDEST
     }

@@ -1,6 +1,6 @@
 //! Runs: rows of a column of pixels that show the same floor, ceiling or sky.
 //!
-//! A note for each pixel was refused: writing them, and comparing each with its neighbour to find spans,
+//! An entry for each pixel was refused: writing them, and comparing each with its neighbour to find spans,
 //! took a fifth of a frame.
 
 use std::ops::Range;
@@ -9,7 +9,7 @@ use super::Surface;
 use crate::cast::{MirrorTransform, Side};
 use crate::world::TileId;
 
-/// There is room for so many images in mirrors from the first frame on.
+/// The number of images in mirrors for which there is room from the first frame on.
 pub(crate) const IMAGES_AT_ONCE: usize = 64;
 
 /// The runs of all columns; kept so that it is allocated once.
@@ -115,7 +115,7 @@ impl ColumnRuns {
         self.bounds.push(self.runs.len());
     }
 
-    /// Takes note of what `rows` of the column that is being filled show.
+    /// Adds what `rows` of the column that is being filled show.
     #[inline]
     pub(crate) fn show(&mut self, rows: Range<u32>, shown: Shown) {
         if !rows.is_empty() {

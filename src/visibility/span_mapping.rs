@@ -1,4 +1,4 @@
-//! Tracks: where on the map the pixels of a row are, as far as they show floor or ceiling.
+//! Span mappings: where on the map the pixels of a row of floor or ceiling are.
 //!
 //! All pixels of such a row are at one distance, and their centres stand side by side on a straight
 //! line. Each row's line is computed from the row's own index, and each pixel's place from the middle
@@ -39,8 +39,8 @@ impl SpanMapping {
     /// Where it is on the map, if what it shows is seen in mirrors.
     pub(crate) fn seen_in_mirrors(self, transform: MirrorTransform) -> Self {
         Self {
-            middle: transform.real_point(self.middle),
-            half_step: transform.real_direction(self.half_step),
+            middle: transform.to_map(self.middle),
+            half_step: transform.direction_to_map(self.half_step),
             ..self
         }
     }
@@ -114,7 +114,7 @@ impl SpanMapping {
     }
 }
 
-/// TexelPlaces within a repeat, one for each pixel, in 2⁻⁶⁴ths of it along both axes.
+/// Places within a repeat, one for each pixel, in 2⁻⁶⁴ths of it along both axes.
 #[derive(Clone, Debug)]
 pub(crate) struct TexelPlaces {
     x: u64,
@@ -134,7 +134,7 @@ impl TexelPlaces {
         [self.x_step, self.y_step]
     }
 
-    /// Goes on by so many pixels.
+    /// Goes on by `count` pixels.
     pub(crate) fn skip_pixels(&mut self, count: u64) {
         self.x = self.x.wrapping_add(self.x_step.wrapping_mul(count));
         self.y = self.y.wrapping_add(self.y_step.wrapping_mul(count));

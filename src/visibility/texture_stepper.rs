@@ -1,6 +1,6 @@
-//! FaceTexels down a face: which one the centre of a row of pixels is on.
+//! The texture stepper: which texel down a face the centre of each row of pixels is on.
 //!
-//! They are counted from eye height, so that however near a face is, what is above the horizon shows
+//! Texels are counted from eye height, so that however near a face is, what is above the horizon shows
 //! what is above the eye; and in fixed point, by the row's own index, so that no error adds up and a
 //! step is one addition. Counting in doubles was refused: a conversion and a floor for each pixel
 //! took half the time of a whole frame.

@@ -32,7 +32,7 @@ fn explained(world: &World) -> Explanation {
 fn a_flat_scene_reads_texels_for_its_walls_alone() {
     let Explanation { plan, stats, .. } = explained(&gallery("flat"));
     assert!(matches!(plan.floor, PlaneLoop::Fill(_)));
-    assert!(matches!(plan.ceiling, CeilingLoop::Laid(PlaneLoop::Fill(_))));
+    assert!(matches!(plan.ceiling, CeilingLoop::Plane(PlaneLoop::Fill(_))));
     assert_eq!((stats.floor.texels, stats.ceiling.texels, stats.sky.pixels), (0, 0, 0));
     assert_eq!(stats.walls.texels, stats.walls.pixels);
     // Rays between two that hit the same face need not be cast.
@@ -63,7 +63,7 @@ fn textures_are_read_once_for_each_pixel_that_shows_them() {
 fn a_texture_on_the_floor_alone_costs_the_floor_alone() {
     let text = include_str!("../../maps/gallery/floor.toml").replace("\"wood\"", "\"#26262c\"");
     let Explanation { plan, stats, .. } = explained(&map::parse_str(&text).unwrap());
-    assert!(matches!(plan.ceiling, CeilingLoop::Laid(PlaneLoop::Fill(_))));
+    assert!(matches!(plan.ceiling, CeilingLoop::Plane(PlaneLoop::Fill(_))));
     assert_eq!(stats.ceiling.texels, 0);
     assert_eq!(stats.floor, explained(&gallery("floor")).stats.floor);
 }

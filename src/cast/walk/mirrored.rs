@@ -1,4 +1,4 @@
-//! The walk through a hall of mirrors, unfolded: the ray goes straight on, and the map is turned over.
+//! The walk through mirrors: the ray goes straight on, and the map is mirrored.
 //!
 //! Behind a mirror is the map once more, the other way round. So a ray that meets one is not bent:
 //! it keeps its origin, its direction and its `t`, goes on crossing the same lines in the same exact
@@ -13,15 +13,14 @@ use crate::cast::hit::{meeting, texture_coordinate};
 use crate::cast::{ExactOrder, Order, Passage, Ray, Side, door};
 use crate::world::{Cell, Grid, TileId, TileKind, World};
 
-/// Where places of the unfolded map are on the map itself.
+/// Where what is seen in mirrors is on the map: from places along the straight ray to places on the map.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Default)]
 pub(crate) struct MirrorTransform {
     x: AxisTransform,
     y: AxisTransform,
 }
 
-/// Where the lines of one axis are on the map itself: so many to the east or south of their unfolded
-/// places, or mirrored and then so many.
+/// The same for one axis: a place is moved by an offset, or mirrored at 0 and then moved.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Default)]
 struct AxisTransform {
     is_mirrored: bool,
@@ -35,7 +34,7 @@ pub(crate) struct Crossed {
     pub(crate) side: Side,
     /// What it leads into; `None` where it is the edge of the map, and the walk ends.
     pub(crate) into: Option<(Cell, TileId)>,
-    /// Where the line is, unfolded.
+    /// Where the line is along the straight ray.
     line: f64,
 }
 
@@ -170,14 +169,14 @@ impl MirroredWalk {
             Side::Y => (&self.y, &mut self.transform.y, &mut self.row),
         };
         *transform = transform.mirrored_at(axis.line as i64 - axis.step);
-        *on_map = OnMap { index: transform.real_index(axis.index), step: -on_map.step };
+        *on_map = OnMap { index: transform.index_on_map(axis.index), step: -on_map.step };
         self.bounces += 1;
     }
 
     /// Where the ray passes through what stands in `cell`, where it is now, and does not fill it: a
     /// door's leaf, which has no inside, or a shape.
     pub(crate) fn standing(&self, world: &World, cell: Cell, kind: TileKind) -> Passage {
-        let ray = self.real_ray();
+        let ray = self.ray_on_map();
         match kind {
             TileKind::Door(_) => {
                 let hit = door::meet(world.grid(), &ray, cell, world.opening(cell));
@@ -189,11 +188,11 @@ impl MirroredWalk {
     }
 
     /// The ray as it is on the map after all reflections, as if it had come straight.
-    pub(crate) fn real_ray(&self) -> Ray {
-        Ray::moved(self.transform.real_point(self.ray.origin()), self.direction())
+    pub(crate) fn ray_on_map(&self) -> Ray {
+        Ray::moved(self.transform.to_map(self.ray.origin()), self.direction())
     }
 
-    /// Where the unfolded places around the ray are on the map.
+    /// Where the places around the ray are on the map.
     pub(crate) fn transform(&self) -> MirrorTransform {
         self.transform
     }
@@ -205,19 +204,19 @@ impl MirroredWalk {
 
     /// Where the ray goes on the map, after all reflections.
     fn direction(&self) -> DVec2 {
-        self.transform.real_direction(self.ray.direction())
+        self.transform.direction_to_map(self.ray.direction())
     }
 }
 
 impl MirrorTransform {
-    /// Where an unfolded point is on the map.
-    pub(crate) fn real_point(self, point: DVec2) -> DVec2 {
-        DVec2::new(self.x.real_place(point.x), self.y.real_place(point.y))
+    /// Where a point along the straight ray is on the map.
+    pub(crate) fn to_map(self, point: DVec2) -> DVec2 {
+        DVec2::new(self.x.to_map(point.x), self.y.to_map(point.y))
     }
 
-    /// Where a point of the map is, unfolded.
-    pub(crate) fn mirrored_point(self, point: DVec2) -> DVec2 {
-        DVec2::new(self.x.unfolded_place(point.x), self.y.unfolded_place(point.y))
+    /// Where a point of the map is along the straight ray.
+    pub(crate) fn in_image(self, point: DVec2) -> DVec2 {
+        DVec2::new(self.x.in_image(point.x), self.y.in_image(point.y))
     }
 
     /// Whether left and right are swapped.
@@ -225,8 +224,8 @@ impl MirrorTransform {
         self.x.is_mirrored != self.y.is_mirrored
     }
 
-    /// Which way an unfolded direction is on the map.
-    pub(crate) fn real_direction(self, direction: DVec2) -> DVec2 {
+    /// Which way a direction along the straight ray is on the map.
+    pub(crate) fn direction_to_map(self, direction: DVec2) -> DVec2 {
         let along =
             |transform: AxisTransform, part: f64| if transform.is_mirrored { -part } else { part };
         DVec2::new(along(self.x, direction.x), along(self.y, direction.y))
@@ -234,22 +233,22 @@ impl MirrorTransform {
 }
 
 impl AxisTransform {
-    fn real_place(self, place: f64) -> f64 {
+    fn to_map(self, place: f64) -> f64 {
         let offset = self.offset as f64;
         if self.is_mirrored { offset - place } else { offset + place }
     }
 
-    fn unfolded_place(self, place: f64) -> f64 {
+    fn in_image(self, place: f64) -> f64 {
         let offset = self.offset as f64;
         if self.is_mirrored { offset - place } else { place - offset }
     }
 
-    /// The column or row that the unfolded one at `index` is.
-    fn real_index(self, index: i64) -> i64 {
+    /// The column or row of the map that the one at `index` along the straight ray is.
+    fn index_on_map(self, index: i64) -> i64 {
         if self.is_mirrored { self.offset - 1 - index } else { self.offset + index }
     }
 
-    /// The transform behind a mirror at the unfolded `line`.
+    /// The transform behind a mirror at `line`.
     fn mirrored_at(self, line: i64) -> Self {
         let moved = if self.is_mirrored { -2 * line } else { 2 * line };
         Self { is_mirrored: !self.is_mirrored, offset: self.offset + moved }

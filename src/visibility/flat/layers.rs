@@ -13,7 +13,7 @@ use std::cmp::Ordering;
 use std::ops::Range;
 
 use super::PortalStarts;
-use super::wall::{across_line, light_of};
+use super::wall::light_of;
 use crate::cast::{Hit, MirrorTransform};
 use crate::visibility::layer_order::put_in_order;
 use crate::visibility::visible_cells::VisibleCells;
@@ -21,13 +21,13 @@ use crate::visibility::{
     Billboard, BillboardColumn, Column, DrawList, Extent, Facing, Layer, Material, Scene,
     SeeThroughColumn, Stats, ThingLoop,
 };
-use crate::world::{Cell, Tile, TileKind};
+use crate::world::{Cell, Light, Tile, TileKind};
 
-/// There is room for so many things in view from the first frame on, so that a camera that turns
-/// towards more of them needs no more memory.
+/// The number of things in view for which there is room from the first frame on, so that a camera that
+/// turns towards more of them needs no more memory.
 const MOST_AT_FIRST: usize = 4096;
 
-/// There is room for so many layers in each column from the first frame on, likewise.
+/// The number of layers in each column, likewise.
 const LAYERS_OF_A_COLUMN: usize = 16;
 
 /// What the flat way remembers from one frame to the next; kept so that it is allocated once.
@@ -114,8 +114,11 @@ pub(super) fn fill<S: Stats>(
 fn find_billboards(scene: Scene<'_>, visible: &mut VisibleCells, list: &mut DrawList) -> u64 {
     let world = scene.world;
     let first = list.billboards.len();
-    list.billboards.reserve(world.things().len().min(MOST_AT_FIRST));
-    list.layers.reserve(list.columns.len() * LAYERS_OF_A_COLUMN);
+    if first == 0 {
+        list.billboards.reserve(world.things().len().min(MOST_AT_FIRST));
+    }
+    let most_layers = list.columns.len() * LAYERS_OF_A_COLUMN;
+    list.layers.reserve(most_layers.saturating_sub(list.layers.len()));
     visible.outline(scene, list.flat_columns());
     let mut considered = 0;
     for &thing in visible.things(world) {
@@ -154,7 +157,7 @@ impl PassedHits {
         self.list.clear();
     }
 
-    /// Makes room for what so many rays pass in all but the strangest of maps, so that a camera that
+    /// Makes room for what that many `rays` pass in all but the strangest of maps, so that a camera that
     /// turns towards more of it needs no more memory.
     pub(super) fn make_room_for(&mut self, rays: usize) {
         const OF_A_RAY: usize = 8;
@@ -221,15 +224,16 @@ fn push_hit(scene: Scene<'_>, column: usize, hit: &Hit, list: &mut DrawList) {
         Some(TileKind::Glass(glass)) => Material::Translucent(glass),
         _ => return,
     };
-    let column = column as u32;
+    let (column, facing) = (column as u32, Facing::Side(hit.side));
+    let is_lit = scene.plan.walls.faded;
     list.push_see_through(SeeThroughColumn {
         column,
         rows: scene.projection.wall_rows(hit.t),
-        facing: Facing::Side(hit.side),
-        slope: across_line(hit.side, scene.projection.direction_of(column)),
+        facing,
+        slope: facing.slope(scene.projection.direction_of(column)),
         t: hit.t,
         u: hit.u,
-        light: light_of(scene, column, hit),
+        light: if is_lit { light_of(scene, column, hit) } else { Light::FULL },
         material,
         extent: Extent::Level,
     });

@@ -28,7 +28,7 @@ pub(crate) fn for_each_span(
     let plane = |kind| Plane { scene, columns, kind };
     match scene.plan.ceiling {
         CeilingLoop::Sky => sky_overhead(scene, columns, rows, emit),
-        CeilingLoop::Laid(ceiling) => {
+        CeilingLoop::Plane(ceiling) => {
             plane(PlaneKind::Ceiling).for_each_span(ceiling, rows, memory, emit);
             sky_beyond_edge(scene, columns, rows, emit);
         }

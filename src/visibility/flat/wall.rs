@@ -5,9 +5,9 @@ use std::ops::Range;
 use glam::DVec2;
 
 use crate::cast::{Hit, Side};
-use crate::visibility::jamb::jamb;
+use crate::visibility::facing::cell_before;
 use crate::visibility::{Column, Extent, Facing, Scene, WallColumn, WallSink};
-use crate::world::{Cell, FaceLight, Light, Outline, Paint, Shape, Tile, TileId, TileKind, World};
+use crate::world::{Cell, FaceLight, Light, Paint, Tile, TileId, TileKind, World};
 
 /// Hands the wall column of each of `columns` that has one in `rows` to `sink`, from left to right.
 /// The light is right only where it `is_lit`.
@@ -31,15 +31,16 @@ pub(crate) fn for_each_wall_column(
             Some(latest) if latest.0.is_of(hit) => &*latest,
             latest => {
                 let face = Face::new(scene, x, hit, is_lit);
-                latest.insert((face, face.paint(scene, hit)))
+                latest.insert((face, face.paint(scene, x, hit)))
             }
         };
-        let (facing, slope) = face.facing_and_slope(scene, x, hit);
+        let direction = scene.projection.direction_of(x);
+        let facing = face.facing(scene, direction, hit);
         let wall = WallColumn {
             column: x,
             rows: column.rows.clone(),
             facing,
-            slope,
+            slope: facing.slope(direction),
             t: hit.t,
             u: hit.u,
             paint: *paint,
@@ -53,14 +54,6 @@ pub(crate) fn for_each_wall_column(
 /// How bright what the ray of column `x` hit is.
 pub(super) fn light_of(scene: Scene<'_>, x: u32, hit: &Hit) -> Light {
     Face::new(scene, x, hit, true).light.at(hit.u)
-}
-
-/// The part of a direction that leads straight at lines of that kind.
-pub(super) fn across_line(side: Side, direction: DVec2) -> f64 {
-    match side {
-        Side::X => direction.x,
-        Side::Y => direction.y,
-    }
 }
 
 /// What is the same for all columns that show one face of a cell.
@@ -91,11 +84,12 @@ impl<'a> Face<'a> {
         (self.cell, self.side) == (hit.cell, hit.side)
     }
 
-    /// How it looks, where `hit` is on it: as a jamb, where it faces a door.
-    fn paint(&self, scene: Scene<'_>, hit: &Hit) -> Paint {
-        let Scene { world, projection, plan, .. } = scene;
-        let jamb = if plan.walls.jambs { jamb(world, projection, hit) } else { None };
-        jamb.unwrap_or_else(|| self.paint_of_tile(world))
+    /// How it looks, where the ray of column `x` hit it: as a jamb, where it faces a door.
+    fn paint(&self, scene: Scene<'_>, x: u32, hit: &Hit) -> Paint {
+        let Scene { world, plan, .. } = scene;
+        let door = || world.door(place_before(scene, x, hit)?);
+        let door = if plan.walls.jambs { door() } else { None };
+        door.map_or_else(|| self.paint_of_tile(world), |door| door.jamb)
     }
 
     /// How the tile itself looks.
@@ -114,28 +108,15 @@ impl<'a> Face<'a> {
         }
     }
 
-    /// Which way it faces where the ray of column `x` hit it, and how the ray approaches it.
+    /// Which way it faces where a ray along `direction` hit it.
     #[inline]
-    fn facing_and_slope(&self, scene: Scene<'_>, x: u32, hit: &Hit) -> (Facing, f64) {
-        let direction = scene.projection.direction_of(x);
+    fn facing(&self, scene: Scene<'_>, direction: DVec2, hit: &Hit) -> Facing {
         match self.tile.map(|tile| &tile.kind) {
             Some(&TileKind::Shape(shape)) => {
-                let normal = normal(scene, shape, direction, hit);
-                (Facing::Normal(normal), normal.dot(direction))
+                let point = scene.projection.origin() + direction * hit.t;
+                Facing::of_shape(shape.outline, point, hit)
             }
-            _ => (Facing::Side(hit.side), across_line(hit.side, direction)),
-        }
-    }
-}
-
-/// Which way a shape faces where a ray along `direction` hit it, or the opposite way: a vector of
-/// length 1.
-fn normal(scene: Scene<'_>, shape: Shape, direction: DVec2, hit: &Hit) -> DVec2 {
-    match shape.outline {
-        Outline::Line(line) => line.stretch().perp().normalize(),
-        Outline::Pillar(_) => {
-            let point = scene.projection.origin() + direction * hit.t;
-            (point - hit.cell.center()).normalize_or_zero()
+            _ => Facing::Side(hit.side),
         }
     }
 }
@@ -146,7 +127,7 @@ fn face_light(scene: Scene<'_>, x: u32, hit: &Hit, tile: Option<&Tile>) -> FaceL
     if let Some(own) = tile.and_then(|tile| tile.light) {
         return FaceLight::even(own);
     }
-    let before = || cell_before(hit, scene.projection.direction_of(x));
+    let before = || place_before(scene, x, hit);
     match tile.map(|tile| tile.kind) {
         // It stands in a cell of its own.
         Some(TileKind::Shape(_)) => FaceLight::even(world.light_in(hit.cell)),
@@ -157,14 +138,9 @@ fn face_light(scene: Scene<'_>, x: u32, hit: &Hit, tile: Option<&Tile>) -> FaceL
     }
 }
 
-/// The cell that the side of a wall is seen from, along `direction`; `None` off the map's north and
-/// west.
-fn cell_before(hit: &Hit, direction: DVec2) -> Option<Cell> {
-    let Cell { column, row } = hit.cell;
-    let is_ahead = across_line(hit.side, direction) > 0.0;
-    let before = |index: u32| if is_ahead { index.checked_sub(1) } else { index.checked_add(1) };
-    Some(match hit.side {
-        Side::X => Cell { column: before(column)?, row },
-        Side::Y => Cell { column, row: before(row)? },
-    })
+/// The cell from which the ray of column `x` sees what it hit; `None` off the map's north and west.
+fn place_before(scene: Scene<'_>, x: u32, hit: &Hit) -> Option<Cell> {
+    let [column, row] = cell_before(scene.projection.direction_of(x), hit);
+    let is_known = column >= 0 && row >= 0;
+    is_known.then_some(Cell { column: column as u32, row: row as u32 })
 }

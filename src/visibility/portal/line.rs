@@ -2,8 +2,9 @@
 
 use std::ops::Range;
 
+use super::met::Met;
 use super::tile_gaps::{BOTTOMLESS, GapId, Holds};
-use super::walk::{ColumnWalk, MOST_BOUNCES, Met, Place, PortalRay};
+use super::walk::{ColumnWalk, MOST_BOUNCES, Place, PortalRay};
 use crate::cast::Hit;
 use crate::visibility::runs::{FlatSurface, ImageId, Part, Shown};
 use crate::visibility::{Extent, Material};
@@ -44,7 +45,8 @@ impl ColumnWalk<'_> {
                 self.pass_cube(ray, place, &(start..end), met);
             }
             if let Some((gap, start, end)) = goes_on.replace((id, start, end)) {
-                self.memory.rays.push(PortalRay { place, gap, rows: start..end, ..ray.clone() });
+                let (walk, rows) = (ray.walk.clone(), start..end);
+                self.memory.rays.push(PortalRay { walk, place, gap, rows, ..*ray });
             }
         }
         let Some((gap, start, end)) = goes_on else { return false };
@@ -76,7 +78,7 @@ impl ColumnWalk<'_> {
             && let TileKind::Mirror(tint) = tile.kind
             && ray.walk.bounces() < MOST_BOUNCES
         {
-            self.reflect(PortalRay { rows, ..ray.clone() }, place, met, tint);
+            self.reflect(ray, rows, place, met, tint);
             return;
         }
         let before = surroundings.tile(met.before).map(|tile| &tile.kind);
@@ -100,15 +102,15 @@ impl ColumnWalk<'_> {
         }
     }
 
-    /// Follows the mirror image later, behind the mirror's tint.
-    fn reflect(&mut self, mut image: PortalRay, place: Place, met: &Met, tint: Glass) {
+    /// Has the mirror image followed later in those `rows`, behind the mirror's tint.
+    fn reflect(&mut self, ray: &PortalRay, rows: Range<u32>, place: Place, met: &Met, tint: Glass) {
         self.memory.stats.bounces += 1;
         let everywhere = Extent::Heights { bottom: BOTTOMLESS.bottom, top: BOTTOMLESS.top };
-        let tint = Material::Translucent(tint);
-        self.pass(&image, image.rows.clone(), met, place, tint, everywhere);
-        image.walk.reflect(met.side);
-        image.image = self.list.runs.image_id(image.walk.transform());
-        self.memory.rays.push(image);
+        self.pass(ray, rows.clone(), met, place, Material::Translucent(tint), everywhere);
+        let mut walk = ray.walk.clone();
+        walk.reflect(met.side);
+        let image = self.list.runs.image_id(walk.transform());
+        self.memory.rays.push(PortalRay { walk, rows, image, ..*ray });
     }
 
     /// Passes the face of the cube in `place` that is seen through.

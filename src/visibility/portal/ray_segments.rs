@@ -46,7 +46,7 @@ impl NorthSouth {
 }
 
 impl ImagesInView {
-    /// Finds out what is seen in so many images, by all `segments`.
+    /// Finds out what the `segments` show of each of that many images.
     pub(crate) fn look(&mut self, scene: Scene<'_>, images: usize, segments: &[RaySegment]) {
         self.make_room(scene.world, images);
         let list = &mut self.list[..images];
@@ -158,7 +158,7 @@ mod tests {
                 let ImageId(image) = part.image;
                 let transform = images[usize::from(image)];
                 for thing in world.things() {
-                    let place = projection.place(transform.mirrored_point(thing.cell.center()));
+                    let place = projection.place(transform.in_image(thing.cell.center()));
                     let width = world.sprite(thing.sprite).width();
                     let half = projection.columns_for(width, place.depth) / 2.0;
                     let column = f64::from(part.column) + 0.5;

@@ -41,14 +41,18 @@ pub(crate) fn for_each_span(
     for (x, column) in runs.columns().enumerate() {
         if before.is_empty() || column.is_empty() {
             // One of them is not filled by the portal way.
-            before.iter().for_each(|run| end_spans(run, starts, x));
+            for run in before {
+                end_spans(run, starts, x);
+            }
             starts.fill(x);
         } else {
             changes(before, column).for_each(|change| end_spans(&change, starts, x));
         }
         before = column;
     }
-    before.iter().for_each(|run| end_spans(run, starts, scene.projection.columns()));
+    for run in before {
+        end_spans(run, starts, scene.projection.columns());
+    }
 }
 
 /// What `one` column shows that its neighbour does not show in the same rows.

@@ -2,13 +2,13 @@
 
 use std::ops::Range;
 
-use glam::DVec2;
-
-use super::walk::{AlongFace, ColumnWalk, Met, Place, PortalRay, cell_before};
-use crate::cast::{Hit, Passage, Ray, Side};
+use super::met::{AlongFace, Met};
+use super::walk::{ColumnWalk, Place, PortalRay};
+use crate::cast::{Hit, Passage, Ray};
+use crate::visibility::facing::cell_before;
 use crate::visibility::runs::{FlatSurface, ImageId, Part, Shown};
 use crate::visibility::{Extent, Facing};
-use crate::world::{Cell, Outline, Tile, TileKind};
+use crate::world::{Cell, Tile, TileKind};
 
 impl ColumnWalk<'_> {
     /// Meets what stands in the gap that `ray` is in. What is above it, if anything, stays open.
@@ -35,10 +35,10 @@ impl ColumnWalk<'_> {
     fn meet_side(&mut self, ray: &mut PortalRay, kind: TileKind, tile: &Tile, hit: Hit) {
         let (bottom, top) = (tile.heights.floor(), tile.top_of_what_stands());
         self.close(ray, hit.t);
-        let real = ray.walk.real_ray();
+        let real = ray.walk.ray_on_map();
         let (paint, facing) = match kind {
             TileKind::Door(door) => (door.leaf, Facing::Side(hit.side)),
-            TileKind::Shape(it) => (it.paint, Facing::Normal(normal(it.outline, &real, &hit))),
+            TileKind::Shape(it) => (it.paint, Facing::of_shape(it.outline, real.at(hit.t), &hit)),
             _ => return,
         };
         let before = match kind {
@@ -46,11 +46,7 @@ impl ColumnWalk<'_> {
             // It stands in a cell of its own.
             _ => ray.place,
         };
-        let slope = match facing {
-            Facing::Side(Side::X) => real.direction().x,
-            Facing::Side(Side::Y) => real.direction().y,
-            Facing::Normal(normal) => normal.dot(real.direction()),
-        };
+        let slope = facing.slope(real.direction());
         let u = AlongFace::Known(hit.u);
         let met = Met { side: hit.side, facing, slope, t: hit.t, u, before };
         let rows = self.rows_between(&ray.rows, bottom..top, hit.t);
@@ -83,13 +79,5 @@ impl ColumnWalk<'_> {
         let [column, row] = cell_before(ray.direction(), hit);
         let tile = self.surroundings.scene.world.grid().tile(column, row)?;
         Some((Cell { column: column as u32, row: row as u32 }, tile))
-    }
-}
-
-/// Which way a shape faces where `ray` hit it, or the opposite way: a vector of length 1.
-fn normal(outline: Outline, ray: &Ray, hit: &Hit) -> DVec2 {
-    match outline {
-        Outline::Line(line) => line.stretch().perp().normalize(),
-        Outline::Pillar(_) => (ray.at(hit.t) - hit.cell.center()).normalize_or_zero(),
     }
 }

@@ -7,15 +7,15 @@ use glam::DVec2;
 use super::PortalStart;
 use super::billboards::RayPart;
 use super::layers::Passed;
+use super::met::{AlongFace, Met};
 use super::ray_segments::RaySegment;
 use super::tile_gaps::{GapId, Holds, TileGaps};
-use crate::cast::{Crossed, Hit, MirroredWalk, Ray, Side};
+use crate::cast::{Crossed, Hit, MirroredWalk, Ray};
+use crate::visibility::facing;
 use crate::visibility::projection::Rise;
 use crate::visibility::runs::{FlatSurface, ImageId, Part, Shown};
-use crate::visibility::{
-    Column, DrawList, Extent, Facing, Material, PortalStats, Scene, SeeThroughColumn, WallColumn,
-};
-use crate::world::{Camera, Cell, Light, Paint, Tile, TileId, TileKind};
+use crate::visibility::{Column, DrawList, Facing, PortalStats, Scene};
+use crate::world::{Camera, Cell, Tile, TileId, TileKind};
 
 /// How often a ray is reflected; the mirror after that shows its tint.
 pub(super) const MOST_BOUNCES: u32 = 8;
@@ -47,26 +47,6 @@ pub(super) struct PortalRay {
 /// Where a ray is: in a cell, or off the map.
 pub(super) type Place = Option<(Cell, TileId)>;
 
-/// An upright face that a ray meets.
-pub(super) struct Met {
-    /// The kind of line that it is on, or runs along most.
-    pub(super) side: Side,
-    pub(super) facing: Facing,
-    /// How many cells the ray comes nearer to it for each unit of `t`.
-    pub(super) slope: f64,
-    pub(super) t: f64,
-    pub(super) u: AlongFace,
-    /// From where it is met.
-    pub(super) before: Place,
-}
-
-/// How far along a face it is met.
-pub(super) enum AlongFace {
-    Known(f64),
-    /// To be computed from the line that the ray has just crossed: most lines have no face in view.
-    AtLine(Crossed),
-}
-
 /// What walks leave besides the draw list; kept so that it is allocated once.
 #[derive(Clone, Debug, Default)]
 pub(super) struct WalkMemory {
@@ -82,7 +62,7 @@ pub(super) struct WalkMemory {
 /// The walk of one column.
 pub(super) struct ColumnWalk<'a> {
     pub(super) surroundings: &'a Surroundings<'a>,
-    column: u32,
+    pub(super) column: u32,
     direction: DVec2,
     pub(super) memory: &'a mut WalkMemory,
     pub(super) list: &'a mut DrawList,
@@ -152,13 +132,12 @@ impl<'a> ColumnWalk<'a> {
     /// hit and how far it got before it was reflected.
     pub(super) fn follow(mut self, ray: &Ray, start: PortalStart) -> Column {
         self.memory.stats.rays += 1;
-        let mut next = match start {
-            PortalStart::Camera => Some(self.start_at_camera(ray)),
+        match start {
+            PortalStart::Camera => self.start_at_camera(ray),
             PortalStart::Line { hit, rows } => self.start_at_line(ray, hit, rows),
-        };
-        while let Some(mut ray) = next.or_else(|| self.memory.rays.pop()) {
+        }
+        while let Some(mut ray) = self.memory.rays.pop() {
             self.follow_one(&mut ray);
-            next = None;
         }
         let projection = self.surroundings.scene.projection;
         self.list.runs.end_column(projection.rows());
@@ -167,8 +146,8 @@ impl<'a> ColumnWalk<'a> {
         Column { hit, distance, rows: row_of(1.0)..row_of(0.0) }
     }
 
-    /// The ray from the line that `hit` is on, in what is left of `rows` behind it; `None` where nothing is.
-    fn start_at_line(&mut self, ray: &Ray, hit: Hit, rows: Range<u32>) -> Option<PortalRay> {
+    /// Has the ray followed from the line that `hit` is on, in what is left of `rows` behind it.
+    fn start_at_line(&mut self, ray: &Ray, hit: Hit, rows: Range<u32>) {
         let &Surroundings { scene, gaps, most_bounces, .. } = self.surroundings;
         let runs = &mut self.list.runs;
         runs.show(0..rows.start, Shown::Flat);
@@ -176,31 +155,31 @@ impl<'a> ColumnWalk<'a> {
         let Hit { cell, side, t, .. } = hit;
         let grid = scene.world.grid();
         let (walk, crossed) = MirroredWalk::entering(grid, ray, most_bounces, (cell, side));
-        let before = cell_before(self.direction, &hit);
+        let before = facing::cell_before(self.direction, &hit);
         let before = grid
             .tile(before[0], before[1])
             .map(|tile| (Cell { column: before[0] as u32, row: before[1] as u32 }, tile));
-        let gap = gaps.of(before).next()?;
+        let Some(gap) = gaps.of(before).next() else { return };
         let into = crossed.into;
         let met = self.met_at(crossed, t, before);
         self.distance = t;
         let image = ImageId::NONE;
         let mut ray = PortalRay { walk, place: before, gap, rows, from: t, image };
-        self.cross_line(&mut ray, into, &met).then_some(ray)
+        if self.cross_line(&mut ray, into, &met) {
+            self.memory.rays.push(ray);
+        }
     }
 
     /// What is met at a line that is crossed at `t`.
     fn met_at(&self, crossed: Crossed, t: f64, before: Place) -> Met {
         let side = crossed.side;
-        let slope = match side {
-            Side::X => self.direction.x,
-            Side::Y => self.direction.y,
-        };
-        let u = AlongFace::AtLine(crossed);
-        Met { side, facing: Facing::Side(side), slope, t, u, before }
+        let facing = Facing::Side(side);
+        let slope = facing.slope(self.direction);
+        Met { side, facing, slope, t, u: AlongFace::AtLine(crossed), before }
     }
 
-    fn start_at_camera(&self, ray: &Ray) -> PortalRay {
+    /// Has the ray followed from the camera.
+    fn start_at_camera(&mut self, ray: &Ray) {
         let &Surroundings { scene, gaps, most_bounces, .. } = self.surroundings;
         let grid = scene.world.grid();
         let eye = scene.projection.eye();
@@ -215,7 +194,8 @@ impl<'a> ColumnWalk<'a> {
             (None, None) => (ground, GapId::BOTTOMLESS),
         };
         let rows = 0..scene.projection.rows();
-        PortalRay { walk, place, gap, rows, from: 0.0, image: ImageId::NONE }
+        let image = ImageId::NONE;
+        self.memory.rays.push(PortalRay { walk, place, gap, rows, from: 0.0, image });
     }
 
     /// Follows `ray` as far as it goes, and keeps its segment.
@@ -225,7 +205,7 @@ impl<'a> ColumnWalk<'a> {
         if self.surroundings.has_things {
             let origin = self.surroundings.scene.projection.origin();
             let transform = ray.walk.transform();
-            let end = |t: f64| transform.real_point(origin + self.direction * t);
+            let end = |t: f64| transform.to_map(origin + self.direction * t);
             self.memory
                 .segments
                 .push(RaySegment { ends: [start, ray.from].map(end), image: ray.image });
@@ -296,89 +276,5 @@ impl<'a> ColumnWalk<'a> {
         let &PortalRay { ref rows, gap, from, image, .. } = ray;
         let (column, rows) = (self.column, rows.clone());
         self.memory.passed.push(Passed::Billboards(RayPart { column, rows, from, to, gap, image }));
-    }
-
-    /// Shows a face in `rows`.
-    pub(super) fn show_face(
-        &mut self,
-        rows: Range<u32>,
-        met: &Met,
-        u: f64,
-        (paint, light): (Paint, Light),
-        extent: Extent,
-    ) {
-        if rows.is_empty() {
-            return;
-        }
-        self.list.runs.show(rows.clone(), Shown::Face(met.side));
-        let &Met { facing, slope, t, .. } = met;
-        let column = self.column;
-        let wall = WallColumn { column, rows, facing, slope, t, u, paint, light, extent };
-        self.list.walls.push(wall);
-    }
-
-    /// Keeps a face that is seen through in `rows`.
-    pub(super) fn pass(
-        &mut self,
-        ray: &PortalRay,
-        rows: Range<u32>,
-        met: &Met,
-        place: Place,
-        material: Material,
-        extent: Extent,
-    ) {
-        if rows.is_empty() {
-            return;
-        }
-        let u = met.u(ray);
-        let light = self.light(place, met, u);
-        let &Met { facing, slope, t, .. } = met;
-        self.memory.passed.push(Passed::SeeThrough(self.list.see_through.len()));
-        let column = self.column;
-        let face = SeeThroughColumn { column, rows, facing, slope, t, u, light, material, extent };
-        self.list.see_through.push(face);
-    }
-
-    /// How bright what is in `place` is at `u`, seen from where it is met: by its own light, if it is
-    /// solid, else as it is there.
-    pub(super) fn light(&self, place: Place, met: &Met, u: f64) -> Light {
-        let scene = self.surroundings.scene;
-        if !scene.plan.walls.faded {
-            return Light::FULL;
-        }
-        let is_solid = |tile: &&Tile| !matches!(tile.kind, TileKind::Open | TileKind::Doorway(_));
-        let tile = self.surroundings.tile(place);
-        if let Some(own) = tile.filter(is_solid).and_then(|tile| tile.light) {
-            return own;
-        }
-        let Some((before, _)) = met.before else { return Light::FULL };
-        let is_door = tile.is_some_and(|tile| matches!(tile.kind, TileKind::Door(_)));
-        match place {
-            // Leaves have one light all over, as has a shape, which is met in its own cell.
-            Some((cell, _)) if cell != before && !is_door => {
-                scene.world.face_light(cell, before).at(u)
-            }
-            _ => scene.world.light_in(before),
-        }
-    }
-}
-
-impl Met {
-    /// How far along the face `ray` meets it, from 0 at its left end to 1 at its right.
-    pub(super) fn u(&self, ray: &PortalRay) -> f64 {
-        match &self.u {
-            AlongFace::Known(u) => *u,
-            AlongFace::AtLine(crossed) => ray.walk.along_face(crossed),
-        }
-    }
-}
-
-/// The column and the row of the cell before the one that `hit` is on, for a ray along `direction`.
-pub(super) fn cell_before(direction: DVec2, hit: &Hit) -> [i64; 2] {
-    let back = |direction: f64| if direction > 0.0 { -1 } else { 1 };
-    let (column, row) = (i64::from(hit.cell.column), i64::from(hit.cell.row));
-    match hit.side {
-        Side::X => [column + back(direction.x), row],
-        Side::Y => [column, row + back(direction.y)],
     }
 }

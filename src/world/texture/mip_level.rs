@@ -1,6 +1,7 @@
-//! Levels: a texture in half its size, a quarter, and so on.
+//! Mip levels: a texture in half its size, a quarter, and so on.
 //!
-//! Each is the one before, halved in [linear light](light).
+//! Each is the one before, halved in [linear light](light). Mip mapping is that of Lance Williams,
+//! "Pyramidal Parametrics", SIGGRAPH 1983.
 
 mod light;
 
@@ -86,7 +87,7 @@ impl MipLevel {
     }
 }
 
-/// A level whose width and height are powers of two, so that the place of a texel among all of them
+/// A mip level whose width and height are powers of two, so that the place of a texel among all of them
 /// consists of bits of its place along both axes.
 #[derive(Clone, Copy)]
 pub(crate) struct MipLevelByShifts<'a> {

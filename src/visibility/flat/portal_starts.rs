@@ -1,0 +1,87 @@
+//! Portal starts: what the flat way leaves to the portal way.
+//!
+//! It leaves what is behind the first line into what is not level. Of such a column it fills floor and
+//! ceiling up to there, as before a wall, and what stands there or is seen through.
+
+use crate::cast::Hit;
+use crate::visibility::portal::PortalStart;
+use crate::visibility::{Column, DrawList, Scene};
+use crate::world::{Ceiling, Cell, Tile, TileId, TileKind, World};
+
+/// Where the portal way begins with each column of a scene.
+#[derive(Clone, Copy)]
+pub(crate) struct PortalStarts<'a> {
+    world: &'a World,
+    overhead: Overhead,
+}
+
+/// What is overhead where the floor is level.
+#[derive(Clone, Copy, PartialEq, Eq)]
+enum Overhead {
+    Sky,
+    Ceiling,
+    Both,
+}
+
+impl<'a> PortalStarts<'a> {
+    pub(crate) fn new(world: &'a World) -> Self {
+        let is_floor = |tile: &&Tile| tile.is_level() && !matches!(tile.kind, TileKind::Wall(_));
+        let is_open = |tile: &Tile| tile.ceiling == Ceiling::Sky;
+        let floors = || world.tiles().iter().filter(is_floor);
+        let overhead = match (floors().any(is_open), floors().all(is_open)) {
+            (false, _) => Overhead::Ceiling,
+            (true, true) => Overhead::Sky,
+            (true, false) => Overhead::Both,
+        };
+        Self { world, overhead }
+    }
+
+    /// Where it begins with `column`; `None` where the flat way fills all of it.
+    pub(crate) fn of(self, column: &Column) -> Option<PortalStart> {
+        let hit = column.hit.filter(|hit| !is_level(self.world, hit.cell))?;
+        Some(match self.overhead {
+            Overhead::Sky => PortalStart::Line { hit, rows: 0..column.rows.end },
+            Overhead::Ceiling => PortalStart::Line { hit, rows: column.rows.clone() },
+            // What is behind the first line may show above a ceiling, where the sky is.
+            Overhead::Both => PortalStart::Camera,
+        })
+    }
+
+    /// Whether all that is level is under a ceiling.
+    pub(super) fn are_under_ceilings(self) -> bool {
+        self.overhead == Overhead::Ceiling
+    }
+
+    /// Whether the flat way fills nothing of the columns that it leaves to the portal way.
+    fn are_at_camera(self) -> bool {
+        self.overhead == Overhead::Both
+    }
+}
+
+/// Takes from the columns of the flat way what is left to the portal way.
+pub(super) fn leave_to_portals(scene: Scene<'_>, list: &mut DrawList) {
+    let DrawList { columns, flat_columns, is_flat, .. } = list;
+    let starts = PortalStarts::new(scene.world);
+    let is_left =
+        |column: &Column| column.hit.as_ref().is_some_and(|hit| !is_level(scene.world, hit.cell));
+    if !columns.iter().any(is_left) {
+        return;
+    }
+    *is_flat = !(starts.are_at_camera() && columns.iter().all(is_left));
+    let height = scene.projection.rows();
+    flat_columns.extend(columns.iter().map(|column| {
+        let (distance, rows) = match starts.of(column) {
+            None => return column.clone(),
+            Some(PortalStart::Camera) => (0.0, 0..height),
+            Some(PortalStart::Line { rows, .. }) => (column.distance, rows),
+        };
+        let hit = column.hit.map(|hit| Hit { t: -1.0, ..hit });
+        Column { hit, distance, rows }
+    }));
+}
+
+/// Whether what `cell` holds is level.
+fn is_level(world: &World, cell: Cell) -> bool {
+    let tile = world.grid().tile(cell.column.into(), cell.row.into());
+    tile.is_some_and(|TileId(index)| world.tiles()[usize::from(index)].is_level())
+}

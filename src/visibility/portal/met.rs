@@ -1,0 +1,106 @@
+//! What a ray meets: faces, shown or seen through, and their light.
+
+use std::ops::Range;
+
+use super::layers::Passed;
+use super::walk::{ColumnWalk, Place, PortalRay};
+use crate::cast::{Crossed, Side};
+use crate::visibility::runs::Shown;
+use crate::visibility::{Extent, Facing, Material, SeeThroughColumn, WallColumn};
+use crate::world::{Light, Paint, Tile, TileKind};
+
+/// An upright face that a ray meets.
+pub(super) struct Met {
+    /// The kind of line that it is on, or runs along most.
+    pub(super) side: Side,
+    pub(super) facing: Facing,
+    /// How many cells the ray comes nearer to it for each unit of `t`.
+    pub(super) slope: f64,
+    pub(super) t: f64,
+    pub(super) u: AlongFace,
+    /// From where it is met.
+    pub(super) before: Place,
+}
+
+/// How far along a face it is met.
+pub(super) enum AlongFace {
+    Known(f64),
+    /// To be computed from the line that the ray has just crossed: most lines have no face in view.
+    AtLine(Crossed),
+}
+
+impl ColumnWalk<'_> {
+    /// Shows a face in `rows`.
+    pub(super) fn show_face(
+        &mut self,
+        rows: Range<u32>,
+        met: &Met,
+        u: f64,
+        (paint, light): (Paint, Light),
+        extent: Extent,
+    ) {
+        if rows.is_empty() {
+            return;
+        }
+        self.list.runs.show(rows.clone(), Shown::Face(met.side));
+        let &Met { facing, slope, t, .. } = met;
+        let column = self.column;
+        let wall = WallColumn { column, rows, facing, slope, t, u, paint, light, extent };
+        self.list.walls.push(wall);
+    }
+
+    /// Keeps a face that is seen through in `rows`.
+    pub(super) fn pass(
+        &mut self,
+        ray: &PortalRay,
+        rows: Range<u32>,
+        met: &Met,
+        place: Place,
+        material: Material,
+        extent: Extent,
+    ) {
+        if rows.is_empty() {
+            return;
+        }
+        let u = met.u(ray);
+        let light = self.light(place, met, u);
+        let &Met { facing, slope, t, .. } = met;
+        self.memory.passed.push(Passed::SeeThrough(self.list.see_through.len()));
+        let column = self.column;
+        let face = SeeThroughColumn { column, rows, facing, slope, t, u, light, material, extent };
+        self.list.see_through.push(face);
+    }
+
+    /// How bright what is in `place` is at `u`, seen from where it is met: by its own light, if it is
+    /// solid, else as it is there.
+    pub(super) fn light(&self, place: Place, met: &Met, u: f64) -> Light {
+        let scene = self.surroundings.scene;
+        if !scene.plan.walls.faded {
+            return Light::FULL;
+        }
+        let is_solid = |tile: &&Tile| !matches!(tile.kind, TileKind::Open | TileKind::Doorway(_));
+        let tile = self.surroundings.tile(place);
+        if let Some(own) = tile.filter(is_solid).and_then(|tile| tile.light) {
+            return own;
+        }
+        let Some((before, _)) = met.before else { return Light::FULL };
+        let is_door = tile.is_some_and(|tile| matches!(tile.kind, TileKind::Door(_)));
+        match place {
+            // Leaves have one light all over, as has a shape, which is met in its own cell.
+            Some((cell, _)) if cell != before && !is_door => {
+                scene.world.face_light(cell, before).at(u)
+            }
+            _ => scene.world.light_in(before),
+        }
+    }
+}
+
+impl Met {
+    /// How far along the face `ray` meets it, from 0 at its left end to 1 at its right.
+    pub(super) fn u(&self, ray: &PortalRay) -> f64 {
+        match &self.u {
+            AlongFace::Known(u) => *u,
+            AlongFace::AtLine(crossed) => ray.walk.along_face(crossed),
+        }
+    }
+}
