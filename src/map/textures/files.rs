@@ -104,7 +104,7 @@ impl Folder {
 
 impl TextureFiles for Folder {
     fn read(&self, name: &str) -> Result<Vec<u8>, TextureFileError> {
-        let bytes = crate::map::read_up_to(&self.real_path(name)?, MAX_FILE_BYTES + 1)?;
+        let bytes = crate::map::input::read_up_to(&self.real_path(name)?, MAX_FILE_BYTES + 1)?;
         if bytes.len() > MAX_FILE_BYTES {
             return Err(TextureFileError::TooLarge);
         }

@@ -1,0 +1,52 @@
+//! The bytes of a map: from a file or a stream, up to a limit.
+
+use std::fs::{self, File};
+use std::io::{self, Read};
+use std::path::Path;
+
+use super::MAX_BYTES;
+use crate::fault::Faults;
+
+pub(super) fn read_text(input: impl Read, name: &str) -> Result<String, Faults> {
+    let mut bytes = Vec::new();
+    let read = input.take(MAX_BYTES as u64 + 1).read_to_end(&mut bytes);
+    read.map_err(|error| unreadable(name, &error))?;
+    if bytes.len() > MAX_BYTES {
+        return Err(too_large(name));
+    }
+    String::from_utf8(bytes).map_err(|error| {
+        let valid = error.utf8_error().valid_up_to();
+        let line = error.as_bytes()[..valid].split(|&byte| byte == b'\n').count();
+        let message = format!(
+            "{name} is not UTF-8 text: line {line} has a byte that is part of no character"
+        );
+        Faults::of_whole_file(name, message, "save the map in the encoding UTF-8")
+    })
+}
+
+/// Reads at most `limit` bytes of a file.
+pub(super) fn read_up_to(path: &Path, limit: usize) -> io::Result<Vec<u8>> {
+    if fs::metadata(path)?.is_dir() {
+        return Err(io::ErrorKind::IsADirectory.into());
+    }
+    let mut bytes = Vec::new();
+    File::open(path)?.take(limit as u64).read_to_end(&mut bytes)?;
+    Ok(bytes)
+}
+
+pub(super) fn too_large(name: &str) -> Faults {
+    let limit = MAX_BYTES >> 20;
+    let message = format!("{name} is larger than {limit} MiB, the most that a map may have");
+    Faults::of_whole_file(name, message, "")
+}
+
+pub(super) fn unreadable(name: &str, error: &io::Error) -> Faults {
+    let (message, help) = match error.kind() {
+        io::ErrorKind::NotFound => (format!("there is no file {name}"), ""),
+        io::ErrorKind::IsADirectory => {
+            (format!("{name} is a folder, not a map"), "name a map file in it")
+        }
+        kind => (format!("{name} cannot be read: {kind}"), ""),
+    };
+    Faults::of_whole_file(name, message, help)
+}
