@@ -80,6 +80,8 @@ enum Form {
 /// The forms in the order in which they get room, the most important first.
 const PRIORITIES: [(Part, Form); 14] = [
     (Part::Help, Form::Short),
+    // They show only if the player asks for them.
+    (Part::Stats, Form::Short),
     (Part::Notice, Form::Short),
     (Part::Title, Form::Short),
     (Part::Help, Form::Long),
@@ -88,7 +90,6 @@ const PRIORITIES: [(Part, Form); 14] = [
     (Part::Notice, Form::Long),
     (Part::Time, Form::Short),
     (Part::Level, Form::Short),
-    (Part::Stats, Form::Short),
     (Part::Site, Form::Short),
     (Part::Level, Form::Long),
     (Part::Seen, Form::Short),
@@ -267,6 +268,21 @@ mod tests {
         ] {
             assert_eq!(shown(&line, expected.len() as u16), expected);
         }
+    }
+
+    #[test]
+    fn stats_have_room_in_80_columns() {
+        let stats = "30 fps  272 kB/s  0 ms  fidelity exact";
+        let line = line(&[
+            (Part::Title, "The Museum of Walls", "The Museum of Walls"),
+            (Part::Level, "2/5", "level 2 of 5"),
+            (Part::Notice, "Find the exit", "Find the way out: green on the map"),
+            (Part::Stats, stats, stats),
+            (Part::Time, "0:02", "0:02"),
+            (Part::Help, "?", "? help"),
+        ]);
+        let expected = format!(" The Museum of Walls  Find the exit {stats}  ? ");
+        assert_eq!(shown(&line, 80).replace("   ", " "), expected);
     }
 
     #[test]
