@@ -1,7 +1,7 @@
 //! Drawing: a world and a camera in, pixels out.
 //!
-//! A frame is drawn in two stages: [`visibility`](crate::visibility) fills a draw list, and
-//! [`raster`](crate::raster) draws it. A [`FramePlan`], made from the world, says how. What is in view is
+//! A frame is drawn in two stages: `visibility` fills a draw list, and
+//! `raster` draws it. A [`FramePlan`], made from the world, says how. What is in view is
 //! found once; the list is drawn band by band, by several threads where the picture is large.
 //!
 //! The caller owns the [`Frame`] and keeps the [`Renderer`], which owns what the stages need in between;

@@ -107,6 +107,23 @@ fn a_still_door_costs_the_same_as_a_wall() {
 }
 
 #[test]
+fn what_is_not_level_costs_what_is_in_view_of_it() {
+    let map = |height: f64, heading: u32| {
+        let text = format!(
+            "grid = '''\n############\n#...s..@...#\n#..........#\n############\n'''\n\
+             tiles.'#'.wall = 'brick'\ntiles.'s'.floor_height = {height:?}\n\
+             things.'@'.start = {heading}\n"
+        );
+        explained(&map::parse_str(&text).unwrap()).stats
+    };
+    // It is behind the camera.
+    assert_eq!(map(0.25, 0), map(0.0, 0));
+    let (level, raised) = (map(0.0, 180), map(0.25, 180));
+    assert_eq!(level.portals.rays, 0);
+    assert!((1..u64::from(WIDTH) / 2).contains(&raised.portals.rays), "{raised:?}");
+}
+
+#[test]
 fn a_scene_without_things_considers_none() {
     for name in ["flat", "floor", "masks"] {
         let Explanation { plan, stats, .. } = explained(&gallery(name));

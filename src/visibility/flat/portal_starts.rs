@@ -64,7 +64,10 @@ pub(super) fn leave_to_portals(scene: Scene<'_>, list: &mut DrawList) {
     let starts = PortalStarts::new(scene.world);
     let is_left =
         |column: &Column| column.hit.as_ref().is_some_and(|hit| !is_level(scene.world, hit.cell));
-    if !columns.iter().any(is_left) {
+    let cell = |column: &Column| column.hit.map(|hit| hit.cell);
+    // Mostly, many columns show the same cell.
+    let mut cells = columns.chunk_by(|one, other| cell(one) == cell(other));
+    if !cells.any(|columns| is_left(&columns[0])) {
         return;
     }
     *is_flat = !(starts.are_at_camera() && columns.iter().all(is_left));
