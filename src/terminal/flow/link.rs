@@ -46,7 +46,7 @@ const CLOCK_GRANULARITY: Duration = Duration::from_millis(10);
 const AFTER_STALL_BYTES: f64 = 16_000.0;
 const AFTER_STALL_SECONDS: f64 = 0.024;
 /// For how long that holds.
-const AFTER_STALL: Duration = Duration::from_secs(60);
+const AFTER_STALL: Duration = Duration::from_mins(1);
 /// The longest time that is computed: a day, in seconds.
 const MAX_SECONDS: f64 = 86_400.0;
 
