@@ -63,11 +63,7 @@ impl<'a> Branches<'a> {
             return;
         }
         let mut errors = Errors::default();
-        let ([upper, lower], [text, ground]) = (&self.wanted.inks, &self.paths.labs);
-        measure(text, upper, self.price, &mut errors.text_above);
-        measure(text, lower, self.price, &mut errors.text_below);
-        measure(ground, upper, self.price, &mut errors.ground_above);
-        measure(ground, lower, self.price, &mut errors.ground_below);
+        measure(&self.paths.labs, &self.wanted.inks, self.price, &mut errors);
         match self.wanted.character {
             Some(bytes) => self.draw_character(&errors, f32::from(bytes), survivors),
             None => self.draw_in_old_colors(&errors, survivors),
@@ -138,8 +134,8 @@ impl<'a> Branches<'a> {
             return;
         }
         let tellings = self.wanted.inks.map(|ink| store.palette.telling(ink, self.price));
-        survivors.fresh[usize::from(UPPER)] = tellings[0].ink;
-        survivors.fresh[usize::from(LOWER)] = tellings[1].ink;
+        survivors.fresh[usize::from(UPPER)] = tellings[0].ink.lab;
+        survivors.fresh[usize::from(LOWER)] = tellings[1].ink.lab;
         if self.wanted.character.is_none() {
             self.draw_in_one_for_both(survivors, tellings, store);
         }
@@ -192,7 +188,7 @@ impl<'a> Branches<'a> {
         if is_needed && survivors.would_keep(self.least + least) {
             let both = store.inks.between(upper, lower);
             let both = store.palette.telling(both, self.price);
-            survivors.fresh[usize::from(BOTH)] = both.ink;
+            survivors.fresh[usize::from(BOTH)] = both.ink.lab;
             self.offer_for_both(survivors, both, BOTH);
         }
     }

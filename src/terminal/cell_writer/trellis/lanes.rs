@@ -46,13 +46,21 @@ pub(super) fn add_motions(paths: &Paths, x: u16, start: &mut Lanes) {
     }
 }
 
-/// What it costs that the colours of the paths stand for `ink`.
+/// What it costs that the colours of the paths stand for those that are wanted.
 #[inline(never)]
-pub(super) fn measure([ls, as_, bs]: &Labs, ink: &Ink, price: Price, errors: &mut Lanes) {
-    let [l, a, b] = ink.lab;
+pub(super) fn measure(labs: &[Labs; 2], wanted: &[Ink; 2], price: Price, errors: &mut Errors) {
+    let [text, ground] = labs;
+    let [upper, lower] = wanted;
+    let Errors { text_above, text_below, ground_above, ground_below } = errors;
     for path in 0..KEPT {
-        let (l, a, b) = (ls[path] - l, as_[path] - a, bs[path] - b);
-        errors[path] = price.of_distance((l * l + a * a + b * b).sqrt());
+        let of = |[ls, as_, bs]: &Labs, ink: &Ink| {
+            let [l, a, b] = [ls[path] - ink.lab[0], as_[path] - ink.lab[1], bs[path] - ink.lab[2]];
+            price.of_distance((l * l + a * a + b * b).sqrt())
+        };
+        text_above[path] = of(text, upper);
+        text_below[path] = of(text, lower);
+        ground_above[path] = of(ground, upper);
+        ground_below[path] = of(ground, lower);
     }
 }
 
