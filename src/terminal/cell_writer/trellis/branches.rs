@@ -1,6 +1,6 @@
 //! The glyphs and colours that a cell may be drawn in after each of the paths to it.
 
-use super::super::ink::{Ink, Price};
+use super::super::ink::Price;
 use super::super::packed_cell::BlockElement;
 use super::super::palette::{Palette, Telling};
 use super::lanes::{
@@ -129,18 +129,23 @@ impl<'a> Branches<'a> {
     }
 
     fn draw_in_new_colors(&self, errors: &Errors, survivors: &mut Survivors, store: &mut Store) {
-        let [upper, lower] = self.wanted.inks.map(|ink| shortest(ink, store.palette));
-        if !survivors.would_keep(self.least + ONE_COLOR + SPACE + min(upper, lower)) {
+        let [upper, lower] = self.wanted.inks;
+        let (bytes_above, bytes_below) = (upper.bytes(), lower.bytes());
+        let shortest = shortest(min(bytes_above, bytes_below), store.palette);
+        if !survivors.would_keep(self.least + ONE_COLOR + SPACE + shortest) {
             return;
         }
-        let tellings = self.wanted.inks.map(|ink| store.palette.telling(ink, self.price));
+        let tellings = [
+            store.palette.telling(upper, bytes_above, self.price),
+            store.palette.telling(lower, bytes_below, self.price),
+        ];
         survivors.fresh[usize::from(UPPER)] = tellings[0].ink.lab;
         survivors.fresh[usize::from(LOWER)] = tellings[1].ink.lab;
         if self.wanted.character.is_none() {
-            self.draw_in_one_for_both(survivors, tellings, store);
+            self.draw_in_one_for_both(survivors, &tellings, store);
         }
-        self.draw_in_one_color(errors, survivors, tellings);
-        self.draw_in_two_colors(survivors, tellings);
+        self.draw_in_one_color(errors, survivors, &tellings);
+        self.draw_in_two_colors(survivors, &tellings);
     }
 
     #[inline]
@@ -148,7 +153,7 @@ impl<'a> Branches<'a> {
         &self,
         errors: &Errors,
         survivors: &mut Survivors,
-        [upper, lower]: [Telling; 2],
+        [upper, lower]: &[Telling; 2],
     ) {
         let half = ONE_COLOR + self.bytes_of_half();
         let (above, below) = (half + upper.cost(), half + lower.cost());
@@ -172,7 +177,7 @@ impl<'a> Branches<'a> {
     fn draw_in_one_for_both(
         &self,
         survivors: &mut Survivors,
-        [above, below]: [Telling; 2],
+        [above, below]: &[Telling; 2],
         store: &mut Store,
     ) {
         let [upper, lower] = self.wanted.inks;
@@ -187,15 +192,15 @@ impl<'a> Branches<'a> {
         let is_needed = apart > self.price.farthest && apart <= 2.0 * self.price.farthest;
         if is_needed && survivors.would_keep(self.least + least) {
             let both = store.inks.between(upper, lower);
-            let both = store.palette.telling(both, self.price);
+            let both = store.palette.telling(both, both.bytes(), self.price);
             survivors.fresh[usize::from(BOTH)] = both.ink.lab;
-            self.offer_for_both(survivors, both, BOTH);
+            self.offer_for_both(survivors, &both, BOTH);
         }
     }
 
     #[inline]
-    fn offer_for_both(&self, survivors: &mut Survivors, telling: Telling, source: u8) {
-        let Telling { ink, bytes, .. } = telling;
+    fn offer_for_both(&self, survivors: &mut Survivors, telling: &Telling, source: u8) {
+        let Telling { ink, bytes, .. } = *telling;
         let [upper, lower] = self.wanted.inks;
         let error = self.price.of(ink, upper) + self.price.of(ink, lower);
         let cost = ONE_COLOR + SPACE + bytes + error;
@@ -207,7 +212,7 @@ impl<'a> Branches<'a> {
 
     /// In two new colours, which lead to the same from everywhere.
     #[inline]
-    fn draw_in_two_colors(&self, survivors: &mut Survivors, [upper, lower]: [Telling; 2]) {
+    fn draw_in_two_colors(&self, survivors: &mut Survivors, [upper, lower]: &[Telling; 2]) {
         let cost = self.least + TWO_COLORS + upper.cost() + lower.cost() + self.bytes_of_half();
         if !survivors.would_keep(cost) {
             return;
@@ -257,9 +262,8 @@ impl<'a> Branches<'a> {
     }
 }
 
-/// The least that a colour takes as parameters, itself or what may be told for it.
+/// The least that a colour of so many bytes takes as parameters, itself or what may be told for it.
 #[inline]
-fn shortest(ink: Ink, palette: &Palette) -> f32 {
-    let bytes = ink.bytes();
+fn shortest(bytes: f32, palette: &Palette) -> f32 {
     if palette.is_on() { min(bytes, SHORTEST_ENTRY) } else { bytes }
 }
