@@ -65,7 +65,7 @@ pub(super) fn distance(one: [f32; 3], other: [f32; 3]) -> f32 {
 /// the last one takes that was asked for.
 #[derive(Debug)]
 pub(super) struct Inks {
-    places: Vec<Ink>,
+    places: Box<[Ink; 1 << PLACE_BITS]>,
 }
 
 /// So many bits of a hash tell a colour's place.
@@ -131,7 +131,7 @@ impl Default for Inks {
     fn default() -> Self {
         // No place knows a colour that has not been asked for.
         let nothing = Ink { lab: [0.0; 3], shade: Shade::NONE };
-        Self { places: vec![nothing; 1 << PLACE_BITS] }
+        Self { places: Box::new([nothing; 1 << PLACE_BITS]) }
     }
 }
 

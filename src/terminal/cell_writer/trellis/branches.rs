@@ -4,7 +4,7 @@ use super::super::ink::Price;
 use super::super::packed_cell::BlockElement;
 use super::super::palette::{Palette, Telling};
 use super::lanes::{
-    Blocks, Errors, HALF_BLOCK, Lanes, SPACE, add_motions, choose, combine, least, measure, min,
+    Blocks, Errors, HALF_BLOCK, Lanes, SPACE, add_motions, choose, least, measure, min,
     plus, sum,
 };
 use super::survivors::{Survivors, Told, Turn};
@@ -62,11 +62,11 @@ impl<'a> Branches<'a> {
         if !survivors.would_keep(self.least + shortest) {
             return;
         }
-        let mut errors = Errors::default();
-        measure(&self.paths.labs, &self.wanted.inks, self.price, &mut errors);
+        let (mut errors, mut blocks) = (Errors::default(), Blocks::default());
+        measure(&self.paths.labs, &self.wanted.inks, self.price, &mut errors, &mut blocks);
         match self.wanted.character {
             Some(bytes) => self.draw_character(&errors, f32::from(bytes), survivors),
-            None => self.draw_in_old_colors(&errors, survivors),
+            None => self.draw_in_old_colors(&mut blocks, survivors),
         }
         if !is_right && survivors.would_keep(self.least + ONE_COLOR + SPACE + SHORTEST_COLOR) {
             self.draw_in_new_colors(&errors, survivors, store);
@@ -81,20 +81,18 @@ impl<'a> Branches<'a> {
     }
 
     #[inline]
-    fn draw_in_old_colors(&self, errors: &Errors, survivors: &mut Survivors) {
-        let mut blocks = Blocks::default();
-        combine(errors, &mut blocks);
+    fn draw_in_old_colors(&self, blocks: &mut Blocks, survivors: &mut Survivors) {
         if self.repeats {
-            self.repeat(&mut blocks);
+            self.repeat(blocks);
         }
         let mut costs = [0.0; KEPT];
-        choose(&blocks, &self.start, &mut costs);
+        choose(blocks, &self.start, &mut costs);
         if !survivors.would_keep(least(&costs)) {
             return;
         }
         for path in 0..KEPT {
             if survivors.would_keep(costs[path]) {
-                let Blocks { space, full, upper, lower } = &blocks;
+                let Blocks { space, full, upper, lower } = &*blocks;
                 let (flat, flat_glyph) = if full[path] < space[path] {
                     (full[path], BlockElement::Full)
                 } else {
