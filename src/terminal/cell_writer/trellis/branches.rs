@@ -235,16 +235,23 @@ impl<'a> Branches<'a> {
     #[inline]
     fn offer(&self, survivors: &mut Survivors, costs: &Lanes, element: BlockElement, told: Told) {
         if survivors.would_keep(least(costs)) {
-            for (path, &cost) in costs.iter().enumerate() {
-                if survivors.would_keep(cost) {
-                    self.add(survivors, cost, path, element, told);
-                }
+            self.add_all(survivors, costs, element, told);
+        }
+    }
+
+    /// The same where at least one would. Not inlined, so that the check is.
+    #[inline(never)]
+    fn add_all(&self, survivors: &mut Survivors, costs: &Lanes, element: BlockElement, told: Told) {
+        for (path, &cost) in costs.iter().enumerate() {
+            if survivors.would_keep(cost) {
+                self.add(survivors, cost, path, element, told);
             }
         }
     }
 
     /// Adds a path that draws `glyph`.
-    #[inline]
+    #[expect(clippy::inline_always, reason = "a call would take a quarter of its time")]
+    #[inline(always)]
     fn add(
         &self,
         survivors: &mut Survivors,
