@@ -69,7 +69,7 @@ pub(super) struct Inks {
 }
 
 /// So many bits of a hash tell a colour's place.
-const PLACE_BITS: u32 = 10;
+const PLACE_BITS: u32 = 11;
 
 impl Inks {
     /// That of a colour.

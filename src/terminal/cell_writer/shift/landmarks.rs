@@ -59,8 +59,7 @@ impl Landmarks {
     fn votes(&self) -> Votes {
         let mut votes = Votes::default();
         let around = self.before.windows(FARTHEST + 1 + FARTHEST);
-        let mut places =
-            self.now.iter().copied().zip(around).filter(|&(now, _)| now != Mark::NONE);
+        let mut places = self.now.iter().copied().zip(around).filter(|&(now, _)| now != Mark::NONE);
         for _ in 0..self.now.len().div_ceil(MOST_AT_ONCE) {
             votes.add(places.by_ref().take(MOST_AT_ONCE));
         }

@@ -4,8 +4,7 @@ use super::super::ink::Price;
 use super::super::packed_cell::BlockElement;
 use super::super::palette::{Palette, Telling};
 use super::lanes::{
-    Blocks, Errors, HALF_BLOCK, Lanes, SPACE, add_motions, choose, least, measure, min,
-    plus, sum,
+    Blocks, Errors, HALF_BLOCK, Lanes, SPACE, add_motions, choose, least, measure, min, plus, sum,
 };
 use super::survivors::{Survivors, Told, Turn};
 use super::{KEPT, Paths, StepKind, Store, Terms, Wanted};
