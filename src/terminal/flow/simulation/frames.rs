@@ -1,4 +1,4 @@
-//! The frames of a player: those of an encoder, or random numbers with the same distribution.
+//! The frames of a player: those of an encoder, or random sizes.
 
 use std::time::Duration;
 
