@@ -131,7 +131,8 @@ impl Default for Inks {
     fn default() -> Self {
         // No place knows a colour that has not been asked for.
         let nothing = Ink { lab: [0.0; 3], shade: Shade::NONE };
-        Self { places: Box::new([nothing; 1 << PLACE_BITS]) }
+        let places = vec![nothing; 1 << PLACE_BITS].try_into();
+        Self { places: places.expect("a place for each hash") }
     }
 }
 
