@@ -65,11 +65,11 @@ pub(super) fn distance(one: [f32; 3], other: [f32; 3]) -> f32 {
 /// the last one takes that was asked for.
 #[derive(Debug)]
 pub(super) struct Inks {
-    places: Vec<Ink>,
+    places: Box<[Ink; 1 << PLACE_BITS]>,
 }
 
 /// So many bits of a hash tell a colour's place.
-const PLACE_BITS: u32 = 10;
+const PLACE_BITS: u32 = 11;
 
 impl Inks {
     /// That of a colour.
@@ -131,7 +131,8 @@ impl Default for Inks {
     fn default() -> Self {
         // No place knows a colour that has not been asked for.
         let nothing = Ink { lab: [0.0; 3], shade: Shade::NONE };
-        Self { places: vec![nothing; 1 << PLACE_BITS] }
+        let places = vec![nothing; 1 << PLACE_BITS].try_into();
+        Self { places: places.expect("a place for each hash") }
     }
 }
 

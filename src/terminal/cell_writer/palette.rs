@@ -117,23 +117,31 @@ impl Palette {
         }
     }
 
-    /// What is best told for `wanted`.
+    /// What is best told for `wanted`, which takes so many bytes itself.
     #[inline]
-    pub(super) fn telling(&mut self, wanted: Ink, price: Price) -> Telling {
-        let exact = Telling { ink: wanted, bytes: wanted.bytes(), error: 0.0 };
-        if self.is_on { self.best_telling(exact, price) } else { exact }
+    pub(super) fn telling(&mut self, wanted: Ink, bytes: f32, price: Price) -> Telling {
+        let mut telling = Telling { ink: wanted, bytes, error: 0.0 };
+        if self.is_on {
+            self.shorten(&mut telling, price);
+        }
+        telling
     }
 
-    fn best_telling(&mut self, exact: Telling, price: Price) -> Telling {
-        let wanted = exact.ink;
+    /// Tells an entry instead of a colour where that costs less.
+    #[inline(never)]
+    fn shorten(&mut self, telling: &mut Telling, price: Price) {
+        let wanted = telling.ink;
         if let Some(entry) = self.entry(wanted.shade) {
-            return Telling { bytes: Shade::indexed(entry).bytes() as f32, ..exact };
+            telling.bytes = Shade::indexed(entry).bytes() as f32;
+            return;
         }
-        let Some(near) = self.nearest(wanted) else { return exact };
+        let Some(near) = self.nearest(wanted) else { return };
         let ink = self.ink(near);
         let bytes = Shade::indexed(near).bytes() as f32;
         let error = price.of(ink, wanted);
-        if bytes + error < exact.bytes { Telling { ink, bytes, error } } else { exact }
+        if bytes + error < telling.bytes {
+            *telling = Telling { ink, bytes, error };
+        }
     }
 
     /// An entry that was the nearest to a colour of late.

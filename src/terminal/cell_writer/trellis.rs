@@ -95,9 +95,7 @@ struct Paths {
     cost: Lanes,
     /// What the terminal draws text in, and the ground, and where its cursor stands.
     keys: [u64; KEPT],
-    /// The colours of text and ground; far from everything where they are unknown.
-    inks: [[Ink; 2]; KEPT],
-    /// Where these lie.
+    /// L*, a* and b* of the colours of text and ground; far from everything where they are unknown.
     labs: [Labs; 2],
     /// Where the cursor stands; [`NOWHERE`] if nobody knows.
     cursor: Lanes,
@@ -135,15 +133,21 @@ impl Trellis {
                 continue;
             }
             let column = x as u16;
-            let step = if let Some(wanted) = wanted(x, store.inks) {
+            if let Some(wanted) = wanted(x, store.inks) {
                 survivors.begin(&paths, keep);
                 Branches::new(&wanted, terms, &paths, column).draw(&mut survivors, store);
-                survivors.is_changed().then(|| paths.go_on(&survivors, column))
+                is_drawn = survivors.is_changed();
+                if is_drawn {
+                    paths.go_on(&survivors, column);
+                    let Survivors { turns, keys, .. } = survivors;
+                    self.steps.push(Step { column, turns, keys });
+                }
             } else {
-                (keep > 0.0).then(|| paths.past_fixed(column))
-            };
-            is_drawn = step.is_some();
-            self.steps.extend(step);
+                is_drawn = keep > 0.0;
+                if is_drawn {
+                    self.steps.push(paths.past_fixed(column));
+                }
+            }
         }
         self.trace_back(paths.cheapest())
     }
@@ -182,7 +186,6 @@ impl Paths {
         Self {
             cost: costs,
             keys: [key(inks.map(|ink| ink.shade), cursor.unwrap_or(u16::MAX)); KEPT],
-            inks: [inks; KEPT],
             labs: inks.map(|ink| ink.lab.map(|component| [component; KEPT])),
             cursor: [cursor.map_or(NOWHERE, f32::from); KEPT],
             last: [None; KEPT],
@@ -202,29 +205,29 @@ impl Paths {
     }
 
     /// Goes on by the survivors past the cell in column `x`.
-    fn go_on(&mut self, survivors: &Survivors, x: u16) -> Step {
-        let before = self.inks;
+    fn go_on(&mut self, survivors: &Survivors, x: u16) {
+        let before = self.labs;
         self.cost = survivors.cost;
         self.keys = survivors.keys;
+        let next = f32::from(x + 1);
         for (path, turn) in survivors.turns.iter().enumerate() {
             // Those that leave the cell stay in their places.
             let StepKind::Draw(element) = turn.kind else { continue };
             for (which, &source) in turn.sources.iter().enumerate() {
-                let source = usize::from(source);
-                let ink = match before.get(source) {
-                    Some(inks) => inks[which],
-                    None => survivors.fresh[(source - KEPT) % FRESH],
+                let source = usize::from(source) % (2 * KEPT);
+                let lab = match source.checked_sub(KEPT) {
+                    None => before[which].map(|lanes| lanes[source]),
+                    Some(fresh) => survivors.fresh[fresh],
                 };
-                self.inks[path][which] = ink;
-                let [ls, as_, bs] = &mut self.labs[which];
-                [ls[path], as_[path], bs[path]] = ink.lab;
+                for (lanes, component) in self.labs[which].iter_mut().zip(lab) {
+                    lanes[path] = component;
+                }
             }
-            (self.cursor[path], self.last[path]) = (f32::from(x + 1), Some(element));
+            (self.cursor[path], self.last[path]) = (next, Some(element));
         }
-        Step { column: x, turns: survivors.turns, keys: survivors.keys }
     }
 }
 
-/// How many colours a cell may be told in that the terminal does not draw in already: that of its upper half, of
-/// its lower half, and one for both.
-const FRESH: usize = 3;
+/// Room for the colours of a cell that the terminal does not draw in already: that of its upper half, of its lower half,
+/// and one for both. As many as paths, so that the number of a path or of a colour needs no check.
+const FRESH: usize = KEPT;

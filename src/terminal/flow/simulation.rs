@@ -4,10 +4,12 @@
 //! The link carries packets one after another, at a rate that a scenario may change. Each direction has a delay and
 //! jitter, drawn for each packet; as in TCP, no packet overtakes another.
 
+mod frames;
 mod player;
 
 use std::collections::VecDeque;
 
+pub(super) use self::frames::{FrameSource, Frames, saving};
 use self::player::Upward;
 pub(super) use self::player::{Latency, Player, Shown};
 use super::*;
@@ -31,42 +33,6 @@ pub(super) struct Conditions {
     pub(super) rate: f64,
 }
 
-/// How large frames are.
-#[derive(Clone, Copy, Debug)]
-pub(super) struct Frames {
-    /// The mean of exact ones, in bytes.
-    pub(super) exact: f64,
-    /// How far one may be from the mean, as a share of it.
-    pub(super) spread: f64,
-    /// The share of a frame that compression leaves: of an exact one, and of a coarse one.
-    pub(super) compressed: [f64; 2],
-}
-
-impl Frames {
-    /// Those of a walk through the citadel at 120×40, as `cellcaster wire` measures them.
-    pub(super) const CITADEL: Self = Self { exact: 27_000.0, spread: 0.6, compressed: [1.0, 1.0] };
-    /// The same with `ssh -C`.
-    pub(super) const COMPRESSED: Self = Self { compressed: [0.183, 0.225], ..Self::CITADEL };
-
-    pub(super) fn all_of(bytes: usize) -> Self {
-        Self { exact: bytes as f64, spread: 0.0, compressed: [1.0, 1.0] }
-    }
-
-    fn bytes(&self, fidelity: Fidelity, draw: f64) -> f64 {
-        self.exact * (1.0 + self.spread * (2.0 * draw - 1.0)) / saving(fidelity)
-    }
-
-    fn carried(&self, fidelity: Fidelity) -> f64 {
-        let [exact, coarse] = self.compressed;
-        if fidelity == Fidelity::EXACT { exact } else { coarse }
-    }
-}
-
-/// By how much smaller frames are at `fidelity`.
-pub(super) fn saving(fidelity: Fidelity) -> f64 {
-    1.0 + f64::from(fidelity.tolerance()) * 0.3
-}
-
 /// A link with players at its end.
 pub(super) struct Simulation {
     pub(super) now: Duration,
@@ -82,7 +48,16 @@ pub(super) struct Simulation {
 impl Simulation {
     /// `frames` of each player, who begin one after another.
     pub(super) fn new(conditions: Conditions, frames: &[Frames]) -> Self {
-        let players = frames.iter().map(|frames| Player::new(*frames)).collect();
+        let players = frames.iter().map(|frames| Player::new(Box::new(*frames))).collect();
+        Self::of_players(conditions, players)
+    }
+
+    /// One player, whose frames `source` encodes.
+    pub(super) fn of_source(conditions: Conditions, source: impl FrameSource + 'static) -> Self {
+        Self::of_players(conditions, vec![Player::new(Box::new(source))])
+    }
+
+    fn of_players(conditions: Conditions, players: Vec<Player>) -> Self {
         let mut simulation = Self {
             now: Duration::ZERO,
             conditions,
@@ -132,7 +107,7 @@ impl Simulation {
         let player = &mut self.players[number];
         if now >= player.due && player.flow.may_send(now) {
             let fidelity = player.flow.fidelity();
-            let bytes = player.frames.bytes(fidelity, self.random.unit());
+            let bytes = player.frames.bytes(now, fidelity, self.random.unit());
             self.send(number, bytes, fidelity);
             let player = &mut self.players[number];
             player.flow.sent_motion(bytes as usize, fidelity);

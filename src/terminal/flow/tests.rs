@@ -1,5 +1,6 @@
 //! What flow control promises: of events one by one, and of whole links, simulated.
 
+mod encoded;
 mod events;
 mod links;
 
@@ -7,7 +8,7 @@ use proptest::prelude::*;
 
 use super::demand::MIN_FIDELITY;
 use super::scenarios;
-use super::simulation::{Conditions, Frames, Latency, Simulation, UNLIMITED, saving};
+use super::simulation::{Conditions, FrameSource, Frames, Latency, Simulation, UNLIMITED, saving};
 use super::*;
 
 const MILLISECOND: Duration = Duration::from_millis(1);

@@ -1,11 +1,10 @@
 //! The glyphs and colours that a cell may be drawn in after each of the paths to it.
 
-use super::super::ink::{Ink, Price};
+use super::super::ink::Price;
 use super::super::packed_cell::BlockElement;
 use super::super::palette::{Palette, Telling};
 use super::lanes::{
-    Blocks, Errors, HALF_BLOCK, Lanes, SPACE, add_motions, choose, combine, least, measure, min,
-    plus, sum,
+    Blocks, Errors, HALF_BLOCK, Lanes, SPACE, add_motions, choose, least, measure, min, plus, sum,
 };
 use super::survivors::{Survivors, Told, Turn};
 use super::{KEPT, Paths, StepKind, Store, Terms, Wanted};
@@ -62,15 +61,11 @@ impl<'a> Branches<'a> {
         if !survivors.would_keep(self.least + shortest) {
             return;
         }
-        let mut errors = Errors::default();
-        let ([upper, lower], [text, ground]) = (&self.wanted.inks, &self.paths.labs);
-        measure(text, upper, self.price, &mut errors.text_above);
-        measure(text, lower, self.price, &mut errors.text_below);
-        measure(ground, upper, self.price, &mut errors.ground_above);
-        measure(ground, lower, self.price, &mut errors.ground_below);
+        let (mut errors, mut blocks) = (Errors::default(), Blocks::default());
+        measure(&self.paths.labs, &self.wanted.inks, self.price, &mut errors, &mut blocks);
         match self.wanted.character {
             Some(bytes) => self.draw_character(&errors, f32::from(bytes), survivors),
-            None => self.draw_in_old_colors(&errors, survivors),
+            None => self.draw_in_old_colors(&mut blocks, survivors),
         }
         if !is_right && survivors.would_keep(self.least + ONE_COLOR + SPACE + SHORTEST_COLOR) {
             self.draw_in_new_colors(&errors, survivors, store);
@@ -85,20 +80,18 @@ impl<'a> Branches<'a> {
     }
 
     #[inline]
-    fn draw_in_old_colors(&self, errors: &Errors, survivors: &mut Survivors) {
-        let mut blocks = Blocks::default();
-        combine(errors, &mut blocks);
+    fn draw_in_old_colors(&self, blocks: &mut Blocks, survivors: &mut Survivors) {
         if self.repeats {
-            self.repeat(&mut blocks);
+            self.repeat(blocks);
         }
         let mut costs = [0.0; KEPT];
-        choose(&blocks, &self.start, &mut costs);
+        choose(blocks, &self.start, &mut costs);
         if !survivors.would_keep(least(&costs)) {
             return;
         }
         for path in 0..KEPT {
             if survivors.would_keep(costs[path]) {
-                let Blocks { space, full, upper, lower } = &blocks;
+                let Blocks { space, full, upper, lower } = &*blocks;
                 let (flat, flat_glyph) = if full[path] < space[path] {
                     (full[path], BlockElement::Full)
                 } else {
@@ -133,18 +126,23 @@ impl<'a> Branches<'a> {
     }
 
     fn draw_in_new_colors(&self, errors: &Errors, survivors: &mut Survivors, store: &mut Store) {
-        let [upper, lower] = self.wanted.inks.map(|ink| shortest(ink, store.palette));
-        if !survivors.would_keep(self.least + ONE_COLOR + SPACE + min(upper, lower)) {
+        let [upper, lower] = self.wanted.inks;
+        let (bytes_above, bytes_below) = (upper.bytes(), lower.bytes());
+        let shortest = shortest(min(bytes_above, bytes_below), store.palette);
+        if !survivors.would_keep(self.least + ONE_COLOR + SPACE + shortest) {
             return;
         }
-        let tellings = self.wanted.inks.map(|ink| store.palette.telling(ink, self.price));
-        survivors.fresh[usize::from(UPPER)] = tellings[0].ink;
-        survivors.fresh[usize::from(LOWER)] = tellings[1].ink;
+        let tellings = [
+            store.palette.telling(upper, bytes_above, self.price),
+            store.palette.telling(lower, bytes_below, self.price),
+        ];
+        survivors.fresh[usize::from(UPPER)] = tellings[0].ink.lab;
+        survivors.fresh[usize::from(LOWER)] = tellings[1].ink.lab;
         if self.wanted.character.is_none() {
-            self.draw_in_one_for_both(survivors, tellings, store);
+            self.draw_in_one_for_both(survivors, &tellings, store);
         }
-        self.draw_in_one_color(errors, survivors, tellings);
-        self.draw_in_two_colors(survivors, tellings);
+        self.draw_in_one_color(errors, survivors, &tellings);
+        self.draw_in_two_colors(survivors, &tellings);
     }
 
     #[inline]
@@ -152,7 +150,7 @@ impl<'a> Branches<'a> {
         &self,
         errors: &Errors,
         survivors: &mut Survivors,
-        [upper, lower]: [Telling; 2],
+        [upper, lower]: &[Telling; 2],
     ) {
         let half = ONE_COLOR + self.bytes_of_half();
         let (above, below) = (half + upper.cost(), half + lower.cost());
@@ -176,7 +174,7 @@ impl<'a> Branches<'a> {
     fn draw_in_one_for_both(
         &self,
         survivors: &mut Survivors,
-        [above, below]: [Telling; 2],
+        [above, below]: &[Telling; 2],
         store: &mut Store,
     ) {
         let [upper, lower] = self.wanted.inks;
@@ -191,15 +189,15 @@ impl<'a> Branches<'a> {
         let is_needed = apart > self.price.farthest && apart <= 2.0 * self.price.farthest;
         if is_needed && survivors.would_keep(self.least + least) {
             let both = store.inks.between(upper, lower);
-            let both = store.palette.telling(both, self.price);
-            survivors.fresh[usize::from(BOTH)] = both.ink;
-            self.offer_for_both(survivors, both, BOTH);
+            let both = store.palette.telling(both, both.bytes(), self.price);
+            survivors.fresh[usize::from(BOTH)] = both.ink.lab;
+            self.offer_for_both(survivors, &both, BOTH);
         }
     }
 
     #[inline]
-    fn offer_for_both(&self, survivors: &mut Survivors, telling: Telling, source: u8) {
-        let Telling { ink, bytes, .. } = telling;
+    fn offer_for_both(&self, survivors: &mut Survivors, telling: &Telling, source: u8) {
+        let Telling { ink, bytes, .. } = *telling;
         let [upper, lower] = self.wanted.inks;
         let error = self.price.of(ink, upper) + self.price.of(ink, lower);
         let cost = ONE_COLOR + SPACE + bytes + error;
@@ -211,7 +209,7 @@ impl<'a> Branches<'a> {
 
     /// In two new colours, which lead to the same from everywhere.
     #[inline]
-    fn draw_in_two_colors(&self, survivors: &mut Survivors, [upper, lower]: [Telling; 2]) {
+    fn draw_in_two_colors(&self, survivors: &mut Survivors, [upper, lower]: &[Telling; 2]) {
         let cost = self.least + TWO_COLORS + upper.cost() + lower.cost() + self.bytes_of_half();
         if !survivors.would_keep(cost) {
             return;
@@ -236,16 +234,23 @@ impl<'a> Branches<'a> {
     #[inline]
     fn offer(&self, survivors: &mut Survivors, costs: &Lanes, element: BlockElement, told: Told) {
         if survivors.would_keep(least(costs)) {
-            for (path, &cost) in costs.iter().enumerate() {
-                if survivors.would_keep(cost) {
-                    self.add(survivors, cost, path, element, told);
-                }
+            self.add_all(survivors, costs, element, told);
+        }
+    }
+
+    /// The same where at least one would. Not inlined, so that the check is.
+    #[inline(never)]
+    fn add_all(&self, survivors: &mut Survivors, costs: &Lanes, element: BlockElement, told: Told) {
+        for (path, &cost) in costs.iter().enumerate() {
+            if survivors.would_keep(cost) {
+                self.add(survivors, cost, path, element, told);
             }
         }
     }
 
     /// Adds a path that draws `glyph`.
-    #[inline]
+    #[expect(clippy::inline_always, reason = "a call would take a quarter of its time")]
+    #[inline(always)]
     fn add(
         &self,
         survivors: &mut Survivors,
@@ -261,9 +266,8 @@ impl<'a> Branches<'a> {
     }
 }
 
-/// The least that a colour takes as parameters, itself or what may be told for it.
+/// The least that a colour of so many bytes takes as parameters, itself or what may be told for it.
 #[inline]
-fn shortest(ink: Ink, palette: &Palette) -> f32 {
-    let bytes = ink.bytes();
+fn shortest(bytes: f32, palette: &Palette) -> f32 {
     if palette.is_on() { min(bytes, SHORTEST_ENTRY) } else { bytes }
 }

@@ -46,25 +46,33 @@ pub(super) fn add_motions(paths: &Paths, x: u16, start: &mut Lanes) {
     }
 }
 
-/// What it costs that the colours of the paths stand for `ink`.
+/// What it costs that the colours of the paths stand for those that are wanted, and what each of the blocks takes in
+/// them. In one function, so that no number is stored and loaded again.
 #[inline(never)]
-pub(super) fn measure([ls, as_, bs]: &Labs, ink: &Ink, price: Price, errors: &mut Lanes) {
-    let [l, a, b] = ink.lab;
+pub(super) fn measure(
+    labs: &[Labs; 2],
+    wanted: &[Ink; 2],
+    price: Price,
+    errors: &mut Errors,
+    blocks: &mut Blocks,
+) {
+    let [text, ground] = labs;
+    let [upper, lower] = wanted;
     for path in 0..KEPT {
-        let (l, a, b) = (ls[path] - l, as_[path] - a, bs[path] - b);
-        errors[path] = price.of_distance((l * l + a * a + b * b).sqrt());
-    }
-}
-
-/// What each of the blocks takes in the old colours.
-#[inline(never)]
-pub(super) fn combine(errors: &Errors, blocks: &mut Blocks) {
-    let Errors { text_above, text_below, ground_above, ground_below } = errors;
-    for path in 0..KEPT {
-        blocks.space[path] = ground_above[path] + ground_below[path] + SPACE;
-        blocks.full[path] = text_above[path] + text_below[path] + HALF_BLOCK;
-        blocks.upper[path] = text_above[path] + ground_below[path] + HALF_BLOCK;
-        blocks.lower[path] = ground_above[path] + text_below[path] + HALF_BLOCK;
+        let of = |[ls, as_, bs]: &Labs, ink: &Ink| {
+            let [l, a, b] = [ls[path] - ink.lab[0], as_[path] - ink.lab[1], bs[path] - ink.lab[2]];
+            price.of_distance((l * l + a * a + b * b).sqrt())
+        };
+        let (text_above, text_below) = (of(text, upper), of(text, lower));
+        let (ground_above, ground_below) = (of(ground, upper), of(ground, lower));
+        errors.text_above[path] = text_above;
+        errors.text_below[path] = text_below;
+        errors.ground_above[path] = ground_above;
+        errors.ground_below[path] = ground_below;
+        blocks.space[path] = ground_above + ground_below + SPACE;
+        blocks.full[path] = text_above + text_below + HALF_BLOCK;
+        blocks.upper[path] = text_above + ground_below + HALF_BLOCK;
+        blocks.lower[path] = ground_above + text_below + HALF_BLOCK;
     }
 }
 

@@ -1,6 +1,5 @@
 //! The cheapest of all the paths that go past a cell.
 
-use super::super::ink::Ink;
 use super::super::style::Shade;
 use super::lanes::{Lanes, least, min};
 use super::{FRESH, KEPT, Paths, StepKind};
@@ -12,8 +11,8 @@ pub(super) struct Survivors {
     pub(super) turns: [Turn; KEPT],
     /// Where they lead to.
     pub(super) keys: [u64; KEPT],
-    /// Colours that the terminal may be told.
-    pub(super) fresh: [Ink; FRESH],
+    /// L*, a* and b* of the colours that the terminal may be told.
+    pub(super) fresh: [[f32; 3]; FRESH],
     /// What it costs to leave the cell as it is.
     keep: f32,
     /// What costs no less than this does not survive.
@@ -51,7 +50,7 @@ impl Survivors {
             cost: paths.cost,
             turns: KEEP,
             keys: paths.keys,
-            fresh: [paths.inks[0][0]; FRESH],
+            fresh: [[0.0; 3]; FRESH],
             highest: 0.0,
             keep: 0.0,
             worst: 0,
@@ -143,31 +142,35 @@ const CURSOR: u64 = (1 << GROUND) - 1;
 pub(super) struct Told {
     kept: u64,
     set: u64,
-    sources: [Option<u8>; 2],
+    /// For text and ground, the bits of a path's number that are kept, and those that are set.
+    kept_sources: [u8; 2],
+    set_sources: [u8; 2],
 }
 
 impl Told {
-    pub(super) const NOTHING: Self = Self { kept: !CURSOR, set: 0, sources: [None; 2] };
+    pub(super) const NOTHING: Self =
+        Self { kept: !CURSOR, set: 0, kept_sources: [u8::MAX; 2], set_sources: [0; 2] };
 
     /// And that colour of the text.
     #[inline]
     pub(super) fn text(self, shade: Shade, source: u8) -> Self {
-        let Self { kept, set, sources: [_, ground] } = self.with(shade, TEXT);
-        Self { kept, set, sources: [Some(source), ground] }
+        self.with(shade, TEXT, 0, source)
     }
 
     /// And that colour of the ground.
     #[inline]
     pub(super) fn ground(self, shade: Shade, source: u8) -> Self {
-        let Self { kept, set, sources: [text, _] } = self.with(shade, GROUND);
-        Self { kept, set, sources: [text, Some(source)] }
+        self.with(shade, GROUND, 1, source)
     }
 
     #[inline]
-    fn with(self, shade: Shade, place: u32) -> Self {
+    fn with(self, shade: Shade, place: u32, which: usize, source: u8) -> Self {
         const SHADE: u64 = (1 << Shade::BITS) - 1;
+        let Self { mut kept_sources, mut set_sources, .. } = self;
+        (kept_sources[which], set_sources[which]) = (0, KEPT as u8 + source);
         let kept = self.kept & !(SHADE << place);
-        Self { kept, set: self.set | u64::from(shade.in_bits()) << place, ..self }
+        let set = self.set | u64::from(shade.in_bits()) << place;
+        Self { kept, set, kept_sources, set_sources }
     }
 
     /// Where a path leads to from `key`, when the cursor stands there.
@@ -179,6 +182,7 @@ impl Told {
     /// Where the colours come from after `path`.
     #[inline]
     pub(super) fn sources(self, path: usize) -> [u8; 2] {
-        self.sources.map(|source| source.map_or(path as u8, |source| KEPT as u8 + source))
+        let [text, ground] = self.kept_sources.map(|kept| kept & path as u8);
+        [text | self.set_sources[0], ground | self.set_sources[1]]
     }
 }

@@ -3,7 +3,7 @@
 use std::collections::VecDeque;
 
 use super::super::*;
-use super::Frames;
+use super::FrameSource;
 
 /// A player in motion, and the flow control of the game.
 pub(in super::super) struct Player {
@@ -11,7 +11,7 @@ pub(in super::super) struct Player {
     pub(in super::super) shown: Vec<Shown>,
     /// From pressing a key to the first frame that reflects it, in order of pressing.
     pub(in super::super) latencies: Vec<Latency>,
-    pub(super) frames: Frames,
+    pub(super) frames: Box<dyn FrameSource>,
     pub(super) due: Duration,
     pub(super) next_key: Duration,
     /// Answers and keys that are sent to the game, and when they arrive.
@@ -55,7 +55,7 @@ impl Shown {
 }
 
 impl Player {
-    pub(super) fn new(frames: Frames) -> Self {
+    pub(super) fn new(frames: Box<dyn FrameSource>) -> Self {
         Self {
             flow: Flow::new(true),
             shown: Vec::new(),

@@ -1,0 +1,54 @@
+//! The frames of a player: those of an encoder, or random sizes.
+
+use std::time::Duration;
+
+use crate::terminal::Fidelity;
+
+/// Frames of a player in motion.
+pub(in super::super) trait FrameSource {
+    /// The size of a frame that is drawn at `now`, in bytes. `draw` is a random number below 1.
+    fn bytes(&mut self, now: Duration, fidelity: Fidelity, draw: f64) -> f64;
+
+    /// The share of a frame that compression leaves.
+    fn carried(&self, fidelity: Fidelity) -> f64;
+}
+
+/// How large frames are.
+#[derive(Clone, Copy, Debug)]
+pub(in super::super) struct Frames {
+    /// The mean of exact ones, in bytes.
+    pub(in super::super) exact: f64,
+    /// How far one may be from the mean, as a share of it.
+    pub(in super::super) spread: f64,
+    /// The share of a frame that compression leaves: of an exact one, and of a coarse one.
+    pub(in super::super) compressed: [f64; 2],
+}
+
+impl Frames {
+    /// Those of a walk through the citadel at 120×40, as `cellcaster wire` measures them.
+    pub(in super::super) const CITADEL: Self =
+        Self { exact: 27_000.0, spread: 0.6, compressed: [1.0, 1.0] };
+    /// The same with `ssh -C`.
+    pub(in super::super) const COMPRESSED: Self =
+        Self { compressed: [0.183, 0.225], ..Self::CITADEL };
+
+    pub(in super::super) fn all_of(bytes: usize) -> Self {
+        Self { exact: bytes as f64, spread: 0.0, compressed: [1.0, 1.0] }
+    }
+}
+
+impl FrameSource for Frames {
+    fn bytes(&mut self, _: Duration, fidelity: Fidelity, draw: f64) -> f64 {
+        self.exact * (1.0 + self.spread * (2.0 * draw - 1.0)) / saving(fidelity)
+    }
+
+    fn carried(&self, fidelity: Fidelity) -> f64 {
+        let [exact, coarse] = self.compressed;
+        if fidelity == Fidelity::EXACT { exact } else { coarse }
+    }
+}
+
+/// By how much smaller frames are at `fidelity`.
+pub(in super::super) fn saving(fidelity: Fidelity) -> f64 {
+    1.0 + f64::from(fidelity.tolerance()) * 0.3
+}
