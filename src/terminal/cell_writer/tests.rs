@@ -30,9 +30,9 @@ proptest! {
         assert_shown(&screen, &content);
     }
 
-    /// A picture that turns: stretches of rows move by a few columns from frame to frame.
+    /// A picture that turns: stretches of rows move by some columns from frame to frame.
     #[test]
-    fn what_moves_sideways_looks_as_it_should(
+    fn cells_that_move_sideways_are_right(
         cells in any_pixels(160),
         moves in prop::collection::vec((0..4_usize, 0..40_usize, 0..40_usize, 0..9_usize), 1..8),
     ) {
@@ -116,7 +116,7 @@ proptest! {
 }
 
 #[test]
-fn only_what_differs_from_the_cell_before_is_sent() {
+fn only_differences_from_the_cell_before_are_sent() {
     let (red, blue) = (Color::Rgb(200, 0, 0), Color::Rgb(0, 0, 200));
     let row = [
         colored("o", red, blue),
@@ -185,7 +185,7 @@ fn the_cursor_is_shown_where_a_frame_puts_it_and_hidden_again() {
     assert!(hidden(&screen));
 }
 
-/// A glyph that finds no place in the table is shown all the same, whichever way it is drawn.
+/// A glyph without an id is shown nevertheless, however it is drawn.
 #[test]
 fn more_letters_than_have_numbers_are_shown() {
     let intensities = [Modifier::empty(), Modifier::BOLD, Modifier::DIM];
@@ -226,7 +226,7 @@ fn a_window_of_no_size_is_drawn_without_complaint() {
     terminal.draw(|_| ()).unwrap();
 }
 
-/// One cell that blinks does not keep all others from becoming exact.
+/// A blinking cell does not keep the others from becoming exact.
 #[test]
 fn rows_that_rest_become_exact_while_another_changes() {
     let size = Size::new(40, 6);
