@@ -22,7 +22,7 @@ fn a_block_that_spares_a_colour_is_taken() {
 
 proptest! {
     #[test]
-    fn pixels_look_the_same_whatever_their_glyphs(cells in any_pixels(24)) {
+    fn pixels_look_the_same_with_any_glyphs(cells in any_pixels(24)) {
         let size = Size::new(6, 4);
         let (mut terminal, screen) = terminal(size);
         let content = Buffer { area: Rect::from(size), content: cells };
@@ -51,7 +51,7 @@ proptest! {
     }
 
     #[test]
-    fn a_terminal_shows_what_was_drawn_after_any_history(
+    fn a_terminal_shows_the_drawn_cells_after_any_history(
         (size, history) in any_size()
             .prop_flat_map(|size| (Just(size), prop::collection::vec(any_buffer(size), 1..6)))
     ) {
@@ -76,7 +76,7 @@ proptest! {
     }
 
     #[test]
-    fn a_resized_window_is_drawn_afresh(
+    fn a_resized_window_is_redrawn(
         before in any_size().prop_flat_map(any_buffer),
         after in any_size().prop_flat_map(any_buffer),
     ) {
@@ -187,7 +187,7 @@ fn the_cursor_is_shown_where_a_frame_puts_it_and_hidden_again() {
 
 /// A glyph without an id is shown nevertheless, however it is drawn.
 #[test]
-fn more_letters_than_have_numbers_are_shown() {
+fn glyphs_without_ids_are_shown() {
     let intensities = [Modifier::empty(), Modifier::BOLD, Modifier::DIM];
     let others = [Modifier::empty(), Modifier::ITALIC, Modifier::UNDERLINED, Modifier::REVERSED];
     let modifiers = intensities.map(|one| others.map(|other| one | other));
@@ -220,7 +220,7 @@ fn more_letters_than_have_numbers_are_shown() {
 }
 
 #[test]
-fn a_window_of_no_size_is_drawn_without_complaint() {
+fn a_window_of_no_size_is_drawn_without_an_error() {
     let screen = Screen::new(Size::new(1, 1));
     let mut terminal = Terminal::new(CellWriter::new(screen, Size::ZERO)).unwrap();
     terminal.draw(|_| ()).unwrap();

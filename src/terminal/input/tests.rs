@@ -140,7 +140,7 @@ fn settle(decoder: &mut Decoder) -> Vec<Input> {
 }
 
 #[test]
-fn every_unit_means_what_it_should() {
+fn every_unit_has_its_meaning() {
     for (text, expected) in vocabulary() {
         assert_eq!(decode([text.as_bytes()]), Vec::from_iter(expected), "{text:?}");
     }
@@ -164,7 +164,7 @@ fn an_entry_of_the_palette_is_reported_in_one_to_four_digits() {
 }
 
 #[test]
-fn an_escape_that_nothing_follows_is_the_escape_key() {
+fn an_escape_by_itself_is_the_escape_key() {
     let mut decoder = Decoder::default();
     decoder.feed(b"\x1b", |input| panic!("{input:?} came too early"));
     assert!(decoder.patience().is_some());
