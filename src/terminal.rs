@@ -1,12 +1,12 @@
-//! The real terminal: what it can do, entering and leaving it, its bytes as events, cells as bytes.
+//! The real terminal: its capabilities, sessions with it, its bytes as events, and cells as bytes.
 //!
-//! A [`Session`] takes the terminal and yields [`Event`]s; [`Session::draw`] shows a frame. Whatever
-//! ends the session — a return, an error, a panic, a signal — the terminal is given back as it was
-//! found.
+//! A [`Session`] takes the terminal and yields [`Event`]s; [`Session::draw`] shows a frame. At the
+//! end of the session, the terminal is restored to its previous state, whether the session ends by
+//! a return, an error, a panic or a signal.
 //!
-//! The bytes are read and cut by this module itself. Leaving that to an event library was refused:
-//! those known swallow keys after an answer that they do not know, take half a sequence for
-//! keys, or keep a reading thread that competes with the answers to queries.
+//! This module reads the bytes and divides them into units itself. An event library was refused:
+//! the known ones swallow keys after an unknown answer, mistake half a sequence for keys, or keep a
+//! reading thread that competes with the answers to queries.
 
 mod cell_writer;
 mod depth;

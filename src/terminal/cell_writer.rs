@@ -1,15 +1,16 @@
-//! Cells to bytes: ratatui's changed cells, as the control sequences that draw them.
+//! The encoder: ratatui's cells to control sequences.
 //!
-//! The bytes of a frame are collected and written with one `write`, between the marks of
-//! synchronized output; a frame that changes nothing writes nothing. What the terminal has been
-//! told is carried from frame to frame, so only the colour that differs is sent, and the cursor is
-//! moved only where it does not already stand. Ratatui's own backends send both colours when one
+//! The bytes of a frame are collected and written with one `write`, between the control sequences
+//! of synchronized output. A frame without a change writes nothing. The writer records the
+//! terminal's colours and cursor position from frame to frame, so that it sends only colours that
+//! differ and moves the cursor only if it must. Ratatui's own backends send both colours if one
 //! differs, and 25 bytes for a frame without a change.
 //!
-//! The writer keeps a model of the screen, cell by cell. A cell that looks as it should is not sent, and a part of
-//! a row that moved sideways is moved by the terminal. At a [`Fidelity`] that is not exact, each row is searched
-//! for the cheapest way to show it within the tolerance, whatever its cells are made of: half blocks or
-//! characters, in true colour or in a palette. A screen that does not change becomes exact in ten frames.
+//! The writer keeps a model of the screen, cell by cell. It does not send cells that are already
+//! right, and it has the terminal move parts of rows that moved sideways. At a [`Fidelity`] that is
+//! not exact, it searches each row for the cheapest way to show it within the tolerance: half
+//! blocks or characters, in true colour or in a palette. A screen that does not change becomes
+//! exact in ten frames.
 
 mod ascii;
 mod bytes;
@@ -68,8 +69,8 @@ pub struct CellWriter<W> {
 }
 
 impl<W: Write> CellWriter<W> {
-    /// A backend that writes to `output`, a terminal of `size` whose cursor is hidden, and which is
-    /// blank.
+    /// A backend that writes to `output`, which must be a blank terminal of `size` with a hidden
+    /// cursor.
     pub fn new(output: W, size: Size) -> Self {
         Self {
             output,
@@ -85,81 +86,82 @@ impl<W: Write> CellWriter<W> {
         }
     }
 
-    /// How many bytes have been written so far.
+    /// The number of bytes written so far.
     pub fn bytes_written(&self) -> u64 {
         self.bytes_written
     }
 
-    /// What is written to. A byte that others write to it is one that this does not know of.
+    /// The output. The writer does not see bytes that other code writes to it.
     pub fn output_mut(&mut self) -> &mut W {
         &mut self.output
     }
 
-    /// What was written to.
+    /// Returns the output.
     pub fn into_output(self) -> W {
         self.output
     }
 
-    /// From the next frame on, colours may be as far off as `fidelity` says.
+    /// Sets the fidelity of colours from the next frame on.
     pub fn set_fidelity(&mut self, fidelity: Fidelity) {
         self.fidelity = fidelity;
     }
 
-    /// From the next frame on, what is not ASCII is replaced by what looks like it, or is not.
+    /// Sets whether characters beyond ASCII are replaced by similar ones, from the next frame on.
     pub fn set_ascii(&mut self, is_ascii: bool) {
         self.screen.set_ascii(is_ascii);
     }
 
-    /// From the next frame on, characters that follow themselves are written once and repeated, where
-    /// `repeats`: the terminal must understand REP (`CSI n b`), also after half blocks.
+    /// Sets whether repeated characters are written once with a repeat count, from the next frame
+    /// on. The terminal must understand REP (`CSI n b`), also after half blocks.
     pub fn set_repeats(&mut self, repeats: bool) {
         self.pen.set_repeats(repeats);
     }
 
-    /// From the next frame on, frequent colours are defined as entries 24 to 255 of the terminal's palette (OSC 4)
-    /// where `uses_palette`, and used as these. Who turns that on gives the palette back (OSC 104) when all is
-    /// done.
+    /// Sets whether frequent colours are defined as entries 24 to 255 of the terminal's palette
+    /// (OSC 4) and used as these, from the next frame on. A caller that turns this on must reset
+    /// the palette at the end (OSC 104).
     ///
-    /// Ratatui's indexed colours from the sixteenth on are then shown as xterm's standard palette has them.
+    /// The terminal then shows ratatui's indexed colours from the sixteenth on as in xterm's
+    /// standard palette.
     pub fn set_palette(&mut self, uses_palette: bool) {
         self.pen.palette().set_on(uses_palette);
     }
 
-    /// Whether the terminal shows exactly what was drawn last. Where it does not, each further draw
-    /// without a changed cell brings it nearer, and after the tenth it is.
+    /// Whether the terminal shows exactly the last frame drawn. If it does not, each further draw
+    /// without a changed cell brings it nearer, and the tenth makes it exact.
     pub fn is_settled(&self) -> bool {
         self.screen.is_exact()
     }
 
-    /// Draws a part of what is shown inexactly anew, and exactly: what a draw without a changed cell
-    /// does. It is written with the next flush.
+    /// Draws a part of the inexact cells again, exactly, as a draw without a changed cell does. The
+    /// next flush writes it.
     pub fn refine(&mut self) {
         self.refinement.draw(&mut self.pen, &mut self.shifts, &mut self.screen);
     }
 
-    /// The colours that the terminal shows in the upper and the lower half of a cell, or of the text in it and of
-    /// its ground; `None` where nobody knows, and off the screen.
+    /// The colours that the terminal shows in the upper and the lower half of a cell, or of its
+    /// text and its background. `None` if they are unknown, and off the screen.
     pub fn shown_colors(&self, column: u16, row: u16) -> Option<[Color; 2]> {
         Some(self.screen.shown_colors(column, row)?.map(Shade::color))
     }
 
-    /// Takes note that the window is now of `size`; ratatui clears it in the next frame.
+    /// Sets the size of the window. Ratatui clears it in the next frame.
     pub fn set_size(&mut self, size: Size) {
         self.size = size;
         self.screen.resize(size);
         self.pen.set_size(size);
     }
 
-    /// Takes note that others may have written to the terminal: nothing is known but that the
-    /// cursor is hidden.
+    /// Forgets the state of the terminal, except that the cursor is hidden: others may have written
+    /// to it.
     pub fn forget(&mut self) {
         self.screen.forget();
         self.pen.forget();
         self.cursor_visible = false;
     }
 
-    /// Has `draw` draw a whole frame, on a blank screen, and takes note of what must be written for it with
-    /// the next flush: for drawing without ratatui's [`Terminal`](ratatui::Terminal) and its buffers.
+    /// Calls `draw` to draw a whole frame on a blank screen, without ratatui's
+    /// [`Terminal`](ratatui::Terminal) and its buffers. The next flush writes the changes.
     ///
     /// ```
     /// use cellcaster::terminal::CellWriter;
@@ -180,7 +182,7 @@ impl<W: Write> CellWriter<W> {
         self.update();
     }
 
-    /// Draws what has changed; where nothing has, refines.
+    /// Draws the changed rows; refines the screen if there are none.
     fn update(&mut self) {
         if self.screen.is_changed() {
             self.refinement.disturb();
@@ -192,7 +194,7 @@ impl<W: Write> CellWriter<W> {
         }
     }
 
-    /// Makes every row that has changed look as it is wanted.
+    /// Makes every changed row look like its target.
     fn draw_changed(&mut self) {
         let is_exact = self.fidelity == Fidelity::EXACT;
         let (pen, shifts) = (&mut self.pen, &mut self.shifts);
@@ -238,7 +240,7 @@ impl<W: Write> Backend for CellWriter<W> {
         Ok(())
     }
 
-    /// Where the next character would go, as far as it is known without asking the terminal.
+    /// The position of the next character, as far as it is known without a query to the terminal.
     fn get_cursor_position(&mut self) -> io::Result<Position> {
         Ok(self.pen.position().unwrap_or(Position::ORIGIN))
     }
@@ -274,7 +276,7 @@ impl<W: Write> Backend for CellWriter<W> {
         Ok(WindowSize { columns_rows: self.size, pixels: Size::ZERO })
     }
 
-    /// Writes the frame, if there is anything in it.
+    /// Writes the frame, unless it is empty.
     fn flush(&mut self) -> io::Result<()> {
         let Some(frame) = self.pen.finish_frame() else { return Ok(()) };
         let written = self.output.write_all(frame).and_then(|()| self.output.flush());

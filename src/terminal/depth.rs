@@ -1,17 +1,17 @@
-//! How many colours the terminal shows, as far as its environment tells.
+//! The number of colours that the terminal shows, as far as its environment says it.
 //!
-//! First what the user asks for (`NO_COLOR`, `FORCE_COLOR`, `CLICOLOR_FORCE`), then what the
-//! terminal says of itself (`COLORTERM`, `TERM`), then a guess that a query may raise. A database
-//! of terminals was refused: it is missing on half the machines, and wrong about colours on others.
+//! The user's choice comes first (`NO_COLOR`, `FORCE_COLOR`, `CLICOLOR_FORCE`), then the terminal's
+//! own claims (`COLORTERM`, `TERM`), then a guess that a query may raise. A database of terminals
+//! was refused: half of the machines lack it, and it has wrong numbers of colours on others.
 
 use crate::color::palette::ColorDepth;
 
-/// What an environment tells of the colour depth.
+/// The colour depth that an environment implies.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Detected {
-    /// Nothing the terminal answers would change it.
+    /// A depth that no answer of the terminal would change.
     Certain(ColorDepth),
-    /// The most to rely on until the terminal has been asked.
+    /// The greatest safe depth until the terminal has been queried.
     Guess(ColorDepth),
 }
 
@@ -24,7 +24,7 @@ impl Detected {
     }
 }
 
-/// What it is known by how many colours there are.
+/// The evidence for the colour depth.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum ColorSource {
     /// The variable `NO_COLOR`.
@@ -37,16 +37,16 @@ pub enum ColorSource {
     Term,
     /// The terminal's answer to a query.
     Answer,
-    /// Nothing: it is what most terminals show.
+    /// No evidence; the depth is that of most terminals.
     Nothing,
 }
 
-/// The colour depth that `environment`, a lookup of variables by name, speaks for.
+/// The colour depth that `environment` implies, which looks up variables by name.
 pub fn color_depth(environment: impl Fn(&str) -> Option<String>) -> Detected {
     detect(environment).0
 }
 
-/// What in `environment` the [`color_depth`] is known by.
+/// The evidence for the [`color_depth`] in `environment`.
 pub fn color_source(environment: impl Fn(&str) -> Option<String>) -> ColorSource {
     detect(environment).1
 }
@@ -77,7 +77,7 @@ fn detect(environment: impl Fn(&str) -> Option<String>) -> (Detected, ColorSourc
     }
 }
 
-/// What `term`, a value of `TERM`, says.
+/// The depth that `term`, a value of `TERM`, implies.
 fn of(term: &str) -> Detected {
     const TRUE: [&str; 9] = [
         "alacritty",
@@ -102,7 +102,7 @@ fn of(term: &str) -> Detected {
     } else if SIXTEEN.contains(&term) {
         Detected::Certain(ColorDepth::Indexed16)
     } else if is(&"screen") {
-        // It hands the query through to the terminal around it, whose answer would be another's.
+        // It forwards the query to the terminal around it, whose answer does not apply to it.
         Detected::Certain(ColorDepth::Indexed256)
     } else {
         Detected::Guess(ColorDepth::Indexed256)

@@ -1,29 +1,29 @@
-//! What the environment says of the terminal, beside its colours: whether it can be played on, and
-//! which characters it shows.
+//! Properties of the terminal from the environment, besides its colours: whether the game can run
+//! on it, and which characters it shows.
 //!
-//! What says nothing is no reason to do without: containers and `ssh` often set neither a locale nor
-//! `TERM`, in terminals that show UTF-8 and know every sequence. A program that aborts there, or draws
-//! in letters, was refused.
+//! Missing variables do not restrict the game: containers and `ssh` often set neither a locale nor
+//! `TERM`, in terminals that show UTF-8 and know every sequence. A program that aborts there, or
+//! that draws with letters, was refused.
 
-/// Values of `TERM` for what cannot move its cursor, all without `cup` in the database of terminals:
-/// those that programs and systems set, and teletypes.
+/// Values of `TERM` for terminals that cannot move their cursors, all without `cup` in the database
+/// of terminals: those that programs and systems set, and teletypes.
 const TELETYPES: [&str; 12] = [
     "dumb", "unknown", "vanilla", "emacs", "glasstty", "printer", "lpr", "tty33", "tty35", "tty37",
     "tty40", "tty43",
 ];
 
-/// The value of `TERM` in `environment`, a lookup of variables by name, where it is one of a terminal
-/// that cannot move its cursor.
+/// The value of `TERM` in `environment`, which looks up variables by name, if it is that of a
+/// terminal that cannot move its cursor.
 pub(super) fn teletype(environment: impl Fn(&str) -> Option<String>) -> Option<&'static str> {
     let term = environment("TERM")?;
     TELETYPES.into_iter().find(|&known| known == term)
 }
 
-/// The setting of the locale in `environment`, such as `LANG=C`, where it is not one of UTF-8. `None`
-/// where it is, and where there is no setting: most terminals show UTF-8.
+/// The setting of the locale in `environment`, such as `LANG=C`, if it is not a setting for UTF-8.
+/// `None` if it is, and without a setting, since most terminals show UTF-8.
 ///
-/// Of `LC_ALL`, `LC_CTYPE` and `LANG`, the first that is not empty counts, as POSIX says. One that
-/// names no character set is not UTF-8.
+/// The first non-empty variable of `LC_ALL`, `LC_CTYPE` and `LANG` counts, as in POSIX. A locale
+/// without a character set is not UTF-8.
 ///
 /// ```
 /// use cellcaster::terminal::locale_without_utf8;
@@ -73,7 +73,7 @@ mod tests {
     }
 
     #[test]
-    fn only_what_cannot_move_its_cursor_is_a_teletype() {
+    fn only_terminals_without_cursor_motion_are_teletypes() {
         for term in ["TERM=dumb", "TERM=unknown", "TERM=tty33"] {
             assert!(teletype(environment(term)).is_some(), "{term}");
         }

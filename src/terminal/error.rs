@@ -1,8 +1,8 @@
-//! What can go wrong with a terminal.
+//! Errors of sessions with a terminal.
 
 use std::{fmt, io};
 
-/// Why a session with the terminal did not start, or does not go on.
+/// The reason why a session with the terminal did not start or cannot continue.
 ///
 /// Its message is a whole sentence for the user.
 #[derive(Debug)]
@@ -28,34 +28,34 @@ enum Kind {
 }
 
 impl Error {
-    /// `stream` ("standard input", say) is not a terminal.
+    /// `stream` (such as "standard input") is not a terminal.
     #[cfg(unix)]
     pub(super) fn not_a_terminal(stream: &'static str) -> Self {
         Self(Kind::NotATerminal { stream })
     }
 
-    /// There is no way yet to play on this platform.
+    /// The game cannot run on this platform yet.
     #[cfg(not(unix))]
     pub(super) fn unsupported_platform() -> Self {
         Self(Kind::UnsupportedPlatform)
     }
 
-    /// The terminal cannot move its cursor, says this value of `TERM`.
+    /// The terminal cannot move its cursor, according to this value of `TERM`.
     pub(super) fn teletype(term: &'static str) -> Self {
         Self(Kind::Teletype { term })
     }
 
-    /// This program has a session already.
+    /// This process has a session already.
     pub(super) fn already_taken() -> Self {
         Self(Kind::AlreadyTaken)
     }
 
-    /// The session was ended from outside: by a panic in another thread.
+    /// A panic in another thread has ended the session.
     pub(super) fn given_back() -> Self {
         Self(Kind::GivenBack)
     }
 
-    /// Whether the user can do otherwise: play on a terminal, or on another platform.
+    /// Whether the user can avoid it, with a terminal or another platform.
     pub fn is_mistake(&self) -> bool {
         match self.0 {
             Kind::NotATerminal { .. } | Kind::Teletype { .. } => true,
@@ -65,7 +65,7 @@ impl Error {
         }
     }
 
-    /// Makes an error of one that occurred while `doing` something ("reading keys", say).
+    /// Wraps an error that occurred while `doing` something (such as "reading keys").
     pub(super) fn while_doing(doing: &'static str) -> impl FnOnce(io::Error) -> Self {
         move |source| Self(Kind::Io { doing, source })
     }

@@ -1,46 +1,47 @@
-//! What the terminal tells the program.
+//! Events from the terminal.
 
 use super::{KeyEvent, MouseEvent};
 use crate::color::palette::ColorDepth;
 
-/// Something that happened to the terminal.
+/// An event of the terminal.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Event {
     /// A key was pressed, repeated or released.
     Key(KeyEvent),
-    /// The mouse was moved, or one of its buttons pressed: while
-    /// [`Session::set_mouse`](super::Session::set_mouse) has it reported.
+    /// The mouse was moved, or one of its buttons pressed or released. Only if
+    /// [`Session::set_mouse`](super::Session::set_mouse) has turned on reports.
     Mouse(MouseEvent),
-    /// What is typed goes to this window again.
+    /// The window has received the focus.
     FocusGained,
-    /// What is typed goes elsewhere from now on. Keys that are held may be released unheard.
+    /// The window has lost the focus. Releases of held keys may not be reported.
     FocusLost,
-    /// The window may have another size, and everything is painted again by the next frame.
+    /// The window may have another size, and the next frame repaints it.
     Resized,
-    /// The terminal has said that it shows this many colours, which is more than was guessed.
+    /// The terminal has answered that it shows this number of colours, which is more than the
+    /// guess.
     ColorDepth(ColorDepth),
-    /// The terminal has agreed, or not, to report when keys are released. Sent at most once; until
-    /// then, releases are not reported.
+    /// The terminal has answered whether it reports key releases. Sent at most once; before it,
+    /// releases are not reported.
     KeyReleases(bool),
     /// The terminal is ready for the next frame. Sent only after
-    /// [`Session::is_ready`](super::Session::is_ready) has denied it.
+    /// [`Session::is_ready`](super::Session::is_ready) has returned `false`.
     Ready,
-    /// The user wants to go back to the shell for a while: Ctrl-Z, or a signal. The program is
-    /// asked to call [`Session::suspend`](super::Session::suspend).
+    /// The user wants to return to the shell for a while, by Ctrl-Z or a signal. The program should
+    /// call [`Session::suspend`](super::Session::suspend).
     Suspend,
-    /// The program is asked to end. After a signal, it is ended by force one second later.
+    /// The program should end. After a signal, it is ended by force one second later.
     Quit(QuitReason),
 }
 
-/// Why the program is asked to end.
+/// The reason why the program should end.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum QuitReason {
-    /// The user pressed Ctrl-C, or somebody sent the signal that it stands for.
+    /// The user pressed Ctrl-C, or the process received SIGINT.
     Interrupted,
-    /// A signal said so.
+    /// The process received SIGTERM.
     Terminated,
-    /// The terminal is gone, says a signal.
+    /// The terminal is gone: the process received SIGHUP.
     HungUp,
-    /// There will be no more keys.
+    /// The input is closed, so that no more keys can arrive.
     InputClosed,
 }

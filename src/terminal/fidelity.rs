@@ -1,21 +1,21 @@
-//! How far the colours on a terminal may be from those that were drawn.
+//! The tolerance of colours on a terminal.
 
 use std::fmt;
 use std::str::FromStr;
 
-/// How far the colours that a terminal shows may be from those that were drawn, to save bytes.
+/// The maximum difference between the colours on a terminal and the drawn ones, which saves bytes.
 ///
-/// The tolerance is a distance between two colours in CIE L\*a\*b\*, CIE76's ΔE: 0 is exact, 2 can just be
-/// told apart side by side, and 100 is the distance from black to white. No colour is farther off, and most are
-/// much nearer.
+/// The tolerance is a distance between two colours in CIE L\*a\*b\*, CIE76's ΔE: 0 is exact, 2 is
+/// just noticeable side by side, and 100 is the distance from black to white. No colour exceeds it,
+/// and most are much nearer.
 ///
 /// The tolerance holds in every colour depth and glyph mode:
 ///
-/// - Half blocks in true colour save most.
-/// - A picture in 256 or 16 colours is compared as the widget drew it, after the widget mixed the colours of the
-///   palette. An indexed colour stands for xterm's standard one. The 16 named colours, which users redefine, stand
-///   for each other only; since few of them are near each other, they save little.
-/// - A character keeps its glyph and its modifiers; without modifiers, its two colours may be off.
+/// - Half blocks in true colour save the most.
+/// - A picture in 256 or 16 colours is compared after the widget has mixed the colours of the
+///   palette. An indexed colour counts as xterm's standard one. The 16 named colours, which users
+///   redefine, can only replace each other; they save little, since few are near each other.
+/// - A character keeps its glyph and its modifiers; without modifiers, its two colours may differ.
 /// - Without colours (`mono`), every cell is exact.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, PartialOrd, Ord, Hash)]
 pub struct Fidelity {
@@ -23,29 +23,30 @@ pub struct Fidelity {
 }
 
 impl Fidelity {
-    /// Every colour is the one that was drawn.
+    /// All colours are exact.
     pub const EXACT: Self = Self::new(0);
-    /// A mean difference of about 1 in true colour, for an eighth of the bytes of ratatui's encoder.
+    /// A mean difference of about 1 in true colour, for an eighth of the bytes of ratatui's
+    /// encoder.
     pub const HIGH: Self = Self::new(10);
     /// A mean difference of about 2 in true colour, for a sixteenth of the bytes.
     pub const LOW: Self = Self::new(24);
 
-    /// Colours up to `tolerance` from those that were drawn.
+    /// A fidelity with this tolerance, in ΔE.
     pub const fn new(tolerance: u8) -> Self {
         Self { tolerance }
     }
 
-    /// How far a colour may be from the one that was drawn.
+    /// The maximum distance of a colour from the drawn one, in ΔE.
     pub const fn tolerance(self) -> u8 {
         self.tolerance
     }
 }
 
-/// The fidelities that have a name.
+/// The named fidelities.
 const NAMED: [(&str, Fidelity); 3] =
     [("exact", Fidelity::EXACT), ("high", Fidelity::HIGH), ("low", Fidelity::LOW)];
 
-/// The name, or the tolerance where it has none.
+/// Writes the name, or the tolerance of a fidelity without a name.
 impl fmt::Display for Fidelity {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
         match NAMED.iter().find(|(_, fidelity)| fidelity == self) {
@@ -66,7 +67,7 @@ impl FromStr for Fidelity {
     }
 }
 
-/// A text that is no fidelity.
+/// The error for a text that is not a fidelity.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub struct UnknownFidelity(String);
 
@@ -93,7 +94,7 @@ mod tests {
     }
 
     #[test]
-    fn what_is_no_fidelity_is_named() {
+    fn the_error_names_the_invalid_text() {
         for text in ["", "medium", "256", "-1", "4.5"] {
             let error = text.parse::<Fidelity>().unwrap_err().to_string();
             assert!(error.starts_with(&format!("'{text}' is no fidelity")), "{error}");

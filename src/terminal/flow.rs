@@ -1,24 +1,28 @@
-//! Flow control: when the next frame may be sent, so that it does not wait in the link behind others.
+//! Flow control: when to send the next frame, so that it does not wait in the link behind others.
 //!
-//! A write tells nothing of lag: the system and the link accept seconds of frames before they block. So each
-//! frame is followed by a request, which the terminal answers when it has processed all before it, and the number
-//! of frames in flight is limited: to what occupies the link until the answer to the first of them arrives, to what
-//! 30 frames a second need (Little's law: frames in flight = frames a second × round-trip time), and to four.
-//! While the answer to the oldest is late, no frame is sent: the link may have become slower, and whatever is in
-//! flight then arrives before anything new. A limit in bytes was refused: 16 kB make exact frames coarse
-//! (fidelity 6) at 10 Mbit/s and 100 ms.
+//! A write shows no lag: the system and the link accept seconds of frames before they block. So
+//! each frame is followed by a request, which the terminal answers when it has processed everything
+//! before it. The number of frames in flight has three limits: the frames that occupy the link
+//! until the first of them is answered, the frames that 30 frames a second need (Little's law:
+//! frames in flight = frames a second × round-trip time), and four. While the answer to the oldest
+//! frame is late, no frame is sent: the link may have become slower, and all frames in flight
+//! arrive before a new one. A limit in bytes was refused: 16 kB make exact frames coarse (fidelity
+//! 6) at 10 Mbit/s and 100 ms.
 //!
-//! Answers arrive in the order of the requests, so the n-th answer belongs to the n-th request, however late it
-//! is. Removing frames after a timeout was refused: their answers are then credited to newer frames, and the
-//! link seems faster than it is for as long as anything moves. A lost answer is noticed at the next *fence*, a
-//! request of another kind: its answer says that all before it has been answered, or never will be. Every few
-//! seconds the request after a frame is a fence.
+//! Answers arrive in the order of the requests, so that the n-th answer belongs to the n-th
+//! request, however late it is. Removing frames after a timeout was refused: their answers are then
+//! credited to newer frames, and the link seems faster than it is for as long as anything moves. A
+//! lost answer is detected at the next *fence*, a request of another kind: when a fence is
+//! answered, no answer to an earlier request can still arrive. Every few seconds the request after
+//! a frame is a fence.
 //!
-//! After a timeout, a fence is sent alone, and after that nothing: frames that nobody receives keep a dead
-//! connection from being noticed. An answer or a key ends this. A terminal that still does not answer, or never did,
-//! is not asked any more; for it a frame may be sent when the system has accepted the one before.
+//! After a timeout, one fence is sent alone and then nothing more: frames that are not received
+//! delay the detection of a dead connection. An answer or a key ends this state. A terminal that
+//! stays silent, or that never answered, receives no more requests; for it a frame may be sent when
+//! the system has accepted the one before.
 //!
-//! This module has neither a clock nor a terminal: it is told of events and their times, counted from any moment.
+//! This module has neither a clock nor a terminal. Its functions receive events and their times,
+//! which are durations since any fixed moment.
 
 mod demand;
 mod fit;
@@ -39,15 +43,15 @@ use super::Fidelity;
 pub(super) struct Flow {
     answers: Answers,
     in_flight: InFlight,
-    /// When something was last sent or answered.
+    /// The time of the last frame, request or answer.
     active_at: Duration,
-    /// When a fence was last sent.
+    /// The time at which a fence was last sent.
     fenced_at: Duration,
-    /// How many timeouts there were in a row.
+    /// The number of consecutive timeouts.
     timeouts: u32,
-    /// Whether a key has arrived since something was sent.
+    /// Whether a key has arrived since the last frame or request was sent.
     has_input: bool,
-    /// How many requests were removed whose answers may still arrive.
+    /// The number of removed requests whose answers may still arrive.
     forgotten: usize,
     is_remote: bool,
     link: Link,
@@ -63,34 +67,35 @@ enum Answers {
     Never,
 }
 
-/// The most frames in flight.
+/// The maximum of frames in flight.
 const MAX_FRAMES: usize = 4;
-/// The most while nothing is known of the link.
+/// The maximum of frames in flight while the link is unknown.
 const FIRST_FRAMES: usize = 1;
-/// How many frames a second are sent at most.
+/// The maximum of frames a second.
 const MAX_FRAMES_PER_SECOND: f64 = 30.0;
-/// The fidelity of the first frame over a network: a quarter of the bytes.
+/// The fidelity of the first frame over a network, at which it takes a quarter of the bytes.
 const FIRST_FIDELITY: Fidelity = Fidelity::LOW;
 
-/// The shortest timeout and the longest one.
+/// The shortest and the longest timeout.
 const MIN_TIMEOUT: Duration = Duration::from_secs(1);
 const MAX_TIMEOUT: Duration = Duration::from_secs(8);
-/// A timeout is so many times the expected time.
+/// A timeout is this multiple of the expected time.
 const TIMEOUT_FACTOR: u32 = 4;
 /// The rate of the slowest link, in bytes a second.
 const MIN_RATE: f64 = 16_000.0;
-/// After so many timeouts in a row, with keys arriving meanwhile, a terminal does not answer any more.
+/// After this number of consecutive timeouts, with keys between them, a terminal counts as one that
+/// does not answer.
 const MAX_TIMEOUTS: u32 = 5;
-/// How often a request is a fence.
+/// The time between two requests that are fences.
 const FENCE_PERIOD: Duration = Duration::from_secs(5);
 
 impl Flow {
-    /// Flow control of an unknown link, which is a network where `is_remote`.
+    /// Flow control of an unknown link; the link is a network if `is_remote`.
     pub(super) fn new(is_remote: bool) -> Self {
         Self { is_remote, ..Self::default() }
     }
 
-    /// The request that belongs after the next frame.
+    /// The request to send after the next frame.
     pub(super) fn request(&self, now: Duration) -> Request {
         match self.answers {
             Answers::Never => Request::Nothing,
@@ -100,7 +105,8 @@ impl Flow {
         }
     }
 
-    /// A frame of so many bytes was sent, with `request` after it; one of no bytes is a request alone.
+    /// Records that a frame of this number of bytes was sent, with `request` after it. A frame of 0
+    /// bytes is a request alone.
     pub(super) fn sent(&mut self, now: Duration, bytes: usize, request: Request) {
         if self.is_timed_out(now) {
             self.timeouts = self.timeouts.saturating_add(1);
@@ -117,7 +123,7 @@ impl Flow {
         self.has_input = false;
     }
 
-    /// The terminal has answered a status request.
+    /// Records that the terminal has answered a status request.
     pub(super) fn answered(&mut self, now: Duration) {
         if self.answers == Answers::Never {
             self.in_flight.clear();
@@ -135,7 +141,8 @@ impl Flow {
         self.take_answer(now, sent);
     }
 
-    /// The terminal has answered a fence, and all before it that it ever will.
+    /// Records that the terminal has answered a fence, and thus all earlier requests that it will
+    /// answer.
     pub(super) fn fence_answered(&mut self, now: Duration) {
         let Some(before) = self.in_flight.before_fence() else { return };
         if self.answers == Answers::Unknown && before > 0 {
@@ -152,19 +159,19 @@ impl Flow {
     fn take_answer(&mut self, now: Duration, sent: Sent) {
         self.timeouts = 0;
         self.active_at = now;
-        // What may be the answer to a forgotten request tells nothing of the link.
+        // An answer that may belong to a forgotten request is no evidence about the link.
         if self.forgotten == 0 {
             self.link.answered(now, sent.at, sent.bytes);
         }
         self.forgotten = 0;
     }
 
-    /// A key has arrived.
+    /// Records that a key has arrived.
     pub(super) fn received_input(&mut self) {
         self.has_input = true;
     }
 
-    /// The system has accepted all that was sent.
+    /// Records that the system has accepted all sent bytes.
     pub(super) fn written(&mut self, now: Duration) {
         if self.answers == Answers::Never {
             for Sent { at, bytes, .. } in self.in_flight.drain() {
@@ -173,14 +180,14 @@ impl Flow {
         }
     }
 
-    /// What was requested so far may not be answered any more.
+    /// Forgets all requests so far: the terminal may never answer them.
     pub(super) fn forget(&mut self) {
         self.forgotten = self.in_flight.len();
         self.in_flight.clear();
         self.timeouts = 0;
     }
 
-    /// Whether a frame that is sent now does not wait behind others.
+    /// Whether a frame that is sent now would not wait behind others.
     pub(super) fn may_send(&self, now: Duration) -> bool {
         match self.answers {
             Answers::Never => self.in_flight.is_empty(),
@@ -190,12 +197,12 @@ impl Flow {
         }
     }
 
-    /// Whether a fence should be sent alone, to learn whether the terminal is still there.
+    /// Whether to send a fence alone, to learn whether the terminal is still connected.
     pub(super) fn probe_is_due(&self, now: Duration) -> bool {
         self.answers == Answers::Given && self.timeouts == 0 && self.is_timed_out(now)
     }
 
-    /// When to ask again, even if nothing happens until then; `None` for never.
+    /// The time at which to call [`Flow::may_send`] again even without an event; `None` for never.
     pub(super) fn opens_at(&self) -> Option<Duration> {
         let is_silent = self.timeouts > 0 && !self.has_input;
         let due = self.active_at + self.timeout();
@@ -207,7 +214,7 @@ impl Flow {
         self.answers != Answers::Never && !self.in_flight.is_empty()
     }
 
-    /// The round-trip time of the latest answer; `None` where there was none.
+    /// The round-trip time of the latest answer; `None` if there was no answer.
     pub(super) fn round_trip(&self) -> Option<Duration> {
         self.link.last_round_trip()
     }
@@ -223,7 +230,8 @@ impl Flow {
         self.link.usable_rate().map_or(Fidelity::EXACT, |rate| self.demand.fidelity_within(rate))
     }
 
-    /// A frame of motion was sent. The first frame, which paints everything, is none.
+    /// Records that a frame of motion was sent. The first frame does not count as motion, since it
+    /// paints the whole screen.
     pub(super) fn sent_motion(&mut self, bytes: usize, fidelity: Fidelity) {
         if self.link.is_known() {
             self.demand.sent_motion(bytes, fidelity);
@@ -259,7 +267,7 @@ impl Flow {
             Duration::from_secs_f64(bytes as f64 / MIN_RATE)
         };
         let first = expected.clamp(MIN_TIMEOUT, MAX_TIMEOUT);
-        // Exponential backoff, as RFC 6298 has it.
+        // Exponential backoff, as in RFC 6298.
         let factor = 1_u32.checked_shl(self.timeouts).unwrap_or(u32::MAX);
         first.saturating_mul(factor).min(MAX_TIMEOUT)
     }

@@ -1,8 +1,8 @@
-//! Takes the terminal, and gives it back as it was found.
+//! Takes the terminal and restores its previous state.
 //!
-//! The session, the panic hook and the thread that handles signals share a guard. The first of them that ends
-//! gives the terminal back, and the others do nothing. Restoring a part of the state in each was refused: a mode
-//! that is pushed or popped twice is worse than neither.
+//! The session, the panic hook and the thread that handles signals share a guard. The first of them
+//! that ends gives the terminal back, and the others do nothing. Restoring a part of the state in
+//! each was refused: a mode that is pushed or popped twice is worse than neither.
 
 mod fences;
 mod output_queue;
@@ -30,10 +30,10 @@ use super::platform::Device;
 use super::recorder::{Recorder, Recording};
 use super::sequence;
 
-/// How long a terminal may take to accept the bytes that give it back.
+/// The time that a terminal has to accept the bytes that restore its state.
 const WRITE_TIMEOUT: Duration = Duration::from_millis(250);
 
-/// What is changed about the terminal, and how to undo it.
+/// The changes to the terminal's state, and the way to undo them.
 #[derive(Debug)]
 pub(super) struct Guard {
     device: Device,
@@ -56,10 +56,10 @@ struct State {
 }
 
 impl Guard {
-    /// A guard of `device`, which becomes the one that the panic hook uses.
+    /// A guard of `device`, which the panic hook uses from now on.
     ///
     /// # Errors
-    /// Where the process has a guard already.
+    /// If the process has a guard already.
     pub(super) fn install(
         device: Device,
         recorder: Option<Box<dyn Recorder>>,
@@ -82,7 +82,7 @@ impl Guard {
         Ok(guard)
     }
 
-    /// Gives the terminal back for good.
+    /// Gives the terminal back at the end of the session.
     pub(super) fn uninstall(&self) {
         self.give_back();
         panic_hook::release(self);
@@ -92,7 +92,7 @@ impl Guard {
         &self.device
     }
 
-    /// What records the bytes that are sent.
+    /// The recorder of the sent bytes.
     pub(super) fn recording(&self) -> MutexGuard<'_, Recording> {
         self.recording.lock().unwrap_or_else(PoisonError::into_inner)
     }
@@ -104,7 +104,7 @@ impl Guard {
         state.taken = true;
         self.output_queue().clear();
         let mut text = sequence::of(EnterAlternateScreen) + &sequence::of(Hide);
-        // What is too long for a line is cut, so a window made narrower does not scroll.
+        // Long lines are cut, so that a narrower window does not scroll.
         text.push_str(&sequence::of(DisableLineWrap));
         text.push_str(sequence::RESET_STYLE);
         state.reports.push_start(&mut text);
@@ -112,47 +112,47 @@ impl Guard {
         self.write(text.as_bytes())
     }
 
-    /// Asks `queries`, and sends a fence after them.
+    /// Sends `queries` with a fence after them.
     pub(super) fn ask(&self, queries: &str) -> io::Result<()> {
         self.lock().fences.sent();
         self.write([queries, sequence::QUERY_FENCE].concat().as_bytes())
     }
 
-    /// A fence was sent after a frame.
+    /// Records that a fence was sent after a frame.
     pub(super) fn fence_sent(&self) {
         self.lock().fences.sent();
     }
 
-    /// The terminal has answered all before a fence.
+    /// Records that the terminal has answered a fence.
     pub(super) fn fence_answered(&self) {
         self.lock().fences.answered();
     }
 
-    /// Whether the terminal has not answered yet all that it was asked.
+    /// Whether a fence is still unanswered.
     pub(super) fn awaits_answers(&self) -> bool {
         self.lock().fences.are_open()
     }
 
-    /// Sets how the terminal reports the mouse, now and whenever it is taken.
+    /// Sets how the terminal reports the mouse, now and after it is taken again.
     pub(super) fn set_mouse(&self, mouse: Option<MouseUnits>) -> io::Result<()> {
         let mut text = String::new();
         self.lock().reports.change_mouse(mouse, &mut text);
         self.write(text.as_bytes())
     }
 
-    /// Makes the terminal report keys in the kitty protocol, now and whenever it is taken.
+    /// Makes the terminal report keys in the kitty protocol, now and after it is taken again.
     pub(super) fn push_key_flags(&self) -> io::Result<()> {
         self.lock().reports.has_key_flags = true;
         self.write(sequence::PUSH_KEY_FLAGS.as_bytes())
     }
 
-    /// Whether the terminal is ours to write to.
+    /// Whether the terminal is taken, so that the program may write to it.
     pub(super) fn is_taken(&self) -> bool {
         self.lock().taken
     }
 
-    /// Writes `bytes` after all that was written before, as far as the terminal accepts them at once. The rest is
-    /// [written later](Self::write_queued).
+    /// Writes `bytes` after all earlier bytes, as far as the terminal accepts them at once. The
+    /// rest is [written later](Self::write_queued).
     pub(super) fn write(&self, bytes: &[u8]) -> io::Result<()> {
         self.check_taken()?;
         self.recording().sent(bytes);
@@ -161,13 +161,13 @@ impl Guard {
         output_queue.write_to(&self.device)
     }
 
-    /// Writes what the terminal has not accepted yet, as far as it does now.
+    /// Writes the queued bytes, as far as the terminal accepts them at once.
     pub(super) fn write_queued(&self) -> io::Result<()> {
         self.check_taken()?;
         self.output_queue().write_to(&self.device)
     }
 
-    /// Whether the terminal has accepted all that was written.
+    /// Whether the terminal has accepted all bytes.
     pub(super) fn has_written_all(&self) -> bool {
         self.output_queue().is_empty()
     }
@@ -177,22 +177,22 @@ impl Guard {
         self.lock().awaits_statuses = awaits;
     }
 
-    /// Entries of the palette may have been defined.
+    /// Records that entries of the palette may have been defined.
     pub(super) fn palette_defined(&self) {
         self.lock().palette_defined = true;
     }
 
-    /// From now on, no function waits for a terminal that is not ready for a frame.
+    /// Makes all functions stop waiting for a terminal that is not ready for a frame.
     pub(super) fn shut_down(&self) {
         self.shutting_down.store(true, Ordering::SeqCst);
     }
 
-    /// Whether that is so.
+    /// Whether [`Guard::shut_down`] was called.
     pub(super) fn is_shutting_down(&self) -> bool {
         self.shutting_down.load(Ordering::SeqCst)
     }
 
-    /// Gives the terminal back, if that has not been done. Takes two seconds at the most.
+    /// Gives the terminal back, unless that was done before. Takes two seconds at most.
     pub(super) fn give_back(&self) {
         let mut state = self.lock();
         if state.taken {
@@ -202,7 +202,7 @@ impl Guard {
         }
     }
 
-    /// Waits until the terminal has been given back; whether it has been by `timeout`.
+    /// Waits until the terminal is given back; returns whether that happened within `timeout`.
     pub(super) fn wait_until_given_back(&self, timeout: Duration) -> bool {
         let state = self.lock();
         let waited = self.given_back.wait_timeout_while(state, timeout, |state| state.taken);
@@ -217,13 +217,13 @@ impl Guard {
         self.output_queue.lock().unwrap_or_else(PoisonError::into_inner)
     }
 
-    /// A panic while it is held leaves the state consistent, so the lock is used all the same.
+    /// Ignores poisoning: a panic during the lock leaves the state consistent.
     fn lock(&self) -> MutexGuard<'_, State> {
         self.state.lock().unwrap_or_else(PoisonError::into_inner)
     }
 
-    /// Undoes everything, in the opposite order. Each step is tried whether or not the one before
-    /// has worked: there is nothing better to do about an error than the rest.
+    /// Undoes all changes, in reverse order. After an error in one step, the others are still
+    /// tried: nothing better can be done about it.
     fn leave(&self, state: &mut State) {
         let mut text = sequence::of(EndSynchronizedUpdate) + sequence::RESET_STYLE;
         if state.palette_defined {
@@ -231,7 +231,7 @@ impl Guard {
         }
         state.reports.push_end(&mut text);
         if state.has_pending_reports() {
-            // The answer to this comes after all of them.
+            // The answer to this arrives after all pending reports.
             text.push_str(sequence::QUERY_FENCE);
             state.fences.sent();
             state.awaits_statuses = false;
@@ -245,7 +245,7 @@ impl Guard {
         _ = self.device.restore_attributes();
     }
 
-    /// Writes `text`, if need be in the place of a frame that the terminal has not taken.
+    /// Writes `text`, if necessary in place of a frame that the terminal has not accepted.
     fn write_or_discard(&self, text: &str) -> io::Result<()> {
         self.recording().sent(text.as_bytes());
         let patiently = || {
@@ -258,7 +258,8 @@ impl Guard {
         })
     }
 
-    /// Reads until every query is answered, so that the shell receives no answer and no key's release.
+    /// Reads until every query is answered, so that the shell receives no answer and no key
+    /// release.
     fn discard_answers(&self, fences: &mut Fences) {
         let mut decoder = Decoder::default();
         let mut buffer = [0; 256];
@@ -281,9 +282,9 @@ impl Guard {
 }
 
 impl State {
-    /// Whether the terminal may have sent input that is not read yet: a key's release, which it sends until its
-    /// flags are popped, a motion of the mouse, or the answer to a frame. A report of the focus does not count: few
-    /// are sent, and waiting for a terminal that answers nothing takes a second.
+    /// Whether the terminal may have sent input that is not read yet: a key release, which it sends
+    /// until its flags are popped, a motion of the mouse, or the answer to a frame. Focus reports
+    /// do not count: few are sent, and waiting for a terminal that answers nothing takes a second.
     fn has_pending_reports(&self) -> bool {
         self.reports.are_frequent() || self.awaits_statuses || self.fences.are_answered()
     }

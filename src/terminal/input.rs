@@ -1,9 +1,9 @@
-//! Bytes from the terminal to events: keys, and answers to what it was asked.
+//! Input: bytes from the terminal to keys and answers to queries.
 //!
-//! The stream is cut into complete units first, and only a whole unit is given a meaning: an
-//! answer is never typed as text, however the bytes arrive, and what means nothing is dropped
-//! where it ends. Leaving the cutting to a parser of keys was refused: those known keep a buffer for
-//! ever when they meet a finished report that they do not know.
+//! The stream is divided into complete units first, and only whole units are interpreted. So an
+//! answer never becomes typed text, however the bytes arrive, and an unknown unit is dropped at its
+//! end. Dividing by a parser of keys was refused: the known ones keep a buffer for ever after a
+//! complete report that they do not know.
 
 mod answer;
 mod key;
@@ -18,16 +18,16 @@ use unit::{Cutter, Kind, Rest};
 use super::key::KeyEvent;
 use super::mouse::MouseReport;
 
-/// What the terminal sent.
+/// An input from the terminal.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub(super) enum Input {
     /// A key was pressed, repeated or released.
     Key(KeyEvent),
     /// The mouse was moved, or one of its buttons pressed or released.
     Mouse(MouseReport),
-    /// The window has been given the focus, or has lost it.
+    /// The window has received the focus, or lost it.
     Focus(bool),
-    /// The terminal answers a query.
+    /// The terminal has answered a query.
     Answer(Answer),
 }
 
@@ -38,7 +38,7 @@ pub(super) struct Decoder {
 }
 
 impl Decoder {
-    /// Decodes `bytes`, the next ones of the stream, and hands what they complete to `take`.
+    /// Decodes the next `bytes` of the stream, and calls `take` with each complete input.
     pub(super) fn feed(&mut self, bytes: &[u8], mut take: impl FnMut(Input)) {
         for byte in bytes {
             self.cutter
@@ -46,11 +46,11 @@ impl Decoder {
         }
     }
 
-    /// How long after the last byte to stop waiting for more; `None` where nothing is incomplete.
+    /// The time to wait for more bytes after the last one; `None` if no unit is incomplete.
     pub(super) fn patience(&self) -> Option<Duration> {
-        /// Longer than the gaps inside one sequence, shorter than a player notices.
+        /// Longer than the gaps within a sequence, shorter than a noticeable delay.
         const KEY: Duration = Duration::from_millis(50);
-        /// A sequence has begun for certain; the link may be slow.
+        /// This is certainly a sequence, but the link may be slow.
         const SEQUENCE: Duration = Duration::from_secs(1);
         match self.cutter.rest() {
             Rest::Nothing => None,
@@ -59,7 +59,7 @@ impl Decoder {
         }
     }
 
-    /// Stops waiting: an escape that nothing followed is the Escape key.
+    /// Ends the wait: an escape without more bytes is the Escape key.
     pub(super) fn give_up(&mut self, mut take: impl FnMut(Input)) {
         self.cutter.give_up(&mut |kind, unit| meaning(kind, unit).into_iter().for_each(&mut take));
     }

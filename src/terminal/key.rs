@@ -1,8 +1,8 @@
-//! Keys by name, and what happened to them.
+//! Keys and key events.
 //!
-//! A key is the one on the keyboard, not the text it types: letters are lower-case, and Shift is a
-//! modifier. Passing on a parser's own types was refused: bindings are written in a file by these
-//! names, and outlive any parser.
+//! A key is a physical key, not the text that it types: letters are lower-case, and Shift is a
+//! modifier. The types of a parser were refused: files with bindings contain these names, and must
+//! outlive any parser.
 
 mod layout;
 
@@ -11,25 +11,25 @@ use std::str::FromStr;
 
 pub(super) use layout::base_key;
 
-/// Something happened to a key.
+/// An event of a key.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
 pub struct KeyEvent {
-    /// Which key, by what the keyboard's layout has it type.
+    /// The key, by the character that the keyboard's layout assigns to it.
     pub key: Key,
-    /// Which key of a US keyboard is at the same place, where the layout types other letters than
-    /// Latin ones and the place is known.
+    /// The key of a US keyboard at the same place, if the layout types non-Latin letters and the
+    /// place is known.
     pub base: Option<Key>,
-    /// Which modifiers were down at that moment.
+    /// The modifiers during the event.
     pub modifiers: Modifiers,
-    /// What happened to it.
+    /// The kind of event.
     pub phase: Phase,
 }
 
-/// A key on the keyboard.
+/// A key of the keyboard.
 ///
-/// Its text, for [`Display`](fmt::Display) and [`FromStr`], is the character itself, or a name:
-/// `space`, `up`, `down`, `left`, `right`, `enter`, `escape`, `tab`, `backspace`, `insert`,
-/// `delete`, `home`, `end`, `pageup`, `pagedown`, `shift`, `control`, `alt`, `f1` to `f35`.
+/// Its text, for [`Display`](fmt::Display) and [`FromStr`], is the character or a name: `space`,
+/// `up`, `down`, `left`, `right`, `enter`, `escape`, `tab`, `backspace`, `insert`, `delete`,
+/// `home`, `end`, `pageup`, `pagedown`, `shift`, `control`, `alt`, `f1` to `f35`.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash, PartialOrd, Ord)]
 pub enum Key {
     /// A key that types a character. A letter is lower-case, whether Shift is down or not.
@@ -62,17 +62,17 @@ pub enum Key {
     PageUp,
     /// Page down.
     PageDown,
-    /// Either Shift by itself. Seen only where the terminal reports releases.
+    /// Either Shift by itself. Reported only if the terminal reports releases.
     Shift,
-    /// Either Control by itself. Seen only where the terminal reports releases.
+    /// Either Control by itself. Reported only if the terminal reports releases.
     Control,
-    /// Either Alt by itself. Seen only where the terminal reports releases.
+    /// Either Alt by itself. Reported only if the terminal reports releases.
     Alt,
     /// A function key, from 1 to 35.
     Function(u8),
 }
 
-/// The modifiers that were down during an event.
+/// The held modifiers during an event.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Hash)]
 pub struct Modifiers {
     /// Either Shift.
@@ -83,17 +83,17 @@ pub struct Modifiers {
     pub alt: bool,
 }
 
-/// What happened to a key.
+/// The kind of a key event.
 ///
-/// A terminal that does not report releases sends presses only, and sends them again and again
-/// while the key is held.
+/// A terminal without reports of releases sends presses only, and repeats them while the key is
+/// held.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
 pub enum Phase {
-    /// It went down.
+    /// The key was pressed.
     Press,
-    /// It is still down, says the keyboard's repetition.
+    /// The key is held, and the keyboard repeats it.
     Repeat,
-    /// It went up.
+    /// The key was released.
     Release,
 }
 
@@ -127,7 +127,7 @@ const NAMES: [(&str, Key); 18] = [
 ];
 
 impl Key {
-    /// The key that types `character`, in either case.
+    /// The key that types `character`, in upper or lower case.
     pub(super) fn typing(character: char) -> Self {
         let mut lower = character.to_lowercase();
         match (lower.next(), lower.next()) {
@@ -151,7 +151,7 @@ impl fmt::Display for Key {
 impl FromStr for Key {
     type Err = UnknownKey;
 
-    /// Reads a name or a single character, in either case.
+    /// Parses a name or a single character, in upper or lower case.
     fn from_str(text: &str) -> Result<Self, UnknownKey> {
         let unknown = || UnknownKey { name: text.to_owned() };
         let mut characters = text.chars();
@@ -211,7 +211,7 @@ mod tests {
     }
 
     #[test]
-    fn what_is_no_key_is_refused_by_name() {
+    fn an_invalid_name_is_refused_and_named() {
         for text in ["", "upp", "f0", "f36", "f+1", "f999", "ctrl-c", "\u{7}"] {
             let error = text.parse::<Key>().unwrap_err();
             assert!(error.to_string().starts_with(&format!("{text:?}")), "{error}");

@@ -1,46 +1,48 @@
-//! The mouse: where its pointer is, and what its buttons do.
+//! The mouse: the position of its pointer, and its buttons.
 //!
-//! Terminals tell where the pointer is in the window, in cells or in pixels, and never how far the
-//! mouse itself was moved. Both become the same unit here, so that a program need not know which.
+//! Terminals report the position of the pointer in the window, in cells or in pixels, but never the
+//! motion of the mouse itself. Both are converted to the same unit, so that a program does not
+//! depend on the difference.
 
 use super::WindowSize;
 
-/// Something happened to the mouse.
+/// An event of the mouse.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct MouseEvent {
-    /// How far the pointer is from the window's left edge, in cells divided by
-    /// [`MouseEvent::UNITS_PER_CELL`]. Where the terminal tells the cell alone, its middle.
+    /// The distance of the pointer from the left edge of the window, in units of 1 /
+    /// [`MouseEvent::UNITS_PER_CELL`] of a cell's width. If the terminal reports only cells, the
+    /// middle of the cell.
     pub x: u32,
-    /// How far it is from the upper edge, likewise.
+    /// The distance of the pointer from the upper edge, in the same parts of a cell's height.
     pub y: u32,
-    /// What happened.
+    /// The kind of event.
     pub kind: MouseEventKind,
 }
 
 impl MouseEvent {
-    /// How many units of a place make a cell: its width for `x`, its height for `y`.
+    /// The number of units in a cell: in its width for `x`, in its height for `y`.
     pub const UNITS_PER_CELL: u32 = 64;
 }
 
-/// What happened to the mouse.
+/// The kind of a mouse event.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum MouseEventKind {
-    /// The pointer was moved, whether or not a button is held.
+    /// The pointer was moved, with or without a button held.
     Moved,
-    /// A button went down.
+    /// A button was pressed.
     Pressed(MouseButton),
-    /// A button went up, of which some terminals do not tell which.
+    /// A button was released; some terminals do not report which.
     Released,
 }
 
 /// A button of the mouse.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum MouseButton {
-    /// The first one.
+    /// The first button.
     Left,
-    /// The wheel, pressed.
+    /// The wheel, when pressed.
     Middle,
-    /// The second one.
+    /// The second button.
     Right,
 }
 
@@ -48,11 +50,11 @@ pub enum MouseButton {
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub(super) struct MouseReport {
     pub(super) kind: MouseEventKind,
-    /// Column and row of the cell or the pixel, from 1.
+    /// The column and the row of the cell or the pixel, from 1.
     pub(super) place: [u32; 2],
 }
 
-/// What the terminal reports the pointer's place in.
+/// The unit of the pointer's position in reports.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub(super) enum MouseUnits {
     Cells,
@@ -60,8 +62,8 @@ pub(super) enum MouseUnits {
 }
 
 impl MouseReport {
-    /// The event in a window of `size`; `None` where the place is in pixels and nobody knows how many
-    /// of them there are.
+    /// The event in a window of `size`; `None` if the position is in pixels and the size in pixels
+    /// is unknown.
     pub(super) fn event(self, units: MouseUnits, size: WindowSize) -> Option<MouseEvent> {
         const UNITS: u64 = MouseEvent::UNITS_PER_CELL as u64;
         let from_zero = self.place.map(|one| u64::from(one.saturating_sub(1)));
@@ -110,7 +112,7 @@ mod tests {
     }
 
     #[test]
-    fn pixels_mean_nothing_where_nobody_knows_how_many_there_are() {
+    fn pixels_are_ignored_if_their_number_is_unknown() {
         let report = MouseReport { kind: MouseEventKind::Moved, place: [100, 100] };
         assert_eq!(report.event(MouseUnits::Pixels, WindowSize::new((80, 24), (0, 0))), None);
     }

@@ -1,15 +1,15 @@
-//! Taking note of what a terminal is sent.
+//! Recording of the bytes that are sent to a terminal.
 
 use std::fmt;
 
 use ratatui::layout::Size;
 
-/// What takes note of all that a [`Session`](super::Session) sends.
+/// A recorder of all bytes that a [`Session`](super::Session) sends.
 pub trait Recorder: Send {
-    /// The window is of `size`: once before anything is sent, and whenever it changes.
+    /// The window has this `size`. Called once before any bytes, and after each change.
     fn resized(&mut self, size: Size);
 
-    /// The terminal is sent `bytes`, which hold whole characters and whole sequences.
+    /// These `bytes` are sent to the terminal. They are whole characters and whole sequences.
     fn sent(&mut self, bytes: &[u8]);
 }
 
@@ -22,7 +22,7 @@ impl Recording {
         Self(recorder)
     }
 
-    /// Whether there is one.
+    /// Whether there is a recorder.
     pub(super) fn is_on(&self) -> bool {
         self.0.is_some()
     }

@@ -1,8 +1,8 @@
-//! The control sequences that crossterm has no command for, or not the one that this program sends.
+//! Control sequences that crossterm lacks or has in another form.
 //!
-//! Crossterm names all others. It keeps the keyboard's flags together with the reader of events that
-//! was refused, and formats colours and motions in a way that would cost more than all else that a
-//! cell does.
+//! Crossterm provides all others. It couples the keyboard flags with its event reader, which was
+//! refused, and formats colours and motions in a way that takes longer than the rest of a cell's
+//! encoding.
 
 use std::ops::RangeInclusive;
 
@@ -11,68 +11,69 @@ use crossterm::Command;
 /// The sequences of one of crossterm's commands.
 pub(super) fn of(command: impl Command) -> String {
     let mut text = String::new();
-    // A string takes everything.
+    // A write to a string cannot fail.
     _ = command.write_ansi(&mut text);
     text
 }
 
-/// Asks for every key as an escape code, with presses, repeats and releases, and with the character
-/// that Shift makes of it: the kitty keyboard protocol's flags 1, 2, 4 and 8.
+/// Requests all keys as escape codes, with presses, repeats and releases, and with shifted
+/// characters: the kitty keyboard protocol's flags 1, 2, 4 and 8.
 pub(super) const PUSH_KEY_FLAGS: &str = "\x1b[>15u";
-/// Goes back to the flags from before.
+/// Restores the previous keyboard flags.
 pub(super) const POP_KEY_FLAGS: &str = "\x1b[<u";
 
-/// Asks for reports of when the window gains or loses the focus.
+/// Enables reports of the window's focus.
 pub(super) const ENABLE_FOCUS_REPORTS: &str = "\x1b[?1004h";
-/// Ends them.
+/// Disables reports of the window's focus.
 pub(super) const DISABLE_FOCUS_REPORTS: &str = "\x1b[?1004l";
-/// Asks for reports of every motion of the mouse and of its buttons, as decimal numbers.
+/// Enables reports of all motions of the mouse and of its buttons, as decimal numbers.
 pub(super) const ENABLE_MOUSE: &str = "\x1b[?1003h\x1b[?1006h";
-/// Ends them.
+/// Disables reports of the mouse.
 pub(super) const DISABLE_MOUSE: &str = "\x1b[?1003l\x1b[?1006l";
-/// Has places of the mouse be in pixels: in place of mode 1006, so it is set after that.
+/// Sets mouse positions to pixels. This mode replaces mode 1006, so it is set after that.
 pub(super) const ENABLE_MOUSE_PIXELS: &str = "\x1b[?1016h";
-/// Ends that.
+/// Sets mouse positions to cells.
 pub(super) const DISABLE_MOUSE_PIXELS: &str = "\x1b[?1016l";
-/// Asks whether the terminal knows that mode (DECRQM).
+/// Queries whether the terminal knows mode 1016 (DECRQM).
 pub(super) const QUERY_MOUSE_PIXELS: &str = "\x1b[?1016$p";
 
-/// Colours and modifiers as they were at the start: a byte shorter than crossterm's, and in every
+/// Resets colours and modifiers. It is a byte shorter than crossterm's sequence, and in every
 /// frame.
 pub(super) const RESET_STYLE: &str = "\x1b[m";
 
-/// Asks for the keyboard flags; only a terminal that speaks the protocol answers.
+/// Queries the keyboard flags; only a terminal with the kitty protocol answers.
 pub(super) const QUERY_KEY_FLAGS: &str = "\x1b[?u";
-/// The name of the capability to show 24-bit colours, in hexadecimal digits.
+/// The name of the capability of 24-bit colours, in hexadecimal digits.
 pub(super) const RGB_CAPABILITY: &str = "524742";
-/// Asks for the terminal's name and version (XTVERSION), which a terminal that knows device control strings
-/// answers with one. As a control sequence, it is passed over by all others.
+/// Queries the terminal's name and version (XTVERSION). A terminal that knows device control
+/// strings answers with one; all others ignore the query, since it is a control sequence.
 pub(super) const QUERY_VERSION: &str = "\x1b[>q";
-/// Asks for that capability (XTGETTCAP).
+/// Queries that capability (XTGETTCAP).
 pub(super) const QUERY_TRUE_COLOR: &str = "\x1bP+q524742\x1b\\";
-/// Asks for the device's status; the answer tells that all before the query has been taken in.
+/// Queries the device's status; the terminal answers when it has processed all bytes before.
 pub(super) const QUERY_STATUS: &str = "\x1b[5n";
-/// Repeats a half block in the second row, asks where the cursor is then, and erases it all.
+/// Repeats a half block in the second row, queries the cursor's position, and erases the row.
 pub(super) const PROBE_REPETITION: &str = "\x1b[2;1H\u{2580}\x1b[3b\x1b[6n\x1b[2;1H\x1b[K";
-/// The answer where it was repeated as often. No key is reported like this: F3, which is much alike, says 1.
+/// The answer if the half block was repeated correctly. No key has this report; that of F3, the
+/// most similar, has 1 in place of 2.
 pub(super) const REPEATED: &[u8] = b"\x1b[2;5R";
-/// Moves the cursor to the upper left corner, and erases the screen.
+/// Moves the cursor to the upper left corner and erases the screen.
 pub(super) const ERASE: &str = "\x1b[H\x1b[J";
-/// Asks for the colour of an entry of the palette, defines it and another in one sequence, asks again, resets both
-/// and asks once more.
+/// Queries the colour of a palette entry, defines it and another in one sequence, queries it again,
+/// resets both, and queries it a third time.
 pub(super) const PROBE_PALETTE: &str = "\x1b]4;255;?\x07\
     \x1b]4;254;#123456;255;#12ab56\x07\x1b]4;255;?\x07\
     \x1b]104;254;255\x07\x1b]4;255;?\x07";
-/// How the answers begin; a colour follows as `rgb:` and three hexadecimal numbers.
+/// The beginning of the answers, before a colour as three hexadecimal numbers.
 pub(super) const PALETTE_REPORT: &[u8] = b"]4;255;rgb:";
-/// The colour that the second answer reports where they were defined, in 16 bits a channel.
+/// The colour in the second answer if the definition worked, in 16 bits a channel.
 pub(super) const DEFINED: [u16; 3] = [0x1212, 0xabab, 0x5656];
-/// The entries of the palette that may be defined; those below are the user's, or of themes for shells.
+/// The palette entries that may be defined; those below belong to the user or to themes of shells.
 pub(super) const PALETTE: RangeInclusive<u8> = 24..=255;
 
-/// Gives back the entries of the palette that may have been defined.
+/// The sequences that reset the palette entries that may have been defined.
 pub(super) fn give_palette_back() -> String {
-    /// There are terminals that take sixteen parameters at most.
+    /// Some terminals accept at most sixteen parameters.
     const AT_ONCE: usize = 15;
     let mut text = String::new();
     for (index, entry) in PALETTE.enumerate() {
@@ -83,7 +84,7 @@ pub(super) fn give_palette_back() -> String {
     text
 }
 
-/// Asks for the device's attributes, which every terminal answers, and after all earlier queries.
+/// Queries the device's attributes, which every terminal answers, after all earlier queries.
 pub(super) const QUERY_FENCE: &str = "\x1b[c";
 
 #[cfg(test)]

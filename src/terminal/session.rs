@@ -23,11 +23,11 @@ use super::{
 };
 use crate::color::palette::ColorDepth;
 
-/// The terminal, taken over: it delivers keys and shows frames.
+/// A terminal in use by the program: it delivers keys and shows frames.
 ///
-/// While there is one, the terminal is in raw mode and shows its alternate screen without a cursor.
-/// It is given back as it was found when the session is dropped, on a panic in any thread, and on
-/// the signals that end a program. A process has one session at a time.
+/// During a session, the terminal is in raw mode and shows its alternate screen without a cursor.
+/// Its previous state is restored when the session is dropped, on a panic in any thread, and on the
+/// signals that end a program. A process has one session at a time.
 #[derive(Debug)]
 pub struct Session {
     guard: Arc<Guard>,
@@ -44,7 +44,7 @@ pub struct Session {
     mouse: Mouse,
     begun_at: Instant,
     flow: Flow,
-    /// `None` for the best that the link allows.
+    /// `None` for the best fidelity that the link allows.
     fidelity: Option<Fidelity>,
     is_remote: bool,
     /// Whether to report when a frame may be sent.
@@ -52,12 +52,12 @@ pub struct Session {
     extensions: Extensions,
 }
 
-/// How the mouse is reported.
+/// The state of mouse reports.
 #[derive(Clone, Copy, Debug, Default)]
 struct Mouse {
-    /// The unit of its place; `None` where it is not reported.
+    /// The unit of positions; `None` if the mouse is not reported.
     units: Option<MouseUnits>,
-    /// Whether the terminal can report it in pixels.
+    /// Whether the terminal can report positions in pixels.
     has_pixels: bool,
     /// Whether reports may still be in the previous unit.
     is_changing: bool,
@@ -72,17 +72,18 @@ enum KeyReleases {
 }
 
 impl Session {
-    /// Takes the terminal, and asks for its capabilities. The answers arrive as events; this function does not wait
-    /// for them.
+    /// Takes the terminal and queries its capabilities. The answers arrive as events; this function
+    /// does not wait for them.
     ///
     /// # Errors
-    /// Where standard input or output is not a terminal or one that cannot move its cursor, where the process has a session already,
-    /// where the platform has no Unix terminals, and where the terminal cannot be written to.
+    /// If standard input or output is not a terminal, if the terminal cannot move its cursor, if
+    /// the process already has a session, if the platform has no Unix terminals, and if a write to
+    /// the terminal fails.
     pub fn enter(options: Options) -> Result<Self, Error> {
         Self::enter_recorded(options, None)
     }
 
-    /// As [`Session::enter`], and `recorder` receives everything that is sent.
+    /// Begins a session as [`Session::enter`] does; `recorder` receives all sent bytes.
     ///
     /// # Errors
     /// As [`Session::enter`].
@@ -145,16 +146,17 @@ impl Session {
         }
         // A terminal that does not understand a query may print a part of it.
         queries.push_str(sequence::ERASE);
-        // As after a frame: an answer that comes before that of the fence says that others will.
+        // As after a frame: if the fence is answered first, no answer to this request will arrive.
         queries.push_str(sequence::QUERY_STATUS);
         self.flow.sent(self.now(), 0, Request::Status);
         self.send_queries(&queries)
     }
 
-    /// Waits for an event, at most for `timeout`, or for ever; `None` where there was none.
+    /// Waits for an event, for `timeout` at most; without a timeout, for ever. Returns `None` if no
+    /// event arrived.
     ///
     /// # Errors
-    /// Where the terminal cannot be read, or a panic in another thread has given it back.
+    /// If the terminal cannot be read, or a panic in another thread has given it back.
     pub fn next_event(&mut self, timeout: Option<Duration>) -> Result<Option<Event>, Error> {
         let deadline = timeout.and_then(|timeout| Instant::now().checked_add(timeout));
         loop {
@@ -182,11 +184,11 @@ impl Session {
         }
     }
 
-    /// Sets whether the mouse is reported; at first it is not. Places are in pixels where the terminal can report
-    /// them.
+    /// Sets whether the mouse is reported, which it is not at first. Positions are in pixels if the
+    /// terminal can report them.
     ///
     /// # Errors
-    /// Where the terminal cannot be written to.
+    /// If a write to the terminal fails.
     pub fn set_mouse(&mut self, is_reported: bool) -> Result<(), Error> {
         if self.mouse.units.is_some() == is_reported {
             return Ok(());
@@ -197,7 +199,7 @@ impl Session {
         changed.map_err(Error::while_doing("setting up the mouse"))
     }
 
-    /// The finest unit in which the terminal reports places.
+    /// The finest unit in which the terminal reports positions.
     fn mouse_units(&self) -> MouseUnits {
         if self.mouse.has_pixels && self.size.pixels.is_some() {
             MouseUnits::Pixels
@@ -207,10 +209,10 @@ impl Session {
     }
 
     /// Gives the terminal back, stops the program until the shell continues it, and takes the
-    /// terminal again. Where no shell would continue it, only the screen is painted afresh.
+    /// terminal again. If there is no shell to continue the program, this only repaints the screen.
     ///
     /// # Errors
-    /// Where the terminal cannot be taken again.
+    /// If the terminal cannot be taken again.
     pub fn suspend(&mut self) -> Result<(), Error> {
         self.guard.give_back();
         self.flow.forget();
@@ -226,12 +228,12 @@ impl Session {
         Ok(())
     }
 
-    /// The size of the window in cells, and in pixels where it is known.
+    /// The size of the window in cells, and in pixels if it is known.
     pub fn size(&self) -> WindowSize {
         self.size
     }
 
-    /// How many colours the terminal shows, as far as it is known.
+    /// The number of colours that the terminal shows, as far as it is known.
     pub fn color_depth(&self) -> ColorDepth {
         self.color_depth.depth()
     }

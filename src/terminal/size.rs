@@ -3,30 +3,31 @@
 /// The size of the window.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct WindowSize {
-    /// How many cells wide it is: 0 to [`WindowSize::MOST_COLUMNS`].
+    /// The width in cells: 0 to [`WindowSize::MOST_COLUMNS`].
     pub columns: u16,
-    /// How many cells high it is: 0 to [`WindowSize::MOST_ROWS`].
+    /// The height in cells: 0 to [`WindowSize::MOST_ROWS`].
     pub rows: u16,
-    /// A cell's height divided by its width, from 1.5 to 3, where the terminal says so.
+    /// A cell's height divided by its width, from 1.5 to 3, if the terminal reports it.
     pub cell_aspect: Option<f64>,
-    /// How many pixels wide and high it is, where the terminal says so and its cells have a shape
-    /// that is believed.
+    /// The width and the height in pixels, if the terminal reports them and the cells then have a
+    /// plausible shape.
     pub pixels: Option<[u16; 2]>,
 }
 
 impl WindowSize {
-    /// More columns than this are left blank: a terminal that claims them is not to be believed.
+    /// The most columns that are used; further ones are left blank, since a terminal that reports
+    /// more is not credible.
     pub const MOST_COLUMNS: u16 = 2048;
-    /// More rows than this are left blank.
+    /// The most rows that are used; further ones are left blank.
     pub const MOST_ROWS: u16 = 1024;
 
-    /// What is assumed of a terminal that does not say.
+    /// The assumed size of a terminal that reports none.
     #[cfg(unix)]
     pub(super) const UNKNOWN: Self =
         Self { columns: 80, rows: 24, cell_aspect: None, pixels: None };
 
-    /// The size of a window of so many columns and rows, and so many pixels across and down. Some
-    /// terminals say that they have no pixels, some say nonsense.
+    /// The size of a window in columns and rows, and in pixels. Some terminals report no pixels,
+    /// some implausible numbers.
     #[cfg(unix)]
     pub(super) fn new((columns, rows): (u16, u16), (width, height): (u16, u16)) -> Self {
         let cell_width = f64::from(width) / f64::from(columns);
@@ -41,7 +42,7 @@ impl WindowSize {
         }
     }
 
-    /// Without the shape of the cells, as ratatui has it.
+    /// The size in cells, as ratatui's type.
     pub(super) fn cells(self) -> ratatui::layout::Size {
         ratatui::layout::Size { width: self.columns, height: self.rows }
     }
@@ -56,13 +57,13 @@ mod tests {
     }
 
     #[test]
-    fn a_sane_shape_of_cells_is_believed() {
+    fn a_plausible_shape_of_cells_is_used() {
         assert_eq!(aspect((80, 24), (640, 384)), Some(2.0));
         assert_eq!(aspect((100, 50), (1000, 1100)), Some(2.2));
     }
 
     #[test]
-    fn nonsense_about_pixels_is_not() {
+    fn implausible_pixels_are_ignored() {
         for (cells, pixels) in [
             ((80, 24), (0, 0)),
             ((80, 24), (640, 0)),

@@ -1,4 +1,4 @@
-//! What is Unix about a terminal: its device, its attributes, waiting for it, and signals.
+//! The Unix part of a terminal: its device, its attributes, waiting for it, and signals.
 
 #[cfg(feature = "cli")]
 mod memory;
@@ -21,12 +21,12 @@ pub(crate) use self::memory::peak_memory;
 pub(super) use self::signals::{Signal, Signals};
 use super::{Error, WindowSize};
 
-/// The terminal that standard input and output are.
+/// The terminal of standard input and output.
 ///
-/// Both are opened anew where that is possible: a descriptor of our own can be told not to
-/// block, where telling a shared one would tell the shell as well. A program that cannot block in a
-/// write can still be ended while the link is down. That is also why raw mode and sizes are not left to
-/// crossterm, which asks whatever terminal it finds.
+/// Both are opened again where possible: a descriptor of the process's own can be set not to block,
+/// where setting a shared one would affect the shell, too. A program that cannot block in a write
+/// can still be ended while the link is down. For the same reason, raw mode and sizes do not use
+/// crossterm, which queries whatever terminal it finds.
 #[derive(Debug)]
 pub(super) struct Device {
     input: OwnedFd,
@@ -34,14 +34,14 @@ pub(super) struct Device {
     attributes: Termios,
 }
 
-/// What there is to do.
+/// The results of a wait.
 #[derive(Clone, Copy, Debug)]
 pub(super) struct Ready {
-    /// There are bytes to read, or there will never be.
+    /// There are bytes to read, or the input has ended.
     pub(super) input: bool,
     /// There are signals.
     pub(super) signals: bool,
-    /// There is room for bytes to write, or there will never be.
+    /// There is room for bytes to write, or the output has ended.
     pub(super) output: bool,
 }
 
@@ -64,14 +64,14 @@ impl Device {
         })
     }
 
-    /// From now on, keys arrive one by one, unseen and uninterpreted.
+    /// Sets raw mode: keys arrive one by one, without echo or interpretation.
     pub(super) fn make_raw(&self) -> io::Result<()> {
         let mut raw = self.attributes.clone();
         raw.make_raw();
         Ok(tcsetattr(&self.input, OptionalActions::Now, &raw)?)
     }
 
-    /// Goes back to how it was when it was opened.
+    /// Restores the attributes from when the terminal was opened.
     pub(super) fn restore_attributes(&self) -> io::Result<()> {
         Ok(tcsetattr(&self.input, OptionalActions::Now, &self.attributes)?)
     }
@@ -82,7 +82,7 @@ impl Device {
         })
     }
 
-    /// Writes as much of `bytes` as the terminal takes at once, and tells how much that is.
+    /// Writes the part of `bytes` that the terminal accepts at once, and returns its length.
     pub(super) fn write_some(&self, bytes: &[u8]) -> io::Result<usize> {
         let mut written = 0;
         while written < bytes.len() {
@@ -96,7 +96,8 @@ impl Device {
         Ok(written)
     }
 
-    /// Writes all of `bytes`; where the terminal takes no more, as long as `go_on` says so.
+    /// Writes all of `bytes`. While the terminal accepts no more, waits as long as `go_on` returns
+    /// `true`.
     pub(super) fn write(&self, bytes: &[u8], go_on: impl Fn() -> bool) -> io::Result<()> {
         let mut rest = &bytes[self.write_some(bytes)?..];
         while !rest.is_empty() {
@@ -109,38 +110,38 @@ impl Device {
         Ok(())
     }
 
-    /// Waits until the terminal takes bytes again, or for a moment.
+    /// Waits until the terminal accepts bytes again, or for a short time.
     fn wait_for_room(&self) -> io::Result<()> {
         const MOMENT: Duration = Duration::from_millis(50);
         let mut output = [PollFd::new(&self.output, PollFlags::OUT)];
         wait(&mut output, Some(MOMENT))
     }
 
-    /// Drops what was written and has not been taken yet.
+    /// Discards written bytes that the terminal has not received.
     pub(super) fn discard_output(&self) -> io::Result<()> {
         Ok(tcflush(&self.output, QueueSelector::OFlush)?)
     }
 
-    /// Reads what there is into `buffer`: so many bytes, or none at the end, or `None` for nothing
-    /// yet.
+    /// Reads the available bytes into `buffer` and returns their number: zero at the end of input,
+    /// `None` if no bytes are available yet.
     pub(super) fn read(&self, buffer: &mut [u8]) -> io::Result<Option<usize>> {
         match rustix::io::read(&self.input, buffer) {
             Ok(count) => Ok(Some(count)),
             Err(Errno::AGAIN | Errno::INTR) => Ok(None),
-            // What a terminal says that has been hung up.
+            // The error of a terminal that has been hung up.
             Err(Errno::IO) => Ok(Some(0)),
             Err(error) => Err(error.into()),
         }
     }
 
-    /// Waits for bytes to read; whether there are any by `timeout`.
+    /// Waits for bytes to read; returns whether there are any within `timeout`.
     pub(super) fn wait_for_input(&self, timeout: Duration) -> io::Result<bool> {
         let mut input = [PollFd::new(&self.input, PollFlags::IN)];
         wait(&mut input, Some(timeout))?;
         Ok(!input[0].revents().is_empty())
     }
 
-    /// Waits for bytes, signals or, where it `wants_room`, for room to write; at most for `timeout`.
+    /// Waits for bytes, signals or, if `wants_room`, room to write; for `timeout` at most.
     pub(super) fn wait(
         &self,
         signals: &Signals,
@@ -152,7 +153,7 @@ impl Device {
             PollFd::new(signals, PollFlags::IN),
             PollFd::new(&self.output, PollFlags::OUT),
         ];
-        // A terminal that has been hung up is ready whether or not anybody wants to write to it.
+        // A terminal that has been hung up is always ready for writing.
         let watched = if wants_room { 3 } else { 2 };
         wait(&mut all[..watched], timeout)?;
         let [input, signals, output] = all.map(|one| !one.revents().is_empty());
@@ -160,8 +161,8 @@ impl Device {
     }
 }
 
-/// Makes the terminal that standard output is standard input as well, which was read to its end and is
-/// not needed any more. "/dev/tty" would do, but can't be polled on every system.
+/// Replaces standard input, which was read to its end and is not needed any more, by the terminal
+/// of standard output. "/dev/tty" was refused, since it cannot be polled on every system.
 #[cfg(feature = "cli")]
 pub(crate) fn take_keys_from_terminal() -> io::Result<()> {
     let output = rustix::stdio::stdout();
@@ -169,14 +170,15 @@ pub(crate) fn take_keys_from_terminal() -> io::Result<()> {
     let terminal = rustix::fs::open(name, OFlags::RDONLY | OFlags::NOCTTY, Mode::empty());
     match terminal {
         Ok(terminal) => rustix::stdio::dup2_stdin(terminal)?,
-        // Somebody else's, as after `su`: what is open already can be read all the same.
+        // The terminal belongs to another user, as after `su`; the open descriptor can still be
+        // read.
         Err(_) => rustix::stdio::dup2_stdin(output)?,
     }
     Ok(())
 }
 
-/// Opens the terminal `stream` once more, so that reads and writes do not block; or the same one
-/// again, where its name does not lead to it.
+/// Opens the terminal `stream` again, so that reads and writes do not block; duplicates it if its
+/// name does not lead to it.
 fn open_again(stream: BorrowedFd, access: OFlags) -> io::Result<OwnedFd> {
     let flags = access | OFlags::NOCTTY | OFlags::NONBLOCK | OFlags::CLOEXEC;
     let again =
@@ -184,9 +186,9 @@ fn open_again(stream: BorrowedFd, access: OFlags) -> io::Result<OwnedFd> {
     again.or_else(|_| stream.try_clone_to_owned())
 }
 
-/// Polls `streams`; a signal that arrives meanwhile ends it early.
+/// Polls `streams`; a signal ends the wait early.
 fn wait(streams: &mut [PollFd], timeout: Option<Duration>) -> io::Result<()> {
-    // What is too long for the system to count is for ever.
+    // A timeout too long for the system's type is infinite.
     let timeout = timeout.and_then(|timeout| Timespec::try_from(timeout).ok());
     match poll(streams, timeout.as_ref()) {
         Ok(_) => Ok(()),

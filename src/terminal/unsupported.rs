@@ -1,6 +1,6 @@
-//! The same face as `unix`, where there is no terminal that could be opened.
+//! The interface of `unix` on platforms where no terminal can be opened.
 //!
-//! A device cannot exist here, so nothing that needs one is ever called.
+//! A device cannot exist here, so that functions with a device are never called.
 
 use std::io;
 use std::sync::Arc;
@@ -9,15 +9,15 @@ use std::time::Duration;
 use super::guard::Guard;
 use super::{Error, QuitReason, WindowSize};
 
-/// There is none.
+/// A device; there are none.
 #[derive(Debug)]
 pub(super) enum Device {}
 
-/// There are none.
+/// Signals; there are none.
 #[derive(Debug)]
 pub(super) enum Signals {}
 
-/// What there is to do.
+/// The results of a wait.
 #[derive(Clone, Copy, Debug)]
 pub(super) struct Ready {
     pub(super) input: bool,
@@ -25,7 +25,7 @@ pub(super) struct Ready {
     pub(super) output: bool,
 }
 
-/// What a signal would mean.
+/// The meaning of a signal.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 #[expect(dead_code, reason = "there are no signals here")]
 pub(super) enum Signal {
@@ -35,13 +35,13 @@ pub(super) enum Signal {
     Quit(QuitReason),
 }
 
-/// Nobody tells.
+/// The peak memory is unknown.
 #[cfg(feature = "cli")]
 pub(crate) fn peak_memory() -> Option<u64> {
     None
 }
 
-/// There is none to take them from.
+/// Fails: there is no terminal to read keys from.
 #[cfg(feature = "cli")]
 pub(crate) fn take_keys_from_terminal() -> io::Result<()> {
     Err(io::ErrorKind::Unsupported.into())

@@ -1,7 +1,8 @@
-//! Characters for terminals that show ASCII alone.
+//! Substitutes for characters on terminals that show only ASCII.
 
-/// What stands for `symbol`, the text of a cell: itself where it is a single ASCII character, what looks
-/// like it, or a question mark. The second cell of a wide one, which is empty, is a space.
+/// The substitute of `symbol`, the text of a cell: the symbol if it is a single ASCII character,
+/// otherwise a similar character or a question mark. The empty second cell of a wide character
+/// becomes a space.
 pub(super) fn substitute(symbol: &str) -> char {
     let Some(character) = symbol.chars().next() else { return ' ' };
     match character {
@@ -35,7 +36,7 @@ mod tests {
 
     proptest! {
         #[test]
-        fn whatever_a_cell_holds_is_one_ascii_character(symbol in ".{0,3}") {
+        fn any_cell_becomes_one_ascii_character(symbol in ".{0,3}") {
             let substitute = substitute(&symbol);
             prop_assert!(matches!(substitute, ' '..='~'));
             if let &[byte @ b' '..=b'~'] = symbol.as_bytes() {

@@ -1,33 +1,34 @@
-//! What is written, with room behind it.
+//! A buffer of bytes with spare memory at its end.
 //!
-//! What a cell takes is written where it stays, in parts of fixed sizes that reach beyond their ends: to
-//! copy four bytes takes less than to copy as many as there are, and room is made once for a whole cell.
-//! In a buffer of its own it would be copied a moment after it was written, for which processors wait.
+//! The bytes of a cell are written in their final place, in parts of fixed sizes that may exceed
+//! their lengths: a copy of four bytes is faster than a copy of a variable number, and the capacity
+//! is checked once for a whole cell. With a buffer of its own, a cell would be copied right after
+//! it was written, and processors stall on that.
 
 use std::io;
 
-/// Bytes, one after the other.
+/// A growing sequence of bytes.
 #[derive(Debug, Default)]
 pub(crate) struct Bytes {
-    /// What is written, and room.
+    /// The written bytes, then spare memory.
     memory: Vec<u8>,
     length: usize,
 }
 
-/// A piece that is being written at the end of [`Bytes`]; what is not finished was never written.
+/// A piece in progress at the end of [`Bytes`]. It counts as written only after [`Piece::finish`].
 pub(super) struct Piece<'a> {
     room: &'a mut [u8; ROOM],
-    /// How much of it is written.
+    /// The number of bytes in this piece.
     end: usize,
-    /// The length of all that was written before.
+    /// The length of all bytes before it.
     length: &'a mut usize,
 }
 
-/// No piece is longer: a motion, a style with everything that there is, and a character.
+/// The maximum length of a piece: a motion, a style with all its parameters, and a character.
 const ROOM: usize = 96;
 
 impl Bytes {
-    /// What is written.
+    /// The written bytes.
     pub(crate) fn as_slice(&self) -> &[u8] {
         &self.memory[..self.length]
     }
@@ -36,7 +37,7 @@ impl Bytes {
         self.length == 0
     }
 
-    /// Forgets what is written, and keeps the memory.
+    /// Removes all bytes and keeps the memory.
     pub(crate) fn clear(&mut self) {
         self.length = 0;
     }
@@ -57,7 +58,7 @@ impl Bytes {
         self.length += text.len();
     }
 
-    /// Makes room for so many, if there is not as much.
+    /// Makes room for `count` bytes if there is less.
     #[inline]
     fn make_room(&mut self, count: usize) {
         let needed = self.length + count;
@@ -73,32 +74,32 @@ impl Bytes {
 }
 
 impl Piece<'_> {
-    /// How much of it is written.
+    /// The number of bytes in this piece.
     #[inline]
     pub(super) fn end(&self) -> usize {
         self.end
     }
 
-    /// Only so much of it counts as written.
+    /// Sets the number of bytes in this piece.
     #[inline]
     pub(super) fn end_at(&mut self, end: usize) {
         self.end = end;
     }
 
-    /// Writes a byte at a place.
+    /// Writes a byte at a place in this piece.
     #[inline]
     pub(super) fn put(&mut self, place: usize, byte: u8) {
         self.room[place] = byte;
     }
 
-    /// Writes all of `text`, of which so many bytes count.
+    /// Writes all of `text`, of which the first `count` bytes are part of the piece.
     #[inline]
     pub(super) fn push<const LENGTH: usize>(&mut self, text: [u8; LENGTH], count: usize) {
         self.room[self.end..self.end + LENGTH].copy_from_slice(&text);
         self.end += count;
     }
 
-    /// It has been written.
+    /// Adds the piece to the written bytes.
     #[inline]
     pub(super) fn finish(self) {
         *self.length += self.end;

@@ -4,8 +4,8 @@ use std::hint::select_unpredictable;
 
 use super::bytes::Piece;
 
-/// A control sequence in the making. It counts as written when it has got a parameter; without one, it
-/// is as if it had never been begun.
+/// A control sequence in progress. It becomes part of the piece at the end, if it has a parameter
+/// by then; otherwise nothing is written.
 pub(super) struct ControlSequence<'a, 'b> {
     piece: &'a mut Piece<'b>,
     start: usize,
@@ -39,7 +39,7 @@ impl<'a, 'b> ControlSequence<'a, 'b> {
         numbers.into_iter().for_each(|number| self.parameter(number));
     }
 
-    /// Adds a parameter that is a place on the screen, or a distance on it.
+    /// Adds a position or a distance on the screen as a parameter.
     #[inline]
     pub(super) fn place(&mut self, number: u16) {
         match u8::try_from(number) {
@@ -56,8 +56,8 @@ impl<'a, 'b> ControlSequence<'a, 'b> {
         }
     }
 
-    /// Has `write` add parameters, and takes them back if they are not `needed`: where processors foresee
-    /// badly whether they are, that takes less time than to ask first.
+    /// Calls `write` to add parameters, and removes them unless `needed`. Where the branch is badly
+    /// predictable, this takes less time than a test first.
     #[inline]
     pub(super) fn add_if(&mut self, needed: bool, write: impl FnOnce(&mut Self)) {
         let before = self.piece.end();
@@ -66,11 +66,11 @@ impl<'a, 'b> ControlSequence<'a, 'b> {
         self.piece.end_at(select_unpredictable(needed, end, before));
     }
 
-    /// Ends it with `last` as its final byte.
+    /// Ends the sequence with the final byte `last`.
     #[inline]
     pub(super) fn end(self, last: u8) {
         let is_empty = self.piece.end() == self.start + 1;
-        // Each parameter came with a separator before it.
+        // Replace the separator before the first parameter.
         self.piece.put(self.start + 1, INTRODUCER[1]);
         self.piece.push([last], 1);
         let end = self.piece.end();
@@ -81,7 +81,7 @@ impl<'a, 'b> ControlSequence<'a, 'b> {
 const INTRODUCER: &[u8; 2] = b"\x1b[";
 const SEPARATOR: u8 = b';';
 
-/// How many digits a number has.
+/// The number of digits of `number`.
 #[inline]
 pub(super) fn digits(number: u8) -> usize {
     usize::from(DECIMALS[usize::from(number)].length) - 1
@@ -91,11 +91,11 @@ pub(super) fn digits(number: u8) -> usize {
 #[derive(Clone, Copy)]
 struct Decimal {
     text: [u8; 4],
-    /// How much of the text there is.
+    /// The length of the text.
     length: u8,
 }
 
-/// Every number of a byte: to divide would cost more than all else that a cell does.
+/// The decimal text of every byte: a division would take longer than the rest of a cell's encoding.
 static DECIMALS: [Decimal; 256] = {
     let mut table = [Decimal { text: [SEPARATOR; 4], length: 0 }; 256];
     let mut number = 0;

@@ -1,4 +1,4 @@
-//! Draws a row exactly as it is wanted.
+//! Draws a row exactly.
 
 use ratatui::buffer::CellWidth;
 use ratatui::layout::Position;
@@ -9,7 +9,7 @@ use super::screen::Row;
 use super::shift::{CELL, Loss, Shifts};
 use super::style::Style;
 
-/// Makes a row look as it is wanted.
+/// Makes a row look like its target.
 pub(super) fn draw_row(pen: &mut Pen, shifts: &mut Shifts, mut row: Row) {
     if *row.intricate {
         draw_intricate_row(pen, &mut row);
@@ -24,7 +24,7 @@ pub(super) fn draw_row(pen: &mut Pen, shifts: &mut Shifts, mut row: Row) {
     *row.exact = true;
 }
 
-/// The same of a row where characters may cover more than their cells.
+/// Draws a row whose characters may cover more than their cells.
 fn draw_intricate_row(pen: &mut Pen, row: &mut Row) {
     let mut covered = 0;
     for column in 0..row.width() {
@@ -61,7 +61,7 @@ pub(super) fn draw_cell(pen: &mut Pen, row: &mut Row, column: usize) {
     row.shown[column] = row.targets[column];
 }
 
-/// Moves the stretches of a row that have only moved.
+/// Moves the stretches of a row that have moved sideways.
 fn shift(pen: &mut Pen, shifts: &mut Shifts, row: &mut Row) {
     let lose = |row: &Row, from: usize, to: usize, losses: &mut Vec<Loss>| {
         let targets = row.shown[from..].iter().zip(&row.targets[to..]);

@@ -1,17 +1,18 @@
-//! The table of glyphs that a screen shows. A glyph has an id of few bits, so that a packed cell is one word.
+//! The table of a screen's glyphs. Each has an id of few bits, so that a packed cell fits in one
+//! word.
 //!
 //! A character and its modifiers take 26 bits, and two colours 52. Most screens show some dozens of
-//! characters. Where the table is full, a character is shown all the same, but not compared.
+//! characters. If the table is full, further characters are still shown, but not compared.
 
 use std::collections::BTreeMap;
 
 use ratatui::style::Modifier;
 
-/// A character that is one cell wide, and the modifiers it is drawn with.
+/// A character one cell wide, and its modifiers.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord)]
 pub(super) struct Glyph {
     character: char,
-    /// As bits, which have an order.
+    /// The modifiers as bits, which have an order.
     modifiers: u16,
 }
 
@@ -43,24 +44,24 @@ impl Glyph {
 impl GlyphId {
     /// The id of a space without modifiers, in every table.
     pub(super) const SPACE: Self = Self(0);
-    /// That of an upper half block, likewise.
+    /// The id of an upper half block without modifiers, in every table.
     pub(super) const UPPER_HALF: Self = Self(1);
-    /// How many glyphs a table holds.
+    /// The maximum number of glyphs in a table.
     pub(super) const COUNT: u16 = 4000;
 
-    /// Lower than their count.
+    /// The id as a number, which is less than [`GlyphId::COUNT`].
     pub(super) const fn get(self) -> u16 {
         self.0
     }
 
-    /// That id, if it is one that [`GlyphId::get`] gave.
+    /// The id with this number, which must be from [`GlyphId::get`].
     pub(super) fn new(id: u16) -> Self {
         Self(id)
     }
 }
 
 impl GlyphTable {
-    /// The id of `glyph`, a new one if it has none yet; `None` where the table is full.
+    /// The id of `glyph`, a new one if necessary; `None` if the table is full.
     pub(super) fn id(&mut self, glyph: Glyph) -> Option<GlyphId> {
         if let Some(&id) = self.ids.get(&glyph) {
             return Some(id);
@@ -72,7 +73,7 @@ impl GlyphTable {
         Some(id)
     }
 
-    /// The glyph that has that id.
+    /// The glyph with this id.
     pub(super) fn glyph(&self, id: GlyphId) -> Glyph {
         self.glyphs[usize::from(id.0)]
     }
@@ -93,9 +94,9 @@ mod tests {
     use super::*;
 
     #[test]
-    fn letters_have_numbers_until_there_are_no_more() {
+    fn glyphs_have_ids_until_the_table_is_full() {
         let mut glyph_table = GlyphTable::default();
-        // A half block has one from the start.
+        // A half block has an id from the start.
         let glyphs =
             || std::iter::once('▀').chain(' '..).map(|glyph| Glyph::new(glyph, Modifier::empty()));
         let ids: Vec<_> =

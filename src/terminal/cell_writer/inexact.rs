@@ -1,9 +1,10 @@
-//! Draws a row within a tolerance of what it is to show, for fewer bytes.
+//! Draws a row within a tolerance, for fewer bytes.
 //!
-//! Two cells are compared by the distance of their two colours in L\*a\*b\*, if they are both blocks or both the same
-//! character without modifiers. All other cells are drawn exactly. Another character in place of the wanted one, such
-//! as its neighbour on a ramp of brightness, was refused: in ascii mode a character also tells of a surface, and
-//! most of the bytes are colours.
+//! Two cells are compared by the distance of their two colours in L\*a\*b\*, if they are both
+//! blocks or both the same character without modifiers. All other cells are drawn exactly. Another
+//! character in place of the wanted one, such as its neighbour on a ramp of brightness, was
+//! refused: in ascii mode the character also identifies the surface, and most of the bytes are
+//! colours.
 
 use ratatui::layout::Position;
 
@@ -18,30 +19,30 @@ use super::style::Style;
 use super::trellis::{Action, Store, Terms, Trellis, Wanted};
 use crate::terminal::Fidelity;
 
-/// Draws rows inexactly, and keeps the memory that it takes.
+/// Draws rows inexactly; keeps its memory between rows.
 #[derive(Debug, Default)]
 pub(super) struct RowEncoder {
     inks: Inks,
-    /// Where the colours lie that a row is to show, and those that it shows.
+    /// The colours of the row's targets, and of the cells on the screen.
     wanted: Colors,
     shown: Colors,
-    /// What it costs to leave the two colours of each cell as they are.
+    /// The cost of keeping the two colours of each cell.
     keep: Vec<[f32; 2]>,
-    /// What it would cost where they have moved.
+    /// The cost if the cells had moved.
     moved: Vec<[f32; 2]>,
     trellis: Trellis,
 }
 
-/// Where the two colours of each cell lie in L\*a\*b\*, component by component, so that the distances of
-/// several are computed at once.
+/// The two colours of each cell in L\*a\*b\*, component by component, so that several distances are
+/// computed at once.
 ///
-/// Characters lie apart from blocks, and from other characters. What may only be shown exactly lies far from every
-/// colour and from everything that does not look the same.
+/// Characters are far from blocks and from other characters. A cell that may only be shown exactly
+/// is far from every colour and from every cell that looks different.
 #[derive(Debug, Default)]
 struct Colors([Vec<[f32; 2]>; 3]);
 
 impl RowEncoder {
-    /// Makes a row look as it is wanted, or about, as `fidelity` allows.
+    /// Makes a row look like its target within `fidelity`.
     pub(super) fn draw_row(
         &mut self,
         pen: &mut Pen,
@@ -50,7 +51,7 @@ impl RowEncoder {
         fidelity: Fidelity,
     ) {
         if *row.intricate {
-            // Nobody knows how much of it a character covers.
+            // The extent of an intricate character is unknown.
             return exact::draw_row(pen, shifts, row);
         }
         let notation = Notation::of(row.targets, pen.palette().is_on());
@@ -73,7 +74,7 @@ impl RowEncoder {
         *row.exact = row.shown == row.targets;
     }
 
-    /// Moves the stretches of a row that have only moved, or about.
+    /// Moves the stretches of a row that have moved sideways, at least approximately.
     fn shift(&mut self, pen: &mut Pen, shifts: &mut Shifts, row: &mut Row, price: Price) {
         let (wanted, moved) = (&self.wanted, &mut self.moved);
         let mut lose = |shown: &Colors, places: [usize; 2], losses: &mut Vec<Loss>| {
@@ -94,22 +95,22 @@ impl RowEncoder {
     }
 }
 
-/// The loss of so many bytes, at most that of a cell.
+/// The loss of this number of bytes, at most that of a cell.
 #[inline]
 fn loss(bytes: f32) -> Loss {
-    /// Added to a small number, this leaves it in the lowest bits.
+    /// The sum of this and a small number has the rounded number in its lowest bits.
     const INTEGER: f32 = 8_388_608.0;
     let (loss, most) = (bytes * f32::from(BYTE), f32::from(CELL));
     ((if loss < most { loss } else { most }) + INTEGER).to_bits() as Loss
 }
 
-/// L*, a* and b* of two colours.
+/// The L*, a* and b* of two colours.
 #[inline]
 fn components([one, other]: [Ink; 2]) -> [[f32; 2]; 3] {
     [0, 1, 2].map(|index| [one.lab[index], other.lab[index]])
 }
 
-/// Where the colours of what is no block lie.
+/// The colours of a cell that is not a block.
 #[inline(never)]
 fn of_character(target: PackedCell, glyph_table: &GlyphTable, inks: &mut Inks) -> [[f32; 2]; 3] {
     match target.recolorable(glyph_table) {
@@ -117,12 +118,12 @@ fn of_character(target: PackedCell, glyph_table: &GlyphTable, inks: &mut Inks) -
             let (apart, components) = (apart(id), components(inks.of_both(colors)));
             [0, 1, 2].map(|index| components[index].map(|component| component + apart[index]))
         }
-        // Those that do not look the same are far from each other.
+        // Cells that look different are far from each other.
         _ => target.hashes().map(|hash| [FAR * (1.0 + f32::from(hash)); 2]),
     }
 }
 
-/// What a cell is to be for the search, unless it may only be drawn exactly.
+/// The target of a cell for the search; `None` if it may only be drawn exactly.
 #[inline]
 fn wanted(target: PackedCell, glyph_table: &GlyphTable, inks: &mut Inks) -> Option<Wanted> {
     let (form, colors) = target.recolorable(glyph_table)?;
@@ -133,7 +134,7 @@ fn wanted(target: PackedCell, glyph_table: &GlyphTable, inks: &mut Inks) -> Opti
     Some(Wanted { inks: inks.of_both(colors), character })
 }
 
-/// Draws a cell as a block, or as the character that it is to be, in those colours.
+/// Draws a cell in these colours, as a block or as its own character.
 #[inline]
 fn draw_cell(pen: &mut Pen, row: &mut Row, column: u16, element: BlockElement, style: Style) {
     let position = Position { x: column, y: row.y };
@@ -151,18 +152,19 @@ fn draw_cell(pen: &mut Pen, row: &mut Row, column: u16, element: BlockElement, s
     };
 }
 
-/// How far from blocks a glyph lies: at a point of its own of a lattice whose points are farther apart than colours.
+/// The displacement of a glyph from blocks: a point of its own in a lattice whose points are
+/// farther apart than colours.
 fn apart(id: GlyphId) -> [f32; 3] {
     const SPACING: f32 = 1000.0;
     let id = id.get() + 1;
     [id & 15, id >> 4 & 15, id >> 8].map(|digit| SPACING * f32::from(digit))
 }
 
-/// Farther from every colour than any tolerance.
+/// A distance from every colour that is larger than any tolerance.
 const FAR: f32 = 1e6;
 
 impl Colors {
-    /// Finds where the colours of cells lie.
+    /// Computes the colours of cells.
     fn fill(&mut self, targets: &[PackedCell], glyph_table: &GlyphTable, inks: &mut Inks) {
         for components in &mut self.0 {
             components.resize(targets.len(), [0.0; 2]);
@@ -182,8 +184,8 @@ impl Colors {
         }
     }
 
-    /// What it costs that the cells of this row from the place `from` on stand for those of `others` from `to` on,
-    /// cell by cell.
+    /// The cost of showing the cells of this row from `from` on in place of those of `others` from
+    /// `to` on, cell by cell.
     fn costs(
         &self,
         others: &Self,

@@ -1,4 +1,4 @@
-//! Colours that may be shown for each other, what they cost, and what it costs to be off.
+//! Colours that may be shown in place of others, their cost in bytes, and the price of errors.
 
 use super::packed_cell::PackedCell;
 use super::style::{Kind, Shade};
@@ -7,10 +7,10 @@ use crate::color::lab::PackedLab;
 use crate::color::palette;
 use crate::terminal::Fidelity;
 
-/// A colour, and where it lies in CIE L\*a\*b\*.
+/// A colour, and its place in CIE L\*a\*b\*.
 ///
-/// Users redefine the 16 named colours, and the terminal's own colours are unknown: these lie apart from all others,
-/// so that no tolerance takes one for another.
+/// Users redefine the 16 named colours, and the terminal's default colours are unknown. Both are
+/// far from all other colours, so that no tolerance mistakes one for another.
 #[derive(Clone, Copy, Debug)]
 pub(super) struct Ink {
     pub(super) lab: [f32; 3],
@@ -18,7 +18,7 @@ pub(super) struct Ink {
 }
 
 impl Ink {
-    /// That colour; an indexed one as xterm's standard palette has it.
+    /// The ink of `shade`; an indexed colour is that of xterm's standard palette.
     #[inline(never)]
     fn new(shade: Shade) -> Self {
         let lab = match shade.kind() {
@@ -32,7 +32,7 @@ impl Ink {
         Self { lab, shade }
     }
 
-    /// How many bytes it takes as parameters.
+    /// The number of bytes of its parameters.
     #[inline]
     pub(super) fn bytes(self) -> f32 {
         self.shade.bytes() as f32
@@ -47,9 +47,9 @@ impl Ink {
 
 /// The first index after the named colours.
 const FIRST_FIXED: u8 = 16;
-/// How far from all others the named colours lie.
+/// The distance of the named colours from all others.
 const NAMED: f32 = 20_000.0;
-/// Where the terminal's own colours lie.
+/// The place of the terminal's default colours.
 const OWN: f32 = 1e6;
 
 /// CIE76's ΔE.
@@ -59,20 +59,20 @@ pub(super) fn distance(one: [f32; 3], other: [f32; 3]) -> f32 {
     (l * l + a * a + b * b).sqrt()
 }
 
-/// The inks of the colours that were asked for of late.
+/// The inks of recent colours, in a direct-mapped cache.
 ///
-/// A frame has some hundreds of colours and some ten thousand pixels. Each colour has one place, which
-/// the last one takes that was asked for.
+/// A frame has some hundreds of colours and some ten thousand pixels. Each colour has one place,
+/// which holds the last one requested of all colours with that place.
 #[derive(Debug)]
 pub(super) struct Inks {
     places: Box<[Ink; 1 << PLACE_BITS]>,
 }
 
-/// So many bits of a hash tell a colour's place.
+/// The number of bits of a hash that select a place.
 const PLACE_BITS: u32 = 11;
 
 impl Inks {
-    /// That of a colour.
+    /// The ink of a colour.
     #[expect(clippy::inline_always, reason = "calls would take longer than what they do")]
     #[inline(always)]
     pub(super) fn of(&mut self, shade: Shade) -> Ink {
@@ -85,13 +85,13 @@ impl Inks {
         *known
     }
 
-    /// Those of two colours.
+    /// The inks of two colours.
     #[inline]
     pub(super) fn of_both(&mut self, shades: [Shade; 2]) -> [Ink; 2] {
         shades.map(|shade| self.of(shade))
     }
 
-    /// The colour halfway between two, or the nearest to it in the palette that both belong to.
+    /// The colour halfway between two, or the colour nearest to that in their common palette.
     pub(super) fn between(&mut self, one: Ink, other: Ink) -> Ink {
         let middle = |one: [u8; 3], other: [u8; 3]| -> [u8; 3] {
             std::array::from_fn(|channel| one[channel].midpoint(other[channel]))
@@ -114,22 +114,22 @@ impl Inks {
     }
 }
 
-/// How colours are written.
+/// The notation of a colour in a control sequence.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord)]
 pub(super) enum Notation {
-    /// As one of the 16 named ones, in two bytes.
+    /// As one of the 16 named colours, in two bytes.
     Named,
-    /// As one of the 240 fixed ones, in up to eight.
+    /// As one of the 240 fixed colours, in up to eight bytes.
     Indexed,
-    /// As an entry of the palette where one holds it, in up to eight.
+    /// As an entry of the palette if one holds it, in up to eight bytes.
     Entry,
-    /// As red, green and blue, in up to sixteen.
+    /// As red, green and blue, in up to sixteen bytes.
     Rgb,
 }
 
 impl Default for Inks {
     fn default() -> Self {
-        // No place knows a colour that has not been asked for.
+        // No requested colour is equal to this one.
         let nothing = Ink { lab: [0.0; 3], shade: Shade::NONE };
         let places = vec![nothing; 1 << PLACE_BITS].try_into();
         Self { places: places.expect("a place for each hash") }
@@ -137,7 +137,8 @@ impl Default for Inks {
 }
 
 impl Notation {
-    /// That of the longest colour of a row of cells, on a terminal whose palette may be defined or not.
+    /// The notation of the longest colour in a row of cells, on a terminal with or without a
+    /// palette that may be defined.
     pub(super) fn of(targets: &[PackedCell], has_palette: bool) -> Self {
         let all = targets.iter().fold([0; 2], |all, target| {
             let colors = target.colors().map(Shade::in_bits);
@@ -150,19 +151,19 @@ impl Notation {
     }
 }
 
-/// What an error is worth.
+/// The price of errors.
 #[derive(Clone, Copy, Debug)]
 pub(super) struct Price {
-    /// No colour is farther off, in ΔE.
+    /// The maximum error, in ΔE.
     pub(super) farthest: f32,
-    /// So many bytes are worth a ΔE of one of half a cell. Chosen so that the mean error at high and low
-    /// fidelity is what it is said to be.
+    /// The price in bytes of a ΔE of one in half a cell. It was chosen so that the mean errors at
+    /// high and low fidelity are the documented ones.
     pub(super) bytes: f32,
 }
 
 impl Price {
-    /// At that fidelity, which is not exact. The less is allowed, the more an error is worth; and the less colours
-    /// cost, the less.
+    /// The price at `fidelity`, which must not be exact. It is higher for lower tolerances, and
+    /// lower for shorter notations.
     pub(super) fn at(fidelity: Fidelity, notation: Notation) -> Self {
         let farthest = f32::from(fidelity.tolerance());
         let worth = match notation {
@@ -174,13 +175,14 @@ impl Price {
         Self { farthest, bytes: worth / farthest }
     }
 
-    /// What it is worth, in bytes, to be off by `distance`; infinite if too much.
+    /// The price of an error of `distance`, in bytes; infinite if it exceeds the maximum.
     #[inline]
     pub(super) fn of_distance(self, distance: f32) -> f32 {
         if distance > self.farthest { f32::INFINITY } else { distance * self.bytes }
     }
 
-    /// What it is worth, in bytes, that one colour is shown for the other; infinite if too much.
+    /// The price of showing one colour in place of another, in bytes; infinite if the error exceeds
+    /// the maximum.
     #[inline]
     pub(super) fn of(self, shown: Ink, wanted: Ink) -> f32 {
         self.of_distance(shown.distance(wanted))

@@ -1,15 +1,16 @@
-//! The shortest way to move the cursor.
+//! The shortest motion of the cursor.
 //!
-//! A row down is a carriage return and a line feed, which together mean the same whether or not the
-//! terminal's line discipline adds a return to each feed; a line feed alone does not.
+//! A move to a lower row is a carriage return and line feeds. With the return, the result is the
+//! same whether or not the terminal's line discipline adds a return to each feed; with a line feed
+//! alone it is not.
 
 use ratatui::layout::{Position, Size};
 
 use super::bytes::Piece;
 use super::control::ControlSequence;
 
-/// Adds the motion from where the cursor stands to `target`, on a terminal of `size`. A cursor in the
-/// column behind the last one waits to wrap.
+/// Adds the motion from `cursor` to `target`, on a terminal of `size`. In the column after the last
+/// one, a cursor waits to wrap.
 #[expect(clippy::inline_always, reason = "calls would take longer than what they do")]
 #[inline(always)]
 pub(super) fn push(cursor: Option<Position>, target: Position, size: Size, piece: &mut Piece) {
@@ -35,7 +36,7 @@ fn push_right(by: u16, piece: &mut Piece) {
     }
 }
 
-/// More feeds than this take longer than to name the row.
+/// More line feeds than this are longer than an absolute row.
 const MOST_FEEDS: u16 = 5;
 
 fn push_far(cursor: Option<Position>, target: Position, size: Size, piece: &mut Piece) {
@@ -75,7 +76,7 @@ fn push_absolute(target: Position, piece: &mut Piece) {
     motion.end(b'H');
 }
 
-/// How many bytes it takes to get to column `x` by way of the first one.
+/// The number of bytes of a motion to column `x` by way of the first column.
 fn bytes_of_return(x: u16) -> usize {
     match x {
         0 => 1,
@@ -89,7 +90,7 @@ fn bytes_of_absolute(target: Position) -> usize {
     3 + digits(target.y + 1) + column
 }
 
-/// How many digits a number has.
+/// The number of digits of `number`.
 #[inline]
 pub(super) fn digits(number: u16) -> usize {
     1 + usize::from(number > 9)
@@ -133,7 +134,7 @@ mod tests {
             assert_eq!(bytes, expected.as_bytes(), "{x} {y}");
         }
         assert_eq!(motion(None, Position::ORIGIN), b"\x1b[1H");
-        // A cursor that waits to wrap stands still for a backspace on some terminals.
+        // On some terminals, a backspace does not move a cursor that waits to wrap.
         assert_eq!(motion(Some(Position::new(120, 5)), Position::new(119, 5)), b"\r\x1b[119C");
     }
 

@@ -1,9 +1,9 @@
 //! A cell in one word, and the cheapest block element that shows it.
 //!
-//! A cell of two pixels can be written as an upper or a lower half block with the colours swapped, and
-//! one whose pixels are alike as a space or a full block. All of them look the same; the one is taken
-//! that takes the fewest bytes after what the terminal has been told so far. A space is drawn in no
-//! foreground at all, so that of the cell before it stays.
+//! A cell of two pixels can be written as an upper or a lower half block with the colours swapped;
+//! one of two equal pixels as a space or a full block. All of them look the same, so the pen uses
+//! the one with the fewest bytes after the terminal's present style. A space has no foreground, so
+//! that it keeps the one of the cell before it.
 
 use std::fmt;
 
@@ -14,21 +14,21 @@ use super::glyph_table::{Glyph, GlyphId, GlyphTable};
 use super::style::{Shade, Style};
 use crate::color::Rgb;
 
-/// A character that shows two colours at most, each in a whole half of its cell.
+/// A character that shows at most two colours, each in a whole half of its cell.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub(super) enum BlockElement {
-    /// The upper half in the text's colour, the lower one in the ground's.
+    /// The upper half in the text colour, the lower half in the background colour.
     Upper,
-    /// The other way about.
+    /// The upper half in the background colour, the lower half in the text colour.
     Lower,
-    /// Both in the text's.
+    /// Both halves in the text colour.
     Full,
-    /// Both in the ground's.
+    /// Both halves in the background colour.
     Space,
 }
 
 impl BlockElement {
-    /// Itself in UTF-8, and how many of the bytes that takes.
+    /// The character in UTF-8, and the number of its bytes.
     #[inline]
     pub(super) const fn encoded(self) -> ([u8; 4], usize) {
         match self {
@@ -48,7 +48,7 @@ impl BlockElement {
         }
     }
 
-    /// By its bytes in UTF-8, as every changed cell is asked.
+    /// Finds the element by its bytes in UTF-8, since this runs for every changed cell.
     #[inline]
     fn of(symbol: &str) -> Option<Self> {
         match *symbol.as_bytes() {
@@ -72,32 +72,32 @@ impl BlockElement {
     }
 }
 
-/// What a cell is beside its two colours.
+/// The form of a cell, without its two colours.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub(super) enum Form {
-    /// Two halves, of one colour each, by any of the glyphs.
+    /// Two halves of one colour each, with any block element.
     Block,
-    /// A glyph without modifiers, in one colour on another.
+    /// A glyph without modifiers, in a text and a background colour.
     Glyph(GlyphId),
 }
 
-/// A cell in one word: equal ones look the same.
+/// A cell in one word. Equal words look the same.
 ///
-/// The uppermost twelve bits say what it is, and the rest are two colours: of the upper and the lower half,
-/// or of the text and its ground.
+/// The upper twelve bits are the form; the rest are two colours: of the upper and the lower half,
+/// or of the text and the background.
 #[derive(Clone, Copy, PartialEq, Eq)]
 pub(super) struct PackedCell(u64);
 
 impl PackedCell {
-    /// Nobody knows; no cell that is to be shown looks like this.
+    /// An unknown cell. No target is equal to it.
     pub(super) const UNKNOWN: Self = Self(1 << Self::KIND);
-    /// Of several characters, or wider than a cell, or of a glyph that has no id: sent whenever
-    /// its row changes.
+    /// A cell of several characters, of a character wider than a cell, or of a glyph without an id.
+    /// It is sent whenever its row changes.
     const INTRICATE: Self = Self(2 << Self::KIND);
-    /// A space in the terminal's own colours.
+    /// A space in the terminal's default colours.
     pub(super) const BLANK: Self = Self::of_text(GlyphId::SPACE, [Shade::DEFAULT; 2]);
 
-    /// Where the kind is: none for blocks, and from here on glyphs by their ids.
+    /// The position of the form: zero for blocks; from this value on, the ids of glyphs.
     const KIND: u32 = 2 * Shade::BITS;
     const FIRST_GLYPH: u64 = 3;
     const _KINDS_FIT: () =
@@ -105,7 +105,7 @@ impl PackedCell {
 
     const LAST_GLYPH: u64 = Self::FIRST_GLYPH + GlyphId::COUNT as u64 - 1;
 
-    /// `cell`, packed.
+    /// Packs `cell`.
     #[inline]
     pub(super) fn of(cell: &Cell, glyph_table: &mut GlyphTable) -> Self {
         let (symbol, style) = (cell.symbol(), Style::of(cell));
@@ -115,7 +115,7 @@ impl PackedCell {
         }
     }
 
-    /// Two colours, the first above the second.
+    /// A cell of two colours, the first above the second.
     #[inline]
     pub(super) fn of_colors(colors: [Color; 2]) -> Self {
         let shades = colors.map(Shade::of);
@@ -125,13 +125,13 @@ impl PackedCell {
         }
     }
 
-    /// Two pixels, the first above the second.
+    /// A cell of two pixels, the first above the second.
     #[inline]
     pub(super) fn of_pixels(pixels: [Rgb; 2]) -> Self {
         Self::of_halves(pixels.map(Shade::of_pixel))
     }
 
-    /// A character that is one cell wide, in the colours of its text and of its ground.
+    /// A character one cell wide, in a text and a background colour.
     pub(super) fn of_character(
         character: char,
         colors: [Color; 2],
@@ -162,7 +162,7 @@ impl PackedCell {
         }
     }
 
-    /// A character that is never drawn as a block.
+    /// A character that cannot be drawn as a block.
     #[inline(never)]
     pub(super) fn of_glyph(character: char, style: Style, glyph_table: &mut GlyphTable) -> Self {
         let id = glyph_table.id(Glyph::new(character, style.modifier));
@@ -170,7 +170,7 @@ impl PackedCell {
         id.map_or(Self::INTRICATE, |id| Self::of_text(id, colors))
     }
 
-    /// A block element in that style.
+    /// A block element in this style.
     pub(super) fn of_block(element: BlockElement, style: Style) -> Self {
         Self::of_halves(element.halves(style.foreground, style.background))
     }
@@ -185,7 +185,7 @@ impl PackedCell {
         Self(kind << Self::KIND | Self::of_halves(colors).0)
     }
 
-    /// Its character, and how it is drawn; `None` for blocks and what is intricate.
+    /// The character and its style; `None` for blocks and intricate cells.
     pub(super) fn text(self, glyph_table: &GlyphTable) -> Option<(char, Style)> {
         let id = (self.0 >> Self::KIND).checked_sub(Self::FIRST_GLYPH)?;
         let glyph = glyph_table.glyph(GlyphId::new(id as u16));
@@ -194,17 +194,18 @@ impl PackedCell {
         Some((glyph.character(), style))
     }
 
-    /// Whether it may be wider than a cell.
+    /// Whether the cell may be wider than one column.
     pub(super) fn is_intricate(self) -> bool {
         self == Self::INTRICATE
     }
 
-    /// Whether a cell that looks like `wanted` need not be sent.
+    /// Whether this shown cell need not be sent for the target `wanted`.
     pub(super) fn is(self, wanted: Self) -> bool {
         self == wanted && self != Self::INTRICATE
     }
 
-    /// A hash; its upper bits are the best. Of few bits, so that a compiler has several computed at once.
+    /// A hash whose upper bits are the best. It has few bits, so that the compiler computes several
+    /// at once.
     #[inline]
     pub(super) fn hash(self) -> u32 {
         ((self.0 ^ self.0 >> 29) as u32).wrapping_mul(0x9E37_79B1)
@@ -216,7 +217,7 @@ impl PackedCell {
         [48, 32, 16].map(|from| (hash >> from) as u16)
     }
 
-    /// What it is beside its colours, and these; `None` where it may only be shown as it is.
+    /// The form and the colours; `None` if the cell may only be shown exactly.
     #[inline]
     pub(super) fn recolorable(self, glyph_table: &GlyphTable) -> Option<(Form, [Shade; 2])> {
         let form = match self.0 >> Self::KIND {
@@ -230,7 +231,7 @@ impl PackedCell {
         Some((form, self.colors()))
     }
 
-    /// The same glyph in other colours.
+    /// The same form in other colours.
     pub(super) fn recolored(self, colors: [Shade; 2]) -> Self {
         Self(self.0 >> Self::KIND << Self::KIND | Self::of_halves(colors).0)
     }
@@ -241,7 +242,7 @@ impl PackedCell {
         (self.0 >> Self::KIND == 0).then(|| self.colors())
     }
 
-    /// Its two colours, whatever it is.
+    /// The two colours of any cell.
     #[inline]
     pub(super) fn colors(self) -> [Shade; 2] {
         [self.0 >> Shade::BITS, self.0].map(|bits| Shade::from_bits(bits as u32))
@@ -256,7 +257,7 @@ impl fmt::Debug for PackedCell {
     }
 }
 
-/// The cheapest block that looks like these two halves, and how it is drawn, after `current`.
+/// The block element and style with the fewest bytes after `current` that show these two halves.
 pub(super) fn cheapest([top, bottom]: [Shade; 2], current: Option<Style>) -> (BlockElement, Style) {
     let block = |element, text, ground| (element, Style::plain(text, ground));
     let Some(current) = current else { return block(BlockElement::Upper, top, bottom) };
@@ -279,9 +280,8 @@ pub(super) fn cheapest([top, bottom]: [Shade; 2], current: Option<Style>) -> (Bl
     }
 }
 
-/// The colours of the upper and the lower half of a cell; `None` where another block would not look the
-/// same: in the terminal's own colours, which are not the same two as text and as ground, and with
-/// modifiers.
+/// The colours of the upper and the lower half; `None` if another block would look different: with
+/// the terminal's default colours, which differ as text and as background, and with modifiers.
 #[inline]
 fn halves(element: BlockElement, style: Style) -> Option<[Shade; 2]> {
     let halves = element.halves(style.foreground, style.background);

@@ -1,11 +1,13 @@
 //! Frequent colours as entries of the terminal's palette.
 //!
-//! A colour takes up to sixteen bytes as parameters, and an entry of the palette eight at most. So frequent
-//! colours are defined as entries (OSC 4) before they are used. An entry is defined anew only where no
-//! cell shows its colour, nor does the terminal draw in it: what is on the screen never changes with it.
+//! The parameters of a colour take up to sixteen bytes, those of a palette entry at most eight. So
+//! frequent colours are defined as entries (OSC 4) before they are used. An entry is redefined only
+//! if no cell shows its colour and the terminal's style does not use it, so that a definition never
+//! changes the screen.
 //!
-//! Whether a cell was told its colour as an entry is not noted down: what shows an entry's colour counts
-//! as showing the entry, which needs no memory for each cell, and is never wrong.
+//! The model does not record whether a cell was sent its colour as an entry. Every cell with the
+//! colour of an entry counts as showing the entry. This takes no memory for each cell and is always
+//! safe.
 
 mod definitions;
 
@@ -13,24 +15,25 @@ use super::bytes::Bytes;
 use super::ink::{Ink, Price};
 use super::style::{Kind, Shade};
 
-/// What the terminal's palette holds, as far as it was defined here.
+/// The known entries of the terminal's palette.
 #[derive(Debug)]
 pub(super) struct Palette {
-    /// Whether it may be defined.
+    /// Whether entries may be defined.
     is_on: bool,
-    /// The colour of each entry; the terminal's own for those that have not been defined.
+    /// The colour of each entry; [`Shade::DEFAULT`] for undefined ones.
     colors: Vec<Shade>,
-    /// Where those lie in L\*a\*b\*, component by component.
+    /// Those colours in L\*a\*b\*, component by component.
     labs: [Vec<f32>; 3],
-    /// The entry that may hold a colour, by the hash of it. Of two colours with one hash, one has an entry.
+    /// The entry that may hold a colour, by the colour's hash. Of several colours with one hash,
+    /// one has an entry.
     entries: Vec<u8>,
-    /// How often colours were wanted of late that no entry holds, by the hash.
+    /// The numbers of recent uses of colours without an entry, by hash.
     counts: Vec<Count>,
-    /// The entry that is nearest to a colour, by the hash of that.
+    /// The entry nearest to a colour, by the colour's hash.
     nearest: Vec<Near>,
     /// The number of the frame.
     frame: u32,
-    /// In which frame an entry's colour was wanted last.
+    /// The number of the frame in which an entry's colour was last used.
     wanted_at: Vec<u32>,
     /// Whether a cell shows an entry's colour.
     is_shown: Vec<bool>,
@@ -39,14 +42,14 @@ pub(super) struct Palette {
     definitions: Bytes,
 }
 
-/// How often a colour was wanted of late; the older, the less it counts.
+/// The number of recent uses of a colour; older ones count less.
 #[derive(Clone, Copy, Debug)]
 struct Count {
     shade: Shade,
     count: u16,
 }
 
-/// What was found nearest to a colour, and when.
+/// The entry nearest to a colour, and the number of the frame of the search.
 #[derive(Clone, Copy, Debug)]
 struct Near {
     shade: Shade,
@@ -55,18 +58,18 @@ struct Near {
     found_at: u32,
 }
 
-/// A colour that may be told for another.
+/// A colour that may be sent for another.
 #[derive(Clone, Copy, Debug)]
 pub(super) struct Telling {
     pub(super) ink: Ink,
-    /// As parameters.
+    /// The bytes of its parameters.
     pub(super) bytes: f32,
-    /// What it is worth, in bytes, that it is off.
+    /// The price of its error, in bytes.
     pub(super) error: f32,
 }
 
 impl Telling {
-    /// Both.
+    /// The bytes and the price together.
     #[inline]
     pub(super) fn cost(self) -> f32 {
         self.bytes + self.error
@@ -74,14 +77,15 @@ impl Telling {
 }
 
 const ENTRIES: usize = 256;
-/// So many bits of a hash tell where the entry of a colour is looked up, and where all else.
+/// The number of bits of a hash for the place of a colour's entry, and for the places of its other
+/// data.
 const ENTRY_PLACE_BITS: u32 = 13;
 const PLACE_BITS: u32 = 11;
-/// For so many frames, what was found nearest is not looked for anew.
+/// The number of frames for which a nearest entry is not searched again.
 const KNOWN_FOR: u32 = 8;
 
 impl Palette {
-    /// Whether entries may be defined from now on. What was defined before is forgotten.
+    /// Sets whether entries may be defined, and forgets all definitions.
     pub(super) fn set_on(&mut self, is_on: bool) {
         *self = Self { is_on, ..Self::default() };
     }
@@ -91,7 +95,7 @@ impl Palette {
         self.is_on
     }
 
-    /// As [`Palette::set_on`], as it is.
+    /// Forgets all definitions.
     pub(super) fn forget(&mut self) {
         self.set_on(self.is_on);
     }
@@ -103,7 +107,7 @@ impl Palette {
         (self.colors[usize::from(entry)] == shade && shade != Shade::DEFAULT).then_some(entry)
     }
 
-    /// How a colour is told to the terminal.
+    /// The shade to send to the terminal for a colour.
     #[inline]
     pub(super) fn told(&self, shade: Shade) -> Shade {
         if self.is_on { self.entry_or_itself(shade) } else { shade }
@@ -111,13 +115,13 @@ impl Palette {
 
     fn entry_or_itself(&self, shade: Shade) -> Shade {
         match shade.kind() {
-            // It may have been defined to be another.
+            // The entry with this index may have been redefined.
             Kind::Indexed(index @ 16..) => Shade::rgb(standard(index)),
             _ => self.entry(shade).map_or(shade, Shade::indexed),
         }
     }
 
-    /// What is best told for `wanted`, which takes so many bytes itself.
+    /// The cheapest colour to send for `wanted`, whose own parameters take this number of bytes.
     #[inline]
     pub(super) fn telling(&mut self, wanted: Ink, bytes: f32, price: Price) -> Telling {
         let mut telling = Telling { ink: wanted, bytes, error: 0.0 };
@@ -127,7 +131,7 @@ impl Palette {
         telling
     }
 
-    /// Tells an entry instead of a colour where that costs less.
+    /// Replaces the colour by an entry if that costs less.
     #[inline(never)]
     fn shorten(&mut self, telling: &mut Telling, price: Price) {
         let wanted = telling.ink;
@@ -144,7 +148,7 @@ impl Palette {
         }
     }
 
-    /// An entry that was the nearest to a colour of late.
+    /// The nearest entry to a colour, possibly from one of the last [`KNOWN_FOR`] frames.
     fn nearest(&mut self, wanted: Ink) -> Option<u8> {
         let place = place(wanted.shade);
         let known = self.nearest[place];
@@ -202,21 +206,21 @@ impl Default for Palette {
     }
 }
 
-/// Where the entry of a colour is looked up.
+/// The place of a colour's entry.
 #[inline]
 fn entry_place(shade: Shade) -> usize {
     (shade.in_bits().wrapping_mul(0x9E37_79B1) >> (u32::BITS - ENTRY_PLACE_BITS)) as usize
 }
 
-/// Where all else about a colour is looked up. Colours that share the place of their entries share this one,
-/// too.
+/// The place of a colour's other data. Colours whose entries have the same place have the same
+/// place here, too.
 #[inline]
 fn place(shade: Shade) -> usize {
     (shade.in_bits().wrapping_mul(0x9E37_79B1) >> (u32::BITS - PLACE_BITS)) as usize
 }
 
-/// The colour that xterm gives an entry from the sixteenth on: a cube of six levels a side, and a ramp of
-/// greys.
+/// The colour of an entry from the sixteenth on in xterm's palette: a cube of six levels a side,
+/// and a ramp of greys.
 fn standard(index: u8) -> [u8; 3] {
     let level = |step: u8| if step == 0 { 0 } else { 55 + 40 * step };
     match index.saturating_sub(16) {

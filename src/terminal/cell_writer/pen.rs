@@ -1,4 +1,4 @@
-//! What is written: the bytes of a frame, and what the terminal has been told by them.
+//! The pen: the bytes of a frame, and the state of the terminal after them.
 
 use crossterm::terminal::{BeginSynchronizedUpdate, EndSynchronizedUpdate};
 use crossterm::{Command, queue};
@@ -15,33 +15,34 @@ use super::screen::Screen;
 use super::shift::{Shift, Way};
 use super::style::Style;
 
-/// Writes a frame, and knows in which colours the terminal draws, and where its cursor stands.
+/// Writes a frame, and tracks the terminal's style and cursor position.
 #[derive(Debug)]
 pub(super) struct Pen {
-    /// It begins with the mark of synchronized output.
+    /// Begins with the start of synchronized output.
     frame: Bytes,
-    /// Of the terminal.
+    /// The size of the terminal.
     size: Size,
     style: Option<Style>,
-    /// Where the cursor stands; in the column behind the last one, it waits to wrap.
+    /// The position of the cursor; `None` if it is unknown. In the column after the last one, the
+    /// cursor waits to wrap.
     cursor: Option<Position>,
     /// Whether the terminal repeats characters (REP).
     repeats: bool,
-    /// The block that was drawn last, where nothing has been written since.
+    /// The last block drawn, unless other bytes were written since.
     last: Option<BlockElement>,
-    /// How many more of that one are drawn, but not written yet.
+    /// The number of repetitions of that block that are drawn but not written yet.
     repeated: u16,
     palette: Palette,
 }
 
-/// The last bytes of the sequences that delete characters, and insert blank ones.
+/// The final bytes of the sequences that delete characters and that insert blank ones.
 const DELETE: u8 = b'P';
 const INSERT: u8 = b'@';
-/// The last byte of the sequence that repeats the character before it (REP).
+/// The final byte of the sequence that repeats the preceding character (REP).
 const REPEAT: u8 = b'b';
 
 impl Pen {
-    /// For a terminal of that size of which nothing is known.
+    /// A pen for a terminal of this size and otherwise unknown state.
     pub(super) fn new(size: Size) -> Self {
         Self {
             frame: Bytes::default(),
@@ -55,7 +56,7 @@ impl Pen {
         }
     }
 
-    /// From now on, a block that is drawn several times is written once, and repeated.
+    /// Sets whether a block that is drawn several times is written once and repeated.
     pub(super) fn set_repeats(&mut self, repeats: bool) {
         self.repeats = repeats;
     }
@@ -65,37 +66,37 @@ impl Pen {
         &mut self.palette
     }
 
-    /// Defines entries of the palette for what `screen` is to show, as far as that spares bytes.
+    /// Defines entries of the palette for the targets of `screen`, where that saves bytes.
     pub(super) fn define_colors(&mut self, screen: &Screen, price: Option<Price>) {
         if let Some(definitions) = self.palette.begin_frame(screen, self.style, price) {
-            // To borrow them from what is borrowed, they are taken, and given back.
+            // The definitions borrow the palette, so they are taken out of it and put back.
             self.frame().push_text(definitions.as_slice());
             self.palette.keep(definitions);
         }
     }
 
-    /// Whether that is so.
+    /// Whether the terminal repeats characters (REP).
     pub(super) fn repeats(&self) -> bool {
         self.repeats
     }
 
-    /// What the terminal draws in; `None` where nobody knows.
+    /// The terminal's style; `None` if it is unknown.
     pub(super) fn style(&self) -> Option<Style> {
         self.style
     }
 
-    /// Where the cursor stands; `None` where nobody knows.
+    /// The position of the cursor; `None` if it is unknown.
     pub(super) fn position(&self) -> Option<Position> {
         self.cursor.filter(|cursor| cursor.x < self.size.width)
     }
 
-    /// The terminal is now of that size.
+    /// Sets the size of the terminal.
     pub(super) fn set_size(&mut self, size: Size) {
         self.size = size;
         self.cursor = None;
     }
 
-    /// The frame, if anything is in it; what is written next is in another one.
+    /// Ends the frame and returns it, unless it is empty. The next bytes belong to another frame.
     pub(super) fn finish_frame(&mut self) -> Option<&[u8]> {
         if self.frame.is_empty() {
             return None;
@@ -109,16 +110,16 @@ impl Pen {
         self.frame.clear();
     }
 
-    /// Nothing is known of the terminal, and what was written has never been sent.
+    /// Forgets the terminal's state and the unsent bytes.
     pub(super) fn forget(&mut self) {
         self.frame.clear();
         self.palette.forget();
         (self.style, self.cursor, self.last, self.repeated) = (None, None, None, 0);
     }
 
-    /// Writes one of crossterm's commands that changes neither the cursor's place nor the style.
+    /// Writes a crossterm command that changes neither the cursor's position nor the style.
     pub(super) fn command(&mut self, command: impl Command) {
-        // Memory takes everything.
+        // A write to memory cannot fail.
         _ = queue!(self.frame(), command);
     }
 
@@ -167,7 +168,7 @@ impl Pen {
         self.advance(position);
     }
 
-    /// Writes what was drawn, but not written yet.
+    /// Writes the repetitions that are drawn but not written.
     #[cold]
     fn write_repeated(&mut self) {
         let Some(element) = self.last else { return };
@@ -189,7 +190,7 @@ impl Pen {
         }
     }
 
-    /// The frame, begun if it was not, with all that was drawn.
+    /// The frame, with its beginning and all drawn repetitions.
     #[inline]
     fn frame(&mut self) -> &mut Bytes {
         if self.repeated > 0 {
@@ -197,13 +198,13 @@ impl Pen {
         }
         self.last = None;
         if self.frame.is_empty() {
-            // Memory takes everything.
+            // A write to memory cannot fail.
             _ = queue!(self.frame, BeginSynchronizedUpdate);
         }
         &mut self.frame
     }
 
-    /// Draws any text. A control character is written as a space.
+    /// Draws text. A control character is written as a space.
     pub(super) fn draw_text(&mut self, position: Position, text: &str, style: Style) {
         let text = if text.chars().any(char::is_control) { " " } else { text };
         self.move_to(position);
@@ -216,13 +217,13 @@ impl Pen {
         }
     }
 
-    /// The cursor has moved on from there.
+    /// Records that the cursor has moved on from `position` by one column.
     #[inline]
     fn advance(&mut self, position: Position) {
         self.cursor = Some(Position { x: position.x.saturating_add(1), ..position });
     }
 
-    /// Moves a stretch of row `y`. What is to the right of it moves back and forth.
+    /// Moves a stretch of row `y`. The cells to its right move away and back.
     pub(super) fn shift_row(&mut self, shift: &Shift, y: u16) {
         let (start, end) = (shift.columns.start as u16, shift.columns.end as u16);
         let by = shift.by as u16;
@@ -255,7 +256,8 @@ impl Pen {
     }
 }
 
-/// Whether every terminal moves its cursor by one cell for `symbol`. They disagree about the rest.
+/// Whether all terminals advance the cursor by one cell for `symbol`. They differ in the widths of
+/// other characters.
 fn advances_by_one(symbol: &str) -> bool {
     symbol.chars().nth(1).is_none() && symbol.cell_width() == 1
 }

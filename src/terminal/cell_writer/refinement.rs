@@ -1,8 +1,9 @@
-//! Refinement: a picture that does not change becomes exact, in a few frames of about the same size.
+//! Refinement: a picture that does not change becomes exact, in a few frames of similar size.
 //!
-//! So does each row that has not changed for a while, whatever others do: where one cell blinks, or the time is shown,
-//! there is always a change somewhere. The worst cells come first. To allow less and less error until none is allowed was refused: cells
-//! were sent twice, and the last of the frames had most of the bytes.
+//! Each row that has not changed for some frames is refined even while others change, since a
+//! blinking cell or a clock changes in every picture. The worst cells come first. Reducing the
+//! tolerance step by step was refused: cells were sent twice, and the last frame had most of the
+//! bytes.
 
 use super::exact;
 use super::glyph_table::GlyphTable;
@@ -12,17 +13,17 @@ use super::pen::Pen;
 use super::screen::{Row, Screen};
 use super::shift::Shifts;
 
-/// How far a picture has come to rest, and the memory that it takes.
+/// The progress of refinement, and its memory.
 #[derive(Debug)]
 pub(super) struct Refinement {
-    /// In so many frames it is to be exact.
+    /// The number of frames until the picture is exact.
     frames: usize,
-    /// How far off the inexact cells are, and where they are, row by row.
+    /// The errors and positions of the inexact cells, row by row.
     inexact: Vec<Cell>,
     inks: Inks,
 }
 
-/// How far off a cell is.
+/// The error and the position of a cell.
 #[derive(Clone, Copy, Debug)]
 struct Cell {
     error: f32,
@@ -30,11 +31,11 @@ struct Cell {
     column: u16,
 }
 
-/// In so many frames a resting picture becomes exact.
+/// The number of frames in which a still picture becomes exact.
 const FRAMES: usize = 10;
 
-/// A row that has not changed for so many frames rests, while others change: what moves on soon would be
-/// drawn for nothing.
+/// The number of frames without a change after which a row is refined while others change. Cells
+/// that soon move on would be drawn in vain.
 const PATIENCE: usize = 10;
 
 impl Refinement {
@@ -42,12 +43,12 @@ impl Refinement {
         Self { frames: FRAMES, inexact: Vec::new(), inks: Inks::default() }
     }
 
-    /// There is motion: the next picture comes to rest afresh.
+    /// Starts again after a motion.
     pub(super) fn disturb(&mut self) {
         self.frames = FRAMES;
     }
 
-    /// Draws the next of the frames.
+    /// Draws the next refinement frame of the whole screen.
     pub(super) fn draw(&mut self, pen: &mut Pen, shifts: &mut Shifts, screen: &mut Screen) {
         if screen.is_exact() {
             return;
@@ -71,7 +72,7 @@ impl Refinement {
         }
     }
 
-    /// Draws the next of the frames of those rows that rest while others change.
+    /// Draws the next refinement frame of the rows that rest while others change.
     pub(super) fn draw_resting(&mut self, pen: &mut Pen, shifts: &mut Shifts, screen: &mut Screen) {
         if screen.is_exact() {
             return;
@@ -92,7 +93,7 @@ impl Refinement {
         }
     }
 
-    /// Leaves the share of a frame, of so many that are left, in the order of the screen.
+    /// Keeps the worst cells, a share for one of `frames` frames, in the order of the screen.
     fn choose_worst(&mut self, frames: usize) {
         let share = self.inexact.len().div_ceil(frames);
         if share < self.inexact.len() {
@@ -104,7 +105,7 @@ impl Refinement {
     }
 }
 
-/// How far off the cells of a row are that are not exact.
+/// The errors of the inexact cells of a row.
 fn errors<'a>(row: &'a Row, inks: &'a mut Inks) -> impl Iterator<Item = Cell> + 'a {
     let targets = row.shown.iter().zip(row.targets);
     (0..).zip(targets).filter(|(_, (shown, target))| shown != target).map(
@@ -115,7 +116,7 @@ fn errors<'a>(row: &'a Row, inks: &'a mut Inks) -> impl Iterator<Item = Cell> + 
     )
 }
 
-/// The larger distance of the two colours; infinite where it can't be told.
+/// The larger of the two colours' distances; infinite if the cells cannot be compared.
 fn error(shown: PackedCell, wanted: PackedCell, glyph_table: &GlyphTable, inks: &mut Inks) -> f32 {
     let parts = shown.recolorable(glyph_table).zip(wanted.recolorable(glyph_table));
     let Some(((shown_form, shown), (form, wanted))) = parts else { return f32::INFINITY };

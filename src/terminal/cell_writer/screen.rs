@@ -1,4 +1,4 @@
-//! What the terminal shows, and what it is to show.
+//! The model of the screen: the cells that the terminal shows, and their targets.
 
 mod canvas;
 
@@ -12,48 +12,49 @@ use super::packed_cell::PackedCell;
 use super::shift::{Mark, Shift};
 use super::style::{Shade, Style};
 
-/// A terminal's screen: what it shows, and what it is to show, cell by cell.
+/// A model of a terminal's screen: for each cell, its shown appearance and its target.
 ///
-/// It is a canvas: [`CellWriter::draw_frame`](super::CellWriter::draw_frame) lends it, blank.
+/// It is a canvas; [`CellWriter::draw_frame`](super::CellWriter::draw_frame) passes it to its
+/// closure blank.
 #[derive(Debug, Default)]
 pub struct Screen {
     width: usize,
-    /// Whether it is to show nothing but ASCII.
+    /// Whether the targets are restricted to ASCII.
     is_ascii: bool,
     glyph_table: GlyphTable,
     shown: Vec<PackedCell>,
-    /// What it is to look like.
+    /// The appearance that each cell should have.
     targets: Vec<PackedCell>,
-    /// What it was to look like before the frame that is being drawn.
+    /// The targets before the present frame.
     targets_before: Vec<PackedCell>,
-    /// The landmarks of what it was to look like when it was drawn last.
+    /// The landmarks of the targets at the time when each row was last drawn.
     marks: Vec<Mark>,
-    /// The intricate cells that are to be shown: packed cells do not say all of them.
+    /// The intricate targets, which packed cells do not describe in full.
     wanted: Vec<Cell>,
-    /// Whether anything in a row is to be changed.
+    /// Whether a row has changed targets.
     changed: Vec<bool>,
-    /// Whether a row shows, or is to show, anything intricate.
+    /// Whether a row has intricate cells, shown or as targets.
     intricate: Vec<bool>,
-    /// Whether a row shows exactly what it is to show.
+    /// Whether a row shows exactly its targets.
     exact: Vec<bool>,
-    /// For how many frames a row has not changed.
+    /// The number of frames for which a row has not changed.
     rested: Vec<u8>,
-    /// Where widgets are drawn first.
+    /// The buffer into which widgets are drawn first.
     scratch: Buffer,
 }
 
-/// A row of it.
+/// A row of the screen.
 pub(super) struct Row<'a> {
     pub(super) y: u16,
     pub(super) glyph_table: &'a GlyphTable,
     pub(super) shown: &'a mut [PackedCell],
     pub(super) targets: &'a [PackedCell],
-    /// The landmarks of what it was to show in the last frame.
+    /// The landmarks of its targets in the last frame.
     pub(super) marks: &'a mut [Mark],
     pub(super) wanted: &'a [Cell],
     pub(super) intricate: &'a mut bool,
     pub(super) exact: &'a mut bool,
-    /// For how many frames it has not changed.
+    /// The number of frames for which it has not changed.
     pub(super) rested: u8,
 }
 
@@ -67,7 +68,7 @@ impl Screen {
         screen
     }
 
-    /// Takes another size and is to be blank; what it shows is unknown then.
+    /// Changes the size and sets all targets blank. The shown cells are then unknown.
     pub(super) fn resize(&mut self, size: Size) {
         let (width, height) = (usize::from(size.width), usize::from(size.height));
         self.width = width;
@@ -89,20 +90,21 @@ impl Screen {
         self.forget();
     }
 
-    /// It is to show nothing but ASCII from the next frame on, or any character.
+    /// Sets whether targets are restricted to ASCII, from the next frame on.
     pub(super) fn set_ascii(&mut self, is_ascii: bool) {
         self.is_ascii = is_ascii;
         self.forget();
         self.changed.fill(true);
     }
 
-    /// Nothing is known of what it shows.
+    /// Forgets the shown cells.
     pub(super) fn forget(&mut self) {
         self.shown.fill(PackedCell::UNKNOWN);
         self.exact.fill(false);
     }
 
-    /// A part of it, row by row, has been erased with the cursor at `cursor`, and is to stay so.
+    /// Records that the terminal has erased `region`, row by row, with the cursor at `cursor`. Its
+    /// targets become blank.
     pub(super) fn clear(&mut self, region: ClearType, cursor: Position) {
         let row = usize::from(cursor.y) * self.width;
         let at = row + usize::from(cursor.x);
@@ -119,7 +121,7 @@ impl Screen {
         self.targets[cells].fill(PackedCell::BLANK);
     }
 
-    /// It is to show `cell` there; what is off the screen is nowhere.
+    /// Sets the target of a cell; does nothing off the screen.
     #[inline]
     pub(super) fn want(&mut self, x: u16, y: u16, cell: &Cell) {
         let (x, y) = (usize::from(x), usize::from(y));
@@ -153,13 +155,13 @@ impl Screen {
         }
     }
 
-    /// A whole frame is drawn, on blank ground.
+    /// Begins a whole frame, with blank targets.
     pub(super) fn begin_frame(&mut self) {
         std::mem::swap(&mut self.targets, &mut self.targets_before);
         self.targets.fill(PackedCell::BLANK);
     }
 
-    /// The frame is whole: what is not as it was before has changed.
+    /// Ends a whole frame: rows whose targets differ from those before it have changed.
     pub(super) fn end_frame(&mut self) {
         let width = self.width.max(1);
         let rows = self.targets.chunks(width).zip(self.targets_before.chunks(width));
@@ -168,17 +170,17 @@ impl Screen {
         }
     }
 
-    /// Whether anything was wanted since the rows were drawn.
+    /// Whether any target has changed since the rows were drawn.
     pub(super) fn is_changed(&self) -> bool {
         self.changed.contains(&true)
     }
 
-    /// Whether every row shows exactly what it is to show.
+    /// Whether every row shows exactly its targets.
     pub(super) fn is_exact(&self) -> bool {
         !self.exact.contains(&false)
     }
 
-    /// The two colours that are shown there; `None` where they are unknown, and off the screen.
+    /// The two colours of a shown cell; `None` if they are unknown, and off the screen.
     pub(super) fn shown_colors(&self, x: u16, y: u16) -> Option<[Shade; 2]> {
         let (x, y) = (usize::from(x), usize::from(y));
         let place = (x < self.width).then_some(y * self.width + x)?;
@@ -186,31 +188,31 @@ impl Screen {
         Some(colors)
     }
 
-    /// What each row shows, and what it is to show.
+    /// The shown cells and the targets of each row.
     pub(super) fn rows(&self) -> impl Iterator<Item = (&[PackedCell], &[PackedCell])> {
         let width = self.width.max(1);
         self.shown.chunks(width).zip(self.targets.chunks(width))
     }
 
-    /// How the cells are drawn whose packed cells do not say it.
+    /// The styles of the intricate targets.
     pub(super) fn intricate_styles(&self) -> impl Iterator<Item = Style> {
         let rows = self.wanted.chunks(self.width.max(1)).zip(&self.intricate);
         rows.filter(|(_, intricate)| **intricate).flat_map(|(cells, _)| cells.iter().map(Style::of))
     }
 
-    /// The rows that have changed, from the top; they count as changed no longer.
+    /// Returns the changed rows, from the top, and marks them as unchanged.
     pub(super) fn changed_rows(&mut self) -> impl Iterator<Item = Row<'_>> {
         self.rows_where(|_, changed| std::mem::take(changed))
     }
 
-    /// Counts a frame in which rows rest that do not change.
+    /// Counts a frame for the rows that have not changed.
     pub(super) fn count_rest(&mut self) {
         for (rested, &changed) in self.rested.iter_mut().zip(&self.changed) {
             *rested = if changed { 0 } else { rested.saturating_add(1) };
         }
     }
 
-    /// The rows that do not show exactly what they are to show.
+    /// The rows that do not show exactly their targets.
     pub(super) fn inexact_rows(&mut self) -> impl Iterator<Item = Row<'_>> {
         self.rows_where(|is_exact, _| !is_exact)
     }
@@ -236,12 +238,12 @@ impl Screen {
 }
 
 impl Row<'_> {
-    /// How many cells it has.
+    /// The number of its cells.
     pub(super) fn width(&self) -> usize {
         self.targets.len()
     }
 
-    /// Whether no cell differs from what it is to show in more than its colours.
+    /// Whether every cell differs from its target in its colours at most.
     pub(super) fn is_near(&self) -> bool {
         let form = |target: PackedCell| target.recolorable(self.glyph_table).map(|(form, _)| form);
         let mut targets = self.shown.iter().zip(self.targets);
@@ -250,7 +252,7 @@ impl Row<'_> {
         })
     }
 
-    /// The terminal has moved a part of it.
+    /// Records that the terminal has moved a part of the row.
     pub(super) fn shift(&mut self, shift: &Shift) {
         shift.apply(self.shown, PackedCell::UNKNOWN);
     }

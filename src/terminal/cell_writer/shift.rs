@@ -1,9 +1,8 @@
-//! Row shifts: what moved sideways is moved by the terminal, not sent again.
+//! Row shifts: the terminal moves cells that moved sideways, so that they are not sent again.
 //!
-//! A picture that turns is much the same picture a few columns further on. Deleting and inserting
-//! characters (DCH and ICH) move a stretch of a row for some twenty bytes, where every cell of it may
-//! take as many. Scrolling whole regions sideways was refused: few terminals have margins on the left
-//! and right.
+//! In a picture that turns, most cells move by a few columns. Deleting and inserting characters
+//! (DCH and ICH) moves a stretch of a row for about twenty bytes, which a single cell may take too.
+//! Scrolling whole regions sideways was refused: few terminals have left and right margins.
 
 mod landmarks;
 mod stretch;
@@ -15,18 +14,18 @@ pub(super) use self::landmarks::Mark;
 use self::stretch::best_stretch;
 use super::screen::Row;
 
-/// A stretch of a row whose cells move by some columns.
+/// A stretch of a row that moves by some columns.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub(super) struct Shift {
-    /// The stretch. What moves out of it is lost, and what moves into it is unknown.
+    /// The stretch. Cells that move out of it are lost, and cells that become free are unknown.
     pub(super) columns: Range<usize>,
-    /// How far it moves.
+    /// The distance, in columns.
     pub(super) by: usize,
-    /// Which way.
+    /// The direction.
     pub(super) way: Way,
 }
 
-/// Which way, and how far.
+/// A direction and a distance.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 struct Move {
     way: Way,
@@ -34,7 +33,7 @@ struct Move {
 }
 
 impl Move {
-    /// The first cell that can move, and where it moves to.
+    /// The first cell that can move, and its destination.
     fn places(self) -> (usize, usize) {
         match self.way {
             Way::Left => (self.by, 0),
@@ -49,37 +48,37 @@ pub(super) enum Way {
     Right,
 }
 
-/// How bad it is that a cell shows what it does: about how many bytes it would take to draw it anew, in parts
-/// of [`BYTE`].
+/// The approximate cost of sending a cell that shows the wrong content, in units of 1 / [`BYTE`]
+/// bytes.
 pub(super) type Loss = i16;
 
 /// The loss of one byte.
 pub(super) const BYTE: Loss = 16;
-/// The loss of a cell that is not as it should be at all.
+/// The loss of a completely wrong cell.
 pub(super) const CELL: Loss = 12 * BYTE;
-/// About how many bytes a shift takes: two motions, a deletion and an insertion.
+/// The approximate cost of a shift: two motions, a deletion and an insertion.
 const SHIFT: i32 = 20 * BYTE as i32;
 
-/// Finds the shifts of a row, one after another, and has the memory that it takes.
+/// Finds the shifts of a row, one after another; keeps its memory between rows.
 #[derive(Debug, Default)]
 pub(super) struct Shifts {
     landmarks: Landmarks,
-    /// What is lost now, and what would be lost after a move, and after the best of them.
+    /// The present losses, the losses after a move, and the losses after the best move.
     losses: Vec<Loss>,
     moved: Vec<Loss>,
     moved_best: Vec<Loss>,
 }
 
 impl Shifts {
-    /// Begins with a row. `lose` adds what is lost where the cells that are now at the first place and
-    /// after it are shown at the second and after it.
+    /// Begins a row. `lose` adds the losses of showing the cells that are now at the first column
+    /// and after it, at the second column and after it.
     pub(super) fn begin(&mut self, row: &Row, mut lose: impl FnMut(usize, usize, &mut Vec<Loss>)) {
         self.landmarks.find(row.targets, row.marks);
         self.losses.clear();
         lose(0, 0, &mut self.losses);
     }
 
-    /// The shift after which least is lost, if it spares more than it takes.
+    /// The shift with the smallest loss after it, if it saves more than its cost.
     pub(super) fn next(
         &mut self,
         mut lose: impl FnMut(usize, usize, &mut Vec<Loss>),
@@ -103,7 +102,7 @@ impl Shifts {
         Some(shift)
     }
 
-    /// The row has been moved.
+    /// Updates the losses and landmarks after a shift.
     fn take(&mut self, shift: &Shift) {
         self.landmarks.shift(shift);
         let moved = shift.columns.start..shift.columns.end - shift.by;
@@ -111,32 +110,32 @@ impl Shifts {
         self.losses[shift.uncovered()].fill(CELL);
     }
 
-    /// What is lost in each cell of the row.
+    /// The loss of each cell of the row.
     pub(super) fn losses(&self) -> &[Loss] {
         &self.losses
     }
 
-    /// Is done with the row: what it is to show now is what was wanted before the next frame.
+    /// Ends the row: its present targets are the previous ones of the next frame.
     pub(super) fn end(&self, row: &mut Row) {
         row.marks.copy_from_slice(self.landmarks.marks());
     }
 }
 
 impl Shift {
-    /// The best shift by that move, and what it spares, where that much is lost now, and that much
-    /// after all that can move has moved.
+    /// The best shift by a move, and its saving, from the losses `now` and the losses if all cells
+    /// had `moved`.
     fn best(by: Move, now: &[Loss], moved: &[Loss]) -> (Self, i32) {
         let (_, first) = by.places();
         let stretch = best_stretch(&now[first..], moved);
         let spared = sum(&now[first..][stretch.clone()]) - sum(&moved[stretch.clone()]);
         let Move { way, by } = by;
         let shift = Self { columns: stretch.start..stretch.end + by, by, way };
-        // What is uncovered must be sent, even where it was right before.
+        // Uncovered cells must be sent, even if they were right before.
         let lost = shift.by as i32 * i32::from(CELL) - sum(&now[shift.uncovered()]);
         (shift, spared - lost)
     }
 
-    /// The cells of which nobody knows what they show when it has been made.
+    /// The cells whose content is unknown after the shift.
     fn uncovered(&self) -> Range<usize> {
         let Range { start, end } = self.columns;
         match self.way {
@@ -145,7 +144,7 @@ impl Shift {
         }
     }
 
-    /// The cells that show what others showed before.
+    /// The cells that show the content of other cells after the shift.
     fn covered(&self) -> Range<usize> {
         let Range { start, end } = self.columns;
         match self.way {
@@ -154,7 +153,7 @@ impl Shift {
         }
     }
 
-    /// Does to `row` what the terminal does; what is uncovered becomes `unknown`.
+    /// Moves the values in `row` as the terminal moves its cells; uncovered ones become `unknown`.
     pub(super) fn apply<T: Clone>(&self, row: &mut [T], unknown: T) {
         let stretch = &mut row[self.columns.clone()];
         match self.way {
@@ -165,7 +164,7 @@ impl Shift {
     }
 }
 
-/// What is lost in all of those cells.
+/// The sum of these losses.
 fn sum(losses: &[Loss]) -> i32 {
     losses.iter().map(|&loss| i32::from(loss)).sum()
 }
@@ -207,14 +206,14 @@ mod tests {
 
     fn row(text: &str) -> Vec<PackedCell> {
         let mut glyph_table = GlyphTable::default();
-        // In any text, the same letters have the same ids then.
+        // Letters then have the same ids in all texts.
         (' '..='~').for_each(|letter| _ = glyph_table.id(Glyph::new(letter, Modifier::empty())));
         let target = |letter| PackedCell::of_character(letter, [Color::Reset; 2], &mut glyph_table);
         text.chars().map(target).collect()
     }
 
     #[test]
-    fn a_row_that_moved_is_found_out() {
+    fn a_moved_row_is_detected() {
         let shown = row("abcdefghijklmnop");
         let shift = best(&shown, &row("defghijklmnopqrs")).unwrap();
         assert_eq!(shift, Shift { columns: 0..16, by: 3, way: Way::Left });
@@ -223,7 +222,7 @@ mod tests {
     }
 
     #[test]
-    fn what_stands_still_beside_it_is_left_alone() {
+    fn cells_that_stand_still_are_not_moved() {
         let shift = best(&row("abcdefghij|MAP|"), &row("bcdefghijk|MAP|")).unwrap();
         assert_eq!(shift, Shift { columns: 0..10, by: 1, way: Way::Left });
     }
@@ -239,7 +238,7 @@ mod tests {
     }
 
     #[test]
-    fn a_shift_uncovers_what_nobody_knows() {
+    fn a_shift_uncovers_unknown_cells() {
         let mut shown = row("abcdef");
         Shift { columns: 1..5, by: 2, way: Way::Left }.apply(&mut shown, PackedCell::UNKNOWN);
         assert_eq!(shown[..3], row("ade"));

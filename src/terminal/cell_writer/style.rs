@@ -1,4 +1,4 @@
-//! Colours and modifiers, as Select Graphic Rendition (SGR) takes them.
+//! Colours and modifiers, as parameters of Select Graphic Rendition (SGR).
 
 use std::fmt;
 
@@ -13,7 +13,7 @@ use super::control::{self, ControlSequence};
 use super::ink::Notation;
 use crate::color::Rgb;
 
-/// How a character is drawn.
+/// The colours and modifiers of a character.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub(crate) struct Style {
     pub(super) foreground: Shade,
@@ -21,12 +21,12 @@ pub(crate) struct Style {
     pub(super) modifier: Modifier,
 }
 
-/// A colour in the one way that SGR writes it, of ratatui's several; of few bits, as most of what is
-/// done with colours is to compare them.
+/// A colour in the form that SGR writes, of which ratatui has several names. It has few bits, since
+/// most operations on colours are comparisons.
 #[derive(Clone, Copy, PartialEq, Eq)]
 pub(super) struct Shade(u32);
 
-/// What a [`Shade`] is.
+/// The kind of a [`Shade`].
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub(super) enum Kind {
     Default,
@@ -34,21 +34,21 @@ pub(super) enum Kind {
     Rgb([u8; 3]),
 }
 
-/// Which of the two colours of a cell.
+/// One of the two colours of a cell.
 #[derive(Clone, Copy)]
 enum Ground {
     Fore,
     Back,
 }
 
-/// A modifier, and the parameters that turn it on and off.
+/// A modifier, and the parameters to turn it on and off.
 struct Switch {
     modifier: Modifier,
     on: u8,
     off: u8,
 }
 
-/// Bold and dim are turned off together.
+/// Bold and dim share the parameter that turns them off.
 const SWITCHES: [Switch; 5] = [
     Switch { modifier: Modifier::BOLD, on: 1, off: 22 },
     Switch { modifier: Modifier::DIM, on: 2, off: 22 },
@@ -63,14 +63,14 @@ const SUPPORTED: Modifier =
     INTENSITIES.union(Modifier::ITALIC).union(Modifier::UNDERLINED).union(Modifier::REVERSED);
 
 impl Style {
-    /// The terminal's own colours, and no modifiers.
+    /// The terminal's default colours, without modifiers.
     pub(crate) const RESET: Self = Self {
         foreground: Shade::DEFAULT,
         background: Shade::DEFAULT,
         modifier: Modifier::empty(),
     };
 
-    /// How `cell` is drawn.
+    /// The style of `cell`.
     #[inline]
     pub(crate) fn of(cell: &Cell) -> Self {
         Self {
@@ -80,12 +80,12 @@ impl Style {
         }
     }
 
-    /// Those two colours, and no modifiers.
+    /// These two colours, without modifiers.
     pub(super) fn plain(foreground: Shade, background: Shade) -> Self {
         Self { foreground, background, modifier: Modifier::empty() }
     }
 
-    /// The same, as ratatui names the colours of a text and of its ground.
+    /// These two colours, as ratatui names them, without modifiers.
     pub(super) fn in_colors(colors: [Color; 2]) -> Self {
         let [foreground, background] = colors.map(Shade::of);
         Self::plain(foreground, background)
@@ -95,12 +95,12 @@ impl Style {
         self.modifier.is_empty()
     }
 
-    /// The text's colour and the ground's, where there are no modifiers.
+    /// The text and background colours; `None` with modifiers.
     pub(super) fn plain_colors(self) -> Option<[Shade; 2]> {
         self.has_no_modifiers().then_some([self.foreground, self.background])
     }
 
-    /// Writes what turns `current`, or an unknown style, into this one.
+    /// Writes the change from `current`, or from an unknown style, to this style.
     #[cfg(feature = "cli")]
     pub(crate) fn write_from(self, current: Option<Self>, bytes: &mut Bytes) {
         let mut piece = bytes.piece();
@@ -108,7 +108,8 @@ impl Style {
         piece.finish();
     }
 
-    /// Adds what turns `current`, or an unknown style, into this one, where colours are told as `told` says.
+    /// Adds the change from `current`, or from an unknown style, to this style; `told` maps colours
+    /// to the ones to send.
     #[expect(clippy::inline_always, reason = "calls would take longer than what they do")]
     #[inline(always)]
     pub(super) fn push_from(
@@ -154,11 +155,11 @@ impl Style {
 }
 
 impl Shade {
-    /// The terminal's own colour.
+    /// The terminal's default colour.
     pub(super) const DEFAULT: Self = Self(0);
-    /// No colour is like this.
+    /// A value that no colour has.
     pub(super) const NONE: Self = Self(u32::MAX);
-    /// So many bits tell one from all others.
+    /// The number of bits of a colour.
     pub(super) const BITS: u32 = 26;
     const INDEXED: u32 = 1 << 24;
     const RGB: u32 = 2 << 24;
@@ -173,7 +174,7 @@ impl Shade {
 
     #[inline]
     pub(super) fn of(color: Color) -> Self {
-        // Most are: to ask for that first is foreseen better than where a table of all kinds leads.
+        // Most colours are RGB: this branch is more predictable than a jump table of all kinds.
         if let Color::Rgb(red, green, blue) = color {
             Self::rgb([red, green, blue])
         } else {
@@ -211,13 +212,13 @@ impl Shade {
         Self(Self::RGB | pixel.to_bits())
     }
 
-    /// A number of its own, of as many bits.
+    /// A number of [`Shade::BITS`] bits, unique to the colour.
     #[inline]
     pub(super) const fn in_bits(self) -> u32 {
         self.0
     }
 
-    /// The colour that has that number; what is above it in `bits` does not matter.
+    /// The colour of the number in the lower bits of `bits`; the upper bits are ignored.
     #[inline]
     pub(super) const fn from_bits(bits: u32) -> Self {
         Self(bits & ((1 << Self::BITS) - 1))
@@ -233,7 +234,7 @@ impl Shade {
         }
     }
 
-    /// The same colour, as ratatui names it.
+    /// The colour as ratatui names it.
     pub(super) fn color(self) -> Color {
         match self.kind() {
             Kind::Default => Color::Reset,
@@ -242,9 +243,9 @@ impl Shade {
         }
     }
 
-    /// How the longest of several colours is written, whose bits are united.
+    /// The notation of the longest of several colours, from the union of their bits.
     pub(super) fn longest_of(bits: u32) -> Notation {
-        /// What no index of a named colour has.
+        /// Bits that no index of a named colour has.
         const ABOVE_NAMED: u32 = 0xF0;
         if bits & Self::RGB != 0 {
             Notation::Rgb
@@ -255,7 +256,7 @@ impl Shade {
         }
     }
 
-    /// About how many bytes it takes as parameters.
+    /// The approximate number of bytes of its parameters.
     #[inline]
     pub(super) fn bytes(self) -> usize {
         match self.kind() {

@@ -22,7 +22,7 @@ fn a_block_that_spares_a_colour_is_taken() {
 
 proptest! {
     #[test]
-    fn pixels_look_the_same_whatever_their_glyphs(cells in any_pixels(24)) {
+    fn pixels_look_the_same_with_any_glyphs(cells in any_pixels(24)) {
         let size = Size::new(6, 4);
         let (mut terminal, screen) = terminal(size);
         let content = Buffer { area: Rect::from(size), content: cells };
@@ -30,9 +30,9 @@ proptest! {
         assert_shown(&screen, &content);
     }
 
-    /// A picture that turns: stretches of rows move by a few columns from frame to frame.
+    /// A picture that turns: stretches of rows move by some columns from frame to frame.
     #[test]
-    fn what_moves_sideways_looks_as_it_should(
+    fn cells_that_move_sideways_are_right(
         cells in any_pixels(160),
         moves in prop::collection::vec((0..4_usize, 0..40_usize, 0..40_usize, 0..9_usize), 1..8),
     ) {
@@ -51,7 +51,7 @@ proptest! {
     }
 
     #[test]
-    fn a_terminal_shows_what_was_drawn_after_any_history(
+    fn a_terminal_shows_the_drawn_cells_after_any_history(
         (size, history) in any_size()
             .prop_flat_map(|size| (Just(size), prop::collection::vec(any_buffer(size), 1..6)))
     ) {
@@ -76,7 +76,7 @@ proptest! {
     }
 
     #[test]
-    fn a_resized_window_is_drawn_afresh(
+    fn a_resized_window_is_redrawn(
         before in any_size().prop_flat_map(any_buffer),
         after in any_size().prop_flat_map(any_buffer),
     ) {
@@ -116,7 +116,7 @@ proptest! {
 }
 
 #[test]
-fn only_what_differs_from_the_cell_before_is_sent() {
+fn only_differences_from_the_cell_before_are_sent() {
     let (red, blue) = (Color::Rgb(200, 0, 0), Color::Rgb(0, 0, 200));
     let row = [
         colored("o", red, blue),
@@ -185,9 +185,9 @@ fn the_cursor_is_shown_where_a_frame_puts_it_and_hidden_again() {
     assert!(hidden(&screen));
 }
 
-/// A glyph that finds no place in the table is shown all the same, whichever way it is drawn.
+/// A glyph without an id is shown nevertheless, however it is drawn.
 #[test]
-fn more_letters_than_have_numbers_are_shown() {
+fn glyphs_without_ids_are_shown() {
     let intensities = [Modifier::empty(), Modifier::BOLD, Modifier::DIM];
     let others = [Modifier::empty(), Modifier::ITALIC, Modifier::UNDERLINED, Modifier::REVERSED];
     let modifiers = intensities.map(|one| others.map(|other| one | other));
@@ -220,13 +220,13 @@ fn more_letters_than_have_numbers_are_shown() {
 }
 
 #[test]
-fn a_window_of_no_size_is_drawn_without_complaint() {
+fn a_window_of_no_size_is_drawn_without_an_error() {
     let screen = Screen::new(Size::new(1, 1));
     let mut terminal = Terminal::new(CellWriter::new(screen, Size::ZERO)).unwrap();
     terminal.draw(|_| ()).unwrap();
 }
 
-/// One cell that blinks does not keep all others from becoming exact.
+/// A blinking cell does not keep the others from becoming exact.
 #[test]
 fn rows_that_rest_become_exact_while_another_changes() {
     let size = Size::new(40, 6);

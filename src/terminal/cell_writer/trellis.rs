@@ -1,18 +1,20 @@
-//! What to send of a row that may be shown inexactly.
+//! The search for the cheapest way to show a row inexactly.
 //!
-//! Each cell is left as it is, or drawn by one of several glyphs, in the colours that the terminal draws in already
-//! or in new ones. What is best for a cell depends on the colours that the cells before it have left behind, so a
-//! row is searched as video encoders search theirs: through a trellis, cell by cell, with the few cheapest paths
-//! kept (Viterbi's algorithm, IEEE Transactions on Information Theory 13, 1967, over a beam). The cost of a path is
-//! its bytes, and what its errors are worth in bytes; no colour is farther off than the fidelity allows. A character
-//! is searched as a half block that has but one glyph: its own.
+//! Each cell is kept, or drawn with one of several glyphs in the terminal's present colours or in
+//! new ones. The best choice for a cell depends on the colours that the cells before it have set.
+//! So a row is searched as video encoders do it: through a trellis, cell by cell, keeping the few
+//! cheapest paths (Viterbi's algorithm, IEEE Transactions on Information Theory 13, 1967, over a
+//! beam). The cost of a path is its bytes plus the price of its errors in bytes; no colour is
+//! farther off than the fidelity allows. A character is searched as a half block with only one
+//! glyph, its own.
 //!
-//! Each field of the paths is an array, so that all paths are computed at once. Costs are relative: what all
-//! paths pay alike is not added. A cell that no cursor stands at is passed over where it costs less to leave than a
-//! motion of the cursor: to search these cells, too, took a fifth more instructions for the same bytes and error.
+//! Each field of the paths is an array, so that all paths are computed at once. Costs are relative:
+//! they omit costs that all paths share. A cell without a cursor is skipped if keeping it costs
+//! less than a motion of the cursor; to search these cells, too, took a fifth more instructions for
+//! the same bytes and error.
 //!
-//! To take cells in turn, leave what is within a threshold, and draw the rest in the colours at hand
-//! where these are within it, was refused: it took 1.7 times the bytes at the same mean error at
+//! A greedy pass was refused. It keeps each cell within a threshold and draws the others in the
+//! present colours if these are within it; it took 1.7 times the bytes at the same mean error at
 //! high fidelity, and 2.3 times at low.
 
 mod branches;
@@ -27,57 +29,57 @@ use super::packed_cell::BlockElement;
 use super::palette::Palette;
 use super::style::{Shade, Style};
 
-/// A cell that is to be shown, or about: the colours of its halves, or of its character and the ground.
+/// The target of a cell: the colours of its halves, or of its character and its background.
 #[derive(Clone, Copy, Debug)]
 pub(super) struct Wanted {
     pub(super) inks: [Ink; 2],
-    /// How many bytes its only glyph takes; `None` where it is any of the blocks.
+    /// The bytes of its only glyph; `None` if any block element will do.
     pub(super) character: Option<u8>,
 }
 
-/// What to do about a cell that is not left as it is.
+/// The action on a cell that is not kept.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub(super) enum Action {
     /// Draw it exactly.
     DrawExactly,
-    /// Draw it so; a character by its own glyph.
+    /// Draw it as this block element, or a character by its own glyph, in this style.
     Draw(BlockElement, Style),
 }
 
-/// How many paths are kept at each cell. With twice as many, the same error takes a twentieth fewer
-/// bytes, and twice the time.
+/// The number of paths kept at each cell. With twice as many, the same error takes a twentieth
+/// fewer bytes, and twice the time.
 const KEPT: usize = 4;
 
-/// Where colours are looked up.
+/// The tables in which colours are looked up.
 pub(super) struct Store<'a> {
     pub(super) inks: &'a mut Inks,
     pub(super) palette: &'a mut Palette,
 }
 
-/// What holds for a whole row.
+/// The parameters that apply to a whole row.
 #[derive(Clone, Copy)]
 pub(super) struct Terms {
     pub(super) price: Price,
-    /// What the terminal draws in before the row.
+    /// The terminal's style before the row.
     pub(super) style: Option<Style>,
-    /// Whether it repeats characters.
+    /// Whether the terminal repeats characters.
     pub(super) repeats: bool,
 }
 
-/// A search, and its memory.
+/// A search and its memory.
 #[derive(Debug, Default)]
 pub(super) struct Trellis {
-    /// The cells that not all paths leave alone.
+    /// The cells that at least one path draws.
     steps: Vec<Step>,
     actions: Vec<(u16, Action)>,
 }
 
-/// What the paths do about a cell.
+/// The turns of the paths at one cell.
 #[derive(Clone, Copy, Debug)]
 struct Step {
     column: u16,
     turns: [Turn; KEPT],
-    /// Where they leave the terminal.
+    /// The state of the terminal after each.
     keys: [u64; KEPT],
 }
 
@@ -88,33 +90,34 @@ enum StepKind {
     Draw(BlockElement),
 }
 
-/// The cheapest paths past a cell, in no order; those that there are not cost infinitely much.
+/// The cheapest paths past a cell, in no order; absent paths have infinite cost.
 #[derive(Clone, Copy, Debug)]
 struct Paths {
-    /// In bytes, beside what all of them cost.
+    /// In bytes, without the costs that all paths share.
     cost: Lanes,
-    /// What the terminal draws text in, and the ground, and where its cursor stands.
+    /// The terminal's text and background colours and its cursor column.
     keys: [u64; KEPT],
-    /// L*, a* and b* of the colours of text and ground; far from everything where they are unknown.
+    /// L*, a* and b* of the text and background colours; far from all others if they are unknown.
     labs: [Labs; 2],
-    /// Where the cursor stands; [`NOWHERE`] if nobody knows.
+    /// The column of the cursor; [`NOWHERE`] if it is unknown.
     cursor: Lanes,
-    /// What was drawn last.
+    /// The block element drawn last.
     last: [Option<BlockElement>; KEPT],
 }
 
-/// Where the cursor is taken to stand of which nobody knows it: far to the left.
+/// The assumed column of a cursor with unknown position, far to the left.
 const NOWHERE: f32 = -1e6;
 
-/// A colour that nobody knows: no other is near.
+/// An unknown colour, which is far from all others.
 const UNKNOWN: Ink = Ink { lab: [1e9; 3], shade: Shade::DEFAULT };
 
-/// A cell that costs less to leave, in bytes, is drawn only where a cursor stands at it.
+/// A cell that costs less than this to keep, in bytes, is drawn only if a cursor is at it.
 const NEGLIGIBLE: f32 = 4.0;
 
 impl Trellis {
-    /// What is best done about the cells of a row, where to leave them as they are costs `keep` each; those that
-    /// are left are left out. `wanted` tells what a cell is to be, or that it may only be drawn exactly.
+    /// Returns the best actions on the cells of a row, without the cells to keep. `keep` is the
+    /// cost of keeping each cell. `wanted` returns the target of a cell, or `None` if it may only
+    /// be drawn exactly.
     pub(super) fn search(
         &mut self,
         keep: &[[f32; 2]],
@@ -125,7 +128,7 @@ impl Trellis {
         self.steps.clear();
         let mut paths = Paths::from_start(terms.style, store.inks);
         let mut survivors = Survivors::of(&paths);
-        // Whether a path has drawn the cell before, so that its cursor stands at this one.
+        // Whether a path has drawn the cell before, so that its cursor is at this cell.
         let mut is_drawn = false;
         for (x, [one, other]) in keep.iter().enumerate() {
             let keep = one + other;
@@ -152,7 +155,7 @@ impl Trellis {
         self.trace_back(paths.cheapest())
     }
 
-    /// What that path has done.
+    /// Returns the actions of `path`.
     fn trace_back(&mut self, path: usize) -> &[(u16, Action)] {
         self.actions.clear();
         let mut at = path;
@@ -174,7 +177,7 @@ impl Trellis {
 }
 
 impl Paths {
-    /// The one path to the start of a row.
+    /// The only path at the start of a row.
     fn from_start(style: Option<Style>, inks: &mut Inks) -> Self {
         let told = style.and_then(Style::plain_colors).map(|colors| inks.of_both(colors));
         Self::one(0.0, told.unwrap_or([UNKNOWN; 2]), None)
@@ -196,7 +199,7 @@ impl Paths {
         (1..KEPT).fold(0, |best, path| if self.cost[path] < self.cost[best] { path } else { best })
     }
 
-    /// Past a cell that is drawn in colours that matter to no other.
+    /// Continues past a cell that is drawn exactly, in colours that no other cell depends on.
     fn past_fixed(&mut self, x: u16) -> Step {
         let before = self.cheapest();
         *self = Self::one(self.cost[before], [UNKNOWN; 2], Some(x + 1));
@@ -204,14 +207,14 @@ impl Paths {
         Step { column: x, turns: [turn; KEPT], keys: self.keys }
     }
 
-    /// Goes on by the survivors past the cell in column `x`.
+    /// Continues with the survivors past the cell in column `x`.
     fn go_on(&mut self, survivors: &Survivors, x: u16) {
         let before = self.labs;
         self.cost = survivors.cost;
         self.keys = survivors.keys;
         let next = f32::from(x + 1);
         for (path, turn) in survivors.turns.iter().enumerate() {
-            // Those that leave the cell stay in their places.
+            // A path that keeps the cell stays in its place.
             let StepKind::Draw(element) = turn.kind else { continue };
             for (which, &source) in turn.sources.iter().enumerate() {
                 let source = usize::from(source) % (2 * KEPT);
@@ -228,6 +231,6 @@ impl Paths {
     }
 }
 
-/// Room for the colours of a cell that the terminal does not draw in already: that of its upper half, of its lower half,
-/// and one for both. As many as paths, so that the number of a path or of a colour needs no check.
+/// The number of places for new colours of a cell: of its upper half, of its lower half, and one
+/// for both. It is the number of paths, so that the index of a path or a colour needs no check.
 const FRESH: usize = KEPT;

@@ -1,27 +1,28 @@
-//! The fidelity at which the frames of motion fit a rate.
+//! The fidelity at which frames of motion fit a rate.
 
 use super::super::Fidelity;
 
-/// How many bytes an exact frame of motion would take, estimated from those that were sent.
+/// The bytes that an exact frame of motion would take, estimated from the sent frames.
 ///
-/// The fidelity follows from this and the rate alone. Raising and lowering it step by step was refused: it is then
-/// late where motion begins, which is when lag is felt.
+/// The fidelity follows from this estimate and the rate alone. Raising and lowering it step by step
+/// was refused: it is then late at the beginning of motion, when lag is most noticeable.
 #[derive(Debug, Default)]
 pub(super) struct Demand {
     exact_bytes: f64,
 }
 
-/// How many frames a second the rate should suffice for.
+/// The number of frames a second for which the rate should suffice.
 const FRAMES_PER_SECOND: f64 = 18.0;
-/// An exact frame takes 1 + 0.32 t times the bytes of one at tolerance t: 3.6 times at 8, and 8.7 times at 24.
+/// An exact frame takes 1 + 0.32 t times the bytes of one at tolerance t: 3.6 times at 8, and 8.7
+/// times at 24.
 const SAVING: f64 = 0.32;
-/// How much of a high estimate is kept after one more frame.
+/// The share of a high estimate that is left after one more frame.
 const DECAY: f64 = 0.99;
-/// From here on, fewer frames are better than coarser ones.
+/// The coarsest fidelity: beyond it, fewer frames are better than coarser ones.
 pub(super) const MIN_FIDELITY: Fidelity = Fidelity::new(48);
 
 impl Demand {
-    /// Takes a frame of motion into account.
+    /// Updates the estimate with a frame of motion.
     pub(super) fn sent_motion(&mut self, bytes: usize, fidelity: Fidelity) {
         let saving = 1.0 + f64::from(fidelity.tolerance()) * SAVING;
         self.exact_bytes = (self.exact_bytes * DECAY).max(bytes as f64 * saving);

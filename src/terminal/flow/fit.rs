@@ -1,15 +1,18 @@
-//! How long a link takes for a frame, as a function of its bytes: a line through recent frames.
+//! The time that a link takes for a frame, as a function of its bytes: a line through recent
+//! frames.
 //!
-//! A frame of b bytes takes c + b / rate. Weighted least squares finds both coefficients, with weights that fall
-//! exponentially with age (Haykin, *Adaptive Filter Theory*, "recursive least squares"). Google's congestion
-//! control estimates the same pair with a Kalman filter over differences (draft-alvestrand-rmcat-congestion,
-//! "arrival-time filter"). Bytes over time as the rate was refused: jitter then counts as slowness, so frames
-//! are made smaller, so jitter counts more, and so on to the smallest frames.
+//! A frame of b bytes takes c + b / rate. Weighted least squares finds both coefficients, with
+//! weights that fall exponentially with age (Haykin, *Adaptive Filter Theory*, "recursive least
+//! squares"). Google's congestion control estimates the same pair with a Kalman filter over
+//! differences (draft-alvestrand-rmcat-congestion, "arrival-time filter"). The quotient of bytes
+//! and time as the rate was refused: jitter then lowers the rate, so that frames become smaller and
+//! jitter lowers it more, until frames are as small as possible.
 //!
-//! Frames of one size do not determine c. A point at no bytes and no time represents the expectation that there is
-//! no jitter; its weight is small, and frames of different sizes outweigh it.
+//! Frames of one size do not determine c. A point at 0 bytes and 0 seconds represents the
+//! expectation that there is no jitter; its weight is small, and frames of different sizes outweigh
+//! it.
 
-/// Sums over frames, of bytes and seconds.
+/// Sums over frames, in bytes and seconds.
 #[derive(Clone, Copy, Debug, Default)]
 pub(super) struct Fit {
     weight: f64,
@@ -23,10 +26,10 @@ pub(super) struct Fit {
 /// The line, in seconds and seconds a byte.
 #[derive(Clone, Copy, Debug)]
 pub(super) struct Line {
-    /// The time of a frame of no bytes.
+    /// The time of a frame of 0 bytes.
     pub(super) constant: f64,
     pub(super) per_byte: f64,
-    /// The slope of the line through the origin: the largest one possible.
+    /// The slope of the line through the origin, which is the largest possible slope.
     pub(super) through_origin: f64,
     /// The standard deviation of frames from the line.
     pub(super) deviation: f64,
@@ -34,11 +37,11 @@ pub(super) struct Line {
 
 /// The weight of the past after one more frame.
 const FORGETTING_FACTOR: f64 = 0.97;
-/// The weight of the point at the origin, where the latest frame has 1.
+/// The weight of the point at the origin, relative to that of the latest frame.
 const ORIGIN_WEIGHT: f64 = 0.25;
 
 impl Fit {
-    /// Takes a frame into account.
+    /// Adds a frame.
     pub(super) fn add(&mut self, bytes: f64, seconds: f64) {
         self.weight = self.weight * FORGETTING_FACTOR + 1.0;
         self.bytes = self.bytes * FORGETTING_FACTOR + bytes;
@@ -48,12 +51,12 @@ impl Fit {
         self.seconds_squared = self.seconds_squared * FORGETTING_FACTOR + seconds * seconds;
     }
 
-    /// The mean bytes and seconds of a frame; `None` where there was none.
+    /// The mean bytes and seconds of a frame; `None` if there was no frame.
     pub(super) fn mean(&self) -> Option<(f64, f64)> {
         (self.weight > 0.0).then(|| (self.bytes / self.weight, self.seconds / self.weight))
     }
 
-    /// The line, with neither coefficient below zero; `None` where there was no frame.
+    /// The line, with neither coefficient below zero; `None` if there was no frame.
     pub(super) fn line(&self) -> Option<Line> {
         let (mean_bytes, mean_seconds) = self.mean()?;
         let weight = self.weight + ORIGIN_WEIGHT;

@@ -1,4 +1,4 @@
-//! Frames and requests that have not been answered.
+//! Unanswered frames and requests.
 
 use std::collections::VecDeque;
 use std::time::Duration;
@@ -6,15 +6,15 @@ use std::time::Duration;
 /// A request to the terminal, after a frame or alone.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub(in super::super) enum Request {
-    /// None: the terminal does not answer.
+    /// No request, since the terminal does not answer.
     Nothing,
-    /// For its status.
+    /// A request for the terminal's status.
     Status,
-    /// For its attributes, which every terminal answers.
+    /// A request for the terminal's attributes, which every terminal answers.
     Fence,
 }
 
-/// A frame that was sent, or a request alone, of no bytes.
+/// A sent frame, or a request alone, which counts 0 bytes.
 #[derive(Clone, Copy, Debug)]
 pub(super) struct Sent {
     pub(super) at: Duration,
@@ -22,7 +22,7 @@ pub(super) struct Sent {
     pub(super) request: Request,
 }
 
-/// What was sent and not answered, oldest first.
+/// The unanswered frames and requests, oldest first.
 #[derive(Debug, Default)]
 pub(super) struct InFlight(VecDeque<Sent>);
 
@@ -35,30 +35,30 @@ impl InFlight {
         self.0.front().copied()
     }
 
-    /// Removes the oldest.
+    /// Removes the oldest entry.
     pub(super) fn pop(&mut self) {
         self.0.pop_front();
     }
 
-    /// Removes the fences that are older than all else.
+    /// Removes the fences at the front.
     pub(super) fn pop_fences(&mut self) {
         while self.oldest().is_some_and(|sent| sent.request == Request::Fence) {
             self.pop();
         }
     }
 
-    /// How many are older than the oldest fence; `None` where there is no fence.
+    /// The number of entries before the oldest fence; `None` if there is no fence.
     pub(super) fn before_fence(&self) -> Option<usize> {
         self.0.iter().position(|sent| sent.request == Request::Fence)
     }
 
-    /// Removes the oldest fence and all before it; returns the fence.
+    /// Removes the oldest fence and all entries before it; returns the fence.
     pub(super) fn pop_through_fence(&mut self) -> Option<Sent> {
         let place = self.before_fence()?;
         self.0.drain(..=place).next_back()
     }
 
-    /// Removes all.
+    /// Removes all entries.
     pub(super) fn drain(&mut self) -> impl Iterator<Item = Sent> {
         self.0.drain(..)
     }
@@ -75,7 +75,7 @@ impl InFlight {
         self.0.len()
     }
 
-    /// How many are frames.
+    /// The number of frames.
     pub(super) fn frames(&self) -> usize {
         self.0.iter().filter(|sent| sent.bytes > 0).count()
     }

@@ -1,61 +1,64 @@
-//! What the answers tell of a link: its minimum round-trip time, its rate and its jitter.
+//! Estimates of a link from the terminal's answers: its minimum round-trip time, rate and jitter.
 
 use std::time::Duration;
 
 use super::fit::Fit;
 use super::min_round_trip::MinRoundTrip;
 
-/// A link, as far as it is known.
+/// The estimates of a link.
 #[derive(Debug, Default)]
 pub(super) struct Link {
     min_round_trip: Option<MinRoundTrip>,
     last_round_trip: Option<Duration>,
     answered_at: Duration,
     fit: Fit,
-    /// The latest frame, where it took far longer than expected.
+    /// The latest frame, if it took far longer than expected.
     outlier: Option<Transfer>,
     stalled_at: Option<Duration>,
 }
 
-/// A frame, and how long it occupied the link.
+/// A frame, and the time for which it occupied the link.
 #[derive(Clone, Copy, Debug)]
 struct Transfer {
     bytes: f64,
     seconds: f64,
 }
 
-/// The shortest time for a frame that can be measured.
+/// The shortest time of a frame that can be measured.
 const MIN_TRANSFER: Duration = Duration::from_micros(100);
-/// A frame is an outlier that takes longer than expected by so many standard deviations, and by so many seconds.
+/// An outlier is a frame that takes longer than expected by this number of standard deviations, and
+/// by this number of seconds.
 const OUTLIER_DEVIATIONS: f64 = 4.0;
 const OUTLIER_SECONDS: f64 = 0.25;
-/// An outlier of so many seconds is a stall; a shorter one may be jitter.
+/// An outlier of at least this number of seconds is a stall; a shorter one may be jitter.
 const STALL_SECONDS: f64 = 1.0;
-/// How much longer than the slope says a byte is taken to occupy the link, as long as the line through the origin
-/// allows it. Where time grows with the bytes, the link is narrow, and the part of the time that does not grow may
-/// be the frames of others on it: without the margin, two sessions on 2 Mbit/s send finer frames than their shares
-/// carry, 12.5 a second in place of 20. With all of it (the line through the origin), jitter is taken for
-/// slowness: at 1 Mbit/s with 0 to 50 ms of it, the largest error of frames is 41 in place of 21.
+/// The factor by which the fitted time of a byte is increased, up to the slope of the line through
+/// the origin. Where time grows with the bytes, the link is narrow, and the constant part of the
+/// time may belong to other frames on it. Without the margin, two sessions on 2 Mbit/s send finer
+/// frames than their shares carry, 12.5 a second in place of 20. With the whole margin (the line
+/// through the origin), jitter counts as slowness: at 1 Mbit/s with 0 to 50 ms of it, the largest
+/// error of frames is 41 in place of 21.
 const SLOPE_MARGIN: f64 = 1.5;
-/// How many standard deviations an answer may be late: Jacobson and Karels, RFC 6298.
+/// An answer is late after this number of standard deviations: Jacobson and Karels, RFC 6298.
 const LATE_DEVIATIONS: f64 = 4.0;
-/// How exactly the time of an answer can be told.
+/// The resolution of the time of an answer.
 const CLOCK_GRANULARITY: Duration = Duration::from_millis(10);
-/// After a stall, so many bytes may be in flight, or what the link carries in so many seconds. If it stalls again,
-/// all of them arrive before anything newer does.
+/// The limit in flight after a stall: the larger of this number of bytes and the bytes that the
+/// link carries in this number of seconds. If it stalls again, all of them arrive before anything newer.
 const AFTER_STALL_BYTES: f64 = 16_000.0;
 const AFTER_STALL_SECONDS: f64 = 0.024;
-/// For how long that holds.
+/// The duration of that limit.
 const AFTER_STALL: Duration = Duration::from_mins(1);
-/// The longest time that is computed: a day, in seconds.
+/// The longest computed time: a day, in seconds.
 const MAX_SECONDS: f64 = 86_400.0;
 
 impl Link {
-    /// Takes the answer to a frame into account.
+    /// Updates the estimates with the answer to a frame.
     pub(super) fn answered(&mut self, now: Duration, sent_at: Duration, bytes: usize) {
         let round_trip = now.saturating_sub(sent_at);
         let minimum = MinRoundTrip::with(self.min_round_trip, now, round_trip);
-        // The link was free for it when it could arrive at the earliest, and the frame before it had arrived.
+        // The link could begin to carry it when the first byte could arrive and the frame before it
+        // had arrived.
         let begun = (sent_at + minimum.get()).max(self.answered_at);
         self.add_transfer(now, bytes, now.saturating_sub(begun));
         self.min_round_trip = Some(minimum);
@@ -63,13 +66,14 @@ impl Link {
         self.answered_at = now;
     }
 
-    /// Takes into account that the system has accepted a frame.
+    /// Updates the estimates with a frame that the system has accepted.
     pub(super) fn written(&mut self, now: Duration, sent_at: Duration, bytes: usize) {
         self.add_transfer(now, bytes, now.saturating_sub(sent_at));
         self.answered_at = now;
     }
 
-    /// One outlier is a stall, and tells nothing of the rate; two in a row are a link that has changed.
+    /// Adds a frame to the fit. One outlier is a stall, which is no evidence about the rate; two in
+    /// a row mean that the link has changed.
     fn add_transfer(&mut self, now: Duration, bytes: usize, time: Duration) {
         if bytes == 0 {
             return;
@@ -99,12 +103,12 @@ impl Link {
         })
     }
 
-    /// Whether it has carried a frame.
+    /// Whether the link has carried a frame.
     pub(super) fn is_known(&self) -> bool {
         self.fit.mean().is_some()
     }
 
-    /// Whether an answer can arrive so soon.
+    /// Whether an answer can arrive after this short a time.
     pub(super) fn is_plausible(&self, round_trip: Duration) -> bool {
         self.min_round_trip.is_none_or(|minimum| round_trip >= minimum.get() / 2)
     }
@@ -122,7 +126,7 @@ impl Link {
         self.outlier.map_or(usual, |transfer| usual.max(transfer.seconds / transfer.bytes))
     }
 
-    /// How many bytes a second should be sent at most; `None` for any number.
+    /// The maximum of bytes a second that should be sent; `None` for no maximum.
     pub(super) fn usable_rate(&self) -> Option<f64> {
         let seconds = self.seconds_per_byte();
         let rate = (seconds > 0.0).then(|| seconds.recip());
@@ -135,30 +139,30 @@ impl Link {
         Some(rate.map_or(limit, |rate| rate.min(limit)))
     }
 
-    /// How long so many bytes occupy the link.
+    /// The time for which this number of bytes occupies the link.
     pub(super) fn time_for(&self, bytes: usize) -> Duration {
         Duration::from_secs_f64((bytes as f64 * self.seconds_per_byte()).min(MAX_SECONDS))
     }
 
-    /// The round-trip time of a frame of mean size that no other frame delays.
+    /// The expected round-trip time of a frame of mean size that no other frame delays.
     pub(super) fn expected_round_trip(&self) -> Duration {
         let bytes = self.fit.mean().map_or(0.0, |(bytes, _)| bytes);
         self.min_round_trip() + self.time_for(bytes as usize)
     }
 
-    /// By how much longer a round trip takes in the mean.
+    /// The mean excess of a round trip over its expected time.
     pub(super) fn jitter(&self) -> Duration {
         Duration::from_secs_f64(self.fit.line().map_or(0.0, |line| line.constant))
     }
 
-    /// By how much longer than in the mean one takes at most, unless the link has changed.
+    /// The maximum excess of a round trip over its mean, unless the link has changed.
     pub(super) fn jitter_range(&self) -> Duration {
         let deviation = self.fit.line().map_or(0.0, |line| line.deviation);
         Duration::from_secs_f64(LATE_DEVIATIONS * deviation)
     }
 
-    /// When the answer to the oldest frame in flight arrives at the latest, unless the link has changed; `None`
-    /// where the link is unknown.
+    /// The latest time at which the answer to the oldest frame in flight arrives, unless the link
+    /// has changed; `None` if the link is unknown.
     pub(super) fn latest_answer(&self, sent_at: Duration, bytes: usize) -> Option<Duration> {
         let begun = (sent_at + self.min_round_trip()).max(self.answered_at);
         let time = self.time_for(bytes) + self.jitter() + self.jitter_range();

@@ -1,7 +1,8 @@
-//! The minimum of the recent round-trip times: the delay of the link there and back, without queues.
+//! The minimum of recent round-trip times: the delay of the link in both directions, without queues.
 //!
-//! The minimum of all times would stay wrong once the route has become longer. This is the windowed minimum
-//! filter of BBR (draft-cardwell-iccrg-bbr-congestion-control, "`BBR.min_rtt`"), over two halves of a window.
+//! The minimum of all times would stay wrong after the route has become longer. This is the
+//! windowed minimum filter of BBR (draft-cardwell-iccrg-bbr-congestion-control, "`BBR.min_rtt`"),
+//! over two halves of a window.
 
 use std::time::Duration;
 
@@ -13,11 +14,11 @@ pub(super) struct MinRoundTrip {
     previous: Duration,
 }
 
-/// How long half of the window is.
+/// The length of half of the window.
 const HALF_WINDOW: Duration = Duration::from_secs(30);
 
 impl MinRoundTrip {
-    /// The minimum of `before` and `round_trip`, which ended `now`.
+    /// The minimum after a `round_trip` that ended at `now`.
     pub(super) fn with(before: Option<Self>, now: Duration, round_trip: Duration) -> Self {
         match before {
             None => Self { since: now, current: round_trip, previous: round_trip },

@@ -1,4 +1,4 @@
-//! The tables of `docs/links.md`, simulated.
+//! Simulates the tables of `docs/links.md`.
 
 use std::fmt::Write;
 
@@ -13,19 +13,19 @@ const fn seconds(time: u64) -> Duration {
     Duration::from_secs(time)
 }
 
-/// How long each scenario takes.
+/// The duration of each scenario.
 const TIME: Duration = seconds(60);
-/// When the rate changes, where it does, and when it is as before.
+/// The times at which the rate changes, in the scenarios with a change.
 const HAPPENS: Duration = seconds(20);
 const OVER: Duration = seconds(32);
 
-/// A link, and how it changes.
+/// A link and its changes.
 struct Scenario {
     name: &'static str,
     conditions: Conditions,
     /// The rate between [`HAPPENS`] and [`OVER`].
     rate_meanwhile: Option<f64>,
-    /// The rate after that.
+    /// The rate after [`OVER`].
     rate_then: Option<f64>,
     players: usize,
 }
@@ -74,7 +74,7 @@ impl Scenario {
     }
 }
 
-/// The value that such a share of all is not above.
+/// The least of the values that at least this share of them does not exceed.
 fn percentile<T: Copy + Ord + Default>(values: impl Iterator<Item = T>, share: f64) -> T {
     let mut values: Vec<_> = values.collect();
     values.sort_unstable();
@@ -120,8 +120,8 @@ pub(super) fn table() -> String {
 /// The delay of a link of 10 Mbit/s in milliseconds, and the rate that it drops to, in kbit/s.
 const DROPS: [(u64, u32); 3] = [(20, 20), (50, 20), (50, 8)];
 
-/// How many bytes wait for a link after its rate has dropped: the median of drops at different times, and the
-/// maximum.
+/// The maximum of bytes that wait for a link after its rate has dropped: the median and the maximum
+/// of drops at different times.
 pub(super) fn queued_after_drop(delay: u64, kilobits: u32, frames: Frames) -> [f64; 2] {
     let mut queued: Vec<f64> = (0..21)
         .map(|phase| {

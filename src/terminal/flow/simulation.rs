@@ -1,8 +1,8 @@
-//! A simulated link, the players who share it and their terminals. It has no clock, and random numbers are
-//! seeded, so every run gives the same result on every machine.
+//! A simulated link, the players who share it and their terminals. It has no clock, and its random
+//! numbers are seeded, so that every run gives the same result on every machine.
 //!
-//! The link carries packets one after another, at a rate that a scenario may change. Each direction has a delay and
-//! jitter, drawn for each packet; as in TCP, no packet overtakes another.
+//! The link carries packets one after another, at a rate that a scenario may change. Each direction
+//! has a delay and jitter, drawn for each packet; as in TCP, no packet overtakes another.
 
 mod frames;
 mod player;
@@ -17,19 +17,19 @@ use crate::rng::SplitMix64;
 
 const TICK: Duration = Duration::from_millis(1);
 const FRAME_TIME: Duration = Duration::from_millis(33);
-/// The most that travels in one piece.
+/// The maximum size of a packet, in bytes.
 const PACKET: f64 = 1400.0;
-/// A rate that no player can use up, in bytes a second.
+/// A rate that no player exhausts, in bytes a second.
 pub(super) const UNLIMITED: f64 = 1e9;
 
 /// The properties of a link.
 #[derive(Clone, Copy, Debug)]
 pub(super) struct Conditions {
-    /// In each direction.
+    /// The delay in each direction.
     pub(super) delay: Duration,
-    /// By how much longer a packet takes at most.
+    /// The maximum additional delay of a packet.
     pub(super) jitter: Duration,
-    /// Towards the players, in bytes a second.
+    /// The rate towards the players, in bytes a second.
     pub(super) rate: f64,
 }
 
@@ -38,21 +38,22 @@ pub(super) struct Simulation {
     pub(super) now: Duration,
     pub(super) conditions: Conditions,
     pub(super) players: Vec<Player>,
-    /// Packets that wait for the link: the player's number, the bytes, and the frame that ends with it.
+    /// Packets that wait for the link: the player's number, the bytes, and the frame that ends with
+    /// the packet.
     queue: VecDeque<(usize, f64, Option<usize>)>,
-    /// How much of the first in the queue has been carried.
+    /// The number of bytes of the first packet in the queue that the link has carried.
     carried: f64,
     random: SplitMix64,
 }
 
 impl Simulation {
-    /// `frames` of each player, who begin one after another.
+    /// Players with these `frames`, who begin one after another.
     pub(super) fn new(conditions: Conditions, frames: &[Frames]) -> Self {
         let players = frames.iter().map(|frames| Player::new(Box::new(*frames))).collect();
         Self::of_players(conditions, players)
     }
 
-    /// One player, whose frames `source` encodes.
+    /// One player with frames from `source`.
     pub(super) fn of_source(conditions: Conditions, source: impl FrameSource + 'static) -> Self {
         Self::of_players(conditions, vec![Player::new(Box::new(source))])
     }
@@ -76,7 +77,7 @@ impl Simulation {
         Self::new(Conditions { delay, jitter: Duration::ZERO, rate }, &[frames])
     }
 
-    /// Simulates so much time, in which all players move.
+    /// Simulates this time, in which all players move.
     pub(super) fn walk(&mut self, time: Duration) {
         let until = self.now + time;
         while self.now < until {
@@ -88,7 +89,7 @@ impl Simulation {
         }
     }
 
-    /// How many bytes wait for the link.
+    /// The number of bytes that wait for the link.
     pub(super) fn queued(&self) -> f64 {
         self.queue.iter().map(|packet| packet.1).sum::<f64>() - self.carried
     }
@@ -123,7 +124,7 @@ impl Simulation {
         }
     }
 
-    /// Sends a frame of so many bytes, and a request after it.
+    /// Sends a frame of this number of bytes, and a request after it.
     fn send(&mut self, number: usize, bytes: f64, fidelity: Fidelity) {
         let request = self.players[number].flow.request(self.now);
         self.put(number, bytes, fidelity, request);
@@ -144,7 +145,7 @@ impl Simulation {
         self.queue.push_back((number, rest, Some(frame)));
     }
 
-    /// Carries as much as the link does in a tick.
+    /// Carries the bytes of one tick.
     fn carry(&mut self) {
         self.carried += self.conditions.rate * TICK.as_secs_f64();
         while let Some(&(number, bytes, frame)) =
@@ -178,7 +179,8 @@ impl Simulation {
         self.players[number].upward.push_back((arrives_at, upward));
     }
 
-    /// When a packet that is sent now arrives: after all that were sent before in the same direction.
+    /// The arrival time of a packet that is sent now: after all earlier packets in the same
+    /// direction.
     fn arrival(&mut self, number: usize, direction: usize, at: Duration) -> Duration {
         let Conditions { delay, jitter, .. } = self.conditions;
         let last = &mut self.players[number].last[direction];

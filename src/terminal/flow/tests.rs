@@ -1,4 +1,4 @@
-//! What flow control promises: of events one by one, and of whole links, simulated.
+//! Tests of flow control: of single events, and of whole simulated links.
 
 mod encoded;
 mod events;

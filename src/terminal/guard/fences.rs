@@ -1,11 +1,11 @@
-//! Fences, queries that every terminal answers, that are not answered yet.
+//! Fences: queries that every terminal answers.
 
 use std::time::{Duration, Instant};
 
-/// How long a terminal may take to answer.
+/// The time that a terminal has to answer.
 const TIMEOUT: Duration = Duration::from_secs(1);
 
-/// How many fences are open.
+/// The number of unanswered fences.
 #[derive(Debug)]
 pub(super) struct Fences {
     open: u32,
@@ -28,17 +28,17 @@ impl Fences {
         self.are_answered = true;
     }
 
-    /// Whether the terminal has answered any.
+    /// Whether the terminal has ever answered a fence.
     pub(super) fn are_answered(&self) -> bool {
         self.are_answered
     }
 
-    /// Whether some are open.
+    /// Whether a fence is unanswered.
     pub(super) fn are_open(&self) -> bool {
         self.open > 0
     }
 
-    /// How much longer to wait for an answer; `None` where nothing is expected any more.
+    /// The remaining time to wait for an answer; `None` if no answer is expected any more.
     pub(super) fn time_left(&self) -> Option<Duration> {
         let left = TIMEOUT.checked_sub(self.last_sent.elapsed())?;
         self.are_open().then_some(left)

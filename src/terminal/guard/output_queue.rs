@@ -1,14 +1,15 @@
-//! Bytes that were written and that the terminal has not accepted yet.
+//! Written bytes that the terminal has not accepted yet.
 
 use std::io;
 
 use super::Device;
 
-/// Bytes for a terminal that accepts no more at present. They are few: no frame is drawn while there are any.
+/// Bytes for a terminal that does not accept more at present. They are few, since no frame is drawn
+/// while there are any.
 #[derive(Debug, Default)]
 pub(super) struct OutputQueue {
     bytes: Vec<u8>,
-    /// How many of them have been accepted.
+    /// The number of accepted bytes.
     taken: usize,
 }
 
@@ -17,7 +18,7 @@ impl OutputQueue {
         self.bytes.extend_from_slice(bytes);
     }
 
-    /// Writes as much as `device` accepts at once.
+    /// Writes the bytes that `device` accepts at once.
     pub(super) fn write_to(&mut self, device: &Device) -> io::Result<()> {
         self.taken += device.write_some(&self.bytes[self.taken..])?;
         if self.taken == self.bytes.len() {

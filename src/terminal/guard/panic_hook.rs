@@ -1,4 +1,4 @@
-//! A panic gives the terminal back before it prints its message.
+//! A panic hook that gives the terminal back before the message is printed.
 
 use std::any::Any;
 use std::io::{self, Write};
@@ -8,11 +8,11 @@ use std::sync::{Arc, Mutex, MutexGuard, Once, PoisonError};
 use super::super::Error;
 use super::Guard;
 
-/// The guard of the current session. The hook is called in all threads, so this belongs to the process and not
-/// to the session.
+/// The guard of the current session. The hook runs in all threads, so that this belongs to the
+/// process and not to the session.
 static CURRENT: Mutex<Option<Arc<Guard>>> = Mutex::new(None);
 
-/// Sets the guard that a panic uses.
+/// Sets the guard that the hook uses.
 pub(super) fn protect(guard: &Arc<Guard>) -> Result<(), Error> {
     static HOOK: Once = Once::new();
     let mut current = lock();
@@ -24,7 +24,7 @@ pub(super) fn protect(guard: &Arc<Guard>) -> Result<(), Error> {
     Ok(())
 }
 
-/// Removes `guard`; a panic then does what it did before.
+/// Removes `guard`; panics are then handled as before.
 pub(super) fn release(guard: &Guard) {
     let mut current = lock();
     if current.as_ref().is_some_and(|known| std::ptr::eq(Arc::as_ptr(known), guard)) {
@@ -32,8 +32,8 @@ pub(super) fn release(guard: &Guard) {
     }
 }
 
-/// Installs a hook that calls the previous one for panics outside of sessions. It is never removed: a hook that was
-/// installed after it would be removed with it.
+/// Installs a hook that calls the previous one for panics outside of sessions. It is never removed:
+/// this would also remove a hook installed after it.
 fn install_hook() {
     let outside = panic::take_hook();
     panic::set_hook(Box::new(move |info| match lock().clone() {
@@ -45,7 +45,7 @@ fn install_hook() {
     }));
 }
 
-/// Prints one sentence. Where standard error is closed, nothing can be reported.
+/// Prints one sentence. If standard error is closed, nothing can be reported.
 fn report(info: &PanicHookInfo) {
     let message = message(info.payload());
     _ = match info.location() {

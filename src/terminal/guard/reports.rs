@@ -1,24 +1,24 @@
-//! The reports that the terminal sends while it is taken: of the focus always, of keys and the mouse on request.
+//! Reports from the terminal: of the focus always, of keys and the mouse on request.
 
 use super::super::mouse::MouseUnits;
 use super::super::sequence;
 
-/// The reports that are enabled whenever the terminal is taken.
+/// The enabled reports while the terminal is taken.
 #[derive(Debug, Default)]
 pub(super) struct Reports {
     /// Whether keys are reported in the kitty protocol.
     pub(super) has_key_flags: bool,
-    /// The unit of the mouse's place; `None` where it is not reported.
+    /// The unit of mouse positions; `None` if the mouse is not reported.
     mouse: Option<MouseUnits>,
 }
 
 impl Reports {
-    /// Whether a report may arrive at any time.
+    /// Whether a key or mouse report may arrive at any time.
     pub(super) fn are_frequent(&self) -> bool {
         self.has_key_flags || self.mouse.is_some()
     }
 
-    /// Enables them.
+    /// Adds the sequences that enable the reports.
     pub(super) fn push_start(&self, text: &mut String) {
         text.push_str(sequence::ENABLE_FOCUS_REPORTS);
         if self.has_key_flags {
@@ -27,7 +27,7 @@ impl Reports {
         push_mouse(text, None, self.mouse);
     }
 
-    /// Disables them, in the opposite order.
+    /// Adds the sequences that disable the reports, in reverse order.
     pub(super) fn push_end(&self, text: &mut String) {
         push_mouse(text, self.mouse, None);
         if self.has_key_flags {
@@ -36,14 +36,14 @@ impl Reports {
         text.push_str(sequence::DISABLE_FOCUS_REPORTS);
     }
 
-    /// Sets whether and how the mouse is reported.
+    /// Sets whether and in which unit the mouse is reported.
     pub(super) fn change_mouse(&mut self, mouse: Option<MouseUnits>, text: &mut String) {
         push_mouse(text, self.mouse, mouse);
         self.mouse = mouse;
     }
 }
 
-/// What it takes to have the mouse reported so, rather than as `before`.
+/// Adds the sequences that change mouse reports from `before` to `mouse`.
 fn push_mouse(text: &mut String, before: Option<MouseUnits>, mouse: Option<MouseUnits>) {
     match (before, mouse) {
         (None, Some(_)) => text.push_str(sequence::ENABLE_MOUSE),

@@ -1,39 +1,39 @@
-//! What the terminal answers to queries.
+//! Answers of the terminal to queries.
 
 use super::super::sequence;
 
-/// An answer of the terminal's.
+/// An answer of the terminal.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub(in super::super) enum Answer {
-    /// It speaks the kitty keyboard protocol.
+    /// The terminal supports the kitty keyboard protocol.
     KeyFlags,
-    /// It shows 24-bit colours.
+    /// The terminal shows 24-bit colours.
     TrueColor,
-    /// It can report the place of the mouse in pixels.
+    /// The terminal can report mouse positions in pixels.
     PixelMouse,
-    /// It is xterm, and knows whether it shows 24-bit colours.
+    /// The terminal is xterm, which can be asked for 24-bit colours.
     XtermVersion,
-    /// It has answered all that was asked before the fence.
+    /// The answer to a fence, after those to all earlier queries.
     Fence,
-    /// It has come as far as a status request.
+    /// The answer to a status request.
     Status,
-    /// It has repeated a half block.
+    /// The terminal has repeated a half block.
     Repeats,
-    /// An entry of its palette has this colour, in 16 bits a channel.
+    /// An entry of the terminal's palette has this colour, in 16 bits a channel.
     PaletteEntry([u16; 3]),
 }
 
-/// Whether `unit`, a control sequence, has a shape that only reports have, and no key.
+/// Whether `unit`, a control sequence, has the form of a report, which no key has.
 pub(super) fn is_report(unit: &[u8]) -> bool {
     matches!(unit, [_, _, b'<'..=b'?', ..] | [.., b'n'] | [_, _, b'2', b';', .., b'R'])
 }
 
-/// What the report `unit` answers; `None` for what was not asked.
+/// The answer in the report `unit`; `None` if it answers no query of this program.
 pub(super) fn parse_report(unit: &[u8]) -> Option<Answer> {
     match unit {
         [_, _, b'?', b'0'..=b'9' | b';', .., b'c'] => Some(Answer::Fence),
         [_, _, b'?', b'0'..=b'9', .., b'u'] => Some(Answer::KeyFlags),
-        // Set, not set, or set for good; 0 is for a mode that it does not know.
+        // Set, not set, and permanently set; 0 means an unknown mode.
         b"\x1b[?1016;1$y" | b"\x1b[?1016;2$y" | b"\x1b[?1016;3$y" => Some(Answer::PixelMouse),
         [_, _, b'0'..=b'9', b'n'] => Some(Answer::Status),
         _ if unit == sequence::REPEATED => Some(Answer::Repeats),
@@ -41,7 +41,8 @@ pub(super) fn parse_report(unit: &[u8]) -> Option<Answer> {
     }
 }
 
-/// What the string `unit` answers, that is neither a control sequence nor a device control string.
+/// The answer in the string `unit`, which is neither a control sequence nor a device control
+/// string.
 pub(super) fn parse_string(unit: &[u8]) -> Option<Answer> {
     let color = unit.strip_prefix(b"\x1b")?.strip_prefix(sequence::PALETTE_REPORT)?;
     let end = color.iter().position(|byte| !byte.is_ascii_hexdigit() && *byte != b'/');
@@ -57,7 +58,8 @@ fn channel(digits: &[u8]) -> Option<u16> {
     u16::try_from(value * u32::from(u16::MAX) / most).ok()
 }
 
-/// What the device control string `unit` answers; `None` for a refusal, and for what was not asked.
+/// The answer in the device control string `unit`; `None` for a refusal, and if it answers no query
+/// of this program.
 pub(super) fn parse_device_control(unit: &[u8]) -> Option<Answer> {
     if let Some(name) = unit.strip_prefix(b"\x1bP>|") {
         return version(name);
@@ -66,13 +68,13 @@ pub(super) fn parse_device_control(unit: &[u8]) -> Option<Answer> {
     capability.starts_with(sequence::RGB_CAPABILITY.as_bytes()).then_some(Answer::TrueColor)
 }
 
-/// What a terminal of this name and version shows.
+/// The answer that a terminal's name and version implies.
 ///
-/// Asking for the capability itself (XTGETTCAP) is right for xterm alone, which can be built with and without it.
-/// Others print the query (blessed#382 names `QTerminal`, `PuTTY`, `ConEmu` and Apple's Terminal), so nobody is
-/// asked who has not said that it is xterm.
+/// A query of the capability itself (XTGETTCAP) is right for xterm alone, which can be built with
+/// and without it. Other terminals print the query (blessed#382 names `QTerminal`, `PuTTY`,
+/// `ConEmu` and Apple's Terminal), so that only a terminal that identifies as xterm receives it.
 fn version(name: &[u8]) -> Option<Answer> {
-    /// Terminals that show 24-bit colours in every version that answers.
+    /// Terminals that show 24-bit colours in every version that answers this query.
     const TRUE: [&[u8]; 10] = [
         b"kitty", b"foot", b"wezterm", b"iterm2", b"ghostty", b"contour", b"mintty", b"rio",
         b"konsole", b"vte(",

@@ -1,10 +1,10 @@
-//! A whole unit of bytes to a key.
+//! Parses a unit of bytes as a key.
 
 use termina::event::{KeyCode, KeyEventKind, ModifierKeyCode, Modifiers as Reported};
 
 use super::super::key::{Key, KeyEvent, Modifiers, Phase, base_key};
 
-/// The key event that `unit` stands for; `None` for what is no key, or none that a game binds.
+/// The key event of `unit`; `None` if it is not a key, or one that cannot be bound.
 pub(super) fn parse(unit: &[u8]) -> Option<KeyEvent> {
     match unit {
         [0x1b, character] => {
@@ -15,16 +15,16 @@ pub(super) fn parse(unit: &[u8]) -> Option<KeyEvent> {
     }
 }
 
-/// The third part of the first number of `CSI … u`, in the kitty protocol: what the key types in the
-/// layout that a program knows by heart.
+/// The third part of the first number of `CSI … u` in the kitty protocol: the character of the key
+/// in the US layout.
 fn told_base(unit: &[u8]) -> Option<char> {
     let numbers = unit.strip_prefix(b"\x1b[")?.strip_suffix(b"u")?;
     let number = numbers.split(|&byte| byte == b';').next()?.split(|&byte| byte == b':').nth(2)?;
     char::from_u32(str::from_utf8(number).ok()?.parse().ok()?)
 }
 
-/// What the parser makes of `unit`. It is a fresh one each time: one that has kept something of a
-/// unit that it does not know would prefix it to the next.
+/// The parser's event for `unit`. Each unit has a new parser: one that has kept bytes of an unknown
+/// unit would prefix them to the next.
 fn reported(unit: &[u8]) -> Option<termina::event::KeyEvent> {
     let mut parser = termina::Parser::default();
     parser.parse(unit, false);

@@ -1,14 +1,14 @@
-//! Reports of the mouse to what they say.
+//! Parses reports of the mouse.
 
 use super::super::mouse::{MouseButton, MouseEventKind, MouseReport};
 
-/// Bits of a report's first number, beside the button's.
+/// Bits of a report's first number besides those of the button.
 const MOTION: u32 = 32;
-/// The wheel, and buttons beyond the third.
+/// The bits of the wheel and of buttons beyond the third.
 const OTHERS: u32 = 64 | 128;
 
-/// What `unit`, a control sequence, reports: `CSI < button ; column ; row` and `M`, or `m` for a button
-/// that goes up (xterm's control sequences, "Extended coordinates").
+/// The report in `unit`, a control sequence: `CSI < button ; column ; row` and `M`, or `m` for a
+/// released button (xterm's control sequences, "Extended coordinates").
 pub(super) fn parse(unit: &[u8]) -> Option<MouseReport> {
     let text = str::from_utf8(unit.strip_prefix(b"\x1b[<")?).ok()?;
     let (numbers, is_release) = match text.strip_suffix('M') {
@@ -21,7 +21,7 @@ pub(super) fn parse(unit: &[u8]) -> Option<MouseReport> {
     numbers.next().is_none().then_some(MouseReport { kind, place: [column, row] })
 }
 
-/// What `unit` reports: `CSI M` and three bytes. Old terminals send it that do not know the other way.
+/// The report in `unit`: `CSI M` and three bytes, from old terminals without the other form.
 pub(super) fn parse_bytes(unit: &[u8]) -> Option<MouseReport> {
     let &[code, column, row] = unit.strip_prefix(b"\x1b[M")? else { return None };
     let [code, column, row] = [code, column, row].map(|byte| u32::from(byte.saturating_sub(32)));

@@ -1,4 +1,4 @@
-//! The units that terminals send, whole and in pieces.
+//! Tests of the units that terminals send, whole and in pieces.
 
 use proptest::prelude::*;
 
@@ -15,7 +15,7 @@ fn key(key: Key, modifiers: Modifiers, phase: Phase) -> Input {
     Input::Key(KeyEvent { key, base: None, modifiers, phase })
 }
 
-/// A key of another layout than a Latin one, at the place of `base`.
+/// A key of a non-Latin layout, at the place of `base`.
 fn elsewhere(name: char, base: char, modifiers: Modifiers, phase: Phase) -> Input {
     let (key, base) = (Key::Char(name), Some(Key::Char(base)));
     Input::Key(KeyEvent { key, base, modifiers, phase })
@@ -29,7 +29,7 @@ fn mouse(kind: MouseEventKind, place: [u32; 2]) -> Input {
     Input::Mouse(MouseReport { kind, place })
 }
 
-/// Every unit that a terminal sends in one piece, and what it means.
+/// All units that a terminal sends at once, with their meanings.
 fn vocabulary() -> Vec<(&'static str, Option<Input>)> {
     let answer = Input::Answer;
     let meaningful = [
@@ -140,7 +140,7 @@ fn settle(decoder: &mut Decoder) -> Vec<Input> {
 }
 
 #[test]
-fn every_unit_means_what_it_should() {
+fn every_unit_has_its_meaning() {
     for (text, expected) in vocabulary() {
         assert_eq!(decode([text.as_bytes()]), Vec::from_iter(expected), "{text:?}");
     }
@@ -164,7 +164,7 @@ fn an_entry_of_the_palette_is_reported_in_one_to_four_digits() {
 }
 
 #[test]
-fn an_escape_that_nothing_follows_is_the_escape_key() {
+fn an_escape_by_itself_is_the_escape_key() {
     let mut decoder = Decoder::default();
     decoder.feed(b"\x1b", |input| panic!("{input:?} came too early"));
     assert!(decoder.patience().is_some());

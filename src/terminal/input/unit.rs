@@ -1,34 +1,35 @@
-//! Cuts a stream of bytes into complete units: a character, a control sequence, a string.
+//! Divides a stream of bytes into complete units: characters, control sequences and strings.
 //!
-//! It knows the shapes of ECMA-48 and nothing of their meaning, so it always knows where the next
-//! unit starts: after what it cannot read it goes on, rather than waiting for a byte that makes
-//! sense of it. A parser that keeps what it does not know swallows every later key.
+//! It knows the forms of ECMA-48 but not their meanings, so that it always finds the start of the
+//! next unit: it continues after unknown bytes, and never waits for bytes that would complete them.
+//! A parser that keeps unknown bytes swallows all later keys.
 
 /// The kinds of unit.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub(super) enum Kind {
-    /// A character, possibly after an escape; the escape alone; or a function key in `ESC O`.
+    /// A character, possibly after an escape; an escape alone; or a function key in `ESC O`.
     Key,
-    /// `ESC [` to its final byte.
+    /// `ESC [` up to its final byte.
     ControlSequence,
     /// `ESC [ M` and three bytes.
     MouseBytes,
-    /// `ESC P` to its terminator.
+    /// `ESC P` up to its terminator.
     DeviceControl,
     /// Any other string, such as a window's title.
     OtherString,
 }
 
-/// The longest unit kept. Keys take a dozen bytes, answers a few dozen; the rest is dropped.
+/// The maximum length of a unit. Keys take a dozen bytes and answers a few dozen; longer units are
+/// dropped.
 const LONGEST_UNIT: usize = 256;
 
-/// The length of an escape and the character that says what starts here.
+/// The length of an escape and the character that identifies a sequence.
 const INTRODUCER_LENGTH: usize = 2;
 
 const ESCAPE: u8 = 0x1b;
 const BELL: u8 = 0x07;
 
-/// A cutter of bytes into units.
+/// Divides bytes into units.
 #[derive(Debug, Default)]
 pub(super) struct Cutter {
     state: State,
@@ -41,7 +42,7 @@ enum State {
     /// Between units.
     #[default]
     Ground,
-    /// Inside a character, of which so many bytes are missing.
+    /// Inside a character that lacks this number of bytes.
     Character { missing: u8 },
     /// After an escape.
     Escape,
@@ -53,7 +54,7 @@ enum State {
     ControlSequence,
     /// After `ESC [ [`, which the Linux console sends before a letter.
     ConsoleKey,
-    /// After `ESC [ M`; so many bytes are missing.
+    /// After `ESC [ M`, before this number of bytes.
     MouseBytes { missing: u8 },
     /// Inside a string.
     String(Kind),
@@ -61,25 +62,25 @@ enum State {
     StringEscape(Kind),
 }
 
-/// What a byte does to the unit before it.
+/// The effect of a byte on the unit before it.
 enum Step {
-    /// It belongs to the unit, which goes on in this state.
+    /// The byte belongs to the unit, which continues in this state.
     Continue(State),
-    /// It completes the unit.
+    /// The byte completes the unit.
     Complete(Kind),
-    /// It is nothing, and so is the unit.
+    /// The byte and the unit are dropped.
     Abandon,
-    /// It is no part of the unit, which is nothing without it; the byte starts the next one.
+    /// The unit is incomplete and dropped; the byte starts the next unit.
     Restart,
-    /// It is no part of the unit, which is nothing without it; an escape and the byte start the
-    /// next one.
+    /// The unit is incomplete and dropped; an escape and the byte start the next unit.
     RestartEscaped,
-    /// It is an escape after an escape: that was the key, and this starts the next unit.
+    /// The byte is an escape after an escape: the first one was the key, and this one starts the
+    /// next unit.
     Split,
 }
 
 impl Cutter {
-    /// Takes one byte, and hands the unit that it completes, if any, to `take`.
+    /// Adds one byte, and calls `take` with the unit that it completes, if any.
     pub(super) fn push(&mut self, byte: u8, take: &mut impl FnMut(Kind, &[u8])) {
         match step(self.state, byte) {
             Step::Continue(next) => {
@@ -111,7 +112,7 @@ impl Cutter {
         }
     }
 
-    /// What there is of a unit that has not been completed.
+    /// The state of the incomplete unit.
     pub(super) fn rest(&self) -> Rest {
         match self.state {
             State::Ground => Rest::Nothing,
@@ -121,7 +122,8 @@ impl Cutter {
         }
     }
 
-    /// Stops waiting for the rest of a unit: what could be a key is one, the remainder nothing.
+    /// Ends the wait for the rest of a unit: a possible key is taken as one, any other unit is
+    /// dropped.
     pub(super) fn give_up(&mut self, take: &mut impl FnMut(Kind, &[u8])) {
         if self.rest() == Rest::PerhapsKey {
             take(Kind::Key, &self.bytes);
@@ -144,14 +146,14 @@ impl Cutter {
     }
 }
 
-/// What there is of a unit that has not been completed.
+/// The state of an incomplete unit.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub(super) enum Rest {
-    /// Nothing: the last byte completed a unit.
+    /// No unit: the last byte completed one.
     Nothing,
-    /// An escape, or one and a character: the start of a sequence, or a key pressed alone.
+    /// An escape, or one and a character: the start of a sequence, or a key by itself.
     PerhapsKey,
-    /// Part of a sequence or a character, which is no key as it is.
+    /// A part of a sequence or a character, which is not a key by itself.
     Sequence,
 }
 

@@ -1,14 +1,14 @@
-//! Keys by their place on the keyboard, for layouts that type no Latin letters.
+//! Keys by their places on the keyboard, for layouts without Latin letters.
 //!
-//! Bindings name Latin letters. The kitty protocol tells which key of a US keyboard is at the place
-//! of the one pressed; other terminals send the letter alone, and its place follows from the layout
-//! that is most common for its script. Latin letters stay what they are: who types on an AZERTY or
-//! Dvorak keyboard chooses keys by what they type.
+//! Bindings name Latin letters. The kitty protocol reports the key of a US keyboard at the place of
+//! the pressed one; other terminals send the letter alone, and its place is derived from the most
+//! common layout of its script. Latin letters are not mapped: users of an AZERTY or Dvorak keyboard
+//! choose keys by their letters.
 
 use super::Key;
 
-/// Letters and the keys of a US keyboard at their places: of the Russian layout, with the letters in
-/// which the Ukrainian and the Belarusian ones differ, and of the Greek one.
+/// Letters, and the keys of a US keyboard at their places: of the Russian layout, with the
+/// different letters of the Ukrainian and Belarusian ones, and of the Greek layout.
 const PLACES: [(&str, &str); 7] = [
     ("йцукенгшщзхъ", "qwertyuiop[]"),
     ("фывапролджэ", "asdfghjkl;'"),
@@ -19,8 +19,8 @@ const PLACES: [(&str, &str); 7] = [
     ("ζχψωβνμ", "zxcvbnm"),
 ];
 
-/// The key of a US keyboard at the place of `key`, where that types a letter that is not a Latin one:
-/// the one that the terminal has `told`, or else the one that is known of the letter.
+/// The key of a US keyboard at the place of `key`, if `key` types a non-Latin letter: the key that
+/// the terminal has reported (`told`), or else the one in the table.
 pub(in super::super) fn base_key(key: Key, told: Option<char>) -> Option<Key> {
     let Key::Char(letter) = key else { return None };
     if !letter.is_alphabetic() || is_latin(letter) {
@@ -37,7 +37,7 @@ fn known_base(letter: char) -> Option<char> {
     PLACES.into_iter().find_map(place).map(|(_, key)| key)
 }
 
-/// Whether `letter` is of the Latin script, by Unicode's blocks of it.
+/// Whether `letter` is in one of Unicode's Latin blocks.
 fn is_latin(letter: char) -> bool {
     matches!(letter, '\0'..='\u{24f}' | '\u{1e00}'..='\u{1eff}' | '\u{ff00}'..='\u{ff5e}')
 }
@@ -60,7 +60,7 @@ mod tests {
     }
 
     #[test]
-    fn latin_letters_and_signs_stay_what_they_are() {
+    fn latin_letters_and_signs_are_not_mapped() {
         for character in ['z', 'é', 'ß', 'ő', 'ĳ', 'ạ', ';', ' ', '7', '—'] {
             assert_eq!(base_key(Key::Char(character), Some('w')), None, "{character}");
         }
@@ -68,7 +68,7 @@ mod tests {
     }
 
     #[test]
-    fn what_the_terminal_tells_goes_first() {
+    fn the_key_that_the_terminal_reports_comes_first() {
         // A phonetic layout has this letter at the place of S.
         assert_eq!(base_key(Key::Char('с'), Some('s')), Some(Key::Char('s')));
         assert_eq!(base_key(Key::Char('с'), None), Some(Key::Char('c')));

@@ -1,36 +1,37 @@
-//! Control sequences that make frames shorter, used where the terminal proves that they work.
+//! Control sequences that make frames shorter, used if the terminal proves that they work.
 //!
-//! Both are probed when the session begins. A half block that is repeated (REP) must move the cursor as far as it
-//! should. An entry of the palette that is defined (OSC 4), in the form that frames use, must be reported as defined,
-//! and as before once it is reset (OSC 104). Some terminals claim to repeat characters and fail on half blocks;
-//! so no terminal is trusted by its name or version.
+//! The session probes two when it begins. A repeated half block (REP) must move the cursor as far
+//! as it should. An entry of the palette, defined in the form that frames use (OSC 4), must be
+//! reported as defined, and with its old colour after a reset (OSC 104). Some terminals claim to
+//! repeat characters and fail on half blocks, so that no terminal is trusted by its name or
+//! version.
 //!
-//! Neither is probed in a multiplexer, which would answer for itself, nor while a recorder receives what is sent: a
-//! recording is to play on any terminal.
+//! Neither is probed in a multiplexer, which would answer for itself, nor if a recorder receives
+//! the sent bytes, since a recording must play on any terminal.
 
 use super::Session;
 use crate::color::palette::ColorDepth;
 use crate::terminal::sequence;
 
-/// What the probes have shown.
+/// The results of the probes.
 #[derive(Clone, Copy, Debug, Default)]
 pub(super) struct Extensions {
     is_probed: bool,
     palette: Palette,
 }
 
-/// What the terminal has reported of an entry of its palette: a colour of 16 bits a channel.
+/// The reported state of the probed palette entry, as colours of 16 bits a channel.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 enum Palette {
     #[default]
     Unknown,
-    /// Its own colour.
+    /// The terminal's own colour.
     Own([u16; 3]),
-    /// The colour that was defined, in place of its own.
+    /// The defined colour, in place of the terminal's own.
     Defined { own: [u16; 3] },
-    /// Its own colour again.
+    /// The terminal's own colour, after the reset.
     Reset,
-    /// Another one than it should be.
+    /// A wrong colour.
     Refused,
 }
 
@@ -55,14 +56,14 @@ impl Session {
         self.guard.palette_defined();
     }
 
-    /// The terminal has repeated a half block.
+    /// Records that the terminal has repeated a half block.
     pub(super) fn repeats_blocks(&mut self) {
         if self.extensions.is_probed {
             self.writer.set_repeats(true);
         }
     }
 
-    /// The terminal has reported the colour of the entry of its palette that was probed.
+    /// Records the terminal's report of the colour of the probed palette entry.
     pub(super) fn palette_reported(&mut self, color: [u16; 3]) {
         if self.extensions.is_probed {
             self.extensions.palette = self.extensions.palette.after_report(color);
@@ -70,7 +71,7 @@ impl Session {
         }
     }
 
-    /// Uses the palette where it can be defined and reset, and the terminal shows 24-bit colours.
+    /// Uses the palette if it can be defined and reset and the terminal shows 24-bit colours.
     pub(super) fn use_palette(&mut self) {
         if self.extensions.palette == Palette::Reset && self.color_depth() == ColorDepth::True {
             self.writer.set_palette(true);

@@ -3,28 +3,29 @@
 use super::super::environment::teletype;
 use super::super::{ColorSource, Detected, Fidelity, color_depth, color_source};
 
-/// What is known of the terminal, and how to use it.
+/// The properties of the terminal that are known when a session begins, and how to use it.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 #[expect(clippy::struct_excessive_bools, reason = "each is a question of its own")]
 pub struct Options {
-    /// How many colours it shows. The terminal is asked where this is a guess.
+    /// The terminal's number of colours. If it is a guess, the terminal is queried.
     pub color_depth: Detected,
-    /// The source of this.
+    /// The source of the colour depth.
     pub color_source: ColorSource,
-    /// Its name in `TERM`, if it cannot move its cursor.
+    /// The terminal's name in `TERM`, if the terminal cannot move its cursor.
     pub teletype: Option<&'static str>,
-    /// Whether it shows only ASCII. Other characters are replaced by similar ones.
+    /// Whether the terminal shows only ASCII. Other characters are replaced by similar ones.
     pub is_ascii: bool,
-    /// Whether to ask for reports of when keys are released.
+    /// Whether to request reports of key releases.
     pub ask_for_key_releases: bool,
-    /// Whether to ask if places of the mouse can be in pixels.
+    /// Whether to ask if mouse positions can be in pixels.
     pub ask_for_mouse_pixels: bool,
-    /// Whether to ask for the terminal's version, where the colours are a guess.
+    /// Whether to ask for the terminal's version if the colour depth is a guess.
     pub ask_for_version: bool,
-    /// Whether the terminal is at the other end of a network. The first frame is then coarse, and made exact after it.
+    /// Whether the terminal is across a network. The first frame is then coarse; later frames make
+    /// it exact.
     pub is_remote: bool,
-    /// Whether to probe control sequences that make frames shorter, repeated characters and the palette, and to use
-    /// them where the terminal proves that they work.
+    /// Whether to probe control sequences that make frames shorter (repeated characters and the
+    /// palette), and to use those that work.
     pub probe_extensions: bool,
     /// The fidelity of frames; `None` for the best that the link allows.
     pub fidelity: Option<Fidelity>,
@@ -33,16 +34,18 @@ pub struct Options {
 impl Options {
     /// Options from `environment`, which looks up variables by name.
     ///
-    /// Control sequences that make frames shorter are not probed in a terminal multiplexer, nor in a terminal that is
-    /// unknown or has no window.
+    /// Control sequences that make frames shorter are not probed in a terminal multiplexer, nor in
+    /// a terminal that is unknown or has no window.
     ///
-    /// A multiplexer is not asked for releases: those that agree lose some, and a key whose release is lost is
-    /// held for ever. Nor is it asked for pixels, of which it has none of its own.
+    /// A multiplexer is not asked for key releases: those that support them lose some, and a key
+    /// whose release is lost is held for ever. Nor is it asked for pixels, since it has none of its
+    /// own.
     ///
-    /// Apple's Terminal is not asked for pixels: it prints the last character of that query (DECRQM). A terminal that
-    /// `TERM` tells nothing about is not asked for its version, which some would print.
+    /// Apple's Terminal is not asked for pixels: it prints the last character of that query
+    /// (DECRQM). A terminal that is unknown by its `TERM` is not asked for its version, since some
+    /// would print that query.
     pub fn from_environment(environment: impl Fn(&str) -> Option<String>) -> Self {
-        /// Terminals that ignore a control sequence that they do not know.
+        /// Terminals that ignore unknown control sequences.
         const KNOWN: [&str; 9] =
             ["xterm", "vte", "gnome", "konsole", "mintty", "iterm", "st-", "tmux", "rxvt-unicode"];
         let is_set = |name| environment(name).is_some_and(|value| !value.is_empty());
@@ -72,7 +75,7 @@ mod tests {
     use super::*;
 
     #[test]
-    fn a_terminal_that_nothing_is_known_of_is_not_asked_for_its_version() {
+    fn an_unknown_terminal_is_not_asked_for_its_version() {
         let asks = |term: &'static str| {
             let environment = move |name: &str| (name == "TERM").then(|| term.to_owned());
             Options::from_environment(environment).ask_for_version
@@ -92,7 +95,7 @@ mod tests {
     }
 
     #[test]
-    fn a_network_is_known_by_what_sshd_sets() {
+    fn a_network_is_known_by_the_variables_of_sshd() {
         let is_remote = |value: &'static str| {
             let environment =
                 move |name: &str| (name == "SSH_CONNECTION").then(|| value.to_owned());

@@ -1,4 +1,4 @@
-//! Receiving input and signals, and turning them into events.
+//! Receives input and signals and turns them into events.
 
 use std::io;
 use std::time::Instant;
@@ -12,7 +12,7 @@ use crate::terminal::mouse::MouseReport;
 use crate::terminal::platform::Signal;
 use crate::terminal::{ColorSource, Detected, Event, Key, KeyEvent, Phase, QuitReason, sequence};
 
-/// Whether something arrived.
+/// Whether input or a signal arrived.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub(super) enum Received {
     Something,
@@ -72,7 +72,7 @@ impl Session {
     pub(super) fn stop_waiting_for_more(&mut self) {
         let events = &mut self.events;
         self.decoder.give_up(|input| {
-            // An answer is a whole unit, and never what is left of one.
+            // An answer is always a whole unit, never the rest of one.
             if let Input::Key(event) = input {
                 events.push_back(meaning(event));
             }
@@ -115,13 +115,13 @@ impl Session {
         Ok(())
     }
 
-    /// The event of `report`; `None` while the mouse is not reported, or its unit is changing.
+    /// The event of `report`; `None` if the mouse is not reported or its unit is changing.
     fn mouse_event(&self, report: MouseReport) -> Option<Event> {
         let units = self.mouse.units.filter(|_| !self.mouse.is_changing)?;
         report.event(units, self.size).map(Event::Mouse)
     }
 
-    /// Has the mouse, if it is reported, be reported in the finest unit that there is now.
+    /// If the mouse is reported, switches to the finest unit that is available.
     fn update_mouse_units(&mut self) -> io::Result<()> {
         let finest = self.mouse_units();
         if self.mouse.units.is_none_or(|units| units == finest) {
@@ -130,7 +130,7 @@ impl Session {
         self.mouse.units = Some(finest);
         self.mouse.is_changing = true;
         self.guard.set_mouse(self.mouse.units)?;
-        // Reports that come after the answer are in the new unit.
+        // Reports after the answer are in the new unit.
         self.send_queries("")
     }
 
@@ -161,7 +161,7 @@ impl Session {
         }
     }
 
-    /// The next frame is drawn from nothing, in the size that the window has now.
+    /// Forgets the screen and reads the window's size, so that the next frame is drawn whole.
     pub(super) fn repaint(&mut self) {
         let size = self.guard.device().size();
         if size.cells() != self.size.cells() {
@@ -170,7 +170,7 @@ impl Session {
         self.size = size;
         self.writer.forget();
         self.writer.set_size(self.size.cells());
-        // Nothing is written before the next frame, so nothing can fail yet.
+        // The writer writes only to memory, so that nothing can fail.
         _ = Backend::clear(&mut self.writer);
         if self.events.back() != Some(&Event::Resized) {
             self.events.push_back(Event::Resized);
@@ -178,7 +178,7 @@ impl Session {
     }
 }
 
-/// The event of a key. In raw mode, Ctrl-C and Ctrl-Z are keys like others.
+/// The event of a key. In raw mode, Ctrl-C and Ctrl-Z arrive as keys.
 fn meaning(event: KeyEvent) -> Event {
     let pressed = event.phase == Phase::Press && event.modifiers.control && !event.modifiers.alt;
     match event.base.unwrap_or(event.key) {

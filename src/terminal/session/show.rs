@@ -1,4 +1,4 @@
-//! Sending frames: when, at which fidelity, and how many bytes they take.
+//! Sends frames: when, at which fidelity, and in how many bytes.
 
 use std::io;
 use std::time::{Duration, Instant};
@@ -10,18 +10,18 @@ use crate::terminal::flow::Request;
 use crate::terminal::{Error, Event, Fidelity, Screen, sequence};
 
 impl Session {
-    /// Draws a frame on a blank screen, and sends what has changed since the last one. Where the terminal is not
-    /// [ready](Self::is_ready) for it, waits until it is, unless the program is asked to end:
-    /// then the frame is dropped, and the event that says so comes next.
+    /// Draws a frame on a blank screen and sends the changes since the last one. Waits until the
+    /// terminal is [ready](Self::is_ready) for it. If the program must end during the wait, the
+    /// frame is dropped and the next event says so.
     ///
     /// # Errors
-    /// Where the terminal cannot be written to, or a panic in another thread has given it back.
+    /// If a write to the terminal fails, or a panic in another thread has given the terminal back.
     pub fn draw(&mut self, render: impl FnOnce(&mut Screen)) -> Result<(), Error> {
         let drawn = self.try_draw(render);
         self.unless_shutting_down(drawn)
     }
 
-    /// Shows the last frame more exactly, if it is not shown exactly. Waits as [`Session::draw`].
+    /// Shows the last frame more exactly, unless it is exact. Waits as [`Session::draw`] does.
     ///
     /// # Errors
     /// As [`Session::draw`].
@@ -30,37 +30,37 @@ impl Session {
         self.unless_shutting_down(refined)
     }
 
-    /// Whether the terminal shows exactly what was drawn last. Where it does not, a few calls of
-    /// [`Session::refine`] make it.
+    /// Whether the terminal shows exactly the last frame drawn. If it does not, a few calls of
+    /// [`Session::refine`] make it exact.
     pub fn is_settled(&self) -> bool {
         self.writer.is_settled()
     }
 
-    /// Whether a frame that is drawn now is shown at once, rather than behind others that are in flight. If
-    /// not, [`Event::Ready`] follows.
+    /// Whether a frame would be shown at once, not behind others in flight. If it would not,
+    /// [`Event::Ready`] follows.
     pub fn is_ready(&mut self) -> bool {
         let is_ready = self.may_send();
         self.awaits_readiness = !is_ready;
         is_ready
     }
 
-    /// The fidelity of a frame of motion at present.
+    /// The present fidelity of frames of motion.
     pub fn fidelity(&self) -> Fidelity {
         self.fidelity.unwrap_or_else(|| self.flow.fidelity())
     }
 
-    /// Whether a network makes frames of motion coarser than they need to be; `ssh -C` helps then, if it is
-    /// not in use.
+    /// Whether a network makes frames of motion coarser than necessary; `ssh -C` then helps if it
+    /// is not in use.
     pub fn is_limited_by_network(&self) -> bool {
         self.is_remote && self.fidelity.is_none() && self.flow.fidelity() > Fidelity::EXACT
     }
 
-    /// The round-trip time of the terminal's latest answer; `None` where it does not answer.
+    /// The round-trip time of the terminal's latest answer; `None` if the terminal does not answer.
     pub fn round_trip(&self) -> Option<Duration> {
         self.flow.round_trip()
     }
 
-    /// How many bytes have been written for frames.
+    /// The number of bytes written for frames.
     pub fn bytes_written(&self) -> u64 {
         self.writer.bytes_written()
     }
@@ -95,7 +95,7 @@ impl Session {
         }
     }
 
-    /// Waits until a frame may be sent; returns whether it may, and not that the program should end.
+    /// Waits until a frame may be sent; returns `false` if the program must end instead.
     fn wait_until_ready(&mut self) -> io::Result<bool> {
         while !self.may_send() {
             if self.is_ending() {
@@ -117,13 +117,14 @@ impl Session {
         self.guard.has_written_all() && self.flow.may_send(self.now())
     }
 
-    /// When a frame may be sent even if nothing happens until then; `None` for never.
+    /// The time at which to check again whether a frame may be sent, even without an event before
+    /// then; `None` for never.
     pub(super) fn opens_at(&self) -> Option<Instant> {
         let time = if self.guard.has_written_all() { self.flow.opens_at() } else { None };
         time.map(|time| self.begun_at + time)
     }
 
-    /// Sends the bytes of the frame, if there are any, and returns how many there are.
+    /// Sends the bytes of the frame and returns their number, which may be zero.
     fn send(&mut self) -> io::Result<usize> {
         let now = self.now();
         let frame = self.writer.output_mut();
@@ -157,7 +158,7 @@ impl Session {
         Ok(())
     }
 
-    /// Asks `queries`, and sends a fence after them.
+    /// Sends `queries` with a fence after them.
     pub(super) fn send_queries(&mut self, queries: &str) -> io::Result<()> {
         self.flow.sent(self.now(), 0, Request::Fence);
         self.guard.ask(queries)
@@ -176,7 +177,7 @@ impl Session {
         }
     }
 
-    /// The time for the flow, which has no clock.
+    /// The present time, for flow control, which has no clock.
     pub(super) fn now(&self) -> Duration {
         self.begun_at.elapsed()
     }

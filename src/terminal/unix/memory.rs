@@ -1,8 +1,8 @@
-//! How much memory this process takes.
+//! The memory of this process.
 
 use std::fs;
 
-/// The most memory that this process has had at once, in bytes, as Linux tells it; `None` on others.
+/// The peak memory of this process in bytes, on Linux; `None` on other systems.
 pub(crate) fn peak_memory() -> Option<u64> {
     let status = fs::read_to_string("/proc/self/status").ok()?;
     let peak = status.lines().find_map(|line| line.strip_prefix("VmHWM:"))?;

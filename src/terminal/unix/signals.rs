@@ -1,5 +1,5 @@
-//! Signals: a thread takes them, passes them on as bytes to poll for, and sees to it that those
-//! that end the program do end it.
+//! Signals: a thread receives them, passes them on as bytes that can be polled, and ensures that
+//! the signals that end the program do so.
 
 use std::io::{self, Read, Write};
 use std::mem;
@@ -20,41 +20,41 @@ use super::super::QuitReason;
 use super::super::guard::Guard;
 use super::wait;
 
-/// How long the program has, once it is told to end, before it is ended by force.
+/// The time from a signal that should end the program until the program is ended by force.
 const GRACE: Duration = Duration::from_secs(1);
 
-/// Those that change what the program does by default.
+/// The signals that end or stop the program by default.
 const EFFECTIVE: [i32; 4] = [SIGHUP, SIGINT, SIGTERM, SIGTSTP];
 
-/// Those that it ignores by default.
+/// The signals that have no effect by default.
 const NOTICES: [i32; 2] = [SIGCONT, SIGWINCH];
 
-/// What a signal means here.
+/// The meaning of a signal.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub(in super::super) enum Signal {
     /// The window has another size.
     Resized,
-    /// Somebody wants the program to stop for a while.
+    /// The program should stop for a while.
     Suspend,
-    /// It goes on after a stop.
+    /// The program continues after a stop.
     Continued,
-    /// It is to end.
+    /// The program should end.
     Quit(QuitReason),
 }
 
-/// The signals that arrive during a session. Before and after, they do what they always do.
+/// The signals that arrive during a session. Before and after it, they have their default effects.
 #[derive(Debug)]
 pub(in super::super) struct Signals {
     receiver: UnixStream,
     handle: Handle,
     thread: Option<JoinHandle<()>>,
-    /// What arrived while only one signal was of interest.
+    /// Signals that arrived during a wait for another one.
     deferred: Vec<Signal>,
 }
 
 impl Signals {
-    /// Takes the signals over. When one says that the program is to end and it does not, gives the
-    /// terminal back through `guard`, and ends it.
+    /// Begins to receive signals. If a signal should end the program and the program continues, the
+    /// thread gives the terminal back through `guard` and ends the program.
     pub(in super::super) fn listen(guard: &Arc<Guard>) -> io::Result<Self> {
         let (receiver, sender) = UnixStream::pair()?;
         receiver.set_nonblocking(true)?;
@@ -69,7 +69,7 @@ impl Signals {
         Ok(Self { receiver, handle, thread: Some(thread), deferred: Vec::new() })
     }
 
-    /// Those that have arrived since the last call.
+    /// Returns the signals since the last call.
     pub(in super::super) fn take(&mut self) -> Vec<Signal> {
         let mut signals = mem::take(&mut self.deferred);
         let mut numbers = [0; 64];
@@ -80,13 +80,13 @@ impl Signals {
     }
 
     /// Stops this program, and those that were started with it, until the shell continues them.
-    /// Returns at once where there is no shell that would.
+    /// Returns at once if there is no shell to continue them.
     pub(in super::super) fn stop_until_continued(&mut self) -> io::Result<()> {
         if !is_a_job()? {
             return Ok(());
         }
         kill_current_process_group(ProcessSignal::STOP)?;
-        // It may be another thread that takes the signal, a little later than we get here.
+        // Another thread may receive the signal, a little later than this point.
         self.wait_until_continued()
     }
 
@@ -114,7 +114,7 @@ impl Drop for Signals {
     fn drop(&mut self) {
         self.handle.close();
         if let Some(thread) = self.thread.take() {
-            // It cannot be of use to know that it panicked.
+            // A panic of the thread has no consequences here.
             _ = thread.join();
         }
         if let Ok(default_effects) = default_effects() {
@@ -123,14 +123,14 @@ impl Drop for Signals {
     }
 }
 
-/// Whether a shell has put us in a process group of our own, as it does with every job. In the
-/// session's first group, there is nobody above to continue what has stopped.
+/// Whether a shell has given the program a process group of its own, as it does for every job. In
+/// the session's first group, no parent can continue a stopped program.
 fn is_a_job() -> io::Result<bool> {
     Ok(getpgrp() != getsid(None)?)
 }
 
-/// Whether signals do what they do by default. A handler, once set, stays for as long as the process runs;
-/// without this, Ctrl-C would do nothing after a session.
+/// Whether signals have their default effects. A handler stays for the life of the process; without
+/// this flag, Ctrl-C would have no effect after a session.
 fn default_effects() -> io::Result<&'static AtomicBool> {
     static FLAG: OnceLock<Arc<AtomicBool>> = OnceLock::new();
     if let Some(flag) = FLAG.get() {
@@ -145,13 +145,13 @@ fn default_effects() -> io::Result<&'static AtomicBool> {
 
 fn pass_on(mut incoming: Incoming, mut sender: &UnixStream, guard: &Guard) {
     for number in incoming.forever() {
-        // It fails where thousands are waiting already: then nobody listens any more.
+        // Fails only if thousands of bytes are waiting; then no session reads them any more.
         _ = sender.write(&[number as u8]);
         if let Some(Signal::Quit(_)) = meaning(number) {
             guard.shut_down();
             if !guard.wait_until_given_back(GRACE) {
                 guard.give_back();
-                // Does not return, unless the signal's name is wrong.
+                // Returns only if the number is not a signal.
                 _ = emulate_default_handler(number);
             }
         }

@@ -1,4 +1,4 @@
-//! Which colours become entries of the palette, and when.
+//! The choice of colours for entries of the palette.
 
 use super::super::bytes::Bytes;
 use super::super::ink::{Ink, Price};
@@ -9,20 +9,22 @@ use super::{Count, Palette, entry_place, place};
 use crate::color::lab::PackedLab;
 use crate::terminal::sequence;
 
-/// About how many bytes a use of an entry spares.
+/// The approximate number of bytes that a use of an entry saves.
 const SPARED: f32 = 8.0;
-/// A colour is defined that was wanted by so many halves of cells, in a frame that is exact; and in one that
-/// is not, where most of them are left as they are, where it spares as much as so many.
+/// The number of half cells in a frame that must use a colour for it to be defined: in an exact
+/// frame, and in an inexact one, where most of them are kept. In the latter, the savings must be as
+/// large as those of this number of full uses.
 const LEAST_USES: f32 = 2.0;
 const LEAST_USES_INEXACT: f32 = 4.0;
-/// So many definitions are in one sequence: there are terminals that take sixteen parameters at most.
+/// The number of definitions in one sequence: some terminals accept at most sixteen parameters.
 const AT_ONCE: usize = 7;
 
 impl Palette {
-    /// Begins a frame, on a terminal that draws in `style`: takes note of what its cells show and what they are
-    /// to show, row by row, and defines what is frequent.
+    /// Begins a frame, on a terminal with this `style`: counts the shown colours and the targets'
+    /// colours, row by row, and defines the frequent ones.
     ///
-    /// Yields the definitions, if there are any, which are to be given back with [`Palette::keep`].
+    /// Returns the definitions, if there are any. The caller must give them back with
+    /// [`Palette::keep`].
     pub(in super::super) fn begin_frame(
         &mut self,
         screen: &Screen,
@@ -65,7 +67,7 @@ impl Palette {
         Some(definitions)
     }
 
-    /// Keeps the memory of definitions.
+    /// Keeps the memory of definitions for the next ones.
     pub(in super::super) fn keep(&mut self, definitions: Bytes) {
         self.definitions = definitions;
     }
@@ -93,8 +95,8 @@ impl Palette {
         }
     }
 
-    /// Whether to define a colour that was wanted so often spares more bytes than it takes, beside what is
-    /// nearest to it so far.
+    /// Whether the definition of a colour with this number of uses saves more bytes than it takes,
+    /// compared with the entry that is now nearest to the colour.
     fn is_worth_defining(&mut self, Count { shade, count }: Count, price: Option<Price>) -> bool {
         let Kind::Rgb(channels) = shade.kind() else { return false };
         // Each unit is half a use.
@@ -111,7 +113,7 @@ impl Palette {
         uses * spared >= LEAST_USES_INEXACT * SPARED
     }
 
-    /// Defines the colours that were wanted most, as far as that is worth it and there are entries for them.
+    /// Defines the most frequent colours, as far as that saves bytes and there are free entries.
     fn define_frequent(&mut self, price: Option<Price>, bytes: &mut Bytes) {
         let mut frequent = std::mem::take(&mut self.frequent);
         frequent.clear();
@@ -133,7 +135,7 @@ impl Palette {
         self.free.sort_unstable_by_key(|&entry| (wanted_at[usize::from(entry)], entry));
         self.frequent.sort_unstable_by_key(|count| (u16::MAX - count.count, count.shade.in_bits()));
         let (entries, colors, is_shown) = (&self.entries, &self.colors, &self.is_shown);
-        // Each place tells of one entry: where that is shown, it must go on to.
+        // Each place refers to one entry; while that is shown, it must not be replaced.
         let is_told_of = |shade: Shade| {
             let entry = usize::from(entries[entry_place(shade)]);
             is_shown[entry] && colors[entry] != Shade::DEFAULT
@@ -155,7 +157,7 @@ impl Palette {
     }
 
     fn define(&mut self, entry: u8, shade: Shade, channels: [u8; 3]) {
-        // Of the one that this place has told of, nobody knows any more.
+        // The previous entry at this place can no longer be found.
         let forgotten = usize::from(self.entries[entry_place(shade)]);
         if entry_place(self.colors[forgotten]) == entry_place(shade) {
             self.colors[forgotten] = Shade::DEFAULT;

@@ -1,4 +1,4 @@
-//! Drawing on the screen that is to be shown.
+//! The canvas: draws the targets of a screen.
 
 use ratatui::buffer::Cell;
 use ratatui::layout::Rect;
@@ -68,7 +68,7 @@ impl Canvas for Screen {
 }
 
 impl Screen {
-    /// The cells from `(x, y)` to the right; none off the screen.
+    /// The targets from `(x, y)` to the right; empty off the screen.
     #[inline]
     fn targets_from(&mut self, x: u16, y: u16) -> &mut [PackedCell] {
         let row = usize::from(y) * self.width;
@@ -76,7 +76,7 @@ impl Screen {
         self.targets.get_mut(cells).unwrap_or_default()
     }
 
-    /// Shows what stands for `character`.
+    /// Draws the ASCII substitute of `character`.
     fn draw_ascii(&mut self, x: u16, y: u16, character: char, colors: [Color; 2]) {
         let character = ascii::substitute(character.encode_utf8(&mut [0; 4]));
         let target =
@@ -86,7 +86,7 @@ impl Screen {
         }
     }
 
-    /// Shows cells of two colours without a block: in the lower one.
+    /// Draws cells of two colours without a block element, in their lower colours.
     fn draw_grounds(&mut self, x: u16, y: u16, row: impl Iterator<Item = [Color; 2]>) {
         for (x, colors) in (x..).zip(row) {
             self.draw_ascii(x, y, ' ', colors);

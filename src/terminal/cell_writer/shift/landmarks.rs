@@ -1,31 +1,32 @@
-//! Landmarks: what of a row can be found again where it has moved to.
+//! Landmarks: recognizable cells, by which a move of a row is detected.
 //!
-//! A landmark is a pair of unlike neighbours, told by a mark of eight bits. Each mark of a row is compared
-//! with all that were around it before, which is a few instructions for sixteen of them, and so votes for
-//! the moves that may have brought it there. To compare what cells look like took longer than all the rest
-//! of the encoder, and to look each up in a table missed those that are there several times.
+//! A landmark is a cell that differs from the one before it, identified by a mark of eight bits.
+//! Each mark of a row is compared with all previous marks around it, in a few instructions for
+//! sixteen of them, and votes for the moves that may have brought it there. Comparing the
+//! appearance of cells took longer than the rest of the encoder; a table of marks missed those that
+//! occur several times.
 
 use super::super::packed_cell::PackedCell;
 use super::{Move, Shift, Way};
 
-/// The marks of a row's cells, as they are to be and as they were.
+/// The marks of a row's targets, now and before.
 #[derive(Debug, Default)]
 pub(super) struct Landmarks {
     hashes: Vec<u32>,
     now: Vec<Mark>,
-    /// With as many on either side as are looked at from the first cell and from the last.
+    /// With [`FARTHEST`] empty marks on either side.
     before: Vec<Mark>,
 }
 
-/// The farthest that is looked for: what moves faster has changed in other ways too.
+/// The farthest detected move: content that moves faster has usually changed in other ways too.
 const FARTHEST: usize = 16;
-/// So many moves of a row are tried. Twice as many spare half a byte in a hundred.
+/// The number of moves that are tried for a row. Twice as many save half a byte in a hundred.
 const MOST_TRIED: usize = 2;
-/// So few landmarks may agree by chance.
+/// This number of landmarks may agree by chance.
 const CHANCE: u16 = 2;
 
 impl Landmarks {
-    /// Finds those of a row that is to look like that, and had those marks before.
+    /// Finds the landmarks of a row with these targets and these previous marks.
     pub(super) fn find(&mut self, targets: &[PackedCell], before: &[Mark]) {
         self.hashes.clear();
         self.hashes.extend(targets.iter().map(|target| target.hash()));
@@ -38,7 +39,7 @@ impl Landmarks {
         self.before.resize(FARTHEST + before.len() + FARTHEST, nothing);
     }
 
-    /// The moves that brought most of them to where they are.
+    /// The moves with the most votes.
     pub(super) fn likely_moves(&self) -> impl Iterator<Item = Move> {
         let votes = self.votes();
         let mut likely = [None; MOST_TRIED];
@@ -55,7 +56,7 @@ impl Landmarks {
         likely.into_iter().flatten()
     }
 
-    /// For how many landmarks there was a like one in each place around theirs.
+    /// Counts, for each distance, the landmarks that have an equal previous mark there.
     fn votes(&self) -> Votes {
         let mut votes = Votes::default();
         let around = self.before.windows(FARTHEST + 1 + FARTHEST);
@@ -66,30 +67,31 @@ impl Landmarks {
         votes
     }
 
-    /// The row has been moved.
+    /// Moves the previous marks, after a shift.
     pub(super) fn shift(&mut self, shift: &Shift) {
         let row = &mut self.before[FARTHEST..][..self.now.len()];
         shift.apply(row, Mark::NONE.before());
     }
 
-    /// The marks of the row as it is to be.
+    /// The marks of the row's targets.
     pub(super) fn marks(&self) -> &[Mark] {
         &self.now
     }
 }
 
-/// How many landmarks were in each place around where they are now, from left to right.
+/// The number of landmarks with an equal previous mark at each distance, from left to right.
 #[derive(Default)]
 struct Votes {
     on_the_left: [u16; FARTHEST],
     on_the_right: [u16; FARTHEST],
 }
 
-/// So many votes can be counted in eight bits.
+/// The number of votes that can be counted in eight bits.
 const MOST_AT_ONCE: usize = u8::MAX as usize;
 
 impl Votes {
-    /// Adds the votes of no more landmarks than that, each with all that was around it before.
+    /// Adds the votes of at most [`MOST_AT_ONCE`] landmarks, each with the previous marks around
+    /// it.
     fn add<'a>(&mut self, places: impl Iterator<Item = (Mark, &'a [Mark])>) {
         let (mut on_the_left, mut on_the_right) = ([0_u8; FARTHEST], [0_u8; FARTHEST]);
         for (now, around) in places {
@@ -102,18 +104,18 @@ impl Votes {
         widen(&mut self.on_the_right, &on_the_right);
     }
 
-    /// How many have moved to the left by so many cells.
+    /// The number of landmarks that have moved to the left by this number of cells.
     fn left(&self, by: usize) -> u16 {
         self.on_the_right[by - 1]
     }
 
-    /// How many have moved to the right by so many cells.
+    /// The number of landmarks that have moved to the right by this number of cells.
     fn right(&self, by: usize) -> u16 {
         self.on_the_left[FARTHEST - by]
     }
 }
 
-/// Adds the votes for the places in which there was such a landmark.
+/// Adds a vote for each place with an equal previous mark.
 #[inline]
 fn count(votes: &mut [u8; FARTHEST], before: &[Mark; FARTHEST], now: Mark) {
     for (votes, &before) in votes.iter_mut().zip(before) {
@@ -121,7 +123,8 @@ fn count(votes: &mut [u8; FARTHEST], before: &[Mark; FARTHEST], now: Mark) {
     }
 }
 
-/// Adds up votes. Inlined, it makes the compiler count eight places at once instead of sixteen.
+/// Adds votes to sums. When this was inlined, the compiler counted eight places at once instead of
+/// sixteen.
 #[inline(never)]
 fn widen(sums: &mut [u16; FARTHEST], votes: &[u8; FARTHEST]) {
     for (sum, &votes) in sums.iter_mut().zip(votes) {
@@ -129,28 +132,28 @@ fn widen(sums: &mut [u16; FARTHEST], votes: &[u8; FARTHEST]) {
     }
 }
 
-/// What a landmark is told by.
+/// The mark of a landmark.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 #[repr(transparent)]
 pub(in super::super) struct Mark(u8);
 
 impl Mark {
-    /// Of a cell that is like the one before it.
+    /// The mark of a cell that is equal to the one before it.
     pub(in super::super) const NONE: Self = Self(0);
 
-    /// The mark in a row from before, where that of no landmark is another, so that none is alike.
+    /// The same as a previous mark. `NONE` has another value there, so that no mark is equal to it.
     fn before(self) -> Self {
         Self(self.0.max(1))
     }
 
-    /// The marks of a row's cells, whose packed cells have those hashes.
+    /// The marks of a row's cells, from the hashes of their packed cells.
     pub(super) fn all(hashes: &[u32]) -> impl Iterator<Item = Self> {
         let pairs = hashes.iter().zip(hashes.iter().skip(1));
         let marks = pairs.map(|(&last, &hash)| {
             let pair = last.rotate_left(5).wrapping_add(hash);
             if last == hash { Self::NONE } else { Self(((pair >> 24) as u8).max(2)) }
         });
-        // What the first one follows is unknown, and so it is no landmark.
+        // The cell before the first one is unknown, so that the first one is no landmark.
         hashes.first().map(|_| Self::NONE).into_iter().chain(marks)
     }
 }

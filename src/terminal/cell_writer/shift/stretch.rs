@@ -1,13 +1,14 @@
-//! The stretch of a row that is best moved.
+//! The search for the best stretch of a row to move.
 
 use std::ops::Range;
 
 use super::Loss;
 
-/// About the stretch with the most spared, where that much is lost now, and that much after it has moved.
+/// The approximate stretch with the largest saving, from the losses `now` and the losses if all
+/// cells had `moved`.
 ///
-/// It is found block by block, and then its ends to the cell: the best one to the cell takes longer than
-/// all that it finds is worth.
+/// The search finds blocks first, and then moves the ends by cells. An exact search takes more time
+/// than its better result saves.
 pub(super) fn best_stretch(now: &[Loss], moved: &[Loss]) -> Range<usize> {
     let width = now.len().min(moved.len());
     let (now, moved) = (&now[..width], &moved[..width]);
@@ -23,10 +24,10 @@ pub(super) fn best_stretch(now: &[Loss], moved: &[Loss]) -> Range<usize> {
     start..end.max(start)
 }
 
-/// So many cells are one block.
+/// The number of cells of a block.
 const BLOCK: usize = 8;
 
-/// The blocks with the most spared.
+/// The blocks with the largest saving.
 fn best_blocks(now: &[Loss], moved: &[Loss]) -> Range<usize> {
     let ((now, rest_of_now), (moved, rest_of_moved)) =
         (now.as_chunks::<BLOCK>(), moved.as_chunks::<BLOCK>());
@@ -46,13 +47,13 @@ fn best_blocks(now: &[Loss], moved: &[Loss]) -> Range<usize> {
     best
 }
 
-/// How much more is lost now in a block than after.
+/// The saving of a move in a block.
 #[inline]
 fn spared(now: &[Loss], moved: &[Loss]) -> Loss {
     now.iter().zip(moved).map(|(now, moved)| now - moved).sum()
 }
 
-/// How many of the first of `gains` have the largest sum.
+/// The length of the prefix of `gains` with the largest sum.
 fn most_of(gains: impl Iterator<Item = Loss>) -> usize {
     let (mut sum, mut most, mut best) = (0, 0, 0);
     for (count, gain) in (1..).zip(gains) {

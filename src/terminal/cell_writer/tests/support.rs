@@ -1,4 +1,4 @@
-//! A terminal to draw on in tests, and pictures to draw.
+//! A simulated terminal for tests, and pictures.
 
 use std::cell::RefCell;
 use std::io::{self, Write};
@@ -13,7 +13,7 @@ use ratatui::style::{Color, Modifier};
 
 use super::super::CellWriter;
 
-/// A terminal's screen that counts the writes that reach it.
+/// A terminal's screen that counts the writes to it.
 #[derive(Clone)]
 pub(super) struct Screen(pub(super) Rc<RefCell<Received>>);
 
@@ -37,7 +37,7 @@ impl Screen {
         self.0.borrow().writes
     }
 
-    /// What has been received since the last call.
+    /// The text received since the last call.
     pub(super) fn take_text(&self) -> String {
         String::from_utf8(std::mem::take(&mut self.0.borrow_mut().bytes)).unwrap()
     }
@@ -70,7 +70,7 @@ pub(super) fn draw(terminal: &mut Terminal<CellWriter<Screen>>, content: &Buffer
     terminal.draw(|frame| frame.buffer_mut().merge(content)).unwrap();
 }
 
-/// Draws `cells` in a row, and answers what was written for it.
+/// The bytes that draw `cells` in a row.
 pub(super) fn bytes_of(cells: &[Cell]) -> String {
     let (mut terminal, screen) = terminal(Size::new(10, 1));
     let mut buffer = Buffer::empty(Rect::new(0, 0, cells.len() as u16, 1));
@@ -79,7 +79,7 @@ pub(super) fn bytes_of(cells: &[Cell]) -> String {
     screen.take_text()
 }
 
-/// What was written for `cells`, one sequence a line.
+/// The bytes that draw `cells`, one sequence a line.
 pub(super) fn readable(cells: &[Cell]) -> String {
     bytes_of(cells).replace('\x1b', "\nESC").trim_start().to_owned()
 }
@@ -122,7 +122,7 @@ pub(super) fn assert_shown(screen: &Screen, content: &Buffer) {
     }
 }
 
-/// What a cell looks like: block characters by the colours of their halves.
+/// The appearance of a cell; of block elements, the colours of the halves.
 #[derive(Debug, PartialEq)]
 enum Looks {
     Halves(vt100::Color, vt100::Color),
@@ -199,7 +199,8 @@ pub(super) fn any_buffer(size: Size) -> impl Strategy<Value = Buffer> {
     )
 }
 
-/// After a wide symbol, ratatui's widgets leave the next cell blank; none stands in the last column.
+/// Blanks the cell after each wide symbol, as ratatui's widgets do, and replaces wide symbols in
+/// the last column.
 pub(super) fn tidy_wide_symbols(buffer: &mut Buffer) {
     for y in 0..buffer.area.height {
         for x in 0..buffer.area.width {

@@ -1,4 +1,4 @@
-//! The glyphs and colours that a cell may be drawn in after each of the paths to it.
+//! Branches: the glyphs and colours in which a cell may be drawn after each path.
 
 use super::super::ink::Price;
 use super::super::packed_cell::BlockElement;
@@ -16,24 +16,24 @@ pub(super) struct Branches<'a> {
     paths: &'a Paths,
     x: u16,
     repeats: bool,
-    /// What it costs to come here by each path, and the least of these.
+    /// The cost of each path to this cell, and the least of these.
     start: Lanes,
     least: f32,
 }
 
-/// Which of the fresh colours is which.
+/// The indices of the fresh colours.
 const UPPER: u8 = 0;
 const LOWER: u8 = 1;
 const BOTH: u8 = 2;
 
-/// The bytes of a sequence that sets one colour, without the colour, and of one that sets both.
+/// The bytes of a sequence that sets one colour, without the parameters, and of one that sets both.
 const ONE_COLOR: f32 = 3.0;
 const TWO_COLORS: f32 = 4.0;
-/// The least that a colour takes as parameters.
+/// The fewest bytes of a colour's parameters.
 const SHORTEST_COLOR: f32 = 2.0;
-/// The same of an entry of the palette.
+/// The fewest bytes of a palette entry's parameters.
 const SHORTEST_ENTRY: f32 = 7.0;
-/// About how many bytes it takes to draw once more what was drawn just before.
+/// The approximate bytes of one repetition of the last block.
 const REPETITION: f32 = 0.5;
 
 impl<'a> Branches<'a> {
@@ -46,8 +46,8 @@ impl<'a> Branches<'a> {
         Self { wanted, price, paths, x, repeats, start, least }
     }
 
-    /// Draws in the colours of text and ground that the terminal draws in already, and in one new colour or
-    /// in two. What is right is drawn again only where that is a shorter way to the next cell.
+    /// Draws in the terminal's present colours, in one new colour and in two. A cell that is
+    /// already right is drawn again only if that is a shorter way to the next cell.
     #[inline]
     pub(super) fn draw(&mut self, survivors: &mut Survivors, store: &mut Store) {
         let is_right = survivors.is_right();
@@ -72,7 +72,7 @@ impl<'a> Branches<'a> {
         }
     }
 
-    /// The character in the old colours.
+    /// Draws the character in the old colours.
     #[inline]
     fn draw_character(&self, errors: &Errors, bytes: f32, survivors: &mut Survivors) {
         let costs = sum(&sum(&self.start, &errors.text_above), &errors.ground_below);
@@ -108,7 +108,7 @@ impl<'a> Branches<'a> {
         }
     }
 
-    /// What was drawn just before costs less to draw again.
+    /// Reduces the cost of repeating the last block.
     #[inline]
     fn repeat(&self, Blocks { space, full, upper, lower }: &mut Blocks) {
         for path in 0..KEPT {
@@ -169,7 +169,7 @@ impl<'a> Branches<'a> {
         }
     }
 
-    /// In one colour for both halves.
+    /// Draws both halves in one new colour.
     #[inline]
     fn draw_in_one_for_both(
         &self,
@@ -183,7 +183,7 @@ impl<'a> Branches<'a> {
             return;
         }
         self.offer_for_both(survivors, below, LOWER);
-        // Halfway, the errors add up to no less than the distance.
+        // Halfway between two colours, the errors add up to at least their distance.
         let apart = upper.distance(lower);
         let least = ONE_COLOR + SPACE + SHORTEST_COLOR + apart * self.price.bytes;
         let is_needed = apart > self.price.farthest && apart <= 2.0 * self.price.farthest;
@@ -207,7 +207,8 @@ impl<'a> Branches<'a> {
         }
     }
 
-    /// In two new colours, which lead to the same from everywhere.
+    /// Draws in two new colours. All paths then lead to the same state, so that only the cheapest
+    /// is added.
     #[inline]
     fn draw_in_two_colors(&self, survivors: &mut Survivors, [upper, lower]: &[Telling; 2]) {
         let cost = self.least + TWO_COLORS + upper.cost() + lower.cost() + self.bytes_of_half();
@@ -224,13 +225,13 @@ impl<'a> Branches<'a> {
         }
     }
 
-    /// What a half block takes, or the character.
+    /// The bytes of a half block, or of the character.
     #[inline]
     fn bytes_of_half(&self) -> f32 {
         self.wanted.character.map_or(HALF_BLOCK, f32::from)
     }
 
-    /// Adds those paths that draw `glyph` for so much and would survive.
+    /// Adds the paths that would survive if they draw `element` at these costs.
     #[inline]
     fn offer(&self, survivors: &mut Survivors, costs: &Lanes, element: BlockElement, told: Told) {
         if survivors.would_keep(least(costs)) {
@@ -238,7 +239,7 @@ impl<'a> Branches<'a> {
         }
     }
 
-    /// The same where at least one would. Not inlined, so that the check is.
+    /// Adds them if at least one would survive. Not inlined, so that the check before it is.
     #[inline(never)]
     fn add_all(&self, survivors: &mut Survivors, costs: &Lanes, element: BlockElement, told: Told) {
         for (path, &cost) in costs.iter().enumerate() {
@@ -248,7 +249,7 @@ impl<'a> Branches<'a> {
         }
     }
 
-    /// Adds a path that draws `glyph`.
+    /// Adds a path that draws `element`.
     #[expect(clippy::inline_always, reason = "a call would take a quarter of its time")]
     #[inline(always)]
     fn add(
@@ -266,7 +267,7 @@ impl<'a> Branches<'a> {
     }
 }
 
-/// The least that a colour of so many bytes takes as parameters, itself or what may be told for it.
+/// The fewest parameter bytes of a colour that takes `bytes` itself, or of an entry in place of it.
 #[inline]
 fn shortest(bytes: f32, palette: &Palette) -> f32 {
     if palette.is_on() { min(bytes, SHORTEST_ENTRY) } else { bytes }

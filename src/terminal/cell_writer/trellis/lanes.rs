@@ -1,22 +1,23 @@
-//! What is computed for all paths at once.
+//! Computations for all paths at once.
 //!
-//! The longer functions are not inlined: by themselves they become vector instructions, four paths at a time;
-//! inlined, the compiler takes the paths apart again, and a cell took three times the instructions.
+//! The longer functions are not inlined: on their own they compile to vector instructions, four
+//! paths at a time. When they were inlined, the compiler split the paths, and a cell took three
+//! times the instructions.
 
 use super::super::ink::{Ink, Price};
 use super::{KEPT, Paths};
 
-/// One number for each path.
+/// A number for each path.
 pub(super) type Lanes = [f32; KEPT];
 
 /// L*, a* and b* of a colour for each path.
 pub(super) type Labs = [Lanes; 3];
 
-/// The bytes of the glyphs that show one colour and two.
+/// The bytes of a glyph of one colour, and of two.
 pub(super) const SPACE: f32 = 1.0;
 pub(super) const HALF_BLOCK: f32 = 3.0;
 
-/// What it costs, path by path, that the colours of text and ground stand for each half.
+/// The costs, path by path, of showing the text or the background colour in each half.
 #[derive(Default)]
 pub(super) struct Errors {
     pub(super) text_above: Lanes,
@@ -25,7 +26,7 @@ pub(super) struct Errors {
     pub(super) ground_below: Lanes,
 }
 
-/// What a block of the old colours takes, path by path.
+/// The costs, path by path, of drawing each block in the old colours.
 #[derive(Default)]
 pub(super) struct Blocks {
     pub(super) space: Lanes,
@@ -34,7 +35,7 @@ pub(super) struct Blocks {
     pub(super) lower: Lanes,
 }
 
-/// What the paths cost, and about how many bytes it takes to get from their cursors to column `x`.
+/// The costs of the paths, plus the approximate bytes to move their cursors to column `x`.
 #[inline(never)]
 pub(super) fn add_motions(paths: &Paths, x: u16, start: &mut Lanes) {
     let x = f32::from(x);
@@ -46,8 +47,8 @@ pub(super) fn add_motions(paths: &Paths, x: u16, start: &mut Lanes) {
     }
 }
 
-/// What it costs that the colours of the paths stand for those that are wanted, and what each of the blocks takes in
-/// them. In one function, so that no number is stored and loaded again.
+/// Measures the errors of the paths' colours against the wanted ones, and the costs of the blocks
+/// in them. One function does both, so that no number is stored and loaded again.
 #[inline(never)]
 pub(super) fn measure(
     labs: &[Labs; 2],
@@ -76,7 +77,7 @@ pub(super) fn measure(
     }
 }
 
-/// What the cheapest of them costs.
+/// The cost of the cheapest block.
 #[inline(never)]
 pub(super) fn choose(blocks: &Blocks, start: &Lanes, costs: &mut Lanes) {
     let Blocks { space, full, upper, lower } = blocks;
@@ -96,13 +97,13 @@ pub(super) fn plus(one: &Lanes, other: f32) -> Lanes {
     one.map(|one| one + other)
 }
 
-/// The least of all paths.
+/// The least of all costs.
 #[inline]
 pub(super) fn least(costs: &Lanes) -> f32 {
     min(min(costs[0], costs[1]), min(costs[2], costs[3]))
 }
 
-/// The lesser of two numbers: one instruction, where `f32::min` also looks for what is no number.
+/// The lesser of two numbers, in one instruction; `f32::min` also tests for NaN.
 #[inline]
 pub(super) fn min(one: f32, other: f32) -> f32 {
     if one < other { one } else { other }

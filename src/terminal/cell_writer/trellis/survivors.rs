@@ -1,37 +1,37 @@
-//! The cheapest of all the paths that go past a cell.
+//! Survivors: the cheapest paths past a cell.
 
 use super::super::style::Shade;
 use super::lanes::{Lanes, least, min};
 use super::{FRESH, KEPT, Paths, StepKind};
 
-/// The cheapest paths past a cell so far, no two of which lead to the same colours and the same place of
-/// the cursor.
+/// The cheapest paths past a cell so far. No two lead to the same colours and cursor column.
 pub(super) struct Survivors {
     pub(super) cost: Lanes,
     pub(super) turns: [Turn; KEPT],
-    /// Where they lead to.
+    /// The states that they lead to.
     pub(super) keys: [u64; KEPT],
-    /// L*, a* and b* of the colours that the terminal may be told.
+    /// L*, a* and b* of the new colours.
     pub(super) fresh: [[f32; 3]; FRESH],
-    /// What it costs to leave the cell as it is.
+    /// The cost of keeping the cell.
     keep: f32,
-    /// What costs no less than this does not survive.
+    /// A path survives only if it costs less than this.
     highest: f32,
-    /// Which of them costs most.
+    /// The index of the most expensive one.
     worst: usize,
     is_changed: bool,
 }
 
-/// What a path does about a cell.
+/// The action of a path on a cell.
 #[derive(Clone, Copy, Debug)]
 pub(super) struct Turn {
     pub(super) kind: StepKind,
     pub(super) before: u8,
-    /// Where the colours of text and ground come from: the paths before, and then the fresh ones.
+    /// The sources of the text and background colours: below [`KEPT`] the paths before, from there
+    /// on the fresh colours.
     pub(super) sources: [u8; 2],
 }
 
-/// What all paths do that leave the cell as it is.
+/// The turns of paths that all keep the cell.
 const KEEP: [Turn; KEPT] = {
     let mut turns = [Turn { kind: StepKind::Keep, before: 0, sources: [0; 2] }; KEPT];
     let mut path = 0;
@@ -44,7 +44,7 @@ const KEEP: [Turn; KEPT] = {
 };
 
 impl Survivors {
-    /// Those paths.
+    /// The paths themselves, before any cell.
     pub(super) fn of(paths: &Paths) -> Self {
         Self {
             cost: paths.cost,
@@ -58,7 +58,7 @@ impl Survivors {
         }
     }
 
-    /// Begins with all paths that leave the cell as it is, for so many bytes.
+    /// Begins with all paths, which keep the cell at this cost in bytes.
     #[inline]
     pub(super) fn begin(&mut self, paths: &Paths, keep: f32) {
         for (cost, before) in self.cost.iter_mut().zip(&paths.cost) {
@@ -71,25 +71,25 @@ impl Survivors {
         self.find_worst();
     }
 
-    /// Whether the cell shows what it is to show.
+    /// Whether the cell shows its target exactly.
     #[inline]
     pub(super) fn is_right(&self) -> bool {
         self.keep == 0.0
     }
 
-    /// Whether a path of that cost would survive.
+    /// Whether a path of this cost would survive.
     #[inline]
     pub(super) fn would_keep(&self, cost: f32) -> bool {
         cost < self.highest
     }
 
-    /// Whether any was added.
+    /// Whether any path was added.
     #[inline]
     pub(super) fn is_changed(&self) -> bool {
         self.is_changed
     }
 
-    /// Adds a path that is cheaper than the worst.
+    /// Adds a path that is cheaper than the most expensive survivor.
     #[inline]
     pub(super) fn add(&mut self, cost: f32, key: u64, turn: Turn) {
         let mut place = self.worst;
@@ -115,10 +115,10 @@ impl Survivors {
     }
 }
 
-/// What costs so many bytes more than the cheapest does not survive.
+/// A path does not survive if it costs this many bytes more than the cheapest.
 const BEAM: f32 = 24.0;
 
-/// What tells apart where paths lead to: the colours of text and ground, and the cursor.
+/// The key of a state: the text and background colours, and the cursor column.
 #[inline]
 pub(super) fn key([text, ground]: [Shade; 2], cursor: u16) -> u64 {
     u64::from(text.in_bits()) << TEXT
@@ -126,23 +126,24 @@ pub(super) fn key([text, ground]: [Shade; 2], cursor: u16) -> u64 {
         | u64::from(cursor) & CURSOR
 }
 
-/// The colours of text and ground that a key tells of.
+/// The text and background colours of a key.
 #[inline]
 pub(super) fn colors_of(key: u64) -> [Shade; 2] {
     [TEXT, GROUND].map(|place| Shade::from_bits((key >> place) as u32))
 }
 
-/// Where in a key the colours are, and which bits the cursor has.
+/// The places of the colours in a key, and the bits of the cursor.
 const TEXT: u32 = GROUND + Shade::BITS;
 const GROUND: u32 = 12;
 const CURSOR: u64 = (1 << GROUND) - 1;
 
-/// The colours that the terminal is told: by which bits of a key they change, and which of the fresh ones they are.
+/// The colours that a branch sets: the bits of a key that they change, and the indices of fresh
+/// colours.
 #[derive(Clone, Copy)]
 pub(super) struct Told {
     kept: u64,
     set: u64,
-    /// For text and ground, the bits of a path's number that are kept, and those that are set.
+    /// For text and background, the bits of a path's index to keep, and the bits to set.
     kept_sources: [u8; 2],
     set_sources: [u8; 2],
 }
@@ -151,13 +152,13 @@ impl Told {
     pub(super) const NOTHING: Self =
         Self { kept: !CURSOR, set: 0, kept_sources: [u8::MAX; 2], set_sources: [0; 2] };
 
-    /// And that colour of the text.
+    /// Adds this colour of the text.
     #[inline]
     pub(super) fn text(self, shade: Shade, source: u8) -> Self {
         self.with(shade, TEXT, 0, source)
     }
 
-    /// And that colour of the ground.
+    /// Adds this colour of the background.
     #[inline]
     pub(super) fn ground(self, shade: Shade, source: u8) -> Self {
         self.with(shade, GROUND, 1, source)
@@ -173,13 +174,13 @@ impl Told {
         Self { kept, set, kept_sources, set_sources }
     }
 
-    /// Where a path leads to from `key`, when the cursor stands there.
+    /// The key after `key`, with the cursor in this column.
     #[inline]
     pub(super) fn key(self, key: u64, cursor: u16) -> u64 {
         key & self.kept | self.set | u64::from(cursor) & CURSOR
     }
 
-    /// Where the colours come from after `path`.
+    /// The sources of the colours after `path`.
     #[inline]
     pub(super) fn sources(self, path: usize) -> [u8; 2] {
         let [text, ground] = self.kept_sources.map(|kept| kept & path as u8);

@@ -1,4 +1,4 @@
-//! The frames of a player: those of an encoder, or random sizes.
+//! Frames of a player, from an encoder or of random sizes.
 
 use std::time::Duration;
 
@@ -9,26 +9,27 @@ pub(in super::super) trait FrameSource {
     /// The size of a frame that is drawn at `now`, in bytes. `draw` is a random number below 1.
     fn bytes(&mut self, now: Duration, fidelity: Fidelity, draw: f64) -> f64;
 
-    /// The share of a frame that compression leaves.
+    /// The share of a frame's bytes that is left after compression.
     fn carried(&self, fidelity: Fidelity) -> f64;
 }
 
-/// How large frames are.
+/// The distribution of frame sizes.
 #[derive(Clone, Copy, Debug)]
 pub(in super::super) struct Frames {
-    /// The mean of exact ones, in bytes.
+    /// The mean size of exact frames, in bytes.
     pub(in super::super) exact: f64,
-    /// How far one may be from the mean, as a share of it.
+    /// The maximum deviation from the mean, as a share of it.
     pub(in super::super) spread: f64,
-    /// The share of a frame that compression leaves: of an exact one, and of a coarse one.
+    /// The share of the bytes that is left after compression: of an exact frame, and of a coarse
+    /// one.
     pub(in super::super) compressed: [f64; 2],
 }
 
 impl Frames {
-    /// Those of a walk through the citadel at 120×40, as `cellcaster wire` measures them.
+    /// The frames of a walk through the citadel at 120×40, as `cellcaster wire` measures them.
     pub(in super::super) const CITADEL: Self =
         Self { exact: 27_000.0, spread: 0.6, compressed: [1.0, 1.0] };
-    /// The same with `ssh -C`.
+    /// The same frames with `ssh -C`.
     pub(in super::super) const COMPRESSED: Self =
         Self { compressed: [0.183, 0.225], ..Self::CITADEL };
 
@@ -48,7 +49,7 @@ impl FrameSource for Frames {
     }
 }
 
-/// By how much smaller frames are at `fidelity`.
+/// The factor by which frames are smaller at `fidelity`.
 pub(in super::super) fn saving(fidelity: Fidelity) -> f64 {
     1.0 + f64::from(fidelity.tolerance()) * 0.3
 }

@@ -1,4 +1,4 @@
-//! A player, the game that is played, and what the terminal has shown.
+//! A player, the player's game, and the frames that the terminal has shown.
 
 use std::collections::VecDeque;
 
@@ -9,16 +9,16 @@ use super::FrameSource;
 pub(in super::super) struct Player {
     pub(in super::super) flow: Flow,
     pub(in super::super) shown: Vec<Shown>,
-    /// From pressing a key to the first frame that reflects it, in order of pressing.
+    /// The times from a key press to the first frame that reflects it, in order of the presses.
     pub(in super::super) latencies: Vec<Latency>,
     pub(super) frames: Box<dyn FrameSource>,
     pub(super) due: Duration,
     pub(super) next_key: Duration,
-    /// Answers and keys that are sent to the game, and when they arrive.
+    /// Answers and keys on their way to the game, with their arrival times.
     pub(super) upward: VecDeque<(Duration, Upward)>,
-    /// When the latest packet arrives, upward and downward.
+    /// The arrival times of the latest packets, upward and downward.
     pub(super) last: [Duration; 2],
-    /// Which keys are in the next frame.
+    /// The keys that the next frame reflects, by the times of their presses.
     pub(super) pressed: Vec<Duration>,
 }
 
@@ -28,18 +28,18 @@ pub(super) enum Upward {
     Key(Duration),
 }
 
-/// A key that was pressed, and how long it took to be seen.
+/// A key press, and the time until a frame showed it.
 #[derive(Clone, Copy, Debug)]
 pub(in super::super) struct Latency {
     pub(in super::super) pressed_at: Duration,
     pub(in super::super) taken: Duration,
 }
 
-/// A frame that was sent.
+/// A sent frame.
 #[derive(Clone, Debug)]
 pub(in super::super) struct Shown {
     pub(in super::super) sent_at: Duration,
-    /// When it is on the screen; `None` where it has not arrived.
+    /// The time at which it is on the screen; `None` if it has not arrived.
     pub(in super::super) at: Option<Duration>,
     pub(in super::super) fidelity: Fidelity,
     pub(in super::super) bytes: usize,
@@ -48,7 +48,7 @@ pub(in super::super) struct Shown {
 }
 
 impl Shown {
-    /// How old it is when it is seen; for ever where it is not.
+    /// The age of the frame when it is shown; the maximum if it never is.
     pub(in super::super) fn age(&self) -> Duration {
         self.at.map_or(Duration::MAX, |at| at.saturating_sub(self.sent_at))
     }
@@ -81,7 +81,7 @@ impl Player {
         }
     }
 
-    /// The frames that were sent after `time`.
+    /// The frames sent after `time`.
     pub(in super::super) fn shown_since(&self, time: Duration) -> Vec<&Shown> {
         self.shown.iter().filter(|shown| shown.bytes > 0 && shown.sent_at >= time).collect()
     }
@@ -95,7 +95,7 @@ impl Player {
         times.windows(2).map(|pair| pair[1].saturating_sub(pair[0])).max().unwrap_or_default()
     }
 
-    /// The most that was in flight at a time, in bytes before compression.
+    /// The maximum in flight at any time, in bytes before compression.
     pub(in super::super) fn most_in_flight(&self, begin: Duration) -> usize {
         let in_flight = |time| {
             let is_there =

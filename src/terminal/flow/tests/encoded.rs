@@ -1,4 +1,4 @@
-//! Flow control and the encoder together: the game's own frames over a simulated link.
+//! Flow control together with the encoder: frames of the game over a simulated link.
 
 use ratatui::backend::Backend;
 use ratatui::layout::Size;
@@ -11,7 +11,7 @@ use crate::map::builtin;
 use crate::terminal::CellWriter;
 use crate::tui::GlyphMode;
 
-/// A game in which the player keeps moving, and its encoder.
+/// A game in which the player moves without a pause, and its encoder.
 struct Game {
     replay: Replay,
     /// The intents of each step, repeated for ever.
@@ -54,7 +54,8 @@ impl FrameSource for Game {
     }
 }
 
-/// Where fidelity had no effect on palettes and characters, 256 colours gave 12 frames a second and characters 8.
+/// When fidelity had no effect on palettes and characters, 256 colours gave 12 frames a second and
+/// characters 8.
 #[test]
 fn in_every_depth_and_glyph_mode_a_megabit_carries_twenty_frames_a_second() {
     let link = Conditions { delay: 50 * MILLISECOND, jitter: Duration::ZERO, rate: MEGABIT };

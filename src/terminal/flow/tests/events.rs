@@ -1,4 +1,4 @@
-//! Decisions after one event and another.
+//! Tests of the decisions after sequences of events.
 
 use std::collections::VecDeque;
 
@@ -31,7 +31,7 @@ fn the_first_frame_over_a_network_is_coarse() {
 }
 
 #[test]
-fn a_dead_link_is_left_alone() {
+fn a_dead_link_receives_no_frames() {
     let mut flow = answered_once();
     send(&mut flow, SECOND, 1000);
     let mut now = SECOND;
@@ -84,7 +84,7 @@ fn an_answer_that_is_lost_shifts_the_others_until_the_next_fence() {
     let mut now = SECOND;
     flow.sent(now, 1000, Request::Status);
     let mut requests = VecDeque::new();
-    // The first answer is lost, and from then on one frame is always on its way.
+    // The first answer is lost; after it, one frame is always in flight.
     for _ in 0..100 {
         now += 60 * MILLISECOND;
         let request = flow.request(now);
@@ -102,7 +102,7 @@ fn an_answer_that_is_lost_shifts_the_others_until_the_next_fence() {
 }
 
 #[test]
-fn a_terminal_that_passes_over_requests_is_not_asked_again() {
+fn a_terminal_that_ignores_requests_is_not_asked_again() {
     let mut flow = Flow::new(false);
     flow.sent(Duration::ZERO, 0, Request::Status);
     flow.sent(Duration::ZERO, 0, Request::Fence);
@@ -120,7 +120,7 @@ fn a_terminal_that_passes_over_requests_is_not_asked_again() {
 }
 
 #[test]
-fn a_terminal_that_says_nothing_is_asked_once_or_twice() {
+fn a_silent_terminal_is_asked_once_or_twice() {
     let mut flow = Flow::new(false);
     flow.sent(Duration::ZERO, 0, Request::Status);
     flow.sent(Duration::ZERO, 0, Request::Fence);
@@ -134,7 +134,7 @@ fn a_terminal_that_says_nothing_is_asked_once_or_twice() {
 }
 
 #[test]
-fn an_answer_to_what_was_forgotten_counts_for_nothing() {
+fn an_answer_to_a_forgotten_request_is_ignored() {
     let mut flow = answered_once();
     send(&mut flow, 200 * MILLISECOND, 1000);
     flow.forget();
@@ -146,7 +146,7 @@ fn an_answer_to_what_was_forgotten_counts_for_nothing() {
     assert_eq!(flow.round_trip(), Some(100 * MILLISECOND));
 }
 
-/// What may happen to a program that shows frames.
+/// An event in a program that shows frames.
 #[derive(Clone, Copy, Debug)]
 enum Happening {
     Answer,
@@ -171,8 +171,8 @@ fn happening() -> impl Strategy<Value = Happening> {
 }
 
 proptest! {
-    /// Whatever is answered, lost or late, few frames are unanswered, and after a key a frame or a
-    /// fence is sent sooner or later.
+    /// However answers are delayed or lost, few frames are unanswered, and after a key a frame or a
+    /// fence is sent within the longest timeout.
     #[test]
     fn the_window_is_never_exceeded_and_never_closed_for_ever(
         happenings in prop::collection::vec(happening(), 0..200),

@@ -1,4 +1,5 @@
-//! Simulated links: frames are fresh on slow ones, exact on fast ones, and go on after losses and stalls.
+//! Simulated links: frames are fresh on slow links, exact on fast links, and continue after losses
+//! and stalls.
 
 use super::*;
 
@@ -26,7 +27,8 @@ fn on_a_fast_link_every_frame_is_exact_and_in_time() {
     }
 }
 
-/// Bytes over busy time takes jitter for slowness: 0 to 100 ms each way made most frames as coarse as can be.
+/// The quotient of bytes and busy time mistakes jitter for slowness: 0 to 100 ms each way made most
+/// frames as coarse as possible.
 #[test]
 fn jitter_is_not_taken_for_slowness() {
     for (jitter, frames_per_second) in [(50, 28), (100, 17)] {
@@ -44,7 +46,7 @@ fn jitter_is_not_taken_for_slowness() {
 }
 
 #[test]
-fn it_is_exact_again_when_the_link_has_become_fast() {
+fn frames_are_exact_again_when_the_link_has_become_fast() {
     let mut line = Simulation::of_one(20 * MILLISECOND, 100_000.0, Frames::all_of(40_000));
     line.walk(5 * SECOND);
     assert!(line.players[0].flow.fidelity() > Fidelity::EXACT);
@@ -53,8 +55,8 @@ fn it_is_exact_again_when_the_link_has_become_fast() {
     assert_eq!(line.players[0].flow.fidelity(), Fidelity::EXACT);
 }
 
-/// Late answers to frames that were given up made a link of 100 ms read as one of 0 to 17 ms, for as
-/// long as anything moved.
+/// When frames were removed after a timeout, their late answers made a link of 100 ms seem one of 0
+/// to 17 ms, for as long as anything moved.
 #[test]
 fn after_a_stall_answers_belong_to_their_frames() {
     let mut line = Simulation::of_one(50 * MILLISECOND, 10.0 * MEGABIT, Frames::CITADEL);
@@ -72,9 +74,9 @@ fn after_a_stall_answers_belong_to_their_frames() {
     assert_eq!(line.players[0].latencies.iter().find(slow).map(|one| one.taken), None);
 }
 
-/// Frames were sent on to a link that did not answer: 30 s of them lay before it.
+/// When frames were sent to a link that did not answer, 30 s of them waited for it.
 #[test]
-fn nothing_piles_up_before_a_link_that_has_become_slow() {
+fn no_frames_queue_before_a_link_that_has_become_slow() {
     let mut line = Simulation::of_one(20 * MILLISECOND, 10.0 * MEGABIT, Frames::CITADEL);
     line.walk(10 * SECOND);
     let before = line.players[0].shown_since(Duration::ZERO).len();
@@ -99,15 +101,16 @@ fn two_sessions_share_a_link_in_time() {
     }
 }
 
-/// What is in flight when a link becomes slow arrives before anything new. Without waiting for late answers, and
-/// with as many frames as the link has room for, it was 78 kB in the median and 103 kB at most.
+/// The frames in flight when a link becomes slow arrive before any new one. Without waiting for
+/// late answers, and with all frames that the link has room for, they had 78 kB in the median and
+/// 103 kB at most.
 #[test]
 fn little_is_in_flight_when_a_link_becomes_slow() {
     let [median, most] = scenarios::queued_after_drop(20, 20, Frames::CITADEL);
     assert!(median <= 50_000.0 && most <= 70_000.0, "{median} bytes, {most} at most");
 }
 
-/// The tables in the documentation are what the simulation gives today.
+/// The tables in the documentation are the present results of the simulation.
 #[test]
 fn the_documented_tables_are_those_of_this_policy() {
     let documented = include_str!("../../../../docs/links.md").replace("\r\n", "\n");
@@ -118,9 +121,10 @@ fn the_documented_tables_are_those_of_this_policy() {
 }
 
 proptest! {
-    /// On any link, after a while, what is shown is not much older than the link makes it.
+    /// On any link, after some seconds, frames on the screen are not much older than the link makes
+    /// them.
     #[test]
-    fn it_converges(
+    fn frames_become_fresh_on_any_link(
         delay in 0..200_u64,
         rate in 20_000.0..20e6,
         exact in 2_000..100_000_usize,
