@@ -201,7 +201,7 @@ impl DrawList {
     }
 
     /// Passes every wall column in `rows` to `sink`, neighbours in succession as far as possible.
-    /// The light is computed only for faces for which `is_lit` holds.
+    /// The light is computed only if `is_lit`.
     #[inline]
     pub(crate) fn for_each_wall_column(
         &self,

@@ -1,8 +1,9 @@
 //! The flat way to fill a draw list: each ray ends at the first wall.
 //!
-//! Few rays are cast: at both ends of the picture and in its middle, then in each half likewise,
-//! until two rays hit the same face of a wall. All rays between them hit that face, too. If two
-//! rays hit a tile that may be passed, all rays between them are cast.
+//! Few rays are cast: those at both ends of the picture, then the one in the middle, and likewise
+//! in each half, until two rays hit the same face of a wall. All rays between two such rays hit
+//! that face, too. Rays that hit a tile which may be passed are cast again, and the hits that they
+//! pass are recorded.
 
 mod layers;
 mod planes;
