@@ -55,7 +55,7 @@ impl TextureStepper {
     ) -> Self {
         let in_texels = |cells: f64| cells * count as f64;
         let texels_in_row = in_texels(height_of_row).min(MOST_TEXELS);
-        // A smaller step would not exceed [`HAIR`], and a row above the horizon would be below it.
+        // A smaller step would not exceed `HAIR`, and a row above the horizon would be below it.
         let half_step = rounded(texels_in_row / 2.0 * TEXEL).max(2 * HAIR);
         // Positions far above or below the face wrap around, and return to the same value at the
         // face.
