@@ -27,8 +27,8 @@ pub struct Crossing {
 
 /// Decides which line a ray crosses next.
 pub trait Order {
-    /// The kind of line that the ray meets first: the column line at `x`, or the row line at `y`.
-    /// The walk crosses it.
+    /// [`Side::X`] if the ray meets the line at `x` first, [`Side::Y`] if it meets the line at `y`
+    /// first. The walk crosses that line.
     ///
     /// Both lines are ahead of the ray. Along an axis on which the ray does not move, there is no
     /// line ahead and its position is infinite. Selecting it ends the walk.

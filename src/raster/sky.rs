@@ -115,7 +115,7 @@ mod tests {
     use super::*;
 
     #[test]
-    fn a_gradient_goes_from_one_colour_to_the_other() {
+    fn a_gradient_runs_from_horizon_to_zenith() {
         let colors =
             [-1.0, 0.0, 0.5, f64::INFINITY].map(|slope| gradient(Rgb::BLACK, Rgb::WHITE, slope));
         assert_eq!(colors, [Rgb::WHITE, Rgb::WHITE, Rgb::BLACK, Rgb::BLACK]);

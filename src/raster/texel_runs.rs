@@ -173,7 +173,7 @@ mod tests {
 
     proptest! {
         #[test]
-        fn runs_show_what_each_pixel_shows(
+        fn runs_give_each_pixel_its_own_texel(
             sides in (0_u32..6, 0_u32..6),
             middle in (-50.0..50.0, -50.0..50.0),
             on_edges in any::<bool>(),

@@ -61,7 +61,7 @@ pub trait Renderable {
     }
 
     /// The surface that the pixel `(x, y)` of the last frame of `renderer` shows; `None` if the
-    /// renderer records no surfaces.
+    /// renderer does not distinguish surfaces.
     fn surface(renderer: &Self::Renderer, x: u32, y: u32) -> Option<Surface> {
         _ = (renderer, x, y);
         None

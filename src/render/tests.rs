@@ -57,7 +57,7 @@ proptest! {
     /// The flat way draws a level scene, or the level part of another scene, like the portal way,
     /// bit for bit. Excepted are pixels whose centres are on a line between two tiles.
     #[test]
-    fn what_is_level_is_drawn_as_if_it_had_heights(
+    fn level_scenes_are_drawn_the_same_by_both_ways(
         choice in any::<prop::sample::Index>(),
         place in (0.0..1.0, 0.0..1.0),
         is_in_the_middle in any::<bool>(),

@@ -247,7 +247,7 @@ mod tests {
 
     proptest! {
         #[test]
-        fn few_rays_tell_what_all_of_them_hit(
+        fn few_rays_find_the_hits_of_all_rays(
             (floor, walls) in (0.3..1.0, 0.0..1.0),
             cells in prop::collection::vec(0.0..1.0, SIDE * SIDE),
             position in (place(), place()),

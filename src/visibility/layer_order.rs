@@ -1,4 +1,4 @@
-//! The order of layers: translucent columns of neighbouring columns are grouped.
+//! The order of layers: translucent columns that are neighbours are grouped.
 //!
 //! In a block of columns, all layers behind the next translucent one are painted first, then the
 //! translucent layers of all columns. Neighbours of one tint are thereby drawn together, row by

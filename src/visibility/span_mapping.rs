@@ -183,7 +183,7 @@ mod tests {
 
     proptest! {
         #[test]
-        fn every_pixel_is_in_the_cell_that_it_shows(
+        fn every_pixel_is_in_the_cell_of_its_point(
             middle in (-50.0..50.0, -50.0..50.0),
             half_step in (
                 prop_oneof![Just(0.0), Just(0.25), -0.9..0.9],
@@ -204,7 +204,7 @@ mod tests {
         }
 
         #[test]
-        fn places_are_those_of_the_points(
+        fn positions_agree_with_points(
             middle in (-50.0..50.0, -50.0..50.0),
             half_step in (-0.5..0.5, -0.5..0.5),
             width in 1_u32..4096,

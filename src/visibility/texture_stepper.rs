@@ -194,7 +194,7 @@ mod tests {
     }
 
     #[test]
-    fn the_halves_of_the_picture_show_the_halves_of_a_wall_however_near() {
+    fn halves_of_the_picture_show_halves_of_a_wall_at_any_distance() {
         for near in [0.0, f64::MIN_POSITIVE, 1e-30, 1e-9] {
             let texels = TextureStepper::new(90.0, near, wall(64));
             assert_eq!((texels.at(44), texels.at(45)), (31, 32), "{near}");
@@ -215,7 +215,7 @@ mod tests {
     }
 
     #[test]
-    fn a_high_face_repeats_its_texture_from_one_whole_height_to_the_next() {
+    fn a_high_face_repeats_its_texture_at_each_integer_height() {
         // From 0.25 to 2.5, seen from 1: its uppermost texture has its top at 3.
         let texels = FaceTexels { count: 4, of_cells: (0.5, 2.75), at_eye: 2.0 };
         let texels = TextureStepper::new(12.0, 0.25, texels);
@@ -225,7 +225,7 @@ mod tests {
 
     proptest! {
         #[test]
-        fn a_row_is_on_the_texel_that_doubles_say(
+        fn a_row_is_on_the_texel_computed_in_doubles(
             height in 1_u32..4096,
             rows in 0.01..9000.0_f64,
             at_eye in 0.02..0.98,

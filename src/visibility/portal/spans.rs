@@ -1,4 +1,4 @@
-//! The spans of the portal way: along rows, where neighbouring columns show the same plane.
+//! The spans of the portal way: along rows, where neighbouring columns show the same surface.
 //!
 //! A span ends where the next column shows another: one step for each span, without a search of the
 //! row.

@@ -183,7 +183,7 @@ mod tests {
 
     proptest! {
         #[test]
-        fn shifts_find_the_texel_that_fractions_name(
+        fn shifts_select_the_same_texel_as_fractions(
             sides in (0_u32..8, 0_u32..8),
             places in prop::collection::vec(any::<(u64, u64)>(), 1..20),
         ) {

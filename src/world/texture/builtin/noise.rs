@@ -97,7 +97,7 @@ mod tests {
 
     proptest! {
         #[test]
-        fn noise_wraps_and_keeps_to_its_swing(
+        fn noise_wraps_and_stays_within_its_swing(
             seed: u32, x in 0..SIDE, y in 0..SIDE, swing in 0..256,
             across in prop::sample::select(vec![2, 4, 8, 16, 32, 64]),
             down in prop::sample::select(vec![2, 4, 8, 16, 32, 64]),

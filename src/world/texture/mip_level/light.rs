@@ -110,7 +110,7 @@ mod tests {
 
     proptest! {
         #[test]
-        fn a_square_of_four_is_halved_as_any_other_size_is(
+        fn a_square_of_four_is_halved_like_any_other_size(
             width in 1_u32..6,
             height in 1_u32..6,
             seed in prop::collection::vec(any::<[u16; 3]>(), 100),
@@ -125,7 +125,7 @@ mod tests {
 
         /// A halving conserves light: all levels have the same mean, for any sides.
         #[test]
-        fn a_halving_is_as_bright_as_the_whole(
+        fn a_halving_preserves_the_mean_light(
             width in 1_u32..20,
             height in 1_u32..20,
             seed in prop::collection::vec(any::<u16>(), 400),
