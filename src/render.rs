@@ -88,7 +88,7 @@ struct Memory {
 }
 
 impl Renderer {
-    /// A renderer without any allocated memory, which finds walls by [`Exact`](crate::cast::Exact).
+    /// A renderer that has drawn no frame, and finds walls by [`Exact`](crate::cast::Exact).
     pub fn new() -> Self {
         Self::default()
     }

@@ -134,7 +134,7 @@ fn look_up<L: Lighting>(
     texels: &[u32],
     pixels: &mut [Rgb],
 ) {
-    // A compiler does not unroll the loop by itself: for the compiler, each pixel may be the last.
+    // A compiler does not unroll the loop by itself: any lookup may panic and end it.
     let (pixels, rest) = pixels.as_chunks_mut::<UNROLLED>();
     let (texels, rest_of_texels) = texels.split_at(pixels.as_flattened().len());
     for (pixels, texels) in pixels.iter_mut().zip(texels.as_chunks::<UNROLLED>().0) {

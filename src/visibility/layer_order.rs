@@ -1,8 +1,7 @@
 //! The order of layers: translucent columns that are neighbours are grouped.
 //!
 //! In a block of columns, all layers behind the next translucent one are painted first, then the
-//! translucent layers of all columns. Neighbours of one tint are thereby drawn together, row by
-//! row.
+//! translucent layers of all columns. This draws neighbours of one tint together, row by row.
 
 use super::{Layer, Material, SeeThroughColumn};
 
