@@ -84,6 +84,28 @@ pub enum Level {
 ///
 /// Faults call the map `name`. Textures that are not built in come from `files`.
 ///
+/// ```
+/// use cellcaster::map::{self, NoFiles};
+///
+/// let text = r#"
+/// grid = '''
+/// %%%%
+/// %@.%
+/// %%%%
+/// '''
+/// [tiles]
+/// "%" = { wall = "brick" }
+/// [things]
+/// "@" = { start = 0 }
+/// "#;
+/// let world = map::parse(text, "tiny", &NoFiles).unwrap();
+/// assert_eq!((world.grid().width(), world.grid().height()), (4, 3));
+///
+/// // A character without a definition is a fault.
+/// let faults = map::parse(&text.replace('.', "?"), "tiny", &NoFiles).unwrap_err();
+/// assert!(faults.to_string().contains("tiny"));
+/// ```
+///
 /// # Errors
 /// All faults of the map. A map of bodies, which has no grid, is a fault.
 pub fn parse(text: &str, name: &str, files: &dyn TextureFiles) -> Result<World, Faults> {

@@ -1,14 +1,14 @@
 //! Raster: a draw list to pixels, one file for each kind of item.
 //!
-//! [`draw`] draws what a [`Target`] shows of a [`DrawList`]: spans first, then wall columns, then the
-//! layers that are painted over them. It does not know which way the list was filled. Rules:
+//! [`draw`] draws the rows of a [`DrawList`] that a [`Target`] covers: first spans, then wall
+//! columns, then the layers in front of both. It does not know which way filled the list. Rules:
 //!
-//! - What is drawn of a band of rows does not depend on where it begins and ends.
+//! - The pixels of a band do not depend on its first and last row.
 //! - Every pixel's texel is computed in fixed point from its own row or column.
-//! - What pixels and texels cost is counted by the target, where they are written.
+//! - The target counts pixels and texels where they are written.
 //!
-//! One loop that asks for each pixel what it shows was refused: a kind of item that a scene lacks is
-//! absent from these loops, and not a branch in them.
+//! One loop that selects the kind of surface for each pixel was refused: these loops omit the kinds
+//! of item that a scene lacks, without a branch.
 
 mod band;
 mod column_batch;
@@ -33,14 +33,14 @@ pub(crate) use target::Target;
 use crate::visibility::{DrawList, Layer, Material, Scene, Span, SpanMemory, Stats};
 use translucent::Tints;
 
-/// Memory for drawing, one for each thread.
+/// The memory of a drawing thread, reused from frame to frame.
 #[derive(Clone, Debug, Default)]
 pub(crate) struct RasterMemory {
     spans: SpanMemory,
     batch: BatchMemory,
 }
 
-/// Draws what `target` shows of `list`.
+/// Draws the rows of `list` that `target` covers.
 pub(crate) fn draw<S: Stats>(
     scene: Scene<'_>,
     list: &DrawList,
@@ -59,7 +59,7 @@ pub(crate) fn draw<S: Stats>(
     draw_layers(scene, list, target);
 }
 
-/// Paints the layers of `list`, one over the other.
+/// Paints the layers of `list` in their order.
 fn draw_layers<S: Stats>(scene: Scene<'_>, list: &DrawList, target: &mut Target<'_, S>) {
     let mut tints = Tints::default();
     for layer in &list.layers {

@@ -1,14 +1,15 @@
 //! Drawing: a world and a camera in, pixels out.
 //!
-//! A frame is drawn in two stages: `visibility` fills a draw list, and
-//! `raster` draws it. A [`FramePlan`], made from the world, says how. What is in view is
-//! found once; the list is drawn band by band, by several threads where the picture is large.
+//! A frame is drawn in two stages: `visibility` fills a draw list, and `raster` draws it. A
+//! [`FramePlan`], made from the world, selects the loops of both. Visibility is found once; the
+//! list is drawn in bands of rows, by several threads if the frame is large.
 //!
-//! The caller owns the [`Frame`] and keeps the [`Renderer`], which owns what the stages need in between;
-//! drawing by one thread allocates nothing once both have grown to the size of the picture. The same
-//! world, camera and time give the same pixels, in however many bands. One pass that does everything to a
-//! column before it goes to the next was refused: a kind of item that a scene lacks can be left out, a
-//! branch in the innermost loop can't.
+//! The caller owns the [`Frame`] and keeps the [`Renderer`], which owns the memory of the stages.
+//! Drawing by one thread allocates nothing once both have grown to the size of the frame. The same
+//! world, camera and time give the same pixels, in any number of bands.
+//!
+//! A single pass that finishes each column before the next was refused: two stages leave out a kind
+//! of item that a scene lacks, while a single pass would branch on it in the innermost loop.
 
 mod dyn_caster;
 mod explanation;
@@ -36,18 +37,44 @@ use crate::visibility::{self, DrawList, Projection, Scene, Stats, VisibilityMemo
 use crate::world::{Camera, World};
 use threads::draw_bands;
 
-/// Draws frames, and keeps what is worth keeping from one to the next.
+/// Draws frames, and reuses its memory from frame to frame.
+///
+/// ```
+/// use cellcaster::map::builtin;
+/// use cellcaster::render::{Filter, Frame, FrameSize, PixelAspect, Renderer};
+/// use cellcaster::world::FieldOfView;
+///
+/// let world = builtin::LEVELS[0].world()?;
+/// let camera = world.start_camera(FieldOfView::default());
+/// let mut frame = Frame::new(FrameSize::new(160, 90).unwrap(), PixelAspect::SQUARE);
+///
+/// let mut renderer = Renderer::new();
+/// renderer.set_filter(Filter::Nearest);
+/// renderer.keep_surfaces(true);
+/// renderer.render(&world, &camera, &mut frame);
+///
+/// // Each pixel of the frame shows some surface.
+/// assert!(renderer.surface(80, 45).is_some());
+/// assert_eq!(renderer.surface(160, 45), None);
+///
+/// // Draw again when the next sprite changes its picture.
+/// if let Some(seconds) = renderer.next_change() {
+///     renderer.set_time(seconds);
+///     renderer.render(&world, &camera, &mut frame);
+/// }
+/// # Ok::<(), Box<dyn std::error::Error>>(())
+/// ```
 #[derive(Clone, Debug, Default)]
 pub struct Renderer {
     caster: DynCaster,
     filter: Filter,
     seconds: f64,
-    /// How many there may be; `None` for as many as the machine has.
+    /// The most threads; `None` for the number that the machine runs at once.
     threads: Option<NonZero<usize>>,
     memory: Memory,
 }
 
-/// What the stages hand on to each other; kept so that it is allocated once.
+/// The memory of the stages, reused from frame to frame.
 #[derive(Clone, Debug, Default)]
 struct Memory {
     visibility: VisibilityMemory,
@@ -61,51 +88,53 @@ struct Memory {
 }
 
 impl Renderer {
-    /// A renderer that has drawn nothing yet.
+    /// A renderer that has drawn no frame, and finds walls by [`Exact`](crate::cast::Exact).
     pub fn new() -> Self {
         Self::default()
     }
 
-    /// A renderer that finds the walls by `caster`, where [`Renderer::new`] finds them exactly.
+    /// A renderer that finds walls by `caster`.
     pub fn with_caster(caster: DynCaster) -> Self {
         Self { caster, ..Self::default() }
     }
 
-    /// Looks textures up by `filter` from now on.
+    /// Sets how textures are sampled from the next frame on; at first [`Filter::Mip`].
     pub fn set_filter(&mut self, filter: Filter) {
         self.filter = filter;
     }
 
-    /// Shows things as they are after that many `seconds` from now on; 0 at first.
+    /// Sets the time at which the next frames show things, in seconds; at first 0.
     pub fn set_time(&mut self, seconds: f64) {
         self.seconds = seconds;
     }
 
-    /// Draws by at most that many `threads` from now on; by as many as the machine has at first. Only
-    /// large pictures are drawn by more than one, and they are the same then, bit for bit.
+    /// Sets the most threads that draw a frame; at first, the number that the machine runs at once.
+    /// Only large frames are drawn by more than one. The pixels are the same for any number, bit
+    /// for bit.
     pub fn set_threads(&mut self, threads: NonZero<usize>) {
         self.threads = Some(threads);
     }
 
-    /// When something in the last frame begins to look different, by the clock of
-    /// [`Renderer::set_time`]; `None` for never.
+    /// The time at which something in the last frame next changes its appearance, in seconds on the
+    /// clock of [`Renderer::set_time`]; `None` for never.
     pub fn next_change(&self) -> Option<f64> {
         self.memory.next_change
     }
 
-    /// Keeps what each pixel shows from now on, or no longer, for [`Renderer::surface`].
+    /// Sets whether the next frames record the surface of each pixel, for [`Renderer::surface`]; at
+    /// first, they do not.
     pub fn keep_surfaces(&mut self, are_kept: bool) {
         self.memory.surfaces.keep(are_kept);
     }
 
-    /// Draws what `camera` sees of `world` into all of `frame`.
+    /// Draws the view of `camera` into all of `frame`.
     pub fn render(&mut self, world: &World, camera: &Camera, frame: &mut Frame) {
         let Self { caster, filter, seconds, threads, memory } = self;
         let (filter, seconds, threads, stats) = (*filter, *seconds, *threads, &mut ());
         caster.draw(Picture { world, camera, filter, seconds, threads, memory, frame, stats });
     }
 
-    /// As [`Renderer::render`], with the walls that `caster` finds.
+    /// Draws as [`Renderer::render`] does, with the walls that `caster` finds.
     pub fn render_with<C: Caster>(
         &mut self,
         caster: &C,
@@ -118,8 +147,8 @@ impl Renderer {
         Picture { world, camera, filter, seconds, threads, memory, frame, stats }.draw(caster);
     }
 
-    /// As [`Renderer::render`], and tells how it went. Cells are counted along exact rays, whatever
-    /// the caster.
+    /// Draws as [`Renderer::render`] does, and returns the plan and the counts. Cells are counted
+    /// along exact rays, whatever the caster.
     pub fn explain(&mut self, world: &World, camera: &Camera, frame: &mut Frame) -> Explanation {
         let Self { caster, filter, seconds, threads, memory } = self;
         let mut counted = FrameStats::default();
@@ -131,13 +160,16 @@ impl Renderer {
         Explanation { plan, threads, stats: counted }
     }
 
-    /// What the rays of the last frame met, from left to right, one for each column of pixels.
+    /// The hits of the rays of the last frame, from left to right, one for each column of pixels.
     pub fn columns(&self) -> &[Column] {
         &self.memory.list.columns
     }
 
-    /// What the pixel `(x, y)` of the last frame shows, where [that is kept](Renderer::keep_surfaces);
-    /// else what it shows but for things and masks before that. `None` where the frame had no column `x`.
+    /// The surface that the pixel `(x, y)` of the last frame shows; `None` if the frame had no
+    /// column `x`.
+    ///
+    /// If [surfaces were not kept](Renderer::keep_surfaces), it is the surface behind all things
+    /// and masked textures.
     pub fn surface(&self, x: u32, y: u32) -> Option<Surface> {
         let Memory { list, first_row_of_ground, surfaces, .. } = &self.memory;
         let behind = list.surface(x, y, *first_row_of_ground)?;
@@ -145,7 +177,7 @@ impl Renderer {
     }
 }
 
-/// A picture to draw, with any caster.
+/// The arguments of a drawing, for any caster.
 struct Picture<'a, S> {
     world: &'a World,
     camera: &'a Camera,

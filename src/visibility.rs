@@ -1,24 +1,23 @@
 //! Visibility: a world and a camera to a draw list.
 //!
-//! A [`DrawList`] holds what a frame shows: spans of floor, ceiling and sky along rows, wall columns,
-//! masked and translucent columns, and billboards. There are two ways to fill it:
+//! A [`DrawList`] holds the contents of a frame: spans of floor, ceiling and sky along rows, wall
+//! columns, masked and translucent columns, and billboards. There are two ways to fill it:
 //!
-//! - `flat`: every ray ends at the first wall. Few rays are cast, and floor and ceiling are what is
-//!   left of each column. It serves what is level.
-//! - `portal`: a ray goes on above, below and behind what it meets, with the rows that are still open:
-//!   its clip range. It serves heights and mirrors.
+//! - `flat`: each ray ends at the first wall. Few rays are cast, and floor and ceiling are the rest
+//!   of each column. It serves level scenes.
+//! - `portal`: a ray continues above, below and behind a face, with the rows that are still
+//!   uncovered: its clip range. It serves heights and mirrors.
 //!
-//! The pixels are the business of [`raster`](crate::raster), which does not know which way the list
-//! was filled. Rules:
+//! [`raster`](crate::raster) draws the list and does not know which way filled it. Rules:
 //!
-//! - Rows and columns are taken at the centres of pixels; what lies exactly between two belongs to the
-//!   lower or the right one.
-//! - Every number is computed from its own row or column, never from the one beside it, so no error
-//!   adds up, and a band of rows is the same as those rows of the whole frame.
+//! - Rows and columns are sampled at the centres of pixels. A point exactly between two belongs to
+//!   the lower or the right one.
+//! - Every number is computed from its own row or column, never from that of a neighbour, so that
+//!   no error accumulates. A band of rows is identical to those rows of the whole frame.
 //! - A list allocates nothing once it has grown to the size of the frame.
 //!
-//! Drawing each column while its ray is followed was refused: a row of floor shares its distance, its
-//! light and its mip level, which are found once for many pixels when it is drawn as a span.
+//! Drawing each column while its ray is followed was refused: a row of floor shares its distance,
+//! its light and its mip level, which a span finds once for many pixels.
 
 mod billboard;
 mod column;
@@ -65,15 +64,15 @@ use crate::cast::{Caster, ExactOnLevel};
 use flat::{FlatMemory, PortalStarts};
 use portal::PortalMemory;
 
-/// What finding out what is in view needs from one frame to the next; kept so that it is allocated once.
+/// The memory of both ways, reused from frame to frame.
 #[derive(Clone, Debug, Default)]
 pub(crate) struct VisibilityMemory {
     flat: FlatMemory,
     portal: PortalMemory,
 }
 
-/// Fills `list` with what `scene` shows, with the walls that `caster` finds where the flat way serves alone.
-/// Returns when a thing in view will look different; `None` for never.
+/// Fills `list` with the contents of `scene`. If the flat way serves alone, `caster` finds the
+/// walls. Returns the time at which a thing in view next changes its appearance; `None` for never.
 pub(crate) fn fill<C: Caster, S: Stats>(
     scene: Scene<'_>,
     caster: &C,
@@ -93,7 +92,7 @@ pub(crate) fn fill<C: Caster, S: Stats>(
             let grid = world.level_grid().unwrap_or(world.grid());
             portal.make_room(world, scene.projection.columns(), list);
             flat::find_columns(scene, (&ExactOnLevel { grid }, grid), flat, list, stats);
-            // What the flat way finds is before what is behind a line.
+            // The flat layers are in front of those of the portal way, which are behind a line.
             let in_portals = if list.flat_columns.is_empty() {
                 None
             } else {

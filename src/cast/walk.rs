@@ -1,10 +1,11 @@
-//! The walk: the cells that a ray enters, one line of the grid after the other.
+//! The walk: the cells that a ray enters, in order.
 //!
-//! The walk counts lines, columns and rows, which are integers and the same for every method. Which
-//! line comes next is the one question that methods differ in, and it is answered by an [`Order`].
-//! So whatever the arithmetic of a method comes to, its walk goes from a cell to a neighbour, never
-//! looks up what is off the map, and ends after at most one step for each line of the map. One loop
-//! for each method was refused: each would have to get all of that right again.
+//! A walk counts columns and rows, which are integers and the same for every method. Methods differ
+//! only in the line that they cross next, which an [`Order`] decides. Whatever the rounding of a
+//! method, its walk goes from a cell to a neighbour, never looks up a cell off the map, and ends
+//! after at most one step for each line of the map.
+//!
+//! A loop for each method was refused: each would have to guarantee all of that again.
 
 mod mirrored;
 
@@ -13,30 +14,31 @@ pub(crate) use mirrored::{Crossed, MirrorTransform, MirroredWalk};
 use super::{ExactOrder, Ray, Side};
 use crate::world::{Cell, Grid, TileId};
 
-/// A cell that a ray enters, and the kind of line that it crosses to do so.
+/// A cell that a ray enters, and the kind of line that it crosses to enter it.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct Crossing {
     /// The cell.
     pub cell: Cell,
-    /// What it holds.
+    /// The tile of the cell.
     pub tile: TileId,
-    /// The kind of line that was crossed into it.
+    /// The kind of line that the ray crosses.
     pub side: Side,
 }
 
-/// How a walk finds out which line its ray crosses next.
+/// Decides which line a ray crosses next.
 pub trait Order {
-    /// Whether the ray meets the line at `x` or the line at `y` first; the walk crosses it.
+    /// [`Side::X`] if the ray meets the line at `x` first, [`Side::Y`] if it meets the line at `y`
+    /// first. The walk crosses that line.
     ///
-    /// Both are ahead of the ray. Along an axis that the ray does not move on, there is no line
-    /// ahead and its place is infinite; to say that this one is next ends the walk.
+    /// Both lines are ahead of the ray. Along an axis on which the ray does not move, there is no
+    /// line ahead and its position is infinite. Selecting it ends the walk.
     fn next(&mut self, x: f64, y: f64) -> Side;
 }
 
 /// The cells of a map that a ray enters, from near to far, open ones included.
 ///
-/// It ends where the ray leaves the map. [`Hit::entering`](super::Hit::entering) tells the distance
-/// of one of them.
+/// The walk ends where the ray leaves the map. [`Hit::entering`](super::Hit::entering) gives the
+/// distance of a cell.
 #[derive(Clone, Debug)]
 pub struct Walk<'grid, O = ExactOrder> {
     grid: &'grid Grid,
@@ -64,12 +66,12 @@ impl<'grid, O: Order> Walk<'grid, O> {
         }
     }
 
-    /// The order, as it is after the last step.
+    /// The order, in its state after the last step.
     pub fn order(&self) -> &O {
         &self.order
     }
 
-    /// The cell that the ray is in as yet; `None` off the map.
+    /// The cell that contains the ray at present; `None` off the map.
     pub(super) fn cell(&self) -> Option<(Cell, TileId)> {
         let tile = self.grid.tile(self.x.index, self.y.index)?;
         Some((Cell { column: self.x.index as u32, row: self.y.index as u32 }, tile))
@@ -109,15 +111,15 @@ impl<O: Order> Iterator for Walk<'_, O> {
 /// A ray's progress along one axis of the grid.
 #[derive(Clone, Debug)]
 struct Axis {
-    /// The column or row that the ray is in; off the map, any that is off the map on that side.
+    /// The column or row of the ray; off the map, any index off the map on that side.
     index: i64,
-    /// Where the next line is; infinite where there is none.
+    /// The position of the next line; infinite if there is none.
     line: f64,
-    /// From one line to the next: 1, −1, or 0 where the ray does not move on this axis.
+    /// The step to the next line: 1, −1, or 0 if the ray does not move on this axis.
     step: i64,
-    /// The same.
+    /// The same as `step`.
     stride: f64,
-    /// How many columns or rows the map has.
+    /// The number of columns or rows of the map.
     count: i64,
 }
 
@@ -133,12 +135,12 @@ impl Axis {
             (origin.floor(), 0)
         };
         let index = (before as i64).clamp(-1, count);
-        // No line can be crossed without moving; an order that says so ends the walk.
+        // Without movement no line can be crossed: an order that selects this axis ends the walk.
         let count = if step == 0 { 0 } else { count };
         Self { index, line, step, stride: step as f64, count }
     }
 
-    /// Goes on to the column or row of that index, which must be ahead.
+    /// Advances to the column or row with this index, which must be ahead.
     fn enter(&mut self, index: u32) {
         let index = i64::from(index);
         self.index = index;
@@ -152,17 +154,17 @@ impl Axis {
         self.line += self.stride;
     }
 
-    /// Whether the ray is on the map, as far as this axis tells. It is after the first line that it
-    /// crosses here, because that is the edge at the earliest, until it leaves the map for good.
+    /// Whether the ray is on the map along this axis. It is so after its first crossing here, which
+    /// is at the earliest the edge, until it leaves the map for good.
     fn is_on_map(&self) -> bool {
         (0..self.count).contains(&self.index)
     }
 }
 
-/// The first line of a map that a ray meets along one axis; infinite where it meets none.
+/// The first line of a map that a ray meets along one axis; infinite if it meets none.
 ///
-/// A ray that is still off the map begins with its edge: what it crosses until there is nothing,
-/// however far away it starts.
+/// A ray that starts off the map starts with the edge: the empty space before it takes no steps,
+/// whatever its length.
 pub(crate) fn first_line(origin: f64, direction: f64, count: u32) -> f64 {
     if direction > 0.0 {
         origin.ceil().max(0.0)
@@ -180,7 +182,7 @@ mod tests {
 
     use super::*;
 
-    /// An order that knows nothing of the ray.
+    /// An order of random choices.
     struct Whim(u64);
 
     impl Order for Whim {
@@ -191,7 +193,8 @@ mod tests {
     }
 
     proptest! {
-        /// Whatever the ray and the order, it ends, in at most one step a line, each to a neighbour.
+        /// For any ray and order, the walk ends after at most one step for each line, and each step
+        /// leads to a neighbour.
         #[test]
         fn every_walk_ends(
             origin in (any::<f64>(), any::<f64>()),

@@ -1,36 +1,36 @@
-//! Bands: some rows of a frame, which are drawn by one thread.
+//! Bands: ranges of rows of a frame, each drawn by one thread.
 //!
-//! All passes draw into a band, and what they draw of it does not depend on where it begins and ends:
-//! a picture is the same in one band and in many. Rows were chosen, and not columns, because they lie
-//! together in memory: bands are slices that nobody else can write to, and no lock is needed.
+//! All passes draw into a band, and the pixels do not depend on its first and last row: a picture
+//! is the same in one band and in many. Bands of columns were refused: rows are contiguous in
+//! memory, so that a band is a slice, which no other thread can write to, and needs no lock.
 
 use std::ops::Range;
 
 use crate::color::Rgb;
 
-/// Some rows of a frame.
+/// A range of rows of a frame.
 #[derive(Debug)]
 pub(crate) struct Band<'a> {
     width: usize,
-    /// Which rows of the frame.
+    /// The indices of the rows in the frame.
     rows: Range<u32>,
-    /// Row by row from the top, each from the left.
+    /// The rows from the top, each from the left.
     pixels: &'a mut [Rgb],
 }
 
 impl<'a> Band<'a> {
-    /// The rows from `first` on of a frame that is `width` pixels wide: as many as there are `pixels`.
+    /// The rows from `first` on of a frame that is `width` pixels wide, with these `pixels`.
     pub(crate) fn new(width: usize, first: u32, pixels: &'a mut [Rgb]) -> Self {
         let end = first + (pixels.len() / width) as u32;
         Self { width, rows: first..end, pixels }
     }
 
-    /// Which rows of the frame they are.
+    /// The indices of the rows in the frame.
     pub(crate) fn rows(&self) -> Range<u32> {
         self.rows.clone()
     }
 
-    /// Those of `rows` that are in the band.
+    /// The part of `rows` in the band.
     #[inline]
     pub(crate) fn clip(&self, rows: &Range<u32>) -> Range<u32> {
         let Range { start, end } = self.rows;
@@ -49,7 +49,7 @@ impl<'a> Band<'a> {
         &mut self.pixels[pixels]
     }
 
-    /// The pixels of column `x` in those rows, which are in the band, from the top.
+    /// The pixels of column `x` in these rows, which are in the band, from the top.
     #[inline]
     pub(crate) fn column_mut(
         &mut self,
@@ -61,8 +61,8 @@ impl<'a> Band<'a> {
         self.pixels[first..].iter_mut().step_by(width).take(count)
     }
 
-    /// Hands the pixels of `N` columns from `x` on in those rows, which are in the band, to `draw`, row
-    /// by row.
+    /// Passes the pixels of `N` columns from `x` on in these rows, which are in the band, to
+    /// `draw`, row by row.
     #[inline]
     pub(crate) fn for_each_in_block<const N: usize>(
         &mut self,
@@ -79,7 +79,7 @@ impl<'a> Band<'a> {
         }
     }
 
-    /// Where the pixels of `rows` are among those of the band.
+    /// The indices of the pixels of `rows` among those of the band.
     #[inline]
     fn places(&self, rows: Range<u32>) -> Range<usize> {
         let place = |row: u32| (row - self.rows.start) as usize * self.width;

@@ -1,8 +1,8 @@
-//! Column batches: wall columns side by side that are drawn together, row by row.
+//! Column batches: neighbouring wall columns that are drawn together, row by row.
 //!
-//! What a row of them shows lies side by side in memory, and a processor sees where that leads and
-//! fetches it in time. One column after the other was refused: every pixel would be in another stretch
-//! of memory than the one before, which in large pictures took most of the time of a frame.
+//! The pixels of such a row are contiguous, so that a processor predicts the accesses and prefetches
+//! the memory. Drawing one column after the other was refused: each pixel would be far in memory
+//! from the one before, which took most of the time of a frame in large pictures.
 
 use std::ops::Range;
 use std::{iter, ptr};
@@ -16,10 +16,10 @@ use crate::world::Paint;
 
 /// The most columns that are drawn together.
 const MOST_COLUMNS: usize = 15 * LANES;
-/// So many rows of some columns are drawn before it is the turn of the columns beside them.
+/// The number of rows of some columns that are drawn before those of the columns beside them.
 const ROWS_AT_ONCE: u32 = 8;
 
-/// Memory for columns that are drawn together, so that it is allocated once.
+/// Memory for columns that are drawn together, reused from frame to frame.
 #[derive(Clone, Debug, Default)]
 pub(crate) struct BatchMemory {
     shaded: ShadedTexels,
@@ -33,7 +33,7 @@ pub(super) struct ColumnBatch<'m, 't, 'a, L, S> {
     target: &'m mut Target<'t, S>,
     /// The texels and the lighting of the latest shaded range.
     latest: Option<(&'a [Rgb], L, ShadedRange)>,
-    /// The columns before this one are not queued any more: those of a batch do not overlap.
+    /// Columns before this one can no longer be queued: those of a batch do not overlap.
     next: u32,
 }
 
@@ -41,13 +41,13 @@ impl<'m, 't, 'a, L: Lighting, S: Stats> ColumnBatch<'m, 't, 'a, L, S> {
     pub(super) fn new(memory: &'m mut BatchMemory, target: &'m mut Target<'t, S>) -> Self {
         let mut batch = Self { memory, target, latest: None, next: 0 };
         batch.clear();
-        // However much of a wall shows later, there is room.
+        // Enough for any later view of a wall.
         batch.memory.columns.reserve(MOST_COLUMNS);
         batch.memory.lanes.reserve(MOST_COLUMNS / LANES);
         batch
     }
 
-    /// Which rows can be drawn in.
+    /// The indices of the rows that can be drawn.
     pub(super) fn rows(&self) -> Range<u32> {
         self.target.rows()
     }
@@ -61,7 +61,7 @@ impl<'m, 't, 'a, L: Lighting, S: Stats> ColumnBatch<'m, 't, 'a, L, S> {
         }
     }
 
-    /// Queues `rows` of column `x`, to be filled with one colour.
+    /// Queues `rows` of column `x` for a fill with one colour.
     pub(super) fn queue_color(&mut self, x: u32, rows: Range<u32>, color: Rgb, lighting: L) {
         self.make_room_for(x, 1);
         let shaded = &mut self.memory.shaded;
@@ -69,7 +69,7 @@ impl<'m, 't, 'a, L: Lighting, S: Stats> ColumnBatch<'m, 't, 'a, L, S> {
         self.memory.columns.push(QueuedColumn { x, rows, address, step: 0 });
     }
 
-    /// Queues `rows` of column `x`, to be filled with `texels`.
+    /// Queues `rows` of column `x` for drawing with `texels`.
     #[expect(clippy::inline_always, reason = "a call would cost a fifth of it")]
     #[inline(always)]
     pub(super) fn queue_texels(
@@ -97,8 +97,8 @@ impl<'m, 't, 'a, L: Lighting, S: Stats> ColumnBatch<'m, 't, 'a, L, S> {
         self.push(x, rows, range, stepper);
     }
 
-    /// Queues `rows` of column `x`, to be filled with `texels` that a face may show again and again, or
-    /// of which it shows only some.
+    /// Queues `rows` of column `x` for drawing with `texels` that a face may repeat or show in
+    /// part.
     pub(super) fn queue_repeating(
         &mut self,
         x: u32,
@@ -129,7 +129,8 @@ impl<'m, 't, 'a, L: Lighting, S: Stats> ColumnBatch<'m, 't, 'a, L, S> {
         self.memory.columns.push(QueuedColumn { x, rows, address, step });
     }
 
-    /// Draws `rows` of column `x` at once: shading the texels first is not worth it, or they are too many.
+    /// Draws `rows` of column `x` at once: there are too few pixels to shade the texels first, or
+    /// too many texels.
     fn draw_at_once(
         &mut self,
         x: u32,
@@ -144,7 +145,8 @@ impl<'m, 't, 'a, L: Lighting, S: Stats> ColumnBatch<'m, 't, 'a, L, S> {
         }
     }
 
-    /// Makes room for column `x` with that many shaded texels.
+    /// Makes room for column `x` with this number of shaded texels: draws the queued columns if
+    /// there is none, or if `x` may be among them.
     #[inline]
     fn make_room_for(&mut self, x: u32, texels: usize) {
         let BatchMemory { shaded, columns, .. } = &self.memory;
@@ -155,7 +157,7 @@ impl<'m, 't, 'a, L: Lighting, S: Stats> ColumnBatch<'m, 't, 'a, L, S> {
         self.next = x + 1;
     }
 
-    /// Draws the columns that are queued.
+    /// Draws the queued columns.
     pub(super) fn draw(&mut self) {
         let BatchMemory { shaded, columns, lanes } = &mut *self.memory;
         let band = self.target.band_mut();
@@ -207,7 +209,7 @@ mod tests {
 
     const HEIGHT: u32 = 90;
 
-    /// A column of a wall: none at all, or its distance, its side, and which of its texels it shows.
+    /// A column of a wall: its distance, its side, and its visible texels; or `None`.
     fn column() -> impl Strategy<Value = Option<(f64, Side, Range<usize>)>> {
         let side = prop::sample::select(&[Side::X, Side::Y][..]);
         let texels = prop::sample::select(&[0..64, 64..128, 0..1, 128..1128, 0..9000][..]);

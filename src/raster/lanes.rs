@@ -1,4 +1,4 @@
-//! Lanes: columns of pixels side by side that are drawn row by row.
+//! Lanes: neighbouring columns of pixels that are drawn row by row.
 
 use std::ops::Range;
 
@@ -6,21 +6,21 @@ use super::band::Band;
 use super::shaded_texels::{ShadedTexels, TexelAddress};
 use crate::color::Rgb;
 
-/// So many columns have what their loop needs in registers.
+/// The number of columns whose loop variables fit in registers.
 pub(super) const LANES: usize = 8;
 
-/// A column of pixels that is queued.
+/// A queued column of pixels.
 #[derive(Clone, Debug)]
 pub(super) struct QueuedColumn {
     pub(super) x: u32,
     pub(super) rows: Range<u32>,
-    /// The texel of the first of the rows, and how far it is from each row to the next.
+    /// The address of the texel of the first row, and the step from each row to the next.
     pub(super) address: TexelAddress,
     pub(super) step: u64,
 }
 
 impl QueuedColumn {
-    /// Draws it in those of its `rows`.
+    /// Draws the part of the column in `rows`.
     #[inline]
     pub(super) fn draw(&self, shaded: &ShadedTexels, rows: Range<u32>, band: &mut Band<'_>) {
         let mut address = self.address_in(rows.start);
@@ -36,24 +36,24 @@ impl QueuedColumn {
     }
 }
 
-/// Columns side by side, in the rows that all of them have.
+/// Neighbouring columns, in the rows that all of them have.
 #[derive(Clone, Debug)]
 pub(super) struct Lanes {
     x: u32,
     pub(super) rows: Range<u32>,
-    /// The texel of each of them in the next row to be drawn.
+    /// The address of each column's texel in the next row to be drawn.
     addresses: [TexelAddress; LANES],
-    /// From one row to the next.
+    /// The step of each column from one row to the next.
     steps: [u64; LANES],
 }
 
 impl Lanes {
-    /// `None` where they are not side by side, or have no row in common.
+    /// The lanes of `columns`; `None` if they are not neighbours or have no common row.
     #[inline]
     pub(super) fn new(columns: &[QueuedColumn; LANES]) -> Option<Self> {
         let [QueuedColumn { x, .. }, .., last] = columns;
         let rows = columns.iter().map(|column| column.rows.clone()).reduce(common)?;
-        // There are no two at one `x`.
+        // No two columns have the same `x`.
         let are_side_by_side = last.x - x == LANES as u32 - 1;
         (are_side_by_side && !rows.is_empty()).then(|| Self {
             x: *x,
@@ -63,7 +63,7 @@ impl Lanes {
         })
     }
 
-    /// Draws what of it is in `rows`, which follow those that were drawn before.
+    /// Draws the part of the lanes in `rows`, which follow the rows drawn before.
     #[inline]
     pub(super) fn draw(&mut self, shaded: &ShadedTexels, rows: Range<u32>, band: &mut Band<'_>) {
         let Self { x, mut addresses, steps, .. } = *self;
@@ -77,7 +77,7 @@ impl Lanes {
     }
 }
 
-/// The rows that both have.
+/// The rows common to both.
 fn common(one: Range<u32>, other: Range<u32>) -> Range<u32> {
     let start = one.start.max(other.start);
     start..one.end.min(other.end).max(start)

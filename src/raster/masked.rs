@@ -6,7 +6,7 @@ use crate::cast::Side;
 use crate::visibility::{Extent, Facing, Lighting, Pass, Scene, SeeThroughColumn, Stats, Surface};
 use crate::world::TextureId;
 
-/// Draws `column`, which is of `texture`, over what is there.
+/// Draws `column`, which has `texture`, over the pixels behind it.
 pub(super) fn draw<S: Stats>(
     scene: Scene<'_>,
     column: &SeeThroughColumn,

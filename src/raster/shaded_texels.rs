@@ -1,32 +1,33 @@
-//! Shaded texels: those of columns after lighting, which is applied once for many pixels.
+//! Shaded texels: the texels of columns after lighting, which is applied once for many pixels.
 //!
-//! All of a batch lie in one piece of memory of a known size: an address is a number whose uppermost
-//! bits say which texel it is, and looking that up needs no check. Columns side by side that show the
-//! same texels in the same lighting, as a near wall's do, share a range.
+//! All texels of a batch are in one array of constant size. An address is an integer whose
+//! uppermost bits are the index, so that a lookup needs no bounds check. Neighbouring columns with
+//! the same texels and the same lighting, such as those of a near wall, share a range.
 
 use crate::color::Rgb;
 use crate::visibility::TextureStepper;
 
-/// From one texel to the next, in [`TexelAddress`]s.
+/// The step from one texel to the next, in [`TexelAddress`]s.
 const TEXEL: u64 = 1 << (u64::BITS - BITS);
 
-/// How many texels there is room for: those of a batch, of most textures. What is not used takes no room
-/// in a cache.
+/// The number of texels in the array: enough for a batch, with most textures. Unused texels occupy
+/// no cache.
 const TEXELS: usize = 1 << BITS;
 const BITS: u32 = 14;
 
-/// The texels of a batch, and room for more.
+/// The texels of a batch.
 #[derive(Clone, Debug)]
 pub(crate) struct ShadedTexels {
     texels: Box<[Rgb; TEXELS]>,
     used: usize,
 }
 
-/// A range of them, by the address of the first texel of its texture, which may be outside it.
+/// A range of the texels, by the address of the first texel of its texture, which may be outside
+/// the range.
 #[derive(Clone, Copy, Debug)]
 pub(crate) struct ShadedRange(TexelAddress);
 
-/// Which texel, in the uppermost bits, and a place on it in the others.
+/// The index of a texel, in the uppermost bits, and a position on the texel, in the others.
 #[derive(Clone, Copy, Debug, Default)]
 pub(crate) struct TexelAddress(u64);
 
@@ -38,7 +39,7 @@ impl Default for ShadedTexels {
 }
 
 impl ShadedTexels {
-    /// The most texels that a range has.
+    /// The most texels of a range.
     pub(crate) const MOST: usize = TEXELS - 1;
 
     /// Whether there is room for `texels` more.
@@ -46,18 +47,18 @@ impl ShadedTexels {
         self.used + texels < TEXELS
     }
 
-    /// A range of those texels, shaded, if there is room.
+    /// A range of these texels, shaded, if there is room for them.
     #[inline]
     pub(crate) fn make(&mut self, texels: &[Rgb], shaded: impl Fn(Rgb) -> Rgb) -> ShadedRange {
         let range = ShadedRange(self.next());
         self.add(texels, &shaded);
-        // Rounding may take the last row one texel too far.
+        // Rounding may put the last row one texel too far.
         self.add(&texels[texels.len().saturating_sub(1)..], &shaded);
         range
     }
 
-    /// A range of all texels of `pieces`, shaded, if there is room. The first of them is the one `first`
-    /// texels down its texture.
+    /// A range of all texels of `pieces`, shaded, if there is room for them. The first one is
+    /// `first` texels down its texture.
     #[inline]
     pub(crate) fn make_of_pieces<'t>(
         &mut self,
@@ -86,7 +87,7 @@ impl ShadedTexels {
         self.used += texels.len();
     }
 
-    /// Throws all of them away.
+    /// Removes all texels.
     pub(crate) fn clear(&mut self) {
         self.used = 0;
     }
@@ -99,12 +100,12 @@ impl ShadedTexels {
 }
 
 impl ShadedRange {
-    /// Where its first texel is.
+    /// The address of its first texel.
     pub(crate) fn start(self) -> TexelAddress {
         self.0
     }
 
-    /// Where the centre of `row` is, and how far it is from there to the next row.
+    /// The address of the texel at the centre of `row`, and the step from each row to the next.
     #[inline]
     pub(crate) fn address_and_step(self, stepper: TextureStepper, row: u32) -> (TexelAddress, u64) {
         let (address, step) = stepper.in_uppermost::<BITS>(row);

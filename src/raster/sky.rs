@@ -12,26 +12,26 @@ use crate::visibility::{Pass, Projection, Scene, Stats};
 use crate::world::texture::MipLevel;
 use crate::world::{Sky, SkyGradient};
 
-/// The sky as one camera sees it.
+/// The sky as seen by a camera.
 pub(crate) enum SkyView<'a> {
     Gradient { projection: &'a Projection, zenith: Rgb, horizon: Rgb },
     Panorama { projection: &'a Projection, level: &'a MipLevel, columns: &'a [SkyColumn] },
 }
 
-/// Where a column of pixels looks on a panorama.
+/// The mapping of a column of pixels to a panorama.
 #[derive(Clone, Copy, Debug)]
 pub(crate) struct SkyColumn {
-    /// From its left edge, in 2⁻⁶⁴ths of its width.
+    /// The distance from its left edge, in 2⁻⁶⁴ths of its width.
     across: u64,
-    /// How far up a pixel is, as a share of its height, for each unit of the pixel's slope.
+    /// The height of a pixel on it, as a fraction of its height, per unit of the pixel's slope.
     up_for_slope: f64,
 }
 
-/// What 1 is in 2⁻⁶⁴ths.
+/// The number 1 in 2⁻⁶⁴ths.
 const WHOLE: f64 = 18_446_744_073_709_551_616.0;
 
 impl<'a> SkyView<'a> {
-    /// The sky of `scene`; `columns` is memory to work with.
+    /// The sky of `scene`. `columns` is working memory.
     pub(crate) fn new(scene: Scene<'a>, columns: &'a mut Vec<SkyColumn>) -> Self {
         let Scene { world, projection, plan, .. } = scene;
         match world.sky() {
@@ -40,7 +40,7 @@ impl<'a> SkyView<'a> {
             }
             Sky::Panorama(id) => {
                 let texture = world.texture(id);
-                // Along the horizon a texel is as high as it is wide.
+                // At the horizon a texel is as high as wide.
                 let texels_per_radian = f64::from(texture.width()) / TAU;
                 let area = projection.pixel_angles() * texels_per_radian;
                 let level = texture.level(plan.filter.lod(area.x * area.y));
@@ -53,7 +53,7 @@ impl<'a> SkyView<'a> {
         }
     }
 
-    /// Draws what `columns` of `row` show of it, seen in `image` if not directly.
+    /// Draws the sky in `columns` of `row`, seen in the mirrors of `image` if there is one.
     pub(super) fn draw<S: Stats>(
         &self,
         row: u32,
@@ -83,15 +83,15 @@ impl<'a> SkyView<'a> {
 }
 
 impl SkyColumn {
-    /// Where a ray along `direction` looks on a cylinder of radius 1 that is `height` high.
+    /// The mapping of a ray along `direction` to a cylinder of radius 1 and this `height`.
     fn new(direction: DVec2, height: f64) -> Self {
         let turn = libm::atan2(direction.y, direction.x) / TAU;
         let turn = if turn < 0.0 { turn + 1.0 } else { turn };
         Self { across: (turn * WHOLE) as u64, up_for_slope: 1.0 / (direction.length() * height) }
     }
 
-    /// Where it looks in the mirrors of `transform`: a turn is taken from
-    /// the east, so that a mirror that faces north or south negates it.
+    /// The distance from the left edge after the reflections of `transform`. Angles are measured
+    /// from the east, so that a mirror facing north or south negates them.
     fn reflected_across(&self, transform: MirrorTransform) -> u64 {
         const HALF: u64 = 1 << 63;
         let direction = transform.direction_to_map(DVec2::ONE);
@@ -100,14 +100,14 @@ impl SkyColumn {
     }
 }
 
-/// The colour of a gradient at that slope: it changes quickly at the horizon and slowly higher up.
+/// The colour of a gradient at this slope: it changes quickly at the horizon and slowly above.
 fn gradient(zenith: Rgb, horizon: Rgb, slope: f64) -> Rgb {
     let up = (slope / SLOPE_OF_ZENITH).clamp(0.0, 1.0);
     let share = (up * (2.0 - up) * 256.0) as u32;
     horizon.blended(256 - share, zenith, share)
 }
 
-/// From which slope on a gradient is all zenith.
+/// The slope from which on a gradient has the colour of the zenith.
 const SLOPE_OF_ZENITH: f64 = 0.5;
 
 #[cfg(test)]
@@ -115,7 +115,7 @@ mod tests {
     use super::*;
 
     #[test]
-    fn a_gradient_goes_from_one_colour_to_the_other() {
+    fn a_gradient_runs_from_horizon_to_zenith() {
         let colors =
             [-1.0, 0.0, 0.5, f64::INFINITY].map(|slope| gradient(Rgb::BLACK, Rgb::WHITE, slope));
         assert_eq!(colors, [Rgb::WHITE, Rgb::WHITE, Rgb::BLACK, Rgb::BLACK]);

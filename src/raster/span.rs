@@ -55,7 +55,8 @@ fn draw_lit<L: Lighting, S: Stats>(
     }
 }
 
-/// Draws `span` in two samples by turns: the first bit of what `piece` makes of a place tells which.
+/// Draws `span` in two samples: the uppermost bit of `piece`, applied to a position, selects the
+/// sample.
 fn draw_pieces<L: Lighting, S: Stats>(
     span: &PlaneSpan<'_>,
     samples: &[Sample<'_>; 2],
@@ -64,8 +65,8 @@ fn draw_pieces<L: Lighting, S: Stats>(
     target: &mut Target<'_, S>,
 ) {
     let &PlaneSpan { pass, row, ref columns, covering, mapping, .. } = span;
-    // The pattern repeats after two pieces: the first bit of a place tells which piece it is in, the
-    // others where in that.
+    // The pattern repeats after two pieces: the uppermost bit of a position is the index of the
+    // piece, and the others are the position in it.
     let places = mapping.places(columns.start, 1.0 / covering.scale.cells() / 2.0);
     let mut texels = 0;
     if S::ARE_KEPT {
@@ -105,8 +106,8 @@ fn draw_level<L: Lighting>(level: &MipLevel, lighting: L, places: TexelPlaces, p
     }
 }
 
-/// Draws `level` on `pixels`, many at a time: which texels they show is computed first, in a loop that
-/// reads no texel, so that a compiler has several of them computed at once.
+/// Draws `level` on `pixels`, many at a time. The indices of their texels are computed first, in a
+/// loop that reads no texel, so that a compiler vectorizes it.
 fn draw_by_shifts<L: Lighting>(
     level: MipLevelByShifts<'_>,
     lighting: L,
@@ -115,7 +116,7 @@ fn draw_by_shifts<L: Lighting>(
 ) {
     let mut texels = [0; AT_ONCE];
     for pixels in pixels.chunks_mut(AT_ONCE) {
-        // A few too many take less time than a few that are computed one by one.
+        // A few surplus texels take less time than a remainder that is computed one by one.
         let texels = &mut texels[..pixels.len().next_multiple_of(LANES)];
         for (texel, (x, y)) in texels.iter_mut().zip(places.clone()) {
             *texel = level.index(x, y);
@@ -133,7 +134,7 @@ fn look_up<L: Lighting>(
     texels: &[u32],
     pixels: &mut [Rgb],
 ) {
-    // Each may be the last, for all that a compiler knows, and so it does not unroll this by itself.
+    // A compiler does not unroll the loop by itself: any lookup may panic and end it.
     let (pixels, rest) = pixels.as_chunks_mut::<UNROLLED>();
     let (texels, rest_of_texels) = texels.split_at(pixels.as_flattened().len());
     for (pixels, texels) in pixels.iter_mut().zip(texels.as_chunks::<UNROLLED>().0) {
@@ -146,38 +147,39 @@ fn look_up<L: Lighting>(
     }
 }
 
-/// So many pixels are drawn at once, at most.
+/// The most pixels that are drawn at once.
 const AT_ONCE: usize = 64;
-/// A multiple of how many texels a processor computes at once.
+/// A multiple of the number of texels that a processor computes at once.
 const LANES: usize = 16;
 const UNROLLED: usize = 8;
 
-/// What the paints of a span look like.
+/// The inputs for sampling the paints of a span.
 #[derive(Clone, Copy)]
 struct Sampler<'a> {
     scene: Scene<'a>,
     mapping: &'a SpanMapping,
-    /// How often they repeat in a cell.
+    /// The number of repeats of the paints in a cell.
     per_cell: f64,
 }
 
-/// A paint as it is at one distance.
+/// A paint at one distance.
 enum Sample<'a> {
     Color(Rgb),
     Level(&'a MipLevel),
 }
 
-/// Where a pixel covers half a piece of a pattern, it shows the mean of both paints: this many times
-/// the pieces in a pixel are as many as the texels from which on a texture is halved.
+/// A pixel that covers half a piece of a pattern shows the mean of both paints. The number of
+/// pieces in a pixel, times this constant, is then the number of texels from which on a texture is
+/// halved.
 const PIECES_IN_A_PIXEL: f64 = 4.0;
 
 impl<'a> Sampler<'a> {
-    /// Whether the pieces of a pattern are too small to tell them apart.
+    /// Whether the pieces of a pattern are too small to be distinguished.
     fn is_blurred(self) -> bool {
         self.lod(PIECES_IN_A_PIXEL) > 0
     }
 
-    /// What `paint` is infinitely far away.
+    /// The mean colour of `paint`, as at infinite distance.
     fn mean(self, paint: Paint) -> Rgb {
         match paint {
             Paint::Color(color) => color,
@@ -185,7 +187,7 @@ impl<'a> Sampler<'a> {
         }
     }
 
-    /// What `paint` is at the distance of the span.
+    /// The sample of `paint` at the distance of the span.
     fn sample(self, paint: Paint) -> Sample<'a> {
         match paint {
             Paint::Color(color) => Sample::Color(color),
@@ -197,7 +199,7 @@ impl<'a> Sampler<'a> {
         }
     }
 
-    /// The level of detail of something of which a repeat has `texels`.
+    /// The level of detail of a pattern with `texels` texels in a repeat.
     fn lod(self, texels: f64) -> usize {
         let area = self.mapping.pixel_area * self.per_cell * self.per_cell;
         self.scene.plan.filter.lod(area * texels)
@@ -205,7 +207,7 @@ impl<'a> Sampler<'a> {
 }
 
 impl Sample<'_> {
-    /// The level, if it needs no multiplications.
+    /// The mip level, if its lookup needs no multiplications.
     fn by_shifts(&self) -> Option<MipLevelByShifts<'_>> {
         match self {
             Self::Color(_) => None,

@@ -5,7 +5,7 @@ use crate::visibility::{
     BillboardColumn, DrawList, FullyLit, Lighting, Pass, Scene, Stats, Surface,
 };
 
-/// Draws `column` of a billboard of `list` over what is there.
+/// Draws `column` of a billboard of `list` over the pixels behind it.
 pub(super) fn draw<S: Stats>(
     scene: Scene<'_>,
     list: &DrawList,

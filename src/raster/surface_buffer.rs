@@ -1,33 +1,33 @@
-//! The surface buffer: what each pixel shows that is painted over what the draw list says.
+//! The surface buffer: the surfaces of the layers that cover the pixels of the draw list.
 //!
-//! Only glyphs that tell surfaces apart ask for that; for all others nothing is kept.
+//! Only glyph modes that distinguish surfaces need it; for all others nothing is stored.
 
 use std::num::NonZeroU32;
 
 use crate::visibility::Surface;
 
-/// What single pixels show.
+/// The surfaces of single pixels.
 #[derive(Clone, Debug, Default)]
 pub(crate) struct SurfaceBuffer {
     are_kept: bool,
     width: usize,
-    /// Row by row, as the pixels of a frame; empty where no surfaces are kept.
+    /// The surfaces in rows, as the pixels of a frame; empty if none are kept.
     surfaces: Vec<Option<Surface>>,
 }
 
 impl SurfaceBuffer {
-    /// Whether to keep any from now on.
+    /// Sets whether surfaces are kept from now on.
     pub(crate) fn keep(&mut self, are_kept: bool) {
         self.are_kept = are_kept;
         self.surfaces.clear();
     }
 
-    /// Whether any are kept.
+    /// Whether surfaces are kept.
     pub(crate) fn are_kept(&self) -> bool {
         self.are_kept
     }
 
-    /// Forgets all, for a frame of that size.
+    /// Removes all surfaces, and prepares for a frame of this size.
     pub(crate) fn begin(&mut self, width: u32, height: u32) {
         if self.are_kept {
             self.width = width as usize;
@@ -36,7 +36,7 @@ impl SurfaceBuffer {
         }
     }
 
-    /// Those of bands of `rows` rows each, as long as one asks for more.
+    /// The surfaces in bands of `rows` rows each, without end: bands below the frame are empty.
     pub(crate) fn bands(&mut self, rows: NonZeroU32) -> impl Iterator<Item = SurfaceRows<'_>> {
         let (width, rows) = (self.width, rows.get());
         let mut rest = &mut self.surfaces[..];
@@ -47,25 +47,25 @@ impl SurfaceBuffer {
         })
     }
 
-    /// What the pixel `(x, y)` shows, where that was noted.
+    /// The surface of pixel `(x, y)`, if it was recorded.
     pub(crate) fn surface(&self, x: u32, y: u32) -> Option<Surface> {
         *self.surfaces.get(y as usize * self.width + x as usize)?
     }
 }
 
-/// What the pixels of some rows show.
+/// The surfaces of the pixels of some rows.
 #[derive(Debug)]
 pub(crate) struct SurfaceRows<'a> {
     width: usize,
-    /// The first of the rows.
+    /// The first row.
     first: u32,
-    /// Empty where no surfaces are kept.
+    /// The surfaces in rows; empty if none are kept.
     surfaces: &'a mut [Option<Surface>],
 }
 
 impl SurfaceRows<'_> {
-    /// Marks those pixels of column `x` from `row` on, which is in the band, as showing `surface` of which
-    /// `shown` says so.
+    /// Records `surface` for the pixels of column `x` from `row` on, which is in the band, if their
+    /// item in `shown` is true.
     pub(crate) fn mark(
         &mut self,
         x: usize,

@@ -1,4 +1,4 @@
-//! The target: what is drawn to.
+//! The target: the pixels that items are drawn to.
 
 use std::ops::Range;
 
@@ -7,9 +7,9 @@ use super::surface_buffer::SurfaceRows;
 use crate::color::Rgb;
 use crate::visibility::{Pass, Stats, Surface};
 
-/// A band of a frame with its part of the surface buffer, and what drawing it costs.
+/// A band of a frame with its part of the surface buffer, and the cost of drawing it.
 ///
-/// Rows that items are drawn in have to be [clipped](Target::clip) to the band before.
+/// Callers must [clip](Target::clip) the rows of an item to the band before they draw it.
 pub(crate) struct Target<'a, S> {
     band: Band<'a>,
     surfaces: SurfaceRows<'a>,
@@ -21,17 +21,17 @@ impl<'a, S: Stats> Target<'a, S> {
         Self { band, surfaces, stats: S::default() }
     }
 
-    /// What drawing has cost.
+    /// The cost of the drawing so far.
     pub(crate) fn into_stats(self) -> S {
         self.stats
     }
 
-    /// Which rows of the frame it shows.
+    /// The indices of its rows in the frame.
     pub(super) fn rows(&self) -> Range<u32> {
         self.band.rows()
     }
 
-    /// Those of `rows` that it shows.
+    /// The part of `rows` in the band.
     #[inline]
     pub(super) fn clip(&self, rows: &Range<u32>) -> Range<u32> {
         self.band.clip(rows)
@@ -64,7 +64,7 @@ impl<'a, S: Stats> Target<'a, S> {
         self.band.column_mut(x, rows)
     }
 
-    /// The band itself, for what counts its pixels by itself.
+    /// The band, for callers that count its pixels themselves.
     #[inline]
     pub(super) fn band_mut(&mut self) -> &mut Band<'a> {
         &mut self.band
@@ -82,7 +82,8 @@ impl<'a, S: Stats> Target<'a, S> {
         self.stats.change(|stats| stats.of_mut(pass).texels += count as u64);
     }
 
-    /// Marks those pixels of column `x` from `row` on as showing `surface` of which `shown` says so.
+    /// Records `surface` for the pixels of column `x` from `row` on, if their item in `shown` is
+    /// true.
     pub(super) fn mark(
         &mut self,
         x: u32,

@@ -1,11 +1,12 @@
-//! Runs: pixels side by side that show the same texel.
+//! Runs: neighbouring pixels of a row that show the same texel.
 //!
-//! In a large picture, what is near shows its texels dozens of pixels wide. Where each of them ends
-//! is computed then, and not which one each pixel shows: in whole steps and what is left over of them,
-//! as a straight line is drawn on a grid, so that the pixels are the same to the last one. To take
-//! eight pixels for one run if the first and the last show the same texel was refused: where texels
-//! are sixteen pixels wide, nearly half of the eights have an edge in them, no processor foresees
-//! which, and those have to be drawn one by one after all.
+//! In a large picture, a texel of a near surface is dozens of pixels wide. The ends of the texels
+//! are then computed instead of the texel of each pixel: in whole steps and a remainder, as a
+//! straight line is drawn on a grid, so that all pixels are identical.
+//!
+//! Testing whether the first and the last of eight pixels show the same texel was refused: if
+//! texels are sixteen pixels wide, nearly half of the groups of eight contain an edge. No processor
+//! predicts which, and their pixels have to be drawn one by one.
 
 use crate::color::Rgb;
 use crate::visibility::{Lighting, TexelPlaces};
@@ -18,15 +19,17 @@ pub(crate) struct TexelRuns {
     south: Edges,
 }
 
-/// If they are shorter than that in the mean, each pixel by itself takes less time.
+/// The least mean length of runs, in pixels: below it, drawing each pixel by itself takes less
+/// time.
 const SHORTEST: f64 = 6.0;
-/// For so few pixels it is not worth a division.
+/// The least number of pixels: for fewer, a division takes longer than it saves.
 const FEWEST_PIXELS: usize = 32;
-/// So many pixels are set at a time, those beyond the end of a run as well: another one follows.
+/// The number of pixels that are set at a time, beyond the end of a run as well: the next run
+/// overwrites those.
 const AT_ONCE: usize = 16;
 
 impl TexelRuns {
-    /// The runs of that many `pixels` at `places` that show `level`. `None` where they are too short.
+    /// The runs of `pixels` pixels at `places` that show `level`; `None` if they are too short.
     #[inline]
     pub(crate) fn of(
         level: MipLevelByShifts<'_>,
@@ -69,7 +72,7 @@ impl TexelRuns {
     }
 }
 
-/// Sets the first `count` of `pixels`, and some that follow.
+/// Sets the first `count` of `pixels`, and some after them.
 #[inline]
 fn fill(pixels: &mut [Rgb], count: usize, color: Rgb) {
     let (blocks, rest) = pixels.as_chunks_mut::<AT_ONCE>();
@@ -84,39 +87,40 @@ fn fill(pixels: &mut [Rgb], count: usize, color: Rgb) {
     }
 }
 
-/// How many edges there are between two pixels in the mean, along one axis.
+/// The mean number of edges between two neighbouring pixels, along one axis.
 fn edges_a_pixel(step: u64, mask: u32) -> f64 {
     let texels = 1_u64 << mask.count_ones();
     let step = step.cast_signed().unsigned_abs();
     step as f64 * (texels as f64 / 2.0_f64.powi(64))
 }
 
-/// Where one texel ends and the next begins, along one axis.
+/// The edges between texels, along one axis.
 #[derive(Clone, Debug)]
 struct Edges {
-    /// The first pixel behind the next edge.
+    /// The first pixel after the next edge.
     next: u64,
-    /// How far behind the edge its place is: less than a step.
+    /// The distance of that pixel's position from the edge: less than a step.
     behind: u64,
-    /// From one pixel to the next.
+    /// The step from one pixel to the next.
     step: u64,
-    /// How many whole steps a texel takes, and what is left of it.
+    /// The width of a texel, in whole steps and a remainder.
     steps: u64,
     rest: u64,
-    /// What this axis adds to the index of the texel.
+    /// The contribution of this axis to the index of the texel.
     index: u32,
-    /// From one texel to the next, modulo all of them.
+    /// The step of `index` from one texel to the next, modulo the number of texels.
     index_step: u32,
     mask: u32,
 }
 
 impl Edges {
-    /// The edges from `place` on, by such a `step` from each pixel to the next, where a place adds to the
-    /// index of a texel what is in `mask`, at first `index`. `None` where there is but one texel.
+    /// The edges from `place` on, with this `step` from each pixel to the next. A position
+    /// contributes the bits in `mask` to the index of a texel; at first they are `index`. `None` if
+    /// there is only one texel.
     fn new(place: u64, step: u64, index: u32, mask: u32) -> Option<Self> {
         let texel = 1_u64.checked_shl(u64::BITS - mask.count_ones())?;
         let to_next = mask & mask.wrapping_neg();
-        // Who goes back is seen in a mirror to go on.
+        // A negative step is mirrored to a positive one.
         let (place, step, index_step) = if step.cast_signed() < 0 {
             (!place, step.wrapping_neg(), to_next.wrapping_neg())
         } else {
@@ -126,7 +130,7 @@ impl Edges {
         let along =
             Self { next: u64::MAX, behind: 0, step, steps: 0, rest: 0, index, index_step, mask };
         Some(match last_of_texel.checked_div(step) {
-            // It is beside an axis, and stays there.
+            // The row is parallel to the edges and crosses none.
             None => along,
             Some(steps) => Self {
                 next: steps + 1,
@@ -138,10 +142,10 @@ impl Edges {
         })
     }
 
-    /// Goes on to the next edge if this one is before the pixel `end`.
+    /// Advances to the next edge if the current one is before the pixel `end`.
     #[inline]
     fn pass(&mut self, end: u64) {
-        // What is foreseen by nobody is computed both ways.
+        // The branch would be unpredictable, so that both results are computed.
         let passes = u64::from(self.next == end).wrapping_neg();
         let is_one_more = u64::from(self.rest > self.behind);
         let moved = self.steps + is_one_more;
@@ -169,7 +173,7 @@ mod tests {
 
     proptest! {
         #[test]
-        fn runs_show_what_each_pixel_shows(
+        fn runs_give_each_pixel_its_own_texel(
             sides in (0_u32..6, 0_u32..6),
             middle in (-50.0..50.0, -50.0..50.0),
             on_edges in any::<bool>(),
@@ -189,7 +193,7 @@ mod tests {
             let places = mapping.places(first as usize, 1.0);
             let mut pixels = vec![Rgb::WHITE; width as usize];
             let Some(runs) = TexelRuns::of(by_shifts, &places, pixels.len()) else {
-                // A texel is 32 pixels wide then, or there is but one.
+                // A texel is then 32 pixels wide, or there is only one.
                 let is_near = half_step.abs().max_element() <= 0.5 / 64.0 / 32.0;
                 let is_one = sides.0 == 0 || sides.1 == 0;
                 prop_assert!(pixels.len() < FEWEST_PIXELS || !is_near || is_one);

@@ -1,7 +1,7 @@
-//! Translucent columns: glass before what is behind it, and the tints of mirrors.
+//! Translucent columns: glass, and the tints of mirrors.
 //!
-//! Glass tints whole areas. Neighbours of one tint are collected and drawn together, row by row. One column
-//! after the other, the tints of mirrors took a fifth of a frame.
+//! Glass tints whole areas. Neighbouring columns of one tint are collected and drawn together, row
+//! by row. Drawn one column after the other, the tints of mirrors took a fifth of a frame.
 
 use std::ops::Range;
 
@@ -14,18 +14,19 @@ use crate::world::Glass;
 /// The most columns that are drawn together.
 const COLUMNS_AT_ONCE: usize = 32;
 
-/// Columns side by side of one tint that are not drawn yet.
+/// Neighbouring columns of one tint that are not drawn yet.
 #[derive(Default)]
 pub(super) struct Tints {
     color: Rgb,
     opacity: u8,
     columns: Range<u32>,
-    /// The rows of each, by its column modulo their number.
+    /// The rows of each column, indexed by the column modulo the number of columns.
     rows: [Range<u32>; COLUMNS_AT_ONCE],
 }
 
 impl Tints {
-    /// Adds `column`, which is of `glass`. Draws the others first, if they do not go together.
+    /// Adds `column`, which is made of `glass`. Draws the others first, if it cannot be drawn with
+    /// them.
     pub(super) fn add<S: Stats>(
         &mut self,
         scene: Scene<'_>,
@@ -50,7 +51,8 @@ impl Tints {
         self.rows[x as usize % COLUMNS_AT_ONCE] = rows;
     }
 
-    /// Draws them, if `column` is one of them: something is to be painted over it.
+    /// Draws the collected columns, if `column` is one of them, before another layer is painted
+    /// over it.
     #[inline]
     pub(super) fn draw_before<S: Stats>(&mut self, column: u32, target: &mut Target<'_, S>) {
         if self.columns.contains(&column) {
@@ -58,7 +60,7 @@ impl Tints {
         }
     }
 
-    /// Draws them.
+    /// Draws the collected columns.
     pub(super) fn draw<S: Stats>(&mut self, target: &mut Target<'_, S>) {
         let &mut Self { color, opacity, ref rows, .. } = self;
         let columns = std::mem::take(&mut self.columns);

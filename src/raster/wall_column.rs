@@ -1,8 +1,8 @@
 //! Wall columns: upright faces as wide as a pixel.
 //!
-//! A wall column is one column of its texture, stretched. The texel of each pixel is computed from its
-//! row, not from the texel above it, so that no error adds up down the picture; and where a wall is so
-//! near that only a few texels of it fill the screen, they are the right ones.
+//! A wall column is one column of its texture, stretched. The texel of each pixel is computed from
+//! its row, not from the texel above it, so that no error accumulates from row to row. If a wall is
+//! so near that only a few of its texels are in view, they are the right ones.
 
 use std::ops::Range;
 
@@ -27,14 +27,14 @@ pub(super) fn draw<S: Stats>(
     } else {
         let lighting = |wall: &WallColumn| match wall.facing {
             Facing::Side(side) => SideLit(side),
-            // Only shapes look that way, and there are none.
+            // Only shapes have such a normal, and this scene has none.
             Facing::Normal(_) => SideLit(Side::X),
         };
         draw_lit(scene, list, false, ColumnBatch::new(memory, target), lighting);
     }
 }
 
-/// What becomes of the colours of a face.
+/// The lighting of a face.
 pub(super) fn lighting_of(scene: Scene<'_>, facing: Facing, light: Light, t: f64) -> Faded {
     let fog = scene.world.fog();
     match facing {
@@ -56,7 +56,7 @@ fn draw_lit<'a, L: Lighting, S: Stats>(
     queue.batch.draw();
 }
 
-/// Queues wall columns in a lighting that depends on each.
+/// Queues wall columns in a lighting that depends on each column.
 struct Queue<'m, 't, 'a, L, S, F> {
     scene: Scene<'a>,
     batch: ColumnBatch<'m, 't, 'a, L, S>,

@@ -1,7 +1,7 @@
 //! A caster of any type.
 //!
-//! Drawing is compiled for each caster, and its pointer is followed once for a picture. A pointer that is
-//! followed for each ray was refused: the call would cost as much as a short ray.
+//! The drawing code is compiled for each caster, and its pointer is followed once a frame. A
+//! pointer that is followed for each ray was refused: the call would cost as much as a short ray.
 
 use std::fmt::Debug;
 use std::sync::Arc;
@@ -9,12 +9,12 @@ use std::sync::Arc;
 use super::{FramePlan, FrameStats, Picture, Threads};
 use crate::cast::{Caster, Exact};
 
-/// A caster whose type is not known where a renderer is kept: [`Exact`] by default.
+/// A caster whose type is erased: [`Exact`] by default.
 #[derive(Clone, Debug)]
 pub struct DynCaster(Arc<dyn Pictures>);
 
 impl DynCaster {
-    /// Any caster.
+    /// Erases the type of `caster`.
     pub fn new(caster: impl Caster + Debug + Send + Sync + 'static) -> Self {
         Self(Arc::new(caster))
     }
@@ -34,7 +34,7 @@ impl Default for DynCaster {
     }
 }
 
-/// What is compiled for each caster.
+/// The functions that are compiled for each caster.
 trait Pictures: Debug + Send + Sync {
     fn draw(&self, picture: Picture<'_, ()>) -> (FramePlan, Threads);
 

@@ -1,22 +1,22 @@
-//! An explanation: the plan of a frame beside what the frame cost.
+//! An explanation: the plan of a frame and its cost.
 
 use std::fmt;
 
 use super::{FramePlan, FrameStats, Pass, PortalStats, Threads, Visibility};
 
-/// How a frame was drawn, and what it cost.
+/// The plan of a frame and its cost.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub struct Explanation {
-    /// How it was drawn.
+    /// The loops that drew it.
     pub plan: FramePlan,
-    /// How many threads drew it.
+    /// The threads that drew it.
     pub threads: Threads,
-    /// What it cost.
+    /// The counts.
     pub stats: FrameStats,
 }
 
 impl fmt::Display for Explanation {
-    /// Writes a few lines for people.
+    /// Writes a few lines of text.
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
         let Self { plan, threads, stats } = self;
         write!(f, "{plan}")?;

@@ -1,4 +1,4 @@
-//! The frame: pixels off screen, row by row from the top.
+//! The frame: pixels in memory, in rows from the top.
 
 use std::num::NonZeroU32;
 
@@ -6,12 +6,12 @@ use crate::color::Rgb;
 use crate::raster::Band;
 use crate::visibility::{FrameSize, PixelAspect};
 
-/// A picture in memory, owned by the caller and drawn over from frame to frame.
+/// A picture in memory. The caller owns it, and each drawing overwrites it.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Frame {
     size: FrameSize,
     pixel_aspect: PixelAspect,
-    /// Row by row from the top, each from the left.
+    /// The rows from the top, each from the left.
     pixels: Vec<Rgb>,
 }
 
@@ -21,35 +21,35 @@ impl Frame {
         Self { size, pixel_aspect, pixels: vec![Rgb::BLACK; size.area()] }
     }
 
-    /// Changes the size and the shape of pixels; what the pixels show is unspecified until the next
-    /// drawing. Memory is kept, and allocated only where the frame was never as large.
+    /// Changes the size and the pixel aspect. The colours of the pixels are unspecified until the
+    /// next drawing. Allocates only if the frame was never as large.
     pub fn resize(&mut self, size: FrameSize, pixel_aspect: PixelAspect) {
         self.size = size;
         self.pixel_aspect = pixel_aspect;
         self.pixels.resize(size.area(), Rgb::BLACK);
     }
 
-    /// How many pixels it has.
+    /// The size in pixels.
     pub fn size(&self) -> FrameSize {
         self.size
     }
 
-    /// Pixels from left to right.
+    /// The number of columns of pixels.
     pub fn width(&self) -> u32 {
         self.size.width.get()
     }
 
-    /// Pixels from top to bottom.
+    /// The number of rows of pixels.
     pub fn height(&self) -> u32 {
         self.size.height.get()
     }
 
-    /// The shape of its pixels.
+    /// The height of a pixel over its width.
     pub fn pixel_aspect(&self) -> PixelAspect {
         self.pixel_aspect
     }
 
-    /// The pixels row by row from the top, each row from the left.
+    /// The rows from the top, each with its pixels from the left.
     pub fn rows(&self) -> impl ExactSizeIterator<Item = &[Rgb]> {
         self.pixels.chunks_exact(self.width() as usize)
     }
@@ -57,32 +57,32 @@ impl Frame {
     /// The pixel in column `x` from the left and row `y` from the top.
     ///
     /// # Panics
-    /// Where the frame has no such pixel.
+    /// If the frame has no such pixel.
     pub fn pixel(&self, x: u32, y: u32) -> Rgb {
         assert!(x < self.width(), "no pixel at ({x}, {y})");
         self.pixels[y as usize * self.width() as usize + x as usize]
     }
 
-    /// The pixels of row `y` from the top, from the left.
+    /// The pixels of row `y` from the top, from left to right.
     ///
     /// # Panics
-    /// Where the frame has no such row.
+    /// If the frame has no such row.
     pub fn row(&self, y: u32) -> impl ExactSizeIterator<Item = Rgb> {
         self.row_slice(y).iter().copied()
     }
 
-    /// As [`Frame::row`].
+    /// The pixels of a row, as [`Frame::row`] has them.
     pub(crate) fn row_slice(&self, y: u32) -> &[Rgb] {
         let start = y as usize * self.width() as usize;
         &self.pixels[start..][..self.width() as usize]
     }
 
-    /// All of it.
+    /// All rows as one band.
     pub(crate) fn whole(&mut self) -> Band<'_> {
         Band::new(self.width() as usize, 0, &mut self.pixels)
     }
 
-    /// All of it, in bands of `rows` rows, the last one of as many as are left.
+    /// All rows in bands of `rows` rows; the last band has the remaining rows.
     pub(crate) fn bands(&mut self, rows: NonZeroU32) -> impl Iterator<Item = Band<'_>> {
         let (width, rows) = (self.width() as usize, rows.get());
         let bands = self.pixels.chunks_mut(width * rows as usize);

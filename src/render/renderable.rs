@@ -1,14 +1,14 @@
-//! One interface for whatever a camera can see: a grid, or a scene of bodies.
+//! One interface to grids and to scenes of bodies.
 
 use std::fmt;
 
 use super::{Explanation, Filter, Frame, Renderer, Surface};
 use crate::world::{Camera, FieldOfView, World};
 
-/// A place that a camera can look at, with the renderer that draws it.
+/// A grid or a scene of bodies, with its camera and its renderer.
 ///
-/// A [`World`] and a [`space::Scene`](crate::space::Scene) are the two there are. A widget or a command
-/// that takes any `Renderable` shows either.
+/// [`World`] and [`space::Scene`](crate::space::Scene) implement it. A widget or a command that
+/// takes any `Renderable` shows either.
 ///
 /// ```
 /// use cellcaster::render::{Frame, FrameSize, Options, PixelAspect, Renderable};
@@ -25,17 +25,17 @@ use crate::world::{Camera, FieldOfView, World};
 /// # Ok::<(), Box<dyn std::error::Error>>(())
 /// ```
 pub trait Renderable {
-    /// Where a picture is taken from.
+    /// The place, direction and field of view of a picture.
     type Camera: Copy + fmt::Debug + PartialEq;
-    /// What draws frames, and keeps memory from one to the next.
+    /// Draws frames, and reuses its memory from frame to frame.
     type Renderer: Clone + fmt::Debug + Default;
-    /// How a frame was drawn, in lines for people.
+    /// The plan and the cost of a frame, in lines of text.
     type Explanation: fmt::Display;
 
-    /// A camera where the player starts.
+    /// A camera at the player's start.
     fn start_camera(&self, field_of_view: FieldOfView) -> Self::Camera;
 
-    /// Draws what `camera` sees into all of `frame`.
+    /// Draws the view of `camera` into all of `frame`.
     fn render(
         &self,
         camera: &Self::Camera,
@@ -44,7 +44,7 @@ pub trait Renderable {
         frame: &mut Frame,
     );
 
-    /// As [`Renderable::render`], and returns what the frame cost.
+    /// Draws as [`Renderable::render`] does, and returns the plan and the cost.
     fn explain(
         &self,
         camera: &Self::Camera,
@@ -53,27 +53,27 @@ pub trait Renderable {
         frame: &mut Frame,
     ) -> Self::Explanation;
 
-    /// The time on the clock of [`Options::seconds`] at which something in the last frame of `renderer`
-    /// begins to look different by itself; `None` for never.
+    /// The time at which something in the last frame of `renderer` next changes its appearance, on
+    /// the clock of [`Options::seconds`]; `None` for never.
     fn next_change(renderer: &Self::Renderer) -> Option<f64> {
         _ = renderer;
         None
     }
 
-    /// What the pixel `(x, y)` of the last frame of `renderer` shows; `None` where surfaces are not told
-    /// apart.
+    /// The surface that the pixel `(x, y)` of the last frame of `renderer` shows; `None` if the
+    /// renderer does not distinguish surfaces.
     fn surface(renderer: &Self::Renderer, x: u32, y: u32) -> Option<Surface> {
         _ = (renderer, x, y);
         None
     }
 }
 
-/// How a picture is drawn, apart from its size and camera.
+/// The options of a drawing, apart from size and camera.
 #[derive(Clone, Copy, Debug, PartialEq, Default)]
 pub struct Options {
-    /// How textures are looked up.
+    /// How textures are sampled.
     pub filter: Filter,
-    /// The time at which animated things are shown.
+    /// The time at which animated things are shown, in seconds.
     pub seconds: f64,
     /// Whether [`Renderable::surface`] is needed for each pixel.
     pub keeps_surfaces: bool,

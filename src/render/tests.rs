@@ -13,7 +13,7 @@ use crate::map::{self, Level, builtin};
 use crate::visibility::Projection;
 use crate::world::{Camera, Cell, FieldOfView, Heading, Opening, Pitch, World};
 
-/// All maps, with doors ajar where there are any.
+/// All maps, with doors ajar if there are any.
 static MAPS: LazyLock<Vec<(String, World)>> = LazyLock::new(|| {
     let builtin =
         builtin::LEVELS.iter().map(|level| (level.name.to_owned(), level.world().unwrap()));
@@ -37,7 +37,7 @@ static MAPS: LazyLock<Vec<(String, World)>> = LazyLock::new(|| {
     maps
 });
 
-/// Both pictures of what `camera` sees: filled as the plan says, and the portal way.
+/// The view of `camera` twice: drawn as planned, and by the portal way.
 fn both(world: &World, camera: &Camera, filter: Filter, size: FrameSize) -> [Frame; 2] {
     let plan = FramePlan::new(world, camera, filter);
     [plan.visibility, Visibility::Portals(WhyPortals::Heights)].map(|visibility| {
@@ -54,10 +54,10 @@ fn both(world: &World, camera: &Camera, filter: Filter, size: FrameSize) -> [Fra
 proptest! {
     #![proptest_config(ProptestConfig::with_cases(128))]
 
-    /// What the flat way fills, all of a level scene and a part of others, looks the same the portal way,
-    /// bit for bit; but for the centres of pixels that are on a line between two tiles.
+    /// The flat way draws a level scene, or the level part of another scene, like the portal way,
+    /// bit for bit. Excepted are pixels whose centres are on a line between two tiles.
     #[test]
-    fn what_is_level_is_drawn_as_if_it_had_heights(
+    fn level_scenes_are_drawn_the_same_by_both_ways(
         choice in any::<prop::sample::Index>(),
         place in (0.0..1.0, 0.0..1.0),
         is_in_the_middle in any::<bool>(),
@@ -73,7 +73,7 @@ proptest! {
         if is_in_the_middle {
             position = position.floor() + 0.5;
         }
-        // Inside rock, neither has anything to be right about.
+        // Inside a solid cell, neither picture is defined.
         prop_assume!(!world.grid().is_solid(position.x as i64, position.y as i64));
         let heading = Heading::from_degrees(degrees).unwrap();
         let camera = Camera::new(position, heading, FieldOfView::default()).unwrap();
@@ -91,7 +91,7 @@ proptest! {
     }
 }
 
-/// Whether nobody can tell in which cell `point` is.
+/// Whether `point` is on a line between two cells, so that its cell is ambiguous.
 fn is_on_a_line(point: DVec2) -> bool {
     (point - point.round()).abs().min_element() < 1e-9
 }

@@ -1,8 +1,8 @@
-//! Threads: how many of them draw a picture, and how they share it out.
+//! Threads: how many draw a frame, and how they share it.
 //!
-//! They are started for each picture that is large enough and end with it. Starting one takes tens of
-//! microseconds, and such a picture takes milliseconds. A pool that lives on was refused for that: it
-//! would have to be shut down, and be shared between renderers, to save little.
+//! Each frame that is large enough starts its own threads. Starting one takes tens of microseconds,
+//! and drawing such a frame takes milliseconds. A thread pool was refused: it would need a shutdown
+//! and sharing between renderers, and save little.
 
 use std::fmt;
 use std::num::{NonZero, NonZeroU32};
@@ -13,37 +13,38 @@ use super::{Frame, FrameSize};
 use crate::raster::{SurfaceBuffer, Target};
 use crate::visibility::Stats;
 
-/// The pixels for which a thread is worth it: with fewer, starting it takes longer than it saves.
+/// The number of pixels for each thread: for fewer, starting the thread takes longer than it saves.
 const PIXELS_OF_A_THREAD: usize = 1 << 19;
 
-/// Bands for each thread. Each costs what it takes to prepare all columns.
+/// The number of bands for each thread. Each band costs the preparation of all columns.
 const BANDS_OF_A_THREAD: usize = 2;
 
-/// As many threads as this machine runs at once. To ask takes longer than to draw a small picture.
+/// The number of threads that this machine runs at once. The query takes longer than the drawing of
+/// a small frame, so it is made once.
 static OF_THE_MACHINE: LazyLock<NonZero<usize>> =
     LazyLock::new(|| thread::available_parallelism().unwrap_or(NonZero::<usize>::MIN));
 
-/// How many threads draw a frame.
+/// The threads that draw a frame.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Threads {
-    /// One.
+    /// One thread.
     One(WhyOne),
-    /// So many: each draws a band of rows, and then another one, until all are drawn.
+    /// This number of threads: each draws a band of rows, then the next one that is left.
     Bands(NonZero<usize>),
 }
 
-/// Why one thread draws all of a frame.
+/// Why one thread draws the whole frame.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum WhyOne {
-    /// Others would take longer to start than the picture to draw.
+    /// The frame is small: other threads would take longer to start than it takes to draw.
     Small,
-    /// There may be no others.
+    /// No other thread is permitted.
     Only,
 }
 
 impl Threads {
-    /// Those that a picture of that size is worth, if there may be `most` of them, or as many as the
-    /// machine has.
+    /// The threads for a frame of this size, at most `most` or the number that the machine runs at
+    /// once.
     pub(super) fn new(size: FrameSize, most: Option<NonZero<usize>>) -> Self {
         let (width, height) = (size.width.get() as usize, size.height.get() as usize);
         let worthwhile = (width * height / PIXELS_OF_A_THREAD).min(height);
@@ -57,7 +58,7 @@ impl Threads {
         }
     }
 
-    /// How many they are.
+    /// The number of threads.
     pub fn count(self) -> usize {
         match self {
             Self::One(_) => 1,
@@ -65,8 +66,8 @@ impl Threads {
         }
     }
 
-    /// How many rows of a picture of that height they draw at once: all, or so few that a thread which
-    /// has drawn the simplest ones takes some of another's.
+    /// The number of rows of a band, for a frame of this height: all rows for one thread, else few
+    /// enough that a thread which finishes early takes bands from another.
     pub(super) fn rows_of_band(self, height: NonZeroU32) -> NonZeroU32 {
         match self {
             Self::One(_) => height,
@@ -88,8 +89,8 @@ impl fmt::Display for Threads {
     }
 }
 
-/// Draws all bands of `frame` and its surface buffer, by as many threads as that, each with a memory of its
-/// own. Adds what it cost to `stats`.
+/// Draws all bands of `frame` and its surface buffer by these threads, each with its own memory.
+/// Adds the counts to `stats`.
 pub(super) fn draw_bands<M: Default + Send, S: Stats>(
     threads: Threads,
     (frame, surfaces): (&mut Frame, &mut SurfaceBuffer),
@@ -112,8 +113,8 @@ pub(super) fn draw_bands<M: Default + Send, S: Stats>(
     });
 }
 
-/// Does `work` for each of `tasks`, each worker in a thread of its own that takes the next task as
-/// long as there is one. A single worker works in this thread.
+/// Does `work` for each of `tasks`. Each worker has a thread and takes the next task until none is
+/// left. A single worker works in the calling thread.
 fn share_out<T, W: Send>(
     tasks: impl Iterator<Item = T> + Send,
     workers: &mut [W],
@@ -134,7 +135,7 @@ fn share_out<T, W: Send>(
     let work_with = &work_with;
     thread::scope(|scope| {
         for worker in others {
-            // Where the system has no thread left, those that there are do everything.
+            // If the system starts no more threads, the others do all tasks.
             _ = thread::Builder::new().spawn_scoped(scope, move || work_with(worker));
         }
         work_with(own);
@@ -157,7 +158,7 @@ mod tests {
     }
 
     #[test]
-    fn large_pictures_alone_are_shared_out() {
+    fn only_large_frames_are_shared_out() {
         let threads = |width, height, most| {
             let size = FrameSize::new(width, height).unwrap();
             Threads::new(size, NonZero::new(most))

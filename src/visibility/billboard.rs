@@ -9,40 +9,40 @@ use crate::cast::MirrorTransform;
 use crate::world::texture::MipLevel;
 use crate::world::{Camera, Cell, Light, Sprite, SpriteId, Thing};
 
-/// Things that are nearer than that to the camera plane are not drawn: the player stands in them.
+/// Things nearer to the camera plane, in cells, are not drawn: they would contain the player.
 const NEAREST: f64 = 0.2;
 
-/// A thing as it stands in the picture, seen directly or in mirrors.
+/// The position of a thing in the picture, seen directly or in mirrors.
 #[derive(Clone, Debug)]
 pub(crate) struct Billboard {
-    /// `None` for the player.
+    /// The sprite of a thing; `None` for the player.
     sprite: Option<SpriteId>,
-    /// Which of the sprite's pictures is drawn, and from which of its mip levels.
+    /// The index of the sprite's picture, and its mip level.
     picture: usize,
     lod: usize,
-    /// `None` where it is near and in full light.
+    /// The lighting; `None` for a near billboard in full light.
     pub(crate) lighting: Option<Faded>,
-    /// How far it is from the camera plane, in cells.
+    /// The distance from the camera plane, in cells.
     pub(crate) depth: f64,
-    /// Where its left edge is, in pixels, and how many pixels wide it is.
+    /// The position of the left edge in columns, and the width in pixels.
     left: f64,
     width: f64,
-    /// The columns of pixels whose centres are on it.
+    /// The columns of pixels whose centres it covers.
     pub(crate) columns: Range<u32>,
-    /// Where its top is, in rows, and how many texels there are in a row.
+    /// The position of the top in rows, and the number of texels in a row.
     top: f64,
     texels_in_row: f64,
-    /// The rows of pixels whose centres are on it.
+    /// The rows of pixels whose centres it covers.
     pub(crate) rows: Range<u32>,
     is_mirrored: bool,
-    /// Whether any of it is in view.
+    /// Whether any part of it is in view.
     pub(crate) is_drawn: bool,
-    /// Which comes first of those that are equally far away.
+    /// The order among billboards at equal distance.
     pub(crate) order: (u32, u32, u16),
 }
 
 impl Billboard {
-    /// How `thing` looks in an image; `None` where it is out of the picture.
+    /// The billboard of `thing` in an image; `None` if it is outside the picture.
     pub(crate) fn of_thing(scene: Scene<'_>, image: MirrorTransform, thing: Thing) -> Option<Self> {
         let world = scene.world;
         let sprite = world.sprite(thing.sprite);
@@ -54,7 +54,7 @@ impl Billboard {
         Some(Self { sprite: Some(thing.sprite), order, ..billboard })
     }
 
-    /// How the player looks in an image, as `figure` shows them.
+    /// The billboard of the player in an image, drawn as `figure`.
     pub(crate) fn of_player(
         scene: Scene<'_>,
         image: MirrorTransform,
@@ -68,7 +68,7 @@ impl Billboard {
         Self::new(scene, image, figure, 0.0, (place, base), light)
     }
 
-    /// How `sprite` looks that stands at a place on the map, on that height.
+    /// The billboard of `sprite` at a point on the map and at a height.
     fn new(
         scene: Scene<'_>,
         image: MirrorTransform,
@@ -115,12 +115,12 @@ impl Billboard {
         })
     }
 
-    /// Whether it is of a thing, and not of the player.
+    /// Whether it shows a thing rather than the player.
     pub(crate) fn is_of_thing(&self) -> bool {
         self.sprite.is_some()
     }
 
-    /// The mip level that it is drawn from; that of `player`, where it is of the player.
+    /// The mip level from which it is drawn: that of `player`, if it shows the player.
     pub(crate) fn level<'a>(
         &self,
         scene: Scene<'a>,
@@ -133,19 +133,19 @@ impl Billboard {
         Some(sprite.pictures()[self.picture].level(self.lod))
     }
 
-    /// How far along its picture the centres of the pixels of `column` are, from 0 to 1.
+    /// The position of the pixel centres of `column` across its picture, from 0 to 1.
     pub(crate) fn u(&self, column: u32) -> f64 {
         let u = (f64::from(column) + 0.5 - self.left) / self.width;
         if self.is_mirrored { 1.0 - u } else { u }
     }
 
-    /// How many texels the centre of `row` is below the top.
+    /// The texel of the centre of `row`, counted from the top.
     #[inline]
     pub(crate) fn texel(&self, row: u32) -> usize {
         ((f64::from(row) + 0.5 - self.top) * self.texels_in_row) as usize
     }
 
-    /// When one of `billboards` that are in view begins to look different; `None` for never.
+    /// The time at which one of `billboards` in view next changes its appearance; `None` for never.
     pub(crate) fn next_change(billboards: &[Self], scene: Scene<'_>) -> Option<f64> {
         let drawn = billboards.iter().filter(|it| it.is_drawn).filter_map(|it| it.sprite);
         let changes = drawn.filter_map(|id| scene.world.sprite(id).next_change(scene.seconds));

@@ -1,22 +1,23 @@
-//! Columns: what the ray of each column of pixels met.
+//! Columns: the hit of the ray of each column of pixels.
 
 use std::ops::Range;
 
 use crate::cast::{Hit, Side};
 
-/// What the ray of one column of pixels met.
+/// The hit of the ray of one column of pixels.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Column {
-    /// What it hit, or `None` where it left the map.
+    /// The hit; `None` if the ray left the map.
     pub hit: Option<Hit>,
-    /// How far it got, in cells from the camera plane: to the wall, or to the edge of the map.
+    /// The distance from the camera plane to the end of the ray, in cells: to the wall, or to the
+    /// edge of the map.
     pub distance: f64,
     /// The rows of pixels between ceiling and floor at that distance: the wall or, beyond the edge
-    /// of the map, the sky and the ground.
+    /// of the map, sky and ground.
     pub rows: Range<u32>,
 }
 
-/// What a pixel shows.
+/// The kind of surface that a pixel shows.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Surface {
     /// The ceiling.
@@ -29,15 +30,16 @@ pub enum Surface {
     WallY,
     /// The floor.
     Floor,
-    /// A thing before all that.
+    /// A thing in front of the others.
     Thing,
 }
 
 impl Column {
-    /// A column of which nothing is known yet.
+    /// A column whose ray has not been cast yet.
     pub(crate) const UNKNOWN: Self = Self { hit: None, distance: 0.0, rows: 0..0 };
 
-    /// What the pixel in `row` shows of a level scene, where the ground begins in row `ground`.
+    /// The surface that the pixel in `row` shows of a level scene whose ground begins in row
+    /// `ground`.
     pub(crate) fn surface(&self, row: u32, ground: u32) -> Surface {
         if row < self.rows.start {
             return Surface::Ceiling;
@@ -52,12 +54,13 @@ impl Column {
         }
     }
 
-    /// How many rows, from the top, show the ceiling, where the ground begins in row `ground`.
+    /// The number of rows, from the top, that show the ceiling if the ground begins in row
+    /// `ground`.
     pub(crate) fn rows_of_ceiling(&self, ground: u32) -> u32 {
         self.rows.start.min(ground)
     }
 
-    /// How many rows, from the bottom of a frame `height` pixels high, show the floor.
+    /// The number of rows, from the bottom of a frame of `height` rows, that show the floor.
     pub(crate) fn rows_of_floor(&self, ground: u32, height: u32) -> u32 {
         height
             - match self.hit {
@@ -68,7 +71,7 @@ impl Column {
 }
 
 impl Surface {
-    /// The side of a wall.
+    /// The surface of a wall's side.
     pub(crate) fn of_wall(side: Side) -> Self {
         match side {
             Side::X => Self::WallX,

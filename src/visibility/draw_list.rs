@@ -1,9 +1,9 @@
-//! The draw list: what a frame shows, as spans, columns and billboards.
+//! The draw list: the contents of a frame, as spans, columns and billboards.
 //!
-//! Each kind is kept in the form in which it is found: rows of floor and ceiling as what each column
-//! leaves open of them, from which spans are made for each band of rows; upright faces as wall columns;
-//! what is painted over all that as layers, in the order of painting. A list of finished spans was
-//! refused: there may be as many as pixels, and each band needs its own.
+//! Each kind is stored in the form in which it is found: rows of floor and ceiling by column, from
+//! which spans are made for each band of rows; upright faces as wall columns; see-through columns
+//! and billboards as layers, in the order of painting. A list of finished spans was refused: there
+//! may be as many as pixels, and each band needs its own.
 
 use std::ops::Range;
 
@@ -16,36 +16,36 @@ use crate::cast::MirrorTransform;
 use crate::color::Rgb;
 use crate::world::{Covering, Glass, Light, Paint, Sprite, TextureId};
 
-/// What a frame shows; kept so that it is allocated once.
+/// The contents of a frame, in memory that is reused from frame to frame.
 #[derive(Clone, Debug, Default)]
 pub(crate) struct DrawList {
-    /// What the ray of each column of pixels met.
+    /// The hit of the ray of each column of pixels.
     pub(crate) columns: Vec<Column>,
-    /// Whether the flat way filled any of them.
+    /// Whether the flat way filled any column.
     pub(super) is_flat: bool,
-    /// The columns as the flat way sees them, where the portal way filled some; else they are the same.
+    /// The columns as the flat way sees them, if the portal way filled some; else empty.
     pub(super) flat_columns: Vec<Column>,
     /// The rows of floor, ceiling and sky that the portal way found.
     pub(crate) runs: ColumnRuns,
     /// The wall columns that the portal way found, those of a column of pixels together.
     pub(crate) walls: Vec<WallColumn>,
-    /// Masked and translucent columns, in no order: the layers say when each is painted.
+    /// Masked and translucent columns in any order: the layers give the order of painting.
     pub(crate) see_through: Vec<SeeThroughColumn>,
-    /// What is painted over all else, in that order.
+    /// The items that are painted in front of all others, in the order of painting.
     pub(crate) layers: Vec<Layer>,
-    /// What the billboard columns among the layers show.
+    /// The billboards of the billboard columns among the layers.
     pub(crate) billboards: Vec<Billboard>,
-    /// The player, as mirrors show them; `None` until there is a mirror.
+    /// The player, as seen in mirrors; `None` until there is a mirror.
     pub(crate) player: Option<Sprite>,
 }
 
-/// Pixels side by side in a row that show a floor, a ceiling or the sky.
+/// Neighbouring pixels of a row that show a floor, a ceiling or the sky.
 pub(crate) enum Span<'m> {
     /// Whole rows in one colour.
     Fill { pass: Pass, rows: Range<u32>, color: Rgb },
     /// A floor or a ceiling.
     Plane(PlaneSpan<'m>),
-    /// The sky, by the mirrors in which it is seen.
+    /// The sky, directly or in the mirrors of `image`.
     Sky { row: u32, columns: Range<usize>, image: Option<MirrorTransform> },
 }
 
@@ -56,7 +56,7 @@ pub(crate) struct PlaneSpan<'m> {
     pub(crate) columns: Range<usize>,
     pub(crate) covering: Covering,
     pub(crate) light: Light,
-    /// Where the row is on the floor or the ceiling.
+    /// The mapping from the row to the floor or the ceiling.
     pub(crate) mapping: &'m SpanMapping,
 }
 
@@ -64,17 +64,17 @@ pub(crate) struct PlaneSpan<'m> {
 #[derive(Clone, Debug, Default)]
 pub(crate) struct SpanMemory {
     pub(super) plane_rows: Vec<PlaneRow>,
-    /// The column in which the span of each row begins.
+    /// The first column of the current span of each row.
     pub(super) starts: Vec<usize>,
 }
 
-/// An upright face as wide as a pixel, as far as it is in view.
+/// The visible part of an upright face that is as wide as a pixel.
 #[derive(Clone, Debug)]
 pub(crate) struct WallColumn {
     pub(crate) column: u32,
     pub(crate) rows: Range<u32>,
     pub(crate) facing: Facing,
-    /// How many cells the ray comes nearer to the face for each unit of `t`.
+    /// The approach of the ray to the face, in cells per unit of `t`.
     pub(crate) slope: f64,
     pub(crate) t: f64,
     pub(crate) u: f64,
@@ -83,11 +83,11 @@ pub(crate) struct WallColumn {
     pub(crate) extent: Extent,
 }
 
-/// Something that takes wall columns.
+/// A receiver of wall columns.
 ///
-/// It is no closure, because each loop over wall columns has to have it inlined.
+/// It is a trait and not a closure, because each loop over wall columns must inline it.
 pub(crate) trait WallSink {
-    /// Takes what of `wall` is in `rows`, which are some.
+    /// Receives the part of `wall` in `rows`, which are not empty.
     fn take(&mut self, wall: &WallColumn, rows: Range<u32>);
 }
 
@@ -97,7 +97,7 @@ pub(crate) struct SeeThroughColumn {
     pub(crate) column: u32,
     pub(crate) rows: Range<u32>,
     pub(crate) facing: Facing,
-    /// As of a [`WallColumn`].
+    /// The approach of the ray, as in [`WallColumn`].
     pub(crate) slope: f64,
     pub(crate) t: f64,
     pub(crate) u: f64,
@@ -106,7 +106,7 @@ pub(crate) struct SeeThroughColumn {
     pub(crate) extent: Extent,
 }
 
-/// What is seen through.
+/// The material of a see-through face.
 #[derive(Clone, Copy, Debug)]
 pub(crate) enum Material {
     /// A texture with holes.
@@ -115,16 +115,16 @@ pub(crate) enum Material {
     Translucent(Glass),
 }
 
-/// From which height to which a face reaches.
+/// The heights between which a face extends.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub(crate) enum Extent {
     /// From floor to ceiling of a level scene: from 0 to 1.
     Level,
-    /// From one height to another.
+    /// From `bottom` to `top`.
     Heights { bottom: f64, top: f64 },
 }
 
-/// What is painted over what is behind it, as wide as a pixel.
+/// An item, as wide as a pixel, that is painted in front of the items before it.
 #[derive(Clone, Debug)]
 pub(crate) enum Layer {
     /// An index into the masked and translucent columns.
@@ -143,7 +143,7 @@ pub(crate) struct BillboardColumn {
 }
 
 impl DrawList {
-    /// Forgets the last frame.
+    /// Removes the contents of the last frame.
     pub(super) fn clear(&mut self) {
         self.columns.clear();
         self.is_flat = false;
@@ -155,8 +155,8 @@ impl DrawList {
         self.billboards.clear();
     }
 
-    /// Makes room for what the portal way finds in all but the strangest maps, so that a camera that turns
-    /// towards more of it needs no more memory.
+    /// Reserves memory for the portal way in all but extreme maps, so that a turn of the camera
+    /// towards more faces allocates nothing.
     pub(super) fn make_room_for_portals(&mut self, width: usize) {
         const OF_A_COLUMN: usize = 16;
         self.columns.reserve(width);
@@ -166,7 +166,7 @@ impl DrawList {
         self.make_room_for_layers(width * OF_A_COLUMN);
     }
 
-    /// Makes room for that many layers, those that there are included.
+    /// Reserves memory for this number of layers in total.
     pub(super) fn make_room_for_layers(&mut self, count: usize) {
         self.see_through.reserve(count.saturating_sub(self.see_through.len()));
         self.layers.reserve(count.saturating_sub(self.layers.len()));
@@ -180,7 +180,7 @@ impl DrawList {
         }
     }
 
-    /// Hands every span in `rows` to `emit`. `memory` is memory to work with.
+    /// Passes every span in `rows` to `emit`. `memory` is working memory.
     pub(crate) fn for_each_span(
         &self,
         scene: Scene<'_>,
@@ -200,8 +200,8 @@ impl DrawList {
         portal::for_each_span(scene, &self.runs, rows, &mut memory.starts, &mut emit);
     }
 
-    /// Hands every wall column in `rows` to `sink`: neighbours one after the other, as far as possible.
-    /// The light is right only where it `is_lit`.
+    /// Passes every wall column in `rows` to `sink`, neighbours in succession as far as possible.
+    /// The light is computed only if `is_lit`.
     #[inline]
     pub(crate) fn for_each_wall_column(
         &self,
@@ -221,7 +221,7 @@ impl DrawList {
         if self.flat_columns.is_empty() { &self.columns } else { &self.flat_columns }
     }
 
-    /// What pixel `(x, y)` shows but for what is painted over it; `None` where there is no column `x`.
+    /// The surface of pixel `(x, y)` behind all layers; `None` if there is no column `x`.
     pub(crate) fn surface(&self, x: u32, y: u32, ground: u32) -> Option<Surface> {
         let column = self.flat_columns().get(x as usize)?;
         let shown = self.runs.shown(x, y).and_then(Shown::surface);

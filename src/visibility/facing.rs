@@ -1,21 +1,21 @@
-//! Facing: which way an upright face looks, and from where it is seen.
+//! Facing: the direction of an upright face, and the cell from which it is seen.
 
 use glam::DVec2;
 
 use crate::cast::{Hit, Side};
 use crate::world::Outline;
 
-/// Which way a face looks.
+/// The direction of a face.
 #[derive(Clone, Copy, Debug)]
 pub(crate) enum Facing {
-    /// Along an axis.
+    /// Along an axis, perpendicular to a side.
     Side(Side),
-    /// Along a vector of length 1, or the opposite way.
+    /// Along a vector of length 1, in either direction.
     Normal(DVec2),
 }
 
 impl Facing {
-    /// That of a shape which is hit at `point`.
+    /// The facing of a shape that is hit at `point`.
     pub(super) fn of_shape(outline: Outline, point: DVec2, hit: &Hit) -> Self {
         Self::Normal(match outline {
             Outline::Line(line) => line.stretch().perp().normalize(),
@@ -23,7 +23,7 @@ impl Facing {
         })
     }
 
-    /// How many cells a ray along `direction` comes nearer to the face for each unit of its `t`.
+    /// The approach of a ray along `direction` to the face, in cells per unit of its `t`.
     #[inline]
     pub(super) fn slope(self, direction: DVec2) -> f64 {
         match self {
@@ -34,7 +34,7 @@ impl Facing {
     }
 }
 
-/// The column and the row of the cell from which a ray along `direction` sees the side that `hit` is on.
+/// The column and the row of the cell from which a ray along `direction` sees the side of `hit`.
 pub(super) fn cell_before(direction: DVec2, hit: &Hit) -> [i64; 2] {
     let back = |direction: f64| if direction > 0.0 { -1 } else { 1 };
     let (column, row) = (i64::from(hit.cell.column), i64::from(hit.cell.row));

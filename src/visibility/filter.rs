@@ -1,31 +1,32 @@
-//! The filter: which level of a texture a pixel is drawn from.
+//! The filter: the mip level from which a pixel is drawn.
 
-/// How a texture is looked up where a pixel covers many texels.
+/// How a texture is sampled if a pixel covers many texels.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash, Default)]
 pub enum Filter {
-    /// From the level whose texels are about as large as the pixel: far walls and floors are calm.
+    /// From the mip level whose texels are about as large as the pixel: far walls and floors do not
+    /// shimmer.
     #[default]
     Mip,
-    /// From the texture itself, whichever texel is at the pixel's centre: far ones shimmer.
+    /// From the texture itself, at the pixel's centre: far surfaces shimmer.
     Nearest,
 }
 
 impl Filter {
-    /// The level of detail for a pixel that covers an area of that many texels.
+    /// The level of detail for a pixel that covers an area of this many texels.
     ///
-    /// A texel of each level covers four of the level before. A pixel that is long and narrow counts by its
-    /// area: by its longer side, walls seen at an angle would blur across what is sharp on them; by
-    /// its shorter one, they would shimmer.
+    /// A texel of each level covers four of the level before. A long and narrow pixel counts by its
+    /// area: by its longer side, walls seen at an angle would blur along their sharp direction; by
+    /// its shorter side, they would shimmer.
     pub(crate) fn lod(self, area: f64) -> usize {
         match self {
-            // The nearest power of four; the exponent of a double is exact on every machine.
+            // The nearest power of four. The exponent of a double is exact on every machine.
             Self::Mip if area >= 0.5 => (exponent(2.0 * area) / 2) as usize,
             Self::Mip | Self::Nearest => 0,
         }
     }
 }
 
-/// The exponent of a double that is at least 1; above all others where it is infinite.
+/// The binary exponent of a double that is at least 1. That of infinity is above all others.
 fn exponent(number: f64) -> u64 {
     const BIAS: u64 = f64::MAX_EXP as u64 - 1;
     (number.to_bits() >> (f64::MANTISSA_DIGITS - 1)) - BIAS

@@ -1,8 +1,9 @@
-//! The flat way to fill a draw list: every ray ends at the first wall.
+//! The flat way to fill a draw list: each ray ends at the first wall.
 //!
-//! Few rays are cast: from the ends of the picture to its middle, and on in each half, until two rays
-//! hit the same face of a wall. What goes between two such rays hits that face, too. Where they hit what
-//! may be passed, all are cast anew, and told what it is.
+//! Few rays are cast: those at both ends of the picture, then the one in the middle, and likewise
+//! in each half, until two rays hit the same face of a wall. All rays between two such rays hit
+//! that face, too. Rays that hit a tile which may be passed are cast again, and the hits that they
+//! pass are recorded.
 
 mod layers;
 mod planes;
@@ -21,8 +22,8 @@ pub(super) use planes::{PlaneRow, for_each_span};
 pub(super) use portal_starts::PortalStarts;
 pub(super) use wall::for_each_wall_column;
 
-/// Finds the columns of `list`, with the walls that `caster` finds in `grid`, and those that are left to
-/// the portal way.
+/// Finds the columns of `list`, with the walls that `caster` finds in `grid`, and the starts of the
+/// columns that are left to the portal way.
 pub(super) fn find_columns<C: Caster, S: Stats>(
     scene: Scene<'_>,
     (caster, grid): (&C, &Grid),
@@ -45,8 +46,8 @@ pub(super) fn find_columns<C: Caster, S: Stats>(
     }
 }
 
-/// Fills the layers of `list`, whose columns are found: before all that are there already. Returns when a
-/// thing in view will look different; `None` for never.
+/// Fills the layers of `list`, whose columns are known, in front of the layers already in it.
+/// Returns the time at which a thing in view next changes its appearance; `None` for never.
 pub(super) fn fill_layers<S: Stats>(
     scene: Scene<'_>,
     memory: &mut FlatMemory,
@@ -56,8 +57,8 @@ pub(super) fn fill_layers<S: Stats>(
     if list.is_flat { layers::fill(scene, memory, list, stats) } else { None }
 }
 
-/// Casts the ray of every column into `columns`, and what it passes into `passed`, whatever they
-/// held before.
+/// Casts the ray of every column into `columns` and the hits that it passes into `passed`, and
+/// overwrites both.
 fn cast<C: Caster>(
     caster: &C,
     grid: &Grid,
@@ -93,14 +94,15 @@ fn cast<C: Caster>(
     }
 }
 
-/// Whether `cell`, which ends rays, is no wall, and level.
+/// Whether `cell` ends rays, is level, and is not a wall.
 fn may_be_passed(world: &World, cell: Cell) -> bool {
     let tile = world.grid().tile(cell.column.into(), cell.row.into());
     tile.map(|TileId(index)| &world.tiles()[usize::from(index)])
         .is_some_and(|tile| !matches!(tile.kind, TileKind::Wall(_)) && tile.is_level())
 }
 
-/// Whether `place` is in a cell of something that a ray may hit without entering a cell, or on its edge.
+/// Whether `place` is in, or at the edge of, a cell whose content a ray may hit without entering
+/// the cell.
 fn stands_in_what_may_be_hit(world: &World, place: DVec2) -> bool {
     let around = |along: f64| [along.floor() as i64, along.ceil() as i64 - 1];
     let cells = around(place.x).map(|column| around(place.y).map(|row| (column, row)));
@@ -111,7 +113,7 @@ fn stands_in_what_may_be_hit(world: &World, place: DVec2) -> bool {
     })
 }
 
-/// The rays of a picture, to which all that is solid is a wall.
+/// The rays of a picture, for which every solid tile is a wall.
 struct Fan<'a, C> {
     caster: &'a C,
     grid: &'a Grid,
@@ -127,8 +129,8 @@ impl<C: Caster> Fan<'_, C> {
         self.cast_between(columns, 0);
     }
 
-    /// Casts all but the first and the last of `columns`, which are known. `first` is the index of the
-    /// first.
+    /// Casts the rays of all `columns` except the first and the last, which are known. `first` is
+    /// the index of the first.
     fn cast_between(&self, columns: &mut [Column], first: usize) {
         let [left, between @ .., right] = columns else { return };
         if between.is_empty() {
@@ -156,14 +158,15 @@ impl<C: Caster> Fan<'_, C> {
     }
 }
 
-/// The column whose `ray` has that hit.
+/// The column of a `ray` with this hit.
 #[inline]
 fn column_of(grid: &Grid, projection: &Projection, ray: &Ray, hit: Option<Hit>) -> Column {
     let distance = hit.map_or_else(|| distance_to_edge(grid, ray), |hit| hit.t);
     Column { hit, distance, rows: projection.wall_rows(distance) }
 }
 
-/// How far along `ray` the map ends; 0 where the ray is off the map and never enters it.
+/// The distance along `ray` to the edge of the map; 0 if the ray is off the map and never enters
+/// it.
 fn distance_to_edge(grid: &Grid, ray: &Ray) -> f64 {
     let edges = DVec2::new(f64::from(grid.width()), f64::from(grid.height()));
     let along = |origin: f64, direction: f64, edge: f64| {
@@ -191,10 +194,10 @@ mod tests {
     use crate::world::{Camera, FieldOfView, Heading};
 
     const SIDE: usize = 12;
-    /// Floor and walls, and what may be passed.
+    /// Floor, walls, and tiles that may be passed.
     const TILES: &[u8] = b".#+%~o/";
 
-    /// A map of those, and a start in the middle.
+    /// A map of such tiles, with a start in the middle.
     fn world(cells: &[u8]) -> World {
         let mut cells = cells.to_vec();
         hang_doors(&mut cells);
@@ -215,8 +218,8 @@ mod tests {
         map::parse_str(&text).unwrap()
     }
 
-    /// Puts a wall on either side of each door and floor before and behind it, or it away where another one
-    /// needs the place; and the start.
+    /// Places a wall on either side of each door, and floor before and behind it, or removes the
+    /// door if the place is needed by another; and places the start.
     fn hang_doors(cells: &mut [u8]) {
         let is_inside = |place: usize| {
             [place % SIDE, place / SIDE].iter().all(|along| (1..SIDE - 1).contains(along))
@@ -236,7 +239,7 @@ mod tests {
         }
     }
 
-    /// Anywhere on the map or near it, and on lines between cells.
+    /// A coordinate on the map or near it, or on a line between cells.
     fn place() -> impl Strategy<Value = f64> {
         let line = (0..=SIDE).prop_map(|line| line as f64);
         prop_oneof![2 => -2.0..SIDE as f64 + 2.0, 1 => line]
@@ -244,7 +247,7 @@ mod tests {
 
     proptest! {
         #[test]
-        fn few_rays_tell_what_all_of_them_hit(
+        fn few_rays_find_the_hits_of_all_rays(
             (floor, walls) in (0.3..1.0, 0.0..1.0),
             cells in prop::collection::vec(0.0..1.0, SIDE * SIDE),
             position in (place(), place()),

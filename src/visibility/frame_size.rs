@@ -1,23 +1,23 @@
-//! The size of a frame and the shape of its pixels.
+//! The size of a frame and the aspect of its pixels.
 
 use std::num::NonZeroU32;
 
-/// How many pixels a frame has.
+/// The size of a frame in pixels.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct FrameSize {
-    /// Pixels from left to right.
+    /// The number of columns.
     pub width: NonZeroU32,
-    /// Pixels from top to bottom.
+    /// The number of rows.
     pub height: NonZeroU32,
 }
 
 impl FrameSize {
-    /// A size of `width` × `height` pixels. `None` where one of them is zero.
+    /// A size of `width` × `height` pixels; `None` if either is zero.
     pub fn new(width: u32, height: u32) -> Option<Self> {
         Some(Self { width: NonZeroU32::new(width)?, height: NonZeroU32::new(height)? })
     }
 
-    /// How many pixels it is.
+    /// The number of pixels.
     pub(crate) fn area(self) -> usize {
         self.width.get() as usize * self.height.get() as usize
     }
@@ -28,10 +28,10 @@ impl FrameSize {
 pub struct PixelAspect(f64);
 
 impl PixelAspect {
-    /// Pixels as wide as they are high.
+    /// The aspect of square pixels.
     pub const SQUARE: Self = Self(1.0);
 
-    /// A ratio above 0 and finite. `None` for anything else.
+    /// The aspect with this ratio; `None` unless it is finite and above 0.
     pub fn new(height_over_width: f64) -> Option<Self> {
         (height_over_width > 0.0 && height_over_width.is_finite())
             .then_some(Self(height_over_width))

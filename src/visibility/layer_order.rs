@@ -1,15 +1,15 @@
-//! The order of layers: glass of several columns side by side comes together.
+//! The order of layers: translucent columns that are neighbours are grouped.
 //!
-//! In a block of columns all else is painted first that is behind the next glass, and then that glass of
-//! all of them: neighbours of one tint are drawn together, row by row.
+//! In a block of columns, all layers behind the next translucent one are painted first, then the
+//! translucent layers of all columns. This draws neighbours of one tint together, row by row.
 
 use super::{Layer, Material, SeeThroughColumn};
 
-/// How many columns are put in order together.
+/// The number of columns that are ordered together.
 const BLOCK: usize = 32;
 
-/// Adds the layers `by_column`, those of each column together from far to near, to `layers` in the order
-/// in which they are painted.
+/// Adds the layers `by_column`, those of each column together from far to near, to `layers` in the
+/// order of painting.
 pub(super) fn put_in_order(
     by_column: &[Layer],
     see_through: &[SeeThroughColumn],
@@ -39,8 +39,8 @@ pub(super) fn put_in_order(
     }
 }
 
-/// What is in each block of `N` columns of pixels: of each column its `items`, in their order. Those of a
-/// column are together among them, and so are those of a block.
+/// The `items` of each block of `N` columns of pixels, split by column. The items of a column, and
+/// those of a block, are contiguous.
 pub(super) fn by_columns<const N: usize, T>(
     items: &[T],
     column_of: impl Fn(&T) -> usize + Copy,

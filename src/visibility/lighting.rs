@@ -1,7 +1,7 @@
-//! Lighting: what light and fog make of a texel's colour.
+//! Lighting: the effect of light and fog on the colour of a texel.
 //!
-//! A row of the floor and a column of a wall have one lighting each. The inner loops are compiled for
-//! each kind, so that a scene without fog and darkness has no trace of them there.
+//! A row of the floor and a column of a wall have one lighting each. The inner loops are compiled
+//! for each kind, so that a scene without fog and darkness has no such code in them.
 
 use glam::DVec2;
 
@@ -9,26 +9,26 @@ use crate::cast::Side;
 use crate::color::Rgb;
 use crate::world::{Fog, Light};
 
-/// What becomes of a colour.
+/// The effect of light and fog on a colour.
 pub(crate) trait Lighting: Copy + PartialEq {
     fn apply(self, color: Rgb) -> Rgb;
 }
 
-/// Nothing: it is near, and in full light.
+/// No effect: the surface is near and in full light.
 #[derive(Clone, Copy, PartialEq)]
 pub(crate) struct FullyLit;
 
-/// Half as bright on a y-side, so that the edge between the two kinds of side shows.
+/// Half brightness on a y-side, so that the edge between x-sides and y-sides shows.
 #[derive(Clone, Copy, PartialEq)]
 pub(crate) struct SideLit(pub(crate) Side);
 
-/// It fades.
+/// A fade towards black or the fog's colour.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub(crate) struct Faded {
-    /// How much is left of its own, in 256ths.
+    /// The share of the own colour, in 256ths.
     own: u32,
     fog: Rgb,
-    /// How much of the fog's colour comes instead, in 256ths; at most what is missing of the own.
+    /// The share of the fog's colour, in 256ths; at most the rest of the own.
     share: u32,
 }
 
@@ -57,14 +57,13 @@ impl Lighting for Faded {
 }
 
 impl Faded {
-    /// What becomes of the floor or the ceiling, in that light and at that distance; `None` where
-    /// nothing does.
+    /// The fade of a floor or a ceiling in this light and at this distance; `None` for no effect.
     pub(crate) fn of_plane(light: Light, fog: Option<Fog>, distance: f64) -> Option<Self> {
         let faded = Self::new(light.in_256ths(), fog, distance);
         (faded.own < FULL).then_some(faded)
     }
 
-    /// What becomes of a side of a wall.
+    /// The fade of a side of a wall.
     pub(crate) fn of_wall(side: Side, light: Light, fog: Option<Fog>, distance: f64) -> Self {
         let light = match side {
             Side::X => light.in_256ths(),
@@ -73,8 +72,8 @@ impl Faded {
         Self::new(light, fog, distance)
     }
 
-    /// What becomes of a surface that faces along `normal`, a vector of length 1: as an x-side or a
-    /// y-side where it runs along one, and in between where it runs across.
+    /// The fade of a surface with this `normal`, a vector of length 1: that of an x-side or a
+    /// y-side if it is parallel to one, and between both if it is oblique.
     pub(crate) fn of_surface(normal: DVec2, light: Light, fog: Option<Fog>, distance: f64) -> Self {
         let share = f64::midpoint(1.0, normal.x * normal.x);
         Self::new((f64::from(light.in_256ths()) * share) as u32, fog, distance)
@@ -87,7 +86,7 @@ impl Faded {
     }
 }
 
-/// All of a colour, in 256ths.
+/// The whole of a colour, in 256ths.
 const FULL: u32 = Light::FULL.in_256ths();
 
 #[cfg(test)]
@@ -95,7 +94,7 @@ mod tests {
     use super::*;
 
     #[test]
-    fn what_is_near_and_lit_is_as_it_is() {
+    fn a_near_lit_colour_is_unchanged() {
         let fog = Fog::new(Rgb::new(9, 9, 9), 4.0);
         assert_eq!(Faded::of_plane(Light::FULL, fog, 0.0), None);
         assert_eq!(Faded::of_plane(Light::FULL, None, 100.0), None);
@@ -113,7 +112,7 @@ mod tests {
     }
 
     #[test]
-    fn what_is_far_is_fog_however_it_is_lit() {
+    fn a_far_colour_is_fog_in_any_light() {
         let fog = Fog::new(Rgb::new(10, 20, 30), 4.0).unwrap();
         for light in [0.0, 0.3, 1.0].map(|share| Light::new(share).unwrap()) {
             let far = Faded::of_wall(Side::X, light, Some(fog), f64::INFINITY);

@@ -1,8 +1,8 @@
-//! The frame plan: how a frame is drawn, and with which inner loops.
+//! The frame plan: the loops that draw a frame.
 //!
-//! It is a small value, made from the world and the camera before anything is drawn, from what each kind
-//! of tile consists of. It is matched once a frame, so that what a scene does not have is absent from the
-//! loops.
+//! The plan is a small value. It is made before the drawing from the camera and from the parts of
+//! each kind of tile in the world. It is matched once a frame, so that features which a scene lacks
+//! are absent from the loops.
 
 mod display;
 
@@ -12,44 +12,45 @@ use crate::world::{
     Camera, Ceiling, Covering, Heights, Light, Paint, Pattern, Sky, Tile, TileKind, World,
 };
 
-/// How a frame is drawn.
+/// The loops that draw a frame.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct FramePlan {
-    /// How it is found out what is in view.
+    /// How visible surfaces are found.
     pub visibility: Visibility,
     /// How exact rays go from cell to cell.
     pub rays: RayLoop,
-    /// How what is overhead is drawn.
+    /// How ceilings are drawn.
     pub ceiling: CeilingLoop,
     /// How the floor is drawn.
     pub floor: PlaneLoop,
-    /// How the sky is drawn, where there is any: in place of a ceiling, or beyond the edge.
+    /// How the sky is drawn, in place of a ceiling or beyond the edge of the map.
     pub sky: SkyLoop,
     /// How the walls are drawn.
     pub walls: WallLoop,
     /// How things are drawn.
     pub things: ThingLoop,
-    /// Which level of a texture is read.
+    /// How textures are sampled.
     pub filter: Filter,
 }
 
-/// How it is found out what is in view.
+/// How visible surfaces are found.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Visibility {
-    /// The flat way: one wall for each column, floor and ceiling around it.
+    /// By the flat way: one wall for each column, and floor and ceiling around it.
     Flat,
-    /// The flat way, and the portal way for the columns whose ray meets what is not level.
+    /// By the flat way, and by the portal way in the columns whose rays meet cells that are not
+    /// level.
     Mixed(WhyPortals),
-    /// The portal way: floors, ceilings and walls of any height, and mirrors.
+    /// By the portal way: floors, ceilings and walls of any height, and mirrors.
     Portals(WhyPortals),
 }
 
-/// Why the flat way does not do.
+/// Why the flat way alone is not sufficient.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum WhyPortals {
-    /// Floors, ceilings or walls are not all of one height.
+    /// Floors, ceilings or walls differ in height.
     Heights,
-    /// There are mirrors.
+    /// The map has mirrors.
     Mirrors,
     /// The eye is not between floor and ceiling.
     Eye,
@@ -58,42 +59,42 @@ pub enum WhyPortals {
 /// How exact rays go from cell to cell.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum RayLoop {
-    /// They cross one line after the other and stop in every cell.
+    /// They cross one line after the other and look up every cell.
     Cells,
-    /// They cross one line after the other, along one axis.
+    /// They cross the lines of one axis in turn.
     Lines,
-    /// They cross as many lines at once as no wall is near to: the map is mostly empty.
+    /// They cross many lines at once where no wall is near: the map is mostly empty.
     Leaps,
 }
 
 /// How the floor or the ceiling is drawn.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum PlaneLoop {
-    /// One colour everywhere: a single fill, walls or no walls.
+    /// In one colour everywhere: a single fill, behind the walls.
     Fill(Rgb),
-    /// One colour, in fog: a fill for each row.
+    /// In one colour with fog: a fill for each row.
     FillRows(Rgb),
-    /// One covering everywhere: the spans of each row that no wall hides.
+    /// With one covering everywhere: the spans of each row that no wall covers.
     Spans,
     /// By tile: the same spans, cut where the tile changes.
     Tiles,
 }
 
-/// How what is overhead is drawn.
+/// How ceilings are drawn.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum CeilingLoop {
-    /// Nothing but sky.
+    /// Not at all: the sky is above every cell.
     Sky,
-    /// A ceiling, in places at least.
+    /// As a plane, in some cells at least.
     Plane(PlaneLoop),
 }
 
 /// How the sky is drawn.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum SkyLoop {
-    /// One colour a row.
+    /// One colour for each row.
     Gradient,
-    /// A texel a pixel, along the spans of each row that nothing hides.
+    /// One texel for each pixel, along the spans of each row that no surface covers.
     Panorama,
 }
 
@@ -102,23 +103,23 @@ pub enum SkyLoop {
 pub struct WallLoop {
     /// Whether any wall has a texture.
     pub textured: bool,
-    /// Whether colours fade, by fog or for want of light.
+    /// Whether colours fade, by fog or by darkness.
     pub faded: bool,
-    /// Whether a door may be set into them, and show its jamb.
+    /// Whether a wall may have a door beside it, and show its jamb.
     pub jambs: bool,
 }
 
 /// How things are drawn.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum ThingLoop {
-    /// Not at all: there are none.
+    /// Not at all: the world has none.
     None,
-    /// Those in the cells in view, from far to near.
+    /// As billboards: those in visible cells, from far to near.
     Billboards,
 }
 
 impl FramePlan {
-    /// The plan for what `camera` sees of `world`.
+    /// The plan for the view of `camera` in `world`.
     pub fn new(world: &World, camera: &Camera, filter: Filter) -> Self {
         let tiles = world.tiles();
         let is_open = |tile: &&Tile| !matches!(tile.kind, TileKind::Wall(_) | TileKind::Mirror(_));
@@ -165,8 +166,9 @@ impl FramePlan {
 }
 
 impl FramePlan {
-    /// Has a frame of which only a part is level filled by portals, where any cell of `world` is open to the
-    /// sky: the flat way takes the sky for a ceiling when it is asked for surfaces.
+    /// Selects the portal way for a frame of which only a part is level, if any cell of `world` is
+    /// open to the sky: recorded surfaces of the flat way do not distinguish the sky from a
+    /// ceiling.
     pub(crate) fn tell_sky_from_ceilings(&mut self, world: &World) {
         let is_open = |tile: &Tile| tile.ceiling == Ceiling::Sky;
         if let Visibility::Mixed(why) = self.visibility
@@ -195,10 +197,10 @@ impl Visibility {
     }
 }
 
-/// Whether `camera` is well inside a cell of level floor, between floor and ceiling: for all rays it is in
-/// that cell.
+/// Whether `camera` is well inside a cell with a level floor, between floor and ceiling, so that
+/// rounding puts no ray into another cell.
 fn stands_on_level_floor(world: &World, camera: &Camera) -> bool {
-    /// Far more than is rounded away.
+    /// Far more than the rounding error, in cells.
     const HAIR: f64 = 1e-6;
     let (place, eye) = (camera.position(), camera.eye());
     let inside = place - place.floor();

@@ -1,15 +1,16 @@
 //! The portal way to fill a draw list: floors, ceilings and walls of any height, and mirrors.
 //!
-//! The ray of a column goes from cell to cell with a clip range: the rows that nothing nearer covers. In
-//! each cell the floor closes it from below and the ceiling from above; at each line it is divided among
-//! the faces and the gaps of the next cell, and the ray goes on in every gap that is still in view: mostly
-//! one, two where a roof is seen from below and above at once. A mirror turns the ray back with the clip
-//! range that its face had. Cells as sectors and lines as portals are those of the Build engine (Ken
-//! Silverman, 1995).
+//! The ray of a column goes from cell to cell with a clip range: the rows that no nearer surface
+//! covers. In each cell the floor reduces it from below and the ceiling from above. At each line it
+//! is divided among the faces and the gaps of the next cell, and the ray continues in every gap
+//! that is still in view: mostly in one, in two if a roof is seen from below and above at once. A
+//! mirror reflects the ray with the clip range of its face. Cells as sectors and lines as portals
+//! are those of the Build engine (Ken Silverman, 1995).
 //!
-//! `walk` follows the rays from the `tile_gaps`, `line` says what is met at a line and `standing` what is
-//! met inside a cell. `billboards` are found last, and `layers` puts them in order with what is seen
-//! through. Where a world is level and has no mirrors, the flat way fills the same list with less.
+//! `walk` follows the rays from the `tile_gaps`; `line` handles the faces and gaps at a line, and
+//! `standing` the objects inside a cell. `billboards` are found last, and `layers` orders them with
+//! the see-through faces. For a level world without mirrors, the flat way fills the same list at a
+//! lower cost.
 
 mod billboards;
 mod layers;
@@ -35,22 +36,22 @@ pub(super) use spans::for_each_span;
 use tile_gaps::TileGaps;
 use walk::{ColumnWalk, Surroundings, WalkMemory};
 
-/// How many columns of pixels are drawn together.
+/// The number of columns of pixels that are drawn together.
 const BLOCK: usize = 120;
 
-/// Where the portal way begins with a column.
+/// The start of the portal way in a column.
 #[derive(Clone, Debug)]
 pub(super) enum PortalStart {
-    /// With all rows, where the camera is.
+    /// At the camera, with all rows.
     Camera,
-    /// With those rows, where the ray has crossed the first line into what is not level.
+    /// Where the ray has crossed the first line into a cell that is not level, with these rows.
     Line { hit: Hit, rows: Range<u32> },
 }
 
-/// The number of things in view for which there is room from the first frame on.
+/// The number of things in view for which memory is reserved in advance.
 const MOST_THINGS: usize = 4096;
 
-/// What the portal way remembers from one frame to the next; kept so that it is allocated once.
+/// The memory of the portal way, reused from frame to frame.
 #[derive(Clone, Debug, Default)]
 pub(super) struct PortalMemory {
     gaps: TileGaps,
@@ -59,7 +60,8 @@ pub(super) struct PortalMemory {
     layers: LayerMemory,
 }
 
-/// Fills all of `list` by exact rays. Returns when a thing in view will look different; `None` for never.
+/// Fills all of `list` by exact rays. Returns the time at which a thing in view next changes its
+/// appearance; `None` for never.
 pub(super) fn fill<S: Stats>(
     scene: Scene<'_>,
     memory: &mut PortalMemory,
@@ -72,8 +74,8 @@ pub(super) fn fill<S: Stats>(
     fill_columns(scene, memory, list, stats, |_| Some(PortalStart::Camera))
 }
 
-/// Fills the columns of `list` that have a `start` by exact rays, from there on. Returns when a thing in view will look
-/// different; `None` for never.
+/// Fills the columns of `list` that have a `start` by exact rays, from there on. Returns the time
+/// at which a thing in view next changes its appearance; `None` for never.
 pub(super) fn fill_columns<S: Stats>(
     scene: Scene<'_>,
     memory: &mut PortalMemory,
@@ -112,8 +114,8 @@ pub(super) fn fill_columns<S: Stats>(
 }
 
 impl PortalMemory {
-    /// Makes room for what is found in all but the strangest maps, here and in `list`, so that a camera
-    /// that turns towards more of it needs no more memory.
+    /// Reserves memory here and in `list` for all but extreme maps, so that a turn of the camera
+    /// towards more faces allocates nothing.
     pub(super) fn make_room(&mut self, world: &World, width: usize, list: &mut DrawList) {
         self.gaps.make_room(world);
         self.walk.make_room(width);
@@ -125,8 +127,9 @@ impl PortalMemory {
     }
 }
 
-/// Hands every one of `walls` to `sink`: neighbours in a block of columns one after the other, as the first
-/// faces of each mostly are parts of one wall or step, and so are those behind them.
+/// Passes every one of `walls` to `sink`. Neighbours in a block of columns are passed in
+/// succession: the first faces of all of them mostly are parts of one wall or step, and so are the
+/// faces behind those.
 pub(super) fn for_each_wall_column(
     walls: &[WallColumn],
     rows: &Range<u32>,

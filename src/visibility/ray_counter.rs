@@ -1,4 +1,4 @@
-//! A caster that counts the rays that it casts, for frame stats.
+//! A caster that counts its rays, for frame stats.
 
 use std::cell::Cell;
 
@@ -6,7 +6,8 @@ use super::FrameStats;
 use crate::cast::{Caster, Hit, MajorAxisTraversal, Ray, Walk};
 use crate::world::{Grid, World};
 
-/// Casts as another caster does, and counts along the exact rays, whatever that caster's method.
+/// Casts as another caster does, and counts the cells of the exact rays, whatever that caster's
+/// method.
 pub(super) struct RayCounter<'a, C> {
     caster: &'a C,
     grid: &'a Grid,
@@ -20,7 +21,7 @@ impl<'a, C> RayCounter<'a, C> {
         Self { caster, grid, rays: Cell::default(), cells: Cell::default(), looks: Cell::default() }
     }
 
-    /// Adds what it counted to `stats`.
+    /// Adds the counts to `stats`.
     pub(super) fn add_to(&self, stats: &mut FrameStats) {
         stats.rays += self.rays.get();
         stats.cells += self.cells.get();

@@ -1,6 +1,6 @@
 //! Runs: rows of a column of pixels that show the same floor, ceiling or sky.
 //!
-//! An entry for each pixel was refused: writing them, and comparing each with its neighbour to find spans,
+//! An entry for each pixel was refused: the writes, and the comparison of neighbours to find spans,
 //! took a fifth of a frame.
 
 use std::ops::Range;
@@ -9,33 +9,33 @@ use super::Surface;
 use crate::cast::{MirrorTransform, Side};
 use crate::world::TileId;
 
-/// The number of images in mirrors for which there is room from the first frame on.
+/// The number of images in mirrors for which memory is reserved in advance.
 pub(crate) const IMAGES_AT_ONCE: usize = 64;
 
-/// The runs of all columns; kept so that it is allocated once.
+/// The runs of all columns, in memory that is reused from frame to frame.
 #[derive(Clone, Debug, Default)]
 pub(crate) struct ColumnRuns {
-    /// Those of each column together, from the top, without a hole between them.
+    /// The runs of each column together, from the top and without gaps.
     runs: Vec<Run>,
-    /// Where those of each column begin; at last, where those of the last one end.
+    /// The first run of each column, and the end of the last column's runs.
     bounds: Vec<usize>,
-    /// Those of the column that is being filled, in no order.
+    /// The runs of the current column, in any order.
     unsorted: Vec<Run>,
-    /// Where what is seen is on the map: first as it is, and then in mirrors.
+    /// The transforms of the images to the map: first the direct view, then those in mirrors.
     images: Vec<MirrorTransform>,
 }
 
-/// Rows of a column that show the same.
+/// Rows of a column with one content.
 #[derive(Clone, Debug)]
 pub(crate) struct Run {
     pub(crate) rows: Range<u32>,
     pub(crate) shown: Shown,
 }
 
-/// What a pixel shows behind all that is seen through.
+/// The content of a pixel behind all layers.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub(crate) enum Shown {
-    /// What the flat way fills.
+    /// The flat way fills the pixel.
     Flat,
     Sky(ImageId),
     /// An upright face.
@@ -43,10 +43,10 @@ pub(crate) enum Shown {
     Plane(FlatSurface),
 }
 
-/// A floor, a ceiling, or the top of something.
+/// A floor, a ceiling, or the top of a wall or a pillar.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub(crate) struct FlatSurface {
-    /// `None` for the ground beyond the edge of the map.
+    /// The tile; `None` for the ground beyond the edge of the map.
     pub(crate) tile: Option<TileId>,
     pub(crate) part: Part,
     pub(crate) image: ImageId,
@@ -58,23 +58,23 @@ pub(crate) enum Part {
     /// The floor, or the top of a wall.
     Floor,
     Ceiling,
-    /// The top of what hangs above the ceiling.
+    /// The top of the solid part above the ceiling.
     Roof,
     /// The top of a pillar.
     Top,
 }
 
-/// By which mirrors something is seen: an index into the list of images.
+/// The mirrors in which a surface is seen: an index into the images.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub(crate) struct ImageId(pub(crate) u16);
 
 impl ImageId {
-    /// Seen directly.
+    /// The direct view.
     pub(crate) const NONE: Self = Self(0);
 }
 
 impl Shown {
-    /// Its surface; `None` for what the flat way fills.
+    /// The kind of surface; `None` if the flat way fills the pixel.
     pub(crate) fn surface(self) -> Option<Surface> {
         Some(match self {
             Self::Flat => return None,
@@ -87,14 +87,14 @@ impl Shown {
 }
 
 impl ColumnRuns {
-    /// Forgets the last frame.
+    /// Removes the contents of the last frame.
     pub(crate) fn clear(&mut self) {
         self.runs.clear();
         self.bounds.clear();
         self.images.clear();
     }
 
-    /// Makes room for the runs of `width` columns in all but the strangest maps.
+    /// Reserves memory for the runs of `width` columns in all but extreme maps.
     pub(crate) fn reserve(&mut self, width: usize) {
         const OF_A_COLUMN: usize = 16;
         self.runs.reserve(width * OF_A_COLUMN);
@@ -103,19 +103,19 @@ impl ColumnRuns {
         self.images.reserve(IMAGES_AT_ONCE);
     }
 
-    /// Begins with the first column.
+    /// Starts the first column.
     pub(crate) fn begin(&mut self) {
         self.clear();
         self.bounds.push(0);
         self.images.push(MirrorTransform::default());
     }
 
-    /// Leaves a column without runs: the flat way fills it.
+    /// Leaves a column without runs, for the flat way to fill.
     pub(crate) fn skip_column(&mut self) {
         self.bounds.push(self.runs.len());
     }
 
-    /// Adds what `rows` of the column that is being filled show.
+    /// Adds the content of `rows` of the current column.
     #[inline]
     pub(crate) fn show(&mut self, rows: Range<u32>, shown: Shown) {
         if !rows.is_empty() {
@@ -123,13 +123,13 @@ impl ColumnRuns {
         }
     }
 
-    /// Ends the column that is being filled, which has `height` rows.
+    /// Ends the current column, which has `height` rows.
     pub(crate) fn end_column(&mut self, height: u32) {
         let Self { runs, bounds, unsorted, .. } = self;
-        // Most floors come from the bottom up, so that they are mostly sorted from behind.
+        // Most floors are added from the bottom up, so that the reversed list is almost sorted.
         unsorted.reverse();
         unsorted.sort_unstable_by_key(|run| run.rows.start);
-        // Where a shape is met before its own cell, by rounding, a row is left out.
+        // If rounding puts a shape before its own cell, a row is missing.
         let hole = |rows: Range<u32>| {
             (!rows.is_empty()).then_some(Run { rows, shown: Shown::Sky(ImageId::NONE) })
         };
@@ -143,7 +143,7 @@ impl ColumnRuns {
         bounds.push(runs.len());
     }
 
-    /// Whether no column has any.
+    /// Whether no column has any runs.
     pub(crate) fn is_empty(&self) -> bool {
         self.runs.is_empty()
     }
@@ -153,7 +153,7 @@ impl ColumnRuns {
         self.bounds.windows(2).map(|bounds| &self.runs[bounds[0]..bounds[1]])
     }
 
-    /// What pixel `(x, y)` shows; `None` where there is no such pixel.
+    /// The content of pixel `(x, y)`; `None` if there is no such pixel.
     pub(crate) fn shown(&self, x: u32, y: u32) -> Option<Shown> {
         let &[start, end] = self.bounds.get(x as usize..)?.first_chunk()?;
         let column = &self.runs[start..end];
@@ -161,8 +161,8 @@ impl ColumnRuns {
         Some(run.shown)
     }
 
-    /// The index of `image`. Of a map with more mirrors in view than there are indices, the last
-    /// ones show the places of another.
+    /// The index of `image`. If more images are in view than there are indices, the last ones share
+    /// an index and show the cells of another image.
     pub(crate) fn image_id(&mut self, image: MirrorTransform) -> ImageId {
         let known = self.images.iter().rposition(|&known| known == image);
         let index = known.unwrap_or_else(|| {
@@ -174,12 +174,12 @@ impl ColumnRuns {
         ImageId(index as u16)
     }
 
-    /// Where what is seen in an image is on the map.
+    /// The transform of an image to the map.
     pub(crate) fn image(&self, ImageId(index): ImageId) -> MirrorTransform {
         self.images[usize::from(index)]
     }
 
-    /// The images that are in view, the map itself first.
+    /// The images in view, the direct view first.
     pub(crate) fn images(&self) -> &[MirrorTransform] {
         &self.images
     }

@@ -1,8 +1,8 @@
-//! Span mappings: where on the map the pixels of a row of floor or ceiling are.
+//! Span mappings: from the pixels of a row of floor or ceiling to points on the map.
 //!
-//! All pixels of such a row are at one distance, and their centres stand side by side on a straight
-//! line. Each row's line is computed from the row's own index, and each pixel's place from the middle
-//! of its row, in fixed point that wraps around: no error adds up anywhere, and a picture and its
+//! All pixels of such a row are at one distance, and their centres are evenly spaced on a straight
+//! line. Each row's line is computed from the row's own index, and each pixel's point from the
+//! middle of its row, in fixed point that wraps around. No error accumulates, and a picture and its
 //! mirror image agree bit for bit.
 
 use std::ops::Range;
@@ -11,32 +11,34 @@ use glam::DVec2;
 
 use crate::cast::MirrorTransform;
 
-/// The line that a row of pixels shows of the floor or the ceiling.
+/// The line of the floor or the ceiling that a row of pixels shows.
 #[derive(Clone, Copy, Debug)]
 pub(crate) struct SpanMapping {
-    /// How far it is from the camera plane; infinite for a row at the horizon.
+    /// The distance from the camera plane; infinite for a row at the horizon.
     pub(crate) distance: f64,
-    /// How large a pixel is on it, in square cells.
+    /// The area of a pixel on the plane, in square cells.
     pub(crate) pixel_area: f64,
-    /// What the middle of the row shows.
+    /// The point in the middle of the row.
     pub(crate) middle: DVec2,
-    /// From the middle of a pixel to its right edge.
+    /// The vector from the middle of a pixel to its right edge.
     pub(crate) half_step: DVec2,
-    /// How many pixels the row has.
+    /// The number of pixels of the row.
     pub(crate) width: u32,
 }
 
 impl SpanMapping {
-    /// The same line, a hair nearer to `eye`. It tells which cell a pixel is seen in: on the line
-    /// between two cells that is the one before it, at the foot of a wall the one before the wall.
+    /// The same line, slightly nearer to `eye`, from which a pixel's cell is looked up. For a point
+    /// on the line between two cells, it gives the nearer cell, and at the foot of a wall the cell
+    /// before the wall.
     pub(crate) fn just_before(self, eye: DVec2) -> Self {
-        /// As a share of the way: more than rounding can move a point, and less than shows.
+        /// As a fraction of the distance: more than the rounding error of a point, and too little
+        /// to be visible.
         const HAIR: f64 = 1e-9;
         let middle = self.middle + (eye - self.middle) * HAIR;
         Self { middle, half_step: self.half_step * (1.0 - HAIR), ..self }
     }
 
-    /// Where it is on the map, if what it shows is seen in mirrors.
+    /// The line on the map, for an image in mirrors.
     pub(crate) fn seen_in_mirrors(self, transform: MirrorTransform) -> Self {
         Self {
             middle: transform.to_map(self.middle),
@@ -45,15 +47,15 @@ impl SpanMapping {
         }
     }
 
-    /// What the centre of the pixel in column `x` shows.
+    /// The point at the centre of the pixel in column `x`.
     pub(crate) fn point(&self, x: usize) -> DVec2 {
         self.middle + self.half_step * self.half_steps_to(x) as f64
     }
 
-    /// The cells that the pixels in `columns` show, each by its north-west corner, and in which of the
+    /// The cells that the pixels in `columns` show, each by its north-west corner and with its
     /// columns.
     ///
-    /// A cell costs a few divisions, and not each pixel in it a look at the map.
+    /// A cell costs a few divisions; its pixels are not looked up on the map one by one.
     pub(crate) fn cells(
         self,
         columns: Range<usize>,
@@ -69,8 +71,8 @@ impl SpanMapping {
         })
     }
 
-    /// The first of `columns` that does not show the cell at `corner` as the first one does; where they
-    /// end if there is none.
+    /// The first of `columns` that is not in the cell at `corner`, in which the first one is; the
+    /// end of `columns` if there is none.
     fn end_of_cell(&self, corner: DVec2, columns: Range<usize>) -> usize {
         let along = |from: f64, corner: f64, half_step: f64| {
             let edge = if half_step > 0.0 { corner + 1.0 } else { corner };
@@ -79,12 +81,12 @@ impl SpanMapping {
         let from = self.point(columns.start);
         let along_x = along(from.x, corner.x, self.half_step.x);
         let along_y = along(from.y, corner.y, self.half_step.y);
-        // Steps of 0 never get to an edge, and make something that is no number or below 0 of it.
+        // A step of 0 never reaches an edge: the quotient is infinite, NaN or negative.
         let is_ahead = |&along: &f64| along >= 0.0;
         let pixels = [along_x, along_y].into_iter().filter(is_ahead).fold(f64::INFINITY, f64::min);
         let least = columns.start + 1;
         let mut end = columns.start.saturating_add(pixels as usize).clamp(least, columns.end);
-        // Rounding may be off by a pixel; the pixels themselves know.
+        // The quotient may be wrong by a pixel through rounding; the points of the pixels decide.
         let shows = |x: usize| self.point(x).floor() == corner;
         while end > least && !shows(end - 1) {
             end -= 1;
@@ -95,8 +97,8 @@ impl SpanMapping {
         end
     }
 
-    /// The places of the pixels from column `x` on within the repeats of something that repeats
-    /// `per_cell` times in a cell, along both axes.
+    /// The positions of the pixels from column `x` on in a pattern that repeats `per_cell` times in
+    /// a cell, along both axes.
     pub(crate) fn places(&self, x: usize, per_cell: f64) -> TexelPlaces {
         let along = |middle: f64, half_step: f64| {
             let half_step = fraction(half_step * per_cell);
@@ -108,13 +110,13 @@ impl SpanMapping {
         TexelPlaces { x, y, x_step, y_step }
     }
 
-    /// From the middle of the row to the centre of a pixel.
+    /// The number of half pixels from the middle of the row to the centre of a pixel.
     fn half_steps_to(&self, x: usize) -> i64 {
         2 * x as i64 + 1 - i64::from(self.width)
     }
 }
 
-/// Places within a repeat, one for each pixel, in 2⁻⁶⁴ths of it along both axes.
+/// Positions in a repeating pattern, one for each pixel, in 2⁻⁶⁴ths of a repeat along both axes.
 #[derive(Clone, Debug)]
 pub(crate) struct TexelPlaces {
     x: u64,
@@ -124,17 +126,17 @@ pub(crate) struct TexelPlaces {
 }
 
 impl TexelPlaces {
-    /// The first of them, along both axes.
+    /// The first position, along both axes.
     pub(crate) fn first(&self) -> [u64; 2] {
         [self.x, self.y]
     }
 
-    /// From one to the next, along both axes.
+    /// The step from one position to the next, along both axes.
     pub(crate) fn steps(&self) -> [u64; 2] {
         [self.x_step, self.y_step]
     }
 
-    /// Goes on by `count` pixels.
+    /// Advances by `count` pixels.
     pub(crate) fn skip_pixels(&mut self, count: u64) {
         self.x = self.x.wrapping_add(self.x_step.wrapping_mul(count));
         self.y = self.y.wrapping_add(self.y_step.wrapping_mul(count));
@@ -147,20 +149,20 @@ impl Iterator for TexelPlaces {
     #[inline]
     fn next(&mut self) -> Option<(u64, u64)> {
         let place = (self.x, self.y);
-        // Integers that wrap around lose nothing.
+        // Integers that wrap around lose no precision.
         self.x = self.x.wrapping_add(self.x_step);
         self.y = self.y.wrapping_add(self.y_step);
         Some(place)
     }
 }
 
-/// What is behind the decimal point of `number`, in 2⁻⁶⁴ths; 0 for what is no number.
+/// The fractional part of `number`, in 2⁻⁶⁴ths; 0 for NaN.
 fn fraction(number: f64) -> u64 {
     const WHOLE: f64 = 18_446_744_073_709_551_616.0;
-    /// From here on doubles are whole.
+    /// All doubles from here on are integers.
     const LARGE: f64 = (1_u64 << f64::MANTISSA_DIGITS) as f64;
     let size = number.abs();
-    // `f64::floor` is a call where a processor may be old.
+    // On old processors `f64::floor` is a call.
     let rest = if size < LARGE { size - size as i64 as f64 } else { 0.0 };
     let fraction = (rest * WHOLE) as u64;
     if number < 0.0 { fraction.wrapping_neg() } else { fraction }
@@ -181,7 +183,7 @@ mod tests {
 
     proptest! {
         #[test]
-        fn every_pixel_is_in_the_cell_that_it_shows(
+        fn every_pixel_is_in_the_cell_of_its_point(
             middle in (-50.0..50.0, -50.0..50.0),
             half_step in (
                 prop_oneof![Just(0.0), Just(0.25), -0.9..0.9],
@@ -202,7 +204,7 @@ mod tests {
         }
 
         #[test]
-        fn places_are_those_of_the_points(
+        fn positions_agree_with_points(
             middle in (-50.0..50.0, -50.0..50.0),
             half_step in (-0.5..0.5, -0.5..0.5),
             width in 1_u32..4096,

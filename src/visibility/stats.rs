@@ -1,34 +1,34 @@
-//! Frame stats: what a frame cost, counted where it is spent.
+//! Frame stats: the cost of a frame, counted where it arises.
 //!
-//! Drawing is generic over [`Stats`], and a frame that nobody wants explained is drawn with `()`, which
-//! counts nothing and leaves no code behind.
+//! Drawing is generic over [`Stats`]. A frame without an explanation is drawn with `()`, which
+//! counts nothing and compiles to no code.
 
 /// A kind of surface that pixels are written for.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
 pub enum Pass {
-    /// What is overhead.
+    /// Ceilings.
     Ceiling,
-    /// What is below.
+    /// Floors.
     Floor,
-    /// What is seen in place of a ceiling, or beyond the edge of the map.
+    /// The sky: above cells without a ceiling, or beyond the edge of the map.
     Sky,
-    /// What the rays hit.
+    /// Walls that rays hit.
     Walls,
-    /// What the rays passed.
+    /// Masked and translucent faces that rays passed.
     SeeThrough,
-    /// What stands in the cells.
+    /// Things, which stand in the cells.
     Things,
 }
 
-/// Counts what a frame, or a band of it, costs.
+/// Counts the cost of a frame or of a band.
 pub(crate) trait Stats: Default + Send {
-    /// Whether anything is counted.
+    /// Whether the counts are kept.
     const ARE_KEPT: bool;
 
-    /// Changes them by `change`, if they are kept.
+    /// Applies `change` to the counts, if they are kept.
     fn change(&mut self, change: impl FnOnce(&mut FrameStats));
 
-    /// Adds all of `other`.
+    /// Adds all counts of `other`.
     fn add(&mut self, other: Self);
 }
 
@@ -42,59 +42,59 @@ impl Stats for () {
     fn add(&mut self, (): Self) {}
 }
 
-/// What a pass read and wrote.
+/// The texels read and the pixels written by a pass.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Default)]
 pub struct PassStats {
-    /// Texels that were read, each as often as that.
+    /// The texels read, repeated reads included.
     pub texels: u64,
-    /// Pixels that were written, each as often as that.
+    /// The pixels written, repeated writes included.
     pub pixels: u64,
 }
 
-/// What a frame cost.
+/// The cost of a frame.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Default)]
 pub struct FrameStats {
-    /// Rays that were cast: at most one for each column of pixels, and another one where that may pass
-    /// what it hit.
+    /// The rays cast: at most one for each column of pixels, and a second one if the first hit a
+    /// tile that may be passed.
     pub rays: u64,
-    /// Cells that they entered, the ones that they hit included.
+    /// The cells that the rays entered, those that they hit included.
     pub cells: u64,
-    /// How often they looked where they were: less than once a cell, where they do not stop in each.
+    /// The lookups of a tile or of a clear distance: fewer than cells, if rays do not stop in each.
     pub looks: u64,
-    /// The ceiling.
+    /// The cost of ceilings.
     pub ceiling: PassStats,
-    /// The floor.
+    /// The cost of floors.
     pub floor: PassStats,
-    /// The sky.
+    /// The cost of the sky.
     pub sky: PassStats,
-    /// The walls.
+    /// The cost of walls.
     pub walls: PassStats,
-    /// Masked and translucent columns.
+    /// The cost of masked and translucent columns.
     pub see_through: PassStats,
-    /// Things.
+    /// The cost of things.
     pub things: PassStats,
-    /// Things that may be in view by the cell that they stand in.
+    /// The things in cells that may be in view.
     pub things_considered: u64,
-    /// Those that are.
+    /// The things in view.
     pub things_drawn: u64,
-    /// What it took to see above, below and in mirrors.
+    /// The cost of the portal way.
     pub portals: PortalStats,
-    /// Spans of floor, ceiling and sky.
+    /// The spans of floor, ceiling and sky.
     pub spans: u64,
-    /// Pixels that were written more than once, each as often as that beyond the first time.
+    /// The pixel writes beyond the first for each pixel.
     pub overwritten: u64,
 }
 
-/// What it cost to follow rays through portals.
+/// The cost of the portal way.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Default)]
 pub struct PortalStats {
-    /// Rays that were followed.
+    /// The rays followed.
     pub rays: u64,
-    /// Cells that they entered.
+    /// The cells that they entered.
     pub cells: u64,
-    /// Faces that they met, each as wide as a pixel.
+    /// The faces that they met, each as wide as a pixel.
     pub faces: u64,
-    /// How often they were reflected.
+    /// The reflections in mirrors.
     pub bounces: u64,
 }
 
@@ -104,7 +104,7 @@ impl Pass {
 }
 
 impl FrameStats {
-    /// What `pass` read and wrote.
+    /// The cost of `pass`.
     pub fn of(&self, pass: Pass) -> PassStats {
         match pass {
             Pass::Ceiling => self.ceiling,
@@ -116,7 +116,7 @@ impl FrameStats {
         }
     }
 
-    /// Pixels that were written by all passes together.
+    /// The pixels written by all passes together.
     pub fn pixels(&self) -> u64 {
         Pass::ALL.into_iter().map(|pass| self.of(pass).pixels).sum()
     }
@@ -140,7 +140,7 @@ impl Stats for FrameStats {
         change(self);
     }
 
-    /// Adds what `band` counted, a part of the drawing; finding what is in view is counted once.
+    /// Adds the counts of a band. Visibility, which is found once a frame, is not among them.
     fn add(&mut self, band: Self) {
         for pass in Pass::ALL {
             let (sum, of_band) = (self.of_mut(pass), band.of(pass));

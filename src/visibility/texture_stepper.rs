@@ -1,9 +1,9 @@
-//! The texture stepper: which texel down a face the centre of each row of pixels is on.
+//! The texture stepper: the texel of a face at the centre of each row of pixels.
 //!
-//! Texels are counted from eye height, so that however near a face is, what is above the horizon shows
-//! what is above the eye; and in fixed point, by the row's own index, so that no error adds up and a
-//! step is one addition. Counting in doubles was refused: a conversion and a floor for each pixel
-//! took half the time of a whole frame.
+//! Texels are counted from eye height, so that, however near a face is, the rows above the horizon
+//! show the part of it above the eye. They are counted in fixed point and by the row's own index,
+//! so that no error accumulates and a step is one addition. Counting in doubles was refused: a
+//! conversion and a floor for each pixel took half the time of a whole frame.
 
 use std::iter;
 use std::ops::Range;
@@ -11,29 +11,29 @@ use std::ops::Range;
 /// The texels of an upright face.
 #[derive(Clone, Copy, Debug)]
 pub(crate) struct FaceTexels {
-    /// How many there are in a cell of height; at least one.
+    /// The number of texels per cell of height; at least one.
     pub(crate) count: usize,
-    /// From where to where the face reaches, in cells down from the top of its uppermost texture.
+    /// The top and the bottom of the face, in cells down from the top of its uppermost texture.
     pub(crate) of_cells: (f64, f64),
-    /// Where the eye is, likewise.
+    /// Eye height, in the same unit.
     pub(crate) at_eye: f64,
 }
 
 /// The texels of an upright face, by rows of pixels.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub(crate) struct TextureStepper {
-    /// Where the centre of row 0 is, even where that is not on the face.
+    /// The position at the centre of row 0, even if the row is not on the face.
     first: i64,
-    /// From one row to the next.
+    /// The step from one row to the next.
     step: i64,
-    /// The uppermost and the lowest one on the face.
+    /// The uppermost and the lowest texel on the face.
     range: (i64, i64),
     count: i64,
 }
 
 impl TextureStepper {
-    /// Of `texels` in a picture whose horizon is `half_rows_to_horizon` halves of a row below its
-    /// top, and where a row covers `height_of_row` cells of the face.
+    /// The stepper of `texels` in a picture whose horizon is `half_rows_to_horizon` halves of a row
+    /// below its top, if a row covers `height_of_row` cells of the face.
     pub(crate) fn new(half_rows_to_horizon: f64, height_of_row: f64, texels: FaceTexels) -> Self {
         let FaceTexels { count, of_cells: (top, bottom), at_eye } = texels;
         let in_texels = |cells: f64| cells * count as f64;
@@ -45,7 +45,7 @@ impl TextureStepper {
         }
     }
 
-    /// Likewise, of a wall that is 1 high and covered by one texture, `count` texels high.
+    /// The stepper of a wall of height 1 that one texture of `count` texels covers.
     #[inline]
     pub(crate) fn of_wall(
         half_rows_to_horizon: f64,
@@ -55,9 +55,10 @@ impl TextureStepper {
     ) -> Self {
         let in_texels = |cells: f64| cells * count as f64;
         let texels_in_row = in_texels(height_of_row).min(MOST_TEXELS);
-        // A smaller step would not get past the hair, and a row above the horizon below it.
+        // A smaller step would not exceed `HAIR`, and a row above the horizon would be below it.
         let half_step = rounded(texels_in_row / 2.0 * TEXEL).max(2 * HAIR);
-        // What is far above or below the face wraps around, and is back where the face begins.
+        // Positions far above or below the face wrap around, and return to the same value at the
+        // face.
         let at_horizon = rounded(in_texels(at_eye) * TEXEL);
         let half_rows_to_first = 1 - half_rows_to_horizon as i64;
         let from_horizon = half_step.wrapping_mul(half_rows_to_first);
@@ -70,25 +71,26 @@ impl TextureStepper {
         }
     }
 
-    /// Which texel of its texture the centre of `row` is on: the nearest one where it is above or
-    /// below the face by less than rounding.
+    /// The texel of the texture at the centre of `row`: the nearest one if rounding puts the centre
+    /// slightly above or below the face.
     #[inline]
     pub(crate) fn at(self, row: u32) -> usize {
         self.texel_at(self.place(row) >> TEXEL_BITS)
     }
 
-    /// Which texel of its texture the one at `place` is, counted from the top of the uppermost texture.
+    /// The texel of the texture for the one at `place`, counted from the top of the uppermost
+    /// texture.
     #[inline]
     fn texel_at(self, place: i64) -> usize {
         let (uppermost, lowest) = self.range;
         let texel = place.clamp(uppermost, lowest);
-        // A division takes as long as all the rest.
+        // A division takes as long as all the other operations.
         let is_first = (0..self.count).contains(&texel);
         (if is_first { texel } else { texel.rem_euclid(self.count) }) as usize
     }
 
-    /// The texels that the centres of `rows` are on, counted from the top of the uppermost texture; `None`
-    /// where there is no row, or they wrap around.
+    /// The texels at the centres of `rows`, counted from the top of the uppermost texture; `None`
+    /// if there is no row or the range wraps around.
     #[inline]
     pub(crate) fn places(self, rows: &Range<u32>) -> Option<Range<i64>> {
         let further_down = i64::from(rows.end.checked_sub(rows.start + 1)?);
@@ -97,8 +99,8 @@ impl TextureStepper {
         Some(first >> TEXEL_BITS..(last >> TEXEL_BITS) + 1)
     }
 
-    /// What of `texels`, those of the texture, is at `places`, if all of it is on the face and in the uppermost
-    /// texture.
+    /// The part of the texture's `texels` at `places`, if all of it is on the face and in the
+    /// uppermost texture.
     #[inline]
     pub(crate) fn slice<'t, T>(self, texels: &'t [T], places: &Range<i64>) -> Option<&'t [T]> {
         let (uppermost, lowest) = self.range;
@@ -107,7 +109,7 @@ impl TextureStepper {
         if is_on_face { texels.get(range) } else { None }
     }
 
-    /// What of `texels`, those of the texture, is at `places`, in pieces.
+    /// The part of the texture's `texels` at `places`, in pieces.
     #[inline]
     pub(crate) fn pieces<T>(self, texels: &[T], places: Range<i64>) -> impl Iterator<Item = &[T]> {
         let Range { mut start, end } = places;
@@ -118,8 +120,8 @@ impl TextureStepper {
         })
     }
 
-    /// Which texel of its texture the first one of `places` is, and how many of them follow each other in the
-    /// texture as well.
+    /// The texel of the texture for the first of `places`, and the number of `places` that are
+    /// contiguous in the texture from there.
     #[inline]
     fn texels_at(self, places: Range<i64>) -> (usize, usize) {
         let (uppermost, lowest) = self.range;
@@ -129,8 +131,8 @@ impl TextureStepper {
         (first, (end - places.start).min(self.count - first as i64) as usize)
     }
 
-    /// Where the centre of `row` is and how far it is to the next one, such that the texel is what
-    /// the uppermost `BITS` bits say, modulo 2 to the power of `BITS`.
+    /// The position at the centre of `row` and the step to the next row, shifted so that the
+    /// uppermost `BITS` bits are the texel modulo 2 to the power of `BITS`.
     #[inline]
     pub(crate) fn in_uppermost<const BITS: u32>(self, row: u32) -> (u64, u64) {
         let to_the_top = u64::BITS - TEXEL_BITS - BITS;
@@ -143,14 +145,14 @@ impl TextureStepper {
     }
 }
 
-/// The nearest whole number, the further one from 0 of two; what is beyond 64 bits wraps around.
+/// The nearest integer, away from 0 for ties; values beyond 64 bits wrap around.
 ///
-/// Where a processor may be old, `f64::round` is a call, and so is `f64::floor`.
+/// On old processors `f64::round` and `f64::floor` are calls.
 #[inline]
 fn rounded(number: f64) -> i64 {
     const LARGE: f64 = (1_u64 << 62) as f64;
     if number.abs() >= LARGE {
-        // It is whole.
+        // It is an integer.
         return number as i128 as i64;
     }
     let whole = number as i64;
@@ -158,7 +160,7 @@ fn rounded(number: f64) -> i64 {
     whole + i64::from(rest >= 0.5) - i64::from(rest <= -0.5)
 }
 
-/// The largest whole number that is not above `number`, of those in the middle half of 64 bits.
+/// The largest integer not above `number`, for numbers in the middle half of 64 bits.
 #[inline]
 fn floor(number: f64) -> i64 {
     const MOST: f64 = (1_u64 << 62) as f64;
@@ -166,19 +168,19 @@ fn floor(number: f64) -> i64 {
     whole - i64::from(whole as f64 > number)
 }
 
-/// The least whole number that is not below `number`, likewise.
+/// The least integer not below `number`, for the same numbers.
 #[inline]
 pub(crate) fn ceil(number: f64) -> i64 {
     -floor(-number)
 }
 
-/// A texel, in fixed point.
+/// The size of a texel, in fixed point.
 const TEXEL: f64 = (1_u64 << TEXEL_BITS) as f64;
 const TEXEL_BITS: u32 = 40;
-/// The most texels from one row to the next; where there are more, only one row shows the face.
+/// The most texels from one row to the next; with more, only one row shows the face.
 const MOST_TEXELS: f64 = 65_536.0;
-/// Where the centre of a row is on the line between two texels it is on the lower one, however the
-/// step to it was rounded: 4096 rows of rounding by half a unit are half as much.
+/// The offset that puts a row's centre on the line between two texels on the lower one, however the
+/// step was rounded: the rounding of 4096 rows, by half a unit each, is half as much.
 const HAIR: i64 = 1 << 12;
 
 #[cfg(test)]
@@ -192,7 +194,7 @@ mod tests {
     }
 
     #[test]
-    fn the_halves_of_the_picture_show_the_halves_of_a_wall_however_near() {
+    fn halves_of_the_picture_show_halves_of_a_wall_at_any_distance() {
         for near in [0.0, f64::MIN_POSITIVE, 1e-30, 1e-9] {
             let texels = TextureStepper::new(90.0, near, wall(64));
             assert_eq!((texels.at(44), texels.at(45)), (31, 32), "{near}");
@@ -201,7 +203,7 @@ mod tests {
 
     #[test]
     fn a_row_between_two_texels_is_on_the_lower_one() {
-        // Thirds and sevenths are not to be had in binary.
+        // Thirds and sevenths have no finite binary fraction.
         for (rows, count) in [(3_u32, 1_u32), (7, 3), (21, 5), (63, 64), (4095, 3)] {
             let height_of_row = 1.0 / f64::from(rows);
             let texels = TextureStepper::new(f64::from(rows), height_of_row, wall(count as usize));
@@ -213,7 +215,7 @@ mod tests {
     }
 
     #[test]
-    fn a_high_face_repeats_its_texture_from_one_whole_height_to_the_next() {
+    fn a_high_face_repeats_its_texture_at_each_integer_height() {
         // From 0.25 to 2.5, seen from 1: its uppermost texture has its top at 3.
         let texels = FaceTexels { count: 4, of_cells: (0.5, 2.75), at_eye: 2.0 };
         let texels = TextureStepper::new(12.0, 0.25, texels);
@@ -223,7 +225,7 @@ mod tests {
 
     proptest! {
         #[test]
-        fn a_row_is_on_the_texel_that_doubles_say(
+        fn a_row_is_on_the_texel_computed_in_doubles(
             height in 1_u32..4096,
             rows in 0.01..9000.0_f64,
             at_eye in 0.02..0.98,

@@ -1,10 +1,12 @@
-//! The cells in view: for each row of the map, an interval of columns.
+//! The cells in view: an interval of columns for each row of the map.
 //!
-//! What is in view is the area between the camera and the ends of all rays. Its outline is followed once,
-//! from end to end, and the interval of each row that it crosses grows to hold it. That takes as long as
-//! the area is wide, however large the map is. The rectangle around it was refused: in view of a diagonal
-//! corridor it holds everything on both sides of that. So was a list of the cells that rays enter: to
-//! have each of them once takes a mark for every cell of the map.
+//! The visible area is between the camera and the ends of all rays. Its outline is followed once,
+//! and the interval of each row that it crosses is extended to contain it. The time depends on the
+//! size of the area and not on the size of the map.
+//!
+//! The bounding rectangle was refused: for a diagonal corridor it contains everything on both
+//! sides. A list of the cells that rays enter was refused, too: to list each once needs a mark for
+//! every cell of the map.
 
 use std::ops::Range;
 
@@ -13,23 +15,23 @@ use glam::DVec2;
 use super::{Column, Scene};
 use crate::world::{Thing, World};
 
-/// What is seen is taken to be that much larger all around, in cells: more than rounding amounts to.
+/// The margin around the visible area, in cells: more than the rounding error.
 const HAIR: f64 = 1e-6;
 
-/// Which things may be in view; kept so that it is allocated once.
+/// The things that may be in view, in memory that is reused from frame to frame.
 #[derive(Clone, Debug, Default)]
 pub(crate) struct VisibleCells {
-    /// How far beside what is seen the middle of a thing may be that reaches into it.
+    /// The greatest distance from the visible area to the middle of a thing that extends into it.
     margin: f64,
-    /// How many rows the map has.
+    /// The number of rows of the map.
     row_count: u32,
     first_row: u32,
     intervals: Vec<Interval>,
-    /// Whether all things are taken to be in view: there are so few that asking where takes longer.
+    /// Whether all things count as visible: they are so few that a lookup by cell takes longer.
     shows_all: bool,
 }
 
-/// What is seen of a row, and up to a margin above and below it.
+/// The visible part of a row, and of a margin above and below it.
 #[derive(Clone, Copy, Debug)]
 struct Interval {
     low: f64,
@@ -45,7 +47,7 @@ impl Interval {
 }
 
 impl VisibleCells {
-    /// Takes in what the rays of `columns` show, from the camera to their ends.
+    /// Includes the area that the rays of `columns` cross, from the camera to their ends.
     pub(crate) fn outline(&mut self, scene: Scene<'_>, columns: &[Column]) {
         if self.shows_all_of(scene.world) {
             return;
@@ -61,14 +63,14 @@ impl VisibleCells {
         });
     }
 
-    /// Takes all things of `world` to be in view, if they are few.
+    /// Makes all things of `world` count as visible, if they are few. Returns whether they do.
     pub(crate) fn shows_all_of(&mut self, world: &World) -> bool {
         const FEW: usize = 16;
         self.shows_all = world.things().len() <= FEW;
         self.shows_all
     }
 
-    /// Forgets what was seen, and is ready to follow lines between two places from north to south.
+    /// Removes all intervals, and prepares for lines between `north` and `south`.
     pub(crate) fn begin(&mut self, world: &World, north: f64, south: f64) {
         self.margin = world.widest_sprite() / 2.0 + HAIR;
         self.row_count = world.grid().height();
@@ -79,7 +81,7 @@ impl VisibleCells {
         self.intervals.resize(rows.len(), Interval::NONE);
     }
 
-    /// Needs no more memory after this, whatever is seen of `world`.
+    /// Reserves memory for any view of `world`.
     pub(crate) fn make_room(&mut self, world: &World) {
         let missing = (world.grid().height() as usize).saturating_sub(self.intervals.len());
         self.intervals.reserve(missing);
@@ -99,8 +101,8 @@ impl VisibleCells {
         all.iter().chain(reached)
     }
 
-    /// Takes in what lies on the straight line between two places: corners of the outline, or the ends of
-    /// what is seen along a ray.
+    /// Includes the straight line between two points: corners of the outline, or the ends of the
+    /// visible part of a ray.
     pub(crate) fn follow(&mut self, one: DVec2, other: DVec2) {
         let (top, bottom) = if one.y <= other.y { (one, other) } else { (other, one) };
         let slope = (bottom.x - top.x) / (bottom.y - top.y);
@@ -114,14 +116,15 @@ impl VisibleCells {
         }
     }
 
-    /// Which of `count` cells have their middle between `low` and `high`, or up to a margin beside.
+    /// The indices of the cells, of `count`, whose middle is between `low` and `high` or within the
+    /// margin.
     fn reached(&self, low: f64, high: f64, count: u32) -> Range<u32> {
         let first_from = |place: f64| (place - 0.5).ceil().clamp(0.0, f64::from(count)) as u32;
         first_from(low - self.margin)..first_from(high + self.margin)
     }
 }
 
-/// Where the rays of `columns` end, from left to right; those left out that end nowhere near the map.
+/// The ends of the rays of `columns`, from left to right, except those nowhere near the map.
 fn ends(scene: Scene<'_>, columns: &[Column]) -> impl Iterator<Item = DVec2> {
     let projection = scene.projection;
     let end = |(x, column): (u32, &Column)| {

@@ -62,7 +62,7 @@ impl Texture {
     }
 
     /// The column at `u`, from 0 at the left edge to 1 at the right one, from top to bottom. A `u`
-    /// outside that range, or NaN, means the nearest column.
+    /// outside that range, or NaN, selects the nearest column.
     pub fn column(&self, u: f64) -> &[Rgb] {
         self.levels[0].column(u)
     }

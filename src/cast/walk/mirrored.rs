@@ -1,10 +1,12 @@
-//! The walk through mirrors: the ray goes straight on, and the map is mirrored.
+//! The walk through mirrors: the ray continues straight, and the map is mirrored.
 //!
-//! Behind a mirror is the map once more, the other way round. So a ray that meets one is not bent:
-//! it keeps its origin, its direction and its `t`, goes on crossing the same lines in the same exact
-//! order, and only which cell of the map it is in is looked up mirrored. What is seen in a mirror is
-//! computed as it would be in a room that is built behind it, bit for bit. A new ray that starts at
-//! the mirror was refused: its origin would be rounded, and each bounce would add to the error.
+//! Behind a mirror the map repeats in mirror image. A ray that meets a mirror is therefore not
+//! bent: it keeps its origin, its direction and its `t`, and crosses the same lines in the same
+//! exact order. Only the lookup of its cell on the map is mirrored. A view in a mirror is computed
+//! like a view into a room built behind it, bit for bit.
+//!
+//! A new ray that starts at the mirror was refused: its origin would be rounded, and each bounce
+//! would add to the error.
 
 use glam::DVec2;
 
@@ -13,32 +15,32 @@ use crate::cast::hit::{meeting, texture_coordinate};
 use crate::cast::{ExactOrder, Order, Passage, Ray, Side, door};
 use crate::world::{Cell, Grid, TileId, TileKind, World};
 
-/// Where what is seen in mirrors is on the map: from places along the straight ray to places on the map.
+/// The transform of an image in mirrors: from points along the straight ray to points on the map.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Default)]
 pub(crate) struct MirrorTransform {
     x: AxisTransform,
     y: AxisTransform,
 }
 
-/// The same for one axis: a place is moved by an offset, or mirrored at 0 and then moved.
+/// The transform along one axis: a coordinate is offset, or mirrored at 0 and then offset.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Default)]
 struct AxisTransform {
     is_mirrored: bool,
     offset: i64,
 }
 
-/// A line that a walk crossed.
+/// A line that a walk has crossed.
 #[derive(Clone, Copy, Debug)]
 pub(crate) struct Crossed {
     /// The kind of line.
     pub(crate) side: Side,
-    /// What it leads into; `None` where it is the edge of the map, and the walk ends.
+    /// The cell behind the line; `None` for the edge of the map, where the walk ends.
     pub(crate) into: Option<(Cell, TileId)>,
-    /// Where the line is along the straight ray.
+    /// The coordinate of the line along the straight ray.
     line: f64,
 }
 
-/// The cells that a ray enters, mirrors and all, in the exact order.
+/// The cells that a ray enters, in the exact order, reflections included.
 #[derive(Clone, Debug)]
 pub(crate) struct MirroredWalk {
     ray: Ray,
@@ -51,16 +53,16 @@ pub(crate) struct MirroredWalk {
     bounces: u32,
 }
 
-/// The column or the row of the map that a ray is in, after all reflections.
+/// The column or row of the map that contains a ray, after all reflections.
 #[derive(Clone, Copy, Debug)]
 struct OnMap {
     index: i64,
-    /// From there to the next one.
+    /// The step to the next one on the map.
     step: i64,
 }
 
 impl MirroredWalk {
-    /// The walk of `ray` through `grid`, which is reflected so often at most.
+    /// The walk of `ray` through `grid`, with at most this number of reflections.
     pub(crate) fn new(grid: &Grid, ray: &Ray, most_bounces: u32) -> Self {
         let size = DVec2::new(f64::from(grid.width()), f64::from(grid.height()));
         let (origin, direction) = (ray.origin(), ray.direction());
@@ -78,8 +80,8 @@ impl MirroredWalk {
         }
     }
 
-    /// The walk of `ray` through `grid` from where it enters `cell` by a line of kind `side`, which it must
-    /// do; and that line, which it has just crossed.
+    /// The walk of `ray` through `grid` from its entry into `cell` by a line of kind `side`, and
+    /// that line, which the walk has just crossed. The ray must enter the cell by such a line.
     pub(crate) fn entering(
         grid: &Grid,
         ray: &Ray,
@@ -100,7 +102,7 @@ impl MirroredWalk {
         (walk, Crossed { side, into, line })
     }
 
-    /// The cell that the ray is in; `None` off the map.
+    /// The cell that contains the ray; `None` off the map.
     #[inline]
     pub(crate) fn cell(&self, grid: &Grid) -> Option<(Cell, TileId)> {
         let (column, row) = (self.column.index, self.row.index);
@@ -108,7 +110,7 @@ impl MirroredWalk {
         Some((Cell { column: column as u32, row: row as u32 }, tile))
     }
 
-    /// Goes on until the ray enters a cell, or leaves the map for good.
+    /// Advances until the ray enters a cell or leaves the map for good.
     pub(crate) fn cross(&mut self, grid: &Grid) -> Crossed {
         loop {
             let side = self.order.next(self.x.line, self.y.line);
@@ -126,7 +128,7 @@ impl MirroredWalk {
         }
     }
 
-    /// Whether the ray is on the map, as far as the axis tells that crosses such lines.
+    /// Whether the ray is on the map along the axis that crosses lines of kind `side`.
     fn is_on_map_along(&self, side: Side) -> bool {
         match side {
             Side::X => (0..self.x.count).contains(&self.column.index),
@@ -134,14 +136,15 @@ impl MirroredWalk {
         }
     }
 
-    /// How far along the ray a line is that it has just crossed, as [`Hit`](crate::cast::Hit) has it.
+    /// The distance along the ray of a line that it has just crossed, as in
+    /// [`Hit`](crate::cast::Hit).
     #[inline]
     pub(crate) fn distance(&self, crossed: &Crossed) -> f64 {
         meeting(&self.ray, crossed.side, self.corner(crossed)).0
     }
 
-    /// How far along the face at a line it is met that the ray has just crossed, as
-    /// [`Hit`](crate::cast::Hit) has it.
+    /// The position along its face at which the ray has just crossed a line, as in
+    /// [`Hit`](crate::cast::Hit).
     pub(crate) fn along_face(&self, crossed: &Crossed) -> f64 {
         let (_, along) = meeting(&self.ray, crossed.side, self.corner(crossed));
         let transform = match crossed.side {
@@ -153,7 +156,7 @@ impl MirroredWalk {
         texture_coordinate(self.direction(), crossed.side, along)
     }
 
-    /// The north or west end of a face that the ray has just crossed.
+    /// The north or west end of the face that the ray has just crossed.
     #[inline]
     fn corner(&self, crossed: &Crossed) -> DVec2 {
         match crossed.side {
@@ -162,7 +165,7 @@ impl MirroredWalk {
         }
     }
 
-    /// Turns the ray back at the line of that kind that it has just crossed.
+    /// Reflects the ray at the line of kind `side` that it has just crossed.
     pub(crate) fn reflect(&mut self, side: Side) {
         let (axis, transform, on_map) = match side {
             Side::X => (&self.x, &mut self.transform.x, &mut self.column),
@@ -173,8 +176,8 @@ impl MirroredWalk {
         self.bounces += 1;
     }
 
-    /// Where the ray passes through what stands in `cell`, where it is now, and does not fill it: a
-    /// door's leaf, which has no inside, or a shape.
+    /// The hit of the ray, where it is now, on an object that stands in `cell` without filling it:
+    /// the leaf of a door, which has no interior, or a shape.
     pub(crate) fn standing(&self, world: &World, cell: Cell, kind: TileKind) -> Passage {
         let ray = self.ray_on_map();
         match kind {
@@ -187,44 +190,44 @@ impl MirroredWalk {
         }
     }
 
-    /// The ray as it is on the map after all reflections, as if it had come straight.
+    /// The ray on the map after all reflections, as if it had come straight.
     pub(crate) fn ray_on_map(&self) -> Ray {
         Ray::moved(self.transform.to_map(self.ray.origin()), self.direction())
     }
 
-    /// Where the places around the ray are on the map.
+    /// The transform of the image in which the ray is.
     pub(crate) fn transform(&self) -> MirrorTransform {
         self.transform
     }
 
-    /// How often the ray has been reflected.
+    /// The number of reflections so far.
     pub(crate) fn bounces(&self) -> u32 {
         self.bounces
     }
 
-    /// Where the ray goes on the map, after all reflections.
+    /// The direction of the ray on the map, after all reflections.
     fn direction(&self) -> DVec2 {
         self.transform.direction_to_map(self.ray.direction())
     }
 }
 
 impl MirrorTransform {
-    /// Where a point along the straight ray is on the map.
+    /// The point on the map for a point along the straight ray.
     pub(crate) fn to_map(self, point: DVec2) -> DVec2 {
         DVec2::new(self.x.to_map(point.x), self.y.to_map(point.y))
     }
 
-    /// Where a point of the map is along the straight ray.
+    /// The point along the straight ray for a point on the map.
     pub(crate) fn in_image(self, point: DVec2) -> DVec2 {
         DVec2::new(self.x.in_image(point.x), self.y.in_image(point.y))
     }
 
-    /// Whether left and right are swapped.
+    /// Whether left and right are exchanged.
     pub(crate) fn swaps_sides(self) -> bool {
         self.x.is_mirrored != self.y.is_mirrored
     }
 
-    /// Which way a direction along the straight ray is on the map.
+    /// The direction on the map for a direction along the straight ray.
     pub(crate) fn direction_to_map(self, direction: DVec2) -> DVec2 {
         let along =
             |transform: AxisTransform, part: f64| if transform.is_mirrored { -part } else { part };
@@ -243,7 +246,7 @@ impl AxisTransform {
         if self.is_mirrored { offset - place } else { place - offset }
     }
 
-    /// The column or row of the map that the one at `index` along the straight ray is.
+    /// The column or row of the map for the one at `index` along the straight ray.
     fn index_on_map(self, index: i64) -> i64 {
         if self.is_mirrored { self.offset - 1 - index } else { self.offset + index }
     }

@@ -1,13 +1,13 @@
-//! The layers of a level scene: what the rays passed, and billboards between that.
+//! The layers of a level scene: the faces that rays passed, and the billboards between them.
 //!
-//! Where the rays ended is known by now, and with it the part of the map that is in view: only things
-//! there are considered. They are painted from far to near, column by column as far as the walls let
-//! them be seen; what a ray passed on its way, such as a grate, comes before the first thing that stands
-//! nearer. A depth for each pixel was refused: one for each column says the same, since walls reach from
+//! The ends of the rays are known, and with them the visible part of the map: only things there are
+//! considered. They are painted from far to near, in each column as far as no wall covers them. A
+//! face that a ray passed, such as a grate, is painted before the first thing that is nearer. A
+//! depth for each pixel was refused: one for each column is equivalent, since walls extend from
 //! floor to ceiling.
 //!
-//! Colours are mixed as they are in the frame, as sRGB. Mixing light instead was refused: it needs a
-//! table each way for every pixel, and a tint looks no more like glass for it.
+//! Colours are mixed as sRGB values, as in the frame. Mixing linear light was refused: it needs a
+//! table in each direction for every pixel, and tints looked no more like glass.
 
 use std::cmp::Ordering;
 use std::ops::Range;
@@ -23,41 +23,41 @@ use crate::visibility::{
 };
 use crate::world::{Cell, Light, Tile, TileKind};
 
-/// The number of things in view for which there is room from the first frame on, so that a camera that
-/// turns towards more of them needs no more memory.
+/// The number of things in view for which memory is reserved in advance, so that a turn of the
+/// camera towards more of them allocates nothing.
 const MOST_AT_FIRST: usize = 4096;
 
-/// The number of layers in each column, likewise.
+/// The number of layers in each column for which memory is reserved in advance.
 const LAYERS_OF_A_COLUMN: usize = 16;
 
-/// What the flat way remembers from one frame to the next; kept so that it is allocated once.
+/// The memory of the flat way, reused from frame to frame.
 #[derive(Clone, Debug, Default)]
 pub(crate) struct FlatMemory {
     pub(super) passed: PassedHits,
     left: PassedLeft,
     visible: VisibleCells,
-    /// Layers before they are put in order.
+    /// The layers before they are put in order.
     by_column: Vec<Layer>,
 }
 
-/// What all rays of a frame passed: column by column from the left, and in each from near to far.
+/// The hits that all rays of a frame passed: column by column from the left, and in each from near
+/// to far.
 ///
-/// Read backwards, that is from far to near, the order in which it is painted. A list for each column
-/// was refused: it would be as many allocations.
+/// In reverse they are in the order of painting. A list for each column was refused: each list
+/// would be an allocation.
 #[derive(Clone, Debug, Default, PartialEq)]
 pub(crate) struct PassedHits {
     list: Vec<(usize, Hit)>,
 }
 
-/// For each column, the part of what its ray passed that is no layer yet; empty where no ray passed
-/// anything.
+/// The passed hits of each column that are not layers yet; empty if no ray passed any.
 #[derive(Clone, Debug, Default)]
 struct PassedLeft {
     of_columns: Vec<Range<usize>>,
 }
 
-/// Fills the layers of `list`, whose columns are known. Returns when one of the billboards will look
-/// different; `None` for never.
+/// Fills the layers of `list`, whose columns are known. Returns the time at which one of the
+/// billboards next changes its appearance; `None` for never.
 pub(super) fn fill<S: Stats>(
     scene: Scene<'_>,
     memory: &mut FlatMemory,
@@ -110,7 +110,7 @@ pub(super) fn fill<S: Stats>(
     Billboard::next_change(&list.billboards[first..], scene)
 }
 
-/// Finds the billboards in view, from far to near. Returns how many things were considered.
+/// Finds the billboards in view, from far to near. Returns the number of things considered.
 fn find_billboards(scene: Scene<'_>, visible: &mut VisibleCells, list: &mut DrawList) -> u64 {
     let world = scene.world;
     let first = list.billboards.len();
@@ -136,7 +136,7 @@ fn find_billboards(scene: Scene<'_>, visible: &mut VisibleCells, list: &mut Draw
         billboard.is_drawn = true;
     }
     if !list.flat_columns.is_empty() && PortalStarts::new(world).are_under_ceilings() {
-        // As portals do.
+        // As the portal way does.
         let projection = scene.projection;
         for Billboard { rows, depth, .. } in &mut *found {
             rows.start = rows.start.max(projection.row_of_height(1.0, *depth));
@@ -152,26 +152,26 @@ fn from_far_to_near(one: &Billboard, other: &Billboard) -> Ordering {
 }
 
 impl PassedHits {
-    /// Forgets everything but how much memory it took.
+    /// Removes all hits and keeps the memory.
     pub(super) fn clear(&mut self) {
         self.list.clear();
     }
 
-    /// Makes room for what that many `rays` pass in all but the strangest of maps, so that a camera that
-    /// turns towards more of it needs no more memory.
+    /// Reserves memory for the hits that this number of `rays` pass in all but extreme maps, so
+    /// that a turn of the camera towards more of them allocates nothing.
     pub(super) fn make_room_for(&mut self, rays: usize) {
         const OF_A_RAY: usize = 8;
         self.list.reserve(rays * OF_A_RAY);
     }
 
-    /// Adds what the ray of `column` passed: columns from the left, hits from near to far.
+    /// Adds a hit that the ray of `column` passed: columns from the left, hits from near to far.
     pub(super) fn push(&mut self, column: usize, hit: Hit) {
         self.list.push((column, hit));
     }
 }
 
 impl PassedLeft {
-    /// Finds out what belongs to each of `columns` columns: all of it is left.
+    /// Finds the hits of each of `columns` columns, none of which is a layer yet.
     fn begin(&mut self, passed: &PassedHits, columns: usize) {
         let Self { of_columns } = self;
         of_columns.clear();
@@ -186,7 +186,8 @@ impl PassedLeft {
         }
     }
 
-    /// The furthest that is left in `column`, if it is `depth` away or more; it is left no longer.
+    /// Removes and returns the furthest remaining hit in `column`, if it is at `depth` or further
+    /// away.
     fn take_behind(&mut self, passed: &PassedHits, column: usize, depth: f64) -> Option<Hit> {
         let left = self.of_columns.get_mut(column).filter(|left| !Range::is_empty(left))?;
         let (_, hit) = passed.list[left.end - 1];
@@ -197,7 +198,7 @@ impl PassedLeft {
     }
 }
 
-/// Makes layers of what the ray of `column` passed at `depth` or further away, and is none yet.
+/// Makes layers of the remaining hits that the ray of `column` passed at `depth` or further away.
 fn push_behind(
     depth: f64,
     column: usize,
@@ -213,7 +214,7 @@ fn push_behind(
 /// Makes a layer of a hit that the ray of `column` passed.
 fn push_hit(scene: Scene<'_>, column: usize, hit: &Hit, list: &mut DrawList) {
     if hit.t > list.flat_columns()[column].distance {
-        // The portal way fills what is there.
+        // The portal way fills this part of the column.
         return;
     }
     let Cell { column: x, row: y } = hit.cell;

@@ -1,10 +1,10 @@
 //! The spans of a level scene: floor and ceiling around the walls, and the sky.
 //!
-//! Spans end where the next column shows less of the plane, and begin where it shows more: one step for
-//! each span and column, as Doom makes the spans of its visplanes (`R_MakeSpans` in `r_plane.c`, id
-//! Software 1993). A row is not searched for its spans: that takes half as long as drawing them. One
-//! colour everywhere is a fill: at 160×90 pixels that takes less time than asking every column where its
-//! wall begins.
+//! Spans end where the next column shows less of the plane, and begin where it shows more, with one
+//! step for each span and column, as Doom makes the spans of its visplanes (`R_MakeSpans` in
+//! `r_plane.c`, id Software 1993). Searching each row for its spans was refused: the search takes
+//! half as long as drawing them. One colour everywhere is a fill: at 160×90 pixels that takes less
+//! time than reading the rows of the wall in every column.
 
 use std::ops::Range;
 
@@ -17,7 +17,7 @@ use crate::visibility::{
 };
 use crate::world::{Ceiling, Cell, Covering, Light, TileId};
 
-/// Hands every span of `columns` in `rows` to `emit`; later ones are drawn over earlier ones.
+/// Passes every span of `columns` in `rows` to `emit`. Later spans are drawn over earlier ones.
 pub(crate) fn for_each_span(
     scene: Scene<'_>,
     columns: &[Column],
@@ -41,11 +41,11 @@ pub(crate) fn for_each_span(
 pub(crate) struct PlaneRow {
     row: u32,
     mapping: SpanMapping,
-    /// Where the span begins that has not ended yet.
+    /// The first column of the span that has not ended yet.
     span_start: usize,
 }
 
-/// Floor or ceiling.
+/// The floor or the ceiling.
 struct Plane<'a> {
     scene: Scene<'a>,
     columns: &'a [Column],
@@ -98,7 +98,7 @@ impl Plane<'_> {
             PlaneKind::Floor => end - 1 - depth,
             PlaneKind::Ceiling => start + depth,
         };
-        // Rows of the plane that other bands have: those nearer to the edge of the picture show it, too.
+        // Rows of the plane in other bands: those nearer to the edge of the picture show it, too.
         let elsewhere = match self.kind {
             PlaneKind::Floor => all.end - end,
             PlaneKind::Ceiling => start - all.start,
@@ -107,7 +107,7 @@ impl Plane<'_> {
             |column: &Column| self.visible(column, &all).saturating_sub(elsewhere).min(end - start);
         let most = self.columns.iter().map(visible).max().unwrap_or_default();
         memory.clear();
-        // However much of it shows later, there is room.
+        // Enough for any later view.
         memory.reserve((end - start) as usize);
         memory.extend((0..most).map(|depth| {
             let row = row_at(depth);
@@ -128,7 +128,7 @@ impl Plane<'_> {
         }
     }
 
-    /// Emits what `columns` of `row` show, a span for each stretch of one tile and light.
+    /// Emits a span for each stretch of one tile and light in `columns` of `row`.
     fn cut_by_tile(&self, row: &PlaneRow, columns: Range<usize>, emit: &mut impl FnMut(Span<'_>)) {
         let Scene { world, projection, .. } = self.scene;
         let cells = row.mapping.just_before(projection.origin()).cells(columns);
@@ -151,10 +151,10 @@ impl Plane<'_> {
         }
     }
 
-    /// A span where only the map says what the plane is covered with.
+    /// A span with the covering that holds unless the map has another.
     fn default_span<'m>(&self, row: &'m PlaneRow, columns: Range<usize>) -> PlaneSpan<'m> {
         let world = self.scene.world;
-        // A ceiling that is sky is cut by tile; off the map it is seen by nobody on the map.
+        // A ceiling that is sky is cut by tile; off the map, it is not visible from on the map.
         let covering = self.covering(world.floor(), world.ceiling()).unwrap_or(world.floor());
         self.span(row, columns, covering, world.ground().light.unwrap_or(Light::FULL))
     }
@@ -176,7 +176,7 @@ impl Plane<'_> {
         }
     }
 
-    /// The one of the two that this plane shows; `None` for the sky.
+    /// The covering that this plane shows of the two; `None` for the sky.
     fn covering(&self, floor: Covering, ceiling: Ceiling) -> Option<Covering> {
         match (self.kind, ceiling) {
             (PlaneKind::Floor, _) => Some(floor),
@@ -185,11 +185,11 @@ impl Plane<'_> {
         }
     }
 
-    /// The tile of the cell with that north-west corner, and what lamps add to its light; `None` off
-    /// the map.
+    /// The tile of the cell with this north-west corner, and the light that lamps add to it; `None`
+    /// off the map.
     fn ground_in(&self, corner: DVec2) -> Option<(TileId, Light)> {
         let world = self.scene.world;
-        // Casts saturate, and take what is not a number to 0.
+        // Casts saturate, and convert NaN to 0.
         let is_a_place = corner.is_finite();
         let (column, row) = (corner.x as i64, corner.y as i64);
         let tile = is_a_place.then(|| world.grid().tile(column, row)).flatten()?;
@@ -202,7 +202,7 @@ impl Plane<'_> {
         faded.map_or(color, |faded| faded.apply(color))
     }
 
-    /// The plane's part of the picture.
+    /// The rows of the picture that the plane may cover.
     fn rows(&self) -> Range<u32> {
         let ground = self.scene.projection.first_row_of_ground();
         match self.kind {
@@ -211,7 +211,7 @@ impl Plane<'_> {
         }
     }
 
-    /// How many rows of the plane's part of the picture show it in `column`.
+    /// The number of these rows that show the plane in `column`.
     fn visible(&self, column: &Column, rows: &Range<u32>) -> u32 {
         match self.kind {
             PlaneKind::Floor => column.rows_of_floor(rows.start, rows.end),
@@ -236,7 +236,7 @@ fn sky_overhead(
 ) {
     for row in common(rows, &(0..scene.projection.first_row_of_ground())) {
         match scene.plan.sky {
-            // A fill of all takes less time than to look for what is hidden.
+            // A fill of all rows takes less time than a search for the covered parts.
             SkyLoop::Gradient => emit(Span::Sky { row, columns: 0..columns.len(), image: None }),
             SkyLoop::Panorama => {
                 let shows = |column: &Column| row < column.rows.start || column.hit.is_none();
@@ -248,7 +248,7 @@ fn sky_overhead(
     }
 }
 
-/// Emits the sky where rays left the map, over whatever ceiling there was until there.
+/// Emits the sky in columns whose rays left the map, over the ceiling up to the edge.
 fn sky_beyond_edge(
     scene: Scene<'_>,
     columns: &[Column],
@@ -266,13 +266,13 @@ fn sky_beyond_edge(
     }
 }
 
-/// The rows that both have.
+/// The rows common to both.
 fn common(one: &Range<u32>, other: &Range<u32>) -> Range<u32> {
     let Range { start, end } = *one;
     other.start.clamp(start, end)..other.end.clamp(start, end)
 }
 
-/// The stretches of `list`, as long as possible, whose items all are `wanted`.
+/// The longest stretches of `list` whose items are all `wanted`.
 fn stretches<T>(list: &[T], wanted: impl Fn(&T) -> bool) -> impl Iterator<Item = Range<usize>> {
     let mut next = 0;
     std::iter::from_fn(move || {

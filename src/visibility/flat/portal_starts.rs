@@ -1,21 +1,21 @@
-//! Portal starts: what the flat way leaves to the portal way.
+//! Portal starts: the part of a column that the flat way leaves to the portal way.
 //!
-//! It leaves what is behind the first line into what is not level. Of such a column it fills floor and
-//! ceiling up to there, as before a wall, and what stands there or is seen through.
+//! That is the part behind the first line into a cell that is not level. The flat way fills floor
+//! and ceiling up to that line, as before a wall, and the things and see-through faces there.
 
 use crate::cast::Hit;
 use crate::visibility::portal::PortalStart;
 use crate::visibility::{Column, DrawList, Scene};
 use crate::world::{Ceiling, Cell, Tile, TileId, TileKind, World};
 
-/// Where the portal way begins with each column of a scene.
+/// The starts of the portal way in the columns of a scene.
 #[derive(Clone, Copy)]
 pub(crate) struct PortalStarts<'a> {
     world: &'a World,
     overhead: Overhead,
 }
 
-/// What is overhead where the floor is level.
+/// The kinds of ceiling in cells with a level floor.
 #[derive(Clone, Copy, PartialEq, Eq)]
 enum Overhead {
     Sky,
@@ -36,18 +36,18 @@ impl<'a> PortalStarts<'a> {
         Self { world, overhead }
     }
 
-    /// Where it begins with `column`; `None` where the flat way fills all of it.
+    /// The start in `column`; `None` if the flat way fills all of it.
     pub(crate) fn of(self, column: &Column) -> Option<PortalStart> {
         let hit = column.hit.filter(|hit| !is_level(self.world, hit.cell))?;
         Some(match self.overhead {
             Overhead::Sky => PortalStart::Line { hit, rows: 0..column.rows.end },
             Overhead::Ceiling => PortalStart::Line { hit, rows: column.rows.clone() },
-            // What is behind the first line may show above a ceiling, where the sky is.
+            // The part behind the first line may show above a ceiling, in the rows of the sky.
             Overhead::Both => PortalStart::Camera,
         })
     }
 
-    /// Whether all that is level is under a ceiling.
+    /// Whether all level cells have a ceiling.
     pub(super) fn are_under_ceilings(self) -> bool {
         self.overhead == Overhead::Ceiling
     }
@@ -58,14 +58,14 @@ impl<'a> PortalStarts<'a> {
     }
 }
 
-/// Takes from the columns of the flat way what is left to the portal way.
+/// Removes the parts left to the portal way from the columns of the flat way.
 pub(super) fn leave_to_portals(scene: Scene<'_>, list: &mut DrawList) {
     let DrawList { columns, flat_columns, is_flat, .. } = list;
     let starts = PortalStarts::new(scene.world);
     let is_left =
         |column: &Column| column.hit.as_ref().is_some_and(|hit| !is_level(scene.world, hit.cell));
     let cell = |column: &Column| column.hit.map(|hit| hit.cell);
-    // Mostly, many columns show the same cell.
+    // Mostly, many neighbouring columns show the same cell.
     let mut cells = columns.chunk_by(|one, other| cell(one) == cell(other));
     if !cells.any(|columns| is_left(&columns[0])) {
         return;
@@ -83,7 +83,7 @@ pub(super) fn leave_to_portals(scene: Scene<'_>, list: &mut DrawList) {
     }));
 }
 
-/// Whether what `cell` holds is level.
+/// Whether the tile of `cell` is level.
 fn is_level(world: &World, cell: Cell) -> bool {
     let tile = world.grid().tile(cell.column.into(), cell.row.into());
     tile.is_some_and(|TileId(index)| world.tiles()[usize::from(index)].is_level())

@@ -1,4 +1,4 @@
-//! The wall columns of a level scene: one for each ray that hit something.
+//! The wall columns of a level scene: one for each ray that hit a solid tile.
 
 use std::ops::Range;
 
@@ -9,8 +9,8 @@ use crate::visibility::facing::cell_before;
 use crate::visibility::{Column, Extent, Facing, Scene, WallColumn, WallSink};
 use crate::world::{Cell, FaceLight, Light, Paint, Tile, TileId, TileKind, World};
 
-/// Hands the wall column of each of `columns` that has one in `rows` to `sink`, from left to right.
-/// The light is right only where it `is_lit`.
+/// Passes the wall column in `rows` of each of `columns` to `sink`, from left to right. The light
+/// is computed only if `is_lit`.
 #[inline]
 pub(crate) fn for_each_wall_column(
     scene: Scene<'_>,
@@ -51,24 +51,24 @@ pub(crate) fn for_each_wall_column(
     }
 }
 
-/// How bright what the ray of column `x` hit is.
+/// The light of the face that the ray of column `x` hit.
 pub(super) fn light_of(scene: Scene<'_>, x: u32, hit: &Hit) -> Light {
     Face::new(scene, x, hit, true).light.at(hit.u)
 }
 
-/// What is the same for all columns that show one face of a cell.
+/// The values that all columns showing one face of a cell share.
 #[derive(Clone, Copy)]
 struct Face<'a> {
     cell: Cell,
     side: Side,
     /// The tile of the cell.
     tile: Option<&'a Tile>,
-    /// How bright the face is along it, if it is lit.
+    /// The light along the face, if it is lit.
     light: FaceLight,
 }
 
 impl<'a> Face<'a> {
-    /// The one that the ray of column `x` hit.
+    /// The face that the ray of column `x` hit.
     fn new(scene: Scene<'a>, x: u32, hit: &Hit, is_lit: bool) -> Self {
         let Cell { column, row } = hit.cell;
         let world = scene.world;
@@ -78,13 +78,14 @@ impl<'a> Face<'a> {
         Self { cell: hit.cell, side: hit.side, tile, light }
     }
 
-    /// Whether `hit` is on it, too.
+    /// Whether `hit` is on the same face.
     #[inline]
     fn is_of(&self, hit: &Hit) -> bool {
         (self.cell, self.side) == (hit.cell, hit.side)
     }
 
-    /// How it looks, where the ray of column `x` hit it: as a jamb, where it faces a door.
+    /// The paint at the hit of the ray of column `x`: that of a jamb, if the face is towards a
+    /// door.
     fn paint(&self, scene: Scene<'_>, x: u32, hit: &Hit) -> Paint {
         let Scene { world, plan, .. } = scene;
         let door = || world.door(place_before(scene, x, hit)?);
@@ -92,23 +93,23 @@ impl<'a> Face<'a> {
         door.map_or_else(|| self.paint_of_tile(world), |door| door.jamb)
     }
 
-    /// How the tile itself looks.
+    /// The paint of the tile itself.
     fn paint_of_tile(&self, world: &World) -> Paint {
         match self.tile.map(|tile| tile.kind) {
             Some(TileKind::Wall(paint)) => paint,
             Some(TileKind::Door(door)) => door.leaf,
             Some(TileKind::Shape(shape)) => shape.paint,
-            // Casters that know no masks and no glass hit these.
+            // Casters that do not support masks and glass hit these.
             Some(TileKind::Mask(texture)) => Paint::Texture(texture),
             Some(TileKind::Glass(glass) | TileKind::Mirror(glass)) => Paint::Color(glass.color),
-            // No caster hits what is not solid; were one to, the floor is what is there.
+            // No caster hits an open tile. If one did, the floor is the only paint there.
             Some(TileKind::Open | TileKind::Doorway(_)) | None => {
                 world.floor().pattern.first_paint()
             }
         }
     }
 
-    /// Which way it faces where a ray along `direction` hit it.
+    /// The facing at the hit of a ray along `direction`.
     #[inline]
     fn facing(&self, scene: Scene<'_>, direction: DVec2, hit: &Hit) -> Facing {
         match self.tile.map(|tile| &tile.kind) {
@@ -121,7 +122,7 @@ impl<'a> Face<'a> {
     }
 }
 
-/// How bright the face of `tile` is along it that the ray of column `x` hit.
+/// The light along the face of `tile` that the ray of column `x` hit.
 fn face_light(scene: Scene<'_>, x: u32, hit: &Hit, tile: Option<&Tile>) -> FaceLight {
     let world = scene.world;
     if let Some(own) = tile.and_then(|tile| tile.light) {
@@ -129,7 +130,7 @@ fn face_light(scene: Scene<'_>, x: u32, hit: &Hit, tile: Option<&Tile>) -> FaceL
     }
     let before = || place_before(scene, x, hit);
     match tile.map(|tile| tile.kind) {
-        // It stands in a cell of its own.
+        // A shape is lit by the light of its own cell.
         Some(TileKind::Shape(_)) => FaceLight::even(world.light_in(hit.cell)),
         Some(TileKind::Door(_)) => {
             FaceLight::even(before().map_or(Light::FULL, |cell| world.light_in(cell)))
@@ -138,7 +139,8 @@ fn face_light(scene: Scene<'_>, x: u32, hit: &Hit, tile: Option<&Tile>) -> FaceL
     }
 }
 
-/// The cell from which the ray of column `x` sees what it hit; `None` off the map's north and west.
+/// The cell from which the ray of column `x` sees its hit; `None` off the north and west of the
+/// map.
 fn place_before(scene: Scene<'_>, x: u32, hit: &Hit) -> Option<Cell> {
     let [column, row] = cell_before(scene.projection.direction_of(x), hit);
     let is_known = column >= 0 && row >= 0;

@@ -1,4 +1,4 @@
-//! A plan in words: a line for each part, how it runs and why.
+//! The text of a plan: a line for each part, with its loop and the reason.
 
 use std::fmt;
 
@@ -9,7 +9,7 @@ use super::{
 use crate::visibility::Filter;
 
 impl fmt::Display for FramePlan {
-    /// Writes a line for each pass: how it runs, and why.
+    /// Writes a line for each pass, with its loop and the reason.
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
         writeln!(f, "view     {}", self.visibility)?;
         writeln!(f, "rays     {}", self.rays)?;

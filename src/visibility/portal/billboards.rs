@@ -1,9 +1,10 @@
-//! Billboards among portals: clipped to the gaps that they are seen in.
+//! Billboards of the portal way, clipped to the gaps in which they are seen.
 //!
-//! A thing is seen once in each image, at its own depth. Along a ray, what is between two lines is behind
-//! the see-through faces at the first line and before all at the second; so a column keeps such a part of
-//! its ray, and the billboards in it are cut to columns. Drawing each billboard across all of its columns at
-//! once was refused: what hides it differs from one to the next.
+//! A thing is seen once in each image, at its own depth. Along a ray, the part between two lines is
+//! behind the see-through faces at the first line and in front of all faces at the second. A column
+//! therefore keeps such a part of its ray, and the billboards in it are cut to columns. Drawing
+//! each billboard across all of its columns at once was refused: different faces cover it in each
+//! column.
 
 use std::cmp::Ordering;
 use std::ops::Range;
@@ -16,11 +17,11 @@ use crate::visibility::{Billboard, BillboardColumn, DrawList, Scene};
 use crate::world::World;
 use crate::world::sprite::builtin;
 
-/// A part of a ray that is in one gap.
+/// The part of a ray within one gap.
 #[derive(Clone, Debug)]
 pub(super) struct RayPart {
     pub(super) column: u32,
-    /// The rows that nothing nearer covers.
+    /// The rows that no nearer surface covers.
     pub(super) rows: Range<u32>,
     pub(super) from: f64,
     pub(super) to: f64,
@@ -28,18 +29,18 @@ pub(super) struct RayPart {
     pub(super) image: ImageId,
 }
 
-/// Finds the billboards in view; kept so that it is allocated once.
+/// Finds the billboards in view, in memory that is reused from frame to frame.
 #[derive(Clone, Debug, Default)]
 pub(super) struct Finder {
-    /// Which of the billboards are those of each image, from near to far.
+    /// The billboards of each image, from near to far, as indices.
     of_image: Vec<Range<usize>>,
     in_view: ImagesInView,
-    /// Which columns show any of them, if nothing is before it.
+    /// Whether each column shows any billboard, unless a nearer face covers it.
     is_covered: Vec<bool>,
 }
 
 impl Finder {
-    /// Makes room for the images of all but the strangest maps.
+    /// Reserves memory for the images of all but extreme maps.
     pub(super) fn make_room(&mut self, world: &World, width: usize) {
         self.of_image.clear();
         self.of_image.reserve(IMAGES_AT_ONCE);
@@ -48,7 +49,7 @@ impl Finder {
         self.in_view.make_room(world, 1);
     }
 
-    /// Finds all that the `segments` of rays show. Returns how many things were considered.
+    /// Finds the billboards in the `segments` of rays. Returns the number of things considered.
     pub(super) fn find(
         &mut self,
         scene: Scene<'_>,
@@ -89,7 +90,7 @@ impl Finder {
         considered
     }
 
-    /// Cuts out what shows in a part of a ray, from far to near.
+    /// Cuts out the visible billboards of a part of a ray, from far to near.
     pub(super) fn cut(
         &self,
         scene: Scene<'_>,
@@ -122,7 +123,7 @@ fn from_near_to_far(one: &Billboard, other: &Billboard) -> Ordering {
     one.depth.total_cmp(&other.depth).then_with(|| other.order.cmp(&one.order))
 }
 
-/// The rows in which `billboard` shows in a part of a ray.
+/// The rows in which `billboard` is visible in a part of a ray.
 fn rows_in(scene: Scene<'_>, gaps: &TileGaps, billboard: &Billboard, part: &RayPart) -> Range<u32> {
     if !billboard.columns.contains(&part.column) {
         return 0..0;

@@ -1,11 +1,11 @@
-//! The layers of what the portal way found: what is seen through, and billboards between that.
+//! The layers of the portal way: see-through faces, and the billboards between them.
 
 use super::billboards::{Finder, RayPart};
 use super::tile_gaps::TileGaps;
 use crate::visibility::layer_order::put_in_order;
 use crate::visibility::{DrawList, Layer, Scene};
 
-/// What a ray passes.
+/// An item that a ray passes.
 #[derive(Clone, Debug)]
 pub(super) enum Passed {
     /// An index into the masked and translucent columns.
@@ -14,22 +14,23 @@ pub(super) enum Passed {
     Billboards(RayPart),
 }
 
-/// Memory for layers that are put in order; kept so that it is allocated once.
+/// Memory for ordering layers, reused from frame to frame.
 #[derive(Clone, Debug, Default)]
 pub(super) struct LayerMemory {
-    /// Those of each column together, from far to near.
+    /// The layers of each column together, from far to near.
     by_column: Vec<Layer>,
 }
 
 impl LayerMemory {
-    /// Makes room for as many layers as there is room for in `list`.
+    /// Reserves memory for as many layers as `list` has memory for.
     pub(super) fn make_room(&mut self, list: &DrawList) {
         self.by_column.clear();
         self.by_column.reserve(list.layers.capacity());
     }
 }
 
-/// Makes the layers of `list` from what rays passed: in each column, what is nearer comes later.
+/// Makes the layers of `list` from the items that rays passed: in each column, nearer items come
+/// later.
 pub(super) fn fill(
     scene: Scene<'_>,
     gaps: &TileGaps,

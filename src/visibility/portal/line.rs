@@ -1,4 +1,4 @@
-//! What is met at a line between two cells: faces, gaps, mirrors, and the edge of the map.
+//! The line between two cells: faces, gaps, mirrors, and the edge of the map.
 
 use std::ops::Range;
 
@@ -11,8 +11,8 @@ use crate::visibility::{Extent, Material};
 use crate::world::{Glass, Tile, TileKind};
 
 impl ColumnWalk<'_> {
-    /// Divides the clip range of `ray` among what is met at a line into `place`, and tells whether the
-    /// ray goes on in one of the gaps. Others are left for later.
+    /// Divides the clip range of `ray` among the faces and gaps at a line into `place`, and returns
+    /// whether the ray continues in one of the gaps. The other gaps are stored for later.
     pub(super) fn cross_line(&mut self, ray: &mut PortalRay, place: Place, met: &Met) -> bool {
         let projection = self.surroundings.scene.projection;
         let Range { start, end } = ray.rows;
@@ -22,7 +22,7 @@ impl ColumnWalk<'_> {
         }
         let gaps = self.surroundings.gaps;
         let mut goes_on: Option<(GapId, u32, u32)> = None;
-        // The rock that is below the next gap, and the row below it.
+        // The bottom of the solid part below the next gap, and the row below it.
         let (mut rock_from, mut rock_end) = (f64::NEG_INFINITY, end);
         for id in gaps.of(place) {
             let gap = gaps.gap(id);
@@ -54,14 +54,15 @@ impl ColumnWalk<'_> {
         true
     }
 
-    /// Whether there is only sky above row `end`, as far as `t` and further.
+    /// Whether only the sky is above row `end`, from distance `t` on.
     fn is_above_everything(&self, end: u32, t: f64) -> bool {
         let projection = self.surroundings.scene.projection;
         end <= projection.first_row_of_ground()
             && end <= projection.row_of(self.surroundings.top, t)
     }
 
-    /// Meets what is solid in `place` between two heights, which shows in `rows`: a face, or a mirror.
+    /// Shows the solid part of `place` between two heights, which covers `rows`: a face, or a
+    /// mirror.
     #[inline(never)]
     fn meet_rock(
         &mut self,
@@ -89,7 +90,7 @@ impl ColumnWalk<'_> {
             (true, ..) => tile.riser,
             (false, ..) => tile.lintel,
         };
-        // As far as it is in the gap that it is seen from.
+        // Clipped to the gap from which it is seen.
         let gap = surroundings.gaps.gap(ray.gap).gap;
         let extent = Extent::Heights {
             bottom: heights.start.max(gap.bottom),
@@ -102,7 +103,7 @@ impl ColumnWalk<'_> {
         }
     }
 
-    /// Has the mirror image followed later in those `rows`, behind the mirror's tint.
+    /// Stores the mirror image for later, in these `rows` behind the mirror's tint.
     fn reflect(&mut self, ray: &PortalRay, rows: Range<u32>, place: Place, met: &Met, tint: Glass) {
         self.memory.stats.bounces += 1;
         let everywhere = Extent::Heights { bottom: BOTTOMLESS.bottom, top: BOTTOMLESS.top };
@@ -113,7 +114,7 @@ impl ColumnWalk<'_> {
         self.memory.rays.push(PortalRay { walk, rows, image, ..*ray });
     }
 
-    /// Passes the face of the cube in `place` that is seen through.
+    /// Records the face of the see-through cube in `place`.
     #[inline(never)]
     fn pass_cube(&mut self, ray: &PortalRay, place: Place, rows: &Range<u32>, met: &Met) {
         let Some(Tile { heights, kind, .. }) = self.surroundings.tile(place) else { return };
@@ -127,7 +128,7 @@ impl ColumnWalk<'_> {
         self.pass(ray, rows, met, place, material, Extent::Heights { bottom, top });
     }
 
-    /// The part of `rows` that shows what is between two heights at distance `t`.
+    /// The part of `rows` between two heights at distance `t`.
     pub(super) fn rows_between(
         &self,
         rows: &Range<u32>,
@@ -138,7 +139,7 @@ impl ColumnWalk<'_> {
         rows.start.max(row_of(heights.end))..rows.end.min(row_of(heights.start))
     }
 
-    /// Shows what is beyond the edge of the map: the sky, and the ground below the horizon.
+    /// Shows the sky and, below the horizon, the ground beyond the edge of the map.
     #[inline(never)]
     fn show_beyond_edge(&mut self, rows: Range<u32>, image: ImageId) {
         let Range { start, end } = rows;

@@ -1,4 +1,4 @@
-//! What a ray meets: faces, shown or seen through, and their light.
+//! The faces that a ray meets, opaque or see-through, and their light.
 
 use std::ops::Range;
 
@@ -11,21 +11,22 @@ use crate::world::{Light, Paint, Tile, TileKind};
 
 /// An upright face that a ray meets.
 pub(super) struct Met {
-    /// The kind of line that it is on, or runs along most.
+    /// The kind of line that the face is on, or to which it is most nearly parallel.
     pub(super) side: Side,
     pub(super) facing: Facing,
-    /// How many cells the ray comes nearer to it for each unit of `t`.
+    /// The approach of the ray to the face, in cells per unit of `t`.
     pub(super) slope: f64,
     pub(super) t: f64,
     pub(super) u: AlongFace,
-    /// From where it is met.
+    /// The cell from which the ray meets it.
     pub(super) before: Place,
 }
 
-/// How far along a face it is met.
+/// The position along a face at which a ray meets it.
 pub(super) enum AlongFace {
     Known(f64),
-    /// To be computed from the line that the ray has just crossed: most lines have no face in view.
+    /// Computed on demand from the line that the ray has just crossed: most lines have no face in
+    /// view.
     AtLine(Crossed),
 }
 
@@ -49,7 +50,7 @@ impl ColumnWalk<'_> {
         self.list.walls.push(wall);
     }
 
-    /// Keeps a face that is seen through in `rows`.
+    /// Records a see-through face in `rows`.
     pub(super) fn pass(
         &mut self,
         ray: &PortalRay,
@@ -71,8 +72,8 @@ impl ColumnWalk<'_> {
         self.list.see_through.push(face);
     }
 
-    /// How bright what is in `place` is at `u`, seen from where it is met: by its own light, if it is
-    /// solid, else as it is there.
+    /// The light at `u` on a face of `place`, seen from the cell before it: the tile's own light if
+    /// it is solid and has one, else the light there.
     pub(super) fn light(&self, place: Place, met: &Met, u: f64) -> Light {
         let scene = self.surroundings.scene;
         if !scene.plan.walls.faded {
@@ -86,7 +87,7 @@ impl ColumnWalk<'_> {
         let Some((before, _)) = met.before else { return Light::FULL };
         let is_door = tile.is_some_and(|tile| matches!(tile.kind, TileKind::Door(_)));
         match place {
-            // Leaves have one light all over, as has a shape, which is met in its own cell.
+            // A leaf has the same light everywhere, as has a shape, which is met in its own cell.
             Some((cell, _)) if cell != before && !is_door => {
                 scene.world.face_light(cell, before).at(u)
             }
@@ -96,7 +97,8 @@ impl ColumnWalk<'_> {
 }
 
 impl Met {
-    /// How far along the face `ray` meets it, from 0 at its left end to 1 at its right.
+    /// The position along the face at which `ray` meets it, from 0 at its left end to 1 at its
+    /// right.
     pub(super) fn u(&self, ray: &PortalRay) -> f64 {
         match &self.u {
             AlongFace::Known(u) => *u,

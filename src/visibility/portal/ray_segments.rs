@@ -1,10 +1,10 @@
 //! Ray segments: the cells in view of each image.
 //!
-//! What is seen in an image lies along its rays, as far as they are in it. Each of those segments is
-//! followed on the map, and widens the interval of each row of cells that it crosses. A thing that reaches
-//! into a ray is no further beside it than half its width, so that what lies between two rays need not be
-//! considered. The rectangle around all segments was refused: of a diagonal view it is everything on
-//! both sides.
+//! The contents of an image lie along the parts of rays that are in it. Each such segment is
+//! followed on the map, and extends the interval of each row of cells that it crosses. A thing that
+//! extends into a ray is at most half its width from it, so that the area between two rays need not
+//! be considered. The rectangle around all segments was refused: for a diagonal view it contains
+//! everything on both sides.
 
 use glam::DVec2;
 
@@ -14,23 +14,23 @@ use crate::visibility::runs::IMAGES_AT_ONCE;
 use crate::visibility::visible_cells::VisibleCells;
 use crate::world::{Thing, World};
 
-/// The part of a ray that is seen in one image: where it begins and ends on the map.
+/// The part of a ray in one image, by its two ends on the map.
 #[derive(Clone, Debug)]
 pub(super) struct RaySegment {
     pub(super) ends: [DVec2; 2],
     pub(super) image: ImageId,
 }
 
-/// What is seen in each of the images; kept so that it is allocated once.
+/// The visible cells of each image, in memory that is reused from frame to frame.
 #[derive(Clone, Debug, Default)]
 pub(crate) struct ImagesInView {
-    /// One for each image, and some to spare.
+    /// One for each image, and possibly more.
     list: Vec<VisibleCells>,
-    /// How far to the north and to the south each image reaches.
+    /// The extent of each image from north to south.
     extents: Vec<NorthSouth>,
 }
 
-/// From where to where something reaches from north to south.
+/// An interval of coordinates from north to south.
 #[derive(Clone, Copy, Debug)]
 struct NorthSouth {
     north: f64,
@@ -46,7 +46,7 @@ impl NorthSouth {
 }
 
 impl ImagesInView {
-    /// Finds out what the `segments` show of each of that many images.
+    /// Finds the cells that the `segments` cross in each of this number of images.
     pub(crate) fn look(&mut self, scene: Scene<'_>, images: usize, segments: &[RaySegment]) {
         self.make_room(scene.world, images);
         let list = &mut self.list[..images];
@@ -55,7 +55,7 @@ impl ImagesInView {
         }
         self.extents.clear();
         self.extents.resize(images, NorthSouth::NONE);
-        // Those that end nowhere near the map are left out.
+        // Segments that end nowhere near the map are excluded.
         let is_near = |segment: &&RaySegment| segment.ends.iter().all(|end| end.is_finite());
         let segments = || segments.iter().filter(is_near);
         for RaySegment { ends, image: ImageId(image) } in segments() {
@@ -80,7 +80,7 @@ impl ImagesInView {
         self.list[image].things(world)
     }
 
-    /// Makes room for `count` images of `world` at least.
+    /// Reserves memory for at least `count` images of `world`.
     pub(super) fn make_room(&mut self, world: &World, count: usize) {
         let at_once = if world.has_mirrors() { count.max(IMAGES_AT_ONCE) } else { count };
         if self.list.len() < at_once {
@@ -108,7 +108,8 @@ mod tests {
 
     const SIDE: usize = 12;
 
-    /// A map of walls, mirrors, steps and plants, some of them so high that they are wider than a cell.
+    /// A map of walls, mirrors, steps and plants, some of them so high that they are wider than a
+    /// cell.
     fn world(cells: &[char]) -> World {
         let rows: String =
             cells.chunks(SIDE).map(|row| row.iter().collect::<String>() + "\n").collect();

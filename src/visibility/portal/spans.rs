@@ -1,6 +1,7 @@
-//! The spans of what the portal way found: along rows, where neighbouring columns show the same.
+//! The spans of the portal way: along rows, where neighbouring columns show the same surface.
 //!
-//! A span ends where the next column shows something else: one step for each span, and no row is searched.
+//! A span ends where the next column shows another: one step for each span, without a search of the
+//! row.
 
 use std::ops::Range;
 use std::{iter, mem};
@@ -11,7 +12,7 @@ use crate::visibility::runs::{ColumnRuns, FlatSurface, ImageId, Part, Run, Shown
 use crate::visibility::{Pass, PlaneSpan, Scene, Span};
 use crate::world::{Ceiling, Cell, Covering, Light, Tile, TileKind, World};
 
-/// Hands every span of `runs` in `rows` to `emit`. `starts` is memory to work with.
+/// Passes every span of `runs` in `rows` to `emit`. `starts` is working memory.
 pub(crate) fn for_each_span(
     scene: Scene<'_>,
     runs: &ColumnRuns,
@@ -40,7 +41,7 @@ pub(crate) fn for_each_span(
     let mut before: &[Run] = &[];
     for (x, column) in runs.columns().enumerate() {
         if before.is_empty() || column.is_empty() {
-            // One of them is not filled by the portal way.
+            // The portal way does not fill one of the two columns.
             for run in before {
                 end_spans(run, starts, x);
             }
@@ -55,7 +56,7 @@ pub(crate) fn for_each_span(
     }
 }
 
-/// What `one` column shows that its neighbour does not show in the same rows.
+/// The runs of `one` column that its neighbour does not have in the same rows.
 fn changes(mut one: &[Run], mut other: &[Run]) -> impl Iterator<Item = Run> {
     let mut start = 0;
     iter::from_fn(move || {
@@ -72,7 +73,7 @@ fn changes(mut one: &[Run], mut other: &[Run]) -> impl Iterator<Item = Run> {
     })
 }
 
-/// Emits what `columns` of `row` show of `surface`: a span for each stretch of one light.
+/// Emits a span for each stretch of one light in the `columns` of `row` that show `surface`.
 fn emit_plane(
     scene: Scene<'_>,
     runs: &ColumnRuns,
@@ -105,7 +106,7 @@ fn emit_plane(
         emit(span(columns, light));
         return;
     }
-    // Lamps light each cell as it is.
+    // Lamps light each cell separately.
     let lamplight = |x: usize| lamplight_at(world, mapping.point(x));
     let Range { mut start, end } = columns;
     while start < end {
@@ -116,14 +117,14 @@ fn emit_plane(
     }
 }
 
-/// What lamps add to the light at `point`.
+/// The light that lamps add at `point`.
 fn lamplight_at(world: &World, point: DVec2) -> Light {
     let is_on_map = point.x >= 0.0 && point.y >= 0.0;
     let cell = Cell { column: point.x as u32, row: point.y as u32 };
     if is_on_map { world.lamplight_in(cell) } else { Light::NONE }
 }
 
-/// How high a part of a tile is, and what it is covered with.
+/// The height and the covering of a part of a tile.
 fn height_and_covering(tile: &Tile, part: Part) -> (f64, Covering) {
     let mut gaps = tile.gaps();
     match (part, tile.ceiling, tile.kind) {

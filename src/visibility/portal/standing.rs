@@ -1,4 +1,4 @@
-//! What stands in a cell and does not fill it: the leaves of doors, and shapes.
+//! Objects that stand in a cell without filling it: the leaves of doors, and shapes.
 
 use std::ops::Range;
 
@@ -11,7 +11,7 @@ use crate::visibility::{Extent, Facing};
 use crate::world::{Cell, Tile, TileKind};
 
 impl ColumnWalk<'_> {
-    /// Meets what stands in the gap that `ray` is in. What is above it, if anything, stays open.
+    /// Handles the object in the gap of `ray`. The rows above it remain open.
     pub(super) fn meet_standing(&mut self, ray: &mut PortalRay) {
         let surroundings = self.surroundings;
         let (Some((cell, _)), Some(tile)) = (ray.place, surroundings.tile(ray.place)) else {
@@ -20,7 +20,8 @@ impl ColumnWalk<'_> {
         let kind = tile.kind;
         let Passage { hit, end } = ray.walk.standing(surroundings.scene.world, cell, kind);
         if let Some(hit) = hit {
-            // A ray that was reflected in this cell may have been nowhere near before that.
+            // The ray after a reflection in this cell starts at the mirror: an earlier hit is not
+            // on its path.
             if ray.image != ImageId::NONE && hit.t < ray.from {
                 return;
             }
@@ -31,7 +32,7 @@ impl ColumnWalk<'_> {
         }
     }
 
-    /// Meets a leaf or a shape where `hit` says.
+    /// Shows the face of a leaf or a shape at `hit`.
     fn meet_side(&mut self, ray: &mut PortalRay, kind: TileKind, tile: &Tile, hit: Hit) {
         let (bottom, top) = (tile.heights.floor(), tile.top_of_what_stands());
         self.close(ray, hit.t);
@@ -43,7 +44,7 @@ impl ColumnWalk<'_> {
         };
         let before = match kind {
             TileKind::Door(_) => self.place_before(&real, &hit),
-            // It stands in a cell of its own.
+            // A shape stands in a cell of its own.
             _ => ray.place,
         };
         let slope = facing.slope(real.direction());
@@ -59,7 +60,7 @@ impl ColumnWalk<'_> {
         }
     }
 
-    /// Shows the top of a pillar, which ends at `end`, to an eye that is above it.
+    /// Shows the top of a pillar, which extends to `end`, if the eye is above it.
     fn look_down_at(&mut self, ray: &mut PortalRay, top: f64, end: f64) {
         let projection = self.surroundings.scene.projection;
         let is_seen = projection.eye() > top && ray.from <= end;
@@ -74,7 +75,7 @@ impl ColumnWalk<'_> {
         ray.rows = start..row;
     }
 
-    /// The cell before the one of a leaf, on the side that `ray` comes from.
+    /// The cell in front of a leaf's cell, on the side from which `ray` comes.
     fn place_before(&self, ray: &Ray, hit: &Hit) -> Place {
         let [column, row] = cell_before(ray.direction(), hit);
         let tile = self.surroundings.scene.world.grid().tile(column, row)?;

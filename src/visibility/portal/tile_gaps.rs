@@ -1,7 +1,8 @@
-//! Tile gaps: what a ray needs to know of a tile in every cell that it crosses.
+//! Tile gaps: the values of a tile that a ray needs in every cell.
 //!
-//! They are made once a frame, from where the eye is. To ask the tile itself in each cell was refused: it
-//! is a large value of many cases, and a ray mostly needs to know where its gaps are.
+//! They are made once a frame, for the height of the eye. Reading the tile itself in each cell was
+//! refused: it is a large value of many cases, and a ray mostly needs only the positions of its
+//! gaps.
 
 use std::ops::Range;
 
@@ -11,16 +12,16 @@ use crate::visibility::runs::Part;
 use crate::visibility::{Projection, Scene};
 use crate::world::{Gap, Heights, Tile, TileKind, World};
 
-/// Those of all tiles.
+/// The gaps of all tiles.
 #[derive(Clone, Debug, Default)]
 pub(crate) struct TileGaps {
-    /// Those of each tile together, from the lowest up.
+    /// The gaps of each tile together, from the lowest up.
     gaps: Vec<VisibleGap>,
-    /// Which of them are those of what is off the map, and then of each tile.
+    /// The indices of the gaps: those off the map, then those of each tile.
     of_tiles: Vec<Range<u32>>,
 }
 
-/// Which gap of which tile.
+/// The index of a gap of a tile.
 #[derive(Clone, Copy, Debug)]
 pub(crate) struct GapId(u32);
 
@@ -29,25 +30,25 @@ pub(crate) struct GapId(u32);
 pub(crate) struct VisibleGap {
     pub(crate) gap: Gap,
     bottom: Rise,
-    /// `None` for the sky.
+    /// The rise to its top; `None` for the sky.
     top: Option<Rise>,
-    /// What its bottom is.
+    /// The part of the cell at its bottom.
     pub(crate) below: Part,
     pub(crate) holds: Holds,
 }
 
-/// What stands on the bottom of a gap.
+/// The object that stands at the bottom of a gap.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub(crate) enum Holds {
     Nothing,
-    /// The leaf of a door, or a shape: it does not fill the cell.
+    /// The leaf of a door, or a shape, which does not fill the cell.
     Standing,
-    /// Glass or a mask, which fill it.
+    /// Glass or a mask, which fills the cell.
     Cube,
 }
 
 impl TileGaps {
-    /// Makes those of all tiles in `scene`.
+    /// Makes the gaps of all tiles in `scene`.
     pub(crate) fn begin(&mut self, scene: Scene<'_>) {
         self.gaps.clear();
         self.of_tiles.clear();
@@ -62,7 +63,7 @@ impl TileGaps {
         }
     }
 
-    /// Makes room for those of all tiles of `world`.
+    /// Reserves memory for the gaps of all tiles of `world`.
     pub(super) fn make_room(&mut self, world: &World) {
         const OF_A_TILE: usize = 2;
         self.gaps.clear();
@@ -77,14 +78,14 @@ impl TileGaps {
         self.of_tiles.push(first as u32..self.gaps.len() as u32);
     }
 
-    /// The gaps of what is in `place`, from the lowest up.
+    /// The gaps in `place`, from the lowest up.
     #[inline]
     pub(crate) fn of(&self, place: Place) -> impl Iterator<Item = GapId> {
         let tile = place.map_or(0, |(_, tile)| usize::from(tile.0) + 1);
         self.of_tiles[tile].clone().map(GapId)
     }
 
-    /// One of them.
+    /// The gap with this index.
     #[inline]
     pub(crate) fn gap(&self, GapId(index): GapId) -> &VisibleGap {
         &self.gaps[index as usize]
@@ -92,7 +93,7 @@ impl TileGaps {
 }
 
 impl GapId {
-    /// Where an eye is that is in no gap at all.
+    /// The gap of an eye that is in no other gap.
     pub(crate) const BOTTOMLESS: Self = Self(0);
 }
 
@@ -103,13 +104,13 @@ impl VisibleGap {
         Self { gap, bottom: rise_to(gap.bottom), top, below, holds }
     }
 
-    /// The first row that shows none of what is above it, at distance `t`.
+    /// The first row that shows nothing above the gap, at distance `t`.
     #[inline]
     pub(crate) fn row_of_top(&self, projection: &Projection, t: f64) -> u32 {
         self.top.map_or(0, |top| projection.row_of(top, t))
     }
 
-    /// The first row that shows none of it but what is below it, at distance `t`.
+    /// The first row that shows only surfaces below the gap, at distance `t`.
     #[inline]
     pub(crate) fn row_of_bottom(&self, projection: &Projection, t: f64) -> u32 {
         projection.row_of(self.bottom, t)
@@ -129,8 +130,8 @@ impl Holds {
     }
 }
 
-/// What is open off the map.
+/// The gap off the map.
 const BEYOND: Gap = Gap { bottom: 0.0, top: f64::INFINITY };
 
-/// Everything that there may be.
+/// A gap that contains all heights.
 pub(crate) const BOTTOMLESS: Gap = Gap { bottom: -2.0 * Heights::MOST, top: 2.0 * Heights::MOST };

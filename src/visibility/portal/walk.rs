@@ -1,4 +1,4 @@
-//! The walk: a column of pixels, and its ray through the gaps.
+//! The walk of a column of pixels: its ray, followed through the gaps.
 
 use std::ops::Range;
 
@@ -17,44 +17,45 @@ use crate::visibility::runs::{FlatSurface, ImageId, Part, Shown};
 use crate::visibility::{Column, DrawList, Facing, PortalStats, Scene};
 use crate::world::{Camera, Cell, Tile, TileId, TileKind};
 
-/// How often a ray is reflected; the mirror after that shows its tint.
+/// The most reflections of a ray. The mirror after the last one shows only its tint.
 pub(super) const MOST_BOUNCES: u32 = 8;
 
-/// What is the same for all rays of a frame.
+/// The values that all rays of a frame share.
 pub(super) struct Surroundings<'a> {
     pub(super) scene: Scene<'a>,
     pub(super) gaps: &'a TileGaps,
-    /// Above this there is only sky.
+    /// The rise above which there is only sky.
     pub(super) top: Rise,
-    /// Whether anything stands anywhere, be it the player before a mirror.
+    /// Whether there is any thing, or the player in a mirror.
     pub(super) has_things: bool,
     most_bounces: u32,
 }
 
-/// A ray that is followed on in one gap.
+/// A ray that is followed in one gap.
 #[derive(Clone, Debug)]
 pub(super) struct PortalRay {
     pub(super) walk: MirroredWalk,
     pub(super) place: Place,
     pub(super) gap: GapId,
-    /// The clip range: the rows that nothing nearer covers.
+    /// The clip range: the rows that no nearer surface covers.
     pub(super) rows: Range<u32>,
-    /// Where on the ray it begins.
+    /// The distance at which this part of the ray begins.
     pub(super) from: f64,
     pub(super) image: ImageId,
 }
 
-/// Where a ray is: in a cell, or off the map.
+/// The location of a ray: in a cell, or off the map.
 pub(super) type Place = Option<(Cell, TileId)>;
 
-/// What walks leave besides the draw list; kept so that it is allocated once.
+/// The results of walks besides the draw list, in memory that is reused from frame to frame.
 #[derive(Clone, Debug, Default)]
 pub(super) struct WalkMemory {
-    /// Where a ray still has to be followed.
+    /// The parts of rays that remain to be followed.
     pub(super) rays: Vec<PortalRay>,
-    /// What is seen through, and where billboards may show: in each column, what is further comes later.
+    /// The see-through faces, and the parts in which billboards may show: in each column, further
+    /// ones come later.
     pub(super) passed: Vec<Passed>,
-    /// Where the rays are on the map.
+    /// The segments of the rays on the map.
     pub(super) segments: Vec<RaySegment>,
     pub(super) stats: PortalStats,
 }
@@ -66,20 +67,20 @@ pub(super) struct ColumnWalk<'a> {
     direction: DVec2,
     pub(super) memory: &'a mut WalkMemory,
     pub(super) list: &'a mut DrawList,
-    /// What it hit last before it was reflected, and how far it got.
+    /// The last hit before a reflection, and the distance that the ray reached.
     pub(super) hit: Option<Hit>,
     pub(super) distance: f64,
 }
 
 impl WalkMemory {
-    /// Forgets the last frame.
+    /// Removes the results of the last frame.
     pub(super) fn begin(&mut self) {
         self.passed.clear();
         self.segments.clear();
         self.stats = PortalStats::default();
     }
 
-    /// Makes room for all but the strangest maps.
+    /// Reserves memory for all but extreme maps.
     pub(super) fn make_room(&mut self, width: usize) {
         const RAYS_AT_ONCE: usize = 64;
         const OF_A_COLUMN: usize = 16;
@@ -117,7 +118,7 @@ impl<'a> Surroundings<'a> {
 }
 
 impl<'a> ColumnWalk<'a> {
-    /// Of `column` of the picture.
+    /// The walk of `column` of the picture.
     pub(super) fn new(
         surroundings: &'a Surroundings<'a>,
         column: u32,
@@ -128,8 +129,8 @@ impl<'a> ColumnWalk<'a> {
         Self { surroundings, column, direction, memory, list, hit: None, distance: 0.0 }
     }
 
-    /// Follows `ray`, which is that of the column, from `start` to the end of all its parts. Tells what it
-    /// hit and how far it got before it was reflected.
+    /// Follows the column's `ray` from `start` to the end of all its parts. Returns the hit and the
+    /// distance that it reached before any reflection.
     pub(super) fn follow(mut self, ray: &Ray, start: PortalStart) -> Column {
         self.memory.stats.rays += 1;
         match start {
@@ -146,7 +147,7 @@ impl<'a> ColumnWalk<'a> {
         Column { hit, distance, rows: row_of(1.0)..row_of(0.0) }
     }
 
-    /// Has the ray followed from the line that `hit` is on, in what is left of `rows` behind it.
+    /// Stores the ray for later, from the line that `hit` is on, in the part of `rows` behind it.
     fn start_at_line(&mut self, ray: &Ray, hit: Hit, rows: Range<u32>) {
         let &Surroundings { scene, gaps, most_bounces, .. } = self.surroundings;
         let runs = &mut self.list.runs;
@@ -170,7 +171,7 @@ impl<'a> ColumnWalk<'a> {
         }
     }
 
-    /// What is met at a line that is crossed at `t`.
+    /// The face at a line that is crossed at `t`.
     fn met_at(&self, crossed: Crossed, t: f64, before: Place) -> Met {
         let side = crossed.side;
         let facing = Facing::Side(side);
@@ -178,7 +179,7 @@ impl<'a> ColumnWalk<'a> {
         Met { side, facing, slope, t, u: AlongFace::AtLine(crossed), before }
     }
 
-    /// Has the ray followed from the camera.
+    /// Stores the ray for later, from the camera on.
     fn start_at_camera(&mut self, ray: &Ray) {
         let &Surroundings { scene, gaps, most_bounces, .. } = self.surroundings;
         let grid = scene.world.grid();
@@ -186,7 +187,7 @@ impl<'a> ColumnWalk<'a> {
         let walk = MirroredWalk::new(grid, ray, most_bounces);
         let place = walk.cell(grid);
         let gap_in = |place| gaps.of(place).find(|&id| gaps.gap(id).gap.holds(eye));
-        // An eye inside the rock sees as if the cell were like the map's own floor.
+        // For an eye inside a solid part, the cell counts as the map's own floor.
         let ground = place.map(|(cell, _)| (cell, TileId(0)));
         let (place, gap) = match (gap_in(place), gap_in(ground)) {
             (Some(gap), _) => (place, gap),
@@ -198,7 +199,7 @@ impl<'a> ColumnWalk<'a> {
         self.memory.rays.push(PortalRay { walk, place, gap, rows, from: 0.0, image });
     }
 
-    /// Follows `ray` as far as it goes, and keeps its segment.
+    /// Follows `ray` to its end, and stores its segment.
     fn follow_one(&mut self, ray: &mut PortalRay) {
         let start = ray.from;
         self.follow_on(ray);
@@ -212,7 +213,7 @@ impl<'a> ColumnWalk<'a> {
         }
     }
 
-    /// Follows `ray` as far as it goes.
+    /// Follows `ray` to its end.
     fn follow_on(&mut self, ray: &mut PortalRay) {
         let grid = self.surroundings.scene.world.grid();
         loop {
@@ -226,7 +227,7 @@ impl<'a> ColumnWalk<'a> {
             self.memory.stats.cells += u64::from(crossed.into.is_some());
             let tile = |(_, tile): (Cell, TileId)| tile;
             if crossed.into.is_some() && crossed.into.map(tile) == ray.place.map(tile) {
-                // All of its heights are the same.
+                // The next cell has the same heights.
                 ray.place = crossed.into;
                 continue;
             }
@@ -243,8 +244,8 @@ impl<'a> ColumnWalk<'a> {
         }
     }
 
-    /// Shows floor and ceiling of the cell that `ray` is in, which it leaves at `t`, and closes its clip
-    /// range over them.
+    /// Shows floor and ceiling of the cell of `ray`, which it leaves at `t`, and removes their rows
+    /// from its clip range.
     pub(super) fn close(&mut self, ray: &mut PortalRay, t: f64) {
         self.keep_part(ray, t);
         let projection = self.surroundings.scene.projection;
@@ -268,7 +269,7 @@ impl<'a> ColumnWalk<'a> {
         }
     }
 
-    /// Keeps the part of `ray` up to `to`, where billboards may show.
+    /// Stores the part of `ray` up to `to`, in which billboards may show.
     fn keep_part(&mut self, ray: &PortalRay, to: f64) {
         if !self.surroundings.has_things {
             return;

@@ -27,10 +27,10 @@ use std::num::NonZeroU32;
 use super::Texture;
 use crate::color::Rgb;
 
-/// The names that [`named`] knows.
+/// The names of the built-in textures.
 pub const NAMES: &[&str] = &names();
 
-/// The built-in texture of that name; `None` if there is none.
+/// The built-in texture `name`; `None` if there is none.
 pub fn named(name: &str) -> Option<Texture> {
     let (_, painter) = PAINTERS.iter().find(|(known, _)| *known == name)?;
     Some(match *painter {
@@ -45,10 +45,10 @@ pub fn named(name: &str) -> Option<Texture> {
     })
 }
 
-/// The names that [`panorama`] knows.
+/// The names of the built-in panoramas.
 pub const PANORAMAS: &[&str] = &["hills"];
 
-/// The built-in panorama of that name; `None` if there is none.
+/// The built-in panorama `name`; `None` if there is none.
 pub fn panorama(name: &str) -> Option<Texture> {
     const WIDTH: NonZeroU32 = NonZeroU32::new(panorama::WIDTH as u32).expect("it is not 0");
     const HEIGHT: NonZeroU32 = NonZeroU32::new(panorama::HEIGHT as u32).expect("it is not 0");
@@ -64,11 +64,11 @@ const SIDE_LENGTH: NonZeroU32 = NonZeroU32::new(64).expect("64 is not 0");
 #[derive(Clone, Copy)]
 enum Painter {
     Solid(fn(i32, i32) -> Rgb),
-    /// `None` is a hole.
+    /// A texture with holes, for which the function returns `None`.
     WithHoles(fn(i32, i32) -> Option<Rgb>),
 }
 
-/// The colour of holes where such a texture is used for a wall.
+/// The colour of holes if a wall has such a texture.
 const HOLE: Rgb = Rgb::new(0x1c, 0x1e, 0x22);
 const CLEAR: u8 = 0;
 const OPAQUE: u8 = u8::MAX;
@@ -141,7 +141,7 @@ mod tests {
     }
 
     #[test]
-    fn each_name_is_a_picture_of_its_own() {
+    fn the_textures_differ() {
         let mut seen = Vec::new();
         for name in NAMES {
             let texture = named(name).unwrap();
@@ -154,21 +154,21 @@ mod tests {
     }
 
     #[test]
-    fn walls_stand_side_by_side_without_a_seam() {
+    fn walls_tile_horizontally_without_a_seam() {
         for name in NAMES {
             assert!(wraps(&columns(name)), "{name}");
         }
     }
 
     #[test]
-    fn floors_have_no_seam_from_north_to_south() {
+    fn floors_tile_vertically_without_a_seam() {
         for name in NAMES.iter().filter(|name| !["plaster", "fence"].contains(name)) {
             assert!(wraps(&rows(&columns(name))), "{name}");
         }
     }
 
     #[test]
-    fn none_is_too_dark_or_too_bright_to_see_a_shaded_side_of() {
+    fn mean_brightness_leaves_room_for_shading() {
         for name in NAMES {
             let luma = named(name).unwrap().mean().luma();
             assert!((70..=210).contains(&luma), "{name}: {luma}");
@@ -176,7 +176,7 @@ mod tests {
     }
 
     #[test]
-    fn shapes_can_be_told_when_a_wall_is_eight_pixels_high() {
+    fn features_are_visible_when_a_wall_is_eight_pixels_high() {
         const PIXEL: usize = SIDE as usize / 8;
         for name in NAMES {
             let columns = columns(name);
@@ -204,7 +204,7 @@ mod tests {
     }
 
     #[test]
-    fn grates_and_fences_have_holes_that_one_can_see_through() {
+    fn grates_and_fences_have_holes() {
         for name in NAMES {
             let texture = named(name).unwrap();
             let texels = || (0..64).flat_map(|x| (0..64).map(move |y| (x, y)));
@@ -218,7 +218,7 @@ mod tests {
     }
 
     #[test]
-    fn they_are_the_same_everywhere() {
+    fn textures_are_the_same_on_every_machine() {
         let mut list = String::new();
         for name in NAMES {
             let columns = columns(name);

@@ -1,7 +1,7 @@
-//! Mip levels: a texture in half its size, a quarter, and so on.
+//! Mip levels: a texture at half its size, a quarter, and so on.
 //!
-//! Each is the one before, halved in [linear light](light). Mip mapping is that of Lance Williams,
-//! "Pyramidal Parametrics", SIGGRAPH 1983.
+//! Each level is the one before, halved in [linear light](light). Mip mapping is that of Lance
+//! Williams, "Pyramidal Parametrics", SIGGRAPH 1983.
 
 mod light;
 
@@ -12,40 +12,42 @@ use crate::color::Rgb;
 use crate::color::srgb::{from_linear_16, linear_16};
 use light::Light;
 
-/// A picture in one size, at least one texel wide and high.
+/// A picture of one size, at least one texel wide and high.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub struct MipLevel {
     width: NonZeroU32,
     height: NonZeroU32,
-    /// Column by column, each from top to bottom.
+    /// The columns from the left, each from top to bottom.
     texels: Vec<Rgb>,
-    /// 0 for clear, 255 for opaque, in the same order; empty where all is opaque.
+    /// The alpha of the texels in the same order, 0 for transparent, 255 for opaque; empty if all
+    /// texels are opaque.
     alpha: Vec<u8>,
 }
 
 impl MipLevel {
-    /// Texels from left to right.
+    /// The width in texels.
     pub fn width(&self) -> u32 {
         self.width.get()
     }
 
-    /// Texels from top to bottom.
+    /// The height in texels.
     pub fn height(&self) -> u32 {
         self.height.get()
     }
 
-    /// The column that holds `u`, from 0 at the left edge to 1 at the right one, top to bottom. A
-    /// `u` outside that range, or not a number, means the nearest column.
+    /// The column at `u`, from 0 at the left edge to 1 at the right one, from top to bottom. A `u`
+    /// outside that range, or NaN, selects the nearest column.
     pub fn column(&self, u: f64) -> &[Rgb] {
         &self.texels[self.column_range(u)]
     }
 
-    /// The alpha of the texels of [`MipLevel::column`]; `None` where all of the level is opaque.
+    /// The alpha of the texels of [`MipLevel::column`]; `None` if all texels of the level are
+    /// opaque.
     pub fn alpha_column(&self, u: f64) -> Option<&[u8]> {
         self.alpha.get(self.column_range(u))
     }
 
-    /// The texel at `(x, y)`, and its alpha.
+    /// The colour of the texel at `(x, y)`, and its alpha.
     pub(super) fn texel(&self, x: u32, y: u32) -> (Rgb, u8) {
         let index = x as usize * self.height.get() as usize + y as usize;
         (self.texels[index], self.alpha.get(index).copied().unwrap_or(u8::MAX))
@@ -55,14 +57,15 @@ impl MipLevel {
         !self.alpha.is_empty()
     }
 
-    /// Where the texels of that column are among all of them.
+    /// The indices of the texels of the column at `u`.
     fn column_range(&self, u: f64) -> Range<usize> {
         let height = self.height.get() as usize;
         let start = texel_index(u, self.width.get()) * height;
         start..start + height
     }
 
-    /// The texel at a place given in 2⁻⁶⁴ths of the way from left to right and from top to bottom.
+    /// The texel at a position in 2⁻⁶⁴ths of the width and the height, from the left and from the
+    /// top.
     #[inline]
     pub fn at_fraction(&self, x: u64, y: u64) -> Rgb {
         let index = |fraction: u64, count: NonZeroU32| {
@@ -71,14 +74,14 @@ impl MipLevel {
         self.texels[index(x, self.width) * self.height.get() as usize + index(y, self.height)]
     }
 
-    /// The same without a multiplication, where both sides are powers of two; `None` elsewhere.
+    /// The level for lookups without multiplication, if both sides are powers of two.
     #[inline]
     pub(crate) fn by_shifts(&self) -> Option<MipLevelByShifts<'_>> {
         let bits = |side: NonZeroU32| side.is_power_of_two().then(|| side.trailing_zeros());
         let (width, height) = (bits(self.width)?, bits(self.height)?);
         (width + height < u32::BITS).then(|| MipLevelByShifts {
             texels: &self.texels,
-            // What is shifted out by all 32 bits, or is left of nothing, is masked away.
+            // Shifting by all 32 bits is not possible. The surplus bits are masked away.
             shift_x: (u32::BITS - width - height).min(u32::BITS - 1),
             mask_x: (self.width.get() - 1) << height,
             shift_y: (u32::BITS - height).min(u32::BITS - 1),
@@ -87,8 +90,8 @@ impl MipLevel {
     }
 }
 
-/// A mip level whose width and height are powers of two, so that the place of a texel among all of them
-/// consists of bits of its place along both axes.
+/// A mip level whose width and height are powers of two, so that the index of a texel consists of
+/// bits of its position along both axes.
 #[derive(Clone, Copy)]
 pub(crate) struct MipLevelByShifts<'a> {
     texels: &'a [Rgb],
@@ -99,33 +102,34 @@ pub(crate) struct MipLevelByShifts<'a> {
 }
 
 impl MipLevelByShifts<'_> {
-    /// Which texel [`MipLevel::at_fraction`] would look up.
+    /// The index of the texel that [`MipLevel::at_fraction`] returns.
     #[inline]
     pub(crate) fn index(self, x: u64, y: u64) -> u32 {
         let (x, y) = ((x >> u32::BITS) as u32, (y >> u32::BITS) as u32);
         x >> self.shift_x & self.mask_x | y >> self.shift_y & self.mask_y
     }
 
-    /// Which bits of that index are due to the place along each axis.
+    /// The bits of the index that depend on the position along each axis.
     pub(crate) fn masks(self) -> [u32; 2] {
         [self.mask_x, self.mask_y]
     }
 
-    /// The texel at one of those indices.
+    /// The texel at an index.
     #[inline]
     pub(crate) fn at_index(self, index: u32) -> Rgb {
         self.texels[index as usize]
     }
 }
 
-/// The texel of `count` in a row that holds `coordinate`, from 0 to 1; the nearest one outside.
+/// The index, of `count`, of the texel at `coordinate`, from 0 to 1; the nearest one for
+/// coordinates outside.
 fn texel_index(coordinate: f64, count: u32) -> usize {
     let index = (coordinate * f64::from(count)) as usize;
     index.min(count as usize - 1)
 }
 
-/// A picture of these texels, column by column, and its lod down to one texel. `alpha` is in
-/// the same order, or empty where all is opaque.
+/// A picture with these texels, column by column, and its mip levels down to one texel. `alpha` is
+/// in the same order, or empty if all texels are opaque.
 pub(super) fn pyramid(
     width: NonZeroU32,
     height: NonZeroU32,
@@ -155,12 +159,12 @@ mod tests {
     }
 
     #[test]
-    fn a_chessboard_turns_into_the_gray_it_looks_like() {
+    fn a_chessboard_becomes_the_gray_of_the_same_light() {
         let texels = (0..16).map(|index| if (index + index / 4) % 2 == 0 { 0 } else { 255 });
         let texels = texels.map(|gray| Rgb::new(gray, gray, gray)).collect();
         let levels = pyramid(size(4), size(4), texels, vec![]);
         assert_eq!(levels.len(), 3);
-        // Half the light, which is far more than half the number.
+        // Half the light, which is far more than half the value.
         assert!(
             levels[1..]
                 .iter()
@@ -170,7 +174,7 @@ mod tests {
     }
 
     #[test]
-    fn a_fraction_names_the_texel_that_holds_it() {
+    fn a_fraction_selects_the_texel_that_contains_it() {
         let level = &pyramid(size(2), size(1), vec![Rgb::BLACK, Rgb::WHITE], vec![])[0];
         let half = 1 << 63;
         let seen = [0, half - 1, half, u64::MAX].map(|x| level.at_fraction(x, u64::MAX));
@@ -179,7 +183,7 @@ mod tests {
 
     proptest! {
         #[test]
-        fn shifts_find_the_texel_that_fractions_name(
+        fn shifts_select_the_same_texel_as_fractions(
             sides in (0_u32..8, 0_u32..8),
             places in prop::collection::vec(any::<(u64, u64)>(), 1..20),
         ) {
@@ -199,7 +203,7 @@ mod tests {
     }
 
     #[test]
-    fn what_is_clear_lends_no_colour() {
+    fn transparent_texels_have_no_influence_on_the_colour() {
         let texels = vec![Rgb::WHITE, Rgb::BLACK, Rgb::WHITE, Rgb::BLACK];
         let level = &pyramid(size(2), size(2), texels, vec![255, 0, 255, 0])[1];
         assert_eq!(level.texel(0, 0), (Rgb::WHITE, 128));

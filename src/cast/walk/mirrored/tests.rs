@@ -4,9 +4,9 @@ use super::*;
 use crate::cast::{Hit, Walk};
 
 proptest! {
-    /// Without a mirror it is the walk in the exact order, and meets what that meets.
+    /// Without mirrors, the walk is the one in the exact order, with the same distances.
     #[test]
-    fn unreflected_it_is_the_plain_walk(
+    fn without_mirrors_it_is_the_plain_walk(
         origin in (-3.0..9.0, -3.0..7.0),
         direction in (-1.0..1.0, -1.0..1.0),
     ) {
@@ -26,7 +26,8 @@ proptest! {
         prop_assert!(mirrored.cross(&grid).into.is_none());
     }
 
-    /// A ray between two mirrors goes to and fro, and ends where it leaves by the open sides.
+    /// A ray between two parallel mirrors goes back and forth, and ends where it leaves the map by
+    /// an open side.
     #[test]
     fn a_reflected_ray_stays_between_the_mirrors(
         origin in (1.0..3.0, 0.0..2.0),

@@ -122,7 +122,8 @@ const fn sum(lengths: &[i32]) -> i32 {
     sum
 }
 
-/// Which of the consecutive `lengths` contains `place`, the offset in it, and its length.
+/// The index of the one of the consecutive `lengths` that contains `place`, the offset in it, and
+/// its length.
 fn stretch(lengths: impl Iterator<Item = i32>, place: i32) -> (usize, i32, i32) {
     let mut end = 0;
     lengths

@@ -10,7 +10,7 @@ const PLASTER: Rgb = Rgb::new(0xa9, 0xa0, 0x8c);
 const GILT: Rgb = Rgb::new(0xc2, 0x9c, 0x54);
 const GRAIN: Noise = Noise::new(31, 16, 16);
 
-/// The distance of each part of the coffer from the middle of the beam, in texels.
+/// The distances of the parts of the coffer from the middle of the beam, in texels.
 const MOULDING: i32 = 5;
 const LEDGE: i32 = 9;
 const FILLET: i32 = 13;

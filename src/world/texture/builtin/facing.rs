@@ -84,8 +84,8 @@ pub(super) fn marble(x: i32, y: i32) -> Rgb {
     shade(mix(WHITE, VEIN, broad.max(fine).max(cloud)), slab.bevel(12) + CLOUDS.at(x, y, 6))
 }
 
-/// How near `place` is to `line`, around the texture: [`FULL`] on it, 0 at a distance of `reach` or
-/// more.
+/// The nearness of `place` to `line`, around the texture: [`FULL`] on it, 0 at a distance of `reach`
+/// or more.
 fn near(place: i32, line: i32, reach: i32) -> i32 {
     const STEP: i32 = FULL / 8;
     let distance = wrapped(place - line).abs();

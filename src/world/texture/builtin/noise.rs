@@ -1,8 +1,8 @@
-//! Chance that is the same every time: hashes of a place, and smooth noise made of them.
+//! Reproducible random numbers: hashes of a position, and smooth noise made from them.
 
 use super::SIDE;
 
-/// A number that looks random but depends on `x`, `y` and `seed` alone.
+/// A random-looking number that depends only on `x`, `y` and `seed`.
 pub(super) fn hash(x: i32, y: i32, seed: u32) -> u32 {
     let mut bits = (x as u32)
         .wrapping_mul(0x9e37_79b1)
@@ -16,7 +16,7 @@ pub(super) fn hash(x: i32, y: i32, seed: u32) -> u32 {
     bits
 }
 
-/// Smooth noise: chance at the points of a lattice, interpolated between them.
+/// Smooth noise: random numbers at the points of a lattice, interpolated between them.
 ///
 /// The lattice wraps around at the texture's edges, and the noise with it.
 #[derive(Clone, Copy)]
@@ -26,8 +26,8 @@ pub(super) struct Noise {
     down: Spacing,
 }
 
-/// How far it is from one lattice point to the next: a power of two, as a division takes longer than
-/// all the rest of the noise.
+/// The distance from one lattice point to the next: a power of two, as a division takes longer than
+/// all other operations of the noise.
 #[derive(Clone, Copy)]
 struct Spacing {
     bits: u32,
@@ -49,7 +49,7 @@ impl Noise {
         blend(upper, lower, from_top) * swing / POINT_RANGE
     }
 
-    /// Chance at a lattice point: from `-POINT_RANGE` to `POINT_RANGE`.
+    /// The random number at a lattice point: from `-POINT_RANGE` to `POINT_RANGE`.
     fn point(self, column: i32, row: i32) -> i32 {
         let (column, row) = (self.across.wrapped(column), self.down.wrapped(row));
         (hash(column, row, self.seed) % (2 * POINT_RANGE as u32 + 1)) as i32 - POINT_RANGE
@@ -62,13 +62,14 @@ impl Spacing {
         Self { bits: texels.trailing_zeros() }
     }
 
-    /// The lattice point at a texel or before it, and how far the texel is on the way to the next one.
+    /// The lattice point at a texel or before it, and the position of the texel between it and the
+    /// next one.
     fn split(self, texel: i32) -> (i32, i32) {
         let from_point = texel & ((1 << self.bits) - 1);
         (texel >> self.bits, ease((from_point * WHOLE) >> self.bits))
     }
 
-    /// The lattice point that is the same, of those that there are.
+    /// The equivalent lattice point within the texture.
     fn wrapped(self, point: i32) -> i32 {
         point & ((SIDE >> self.bits) - 1)
     }
@@ -76,14 +77,14 @@ impl Spacing {
 
 const POINT_RANGE: i32 = 1024;
 
-/// The weight that stands for all of the second of two values.
+/// The weight of the second of two values that excludes the first.
 const WHOLE: i32 = 256;
 
 fn blend(from: i32, to: i32, weight: i32) -> i32 {
     from + (to - from) * weight / WHOLE
 }
 
-/// The same way from 0 to [`WHOLE`], setting off and arriving gently.
+/// A smooth step from 0 to [`WHOLE`], with slope 0 at both ends.
 fn ease(t: i32) -> i32 {
     t * t * (3 * WHOLE - 2 * t) / (WHOLE * WHOLE)
 }
@@ -96,7 +97,7 @@ mod tests {
 
     proptest! {
         #[test]
-        fn noise_wraps_and_keeps_to_its_swing(
+        fn noise_wraps_and_stays_within_its_swing(
             seed: u32, x in 0..SIDE, y in 0..SIDE, swing in 0..256,
             across in prop::sample::select(vec![2, 4, 8, 16, 32, 64]),
             down in prop::sample::select(vec![2, 4, 8, 16, 32, 64]),

@@ -33,7 +33,7 @@ pub(super) fn mix(from: Rgb, to: Rgb, share: i32) -> Rgb {
     )
 }
 
-/// One of `colors`, always the same for an `id`.
+/// One of `colors`, selected by `id`.
 pub(super) fn pick<const COUNT: usize>(colors: [Rgb; COUNT], id: i32) -> Rgb {
     const { assert!(COUNT > 0, "there is nothing to pick from") };
     colors[hash(id, 0, 0) as usize % COUNT]

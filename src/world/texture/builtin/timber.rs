@@ -65,7 +65,7 @@ pub(super) fn oak(x: i32, y: i32) -> Rgb {
     }
 }
 
-/// Between the upright timbers at the left and at the right of the door.
+/// The columns between the upright timbers at the left and the right of the door.
 const RAILS: Range<i32> = 9..SIDE - 9;
 
 const PANELS: [Area; 4] = [

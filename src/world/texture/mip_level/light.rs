@@ -94,7 +94,7 @@ fn covered(
     to: NonZeroU32,
 ) -> impl Iterator<Item = (u32, u64)> + Clone {
     let (from, to) = (u64::from(from.get()), u64::from(to.get()));
-    // In units in which both kinds of texel are whole.
+    // In units in which both kinds of texel have integer sizes.
     let (start, end) = (u64::from(index) * from, (u64::from(index) + 1) * from);
     (start / to..end.div_ceil(to)).map(move |texel| {
         let covered = end.min((texel + 1) * to) - start.max(texel * to);
@@ -110,7 +110,7 @@ mod tests {
 
     proptest! {
         #[test]
-        fn a_square_of_four_is_halved_as_any_other_size_is(
+        fn a_square_of_four_is_halved_like_any_other_size(
             width in 1_u32..6,
             height in 1_u32..6,
             seed in prop::collection::vec(any::<[u16; 3]>(), 100),
@@ -123,9 +123,9 @@ mod tests {
             prop_assert_eq!(whole.halved().texels, expected);
         }
 
-        /// Light is neither lost nor made: all levels have the same mean, whatever the sides.
+        /// A halving conserves light: all levels have the same mean, for any sides.
         #[test]
-        fn a_halving_is_as_bright_as_the_whole(
+        fn a_halving_preserves_the_mean_light(
             width in 1_u32..20,
             height in 1_u32..20,
             seed in prop::collection::vec(any::<u16>(), 400),
