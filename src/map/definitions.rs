@@ -107,7 +107,7 @@ impl<'a, 't> Definitions<'a, 't> {
     }
 }
 
-/// Reads the goal, a line of at most [`LONGEST_GOAL`] characters.
+/// Reads the goal, a line of at most 40 characters.
 fn goal(entry: &Entry<'_, '_>) -> Option<String> {
     const LONGEST_GOAL: usize = 40;
     let goal = entry.string(r#"goal = "Find the way out""#)?;

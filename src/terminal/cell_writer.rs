@@ -13,6 +13,7 @@
 //! exact in ten frames.
 
 mod ascii;
+mod backend;
 mod bytes;
 mod control;
 mod exact;
@@ -29,13 +30,9 @@ mod shift;
 mod style;
 mod trellis;
 
-use std::io::{self, Write};
+use std::io::Write;
 
-use crossterm::cursor::{Hide, Show};
-use crossterm::terminal::{self, Clear};
-use ratatui::backend::{Backend, ClearType, WindowSize};
-use ratatui::buffer::Cell;
-use ratatui::layout::{Position, Size};
+use ratatui::layout::Size;
 use ratatui::style::Color;
 
 #[cfg(feature = "cli")]
@@ -54,6 +51,22 @@ use super::fidelity::Fidelity;
 ///
 /// The colours and the modifiers bold, dim, italic, underlined and reversed are written; ratatui's
 /// other modifiers are left out. A control character in a cell is written as a space.
+///
+/// ```
+/// use cellcaster::terminal::CellWriter;
+/// use ratatui::Terminal;
+/// use ratatui::layout::Size;
+/// use ratatui::widgets::Paragraph;
+///
+/// let backend = CellWriter::new(Vec::new(), Size::new(80, 24));
+/// let mut terminal = Terminal::new(backend)?;
+/// terminal.draw(|frame| frame.render_widget(Paragraph::new("hello"), frame.area()))?;
+/// // A frame that equals the one before takes no bytes.
+/// let bytes = terminal.backend().bytes_written();
+/// terminal.draw(|frame| frame.render_widget(Paragraph::new("hello"), frame.area()))?;
+/// assert_eq!(terminal.backend().bytes_written(), bytes);
+/// # Ok::<(), Box<dyn std::error::Error>>(())
+/// ```
 #[derive(Debug)]
 pub struct CellWriter<W> {
     output: W,
@@ -207,85 +220,6 @@ impl<W: Write> CellWriter<W> {
                 self.row_encoder.draw_row(pen, shifts, row, self.fidelity);
             }
         }
-    }
-}
-
-impl<W: Write> Backend for CellWriter<W> {
-    type Error = io::Error;
-
-    fn draw<'a, I>(&mut self, content: I) -> io::Result<()>
-    where
-        I: Iterator<Item = (u16, u16, &'a Cell)>,
-    {
-        for (x, y, cell) in content {
-            self.screen.want(x, y, cell);
-        }
-        self.update();
-        Ok(())
-    }
-
-    fn hide_cursor(&mut self) -> io::Result<()> {
-        if self.cursor_visible {
-            self.pen.command(Hide);
-            self.cursor_visible = false;
-        }
-        Ok(())
-    }
-
-    fn show_cursor(&mut self) -> io::Result<()> {
-        if !self.cursor_visible {
-            self.pen.command(Show);
-            self.cursor_visible = true;
-        }
-        Ok(())
-    }
-
-    /// The position of the next character, as far as it is known without a query to the terminal.
-    fn get_cursor_position(&mut self) -> io::Result<Position> {
-        Ok(self.pen.position().unwrap_or(Position::ORIGIN))
-    }
-
-    fn set_cursor_position<P: Into<Position>>(&mut self, position: P) -> io::Result<()> {
-        self.pen.move_to(position.into());
-        Ok(())
-    }
-
-    fn clear(&mut self) -> io::Result<()> {
-        self.clear_region(ClearType::All)
-    }
-
-    fn clear_region(&mut self, region: ClearType) -> io::Result<()> {
-        self.pen.set_style(Style::RESET);
-        self.screen.clear(region, self.pen.position().unwrap_or(Position::ORIGIN));
-        let region = match region {
-            ClearType::All => terminal::ClearType::All,
-            ClearType::AfterCursor => terminal::ClearType::FromCursorDown,
-            ClearType::BeforeCursor => terminal::ClearType::FromCursorUp,
-            ClearType::CurrentLine => terminal::ClearType::CurrentLine,
-            ClearType::UntilNewLine => terminal::ClearType::UntilNewLine,
-        };
-        self.pen.command(Clear(region));
-        Ok(())
-    }
-
-    fn size(&self) -> io::Result<Size> {
-        Ok(self.size)
-    }
-
-    fn window_size(&mut self) -> io::Result<WindowSize> {
-        Ok(WindowSize { columns_rows: self.size, pixels: Size::ZERO })
-    }
-
-    /// Writes the frame, unless it is empty.
-    fn flush(&mut self) -> io::Result<()> {
-        let Some(frame) = self.pen.finish_frame() else { return Ok(()) };
-        let written = self.output.write_all(frame).and_then(|()| self.output.flush());
-        match written {
-            Ok(()) => self.bytes_written += frame.len() as u64,
-            Err(_) => self.forget(),
-        }
-        self.pen.clear();
-        written
     }
 }
 

@@ -2,7 +2,8 @@ mod support;
 
 use proptest::prelude::*;
 use ratatui::Terminal;
-use ratatui::buffer::Buffer;
+use ratatui::backend::Backend;
+use ratatui::buffer::{Buffer, Cell};
 use ratatui::layout::Rect;
 use ratatui::style::{Color, Modifier};
 
