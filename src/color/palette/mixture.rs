@@ -41,8 +41,11 @@ impl Mixture {
 /// The mixtures for all colours, each computed on first use.
 pub(crate) struct Mixtures {
     palette: fn() -> Palette,
-    entries: [AtomicU32; 1 << (3 * BITS)],
+    /// A static of its own: beside a pointer, its megabyte of zeros would be part of the program's file.
+    entries: &'static Entries,
 }
+
+type Entries = [AtomicU32; 1 << (3 * BITS)];
 
 /// The number of bits of each channel by which mixtures are stored.
 pub(crate) const BITS: u32 = 6;
@@ -50,21 +53,26 @@ pub(crate) const BITS: u32 = 6;
 const FOUND: u8 = 1 << 7;
 
 /// The mixtures of the 240 fixed colours of xterm.
-pub(crate) static OF_256: Mixtures = Mixtures::new(|| {
+pub(crate) static OF_256: Mixtures = {
+    static ENTRIES: Entries = [const { AtomicU32::new(0) }; 1 << (3 * BITS)];
     static PALETTE: LazyLock<Vec<PaletteColor>> =
         LazyLock::new(|| (CUBE..=u8::MAX).map(PaletteColor::of).collect());
-    Palette { colors: &PALETTE, weights: WEIGHTS_OF_256 }
-});
+    Mixtures {
+        palette: || Palette { colors: &PALETTE, weights: WEIGHTS_OF_256 },
+        entries: &ENTRIES,
+    }
+};
 
 /// The mixtures of twelve of the 16 named colours. Cyan and magenta are left out: hardly anything
 /// in a room has their hue, and they show as stray dots on stone that is slightly blue.
-pub(crate) static OF_16: Mixtures = Mixtures::new(|| {
+pub(crate) static OF_16: Mixtures = {
     const LEFT_OUT: [u8; 4] = [5, 6, 13, 14];
+    static ENTRIES: Entries = [const { AtomicU32::new(0) }; 1 << (3 * BITS)];
     static PALETTE: LazyLock<Vec<PaletteColor>> = LazyLock::new(|| {
         (0..CUBE).filter(|index| !LEFT_OUT.contains(index)).map(PaletteColor::of).collect()
     });
-    Palette { colors: &PALETTE, weights: WEIGHTS_OF_16 }
-});
+    Mixtures { palette: || Palette { colors: &PALETTE, weights: WEIGHTS_OF_16 }, entries: &ENTRIES }
+};
 
 /// The colours to mix, and the weights of differences.
 #[derive(Clone, Copy)]
@@ -136,11 +144,6 @@ impl PaletteColor {
 }
 
 impl Mixtures {
-    #[expect(clippy::large_stack_arrays, reason = "it is evaluated at compile time")]
-    const fn new(palette: fn() -> Palette) -> Self {
-        Self { palette, entries: [const { AtomicU32::new(0) }; 1 << (3 * BITS)] }
-    }
-
     /// The mixture for a colour, given the upper bits of red, green and blue.
     #[inline]
     pub(crate) fn of(&self, [red, green, blue]: [u8; 3]) -> Mixture {
