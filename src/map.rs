@@ -55,7 +55,7 @@ use crate::color::Rgb;
 use crate::fault::document::FaultList;
 use crate::fault::{Fault, Faults, document};
 use crate::space::Scene;
-use crate::world::{Ceiling, Covering, Heights, Paint, Parts, Sky, Tile, TileKind, World};
+use crate::world::{Ceiling, Covering, Heights, Mission, Paint, Parts, Sky, Tile, TileKind, World};
 use definitions::Definitions;
 use drawing::Drawing;
 use heights::Faces;
@@ -239,6 +239,7 @@ fn read(text: &str, files: &dyn TextureFiles, faults: &FaultList) -> Option<Leve
         heights: Heights::new(0.0, map_ceiling, map_ceiling)?,
         riser: faces.riser(floor),
         lintel: faces.lintel(floor, ceiling),
+        effect: None,
     };
     let layout = Layout::of(&drawing, &definitions.legend, ground, faces, &mut reader)?;
     Some(Level::from(World::from_parts(Parts {
@@ -256,6 +257,7 @@ fn read(text: &str, files: &dyn TextureFiles, faults: &FaultList) -> Option<Leve
         sprites: layout.sprites,
         things: layout.things,
         keys: layout.keys,
+        mission: Mission::default(),
     })))
 }
 

@@ -16,8 +16,11 @@ mod distance_field;
 mod door;
 mod face_light;
 mod grid;
+mod guard_post;
 mod heights;
 mod lamplight;
+mod mechanism;
+mod mission;
 mod parts;
 mod pitch;
 mod shape;
@@ -26,6 +29,8 @@ mod summary;
 pub mod texture;
 mod things;
 mod tile;
+
+use std::sync::Arc;
 
 use crate::color::Rgb;
 pub use air::{Fog, Light, Sky, SkyGradient};
@@ -37,16 +42,19 @@ use door::Ajar;
 pub use door::{Door, KeyId, Opening};
 pub(crate) use face_light::FaceLight;
 pub use grid::{Cell, Grid, TileId};
+pub use guard_post::{Difficulty, Duty, GuardKind, GuardPost};
 pub use heights::{Gap, Heights};
 pub(crate) use lamplight::Lamplight;
 pub use lamplight::{Lamp, Reach};
+pub use mechanism::{Driver, MovingTile, SwitchId, TileEffect};
+pub(crate) use mission::Mission;
 pub(crate) use parts::Parts;
 pub use pitch::Pitch;
 pub use shape::{Line, Outline, PillarRadius, Shape, ShapeHeight};
 pub use sprite::{Anchor, Facings, FrameTime, Sprite, SpriteHeight, SpriteId};
 pub use texture::Texture;
 use things::Things;
-pub use things::{Thing, ThingKind};
+pub use things::{NoteId, Rhythm, Supply, Thing, ThingKind};
 pub use tile::{Glass, Paint, TextureId, Tile, TileKind};
 
 /// The contents of a level.
@@ -70,18 +78,19 @@ pub struct World {
     /// The same as rays see it that end at what is not level, where anything is not.
     level_grid: Option<Grid>,
     tiles: Vec<Tile>,
-    textures: Vec<Texture>,
+    textures: Arc<[Texture]>,
     floor: Covering,
     ceiling: Ceiling,
     sky: Sky,
     fog: Option<Fog>,
     start: Start,
-    sprites: Vec<Sprite>,
+    sprites: Arc<[Sprite]>,
     things: Things,
     lamplight: Lamplight,
     /// Whether cells may differ in light.
     light_varies: bool,
     keys: Vec<String>,
+    mission: Mission,
     ajar: Ajar,
 }
 

@@ -32,6 +32,7 @@ fn world(rows: &[&str], degrees: f64) -> World {
         heights,
         riser: gray,
         lintel: gray,
+        effect: None,
     };
     World::from_parts(Parts {
         goal: None,
@@ -53,9 +54,10 @@ fn world(rows: &[&str], degrees: f64) -> World {
         sprites: vec![builtin::named(builtin::EXIT).unwrap()],
         lamplight: Lamplight::default(),
         things: cells_that_hold('E')
-            .map(|cell| Thing { kind: ThingKind::Exit, cell, sprite: SpriteId(0) })
+            .map(|cell| Thing { kind: ThingKind::Exit, cell, sprite: SpriteId(0), frame: None })
             .collect(),
         keys: vec![],
+        mission: Mission::default(),
     })
 }
 

@@ -107,7 +107,12 @@ impl Tileset {
                 let Meaning { tile, thing, .. } = self.meaning(character);
                 cells.push(tile);
                 let cell = Cell { column, row };
-                things.extend(thing.map(|(kind, sprite)| Thing { kind, cell, sprite }));
+                things.extend(thing.map(|(kind, sprite)| Thing {
+                    kind,
+                    cell,
+                    sprite,
+                    frame: None,
+                }));
             }
         }
         let first_solid = self.world.grid().first_solid();

@@ -167,7 +167,12 @@ fn things(
             // There is at most one for each character, far fewer than 65,536.
             let sprite = SpriteId(sprites.len() as u16);
             sprites.push(look);
-            things.extend(drawing.cells_of(character).map(|cell| Thing { kind, cell, sprite }));
+            things.extend(drawing.cells_of(character).map(|cell| Thing {
+                kind,
+                cell,
+                sprite,
+                frame: None,
+            }));
         }
     }
     (things, sprites)
@@ -245,7 +250,7 @@ fn tile(
         TileKind::Wall(_) => *light,
         _ => light.or(ground.light),
     };
-    Some(Tile { character, kind, floor, ceiling, light, heights, riser, lintel })
+    Some(Tile { character, kind, floor, ceiling, light, heights, riser, lintel, effect: None })
 }
 
 /// The solid tile that a character means; `None` if it means another thing, or has a fault.
@@ -256,6 +261,7 @@ fn solid_kind(meaning: &Meaning<'_>, keys: &Keys, reader: &mut Reader<'_>) -> Op
             leaf: reader.paint(&door.leaf)?,
             jamb: reader.jamb(),
             key: door.key.as_ref().and_then(|key| keys.id(key.name)),
+            switch: None,
         })),
         Meaning::Mask(mask) => mask.texture(reader).map(TileKind::Mask),
         Meaning::Glass(glass) => Some(TileKind::Glass(*glass)),

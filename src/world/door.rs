@@ -7,7 +7,7 @@
 //! need not know of doors. A door that is solid only where its leaf is was refused: a player beside
 //! the leaf would be inside it when it closes.
 
-use super::{Cell, Paint, Tile, TileId, TileKind, World};
+use super::{Cell, Paint, SwitchId, Tile, TileId, TileKind, World};
 
 /// A kind of door.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -18,6 +18,8 @@ pub struct Door {
     pub jamb: Paint,
     /// The key that opens it; `None` if it is not locked.
     pub key: Option<KeyId>,
+    /// The switch that opens it; `None` if players open it.
+    pub switch: Option<SwitchId>,
 }
 
 /// A key: an index into the world's list of their names.

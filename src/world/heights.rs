@@ -118,6 +118,7 @@ mod tests {
             heights: Heights::new(floor, ceiling, roof).unwrap(),
             riser: paint,
             lintel: paint,
+            effect: None,
         };
         tile.gaps().map(|gap| (gap.bottom, gap.top)).collect()
     }

@@ -6,8 +6,8 @@
 use super::door::Ajar;
 use super::things::Things;
 use super::{
-    Ceiling, Cell, Covering, Door, Fog, Grid, Lamplight, Light, Paint, Sky, Sprite, Start, Texture,
-    Thing, Tile, TileId, TileKind, World,
+    Ceiling, Cell, Covering, Door, Fog, Grid, Lamplight, Light, Mission, Paint, Sky, Sprite, Start,
+    Texture, Thing, Tile, TileId, TileKind, World,
 };
 
 /// The pieces of a world, before they are known to fit together.
@@ -26,6 +26,7 @@ pub(crate) struct Parts {
     pub(crate) things: Vec<Thing>,
     pub(crate) lamplight: Lamplight,
     pub(crate) keys: Vec<String>,
+    pub(crate) mission: Mission,
 }
 
 impl World {
@@ -54,6 +55,7 @@ impl World {
             things,
             lamplight,
             keys,
+            mission,
         } = parts;
         clear(&mut grid, &tiles);
         let light_varies = light_varies(&tiles, &lamplight);
@@ -64,17 +66,18 @@ impl World {
             grid,
             level_grid,
             tiles,
-            textures,
+            textures: textures.into(),
             floor,
             ceiling,
             sky,
             fog,
             start,
-            sprites,
+            sprites: sprites.into(),
             things: Things::new(things),
             lamplight,
             light_varies,
             keys,
+            mission,
             ajar: Ajar::default(),
         };
         debug_assert!(world.fits_together());

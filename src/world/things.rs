@@ -5,7 +5,7 @@
 //! things in the cells that it shows, and others cost nothing. A list for each cell was refused:
 //! most cells are empty, and a map has millions.
 
-use super::{Cell, KeyId, SpriteId, World};
+use super::{Cell, KeyId, SpriteId, SwitchId, World};
 
 /// Something that stands in a cell.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -16,6 +16,8 @@ pub struct Thing {
     pub cell: Cell,
     /// Its sprite.
     pub sprite: SpriteId,
+    /// The frame of the sprite that it shows; `None` for that of the time.
+    pub frame: Option<u8>,
 }
 
 /// A kind of thing.
@@ -27,6 +29,60 @@ pub enum ThingKind {
     Key(KeyId),
     /// Decoration.
     Ornament,
+    /// Reaching it takes it; it is worth this much.
+    Treasure(u16),
+    /// Reaching it takes it, if the player is hurt; it gives back this much health.
+    Healing(u8),
+    /// Reaching it takes it; it is this many of a tool that is used up.
+    Supply(Supply, u8),
+    /// Reaching it shows its text.
+    Note(NoteId),
+    /// Reaching it makes it the place from which a dead player goes on.
+    Checkpoint,
+    /// Opening it turns its switch on or off.
+    Lever(SwitchId),
+    /// They come out of the floor at intervals, and hurt.
+    Spikes(Rhythm),
+    /// A lamp that the player can put out.
+    Flame,
+}
+
+/// A tool that is used up.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Hash, PartialOrd, Ord)]
+pub enum Supply {
+    /// Thrown, to make a noise elsewhere.
+    Pebbles,
+    /// Shot; a guard whom one hits is stunned.
+    Darts,
+    /// Thrown; makes smoke.
+    Flasks,
+}
+
+impl Supply {
+    /// All of them.
+    pub const ALL: [Self; 3] = [Self::Pebbles, Self::Darts, Self::Flasks];
+
+    /// The name in maps.
+    pub const fn name(self) -> &'static str {
+        match self {
+            Self::Pebbles => "pebbles",
+            Self::Darts => "darts",
+            Self::Flasks => "flasks",
+        }
+    }
+}
+
+/// A text that is found: an index into the world's list of notes.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Hash, PartialOrd, Ord)]
+pub struct NoteId(pub u16);
+
+/// The times at which spikes come out: once in each period, in steps of the game.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
+pub struct Rhythm {
+    /// The steps from one time to the next; at least 60.
+    pub period: u16,
+    /// The steps before the first time; below the period.
+    pub delay: u16,
 }
 
 impl World {
@@ -48,6 +104,21 @@ impl World {
     /// Removes the things in `cell` for which `is_taken` is true.
     pub(crate) fn take_things(&mut self, cell: Cell, is_taken: impl Fn(ThingKind) -> bool) {
         self.things.remove(|thing| thing.cell == cell && is_taken(thing.kind));
+    }
+
+    /// Sets the frame of the things in `cell` for which `is_it` is true.
+    pub(crate) fn set_frame(&mut self, cell: Cell, is_it: impl Fn(ThingKind) -> bool, frame: u8) {
+        let things = self.things.sorted.iter_mut();
+        let wanted = things.filter(|thing| thing.cell == cell && is_it(thing.kind));
+        wanted.for_each(|thing| thing.frame = Some(frame));
+    }
+
+    /// The text of the note `id`.
+    ///
+    /// # Panics
+    /// If `id` comes from another world that has more notes.
+    pub fn note(&self, id: NoteId) -> &str {
+        &self.mission.notes[usize::from(id.0)]
     }
 }
 
@@ -111,7 +182,12 @@ mod tests {
     const SIDE: u32 = 8;
 
     fn thing((row, column): (u32, u32)) -> Thing {
-        Thing { kind: ThingKind::Ornament, cell: Cell { column, row }, sprite: SpriteId(0) }
+        Thing {
+            kind: ThingKind::Ornament,
+            cell: Cell { column, row },
+            sprite: SpriteId(0),
+            frame: None,
+        }
     }
 
     proptest! {

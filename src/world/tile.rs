@@ -1,6 +1,6 @@
 //! Tiles: the kinds of cell, and the look of their surfaces.
 
-use super::{Ceiling, Covering, Door, Heights, Light, Shape};
+use super::{Ceiling, Covering, Door, Heights, Light, Shape, TileEffect};
 use crate::color::Rgb;
 
 /// One kind of tile.
@@ -26,6 +26,8 @@ pub struct Tile {
     /// The surface of the sides above its ceiling, seen from below a higher ceiling; and of its
     /// roof.
     pub lintel: Paint,
+    /// What happens to those who stand on it.
+    pub effect: Option<TileEffect>,
 }
 
 /// A kind of tile.

@@ -1,0 +1,37 @@
+//! The mission: what a level asks of the player, and who and what is there beside tiles and things.
+
+use super::{GuardPost, MovingTile, World};
+
+/// The parts of a level that only a game uses.
+#[derive(Clone, Debug, PartialEq, Default)]
+pub(crate) struct Mission {
+    /// The time in which a good player finishes, in seconds.
+    pub(crate) par: Option<u32>,
+    /// The treasure without which exits do not let anybody out.
+    pub(crate) treasure_needed: u32,
+    /// The texts of notes.
+    pub(crate) notes: Vec<String>,
+    /// The names of switches.
+    pub(crate) switches: Vec<String>,
+    /// The tiles that move.
+    pub(crate) moving_tiles: Vec<MovingTile>,
+    /// The guards.
+    pub(crate) guards: Vec<GuardPost>,
+}
+
+impl World {
+    /// The guards of the map, in reading order.
+    pub fn guards(&self) -> &[GuardPost] {
+        &self.mission.guards
+    }
+
+    /// The time in which a good player finishes, in seconds, if the map gives one.
+    pub fn par(&self) -> Option<u32> {
+        self.mission.par
+    }
+
+    /// The treasure without which exits do not let anybody out; 0 if they always do.
+    pub fn treasure_needed(&self) -> u32 {
+        self.mission.treasure_needed
+    }
+}
