@@ -32,7 +32,7 @@ pub use exits::is_exit_out_of_reach;
 pub use flight::Flight;
 pub use intent::{Intent, Intents};
 pub use look::Look;
-pub use script::{Recorder, Script, Section, Stretch};
+pub use script::{Header, LevelName, Recorder, Script, Section, Stretch};
 
 /// The duration of a step, in seconds.
 pub const STEP: f64 = 1.0 / STEPS_PER_SECOND as f64;
