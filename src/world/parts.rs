@@ -74,6 +74,7 @@ impl World {
             start,
             sprites: sprites.into(),
             things: Things::new(things),
+            figures: Vec::new(),
             lamplight,
             light_varies,
             keys,
@@ -85,7 +86,7 @@ impl World {
     }
 
     /// Shows other cells of the same kinds: `grid`, in which no door is partly open, with its start,
-    /// things and lamplight. They fit the other parts as in [`World::from_parts`].
+    /// things and lamplight, and no figures. They fit the other parts as in [`World::from_parts`].
     pub(crate) fn redraw(
         &mut self,
         grid: Grid,
@@ -98,6 +99,7 @@ impl World {
         self.level_grid = level_grid(&self.grid, &self.tiles);
         self.start = start;
         self.things = Things::new(things);
+        self.figures.clear();
         self.light_varies = light_varies(&self.tiles, &lamplight);
         self.lamplight = lamplight;
         self.ajar = Ajar::default();

@@ -7,6 +7,7 @@
 pub mod builtin;
 
 use std::f64::consts::TAU;
+use std::sync::Arc;
 
 use glam::DVec2;
 
@@ -16,7 +17,7 @@ use super::{Heading, Heights, Lamp, Texture};
 #[derive(Clone, Debug, PartialEq)]
 pub struct Sprite {
     /// Frame by frame, and within each frame facing by facing.
-    pictures: Vec<Texture>,
+    pictures: Arc<[Texture]>,
     facings: Facings,
     frame_time: FrameTime,
     /// The direction of its front.
@@ -125,7 +126,7 @@ impl Sprite {
     pub fn new(pictures: Vec<Texture>, facings: Facings) -> Option<Self> {
         let is_whole = pictures.len().is_multiple_of(facings.count() as usize);
         (is_whole && !pictures.is_empty()).then(|| Self {
-            pictures,
+            pictures: pictures.into(),
             facings,
             frame_time: FrameTime::default(),
             heading: Heading::default(),
