@@ -6,7 +6,6 @@ use std::ops::Range;
 use super::doors::{self, Keys};
 use super::drawing::Drawing;
 use super::heights::Faces;
-use super::lamps;
 use super::legend::{Legend, Meaning, Surroundings, Symbol};
 use super::per_character::PerCharacter;
 use super::reader::Reader;
@@ -15,8 +14,7 @@ use super::textures::Surface;
 use crate::fault::Fault;
 use crate::world::sprite::builtin;
 use crate::world::{
-    Door, Grid, Heights, Lamplight, Paint, Sprite, SpriteId, Start, Thing, ThingKind, Tile, TileId,
-    TileKind,
+    Door, Grid, Heights, Paint, Sprite, SpriteId, Start, Thing, ThingKind, Tile, TileId, TileKind,
 };
 
 /// The largest number of kinds of tile, the map's own floor included.
@@ -29,7 +27,6 @@ pub(super) struct Layout {
     /// of their characters.
     pub(super) tiles: Vec<Tile>,
     pub(super) start: Start,
-    pub(super) lamplight: Lamplight,
     pub(super) sprites: Vec<Sprite>,
     pub(super) things: Vec<Thing>,
     /// The names of the keys.
@@ -65,9 +62,8 @@ impl Layout {
         if !reader.faults.is_empty() {
             return None;
         }
-        let lamplight = lamps::lamplight(&grid, &tiles, &sprites, &things);
         let keys = keys.into_names();
-        Some(Self { grid, tiles, start, lamplight, sprites, things, keys })
+        Some(Self { grid, tiles, start, sprites, things, keys })
     }
 }
 

@@ -6,7 +6,7 @@
 use super::door::Ajar;
 use super::things::Things;
 use super::{
-    Ceiling, Cell, Covering, Door, Fog, Grid, Lamplight, Light, Mission, Paint, Sky, Sprite, Start,
+    Ceiling, Cell, Covering, Door, Fog, Grid, Lamplight, Mission, Paint, Sky, Sprite, Start,
     Texture, Thing, Tile, TileId, TileKind, World,
 };
 
@@ -24,7 +24,6 @@ pub(crate) struct Parts {
     pub(crate) start: Start,
     pub(crate) sprites: Vec<Sprite>,
     pub(crate) things: Vec<Thing>,
-    pub(crate) lamplight: Lamplight,
     pub(crate) keys: Vec<String>,
     pub(crate) mission: Mission,
 }
@@ -53,14 +52,12 @@ impl World {
             start,
             sprites,
             things,
-            lamplight,
             keys,
             mission,
         } = parts;
         clear(&mut grid, &tiles);
-        let light_varies = light_varies(&tiles, &lamplight);
         let level_grid = level_grid(&grid, &tiles);
-        let world = Self {
+        let mut world = Self {
             title,
             goal,
             grid,
@@ -74,32 +71,29 @@ impl World {
             start,
             sprites: sprites.into(),
             things: Things::new(things),
-            lamplight,
-            light_varies,
+            figures: Vec::new(),
+            lamplight: Lamplight::default(),
+            light_varies: false,
             keys,
             mission,
             ajar: Ajar::default(),
         };
+        world.light_up();
         debug_assert!(world.fits_together());
         world
     }
 
-    /// Shows other cells of the same kinds: `grid`, in which no door is partly open, with its start,
-    /// things and lamplight. They fit the other parts as in [`World::from_parts`].
-    pub(crate) fn redraw(
-        &mut self,
-        grid: Grid,
-        start: Start,
-        things: Vec<Thing>,
-        lamplight: Lamplight,
-    ) {
+    /// Shows other cells of the same kinds: `grid`, in which no door is partly open, with its start
+    /// and things, and without figures and moving lamps. They fit the other parts as in
+    /// [`World::from_parts`].
+    pub(crate) fn redraw(&mut self, grid: Grid, start: Start, things: Vec<Thing>) {
         self.grid = grid;
         clear(&mut self.grid, &self.tiles);
         self.level_grid = level_grid(&self.grid, &self.tiles);
         self.start = start;
         self.things = Things::new(things);
-        self.light_varies = light_varies(&self.tiles, &lamplight);
-        self.lamplight = lamplight;
+        self.figures.clear();
+        self.light_up();
         self.ajar = Ajar::default();
     }
 
@@ -155,16 +149,6 @@ impl World {
             && open(self.start.cell)
             && self.things().iter().all(|thing| open(thing.cell) && stands(thing))
     }
-}
-
-/// Whether cells may differ in light.
-fn light_varies(tiles: &[Tile], lamplight: &Lamplight) -> bool {
-    // A wall without a light is as bright as the floor before it.
-    let is_wall = |tile: &Tile| matches!(tile.kind, TileKind::Wall(_) | TileKind::Mirror(_));
-    let light = |tile: &Tile| tile.light.or((!is_wall(tile)).then_some(Light::FULL));
-    let mut lights = tiles.iter().filter_map(light);
-    let first = lights.next();
-    !lamplight.is_dark() || lights.any(|light| Some(light) != first)
 }
 
 /// Computes the distance field of `grid`, where doors may close.

@@ -7,6 +7,7 @@
 pub mod builtin;
 
 use std::f64::consts::TAU;
+use std::sync::Arc;
 
 use glam::DVec2;
 
@@ -16,8 +17,10 @@ use super::{Heading, Heights, Lamp, Texture};
 #[derive(Clone, Debug, PartialEq)]
 pub struct Sprite {
     /// Frame by frame, and within each frame facing by facing.
-    pictures: Vec<Texture>,
+    pictures: Arc<[Texture]>,
     facings: Facings,
+    /// The number of frames of the animation: the first ones.
+    animated: usize,
     frame_time: FrameTime,
     /// The direction of its front.
     pub heading: Heading,
@@ -125,7 +128,8 @@ impl Sprite {
     pub fn new(pictures: Vec<Texture>, facings: Facings) -> Option<Self> {
         let is_whole = pictures.len().is_multiple_of(facings.count() as usize);
         (is_whole && !pictures.is_empty()).then(|| Self {
-            pictures,
+            animated: pictures.len() / facings.count() as usize,
+            pictures: pictures.into(),
             facings,
             frame_time: FrameTime::default(),
             heading: Heading::default(),
@@ -142,9 +146,21 @@ impl Sprite {
         Self { frame_time, ..self }
     }
 
+    /// The sprite with an animation of its first `frames` only; of one frame for 0. The others show
+    /// where a thing or a figure asks for them.
+    #[must_use]
+    pub fn with_animation(self, frames: usize) -> Self {
+        Self { animated: frames.clamp(1, self.frames()), ..self }
+    }
+
     /// The number of frames; 1 for a sprite that is not animated.
     pub fn frames(&self) -> usize {
         self.pictures.len() / self.facings.count() as usize
+    }
+
+    /// The last frame: that of a lamp that is out.
+    pub(crate) fn last_frame(&self) -> u8 {
+        (self.frames() - 1).min(usize::from(u8::MAX)) as u8
     }
 
     /// The width in cells, by the proportions of its picture.
@@ -155,14 +171,24 @@ impl Sprite {
 
     /// The picture after `seconds`, for a viewer in the direction `to_viewer`.
     pub fn picture(&self, seconds: f64, to_viewer: DVec2) -> &Texture {
-        &self.pictures[self.picture_index(seconds, to_viewer)]
+        &self.pictures[self.picture_index(self.frame_at(seconds), self.heading, to_viewer)]
+    }
+
+    /// The picture of a frame, for a viewer in the direction `to_viewer`, if the front faces
+    /// `heading`. The last frame, if there is no such frame.
+    pub fn picture_of(&self, frame: u8, heading: Heading, to_viewer: DVec2) -> &Texture {
+        &self.pictures[self.picture_index(usize::from(frame), heading, to_viewer)]
     }
 
     /// The index of that picture.
-    pub(crate) fn picture_index(&self, seconds: f64, to_viewer: DVec2) -> usize {
-        let frame = (seconds.max(0.0) / self.frame_time.0) as u64 % self.frames() as u64;
-        let facings = self.facings.count() as usize;
-        frame as usize * facings + self.facing(to_viewer)
+    pub(crate) fn picture_index(&self, frame: usize, heading: Heading, to_viewer: DVec2) -> usize {
+        let frame = frame.min(self.frames() - 1);
+        frame * self.facings.count() as usize + self.facing(heading, to_viewer)
+    }
+
+    /// The frame of the animation after `seconds`.
+    pub(crate) fn frame_at(&self, seconds: f64) -> usize {
+        ((seconds.max(0.0) / self.frame_time.0) as u64 % self.animated as u64) as usize
     }
 
     /// All pictures.
@@ -173,17 +199,17 @@ impl Sprite {
     /// The time at which the picture next changes after `seconds`; `None` if it never does.
     pub fn next_change(&self, seconds: f64) -> Option<f64> {
         let frame = (seconds.max(0.0) / self.frame_time.0).floor();
-        (self.frames() > 1).then_some((frame + 1.0) * self.frame_time.0)
+        (self.animated > 1).then_some((frame + 1.0) * self.frame_time.0)
     }
 
-    /// The index of the facing that a viewer sees: 0 for the front, then clockwise around the
-    /// sprite.
-    fn facing(&self, to_viewer: DVec2) -> usize {
+    /// The index of the facing that a viewer sees, if the front faces `heading`: 0 for the front,
+    /// then clockwise around the sprite.
+    fn facing(&self, heading: Heading, to_viewer: DVec2) -> usize {
         let count = self.facings.count();
         if count == 1 {
             return 0;
         }
-        let front = self.heading.direction();
+        let front = heading.direction();
         let around = libm::atan2(front.perp_dot(to_viewer), front.dot(to_viewer));
         (around / TAU * f64::from(count)).round().rem_euclid(f64::from(count)) as usize
     }
