@@ -10,6 +10,7 @@ mod doors;
 mod exits;
 mod fall;
 mod flight;
+mod flood;
 mod guards;
 mod intent;
 mod locks;
