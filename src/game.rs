@@ -10,13 +10,16 @@ mod doors;
 mod exits;
 mod fall;
 mod flight;
+mod guards;
 mod intent;
 mod locks;
 mod look;
 mod notice;
 mod pitch_control;
 mod player;
+mod rules;
 mod script;
+mod sound;
 mod stance;
 mod turning;
 
@@ -30,9 +33,12 @@ use player::{FRICTION, Player, RUN, STILL, WALK};
 
 pub use exits::is_exit_out_of_reach;
 pub use flight::Flight;
+pub use guards::{Alarm, GuardView, Mood};
 pub use intent::{Intent, Intents};
 pub use look::Look;
+pub use rules::Rules;
 pub use script::{Recorder, Script, Section, Stretch};
+pub use sound::{Heard, Sound, SoundKind, Source};
 
 /// The duration of a step, in seconds.
 pub const STEP: f64 = 1.0 / STEPS_PER_SECOND as f64;
