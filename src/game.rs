@@ -37,7 +37,7 @@ pub use guards::{Alarm, GuardView, Mood};
 pub use intent::{Intent, Intents};
 pub use look::Look;
 pub use rules::Rules;
-pub use script::{Recorder, Script, Section, Stretch};
+pub use script::{Header, LevelName, Recorder, Script, Section, Stretch};
 pub use sound::{Heard, Sound, SoundKind, Source};
 
 /// The duration of a step, in seconds.
