@@ -31,11 +31,14 @@ mod covering;
 mod definitions;
 mod doors;
 mod drawing;
+mod guards;
 mod heights;
 mod input;
+mod items;
 mod lamps;
 mod layout;
 mod legend;
+mod mechanisms;
 mod per_character;
 mod picture;
 mod reader;
@@ -44,7 +47,10 @@ mod see_through;
 mod shapes;
 mod sprites;
 mod supports;
+mod switches;
 mod textures;
+mod things;
+mod tiles;
 
 use std::collections::BTreeSet;
 use std::fs::{self, File};
@@ -257,7 +263,11 @@ fn read(text: &str, files: &dyn TextureFiles, faults: &FaultList) -> Option<Leve
         sprites: layout.sprites,
         things: layout.things,
         keys: layout.keys,
-        mission: Mission::default(),
+        mission: Mission {
+            par: definitions.par,
+            treasure_needed: definitions.treasure_needed.map_or(0, |(worth, _)| worth),
+            ..layout.mission
+        },
     })))
 }
 

@@ -12,6 +12,7 @@ use toml::de::DeTable;
 
 use super::drawing::Drawing;
 use super::legend::{Legend, Meaning};
+use super::switches::SwitchSymbol;
 use super::textures::Surface;
 use crate::fault::document::Entry;
 use crate::fault::{Fault, quoted};
@@ -22,6 +23,7 @@ use reach::Reach;
 pub(super) struct DoorSymbol<'a> {
     pub(super) leaf: Surface<'a>,
     pub(super) key: Option<KeySymbol<'a>>,
+    pub(super) switch: Option<SwitchSymbol<'a>>,
 }
 
 /// The name of a key, and its place in the map.
@@ -32,7 +34,7 @@ pub(super) struct KeySymbol<'a> {
 }
 
 impl<'a> DoorSymbol<'a> {
-    /// Reads the door in `entry` of `table`, with the key that the table names.
+    /// Reads the door in `entry` of `table`, with the key or the switch that the table names.
     pub(super) fn read(entry: &Entry<'a, '_>, table: &'a DeTable<'_>) -> Option<Self> {
         let leaf = Surface::read(entry, r#"{ door = "oak" }"#);
         let key = entry.entries(table).find(|entry| entry.key == "key");
@@ -40,7 +42,20 @@ impl<'a> DoorSymbol<'a> {
             None => None,
             Some(key) => Some(KeySymbol::read(&key, r#"{ door = "metal", key = "brass" }"#)?),
         };
-        Some(Self { leaf: leaf?, key })
+        let switch = entry.entries(table).find(|entry| entry.key == "switch");
+        let switch = match (switch, &key) {
+            (None, _) => None,
+            (Some(switch), None) => {
+                Some(SwitchSymbol::read(&switch, r#"{ door = "metal", switch = "gate" }"#)?)
+            }
+            (Some(switch), Some(_)) => {
+                let message = "a door opens with a key or a switch, not both";
+                let fault = Fault::new(switch.key_place, message).label("this door has a key");
+                entry.faults.push(fault.help("keep one of the two"));
+                return None;
+            }
+        };
+        Some(Self { leaf: leaf?, key, switch })
     }
 }
 
@@ -212,11 +227,12 @@ fn keys_out_of_reach(
     if locks.is_empty() {
         return Vec::new();
     }
-    let passable: BTreeSet<Cell> =
-        drawn(drawing, legend, |meaning| matches!(meaning, Meaning::Door(_) | Meaning::Shape(_)))
-            .flat_map(|character| drawing.cells_of(character))
-            .chain(low_things.iter().copied())
-            .collect();
+    let passable: BTreeSet<Cell> = drawn(drawing, legend, |meaning| {
+        matches!(meaning, Meaning::Door(_) | Meaning::Shape(_) | Meaning::MovingWall(_))
+    })
+    .flat_map(|character| drawing.cells_of(character))
+    .chain(low_things.iter().copied())
+    .collect();
     let keys: BTreeMap<Cell, &str> = drawn_keys(drawing, legend)
         .flat_map(|(character, key)| drawing.cells_of(character).map(|cell| (cell, key.name)))
         .collect();
