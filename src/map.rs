@@ -35,7 +35,6 @@ mod guards;
 mod heights;
 mod input;
 mod items;
-mod lamps;
 mod layout;
 mod legend;
 mod mechanisms;
@@ -66,7 +65,6 @@ use definitions::Definitions;
 use drawing::Drawing;
 use heights::Faces;
 use input::{read_text, too_large, unreadable};
-pub(crate) use lamps::lamplight;
 use layout::Layout;
 use reader::Reader;
 use textures::Surface;
@@ -259,7 +257,6 @@ fn read(text: &str, files: &dyn TextureFiles, faults: &FaultList) -> Option<Leve
         sky: sky.unwrap_or_else(|| Some(Sky::default()))?,
         fog: definitions.fog,
         start: layout.start,
-        lamplight: layout.lamplight,
         sprites: layout.sprites,
         things: layout.things,
         keys: layout.keys,

@@ -46,7 +46,7 @@ pub use figure::Figure;
 pub use grid::{Cell, Grid, TileId};
 pub use guard_post::{Difficulty, Duty, GuardKind, GuardPost};
 pub use heights::{Gap, Heights};
-pub(crate) use lamplight::Lamplight;
+use lamplight::Lamplight;
 pub use lamplight::{Lamp, Reach};
 pub use mechanism::{Driver, MovingTile, SwitchId, TileEffect};
 pub(crate) use mission::Mission;

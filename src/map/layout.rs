@@ -6,7 +6,6 @@ use super::doors::{self, Keys};
 use super::drawing::Drawing;
 use super::guards;
 use super::heights::Faces;
-use super::lamps;
 use super::legend::{Legend, Meaning, Symbol};
 use super::per_character::PerCharacter;
 use super::reader::Reader;
@@ -15,7 +14,7 @@ use super::switches::{self, Switches};
 use super::things::ThingList;
 use super::tiles::{Common, TileList};
 use crate::fault::Fault;
-use crate::world::{Grid, Lamplight, Mission, Sprite, Start, Thing, Tile, TileId};
+use crate::world::{Grid, Mission, Sprite, Start, Thing, Tile, TileId};
 
 /// The contents of a drawing.
 pub(super) struct Layout {
@@ -23,7 +22,6 @@ pub(super) struct Layout {
     /// The kinds of tile, as in [`TileList`].
     pub(super) tiles: Vec<Tile>,
     pub(super) start: Start,
-    pub(super) lamplight: Lamplight,
     pub(super) sprites: Vec<Sprite>,
     pub(super) things: Vec<Thing>,
     /// The names of the keys.
@@ -67,7 +65,6 @@ impl Layout {
         if !reader.faults.is_empty() {
             return None;
         }
-        let lamplight = lamps::lamplight(&grid, &tiles, &sprites, &things);
         let mission = Mission {
             notes,
             switches: switches.into_names(),
@@ -76,7 +73,7 @@ impl Layout {
             ..Mission::default()
         };
         let keys = keys.into_names();
-        Some(Self { grid, tiles, start, lamplight, sprites, things, keys, mission })
+        Some(Self { grid, tiles, start, sprites, things, keys, mission })
     }
 }
 

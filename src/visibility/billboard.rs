@@ -93,7 +93,7 @@ impl Billboard {
             return None;
         }
         let to_viewer = image.to_map(projection.origin()) - center;
-        let picture = sprite.picture_index(seconds, to_viewer);
+        let picture = sprite.picture_index(sprite.frame_at(seconds), sprite.heading, to_viewer);
         let texture = &sprite.pictures()[picture];
         let texels = f64::from(texture.width()) * f64::from(texture.height());
         let lod = plan.filter.lod(texels / (width * (bottom - top)));

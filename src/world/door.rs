@@ -78,7 +78,7 @@ impl World {
             _ => self.tile_id(tile.character, solid),
         };
         if let Some(id) = id {
-            self.grid.set(cell, id);
+            self.set_tile(cell, id);
             let is_level = self.tile(id).is_level();
             if let Some(grid) = self.level_grid.as_mut().filter(|_| is_level) {
                 grid.set(cell, id);

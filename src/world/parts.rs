@@ -6,8 +6,8 @@
 use super::door::Ajar;
 use super::things::Things;
 use super::{
-    Ceiling, Cell, Covering, Door, Fog, Grid, Lamplight, Light, Mission, MovingTile, Paint, Sky,
-    Sprite, Start, Texture, Thing, Tile, TileId, TileKind, World,
+    Ceiling, Cell, Covering, Door, Fog, Grid, Lamplight, Mission, MovingTile, Paint, Sky, Sprite,
+    Start, Texture, Thing, Tile, TileId, TileKind, World,
 };
 
 /// The pieces of a world, before they are known to fit together.
@@ -24,7 +24,6 @@ pub(crate) struct Parts {
     pub(crate) start: Start,
     pub(crate) sprites: Vec<Sprite>,
     pub(crate) things: Vec<Thing>,
-    pub(crate) lamplight: Lamplight,
     pub(crate) keys: Vec<String>,
     pub(crate) mission: Mission,
 }
@@ -53,15 +52,13 @@ impl World {
             start,
             sprites,
             things,
-            lamplight,
             keys,
             mission,
         } = parts;
         let moving = &mission.moving_tiles;
         clear(&mut grid, &tiles, moving);
-        let light_varies = light_varies(&tiles, &lamplight);
         let level_grid = level_grid(&grid, &tiles, moving);
-        let world = Self {
+        let mut world = Self {
             title,
             goal,
             grid,
@@ -76,25 +73,21 @@ impl World {
             sprites: sprites.into(),
             things: Things::new(things),
             figures: Vec::new(),
-            lamplight,
-            light_varies,
+            lamplight: Lamplight::default(),
+            light_varies: false,
             keys,
             mission,
             ajar: Ajar::default(),
         };
+        world.light_up();
         debug_assert!(world.fits_together());
         world
     }
 
-    /// Shows other cells of the same kinds: `grid`, in which no door is partly open, with its start,
-    /// things and lamplight, and no figures. They fit the other parts as in [`World::from_parts`].
-    pub(crate) fn redraw(
-        &mut self,
-        grid: Grid,
-        start: Start,
-        things: Vec<Thing>,
-        lamplight: Lamplight,
-    ) {
+    /// Shows other cells of the same kinds: `grid`, in which no door is partly open, with its start
+    /// and things, and without figures and moving lamps. They fit the other parts as in
+    /// [`World::from_parts`].
+    pub(crate) fn redraw(&mut self, grid: Grid, start: Start, things: Vec<Thing>) {
         self.grid = grid;
         let moving = &self.mission.moving_tiles;
         clear(&mut self.grid, &self.tiles, moving);
@@ -102,8 +95,7 @@ impl World {
         self.start = start;
         self.things = Things::new(things);
         self.figures.clear();
-        self.light_varies = light_varies(&self.tiles, &lamplight);
-        self.lamplight = lamplight;
+        self.light_up();
         self.ajar = Ajar::default();
     }
 
@@ -159,16 +151,6 @@ impl World {
             && open(self.start.cell)
             && self.things().iter().all(|thing| open(thing.cell) && stands(thing))
     }
-}
-
-/// Whether cells may differ in light.
-fn light_varies(tiles: &[Tile], lamplight: &Lamplight) -> bool {
-    // A wall without a light is as bright as the floor before it.
-    let is_wall = |tile: &Tile| matches!(tile.kind, TileKind::Wall(_) | TileKind::Mirror(_));
-    let light = |tile: &Tile| tile.light.or((!is_wall(tile)).then_some(Light::FULL));
-    let mut lights = tiles.iter().filter_map(light);
-    let first = lights.next();
-    !lamplight.is_dark() || lights.any(|light| Some(light) != first)
 }
 
 /// Computes the distance field of `grid`, where doors may close and moving tiles may become solid.

@@ -20,6 +20,8 @@ pub struct Sprite {
     pictures: Arc<[Texture]>,
     facings: Facings,
     frame_time: FrameTime,
+    /// The number of frames that time goes through: the first ones.
+    animated: usize,
     /// The direction of its front.
     pub heading: Heading,
     /// Where it is fixed.
@@ -126,6 +128,7 @@ impl Sprite {
     pub fn new(pictures: Vec<Texture>, facings: Facings) -> Option<Self> {
         let is_whole = pictures.len().is_multiple_of(facings.count() as usize);
         (is_whole && !pictures.is_empty()).then(|| Self {
+            animated: pictures.len() / facings.count() as usize,
             pictures: pictures.into(),
             facings,
             frame_time: FrameTime::default(),
@@ -143,9 +146,27 @@ impl Sprite {
         Self { frame_time, ..self }
     }
 
-    /// The number of frames; 1 for a sprite that is not animated.
+    /// The sprite, in which time goes through the first `frames` frames only. A game selects the
+    /// others. A count of 0 is that of one frame, and a count above that of all frames is all.
+    #[must_use]
+    pub fn with_animated_frames(self, frames: usize) -> Self {
+        Self { animated: frames.clamp(1, self.frames()), ..self }
+    }
+
+    /// The number of all frames, of those too that only a game selects.
     pub fn frames(&self) -> usize {
         self.pictures.len() / self.facings.count() as usize
+    }
+
+    /// The number of frames that time goes through, from the first one on; 1 for a sprite that is
+    /// not animated. The frame after them, if there is one, is that of a lamp that is out.
+    pub fn animated_frames(&self) -> usize {
+        self.animated
+    }
+
+    /// The last frame: that of a lamp that is out.
+    pub(crate) fn last_frame(&self) -> u8 {
+        (self.frames() - 1).min(usize::from(u8::MAX)) as u8
     }
 
     /// The width in cells, by the proportions of its picture.
@@ -156,14 +177,24 @@ impl Sprite {
 
     /// The picture after `seconds`, for a viewer in the direction `to_viewer`.
     pub fn picture(&self, seconds: f64, to_viewer: DVec2) -> &Texture {
-        &self.pictures[self.picture_index(seconds, to_viewer)]
+        &self.pictures[self.picture_index(self.frame_at(seconds), self.heading, to_viewer)]
+    }
+
+    /// The picture of a frame, for a viewer in the direction `to_viewer`, if the front faces
+    /// `heading`. The last frame, if there is no such frame.
+    pub fn picture_of(&self, frame: u8, heading: Heading, to_viewer: DVec2) -> &Texture {
+        &self.pictures[self.picture_index(usize::from(frame), heading, to_viewer)]
     }
 
     /// The index of that picture.
-    pub(crate) fn picture_index(&self, seconds: f64, to_viewer: DVec2) -> usize {
-        let frame = (seconds.max(0.0) / self.frame_time.0) as u64 % self.frames() as u64;
-        let facings = self.facings.count() as usize;
-        frame as usize * facings + self.facing(to_viewer)
+    pub(crate) fn picture_index(&self, frame: usize, heading: Heading, to_viewer: DVec2) -> usize {
+        let frame = frame.min(self.frames() - 1);
+        frame * self.facings.count() as usize + self.facing(heading, to_viewer)
+    }
+
+    /// The frame of the animation after `seconds`.
+    pub(crate) fn frame_at(&self, seconds: f64) -> usize {
+        ((seconds.max(0.0) / self.frame_time.0) as u64 % self.animated as u64) as usize
     }
 
     /// All pictures.
@@ -174,17 +205,17 @@ impl Sprite {
     /// The time at which the picture next changes after `seconds`; `None` if it never does.
     pub fn next_change(&self, seconds: f64) -> Option<f64> {
         let frame = (seconds.max(0.0) / self.frame_time.0).floor();
-        (self.frames() > 1).then_some((frame + 1.0) * self.frame_time.0)
+        (self.animated > 1).then_some((frame + 1.0) * self.frame_time.0)
     }
 
-    /// The index of the facing that a viewer sees: 0 for the front, then clockwise around the
-    /// sprite.
-    fn facing(&self, to_viewer: DVec2) -> usize {
+    /// The index of the facing that a viewer sees, if the front faces `heading`: 0 for the front,
+    /// then clockwise around the sprite.
+    fn facing(&self, heading: Heading, to_viewer: DVec2) -> usize {
         let count = self.facings.count();
         if count == 1 {
             return 0;
         }
-        let front = self.heading.direction();
+        let front = heading.direction();
         let around = libm::atan2(front.perp_dot(to_viewer), front.dot(to_viewer));
         (around / TAU * f64::from(count)).round().rem_euclid(f64::from(count)) as usize
     }
@@ -220,6 +251,16 @@ mod tests {
     #[test]
     fn what_has_one_frame_never_changes() {
         assert_eq!(sprite(4, Facings::Four).next_change(0.3), None);
+    }
+
+    #[test]
+    fn time_goes_through_the_animated_frames_only() {
+        let sprite = |animated| sprite(3, Facings::One).with_animated_frames(animated);
+        let shows = |animated, seconds| shown(&sprite(animated), seconds, (1.0, 0.0));
+        assert_eq!([0.1, 0.3, 0.5].map(|seconds| shows(2, seconds)), [0, 1, 0]);
+        assert_eq!([0.1, 0.3, 0.5].map(|seconds| shows(1, seconds)), [0, 0, 0]);
+        assert_eq!((sprite(1).next_change(0.3), sprite(1).frames()), (None, 3));
+        assert_eq!([0, 2, 9].map(|count| sprite(count).animated_frames()), [1, 2, 3]);
     }
 
     #[test]
