@@ -214,7 +214,7 @@ fn toll(before: &Game, after: &Game) -> u64 {
     let alarms = after.tally().alarms.saturating_sub(before.tally().alarms);
     let attention = after.guards().map(|guard| match guard.mood {
         Mood::Wondering | Mood::Searching => NOTICED,
-        Mood::Chasing | Mood::Attacking { .. } => CHASED,
+        Mood::Chasing | Mood::Attacking => CHASED,
         _ => 0,
     });
     u64::from(lost) * POINT + u64::from(alarms) * ALARM + attention.sum::<u64>()

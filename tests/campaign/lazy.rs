@@ -61,3 +61,25 @@ fn a_player_without_care_loses_every_level() {
     let survived: Vec<String> = survived.collect();
     assert!(survived.is_empty(), "{survived:#?}");
 }
+
+#[test]
+fn old_script() {
+    use cellcaster::game::Script;
+    for (name, text) in [
+        ("cistern", include_str!("../../maps/cistern.script")),
+        ("observatory", include_str!("../../maps/observatory.script")),
+    ] {
+        let map = std::process::Command::new("git").args(["show", &format!("game-base:maps/{name}.toml")]).output().unwrap();
+        let world = cellcaster::map::parse_str(&String::from_utf8(map.stdout).unwrap()).unwrap();
+        let mut pilot = Pilot::new(Game::new(world));
+        let script = Script::parse(text, name).unwrap();
+        for section in script.sections() {
+            println!("[{}]", section.name);
+            for stretch in &section.stretches {
+                (0..stretch.steps).for_each(|_| pilot.step(stretch.intents));
+                println!("{stretch}  -> {} feet {}", pilot.position(), pilot.game.feet());
+            }
+        }
+        println!("{:?}", pilot.game.outcome());
+    }
+}

@@ -45,7 +45,8 @@ fn update(level: &Level, difficulty: Difficulty) -> Result<String, String> {
     let game = Game::with_rules(level.world().unwrap(), Rules { difficulty, seed: 0 });
     let (found, moves) = careful::search(game, &route(level));
     let pilot = found.ok_or_else(|| format!("{name}: nothing found in {moves} moves"))?;
-    fs::write(path(level, difficulty), pilot.script()).map_err(|error| format!("{name}: {error}"))?;
+    let header = format!("level {}\ndifficulty {}\nseed 0\n", level.name, difficulty.name());
+    fs::write(path(level, difficulty), header + &pilot.script()).map_err(|error| format!("{name}: {error}"))?;
     Ok(format!("{name}: {} steps, {moves} moves", pilot.steps()))
 }
 

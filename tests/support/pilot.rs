@@ -155,14 +155,21 @@ impl Pilot {
         false
     }
 
-    fn press(&mut self, intent: Intent) {
+    /// Wants something for one step.
+    pub(crate) fn press(&mut self, intent: Intent) {
         self.step([intent].into_iter().collect());
     }
 
-    fn face(&mut self, cell: Cell) {
-        while let Some(look) = self.turn_to(cell.center() - self.position()) {
+    /// Turns to a point.
+    pub(crate) fn face_point(&mut self, point: DVec2) {
+        for _ in 0..60 {
+            let Some(look) = self.turn_to(point - self.position()) else { break };
             self.step(Intents::new().with_look(look));
         }
+    }
+
+    fn face(&mut self, cell: Cell) {
+        self.face_point(cell.center());
     }
 
     fn has_arrived(&self, ways: &Ways) -> bool {
