@@ -69,7 +69,8 @@ struct State {
 /// The winning game on the way through `errands` from the start of `game`, if one is found, and the
 /// number of moves that were played.
 pub(crate) fn search(game: Game, errands: &[Errand]) -> (Option<Pilot>, usize) {
-    let mut search = Search { errands, waiting: BinaryHeap::new(), states: Vec::new(), seen: BTreeSet::new() };
+    let mut search =
+        Search { errands, waiting: BinaryHeap::new(), states: Vec::new(), seen: BTreeSet::new() };
     search.add(State { pilot: Pilot::new(game), done: 0, toll: 0 });
     for moves in 0..MOST_MOVES {
         let Some((Reverse(_), Reverse(way), index)) = search.waiting.pop() else {
@@ -121,7 +122,7 @@ impl Search<'_> {
         Some(match errand.verb {
             Verb::Go => Ways::new(&state.pilot.game, errand.cell, dread),
             Verb::Open => Ways::beside(&state.pilot.game, errand.cell, dread),
-            Verb::Hop | Verb::Throw => Ways::new(&state.pilot.game, state.pilot.cell(), dread),
+            Verb::Hop | Verb::Straight | Verb::Throw => Ways::new(&state.pilot.game, state.pilot.cell(), dread),
         })
     }
 
@@ -161,7 +162,8 @@ impl Search<'_> {
     ) -> Option<usize> {
         let errand = self.errands.get(state.done)?;
         match errand.verb {
-            Verb::Hop => return pilot.hop(errand.cell).then_some(1),
+            Verb::Hop => return pilot.hop(errand.cell, errand.height).then_some(1),
+            Verb::Straight => return pilot.straight(errand.cell).then_some(1),
             Verb::Throw => {
                 pilot.act_towards(errand.cell, Intent::Throw);
                 return Some(1);

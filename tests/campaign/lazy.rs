@@ -4,7 +4,7 @@ use cellcaster::game::{Game, Outcome, Rules};
 use cellcaster::map::builtin::{self, Level};
 use cellcaster::world::Difficulty;
 
-use crate::levels::route;
+use crate::levels::{route, world};
 use crate::pilot::{Pace, Pilot};
 use crate::route::{Errand, Verb};
 use crate::ways::Ways;
@@ -14,7 +14,7 @@ const MOST_STEPS: u64 = 60 * 60 * 6;
 
 /// Plays a level without care.
 pub(crate) fn play(level: &Level, rules: Rules) -> Pilot {
-    let mut pilot = Pilot::new(Game::with_rules(level.world().unwrap(), rules));
+    let mut pilot = Pilot::new(Game::with_rules(world(level), rules));
     for errand in route(level).into_iter().filter(|errand| !errand.is_careful) {
         run(&mut pilot, errand);
         if pilot.game.outcome() != Outcome::Playing {
@@ -24,17 +24,15 @@ pub(crate) fn play(level: &Level, rules: Rules) -> Pilot {
     pilot
 }
 
-fn run(pilot: &mut Pilot, Errand { verb, cell, .. }: Errand) {
+fn run(pilot: &mut Pilot, Errand { verb, cell, height, .. }: Errand) {
     let is_over =
         |pilot: &Pilot| pilot.steps() > MOST_STEPS || pilot.game.outcome() != Outcome::Playing;
     loop {
         let ways = match verb {
             Verb::Go => Ways::new(&pilot.game, cell, |_| 0),
             Verb::Open => Ways::beside(&pilot.game, cell, |_| 0),
-            Verb::Hop => {
-                assert!(pilot.hop(cell) || is_over(pilot), "no jump to {cell:?}");
-                return;
-            }
+            Verb::Hop => return drop(pilot.hop(cell, height)),
+            Verb::Straight => return drop(pilot.straight(cell)),
             Verb::Throw => return,
         };
         if is_over(pilot) || pilot.go(&ways, Pace::Walk, 30) {
@@ -55,31 +53,13 @@ fn a_player_without_care_loses_every_level() {
         let is_dead = matches!(outcome, Outcome::Dead { .. });
         (!is_dead).then(|| {
             let (cell, health) = (pilot.cell(), pilot.game.health());
-            format!("{}: {outcome:?} after {} steps at {cell:?}, {health:?}", level.name, pilot.steps())
+            format!(
+                "{}: {outcome:?} after {} steps at {cell:?}, {health:?}",
+                level.name,
+                pilot.steps()
+            )
         })
     });
     let survived: Vec<String> = survived.collect();
     assert!(survived.is_empty(), "{survived:#?}");
-}
-
-#[test]
-fn old_script() {
-    use cellcaster::game::Script;
-    for (name, text) in [
-        ("cistern", include_str!("../../maps/cistern.script")),
-        ("observatory", include_str!("../../maps/observatory.script")),
-    ] {
-        let map = std::process::Command::new("git").args(["show", &format!("game-base:maps/{name}.toml")]).output().unwrap();
-        let world = cellcaster::map::parse_str(&String::from_utf8(map.stdout).unwrap()).unwrap();
-        let mut pilot = Pilot::new(Game::new(world));
-        let script = Script::parse(text, name).unwrap();
-        for section in script.sections() {
-            println!("[{}]", section.name);
-            for stretch in &section.stretches {
-                (0..stretch.steps).for_each(|_| pilot.step(stretch.intents));
-                println!("{stretch}  -> {} feet {}", pilot.position(), pilot.game.feet());
-            }
-        }
-        println!("{:?}", pilot.game.outcome());
-    }
 }
