@@ -101,7 +101,7 @@ impl Search<'_> {
         if !self.seen.insert((state.done, state.pilot.cell(), steps / 40, health)) {
             return;
         }
-        let estimate = steps + state.toll + self.left(&state);
+        let estimate = steps + state.toll + self.left(&state) * 3 / 2;
         let index = self.states.len();
         self.states.push(Rc::new(state));
         for way in Move::ALL {

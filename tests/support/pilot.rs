@@ -163,6 +163,9 @@ impl Pilot {
             if self.game.feet() < floor - 0.7 {
                 return false;
             }
+            if self.game.is_finished() {
+                return true;
+            }
             if is_over && !self.game.is_airborne() {
                 self.wait(25);
                 return self.cell() == cell && (self.game.feet() - floor).abs() < 0.01;

@@ -140,8 +140,11 @@ impl<'a> Ground<'a> {
                 && self.floor(cell) == self.floor(to)
         };
         let rise = self.floor(to) - self.floor(from);
+        let has_headroom = self.floor(from) + DUCKING <= self.world.room_in(to).ceiling()
+            && self.floor(to) + DUCKING <= self.world.room_in(from).ceiling();
         self.is_open(from)
             && self.is_open(to)
+            && has_headroom
             && (-FALL..=STEP).contains(&rise)
             && (is_side || corners.iter().all(is_level))
     }
