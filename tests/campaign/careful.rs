@@ -10,19 +10,35 @@ use std::collections::{BTreeSet, BinaryHeap};
 use std::rc::Rc;
 
 use cellcaster::game::{Game, Intent, Mood, Outcome};
-use cellcaster::world::Cell;
+use cellcaster::world::{Cell, ThingKind};
 
 use crate::pilot::{Pace, Pilot};
 use crate::route::{Errand, Verb};
 use crate::ways::Ways;
 
-/// The number of moves that are played before the search gives up.
-const MOST_MOVES: usize = 40_000;
-/// The steps that a point of health, an alarm, and a stretch under a guard's attention are worth.
-const POINT: u64 = 900;
-const ALARM: u64 = 1200;
-const NOTICED: u64 = 30;
-const CHASED: u64 = 90;
+/// How much a player minds what can happen, in steps, and how long the search goes on.
+#[derive(Clone, Copy, Debug)]
+struct Temper {
+    /// A point of health.
+    point: u64,
+    /// An alarm.
+    alarm: u64,
+    /// A move under the attention of a guard who wonders or searches, and of one who follows.
+    noticed: u64,
+    chased: u64,
+    /// The weight of the way that is left, in halves: above 2, the search is faster and finds longer
+    /// ways.
+    weight: u64,
+    /// The number of moves that are played before the search gives up.
+    most_moves: usize,
+}
+
+/// The tempers that are tried in turn: a level that cannot be left unseen is left in haste.
+const TEMPERS: [Temper; 3] = [
+    Temper { point: 900, alarm: 1200, noticed: 30, chased: 90, weight: 3, most_moves: 8_000 },
+    Temper { point: 300, alarm: 200, noticed: 10, chased: 20, weight: 4, most_moves: 12_000 },
+    Temper { point: 120, alarm: 0, noticed: 0, chased: 2, weight: 6, most_moves: 25_000 },
+];
 /// The steps that an errand is estimated to take before its way is known.
 const ERRAND: u64 = 600;
 /// The steps of walking for a cost of ten, one cell.
@@ -35,14 +51,23 @@ enum Move {
     Shun,
     Run,
     Duck,
+    Pause,
     Wait,
     WaitLong,
     Strike,
 }
 
 impl Move {
-    const ALL: [Self; 7] =
-        [Self::Walk, Self::Shun, Self::Run, Self::Duck, Self::Wait, Self::WaitLong, Self::Strike];
+    const ALL: [Self; 8] = [
+        Self::Walk,
+        Self::Shun,
+        Self::Run,
+        Self::Duck,
+        Self::Pause,
+        Self::Wait,
+        Self::WaitLong,
+        Self::Strike,
+    ];
 
     /// What the move adds to the estimate before it is played.
     fn surcharge(self) -> u64 {
@@ -51,6 +76,7 @@ impl Move {
             Self::Shun => 8,
             Self::Run => 16,
             Self::Duck => 30,
+            Self::Pause => 18,
             Self::Wait => 45,
             Self::WaitLong => 160,
             Self::Strike => 40,
@@ -68,11 +94,23 @@ struct State {
 
 /// The winning game on the way through `errands` from the start of `game`, if one is found, and the
 /// number of moves that were played.
-pub(crate) fn search(game: Game, errands: &[Errand]) -> (Option<Pilot>, usize) {
-    let mut search =
-        Search { errands, waiting: BinaryHeap::new(), states: Vec::new(), seen: BTreeSet::new() };
+pub(crate) fn search(game: &Game, errands: &[Errand]) -> (Option<Pilot>, usize) {
+    let mut moves = 0;
+    for temper in TEMPERS {
+        let (found, played) = search_with(game.clone(), errands, temper);
+        moves += played;
+        if found.is_some() {
+            return (found, moves);
+        }
+    }
+    (None, moves)
+}
+
+fn search_with(game: Game, errands: &[Errand], temper: Temper) -> (Option<Pilot>, usize) {
+    let (waiting, states, seen) = (BinaryHeap::new(), Vec::new(), BTreeSet::new());
+    let mut search = Search { errands, temper, waiting, states, seen };
     search.add(State { pilot: Pilot::new(game), done: 0, toll: 0 });
-    for moves in 0..MOST_MOVES {
+    for moves in 0..temper.most_moves {
         let Some((Reverse(_), Reverse(way), index)) = search.waiting.pop() else {
             return (None, moves);
         };
@@ -83,11 +121,12 @@ pub(crate) fn search(game: Game, errands: &[Errand]) -> (Option<Pilot>, usize) {
         }
         search.add(next);
     }
-    (None, MOST_MOVES)
+    (None, temper.most_moves)
 }
 
 struct Search<'a> {
     errands: &'a [Errand],
+    temper: Temper,
     waiting: BinaryHeap<(Reverse<u64>, Reverse<Move>, usize)>,
     states: Vec<Rc<State>>,
     seen: BTreeSet<(usize, Cell, u64, u32)>,
@@ -98,10 +137,11 @@ impl Search<'_> {
     fn add(&mut self, state: State) {
         let steps = state.pilot.steps();
         let health = u32::from(state.pilot.game.health().points);
-        if !self.seen.insert((state.done, state.pilot.cell(), steps / 40, health)) {
+        let grain = if is_near_spikes(&state.pilot) { 12 } else { 40 };
+        if !self.seen.insert((state.done, state.pilot.cell(), steps / grain, health)) {
             return;
         }
-        let estimate = steps + state.toll + self.left(&state) * 3 / 2;
+        let estimate = steps + state.toll + self.left(&state) * self.temper.weight / 2;
         let index = self.states.len();
         self.states.push(Rc::new(state));
         for way in Move::ALL {
@@ -131,6 +171,8 @@ impl Search<'_> {
         let mut pilot = state.pilot.clone();
         let mut done = state.done;
         match way {
+            Move::Pause if is_near_spikes(&pilot) => pilot.wait(12),
+            Move::Pause => return None,
             Move::Wait => pilot.wait(40),
             Move::WaitLong => pilot.wait(150),
             Move::Strike => strike(&mut pilot)?,
@@ -146,7 +188,7 @@ impl Search<'_> {
                 done += self.errand(state, &mut pilot, Pace::Walk, 40, dread)?;
             }
         }
-        let toll = state.toll + toll(&state.pilot.game, &pilot.game);
+        let toll = state.toll + self.temper.toll(&state.pilot.game, &pilot.game);
         let is_alive = !matches!(pilot.game.outcome(), Outcome::Dead { .. });
         is_alive.then_some(State { pilot, done, toll })
     }
@@ -210,14 +252,27 @@ fn strike(pilot: &mut Pilot) -> Option<()> {
     Some(())
 }
 
-/// What has been paid between two states of a game, in steps.
-fn toll(before: &Game, after: &Game) -> u64 {
-    let lost = before.health().points.saturating_sub(after.health().points);
-    let alarms = after.tally().alarms.saturating_sub(before.tally().alarms);
-    let attention = after.guards().map(|guard| match guard.mood {
-        Mood::Wondering | Mood::Searching => NOTICED,
-        Mood::Chasing | Mood::Attacking => CHASED,
-        _ => 0,
+/// Whether there are spikes close to the player.
+fn is_near_spikes(pilot: &Pilot) -> bool {
+    let Cell { column, row } = pilot.cell();
+    let world = pilot.game.world();
+    let around = (row.saturating_sub(2)..=row + 2).flat_map(|row| {
+        (column.saturating_sub(2)..=column + 2).map(move |column| Cell { column, row })
     });
-    u64::from(lost) * POINT + u64::from(alarms) * ALARM + attention.sum::<u64>()
+    let mut things = around.flat_map(|cell| world.things_in(cell));
+    things.any(|thing| matches!(thing.kind, ThingKind::Spikes(_)))
+}
+
+impl Temper {
+    /// What has been paid between two states of a game, in steps.
+    fn toll(self, before: &Game, after: &Game) -> u64 {
+        let lost = before.health().points.saturating_sub(after.health().points);
+        let alarms = after.tally().alarms.saturating_sub(before.tally().alarms);
+        let attention = after.guards().map(|guard| match guard.mood {
+            Mood::Wondering | Mood::Searching => self.noticed,
+            Mood::Chasing | Mood::Attacking => self.chased,
+            _ => 0,
+        });
+        u64::from(lost) * self.point + u64::from(alarms) * self.alarm + attention.sum::<u64>()
+    }
 }

@@ -43,7 +43,7 @@ fn replayed(level: &Level, difficulty: Difficulty) -> Game {
 fn update(level: &Level, difficulty: Difficulty) -> Result<String, String> {
     let name = format!("{}.{}", level.name, difficulty.name());
     let game = Game::with_rules(levels::world(level), Rules { difficulty, seed: 0 });
-    let (found, moves) = careful::search(game, &route(level));
+    let (found, moves) = careful::search(&game, &route(level));
     let pilot = found.ok_or_else(|| format!("{name}: nothing found in {moves} moves"))?;
     let header = format!("level {}\ndifficulty {}\nseed 0\n", level.name, difficulty.name());
     fs::write(path(level, difficulty), header + &pilot.script()).map_err(|error| format!("{name}: {error}"))?;
