@@ -118,7 +118,7 @@ fn without_inward(vector: DVec2, normal: DVec2) -> DVec2 {
 
 /// Whether a circle around `center` overlaps nothing that blocks; it may touch. Cells are closed
 /// squares.
-fn is_clear<O: Obstacles>(obstacles: &O, center: DVec2, radius: Radius) -> bool {
+pub(super) fn is_clear<O: Obstacles>(obstacles: &O, center: DVec2, radius: Radius) -> bool {
     let (column, row) = cell_of(center);
     let around = (row - 1..=row + 1).flat_map(|r| (column - 1..=column + 1).map(move |c| (c, r)));
     around.filter(|&(column, row)| !is_clear_of(center, column, row, radius)).all(
