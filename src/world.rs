@@ -15,6 +15,7 @@ mod covering;
 mod distance_field;
 mod door;
 mod face_light;
+mod figure;
 mod grid;
 mod guard_post;
 mod heights;
@@ -41,10 +42,11 @@ pub(crate) use distance_field::DistanceField;
 use door::Ajar;
 pub use door::{Door, KeyId, Opening};
 pub(crate) use face_light::FaceLight;
+pub use figure::Figure;
 pub use grid::{Cell, Grid, TileId};
 pub use guard_post::{Difficulty, Duty, GuardKind, GuardPost};
 pub use heights::{Gap, Heights};
-pub(crate) use lamplight::Lamplight;
+use lamplight::Lamplight;
 pub use lamplight::{Lamp, Reach};
 pub use mechanism::{Driver, MovingTile, SwitchId, TileEffect};
 pub(crate) use mission::Mission;
@@ -86,6 +88,7 @@ pub struct World {
     start: Start,
     sprites: Arc<[Sprite]>,
     things: Things,
+    figures: Vec<Figure>,
     lamplight: Lamplight,
     /// Whether cells may differ in light.
     light_varies: bool,

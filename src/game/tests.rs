@@ -7,8 +7,8 @@ use super::*;
 use crate::color::Rgb;
 use crate::world::sprite::builtin;
 use crate::world::{
-    Ceiling, Cell, Covering, Grid, Heading, Heights, Lamplight, Mission, Paint, Parts, Sky,
-    SpriteId, Start, Thing, Tile, TileKind,
+    Ceiling, Cell, Covering, FieldOfView, Grid, Heading, Heights, Mission, Paint, Parts, Sky,
+    SpriteId, Start, Thing, ThingKind, Tile, TileKind,
 };
 
 /// A world drawn in characters: `#` is solid, `@` is where the player starts, `E` is an exit.
@@ -52,12 +52,11 @@ fn world(rows: &[&str], degrees: f64) -> World {
             heading: Heading::from_degrees(degrees).unwrap(),
         },
         sprites: vec![builtin::named(builtin::EXIT).unwrap()],
-        lamplight: Lamplight::default(),
         things: cells_that_hold('E')
             .map(|cell| Thing { kind: ThingKind::Exit, cell, sprite: SpriteId(0), frame: None })
             .collect(),
         keys: vec![],
-        mission: Mission::default(),
+        mission: crate::world::Mission::default(),
     })
 }
 

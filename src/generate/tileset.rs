@@ -7,9 +7,7 @@ use std::num::NonZeroU32;
 
 use crate::fault::Faults;
 use crate::map::{self, NoFiles};
-use crate::world::{
-    Cell, Grid, Lamplight, SpriteId, Start, Thing, ThingKind, Tile, TileId, TileKind, World,
-};
+use crate::world::{Cell, Grid, SpriteId, Start, Thing, ThingKind, Tile, TileId, TileKind, World};
 
 /// The character of cells outside the areas.
 pub(super) const ROCK: u8 = b'#';
@@ -119,13 +117,8 @@ impl Tileset {
         let Some(mut grid) = Grid::new(width, height, first_solid, cells) else { return };
         let blocks = |thing: &&Thing| self.world.sprite(thing.sprite).blocks;
         things.iter().filter(blocks).for_each(|thing| grid.occupy(thing.cell));
-        let lamplight = self.lamplight(&grid, &things);
         let start = start(&grid);
-        world.redraw(grid, start, things, lamplight);
-    }
-
-    fn lamplight(&self, grid: &Grid, things: &[Thing]) -> Lamplight {
-        map::lamplight(grid, self.world.tiles(), self.world.sprites(), things)
+        world.redraw(grid, start, things);
     }
 
     fn meaning(&self, character: u8) -> Meaning {

@@ -24,6 +24,11 @@ impl Light {
         self.0 as u32
     }
 
+    /// A light of this many 256ths, at most full brightness.
+    pub(super) fn saturated(in_256ths: u32) -> Self {
+        Self(in_256ths.min(u32::from(Self::FULL.0)) as u16)
+    }
+
     /// The sum of two lights, at most full brightness.
     #[must_use]
     pub fn plus(self, other: Self) -> Self {

@@ -6,7 +6,6 @@ use std::sync::Arc;
 
 use glam::DVec2;
 
-use super::Lamplight;
 use super::distance_field::DistanceField;
 
 /// The place of a cell: column from the west, row from the north, both from 0.
@@ -123,11 +122,6 @@ impl Grid {
     #[inline]
     pub(crate) fn distance_field(&self) -> &DistanceField {
         &self.distance_field
-    }
-
-    /// Lamplight for the cells of this grid, without any light yet.
-    pub(crate) fn lamplight(&self) -> Lamplight {
-        Lamplight::new(self.width, self.height)
     }
 
     /// The number of columns.

@@ -1,12 +1,20 @@
 //! Lamplight: what lamps add to the light of nearby cells.
 //!
-//! It is computed once, when a map is read, and stored as one light for each cell; maps in which it
-//! changes nothing store none. Lamplight that passes through opening doors was refused: every lamp
-//! would have to be computed again in each step, for a small difference.
+//! A cell is lit if the straight line from the middle of the lamp's cell to its own middle passes
+//! only through open floor, masks and glass. For things, doors count as closed: lamplight that
+//! passes through opening doors was refused, since all lamps around would have to be computed again,
+//! for a small difference. A lamp that moves shines through doors that are fully open, because the
+//! player carries one.
+//!
+//! The sum of all lamps is stored for each cell, without a limit. What one lamp adds is therefore
+//! taken away exactly when it moves, goes out, or has a wall moved before it, and the other lamps
+//! are not computed again. Maps in which lamps change nothing store nothing.
 
-use std::num::NonZeroU32;
+mod glow;
+mod lamps;
 
-use super::{Cell, Light};
+use super::{Cell, Grid, Light};
+use lamps::{Change, Glows};
 
 /// The light of a lamp.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -22,9 +30,12 @@ pub struct Lamp {
 pub struct Reach(f64);
 
 impl Reach {
+    /// The longest reach, in cells.
+    const MOST: f64 = 32.0;
+
     /// A reach from 1 to 32 cells. `None` outside that range.
     pub fn new(cells: f64) -> Option<Self> {
-        (1.0..=32.0).contains(&cells).then_some(Self(cells))
+        (1.0..=Self::MOST).contains(&cells).then_some(Self(cells))
     }
 
     /// The reach in cells.
@@ -51,38 +62,49 @@ impl Lamp {
 
 /// What lamps add in each cell.
 #[derive(Clone, Debug, PartialEq, Default)]
-pub(crate) struct Lamplight {
+pub(super) struct Lamplight {
     width: usize,
-    /// Row by row from the north; empty if no lamp adds anything.
-    cells: Vec<Light>,
+    /// The sums of what lamps add, in 256ths, row by row from the north; empty if no lamp adds
+    /// anything.
+    sums: Vec<u32>,
+    /// Whether any cell is not fully lit without lamps.
+    is_needed: bool,
+    /// The lamps that move, and the cells that they are in.
+    moving: Vec<(Cell, Lamp)>,
+    glows: Glows,
 }
 
 impl Lamplight {
-    /// No light, for a map of that size.
-    pub(crate) fn new(width: NonZeroU32, height: NonZeroU32) -> Self {
-        let width = width.get() as usize;
-        Self { width, cells: vec![Light::NONE; width * height.get() as usize] }
-    }
-
     /// Whether no lamp adds anything.
-    pub(crate) fn is_dark(&self) -> bool {
-        self.cells.is_empty()
-    }
-
-    /// Adds `light` in `cell`.
-    pub(crate) fn add(&mut self, cell: Cell, light: Light) {
-        let place = self.place(cell);
-        if let Some(cell) = self.cells.get_mut(place) {
-            *cell = cell.plus(light);
-        }
+    pub(super) fn is_dark(&self) -> bool {
+        self.sums.is_empty()
     }
 
     /// What lamps add in `cell`.
     #[inline]
-    pub(crate) fn at(&self, cell: Cell) -> Light {
+    pub(super) fn at(&self, cell: Cell) -> Light {
         let is_on_map = (cell.column as usize) < self.width;
-        let light = self.cells.get(self.place(cell)).filter(|_| is_on_map);
-        light.copied().unwrap_or(Light::NONE)
+        let sum = self.sums.get(self.place(cell)).filter(|_| is_on_map);
+        sum.map_or(Light::NONE, |&sum| Light::saturated(sum))
+    }
+
+    /// Reserves memory for the cells of `grid`, without any light yet.
+    fn begin(&mut self, grid: &Grid) {
+        let (width, height) = (grid.width() as usize, grid.height() as usize);
+        self.width = width;
+        self.sums.clear();
+        self.sums.resize(width * height, 0);
+    }
+
+    /// Adds `light` in `cell`, or takes away what was added.
+    fn change(&mut self, cell: Cell, light: Light, change: Change) {
+        let place = self.place(cell);
+        if let Some(sum) = self.sums.get_mut(place) {
+            *sum = match change {
+                Change::Add => *sum + light.in_256ths(),
+                Change::TakeAway => *sum - light.in_256ths(),
+            };
+        }
     }
 
     fn place(&self, cell: Cell) -> usize {

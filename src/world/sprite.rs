@@ -7,6 +7,7 @@
 pub mod builtin;
 
 use std::f64::consts::TAU;
+use std::sync::Arc;
 
 use glam::DVec2;
 
@@ -16,7 +17,7 @@ use super::{Heading, Heights, Lamp, Texture};
 #[derive(Clone, Debug, PartialEq)]
 pub struct Sprite {
     /// Frame by frame, and within each frame facing by facing.
-    pictures: Vec<Texture>,
+    pictures: Arc<[Texture]>,
     facings: Facings,
     frame_time: FrameTime,
     /// The number of frames that time goes through: the first ones.
@@ -128,7 +129,7 @@ impl Sprite {
         let is_whole = pictures.len().is_multiple_of(facings.count() as usize);
         (is_whole && !pictures.is_empty()).then(|| Self {
             animated: pictures.len() / facings.count() as usize,
-            pictures,
+            pictures: pictures.into(),
             facings,
             frame_time: FrameTime::default(),
             heading: Heading::default(),
@@ -163,6 +164,11 @@ impl Sprite {
         self.animated
     }
 
+    /// The last frame: that of a lamp that is out.
+    pub(crate) fn last_frame(&self) -> u8 {
+        (self.frames() - 1).min(usize::from(u8::MAX)) as u8
+    }
+
     /// The width in cells, by the proportions of its picture.
     pub fn width(&self) -> f64 {
         let picture = &self.pictures[0];
@@ -171,14 +177,24 @@ impl Sprite {
 
     /// The picture after `seconds`, for a viewer in the direction `to_viewer`.
     pub fn picture(&self, seconds: f64, to_viewer: DVec2) -> &Texture {
-        &self.pictures[self.picture_index(seconds, to_viewer)]
+        &self.pictures[self.picture_index(self.frame_at(seconds), self.heading, to_viewer)]
+    }
+
+    /// The picture of a frame, for a viewer in the direction `to_viewer`, if the front faces
+    /// `heading`. The last frame, if there is no such frame.
+    pub fn picture_of(&self, frame: u8, heading: Heading, to_viewer: DVec2) -> &Texture {
+        &self.pictures[self.picture_index(usize::from(frame), heading, to_viewer)]
     }
 
     /// The index of that picture.
-    pub(crate) fn picture_index(&self, seconds: f64, to_viewer: DVec2) -> usize {
-        let frame = (seconds.max(0.0) / self.frame_time.0) as u64 % self.animated as u64;
-        let facings = self.facings.count() as usize;
-        frame as usize * facings + self.facing(to_viewer)
+    pub(crate) fn picture_index(&self, frame: usize, heading: Heading, to_viewer: DVec2) -> usize {
+        let frame = frame.min(self.frames() - 1);
+        frame * self.facings.count() as usize + self.facing(heading, to_viewer)
+    }
+
+    /// The frame of the animation after `seconds`.
+    pub(crate) fn frame_at(&self, seconds: f64) -> usize {
+        ((seconds.max(0.0) / self.frame_time.0) as u64 % self.animated as u64) as usize
     }
 
     /// All pictures.
@@ -192,14 +208,14 @@ impl Sprite {
         (self.animated > 1).then_some((frame + 1.0) * self.frame_time.0)
     }
 
-    /// The index of the facing that a viewer sees: 0 for the front, then clockwise around the
-    /// sprite.
-    fn facing(&self, to_viewer: DVec2) -> usize {
+    /// The index of the facing that a viewer sees, if the front faces `heading`: 0 for the front,
+    /// then clockwise around the sprite.
+    fn facing(&self, heading: Heading, to_viewer: DVec2) -> usize {
         let count = self.facings.count();
         if count == 1 {
             return 0;
         }
-        let front = self.heading.direction();
+        let front = heading.direction();
         let around = libm::atan2(front.perp_dot(to_viewer), front.dot(to_viewer));
         (around / TAU * f64::from(count)).round().rem_euclid(f64::from(count)) as usize
     }

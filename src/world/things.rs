@@ -5,6 +5,8 @@
 //! things in the cells that it shows, and others cost nothing. A list for each cell was refused:
 //! most cells are empty, and a map has millions.
 
+use std::ops::Range;
+
 use super::{Cell, KeyId, SpriteId, SwitchId, World};
 
 /// Something that stands in a cell.
@@ -85,6 +87,20 @@ pub struct Rhythm {
     pub delay: u16,
 }
 
+impl Rhythm {
+    /// The number of steps of a game in a second.
+    pub(crate) const STEPS_PER_SECOND: f64 = 60.0;
+
+    /// A rhythm in seconds, rounded to steps: a period from 1 to 60, and a delay from 0 below the
+    /// period. `None` outside these ranges.
+    pub fn new(period: f64, delay: f64) -> Option<Self> {
+        let is_in_range = (1.0..=60.0).contains(&period) && (0.0..period).contains(&delay);
+        let steps = |seconds: f64| (seconds * Self::STEPS_PER_SECOND).round() as u16;
+        let rhythm = Self { period: steps(period), delay: steps(delay) };
+        (is_in_range && rhythm.delay < rhythm.period).then_some(rhythm)
+    }
+}
+
 impl World {
     /// The things, row by row from the north, and within a row from the west.
     pub fn things(&self) -> &[Thing] {
@@ -101,15 +117,15 @@ impl World {
         self.things.between(row, first, last)
     }
 
-    /// Removes the things in `cell` for which `is_taken` is true.
+    /// Removes the things in `cell` for which `is_taken` is true, and their light.
     pub(crate) fn take_things(&mut self, cell: Cell, is_taken: impl Fn(ThingKind) -> bool) {
+        self.put_out(cell, &is_taken);
         self.things.remove(|thing| thing.cell == cell && is_taken(thing.kind));
     }
 
     /// Sets the frame of the things in `cell` for which `is_it` is true.
     pub(crate) fn set_frame(&mut self, cell: Cell, is_it: impl Fn(ThingKind) -> bool, frame: u8) {
-        let things = self.things.sorted.iter_mut();
-        let wanted = things.filter(|thing| thing.cell == cell && is_it(thing.kind));
+        let wanted = self.things.in_cell_mut(cell).iter_mut().filter(|thing| is_it(thing.kind));
         wanted.for_each(|thing| thing.frame = Some(frame));
     }
 
@@ -138,17 +154,27 @@ impl Things {
         new
     }
 
-    fn all(&self) -> &[Thing] {
+    pub(super) fn all(&self) -> &[Thing] {
         &self.sorted
     }
 
     /// The things in `row` between two columns, both included.
-    fn between(&self, row: u32, first: u32, last: u32) -> &[Thing] {
-        let in_row = &self.sorted[self.before_row(row)..self.before_row(row.saturating_add(1))];
-        let start = in_row.partition_point(|thing| thing.cell.column < first);
-        let rest = &in_row[start..];
-        let end = rest.partition_point(|thing| thing.cell.column <= last);
-        &rest[..end]
+    pub(super) fn between(&self, row: u32, first: u32, last: u32) -> &[Thing] {
+        &self.sorted[self.range(row, first, last)]
+    }
+
+    /// The things in `cell`, of which anything but the place may change.
+    pub(super) fn in_cell_mut(&mut self, cell: Cell) -> &mut [Thing] {
+        let range = self.range(cell.row, cell.column, cell.column);
+        &mut self.sorted[range]
+    }
+
+    fn range(&self, row: u32, first: u32, last: u32) -> Range<usize> {
+        let start = self.before_row(row);
+        let in_row = &self.sorted[start..self.before_row(row.saturating_add(1))];
+        let from = in_row.partition_point(|thing| thing.cell.column < first);
+        let to = from + in_row[from..].partition_point(|thing| thing.cell.column <= last);
+        start + from..start + to
     }
 
     fn before_row(&self, row: u32) -> usize {

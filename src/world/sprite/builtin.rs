@@ -178,7 +178,7 @@ mod tests {
     #[test]
     fn every_picture_shows_something_and_leaves_something_clear() {
         for (name, sprite) in all() {
-            for picture in &sprite.pictures {
+            for picture in sprite.pictures.iter() {
                 let texels = (0..picture.width())
                     .flat_map(|x| (0..picture.height()).map(move |y| picture.texel(x, y).1));
                 let shown = texels.filter(|&alpha| alpha > 0).count() as u32;

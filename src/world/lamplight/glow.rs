@@ -4,11 +4,15 @@
 //! them share their first cells. They are computed once, as a tree. Each lamp follows the branches
 //! of the tree until they meet an obstacle. Following every line by itself was refused: a generated
 //! level has hundreds of lamps, and that took most of the time in which its window moves.
+//!
+//! Both ends of a line are middles of cells, so the order in which it crosses the lines of the grid
+//! is that of fractions of small integers. It is the order of a [`Ray`](crate::cast::Ray) between
+//! the two middles.
 
-use std::num::NonZeroU32;
+use glam::DVec2;
 
-use crate::cast::{Ray, Walk};
-use crate::world::{Cell, Grid, Lamp, Light, TileId};
+use super::Lamp;
+use crate::world::{Cell, Grid, Light, TileId};
 
 /// The cells that a kind of lamp lights where nothing stands around it.
 #[derive(Debug)]
@@ -94,38 +98,43 @@ struct Line {
 
 /// The lines from a lamp to all other cells within its reach.
 fn lines(lamp: &Lamp) -> Vec<Line> {
-    let reach = lamp.reach.cells() as u32;
-    let side = NonZeroU32::MIN.saturating_add(2 * reach);
-    let cells = vec![TileId(0); side.get() as usize * side.get() as usize];
-    let Some(grid) = Grid::new(side, side, TileId(1), cells) else { return Vec::new() };
-    let place = Cell { column: reach, row: reach };
-    let offset = |cell: Cell| {
-        let along = |place: u32| i64::from(place) - i64::from(reach);
-        (along(cell.column), along(cell.row))
-    };
-    let around = (0..side.get())
-        .flat_map(|row| (0..side.get()).map(move |column| Cell { column, row }))
-        .filter_map(|cell| {
-            let way = cell.center() - place.center();
-            let is_reached = way.length() < lamp.reach.cells();
-            let ray = Ray::new(place.center(), way).ok().filter(|_| is_reached)?;
-            let mut cells: Vec<Offset> = Walk::new(&grid, &ray)
-                .map(|crossing| offset(crossing.cell))
-                .take_while(|&passed| passed != offset(cell))
-                .collect();
-            cells.push(offset(cell));
-            Some(Line { cells, light: lamp.light_at(way.length()) })
-        });
-    around.collect()
+    let reach = lamp.reach.cells() as i64;
+    let around = (-reach..=reach).flat_map(|row| (-reach..=reach).map(move |column| (column, row)));
+    let ends = around.filter(|&end| end != (0, 0)).filter_map(|end| {
+        let distance = DVec2::new(end.0 as f64, end.1 as f64).length();
+        let is_reached = distance < lamp.reach.cells();
+        is_reached.then(|| Line { cells: cells_to(end), light: lamp.light_at(distance) })
+    });
+    ends.collect()
+}
+
+/// The cells that a line from the middle of a cell to that of the cell at `end` enters. Where it
+/// meets a column line and a row line at once, it crosses the row line first.
+fn cells_to(end: Offset) -> Vec<Offset> {
+    let (columns, rows) = (end.0.abs(), end.1.abs());
+    let (mut column, mut row) = (0, 0);
+    let mut cells = Vec::with_capacity((columns + rows) as usize);
+    while (column, row) != (columns, rows) {
+        // The next lines are at (2 column + 1) / (2 columns) and at (2 row + 1) / (2 rows) of the way.
+        if (2 * row + 1) * columns <= (2 * column + 1) * rows {
+            row += 1;
+        } else {
+            column += 1;
+        }
+        cells.push((column * end.0.signum(), row * end.1.signum()));
+    }
+    cells
 }
 
 #[cfg(test)]
 mod tests {
     use std::collections::BTreeMap;
+    use std::num::NonZeroU32;
 
     use proptest::prelude::*;
 
     use super::*;
+    use crate::cast::{Ray, Walk};
     use crate::world::Reach;
 
     /// Whether the line from the middle of one cell to that of another leads through open floor.
