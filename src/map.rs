@@ -27,14 +27,18 @@
 
 mod air;
 pub mod builtin;
+mod checks;
 mod covering;
 mod definitions;
 mod doors;
 mod drawing;
+mod guards;
 mod heights;
 mod input;
+mod items;
 mod layout;
 mod legend;
+mod mechanisms;
 mod per_character;
 mod picture;
 mod reader;
@@ -43,7 +47,10 @@ mod see_through;
 mod shapes;
 mod sprites;
 mod supports;
+mod switches;
 mod textures;
+mod things;
+mod tiles;
 
 use std::collections::BTreeSet;
 use std::fs::{self, File};
@@ -240,6 +247,9 @@ fn read(text: &str, files: &dyn TextureFiles, faults: &FaultList) -> Option<Leve
         effect: None,
     };
     let layout = Layout::of(&drawing, &definitions.legend, ground, faces, &mut reader)?;
+    if let Some((needed, place)) = &definitions.treasure_needed {
+        reader.faults.extend(checks::missing_treasure(*needed, place, &layout.things));
+    }
     Some(Level::from(World::from_parts(Parts {
         title: definitions.title,
         goal: definitions.goal,
@@ -254,7 +264,11 @@ fn read(text: &str, files: &dyn TextureFiles, faults: &FaultList) -> Option<Leve
         sprites: layout.sprites,
         things: layout.things,
         keys: layout.keys,
-        mission: Mission::default(),
+        mission: Mission {
+            par: definitions.par,
+            treasure_needed: definitions.treasure_needed.map_or(0, |(worth, _)| worth),
+            ..layout.mission
+        },
     })))
 }
 

@@ -52,7 +52,7 @@ pub(crate) enum MapChange {
 
 impl Action {
     /// Every action with its name in a file and a short description.
-    pub(crate) const ALL: [(&'static str, &'static str, Self); 34] = [
+    pub(crate) const ALL: [(&'static str, &'static str, Self); 39] = [
         ("forward", "walk", Self::Want(Intent::Forward)),
         ("back", "walk back", Self::Want(Intent::Back)),
         ("strafe-left", "strafe left", Self::Want(Intent::StrafeLeft)),
@@ -67,6 +67,11 @@ impl Action {
         ("open", "open a door", Self::Want(Intent::Open)),
         ("jump", "jump, or open", Self::Want(Intent::Jump)),
         ("duck", "duck while held", Self::Want(Intent::Duck)),
+        ("strike", "strike", Self::Want(Intent::Strike)),
+        ("throw", "throw a pebble", Self::Want(Intent::Throw)),
+        ("shoot", "shoot a dart", Self::Want(Intent::Shoot)),
+        ("smoke", "throw smoke", Self::Want(Intent::Smoke)),
+        ("lamp", "light, put out", Self::Want(Intent::Lamp)),
         ("look-up", "look up", Self::Want(Intent::LookUp)),
         ("look-down", "look down", Self::Want(Intent::LookDown)),
         ("look-ahead", "look ahead", Self::Want(Intent::LookAhead)),

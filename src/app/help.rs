@@ -175,7 +175,7 @@ mod tests {
     #[test]
     fn a_help_that_fits_does_not_scroll() {
         let mut help = HelpScroll::default();
-        let text = shown(80, 23, &mut help);
+        let text = shown(80, 24, &mut help);
         assert_eq!(help.last(), 0, "{text}");
         assert!(!text.contains(" of "), "{text}");
     }

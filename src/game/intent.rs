@@ -42,11 +42,23 @@ pub enum Intent {
     FineRight,
     /// Turn around, by exactly 180 degrees, once.
     AboutFace,
+    /// Strike a guard within reach, once.
+    Strike,
+    /// Throw a pebble, once.
+    Throw,
+    /// Shoot a dart, once.
+    Shoot,
+    /// Throw a flask of smoke, once.
+    Smoke,
+    /// Light the lamp, or put it out, once.
+    Lamp,
+    /// Go on from the last checkpoint, after death.
+    Retry,
 }
 
 impl Intent {
     /// All intents.
-    pub const ALL: [Self; 17] = [
+    pub const ALL: [Self; 23] = [
         Self::Forward,
         Self::Back,
         Self::StrafeLeft,
@@ -64,7 +76,20 @@ impl Intent {
         Self::FineLeft,
         Self::FineRight,
         Self::AboutFace,
+        Self::Strike,
+        Self::Throw,
+        Self::Shoot,
+        Self::Smoke,
+        Self::Lamp,
+        Self::Retry,
     ];
+
+    /// Whether each press does something once, however long it lasts.
+    pub fn acts_once(self) -> bool {
+        use Intent::{AboutFace, FineLeft, FineRight, Lamp, Retry, Shoot, Smoke, Strike, Throw};
+        let once = [FineLeft, FineRight, AboutFace, Strike, Throw, Shoot, Smoke, Lamp, Retry];
+        once.contains(&self)
+    }
 
     /// Whether the two exclude each other.
     pub fn opposes(self, other: Self) -> bool {
@@ -95,6 +120,12 @@ impl Intent {
             Self::FineLeft => "fine-left",
             Self::FineRight => "fine-right",
             Self::AboutFace => "about-face",
+            Self::Strike => "strike",
+            Self::Throw => "throw",
+            Self::Shoot => "shoot",
+            Self::Smoke => "smoke",
+            Self::Lamp => "lamp",
+            Self::Retry => "retry",
         }
     }
 

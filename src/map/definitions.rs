@@ -1,10 +1,13 @@
 //! Definitions: all keys of a map except its grid, each read by itself.
 
+use std::ops::{Range, RangeInclusive};
+
 use toml::de::DeTable;
 
 use super::air::{self, SkyText};
 use super::covering::{CeilingText, CoveringText};
 use super::heights;
+use super::items::whole;
 use super::legend::{self, Legend, Section};
 use super::textures::Surface;
 use crate::color::Rgb;
@@ -16,6 +19,8 @@ use crate::world::{Fog, Heights, Light};
 pub(super) const KEYS: &[&str] = &[
     "title",
     "goal",
+    "par",
+    "treasure_needed",
     "ceiling",
     "ceiling_height",
     "floor",
@@ -28,6 +33,9 @@ pub(super) const KEYS: &[&str] = &[
     "tiles",
     "things",
 ];
+/// In seconds, up to a day.
+const LONGEST_PAR: RangeInclusive<u32> = 1..=86_400;
+const MOST_TREASURE: RangeInclusive<u32> = 1..=1_000_000;
 const DEFAULT_CEILING: Rgb = Rgb::new(0x30, 0x30, 0x30);
 const DEFAULT_FLOOR: Rgb = Rgb::new(0x58, 0x58, 0x58);
 
@@ -35,6 +43,10 @@ const DEFAULT_FLOOR: Rgb = Rgb::new(0x58, 0x58, 0x58);
 pub(super) struct Definitions<'a, 't> {
     pub(super) title: String,
     pub(super) goal: Option<String>,
+    /// The time in which a good player finishes, in seconds.
+    pub(super) par: Option<u32>,
+    /// The treasure without which exits do not let anybody out, with its place in the map.
+    pub(super) treasure_needed: Option<(u32, Range<usize>)>,
     pub(super) ceiling: CeilingText<'a>,
     /// The height of the ceiling and of walls.
     pub(super) ceiling_height: f64,
@@ -58,6 +70,8 @@ impl<'a, 't> Definitions<'a, 't> {
         let mut definitions = Self {
             title: String::new(),
             goal: None,
+            par: None,
+            treasure_needed: None,
             ceiling: CeilingText::plain(DEFAULT_CEILING),
             ceiling_height: Heights::LEVEL.ceiling(),
             floor: CoveringText::plain(DEFAULT_FLOOR),
@@ -79,6 +93,11 @@ impl<'a, 't> Definitions<'a, 't> {
         match entry.key {
             "title" => self.title = title(&entry).unwrap_or_default(),
             "goal" => self.goal = goal(&entry),
+            "par" => self.par = whole(&entry, LONGEST_PAR),
+            "treasure_needed" => {
+                let worth = whole(&entry, MOST_TREASURE);
+                self.treasure_needed = worth.map(|worth| (worth, entry.value_place));
+            }
             "ceiling" => {
                 if let Some(ceiling) = CeilingText::read(&entry, r##"ceiling = "#202028""##) {
                     self.ceiling = ceiling;

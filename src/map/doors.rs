@@ -10,18 +10,21 @@ use std::ops::Range;
 
 use toml::de::DeTable;
 
+use super::checks::Cells;
 use super::drawing::Drawing;
 use super::legend::{Legend, Meaning};
+use super::switches::SwitchSymbol;
 use super::textures::Surface;
 use crate::fault::document::Entry;
 use crate::fault::{Fault, quoted};
-use crate::world::{Cell, Grid, KeyId, Start, Tile, TileKind};
+use crate::world::{Cell, Grid, KeyId, Start, Tile, TileId, TileKind};
 use reach::Reach;
 
 /// A door as the legend defines it.
 pub(super) struct DoorSymbol<'a> {
     pub(super) leaf: Surface<'a>,
     pub(super) key: Option<KeySymbol<'a>>,
+    pub(super) switch: Option<SwitchSymbol<'a>>,
 }
 
 /// The name of a key, and its place in the map.
@@ -32,7 +35,7 @@ pub(super) struct KeySymbol<'a> {
 }
 
 impl<'a> DoorSymbol<'a> {
-    /// Reads the door in `entry` of `table`, with the key that the table names.
+    /// Reads the door in `entry` of `table`, with the key or the switch that the table names.
     pub(super) fn read(entry: &Entry<'a, '_>, table: &'a DeTable<'_>) -> Option<Self> {
         let leaf = Surface::read(entry, r#"{ door = "oak" }"#);
         let key = entry.entries(table).find(|entry| entry.key == "key");
@@ -40,7 +43,20 @@ impl<'a> DoorSymbol<'a> {
             None => None,
             Some(key) => Some(KeySymbol::read(&key, r#"{ door = "metal", key = "brass" }"#)?),
         };
-        Some(Self { leaf: leaf?, key })
+        let switch = entry.entries(table).find(|entry| entry.key == "switch");
+        let switch = match (switch, &key) {
+            (None, _) => None,
+            (Some(switch), None) => {
+                Some(SwitchSymbol::read(&switch, r#"{ door = "metal", switch = "gate" }"#)?)
+            }
+            (Some(switch), Some(_)) => {
+                let message = "a door opens with a key or a switch, not both";
+                let fault = Fault::new(switch.key_place, message).label("this door has a key");
+                entry.faults.push(fault.help("keep one of the two"));
+                return None;
+            }
+        };
+        Some(Self { leaf: leaf?, key, switch })
     }
 }
 
@@ -86,17 +102,15 @@ impl Keys {
 pub(super) fn faults(
     drawing: &Drawing<'_>,
     legend: &Legend<'_>,
-    grid: &Grid,
-    tiles: &[Tile],
+    cells: &Cells<'_>,
     start: Start,
     low_things: &BTreeSet<Cell>,
 ) -> Vec<Fault> {
     let doors = drawn_doors(drawing, legend);
-    let mut faults: Vec<Fault> =
-        doors.filter_map(|door| misplaced(drawing, grid, tiles, door)).collect();
+    let mut faults: Vec<Fault> = doors.filter_map(|door| misplaced(drawing, cells, door)).collect();
     // Behind a misplaced door, reachability means nothing.
     if faults.is_empty() {
-        faults = keys_out_of_reach(drawing, legend, grid, start, low_things);
+        faults = keys_out_of_reach(drawing, legend, cells.grid, start, low_things);
     }
     faults.extend(useless_keys(drawing, legend));
     faults
@@ -146,9 +160,8 @@ fn drawn_keys<'l, 'a>(
 }
 
 /// The fault of doors drawn as `character` that cannot slide or lead nowhere.
-fn misplaced(drawing: &Drawing<'_>, grid: &Grid, tiles: &[Tile], character: char) -> Option<Fault> {
-    let mut wrong =
-        drawing.cells_of(character).filter(|&cell| !is_between_jambs(grid, tiles, cell));
+fn misplaced(drawing: &Drawing<'_>, cells: &Cells<'_>, character: char) -> Option<Fault> {
+    let mut wrong = drawing.cells_of(character).filter(|&cell| !is_between_jambs(cells, cell));
     let first = wrong.next()?;
     let message = "a door stands between two walls, with open floor before and behind it";
     let fault = Fault::new(drawing.place_of(first), message)
@@ -161,22 +174,22 @@ fn misplaced(drawing: &Drawing<'_>, grid: &Grid, tiles: &[Tile], character: char
 
 /// Whether exactly one pair of opposite neighbours of `cell` can hold a door, and the other pair is
 /// open floor.
-fn is_between_jambs(grid: &Grid, tiles: &[Tile], cell: Cell) -> bool {
+fn is_between_jambs(cells: &Cells<'_>, cell: Cell) -> bool {
     let (column, row) = (i64::from(cell.column), i64::from(cell.row));
-    let kinds = |places: [(i64, i64); 2]| {
-        places.map(|(column, row)| Some(tiles[usize::from(grid.tile(column, row)?.0)].kind))
-    };
+    let kinds = |places: [(i64, i64); 2]| places.map(|(column, row)| cells.tile(column, row));
     let pairs = [
         kinds([(column - 1, row), (column + 1, row)]),
         kinds([(column, row - 1), (column, row + 1)]),
     ];
-    let holds = |kind| {
-        matches!(
-            kind,
-            Some(TileKind::Wall(_) | TileKind::Mask(_) | TileKind::Glass(_) | TileKind::Mirror(_))
-        )
+    use TileKind::{Glass, Mask, Mirror, Open, Wall};
+    // A wall that sinks would leave the door without its jamb.
+    let holds = |tile: Option<(TileId, Tile)>| {
+        tile.is_some_and(|(id, tile)| {
+            matches!(tile.kind, Wall(_) | Mask(_) | Glass(_) | Mirror(_)) && !cells.moves(id)
+        })
     };
-    let is_open = |kind| matches!(kind, Some(TileKind::Open));
+    let is_open =
+        |tile: Option<(TileId, Tile)>| tile.is_some_and(|(_, tile)| matches!(tile.kind, Open));
     let [one, other] = pairs;
     one.into_iter().all(holds) && other.into_iter().all(is_open)
         || one.into_iter().all(is_open) && other.into_iter().all(holds)
@@ -212,11 +225,12 @@ fn keys_out_of_reach(
     if locks.is_empty() {
         return Vec::new();
     }
-    let passable: BTreeSet<Cell> =
-        drawn(drawing, legend, |meaning| matches!(meaning, Meaning::Door(_) | Meaning::Shape(_)))
-            .flat_map(|character| drawing.cells_of(character))
-            .chain(low_things.iter().copied())
-            .collect();
+    let passable: BTreeSet<Cell> = drawn(drawing, legend, |meaning| {
+        matches!(meaning, Meaning::Door(_) | Meaning::Shape(_) | Meaning::MovingWall(_))
+    })
+    .flat_map(|character| drawing.cells_of(character))
+    .chain(low_things.iter().copied())
+    .collect();
     let keys: BTreeMap<Cell, &str> = drawn_keys(drawing, legend)
         .flat_map(|(character, key)| drawing.cells_of(character).map(|cell| (cell, key.name)))
         .collect();

@@ -33,8 +33,8 @@ pub(super) struct Faces {
 /// A height, and its place in the map.
 #[derive(Clone)]
 pub(super) struct Height {
-    cells: f64,
-    place: Range<usize>,
+    pub(super) cells: f64,
+    pub(super) place: Range<usize>,
 }
 
 impl<'a> HeightsText<'a> {
@@ -126,8 +126,8 @@ impl Faces {
 }
 
 impl Height {
-    /// Reads the height in `entry`.
-    fn read(entry: &Entry<'_, '_>) -> Option<Self> {
+    /// Reads the height in `entry`; reports a fault where there is none.
+    pub(super) fn read(entry: &Entry<'_, '_>) -> Option<Self> {
         let cells = entry.number().filter(|height| height.abs() <= Heights::MOST);
         if cells.is_none() {
             let most = Heights::MOST;

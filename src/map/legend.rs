@@ -11,7 +11,11 @@ use toml::de::{DeTable, DeValue};
 use super::covering::{CeilingText, CoveringText};
 use super::definitions::KEYS;
 use super::doors::{DoorSymbol, KeySymbol};
+use super::drawing::Drawing;
+use super::guards::GuardSymbol;
 use super::heights::HeightsText;
+use super::items::ItemSymbol;
+use super::mechanisms::{FloorMechanism, MovingWallSymbol};
 use super::see_through::MaskSymbol;
 use super::shapes::ShapeSymbol;
 use super::sprites::SpriteSymbol;
@@ -19,8 +23,8 @@ use super::textures::Surface;
 use crate::fault::document::Entry;
 use crate::fault::{Fault, quoted};
 use crate::world::{Glass, Heading, Light};
-pub(super) use property::light;
 use property::property;
+pub(super) use property::{heading, light};
 pub(super) use section::Section;
 
 /// The meanings of the characters that the grid may use.
@@ -53,6 +57,8 @@ pub(super) enum Meaning<'a> {
     Open,
     /// With its own height, if it has one.
     Wall(Surface<'a>, Option<f64>),
+    /// A wall that sinks into the floor.
+    MovingWall(MovingWallSymbol<'a>),
     /// Open floor with surroundings of its own.
     Floor,
     Door(DoorSymbol<'a>),
@@ -65,6 +71,9 @@ pub(super) enum Meaning<'a> {
     Exit,
     Key(KeySymbol<'a>),
     Ornament(SpriteSymbol<'a>),
+    Item(ItemSymbol<'a>),
+    Guard(GuardSymbol<'a>),
+    Waypoint,
     /// A definition with a fault.
     Unclear,
 }
@@ -76,6 +85,7 @@ pub(super) struct Surroundings<'a> {
     pub(super) ceiling: Option<CeilingText<'a>>,
     pub(super) light: Option<Light>,
     pub(super) heights: HeightsText<'a>,
+    pub(super) mechanism: FloorMechanism<'a>,
 }
 
 impl<'a> Legend<'a> {
@@ -92,6 +102,16 @@ impl<'a> Legend<'a> {
     pub(super) fn is_clear(&self) -> bool {
         let is_unclear = |symbol: &Symbol<'_>| matches!(symbol.meaning, Meaning::Unclear);
         self.is_complete && !self.symbols.values().any(is_unclear)
+    }
+
+    /// The characters that occur in `drawing`, with their definitions.
+    pub(super) fn used_in<'l>(
+        &'l self,
+        drawing: &'l Drawing<'_>,
+    ) -> impl Iterator<Item = (char, &'l Symbol<'a>)> {
+        drawing
+            .characters()
+            .filter_map(|(character, _)| Some((character, self.symbols.get(&character)?)))
     }
 
     /// Reads the definitions in the table of `entry`; reports its faults.
@@ -178,7 +198,7 @@ fn meaning<'a>(section: Section, entry: &Entry<'a, '_>) -> (Meaning<'a>, Surroun
     let faults_before = entry.faults.len();
     let mut meanings: Vec<_> = entry
         .entries(table)
-        .filter_map(|entry| match surroundings.take(section, &entry) {
+        .filter_map(|entry| match surroundings.take(section, &entry, table) {
             Taken::Yes => None,
             Taken::No => property(section, &entry, table),
         })
@@ -193,7 +213,13 @@ fn meaning<'a>(section: Section, entry: &Entry<'a, '_>) -> (Meaning<'a>, Surroun
     };
     match (meanings.pop(), meanings.is_empty()) {
         (Some(meaning), true) if surroundings.suit(&meaning) => return (meaning, surroundings),
-        (None, _) if !surroundings.is_empty() => return (Meaning::Floor, surroundings),
+        (Some(_), true) if !surroundings.mechanism.is_empty() => {
+            entry.faults.extend(surroundings.mechanism.not_on_a_floor());
+        }
+        (None, _) if !surroundings.is_empty() => match surroundings.mechanism.contradiction() {
+            None => return (Meaning::Floor, surroundings),
+            fault => entry.faults.extend(fault),
+        },
         (Some(_), _) => entry.faults.push(several_at_once()),
         (None, _) => entry.faults.push(
             Fault::new(place(), format!("{:?} does not say what it is", entry.key))
@@ -212,19 +238,24 @@ enum Taken {
 
 impl<'a> Surroundings<'a> {
     fn is_empty(&self) -> bool {
-        !self.has_covering() && self.light.is_none() && self.heights.is_empty()
+        !self.has_covering()
+            && self.light.is_none()
+            && self.heights.is_empty()
+            && self.mechanism.is_empty()
     }
 
     /// Whether a tile with that meaning can have these.
     fn suit(&self, meaning: &Meaning<'_>) -> bool {
-        match meaning {
-            Meaning::Wall(..) | Meaning::Mirror(..) => {
-                !self.has_covering() && self.heights.is_empty()
+        let is_fixed = self.mechanism.is_empty();
+        is_fixed
+            && match meaning {
+                Meaning::Wall(..) | Meaning::Mirror(..) | Meaning::MovingWall(_) => {
+                    !self.has_covering() && self.heights.is_empty()
+                }
+                Meaning::Shape(_) => true,
+                Meaning::Door(_) | Meaning::Mask(_) | Meaning::Glass(_) => self.light.is_none(),
+                _ => self.is_empty(),
             }
-            Meaning::Shape(_) => true,
-            Meaning::Door(_) | Meaning::Mask(_) | Meaning::Glass(_) => self.light.is_none(),
-            _ => self.is_empty(),
-        }
     }
 
     fn has_covering(&self) -> bool {
@@ -232,7 +263,7 @@ impl<'a> Surroundings<'a> {
     }
 
     /// Reads `entry` if it is one of a tile's surroundings.
-    fn take(&mut self, section: Section, entry: &Entry<'a, '_>) -> Taken {
+    fn take(&mut self, section: Section, entry: &Entry<'a, '_>, table: &DeTable<'_>) -> Taken {
         match (section, entry.key) {
             (Section::Tiles, "floor") => {
                 self.floor = CoveringText::read(entry, r#"{ floor = "moss" }"#);
@@ -242,6 +273,7 @@ impl<'a> Surroundings<'a> {
             }
             (Section::Tiles, "light") => self.light = light(entry),
             (Section::Tiles, _) if self.heights.take(entry) => {}
+            (Section::Tiles, _) if self.mechanism.take(entry, table) => {}
             _ => return Taken::No,
         }
         Taken::Yes

@@ -16,9 +16,10 @@ use crate::world::{
 };
 
 /// The keys that belong to a sprite.
-pub(super) const ADDITIONS: [(&str, &str); 9] = [
+pub(super) const ADDITIONS: [(&str, &str); 10] = [
     ("anchor", "sprite"),
     ("blocks", "sprite"),
+    ("douse", "sprite"),
     ("facings", "sprite"),
     ("frame_time", "sprite"),
     ("frames", "sprite"),
@@ -37,6 +38,8 @@ pub(super) struct SpriteSymbol<'a> {
     place: Range<usize>,
     anchor: Option<Anchor>,
     blocks: Option<bool>,
+    /// Whether the player can put it out.
+    pub(super) is_doused: bool,
     height: Option<SpriteHeight>,
     heading: Option<Heading>,
     light: Option<Light>,
@@ -58,6 +61,7 @@ impl<'a> SpriteSymbol<'a> {
             place,
             anchor: None,
             blocks: None,
+            is_doused: false,
             height: None,
             heading: None,
             light: None,
@@ -77,6 +81,7 @@ impl<'a> SpriteSymbol<'a> {
         match entry.key {
             "anchor" => self.anchor = anchor(entry),
             "blocks" => self.blocks = boolean(entry),
+            "douse" => self.is_doused = boolean(entry).unwrap_or_default(),
             "height" => {
                 let height = entry.number().and_then(SpriteHeight::new);
                 self.height = known(height, entry, "a number above 0 and up to 4", "0.5");

@@ -14,10 +14,10 @@ const WALKS: [Intent; 4] = [Intent::Forward, Intent::Back, Intent::StrafeLeft, I
 /// The number of steps for which a tap of a key wants `intent`, as an argument of
 /// [`HeldKeys::press`](super::HeldKeys::press).
 pub fn tap_steps(intent: Intent) -> u32 {
-    use Intent::{AboutFace, FineLeft, FineRight, LookAhead, Open};
     match intent {
+        once if once.acts_once() => 1,
         Intent::TurnLeft | Intent::TurnRight | Intent::LookUp | Intent::LookDown => 10,
-        Open | LookAhead | FineLeft | FineRight | AboutFace => 1,
+        Intent::Open | Intent::LookAhead => 1,
         Intent::Run | Intent::Aim => 0,
         _ => 5,
     }
@@ -32,7 +32,7 @@ pub fn wanted(keys: impl Iterator<Item = (Intent, Hold)>) -> Intents {
     for (intent, hold) in keys {
         let is_wanted = match intent {
             Intent::Duck => hold != Hold::Up,
-            Intent::FineLeft | Intent::FineRight | Intent::AboutFace => hold == Hold::Tap,
+            once if once.acts_once() => hold == Hold::Tap,
             _ => matches!(hold, Hold::Tap | Hold::Held),
         };
         if is_wanted {

@@ -6,8 +6,8 @@
 use super::door::Ajar;
 use super::things::Things;
 use super::{
-    Ceiling, Cell, Covering, Door, Fog, Grid, Lamplight, Mission, Paint, Sky, Sprite, Start,
-    Texture, Thing, Tile, TileId, TileKind, World,
+    Ceiling, Cell, Covering, Door, Fog, Grid, Lamplight, Mission, MovingTile, Paint, Sky, Sprite,
+    Start, Texture, Thing, Tile, TileId, TileKind, World,
 };
 
 /// The pieces of a world, before they are known to fit together.
@@ -55,8 +55,9 @@ impl World {
             keys,
             mission,
         } = parts;
-        clear(&mut grid, &tiles);
-        let level_grid = level_grid(&grid, &tiles);
+        let moving = &mission.moving_tiles;
+        clear(&mut grid, &tiles, moving);
+        let level_grid = level_grid(&grid, &tiles, moving);
         let mut world = Self {
             title,
             goal,
@@ -88,8 +89,9 @@ impl World {
     /// [`World::from_parts`].
     pub(crate) fn redraw(&mut self, grid: Grid, start: Start, things: Vec<Thing>) {
         self.grid = grid;
-        clear(&mut self.grid, &self.tiles);
-        self.level_grid = level_grid(&self.grid, &self.tiles);
+        let moving = &self.mission.moving_tiles;
+        clear(&mut self.grid, &self.tiles, moving);
+        self.level_grid = level_grid(&self.grid, &self.tiles, moving);
         self.start = start;
         self.things = Things::new(things);
         self.figures.clear();
@@ -151,18 +153,41 @@ impl World {
     }
 }
 
-/// Computes the distance field of `grid`, where doors may close.
-fn clear(grid: &mut Grid, tiles: &[Tile]) {
+/// Computes the distance field of `grid`, where doors may close and moving tiles may become solid.
+fn clear(grid: &mut Grid, tiles: &[Tile], moving: &[MovingTile]) {
+    let first_solid = grid.first_solid();
+    let changing = that_may_become(tiles.len(), moving, |state| state >= first_solid);
     let is_doorway = |id: TileId| matches!(tiles[usize::from(id.0)].kind, TileKind::Doorway(_));
-    grid.clear(is_doorway);
+    // A level grid has a tile of its own for what is not level.
+    let may_change = |id: TileId| changing.get(usize::from(id.0)).is_some_and(|&changes| changes);
+    grid.clear(|id| is_doorway(id) || may_change(id));
 }
 
 /// `grid` as rays see it that end at what is not level; `None` where everything is.
-fn level_grid(grid: &Grid, tiles: &[Tile]) -> Option<Grid> {
+fn level_grid(grid: &Grid, tiles: &[Tile], moving: &[MovingTile]) -> Option<Grid> {
+    let is_level = |TileId(index): TileId| tiles[usize::from(index)].is_level();
     if tiles.iter().all(Tile::is_level) {
         return None;
     }
-    let mut level = grid.ending_at_others(|TileId(index)| tiles[usize::from(index)].is_level());
-    clear(&mut level, tiles);
+    let first_solid = grid.first_solid();
+    let ends_rays = |state: TileId| state >= first_solid || !is_level(state);
+    let changing = that_may_become(tiles.len(), moving, ends_rays);
+    let is_doorway = |id: TileId| matches!(tiles[usize::from(id.0)].kind, TileKind::Doorway(_));
+    let mut level = grid.ending_at_others(is_level);
+    level.clear(|id| is_doorway(id) || changing[usize::from(id.0)]);
     Some(level)
+}
+
+/// For each tile, whether it is among the states of a moving tile any of whose states `is_it`.
+fn that_may_become(
+    tile_count: usize,
+    moving: &[MovingTile],
+    is_it: impl Fn(TileId) -> bool,
+) -> Vec<bool> {
+    let mut may_become = vec![false; tile_count];
+    let moving = moving.iter().filter(|moving| moving.states.iter().copied().any(&is_it));
+    for &TileId(index) in moving.flat_map(|moving| &moving.states) {
+        may_become[usize::from(index)] = true;
+    }
+    may_become
 }

@@ -19,9 +19,9 @@ pub struct Sprite {
     /// Frame by frame, and within each frame facing by facing.
     pictures: Arc<[Texture]>,
     facings: Facings,
-    /// The number of frames of the animation: the first ones.
-    animated: usize,
     frame_time: FrameTime,
+    /// The number of frames that time goes through: the first ones.
+    animated: usize,
     /// The direction of its front.
     pub heading: Heading,
     /// Where it is fixed.
@@ -146,16 +146,22 @@ impl Sprite {
         Self { frame_time, ..self }
     }
 
-    /// The sprite with an animation of its first `frames` only; of one frame for 0. The others show
-    /// where a thing or a figure asks for them.
+    /// The sprite, in which time goes through the first `frames` frames only. A game selects the
+    /// others. A count of 0 is that of one frame, and a count above that of all frames is all.
     #[must_use]
-    pub fn with_animation(self, frames: usize) -> Self {
+    pub fn with_animated_frames(self, frames: usize) -> Self {
         Self { animated: frames.clamp(1, self.frames()), ..self }
     }
 
-    /// The number of frames; 1 for a sprite that is not animated.
+    /// The number of all frames, of those too that only a game selects.
     pub fn frames(&self) -> usize {
         self.pictures.len() / self.facings.count() as usize
+    }
+
+    /// The number of frames that time goes through, from the first one on; 1 for a sprite that is
+    /// not animated. The frame after them, if there is one, is that of a lamp that is out.
+    pub fn animated_frames(&self) -> usize {
+        self.animated
     }
 
     /// The last frame: that of a lamp that is out.
@@ -245,6 +251,16 @@ mod tests {
     #[test]
     fn what_has_one_frame_never_changes() {
         assert_eq!(sprite(4, Facings::Four).next_change(0.3), None);
+    }
+
+    #[test]
+    fn time_goes_through_the_animated_frames_only() {
+        let sprite = |animated| sprite(3, Facings::One).with_animated_frames(animated);
+        let shows = |animated, seconds| shown(&sprite(animated), seconds, (1.0, 0.0));
+        assert_eq!([0.1, 0.3, 0.5].map(|seconds| shows(2, seconds)), [0, 1, 0]);
+        assert_eq!([0.1, 0.3, 0.5].map(|seconds| shows(1, seconds)), [0, 0, 0]);
+        assert_eq!((sprite(1).next_change(0.3), sprite(1).frames()), (None, 3));
+        assert_eq!([0, 2, 9].map(|count| sprite(count).animated_frames()), [1, 2, 3]);
     }
 
     #[test]

@@ -87,6 +87,20 @@ pub struct Rhythm {
     pub delay: u16,
 }
 
+impl Rhythm {
+    /// The number of steps of a game in a second.
+    pub(crate) const STEPS_PER_SECOND: f64 = 60.0;
+
+    /// A rhythm in seconds, rounded to steps: a period from 1 to 60, and a delay from 0 below the
+    /// period. `None` outside these ranges.
+    pub fn new(period: f64, delay: f64) -> Option<Self> {
+        let is_in_range = (1.0..=60.0).contains(&period) && (0.0..period).contains(&delay);
+        let steps = |seconds: f64| (seconds * Self::STEPS_PER_SECOND).round() as u16;
+        let rhythm = Self { period: steps(period), delay: steps(delay) };
+        (is_in_range && rhythm.delay < rhythm.period).then_some(rhythm)
+    }
+}
+
 impl World {
     /// The things, row by row from the north, and within a row from the west.
     pub fn things(&self) -> &[Thing] {

@@ -12,6 +12,7 @@ impl Default for Bindings {
             back: 's',
             strafe_left: 'a',
             leave: 'q',
+            lamp: 'l',
             turns: None,
         })
     }
@@ -23,6 +24,7 @@ struct Letters {
     back: char,
     strafe_left: char,
     leave: char,
+    lamp: char,
     /// Further keys that turn left and right, besides the arrows.
     turns: Option<[char; 2]>,
 }
@@ -43,17 +45,20 @@ impl Bindings {
             back: 's',
             strafe_left: 'q',
             leave: 'a',
+            lamp: 'l',
             turns: None,
         })
     }
 
-    /// The bindings for users of vi: H and L turn, J and K walk, A and D strafe.
+    /// The bindings for users of vi: H and L turn, J and K walk, A and D strafe, Z
+    /// lights the lamp.
     pub fn hjkl() -> Self {
         Self::with_letters(&Letters {
             forward: 'k',
             back: 'j',
             strafe_left: 'a',
             leave: 'q',
+            lamp: 'z',
             turns: Some(['h', 'l']),
         })
     }
@@ -78,6 +83,11 @@ impl Bindings {
             (Key::Char('e'), Action::Want(Intent::Open)),
             // Control was refused: with another key held, it is a command to the terminal.
             (Key::Char('c'), Action::Want(Intent::Duck)),
+            (Key::Char('f'), Action::Want(Intent::Strike)),
+            (Key::Char('t'), Action::Want(Intent::Throw)),
+            (Key::Char('n'), Action::Want(Intent::Shoot)),
+            (Key::Char('y'), Action::Want(Intent::Smoke)),
+            (Key::Char(letters.lamp), Action::Want(Intent::Lamp)),
             (Key::PageUp, Action::Want(Intent::LookUp)),
             (Key::PageDown, Action::Want(Intent::LookDown)),
             (Key::Home, Action::Want(Intent::LookAhead)),

@@ -6,10 +6,14 @@ use super::{Meaning, Section};
 use crate::fault::Fault;
 use crate::fault::document::Entry;
 use crate::map::doors::{DoorSymbol, KeySymbol};
+use crate::map::guards::GuardSymbol;
 use crate::map::heights;
+use crate::map::items::{self, ItemSymbol};
+use crate::map::mechanisms::{self, MovingWallSymbol};
 use crate::map::see_through::{self, MaskSymbol};
 use crate::map::shapes::ShapeSymbol;
 use crate::map::sprites::SpriteSymbol;
+use crate::map::switches::SwitchSymbol;
 use crate::map::textures::Surface;
 use crate::world::{Heading, Light};
 
@@ -27,7 +31,15 @@ pub(super) fn property<'a>(
         (Section::Tiles, "wall") => {
             let surface = Surface::read(entry, r#"{ wall = "brick" }"#);
             let height = heights::of_wall(entry, table);
-            surface.map(|surface| Meaning::Wall(surface, height))
+            if !table.contains_key("switch") {
+                return surface.map(|surface| Meaning::Wall(surface, height));
+            }
+            let switch = SwitchSymbol::of(entry, table, r#"{ wall = "stone", switch = "gate" }"#)?;
+            let symbol = |surface| MovingWallSymbol { surface, height, switch: Some(switch) };
+            surface.map(symbol).map(Meaning::MovingWall)
+        }
+        (Section::Tiles, "secret") => {
+            MovingWallSymbol::read_secret(entry, table).map(Meaning::MovingWall)
         }
         (Section::Tiles, "door") => DoorSymbol::read(entry, table).map(Meaning::Door),
         (Section::Tiles, "mask") => MaskSymbol::read(entry).map(Meaning::Mask),
@@ -46,6 +58,11 @@ pub(super) fn property<'a>(
         (Section::Things, "sprite") => SpriteSymbol::read(entry, table).map(Meaning::Ornament),
         (Section::Things, "start") => Some(Meaning::Start(heading(entry)?)),
         (Section::Things, "exit") => exit(entry),
+        (Section::Things, "guard") => GuardSymbol::read(entry, table).map(Meaning::Guard),
+        (Section::Things, "waypoint") => mechanisms::is_true(entry).then_some(Meaning::Waypoint),
+        (Section::Things, key) if items::KEYS.contains(&key) => {
+            ItemSymbol::read(entry, table).map(Meaning::Item)
+        }
         _ => {
             entry.faults.push(section.unknown_property(entry));
             None
@@ -53,7 +70,7 @@ pub(super) fn property<'a>(
     }
 }
 
-fn heading(entry: &Entry<'_, '_>) -> Option<Heading> {
+pub(in crate::map) fn heading(entry: &Entry<'_, '_>) -> Option<Heading> {
     let heading = entry.number().and_then(Heading::from_degrees);
     if heading.is_none() {
         entry.faults.push(

@@ -5,12 +5,7 @@ use crate::fault::document::Entry;
 use crate::map::sprites;
 
 /// Common features of other raycasters that do not exist here.
-const NOT_YET: &[(&str, &str)] = &[
-    ("guard", "guards"),
-    ("pushwall", "moving walls"),
-    ("secret", "secret doors"),
-    ("window", "windows"),
-];
+const NOT_YET: &[(&str, &str)] = &[("pushwall", "moving walls"), ("window", "windows")];
 
 const OF_TILES: &[(&str, &str)] = &[
     ("key", "door"),
@@ -21,13 +16,38 @@ const OF_TILES: &[(&str, &str)] = &[
     ("height", "pillar"),
     ("height", "diagonal"),
     ("height", "thin"),
+    ("height", "secret"),
     ("radius", "pillar"),
     ("from", "diagonal"),
     ("at", "thin"),
+    ("switch", "door"),
+    ("switch", "wall"),
+    ("switch", "moves_to"),
 ];
 
-const SUPPORTS: &[(&str, &str)] =
-    &[("on", "start"), ("on", "exit"), ("on", "key"), ("on", "sprite")];
+const OF_THINGS: &[(&str, &str)] = &[
+    ("on", "start"),
+    ("on", "exit"),
+    ("on", "key"),
+    ("on", "sprite"),
+    ("on", "guard"),
+    ("on", "waypoint"),
+    ("on", "treasure"),
+    ("on", "healing"),
+    ("on", "pebbles"),
+    ("on", "darts"),
+    ("on", "flasks"),
+    ("on", "note"),
+    ("on", "checkpoint"),
+    ("on", "lever"),
+    ("on", "spikes"),
+    ("delay", "spikes"),
+    ("heading", "guard"),
+    ("patrol", "guard"),
+    ("wander", "guard"),
+    ("asleep", "guard"),
+    ("difficulty", "guard"),
+];
 
 /// One of the two tables that define characters.
 #[derive(Clone, Copy, PartialEq, Eq)]
@@ -70,8 +90,29 @@ impl Section {
                 "roof_height",
                 "riser",
                 "lintel",
+                "secret",
+                "water",
+                "plate",
+                "moves_to",
+                "crumbles",
             ],
-            Self::Things => &["start", "exit", "key", "sprite"],
+            Self::Things => &[
+                "start",
+                "exit",
+                "key",
+                "sprite",
+                "guard",
+                "waypoint",
+                "treasure",
+                "healing",
+                "pebbles",
+                "darts",
+                "flasks",
+                "note",
+                "checkpoint",
+                "lever",
+                "spikes",
+            ],
         }
     }
 
@@ -79,7 +120,7 @@ impl Section {
     pub(super) fn additions(self) -> impl Iterator<Item = (&'static str, &'static str)> {
         let (additions, more): (&[_], &[_]) = match self {
             Self::Tiles => (OF_TILES, &[]),
-            Self::Things => (&sprites::ADDITIONS, SUPPORTS),
+            Self::Things => (&sprites::ADDITIONS, OF_THINGS),
         };
         additions.iter().chain(more).copied()
     }
@@ -121,9 +162,12 @@ impl Section {
             let message = format!("\"{}\" makes {}, not {}", entry.key, other.noun(), self.noun());
             return Fault::new(place(), message).help(format!("move it to {}", other.name()));
         }
-        let additions = self.additions().map(|(key, _)| key);
-        let mut known: Vec<&str> = self.keys().iter().copied().chain(additions).collect();
-        known.dedup();
+        let mut known = self.keys().to_vec();
+        for (addition, _) in self.additions() {
+            if !known.contains(&addition) {
+                known.push(addition);
+            }
+        }
         entry.unknown_key(self.noun(), &known)
     }
 }

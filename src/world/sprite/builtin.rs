@@ -5,7 +5,10 @@
 //! unlike those of a picture file.
 
 mod figure;
+mod frame;
 mod furniture;
+mod guard;
+mod model;
 mod player;
 mod portal;
 mod treasure;
@@ -14,7 +17,8 @@ use std::num::NonZeroU32;
 
 use super::{Anchor, Facings, FrameTime, Sprite, SpriteHeight};
 use crate::color::Rgb;
-use crate::world::{Lamp, Light, Reach, Texture};
+use crate::world::{GuardKind, Lamp, Light, Reach, Texture};
+pub use frame::{CheckpointFrame, GuardFrame, LeverFrame, SpikesFrame};
 
 /// The names that maps may use.
 pub const NAMES: &[&str] =
@@ -29,7 +33,8 @@ pub const PLAYER: &str = "player";
 
 /// The built-in sprite of that name; `None` if there is none.
 pub fn named(name: &str) -> Option<Sprite> {
-    let Design { pictures, facings, seconds, anchor, height, blocks, shines } = match name {
+    let Design { pictures, facings, seconds, animated, anchor, height, blocks, shines } = match name
+    {
         "barrel" => furniture::barrel(),
         "bones" => treasure::bones(),
         "column" => furniture::column(),
@@ -41,9 +46,12 @@ pub fn named(name: &str) -> Option<Sprite> {
         EXIT => portal::portal(),
         KEY => treasure::key(),
         PLAYER => player::player(),
-        _ => return None,
+        _ => guard::guard(GuardKind::ALL.into_iter().find(|kind| kind.name() == name)?),
     };
     let mut sprite = Sprite::new(pictures, facings)?.with_frame_time(FrameTime::new(seconds)?);
+    if let Some(animated) = animated {
+        sprite = sprite.with_animated_frames(animated);
+    }
     sprite.anchor = anchor;
     sprite.height = SpriteHeight::new(height)?;
     sprite.blocks = blocks;
@@ -59,6 +67,8 @@ struct Design {
     facings: Facings,
     /// The time of each frame.
     seconds: f64,
+    /// The number of frames that time goes through; `None` for all.
+    animated: Option<usize>,
     anchor: Anchor,
     /// In cells.
     height: f64,
@@ -71,7 +81,8 @@ impl Design {
     /// Pictures with one facing that stand on the floor and do not block.
     fn standing(height: f64, pictures: Vec<Texture>) -> Self {
         let (facings, anchor) = (Facings::One, Anchor::Floor);
-        Self { pictures, facings, seconds: 0.2, anchor, height, blocks: false, shines: 0.0 }
+        let (animated, blocks, shines) = (None, false, 0.0);
+        Self { pictures, facings, seconds: 0.2, animated, anchor, height, blocks, shines }
     }
 }
 

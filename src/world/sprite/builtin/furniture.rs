@@ -3,9 +3,9 @@
 use super::{Anchor, Design, INK, Palette, drawn, painted};
 use crate::color::Rgb;
 
-/// A lantern on a chain, whose flame flickers.
+/// A lantern on a chain, whose flame flickers. The last frame is without the flame.
 pub(super) fn lamp() -> Design {
-    const FRAMES: [[&str; 14]; 2] = [
+    const FRAMES: [[&str; 14]; 3] = [
         [
             ".....k......",
             ".....k......",
@@ -38,15 +38,31 @@ pub(super) fn lamp() -> Design {
             "...kmmmmk...",
             "....kkkk....",
         ],
+        [
+            ".....k......",
+            ".....k......",
+            ".....k......",
+            "....kkkk....",
+            "...kmmmmk...",
+            "..kkkkkkkk..",
+            "..kgggggdk..",
+            "..kgggddgk..",
+            "..kggddggk..",
+            "..kgdkggdk..",
+            "..kddkdddk..",
+            "..kkkkkkkk..",
+            "...kmmmmk...",
+            "....kkkk....",
+        ],
     ];
     let pictures = FRAMES.iter().map(|frame| drawn(frame, FIRE)).collect();
-    let design = Design::standing(0.42, pictures);
+    let design = Design { animated: Some(2), ..Design::standing(0.42, pictures) };
     Design { anchor: Anchor::Ceiling, seconds: 0.25, shines: 0.7, ..design }
 }
 
-/// A torch on a stand.
+/// A torch on a stand. The last frame is without the flame.
 pub(super) fn torch() -> Design {
-    const FRAMES: [[&str; 22]; 3] = [
+    const FRAMES: [[&str; 22]; 4] = [
         [
             "....r.....",
             "....ro....",
@@ -119,9 +135,33 @@ pub(super) fn torch() -> Design {
             "..kkmmkk..",
             ".kkkkkkkk.",
         ],
+        [
+            "..........",
+            "..........",
+            "..........",
+            "..........",
+            "..........",
+            "..........",
+            "..........",
+            "....d.....",
+            "..dddgd...",
+            "..kkkkkk..",
+            "..kmmmmk..",
+            "...kmmk...",
+            "....km....",
+            "....km....",
+            "....km....",
+            "....km....",
+            "....km....",
+            "....km....",
+            "....km....",
+            "...kkmk...",
+            "..kkmmkk..",
+            ".kkkkkkkk.",
+        ],
     ];
     let pictures = FRAMES.iter().map(|frame| drawn(frame, FIRE)).collect();
-    Design { seconds: 0.15, shines: 0.6, ..Design::standing(0.72, pictures) }
+    Design { seconds: 0.15, animated: Some(3), shines: 0.6, ..Design::standing(0.72, pictures) }
 }
 
 const FIRE: &Palette = &[
@@ -131,6 +171,8 @@ const FIRE: &Palette = &[
     ('o', Rgb::new(0xff, 0xa8, 0x30)),
     ('y', Rgb::new(0xff, 0xdc, 0x60)),
     ('w', Rgb::new(0xff, 0xfc, 0xe0)),
+    ('g', Rgb::new(0x58, 0x5c, 0x64)),
+    ('d', Rgb::new(0x3c, 0x3c, 0x44)),
 ];
 
 /// A plant with broad leaves in a pot.

@@ -1,0 +1,107 @@
+//! Things in the drawing, and their sprites.
+
+use super::doors::Keys;
+use super::drawing::Drawing;
+use super::items::ItemSymbol;
+use super::legend::{Legend, Meaning};
+use super::per_character::PerCharacter;
+use super::reader::Reader;
+use super::switches::Switches;
+use crate::fault::Fault;
+use crate::world::sprite::builtin;
+use crate::world::{NoteId, Sprite, SpriteId, Thing, ThingKind};
+
+/// The largest number of sprites, and of notes: their ids have two bytes.
+const MOST_KINDS: usize = 10_000;
+
+/// The things in a drawing except the start, with what they refer to.
+#[derive(Default)]
+pub(super) struct ThingList {
+    pub(super) things: Vec<Thing>,
+    pub(super) sprites: Vec<Sprite>,
+    /// The texts of notes.
+    pub(super) notes: Vec<String>,
+    /// The sprites of items, which several characters may share.
+    of_items: Vec<(&'static str, SpriteId)>,
+}
+
+impl ThingList {
+    /// The things in the drawing. Reports the faults of their sprites.
+    pub(super) fn of(
+        drawing: &Drawing<'_>,
+        legend: &Legend<'_>,
+        keys: &Keys,
+        switches: &Switches,
+        reader: &mut Reader<'_>,
+    ) -> Self {
+        let mut list = Self::default();
+        let mut thing_of = PerCharacter::<Option<(ThingKind, SpriteId)>>::new();
+        for (character, symbol) in legend.used_in(drawing) {
+            if list.sprites.len().max(list.notes.len()) > MOST_KINDS {
+                let message = format!("the grid has more than {MOST_KINDS} kinds of thing");
+                reader.faults.push(Fault::new(symbol.place.clone(), message).label("one too many"));
+                break;
+            }
+            *thing_of.get_mut(character) = match &symbol.meaning {
+                Meaning::Exit => list.add(ThingKind::Exit, builtin::named(builtin::EXIT)),
+                Meaning::Key(key) => keys
+                    .id(key.name)
+                    .and_then(|key| list.add(ThingKind::Key(key), builtin::named(builtin::KEY))),
+                Meaning::Ornament(sprite) => {
+                    let kind =
+                        if sprite.is_doused { ThingKind::Flame } else { ThingKind::Ornament };
+                    let sprite = sprite.sprite(reader);
+                    list.add(kind, sprite)
+                }
+                Meaning::Item(item) => list.add_item(item, switches),
+                _ => None,
+            };
+        }
+        list.things.extend(drawing.cells().filter_map(|(cell, character)| {
+            let (kind, sprite) = thing_of.get(character)?;
+            Some(Thing { kind, cell, sprite, frame: None })
+        }));
+        list
+    }
+
+    /// Adds a sprite; returns it with the kind of thing that has it.
+    fn add(&mut self, kind: ThingKind, sprite: Option<Sprite>) -> Option<(ThingKind, SpriteId)> {
+        let id = SpriteId(self.sprites.len() as u16);
+        self.sprites.push(sprite?);
+        Some((kind, id))
+    }
+
+    fn add_item(
+        &mut self,
+        item: &ItemSymbol<'_>,
+        switches: &Switches,
+    ) -> Option<(ThingKind, SpriteId)> {
+        let kind = match item {
+            &ItemSymbol::Treasure(worth) => ThingKind::Treasure(worth),
+            &ItemSymbol::Healing(points) => ThingKind::Healing(points),
+            &ItemSymbol::Supply(supply, count) => ThingKind::Supply(supply, count),
+            ItemSymbol::Note(text) => ThingKind::Note(self.note(text)),
+            ItemSymbol::Checkpoint => ThingKind::Checkpoint,
+            ItemSymbol::Lever(switch) => ThingKind::Lever(switches.id(switch.name)?),
+            &ItemSymbol::Spikes(rhythm) => ThingKind::Spikes(rhythm),
+        };
+        Some((kind, self.sprite_of_item(item.sprite_name())?))
+    }
+
+    fn note(&mut self, text: &str) -> NoteId {
+        let id = NoteId(self.notes.len() as u16);
+        self.notes.push(text.to_owned());
+        id
+    }
+
+    fn sprite_of_item(&mut self, name: &'static str) -> Option<SpriteId> {
+        if let Some(&(_, id)) = self.of_items.iter().find(|(known, _)| *known == name) {
+            return Some(id);
+        }
+        let sprite = builtin::named(name).or_else(|| builtin::named(builtin::KEY));
+        let id = SpriteId(self.sprites.len() as u16);
+        self.sprites.push(sprite?);
+        self.of_items.push((name, id));
+        Some(id)
+    }
+}

@@ -1,0 +1,128 @@
+//! Results: of a run, and the best of several.
+
+/// A run that reached the exit.
+#[derive(Clone, Debug, PartialEq, Eq)]
+pub struct Run {
+    /// What happened in it.
+    pub tally: Tally,
+    /// Its rank.
+    pub rank: Rank,
+    /// Its script, with a header that names the level.
+    pub script: String,
+}
+
+/// The best results in a level at one difficulty.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub struct Best {
+    /// The tally of the fastest run.
+    pub tally: Tally,
+    /// The highest rank of all runs.
+    pub rank: Rank,
+}
+
+/// What a run improved.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Default)]
+pub struct Improved {
+    /// Whether it is the fastest run.
+    pub time: bool,
+    /// Whether it has a higher rank than all others.
+    pub rank: bool,
+}
+
+impl Improved {
+    /// Whether it improved anything.
+    pub fn any(self) -> bool {
+        self.time || self.rank
+    }
+}
+
+/// How far a descent came. More floors are better, then more treasure, then fewer steps.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Default)]
+pub struct Reached {
+    /// The floors whose exit was reached.
+    pub floors: u32,
+    /// The treasure of these floors.
+    pub treasure: u32,
+    /// The steps that these floors took.
+    pub steps: u64,
+}
+
+impl Ord for Reached {
+    fn cmp(&self, other: &Self) -> std::cmp::Ordering {
+        let by_value = (self.floors, self.treasure).cmp(&(other.floors, other.treasure));
+        by_value.then(other.steps.cmp(&self.steps))
+    }
+}
+
+impl PartialOrd for Reached {
+    fn partial_cmp(&self, other: &Self) -> Option<std::cmp::Ordering> {
+        Some(self.cmp(other))
+    }
+}
+
+impl Best {
+    /// The results of one run.
+    pub(super) fn of(run: &Run) -> Self {
+        Self { tally: run.tally, rank: run.rank }
+    }
+
+    /// The best of both. Of equally fast runs it is the first.
+    pub(super) fn and(self, other: Self) -> Self {
+        let fastest = if other.tally.steps < self.tally.steps { other } else { self };
+        Self { tally: fastest.tally, rank: self.rank.max(other.rank) }
+    }
+}
+
+/// What happened in a run.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Default)]
+pub struct Tally {
+    /// The steps from the start to the exit.
+    pub steps: u64,
+    /// The value of the treasure.
+    pub treasure: Share,
+    /// The number of secrets.
+    pub secrets: Share,
+    /// The number of alarms.
+    pub alarms: u32,
+    /// The number of deaths.
+    pub deaths: u32,
+    /// The number of guards who were stunned.
+    pub stunned: u32,
+}
+
+/// What was found of what there is.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Default)]
+pub struct Share {
+    /// What was found.
+    pub found: u32,
+    /// What there is.
+    pub total: u32,
+}
+
+/// The rank of a run, from the lowest.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord)]
+pub enum Rank {
+    /// Any run that reached the exit.
+    Burglar,
+    /// Fast, or with few alarms.
+    Thief,
+    /// Without an alarm, and fast or with all treasure.
+    Shadow,
+    /// Unseen, with all treasure.
+    Ghost,
+}
+
+impl Rank {
+    /// All ranks, from the lowest.
+    pub const ALL: [Self; 4] = [Self::Burglar, Self::Thief, Self::Shadow, Self::Ghost];
+
+    /// The name.
+    pub const fn name(self) -> &'static str {
+        match self {
+            Self::Burglar => "Burglar",
+            Self::Thief => "Thief",
+            Self::Shadow => "Shadow",
+            Self::Ghost => "Ghost",
+        }
+    }
+}
