@@ -59,7 +59,7 @@ impl ThingList {
         }
         list.things.extend(drawing.cells().filter_map(|(cell, character)| {
             let (kind, sprite) = thing_of.get(character)?;
-            Some(Thing { kind, cell, sprite, frame: None })
+            Some(Thing { kind, cell, sprite, frame: first_frame(kind) })
         }));
         list
     }
@@ -104,4 +104,11 @@ impl ThingList {
         self.of_items.push((name, id));
         Some(id)
     }
+}
+
+/// The frame that a thing shows first; `None` if it depends on the time.
+fn first_frame(kind: ThingKind) -> Option<u8> {
+    let shows_its_state =
+        matches!(kind, ThingKind::Checkpoint | ThingKind::Lever(_) | ThingKind::Spikes(_));
+    shows_its_state.then_some(0)
 }

@@ -73,7 +73,7 @@ fn secret_walls_are_open() {
 fn a_floor_that_crumbles_does_not_come_back() {
     let floors = "'c'.crumbles = -3\n'p'.floor_height = -3";
     assert!(!is_out_of_reach("@.c.X", floors));
-    assert!(is_out_of_reach("@.ppppcX", floors));
+    assert!(is_out_of_reach("@.ppppppcX", floors));
 }
 
 #[test]
