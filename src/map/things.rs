@@ -98,9 +98,8 @@ impl ThingList {
         if let Some(&(_, id)) = self.of_items.iter().find(|(known, _)| *known == name) {
             return Some(id);
         }
-        let sprite = builtin::named(name).or_else(|| builtin::named(builtin::KEY));
         let id = SpriteId(self.sprites.len() as u16);
-        self.sprites.push(sprite?);
+        self.sprites.push(builtin::named(name)?);
         self.of_items.push((name, id));
         Some(id)
     }
