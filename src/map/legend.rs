@@ -16,13 +16,14 @@ use super::guards::GuardSymbol;
 use super::heights::HeightsText;
 use super::items::ItemSymbol;
 use super::mechanisms::{FloorMechanism, MovingWallSymbol};
+use super::per_character::PerCharacter;
 use super::see_through::MaskSymbol;
 use super::shapes::ShapeSymbol;
 use super::sprites::SpriteSymbol;
 use super::textures::Surface;
 use crate::fault::document::Entry;
 use crate::fault::{Fault, quoted};
-use crate::world::{Glass, Heading, Light};
+use crate::world::{Cell, Glass, Heading, Light};
 use property::property;
 pub(super) use property::{heading, light};
 pub(super) use section::Section;
@@ -112,6 +113,23 @@ impl<'a> Legend<'a> {
         drawing
             .characters()
             .filter_map(|(character, _)| Some((character, self.symbols.get(&character)?)))
+    }
+
+    /// The cells of `drawing` whose characters are more than floor or a wall, with their definitions, row by
+    /// row from the north.
+    pub(super) fn of_cells<'l>(
+        &'l self,
+        drawing: &'l Drawing<'_>,
+    ) -> impl Iterator<Item = (Cell, &'l Symbol<'a>)> {
+        let mut is_more = PerCharacter::<bool>::new();
+        for (character, symbol) in self.used_in(drawing) {
+            let is_floor = matches!(symbol.meaning, Meaning::Open | Meaning::Floor);
+            let is_wall = matches!(symbol.meaning, Meaning::Wall(..));
+            let is_plate = symbol.surroundings.mechanism.plate.is_some();
+            *is_more.get_mut(character) = !is_floor && !is_wall || is_plate;
+        }
+        let cells = drawing.cells().filter(move |&(_, character)| is_more.get(character));
+        cells.filter_map(|(cell, character)| Some((cell, self.symbols.get(&character)?)))
     }
 
     /// Reads the definitions in the table of `entry`; reports its faults.
