@@ -15,6 +15,7 @@ mod config;
 mod error;
 mod level;
 mod manual;
+mod own_maps;
 mod play;
 mod plot;
 mod recording;

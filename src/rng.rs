@@ -8,7 +8,7 @@
 //! may change.
 
 /// A generator of random numbers. The seed alone determines them.
-#[derive(Clone, Debug)]
+#[derive(Clone, Debug, PartialEq, Eq)]
 pub struct SplitMix64 {
     state: u64,
 }

@@ -7,9 +7,10 @@
 use std::time::Duration;
 
 use super::controls::KeyContext;
+use super::menu::Selection;
 use super::{App, Screen};
 use crate::app::bindings::Action;
-use crate::game::Intents;
+use crate::game::{Intent, Intents};
 use crate::terminal::{Key, KeyEvent};
 use crate::tui::Press;
 use crate::world::FieldOfView;
@@ -72,32 +73,77 @@ impl App {
 
     fn press(&mut self, key: Key, press: Press) {
         self.pending = None;
-        if matches!(self.screen, Screen::LevelDone | Screen::End | Screen::Leaving) {
-            return self.press_at_question(key, press);
+        let scrolls = self.screen == Screen::Help && self.scroll_help(key);
+        match self.screen {
+            _ if scrolls => {}
+            Screen::Leaving => self.press_to_answer(key, press),
+            _ if self.screen.has_menu() => self.press_in_menu(key, press),
+            _ => self.press_command(key, press),
         }
-        if self.screen == Screen::Help && self.scroll_help(key) {
-            return;
-        }
-        let action = self.settings.bindings.action(key);
-        match action {
+    }
+
+    /// Handles the keys that do the same on every screen, and those of the game.
+    fn press_command(&mut self, key: Key, press: Press) {
+        match self.settings.bindings.action(key) {
             Some(Action::WidenView) => self.widen_view(VIEW_STEP),
             Some(Action::NarrowView) => self.widen_view(-VIEW_STEP),
             Some(action) if press != Press::Repeat => self.command(key, action),
+            _ if press != Press::Repeat && key == Key::Backspace => self.go_back(),
             _ => {}
+        }
+    }
+
+    fn press_in_menu(&mut self, key: Key, press: Press) {
+        if self.screen.is_result() && self.now < self.shown_since + LEAST_SHOWN {
+            return;
+        }
+        if let Some(selection) = self.selection_by(key) {
+            self.menu.select(selection);
+            self.shown = None;
+        } else if self.chooses(key) {
+            self.press_to_answer(key, press);
+        } else {
+            self.press_command(key, press);
+        }
+    }
+
+    /// The movement of the selection by `key`: the keys to walk, and those that every terminal has.
+    fn selection_by(&self, key: Key) -> Option<Selection> {
+        Some(match key {
+            Key::Up => Selection::Previous,
+            Key::Down => Selection::Next,
+            Key::PageUp => Selection::PageUp,
+            Key::PageDown => Selection::PageDown,
+            Key::Home => Selection::First,
+            Key::End => Selection::Last,
+            _ => match self.settings.bindings.action(key)? {
+                Action::Want(Intent::Forward) => Selection::Previous,
+                Action::Want(Intent::Back) => Selection::Next,
+                _ => return None,
+            },
+        })
+    }
+
+    /// Whether `key` chooses an entry of the menu.
+    fn chooses(&self, key: Key) -> bool {
+        match key {
+            Key::Enter | Key::Char(' ') => true,
+            Key::Char(digit) => self.menu.has_number(digit),
+            _ => false,
         }
     }
 
     fn command(&mut self, key: Key, action: Action) {
         match (self.screen, action) {
-            (Screen::Help | Screen::Paused, Action::Leave) if key == Key::Escape => {
-                self.show(Screen::Playing);
+            (screen, Action::Leave) if key == Key::Escape && screen != Screen::Playing => {
+                self.go_back();
             }
             (_, Action::Leave) => self.ask_to_leave(),
-            (Screen::Playing, Action::ToggleHelp) => self.show(Screen::Help),
-            (Screen::Playing, Action::TogglePause) => self.show(Screen::Paused),
-            (Screen::Help, Action::ToggleHelp) | (Screen::Paused, Action::TogglePause) => {
-                self.show(Screen::Playing);
-            }
+            (Screen::Help, Action::ToggleHelp) => self.close(),
+            (_, Action::ToggleHelp) => self.open(Screen::Help),
+            (Screen::Playing, Action::TogglePause) => self.open(Screen::Paused),
+            (Screen::Paused, Action::TogglePause) => self.close(),
+            _ if self.demo.is_some() => {}
             (_, Action::ToggleMinimap) => toggle(&mut self.map.is_shown, &mut self.shown),
             (_, Action::ToggleDuck) => toggle(&mut self.controls.toggles.ducks, &mut self.shown),
             (_, Action::ToggleRun) => toggle(&mut self.controls.toggles.runs, &mut self.shown),
@@ -117,20 +163,26 @@ impl App {
         }
     }
 
-    fn ask_to_leave(&mut self) {
-        let returns_to = match self.screen {
-            Screen::LevelDone => Screen::LevelDone,
-            _ => Screen::Playing,
-        };
-        self.returns_to = returns_to;
-        self.show(Screen::Leaving);
+    /// Returns to the screen before, or asks whether to leave where there is none.
+    fn go_back(&mut self) {
+        match self.screen {
+            Screen::Playing => {}
+            Screen::Title => self.has_left = true,
+            Screen::LevelDone | Screen::End => self.ask_to_leave(),
+            _ => self.close(),
+        }
     }
 
-    fn press_at_question(&mut self, key: Key, press: Press) {
-        let is_result = self.screen != Screen::Leaving;
-        if is_result && self.now < self.shown_since + LEAST_SHOWN {
-            return;
+    /// Asks whether to leave. Where there is no game to lose, it is not asked.
+    fn ask_to_leave(&mut self) {
+        if self.demo.is_some() || self.screen == Screen::End {
+            self.has_left = true;
+        } else {
+            self.open(Screen::Leaving);
         }
+    }
+
+    fn press_to_answer(&mut self, key: Key, press: Press) {
         match press {
             Press::Fresh => self.answer(key),
             Press::Unclear => self.pending = Some(Pending { key, until: self.now + REPETITION }),
@@ -139,18 +191,19 @@ impl App {
     }
 
     fn answer(&mut self, key: Key) {
-        let confirms = matches!(key, Key::Enter | Key::Char(' '));
-        let leaves = self.settings.bindings.action(key) == Some(Action::Leave);
-        match self.screen {
-            Screen::LevelDone if confirms => self.next_level(),
-            Screen::LevelDone if leaves => self.ask_to_leave(),
-            Screen::End if confirms || leaves => self.has_left = true,
-            Screen::Leaving if key == Key::Enter || leaves && key != Key::Escape => {
+        if self.screen == Screen::Leaving {
+            let leaves = self.settings.bindings.action(key) == Some(Action::Leave);
+            if key == Key::Enter || leaves && key != Key::Escape {
                 self.has_left = true;
+            } else {
+                self.close();
             }
-            Screen::Leaving => self.show(self.returns_to),
-            _ => {}
+            return;
         }
+        if let Key::Char(digit) = key {
+            self.menu.select_number(digit);
+        }
+        self.choose();
     }
 
     /// The player's intents by the held keys.

@@ -88,6 +88,11 @@ impl Played {
         }
     }
 
+    /// A flight through nothing.
+    pub(super) fn nothing() -> Self {
+        Self::new(Level::Space(space::Scene::default()))
+    }
+
     /// Begins `level` at the player's position in this game, if possible.
     pub(super) fn begun_again_in(&self, level: Level) -> Self {
         match (self, level) {

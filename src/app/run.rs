@@ -7,18 +7,27 @@ use std::env;
 use std::time::{Duration, Instant};
 
 use super::stats::{Meter, Stats};
-use super::{App, Levels, Recording, Settings};
+use super::{App, Levels, Offers, Recording, Settings};
 #[cfg(debug_assertions)]
 use crate::terminal::Key;
 use crate::terminal::{Detected, Error, Event, Options, Session, locale_without_utf8};
 use crate::tui::{CellAspect, GlyphMode};
 
-/// Plays `levels` on the terminal until the player leaves or the program is ended from outside, and
+/// What the program begins with.
+#[derive(Debug)]
+pub enum Opening {
+    /// The title screen, with these offers.
+    Title(Offers),
+    /// A game, without a title to return to.
+    Levels(Levels),
+}
+
+/// Begins with `opening` on the terminal, plays until the player leaves or the program is ended from outside, and
 /// makes the recordings in `recording`.
 ///
 /// # Errors
 /// If there is no terminal, or if it fails.
-pub fn play(levels: Levels, settings: Settings, recording: Recording) -> Result<(), Error> {
+pub fn play(opening: Opening, settings: Settings, recording: Recording) -> Result<(), Error> {
     let mut options = Options::from_environment(|name| env::var(name).ok());
     if let Some(depth) = settings.depth {
         options.color_depth = Detected::Certain(depth);
@@ -28,7 +37,10 @@ pub fn play(levels: Levels, settings: Settings, recording: Recording) -> Result<
     options.is_ascii = ascii_locale.is_some();
     let mut session = Session::enter_recorded(options, recording.terminal)?;
     let mut presenter = Presenter::new(settings.frame_time);
-    let mut app = App::new(levels, settings);
+    let mut app = match opening {
+        Opening::Title(offers) => App::titled(offers, settings),
+        Opening::Levels(levels) => App::new(levels, settings),
+    };
     app.script = recording.script;
     app.detection.ascii_locale = ascii_locale;
     app.detection.reports_releases = (!options.ask_for_key_releases).then_some(false);

@@ -12,7 +12,7 @@ use std::fmt::{self, Write};
 use ratatui::buffer::Buffer;
 use ratatui::layout::Rect;
 use ratatui::style::{Modifier, Style};
-use ratatui::text::Span;
+use ratatui::text::{Line, Span};
 use ratatui::widgets::Widget;
 
 use super::goal::Goal;
@@ -209,6 +209,11 @@ impl Widget for &StatusLine {
         }
         buffer.set_style(area, Style::new().add_modifier(Modifier::REVERSED));
     }
+}
+
+/// A line with a hint instead of the game's state.
+pub(super) fn hint(text: &str) -> impl Widget {
+    Line::raw(text).centered().style(Style::new().add_modifier(Modifier::REVERSED))
 }
 
 #[cfg(test)]

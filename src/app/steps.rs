@@ -6,6 +6,7 @@
 use std::time::Duration;
 
 use super::clock::{self, Clock};
+use super::played::Played;
 use super::{App, Screen};
 
 impl App {
@@ -15,6 +16,9 @@ impl App {
         let mut step = self.clock.step_after(0);
         let mut steps = self.clock.steps_until(now);
         let mut moves = 0;
+        if self.demo.is_some() {
+            (0..steps.min(Clock::MOST_STEPS)).for_each(|_| self.step_demo());
+        }
         while steps > 0 && moves < Clock::MOST_STEPS && self.screen == Screen::Playing {
             let passed = self.pass(step, steps, &mut moves);
             step = clock::after(step, passed);
@@ -22,6 +26,15 @@ impl App {
         }
         self.controls.advance(now, self.key_context());
         self.settle(now);
+    }
+
+    /// Advances the level behind the title by one step.
+    fn step_demo(&mut self) {
+        let Some(demo) = &mut self.demo else { return };
+        match demo.next().filter(|_| !self.game.is_finished()) {
+            Some(intents) => self.game.step(intents),
+            None => self.game = demo.rewind().unwrap_or_else(Played::nothing),
+        }
     }
 
     /// Advances by one step that ends at `now`, or by up to `most` steps in which nothing happens.

@@ -4,6 +4,7 @@ mod levels;
 mod questions;
 mod screens;
 mod table;
+mod titles;
 
 use std::iter;
 use std::time::Duration;
@@ -33,7 +34,10 @@ struct Rig {
 impl Rig {
     fn new(world: World, rate: Option<Rate>) -> Self {
         let levels = Levels::new(Level::Grid(Box::new(world)), iter::empty());
-        let mut app = App::new(levels, Settings::default());
+        Self::of(App::new(levels, Settings::default()), rate)
+    }
+
+    fn of(mut app: App, rate: Option<Rate>) -> Self {
         app.controls.held.set_reports_releases(rate.is_none());
         let keyboard = rate.map(|(delay, rate)| Keyboard::new(Duration::from_millis(delay), rate));
         let mut rig = Self { app, keyboard, now: Duration::ZERO };

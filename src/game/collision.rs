@@ -96,6 +96,21 @@ pub(super) fn slide<O: Obstacles>(
     Body { position, velocity: DVec2::ZERO }
 }
 
+/// Moves a circle by `displacement` up to the first contact. Returns its position, and whether there
+/// was a contact.
+pub(super) fn fly<O: Obstacles>(
+    obstacles: &O,
+    position: DVec2,
+    displacement: DVec2,
+    radius: Radius,
+) -> (DVec2, bool) {
+    let Some(path) = Path::new(position, displacement) else { return (position, false) };
+    match first_contact(obstacles, path, radius) {
+        Some(contact) => (contact.position, true),
+        None => (path.last_clear(obstacles, path.length(), radius), false),
+    }
+}
+
 /// `vector` without its part against `normal`, a unit vector.
 fn without_inward(vector: DVec2, normal: DVec2) -> DVec2 {
     vector - normal * vector.dot(normal).min(0.0)
@@ -103,7 +118,7 @@ fn without_inward(vector: DVec2, normal: DVec2) -> DVec2 {
 
 /// Whether a circle around `center` overlaps nothing that blocks; it may touch. Cells are closed
 /// squares.
-fn is_clear<O: Obstacles>(obstacles: &O, center: DVec2, radius: Radius) -> bool {
+pub(super) fn is_clear<O: Obstacles>(obstacles: &O, center: DVec2, radius: Radius) -> bool {
     let (column, row) = cell_of(center);
     let around = (row - 1..=row + 1).flat_map(|r| (column - 1..=column + 1).map(move |c| (c, r)));
     around.filter(|&(column, row)| !is_clear_of(center, column, row, radius)).all(

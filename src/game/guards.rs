@@ -1,80 +1,105 @@
 //! Guards: they stand, patrol, notice, search, chase, strike, give up and fall.
 //!
 //! A step of all guards depends on the world, on what can be perceived of the players, on the
-//! sounds of the step and on nothing else.
+//! sounds of the step, and on nothing else. Guards share what they know about ways, and call each
+//! other by sounds that spread as all others do.
+//!
+//! Guards far from all players take [`FAR_STRIDE`] steps at once. Simulating only those who are in
+//! view was refused: a patrol would stop whenever the player looks away.
 
+mod act;
+mod alert;
+mod attack;
+mod chase;
+mod context;
+mod duty;
+mod guard;
+mod kind;
+mod listen;
 mod mood;
+mod mover;
+mod outside;
+mod perceive;
+mod route;
+mod shifted;
+mod sight;
+mod state;
+mod terrain;
+mod trail;
 mod view;
-
-use glam::DVec2;
+mod ways;
 
 use super::rules::Rules;
-use super::sound::Sound;
-use crate::world::{Cell, World};
+use super::sound::{Sound, SoundField, Source};
+use crate::rng::hash;
+use crate::world::{GuardKind, SpriteId, World, sprite};
+use context::{Context, Other};
+use guard::Guard;
+use state::State;
+use terrain::Terrain;
+use trail::Trail;
+use ways::Ways;
 
+pub(crate) use act::{Act, Cloud, Target};
 pub use mood::{Alarm, Mood};
+pub(crate) use sight::Point;
 pub use view::GuardView;
+
+/// Guards on duty at this distance from all players, in cells, take several steps at once.
+const FAR: f64 = 26.0;
+const FAR_STRIDE: u16 = 8;
+/// The steps from one look for fallen guards to the next.
+const FALLEN_EACH: u64 = 30;
 
 /// All guards of a level.
 #[derive(Clone, Debug, PartialEq)]
 pub(crate) struct Guards {
     rules: Rules,
-    views: Vec<GuardView>,
+    list: Vec<Guard>,
+    /// By the order of [`GuardKind::ALL`].
+    sprites: [Option<SpriteId>; GuardKind::ALL.len()],
+    terrain: Terrain,
+    ways: Ways,
+    air: SoundField,
+    trails: Vec<Trail>,
+    others: Vec<Other>,
     acts: Vec<Act>,
-}
-
-/// What guards can perceive of a player.
-#[derive(Clone, Copy, Debug, PartialEq)]
-pub(crate) struct Target {
-    /// The position, in cells.
-    pub(crate) position: DVec2,
-    /// The height of the feet, in cells.
-    pub(crate) feet: f64,
-    /// The height of the top of the head, in cells.
-    pub(crate) head: f64,
-    /// How well the player is lit: from 0 for not at all to 255.
-    pub(crate) visibility: u8,
-    /// Whether the player carries a lit lamp, which is seen from afar.
-    pub(crate) has_light: bool,
-    /// Whether the player is alive. Guards let the dead be.
-    pub(crate) is_alive: bool,
-}
-
-/// Smoke: a disc that nobody sees through.
-#[derive(Clone, Copy, Debug, PartialEq)]
-pub(crate) struct Cloud {
-    /// The middle, in cells.
-    pub(crate) position: DVec2,
-    /// The radius, in cells.
-    pub(crate) radius: f64,
-}
-
-/// What a guard does to the rest of the game in a step.
-#[derive(Clone, Copy, Debug, PartialEq)]
-pub(crate) enum Act {
-    /// Hits the player with index `target`; the blow comes from `from`.
-    Hurt { target: usize, by: usize, from: DVec2, points: u8 },
-    /// Opens the door in a cell.
-    Open(Cell),
-    /// Makes a sound.
-    Sound(Sound),
-    /// Shoots a bolt from a position and a height along `direction`, a unit vector; it rises by
-    /// `slope` for each cell, and hits for `points`.
-    Bolt { by: usize, from: DVec2, height: f64, direction: DVec2, slope: f64, points: u8 },
-    /// Begins to follow a player while nobody did: one more alarm.
-    Raised,
+    /// The sounds that guards have made in the last step.
+    spoken: Vec<Sound>,
+    woken: Vec<usize>,
+    steps: u64,
+    alarm: Alarm,
+    has_changed: bool,
 }
 
 impl Guards {
     /// The guards of `world` that are there under these rules. Their sprites are added to `world`.
     pub(crate) fn new(world: &mut World, rules: Rules) -> Self {
-        _ = world;
-        Self { rules, views: Vec::new(), acts: Vec::new() }
-    }
-
-    /// Whether there are none.
-    pub(crate) fn is_empty(&self) -> bool {
-        self.views.is_empty()
+        let posts = world.guards().iter().zip(0..);
+        let posts = posts.filter(|(post, _)| post.from <= rules.difficulty);
+        let list: Vec<Guard> =
+            posts.map(|(post, index)| Guard::new(world, post, index, rules.seed)).collect();
+        let sprites = GuardKind::ALL.map(|kind| {
+            let is_needed = list.iter().any(|guard| guard.kind == kind);
+            let sprite = sprite::builtin::named(kind.name()).filter(|_| is_needed)?;
+            Some(world.add_sprite(sprite))
+        });
+        Self {
+            rules,
+            list,
+            sprites,
+            terrain: Terrain::new(world),
+            ways: Ways::default(),
+            air: SoundField::default(),
+            trails: Vec::new(),
+            others: Vec::new(),
+            acts: Vec::new(),
+            spoken: Vec::new(),
+            woken: Vec::new(),
+            steps: 0,
+            alarm: Alarm::Calm,
+            has_changed: false,
+        }
     }
 
     /// Advances all guards by one step. Each target is the player with that index; `sounds` are
@@ -86,100 +111,146 @@ impl Guards {
         sounds: &[Sound],
         clouds: &[Cloud],
     ) -> &[Act] {
-        _ = (world, targets, sounds, clouds);
         self.acts.clear();
+        if self.list.is_empty() {
+            return &self.acts;
+        }
+        self.steps += 1;
+        self.ways.begin_step();
+        self.others.clear();
+        self.others.extend(self.list.iter().map(Guard::as_other));
+        self.record_trails(world, targets);
+        let mut spoken = std::mem::take(&mut self.spoken);
+        for sound in sounds.iter().chain(&spoken) {
+            self.spread(world, targets, clouds, sound);
+        }
+        spoken.clear();
+        self.has_changed = false;
+        for index in 0..self.list.len() {
+            self.step_one(world, targets, clouds, index);
+        }
+        for index in self.woken.drain(..) {
+            self.list[index].get_up();
+        }
+        let made = self.acts.iter().filter_map(|act| match act {
+            Act::Sound(sound) => Some(*sound),
+            _ => None,
+        });
+        spoken.extend(made);
+        self.spoken = spoken;
+        self.update_alarm();
         &self.acts
     }
 
-    /// The number of steps in which no guard does anything, if nothing is perceived; 0 if anybody
-    /// moves, `None` if nobody ever will.
-    pub(crate) fn quiet_steps(&self) -> Option<u64> {
-        if self.is_empty() { None } else { Some(0) }
+    fn step_one(&mut self, world: &World, targets: &[Target], clouds: &[Cloud], index: usize) {
+        let stride = self.stride(targets, index);
+        if stride == 0 {
+            return;
+        }
+        let now = self.steps;
+        let (guard, mut context) = self.with_context(world, targets, clouds, index, stride);
+        let before = (guard.mover, guard.frame());
+        if (now + index as u64).is_multiple_of(FALLEN_EACH) && stride == 1 {
+            guard.look_for_fallen(&mut context);
+        }
+        guard.step(&mut context);
+        self.has_changed |= (guard.mover, guard.frame()) != before;
     }
 
-    /// The guards, in the order of their indices.
-    pub(crate) fn views(&self) -> impl ExactSizeIterator<Item = GuardView> + '_ {
-        self.views.iter().copied()
+    /// The number of steps that a guard takes at once now: 0 for those who wait for their turn.
+    fn stride(&self, targets: &[Target], index: usize) -> u16 {
+        let guard = &self.list[index];
+        match guard.state {
+            State::Asleep if guard.stagger == 0 => 0,
+            State::OnDuty | State::Returning => {
+                let position = guard.mover.position();
+                let is_near = |target: &Target| {
+                    target.position.distance_squared(position) < FAR * FAR && target.is_alive
+                };
+                let is_turn = (self.steps + index as u64).is_multiple_of(u64::from(FAR_STRIDE));
+                match targets.iter().any(is_near) {
+                    true => 1,
+                    false if is_turn => FAR_STRIDE,
+                    false => 0,
+                }
+            }
+            _ => 1,
+        }
     }
 
-    /// How much the guards know.
-    pub(crate) fn alarm(&self) -> Alarm {
-        Alarm::Calm
+    /// Lets all guards hear `sound` whom it reaches.
+    fn spread(&mut self, world: &World, targets: &[Target], clouds: &[Cloud], sound: &Sound) {
+        let told = match sound.by {
+            Source::Guard(index) => self.list.get(index).and_then(|guard| guard.quarry),
+            Source::Player(_) | Source::Object => None,
+        };
+        for index in 0..self.list.len() {
+            let guard = &self.list[index];
+            let earshot = guard.earshot(sound, self.rules.difficulty);
+            let way = guard.mover.position().distance(sound.cell.center());
+            // No way is shorter than the straight line; two cells more for rounding.
+            if earshot == 0 || way * 2.0 > f64::from(earshot) + 4.0 {
+                continue;
+            }
+            if sound.by == Source::Guard(index) {
+                continue;
+            }
+            self.air.reach_out(world, sound.cell, earshot, self.steps);
+            let distance = self.air.distance(guard.mover.cell());
+            if let Some(distance) = distance.filter(|&distance| distance <= earshot) {
+                let (guard, mut context) = self.with_context(world, targets, clouds, index, 1);
+                guard.hear(&mut context, sound, (distance, earshot), told);
+            }
+        }
     }
 
-    /// Whether the guard `index` has not noticed a player, and is not down.
-    pub(crate) fn is_unaware(&self, index: usize) -> bool {
-        self.views.get(index).is_some_and(|view| view.mood < Mood::Chasing)
+    fn with_context<'a>(
+        &'a mut self,
+        world: &'a World,
+        targets: &'a [Target],
+        clouds: &'a [Cloud],
+        index: usize,
+        stride: u16,
+    ) -> (&'a mut Guard, Context<'a>) {
+        let context = Context {
+            world,
+            terrain: &self.terrain,
+            ways: &mut self.ways,
+            targets,
+            clouds,
+            trails: &self.trails,
+            others: &self.others,
+            rules: self.rules,
+            now: self.steps,
+            index,
+            stride,
+            acts: &mut self.acts,
+            woken: &mut self.woken,
+        };
+        (&mut self.list[index], context)
     }
 
-    /// Whether any guard would overlap `cell` if it were solid: a door does not close on them.
-    pub(crate) fn touches(&self, cell: Cell) -> bool {
-        _ = cell;
-        false
+    /// Records the trails of players, if anybody smells them.
+    fn record_trails(&mut self, world: &World, targets: &[Target]) {
+        if self.list.iter().any(|guard| guard.kind == GuardKind::Hound) {
+            self.trails.resize_with(targets.len(), Trail::default);
+            for (trail, target) in self.trails.iter_mut().zip(targets) {
+                trail.record(world, target, self.steps);
+            }
+        }
     }
 
-    /// Whether any guard stands in `cell`: plates and floors that crumble feel it.
-    pub(crate) fn weighs_on(&self, cell: Cell) -> bool {
-        _ = cell;
-        false
-    }
-
-    /// The nearest guard who is not down, whose middle is at most `reach` from `position` and at
-    /// most the angle with the cosine `least_cosine` off `direction`, a unit vector, and with whom
-    /// a body from `feet` to `head` overlaps in height.
-    pub(crate) fn guard_near(
-        &self,
-        world: &World,
-        position: DVec2,
-        direction: DVec2,
-        reach: f64,
-        least_cosine: f64,
-    ) -> Option<usize> {
-        _ = (world, position, direction, reach, least_cosine);
-        None
-    }
-
-    /// The middle of the body of the nearest guard in sight of an eye, at most the angle with the
-    /// cosine `least_cosine` off `direction`: the position and the height at which to shoot.
-    pub(crate) fn aim(
-        &self,
-        world: &World,
-        clouds: &[Cloud],
-        eye: (DVec2, f64),
-        direction: DVec2,
-        least_cosine: f64,
-    ) -> Option<(DVec2, f64)> {
-        _ = (world, clouds, eye, direction, least_cosine);
-        None
-    }
-
-    /// The guard whom a projectile hits that moves from `from` to `to`, the nearest to `from`; both
-    /// have a position and a height.
-    pub(crate) fn hit_between(&self, from: (DVec2, f64), to: (DVec2, f64)) -> Option<usize> {
-        _ = (from, to);
-        None
-    }
-
-    /// Whether `from` is behind the guard `index`: more than 90° off the direction of their look.
-    pub(crate) fn is_behind(&self, index: usize, from: DVec2) -> bool {
-        self.views
-            .get(index)
-            .is_some_and(|view| view.heading.direction().dot(from - view.position) < 0.0)
-    }
-
-    /// Lays the guard `index` on the floor for that many steps.
-    pub(crate) fn stun(&mut self, index: usize, steps: u16) {
-        _ = (index, steps);
-    }
-
-    /// Pushes the guard `index` along `direction`, a unit vector: they stagger for half a second,
-    /// and lose the blow that they were raising.
-    pub(crate) fn push(&mut self, index: usize, direction: DVec2) {
-        _ = (index, direction);
+    fn update_alarm(&mut self) {
+        let alarm = self.list.iter().map(|guard| guard.state.mood().alarm()).max();
+        let alarm = alarm.unwrap_or_default();
+        if alarm == Alarm::Raised && self.alarm < Alarm::Raised {
+            self.acts.push(Act::Raised);
+        }
+        self.alarm = alarm;
     }
 
     /// A number that depends on the whole state.
     pub(crate) fn checksum(&self) -> u64 {
-        0
+        hash(self.steps, self.list.iter().flat_map(Guard::words))
     }
 }

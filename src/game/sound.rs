@@ -8,7 +8,7 @@ mod field;
 mod hearing;
 
 use crate::world::Cell;
-pub(crate) use field::SoundField;
+pub(crate) use field::{SoundField, half_cells};
 pub use hearing::Heard;
 pub(crate) use hearing::Hearing;
 

@@ -57,6 +57,11 @@ impl Shift {
         Some(Cell { column: along(cell.column, self.columns)?, row: along(cell.row, self.rows)? })
     }
 
+    /// Whether `cell` was not in the window before.
+    pub(crate) fn is_new(self, cell: Cell) -> bool {
+        Self { columns: -self.columns, rows: -self.rows }.cell(cell).is_none()
+    }
+
     /// The position that was `position` before.
     pub(crate) fn position(self, position: DVec2) -> DVec2 {
         position + DVec2::new(self.columns as f64, self.rows as f64)

@@ -10,13 +10,14 @@ use std::ops::Range;
 
 use toml::de::DeTable;
 
+use super::checks::Cells;
 use super::drawing::Drawing;
 use super::legend::{Legend, Meaning};
 use super::switches::SwitchSymbol;
 use super::textures::Surface;
 use crate::fault::document::Entry;
 use crate::fault::{Fault, quoted};
-use crate::world::{Cell, Grid, KeyId, Start, Tile, TileKind};
+use crate::world::{Cell, Grid, KeyId, Start, Tile, TileId, TileKind};
 use reach::Reach;
 
 /// A door as the legend defines it.
@@ -101,17 +102,15 @@ impl Keys {
 pub(super) fn faults(
     drawing: &Drawing<'_>,
     legend: &Legend<'_>,
-    grid: &Grid,
-    tiles: &[Tile],
+    cells: &Cells<'_>,
     start: Start,
     low_things: &BTreeSet<Cell>,
 ) -> Vec<Fault> {
     let doors = drawn_doors(drawing, legend);
-    let mut faults: Vec<Fault> =
-        doors.filter_map(|door| misplaced(drawing, grid, tiles, door)).collect();
+    let mut faults: Vec<Fault> = doors.filter_map(|door| misplaced(drawing, cells, door)).collect();
     // Behind a misplaced door, reachability means nothing.
     if faults.is_empty() {
-        faults = keys_out_of_reach(drawing, legend, grid, start, low_things);
+        faults = keys_out_of_reach(drawing, legend, cells.grid, start, low_things);
     }
     faults.extend(useless_keys(drawing, legend));
     faults
@@ -161,9 +160,8 @@ fn drawn_keys<'l, 'a>(
 }
 
 /// The fault of doors drawn as `character` that cannot slide or lead nowhere.
-fn misplaced(drawing: &Drawing<'_>, grid: &Grid, tiles: &[Tile], character: char) -> Option<Fault> {
-    let mut wrong =
-        drawing.cells_of(character).filter(|&cell| !is_between_jambs(grid, tiles, cell));
+fn misplaced(drawing: &Drawing<'_>, cells: &Cells<'_>, character: char) -> Option<Fault> {
+    let mut wrong = drawing.cells_of(character).filter(|&cell| !is_between_jambs(cells, cell));
     let first = wrong.next()?;
     let message = "a door stands between two walls, with open floor before and behind it";
     let fault = Fault::new(drawing.place_of(first), message)
@@ -176,22 +174,22 @@ fn misplaced(drawing: &Drawing<'_>, grid: &Grid, tiles: &[Tile], character: char
 
 /// Whether exactly one pair of opposite neighbours of `cell` can hold a door, and the other pair is
 /// open floor.
-fn is_between_jambs(grid: &Grid, tiles: &[Tile], cell: Cell) -> bool {
+fn is_between_jambs(cells: &Cells<'_>, cell: Cell) -> bool {
     let (column, row) = (i64::from(cell.column), i64::from(cell.row));
-    let kinds = |places: [(i64, i64); 2]| {
-        places.map(|(column, row)| Some(tiles[usize::from(grid.tile(column, row)?.0)].kind))
-    };
+    let kinds = |places: [(i64, i64); 2]| places.map(|(column, row)| cells.tile(column, row));
     let pairs = [
         kinds([(column - 1, row), (column + 1, row)]),
         kinds([(column, row - 1), (column, row + 1)]),
     ];
-    let holds = |kind| {
-        matches!(
-            kind,
-            Some(TileKind::Wall(_) | TileKind::Mask(_) | TileKind::Glass(_) | TileKind::Mirror(_))
-        )
+    use TileKind::{Glass, Mask, Mirror, Open, Wall};
+    // A wall that sinks would leave the door without its jamb.
+    let holds = |tile: Option<(TileId, Tile)>| {
+        tile.is_some_and(|(id, tile)| {
+            matches!(tile.kind, Wall(_) | Mask(_) | Glass(_) | Mirror(_)) && !cells.moves(id)
+        })
     };
-    let is_open = |kind| matches!(kind, Some(TileKind::Open));
+    let is_open =
+        |tile: Option<(TileId, Tile)>| tile.is_some_and(|(_, tile)| matches!(tile.kind, Open));
     let [one, other] = pairs;
     one.into_iter().all(holds) && other.into_iter().all(is_open)
         || one.into_iter().all(is_open) && other.into_iter().all(holds)

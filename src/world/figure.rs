@@ -18,7 +18,7 @@ use super::{Cell, Heading, Light, Sprite, SpriteId, World};
 /// A sprite at any place.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Figure {
-    /// Its sprite.
+    /// Its sprite, among those of the world; a figure with any other is not drawn.
     pub sprite: SpriteId,
     /// The place of its middle, on the map.
     pub position: DVec2,
@@ -28,7 +28,8 @@ pub struct Figure {
     pub heading: Heading,
     /// The frame of the sprite that it shows; the last one, if there is no such frame.
     pub frame: u8,
-    /// How much of it shows instead of what is behind: from 0 for none to 255 for all.
+    /// How much of it shows instead of what is behind: from 0 for none to 255 for all. The opacity of
+    /// each texel is multiplied by it, in 255ths, and rounded to the nearest whole number.
     pub opacity: u8,
 }
 
@@ -57,6 +58,13 @@ impl World {
         let id = SpriteId(self.sprites.len() as u16);
         self.sprites = self.sprites.iter().cloned().chain([sprite]).collect();
         id
+    }
+
+    /// The greatest height that a figure reaches; 0 if there is none.
+    pub(crate) fn top_of_figures(&self) -> f64 {
+        let sprite = |figure: &Figure| self.sprites.get(usize::from(figure.sprite.0));
+        let height = |figure: &Figure| sprite(figure).map_or(0.0, |sprite| sprite.height.cells());
+        self.figures.iter().map(|figure| figure.base + height(figure)).fold(0.0, f64::max)
     }
 
     /// The light on `figure`; full light off the map.

@@ -1,17 +1,108 @@
 //! The distance of sounds from one cell.
+//!
+//! Sound goes around corners, over low walls, and through the holes of masks. Solid walls stop it.
+//! A closed door or glass is as far as [`DAMPING`] more cells.
 
-use crate::world::{Cell, World};
+use super::Sound;
+use crate::game::flood::{Costs, Flood, STRAIGHT};
+use crate::world::{Cell, Tile, TileId, TileKind, World};
+
+/// The additional cost of a closed door or of glass, in half cells.
+const DAMPING: u16 = 12;
+/// Sound passes over walls that are at most this much higher than the floor beside them, in cells.
+const LOW_WALL: f64 = 0.75;
+/// The number of steps after which the field is computed again, since doors may have moved.
+const OLD: u64 = 30;
 
 /// How far sounds have to go from one cell to those around it.
 #[derive(Clone, Debug, PartialEq, Default)]
 pub(crate) struct SoundField {
     center: Option<Cell>,
+    flood: Flood,
+    begun: u64,
 }
 
 impl SoundField {
-    /// Computes the field around `center`, unless it is known already.
-    pub(crate) fn update(&mut self, world: &World, center: Cell) {
-        _ = world;
-        self.center = Some(center);
+    /// Finds the distances of the cells within `reach` around `center`. `now` is the number of the
+    /// step.
+    pub(crate) fn reach_out(&mut self, world: &World, center: Cell, reach: u16, now: u64) {
+        let grid = world.grid();
+        let is_old = now.saturating_sub(self.begun) > OLD;
+        if self.center != Some(center) || is_old {
+            self.flood.begin(center, (grid.width(), grid.height()));
+            (self.center, self.begun) = (Some(center), now);
+        }
+        let reach = reach.min(half_cells(Sound::FARTHEST));
+        while self.flood.radius() <= reach && self.flood.advance(&Air { world }) {}
     }
+
+    /// The distance of `cell` from the centre, in half cells; `None` if that is beyond the reach.
+    pub(crate) fn distance(&self, cell: Cell) -> Option<u16> {
+        self.flood.distance(cell)
+    }
+
+    /// Forgets the distances.
+    pub(crate) fn forget(&mut self) {
+        self.center = None;
+    }
+}
+
+/// A reach in half cells.
+pub(crate) fn half_cells(reach: u8) -> u16 {
+    u16::from(reach) * STRAIGHT
+}
+
+/// The way of sound from cell to cell.
+struct Air<'a> {
+    world: &'a World,
+}
+
+impl Air<'_> {
+    fn tile(&self, cell: Cell) -> Option<&Tile> {
+        let TileId(id) = self.world.grid().tile(i64::from(cell.column), i64::from(cell.row))?;
+        self.world.tiles().get(usize::from(id))
+    }
+
+    /// Whether sound passes between two neighbours.
+    fn passes(&self, one: Cell, other: Cell) -> bool {
+        let (Some(one), Some(other)) = (self.tile(one), self.tile(other)) else { return false };
+        is_low_beside(one, other) && is_low_beside(other, one) && have_common_air(one, other)
+    }
+}
+
+impl Costs for Air<'_> {
+    fn straight(&self, from: Cell, to: Cell) -> Option<u16> {
+        let is_dampened = self.tile(to).is_some_and(dampens);
+        let cost = if is_dampened { STRAIGHT + DAMPING } else { STRAIGHT };
+        self.passes(from, to).then_some(cost)
+    }
+
+    fn has_diagonal(&self, from: Cell, to: Cell, beside: [bool; 2]) -> bool {
+        let is_free = |cell| self.tile(cell).is_some_and(|tile| !dampens(tile));
+        let corners =
+            [Cell { column: to.column, row: from.row }, Cell { column: from.column, row: to.row }];
+        let passes =
+            |corner| is_free(corner) && self.passes(from, corner) && self.passes(corner, to);
+        beside != [false, false]
+            && is_free(from)
+            && is_free(to)
+            && self.passes(from, to)
+            && corners.into_iter().any(passes)
+    }
+}
+
+fn dampens(tile: &Tile) -> bool {
+    matches!(tile.kind, TileKind::Door(_) | TileKind::Glass(_))
+}
+
+/// Whether `tile` is no wall, or a low one beside the floor of `other`.
+fn is_low_beside(tile: &Tile, other: &Tile) -> bool {
+    let is_wall = matches!(tile.kind, TileKind::Wall(_) | TileKind::Mirror(_));
+    !is_wall || tile.heights.floor() - other.heights.floor() <= LOW_WALL
+}
+
+/// Whether a gap of one tile overlaps a gap of the other.
+fn have_common_air(one: &Tile, other: &Tile) -> bool {
+    one.gaps()
+        .any(|gap| other.gaps().any(|there| gap.bottom.max(there.bottom) < gap.top.min(there.top)))
 }

@@ -2,8 +2,14 @@
 
 use glam::DVec2;
 
-use super::{Sound, SoundField, SoundKind};
-use crate::world::{Heading, World};
+use super::field::half_cells;
+use super::{Sound, SoundField, SoundKind, Source};
+use crate::world::{Cell, Heading, World};
+
+/// The steps for which a sound is shown.
+const DURATION: u16 = 45;
+/// The number of sounds that are shown at a time.
+const MOST: usize = 8;
 
 /// A sound as a player hears it.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -23,6 +29,9 @@ pub struct Heard {
 pub(crate) struct Hearing {
     field: SoundField,
     heard: Vec<Heard>,
+    /// What has made each of them.
+    sources: Vec<Source>,
+    steps: u64,
 }
 
 impl Hearing {
@@ -31,8 +40,8 @@ impl Hearing {
         &self.heard
     }
 
-    /// Hears those of `sounds` that others than the player `listener` made. Returns whether
-    /// [`Hearing::heard`] has changed other than by its clocks.
+    /// Advances by one step, in which `sounds` are made; the player `listener`, at `position`,
+    /// hears those of others. Returns whether a sound is heard or fades away.
     pub(crate) fn step(
         &mut self,
         world: &World,
@@ -40,18 +49,70 @@ impl Hearing {
         position: DVec2,
         sounds: &[Sound],
     ) -> bool {
-        _ = (world, listener, position, sounds);
-        false
+        let before = self.heard.len();
+        self.wait(1);
+        let has_faded = self.heard.len() != before;
+        let mut has_heard = false;
+        for sound in sounds.iter().filter(|sound| sound.by != Source::Player(listener)) {
+            if let Some(strength) = self.strength(world, position, sound) {
+                self.hear(sound, position, strength);
+                has_heard = true;
+            }
+        }
+        has_faded || has_heard
     }
 
-    /// The number of steps in which nothing that was heard fades away; `None` if there is nothing.
+    /// The number of steps in which no sound fades away; `None` if there is none.
     pub(crate) fn quiet_steps(&self) -> Option<u64> {
-        self.heard.iter().map(|heard| u64::from(heard.left)).min()
+        self.heard.iter().map(|heard| u64::from(heard.left.saturating_sub(1))).min()
     }
 
-    /// Advances the clocks by `steps`, at most [`Hearing::quiet_steps`].
+    /// Advances the clocks by `steps`.
     pub(crate) fn wait(&mut self, steps: u64) {
+        self.steps = self.steps.saturating_add(steps);
         let steps = u16::try_from(steps).unwrap_or(u16::MAX);
         self.heard.iter_mut().for_each(|heard| heard.left = heard.left.saturating_sub(steps));
+        while let Some(index) = self.heard.iter().position(|heard| heard.left == 0) {
+            self.remove(index);
+        }
+    }
+
+    /// Forgets the distances of sounds, as when the whole map has changed.
+    pub(crate) fn forget(&mut self) {
+        self.field.forget();
+    }
+
+    /// How loud a sound is at `position`, from 1 to 3; `None` if it does not reach there.
+    fn strength(&mut self, world: &World, position: DVec2, sound: &Sound) -> Option<u8> {
+        let reach = half_cells(sound.reach.min(Sound::FARTHEST));
+        let from = sound.cell.center();
+        if from.distance(position) > f64::from(sound.reach) * 1.1 + 1.5 {
+            return None;
+        }
+        let cell = Cell { column: position.x as u32, row: position.y as u32 };
+        self.field.reach_out(world, cell, reach, self.steps);
+        let distance = self.field.distance(sound.cell).filter(|&distance| distance <= reach)?;
+        Some(3 - (u32::from(distance) * 3 / (u32::from(reach) + 1)) as u8)
+    }
+
+    /// Records a sound. A newer one of the same source and kind replaces an older one.
+    fn hear(&mut self, sound: &Sound, position: DVec2, strength: u8) {
+        let way = sound.cell.center() - position;
+        let degrees = libm::atan2(way.y, way.x).to_degrees();
+        let bearing = Heading::from_degrees(degrees).unwrap_or_default();
+        let mut sounds = self.sources.iter().zip(&self.heard);
+        let is_same = |(&by, heard): (&Source, &Heard)| by == sound.by && heard.kind == sound.kind;
+        if let Some(index) = sounds.position(is_same) {
+            self.remove(index);
+        } else if self.heard.len() == MOST {
+            self.remove(0);
+        }
+        self.sources.push(sound.by);
+        self.heard.push(Heard { bearing, strength, kind: sound.kind, left: DURATION });
+    }
+
+    fn remove(&mut self, index: usize) {
+        self.heard.remove(index);
+        self.sources.remove(index);
     }
 }

@@ -7,6 +7,8 @@
 mod figure;
 mod frame;
 mod furniture;
+mod guard;
+mod model;
 mod player;
 mod portal;
 mod treasure;
@@ -15,7 +17,7 @@ use std::num::NonZeroU32;
 
 use super::{Anchor, Facings, FrameTime, Sprite, SpriteHeight};
 use crate::color::Rgb;
-use crate::world::{Lamp, Light, Reach, Texture};
+use crate::world::{GuardKind, Lamp, Light, Reach, Texture};
 pub use frame::{CheckpointFrame, GuardFrame, LeverFrame, SpikesFrame};
 
 /// The names that maps may use.
@@ -44,7 +46,7 @@ pub fn named(name: &str) -> Option<Sprite> {
         EXIT => portal::portal(),
         KEY => treasure::key(),
         PLAYER => player::player(),
-        _ => return None,
+        _ => guard::guard(GuardKind::ALL.into_iter().find(|kind| kind.name() == name)?),
     };
     let mut sprite = Sprite::new(pictures, facings)?.with_frame_time(FrameTime::new(seconds)?);
     if let Some(animated) = animated {

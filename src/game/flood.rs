@@ -1,0 +1,248 @@
+//! Distances over the cells of a grid from one cell, found in the order of distance.
+//!
+//! A straight step to a neighbour costs [`STRAIGHT`] and a diagonal one [`DIAGONAL`], both in half
+//! cells: at most 6 % off the true length of a diagonal. Distances are whole numbers, so that cells
+//! are sorted into one bucket for each distance (R. B. Dial, "Algorithm 360: Shortest-Path Forest
+//! with Topological Ordering", 1969). The search stops after any number of cells and continues
+//! later. A binary heap was refused: it costs a logarithm for each cell, and gives the same order.
+//!
+//! Distances carry the number of the search that has found them, so that a new search need not
+//! clear those of the last one.
+
+use crate::world::Cell;
+
+/// The cost of a step to the north, east, south or west, in half cells.
+pub(super) const STRAIGHT: u16 = 2;
+/// The cost of a step to a diagonal neighbour, in half cells.
+pub(super) const DIAGONAL: u16 = 3;
+/// The largest cost of one step.
+pub(super) const MOST_COST: u16 = 15;
+
+/// One bucket for each distance that may still be open.
+const BUCKETS: usize = MOST_COST as usize + 1;
+/// The columns and rows of a search around its start: those farther away are not searched.
+const REACH: u32 = 160;
+
+/// The columns and rows from a cell to its neighbours, clockwise from the north: straight ones at
+/// even places.
+pub(super) const NEIGHBORS: [(i32, i32); 8] =
+    [(0, -1), (1, -1), (1, 0), (1, 1), (0, 1), (-1, 1), (-1, 0), (-1, -1)];
+
+/// The costs of steps in a search.
+pub(super) trait Costs {
+    /// The cost of a straight step between neighbours, found from `from` to `to`, at most
+    /// [`MOST_COST`]; `None` if there is no way.
+    fn straight(&self, from: Cell, to: Cell) -> Option<u16>;
+
+    /// Whether there is a diagonal step between `from` and `to`, past two cells to which there are
+    /// straight steps from `from` or are not.
+    fn has_diagonal(&self, from: Cell, to: Cell, beside: [bool; 2]) -> bool;
+}
+
+/// A search.
+#[derive(Clone, Debug, PartialEq, Default)]
+pub(super) struct Flood {
+    /// The north-west cell, and the columns and rows.
+    first: (u32, u32),
+    size: (u32, u32),
+    /// The number of the search in the upper half, the distance in the lower.
+    cells: Vec<u32>,
+    search: u16,
+    buckets: [Vec<Cell>; BUCKETS],
+    /// The number of cells in the buckets.
+    waiting: usize,
+    /// All cells nearer than this have their final distance.
+    distance: u16,
+}
+
+impl Flood {
+    /// Begins a search from `start`, in a map with that many columns and rows.
+    pub(super) fn begin(&mut self, start: Cell, (columns, rows): (u32, u32)) {
+        let along = |place: u32, count: u32| {
+            let first = place.saturating_sub(REACH);
+            (first, (place + REACH + 1).min(count).saturating_sub(first))
+        };
+        let (left, width) = along(start.column, columns);
+        let (top, height) = along(start.row, rows);
+        (self.first, self.size) = ((left, top), (width, height));
+        let count = width as usize * height as usize;
+        self.search = self.search.wrapping_add(1);
+        if self.search == 0 || self.cells.len() != count {
+            self.cells.clear();
+            self.cells.resize(count, 0);
+            self.search = 1;
+        }
+        self.buckets.iter_mut().for_each(Vec::clear);
+        (self.waiting, self.distance) = (0, 0);
+        self.offer(start, 0);
+    }
+
+    /// Whether all cells that can be reached have been.
+    pub(super) fn is_over(&self) -> bool {
+        self.waiting == 0
+    }
+
+    /// All cells nearer than this have been found.
+    pub(super) fn radius(&self) -> u16 {
+        if self.is_over() { u16::MAX } else { self.distance }
+    }
+
+    /// The distance of `cell` from the start, in half cells; `None` if it has not been found yet.
+    pub(super) fn distance(&self, cell: Cell) -> Option<u16> {
+        self.known(cell).filter(|&distance| distance < self.radius())
+    }
+
+    /// Continues the search by the next cell. Returns whether there was one.
+    pub(super) fn advance(&mut self, costs: &impl Costs) -> bool {
+        while self.waiting > 0 {
+            let bucket = usize::from(self.distance) % BUCKETS;
+            let Some(cell) = self.buckets[bucket].pop() else {
+                self.distance += 1;
+                continue;
+            };
+            self.waiting -= 1;
+            if self.known(cell) == Some(self.distance) {
+                self.spread(cell, costs);
+                return true;
+            }
+        }
+        false
+    }
+
+    /// Offers the neighbours of `cell` their distances.
+    fn spread(&mut self, cell: Cell, costs: &impl Costs) {
+        let mut is_open = [false; 4];
+        for (side, open) in is_open.iter_mut().enumerate() {
+            let Some(to) = self.neighbor(cell, side * 2) else { continue };
+            if let Some(cost) = costs.straight(cell, to) {
+                *open = true;
+                self.offer(to, self.distance + cost.min(MOST_COST));
+            }
+        }
+        for side in 0..4 {
+            let beside = [is_open[side], is_open[(side + 1) % 4]];
+            let Some(to) = self.neighbor(cell, side * 2 + 1) else { continue };
+            if costs.has_diagonal(cell, to, beside) {
+                self.offer(to, self.distance + DIAGONAL);
+            }
+        }
+    }
+
+    fn offer(&mut self, cell: Cell, distance: u16) {
+        let is_farther = self.known(cell).is_some_and(|known| known <= distance);
+        let Some(place) = self.place(cell).filter(|_| !is_farther && distance < u16::MAX) else {
+            return;
+        };
+        self.cells[place] = u32::from(self.search) << 16 | u32::from(distance);
+        self.buckets[usize::from(distance) % BUCKETS].push(cell);
+        self.waiting += 1;
+    }
+
+    fn known(&self, cell: Cell) -> Option<u16> {
+        let entry = self.cells[self.place(cell)?];
+        (entry >> 16 == u32::from(self.search)).then_some(entry as u16)
+    }
+
+    fn neighbor(&self, cell: Cell, side: usize) -> Option<Cell> {
+        neighbor(cell, side).filter(|&cell| self.place(cell).is_some())
+    }
+
+    fn place(&self, cell: Cell) -> Option<usize> {
+        let column = cell.column.wrapping_sub(self.first.0);
+        let row = cell.row.wrapping_sub(self.first.1);
+        let is_inside = column < self.size.0 && row < self.size.1;
+        is_inside.then(|| row as usize * self.size.0 as usize + column as usize)
+    }
+}
+
+/// The neighbour of `cell` at that place of [`NEIGHBORS`]; `None` where a coordinate is negative.
+pub(super) fn neighbor(cell: Cell, side: usize) -> Option<Cell> {
+    let (columns, rows) = NEIGHBORS[side];
+    let column = cell.column.checked_add_signed(columns)?;
+    Some(Cell { column, row: cell.row.checked_add_signed(rows)? })
+}
+
+#[cfg(test)]
+mod tests {
+    use proptest::prelude::*;
+
+    use super::*;
+
+    const SIDE: u32 = 9;
+
+    /// Cells that are open, all at the same cost.
+    struct Open(Vec<bool>);
+
+    impl Open {
+        fn at(&self, cell: Cell) -> bool {
+            cell.column < SIDE
+                && cell.row < SIDE
+                && self.0[(cell.row * SIDE + cell.column) as usize]
+        }
+    }
+
+    impl Costs for Open {
+        fn straight(&self, _: Cell, to: Cell) -> Option<u16> {
+            self.at(to).then_some(STRAIGHT)
+        }
+
+        fn has_diagonal(&self, _: Cell, to: Cell, beside: [bool; 2]) -> bool {
+            self.at(to) && beside == [true, true]
+        }
+    }
+
+    /// The distances by relaxing all cells until nothing changes.
+    fn by_relaxation(open: &Open, start: Cell) -> Vec<Option<u16>> {
+        let cells = || (0..SIDE).flat_map(|row| (0..SIDE).map(move |column| Cell { column, row }));
+        let place = |cell: Cell| (cell.row * SIDE + cell.column) as usize;
+        let mut found = vec![None; (SIDE * SIDE) as usize];
+        found[place(start)] = Some(0);
+        loop {
+            let before = found.clone();
+            for (cell, side) in cells().flat_map(|cell| (0..8).map(move |side| (cell, side))) {
+                let Some(to) = neighbor(cell, side).filter(|&to| open.at(to)) else { continue };
+                let Some(distance) = found[place(cell)] else { continue };
+                let is_beside =
+                    |side: usize| neighbor(cell, side % 8).is_some_and(|beside| open.at(beside));
+                let is_straight = side.is_multiple_of(2);
+                if !is_straight && !(is_beside(side + 7) && is_beside(side + 1)) {
+                    continue;
+                }
+                let next = distance + if is_straight { STRAIGHT } else { DIAGONAL };
+                let known: &mut Option<u16> = &mut found[place(to)];
+                *known = Some(known.map_or(next, |known| known.min(next)));
+            }
+            if found == before {
+                return found;
+            }
+        }
+    }
+
+    proptest! {
+        #[test]
+        fn distances_are_the_shortest_however_often_the_search_stops(
+            open in prop::collection::vec(prop::bool::weighted(0.7), (SIDE * SIDE) as usize),
+            starts in prop::collection::vec((0..SIDE, 0..SIDE), 1..4),
+        ) {
+            let open = Open(open);
+            let mut flood = Flood::default();
+            for (column, row) in starts {
+                let start = Cell { column, row };
+                let expected = by_relaxation(&open, start);
+                flood.begin(start, (SIDE, SIDE));
+                loop {
+                    for (place, &expected) in expected.iter().enumerate() {
+                        let (row, column) = (place as u32 / SIDE, place as u32 % SIDE);
+                        let found = flood.distance(Cell { column, row });
+                        let is_near = expected.is_some_and(|it| it < flood.radius());
+                        prop_assert_eq!(found, expected.filter(|_| is_near));
+                    }
+                    if !flood.advance(&open) {
+                        break;
+                    }
+                }
+                prop_assert!(flood.is_over());
+            }
+        }
+    }
+}

@@ -1,0 +1,156 @@
+//! What kinds of guards can do.
+
+use crate::world::GuardKind;
+
+/// The abilities of a kind of guard. Speeds are in cells per second, times in steps.
+#[derive(Clone, Copy, Debug)]
+pub(super) struct Abilities {
+    /// The speed on duty.
+    pub(super) walk: f64,
+    /// The speed of following a player.
+    pub(super) chase: f64,
+    /// The height of the body and of the eye above the feet, in cells.
+    pub(super) height: f64,
+    pub(super) eye: f64,
+    /// How far they see in full light, in cells; `None` for the blind.
+    pub(super) sight: Option<Sight>,
+    /// How much farther sounds reach them, in halves.
+    pub(super) hearing: u16,
+    /// Whether they open doors without a key.
+    pub(super) opens_doors: bool,
+    /// The duration of the warning before a blow or a shot.
+    pub(super) windup: u16,
+    /// The duration of the rest after it.
+    pub(super) recovery: u16,
+    /// The health that it takes.
+    pub(super) points: u8,
+    /// How far the middle of a player may be to be hit, in cells.
+    pub(super) reach: f64,
+    /// The speed during the warning.
+    pub(super) windup_speed: f64,
+    /// The speed during the blow.
+    pub(super) lunge: f64,
+    /// How far the steps of the guard are heard, in cells.
+    pub(super) tread: u8,
+}
+
+/// How well a guard sees.
+#[derive(Clone, Copy, Debug)]
+pub(super) struct Sight {
+    /// In full light, in cells.
+    pub(super) range: f64,
+    /// The cosine of half the angle of the cone.
+    pub(super) least_cosine: f64,
+}
+
+const WARDEN: Abilities = Abilities {
+    walk: 1.2,
+    chase: 2.0,
+    height: 0.9,
+    eye: 0.75,
+    // 110°
+    sight: Some(Sight { range: 10.0, least_cosine: 0.573_576_436_351_046 }),
+    hearing: 2,
+    opens_doors: true,
+    windup: 48,
+    recovery: 60,
+    points: 3,
+    reach: 1.25,
+    windup_speed: 0.0,
+    lunge: 1.5,
+    tread: 8,
+};
+
+const LISTENER: Abilities = Abilities {
+    walk: 1.5,
+    chase: 4.2,
+    height: 0.85,
+    eye: 0.7,
+    sight: None,
+    hearing: 3,
+    opens_doors: true,
+    windup: 28,
+    recovery: 45,
+    points: 2,
+    reach: 1.1,
+    windup_speed: 1.5,
+    lunge: 2.5,
+    tread: 4,
+};
+
+const LANTERN: Abilities = Abilities {
+    walk: 1.6,
+    chase: 2.6,
+    height: 0.8,
+    eye: 0.65,
+    // 130°
+    sight: Some(Sight { range: 12.0, least_cosine: 0.422_618_261_740_699 }),
+    hearing: 2,
+    opens_doors: true,
+    windup: 36,
+    recovery: 50,
+    points: 1,
+    reach: 1.1,
+    windup_speed: 1.0,
+    lunge: 2.0,
+    tread: 6,
+};
+
+const HOUND: Abilities = Abilities {
+    walk: 2.2,
+    chase: 6.0,
+    height: 0.45,
+    eye: 0.35,
+    // 160°
+    sight: Some(Sight { range: 6.0, least_cosine: 0.173_648_177_666_930 }),
+    hearing: 2,
+    opens_doors: false,
+    windup: 24,
+    recovery: 45,
+    points: 1,
+    reach: 0.7,
+    windup_speed: 4.5,
+    lunge: 8.0,
+    tread: 5,
+};
+
+const ARCHER: Abilities = Abilities {
+    walk: 1.4,
+    chase: 2.2,
+    height: 0.82,
+    eye: 0.68,
+    // 100°
+    sight: Some(Sight { range: 16.0, least_cosine: 0.642_787_609_686_539 }),
+    hearing: 2,
+    opens_doors: true,
+    windup: 60,
+    recovery: 60,
+    points: 2,
+    reach: 12.0,
+    windup_speed: 0.0,
+    lunge: 0.0,
+    tread: 6,
+};
+
+/// The abilities of `kind`.
+pub(super) const fn abilities(kind: GuardKind) -> &'static Abilities {
+    match kind {
+        GuardKind::Warden => &WARDEN,
+        GuardKind::Listener => &LISTENER,
+        GuardKind::Lantern => &LANTERN,
+        GuardKind::Hound => &HOUND,
+        GuardKind::Archer => &ARCHER,
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn every_blow_is_announced_in_time() {
+        for kind in GuardKind::ALL {
+            assert!(abilities(kind).windup >= 24, "{}", kind.name());
+        }
+    }
+}

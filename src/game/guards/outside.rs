@@ -1,0 +1,215 @@
+//! What the rest of the game asks of guards, and does to them.
+
+use glam::DVec2;
+
+use super::act::Cloud;
+use super::guard::Guard;
+use super::mover::RADIUS;
+use super::sight::{Point, is_in_sight};
+use super::state::State;
+use super::{Alarm, GuardView, Guards, Mood};
+use crate::game::collision::overlaps;
+use crate::game::sound::{Sound, SoundKind, Source};
+use crate::generate::Shift;
+use crate::world::{Cell, Figure, GuardKind, Lamp, Light, Reach, World};
+
+/// How far a fall is heard, in cells.
+const FALL: u8 = 6;
+/// How near to the middle of a guard a projectile hits, in cells.
+const HIT: f64 = 0.35;
+
+impl Guards {
+    /// Whether there are none.
+    pub(crate) fn is_empty(&self) -> bool {
+        self.list.is_empty()
+    }
+
+    /// The number of steps in which no guard does anything, if nothing is perceived: 0 if anybody
+    /// is awake, `None` if all sleep.
+    pub(crate) fn quiet_steps(&self) -> Option<u64> {
+        let quiet = self.list.iter().filter_map(|guard| match guard.state {
+            State::Asleep => None,
+            State::Down { left } => Some(u64::from(left) - 1),
+            _ => Some(0),
+        });
+        quiet.min()
+    }
+
+    /// Advances the clocks by `steps`, at most [`Guards::quiet_steps`].
+    pub(crate) fn wait(&mut self, steps: u64) {
+        if self.list.is_empty() {
+            return;
+        }
+        self.steps += steps;
+        for guard in &mut self.list {
+            if let State::Down { left } = &mut guard.state {
+                *left = left.saturating_sub(u16::try_from(steps).unwrap_or(u16::MAX)).max(1);
+            }
+        }
+    }
+
+    /// Whether anything that a picture shows of guards has changed in the last step.
+    pub(crate) fn has_changed(&self) -> bool {
+        self.has_changed
+    }
+
+    /// The guards, in the order of their indices.
+    pub(crate) fn views(&self) -> impl ExactSizeIterator<Item = GuardView> + '_ {
+        self.list.iter().map(Guard::view)
+    }
+
+    /// The guards as a picture shows them.
+    pub(crate) fn figures(&self) -> impl Iterator<Item = Figure> + '_ {
+        self.list.iter().filter_map(|guard| {
+            let sprite = self.sprites[guard.kind as usize]?;
+            let (position, heading) = (guard.mover.position(), guard.mover.heading);
+            let (base, frame) = (guard.mover.feet, guard.frame());
+            Some(Figure { sprite, position, base, heading, frame, opacity: u8::MAX })
+        })
+    }
+
+    /// The lamps that guards carry.
+    pub(crate) fn lamps(&self) -> impl Iterator<Item = (Cell, Lamp)> + '_ {
+        let bearers = self.list.iter().filter(|guard| guard.kind == GuardKind::Lantern);
+        let up = bearers.filter(|guard| !guard.state.is_down() && guard.state != State::Asleep);
+        let light = Light::new(0.7).unwrap_or(Light::FULL);
+        up.map(move |guard| (guard.mover.cell(), Lamp { light, reach: Reach::default() }))
+    }
+
+    /// How much the guards know.
+    pub(crate) fn alarm(&self) -> Alarm {
+        self.alarm
+    }
+
+    /// Whether the guard `index` neither follows nor looks for a player, and is not down.
+    pub(crate) fn is_unaware(&self, index: usize) -> bool {
+        self.list.get(index).is_some_and(|guard| {
+            let mood = guard.state.mood();
+            matches!(mood, Mood::Asleep | Mood::OnDuty | Mood::Wondering | Mood::Returning)
+        })
+    }
+
+    /// Whether `from` is behind the guard `index`: more than 90° off the direction of their look.
+    pub(crate) fn is_behind(&self, index: usize, from: DVec2) -> bool {
+        let guard = self.list.get(index);
+        guard.is_some_and(|it| it.mover.facing.dot(from - it.mover.position()) < 0.0)
+    }
+
+    /// Whether any guard would overlap `cell` if it were solid: a door does not close on them.
+    pub(crate) fn touches(&self, cell: Cell) -> bool {
+        self.list.iter().any(|guard| overlaps(guard.mover.position(), cell, RADIUS))
+    }
+
+    /// Whether any guard stands in `cell`: plates and floors that crumble feel it.
+    pub(crate) fn weighs_on(&self, world: &World, cell: Cell) -> bool {
+        let floor = world.floor_at(cell);
+        self.list.iter().any(|guard| guard.mover.cell() == cell && guard.mover.feet <= floor)
+    }
+
+    /// The nearest guard who is not down, whose middle is at most `reach` from `position` and at
+    /// most the angle with the cosine `least_cosine` off `direction`, a unit vector, and who is in
+    /// sight of an eye there.
+    pub(crate) fn guard_near(
+        &self,
+        world: &World,
+        eye: Point,
+        direction: DVec2,
+        reach: f64,
+        least_cosine: f64,
+    ) -> Option<usize> {
+        let near = self.ahead(eye, direction, least_cosine);
+        let near = near.filter(|&(distance, guard, _)| {
+            distance <= reach && is_in_sight(world, &[], eye, guard.middle())
+        });
+        Some(near.min_by(|one, other| one.0.total_cmp(&other.0))?.2)
+    }
+
+    /// The middle of the body of the nearest guard in sight of an eye, at most the angle with the
+    /// cosine `least_cosine` off `direction`, a unit vector.
+    pub(crate) fn aim(
+        &self,
+        world: &World,
+        clouds: &[Cloud],
+        eye: Point,
+        direction: DVec2,
+        least_cosine: f64,
+    ) -> Option<Point> {
+        let ahead = self.ahead(eye, direction, least_cosine);
+        let seen = ahead.filter(|(_, guard, _)| is_in_sight(world, clouds, eye, guard.middle()));
+        Some(seen.min_by(|one, other| one.0.total_cmp(&other.0))?.1.middle())
+    }
+
+    /// The guards who are not down in a cone, with their distances and indices.
+    fn ahead(
+        &self,
+        eye: Point,
+        direction: DVec2,
+        least_cosine: f64,
+    ) -> impl Iterator<Item = (f64, &Guard, usize)> {
+        let up = self.list.iter().zip(0..).filter(|(guard, _)| !guard.state.is_down());
+        up.filter_map(move |(guard, index)| {
+            let way = guard.mover.position() - eye.position;
+            let distance = way.length();
+            let is_ahead = direction.dot(way) >= least_cosine * distance;
+            is_ahead.then_some((distance, guard, index))
+        })
+    }
+
+    /// The guard whom a projectile hits that moves from `from` to `to`, the nearest to `from`.
+    pub(crate) fn hit_between(&self, from: Point, to: Point) -> Option<usize> {
+        let way = to.position - from.position;
+        let length_squared = way.length_squared();
+        let hits = self.list.iter().zip(0..).filter_map(|(guard, index)| {
+            let offset = guard.mover.position() - from.position;
+            let along = if length_squared > 0.0 { offset.dot(way) / length_squared } else { 0.0 };
+            let along = along.clamp(0.0, 1.0);
+            let height = from.height + (to.height - from.height) * along;
+            let is_hit = (way * along).distance_squared(offset) <= HIT * HIT
+                && (guard.mover.feet..=guard.head()).contains(&height)
+                && !guard.state.is_down();
+            is_hit.then_some((along, index))
+        });
+        Some(hits.min_by(|one, other| one.0.total_cmp(&other.0))?.1)
+    }
+
+    /// Lays the guard `index` on the floor for that many steps.
+    pub(crate) fn stun(&mut self, index: usize, steps: u16) {
+        let Some(guard) = self.list.get_mut(index) else { return };
+        guard.stun(steps);
+        let (cell, by) = (guard.mover.cell(), Source::Guard(index));
+        self.spoken.push(Sound { kind: SoundKind::Fall, cell, reach: FALL, by });
+    }
+
+    /// Pushes the guard `index` along `direction`, a unit vector: they stagger for half a second,
+    /// and lose the blow that they were raising.
+    pub(crate) fn push(&mut self, index: usize, direction: DVec2) {
+        if let Some(guard) = self.list.get_mut(index) {
+            guard.push(direction);
+        }
+    }
+
+    /// Moves all guards with the window of a generated level. Those outside it are gone, and those
+    /// of parts that have come into it are there.
+    pub(crate) fn shift(&mut self, world: &World, shift: Shift) {
+        self.list.retain_mut(|guard| guard.shift(shift));
+        let is_new = |cell: Cell| shift.is_new(cell);
+        let posts = world.guards().iter().zip(0..);
+        let posts =
+            posts.filter(|(post, _)| post.from <= self.rules.difficulty && is_new(post.cell));
+        let seed = crate::rng::hash(self.rules.seed, [self.steps]);
+        self.list.extend(posts.map(|(post, index)| Guard::new(world, post, index, seed)));
+        self.terrain.look_at_things(world);
+        self.ways.forget();
+        self.air.forget();
+        self.trails.iter_mut().for_each(super::Trail::forget);
+        self.spoken.clear();
+    }
+}
+
+impl Guard {
+    /// The middle of the body.
+    fn middle(&self) -> Point {
+        let height = self.mover.feet + self.abilities().height / 2.0;
+        Point { position: self.mover.position(), height }
+    }
+}

@@ -1,0 +1,212 @@
+//! Where guards walk: the floors of the cells, the steps between them, and what guards avoid.
+//!
+//! A guard walks on the lowest floor of a cell, and on top of low walls. They climb steps of
+//! [`STEP_HEIGHT`], step down by [`DROP`] at most, and never jump. They avoid water, spikes and
+//! floors that crumble; a guard who is in one of these, because they were pushed or because the
+//! floor has moved, may leave it.
+
+use crate::game::flood::{Costs, DIAGONAL, STRAIGHT};
+use crate::game::player::STEP_HEIGHT;
+use crate::world::{Ceiling, Cell, Driver, ThingKind, Tile, TileEffect, TileId, TileKind, World};
+
+/// The highest step down, in cells.
+pub(super) const DROP: f64 = 1.0;
+/// Going through a closed door takes as long as walking so much farther, in half cells.
+const DOOR: u16 = 6;
+
+/// What guards know about the tiles and the things of a world.
+#[derive(Clone, Debug, PartialEq)]
+pub(super) struct Terrain {
+    /// For each tile of the world.
+    footings: Vec<Footing>,
+    /// One bit for each cell, row by row: whether a thing blocks it or is dangerous there. Empty if
+    /// there is no such thing.
+    things: Vec<u64>,
+    size: (u32, u32),
+}
+
+/// The floor of a tile.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub(super) struct Footing {
+    pub(super) floor: f64,
+    ceiling: f64,
+    kind: FootingKind,
+}
+
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+enum FootingKind {
+    Free,
+    /// A closed door that guards open.
+    Door,
+    /// Dangerous.
+    Hazard,
+    Blocked,
+}
+
+/// The way in which a kind of guard walks.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub(super) struct Gait {
+    pub(super) opens_doors: bool,
+    pub(super) height: f64,
+}
+
+impl Terrain {
+    pub(super) fn new(world: &World) -> Self {
+        let crumbles = |id: TileId| {
+            let by_weight = world.moving_tiles().iter().filter(|it| it.driver == Driver::Weight);
+            by_weight.flat_map(|it| &it.states).any(|&state| state == id)
+        };
+        let tiles = world.tiles().iter().zip(0..);
+        let footings = tiles.map(|(tile, id)| Footing::new(tile, crumbles(TileId(id)))).collect();
+        let mut terrain = Self { footings, things: Vec::new(), size: (0, 0) };
+        terrain.look_at_things(world);
+        terrain
+    }
+
+    /// Finds the things that are in the way.
+    pub(super) fn look_at_things(&mut self, world: &World) {
+        self.size = (world.grid().width(), world.grid().height());
+        self.things.clear();
+        let is_in_the_way =
+            |kind: ThingKind, blocks| blocks || matches!(kind, ThingKind::Spikes(_));
+        for thing in world.things() {
+            if is_in_the_way(thing.kind, world.sprite(thing.sprite).blocks) {
+                let place = self.place(thing.cell);
+                if self.things.is_empty() {
+                    self.things
+                        .resize((self.size.0 as usize * self.size.1 as usize).div_ceil(64), 0);
+                }
+                self.things[place / 64] |= 1 << (place % 64);
+            }
+        }
+    }
+
+    pub(super) fn size(&self) -> (u32, u32) {
+        self.size
+    }
+
+    /// The floor of `cell`; `None` outside the map and where nobody walks.
+    pub(super) fn footing(&self, world: &World, cell: Cell) -> Option<Footing> {
+        let TileId(tile) = world.grid().tile(i64::from(cell.column), i64::from(cell.row))?;
+        let footing = self.footings[usize::from(tile)];
+        (footing.kind != FootingKind::Blocked).then_some(footing)
+    }
+
+    /// Whether guards avoid `cell`, where they could stand.
+    pub(super) fn is_hazard(&self, world: &World, cell: Cell) -> bool {
+        let is_hazard = |footing: Footing| footing.kind == FootingKind::Hazard;
+        self.footing(world, cell).is_some_and(is_hazard) || self.has_thing(cell)
+    }
+
+    /// Whether a guard walks from `from` to its neighbour `to`.
+    pub(super) fn leads(&self, world: &World, gait: Gait, from: Cell, to: Cell) -> bool {
+        let footings = (self.footing(world, from), self.footing(world, to));
+        let (Some(start), Some(end)) = footings else { return false };
+        self.is_entered(gait, end, to) && end.is_reached_from(start, gait)
+    }
+
+    /// Whether guards choose to go to `cell`.
+    pub(super) fn is_walkable(&self, world: &World, gait: Gait, cell: Cell) -> bool {
+        let footing = self.footing(world, cell);
+        footing.is_some_and(|footing| self.is_entered(gait, footing, cell))
+    }
+
+    fn is_entered(&self, gait: Gait, footing: Footing, cell: Cell) -> bool {
+        let is_open = match footing.kind {
+            FootingKind::Free => true,
+            FootingKind::Door => gait.opens_doors,
+            FootingKind::Hazard | FootingKind::Blocked => false,
+        };
+        is_open && footing.ceiling - footing.floor >= gait.height && !self.has_thing(cell)
+    }
+
+    fn has_thing(&self, cell: Cell) -> bool {
+        if self.things.is_empty() {
+            return false;
+        }
+        let place = self.place(cell);
+        self.things.get(place / 64).is_some_and(|bits| bits >> (place % 64) & 1 != 0)
+    }
+
+    fn place(&self, cell: Cell) -> usize {
+        cell.row as usize * self.size.0 as usize + cell.column as usize
+    }
+}
+
+impl Footing {
+    fn new(tile: &Tile, crumbles: bool) -> Self {
+        let floor = tile.heights.floor();
+        let gap = tile.gaps().find(|gap| gap.bottom == floor);
+        let is_dangerous = crumbles || tile.effect == Some(TileEffect::Water);
+        let kind = match tile.kind {
+            _ if gap.is_none() => FootingKind::Blocked,
+            TileKind::Door(door) if door.key.is_none() && door.switch.is_none() => {
+                FootingKind::Door
+            }
+            TileKind::Door(_) | TileKind::Mask(_) | TileKind::Glass(_) | TileKind::Shape(_) => {
+                FootingKind::Blocked
+            }
+            _ if is_dangerous => FootingKind::Hazard,
+            _ => FootingKind::Free,
+        };
+        let is_covered = matches!(tile.ceiling, Ceiling::Covered(_));
+        let ceiling = gap.filter(|_| is_covered).map_or(f64::INFINITY, |gap| gap.top);
+        Self { floor, ceiling, kind }
+    }
+
+    /// Whether the step from `start` up or down to this floor can be walked.
+    fn is_reached_from(self, start: Self, gait: Gait) -> bool {
+        let climb = self.floor - start.floor;
+        let headroom = self.ceiling.min(start.ceiling) - self.floor.max(start.floor);
+        (-DROP..=STEP_HEIGHT).contains(&climb) && headroom >= gait.height
+    }
+
+    /// Whether nothing at all has to be considered between this floor and another one.
+    pub(super) fn is_level_with(self, other: Self) -> bool {
+        self.floor == other.floor
+            && self.kind == FootingKind::Free
+            && other.kind == FootingKind::Free
+    }
+}
+
+/// The costs of a search from the goal of a way back to those who walk there.
+pub(super) struct Backwards<'a> {
+    pub(super) terrain: &'a Terrain,
+    pub(super) world: &'a World,
+    pub(super) gait: Gait,
+}
+
+impl Costs for Backwards<'_> {
+    fn straight(&self, from: Cell, to: Cell) -> Option<u16> {
+        let is_door = |footing: Footing| footing.kind == FootingKind::Door;
+        let is_door = self.terrain.footing(self.world, from).is_some_and(is_door);
+        let cost = if is_door { STRAIGHT + DOOR } else { STRAIGHT };
+        self.terrain.leads(self.world, self.gait, to, from).then_some(cost)
+    }
+
+    /// Past two cells at the same height.
+    fn has_diagonal(&self, from: Cell, to: Cell, beside: [bool; 2]) -> bool {
+        let Self { terrain, world, .. } = *self;
+        if beside != [true, true] {
+            return false;
+        }
+        let corners = [
+            to,
+            Cell { column: from.column, row: to.row },
+            Cell { column: to.column, row: from.row },
+        ];
+        terrain.footing(world, from).is_some_and(|here| {
+            let is_level = |cell| {
+                let there = terrain.footing(world, cell);
+                there.is_some_and(|there| here.is_level_with(there))
+            };
+            corners.into_iter().all(|cell| is_level(cell) && !terrain.has_thing(cell))
+                && terrain.leads(world, self.gait, to, from)
+        })
+    }
+}
+
+/// The cost of the step between two neighbours, in half cells.
+pub(super) fn cost_between(one: Cell, other: Cell) -> u16 {
+    if one.column == other.column || one.row == other.row { STRAIGHT } else { DIAGONAL }
+}

@@ -1,0 +1,65 @@
+//! The trail of a player: the cells where they were, which hounds smell.
+
+use std::collections::VecDeque;
+
+use super::Target;
+use crate::world::{Cell, TileEffect, World};
+
+/// The steps for which a cell smells: 20 seconds.
+const LASTS: u64 = 1200;
+/// The number of cells that are remembered.
+const MOST: usize = 128;
+
+/// The cells in which a player has been, the oldest first. Water keeps no smell.
+#[derive(Clone, Debug, PartialEq, Default)]
+pub(super) struct Trail {
+    marks: VecDeque<Mark>,
+    /// The number of the oldest mark: marks are counted from the first of the game.
+    first: u64,
+}
+
+#[derive(Clone, Copy, Debug, PartialEq)]
+struct Mark {
+    cell: Cell,
+    left_at: u64,
+}
+
+impl Trail {
+    /// Records where a player is in the step `now`.
+    pub(super) fn record(&mut self, world: &World, target: &Target, now: u64) {
+        let is_stale = |mark: &Mark| now - mark.left_at > LASTS;
+        while self.marks.front().is_some_and(is_stale) || self.marks.len() >= MOST {
+            self.marks.pop_front();
+            self.first += 1;
+        }
+        let cell = target.cell();
+        match self.marks.back_mut() {
+            Some(mark) if mark.cell == cell => mark.left_at = now,
+            _ if world.effect_in(cell) == Some(TileEffect::Water) => {}
+            _ => self.marks.push_back(Mark { cell, left_at: now }),
+        }
+    }
+
+    /// The newest mark whose cell `smells`, with its number.
+    pub(super) fn newest(&self, smells: impl Fn(Cell) -> bool) -> Option<u64> {
+        let place = self.marks.iter().rposition(|mark| smells(mark.cell))?;
+        Some(self.first + place as u64)
+    }
+
+    /// The cell of the mark with that number.
+    pub(super) fn cell(&self, number: u64) -> Option<Cell> {
+        let place = usize::try_from(number.checked_sub(self.first)?).ok()?;
+        self.marks.get(place).map(|mark| mark.cell)
+    }
+
+    /// The number of the oldest mark that there still is.
+    pub(super) fn first(&self) -> u64 {
+        self.first
+    }
+
+    /// Forgets the cells, as when the whole map has changed.
+    pub(super) fn forget(&mut self) {
+        self.first += self.marks.len() as u64;
+        self.marks.clear();
+    }
+}

@@ -1,0 +1,115 @@
+//! What a game shows of itself in its world: missiles and smoke as figures, and lamps that move.
+
+use super::Game;
+use super::guards::Target;
+use super::tools::{Missile, MissileKind, Puff};
+use crate::world::sprite::builtin;
+use crate::world::{Cell, Figure, Heading, Lamp, Light, Reach, SpriteId, World};
+
+/// The sprites of what flies; each is `None` where nothing can fly.
+#[derive(Clone, Copy, Debug, PartialEq, Default)]
+pub(super) struct Sprites {
+    pebble: Option<SpriteId>,
+    dart: Option<SpriteId>,
+    flask: Option<SpriteId>,
+    bolt: Option<SpriteId>,
+    smoke: Option<SpriteId>,
+}
+
+impl Sprites {
+    /// The sprites, which are added to `world`.
+    pub(super) fn added_to(world: &mut World) -> Self {
+        let mut add = |name| builtin::named(name).map(|sprite| world.add_sprite(sprite));
+        Self {
+            pebble: add("pebble"),
+            dart: add("dart"),
+            flask: add("flask"),
+            bolt: add("bolt"),
+            smoke: add("smoke"),
+        }
+    }
+
+    fn missile(&self, missile: &Missile) -> Option<Figure> {
+        let sprite = match missile.kind {
+            MissileKind::Pebble => self.pebble,
+            MissileKind::Dart => self.dart,
+            MissileKind::Flask => self.flask,
+            MissileKind::Bolt { .. } => self.bolt,
+        };
+        let velocity = missile.velocity;
+        let degrees = libm::atan2(velocity.y, velocity.x).to_degrees();
+        Some(Figure {
+            sprite: sprite?,
+            position: missile.position,
+            base: missile.height,
+            heading: Heading::from_degrees(degrees).unwrap_or_default(),
+            frame: 0,
+            opacity: u8::MAX,
+        })
+    }
+
+    fn puff(&self, puff: Puff) -> Option<Figure> {
+        Some(Figure {
+            sprite: self.smoke?,
+            position: puff.position,
+            base: puff.height,
+            heading: Heading::default(),
+            frame: puff.frame,
+            opacity: puff.opacity,
+        })
+    }
+}
+
+impl Game {
+    /// The game, which shows its figures and lamps.
+    #[must_use]
+    pub(super) fn shown(mut self) -> Self {
+        self.show();
+        self
+    }
+
+    /// Shows figures and lamps where they are now.
+    pub(super) fn show(&mut self) {
+        self.show_lamps();
+        if self.is_mission {
+            self.show_figures();
+        }
+    }
+
+    /// What guards can perceive of the player.
+    pub(super) fn target(&self) -> Target {
+        let motion = &self.player.motion;
+        let light = self.world.light_in(motion.cell()).in_256ths();
+        let posed = if motion.is_ducking() { light / 2 } else { light };
+        let visibility = if motion.is_still() { posed * 4 / 5 } else { posed };
+        Target {
+            position: motion.position(),
+            feet: motion.feet(),
+            head: motion.head(),
+            visibility: visibility.min(u8::MAX.into()) as u8,
+            has_light: self.player.has_light,
+            is_alive: !self.player.health.is_gone(),
+        }
+    }
+
+    fn show_figures(&mut self) {
+        let missiles = self.missiles.iter().filter_map(|missile| self.sprites.missile(missile));
+        let puffs = self.smoke.puffs().filter_map(|puff| self.sprites.puff(puff));
+        let figures = missiles.chain(puffs);
+        if !self.world.figures().iter().copied().eq(figures.clone()) {
+            self.world.set_figures(figures);
+            self.revision += 1;
+        }
+    }
+
+    fn show_lamps(&mut self) {
+        let lamp = self.player.has_light.then(|| (self.player.motion.cell(), lamp()));
+        let lamps: Vec<(Cell, Lamp)> = lamp.into_iter().collect();
+        self.world.set_moving_lamps(&lamps);
+    }
+}
+
+/// The player's lamp.
+fn lamp() -> Lamp {
+    Lamp { light: Light::new(0.6).unwrap_or(Light::NONE), reach: Reach::default() }
+}
