@@ -69,7 +69,8 @@ struct State {
 /// The winning game on the way through `errands` from the start of `game`, if one is found, and the
 /// number of moves that were played.
 pub(crate) fn search(game: Game, errands: &[Errand]) -> (Option<Pilot>, usize) {
-    let mut search = Search { errands, waiting: BinaryHeap::new(), states: Vec::new(), seen: BTreeSet::new() };
+    let mut search =
+        Search { errands, waiting: BinaryHeap::new(), states: Vec::new(), seen: BTreeSet::new() };
     search.add(State { pilot: Pilot::new(game), done: 0, toll: 0 });
     for moves in 0..MOST_MOVES {
         let Some((Reverse(_), Reverse(way), index)) = search.waiting.pop() else {

@@ -55,7 +55,11 @@ fn a_player_without_care_loses_every_level() {
         let is_dead = matches!(outcome, Outcome::Dead { .. });
         (!is_dead).then(|| {
             let (cell, health) = (pilot.cell(), pilot.game.health());
-            format!("{}: {outcome:?} after {} steps at {cell:?}, {health:?}", level.name, pilot.steps())
+            format!(
+                "{}: {outcome:?} after {} steps at {cell:?}, {health:?}",
+                level.name,
+                pilot.steps()
+            )
         })
     });
     let survived: Vec<String> = survived.collect();

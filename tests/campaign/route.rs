@@ -60,8 +60,10 @@ fn cell(place: &str, map: &str) -> Cell {
     let drawn = grid.lines().zip(0..).flat_map(|(line, row)| {
         line.chars().zip(0..).map(move |(character, column)| (character, Cell { column, row }))
     });
-    let cells: Vec<Cell> =
-        drawn.filter(|(character, _)| place.chars().eq([*character])).map(|(_, cell)| cell).collect();
+    let cells: Vec<Cell> = drawn
+        .filter(|(character, _)| place.chars().eq([*character]))
+        .map(|(_, cell)| cell)
+        .collect();
     let [cell] = cells[..] else { panic!("{place:?} is drawn {} times", cells.len()) };
     cell
 }

@@ -45,7 +45,8 @@ fn update(level: &Level, difficulty: Difficulty) -> Result<String, String> {
     let game = Game::with_rules(level.world().unwrap(), Rules { difficulty, seed: 0 });
     let (found, moves) = careful::search(game, &route(level));
     let pilot = found.ok_or_else(|| format!("{name}: nothing found in {moves} moves"))?;
-    fs::write(path(level, difficulty), pilot.script()).map_err(|error| format!("{name}: {error}"))?;
+    fs::write(path(level, difficulty), pilot.script())
+        .map_err(|error| format!("{name}: {error}"))?;
     Ok(format!("{name}: {} steps, {moves} moves", pilot.steps()))
 }
 
@@ -77,7 +78,12 @@ fn scripts_win_every_level_on_every_difficulty() {
         let (treasure, health) = (game.treasure(), game.health().points);
         format!(
             "{name}: {:.1} s, {}, health {health}, alarms {}, treasure {}/{}, state {:016x}\n",
-            game.elapsed(), rank.name(), tally.alarms, treasure.found, treasure.total, game.checksum()
+            game.elapsed(),
+            rank.name(),
+            tally.alarms,
+            treasure.found,
+            treasure.total,
+            game.checksum()
         )
     });
     insta::assert_snapshot!("scripts", lines.collect::<String>());

@@ -123,7 +123,9 @@ impl Pilot {
     /// that ends there. Whether there is one.
     pub(crate) fn hop(&mut self, cell: Cell) -> bool {
         let floor = self.game.world().floor_at(cell);
-        for (pace, run_up) in [Pace::Walk, Pace::Run].into_iter().flat_map(|pace| (0..40).map(move |n| (pace, n))) {
+        for (pace, run_up) in
+            [Pace::Walk, Pace::Run].into_iter().flat_map(|pace| (0..40).map(move |n| (pace, n)))
+        {
             let mut tried = self.clone();
             tried.face(cell);
             tried.wait(20);

@@ -60,7 +60,8 @@ impl Ways {
             if cost > ways.cost(cell) {
                 continue;
             }
-            for (from, length) in ground.around(cell).filter(|&(from, _)| ground.leads(from, cell)) {
+            for (from, length) in ground.around(cell).filter(|&(from, _)| ground.leads(from, cell))
+            {
                 let cost = cost + length + ground.toll(cell) + dread(cell);
                 if cost < ways.cost(from) {
                     ways.costs[(from.row * width + from.column) as usize] = cost;
@@ -164,8 +165,11 @@ impl<'a> Ground<'a> {
     }
 
     fn toll(&self, cell: Cell) -> u32 {
-        let is_spiked =
-            self.world.things_in(cell).iter().any(|thing| matches!(thing.kind, ThingKind::Spikes(_)));
+        let is_spiked = self
+            .world
+            .things_in(cell)
+            .iter()
+            .any(|thing| matches!(thing.kind, ThingKind::Spikes(_)));
         let is_wet = self.world.effect_in(cell) == Some(TileEffect::Water);
         let is_door = self.world.door(cell).is_some();
         u32::from(is_spiked) * SPIKES + u32::from(is_wet) * WATER + u32::from(is_door) * DOOR
