@@ -7,8 +7,8 @@ use super::*;
 use crate::color::Rgb;
 use crate::world::sprite::builtin;
 use crate::world::{
-    Ceiling, Cell, Covering, FieldOfView, Grid, Heading, Heights, Mission, Paint, Parts, Sky,
-    SpriteId, Start, Thing, ThingKind, Tile, TileKind,
+    Ceiling, Cell, Covering, FieldOfView, Grid, Heading, Heights, Paint, Parts, Sky, SpriteId,
+    Start, Thing, ThingKind, Tile, TileKind,
 };
 
 /// A world drawn in characters: `#` is solid, `@` is where the player starts, `E` is an exit.
