@@ -33,6 +33,12 @@ pub(crate) enum Action {
     NarrowView,
     /// Show or hide the figures of frames and the link.
     ToggleStats,
+    /// Show or hide a dot in the middle of the picture.
+    ToggleCrosshair,
+    /// Show or hide the compass.
+    ToggleCompass,
+    /// Show or hide the best run.
+    ToggleGhost,
     /// Leave the game.
     Leave,
 }
