@@ -69,6 +69,11 @@ impl<'a> TopView<'a> {
         }
     }
 
+    /// Whether the floor at `point` is in view.
+    pub(super) fn is_visible(&self, point: DVec2) -> bool {
+        self.visible_floor.contains(point)
+    }
+
     /// Whether a pixel around `point` shows the shape of `tile`, which is in `cell`.
     fn is_covered(&self, tile: TileId, cell: Cell, point: DVec2) -> bool {
         let TileKind::Shape(Shape { outline, .. }) = self.world.tile(tile).kind else {

@@ -13,6 +13,7 @@ mod guard;
 mod model;
 mod player;
 mod portal;
+mod stores;
 mod treasure;
 mod weapons;
 
@@ -25,8 +26,10 @@ pub use frame::{CheckpointFrame, GuardFrame, LeverFrame, SpikesFrame};
 
 /// The names that maps may use for ornaments. Games also use sprites of guards, of finds and of what
 /// flies, which [`named`] knows.
-pub const NAMES: &[&str] =
-    &["barrel", "bones", "column", "lamp", "plant", "statue", "table", "torch"];
+pub const NAMES: &[&str] = &[
+    "banner", "barrel", "bones", "books", "brazier", "chest", "column", "crate", "lamp", "plant",
+    "statue", "table", "torch",
+];
 
 /// The sprite of an exit.
 pub const EXIT: &str = "portal";
@@ -56,6 +59,11 @@ pub fn named(name: &str) -> Option<Sprite> {
         "smoke" => weapons::smoke(),
         "spikes" => fixtures::spikes(),
         "star" => weapons::star(),
+        "banner" => stores::banner(),
+        "books" => stores::books(),
+        "brazier" => stores::brazier(),
+        "chest" => stores::chest(),
+        "crate" => stores::crate_of_boards(),
         "barrel" => furniture::barrel(),
         "bones" => treasure::bones(),
         "column" => furniture::column(),
