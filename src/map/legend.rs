@@ -2,20 +2,19 @@
 
 mod property;
 mod section;
+mod surroundings;
 
 use std::collections::BTreeMap;
 use std::ops::Range;
 
 use toml::de::{DeTable, DeValue};
 
-use super::covering::{CeilingText, CoveringText};
 use super::definitions::KEYS;
 use super::doors::{DoorSymbol, KeySymbol};
 use super::drawing::Drawing;
 use super::guards::GuardSymbol;
-use super::heights::HeightsText;
 use super::items::ItemSymbol;
-use super::mechanisms::{FloorMechanism, MovingWallSymbol};
+use super::mechanisms::MovingWallSymbol;
 use super::per_character::PerCharacter;
 use super::see_through::MaskSymbol;
 use super::shapes::ShapeSymbol;
@@ -23,10 +22,12 @@ use super::sprites::SpriteSymbol;
 use super::textures::Surface;
 use crate::fault::document::Entry;
 use crate::fault::{Fault, quoted};
-use crate::world::{Cell, Glass, Heading, Light};
+use crate::world::{Cell, Glass, Heading};
 use property::property;
 pub(super) use property::{heading, light};
 pub(super) use section::Section;
+pub(super) use surroundings::Surroundings;
+use surroundings::Taken;
 
 /// The meanings of the characters that the grid may use.
 pub(super) struct Legend<'a> {
@@ -77,16 +78,6 @@ pub(super) enum Meaning<'a> {
     Waypoint,
     /// A definition with a fault.
     Unclear,
-}
-
-/// What a tile has of its own; the rest is the map's.
-#[derive(Default)]
-pub(super) struct Surroundings<'a> {
-    pub(super) floor: Option<CoveringText<'a>>,
-    pub(super) ceiling: Option<CeilingText<'a>>,
-    pub(super) light: Option<Light>,
-    pub(super) heights: HeightsText<'a>,
-    pub(super) mechanism: FloorMechanism<'a>,
 }
 
 impl<'a> Legend<'a> {
@@ -245,57 +236,6 @@ fn meaning<'a>(section: Section, entry: &Entry<'a, '_>) -> (Meaning<'a>, Surroun
         ),
     }
     (Meaning::Unclear, surroundings)
-}
-
-/// Whether an entry was one of the [`Surroundings`].
-#[derive(Clone, Copy, PartialEq, Eq)]
-enum Taken {
-    Yes,
-    No,
-}
-
-impl<'a> Surroundings<'a> {
-    fn is_empty(&self) -> bool {
-        !self.has_covering()
-            && self.light.is_none()
-            && self.heights.is_empty()
-            && self.mechanism.is_empty()
-    }
-
-    /// Whether a tile with that meaning can have these.
-    fn suit(&self, meaning: &Meaning<'_>) -> bool {
-        let is_fixed = self.mechanism.is_empty();
-        is_fixed
-            && match meaning {
-                Meaning::Wall(..) | Meaning::Mirror(..) | Meaning::MovingWall(_) => {
-                    !self.has_covering() && self.heights.is_empty()
-                }
-                Meaning::Shape(_) => true,
-                Meaning::Door(_) | Meaning::Mask(_) | Meaning::Glass(_) => self.light.is_none(),
-                _ => self.is_empty(),
-            }
-    }
-
-    fn has_covering(&self) -> bool {
-        self.floor.is_some() || self.ceiling.is_some()
-    }
-
-    /// Reads `entry` if it is one of a tile's surroundings.
-    fn take(&mut self, section: Section, entry: &Entry<'a, '_>, table: &DeTable<'_>) -> Taken {
-        match (section, entry.key) {
-            (Section::Tiles, "floor") => {
-                self.floor = CoveringText::read(entry, r#"{ floor = "moss" }"#);
-            }
-            (Section::Tiles, "ceiling") => {
-                self.ceiling = CeilingText::read(entry, r#"{ ceiling = "wood" }"#);
-            }
-            (Section::Tiles, "light") => self.light = light(entry),
-            (Section::Tiles, _) if self.heights.take(entry) => {}
-            (Section::Tiles, _) if self.mechanism.take(entry, table) => {}
-            _ => return Taken::No,
-        }
-        Taken::Yes
-    }
 }
 
 fn defined_twice(character: char, place: Range<usize>) -> Fault {
