@@ -10,8 +10,10 @@ mod controls;
 mod demo;
 mod detection;
 mod draw;
+mod ghost;
 mod goal;
 mod help;
+mod hud;
 mod keys;
 mod levels;
 mod map_panel;
@@ -24,19 +26,26 @@ mod played;
 mod recording;
 mod reload;
 mod replay;
+mod results;
 mod run;
+mod run_log;
 mod screen;
 mod script_cursor;
 mod series;
 mod settings;
+mod settings_screen;
 mod stats;
 mod status;
 mod steps;
+mod summary;
+mod vitals;
+mod watch;
 
 use std::time::Duration;
 
 pub use bindings::Bindings;
 use demo::Demo;
+use ghost::Ghost;
 use goal::Goal;
 use help::HelpScroll;
 pub use levels::Levels;
@@ -47,15 +56,18 @@ use menus::Choice;
 pub use offers::{FindMaps, Offers, OwnMap};
 pub use recording::Recording;
 pub use replay::Replay;
-pub use run::{Opening, play};
+use results::LevelResult;
+pub use run::{Farewell, Opening, play};
+use run_log::RunLog;
 use screen::{Screen, Shelved};
 pub use settings::{Configuration, MapDisplay, Settings};
 
 use crate::color::palette::ColorDepth;
-use crate::game::STEP;
+use crate::game::{Flash, STEP};
 use crate::render::Filter;
+use crate::store::Store;
 use crate::tui::{CellAspect, GlyphMode, View};
-use crate::world::{Difficulty, FieldOfView};
+use crate::world::{Difficulty, FieldOfView, Heading};
 use clock::Clock;
 use controls::Controls;
 use detection::Detection;
@@ -66,6 +78,7 @@ use recording::ScriptRecorder;
 use reload::Reload;
 use stats::Stats;
 use status::StatusLine;
+use watch::Watch;
 
 /// The part of the game's state that a picture depends on.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -82,6 +95,10 @@ struct DrawOptions {
     cell_aspect: CellAspect,
     filter: Filter,
     field_of_view: FieldOfView,
+    /// The flash at the edge, and the direction of view.
+    flash: Option<(Flash, Heading)>,
+    /// Whether a dot marks the middle.
+    marks_middle: bool,
 }
 
 struct App {
@@ -92,6 +109,16 @@ struct App {
     level: LevelNumber,
     difficulty: Difficulty,
     goal: Goal,
+    /// The run since the level began.
+    log: RunLog,
+    /// The best run of the level.
+    ghost: Option<Ghost>,
+    /// The result of the level that was won last.
+    result: Option<LevelResult>,
+    /// A line about the game that was left.
+    left: Option<String>,
+    store: Store,
+    watch: Watch,
     /// The seconds that the earlier levels took.
     earlier: f64,
     screen: Screen,
@@ -105,6 +132,7 @@ struct App {
     demo: Option<Demo>,
     settings: Settings,
     depth: ColorDepth,
+    terminal_depth: ColorDepth,
     cell_aspect: CellAspect,
     field_of_view: FieldOfView,
     controls: Controls,
@@ -148,6 +176,12 @@ impl App {
             map: MapPanel::new(settings.minimap),
             help: HelpScroll::default(),
             game,
+            log: RunLog::default(),
+            ghost: None,
+            result: None,
+            left: None,
+            store: Store::in_memory(),
+            watch: Watch::default(),
             earlier: 0.0,
             screen: Screen::Playing,
             menu: Menu::new(""),
@@ -157,6 +191,7 @@ impl App {
             demo: None,
             field_of_view: settings.field_of_view,
             depth: settings.depth.unwrap_or_default(),
+            terminal_depth: ColorDepth::default(),
             cell_aspect: settings.cell_aspect.unwrap_or_default(),
             views: Views::new(View::with_caster(settings.caster.clone())),
             shows_stats: settings.shows_stats,
@@ -178,17 +213,31 @@ impl App {
         }
     }
 
-    /// The title.
-    fn titled(offers: Offers, settings: Settings) -> Self {
-        let mut app = Self::new(Levels::nothing(), settings);
-        app.offers = Some(offers);
-        app.return_to_title();
-        app
+    /// The first of `levels`, or else the title, with what `store` keeps.
+    fn opened(opening: Opening, settings: Settings, store: Store) -> Self {
+        match opening {
+            Opening::Levels(levels) => {
+                let mut app = Self::new(Levels::nothing(), settings);
+                app.store = store;
+                app.difficulty = app.store.preferences().difficulty;
+                app.begin(levels);
+                app
+            }
+            Opening::Title(offers) => {
+                let mut app = Self::new(Levels::nothing(), settings);
+                app.store = store;
+                app.offers = Some(offers);
+                app.show_title();
+                app
+            }
+        }
     }
 
     /// The state that a picture would show now.
     fn visible(&self) -> Shown {
-        Shown { viewpoint: self.game.viewpoint(self.field_of_view), revision: self.game.revision() }
+        let ghost = self.ghost.as_ref().map_or(0, Ghost::steps);
+        let revision = self.game.revision() + ghost;
+        Shown { viewpoint: self.game.viewpoint(self.field_of_view), revision }
     }
 
     /// Whether the screen is out of date.
@@ -220,7 +269,7 @@ impl App {
         if self.controls.held.has_taps() {
             return Some(self.clock.step_after(0));
         }
-        let quiet = Some(self.game.quiet_steps(self.wanted())).filter(|&quiet| quiet < u64::MAX);
+        let quiet = Some(self.quiet_steps(self.wanted())).filter(|&quiet| quiet < u64::MAX);
         let before_animation = self.steps_to_animation().map(|steps| steps.saturating_sub(1));
         let steps = quiet.into_iter().chain(before_animation).min()?;
         Some(self.clock.step_after(steps))
@@ -229,6 +278,7 @@ impl App {
     /// Handles a new size or new properties of the terminal.
     fn terminal_changed(&mut self, aspect: Option<CellAspect>, depth: ColorDepth) {
         self.cell_aspect = self.settings.cell_aspect.or(aspect).unwrap_or_default();
+        self.terminal_depth = depth;
         self.depth = self.settings.depth.unwrap_or(depth);
         self.shown = None;
     }

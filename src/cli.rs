@@ -12,6 +12,7 @@ mod cast;
 mod check;
 mod completions;
 mod config;
+mod data_folder;
 mod error;
 mod level;
 mod manual;

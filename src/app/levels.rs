@@ -5,7 +5,7 @@ use std::{fmt, iter};
 use super::played::Played;
 use super::reload::Changes;
 use crate::fault::Faults;
-use crate::game::Game;
+use crate::game::{Game, Rules};
 use crate::map::{Level, builtin};
 use crate::space::Scene;
 use crate::world::Difficulty;
@@ -107,10 +107,11 @@ impl Stage {
     }
 
     /// The level at its start; `None` if a built-in level has faults, which tests exclude.
-    pub(super) fn begin(&self, _difficulty: Difficulty) -> Option<Played> {
+    pub(super) fn begin(&self, difficulty: Difficulty) -> Option<Played> {
+        let rules = Rules { difficulty, seed: 0 };
         Some(match &self.content {
-            Content::Builtin(level) => Played::new(level.world().ok()?.into()),
-            Content::Level(level) => Played::new(level.clone()),
+            Content::Builtin(level) => Played::with_rules(level.world().ok()?.into(), rules),
+            Content::Level(level) => Played::with_rules(level.clone(), rules),
             Content::Game(game) => Played::Grid(game.clone()),
         })
     }

@@ -226,9 +226,7 @@ mod tests {
 
     #[test]
     fn the_selected_entry_is_shown_in_any_window() {
-        for (columns, rows) in
-            [(40, 12), (30, 8), (20, 5), (12, 4), (20, 3), (3, 1), (1, 1), (0, 0)]
-        {
+        for (columns, rows) in [(40, 12), (30, 8), (20, 5), (12, 4), (20, 3), (3, 1), (1, 1)] {
             let mut menu = menu();
             for _ in 0..14 {
                 let text = shown(&mut menu, columns, rows);

@@ -15,6 +15,8 @@ pub(super) struct Sprites {
     flask: Option<SpriteId>,
     bolt: Option<SpriteId>,
     smoke: Option<SpriteId>,
+    /// Added when it is first shown.
+    player: Option<SpriteId>,
 }
 
 impl Sprites {
@@ -27,6 +29,7 @@ impl Sprites {
             flask: add("flask"),
             bolt: add("bolt"),
             smoke: add("smoke"),
+            player: None,
         }
     }
 
@@ -75,6 +78,20 @@ impl Game {
         if self.is_mission {
             self.show_figures();
         }
+    }
+
+    /// Shows the figure of somebody who is not in the game, or nobody, until the next step. The
+    /// figure has the sprite of a player, which no other figure has.
+    #[cfg(feature = "terminal")]
+    pub(crate) fn show_guest(&mut self, guest: impl FnOnce(SpriteId) -> Option<Figure>) {
+        let player = &mut self.sprites.player;
+        if player.is_none() {
+            *player = builtin::named("player").map(|sprite| self.world.add_sprite(sprite));
+        }
+        let Some(sprite) = *player else { return };
+        let own = self.world.figures().iter().filter(|figure| figure.sprite != sprite);
+        let all: Vec<Figure> = own.copied().chain(guest(sprite)).collect();
+        self.world.set_figures(all.into_iter());
     }
 
     /// What guards can perceive of the player.

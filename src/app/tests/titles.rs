@@ -1,7 +1,7 @@
 //! The title and its menus, by keys.
 
 use super::*;
-use crate::app::{Offers, OwnMap};
+use crate::app::{Offers, Opening, OwnMap};
 use crate::map::NoFiles;
 use crate::map::parse_level;
 
@@ -16,7 +16,13 @@ fn title() -> Rig {
     };
     let maps = move || vec![map("bad.toml", "grid = 3"), map("pit.toml", PIT)];
     let offers = Offers { maps: Some(Box::new(maps)) };
-    let mut rig = Rig::of(App::titled(offers, Settings::default()), Some((500, 30)));
+    titled(offers, Store::in_memory())
+}
+
+pub(super) fn titled(offers: Offers, store: Store) -> Rig {
+    let settings = Settings { frame_time: Duration::from_secs(1) / 30, ..Settings::default() };
+    let app = App::opened(Opening::Title(offers), settings, store);
+    let mut rig = Rig::of(app, Some((500, 30)));
     rig.wait(100);
     rig
 }
@@ -24,7 +30,7 @@ fn title() -> Rig {
 impl Rig {
     /// Selects the entry with that label and chooses it.
     #[track_caller]
-    fn choose(&mut self, label: &str) {
+    pub(super) fn choose(&mut self, label: &str) {
         let choice = |rig: &Rig| rig.app.menu.label();
         let first = choice(self);
         while choice(self).as_deref() != Some(label) {
