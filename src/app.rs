@@ -3,47 +3,71 @@
 //! The state has neither a terminal nor a clock. Keys and times are arguments, so that a [`Replay`]
 //! can play it off screen. [`play`] is the main loop, which has both.
 
+mod banner;
 mod bindings;
 mod clock;
 mod controls;
+mod demo;
 mod detection;
+mod draw;
+mod ghost;
 mod goal;
 mod help;
+mod hud;
 mod keys;
 mod levels;
 mod map_panel;
+mod menu;
+mod menus;
 mod mouse;
+mod offers;
 mod panels;
 mod played;
 mod recording;
 mod reload;
 mod replay;
+mod results;
 mod run;
+mod run_log;
+mod screen;
+mod script_cursor;
+mod series;
 mod settings;
+mod settings_screen;
 mod stats;
 mod status;
 mod steps;
+mod summary;
+mod vitals;
+mod watch;
 
 use std::time::Duration;
 
 pub use bindings::Bindings;
+use demo::Demo;
+use ghost::Ghost;
 use goal::Goal;
 use help::HelpScroll;
-use levels::LevelNumber;
 pub use levels::Levels;
+use levels::{LevelNumber, Stage};
 use map_panel::MapPanel;
-use ratatui::layout::Rect;
+use menu::Menu;
+use menus::Choice;
+pub use offers::{FindMaps, Offers, OwnMap};
 pub use recording::Recording;
 pub use replay::Replay;
-pub use run::play;
+use results::LevelResult;
+pub use run::{Farewell, Opening, play};
+use run_log::RunLog;
+use screen::{Screen, Shelved};
 pub use settings::{Configuration, MapDisplay, Settings};
 
-use crate::canvas::Canvas;
 use crate::color::palette::ColorDepth;
-use crate::game::STEP;
+use crate::game::{Flash, STEP};
 use crate::render::Filter;
+use crate::store::Store;
 use crate::tui::{CellAspect, GlyphMode, View};
-use crate::world::FieldOfView;
+use crate::world::{Difficulty, FieldOfView, Heading};
 use clock::Clock;
 use controls::Controls;
 use detection::Detection;
@@ -53,19 +77,8 @@ use played::{Played, Viewpoint, Views};
 use recording::ScriptRecorder;
 use reload::Reload;
 use stats::Stats;
-use status::{StatusLine, StatusValues};
-
-/// The panel on the picture. The effect of keys depends on it.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
-enum Screen {
-    Playing,
-    Paused,
-    Help,
-    /// The question whether to leave.
-    Leaving,
-    LevelDone,
-    End,
-}
+use status::StatusLine;
+use watch::Watch;
 
 /// The part of the game's state that a picture depends on.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -82,26 +95,50 @@ struct DrawOptions {
     cell_aspect: CellAspect,
     filter: Filter,
     field_of_view: FieldOfView,
+    /// The flash at the edge, and the direction of view.
+    flash: Option<(Flash, Heading)>,
+    /// Whether a dot marks the middle.
+    marks_middle: bool,
 }
 
 struct App {
-    later_levels: Box<dyn Iterator<Item = Played>>,
+    later_levels: Box<dyn Iterator<Item = Stage>>,
+    /// The level that is played, to begin it again.
+    stage: Stage,
     game: Played,
     level: LevelNumber,
+    difficulty: Difficulty,
     goal: Goal,
+    /// The run since the level began.
+    log: RunLog,
+    /// The best run of the level.
+    ghost: Option<Ghost>,
+    /// The result of the level that was won last.
+    result: Option<LevelResult>,
+    /// A line about the game that was left.
+    left: Option<String>,
+    store: Store,
+    watch: Watch,
     /// The seconds that the earlier levels took.
     earlier: f64,
     screen: Screen,
+    menu: Menu<Choice>,
+    /// The screens to return to, the next one last.
+    behind: Vec<Shelved>,
+    /// What the title offers; `None` if there is no title to return to.
+    offers: Option<Offers>,
+    own_maps: Vec<OwnMap>,
+    /// The level behind the title, while there is no game.
+    demo: Option<Demo>,
     settings: Settings,
     depth: ColorDepth,
+    terminal_depth: ColorDepth,
     cell_aspect: CellAspect,
     field_of_view: FieldOfView,
     controls: Controls,
     pointer: Pointer,
     map: MapPanel,
     help: HelpScroll,
-    /// The screen to return to if the player does not leave.
-    returns_to: Screen,
     /// The time of the last event, and the time since which the screen is shown.
     now: Duration,
     shown_since: Duration,
@@ -125,26 +162,42 @@ struct App {
 }
 
 impl App {
+    /// The first of `levels` at its start.
     fn new(levels: Levels, settings: Settings) -> Self {
+        let difficulty = Difficulty::default();
         let Levels { first, rest, number, changes } = levels;
+        let game = first.begin(difficulty).unwrap_or_else(Played::nothing);
         Self {
             later_levels: rest,
+            stage: first,
             level: number,
-            goal: Goal::of(&first, settings.minimap),
+            difficulty,
+            goal: Goal::of(&game, settings.minimap),
             map: MapPanel::new(settings.minimap),
             help: HelpScroll::default(),
-            game: first,
+            game,
+            log: RunLog::default(),
+            ghost: None,
+            result: None,
+            left: None,
+            store: Store::in_memory(),
+            watch: Watch::default(),
             earlier: 0.0,
             screen: Screen::Playing,
+            menu: Menu::new(""),
+            behind: Vec::new(),
+            offers: None,
+            own_maps: Vec::new(),
+            demo: None,
             field_of_view: settings.field_of_view,
             depth: settings.depth.unwrap_or_default(),
+            terminal_depth: ColorDepth::default(),
             cell_aspect: settings.cell_aspect.unwrap_or_default(),
             views: Views::new(View::with_caster(settings.caster.clone())),
             shows_stats: settings.shows_stats,
             pointer: Pointer::new(settings.mouse),
             settings,
             controls: Controls::default(),
-            returns_to: Screen::Playing,
             now: Duration::ZERO,
             shown_since: Duration::ZERO,
             pending: None,
@@ -160,9 +213,31 @@ impl App {
         }
     }
 
+    /// The first of `levels`, or else the title, with what `store` keeps.
+    fn opened(opening: Opening, settings: Settings, store: Store) -> Self {
+        match opening {
+            Opening::Levels(levels) => {
+                let mut app = Self::new(Levels::nothing(), settings);
+                app.store = store;
+                app.difficulty = app.store.preferences().difficulty;
+                app.begin(levels);
+                app
+            }
+            Opening::Title(offers) => {
+                let mut app = Self::new(Levels::nothing(), settings);
+                app.store = store;
+                app.offers = Some(offers);
+                app.show_title();
+                app
+            }
+        }
+    }
+
     /// The state that a picture would show now.
     fn visible(&self) -> Shown {
-        Shown { viewpoint: self.game.viewpoint(self.field_of_view), revision: self.game.revision() }
+        let ghost = self.ghost.as_ref().map_or(0, Ghost::steps);
+        let revision = self.game.revision() + ghost;
+        Shown { viewpoint: self.game.viewpoint(self.field_of_view), revision }
     }
 
     /// Whether the screen is out of date.
@@ -185,39 +260,25 @@ impl App {
 
     /// The time at which the game changes without an event; `None` for never.
     fn next_change(&self) -> Option<Duration> {
+        if self.demo.is_some() {
+            return Some(self.clock.step_after(0));
+        }
         if self.screen != Screen::Playing {
             return self.pending.map(|pending| pending.until);
         }
         if self.controls.held.has_taps() {
             return Some(self.clock.step_after(0));
         }
-        let quiet = Some(self.game.quiet_steps(self.wanted())).filter(|&quiet| quiet < u64::MAX);
+        let quiet = Some(self.quiet_steps(self.wanted())).filter(|&quiet| quiet < u64::MAX);
         let before_animation = self.steps_to_animation().map(|steps| steps.saturating_sub(1));
         let steps = quiet.into_iter().chain(before_animation).min()?;
         Some(self.clock.step_after(steps))
     }
 
-    fn show(&mut self, screen: Screen) {
-        self.screen = screen;
-        self.shown_since = self.now;
-        self.pending = None;
-        self.shown = None;
-    }
-
-    fn next_level(&mut self) {
-        let Some(level) = self.later_levels.next() else { return self.show(Screen::End) };
-        self.earlier += self.game.elapsed();
-        self.game = level;
-        self.level = self.level.next();
-        self.goal = Goal::of(&self.game, self.settings.minimap);
-        self.map.begin_level();
-        self.release_keys();
-        self.show(Screen::Playing);
-    }
-
     /// Handles a new size or new properties of the terminal.
     fn terminal_changed(&mut self, aspect: Option<CellAspect>, depth: ColorDepth) {
         self.cell_aspect = self.settings.cell_aspect.or(aspect).unwrap_or_default();
+        self.terminal_depth = depth;
         self.depth = self.settings.depth.unwrap_or(depth);
         self.shown = None;
     }
@@ -228,62 +289,6 @@ impl App {
         self.release_keys();
         self.pointer.forget();
         self.shown = None;
-    }
-
-    fn draw(&mut self, canvas: &mut impl Canvas) {
-        let area = canvas.bounds();
-        if panels::is_too_small(area) {
-            return panels::too_small(canvas);
-        }
-        let [picture, status] = panels::picture_and_status(area);
-        self.draw_picture(canvas, picture);
-        self.status.update(&StatusValues {
-            game: &self.game,
-            goal: &self.goal,
-            level: self.level,
-            share_seen: self.game.grid().and_then(|game| self.map.share_seen(game)),
-            toggles: self.controls.toggles,
-            mouse: self.pointer.is_on(),
-            stats: self.stats.as_ref().filter(|_| self.shows_stats),
-            bindings: &self.settings.bindings,
-        });
-        canvas.draw_widget(&self.status, status);
-        let bindings = &self.settings.bindings;
-        let progress = panels::Progress { game: &self.game, level: self.level };
-        match self.screen {
-            Screen::Playing => {}
-            Screen::Paused => panels::paused(canvas, picture, &progress, &self.goal, bindings),
-            Screen::Help => self.help.draw(canvas, picture, bindings, self.detection.lines()),
-            Screen::LevelDone => panels::level_done(canvas, picture, &progress),
-            Screen::Leaving => panels::leaving(canvas, picture, bindings),
-            Screen::End => panels::end(canvas, picture, self.earlier + self.game.elapsed()),
-        }
-        self.draw_fault(canvas, picture);
-    }
-
-    fn draw_picture(&mut self, canvas: &mut impl Canvas, area: Rect) {
-        let options = DrawOptions {
-            glyphs: self.settings.glyphs,
-            depth: self.depth,
-            cell_aspect: self.cell_aspect,
-            filter: self.settings.filter,
-            field_of_view: self.field_of_view,
-        };
-        self.game.draw(&options, canvas, area, &mut self.views);
-        let Some(game) = self.game.grid() else { return };
-        let camera = &game.camera(self.field_of_view);
-        self.map.explore(game, camera, area.width);
-        if !self.map.is_shown {
-            return;
-        }
-        let map = self.map.minimap(game, camera, &self.views.grid);
-        let map = map.glyphs(self.settings.glyphs).color_depth(self.depth);
-        if let Some(panel) = panels::minimap(area, &map) {
-            let inside = panels::framed(canvas, panel, "map");
-            map.paint(inside, canvas);
-            let extent = map.extent_within(inside.as_size());
-            self.map.shown(extent, game, camera);
-        }
     }
 }
 

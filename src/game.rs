@@ -1,10 +1,15 @@
-//! The rules of the game: a player walks through a world in fixed steps, finds keys, opens doors
-//! and reaches the exit.
+//! The rules of the game: a player walks through a world in fixed steps, takes what they find, opens
+//! doors, avoids guards and reaches the exit.
 //!
-//! A step lasts [`STEP`] seconds and depends on the [`Intents`] only. The same intents give the
-//! same states, bit for bit, on every machine. Steps as long as the last frame were refused: a slow
-//! machine would play another game than a fast one, and no game could be repeated.
+//! A step lasts [`STEP`] seconds and depends on the [`Intents`] only. The same level, [`Rules`] and
+//! intents give the same states, bit for bit, on every machine. Steps as long as the last frame were
+//! refused: a slow machine would play another game than a fast one, and no game could be repeated.
+//!
+//! A level without guards, mechanisms, hazards and finds is only walked through: nothing hurts in
+//! it, the player has no tools, and it costs nothing that a mission would cost.
 
+mod checkpoint;
+mod checksum;
 mod collision;
 mod doors;
 mod exits;
@@ -12,34 +17,51 @@ mod fall;
 mod flight;
 mod flood;
 mod guards;
+mod hazards;
+mod health;
 mod intent;
 mod locks;
 mod look;
+mod mechanisms;
+mod noise;
 mod notice;
+mod pickups;
 mod pitch_control;
 mod player;
+mod report;
 mod rules;
 mod script;
+mod show;
 mod sound;
 mod stance;
+mod tally;
+mod tools;
 mod turning;
 
-use std::collections::BTreeSet;
-
 use crate::generate::{self, Site, Window};
-use crate::world::{Camera, Cell, FieldOfView, KeyId, Thing, ThingKind, World};
+use crate::world::World;
+use checkpoint::Checkpoint;
 use doors::Doors;
-use notice::Notice;
+use guards::{Act, Guards, Point};
+use hazards::Spikes;
+use health::Cause;
+use mechanisms::Mechanisms;
 use player::{FRICTION, Player, RUN, STILL, WALK};
+use show::Sprites;
+use tally::Counts;
+use tools::{Missile, Missiles, Smoke, Supplies};
 
 pub use exits::is_exit_out_of_reach;
 pub use flight::Flight;
 pub use guards::{Alarm, GuardView, Mood};
+pub use health::{Flash, FlashKind, Health};
 pub use intent::{Intent, Intents};
 pub use look::Look;
+pub use report::Outcome;
 pub use rules::Rules;
-pub use script::{Recorder, Script, Section, Stretch};
+pub use script::{Header, LevelName, Recorder, Script, Section, Stretch};
 pub use sound::{Heard, Sound, SoundKind, Source};
+pub use tally::{Rank, Share, Tally};
 
 /// The duration of a step, in seconds.
 pub const STEP: f64 = 1.0 / STEPS_PER_SECOND as f64;
@@ -64,37 +86,74 @@ pub(crate) const STEPS_PER_SECOND: u32 = 60;
 /// ```
 #[derive(Clone, Debug, PartialEq)]
 pub struct Game {
+    rules: Rules,
     world: World,
+    /// Whether there is more in the world than walls, doors, keys and exits.
+    is_mission: bool,
     /// The window of a generated level, of which `world` shows a part.
     window: Option<Window>,
     player: Player,
+    /// What has killed the player, if something has.
+    killed_by: Option<Cause>,
     doors: Doors,
-    keys: BTreeSet<KeyId>,
-    notice: Notice,
+    mechanisms: Mechanisms,
+    spikes: Spikes,
+    missiles: Missiles,
+    smoke: Smoke,
+    guards: Guards,
+    sprites: Sprites,
+    /// The sounds of the current step; empty between steps.
+    sounds: Vec<Sound>,
+    checkpoint: Checkpoint,
+    counts: Counts,
     steps: u64,
     revision: u64,
 }
 
 impl Game {
-    /// A game at its start: the player stands still at the world's start.
+    /// A game at its start with the usual rules: the player stands still at the world's start.
     pub fn new(world: World) -> Self {
-        Self {
-            player: Player::new(&world),
-            world,
-            window: None,
+        Self::with_rules(world, Rules::default())
+    }
+
+    /// A game at its start with these rules.
+    pub fn with_rules(world: World, rules: Rules) -> Self {
+        Self::begun(world, rules, None)
+    }
+
+    /// A game at its start, with the window of a generated level.
+    fn begun(mut world: World, rules: Rules, window: Option<Window>) -> Self {
+        let is_mission = world.is_mission();
+        let guards = Guards::new(&mut world, rules);
+        let supplies = if is_mission { Supplies::AT_START } else { Supplies::default() };
+        let game = Self {
+            rules,
+            is_mission,
+            window,
+            player: Player::new(&world, supplies),
+            killed_by: None,
             doors: Doors::default(),
-            keys: BTreeSet::new(),
-            notice: Notice::default(),
+            mechanisms: Mechanisms::new(&world),
+            spikes: Spikes::new(&mut world),
+            missiles: Missiles::default(),
+            smoke: Smoke::default(),
+            guards,
+            sprites: if is_mission { Sprites::added_to(&mut world) } else { Sprites::default() },
+            sounds: Vec::new(),
+            checkpoint: Checkpoint::default(),
+            counts: Counts::default(),
             steps: 0,
             revision: 0,
-        }
+            world,
+        };
+        game.shown().with_start()
     }
 
     /// A game in a generated level, which starts at `site` or near it. `None` if there is nowhere
     /// to stand, such as outside the level.
     pub fn in_level(level: generate::Level, site: Site) -> Option<Self> {
         let (window, world) = Window::open(level, site)?;
-        Some(Self { window: Some(window), ..Self::new(world) })
+        Some(Self::begun(world, Rules::default(), Some(window)))
     }
 
     /// A game in another world that continues this one: the player stands still at the same
@@ -102,95 +161,67 @@ impl Game {
     /// player is at the world's start.
     #[must_use]
     pub fn begun_again_in(&self, world: World) -> Self {
-        let player = self.player.placed_in(&world);
-        let begun = Self::new(world);
-        match player.map(|player| Self { player, ..begun.clone() }) {
+        let motion = self.player.motion.placed_in(&world);
+        let begun = Self::with_rules(world, self.rules);
+        let placed = motion.map(|motion| {
+            let player = begun.player.clone().at(motion);
+            Self { player, ..begun.clone() }
+        });
+        match placed {
             Some(game) if !game.is_finished() => game,
             _ => begun,
         }
     }
 
-    /// The cell of a generated level that the player is in; `None` on a map.
-    pub fn site(&self) -> Option<Site> {
-        Some(self.window.as_ref()?.site(self.player.cell()))
+    /// Advances the game by one step of [`STEP`] seconds with these intents. Nothing moves after
+    /// the exit; after death, nothing but what [`Intent::Retry`] does.
+    pub fn step(&mut self, intents: Intents) {
+        if self.is_finished() {
+            return;
+        }
+        if self.is_dead() {
+            return self.step_after_death(intents);
+        }
+        let intents = self.at_a_door(intents);
+        let before = self.player.motion;
+        self.move_player(intents);
+        self.take_finds();
+        self.meet_hazards(&before);
+        self.refuse(before.cell());
+        self.pass_time();
+        self.move_doors();
+        self.open_doors(intents);
+        self.act(intents);
+        self.move_mechanisms();
+        self.move_missiles();
+        self.move_guards();
+        self.hear();
+        self.show();
+        self.move_window();
+        self.reach_checkpoint();
+        self.steps = self.steps.saturating_add(1);
     }
 
-    /// The cell of a generated level that is the world's north-west cell; `None` on a map.
-    pub fn corner(&self) -> Option<Site> {
-        Some(self.window.as_ref()?.site(Cell { column: 0, row: 0 }))
-    }
-
-    /// Whether the level has an exit, inside or outside the window.
-    pub fn has_exit(&self) -> bool {
-        let is_far = self.window.as_ref().is_some_and(|window| window.level().exit().is_some());
-        is_far || self.world.things().iter().any(|thing| thing.kind == ThingKind::Exit)
-    }
-
-    /// The world in its present state: with its doors as they are, and without the keys that were
-    /// taken.
-    pub fn world(&self) -> &World {
-        &self.world
-    }
-
-    /// The player's camera.
-    #[expect(clippy::missing_panics_doc, reason = "the player stands inside the map")]
-    pub fn camera(&self, field_of_view: FieldOfView) -> Camera {
-        self.player
-            .camera(&self.world, field_of_view)
-            .expect("the player stands inside the map, where all places are finite")
-    }
-
-    /// The height of the player's feet, in cells above the map's own floor.
-    pub fn feet(&self) -> f64 {
-        self.player.feet()
-    }
-
-    /// Whether the player is in the air: jumping or falling.
-    pub fn is_airborne(&self) -> bool {
-        !self.player.stands(&self.world)
-    }
-
-    /// The time in the game in seconds, counted in steps.
-    pub fn elapsed(&self) -> f64 {
-        self.steps as f64 * STEP
-    }
-
-    /// A message to the player, such as why a door does not open. It lasts for a few seconds.
-    pub fn message(&self) -> Option<&str> {
-        self.notice.text()
-    }
-
-    /// The names of the keys that the player has.
-    pub fn keys(&self) -> impl Iterator<Item = &str> {
-        self.keys.iter().map(|&key| self.world.key_name(key))
-    }
-
-    /// A number that grows with every visible change other than the camera: a door moves, a key is
-    /// taken, the message changes.
-    pub fn revision(&self) -> u64 {
-        self.revision
-    }
-
-    /// Whether the player has reached the exit. Nothing moves after that, and the clock stops.
-    pub fn is_finished(&self) -> bool {
-        self.things_reached().any(|thing| thing.kind == ThingKind::Exit)
-    }
-
-    /// The things in the player's cell that are neither above the player's head nor below their
-    /// feet.
-    fn things_reached(&self) -> impl Iterator<Item = &Thing> {
-        let cell = self.player.cell();
-        let heights = self.world.room_in(cell);
-        let (feet, head) = (self.player.feet(), self.player.head());
-        self.world.things_in(cell).iter().filter(move |thing| {
-            let sprite = self.world.sprite(thing.sprite);
-            let base = sprite.base(heights);
-            feet <= base + sprite.height.cells() && base <= head
-        })
+    /// Advances the clocks by `steps` steps in which nothing moves. Has the effect of as many calls
+    /// of [`Game::step`] if `steps` is at most [`Game::quiet_steps`].
+    pub fn wait(&mut self, steps: u64) {
+        if !self.is_finished() && !self.is_dead() {
+            self.steps = self.steps.saturating_add(steps);
+            self.doors.wait(steps);
+            self.player.wait(steps);
+            if self.is_mission {
+                self.player.hearing.wait(steps);
+                self.guards.wait(steps);
+            }
+            if self.quiet_steps_in_water().is_some() {
+                self.player.in_water += steps as u32;
+            }
+        }
     }
 
     /// Whether any number of steps with these intents would change nothing but the clock: the
-    /// player stands still or pushes against a wall, all doors are closed, and there is no message.
+    /// player stands still or pushes against a wall, all doors are closed, nobody else moves, and
+    /// there is no message.
     pub fn is_at_rest(&self, intents: Intents) -> bool {
         self.quiet_steps(intents) == u64::MAX
     }
@@ -202,52 +233,148 @@ impl Game {
         if self.is_finished() {
             return u64::MAX;
         }
-        let intents = self.at_a_door(intents);
-        if self.player.stepped(&self.world, intents) != self.player {
+        let presses = self.presses(intents);
+        if self.is_dead() {
+            return if presses == self.player.pressed { u64::MAX } else { 0 };
+        }
+        if self.would_change(intents) {
             return 0;
         }
-        if self.door_wanted(intents).is_some_and(|(cell, door)| self.would_answer(cell, door)) {
-            return 0;
-        }
-        let waits = [self.doors.quiet_steps(), self.notice.quiet_steps()];
+        let waits = [
+            self.doors.quiet_steps(),
+            self.player.quiet_steps(),
+            self.quiet_steps_in_water(),
+            self.spikes.quiet_steps(self.steps),
+            self.guards.quiet_steps(),
+        ];
         waits.into_iter().flatten().min().unwrap_or(u64::MAX)
     }
 
-    /// Advances the game by one step of [`STEP`] seconds with these intents.
-    pub fn step(&mut self, intents: Intents) {
-        if self.is_finished() {
+    /// Whether anything would change in a step with these intents that is no clock.
+    fn would_change(&self, intents: Intents) -> bool {
+        let intents = self.at_a_door(intents);
+        let motion = self.player.motion;
+        motion.stepped(&self.world, intents, self.pace()) != motion
+            || self.presses(intents) != self.player.pressed
+            || self.door_wanted(intents).is_some_and(|(cell, door)| self.would_answer(cell, door))
+            || self.find().is_some()
+            || self.is_at_a_new_checkpoint()
+            || self.is_in_water() != (self.player.in_water > 0)
+            || !self.missiles.is_empty()
+            || !self.smoke.is_empty()
+            || self.mechanisms_move()
+    }
+
+    fn step_after_death(&mut self, intents: Intents) {
+        let presses = self.presses(intents);
+        let retries = self.player.fresh(presses).contains(Intent::Retry);
+        self.player.pressed = presses;
+        if retries {
+            self.retry();
+        }
+    }
+
+    fn move_player(&mut self, intents: Intents) {
+        let before = self.player.motion;
+        self.player.motion = before.stepped(&self.world, intents, self.pace());
+        if self.is_mission {
+            self.hear_steps(&before, intents);
+        }
+    }
+
+    /// The intents that are recorded from step to step, because each press acts once. A lever turns
+    /// once for each press, too.
+    fn presses(&self, intents: Intents) -> Intents {
+        let opens_once = self.mechanisms.has_handles();
+        let acts_once =
+            |intent: &Intent| intent.acts_once() || opens_once && *intent == Intent::Open;
+        intents.iter().filter(acts_once).collect()
+    }
+
+    /// Does what the player begins to want.
+    fn act(&mut self, intents: Intents) {
+        let presses = self.presses(intents);
+        let fresh = self.player.fresh(presses);
+        self.player.pressed = presses;
+        if fresh.is_empty() {
             return;
         }
-        let intents = self.at_a_door(intents);
-        self.player = self.player.stepped(&self.world, intents);
-        self.take_keys();
-        let is_silent = self.notice.wait(1);
-        let player = self.player;
-        let has_moved = self.doors.step(&mut self.world, |cell| player.touches(cell));
-        self.revision += u64::from(is_silent) + u64::from(has_moved);
-        if let Some((cell, door)) = self.door_wanted(intents) {
-            self.try_to_open(cell, door);
+        self.use_tools(fresh);
+        if fresh.contains(Intent::Open)
+            && let Some(handle) = self.handle_ahead()
+        {
+            self.use_handle(handle);
         }
-        self.move_window();
-        self.steps = self.steps.saturating_add(1);
+    }
+
+    /// Advances the player's clocks.
+    fn pass_time(&mut self) {
+        let has_ended = self.player.wait(1);
+        self.revision += u64::from(has_ended);
+        if !self.smoke.is_empty() {
+            self.smoke.step();
+        }
+    }
+
+    fn move_doors(&mut self) {
+        let (motion, guards) = (self.player.motion, &self.guards);
+        let is_occupied = |cell| motion.touches(cell) || guards.touches(cell);
+        let has_moved = self.doors.step(&mut self.world, is_occupied);
+        self.revision += u64::from(has_moved);
+    }
+
+    fn move_guards(&mut self) {
+        if self.guards.is_empty() {
+            return;
+        }
+        let (alarm, target) = (self.guards.alarm(), self.target());
+        let acts = self.guards.step(&self.world, &[target], &self.sounds, self.smoke.clouds());
+        for act in acts.to_vec() {
+            self.answer(act);
+        }
+        self.revision += u64::from(self.guards.alarm() != alarm);
+    }
+
+    /// Does to the rest of the game what a guard does.
+    fn answer(&mut self, act: Act) {
+        match act {
+            Act::Hurt { by, from, points, .. } => {
+                let guard = self.guards.views().nth(by);
+                self.hurt_by_guard(guard, from, points);
+            }
+            Act::Open(cell) => self.doors.open(cell),
+            Act::Sound(sound) => self.sounds.push(sound),
+            Act::Bolt { from, height, direction, slope, points, .. } => {
+                let from = Point { position: from, height };
+                self.missiles.launch(Missile::bolt(from, direction, slope, points));
+            }
+            Act::Raised => self.counts.alarms += 1,
+        }
+    }
+
+    /// Lets the player hear the sounds of this step.
+    fn hear(&mut self) {
+        if self.is_mission {
+            let position = self.player.motion.position();
+            let heard = self.player.hearing.step(&self.world, 0, position, &self.sounds);
+            self.revision += u64::from(heard);
+            self.sounds.clear();
+        }
     }
 
     /// Moves the window after the player.
     fn move_window(&mut self) {
         let Some(window) = &mut self.window else { return };
-        if let Some(shift) = window.follow(&mut self.world, self.player.cell()) {
-            self.player = self.player.shifted(shift);
+        if let Some(shift) = window.follow(&mut self.world, self.player.motion.cell()) {
+            self.player.motion = self.player.motion.shifted(shift);
             self.doors.shift(&mut self.world, shift);
-        }
-    }
-
-    /// Advances the clocks by `steps` steps in which nothing moves. Has the effect of as many calls
-    /// of [`Game::step`] if `steps` is at most [`Game::quiet_steps`].
-    pub fn wait(&mut self, steps: u64) {
-        if !self.is_finished() {
-            self.steps = self.steps.saturating_add(steps);
-            self.doors.wait(steps);
-            self.notice.wait(steps);
+            self.missiles.shift(shift);
+            self.smoke.shift(shift);
+            if self.is_mission {
+                self.guards.shift(&self.world, shift);
+                self.player.hearing.forget();
+            }
+            self.show();
         }
     }
 }

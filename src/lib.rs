@@ -50,6 +50,7 @@
 //! | `canvas` | cells, and the trait of everything that is drawn on | `tui` |
 //! | `tui` | ratatui widgets, held keys | `tui` |
 //! | `terminal` | capabilities, bytes to events, cells to bytes, flow control | `terminal` |
+//! | `store` | what a player keeps: progress, best runs, preferences | `terminal` |
 //! | `app` | the game as a program: screens, settings, keys to intents, the loop | `terminal` |
 //! | `lab` | measurements: casters compared, accuracy, speed, wire | `lab` |
 //! | `cli` | the command line | `cli` |
@@ -78,6 +79,8 @@ mod raster;
 pub mod render;
 pub mod rng;
 pub mod space;
+#[cfg(feature = "terminal")]
+pub mod store;
 #[cfg(feature = "terminal")]
 pub mod terminal;
 #[cfg(feature = "tui")]

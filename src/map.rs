@@ -27,6 +27,7 @@
 
 mod air;
 pub mod builtin;
+mod checks;
 mod covering;
 mod definitions;
 mod doors;
@@ -246,6 +247,9 @@ fn read(text: &str, files: &dyn TextureFiles, faults: &FaultList) -> Option<Leve
         effect: None,
     };
     let layout = Layout::of(&drawing, &definitions.legend, ground, faces, &mut reader)?;
+    if let Some((needed, place)) = &definitions.treasure_needed {
+        reader.faults.extend(checks::missing_treasure(*needed, place, &layout.things));
+    }
     Some(Level::from(World::from_parts(Parts {
         title: definitions.title,
         goal: definitions.goal,

@@ -7,9 +7,13 @@
 use std::time::Duration;
 
 use super::controls::KeyContext;
+use super::menu::Selection;
+use super::menus::Choice;
+use super::settings_screen::Setting;
 use super::{App, Screen};
 use crate::app::bindings::Action;
-use crate::game::Intents;
+use crate::game::{Intent, Intents};
+use crate::store::Preferences;
 use crate::terminal::{Key, KeyEvent};
 use crate::tui::Press;
 use crate::world::FieldOfView;
@@ -72,35 +76,110 @@ impl App {
 
     fn press(&mut self, key: Key, press: Press) {
         self.pending = None;
-        if matches!(self.screen, Screen::LevelDone | Screen::End | Screen::Leaving) {
-            return self.press_at_question(key, press);
+        let scrolls = self.screen == Screen::Help && self.scroll_help(key);
+        match self.screen {
+            _ if scrolls => {}
+            Screen::Leaving => self.press_to_answer(key, press),
+            _ if self.screen.has_menu() => self.press_in_menu(key, press),
+            _ => self.press_command(key, press),
         }
-        if self.screen == Screen::Help && self.scroll_help(key) {
-            return;
-        }
-        let action = self.settings.bindings.action(key);
-        match action {
+    }
+
+    /// Handles the keys that do the same on every screen, and those of the game.
+    fn press_command(&mut self, key: Key, press: Press) {
+        match self.settings.bindings.action(key) {
             Some(Action::WidenView) => self.widen_view(VIEW_STEP),
             Some(Action::NarrowView) => self.widen_view(-VIEW_STEP),
             Some(action) if press != Press::Repeat => self.command(key, action),
+            _ if press != Press::Repeat && key == Key::Backspace => self.go_back(),
             _ => {}
+        }
+    }
+
+    fn press_in_menu(&mut self, key: Key, press: Press) {
+        if self.screen.is_result() && self.now < self.shown_since + LEAST_SHOWN {
+            return;
+        }
+        if let Some(selection) = self.selection_by(key) {
+            self.menu.select(selection);
+            self.shown = None;
+        } else if let Some(forward) = self.changes_by(key) {
+            self.change_value(forward);
+        } else if self.chooses(key) {
+            self.press_to_answer(key, press);
+        } else {
+            self.press_command(key, press);
+        }
+    }
+
+    /// The movement of the selection by `key`: the keys to walk, and those that every terminal has.
+    fn selection_by(&self, key: Key) -> Option<Selection> {
+        Some(match key {
+            Key::Up => Selection::Previous,
+            Key::Down => Selection::Next,
+            Key::PageUp => Selection::PageUp,
+            Key::PageDown => Selection::PageDown,
+            Key::Home => Selection::First,
+            Key::End => Selection::Last,
+            _ => match self.settings.bindings.action(key)? {
+                Action::Want(Intent::Forward) => Selection::Previous,
+                Action::Want(Intent::Back) => Selection::Next,
+                _ => return None,
+            },
+        })
+    }
+
+    /// Whether `key` changes a value to the next one, or to the one before.
+    fn changes_by(&self, key: Key) -> Option<bool> {
+        if !matches!(self.screen, Screen::Settings | Screen::Levels) {
+            return None;
+        }
+        match key {
+            Key::Right => Some(true),
+            Key::Left => Some(false),
+            _ => match self.settings.bindings.action(key)? {
+                Action::Want(Intent::StrafeRight) => Some(true),
+                Action::Want(Intent::StrafeLeft) => Some(false),
+                _ => None,
+            },
+        }
+    }
+
+    fn change_value(&mut self, forward: bool) {
+        match (self.screen, self.menu.choice()) {
+            (Screen::Levels, _) => self.change_setting(Setting::Difficulty, forward),
+            (_, Some(Choice::Change(setting))) => self.change_setting(setting, forward),
+            _ => {}
+        }
+    }
+
+    /// Whether `key` chooses an entry of the menu.
+    fn chooses(&self, key: Key) -> bool {
+        match key {
+            Key::Enter | Key::Char(' ') => true,
+            Key::Char('r' | 'l') if self.screen == Screen::Dead => true,
+            Key::Char(digit) => self.menu.has_number(digit),
+            _ => false,
         }
     }
 
     fn command(&mut self, key: Key, action: Action) {
         match (self.screen, action) {
-            (Screen::Help | Screen::Paused, Action::Leave) if key == Key::Escape => {
-                self.show(Screen::Playing);
+            (screen, Action::Leave) if key == Key::Escape && screen != Screen::Playing => {
+                self.go_back();
             }
             (_, Action::Leave) => self.ask_to_leave(),
-            (Screen::Playing, Action::ToggleHelp) => self.show(Screen::Help),
-            (Screen::Playing, Action::TogglePause) => self.show(Screen::Paused),
-            (Screen::Help, Action::ToggleHelp) | (Screen::Paused, Action::TogglePause) => {
-                self.show(Screen::Playing);
-            }
+            (Screen::Help, Action::ToggleHelp) => self.close(),
+            (_, Action::ToggleHelp) => self.open(Screen::Help),
+            (Screen::Playing, Action::TogglePause) => self.open(Screen::Paused),
+            (Screen::Paused, Action::TogglePause) => self.close(),
+            _ if self.demo.is_some() => {}
             (_, Action::ToggleMinimap) => toggle(&mut self.map.is_shown, &mut self.shown),
             (_, Action::ToggleDuck) => toggle(&mut self.controls.toggles.ducks, &mut self.shown),
             (_, Action::ToggleRun) => toggle(&mut self.controls.toggles.runs, &mut self.shown),
+            (_, Action::ToggleCrosshair) => self.prefer(|it| it.crosshair ^= true),
+            (_, Action::ToggleCompass) => self.prefer(|it| it.compass ^= true),
+            (_, Action::ToggleGhost) => self.prefer(|it| it.ghost ^= true),
             (_, Action::ToggleStats) => toggle(&mut self.shows_stats, &mut self.shown),
             (Screen::Playing, Action::ToggleWalkOn) => {
                 toggle(&mut self.controls.toggles.keeps_walking, &mut self.shown);
@@ -117,20 +196,38 @@ impl App {
         }
     }
 
-    fn ask_to_leave(&mut self) {
-        let returns_to = match self.screen {
-            Screen::LevelDone => Screen::LevelDone,
-            _ => Screen::Playing,
-        };
-        self.returns_to = returns_to;
-        self.show(Screen::Leaving);
+    fn prefer(&mut self, change: impl Fn(&mut Preferences)) {
+        let mut preferences = self.store.preferences();
+        change(&mut preferences);
+        self.set_preferences(preferences);
     }
 
-    fn press_at_question(&mut self, key: Key, press: Press) {
-        let is_result = self.screen != Screen::Leaving;
-        if is_result && self.now < self.shown_since + LEAST_SHOWN {
-            return;
+    /// Returns to the screen before, or asks whether to leave where there is none.
+    fn go_back(&mut self) {
+        match self.screen {
+            Screen::Playing => {}
+            Screen::Title => self.leave(),
+            Screen::LevelDone | Screen::Dead | Screen::End => self.ask_to_leave(),
+            _ => self.close(),
         }
+    }
+
+    /// Asks whether to leave. Where there is no game to lose, it is not asked.
+    fn ask_to_leave(&mut self) {
+        if self.demo.is_some() || self.screen == Screen::End {
+            self.leave();
+        } else {
+            self.open(Screen::Leaving);
+        }
+    }
+
+    /// Leaves the program.
+    pub(super) fn leave(&mut self) {
+        self.leave_game();
+        self.has_left = true;
+    }
+
+    fn press_to_answer(&mut self, key: Key, press: Press) {
         match press {
             Press::Fresh => self.answer(key),
             Press::Unclear => self.pending = Some(Pending { key, until: self.now + REPETITION }),
@@ -139,18 +236,22 @@ impl App {
     }
 
     fn answer(&mut self, key: Key) {
-        let confirms = matches!(key, Key::Enter | Key::Char(' '));
-        let leaves = self.settings.bindings.action(key) == Some(Action::Leave);
-        match self.screen {
-            Screen::LevelDone if confirms => self.next_level(),
-            Screen::LevelDone if leaves => self.ask_to_leave(),
-            Screen::End if confirms || leaves => self.has_left = true,
-            Screen::Leaving if key == Key::Enter || leaves && key != Key::Escape => {
-                self.has_left = true;
+        if self.screen == Screen::Leaving {
+            let leaves = self.settings.bindings.action(key) == Some(Action::Leave);
+            if key == Key::Enter || leaves && key != Key::Escape {
+                self.leave();
+            } else {
+                self.close();
             }
-            Screen::Leaving => self.show(self.returns_to),
+            return;
+        }
+        match (self.screen, key) {
+            (Screen::Dead, Key::Char('r')) => self.menu.select_number('2'),
+            (Screen::Dead, Key::Char('l')) => self.menu.select_number('3'),
+            (_, Key::Char(digit)) => self.menu.select_number(digit),
             _ => {}
         }
+        self.choose();
     }
 
     /// The player's intents by the held keys.

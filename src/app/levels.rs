@@ -5,15 +5,28 @@ use std::{fmt, iter};
 use super::played::Played;
 use super::reload::Changes;
 use crate::fault::Faults;
-use crate::game::Game;
-use crate::map::Level;
+use crate::game::{Game, Rules};
+use crate::map::{Level, builtin};
+use crate::space::Scene;
+use crate::world::Difficulty;
 
 /// The levels of a game, in order. Each but the first is created when it is reached.
 pub struct Levels {
-    pub(super) first: Played,
-    pub(super) rest: Box<dyn Iterator<Item = Played>>,
+    pub(super) first: Stage,
+    pub(super) rest: Box<dyn Iterator<Item = Stage>>,
     pub(super) changes: Option<Changes>,
     pub(super) number: LevelNumber,
+}
+
+/// A level before it begins. It can begin any number of times.
+pub(super) struct Stage {
+    content: Content,
+}
+
+enum Content {
+    Builtin(&'static builtin::Level),
+    Level(Level),
+    Game(Box<Game>),
 }
 
 /// The number of a level, counted from 1, and the number of levels.
@@ -27,13 +40,21 @@ pub(super) struct LevelNumber {
 impl Levels {
     /// The levels `first` and `rest`.
     pub fn new(first: Level, rest: impl Iterator<Item = Level> + 'static) -> Self {
-        Self::played(Played::new(first), rest.map(Played::new))
+        let stage = |level| Stage { content: Content::Level(level) };
+        Self::staged(stage(first), rest.map(stage))
     }
 
     /// The games `first` and `rest`, which have already begun.
     pub fn of_games(first: Game, rest: impl Iterator<Item = Game> + 'static) -> Self {
-        let played = |game| Played::Grid(Box::new(game));
-        Self::played(played(first), rest.map(played))
+        let stage = |game| Stage { content: Content::Game(Box::new(game)) };
+        Self::staged(stage(first), rest.map(stage))
+    }
+
+    /// The built-in levels from the one with that index on; `None` if there is none.
+    pub fn builtin(index: usize) -> Option<Self> {
+        let mut stages = builtin::LEVELS.get(index..)?.iter().map(Stage::builtin);
+        let first = stages.next()?;
+        Some(Self::staged(first, stages).numbered(index + 1, builtin::LEVELS.len()))
     }
 
     /// One level that may change during the game. `changes` is called a few times a second. If the
@@ -51,13 +72,53 @@ impl Levels {
         Self { number: LevelNumber { number, of: Some(of) }, ..self }
     }
 
-    fn played(first: Played, rest: impl Iterator<Item = Played> + 'static) -> Self {
+    /// No level.
+    pub(super) fn nothing() -> Self {
+        Self::staged(Stage::nothing(), iter::empty())
+    }
+
+    fn staged(first: Stage, rest: impl Iterator<Item = Stage> + 'static) -> Self {
         Self {
             first,
             rest: Box::new(rest),
             number: LevelNumber { number: 1, of: None },
             changes: None,
         }
+    }
+}
+
+impl Stage {
+    /// A level in which there is nothing.
+    pub(super) fn nothing() -> Self {
+        Self { content: Content::Level(Level::Space(Scene::default())) }
+    }
+
+    /// A built-in level.
+    pub(super) fn builtin(level: &'static builtin::Level) -> Self {
+        Self { content: Content::Builtin(level) }
+    }
+
+    /// The name under which results of the level are kept, if they are.
+    pub(super) fn name(&self) -> Option<&str> {
+        match &self.content {
+            Content::Builtin(level) => Some(level.name),
+            Content::Level(_) | Content::Game(_) => None,
+        }
+    }
+
+    /// The level at its start; `None` if a built-in level has faults, which tests exclude.
+    pub(super) fn begin(&self, difficulty: Difficulty) -> Option<Played> {
+        let rules = Rules { difficulty, seed: 0 };
+        Some(match &self.content {
+            Content::Builtin(level) => Played::with_rules(level.world().ok()?.into(), rules),
+            Content::Level(level) => Played::with_rules(level.clone(), rules),
+            Content::Game(game) => Played::Grid(game.clone()),
+        })
+    }
+
+    /// Replaces the level by a changed one.
+    pub(super) fn change(&mut self, level: Level) {
+        self.content = Content::Level(level);
     }
 }
 

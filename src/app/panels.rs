@@ -7,9 +7,6 @@ use ratatui::layout::{Constraint, Flex, Layout, Margin, Rect, Size};
 use ratatui::text::{Span, Text};
 use ratatui::widgets::{Block, Borders, Padding, Paragraph, Widget, Wrap};
 
-use super::goal::Goal;
-use super::levels::LevelNumber;
-use super::played::Played;
 use crate::app::bindings::{Action, Bindings};
 use crate::canvas::Canvas;
 use crate::terminal::Key;
@@ -93,59 +90,12 @@ impl Widget for TopBorder<'_> {
     }
 }
 
-/// A level and the player's progress in it.
-pub(super) struct Progress<'a> {
-    pub(super) game: &'a Played,
-    pub(super) level: LevelNumber,
-}
-
-impl Progress<'_> {
-    /// The level's title and, if there are several levels, its number.
-    fn level(&self) -> String {
-        let title = self.game.title();
-        if self.level.is_one_of_several() {
-            format!("{title}\n{}", self.level)
-        } else {
-            title.to_owned()
-        }
-    }
-}
-
-/// Draws the panel of a paused game: the goal, the level and the progress.
-pub(super) fn paused(
-    canvas: &mut impl Canvas,
-    picture: Rect,
-    progress: &Progress,
-    goal: &Goal,
-    bindings: &Bindings,
-) {
-    let keys = key_names(bindings, Action::TogglePause);
-    let has: Vec<String> = progress.game.keys().map(|key| format!("{key} key")).collect();
-    let seconds = whole_seconds(progress.game.elapsed());
-    let (level, goal) = (progress.level(), goal.text());
-    let text = format!("{keys} goes on\n{goal}\n{level}\n{seconds}\n{}", has.join("\n"));
-    message(canvas, picture, "paused", Text::from(text).centered());
-}
-
 /// Draws the question whether to leave.
 pub(super) fn leaving(canvas: &mut impl Canvas, picture: Rect, bindings: &Bindings) {
     let leave = bindings.keys(Action::Leave).find(|&key| key != Key::Escape);
     let keys = leave.map_or_else(String::new, |key| format!("{key} or "));
     let text = format!("{keys}Enter leaves\nany other key goes on");
     message(canvas, picture, "leave?", Text::from(text).centered());
-}
-
-/// Draws the message that the exit was reached, with the time.
-pub(super) fn level_done(canvas: &mut impl Canvas, picture: Rect, progress: &Progress) {
-    let seconds = time(progress.game.elapsed());
-    let text = format!("{}\nin {seconds}\nEnter goes on", progress.level());
-    message(canvas, picture, "you found the way out", Text::from(text).centered());
-}
-
-/// Draws the message after the last level, with the time of all levels.
-pub(super) fn end(canvas: &mut impl Canvas, picture: Rect, seconds: f64) {
-    let text = format!("all levels\nin {}\nEnter leaves", time(seconds));
-    message(canvas, picture, "the end", Text::from(text).centered());
 }
 
 /// Draws a panel in the middle of the picture, as large as `text` needs.
@@ -183,7 +133,7 @@ impl Display for WholeSeconds {
 }
 
 /// Formats minutes, seconds and tenths.
-fn time(seconds: f64) -> String {
+pub(super) fn time(seconds: f64) -> String {
     let tenths = (seconds * 10.0) as u64;
     format!("{}:{:02}.{}", tenths / 600, tenths / 10 % 60, tenths % 10)
 }

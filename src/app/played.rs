@@ -9,14 +9,15 @@ use std::ops::{Deref, DerefMut};
 use glam::DVec3;
 use ratatui::layout::Rect;
 
-use super::DrawOptions;
+use super::{DrawOptions, hud};
 use crate::canvas::Canvas;
-use crate::game::{Flight, Game, Intents};
+use crate::color::palette::ColorDepth;
+use crate::game::{Flight, Game, Intents, Outcome, Rules};
 use crate::generate::Site;
 use crate::map::Level;
-use crate::render::Renderable;
+use crate::render::{Frame, Renderable};
 use crate::space;
-use crate::tui::{FirstPerson, View};
+use crate::tui::{FirstPerson, GlyphMode, View};
 use crate::world::{FieldOfView, Heading};
 
 /// A level that is being played.
@@ -82,10 +83,20 @@ impl Views {
 
 impl Played {
     pub(super) fn new(level: Level) -> Self {
+        Self::with_rules(level, Rules::default())
+    }
+
+    /// `level` at its start, with these rules.
+    pub(super) fn with_rules(level: Level, rules: Rules) -> Self {
         match level {
-            Level::Grid(world) => Self::Grid(Box::new(Game::new(*world))),
+            Level::Grid(world) => Self::Grid(Box::new(Game::with_rules(*world, rules))),
             Level::Space(scene) => Self::Space(Box::new(Flight::new(scene))),
         }
+    }
+
+    /// A flight through nothing.
+    pub(super) fn nothing() -> Self {
+        Self::new(Level::Space(space::Scene::default()))
     }
 
     /// Begins `level` at the player's position in this game, if possible.
@@ -132,6 +143,19 @@ impl Played {
     /// The message for the player.
     pub(super) fn message(&self) -> Option<&str> {
         self.grid()?.message()
+    }
+
+    /// Whether the player is dead.
+    pub(super) fn is_dead(&self) -> bool {
+        self.grid().is_some_and(|game| matches!(game.outcome(), Outcome::Dead { .. }))
+    }
+
+    /// The game, if it is in a grid.
+    pub(super) fn grid_mut(&mut self) -> Option<&mut Game> {
+        match self {
+            Self::Grid(game) => Some(game),
+            Self::Space(_) => None,
+        }
     }
 
     pub(super) fn is_airborne(&self) -> bool {
@@ -203,7 +227,22 @@ impl DrawOptions {
             .filter(self.filter)
             .time(seconds);
         picture.draw(area.as_size(), view);
+        if !area.is_empty() && self.depth != ColorDepth::Mono {
+            self.change_pixels(view.frame_mut());
+        }
         picture.paint(view, 0, area, canvas);
+    }
+}
+
+impl DrawOptions {
+    /// Tints and marks the pixels of a picture in colours.
+    fn change_pixels(&self, frame: &mut Frame) {
+        if let Some((flash, heading)) = &self.flash {
+            hud::tint(frame, flash, *heading);
+        }
+        if self.marks_middle && self.glyphs == GlyphMode::Half {
+            hud::mark_middle(frame);
+        }
     }
 }
 

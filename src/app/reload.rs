@@ -45,14 +45,14 @@ impl App {
             None => {}
             Some(Ok(level)) => {
                 reload.fault = None;
-                self.game = self.game.begun_again_in(level);
+                self.game = self.game.begun_again_in(level.clone());
+                self.stage.change(level);
                 self.goal = Goal::of(&self.game, self.settings.minimap);
                 self.map.begin_level();
-                let screen = match self.screen {
-                    Screen::LevelDone | Screen::End => Screen::Playing,
-                    screen => screen,
-                };
-                self.show(screen);
+                if self.screen.is_result() {
+                    self.show(Screen::Playing);
+                }
+                self.shown = None;
             }
             Some(Err(faults)) => {
                 reload.fault = Some(faults.summary());

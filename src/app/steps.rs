@@ -6,7 +6,9 @@
 use std::time::Duration;
 
 use super::clock::{self, Clock};
+use super::played::Played;
 use super::{App, Screen};
+use crate::game::Intents;
 
 impl App {
     /// Advances the game to `now`.
@@ -15,6 +17,9 @@ impl App {
         let mut step = self.clock.step_after(0);
         let mut steps = self.clock.steps_until(now);
         let mut moves = 0;
+        if self.demo.is_some() {
+            (0..steps.min(Clock::MOST_STEPS)).for_each(|_| self.step_demo());
+        }
         while steps > 0 && moves < Clock::MOST_STEPS && self.screen == Screen::Playing {
             let passed = self.pass(step, steps, &mut moves);
             step = clock::after(step, passed);
@@ -24,13 +29,22 @@ impl App {
         self.settle(now);
     }
 
+    /// Advances the level behind the title by one step.
+    fn step_demo(&mut self) {
+        let Some(demo) = &mut self.demo else { return };
+        match demo.next().filter(|_| !self.game.is_finished()) {
+            Some(intents) => self.game.step(intents),
+            None => self.game = demo.rewind().unwrap_or_else(Played::nothing),
+        }
+    }
+
     /// Advances by one step that ends at `now`, or by up to `most` steps in which nothing happens.
     /// Returns their number.
     fn pass(&mut self, now: Duration, most: u64, moves: &mut u64) -> u64 {
         let context = self.key_context();
         self.controls.advance(now, context);
         let intents = self.wanted();
-        let quiet = self.game.quiet_steps(intents);
+        let quiet = self.quiet_steps(intents);
         let steady = self.controls.steady_steps(now, context, most);
         let steps = if self.pointer.has_input() { 1 } else { steady.min(quiet.max(1)) };
         if quiet > 0 {
@@ -39,13 +53,33 @@ impl App {
             self.game.step(intents);
             *moves += 1;
         }
+        if let Some(ghost) = &mut self.ghost {
+            (0..steps).for_each(|_| ghost.step());
+        }
+        if let Some(game) = self.game.grid() {
+            self.watch.look(game);
+        }
         self.controls.held.step();
         self.pointer.passed(steps);
         self.goal.moved(if quiet > 0 { 0 } else { steps });
         self.record(intents, steps);
-        if self.game.is_finished() {
-            self.show(Screen::LevelDone);
-        }
+        self.follow_outcome();
         steps
+    }
+
+    /// The number of steps with these intents in which nothing changes but clocks.
+    pub(super) fn quiet_steps(&self, intents: Intents) -> u64 {
+        let quiet = self.game.quiet_steps(intents);
+        self.ghost.as_ref().map_or(quiet, |ghost| ghost.quiet_steps(quiet))
+    }
+
+    /// Shows the result if the level is won or the player is dead.
+    fn follow_outcome(&mut self) {
+        if self.game.is_finished() {
+            self.result = self.record_result();
+            self.show(Screen::LevelDone);
+        } else if self.game.is_dead() {
+            self.show(Screen::Dead);
+        }
     }
 }

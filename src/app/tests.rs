@@ -1,9 +1,11 @@
 //! The keys of the game, from timed bytes to the player's motion, in simulated time.
 
 mod levels;
+mod missions;
 mod questions;
 mod screens;
 mod table;
+mod titles;
 
 use std::iter;
 use std::time::Duration;
@@ -11,8 +13,9 @@ use std::time::Duration;
 use glam::DVec2;
 
 use super::*;
-use crate::game::Game;
+use crate::game::{Game, Rank, Tally};
 use crate::map::{Level, parse_str};
+use crate::store::Store;
 use crate::terminal::{Key, KeyEvent, Modifiers, Phase};
 use crate::tui::held::keyboard::Keyboard;
 use crate::world::World;
@@ -33,7 +36,10 @@ struct Rig {
 impl Rig {
     fn new(world: World, rate: Option<Rate>) -> Self {
         let levels = Levels::new(Level::Grid(Box::new(world)), iter::empty());
-        let mut app = App::new(levels, Settings::default());
+        Self::of(App::new(levels, Settings::default()), rate)
+    }
+
+    fn of(mut app: App, rate: Option<Rate>) -> Self {
         app.controls.held.set_reports_releases(rate.is_none());
         let keyboard = rate.map(|(delay, rate)| Keyboard::new(Duration::from_millis(delay), rate));
         let mut rig = Self { app, keyboard, now: Duration::ZERO };

@@ -1,8 +1,8 @@
 //! The level of a command.
 
 use std::ffi::OsStr;
-use std::io;
 use std::path::Path;
+use std::{io, iter};
 
 use super::Error;
 use super::arguments::{Generated, STANDARD_INPUT, subcommand_names};
@@ -72,15 +72,10 @@ const NOTHING_TO_WATCH: &str =
 
 /// The level that `argument` names; if it is built in, followed by the later ones.
 pub(super) fn load_series(argument: Option<&OsStr>) -> Result<Levels, Error> {
-    let first = load(argument)?;
-    let index = argument.map_or(Some(0), builtin_level);
-    let following = index.map_or(&[][..], |index| &builtin::LEVELS[index + 1..]);
-    let following = following.iter().map_while(|level| level.world().ok());
-    let levels = Levels::new(first, following.map(Level::from));
-    Ok(match index {
-        Some(index) => levels.numbered(index + 1, builtin::LEVELS.len()),
-        None => levels,
-    })
+    match argument.map_or(Some(0), builtin_level).and_then(Levels::builtin) {
+        Some(levels) => Ok(levels),
+        None => Ok(Levels::new(load(argument)?, iter::empty())),
+    }
 }
 
 /// As [`load_series`], or the generated level followed by those of the next seeds.

@@ -1,20 +1,23 @@
 //! `cellcaster play`: the game in the terminal.
 
 use std::env;
-use std::io::{self, IsTerminal};
+use std::io::{self, IsTerminal, Write};
+use std::path::PathBuf;
 use std::time::Duration;
 
 use super::arguments::{FidelityChoice, Play, STANDARD_INPUT};
+use super::data_folder::data_folder;
 use super::recording::RecordingFile;
-use super::{Error, config, level};
+use super::{Error, config, level, own_maps};
 use crate::app;
-use crate::app::{Levels, Settings};
+use crate::app::{Farewell, Levels, Offers, Opening, Settings};
+use crate::store::Store;
 use crate::terminal::{self, locale_without_utf8, take_keys_from_terminal};
 use crate::tui::GlyphMode;
 
 /// Plays until the player quits.
 pub(super) fn run(options: Play) -> Result<(), Error> {
-    let levels = levels(&options)?;
+    let opening = opening(&options)?;
     let configuration = config::load(options.config)?.configuration;
     let frames_per_second = match options.frames_per_second {
         Some(frames) => frames.get(),
@@ -37,10 +40,26 @@ pub(super) fn run(options: Play) -> Result<(), Error> {
     let file = options.record.as_deref();
     let file = file.map(|path| RecordingFile::create(path, options.overwrites)).transpose()?;
     let recording = file.as_ref().map(RecordingFile::recording).unwrap_or_default();
-    let played = app::play(levels, settings, recording);
+    let (store, damage) = match data_folder() {
+        Some(folder) => Store::open(&folder),
+        None => (Store::in_memory(), None),
+    };
+    let played = app::play(opening, settings, store, recording);
     let written = file.map_or(Ok(()), RecordingFile::finish);
-    played.map_err(about_the_terminal)?;
+    let farewell = played.map_err(about_the_terminal)?;
+    say_farewell(&farewell, damage);
     written
+}
+
+/// Says what was done, and what the player should know about what is kept.
+fn say_farewell(Farewell { done, trouble }: &Farewell, damage: Option<String>) {
+    // The terminal may be gone; then nobody reads it.
+    if let Some(done) = done {
+        _ = writeln!(io::stdout(), "{done}");
+    }
+    if let Some(sentence) = trouble.clone().or(damage) {
+        _ = writeln!(io::stderr(), "cellcaster: {sentence}");
+    }
 }
 
 /// The glyphs that the locale can show.
@@ -49,6 +68,19 @@ fn glyphs_of_locale() -> GlyphMode {
         Some(_) => GlyphMode::Ascii,
         None => GlyphMode::default(),
     }
+}
+
+/// The title, unless the options say what to play. A script is about one level, so that recording
+/// one begins with the first level.
+fn opening(options: &Play) -> Result<Opening, Error> {
+    let records_script = options.record.as_deref().is_some_and(RecordingFile::is_script);
+    let says_what = options.map.is_some() || options.generated.is_some() || options.watches;
+    if says_what || records_script {
+        return Ok(Opening::Levels(levels(options)?));
+    }
+    let own = data_folder().map(|folder| folder.join("maps"));
+    let folders: Vec<PathBuf> = [PathBuf::from(".")].into_iter().chain(own).collect();
+    Ok(Opening::Title(Offers { maps: Some(Box::new(move || own_maps::find(&folders))) }))
 }
 
 /// The levels to play. If the map is on standard input, keys then come from the terminal.

@@ -96,6 +96,21 @@ pub(super) fn slide<O: Obstacles>(
     Body { position, velocity: DVec2::ZERO }
 }
 
+/// Moves a circle by `displacement` up to the first contact. Returns its position, and whether there
+/// was a contact.
+pub(super) fn fly<O: Obstacles>(
+    obstacles: &O,
+    position: DVec2,
+    displacement: DVec2,
+    radius: Radius,
+) -> (DVec2, bool) {
+    let Some(path) = Path::new(position, displacement) else { return (position, false) };
+    match first_contact(obstacles, path, radius) {
+        Some(contact) => (contact.position, true),
+        None => (path.last_clear(obstacles, path.length(), radius), false),
+    }
+}
+
 /// `vector` without its part against `normal`, a unit vector.
 fn without_inward(vector: DVec2, normal: DVec2) -> DVec2 {
     vector - normal * vector.dot(normal).min(0.0)

@@ -2,7 +2,7 @@
 //!
 //! A door opens when the player wants to open it or walks into it, within [`REACH`]. It takes
 //! [`TRAVEL`] steps to open, stays open for [`STAY`] steps, and closes in [`TRAVEL`] steps. A
-//! closing door that is opened turns back. Its position is computed from the number of steps, not
+//! closing door that is opened turns back. A door with a switch stays open while the switch is on. Its position is computed from the number of steps, not
 //! from its last position.
 //!
 //! Nobody is ever inside a door: its cell is solid unless the door is fully open, and the door does
@@ -32,6 +32,8 @@ pub(super) struct Doors {
 struct MovingDoor {
     cell: Cell,
     phase: Phase,
+    /// Whether a switch keeps it open.
+    is_held: bool,
 }
 
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -48,11 +50,24 @@ impl Doors {
     /// Opens the door in `cell`, unless it is opening already.
     pub(super) fn open(&mut self, cell: Cell) {
         match self.moving.iter_mut().find(|door| door.cell == cell) {
-            None => self.moving.push(MovingDoor { cell, phase: Phase::Opening(0) }),
+            None => self.moving.push(MovingDoor::new(cell)),
             Some(MovingDoor { phase, .. }) => {
                 if let Phase::Closing(steps) = *phase {
                     *phase = Phase::Opening(steps);
                 }
+            }
+        }
+    }
+
+    /// Opens the door in `cell` for as long as a switch is on, or lets it close.
+    pub(super) fn hold(&mut self, cell: Cell, is_on: bool) {
+        if is_on {
+            self.open(cell);
+        }
+        for door in self.moving.iter_mut().filter(|door| door.cell == cell) {
+            door.is_held = is_on;
+            if let (Phase::Open(_), false) = (door.phase, is_on) {
+                door.phase = Phase::Open(0);
             }
         }
     }
@@ -95,7 +110,8 @@ impl Doors {
 
     /// The number of steps in which no door moves; `None` if none ever will.
     pub(super) fn quiet_steps(&self) -> Option<u64> {
-        let quiet = self.moving.iter().map(|door| match door.phase {
+        let waiting = self.moving.iter().filter(|door| !door.is_kept_open());
+        let quiet = waiting.map(|door| match door.phase {
             Phase::Open(steps) => u64::from(steps),
             Phase::Opening(_) | Phase::Closing(_) => 0,
         });
@@ -104,7 +120,7 @@ impl Doors {
 
     /// Advances the doors by `steps`, at most [`Doors::quiet_steps`].
     pub(super) fn wait(&mut self, steps: u64) {
-        for door in &mut self.moving {
+        for door in self.moving.iter_mut().filter(|door| !door.is_kept_open()) {
             if let Phase::Open(left) = &mut door.phase {
                 *left = left.saturating_sub(u32::try_from(steps).unwrap_or(u32::MAX));
             }
@@ -113,8 +129,20 @@ impl Doors {
 }
 
 impl MovingDoor {
+    fn new(cell: Cell) -> Self {
+        Self { cell, phase: Phase::Opening(0), is_held: false }
+    }
+
+    /// Whether a switch keeps it open, so that it does not wait.
+    fn is_kept_open(&self) -> bool {
+        self.is_held && matches!(self.phase, Phase::Open(_))
+    }
+
     /// Advances the door by one step, and returns whether it is not closed yet.
     fn step(&mut self, is_occupied: bool) -> bool {
+        if self.is_kept_open() {
+            return true;
+        }
         self.phase = match self.phase {
             Phase::Opening(steps) if steps + 1 < TRAVEL => Phase::Opening(steps + 1),
             Phase::Opening(_) => Phase::Open(STAY),

@@ -1,20 +1,25 @@
-//! Keys and doors: opening the door in front of the player, and taking keys.
+//! Keys and doors: opening the door in front of the player.
 //!
-//! A locked door opens for a player who has its key; otherwise a message names the key.
+//! A locked door opens for a player who has its key; otherwise a message names the key. A door with
+//! a switch opens with that only.
 
 use super::Game;
 use super::doors::door_ahead;
 use super::intent::{Intent, Intents};
+use super::noise::reach;
 use super::notice::Notice;
-use crate::world::{Cell, Door, ThingKind};
+use super::sound::SoundKind;
+use crate::world::{Cell, Door};
 
 impl Game {
-    /// The intents, with a jump in front of a door replaced by opening it.
+    /// The intents, with a jump in front of a door, a lever or the like replaced by opening it.
     pub(super) fn at_a_door(&self, mut intents: Intents) -> Intents {
-        let looking = self.player.heading().direction();
+        let motion = &self.player.motion;
+        let looking = motion.heading().direction();
         if intents.contains(Intent::Jump)
-            && !self.world.is_of_walls()
-            && door_ahead(&self.world, self.player.position(), looking).is_some()
+            && (self.handle_ahead().is_some()
+                || !self.world.is_of_walls()
+                    && door_ahead(&self.world, motion.position(), looking).is_some())
         {
             intents.remove(Intent::Jump);
             intents.insert(Intent::Open);
@@ -27,58 +32,57 @@ impl Game {
         if self.world.is_of_walls() {
             return None;
         }
-        let looking = intents.contains(Intent::Open).then(|| self.player.heading().direction());
-        let directions = [looking, self.player.wanted_direction(intents)];
-        let position = self.player.position();
+        let motion = &self.player.motion;
+        let looking = intents.contains(Intent::Open).then(|| motion.heading().direction());
+        let directions = [looking, motion.wanted_direction(intents)];
+        let position = motion.position();
         directions.into_iter().flatten().find_map(|way| door_ahead(&self.world, position, way))
     }
 
-    fn can_open(&self, door: Door) -> bool {
-        door.key.is_none_or(|key| self.keys.contains(&key))
-    }
-
-    pub(super) fn try_to_open(&mut self, cell: Cell, door: Door) {
-        if self.can_open(door) {
-            self.doors.open(cell);
-        } else {
-            self.say(self.refusal(door));
+    /// Opens the door that the player wants to open or walks into.
+    pub(super) fn open_doors(&mut self, intents: Intents) {
+        if let Some((cell, door)) = self.door_wanted(intents) {
+            self.try_to_open(cell, door);
         }
     }
 
-    /// Whether [`Game::try_to_open`] would change anything.
+    fn can_open(&self, door: Door) -> bool {
+        door.switch.is_none() && door.key.is_none_or(|key| self.player.keys.contains(&key))
+    }
+
+    fn try_to_open(&mut self, cell: Cell, door: Door) {
+        if !self.can_open(door) {
+            return self.say(self.refusal(door));
+        }
+        if self.is_mission && self.doors.would_open(cell) {
+            self.sound(SoundKind::Door, reach::DOOR);
+        }
+        self.doors.open(cell);
+    }
+
+    /// Whether [`Game::open_doors`] would change anything.
     pub(super) fn would_answer(&self, cell: Cell, door: Door) -> bool {
         if self.can_open(door) {
             self.doors.would_open(cell)
         } else {
-            self.notice.text() != Some(&self.refusal(door))
+            self.player.notice.text() != Some(&self.refusal(door))
         }
     }
 
-    fn say(&mut self, text: String) {
-        if self.notice.text() != Some(&text) {
-            self.notice = Notice::new(text);
+    /// Shows a message, unless it is shown already.
+    pub(super) fn say(&mut self, text: String) {
+        if self.player.notice.text() != Some(&text) {
+            self.player.notice = Notice::new(text);
             self.revision += 1;
         }
     }
 
-    /// The message of a locked door.
+    /// The message of a door that does not open.
     fn refusal(&self, door: Door) -> String {
+        if door.switch.is_some() {
+            return "This door opens elsewhere.".to_owned();
+        }
         let name = door.key.map_or("right", |key| self.world.key_name(key));
         format!("This door needs the {name} key.")
-    }
-
-    /// Takes the keys that the player has reached.
-    pub(super) fn take_keys(&mut self) {
-        let cell = self.player.cell();
-        let found = self.things_reached().find_map(|thing| match thing.kind {
-            ThingKind::Key(key) => Some(key),
-            _ => None,
-        });
-        if let Some(key) = found {
-            self.keys.insert(key);
-            self.world.take_things(cell, |kind| kind == ThingKind::Key(key));
-            self.revision += 1;
-            self.say(format!("You have the {} key.", self.world.key_name(key)));
-        }
     }
 }

@@ -1,252 +1,92 @@
-//! The player: position, motion, and what a step changes.
+//! A player: everything in the game that belongs to one of them, so that a game may have several.
 
-use glam::DVec2;
+mod motion;
 
-use super::STEP;
-use super::collision::{Body, Place, Radius, Stature, overlaps, slide};
-use super::fall::{Flight, GRAVITY, Room};
-use super::intent::{Intent, Intents};
-use super::pitch_control::PitchControl;
-use super::stance::Stance;
-use super::turning::Turning;
-use crate::generate::Shift;
-use crate::numeric::damped_motion::{DampedMotion, approach_in_plane};
-use crate::world::{Camera, Cell, FieldOfView, Heading, World};
+use std::collections::BTreeSet;
 
-/// The player's radius, in cells: a door is twice as wide as the player.
-pub(super) const RADIUS: Radius =
-    Radius::new(0.25).expect("a quarter is between nothing and a half");
+use super::health::{Flash, Health};
+use super::intent::Intents;
+use super::notice::Notice;
+use super::sound::Hearing;
+use super::tools::Supplies;
+use crate::world::{KeyId, World};
+pub(super) use motion::{FRICTION, JUMP_HEIGHT, Motion, RADIUS, RUN, STEP_HEIGHT, STILL, WALK};
 
-/// Walking speed in any direction, in cells per second.
-pub(super) const WALK: f64 = 3.0;
-/// Running speed in any direction, in cells per second.
-pub(super) const RUN: f64 = 5.5;
-
-/// How fast the player reaches that speed, per second.
-pub(super) const FRICTION: f64 = 12.0;
-
-/// The height of a step that the player climbs or descends by walking, in cells.
-pub(super) const STEP_HEIGHT: f64 = 0.35;
-/// The height of a jump, in cells.
-pub(super) const JUMP_HEIGHT: f64 = 0.66;
-
-/// Below this speed the player stands still, in cells or radians per second. An exponential decay
-/// never ends, but a program should be able to sleep when nothing moves.
-pub(super) const STILL: f64 = 1e-4;
-
-#[derive(Clone, Copy, Debug, PartialEq)]
+/// A player.
+#[derive(Clone, Debug, PartialEq)]
 pub(super) struct Player {
-    body: Body,
-    /// The height of the feet, in cells.
-    feet: f64,
-    /// Cells per second, upwards.
-    rising: f64,
-    stance: Stance,
-    pitch_control: PitchControl,
-    /// Whether a jump was wanted in the last step: each press is one jump.
-    wanted_to_jump: bool,
-    heading: Heading,
-    turning: Turning,
+    pub(super) motion: Motion,
+    pub(super) health: Health,
+    pub(super) supplies: Supplies,
+    pub(super) keys: BTreeSet<KeyId>,
+    /// The worth of the treasure found.
+    pub(super) treasure: u32,
+    pub(super) has_light: bool,
+    /// The steps until the player can strike again.
+    pub(super) strike_wait: u16,
+    /// The intents of the last step that act once for each press.
+    pub(super) pressed: Intents,
+    /// The height from which the player falls: the highest since they last stood.
+    pub(super) fell_from: f64,
+    /// How far the player has walked since the last audible step, in cells.
+    pub(super) stride: f64,
+    /// The number of steps in cold water, without a break.
+    pub(super) in_water: u32,
+    /// The last thrust of spikes that hurt the player, by the step in which it began.
+    pub(super) last_thrust: Option<u64>,
+    pub(super) hearing: Hearing,
+    pub(super) flash: Option<Flash>,
+    pub(super) notice: Notice,
 }
 
 impl Player {
-    /// A player who stands still at the start.
-    pub(super) fn new(world: &World) -> Self {
-        let start = world.start();
-        let body = Body { position: start.cell.center(), velocity: DVec2::ZERO };
+    /// A player at the start of `world`, with these supplies.
+    pub(super) fn new(world: &World, supplies: Supplies) -> Self {
+        let motion = Motion::new(world);
         Self {
-            body,
-            // The start has headroom.
-            feet: world.floor_at(start.cell),
-            rising: 0.0,
-            stance: Stance::default(),
-            pitch_control: PitchControl::default(),
-            wanted_to_jump: false,
-            heading: start.heading,
-            turning: Turning::default(),
+            fell_from: motion.feet(),
+            motion,
+            health: Health::default(),
+            supplies,
+            keys: BTreeSet::new(),
+            treasure: 0,
+            has_light: false,
+            strike_wait: 0,
+            pressed: Intents::new(),
+            stride: 0.0,
+            in_water: 0,
+            last_thrust: None,
+            hearing: Hearing::default(),
+            flash: None,
+            notice: Notice::default(),
         }
     }
 
-    /// The player in another world, standing still; `None` if there is no room.
-    pub(super) fn placed_in(self, world: &World) -> Option<Self> {
-        let Cell { column, row } = self.cell();
-        let (column, row) = (i64::from(column), i64::from(row));
-        if world.grid().tile(column, row).is_none() || world.grid().is_solid(column, row) {
-            return None;
-        }
-        let still = Self {
-            body: Body { velocity: DVec2::ZERO, ..self.body },
-            rising: 0.0,
-            turning: Turning::default(),
-            stance: Stance::default(),
-            wanted_to_jump: false,
-            ..self
-        };
-        let heights = [self.feet, world.floor_at(self.cell())];
-        let placed = heights.map(|feet| Self { feet, ..still });
-        placed.into_iter().find(|player| player.has_room(world))
-    }
-
-    /// The player's view of `world`.
-    pub(super) fn camera(&self, world: &World, field_of_view: FieldOfView) -> Option<Camera> {
-        let ceiling = self.room(world).ceiling + self.stance.height();
-        let eye = self.feet + self.stance.eye(ceiling - self.feet);
-        let camera = Camera::new(self.position(), self.heading, field_of_view)?.with_eye(eye)?;
-        Some(camera.with_pitch(self.pitch_control.pitch))
-    }
-
-    pub(super) fn position(&self) -> DVec2 {
-        self.body.position
-    }
-
-    pub(super) fn feet(&self) -> f64 {
-        self.feet
-    }
-
-    /// The height of the top of the head, in cells.
-    pub(super) fn head(&self) -> f64 {
-        self.feet + self.stance.height()
-    }
-
-    pub(super) fn heading(&self) -> Heading {
-        self.heading
-    }
-
-    /// The player in a window that has moved.
+    /// The same player at another place.
     #[must_use]
-    pub(super) fn shifted(self, shift: Shift) -> Self {
-        let position = shift.position(self.body.position);
-        Self { body: Body { position, ..self.body }, ..self }
+    pub(super) fn at(self, motion: Motion) -> Self {
+        Self { motion, fell_from: motion.feet(), ..self }
     }
 
-    /// The cell of the player's centre.
-    pub(super) fn cell(&self) -> Cell {
-        let DVec2 { x, y } = self.body.position;
-        Cell { column: x as u32, row: y as u32 }
+    /// Those of `presses` that begin in this step.
+    pub(super) fn fresh(&self, presses: Intents) -> Intents {
+        presses.iter().filter(|&intent| !self.pressed.contains(intent)).collect()
     }
 
-    /// Whether the player would overlap `cell` if it were solid.
-    pub(super) fn touches(&self, cell: Cell) -> bool {
-        overlaps(self.body.position, cell, RADIUS)
+    /// The number of steps in which nothing changes but the player's clocks; `None` if nothing ever
+    /// will.
+    pub(super) fn quiet_steps(&self) -> Option<u64> {
+        let flash = self.flash.map(|flash| u64::from(flash.left.saturating_sub(1)));
+        let quiet = [self.notice.quiet_steps(), self.hearing.quiet_steps(), flash];
+        quiet.into_iter().flatten().min()
     }
 
-    /// The direction in which the player wants to walk, as a unit vector; `None` for none.
-    pub(super) fn wanted_direction(&self, intents: Intents) -> Option<DVec2> {
-        wanted_velocity(self.heading, intents).try_normalize()
-    }
-
-    /// The player after one step: turned, then ducked, then moved.
-    #[must_use]
-    pub(super) fn stepped(self, world: &World, intents: Intents) -> Self {
-        let pitch_control = self.pitch_control.after_a_step(intents);
-        Self { pitch_control, ..self }.turned(intents).ducked(world, intents).walked(world, intents)
-    }
-
-    fn turned(self, intents: Intents) -> Self {
-        let (turning, turned) = self.turning.after_a_step(intents);
-        let angle = turned + intents.look().turn_radians();
-        Self { heading: self.heading.turned(angle), turning, ..self }
-    }
-
-    /// The player stands up only where there is room.
-    fn ducked(self, world: &World, intents: Intents) -> Self {
-        let stance = self.stance.after_a_step(intents.contains(Intent::Duck));
-        let ducked = Self { stance, ..self };
-        if stance.height() <= self.stance.height() || ducked.has_room(world) {
-            ducked
-        } else {
-            self
-        }
-    }
-
-    fn walked(self, world: &World, intents: Intents) -> Self {
-        let wants_to_jump = intents.contains(Intent::Jump);
-        let stands = self.stands(world);
-        let jumps = stands && wants_to_jump && !self.wanted_to_jump;
-        let step = if stands && !jumps { STEP_HEIGHT } else { 0.0 };
-
-        let target = wanted_velocity(self.heading, intents);
-        let DampedMotion { velocity, displacement } =
-            approach_in_plane(self.body.velocity, target, FRICTION, STEP);
-        let mut place = Place { step, ..self.place(world) };
-        let mut body = slide(&mut place, Body { velocity, ..self.body }, displacement, RADIUS);
-        if body.velocity.length() < STILL {
-            body.velocity = DVec2::ZERO;
-        }
-        let walked = Self { body, wanted_to_jump: wants_to_jump, ..self };
-        let feet = place.stature.feet;
-        let room = place.room(body.position, RADIUS);
-        if stands && !jumps && feet - room.floor <= STEP_HEIGHT {
-            walked.standing_on(room.floor)
-        } else {
-            let speed = if jumps { libm::sqrt(2.0 * GRAVITY * JUMP_HEIGHT) } else { self.rising };
-            walked.flying(Flight { height: feet, speed }, room)
-        }
-    }
-
-    /// Whether the player stands on the floor.
-    pub(super) fn stands(&self, world: &World) -> bool {
-        self.rising == 0.0 && self.feet == self.room(world).floor
-    }
-
-    fn standing_on(self, floor: f64) -> Self {
-        Self { feet: floor, rising: 0.0, stance: self.stance.following(floor - self.feet), ..self }
-    }
-
-    fn flying(self, flight: Flight, room: Room) -> Self {
-        let Flight { height, speed } = flight.after(STEP, room);
-        Self { feet: height, rising: speed, stance: self.stance.following(0.0), ..self }
-    }
-
-    /// The lowest and the highest position of the feet here.
-    fn room(&self, world: &World) -> Room {
-        self.place(world).room(self.body.position, RADIUS)
-    }
-
-    fn has_room(&self, world: &World) -> bool {
-        self.place(world).is_clear(self.body.position, RADIUS)
-    }
-
-    fn place<'a>(&self, world: &'a World) -> Place<'a> {
-        let stature = Stature { feet: self.feet, height: self.stance.height() };
-        Place { world, stature, step: 0.0, has_shapes: world.has_shapes() }
-    }
-}
-
-/// The velocity that the player approaches on open floor.
-fn wanted_velocity(heading: Heading, intents: Intents) -> DVec2 {
-    let forward = intents.balance(Intent::Forward, Intent::Back);
-    let right = intents.balance(Intent::StrafeRight, Intent::StrafeLeft);
-    let speed = if intents.contains(Intent::Run) { RUN } else { WALK };
-    let ahead_and_aside = DVec2::new(forward, right).normalize_or_zero();
-    heading.direction().rotate(ahead_and_aside) * speed
-}
-
-#[cfg(test)]
-mod tests {
-    use super::*;
-
-    fn speed(intents: &[Intent]) -> f64 {
-        let heading = Heading::from_degrees(33.0).unwrap();
-        wanted_velocity(heading, intents.iter().copied().collect()).length()
-    }
-
-    #[test]
-    fn a_diagonal_is_no_faster_and_opposites_cancel() {
-        use Intent::{Back, Forward, Run, StrafeLeft, StrafeRight};
-        for way in [&[Forward][..], &[StrafeLeft], &[Forward, StrafeRight], &[Back, StrafeLeft]] {
-            assert!((speed(way) - WALK).abs() < 1e-12, "{way:?}");
-            assert!((speed(&[way, &[Run]].concat()) - RUN).abs() < 1e-12, "{way:?}");
-        }
-        for nowhere in [&[Run][..], &[Forward, Back], &[Forward, Back, StrafeLeft, StrafeRight]] {
-            assert_eq!(speed(nowhere), 0.0, "{nowhere:?}");
-        }
-    }
-
-    #[test]
-    fn right_is_south_for_who_looks_east() {
-        let east = Heading::from_degrees(0.0).unwrap();
-        let strafe = [Intent::StrafeRight].into_iter().collect();
-        assert_eq!(wanted_velocity(east, strafe), DVec2::new(0.0, WALK));
+    /// Advances the player's clocks by `steps`, except those of what they hear. Returns whether a message or a flash ended.
+    pub(super) fn wait(&mut self, steps: u64) -> bool {
+        let short = u16::try_from(steps).unwrap_or(u16::MAX);
+        self.strike_wait = self.strike_wait.saturating_sub(short);
+        let had_flash = self.flash.is_some();
+        self.flash = self.flash.and_then(|flash| flash.after(short));
+        self.notice.wait(steps) | (had_flash && self.flash.is_none())
     }
 }

@@ -2,6 +2,9 @@
 //!
 //! ```text
 //! # Out of the gate, and once around.
+//! level      cellar
+//! difficulty hard
+//!
 //! [walking]
 //! 2.5 s     forward
 //! 1 s       forward run
@@ -14,11 +17,13 @@
 //! A line has a duration, in seconds or steps, and everything that is wanted meanwhile, or `stand`
 //! for nothing. `turn:1.5` and `tilt:-0.25` are the degrees by which the player turns clockwise and
 //! tilts up in each step. A name in brackets begins a section, for reports on parts of a script. A
-//! `#` begins a comment. The same script in the same map gives the same states, bit for bit.
+//! `#` begins a comment. Lines at the top name the `level`, the `difficulty` and the `seed` of the game;
+//! each may be missing, and is then up to the one who plays the script. The same script in the same map gives the same states, bit for bit.
 //!
 //! Lists of presses and releases with times were refused: their authors would have to add up times,
 //! and a missing line would hold a key for ever.
 
+mod header;
 mod parse;
 mod recorder;
 
@@ -27,6 +32,7 @@ use std::fmt;
 use super::{Intents, STEPS_PER_SECOND};
 use crate::fault::Faults;
 
+pub use header::{Header, LevelName};
 pub use recorder::Recorder;
 
 /// A script.
@@ -45,6 +51,7 @@ pub use recorder::Recorder;
 /// ```
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub struct Script {
+    header: Header,
     sections: Vec<Section>,
 }
 
@@ -73,6 +80,11 @@ impl Script {
     /// All faults of the text.
     pub fn parse(text: &str, name: &str) -> Result<Self, Faults> {
         parse::parse(text, name)
+    }
+
+    /// The game that the script belongs to.
+    pub fn header(&self) -> &Header {
+        &self.header
     }
 
     /// The sections in their order; there is at least one, and none is empty.
@@ -116,9 +128,14 @@ const STAND: &str = "stand";
 impl fmt::Display for Script {
     /// A text that reads as the same script.
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        self.header.fmt(f)?;
+        if !self.header.is_empty() && self.sections.first().is_some_and(|it| it.name.is_empty()) {
+            writeln!(f)?;
+        }
         for (index, section) in self.sections.iter().enumerate() {
             if !section.name.is_empty() {
-                let blank = if index == 0 { "" } else { "\n" };
+                let is_first = index == 0 && self.header.is_empty();
+                let blank = if is_first { "" } else { "\n" };
                 writeln!(f, "{blank}[{}]", section.name)?;
             }
             section.stretches.iter().try_for_each(|stretch| writeln!(f, "{stretch}"))?;
@@ -152,6 +169,7 @@ mod tests {
 
     use super::*;
     use crate::game::{Intent, Look};
+    use crate::world::Difficulty;
 
     pub(super) fn stretches() -> impl Strategy<Value = Vec<Stretch>> {
         let intents = prop::sample::subsequence(Intent::ALL.to_vec(), 0..=Intent::ALL.len());
@@ -166,13 +184,23 @@ mod tests {
         prop::collection::vec(stretch, 1..10)
     }
 
+    fn header() -> impl Strategy<Value = Header> {
+        let level = prop_oneof![
+            ".{1,12}".prop_filter_map("one line", |name| LevelName::new(&name)),
+            (1..9_u32).prop_map(LevelName::of_floor),
+        ];
+        let difficulty = prop::sample::select(&Difficulty::ALL);
+        (prop::option::of(level), prop::option::of(difficulty), any::<Option<u64>>())
+            .prop_map(|(level, difficulty, seed)| Header { level, difficulty, seed })
+    }
+
     fn script() -> impl Strategy<Value = Script> {
         let named = ("[a-zä]([a-z ]{0,8}[a-z])?", stretches());
-        (prop::option::of(stretches()), prop::collection::vec(named, 1..4)).prop_map(
-            |(first, named)| {
+        (header(), prop::option::of(stretches()), prop::collection::vec(named, 1..4)).prop_map(
+            |(header, first, named)| {
                 let first = first.into_iter().map(|stretches| (String::new(), stretches));
                 let section = |(name, stretches)| Section { name, stretches };
-                Script { sections: first.chain(named).map(section).collect() }
+                Script { header, sections: first.chain(named).map(section).collect() }
             },
         )
     }
@@ -183,6 +211,22 @@ mod tests {
             let text = script.to_string();
             prop_assert_eq!(Script::parse(&text, "it").map_err(|faults| faults.to_string()), Ok(script));
         }
+    }
+
+    #[test]
+    fn a_header_names_the_game() {
+        let text = "# all\nseed 7 # of chance\nlevel  my maps/a.toml\n[b]\n1 s stand\n";
+        let script = Script::parse(text, "it").unwrap();
+        assert_eq!(
+            script.to_string(),
+            "level      my maps/a.toml\nseed       7\n\n[b]\n1 s       stand\n"
+        );
+        let floor = |name| LevelName::new(name).and_then(|name| name.floor());
+        assert_eq!(
+            ["floor 3", "floor 0", "floor", "floor3"].map(floor),
+            [Some(3), None, None, None]
+        );
+        assert_eq!(LevelName::of_floor(12).floor(), Some(12));
     }
 
     #[test]

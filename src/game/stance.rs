@@ -36,6 +36,11 @@ impl Stance {
         STANDING + (DUCKING - STANDING) * self.ducking
     }
 
+    /// Whether the body is nearer to ducking than to standing upright.
+    pub(super) fn is_ducking(self) -> bool {
+        self.ducking > 0.5
+    }
+
     /// The height of the eye above the feet, in cells, below a ceiling at that height above them.
     pub(super) fn eye(self, headroom: f64) -> f64 {
         let eye = Camera::STANDING + (EYE_DUCKING - Camera::STANDING) * self.ducking + self.lag;

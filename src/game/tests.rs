@@ -1,14 +1,22 @@
 //! Properties of the game, in small levels.
 
+mod finds;
+mod hazards;
+mod mechanisms;
+mod missions;
+mod stage;
+mod tools;
+
 use glam::DVec2;
 use proptest::prelude::*;
+pub(super) use stage::Stage;
 
 use super::*;
 use crate::color::Rgb;
 use crate::world::sprite::builtin;
 use crate::world::{
-    Ceiling, Cell, Covering, Grid, Heading, Heights, Mission, Paint, Parts, Sky, SpriteId, Start,
-    Thing, Tile, TileKind,
+    Ceiling, Cell, Covering, FieldOfView, Grid, Heading, Heights, Paint, Parts, Sky, SpriteId,
+    Start, Thing, ThingKind, Tile, TileKind,
 };
 
 /// A world drawn in characters: `#` is solid, `@` is where the player starts, `E` is an exit.

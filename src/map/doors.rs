@@ -10,14 +10,15 @@ use std::ops::Range;
 
 use toml::de::DeTable;
 
+use super::checks::Cells;
 use super::drawing::Drawing;
 use super::legend::{Legend, Meaning};
-use super::switches::SwitchSymbol;
+use super::switches::{self, SwitchSymbol};
 use super::textures::Surface;
 use crate::fault::document::Entry;
 use crate::fault::{Fault, quoted};
-use crate::world::{Cell, Grid, KeyId, Start, Tile, TileKind};
-use reach::Reach;
+use crate::world::{Cell, Grid, KeyId, Start, Tile, TileId, TileKind};
+use reach::{Opener, Reach};
 
 /// A door as the legend defines it.
 pub(super) struct DoorSymbol<'a> {
@@ -56,6 +57,14 @@ impl<'a> DoorSymbol<'a> {
             }
         };
         Some(Self { leaf: leaf?, key, switch })
+    }
+}
+
+impl<'a> DoorSymbol<'a> {
+    /// What opens it, if not the player alone.
+    fn opener(&self) -> Option<Opener<'a>> {
+        let switch = self.switch.as_ref().map(|switch| Opener::Switch(switch.name));
+        self.key.as_ref().map(|key| Opener::Key(key.name)).or(switch)
     }
 }
 
@@ -101,17 +110,15 @@ impl Keys {
 pub(super) fn faults(
     drawing: &Drawing<'_>,
     legend: &Legend<'_>,
-    grid: &Grid,
-    tiles: &[Tile],
+    cells: &Cells<'_>,
     start: Start,
     low_things: &BTreeSet<Cell>,
 ) -> Vec<Fault> {
     let doors = drawn_doors(drawing, legend);
-    let mut faults: Vec<Fault> =
-        doors.filter_map(|door| misplaced(drawing, grid, tiles, door)).collect();
+    let mut faults: Vec<Fault> = doors.filter_map(|door| misplaced(drawing, cells, door)).collect();
     // Behind a misplaced door, reachability means nothing.
     if faults.is_empty() {
-        faults = keys_out_of_reach(drawing, legend, grid, start, low_things);
+        faults = keys_out_of_reach(drawing, legend, cells.grid, start, low_things);
     }
     faults.extend(useless_keys(drawing, legend));
     faults
@@ -161,9 +168,8 @@ fn drawn_keys<'l, 'a>(
 }
 
 /// The fault of doors drawn as `character` that cannot slide or lead nowhere.
-fn misplaced(drawing: &Drawing<'_>, grid: &Grid, tiles: &[Tile], character: char) -> Option<Fault> {
-    let mut wrong =
-        drawing.cells_of(character).filter(|&cell| !is_between_jambs(grid, tiles, cell));
+fn misplaced(drawing: &Drawing<'_>, cells: &Cells<'_>, character: char) -> Option<Fault> {
+    let mut wrong = drawing.cells_of(character).filter(|&cell| !is_between_jambs(cells, cell));
     let first = wrong.next()?;
     let message = "a door stands between two walls, with open floor before and behind it";
     let fault = Fault::new(drawing.place_of(first), message)
@@ -176,22 +182,22 @@ fn misplaced(drawing: &Drawing<'_>, grid: &Grid, tiles: &[Tile], character: char
 
 /// Whether exactly one pair of opposite neighbours of `cell` can hold a door, and the other pair is
 /// open floor.
-fn is_between_jambs(grid: &Grid, tiles: &[Tile], cell: Cell) -> bool {
+fn is_between_jambs(cells: &Cells<'_>, cell: Cell) -> bool {
     let (column, row) = (i64::from(cell.column), i64::from(cell.row));
-    let kinds = |places: [(i64, i64); 2]| {
-        places.map(|(column, row)| Some(tiles[usize::from(grid.tile(column, row)?.0)].kind))
-    };
+    let kinds = |places: [(i64, i64); 2]| places.map(|(column, row)| cells.tile(column, row));
     let pairs = [
         kinds([(column - 1, row), (column + 1, row)]),
         kinds([(column, row - 1), (column, row + 1)]),
     ];
-    let holds = |kind| {
-        matches!(
-            kind,
-            Some(TileKind::Wall(_) | TileKind::Mask(_) | TileKind::Glass(_) | TileKind::Mirror(_))
-        )
+    use TileKind::{Glass, Mask, Mirror, Open, Wall};
+    // A wall that sinks would leave the door without its jamb.
+    let holds = |tile: Option<(TileId, Tile)>| {
+        tile.is_some_and(|(id, tile)| {
+            matches!(tile.kind, Wall(_) | Mask(_) | Glass(_) | Mirror(_)) && !cells.moves(id)
+        })
     };
-    let is_open = |kind| matches!(kind, Some(TileKind::Open));
+    let is_open =
+        |tile: Option<(TileId, Tile)>| tile.is_some_and(|(_, tile)| matches!(tile.kind, Open));
     let [one, other] = pairs;
     one.into_iter().all(holds) && other.into_iter().all(is_open)
         || one.into_iter().all(is_open) && other.into_iter().all(holds)
@@ -220,25 +226,36 @@ fn keys_out_of_reach(
     start: Start,
     low_things: &BTreeSet<Cell>,
 ) -> Vec<Fault> {
-    let mut locks = BTreeMap::new();
-    for (character, key) in locked_doors(drawing, legend) {
-        locks.extend(drawing.cells_of(character).map(|cell| (cell, key.name)));
-    }
-    if locks.is_empty() {
+    if locked_doors(drawing, legend).next().is_none() {
         return Vec::new();
     }
-    let passable: BTreeSet<Cell> = drawn(drawing, legend, |meaning| {
-        matches!(meaning, Meaning::Door(_) | Meaning::Shape(_) | Meaning::MovingWall(_))
-    })
-    .flat_map(|character| drawing.cells_of(character))
-    .chain(low_things.iter().copied())
-    .collect();
-    let keys: BTreeMap<Cell, &str> = drawn_keys(drawing, legend)
-        .flat_map(|(character, key)| drawing.cells_of(character).map(|cell| (cell, key.name)))
-        .collect();
-    let taken =
-        Reach { grid, passable: &passable, locks: &locks, keys: &keys }.keys_from(start.cell);
-    let missing = locked_doors(drawing, legend).filter(|(_, key)| !taken.contains(key.name));
+    let mut passable = low_things.clone();
+    let mut locks = BTreeMap::new();
+    let mut found = BTreeMap::<Cell, Vec<Opener<'_>>>::new();
+    let mut given = BTreeSet::new();
+    let has_guards = legend.used_in(drawing).any(|(_, it)| matches!(it.meaning, Meaning::Guard(_)));
+    for (cell, symbol) in legend.of_cells(drawing) {
+        match &symbol.meaning {
+            Meaning::Door(door) => {
+                passable.insert(cell);
+                locks.extend(door.opener().map(|opener| (cell, opener)));
+            }
+            Meaning::Shape(_) | Meaning::MovingWall(_) => _ = passable.insert(cell),
+            Meaning::Key(key) => found.entry(cell).or_default().push(Opener::Key(key.name)),
+            meaning => {
+                let Some(switch) = switches::set_by(symbol) else { continue };
+                let opener = Opener::Switch(switch.name);
+                let is_lever = matches!(meaning, Meaning::Item(_));
+                let around = if is_lever { cells_around(cell) } else { vec![cell] };
+                around.iter().for_each(|&it| found.entry(it).or_default().push(opener));
+                given.extend((has_guards && !is_lever).then_some(opener));
+            }
+        }
+    }
+    let reach = Reach { grid, passable: &passable, locks: &locks, found: &found };
+    let taken = reach.openers_from(start.cell, given);
+    let missing =
+        locked_doors(drawing, legend).filter(|(_, key)| !taken.contains(&Opener::Key(key.name)));
     missing
         .map(|(_, key)| {
             let name = quoted(key.name);
@@ -258,4 +275,11 @@ fn keys_out_of_reach(
             }
         })
         .collect()
+}
+
+/// The cell and its eight neighbours, from which a player can reach a lever in it.
+fn cells_around(cell: Cell) -> Vec<Cell> {
+    let beside = |place: u32| place.saturating_sub(1)..=place.saturating_add(1);
+    let rows = beside(cell.row);
+    rows.flat_map(|row| beside(cell.column).map(move |column| Cell { column, row })).collect()
 }

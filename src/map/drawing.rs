@@ -89,12 +89,16 @@ impl<'a> Drawing<'a> {
         self.text.rows().map(|(_, row)| row)
     }
 
+    /// The cells with their characters, row by row from the north.
+    pub(super) fn cells(&self) -> impl Iterator<Item = (Cell, char)> {
+        self.rows().zip(0..).flat_map(move |(line, row)| {
+            line.chars().zip(0..).map(move |(drawn, column)| (Cell { column, row }, drawn))
+        })
+    }
+
     /// The cells with `character`, row by row from the north.
     pub(super) fn cells_of(&self, character: char) -> impl Iterator<Item = Cell> {
-        self.rows().zip(0..).flat_map(move |(line, row)| {
-            let drawn = line.chars().zip(0..).filter(move |&(drawn, _)| drawn == character);
-            drawn.map(move |(_, column)| Cell { column, row })
-        })
+        self.cells().filter(move |&(_, drawn)| drawn == character).map(|(cell, _)| cell)
     }
 }
 

@@ -9,10 +9,15 @@ use super::drawing::Drawing;
 use super::items::whole;
 use super::legend::{Legend, Meaning, heading};
 use super::mechanisms::is_true;
+use super::per_character::PerCharacter;
 use crate::fault::document::Entry;
 use crate::fault::{Fault, nearest, quoted};
 use crate::world::{Cell, Difficulty, Duty, GuardKind, GuardPost, Heading};
 
+/// The largest number of guards.
+const MOST_GUARDS: usize = 256;
+/// The largest number of waypoints of a patrol.
+const LONGEST_PATROL: usize = 64;
 const EXAMPLE: &str = r#"{ guard = "warden", heading = 90 }"#;
 
 /// A guard as the legend defines it.
@@ -72,14 +77,13 @@ impl<'a> GuardSymbol<'a> {
         Some(Self { kind: kind?, heading: first_heading, duty, from })
     }
 
-    fn post(&self, cell: Cell, drawing: &Drawing<'_>) -> GuardPost {
+    fn post(&self, cell: Cell, waypoints: &PerCharacter<Option<Cell>>) -> GuardPost {
         let duty = match self.duty {
             DutyText::Stand => Duty::Stand,
             DutyText::Sleep => Duty::Sleep,
             DutyText::Wander(cells) => Duty::Wander(cells),
             DutyText::Patrol(characters, _) => {
-                let cells = characters.chars();
-                Duty::Patrol(cells.filter_map(|it| drawing.cells_of(it).next()).collect())
+                Duty::Patrol(characters.chars().filter_map(|it| waypoints.get(it)).collect())
             }
         };
         GuardPost { kind: self.kind, cell, heading: self.heading, duty, from: self.from }
@@ -88,14 +92,32 @@ impl<'a> GuardSymbol<'a> {
 
 /// The guards in the drawing, row by row from the north, and within a row from the west.
 pub(super) fn posts(drawing: &Drawing<'_>, legend: &Legend<'_>) -> Vec<GuardPost> {
-    let mut posts: Vec<GuardPost> = guards(drawing, legend)
-        .flat_map(|(character, guard)| {
-            let post = guard.post(Cell { column: 0, row: 0 }, drawing);
-            drawing.cells_of(character).map(move |cell| GuardPost { cell, ..post.clone() })
-        })
-        .collect();
-    posts.sort_by_key(|post| (post.cell.row, post.cell.column));
-    posts
+    let guards: Vec<(char, &GuardSymbol<'_>)> = guards(drawing, legend).collect();
+    let mut guard_of = PerCharacter::<Option<usize>>::new();
+    for (index, (character, _)) in guards.iter().enumerate() {
+        *guard_of.get_mut(*character) = Some(index);
+    }
+    let waypoints = waypoints(drawing, legend);
+    let posts = drawing.cells().filter_map(|(cell, character)| {
+        let (_, guard) = guards[guard_of.get(character)?];
+        Some(guard.post(cell, &waypoints))
+    });
+    posts.collect()
+}
+
+/// The last cell of each waypoint.
+fn waypoints(drawing: &Drawing<'_>, legend: &Legend<'_>) -> PerCharacter<Option<Cell>> {
+    let mut is_wanted = PerCharacter::<bool>::new();
+    let mut cells = PerCharacter::new();
+    for (character, symbol) in legend.used_in(drawing) {
+        *is_wanted.get_mut(character) = matches!(symbol.meaning, Meaning::Waypoint);
+    }
+    for (cell, character) in drawing.cells() {
+        if is_wanted.get(character) {
+            *cells.get_mut(character) = Some(cell);
+        }
+    }
+    cells
 }
 
 /// The faults of patrols without their waypoints, and of waypoints without a patrol.
@@ -103,7 +125,7 @@ pub(super) fn faults(drawing: &Drawing<'_>, legend: &Legend<'_>) -> Vec<Fault> {
     if !legend.is_clear() {
         return Vec::new();
     }
-    let mut faults = Vec::new();
+    let mut faults: Vec<Fault> = too_many(drawing, legend).into_iter().collect();
     let mut walked = BTreeSet::new();
     for (_, guard) in guards(drawing, legend) {
         let DutyText::Patrol(characters, place) = &guard.duty else { continue };
@@ -123,6 +145,16 @@ pub(super) fn faults(drawing: &Drawing<'_>, legend: &Legend<'_>) -> Vec<Fault> {
     }
     faults.extend(waypoint_faults(drawing, legend, &walked));
     faults
+}
+
+/// The fault of the guards after the first [`MOST_GUARDS`].
+fn too_many(drawing: &Drawing<'_>, legend: &Legend<'_>) -> Option<Fault> {
+    let count: usize = guards(drawing, legend).map(|(it, _)| drawing.sightings(it).count).sum();
+    (count > MOST_GUARDS).then(|| {
+        let message =
+            format!("the grid has {count} guards, and {MOST_GUARDS} at most can be there");
+        Fault::new(drawing.key_place.clone(), message).help("draw fewer of them")
+    })
 }
 
 /// The faults of waypoints that are drawn more than once, or that no guard walks to.
@@ -201,6 +233,14 @@ fn patrol<'a>(entry: &Entry<'a, '_>) -> Option<DutyText<'a>> {
             Fault::new(entry.value_place.clone(), "the patrol names no waypoint")
                 .help("write the characters of its waypoints, such as patrol = \"123\""),
         );
+        return None;
+    }
+    let count = characters.chars().count();
+    if count > LONGEST_PATROL {
+        let message =
+            format!("the patrol has {count} waypoints, and {LONGEST_PATROL} at most are allowed");
+        let help = "leave some out; a guard finds the way from one to the next";
+        entry.faults.push(Fault::new(entry.value_place.clone(), message).help(help));
         return None;
     }
     Some(DutyText::Patrol(characters, entry.value_place.clone()))

@@ -2,6 +2,7 @@
 
 use std::ops::Range;
 
+use super::checks::{self, Cells};
 use super::doors::{self, Keys};
 use super::drawing::Drawing;
 use super::guards;
@@ -61,7 +62,11 @@ impl Layout {
         let blocks = |thing: &&Thing| sprites[usize::from(thing.sprite.0)].blocks;
         things.iter().filter(blocks).for_each(|thing| grid.occupy(thing.cell));
         let low_things = supports::low_things(&grid, &tiles, &sprites, &things);
-        reader.faults.extend(doors::faults(drawing, legend, &grid, &tiles, start, &low_things));
+        let cells = Cells { grid: &grid, tiles: &tiles, moving: &moving };
+        let guards = guards::posts(drawing, legend);
+        reader.faults.extend(checks::cramped_guards(drawing, &cells, &guards));
+        reader.faults.extend(checks::blind_secrets(drawing, legend, &cells));
+        reader.faults.extend(doors::faults(drawing, legend, &cells, start, &low_things));
         if !reader.faults.is_empty() {
             return None;
         }
@@ -69,7 +74,7 @@ impl Layout {
             notes,
             switches: switches.into_names(),
             moving_tiles: moving,
-            guards: guards::posts(drawing, legend),
+            guards,
             ..Mission::default()
         };
         let keys = keys.into_names();

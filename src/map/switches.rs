@@ -77,18 +77,18 @@ pub(super) fn faults(drawing: &Drawing<'_>, legend: &Legend<'_>) -> Vec<Fault> {
     let setting_names: BTreeSet<&str> = setting(drawing, legend).map(|it| it.name).collect();
     let without_effect = setting(drawing, legend).filter(|it| !driven_names.contains(it.name));
     let without_driver = driven(drawing, legend).filter(|it| !setting_names.contains(it.name));
-    let without_effect = without_effect.map(|switch| {
+    let without_effect = without_effect.enumerate().map(|(index, switch)| {
         let message = format!("nothing in the grid moves with the switch {}", quoted(switch.name));
         let fault = Fault::new(switch.place.clone(), message).label("this does nothing");
         let example = "draw a door, a wall or a floor that moves with it";
-        fault.help(did_you_mean(switch.name, &driven_names).unwrap_or_else(|| {
+        fault.help(nearest_switch(switch.name, &driven_names, index).unwrap_or_else(|| {
             format!("{example}, such as {{ door = \"metal\", switch = {} }}", quoted(switch.name))
         }))
     });
-    let without_driver = without_driver.map(|switch| {
+    let without_driver = without_driver.enumerate().map(|(index, switch)| {
         let message = format!("nothing in the grid sets the switch {}", quoted(switch.name));
         let fault = Fault::new(switch.place.clone(), message).label("this never moves");
-        fault.help(did_you_mean(switch.name, &setting_names).unwrap_or_else(|| {
+        fault.help(nearest_switch(switch.name, &setting_names, index).unwrap_or_else(|| {
             format!(
                 "under [things] write \"l\" = {{ lever = {} }}, and draw one l",
                 quoted(switch.name)
@@ -98,7 +98,14 @@ pub(super) fn faults(drawing: &Drawing<'_>, legend: &Legend<'_>) -> Vec<Fault> {
     without_effect.chain(without_driver).collect()
 }
 
-fn did_you_mean(name: &str, known: &BTreeSet<&str>) -> Option<String> {
+/// A help for the fault `index` that names the most similar of some switches; `None` where there is
+/// none, or too many to compare in a moment.
+fn nearest_switch(name: &str, known: &BTreeSet<&str>, index: usize) -> Option<String> {
+    const MOST_COMPARED: usize = 32;
+    const MOST_FAULTS: usize = 100;
+    if known.len() > MOST_COMPARED || index >= MOST_FAULTS {
+        return None;
+    }
     let known: Vec<&str> = known.iter().copied().collect();
     nearest(name, &known).map(|near| format!("the nearest switch is {}", quoted(near)))
 }

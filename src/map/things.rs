@@ -4,10 +4,15 @@ use super::doors::Keys;
 use super::drawing::Drawing;
 use super::items::ItemSymbol;
 use super::legend::{Legend, Meaning};
+use super::per_character::PerCharacter;
 use super::reader::Reader;
 use super::switches::Switches;
+use crate::fault::Fault;
 use crate::world::sprite::builtin;
-use crate::world::{Cell, NoteId, Sprite, SpriteId, Thing, ThingKind};
+use crate::world::{NoteId, Sprite, SpriteId, Thing, ThingKind};
+
+/// The largest number of sprites, and of notes: their ids have two bytes.
+const MOST_KINDS: usize = 10_000;
 
 /// The things in a drawing except the start, with what they refer to.
 #[derive(Default)]
@@ -30,8 +35,14 @@ impl ThingList {
         reader: &mut Reader<'_>,
     ) -> Self {
         let mut list = Self::default();
+        let mut thing_of = PerCharacter::<Option<(ThingKind, SpriteId)>>::new();
         for (character, symbol) in legend.used_in(drawing) {
-            let of_kind = match &symbol.meaning {
+            if list.sprites.len().max(list.notes.len()) > MOST_KINDS {
+                let message = format!("the grid has more than {MOST_KINDS} kinds of thing");
+                reader.faults.push(Fault::new(symbol.place.clone(), message).label("one too many"));
+                break;
+            }
+            *thing_of.get_mut(character) = match &symbol.meaning {
                 Meaning::Exit => list.add(ThingKind::Exit, builtin::named(builtin::EXIT)),
                 Meaning::Key(key) => keys
                     .id(key.name)
@@ -45,17 +56,16 @@ impl ThingList {
                 Meaning::Item(item) => list.add_item(item, switches),
                 _ => None,
             };
-            if let Some((kind, sprite)) = of_kind {
-                let thing = |cell: Cell| Thing { kind, cell, sprite, frame: None };
-                list.things.extend(drawing.cells_of(character).map(thing));
-            }
         }
+        list.things.extend(drawing.cells().filter_map(|(cell, character)| {
+            let (kind, sprite) = thing_of.get(character)?;
+            Some(Thing { kind, cell, sprite, frame: first_frame(kind) })
+        }));
         list
     }
 
     /// Adds a sprite; returns it with the kind of thing that has it.
     fn add(&mut self, kind: ThingKind, sprite: Option<Sprite>) -> Option<(ThingKind, SpriteId)> {
-        // There is at most one for each character, far fewer than 65,536.
         let id = SpriteId(self.sprites.len() as u16);
         self.sprites.push(sprite?);
         Some((kind, id))
@@ -70,7 +80,7 @@ impl ThingList {
             &ItemSymbol::Treasure(worth) => ThingKind::Treasure(worth),
             &ItemSymbol::Healing(points) => ThingKind::Healing(points),
             &ItemSymbol::Supply(supply, count) => ThingKind::Supply(supply, count),
-            ItemSymbol::Note(text) => ThingKind::Note(self.note(text)?),
+            ItemSymbol::Note(text) => ThingKind::Note(self.note(text)),
             ItemSymbol::Checkpoint => ThingKind::Checkpoint,
             ItemSymbol::Lever(switch) => ThingKind::Lever(switches.id(switch.name)?),
             &ItemSymbol::Spikes(rhythm) => ThingKind::Spikes(rhythm),
@@ -78,8 +88,8 @@ impl ThingList {
         Some((kind, self.sprite_of_item(item.sprite_name())?))
     }
 
-    fn note(&mut self, text: &str) -> Option<NoteId> {
-        let id = u16::try_from(self.notes.len()).ok().map(NoteId);
+    fn note(&mut self, text: &str) -> NoteId {
+        let id = NoteId(self.notes.len() as u16);
         self.notes.push(text.to_owned());
         id
     }
@@ -88,10 +98,16 @@ impl ThingList {
         if let Some(&(_, id)) = self.of_items.iter().find(|(known, _)| *known == name) {
             return Some(id);
         }
-        let sprite = builtin::named(name).or_else(|| builtin::named(builtin::KEY));
         let id = SpriteId(self.sprites.len() as u16);
-        self.sprites.push(sprite?);
+        self.sprites.push(builtin::named(name)?);
         self.of_items.push((name, id));
         Some(id)
     }
+}
+
+/// The frame that a thing shows first; `None` if it depends on the time.
+fn first_frame(kind: ThingKind) -> Option<u8> {
+    let shows_its_state =
+        matches!(kind, ThingKind::Checkpoint | ThingKind::Lever(_) | ThingKind::Spikes(_));
+    shows_its_state.then_some(0)
 }

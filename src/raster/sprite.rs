@@ -2,7 +2,7 @@
 
 use super::target::Target;
 use crate::visibility::{
-    BillboardColumn, DrawList, FullyLit, Lighting, Pass, Scene, Stats, Surface,
+    Billboard, BillboardColumn, DrawList, FullyLit, Lighting, Pass, Scene, Stats, Surface,
 };
 
 /// Draws `column` of a billboard of `list` over the pixels behind it.
@@ -12,10 +12,21 @@ pub(super) fn draw<S: Stats>(
     column: &BillboardColumn,
     target: &mut Target<'_, S>,
 ) {
-    match list.billboards[column.billboard].lighting {
-        None => draw_lit(scene, list, column, FullyLit, target),
-        Some(faded) => draw_lit(scene, list, column, faded, target),
+    let Billboard { lighting, opacity, .. } = list.billboards[column.billboard];
+    let solid = |alpha: u8| alpha;
+    let thinned = |alpha: u8| share_of(alpha, opacity);
+    match (lighting, opacity) {
+        (None, u8::MAX) => draw_lit(scene, list, column, FullyLit, solid, target),
+        (Some(faded), u8::MAX) => draw_lit(scene, list, column, faded, solid, target),
+        (None, _) => draw_lit(scene, list, column, FullyLit, thinned, target),
+        (Some(faded), _) => draw_lit(scene, list, column, faded, thinned, target),
     }
+}
+
+/// `alpha` multiplied by `opacity`, in 255ths, rounded to the nearest whole number.
+fn share_of(alpha: u8, opacity: u8) -> u8 {
+    let most = u32::from(u8::MAX);
+    ((u32::from(alpha) * u32::from(opacity) + most / 2) / most) as u8
 }
 
 fn draw_lit<L: Lighting, S: Stats>(
@@ -23,6 +34,7 @@ fn draw_lit<L: Lighting, S: Stats>(
     list: &DrawList,
     column: &BillboardColumn,
     lighting: L,
+    alpha_shown: impl Fn(u8) -> u8,
     target: &mut Target<'_, S>,
 ) {
     let billboard = &list.billboards[column.billboard];
@@ -33,7 +45,7 @@ fn draw_lit<L: Lighting, S: Stats>(
     let u = billboard.u(x);
     let (texels, alphas) = (level.column(u), level.alpha_column(u));
     let texel = |row: u32| billboard.texel(row).min(texels.len() - 1);
-    let alpha = |texel: usize| alphas.map_or(u8::MAX, |alphas| alphas[texel]);
+    let alpha = |texel: usize| alpha_shown(alphas.map_or(u8::MAX, |alphas| alphas[texel]));
     for (row, pixel) in rows.clone().zip(target.column_mut(x, rows.clone())) {
         let texel = texel(row);
         *pixel = match alpha(texel) {

@@ -1,4 +1,4 @@
-//! Billboards: flat pictures of things that stand parallel to the camera plane.
+//! Billboards: flat pictures of things and figures that stand parallel to the camera plane.
 
 use std::ops::Range;
 
@@ -7,21 +7,25 @@ use glam::DVec2;
 use super::{Faded, Scene};
 use crate::cast::MirrorTransform;
 use crate::world::texture::MipLevel;
-use crate::world::{Camera, Cell, Light, Sprite, SpriteId, Thing};
+use crate::world::{Camera, Cell, Figure, Heading, Light, Sprite, SpriteId, Thing};
 
 /// Things nearer to the camera plane, in cells, are not drawn: they would contain the player.
 const NEAREST: f64 = 0.2;
 
-/// The position of a thing in the picture, seen directly or in mirrors.
+/// The position of a thing or a figure in the picture, seen directly or in mirrors.
 #[derive(Clone, Debug)]
 pub(crate) struct Billboard {
-    /// The sprite of a thing; `None` for the player.
+    /// The sprite of a thing or a figure; `None` for the player.
     sprite: Option<SpriteId>,
+    /// Whether it shows the frame of the time.
+    is_animated: bool,
     /// The index of the sprite's picture, and its mip level.
     picture: usize,
     lod: usize,
     /// The lighting; `None` for a near billboard in full light.
     pub(crate) lighting: Option<Faded>,
+    /// How much of it shows instead of what is behind, from 1 to 255.
+    pub(crate) opacity: u8,
     /// The distance from the camera plane, in cells.
     pub(crate) depth: f64,
     /// The position of the left edge in columns, and the width in pixels.
@@ -37,8 +41,20 @@ pub(crate) struct Billboard {
     is_mirrored: bool,
     /// Whether any part of it is in view.
     pub(crate) is_drawn: bool,
-    /// The order among billboards at equal distance.
-    pub(crate) order: (u32, u32, u16),
+    /// The order among billboards at equal distance: by row, column and sprite, things before
+    /// figures, and figures as the world lists them.
+    pub(crate) order: (u32, u32, u16, u32),
+}
+
+/// The frame and the heading that a billboard shows.
+#[derive(Clone, Copy)]
+enum Pose {
+    /// Those of the sprite itself, after this many seconds.
+    AtTime(f64),
+    Fixed {
+        frame: usize,
+        heading: Heading,
+    },
 }
 
 impl Billboard {
@@ -49,9 +65,42 @@ impl Billboard {
         let base = sprite.base(world.room_in(thing.cell));
         let light = world.light_in(thing.cell);
         let place = (thing.cell.center(), base);
-        let billboard = Self::new(scene, image, sprite, scene.seconds, place, light)?;
-        let order = (thing.cell.row, thing.cell.column, thing.sprite.0);
-        Some(Self { sprite: Some(thing.sprite), order, ..billboard })
+        let pose = match thing.frame {
+            None => Pose::AtTime(scene.seconds),
+            Some(frame) => Pose::Fixed { frame: usize::from(frame), heading: sprite.heading },
+        };
+        let billboard = Self::new(scene, image, sprite, pose, place, light)?;
+        let order = (thing.cell.row, thing.cell.column, thing.sprite.0, 0);
+        let (sprite, is_animated) = (Some(thing.sprite), thing.frame.is_none());
+        Some(Self { sprite, is_animated, order, ..billboard })
+    }
+
+    /// The billboards in an image of those figures of which a part is in the picture.
+    pub(crate) fn of_figures(
+        scene: Scene<'_>,
+        image: MirrorTransform,
+    ) -> impl Iterator<Item = Self> {
+        let figures = (1..).zip(scene.world.figures());
+        figures.filter_map(move |(number, figure)| Self::of_figure(scene, image, number, figure))
+    }
+
+    /// The billboard of `figure` in an image; `None` if it is outside the picture, or if nothing of
+    /// it shows.
+    fn of_figure(
+        scene: Scene<'_>,
+        image: MirrorTransform,
+        number: u32,
+        figure: &Figure,
+    ) -> Option<Self> {
+        let world = scene.world;
+        let &Figure { position, base, heading, frame, opacity, .. } = figure;
+        let sprite = world.sprites().get(usize::from(figure.sprite.0)).filter(|_| opacity > 0)?;
+        let pose = Pose::Fixed { frame: usize::from(frame), heading };
+        let light = world.light_on(figure);
+        let billboard = Self::new(scene, image, sprite, pose, (position, base), light)?;
+        let (row, column) = figure.cell().map_or((0, 0), |cell| (cell.row, cell.column));
+        let order = (row, column, figure.sprite.0, number);
+        Some(Self { sprite: Some(figure.sprite), opacity, order, ..billboard })
     }
 
     /// The billboard of the player in an image, drawn as `figure`.
@@ -65,7 +114,7 @@ impl Billboard {
         let is_on_map = place.x >= 0.0 && place.y >= 0.0;
         let cell = Cell { column: place.x as u32, row: place.y as u32 };
         let light = if is_on_map { scene.world.light_in(cell) } else { Light::FULL };
-        Self::new(scene, image, figure, 0.0, (place, base), light)
+        Self::new(scene, image, figure, Pose::AtTime(0.0), (place, base), light)
     }
 
     /// The billboard of `sprite` at a point on the map and at a height.
@@ -73,7 +122,7 @@ impl Billboard {
         scene: Scene<'_>,
         image: MirrorTransform,
         sprite: &Sprite,
-        seconds: f64,
+        pose: Pose,
         (center, base): (DVec2, f64),
         light: Light,
     ) -> Option<Self> {
@@ -93,15 +142,21 @@ impl Billboard {
             return None;
         }
         let to_viewer = image.to_map(projection.origin()) - center;
-        let picture = sprite.picture_index(sprite.frame_at(seconds), sprite.heading, to_viewer);
+        let (frame, heading) = match pose {
+            Pose::AtTime(seconds) => (sprite.frame_at(seconds), sprite.heading),
+            Pose::Fixed { frame, heading } => (frame, heading),
+        };
+        let picture = sprite.picture_index(frame, heading, to_viewer);
         let texture = &sprite.pictures()[picture];
         let texels = f64::from(texture.width()) * f64::from(texture.height());
         let lod = plan.filter.lod(texels / (width * (bottom - top)));
         Some(Self {
             sprite: None,
+            is_animated: false,
             picture,
             lod,
             lighting: Faded::of_plane(light, world.fog(), depth),
+            opacity: u8::MAX,
             depth,
             left,
             width,
@@ -111,11 +166,11 @@ impl Billboard {
             rows,
             is_mirrored: image.swaps_sides(),
             is_drawn: false,
-            order: (0, 0, 0),
+            order: (0, 0, 0, 0),
         })
     }
 
-    /// Whether it shows a thing rather than the player.
+    /// Whether it shows a thing or a figure rather than the player.
     pub(crate) fn is_of_thing(&self) -> bool {
         self.sprite.is_some()
     }
@@ -147,7 +202,8 @@ impl Billboard {
 
     /// The time at which one of `billboards` in view next changes its appearance; `None` for never.
     pub(crate) fn next_change(billboards: &[Self], scene: Scene<'_>) -> Option<f64> {
-        let drawn = billboards.iter().filter(|it| it.is_drawn).filter_map(|it| it.sprite);
+        let drawn =
+            billboards.iter().filter(|it| it.is_drawn && it.is_animated).filter_map(|it| it.sprite);
         let changes = drawn.filter_map(|id| scene.world.sprite(id).next_change(scene.seconds));
         changes.reduce(f64::min)
     }

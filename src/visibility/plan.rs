@@ -27,7 +27,7 @@ pub struct FramePlan {
     pub sky: SkyLoop,
     /// How the walls are drawn.
     pub walls: WallLoop,
-    /// How things are drawn.
+    /// How things and figures are drawn.
     pub things: ThingLoop,
     /// How textures are sampled.
     pub filter: Filter,
@@ -109,12 +109,12 @@ pub struct WallLoop {
     pub jambs: bool,
 }
 
-/// How things are drawn.
+/// How things and figures are drawn.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum ThingLoop {
     /// Not at all: the world has none.
     None,
-    /// As billboards: those in visible cells, from far to near.
+    /// As billboards, from far to near: things in visible cells, and all figures.
     Billboards,
 }
 
@@ -159,7 +159,10 @@ impl FramePlan {
                 faded: is_foggy || tiles.iter().any(dims),
                 jambs: tiles.iter().any(is_door),
             },
-            things: if world.things().is_empty() { ThingLoop::None } else { ThingLoop::Billboards },
+            things: match (world.things(), world.figures()) {
+                ([], []) => ThingLoop::None,
+                _ => ThingLoop::Billboards,
+            },
             filter,
         }
     }

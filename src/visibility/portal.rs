@@ -122,7 +122,8 @@ impl PortalMemory {
         self.finder.make_room(world, width);
         list.clear();
         list.make_room_for_portals(width);
-        list.billboards.reserve(2 * world.things().len().min(MOST_THINGS) + IMAGES_AT_ONCE);
+        let billboards = world.things().len().min(MOST_THINGS) + world.figures().len();
+        list.billboards.reserve(2 * billboards + IMAGES_AT_ONCE);
         self.layers.make_room(list);
     }
 }

@@ -16,7 +16,7 @@ pub enum Pass {
     Walls,
     /// Masked and translucent faces that rays passed.
     SeeThrough,
-    /// Things, which stand in the cells.
+    /// Things and figures.
     Things,
 }
 
@@ -71,11 +71,11 @@ pub struct FrameStats {
     pub walls: PassStats,
     /// The cost of masked and translucent columns.
     pub see_through: PassStats,
-    /// The cost of things.
+    /// The cost of things and figures.
     pub things: PassStats,
-    /// The things in cells that may be in view.
+    /// The things in cells that may be in view, and all figures; in each image of a mirror again.
     pub things_considered: u64,
-    /// The things in view.
+    /// The things and figures in view.
     pub things_drawn: u64,
     /// The cost of the portal way.
     pub portals: PortalStats,

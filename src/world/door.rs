@@ -65,6 +65,11 @@ impl World {
         }
     }
 
+    /// The doors that are partly open, by cell.
+    pub(crate) fn openings(&self) -> impl Iterator<Item = (Cell, Opening)> {
+        self.ajar.openings.iter().copied()
+    }
+
     /// Sets the opening of the door in `cell`; does nothing if there is none. The cell becomes open
     /// floor if the door is fully open, and solid otherwise.
     pub fn set_opening(&mut self, cell: Cell, opening: Opening) {

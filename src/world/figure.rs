@@ -7,7 +7,8 @@
 //!
 //! - A frame considers every figure. There are tens, and each costs one projection; sorting them
 //!   by cell was refused, because they change their cells all the time.
-//! - A figure has the light of the cell that it is in.
+//! - A figure has the light of the cell that it is in. No part of it is drawn behind the edge of the
+//!   map, as of a thing.
 //! - A figure never changes with time, and causes no
 //!   [next change](crate::render::Renderer::next_change).
 
@@ -18,7 +19,7 @@ use super::{Cell, Heading, Light, Sprite, SpriteId, World};
 /// A sprite at any place.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Figure {
-    /// Its sprite.
+    /// Its sprite, among those of the world; a figure with any other is not drawn.
     pub sprite: SpriteId,
     /// The place of its middle, on the map.
     pub position: DVec2,
@@ -28,7 +29,8 @@ pub struct Figure {
     pub heading: Heading,
     /// The frame of the sprite that it shows; the last one, if there is no such frame.
     pub frame: u8,
-    /// How much of it shows instead of what is behind: from 0 for none to 255 for all.
+    /// How much of it shows instead of what is behind: from 0 for none to 255 for all. The opacity of
+    /// each texel is multiplied by it, in 255ths, and rounded to the nearest whole number.
     pub opacity: u8,
 }
 
@@ -59,8 +61,16 @@ impl World {
         id
     }
 
-    /// The light on `figure`; full light off the map.
+    /// The greatest height that a figure reaches; 0 if there is none.
+    pub(crate) fn top_of_figures(&self) -> f64 {
+        let sprite = |figure: &Figure| self.sprites.get(usize::from(figure.sprite.0));
+        let height = |figure: &Figure| sprite(figure).map_or(0.0, |sprite| sprite.height.cells());
+        self.figures.iter().map(|figure| figure.base + height(figure)).fold(0.0, f64::max)
+    }
+
+    /// The light on `figure`; off the map, that of the map's own floor.
     pub(crate) fn light_on(&self, figure: &Figure) -> Light {
-        figure.cell().map_or(Light::FULL, |cell| self.light_in(cell))
+        let off_map = self.ground().light.unwrap_or(Light::FULL);
+        figure.cell().map_or(off_map, |cell| self.light_in(cell))
     }
 }

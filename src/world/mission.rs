@@ -1,6 +1,6 @@
 //! The mission: what a level asks of the player, and who and what is there beside tiles and things.
 
-use super::{GuardPost, MovingTile, World};
+use super::{GuardPost, MovingTile, ThingKind, World};
 
 /// The parts of a level that only a game uses.
 #[derive(Clone, Debug, PartialEq, Default)]
@@ -20,6 +20,21 @@ pub(crate) struct Mission {
 }
 
 impl World {
+    /// Whether there is anything but walls, doors, keys and exits: guards, mechanisms, hazards or
+    /// finds. A level without them is only walked through.
+    pub fn is_mission(&self) -> bool {
+        let Mission { par, treasure_needed, moving_tiles, guards, switches, .. } = &self.mission;
+        let is_plain =
+            |kind| matches!(kind, ThingKind::Exit | ThingKind::Key(_) | ThingKind::Ornament);
+        par.is_some()
+            || *treasure_needed > 0
+            || !moving_tiles.is_empty()
+            || !guards.is_empty()
+            || !switches.is_empty()
+            || self.tiles.iter().any(|tile| tile.effect.is_some())
+            || self.things().iter().any(|thing| !is_plain(thing.kind))
+    }
+
     /// The guards of the map, in reading order.
     pub fn guards(&self) -> &[GuardPost] {
         &self.mission.guards
@@ -33,5 +48,10 @@ impl World {
     /// The treasure without which exits do not let anybody out; 0 if they always do.
     pub fn treasure_needed(&self) -> u32 {
         self.mission.treasure_needed
+    }
+
+    /// Sets the parts that only a game uses. Its guards are on open floor, in reading order.
+    pub(crate) fn set_mission(&mut self, mission: Mission) {
+        self.mission = mission;
     }
 }

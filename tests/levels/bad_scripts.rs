@@ -21,7 +21,7 @@ fn every_bad_script_is_refused_with_a_report() {
 
 proptest! {
     #[test]
-    fn every_text_is_a_script_or_has_faults(text in r"([0-9.]{0,3}|s|steps| |\n|#|\[|\]|forward|stand|run|ä|\t|\PC){0,30}") {
+    fn every_text_is_a_script_or_has_faults(text in r"([0-9.]{0,3}|s|steps|level|seed|difficulty|hard| |\n|#|\[|\]|forward|stand|run|ä|\t|\PC){0,30}") {
         if let Err(faults) = Script::parse(&text, "it") {
             prop_assert!(faults.len() >= 1 && faults.to_string().starts_with("error: "));
         }

@@ -4,6 +4,7 @@ use proptest::prelude::*;
 
 use super::*;
 use crate::cast::Walk;
+use crate::world::World;
 
 /// Positions and directions, many of which meet corners and run along lines.
 fn number() -> impl Strategy<Value = f64> {
@@ -98,5 +99,66 @@ fn an_empty_hall_is_crossed_in_few_leaps() {
     hall.measure_distances(|_| false);
     for direction in [DVec2::X, DVec2::new(1.0, 0.3), DVec2::new(1.0, -0.45)] {
         assert!(lookups(&hall, direction) < 40, "{}", lookups(&hall, direction));
+    }
+}
+
+/// A hall with things that move in some cells: floors that begin level or do not, and walls.
+fn hall(moving: &[(u32, u32, char)]) -> World {
+    let mut rows = vec![vec!['.'; HALL as usize]; HALL as usize];
+    for &(column, row, character) in moving {
+        rows[row as usize][column as usize] = character;
+    }
+    rows[0][..2].copy_from_slice(&['@', 'l']);
+    // Each moves somewhere, so that the lever sets something.
+    rows[1][..5].copy_from_slice(&['s', 'w', 'd', 'u', 'c']);
+    let rows: Vec<String> = rows.into_iter().map(|row| row.into_iter().collect()).collect();
+    let text = format!(
+        "grid = '''\n{}\n'''\n[tiles]\ns.secret = 'brick'\nw = {{ wall = 'brick', switch = 'on' }}\n\
+         d = {{ moves_to = -1, switch = 'on' }}\nc.crumbles = -2\n\
+         u = {{ floor_height = -1, moves_to = 0, switch = 'on' }}\n\
+         [things]\n'@'.start = 0\nl.lever = 'on'\n",
+        rows.join("\n")
+    );
+    crate::map::parse_str(&text).unwrap()
+}
+
+/// The columns and rows of [`hall`].
+const HALL: u32 = 120;
+
+proptest! {
+    /// However tiles have moved, rays that leap hit the same cells as those that do not.
+    #[test]
+    fn it_hits_the_same_cells_as_the_walk_where_tiles_move(
+        moving in prop::collection::vec(
+            (0..HALL, 2..HALL, prop::sample::select(&['s', 'w', 'd', 'u', 'c'][..])),
+            0..8,
+        ),
+        moves in prop::collection::vec((any::<prop::sample::Index>(), any::<prop::sample::Index>()), 0..12),
+        share in (0.0..1.0, 0.0..1.0),
+        direction in (-1.0..1.0_f64, -1.0..1.0_f64),
+    ) {
+        let mut world = hall(&moving);
+        let places = world.moving_tiles().iter().map(|moving| moving.states[0]);
+        let characters: Vec<char> = places.map(|state| world.tile(state).character).collect();
+        for (cell, state) in moves {
+            let Some(index) = (!moving.is_empty()).then(|| cell.index(moving.len())) else { break };
+            let (column, row, _) = moving[index];
+            let cell = Cell { column, row };
+            let drawn = world.grid().tile(column.into(), row.into()).unwrap();
+            let character = world.tile(drawn).character;
+            let index = characters.iter().position(|&known| known == character).unwrap();
+            let states = &world.moving_tiles()[index].states;
+            let state = states[state.index(states.len())];
+            world.set_state(cell, state);
+        }
+        let ray = Ray::new(DVec2::from(share) * f64::from(HALL), direction.into());
+        prop_assume!(ray.is_ok());
+        let ray = ray.unwrap();
+        for grid in [world.grid(), world.level_grid().unwrap()] {
+            prop_assert!(grid.distance_field().is_measured());
+            let walk = Walk::new(grid, &ray).filter(|met| grid.is_solid_tile(met.tile));
+            let Some(traversal) = MajorAxisTraversal::new(grid, &ray) else { continue };
+            prop_assert_eq!(traversal.collect::<Vec<_>>(), walk.collect::<Vec<_>>());
+        }
     }
 }

@@ -2,12 +2,13 @@
 
 use std::ops::Range;
 
-use super::{STAND, Script, Section, Stretch};
+use super::{Header, STAND, Script, Section, Stretch};
 use crate::fault::{Fault, Faults, nearest, quoted};
 use crate::game::{Intent, Intents, STEPS_PER_SECOND, look};
 
 pub(super) fn parse(text: &str, name: &str) -> Result<Script, Faults> {
-    let mut reader = Reader { text, sections: Vec::new(), faults: Vec::new() };
+    let mut reader =
+        Reader { text, header: Header::default(), sections: Vec::new(), faults: Vec::new() };
     let mut start = 0;
     for line in text.split_inclusive('\n') {
         let end = line.find('#').unwrap_or(line.len());
@@ -20,6 +21,7 @@ pub(super) fn parse(text: &str, name: &str) -> Result<Script, Faults> {
 /// What has been read so far.
 struct Reader<'t> {
     text: &'t str,
+    header: Header,
     sections: Vec<Named>,
     faults: Vec<Fault>,
 }
@@ -38,6 +40,12 @@ impl Reader<'_> {
         if self.text[line.clone()].starts_with('[') {
             return self.read_name(line);
         }
+        if words(self.text, line.clone())
+            .first()
+            .is_some_and(|it| Header::has(&self.text[it.clone()]))
+        {
+            return self.read_header(line);
+        }
         match self.stretch(line) {
             Ok(stretch) => self.section().stretches.push(stretch),
             Err(fault) => {
@@ -45,6 +53,17 @@ impl Reader<'_> {
                 self.faults.push(fault);
             }
         }
+    }
+
+    fn read_header(&mut self, line: Range<usize>) {
+        let read = if self.sections.is_empty() {
+            self.header.read_line(self.text, line)
+        } else {
+            Err(Fault::new(line, "what a script is about stands before everything else")
+                .label("too late")
+                .help("move this line to the top"))
+        };
+        self.faults.extend(read.err());
     }
 
     /// The current section.
@@ -161,7 +180,8 @@ impl Reader<'_> {
             }));
         }
         if self.faults.is_empty() {
-            Ok(Script { sections: self.sections.into_iter().map(|named| named.section).collect() })
+            let sections = self.sections.into_iter().map(|named| named.section).collect();
+            Ok(Script { header: self.header, sections })
         } else {
             Err(Faults::new(name, self.text, self.faults))
         }
@@ -207,7 +227,7 @@ fn unknown(word: &str, place: Range<usize>) -> Fault {
 }
 
 /// The words in a part of `text`.
-fn words(text: &str, part: Range<usize>) -> Vec<Range<usize>> {
+pub(super) fn words(text: &str, part: Range<usize>) -> Vec<Range<usize>> {
     let mut words = Vec::new();
     let mut start = part.start;
     for piece in text[part].split_inclusive(char::is_whitespace) {
@@ -221,7 +241,7 @@ fn words(text: &str, part: Range<usize>) -> Vec<Range<usize>> {
 }
 
 /// A part of `text` without surrounding blanks.
-fn trimmed(text: &str, part: Range<usize>) -> Range<usize> {
+pub(super) fn trimmed(text: &str, part: Range<usize>) -> Range<usize> {
     let whole = &text[part.clone()];
     let start = part.start + (whole.len() - whole.trim_start().len());
     start..(part.start + whole.trim_end().len()).max(start)

@@ -2,7 +2,7 @@
 
 use std::io::{self, Write};
 
-use super::Stretch;
+use super::{Header, Stretch};
 use crate::game::Intents;
 
 /// Writes a script while the game is played.
@@ -12,13 +12,21 @@ use crate::game::Intents;
 #[derive(Debug)]
 pub struct Recorder<W: Write> {
     output: W,
+    /// It is written before the first stretch, so that a game that did not start leaves nothing.
+    header: Option<Header>,
     current: Option<Stretch>,
 }
 
 impl<W: Write> Recorder<W> {
     /// A recorder that writes to `output`.
     pub fn new(output: W) -> Self {
-        Self { output, current: None }
+        Self { output, header: None, current: None }
+    }
+
+    /// A recorder that writes `header` before the script.
+    pub fn with_header(output: W, header: Header) -> Self {
+        let header = Some(header).filter(|header| !header.is_empty());
+        Self { output, header, current: None }
     }
 
     /// Records that the player wants `intents` for `steps` more steps.
@@ -55,6 +63,9 @@ impl<W: Write> Recorder<W> {
 
     fn write_current(&mut self) -> io::Result<()> {
         let Some(stretch) = self.current.take() else { return Ok(()) };
+        if let Some(header) = self.header.take() {
+            self.output.write_all(format!("{header}\n").as_bytes())?;
+        }
         self.output.write_all(format!("{stretch}\n").as_bytes())
     }
 }
@@ -91,6 +102,16 @@ mod tests {
             let each = |&(want, steps): &(usize, u64)| (0..steps).map(move |_| wants[want]);
             prop_assert!(script.iter().map(|(_, intents)| intents).eq(happened.iter().flat_map(each)));
         }
+    }
+
+    #[test]
+    fn the_header_comes_with_the_first_stretch() {
+        let header = Header { seed: Some(7), ..Header::default() };
+        let mut text = Vec::new();
+        drop(Recorder::with_header(&mut text, header.clone()));
+        assert!(text.is_empty());
+        Recorder::with_header(&mut text, header).record(Intents::new(), 60).unwrap();
+        assert_eq!(String::from_utf8(text).unwrap(), "seed       7\n\n1 s       stand\n");
     }
 
     #[test]

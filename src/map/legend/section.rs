@@ -162,9 +162,12 @@ impl Section {
             let message = format!("\"{}\" makes {}, not {}", entry.key, other.noun(), self.noun());
             return Fault::new(place(), message).help(format!("move it to {}", other.name()));
         }
-        let additions = self.additions().map(|(key, _)| key);
-        let mut known: Vec<&str> = self.keys().iter().copied().chain(additions).collect();
-        known.dedup();
+        let mut known = self.keys().to_vec();
+        for (addition, _) in self.additions() {
+            if !known.contains(&addition) {
+                known.push(addition);
+            }
+        }
         entry.unknown_key(self.noun(), &known)
     }
 }

@@ -110,27 +110,32 @@ pub(super) fn fill<S: Stats>(
     Billboard::next_change(&list.billboards[first..], scene)
 }
 
-/// Finds the billboards in view, from far to near. Returns the number of things considered.
+/// Finds the billboards in view, from far to near. Returns the number of things and figures
+/// considered.
 fn find_billboards(scene: Scene<'_>, visible: &mut VisibleCells, list: &mut DrawList) -> u64 {
     let world = scene.world;
     let first = list.billboards.len();
     if first == 0 {
-        list.billboards.reserve(world.things().len().min(MOST_AT_FIRST));
+        let things = world.things().len().min(MOST_AT_FIRST);
+        list.billboards.reserve(things + world.figures().len());
     }
     let most_layers = list.columns.len() * LAYERS_OF_A_COLUMN;
     list.layers.reserve(most_layers.saturating_sub(list.layers.len()));
     visible.outline(scene, list.flat_columns());
-    let mut considered = 0;
+    let DrawList { billboards, columns, flat_columns, .. } = list;
+    let columns = if flat_columns.is_empty() { columns } else { flat_columns };
+    let is_in_view = |billboard: &Billboard| {
+        let is_before = |column: &Column| billboard.depth < column.distance;
+        let Range { start, end } = billboard.columns;
+        columns[start as usize..end as usize].iter().any(is_before)
+    };
+    let direct = MirrorTransform::default();
+    let mut considered = world.figures().len() as u64;
     for &thing in visible.things(world) {
         considered += 1;
-        let billboard = Billboard::of_thing(scene, MirrorTransform::default(), thing);
-        let is_in_view = |billboard: &Billboard| {
-            let is_before = |column: &Column| billboard.depth < column.distance;
-            let Range { start, end } = billboard.columns;
-            list.flat_columns()[start as usize..end as usize].iter().any(is_before)
-        };
-        list.billboards.extend(billboard.filter(is_in_view));
+        billboards.extend(Billboard::of_thing(scene, direct, thing).filter(is_in_view));
     }
+    billboards.extend(Billboard::of_figures(scene, direct).filter(is_in_view));
     let found = &mut list.billboards[first..];
     for billboard in &mut *found {
         billboard.is_drawn = true;

@@ -1,6 +1,6 @@
 //! Billboards of the portal way, clipped to the gaps in which they are seen.
 //!
-//! A thing is seen once in each image, at its own depth. Along a ray, the part between two lines is
+//! A thing or a figure is seen once in each image, at its own depth. Along a ray, the part between two lines is
 //! behind the see-through faces at the first line and in front of all faces at the second. A column
 //! therefore keeps such a part of its ray, and the billboards in it are cut to columns. Drawing
 //! each billboard across all of its columns at once was refused: different faces cover it in each
@@ -49,7 +49,8 @@ impl Finder {
         self.in_view.make_room(world, 1);
     }
 
-    /// Finds the billboards in the `segments` of rays. Returns the number of things considered.
+    /// Finds the billboards in the `segments` of rays. Returns the number of things and figures
+    /// considered.
     pub(super) fn find(
         &mut self,
         scene: Scene<'_>,
@@ -75,6 +76,8 @@ impl Finder {
                 considered += 1;
                 billboards.extend(Billboard::of_thing(scene, image, thing));
             }
+            considered += world.figures().len() as u64;
+            billboards.extend(Billboard::of_figures(scene, image));
             if let Some(player) = player.as_ref().filter(|_| index > 0) {
                 billboards.extend(Billboard::of_player(scene, image, player));
             }

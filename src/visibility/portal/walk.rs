@@ -26,7 +26,7 @@ pub(super) struct Surroundings<'a> {
     pub(super) gaps: &'a TileGaps,
     /// The rise above which there is only sky.
     pub(super) top: Rise,
-    /// Whether there is any thing, or the player in a mirror.
+    /// Whether there is any thing or figure, or the player in a mirror.
     pub(super) has_things: bool,
     most_bounces: u32,
 }
@@ -94,7 +94,8 @@ impl WalkMemory {
 impl<'a> Surroundings<'a> {
     pub(super) fn new(scene: Scene<'a>, gaps: &'a TileGaps) -> Self {
         let world = scene.world;
-        let has_things = !world.things().is_empty() || world.has_mirrors();
+        let has_figures = !world.figures().is_empty();
+        let has_things = !world.things().is_empty() || has_figures || world.has_mirrors();
         let tallest_thing =
             if has_things { world.tallest_sprite().max(Camera::STANDING) } else { 0.0 };
         let top_of = |tile: &Tile| match tile.kind {
@@ -106,7 +107,8 @@ impl<'a> Surroundings<'a> {
         };
         let roof_of = |tile: &Tile| tile.gaps().next_back().map_or(0.0, |gap| gap.bottom);
         let tops = world.tiles().iter().map(|tile| top_of(tile).max(roof_of(tile)));
-        let top = scene.projection.rise_to(tops.fold(0.0, f64::max));
+        let top = tops.fold(world.top_of_figures(), f64::max);
+        let top = scene.projection.rise_to(top);
         let most_bounces = if world.has_mirrors() { MOST_BOUNCES } else { 0 };
         Self { scene, gaps, top, has_things, most_bounces }
     }

@@ -112,7 +112,7 @@ fn a_panic_gives_the_terminal_back_and_then_says_one_sentence() {
 
 #[test]
 fn control_z_gives_the_terminal_to_the_shell_and_fg_paints_it_again() {
-    let script = "set -m; \"$0\" play; echo stopped; read line; fg; echo ended";
+    let script = "set -m; \"$0\" play cellar; echo stopped; read line; fg; echo ended";
     let arguments = ["-c", script, PROGRAM];
     let mut player = Player::start((80, 24), Speaks::Kitty, "/bin/sh", arguments, &ENVIRONMENT);
     let taken = |player: &Player| {
@@ -209,7 +209,7 @@ fn the_mouse_is_given_back_for_a_while_and_taken_again() {
 #[cfg(target_os = "linux")]
 #[test]
 fn it_ends_when_the_terminal_is_gone() {
-    let arguments = ["-c", "\"$0\" play; true", PROGRAM];
+    let arguments = ["-c", "\"$0\" play cellar; true", PROGRAM];
     let player = Player::start((80, 24), Speaks::Kitty, "/bin/sh", arguments, &ENVIRONMENT);
     player.wait_for("? help");
     let shell = player.process();

@@ -59,7 +59,7 @@ impl Game {
         Self::with(Speaks::Kitty, SIZE, Some(map), &[], &[])
     }
 
-    /// Starts a game, and waits until it shows a picture and knows the terminal's capabilities.
+    /// Starts a game on a test map, or on the first level, and waits until it shows a picture and knows the terminal's capabilities.
     pub(crate) fn with(
         speaks: Speaks,
         size: (u16, u16),
@@ -69,7 +69,9 @@ impl Game {
     ) -> Self {
         let map = map.map(|name| test_map(name).to_str().unwrap().to_owned());
         let words = ["play"].iter().chain(options).copied();
-        let arguments: Vec<&str> = words.chain(map.as_deref()).collect();
+        let first =
+            ["cellar"].into_iter().filter(|_| map.is_none() && !options.contains(&"--generate"));
+        let arguments: Vec<&str> = words.chain(first).chain(map.as_deref()).collect();
         let environment = [&ENVIRONMENT[..], environment].concat();
         let player = Player::start(size, speaks, PROGRAM, arguments, &environment);
         player.wait_for("? help");

@@ -45,7 +45,8 @@ fn control_c_leaves_in_every_layout() {
 fn a_terminal_that_cannot_move_its_cursor_is_refused_with_a_sentence() {
     for term in ["dumb", "unknown"] {
         let environment = [&ENVIRONMENT[..], &[("TERM", term)]].concat();
-        let mut player = Player::start((240, 24), Speaks::Kitty, PROGRAM, ["play"], &environment);
+        let mut player =
+            Player::start((240, 24), Speaks::Kitty, PROGRAM, ["play", "cellar"], &environment);
         let ending = player.wait_for_end();
         assert_eq!(ending.status.code(), Some(2));
         player.wait_for("cannot move its cursor");

@@ -90,7 +90,7 @@ fn the_palette_is_given_back_however_it_ends() {
 
 #[test]
 fn the_shell_has_its_palette_while_the_game_is_suspended() {
-    let script = "set -m; \"$0\" play; echo stopped; read line; fg; echo ended";
+    let script = "set -m; \"$0\" play cellar; echo stopped; read line; fg; echo ended";
     let arguments = ["-c", script, PROGRAM];
     let mut player = Player::start((80, 24), Speaks::Alacritty, "/bin/sh", arguments, &ENVIRONMENT);
     player.wait_until("asked for releases", |emulator| emulator.modes().key_flags == [0, 1]);

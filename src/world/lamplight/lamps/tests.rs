@@ -3,20 +3,24 @@ use proptest::prelude::*;
 use super::*;
 use crate::cast::{Ray, Walk};
 use crate::map;
-use crate::world::Opening;
+use crate::render::{Frame, FrameSize, PixelAspect, Renderer};
+use crate::world::{FieldOfView, Opening};
 
 const SIDE: u32 = 10;
 
-/// A dim map of walls, grates, doors, torches that reach 3 cells and lamps that reach 6.
-fn world(cells: &[char]) -> World {
-    let rows: String = cells
-        .chunks(SIDE as usize)
-        .map(|row| row.iter().collect::<String>() + "\n")
-        .collect::<String>()
-        .replacen('.', "@", 1);
-    let edge = "#".repeat(SIDE as usize);
+const DOOR: Cell = Cell { column: 2, row: SIDE / 2 };
+
+/// A dim map of walls, grates, a row with a door, torches that reach 3 cells and lamps that reach 6.
+fn world(mut cells: Vec<char>) -> World {
+    let door = (DOOR.row * SIDE + DOOR.column) as usize;
+    cells[door] = '.';
+    cells[door - SIDE as usize] = '@';
+    let mut rows: Vec<String> =
+        cells.chunks(SIDE as usize).map(|row| row.iter().collect()).collect();
+    rows.insert(DOOR.row as usize, "##+#######".to_owned());
+    let rows = rows.join("\n");
     let text = format!(
-        "light = 0.1\ngrid = '''\n{edge}\n##+#######\n{rows}'''\n[tiles]\n'#' = {{ wall = 'brick' }}\n\
+        "light = 0.1\ngrid = '''\n{rows}\n'''\n[tiles]\n'#' = {{ wall = 'brick' }}\n\
          '%' = {{ mask = 'grate' }}\n'+' = {{ door = 'oak' }}\n[things]\n'@' = {{ start = 0 }}\n\
          't' = {{ sprite = 'torch', light = 0.5, reach = 3 }}\n\
          'l' = {{ sprite = 'lamp', light = 0.3, reach = 6 }}\n"
@@ -64,7 +68,7 @@ enum Event {
 }
 
 fn cell() -> impl Strategy<Value = Cell> {
-    (0..SIDE, 0..SIDE + 2).prop_map(|(column, row)| Cell { column, row })
+    (0..SIDE, 0..=SIDE).prop_map(|(column, row)| Cell { column, row })
 }
 
 fn lamp() -> impl Strategy<Value = Lamp> {
@@ -97,10 +101,8 @@ proptest! {
         ),
         events in prop::collection::vec(event(), 1..12),
     ) {
-        prop_assume!(cells.contains(&'.'));
-        prop_assume!(cells[2] != '#');
-        let mut world = world(&cells);
-        let all = (0..SIDE + 2).flat_map(|row| (0..SIDE).map(move |column| Cell { column, row }));
+        let mut world = world(cells);
+        let all = (0..=SIDE).flat_map(|row| (0..SIDE).map(move |column| Cell { column, row }));
         let all: Vec<Cell> = all.collect();
         let mut moving = Vec::new();
         for event in events {
@@ -123,7 +125,7 @@ proptest! {
                 Event::Wall(..) => {}
                 Event::Door(opens) => {
                     let opening = if opens { Opening::OPEN } else { Opening::new(0.5).unwrap() };
-                    world.set_opening(Cell { column: 2, row: 1 }, opening);
+                    world.set_opening(DOOR, opening);
                 }
                 Event::Take(cell) => world.take_things(cell, |_| true),
             }
@@ -160,4 +162,30 @@ fn a_lamp_carried_into_a_dim_level_lights_it() {
     assert_eq!(world.light_in(Cell { column: 3, row: 1 }), before.plus(lamp.light_at(2.0)));
     world.set_moving_lamps(&[(Cell { column: 90, row: 1 }, lamp)]);
     assert_eq!(world.light_in(cell), before, "off the map it lights nothing");
+}
+
+#[test]
+fn a_flame_that_is_out_neither_shines_nor_flickers() {
+    let text = "light = 0.1\ngrid = '''\n#####\n#@.t#\n#####\n'''\n[tiles]\n'#' = { wall = 'brick' }\n\
+                [things]\n'@' = { start = 0 }\n't' = { sprite = 'torch' }\n";
+    let mut world = map::parse_str(text).unwrap();
+    let cell = world.things()[0].cell;
+    world.things.in_cell_mut(cell)[0].kind = ThingKind::Flame;
+    let camera = world.start_camera(FieldOfView::default());
+    let mut renderer = Renderer::new();
+    let mut draw = |world: &World, seconds| {
+        let mut frame = Frame::new(FrameSize::new(48, 32).unwrap(), PixelAspect::SQUARE);
+        renderer.set_time(seconds);
+        renderer.render(world, &camera, &mut frame);
+        (frame, renderer.next_change())
+    };
+    let burning = draw(&world, 0.0);
+    assert!(burning.1.is_some());
+    world.set_flame(cell, false);
+    assert_eq!(world.light_in(cell), Light::new(0.1).unwrap());
+    let out = draw(&world, 0.0);
+    assert!(out.0 != burning.0 && out == draw(&world, 0.7));
+    assert_eq!(out.1, None);
+    world.set_flame(cell, true);
+    assert!(draw(&world, 0.0) == burning);
 }

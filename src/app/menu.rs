@@ -1,0 +1,279 @@
+//! Menus: a panel with text and a list of entries, one of which is selected.
+//!
+//! Every panel that asks for a choice is such a menu, so that the same keys work in all of them:
+//! the arrows or the keys to walk select, Enter or Space chooses, a digit chooses the entry with
+//! that number, Escape or Backspace goes back. A list that is higher than the window scrolls, and
+//! the text above it is cut first.
+
+use ratatui::layout::{Constraint, Flex, Layout, Rect};
+use ratatui::style::{Modifier, Style};
+use ratatui::text::{Line, Span, Text};
+use ratatui::widgets::{Block, Padding, Paragraph};
+
+use super::panels::{BORDERS, PADDING, framed};
+use super::wrap::wrapped;
+use crate::canvas::Canvas;
+
+/// A list of entries with choices of the type `C`.
+#[derive(Clone, Debug)]
+pub(super) struct Menu<C> {
+    title: String,
+    text: Vec<String>,
+    entries: Vec<Entry<C>>,
+    selected: usize,
+    /// The first entry shown, and the number of entries shown last.
+    first: usize,
+    page: usize,
+}
+
+#[derive(Clone, Debug)]
+struct Entry<C> {
+    label: String,
+    /// Shown at the right.
+    value: String,
+    choice: C,
+}
+
+/// A movement of the selection.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub(super) enum Selection {
+    Previous,
+    Next,
+    PageUp,
+    PageDown,
+    First,
+    Last,
+}
+
+/// The columns before a label, with a mark if the entry is selected.
+const MARK: &str = "> ";
+/// The least number of columns between a label and its value.
+const GAP: usize = 2;
+
+impl<C: Copy> Menu<C> {
+    /// A menu without entries.
+    pub(super) fn new(title: impl Into<String>) -> Self {
+        Self {
+            title: title.into(),
+            text: Vec::new(),
+            entries: Vec::new(),
+            selected: 0,
+            first: 0,
+            page: 0,
+        }
+    }
+
+    /// Adds a line of text above the entries.
+    pub(super) fn line(mut self, text: impl Into<String>) -> Self {
+        self.text.push(text.into());
+        self
+    }
+
+    /// Adds an entry.
+    pub(super) fn entry(self, label: impl Into<String>, choice: C) -> Self {
+        self.entry_with(label, "", choice)
+    }
+
+    /// Adds an entry with a value at its right.
+    pub(super) fn entry_with(
+        mut self,
+        label: impl Into<String>,
+        value: impl Into<String>,
+        choice: C,
+    ) -> Self {
+        self.entries.push(Entry { label: label.into(), value: value.into(), choice });
+        self
+    }
+
+    /// Selects the entry with that index, or the last one.
+    pub(super) fn selecting(mut self, index: usize) -> Self {
+        self.selected = index.min(self.entries.len().saturating_sub(1));
+        self
+    }
+
+    /// The index of the selected entry.
+    pub(super) fn selected(&self) -> usize {
+        self.selected
+    }
+
+    /// The choice of the selected entry; `None` if the menu is empty.
+    pub(super) fn choice(&self) -> Option<C> {
+        self.entries.get(self.selected).map(|entry| entry.choice)
+    }
+
+    /// The label of the selected entry.
+    #[cfg(test)]
+    pub(super) fn label(&self) -> Option<String> {
+        self.entries.get(self.selected).map(|entry| entry.label.clone())
+    }
+
+    /// Whether there is an entry with the number `digit`, counted from 1.
+    pub(super) fn has_number(&self, digit: char) -> bool {
+        self.index_of(digit).is_some()
+    }
+
+    /// Selects the entry with the number `digit`, counted from 1, if there is one.
+    pub(super) fn select_number(&mut self, digit: char) {
+        self.selected = self.index_of(digit).unwrap_or(self.selected);
+    }
+
+    fn index_of(&self, digit: char) -> Option<usize> {
+        let index = digit.to_digit(10)?.checked_sub(1)? as usize;
+        (index < self.entries.len()).then_some(index)
+    }
+
+    /// Moves the selection. From the last entry, the next one is the first.
+    pub(super) fn select(&mut self, selection: Selection) {
+        let (count, page) = (self.entries.len().max(1), self.page.max(1));
+        let last = count - 1;
+        self.selected = match selection {
+            Selection::Previous => (self.selected + last) % count,
+            Selection::Next => (self.selected + 1) % count,
+            Selection::PageUp => self.selected.saturating_sub(page),
+            Selection::PageDown => (self.selected + page).min(last),
+            Selection::First => 0,
+            Selection::Last => last,
+        };
+    }
+
+    /// Draws the menu in the middle of `room`.
+    pub(super) fn draw(&mut self, canvas: &mut impl Canvas, room: Rect) {
+        let most_rows = usize::from(room.height.saturating_sub(BORDERS)).max(1);
+        let most_columns = usize::from(room.width.saturating_sub(BORDERS + PADDING)).max(1);
+        self.page = self.entries.len().min(most_rows);
+        self.scroll();
+        let text: Vec<String> =
+            self.text.iter().flat_map(|line| wrapped(line, most_columns)).collect();
+        let room_for_text = most_rows - self.page;
+        let text = &text[..text.len().min(room_for_text)];
+        let is_separated = !text.is_empty() && text.len() < room_for_text && self.page > 0;
+        let shown = &self.entries[self.first..][..self.page];
+        let text_width = text.iter().map(|line| line.chars().count()).max().unwrap_or(0);
+        let width = shown.iter().map(Entry::width).max().unwrap_or(0).max(text_width);
+        let title = self.shown_title();
+        let width = width.max(title.chars().count()).min(most_columns);
+        let above = text.iter().map(|line| Line::raw(line.as_str()).centered());
+        let entries = (self.first..).zip(shown).map(|(index, entry)| {
+            let line = Line::raw(entry.line(index == self.selected, width));
+            if index == self.selected { line.style(SELECTED) } else { line }
+        });
+        let lines: Vec<Line> =
+            above.chain(is_separated.then(Line::default)).chain(entries).collect();
+        let size = [width as u16 + BORDERS + PADDING, lines.len() as u16 + BORDERS];
+        let [area] =
+            Layout::horizontal([Constraint::Length(size[0])]).flex(Flex::Center).areas(room);
+        let [area] = Layout::vertical([Constraint::Length(size[1])]).flex(Flex::Center).areas(area);
+        let inside = framed(canvas, area, &title);
+        let padded = Block::new().padding(Padding::horizontal(PADDING / 2));
+        canvas.draw_widget(Paragraph::new(Text::from(lines)).block(padded), inside);
+    }
+
+    /// The title, and where the list is scrolled, the number of the selected entry.
+    fn shown_title(&self) -> String {
+        if self.page < self.entries.len() {
+            format!("{} {}/{}", self.title, self.selected + 1, self.entries.len())
+        } else {
+            self.title.clone()
+        }
+    }
+
+    /// Scrolls until the selected entry is shown.
+    fn scroll(&mut self) {
+        let last = self.entries.len() - self.page;
+        let least = (self.selected + 1).saturating_sub(self.page);
+        self.first = self.first.clamp(least, self.selected.max(least)).min(last);
+    }
+}
+
+/// The style of the selected entry.
+const SELECTED: Style = Style::new().add_modifier(Modifier::REVERSED);
+
+impl<C> Entry<C> {
+    fn width(&self) -> usize {
+        let value = Span::raw(&self.value).width();
+        MARK.len() + Span::raw(&self.label).width() + if value > 0 { GAP + value } else { 0 }
+    }
+
+    /// The entry in `width` columns. The label is cut where the value needs its room.
+    fn line(&self, is_selected: bool, width: usize) -> String {
+        let mark = if is_selected { MARK } else { "  " };
+        let value_width = self.value.chars().count();
+        let room = width.saturating_sub(MARK.len() + value_width);
+        let label: String = self.label.chars().take(room).collect();
+        format!("{mark}{label:<room$}{}", self.value)
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use ratatui::buffer::{Buffer, Cell};
+
+    use super::*;
+
+    fn shown(menu: &mut Menu<u8>, columns: u16, rows: u16) -> String {
+        let mut buffer = Buffer::empty(Rect::new(0, 0, columns, rows));
+        menu.draw(&mut buffer, Rect::new(0, 0, columns, rows));
+        let lines = buffer.content().chunks(columns.into());
+        lines.flat_map(|line| line.iter().map(Cell::symbol).chain(["\n"])).collect()
+    }
+
+    fn menu() -> Menu<u8> {
+        let menu = Menu::new("fruit").line("Choose one of these.");
+        (0..6).fold(menu, |menu, index| {
+            menu.entry_with(format!("fruit {index}"), format!("{}", index * 7), index)
+        })
+    }
+
+    #[test]
+    fn the_selected_entry_is_shown_in_any_window() {
+        for (columns, rows) in [(40, 12), (30, 8), (20, 5), (12, 4), (20, 3), (3, 1), (1, 1)] {
+            let mut menu = menu();
+            for _ in 0..14 {
+                let text = shown(&mut menu, columns, rows);
+                if columns >= 20 && rows >= 3 {
+                    let wanted = format!("> fruit {}", menu.selected());
+                    assert!(text.contains(&wanted[..9]), "{columns} by {rows}:\n{text}");
+                }
+                menu.select(Selection::Next);
+            }
+        }
+    }
+
+    #[test]
+    fn text_is_cut_before_entries() {
+        let mut menu = menu();
+        insta::assert_snapshot!(shown(&mut menu, 28, 11), @r"
+           ┌fruit───────────────┐   
+           │Choose one of these.│   
+        ");
+        assert!(!shown(&mut menu, 28, 8).contains("Choose"));
+    }
+
+    #[test]
+    fn the_selection_goes_around_and_digits_select() {
+        let mut menu = menu();
+        menu.select(Selection::Previous);
+        assert_eq!(menu.choice(), Some(5));
+        menu.select(Selection::Next);
+        assert_eq!(menu.choice(), Some(0));
+        menu.select_number('3');
+        assert_eq!(menu.choice(), Some(2));
+        assert!(menu.has_number('6') && !menu.has_number('7') && !menu.has_number('0'));
+        menu.select_number('7');
+        assert_eq!(menu.choice(), Some(2));
+        let mut empty: Menu<u8> = Menu::new("nothing");
+        Selection::Next.then_all(&mut empty);
+        assert_eq!(empty.choice(), None);
+        shown(&mut empty, 20, 5);
+    }
+
+    impl Selection {
+        fn then_all(self, menu: &mut Menu<u8>) {
+            for selection in
+                [self, Self::Previous, Self::PageUp, Self::PageDown, Self::First, Self::Last]
+            {
+                menu.select(selection);
+            }
+        }
+    }
+}

@@ -1,0 +1,205 @@
+//! The menus: their entries, and what choosing one does.
+
+use std::fmt::Write;
+
+use super::menu::Menu;
+use super::panels::{key_names, time, whole_seconds};
+use super::settings_screen::Setting;
+use super::{App, Levels, STEP, Screen};
+use crate::app::bindings::Action;
+use crate::map::builtin;
+use crate::store::Preferences;
+use crate::world::Difficulty;
+
+/// What an entry of a menu does.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub(super) enum Choice {
+    /// Opens a screen.
+    Open(Screen),
+    /// Begins the campaign.
+    Begin(Difficulty),
+    /// Begins the built-in level with that index.
+    Level(usize),
+    /// Begins the map with that index in the list of own maps.
+    Map(usize),
+    /// Goes on with the saved game.
+    Continue,
+    /// Changes a setting.
+    Change(Setting),
+    /// Goes on with the game.
+    GoOn,
+    /// Goes on from the last checkpoint.
+    Retry,
+    /// Begins the level again.
+    Restart,
+    /// Goes on to the next level.
+    NextLevel,
+    /// Returns to the title.
+    ToTitle,
+    /// Leaves the program.
+    Leave,
+}
+
+impl App {
+    /// The menu of `screen`; an empty one if it has none.
+    pub(super) fn menu_of(&mut self, screen: Screen) -> Menu<Choice> {
+        match screen {
+            Screen::Title => self.title_menu(),
+            Screen::NewGame => new_game_menu(self.store.preferences().difficulty),
+            Screen::Levels => self.level_menu(),
+            Screen::Maps => self.map_menu(),
+            Screen::Paused => self.pause_menu(),
+            Screen::Settings => self.settings_menu(),
+            Screen::Dead => self.death_menu(),
+            Screen::LevelDone => self.level_done_menu(),
+            Screen::End => self.end_menu(),
+            _ => Menu::new(""),
+        }
+    }
+
+    /// Does what the selected entry says.
+    pub(super) fn choose(&mut self) {
+        let Some(choice) = self.menu.choice() else { return };
+        match choice {
+            Choice::Open(screen) => self.open(screen),
+            Choice::Begin(difficulty) => {
+                self.difficulty = difficulty;
+                let preferences = self.store.preferences();
+                self.set_preferences(Preferences { difficulty, ..preferences });
+                self.begin_builtin(0);
+            }
+            Choice::Level(index) => {
+                self.difficulty = self.store.preferences().difficulty;
+                self.begin_builtin(index);
+            }
+            Choice::Map(index) => self.begin_own_map(index),
+            Choice::Continue => self.continue_saved(),
+            Choice::Change(setting) => self.change_setting(setting, true),
+            Choice::Retry => self.retry(),
+            Choice::GoOn => self.show(Screen::Playing),
+            Choice::Restart => self.restart_level(),
+            Choice::NextLevel => self.next_level(),
+            Choice::ToTitle => self.return_to_title(),
+            Choice::Leave => self.leave(),
+        }
+    }
+
+    fn begin_builtin(&mut self, index: usize) {
+        if let Some(levels) = Levels::builtin(index) {
+            self.begin(levels);
+        }
+    }
+
+    fn begin_own_map(&mut self, index: usize) {
+        let Some(map) = self.own_maps.get(index) else { return };
+        match (map.load)() {
+            Ok(level) => self.begin(Levels::new(level, std::iter::empty())),
+            Err(fault) => {
+                let selected = self.menu.selected();
+                self.menu = self.map_menu().line(fault).selecting(selected);
+                self.shown = None;
+            }
+        }
+    }
+
+    fn title_menu(&self) -> Menu<Choice> {
+        let menu = Menu::new("");
+        let menu = match (self.store.saved(), self.first_not_won()) {
+            (Some(saved), _) => {
+                menu.entry_with("Continue", capitalized(&saved.level), Choice::Continue)
+            }
+            (None, Some(index)) => {
+                let name = capitalized(builtin::LEVELS[index].name);
+                menu.entry_with("Continue", name, Choice::Level(index))
+            }
+            (None, None) => menu,
+        };
+        let menu = menu
+            .entry("New game", Choice::Open(Screen::NewGame))
+            .entry("Levels", Choice::Open(Screen::Levels));
+        let has_maps = self.offers.as_ref().is_some_and(|offers| offers.maps.is_some());
+        let menu = if has_maps { menu.entry("My maps", Choice::Open(Screen::Maps)) } else { menu };
+        menu.entry("Settings", Choice::Open(Screen::Settings))
+            .entry("Help", Choice::Open(Screen::Help))
+            .entry("Leave", Choice::Leave)
+    }
+
+    /// The built-in levels, each with the best time and the best rank.
+    fn level_menu(&self) -> Menu<Choice> {
+        let difficulty = self.store.preferences().difficulty;
+        let menu = Menu::new(format!("levels, {}", difficulty.name()))
+            .line("left and right: another difficulty");
+        let levels = builtin::LEVELS.iter().enumerate();
+        levels.fold(menu, |menu, (index, level)| {
+            let best = self.store.best(level.name, difficulty);
+            let best = best.map_or_else(
+                || "-".to_owned(),
+                |best| format!("{} {:>7}", time(best.tally.steps as f64 * STEP), best.rank),
+            );
+            menu.entry_with(capitalized(level.name), best, Choice::Level(index))
+        })
+    }
+
+    /// The menu of own maps, which are looked for now.
+    fn map_menu(&mut self) -> Menu<Choice> {
+        let find = self.offers.as_mut().and_then(|offers| offers.maps.as_mut());
+        self.own_maps = find.map_or_else(Vec::new, |find| find());
+        let menu = Menu::new("my maps");
+        if self.own_maps.is_empty() {
+            return menu.line("There is no map file here. docs/maps.md says how to write one.");
+        }
+        let maps = self.own_maps.iter().enumerate();
+        maps.fold(menu, |menu, (index, map)| menu.entry(map.name.as_str(), Choice::Map(index)))
+    }
+
+    fn pause_menu(&self) -> Menu<Choice> {
+        let keys = key_names(&self.settings.bindings, Action::TogglePause);
+        let mut menu = Menu::new("paused").line(format!("{keys} goes on"));
+        menu = menu.line(self.goal.text());
+        menu = self.level_lines().into_iter().fold(menu, Menu::line);
+        menu = menu.line(whole_seconds(self.game.elapsed()).to_string());
+        menu = self.game.keys().fold(menu, |menu, key| menu.line(format!("{key} key")));
+        menu = menu
+            .entry("Continue", Choice::GoOn)
+            .entry("Restart the level", Choice::Restart)
+            .entry("Settings", Choice::Open(Screen::Settings))
+            .entry("Help", Choice::Open(Screen::Help));
+        self.with_leaving(menu)
+    }
+
+    /// Adds the entries that end the game.
+    pub(super) fn with_leaving(&self, menu: Menu<Choice>) -> Menu<Choice> {
+        let menu = match &self.offers {
+            Some(_) => menu.entry("Leave to the title", Choice::ToTitle),
+            None => menu,
+        };
+        menu.entry("Leave", Choice::Leave)
+    }
+}
+
+fn new_game_menu(usual: Difficulty) -> Menu<Choice> {
+    let about = |difficulty| match difficulty {
+        Difficulty::Easy => "what you found stays found",
+        Difficulty::Normal => "guards call each other",
+        Difficulty::Hard => "no checkpoints",
+    };
+    let menu = Menu::new("new game");
+    let menu = Difficulty::ALL.into_iter().fold(menu, |menu, difficulty| {
+        menu.entry_with(
+            capitalized(difficulty.name()),
+            about(difficulty),
+            Choice::Begin(difficulty),
+        )
+    });
+    let usual = Difficulty::ALL.iter().position(|&difficulty| difficulty == usual);
+    menu.selecting(usual.unwrap_or(0))
+}
+
+/// `text` with a capital letter at its start.
+fn capitalized(text: &str) -> String {
+    let mut letters = text.chars();
+    let mut capitalized: String = letters.next().into_iter().flat_map(char::to_uppercase).collect();
+    // Writing to a string never fails.
+    _ = capitalized.write_str(letters.as_str());
+    capitalized
+}

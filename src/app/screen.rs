@@ -1,0 +1,85 @@
+//! Screens: what is shown over the picture, and the way back from it.
+//!
+//! Screens that are opened from another one return to it: the settings to the title or to the
+//! pause, wherever they were opened. The way back is a stack of screens with their menus, so that
+//! the selection is the same on return.
+
+use super::App;
+use super::menu::Menu;
+use super::menus::Choice;
+
+/// The panel on the picture. The effect of keys depends on it.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub(super) enum Screen {
+    Title,
+    /// The choice of a difficulty for a new game.
+    NewGame,
+    /// The choice of a built-in level.
+    Levels,
+    /// The choice of a map file.
+    Maps,
+    Settings,
+    Playing,
+    Paused,
+    Help,
+    /// The question whether to leave.
+    Leaving,
+    LevelDone,
+    /// The player is dead.
+    Dead,
+    End,
+}
+
+impl Screen {
+    /// Whether the screen shows a result: nothing that it offers is chosen by a key that was meant
+    /// for the game.
+    pub(super) fn is_result(self) -> bool {
+        matches!(self, Self::LevelDone | Self::Dead | Self::End)
+    }
+
+    /// Whether the screen has a menu.
+    pub(super) fn has_menu(self) -> bool {
+        !matches!(self, Self::Playing | Self::Help | Self::Leaving)
+    }
+}
+
+/// A screen with its menu.
+pub(super) type Shelved = (Screen, Menu<Choice>);
+
+impl App {
+    /// Shows `screen`, from which there is no way back.
+    pub(super) fn show(&mut self, screen: Screen) {
+        self.behind.clear();
+        let menu = self.menu_of(screen);
+        self.enter((screen, menu));
+    }
+
+    /// Opens `screen` over the one that is shown.
+    pub(super) fn open(&mut self, screen: Screen) {
+        let menu = self.menu_of(screen);
+        let before = (self.screen, self.menu.clone());
+        self.behind.push(before);
+        self.enter((screen, menu));
+    }
+
+    /// Returns to the screen from which this one was opened, or to the game.
+    pub(super) fn close(&mut self) {
+        let (screen, menu) = self.behind.pop().unwrap_or_else(|| (Screen::Playing, Menu::new("")));
+        self.enter((screen, menu));
+    }
+
+    /// Makes the menu anew, after something that it shows has changed.
+    pub(super) fn renew_menu(&mut self) {
+        let selected = self.menu.selected();
+        self.menu = self.menu_of(self.screen).selecting(selected);
+        self.shown = None;
+    }
+
+    fn enter(&mut self, (screen, menu): Shelved) {
+        self.screen = screen;
+        self.menu = menu;
+        self.shown_since = self.now;
+        self.pending = None;
+        self.shown = None;
+    }
+}

@@ -1,0 +1,145 @@
+//! The title and its menus, by keys.
+
+use super::*;
+use crate::app::{Offers, Opening, OwnMap};
+use crate::map::NoFiles;
+use crate::map::parse_level;
+
+const ENTER: Key = Key::Enter;
+
+fn title() -> Rig {
+    let map = |name: &str, text: &'static str| OwnMap {
+        name: name.to_owned(),
+        load: Box::new(move || {
+            parse_level(text, "it", &NoFiles).map_err(|faults| faults.summary())
+        }),
+    };
+    let maps = move || vec![map("bad.toml", "grid = 3"), map("pit.toml", PIT)];
+    let offers = Offers { maps: Some(Box::new(maps)) };
+    titled(offers, Store::in_memory())
+}
+
+pub(super) fn titled(offers: Offers, store: Store) -> Rig {
+    let settings = Settings { frame_time: Duration::from_secs(1) / 30, ..Settings::default() };
+    let app = App::opened(Opening::Title(offers), settings, store);
+    let mut rig = Rig::of(app, Some((500, 30)));
+    rig.wait(100);
+    rig
+}
+
+impl Rig {
+    /// Selects the entry with that label and chooses it.
+    #[track_caller]
+    pub(super) fn choose(&mut self, label: &str) {
+        let choice = |rig: &Rig| rig.app.menu.label();
+        let first = choice(self);
+        while choice(self).as_deref() != Some(label) {
+            self.tap(Key::Down, 30);
+            self.wait(300);
+            assert_ne!(choice(self), first, "there is no {label}");
+        }
+        self.tap(ENTER, 30);
+        self.wait(300);
+    }
+}
+
+#[test]
+fn a_level_plays_itself_behind_the_title() {
+    let mut rig = title();
+    assert_eq!(rig.app.screen, Screen::Title);
+    let before = rig.app.game.elapsed();
+    rig.wait(1000);
+    assert!((rig.app.game.elapsed() - before - 1.0).abs() < 0.05);
+    assert!(rig.app.is_stale());
+    // Keys of the game do not reach it.
+    let mut other = title();
+    other.wait(1000);
+    for key in [Key::Left, Key::Char('d'), Key::Char('e'), Key::Char('g'), Key::Char('m')] {
+        rig.press(key);
+    }
+    (rig.wait(1000), other.wait(1000));
+    assert_eq!(rig.app.game.grid(), other.app.game.grid());
+}
+
+#[test]
+fn a_new_game_begins_at_a_difficulty_and_returns_to_the_title() {
+    let mut rig = title();
+    rig.choose("New game");
+    assert_eq!(rig.app.screen, Screen::NewGame);
+    rig.choose("Hard");
+    assert_eq!((rig.app.screen, rig.app.difficulty), (Screen::Playing, Difficulty::Hard));
+    assert_eq!(rig.app.game.title(), "Cellar");
+    rig.tap(Key::Char('p'), 30);
+    rig.wait(300);
+    rig.choose("Leave to the title");
+    assert_eq!(rig.app.screen, Screen::Title);
+    assert!(rig.app.demo.is_some());
+}
+
+#[test]
+fn escape_and_backspace_go_back_one_screen_and_the_selection_stays() {
+    let mut rig = title();
+    for back in [Key::Escape, Key::Backspace] {
+        rig.choose("Levels");
+        assert_eq!(rig.app.screen, Screen::Levels);
+        rig.tap(Key::Char('?'), 30);
+        assert_eq!(rig.app.screen, Screen::Help);
+        rig.wait(300);
+        rig.tap(back, 30);
+        assert_eq!(rig.app.screen, Screen::Levels);
+        rig.wait(700);
+        rig.tap(back, 30);
+        assert_eq!(rig.app.screen, Screen::Title);
+        assert_eq!(rig.app.menu.label().as_deref(), Some("Levels"));
+        rig.wait(700);
+    }
+    assert!(!rig.app.has_left);
+    rig.tap(Key::Escape, 30);
+    assert!(rig.app.has_left);
+}
+
+#[test]
+fn a_digit_chooses_and_a_repetition_chooses_nothing() {
+    let mut rig = title();
+    rig.tap(Key::Char('2'), 30);
+    rig.wait(700);
+    assert_eq!(rig.app.screen, Screen::Levels);
+    rig.tap(Key::Char('2'), 30);
+    rig.wait(700);
+    assert_eq!(
+        (rig.app.screen, rig.app.level.to_string()),
+        (Screen::Playing, "level 2 of 5".into())
+    );
+
+    let mut rig = title();
+    rig.press(ENTER);
+    rig.wait(3000);
+    assert_eq!(rig.app.screen, Screen::NewGame, "the held key chooses no difficulty");
+}
+
+#[test]
+fn faults_of_an_own_map_are_said_and_a_map_without_faults_is_played() {
+    let mut rig = title();
+    rig.choose("My maps");
+    rig.choose("bad.toml");
+    assert_eq!(rig.app.screen, Screen::Maps);
+    let mut buffer = ratatui::buffer::Buffer::empty(ratatui::layout::Rect::new(0, 0, 80, 24));
+    rig.app.draw(&mut buffer);
+    let text: String = buffer.content().iter().map(ratatui::buffer::Cell::symbol).collect();
+    assert!(text.contains("it:1: "), "{text}");
+    rig.choose("pit.toml");
+    assert_eq!(rig.app.screen, Screen::Playing);
+    rig.tap(Key::Char('p'), 30);
+    rig.wait(300);
+    let before = rig.position();
+    rig.choose("Continue");
+    rig.press(W);
+    rig.wait(500);
+    assert_ne!(rig.position(), before);
+    rig.release(W);
+    rig.wait(1000);
+    rig.tap(Key::Char('p'), 30);
+    rig.wait(300);
+    rig.choose("Restart the level");
+    assert_eq!((rig.app.screen, rig.position()), (Screen::Playing, before));
+}

@@ -1,0 +1,98 @@
+//! Checkpoints: from where a dead player goes on.
+//!
+//! A checkpoint is a copy of the game at the time when the player reached it, and before that, of
+//! the game at its start. Worlds share their textures and sprites, so that a copy holds little more
+//! than the cells. Going on restores the copy; the clock, the alarms and the deaths are those of the
+//! game. In the easiest game the player keeps what they have found since.
+
+use std::sync::Arc;
+
+use super::Game;
+use super::guards::Alarm;
+use crate::world::sprite::builtin::CheckpointFrame;
+use crate::world::{Cell, Difficulty, ThingKind};
+
+/// The game from which a dead player goes on.
+#[derive(Clone, Debug, PartialEq, Default)]
+pub(super) struct Checkpoint {
+    /// `None` in a level where nothing kills.
+    game: Option<Arc<Game>>,
+    /// The cell of the checkpoint; `None` for the start.
+    cell: Option<Cell>,
+}
+
+impl Game {
+    /// The game with its start as the first checkpoint.
+    #[must_use]
+    pub(super) fn with_start(mut self) -> Self {
+        self.checkpoint.game = self.is_mission.then(|| Arc::new(self.clone()));
+        self
+    }
+
+    /// Whether the player has reached another checkpoint than the last one, and nobody follows them.
+    pub(super) fn is_at_a_new_checkpoint(&self) -> bool {
+        self.is_mission
+            && self.rules.difficulty < Difficulty::Hard
+            && self.checkpoint.cell != Some(self.player.motion.cell())
+            && self.guards.alarm() < Alarm::Raised
+            && !self.is_dead()
+            && self.things_reached().any(|thing| thing.kind == ThingKind::Checkpoint)
+    }
+
+    /// Makes the checkpoint that the player has reached the one to go on from.
+    pub(super) fn reach_checkpoint(&mut self) {
+        if !self.is_at_a_new_checkpoint() {
+            return;
+        }
+        let cell = self.player.motion.cell();
+        let is_checkpoint = |kind| kind == ThingKind::Checkpoint;
+        if let Some(before) = self.checkpoint.cell {
+            self.world.set_frame(before, is_checkpoint, CheckpointFrame::Grey.index());
+        }
+        self.world.set_frame(cell, is_checkpoint, CheckpointFrame::Lit.index());
+        self.say("Checkpoint.".to_owned());
+        self.revision += 1;
+        self.checkpoint = Checkpoint { game: None, cell: Some(cell) };
+        self.checkpoint.game = Some(Arc::new(self.clone()));
+    }
+
+    /// Goes on from the last checkpoint.
+    pub(super) fn retry(&mut self) {
+        let Some(saved) = self.checkpoint.game.clone() else { return };
+        let mut game = Self::clone(&saved);
+        game.player.health = game.player.health.revived();
+        game.player.pressed = self.player.pressed;
+        game.steps = self.steps;
+        game.revision = self.revision + 1;
+        game.counts = self.counts;
+        if self.rules.difficulty == Difficulty::Easy {
+            game.keep_finds(self);
+        }
+        game.checkpoint = self.checkpoint.clone();
+        *self = game;
+    }
+
+    /// Gives the player what they have found in `other`, a later state of this game.
+    fn keep_finds(&mut self, other: &Self) {
+        self.player.keys.extend(&other.player.keys);
+        self.player.treasure = other.player.treasure;
+        self.player.supplies = self.player.supplies.or_more(other.player.supplies);
+        let is_find = |kind| {
+            use ThingKind::{Healing, Key, Supply, Treasure};
+            matches!(kind, Healing(_) | Key(_) | Supply(..) | Treasure(_))
+        };
+        let taken: Vec<(Cell, ThingKind)> = self
+            .world
+            .things()
+            .iter()
+            .filter(|thing| is_find(thing.kind))
+            .filter(|thing| {
+                !other.world.things_in(thing.cell).iter().any(|it| it.kind == thing.kind)
+            })
+            .map(|thing| (thing.cell, thing.kind))
+            .collect();
+        for (cell, taken) in taken {
+            self.world.take_things(cell, |kind| kind == taken);
+        }
+    }
+}

@@ -1,0 +1,141 @@
+//! Hazards: falls, cold water and spikes, and what happens to a player who is hurt.
+//!
+//! - A fall of more than [`SAFE_FALL`] cells takes a point for each further cell or part of one,
+//!   except in the easiest game.
+//! - Water slows, splashes and puts out the lamp. It takes a point each [`COLD`] steps, from the
+//!   second time on.
+//! - Spikes hurt once for each time that they come out.
+//! - A blow from more than 90° off the player's view never kills.
+
+mod spikes;
+
+use glam::DVec2;
+
+use super::Game;
+use super::guards::GuardView;
+use super::health::{Cause, Flash, Harm};
+use super::noise::reach;
+use super::player::Motion;
+use super::sound::SoundKind;
+use crate::world::{Difficulty, Heading, TileEffect};
+pub(super) use spikes::Spikes;
+
+/// The highest fall that does not hurt, in cells.
+const SAFE_FALL: f64 = 2.2;
+/// The steps in which water takes a point: 4 seconds.
+const COLD: u32 = 240;
+/// The points that spikes take.
+const SPIKES: u8 = 2;
+
+impl Game {
+    /// What the floor does to the player in this step, which began at `before`.
+    pub(super) fn meet_hazards(&mut self, before: &Motion) {
+        self.fall();
+        if self.is_mission {
+            self.wade(before);
+            self.step_on_spikes();
+        }
+    }
+
+    /// The landing after a fall.
+    fn fall(&mut self) {
+        let motion = self.player.motion;
+        if !motion.stands(&self.world) {
+            self.player.fell_from = self.player.fell_from.max(motion.feet());
+            return;
+        }
+        let cells = self.player.fell_from - motion.feet();
+        self.player.fell_from = motion.feet();
+        if !self.is_mission {
+            return;
+        }
+        self.hear_landing(cells);
+        let is_soft = self.world.effect_in(motion.cell()) == Some(TileEffect::Water);
+        if cells > SAFE_FALL && !is_soft && self.rules.difficulty > Difficulty::Easy {
+            let points = (cells - SAFE_FALL).ceil().min(255.0) as u8;
+            self.hurt(Harm { points, bearing: None, spares: false, cause: Cause::Fall });
+        }
+    }
+
+    fn wade(&mut self, before: &Motion) {
+        if !self.is_in_water() {
+            self.player.in_water = 0;
+            return;
+        }
+        if self.player.in_water == 0 {
+            if before.cell() != self.player.motion.cell() || !before.is_still() {
+                self.sound(SoundKind::Splash, reach::SPLASH);
+            }
+            if self.player.has_light {
+                self.player.has_light = false;
+                self.say("The water puts your lamp out.".to_owned());
+            }
+        }
+        self.player.in_water = self.player.in_water.saturating_add(1);
+        if is_cold_after(self.player.in_water) {
+            self.say("The water is cold.".to_owned());
+            self.hurt(Harm { points: 1, bearing: None, spares: false, cause: Cause::Water });
+        }
+    }
+
+    /// The number of steps in water in which it does not hurt; `None` outside water.
+    pub(super) fn quiet_steps_in_water(&self) -> Option<u64> {
+        let steps = self.player.in_water;
+        let next = COLD * 2.max(steps / COLD + 1);
+        (self.is_mission && self.is_in_water()).then(|| u64::from(next - steps - 1))
+    }
+
+    fn step_on_spikes(&mut self) {
+        if self.spikes.show(&mut self.world, self.steps) {
+            self.revision += 1;
+        }
+        let motion = self.player.motion;
+        let thrust = self.spikes.thrust_in(motion.cell(), self.steps);
+        let is_touched = motion.feet() < self.world.floor_at(motion.cell()) + spikes::HEIGHT;
+        if thrust.is_some() && is_touched && thrust != self.player.last_thrust {
+            self.player.last_thrust = thrust;
+            self.hurt(Harm { points: SPIKES, bearing: None, spares: false, cause: Cause::Spikes });
+        }
+    }
+
+    /// A guard hits the player from `from`.
+    pub(super) fn hurt_by_guard(&mut self, guard: Option<GuardView>, from: DVec2, points: u8) {
+        if let Some(guard) = guard {
+            self.hurt_from(from, points, Cause::Guard(guard.kind));
+        }
+    }
+
+    /// A bolt that was shot at `from` hits the player.
+    pub(super) fn hurt_by_bolt(&mut self, points: u8, from: DVec2) {
+        self.hurt_from(from, points, Cause::Bolt);
+    }
+
+    fn hurt_from(&mut self, from: DVec2, points: u8, cause: Cause) {
+        let motion = self.player.motion;
+        let way = from - motion.position();
+        let degrees = libm::atan2(way.y, way.x).to_degrees();
+        let spares = motion.heading().direction().dot(way) < 0.0;
+        let cell = motion.cell();
+        self.hurt(Harm { points, bearing: Heading::from_degrees(degrees), spares, cause });
+        self.sound_in(cell, SoundKind::Cry, reach::BLOW);
+    }
+
+    fn hurt(&mut self, harm: Harm) {
+        if self.player.health.is_gone() {
+            return;
+        }
+        self.player.health = self.player.health.after(&harm);
+        self.player.flash = Some(Flash::hurt(&harm));
+        self.revision += 1;
+        if self.player.health.is_gone() {
+            self.counts.deaths += 1;
+            self.killed_by = Some(harm.cause);
+            self.say(format!("Killed by {}.", harm.cause.name()));
+        }
+    }
+}
+
+/// Whether water hurts in that step of wading.
+fn is_cold_after(steps: u32) -> bool {
+    steps >= 2 * COLD && steps.is_multiple_of(COLD)
+}

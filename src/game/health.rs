@@ -1,0 +1,163 @@
+//! Health: what hurts takes points, and a player without points is dead.
+
+use crate::world::{GuardKind, Heading};
+
+/// How many points of health a player has.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
+pub struct Health {
+    /// The points left, at most [`Health::most`].
+    pub points: u8,
+    /// The points of an unhurt player.
+    pub most: u8,
+}
+
+/// What the edge of the picture shows for a moment.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Flash {
+    /// Why it is shown.
+    pub kind: FlashKind,
+    /// The steps for which it is still shown, at least one.
+    pub left: u16,
+}
+
+/// Why the edge of the picture flashes.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub enum FlashKind {
+    /// The player has been hurt, from that direction on the map; `None` for what has no direction,
+    /// such as a fall.
+    Hurt {
+        /// The direction from the player to what hurt them.
+        bearing: Option<Heading>,
+    },
+    /// The player has found something.
+    Gain,
+}
+
+/// What takes health.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub(super) struct Harm {
+    pub(super) points: u8,
+    /// The direction from the player to what hurts them.
+    pub(super) bearing: Option<Heading>,
+    /// Whether it leaves the last point, because the player could not see it.
+    pub(super) spares: bool,
+    /// What a message says if it kills.
+    pub(super) cause: Cause,
+}
+
+/// What can kill a player.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
+pub(super) enum Cause {
+    Guard(GuardKind),
+    Bolt,
+    Spikes,
+    Water,
+    Fall,
+}
+
+/// The duration of a flash in steps.
+const HURT_STEPS: u16 = 24;
+const GAIN_STEPS: u16 = 12;
+
+impl Health {
+    /// The points of an unhurt player.
+    const MOST: u8 = 6;
+
+    /// Whether no points are left.
+    pub fn is_gone(self) -> bool {
+        self.points == 0
+    }
+
+    /// The health after `harm`.
+    pub(super) fn after(self, harm: &Harm) -> Self {
+        let least = u8::from(harm.spares).min(self.points);
+        Self { points: self.points.saturating_sub(harm.points).max(least), ..self }
+    }
+
+    /// The health with that many points more, up to those of an unhurt player.
+    pub(super) fn healed(self, points: u8) -> Self {
+        Self { points: self.points.saturating_add(points).min(self.most), ..self }
+    }
+
+    /// The health of a player who goes on after death: at least half.
+    pub(super) fn revived(self) -> Self {
+        Self { points: self.points.max(self.most / 2), ..self }
+    }
+
+    /// Whether points are missing.
+    pub(super) fn is_hurt(self) -> bool {
+        self.points < self.most
+    }
+}
+
+impl Default for Health {
+    /// That of an unhurt player.
+    fn default() -> Self {
+        Self { points: Self::MOST, most: Self::MOST }
+    }
+}
+
+impl Flash {
+    /// A flash for `harm`.
+    pub(super) fn hurt(harm: &Harm) -> Self {
+        Self { kind: FlashKind::Hurt { bearing: harm.bearing }, left: HURT_STEPS }
+    }
+
+    /// A flash for a find.
+    pub(super) fn gain() -> Self {
+        Self { kind: FlashKind::Gain, left: GAIN_STEPS }
+    }
+
+    /// The flash after `steps`; `None` if it has ended.
+    pub(super) fn after(self, steps: u16) -> Option<Self> {
+        let left = self.left.saturating_sub(steps);
+        (left > 0).then_some(Self { left, ..self })
+    }
+}
+
+impl Cause {
+    /// The cause as a part of a sentence: "killed by …".
+    pub(super) fn name(self) -> &'static str {
+        match self {
+            Self::Guard(GuardKind::Warden) => "a warden",
+            Self::Guard(GuardKind::Listener) => "a listener",
+            Self::Guard(GuardKind::Lantern) => "a lantern-bearer",
+            Self::Guard(GuardKind::Hound) => "a hound",
+            Self::Guard(GuardKind::Archer) => "an archer",
+            Self::Bolt => "an archer's bolt",
+            Self::Spikes => "spikes",
+            Self::Water => "cold water",
+            Self::Fall => "a fall",
+        }
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use proptest::prelude::*;
+
+    use super::*;
+
+    proptest! {
+        #[test]
+        fn health_is_between_nothing_and_most(
+            changes in prop::collection::vec((any::<bool>(), any::<u8>(), any::<bool>()), 0..20)
+        ) {
+            let mut health = Health::default();
+            for (heals, points, spares) in changes {
+                let before = health;
+                let harm = Harm { points, bearing: None, spares, cause: Cause::Fall };
+                health = if heals { health.healed(points) } else { health.after(&harm) };
+                prop_assert!(health.points <= health.most && health.most == Health::MOST);
+                prop_assert!(!spares || heals || before.is_gone() || !health.is_gone());
+            }
+        }
+    }
+
+    #[test]
+    fn a_flash_ends() {
+        let flash = Flash::gain();
+        assert_eq!(flash.after(GAIN_STEPS - 1).map(|flash| flash.left), Some(1));
+        assert_eq!(flash.after(GAIN_STEPS), None);
+    }
+}

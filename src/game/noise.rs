@@ -1,0 +1,98 @@
+//! Noise: the sounds that players make by moving.
+//!
+//! Walking is heard close by, by those who listen; running from afar. Ducking makes a walk silent, at half the speed. A
+//! sound for each step rather than a steady one was chosen, because guards notice events.
+
+use super::Game;
+use super::intent::{Intent, Intents};
+use super::player::Motion;
+use super::sound::{Sound, SoundKind, Source};
+use crate::world::{Cell, TileEffect};
+
+/// How far sounds reach over open cells, in cells.
+pub(super) mod reach {
+    pub(in crate::game) const WALKING: u8 = 3;
+    pub(in crate::game) const RUNNING: u8 = 7;
+    pub(in crate::game) const SPLASH: u8 = 6;
+    pub(in crate::game) const DOOR: u8 = 6;
+    pub(in crate::game) const MECHANISM: u8 = 6;
+    pub(in crate::game) const CLICK: u8 = 4;
+    pub(in crate::game) const KNOCK: u8 = 8;
+    pub(in crate::game) const TAP: u8 = 4;
+    pub(in crate::game) const CRASH: u8 = 6;
+    pub(in crate::game) const BLOW: u8 = 3;
+    pub(in crate::game) const SWING: u8 = 2;
+    /// Of a landing from the least height that is heard, and what each further cell adds.
+    pub(in crate::game) const LANDING: u8 = 4;
+    pub(in crate::game) const LANDING_BY_CELL: u8 = 3;
+    pub(in crate::game) const LANDING_MOST: u8 = 12;
+}
+
+/// The lowest fall whose landing is heard, in cells.
+const LEAST_FALL: f64 = 0.5;
+/// The distance between two audible steps, in cells.
+const WALKING_STRIDE: f64 = 0.8;
+const RUNNING_STRIDE: f64 = 1.2;
+/// The part of the usual speed when ducking, and in water.
+const SLOW: f64 = 0.5;
+
+impl Game {
+    /// The player makes a sound.
+    pub(super) fn sound(&mut self, kind: SoundKind, reach: u8) {
+        let cell = self.player.motion.cell();
+        self.sounds.push(Sound { kind, cell, reach, by: Source::Player(0) });
+    }
+
+    /// Something in `cell` makes a sound.
+    pub(super) fn sound_in(&mut self, cell: Cell, kind: SoundKind, reach: u8) {
+        self.sounds.push(Sound { kind, cell, reach, by: Source::Object });
+    }
+
+    /// The part of the usual speed at which the player walks.
+    pub(super) fn pace(&self) -> f64 {
+        if !self.is_mission {
+            return 1.0;
+        }
+        let motion = &self.player.motion;
+        let ducking = if motion.is_ducking() { SLOW } else { 1.0 };
+        let wading = if self.is_in_water() { SLOW } else { 1.0 };
+        ducking * wading
+    }
+
+    /// Whether the player stands in water.
+    pub(super) fn is_in_water(&self) -> bool {
+        let motion = &self.player.motion;
+        self.world.effect_in(motion.cell()) == Some(TileEffect::Water)
+            && motion.feet() <= self.world.floor_at(motion.cell())
+    }
+
+    /// The sounds of the player's motion in this step, which began at `before`.
+    pub(super) fn hear_steps(&mut self, before: &Motion, intents: Intents) {
+        let motion = self.player.motion;
+        if motion == *before || !motion.stands(&self.world) {
+            return;
+        }
+        let runs = intents.contains(Intent::Run);
+        let stride = if runs { RUNNING_STRIDE } else { WALKING_STRIDE };
+        self.player.stride += motion.position().distance(before.position());
+        if self.player.stride < stride {
+            return;
+        }
+        self.player.stride = 0.0;
+        match (self.is_in_water(), runs, motion.is_ducking()) {
+            (true, ..) => self.sound(SoundKind::Splash, reach::SPLASH),
+            (_, true, false) => self.sound(SoundKind::Running, reach::RUNNING),
+            (_, true, true) | (_, false, false) => self.sound(SoundKind::Walking, reach::WALKING),
+            (_, false, true) => {}
+        }
+    }
+
+    /// The sound of a landing after a fall of that many cells.
+    pub(super) fn hear_landing(&mut self, cells: f64) {
+        if cells >= LEAST_FALL && !self.is_in_water() {
+            let more = (cells - LEAST_FALL) * f64::from(reach::LANDING_BY_CELL);
+            let reach = (f64::from(reach::LANDING) + more).min(reach::LANDING_MOST.into());
+            self.sound(SoundKind::Landing, reach as u8);
+        }
+    }
+}

@@ -1,0 +1,110 @@
+//! Finds: treasure, healing, supplies and keys, which the player takes by reaching them, and notes,
+//! which stay.
+
+use super::Game;
+use super::health::Flash;
+use super::tools::Supplies;
+use crate::world::{Cell, Supply, ThingKind};
+
+/// The least worth of a cup and of a crown.
+const CUP: u16 = 25;
+const CROWN: u16 = 100;
+
+impl Game {
+    /// The text of the note that the player has reached.
+    pub fn note(&self) -> Option<&str> {
+        self.things_reached().find_map(|thing| match thing.kind {
+            ThingKind::Note(id) => Some(self.world.note(id)),
+            _ => None,
+        })
+    }
+
+    /// What the player has reached and would take.
+    pub(super) fn find(&self) -> Option<ThingKind> {
+        if self.world.things().is_empty() {
+            return None;
+        }
+        self.things_reached().map(|thing| thing.kind).find(|&kind| match kind {
+            ThingKind::Key(_) | ThingKind::Treasure(_) => true,
+            ThingKind::Healing(_) => self.player.health.is_hurt(),
+            ThingKind::Supply(supply, _) => self.player.supplies.count(supply) < Supplies::MOST,
+            _ => false,
+        })
+    }
+
+    /// Takes what the player has reached: one thing in a step.
+    pub(super) fn take_finds(&mut self) {
+        let Some(kind) = self.find() else { return };
+        match kind {
+            ThingKind::Key(key) => {
+                self.player.keys.insert(key);
+                self.say(format!("You have the {} key.", self.world.key_name(key)));
+            }
+            ThingKind::Treasure(worth) => {
+                self.player.treasure = self.player.treasure.saturating_add(worth.into());
+                self.say(format!("{}: {worth}.", name_of_treasure(worth)));
+            }
+            ThingKind::Healing(points) => {
+                let before = self.player.health.points;
+                self.player.health = self.player.health.healed(points);
+                let more = self.player.health.points - before;
+                self.say(format!("You feel better: {more} more health."));
+            }
+            ThingKind::Supply(supply, count) => {
+                self.player.supplies.add(supply, count);
+                self.say(format!("{}.", count_of(supply, count)));
+            }
+            _ => return,
+        }
+        self.revision += 1;
+        if self.is_mission {
+            self.player.flash = Some(Flash::gain());
+        }
+        self.world.take_things(self.player.motion.cell(), |it| it == kind);
+    }
+
+    /// Says what keeps a player who comes from `before` from taking something or leaving.
+    pub(super) fn refuse(&mut self, before: Cell) {
+        if self.player.motion.cell() == before || !self.is_mission {
+            return;
+        }
+        let refusal = self.things_reached().find_map(|thing| match thing.kind {
+            ThingKind::Exit => {
+                let missing = self.treasure_missing();
+                (missing > 0).then(|| format!("The exit is closed: {missing} treasure missing."))
+            }
+            ThingKind::Supply(supply, _)
+                if self.player.supplies.count(supply) == Supplies::MOST =>
+            {
+                Some(format!("You cannot carry more {}.", supply.name()))
+            }
+            _ => None,
+        });
+        if let Some(text) = refusal {
+            self.say(text);
+        }
+    }
+
+    /// The treasure without which the exit stays closed.
+    pub(super) fn treasure_missing(&self) -> u32 {
+        self.world.treasure_needed().saturating_sub(self.player.treasure)
+    }
+}
+
+fn name_of_treasure(worth: u16) -> &'static str {
+    match worth {
+        CROWN.. => "A golden crown",
+        CUP.. => "A silver cup",
+        _ => "Coins",
+    }
+}
+
+fn count_of(supply: Supply, count: u8) -> String {
+    match (count, supply) {
+        (1, Supply::Pebbles) => "A pebble".to_owned(),
+        (1, Supply::Darts) => "A dart".to_owned(),
+        (1, Supply::Flasks) => "A flask of smoke".to_owned(),
+        (_, Supply::Flasks) => format!("{count} flasks of smoke"),
+        _ => format!("{count} {}", supply.name()),
+    }
+}

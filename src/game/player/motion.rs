@@ -1,0 +1,308 @@
+//! The motion of a player: position, heading, stance and speed, and what a step changes of them.
+
+use glam::DVec2;
+
+use crate::game::STEP;
+use crate::game::collision::{Body, Place, Radius, Stature, overlaps, slide};
+use crate::game::fall::{Flight, GRAVITY, Room};
+use crate::game::intent::{Intent, Intents};
+use crate::game::pitch_control::PitchControl;
+use crate::game::stance::Stance;
+use crate::game::turning::Turning;
+use crate::generate::Shift;
+use crate::numeric::damped_motion::{DampedMotion, approach_in_plane};
+use crate::world::{Camera, Cell, FieldOfView, Heading, World};
+
+/// The player's radius, in cells: a door is twice as wide as the player.
+pub(in crate::game) const RADIUS: Radius =
+    Radius::new(0.25).expect("a quarter is between nothing and a half");
+
+/// Walking speed in any direction, in cells per second.
+pub(in crate::game) const WALK: f64 = 3.0;
+/// Running speed in any direction, in cells per second.
+pub(in crate::game) const RUN: f64 = 5.5;
+
+/// How fast the player reaches that speed, per second.
+pub(in crate::game) const FRICTION: f64 = 12.0;
+
+/// The height of a step that the player climbs or descends by walking, in cells.
+pub(in crate::game) const STEP_HEIGHT: f64 = 0.35;
+/// The height of a jump, in cells.
+pub(in crate::game) const JUMP_HEIGHT: f64 = 0.66;
+
+/// Below this speed the player stands still, in cells or radians per second. An exponential decay
+/// never ends, but a program should be able to sleep when nothing moves.
+pub(in crate::game) const STILL: f64 = 1e-4;
+
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub(in crate::game) struct Motion {
+    body: Body,
+    /// The height of the feet, in cells.
+    feet: f64,
+    /// Cells per second, upwards.
+    rising: f64,
+    stance: Stance,
+    pitch_control: PitchControl,
+    /// Whether a jump was wanted in the last step: each press is one jump.
+    wanted_to_jump: bool,
+    heading: Heading,
+    turning: Turning,
+}
+
+impl Motion {
+    /// Standing still at the start.
+    pub(in crate::game) fn new(world: &World) -> Self {
+        let start = world.start();
+        let body = Body { position: start.cell.center(), velocity: DVec2::ZERO };
+        Self {
+            body,
+            // The start has headroom.
+            feet: world.floor_at(start.cell),
+            rising: 0.0,
+            stance: Stance::default(),
+            pitch_control: PitchControl::default(),
+            wanted_to_jump: false,
+            heading: start.heading,
+            turning: Turning::default(),
+        }
+    }
+
+    /// The same place in another world, standing still; `None` if there is no room.
+    pub(in crate::game) fn placed_in(self, world: &World) -> Option<Self> {
+        let Cell { column, row } = self.cell();
+        let (column, row) = (i64::from(column), i64::from(row));
+        if world.grid().tile(column, row).is_none() || world.grid().is_solid(column, row) {
+            return None;
+        }
+        let still = Self {
+            body: Body { velocity: DVec2::ZERO, ..self.body },
+            rising: 0.0,
+            turning: Turning::default(),
+            stance: Stance::default(),
+            wanted_to_jump: false,
+            ..self
+        };
+        let heights = [self.feet, world.floor_at(self.cell())];
+        let placed = heights.map(|feet| Self { feet, ..still });
+        placed.into_iter().find(|motion| motion.has_room(world))
+    }
+
+    /// The player's view of `world`.
+    pub(in crate::game) fn camera(
+        &self,
+        world: &World,
+        field_of_view: FieldOfView,
+    ) -> Option<Camera> {
+        let ceiling = self.room(world).ceiling + self.stance.height();
+        let eye = self.feet + self.stance.eye(ceiling - self.feet);
+        let camera = Camera::new(self.position(), self.heading, field_of_view)?.with_eye(eye)?;
+        Some(camera.with_pitch(self.pitch_control.pitch))
+    }
+
+    pub(in crate::game) fn position(&self) -> DVec2 {
+        self.body.position
+    }
+
+    pub(in crate::game) fn feet(&self) -> f64 {
+        self.feet
+    }
+
+    /// The height of the top of the head, in cells.
+    pub(in crate::game) fn head(&self) -> f64 {
+        self.feet + self.stance.height()
+    }
+
+    pub(in crate::game) fn heading(&self) -> Heading {
+        self.heading
+    }
+
+    /// The same place in a window that has moved.
+    #[must_use]
+    pub(in crate::game) fn shifted(self, shift: Shift) -> Self {
+        let position = shift.position(self.body.position);
+        Self { body: Body { position, ..self.body }, ..self }
+    }
+
+    /// The cell of the player's centre.
+    pub(in crate::game) fn cell(&self) -> Cell {
+        let DVec2 { x, y } = self.body.position;
+        Cell { column: x as u32, row: y as u32 }
+    }
+
+    /// Whether the player would overlap `cell` if it were solid.
+    pub(in crate::game) fn touches(&self, cell: Cell) -> bool {
+        overlaps(self.body.position, cell, RADIUS)
+    }
+
+    /// The direction in which the player wants to walk, as a unit vector; `None` for none.
+    pub(in crate::game) fn wanted_direction(&self, intents: Intents) -> Option<DVec2> {
+        wanted_velocity(self.heading, intents).try_normalize()
+    }
+
+    /// The motion after one step: turned, then ducked, then moved at this part of the usual speed.
+    #[must_use]
+    pub(in crate::game) fn stepped(self, world: &World, intents: Intents, pace: f64) -> Self {
+        let pitch_control = self.pitch_control.after_a_step(intents);
+        let ducked = Self { pitch_control, ..self }.turned(intents).ducked(world, intents);
+        ducked.walked(world, intents, pace)
+    }
+
+    fn turned(self, intents: Intents) -> Self {
+        let (turning, turned) = self.turning.after_a_step(intents);
+        let angle = turned + intents.look().turn_radians();
+        Self { heading: self.heading.turned(angle), turning, ..self }
+    }
+
+    /// The player stands up only where there is room.
+    fn ducked(self, world: &World, intents: Intents) -> Self {
+        let stance = self.stance.after_a_step(intents.contains(Intent::Duck));
+        let ducked = Self { stance, ..self };
+        if stance.height() <= self.stance.height() || ducked.has_room(world) {
+            ducked
+        } else {
+            self
+        }
+    }
+
+    fn walked(self, world: &World, intents: Intents, pace: f64) -> Self {
+        let wants_to_jump = intents.contains(Intent::Jump);
+        let stands = self.stands(world);
+        let jumps = stands && wants_to_jump && !self.wanted_to_jump;
+        let step = if stands && !jumps { STEP_HEIGHT } else { 0.0 };
+
+        let target = wanted_velocity(self.heading, intents) * pace;
+        let DampedMotion { velocity, displacement } =
+            approach_in_plane(self.body.velocity, target, FRICTION, STEP);
+        let mut place = Place { step, ..self.place(world) };
+        let mut body = slide(&mut place, Body { velocity, ..self.body }, displacement, RADIUS);
+        if body.velocity.length() < STILL {
+            body.velocity = DVec2::ZERO;
+        }
+        let walked = Self { body, wanted_to_jump: wants_to_jump, ..self };
+        let feet = place.stature.feet;
+        let room = place.room(body.position, RADIUS);
+        if stands && !jumps && feet - room.floor <= STEP_HEIGHT {
+            walked.standing_on(room.floor)
+        } else {
+            let speed = if jumps { libm::sqrt(2.0 * GRAVITY * JUMP_HEIGHT) } else { self.rising };
+            walked.flying(Flight { height: feet, speed }, room)
+        }
+    }
+
+    /// Whether the player stands on the floor.
+    pub(in crate::game) fn stands(&self, world: &World) -> bool {
+        self.rising == 0.0 && self.feet == self.room(world).floor
+    }
+
+    /// Lifted or lowered, with the floor, to that height of the feet.
+    #[must_use]
+    pub(in crate::game) fn carried_to(self, feet: f64) -> Self {
+        Self { feet, rising: 0.0, ..self }
+    }
+
+    /// The position and the speeds, as bits.
+    pub(in crate::game) fn words(&self) -> [u64; 8] {
+        let Body { position, velocity } = self.body;
+        let direction = self.heading.direction();
+        let numbers = [position.x, position.y, velocity.x, velocity.y, self.feet, self.rising];
+        let [x, y, across, down, feet, rising] = numbers.map(f64::to_bits);
+        [x, y, across, down, feet, rising, direction.x.to_bits(), direction.y.to_bits()]
+    }
+
+    /// The height to which floors that have risen around the feet lift them; `None` if there are no
+    /// such floors, or no room.
+    pub(in crate::game) fn lifted(&self, world: &World) -> Option<f64> {
+        let Cell { column, row } = self.cell();
+        let near = |place: u32| place.saturating_sub(1)..=place.saturating_add(1);
+        let cells = near(row).flat_map(|row| near(column).map(move |column| Cell { column, row }));
+        let floors = cells.filter(|&cell| self.touches(cell)).flat_map(|cell| {
+            let id = world.grid().tile(cell.column.into(), cell.row.into());
+            id.into_iter().flat_map(|id| world.tile(id).gaps()).map(|gap| gap.bottom)
+        });
+        let above = |&floor: &f64| self.feet < floor && floor <= self.feet + STEP_HEIGHT;
+        let feet = floors.filter(above).reduce(f64::max)?;
+        Self { feet, ..*self }.has_room(world).then_some(feet)
+    }
+
+    /// The height of the floor here.
+    pub(in crate::game) fn floor(&self, world: &World) -> f64 {
+        self.room(world).floor
+    }
+
+    /// The height of the body, in cells.
+    pub(in crate::game) fn height(&self) -> f64 {
+        self.stance.height()
+    }
+
+    /// Whether the body is nearer to ducking than to standing upright.
+    pub(in crate::game) fn is_ducking(&self) -> bool {
+        self.stance.is_ducking()
+    }
+
+    /// Whether neither walking nor falling.
+    pub(in crate::game) fn is_still(&self) -> bool {
+        self.body.velocity == DVec2::ZERO && self.rising == 0.0
+    }
+
+    fn standing_on(self, floor: f64) -> Self {
+        Self { feet: floor, rising: 0.0, stance: self.stance.following(floor - self.feet), ..self }
+    }
+
+    fn flying(self, flight: Flight, room: Room) -> Self {
+        let Flight { height, speed } = flight.after(STEP, room);
+        Self { feet: height, rising: speed, stance: self.stance.following(0.0), ..self }
+    }
+
+    /// The lowest and the highest position of the feet here.
+    fn room(&self, world: &World) -> Room {
+        self.place(world).room(self.body.position, RADIUS)
+    }
+
+    /// Whether the body overlaps nothing solid.
+    pub(in crate::game) fn has_room(&self, world: &World) -> bool {
+        self.place(world).is_clear(self.body.position, RADIUS)
+    }
+
+    fn place<'a>(&self, world: &'a World) -> Place<'a> {
+        let stature = Stature { feet: self.feet, height: self.stance.height() };
+        Place { world, stature, step: 0.0, has_shapes: world.has_shapes() }
+    }
+}
+
+/// The velocity that the player approaches on open floor.
+fn wanted_velocity(heading: Heading, intents: Intents) -> DVec2 {
+    let forward = intents.balance(Intent::Forward, Intent::Back);
+    let right = intents.balance(Intent::StrafeRight, Intent::StrafeLeft);
+    let speed = if intents.contains(Intent::Run) { RUN } else { WALK };
+    let ahead_and_aside = DVec2::new(forward, right).normalize_or_zero();
+    heading.direction().rotate(ahead_and_aside) * speed
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    fn speed(intents: &[Intent]) -> f64 {
+        let heading = Heading::from_degrees(33.0).unwrap();
+        wanted_velocity(heading, intents.iter().copied().collect()).length()
+    }
+
+    #[test]
+    fn a_diagonal_is_no_faster_and_opposites_cancel() {
+        use Intent::{Back, Forward, Run, StrafeLeft, StrafeRight};
+        for way in [&[Forward][..], &[StrafeLeft], &[Forward, StrafeRight], &[Back, StrafeLeft]] {
+            assert!((speed(way) - WALK).abs() < 1e-12, "{way:?}");
+            assert!((speed(&[way, &[Run]].concat()) - RUN).abs() < 1e-12, "{way:?}");
+        }
+        for nowhere in [&[Run][..], &[Forward, Back], &[Forward, Back, StrafeLeft, StrafeRight]] {
+            assert_eq!(speed(nowhere), 0.0, "{nowhere:?}");
+        }
+    }
+
+    #[test]
+    fn right_is_south_for_who_looks_east() {
+        let east = Heading::from_degrees(0.0).unwrap();
+        let strafe = [Intent::StrafeRight].into_iter().collect();
+        assert_eq!(wanted_velocity(east, strafe), DVec2::new(0.0, WALK));
+    }
+}

@@ -1,0 +1,172 @@
+//! What can be known about a game from outside.
+
+use super::guards::{Alarm, GuardView};
+use super::health::{Flash, Health};
+use super::sound::Heard;
+use super::{Game, Rules, STEP};
+use crate::generate::Site;
+use crate::world::{Camera, Cell, FieldOfView, Supply, Thing, ThingKind, World};
+
+/// How a game stands.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
+pub enum Outcome {
+    /// It goes on.
+    Playing,
+    /// The player is dead, and may [retry](super::Intent::Retry).
+    Dead {
+        /// What killed the player, as a part of a sentence: "a hound".
+        cause: &'static str,
+    },
+    /// The player has reached the exit.
+    Won,
+}
+
+impl Game {
+    /// The cell of a generated level that the player is in; `None` on a map.
+    pub fn site(&self) -> Option<Site> {
+        Some(self.window.as_ref()?.site(self.player.motion.cell()))
+    }
+
+    /// The cell of a generated level that is the world's north-west cell; `None` on a map.
+    pub fn corner(&self) -> Option<Site> {
+        Some(self.window.as_ref()?.site(Cell { column: 0, row: 0 }))
+    }
+
+    /// Whether the level has an exit, inside or outside the window.
+    pub fn has_exit(&self) -> bool {
+        let is_far = self.window.as_ref().is_some_and(|window| window.level().exit().is_some());
+        is_far || self.world.things().iter().any(|thing| thing.kind == ThingKind::Exit)
+    }
+
+    /// The world in its present state: with its doors and mechanisms as they are, without what was
+    /// taken, and with guards and missiles as [figures](World::figures).
+    pub fn world(&self) -> &World {
+        &self.world
+    }
+
+    /// The player's camera.
+    #[expect(clippy::missing_panics_doc, reason = "the player stands inside the map")]
+    pub fn camera(&self, field_of_view: FieldOfView) -> Camera {
+        self.player
+            .motion
+            .camera(&self.world, field_of_view)
+            .expect("the player stands inside the map, where all places are finite")
+    }
+
+    /// The height of the player's feet, in cells above the map's own floor.
+    pub fn feet(&self) -> f64 {
+        self.player.motion.feet()
+    }
+
+    /// Whether the player is in the air: jumping or falling.
+    pub fn is_airborne(&self) -> bool {
+        !self.player.motion.stands(&self.world)
+    }
+
+    /// What the game depends on beside its level and the intents.
+    pub fn rules(&self) -> Rules {
+        self.rules
+    }
+
+    /// The time in the game in seconds, counted in steps.
+    pub fn elapsed(&self) -> f64 {
+        self.steps as f64 * STEP
+    }
+
+    /// A message to the player, such as why a door does not open. It lasts for a few seconds.
+    pub fn message(&self) -> Option<&str> {
+        self.player.notice.text()
+    }
+
+    /// The names of the keys that the player has.
+    pub fn keys(&self) -> impl Iterator<Item = &str> {
+        self.player.keys.iter().map(|&key| self.world.key_name(key))
+    }
+
+    /// Whether there is more in the level than walls, doors, keys and exits, so that the player may
+    /// be hurt and has tools.
+    pub fn is_mission(&self) -> bool {
+        self.is_mission
+    }
+
+    /// The player's health.
+    pub fn health(&self) -> Health {
+        self.player.health
+    }
+
+    /// The number of a tool that the player carries; at most 9.
+    pub fn supplies(&self, supply: Supply) -> u8 {
+        self.player.supplies.count(supply)
+    }
+
+    /// Whether the player's lamp is lit.
+    pub fn lamp_is_lit(&self) -> bool {
+        self.player.has_light
+    }
+
+    /// How well guards see the player where they are: from 0 for not at all to 255.
+    pub fn visibility(&self) -> u8 {
+        self.target().visibility
+    }
+
+    /// How much the guards know.
+    pub fn alarm(&self) -> Alarm {
+        self.guards.alarm()
+    }
+
+    /// The guards.
+    pub fn guards(&self) -> impl Iterator<Item = GuardView> {
+        self.guards.views()
+    }
+
+    /// What the player has heard in the last steps, the newest last.
+    pub fn heard(&self) -> &[Heard] {
+        self.player.hearing.heard()
+    }
+
+    /// What the edge of the picture shows now.
+    pub fn flash(&self) -> Option<Flash> {
+        self.player.flash
+    }
+
+    /// A number that grows with every visible change other than the camera: a door moves, a key is
+    /// taken, a guard moves, the message changes.
+    pub fn revision(&self) -> u64 {
+        self.revision
+    }
+
+    /// How the game stands.
+    pub fn outcome(&self) -> Outcome {
+        match self.killed_by {
+            Some(cause) => Outcome::Dead { cause: cause.name() },
+            None if self.is_finished() => Outcome::Won,
+            None => Outcome::Playing,
+        }
+    }
+
+    /// Whether the player has reached the exit, with as much treasure as it asks for. Nothing moves
+    /// after that, and the clock stops.
+    pub fn is_finished(&self) -> bool {
+        !self.is_dead()
+            && self.things_reached().any(|thing| thing.kind == ThingKind::Exit)
+            && self.treasure_missing() == 0
+    }
+
+    pub(super) fn is_dead(&self) -> bool {
+        self.killed_by.is_some()
+    }
+
+    /// The things in the player's cell that are neither above the player's head nor below their
+    /// feet.
+    pub(super) fn things_reached(&self) -> impl Iterator<Item = &Thing> {
+        let motion = &self.player.motion;
+        let cell = motion.cell();
+        let heights = self.world.room_in(cell);
+        let (feet, head) = (motion.feet(), motion.head());
+        self.world.things_in(cell).iter().filter(move |thing| {
+            let sprite = self.world.sprite(thing.sprite);
+            let base = sprite.base(heights);
+            feet <= base + sprite.height.cells() && base <= head
+        })
+    }
+}

@@ -1,0 +1,135 @@
+//! What a game shows of itself in its world: guards, missiles and smoke as figures, and lamps that
+//! move.
+
+use super::Game;
+use super::guards::Target;
+use super::tools::{Missile, MissileKind, Puff};
+use crate::world::sprite::builtin;
+use crate::world::{Cell, Figure, Heading, Lamp, Light, Reach, SpriteId, World};
+
+/// The sprites of what flies; each is `None` where nothing can fly.
+#[derive(Clone, Copy, Debug, PartialEq, Default)]
+pub(super) struct Sprites {
+    pebble: Option<SpriteId>,
+    dart: Option<SpriteId>,
+    flask: Option<SpriteId>,
+    bolt: Option<SpriteId>,
+    smoke: Option<SpriteId>,
+    /// Added when it is first shown.
+    player: Option<SpriteId>,
+}
+
+impl Sprites {
+    /// The sprites, which are added to `world`.
+    pub(super) fn added_to(world: &mut World) -> Self {
+        let mut add = |name| builtin::named(name).map(|sprite| world.add_sprite(sprite));
+        Self {
+            pebble: add("pebble"),
+            dart: add("dart"),
+            flask: add("flask"),
+            bolt: add("bolt"),
+            smoke: add("smoke"),
+            player: None,
+        }
+    }
+
+    fn missile(&self, missile: &Missile) -> Option<Figure> {
+        let sprite = match missile.kind {
+            MissileKind::Pebble => self.pebble,
+            MissileKind::Dart => self.dart,
+            MissileKind::Flask => self.flask,
+            MissileKind::Bolt { .. } => self.bolt,
+        };
+        let velocity = missile.velocity;
+        let degrees = libm::atan2(velocity.y, velocity.x).to_degrees();
+        Some(Figure {
+            sprite: sprite?,
+            position: missile.position,
+            base: missile.height,
+            heading: Heading::from_degrees(degrees).unwrap_or_default(),
+            frame: 0,
+            opacity: u8::MAX,
+        })
+    }
+
+    fn puff(&self, puff: Puff) -> Option<Figure> {
+        Some(Figure {
+            sprite: self.smoke?,
+            position: puff.position,
+            base: puff.height,
+            heading: Heading::default(),
+            frame: puff.frame,
+            opacity: puff.opacity,
+        })
+    }
+}
+
+impl Game {
+    /// The game, which shows its figures and lamps.
+    #[must_use]
+    pub(super) fn shown(mut self) -> Self {
+        self.show();
+        self
+    }
+
+    /// Shows figures and lamps where they are now.
+    pub(super) fn show(&mut self) {
+        self.show_lamps();
+        if self.is_mission {
+            self.show_figures();
+        }
+    }
+
+    /// Shows the figure of somebody who is not in the game, or nobody, until the next step. The
+    /// figure has the sprite of a player, which no other figure has.
+    #[cfg(feature = "terminal")]
+    pub(crate) fn show_guest(&mut self, guest: impl FnOnce(SpriteId) -> Option<Figure>) {
+        let player = &mut self.sprites.player;
+        if player.is_none() {
+            *player = builtin::named("player").map(|sprite| self.world.add_sprite(sprite));
+        }
+        let Some(sprite) = *player else { return };
+        let own = self.world.figures().iter().filter(|figure| figure.sprite != sprite);
+        let all: Vec<Figure> = own.copied().chain(guest(sprite)).collect();
+        self.world.set_figures(all.into_iter());
+    }
+
+    /// What guards can perceive of the player.
+    pub(super) fn target(&self) -> Target {
+        let motion = &self.player.motion;
+        let light = self.world.light_in(motion.cell()).in_256ths();
+        let posed = if motion.is_ducking() { light / 2 } else { light };
+        let visibility = if motion.is_still() { posed * 4 / 5 } else { posed };
+        Target {
+            position: motion.position(),
+            feet: motion.feet(),
+            head: motion.head(),
+            visibility: visibility.min(u8::MAX.into()) as u8,
+            has_light: self.player.has_light,
+            is_alive: !self.player.health.is_gone(),
+        }
+    }
+
+    fn show_figures(&mut self) {
+        let Self { guards, missiles, smoke, sprites, .. } = self;
+        let is_still = !guards.has_changed() && missiles.is_empty() && smoke.is_empty();
+        if is_still && self.world.figures().len() == guards.figures().count() {
+            return;
+        }
+        let missiles = missiles.iter().filter_map(|missile| sprites.missile(missile));
+        let puffs = smoke.puffs().filter_map(|puff| sprites.puff(puff));
+        self.world.set_figures(guards.figures().chain(missiles).chain(puffs));
+        self.revision += 1;
+    }
+
+    fn show_lamps(&mut self) {
+        let lamp = self.player.has_light.then(|| (self.player.motion.cell(), lamp()));
+        let lamps: Vec<(Cell, Lamp)> = lamp.into_iter().chain(self.guards.lamps()).collect();
+        self.world.set_moving_lamps(&lamps);
+    }
+}
+
+/// The player's lamp.
+fn lamp() -> Lamp {
+    Lamp { light: Light::new(0.6).unwrap_or(Light::NONE), reach: Reach::default() }
+}

@@ -1,0 +1,152 @@
+//! The tally of a game, and the rank that it is worth.
+
+use std::fmt;
+
+use super::{Game, STEPS_PER_SECOND};
+use crate::world::ThingKind;
+
+/// A part of a whole.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Hash, Default)]
+pub struct Share {
+    /// The part that has been found.
+    pub found: u32,
+    /// All that there is.
+    pub total: u32,
+}
+
+impl Share {
+    /// Whether everything has been found.
+    pub fn is_all(self) -> bool {
+        self.found >= self.total
+    }
+}
+
+/// What a player has done in a level.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Hash, Default)]
+pub struct Tally {
+    /// The time in steps.
+    pub steps: u64,
+    /// The worth of the treasure.
+    pub treasure: Share,
+    /// The number of secret walls.
+    pub secrets: Share,
+    /// How often guards have begun to follow the player.
+    pub alarms: u32,
+    /// How often the player has died.
+    pub deaths: u32,
+    /// How often the player has stunned a guard.
+    pub stunned: u32,
+}
+
+/// How well a level was played, from the worst.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Hash, PartialOrd, Ord)]
+pub enum Rank {
+    /// Reached the exit.
+    Burglar,
+    /// Within the par time, or with at most two alarms.
+    Thief,
+    /// Without an alarm, and within the par time or with all treasure.
+    Shadow,
+    /// Without an alarm, with all treasure, and nobody stunned.
+    Ghost,
+}
+
+impl Tally {
+    /// The rank of a game that was won, in a level with that par time in seconds, if it has one.
+    pub fn rank(&self, par: Option<u32>) -> Rank {
+        let most = |seconds: u32| u64::from(seconds) * u64::from(STEPS_PER_SECOND);
+        let is_fast = par.is_some_and(|seconds| self.steps <= most(seconds));
+        let has_all = self.treasure.is_all();
+        match (self.alarms, self.stunned) {
+            (0, 0) if has_all => Rank::Ghost,
+            (0, _) if is_fast || has_all => Rank::Shadow,
+            (0..=2, _) => Rank::Thief,
+            _ if is_fast => Rank::Thief,
+            _ => Rank::Burglar,
+        }
+    }
+}
+
+impl Rank {
+    /// All ranks, from the worst.
+    pub const ALL: [Self; 4] = [Self::Burglar, Self::Thief, Self::Shadow, Self::Ghost];
+
+    /// The name on the screen and in files.
+    pub const fn name(self) -> &'static str {
+        match self {
+            Self::Burglar => "Burglar",
+            Self::Thief => "Thief",
+            Self::Shadow => "Shadow",
+            Self::Ghost => "Ghost",
+        }
+    }
+
+    /// The rank with that name.
+    pub fn named(name: &str) -> Option<Self> {
+        Self::ALL.into_iter().find(|rank| rank.name() == name)
+    }
+}
+
+impl fmt::Display for Rank {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        f.pad(self.name())
+    }
+}
+
+/// What a game counts, whatever is restored.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Default)]
+pub(super) struct Counts {
+    pub(super) alarms: u32,
+    pub(super) deaths: u32,
+    pub(super) stunned: u32,
+}
+
+impl Game {
+    /// The worth of the treasure found, and of all in the level.
+    pub fn treasure(&self) -> Share {
+        let left = self.world.things().iter().map(|thing| match thing.kind {
+            ThingKind::Treasure(worth) => u32::from(worth),
+            _ => 0,
+        });
+        let found = self.player.treasure;
+        Share { found, total: left.fold(found, u32::saturating_add) }
+    }
+
+    /// The secret walls found, and all in the level.
+    pub fn secrets(&self) -> Share {
+        self.mechanisms.secrets(&self.world)
+    }
+
+    /// What the player has done so far.
+    pub fn tally(&self) -> Tally {
+        let Counts { alarms, deaths, stunned } = self.counts;
+        let (treasure, secrets) = (self.treasure(), self.secrets());
+        Tally { steps: self.steps, treasure, secrets, alarms, deaths, stunned }
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn a_rank_for_everybody() {
+        let all = Share { found: 50, total: 50 };
+        let some = Share { found: 10, total: 50 };
+        let tally = |steps, treasure, alarms, stunned| {
+            Tally { steps, treasure, alarms, stunned, ..Tally::default() }.rank(Some(10))
+        };
+        assert_eq!(tally(9999, all, 0, 0), Rank::Ghost);
+        assert_eq!(tally(9999, all, 0, 1), Rank::Shadow);
+        assert_eq!(tally(600, some, 0, 3), Rank::Shadow);
+        assert_eq!(tally(601, some, 0, 0), Rank::Thief);
+        assert_eq!(tally(600, some, 9, 0), Rank::Thief);
+        assert_eq!(tally(601, all, 2, 0), Rank::Thief);
+        assert_eq!(tally(601, all, 3, 0), Rank::Burglar);
+        assert_eq!(Tally { treasure: some, ..Tally::default() }.rank(None), Rank::Thief);
+        assert!(
+            Rank::ALL.is_sorted()
+                && Rank::ALL.map(|rank| Rank::named(rank.name()).unwrap()) == Rank::ALL
+        );
+    }
+}

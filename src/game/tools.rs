@@ -1,0 +1,228 @@
+//! Tools: the player strikes, throws pebbles, shoots darts and throws flasks of smoke.
+//!
+//! Each works once for each press. Aiming is no skill: a blow finds the nearest guard in front, a
+//! dart the nearest guard in sight near the middle of the view, and the rest flies straight ahead.
+
+mod missiles;
+mod smoke;
+
+use super::Game;
+use super::guards::Point;
+use super::intent::{Intent, Intents};
+use super::noise::reach;
+use super::sound::{Sound, SoundKind, Source};
+use crate::world::{Camera, GuardKind, Supply};
+pub(super) use missiles::{Landed, Missile, MissileKind, Missiles, Struck};
+pub(super) use smoke::{Puff, Smoke};
+
+/// How far a blow reaches, in cells, and the cosine of the angle to both sides: 60°.
+const ARM: f64 = 1.0;
+const ARM_COSINE: f64 = 0.5;
+/// The cosine of the angle within which a dart finds a guard: 15°.
+const AIM_COSINE: f64 = 0.965_925_826_289_068_3;
+
+/// The steps until the next blow: after one that misses, stuns or pushes.
+const AFTER_MISS: u16 = 20;
+const AFTER_STUN: u16 = 30;
+const AFTER_PUSH: u16 = 90;
+
+/// The steps for which a guard lies on the floor.
+const STUNNED: u16 = 1200;
+const HOUND_STUNNED: u16 = 480;
+const WARDEN_SHOT: u16 = 300;
+
+/// The tools that a player carries.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Default)]
+pub(super) struct Supplies([u8; Supply::ALL.len()]);
+
+impl Supplies {
+    /// The most of each that a player carries.
+    pub(super) const MOST: u8 = 9;
+
+    /// Those of a player at the start.
+    pub(super) const AT_START: Self = Self([3, 0, 0]);
+
+    /// The number of `supply`.
+    pub(super) fn count(self, supply: Supply) -> u8 {
+        self.0[supply as usize]
+    }
+
+    /// Adds `more` of `supply`, as many as the player can carry.
+    pub(super) fn add(&mut self, supply: Supply, more: u8) {
+        let count = &mut self.0[supply as usize];
+        *count = count.saturating_add(more).min(Self::MOST);
+    }
+
+    /// The larger number of each.
+    #[must_use]
+    pub(super) fn or_more(mut self, other: Self) -> Self {
+        self.0.iter_mut().zip(other.0).for_each(|(count, other)| *count = other.max(*count));
+        self
+    }
+
+    /// Takes one of `supply`; returns whether there was one.
+    fn take(&mut self, supply: Supply) -> bool {
+        let count = &mut self.0[supply as usize];
+        let has_one = *count > 0;
+        *count -= u8::from(has_one);
+        has_one
+    }
+}
+
+impl Game {
+    /// Uses the tools that the player begins to want.
+    pub(super) fn use_tools(&mut self, fresh: Intents) {
+        if fresh.contains(Intent::Lamp) {
+            self.turn_lamp();
+        }
+        if !self.is_mission {
+            return;
+        }
+        if fresh.contains(Intent::Strike) && self.player.strike_wait == 0 {
+            self.strike();
+        }
+        for (intent, supply) in [
+            (Intent::Throw, Supply::Pebbles),
+            (Intent::Shoot, Supply::Darts),
+            (Intent::Smoke, Supply::Flasks),
+        ] {
+            if fresh.contains(intent) {
+                self.launch(supply);
+            }
+        }
+    }
+
+    /// Lights the lamp, or puts it out.
+    fn turn_lamp(&mut self) {
+        if !self.player.has_light && self.is_in_water() {
+            return self.say("Your lamp does not burn in water.".to_owned());
+        }
+        self.player.has_light = !self.player.has_light;
+        self.revision += 1;
+    }
+
+    fn strike(&mut self) {
+        let motion = self.player.motion;
+        let (position, direction) = (motion.position(), motion.heading().direction());
+        let eye = self.eye();
+        let guard = self.guards.guard_near(&self.world, eye, direction, ARM, ARM_COSINE);
+        let Some(index) = guard else {
+            self.player.strike_wait = AFTER_MISS;
+            return self.sound(SoundKind::Swing, reach::SWING);
+        };
+        self.sound(SoundKind::Blow, reach::BLOW);
+        let is_behind = self.guards.is_behind(index, position);
+        let kind = self.guards.views().nth(index).map(|view| view.kind);
+        let is_surprised = self.guards.is_unaware(index) && kind != Some(GuardKind::Warden);
+        if is_behind || is_surprised {
+            self.player.strike_wait = AFTER_STUN;
+            self.stun(index, if kind == Some(GuardKind::Hound) { HOUND_STUNNED } else { STUNNED });
+        } else {
+            self.player.strike_wait = AFTER_PUSH;
+            self.guards.push(index, direction);
+        }
+    }
+
+    /// Lays a guard on the floor, and counts it.
+    fn stun(&mut self, index: usize, steps: u16) {
+        self.guards.stun(index, steps);
+        self.counts.stunned += 1;
+        let kind = self.guards.views().nth(index).map(|view| view.kind);
+        if let Some(kind) = kind {
+            self.say(format!("The {} goes down.", title(kind)));
+        }
+    }
+
+    /// The player's eye.
+    fn eye(&self) -> Point {
+        let motion = self.player.motion;
+        let height = motion.feet() + Camera::STANDING.min(motion.height() - 0.05);
+        Point { position: motion.position(), height }
+    }
+
+    /// Throws or shoots one of `supply`.
+    fn launch(&mut self, supply: Supply) {
+        if !self.player.supplies.take(supply) {
+            return self.say(format!("No {} left.", supply.name()));
+        }
+        self.revision += 1;
+        let eye = self.eye();
+        let ahead = self.player.motion.heading().direction();
+        self.missiles.launch(match supply {
+            Supply::Pebbles => Missile::pebble(eye, ahead),
+            Supply::Flasks => Missile::flask(eye, ahead),
+            Supply::Darts => {
+                let clouds = self.smoke.clouds();
+                let aim = self.guards.aim(&self.world, clouds, eye, ahead, AIM_COSINE);
+                Missile::dart(eye, ahead, aim)
+            }
+        });
+    }
+
+    /// Moves what flies, and lets it do what it does where it ends.
+    pub(super) fn move_missiles(&mut self) {
+        if self.missiles.is_empty() {
+            return;
+        }
+        let motion = self.player.motion;
+        for landed in self.missiles.step(&self.world, &self.guards, &motion) {
+            self.land(landed);
+        }
+    }
+
+    fn land(&mut self, landed: Landed) {
+        let Landed { missile, cell, struck } = landed;
+        let sound = |kind, reach| Sound { kind, cell, reach, by: Source::Object };
+        match (missile.kind, struck) {
+            (MissileKind::Dart, Struck::Guard(index)) => {
+                let kind = self.guards.views().nth(index).map(|view| view.kind);
+                let is_warden = kind == Some(GuardKind::Warden);
+                self.sounds.push(sound(SoundKind::Blow, reach::BLOW));
+                self.stun(index, if is_warden { WARDEN_SHOT } else { STUNNED });
+            }
+            (MissileKind::Bolt { points, from }, Struck::Player) => self.hurt_by_bolt(points, from),
+            (MissileKind::Flask, _) => {
+                self.sounds.push(sound(SoundKind::Crash, reach::CRASH));
+                self.smoke.add(missile.position, missile.height);
+            }
+            (MissileKind::Pebble, _) => self.sounds.push(sound(SoundKind::Knock, reach::KNOCK)),
+            (MissileKind::Dart | MissileKind::Bolt { .. }, _) => {
+                self.sounds.push(sound(SoundKind::Knock, reach::TAP));
+            }
+        }
+    }
+}
+
+/// The kind of guard in a sentence.
+fn title(kind: GuardKind) -> &'static str {
+    if kind == GuardKind::Lantern { "lantern-bearer" } else { kind.name() }
+}
+
+#[cfg(test)]
+mod tests {
+    use proptest::prelude::*;
+
+    use super::*;
+
+    proptest! {
+        #[test]
+        fn nobody_carries_more_than_nine_or_less_than_nothing(
+            changes in prop::collection::vec((prop::sample::select(&Supply::ALL[..]), any::<Option<u8>>()), 0..40)
+        ) {
+            let mut supplies = Supplies::AT_START;
+            for (supply, more) in changes {
+                let before = supplies.count(supply);
+                match more {
+                    Some(more) => supplies.add(supply, more),
+                    None => prop_assert_eq!(supplies.take(supply), before > 0),
+                }
+                prop_assert!(Supply::ALL.iter().all(|&supply| supplies.count(supply) <= Supplies::MOST));
+            }
+        }
+    }
+
+    #[test]
+    fn a_dart_finds_what_is_within_15_degrees() {
+        assert!((AIM_COSINE - libm::cos(15_f64.to_radians())).abs() < 1e-15);
+    }
+}

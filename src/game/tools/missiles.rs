@@ -1,0 +1,230 @@
+//! Missiles: pebbles, darts and flasks that the player throws or shoots, and bolts of archers.
+//!
+//! A missile is a point with a small radius that collides as a player does. Its height follows a
+//! parabola or a straight line. It ends at the first obstacle, at the floor, or at the first body
+//! in its way: darts meet guards, and bolts players.
+
+use glam::DVec2;
+
+use crate::game::STEP;
+use crate::game::collision::{Place, Radius, Stature, fly};
+use crate::game::fall::GRAVITY;
+use crate::game::guards::{Guards, Point};
+use crate::game::player::{Motion, RADIUS};
+use crate::generate::Shift;
+use crate::world::{Cell, World};
+
+/// The radius of every missile, in cells.
+const SIZE: Radius = Radius::new(0.04).expect("it is between nothing and a half");
+/// The steps after which a missile that still flies is gone.
+const MOST_STEPS: u16 = 240;
+/// How far beside the body a bolt still hits a player, in cells.
+const MARGIN: f64 = 0.05;
+
+/// The height from which players throw, in cells above their feet.
+const HAND: f64 = 0.45;
+
+/// What flies, in the order in which it was launched.
+#[derive(Clone, Debug, PartialEq, Default)]
+pub(in crate::game) struct Missiles {
+    flying: Vec<Missile>,
+}
+
+/// Something that flies.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub(in crate::game) struct Missile {
+    pub(in crate::game) kind: MissileKind,
+    pub(in crate::game) position: DVec2,
+    /// The height above the map's own floor, in cells.
+    pub(in crate::game) height: f64,
+    /// Cells per second.
+    pub(in crate::game) velocity: DVec2,
+    /// Cells per second, upwards.
+    rising: f64,
+    steps: u16,
+}
+
+/// A kind of missile.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub(in crate::game) enum MissileKind {
+    Pebble,
+    Dart,
+    Flask,
+    /// Hits for `points`; it was shot at `from`.
+    Bolt {
+        points: u8,
+        from: DVec2,
+    },
+}
+
+/// A missile that has ended.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub(in crate::game) struct Landed {
+    pub(in crate::game) missile: Missile,
+    pub(in crate::game) cell: Cell,
+    pub(in crate::game) struck: Struck,
+}
+
+/// What a missile has met.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub(in crate::game) enum Struck {
+    /// A wall, the floor, or nothing for a long time.
+    Nothing,
+    Guard(usize),
+    Player,
+}
+
+impl Missile {
+    /// A pebble, which lands six cells ahead on level floor.
+    pub(in crate::game) fn pebble(from: Point, ahead: DVec2) -> Self {
+        Self::thrown(MissileKind::Pebble, from, ahead * 9.0, 6.0 / 9.0)
+    }
+
+    /// A flask, which lands three cells ahead on level floor.
+    pub(in crate::game) fn flask(from: Point, ahead: DVec2) -> Self {
+        Self::thrown(MissileKind::Flask, from, ahead * 6.0, 3.0 / 6.0)
+    }
+
+    /// A dart, which flies straight ahead or to `aim`.
+    pub(in crate::game) fn dart(
+        Point { position, height }: Point,
+        ahead: DVec2,
+        aim: Option<Point>,
+    ) -> Self {
+        const SPEED: f64 = 14.0;
+        let to_aim = aim.and_then(|aim| {
+            let way = aim.position - position;
+            Some((way.try_normalize()?, (aim.height - height) / way.length()))
+        });
+        let (direction, slope) = to_aim.unwrap_or((ahead, 0.0));
+        Self {
+            kind: MissileKind::Dart,
+            position,
+            height,
+            velocity: direction * SPEED,
+            rising: slope * SPEED,
+            steps: 0,
+        }
+    }
+
+    /// A bolt along `direction`, a unit vector, that rises by `slope` for each cell.
+    pub(in crate::game) fn bolt(
+        Point { position, height }: Point,
+        direction: DVec2,
+        slope: f64,
+        points: u8,
+    ) -> Self {
+        const SPEED: f64 = 10.0;
+        Self {
+            kind: MissileKind::Bolt { points, from: position },
+            position,
+            height,
+            velocity: direction * SPEED,
+            rising: slope * SPEED,
+            steps: 0,
+        }
+    }
+
+    /// Thrown so that it is `HAND` below its start after `seconds`.
+    fn thrown(
+        kind: MissileKind,
+        Point { position, height }: Point,
+        velocity: DVec2,
+        seconds: f64,
+    ) -> Self {
+        let rising = GRAVITY / 2.0 * seconds - HAND / seconds;
+        Self { kind, position, height, velocity, rising, steps: 0 }
+    }
+
+    fn falls(&self) -> bool {
+        matches!(self.kind, MissileKind::Pebble | MissileKind::Flask)
+    }
+
+    /// Moves it by one step. Returns whether it has met a wall, the floor or its time.
+    fn step(&mut self, world: &World) -> bool {
+        let stature = Stature { feet: self.height, height: 0.0 };
+        let place = Place { world, stature, step: 0.0, has_shapes: world.has_shapes() };
+        let (position, is_stopped) = fly(&place, self.position, self.velocity * STEP, SIZE);
+        self.position = position;
+        let room = place.room(position, SIZE);
+        let pull = if self.falls() { GRAVITY } else { 0.0 };
+        let rising = self.rising - pull * STEP;
+        let height = self.height + f64::midpoint(self.rising, rising) * STEP;
+        let ceiling = room.ceiling.max(room.floor);
+        self.rising = if height > ceiling { 0.0 } else { rising };
+        self.height = height.clamp(room.floor, ceiling);
+        self.steps += 1;
+        is_stopped || height <= room.floor || self.steps >= MOST_STEPS
+    }
+
+    fn point(&self) -> Point {
+        Point { position: self.position, height: self.height }
+    }
+
+    fn cell(&self) -> Cell {
+        Cell { column: self.position.x as u32, row: self.position.y as u32 }
+    }
+}
+
+impl Missiles {
+    /// Whether nothing flies.
+    pub(in crate::game) fn is_empty(&self) -> bool {
+        self.flying.is_empty()
+    }
+
+    /// What flies.
+    pub(in crate::game) fn iter(&self) -> impl Iterator<Item = &Missile> + Clone {
+        self.flying.iter()
+    }
+
+    /// Adds a missile.
+    pub(in crate::game) fn launch(&mut self, missile: Missile) {
+        self.flying.push(missile);
+    }
+
+    /// Moves all missiles by one step, and removes and returns those that have ended.
+    pub(in crate::game) fn step(
+        &mut self,
+        world: &World,
+        guards: &Guards,
+        player: &Motion,
+    ) -> Vec<Landed> {
+        let mut landed = Vec::new();
+        self.flying.retain_mut(|missile| {
+            let from = missile.point();
+            let has_ended = missile.step(world);
+            let to = missile.point();
+            let struck = match missile.kind {
+                MissileKind::Dart => guards.hit_between(from, to).map(Struck::Guard),
+                MissileKind::Bolt { .. } => hits(player, from, to).then_some(Struck::Player),
+                MissileKind::Pebble | MissileKind::Flask => None,
+            };
+            let is_over = has_ended || struck.is_some();
+            if is_over {
+                let struck = struck.unwrap_or(Struck::Nothing);
+                landed.push(Landed { missile: *missile, cell: missile.cell(), struck });
+            }
+            !is_over
+        });
+        landed
+    }
+
+    /// The same missiles in a window that has moved.
+    pub(in crate::game) fn shift(&mut self, shift: Shift) {
+        let flying = self.flying.iter_mut();
+        flying.for_each(|missile| missile.position = shift.position(missile.position));
+    }
+}
+
+/// Whether a missile on the way from one place to another meets the player's body.
+fn hits(player: &Motion, from: Point, to: Point) -> bool {
+    let way = to.position - from.position;
+    let along = if way == DVec2::ZERO {
+        0.0
+    } else {
+        ((player.position() - from.position).dot(way) / way.length_squared()).clamp(0.0, 1.0)
+    };
+    let height = from.height + (to.height - from.height) * along;
+    let distance = (from.position + way * along).distance(player.position());
+    distance <= RADIUS.cells() + MARGIN && (player.feet()..=player.head()).contains(&height)
+}

@@ -1,0 +1,115 @@
+//! Smoke: clouds that nobody sees through, for some time.
+
+use glam::DVec2;
+
+use crate::game::guards::Cloud;
+use crate::generate::Shift;
+
+/// The radius of a cloud in cells, and the steps for which it stays.
+const RADIUS: f64 = 1.5;
+const STEPS: u16 = 480;
+/// The steps in which a cloud spreads, and in which it fades away.
+const SPREADS: u16 = 12;
+const FADES: u16 = 60;
+
+/// The pictures of a cloud: their places around its middle, in radii, and their heights in cells.
+const PUFFS: [(f64, f64, f64); 7] = [
+    (0.0, 0.0, 0.05),
+    (0.62, 0.0, 0.0),
+    (-0.62, 0.0, 0.1),
+    (0.31, 0.54, 0.15),
+    (-0.31, 0.54, 0.0),
+    (0.31, -0.54, 0.1),
+    (-0.31, -0.54, 0.05),
+];
+
+/// All clouds, in the order in which they arose.
+#[derive(Clone, Debug, PartialEq, Default)]
+pub(in crate::game) struct Smoke {
+    clouds: Vec<Cloud>,
+    /// For each cloud, its height and the steps left.
+    lives: Vec<Life>,
+}
+
+#[derive(Clone, Copy, Debug, PartialEq)]
+struct Life {
+    height: f64,
+    left: u16,
+}
+
+/// A part of a cloud, as it is shown.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub(in crate::game) struct Puff {
+    pub(in crate::game) position: DVec2,
+    pub(in crate::game) height: f64,
+    pub(in crate::game) frame: u8,
+    pub(in crate::game) opacity: u8,
+}
+
+impl Smoke {
+    /// Adds a cloud around `position`, above a floor of that height.
+    pub(in crate::game) fn add(&mut self, position: DVec2, height: f64) {
+        self.clouds.push(Cloud { position, radius: RADIUS });
+        self.lives.push(Life { height, left: STEPS });
+    }
+
+    /// The clouds, as far as they matter to sight.
+    pub(in crate::game) fn clouds(&self) -> &[Cloud] {
+        &self.clouds
+    }
+
+    /// Whether there is none.
+    pub(in crate::game) fn is_empty(&self) -> bool {
+        self.clouds.is_empty()
+    }
+
+    /// The steps left of each cloud.
+    pub(in crate::game) fn lives(&self) -> impl Iterator<Item = u16> {
+        self.lives.iter().map(|life| life.left)
+    }
+
+    /// Advances all clouds by one step.
+    pub(in crate::game) fn step(&mut self) {
+        self.lives.iter_mut().for_each(|life| life.left = life.left.saturating_sub(1));
+        let mut lives = self.lives.iter();
+        self.clouds.retain(|_| lives.next().is_some_and(|life| life.left > 0));
+        self.lives.retain(|life| life.left > 0);
+    }
+
+    /// What the clouds look like.
+    pub(in crate::game) fn puffs(&self) -> impl Iterator<Item = Puff> + Clone {
+        self.clouds.iter().zip(&self.lives).flat_map(|(cloud, life)| {
+            let age = STEPS - life.left;
+            let spread = f64::from(age.min(SPREADS)) / f64::from(SPREADS);
+            let opacity = (u32::from(life.left.min(FADES)) * 230 / u32::from(FADES)) as u8;
+            PUFFS.iter().zip(0_u16..).map(move |(&(across, down, up), index)| Puff {
+                position: cloud.position + DVec2::new(across, down) * (cloud.radius * spread),
+                height: life.height + up,
+                frame: ((age / 10 + index) % 4) as u8,
+                opacity,
+            })
+        })
+    }
+
+    /// The same clouds in a window that has moved.
+    pub(in crate::game) fn shift(&mut self, shift: Shift) {
+        let clouds = self.clouds.iter_mut();
+        clouds.for_each(|cloud| cloud.position = shift.position(cloud.position));
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn a_cloud_stays_for_its_time() {
+        let mut smoke = Smoke::default();
+        smoke.add(DVec2::new(2.5, 2.5), 0.0);
+        (1..STEPS).for_each(|_| smoke.step());
+        assert_eq!(smoke.clouds().len(), 1);
+        assert!(smoke.puffs().all(|puff| puff.opacity < 10));
+        smoke.step();
+        assert_eq!(smoke, Smoke::default());
+    }
+}

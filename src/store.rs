@@ -1,0 +1,228 @@
+//! The store: what a player keeps from one game to the next.
+//!
+//! It is a folder with these files:
+//!
+//! | file | holds |
+//! |---|---|
+//! | `progress.toml` | best results, the saved game, preferences, daily runs |
+//! | `runs/LEVEL.DIFFICULTY.STEPS.script` | the fastest run of a level |
+//! | `runs/saved.HASH.script` | the run of the saved game so far |
+//! | `progress.lock` | nothing; it is locked while a game writes |
+//!
+//! Rules:
+//!
+//! - **A change is applied to the file, not to a copy of it.** A game takes the lock, reads the file
+//!   again, applies its own changes, and replaces the file. So two games lose nothing of each other.
+//! - **A file is replaced at once.** It is written under another name, synchronised and renamed. Scripts
+//!   are written before the file that names them, under a name that is not in use. So a power cut
+//!   leaves the state before or the state after a change.
+//! - **A damaged file is kept.** It is renamed to `progress.toml.damaged-1`, everything in it that can be
+//!   read is kept in force, and a sentence says so. A file of a newer version is left alone.
+//! - **A failure does not stop the game.** Changes that can't be written stay in memory, are tried
+//!   again with the next change, and [`Store::trouble`] is one sentence about them.
+//!
+//! A database was refused: it would be the largest dependency of the program, for a hundred lines of
+//! text that the player can read and copy. So was one file that is locked while the game runs: the
+//! second game would keep nothing.
+
+mod best;
+mod change;
+mod disk;
+mod home;
+mod names;
+mod progress;
+mod read;
+mod write;
+
+use std::path::Path;
+
+pub use best::{Best, Improved, Reached, Run};
+use change::Change;
+use home::Home;
+pub use names::map_key;
+use progress::Progress;
+pub use progress::{Daily, Preferences, SavedGame};
+
+use crate::world::Difficulty;
+
+/// What one player keeps: in a folder, or in memory.
+///
+/// ```
+/// use cellcaster::store::{Preferences, Store};
+///
+/// let mut store = Store::in_memory();
+/// store.set_preferences(Preferences { compass: true, ..store.preferences() });
+/// assert!(store.preferences().compass);
+/// assert_eq!(store.trouble(), None);
+/// ```
+#[derive(Debug)]
+pub struct Store {
+    /// The state that the player sees: that of the file as last read, with all changes.
+    progress: Progress,
+    /// The changes that are not in the file.
+    pending: Vec<Change>,
+    home: Option<Home>,
+    /// About a file that was found damaged during the game.
+    damage: Option<String>,
+    /// About the pending changes.
+    trouble: Option<String>,
+}
+
+impl Store {
+    /// The store in `folder`, which is created with the first change; and a sentence if something
+    /// in it is damaged, or can't be used.
+    pub fn open(folder: &Path) -> (Self, Option<String>) {
+        Self::at(Home::new(folder.to_owned(), Box::new(disk::Real)))
+    }
+
+    fn at(mut home: Home) -> (Self, Option<String>) {
+        let (progress, sentence) = home.open();
+        (Self { progress, home: Some(home), ..Self::in_memory() }, sentence)
+    }
+
+    /// A store that ends with the program.
+    pub fn in_memory() -> Self {
+        Self {
+            progress: Progress::default(),
+            pending: Vec::new(),
+            home: None,
+            damage: None,
+            trouble: None,
+        }
+    }
+
+    /// The best results in a level. `level` is the name of a built-in level, or the [key](map_key) of
+    /// a map.
+    pub fn best(&self, level: &str, difficulty: Difficulty) -> Option<&Best> {
+        self.progress.best(level, difficulty)
+    }
+
+    /// The script of the fastest run of a level, if there is one and it can be read.
+    pub fn script(&self, level: &str, difficulty: Difficulty) -> Option<String> {
+        self.text_in(|progress| {
+            let best = progress.best(level, difficulty)?;
+            Some(names::of_run(level, difficulty, best.tally.steps))
+        })
+    }
+
+    /// Records a run that reached the exit, and returns what it improved.
+    pub fn record(&mut self, level: &str, difficulty: Difficulty, run: Run) -> Improved {
+        let improved = self.progress.improved_by(level, difficulty, &run);
+        if improved.any() {
+            self.change(Change::Won { level: level.to_owned(), difficulty, run });
+        }
+        improved
+    }
+
+    /// The levels that were won at a difficulty, in the order of their names.
+    pub fn won(&self, difficulty: Difficulty) -> impl Iterator<Item = &str> {
+        self.progress.won(difficulty)
+    }
+
+    /// The saved game, if there is one and its script can be read.
+    pub fn saved(&self) -> Option<SavedGame> {
+        let script = self.text_in(|progress| Some(progress.saved.as_ref()?.script.clone()))?;
+        Some(self.progress.saved.as_ref()?.with_script(script))
+    }
+
+    /// Saves a game in place of the one before.
+    pub fn save(&mut self, game: &SavedGame) {
+        self.change(Change::Saved(Some(game.clone())));
+    }
+
+    /// Removes the saved game.
+    pub fn clear_saved(&mut self) {
+        if self.progress.saved.is_some() {
+            self.change(Change::Saved(None));
+        }
+    }
+
+    /// What the player has chosen in the game.
+    pub fn preferences(&self) -> Preferences {
+        self.progress.preferences
+    }
+
+    /// Sets the preferences. Those that stay as they are do not undo the choice of another game.
+    pub fn set_preferences(&mut self, preferences: Preferences) {
+        let before = self.progress.preferences;
+        if before != preferences {
+            self.change(Change::Preferences { before, after: preferences });
+        }
+    }
+
+    /// The daily run of a date, such as 20261122, if it was tried.
+    pub fn daily(&self, date: u32) -> Option<Daily> {
+        self.progress.dailies.get(&date).copied()
+    }
+
+    /// Begins the daily run of a date, and returns whether it counts: the first try does. A try counts
+    /// from its beginning, so that leaving does not undo it.
+    pub fn begin_daily(&mut self, date: u32) -> bool {
+        if self.daily(date).is_some() {
+            return false;
+        }
+        let before = self.change(Change::Daily { date, reached: Reached::default() });
+        before.is_none_or(|before| !before.dailies.contains_key(&date))
+    }
+
+    /// Records what the try that counts has reached so far.
+    pub fn record_daily(&mut self, date: u32, reached: Reached) {
+        if self.daily(date).is_none_or(|daily| daily.reached < reached) {
+            self.change(Change::Daily { date, reached });
+        }
+    }
+
+    /// The best descent without an end.
+    pub fn best_descent(&self) -> Option<Reached> {
+        self.progress.descent
+    }
+
+    /// Records a descent without an end, and returns whether it is the best one.
+    pub fn record_descent(&mut self, reached: Reached) -> bool {
+        let is_best = self.progress.descent.is_none_or(|best| best < reached);
+        if is_best {
+            self.change(Change::Descent(reached));
+        }
+        is_best
+    }
+
+    /// A sentence about what is damaged or could not be kept, for the end of the game.
+    pub fn trouble(&self) -> Option<&str> {
+        self.trouble.as_deref().or(self.damage.as_deref())
+    }
+
+    /// Applies `change` to the state that the player sees, and to the file. Returns the state of the
+    /// file before, if it could be changed.
+    fn change(&mut self, change: Change) -> Option<Progress> {
+        self.progress.apply(&change);
+        self.pending.push(change);
+        match self.home.as_mut()?.write(&self.pending, &self.progress) {
+            Ok(written) => {
+                self.progress = written.progress;
+                self.pending.clear();
+                self.damage = written.sentence.or(self.damage.take());
+                self.trouble = None;
+                Some(written.before)
+            }
+            Err(sentence) => {
+                self.trouble = Some(sentence);
+                None
+            }
+        }
+    }
+
+    /// The text of the script that `name` finds in the progress, written or not.
+    fn text_in(&self, name: impl Fn(&Progress) -> Option<String>) -> Option<String> {
+        let wanted = name(&self.progress)?;
+        let unwritten = self.pending.iter().rev().find_map(|change| change.script(&wanted));
+        if let Some(text) = unwritten {
+            return Some(text.to_owned());
+        }
+        let home = self.home.as_ref()?;
+        // Another game may have replaced it.
+        home.script(&wanted).or_else(|| home.script(&name(&home.read_again()?)?))
+    }
+}
+
+#[cfg(test)]
+mod tests;

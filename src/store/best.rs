@@ -1,0 +1,76 @@
+//! Results: of a run, and the best of several.
+
+use crate::game::{Rank, Tally};
+
+/// A run that reached the exit.
+#[derive(Clone, Debug, PartialEq, Eq)]
+pub struct Run {
+    /// What happened in it.
+    pub tally: Tally,
+    /// Its rank.
+    pub rank: Rank,
+    /// Its script, with a header that names the level.
+    pub script: String,
+}
+
+/// The best results in a level at one difficulty.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub struct Best {
+    /// The tally of the fastest run.
+    pub tally: Tally,
+    /// The highest rank of all runs.
+    pub rank: Rank,
+}
+
+/// What a run improved.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Default)]
+pub struct Improved {
+    /// Whether it is the fastest run.
+    pub time: bool,
+    /// Whether it has a higher rank than all others.
+    pub rank: bool,
+}
+
+impl Improved {
+    /// Whether it improved anything.
+    pub fn any(self) -> bool {
+        self.time || self.rank
+    }
+}
+
+/// How far a descent came. More floors are better, then more treasure, then fewer steps.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Default)]
+pub struct Reached {
+    /// The floors whose exit was reached.
+    pub floors: u32,
+    /// The treasure of these floors.
+    pub treasure: u32,
+    /// The steps that these floors took.
+    pub steps: u64,
+}
+
+impl Ord for Reached {
+    fn cmp(&self, other: &Self) -> std::cmp::Ordering {
+        let by_value = (self.floors, self.treasure).cmp(&(other.floors, other.treasure));
+        by_value.then(other.steps.cmp(&self.steps))
+    }
+}
+
+impl PartialOrd for Reached {
+    fn partial_cmp(&self, other: &Self) -> Option<std::cmp::Ordering> {
+        Some(self.cmp(other))
+    }
+}
+
+impl Best {
+    /// The results of one run.
+    pub(super) fn of(run: &Run) -> Self {
+        Self { tally: run.tally, rank: run.rank }
+    }
+
+    /// The best of both. Of equally fast runs it is the first.
+    pub(super) fn and(self, other: Self) -> Self {
+        let fastest = if other.tally.steps < self.tally.steps { other } else { self };
+        Self { tally: fastest.tally, rank: self.rank.max(other.rank) }
+    }
+}

@@ -1,0 +1,199 @@
+//! The store's folder: reading, and replacing files under a lock.
+
+use std::collections::BTreeSet;
+use std::io;
+use std::path::{Path, PathBuf};
+
+use super::change::Change;
+use super::disk::Disk;
+use super::progress::Progress;
+use super::read::{self, Content};
+
+/// A folder of a store.
+#[derive(Debug)]
+pub(super) struct Home {
+    folder: PathBuf,
+    disk: Box<dyn Disk>,
+    /// The attempts to get the lock; one after another process did not return it.
+    attempts: u32,
+}
+
+/// The result of a change.
+#[derive(Debug)]
+pub(super) struct Written {
+    /// The state of the file before.
+    pub(super) before: Progress,
+    /// The state of the file now.
+    pub(super) progress: Progress,
+    /// A sentence about a damaged file.
+    pub(super) sentence: Option<String>,
+}
+
+/// The content of the progress file, and what is wrong with it.
+enum Found {
+    Sound(Progress),
+    /// Parts can be read; the bytes are to be kept.
+    Damaged(Progress, Vec<u8>),
+    TooLarge,
+}
+
+const PROGRESS: &str = "progress.toml";
+const LOCK: &str = "progress.lock";
+const RUNS: &str = "runs";
+/// In bytes.
+const LARGEST_PROGRESS: u64 = 4 << 20;
+/// In bytes: that is more than a day of play.
+const LARGEST_SCRIPT: u64 = 4 << 20;
+/// They take a second.
+const ATTEMPTS: u32 = 100;
+
+impl Home {
+    pub(super) fn new(folder: PathBuf, disk: Box<dyn Disk>) -> Self {
+        Self { folder, disk, attempts: ATTEMPTS }
+    }
+
+    /// The progress in the file, and a sentence if it is damaged or can't be used. A damaged file is
+    /// put aside.
+    pub(super) fn open(&mut self) -> (Progress, Option<String>) {
+        match self.find() {
+            Ok(Found::Sound(progress)) => (progress, None),
+            Ok(Found::Damaged(progress, _)) => self.repair(progress),
+            Ok(Found::TooLarge) => self.repair(Progress::default()),
+            Err(sentence) => (Progress::default(), Some(sentence)),
+        }
+    }
+
+    fn repair(&mut self, readable: Progress) -> (Progress, Option<String>) {
+        match self.write(&[], &readable) {
+            Ok(written) => (written.progress, written.sentence),
+            Err(sentence) => (readable, Some(sentence)),
+        }
+    }
+
+    /// The progress in the file, unless it is missing or damaged.
+    pub(super) fn read_again(&self) -> Option<Progress> {
+        match self.find() {
+            Ok(Found::Sound(progress)) => Some(progress),
+            _ => None,
+        }
+    }
+
+    /// The text of a script.
+    pub(super) fn script(&self, name: &str) -> Option<String> {
+        let content = self.disk.read(&self.folder.join(RUNS).join(name), LARGEST_SCRIPT).ok()?;
+        String::from_utf8(content).ok()
+    }
+
+    /// Applies `changes` to the file. What is damaged in it is completed from `known`, the state in
+    /// memory.
+    ///
+    /// # Errors
+    /// A sentence why nothing was written.
+    pub(super) fn write(
+        &mut self,
+        changes: &[Change],
+        known: &Progress,
+    ) -> Result<Written, String> {
+        let not_kept = |folder: &Path, error: &io::Error| {
+            format!("{} can't be written: {error}; this game is not kept", shown(folder))
+        };
+        let lock = self
+            .disk
+            .create_folder(&self.folder.join(RUNS))
+            .and_then(|()| self.disk.lock(&self.folder.join(LOCK), self.attempts));
+        self.attempts = if lock.is_ok() { ATTEMPTS } else { 1 };
+        let _lock = lock.map_err(|error| not_kept(&self.folder, &error))?;
+        let found = self.find()?;
+        self.replace(found, changes, known).map_err(|error| not_kept(&self.folder, &error))
+    }
+
+    fn find(&self) -> Result<Found, String> {
+        let file = self.folder.join(PROGRESS);
+        let content = match self.disk.read(&file, LARGEST_PROGRESS) {
+            Ok(content) => content,
+            Err(error) if error.kind() == io::ErrorKind::NotFound => {
+                return Ok(Found::Sound(Progress::default()));
+            }
+            Err(error) if error.kind() == io::ErrorKind::FileTooLarge => {
+                return Ok(Found::TooLarge);
+            }
+            Err(error) => {
+                return Err(format!("{} can't be read: {error}; nothing is kept", shown(&file)));
+            }
+        };
+        match read::read(&content) {
+            Content::Sound(progress) => Ok(Found::Sound(progress)),
+            Content::Damaged(progress) => Ok(Found::Damaged(progress, content)),
+            Content::Newer(version) => Err(format!(
+                "{} has version {version}, which a newer Cellcaster wrote: it is left as it is, and \
+                 nothing is kept",
+                shown(&file)
+            )),
+        }
+    }
+
+    fn replace(&self, found: Found, changes: &[Change], known: &Progress) -> io::Result<Written> {
+        let is_damaged = !matches!(found, Found::Sound(_));
+        let sentence = match &found {
+            Found::Sound(_) => None,
+            Found::Damaged(_, content) => Some(self.put_aside(Some(content))?),
+            Found::TooLarge => Some(self.put_aside(None)?),
+        };
+        let (Found::Sound(mut progress) | Found::Damaged(mut progress, _)) = found else {
+            return self
+                .replace(Found::Sound(known.clone()), changes, known)
+                .map(|written| Written { sentence, ..written });
+        };
+        if is_damaged {
+            progress.complete(known);
+        }
+        let before = progress.clone();
+        changes.iter().for_each(|change| progress.apply(change));
+        let after: BTreeSet<String> = progress.scripts().collect();
+        let scripts = changes.iter().filter_map(Change::written);
+        for (name, text) in scripts.filter(|(name, _)| after.contains(name)) {
+            self.write_whole(&Path::new(RUNS).join(name), text.as_bytes())?;
+        }
+        self.write_whole(Path::new(PROGRESS), progress.to_string().as_bytes())?;
+        for name in before.scripts().filter(|name| !after.contains(name)) {
+            // The progress is written; a script too many does no harm.
+            _ = self.disk.remove(&self.folder.join(RUNS).join(name));
+        }
+        Ok(Written { before, progress, sentence })
+    }
+
+    /// Keeps the damaged file under another name, as a copy of its content if that is known, and
+    /// returns a sentence about it.
+    fn put_aside(&self, content: Option<&[u8]>) -> io::Result<String> {
+        let names = self.disk.names(&self.folder)?;
+        let mut free = (1_u64..).map(|number| format!("{PROGRESS}.damaged-{number}"));
+        let is_free = |name: &String| !names.iter().any(|known| known == name.as_str());
+        let name = free.find(is_free).unwrap_or_default();
+        let kept = match content {
+            Some(content) => {
+                self.write_whole(Path::new(&name), content)?;
+                "everything in it that can be read stays in force"
+            }
+            None => {
+                self.disk.rename(&self.folder.join(PROGRESS), &self.folder.join(&name))?;
+                "it is too large to be read"
+            }
+        };
+        let file = shown(&self.folder.join(PROGRESS));
+        Ok(format!("{file} was damaged and is kept as {name}; {kept}"))
+    }
+
+    /// Writes a file in the folder so that it has either its old or its new content at any time.
+    fn write_whole(&self, name: &Path, content: &[u8]) -> io::Result<()> {
+        let file = self.folder.join(name);
+        let mut new = file.clone().into_os_string();
+        new.push(".new");
+        self.disk.write(Path::new(&new), content)?;
+        self.disk.rename(Path::new(&new), &file)
+    }
+}
+
+/// A path for a sentence.
+fn shown(path: &Path) -> String {
+    path.display().to_string().replace(char::is_control, "?")
+}

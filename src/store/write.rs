@@ -1,0 +1,81 @@
+//! Writing: from a [`Progress`] to the text of `progress.toml`.
+
+use std::fmt;
+
+use super::best::{Best, Reached};
+use super::progress::{Preferences, Progress, SavedEntry};
+use super::read::VERSION;
+use crate::game::{Rules, Share};
+
+impl fmt::Display for Progress {
+    /// Writes the whole file.
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        writeln!(f, "# The progress of a player of Cellcaster. The game replaces this file.")?;
+        writeln!(f, "version = {VERSION}")?;
+        write_preferences(f, self.preferences)?;
+        if let Some(saved) = &self.saved {
+            write_saved(f, saved)?;
+        }
+        if let Some(reached) = self.descent {
+            writeln!(f, "\n[descent]")?;
+            write_reached(f, reached)?;
+        }
+        for ((level, difficulty), best) in &self.bests {
+            writeln!(f, "\n[best.{}.{}]", quoted(level), difficulty.name())?;
+            write_best(f, best)?;
+        }
+        for (date, daily) in &self.dailies {
+            writeln!(f, "\n[daily.{date}]")?;
+            write_reached(f, daily.reached)?;
+        }
+        Ok(())
+    }
+}
+
+fn write_preferences(f: &mut fmt::Formatter<'_>, preferences: Preferences) -> fmt::Result {
+    let Preferences { crosshair, compass, bell, ghost, difficulty } = preferences;
+    writeln!(f, "\n[preferences]")?;
+    writeln!(f, "crosshair = {crosshair}\ncompass = {compass}\nbell = {bell}\nghost = {ghost}")?;
+    writeln!(f, "difficulty = {}", quoted(difficulty.name()))
+}
+
+fn write_saved(f: &mut fmt::Formatter<'_>, saved: &SavedEntry) -> fmt::Result {
+    let SavedEntry { level, rules: Rules { difficulty, seed }, script } = saved;
+    writeln!(f, "\n[saved]\nlevel = {}", quoted(level))?;
+    writeln!(f, "difficulty = {}", quoted(difficulty.name()))?;
+    writeln!(f, "seed = \"{seed}\"\nscript = {}", quoted(script))
+}
+
+fn write_best(f: &mut fmt::Formatter<'_>, best: &Best) -> fmt::Result {
+    let Best { tally, rank } = best;
+    writeln!(f, "steps = {}", tally.steps)?;
+    write_share(f, "treasure", tally.treasure)?;
+    write_share(f, "secrets", tally.secrets)?;
+    writeln!(f, "alarms = {}\ndeaths = {}", tally.alarms, tally.deaths)?;
+    writeln!(f, "stunned = {}\nrank = {}", tally.stunned, quoted(rank.name()))
+}
+
+fn write_share(f: &mut fmt::Formatter<'_>, name: &str, share: Share) -> fmt::Result {
+    writeln!(f, "{name} = [{}, {}]", share.found, share.total)
+}
+
+fn write_reached(f: &mut fmt::Formatter<'_>, reached: Reached) -> fmt::Result {
+    let Reached { floors, treasure, steps } = reached;
+    writeln!(f, "floors = {floors}\ntreasure = {treasure}\nsteps = {steps}")
+}
+
+/// `text` as a TOML string.
+fn quoted(text: &str) -> String {
+    let mut string = String::from("\"");
+    for character in text.chars() {
+        match character {
+            '"' | '\\' => string.extend(['\\', character]),
+            character if character.is_control() => {
+                string.push_str(&format!("\\u{:04x}", u32::from(character)));
+            }
+            character => string.push(character),
+        }
+    }
+    string.push('"');
+    string
+}

@@ -1,0 +1,151 @@
+//! The picture of a model in one view.
+
+use std::ops::Range;
+
+use glam::{DVec2, DVec3};
+
+use super::solid::{Hit, Paint, Seen, Solid};
+use super::view::View;
+use crate::color::Rgb;
+use crate::world::Texture;
+use crate::world::sprite::builtin::{INK, painted};
+
+/// The size of a picture, in texels. The body's axis is in the middle, and the floor is one texel
+/// above the lower edge, which leaves room for the outline.
+#[derive(Clone, Copy)]
+pub(in super::super) struct Size {
+    pub(in super::super) width: u32,
+    pub(in super::super) height: u32,
+}
+
+/// Makes pictures, and reuses its memory.
+pub(super) struct Studio {
+    size: Size,
+    /// Row by row from the top, with an empty margin of one texel on all sides.
+    texels: Vec<Texel>,
+}
+
+/// What a texel shows.
+#[derive(Clone, Copy)]
+struct Texel {
+    /// The coordinate towards the viewer; negative infinity where nothing is.
+    depth: f64,
+    color: Rgb,
+    glows: bool,
+}
+
+const NOTHING: Texel = Texel { depth: f64::NEG_INFINITY, color: INK, glows: false };
+
+/// What is this much nearer than its neighbour has an outline within the figure, in texels.
+const EDGE: f64 = 2.2;
+
+impl Studio {
+    pub(super) fn new(size: Size) -> Self {
+        Self { size, texels: vec![NOTHING; size.stride() * (size.height as usize + 2)] }
+    }
+
+    /// The picture of `solids` in `view`.
+    pub(super) fn picture(&mut self, solids: &[Solid], view: View) -> Texture {
+        self.texels.fill(NOTHING);
+        // From the nearest on, so that most of what is hidden is refused by its depth.
+        let mut seen: Vec<_> = solids.iter().map(|solid| (solid.seen(view), solid.paint)).collect();
+        seen.sort_by(|(one, _), (other, _)| other.nearest.total_cmp(&one.nearest));
+        for (seen, paint) in &seen {
+            self.draw(seen, *paint);
+        }
+        let Size { width, height } = self.size;
+        painted(width, height, |x, y| self.outlined(x as usize, y as usize))
+    }
+
+    fn draw(&mut self, seen: &Seen, paint: Paint) {
+        let columns = self.size.columns(seen);
+        for row in self.size.rows(seen) {
+            let start = self.size.place(0, row as usize);
+            for column in columns.clone() {
+                let texel = &mut self.texels[start + column as usize];
+                if texel.depth >= seen.nearest {
+                    continue;
+                }
+                let Some(hit) = seen.hit(self.size.point(column, row)) else { continue };
+                if hit.depth > texel.depth {
+                    let color = shaded(&hit, paint);
+                    *texel = Texel { depth: hit.depth, color, glows: paint.glows };
+                }
+            }
+        }
+    }
+
+    /// The colour at `(x, y)` with outlines: around the figure, and where a part is well behind its
+    /// neighbour.
+    fn outlined(&self, x: usize, y: usize) -> Option<Rgb> {
+        let (place, stride) = (self.size.place(x, y), self.size.stride());
+        let own = self.texels[place];
+        let near = [place - 1, place + 1, place - stride, place + stride];
+        let nearest = near.map(|place| self.texels[place].depth);
+        let nearest = nearest.into_iter().fold(f64::NEG_INFINITY, f64::max);
+        match own.depth {
+            f64::NEG_INFINITY => (nearest > own.depth).then_some(INK),
+            depth if nearest > depth + EDGE && !own.glows => Some(toned(own.color, [70; 3])),
+            _ => Some(own.color),
+        }
+    }
+}
+
+impl Size {
+    /// The number of texels in a row with its margins.
+    fn stride(self) -> usize {
+        self.width as usize + 2
+    }
+
+    /// The index of a texel, below the margin and to the right of it.
+    fn place(self, column: usize, row: usize) -> usize {
+        (row + 1) * self.stride() + column + 1
+    }
+
+    /// The point of the picture plane in the middle of a texel.
+    fn point(self, column: u32, row: u32) -> DVec2 {
+        let across = f64::from(column) + 0.5 - f64::from(self.width) / 2.0;
+        DVec2::new(across, f64::from(self.height) - 1.5 - f64::from(row))
+    }
+
+    /// The columns whose middles a solid may cover.
+    pub(super) fn columns(self, seen: &Seen) -> Range<u32> {
+        let middle = f64::from(self.width) / 2.0;
+        between(seen.low.x + middle, seen.high.x + middle, self.width)
+    }
+
+    /// The rows above the floor whose middles a solid may cover.
+    pub(super) fn rows(self, seen: &Seen) -> Range<u32> {
+        let floor = f64::from(self.height) - 1.0;
+        between(floor - seen.high.y, floor - seen.low.y, self.height - 1)
+    }
+}
+
+/// The texels, of `count`, whose middles are between two places.
+fn between(low: f64, high: f64, count: u32) -> Range<u32> {
+    let first = (low - 0.5).ceil().max(0.0) as u32;
+    first..((high + 0.5).floor().max(0.0) as u32).clamp(first, count.max(first))
+}
+
+/// The colour of a surface in the light from the upper left.
+fn shaded(hit: &Hit, paint: Paint) -> Rgb {
+    const LIGHT: DVec3 = DVec3::new(-0.56, 0.66, 0.5);
+    if paint.glows {
+        return paint.color;
+    }
+    // Shares of each channel in 128ths: what is in the shade is bluer.
+    let shares = match hit.normal.dot(LIGHT) {
+        0.82.. => [148, 146, 140],
+        0.40.. => [124, 124, 124],
+        0.05.. => [94, 94, 102],
+        _ => [66, 66, 76],
+    };
+    toned(paint.color, shares)
+}
+
+/// `color` with each channel multiplied by a number of 128ths.
+fn toned(color: Rgb, shares: [u32; 3]) -> Rgb {
+    let channel = |channel: u8, share: u32| (u32::from(channel) * share / 128).min(255) as u8;
+    let [red, green, blue] = color.channels();
+    Rgb::new(channel(red, shares[0]), channel(green, shares[1]), channel(blue, shares[2]))
+}

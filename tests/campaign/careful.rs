@@ -1,0 +1,223 @@
+//! A search for a script that wins: best-first over what a player can do next, on copies of the game.
+//!
+//! A state's estimate is its steps, what it has cost in health and alarms, and the walking that is
+//! left. A move is played only when its estimate is the lowest, so that a level without resistance
+//! takes as many moves as its way has stretches. Search by random play was refused: it finds ways
+//! out of small rooms only.
+
+use std::cmp::Reverse;
+use std::collections::{BTreeSet, BinaryHeap};
+use std::rc::Rc;
+
+use cellcaster::game::{Game, Intent, Mood, Outcome};
+use cellcaster::world::Cell;
+
+use crate::pilot::{Pace, Pilot};
+use crate::route::{Errand, Verb};
+use crate::ways::Ways;
+
+/// The number of moves that are played before the search gives up.
+const MOST_MOVES: usize = 40_000;
+/// The steps that a point of health, an alarm, and a stretch under a guard's attention are worth.
+const POINT: u64 = 900;
+const ALARM: u64 = 1200;
+const NOTICED: u64 = 30;
+const CHASED: u64 = 90;
+/// The steps that an errand is estimated to take before its way is known.
+const ERRAND: u64 = 600;
+/// The steps of walking for a cost of ten, one cell.
+const CELL: u64 = 20;
+
+/// A move of the player.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord)]
+enum Move {
+    Walk,
+    Shun,
+    Run,
+    Duck,
+    Wait,
+    WaitLong,
+    Strike,
+}
+
+impl Move {
+    const ALL: [Self; 7] =
+        [Self::Walk, Self::Shun, Self::Run, Self::Duck, Self::Wait, Self::WaitLong, Self::Strike];
+
+    /// What the move adds to the estimate before it is played.
+    fn surcharge(self) -> u64 {
+        match self {
+            Self::Walk => 0,
+            Self::Shun => 8,
+            Self::Run => 16,
+            Self::Duck => 30,
+            Self::Wait => 45,
+            Self::WaitLong => 160,
+            Self::Strike => 40,
+        }
+    }
+}
+
+/// A state of the search.
+struct State {
+    pilot: Pilot,
+    /// The number of errands done.
+    done: usize,
+    toll: u64,
+}
+
+/// The winning game on the way through `errands` from the start of `game`, if one is found, and the
+/// number of moves that were played.
+pub(crate) fn search(game: Game, errands: &[Errand]) -> (Option<Pilot>, usize) {
+    let mut search =
+        Search { errands, waiting: BinaryHeap::new(), states: Vec::new(), seen: BTreeSet::new() };
+    search.add(State { pilot: Pilot::new(game), done: 0, toll: 0 });
+    for moves in 0..MOST_MOVES {
+        let Some((Reverse(_), Reverse(way), index)) = search.waiting.pop() else {
+            return (None, moves);
+        };
+        let state = Rc::clone(&search.states[index]);
+        let Some(next) = search.after(&state, way) else { continue };
+        if next.pilot.game.outcome() == Outcome::Won {
+            return (Some(next.pilot), moves);
+        }
+        search.add(next);
+    }
+    (None, MOST_MOVES)
+}
+
+struct Search<'a> {
+    errands: &'a [Errand],
+    waiting: BinaryHeap<(Reverse<u64>, Reverse<Move>, usize)>,
+    states: Vec<Rc<State>>,
+    seen: BTreeSet<(usize, Cell, u64, u32)>,
+}
+
+impl Search<'_> {
+    /// Adds the moves from a state, unless a similar one is known.
+    fn add(&mut self, state: State) {
+        let steps = state.pilot.steps();
+        let health = u32::from(state.pilot.game.health().points);
+        if !self.seen.insert((state.done, state.pilot.cell(), steps / 40, health)) {
+            return;
+        }
+        let estimate = steps + state.toll + self.left(&state);
+        let index = self.states.len();
+        self.states.push(Rc::new(state));
+        for way in Move::ALL {
+            self.waiting.push((Reverse(estimate + way.surcharge()), Reverse(way), index));
+        }
+    }
+
+    /// The steps that are estimated to be left.
+    fn left(&self, state: &State) -> u64 {
+        let Some(ways) = self.ways(state, |_| 0) else { return 0 };
+        let cost = u64::from(ways.cost(state.pilot.cell())).min(2000);
+        (self.errands.len() - state.done) as u64 * ERRAND + cost * CELL / 10
+    }
+
+    /// The ways to the next errand.
+    fn ways(&self, state: &State, dread: impl Fn(Cell) -> u32) -> Option<Ways> {
+        let errand = self.errands.get(state.done)?;
+        Some(match errand.verb {
+            Verb::Go => Ways::new(&state.pilot.game, errand.cell, dread),
+            Verb::Open => Ways::beside(&state.pilot.game, errand.cell, dread),
+            Verb::Hop | Verb::Straight | Verb::Throw => Ways::new(&state.pilot.game, state.pilot.cell(), dread),
+        })
+    }
+
+    /// The state after a move; `None` if it makes no sense there or kills.
+    fn after(&self, state: &State, way: Move) -> Option<State> {
+        let mut pilot = state.pilot.clone();
+        let mut done = state.done;
+        match way {
+            Move::Wait => pilot.wait(40),
+            Move::WaitLong => pilot.wait(150),
+            Move::Strike => strike(&mut pilot)?,
+            Move::Walk => done += self.errand(state, &mut pilot, Pace::Walk, 40, |_| 0)?,
+            Move::Run => done += self.errand(state, &mut pilot, Pace::Run, 24, |_| 0)?,
+            Move::Duck => done += self.errand(state, &mut pilot, Pace::Duck, 60, |_| 0)?,
+            Move::Shun => {
+                let feared = feared(&pilot.game);
+                if feared.is_empty() {
+                    return None;
+                }
+                let dread = |cell| dread(&feared, cell);
+                done += self.errand(state, &mut pilot, Pace::Walk, 40, dread)?;
+            }
+        }
+        let toll = state.toll + toll(&state.pilot.game, &pilot.game);
+        let is_alive = !matches!(pilot.game.outcome(), Outcome::Dead { .. });
+        is_alive.then_some(State { pilot, done, toll })
+    }
+
+    /// Goes on with the next errand: the number of errands that are done by that, 0 or 1.
+    fn errand(
+        &self,
+        state: &State,
+        pilot: &mut Pilot,
+        pace: Pace,
+        steps: u32,
+        dread: impl Fn(Cell) -> u32,
+    ) -> Option<usize> {
+        let errand = self.errands.get(state.done)?;
+        match errand.verb {
+            Verb::Hop => return pilot.hop(errand.cell, errand.height).then_some(1),
+            Verb::Straight => return pilot.straight(errand.cell).then_some(1),
+            Verb::Throw => {
+                pilot.act_towards(errand.cell, Intent::Throw);
+                return Some(1);
+            }
+            Verb::Go | Verb::Open => {}
+        }
+        let ways = self.ways(state, dread)?;
+        if ways.cost(pilot.cell()) == u32::MAX {
+            return None;
+        }
+        let has_arrived = pilot.go(&ways, pace, steps);
+        if has_arrived && errand.verb == Verb::Open {
+            pilot.open(errand.cell);
+        }
+        Some(usize::from(has_arrived))
+    }
+}
+
+/// The guards who are awake and on their feet: position and direction of look.
+fn feared(game: &Game) -> Vec<(glam::DVec2, glam::DVec2)> {
+    let awake = game.guards().filter(|guard| !guard.is_down && guard.mood != Mood::Asleep);
+    awake.map(|guard| (guard.position, guard.heading.direction())).collect()
+}
+
+/// The additional cost of a cell near guards or before them.
+fn dread(feared: &[(glam::DVec2, glam::DVec2)], cell: Cell) -> u32 {
+    let cost = |&(position, ahead): &(glam::DVec2, glam::DVec2)| {
+        let to = cell.center() - position;
+        let distance = to.length();
+        let is_before = ahead.dot(to) > 0.4 * distance;
+        if distance < 2.0 || is_before && distance < 8.0 { 60 } else { 0 }
+    };
+    feared.iter().map(cost).sum()
+}
+
+/// Strikes the nearest guard within reach, if there is one.
+fn strike(pilot: &mut Pilot) -> Option<()> {
+    let position = pilot.position();
+    let standing = pilot.game.guards().filter(|guard| !guard.is_down);
+    let near = standing.map(|guard| guard.position).find(|at| at.distance(position) < 1.1)?;
+    pilot.face_point(near);
+    pilot.press(Intent::Strike);
+    pilot.wait(6);
+    Some(())
+}
+
+/// What has been paid between two states of a game, in steps.
+fn toll(before: &Game, after: &Game) -> u64 {
+    let lost = before.health().points.saturating_sub(after.health().points);
+    let alarms = after.tally().alarms.saturating_sub(before.tally().alarms);
+    let attention = after.guards().map(|guard| match guard.mood {
+        Mood::Wondering | Mood::Searching => NOTICED,
+        Mood::Chasing | Mood::Attacking => CHASED,
+        _ => 0,
+    });
+    u64::from(lost) * POINT + u64::from(alarms) * ALARM + attention.sum::<u64>()
+}

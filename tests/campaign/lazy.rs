@@ -1,0 +1,65 @@
+//! A player without care: walks the shortest way from errand to errand, whatever happens.
+
+use cellcaster::game::{Game, Outcome, Rules};
+use cellcaster::map::builtin::{self, Level};
+use cellcaster::world::Difficulty;
+
+use crate::levels::{route, world};
+use crate::pilot::{Pace, Pilot};
+use crate::route::{Errand, Verb};
+use crate::ways::Ways;
+
+/// The time after which the player has got stuck, in steps.
+const MOST_STEPS: u64 = 60 * 60 * 6;
+
+/// Plays a level without care.
+pub(crate) fn play(level: &Level, rules: Rules) -> Pilot {
+    let mut pilot = Pilot::new(Game::with_rules(world(level), rules));
+    for errand in route(level).into_iter().filter(|errand| !errand.is_careful) {
+        run(&mut pilot, errand);
+        if pilot.game.outcome() != Outcome::Playing {
+            break;
+        }
+    }
+    pilot
+}
+
+fn run(pilot: &mut Pilot, Errand { verb, cell, height, .. }: Errand) {
+    let is_over =
+        |pilot: &Pilot| pilot.steps() > MOST_STEPS || pilot.game.outcome() != Outcome::Playing;
+    loop {
+        let ways = match verb {
+            Verb::Go => Ways::new(&pilot.game, cell, |_| 0),
+            Verb::Open => Ways::beside(&pilot.game, cell, |_| 0),
+            Verb::Hop => return drop(pilot.hop(cell, height)),
+            Verb::Straight => return drop(pilot.straight(cell)),
+            Verb::Throw => return,
+        };
+        if is_over(pilot) || pilot.go(&ways, Pace::Walk, 30) {
+            break;
+        }
+    }
+    if verb == Verb::Open && !is_over(pilot) {
+        pilot.open(cell);
+    }
+}
+
+#[test]
+fn a_player_without_care_loses_every_level() {
+    let rules = Rules { difficulty: Difficulty::Normal, seed: 0 };
+    let survived = builtin::LEVELS.iter().filter_map(|level| {
+        let pilot = play(level, rules);
+        let outcome = pilot.game.outcome();
+        let is_dead = matches!(outcome, Outcome::Dead { .. });
+        (!is_dead).then(|| {
+            let (cell, health) = (pilot.cell(), pilot.game.health());
+            format!(
+                "{}: {outcome:?} after {} steps at {cell:?}, {health:?}",
+                level.name,
+                pilot.steps()
+            )
+        })
+    });
+    let survived: Vec<String> = survived.collect();
+    assert!(survived.is_empty(), "{survived:#?}");
+}

@@ -1,0 +1,13 @@
+//! The campaign: every level is won by a script on every difficulty, and lost by a player who takes
+//! the shortest way without care.
+
+mod careful;
+mod lazy;
+mod levels;
+mod route;
+mod scripts;
+
+#[path = "../support/pilot.rs"]
+mod pilot;
+#[path = "../support/ways.rs"]
+mod ways;

@@ -1,0 +1,90 @@
+//! The scripts that win: their outcome, their time, their rank, and the exact state at their end.
+//!
+//! `CELLCASTER_UPDATE_SCRIPTS=1 cargo test --release --test campaign scripts` searches for new ones,
+//! and `CELLCASTER_UPDATE_SCRIPTS=prison,clock` for those of some levels only.
+
+use std::env;
+use std::fs;
+use std::path::PathBuf;
+use std::sync::atomic::{AtomicUsize, Ordering};
+use std::thread;
+
+use cellcaster::game::{Game, Outcome, Rules, Script};
+use cellcaster::map::builtin::{self, Level};
+use cellcaster::world::Difficulty;
+
+use crate::careful;
+use crate::levels::{self, route};
+
+/// The variable that asks for new scripts.
+const UPDATE: &str = "CELLCASTER_UPDATE_SCRIPTS";
+
+fn path(level: &Level, difficulty: Difficulty) -> PathBuf {
+    let name = format!("maps/scripts/{}.{}.script", level.name, difficulty.name());
+    PathBuf::from(env!("CARGO_MANIFEST_DIR")).join(name)
+}
+
+fn runs() -> Vec<(&'static Level, Difficulty)> {
+    let of_level = |level| Difficulty::ALL.map(|difficulty| (level, difficulty));
+    builtin::LEVELS.iter().flat_map(of_level).collect()
+}
+
+/// The game after the script of a level.
+fn replayed(level: &Level, difficulty: Difficulty) -> Game {
+    let path = path(level, difficulty);
+    let text = fs::read_to_string(&path).unwrap_or_else(|error| panic!("{path:?}: {error}"));
+    let script = Script::parse(&text, level.name).unwrap_or_else(|faults| panic!("{faults}"));
+    let mut game = Game::with_rules(levels::world(level), Rules { difficulty, seed: 0 });
+    script.iter().for_each(|(_, intents)| game.step(intents));
+    game
+}
+
+/// Searches for a script that wins, and writes it.
+fn update(level: &Level, difficulty: Difficulty) -> Result<String, String> {
+    let name = format!("{}.{}", level.name, difficulty.name());
+    let game = Game::with_rules(levels::world(level), Rules { difficulty, seed: 0 });
+    let (found, moves) = careful::search(game, &route(level));
+    let pilot = found.ok_or_else(|| format!("{name}: nothing found in {moves} moves"))?;
+    let header = format!("level {}\ndifficulty {}\nseed 0\n", level.name, difficulty.name());
+    fs::write(path(level, difficulty), header + &pilot.script()).map_err(|error| format!("{name}: {error}"))?;
+    Ok(format!("{name}: {} steps, {moves} moves", pilot.steps()))
+}
+
+/// Searches for the scripts that [`UPDATE`] asks for, in two threads.
+fn update_all() {
+    let Ok(wanted) = env::var(UPDATE) else { return };
+    let is_wanted = |name: &str| wanted == "1" || wanted.split(',').any(|word| word == name);
+    let runs: Vec<_> = runs().into_iter().filter(|(level, _)| is_wanted(level.name)).collect();
+    let next = AtomicUsize::new(0);
+    let work = || {
+        while let Some(&(level, difficulty)) = runs.get(next.fetch_add(1, Ordering::Relaxed)) {
+            match update(level, difficulty) {
+                Ok(line) | Err(line) => eprintln!("{line}"),
+            }
+        }
+    };
+    thread::scope(|scope| (0..2).for_each(|_| drop(scope.spawn(work))));
+}
+
+#[test]
+fn scripts_win_every_level_on_every_difficulty() {
+    update_all();
+    let lines = runs().into_iter().map(|(level, difficulty)| {
+        let game = replayed(level, difficulty);
+        let name = format!("{} {}", level.name, difficulty.name());
+        assert_eq!(game.outcome(), Outcome::Won, "{name}");
+        let tally = game.tally();
+        let rank = tally.rank(game.world().par());
+        let (treasure, health) = (game.treasure(), game.health().points);
+        format!(
+            "{name}: {:.1} s, {}, health {health}, alarms {}, treasure {}/{}, state {:016x}\n",
+            game.elapsed(),
+            rank.name(),
+            tally.alarms,
+            treasure.found,
+            treasure.total,
+            game.checksum()
+        )
+    });
+    insta::assert_snapshot!("scripts", lines.collect::<String>());
+}

@@ -1,0 +1,236 @@
+//! A player that finds its own way: it walks, ducks, jumps, opens and throws towards given cells, and
+//! records its intents as a script.
+
+use cellcaster::game::{Game, Intent, Intents, Look};
+use cellcaster::world::{Cell, FieldOfView};
+use glam::DVec2;
+
+use crate::ways::Ways;
+
+/// The largest turn in a step, in degrees.
+const TURN: f64 = 6.0;
+/// The distance from the middle of a cell at which the player is there, in cells.
+const NEAR: f64 = 0.25;
+/// How far a cell's middle may be to be opened or pulled, in cells.
+const REACH: f64 = 0.72;
+
+/// How the player moves on the ground.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub(crate) enum Pace {
+    /// Ducking.
+    Duck,
+    /// Walking.
+    Walk,
+    /// Running.
+    Run,
+}
+
+/// A game, and the intents that led to its state.
+#[derive(Clone)]
+pub(crate) struct Pilot {
+    /// The game.
+    pub(crate) game: Game,
+    stretches: Vec<(u32, Intents)>,
+}
+
+impl Pilot {
+    /// A pilot at the start of a game.
+    pub(crate) fn new(game: Game) -> Self {
+        Self { game, stretches: Vec::new() }
+    }
+
+    /// The steps so far.
+    pub(crate) fn steps(&self) -> u64 {
+        self.stretches.iter().map(|&(steps, _)| u64::from(steps)).sum()
+    }
+
+    /// The intents so far, as lines of a script.
+    pub(crate) fn script(&self) -> String {
+        let mut text = String::new();
+        for &(steps, intents) in &self.stretches {
+            let stretch = cellcaster::game::Stretch { steps, intents };
+            text.push_str(&format!("{stretch}\n"));
+        }
+        text
+    }
+
+    /// The player's position.
+    pub(crate) fn position(&self) -> DVec2 {
+        self.game.camera(FieldOfView::default()).position()
+    }
+
+    /// The cell that the player is in.
+    pub(crate) fn cell(&self) -> Cell {
+        let DVec2 { x, y } = self.position();
+        Cell { column: x as u32, row: y as u32 }
+    }
+
+    /// Advances by one step.
+    pub(crate) fn step(&mut self, intents: Intents) {
+        self.game.step(intents);
+        match self.stretches.last_mut() {
+            Some((steps, last)) if *last == intents => *steps += 1,
+            _ => self.stretches.push((1, intents)),
+        }
+    }
+
+    /// Stands for a number of steps.
+    pub(crate) fn wait(&mut self, steps: u32) {
+        (0..steps).for_each(|_| self.step(Intents::new()));
+    }
+
+    /// Goes along `ways` for at most a number of steps; whether the player has arrived.
+    pub(crate) fn go(&mut self, ways: &Ways, pace: Pace, steps: u32) -> bool {
+        for _ in 0..steps {
+            if self.has_arrived(ways) || self.game.is_finished() {
+                return true;
+            }
+            let (target, is_low) = ways.target(&self.game, self.position());
+            let pace = if is_low { Pace::Duck } else { pace };
+            self.approach(target, pace);
+        }
+        self.has_arrived(ways)
+    }
+
+    /// Turns to `cell` and opens what is there: a lever, a flame or a secret wall.
+    pub(crate) fn open(&mut self, cell: Cell) {
+        for _ in 0..90 {
+            let to = cell.center() - self.position();
+            if to.length() <= REACH + 0.5 && self.turn_to(to).is_none() {
+                break;
+            }
+            self.approach(cell.center(), Pace::Walk);
+            if (cell.center() - self.position()).length() <= REACH {
+                self.face(cell);
+                break;
+            }
+        }
+        self.face(cell);
+        self.wait(2);
+        self.press(Intent::Open);
+        self.wait(2);
+    }
+
+    /// Turns to `cell` and does something that works once a press.
+    pub(crate) fn act_towards(&mut self, cell: Cell, intent: Intent) {
+        self.face(cell);
+        self.wait(1);
+        self.press(intent);
+        self.wait(1);
+    }
+
+    /// Jumps to `cell` from where the player stands: tries each time of take-off, and keeps the first
+    /// that ends there. Whether there is one.
+    /// `height` is that of what stands there, if it is not the floor.
+    pub(crate) fn hop(&mut self, cell: Cell, height: Option<f64>) -> bool {
+        let floor = height.unwrap_or_else(|| self.game.world().floor_at(cell));
+        for (pace, run_up) in
+            [Pace::Walk, Pace::Run].into_iter().flat_map(|pace| (0..40).map(move |n| (pace, n)))
+        {
+            let mut tried = self.clone();
+            tried.face(cell);
+            tried.wait(20);
+            if tried.flies_to(cell, floor, pace, run_up) {
+                *self = tried;
+                return true;
+            }
+        }
+        false
+    }
+
+    /// Walks straight to `cell`, over edges; whether the player has arrived and stands.
+    pub(crate) fn straight(&mut self, cell: Cell) -> bool {
+        for _ in 0..300 {
+            let is_there = (cell.center() - self.position()).length() < NEAR;
+            if is_there && !self.game.is_airborne() || self.game.is_finished() {
+                self.wait(12);
+                return true;
+            }
+            if is_there { self.step(Intents::new()) } else { self.approach(cell.center(), Pace::Walk) }
+        }
+        false
+    }
+
+    fn flies_to(&mut self, cell: Cell, floor: f64, pace: Pace, run_up: u32) -> bool {
+        let forward = intents(pace);
+        (0..run_up).for_each(|_| self.step(forward));
+        let mut leap = forward;
+        leap.insert(Intent::Jump);
+        (0..6).for_each(|_| self.step(leap));
+        for _ in 0..60 {
+            let is_over = self.cell() == cell && (cell.center() - self.position()).length() < 0.4;
+            self.step(if is_over { Intents::new() } else { forward });
+            if self.game.feet() < floor - 0.7 {
+                return false;
+            }
+            if is_over && !self.game.is_airborne() {
+                self.wait(25);
+                return self.cell() == cell && (self.game.feet() - floor).abs() < 0.01;
+            }
+        }
+        false
+    }
+
+    /// Wants something for one step.
+    pub(crate) fn press(&mut self, intent: Intent) {
+        self.step([intent].into_iter().collect());
+    }
+
+    /// Turns to a point.
+    pub(crate) fn face_point(&mut self, point: DVec2) {
+        for _ in 0..60 {
+            let Some(look) = self.turn_to(point - self.position()) else { break };
+            self.step(Intents::new().with_look(look));
+        }
+    }
+
+    fn face(&mut self, cell: Cell) {
+        self.face_point(cell.center());
+    }
+
+    fn has_arrived(&self, ways: &Ways) -> bool {
+        let cell = self.cell();
+        ways.cost(cell) == 0 && (cell.center() - self.position()).length() < NEAR
+    }
+
+    fn approach(&mut self, target: DVec2, pace: Pace) {
+        let to = target - self.position();
+        let look = self.turn_to(to);
+        let is_ahead = self.error(to).abs() < 40.0;
+        let walking = if is_ahead { intents(pace) } else { intents(pace).without_feet() };
+        self.step(walking.with_look(look.unwrap_or(Look::NONE)));
+    }
+
+    /// The turn of the next step; `None` if the player looks there.
+    fn turn_to(&self, to: DVec2) -> Option<Look> {
+        let error = self.error(to);
+        let turn = (error.clamp(-TURN, TURN) * f64::from(Look::PER_DEGREE)).round() as i16;
+        (error.abs() > 1.0).then_some(Look { turn, tilt: 0 })
+    }
+
+    /// The angle from the player's heading to a direction, in degrees.
+    fn error(&self, to: DVec2) -> f64 {
+        let ahead = self.game.camera(FieldOfView::default()).direction();
+        ahead.perp_dot(to).atan2(ahead.dot(to)).to_degrees()
+    }
+}
+
+fn intents(pace: Pace) -> Intents {
+    let manner = match pace {
+        Pace::Duck => Some(Intent::Duck),
+        Pace::Walk => None,
+        Pace::Run => Some(Intent::Run),
+    };
+    [Intent::Forward].into_iter().chain(manner).collect()
+}
+
+trait WithoutFeet {
+    fn without_feet(self) -> Self;
+}
+
+impl WithoutFeet for Intents {
+    fn without_feet(mut self) -> Self {
+        self.remove(Intent::Forward);
+        self
+    }
+}
