@@ -1,6 +1,6 @@
 //! Results: of a run, and the best of several.
 
-pub use crate::game::{Rank, Share, Tally};
+use crate::game::{Rank, Tally};
 
 /// A run that reached the exit.
 #[derive(Clone, Debug, PartialEq, Eq)]
