@@ -8,6 +8,7 @@ mod bindings;
 mod clock;
 mod controls;
 mod demo;
+mod descents;
 mod detection;
 mod draw;
 mod ghost;
@@ -49,7 +50,7 @@ use ghost::Ghost;
 use goal::Goal;
 use help::HelpScroll;
 pub use levels::Levels;
-use levels::{LevelNumber, Stage};
+use levels::{Course, LevelNumber, Stage};
 use map_panel::MapPanel;
 use menu::Menu;
 use menus::Choice;
@@ -65,7 +66,7 @@ pub use settings::{Configuration, MapDisplay, Settings};
 use crate::color::palette::ColorDepth;
 use crate::game::{Flash, STEP};
 use crate::render::Filter;
-use crate::store::Store;
+use crate::store::{Reached, Store};
 use crate::tui::{CellAspect, GlyphMode, View};
 use crate::world::{Difficulty, FieldOfView, Heading};
 use clock::Clock;
@@ -107,6 +108,9 @@ struct App {
     stage: Stage,
     game: Played,
     level: LevelNumber,
+    course: Course,
+    /// How far a descent came.
+    reached: Reached,
     difficulty: Difficulty,
     goal: Goal,
     /// The run since the level began.
@@ -165,12 +169,14 @@ impl App {
     /// The first of `levels` at its start.
     fn new(levels: Levels, settings: Settings) -> Self {
         let difficulty = Difficulty::default();
-        let Levels { first, rest, number, changes } = levels;
+        let Levels { first, rest, number, changes, course } = levels;
         let game = first.begin(difficulty).unwrap_or_else(Played::nothing);
         Self {
             later_levels: rest,
             stage: first,
             level: number,
+            course,
+            reached: Reached::default(),
             difficulty,
             goal: Goal::of(&game, settings.minimap),
             map: MapPanel::new(settings.minimap),

@@ -23,6 +23,7 @@ mod recording;
 mod replay;
 mod script;
 mod snapshot;
+mod today;
 mod watch;
 mod wire;
 

@@ -21,6 +21,9 @@ pub(super) struct LevelResult {
 impl App {
     /// Records the level that has just been won, and returns its result.
     pub(super) fn record_result(&mut self) -> Option<LevelResult> {
+        if self.is_descent() {
+            self.record_floor();
+        }
         let game = self.game.grid()?;
         let (tally, par) = (game.tally(), game.world().par());
         let rank = tally.rank(par);
@@ -44,8 +47,7 @@ impl App {
         }
         let saved = SavedGame {
             level: level.to_owned(),
-            difficulty: self.difficulty,
-            seed: game.rules().seed,
+            rules: game.rules(),
             script: self.run_script(game),
         };
         self.store.save(&saved);
@@ -56,7 +58,7 @@ impl App {
         let Some(saved) = self.store.saved() else { return };
         let Some(levels) = builtin_named(&saved.level).and_then(Levels::builtin) else { return };
         let Ok(script) = Script::parse(&saved.script, "the saved game") else { return };
-        self.difficulty = saved.difficulty;
+        self.difficulty = saved.rules.difficulty;
         self.begin(levels);
         for (_, intents) in script.iter() {
             self.game.step(intents);
