@@ -91,6 +91,13 @@ impl Mechanisms {
         self.switches.get(usize::from(switch.0)).is_some_and(|switch| switch.is_turned)
     }
 
+    /// Turns the levers of `switch`, and returns whether they are on now.
+    pub(super) fn turn(&mut self, switch: SwitchId) -> bool {
+        let Some(state) = self.switches.get_mut(usize::from(switch.0)) else { return false };
+        state.is_turned = !state.is_turned;
+        state.is_turned
+    }
+
     /// The secret walls, and those of them that have been found.
     pub(super) fn secrets(&self, world: &World) -> Share {
         let secrets = self.moving.iter().filter(|cell| cell.driver(world) == Driver::Hand);

@@ -24,11 +24,18 @@ impl Level {
     }
 }
 
-/// The built-in levels, in playing order.
+/// The built-in levels, in playing order: a campaign of twelve.
 pub const LEVELS: &[Level] = &[
     Level { name: "cellar", text: include_str!("../../maps/cellar.toml") },
     Level { name: "museum", text: include_str!("../../maps/museum.toml") },
-    Level { name: "citadel", text: include_str!("../../maps/citadel.toml") },
+    Level { name: "kennels", text: include_str!("../../maps/kennels.toml") },
+    Level { name: "chapel", text: include_str!("../../maps/chapel.toml") },
+    Level { name: "archive", text: include_str!("../../maps/archive.toml") },
     Level { name: "cistern", text: include_str!("../../maps/cistern.toml") },
+    Level { name: "barracks", text: include_str!("../../maps/barracks.toml") },
+    Level { name: "prison", text: include_str!("../../maps/prison.toml") },
+    Level { name: "citadel", text: include_str!("../../maps/citadel.toml") },
+    Level { name: "clock", text: include_str!("../../maps/clock.toml") },
+    Level { name: "treasury", text: include_str!("../../maps/treasury.toml") },
     Level { name: "observatory", text: include_str!("../../maps/observatory.toml") },
 ];

@@ -37,7 +37,7 @@ pub(super) fn cramped_guards(
 ) -> Vec<Fault> {
     let cramped = posts.iter().filter_map(|post| {
         let (_, tile) = cells.tile(post.cell.column.into(), post.cell.row.into())?;
-        let height = builtin::named(post.kind.name())?.height.cells();
+        let height = builtin::guard_height(post.kind);
         let room = tile.gaps().next()?.height();
         let name = post.kind.name();
         let message = format!("the {name} has no room to stand here");

@@ -59,7 +59,7 @@ impl ThingList {
         }
         list.things.extend(drawing.cells().filter_map(|(cell, character)| {
             let (kind, sprite) = thing_of.get(character)?;
-            Some(Thing { kind, cell, sprite, frame: None })
+            Some(Thing { kind, cell, sprite, frame: first_frame(kind) })
         }));
         list
     }
@@ -98,10 +98,16 @@ impl ThingList {
         if let Some(&(_, id)) = self.of_items.iter().find(|(known, _)| *known == name) {
             return Some(id);
         }
-        let sprite = builtin::named(name).or_else(|| builtin::named(builtin::KEY));
         let id = SpriteId(self.sprites.len() as u16);
-        self.sprites.push(sprite?);
+        self.sprites.push(builtin::named(name)?);
         self.of_items.push((name, id));
         Some(id)
     }
+}
+
+/// The frame that a thing shows first; `None` if it depends on the time.
+fn first_frame(kind: ThingKind) -> Option<u8> {
+    let shows_its_state =
+        matches!(kind, ThingKind::Checkpoint | ThingKind::Lever(_) | ThingKind::Spikes(_));
+    shows_its_state.then_some(0)
 }

@@ -271,9 +271,10 @@ impl Picture<'_> {
 
 /// The character for two map points, one above the other, without colour. Things are letters.
 fn in_mono((top, bottom): (MapPoint, MapPoint), (x, y): (u32, u32)) -> char {
-    let letter = [top, bottom]
-        .into_iter()
-        .find(|point| matches!(point, MapPoint::Exit | MapPoint::Key | MapPoint::Ornament));
+    let letter = [top, bottom].into_iter().find(|point| {
+        use MapPoint::{Exit, Item, Key, Ornament};
+        matches!(point, Exit | Key | Item | Ornament)
+    });
     letter.map_or_else(
         || half_blocks::lit_glyph(top.is_lit(x, y), bottom.is_lit(x, y + 1)),
         MapPoint::character,

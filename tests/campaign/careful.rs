@@ -122,7 +122,7 @@ impl Search<'_> {
         Some(match errand.verb {
             Verb::Go => Ways::new(&state.pilot.game, errand.cell, dread),
             Verb::Open => Ways::beside(&state.pilot.game, errand.cell, dread),
-            Verb::Hop | Verb::Throw => Ways::new(&state.pilot.game, state.pilot.cell(), dread),
+            Verb::Hop | Verb::Straight | Verb::Throw => Ways::new(&state.pilot.game, state.pilot.cell(), dread),
         })
     }
 
@@ -162,7 +162,8 @@ impl Search<'_> {
     ) -> Option<usize> {
         let errand = self.errands.get(state.done)?;
         match errand.verb {
-            Verb::Hop => return pilot.hop(errand.cell).then_some(1),
+            Verb::Hop => return pilot.hop(errand.cell, errand.height).then_some(1),
+            Verb::Straight => return pilot.straight(errand.cell).then_some(1),
             Verb::Throw => {
                 pilot.act_towards(errand.cell, Intent::Throw);
                 return Some(1);
@@ -215,7 +216,7 @@ fn toll(before: &Game, after: &Game) -> u64 {
     let alarms = after.tally().alarms.saturating_sub(before.tally().alarms);
     let attention = after.guards().map(|guard| match guard.mood {
         Mood::Wondering | Mood::Searching => NOTICED,
-        Mood::Chasing | Mood::Attacking { .. } => CHASED,
+        Mood::Chasing | Mood::Attacking => CHASED,
         _ => 0,
     });
     u64::from(lost) * POINT + u64::from(alarms) * ALARM + attention.sum::<u64>()

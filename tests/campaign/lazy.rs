@@ -4,7 +4,7 @@ use cellcaster::game::{Game, Outcome, Rules};
 use cellcaster::map::builtin::{self, Level};
 use cellcaster::world::Difficulty;
 
-use crate::levels::route;
+use crate::levels::{route, world};
 use crate::pilot::{Pace, Pilot};
 use crate::route::{Errand, Verb};
 use crate::ways::Ways;
@@ -14,7 +14,7 @@ const MOST_STEPS: u64 = 60 * 60 * 6;
 
 /// Plays a level without care.
 pub(crate) fn play(level: &Level, rules: Rules) -> Pilot {
-    let mut pilot = Pilot::new(Game::with_rules(level.world().unwrap(), rules));
+    let mut pilot = Pilot::new(Game::with_rules(world(level), rules));
     for errand in route(level).into_iter().filter(|errand| !errand.is_careful) {
         run(&mut pilot, errand);
         if pilot.game.outcome() != Outcome::Playing {
@@ -24,17 +24,15 @@ pub(crate) fn play(level: &Level, rules: Rules) -> Pilot {
     pilot
 }
 
-fn run(pilot: &mut Pilot, Errand { verb, cell, .. }: Errand) {
+fn run(pilot: &mut Pilot, Errand { verb, cell, height, .. }: Errand) {
     let is_over =
         |pilot: &Pilot| pilot.steps() > MOST_STEPS || pilot.game.outcome() != Outcome::Playing;
     loop {
         let ways = match verb {
             Verb::Go => Ways::new(&pilot.game, cell, |_| 0),
             Verb::Open => Ways::beside(&pilot.game, cell, |_| 0),
-            Verb::Hop => {
-                assert!(pilot.hop(cell) || is_over(pilot), "no jump to {cell:?}");
-                return;
-            }
+            Verb::Hop => return drop(pilot.hop(cell, height)),
+            Verb::Straight => return drop(pilot.straight(cell)),
             Verb::Throw => return,
         };
         if is_over(pilot) || pilot.go(&ways, Pace::Walk, 30) {

@@ -1,22 +1,33 @@
 //! What every level of the campaign has.
 
 use cellcaster::map::builtin::{self, Level};
-use cellcaster::world::{Difficulty, Driver, ThingKind};
+use cellcaster::map;
+use cellcaster::world::{Difficulty, Driver, ThingKind, World};
 
 use crate::route::{self, Errand};
+
+/// The world of a level, from its file: tests need not be compiled again after a change of a map.
+pub(crate) fn world(level: &Level) -> World {
+    map::parse_str(&text(level)).unwrap_or_else(|faults| panic!("{}: {faults}", level.name))
+}
+
+fn text(level: &Level) -> String {
+    let path = format!("{}/maps/{}.toml", env!("CARGO_MANIFEST_DIR"), level.name);
+    std::fs::read_to_string(&path).unwrap_or_else(|error| panic!("{path}: {error}"))
+}
 
 /// The route through a level.
 pub(crate) fn route(level: &Level) -> Vec<Errand> {
     let path = format!("{}/tests/campaign/routes/{}.route", env!("CARGO_MANIFEST_DIR"), level.name);
-    let text = std::fs::read_to_string(&path).unwrap_or_else(|error| panic!("{path}: {error}"));
-    route::parse(&text, level.text)
+    let route = std::fs::read_to_string(&path).unwrap_or_else(|error| panic!("{path}: {error}"));
+    route::parse(&route, &text(level))
 }
 
 #[test]
 fn every_level_has_a_title_a_par_time_secrets_treasure_guards_and_notes() {
     assert!(builtin::LEVELS.len() >= 10);
     for level in builtin::LEVELS {
-        let world = level.world().unwrap();
+        let world = world(level);
         let name = level.name;
         assert!(!world.title().is_empty() && world.par().is_some(), "{name}");
         let secrets = world.moving_tiles().iter().filter(|tile| tile.driver == Driver::Hand);
@@ -39,7 +50,7 @@ fn every_level_has_a_title_a_par_time_secrets_treasure_guards_and_notes() {
 #[test]
 fn titles_differ() {
     let titles: Vec<String> =
-        builtin::LEVELS.iter().map(|level| level.world().unwrap().title().to_owned()).collect();
+        builtin::LEVELS.iter().map(|level| world(level).title().to_owned()).collect();
     for (index, title) in titles.iter().enumerate() {
         assert!(!titles[..index].contains(title), "{title} twice");
     }

@@ -1,17 +1,20 @@
 //! Routes: what a player does in a level, in which order, as text.
 //!
 //! A line has a verb and a place. A place is a character that the map draws once, or a column and a
-//! row. `go 12,5` goes there, `open v` opens or pulls what is there, `hop 20,15` jumps there, and
-//! `throw 9,9` throws a pebble in that direction. A line that begins with `careful` is left out by
-//! a player without care. A `#` begins a comment.
+//! row. `go 12,5` goes there by the shortest way, `straight 12,5` in a straight line and over edges,
+//! `open v` opens or pulls what is there, `hop 20,15` jumps there (`hop 20,15,0.5` onto something of
+//! that height), and `throw 9,9` throws a pebble in that direction. A line that begins with `careful`
+//! is left out by a player without care. A `#` begins a comment.
 
 use cellcaster::world::Cell;
 
 /// One thing to do.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+#[derive(Clone, Copy, Debug, PartialEq)]
 pub(crate) struct Errand {
     pub(crate) verb: Verb,
     pub(crate) cell: Cell,
+    /// The height of what stands there, if it is not the floor.
+    pub(crate) height: Option<f64>,
     /// Whether a player without care leaves it out.
     pub(crate) is_careful: bool,
 }
@@ -21,6 +24,8 @@ pub(crate) struct Errand {
 pub(crate) enum Verb {
     /// Go there.
     Go,
+    /// Go there in a straight line.
+    Straight,
     /// Go beside it, and open or pull what is there.
     Open,
     /// Jump there.
@@ -43,27 +48,37 @@ fn errand(line: &str, map: &str) -> Errand {
     let is_careful = words.next_if_eq(&"careful").is_some();
     let verb = match words.next() {
         Some("go") => Verb::Go,
+        Some("straight") => Verb::Straight,
         Some("open") => Verb::Open,
         Some("hop") => Verb::Hop,
         Some("throw") => Verb::Throw,
         _ => panic!("no verb in {line:?}"),
     };
     let place = words.next().unwrap_or_else(|| panic!("no place in {line:?}"));
-    Errand { verb, cell: cell(place, map), is_careful }
+    let (cell, height) = place_of(place, map);
+    Errand { verb, cell, height, is_careful }
 }
 
-fn cell(place: &str, map: &str) -> Cell {
-    if let Some((column, row)) = place.split_once(',') {
-        return Cell { column: column.parse().unwrap(), row: row.parse().unwrap() };
+fn place_of(place: &str, map: &str) -> (Cell, Option<f64>) {
+    let numbers: Vec<&str> = place.split(',').collect();
+    match numbers[..] {
+        [column, row] => (cell_at(column, row), None),
+        [column, row, height] => (cell_at(column, row), Some(height.parse().unwrap())),
+        _ => (drawn_once(place, map), None),
     }
+}
+
+fn cell_at(column: &str, row: &str) -> Cell {
+    Cell { column: column.parse().unwrap(), row: row.parse().unwrap() }
+}
+
+fn drawn_once(place: &str, map: &str) -> Cell {
     let grid = map.split("'''").nth(1).expect("a map has a grid").trim_start_matches('\n');
     let drawn = grid.lines().zip(0..).flat_map(|(line, row)| {
         line.chars().zip(0..).map(move |(character, column)| (character, Cell { column, row }))
     });
-    let cells: Vec<Cell> = drawn
-        .filter(|(character, _)| place.chars().eq([*character]))
-        .map(|(_, cell)| cell)
-        .collect();
+    let drawn = drawn.filter(|(character, _)| place.chars().eq([*character]));
+    let cells: Vec<Cell> = drawn.map(|(_, cell)| cell).collect();
     let [cell] = cells[..] else { panic!("{place:?} is drawn {} times", cells.len()) };
     cell
 }

@@ -14,7 +14,7 @@ use cellcaster::map::builtin::{self, Level};
 use cellcaster::world::Difficulty;
 
 use crate::careful;
-use crate::levels::route;
+use crate::levels::{self, route};
 
 /// The variable that asks for new scripts.
 const UPDATE: &str = "CELLCASTER_UPDATE_SCRIPTS";
@@ -34,7 +34,7 @@ fn replayed(level: &Level, difficulty: Difficulty) -> Game {
     let path = path(level, difficulty);
     let text = fs::read_to_string(&path).unwrap_or_else(|error| panic!("{path:?}: {error}"));
     let script = Script::parse(&text, level.name).unwrap_or_else(|faults| panic!("{faults}"));
-    let mut game = Game::with_rules(level.world().unwrap(), Rules { difficulty, seed: 0 });
+    let mut game = Game::with_rules(levels::world(level), Rules { difficulty, seed: 0 });
     script.iter().for_each(|(_, intents)| game.step(intents));
     game
 }
@@ -42,11 +42,11 @@ fn replayed(level: &Level, difficulty: Difficulty) -> Game {
 /// Searches for a script that wins, and writes it.
 fn update(level: &Level, difficulty: Difficulty) -> Result<String, String> {
     let name = format!("{}.{}", level.name, difficulty.name());
-    let game = Game::with_rules(level.world().unwrap(), Rules { difficulty, seed: 0 });
+    let game = Game::with_rules(levels::world(level), Rules { difficulty, seed: 0 });
     let (found, moves) = careful::search(game, &route(level));
     let pilot = found.ok_or_else(|| format!("{name}: nothing found in {moves} moves"))?;
-    fs::write(path(level, difficulty), pilot.script())
-        .map_err(|error| format!("{name}: {error}"))?;
+    let header = format!("level {}\ndifficulty {}\nseed 0\n", level.name, difficulty.name());
+    fs::write(path(level, difficulty), header + &pilot.script()).map_err(|error| format!("{name}: {error}"))?;
     Ok(format!("{name}: {} steps, {moves} moves", pilot.steps()))
 }
 

@@ -121,8 +121,9 @@ impl Pilot {
 
     /// Jumps to `cell` from where the player stands: tries each time of take-off, and keeps the first
     /// that ends there. Whether there is one.
-    pub(crate) fn hop(&mut self, cell: Cell) -> bool {
-        let floor = self.game.world().floor_at(cell);
+    /// `height` is that of what stands there, if it is not the floor.
+    pub(crate) fn hop(&mut self, cell: Cell, height: Option<f64>) -> bool {
+        let floor = height.unwrap_or_else(|| self.game.world().floor_at(cell));
         for (pace, run_up) in
             [Pace::Walk, Pace::Run].into_iter().flat_map(|pace| (0..40).map(move |n| (pace, n)))
         {
@@ -133,6 +134,19 @@ impl Pilot {
                 *self = tried;
                 return true;
             }
+        }
+        false
+    }
+
+    /// Walks straight to `cell`, over edges; whether the player has arrived and stands.
+    pub(crate) fn straight(&mut self, cell: Cell) -> bool {
+        for _ in 0..300 {
+            let is_there = (cell.center() - self.position()).length() < NEAR;
+            if is_there && !self.game.is_airborne() || self.game.is_finished() {
+                self.wait(12);
+                return true;
+            }
+            if is_there { self.step(Intents::new()) } else { self.approach(cell.center(), Pace::Walk) }
         }
         false
     }
@@ -151,20 +165,27 @@ impl Pilot {
             }
             if is_over && !self.game.is_airborne() {
                 self.wait(25);
-                return self.cell() == cell && self.game.feet() == floor;
+                return self.cell() == cell && (self.game.feet() - floor).abs() < 0.01;
             }
         }
         false
     }
 
-    fn press(&mut self, intent: Intent) {
+    /// Wants something for one step.
+    pub(crate) fn press(&mut self, intent: Intent) {
         self.step([intent].into_iter().collect());
     }
 
-    fn face(&mut self, cell: Cell) {
-        while let Some(look) = self.turn_to(cell.center() - self.position()) {
+    /// Turns to a point.
+    pub(crate) fn face_point(&mut self, point: DVec2) {
+        for _ in 0..60 {
+            let Some(look) = self.turn_to(point - self.position()) else { break };
             self.step(Intents::new().with_look(look));
         }
+    }
+
+    fn face(&mut self, cell: Cell) {
+        self.face_point(cell.center());
     }
 
     fn has_arrived(&self, ways: &Ways) -> bool {

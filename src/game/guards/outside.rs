@@ -101,69 +101,73 @@ impl Guards {
     }
 
     /// Whether any guard stands in `cell`: plates and floors that crumble feel it.
-    pub(crate) fn weighs_on(&self, world: &World, cell: Cell) -> bool {
-        let floor = world.floor_at(cell);
-        self.list.iter().any(|guard| guard.mover.cell() == cell && guard.mover.feet <= floor)
+    pub(crate) fn weighs_on(&self, cell: Cell) -> bool {
+        self.list.iter().any(|guard| guard.mover.cell() == cell && guard.mover.is_on_floor())
     }
 
     /// The nearest guard who is not down, whose middle is at most `reach` from `position` and at
-    /// most the angle with the cosine `least_cosine` off `direction`, a unit vector, and who is in
-    /// sight of an eye there.
+    /// most the angle with the cosine `least_cosine` off `direction`, a unit vector. Nothing is
+    /// between the two at the height of the middle of the guard.
     pub(crate) fn guard_near(
         &self,
         world: &World,
-        eye: Point,
+        position: DVec2,
         direction: DVec2,
         reach: f64,
         least_cosine: f64,
     ) -> Option<usize> {
-        let near = self.ahead(eye, direction, least_cosine);
+        let near = self.ahead(position, direction, least_cosine);
         let near = near.filter(|&(distance, guard, _)| {
-            distance <= reach && is_in_sight(world, &[], eye, guard.middle())
+            let to = guard.middle();
+            distance <= reach && is_in_sight(world, &[], Point { position, ..to }, to)
         });
         Some(near.min_by(|one, other| one.0.total_cmp(&other.0))?.2)
     }
 
     /// The middle of the body of the nearest guard in sight of an eye, at most the angle with the
-    /// cosine `least_cosine` off `direction`, a unit vector.
+    /// cosine `least_cosine` off `direction`, a unit vector: the position and the height.
     pub(crate) fn aim(
         &self,
         world: &World,
         clouds: &[Cloud],
-        eye: Point,
+        eye: (DVec2, f64),
         direction: DVec2,
         least_cosine: f64,
-    ) -> Option<Point> {
-        let ahead = self.ahead(eye, direction, least_cosine);
+    ) -> Option<(DVec2, f64)> {
+        let eye = Point { position: eye.0, height: eye.1 };
+        let ahead = self.ahead(eye.position, direction, least_cosine);
         let seen = ahead.filter(|(_, guard, _)| is_in_sight(world, clouds, eye, guard.middle()));
-        Some(seen.min_by(|one, other| one.0.total_cmp(&other.0))?.1.middle())
+        let Point { position, height } =
+            seen.min_by(|one, other| one.0.total_cmp(&other.0))?.1.middle();
+        Some((position, height))
     }
 
     /// The guards who are not down in a cone, with their distances and indices.
     fn ahead(
         &self,
-        eye: Point,
+        position: DVec2,
         direction: DVec2,
         least_cosine: f64,
     ) -> impl Iterator<Item = (f64, &Guard, usize)> {
         let up = self.list.iter().zip(0..).filter(|(guard, _)| !guard.state.is_down());
         up.filter_map(move |(guard, index)| {
-            let way = guard.mover.position() - eye.position;
+            let way = guard.mover.position() - position;
             let distance = way.length();
             let is_ahead = direction.dot(way) >= least_cosine * distance;
             is_ahead.then_some((distance, guard, index))
         })
     }
 
-    /// The guard whom a projectile hits that moves from `from` to `to`, the nearest to `from`.
-    pub(crate) fn hit_between(&self, from: Point, to: Point) -> Option<usize> {
-        let way = to.position - from.position;
+    /// The guard whom a projectile hits that moves from `from` to `to`, the nearest to `from`; both
+    /// have a position and a height.
+    pub(crate) fn hit_between(&self, from: (DVec2, f64), to: (DVec2, f64)) -> Option<usize> {
+        let way = to.0 - from.0;
         let length_squared = way.length_squared();
         let hits = self.list.iter().zip(0..).filter_map(|(guard, index)| {
-            let offset = guard.mover.position() - from.position;
+            let offset = guard.mover.position() - from.0;
             let along = if length_squared > 0.0 { offset.dot(way) / length_squared } else { 0.0 };
             let along = along.clamp(0.0, 1.0);
-            let height = from.height + (to.height - from.height) * along;
+            let height = from.1 + (to.1 - from.1) * along;
             let is_hit = (way * along).distance_squared(offset) <= HIT * HIT
                 && (guard.mover.feet..=guard.head()).contains(&height)
                 && !guard.state.is_down();
