@@ -11,6 +11,7 @@ mod demo;
 mod descents;
 mod detection;
 mod draw;
+mod draw_options;
 mod ghost;
 mod goal;
 mod help;
@@ -46,6 +47,7 @@ use std::time::Duration;
 
 pub use bindings::Bindings;
 use demo::Demo;
+use draw_options::DrawOptions;
 use ghost::Ghost;
 use goal::Goal;
 use help::HelpScroll;
@@ -64,11 +66,10 @@ use screen::{Screen, Shelved};
 pub use settings::{Configuration, MapDisplay, Settings};
 
 use crate::color::palette::ColorDepth;
-use crate::game::{Flash, STEP};
-use crate::render::Filter;
+use crate::game::STEP;
 use crate::store::{Reached, Store};
-use crate::tui::{CellAspect, GlyphMode, View};
-use crate::world::{Difficulty, FieldOfView, Heading};
+use crate::tui::{CellAspect, View};
+use crate::world::{Difficulty, FieldOfView};
 use clock::Clock;
 use controls::Controls;
 use detection::Detection;
@@ -86,20 +87,6 @@ use watch::Watch;
 struct Shown {
     viewpoint: Viewpoint,
     revision: u64,
-}
-
-/// How a picture is drawn.
-#[derive(Clone, Copy, Debug)]
-struct DrawOptions {
-    glyphs: GlyphMode,
-    depth: ColorDepth,
-    cell_aspect: CellAspect,
-    filter: Filter,
-    field_of_view: FieldOfView,
-    /// The flash at the edge, and the direction of view.
-    flash: Option<(Flash, Heading)>,
-    /// Whether a dot marks the middle.
-    marks_middle: bool,
 }
 
 struct App {

@@ -71,9 +71,8 @@ impl Guard {
             return Progress::There;
         }
         let cell = self.mover.cell();
-        let is_passed = |point: DVec2| {
-            point != place && point.distance_squared(position) < PASSED * PASSED
-        };
+        let is_passed =
+            |point: DVec2| point != place && point.distance_squared(position) < PASSED * PASSED;
         if self.route.point.is_some_and(is_passed) {
             self.route.fresh = 0;
         }
