@@ -209,7 +209,10 @@ impl Game {
             self.steps = self.steps.saturating_add(steps);
             self.doors.wait(steps);
             self.player.wait(steps);
-            self.player.hearing.wait(steps);
+            if self.is_mission {
+                self.player.hearing.wait(steps);
+                self.guards.wait(steps);
+            }
             if self.quiet_steps_in_water().is_some() {
                 self.player.in_water += steps as u32;
             }
@@ -367,6 +370,10 @@ impl Game {
             self.doors.shift(&mut self.world, shift);
             self.missiles.shift(shift);
             self.smoke.shift(shift);
+            if self.is_mission {
+                self.guards.shift(&self.world, shift);
+                self.player.hearing.forget();
+            }
             self.show();
         }
     }

@@ -1,4 +1,5 @@
-//! What a game shows of itself in its world: missiles and smoke as figures, and lamps that move.
+//! What a game shows of itself in its world: guards, missiles and smoke as figures, and lamps that
+//! move.
 
 use super::Game;
 use super::guards::Target;
@@ -110,18 +111,20 @@ impl Game {
     }
 
     fn show_figures(&mut self) {
-        let missiles = self.missiles.iter().filter_map(|missile| self.sprites.missile(missile));
-        let puffs = self.smoke.puffs().filter_map(|puff| self.sprites.puff(puff));
-        let figures = missiles.chain(puffs);
-        if !self.world.figures().iter().copied().eq(figures.clone()) {
-            self.world.set_figures(figures);
-            self.revision += 1;
+        let Self { guards, missiles, smoke, sprites, .. } = self;
+        let is_still = !guards.has_changed() && missiles.is_empty() && smoke.is_empty();
+        if is_still && self.world.figures().len() == guards.figures().count() {
+            return;
         }
+        let missiles = missiles.iter().filter_map(|missile| sprites.missile(missile));
+        let puffs = smoke.puffs().filter_map(|puff| sprites.puff(puff));
+        self.world.set_figures(guards.figures().chain(missiles).chain(puffs));
+        self.revision += 1;
     }
 
     fn show_lamps(&mut self) {
         let lamp = self.player.has_light.then(|| (self.player.motion.cell(), lamp()));
-        let lamps: Vec<(Cell, Lamp)> = lamp.into_iter().collect();
+        let lamps: Vec<(Cell, Lamp)> = lamp.into_iter().chain(self.guards.lamps()).collect();
         self.world.set_moving_lamps(&lamps);
     }
 }

@@ -27,6 +27,11 @@ impl Guards {
     /// The number of steps in which no guard does anything, if nothing is perceived: 0 if anybody
     /// is awake, `None` if all sleep.
     pub(crate) fn quiet_steps(&self) -> Option<u64> {
+        // Only a step fills what guards remember of each other and of the players.
+        let has_begun = self.steps > 0 || self.list.is_empty();
+        if !has_begun || self.has_changed || !self.acts.is_empty() || !self.spoken.is_empty() {
+            return Some(0);
+        }
         let quiet = self.list.iter().filter_map(|guard| match guard.state {
             State::Asleep => None,
             State::Down { left } => Some(u64::from(left) - 1),
@@ -40,7 +45,10 @@ impl Guards {
         if self.list.is_empty() {
             return;
         }
+        let before = self.steps;
         self.steps += steps;
+        self.ways.wait(steps);
+        self.trails.iter_mut().for_each(|trail| trail.wait(before, self.steps));
         for guard in &mut self.list {
             if let State::Down { left } = &mut guard.state {
                 *left = left.saturating_sub(u16::try_from(steps).unwrap_or(u16::MAX)).max(1);
