@@ -8,6 +8,7 @@ use std::time::Duration;
 use super::arguments::{FidelityChoice, Play, STANDARD_INPUT};
 use super::data_folder::data_folder;
 use super::recording::RecordingFile;
+use super::today::today;
 use super::{Error, config, level, own_maps};
 use crate::app;
 use crate::app::{Farewell, Levels, Offers, Opening, Settings};
@@ -88,7 +89,12 @@ fn opening(options: &Play) -> Result<Opening, Error> {
     }
     let own = data_folder().map(|folder| folder.join("maps"));
     let folders: Vec<PathBuf> = [PathBuf::from(".")].into_iter().chain(own).collect();
-    Ok(Opening::Title(Offers { maps: Some(Box::new(move || own_maps::find(&folders))) }))
+    let (today, seed) = today();
+    Ok(Opening::Title(Offers {
+        maps: Some(Box::new(move || own_maps::find(&folders))),
+        today: Some(today),
+        seed,
+    }))
 }
 
 /// The levels to play. If the map is on standard input, keys then come from the terminal.
