@@ -8,6 +8,7 @@ mod bindings;
 mod clock;
 mod controls;
 mod demo;
+mod descents;
 mod detection;
 mod draw;
 mod ghost;
@@ -49,7 +50,7 @@ use ghost::Ghost;
 use goal::Goal;
 use help::HelpScroll;
 pub use levels::Levels;
-use levels::{LevelNumber, Stage};
+use levels::{Course, LevelNumber, Stage};
 use map_panel::MapPanel;
 use menu::Menu;
 use menus::Choice;
@@ -65,7 +66,7 @@ pub use settings::{Configuration, MapDisplay, Settings};
 use crate::color::palette::ColorDepth;
 use crate::game::{Flash, STEP};
 use crate::render::Filter;
-use crate::store::Store;
+use crate::store::{Reached, Store};
 use crate::tui::{CellAspect, GlyphMode, View};
 use crate::world::{Difficulty, FieldOfView, Heading};
 use clock::Clock;
@@ -107,6 +108,9 @@ struct App {
     stage: Stage,
     game: Played,
     level: LevelNumber,
+    course: Course,
+    /// How far a descent came.
+    reached: Reached,
     difficulty: Difficulty,
     goal: Goal,
     /// The run since the level began.
@@ -165,12 +169,14 @@ impl App {
     /// The first of `levels` at its start.
     fn new(levels: Levels, settings: Settings) -> Self {
         let difficulty = Difficulty::default();
-        let Levels { first, rest, number, changes } = levels;
+        let Levels { first, rest, number, changes, course } = levels;
         let game = first.begin(difficulty).unwrap_or_else(Played::nothing);
         Self {
             later_levels: rest,
             stage: first,
             level: number,
+            course,
+            reached: Reached::default(),
             difficulty,
             goal: Goal::of(&game, settings.minimap),
             map: MapPanel::new(settings.minimap),
@@ -226,13 +232,29 @@ impl App {
                 app
             }
             Opening::Title(offers) => {
-                let mut app = Self::new(Levels::nothing(), settings);
-                app.store = store;
-                app.offers = Some(offers);
+                let mut app = Self::offering(offers, settings, store);
                 app.show_title();
                 app
             }
+            Opening::Daily(offers) => {
+                let mut app = Self::offering(offers, settings, store);
+                app.begin_daily();
+                app
+            }
+            Opening::Endless(offers) => {
+                let mut app = Self::offering(offers, settings, store);
+                app.begin_endless();
+                app
+            }
         }
+    }
+
+    /// An app with a title to return to.
+    fn offering(offers: Offers, settings: Settings, store: Store) -> Self {
+        let mut app = Self::new(Levels::nothing(), settings);
+        app.store = store;
+        app.offers = Some(offers);
+        app
     }
 
     /// The state that a picture would show now.

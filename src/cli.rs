@@ -24,6 +24,7 @@ mod recording;
 mod replay;
 mod script;
 mod snapshot;
+mod today;
 mod verify;
 mod watch;
 mod wire;
