@@ -219,13 +219,29 @@ impl App {
                 app
             }
             Opening::Title(offers) => {
-                let mut app = Self::new(Levels::nothing(), settings);
-                app.store = store;
-                app.offers = Some(offers);
+                let mut app = Self::offering(offers, settings, store);
                 app.show_title();
                 app
             }
+            Opening::Daily(offers) => {
+                let mut app = Self::offering(offers, settings, store);
+                app.begin_daily();
+                app
+            }
+            Opening::Endless(offers) => {
+                let mut app = Self::offering(offers, settings, store);
+                app.begin_endless();
+                app
+            }
         }
+    }
+
+    /// An app with a title to return to.
+    fn offering(offers: Offers, settings: Settings, store: Store) -> Self {
+        let mut app = Self::new(Levels::nothing(), settings);
+        app.store = store;
+        app.offers = Some(offers);
+        app
     }
 
     /// The state that a picture would show now.

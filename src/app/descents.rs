@@ -25,7 +25,8 @@ impl App {
         let Some(offers) = self.offers.as_mut() else { return };
         let seed = offers.seed;
         offers.seed = seed.wrapping_add(1);
-        self.difficulty = self.store.preferences().difficulty;
+        let usual = self.store.preferences().difficulty;
+        self.difficulty = self.settings.difficulty.unwrap_or(usual);
         self.begin(Levels::descent(seed, Course::Endless));
     }
 

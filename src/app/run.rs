@@ -19,6 +19,10 @@ use crate::tui::{CellAspect, GlyphMode};
 pub enum Opening {
     /// The title screen, with these offers.
     Title(Offers),
+    /// The daily run, and then the title.
+    Daily(Offers),
+    /// An endless descent, and then the title.
+    Endless(Offers),
     /// A game, without a title to return to.
     Levels(Levels),
 }

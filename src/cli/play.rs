@@ -82,19 +82,41 @@ fn glyphs_of_locale() -> GlyphMode {
 /// The title, unless the options say what to play. A script is about one level, so that recording
 /// one begins with the first level.
 fn opening(options: &Play) -> Result<Opening, Error> {
+    if options.is_daily || options.is_endless {
+        return descent_of(options);
+    }
     let records_script = options.record.as_deref().is_some_and(RecordingFile::is_script);
     let says_what = options.map.is_some() || options.generated.is_some() || options.watches;
     if says_what || records_script {
         return Ok(Opening::Levels(levels(options)?));
     }
+    Ok(Opening::Title(offers()))
+}
+
+/// What the title offers.
+fn offers() -> Offers {
     let own = data_folder().map(|folder| folder.join("maps"));
     let folders: Vec<PathBuf> = [PathBuf::from(".")].into_iter().chain(own).collect();
     let (today, seed) = today();
-    Ok(Opening::Title(Offers {
-        maps: Some(Box::new(move || own_maps::find(&folders))),
-        today: Some(today),
-        seed,
-    }))
+    Offers { maps: Some(Box::new(move || own_maps::find(&folders))), today: Some(today), seed }
+}
+
+/// The daily run or an endless game.
+fn descent_of(options: &Play) -> Result<Opening, Error> {
+    let name = if options.is_daily { "--daily" } else { "--endless" };
+    let records_script = options.record.as_deref().is_some_and(RecordingFile::is_script);
+    let others = [
+        (options.is_daily && options.is_endless, "--endless"),
+        (options.map.is_some(), "MAP"),
+        (options.generated.is_some(), "--generate"),
+        (options.watches, "--watch"),
+        (options.is_daily && options.difficulty.is_some(), "--difficulty"),
+        (records_script, "a script, which is about one level"),
+    ];
+    if let Some((_, other)) = others.into_iter().find(|(is_given, _)| *is_given) {
+        return Err(Error::mistake(format!("{name} goes without {other}: leave one of them out")));
+    }
+    Ok(if options.is_daily { Opening::Daily(offers()) } else { Opening::Endless(offers()) })
 }
 
 /// The levels to play. If the map is on standard input, keys then come from the terminal.

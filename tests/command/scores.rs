@@ -109,6 +109,21 @@ fn a_floor_is_a_level_of_a_script() {
 }
 
 #[test]
+fn a_descent_goes_without_a_level() {
+    for arguments in [
+        &["play", "--daily", "--endless"][..],
+        &["play", "--daily", "--difficulty", "hard"],
+        &["play", "--endless", "cellar"],
+        &["play", "--endless", "--record", "it.script"],
+    ] {
+        let output = cellcaster(arguments).output().unwrap();
+        assert_eq!(output.status.code(), Some(2), "{arguments:?}");
+        let sentence = String::from_utf8(output.stderr).unwrap();
+        assert!(sentence.contains(" goes without "), "{sentence}");
+    }
+}
+
+#[test]
 fn what_is_missing_is_told_in_a_sentence() {
     let told = |name, script, arguments: &[&str]| {
         let output = verify(name, script, arguments);

@@ -33,6 +33,9 @@ pub(in crate::cli) struct Play {
     pub(in crate::cli) fidelity: Option<FidelityChoice>,
     /// The difficulty; the one chosen before if `None`.
     pub(in crate::cli) difficulty: Option<Difficulty>,
+    /// Whether to play the daily run, or an endless game.
+    pub(in crate::cli) is_daily: bool,
+    pub(in crate::cli) is_endless: bool,
     pub(in crate::cli) shows_stats: bool,
     /// The file of the recording.
     pub(in crate::cli) record: Option<PathBuf>,
@@ -67,6 +70,7 @@ pub(super) const SUBCOMMAND: Subcommand = Subcommand {
               leaves. Over SSH it takes \"ssh -t HOST cellcaster\".",
     examples: "cellcaster\n\
                cellcaster play --generate maze --seed 7\n\
+               cellcaster play --daily\n\
                cellcaster my.toml --colors 256\n\
                cellcaster play my.toml --watch\n\
                ssh -t host cellcaster\n\
@@ -74,6 +78,8 @@ pub(super) const SUBCOMMAND: Subcommand = Subcommand {
     positionals: &[map::OPTIONAL],
     options: &[
         &DIFFICULTY,
+        &DAILY,
+        &ENDLESS,
         &CONFIG,
         &value::FRAMES_PER_SECOND,
         &value::FIELD_OF_VIEW,
@@ -113,6 +119,8 @@ fn read(mut matches: ArgMatches) -> Result<Play, Error> {
         filter: value::FILTER.of(&mut matches),
         fidelity: FIDELITY.of(&mut matches),
         difficulty: DIFFICULTY.of(&mut matches),
+        is_daily: DAILY.of(&matches),
+        is_endless: ENDLESS.of(&matches),
         shows_stats: STATS.of(&matches),
         record: RECORD.of(&mut matches),
         overwrites: FORCE.of(&matches),
@@ -153,12 +161,20 @@ const DIFFICULTY: ValueOption<Difficulty> = ValueOption {
     name: "difficulty",
     value: "LEVEL",
     takes: "easy, normal or hard",
-    help: "How hard MAP is: easy, normal or hard",
+    help: "How hard MAP or the endless game is: easy, normal or hard",
     default: "as chosen in the game, or normal",
     choices: &["easy", "normal", "hard"],
     read: Parser::Optional(Difficulty::named),
     repeats: false,
 };
+
+const DAILY: Flag = Flag {
+    name: "daily",
+    help: "Play the floors of the day, which are the same for all; the first try counts",
+};
+
+const ENDLESS: Flag =
+    Flag { name: "endless", help: "Play floor after floor, each harder than the one before" };
 
 const STATS: Flag =
     Flag { name: "stats", help: "Show frames and bytes a second, round trip and fidelity" };
