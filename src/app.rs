@@ -210,9 +210,11 @@ impl App {
     fn opened(opening: Opening, settings: Settings, store: Store) -> Self {
         match opening {
             Opening::Levels(levels) => {
+                let usual = store.preferences().difficulty;
+                let difficulty = settings.difficulty.unwrap_or(usual);
                 let mut app = Self::new(Levels::nothing(), settings);
                 app.store = store;
-                app.difficulty = app.store.preferences().difficulty;
+                app.difficulty = difficulty;
                 app.begin(levels);
                 app
             }

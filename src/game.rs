@@ -42,7 +42,7 @@ use crate::generate::{self, Site, Window};
 use crate::world::World;
 use checkpoint::Checkpoint;
 use doors::Doors;
-use guards::{Act, Guards, Point};
+use guards::{Act, Guards};
 use hazards::Spikes;
 use health::Cause;
 use mechanisms::Mechanisms;
@@ -345,8 +345,7 @@ impl Game {
             Act::Open(cell) => self.doors.open(cell),
             Act::Sound(sound) => self.sounds.push(sound),
             Act::Bolt { from, height, direction, slope, points, .. } => {
-                let from = Point { position: from, height };
-                self.missiles.launch(Missile::bolt(from, direction, slope, points));
+                self.missiles.launch(Missile::bolt((from, height), direction, slope, points));
             }
             Act::Raised => self.counts.alarms += 1,
         }

@@ -147,7 +147,7 @@ impl Game {
     fn weighs_on(&self, cell: Cell) -> bool {
         let motion = &self.player.motion;
         let stands = motion.cell() == cell && motion.feet() <= self.world.floor_at(cell);
-        stands || self.guards.weighs_on(&self.world, cell)
+        stands || self.guards.weighs_on(cell)
     }
 
     /// Whether somebody would be in a wall in `cell`.
