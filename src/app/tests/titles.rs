@@ -156,7 +156,7 @@ fn the_first_picture_of_the_title_needs_one_level_and_no_list_of_maps() {
     };
     let offers = Offers { maps: Some(Box::new(find)), ..Offers::default() };
     let mut rig = titled(offers, Store::in_memory());
-    super::missions::text(&mut rig.app, 80, 24);
+    missions::text(&mut rig.app, 80, 24);
     assert_eq!(searches.get(), 0);
     assert!(rig.app.own_maps.is_empty() && rig.app.ghost.is_none());
     // No level but that behind the title exists.
