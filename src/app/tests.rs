@@ -2,6 +2,7 @@
 
 mod levels;
 mod missions;
+mod panels;
 mod questions;
 mod screens;
 mod table;

@@ -2,7 +2,6 @@
 
 use ratatui::buffer::{Buffer, Cell};
 use ratatui::layout::Rect;
-use ratatui::style::Color;
 
 use super::titles::titled;
 use super::*;
@@ -31,7 +30,7 @@ grid = '''
 "##;
 
 /// A title that offers that map.
-fn danger() -> Rig {
+pub(super) fn danger() -> Rig {
     let load = || parse_level(DANGER, "it", &NoFiles).map_err(|faults| faults.summary());
     let map = move || vec![OwnMap { name: "danger.toml".to_owned(), load: Box::new(load) }];
     let mut rig =
@@ -43,7 +42,7 @@ fn danger() -> Rig {
 }
 
 /// A player who stands on the spikes until they are dead.
-fn dead() -> Rig {
+pub(super) fn dead() -> Rig {
     let mut rig = danger();
     rig.tap(Key::Char('g'), 30);
     while rig.position().x < 4.3 {
@@ -254,63 +253,4 @@ fn the_bell_rings_when_the_player_is_hurt_and_once() {
     let mut rig = dead();
     assert!(rig.app.watch.take_ring());
     assert!(!rig.app.watch.take_ring());
-}
-
-/// All screens, each with the game behind it.
-fn screens() -> Vec<(&'static str, Rig)> {
-    let opened = |label: &'static str| {
-        let mut rig = titled(Offers::default(), Store::in_memory());
-        rig.choose(label);
-        rig
-    };
-    let mut paused = danger();
-    paused.tap(Key::Char('p'), 30);
-    let mut hud = danger();
-    for key in [Key::Char('.'), Key::Char(',')] {
-        hud.tap(key, 30);
-        hud.wait(100);
-    }
-    vec![
-        ("title", titled(Offers::default(), Store::in_memory())),
-        ("new_game", opened("New game")),
-        ("levels", opened("Levels")),
-        ("settings", opened("Settings")),
-        ("help", opened("Help")),
-        ("paused", paused),
-        ("hud", hud),
-        ("dead", dead()),
-    ]
-}
-
-#[test]
-fn every_screen_is_readable_in_80_and_in_40_columns_without_colours() {
-    for (name, mut rig) in screens() {
-        rig.app.settings.glyphs = GlyphMode::Ascii;
-        rig.app.depth = ColorDepth::Mono;
-        for (columns, rows) in [(80, 24), (40, 12)] {
-            let name = format!("{name}_{columns}x{rows}");
-            insta::assert_snapshot!(name, text(&mut rig.app, columns, rows));
-        }
-    }
-}
-
-#[test]
-fn every_screen_can_be_drawn_in_any_window_and_mode() {
-    for (name, mut rig) in screens() {
-        for glyphs in [GlyphMode::Half, GlyphMode::Ascii, GlyphMode::Ramp] {
-            for depth in [ColorDepth::True, ColorDepth::Indexed16, ColorDepth::Mono] {
-                rig.app.settings.glyphs = glyphs;
-                rig.app.depth = depth;
-                for (columns, rows) in [(80, 24), (37, 9), (20, 6), (200, 60), (5, 3), (1, 1)] {
-                    let mut buffer = Buffer::empty(Rect::new(0, 0, columns, rows));
-                    rig.app.draw(&mut buffer);
-                    let has_colors = buffer
-                        .content()
-                        .iter()
-                        .any(|cell| cell.fg != Color::Reset || cell.bg != Color::Reset);
-                    assert!(!has_colors || depth != ColorDepth::Mono, "{name} {columns}x{rows}");
-                }
-            }
-        }
-    }
 }

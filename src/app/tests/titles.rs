@@ -143,3 +143,24 @@ fn faults_of_an_own_map_are_said_and_a_map_without_faults_is_played() {
     rig.choose("Restart the level");
     assert_eq!((rig.app.screen, rig.position()), (Screen::Playing, before));
 }
+
+#[test]
+fn the_first_picture_of_the_title_needs_one_level_and_no_list_of_maps() {
+    use std::cell::Cell;
+    use std::rc::Rc;
+    let searches = Rc::new(Cell::new(0));
+    let counted = Rc::clone(&searches);
+    let find = move || {
+        counted.set(counted.get() + 1);
+        Vec::new()
+    };
+    let offers = Offers { maps: Some(Box::new(find)), ..Offers::default() };
+    let mut rig = titled(offers, Store::in_memory());
+    missions::text(&mut rig.app, 80, 24);
+    assert_eq!(searches.get(), 0);
+    assert!(rig.app.own_maps.is_empty() && rig.app.ghost.is_none());
+    // No level but that behind the title exists.
+    assert!(rig.app.stage.begin(Difficulty::Normal).is_some_and(|game| game.grid().is_none()));
+    rig.choose("My maps");
+    assert_eq!(searches.get(), 1);
+}
