@@ -8,8 +8,10 @@ mod bindings;
 mod clock;
 mod controls;
 mod demo;
+mod descents;
 mod detection;
 mod draw;
+mod draw_options;
 mod ghost;
 mod goal;
 mod help;
@@ -45,11 +47,12 @@ use std::time::Duration;
 
 pub use bindings::Bindings;
 use demo::Demo;
+use draw_options::DrawOptions;
 use ghost::Ghost;
 use goal::Goal;
 use help::HelpScroll;
 pub use levels::Levels;
-use levels::{LevelNumber, Stage};
+use levels::{Course, LevelNumber, Stage};
 use map_panel::MapPanel;
 use menu::Menu;
 use menus::Choice;
@@ -63,11 +66,10 @@ use screen::{Screen, Shelved};
 pub use settings::{Configuration, MapDisplay, Settings};
 
 use crate::color::palette::ColorDepth;
-use crate::game::{Flash, STEP};
-use crate::render::Filter;
-use crate::store::Store;
-use crate::tui::{CellAspect, GlyphMode, View};
-use crate::world::{Difficulty, FieldOfView, Heading};
+use crate::game::STEP;
+use crate::store::{Reached, Store};
+use crate::tui::{CellAspect, View};
+use crate::world::{Difficulty, FieldOfView};
 use clock::Clock;
 use controls::Controls;
 use detection::Detection;
@@ -87,26 +89,15 @@ struct Shown {
     revision: u64,
 }
 
-/// How a picture is drawn.
-#[derive(Clone, Copy, Debug)]
-struct DrawOptions {
-    glyphs: GlyphMode,
-    depth: ColorDepth,
-    cell_aspect: CellAspect,
-    filter: Filter,
-    field_of_view: FieldOfView,
-    /// The flash at the edge, and the direction of view.
-    flash: Option<(Flash, Heading)>,
-    /// Whether a dot marks the middle.
-    marks_middle: bool,
-}
-
 struct App {
     later_levels: Box<dyn Iterator<Item = Stage>>,
     /// The level that is played, to begin it again.
     stage: Stage,
     game: Played,
     level: LevelNumber,
+    course: Course,
+    /// How far a descent came.
+    reached: Reached,
     difficulty: Difficulty,
     goal: Goal,
     /// The run since the level began.
@@ -165,12 +156,14 @@ impl App {
     /// The first of `levels` at its start.
     fn new(levels: Levels, settings: Settings) -> Self {
         let difficulty = Difficulty::default();
-        let Levels { first, rest, number, changes } = levels;
+        let Levels { first, rest, number, changes, course } = levels;
         let game = first.begin(difficulty).unwrap_or_else(Played::nothing);
         Self {
             later_levels: rest,
             stage: first,
             level: number,
+            course,
+            reached: Reached::default(),
             difficulty,
             goal: Goal::of(&game, settings.minimap),
             map: MapPanel::new(settings.minimap),
@@ -217,9 +210,11 @@ impl App {
     fn opened(opening: Opening, settings: Settings, store: Store) -> Self {
         match opening {
             Opening::Levels(levels) => {
+                let usual = store.preferences().difficulty;
+                let difficulty = settings.difficulty.unwrap_or(usual);
                 let mut app = Self::new(Levels::nothing(), settings);
                 app.store = store;
-                app.difficulty = app.store.preferences().difficulty;
+                app.difficulty = difficulty;
                 app.begin(levels);
                 app
             }

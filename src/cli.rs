@@ -15,6 +15,7 @@ mod config;
 mod data_folder;
 mod error;
 mod level;
+mod levels;
 mod manual;
 mod own_maps;
 mod play;
@@ -23,6 +24,8 @@ mod recording;
 mod replay;
 mod script;
 mod snapshot;
+mod today;
+mod verify;
 mod watch;
 mod wire;
 
@@ -55,6 +58,7 @@ impl Command {
             Self::Config(options) => config::run(options),
             Self::Accuracy(options) => accuracy::run(&options),
             Self::Bench(options) => bench::run(&options),
+            Self::Levels(options) => levels::run(options),
             Self::Replay(options) => replay::run(&options),
             Self::Wire(options) => wire::run(&options),
         }

@@ -157,7 +157,7 @@ impl App {
     fn chooses(&self, key: Key) -> bool {
         match key {
             Key::Enter | Key::Char(' ') => true,
-            Key::Char('r' | 'l') if self.screen == Screen::Dead => true,
+            Key::Char('r' | 'l') if self.screen == Screen::Dead && !self.is_descent() => true,
             Key::Char(digit) => self.menu.has_number(digit),
             _ => false,
         }
@@ -246,8 +246,8 @@ impl App {
             return;
         }
         match (self.screen, key) {
-            (Screen::Dead, Key::Char('r')) => self.menu.select_number('2'),
-            (Screen::Dead, Key::Char('l')) => self.menu.select_number('3'),
+            (Screen::Dead, Key::Char('r')) => self.menu.select_value("r"),
+            (Screen::Dead, Key::Char('l')) => self.menu.select_value("l"),
             (_, Key::Char(digit)) => self.menu.select_number(digit),
             _ => {}
         }

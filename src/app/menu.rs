@@ -117,6 +117,12 @@ impl<C: Copy> Menu<C> {
         self.selected = self.index_of(digit).unwrap_or(self.selected);
     }
 
+    /// Selects the entry with that value, if there is one.
+    pub(super) fn select_value(&mut self, value: &str) {
+        let index = self.entries.iter().position(|entry| entry.value == value);
+        self.selected = index.unwrap_or(self.selected);
+    }
+
     fn index_of(&self, digit: char) -> Option<usize> {
         let index = digit.to_digit(10)?.checked_sub(1)? as usize;
         (index < self.entries.len()).then_some(index)

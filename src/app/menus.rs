@@ -24,6 +24,10 @@ pub(super) enum Choice {
     Map(usize),
     /// Goes on with the saved game.
     Continue,
+    /// Begins the descent of the day.
+    Daily,
+    /// Begins an endless descent.
+    Endless,
     /// Changes a setting.
     Change(Setting),
     /// Goes on with the game.
@@ -73,6 +77,8 @@ impl App {
                 self.begin_builtin(index);
             }
             Choice::Map(index) => self.begin_own_map(index),
+            Choice::Daily => self.begin_daily(),
+            Choice::Endless => self.begin_endless(),
             Choice::Continue => self.continue_saved(),
             Choice::Change(setting) => self.change_setting(setting, true),
             Choice::Retry => self.retry(),
@@ -117,6 +123,7 @@ impl App {
         let menu = menu
             .entry("New game", Choice::Open(Screen::NewGame))
             .entry("Levels", Choice::Open(Screen::Levels));
+        let menu = self.with_descents(menu);
         let has_maps = self.offers.as_ref().is_some_and(|offers| offers.maps.is_some());
         let menu = if has_maps { menu.entry("My maps", Choice::Open(Screen::Maps)) } else { menu };
         menu.entry("Settings", Choice::Open(Screen::Settings))
@@ -159,9 +166,10 @@ impl App {
         menu = self.level_lines().into_iter().fold(menu, Menu::line);
         menu = menu.line(whole_seconds(self.game.elapsed()).to_string());
         menu = self.game.keys().fold(menu, |menu, key| menu.line(format!("{key} key")));
+        menu = menu.entry("Continue", Choice::GoOn);
+        menu =
+            if self.is_descent() { menu } else { menu.entry("Restart the level", Choice::Restart) };
         menu = menu
-            .entry("Continue", Choice::GoOn)
-            .entry("Restart the level", Choice::Restart)
             .entry("Settings", Choice::Open(Screen::Settings))
             .entry("Help", Choice::Open(Screen::Help));
         self.with_leaving(menu)

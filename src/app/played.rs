@@ -9,15 +9,13 @@ use std::ops::{Deref, DerefMut};
 use glam::DVec3;
 use ratatui::layout::Rect;
 
-use super::{DrawOptions, hud};
+use super::DrawOptions;
 use crate::canvas::Canvas;
-use crate::color::palette::ColorDepth;
 use crate::game::{Flight, Game, Intents, Outcome, Rules};
 use crate::generate::Site;
 use crate::map::Level;
-use crate::render::{Frame, Renderable};
 use crate::space;
-use crate::tui::{FirstPerson, GlyphMode, View};
+use crate::tui::View;
 use crate::world::{FieldOfView, Heading};
 
 /// A level that is being played.
@@ -205,43 +203,6 @@ impl DerefMut for Played {
         match self {
             Self::Grid(game) => &mut **game,
             Self::Space(flight) => &mut **flight,
-        }
-    }
-}
-
-impl DrawOptions {
-    /// Draws `scene` from `camera` at the time `seconds`.
-    fn draw<S: Renderable>(
-        &self,
-        scene: &S,
-        camera: &S::Camera,
-        seconds: f64,
-        canvas: &mut impl Canvas,
-        area: Rect,
-        view: &mut View<S>,
-    ) {
-        let picture = FirstPerson::new(scene, camera)
-            .glyphs(self.glyphs)
-            .color_depth(self.depth)
-            .cell_aspect(self.cell_aspect)
-            .filter(self.filter)
-            .time(seconds);
-        picture.draw(area.as_size(), view);
-        if !area.is_empty() && self.depth != ColorDepth::Mono {
-            self.change_pixels(view.frame_mut());
-        }
-        picture.paint(view, 0, area, canvas);
-    }
-}
-
-impl DrawOptions {
-    /// Tints and marks the pixels of a picture in colours.
-    fn change_pixels(&self, frame: &mut Frame) {
-        if let Some((flash, heading)) = &self.flash {
-            hud::tint(frame, flash, *heading);
-        }
-        if self.marks_middle && self.glyphs == GlyphMode::Half {
-            hud::mark_middle(frame);
         }
     }
 }

@@ -21,6 +21,9 @@ pub(super) struct LevelResult {
 impl App {
     /// Records the level that has just been won, and returns its result.
     pub(super) fn record_result(&mut self) -> Option<LevelResult> {
+        if self.is_descent() {
+            self.record_floor();
+        }
         let game = self.game.grid()?;
         let (tally, par) = (game.tally(), game.world().par());
         let rank = tally.rank(par);

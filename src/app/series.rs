@@ -11,16 +11,19 @@ use super::run_log::RunLog;
 use super::watch::Watch;
 use super::{App, Goal, Levels, Screen};
 use crate::game::{Intent, Intents};
+use crate::store::Reached;
 
 impl App {
     /// Begins the first of `levels`.
     pub(super) fn begin(&mut self, levels: Levels) {
-        let Levels { first, rest, number, changes } = levels;
+        let Levels { first, rest, number, changes, course } = levels;
         let Some(game) = first.begin(self.difficulty) else { return };
         self.later_levels = rest;
         self.level = number;
         self.reload = changes.map(Reload::from);
         self.earlier = 0.0;
+        self.course = course;
+        self.reached = Reached::default();
         self.demo = None;
         self.begin_level(first, game);
     }

@@ -17,7 +17,9 @@ impl App {
             Some(result) => result_lines(result).into_iter().fold(menu, Menu::line),
             None => menu,
         };
-        let menu = menu.entry("Go on", Choice::NextLevel).entry("Play it again", Choice::Restart);
+        let menu = menu.entry("Go on", Choice::NextLevel);
+        let menu =
+            if self.is_descent() { menu } else { menu.entry("Play it again", Choice::Restart) };
         self.with_leaving(menu)
     }
 
@@ -27,6 +29,11 @@ impl App {
             Some(Outcome::Dead { cause }) => format!("killed by {cause}"),
             _ => String::new(),
         };
+        if self.is_descent() {
+            let menu = Menu::new("you are dead").line(cause);
+            let menu = self.descent_lines().into_iter().fold(menu, Menu::line);
+            return self.with_leaving(menu);
+        }
         let deaths = self.game.grid().map_or(0, |game| game.tally().deaths);
         let menu = Menu::new("you are dead").line(cause);
         let menu = if deaths > 1 { menu.line(format!("for the {deaths}. time")) } else { menu };

@@ -8,9 +8,11 @@ use std::time::Duration;
 use super::arguments::{FidelityChoice, Play, STANDARD_INPUT};
 use super::data_folder::data_folder;
 use super::recording::RecordingFile;
+use super::today::today;
 use super::{Error, config, level, own_maps};
 use crate::app;
 use crate::app::{Farewell, Levels, Offers, Opening, Settings};
+use crate::game::{Header, Rules};
 use crate::store::Store;
 use crate::terminal::{self, locale_without_utf8, take_keys_from_terminal};
 use crate::tui::GlyphMode;
@@ -18,6 +20,10 @@ use crate::tui::GlyphMode;
 /// Plays until the player quits.
 pub(super) fn run(options: Play) -> Result<(), Error> {
     let opening = opening(&options)?;
+    let level = match options.generated {
+        None => level::name(options.map.as_deref()),
+        Some(_) => None,
+    };
     let configuration = config::load(options.config)?.configuration;
     let frames_per_second = match options.frames_per_second {
         Some(frames) => frames.get(),
@@ -34,16 +40,19 @@ pub(super) fn run(options: Play) -> Result<(), Error> {
         filter: options.filter.unwrap_or_default(),
         fidelity: options.fidelity.map_or(configuration.fidelity, FidelityChoice::fixed),
         shows_stats: options.shows_stats,
+        difficulty: options.difficulty,
         minimap: configuration.minimap,
         mouse: configuration.mouse,
     };
     let file = options.record.as_deref();
     let file = file.map(|path| RecordingFile::create(path, options.overwrites)).transpose()?;
-    let recording = file.as_ref().map(RecordingFile::recording).unwrap_or_default();
     let (store, damage) = match data_folder() {
         Some(folder) => Store::open(&folder),
         None => (Store::in_memory(), None),
     };
+    let difficulty = options.difficulty.unwrap_or(store.preferences().difficulty);
+    let header = Header::of(level, Rules { difficulty, seed: 0 });
+    let recording = file.as_ref().map(|file| file.recording(header)).unwrap_or_default();
     let played = app::play(opening, settings, store, recording);
     let written = file.map_or(Ok(()), RecordingFile::finish);
     let farewell = played.map_err(about_the_terminal)?;
@@ -80,7 +89,12 @@ fn opening(options: &Play) -> Result<Opening, Error> {
     }
     let own = data_folder().map(|folder| folder.join("maps"));
     let folders: Vec<PathBuf> = [PathBuf::from(".")].into_iter().chain(own).collect();
-    Ok(Opening::Title(Offers { maps: Some(Box::new(move || own_maps::find(&folders))) }))
+    let (today, seed) = today();
+    Ok(Opening::Title(Offers {
+        maps: Some(Box::new(move || own_maps::find(&folders))),
+        today: Some(today),
+        seed,
+    }))
 }
 
 /// The levels to play. If the map is on standard input, keys then come from the terminal.

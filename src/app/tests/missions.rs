@@ -9,6 +9,7 @@ use super::*;
 use crate::app::{Offers, OwnMap};
 use crate::map::{NoFiles, builtin, parse_level};
 use crate::store::Run;
+use crate::tui::GlyphMode;
 
 /// Spikes that come out at once, a treasure, a note, and the exit behind them.
 const DANGER: &str = r##"
@@ -33,7 +34,8 @@ grid = '''
 fn danger() -> Rig {
     let load = || parse_level(DANGER, "it", &NoFiles).map_err(|faults| faults.summary());
     let map = move || vec![OwnMap { name: "danger.toml".to_owned(), load: Box::new(load) }];
-    let mut rig = titled(Offers { maps: Some(Box::new(map)) }, Store::in_memory());
+    let mut rig =
+        titled(Offers { maps: Some(Box::new(map)), ..Offers::default() }, Store::in_memory());
     rig.choose("My maps");
     rig.choose("danger.toml");
     assert_eq!(rig.app.screen, Screen::Playing);
@@ -220,6 +222,31 @@ fn settings_change_by_enter_and_arrows_and_are_kept() {
     assert_eq!(rig.app.settings.frame_time, Duration::from_secs(1) / 60);
     rig.choose("Characters");
     assert_eq!(rig.app.settings.glyphs, GlyphMode::Ascii);
+}
+
+#[test]
+fn the_daily_run_counts_once_and_a_descent_has_no_second_try() {
+    let offers = Offers { today: Some(20_261_122), seed: 7, ..Offers::default() };
+    let mut rig = titled(offers, Store::in_memory());
+    rig.choose("Daily run");
+    assert_eq!(rig.app.course, Course::Daily { date: 20_261_122, counts: true });
+    assert_eq!(rig.app.game.title(), "Floor 1");
+    let floor = rig.game().world().clone();
+    rig.tap(Key::Char('p'), 30);
+    rig.wait(300);
+    assert!(!text(&mut rig.app, 80, 24).contains("Restart"));
+    rig.choose("Leave to the title");
+    rig.choose("Daily run");
+    assert_eq!(rig.app.course, Course::Daily { date: 20_261_122, counts: false });
+    assert_eq!(rig.game().world().grid(), floor.grid(), "it is the same for all");
+    rig.app.record_floor();
+    assert_eq!(rig.app.store.daily(20_261_122).unwrap().reached.floors, 0);
+    rig.app.return_to_title();
+    rig.choose("Endless");
+    rig.app.record_floor();
+    assert_eq!(rig.app.store.best_descent().unwrap().floors, 1);
+    rig.app.next_level();
+    assert_eq!(rig.app.game.title(), "Floor 2");
 }
 
 #[test]

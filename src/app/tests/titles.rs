@@ -15,7 +15,7 @@ fn title() -> Rig {
         }),
     };
     let maps = move || vec![map("bad.toml", "grid = 3"), map("pit.toml", PIT)];
-    let offers = Offers { maps: Some(Box::new(maps)) };
+    let offers = Offers { maps: Some(Box::new(maps)), ..Offers::default() };
     titled(offers, Store::in_memory())
 }
 

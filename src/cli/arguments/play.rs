@@ -14,7 +14,7 @@ use crate::lab::casters::Method;
 use crate::render::Filter;
 use crate::terminal::{Fidelity, UnknownFidelity};
 use crate::tui::{CellAspect, GlyphMode};
-use crate::world::FieldOfView;
+use crate::world::{Difficulty, FieldOfView};
 
 /// Options of `play`; `None` where the configuration or the terminal decides.
 #[derive(Debug)]
@@ -31,6 +31,8 @@ pub(in crate::cli) struct Play {
     pub(in crate::cli) method: Option<Method>,
     pub(in crate::cli) filter: Option<Filter>,
     pub(in crate::cli) fidelity: Option<FidelityChoice>,
+    /// The difficulty; the one chosen before if `None`.
+    pub(in crate::cli) difficulty: Option<Difficulty>,
     pub(in crate::cli) shows_stats: bool,
     /// The file of the recording.
     pub(in crate::cli) record: Option<PathBuf>,
@@ -71,6 +73,7 @@ pub(super) const SUBCOMMAND: Subcommand = Subcommand {
                cellcaster --record walk.script && cellcaster replay walk.script > walk.cast",
     positionals: &[map::OPTIONAL],
     options: &[
+        &DIFFICULTY,
         &CONFIG,
         &value::FRAMES_PER_SECOND,
         &value::FIELD_OF_VIEW,
@@ -109,6 +112,7 @@ fn read(mut matches: ArgMatches) -> Result<Play, Error> {
         method: value::CASTER.of(&mut matches),
         filter: value::FILTER.of(&mut matches),
         fidelity: FIDELITY.of(&mut matches),
+        difficulty: DIFFICULTY.of(&mut matches),
         shows_stats: STATS.of(&matches),
         record: RECORD.of(&mut matches),
         overwrites: FORCE.of(&matches),
@@ -142,6 +146,17 @@ const FIDELITY: ValueOption<FidelityChoice> = ValueOption {
             .map(FidelityChoice::Fixed)
             .map_err(|error: UnknownFidelity| format!("--fidelity: {error}, or auto")),
     }),
+    repeats: false,
+};
+
+const DIFFICULTY: ValueOption<Difficulty> = ValueOption {
+    name: "difficulty",
+    value: "LEVEL",
+    takes: "easy, normal or hard",
+    help: "How hard MAP is: easy, normal or hard",
+    default: "as chosen in the game, or normal",
+    choices: &["easy", "normal", "hard"],
+    read: Parser::Optional(Difficulty::named),
     repeats: false,
 };
 

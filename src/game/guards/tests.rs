@@ -25,7 +25,7 @@ const TILES: &str = r##"
 "1" = { floor_height = 0.3, ceiling_height = 1.5 }
 "2" = { floor_height = 0.6, ceiling_height = 2 }
 "h" = { floor_height = 0.9, ceiling_height = 2 }
-"a" = { ceiling_height = 1.5 }
+"0" = { ceiling_height = 1.5 }
 "p" = { floor_height = -2 }
 "~" = { water = true }
 "##;

@@ -99,7 +99,17 @@ impl Ground {
     /// middle of one to the middle or the edge of the other meets nothing opaque.
     pub(super) fn sees(&self, from: Cell, to: Cell) -> bool {
         /// In hundredths of a cell from the middle.
-        const BODY: [(i64, i64); 5] = [(0, 0), (-40, 0), (40, 0), (0, -40), (0, 40)];
+        const BODY: [(i64, i64); 9] = [
+            (0, 0),
+            (-40, 0),
+            (40, 0),
+            (0, -40),
+            (0, 40),
+            (-30, -30),
+            (30, -30),
+            (-30, 30),
+            (30, 30),
+        ];
         /// The points of a line for each cell of its length.
         const POINTS: i64 = 16;
         let middle = |place: u32| i64::from(place) * 100 + 50;
@@ -108,7 +118,8 @@ impl Ground {
             let (dx, dy) = (middle(to.column) + across - x, middle(to.row) + down - y);
             let count = (dx.abs().max(dy.abs()) * POINTS / 100).max(1);
             (1..count).all(|point| {
-                let place = |from: i64, by: i64| ((from + by * point / count) / 100) as u32;
+                let place =
+                    |from: i64, by: i64| ((from * count + by * point) / (100 * count)) as u32;
                 !self.kind(Cell { column: place(x, dx), row: place(y, dy) }).is_opaque
             })
         })

@@ -71,9 +71,10 @@ fn a_hound_follows_the_trail_around_a_corner_and_stops_at_a_door() {
     }
     scene.put(7.5, 3.5);
     let is_at_the_door =
-        |scene: &Scene| scene.guard(0).position.distance(cell(3, 3).center()) < 0.6;
+        |scene: &Scene| scene.guard(0).position.distance(cell(3, 3).center()) < 0.7;
     scene.steps_until(900, is_at_the_door).unwrap();
-    scene.steps_until(900, |scene| scene.has_sounded(SoundKind::GiveUp)).unwrap();
+    // The trail lasts for twenty seconds.
+    scene.steps_until(2400, |scene| scene.has_sounded(SoundKind::GiveUp)).unwrap();
     assert!(scene.guard(0).position.x < 4.0 || scene.guard(0).position.y < 2.0);
 }
 

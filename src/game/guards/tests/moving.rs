@@ -30,7 +30,7 @@ fn a_patrol_goes_round_and_returns_to_it() {
 #[test]
 fn stairs_are_climbed_and_pits_and_water_avoided() {
     let mut scene = Scene::new(
-        "#########\n#W.a12h.#\n#.p~~~~.#\n#@......#\n#########",
+        "#########\n#W.012h.#\n#.p~~~~.#\n#@......#\n#########",
         "\"W\" = { guard = \"warden\", heading = 0 }",
     );
     scene.target.is_alive = false;
