@@ -2,6 +2,7 @@
 
 use super::*;
 use crate::game::health::Harm;
+use crate::world::Difficulty;
 
 #[test]
 fn a_fall_hurts_by_its_height() {
@@ -34,7 +35,7 @@ fn water_is_slow_and_cold_and_puts_the_lamp_out() {
     assert_eq!(stage.game.quiet_steps(Intents::new()), 0);
     stage.play(2, &[]);
     assert_eq!((stage.points(), stage.message()), (5, "The water is cold."));
-    stage.play(239, &[]);
+    stage.play(238, &[]);
     assert_eq!(stage.points(), 5);
     stage.play(1, &[]);
     assert_eq!(stage.points(), 4);
@@ -59,7 +60,9 @@ fn spikes_hurt_once_for_each_thrust() {
 
 #[test]
 fn who_jumps_over_spikes_is_not_hurt() {
-    let mut stage = Stage::new(&["@.s......"], "", "s = { spikes = 1 }");
+    let rows = ["@.s......"];
+    let (things, difficulty) = ("s = { spikes = 1 }", Difficulty::Normal);
+    let mut stage = Stage::with_header("par = 60\nceiling = 'sky'", &rows, "", things, difficulty);
     let is_out = |stage: &Stage| stage.game.world().things()[0].frame == Some(2);
     stage.play(50, &[]);
     let mut passes = false;
