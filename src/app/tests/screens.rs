@@ -8,7 +8,6 @@ use super::super::*;
 use crate::app::MapDisplay;
 use crate::map::{Level, builtin};
 use crate::terminal::{Key, KeyEvent, Phase};
-use crate::tui::GlyphMode;
 
 fn app(level: &str, settings: Settings) -> App {
     let index = builtin::LEVELS.iter().position(|known| known.name == level).unwrap();
