@@ -8,10 +8,14 @@ mod bindings;
 mod clock;
 mod controls;
 mod demo;
+mod descents;
 mod detection;
 mod draw;
+mod draw_options;
+mod ghost;
 mod goal;
 mod help;
+mod hud;
 mod keys;
 mod levels;
 mod map_panel;
@@ -24,37 +28,47 @@ mod played;
 mod recording;
 mod reload;
 mod replay;
+mod results;
 mod run;
+mod run_log;
 mod screen;
 mod script_cursor;
 mod series;
 mod settings;
+mod settings_screen;
 mod stats;
 mod status;
 mod steps;
+mod summary;
+mod vitals;
+mod watch;
 
 use std::time::Duration;
 
 pub use bindings::Bindings;
 use demo::Demo;
+use draw_options::DrawOptions;
+use ghost::Ghost;
 use goal::Goal;
 use help::HelpScroll;
 pub use levels::Levels;
-use levels::{LevelNumber, Stage};
+use levels::{Course, LevelNumber, Stage};
 use map_panel::MapPanel;
 use menu::Menu;
 use menus::Choice;
 pub use offers::{FindMaps, Offers, OwnMap};
 pub use recording::Recording;
 pub use replay::Replay;
-pub use run::{Opening, play};
+use results::LevelResult;
+pub use run::{Farewell, Opening, play};
+use run_log::RunLog;
 use screen::{Screen, Shelved};
 pub use settings::{Configuration, MapDisplay, Settings};
 
 use crate::color::palette::ColorDepth;
 use crate::game::STEP;
-use crate::render::Filter;
-use crate::tui::{CellAspect, GlyphMode, View};
+use crate::store::{Reached, Store};
+use crate::tui::{CellAspect, View};
 use crate::world::{Difficulty, FieldOfView};
 use clock::Clock;
 use controls::Controls;
@@ -66,6 +80,7 @@ use recording::ScriptRecorder;
 use reload::Reload;
 use stats::Stats;
 use status::StatusLine;
+use watch::Watch;
 
 /// The part of the game's state that a picture depends on.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -74,24 +89,27 @@ struct Shown {
     revision: u64,
 }
 
-/// How a picture is drawn.
-#[derive(Clone, Copy, Debug)]
-struct DrawOptions {
-    glyphs: GlyphMode,
-    depth: ColorDepth,
-    cell_aspect: CellAspect,
-    filter: Filter,
-    field_of_view: FieldOfView,
-}
-
 struct App {
     later_levels: Box<dyn Iterator<Item = Stage>>,
     /// The level that is played, to begin it again.
     stage: Stage,
     game: Played,
     level: LevelNumber,
+    course: Course,
+    /// How far a descent came.
+    reached: Reached,
     difficulty: Difficulty,
     goal: Goal,
+    /// The run since the level began.
+    log: RunLog,
+    /// The best run of the level.
+    ghost: Option<Ghost>,
+    /// The result of the level that was won last.
+    result: Option<LevelResult>,
+    /// A line about the game that was left.
+    left: Option<String>,
+    store: Store,
+    watch: Watch,
     /// The seconds that the earlier levels took.
     earlier: f64,
     screen: Screen,
@@ -105,6 +123,7 @@ struct App {
     demo: Option<Demo>,
     settings: Settings,
     depth: ColorDepth,
+    terminal_depth: ColorDepth,
     cell_aspect: CellAspect,
     field_of_view: FieldOfView,
     controls: Controls,
@@ -137,17 +156,25 @@ impl App {
     /// The first of `levels` at its start.
     fn new(levels: Levels, settings: Settings) -> Self {
         let difficulty = Difficulty::default();
-        let Levels { first, rest, number, changes } = levels;
+        let Levels { first, rest, number, changes, course } = levels;
         let game = first.begin(difficulty).unwrap_or_else(Played::nothing);
         Self {
             later_levels: rest,
             stage: first,
             level: number,
+            course,
+            reached: Reached::default(),
             difficulty,
             goal: Goal::of(&game, settings.minimap),
             map: MapPanel::new(settings.minimap),
             help: HelpScroll::default(),
             game,
+            log: RunLog::default(),
+            ghost: None,
+            result: None,
+            left: None,
+            store: Store::in_memory(),
+            watch: Watch::default(),
             earlier: 0.0,
             screen: Screen::Playing,
             menu: Menu::new(""),
@@ -157,6 +184,7 @@ impl App {
             demo: None,
             field_of_view: settings.field_of_view,
             depth: settings.depth.unwrap_or_default(),
+            terminal_depth: ColorDepth::default(),
             cell_aspect: settings.cell_aspect.unwrap_or_default(),
             views: Views::new(View::with_caster(settings.caster.clone())),
             shows_stats: settings.shows_stats,
@@ -178,17 +206,49 @@ impl App {
         }
     }
 
-    /// The title.
-    fn titled(offers: Offers, settings: Settings) -> Self {
+    /// The first of `levels`, or else the title, with what `store` keeps.
+    fn opened(opening: Opening, settings: Settings, store: Store) -> Self {
+        match opening {
+            Opening::Levels(levels) => {
+                let usual = store.preferences().difficulty;
+                let difficulty = settings.difficulty.unwrap_or(usual);
+                let mut app = Self::new(Levels::nothing(), settings);
+                app.store = store;
+                app.difficulty = difficulty;
+                app.begin(levels);
+                app
+            }
+            Opening::Title(offers) => {
+                let mut app = Self::offering(offers, settings, store);
+                app.show_title();
+                app
+            }
+            Opening::Daily(offers) => {
+                let mut app = Self::offering(offers, settings, store);
+                app.begin_daily();
+                app
+            }
+            Opening::Endless(offers) => {
+                let mut app = Self::offering(offers, settings, store);
+                app.begin_endless();
+                app
+            }
+        }
+    }
+
+    /// An app with a title to return to.
+    fn offering(offers: Offers, settings: Settings, store: Store) -> Self {
         let mut app = Self::new(Levels::nothing(), settings);
+        app.store = store;
         app.offers = Some(offers);
-        app.return_to_title();
         app
     }
 
     /// The state that a picture would show now.
     fn visible(&self) -> Shown {
-        Shown { viewpoint: self.game.viewpoint(self.field_of_view), revision: self.game.revision() }
+        let ghost = self.ghost.as_ref().map_or(0, Ghost::steps);
+        let revision = self.game.revision() + ghost;
+        Shown { viewpoint: self.game.viewpoint(self.field_of_view), revision }
     }
 
     /// Whether the screen is out of date.
@@ -220,7 +280,7 @@ impl App {
         if self.controls.held.has_taps() {
             return Some(self.clock.step_after(0));
         }
-        let quiet = Some(self.game.quiet_steps(self.wanted())).filter(|&quiet| quiet < u64::MAX);
+        let quiet = Some(self.quiet_steps(self.wanted())).filter(|&quiet| quiet < u64::MAX);
         let before_animation = self.steps_to_animation().map(|steps| steps.saturating_sub(1));
         let steps = quiet.into_iter().chain(before_animation).min()?;
         Some(self.clock.step_after(steps))
@@ -229,6 +289,7 @@ impl App {
     /// Handles a new size or new properties of the terminal.
     fn terminal_changed(&mut self, aspect: Option<CellAspect>, depth: ColorDepth) {
         self.cell_aspect = self.settings.cell_aspect.or(aspect).unwrap_or_default();
+        self.terminal_depth = depth;
         self.depth = self.settings.depth.unwrap_or(depth);
         self.shown = None;
     }

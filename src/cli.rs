@@ -12,8 +12,10 @@ mod cast;
 mod check;
 mod completions;
 mod config;
+mod data_folder;
 mod error;
 mod level;
+mod levels;
 mod manual;
 mod own_maps;
 mod play;
@@ -22,6 +24,8 @@ mod recording;
 mod replay;
 mod script;
 mod snapshot;
+mod today;
+mod verify;
 mod watch;
 mod wire;
 
@@ -54,6 +58,7 @@ impl Command {
             Self::Config(options) => config::run(options),
             Self::Accuracy(options) => accuracy::run(&options),
             Self::Bench(options) => bench::run(&options),
+            Self::Levels(options) => levels::run(options),
             Self::Replay(options) => replay::run(&options),
             Self::Wire(options) => wire::run(&options),
         }

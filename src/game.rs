@@ -42,7 +42,7 @@ use crate::generate::{self, Site, Window};
 use crate::world::World;
 use checkpoint::Checkpoint;
 use doors::Doors;
-use guards::{Act, Guards, Point};
+use guards::{Act, Guards};
 use hazards::Spikes;
 use health::Cause;
 use mechanisms::Mechanisms;
@@ -209,7 +209,10 @@ impl Game {
             self.steps = self.steps.saturating_add(steps);
             self.doors.wait(steps);
             self.player.wait(steps);
-            self.player.hearing.wait(steps);
+            if self.is_mission {
+                self.player.hearing.wait(steps);
+                self.guards.wait(steps);
+            }
             if self.quiet_steps_in_water().is_some() {
                 self.player.in_water += steps as u32;
             }
@@ -342,8 +345,7 @@ impl Game {
             Act::Open(cell) => self.doors.open(cell),
             Act::Sound(sound) => self.sounds.push(sound),
             Act::Bolt { from, height, direction, slope, points, .. } => {
-                let from = Point { position: from, height };
-                self.missiles.launch(Missile::bolt(from, direction, slope, points));
+                self.missiles.launch(Missile::bolt((from, height), direction, slope, points));
             }
             Act::Raised => self.counts.alarms += 1,
         }
@@ -367,6 +369,10 @@ impl Game {
             self.doors.shift(&mut self.world, shift);
             self.missiles.shift(shift);
             self.smoke.shift(shift);
+            if self.is_mission {
+                self.guards.shift(&self.world, shift);
+                self.player.hearing.forget();
+            }
             self.show();
         }
     }

@@ -10,11 +10,14 @@
 //! chunks. At a million cells the picture is as stable as at the start. A world with 64-bit columns
 //! was refused, since every ray on every map would pay for it.
 //!
+//! A [descent] makes whole worlds of levels with an end, one for each floor, with guards and treasure.
+//!
 //! Random numbers are hashes of the seed, a purpose and a position, in integers. The same seed is
 //! the same level on every machine.
 
 mod cave;
 mod chunk;
+mod descent;
 mod level;
 mod maze;
 mod office;
@@ -26,6 +29,7 @@ use std::fmt;
 use std::sync::Arc;
 
 pub use chunk::{CHUNK_SIDE, Chunk, ChunkArea, ChunkIndex, Extent, Site};
+pub use descent::{daily_seed, descent};
 pub use level::Level;
 pub(crate) use window::Shift;
 pub use window::Window;

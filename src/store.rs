@@ -36,7 +36,7 @@ mod write;
 
 use std::path::Path;
 
-pub use best::{Best, Improved, Rank, Reached, Run, Share, Tally};
+pub use best::{Best, Improved, Reached, Run};
 use change::Change;
 use home::Home;
 pub use names::map_key;

@@ -37,5 +37,5 @@ mod wanted;
 pub use first_person::{FirstPerson, View};
 pub use glyphs::{CellAspect, GlyphMode};
 pub use held::{CHORD, HeldKeys, Hold, LINGER, Press};
-pub use minimap::{Explored, Minimap};
+pub use minimap::{Explored, MapMark, Minimap};
 pub use wanted::{tap_steps, wanted};

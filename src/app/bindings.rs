@@ -33,6 +33,12 @@ pub(crate) enum Action {
     NarrowView,
     /// Show or hide the figures of frames and the link.
     ToggleStats,
+    /// Show or hide a dot in the middle of the picture.
+    ToggleCrosshair,
+    /// Show or hide the compass.
+    ToggleCompass,
+    /// Show or hide the best run.
+    ToggleGhost,
     /// Leave the game.
     Leave,
 }
@@ -52,7 +58,7 @@ pub(crate) enum MapChange {
 
 impl Action {
     /// Every action with its name in a file and a short description.
-    pub(crate) const ALL: [(&'static str, &'static str, Self); 39] = [
+    pub(crate) const ALL: [(&'static str, &'static str, Self); 42] = [
         ("forward", "walk", Self::Want(Intent::Forward)),
         ("back", "walk back", Self::Want(Intent::Back)),
         ("strafe-left", "strafe left", Self::Want(Intent::StrafeLeft)),
@@ -90,6 +96,9 @@ impl Action {
         ("pause", "pause", Self::TogglePause),
         ("wider", "wider view", Self::WidenView),
         ("narrower", "narrower view", Self::NarrowView),
+        ("crosshair", "crosshair", Self::ToggleCrosshair),
+        ("compass", "compass", Self::ToggleCompass),
+        ("ghost", "best run", Self::ToggleGhost),
         ("stats", "frames and link", Self::ToggleStats),
         ("leave", "leave", Self::Leave),
     ];

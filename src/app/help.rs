@@ -10,8 +10,9 @@ use ratatui::widgets::{Block, Padding, Paragraph};
 use super::App;
 use super::panels::{BORDERS, PADDING, framed, key_names};
 use super::wrap::wrapped;
-use crate::app::bindings::{Action, Bindings};
+use crate::app::bindings::{Action, Bindings, MapChange};
 use crate::canvas::Canvas;
+use crate::game::Intent;
 use crate::terminal::Key;
 
 /// The scroll position of the help.
@@ -103,11 +104,44 @@ fn how_to_leave(bindings: &Bindings, most_columns: usize) -> String {
         .unwrap_or_else(|| format!("{close} closes"))
 }
 
-/// Each action with its keys, in as many columns as are needed to fit into `room` lines and
-/// possible in `most_columns`. If not even one column fits, lines are wrapped.
+/// Actions that share a line, which begins with the first of them.
+const TOGETHER: [(&[Action], &str); 4] = [
+    (&[Action::Want(Intent::FineLeft), Action::Want(Intent::FineRight)], "turn by 5°"),
+    (
+        &[Action::ChangeMap(MapChange::Larger), Action::ChangeMap(MapChange::Smaller)],
+        "scale the map",
+    ),
+    (
+        &[
+            Action::ChangeMap(MapChange::North),
+            Action::ChangeMap(MapChange::South),
+            Action::ChangeMap(MapChange::West),
+            Action::ChangeMap(MapChange::East),
+        ],
+        "move the map",
+    ),
+    (&[Action::WidenView, Action::NarrowView], "widen, narrow"),
+];
+
+/// The keys of all actions with a short description each, in the order of [`Action::ALL`].
+fn described(bindings: &Bindings) -> Vec<(String, &'static str)> {
+    let line = |(_, does, action): (_, &'static str, Action)| {
+        let Some((actions, does)) = TOGETHER.iter().find(|group| group.0.contains(&action)) else {
+            return Some((key_names(bindings, action), does));
+        };
+        let is_first = actions.first() == Some(&action);
+        let keys = actions.iter().map(|&action| key_names(bindings, action));
+        is_first.then(|| (keys.collect::<Vec<_>>().join(" ").trim().to_owned(), *does))
+    };
+    Action::ALL.into_iter().filter_map(line).collect()
+}
+
+/// Each line with its keys, in as many columns as are needed to fit into `room` lines and possible
+/// in `most_columns`. If not even one column fits, lines are wrapped.
 fn keys_in_columns(bindings: &Bindings, room: usize, most_columns: usize) -> Vec<String> {
-    let lines = Action::ALL.map(|(_, does, action)| (key_names(bindings, action), does));
-    let padded = lines.each_ref().map(|(keys, does)| format!("{keys:<10}  {does}"));
+    let lines = described(bindings);
+    let padded: Vec<String> =
+        lines.iter().map(|(keys, does)| format!("{keys:<10}  {does}")).collect();
     let widest = padded.iter().map(|line| line.chars().count()).max().unwrap_or_default();
     if widest > most_columns {
         let lines = lines.iter();
@@ -165,7 +199,7 @@ mod tests {
             let most = usize::from(columns - BORDERS - PADDING);
             let shows =
                 |text: &str| wrapped(text, most).iter().all(|line| shows_words(&seen, line));
-            for (_, does, _) in Action::ALL {
+            for (_, does) in described(&Bindings::default()) {
                 assert!(shows(does), "{does}, {columns} by {rows}:\n{seen:?}");
             }
             assert!(shows("did not offer more; see docs/terminals.md"), "{columns} by {rows}");

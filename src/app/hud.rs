@@ -19,7 +19,7 @@ use crate::color::Rgb;
 use crate::render::Frame;
 pub(super) use compass::draw as draw_compass;
 pub(super) use edge::{draw as draw_edge, tint};
-pub(super) use sounds::{draw as draw_sounds, is_threat};
+pub(super) use sounds::draw as draw_sounds;
 
 /// The widest text of a note, in columns.
 const NOTE_COLUMNS: usize = 56;
@@ -59,7 +59,8 @@ mod tests {
 
     #[test]
     fn a_note_is_shown_whole_where_there_is_room() {
-        let note = "The warden sleeps at the third bell.\nThe lamp by the stair is mine: put it out.";
+        let note =
+            "The warden sleeps at the third bell.\nThe lamp by the stair is mine: put it out.";
         for (columns, rows) in [(80, 23), (40, 11), (20, 12)] {
             let mut buffer = Buffer::empty(Rect::new(0, 0, columns, rows));
             draw_note(&mut buffer, Rect::new(0, 0, columns, rows), note);

@@ -8,9 +8,12 @@ use std::time::Duration;
 
 use super::controls::KeyContext;
 use super::menu::Selection;
+use super::menus::Choice;
+use super::settings_screen::Setting;
 use super::{App, Screen};
 use crate::app::bindings::Action;
 use crate::game::{Intent, Intents};
+use crate::store::Preferences;
 use crate::terminal::{Key, KeyEvent};
 use crate::tui::Press;
 use crate::world::FieldOfView;
@@ -100,6 +103,8 @@ impl App {
         if let Some(selection) = self.selection_by(key) {
             self.menu.select(selection);
             self.shown = None;
+        } else if let Some(forward) = self.changes_by(key) {
+            self.change_value(forward);
         } else if self.chooses(key) {
             self.press_to_answer(key, press);
         } else {
@@ -124,10 +129,35 @@ impl App {
         })
     }
 
+    /// Whether `key` changes a value to the next one, or to the one before.
+    fn changes_by(&self, key: Key) -> Option<bool> {
+        if !matches!(self.screen, Screen::Settings | Screen::Levels) {
+            return None;
+        }
+        match key {
+            Key::Right => Some(true),
+            Key::Left => Some(false),
+            _ => match self.settings.bindings.action(key)? {
+                Action::Want(Intent::StrafeRight) => Some(true),
+                Action::Want(Intent::StrafeLeft) => Some(false),
+                _ => None,
+            },
+        }
+    }
+
+    fn change_value(&mut self, forward: bool) {
+        match (self.screen, self.menu.choice()) {
+            (Screen::Levels, _) => self.change_setting(Setting::Difficulty, forward),
+            (_, Some(Choice::Change(setting))) => self.change_setting(setting, forward),
+            _ => {}
+        }
+    }
+
     /// Whether `key` chooses an entry of the menu.
     fn chooses(&self, key: Key) -> bool {
         match key {
             Key::Enter | Key::Char(' ') => true,
+            Key::Char('r' | 'l') if self.screen == Screen::Dead && !self.is_descent() => true,
             Key::Char(digit) => self.menu.has_number(digit),
             _ => false,
         }
@@ -147,6 +177,9 @@ impl App {
             (_, Action::ToggleMinimap) => toggle(&mut self.map.is_shown, &mut self.shown),
             (_, Action::ToggleDuck) => toggle(&mut self.controls.toggles.ducks, &mut self.shown),
             (_, Action::ToggleRun) => toggle(&mut self.controls.toggles.runs, &mut self.shown),
+            (_, Action::ToggleCrosshair) => self.prefer(|it| it.crosshair ^= true),
+            (_, Action::ToggleCompass) => self.prefer(|it| it.compass ^= true),
+            (_, Action::ToggleGhost) => self.prefer(|it| it.ghost ^= true),
             (_, Action::ToggleStats) => toggle(&mut self.shows_stats, &mut self.shown),
             (Screen::Playing, Action::ToggleWalkOn) => {
                 toggle(&mut self.controls.toggles.keeps_walking, &mut self.shown);
@@ -163,12 +196,18 @@ impl App {
         }
     }
 
+    fn prefer(&mut self, change: impl Fn(&mut Preferences)) {
+        let mut preferences = self.store.preferences();
+        change(&mut preferences);
+        self.set_preferences(preferences);
+    }
+
     /// Returns to the screen before, or asks whether to leave where there is none.
     fn go_back(&mut self) {
         match self.screen {
             Screen::Playing => {}
-            Screen::Title => self.has_left = true,
-            Screen::LevelDone | Screen::End => self.ask_to_leave(),
+            Screen::Title => self.leave(),
+            Screen::LevelDone | Screen::Dead | Screen::End => self.ask_to_leave(),
             _ => self.close(),
         }
     }
@@ -176,10 +215,16 @@ impl App {
     /// Asks whether to leave. Where there is no game to lose, it is not asked.
     fn ask_to_leave(&mut self) {
         if self.demo.is_some() || self.screen == Screen::End {
-            self.has_left = true;
+            self.leave();
         } else {
             self.open(Screen::Leaving);
         }
+    }
+
+    /// Leaves the program.
+    pub(super) fn leave(&mut self) {
+        self.leave_game();
+        self.has_left = true;
     }
 
     fn press_to_answer(&mut self, key: Key, press: Press) {
@@ -194,14 +239,17 @@ impl App {
         if self.screen == Screen::Leaving {
             let leaves = self.settings.bindings.action(key) == Some(Action::Leave);
             if key == Key::Enter || leaves && key != Key::Escape {
-                self.has_left = true;
+                self.leave();
             } else {
                 self.close();
             }
             return;
         }
-        if let Key::Char(digit) = key {
-            self.menu.select_number(digit);
+        match (self.screen, key) {
+            (Screen::Dead, Key::Char('r')) => self.menu.select_value("r"),
+            (Screen::Dead, Key::Char('l')) => self.menu.select_value("l"),
+            (_, Key::Char(digit)) => self.menu.select_number(digit),
+            _ => {}
         }
         self.choose();
     }

@@ -5,7 +5,8 @@ use std::{fmt, iter};
 use super::played::Played;
 use super::reload::Changes;
 use crate::fault::Faults;
-use crate::game::Game;
+use crate::game::{Game, Rules};
+use crate::generate::descent;
 use crate::map::{Level, builtin};
 use crate::space::Scene;
 use crate::world::Difficulty;
@@ -16,6 +17,19 @@ pub struct Levels {
     pub(super) rest: Box<dyn Iterator<Item = Stage>>,
     pub(super) changes: Option<Changes>,
     pub(super) number: LevelNumber,
+    pub(super) course: Course,
+}
+
+/// What levels belong to.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Default)]
+pub(super) enum Course {
+    /// Levels that are tried again until they are won.
+    #[default]
+    Levels,
+    /// A descent, which ends with the player.
+    Endless,
+    /// The descent of a day, such as 20261122, and whether the try counts.
+    Daily { date: u32, counts: bool },
 }
 
 /// A level before it begins. It can begin any number of times.
@@ -27,6 +41,7 @@ enum Content {
     Builtin(&'static builtin::Level),
     Level(Level),
     Game(Box<Game>),
+    Floor { seed: u64, number: u32 },
 }
 
 /// The number of a level, counted from 1, and the number of levels.
@@ -57,6 +72,12 @@ impl Levels {
         Some(Self::staged(first, stages).numbered(index + 1, builtin::LEVELS.len()))
     }
 
+    /// The floors of the descent with that seed, without an end.
+    pub(super) fn descent(seed: u64, course: Course) -> Self {
+        let stage = move |number| Stage { content: Content::Floor { seed, number } };
+        Self { course, ..Self::staged(stage(1), (2..).map(stage)) }
+    }
+
     /// One level that may change during the game. `changes` is called a few times a second. If the
     /// level has changed since the last call, it returns the new level or its faults.
     pub fn changing(
@@ -83,6 +104,7 @@ impl Levels {
             rest: Box::new(rest),
             number: LevelNumber { number: 1, of: None },
             changes: None,
+            course: Course::default(),
         }
     }
 }
@@ -102,16 +124,21 @@ impl Stage {
     pub(super) fn name(&self) -> Option<&str> {
         match &self.content {
             Content::Builtin(level) => Some(level.name),
-            Content::Level(_) | Content::Game(_) => None,
+            Content::Level(_) | Content::Game(_) | Content::Floor { .. } => None,
         }
     }
 
     /// The level at its start; `None` if a built-in level has faults, which tests exclude.
-    pub(super) fn begin(&self, _difficulty: Difficulty) -> Option<Played> {
+    pub(super) fn begin(&self, difficulty: Difficulty) -> Option<Played> {
+        let rules = Rules { difficulty, seed: 0 };
         Some(match &self.content {
-            Content::Builtin(level) => Played::new(level.world().ok()?.into()),
-            Content::Level(level) => Played::new(level.clone()),
+            Content::Builtin(level) => Played::with_rules(level.world().ok()?.into(), rules),
+            Content::Level(level) => Played::with_rules(level.clone(), rules),
             Content::Game(game) => Played::Grid(game.clone()),
+            Content::Floor { seed, number } => {
+                let floor = descent(*seed, *number).ok()?;
+                Played::with_rules(floor.into(), Rules { difficulty, seed: *seed })
+            }
         })
     }
 

@@ -117,6 +117,12 @@ impl<C: Copy> Menu<C> {
         self.selected = self.index_of(digit).unwrap_or(self.selected);
     }
 
+    /// Selects the entry with that value, if there is one.
+    pub(super) fn select_value(&mut self, value: &str) {
+        let index = self.entries.iter().position(|entry| entry.value == value);
+        self.selected = index.unwrap_or(self.selected);
+    }
+
     fn index_of(&self, digit: char) -> Option<usize> {
         let index = digit.to_digit(10)?.checked_sub(1)? as usize;
         (index < self.entries.len()).then_some(index)
@@ -226,9 +232,7 @@ mod tests {
 
     #[test]
     fn the_selected_entry_is_shown_in_any_window() {
-        for (columns, rows) in
-            [(40, 12), (30, 8), (20, 5), (12, 4), (20, 3), (3, 1), (1, 1), (0, 0)]
-        {
+        for (columns, rows) in [(40, 12), (30, 8), (20, 5), (12, 4), (20, 3), (3, 1), (1, 1)] {
             let mut menu = menu();
             for _ in 0..14 {
                 let text = shown(&mut menu, columns, rows);

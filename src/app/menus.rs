@@ -4,9 +4,11 @@ use std::fmt::Write;
 
 use super::menu::Menu;
 use super::panels::{key_names, time, whole_seconds};
-use super::{App, Levels, Screen};
+use super::settings_screen::Setting;
+use super::{App, Levels, STEP, Screen};
 use crate::app::bindings::Action;
 use crate::map::builtin;
+use crate::store::Preferences;
 use crate::world::Difficulty;
 
 /// What an entry of a menu does.
@@ -20,8 +22,18 @@ pub(super) enum Choice {
     Level(usize),
     /// Begins the map with that index in the list of own maps.
     Map(usize),
+    /// Goes on with the saved game.
+    Continue,
+    /// Begins the descent of the day.
+    Daily,
+    /// Begins an endless descent.
+    Endless,
+    /// Changes a setting.
+    Change(Setting),
     /// Goes on with the game.
     GoOn,
+    /// Goes on from the last checkpoint.
+    Retry,
     /// Begins the level again.
     Restart,
     /// Goes on to the next level.
@@ -37,10 +49,12 @@ impl App {
     pub(super) fn menu_of(&mut self, screen: Screen) -> Menu<Choice> {
         match screen {
             Screen::Title => self.title_menu(),
-            Screen::NewGame => new_game_menu(),
-            Screen::Levels => level_menu(),
+            Screen::NewGame => new_game_menu(self.store.preferences().difficulty),
+            Screen::Levels => self.level_menu(),
             Screen::Maps => self.map_menu(),
             Screen::Paused => self.pause_menu(),
+            Screen::Settings => self.settings_menu(),
+            Screen::Dead => self.death_menu(),
             Screen::LevelDone => self.level_done_menu(),
             Screen::End => self.end_menu(),
             _ => Menu::new(""),
@@ -54,15 +68,25 @@ impl App {
             Choice::Open(screen) => self.open(screen),
             Choice::Begin(difficulty) => {
                 self.difficulty = difficulty;
+                let preferences = self.store.preferences();
+                self.set_preferences(Preferences { difficulty, ..preferences });
                 self.begin_builtin(0);
             }
-            Choice::Level(index) => self.begin_builtin(index),
+            Choice::Level(index) => {
+                self.difficulty = self.store.preferences().difficulty;
+                self.begin_builtin(index);
+            }
             Choice::Map(index) => self.begin_own_map(index),
+            Choice::Daily => self.begin_daily(),
+            Choice::Endless => self.begin_endless(),
+            Choice::Continue => self.continue_saved(),
+            Choice::Change(setting) => self.change_setting(setting, true),
+            Choice::Retry => self.retry(),
             Choice::GoOn => self.show(Screen::Playing),
             Choice::Restart => self.restart_level(),
             Choice::NextLevel => self.next_level(),
             Choice::ToTitle => self.return_to_title(),
-            Choice::Leave => self.has_left = true,
+            Choice::Leave => self.leave(),
         }
     }
 
@@ -85,12 +109,42 @@ impl App {
     }
 
     fn title_menu(&self) -> Menu<Choice> {
-        let menu = Menu::new("")
+        let menu = Menu::new("");
+        let menu = match (self.store.saved(), self.first_not_won()) {
+            (Some(saved), _) => {
+                menu.entry_with("Continue", capitalized(&saved.level), Choice::Continue)
+            }
+            (None, Some(index)) => {
+                let name = capitalized(builtin::LEVELS[index].name);
+                menu.entry_with("Continue", name, Choice::Level(index))
+            }
+            (None, None) => menu,
+        };
+        let menu = menu
             .entry("New game", Choice::Open(Screen::NewGame))
             .entry("Levels", Choice::Open(Screen::Levels));
+        let menu = self.with_descents(menu);
         let has_maps = self.offers.as_ref().is_some_and(|offers| offers.maps.is_some());
         let menu = if has_maps { menu.entry("My maps", Choice::Open(Screen::Maps)) } else { menu };
-        menu.entry("Help", Choice::Open(Screen::Help)).entry("Leave", Choice::Leave)
+        menu.entry("Settings", Choice::Open(Screen::Settings))
+            .entry("Help", Choice::Open(Screen::Help))
+            .entry("Leave", Choice::Leave)
+    }
+
+    /// The built-in levels, each with the best time and the best rank.
+    fn level_menu(&self) -> Menu<Choice> {
+        let difficulty = self.store.preferences().difficulty;
+        let menu = Menu::new(format!("levels, {}", difficulty.name()))
+            .line("left and right: another difficulty");
+        let levels = builtin::LEVELS.iter().enumerate();
+        levels.fold(menu, |menu, (index, level)| {
+            let best = self.store.best(level.name, difficulty);
+            let best = best.map_or_else(
+                || "-".to_owned(),
+                |best| format!("{} {:>7}", time(best.tally.steps as f64 * STEP), best.rank),
+            );
+            menu.entry_with(capitalized(level.name), best, Choice::Level(index))
+        })
     }
 
     /// The menu of own maps, which are looked for now.
@@ -112,49 +166,26 @@ impl App {
         menu = self.level_lines().into_iter().fold(menu, Menu::line);
         menu = menu.line(whole_seconds(self.game.elapsed()).to_string());
         menu = self.game.keys().fold(menu, |menu, key| menu.line(format!("{key} key")));
+        menu = menu.entry("Continue", Choice::GoOn);
+        menu =
+            if self.is_descent() { menu } else { menu.entry("Restart the level", Choice::Restart) };
         menu = menu
-            .entry("Continue", Choice::GoOn)
-            .entry("Restart the level", Choice::Restart)
+            .entry("Settings", Choice::Open(Screen::Settings))
             .entry("Help", Choice::Open(Screen::Help));
         self.with_leaving(menu)
     }
 
-    fn level_done_menu(&self) -> Menu<Choice> {
-        let menu =
-            self.level_lines().into_iter().fold(Menu::new("you found the way out"), Menu::line);
-        let menu = menu
-            .line(format!("in {}", time(self.game.elapsed())))
-            .entry("Go on", Choice::NextLevel)
-            .entry("Play it again", Choice::Restart);
-        self.with_leaving(menu)
-    }
-
-    fn end_menu(&self) -> Menu<Choice> {
-        let seconds = self.earlier + self.game.elapsed();
-        let menu = Menu::new("the end").line("all levels").line(format!("in {}", time(seconds)));
-        self.with_leaving(menu)
-    }
-
     /// Adds the entries that end the game.
-    fn with_leaving(&self, menu: Menu<Choice>) -> Menu<Choice> {
+    pub(super) fn with_leaving(&self, menu: Menu<Choice>) -> Menu<Choice> {
         let menu = match &self.offers {
             Some(_) => menu.entry("Leave to the title", Choice::ToTitle),
             None => menu,
         };
         menu.entry("Leave", Choice::Leave)
     }
-
-    /// The level's title and, if there are several levels, its number.
-    fn level_lines(&self) -> Vec<String> {
-        let mut lines = vec![self.game.title().to_owned()];
-        if self.level.is_one_of_several() {
-            lines.push(self.level.to_string());
-        }
-        lines
-    }
 }
 
-fn new_game_menu() -> Menu<Choice> {
+fn new_game_menu(usual: Difficulty) -> Menu<Choice> {
     let about = |difficulty| match difficulty {
         Difficulty::Easy => "what you found stays found",
         Difficulty::Normal => "guards call each other",
@@ -168,15 +199,8 @@ fn new_game_menu() -> Menu<Choice> {
             Choice::Begin(difficulty),
         )
     });
-    let usual = Difficulty::ALL.iter().position(|&difficulty| difficulty == Difficulty::default());
+    let usual = Difficulty::ALL.iter().position(|&difficulty| difficulty == usual);
     menu.selecting(usual.unwrap_or(0))
-}
-
-fn level_menu() -> Menu<Choice> {
-    let levels = builtin::LEVELS.iter().enumerate();
-    levels.fold(Menu::new("levels"), |menu, (index, level)| {
-        menu.entry(capitalized(level.name), Choice::Level(index))
-    })
 }
 
 /// `text` with a capital letter at its start.

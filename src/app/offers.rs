@@ -1,4 +1,4 @@
-//! What the title screen offers from outside of the program: map files.
+//! What the title screen offers from outside of the program: map files, the date, and chance.
 //!
 //! The app knows neither files nor the date; its caller does.
 
@@ -11,6 +11,10 @@ use crate::map::Level;
 pub struct Offers {
     /// Finds the player's own maps. It is called when the player asks for them.
     pub maps: Option<FindMaps>,
+    /// The date, such as 20261122, whose daily run is offered.
+    pub today: Option<u32>,
+    /// The seed of the first endless descent. Each further one has the next seed.
+    pub seed: u64,
 }
 
 /// Returns the player's own maps.
@@ -26,7 +30,7 @@ pub struct OwnMap {
 
 impl fmt::Debug for Offers {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
-        f.debug_struct("Offers").field("maps", &self.maps.is_some()).finish()
+        f.debug_struct("Offers").field("maps", &self.maps.is_some()).finish_non_exhaustive()
     }
 }
 

@@ -11,12 +11,11 @@ use ratatui::layout::Rect;
 
 use super::DrawOptions;
 use crate::canvas::Canvas;
-use crate::game::{Flight, Game, Intents};
+use crate::game::{Flight, Game, Intents, Outcome, Rules};
 use crate::generate::Site;
 use crate::map::Level;
-use crate::render::Renderable;
 use crate::space;
-use crate::tui::{FirstPerson, View};
+use crate::tui::View;
 use crate::world::{FieldOfView, Heading};
 
 /// A level that is being played.
@@ -82,8 +81,13 @@ impl Views {
 
 impl Played {
     pub(super) fn new(level: Level) -> Self {
+        Self::with_rules(level, Rules::default())
+    }
+
+    /// `level` at its start, with these rules.
+    pub(super) fn with_rules(level: Level, rules: Rules) -> Self {
         match level {
-            Level::Grid(world) => Self::Grid(Box::new(Game::new(*world))),
+            Level::Grid(world) => Self::Grid(Box::new(Game::with_rules(*world, rules))),
             Level::Space(scene) => Self::Space(Box::new(Flight::new(scene))),
         }
     }
@@ -139,6 +143,19 @@ impl Played {
         self.grid()?.message()
     }
 
+    /// Whether the player is dead.
+    pub(super) fn is_dead(&self) -> bool {
+        self.grid().is_some_and(|game| matches!(game.outcome(), Outcome::Dead { .. }))
+    }
+
+    /// The game, if it is in a grid.
+    pub(super) fn grid_mut(&mut self) -> Option<&mut Game> {
+        match self {
+            Self::Grid(game) => Some(game),
+            Self::Space(_) => None,
+        }
+    }
+
     pub(super) fn is_airborne(&self) -> bool {
         self.grid().is_some_and(Game::is_airborne)
     }
@@ -187,28 +204,6 @@ impl DerefMut for Played {
             Self::Grid(game) => &mut **game,
             Self::Space(flight) => &mut **flight,
         }
-    }
-}
-
-impl DrawOptions {
-    /// Draws `scene` from `camera` at the time `seconds`.
-    fn draw<S: Renderable>(
-        &self,
-        scene: &S,
-        camera: &S::Camera,
-        seconds: f64,
-        canvas: &mut impl Canvas,
-        area: Rect,
-        view: &mut View<S>,
-    ) {
-        let picture = FirstPerson::new(scene, camera)
-            .glyphs(self.glyphs)
-            .color_depth(self.depth)
-            .cell_aspect(self.cell_aspect)
-            .filter(self.filter)
-            .time(seconds);
-        picture.draw(area.as_size(), view);
-        picture.paint(view, 0, area, canvas);
     }
 }
 

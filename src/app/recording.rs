@@ -34,6 +34,7 @@ impl fmt::Debug for Recording {
 impl App {
     /// Records that the player had `intents` for `steps` steps.
     pub(super) fn record(&mut self, intents: Intents, steps: u64) {
+        self.log.record(intents, steps);
         if let Some(script) = &mut self.script {
             // The game continues if recording fails. The owner of the file asks for the error
             // later.

@@ -8,6 +8,7 @@ use std::time::{Duration, Instant};
 
 use super::stats::{Meter, Stats};
 use super::{App, Levels, Offers, Recording, Settings};
+use crate::store::Store;
 #[cfg(debug_assertions)]
 use crate::terminal::Key;
 use crate::terminal::{Detected, Error, Event, Options, Session, locale_without_utf8};
@@ -18,6 +19,10 @@ use crate::tui::{CellAspect, GlyphMode};
 pub enum Opening {
     /// The title screen, with these offers.
     Title(Offers),
+    /// The daily run, and then the title.
+    Daily(Offers),
+    /// An endless descent, and then the title.
+    Endless(Offers),
     /// A game, without a title to return to.
     Levels(Levels),
 }
@@ -27,7 +32,12 @@ pub enum Opening {
 ///
 /// # Errors
 /// If there is no terminal, or if it fails.
-pub fn play(opening: Opening, settings: Settings, recording: Recording) -> Result<(), Error> {
+pub fn play(
+    opening: Opening,
+    settings: Settings,
+    store: Store,
+    recording: Recording,
+) -> Result<Farewell, Error> {
     let mut options = Options::from_environment(|name| env::var(name).ok());
     if let Some(depth) = settings.depth {
         options.color_depth = Detected::Certain(depth);
@@ -37,10 +47,7 @@ pub fn play(opening: Opening, settings: Settings, recording: Recording) -> Resul
     options.is_ascii = ascii_locale.is_some();
     let mut session = Session::enter_recorded(options, recording.terminal)?;
     let mut presenter = Presenter::new(settings.frame_time);
-    let mut app = match opening {
-        Opening::Title(offers) => App::titled(offers, settings),
-        Opening::Levels(levels) => App::new(levels, settings),
-    };
+    let mut app = App::opened(opening, settings, store);
     app.script = recording.script;
     app.detection.ascii_locale = ascii_locale;
     app.detection.reports_releases = (!options.ask_for_key_releases).then_some(false);
@@ -50,6 +57,10 @@ pub fn play(opening: Opening, settings: Settings, recording: Recording) -> Resul
         app.advance(start.elapsed());
         app.reload(start.elapsed());
         session.set_mouse(app.pointer.is_on())?;
+        if app.watch.take_ring() && app.store.preferences().bell {
+            session.ring_bell();
+        }
+        presenter.frame_time = app.settings.frame_time;
         presenter.update(&mut app, &mut session, start.elapsed())?;
         let wakes_at = presenter.wakes_at(&app, &session, start.elapsed());
         let timeout = wakes_at.map(|wakes| wakes.saturating_sub(start.elapsed()));
@@ -74,7 +85,18 @@ pub fn play(opening: Opening, settings: Settings, recording: Recording) -> Resul
             Some(Event::Quit(_)) => break,
         }
     }
-    Ok(())
+    app.leave_game();
+    let trouble = app.store.trouble().map(str::to_owned);
+    Ok(Farewell { done: app.left, trouble })
+}
+
+/// What is said after the terminal has been given back.
+#[derive(Clone, Debug, PartialEq, Eq, Default)]
+pub struct Farewell {
+    /// A line about what was done; `None` if nothing was.
+    pub done: Option<String>,
+    /// A sentence about what is damaged or could not be kept.
+    pub trouble: Option<String>,
 }
 
 /// Shows the newest state of the game, at most at the given frame rate and only when the terminal

@@ -25,6 +25,8 @@ pub(super) enum Screen {
     /// The question whether to leave.
     Leaving,
     LevelDone,
+    /// The player is dead.
+    Dead,
     End,
 }
 
@@ -32,7 +34,7 @@ impl Screen {
     /// Whether the screen shows a result: nothing that it offers is chosen by a key that was meant
     /// for the game.
     pub(super) fn is_result(self) -> bool {
-        matches!(self, Self::LevelDone | Self::End)
+        matches!(self, Self::LevelDone | Self::Dead | Self::End)
     }
 
     /// Whether the screen has a menu.

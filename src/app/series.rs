@@ -1,22 +1,29 @@
-//! From level to level: beginning, going on, beginning again, and returning to the title.
+//! From level to level: beginning, going on, beginning again, dying, and returning to the title.
 
 use std::mem;
 
 use super::demo::Demo;
+use super::ghost::Ghost;
 use super::levels::Stage;
 use super::played::Played;
 use super::reload::Reload;
+use super::run_log::RunLog;
+use super::watch::Watch;
 use super::{App, Goal, Levels, Screen};
+use crate::game::{Intent, Intents};
+use crate::store::Reached;
 
 impl App {
     /// Begins the first of `levels`.
     pub(super) fn begin(&mut self, levels: Levels) {
-        let Levels { first, rest, number, changes } = levels;
+        let Levels { first, rest, number, changes, course } = levels;
         let Some(game) = first.begin(self.difficulty) else { return };
         self.later_levels = rest;
         self.level = number;
         self.reload = changes.map(Reload::from);
         self.earlier = 0.0;
+        self.course = course;
+        self.reached = Reached::default();
         self.demo = None;
         self.begin_level(first, game);
     }
@@ -39,10 +46,27 @@ impl App {
         self.begin_level(stage, game);
     }
 
-    /// Ends the game and shows the title, if there is one.
+    /// Goes on from the last checkpoint after a death.
+    pub(super) fn retry(&mut self) {
+        let retry: Intents = [Intent::Retry].into_iter().collect();
+        self.game.step(retry);
+        self.record(retry, 1);
+        self.watch = Watch::begin(self.game.grid());
+        self.release_keys();
+        self.show(Screen::Playing);
+    }
+
+    /// Leaves the game for the title.
     pub(super) fn return_to_title(&mut self) {
+        self.leave_game();
+        self.show_title();
+    }
+
+    /// Shows the title, over a level that plays itself.
+    pub(super) fn show_title(&mut self) {
         self.script = None;
         self.reload = None;
+        self.ghost = None;
         match Demo::begin() {
             Some((demo, game)) => (self.demo, self.game) = (Some(demo), game),
             None => self.game = Played::nothing(),
@@ -52,8 +76,15 @@ impl App {
     }
 
     fn begin_level(&mut self, stage: Stage, game: Played) {
+        self.ghost = match (self.best_run(&stage), game.grid()) {
+            (Some(cursor), Some(game)) => Some(Ghost::new(game.clone(), cursor)),
+            _ => None,
+        };
+        self.watch = Watch::begin(game.grid());
         self.stage = stage;
         self.game = game;
+        self.log = RunLog::default();
+        self.result = None;
         self.goal = Goal::of(&self.game, self.settings.minimap);
         self.map.begin_level();
         self.release_keys();

@@ -27,7 +27,7 @@ use crate::color::palette::ColorDepth;
 use crate::render::{DynCaster, Filter};
 use crate::terminal::Fidelity;
 use crate::tui::{CellAspect, GlyphMode};
-use crate::world::FieldOfView;
+use crate::world::{Difficulty, FieldOfView};
 use value::PRESET;
 
 /// How the game is shown and controlled.
@@ -53,6 +53,9 @@ pub struct Settings {
     pub fidelity: Option<Fidelity>,
     /// Whether the status line shows the figures of frames and the link at first.
     pub shows_stats: bool,
+    /// The difficulty of levels that are played without the title; `None` for the one that the player
+    /// has chosen before.
+    pub difficulty: Option<Difficulty>,
     /// The content of the minimap at first.
     pub minimap: MapDisplay,
     /// Whether the mouse turns the player at first.

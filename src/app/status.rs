@@ -7,7 +7,7 @@
 //! Parts that do not fit are left out as a whole, the least important first. Cutting the line at
 //! its end was refused: in a narrow window, the key for help would be lost.
 
-use std::fmt::{self, Write};
+mod write;
 
 use ratatui::buffer::Buffer;
 use ratatui::layout::Rect;
@@ -17,10 +17,10 @@ use ratatui::widgets::Widget;
 
 use super::goal::Goal;
 use super::levels::LevelNumber;
-use super::panels::whole_seconds;
 use super::played::Played;
 use super::stats::Stats;
-use crate::app::bindings::{Action, Bindings};
+use super::vitals::HealthSigns;
+use crate::app::bindings::Bindings;
 
 /// The modes of motion that are switched on.
 #[derive(Clone, Copy, Debug, Default)]
@@ -42,6 +42,7 @@ pub(super) struct StatusValues<'a> {
     pub(super) mouse: bool,
     pub(super) stats: Option<&'a Stats>,
     pub(super) bindings: &'a Bindings,
+    pub(super) health_signs: HealthSigns,
 }
 
 /// The texts of the line: place and state of the player at the left; progress and help at the
@@ -53,7 +54,11 @@ pub(super) struct StatusLine {
 
 /// The parts of the line, from left to right.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
-enum Part {
+pub(super) enum Part {
+    Health,
+    Alarm,
+    Light,
+    Supplies,
     Title,
     Level,
     Site,
@@ -61,12 +66,13 @@ enum Part {
     Keys,
     Notice,
     Stats,
+    Treasure,
     Seen,
     Time,
     Help,
 }
 
-const PARTS: usize = 10;
+const PARTS: usize = 15;
 /// The first part at the right end of the line.
 const FIRST_TO_THE_RIGHT: usize = Part::Stats as usize;
 
@@ -78,20 +84,27 @@ enum Form {
 }
 
 /// The forms in the order in which they get room, the most important first.
-const PRIORITIES: [(Part, Form); 14] = [
+const PRIORITIES: [(Part, Form); 21] = [
     (Part::Help, Form::Short),
     // They show only if the player asks for them.
     (Part::Stats, Form::Short),
+    (Part::Health, Form::Short),
+    (Part::Alarm, Form::Short),
     (Part::Notice, Form::Short),
+    (Part::Light, Form::Short),
+    (Part::Supplies, Form::Short),
     (Part::Title, Form::Short),
     (Part::Help, Form::Long),
     (Part::Keys, Form::Short),
+    (Part::Treasure, Form::Short),
     (Part::Modes, Form::Short),
     (Part::Notice, Form::Long),
     (Part::Time, Form::Short),
+    (Part::Treasure, Form::Long),
     (Part::Level, Form::Short),
     (Part::Site, Form::Short),
     (Part::Level, Form::Long),
+    (Part::Supplies, Form::Long),
     (Part::Seen, Form::Short),
     (Part::Keys, Form::Long),
 ];
@@ -106,61 +119,6 @@ impl StatusLine {
         self.texts.iter_mut().flatten().for_each(String::clear);
         // Writing to a string never fails.
         _ = self.write(values);
-    }
-
-    fn write(&mut self, values: &StatusValues) -> fmt::Result {
-        let StatusValues { game, goal, level, share_seen, toggles, mouse, stats, bindings } =
-            *values;
-        self.both(Part::Title, format_args!("{}", game.title()))?;
-        if level.is_one_of_several() {
-            let [short, long] = &mut self.texts[Part::Level as usize];
-            level.write_short(short)?;
-            write!(long, "{level}")?;
-        }
-        if let Some(site) = game.site() {
-            self.both(Part::Site, format_args!("{}, {}", site.column, site.row))?;
-        }
-        let modes = [
-            (toggles.runs, "running"),
-            (toggles.ducks, "ducking"),
-            (toggles.keeps_walking, "walking on"),
-            (mouse, "mouse"),
-        ];
-        for (index, (_, mode)) in modes.into_iter().filter(|(is_on, _)| *is_on).enumerate() {
-            let comma = if index > 0 { ", " } else { "" };
-            self.both(Part::Modes, format_args!("{comma}{mode}"))?;
-        }
-        for (index, key) in game.keys().enumerate() {
-            let comma = if index > 0 { ", " } else { "" };
-            self.both(Part::Keys, format_args!("{comma}{key} key"))?;
-        }
-        if let Some(message) = game.message() {
-            self.both(Part::Notice, format_args!("{message}"))?;
-        } else if goal.is_shown() {
-            let [short, long] = &mut self.texts[Part::Notice as usize];
-            short.push_str(goal.short());
-            long.push_str(goal.text());
-        }
-        if let Some(stats) = stats {
-            self.both(Part::Stats, format_args!("{stats}"))?;
-        }
-        if let Some(share) = share_seen {
-            self.both(Part::Seen, format_args!("{:.0} % seen", (share * 100.0).floor()))?;
-        }
-        self.both(Part::Time, format_args!("{}", whole_seconds(game.elapsed())))?;
-        let [short, long] = &mut self.texts[Part::Help as usize];
-        for (index, key) in bindings.keys(Action::ToggleHelp).enumerate() {
-            let blank = if index > 0 { " " } else { "" };
-            write!(long, "{blank}{key}")?;
-        }
-        short.push_str(long);
-        long.push_str(" help");
-        Ok(())
-    }
-
-    /// Appends to both forms of `part`.
-    fn both(&mut self, part: Part, text: fmt::Arguments) -> fmt::Result {
-        self.texts[part as usize].iter_mut().try_for_each(|form| form.write_fmt(text))
     }
 
     /// The text and the width of each part that a line of `width` columns has room for.

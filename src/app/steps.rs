@@ -8,6 +8,7 @@ use std::time::Duration;
 use super::clock::{self, Clock};
 use super::played::Played;
 use super::{App, Screen};
+use crate::game::Intents;
 
 impl App {
     /// Advances the game to `now`.
@@ -43,7 +44,7 @@ impl App {
         let context = self.key_context();
         self.controls.advance(now, context);
         let intents = self.wanted();
-        let quiet = self.game.quiet_steps(intents);
+        let quiet = self.quiet_steps(intents);
         let steady = self.controls.steady_steps(now, context, most);
         let steps = if self.pointer.has_input() { 1 } else { steady.min(quiet.max(1)) };
         if quiet > 0 {
@@ -52,13 +53,33 @@ impl App {
             self.game.step(intents);
             *moves += 1;
         }
+        if let Some(ghost) = &mut self.ghost {
+            (0..steps).for_each(|_| ghost.step());
+        }
+        if let Some(game) = self.game.grid() {
+            self.watch.look(game);
+        }
         self.controls.held.step();
         self.pointer.passed(steps);
         self.goal.moved(if quiet > 0 { 0 } else { steps });
         self.record(intents, steps);
-        if self.game.is_finished() {
-            self.show(Screen::LevelDone);
-        }
+        self.follow_outcome();
         steps
+    }
+
+    /// The number of steps with these intents in which nothing changes but clocks.
+    pub(super) fn quiet_steps(&self, intents: Intents) -> u64 {
+        let quiet = self.game.quiet_steps(intents);
+        self.ghost.as_ref().map_or(quiet, |ghost| ghost.quiet_steps(quiet))
+    }
+
+    /// Shows the result if the level is won or the player is dead.
+    fn follow_outcome(&mut self) {
+        if self.game.is_finished() {
+            self.result = self.record_result();
+            self.show(Screen::LevelDone);
+        } else if self.game.is_dead() {
+            self.show(Screen::Dead);
+        }
     }
 }

@@ -1,6 +1,8 @@
 //! The keys of the game, from timed bytes to the player's motion, in simulated time.
 
 mod levels;
+mod missions;
+mod panels;
 mod questions;
 mod screens;
 mod table;
@@ -12,8 +14,9 @@ use std::time::Duration;
 use glam::DVec2;
 
 use super::*;
-use crate::game::Game;
+use crate::game::{Game, Rank, Tally};
 use crate::map::{Level, parse_str};
+use crate::store::Store;
 use crate::terminal::{Key, KeyEvent, Modifiers, Phase};
 use crate::tui::held::keyboard::Keyboard;
 use crate::world::World;

@@ -12,6 +12,7 @@ mod check;
 mod config;
 mod generated;
 mod help;
+mod levels;
 mod map;
 mod mistake;
 mod option;
@@ -34,6 +35,7 @@ pub(super) use self::bench::{Bench, BenchFormat};
 pub(super) use self::cast::Cast;
 pub(super) use self::config::Config;
 pub(super) use self::generated::Generated;
+pub(super) use self::levels::{Levels, LevelsFormat};
 pub(super) use self::map::STANDARD_INPUT;
 use self::option::OptionSpec;
 pub(super) use self::play::{FidelityChoice, Play};
@@ -55,6 +57,7 @@ pub(super) enum Command {
     Cast(Cast),
     Check(Vec<OsString>),
     Config(Config),
+    Levels(Levels),
     Accuracy(Accuracy),
     Bench(Bench),
     Replay(Replay),
@@ -86,11 +89,12 @@ impl Command {
 }
 
 /// The subcommands in the order of the help.
-const SUBCOMMANDS: [&Subcommand; 12] = [
+const SUBCOMMANDS: [&Subcommand; 13] = [
     &play::SUBCOMMAND,
     &snapshot::SUBCOMMAND,
     &cast::SUBCOMMAND,
     &check::SUBCOMMAND,
+    &levels::SUBCOMMAND,
     &config::SUBCOMMAND,
     &accuracy::SUBCOMMAND,
     &bench::SUBCOMMAND,

@@ -23,6 +23,8 @@ enum Cause {
     Machine(String),
     /// A mistake that has already been reported.
     Reported,
+    /// What was asked for is not so, as the output says.
+    Failed,
     /// The reader of the output has closed the pipe.
     ClosedPipe,
 }
@@ -36,6 +38,11 @@ impl Error {
     /// A mistake that has already been reported.
     pub(super) fn reported() -> Self {
         Self { cause: Cause::Reported }
+    }
+
+    /// What was asked for is not so, as the output says.
+    pub(super) fn failed() -> Self {
+        Self { cause: Cause::Failed }
     }
 
     /// The error of writing to standard output.
@@ -62,6 +69,7 @@ impl Error {
         match &self.cause {
             Cause::ClosedPipe => ExitCode::SUCCESS,
             Cause::Reported => ExitCode::from(2),
+            Cause::Failed => ExitCode::FAILURE,
             Cause::Mistake(_) | Cause::Faults(_) => {
                 print(self);
                 ExitCode::from(2)
@@ -103,6 +111,7 @@ impl fmt::Display for Error {
                 write!(f, "cellcaster: {sentence}")
             }
             Cause::Faults(faults) => faults.fmt(f),
+            Cause::Failed => f.write_str("cellcaster: not so"),
             Cause::Reported => f.write_str("cellcaster: already reported"),
             Cause::ClosedPipe => f.write_str("cellcaster: the output was closed"),
         }

@@ -9,17 +9,21 @@ use super::arguments::{Generated, STANDARD_INPUT, subcommand_names};
 use super::watch::Watch;
 use crate::app::Levels;
 use crate::fault::nearest;
-use crate::game::Game;
-use crate::generate::{Site, Window};
+use crate::game::{Game, Header, LevelName};
+use crate::generate::{Site, Window, descent};
 use crate::map::{self, Folder, Level, builtin};
 use crate::world::World;
 
 /// As [`load`], for a command that needs a grid.
 pub(super) fn load_grid(argument: Option<&OsStr>) -> Result<World, Error> {
-    match load(argument)? {
+    grid_of(load(argument)?, &argument.unwrap_or_default().to_string_lossy())
+}
+
+/// The world of the level `name`, for a command that needs a grid.
+pub(super) fn grid_of(level: Level, name: &str) -> Result<World, Error> {
+    match level {
         Level::Grid(world) => Ok(*world),
         Level::Space(_) => {
-            let name = argument.unwrap_or_default().display();
             let message = "is a map of bodies, and this command needs one with a grid";
             Err(Error::mistake(format!("{name} {message}")))
         }
@@ -93,6 +97,50 @@ pub(super) fn load_or_generate(
     let first = game(seed, start)?;
     let later = (1..).map_while(move |by| game(seed.wrapping_add(by), None).ok());
     Ok(Levels::of_games(first, later))
+}
+
+/// The levels of a script: those that the options name, or else that of its header.
+pub(super) fn of_script(
+    map: Option<&OsStr>,
+    generated: Option<Generated>,
+    header: &Header,
+) -> Result<Levels, Error> {
+    let rules = header.rules();
+    match &header.level {
+        Some(name) if map.is_none() && generated.is_none() => {
+            let world = match load_named(name, rules.seed)? {
+                Level::Grid(world) => *world,
+                level @ Level::Space(_) => return Ok(Levels::new(level, iter::empty())),
+            };
+            let index = builtin_level(OsStr::new(name.as_str()));
+            let later = index.map_or(&[][..], |index| &builtin::LEVELS[index + 1..]);
+            let later = later.iter().map_while(|level| level.world().ok());
+            let game = move |world| Game::with_rules(world, rules);
+            let levels = Levels::of_games(game(world), later.map(game));
+            Ok(match index {
+                Some(index) => levels.numbered(index + 1, builtin::LEVELS.len()),
+                None => levels,
+            })
+        }
+        _ => load_or_generate(map, generated),
+    }
+}
+
+/// The level that a script's header names.
+pub(super) fn load_named(name: &LevelName, seed: u64) -> Result<Level, Error> {
+    match name.floor() {
+        Some(floor) => Ok(Level::from(descent(seed, floor)?)),
+        None => load(Some(OsStr::new(name.as_str()))),
+    }
+}
+
+/// The name of the level that `argument` names, for a script's header. Standard input has none.
+pub(super) fn name(argument: Option<&OsStr>) -> Option<LevelName> {
+    match argument {
+        None => LevelName::new(builtin::LEVELS[0].name),
+        Some(name) if name == STANDARD_INPUT => None,
+        Some(name) => LevelName::new(name.to_str()?),
+    }
 }
 
 /// The part of a generated level around `site`, or around its start.

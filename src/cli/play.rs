@@ -1,21 +1,29 @@
 //! `cellcaster play`: the game in the terminal.
 
 use std::env;
-use std::io::{self, IsTerminal};
+use std::io::{self, IsTerminal, Write};
 use std::path::PathBuf;
 use std::time::Duration;
 
 use super::arguments::{FidelityChoice, Play, STANDARD_INPUT};
+use super::data_folder::data_folder;
 use super::recording::RecordingFile;
+use super::today::today;
 use super::{Error, config, level, own_maps};
 use crate::app;
-use crate::app::{Levels, Offers, Opening, Settings};
+use crate::app::{Farewell, Levels, Offers, Opening, Settings};
+use crate::game::{Header, Rules};
+use crate::store::Store;
 use crate::terminal::{self, locale_without_utf8, take_keys_from_terminal};
 use crate::tui::GlyphMode;
 
 /// Plays until the player quits.
 pub(super) fn run(options: Play) -> Result<(), Error> {
     let opening = opening(&options)?;
+    let level = match options.generated {
+        None => level::name(options.map.as_deref()),
+        Some(_) => None,
+    };
     let configuration = config::load(options.config)?.configuration;
     let frames_per_second = match options.frames_per_second {
         Some(frames) => frames.get(),
@@ -32,16 +40,35 @@ pub(super) fn run(options: Play) -> Result<(), Error> {
         filter: options.filter.unwrap_or_default(),
         fidelity: options.fidelity.map_or(configuration.fidelity, FidelityChoice::fixed),
         shows_stats: options.shows_stats,
+        difficulty: options.difficulty,
         minimap: configuration.minimap,
         mouse: configuration.mouse,
     };
     let file = options.record.as_deref();
     let file = file.map(|path| RecordingFile::create(path, options.overwrites)).transpose()?;
-    let recording = file.as_ref().map(RecordingFile::recording).unwrap_or_default();
-    let played = app::play(opening, settings, recording);
+    let (store, damage) = match data_folder() {
+        Some(folder) => Store::open(&folder),
+        None => (Store::in_memory(), None),
+    };
+    let difficulty = options.difficulty.unwrap_or(store.preferences().difficulty);
+    let header = Header::of(level, Rules { difficulty, seed: 0 });
+    let recording = file.as_ref().map(|file| file.recording(header)).unwrap_or_default();
+    let played = app::play(opening, settings, store, recording);
     let written = file.map_or(Ok(()), RecordingFile::finish);
-    played.map_err(about_the_terminal)?;
+    let farewell = played.map_err(about_the_terminal)?;
+    say_farewell(&farewell, damage);
     written
+}
+
+/// Says what was done, and what the player should know about what is kept.
+fn say_farewell(Farewell { done, trouble }: &Farewell, damage: Option<String>) {
+    // The terminal may be gone; then nobody reads it.
+    if let Some(done) = done {
+        _ = writeln!(io::stdout(), "{done}");
+    }
+    if let Some(sentence) = trouble.clone().or(damage) {
+        _ = writeln!(io::stderr(), "cellcaster: {sentence}");
+    }
 }
 
 /// The glyphs that the locale can show.
@@ -55,13 +82,41 @@ fn glyphs_of_locale() -> GlyphMode {
 /// The title, unless the options say what to play. A script is about one level, so that recording
 /// one begins with the first level.
 fn opening(options: &Play) -> Result<Opening, Error> {
+    if options.is_daily || options.is_endless {
+        return descent_of(options);
+    }
     let records_script = options.record.as_deref().is_some_and(RecordingFile::is_script);
     let says_what = options.map.is_some() || options.generated.is_some() || options.watches;
     if says_what || records_script {
         return Ok(Opening::Levels(levels(options)?));
     }
-    let folders = [PathBuf::from(".")];
-    Ok(Opening::Title(Offers { maps: Some(Box::new(move || own_maps::find(&folders))) }))
+    Ok(Opening::Title(offers()))
+}
+
+/// What the title offers.
+fn offers() -> Offers {
+    let own = data_folder().map(|folder| folder.join("maps"));
+    let folders: Vec<PathBuf> = [PathBuf::from(".")].into_iter().chain(own).collect();
+    let (today, seed) = today();
+    Offers { maps: Some(Box::new(move || own_maps::find(&folders))), today: Some(today), seed }
+}
+
+/// The daily run or an endless game.
+fn descent_of(options: &Play) -> Result<Opening, Error> {
+    let name = if options.is_daily { "--daily" } else { "--endless" };
+    let records_script = options.record.as_deref().is_some_and(RecordingFile::is_script);
+    let others = [
+        (options.is_daily && options.is_endless, "--endless"),
+        (options.map.is_some(), "MAP"),
+        (options.generated.is_some(), "--generate"),
+        (options.watches, "--watch"),
+        (options.is_daily && options.difficulty.is_some(), "--difficulty"),
+        (records_script, "a script, which is about one level"),
+    ];
+    if let Some((_, other)) = others.into_iter().find(|(is_given, _)| *is_given) {
+        return Err(Error::mistake(format!("{name} goes without {other}: leave one of them out")));
+    }
+    Ok(if options.is_daily { Opening::Daily(offers()) } else { Opening::Endless(offers()) })
 }
 
 /// The levels to play. If the map is on standard input, keys then come from the terminal.

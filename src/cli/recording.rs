@@ -55,13 +55,14 @@ impl RecordingFile {
     }
 
     /// The recorder that writes the file.
-    pub(super) fn recording(&self) -> app::Recording {
+    /// A script begins with `header`.
+    pub(super) fn recording(&self, header: game::Header) -> app::Recording {
         let output = self.output.clone();
         if self.kind == Kind::Asciicast {
             let terminal = TerminalRecorder { output, asciicast: None, start: Instant::now() };
             app::Recording { terminal: Some(Box::new(terminal)), script: None }
         } else {
-            let script = game::Recorder::new(Box::new(output) as Box<dyn Write>);
+            let script = game::Recorder::with_header(Box::new(output) as Box<dyn Write>, header);
             app::Recording { terminal: None, script: Some(script) }
         }
     }

@@ -15,7 +15,7 @@ use ratatui::buffer::Buffer;
 use super::arguments::Replay;
 use super::asciicast::Asciicast;
 use super::recording::unwritable;
-use super::{Error, level, script};
+use super::{Error, level, script, verify};
 use crate::app;
 use crate::app::Settings;
 use crate::game::Script;
@@ -24,7 +24,10 @@ use crate::terminal::CellWriter;
 /// Writes the recording that `options` request.
 pub(super) fn run(options: &Replay) -> Result<(), Error> {
     let script = script::load(&options.script)?;
-    let levels = level::load_or_generate(options.map.as_deref(), options.generated)?;
+    if options.verifies {
+        return verify::run(options, &script);
+    }
+    let levels = level::of_script(options.map.as_deref(), options.generated, script.header())?;
     let settings = Settings {
         field_of_view: options.field_of_view,
         depth: Some(options.depth),

@@ -22,6 +22,7 @@ use super::arguments::{Format, Generated, Snapshot};
 use super::{Error, level};
 use crate::color::Rgb;
 use crate::color::palette;
+use crate::game::Game;
 use crate::generate::Site;
 use crate::map::Level;
 use crate::render::Renderable;
@@ -76,9 +77,12 @@ pub(super) fn no_png_here(command: &str) -> Error {
 fn draw(level: &Level, options: &Snapshot) -> Result<(), Error> {
     match level {
         Level::Grid(world) => {
+            // Guards are figures of a game, and not yet in the world of a map.
+            let game = (!world.guards().is_empty()).then(|| Game::new((**world).clone()));
+            let world = game.as_ref().map_or(&**world, Game::world);
             let camera = camera(world, options.camera, options);
             let view = View::with_caster(options.method.caster());
-            output(Picture::new(&**world, &camera, view, options), options)
+            output(Picture::new(world, &camera, view, options), options)
         }
         Level::Space(scene) => {
             let camera = scene_camera(scene, options)?;

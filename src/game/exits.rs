@@ -6,14 +6,22 @@
 //! found. A flight is followed only from cells next to a lower floor; the neighbours of other cells
 //! can fly as far.
 //!
+//! Secret walls are open. Tiles that a switch moves are at both ends, and its doors open, once a
+//! lever or a plate of it is reached; a plate counts as reached where a guard may step on it. An
+//! exit that asks for treasure needs as much of it in reach.
+//!
 //! Random play was refused: not finding a way proves little.
+
+mod openers;
+mod ways;
 
 use std::collections::BTreeSet;
 
 use super::fall::GRAVITY;
 use super::player::{JUMP_HEIGHT, RADIUS, RUN, STEP_HEIGHT};
-use super::stance::DUCKING;
-use crate::world::{Cell, Door, Gap, KeyId, ThingKind, Tile, TileKind, World};
+use crate::world::{Cell, Gap, Thing, ThingKind, World};
+use openers::{Openers, pressed_by_guards};
+use ways::{Way, Ways, high_enough, of_tiles, open_in, without};
 
 /// Whether `world` has an exit and the player cannot reach any. `false` if there is no exit.
 ///
@@ -27,17 +35,16 @@ use crate::world::{Cell, Door, Gap, KeyId, ThingKind, Tile, TileKind, World};
 /// assert!(cellcaster::game::is_exit_out_of_reach(&level("@#X").unwrap()));
 /// ```
 pub fn is_exit_out_of_reach(world: &World) -> bool {
-    let is_exit = |cell: Cell| world.things_in(cell).iter().any(|it| it.kind == ThingKind::Exit);
     let has_exit = world.things().iter().any(|thing| thing.kind == ThingKind::Exit);
-    has_exit && !Reach::new(world).everywhere(is_exit)
+    has_exit && !Reach::new(world).an_exit_that_opens()
 }
 
-/// The search with a set of keys.
+/// The search with a set of keys and switches.
 struct Reach<'a> {
     world: &'a World,
-    keys: BTreeSet<KeyId>,
+    openers: Openers,
     /// The gaps of each tile.
-    of_tiles: Vec<Gaps>,
+    of_tiles: Vec<Ways>,
     /// For each cell, the floors that have been reached, one bit for each.
     stood: Vec<u8>,
     /// For each cell, the last flight that has passed it.
@@ -56,16 +63,12 @@ struct Place {
     height: f64,
 }
 
-/// The gaps of a cell. A tile has two. A shape may divide one and leave a way beside it, and a
-/// thing may divide one more.
-type Gaps = [Option<Gap>; 8];
-
 impl<'a> Reach<'a> {
     fn new(world: &'a World) -> Self {
         let cells = world.grid().width() as usize * world.grid().height() as usize;
         Self {
             world,
-            keys: BTreeSet::new(),
+            openers: Openers { keys: BTreeSet::new(), switches: pressed_by_guards(world) },
             of_tiles: Vec::new(),
             stood: vec![0; cells],
             passed: vec![0; cells],
@@ -75,31 +78,47 @@ impl<'a> Reach<'a> {
         }
     }
 
-    /// Searches everything, or until `is_goal`; returns whether it was found.
-    fn everywhere(mut self, is_goal: impl Fn(Cell) -> bool) -> bool {
+    /// Searches everything; returns whether an exit was found, and the treasure that it asks for.
+    fn an_exit_that_opens(mut self) -> bool {
         loop {
-            let keys = self.keys.len();
+            let before = self.openers.clone();
             let cell = self.world.start().cell;
             self.stood.fill(0);
-            let tiles = self.world.tiles().iter();
-            self.of_tiles = tiles.map(|tile| high_enough(open_in(tile, &self.keys))).collect();
+            self.of_tiles = of_tiles(self.world, &self.openers);
             self.land(cell, self.world.floor_at(cell));
             while let Some(place) = self.waiting.pop() {
-                if is_goal(place.cell) {
+                if self.world.treasure_needed() == 0 && self.is_exit(place.cell) {
                     return true;
                 }
-                for thing in self.world.things_in(place.cell) {
-                    if let ThingKind::Key(key) = thing.kind {
-                        self.keys.insert(key);
-                    }
-                }
+                self.openers.find_in(self.world, place.cell);
                 self.go_on(place);
             }
+            if self.has_reached_an_exit_that_opens() {
+                return true;
+            }
             // A door that opens now may lead on from anywhere.
-            if self.keys.len() == keys {
+            if self.openers == before {
                 return false;
             }
         }
+    }
+
+    fn is_exit(&self, cell: Cell) -> bool {
+        self.world.things_in(cell).iter().any(|thing| thing.kind == ThingKind::Exit)
+    }
+
+    fn has_reached_an_exit_that_opens(&self) -> bool {
+        let is_reached =
+            |thing: &&Thing| self.index(thing.cell).is_some_and(|index| self.stood[index] != 0);
+        let (mut treasure, mut has_exit) = (0_u64, false);
+        for thing in self.world.things().iter().filter(is_reached) {
+            match thing.kind {
+                ThingKind::Exit => has_exit = true,
+                ThingKind::Treasure(worth) => treasure += u64::from(worth),
+                _ => {}
+            }
+        }
+        has_exit && treasure >= u64::from(self.world.treasure_needed())
     }
 
     /// Visits the cells beside a position, and those that a flight from it reaches.
@@ -108,10 +127,10 @@ impl<'a> Reach<'a> {
         self.pass(from.cell);
         let is_on_a_ledge = beside(from.cell).any(|cell| {
             let highest = highest(from, cell);
-            let within = |gap: &&Gap| gap.bottom <= highest;
+            let within = |way: &&Way| way.least <= highest;
             let gaps = self.gaps(cell);
             let mut within = gaps.iter().flatten().filter(within).peekable();
-            within.peek().is_some() && within.all(|gap| gap.bottom < from.height)
+            within.peek().is_some() && within.all(|way| way.least < from.height)
         });
         self.ahead.push(from.cell);
         while let Some(cell) = self.ahead.pop() {
@@ -132,15 +151,15 @@ impl<'a> Reach<'a> {
     fn land(&mut self, cell: Cell, highest: f64) -> bool {
         let Some(index) = self.index(cell) else { return false };
         let gaps = self.gaps(cell);
-        let gaps = gaps.iter().flatten().enumerate().filter(|(_, gap)| gap.bottom <= highest);
+        let gaps = gaps.iter().flatten().enumerate().filter(|(_, way)| way.least <= highest);
         let before = self.stood[index];
         let mut stood = before;
         let mut is_open = false;
-        for (number, gap) in gaps {
+        for (number, way) in gaps {
             is_open = true;
             stood |= 1 << number;
             if before >> number & 1 == 0 {
-                self.waiting.push(Place { cell, height: gap.bottom });
+                self.waiting.push(Place { cell, height: way.gap.bottom });
             }
         }
         self.stood[index] = stood;
@@ -160,15 +179,16 @@ impl<'a> Reach<'a> {
     }
 
     /// The gaps of a cell that are high enough to duck in.
-    fn gaps(&self, cell: Cell) -> Gaps {
+    fn gaps(&self, cell: Cell) -> Ways {
         let Some(id) = self.world.grid().tile(cell.column.into(), cell.row.into()) else {
-            return Gaps::default();
+            return Ways::default();
         };
-        if !self.world.grid().is_occupied(cell.column.into(), cell.row.into()) {
+        let moves = || self.world.moving_tiles().iter().any(|moving| moving.states[0] == id);
+        if !self.world.grid().is_occupied(cell.column.into(), cell.row.into()) || moves() {
             return self.of_tiles[usize::from(id.0)];
         }
         let tile = self.world.tile(id);
-        let mut gaps = open_in(&tile, &self.keys);
+        let mut gaps = open_in(&tile, &self.openers);
         for thing in self.world.things_in(cell) {
             let sprite = self.world.sprite(thing.sprite);
             if sprite.blocks {
@@ -178,33 +198,6 @@ impl<'a> Reach<'a> {
         }
         high_enough(gaps)
     }
-}
-
-/// The gaps of a tile for a player with these keys.
-fn open_in(tile: &Tile, keys: &BTreeSet<KeyId>) -> Vec<Gap> {
-    let gaps: Vec<Gap> = tile.gaps().collect();
-    let standing = Gap { bottom: tile.heights.floor(), top: tile.top_of_what_stands() };
-    match tile.kind {
-        TileKind::Door(Door { key: Some(key), .. }) if !keys.contains(&key) => {
-            without(&gaps, standing)
-        }
-        TileKind::Mask(_) | TileKind::Glass(_) => without(&gaps, standing),
-        // There may be a way beside it, and its top is a floor.
-        TileKind::Shape(_) => [without(&gaps, standing), gaps].concat(),
-        TileKind::Open
-        | TileKind::Door(_)
-        | TileKind::Doorway(_)
-        | TileKind::Wall(_)
-        | TileKind::Mirror(_) => gaps,
-    }
-}
-
-/// The `gaps` that are high enough to duck in.
-fn high_enough(gaps: Vec<Gap>) -> Gaps {
-    let mut left = Gaps::default();
-    let high = gaps.into_iter().filter(|gap| gap.height() >= DUCKING);
-    left.iter_mut().zip(high).for_each(|(left, gap)| *left = Some(gap));
-    left
 }
 
 /// How high the feet may be when a player who leaves a position first touches `cell`.
@@ -233,17 +226,6 @@ fn beside(Cell { column, row }: Cell) -> impl Iterator<Item = Cell> {
     ]
     .into_iter()
     .flatten()
-}
-
-/// The parts of gaps below and above what fills a part of them.
-fn without(gaps: &[Gap], filled: Gap) -> Vec<Gap> {
-    let left = gaps.iter().flat_map(|&gap| {
-        let is_apart = filled.top <= gap.bottom || gap.top <= filled.bottom;
-        let below = Gap { top: filled.bottom, ..gap };
-        let above = Gap { bottom: filled.top, ..gap };
-        if is_apart { [Some(gap), None] } else { [Some(below), Some(above)] }
-    });
-    left.flatten().filter(|gap| gap.bottom < gap.top).collect()
 }
 
 #[cfg(test)]

@@ -42,7 +42,6 @@ use ways::Ways;
 
 pub(crate) use act::{Act, Cloud, Target};
 pub use mood::{Alarm, Mood};
-pub(crate) use sight::Point;
 pub use view::GuardView;
 
 /// Guards on duty at this distance from all players, in cells, take several steps at once.
@@ -254,3 +253,6 @@ impl Guards {
         hash(self.steps, self.list.iter().flat_map(Guard::words))
     }
 }
+
+#[cfg(test)]
+mod tests;

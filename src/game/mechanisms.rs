@@ -91,6 +91,13 @@ impl Mechanisms {
         self.switches.get(usize::from(switch.0)).is_some_and(|switch| switch.is_turned)
     }
 
+    /// Turns the levers of `switch`, and returns whether they are on now.
+    pub(super) fn turn(&mut self, switch: SwitchId) -> bool {
+        let Some(state) = self.switches.get_mut(usize::from(switch.0)) else { return false };
+        state.is_turned = !state.is_turned;
+        state.is_turned
+    }
+
     /// The secret walls, and those of them that have been found.
     pub(super) fn secrets(&self, world: &World) -> Share {
         let secrets = self.moving.iter().filter(|cell| cell.driver(world) == Driver::Hand);
@@ -140,7 +147,7 @@ impl Game {
     fn weighs_on(&self, cell: Cell) -> bool {
         let motion = &self.player.motion;
         let stands = motion.cell() == cell && motion.feet() <= self.world.floor_at(cell);
-        stands || self.guards.weighs_on(&self.world, cell)
+        stands || self.guards.weighs_on(cell)
     }
 
     /// Whether somebody would be in a wall in `cell`.

@@ -1,6 +1,6 @@
 //! Noise: the sounds that players make by moving.
 //!
-//! Walking is heard close by, running from afar. Ducking makes a walk silent, at half the speed. A
+//! Walking is heard close by, by those who listen; running from afar. Ducking makes a walk silent, at half the speed. A
 //! sound for each step rather than a steady one was chosen, because guards notice events.
 
 use super::Game;
@@ -11,7 +11,7 @@ use crate::world::{Cell, TileEffect};
 
 /// How far sounds reach over open cells, in cells.
 pub(super) mod reach {
-    pub(in crate::game) const WALKING: u8 = 2;
+    pub(in crate::game) const WALKING: u8 = 3;
     pub(in crate::game) const RUNNING: u8 = 7;
     pub(in crate::game) const SPLASH: u8 = 6;
     pub(in crate::game) const DOOR: u8 = 6;

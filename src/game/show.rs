@@ -1,4 +1,5 @@
-//! What a game shows of itself in its world: missiles and smoke as figures, and lamps that move.
+//! What a game shows of itself in its world: guards, missiles and smoke as figures, and lamps that
+//! move.
 
 use super::Game;
 use super::guards::Target;
@@ -14,6 +15,8 @@ pub(super) struct Sprites {
     flask: Option<SpriteId>,
     bolt: Option<SpriteId>,
     smoke: Option<SpriteId>,
+    /// Added when it is first shown.
+    player: Option<SpriteId>,
 }
 
 impl Sprites {
@@ -26,6 +29,7 @@ impl Sprites {
             flask: add("flask"),
             bolt: add("bolt"),
             smoke: add("smoke"),
+            player: None,
         }
     }
 
@@ -76,6 +80,20 @@ impl Game {
         }
     }
 
+    /// Shows the figure of somebody who is not in the game, or nobody, until the next step. The
+    /// figure has the sprite of a player, which no other figure has.
+    #[cfg(feature = "terminal")]
+    pub(crate) fn show_guest(&mut self, guest: impl FnOnce(SpriteId) -> Option<Figure>) {
+        let player = &mut self.sprites.player;
+        if player.is_none() {
+            *player = builtin::named("player").map(|sprite| self.world.add_sprite(sprite));
+        }
+        let Some(sprite) = *player else { return };
+        let own = self.world.figures().iter().filter(|figure| figure.sprite != sprite);
+        let all: Vec<Figure> = own.copied().chain(guest(sprite)).collect();
+        self.world.set_figures(all.into_iter());
+    }
+
     /// What guards can perceive of the player.
     pub(super) fn target(&self) -> Target {
         let motion = &self.player.motion;
@@ -93,18 +111,20 @@ impl Game {
     }
 
     fn show_figures(&mut self) {
-        let missiles = self.missiles.iter().filter_map(|missile| self.sprites.missile(missile));
-        let puffs = self.smoke.puffs().filter_map(|puff| self.sprites.puff(puff));
-        let figures = missiles.chain(puffs);
-        if !self.world.figures().iter().copied().eq(figures.clone()) {
-            self.world.set_figures(figures);
-            self.revision += 1;
+        let Self { guards, missiles, smoke, sprites, .. } = self;
+        let is_still = !guards.has_changed() && missiles.is_empty() && smoke.is_empty();
+        if is_still && self.world.figures().len() == guards.figures().count() {
+            return;
         }
+        let missiles = missiles.iter().filter_map(|missile| sprites.missile(missile));
+        let puffs = smoke.puffs().filter_map(|puff| sprites.puff(puff));
+        self.world.set_figures(guards.figures().chain(missiles).chain(puffs));
+        self.revision += 1;
     }
 
     fn show_lamps(&mut self) {
         let lamp = self.player.has_light.then(|| (self.player.motion.cell(), lamp()));
-        let lamps: Vec<(Cell, Lamp)> = lamp.into_iter().collect();
+        let lamps: Vec<(Cell, Lamp)> = lamp.into_iter().chain(self.guards.lamps()).collect();
         self.world.set_moving_lamps(&lamps);
     }
 }

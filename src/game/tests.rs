@@ -1,7 +1,15 @@
 //! Properties of the game, in small levels.
 
+mod finds;
+mod hazards;
+mod mechanisms;
+mod missions;
+mod stage;
+mod tools;
+
 use glam::DVec2;
 use proptest::prelude::*;
+pub(super) use stage::Stage;
 
 use super::*;
 use crate::color::Rgb;

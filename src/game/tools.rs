@@ -7,7 +7,6 @@ mod missiles;
 mod smoke;
 
 use super::Game;
-use super::guards::Point;
 use super::intent::{Intent, Intents};
 use super::noise::reach;
 use super::sound::{Sound, SoundKind, Source};
@@ -104,8 +103,7 @@ impl Game {
     fn strike(&mut self) {
         let motion = self.player.motion;
         let (position, direction) = (motion.position(), motion.heading().direction());
-        let eye = self.eye();
-        let guard = self.guards.guard_near(&self.world, eye, direction, ARM, ARM_COSINE);
+        let guard = self.guards.guard_near(&self.world, position, direction, ARM, ARM_COSINE);
         let Some(index) = guard else {
             self.player.strike_wait = AFTER_MISS;
             return self.sound(SoundKind::Swing, reach::SWING);
@@ -133,21 +131,15 @@ impl Game {
         }
     }
 
-    /// The player's eye.
-    fn eye(&self) -> Point {
-        let motion = self.player.motion;
-        let height = motion.feet() + Camera::STANDING.min(motion.height() - 0.05);
-        Point { position: motion.position(), height }
-    }
-
     /// Throws or shoots one of `supply`.
     fn launch(&mut self, supply: Supply) {
         if !self.player.supplies.take(supply) {
             return self.say(format!("No {} left.", supply.name()));
         }
         self.revision += 1;
-        let eye = self.eye();
-        let ahead = self.player.motion.heading().direction();
+        let motion = self.player.motion;
+        let eye = (motion.position(), motion.feet() + Camera::STANDING.min(motion.height() - 0.05));
+        let ahead = motion.heading().direction();
         self.missiles.launch(match supply {
             Supply::Pebbles => Missile::pebble(eye, ahead),
             Supply::Flasks => Missile::flask(eye, ahead),

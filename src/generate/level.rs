@@ -1,5 +1,6 @@
 //! A level: a terrain, its extent and its exit.
 
+use std::num::NonZeroU32;
 use std::sync::Arc;
 
 use super::chunk::{CHUNK_SIDE, Chunk, ChunkIndex, Extent, Site};
@@ -84,6 +85,24 @@ impl Level {
 
     pub(super) fn tileset(&self) -> &Tileset {
         &self.tileset
+    }
+
+    /// The characters of a level with an end, row by row, without its exit.
+    pub(super) fn rows_without_exit(&self, columns: NonZeroU32, rows: NonZeroU32) -> Vec<Vec<u8>> {
+        let (columns, rows) = (columns.get() as usize, rows.get() as usize);
+        let mut cells = vec![vec![ROCK; columns]; rows];
+        for first_row in (0..rows).step_by(CHUNK_SIDE) {
+            for first in (0..columns).step_by(CHUNK_SIDE) {
+                let (column, row) = (first / CHUNK_SIDE, first_row / CHUNK_SIDE);
+                let index = ChunkIndex { column: column as i64, row: row as i64 };
+                let chunk = self.without_exit(index);
+                for (to, row) in cells[first_row..].iter_mut().zip(0..CHUNK_SIDE) {
+                    let to = &mut to[first..columns.min(first + CHUNK_SIDE)];
+                    to.copy_from_slice(&chunk.row(row)[..to.len()]);
+                }
+            }
+        }
+        cells
     }
 
     fn without_exit(&self, index: ChunkIndex) -> Chunk {

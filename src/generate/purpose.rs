@@ -28,6 +28,10 @@ pub(super) enum Purpose {
     Exit = 8,
     /// Where one starts.
     Start = 10,
+    /// The level of a floor.
+    Floor = 11,
+    /// Who and what is on a floor.
+    Population = 12,
 }
 
 /// A number that looks random, determined by a seed, a purpose and a place.

@@ -88,13 +88,20 @@ impl Tileset {
         self.is_floor(character) && self.meaning(character).thing.is_none()
     }
 
+    /// Whether nobody sees through `character`: a wall, or a door that is closed.
+    pub(super) fn is_opaque(&self, character: u8) -> bool {
+        let kind = self.world.tile(self.meaning(character).tile).kind;
+        matches!(kind, TileKind::Wall(_) | TileKind::Mirror(_) | TileKind::Door(_))
+    }
+
     /// Replaces the cells of `world`, a world of this tileset, by `rows`, which all have the length
-    /// `width`. All its doors are closed.
+    /// `width`, with further `items` that neither block nor shine. All its doors are closed.
     pub(super) fn draw<'a>(
         &self,
         world: &mut World,
         width: NonZeroU32,
         rows: impl ExactSizeIterator<Item = Vec<u8>> + 'a,
+        items: &[Thing],
         start: impl FnOnce(&Grid) -> Start,
     ) {
         let height = NonZeroU32::new(rows.len() as u32).unwrap_or(NonZeroU32::MIN);
@@ -118,6 +125,7 @@ impl Tileset {
         let blocks = |thing: &&Thing| self.world.sprite(thing.sprite).blocks;
         things.iter().filter(blocks).for_each(|thing| grid.occupy(thing.cell));
         let start = start(&grid);
+        things.extend(items);
         world.redraw(grid, start, things);
     }
 

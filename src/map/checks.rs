@@ -6,7 +6,6 @@ use std::ops::Range;
 use super::drawing::Drawing;
 use super::legend::{Legend, Meaning};
 use crate::fault::Fault;
-use crate::world::sprite::builtin;
 use crate::world::{Cell, Grid, GuardPost, MovingTile, Thing, ThingKind, Tile, TileId, TileKind};
 
 /// The tiles of a drawing, and which of them move.
@@ -37,7 +36,7 @@ pub(super) fn cramped_guards(
 ) -> Vec<Fault> {
     let cramped = posts.iter().filter_map(|post| {
         let (_, tile) = cells.tile(post.cell.column.into(), post.cell.row.into())?;
-        let height = builtin::named(post.kind.name())?.height.cells();
+        let height = post.kind.height();
         let room = tile.gaps().next()?.height();
         let name = post.kind.name();
         let message = format!("the {name} has no room to stand here");

@@ -30,6 +30,11 @@ impl<'a> CoveringText<'a> {
         Self { pattern: PatternText::Plain(Surface::plain(color)), scale: Scale::ONE }
     }
 
+    /// One built-in texture.
+    pub(super) fn built_in(name: &'static str) -> Self {
+        Self { pattern: PatternText::Plain(Surface::built_in(name)), scale: Scale::ONE }
+    }
+
     /// Reads the covering in `entry`; reports a fault where there is none. `example` is a whole
     /// entry.
     pub(super) fn read(entry: &Entry<'a, '_>, example: &str) -> Option<Self> {

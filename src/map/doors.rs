@@ -13,12 +13,12 @@ use toml::de::DeTable;
 use super::checks::Cells;
 use super::drawing::Drawing;
 use super::legend::{Legend, Meaning};
-use super::switches::SwitchSymbol;
+use super::switches::{self, SwitchSymbol};
 use super::textures::Surface;
 use crate::fault::document::Entry;
 use crate::fault::{Fault, quoted};
 use crate::world::{Cell, Grid, KeyId, Start, Tile, TileId, TileKind};
-use reach::Reach;
+use reach::{Opener, Reach};
 
 /// A door as the legend defines it.
 pub(super) struct DoorSymbol<'a> {
@@ -57,6 +57,14 @@ impl<'a> DoorSymbol<'a> {
             }
         };
         Some(Self { leaf: leaf?, key, switch })
+    }
+}
+
+impl<'a> DoorSymbol<'a> {
+    /// What opens it, if not the player alone.
+    fn opener(&self) -> Option<Opener<'a>> {
+        let switch = self.switch.as_ref().map(|switch| Opener::Switch(switch.name));
+        self.key.as_ref().map(|key| Opener::Key(key.name)).or(switch)
     }
 }
 
@@ -218,25 +226,36 @@ fn keys_out_of_reach(
     start: Start,
     low_things: &BTreeSet<Cell>,
 ) -> Vec<Fault> {
-    let mut locks = BTreeMap::new();
-    for (character, key) in locked_doors(drawing, legend) {
-        locks.extend(drawing.cells_of(character).map(|cell| (cell, key.name)));
-    }
-    if locks.is_empty() {
+    if locked_doors(drawing, legend).next().is_none() {
         return Vec::new();
     }
-    let passable: BTreeSet<Cell> = drawn(drawing, legend, |meaning| {
-        matches!(meaning, Meaning::Door(_) | Meaning::Shape(_) | Meaning::MovingWall(_))
-    })
-    .flat_map(|character| drawing.cells_of(character))
-    .chain(low_things.iter().copied())
-    .collect();
-    let keys: BTreeMap<Cell, &str> = drawn_keys(drawing, legend)
-        .flat_map(|(character, key)| drawing.cells_of(character).map(|cell| (cell, key.name)))
-        .collect();
-    let taken =
-        Reach { grid, passable: &passable, locks: &locks, keys: &keys }.keys_from(start.cell);
-    let missing = locked_doors(drawing, legend).filter(|(_, key)| !taken.contains(key.name));
+    let mut passable = low_things.clone();
+    let mut locks = BTreeMap::new();
+    let mut found = BTreeMap::<Cell, Vec<Opener<'_>>>::new();
+    let mut given = BTreeSet::new();
+    let has_guards = legend.used_in(drawing).any(|(_, it)| matches!(it.meaning, Meaning::Guard(_)));
+    for (cell, symbol) in legend.of_cells(drawing) {
+        match &symbol.meaning {
+            Meaning::Door(door) => {
+                passable.insert(cell);
+                locks.extend(door.opener().map(|opener| (cell, opener)));
+            }
+            Meaning::Shape(_) | Meaning::MovingWall(_) => _ = passable.insert(cell),
+            Meaning::Key(key) => found.entry(cell).or_default().push(Opener::Key(key.name)),
+            meaning => {
+                let Some(switch) = switches::set_by(symbol) else { continue };
+                let opener = Opener::Switch(switch.name);
+                let is_lever = matches!(meaning, Meaning::Item(_));
+                let around = if is_lever { cells_around(cell) } else { vec![cell] };
+                around.iter().for_each(|&it| found.entry(it).or_default().push(opener));
+                given.extend((has_guards && !is_lever).then_some(opener));
+            }
+        }
+    }
+    let reach = Reach { grid, passable: &passable, locks: &locks, found: &found };
+    let taken = reach.openers_from(start.cell, given);
+    let missing =
+        locked_doors(drawing, legend).filter(|(_, key)| !taken.contains(&Opener::Key(key.name)));
     missing
         .map(|(_, key)| {
             let name = quoted(key.name);
@@ -256,4 +275,11 @@ fn keys_out_of_reach(
             }
         })
         .collect()
+}
+
+/// The cell and its eight neighbours, from which a player can reach a lever in it.
+fn cells_around(cell: Cell) -> Vec<Cell> {
+    let beside = |place: u32| place.saturating_sub(1)..=place.saturating_add(1);
+    let rows = beside(cell.row);
+    rows.flat_map(|row| beside(cell.column).map(move |column| Cell { column, row })).collect()
 }

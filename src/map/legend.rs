@@ -2,30 +2,32 @@
 
 mod property;
 mod section;
+mod surroundings;
 
 use std::collections::BTreeMap;
 use std::ops::Range;
 
 use toml::de::{DeTable, DeValue};
 
-use super::covering::{CeilingText, CoveringText};
 use super::definitions::KEYS;
 use super::doors::{DoorSymbol, KeySymbol};
 use super::drawing::Drawing;
 use super::guards::GuardSymbol;
-use super::heights::HeightsText;
 use super::items::ItemSymbol;
-use super::mechanisms::{FloorMechanism, MovingWallSymbol};
+use super::mechanisms::MovingWallSymbol;
+use super::per_character::PerCharacter;
 use super::see_through::MaskSymbol;
 use super::shapes::ShapeSymbol;
 use super::sprites::SpriteSymbol;
 use super::textures::Surface;
 use crate::fault::document::Entry;
 use crate::fault::{Fault, quoted};
-use crate::world::{Glass, Heading, Light};
+use crate::world::{Cell, Glass, Heading};
 use property::property;
 pub(super) use property::{heading, light};
 pub(super) use section::Section;
+pub(super) use surroundings::Surroundings;
+use surroundings::Taken;
 
 /// The meanings of the characters that the grid may use.
 pub(super) struct Legend<'a> {
@@ -78,16 +80,6 @@ pub(super) enum Meaning<'a> {
     Unclear,
 }
 
-/// What a tile has of its own; the rest is the map's.
-#[derive(Default)]
-pub(super) struct Surroundings<'a> {
-    pub(super) floor: Option<CoveringText<'a>>,
-    pub(super) ceiling: Option<CeilingText<'a>>,
-    pub(super) light: Option<Light>,
-    pub(super) heights: HeightsText<'a>,
-    pub(super) mechanism: FloorMechanism<'a>,
-}
-
 impl<'a> Legend<'a> {
     /// The characters with the same meaning in every map.
     pub(super) fn new() -> Self {
@@ -112,6 +104,23 @@ impl<'a> Legend<'a> {
         drawing
             .characters()
             .filter_map(|(character, _)| Some((character, self.symbols.get(&character)?)))
+    }
+
+    /// The cells of `drawing` whose characters are more than floor or a wall, with their definitions, row by
+    /// row from the north.
+    pub(super) fn of_cells<'l>(
+        &'l self,
+        drawing: &'l Drawing<'_>,
+    ) -> impl Iterator<Item = (Cell, &'l Symbol<'a>)> {
+        let mut is_more = PerCharacter::<bool>::new();
+        for (character, symbol) in self.used_in(drawing) {
+            let is_floor = matches!(symbol.meaning, Meaning::Open | Meaning::Floor);
+            let is_wall = matches!(symbol.meaning, Meaning::Wall(..));
+            let is_plate = symbol.surroundings.mechanism.plate.is_some();
+            *is_more.get_mut(character) = !is_floor && !is_wall || is_plate;
+        }
+        let cells = drawing.cells().filter(move |&(_, character)| is_more.get(character));
+        cells.filter_map(|(cell, character)| Some((cell, self.symbols.get(&character)?)))
     }
 
     /// Reads the definitions in the table of `entry`; reports its faults.
@@ -227,57 +236,6 @@ fn meaning<'a>(section: Section, entry: &Entry<'a, '_>) -> (Meaning<'a>, Surroun
         ),
     }
     (Meaning::Unclear, surroundings)
-}
-
-/// Whether an entry was one of the [`Surroundings`].
-#[derive(Clone, Copy, PartialEq, Eq)]
-enum Taken {
-    Yes,
-    No,
-}
-
-impl<'a> Surroundings<'a> {
-    fn is_empty(&self) -> bool {
-        !self.has_covering()
-            && self.light.is_none()
-            && self.heights.is_empty()
-            && self.mechanism.is_empty()
-    }
-
-    /// Whether a tile with that meaning can have these.
-    fn suit(&self, meaning: &Meaning<'_>) -> bool {
-        let is_fixed = self.mechanism.is_empty();
-        is_fixed
-            && match meaning {
-                Meaning::Wall(..) | Meaning::Mirror(..) | Meaning::MovingWall(_) => {
-                    !self.has_covering() && self.heights.is_empty()
-                }
-                Meaning::Shape(_) => true,
-                Meaning::Door(_) | Meaning::Mask(_) | Meaning::Glass(_) => self.light.is_none(),
-                _ => self.is_empty(),
-            }
-    }
-
-    fn has_covering(&self) -> bool {
-        self.floor.is_some() || self.ceiling.is_some()
-    }
-
-    /// Reads `entry` if it is one of a tile's surroundings.
-    fn take(&mut self, section: Section, entry: &Entry<'a, '_>, table: &DeTable<'_>) -> Taken {
-        match (section, entry.key) {
-            (Section::Tiles, "floor") => {
-                self.floor = CoveringText::read(entry, r#"{ floor = "moss" }"#);
-            }
-            (Section::Tiles, "ceiling") => {
-                self.ceiling = CeilingText::read(entry, r#"{ ceiling = "wood" }"#);
-            }
-            (Section::Tiles, "light") => self.light = light(entry),
-            (Section::Tiles, _) if self.heights.take(entry) => {}
-            (Section::Tiles, _) if self.mechanism.take(entry, table) => {}
-            _ => return Taken::No,
-        }
-        Taken::Yes
-    }
 }
 
 fn defined_twice(character: char, place: Range<usize>) -> Fault {

@@ -7,15 +7,19 @@ use std::ops::Range;
 
 use toml::de::{DeTable, DeValue};
 
+use super::covering::CoveringText;
 use super::heights::{self, Height};
 use super::switches::SwitchSymbol;
 use super::textures::Surface;
+use crate::color::Rgb;
 use crate::fault::Fault;
 use crate::fault::document::Entry;
 use crate::world::{Ceiling, Heights, Tile, TileKind};
 
 /// The largest difference in height between two states that follow each other, in cells.
 const STEP: f64 = 0.125;
+/// The colour of water, where a map names none.
+const WATER: Rgb = Rgb::new(0x1c, 0x48, 0x68);
 /// More states than a map has tiles.
 const MOST_STATES: f64 = 256.0;
 
@@ -69,6 +73,12 @@ impl<'a> FloorMechanism<'a> {
 
     pub(super) fn is_empty(&self) -> bool {
         self.place.is_none()
+    }
+
+    /// The floor of a tile with it, where the map does not name one: what may harm or help shows.
+    pub(super) fn usual_floor(&self) -> Option<CoveringText<'static>> {
+        let plate = self.plate.as_ref().map(|_| CoveringText::built_in("metal"));
+        plate.or_else(|| self.water.as_ref().map(|_| CoveringText::plain(WATER)))
     }
 
     /// Whether it is water.
@@ -130,7 +140,6 @@ pub(super) fn floor_states(tile: Tile, end: f64) -> impl Iterator<Item = Tile> {
 /// The fault of a floor that cannot move to the height `end`, if it cannot.
 pub(super) fn end_fault(tile: Tile, end: &Height, is_crumbling: bool) -> Option<Fault> {
     let fault = |message: String| Fault::new(end.place.clone(), message);
-    let Heights { .. } = tile.heights;
     let (floor, ceiling) = (tile.heights.floor(), tile.heights.ceiling());
     if is_crumbling && end.cells >= floor {
         let message = "a floor crumbles to a lower height".to_owned();

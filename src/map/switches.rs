@@ -16,6 +16,9 @@ use crate::fault::document::Entry;
 use crate::fault::{Fault, nearest, quoted};
 use crate::world::SwitchId;
 
+/// The largest number of levers.
+const MOST_LEVERS: usize = 256;
+
 /// The name of a switch, and its place in the map.
 #[derive(Clone)]
 pub(super) struct SwitchSymbol<'a> {
@@ -95,7 +98,24 @@ pub(super) fn faults(drawing: &Drawing<'_>, legend: &Legend<'_>) -> Vec<Fault> {
             )
         }))
     });
-    without_effect.chain(without_driver).collect()
+    too_many_levers(drawing, legend)
+        .into_iter()
+        .chain(without_effect)
+        .chain(without_driver)
+        .collect()
+}
+
+/// The fault of the levers after the first [`MOST_LEVERS`].
+fn too_many_levers(drawing: &Drawing<'_>, legend: &Legend<'_>) -> Option<Fault> {
+    let is_lever =
+        |symbol: &Symbol<'_>| matches!(symbol.meaning, Meaning::Item(ItemSymbol::Lever(_)));
+    let levers = legend.used_in(drawing).filter(|(_, symbol)| is_lever(symbol));
+    let count: usize = levers.map(|(character, _)| drawing.sightings(character).count).sum();
+    (count > MOST_LEVERS).then(|| {
+        let message =
+            format!("the grid has {count} levers, and {MOST_LEVERS} at most can be there");
+        Fault::new(drawing.key_place.clone(), message).help("draw fewer of them")
+    })
 }
 
 /// A help for the fault `index` that names the most similar of some switches; `None` where there is

@@ -11,8 +11,8 @@ use crate::fault::Fault;
 use crate::world::sprite::builtin;
 use crate::world::{NoteId, Sprite, SpriteId, Thing, ThingKind};
 
-/// The largest number of sprites, and of notes: their ids have two bytes.
-const MOST_KINDS: usize = 10_000;
+/// The largest number of sprites, and of notes.
+const MOST_KINDS: usize = 1000;
 
 /// The things in a drawing except the start, with what they refer to.
 #[derive(Default)]
@@ -21,8 +21,8 @@ pub(super) struct ThingList {
     pub(super) sprites: Vec<Sprite>,
     /// The texts of notes.
     pub(super) notes: Vec<String>,
-    /// The sprites of items, which several characters may share.
-    of_items: Vec<(&'static str, SpriteId)>,
+    /// The built-in sprites that several characters may share.
+    built_in: Vec<(&'static str, SpriteId)>,
 }
 
 impl ThingList {
@@ -37,16 +37,16 @@ impl ThingList {
         let mut list = Self::default();
         let mut thing_of = PerCharacter::<Option<(ThingKind, SpriteId)>>::new();
         for (character, symbol) in legend.used_in(drawing) {
-            if list.sprites.len().max(list.notes.len()) > MOST_KINDS {
+            if list.sprites.len().max(list.notes.len()) >= MOST_KINDS {
                 let message = format!("the grid has more than {MOST_KINDS} kinds of thing");
                 reader.faults.push(Fault::new(symbol.place.clone(), message).label("one too many"));
                 break;
             }
             *thing_of.get_mut(character) = match &symbol.meaning {
-                Meaning::Exit => list.add(ThingKind::Exit, builtin::named(builtin::EXIT)),
+                Meaning::Exit => list.add_built_in(ThingKind::Exit, builtin::EXIT),
                 Meaning::Key(key) => keys
                     .id(key.name)
-                    .and_then(|key| list.add(ThingKind::Key(key), builtin::named(builtin::KEY))),
+                    .and_then(|key| list.add_built_in(ThingKind::Key(key), builtin::KEY)),
                 Meaning::Ornament(sprite) => {
                     let kind =
                         if sprite.is_doused { ThingKind::Flame } else { ThingKind::Ornament };
@@ -59,7 +59,7 @@ impl ThingList {
         }
         list.things.extend(drawing.cells().filter_map(|(cell, character)| {
             let (kind, sprite) = thing_of.get(character)?;
-            Some(Thing { kind, cell, sprite, frame: None })
+            Some(Thing { kind, cell, sprite, frame: first_frame(kind) })
         }));
         list
     }
@@ -85,7 +85,21 @@ impl ThingList {
             ItemSymbol::Lever(switch) => ThingKind::Lever(switches.id(switch.name)?),
             &ItemSymbol::Spikes(rhythm) => ThingKind::Spikes(rhythm),
         };
-        Some((kind, self.sprite_of_item(item.sprite_name())?))
+        self.add_built_in(kind, item.sprite_name())
+    }
+
+    /// Adds a built-in sprite, once for each name; returns it with the kind of thing that has it.
+    fn add_built_in(
+        &mut self,
+        kind: ThingKind,
+        name: &'static str,
+    ) -> Option<(ThingKind, SpriteId)> {
+        if let Some(&(_, id)) = self.built_in.iter().find(|(known, _)| *known == name) {
+            return Some((kind, id));
+        }
+        let (_, id) = self.add(kind, builtin::named(name))?;
+        self.built_in.push((name, id));
+        Some((kind, id))
     }
 
     fn note(&mut self, text: &str) -> NoteId {
@@ -93,15 +107,11 @@ impl ThingList {
         self.notes.push(text.to_owned());
         id
     }
+}
 
-    fn sprite_of_item(&mut self, name: &'static str) -> Option<SpriteId> {
-        if let Some(&(_, id)) = self.of_items.iter().find(|(known, _)| *known == name) {
-            return Some(id);
-        }
-        let sprite = builtin::named(name).or_else(|| builtin::named(builtin::KEY));
-        let id = SpriteId(self.sprites.len() as u16);
-        self.sprites.push(sprite?);
-        self.of_items.push((name, id));
-        Some(id)
-    }
+/// The frame that a thing shows first; `None` if it depends on the time.
+fn first_frame(kind: ThingKind) -> Option<u8> {
+    let shows_its_state =
+        matches!(kind, ThingKind::Checkpoint | ThingKind::Lever(_) | ThingKind::Spikes(_));
+    shows_its_state.then_some(0)
 }

@@ -227,7 +227,8 @@ fn tile(
     let &Common { ground, faces, .. } = common;
     let faults_before = reader.faults.len();
     let map_ceiling = ground.heights.ceiling();
-    let floor = floor.as_ref().and_then(|floor| floor.covering(reader));
+    let usual_floor = symbol.surroundings.mechanism.usual_floor();
+    let floor = floor.as_ref().or(usual_floor.as_ref()).and_then(|floor| floor.covering(reader));
     let ceiling = ceiling.as_ref().and_then(|ceiling| ceiling.ceiling(reader));
     let (floor, ceiling) = (floor.unwrap_or(ground.floor), ceiling.unwrap_or(ground.ceiling));
     let mut face = |surface: &Option<Surface<'_>>, otherwise: Paint| {

@@ -54,6 +54,13 @@ impl Frame {
         self.pixels.chunks_exact(self.width() as usize)
     }
 
+    /// The rows from the top, to change their pixels.
+    #[cfg(feature = "terminal")]
+    pub(crate) fn rows_mut(&mut self) -> impl ExactSizeIterator<Item = &mut [Rgb]> {
+        let width = self.width() as usize;
+        self.pixels.chunks_exact_mut(width)
+    }
+
     /// The pixel in column `x` from the left and row `y` from the top.
     ///
     /// # Panics

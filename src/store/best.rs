@@ -1,5 +1,7 @@
 //! Results: of a run, and the best of several.
 
+use crate::game::{Rank, Tally};
+
 /// A run that reached the exit.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub struct Run {
@@ -70,59 +72,5 @@ impl Best {
     pub(super) fn and(self, other: Self) -> Self {
         let fastest = if other.tally.steps < self.tally.steps { other } else { self };
         Self { tally: fastest.tally, rank: self.rank.max(other.rank) }
-    }
-}
-
-/// What happened in a run.
-#[derive(Clone, Copy, Debug, PartialEq, Eq, Default)]
-pub struct Tally {
-    /// The steps from the start to the exit.
-    pub steps: u64,
-    /// The value of the treasure.
-    pub treasure: Share,
-    /// The number of secrets.
-    pub secrets: Share,
-    /// The number of alarms.
-    pub alarms: u32,
-    /// The number of deaths.
-    pub deaths: u32,
-    /// The number of guards who were stunned.
-    pub stunned: u32,
-}
-
-/// What was found of what there is.
-#[derive(Clone, Copy, Debug, PartialEq, Eq, Default)]
-pub struct Share {
-    /// What was found.
-    pub found: u32,
-    /// What there is.
-    pub total: u32,
-}
-
-/// The rank of a run, from the lowest.
-#[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord)]
-pub enum Rank {
-    /// Any run that reached the exit.
-    Burglar,
-    /// Fast, or with few alarms.
-    Thief,
-    /// Without an alarm, and fast or with all treasure.
-    Shadow,
-    /// Unseen, with all treasure.
-    Ghost,
-}
-
-impl Rank {
-    /// All ranks, from the lowest.
-    pub const ALL: [Self; 4] = [Self::Burglar, Self::Thief, Self::Shadow, Self::Ghost];
-
-    /// The name.
-    pub const fn name(self) -> &'static str {
-        match self {
-            Self::Burglar => "Burglar",
-            Self::Thief => "Thief",
-            Self::Shadow => "Shadow",
-            Self::Ghost => "Ghost",
-        }
     }
 }

@@ -4,6 +4,7 @@ use std::collections::BTreeMap;
 
 use super::best::{Best, Improved, Reached, Run};
 use super::names;
+use crate::game::Rules;
 use crate::world::Difficulty;
 
 /// The content of `progress.toml`.
@@ -22,10 +23,8 @@ pub(super) struct Progress {
 pub struct SavedGame {
     /// The level, as in the header of a script.
     pub level: String,
-    /// The difficulty.
-    pub difficulty: Difficulty,
-    /// The seed of the game's chance.
-    pub seed: u64,
+    /// The rules that it began with.
+    pub rules: Rules,
     /// The script so far.
     pub script: String,
 }
@@ -34,8 +33,7 @@ pub struct SavedGame {
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub(super) struct SavedEntry {
     pub(super) level: String,
-    pub(super) difficulty: Difficulty,
-    pub(super) seed: u64,
+    pub(super) rules: Rules,
     /// The name of the script's file.
     pub(super) script: String,
 }
@@ -106,13 +104,11 @@ impl Progress {
 
 impl SavedEntry {
     pub(super) fn of(game: &SavedGame) -> Self {
-        let SavedGame { level, difficulty, seed, script } = game;
-        let script = names::of_saved(script);
-        Self { level: level.clone(), difficulty: *difficulty, seed: *seed, script }
+        let script = names::of_saved(&game.script);
+        Self { level: game.level.clone(), rules: game.rules, script }
     }
 
     pub(super) fn with_script(&self, script: String) -> SavedGame {
-        let Self { level, difficulty, seed, .. } = self;
-        SavedGame { level: level.clone(), difficulty: *difficulty, seed: *seed, script }
+        SavedGame { level: self.level.clone(), rules: self.rules, script }
     }
 }

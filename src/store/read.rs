@@ -8,10 +8,11 @@ use std::borrow::Cow;
 
 use toml::de::DeValue;
 
-use super::best::{Best, Rank, Reached, Share, Tally};
+use super::best::{Best, Reached};
 use super::progress::{Daily, Preferences, Progress, SavedEntry};
 use crate::fault::Fault;
 use crate::fault::document::{self, Entry, FaultList};
+use crate::game::{Rank, Rules, Share, Tally};
 use crate::world::Difficulty;
 
 /// The version of the format.
@@ -84,8 +85,10 @@ fn saved(section: &Entry<'_, '_>) -> Option<SavedEntry> {
             _ => damaged(&entry),
         }
     }
-    let complete =
-        || Some(SavedEntry { level: level?, difficulty: at?, seed: seed?, script: script? });
+    let complete = || {
+        let rules = Rules { difficulty: at?, seed: seed? };
+        Some(SavedEntry { level: level?, rules, script: script? })
+    };
     checked(section, complete())
 }
 
@@ -119,8 +122,7 @@ fn best(section: &Entry<'_, '_>) -> Option<Best> {
             "stunned" => stunned = small_number(&entry),
             "rank" => {
                 let name = entry.string(EXAMPLE);
-                let named = |name: &str| Rank::ALL.into_iter().find(|rank| rank.name() == name);
-                rank = checked(&entry, name.and_then(named));
+                rank = checked(&entry, name.and_then(Rank::named));
             }
             _ => damaged(&entry),
         }

@@ -9,6 +9,7 @@ use std::path::{Path, PathBuf};
 use std::sync::atomic::{AtomicU32, Ordering};
 
 use super::*;
+use crate::game::{Rank, Rules, Share, Tally};
 use crate::world::Difficulty::{Easy, Hard, Normal};
 
 /// A folder that is removed at the end of a test.
@@ -67,7 +68,11 @@ fn run(steps: u64, rank: Rank) -> Run {
 
 fn saved(script: &str) -> SavedGame {
     let level = "my \"maps\"/a\u{7}.toml".to_owned();
-    SavedGame { level, difficulty: Hard, seed: u64::MAX, script: script.to_owned() }
+    SavedGame {
+        level,
+        rules: Rules { difficulty: Hard, seed: u64::MAX },
+        script: script.to_owned(),
+    }
 }
 
 fn fill(store: &mut Store) {

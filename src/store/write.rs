@@ -2,9 +2,10 @@
 
 use std::fmt;
 
-use super::best::{Best, Reached, Share};
+use super::best::{Best, Reached};
 use super::progress::{Preferences, Progress, SavedEntry};
 use super::read::VERSION;
+use crate::game::{Rules, Share};
 
 impl fmt::Display for Progress {
     /// Writes the whole file.
@@ -39,7 +40,7 @@ fn write_preferences(f: &mut fmt::Formatter<'_>, preferences: Preferences) -> fm
 }
 
 fn write_saved(f: &mut fmt::Formatter<'_>, saved: &SavedEntry) -> fmt::Result {
-    let SavedEntry { level, difficulty, seed, script } = saved;
+    let SavedEntry { level, rules: Rules { difficulty, seed }, script } = saved;
     writeln!(f, "\n[saved]\nlevel = {}", quoted(level))?;
     writeln!(f, "difficulty = {}", quoted(difficulty.name()))?;
     writeln!(f, "seed = \"{seed}\"\nscript = {}", quoted(script))

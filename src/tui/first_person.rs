@@ -177,6 +177,12 @@ impl<S: Renderable> Default for View<S> {
 }
 
 impl<S: Renderable> View<S> {
+    /// The pixels of the last picture, to change them before they are painted.
+    #[cfg(feature = "terminal")]
+    pub(crate) fn frame_mut(&mut self) -> &mut Frame {
+        &mut self.frame
+    }
+
     /// The time, as in [`FirstPerson::time`], of the next change in the last picture that does not
     /// depend on the camera; `None` if there is none.
     pub fn next_change(&self) -> Option<f64> {

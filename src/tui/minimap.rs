@@ -22,7 +22,7 @@ use crate::canvas::Canvas;
 use crate::color::Rgb;
 use crate::color::palette::ColorDepth;
 use crate::render::Column;
-use crate::world::{Camera, World};
+use crate::world::{Camera, Heading, World};
 pub use explored::Explored;
 use map_point::MapPoint;
 use top_view::TopView;
@@ -39,6 +39,7 @@ pub struct Minimap<'a> {
     camera: &'a Camera,
     columns: &'a [Column],
     explored: Option<&'a Explored>,
+    marks: &'a [MapMark],
     glyphs: GlyphMode,
     depth: ColorDepth,
     zoom: i32,
@@ -53,6 +54,7 @@ impl<'a> Minimap<'a> {
             camera,
             columns: &[],
             explored: None,
+            marks: &[],
             glyphs: GlyphMode::default(),
             depth: ColorDepth::default(),
             zoom: 0,
@@ -71,6 +73,12 @@ impl<'a> Minimap<'a> {
     #[must_use]
     pub fn explored(self, explored: &'a Explored) -> Self {
         Self { explored: Some(explored), ..self }
+    }
+
+    /// Sets the marks of those who move. A mark shows only where the floor is visible.
+    #[must_use]
+    pub fn marks(self, marks: &'a [MapMark]) -> Self {
+        Self { marks, ..self }
     }
 
     /// Sets the zoom. Each level about doubles or halves the map's size; 0 is the size that fits.
@@ -124,6 +132,9 @@ impl Minimap<'_> {
                 (point.color(), point.character())
             }),
         }
+        for mark in self.marks {
+            self.draw_mark(mark, &picture, area, canvas);
+        }
         if let Some((x, y)) = window.cell(self.camera.position()) {
             self.draw_player((area.x + x, area.y + y), canvas);
         }
@@ -176,6 +187,28 @@ impl Minimap<'_> {
         }
     }
 
+    /// Draws a mark that points in one of four directions, if the floor below it is visible.
+    fn draw_mark(&self, mark: &MapMark, picture: &Picture, area: Rect, canvas: &mut impl Canvas) {
+        let is_seen = picture.top_view.is_visible(mark.position);
+        let Some((x, y)) = picture.window.cell(mark.position).filter(|_| is_seen) else { return };
+        if x >= area.width || y >= area.height {
+            return;
+        }
+        let pointers = match self.glyphs {
+            GlyphMode::Half => ['▸', '▾', '◂', '▴'],
+            GlyphMode::Ascii | GlyphMode::Ramp => [')', 'u', '(', 'n'],
+        };
+        let quarter = (mark.heading.degrees() / 90.0).round() as usize % pointers.len();
+        let colors = match self.depth {
+            ColorDepth::Mono => [Color::Reset; 2],
+            ColorDepth::Indexed16 => [Color::Indexed(15), Color::Indexed(9)],
+            ColorDepth::Indexed256 | ColorDepth::True => {
+                [Rgb::WHITE, MARK].map(|color| color_at(self.depth, color))
+            }
+        };
+        canvas.draw_character(area.x + x, area.y + y, pointers[quarter], colors);
+    }
+
     /// Draws the arrow in the cell at `x` and `y`.
     fn draw_player(&self, (x, y): (u16, u16), canvas: &mut impl Canvas) {
         let arrows = match self.glyphs {
@@ -194,6 +227,17 @@ impl Minimap<'_> {
     }
 }
 
+/// Somebody on the map besides the player.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct MapMark {
+    /// The position, in cells.
+    pub position: DVec2,
+    /// The direction in which they look.
+    pub heading: Heading,
+}
+
+/// The background of a mark.
+const MARK: Rgb = Rgb::new(0xc0, 0x30, 0x28);
 /// The background of the arrow.
 const PLAYER: Rgb = Rgb::new(0xff, 0xf0, 0x50);
 
@@ -227,9 +271,10 @@ impl Picture<'_> {
 
 /// The character for two map points, one above the other, without colour. Things are letters.
 fn in_mono((top, bottom): (MapPoint, MapPoint), (x, y): (u32, u32)) -> char {
-    let letter = [top, bottom]
-        .into_iter()
-        .find(|point| matches!(point, MapPoint::Exit | MapPoint::Key | MapPoint::Ornament));
+    let letter = [top, bottom].into_iter().find(|point| {
+        use MapPoint::{Exit, Item, Key, Ornament};
+        matches!(point, Exit | Key | Item | Ornament)
+    });
     letter.map_or_else(
         || half_blocks::lit_glyph(top.is_lit(x, y), bottom.is_lit(x, y + 1)),
         MapPoint::character,

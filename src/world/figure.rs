@@ -7,7 +7,8 @@
 //!
 //! - A frame considers every figure. There are tens, and each costs one projection; sorting them
 //!   by cell was refused, because they change their cells all the time.
-//! - A figure has the light of the cell that it is in.
+//! - A figure has the light of the cell that it is in. No part of it is drawn behind the edge of the
+//!   map, as of a thing.
 //! - A figure never changes with time, and causes no
 //!   [next change](crate::render::Renderer::next_change).
 
@@ -67,8 +68,9 @@ impl World {
         self.figures.iter().map(|figure| figure.base + height(figure)).fold(0.0, f64::max)
     }
 
-    /// The light on `figure`; full light off the map.
+    /// The light on `figure`; off the map, that of the map's own floor.
     pub(crate) fn light_on(&self, figure: &Figure) -> Light {
-        figure.cell().map_or(Light::FULL, |cell| self.light_in(cell))
+        let off_map = self.ground().light.unwrap_or(Light::FULL);
+        figure.cell().map_or(off_map, |cell| self.light_in(cell))
     }
 }

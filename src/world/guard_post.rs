@@ -49,6 +49,17 @@ impl GuardKind {
             Self::Archer => "archer",
         }
     }
+
+    /// The height of the top of the head, in cells. A guard fits where there is as much room.
+    pub const fn height(self) -> f64 {
+        match self {
+            Self::Warden => 0.9,
+            Self::Listener => 0.85,
+            Self::Lantern => 0.8,
+            Self::Hound => 0.45,
+            Self::Archer => 0.82,
+        }
+    }
 }
 
 /// What a guard does while nothing disturbs them.

@@ -6,8 +6,9 @@
 use super::door::Ajar;
 use super::things::Things;
 use super::{
-    Ceiling, Cell, Covering, Door, Fog, Grid, Lamplight, Mission, MovingTile, Paint, Sky, Sprite,
-    Start, Texture, Thing, Tile, TileId, TileKind, World,
+    Ceiling, Cell, Covering, Door, Driver, Duty, Fog, Grid, GuardPost, Lamplight, Mission,
+    MovingTile, Paint, Sky, Sprite, Start, SwitchId, Texture, Thing, ThingKind, Tile, TileEffect,
+    TileId, TileKind, World,
 };
 
 /// The pieces of a world, before they are known to fit together.
@@ -35,7 +36,10 @@ impl World {
     /// - Open tiles come before solid ones, and the map's own floor is the first.
     /// - The start and all things are on open floor, and the grid knows which things block.
     /// - Every door has a doorway with the same character, and stands between solid cells that are
-    ///   not doors.
+    ///   not doors and do not move.
+    /// - The states of moving tiles are in the list, the first of each in no other one. The grid
+    ///   shows no other states.
+    /// - Switches and notes are in their lists. Guards and their waypoints are on open floor.
     ///
     /// The map reader establishes all of that.
     pub(crate) fn from_parts(parts: Parts) -> Self {
@@ -150,6 +154,45 @@ impl World {
             && sky_is_known
             && open(self.start.cell)
             && self.things().iter().all(|thing| open(thing.cell) && stands(thing))
+            && self.mission_fits(open)
+    }
+
+    /// Whether the mission refers to what there is; `open` says which cells are open floor.
+    fn mission_fits(&self, open: impl Fn(Cell) -> bool) -> bool {
+        let Mission { notes, switches, moving_tiles, guards, .. } = &self.mission;
+        let known = |switch: SwitchId| usize::from(switch.0) < switches.len();
+        let moves = |(index, moving): (usize, &MovingTile)| {
+            let others = moving_tiles.iter().enumerate().filter(|&(other, _)| other != index);
+            let is_driven = match moving.driver {
+                Driver::Switch(switch) => known(switch),
+                Driver::Hand | Driver::Weight => true,
+            };
+            is_driven
+                && moving.states.len() >= 2
+                && moving.states.iter().all(|state| usize::from(state.0) < self.tiles.len())
+                && others.flat_map(|(_, it)| &it.states).all(|&state| state != moving.states[0])
+        };
+        let sets = |tile: &Tile| match (tile.effect, tile.kind) {
+            (Some(TileEffect::Plate(switch)), _) => known(switch),
+            (_, TileKind::Door(door) | TileKind::Doorway(door)) => door.switch.is_none_or(known),
+            _ => true,
+        };
+        let is_used = |thing: &Thing| match thing.kind {
+            ThingKind::Lever(switch) => known(switch),
+            ThingKind::Note(note) => usize::from(note.0) < notes.len(),
+            _ => true,
+        };
+        let watches = |post: &GuardPost| {
+            open(post.cell)
+                && match &post.duty {
+                    Duty::Patrol(cells) => !cells.is_empty() && cells.iter().copied().all(&open),
+                    Duty::Stand | Duty::Sleep | Duty::Wander(_) => true,
+                }
+        };
+        moving_tiles.iter().enumerate().all(moves)
+            && self.tiles.iter().all(sets)
+            && self.things().iter().all(is_used)
+            && guards.iter().all(watches)
     }
 }
 

@@ -162,7 +162,9 @@ impl Search<'_> {
         Some(match errand.verb {
             Verb::Go => Ways::new(&state.pilot.game, errand.cell, dread),
             Verb::Open => Ways::beside(&state.pilot.game, errand.cell, dread),
-            Verb::Hop | Verb::Straight | Verb::Throw => Ways::new(&state.pilot.game, state.pilot.cell(), dread),
+            Verb::Hop | Verb::Straight | Verb::Throw => {
+                Ways::new(&state.pilot.game, state.pilot.cell(), dread)
+            }
         })
     }
 

@@ -1,7 +1,7 @@
 //! What every level of the campaign has.
 
-use cellcaster::map::builtin::{self, Level};
 use cellcaster::map;
+use cellcaster::map::builtin::{self, Level};
 use cellcaster::world::{Difficulty, Driver, ThingKind, World};
 
 use crate::route::{self, Errand};

@@ -46,7 +46,8 @@ fn update(level: &Level, difficulty: Difficulty) -> Result<String, String> {
     let (found, moves) = careful::search(&game, &route(level));
     let pilot = found.ok_or_else(|| format!("{name}: nothing found in {moves} moves"))?;
     let header = format!("level {}\ndifficulty {}\nseed 0\n", level.name, difficulty.name());
-    fs::write(path(level, difficulty), header + &pilot.script()).map_err(|error| format!("{name}: {error}"))?;
+    fs::write(path(level, difficulty), header + &pilot.script())
+        .map_err(|error| format!("{name}: {error}"))?;
     Ok(format!("{name}: {} steps, {moves} moves", pilot.steps()))
 }
 

@@ -9,11 +9,12 @@ use std::process::Stdio;
 
 use crate::support::{cellcaster, complaint_about, output_of, run_with_input};
 
-const SUBCOMMANDS: [&str; 12] = [
+const SUBCOMMANDS: [&str; 13] = [
     "play",
     "snapshot",
     "cast",
     "check",
+    "levels",
     "accuracy",
     "bench",
     "replay",

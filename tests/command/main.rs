@@ -4,6 +4,7 @@ mod arguments;
 mod bench;
 mod recordings;
 mod replay;
+mod scores;
 mod wire;
 
 #[path = "../support/asciicast.rs"]

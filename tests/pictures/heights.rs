@@ -7,7 +7,7 @@ use crate::solids::Solids;
 use cellcaster::color::Rgb;
 use cellcaster::map::{self, TextureFileError, TextureFiles};
 use cellcaster::render::{Filter, Frame, FrameSize, PixelAspect, Renderer};
-use cellcaster::world::{Camera, FieldOfView, Heading, Pitch};
+use cellcaster::world::{Camera, FieldOfView, Figure, Heading, Pitch};
 use glam::{DVec2, DVec3};
 use proptest::prelude::*;
 
@@ -189,6 +189,26 @@ fn direction(camera: &Camera, frame: &Frame, x: f64, y: f64) -> DVec3 {
     across.extend((horizon - y) / focal_length)
 }
 
+/// A figure of a random world. It may be off the map, or partly in the floor.
+#[derive(Clone, Debug)]
+struct Standing {
+    position: (f64, f64),
+    base: f64,
+    degrees: f64,
+    opacity: u8,
+}
+
+prop_compose! {
+    fn standing()(
+        position in (-1.0..COLUMNS as f64 + 1.0, -1.0..ROWS as f64 + 2.0),
+        base in ordinary_height(),
+        degrees in 0.0..360.0,
+        opacity in prop_oneof![2 => Just(u8::MAX), 1 => any::<u8>()],
+    ) -> Standing {
+        Standing { position, base, degrees, opacity }
+    }
+}
+
 /// A world of tiles, with a camera.
 #[derive(Clone, Debug)]
 struct Scene {
@@ -197,6 +217,7 @@ struct Scene {
     /// The brightness of each kind of tile; empty if everything is fully lit.
     lights: Vec<f64>,
     is_covered: bool,
+    figures: Vec<Standing>,
     position: DVec2,
     is_on_a_roof: bool,
     up: f64,
@@ -221,6 +242,7 @@ prop_compose! {
             prop::collection::vec(0.0..=1.0, KINDS),
         ],
         is_covered in any::<bool>(),
+        figures in prop_oneof![Just(Vec::new()), prop::collection::vec(standing(), 1..6)],
         position in (0.0..6.0, 0.0..5.0),
         is_on_a_roof in any::<bool>(),
         up in 0.01..0.99,
@@ -230,14 +252,29 @@ prop_compose! {
     ) -> Scene {
         let kinds = [vec![first], others].concat();
         let position = DVec2::from(position);
-        Scene { kinds, cells, lights, is_covered, position, is_on_a_roof, up, degrees, pitch, size }
+        Scene { kinds, cells, lights, is_covered, figures, position, is_on_a_roof, up, degrees, pitch, size }
     }
 }
 
 /// Compares every pixel of a picture that is not on an edge.
 fn compare(scene: &Scene, look: Look) -> Result<(), TestCaseError> {
     let text = map_of(scene, look);
-    let world = map::parse(&text, "random", &Noise).unwrap_or_else(|it| panic!("{text}\n{it}"));
+    let mut world = map::parse(&text, "random", &Noise).unwrap_or_else(|it| panic!("{text}\n{it}"));
+    // Figures have the sprite of things.
+    let sprite = world.things().first().map(|thing| thing.sprite);
+    let figures = scene.figures.iter().filter_map(|figure| {
+        let &Standing { position, base, degrees, opacity } = figure;
+        let heading = Heading::from_degrees(degrees)?;
+        Some(Figure {
+            sprite: sprite?,
+            position: position.into(),
+            base,
+            heading,
+            frame: 0,
+            opacity,
+        })
+    });
+    world.set_figures(figures);
     let position = scene.position;
     let tile = world.grid().tile(position.x as i64, position.y as i64).unwrap();
     let mut gaps = world.tile(tile).gaps();
@@ -258,13 +295,12 @@ fn compare(scene: &Scene, look: Look) -> Result<(), TestCaseError> {
     for (x, y) in (0..scene.size.0).flat_map(|x| (0..scene.size.1).map(move |y| (x, y))) {
         let meet_beside = |right: f64, down: f64| {
             let (x, y) = (f64::from(x) + 0.5 + right, f64::from(y) + 0.5 + down);
-            solids.meet(direction(&camera, &frame, x, y))
+            solids.meet(direction(&camera, &frame, x, y), SKY)
         };
         let met = meet_beside(0.0, 0.0);
         let beside = [(-DOUBTFUL, 0.0), (DOUBTFUL, 0.0), (0.0, -DOUBTFUL), (0.0, DOUBTFUL)];
         if beside.into_iter().all(|(right, down)| meet_beside(right, down) == met) {
-            let color = met.map_or(SKY, |met| met.color);
-            prop_assert_eq!(frame.pixel(x, y), color, "at ({}, {}): {:?}", x, y, met);
+            prop_assert_eq!(frame.pixel(x, y), met.color, "at ({}, {}): {:?}", x, y, met);
         }
     }
     Ok(())

@@ -5,7 +5,7 @@ use cellcaster::color::palette::ColorDepth;
 use cellcaster::map::{self, builtin};
 use cellcaster::render::{Frame, FrameSize, PixelAspect, Renderer};
 use cellcaster::tui::{FirstPerson, GlyphMode, Minimap, View};
-use cellcaster::world::{Camera, Cell, FieldOfView, Heading, Opening};
+use cellcaster::world::{Camera, Cell, FieldOfView, Figure, Heading, Opening};
 use glam::DVec2;
 use ratatui::buffer::Buffer;
 use ratatui::layout::Rect;
@@ -156,5 +156,35 @@ fn the_whole_pipeline_allocates_nothing_once_its_memory_has_grown() {
         // The second walk starts where the first ended, and sees other things.
         pass();
         assert_eq!(pass(), 0, "{fidelity}");
+    }
+}
+
+#[test]
+fn moving_figures_allocate_nothing_after_the_first_frames() {
+    for map in ["things", "mirrors"] {
+        let mut world = map::load(format!("maps/gallery/{map}.toml").as_ref()).unwrap();
+        let position = world.start().cell.center();
+        let sprite = world.things()[0].sprite;
+        let mut renderer = Renderer::new();
+        let mut frame = Frame::new(FrameSize::new(160, 90).unwrap(), PixelAspect::SQUARE);
+        let mut draw = |turn: u32| {
+            let heading = Heading::from_degrees(f64::from(turn) * 6.0).unwrap();
+            let camera = Camera::new(position, heading, FieldOfView::default()).unwrap();
+            let figures = (0..20).map(|index| Figure {
+                sprite,
+                position: position + heading.direction() * (0.5 + 0.1 * f64::from(index)),
+                base: 0.0,
+                heading,
+                frame: 0,
+                opacity: 200,
+            });
+            measure(|| {
+                world.set_figures(figures);
+                renderer.render(&world, &camera, &mut frame);
+            })
+            .count_total
+        };
+        (0..60).for_each(|turn| _ = draw(turn));
+        assert_eq!((0..60).map(&mut draw).sum::<u64>(), 0, "{map}");
     }
 }

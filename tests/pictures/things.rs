@@ -4,7 +4,7 @@ use cellcaster::color::Rgb;
 use cellcaster::game::{Game, Intent, Intents};
 use cellcaster::map;
 use cellcaster::render::{Filter, Frame, FrameSize, PixelAspect, Renderer};
-use cellcaster::world::{Camera, FieldOfView, Heading, Thing, World};
+use cellcaster::world::{Camera, FieldOfView, Figure, Heading, World};
 use glam::DVec2;
 use proptest::prelude::*;
 
@@ -87,7 +87,7 @@ proptest! {
         let to_thing = DVec2::new(5.5, 3.5) - DVec2::new(x, y);
         let camera = camera((x, y), to_thing.y.atan2(to_thing.x).to_degrees() + aside);
         let (drawn, empty) = (frame_of(&with, &camera), frame_of(&without, &camera));
-        let oracle = Oracle::new(&with, &camera);
+        let oracle = Oracle::new(&with, &camera, standing(&with));
         let mut compared = 0;
         for row in 0..HEIGHT {
             for column in 0..WIDTH {
@@ -99,33 +99,81 @@ proptest! {
         }
         prop_assert!(compared > WIDTH * HEIGHT * 9 / 10, "{compared} pixels");
     }
+
+    /// As above, for a figure at any place.
+    #[test]
+    fn the_pixels_of_a_figure_are_those_of_a_calculation_for_each(
+        x in 1.3..4.5,
+        y in 1.3..4.7,
+        place in (1.0..7.0, 1.0..5.0),
+        base in -0.2..0.5,
+        degrees in (0.0..360.0, 0.0..360.0),
+        opacity in prop_oneof![1 => Just(0), 2 => Just(u8::MAX), 2 => any::<u8>()],
+        sprite in prop::sample::select(&SPRITES[..]),
+    ) {
+        // The thing that brings the sprite is behind walls.
+        let grid = "########\n#@.....#\n#.....##\n#......#\n#......#\n########\n#t######\n########\n";
+        let [mut world, empty] = with_and_without(grid, sprite);
+        let heading = Heading::from_degrees(degrees.0).unwrap();
+        let thing = standing(&world);
+        let figure = Figure { position: place.into(), base, heading, opacity, ..thing };
+        world.set_figures([figure].into_iter());
+        let camera = camera((x, y), degrees.1);
+        let (drawn, empty) = (frame_of(&world, &camera), frame_of(&empty, &camera));
+        let oracle = Oracle::new(&world, &camera, figure);
+        for row in 0..HEIGHT {
+            for column in 0..WIDTH {
+                if let Some(expected) = oracle.pixel(column, row, empty.pixel(column, row)) {
+                    prop_assert_eq!(drawn.pixel(column, row), expected, "({}, {})", column, row);
+                }
+            }
+        }
+        prop_assert!(opacity > 0 || drawn == empty);
+    }
+}
+
+/// The figure that stands where the first thing of a level world does.
+fn standing(world: &World) -> Figure {
+    let thing = world.things()[0];
+    let sprite = world.sprite(thing.sprite);
+    Figure {
+        sprite: thing.sprite,
+        position: thing.cell.center(),
+        base: match sprite.anchor {
+            cellcaster::world::Anchor::Floor => 0.0,
+            cellcaster::world::Anchor::Ceiling => 1.0 - sprite.height.cells(),
+        },
+        heading: sprite.heading,
+        frame: 0,
+        opacity: u8::MAX,
+    }
 }
 
 /// The colour of a pixel, from a ray through its centre.
 struct Oracle<'a> {
     world: &'a World,
     camera: &'a Camera,
-    thing: Thing,
+    figure: Figure,
     renderer: Renderer,
 }
 
 impl<'a> Oracle<'a> {
-    fn new(world: &'a World, camera: &'a Camera) -> Self {
+    fn new(world: &'a World, camera: &'a Camera, figure: Figure) -> Self {
         let mut renderer = Renderer::new();
         let size = FrameSize::new(WIDTH, HEIGHT).unwrap();
         renderer.render(world, camera, &mut Frame::new(size, PixelAspect::SQUARE));
-        Self { world, camera, thing: world.things()[0], renderer }
+        Self { world, camera, figure, renderer }
     }
 
     /// `None` if the pixel is so close to an edge that rounding may decide.
     fn pixel(&self, column: u32, row: u32, behind: Rgb) -> Option<Rgb> {
         const HAIR: f64 = 1e-9;
-        let Self { world, camera, thing, renderer } = self;
-        let sprite = world.sprite(thing.sprite);
+        let Self { world, camera, figure, renderer } = self;
+        let sprite = world.sprite(figure.sprite);
         let half = camera.field_of_view.half_width();
         let across = (2.0 * (f64::from(column) + 0.5) / f64::from(WIDTH) - 1.0) * half;
         let up = (f64::from(HEIGHT) / 2.0 - (f64::from(row) + 0.5)) * 2.0 * half / f64::from(WIDTH);
-        let from_eye = thing.cell.center() - camera.position();
+        let from_eye = figure.position - camera.position();
         let depth = from_eye.dot(camera.direction());
         if depth <= 0.2 || renderer.columns()[column as usize].distance <= depth {
             return Some(behind);
@@ -133,13 +181,9 @@ impl<'a> Oracle<'a> {
         let beside = across * depth - from_eye.dot(camera.direction().perp());
         let above = up * depth + 0.5;
         let (width, height) = (sprite.width(), sprite.height.cells());
-        let base = match sprite.anchor {
-            cellcaster::world::Anchor::Floor => 0.0,
-            cellcaster::world::Anchor::Ceiling => 1.0 - height,
-        };
-        let picture = sprite.picture(0.0, -from_eye);
+        let picture = sprite.picture_of(figure.frame, figure.heading, -from_eye);
         let x = (beside / width + 0.5) * f64::from(picture.width());
-        let y = (1.0 - (above - base) / height) * f64::from(picture.height());
+        let y = (1.0 - (above - figure.base) / height) * f64::from(picture.height());
         if (x - x.round()).abs() < HAIR || (y - y.round()).abs() < HAIR {
             return None;
         }
@@ -148,7 +192,8 @@ impl<'a> Oracle<'a> {
             return Some(behind);
         }
         let (color, alpha) = picture.texel(x as u32, y as u32);
-        Some(color.over(behind, alpha))
+        let shown = f64::from(alpha) * f64::from(figure.opacity) / 255.0;
+        Some(color.over(behind, shown.round() as u8))
     }
 }
 

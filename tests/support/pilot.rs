@@ -146,7 +146,11 @@ impl Pilot {
                 self.wait(12);
                 return true;
             }
-            if is_there { self.step(Intents::new()) } else { self.approach(cell.center(), Pace::Walk) }
+            if is_there {
+                self.step(Intents::new())
+            } else {
+                self.approach(cell.center(), Pace::Walk)
+            }
         }
         false
     }

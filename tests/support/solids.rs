@@ -8,7 +8,8 @@ use std::f64::consts::TAU;
 
 use cellcaster::color::Rgb;
 use cellcaster::world::{
-    Anchor, Camera, Ceiling, Cell, Gap, Light, Outline, Paint, Sprite, Tile, TileKind, World,
+    Anchor, Camera, Ceiling, Cell, Figure, Gap, Light, Outline, Paint, Sprite, Texture, Tile,
+    TileKind, World,
 };
 use glam::{DVec2, DVec3};
 
@@ -41,9 +42,8 @@ enum Solid<'a> {
     },
     /// A picture that faces the camera.
     Picture {
-        center: DVec2,
-        base: f64,
         sprite: &'a Sprite,
+        shown: Figure,
     },
 }
 
@@ -62,12 +62,12 @@ struct Block {
     flat_light: Light,
 }
 
-/// A hit of a line.
-#[derive(Clone, Copy, Debug, PartialEq)]
+/// The hits of a line, up to the first one that hides what is behind it.
+#[derive(Clone, Debug, PartialEq)]
 pub(crate) struct Met {
-    solid: usize,
-    face: Face,
-    /// The colour at the hit.
+    /// The indices of the solids, from near to far, and their faces.
+    faces: Vec<(usize, Face)>,
+    /// The colour that is seen.
     pub(crate) color: Rgb,
 }
 
@@ -99,21 +99,47 @@ impl<'a> Solids<'a> {
                 Anchor::Floor => heights.floor(),
                 Anchor::Ceiling => heights.ceiling() - sprite.height.cells(),
             };
-            Solid::Picture { center: thing.cell.center(), base, sprite }
+            let shown = Figure {
+                sprite: thing.sprite,
+                position: thing.cell.center(),
+                base,
+                heading: sprite.heading,
+                frame: 0,
+                opacity: u8::MAX,
+            };
+            Solid::Picture { sprite, shown }
+        }));
+        all.extend(world.figures().iter().map(|&shown| {
+            let sprite = world.sprite(shown.sprite);
+            Solid::Picture { sprite, shown }
         }));
         Self { world, camera, all }
     }
 
-    /// The first hit of a line from the camera along `direction`; `None` for the sky.
-    pub(crate) fn meet(&self, direction: DVec3) -> Option<Met> {
+    /// What a line from the camera along `direction` meets before the `sky`.
+    pub(crate) fn meet(&self, direction: DVec3, sky: Rgb) -> Met {
         let origin = self.camera.position().extend(self.camera.eye());
         let entries = self.all.iter().enumerate().filter_map(|(index, solid)| {
             let (t, face) = self.entry(solid, origin, direction)?;
             Some((t, index, face))
         });
-        let (t, solid, face) = entries.min_by(|one, other| one.0.total_cmp(&other.0))?;
-        let color = self.color(&self.all[solid], face, origin + direction * t, direction);
-        Some(Met { solid, face, color })
+        let mut entries: Vec<_> = entries.collect();
+        entries.sort_by(|one, other| one.0.total_cmp(&other.0));
+        let hides = |index: usize| match &self.all[index] {
+            Solid::Picture { shown, .. } => shown.opacity == u8::MAX,
+            _ => true,
+        };
+        let seen = entries.iter().position(|&(_, index, _)| hides(index));
+        entries.truncate(seen.map_or(entries.len(), |last| last + 1));
+        let color = entries.iter().rev().fold(sky, |behind, &(t, index, face)| {
+            let solid = &self.all[index];
+            let color = self.color(solid, face, origin + direction * t, direction);
+            match solid {
+                Solid::Picture { shown, .. } => color.over(behind, shown.opacity),
+                _ => color,
+            }
+        });
+        Met { faces: entries.into_iter().map(|(_, index, face)| (index, face)).collect(), color }
     }
 
     /// Whether a position is inside of a pillar, from where nothing is seen.
@@ -135,36 +161,35 @@ impl<'a> Solids<'a> {
             Solid::Panel { start, way, heights, .. } => {
                 panel_entry(origin - start.extend(0.0), direction, way, heights)
             }
-            Solid::Picture { center, base, sprite } => {
+            Solid::Picture { sprite, ref shown } => {
                 // The component of the direction along the camera's direction is 1.
-                let t = (center - origin.truncate()).dot(self.camera.direction());
-                let (x, y) = self.texel_of(center, base, sprite, origin + direction * t)?;
-                let picture = self.picture(center, sprite);
-                let is_seen = t >= NEAREST && picture.texel(x, y).1 > 0;
+                let t = (shown.position - origin.truncate()).dot(self.camera.direction());
+                let (x, y) = self.texel_of(sprite, shown, origin + direction * t)?;
+                let picture = self.picture(sprite, shown);
+                // Nothing is drawn behind the edge of the map.
+                let DVec3 { x: column, y: row, .. } = origin + direction * t;
+                let is_on_map = self.tile_in((column.floor(), row.floor())).is_some();
+                let is_seen = t >= NEAREST && is_on_map && picture.texel(x, y).1 > 0;
                 is_seen.then_some((t, Face::Slanted))
             }
         }
     }
 
     /// The texel at a position in a picture's plane.
-    fn texel_of(
-        &self,
-        center: DVec2,
-        base: f64,
-        sprite: &Sprite,
-        place: DVec3,
-    ) -> Option<(u32, u32)> {
-        let picture = self.picture(center, sprite);
-        let beside = (place.truncate() - center).dot(self.camera.direction().perp());
+    fn texel_of(&self, sprite: &Sprite, shown: &Figure, place: DVec3) -> Option<(u32, u32)> {
+        let picture = self.picture(sprite, shown);
+        let beside = (place.truncate() - shown.position).dot(self.camera.direction().perp());
+        let up = place.z - shown.base;
         let x = (beside / sprite.width() + 0.5) * f64::from(picture.width());
-        let y = (1.0 - (place.z - base) / sprite.height.cells()) * f64::from(picture.height());
+        let y = (1.0 - up / sprite.height.cells()) * f64::from(picture.height());
         let is_on_it = (0.0..f64::from(picture.width())).contains(&x)
             && (0.0..f64::from(picture.height())).contains(&y);
         is_on_it.then_some((x as u32, y as u32))
     }
 
-    fn picture<'s>(&self, center: DVec2, sprite: &'s Sprite) -> &'s cellcaster::world::Texture {
-        sprite.picture(0.0, self.camera.position() - center)
+    fn picture<'s>(&self, sprite: &'s Sprite, shown: &Figure) -> &'s Texture {
+        let to_viewer = self.camera.position() - shown.position;
+        sprite.picture_of(shown.frame, shown.heading, to_viewer)
     }
 
     fn color(&self, solid: &Solid, face: Face, place: DVec3, direction: DVec3) -> Rgb {
@@ -205,10 +230,13 @@ impl<'a> Solids<'a> {
                 let light = light_in(start + way / 2.0);
                 dimmed(upright(paint, u), light, way.perp().normalize())
             }
-            Solid::Picture { center, base, sprite } => {
-                let texel = self.texel_of(center, base, sprite, place);
-                let (x, y) = texel.unwrap_or_default();
-                dimmed(self.picture(center, sprite).texel(x, y).0, light_in(center), DVec2::X)
+            Solid::Picture { sprite, ref shown } => {
+                let (x, y) = self.texel_of(sprite, shown, place).unwrap_or_default();
+                let DVec2 { x: column, y: row } = shown.position.floor();
+                let ground = self.world.ground();
+                let light = self.tile_in((column, row)).unwrap_or(ground).light;
+                let color = self.picture(sprite, shown).texel(x, y).0;
+                dimmed(color, light.unwrap_or(Light::FULL), DVec2::X)
             }
         }
     }

@@ -17,4 +17,5 @@ mod recording;
 mod resting;
 mod settings;
 mod showing;
+mod titles;
 mod watching;

@@ -110,6 +110,9 @@ impl Bindings {
             (Key::Char('='), Action::WidenView),
             (Key::Char('-'), Action::NarrowView),
             (Key::Char('i'), Action::ToggleStats),
+            (Key::Char('.'), Action::ToggleCrosshair),
+            (Key::Char(','), Action::ToggleCompass),
+            (Key::Char('0'), Action::ToggleGhost),
             (Key::Char(letters.leave), Action::Leave),
             (Key::Escape, Action::Leave),
         ];

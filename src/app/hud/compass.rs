@@ -49,7 +49,9 @@ mod tests {
     #[test]
     fn the_direction_of_view_is_in_the_middle() {
         let strip = |degrees| strip(Heading::from_degrees(degrees).unwrap(), 31);
-        insta::assert_snapshot!([0.0, 45.0, 90.0, 180.0, 262.0, 270.0, 359.9].map(strip).join("\n"));
+        insta::assert_snapshot!(
+            [0.0, 45.0, 90.0, 180.0, 262.0, 270.0, 359.9].map(strip).join("\n")
+        );
         for (degrees, letter) in [(0.0, 'E'), (90.0, 'S'), (180.0, 'W'), (270.0, 'N')] {
             assert_eq!(strip(degrees).chars().nth(15), Some(letter));
         }

@@ -135,12 +135,13 @@ mod tests {
 
     #[test]
     fn without_colours_the_side_is_characters() {
-        let mut buffer = Buffer::empty(Rect::new(0, 0, 20, 6));
-        draw(&mut buffer, buffer.area, &hurt(Some(0.0)), Heading::from_degrees(90.0).unwrap());
+        let area = Rect::new(0, 0, 20, 6);
+        let mut buffer = Buffer::empty(area);
+        draw(&mut buffer, area, &hurt(Some(0.0)), Heading::from_degrees(90.0).unwrap());
         let marked: Vec<_> = buffer.content().iter().map(|cell| cell.symbol() == "#").collect();
         assert!((0..120).all(|index| marked[index] == (index % 20 == 0)), "{buffer:?}");
         let gain = Flash { kind: FlashKind::Gain, left: 3 };
-        draw(&mut buffer, buffer.area, &gain, Heading::from_degrees(0.0).unwrap());
+        draw(&mut buffer, area, &gain, Heading::from_degrees(0.0).unwrap());
         assert_eq!(buffer.content().iter().filter(|cell| cell.symbol() == "+").count(), 48);
         draw(&mut buffer, Rect::default(), &gain, Heading::from_degrees(0.0).unwrap());
     }

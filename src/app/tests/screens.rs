@@ -1,5 +1,6 @@
 //! The cells of every screen.
 
+use crate::tui::GlyphMode;
 use ratatui::buffer::{Buffer, Cell};
 use ratatui::layout::Rect;
 

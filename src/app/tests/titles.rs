@@ -1,7 +1,7 @@
 //! The title and its menus, by keys.
 
 use super::*;
-use crate::app::{Offers, OwnMap};
+use crate::app::{Offers, Opening, OwnMap};
 use crate::map::NoFiles;
 use crate::map::parse_level;
 
@@ -15,8 +15,14 @@ fn title() -> Rig {
         }),
     };
     let maps = move || vec![map("bad.toml", "grid = 3"), map("pit.toml", PIT)];
-    let offers = Offers { maps: Some(Box::new(maps)) };
-    let mut rig = Rig::of(App::titled(offers, Settings::default()), Some((500, 30)));
+    let offers = Offers { maps: Some(Box::new(maps)), ..Offers::default() };
+    titled(offers, Store::in_memory())
+}
+
+pub(super) fn titled(offers: Offers, store: Store) -> Rig {
+    let settings = Settings { frame_time: Duration::from_secs(1) / 30, ..Settings::default() };
+    let app = App::opened(Opening::Title(offers), settings, store);
+    let mut rig = Rig::of(app, Some((500, 30)));
     rig.wait(100);
     rig
 }
@@ -24,7 +30,7 @@ fn title() -> Rig {
 impl Rig {
     /// Selects the entry with that label and chooses it.
     #[track_caller]
-    fn choose(&mut self, label: &str) {
+    pub(super) fn choose(&mut self, label: &str) {
         let choice = |rig: &Rig| rig.app.menu.label();
         let first = choice(self);
         while choice(self).as_deref() != Some(label) {
@@ -136,4 +142,25 @@ fn faults_of_an_own_map_are_said_and_a_map_without_faults_is_played() {
     rig.wait(300);
     rig.choose("Restart the level");
     assert_eq!((rig.app.screen, rig.position()), (Screen::Playing, before));
+}
+
+#[test]
+fn the_first_picture_of_the_title_needs_one_level_and_no_list_of_maps() {
+    use std::cell::Cell;
+    use std::rc::Rc;
+    let searches = Rc::new(Cell::new(0));
+    let counted = Rc::clone(&searches);
+    let find = move || {
+        counted.set(counted.get() + 1);
+        Vec::new()
+    };
+    let offers = Offers { maps: Some(Box::new(find)), ..Offers::default() };
+    let mut rig = titled(offers, Store::in_memory());
+    missions::text(&mut rig.app, 80, 24);
+    assert_eq!(searches.get(), 0);
+    assert!(rig.app.own_maps.is_empty() && rig.app.ghost.is_none());
+    // No level but that behind the title exists.
+    assert!(rig.app.stage.begin(Difficulty::Normal).is_some_and(|game| game.grid().is_none()));
+    rig.choose("My maps");
+    assert_eq!(searches.get(), 1);
 }

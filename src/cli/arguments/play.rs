@@ -14,7 +14,7 @@ use crate::lab::casters::Method;
 use crate::render::Filter;
 use crate::terminal::{Fidelity, UnknownFidelity};
 use crate::tui::{CellAspect, GlyphMode};
-use crate::world::FieldOfView;
+use crate::world::{Difficulty, FieldOfView};
 
 /// Options of `play`; `None` where the configuration or the terminal decides.
 #[derive(Debug)]
@@ -31,6 +31,11 @@ pub(in crate::cli) struct Play {
     pub(in crate::cli) method: Option<Method>,
     pub(in crate::cli) filter: Option<Filter>,
     pub(in crate::cli) fidelity: Option<FidelityChoice>,
+    /// The difficulty; the one chosen before if `None`.
+    pub(in crate::cli) difficulty: Option<Difficulty>,
+    /// Whether to play the daily run, or an endless game.
+    pub(in crate::cli) is_daily: bool,
+    pub(in crate::cli) is_endless: bool,
     pub(in crate::cli) shows_stats: bool,
     /// The file of the recording.
     pub(in crate::cli) record: Option<PathBuf>,
@@ -65,12 +70,16 @@ pub(super) const SUBCOMMAND: Subcommand = Subcommand {
               leaves. Over SSH it takes \"ssh -t HOST cellcaster\".",
     examples: "cellcaster\n\
                cellcaster play --generate maze --seed 7\n\
+               cellcaster play --daily\n\
                cellcaster my.toml --colors 256\n\
                cellcaster play my.toml --watch\n\
                ssh -t host cellcaster\n\
                cellcaster --record walk.script && cellcaster replay walk.script > walk.cast",
     positionals: &[map::OPTIONAL],
     options: &[
+        &DIFFICULTY,
+        &DAILY,
+        &ENDLESS,
         &CONFIG,
         &value::FRAMES_PER_SECOND,
         &value::FIELD_OF_VIEW,
@@ -109,6 +118,9 @@ fn read(mut matches: ArgMatches) -> Result<Play, Error> {
         method: value::CASTER.of(&mut matches),
         filter: value::FILTER.of(&mut matches),
         fidelity: FIDELITY.of(&mut matches),
+        difficulty: DIFFICULTY.of(&mut matches),
+        is_daily: DAILY.of(&matches),
+        is_endless: ENDLESS.of(&matches),
         shows_stats: STATS.of(&matches),
         record: RECORD.of(&mut matches),
         overwrites: FORCE.of(&matches),
@@ -144,6 +156,25 @@ const FIDELITY: ValueOption<FidelityChoice> = ValueOption {
     }),
     repeats: false,
 };
+
+const DIFFICULTY: ValueOption<Difficulty> = ValueOption {
+    name: "difficulty",
+    value: "LEVEL",
+    takes: "easy, normal or hard",
+    help: "How hard MAP or the endless game is: easy, normal or hard",
+    default: "as chosen in the game, or normal",
+    choices: &["easy", "normal", "hard"],
+    read: Parser::Optional(Difficulty::named),
+    repeats: false,
+};
+
+const DAILY: Flag = Flag {
+    name: "daily",
+    help: "Play the floors of the day, which are the same for all; the first try counts",
+};
+
+const ENDLESS: Flag =
+    Flag { name: "endless", help: "Play floor after floor, each harder than the one before" };
 
 const STATS: Flag =
     Flag { name: "stats", help: "Show frames and bytes a second, round trip and fidelity" };

@@ -6,7 +6,7 @@ use std::path::PathBuf;
 use clap::{ArgAction, ArgMatches, ValueHint};
 
 use super::generated::{self, Generated};
-use super::option::FileOption;
+use super::option::{FileOption, Flag};
 use super::value::{self, FramesPerSecond, Size};
 use super::{Command, Error, Positional, Subcommand, map};
 use crate::color::palette::ColorDepth;
@@ -20,6 +20,8 @@ pub(in crate::cli) struct Replay {
     pub(in crate::cli) map: Option<OsString>,
     /// The generated level instead of a map.
     pub(in crate::cli) generated: Option<Generated>,
+    /// Whether to say what the script achieves instead of recording it.
+    pub(in crate::cli) verifies: bool,
     /// The file of the recording; standard output if `None`.
     pub(in crate::cli) cast: Option<PathBuf>,
     pub(in crate::cli) size: Size,
@@ -31,13 +33,17 @@ pub(in crate::cli) struct Replay {
 
 pub(super) const SUBCOMMAND: Subcommand = Subcommand {
     name: "replay",
-    about: "Play a script off screen, and write it as asciicast",
+    about: "Play a script off screen, and write it as asciicast, or check what it achieves",
     details: "A script is lines such as \"2.5 s forward run\" or \"12 steps turn-left open\"; \"stand\" \
-              is nothing, [walking] begins a section, and # a comment. play --record writes one.",
+              is nothing, [walking] begins a section, and # a comment. Lines at its top may name the game: \
+              \"level cellar\", \"difficulty hard\" and \"seed 7\"; a level may also be \"floor 3\" of an endless \
+              game, or a map file. MAP takes precedence. play --record writes such a script.",
     examples: "cellcaster replay walk.script > walk.cast\n\
-               cellcaster replay walk.script my.toml --size 120x40 --cast walk.cast",
+               cellcaster replay walk.script my.toml --size 120x40 --cast walk.cast\n\
+               cellcaster replay walk.script --verify",
     positionals: &[SCRIPT, map::OPTIONAL],
     options: &[
+        &VERIFY,
         &CAST,
         &value::WINDOW_SIZE,
         &value::FRAMES_PER_SECOND,
@@ -64,6 +70,7 @@ fn read(mut matches: ArgMatches) -> Result<Command, Error> {
         script: script.ok_or_else(|| Error::mistake(MISSING))?.into(),
         map,
         generated,
+        verifies: VERIFY.of(&matches),
         cast: CAST.of(&mut matches),
         size: value::WINDOW_SIZE.of(&mut matches).unwrap_or_default(),
         frames_per_second: value::FRAMES_PER_SECOND.of(&mut matches).unwrap_or_default(),
@@ -80,6 +87,11 @@ const SCRIPT: Positional = Positional {
     action: ArgAction::Set,
     hint: ValueHint::FilePath,
     choices: &[],
+};
+
+const VERIFY: Flag = Flag {
+    name: "verify",
+    help: "Say level, time, treasure and rank instead; the exit status is 0 if the script wins, else 1",
 };
 
 const CAST: FileOption =

@@ -12,6 +12,15 @@ fn is_out_of_reach(grid: &str, tiles: &str) -> bool {
     is_exit_out_of_reach(&map::parse_str(&text).unwrap_or_else(|it| panic!("{it}")))
 }
 
+/// As [`is_out_of_reach`], under a roof, with more `things` and keys of the map.
+fn is_out_of_reach_inside(top: &str, grid: &str, tiles: &str, things: &str) -> bool {
+    let text = format!(
+        "{top}\ngrid = \"\"\"\n{grid}\n\"\"\"\n[tiles]\n'#'.wall = 'brick'\n{tiles}\n[things]\n\
+         '@'.start = 0\n'X'.exit = true\n{things}"
+    );
+    is_exit_out_of_reach(&map::parse_str(&text).unwrap_or_else(|it| panic!("{it}")))
+}
+
 #[test]
 fn what_is_walled_in_is_out_of_reach() {
     assert!(!is_out_of_reach("@..X", ""));
@@ -50,4 +59,59 @@ fn who_jumps_gets_so_high_and_so_far() {
         is_out_of_reach(&format!("@.{pit}.X"), "'p'.floor_height = -3")
     };
     assert!(!gap(1) && !gap(3) && gap(5));
+}
+
+#[test]
+fn secret_walls_are_open() {
+    let secret = "'%'.secret = 'brick'";
+    assert!(!is_out_of_reach_inside("", "####\n@.%X\n####", secret, ""));
+    // A roof above it is no way for those who start inside.
+    assert!(is_out_of_reach_inside("", "#####\n@%.#X\n#####", secret, ""));
+}
+
+#[test]
+fn a_floor_that_crumbles_does_not_come_back() {
+    let floors = "'c'.crumbles = -3\n'p'.floor_height = -3";
+    assert!(!is_out_of_reach("@.c.X", floors));
+    assert!(is_out_of_reach("@.ppppppcX", floors));
+}
+
+#[test]
+fn a_switch_needs_a_lever_or_a_plate_in_reach() {
+    let inside =
+        |grid: &str, tiles: &str, things: &str| is_out_of_reach_inside("", grid, tiles, things);
+    let door = "'+' = { door = 'metal', switch = 'gate' }\n'p'.plate = 'gate'";
+    assert!(!inside("######\n@l.+.X\n######", door, "'l'.lever = 'gate'"));
+    assert!(inside("######\n@..+lX\n######", door, "'l'.lever = 'gate'"));
+    assert!(!inside("######\n@p.+.X\n######", door, ""));
+    assert!(inside("######\n@..+pX\n######", door, ""));
+    assert!(!inside("#######\n@..+pgX\n#######", door, "'g'.guard = 'hound'"));
+    let wall = "'w' = { wall = 'stone', switch = 'gate' }";
+    assert!(!inside("#####\n@lw.X\n#####", wall, "'l'.lever = 'gate'"));
+    assert!(inside("#####\n@.wlX\n#####", wall, "'l'.lever = 'gate'"));
+}
+
+#[test]
+fn a_lift_carries_to_both_ends() {
+    let lift = |grid: &str, lift: &str| {
+        let tiles = format!("'h'.floor_height = 3\n'm' = {{ {lift}, switch = 'lift' }}");
+        let things = "'l'.lever = 'lift'\n'L' = { lever = 'lift', on = 'h' }\n\
+                      'E' = { exit = true, on = 'h' }";
+        is_out_of_reach_inside("ceiling = 'sky'", grid, &tiles, things)
+    };
+    assert!(!lift("@lmhE", "moves_to = 3"));
+    assert!(!lift("@lmhE", "floor_height = 3, moves_to = 0"));
+    assert!(lift("@lmhE", "moves_to = 2"));
+    // The lever is up there.
+    assert!(lift("@.mhLE", "moves_to = 3"));
+}
+
+#[test]
+fn an_exit_may_ask_for_treasure_in_reach() {
+    let asks = |worth: u32, grid: &str| {
+        let top = format!("treasure_needed = {worth}");
+        is_out_of_reach_inside(&top, grid, "", "'t'.treasure = 50")
+    };
+    assert!(!asks(50, "@tX") && !asks(100, "@tXt"));
+    assert!(asks(51, "@tX#t") && !asks(50, "@tX#t"));
 }

@@ -80,9 +80,11 @@ impl Guard {
             self.look = Some(self.mover.heading.turned(turn).direction());
         } else if let Some(cell) = next {
             let speed = self.abilities().walk * 1.3;
-            if self.go_to(context, cell, speed) != Progress::OnTheWay {
+            let progress = self.go_to(context, cell, speed);
+            if progress != Progress::OnTheWay {
                 self.state = State::Searching { around, next: None, left };
-                self.pause_a_while(40, 80);
+                let pause = if progress == Progress::There { 60 } else { 5 };
+                self.pause_a_while(pause, pause + 20);
             }
         } else {
             let next = self.random_cell(context, around, SEARCHED);

@@ -85,7 +85,8 @@ impl Guard {
         self.state = State::Attacking { phase: Phase::Strike { has_hit }, left };
         if left == 0 {
             let left = self.abilities().recovery;
-            self.rest = left;
+            // An archer keeps their distance between two shots.
+            self.rest = if is_archer { 2 * left } else { left };
             self.state = State::Attacking { phase: Phase::Recovery, left };
         }
     }

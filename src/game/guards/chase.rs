@@ -74,6 +74,7 @@ impl Guard {
                 self.look = Some(quarry.position - self.mover.position());
             }
             Progress::There => self.lose(context, quarry),
+            Progress::Impossible if !is_seen => self.lose(context, quarry),
             Progress::Impossible => {
                 self.baffled += context.stride;
                 let way = quarry.position - self.mover.position();

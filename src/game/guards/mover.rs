@@ -18,7 +18,7 @@ pub(super) const RADIUS: Radius =
     Radius::new(0.25).expect("a quarter is between nothing and a half");
 
 /// The change of velocity in one step, in cells per second.
-const ACCELERATION: f64 = 0.3;
+const ACCELERATION: f64 = 0.6;
 
 /// Where a guard is and how they move.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -52,6 +52,11 @@ impl Mover {
     pub(super) fn cell(&self) -> Cell {
         let DVec2 { x, y } = self.body.position;
         Cell { column: x as u32, row: y as u32 }
+    }
+
+    /// Whether the guard neither falls nor flies.
+    pub(super) fn is_on_floor(&self) -> bool {
+        self.rising == 0.0
     }
 
     /// Turns towards `direction`, of any length but zero, by at most `degrees`.
@@ -121,6 +126,12 @@ impl Ground<'_> {
     /// The height of the floor under a guard.
     fn floor(&self, mover: &Mover) -> f64 {
         self.place(mover).room(mover.body.position, RADIUS).floor
+    }
+
+    /// Whether the body of a guard overlaps nothing.
+    #[cfg(test)]
+    pub(super) fn has_room_for(&self, mover: &Mover) -> bool {
+        self.place(mover).is_clear(mover.body.position, RADIUS)
     }
 
     /// Whether a guard who does not walk stays where they are: the floor under them has not moved.

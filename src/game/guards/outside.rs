@@ -27,6 +27,11 @@ impl Guards {
     /// The number of steps in which no guard does anything, if nothing is perceived: 0 if anybody
     /// is awake, `None` if all sleep.
     pub(crate) fn quiet_steps(&self) -> Option<u64> {
+        // Only a step fills what guards remember of each other and of the players.
+        let has_begun = self.steps > 0 || self.list.is_empty();
+        if !has_begun || self.has_changed || !self.acts.is_empty() || !self.spoken.is_empty() {
+            return Some(0);
+        }
         let quiet = self.list.iter().filter_map(|guard| match guard.state {
             State::Asleep => None,
             State::Down { left } => Some(u64::from(left) - 1),
@@ -40,7 +45,10 @@ impl Guards {
         if self.list.is_empty() {
             return;
         }
+        let before = self.steps;
         self.steps += steps;
+        self.ways.wait(steps);
+        self.trails.iter_mut().for_each(|trail| trail.wait(before, self.steps));
         for guard in &mut self.list {
             if let State::Down { left } = &mut guard.state {
                 *left = left.saturating_sub(u16::try_from(steps).unwrap_or(u16::MAX)).max(1);
@@ -101,69 +109,73 @@ impl Guards {
     }
 
     /// Whether any guard stands in `cell`: plates and floors that crumble feel it.
-    pub(crate) fn weighs_on(&self, world: &World, cell: Cell) -> bool {
-        let floor = world.floor_at(cell);
-        self.list.iter().any(|guard| guard.mover.cell() == cell && guard.mover.feet <= floor)
+    pub(crate) fn weighs_on(&self, cell: Cell) -> bool {
+        self.list.iter().any(|guard| guard.mover.cell() == cell && guard.mover.is_on_floor())
     }
 
     /// The nearest guard who is not down, whose middle is at most `reach` from `position` and at
-    /// most the angle with the cosine `least_cosine` off `direction`, a unit vector, and who is in
-    /// sight of an eye there.
+    /// most the angle with the cosine `least_cosine` off `direction`, a unit vector. Nothing is
+    /// between the two at the height of the middle of the guard.
     pub(crate) fn guard_near(
         &self,
         world: &World,
-        eye: Point,
+        position: DVec2,
         direction: DVec2,
         reach: f64,
         least_cosine: f64,
     ) -> Option<usize> {
-        let near = self.ahead(eye, direction, least_cosine);
+        let near = self.ahead(position, direction, least_cosine);
         let near = near.filter(|&(distance, guard, _)| {
-            distance <= reach && is_in_sight(world, &[], eye, guard.middle())
+            let to = guard.middle();
+            distance <= reach && is_in_sight(world, &[], Point { position, ..to }, to)
         });
         Some(near.min_by(|one, other| one.0.total_cmp(&other.0))?.2)
     }
 
     /// The middle of the body of the nearest guard in sight of an eye, at most the angle with the
-    /// cosine `least_cosine` off `direction`, a unit vector.
+    /// cosine `least_cosine` off `direction`, a unit vector: the position and the height.
     pub(crate) fn aim(
         &self,
         world: &World,
         clouds: &[Cloud],
-        eye: Point,
+        eye: (DVec2, f64),
         direction: DVec2,
         least_cosine: f64,
-    ) -> Option<Point> {
-        let ahead = self.ahead(eye, direction, least_cosine);
+    ) -> Option<(DVec2, f64)> {
+        let eye = Point { position: eye.0, height: eye.1 };
+        let ahead = self.ahead(eye.position, direction, least_cosine);
         let seen = ahead.filter(|(_, guard, _)| is_in_sight(world, clouds, eye, guard.middle()));
-        Some(seen.min_by(|one, other| one.0.total_cmp(&other.0))?.1.middle())
+        let Point { position, height } =
+            seen.min_by(|one, other| one.0.total_cmp(&other.0))?.1.middle();
+        Some((position, height))
     }
 
     /// The guards who are not down in a cone, with their distances and indices.
     fn ahead(
         &self,
-        eye: Point,
+        position: DVec2,
         direction: DVec2,
         least_cosine: f64,
     ) -> impl Iterator<Item = (f64, &Guard, usize)> {
         let up = self.list.iter().zip(0..).filter(|(guard, _)| !guard.state.is_down());
         up.filter_map(move |(guard, index)| {
-            let way = guard.mover.position() - eye.position;
+            let way = guard.mover.position() - position;
             let distance = way.length();
             let is_ahead = direction.dot(way) >= least_cosine * distance;
             is_ahead.then_some((distance, guard, index))
         })
     }
 
-    /// The guard whom a projectile hits that moves from `from` to `to`, the nearest to `from`.
-    pub(crate) fn hit_between(&self, from: Point, to: Point) -> Option<usize> {
-        let way = to.position - from.position;
+    /// The guard whom a projectile hits that moves from `from` to `to`, the nearest to `from`; both
+    /// have a position and a height.
+    pub(crate) fn hit_between(&self, from: (DVec2, f64), to: (DVec2, f64)) -> Option<usize> {
+        let way = to.0 - from.0;
         let length_squared = way.length_squared();
         let hits = self.list.iter().zip(0..).filter_map(|(guard, index)| {
-            let offset = guard.mover.position() - from.position;
+            let offset = guard.mover.position() - from.0;
             let along = if length_squared > 0.0 { offset.dot(way) / length_squared } else { 0.0 };
             let along = along.clamp(0.0, 1.0);
-            let height = from.height + (to.height - from.height) * along;
+            let height = from.1 + (to.1 - from.1) * along;
             let is_hit = (way * along).distance_squared(offset) <= HIT * HIT
                 && (guard.mover.feet..=guard.head()).contains(&height)
                 && !guard.state.is_down();

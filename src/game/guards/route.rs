@@ -14,6 +14,8 @@ use crate::world::{Cell, TileKind};
 
 /// Nearer than this to the middle of a cell, a guard is there, in cells.
 const ARRIVED: f64 = 0.3;
+/// Nearer than this to a point on the way, a guard goes on to the next, in cells.
+const PASSED: f64 = 0.35;
 /// The farthest goal that is tried on a straight line, in cells.
 const STRAIGHT: f64 = 8.0;
 /// The number of cells on a way that are tried on a straight line.
@@ -69,6 +71,11 @@ impl Guard {
             return Progress::There;
         }
         let cell = self.mover.cell();
+        let is_passed =
+            |point: DVec2| point != place && point.distance_squared(position) < PASSED * PASSED;
+        if self.route.point.is_some_and(is_passed) {
+            self.route.fresh = 0;
+        }
         let is_stale = self.route.fresh == 0 || self.route.from != Some(cell);
         if is_stale || self.route.goal != Some(goal) {
             if !self.find_point(context, cell, goal, place) {

@@ -16,9 +16,9 @@ use crate::world::{Cell, Gap, TileId, TileKind, World};
 
 /// A position and a height, in cells.
 #[derive(Clone, Copy, Debug, PartialEq)]
-pub(crate) struct Point {
-    pub(crate) position: DVec2,
-    pub(crate) height: f64,
+pub(super) struct Point {
+    pub(super) position: DVec2,
+    pub(super) height: f64,
 }
 
 /// Whether nothing hides one of two points from the other.

@@ -27,16 +27,29 @@ struct Mark {
 impl Trail {
     /// Records where a player is in the step `now`.
     pub(super) fn record(&mut self, world: &World, target: &Target, now: u64) {
-        let is_stale = |mark: &Mark| now - mark.left_at > LASTS;
-        while self.marks.front().is_some_and(is_stale) || self.marks.len() >= MOST {
-            self.marks.pop_front();
-            self.first += 1;
-        }
+        self.fade(now);
         let cell = target.cell();
         match self.marks.back_mut() {
             Some(mark) if mark.cell == cell => mark.left_at = now,
             _ if world.effect_in(cell) == Some(TileEffect::Water) => {}
             _ => self.marks.push_back(Mark { cell, left_at: now }),
+        }
+    }
+
+    /// Records that a player has stayed in their cell from the step `before` to the step `now`.
+    pub(super) fn wait(&mut self, before: u64, now: u64) {
+        if let Some(mark) = self.marks.back_mut().filter(|mark| mark.left_at == before) {
+            mark.left_at = now;
+        }
+        self.fade(now);
+    }
+
+    /// Forgets the cells that do not smell any more.
+    fn fade(&mut self, now: u64) {
+        let is_stale = |mark: &Mark| now - mark.left_at > LASTS;
+        while self.marks.front().is_some_and(is_stale) || self.marks.len() >= MOST {
+            self.marks.pop_front();
+            self.first += 1;
         }
     }
 

@@ -60,6 +60,14 @@ impl Ways {
         self.cells_left = MOST_CELLS;
     }
 
+    /// Advances the clock by `steps` in which nobody asks for a way.
+    pub(super) fn wait(&mut self, steps: u64) {
+        self.now += steps;
+        if steps > 0 {
+            self.cells_left = MOST_CELLS;
+        }
+    }
+
     /// Forgets all ways, as when the whole map has changed.
     pub(super) fn forget(&mut self) {
         self.fields.clear();

@@ -53,9 +53,7 @@ impl Game {
     }
 
     fn turn_lever(&mut self, cell: Cell, switch: SwitchId) {
-        let Some(state) = self.mechanisms.switches.get_mut(usize::from(switch.0)) else { return };
-        state.is_turned = !state.is_turned;
-        let is_turned = state.is_turned;
+        let is_turned = self.mechanisms.turn(switch);
         let is_it = |kind| kind == ThingKind::Lever(switch);
         let levers = self.world.things().iter().filter(|thing| is_it(thing.kind));
         let cells: Vec<Cell> = levers.map(|thing| thing.cell).collect();

@@ -5,6 +5,7 @@ use std::ops::Range;
 
 use super::parse::{trimmed, words};
 use crate::fault::{Fault, nearest, quoted};
+use crate::game::Rules;
 use crate::world::Difficulty;
 
 /// The game that a script belongs to, as far as it says so.
@@ -83,6 +84,17 @@ impl fmt::Display for Header {
 }
 
 impl Header {
+    /// The header of a game in `level` with these rules.
+    pub fn of(level: Option<LevelName>, rules: Rules) -> Self {
+        Self { level, difficulty: Some(rules.difficulty), seed: Some(rules.seed) }
+    }
+
+    /// The rules, with defaults where it does not say.
+    pub fn rules(&self) -> Rules {
+        let Rules { difficulty, seed } = Rules::default();
+        Rules { difficulty: self.difficulty.unwrap_or(difficulty), seed: self.seed.unwrap_or(seed) }
+    }
+
     /// Whether it says nothing.
     pub fn is_empty(&self) -> bool {
         *self == Self::default()

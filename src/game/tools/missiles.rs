@@ -9,7 +9,7 @@ use glam::DVec2;
 use crate::game::STEP;
 use crate::game::collision::{Place, Radius, Stature, fly};
 use crate::game::fall::GRAVITY;
-use crate::game::guards::{Guards, Point};
+use crate::game::guards::Guards;
 use crate::game::player::{Motion, RADIUS};
 use crate::generate::Shift;
 use crate::world::{Cell, World};
@@ -76,25 +76,25 @@ pub(in crate::game) enum Struck {
 
 impl Missile {
     /// A pebble, which lands six cells ahead on level floor.
-    pub(in crate::game) fn pebble(from: Point, ahead: DVec2) -> Self {
+    pub(in crate::game) fn pebble(from: (DVec2, f64), ahead: DVec2) -> Self {
         Self::thrown(MissileKind::Pebble, from, ahead * 9.0, 6.0 / 9.0)
     }
 
     /// A flask, which lands three cells ahead on level floor.
-    pub(in crate::game) fn flask(from: Point, ahead: DVec2) -> Self {
+    pub(in crate::game) fn flask(from: (DVec2, f64), ahead: DVec2) -> Self {
         Self::thrown(MissileKind::Flask, from, ahead * 6.0, 3.0 / 6.0)
     }
 
     /// A dart, which flies straight ahead or to `aim`.
     pub(in crate::game) fn dart(
-        Point { position, height }: Point,
+        (position, height): (DVec2, f64),
         ahead: DVec2,
-        aim: Option<Point>,
+        aim: Option<(DVec2, f64)>,
     ) -> Self {
         const SPEED: f64 = 14.0;
-        let to_aim = aim.and_then(|aim| {
-            let way = aim.position - position;
-            Some((way.try_normalize()?, (aim.height - height) / way.length()))
+        let to_aim = aim.and_then(|(target, middle)| {
+            let way = target - position;
+            Some((way.try_normalize()?, (middle - height) / way.length()))
         });
         let (direction, slope) = to_aim.unwrap_or((ahead, 0.0));
         Self {
@@ -109,7 +109,7 @@ impl Missile {
 
     /// A bolt along `direction`, a unit vector, that rises by `slope` for each cell.
     pub(in crate::game) fn bolt(
-        Point { position, height }: Point,
+        (position, height): (DVec2, f64),
         direction: DVec2,
         slope: f64,
         points: u8,
@@ -128,7 +128,7 @@ impl Missile {
     /// Thrown so that it is `HAND` below its start after `seconds`.
     fn thrown(
         kind: MissileKind,
-        Point { position, height }: Point,
+        (position, height): (DVec2, f64),
         velocity: DVec2,
         seconds: f64,
     ) -> Self {
@@ -155,10 +155,6 @@ impl Missile {
         self.height = height.clamp(room.floor, ceiling);
         self.steps += 1;
         is_stopped || height <= room.floor || self.steps >= MOST_STEPS
-    }
-
-    fn point(&self) -> Point {
-        Point { position: self.position, height: self.height }
     }
 
     fn cell(&self) -> Cell {
@@ -191,9 +187,9 @@ impl Missiles {
     ) -> Vec<Landed> {
         let mut landed = Vec::new();
         self.flying.retain_mut(|missile| {
-            let from = missile.point();
+            let from = (missile.position, missile.height);
             let has_ended = missile.step(world);
-            let to = missile.point();
+            let to = (missile.position, missile.height);
             let struck = match missile.kind {
                 MissileKind::Dart => guards.hit_between(from, to).map(Struck::Guard),
                 MissileKind::Bolt { .. } => hits(player, from, to).then_some(Struck::Player),
@@ -217,14 +213,14 @@ impl Missiles {
 }
 
 /// Whether a missile on the way from one place to another meets the player's body.
-fn hits(player: &Motion, from: Point, to: Point) -> bool {
-    let way = to.position - from.position;
+fn hits(player: &Motion, from: (DVec2, f64), to: (DVec2, f64)) -> bool {
+    let way = to.0 - from.0;
     let along = if way == DVec2::ZERO {
         0.0
     } else {
-        ((player.position() - from.position).dot(way) / way.length_squared()).clamp(0.0, 1.0)
+        ((player.position() - from.0).dot(way) / way.length_squared()).clamp(0.0, 1.0)
     };
-    let height = from.height + (to.height - from.height) * along;
-    let distance = (from.position + way * along).distance(player.position());
+    let height = from.1 + (to.1 - from.1) * along;
+    let distance = (from.0 + way * along).distance(player.position());
     distance <= RADIUS.cells() + MARGIN && (player.feet()..=player.head()).contains(&height)
 }

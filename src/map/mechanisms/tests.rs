@@ -122,3 +122,30 @@ fn moving_tiles_pass_through_states_an_eighth_apart() {
     }
     assert_eq!(world.moving_tiles().len(), 4);
 }
+
+/// Whether a map whose exit door needs a key is refused, since the key is out of reach.
+fn is_refused(grid: &str, things: &str) -> bool {
+    let text = format!(
+        "grid = '''\n{grid}\n'''\n[tiles]\n'#'.wall = 'brick'\n'%'.secret = 'brick'\n\
+         '+' = {{ door = 'metal', switch = 'gate' }}\n'=' = {{ door = 'oak', key = 'brass' }}\n\
+         'p'.plate = 'gate'\n[things]\n'@'.start = 0\n'k'.key = 'brass'\n'l'.lever = 'gate'\n{things}"
+    );
+    match map::parse_str(&text) {
+        Ok(_) => false,
+        Err(faults) => {
+            assert!(faults.to_string().contains("cannot be reached"), "{faults}");
+            true
+        }
+    }
+}
+
+#[test]
+fn a_key_may_lie_behind_secrets_and_switches() {
+    let room = |row: &str| format!("#########\n{row}\n###=#####\n#.......#\n#########");
+    assert!(!is_refused(&room("#@..%..k#"), ""));
+    assert!(!is_refused(&room("#@l.+..k#"), ""));
+    assert!(is_refused(&room("#@..+.lk#"), ""));
+    assert!(!is_refused(&room("#@p.+..k#"), ""));
+    assert!(is_refused(&room("#@..+.pk#"), ""));
+    assert!(!is_refused(&room("#@..+gpk#"), "'g'.guard = 'hound'"));
+}

@@ -30,7 +30,12 @@ impl<'a> Surface<'a> {
 
     /// The walls that a door is set between.
     pub(in crate::map) fn jamb() -> Self {
-        Self { source: Source::BuiltIn("jamb"), place: 0..0 }
+        Self::built_in("jamb")
+    }
+
+    /// The built-in texture of that name.
+    pub(in crate::map) fn built_in(name: &'static str) -> Self {
+        Self { source: Source::BuiltIn(name), place: 0..0 }
     }
 
     /// Reads the surface in `entry`; reports a fault where there is none. `example` is a whole entry.

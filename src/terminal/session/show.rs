@@ -9,6 +9,9 @@ use super::Session;
 use crate::terminal::flow::Request;
 use crate::terminal::{Error, Event, Fidelity, Screen, sequence};
 
+/// The byte that rings the bell.
+const BELL: u8 = 0x07;
+
 impl Session {
     /// Draws a frame on a blank screen and sends the changes since the last one. Waits until the
     /// terminal is [ready](Self::is_ready) for it. If the program must end during the wait, the
@@ -28,6 +31,11 @@ impl Session {
     pub fn refine(&mut self) -> Result<(), Error> {
         let refined = self.try_refine();
         self.unless_shutting_down(refined)
+    }
+
+    /// Rings the terminal's bell with the next frame.
+    pub fn ring_bell(&mut self) {
+        self.writer.output_mut().push(BELL);
     }
 
     /// Whether the terminal shows exactly the last frame drawn. If it does not, a few calls of

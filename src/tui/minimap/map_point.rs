@@ -20,6 +20,8 @@ pub(super) enum MapPoint {
     InView(Floor),
     Exit,
     Key,
+    /// What the player can take or read.
+    Item,
     Ornament,
 }
 
@@ -57,6 +59,8 @@ const VOID: Rgb = Rgb::BLACK;
 const EXIT: Rgb = Rgb::new(0x3c, 0xc8, 0x64);
 /// A key to take.
 const KEY: Rgb = Rgb::new(0xe0, 0xa0, 0x28);
+/// Treasure, a tool or a note.
+const ITEM: Rgb = Rgb::new(0xc8, 0x78, 0xc8);
 /// An obstacle, or a decoration.
 const ORNAMENT: Rgb = Rgb::new(0x9c, 0x8c, 0x74);
 /// The least and the greatest brightness of walls.
@@ -66,6 +70,12 @@ const WALLS: (u8, u8) = (0x60, 0xb0);
 const SAME_HEIGHT: f64 = 0.05;
 
 impl Floor {
+    /// Water at `height`.
+    pub(super) fn water(height: f64) -> Self {
+        let depth = height.min(0.0).abs();
+        Self { kind: FloorKind::Water, color: mix(BASE, WATER, (depth + 0.3) / (depth + 0.6)) }
+    }
+
     /// Floor at `height` with the mean colour `color`.
     pub(super) fn new(height: f64, color: Rgb) -> Self {
         // The share is one half at the height or depth `half`.
@@ -87,8 +97,8 @@ impl Floor {
     }
 }
 
-/// Whether a lowered floor with that colour counts as water: if it is much more blue than red. The
-/// map file has no word for water; it is floor like any other.
+/// Whether a lowered floor with that colour looks like water: if it is much more blue than red. A
+/// map may draw water that does nothing.
 fn is_watery(color: Rgb) -> bool {
     u16::from(color.blue()) >= 2 * u16::from(color.red())
 }
@@ -129,6 +139,7 @@ impl MapPoint {
             Self::InView(floor) => floor.lit(),
             Self::Exit => EXIT,
             Self::Key => KEY,
+            Self::Item => ITEM,
             Self::Ornament => ORNAMENT,
         }
     }
@@ -148,6 +159,7 @@ impl MapPoint {
             },
             Self::Exit => 10,
             Self::Key => 13,
+            Self::Item => 14,
             Self::Ornament => 2,
         }
     }
@@ -164,7 +176,7 @@ impl MapPoint {
                 }
                 FloorKind::Base | FloorKind::Pit => false,
             },
-            Self::Void | Self::Exit | Self::Key | Self::Ornament => false,
+            Self::Void | Self::Exit | Self::Key | Self::Item | Self::Ornament => false,
         }
     }
 
@@ -182,6 +194,7 @@ impl MapPoint {
             },
             Self::Exit => 'X',
             Self::Key => 'k',
+            Self::Item => '$',
             Self::Ornament => 'o',
         }
     }
@@ -196,8 +209,9 @@ impl MapPoint {
             Self::Ornament => 3,
             Self::Wall(_) => 4,
             Self::Door(_) => 5,
-            Self::Key => 6,
-            Self::Exit => 7,
+            Self::Item => 6,
+            Self::Key => 7,
+            Self::Exit => 8,
         }
     }
 }

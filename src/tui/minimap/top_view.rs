@@ -9,7 +9,9 @@ use super::explored::Explored;
 use super::map_point::{self, Floor, MapPoint};
 use crate::color::Rgb;
 use crate::render::Column;
-use crate::world::{Camera, Cell, Paint, Shape, Thing, ThingKind, Tile, TileId, TileKind, World};
+use crate::world::{
+    Camera, Cell, Paint, Shape, Thing, ThingKind, Tile, TileEffect, TileId, TileKind, World,
+};
 
 /// A world seen from above.
 pub(super) struct TopView<'a> {
@@ -67,6 +69,11 @@ impl<'a> TopView<'a> {
         }
     }
 
+    /// Whether the floor at `point` is in view.
+    pub(super) fn is_visible(&self, point: DVec2) -> bool {
+        self.visible_floor.contains(point)
+    }
+
     /// Whether a pixel around `point` shows the shape of `tile`, which is in `cell`.
     fn is_covered(&self, tile: TileId, cell: Cell, point: DVec2) -> bool {
         let TileKind::Shape(Shape { outline, .. }) = self.world.tile(tile).kind else {
@@ -108,8 +115,7 @@ impl Row<'_> {
         };
         match self.thing(cell) {
             Some(ThingKind::Exit) => MapPoint::Exit,
-            Some(ThingKind::Key(_)) if self.is_on_dot(point, cell) => MapPoint::Key,
-            Some(ThingKind::Ornament) if self.is_on_dot(point, cell) => MapPoint::Ornament,
+            Some(kind) if self.is_on_dot(point, cell) => dot(kind),
             _ if self.view.visible_floor.contains(point) => MapPoint::InView(floor),
             _ => MapPoint::Floor(floor),
         }
@@ -133,11 +139,31 @@ impl Row<'_> {
     }
 }
 
+/// The dot for a thing.
+fn dot(kind: ThingKind) -> MapPoint {
+    match kind {
+        ThingKind::Exit => MapPoint::Exit,
+        ThingKind::Key(_) => MapPoint::Key,
+        ThingKind::Treasure(_)
+        | ThingKind::Healing(_)
+        | ThingKind::Supply(..)
+        | ThingKind::Note(_) => MapPoint::Item,
+        ThingKind::Ornament
+        | ThingKind::Checkpoint
+        | ThingKind::Lever(_)
+        | ThingKind::Spikes(_)
+        | ThingKind::Flame => MapPoint::Ornament,
+    }
+}
+
 /// The appearance of `tile` from an eye at that height. The top of a wall below the eye is floor.
 fn appearance_of(tile: &Tile, world: &World, eye: f64) -> TileAppearance {
     let wall = |paint| map_point::of_wall(world.mean_color(paint));
     let height = tile.heights.floor();
-    let floor = Floor::new(height, world.mean_color(tile.floor.pattern.first_paint()));
+    let floor = match tile.effect {
+        Some(TileEffect::Water) => Floor::water(height),
+        _ => Floor::new(height, world.mean_color(tile.floor.pattern.first_paint())),
+    };
     let is_top_seen = || height < eye && tile.gaps().next().is_some_and(|gap| gap.bottom <= height);
     match tile.kind {
         TileKind::Open | TileKind::Doorway(_) => TileAppearance::Floor(floor),

@@ -205,12 +205,12 @@ impl Carrier {
 
 impl Glows {
     fn of(&mut self, lamp: Lamp) -> Arc<Glow> {
-        let known = self.list.iter().find(|(known, _)| *known == lamp);
-        known.map(|(_, glow)| Arc::clone(glow)).unwrap_or_else(|| {
-            let glow = Arc::new(Glow::of(&lamp));
-            self.list.push((lamp, Arc::clone(&glow)));
-            glow
-        })
+        if let Some((_, glow)) = self.list.iter().find(|(known, _)| *known == lamp) {
+            return Arc::clone(glow);
+        }
+        let glow = Arc::new(Glow::of(&lamp));
+        self.list.push((lamp, Arc::clone(&glow)));
+        glow
     }
 }
 

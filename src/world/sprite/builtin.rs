@@ -5,13 +5,17 @@
 //! unlike those of a picture file.
 
 mod figure;
+mod finds;
+mod fixtures;
 mod frame;
 mod furniture;
 mod guard;
 mod model;
 mod player;
 mod portal;
+mod stores;
 mod treasure;
+mod weapons;
 
 use std::num::NonZeroU32;
 
@@ -20,9 +24,12 @@ use crate::color::Rgb;
 use crate::world::{GuardKind, Lamp, Light, Reach, Texture};
 pub use frame::{CheckpointFrame, GuardFrame, LeverFrame, SpikesFrame};
 
-/// The names that maps may use.
-pub const NAMES: &[&str] =
-    &["barrel", "bones", "column", "lamp", "plant", "statue", "table", "torch"];
+/// The names that maps may use for ornaments. Games also use sprites of guards, of finds and of what
+/// flies, which [`named`] knows.
+pub const NAMES: &[&str] = &[
+    "banner", "barrel", "bones", "books", "brazier", "chest", "column", "crate", "lamp", "plant",
+    "statue", "table", "torch",
+];
 
 /// The sprite of an exit.
 pub const EXIT: &str = "portal";
@@ -35,6 +42,28 @@ pub const PLAYER: &str = "player";
 pub fn named(name: &str) -> Option<Sprite> {
     let Design { pictures, facings, seconds, animated, anchor, height, blocks, shines } = match name
     {
+        "bolt" => weapons::bolt(),
+        "checkpoint" => fixtures::checkpoint(),
+        "coins" => finds::coins(),
+        "crown" => finds::crown(),
+        "cup" => finds::cup(),
+        "dart" => weapons::dart(),
+        "darts" => weapons::darts(),
+        "flask" => weapons::flask(),
+        "flasks" => weapons::flasks(),
+        "heart" => finds::heart(),
+        "lever" => fixtures::lever(),
+        "note" => finds::note(),
+        "pebble" => finds::pebble(),
+        "pebbles" => finds::pebbles(),
+        "smoke" => weapons::smoke(),
+        "spikes" => fixtures::spikes(),
+        "star" => weapons::star(),
+        "banner" => stores::banner(),
+        "books" => stores::books(),
+        "brazier" => stores::brazier(),
+        "chest" => stores::chest(),
+        "crate" => stores::crate_of_boards(),
         "barrel" => furniture::barrel(),
         "bones" => treasure::bones(),
         "column" => furniture::column(),
@@ -59,6 +88,11 @@ pub fn named(name: &str) -> Option<Sprite> {
         .filter(|&light| light != Light::NONE)
         .map(|light| Lamp { light, reach: Reach::default() });
     Some(sprite)
+}
+
+/// The height of a guard's sprite, in cells, without making its pictures.
+pub fn guard_height(kind: GuardKind) -> f64 {
+    guard::height(kind)
 }
 
 /// The definition of a sprite.
@@ -121,8 +155,31 @@ const INK: Rgb = Rgb::new(0x1c, 0x18, 0x20);
 mod tests {
     use super::*;
 
+    /// The sprites that only a game uses, but for guards.
+    const OF_GAMES: [&str; 19] = [
+        EXIT,
+        KEY,
+        "bolt",
+        "checkpoint",
+        "coins",
+        "crown",
+        "cup",
+        "dart",
+        "darts",
+        "flask",
+        "flasks",
+        "heart",
+        "lever",
+        "note",
+        "pebble",
+        "pebbles",
+        "smoke",
+        "spikes",
+        "star",
+    ];
+
     fn all() -> impl Iterator<Item = (&'static str, Sprite)> {
-        let names = NAMES.iter().copied().chain([EXIT, KEY]);
+        let names = NAMES.iter().copied().chain(OF_GAMES);
         names.map(|name| (name, named(name).unwrap_or_else(|| panic!("{name} is drawn"))))
     }
 
@@ -138,6 +195,17 @@ mod tests {
             }
         }
         assert_eq!(named("dragon"), None);
+    }
+
+    #[test]
+    fn frames_that_a_game_selects_are_not_animated() {
+        let frames = |name| {
+            let sprite = named(name).unwrap();
+            (sprite.animated_frames(), sprite.frames())
+        };
+        assert_eq!((frames("lamp"), frames("torch")), ((2, 3), (3, 4)));
+        assert_eq!((frames("checkpoint"), frames("lever")), ((1, 2), (1, 2)));
+        assert_eq!((frames("spikes"), frames("smoke")), ((1, 3), (4, 4)));
     }
 
     #[test]

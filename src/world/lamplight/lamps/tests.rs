@@ -3,7 +3,8 @@ use proptest::prelude::*;
 use super::*;
 use crate::cast::{Ray, Walk};
 use crate::map;
-use crate::world::Opening;
+use crate::render::{Frame, FrameSize, PixelAspect, Renderer};
+use crate::world::{FieldOfView, Opening};
 
 const SIDE: u32 = 10;
 
@@ -161,4 +162,30 @@ fn a_lamp_carried_into_a_dim_level_lights_it() {
     assert_eq!(world.light_in(Cell { column: 3, row: 1 }), before.plus(lamp.light_at(2.0)));
     world.set_moving_lamps(&[(Cell { column: 90, row: 1 }, lamp)]);
     assert_eq!(world.light_in(cell), before, "off the map it lights nothing");
+}
+
+#[test]
+fn a_flame_that_is_out_neither_shines_nor_flickers() {
+    let text = "light = 0.1\ngrid = '''\n#####\n#@.t#\n#####\n'''\n[tiles]\n'#' = { wall = 'brick' }\n\
+                [things]\n'@' = { start = 0 }\n't' = { sprite = 'torch' }\n";
+    let mut world = map::parse_str(text).unwrap();
+    let cell = world.things()[0].cell;
+    world.things.in_cell_mut(cell)[0].kind = ThingKind::Flame;
+    let camera = world.start_camera(FieldOfView::default());
+    let mut renderer = Renderer::new();
+    let mut draw = |world: &World, seconds| {
+        let mut frame = Frame::new(FrameSize::new(48, 32).unwrap(), PixelAspect::SQUARE);
+        renderer.set_time(seconds);
+        renderer.render(world, &camera, &mut frame);
+        (frame, renderer.next_change())
+    };
+    let burning = draw(&world, 0.0);
+    assert!(burning.1.is_some());
+    world.set_flame(cell, false);
+    assert_eq!(world.light_in(cell), Light::new(0.1).unwrap());
+    let out = draw(&world, 0.0);
+    assert!(out.0 != burning.0 && out == draw(&world, 0.7));
+    assert_eq!(out.1, None);
+    world.set_flame(cell, true);
+    assert!(draw(&world, 0.0) == burning);
 }

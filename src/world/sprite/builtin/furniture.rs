@@ -164,7 +164,7 @@ pub(super) fn torch() -> Design {
     Design { seconds: 0.15, animated: Some(3), shines: 0.6, ..Design::standing(0.72, pictures) }
 }
 
-const FIRE: &Palette = &[
+pub(super) const FIRE: &Palette = &[
     ('k', INK),
     ('m', Rgb::new(0x6c, 0x62, 0x58)),
     ('r', Rgb::new(0xd8, 0x50, 0x20)),

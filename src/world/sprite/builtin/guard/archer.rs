@@ -146,7 +146,7 @@ fn bow(model: &mut Model, joints: &Joints, frame: GuardFrame) {
     if is_drawn {
         let point = grip + (grip - nock).normalize() * 3.0;
         model.limb([nock, point], [0.6, 0.6], ARROW);
-        model.ball(point, 1.8, TIP);
+        model.ball(point, 2.3, TIP);
         model.ball(nock, 1.0, FEATHERS);
     }
 }

@@ -93,9 +93,9 @@ fn pose(frame: GuardFrame) -> Pose {
             haunches: [-9.0, 13.5],
             head: [8.0, 0.0, 3.0],
             looks: [14.0, 0.0],
-            jaws: 42.0,
+            jaws: 52.0,
             ears: 0.0,
-            feet: [[11.0, -4.0, 0.0], [11.0, 4.0, 0.0], [-10.0, -3.4, 0.0], [-9.0, 3.4, 0.0]],
+            feet: [[10.5, -6.0, 0.0], [10.5, 6.0, 0.0], [-10.0, -3.4, 0.0], [-9.0, 3.4, 0.0]],
             tail: [-3.5, 0.0, 5.6],
             ..stand
         },
@@ -206,7 +206,7 @@ fn jaw(model: &mut Model, pose: &Pose, head: DAffine3) {
     }
     model.limb([point(0.6, 0.0, 0.9), point(4.4, 0.0, 0.7)], [1.1, 0.8], MOUTH);
     for (x, side) in [(4.6, -0.8), (4.6, 0.8)] {
-        model.ball(point(x, side, 1.1), 0.7, TEETH);
-        model.ball(head.transform_point3(DVec3::new(6.2, side, -1.9)), 0.8, TEETH);
+        model.ball(point(x, side, 1.1), 0.9, TEETH);
+        model.ball(head.transform_point3(DVec3::new(6.2, side, -1.9)), 1.1, TEETH);
     }
 }

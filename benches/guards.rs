@@ -1,0 +1,116 @@
+//! The cost of a step with guards.
+//!
+//! `cargo bench --no-default-features --bench guards`, on maps of 160 × 90 cells. A quarter of the
+//! cells are walls. The player runs in circles, so that those who follow always have a new goal. An
+//! iteration is one step of the whole game; the one without guards is the price of the rest.
+
+use std::hint::black_box;
+
+use cellcaster::game::{Alarm, Game, Intent, Intents};
+use cellcaster::map;
+use cellcaster::world::World;
+use criterion::{Criterion, criterion_group, criterion_main};
+
+const COLUMNS: u64 = 160;
+const ROWS: u64 = 90;
+
+/// What the guards of a map do.
+#[derive(Clone, Copy, PartialEq)]
+enum Deed {
+    Chase,
+    Sleep,
+    FarPatrol,
+}
+
+/// A map with `count` guards. Those who chase are around the player, the others in the east.
+fn world(count: u64, deed: Deed) -> World {
+    let middle = (COLUMNS / 4, ROWS / 2);
+    let mut left = count;
+    let mut grid = String::new();
+    for row in 0..ROWS {
+        grid.push('\n');
+        for column in 0..COLUMNS {
+            let is_edge = column == 0 || row == 0 || column == COLUMNS - 1 || row == ROWS - 1;
+            let is_wall = column % 4 == 0 && row % 4 != 1;
+            let apart = (column.abs_diff(middle.0), row.abs_diff(middle.1));
+            let is_post = match deed {
+                Deed::Chase => apart.0.max(apart.1) <= 12 && row % 2 == 1 && column % 4 == 1,
+                Deed::Sleep | Deed::FarPatrol => column > 120 && row % 4 == 1 && column % 4 == 1,
+            };
+            grid.push(match () {
+                () if is_edge => '#',
+                () if apart.0.max(apart.1) <= 1 => {
+                    if apart == (0, 0) {
+                        '@'
+                    } else {
+                        '.'
+                    }
+                }
+                () if is_wall => '#',
+                () if is_post && left > 0 => {
+                    left -= 1;
+                    'G'
+                }
+                () => '.',
+            });
+        }
+    }
+    assert_eq!(left, 0, "there is room for all guards");
+    let duty = match deed {
+        Deed::Chase => "",
+        Deed::Sleep => ", asleep = true",
+        Deed::FarPatrol => ", wander = 8",
+    };
+    let guard = if count > 0 {
+        format!("'G' = {{ guard = 'warden', heading = 180{duty} }}")
+    } else {
+        String::new()
+    };
+    let text = format!(
+        "grid = '''{grid}\n'''\n[tiles]\n'#' = {{ wall = 'brick' }}\n\
+         [things]\n'@' = {{ start = 0 }}\n{guard}\n"
+    );
+    map::parse_str(&text).unwrap_or_else(|faults| panic!("{faults}"))
+}
+
+fn circling() -> Intents {
+    [Intent::Forward, Intent::Run, Intent::TurnRight].into_iter().collect()
+}
+
+fn steps(criterion: &mut Criterion) {
+    let mut group = criterion.benchmark_group("a step");
+    for (name, count, deed) in [
+        ("no guards", 0, Deed::Chase),
+        ("20 chasing", 20, Deed::Chase),
+        ("20 asleep, far", 20, Deed::Sleep),
+        ("20 wandering, far", 20, Deed::FarPatrol),
+    ] {
+        let mut game = Game::new(world(count, deed));
+        let is_chase = deed == Deed::Chase && count > 0;
+        let mut waited = 0;
+        while if is_chase { game.alarm() < Alarm::Raised } else { waited < 60 } {
+            game.step(circling());
+            waited += 1;
+            assert!(waited < 2000, "{name}: nobody notices the player");
+        }
+        // A shout is heard one step later.
+        game.step(circling());
+        let begun = game.clone();
+        let mut left = 0;
+        group.bench_function(name, |bencher| {
+            bencher.iter(|| {
+                if left == 0 {
+                    (game, left) = (begun.clone(), 120);
+                }
+                left -= 1;
+                game.step(black_box(circling()));
+            });
+        });
+        let chasing = game.guards().filter(|guard| guard.mood >= cellcaster::game::Mood::Wondering);
+        println!("{name}: {} of {count} alert at the end", chasing.count());
+    }
+    group.finish();
+}
+
+criterion_group!(benches, steps);
+criterion_main!(benches);

@@ -1,0 +1,90 @@
+//! Descents: endless ones, and the one of the day.
+//!
+//! A descent ends when the player dies: there is no way back to a floor, so that how far somebody
+//! came means the same for all. The daily run counts once; later tries are practice.
+
+use super::levels::Course;
+use super::menu::Menu;
+use super::menus::Choice;
+use super::panels::whole_seconds;
+use super::{App, Levels, STEP};
+use crate::store::Reached;
+use crate::world::Difficulty;
+
+impl App {
+    /// Begins the descent of the day, at the same difficulty for everybody.
+    pub(super) fn begin_daily(&mut self) {
+        let Some(date) = self.offers.as_ref().and_then(|offers| offers.today) else { return };
+        let counts = self.store.begin_daily(date);
+        self.difficulty = Difficulty::default();
+        self.begin(Levels::descent(date.into(), Course::Daily { date, counts }));
+    }
+
+    /// Begins a descent that nobody has seen.
+    pub(super) fn begin_endless(&mut self) {
+        let Some(offers) = self.offers.as_mut() else { return };
+        let seed = offers.seed;
+        offers.seed = seed.wrapping_add(1);
+        let usual = self.store.preferences().difficulty;
+        self.difficulty = self.settings.difficulty.unwrap_or(usual);
+        self.begin(Levels::descent(seed, Course::Endless));
+    }
+
+    /// Whether the level belongs to a descent.
+    pub(super) fn is_descent(&self) -> bool {
+        self.course != Course::Levels
+    }
+
+    /// Records a floor that was won.
+    pub(super) fn record_floor(&mut self) {
+        let Some(tally) = self.game.grid().map(|game| game.tally()) else { return };
+        let Reached { floors, treasure, steps } = self.reached;
+        self.reached = Reached {
+            floors: floors + 1,
+            treasure: treasure.saturating_add(tally.treasure.found),
+            steps: steps + tally.steps,
+        };
+        match self.course {
+            Course::Daily { date, counts: true } => self.store.record_daily(date, self.reached),
+            Course::Endless => _ = self.store.record_descent(self.reached),
+            Course::Levels | Course::Daily { counts: false, .. } => {}
+        }
+    }
+
+    /// The lines about how far the descent came.
+    pub(super) fn descent_lines(&self) -> Vec<String> {
+        let mut lines = vec![described(self.reached)];
+        if let Course::Daily { counts: false, .. } = self.course {
+            lines.push("practice: the first try of the day counts".to_owned());
+        }
+        lines
+    }
+
+    /// Adds the descents to the title's menu.
+    pub(super) fn with_descents(&self, menu: Menu<Choice>) -> Menu<Choice> {
+        let Some(offers) = &self.offers else { return menu };
+        let menu = match offers.today {
+            Some(date) => {
+                let tried = self.store.daily(date);
+                let tried = tried.map_or_else(String::new, |tried| short(tried.reached));
+                menu.entry_with("Daily run", tried, Choice::Daily)
+            }
+            None => menu,
+        };
+        let best = self.store.best_descent().map_or_else(String::new, short);
+        menu.entry_with("Endless", best, Choice::Endless)
+    }
+}
+
+/// The floors that were reached, for the title.
+fn short(reached: Reached) -> String {
+    match reached.floors {
+        1 => "1 floor".to_owned(),
+        floors => format!("{floors} floors"),
+    }
+}
+
+fn described(reached: Reached) -> String {
+    let seconds = whole_seconds(reached.steps as f64 * STEP);
+    format!("{}, {} gold in {seconds}", short(reached), reached.treasure)
+}

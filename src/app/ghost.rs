@@ -1,0 +1,65 @@
+//! The ghost: the best run of a level, which walks along as a see-through figure.
+//!
+//! It is a game of its own that the script of that run plays. Recorded positions were refused: a
+//! script is a hundredth of their size, and is kept anyway.
+
+use super::script_cursor::ScriptCursor;
+use crate::game::{Game, Intents};
+use crate::world::{Figure, SpriteId};
+
+/// How much of the ghost shows, of 255.
+const OPACITY: u8 = 96;
+
+/// The game of the best run, step by step beside that of the player.
+#[derive(Debug)]
+pub(super) struct Ghost {
+    game: Game,
+    cursor: ScriptCursor,
+    /// The intents of the next step; `None` at the end of the script.
+    next: Option<Intents>,
+}
+
+impl Ghost {
+    /// The best run at its start, in `game` at its start.
+    pub(super) fn new(game: Game, mut cursor: ScriptCursor) -> Self {
+        let next = cursor.next();
+        Self { game, cursor, next }
+    }
+
+    /// Advances by one step.
+    pub(super) fn step(&mut self) {
+        if let Some(intents) = self.next {
+            self.game.step(intents);
+            self.next = self.cursor.next();
+        }
+    }
+
+    /// The number of steps in which the ghost stays as it is, at most `most`.
+    pub(super) fn quiet_steps(&self, most: u64) -> u64 {
+        match self.next {
+            Some(intents) => self.game.quiet_steps(intents).min(1).min(most),
+            None => most,
+        }
+    }
+
+    /// A number that changes when the ghost has moved.
+    pub(super) fn steps(&self) -> u64 {
+        self.game.tally().steps
+    }
+
+    /// The figure of the ghost; `None` after it has left the level.
+    pub(super) fn figure(&self, sprite: SpriteId) -> Option<Figure> {
+        if self.game.is_finished() {
+            return None;
+        }
+        let camera = self.game.camera(crate::world::FieldOfView::default());
+        Some(Figure {
+            sprite,
+            position: camera.position(),
+            base: self.game.feet(),
+            heading: camera.heading,
+            frame: 0,
+            opacity: OPACITY,
+        })
+    }
+}

@@ -1,0 +1,129 @@
+//! Results: what is kept of a run when it ends, and the run that is saved to go on with later.
+
+use super::levels::Stage;
+use super::panels::whole_seconds;
+use super::run_log::RunLog;
+use super::script_cursor::ScriptCursor;
+use super::{App, Levels};
+use crate::game::{Game, Header, LevelName, Rank, Script, Tally};
+use crate::map::builtin;
+use crate::store::{Improved, Run, SavedGame};
+
+/// The result of a level that was won.
+#[derive(Clone, Copy, Debug)]
+pub(super) struct LevelResult {
+    pub(super) tally: Tally,
+    pub(super) par: Option<u32>,
+    pub(super) rank: Rank,
+    pub(super) improved: Improved,
+}
+
+impl App {
+    /// Records the level that has just been won, and returns its result.
+    pub(super) fn record_result(&mut self) -> Option<LevelResult> {
+        if self.is_descent() {
+            self.record_floor();
+        }
+        let game = self.game.grid()?;
+        let (tally, par) = (game.tally(), game.world().par());
+        let rank = tally.rank(par);
+        let improved = match self.stage.name().map(str::to_owned) {
+            Some(level) => {
+                let run = Run { tally, rank, script: self.run_script(game) };
+                self.store.clear_saved();
+                self.store.record(&level, self.difficulty, run)
+            }
+            None => Improved::default(),
+        };
+        Some(LevelResult { tally, par, rank, improved })
+    }
+
+    /// Saves a game that has begun and is not over, if its level has a name to find it by.
+    pub(super) fn save_game(&mut self) {
+        let Some(game) = self.game.grid().filter(|_| self.demo.is_none()) else { return };
+        let Some(level) = self.stage.name().filter(|_| !self.log.is_empty()) else { return };
+        if game.is_finished() {
+            return;
+        }
+        let saved = SavedGame {
+            level: level.to_owned(),
+            rules: game.rules(),
+            script: self.run_script(game),
+        };
+        self.store.save(&saved);
+    }
+
+    /// Goes on with the saved game: its script is played again up to its end.
+    pub(super) fn continue_saved(&mut self) {
+        let Some(saved) = self.store.saved() else { return };
+        let Some(levels) = builtin_named(&saved.level).and_then(Levels::builtin) else { return };
+        let Ok(script) = Script::parse(&saved.script, "the saved game") else { return };
+        self.difficulty = saved.rules.difficulty;
+        self.begin(levels);
+        for (_, intents) in script.iter() {
+            self.game.step(intents);
+            self.log.record(intents, 1);
+            if let Some(ghost) = &mut self.ghost {
+                ghost.step();
+            }
+        }
+    }
+
+    /// The script of the run so far, with a header that names the level.
+    fn run_script(&self, game: &Game) -> String {
+        let header = Header {
+            level: self.stage.name().and_then(LevelName::new),
+            difficulty: Some(self.difficulty),
+            seed: Some(game.rules().seed),
+        };
+        format!("{header}\n{}", self.log.script())
+    }
+
+    /// One line about the game that is played: the level, the time, and what happened.
+    pub(super) fn summary(&self) -> Option<String> {
+        if self.demo.is_some() || self.log.is_empty() {
+            return self.left.clone();
+        }
+        let seconds = whole_seconds(self.game.elapsed());
+        let title = self.game.title();
+        let Some(game) = self.game.grid().filter(|game| game.is_mission()) else {
+            return Some(format!("{title}: {seconds}"));
+        };
+        let Tally { treasure, alarms, .. } = game.tally();
+        let alarms = match alarms {
+            1 => "1 alarm".to_owned(),
+            alarms => format!("{alarms} alarms"),
+        };
+        let gold = match treasure.total {
+            0 => String::new(),
+            total => format!(", {} of {total} gold", treasure.found),
+        };
+        Some(format!("{title} on {}: {seconds}, {alarms}{gold}", self.difficulty.name()))
+    }
+
+    /// Keeps what was done in the game that is left, and saves it to go on with later.
+    pub(super) fn leave_game(&mut self) {
+        self.left = self.summary();
+        self.save_game();
+        self.log = RunLog::default();
+    }
+
+    /// The best run of the level as a script, to walk along.
+    pub(super) fn best_run(&self, stage: &Stage) -> Option<ScriptCursor> {
+        let text = self.store.script(stage.name()?, self.difficulty)?;
+        Script::parse(&text, "the best run").ok().map(|script| ScriptCursor::new(&script))
+    }
+
+    /// The index of the first built-in level that was not won at the preferred difficulty, if any
+    /// was won.
+    pub(super) fn first_not_won(&self) -> Option<usize> {
+        let difficulty = self.store.preferences().difficulty;
+        let won: Vec<&str> = self.store.won(difficulty).collect();
+        let index = builtin::LEVELS.iter().position(|level| !won.contains(&level.name))?;
+        (!won.is_empty()).then_some(index)
+    }
+}
+
+fn builtin_named(name: &str) -> Option<usize> {
+    builtin::LEVELS.iter().position(|level| level.name == name)
+}

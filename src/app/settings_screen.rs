@@ -1,0 +1,144 @@
+//! The settings screen.
+//!
+//! What the player prefers in every game is kept by the store. What depends on the terminal holds
+//! until the program ends: the configuration file keeps it, and the program never writes that file.
+
+use std::time::Duration;
+
+use super::menu::Menu;
+use super::menus::Choice;
+use super::{App, MapDisplay};
+use crate::color::palette::ColorDepth;
+use crate::store::Preferences;
+use crate::tui::GlyphMode;
+use crate::world::Difficulty;
+
+/// A setting on the screen.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub(super) enum Setting {
+    Difficulty,
+    Crosshair,
+    Compass,
+    Ghost,
+    Bell,
+    Minimap,
+    Mouse,
+    Glyphs,
+    Colors,
+    FrameRate,
+}
+
+/// The settings that are kept, and those that hold until the program ends.
+const KEPT: [(Setting, &str); 5] = [
+    (Setting::Difficulty, "Difficulty"),
+    (Setting::Crosshair, "Crosshair"),
+    (Setting::Compass, "Compass"),
+    (Setting::Ghost, "Ghost of the best run"),
+    (Setting::Bell, "Bell when noticed or hurt"),
+];
+const UNTIL_THE_END: [(Setting, &str); 5] = [
+    (Setting::Minimap, "Map"),
+    (Setting::Mouse, "Mouse turns"),
+    (Setting::Glyphs, "Characters"),
+    (Setting::Colors, "Colours"),
+    (Setting::FrameRate, "Frames a second"),
+];
+
+const FRAME_RATES: [u32; 4] = [15, 30, 60, 120];
+const GLYPHS: [(GlyphMode, &str); 3] =
+    [(GlyphMode::Half, "half blocks"), (GlyphMode::Ascii, "ASCII"), (GlyphMode::Ramp, "ramp")];
+const COLORS: [(Option<ColorDepth>, &str); 5] = [
+    (None, "the terminal's"),
+    (Some(ColorDepth::True), "all"),
+    (Some(ColorDepth::Indexed256), "256"),
+    (Some(ColorDepth::Indexed16), "16"),
+    (Some(ColorDepth::Mono), "none"),
+];
+
+impl App {
+    pub(super) fn settings_menu(&self) -> Menu<Choice> {
+        let menu = Menu::new("settings").line("Enter or left and right change a setting.");
+        KEPT.into_iter().chain(UNTIL_THE_END).fold(menu, |menu, (setting, label)| {
+            menu.entry_with(label, self.value_of(setting), Choice::Change(setting))
+        })
+    }
+
+    /// Changes `setting` to its next value, or to the one before if `forward` is false.
+    pub(super) fn change_setting(&mut self, setting: Setting, forward: bool) {
+        let before = self.store.preferences();
+        let mut preferences = before;
+        match setting {
+            Setting::Difficulty => {
+                preferences.difficulty =
+                    after(&Difficulty::ALL, |&one| one == before.difficulty, forward);
+            }
+            Setting::Crosshair => preferences.crosshair ^= true,
+            Setting::Compass => preferences.compass ^= true,
+            Setting::Ghost => preferences.ghost ^= true,
+            Setting::Bell => preferences.bell ^= true,
+            Setting::Minimap => self.map.is_shown ^= true,
+            Setting::Mouse => self.pointer.toggle(),
+            Setting::Glyphs => {
+                let glyphs = self.settings.glyphs;
+                self.settings.glyphs = after(&GLYPHS, |one| one.0 == glyphs, forward).0;
+            }
+            Setting::Colors => {
+                let depth = self.settings.depth;
+                self.settings.depth = after(&COLORS, |one| one.0 == depth, forward).0;
+                self.depth = self.settings.depth.unwrap_or(self.terminal_depth);
+            }
+            Setting::FrameRate => {
+                let rate = self.frame_rate();
+                let rate = after(&FRAME_RATES, |&one| one >= rate, forward);
+                self.settings.frame_time = Duration::from_secs(1) / rate;
+            }
+        }
+        self.set_preferences(preferences);
+        self.renew_menu();
+    }
+
+    /// Keeps `preferences`, and follows them.
+    pub(super) fn set_preferences(&mut self, preferences: Preferences) {
+        self.store.set_preferences(preferences);
+        self.shown = None;
+    }
+
+    fn value_of(&self, setting: Setting) -> String {
+        let Preferences { crosshair, compass, bell, ghost, difficulty } = self.store.preferences();
+        match setting {
+            Setting::Difficulty => difficulty.name().to_owned(),
+            Setting::Crosshair => on_or_off(crosshair),
+            Setting::Compass => on_or_off(compass),
+            Setting::Ghost => on_or_off(ghost),
+            Setting::Bell => on_or_off(bell),
+            Setting::Minimap => match (self.map.is_shown, self.settings.minimap) {
+                (false, _) => on_or_off(false),
+                (true, MapDisplay::All) => "all".to_owned(),
+                (true, _) => "what was seen".to_owned(),
+            },
+            Setting::Mouse => on_or_off(self.pointer.is_on()),
+            Setting::Glyphs => name(&GLYPHS, self.settings.glyphs),
+            Setting::Colors => name(&COLORS, self.settings.depth),
+            Setting::FrameRate => self.frame_rate().to_string(),
+        }
+    }
+
+    fn frame_rate(&self) -> u32 {
+        (1.0 / self.settings.frame_time.as_secs_f64().max(1e-3)).round() as u32
+    }
+}
+
+fn on_or_off(is_on: bool) -> String {
+    if is_on { "on" } else { "off" }.to_owned()
+}
+
+fn name<T: PartialEq>(names: &[(T, &str)], value: T) -> String {
+    names.iter().find(|(named, _)| *named == value).map_or("", |(_, name)| name).to_owned()
+}
+
+/// The value after the one that `is_it`, or before it; from the last, the first.
+fn after<T: Copy>(values: &[T], is_it: impl Fn(&T) -> bool, forward: bool) -> T {
+    let index = values.iter().position(is_it).unwrap_or(0);
+    let by = if forward { 1 } else { values.len() - 1 };
+    values[(index + by) % values.len()]
+}

@@ -1,0 +1,95 @@
+//! The end of a level, the death of the player, and the end of the last level.
+
+use super::menu::Menu;
+use super::menus::Choice;
+use super::panels::{time, whole_seconds};
+use super::results::LevelResult;
+use super::{App, STEP};
+use crate::game::{Outcome, Share, Tally};
+
+impl App {
+    /// What the player has done in the level, its rank, and how to go on.
+    pub(super) fn level_done_menu(&self) -> Menu<Choice> {
+        let menu =
+            self.level_lines().into_iter().fold(Menu::new("you found the way out"), Menu::line);
+        let menu = menu.line(format!("in {}", time(self.game.elapsed())));
+        let menu = match &self.result {
+            Some(result) => result_lines(result).into_iter().fold(menu, Menu::line),
+            None => menu,
+        };
+        let menu = menu.entry("Go on", Choice::NextLevel);
+        let menu =
+            if self.is_descent() { menu } else { menu.entry("Play it again", Choice::Restart) };
+        self.with_leaving(menu)
+    }
+
+    /// What happened to the player, and how to go on. The first choice goes on at once.
+    pub(super) fn death_menu(&self) -> Menu<Choice> {
+        let cause = match self.game.grid().map(|game| game.outcome()) {
+            Some(Outcome::Dead { cause }) => format!("killed by {cause}"),
+            _ => String::new(),
+        };
+        if self.is_descent() {
+            let menu = Menu::new("you are dead").line(cause);
+            let menu = self.descent_lines().into_iter().fold(menu, Menu::line);
+            return self.with_leaving(menu);
+        }
+        let deaths = self.game.grid().map_or(0, |game| game.tally().deaths);
+        let menu = Menu::new("you are dead").line(cause);
+        let menu = if deaths > 1 { menu.line(format!("for the {deaths}. time")) } else { menu };
+        let menu = menu.entry("Try again", Choice::Retry).entry_with(
+            "Restart the level",
+            "r",
+            Choice::Restart,
+        );
+        match &self.offers {
+            Some(_) => menu.entry_with("Leave to the title", "l", Choice::ToTitle),
+            None => menu.entry_with("Leave", "l", Choice::Leave),
+        }
+    }
+
+    pub(super) fn end_menu(&self) -> Menu<Choice> {
+        let seconds = self.earlier + self.game.elapsed();
+        let menu = Menu::new("the end").line("all levels").line(format!("in {}", time(seconds)));
+        self.with_leaving(menu)
+    }
+
+    /// The level's title and, if there are several levels, its number.
+    pub(super) fn level_lines(&self) -> Vec<String> {
+        let mut lines = vec![self.game.title().to_owned()];
+        if self.level.is_one_of_several() {
+            lines.push(self.level.to_string());
+        }
+        lines
+    }
+}
+
+/// The rank first, as it is what a small window has room for.
+fn result_lines(result: &LevelResult) -> Vec<String> {
+    let LevelResult { tally, par, rank, improved } = *result;
+    let Tally { treasure, secrets, alarms, deaths, stunned, steps } = tally;
+    let mut lines = vec![format!("rank: {rank}{}", if improved.rank { ", your best" } else { "" })];
+    if let Some(par) = par {
+        let best = if improved.time { ", your fastest" } else { "" };
+        let seconds = steps as f64 * STEP;
+        let compared = if seconds <= f64::from(par) { "within" } else { "over" };
+        lines.push(format!("{compared} the par time of {}{best}", whole_seconds(par.into())));
+    } else if improved.time {
+        lines.push("your fastest".to_owned());
+    }
+    let share = |what: &str, share: Share| format!("{what}: {} of {}", share.found, share.total);
+    if treasure.total > 0 {
+        lines.push(share("gold", treasure));
+    }
+    if secrets.total > 0 {
+        lines.push(share("secrets", secrets));
+    }
+    let counts = [("alarms", alarms), ("stunned", stunned), ("deaths", deaths)];
+    let counts: Vec<String> = counts
+        .into_iter()
+        .filter(|&(what, count)| count > 0 || what == "alarms")
+        .map(|(what, count)| format!("{what}: {count}"))
+        .collect();
+    lines.push(counts.join("  "));
+    lines
+}

@@ -1,0 +1,256 @@
+//! Levels that hurt: dying, going on, results, ghosts, and what is kept.
+
+use ratatui::buffer::{Buffer, Cell};
+use ratatui::layout::Rect;
+
+use super::titles::titled;
+use super::*;
+use crate::app::{Offers, OwnMap};
+use crate::map::{NoFiles, builtin, parse_level};
+use crate::store::Run;
+use crate::tui::GlyphMode;
+
+/// Spikes that come out at once, a treasure, a note, and the exit behind them.
+const DANGER: &str = r##"
+title = "Danger"
+par = 30
+grid = '''
+##########
+#@n.^..tX#
+##########
+'''
+[tiles]
+"#" = { wall = "brick" }
+[things]
+"@" = { start = 0 }
+"n" = { note = "Mind the floor." }
+"^" = { spikes = 1.0 }
+"t" = { treasure = 50 }
+"X" = { exit = true }
+"##;
+
+/// A title that offers that map.
+pub(super) fn danger() -> Rig {
+    let load = || parse_level(DANGER, "it", &NoFiles).map_err(|faults| faults.summary());
+    let map = move || vec![OwnMap { name: "danger.toml".to_owned(), load: Box::new(load) }];
+    let mut rig =
+        titled(Offers { maps: Some(Box::new(map)), ..Offers::default() }, Store::in_memory());
+    rig.choose("My maps");
+    rig.choose("danger.toml");
+    assert_eq!(rig.app.screen, Screen::Playing);
+    rig
+}
+
+/// A player who stands on the spikes until they are dead.
+pub(super) fn dead() -> Rig {
+    let mut rig = danger();
+    rig.tap(Key::Char('g'), 30);
+    while rig.position().x < 4.3 {
+        rig.wait(1);
+    }
+    rig.tap(Key::Char('g'), 30);
+    for _ in 0..9000 {
+        if rig.app.screen == Screen::Dead {
+            return rig;
+        }
+        rig.wait(1);
+    }
+    panic!("alive at {} with {:?}", rig.position(), rig.game().health());
+}
+
+pub(super) fn text(app: &mut App, columns: u16, rows: u16) -> String {
+    let mut buffer = Buffer::empty(Rect::new(0, 0, columns, rows));
+    app.draw(&mut buffer);
+    let lines = buffer.content().chunks(columns.into());
+    lines.flat_map(|line| line.iter().map(Cell::symbol).chain(["\n"])).collect()
+}
+
+#[test]
+fn the_dead_say_what_happened_and_go_on_at_once() {
+    let mut rig = dead();
+    let shown = text(&mut rig.app, 80, 24);
+    assert!(shown.contains("killed by spikes") && shown.contains("> Try again"), "{shown}");
+    rig.tap(Key::Enter, 30);
+    rig.wait(300);
+    assert_eq!(rig.app.screen, Screen::Dead, "nothing counts in the first half second");
+    rig.wait(700);
+    rig.tap(Key::Enter, 30);
+    rig.wait(300);
+    assert_eq!(rig.app.screen, Screen::Playing);
+    assert_eq!((rig.position().x, rig.game().tally().deaths), (1.5, 1));
+}
+
+#[test]
+fn letters_restart_and_leave_to_the_title_after_a_death() {
+    let mut rig = dead();
+    rig.wait(700);
+    rig.tap(Key::Char('r'), 30);
+    rig.wait(300);
+    assert_eq!((rig.app.screen, rig.game().tally().deaths), (Screen::Playing, 0));
+    assert!(rig.game().elapsed() < 1.0);
+    let mut rig = dead();
+    rig.wait(700);
+    rig.tap(Key::Char('l'), 30);
+    rig.wait(300);
+    assert_eq!(rig.app.screen, Screen::Title);
+    let left = rig.app.left.as_ref().unwrap();
+    assert!(left.starts_with("Danger on normal: 0:") && left.ends_with(", 0 of 50 gold"), "{left}");
+}
+
+#[test]
+fn the_end_of_a_level_tells_the_rank() {
+    let mut rig = danger();
+    // Before the spikes come out, by running.
+    rig.tap(Key::Char('r'), 30);
+    rig.tap(Key::Char('g'), 30);
+    for _ in 0..9000 {
+        rig.wait(1);
+        if rig.app.screen == Screen::Dead {
+            rig.wait(700);
+            rig.tap(Key::Enter, 30);
+            rig.wait(300);
+            rig.tap(Key::Char('g'), 30);
+        }
+        if rig.app.screen == Screen::LevelDone {
+            break;
+        }
+    }
+    let shown = text(&mut rig.app, 80, 24);
+    for wanted in ["you found the way out", "rank: ", "the par time of 0:30", "gold: 50 of 50"] {
+        assert!(shown.contains(wanted), "{wanted}:\n{shown}");
+    }
+}
+
+#[test]
+fn a_note_is_read_where_it_hangs() {
+    let mut rig = danger();
+    assert!(!text(&mut rig.app, 80, 24).contains("Mind the floor."));
+    for _ in 0..4 {
+        rig.tap(W, 30);
+        rig.wait(300);
+    }
+    let shown = text(&mut rig.app, 80, 24);
+    assert!(shown.contains("Mind the floor."), "at {}:\n{shown}", rig.position());
+    assert!(shown.contains("♥♥♥♥♥♥"), "{shown}");
+}
+
+fn playing_builtin(store: Store) -> Rig {
+    let mut rig = titled(Offers::default(), store);
+    rig.choose("New game");
+    rig.choose("Normal");
+    assert_eq!(rig.app.screen, Screen::Playing);
+    rig
+}
+
+#[test]
+fn a_game_that_is_left_goes_on_where_it_was() {
+    let mut rig = playing_builtin(Store::in_memory());
+    rig.press(W);
+    rig.wait(1500);
+    rig.release(W);
+    rig.wait(1000);
+    let before = rig.game().clone();
+    rig.tap(Key::Char('p'), 30);
+    rig.wait(300);
+    rig.choose("Leave to the title");
+    assert_eq!(rig.app.menu.label().as_deref(), Some("Continue"));
+    rig.tap(Key::Enter, 30);
+    rig.app.now = rig.now;
+    let game = rig.game();
+    assert_eq!(game.camera(FieldOfView::default()), before.camera(FieldOfView::default()));
+    assert!((game.elapsed() - before.elapsed()).abs() < 0.4);
+}
+
+#[test]
+fn the_best_run_walks_along_and_can_be_switched_off() {
+    let mut store = Store::in_memory();
+    let level = builtin::LEVELS[0].name;
+    let tally = Tally { steps: 3600, ..Tally::default() };
+    let script = format!("level {level}\n10 s turn-right\n2 s forward\n");
+    store.record(level, Difficulty::Normal, Run { tally, rank: Rank::Thief, script });
+    let mut rig = playing_builtin(store);
+    let figures = |rig: &mut Rig| {
+        text(&mut rig.app, 40, 12);
+        let see_through = |figure: &&crate::world::Figure| figure.opacity == 96;
+        let ghosts = rig.game().world().figures().iter().filter(see_through).copied();
+        ghosts.collect::<Vec<_>>()
+    };
+    rig.wait(200);
+    let first = figures(&mut rig);
+    rig.wait(500);
+    let second = figures(&mut rig);
+    assert_eq!((first.len(), second.len()), (1, 1));
+    assert_ne!(first[0].heading, second[0].heading, "it does what its script says");
+    assert!(rig.app.is_stale() || rig.app.next_change().is_some());
+    rig.tap(Key::Char('0'), 30);
+    assert_eq!(figures(&mut rig), []);
+    assert!(!rig.app.store.preferences().ghost);
+}
+
+#[test]
+fn best_times_are_in_the_list_of_levels_by_difficulty() {
+    let mut store = Store::in_memory();
+    let level = builtin::LEVELS[0].name;
+    let tally = Tally { steps: 65 * 60, ..Tally::default() };
+    store.record(level, Difficulty::Hard, Run { tally, rank: Rank::Shadow, script: String::new() });
+    let mut rig = titled(Offers::default(), store);
+    rig.choose("Levels");
+    assert!(!text(&mut rig.app, 80, 24).contains("1:05.0"));
+    rig.tap(Key::Right, 30);
+    rig.wait(300);
+    let shown = text(&mut rig.app, 80, 24);
+    assert!(shown.contains("levels, hard") && shown.contains("1:05.0  Shadow"), "{shown}");
+}
+
+#[test]
+fn settings_change_by_enter_and_arrows_and_are_kept() {
+    let mut rig = titled(Offers::default(), Store::in_memory());
+    rig.choose("Settings");
+    rig.choose("Compass");
+    assert!(rig.app.store.preferences().compass);
+    rig.tap(Key::Down, 30);
+    rig.wait(300);
+    rig.tap(Key::Left, 30);
+    rig.wait(300);
+    assert!(!rig.app.store.preferences().ghost);
+    for (label, depth) in [("Colours", ColorDepth::True), ("Colours", ColorDepth::Indexed256)] {
+        rig.choose(label);
+        assert_eq!(rig.app.depth, depth);
+    }
+    rig.choose("Frames a second");
+    assert_eq!(rig.app.settings.frame_time, Duration::from_secs(1) / 60);
+    rig.choose("Characters");
+    assert_eq!(rig.app.settings.glyphs, GlyphMode::Ascii);
+}
+
+#[test]
+fn the_daily_run_counts_once_and_a_descent_has_no_second_try() {
+    let offers = Offers { today: Some(20_261_122), seed: 7, ..Offers::default() };
+    let mut rig = titled(offers, Store::in_memory());
+    rig.choose("Daily run");
+    assert_eq!(rig.app.course, Course::Daily { date: 20_261_122, counts: true });
+    assert_eq!(rig.app.game.title(), "Floor 1");
+    let floor = rig.game().world().clone();
+    rig.tap(Key::Char('p'), 30);
+    rig.wait(300);
+    assert!(!text(&mut rig.app, 80, 24).contains("Restart"));
+    rig.choose("Leave to the title");
+    rig.choose("Daily run");
+    assert_eq!(rig.app.course, Course::Daily { date: 20_261_122, counts: false });
+    assert_eq!(rig.game().world().grid(), floor.grid(), "it is the same for all");
+    rig.app.record_floor();
+    assert_eq!(rig.app.store.daily(20_261_122).unwrap().reached.floors, 0);
+    rig.app.return_to_title();
+    rig.choose("Endless");
+    rig.app.record_floor();
+    assert_eq!(rig.app.store.best_descent().unwrap().floors, 1);
+    rig.app.next_level();
+    assert_eq!(rig.app.game.title(), "Floor 2");
+}
+
+#[test]
+fn the_bell_rings_when_the_player_is_hurt_and_once() {
+    let mut rig = dead();
+    assert!(rig.app.watch.take_ring());
+    assert!(!rig.app.watch.take_ring());
+}

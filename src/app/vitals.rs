@@ -1,0 +1,74 @@
+//! The state of the player in a level with guards and hazards, for the status line.
+
+use std::fmt::{self, Write};
+
+use super::status::{Part, StatusLine};
+use crate::game::{Alarm, Game, Health, Share};
+use crate::world::Supply;
+
+/// How health is written.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub(super) enum HealthSigns {
+    Hearts,
+    Digits,
+}
+
+/// Visibility below which the player is in the dark, and below which the light is dim.
+const DARK: u8 = 64;
+const DIM: u8 = 144;
+
+impl StatusLine {
+    /// Writes health, alarm, light, supplies and treasure.
+    pub(super) fn write_vitals(&mut self, game: &Game, signs: HealthSigns) -> fmt::Result {
+        self.write_health(game.health(), signs)?;
+        match game.alarm() {
+            Alarm::Calm => {}
+            Alarm::Wary => self.both(Part::Alarm, format_args!("wary"))?,
+            Alarm::Raised => self.both(Part::Alarm, format_args!("ALARM"))?,
+        }
+        let light = match game.visibility() {
+            0..DARK => "dark",
+            DARK..DIM => "dim",
+            DIM.. => "lit",
+        };
+        self.both(Part::Light, format_args!("{light}"))?;
+        self.write_supplies(game)?;
+        let Share { found, total } = game.treasure();
+        if total > 0 {
+            let needed = game.world().treasure_needed();
+            let [short, long] = self.forms(Part::Treasure);
+            write!(short, "{found} gold")?;
+            match needed {
+                0 => write!(long, "{found} of {total} gold")?,
+                _ if found >= needed => write!(long, "{found} of {total} gold, enough")?,
+                _ => write!(long, "{found} of {needed} gold")?,
+            }
+        }
+        Ok(())
+    }
+
+    fn write_health(&mut self, health: Health, signs: HealthSigns) -> fmt::Result {
+        let Health { points, most } = health;
+        match signs {
+            HealthSigns::Digits => self.both(Part::Health, format_args!("HP {points}/{most}")),
+            HealthSigns::Hearts => (0..most).try_for_each(|index| {
+                let heart = if index < points { '♥' } else { '♡' };
+                self.both(Part::Health, format_args!("{heart}"))
+            }),
+        }
+    }
+
+    /// Writes what the player carries: the first letters, or the names.
+    fn write_supplies(&mut self, game: &Game) -> fmt::Result {
+        let carried = Supply::ALL.map(|supply| (supply.name(), game.supplies(supply)));
+        let [short, long] = self.forms(Part::Supplies);
+        for (index, (name, count)) in carried.iter().filter(|(_, count)| *count > 0).enumerate() {
+            let (blank, comma) = if index > 0 { (" ", ", ") } else { ("", "") };
+            let letter = &name[..1];
+            let name = if *count == 1 { &name[..name.len() - 1] } else { name };
+            write!(short, "{blank}{count}{letter}")?;
+            write!(long, "{comma}{count} {name}")?;
+        }
+        Ok(())
+    }
+}

@@ -1,0 +1,95 @@
+//! `cellcaster levels`: the built-in levels, and what the player has reached in them.
+
+use std::io::{self, Write};
+
+use serde_json::{Value, json};
+
+use super::arguments::{Levels, LevelsFormat};
+use super::data_folder::data_folder;
+use super::{Error, verify};
+use crate::game::STEPS_PER_SECOND;
+use crate::map::builtin;
+use crate::store::{Best, Store};
+use crate::world::{Difficulty, World};
+
+/// A built-in level with its best results.
+struct Entry {
+    /// The place in the playing order, from 1.
+    order: usize,
+    name: &'static str,
+    world: World,
+    /// For each difficulty.
+    bests: [Option<Best>; 3],
+}
+
+/// Writes the list that `options` request.
+pub(super) fn run(options: Levels) -> Result<(), Error> {
+    let (store, damage) = match data_folder() {
+        Some(folder) => Store::open(&folder),
+        None => (Store::in_memory(), None),
+    };
+    if let Some(sentence) = damage {
+        Error::machine(sentence).warn();
+    }
+    let levels = (1..).zip(builtin::LEVELS).map(|(order, level)| {
+        let bests = Difficulty::ALL.map(|difficulty| store.best(level.name, difficulty).copied());
+        Ok(Entry { order, name: level.name, world: level.world()?, bests })
+    });
+    let entries = levels.collect::<Result<Vec<Entry>, Error>>()?;
+    let text = match options.format {
+        LevelsFormat::Table => table(&entries),
+        LevelsFormat::Json => {
+            format!("{}\n", json!(entries.iter().map(object).collect::<Vec<_>>()))
+        }
+    };
+    io::stdout().write_all(text.as_bytes()).map_err(|error| Error::of_output(&error))
+}
+
+fn table(entries: &[Entry]) -> String {
+    let mut rows = vec![["", "name", "title", "par", "easy", "normal", "hard"].map(str::to_owned)];
+    rows.extend(entries.iter().map(|entry| {
+        let par = entry.world.par().map_or("-".to_owned(), |seconds| {
+            verify::clock(u64::from(seconds) * u64::from(STEPS_PER_SECOND))
+        });
+        let [easy, normal, hard] = entry.bests.map(|best| {
+            best.map_or("-".to_owned(), |best| {
+                format!("{} {}", verify::clock(best.tally.steps), best.rank)
+            })
+        });
+        let title = entry.world.title().to_owned();
+        [entry.order.to_string(), entry.name.to_owned(), title, par, easy, normal, hard]
+    }));
+    let width = |column: usize| rows.iter().map(|row| row[column].chars().count()).max();
+    let widths: [usize; 7] = std::array::from_fn(|column| width(column).unwrap_or_default());
+    let line = |row: &[String; 7]| {
+        let cells: Vec<String> =
+            row.iter().zip(widths).map(|(cell, width)| format!("{cell:<width$}")).collect();
+        format!("{}\n", cells.join("  ").trim_end())
+    };
+    rows.iter().map(line).collect()
+}
+
+fn object(entry: &Entry) -> Value {
+    let best = |best: Best| {
+        let tally = best.tally;
+        json!({
+            "steps": tally.steps,
+            "seconds": tally.steps as f64 / f64::from(STEPS_PER_SECOND),
+            "treasure": { "found": tally.treasure.found, "total": tally.treasure.total },
+            "secrets": { "found": tally.secrets.found, "total": tally.secrets.total },
+            "alarms": tally.alarms,
+            "deaths": tally.deaths,
+            "stunned": tally.stunned,
+            "rank": best.rank.name(),
+        })
+    };
+    let bests = Difficulty::ALL.into_iter().zip(entry.bests);
+    let bests = bests.map(|(difficulty, it)| (difficulty.name().to_owned(), json!(it.map(best))));
+    json!({
+        "order": entry.order,
+        "name": entry.name,
+        "title": entry.world.title(),
+        "par": entry.world.par(),
+        "best": Value::Object(bests.collect()),
+    })
+}

@@ -1,0 +1,102 @@
+//! Finds, checkpoints, death and the exit.
+
+use super::*;
+use crate::world::{Difficulty, Supply};
+
+#[test]
+fn treasure_says_its_worth_and_opens_the_exit() {
+    let things =
+        "a = { treasure = 10 }\nb = { treasure = 50 }\nc = { treasure = 100 }\nX = { exit = true }";
+    let rows = ["@aX.b.c"];
+    let mut stage =
+        Stage::with_header("treasure_needed = 60", &rows, "", things, Difficulty::Normal);
+    assert_eq!(stage.game.treasure(), Share { found: 0, total: 160 });
+    assert_eq!(stage.walk_to(1).message(), "Coins: 10.");
+    assert_eq!(stage.walk_to(2).message(), "The exit is closed: 50 treasure missing.");
+    assert_eq!(stage.walk_to(4).message(), "A silver cup: 50.");
+    assert_eq!(stage.game.flash().map(|flash| flash.kind), Some(FlashKind::Gain));
+    assert_eq!(stage.walk_to(6).message(), "A golden crown: 100.");
+    assert_eq!(stage.game.treasure(), Share { found: 160, total: 160 });
+    stage.press(Intent::AboutFace).play(40, &[]).walk_to(2);
+    assert_eq!(stage.game.outcome(), Outcome::Won);
+    assert_eq!(stage.game.tally().rank(None), Rank::Ghost);
+}
+
+#[test]
+fn supplies_are_carried_up_to_nine_and_healing_only_helps_the_hurt() {
+    let things = "p = { pebbles = 5 }\nd = { darts = 1 }\nf = { flasks = 2 }\nh = { healing = 2 }\nn = { note = \"Beware.\\nIt bites.\" }";
+    let mut stage = Stage::new(&["@pphdfn."], "", things);
+    assert_eq!(stage.game.supplies(Supply::Pebbles), 3);
+    assert_eq!(stage.walk_to(1).message(), "5 pebbles.");
+    stage.walk_to(2);
+    assert_eq!(stage.game.supplies(Supply::Pebbles), 9);
+    stage.walk_to(3);
+    assert_eq!(stage.game.world().things().len(), 4);
+    assert_eq!(stage.walk_to(4).message(), "A dart.");
+    assert_eq!(stage.walk_to(5).message(), "2 flasks of smoke.");
+    assert_eq!(stage.game.note(), None);
+    stage.walk_to(6);
+    assert_eq!(stage.game.note(), Some("Beware.\nIt bites."));
+    stage.game.player.health.points = 3;
+    stage.press(Intent::AboutFace).play(40, &[]).walk_to(3);
+    assert_eq!((stage.points(), stage.message()), (5, "You feel better: 2 more health."));
+}
+
+/// A pit that kills, behind a checkpoint and some treasure.
+fn pit(difficulty: Difficulty) -> Stage {
+    let tiles = "v = { floor_height = -12 }\n',' = { floor_height = -0.2 }";
+    let things = "a = { treasure = 30, on = ',' }\nb = { treasure = 5 }\nc = { checkpoint = true }";
+    Stage::played(&["@.b.c.a.v."], tiles, things, difficulty)
+}
+
+#[test]
+fn a_dead_player_goes_on_from_the_checkpoint() {
+    for (difficulty, treasure, column) in [(Difficulty::Normal, 5, 4), (Difficulty::Hard, 0, 0)] {
+        let mut stage = pit(difficulty);
+        stage.walk_to(8).play(10, &[Intent::Forward]).play(180, &[]);
+        assert_eq!(stage.game.outcome(), Outcome::Dead { cause: "a fall" });
+        assert_eq!(stage.message(), "Killed by a fall.");
+        let dead = stage.game.clone();
+        stage.play(10, &[Intent::Forward]);
+        assert_eq!(stage.game, dead);
+        assert_eq!(stage.game.quiet_steps(Intents::new()), u64::MAX);
+        stage.press(Intent::Retry);
+        assert_eq!(stage.game.outcome(), Outcome::Playing);
+        assert_eq!((stage.cell().column, stage.game.treasure().found), (column, treasure));
+        assert_eq!(stage.points(), 6);
+        assert_eq!(stage.game.tally().deaths, 1);
+        assert!(stage.game.tally().steps >= dead.tally().steps);
+        assert!(stage.game.revision() > dead.revision());
+    }
+}
+
+#[test]
+fn falls_do_not_hurt_in_an_easy_game_which_keeps_what_was_found() {
+    let mut stage = pit(Difficulty::Easy);
+    stage.walk_to(8).play(10, &[Intent::Forward]).play(180, &[]);
+    assert_eq!((stage.points(), stage.game.outcome()), (6, Outcome::Playing));
+    // As if something had killed the player there.
+    stage.game.killed_by = Some(Cause::Water);
+    stage.press(Intent::Retry);
+    assert_eq!((stage.cell().column, stage.game.treasure()), (4, Share { found: 35, total: 35 }));
+}
+
+#[test]
+fn a_checkpoint_is_lit_once_it_is_reached() {
+    let things = "a = { checkpoint = true }\nb = { checkpoint = true }";
+    let mut stage = Stage::new(&["@a.b."], "", things);
+    let frames = |stage: &Stage| -> Vec<Option<u8>> {
+        stage
+            .game
+            .world()
+            .things()
+            .iter()
+            .map(|thing| thing.frame.filter(|&frame| frame > 0))
+            .collect()
+    };
+    assert_eq!(frames(&stage), [None, None]);
+    assert_eq!(stage.walk_to(1).message(), "Checkpoint.");
+    assert_eq!(frames(&stage), [Some(1), None]);
+    stage.walk_to(3);
+    assert_eq!(frames(&stage), [None, Some(1)]);
+}

@@ -1,0 +1,109 @@
+//! Falls, water, spikes, and blows.
+
+use super::*;
+use crate::game::health::Harm;
+use crate::world::Difficulty;
+
+#[test]
+fn a_fall_hurts_by_its_height() {
+    for (height, points) in [(-2.1, 6), (-3.0, 5), (-3.3, 4), (-6.0, 2), (-20.0, 0)] {
+        let tiles = format!("v = {{ floor_height = {height} }}");
+        let mut stage = Stage::new(&["@.vvvvvv"], &tiles, "");
+        stage.walk_to(3).play(240, &[]);
+        assert_eq!(stage.points(), points, "{height}");
+    }
+}
+
+#[test]
+fn water_is_slow_and_cold_and_puts_the_lamp_out() {
+    let mut stage = Stage::new(&["@.~~~~~~~~"], "'~' = { water = true, floor = '#204060' }", "");
+    stage.press(Intent::Lamp);
+    assert!(stage.game.lamp_is_lit());
+    stage.walk_to(2);
+    assert!(!stage.game.lamp_is_lit());
+    assert_eq!(stage.message(), "The water puts your lamp out.");
+    stage.press(Intent::Lamp);
+    assert_eq!(
+        (stage.game.lamp_is_lit(), stage.message()),
+        (false, "Your lamp does not burn in water.")
+    );
+    let before = stage.position().x;
+    stage.play(60, &[Intent::Forward]);
+    assert!((stage.position().x - before - 1.5).abs() < 0.1);
+    stage.play(479 - 63, &[]);
+    assert_eq!(stage.points(), 6);
+    assert_eq!(stage.game.quiet_steps(Intents::new()), 0);
+    stage.play(2, &[]);
+    assert_eq!((stage.points(), stage.message()), (5, "The water is cold."));
+    stage.play(238, &[]);
+    assert_eq!(stage.points(), 5);
+    stage.play(1, &[]);
+    assert_eq!(stage.points(), 4);
+    stage.play(240 * 5, &[]);
+    assert_eq!(stage.game.outcome(), Outcome::Dead { cause: "cold water" });
+}
+
+#[test]
+fn spikes_hurt_once_for_each_thrust() {
+    let mut stage = Stage::new(&["@s...."], "", "s = { spikes = 2, delay = 1 }");
+    stage.walk_to(1);
+    let points = |stage: &mut Stage, steps: usize| {
+        (0..steps).map(|_| stage.play(1, &[]).points()).collect::<Vec<u8>>()
+    };
+    let first = points(&mut stage, 120);
+    assert_eq!((first.first(), first.last()), (Some(&6), Some(&4)));
+    assert_eq!(first.windows(2).filter(|pair| pair[0] != pair[1]).count(), 1);
+    assert_eq!(points(&mut stage, 120).last(), Some(&2));
+    assert_eq!(points(&mut stage, 120).last(), Some(&0));
+    assert_eq!(stage.game.outcome(), Outcome::Dead { cause: "spikes" });
+}
+
+#[test]
+fn who_jumps_over_spikes_is_not_hurt() {
+    let rows = ["@.s......"];
+    let (things, difficulty) = ("s = { spikes = 1 }", Difficulty::Normal);
+    let mut stage = Stage::with_header("par = 60\nceiling = 'sky'", &rows, "", things, difficulty);
+    let is_out = |stage: &Stage| stage.game.world().things()[0].frame == Some(2);
+    stage.play(50, &[]);
+    let mut passes = false;
+    for step in 0..40 {
+        let runs = [Intent::Forward, Intent::Run, Intent::Jump];
+        stage.play(1, if step < 8 { &runs[..2] } else { &runs });
+        passes |= stage.cell().column == 2 && is_out(&stage);
+    }
+    assert!(passes && stage.cell().column > 2);
+    assert_eq!(stage.points(), 6);
+}
+
+proptest! {
+    #[test]
+    fn a_blow_from_behind_never_kills(
+        degrees in 0.0..360.0,
+        from in (-3.0..3.0, -3.0..3.0).prop_map(DVec2::from),
+        points in 1..=20_u8,
+        health in 1..=6_u8,
+    ) {
+        let mut stage = Stage::new(&["@"], "", "");
+        stage.game.step(Intents::new().with_look(Look { turn: (degrees * 50.0) as i16, tilt: 0 }));
+        stage.game.player.health.points = health;
+        let position = stage.position();
+        let ahead = stage.game.player.motion.heading().direction();
+        stage.game.hurt_by_bolt(points, position + from);
+        let is_seen = ahead.dot(from) >= 0.0;
+        let expected = health.saturating_sub(points).max(u8::from(!is_seen));
+        prop_assert_eq!(stage.points(), expected);
+        prop_assert_eq!(stage.is_dead(), expected == 0);
+    }
+}
+
+#[test]
+fn a_blow_says_where_it_comes_from() {
+    let mut stage = Stage::new(&["@"], "", "");
+    let position = stage.position();
+    stage.game.hurt_by_bolt(1, position + DVec2::new(0.0, 2.0));
+    let flash = stage.game.flash().unwrap();
+    let FlashKind::Hurt { bearing: Some(bearing) } = flash.kind else { panic!("{flash:?}") };
+    assert!((bearing.degrees() - 90.0).abs() < 1e-9);
+    let harm = Harm { points: 9, bearing: None, spares: false, cause: Cause::Fall };
+    assert!(Health::default().after(&harm).is_gone());
+}

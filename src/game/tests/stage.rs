@@ -1,0 +1,89 @@
+//! A stage: a game in a small level, written as a map.
+
+use glam::DVec2;
+
+use crate::game::{Game, Intent, Intents, Outcome, Rules};
+use crate::map;
+use crate::world::{Cell, Difficulty, FieldOfView};
+
+/// A game for tests.
+pub(in crate::game) struct Stage {
+    pub(in crate::game) game: Game,
+}
+
+impl Stage {
+    /// A game in the level that `rows` draw. `#` is a wall, `@` is where the player starts, who
+    /// looks east; `things` and `tiles` are lines of the map's tables.
+    pub(in crate::game) fn new(rows: &[&str], tiles: &str, things: &str) -> Self {
+        Self::played(rows, tiles, things, Difficulty::Normal)
+    }
+
+    /// The same with a difficulty.
+    pub(in crate::game) fn played(
+        rows: &[&str],
+        tiles: &str,
+        things: &str,
+        difficulty: Difficulty,
+    ) -> Self {
+        Self::with_header("par = 60", rows, tiles, things, difficulty)
+    }
+
+    /// The same with lines before the tables.
+    pub(in crate::game) fn with_header(
+        header: &str,
+        rows: &[&str],
+        tiles: &str,
+        things: &str,
+        difficulty: Difficulty,
+    ) -> Self {
+        let text = format!(
+            "{header}\ngrid = '''\n{}\n'''\n[tiles]\n'#' = {{ wall = \"brick\" }}\n{tiles}\n[things]\n'@' = {{ start = 0 }}\n{things}\n",
+            rows.join("\n")
+        );
+        let world = map::parse_str(&text).unwrap_or_else(|faults| panic!("{faults}"));
+        Self { game: Game::with_rules(world, Rules { difficulty, seed: 1 }) }
+    }
+
+    /// Plays `steps` steps.
+    pub(in crate::game) fn play(&mut self, steps: usize, list: &[Intent]) -> &mut Self {
+        let intents: Intents = list.iter().copied().collect();
+        (0..steps).for_each(|_| self.game.step(intents));
+        self
+    }
+
+    /// Walks ahead until the player is in `column`.
+    pub(in crate::game) fn walk_to(&mut self, column: u32) -> &mut Self {
+        for _ in 0..1200 {
+            if self.cell().column == column {
+                return self;
+            }
+            self.play(1, &[Intent::Forward]);
+        }
+        panic!("the player does not reach column {column}: {:?}", self.cell());
+    }
+
+    /// Presses a key once.
+    pub(in crate::game) fn press(&mut self, intent: Intent) -> &mut Self {
+        self.play(1, &[intent]).play(1, &[])
+    }
+
+    pub(in crate::game) fn cell(&self) -> Cell {
+        self.game.player.motion.cell()
+    }
+
+    pub(in crate::game) fn position(&self) -> DVec2 {
+        self.game.camera(FieldOfView::default()).position()
+    }
+
+    pub(in crate::game) fn message(&self) -> &str {
+        self.game.message().unwrap_or_default()
+    }
+
+    pub(in crate::game) fn points(&self) -> u8 {
+        self.game.health().points
+    }
+
+    pub(in crate::game) fn is_dead(&self) -> bool {
+        matches!(self.game.outcome(), Outcome::Dead { .. })
+    }
+}

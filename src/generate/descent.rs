@@ -1,0 +1,156 @@
+//! The descent: floors with guards, treasure and an exit, one below the other without an end.
+//!
+//! A floor is a whole [`World`]: a level of one of the generators, of a size that grows with the depth,
+//! in which things and guards are placed. Rules:
+//!
+//! - All cells that matter are reachable from the start on foot, through doors without locks: the exit,
+//!   the treasure, the guards and their waypoints.
+//! - The exit is among the cells farthest from the start, and opens for a third of the treasure.
+//! - Guards begin at least [`GUARD_DISTANCE`] cells from the start and out of its sight. Their number,
+//!   and the kinds among them, grow with the depth. Half as many again are there from normal
+//!   difficulty on, and as many more on hard.
+//! - Deeper floors are darker, so that lamps and lit rooms matter more.
+//! - Nothing but the seed and the number of the floor decides: nothing is carried from floor to floor.
+//!
+//! A window into a level without an end, as the generators have, was refused: guards outside it would
+//! have to be simulated or forgotten. So was a map text for each floor: it would take a character for
+//! each waypoint.
+
+mod ground;
+mod guards;
+mod items;
+mod loops;
+mod terrain;
+
+use std::num::NonZeroU32;
+
+use super::purpose::{Purpose, generator, hash};
+use super::{Extent, Generator, Level};
+use crate::fault::Faults;
+use crate::rng::SplitMix64;
+use crate::world::{Mission, Start, World};
+use ground::Ground;
+use items::Items;
+use terrain::FloorTerrain;
+
+/// The distance of guards from the start at first, in cells.
+const GUARD_DISTANCE: u32 = 8;
+/// The columns and rows of the first floor, of each further one, and of the largest.
+const COLUMNS: (u32, u32, u32) = (24, 4, 64);
+const ROWS: (u32, u32, u32) = (24, 3, 48);
+/// One of this many cells of a floor is reachable, at least.
+const REACHABLE: u32 = 6;
+/// The levels that are tried before the one with the most reachable cells is taken as it is.
+const ATTEMPTS: i64 = 16;
+
+/// A floor of the descent of `seed`. The first one is 1; 0 is the same.
+///
+/// ```
+/// use cellcaster::generate::descent;
+///
+/// let floor = descent(20261122, 3)?;
+/// assert_eq!(floor.title(), "Floor 3");
+/// assert!(floor.guards().len() > 2 && floor.treasure_needed() > 0);
+/// # Ok::<(), cellcaster::fault::Faults>(())
+/// ```
+///
+/// # Errors
+/// None in practice: the tests make floors of all generators.
+pub fn descent(seed: u64, floor: u32) -> Result<World, Faults> {
+    let floor = floor.max(1);
+    let (columns, rows) = size(floor);
+    let least = (columns.get() * rows.get() / REACHABLE) as usize;
+    let mut attempt = 0;
+    loop {
+        let draft = Draft::new(seed, floor, attempt)?;
+        attempt += 1;
+        match draft {
+            Some(draft) if draft.ground.reachable().len() >= least || attempt >= ATTEMPTS => {
+                return draft.finish();
+            }
+            _ => {}
+        }
+    }
+}
+
+/// The seed of the descent of a day, such as 20261122: all players have the same one.
+pub fn daily_seed(year: u32, month: u32, day: u32) -> u32 {
+    year * 10_000 + month * 100 + day
+}
+
+/// A level before anything is placed in it.
+struct Draft {
+    floor: u32,
+    level: Level,
+    ground: Ground,
+    random: SplitMix64,
+}
+
+impl Draft {
+    /// The level of one attempt. `None` if it has no start.
+    fn new(seed: u64, floor: u32, attempt: i64) -> Result<Option<Self>, Faults> {
+        let generator_of_floor = kind(seed, floor);
+        let own_seed = hash(seed, Purpose::Floor, floor.into(), attempt);
+        let terrain = FloorTerrain::new(generator_of_floor.terrain(own_seed), floor);
+        let (columns, rows) = size(floor);
+        let extent = Extent::Cells { columns: columns.get(), rows: rows.get() };
+        let level = Level::new(terrain, extent)?;
+        let mut random = generator(own_seed, Purpose::Population, 0, 0);
+        let Some(start) = level.start() else { return Ok(None) };
+        let start = (start.column as u32, start.row as u32);
+        let mut cells = level.rows_without_exit(columns, rows);
+        if generator_of_floor == Generator::Maze {
+            loops::open(&mut cells, level.tileset(), &mut random);
+        }
+        let ground = Ground::new(cells, start, level.tileset());
+        Ok(Some(Self { floor, level, ground, random }))
+    }
+
+    /// The world: with an exit, items and guards.
+    fn finish(mut self) -> Result<World, Faults> {
+        let tileset = self.level.tileset();
+        let start = self.ground.start();
+        let exit = self.ground.place_exit(tileset, &mut self.random);
+        let mut world = tileset.world();
+        let items = Items::place(self.floor, &self.ground, exit, &mut world, &mut self.random)?;
+        let guards = guards::place(self.floor, &self.ground, &items, &mut self.random);
+        let (width, rows) = (self.ground.width(), self.ground.rows());
+        tileset.draw(&mut world, width, rows.into_iter(), items.things(), |grid| {
+            let heading = super::window::best_heading(grid, start);
+            Start { cell: start, heading }
+        });
+        world.set_mission(Mission {
+            par: Some(par(self.ground.distance(exit), items.treasure_count())),
+            treasure_needed: items.treasure() / 3,
+            guards,
+            ..Mission::default()
+        });
+        Ok(world)
+    }
+}
+
+/// The par time in seconds: twice the way at a walk, and a look at each treasure.
+fn par(way: u32, treasures: usize) -> u32 {
+    30 + 2 * way / 3 + 6 * treasures as u32
+}
+
+/// The generator of a floor: each in turn, in an order that the seed decides.
+fn kind(seed: u64, floor: u32) -> Generator {
+    let mut order = Generator::ALL;
+    let mut random = generator(seed, Purpose::Floor, 0, 0);
+    order.swap(0, random.below(3));
+    order.swap(1, 1 + random.below(2));
+    order[(floor % 3) as usize]
+}
+
+/// The columns and rows of a floor.
+fn size(floor: u32) -> (NonZeroU32, NonZeroU32) {
+    let side = |(first, more, most): (u32, u32, u32)| {
+        let side = first.saturating_add(more.saturating_mul(floor - 1)).min(most);
+        NonZeroU32::new(side).unwrap_or(NonZeroU32::MIN)
+    };
+    (side(COLUMNS), side(ROWS))
+}
+
+#[cfg(test)]
+mod tests;

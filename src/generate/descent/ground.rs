@@ -1,0 +1,179 @@
+//! The ground of a floor: its cells, the ways from the start, and what is in sight.
+
+use std::collections::VecDeque;
+use std::num::NonZeroU32;
+
+use super::super::tileset::Tileset;
+use crate::rng::SplitMix64;
+use crate::world::Cell;
+
+/// The cells of a floor before things and guards are placed.
+pub(super) struct Ground {
+    /// The characters, row by row.
+    cells: Vec<Vec<u8>>,
+    /// What is in each cell, row by row.
+    kinds: Vec<Kind>,
+    start: Cell,
+    /// The steps from the start to each cell, row by row; `None` if there is no way.
+    distances: Vec<Option<u32>>,
+    /// The cells that can be reached, the nearest first.
+    reachable: Vec<Cell>,
+}
+
+/// What is in a cell, as far as ways and sight are concerned.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+struct Kind {
+    /// Whether one can walk there, once doors are open.
+    is_walkable: bool,
+    is_door: bool,
+    /// Whether nothing stands on its floor.
+    is_bare: bool,
+    /// Whether nobody sees through it.
+    is_opaque: bool,
+}
+
+impl Ground {
+    pub(super) fn new(cells: Vec<Vec<u8>>, start: (u32, u32), tileset: &Tileset) -> Self {
+        let kind = |&character: &u8| Kind {
+            is_walkable: tileset.is_walkable(character),
+            is_door: tileset.is_walkable(character) && !tileset.is_floor(character),
+            is_bare: tileset.is_bare(character),
+            is_opaque: tileset.is_opaque(character),
+        };
+        let kinds = cells.iter().flatten().map(kind).collect();
+        let start = Cell { column: start.0, row: start.1 };
+        let mut ground = Self { cells, kinds, start, distances: Vec::new(), reachable: Vec::new() };
+        let ways = ground.ways_from(start, u32::MAX, |kind| kind.is_walkable);
+        ground.distances = vec![None; ground.kinds.len()];
+        for &(cell, distance) in &ways {
+            let index = ground.index(cell);
+            ground.distances[index] = Some(distance);
+        }
+        ground.reachable = ways.into_iter().map(|(cell, _)| cell).collect();
+        ground
+    }
+
+    pub(super) fn start(&self) -> Cell {
+        self.start
+    }
+
+    /// The cells that can be reached from the start, the nearest first.
+    pub(super) fn reachable(&self) -> &[Cell] {
+        &self.reachable
+    }
+
+    /// The steps from the start to a cell that can be reached; 0 for another one.
+    pub(super) fn distance(&self, cell: Cell) -> u32 {
+        self.distances[self.index(cell)].unwrap_or(0)
+    }
+
+    /// Whether a cell is floor on which nothing stands.
+    pub(super) fn is_bare(&self, cell: Cell) -> bool {
+        self.kind(cell).is_bare
+    }
+
+    /// The number of cells beside a cell on which one can walk.
+    pub(super) fn exits_of(&self, cell: Cell) -> usize {
+        self.beside(cell).filter(|&cell| self.kind(cell).is_walkable).count()
+    }
+
+    /// The cells within a number of steps on open floor, and the steps to them, the nearest first.
+    pub(super) fn around(&self, cell: Cell, most: u32) -> Vec<(Cell, u32)> {
+        self.ways_from(cell, most, |kind| kind.is_walkable && !kind.is_door)
+    }
+
+    /// Draws the exit into one of the cells that are farthest from the start.
+    pub(super) fn place_exit(&mut self, tileset: &Tileset, random: &mut SplitMix64) -> Cell {
+        let bare = self.reachable.iter().filter(|&&cell| cell != self.start && self.is_bare(cell));
+        let bare: Vec<Cell> = bare.copied().collect();
+        let farthest = &bare[bare.len() - bare.len().div_ceil(8)..];
+        let exit = farthest.get(random.below(farthest.len())).copied().unwrap_or(self.start);
+        let character = &mut self.cells[exit.row as usize][exit.column as usize];
+        *character = tileset.exit_on(*character).unwrap_or(*character);
+        let index = self.index(exit);
+        self.kinds[index].is_bare = false;
+        exit
+    }
+
+    /// Whether something that stands in one cell could be seen from another: whether a line from the
+    /// middle of one to the middle or the edge of the other meets nothing opaque.
+    pub(super) fn sees(&self, from: Cell, to: Cell) -> bool {
+        /// In hundredths of a cell from the middle.
+        const BODY: [(i64, i64); 9] = [
+            (0, 0),
+            (-40, 0),
+            (40, 0),
+            (0, -40),
+            (0, 40),
+            (-30, -30),
+            (30, -30),
+            (-30, 30),
+            (30, 30),
+        ];
+        /// The points of a line for each cell of its length.
+        const POINTS: i64 = 16;
+        let middle = |place: u32| i64::from(place) * 100 + 50;
+        let (x, y) = (middle(from.column), middle(from.row));
+        BODY.iter().any(|&(across, down)| {
+            let (dx, dy) = (middle(to.column) + across - x, middle(to.row) + down - y);
+            let count = (dx.abs().max(dy.abs()) * POINTS / 100).max(1);
+            (1..count).all(|point| {
+                let place =
+                    |from: i64, by: i64| ((from * count + by * point) / (100 * count)) as u32;
+                !self.kind(Cell { column: place(x, dx), row: place(y, dy) }).is_opaque
+            })
+        })
+    }
+
+    /// The number of columns.
+    pub(super) fn width(&self) -> NonZeroU32 {
+        let width = self.cells.first().map_or(0, Vec::len);
+        NonZeroU32::new(width as u32).unwrap_or(NonZeroU32::MIN)
+    }
+
+    /// The characters, row by row.
+    pub(super) fn rows(&self) -> Vec<Vec<u8>> {
+        self.cells.clone()
+    }
+
+    /// The cells within `most` steps of one for which `is_open` is true, the nearest first.
+    fn ways_from(&self, from: Cell, most: u32, is_open: impl Fn(Kind) -> bool) -> Vec<(Cell, u32)> {
+        let mut seen = vec![false; self.kinds.len()];
+        let mut queue = VecDeque::from([(from, 0)]);
+        let mut found = Vec::new();
+        seen[self.index(from)] = true;
+        while let Some((cell, distance)) = queue.pop_front() {
+            found.push((cell, distance));
+            for next in self.beside(cell).filter(|_| distance < most) {
+                let index = self.index(next);
+                if !seen[index] && is_open(self.kinds[index]) {
+                    seen[index] = true;
+                    queue.push_back((next, distance + 1));
+                }
+            }
+        }
+        found
+    }
+
+    fn kind(&self, cell: Cell) -> Kind {
+        self.kinds[self.index(cell)]
+    }
+
+    fn index(&self, cell: Cell) -> usize {
+        cell.row as usize * self.width().get() as usize + cell.column as usize
+    }
+
+    /// The neighbours of a cell. The outermost cells are walls, so each cell that is asked about has
+    /// four.
+    fn beside(&self, Cell { column, row }: Cell) -> impl Iterator<Item = Cell> + use<> {
+        let (width, height) = (self.width().get(), self.cells.len() as u32);
+        let places = [
+            (column.wrapping_sub(1), row),
+            (column + 1, row),
+            (column, row.wrapping_sub(1)),
+            (column, row + 1),
+        ];
+        let is_inside = move |&(column, row): &(u32, u32)| column < width && row < height;
+        places.into_iter().filter(is_inside).map(|(column, row)| Cell { column, row })
+    }
+}

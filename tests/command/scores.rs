@@ -1,0 +1,137 @@
+//! `levels` and `replay --verify`: best results, and what a script achieves.
+#![cfg(feature = "cli")]
+
+use std::fs;
+use std::path::PathBuf;
+use std::process::Output;
+
+use cellcaster::game::{Rank, Share, Tally};
+use cellcaster::map::builtin;
+use cellcaster::store::{Run, Store};
+use cellcaster::world::Difficulty;
+use serde_json::Value;
+
+use crate::support::{cellcaster, run_with_input};
+
+/// An empty folder for the test `name`.
+fn scratch(name: &str) -> PathBuf {
+    let folder = PathBuf::from(env!("CARGO_TARGET_TMPDIR")).join("scores").join(name);
+    _ = fs::remove_dir_all(&folder);
+    fs::create_dir_all(&folder).unwrap();
+    folder
+}
+
+/// Runs `levels` with a data folder in which a run is kept.
+fn levels(name: &str, arguments: &[&str]) -> String {
+    let folder = scratch(name);
+    let (mut store, _) = Store::open(&folder);
+    let tally = Tally { steps: 4567, treasure: Share { found: 1, total: 2 }, ..Tally::default() };
+    store.record(
+        "cellar",
+        Difficulty::Hard,
+        Run { tally, rank: Rank::Shadow, script: String::new() },
+    );
+    let output = cellcaster(arguments).env("CELLCASTER_DATA", &folder).output().unwrap();
+    assert_eq!((output.status.code(), output.stderr.len()), (Some(0), 0));
+    String::from_utf8(output.stdout).unwrap()
+}
+
+#[test]
+fn levels_are_listed_in_order_with_best_results() {
+    let table = levels("table", &["levels"]);
+    assert_eq!(table.lines().count(), builtin::LEVELS.len() + 1);
+    let row = table.lines().find(|line| line.contains("cellar")).unwrap();
+    assert!(row.ends_with("1:16.1 Shadow"), "{row}");
+    let list: Value =
+        serde_json::from_str(&levels("json", &["levels", "--format", "json"])).unwrap();
+    for (index, (entry, level)) in list.as_array().unwrap().iter().zip(builtin::LEVELS).enumerate()
+    {
+        assert_eq!(entry["order"], index + 1);
+        assert_eq!(entry["name"], level.name);
+        assert_eq!(entry["title"], level.world().unwrap().title());
+        let best = &entry["best"]["hard"]["steps"];
+        assert_eq!(*best, if level.name == "cellar" { 4567.into() } else { Value::Null });
+    }
+}
+
+#[test]
+fn a_newer_data_folder_is_left_alone_with_a_sentence() {
+    let folder = scratch("newer");
+    fs::write(folder.join("progress.toml"), "version = 9\n").unwrap();
+    let output = cellcaster(&["levels"]).env("CELLCASTER_DATA", &folder).output().unwrap();
+    assert_eq!(output.status.code(), Some(0));
+    let sentence = String::from_utf8(output.stderr).unwrap();
+    assert!(sentence.contains("version 9") && sentence.lines().count() == 1, "{sentence}");
+}
+
+const MAP: &str = "title = \"Hall\"\npar = 5\ngrid = '''\n#######\n#@...X#\n#######\n'''\n[tiles]\n\
+                   \"#\" = { wall = \"brick\" }\n[things]\n\"@\" = { start = 0 }\n\"X\" = { exit = true }\n";
+
+/// Verifies a script, with further arguments.
+fn verify(name: &str, script: &str, arguments: &[&str]) -> Output {
+    let folder = scratch(name);
+    let path = folder.join("it.script");
+    fs::write(&path, script).unwrap();
+    let words = [&["replay", path.to_str().unwrap(), "--verify"], arguments].concat();
+    run_with_input(&words, b"")
+}
+
+#[test]
+fn a_script_that_wins_is_told_by_the_status() {
+    let folder = scratch("map");
+    let map = folder.join("hall.toml");
+    fs::write(&map, MAP).unwrap();
+    let script = format!("level {}\ndifficulty hard\nseed 7\n\n5 s forward\n", map.display());
+    let won = verify("won", &script, &[]);
+    let report = String::from_utf8(won.stdout).unwrap();
+    assert_eq!(won.status.code(), Some(0), "{report}");
+    let report = report.replace(map.to_str().unwrap(), "hall.toml");
+    insta::assert_snapshot!(report);
+    // MAP takes precedence, and rules without a header are the usual ones.
+    let map = map.to_str().unwrap();
+    let other = verify("other", "level cellar\n2 steps forward\n", &[map]);
+    let report = String::from_utf8(other.stdout).unwrap();
+    assert_eq!(other.status.code(), Some(1), "{report}");
+    assert!(report.contains("difficulty normal") && report.contains("not won"), "{report}");
+    assert!(other.stderr.is_empty() && !report.contains("rank"));
+}
+
+#[test]
+fn a_floor_is_a_level_of_a_script() {
+    let report = |name| {
+        let output = verify(name, "level floor 2\nseed 20261122\n\n2 s forward\n", &[]);
+        assert_eq!(output.status.code(), Some(1));
+        String::from_utf8(output.stdout).unwrap()
+    };
+    let first = report("floor");
+    assert!(first.contains("title      Floor 2"), "{first}");
+    assert_eq!(first, report("floor again"));
+}
+
+#[test]
+fn a_descent_goes_without_a_level() {
+    for arguments in [
+        &["play", "--daily", "--endless"][..],
+        &["play", "--daily", "--difficulty", "hard"],
+        &["play", "--endless", "cellar"],
+        &["play", "--endless", "--record", "it.script"],
+    ] {
+        let output = cellcaster(arguments).output().unwrap();
+        assert_eq!(output.status.code(), Some(2), "{arguments:?}");
+        let sentence = String::from_utf8(output.stderr).unwrap();
+        assert!(sentence.contains(" goes without "), "{sentence}");
+    }
+}
+
+#[test]
+fn what_is_missing_is_told_in_a_sentence() {
+    let told = |name, script, arguments: &[&str]| {
+        let output = verify(name, script, arguments);
+        assert_eq!(output.status.code(), Some(2));
+        String::from_utf8(output.stderr).unwrap()
+    };
+    assert!(told("nameless", "1 s forward\n", &[]).contains("does not name its level"));
+    let generated = told("generated", "1 s forward\n", &["--generate", "maze"]);
+    assert!(generated.contains("--verify"), "{generated}");
+    assert!(told("absent", "level nowhere.toml\n1 s forward\n", &[]).contains("no file"));
+}

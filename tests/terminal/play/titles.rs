@@ -1,0 +1,115 @@
+//! From the title through a game and back, in a plain terminal, by bytes.
+
+use std::fs;
+use std::path::{Path, PathBuf};
+use std::thread;
+use std::time::Duration;
+
+use super::game::{ENVIRONMENT, PROGRAM, test_map};
+use crate::emulator::Speaks;
+use crate::player::Player;
+
+/// An empty folder for a test with that name.
+fn folder(name: &str) -> PathBuf {
+    let folder = Path::new(env!("CARGO_TARGET_TMPDIR")).join(name);
+    _ = fs::remove_dir_all(&folder);
+    fs::create_dir_all(&folder).unwrap();
+    folder
+}
+
+/// The program without arguments, with `data` as the folder for what it keeps.
+fn start(data: &Path, size: (u16, u16)) -> Player {
+    let data = data.to_str().unwrap();
+    let environment = [&ENVIRONMENT[..], &[("CELLCASTER_DATA", data)]].concat();
+    let arguments: [&str; 0] = [];
+    let player = Player::start(size, Speaks::Plain, PROGRAM, arguments, &environment);
+    player.wait_for("New game");
+    player
+}
+
+/// Selects the entry `label` by the arrow down, and chooses it.
+#[track_caller]
+fn choose(player: &Player, label: &str) {
+    let wanted = format!("> {label}");
+    for _ in 0..12 {
+        if player.text().contains(&wanted) {
+            break;
+        }
+        player.send("\x1b[B");
+        thread::sleep(Duration::from_millis(300));
+    }
+    player.wait_for(&wanted);
+    player.send("\r");
+}
+
+#[test]
+fn from_the_title_to_a_death_a_second_try_and_out_again() {
+    for size in [(80, 24), (40, 12)] {
+        let data = folder(&format!("title-{}", size.0));
+        let maps = data.join("maps");
+        fs::create_dir(&maps).unwrap();
+        fs::copy(test_map("danger"), maps.join("danger.toml")).unwrap();
+        let mut player = start(&data, size);
+        choose(&player, "My maps");
+        player.wait_for("danger.toml");
+        for _ in 0..40 {
+            if player.text().lines().any(|line| line.contains("> ") && line.contains("danger.toml"))
+            {
+                break;
+            }
+            player.send("\x1b[B");
+            thread::sleep(Duration::from_millis(300));
+        }
+        player.send("\r");
+        player.wait_for("Danger");
+        // Walk onto the spikes, and stop there.
+        for _ in 0..8 {
+            player.send("w");
+            thread::sleep(Duration::from_millis(700));
+        }
+        player.wait_for("killed by spikes");
+        thread::sleep(Duration::from_millis(700));
+        player.send("\r");
+        player.wait_until("went on", |emulator| !emulator.text().contains("killed by"));
+        player.wait_for("?");
+        player.send("p");
+        choose(&player, "Leave to the title");
+        player.wait_for("New game");
+        choose(&player, "Leave");
+        let ending = player.wait_for_end();
+        ending.assert_given_back();
+        assert!(ending.status.success());
+        player.wait_for("Danger on normal: ");
+    }
+}
+
+#[test]
+fn a_game_that_is_left_is_offered_again() {
+    let data = folder("left");
+    let mut player = start(&data, (80, 24));
+    choose(&player, "New game");
+    choose(&player, "Normal");
+    player.wait_for("? help");
+    player.send("w");
+    thread::sleep(Duration::from_millis(500));
+    player.send("qq");
+    player.wait_for_end().assert_given_back();
+    let mut player = start(&data, (80, 24));
+    choose(&player, "Continue");
+    player.wait_for("? help");
+    player.send("q\r");
+    player.wait_for_end().assert_given_back();
+    assert!(data.join("progress.toml").exists());
+}
+
+#[test]
+fn leaving_the_title_says_nothing_and_keeps_nothing() {
+    let data = folder("title-only");
+    for leave in ["\x1b", "q"] {
+        let mut player = start(&data, (80, 24));
+        player.send(leave);
+        player.wait_for_end().assert_given_back();
+        assert!(!player.text().contains(" on normal"), "{}", player.text());
+    }
+    assert_eq!(fs::read_dir(&data).unwrap().count(), 0);
+}
