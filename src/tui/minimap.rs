@@ -203,7 +203,7 @@ impl Minimap<'_> {
             ColorDepth::Mono => [Color::Reset; 2],
             ColorDepth::Indexed16 => [Color::Indexed(15), Color::Indexed(9)],
             ColorDepth::Indexed256 | ColorDepth::True => {
-                [Rgb::WHITE, MARK].map(|color| color_at(self.depth, color))
+                [MARK_TEXT, MARK].map(|color| color_at(self.depth, color))
             }
         };
         canvas.draw_character(area.x + x, area.y + y, pointers[quarter], colors);
@@ -236,6 +236,8 @@ pub struct MapMark {
     pub heading: Heading,
 }
 
+/// The colour of a mark, which is darker than the arrow.
+const MARK_TEXT: Rgb = Rgb::new(0xb8, 0xb0, 0xb0);
 /// The background of a mark.
 const MARK: Rgb = Rgb::new(0xc0, 0x30, 0x28);
 /// The background of the arrow.
