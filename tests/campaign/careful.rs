@@ -35,9 +35,9 @@ struct Temper {
 
 /// The tempers that are tried in turn: a level that cannot be left unseen is left in haste.
 const TEMPERS: [Temper; 3] = [
-    Temper { point: 900, alarm: 1200, noticed: 30, chased: 90, weight: 3, most_moves: 24_000 },
-    Temper { point: 300, alarm: 200, noticed: 10, chased: 20, weight: 4, most_moves: 16_000 },
-    Temper { point: 120, alarm: 0, noticed: 0, chased: 2, weight: 6, most_moves: 10_000 },
+    Temper { point: 900, alarm: 1200, noticed: 30, chased: 90, weight: 3, most_moves: 8_000 },
+    Temper { point: 300, alarm: 200, noticed: 10, chased: 20, weight: 4, most_moves: 12_000 },
+    Temper { point: 100, alarm: 0, noticed: 0, chased: 2, weight: 8, most_moves: 16_000 },
 ];
 /// The steps that an errand is estimated to take before its way is known.
 const ERRAND: u64 = 600;
@@ -50,6 +50,7 @@ enum Move {
     Walk,
     Shun,
     Run,
+    Flee,
     Duck,
     Pause,
     Wait,
@@ -58,10 +59,11 @@ enum Move {
 }
 
 impl Move {
-    const ALL: [Self; 8] = [
+    const ALL: [Self; 9] = [
         Self::Walk,
         Self::Shun,
         Self::Run,
+        Self::Flee,
         Self::Duck,
         Self::Pause,
         Self::Wait,
@@ -75,6 +77,7 @@ impl Move {
             Self::Walk => 0,
             Self::Shun => 8,
             Self::Run => 16,
+            Self::Flee => 24,
             Self::Duck => 30,
             Self::Pause => 18,
             Self::Wait => 45,
@@ -92,36 +95,35 @@ struct State {
     toll: u64,
 }
 
-/// The winning game on the way through `errands` from the start of `game`, if one is found, and the
-/// number of moves that were played.
-pub(crate) fn search(game: &Game, errands: &[Errand]) -> (Option<Pilot>, usize) {
-    let mut moves = 0;
+/// The winning game on the way through `errands` from the start of `game`.
+///
+/// # Errors
+/// How far each temper got, if none wins.
+pub(crate) fn search(game: &Game, errands: &[Errand]) -> Result<Pilot, String> {
+    let mut failures = String::new();
     for temper in TEMPERS {
-        let (found, played) = search_with(game.clone(), errands, temper);
-        moves += played;
-        if found.is_some() {
-            return (found, moves);
+        match search_with(game.clone(), errands, temper) {
+            Ok(pilot) => return Ok(pilot),
+            Err(failure) => failures.push_str(&failure),
         }
     }
-    (None, moves)
+    Err(failures)
 }
 
-fn search_with(game: Game, errands: &[Errand], temper: Temper) -> (Option<Pilot>, usize) {
+fn search_with(game: Game, errands: &[Errand], temper: Temper) -> Result<Pilot, String> {
     let (waiting, states, seen) = (BinaryHeap::new(), Vec::new(), BTreeSet::new());
     let mut search = Search { errands, temper, waiting, states, seen };
     search.add(State { pilot: Pilot::new(game), done: 0, toll: 0 });
-    for moves in 0..temper.most_moves {
-        let Some((Reverse(_), Reverse(way), index)) = search.waiting.pop() else {
-            return (None, moves);
-        };
+    for _ in 0..temper.most_moves {
+        let Some((Reverse(_), Reverse(way), index)) = search.waiting.pop() else { break };
         let state = Rc::clone(&search.states[index]);
         let Some(next) = search.after(&state, way) else { continue };
         if next.pilot.game.outcome() == Outcome::Won {
-            return (Some(next.pilot), moves);
+            return Ok(next.pilot);
         }
         search.add(next);
     }
-    (None, temper.most_moves)
+    Err(search.failure())
 }
 
 struct Search<'a> {
@@ -147,6 +149,19 @@ impl Search<'_> {
         for way in Move::ALL {
             self.waiting.push((Reverse(estimate + way.surcharge()), Reverse(way), index));
         }
+    }
+
+    /// The state that got farthest.
+    fn failure(&self) -> String {
+        let farthest = self.states.iter().min_by_key(|state| self.left(state));
+        let Some(state) = farthest else { return String::new() };
+        let (cell, health) = (state.pilot.cell(), state.pilot.game.health().points);
+        let (count, steps) = (self.states.len(), state.pilot.steps());
+        let left = self.left(state);
+        format!(
+            "\n  {count} states; errand {}, {cell:?}, {steps} steps, {left} left, health {health}",
+            state.done
+        )
     }
 
     /// The steps that are estimated to be left.
@@ -181,13 +196,15 @@ impl Search<'_> {
             Move::Walk => done += self.errand(state, &mut pilot, Pace::Walk, 40, |_| 0)?,
             Move::Run => done += self.errand(state, &mut pilot, Pace::Run, 24, |_| 0)?,
             Move::Duck => done += self.errand(state, &mut pilot, Pace::Duck, 60, |_| 0)?,
-            Move::Shun => {
+            Move::Shun | Move::Flee => {
                 let feared = feared(&pilot.game);
                 if feared.is_empty() {
                     return None;
                 }
                 let dread = |cell| dread(&feared, cell);
-                done += self.errand(state, &mut pilot, Pace::Walk, 40, dread)?;
+                let (pace, steps) =
+                    if way == Move::Shun { (Pace::Walk, 40) } else { (Pace::Run, 24) };
+                done += self.errand(state, &mut pilot, pace, steps, dread)?;
             }
         }
         let toll = state.toll + self.temper.toll(&state.pilot.game, &pilot.game);

@@ -1,7 +1,7 @@
 //! The scripts that win: their outcome, their time, their rank, and the exact state at their end.
 //!
 //! `CELLCASTER_UPDATE_SCRIPTS=1 cargo test --release --test campaign scripts` searches for new ones,
-//! and `CELLCASTER_UPDATE_SCRIPTS=prison,clock` for those of some levels only.
+//! and `CELLCASTER_UPDATE_SCRIPTS=prison,clock.hard` for those of some levels and pairs only.
 
 use std::env;
 use std::fs;
@@ -43,19 +43,22 @@ fn replayed(level: &Level, difficulty: Difficulty) -> Game {
 fn update(level: &Level, difficulty: Difficulty) -> Result<String, String> {
     let name = format!("{}.{}", level.name, difficulty.name());
     let game = Game::with_rules(levels::world(level), Rules { difficulty, seed: 0 });
-    let (found, moves) = careful::search(&game, &route(level));
-    let pilot = found.ok_or_else(|| format!("{name}: nothing found in {moves} moves"))?;
+    let pilot = careful::search(&game, &route(level))
+        .map_err(|failure| format!("{name}: nothing found{failure}"))?;
     let header = format!("level {}\ndifficulty {}\nseed 0\n", level.name, difficulty.name());
     fs::write(path(level, difficulty), header + &pilot.script())
         .map_err(|error| format!("{name}: {error}"))?;
-    Ok(format!("{name}: {} steps, {moves} moves", pilot.steps()))
+    Ok(format!("{name}: {} steps", pilot.steps()))
 }
 
 /// Searches for the scripts that [`UPDATE`] asks for, in two threads.
 fn update_all() {
     let Ok(wanted) = env::var(UPDATE) else { return };
-    let is_wanted = |name: &str| wanted == "1" || wanted.split(',').any(|word| word == name);
-    let runs: Vec<_> = runs().into_iter().filter(|(level, _)| is_wanted(level.name)).collect();
+    let is_wanted = |&(level, difficulty): &(&Level, Difficulty)| {
+        let pair = format!("{}.{}", level.name, difficulty.name());
+        wanted.split(',').any(|word| word == "1" || word == level.name || word == pair)
+    };
+    let runs: Vec<_> = runs().into_iter().filter(is_wanted).collect();
     let next = AtomicUsize::new(0);
     let work = || {
         while let Some(&(level, difficulty)) = runs.get(next.fetch_add(1, Ordering::Relaxed)) {
