@@ -39,8 +39,8 @@ const TEMPERS: [Temper; 3] = [
     Temper { point: 300, alarm: 200, noticed: 10, chased: 20, weight: 4, most_moves: 12_000 },
     Temper { point: 100, alarm: 0, noticed: 0, chased: 2, weight: 8, most_moves: 16_000 },
 ];
-/// The steps that an errand is estimated to take before its way is known.
-const ERRAND: u64 = 600;
+/// The steps that an errand is estimated to take beside the walk to it.
+const ERRAND: u64 = 100;
 /// The steps of walking for a cost of ten, one cell.
 const CELL: u64 = 20;
 
@@ -112,7 +112,8 @@ pub(crate) fn search(game: &Game, errands: &[Errand]) -> Result<Pilot, String> {
 
 fn search_with(game: Game, errands: &[Errand], temper: Temper) -> Result<Pilot, String> {
     let (waiting, states, seen) = (BinaryHeap::new(), Vec::new(), BTreeSet::new());
-    let mut search = Search { errands, temper, waiting, states, seen };
+    let after_errand = after_errands(&game, errands);
+    let mut search = Search { errands, after_errand, temper, waiting, states, seen };
     search.add(State { pilot: Pilot::new(game), done: 0, toll: 0 });
     for _ in 0..temper.most_moves {
         let Some((Reverse(_), Reverse(way), index)) = search.waiting.pop() else { break };
@@ -128,6 +129,8 @@ fn search_with(game: Game, errands: &[Errand], temper: Temper) -> Result<Pilot, 
 
 struct Search<'a> {
     errands: &'a [Errand],
+    /// For each errand, the steps that are estimated to be left when it is done.
+    after_errand: Vec<u64>,
     temper: Temper,
     waiting: BinaryHeap<(Reverse<u64>, Reverse<Move>, usize)>,
     states: Vec<Rc<State>>,
@@ -167,8 +170,8 @@ impl Search<'_> {
     /// The steps that are estimated to be left.
     fn left(&self, state: &State) -> u64 {
         let Some(ways) = self.ways(state, |_| 0) else { return 0 };
-        let cost = u64::from(ways.cost(state.pilot.cell())).min(2000);
-        (self.errands.len() - state.done) as u64 * ERRAND + cost * CELL / 10
+        let next = walk(&ways, state.pilot.cell(), self.errands[state.done].cell);
+        next + self.after_errand[state.done]
     }
 
     /// The ways to the next errand.
@@ -241,6 +244,27 @@ impl Search<'_> {
         }
         Some(usize::from(has_arrived))
     }
+}
+
+/// For each errand, the steps that are estimated to be left when it is done: the walks from each
+/// errand to the next in the first state of the game. The estimate has no step at the end of an
+/// errand, after which the search would turn back to states before it.
+fn after_errands(game: &Game, errands: &[Errand]) -> Vec<u64> {
+    let walks = errands.windows(2).map(|pair| {
+        ERRAND + walk(&Ways::beside(game, pair[1].cell, |_| 0), pair[0].cell, pair[1].cell)
+    });
+    let walks: Vec<u64> = walks.chain([0]).collect();
+    (0..errands.len()).map(|index| walks[index..].iter().sum()).collect()
+}
+
+/// The steps of walking along `ways`; if they lead nowhere yet, those of half as much again as the
+/// straight line.
+fn walk(ways: &Ways, from: Cell, to: Cell) -> u64 {
+    let cost = match ways.cost(from) {
+        u32::MAX => (from.center() - to.center()).length() * 15.0,
+        cost => f64::from(cost),
+    };
+    cost as u64 * CELL / 10
 }
 
 /// The guards who are awake and on their feet: position and direction of look.
