@@ -2,7 +2,7 @@
 
 use cellcaster::game::{Game, Outcome, Rules};
 use cellcaster::map::builtin::{self, Level};
-use cellcaster::world::Difficulty;
+use cellcaster::world::{Cell, Difficulty};
 
 use crate::levels::{route, world};
 use crate::pilot::{Pace, Pilot};
@@ -53,19 +53,16 @@ fn run(pilot: &mut Pilot, Errand { verb, cell, height, .. }: Errand) {
 #[test]
 fn a_player_without_care_loses_every_level() {
     let rules = Rules { difficulty: Difficulty::Normal, seed: 0 };
-    let survived = builtin::LEVELS.iter().filter_map(|level| {
+    let ends = builtin::LEVELS.iter().map(|level| {
         let pilot = play(level, rules);
-        let outcome = pilot.game.outcome();
-        let is_dead = matches!(outcome, Outcome::Dead { .. });
-        (!is_dead).then(|| {
-            let (cell, health) = (pilot.cell(), pilot.game.health());
-            format!(
-                "{}: {outcome:?} after {} steps at {cell:?}, {health:?}",
-                level.name,
-                pilot.steps()
-            )
-        })
+        (level.name, pilot.game.outcome(), pilot.steps(), pilot.cell())
     });
-    let survived: Vec<String> = survived.collect();
+    let ends: Vec<_> = ends.collect();
+    let survived = ends.iter().filter(|(_, outcome, ..)| !matches!(outcome, Outcome::Dead { .. }));
+    let survived: Vec<_> = survived.collect();
     assert!(survived.is_empty(), "{survived:#?}");
+    let lines = ends.iter().map(|(name, outcome, steps, Cell { column, row })| {
+        format!("{name}: {outcome:?} after {steps} steps at {column},{row}\n")
+    });
+    insta::assert_snapshot!("lazy", lines.collect::<String>());
 }
