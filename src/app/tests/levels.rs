@@ -15,8 +15,8 @@ use crate::world::Cell;
 /// Two levels without their guards, which a player who stops to look around does not outwit.
 pub(super) const CISTERN: &str = include_str!("../../../tests/maps/cistern.toml");
 pub(super) const OBSERVATORY: &str = include_str!("../../../tests/maps/observatory.toml");
-const CISTERN_SCRIPT: &str = include_str!("../../../tests/maps/cistern.script");
-const OBSERVATORY_SCRIPT: &str = include_str!("../../../tests/maps/observatory.script");
+const CISTERN_SCRIPT: &str = include_str!("../../../maps/cistern.script");
+const OBSERVATORY_SCRIPT: &str = include_str!("../../../maps/observatory.script");
 
 /// The default of most systems.
 const RATE: Rate = (500, 30);
