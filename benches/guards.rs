@@ -34,7 +34,7 @@ fn world(count: u64, deed: Deed) -> World {
             let is_wall = column % 4 == 0 && row % 4 != 1;
             let apart = (column.abs_diff(middle.0), row.abs_diff(middle.1));
             let is_post = match deed {
-                Deed::Chase => apart.0.max(apart.1) <= 12 && row % 2 == 1 && column % 4 == 1,
+                Deed::Chase => apart.0.max(apart.1) <= 6 && (row + column) % 2 == 1,
                 Deed::Sleep | Deed::FarPatrol => column > 120 && row % 4 == 1 && column % 4 == 1,
             };
             grid.push(match () {

@@ -35,9 +35,9 @@ struct Temper {
 
 /// The tempers that are tried in turn: a level that cannot be left unseen is left in haste.
 const TEMPERS: [Temper; 3] = [
-    Temper { point: 900, alarm: 1200, noticed: 30, chased: 90, weight: 3, most_moves: 8_000 },
-    Temper { point: 300, alarm: 200, noticed: 10, chased: 20, weight: 4, most_moves: 12_000 },
-    Temper { point: 120, alarm: 0, noticed: 0, chased: 2, weight: 6, most_moves: 25_000 },
+    Temper { point: 900, alarm: 1200, noticed: 30, chased: 90, weight: 3, most_moves: 24_000 },
+    Temper { point: 300, alarm: 200, noticed: 10, chased: 20, weight: 4, most_moves: 16_000 },
+    Temper { point: 120, alarm: 0, noticed: 0, chased: 2, weight: 6, most_moves: 10_000 },
 ];
 /// The steps that an errand is estimated to take before its way is known.
 const ERRAND: u64 = 600;

@@ -69,26 +69,3 @@ fn a_player_without_care_loses_every_level() {
     let survived: Vec<String> = survived.collect();
     assert!(survived.is_empty(), "{survived:#?}");
 }
-
-#[test]
-fn trace() {
-    use cellcaster::game::Script;
-    let Ok(name) = std::env::var("TRACE") else { return };
-    let level = builtin::LEVELS.iter().find(|level| level.name == name).unwrap();
-    let rules = Rules { difficulty: Difficulty::Normal, seed: 0 };
-    let text = match std::env::var("TRACE_SCRIPT") {
-        Ok(path) => std::fs::read_to_string(path).unwrap(),
-        Err(_) => play(level, rules).script(),
-    };
-    let script = Script::parse(&text, "trace").unwrap();
-    let mut game = Game::with_rules(world(level), rules);
-    for (n, (_, intents)) in script.iter().enumerate() {
-        game.step(intents);
-        if n % 60 == 0 {
-            let at = game.camera(cellcaster::world::FieldOfView::default()).position();
-            let guards: Vec<String> = game.guards().map(|g| format!("{}:{:?}@{:.1},{:.1}", g.kind.name(), g.mood, g.position.x, g.position.y)).collect();
-            println!("{:4} {:.1},{:.1} h{} vis{} al{} {}", n / 60, at.x, at.y, game.health().points, game.visibility(), game.tally().alarms, guards.join(" "));
-        }
-    }
-    println!("{:?} {:?} {:?}", game.outcome(), game.tally(), game.keys().collect::<Vec<_>>());
-}

@@ -10,7 +10,7 @@ use std::f64::consts::PI;
 
 use super::*;
 use crate::game::{Intent, Script};
-use crate::map::builtin;
+use crate::map;
 use crate::world::Cell;
 
 /// The default of most systems.
@@ -225,14 +225,22 @@ impl Rig {
 
 #[test]
 fn cistern_and_observatory_are_played_to_the_exit() {
-    for (name, text) in [
-        ("cistern", include_str!("../../../maps/cistern.script")),
-        ("observatory", include_str!("../../../maps/observatory.script")),
+    for (name, map, text) in [
+        (
+            "cistern",
+            include_str!("../../../tests/maps/cistern.toml"),
+            include_str!("../../../maps/cistern.script"),
+        ),
+        (
+            "observatory",
+            include_str!("../../../tests/maps/observatory.toml"),
+            include_str!("../../../maps/observatory.script"),
+        ),
     ] {
-        let level = builtin::LEVELS.iter().find(|level| level.name == name).unwrap();
+        let world = || map::parse_str(map).unwrap();
         let script = Script::parse(text, name).unwrap_or_else(|faults| panic!("{faults}"));
-        let mut rig = Rig::new(level.world().unwrap(), Some(RATE));
-        for (index, segment) in segments(level.world().unwrap(), &script).into_iter().enumerate() {
+        let mut rig = Rig::new(world(), Some(RATE));
+        for (index, segment) in segments(world(), &script).into_iter().enumerate() {
             if rig.game().is_finished() {
                 break;
             }

@@ -92,12 +92,12 @@ fn help_names_the_keys_until_it_is_closed() {
 fn the_goal_shows_at_first_and_goes_when_the_player_has_moved() {
     let game = Game::start();
     game.wait_for("Find the way out");
-    game.wait_for("level 1 of 5");
+    game.wait_for("level 1 of 12");
     game.press(Key::Right);
     game.wait_until("stopped telling the goal", |emulator| {
         !emulator.text().contains("Find the way out")
     });
-    game.wait_for("level 1 of 5");
+    game.wait_for("level 1 of 12");
 }
 
 #[test]
