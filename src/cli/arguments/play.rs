@@ -18,6 +18,7 @@ use crate::world::{Difficulty, FieldOfView};
 
 /// Options of `play`; `None` where the configuration or the terminal decides.
 #[derive(Debug)]
+#[expect(clippy::struct_excessive_bools, reason = "each is an option of its own")]
 pub(in crate::cli) struct Play {
     pub(in crate::cli) map: Option<OsString>,
     /// The generated level instead of a map.
