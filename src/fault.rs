@@ -40,6 +40,21 @@ impl Faults {
         Self::new(name, "", vec![fault])
     }
 
+    /// The text `bytes` of the file `name`, which is `what`, such as a map.
+    ///
+    /// # Errors
+    /// A fault that names the first line that is not UTF-8.
+    pub(crate) fn text_of(bytes: Vec<u8>, name: &str, what: &str) -> Result<String, Self> {
+        String::from_utf8(bytes).map_err(|error| {
+            let valid = error.utf8_error().valid_up_to();
+            let line = error.as_bytes()[..valid].split(|&byte| byte == b'\n').count();
+            let message = format!(
+                "{name} is not UTF-8 text: line {line} has a byte that is part of no character"
+            );
+            Self::of_whole_file(name, message, &format!("save the {what} in the encoding UTF-8"))
+        })
+    }
+
     /// The number of faults, 1 or more.
     #[expect(clippy::len_without_is_empty, reason = "never empty")]
     pub fn len(&self) -> usize {

@@ -7,6 +7,8 @@
 //! | `progress.toml` | best results, the saved game, preferences, daily runs |
 //! | `runs/LEVEL.DIFFICULTY.STEPS.script` | the fastest run of a level |
 //! | `runs/saved.HASH.script` | the run of the saved game so far |
+//! | `runs/daily.DATE.REACHED.script` | the daily run of a date, up to the last exit it reached |
+//! | `runs/descent.REACHED.script` | the best descent without an end, up to the same |
 //! | `progress.lock` | nothing; it is locked while a game writes |
 //!
 //! Rules:
@@ -161,14 +163,15 @@ impl Store {
         if self.daily(date).is_some() {
             return false;
         }
-        let before = self.change(Change::Daily { date, reached: Reached::default() });
+        let (reached, script) = (Reached::default(), String::new());
+        let before = self.change(Change::Daily { date, reached, script });
         before.is_none_or(|before| !before.dailies.contains_key(&date))
     }
 
-    /// Records what the try that counts has reached so far.
-    pub fn record_daily(&mut self, date: u32, reached: Reached) {
+    /// Records what the try that counts has reached so far, and its script up to there.
+    pub fn record_daily(&mut self, date: u32, reached: Reached, script: String) {
         if self.daily(date).is_none_or(|daily| daily.reached < reached) {
-            self.change(Change::Daily { date, reached });
+            self.change(Change::Daily { date, reached, script });
         }
     }
 
@@ -177,11 +180,11 @@ impl Store {
         self.progress.descent
     }
 
-    /// Records a descent without an end, and returns whether it is the best one.
-    pub fn record_descent(&mut self, reached: Reached) -> bool {
+    /// Records a descent without an end and its script, and returns whether it is the best one.
+    pub fn record_descent(&mut self, reached: Reached, script: String) -> bool {
         let is_best = self.progress.descent.is_none_or(|best| best < reached);
         if is_best {
-            self.change(Change::Descent(reached));
+            self.change(Change::Descent { reached, script });
         }
         is_best
     }

@@ -37,16 +37,14 @@ impl App {
 
     /// Records a floor that was won.
     pub(super) fn record_floor(&mut self) {
-        let Some(tally) = self.game.grid().map(|game| game.tally()) else { return };
-        let Reached { floors, treasure, steps } = self.reached;
-        self.reached = Reached {
-            floors: floors + 1,
-            treasure: treasure.saturating_add(tally.treasure.found),
-            steps: steps + tally.steps,
-        };
+        let Some(game) = self.game.grid() else { return };
+        let (tally, script) = (game.tally(), self.run_script(game));
+        self.reached = self.reached.and(&tally);
         match self.course {
-            Course::Daily { date, counts: true } => self.store.record_daily(date, self.reached),
-            Course::Endless => _ = self.store.record_descent(self.reached),
+            Course::Daily { date, counts: true } => {
+                self.store.record_daily(date, self.reached, script);
+            }
+            Course::Endless => _ = self.store.record_descent(self.reached, script),
             Course::Levels | Course::Daily { counts: false, .. } => {}
         }
     }

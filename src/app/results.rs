@@ -70,12 +70,14 @@ impl App {
     }
 
     /// The script of the run so far, with a header that names the level.
-    fn run_script(&self, game: &Game) -> String {
-        let header = Header {
-            level: self.stage.name().and_then(LevelName::new),
-            difficulty: Some(self.difficulty),
-            seed: Some(game.rules().seed),
+    /// A descent begins with its first floor, and has one script.
+    pub(super) fn run_script(&self, game: &Game) -> String {
+        let level = match self.is_descent() {
+            true => Some(LevelName::of_floor(1)),
+            false => self.stage.name().and_then(LevelName::new),
         };
+        let header =
+            Header { level, difficulty: Some(self.difficulty), seed: Some(game.rules().seed) };
         format!("{header}\n{}", self.log.script())
     }
 

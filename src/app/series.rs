@@ -25,6 +25,9 @@ impl App {
         self.course = course;
         self.reached = Reached::default();
         self.demo = None;
+        // A recorded script is about what the program began with.
+        self.script = None;
+        self.log = RunLog::default();
         self.begin_level(first, game);
     }
 
@@ -34,6 +37,9 @@ impl App {
         let Some(game) = stage.begin(self.difficulty) else { return self.show(Screen::End) };
         self.earlier += self.game.elapsed();
         self.level = self.level.next();
+        if !self.is_descent() {
+            self.log = RunLog::default();
+        }
         self.begin_level(stage, game);
     }
 
@@ -42,6 +48,7 @@ impl App {
     pub(super) fn restart_level(&mut self) {
         let Some(game) = self.stage.begin(self.difficulty) else { return };
         self.script = None;
+        self.log = RunLog::default();
         let stage = mem::replace(&mut self.stage, Stage::nothing());
         self.begin_level(stage, game);
     }
@@ -83,7 +90,6 @@ impl App {
         self.watch = Watch::begin(game.grid());
         self.stage = stage;
         self.game = game;
-        self.log = RunLog::default();
         self.result = None;
         self.goal = Goal::of(&self.game, self.settings.minimap);
         self.map.begin_level();

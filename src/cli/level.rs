@@ -108,6 +108,11 @@ pub(super) fn of_script(
     let rules = header.rules();
     match &header.level {
         Some(name) if map.is_none() && generated.is_none() => {
+            if let Some(first) = name.floor() {
+                let game = move |world| Game::with_rules(world, rules);
+                let later = floors_after(first, rules.seed);
+                return Ok(Levels::of_games(game(descent(rules.seed, first)?), later.map(game)));
+            }
             let world = match load_named(name, rules.seed)? {
                 Level::Grid(world) => *world,
                 level @ Level::Space(_) => return Ok(Levels::new(level, iter::empty())),
@@ -124,6 +129,11 @@ pub(super) fn of_script(
         }
         _ => load_or_generate(map, generated),
     }
+}
+
+/// The floors of a descent below `floor`.
+pub(super) fn floors_after(floor: u32, seed: u64) -> impl Iterator<Item = World> {
+    (floor.saturating_add(1)..).map_while(move |number| descent(seed, number).ok())
 }
 
 /// The level that a script's header names.

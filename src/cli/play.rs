@@ -12,10 +12,11 @@ use super::today::today;
 use super::{Error, config, level, own_maps};
 use crate::app;
 use crate::app::{Farewell, Levels, Offers, Opening, Settings};
-use crate::game::{Header, Rules};
+use crate::game::{Header, LevelName, Rules};
 use crate::store::Store;
 use crate::terminal::{self, locale_without_utf8, take_keys_from_terminal};
 use crate::tui::GlyphMode;
+use crate::world::Difficulty;
 
 /// Plays until the player quits.
 pub(super) fn run(options: Play) -> Result<(), Error> {
@@ -51,13 +52,29 @@ pub(super) fn run(options: Play) -> Result<(), Error> {
         None => (Store::in_memory(), None),
     };
     let difficulty = options.difficulty.unwrap_or(store.preferences().difficulty);
-    let header = Header::of(level, Rules { difficulty, seed: 0 });
+    let header = header(&opening, level, difficulty);
     let recording = file.as_ref().map(|file| file.recording(header)).unwrap_or_default();
     let played = app::play(opening, settings, store, recording);
     let written = file.map_or(Ok(()), RecordingFile::finish);
     let farewell = played.map_err(about_the_terminal)?;
     say_farewell(&farewell, damage);
     written
+}
+
+/// The header of a script of what the program begins with. Levels that are not generated have the
+/// seed 0.
+fn header(opening: &Opening, level: Option<LevelName>, difficulty: Difficulty) -> Header {
+    let first_floor = || Some(LevelName::of_floor(1));
+    match opening {
+        Opening::Daily(offers) => {
+            let seed = offers.today.unwrap_or_default().into();
+            Header::of(first_floor(), Rules { difficulty: Difficulty::default(), seed })
+        }
+        Opening::Endless(offers) => {
+            Header::of(first_floor(), Rules { difficulty, seed: offers.seed })
+        }
+        Opening::Title(_) | Opening::Levels(_) => Header::of(level, Rules { difficulty, seed: 0 }),
+    }
 }
 
 /// Says what was done, and what the player should know about what is kept.
@@ -104,14 +121,12 @@ fn offers() -> Offers {
 /// The daily run or an endless game.
 fn descent_of(options: &Play) -> Result<Opening, Error> {
     let name = if options.is_daily { "--daily" } else { "--endless" };
-    let records_script = options.record.as_deref().is_some_and(RecordingFile::is_script);
     let others = [
         (options.is_daily && options.is_endless, "--endless"),
         (options.map.is_some(), "MAP"),
         (options.generated.is_some(), "--generate"),
         (options.watches, "--watch"),
         (options.is_daily && options.difficulty.is_some(), "--difficulty"),
-        (records_script, "a script, which is about one level"),
     ];
     if let Some((_, other)) = others.into_iter().find(|(is_given, _)| *is_given) {
         return Err(Error::mistake(format!("{name} goes without {other}: leave one of them out")));

@@ -31,13 +31,13 @@ impl Showcase {
 /// The script in a file.
 pub(super) fn load(path: &Path) -> Result<Script, Error> {
     let name = path.display().to_string();
-    let mut text = String::new();
-    let read = File::open(path).and_then(|file| file.take(LONGEST).read_to_string(&mut text));
+    let mut content = Vec::new();
+    let read = File::open(path).and_then(|file| file.take(LONGEST).read_to_end(&mut content));
     match read {
         Err(error) => Err(Error::mistake(format!("{name} can't be read: {error}"))),
         Ok(length) if length as u64 == LONGEST => {
             Err(Error::mistake(format!("{name} is too long for a script")))
         }
-        Ok(_) => Ok(Script::parse(&text, &name)?),
+        Ok(_) => Ok(Script::from_bytes(content, &name)?),
     }
 }

@@ -6,25 +6,23 @@ use std::io::{self, Write};
 use super::arguments::Replay;
 use super::{Error, level};
 use crate::game::{Game, Header, Outcome, Rules, STEPS_PER_SECOND, Script};
+use crate::store::Reached;
 use crate::world::World;
 
 /// Writes what `script` achieves in the level that `options` or its header name.
 ///
 /// # Errors
-/// With exit status 1 if it does not win.
+/// With exit status 1 if it does not reach an exit.
 pub(super) fn run(options: &Replay, script: &Script) -> Result<(), Error> {
     let (name, world) = level(options, script.header())?;
     let rules = script.header().rules();
-    let mut game = Game::with_rules(world, rules);
-    for (_section, intents) in script.iter() {
-        if game.is_finished() {
-            break;
-        }
-        game.step(intents);
-    }
-    let report = report(&name, rules, &game);
+    let floor = script.header().level.as_ref().and_then(|level| level.floor());
+    let (report, wins) = match floor.filter(|_| options.map.is_none()) {
+        Some(floor) => descend(&name, floor, world, rules, script),
+        None => play(&name, world, rules, script),
+    };
     io::stdout().write_all(report.as_bytes()).map_err(|error| Error::of_output(&error))?;
-    if game.is_finished() { Ok(()) } else { Err(Error::failed()) }
+    if wins { Ok(()) } else { Err(Error::failed()) }
 }
 
 /// A number of steps as minutes and seconds with one digit.
@@ -53,33 +51,82 @@ fn level(options: &Replay, header: &Header) -> Result<(String, World), Error> {
     }
 }
 
-fn report(name: &str, rules: Rules, game: &Game) -> String {
+/// A report about the script in one level, and whether it reaches the exit.
+fn play(name: &str, world: World, rules: Rules, script: &Script) -> (String, bool) {
+    let mut game = Game::with_rules(world, rules);
+    for (_section, intents) in script.iter() {
+        if game.is_finished() {
+            break;
+        }
+        game.step(intents);
+    }
+    let mut report = Report::about(name, game.world().title(), rules);
+    report.tell_outcome(&game);
     let tally = game.tally();
-    let world = game.world();
-    let mut text = String::new();
-    let mut line = |name: &str, value: String| _ = writeln!(text, "{name:<10} {value}");
-    line("level", name.replace(char::is_control, "?"));
-    if !world.title().is_empty() {
-        line("title", world.title().replace(char::is_control, "?"));
-    }
-    line("difficulty", rules.difficulty.name().to_owned());
-    line("seed", rules.seed.to_string());
-    let result = match game.outcome() {
-        Outcome::Won => "won".to_owned(),
-        Outcome::Dead { cause } => format!("dead: {cause}"),
-        Outcome::Playing => "not won".to_owned(),
-    };
-    line("result", result);
-    let par = world.par().map(|par| clock(u64::from(par) * u64::from(STEPS_PER_SECOND)));
-    let par = par.map_or(String::new(), |par| format!(", par {par}"));
-    line("time", format!("{} ({} steps{par})", clock(tally.steps), tally.steps));
-    line("treasure", format!("{} of {}", tally.treasure.found, tally.treasure.total));
-    line("secrets", format!("{} of {}", tally.secrets.found, tally.secrets.total));
-    line("alarms", tally.alarms.to_string());
-    line("deaths", tally.deaths.to_string());
-    line("stunned", tally.stunned.to_string());
+    let par = game.world().par();
+    let par_time = par.map(|par| clock(u64::from(par) * u64::from(STEPS_PER_SECOND)));
+    let par_time = par_time.map_or(String::new(), |par| format!(", par {par}"));
+    report.line("time", format!("{} ({} steps{par_time})", clock(tally.steps), tally.steps));
+    report.line("treasure", format!("{} of {}", tally.treasure.found, tally.treasure.total));
+    report.line("secrets", format!("{} of {}", tally.secrets.found, tally.secrets.total));
+    report.line("alarms", tally.alarms.to_string());
+    report.line("deaths", tally.deaths.to_string());
+    report.line("stunned", tally.stunned.to_string());
     if game.is_finished() {
-        line("rank", tally.rank(world.par()).to_string());
+        report.line("rank", tally.rank(par).to_string());
     }
-    text
+    (report.0, game.is_finished())
+}
+
+/// A report about the script in a descent from `floor` on, and whether it reaches an exit. As in a
+/// game, a descent ends with the first death, and what is found counts once the exit is reached.
+fn descend(name: &str, floor: u32, first: World, rules: Rules, script: &Script) -> (String, bool) {
+    let mut game = Game::with_rules(first, rules);
+    let mut later = level::floors_after(floor, rules.seed);
+    let mut reached = Reached::default();
+    for (_section, intents) in script.iter() {
+        if game.outcome() != Outcome::Playing {
+            let Some(world) = later.next().filter(|_| game.is_finished()) else { break };
+            game = Game::with_rules(world, rules);
+        }
+        game.step(intents);
+        if game.is_finished() {
+            reached = reached.and(&game.tally());
+        }
+    }
+    let mut report = Report::about(name, "", rules);
+    report.tell_outcome(&game);
+    report.line("floors", reached.floors.to_string());
+    report.line("time", format!("{} ({} steps)", clock(reached.steps), reached.steps));
+    report.line("treasure", reached.treasure.to_string());
+    (report.0, reached.floors > 0)
+}
+
+/// Lines of a name and a value.
+struct Report(String);
+
+impl Report {
+    fn about(name: &str, title: &str, rules: Rules) -> Self {
+        let mut report = Self(String::new());
+        report.line("level", name.replace(char::is_control, "?"));
+        if !title.is_empty() {
+            report.line("title", title.replace(char::is_control, "?"));
+        }
+        report.line("difficulty", rules.difficulty.name().to_owned());
+        report.line("seed", rules.seed.to_string());
+        report
+    }
+
+    fn tell_outcome(&mut self, game: &Game) {
+        let result = match game.outcome() {
+            Outcome::Won => "won".to_owned(),
+            Outcome::Dead { cause } => format!("dead: {cause}"),
+            Outcome::Playing => "not won".to_owned(),
+        };
+        self.line("result", result);
+    }
+
+    fn line(&mut self, name: &str, value: String) {
+        _ = writeln!(self.0, "{name:<10} {value}");
+    }
 }

@@ -17,8 +17,9 @@
 //! A line has a duration, in seconds or steps, and everything that is wanted meanwhile, or `stand`
 //! for nothing. `turn:1.5` and `tilt:-0.25` are the degrees by which the player turns clockwise and
 //! tilts up in each step. A name in brackets begins a section, for reports on parts of a script. A
-//! `#` begins a comment. Lines at the top name the `level`, the `difficulty` and the `seed` of the game;
-//! each may be missing, and is then up to the one who plays the script. The same script in the same map gives the same states, bit for bit.
+//! `#` begins a comment. Lines at the top name the `level`, the `difficulty` and the `seed` of the game.
+//! The program that plays the script chooses what they do not name. The same script in the same map
+//! gives the same states, bit for bit.
 //!
 //! Lists of presses and releases with times were refused: their authors would have to add up times,
 //! and a missing line would hold a key for ever.
@@ -80,6 +81,14 @@ impl Script {
     /// All faults of the text.
     pub fn parse(text: &str, name: &str) -> Result<Self, Faults> {
         parse::parse(text, name)
+    }
+
+    /// As [`parse`](Self::parse), from the content of a file.
+    ///
+    /// # Errors
+    /// All faults of the text; or that it is not UTF-8.
+    pub fn from_bytes(content: Vec<u8>, name: &str) -> Result<Self, Faults> {
+        Self::parse(&Faults::text_of(content, name, "script")?, name)
     }
 
     /// The game that the script belongs to.

@@ -14,14 +14,7 @@ pub(super) fn read_text(input: impl Read, name: &str) -> Result<String, Faults> 
     if bytes.len() > MAX_BYTES {
         return Err(too_large(name));
     }
-    String::from_utf8(bytes).map_err(|error| {
-        let valid = error.utf8_error().valid_up_to();
-        let line = error.as_bytes()[..valid].split(|&byte| byte == b'\n').count();
-        let message = format!(
-            "{name} is not UTF-8 text: line {line} has a byte that is part of no character"
-        );
-        Faults::of_whole_file(name, message, "save the map in the encoding UTF-8")
-    })
+    Faults::text_of(bytes, name, "map")
 }
 
 /// Reads at most `limit` bytes of a file.

@@ -49,6 +49,18 @@ pub struct Reached {
     pub steps: u64,
 }
 
+impl Reached {
+    /// One floor further, with the tally of that floor.
+    #[must_use]
+    pub fn and(self, tally: &Tally) -> Self {
+        Self {
+            floors: self.floors + 1,
+            treasure: self.treasure.saturating_add(tally.treasure.found),
+            steps: self.steps + tally.steps,
+        }
+    }
+}
+
 impl Ord for Reached {
     fn cmp(&self, other: &Self) -> std::cmp::Ordering {
         let by_value = (self.floors, self.treasure).cmp(&(other.floors, other.treasure));

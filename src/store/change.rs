@@ -15,9 +15,9 @@ pub(super) enum Change {
     /// The player has chosen what differs.
     Preferences { before: Preferences, after: Preferences },
     /// The daily run of a date has come this far.
-    Daily { date: u32, reached: Reached },
+    Daily { date: u32, reached: Reached, script: String },
     /// A descent has come this far.
-    Descent(Reached),
+    Descent { reached: Reached, script: String },
 }
 
 impl Change {
@@ -28,7 +28,11 @@ impl Change {
                 Some((names::of_run(level, *difficulty, run.tally.steps), &run.script))
             }
             Self::Saved(Some(game)) => Some((names::of_saved(&game.script), &game.script)),
-            _ => None,
+            Self::Daily { date, reached, script } => {
+                Some((names::of_daily(*date, *reached)?, script))
+            }
+            Self::Descent { reached, script } => Some((names::of_descent(*reached)?, script)),
+            Self::Saved(None) | Self::Preferences { .. } => None,
         }
     }
 
@@ -47,8 +51,10 @@ impl Progress {
             }
             Change::Saved(game) => self.saved = game.as_ref().map(SavedEntry::of),
             Change::Preferences { before, after } => self.preferences.choose(*before, *after),
-            Change::Daily { date, reached } => self.add_daily(*date, Daily { reached: *reached }),
-            Change::Descent(reached) => self.descent = self.descent.max(Some(*reached)),
+            Change::Daily { date, reached, .. } => {
+                self.add_daily(*date, Daily { reached: *reached });
+            }
+            Change::Descent { reached, .. } => self.descent = self.descent.max(Some(*reached)),
         }
     }
 

@@ -5,6 +5,7 @@
 //! lower case are the same, and no name leaves the folder. Device names of Windows, such as `con`,
 //! are not reserved with `%` in them, so their first letter is written that way.
 
+use super::best::Reached;
 use crate::rng;
 use crate::world::Difficulty;
 
@@ -30,7 +31,21 @@ pub(super) fn of_saved(script: &str) -> String {
     format!("{SAVED}.{:016x}.script", hash(script))
 }
 
-/// No level has this name: theirs have two points.
+/// The file of the script of a daily run, once it has reached an exit.
+pub(super) fn of_daily(date: u32, reached: Reached) -> Option<String> {
+    Some(format!("daily.{date}.{}.script", figures(reached)?))
+}
+
+/// The file of the script of a descent, once it has reached an exit.
+pub(super) fn of_descent(reached: Reached) -> Option<String> {
+    Some(format!("descent.{}.script", figures(reached)?))
+}
+
+fn figures(Reached { floors, treasure, steps }: Reached) -> Option<String> {
+    (floors > 0).then(|| format!("{floors}-{treasure}-{steps}"))
+}
+
+/// No level has this name, nor those of descents: the names of levels end in a difficulty and a number.
 const SAVED: &str = "saved";
 
 fn escaped(key: &str) -> String {

@@ -98,7 +98,10 @@ impl Progress {
             .bests
             .iter()
             .map(|((level, difficulty), best)| names::of_run(level, *difficulty, best.tally.steps));
-        runs.chain(self.saved.iter().map(|saved| saved.script.clone()))
+        let saved = self.saved.iter().map(|saved| saved.script.clone());
+        let dailies =
+            self.dailies.iter().filter_map(|(&date, daily)| names::of_daily(date, daily.reached));
+        runs.chain(saved).chain(dailies).chain(self.descent.and_then(names::of_descent))
     }
 }
 

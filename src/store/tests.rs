@@ -82,8 +82,9 @@ fn fill(store: &mut Store) {
     store.save(&saved("1 s forward\n"));
     store.set_preferences(Preferences { compass: true, ghost: false, ..Preferences::default() });
     store.begin_daily(20_261_122);
-    store.record_daily(20_261_122, Reached { floors: 3, treasure: 90, steps: 4000 });
-    store.record_descent(Reached { floors: 9, treasure: 1, steps: 9000 });
+    let script = || "4 s forward\n".to_owned();
+    store.record_daily(20_261_122, Reached { floors: 3, treasure: 90, steps: 4000 }, script());
+    store.record_descent(Reached { floors: 9, treasure: 1, steps: 9000 }, script());
 }
 
 /// Everything that a store shows.
@@ -139,9 +140,20 @@ fn only_the_first_try_of_a_day_counts() {
     assert!(!other.begin_daily(20_261_122));
     assert!(!one.begin_daily(20_261_122));
     assert!(!sound(&folder.0).begin_daily(20_261_122));
-    one.record_daily(20_261_122, Reached { floors: 2, treasure: 10, steps: 900 });
-    one.record_daily(20_261_122, Reached { floors: 1, treasure: 99, steps: 500 });
+    assert!(folder.names(".script").is_empty());
+    let mut reach = |floors, treasure, steps| {
+        let reached = Reached { floors, treasure, steps };
+        one.record_daily(20_261_122, reached, format!("{steps} steps forward\n"));
+        one.record_descent(reached, format!("{steps} steps run\n"));
+    };
+    reach(1, 40, 500);
+    reach(2, 10, 900);
+    reach(1, 99, 500);
     assert_eq!(sound(&folder.0).daily(20_261_122).unwrap().reached.floors, 2);
+    let names = folder.names(".script");
+    assert_eq!(names, ["daily.20261122.2-10-900.script", "descent.2-10-900.script"]);
+    let text = |name: &str| fs::read_to_string(folder.0.join("runs").join(name)).unwrap();
+    assert_eq!(text(&names[0]) + &text(&names[1]), "900 steps forward\n900 steps run\n");
     assert!(one.begin_daily(20_261_123));
 }
 

@@ -2,6 +2,7 @@
 
 mod arguments;
 mod bench;
+mod descents;
 mod recordings;
 mod replay;
 mod scores;
@@ -13,5 +14,11 @@ mod asciicast;
 mod geometry;
 #[path = "../support/looks.rs"]
 mod looks;
+#[allow(dead_code, reason = "this file uses a share of it")]
+#[path = "../support/pilot.rs"]
+mod pilot;
 #[path = "../support/mod.rs"]
 mod support;
+#[allow(dead_code, reason = "this file uses a share of it")]
+#[path = "../support/ways.rs"]
+mod ways;

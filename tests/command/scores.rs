@@ -1,9 +1,9 @@
 //! `levels` and `replay --verify`: best results, and what a script achieves.
 #![cfg(feature = "cli")]
 
-use std::fs;
-use std::path::PathBuf;
-use std::process::Output;
+use std::path::{Path, PathBuf};
+use std::process::{Command, Output, Stdio};
+use std::{env, fs};
 
 use cellcaster::game::{Rank, Share, Tally};
 use cellcaster::map::builtin;
@@ -64,6 +64,50 @@ fn a_newer_data_folder_is_left_alone_with_a_sentence() {
     assert!(sentence.contains("version 9") && sentence.lines().count() == 1, "{sentence}");
 }
 
+/// A test of several processes starts itself with this variable, which names the data folder and the game.
+const GAME: &str = "CELLCASTER_TEST_GAME";
+
+#[test]
+fn two_processes_that_record_at_once_lose_nothing() {
+    const RUNS: u64 = 20;
+    if let Ok(game) = env::var(GAME) {
+        let (folder, number) = game.rsplit_once(':').unwrap();
+        return record_runs(Path::new(folder), number.parse().unwrap(), RUNS);
+    }
+    let folder = scratch("processes");
+    let itself = env::current_exe().unwrap();
+    let start = |number: u64| {
+        Command::new(&itself)
+            .args(["--exact", "scores::two_processes_that_record_at_once_lose_nothing"])
+            .env(GAME, format!("{}:{number}", folder.display()))
+            .stdout(Stdio::null())
+            .spawn()
+            .unwrap()
+    };
+    for mut process in [start(0), start(1)] {
+        assert!(process.wait().unwrap().success());
+    }
+    let (store, sentence) = Store::open(&folder);
+    assert_eq!((store.won(Difficulty::Normal).count() as u64, sentence), (2 * RUNS + 1, None));
+    let least = 1000 - 2 * RUNS + 1;
+    assert_eq!(store.best("same", Difficulty::Normal).unwrap().tally.steps, least);
+    assert_eq!(store.script("same", Difficulty::Normal), Some(least.to_string()));
+}
+
+/// Records runs in levels of one's own, and in one that both processes play.
+fn record_runs(folder: &Path, number: u64, runs: u64) {
+    let (mut store, _) = Store::open(folder);
+    for index in 0..runs {
+        let steps = 1000 - (2 * index + number);
+        for level in [format!("own {number} {index}"), "same".to_owned()] {
+            let tally = Tally { steps, ..Tally::default() };
+            let run = Run { tally, rank: Rank::Thief, script: steps.to_string() };
+            store.record(&level, Difficulty::Normal, run);
+        }
+    }
+    assert_eq!(store.trouble(), None);
+}
+
 const MAP: &str = "title = \"Hall\"\npar = 5\ngrid = '''\n#######\n#@...X#\n#######\n'''\n[tiles]\n\
                    \"#\" = { wall = \"brick\" }\n[things]\n\"@\" = { start = 0 }\n\"X\" = { exit = true }\n";
 
@@ -104,7 +148,7 @@ fn a_floor_is_a_level_of_a_script() {
         String::from_utf8(output.stdout).unwrap()
     };
     let first = report("floor");
-    assert!(first.contains("title      Floor 2"), "{first}");
+    assert!(first.contains("level      floor 2") && first.contains("floors     0"), "{first}");
     assert_eq!(first, report("floor again"));
 }
 
@@ -114,7 +158,6 @@ fn a_descent_goes_without_a_level() {
         &["play", "--daily", "--endless"][..],
         &["play", "--daily", "--difficulty", "hard"],
         &["play", "--endless", "cellar"],
-        &["play", "--endless", "--record", "it.script"],
     ] {
         let output = cellcaster(arguments).output().unwrap();
         assert_eq!(output.status.code(), Some(2), "{arguments:?}");
@@ -133,5 +176,13 @@ fn what_is_missing_is_told_in_a_sentence() {
     assert!(told("nameless", "1 s forward\n", &[]).contains("does not name its level"));
     let generated = told("generated", "1 s forward\n", &["--generate", "maze"]);
     assert!(generated.contains("--verify"), "{generated}");
+    let folder = scratch("broken");
+    let path = folder.join("it.script");
+    fs::write(&path, b"level cellar\n[caf\xe9]\n1 s forward\n").unwrap();
+    let broken = run_with_input(&["replay", path.to_str().unwrap(), "--verify"], b"");
+    let sentence = String::from_utf8(broken.stderr).unwrap();
+    assert_eq!(broken.status.code(), Some(2));
+    assert!(sentence.contains("line 2 has a byte"), "{sentence}");
+    assert!(told("faulty", "level cellar\n1 s fly\n", &[]).contains("fly"));
     assert!(told("absent", "level nowhere.toml\n1 s forward\n", &[]).contains("no file"));
 }

@@ -10,8 +10,8 @@ fn every_bad_script_is_refused_with_a_report() {
     let mut count = 0;
     for entry in fs::read_dir("tests/bad_scripts").unwrap() {
         let path = entry.unwrap().path();
-        let text = fs::read_to_string(&path).unwrap();
-        let faults = Script::parse(&text, &path.display().to_string()).unwrap_err();
+        let content = fs::read(&path).unwrap();
+        let faults = Script::from_bytes(content, &path.display().to_string()).unwrap_err();
         let name = path.file_stem().unwrap().to_str().unwrap().to_owned();
         insta::assert_snapshot!(name, faults);
         count += 1;

@@ -6,6 +6,7 @@ mod ending;
 mod game;
 mod generated;
 mod holding;
+mod keeping;
 mod lagging;
 mod layouts;
 mod levels;

@@ -1,5 +1,7 @@
 //! The motion of a player: position, heading, stance and speed, and what a step changes of them.
 
+mod carried;
+
 use glam::DVec2;
 
 use crate::game::STEP;
@@ -194,12 +196,6 @@ impl Motion {
         self.rising == 0.0 && self.feet == self.room(world).floor
     }
 
-    /// Lifted or lowered, with the floor, to that height of the feet.
-    #[must_use]
-    pub(in crate::game) fn carried_to(self, feet: f64) -> Self {
-        Self { feet, rising: 0.0, ..self }
-    }
-
     /// The position and the speeds, as bits.
     pub(in crate::game) fn words(&self) -> [u64; 8] {
         let Body { position, velocity } = self.body;
@@ -207,21 +203,6 @@ impl Motion {
         let numbers = [position.x, position.y, velocity.x, velocity.y, self.feet, self.rising];
         let [x, y, across, down, feet, rising] = numbers.map(f64::to_bits);
         [x, y, across, down, feet, rising, direction.x.to_bits(), direction.y.to_bits()]
-    }
-
-    /// The height to which floors that have risen around the feet lift them; `None` if there are no
-    /// such floors, or no room.
-    pub(in crate::game) fn lifted(&self, world: &World) -> Option<f64> {
-        let Cell { column, row } = self.cell();
-        let near = |place: u32| place.saturating_sub(1)..=place.saturating_add(1);
-        let cells = near(row).flat_map(|row| near(column).map(move |column| Cell { column, row }));
-        let floors = cells.filter(|&cell| self.touches(cell)).flat_map(|cell| {
-            let id = world.grid().tile(cell.column.into(), cell.row.into());
-            id.into_iter().flat_map(|id| world.tile(id).gaps()).map(|gap| gap.bottom)
-        });
-        let above = |&floor: &f64| self.feet < floor && floor <= self.feet + STEP_HEIGHT;
-        let feet = floors.filter(above).reduce(f64::max)?;
-        Self { feet, ..*self }.has_room(world).then_some(feet)
     }
 
     /// The height of the floor here.

@@ -24,12 +24,13 @@ pub struct Header {
     pub level: Option<LevelName>,
     /// The difficulty.
     pub difficulty: Option<Difficulty>,
-    /// The seed of the game's chance.
+    /// The seed of the game's chance, and of the descent if the level is a floor. The levels of maps are
+    /// played with the seed 0, so that they are the same for all and a route can be learnt.
     pub seed: Option<u64>,
 }
 
-/// The name of a level in a header: that of a built-in level, `floor` and a number for a floor of the
-/// [descent](crate::generate::descent), or the path of a map file. It is one line without `#`, and has no
+/// The name of a level in a header: that of a built-in level, `floor` and a number for a
+/// [descent](crate::generate::descent) from that floor on, or the path of a map file. It is one line without `#`, and has no
 /// blanks at its ends.
 #[derive(Clone, Debug, PartialEq, Eq, Hash, PartialOrd, Ord)]
 pub struct LevelName(String);

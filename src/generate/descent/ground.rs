@@ -117,10 +117,13 @@ impl Ground {
         BODY.iter().any(|&(across, down)| {
             let (dx, dy) = (middle(to.column) + across - x, middle(to.row) + down - y);
             let count = (dx.abs().max(dy.abs()) * POINTS / 100).max(1);
+            let side = 100 * count;
             (1..count).all(|point| {
-                let place =
-                    |from: i64, by: i64| ((from * count + by * point) / (100 * count)) as u32;
-                !self.kind(Cell { column: place(x, dx), row: place(y, dy) }).is_opaque
+                let (x, y) = (x * count + dx * point, y * count + dy * point);
+                // On the line between two cells, a point says nothing about either.
+                let is_between = x % side == 0 || y % side == 0;
+                let cell = || Cell { column: (x / side) as u32, row: (y / side) as u32 };
+                is_between || !self.kind(cell()).is_opaque
             })
         })
     }

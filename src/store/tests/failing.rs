@@ -83,7 +83,10 @@ fn play(store: &mut Store, mut observe: impl FnMut(&Store)) {
         |store| _ = store.record("museum", Hard, run(400, Rank::Shadow)),
         |store| store.set_preferences(Preferences { bell: true, ..store.preferences() }),
         |store| store.clear_saved(),
-        |store| _ = store.record_descent(Reached { floors: 10, treasure: 1, steps: 9000 }),
+        |store| {
+            _ = store
+                .record_descent(Reached { floors: 10, treasure: 1, steps: 9000 }, String::new())
+        },
     ];
     for change in changes {
         change(store);

@@ -1,0 +1,27 @@
+//! Floors that move: they carry the players who stand on them.
+
+use super::{Motion, STEP_HEIGHT};
+use crate::world::{Cell, World};
+
+impl Motion {
+    /// Lifted or lowered, with the floor, to that height of the feet.
+    #[must_use]
+    pub(in crate::game) fn carried_to(self, feet: f64) -> Self {
+        Self { feet, rising: 0.0, ..self }
+    }
+
+    /// The height to which floors that have risen around the feet lift them; `None` if there are no
+    /// such floors, or no room.
+    pub(in crate::game) fn lifted(&self, world: &World) -> Option<f64> {
+        let Cell { column, row } = self.cell();
+        let near = |place: u32| place.saturating_sub(1)..=place.saturating_add(1);
+        let cells = near(row).flat_map(|row| near(column).map(move |column| Cell { column, row }));
+        let floors = cells.filter(|&cell| self.touches(cell)).flat_map(|cell| {
+            let id = world.grid().tile(cell.column.into(), cell.row.into());
+            id.into_iter().flat_map(|id| world.tile(id).gaps()).map(|gap| gap.bottom)
+        });
+        let above = |&floor: &f64| self.feet < floor && floor <= self.feet + STEP_HEIGHT;
+        let feet = floors.filter(above).reduce(f64::max)?;
+        Self { feet, ..*self }.has_room(world).then_some(feet)
+    }
+}
