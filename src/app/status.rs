@@ -84,7 +84,7 @@ enum Form {
 }
 
 /// The forms in the order in which they get room, the most important first.
-const PRIORITIES: [(Part, Form); 21] = [
+const PRIORITIES: [(Part, Form); 22] = [
     (Part::Help, Form::Short),
     // They show only if the player asks for them.
     (Part::Stats, Form::Short),
@@ -93,18 +93,19 @@ const PRIORITIES: [(Part, Form); 21] = [
     (Part::Notice, Form::Short),
     (Part::Light, Form::Short),
     (Part::Supplies, Form::Short),
+    (Part::Alarm, Form::Long),
+    (Part::Treasure, Form::Short),
     (Part::Title, Form::Short),
     (Part::Help, Form::Long),
     (Part::Keys, Form::Short),
-    (Part::Treasure, Form::Short),
     (Part::Modes, Form::Short),
     (Part::Notice, Form::Long),
     (Part::Time, Form::Short),
     (Part::Treasure, Form::Long),
+    (Part::Supplies, Form::Long),
     (Part::Level, Form::Short),
     (Part::Site, Form::Short),
     (Part::Level, Form::Long),
-    (Part::Supplies, Form::Long),
     (Part::Seen, Form::Short),
     (Part::Keys, Form::Long),
 ];

@@ -13,7 +13,7 @@ use crate::player::Player;
 const BELL: u8 = 7;
 
 /// An empty folder for a test with that name.
-fn folder(name: &str) -> PathBuf {
+pub(super) fn folder(name: &str) -> PathBuf {
     let folder = Path::new(env!("CARGO_TARGET_TMPDIR")).join(name);
     _ = fs::remove_dir_all(&folder);
     fs::create_dir_all(&folder).unwrap();
@@ -32,7 +32,7 @@ fn start(data: &Path, size: (u16, u16)) -> Player {
 
 /// Selects the entry `label` by the arrow down, and chooses it.
 #[track_caller]
-fn choose(player: &Player, label: &str) {
+pub(super) fn choose(player: &Player, label: &str) {
     let wanted = format!("> {label}");
     for _ in 0..12 {
         if player.text().contains(&wanted) {
