@@ -147,9 +147,9 @@ impl Pilot {
                 return true;
             }
             if is_there {
-                self.step(Intents::new())
+                self.step(Intents::new());
             } else {
-                self.approach(cell.center(), Pace::Walk)
+                self.approach(cell.center(), Pace::Walk);
             }
         }
         false
