@@ -56,7 +56,7 @@ use levels::{Course, LevelNumber, Stage};
 use map_panel::MapPanel;
 use menu::Menu;
 use menus::Choice;
-pub use offers::{FindMaps, Offers, OwnMap};
+pub use offers::{FindMaps, Offers, OwnLevel, OwnMap};
 pub use recording::Recording;
 pub use replay::Replay;
 use results::LevelResult;

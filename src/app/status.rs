@@ -111,8 +111,9 @@ const PRIORITIES: [(Part, Form); 22] = [
 ];
 /// The number of blank columns of each part.
 const GAP: u16 = 2;
-/// The least width to which a part is cut.
-const LEAST_CUT: u16 = 3;
+/// The least widths to which the title and the notice are cut. Three letters of a title say nothing.
+const LEAST_TITLE: u16 = 8;
+const LEAST_NOTICE: u16 = 3;
 
 impl StatusLine {
     /// Updates the texts.
@@ -137,10 +138,7 @@ impl StatusLine {
             let free = room + before;
             let granted = if columns + GAP <= free {
                 columns
-            } else if taken == 0
-                && matches!(part, Part::Title | Part::Notice)
-                && free >= LEAST_CUT + GAP
-            {
+            } else if taken == 0 && least_cut(part).is_some_and(|least| free >= least + GAP) {
                 free - GAP
             } else {
                 continue;
@@ -149,6 +147,15 @@ impl StatusLine {
             room = free - granted - GAP;
         }
         fitted
+    }
+}
+
+/// The least width to which a part can be cut; `None` if it is left out instead.
+fn least_cut(part: Part) -> Option<u16> {
+    match part {
+        Part::Title => Some(LEAST_TITLE),
+        Part::Notice => Some(LEAST_NOTICE),
+        _ => None,
     }
 }
 

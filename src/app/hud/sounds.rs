@@ -172,8 +172,8 @@ fn place(ring: Rect, angle: f64, width: u16) -> Rect {
 fn style(kind: SoundKind, depth: ColorDepth) -> Style {
     let bold = Style::new().add_modifier(Modifier::BOLD);
     match (depth, is_threat(kind)) {
-        (ColorDepth::Mono, false) => Style::new(),
-        (ColorDepth::Mono, true) => Style::new().add_modifier(Modifier::REVERSED),
+        (ColorDepth::Mono, false) => Style::new().add_modifier(Modifier::REVERSED),
+        (ColorDepth::Mono, true) => bold.add_modifier(Modifier::REVERSED),
         (ColorDepth::Indexed16, false) => Style::new().fg(Color::Indexed(14)),
         (ColorDepth::Indexed16, true) => bold.fg(Color::Indexed(9)),
         (ColorDepth::Indexed256, false) => Style::new().fg(Color::Indexed(153)),

@@ -6,14 +6,19 @@ use ratatui::layout::Rect;
 
 use super::super::*;
 use crate::app::MapDisplay;
-use crate::map::{Level, builtin};
+use crate::map::{Level, builtin, parse_str};
 use crate::terminal::{Key, KeyEvent, Phase};
+use crate::world::World;
 
 fn app(level: &str, settings: Settings) -> App {
-    let index = builtin::LEVELS.iter().position(|known| known.name == level).unwrap();
-    let first = Level::from(builtin::LEVELS[index].world().unwrap());
-    let levels = Levels::new(first, std::iter::empty());
-    App::new(levels.numbered(index + 1, builtin::LEVELS.len()), settings)
+    let level = builtin::LEVELS.iter().find(|known| known.name == level).unwrap();
+    app_in(level.world().unwrap(), settings)
+}
+
+/// The second of three levels.
+fn app_in(world: World, settings: Settings) -> App {
+    let levels = Levels::new(Level::from(world), std::iter::empty());
+    App::new(levels.numbered(2, 3), settings)
 }
 
 fn ascii(minimap: MapDisplay) -> Settings {
@@ -64,8 +69,9 @@ fn help_scrolls_where_it_does_not_fit() {
 
 #[test]
 fn maps_show_heights() {
-    for level in ["cistern", "observatory"] {
-        let mut app = app(level, ascii(MapDisplay::All));
+    let maps = [("cistern", super::levels::CISTERN), ("observatory", super::levels::OBSERVATORY)];
+    for (level, map) in maps {
+        let mut app = app_in(parse_str(map).unwrap(), ascii(MapDisplay::All));
         press(&mut app, Key::Char('3'));
         insta::assert_snapshot!(format!("map_of_{level}"), text(&mut app, (120, 40)));
     }
