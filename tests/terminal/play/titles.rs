@@ -32,7 +32,7 @@ fn start(data: &Path, size: (u16, u16)) -> Player {
 
 /// Selects the entry `label` by the arrow down, and chooses it.
 #[track_caller]
-pub(super) fn choose(player: &Player, label: &str) {
+fn choose(player: &Player, label: &str) {
     let wanted = format!("> {label}");
     for _ in 0..12 {
         if player.text().contains(&wanted) {
