@@ -83,12 +83,12 @@ impl App {
         (map.load)().ok().filter(|own| own.key == name).map(Levels::own)
     }
 
-    /// The script of the run so far, with a header that names the level.
-    /// A descent begins with its first floor, and has one script.
+    /// The script of the run so far, with a header that names the level. A descent begins with its first floor, and has one script.
     pub(super) fn run_script(&self, game: &Game) -> String {
-        let level = match self.is_descent() {
-            true => Some(LevelName::of_floor(1)),
-            false => self.stage.name().and_then(LevelName::new),
+        let level = if self.is_descent() {
+            Some(LevelName::of_floor(1))
+        } else {
+            self.stage.name().and_then(LevelName::new)
         };
         let header =
             Header { level, difficulty: Some(self.difficulty), seed: Some(game.rules().seed) };
