@@ -215,7 +215,7 @@ impl App {
                 let mut app = Self::new(Levels::nothing(), settings);
                 app.store = store;
                 app.difficulty = difficulty;
-                app.begin(levels);
+                app.begin(*levels);
                 app
             }
             Opening::Title(offers) => {

@@ -171,10 +171,11 @@ impl App {
                 self.go_back();
             }
             (_, Action::Leave) => self.ask_to_leave(),
-            (Screen::Help, Action::ToggleHelp) => self.close(),
+            (Screen::Help, Action::ToggleHelp) | (Screen::Paused, Action::TogglePause) => {
+                self.close();
+            }
             (_, Action::ToggleHelp) => self.open(Screen::Help),
             (Screen::Playing, Action::TogglePause) => self.open(Screen::Paused),
-            (Screen::Paused, Action::TogglePause) => self.close(),
             _ if self.demo.is_some() => {}
             (_, Action::ToggleMinimap) => toggle(&mut self.map.is_shown, &mut self.shown),
             (_, Action::ToggleDuck) => toggle(&mut self.controls.toggles.ducks, &mut self.shown),

@@ -5,7 +5,7 @@ use super::menus::Choice;
 use super::panels::{time, whole_seconds};
 use super::results::LevelResult;
 use super::{App, STEP};
-use crate::game::{Outcome, Share, Tally};
+use crate::game::{Game, Outcome, Share, Tally};
 
 impl App {
     /// What the player has done in the level, its rank, and how to go on.
@@ -27,7 +27,7 @@ impl App {
 
     /// What happened to the player, and how to go on. The first choice goes on at once.
     pub(super) fn death_menu(&self) -> Menu<Choice> {
-        let cause = match self.game.grid().map(|game| game.outcome()) {
+        let cause = match self.game.grid().map(Game::outcome) {
             Some(Outcome::Dead { cause }) => format!("killed by {cause}"),
             _ => String::new(),
         };

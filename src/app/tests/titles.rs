@@ -51,7 +51,8 @@ fn a_level_plays_itself_behind_the_title() {
     for key in [Key::Left, Key::Char('d'), Key::Char('e'), Key::Char('g'), Key::Char('m')] {
         rig.press(key);
     }
-    (rig.wait(1000), other.wait(1000));
+    rig.wait(1000);
+    other.wait(1000);
     assert_eq!(rig.app.game.grid(), other.app.game.grid());
 }
 
