@@ -35,12 +35,12 @@ struct Temper {
 
 /// The tempers that are tried in turn: a level that cannot be left unseen is left in haste.
 const TEMPERS: [Temper; 3] = [
-    Temper { point: 900, alarm: 1200, noticed: 30, chased: 90, weight: 3, most_moves: 24_000 },
-    Temper { point: 300, alarm: 200, noticed: 10, chased: 20, weight: 4, most_moves: 16_000 },
-    Temper { point: 120, alarm: 0, noticed: 0, chased: 2, weight: 6, most_moves: 10_000 },
+    Temper { point: 900, alarm: 1200, noticed: 30, chased: 90, weight: 3, most_moves: 8_000 },
+    Temper { point: 300, alarm: 200, noticed: 10, chased: 20, weight: 4, most_moves: 12_000 },
+    Temper { point: 100, alarm: 0, noticed: 0, chased: 2, weight: 8, most_moves: 16_000 },
 ];
-/// The steps that an errand is estimated to take before its way is known.
-const ERRAND: u64 = 600;
+/// The steps that an errand is estimated to take beside the walk to it.
+const ERRAND: u64 = 100;
 /// The steps of walking for a cost of ten, one cell.
 const CELL: u64 = 20;
 
@@ -50,6 +50,7 @@ enum Move {
     Walk,
     Shun,
     Run,
+    Flee,
     Duck,
     Pause,
     Wait,
@@ -58,10 +59,11 @@ enum Move {
 }
 
 impl Move {
-    const ALL: [Self; 8] = [
+    const ALL: [Self; 9] = [
         Self::Walk,
         Self::Shun,
         Self::Run,
+        Self::Flee,
         Self::Duck,
         Self::Pause,
         Self::Wait,
@@ -75,6 +77,7 @@ impl Move {
             Self::Walk => 0,
             Self::Shun => 8,
             Self::Run => 16,
+            Self::Flee => 24,
             Self::Duck => 30,
             Self::Pause => 18,
             Self::Wait => 45,
@@ -92,40 +95,42 @@ struct State {
     toll: u64,
 }
 
-/// The winning game on the way through `errands` from the start of `game`, if one is found, and the
-/// number of moves that were played.
-pub(crate) fn search(game: &Game, errands: &[Errand]) -> (Option<Pilot>, usize) {
-    let mut moves = 0;
+/// The winning game on the way through `errands` from the start of `game`.
+///
+/// # Errors
+/// How far each temper got, if none wins.
+pub(crate) fn search(game: &Game, errands: &[Errand]) -> Result<Pilot, String> {
+    let mut failures = String::new();
     for temper in TEMPERS {
-        let (found, played) = search_with(game.clone(), errands, temper);
-        moves += played;
-        if found.is_some() {
-            return (found, moves);
+        match search_with(game.clone(), errands, temper) {
+            Ok(pilot) => return Ok(pilot),
+            Err(failure) => failures.push_str(&failure),
         }
     }
-    (None, moves)
+    Err(failures)
 }
 
-fn search_with(game: Game, errands: &[Errand], temper: Temper) -> (Option<Pilot>, usize) {
+fn search_with(game: Game, errands: &[Errand], temper: Temper) -> Result<Pilot, String> {
     let (waiting, states, seen) = (BinaryHeap::new(), Vec::new(), BTreeSet::new());
-    let mut search = Search { errands, temper, waiting, states, seen };
+    let after_errand = after_errands(&game, errands);
+    let mut search = Search { errands, after_errand, temper, waiting, states, seen };
     search.add(State { pilot: Pilot::new(game), done: 0, toll: 0 });
-    for moves in 0..temper.most_moves {
-        let Some((Reverse(_), Reverse(way), index)) = search.waiting.pop() else {
-            return (None, moves);
-        };
+    for _ in 0..temper.most_moves {
+        let Some((Reverse(_), Reverse(way), index)) = search.waiting.pop() else { break };
         let state = Rc::clone(&search.states[index]);
         let Some(next) = search.after(&state, way) else { continue };
         if next.pilot.game.outcome() == Outcome::Won {
-            return (Some(next.pilot), moves);
+            return Ok(next.pilot);
         }
         search.add(next);
     }
-    (None, temper.most_moves)
+    Err(search.failure())
 }
 
 struct Search<'a> {
     errands: &'a [Errand],
+    /// For each errand, the steps that are estimated to be left when it is done.
+    after_errand: Vec<u64>,
     temper: Temper,
     waiting: BinaryHeap<(Reverse<u64>, Reverse<Move>, usize)>,
     states: Vec<Rc<State>>,
@@ -149,11 +154,24 @@ impl Search<'_> {
         }
     }
 
+    /// The state that got farthest.
+    fn failure(&self) -> String {
+        let farthest = self.states.iter().min_by_key(|state| self.left(state));
+        let Some(state) = farthest else { return String::new() };
+        let (cell, health) = (state.pilot.cell(), state.pilot.game.health().points);
+        let (count, steps) = (self.states.len(), state.pilot.steps());
+        let left = self.left(state);
+        format!(
+            "\n  {count} states; errand {}, {cell:?}, {steps} steps, {left} left, health {health}",
+            state.done
+        )
+    }
+
     /// The steps that are estimated to be left.
     fn left(&self, state: &State) -> u64 {
         let Some(ways) = self.ways(state, |_| 0) else { return 0 };
-        let cost = u64::from(ways.cost(state.pilot.cell())).min(2000);
-        (self.errands.len() - state.done) as u64 * ERRAND + cost * CELL / 10
+        let next = walk(&ways, state.pilot.cell(), self.errands[state.done].cell);
+        next + self.after_errand[state.done]
     }
 
     /// The ways to the next errand.
@@ -181,13 +199,15 @@ impl Search<'_> {
             Move::Walk => done += self.errand(state, &mut pilot, Pace::Walk, 40, |_| 0)?,
             Move::Run => done += self.errand(state, &mut pilot, Pace::Run, 24, |_| 0)?,
             Move::Duck => done += self.errand(state, &mut pilot, Pace::Duck, 60, |_| 0)?,
-            Move::Shun => {
+            Move::Shun | Move::Flee => {
                 let feared = feared(&pilot.game);
                 if feared.is_empty() {
                     return None;
                 }
                 let dread = |cell| dread(&feared, cell);
-                done += self.errand(state, &mut pilot, Pace::Walk, 40, dread)?;
+                let (pace, steps) =
+                    if way == Move::Shun { (Pace::Walk, 40) } else { (Pace::Run, 24) };
+                done += self.errand(state, &mut pilot, pace, steps, dread)?;
             }
         }
         let toll = state.toll + self.temper.toll(&state.pilot.game, &pilot.game);
@@ -224,6 +244,27 @@ impl Search<'_> {
         }
         Some(usize::from(has_arrived))
     }
+}
+
+/// For each errand, the steps that are estimated to be left when it is done: the walks from each
+/// errand to the next in the first state of the game. The estimate has no step at the end of an
+/// errand, after which the search would turn back to states before it.
+fn after_errands(game: &Game, errands: &[Errand]) -> Vec<u64> {
+    let walks = errands.windows(2).map(|pair| {
+        ERRAND + walk(&Ways::beside(game, pair[1].cell, |_| 0), pair[0].cell, pair[1].cell)
+    });
+    let walks: Vec<u64> = walks.chain([0]).collect();
+    (0..errands.len()).map(|index| walks[index..].iter().sum()).collect()
+}
+
+/// The steps of walking along `ways`; if they lead nowhere yet, those of half as much again as the
+/// straight line.
+fn walk(ways: &Ways, from: Cell, to: Cell) -> u64 {
+    let cost = match ways.cost(from) {
+        u32::MAX => (from.center() - to.center()).length() * 15.0,
+        cost => f64::from(cost),
+    };
+    cost as u64 * CELL / 10
 }
 
 /// The guards who are awake and on their feet: position and direction of look.

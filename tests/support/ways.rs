@@ -27,7 +27,6 @@ const ASIDE: f64 = 0.3;
 /// The cost of the cheapest way from each cell to a goal.
 #[derive(Clone, Debug)]
 pub(crate) struct Ways {
-    goal: Cell,
     width: u32,
     costs: Vec<u32>,
 }
@@ -36,7 +35,7 @@ impl Ways {
     /// The ways to `goal` in the present state of `game`. `dread` is the additional cost of a cell.
     pub(crate) fn new(game: &Game, goal: Cell, dread: impl Fn(Cell) -> u32) -> Self {
         let ground = Ground::new(game);
-        Self::to_any(&ground, goal, &[goal], dread)
+        Self::to_any(&ground, &[goal], dread)
     }
 
     /// The ways to the cells at a side of `goal` and on its height.
@@ -46,12 +45,12 @@ impl Ways {
             length == STRAIGHT && ground.is_open(cell) && ground.world.door(cell).is_none()
         });
         let sides: Vec<Cell> = sides.map(|(cell, _)| cell).collect();
-        Self::to_any(&ground, goal, &sides, dread)
+        Self::to_any(&ground, &sides, dread)
     }
 
-    fn to_any(ground: &Ground, goal: Cell, ends: &[Cell], dread: impl Fn(Cell) -> u32) -> Self {
+    fn to_any(ground: &Ground, ends: &[Cell], dread: impl Fn(Cell) -> u32) -> Self {
         let (width, height) = (ground.world.grid().width(), ground.world.grid().height());
-        let mut ways = Self { goal, width, costs: vec![u32::MAX; (width * height) as usize] };
+        let mut ways = Self { width, costs: vec![u32::MAX; (width * height) as usize] };
         let mut waiting: BinaryHeap<_> = ends.iter().map(|&cell| (Reverse(0), cell)).collect();
         for end in ends {
             ways.costs[(end.row * width + end.column) as usize] = 0;
@@ -70,11 +69,6 @@ impl Ways {
             }
         }
         ways
-    }
-
-    /// The cell to which they lead.
-    pub(crate) fn goal(&self) -> Cell {
-        self.goal
     }
 
     /// The cost from `cell`, in tenths of a cell; `u32::MAX` if no way leads to the goal.
