@@ -36,7 +36,7 @@ impl Game {
         let keys =
             player.keys.iter().fold(0_u64, |bits, key| bits.rotate_left(9) ^ u64::from(key.0));
         let numbers = [
-            u64::from(player.health.points) ^ player.mercy_since.map_or(0, |step| (step + 1) << 8),
+            u64::from(player.health.points),
             u64::from(player.treasure),
             u64::from(player.has_light),
             u64::from(player.strike_wait),

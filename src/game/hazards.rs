@@ -5,9 +5,7 @@
 //! - Water slows, splashes and puts out the lamp. It takes a point each [`COLD`] steps, from the
 //!   second time on.
 //! - Spikes hurt once for each time that they come out.
-//! - A blow from more than 90° off the player's view leaves the last point, and so do others for
-//!   [`MERCY`] steps after the first that did. Sparing the player for ever was refused: who looks
-//!   away could not die.
+//! - A blow from more than 90° off the player's view never kills.
 
 mod spikes;
 
@@ -15,7 +13,7 @@ use glam::DVec2;
 
 use super::Game;
 use super::guards::GuardView;
-use super::health::{Cause, Flash, Harm, Health};
+use super::health::{Cause, Flash, Harm};
 use super::noise::reach;
 use super::player::Motion;
 use super::sound::SoundKind;
@@ -26,8 +24,6 @@ pub(super) use spikes::Spikes;
 const SAFE_FALL: f64 = 2.2;
 /// The steps in which water takes a point: 4 seconds.
 const COLD: u32 = 240;
-/// The steps in which blows from outside the view leave the last point, once one has: 3 seconds.
-const MERCY: u64 = 180;
 /// The points that spikes take.
 const SPIKES: u8 = 2;
 
@@ -128,7 +124,6 @@ impl Game {
         if self.player.health.is_gone() {
             return;
         }
-        let harm = self.with_mercy(harm);
         self.player.health = self.player.health.after(&harm);
         self.player.flash = Some(Flash::hurt(&harm));
         self.revision += 1;
@@ -137,20 +132,6 @@ impl Game {
             self.killed_by = Some(harm.cause);
             self.say(format!("Killed by {}.", harm.cause.name()));
         }
-    }
-
-    /// `harm`, which spares the player only until the mercy has ended that the first blow to the
-    /// last point began.
-    fn with_mercy(&mut self, harm: Harm) -> Harm {
-        let Health { points, .. } = self.player.health;
-        if points > 1 {
-            self.player.mercy_since = None;
-        }
-        if !harm.spares || points > harm.points {
-            return harm;
-        }
-        let since = *self.player.mercy_since.get_or_insert(self.steps);
-        Harm { spares: self.steps < since + MERCY, ..harm }
     }
 }
 

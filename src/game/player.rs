@@ -34,8 +34,6 @@ pub(super) struct Player {
     pub(super) in_water: u32,
     /// The last thrust of spikes that hurt the player, by the step in which it began.
     pub(super) last_thrust: Option<u64>,
-    /// The step of the blow that left the player the last point, because they could not see it.
-    pub(super) mercy_since: Option<u64>,
     pub(super) hearing: Hearing,
     pub(super) flash: Option<Flash>,
     pub(super) notice: Notice,
@@ -58,7 +56,6 @@ impl Player {
             stride: 0.0,
             in_water: 0,
             last_thrust: None,
-            mercy_since: None,
             hearing: Hearing::default(),
             flash: None,
             notice: Notice::default(),
