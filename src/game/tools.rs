@@ -209,9 +209,10 @@ mod tests {
             let mut supplies = Supplies::AT_START;
             for (supply, more) in changes {
                 let before = supplies.count(supply);
-                match more {
-                    Some(more) => supplies.add(supply, more),
-                    None => prop_assert_eq!(supplies.take(supply), before > 0),
+                if let Some(more) = more {
+                    supplies.add(supply, more);
+                } else {
+                    prop_assert_eq!(supplies.take(supply), before > 0);
                 }
                 prop_assert!(Supply::ALL.iter().all(|&supply| supplies.count(supply) <= Supplies::MOST));
             }

@@ -88,7 +88,9 @@ fn kinds_are_told_apart_at_any_distance_and_depth() {
                     assert!(apart >= from_others[index], "{place}: {apart} from the {other}");
                 }
                 _ = writeln!(shown, "{place}");
-                picture.iter().for_each(|row| _ = writeln!(shown, "{}", row.join(" ")));
+                for row in picture {
+                    _ = writeln!(shown, "{}", row.join(" "));
+                }
             }
         }
         insta::assert_snapshot!(format!("guards_{depth}"), shown);

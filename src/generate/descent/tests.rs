@@ -1,6 +1,7 @@
 //! Properties of floors.
 
 use std::collections::{BTreeSet, VecDeque};
+use std::fmt::Write;
 
 use glam::DVec2;
 use proptest::prelude::*;
@@ -151,14 +152,12 @@ fn drawing(world: &World) -> String {
     let mut legend = String::new();
     for (number, post) in (1..).zip(world.guards()) {
         if let Duty::Patrol(cells) = &post.duty {
-            cells.iter().for_each(|cell| rows[cell.row as usize][cell.column as usize] = '\'');
+            for cell in cells {
+                rows[cell.row as usize][cell.column as usize] = '\'';
+            }
         }
-        legend += &format!(
-            "{} {:?} {:?} ",
-            char::from_digit(number, 36).unwrap_or('?'),
-            post.kind,
-            post.from
-        );
+        let digit = char::from_digit(number, 36).unwrap_or('?');
+        _ = write!(legend, "{digit} {:?} {:?} ", post.kind, post.from);
         legend += match post.duty {
             Duty::Stand => "stands\n",
             Duty::Sleep => "sleeps\n",
@@ -185,7 +184,7 @@ fn character(world: &World, cell: Cell) -> char {
         return '@';
     }
     let (column, row) = (i64::from(cell.column), i64::from(cell.row));
-    let things = world.things_in(cell).iter().filter_map(|thing| match thing.kind {
+    let mut things = world.things_in(cell).iter().filter_map(|thing| match thing.kind {
         ThingKind::Exit => Some('X'),
         ThingKind::Treasure(_) => Some('$'),
         ThingKind::Ornament => None,
@@ -193,7 +192,7 @@ fn character(world: &World, cell: Cell) -> char {
     });
     let kind = world.grid().tile(column, row).map(|tile| world.tile(tile).kind);
     let is_blocked = world.grid().is_solid(column, row) || world.grid().is_occupied(column, row);
-    things.last().unwrap_or(match kind {
+    things.next_back().unwrap_or(match kind {
         Some(TileKind::Door(_)) => '+',
         _ if is_blocked => '#',
         _ => '.',
