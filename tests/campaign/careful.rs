@@ -14,31 +14,9 @@ use cellcaster::world::{Cell, ThingKind};
 
 use crate::pilot::{Pace, Pilot};
 use crate::route::{Errand, Verb};
+use crate::temper::{TEMPERS, Temper};
 use crate::ways::Ways;
 
-/// How much a player minds what can happen, in steps, and how long the search goes on.
-#[derive(Clone, Copy, Debug)]
-struct Temper {
-    /// A point of health.
-    point: u64,
-    /// An alarm.
-    alarm: u64,
-    /// A move under the attention of a guard who wonders or searches, and of one who follows.
-    noticed: u64,
-    chased: u64,
-    /// The weight of the way that is left, in halves: above 2, the search is faster and finds longer
-    /// ways.
-    weight: u64,
-    /// The number of moves that are played before the search gives up.
-    most_moves: usize,
-}
-
-/// The tempers that are tried in turn: a level that cannot be left unseen is left in haste.
-const TEMPERS: [Temper; 3] = [
-    Temper { point: 900, alarm: 1200, noticed: 30, chased: 90, weight: 3, most_moves: 8_000 },
-    Temper { point: 300, alarm: 200, noticed: 10, chased: 20, weight: 4, most_moves: 12_000 },
-    Temper { point: 100, alarm: 0, noticed: 0, chased: 2, weight: 8, most_moves: 16_000 },
-];
 /// The steps that an errand is estimated to take beside the walk to it.
 const ERRAND: u64 = 100;
 /// The steps of walking for a cost of ten, one cell.
@@ -304,18 +282,4 @@ fn is_near_spikes(pilot: &Pilot) -> bool {
     });
     let mut things = around.flat_map(|cell| world.things_in(cell));
     things.any(|thing| matches!(thing.kind, ThingKind::Spikes(_)))
-}
-
-impl Temper {
-    /// What has been paid between two states of a game, in steps.
-    fn toll(self, before: &Game, after: &Game) -> u64 {
-        let lost = before.health().points.saturating_sub(after.health().points);
-        let alarms = after.tally().alarms.saturating_sub(before.tally().alarms);
-        let attention = after.guards().map(|guard| match guard.mood {
-            Mood::Wondering | Mood::Searching => self.noticed,
-            Mood::Chasing | Mood::Attacking => self.chased,
-            _ => 0,
-        });
-        u64::from(lost) * self.point + u64::from(alarms) * self.alarm + attention.sum::<u64>()
-    }
 }

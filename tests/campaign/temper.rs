@@ -1,0 +1,41 @@
+//! Tempers: what a player minds, from one who wants to stay unseen to one who only wants to get out.
+
+use cellcaster::game::{Game, Mood};
+
+/// The tempers that are tried in turn: a level that cannot be left unseen is left in haste.
+pub(crate) const TEMPERS: [Temper; 3] = [
+    Temper { point: 900, alarm: 1200, noticed: 30, chased: 90, weight: 3, most_moves: 8_000 },
+    Temper { point: 300, alarm: 200, noticed: 10, chased: 20, weight: 4, most_moves: 12_000 },
+    Temper { point: 100, alarm: 0, noticed: 0, chased: 2, weight: 8, most_moves: 16_000 },
+];
+
+/// How much a player minds what can happen, in steps, and how long the search goes on.
+#[derive(Clone, Copy, Debug)]
+pub(crate) struct Temper {
+    /// A point of health.
+    point: u64,
+    /// An alarm.
+    alarm: u64,
+    /// A move under the attention of a guard who wonders or searches, and of one who follows.
+    noticed: u64,
+    chased: u64,
+    /// The weight of the way that is left, in halves: above 2, the search is faster and finds longer
+    /// ways.
+    pub(crate) weight: u64,
+    /// The number of moves that are played before the search gives up.
+    pub(crate) most_moves: usize,
+}
+
+impl Temper {
+    /// What has been paid between two states of a game, in steps.
+    pub(crate) fn toll(self, before: &Game, after: &Game) -> u64 {
+        let lost = before.health().points.saturating_sub(after.health().points);
+        let alarms = after.tally().alarms.saturating_sub(before.tally().alarms);
+        let attention = after.guards().map(|guard| match guard.mood {
+            Mood::Wondering | Mood::Searching => self.noticed,
+            Mood::Chasing | Mood::Attacking => self.chased,
+            _ => 0,
+        });
+        u64::from(lost) * self.point + u64::from(alarms) * self.alarm + attention.sum::<u64>()
+    }
+}
