@@ -26,6 +26,7 @@ mod offers;
 mod panels;
 mod played;
 mod recording;
+mod redraw;
 mod reload;
 mod replay;
 mod results;
@@ -56,7 +57,7 @@ use levels::{Course, LevelNumber, Stage};
 use map_panel::MapPanel;
 use menu::Menu;
 use menus::Choice;
-pub use offers::{FindMaps, Offers, OwnMap};
+pub use offers::{FindMaps, Offers, OwnLevel, OwnMap};
 pub use recording::Recording;
 pub use replay::Replay;
 use results::LevelResult;
@@ -215,7 +216,7 @@ impl App {
                 let mut app = Self::new(Levels::nothing(), settings);
                 app.store = store;
                 app.difficulty = difficulty;
-                app.begin(levels);
+                app.begin(*levels);
                 app
             }
             Opening::Title(offers) => {
@@ -242,48 +243,6 @@ impl App {
         app.store = store;
         app.offers = Some(offers);
         app
-    }
-
-    /// The state that a picture would show now.
-    fn visible(&self) -> Shown {
-        let ghost = self.ghost.as_ref().map_or(0, Ghost::steps);
-        let revision = self.game.revision() + ghost;
-        Shown { viewpoint: self.game.viewpoint(self.field_of_view), revision }
-    }
-
-    /// Whether the screen is out of date.
-    fn is_stale(&self) -> bool {
-        self.shown != Some(self.visible()) || self.steps_to_animation() == Some(0)
-    }
-
-    /// The number of steps until that change; `None` for never.
-    fn steps_to_animation(&self) -> Option<u64> {
-        let steps = (self.animates_at? - self.game.elapsed()) / STEP;
-        Some(steps.round().max(0.0) as u64)
-    }
-
-    /// Records that the screen is up to date.
-    fn drawn(&mut self) {
-        self.shown = Some(self.visible());
-        let soonest = self.game.elapsed() + STEP;
-        self.animates_at = self.views.next_change().map(|change| change.max(soonest));
-    }
-
-    /// The time at which the game changes without an event; `None` for never.
-    fn next_change(&self) -> Option<Duration> {
-        if self.demo.is_some() {
-            return Some(self.clock.step_after(0));
-        }
-        if self.screen != Screen::Playing {
-            return self.pending.map(|pending| pending.until);
-        }
-        if self.controls.held.has_taps() {
-            return Some(self.clock.step_after(0));
-        }
-        let quiet = Some(self.quiet_steps(self.wanted())).filter(|&quiet| quiet < u64::MAX);
-        let before_animation = self.steps_to_animation().map(|steps| steps.saturating_sub(1));
-        let steps = quiet.into_iter().chain(before_animation).min()?;
-        Some(self.clock.step_after(steps))
     }
 
     /// Handles a new size or new properties of the terminal.

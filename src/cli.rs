@@ -58,7 +58,7 @@ impl Command {
             Self::Config(options) => config::run(options),
             Self::Accuracy(options) => accuracy::run(&options),
             Self::Bench(options) => bench::run(&options),
-            Self::Levels(options) => levels::run(options),
+            Self::Levels(options) => levels::run(&options),
             Self::Replay(options) => replay::run(&options),
             Self::Wire(options) => wire::run(&options),
         }

@@ -12,6 +12,7 @@ mod checkpoint;
 mod checksum;
 mod collision;
 mod doors;
+mod encounter;
 mod exits;
 mod fall;
 mod flight;
@@ -29,6 +30,7 @@ mod pickups;
 mod pitch_control;
 mod player;
 mod report;
+mod rest;
 mod rules;
 mod script;
 mod show;
@@ -42,14 +44,14 @@ use crate::generate::{self, Site, Window};
 use crate::world::World;
 use checkpoint::Checkpoint;
 use doors::Doors;
-use guards::{Act, Guards};
+use guards::Guards;
 use hazards::Spikes;
 use health::Cause;
 use mechanisms::Mechanisms;
 use player::{FRICTION, Player, RUN, STILL, WALK};
 use show::Sprites;
 use tally::Counts;
-use tools::{Missile, Missiles, Smoke, Supplies};
+use tools::{Missiles, Smoke, Supplies};
 
 pub use exits::is_exit_out_of_reach;
 pub use flight::Flight;
@@ -202,69 +204,6 @@ impl Game {
         self.steps = self.steps.saturating_add(1);
     }
 
-    /// Advances the clocks by `steps` steps in which nothing moves. Has the effect of as many calls
-    /// of [`Game::step`] if `steps` is at most [`Game::quiet_steps`].
-    pub fn wait(&mut self, steps: u64) {
-        if !self.is_finished() && !self.is_dead() {
-            self.steps = self.steps.saturating_add(steps);
-            self.doors.wait(steps);
-            self.player.wait(steps);
-            if self.is_mission {
-                self.player.hearing.wait(steps);
-                self.guards.wait(steps);
-            }
-            if self.quiet_steps_in_water().is_some() {
-                self.player.in_water += steps as u32;
-            }
-        }
-    }
-
-    /// Whether any number of steps with these intents would change nothing but the clock: the
-    /// player stands still or pushes against a wall, all doors are closed, nobody else moves, and
-    /// there is no message.
-    pub fn is_at_rest(&self, intents: Intents) -> bool {
-        self.quiet_steps(intents) == u64::MAX
-    }
-
-    /// The number of steps with these intents in which nothing changes but clocks: the game's own,
-    /// and those of waiting doors and of the message. [`u64::MAX`] if the game is [at
-    /// rest](Game::is_at_rest).
-    pub fn quiet_steps(&self, intents: Intents) -> u64 {
-        if self.is_finished() {
-            return u64::MAX;
-        }
-        let presses = self.presses(intents);
-        if self.is_dead() {
-            return if presses == self.player.pressed { u64::MAX } else { 0 };
-        }
-        if self.would_change(intents) {
-            return 0;
-        }
-        let waits = [
-            self.doors.quiet_steps(),
-            self.player.quiet_steps(),
-            self.quiet_steps_in_water(),
-            self.spikes.quiet_steps(self.steps),
-            self.guards.quiet_steps(),
-        ];
-        waits.into_iter().flatten().min().unwrap_or(u64::MAX)
-    }
-
-    /// Whether anything would change in a step with these intents that is no clock.
-    fn would_change(&self, intents: Intents) -> bool {
-        let intents = self.at_a_door(intents);
-        let motion = self.player.motion;
-        motion.stepped(&self.world, intents, self.pace()) != motion
-            || self.presses(intents) != self.player.pressed
-            || self.door_wanted(intents).is_some_and(|(cell, door)| self.would_answer(cell, door))
-            || self.find().is_some()
-            || self.is_at_a_new_checkpoint()
-            || self.is_in_water() != (self.player.in_water > 0)
-            || !self.missiles.is_empty()
-            || !self.smoke.is_empty()
-            || self.mechanisms_move()
-    }
-
     fn step_after_death(&mut self, intents: Intents) {
         let presses = self.presses(intents);
         let retries = self.player.fresh(presses).contains(Intent::Retry);
@@ -321,34 +260,6 @@ impl Game {
         let is_occupied = |cell| motion.touches(cell) || guards.touches(cell);
         let has_moved = self.doors.step(&mut self.world, is_occupied);
         self.revision += u64::from(has_moved);
-    }
-
-    fn move_guards(&mut self) {
-        if self.guards.is_empty() {
-            return;
-        }
-        let (alarm, target) = (self.guards.alarm(), self.target());
-        let acts = self.guards.step(&self.world, &[target], &self.sounds, self.smoke.clouds());
-        for act in acts.to_vec() {
-            self.answer(act);
-        }
-        self.revision += u64::from(self.guards.alarm() != alarm);
-    }
-
-    /// Does to the rest of the game what a guard does.
-    fn answer(&mut self, act: Act) {
-        match act {
-            Act::Hurt { by, from, points, .. } => {
-                let guard = self.guards.views().nth(by);
-                self.hurt_by_guard(guard, from, points);
-            }
-            Act::Open(cell) => self.doors.open(cell),
-            Act::Sound(sound) => self.sounds.push(sound),
-            Act::Bolt { from, height, direction, slope, points, .. } => {
-                self.missiles.launch(Missile::bolt((from, height), direction, slope, points));
-            }
-            Act::Raised => self.counts.alarms += 1,
-        }
     }
 
     /// Lets the player hear the sounds of this step.

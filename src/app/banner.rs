@@ -6,6 +6,7 @@
 use ratatui::layout::Rect;
 use ratatui::style::{Color, Style};
 use ratatui::text::{Line, Text};
+use ratatui::widgets::Block;
 
 use crate::canvas::Canvas;
 use crate::color::palette::ColorDepth;
@@ -30,7 +31,7 @@ const COLUMNS: usize = NAME.len() * ADVANCE - 1;
 /// The rows that a menu below the name needs at least.
 const LEAST_BELOW: u16 = 6;
 
-/// Draws the name at the top of `picture`, as large as there is room. Returns the area below it.
+/// Draws the name on a band at the top of `picture`, as large as there is room. Returns the area below it.
 pub(super) fn draw(
     canvas: &mut impl Canvas,
     picture: Rect,
@@ -46,22 +47,30 @@ pub(super) fn draw(
     let lines = lines.into_iter().find(fits).unwrap_or_else(|| vec![NAME.to_owned()]);
     let (width, height) = (lines[0].chars().count() as u16, lines.len() as u16);
     let blank = u16::from(picture.height >= height + LEAST_BELOW + 6);
+    let taken = height + 2 * blank;
+    let band = Rect { height: taken, ..picture };
     let area = Rect {
         x: picture.x + (picture.width - width.min(picture.width)) / 2,
         y: picture.y + blank,
         width: width.min(picture.width),
         height,
     };
-    let style = match depth {
-        ColorDepth::Mono => Style::new(),
-        ColorDepth::Indexed16 => Style::new().fg(Color::Indexed(11)),
-        ColorDepth::Indexed256 => Style::new().fg(Color::Indexed(220)),
-        ColorDepth::True => Style::new().fg(Color::Rgb(0xff, 0xd0, 0x50)),
-    };
+    let style = style(depth);
     let text: Text = lines.into_iter().map(Line::from).collect();
+    canvas.draw_widget(Block::new().style(style), band);
     canvas.draw_widget(text.style(style), area);
-    let taken = blank + height;
     Rect { y: picture.y + taken, height: picture.height - taken, ..picture }
+}
+
+/// Bright on black, on terminals with a light background too.
+fn style(depth: ColorDepth) -> Style {
+    let [text, ground] = match depth {
+        ColorDepth::Mono => return Style::new(),
+        ColorDepth::Indexed16 => [Color::Indexed(11), Color::Indexed(0)],
+        ColorDepth::Indexed256 => [Color::Indexed(220), Color::Indexed(16)],
+        ColorDepth::True => [Color::Rgb(0xff, 0xd0, 0x50), Color::Rgb(0, 0, 0)],
+    };
+    Style::new().fg(text).bg(ground)
 }
 
 /// The name in lines of characters. Each point is `scale` columns wide, and as many half cells or

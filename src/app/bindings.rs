@@ -70,7 +70,7 @@ impl Action {
         ("about-face", "turn around", Self::Want(Intent::AboutFace)),
         ("walk-on", "keep walking", Self::ToggleWalkOn),
         ("run", "run while held", Self::Want(Intent::Run)),
-        ("open", "open a door", Self::Want(Intent::Open)),
+        ("open", "open or use", Self::Want(Intent::Open)),
         ("jump", "jump, or open", Self::Want(Intent::Jump)),
         ("duck", "duck while held", Self::Want(Intent::Duck)),
         ("strike", "strike", Self::Want(Intent::Strike)),

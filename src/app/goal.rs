@@ -1,13 +1,14 @@
 //! The goal of a level, shown in one line when it begins.
 //!
-//! It is shown until the player has moved for some time. Hiding it by the clock was refused: that
-//! would draw a frame while nothing moves, and hide it from slow readers.
+//! It is shown until the player has acted for some time. Hiding it by the clock was refused: that
+//! would draw a frame while nothing moves, and hide it from slow readers. For the same readers,
+//! steps in which only guards move do not count.
 
 use super::played::Played;
 use crate::app::MapDisplay;
 use crate::game::STEPS_PER_SECOND;
 
-/// The number of steps with motion for which the goal is shown: four seconds.
+/// The number of steps with intents for which the goal is shown: four seconds.
 const SHOWN_FOR: u64 = 4 * STEPS_PER_SECOND as u64;
 
 /// A goal, and how much longer it is shown.
@@ -47,7 +48,7 @@ impl Goal {
         self.steps_left > 0
     }
 
-    /// Counts `steps` steps in which something moved.
+    /// Counts `steps` steps in which the player wanted something.
     pub(super) fn moved(&mut self, steps: u64) {
         self.steps_left = self.steps_left.saturating_sub(steps);
     }

@@ -67,8 +67,9 @@ impl HelpScroll {
         let room = usize::from(picture.height.saturating_sub(BORDERS)).max(1);
         let most_columns = usize::from(picture.width.saturating_sub(BORDERS + PADDING)).max(1);
         let leave = how_to_leave(bindings, most_columns);
-        let keys = keys_in_columns(bindings, room.saturating_sub(1), most_columns);
-        let notes = notes.flat_map(|note| wrapped(&note, most_columns));
+        let notes: Vec<String> = notes.flat_map(|note| wrapped(&note, most_columns)).collect();
+        let room_for_keys = room.saturating_sub(1 + notes.len());
+        let keys = keys_in_columns(bindings, room_for_keys, most_columns);
         let body: Vec<String> = keys.into_iter().chain(notes).collect();
         self.lines = body.len();
         let fits = body.len() < room;

@@ -97,7 +97,9 @@ impl App {
     }
 
     fn press_in_menu(&mut self, key: Key, press: Press) {
-        if self.screen.is_result() && self.now < self.shown_since + LEAST_SHOWN {
+        // A key that is held since the game selects nothing either.
+        let is_early = press == Press::Repeat || self.now < self.shown_since + LEAST_SHOWN;
+        if self.screen.is_result() && is_early {
             return;
         }
         if let Some(selection) = self.selection_by(key) {
@@ -131,7 +133,7 @@ impl App {
 
     /// Whether `key` changes a value to the next one, or to the one before.
     fn changes_by(&self, key: Key) -> Option<bool> {
-        if !matches!(self.screen, Screen::Settings | Screen::Levels) {
+        if !matches!(self.screen, Screen::Settings | Screen::Levels | Screen::Maps) {
             return None;
         }
         match key {
@@ -147,7 +149,7 @@ impl App {
 
     fn change_value(&mut self, forward: bool) {
         match (self.screen, self.menu.choice()) {
-            (Screen::Levels, _) => self.change_setting(Setting::Difficulty, forward),
+            (Screen::Levels | Screen::Maps, _) => self.change_setting(Setting::Difficulty, forward),
             (_, Some(Choice::Change(setting))) => self.change_setting(setting, forward),
             _ => {}
         }
@@ -169,10 +171,11 @@ impl App {
                 self.go_back();
             }
             (_, Action::Leave) => self.ask_to_leave(),
-            (Screen::Help, Action::ToggleHelp) => self.close(),
+            (Screen::Help, Action::ToggleHelp) | (Screen::Paused, Action::TogglePause) => {
+                self.close();
+            }
             (_, Action::ToggleHelp) => self.open(Screen::Help),
             (Screen::Playing, Action::TogglePause) => self.open(Screen::Paused),
-            (Screen::Paused, Action::TogglePause) => self.close(),
             _ if self.demo.is_some() => {}
             (_, Action::ToggleMinimap) => toggle(&mut self.map.is_shown, &mut self.shown),
             (_, Action::ToggleDuck) => toggle(&mut self.controls.toggles.ducks, &mut self.shown),

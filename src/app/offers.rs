@@ -24,8 +24,20 @@ pub type FindMaps = Box<dyn FnMut() -> Vec<OwnMap>>;
 pub struct OwnMap {
     /// Its name in the list.
     pub name: String,
+    /// The key of its results in the store, when it was found.
+    pub key: String,
     /// Reads it; an error is a sentence for the player.
-    pub load: Box<dyn Fn() -> Result<Level, String>>,
+    pub load: Box<dyn Fn() -> Result<OwnLevel, String>>,
+}
+
+/// The level of a map of the player's own.
+#[derive(Clone, Debug)]
+pub struct OwnLevel {
+    /// The level.
+    pub level: Level,
+    /// The key of its results in the store. It differs from that of the map if the file was changed after it
+    /// was found.
+    pub key: String,
 }
 
 impl fmt::Debug for Offers {

@@ -33,7 +33,7 @@ impl Replay {
         }
         if self.app.screen == Screen::Playing {
             self.app.game.step(intents);
-            self.app.goal.moved(1);
+            self.app.goal.moved(u64::from(!intents.is_empty()));
             if self.app.game.is_finished() {
                 self.app.show(Screen::LevelDone);
             }

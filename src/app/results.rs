@@ -56,7 +56,11 @@ impl App {
     /// Goes on with the saved game: its script is played again up to its end.
     pub(super) fn continue_saved(&mut self) {
         let Some(saved) = self.store.saved() else { return };
-        let Some(levels) = builtin_named(&saved.level).and_then(Levels::builtin) else { return };
+        let Some(levels) = self.levels_named(&saved.level) else {
+            self.menu = self.title_menu().line("The map of the saved game is not as it was.");
+            self.shown = None;
+            return;
+        };
         let Ok(script) = Script::parse(&saved.script, "the saved game") else { return };
         self.difficulty = saved.rules.difficulty;
         self.begin(levels);
@@ -69,12 +73,23 @@ impl App {
         }
     }
 
-    /// The script of the run so far, with a header that names the level.
-    /// A descent begins with its first floor, and has one script.
+    /// The levels from the one on that the store calls `name`: built-in ones, or a map of the player's own.
+    fn levels_named(&mut self, name: &str) -> Option<Levels> {
+        if let Some(index) = builtin_named(name) {
+            return Levels::builtin(index);
+        }
+        self.find_own_maps();
+        let map = self.own_maps.iter().find(|map| map.key == name)?;
+        (map.load)().ok().filter(|own| own.key == name).map(Levels::own)
+    }
+
+    /// The script of the run so far, with a header that names the level. A descent is one run from its
+    /// first floor on.
     pub(super) fn run_script(&self, game: &Game) -> String {
-        let level = match self.is_descent() {
-            true => Some(LevelName::of_floor(1)),
-            false => self.stage.name().and_then(LevelName::new),
+        let level = if self.is_descent() {
+            Some(LevelName::of_floor(1))
+        } else {
+            self.stage.name().and_then(LevelName::new)
         };
         let header =
             Header { level, difficulty: Some(self.difficulty), seed: Some(game.rules().seed) };
@@ -123,6 +138,14 @@ impl App {
         let won: Vec<&str> = self.store.won(difficulty).collect();
         let index = builtin::LEVELS.iter().position(|level| !won.contains(&level.name))?;
         (!won.is_empty()).then_some(index)
+    }
+}
+
+/// The name of a level for the player: without the hash of a map's text.
+pub(super) fn shown_name(key: &str) -> &str {
+    match key.rsplit_once('-').filter(|_| builtin_named(key).is_none()) {
+        Some((name, _)) => name,
+        None => key,
     }
 }
 

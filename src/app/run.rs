@@ -24,7 +24,7 @@ pub enum Opening {
     /// An endless descent, and then the title.
     Endless(Offers),
     /// A game, without a title to return to.
-    Levels(Levels),
+    Levels(Box<Levels>),
 }
 
 /// Begins with `opening` on the terminal, plays until the player leaves or the program is ended from outside, and

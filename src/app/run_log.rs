@@ -34,7 +34,7 @@ impl RunLog {
 
     /// The script of the run, without a header.
     pub(super) fn script(&self) -> String {
-        self.stretches.iter().map(|stretch| format!("{stretch}\n")).collect()
+        self.stretches.iter().flat_map(|stretch| [stretch.to_string(), "\n".to_owned()]).collect()
     }
 }
 

@@ -132,7 +132,7 @@ fn on_or_off(is_on: bool) -> String {
     if is_on { "on" } else { "off" }.to_owned()
 }
 
-fn name<T: PartialEq>(names: &[(T, &str)], value: T) -> String {
+fn name<T: Copy + PartialEq>(names: &[(T, &str)], value: T) -> String {
     names.iter().find(|(named, _)| *named == value).map_or("", |(_, name)| name).to_owned()
 }
 

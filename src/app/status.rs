@@ -84,7 +84,7 @@ enum Form {
 }
 
 /// The forms in the order in which they get room, the most important first.
-const PRIORITIES: [(Part, Form); 21] = [
+const PRIORITIES: [(Part, Form); 22] = [
     (Part::Help, Form::Short),
     // They show only if the player asks for them.
     (Part::Stats, Form::Short),
@@ -93,6 +93,7 @@ const PRIORITIES: [(Part, Form); 21] = [
     (Part::Notice, Form::Short),
     (Part::Light, Form::Short),
     (Part::Supplies, Form::Short),
+    (Part::Alarm, Form::Long),
     (Part::Title, Form::Short),
     (Part::Help, Form::Long),
     (Part::Keys, Form::Short),
@@ -101,17 +102,18 @@ const PRIORITIES: [(Part, Form); 21] = [
     (Part::Notice, Form::Long),
     (Part::Time, Form::Short),
     (Part::Treasure, Form::Long),
+    (Part::Supplies, Form::Long),
     (Part::Level, Form::Short),
     (Part::Site, Form::Short),
     (Part::Level, Form::Long),
-    (Part::Supplies, Form::Long),
     (Part::Seen, Form::Short),
     (Part::Keys, Form::Long),
 ];
 /// The number of blank columns of each part.
 const GAP: u16 = 2;
-/// The least width to which a part is cut.
-const LEAST_CUT: u16 = 3;
+/// The least widths to which the title and the notice are cut. Three letters of a title say nothing.
+const LEAST_TITLE: u16 = 8;
+const LEAST_NOTICE: u16 = 3;
 
 impl StatusLine {
     /// Updates the texts.
@@ -136,10 +138,7 @@ impl StatusLine {
             let free = room + before;
             let granted = if columns + GAP <= free {
                 columns
-            } else if taken == 0
-                && matches!(part, Part::Title | Part::Notice)
-                && free >= LEAST_CUT + GAP
-            {
+            } else if taken == 0 && least_cut(part).is_some_and(|least| free >= least + GAP) {
                 free - GAP
             } else {
                 continue;
@@ -148,6 +147,15 @@ impl StatusLine {
             room = free - granted - GAP;
         }
         fitted
+    }
+}
+
+/// The least width to which a part can be cut; `None` if it is left out instead.
+fn least_cut(part: Part) -> Option<u16> {
+    match part {
+        Part::Title => Some(LEAST_TITLE),
+        Part::Notice => Some(LEAST_NOTICE),
+        _ => None,
     }
 }
 

@@ -61,7 +61,7 @@ impl App {
         }
         self.controls.held.step();
         self.pointer.passed(steps);
-        self.goal.moved(if quiet > 0 { 0 } else { steps });
+        self.goal.moved(if intents.is_empty() { 0 } else { steps });
         self.record(intents, steps);
         self.follow_outcome();
         steps

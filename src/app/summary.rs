@@ -5,14 +5,16 @@ use super::menus::Choice;
 use super::panels::{time, whole_seconds};
 use super::results::LevelResult;
 use super::{App, STEP};
-use crate::game::{Outcome, Share, Tally};
+use crate::game::{Game, Outcome, Share, Tally};
 
 impl App {
     /// What the player has done in the level, its rank, and how to go on.
     pub(super) fn level_done_menu(&self) -> Menu<Choice> {
         let menu =
             self.level_lines().into_iter().fold(Menu::new("you found the way out"), Menu::line);
-        let menu = menu.line(format!("in {}", time(self.game.elapsed())));
+        let is_fastest = self.result.is_some_and(|result| result.improved.time);
+        let fastest = if is_fastest { " (your fastest)" } else { "" };
+        let menu = menu.line(format!("in {}{fastest}", time(self.game.elapsed())));
         let menu = match &self.result {
             Some(result) => result_lines(result).into_iter().fold(menu, Menu::line),
             None => menu,
@@ -25,7 +27,7 @@ impl App {
 
     /// What happened to the player, and how to go on. The first choice goes on at once.
     pub(super) fn death_menu(&self) -> Menu<Choice> {
-        let cause = match self.game.grid().map(|game| game.outcome()) {
+        let cause = match self.game.grid().map(Game::outcome) {
             Some(Outcome::Dead { cause }) => format!("killed by {cause}"),
             _ => String::new(),
         };
@@ -67,29 +69,23 @@ impl App {
 /// The rank first, as it is what a small window has room for.
 fn result_lines(result: &LevelResult) -> Vec<String> {
     let LevelResult { tally, par, rank, improved } = *result;
-    let Tally { treasure, secrets, alarms, deaths, stunned, steps } = tally;
-    let mut lines = vec![format!("rank: {rank}{}", if improved.rank { ", your best" } else { "" })];
+    let best = if improved.rank { " (your best)" } else { "" };
+    let mut lines = vec![format!("rank: {rank}{best}"), counts(&tally)];
     if let Some(par) = par {
-        let best = if improved.time { ", your fastest" } else { "" };
-        let seconds = steps as f64 * STEP;
+        let seconds = tally.steps as f64 * STEP;
         let compared = if seconds <= f64::from(par) { "within" } else { "over" };
-        lines.push(format!("{compared} the par time of {}{best}", whole_seconds(par.into())));
-    } else if improved.time {
-        lines.push("your fastest".to_owned());
+        lines.push(format!("{compared} the par time of {}", whole_seconds(par.into())));
     }
-    let share = |what: &str, share: Share| format!("{what}: {} of {}", share.found, share.total);
-    if treasure.total > 0 {
-        lines.push(share("gold", treasure));
-    }
-    if secrets.total > 0 {
-        lines.push(share("secrets", secrets));
-    }
-    let counts = [("alarms", alarms), ("stunned", stunned), ("deaths", deaths)];
-    let counts: Vec<String> = counts
-        .into_iter()
-        .filter(|&(what, count)| count > 0 || what == "alarms")
-        .map(|(what, count)| format!("{what}: {count}"))
-        .collect();
-    lines.push(counts.join("  "));
     lines
+}
+
+/// What was found and what happened, where there was something to find or something happened.
+fn counts(tally: &Tally) -> String {
+    let shares = [("gold", tally.treasure), ("secrets", tally.secrets)];
+    let shares = shares.into_iter().filter(|(_, share)| share.total > 0);
+    let shares = shares.map(|(what, Share { found, total })| format!("{what}: {found} of {total}"));
+    let counts = [("alarms", tally.alarms), ("stunned", tally.stunned), ("deaths", tally.deaths)];
+    let counts = counts.into_iter().filter(|&(what, count)| count > 0 || what == "alarms");
+    let counts = counts.map(|(what, count)| format!("{what}: {count}"));
+    shares.chain(counts).collect::<Vec<_>>().join(", ")
 }

@@ -3,8 +3,8 @@
 use std::fmt::{self, Write};
 
 use super::status::{Part, StatusLine};
-use crate::game::{Alarm, Game, Health, Share};
-use crate::world::Supply;
+use crate::game::{Alarm, Game, GuardView, Health, Share};
+use crate::world::{FieldOfView, Supply};
 
 /// How health is written.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -21,11 +21,7 @@ impl StatusLine {
     /// Writes health, alarm, light, supplies and treasure.
     pub(super) fn write_vitals(&mut self, game: &Game, signs: HealthSigns) -> fmt::Result {
         self.write_health(game.health(), signs)?;
-        match game.alarm() {
-            Alarm::Calm => {}
-            Alarm::Wary => self.both(Part::Alarm, format_args!("wary"))?,
-            Alarm::Raised => self.both(Part::Alarm, format_args!("ALARM"))?,
-        }
+        self.write_alarm(game)?;
         let light = match game.visibility() {
             0..DARK => "dark",
             DARK..DIM => "dim",
@@ -37,14 +33,31 @@ impl StatusLine {
         if total > 0 {
             let needed = game.world().treasure_needed();
             let [short, long] = self.forms(Part::Treasure);
-            write!(short, "{found} gold")?;
-            match needed {
-                0 => write!(long, "{found} of {total} gold")?,
-                _ if found >= needed => write!(long, "{found} of {total} gold, enough")?,
-                _ => write!(long, "{found} of {needed} gold")?,
-            }
+            let wanted = if found < needed { needed } else { total };
+            let enough = if (1..=found).contains(&needed) { ", enough" } else { "" };
+            write!(short, "{found}/{wanted} gold")?;
+            write!(long, "{found} of {wanted} gold{enough}")?;
         }
         Ok(())
+    }
+
+    /// Writes the alarm, and the kind of the nearest guard who has raised it.
+    fn write_alarm(&mut self, game: &Game) -> fmt::Result {
+        let alarm = match game.alarm() {
+            Alarm::Calm => return Ok(()),
+            Alarm::Wary => "wary",
+            Alarm::Raised => "ALARM",
+        };
+        let position = game.camera(FieldOfView::default()).position();
+        let distance = |guard: &GuardView| guard.position.distance_squared(position);
+        let guards = game.guards().filter(|guard| guard.mood.alarm() == game.alarm());
+        let nearest = guards.min_by(|a, b| distance(a).total_cmp(&distance(b)));
+        let [short, long] = self.forms(Part::Alarm);
+        short.push_str(alarm);
+        match nearest {
+            Some(guard) => write!(long, "{alarm}: {}", guard.kind.name()),
+            None => long.write_str(alarm),
+        }
     }
 
     fn write_health(&mut self, health: Health, signs: HealthSigns) -> fmt::Result {

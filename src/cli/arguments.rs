@@ -148,7 +148,7 @@ pub(super) fn description() -> clap::Command {
     let play = &play::SUBCOMMAND;
     clap::Command::new("cellcaster")
         .about("A raycaster game in the terminal, and its pictures in scripts")
-        .long_about(help::ABOUT)
+        .long_about(help::about())
         .after_help(help::WHERE_TO_READ_ON)
         .after_long_help(help::more())
         .version(env!("CARGO_PKG_VERSION"))

@@ -105,7 +105,7 @@ fn opening(options: &Play) -> Result<Opening, Error> {
     let records_script = options.record.as_deref().is_some_and(RecordingFile::is_script);
     let says_what = options.map.is_some() || options.generated.is_some() || options.watches;
     if says_what || records_script {
-        return Ok(Opening::Levels(levels(options)?));
+        return Ok(Opening::Levels(Box::new(levels(options)?)));
     }
     Ok(Opening::Title(offers()))
 }

@@ -1,11 +1,11 @@
 //! `cellcaster replay --verify`: plays a script off screen and says what it achieves.
 
-use std::fmt::Write as _;
+use std::fmt::{self, Write as _};
 use std::io::{self, Write};
 
 use super::arguments::Replay;
 use super::{Error, level};
-use crate::game::{Game, Header, Outcome, Rules, STEPS_PER_SECOND, Script};
+use crate::game::{Game, Header, LevelName, Outcome, Rules, STEPS_PER_SECOND, Script};
 use crate::store::Reached;
 use crate::world::World;
 
@@ -16,7 +16,7 @@ use crate::world::World;
 pub(super) fn run(options: &Replay, script: &Script) -> Result<(), Error> {
     let (name, world) = level(options, script.header())?;
     let rules = script.header().rules();
-    let floor = script.header().level.as_ref().and_then(|level| level.floor());
+    let floor = script.header().level.as_ref().and_then(LevelName::floor);
     let (report, wins) = match floor.filter(|_| options.map.is_none()) {
         Some(floor) => descend(&name, floor, world, rules, script),
         None => play(&name, world, rules, script),
@@ -69,11 +69,11 @@ fn play(name: &str, world: World, rules: Rules, script: &Script) -> (String, boo
     report.line("time", format!("{} ({} steps{par_time})", clock(tally.steps), tally.steps));
     report.line("treasure", format!("{} of {}", tally.treasure.found, tally.treasure.total));
     report.line("secrets", format!("{} of {}", tally.secrets.found, tally.secrets.total));
-    report.line("alarms", tally.alarms.to_string());
-    report.line("deaths", tally.deaths.to_string());
-    report.line("stunned", tally.stunned.to_string());
+    report.line("alarms", tally.alarms);
+    report.line("deaths", tally.deaths);
+    report.line("stunned", tally.stunned);
     if game.is_finished() {
-        report.line("rank", tally.rank(par).to_string());
+        report.line("rank", tally.rank(par));
     }
     (report.0, game.is_finished())
 }
@@ -96,9 +96,9 @@ fn descend(name: &str, floor: u32, first: World, rules: Rules, script: &Script) 
     }
     let mut report = Report::about(name, "", rules);
     report.tell_outcome(&game);
-    report.line("floors", reached.floors.to_string());
+    report.line("floors", reached.floors);
     report.line("time", format!("{} ({} steps)", clock(reached.steps), reached.steps));
-    report.line("treasure", reached.treasure.to_string());
+    report.line("treasure", reached.treasure);
     (report.0, reached.floors > 0)
 }
 
@@ -112,8 +112,8 @@ impl Report {
         if !title.is_empty() {
             report.line("title", title.replace(char::is_control, "?"));
         }
-        report.line("difficulty", rules.difficulty.name().to_owned());
-        report.line("seed", rules.seed.to_string());
+        report.line("difficulty", rules.difficulty.name());
+        report.line("seed", rules.seed);
         report
     }
 
@@ -126,7 +126,7 @@ impl Report {
         self.line("result", result);
     }
 
-    fn line(&mut self, name: &str, value: String) {
+    fn line(&mut self, name: &str, value: impl fmt::Display) {
         _ = writeln!(self.0, "{name:<10} {value}");
     }
 }

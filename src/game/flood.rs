@@ -205,7 +205,8 @@ mod tests {
                 let is_beside =
                     |side: usize| neighbor(cell, side % 8).is_some_and(|beside| open.at(beside));
                 let is_straight = side.is_multiple_of(2);
-                if !is_straight && !(is_beside(side + 7) && is_beside(side + 1)) {
+                let is_passable = is_straight || is_beside(side + 7) && is_beside(side + 1);
+                if !is_passable {
                     continue;
                 }
                 let next = distance + if is_straight { STRAIGHT } else { DIAGONAL };

@@ -23,6 +23,7 @@ mod perceive;
 mod route;
 mod shifted;
 mod sight;
+mod sprites;
 mod state;
 mod terrain;
 mod trail;
@@ -32,9 +33,10 @@ mod ways;
 use super::rules::Rules;
 use super::sound::{Sound, SoundField, Source};
 use crate::rng::hash;
-use crate::world::{GuardKind, SpriteId, World, sprite};
+use crate::world::{GuardKind, SpriteId, World};
 use context::{Context, Other};
 use guard::Guard;
+use sprites::sprites_of;
 use state::State;
 use terrain::Terrain;
 use trail::Trail;
@@ -78,11 +80,8 @@ impl Guards {
         let posts = posts.filter(|(post, _)| post.from <= rules.difficulty);
         let list: Vec<Guard> =
             posts.map(|(post, index)| Guard::new(world, post, index, rules.seed)).collect();
-        let sprites = GuardKind::ALL.map(|kind| {
-            let is_needed = list.iter().any(|guard| guard.kind == kind);
-            let sprite = sprite::builtin::named(kind.name()).filter(|_| is_needed)?;
-            Some(world.add_sprite(sprite))
-        });
+        let is_needed = |kind| list.iter().any(|guard| guard.kind == kind);
+        let sprites = sprites_of(is_needed).map(|sprite| Some(world.add_sprite(sprite?)));
         Self {
             rules,
             list,

@@ -262,7 +262,7 @@ impl Game {
         if rises && matches!(tile.kind, TileKind::Wall(_)) {
             return self.is_in_the_way(cell.cell());
         }
-        let headroom = tile.gaps().next().map_or(0.0, |gap| gap.height());
+        let headroom = tile.gaps().next().map_or(0.0, crate::world::Gap::height);
         let crushes_guards = rises && headroom < 1.0 && self.guards.touches(cell.cell());
         let motion = self.player.motion;
         crushes_guards

@@ -106,6 +106,7 @@ impl Game {
         let guard = self.guards.guard_near(&self.world, position, direction, ARM, ARM_COSINE);
         let Some(index) = guard else {
             self.player.strike_wait = AFTER_MISS;
+            self.say("Nobody is within reach.".to_owned());
             return self.sound(SoundKind::Swing, reach::SWING);
         };
         self.sound(SoundKind::Blow, reach::BLOW);
@@ -118,6 +119,10 @@ impl Game {
         } else {
             self.player.strike_wait = AFTER_PUSH;
             self.guards.push(index, direction);
+            self.say(match kind {
+                Some(GuardKind::Warden) => "Only a blow from behind stuns a warden.".to_owned(),
+                _ => "They stagger back.".to_owned(),
+            });
         }
     }
 
@@ -204,9 +209,10 @@ mod tests {
             let mut supplies = Supplies::AT_START;
             for (supply, more) in changes {
                 let before = supplies.count(supply);
-                match more {
-                    Some(more) => supplies.add(supply, more),
-                    None => prop_assert_eq!(supplies.take(supply), before > 0),
+                if let Some(more) = more {
+                    supplies.add(supply, more);
+                } else {
+                    prop_assert_eq!(supplies.take(supply), before > 0);
                 }
                 prop_assert!(Supply::ALL.iter().all(|&supply| supplies.count(supply) <= Supplies::MOST));
             }

@@ -183,13 +183,14 @@ fn misplaced(drawing: &Drawing<'_>, cells: &Cells<'_>, character: char) -> Optio
 /// Whether exactly one pair of opposite neighbours of `cell` can hold a door, and the other pair is
 /// open floor.
 fn is_between_jambs(cells: &Cells<'_>, cell: Cell) -> bool {
+    use TileKind::{Glass, Mask, Mirror, Open, Wall};
+
     let (column, row) = (i64::from(cell.column), i64::from(cell.row));
     let kinds = |places: [(i64, i64); 2]| places.map(|(column, row)| cells.tile(column, row));
     let pairs = [
         kinds([(column - 1, row), (column + 1, row)]),
         kinds([(column, row - 1), (column, row + 1)]),
     ];
-    use TileKind::{Glass, Mask, Mirror, Open, Wall};
     // A wall that sinks would leave the door without its jamb.
     let holds = |tile: Option<(TileId, Tile)>| {
         tile.is_some_and(|(id, tile)| {
@@ -247,7 +248,9 @@ fn keys_out_of_reach(
                 let opener = Opener::Switch(switch.name);
                 let is_lever = matches!(meaning, Meaning::Item(_));
                 let around = if is_lever { cells_around(cell) } else { vec![cell] };
-                around.iter().for_each(|&it| found.entry(it).or_default().push(opener));
+                for &it in &around {
+                    found.entry(it).or_default().push(opener);
+                }
                 given.extend((has_guards && !is_lever).then_some(opener));
             }
         }

@@ -148,7 +148,9 @@ impl Home {
             progress.complete(known);
         }
         let before = progress.clone();
-        changes.iter().for_each(|change| progress.apply(change));
+        for change in changes {
+            progress.apply(change);
+        }
         let after: BTreeSet<String> = progress.scripts().collect();
         let scripts = changes.iter().filter_map(Change::written);
         for (name, text) in scripts.filter(|(name, _)| after.contains(name)) {
@@ -169,15 +171,12 @@ impl Home {
         let mut free = (1_u64..).map(|number| format!("{PROGRESS}.damaged-{number}"));
         let is_free = |name: &String| !names.iter().any(|known| known == name.as_str());
         let name = free.find(is_free).unwrap_or_default();
-        let kept = match content {
-            Some(content) => {
-                self.write_whole(Path::new(&name), content)?;
-                "everything in it that can be read stays in force"
-            }
-            None => {
-                self.disk.rename(&self.folder.join(PROGRESS), &self.folder.join(&name))?;
-                "it is too large to be read"
-            }
+        let kept = if let Some(content) = content {
+            self.write_whole(Path::new(&name), content)?;
+            "everything in it that can be read stays in force"
+        } else {
+            self.disk.rename(&self.folder.join(PROGRESS), &self.folder.join(&name))?;
+            "it is too large to be read"
         };
         let file = shown(&self.folder.join(PROGRESS));
         Ok(format!("{file} was damaged and is kept as {name}; {kept}"))

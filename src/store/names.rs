@@ -5,6 +5,8 @@
 //! lower case are the same, and no name leaves the folder. Device names of Windows, such as `con`,
 //! are not reserved with `%` in them, so their first letter is written that way.
 
+use std::fmt::Write;
+
 use super::best::Reached;
 use crate::rng;
 use crate::world::Difficulty;
@@ -59,12 +61,12 @@ fn escaped(key: &str) -> String {
         if is_plain(byte) && !(is_device && index == 0) {
             name.push(char::from(byte));
         } else {
-            name.push_str(&format!("%{byte:02x}"));
+            _ = write!(name, "%{byte:02x}");
         }
     }
     if name.len() > LONGEST {
         name.truncate(LONGEST);
-        name.push_str(&format!("%%{:016x}", hash(key)));
+        _ = write!(name, "%%{:016x}", hash(key));
     }
     name
 }

@@ -40,6 +40,7 @@ pub(super) struct SavedEntry {
 
 /// What the player has chosen in the game.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
+#[expect(clippy::struct_excessive_bools, reason = "each is a choice of its own")]
 pub struct Preferences {
     /// Whether a dot marks the middle of the picture.
     pub crosshair: bool,

@@ -1,6 +1,6 @@
 //! Writing: from a [`Progress`] to the text of `progress.toml`.
 
-use std::fmt;
+use std::fmt::{self, Write};
 
 use super::best::{Best, Reached};
 use super::progress::{Preferences, Progress, SavedEntry};
@@ -71,7 +71,7 @@ fn quoted(text: &str) -> String {
         match character {
             '"' | '\\' => string.extend(['\\', character]),
             character if character.is_control() => {
-                string.push_str(&format!("\\u{:04x}", u32::from(character)));
+                _ = write!(string, "\\u{:04x}", u32::from(character));
             }
             character => string.push(character),
         }

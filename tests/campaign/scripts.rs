@@ -32,7 +32,7 @@ fn runs() -> Vec<(&'static Level, Difficulty)> {
 /// The game after the script of a level.
 fn replayed(level: &Level, difficulty: Difficulty) -> Result<Game, String> {
     let path = path(level, difficulty);
-    let text = fs::read_to_string(&path).map_err(|error| format!("{path:?}: {error}"))?;
+    let text = fs::read_to_string(&path).map_err(|error| format!("{}: {error}", path.display()))?;
     let script = Script::parse(&text, level.name).unwrap_or_else(|faults| panic!("{faults}"));
     let mut game = Game::with_rules(levels::world(level), Rules { difficulty, seed: 0 });
     script.iter().for_each(|(_, intents)| game.step(intents));

@@ -6,6 +6,7 @@ mod doors;
 mod exact_pictures;
 mod figures;
 mod gallery;
+mod guards;
 mod heights;
 mod looking;
 mod mirrors;

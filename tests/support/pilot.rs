@@ -1,6 +1,8 @@
 //! A player that finds its own way: it walks, ducks, jumps, opens and throws towards given cells, and
 //! records its intents as a script.
 
+use std::fmt::Write;
+
 use cellcaster::game::{Game, Intent, Intents, Look};
 use cellcaster::world::{Cell, FieldOfView};
 use glam::DVec2;
@@ -49,7 +51,7 @@ impl Pilot {
         let mut text = String::new();
         for &(steps, intents) in &self.stretches {
             let stretch = cellcaster::game::Stretch { steps, intents };
-            text.push_str(&format!("{stretch}\n"));
+            _ = writeln!(text, "{stretch}");
         }
         text
     }
@@ -147,9 +149,9 @@ impl Pilot {
                 return true;
             }
             if is_there {
-                self.step(Intents::new())
+                self.step(Intents::new());
             } else {
-                self.approach(cell.center(), Pace::Walk)
+                self.approach(cell.center(), Pace::Walk);
             }
         }
         false

@@ -1,6 +1,7 @@
 //! The whole program in a pseudo-terminal: its screens, its keys, and its ends.
 #![cfg(all(unix, feature = "cli"))]
 
+mod campaign;
 mod doors;
 mod ending;
 mod game;

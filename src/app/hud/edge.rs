@@ -26,24 +26,32 @@ const OTHER_SIDES: f64 = 0.08;
 /// The steps over which a flash fades at its end.
 const FADES: f64 = 12.0;
 
-/// The sides of the picture, each with whether the flash is there.
+/// A side of the picture.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
-struct Sides {
-    ahead: bool,
-    right: bool,
-    behind: bool,
-    left: bool,
+enum Side {
+    Ahead,
+    Right,
+    Behind,
+    Left,
 }
+
+/// The sides of the picture on which the flash is: one, or all of them.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+struct Sides(Option<Side>);
 
 impl Sides {
     /// All of them, or the one from which the player was hurt.
     fn of(flash: &Flash, heading: Heading) -> Self {
         let FlashKind::Hurt { bearing: Some(bearing) } = flash.kind else {
-            return Self { ahead: true, right: true, behind: true, left: true };
+            return Self(None);
         };
         let clockwise = (bearing.degrees() - heading.degrees()).rem_euclid(360.0);
-        let quarter = (clockwise / 90.0).round() as u8 % 4;
-        Self { ahead: quarter == 0, right: quarter == 1, behind: quarter == 2, left: quarter == 3 }
+        let clockwise_from_ahead = [Side::Ahead, Side::Right, Side::Behind, Side::Left];
+        Self(Some(clockwise_from_ahead[(clockwise / 90.0).round() as usize % 4]))
+    }
+
+    fn contains(self, side: Side) -> bool {
+        self.0.is_none_or(|only| only == side)
     }
 }
 
@@ -56,19 +64,18 @@ pub(in crate::app) fn tint(frame: &mut Frame, flash: &Flash, heading: Heading) {
     let opacity = opacity * (f64::from(flash.left) / FADES).min(1.0);
     let sides = Sides::of(flash, heading);
     // A flash without a direction is thin on all sides.
-    let is_directed = !(sides.ahead && sides.behind);
     let (width, height) = (f64::from(frame.width()), f64::from(frame.height()));
     // Half blocks are square; the pixels of other glyphs are higher than wide.
     let aspect = frame.pixel_aspect().height_over_width();
     let side = width.min(height * aspect);
-    let reach = |is_near| side * if is_directed && is_near { NEAR_SIDE } else { OTHER_SIDES };
+    let reach = |which| side * if sides.0 == Some(which) { NEAR_SIDE } else { OTHER_SIDES };
     let share = |distance: f64, reach: f64| (1.0 - distance / reach.max(1.0)).max(0.0);
     for (y, row) in frame.rows_mut().enumerate() {
         let (top, bottom) = ((y as f64 + 0.5) * aspect, (height - y as f64 - 0.5) * aspect);
-        let rows = share(top, reach(sides.ahead)).max(share(bottom, reach(sides.behind)));
+        let rows = share(top, reach(Side::Ahead)).max(share(bottom, reach(Side::Behind)));
         for (x, pixel) in row.iter_mut().enumerate() {
             let (left, right) = (x as f64 + 0.5, width - x as f64 - 0.5);
-            let columns = share(left, reach(sides.left)).max(share(right, reach(sides.right)));
+            let columns = share(left, reach(Side::Left)).max(share(right, reach(Side::Right)));
             let alpha = opacity * rows.max(columns);
             if alpha >= 1.0 {
                 *pixel = color.over(*pixel, alpha as u8);
@@ -93,12 +100,12 @@ pub(in crate::app) fn draw(
     let (last_column, last_row) =
         (picture.right().saturating_sub(1), picture.bottom().saturating_sub(1));
     for x in picture.left()..picture.right() {
-        let rows = [(sides.ahead, picture.top()), (sides.behind, last_row)];
-        rows.into_iter().filter(|row| row.0).for_each(|(_, y)| draw(x, y));
+        let rows = [(Side::Ahead, picture.top()), (Side::Behind, last_row)];
+        rows.into_iter().filter(|row| sides.contains(row.0)).for_each(|(_, y)| draw(x, y));
     }
     for y in picture.top()..picture.bottom() {
-        let columns = [(sides.left, picture.left()), (sides.right, last_column)];
-        columns.into_iter().filter(|column| column.0).for_each(|(_, x)| draw(x, y));
+        let columns = [(Side::Left, picture.left()), (Side::Right, last_column)];
+        columns.into_iter().filter(|column| sides.contains(column.0)).for_each(|(_, x)| draw(x, y));
     }
 }
 

@@ -2,8 +2,9 @@
 //!
 //! The edge is a ring around the player as seen from above: a sound ahead is at the top, one from
 //! behind at the bottom. A mark is an arrow and one to three characters by the strength; each kind
-//! of sound has its own character, so that colours are not needed. Marks that would cover each other
-//! move aside: a louder one keeps its place.
+//! of sound has its own character, so that colours are not needed. A sound of a guard who has
+//! noticed the player, or strikes, is also said in a word. Marks that would cover each other move
+//! aside: a louder one keeps its place.
 
 use ratatui::layout::Rect;
 use ratatui::style::{Color, Modifier, Style};
@@ -18,6 +19,8 @@ use crate::world::Heading;
 const MOST: usize = 8;
 /// The rows at the top that other panels use.
 const ROWS_ABOVE: u16 = 1;
+/// The columns of a picture with room for words.
+const COLUMNS_FOR_WORDS: u16 = 40;
 
 /// Draws a mark for each of `heard`, as heard in the direction of view `heading`.
 pub(in crate::app) fn draw(
@@ -35,7 +38,7 @@ pub(in crate::app) fn draw(
     loudest.sort_by_key(|heard| (!is_threat(heard.kind), u8::MAX - heard.strength));
     let mut taken: Vec<Rect> = Vec::new();
     for heard in loudest.into_iter().take(MOST) {
-        let text = mark(heard, heading);
+        let text = mark(heard, heading, picture.width >= COLUMNS_FOR_WORDS);
         let Some(area) = free_place(ring, angle(heard, heading), &text, &taken) else { continue };
         canvas.draw_widget(Line::raw(text).style(style(heard.kind, depth)), area);
         taken.push(area);
@@ -44,8 +47,22 @@ pub(in crate::app) fn draw(
 
 /// Whether the sound means that somebody has noticed the player or is about to strike.
 fn is_threat(kind: SoundKind) -> bool {
-    use SoundKind::{Bark, Bell, Draw, Shot, Shout, Swing, Windup, Wonder};
-    matches!(kind, Wonder | Shout | Bell | Bark | Windup | Draw | Shot | Swing)
+    word(kind).is_some()
+}
+
+/// What the guard does from whom the sound comes, if it is a threat to the player.
+const fn word(kind: SoundKind) -> Option<&'static str> {
+    match kind {
+        SoundKind::Wonder => Some("wonders"),
+        SoundKind::Shout => Some("shouts"),
+        SoundKind::Bell => Some("rings"),
+        SoundKind::Bark => Some("barks"),
+        SoundKind::Windup => Some("attacks"),
+        SoundKind::Draw => Some("aims"),
+        SoundKind::Shot => Some("shoots"),
+        SoundKind::Swing => Some("strikes"),
+        _ => None,
+    }
 }
 
 /// The character of a kind of sound.
@@ -100,9 +117,15 @@ impl Side {
     }
 }
 
-fn mark(heard: &Heard, heading: Heading) -> String {
+fn mark(heard: &Heard, heading: Heading, has_words: bool) -> String {
     let strength = usize::from(heard.strength.clamp(1, 3));
     let characters: String = std::iter::repeat_n(character(heard.kind), strength).collect();
+    let word = word(heard.kind).filter(|_| has_words);
+    let characters = match (word, Side::of(angle(heard, heading))) {
+        (None, _) => characters,
+        (Some(word), Side::Right) => format!("{word} {characters}"),
+        (Some(word), _) => format!("{characters} {word}"),
+    };
     match Side::of(angle(heard, heading)) {
         Side::Ahead => format!("^{characters}"),
         Side::Right => format!("{characters}>"),
@@ -149,8 +172,8 @@ fn place(ring: Rect, angle: f64, width: u16) -> Rect {
 fn style(kind: SoundKind, depth: ColorDepth) -> Style {
     let bold = Style::new().add_modifier(Modifier::BOLD);
     match (depth, is_threat(kind)) {
-        (ColorDepth::Mono, false) => Style::new(),
-        (ColorDepth::Mono, true) => Style::new().add_modifier(Modifier::REVERSED),
+        (ColorDepth::Mono, false) => Style::new().add_modifier(Modifier::REVERSED),
+        (ColorDepth::Mono, true) => bold.add_modifier(Modifier::REVERSED),
         (ColorDepth::Indexed16, false) => Style::new().fg(Color::Indexed(14)),
         (ColorDepth::Indexed16, true) => bold.fg(Color::Indexed(9)),
         (ColorDepth::Indexed256, false) => Style::new().fg(Color::Indexed(153)),

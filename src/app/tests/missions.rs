@@ -5,13 +5,13 @@ use ratatui::layout::Rect;
 
 use super::titles::titled;
 use super::*;
-use crate::app::{Offers, OwnMap};
+use crate::app::{Offers, OwnLevel, OwnMap};
 use crate::map::{NoFiles, builtin, parse_level};
-use crate::store::Run;
+use crate::store::{Run, map_key};
 use crate::tui::GlyphMode;
 
 /// Spikes that come out at once, a treasure, a note, and the exit behind them.
-const DANGER: &str = r##"
+pub(super) const DANGER: &str = r##"
 title = "Danger"
 par = 30
 grid = '''
@@ -29,16 +29,35 @@ grid = '''
 "X" = { exit = true }
 "##;
 
-/// A title that offers that map.
-pub(super) fn danger() -> Rig {
-    let load = || parse_level(DANGER, "it", &NoFiles).map_err(|faults| faults.summary());
-    let map = move || vec![OwnMap { name: "danger.toml".to_owned(), load: Box::new(load) }];
-    let mut rig =
-        titled(Offers { maps: Some(Box::new(map)), ..Offers::default() }, Store::in_memory());
+/// A map of that name with that text.
+pub(super) fn own_map(name: &str, text: &'static str) -> OwnMap {
+    let key = map_key(name, text);
+    let read = || parse_level(text, "it", &NoFiles).map_err(|faults| faults.summary());
+    let load = {
+        let key = key.clone();
+        move || Ok(OwnLevel { level: read()?, key: key.clone() })
+    };
+    OwnMap { name: name.to_owned(), key, load: Box::new(load) }
+}
+
+/// What a title with that map offers.
+pub(super) fn offering(name: &'static str, text: &'static str) -> Offers {
+    let maps = move || vec![own_map(name, text)];
+    Offers { maps: Some(Box::new(maps)), ..Offers::default() }
+}
+
+/// A game in the map `text`, chosen from a title.
+pub(super) fn playing_own(text: &'static str, store: Store) -> Rig {
+    let mut rig = titled(offering("danger.toml", text), store);
     rig.choose("My maps");
     rig.choose("danger.toml");
     assert_eq!(rig.app.screen, Screen::Playing);
     rig
+}
+
+/// A game in the map with the spikes.
+pub(super) fn danger() -> Rig {
+    playing_own(DANGER, Store::in_memory())
 }
 
 /// A player who stands on the spikes until they are dead.
@@ -97,8 +116,8 @@ fn letters_restart_and_leave_to_the_title_after_a_death() {
     assert!(left.starts_with("Danger on normal: 0:") && left.ends_with(", 0 of 50 gold"), "{left}");
 }
 
-#[test]
-fn the_end_of_a_level_tells_the_rank() {
+/// A player who has run to the exit of that map.
+pub(super) fn won() -> Rig {
     let mut rig = danger();
     // Before the spikes come out, by running.
     rig.tap(Key::Char('r'), 30);
@@ -112,9 +131,15 @@ fn the_end_of_a_level_tells_the_rank() {
             rig.tap(Key::Char('g'), 30);
         }
         if rig.app.screen == Screen::LevelDone {
-            break;
+            return rig;
         }
     }
+    panic!("at {}", rig.position());
+}
+
+#[test]
+fn the_end_of_a_level_tells_the_rank() {
+    let mut rig = won();
     let shown = text(&mut rig.app, 80, 24);
     for wanted in ["you found the way out", "rank: ", "the par time of 0:30", "gold: 50 of 50"] {
         assert!(shown.contains(wanted), "{wanted}:\n{shown}");
@@ -132,59 +157,6 @@ fn a_note_is_read_where_it_hangs() {
     let shown = text(&mut rig.app, 80, 24);
     assert!(shown.contains("Mind the floor."), "at {}:\n{shown}", rig.position());
     assert!(shown.contains("♥♥♥♥♥♥"), "{shown}");
-}
-
-fn playing_builtin(store: Store) -> Rig {
-    let mut rig = titled(Offers::default(), store);
-    rig.choose("New game");
-    rig.choose("Normal");
-    assert_eq!(rig.app.screen, Screen::Playing);
-    rig
-}
-
-#[test]
-fn a_game_that_is_left_goes_on_where_it_was() {
-    let mut rig = playing_builtin(Store::in_memory());
-    rig.press(W);
-    rig.wait(1500);
-    rig.release(W);
-    rig.wait(1000);
-    let before = rig.game().clone();
-    rig.tap(Key::Char('p'), 30);
-    rig.wait(300);
-    rig.choose("Leave to the title");
-    assert_eq!(rig.app.menu.label().as_deref(), Some("Continue"));
-    rig.tap(Key::Enter, 30);
-    rig.app.now = rig.now;
-    let game = rig.game();
-    assert_eq!(game.camera(FieldOfView::default()), before.camera(FieldOfView::default()));
-    assert!((game.elapsed() - before.elapsed()).abs() < 0.4);
-}
-
-#[test]
-fn the_best_run_walks_along_and_can_be_switched_off() {
-    let mut store = Store::in_memory();
-    let level = builtin::LEVELS[0].name;
-    let tally = Tally { steps: 3600, ..Tally::default() };
-    let script = format!("level {level}\n10 s turn-right\n2 s forward\n");
-    store.record(level, Difficulty::Normal, Run { tally, rank: Rank::Thief, script });
-    let mut rig = playing_builtin(store);
-    let figures = |rig: &mut Rig| {
-        text(&mut rig.app, 40, 12);
-        let see_through = |figure: &&crate::world::Figure| figure.opacity == 96;
-        let ghosts = rig.game().world().figures().iter().filter(see_through).copied();
-        ghosts.collect::<Vec<_>>()
-    };
-    rig.wait(200);
-    let first = figures(&mut rig);
-    rig.wait(500);
-    let second = figures(&mut rig);
-    assert_eq!((first.len(), second.len()), (1, 1));
-    assert_ne!(first[0].heading, second[0].heading, "it does what its script says");
-    assert!(rig.app.is_stale() || rig.app.next_change().is_some());
-    rig.tap(Key::Char('0'), 30);
-    assert_eq!(figures(&mut rig), []);
-    assert!(!rig.app.store.preferences().ghost);
 }
 
 #[test]

@@ -1,19 +1,14 @@
 //! The title and its menus, by keys.
 
+use super::missions::own_map;
 use super::*;
-use crate::app::{Offers, Opening, OwnMap};
-use crate::map::{NoFiles, builtin, parse_level};
+use crate::app::{Offers, Opening};
+use crate::map::builtin;
 
 const ENTER: Key = Key::Enter;
 
 fn title() -> Rig {
-    let map = |name: &str, text: &'static str| OwnMap {
-        name: name.to_owned(),
-        load: Box::new(move || {
-            parse_level(text, "it", &NoFiles).map_err(|faults| faults.summary())
-        }),
-    };
-    let maps = move || vec![map("bad.toml", "grid = 3"), map("pit.toml", PIT)];
+    let maps = || vec![own_map("bad.toml", "grid = 3"), own_map("pit.toml", PIT)];
     let offers = Offers { maps: Some(Box::new(maps)), ..Offers::default() };
     titled(offers, Store::in_memory())
 }
@@ -56,7 +51,8 @@ fn a_level_plays_itself_behind_the_title() {
     for key in [Key::Left, Key::Char('d'), Key::Char('e'), Key::Char('g'), Key::Char('m')] {
         rig.press(key);
     }
-    (rig.wait(1000), other.wait(1000));
+    rig.wait(1000);
+    other.wait(1000);
     assert_eq!(rig.app.game.grid(), other.app.game.grid());
 }
 
@@ -141,6 +137,27 @@ fn faults_of_an_own_map_are_said_and_a_map_without_faults_is_played() {
     rig.wait(300);
     rig.choose("Restart the level");
     assert_eq!((rig.app.screen, rig.position()), (Screen::Playing, before));
+}
+
+#[test]
+fn the_exit_of_a_level_leads_to_the_next_one() {
+    let way_out = |title: &str| {
+        let text = include_str!("../../../tests/maps/way_out.toml");
+        Level::from(parse_str(&text.replace("Way out", title)).unwrap())
+    };
+    let levels = Levels::new(way_out("First"), [way_out("Second")].into_iter()).numbered(1, 2);
+    let mut rig = Rig::of(App::new(levels, Settings::default()), Some((500, 30)));
+    for (title, number) in [("First", "level 1 of 2"), ("Second", "level 2 of 2")] {
+        assert_eq!((rig.app.game.title(), rig.app.level.to_string()), (title, number.to_owned()));
+        rig.press(W);
+        rig.wait(1500);
+        rig.release(W);
+        assert_eq!(rig.app.screen, Screen::LevelDone);
+        rig.wait(1000);
+        rig.tap(ENTER, 30);
+        rig.wait(300);
+    }
+    assert_eq!(rig.app.screen, Screen::End);
 }
 
 #[test]

@@ -5,16 +5,32 @@ use std::fmt::Write;
 use super::option::OptionSpec;
 use super::{SUBCOMMANDS, Subcommand, play};
 use crate::app::Bindings;
+use crate::map::builtin::LEVELS;
 
 /// The width of help in columns, in windows of any width.
 pub(super) const WIDTH: usize = 80;
 
-pub(super) const ABOUT: &str = "\
+/// The text before the options of the game.
+pub(super) fn about() -> String {
+    let names: Vec<&str> = LEVELS.iter().map(|level| level.name).collect();
+    format!("{ABOUT}{MAP}{}.", names.join(", "))
+}
+
+const ABOUT: &str = "\
 A raycaster game in the terminal, and its pictures in scripts.
 
-MAP is a map file, \"-\" for standard input, or a built-in level: cellar, museum, citadel, cistern \
-or observatory; --generate maze, cave or office makes one in its place. An option may also stand \
-before the command.";
+You are a thief. Take the treasure that a level asks for, keep out of sight and hearing of its guards, \
+and reach the exit, which the map shows as a green square. A level ends with its time, treasure, \
+alarms and a rank, and your best results are kept.
+
+Without MAP the title screen offers a new game at one of three difficulties, the saved game, the levels \
+with your best results, the daily run, endless games, the maps in this folder, settings and help. With \
+MAP, --generate, --daily or --endless the game begins at once.
+";
+
+const MAP: &str = "
+MAP is a map file, \"-\" for standard input, or a built-in level; --generate maze, cave or office makes \
+one in its place. An option may also stand before the command. The built-in levels are ";
 
 pub(super) const WHERE_TO_READ_ON: &str = "\
 \"cellcaster --help\" has all commands with their options, keys and examples; \"cellcaster COMMAND \
@@ -43,8 +59,8 @@ pub(super) fn examples(subcommand: &Subcommand) -> String {
 }
 
 const EXIT_STATUS: &str = "
-Exit status: 0; 2 for a mistake in the arguments or a map; 1 where the machine
-refuses something.";
+Exit status: 0; 2 for a mistake in the arguments, a map or a script; 1 where the
+machine refuses something, or where replay --verify does not reach an exit.";
 
 /// The details of a command, if there are more than its one line.
 fn push_details(text: &mut String, subcommand: &Subcommand) {

@@ -12,8 +12,7 @@ pub(in crate::cli) const STANDARD_INPUT: &str = "-";
 /// A map, or the first built-in level.
 pub(super) const OPTIONAL: Positional = Positional {
     name: NAME,
-    help: "A map file, \"-\" for standard input, or a built-in level: cellar, museum, citadel, cistern \
-           or observatory",
+    help: "A map file, \"-\" for standard input, or a built-in level, as \"cellcaster levels\" lists them",
     is_required: false,
     action: ArgAction::Set,
     hint: ValueHint::FilePath,

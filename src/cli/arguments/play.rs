@@ -18,6 +18,7 @@ use crate::world::{Difficulty, FieldOfView};
 
 /// Options of `play`; `None` where the configuration or the terminal decides.
 #[derive(Debug)]
+#[expect(clippy::struct_excessive_bools, reason = "each is an option of its own")]
 pub(in crate::cli) struct Play {
     pub(in crate::cli) map: Option<OsString>,
     /// The generated level instead of a map.
@@ -65,9 +66,10 @@ impl FidelityChoice {
 
 pub(super) const SUBCOMMAND: Subcommand = Subcommand {
     name: "play",
-    about: "Play; without MAP, the built-in levels",
-    details: "Plays in the terminal: find the green square on the map. \"?\" shows the keys, and Ctrl-C \
-              leaves. Over SSH it takes \"ssh -t HOST cellcaster\".",
+    about: "Play; without MAP, from the title screen",
+    details: "Plays in the terminal. \"?\" shows the keys, and Ctrl-C leaves. What you have reached is kept \
+              in the folder for data files, or in the one that CELLCASTER_DATA names. Over SSH it takes \
+              \"ssh -t HOST cellcaster\".",
     examples: "cellcaster\n\
                cellcaster play --generate maze --seed 7\n\
                cellcaster play --daily\n\
@@ -170,7 +172,8 @@ const DIFFICULTY: ValueOption<Difficulty> = ValueOption {
 
 const DAILY: Flag = Flag {
     name: "daily",
-    help: "Play the floors of the day, which are the same for all; the first try counts",
+    help: "Play the floors of the day, which are the same for all, at normal difficulty; the first \
+           try counts",
 };
 
 const ENDLESS: Flag =

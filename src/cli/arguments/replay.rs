@@ -36,8 +36,9 @@ pub(super) const SUBCOMMAND: Subcommand = Subcommand {
     about: "Play a script off screen, and write it as asciicast, or check what it achieves",
     details: "A script is lines such as \"2.5 s forward run\" or \"12 steps turn-left open\"; \"stand\" \
               is nothing, [walking] begins a section, and # a comment. Lines at its top may name the game: \
-              \"level cellar\", \"difficulty hard\" and \"seed 7\"; a level may also be \"floor 3\" of an endless \
-              game, or a map file. MAP takes precedence. play --record writes such a script.",
+              \"level cellar\", \"difficulty hard\" and \"seed 7\"; a level may also be a map file, or \"floor 1\" \
+              of an endless game, which goes on with the floors below. MAP takes precedence. play --record \
+              writes such a script.",
     examples: "cellcaster replay walk.script > walk.cast\n\
                cellcaster replay walk.script my.toml --size 120x40 --cast walk.cast\n\
                cellcaster replay walk.script --verify",
@@ -91,7 +92,8 @@ const SCRIPT: Positional = Positional {
 
 const VERIFY: Flag = Flag {
     name: "verify",
-    help: "Say level, time, treasure and rank instead; the exit status is 0 if the script wins, else 1",
+    help: "Say level, time, treasure and rank instead; the exit status is 0 if the \
+           script reaches an exit, else 1",
 };
 
 const CAST: FileOption =

@@ -128,7 +128,7 @@ impl Guard {
         let State::Tracking { target, mark, .. } = self.state else { return };
         let lost = lost.saturating_add(stride);
         self.state = State::Tracking { target, mark, lost };
-        let side = if lost / 20 % 2 == 0 { 0.05 } else { -0.05 };
+        let side = if (lost / 20).is_multiple_of(2) { 0.05 } else { -0.05 };
         self.look = Some(self.mover.heading.turned(side).direction());
         if lost > LOST {
             self.blind = 120;

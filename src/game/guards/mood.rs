@@ -35,7 +35,7 @@ pub enum Alarm {
 
 impl Mood {
     /// The alarm of a level in which a guard has this mood, and all others are on duty.
-    pub(super) const fn alarm(self) -> Alarm {
+    pub(crate) const fn alarm(self) -> Alarm {
         match self {
             Self::Asleep | Self::OnDuty | Self::Down | Self::Returning => Alarm::Calm,
             Self::Wondering | Self::Searching => Alarm::Wary,

@@ -94,8 +94,8 @@ impl Mover {
         let is_standing = self.rising == 0.0 && self.feet == ground.floor(self);
         let step = if is_standing { STEP_HEIGHT } else { 0.0 };
         let place = Place { step, ..ground.place(self) };
-        let mut careful = Careful { place, ground, is_careful: true };
-        careful.is_careful = is_standing && careful.is_clear(self.body.position);
+        let mut careful = Careful { place, ground, avoids: true };
+        careful.avoids = is_standing && careful.is_clear(self.body.position);
         self.body = slide(&mut careful, self.body, displacement, RADIUS);
         let place = careful.place;
         let room = place.room(self.body.position, RADIUS);
@@ -212,7 +212,7 @@ impl Ground<'_> {
 struct Careful<'a> {
     place: Place<'a>,
     ground: &'a Ground<'a>,
-    is_careful: bool,
+    avoids: bool,
 }
 
 impl Careful<'_> {
@@ -233,7 +233,7 @@ impl Obstacles for Careful<'_> {
         let cell = (u32::try_from(column), u32::try_from(row));
         let (Ok(column_on_map), Ok(row_on_map)) = cell else { return true };
         let cell = Cell { column: column_on_map, row: row_on_map };
-        self.place.blocks(column, row) || self.is_careful && self.is_avoided(cell)
+        self.place.blocks(column, row) || self.avoids && self.is_avoided(cell)
     }
 
     fn outline(&self, cell: Cell) -> Option<Outline> {
@@ -243,7 +243,7 @@ impl Obstacles for Careful<'_> {
     fn gives_way(&mut self, column: i64, row: i64, center: DVec2, radius: Radius) -> bool {
         let before = self.place.stature;
         let gives_way = self.place.gives_way(column, row, center, radius);
-        if gives_way && self.is_careful && !self.is_clear(center) {
+        if gives_way && self.avoids && !self.is_clear(center) {
             self.place.stature = before;
             return false;
         }

@@ -142,8 +142,10 @@ impl Guard {
     pub(super) fn react(&mut self, context: &mut Context) {
         let Some(quarry) = self.quarry else { return };
         match self.state {
-            State::Asleep | State::Down { .. } | State::Attacking { .. } => {}
-            State::Chasing { .. } => {}
+            State::Asleep
+            | State::Down { .. }
+            | State::Attacking { .. }
+            | State::Chasing { .. } => {}
             _ if self.awareness >= ALARMED => self.raise_alarm(context),
             State::Wondering { hurries, wakes, looks, goes, .. } => {
                 self.state =

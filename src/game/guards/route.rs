@@ -77,10 +77,9 @@ impl Guard {
             self.route.fresh = 0;
         }
         let is_stale = self.route.fresh == 0 || self.route.from != Some(cell);
-        if is_stale || self.route.goal != Some(goal) {
-            if !self.find_point(context, cell, goal, place) {
-                return Progress::Impossible;
-            }
+        let is_unknown = is_stale || self.route.goal != Some(goal);
+        if is_unknown && !self.find_point(context, cell, goal, place) {
+            return Progress::Impossible;
         }
         self.route.fresh = self.route.fresh.saturating_sub(context.stride);
         if let Some(point) = self.route.point {

@@ -18,7 +18,9 @@ impl Guard {
         self.mover.body.position = place(self.mover.position());
         self.post = cell(self.post);
         if let Duty::Patrol(stops) = &mut self.duty {
-            stops.iter_mut().for_each(|stop| *stop = cell(*stop));
+            for stop in stops {
+                *stop = cell(*stop);
+            }
         }
         self.errand = self.errand.map(cell);
         if let Some(quarry) = &mut self.quarry {

@@ -103,18 +103,11 @@ impl Ways {
             }
             return Way::Impossible;
         };
-        match field.next(&costs, from, distance) {
-            Some(next) => {
-                if age > OLD {
-                    field.begin(terrain, now);
-                }
-                Way::Next(next)
-            }
-            None => {
-                field.begin(terrain, now);
-                Way::Unknown
-            }
+        let next = field.next(&costs, from, distance);
+        if next.is_none() || age > OLD {
+            field.begin(terrain, now);
         }
+        next.map_or(Way::Unknown, Way::Next)
     }
 
     /// The cell after `from` on a way that has been found already.

@@ -47,7 +47,9 @@ impl Spikes {
                 _ => None,
             })
             .collect();
-        each.iter().for_each(|spike| spike.show(world));
+        for spike in &each {
+            spike.show(world);
+        }
         Self { each }
     }
 

@@ -133,7 +133,9 @@ proptest! {
             }
         }
         let mut again = everything(difficulty);
-        script.iter().for_each(|&(steps, intents)| (0..steps).for_each(|_| again.step(intents)));
+        for &(steps, intents) in &script {
+            (0..steps).for_each(|_| again.step(intents));
+        }
         prop_assert_eq!(again.checksum(), game.checksum());
         prop_assert!(again == game);
     }

@@ -20,3 +20,18 @@ fn a_pebble_lands_six_cells_ahead_and_a_stretch_throws_one() {
     }
     assert_eq!((stage.game.supplies(Supply::Pebbles), stage.message()), (0, "No pebbles left."));
 }
+
+#[test]
+fn a_strike_says_what_it_did() {
+    for (thing, message) in [
+        ("", "Nobody is within reach."),
+        ("w = { guard = 'warden', heading = 180 }", "Only a blow from behind stuns a warden."),
+        ("w = { guard = 'warden', heading = 0 }", "The warden goes down."),
+    ] {
+        let row = if thing.is_empty() { "@......" } else { "@w....." };
+        let mut stage = Stage::new(&[row], "", thing);
+        stage.play(3, &[Intent::Forward]);
+        stage.press(Intent::Strike);
+        assert_eq!(stage.message(), message);
+    }
+}

@@ -22,6 +22,7 @@ pub(super) struct Ground {
 
 /// What is in a cell, as far as ways and sight are concerned.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
+#[expect(clippy::struct_excessive_bools, reason = "each is a property of its own")]
 struct Kind {
     /// Whether one can walk there, once doors are open.
     is_walkable: bool,

@@ -108,7 +108,7 @@ mod tests {
     fn exact_pictures_have_no_wrong_pixel_and_coarse_ones_have() {
         let world = builtin::LEVELS[1].world().unwrap();
         let size = FrameSize::new(40, 24).unwrap();
-        let gallery = Gallery::new(&world, size, 3, 7);
+        let gallery = Gallery::new(&world, size, 8, 7);
         assert_eq!(gallery.share_wrong(&Method::Exact), 0.0);
         assert!(gallery.share_wrong(&"march:0.2".parse().unwrap()) > 0.0);
     }

@@ -49,7 +49,7 @@ pub(crate) struct Arrow {
 }
 
 impl Game {
-    /// Starts the first level in a terminal that reports key releases.
+    /// Starts the test map `cellar`, where nobody moves but the player, in a terminal that reports key releases.
     pub(crate) fn start() -> Self {
         Self::with(Speaks::Kitty, SIZE, None, &[], &[])
     }
@@ -59,7 +59,7 @@ impl Game {
         Self::with(Speaks::Kitty, SIZE, Some(map), &[], &[])
     }
 
-    /// Starts a game on a test map, or on the first level, and waits until it shows a picture and knows the terminal's capabilities.
+    /// Starts a game on a test map, or on the test map `cellar`, and waits until it shows a picture.
     pub(crate) fn with(
         speaks: Speaks,
         size: (u16, u16),
@@ -67,11 +67,10 @@ impl Game {
         options: &[&str],
         environment: &[(&str, &str)],
     ) -> Self {
+        let map = map.or((!options.contains(&"--generate")).then_some("cellar"));
         let map = map.map(|name| test_map(name).to_str().unwrap().to_owned());
         let words = ["play"].iter().chain(options).copied();
-        let first =
-            ["cellar"].into_iter().filter(|_| map.is_none() && !options.contains(&"--generate"));
-        let arguments: Vec<&str> = words.chain(first).chain(map.as_deref()).collect();
+        let arguments: Vec<&str> = words.chain(map.as_deref()).collect();
         let environment = [&ENVIRONMENT[..], environment].concat();
         let player = Player::start(size, speaks, PROGRAM, arguments, &environment);
         player.wait_for("? help");

@@ -6,7 +6,7 @@ use std::path::{Path, PathBuf};
 use rustix::process::Signal;
 use vt100::Parser;
 
-use super::game::{Game, Key};
+use super::game::{Game, Key, test_map};
 use crate::asciicast::Asciicast;
 use crate::emulator::Speaks;
 use crate::looks::looks;
@@ -65,7 +65,8 @@ fn a_recorded_walk_replays_to_the_same_picture() {
     game.leave();
     game.wait_for_end();
 
-    let file = output_of(&["replay", path.to_str().unwrap()]);
+    let map = test_map("cellar");
+    let file = output_of(&["replay", path.to_str().unwrap(), map.to_str().unwrap()]);
     let recording = Asciicast::read(&String::from_utf8(file).unwrap());
     let (_, frames) = recording.events.split_last().unwrap();
     let mut terminal = Parser::new(24.try_into().unwrap(), 80.try_into().unwrap(), 0);

@@ -9,8 +9,11 @@ use super::game::{ENVIRONMENT, PROGRAM, test_map};
 use crate::emulator::Speaks;
 use crate::player::Player;
 
+/// The byte that rings a terminal's bell.
+const BELL: u8 = 7;
+
 /// An empty folder for a test with that name.
-fn folder(name: &str) -> PathBuf {
+pub(super) fn folder(name: &str) -> PathBuf {
     let folder = Path::new(env!("CARGO_TARGET_TMPDIR")).join(name);
     _ = fs::remove_dir_all(&folder);
     fs::create_dir_all(&folder).unwrap();
@@ -50,6 +53,13 @@ fn from_the_title_to_a_death_a_second_try_and_out_again() {
         fs::create_dir(&maps).unwrap();
         fs::copy(test_map("danger"), maps.join("danger.toml")).unwrap();
         let mut player = start(&data, size);
+        let has_bell = size.0 == 80;
+        if has_bell {
+            choose(&player, "Settings");
+            choose(&player, "Bell when noticed or hurt");
+            player.send("\x1b");
+            player.wait_for("New game");
+        }
         choose(&player, "My maps");
         player.wait_for("danger.toml");
         for _ in 0..40 {
@@ -61,13 +71,14 @@ fn from_the_title_to_a_death_a_second_try_and_out_again() {
             thread::sleep(Duration::from_millis(300));
         }
         player.send("\r");
-        player.wait_for("Danger");
+        player.wait_for("♥♥♥");
         // Walk onto the spikes, and stop there.
         for _ in 0..8 {
             player.send("w");
             thread::sleep(Duration::from_millis(700));
         }
         player.wait_for("killed by spikes");
+        assert_eq!(player.bytes().contains(&BELL), has_bell);
         thread::sleep(Duration::from_millis(700));
         player.send("\r");
         player.wait_until("went on", |emulator| !emulator.text().contains("killed by"));

@@ -65,7 +65,7 @@ fn a_guard_turns_to_a_noise_first_and_then_goes_there_and_comes_back() {
 fn sleepers_are_woken_by_noise_nearby_only_and_rest_until_then() {
     let mut scene = rooms('S', '.');
     scene.target.is_alive = false;
-    assert_eq!(scene.guards.quiet_steps(), None);
+    scene.steps_until(5, |scene| scene.guards.quiet_steps().is_none()).unwrap();
     scene.step(&[scene.sound(SoundKind::Running, 7)]);
     assert_eq!(scene.mood(0), Mood::Asleep);
     scene.put(7.5, 3.5);

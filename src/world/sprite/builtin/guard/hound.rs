@@ -6,16 +6,16 @@ use super::super::GuardFrame;
 use super::super::model::skeleton::{bend, turned};
 use super::super::model::{Model, Paint, glowing, matt};
 
-const COAT: Paint = matt(0xd4, 0x50, 0x1c);
-const BACK: Paint = matt(0x8c, 0x28, 0x18);
-const BELLY: Paint = matt(0xe8, 0x9c, 0x58);
-const PAWS: Paint = matt(0x5c, 0x20, 0x18);
+const COAT: Paint = matt(0xff, 0x6c, 0x28);
+const BACK: Paint = matt(0xd8, 0x3c, 0x1c);
+const BELLY: Paint = matt(0xff, 0xbc, 0x70);
+const PAWS: Paint = matt(0xa4, 0x38, 0x20);
 const NOSE: Paint = matt(0x28, 0x14, 0x18);
 const MOUTH: Paint = matt(0xd0, 0x28, 0x38);
 const TEETH: Paint = glowing(0xff, 0xff, 0xff);
 const EYES: Paint = glowing(0xff, 0xe8, 0x50);
 const LID: Paint = matt(0x40, 0x18, 0x1c);
-const COLLAR: Paint = matt(0xd8, 0xd8, 0xd8);
+const COLLAR: Paint = matt(0xff, 0xff, 0xff);
 
 /// How the hound is posed, in texels from the middle of its feet.
 #[derive(Clone, Copy)]

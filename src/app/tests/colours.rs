@@ -1,0 +1,125 @@
+//! Screens in all their colours, kept as the bytes that draw them: `cat` shows them in a terminal.
+
+use std::fmt::Write;
+
+use ratatui::buffer::{Buffer, Cell};
+use ratatui::layout::Rect;
+use ratatui::style::{Color, Modifier};
+
+use super::missions::{dead, playing_own, won};
+use super::titles::titled;
+use super::*;
+use crate::app::Offers;
+use crate::game::FlashKind;
+
+/// A warden strikes the player, a bearer of a lantern rings behind them, and treasure lies between.
+const AMBUSH: &str = r##"
+title = "Ambush"
+par = 30
+treasure_needed = 50
+floor = "flagstone"
+ceiling = "wood"
+light = 0.8
+grid = '''
+##############
+#....#......X#
+#.l....@..w.t#
+#............#
+##############
+'''
+[tiles]
+"#" = { wall = "brick" }
+[things]
+"@" = { start = 0 }
+"w" = { guard = "warden", heading = 180 }
+"l" = { guard = "lantern", heading = 0 }
+"t" = { treasure = 100 }
+"X" = { exit = true }
+"##;
+
+/// A player who has just been struck, with everything on the picture that can be switched on.
+pub(super) fn struck() -> Rig {
+    let mut rig = playing_own(AMBUSH, Store::in_memory());
+    for key in [Key::Char('.'), Key::Char(',')] {
+        rig.tap(key, 30);
+        rig.wait(100);
+    }
+    for _ in 0..20_000 {
+        let is_hurt = |game: &Game| {
+            game.flash().is_some_and(|flash| matches!(flash.kind, FlashKind::Hurt { .. }))
+        };
+        if is_hurt(rig.game()) && !rig.game().heard().is_empty() {
+            rig.wait(60);
+            return rig;
+        }
+        rig.wait(1);
+    }
+    panic!("nobody strikes: {:?}", rig.game().alarm());
+}
+
+/// The bytes that draw `buffer`, line by line.
+fn bytes(buffer: &Buffer) -> String {
+    let mut text = String::new();
+    for line in buffer.content().chunks(buffer.area.width.into()) {
+        let mut before = None;
+        for cell in line {
+            let looks = looks(cell);
+            if before.as_ref() != Some(&looks) {
+                text.push_str(&looks);
+                before = Some(looks);
+            }
+            text.push_str(cell.symbol());
+        }
+        text.push_str("\x1b[m\n");
+    }
+    text
+}
+
+/// The sequence that sets the looks of `cell`.
+fn looks(cell: &Cell) -> String {
+    let mut text = "\x1b[0".to_owned();
+    let modifiers = [
+        (Modifier::BOLD, 1),
+        (Modifier::DIM, 2),
+        (Modifier::UNDERLINED, 4),
+        (Modifier::REVERSED, 7),
+    ];
+    for (modifier, number) in modifiers {
+        if cell.modifier.contains(modifier) {
+            write!(text, ";{number}").unwrap();
+        }
+    }
+    for (color, number) in [(cell.fg, 38), (cell.bg, 48)] {
+        match color {
+            Color::Reset => {}
+            Color::Rgb(red, green, blue) => {
+                write!(text, ";{number};2;{red};{green};{blue}").unwrap();
+            }
+            Color::Indexed(index) => write!(text, ";{number};5;{index}").unwrap(),
+            other => panic!("{other} is not a colour that the game uses"),
+        }
+    }
+    text.push('m');
+    text
+}
+
+fn drawn(rig: &mut Rig, depth: ColorDepth, (columns, rows): (u16, u16)) -> Vec<u8> {
+    rig.app.depth = depth;
+    let mut buffer = Buffer::empty(Rect::new(0, 0, columns, rows));
+    rig.app.draw(&mut buffer);
+    bytes(&buffer).into_bytes()
+}
+
+#[test]
+fn screens_look_as_they_did_in_all_colours() {
+    let screens = vec![
+        ("title", titled(Offers::default(), Store::in_memory())),
+        ("hud", struck()),
+        ("dead", dead()),
+        ("summary", won()),
+    ];
+    for (name, mut rig) in screens {
+        let name = format!("{name}.ans");
+        insta::assert_binary_snapshot!(&name, drawn(&mut rig, ColorDepth::True, (80, 24)));
+    }
+}

@@ -1,0 +1,72 @@
+//! Rest: steps in which nothing changes but clocks.
+//!
+//! A program that shows a game sleeps through such steps, and then advances the clocks at once. The
+//! two ways give the same game, bit for bit.
+
+use super::Game;
+use super::intent::Intents;
+
+impl Game {
+    /// Advances the clocks by `steps` steps in which nothing moves. Has the effect of as many calls
+    /// of [`Game::step`] if `steps` is at most [`Game::quiet_steps`].
+    pub fn wait(&mut self, steps: u64) {
+        if !self.is_finished() && !self.is_dead() {
+            self.steps = self.steps.saturating_add(steps);
+            self.doors.wait(steps);
+            self.player.wait(steps);
+            if self.is_mission {
+                self.player.hearing.wait(steps);
+                self.guards.wait(steps);
+            }
+            if self.quiet_steps_in_water().is_some() {
+                self.player.in_water += steps as u32;
+            }
+        }
+    }
+
+    /// Whether any number of steps with these intents would change nothing but the clock: the
+    /// player stands still or pushes against a wall, all doors are closed, nobody else moves, and
+    /// there is no message.
+    pub fn is_at_rest(&self, intents: Intents) -> bool {
+        self.quiet_steps(intents) == u64::MAX
+    }
+
+    /// The number of steps with these intents in which nothing changes but clocks: the game's own,
+    /// and those of waiting doors and of the message. [`u64::MAX`] if the game is [at
+    /// rest](Game::is_at_rest).
+    pub fn quiet_steps(&self, intents: Intents) -> u64 {
+        if self.is_finished() {
+            return u64::MAX;
+        }
+        let presses = self.presses(intents);
+        if self.is_dead() {
+            return if presses == self.player.pressed { u64::MAX } else { 0 };
+        }
+        if self.would_change(intents) {
+            return 0;
+        }
+        let waits = [
+            self.doors.quiet_steps(),
+            self.player.quiet_steps(),
+            self.quiet_steps_in_water(),
+            self.spikes.quiet_steps(self.steps),
+            self.guards.quiet_steps(),
+        ];
+        waits.into_iter().flatten().min().unwrap_or(u64::MAX)
+    }
+
+    /// Whether anything would change in a step with these intents that is no clock.
+    fn would_change(&self, intents: Intents) -> bool {
+        let intents = self.at_a_door(intents);
+        let motion = self.player.motion;
+        motion.stepped(&self.world, intents, self.pace()) != motion
+            || self.presses(intents) != self.player.pressed
+            || self.door_wanted(intents).is_some_and(|(cell, door)| self.would_answer(cell, door))
+            || self.find().is_some()
+            || self.is_at_a_new_checkpoint()
+            || self.is_in_water() != (self.player.in_water > 0)
+            || !self.missiles.is_empty()
+            || !self.smoke.is_empty()
+            || self.mechanisms_move()
+    }
+}
