@@ -9,7 +9,7 @@
 use std::cmp::Ordering;
 use std::collections::BTreeSet;
 
-use cellcaster::world::{Cell, Gap, KeyId, ThingKind, TileKind, World};
+use cellcaster::world::{Cell, Driver, Gap, KeyId, MovingTile, ThingKind, TileId, TileKind, World};
 
 /// The player's greatest speed in cells per second, their acceleration in falling, and their speed
 /// at take-off.
@@ -185,13 +185,21 @@ impl Reach<'_> {
         self.gaps(cell).into_iter().any(is_open)
     }
 
+    /// The last state of a tile that a hand moves, as any player can open it; else the tile itself.
+    fn opened(&self, tile: TileId) -> TileId {
+        let by_hand = |moving: &&MovingTile| moving.driver == Driver::Hand;
+        let moving = self.world.moving_tiles().iter().filter(by_hand);
+        let mut ends = moving.filter(|moving| moving.states[0] == tile);
+        ends.next().and_then(|moving| moving.states.last().copied()).unwrap_or(tile)
+    }
+
     /// The gaps of a cell that are open to the player and high enough to stand in.
     fn gaps(&self, cell: Cell) -> Vec<Gap> {
         let grid = self.world.grid();
         let Some(id) = grid.tile(i64::from(cell.column), i64::from(cell.row)) else {
             return Vec::new();
         };
-        let tile = self.world.tile(id);
+        let tile = self.world.tile(self.opened(id));
         let standing = Gap { bottom: tile.heights.floor(), top: tile.top_of_what_stands() };
         let is_shape = matches!(tile.kind, TileKind::Shape(_));
         let filled = match tile.kind {
