@@ -132,9 +132,9 @@ fn the_whole_pipeline_allocates_nothing_once_its_memory_has_grown() {
     let script = include_str!("../../maps/showcase.script");
     let script = Script::parse(script, "showcase.script").unwrap();
     let intents: Vec<Intents> = script.iter().map(|(_, intents)| intents).collect();
-    let citadel = builtin::LEVELS.iter().find(|level| level.name == "citadel").unwrap();
+    let citadel = map::load("tests/maps/citadel.toml".as_ref()).unwrap();
     for fidelity in [Fidelity::EXACT, Fidelity::HIGH, Fidelity::LOW] {
-        let level = Level::Grid(Box::new(citadel.world().unwrap()));
+        let level = Level::Grid(Box::new(citadel.clone()));
         let levels = Levels::new(level, std::iter::empty());
         let mut replay = Replay::new(levels, Settings::default(), SIZE);
         let mut writer = CellWriter::new(Vec::new(), SIZE);

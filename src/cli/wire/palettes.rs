@@ -7,6 +7,7 @@ use serde_json::{Value, json};
 use crate::cli::arguments::{Wire, WireFormat};
 use crate::color::palette::ColorDepth;
 use crate::lab::wire::{GREY, PalettePlan, PaletteRow, report_palettes};
+use crate::map::builtin;
 
 pub(super) fn run(depth: ColorDepth, options: &Wire) -> io::Result<()> {
     let plan = PalettePlan {
@@ -14,7 +15,8 @@ pub(super) fn run(depth: ColorDepth, options: &Wire) -> io::Result<()> {
         size: options.size.cells(),
         frames_per_second: options.frames_per_second.get(),
     };
-    let rows = report_palettes(&plan);
+    let levels = builtin::LEVELS.iter().filter_map(|level| Some((level.name, level.world().ok()?)));
+    let rows = report_palettes(&plan, levels);
     let mut output = BufWriter::new(io::stdout().lock());
     match options.format {
         WireFormat::Table => write_table(&plan, &rows, &mut output)?,

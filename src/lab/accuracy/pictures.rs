@@ -102,13 +102,14 @@ impl Visitor for Comparison<'_> {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::map::builtin;
+    use crate::map;
 
     #[test]
     fn exact_pictures_have_no_wrong_pixel_and_coarse_ones_have() {
-        let world = builtin::LEVELS[1].world().unwrap();
+        let museum = include_str!("../../../tests/maps/museum.toml");
+        let world = map::parse_str(museum).unwrap();
         let size = FrameSize::new(40, 24).unwrap();
-        let gallery = Gallery::new(&world, size, 8, 7);
+        let gallery = Gallery::new(&world, size, 3, 7);
         assert_eq!(gallery.share_wrong(&Method::Exact), 0.0);
         assert!(gallery.share_wrong(&"march:0.2".parse().unwrap()) > 0.0);
     }

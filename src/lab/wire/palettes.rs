@@ -22,10 +22,9 @@ use crate::canvas::Canvas;
 use crate::color::palette::{ColorDepth, of_256};
 use crate::color::srgb::linear;
 use crate::game::{Game, STEPS_PER_SECOND, Script};
-use crate::map::builtin;
 use crate::render::{Frame, FrameSize, PixelAspect, Renderer};
 use crate::terminal::CellWriter;
-use crate::world::{Camera, FieldOfView};
+use crate::world::{Camera, FieldOfView, World};
 use blur::BlurredPicture;
 use methods::{Method, method};
 
@@ -79,14 +78,16 @@ pub struct PaletteRow {
     pub bytes_ratio: f64,
 }
 
-/// Walks through all built-in levels and measures.
+/// Walks through each of `levels`, which have a name, and measures.
 ///
 /// # Panics
 /// Panics if the plan's size has no cells.
-pub fn report_palettes(plan: &PalettePlan) -> Vec<PaletteRow> {
-    let mut rows: Vec<PaletteRow> = builtin::LEVELS
-        .iter()
-        .filter_map(|level| Some((level.name, level.world().ok()?)))
+pub fn report_palettes<'a>(
+    plan: &PalettePlan,
+    levels: impl IntoIterator<Item = (&'a str, World)>,
+) -> Vec<PaletteRow> {
+    let mut rows: Vec<PaletteRow> = levels
+        .into_iter()
         .flat_map(|(name, world)| report_level(plan, name, Game::new(world)))
         .collect();
     let total = total(&rows);
