@@ -40,6 +40,13 @@ impl World {
         &self.mission.guards
     }
 
+    /// The world without its guards.
+    #[must_use]
+    pub fn without_guards(mut self) -> Self {
+        self.mission.guards.clear();
+        self
+    }
+
     /// The time in which a good player finishes, in seconds, if the map gives one.
     pub fn par(&self) -> Option<u32> {
         self.mission.par
