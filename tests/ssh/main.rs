@@ -30,6 +30,9 @@ const RIGHT: &str = "\x1b[1;1:";
 const RIGHT_END: &str = "C";
 const LETTER_END: &str = "u";
 
+/// Plays a level without guards, in which walks can go anywhere.
+const PLAY: &str = concat!("play ", env!("CARGO_MANIFEST_DIR"), "/tests/maps/citadel.toml");
+
 /// A link such as a phone has on a train.
 const SLOW: Link = Link {
     delay: Duration::from_millis(50),
@@ -164,7 +167,7 @@ fn shown_fidelity(emulator: &Emulator) -> Option<String> {
 
 #[test]
 fn on_a_slow_link_it_is_fast_and_fresh() {
-    let guest = Guest::connect(SLOW, "play citadel --stats");
+    let guest = Guest::connect(SLOW, &format!("{PLAY} --stats"));
     let walk = guest.play(Duration::from_secs(20));
     walk.report("1 Mbit/s, 50 ms each way");
     assert!(walk.frames_per_second >= 15.0);
@@ -174,7 +177,7 @@ fn on_a_slow_link_it_is_fast_and_fresh() {
 
 #[test]
 fn on_a_fast_link_every_frame_is_there_and_exact() {
-    let guest = Guest::connect(UNLIMITED, "play citadel --stats");
+    let guest = Guest::connect(UNLIMITED, &format!("{PLAY} --stats"));
     let walk = guest.play(Duration::from_secs(10));
     walk.report("no limit");
     assert!(walk.frames_per_second >= 28.0);
@@ -184,7 +187,7 @@ fn on_a_fast_link_every_frame_is_there_and_exact() {
 
 #[test]
 fn a_link_that_jitters_shows_exact_frames_or_nearly() {
-    let guest = Guest::connect(JITTERY, "play citadel --stats");
+    let guest = Guest::connect(JITTERY, &format!("{PLAY} --stats"));
     let walk = guest.play(Duration::from_secs(20));
     walk.report("no limit, 20 ms and up to 100 ms of jitter each way");
     // Alone on a machine they are exact. Where jitter was taken for a slow link, most were at 48.
@@ -196,7 +199,7 @@ fn a_link_that_jitters_shows_exact_frames_or_nearly() {
 
 #[test]
 fn compressed_it_is_about_exact_on_a_slow_link() {
-    let guest = Guest::connect_with(&["-C"], SLOW, "play citadel --stats");
+    let guest = Guest::connect_with(&["-C"], SLOW, &format!("{PLAY} --stats"));
     let walk = guest.play(Duration::from_secs(20));
     walk.report("1 Mbit/s, 50 ms each way, with -C");
     // Without compression there is hardly one below 16.
@@ -210,7 +213,7 @@ fn compressed_it_is_about_exact_on_a_slow_link() {
 #[test]
 fn a_link_that_dies_silently_is_noticed() {
     const END: Duration = Duration::from_secs(20);
-    let guest = Guest::connect(SLOW, "play citadel");
+    let guest = Guest::connect(SLOW, PLAY);
     let game = guest.server.game();
     guest.hold_right(true);
     guest.player.wait_until("turned", |emulator| emulator.bytes().len() > 200_000);
@@ -226,7 +229,7 @@ fn a_link_that_dies_silently_is_noticed() {
 #[test]
 fn when_the_link_is_cut_in_mid_frame_nothing_is_left() {
     const END: Duration = Duration::from_secs(5);
-    let guest = Guest::connect(SLOW, "play citadel");
+    let guest = Guest::connect(SLOW, PLAY);
     let game = guest.server.game();
     assert!(is_alive(game));
     guest.hold_right(true);
@@ -242,7 +245,7 @@ fn when_the_link_is_cut_in_mid_frame_nothing_is_left() {
 
 #[test]
 fn the_shell_behind_the_link_finds_no_answers() {
-    let mut guest = Guest::connect(SLOW, "play citadel");
+    let mut guest = Guest::connect(SLOW, PLAY);
     guest.hold_right(true);
     thread::sleep(Duration::from_secs(1));
     // Enter confirms it.
