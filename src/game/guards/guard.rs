@@ -194,13 +194,12 @@ impl Guard {
     }
 
     pub(super) fn gait(&self) -> Gait {
-        let Abilities { opens_doors, height, .. } = *self.abilities();
-        Gait { opens_doors, height }
+        Gait { opens_doors: self.abilities().opens_doors, height: self.kind.height() }
     }
 
     /// The height of the top of the head.
     pub(super) fn head(&self) -> f64 {
-        self.mover.feet + self.abilities().height
+        self.mover.feet + self.kind.height()
     }
 
     pub(super) fn view(&self) -> GuardView {

@@ -9,8 +9,7 @@ pub(super) struct Abilities {
     pub(super) walk: f64,
     /// The speed of following a player.
     pub(super) chase: f64,
-    /// The height of the body and of the eye above the feet, in cells.
-    pub(super) height: f64,
+    /// The height of the eye above the feet, in cells.
     pub(super) eye: f64,
     /// How far they see in full light, in cells; `None` for the blind.
     pub(super) sight: Option<Sight>,
@@ -46,7 +45,6 @@ pub(super) struct Sight {
 const WARDEN: Abilities = Abilities {
     walk: 1.2,
     chase: 2.0,
-    height: 0.9,
     eye: 0.75,
     // 110°
     sight: Some(Sight { range: 10.0, least_cosine: 0.573_576_436_351_046 }),
@@ -64,7 +62,6 @@ const WARDEN: Abilities = Abilities {
 const LISTENER: Abilities = Abilities {
     walk: 1.5,
     chase: 4.2,
-    height: 0.85,
     eye: 0.7,
     sight: None,
     hearing: 3,
@@ -81,7 +78,6 @@ const LISTENER: Abilities = Abilities {
 const LANTERN: Abilities = Abilities {
     walk: 1.6,
     chase: 2.6,
-    height: 0.8,
     eye: 0.65,
     // 130°
     sight: Some(Sight { range: 12.0, least_cosine: 0.422_618_261_740_699 }),
@@ -99,7 +95,6 @@ const LANTERN: Abilities = Abilities {
 const HOUND: Abilities = Abilities {
     walk: 2.2,
     chase: 6.0,
-    height: 0.45,
     eye: 0.35,
     // 160°
     sight: Some(Sight { range: 6.0, least_cosine: 0.173_648_177_666_930 }),
@@ -117,7 +112,6 @@ const HOUND: Abilities = Abilities {
 const ARCHER: Abilities = Abilities {
     walk: 1.4,
     chase: 2.2,
-    height: 0.82,
     eye: 0.68,
     // 100°
     sight: Some(Sight { range: 16.0, least_cosine: 0.642_787_609_686_539 }),

@@ -221,7 +221,7 @@ impl Guards {
 impl Guard {
     /// The middle of the body.
     fn middle(&self) -> Point {
-        let height = self.mover.feet + self.abilities().height / 2.0;
+        let height = self.mover.feet + self.kind.height() / 2.0;
         Point { position: self.mover.position(), height }
     }
 }

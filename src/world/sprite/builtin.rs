@@ -90,11 +90,6 @@ pub fn named(name: &str) -> Option<Sprite> {
     Some(sprite)
 }
 
-/// The height of a guard's sprite, in cells, without making its pictures.
-pub fn guard_height(kind: GuardKind) -> f64 {
-    guard::height(kind)
-}
-
 /// The definition of a sprite.
 struct Design {
     pictures: Vec<Texture>,

@@ -22,11 +22,6 @@ pub(super) fn guard(kind: GuardKind) -> Design {
     Design { facings: Facings::Eight, animated: Some(1), shines, ..standing }
 }
 
-/// The height of a guard's sprite, in cells.
-pub(super) fn height(kind: GuardKind) -> f64 {
-    figure(kind).height
-}
-
 /// How a kind of guard looks.
 struct Figure {
     /// The height of its pictures, in cells. They have room for a raised weapon.

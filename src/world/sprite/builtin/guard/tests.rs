@@ -61,7 +61,7 @@ fn pictures_are_of_one_size_differ_and_show_a_figure() {
     for kind in GuardKind::ALL {
         let sprite = sprite(kind);
         assert_eq!((sprite.frames(), sprite.animated_frames()), (8, 1));
-        assert_eq!(sprite.height.cells(), height(kind));
+        assert_eq!(sprite.height.cells(), figure(kind).height);
         assert_eq!(sprite.lamp.is_some(), kind == GuardKind::Lantern);
         let first = &sprite.pictures()[0];
         for (index, picture) in sprite.pictures().iter().enumerate() {
