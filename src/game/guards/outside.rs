@@ -2,7 +2,7 @@
 
 use glam::DVec2;
 
-use super::act::Cloud;
+use super::act::{Act, Cloud};
 use super::guard::Guard;
 use super::mover::RADIUS;
 use super::sight::{Point, is_in_sight};
@@ -22,6 +22,11 @@ impl Guards {
     /// Whether there are none.
     pub(crate) fn is_empty(&self) -> bool {
         self.list.is_empty()
+    }
+
+    /// What guards have done in the last step, by its place in their order.
+    pub(crate) fn act(&self, index: usize) -> Option<Act> {
+        self.acts.get(index).copied()
     }
 
     /// The number of steps in which no guard does anything, if nothing is perceived: 0 if anybody
@@ -77,7 +82,7 @@ impl Guards {
     }
 
     /// The lamps that guards carry.
-    pub(crate) fn lamps(&self) -> impl Iterator<Item = (Cell, Lamp)> + '_ {
+    pub(crate) fn lamps(&self) -> impl Iterator<Item = (Cell, Lamp)> + Clone + '_ {
         let bearers = self.list.iter().filter(|guard| guard.kind == GuardKind::Lantern);
         let up = bearers.filter(|guard| !guard.state.is_down() && guard.state != State::Asleep);
         let light = Light::new(0.7).unwrap_or(Light::FULL);
