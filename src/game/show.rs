@@ -113,7 +113,7 @@ impl Game {
     fn show_figures(&mut self) {
         let Self { guards, missiles, smoke, sprites, .. } = self;
         let is_still = !guards.has_changed() && missiles.is_empty() && smoke.is_empty();
-        if is_still && self.world.figures().len() == guards.figures().count() {
+        if is_still && self.world.figures().len() == guards.figure_count() {
             return;
         }
         let missiles = missiles.iter().filter_map(|missile| sprites.missile(missile));

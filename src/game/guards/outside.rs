@@ -37,7 +37,7 @@ impl Guards {
         if !has_begun || self.has_changed || !self.acts.is_empty() || !self.spoken.is_empty() {
             return Some(0);
         }
-        let quiet = self.list.iter().filter_map(|guard| match guard.state {
+        let quiet = self.awake().filter_map(|guard| match guard.state {
             State::Asleep => None,
             State::Down { left } => Some(u64::from(left) - 1),
             _ => Some(0),
@@ -81,9 +81,14 @@ impl Guards {
         })
     }
 
+    /// The number of [`Guards::figures`].
+    pub(crate) fn figure_count(&self) -> usize {
+        self.awake.figures
+    }
+
     /// The lamps that guards carry.
     pub(crate) fn lamps(&self) -> impl Iterator<Item = (Cell, Lamp)> + Clone + '_ {
-        let bearers = self.list.iter().filter(|guard| guard.kind == GuardKind::Lantern);
+        let bearers = self.awake().filter(|guard| guard.kind == GuardKind::Lantern);
         let up = bearers.filter(|guard| !guard.state.is_down() && guard.state != State::Asleep);
         let light = Light::new(0.7).unwrap_or(Light::FULL);
         up.map(move |guard| (guard.mover.cell(), Lamp { light, reach: Reach::default() }))
@@ -194,6 +199,7 @@ impl Guards {
         let Some(guard) = self.list.get_mut(index) else { return };
         guard.stun(steps);
         let (cell, by) = (guard.mover.cell(), Source::Guard(index));
+        self.find_awake();
         self.spoken.push(Sound { kind: SoundKind::Fall, cell, reach: FALL, by });
     }
 
@@ -202,6 +208,7 @@ impl Guards {
     pub(crate) fn push(&mut self, index: usize, direction: DVec2) {
         if let Some(guard) = self.list.get_mut(index) {
             guard.push(direction);
+            self.find_awake();
         }
     }
 
@@ -216,6 +223,8 @@ impl Guards {
         let seed = crate::rng::hash(self.rules.seed, [self.steps]);
         self.list.extend(posts.map(|(post, index)| Guard::new(world, post, index, seed)));
         self.terrain.look_at_things(world);
+        self.others.clear();
+        self.find_awake();
         self.ways.forget();
         self.air.forget();
         self.trails.iter_mut().for_each(super::Trail::forget);
