@@ -40,9 +40,9 @@ impl World {
         }
         let before = moving.len();
         self.make_room_for_light();
+        let mut new_lamps = lamps.clone().fuse();
         for index in 0..before.max(lamps.clone().count()) {
-            let old = self.lamplight.moving.get(index).copied();
-            let new = lamps.clone().nth(index);
+            let (old, new) = (self.lamplight.moving.get(index).copied(), new_lamps.next());
             if old == new {
                 continue;
             }
