@@ -221,10 +221,11 @@ impl Game {
         }
         let mut world = self.world.clone();
         world.set_state(cell.cell(), state);
-        !self.is_crushing(&world, cell, state)
+        !cell.is_blocked() || !self.is_crushing(&world, cell, state)
     }
 
-    /// The cell after `step`, with all who stand on it; the same cell if somebody is in the way.
+    /// The cell after `step`, with all who stand on it; the cell as it was, but blocked, if somebody
+    /// is in the way.
     fn moved(&mut self, cell: MovingCell, step: Step) -> MovingCell {
         let Some(state) = step.state else { return step.after };
         let before = cell.shown(&self.world);
@@ -232,7 +233,8 @@ impl Game {
         self.world.set_state(cell.cell(), state);
         if self.is_crushing(&self.world, cell, state) {
             self.world.set_state(cell.cell(), before);
-            return cell;
+            self.tell_who_blocks(cell);
+            return cell.blocked();
         }
         self.revision += 1;
         self.hear_crumbling(cell, step);
@@ -242,6 +244,13 @@ impl Game {
             self.player.fell_from = feet;
         }
         step.after
+    }
+
+    /// Says that a cell stops, once, to a player who is in the way.
+    fn tell_who_blocks(&mut self, cell: MovingCell) {
+        if !cell.is_blocked() && self.player.motion.touches(cell.cell()) {
+            self.say("It stops: you are in the way.".to_owned());
+        }
     }
 
     /// A floor that crumbles cracks, and then breaks.
