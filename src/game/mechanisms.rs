@@ -239,6 +239,9 @@ impl Game {
         self.revision += 1;
         self.hear_crumbling(cell, step);
         let falls = cell.driver(&self.world) == Driver::Weight;
+        if !falls {
+            self.guards.ride(&self.world, cell.cell());
+        }
         if let Some(feet) = self.feet_after(&self.world, stood && !falls) {
             self.player.motion = self.player.motion.carried_to(feet);
             self.player.fell_from = feet;

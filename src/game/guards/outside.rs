@@ -4,7 +4,7 @@ use glam::DVec2;
 
 use super::act::Cloud;
 use super::guard::Guard;
-use super::mover::RADIUS;
+use super::mover::{Ground, RADIUS};
 use super::sight::{Point, is_in_sight};
 use super::state::State;
 use super::{Alarm, GuardView, Guards, Mood};
@@ -197,6 +197,16 @@ impl Guards {
     pub(crate) fn push(&mut self, index: usize, direction: DVec2) {
         if let Some(guard) = self.list.get_mut(index) {
             guard.push(direction);
+        }
+    }
+
+    /// Lets the guards who stand on `cell` stay on its floor, which has just moved.
+    pub(crate) fn ride(&mut self, world: &World, cell: Cell) {
+        for guard in &mut self.list {
+            if overlaps(guard.mover.position(), cell, RADIUS) {
+                let gait = guard.gait();
+                guard.mover.ride(&Ground { world, terrain: &self.terrain, gait });
+            }
         }
     }
 
