@@ -146,7 +146,7 @@ impl Guards {
     }
 
     fn step_one(&mut self, world: &World, targets: &[Target], clouds: &[Cloud], index: usize) {
-        let stride = self.stride(targets, index);
+        let stride = self.stride(world, targets, index);
         if stride == 0 {
             return;
         }
@@ -161,9 +161,11 @@ impl Guards {
     }
 
     /// The number of steps that a guard takes at once now: 0 for those who wait for their turn.
-    fn stride(&self, targets: &[Target], index: usize) -> u16 {
+    fn stride(&self, world: &World, targets: &[Target], index: usize) -> u16 {
         let guard = &self.list[index];
         match guard.state {
+            // A floor may have moved under them.
+            State::Asleep if guard.stagger == 0 => u16::from(!guard.mover.is_at_rest(world)),
             State::OnDuty | State::Returning => {
                 let position = guard.mover.position();
                 let is_near = |target: &Target| {

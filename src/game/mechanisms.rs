@@ -222,7 +222,8 @@ impl Game {
         self.next_step(cell).is_some_and(|step| step.state.is_none() || !cell.is_blocked())
     }
 
-    /// The cell after `step`, with all who stand on it; the same cell if somebody is in the way.
+    /// The cell after `step`, with all who stand on it; the cell as it was, but blocked, if somebody
+    /// is in the way.
     fn moved(&mut self, cell: MovingCell, step: Step) -> MovingCell {
         let Some(state) = step.state else { return step.after };
         let before = cell.shown(&self.world);
@@ -230,16 +231,25 @@ impl Game {
         self.world.set_state(cell.cell(), state);
         if self.is_crushing(cell, state) {
             self.world.set_state(cell.cell(), before);
+            self.tell_who_blocks(cell);
             return cell.blocked();
         }
         self.revision += 1;
         self.hear_crumbling(cell, step);
         let falls = cell.driver(&self.world) == Driver::Weight;
+        self.guards.floor_moved(&self.world, cell.cell(), !falls);
         if let Some(feet) = self.feet_after(stood && !falls) {
             self.player.motion = self.player.motion.carried_to(feet);
             self.player.fell_from = feet;
         }
         step.after
+    }
+
+    /// Says that a cell stops, once, to a player who is in the way.
+    fn tell_who_blocks(&mut self, cell: MovingCell) {
+        if !cell.is_blocked() && self.player.motion.touches(cell.cell()) {
+            self.say("It stops: you are in the way.".to_owned());
+        }
     }
 
     /// A floor that crumbles cracks, and then breaks.

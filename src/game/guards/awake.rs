@@ -1,5 +1,6 @@
 //! The guards who are awake. Only they are looked at in a step, so that those who sleep cost nothing
-//! until a sound or a push wakes them.
+//! until a sound or a push wakes them. Those who sleep on a floor that has moved count as
+//! awake, since they may fall.
 //!
 //! Guards who have woken never sleep again. The list is therefore found anew where somebody wakes or
 //! the level changes, and not in each step.
@@ -24,10 +25,10 @@ impl Guards {
     /// Finds the guards who are awake.
     pub(super) fn find_awake(&mut self) {
         let guards = self.list.iter().enumerate();
-        self.awake.indices.clear();
-        self.awake
-            .indices
-            .extend(guards.filter(|(_, guard)| !guard.is_asleep()).map(|(index, _)| index));
+        let awake = guards.filter(|(_, guard)| !guard.is_asleep() || guard.is_unsettled);
+        let indices = &mut self.awake.indices;
+        indices.clear();
+        indices.extend(awake.map(|(index, _)| index));
         self.awake.has_hounds = self.list.iter().any(|guard| guard.kind == GuardKind::Hound);
         self.awake.figures = self.figures().count();
     }

@@ -59,6 +59,12 @@ impl Mover {
         self.rising == 0.0
     }
 
+    /// Whether no floor moves a guard who neither walks nor is pushed.
+    pub(super) fn is_at_rest(&self, world: &World) -> bool {
+        world.moving_tiles().is_empty()
+            || self.rising == 0.0 && self.feet == world.floor_at(self.cell())
+    }
+
     /// Turns towards `direction`, of any length but zero, by at most `degrees`.
     pub(super) fn turn(&mut self, direction: DVec2, degrees: f64) {
         let across = self.facing.perp_dot(direction);
@@ -87,6 +93,16 @@ impl Mover {
             self.body.position += displacement;
         } else {
             self.slide(ground, displacement);
+        }
+    }
+
+    /// Stays on the floor, which has moved by at most a step.
+    pub(super) fn ride(&mut self, ground: &Ground) {
+        let Some(feet) = ground.highest_floor(self.body.position) else { return };
+        let ridden = Self { feet, ..*self };
+        let is_a_step = (feet - self.feet).abs() <= STEP_HEIGHT;
+        if self.is_on_floor() && is_a_step && ground.has_room_for(&ridden) {
+            *self = ridden;
         }
     }
 
@@ -128,8 +144,16 @@ impl Ground<'_> {
         self.place(mover).room(mover.body.position, RADIUS).floor
     }
 
+    /// The highest floor under a guard at `position`.
+    fn highest_floor(&self, position: DVec2) -> Option<f64> {
+        let (low, high) = (position - RADIUS.cells(), position + RADIUS.cells());
+        let cells = (low.y as u32..=high.y as u32)
+            .flat_map(|row| (low.x as u32..=high.x as u32).map(move |column| Cell { column, row }));
+        let footings = cells.filter_map(|cell| self.terrain.footing(self.world, cell));
+        footings.map(|footing| footing.floor).reduce(f64::max)
+    }
+
     /// Whether the body of a guard overlaps nothing.
-    #[cfg(test)]
     pub(super) fn has_room_for(&self, mover: &Mover) -> bool {
         self.place(mover).is_clear(mover.body.position, RADIUS)
     }

@@ -4,7 +4,7 @@ use glam::DVec2;
 
 use super::act::{Act, Cloud};
 use super::guard::Guard;
-use super::mover::RADIUS;
+use super::mover::{Ground, RADIUS};
 use super::sight::{Point, is_in_sight};
 use super::state::State;
 use super::{Alarm, GuardView, Guards, Mood};
@@ -38,7 +38,7 @@ impl Guards {
             return Some(0);
         }
         let quiet = self.awake().filter_map(|guard| match guard.state {
-            State::Asleep => None,
+            State::Asleep if guard.stagger == 0 => None,
             State::Down { left } => Some(u64::from(left) - 1),
             _ => Some(0),
         });
@@ -208,6 +208,25 @@ impl Guards {
     pub(crate) fn push(&mut self, index: usize, direction: DVec2) {
         if let Some(guard) = self.list.get_mut(index) {
             guard.push(direction);
+            self.find_awake();
+        }
+    }
+
+    /// Records that the floor of `cell` has just moved. If it carries, the guards who stand on it stay
+    /// on it.
+    pub(crate) fn floor_moved(&mut self, world: &World, cell: Cell, carries: bool) {
+        let mut has_unsettled = false;
+        for guard in &mut self.list {
+            if overlaps(guard.mover.position(), cell, RADIUS) {
+                let gait = guard.gait();
+                if carries {
+                    guard.mover.ride(&Ground { world, terrain: &self.terrain, gait });
+                }
+                has_unsettled |= guard.is_asleep() && !guard.is_unsettled;
+                guard.is_unsettled = true;
+            }
+        }
+        if has_unsettled {
             self.find_awake();
         }
     }

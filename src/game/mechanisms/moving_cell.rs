@@ -115,7 +115,8 @@ impl MovingCell {
 
     /// Its state as a number.
     pub(super) fn word(&self) -> u64 {
-        u64::from(self.progress) << 17 | u64::from(self.cracks) << 1 | u64::from(self.is_driven)
+        let bits = u64::from(self.cracks) << 1 | u64::from(self.is_driven);
+        u64::from(self.is_blocked) << 33 | u64::from(self.progress) << 17 | bits
     }
 
     fn moving_tile<'a>(&self, world: &'a World) -> &'a MovingTile {
