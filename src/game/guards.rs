@@ -13,6 +13,7 @@
 mod act;
 mod alert;
 mod attack;
+mod awake;
 mod chase;
 mod context;
 mod duty;
@@ -37,6 +38,7 @@ use super::rules::Rules;
 use super::sound::{Sound, SoundField, Source};
 use crate::rng::hash;
 use crate::world::{GuardKind, SpriteId, World};
+use awake::Awake;
 use context::{Context, Other};
 use guard::Guard;
 use sprites::sprites_of;
@@ -60,6 +62,7 @@ const FALLEN_EACH: u64 = 30;
 pub(crate) struct Guards {
     rules: Rules,
     list: Vec<Guard>,
+    awake: Awake,
     /// By the order of [`GuardKind::ALL`].
     sprites: [Option<SpriteId>; GuardKind::ALL.len()],
     terrain: Terrain,
@@ -85,9 +88,10 @@ impl Guards {
             posts.map(|(post, index)| Guard::new(world, post, index, rules.seed)).collect();
         let is_needed = |kind| list.iter().any(|guard| guard.kind == kind);
         let sprites = sprites_of(is_needed).map(|sprite| Some(world.add_sprite(sprite?)));
-        Self {
+        let mut guards = Self {
             rules,
             list,
+            awake: Awake::default(),
             sprites,
             terrain: Terrain::new(world),
             ways: Ways::default(),
@@ -100,7 +104,9 @@ impl Guards {
             steps: 0,
             alarm: Alarm::Calm,
             has_changed: false,
-        }
+        };
+        guards.find_awake();
+        guards
     }
 
     /// Advances all guards by one step. Each target is the player with that index; `sounds` are
@@ -118,8 +124,7 @@ impl Guards {
         }
         self.steps += 1;
         self.ways.begin_step();
-        self.others.clear();
-        self.others.extend(self.list.iter().map(Guard::as_other));
+        self.look_at_others();
         self.record_trails(world, targets);
         let mut spoken = std::mem::take(&mut self.spoken);
         for sound in sounds.iter().chain(&spoken) {
@@ -127,8 +132,8 @@ impl Guards {
         }
         spoken.clear();
         self.has_changed = false;
-        for index in 0..self.list.len() {
-            self.step_one(world, targets, clouds, index);
+        for place in 0..self.awake.indices.len() {
+            self.step_one(world, targets, clouds, self.awake.indices[place]);
         }
         for index in self.woken.drain(..) {
             self.list[index].get_up();
@@ -162,6 +167,7 @@ impl Guards {
     fn stride(&self, world: &World, targets: &[Target], index: usize) -> u16 {
         let guard = &self.list[index];
         match guard.state {
+            // A floor may have moved under them.
             State::Asleep if guard.stagger == 0 => u16::from(!guard.mover.is_at_rest(world)),
             State::OnDuty | State::Returning => {
                 let position = guard.mover.position();
@@ -185,6 +191,7 @@ impl Guards {
             Source::Guard(index) => self.list.get(index).and_then(|guard| guard.quarry),
             Source::Player(_) | Source::Object => None,
         };
+        let mut has_woken = false;
         for index in 0..self.list.len() {
             let guard = &self.list[index];
             let earshot = guard.earshot(sound, self.rules.difficulty);
@@ -200,8 +207,13 @@ impl Guards {
             let distance = self.air.distance(guard.mover.cell());
             if let Some(distance) = distance.filter(|&distance| distance <= earshot) {
                 let (guard, mut context) = self.with_context(world, targets, clouds, index, 1);
+                let was_asleep = guard.is_asleep();
                 guard.hear(&mut context, sound, (distance, earshot), told);
+                has_woken |= was_asleep && !guard.is_asleep();
             }
+        }
+        if has_woken {
+            self.find_awake();
         }
     }
 
@@ -233,7 +245,7 @@ impl Guards {
 
     /// Records the trails of players, if anybody smells them.
     fn record_trails(&mut self, world: &World, targets: &[Target]) {
-        if self.list.iter().any(|guard| guard.kind == GuardKind::Hound) {
+        if self.awake.has_hounds {
             self.trails.resize_with(targets.len(), Trail::default);
             for (trail, target) in self.trails.iter_mut().zip(targets) {
                 trail.record(world, target, self.steps);
@@ -242,8 +254,7 @@ impl Guards {
     }
 
     fn update_alarm(&mut self) {
-        let alarm = self.list.iter().map(|guard| guard.state.mood().alarm()).max();
-        let alarm = alarm.unwrap_or_default();
+        let alarm = self.awake().map(|guard| guard.state.mood().alarm()).max().unwrap_or_default();
         if alarm == Alarm::Raised && self.alarm < Alarm::Raised {
             self.acts.push(Act::Raised);
         }

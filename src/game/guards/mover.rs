@@ -6,7 +6,7 @@
 
 use glam::DVec2;
 
-use super::terrain::{DROP, Gait, Terrain};
+use super::terrain::{DROP, Footing, Gait, Terrain};
 use crate::game::STEP;
 use crate::game::collision::{Body, Obstacles, Place, Radius, Stature, slide};
 use crate::game::fall::Flight;
@@ -174,9 +174,8 @@ impl Ground<'_> {
             return false;
         }
         let is_level = |cell| {
-            let footing = self.terrain.footing(self.world, cell);
-            let is_level = footing.is_some_and(|it| it.floor == mover.feet && it.is_level_with(it));
-            is_level && self.terrain.is_walkable(self.world, self.gait, cell)
+            let footing = self.terrain.way_through(self.world, self.gait, cell);
+            footing.is_some_and(|it| it.floor == mover.feet && it.is_level_with(it))
         };
         (low.y as u32..=high.y as u32)
             .all(|row| (low.x as u32..=high.x as u32).all(|column| is_level(Cell { column, row })))
@@ -210,9 +209,9 @@ impl Ground<'_> {
         (low.y as u32..=high.y as u32).all(|row| {
             (low.x as u32..=high.x as u32).all(|column| {
                 let cell = Cell { column, row };
-                let footing = self.terrain.footing(self.world, cell);
-                footing.is_some_and(|it| (it.floor - floor.floor).abs() <= STEP_HEIGHT)
-                    && (cell == middle || self.terrain.is_walkable(self.world, self.gait, cell))
+                let footing = || self.terrain.way_through(self.world, self.gait, cell);
+                let is_near = |it: Footing| (it.floor - floor.floor).abs() <= STEP_HEIGHT;
+                cell == middle || footing().is_some_and(is_near)
             })
         })
     }

@@ -19,7 +19,7 @@ pub(super) struct MovingCell {
     cracks: u16,
     /// Whether a hand or a weight has set it in motion.
     is_driven: bool,
-    /// Whether it waits for somebody who is in the way.
+    /// Whether somebody was in the way of its last step, and no tile has moved since.
     is_blocked: bool,
 }
 
@@ -66,15 +66,20 @@ impl MovingCell {
         self.is_driven = true;
     }
 
-    /// Whether it waits for somebody who is in the way.
+    /// Whether somebody was in the way of its last step, and no tile has moved since.
     pub(super) fn is_blocked(&self) -> bool {
         self.is_blocked
     }
 
-    /// The same cell, which waits for somebody who is in the way.
+    /// The same cell, after a step in which somebody was in the way.
     #[must_use]
     pub(super) fn blocked(self) -> Self {
         Self { is_blocked: true, ..self }
+    }
+
+    /// Forgets that somebody was in the way.
+    pub(super) fn try_again(&mut self) {
+        self.is_blocked = false;
     }
 
     /// The tile that it shows.
