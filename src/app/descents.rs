@@ -3,6 +3,7 @@
 //! A descent ends when the player dies: there is no way back to a floor, so that how far somebody
 //! came means the same for all. The daily run counts once; later tries are practice.
 
+use super::goal::Goal;
 use super::levels::Course;
 use super::menu::Menu;
 use super::menus::Choice;
@@ -10,6 +11,9 @@ use super::panels::whole_seconds;
 use super::{App, Levels, STEP};
 use crate::store::Reached;
 use crate::world::Difficulty;
+
+/// What is said about a daily run that does not count.
+const PRACTICE: &str = "Practice: the first try of the day counts";
 
 impl App {
     /// Begins the descent of the day, at the same difficulty for everybody.
@@ -28,6 +32,16 @@ impl App {
         let usual = self.store.preferences().difficulty;
         self.difficulty = self.settings.difficulty.unwrap_or(usual);
         self.begin(Levels::descent(seed, Course::Endless));
+    }
+
+    /// Says at the start of a daily run whether the try counts.
+    pub(super) fn tell_whether_it_counts(&mut self) {
+        let (text, short) = match self.course {
+            Course::Daily { counts: true, .. } => ("Daily run: this try counts", "This try counts"),
+            Course::Daily { counts: false, .. } => (PRACTICE, "Practice"),
+            Course::Levels | Course::Endless => return,
+        };
+        self.goal = Goal::new(text, short);
     }
 
     /// Whether the level belongs to a descent.
@@ -53,7 +67,7 @@ impl App {
     pub(super) fn descent_lines(&self) -> Vec<String> {
         let mut lines = vec![described(self.reached)];
         if let Course::Daily { counts: false, .. } = self.course {
-            lines.push("practice: the first try of the day counts".to_owned());
+            lines.push(PRACTICE.to_owned());
         }
         lines
     }
@@ -83,6 +97,9 @@ fn short(reached: Reached) -> String {
 }
 
 fn described(reached: Reached) -> String {
+    if reached.floors == 0 {
+        return short(reached);
+    }
     let seconds = whole_seconds(reached.steps as f64 * STEP);
     format!("{}, {} gold in {seconds}", short(reached), reached.treasure)
 }
