@@ -138,7 +138,7 @@ fn colours_of_256_look_like_true_colour_from_a_little_farther_away() {
     for row in &mixed {
         assert!((row.grey - row.true_grey).abs() <= 0.05, "{row:?}");
         assert!(row.error_ratio <= 0.65, "{row:?}");
-        assert!(row.bytes_ratio <= 1.45, "{row:?}");
+        assert!(row.bytes_ratio <= 1.52, "{row:?}");
     }
     let all = mixed.last().unwrap();
     assert_eq!(all.level, "all");

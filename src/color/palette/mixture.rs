@@ -7,7 +7,7 @@
 //! hue reach every colour between them, and a green dot on a brick is noticeable.
 //!
 //! The palette of 256 has few dark hues: its darkest red has a lightness of 0.31, and its darkest
-//! yellow 0.47. Three rules for dark colours keep dark surfaces from becoming grey with bright dots:
+//! yellow 0.47. Three rules keep dark surfaces from becoming grey with bright dots:
 //!
 //! - A difference in saturation weighs more than one in hue: dark wood is mixed of red and grey in
 //!   one block, and of yellow and grey in the next.
@@ -105,7 +105,7 @@ struct Weights {
     chroma: f32,
     /// The same for single colours, which would otherwise be grey too often.
     single: f32,
-    /// The weight of a difference in hue relative to one in saturation, for dark colours.
+    /// The weight of a difference in hue relative to one in saturation.
     hue_error: f32,
     /// The weights of the differences in lightness and in chroma between the two colours.
     contrast: [f32; 2],

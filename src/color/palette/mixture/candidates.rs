@@ -109,11 +109,7 @@ impl Wanted {
         is_near && (color_chroma < GREY || fits())
     }
 
-    fn is_dark(&self) -> bool {
-        self.lab[0] < DARK
-    }
-
-    fn candidate(&self, color: &PaletteColor, Palette { weights, .. }: Palette) -> Candidate {
+    fn candidate(&self, color: &PaletteColor, palette: Palette) -> Candidate {
         let distance =
             color.lab.iter().zip(self.lab).map(|(part, wanted)| (part - wanted).powi(2)).sum();
         let from_cone_roots = oklab::FROM_CONE_ROOTS.map(|row| row.map(|factor| factor as f32));
@@ -121,8 +117,7 @@ impl Wanted {
         let [lightness, red, yellow] = product(&from_cone_roots, roots);
         let saturation = red * self.hue[0] + yellow * self.hue[1];
         let hue = yellow * self.hue[0] - red * self.hue[1];
-        let hue_weight = if self.is_dark() { weights.hue_error } else { 1.0 };
-        let error = [lightness, saturation, hue_weight * hue];
+        let error = [lightness, saturation, palette.weights.hue_error * hue];
         Candidate { index: color.index, distance, error, lab: color.lab }
     }
 }
