@@ -30,19 +30,19 @@ pub(super) enum Setting {
     FrameRate,
 }
 
-/// The settings that are kept, and those that hold until the program ends.
-const KEPT: [(Setting, &str); 8] = [
+/// The settings in their order on the screen.
+const SETTINGS: [(Setting, &str); 10] = [
     (Setting::Difficulty, "Difficulty"),
     (Setting::Crosshair, "Crosshair"),
     (Setting::Compass, "Compass"),
     (Setting::Ghost, "Ghost of the best run"),
     (Setting::Bell, "Bell when noticed or hurt"),
+    (Setting::Minimap, "Map"),
+    (Setting::Mouse, "Mouse turns"),
     (Setting::Glyphs, "Characters"),
     (Setting::Colors, "Colours"),
     (Setting::FrameRate, "Frames a second"),
 ];
-const UNTIL_THE_END: [(Setting, &str); 2] =
-    [(Setting::Minimap, "Map"), (Setting::Mouse, "Mouse turns")];
 
 const FRAME_RATES: [u32; 4] = [15, 30, 60, 120];
 const GLYPHS: [(GlyphMode, &str); 3] =
@@ -63,7 +63,7 @@ impl App {
         } else {
             menu.line("A flag or the file holds again at the next start.")
         };
-        KEPT.into_iter().chain(UNTIL_THE_END).fold(menu, |menu, (setting, label)| {
+        SETTINGS.into_iter().fold(menu, |menu, (setting, label)| {
             menu.entry_with(label, self.value_of(setting), Choice::Change(setting))
         })
     }

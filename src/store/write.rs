@@ -55,14 +55,16 @@ fn write_saved(f: &mut fmt::Formatter<'_>, section: &str, saved: &SavedEntry) ->
     let SavedEntry { level, rules: Rules { difficulty, seed }, script, checksum, descent } = saved;
     writeln!(f, "\n[{section}]\nlevel = {}", quoted(level))?;
     writeln!(f, "difficulty = {}", quoted(difficulty.name()))?;
-    writeln!(f, "seed = \"{seed}\"\nscript = {}", quoted(script))?;
+    writeln!(f, "seed = \"{seed}\"")?;
     if let Some(descent) = descent {
         writeln!(f, "descent = {}", quoted(descent.name()))?;
     }
-    match checksum {
-        Some(checksum) => writeln!(f, "checksum = \"{checksum:016x}\""),
-        None => Ok(()),
+    if let Some(checksum) = checksum {
+        writeln!(f, "checksum = \"{checksum:016x}\"")?;
     }
+    // The last line is one without which there is no saved game, so that a file that was cut short has
+    // none without a checksum.
+    writeln!(f, "script = {}", quoted(script))
 }
 
 fn write_best(f: &mut fmt::Formatter<'_>, best: &Best) -> fmt::Result {
