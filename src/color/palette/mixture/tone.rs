@@ -2,7 +2,7 @@
 //!
 //! The palette of 256 has no brown darker than a lightness of 0.51 in Oklab, and no red darker than
 //! 0.31. Dark surfaces would have to be grey, or grey with bright dots. The curve lifts dark
-//! colours, by 0.1 at most, and hardly those that are almost black; colours lighter than 0.65 remain
+//! colours, by 0.12 at most, and hardly those that are almost black; colours lighter than 0.65 remain
 //! as they are. It increases everywhere, so that textures and light keep their order, and it is the
 //! same for all pixels of all pictures. A curve that lifts the darkest most was refused: rooms
 //! without light become grey.
@@ -22,7 +22,7 @@ impl ToneCurve {
     /// The factor of light that remains as it is.
     pub(crate) const ONE: i32 = 1 << 12;
     /// The most by which the lightness increases.
-    const LIFT: f64 = 0.1;
+    const LIFT: f64 = 0.12;
     /// The lightness from which colours remain as they are.
     const END: f64 = 0.65;
 

@@ -49,15 +49,15 @@ pub(super) const WEIGHTS_OF_256: [(f32, Weights); 3] = {
     };
     let dark = Weights {
         hue_error: 2.0,
-        contrast: [0.1, 0.05],
+        contrast: [0.15, 0.08],
         most_difference: 0.22,
         hue: 0.77,
-        least_chroma: 0.03,
+        least_chroma: 0.022,
         is_dark: true,
         ..bright
     };
-    let darkest = Weights { hue_error: 0.4, ..dark };
-    [(0.42, darkest), (0.57, dark), (f32::INFINITY, bright)]
+    let darkest = Weights { hue_error: 0.4, least_chroma: 0.03, ..dark };
+    [(0.4, darkest), (0.57, dark), (f32::INFINITY, bright)]
 };
 /// For a few saturated colours, which users redefine: they are used sparingly.
 pub(super) const WEIGHTS_OF_16: [(f32, Weights); 1] = {
