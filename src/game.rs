@@ -11,6 +11,7 @@
 mod checkpoint;
 mod checksum;
 mod collision;
+mod company;
 mod doors;
 mod encounter;
 mod exits;
@@ -43,16 +44,19 @@ mod turning;
 use crate::generate::{self, Site, Window};
 use crate::world::World;
 use checkpoint::Checkpoint;
+use company::{Members, playing};
 use doors::Doors;
 use guards::Guards;
 use hazards::Spikes;
-use health::Cause;
 use mechanisms::Mechanisms;
 use player::{FRICTION, Player, RUN, STILL, WALK};
 use show::Sprites;
-use tally::Counts;
 use tools::{Missiles, Smoke, Supplies};
 
+pub use crate::world::sprite::builtin::PlayerColor;
+pub use company::{
+    Company, Input, MOST_LAG, MOST_PLAYERS, OtherPlayer, PlayerId, PlayerView, Sees, Strikes,
+};
 pub use exits::is_exit_out_of_reach;
 pub use flight::Flight;
 pub use guards::{Alarm, GuardView, Mood};
@@ -94,9 +98,10 @@ pub struct Game {
     is_mission: bool,
     /// The window of a generated level, of which `world` shows a part.
     window: Option<Window>,
+    /// The player of a game for one; in a game for several, the one whose turn it is.
     player: Player,
-    /// What has killed the player, if something has.
-    killed_by: Option<Cause>,
+    /// The players of a game for several.
+    members: Option<Box<Members>>,
     doors: Doors,
     mechanisms: Mechanisms,
     spikes: Spikes,
@@ -107,7 +112,6 @@ pub struct Game {
     /// The sounds of the current step; empty between steps.
     sounds: Vec<Sound>,
     checkpoint: Checkpoint,
-    counts: Counts,
     steps: u64,
     revision: u64,
 }
@@ -133,7 +137,7 @@ impl Game {
             is_mission,
             window,
             player: Player::new(&world, supplies),
-            killed_by: None,
+            members: None,
             doors: Doors::default(),
             mechanisms: Mechanisms::new(&world),
             spikes: Spikes::new(&mut world),
@@ -143,7 +147,6 @@ impl Game {
             sprites: if is_mission { Sprites::added_to(&mut world) } else { Sprites::default() },
             sounds: Vec::new(),
             checkpoint: Checkpoint::default(),
-            counts: Counts::default(),
             steps: 0,
             revision: 0,
             world,
@@ -177,31 +180,51 @@ impl Game {
 
     /// Advances the game by one step of [`STEP`] seconds with these intents. Nothing moves after
     /// the exit; after death, nothing but what [`Intent::Retry`] does.
+    ///
+    /// In a game for several these are the intents of the first one, and the others want nothing.
     pub fn step(&mut self, intents: Intents) {
+        if self.members.is_some() {
+            let seen = self.steps;
+            return self.step_all(&[Input { player: PlayerId::FIRST, intents, seen }]);
+        }
         if self.is_finished() {
             return;
         }
         if self.is_dead() {
             return self.step_after_death(intents);
         }
+        let intents = self.move_one(intents);
+        self.thin_smoke();
+        self.move_doors();
+        self.act(intents);
+        self.move_others();
+        self.hear();
+        self.sounds.clear();
+        self.show();
+        self.move_window();
+        self.reach_checkpoint();
+        self.steps = self.steps.saturating_add(1);
+    }
+
+    /// Moves the player, with what they meet on their way. Returns the intents, of which a jump in
+    /// front of a door is to open it.
+    fn move_one(&mut self, intents: Intents) -> Intents {
         let intents = self.at_a_door(intents);
         let before = self.player.motion;
         self.move_player(intents);
         self.take_finds();
         self.meet_hazards(&before);
         self.refuse(before.cell());
-        self.pass_time();
-        self.move_doors();
-        self.open_doors(intents);
-        self.act(intents);
+        let has_ended = self.player.wait(1);
+        self.revision += u64::from(has_ended);
+        intents
+    }
+
+    /// Moves mechanisms, missiles and guards.
+    fn move_others(&mut self) {
         self.move_mechanisms();
         self.move_missiles();
         self.move_guards();
-        self.hear();
-        self.show();
-        self.move_window();
-        self.reach_checkpoint();
-        self.steps = self.steps.saturating_add(1);
     }
 
     fn step_after_death(&mut self, intents: Intents) {
@@ -230,8 +253,9 @@ impl Game {
         intents.iter().filter(acts_once).collect()
     }
 
-    /// Does what the player begins to want.
+    /// Opens the door ahead, and does what the player begins to want.
     fn act(&mut self, intents: Intents) {
+        self.open_doors(intents);
         let presses = self.presses(intents);
         let fresh = self.player.fresh(presses);
         self.player.pressed = presses;
@@ -246,29 +270,27 @@ impl Game {
         }
     }
 
-    /// Advances the player's clocks.
-    fn pass_time(&mut self) {
-        let has_ended = self.player.wait(1);
-        self.revision += u64::from(has_ended);
+    fn thin_smoke(&mut self) {
         if !self.smoke.is_empty() {
             self.smoke.step();
         }
     }
 
     fn move_doors(&mut self) {
-        let (motion, guards) = (self.player.motion, &self.guards);
-        let is_occupied = |cell| motion.touches(cell) || guards.touches(cell);
-        let has_moved = self.doors.step(&mut self.world, is_occupied);
+        let Self { player, members, guards, doors, world, .. } = self;
+        let is_touched =
+            |cell| playing(player, members.as_deref()).any(|(_, it)| it.motion.touches(cell));
+        let is_occupied = |cell| is_touched(cell) || guards.touches(cell);
+        let has_moved = doors.step(world, is_occupied);
         self.revision += u64::from(has_moved);
     }
 
     /// Lets the player hear the sounds of this step.
     fn hear(&mut self) {
         if self.is_mission {
-            let position = self.player.motion.position();
-            let heard = self.player.hearing.step(&self.world, 0, position, &self.sounds);
+            let (listener, position) = (self.turn(), self.player.motion.position());
+            let heard = self.player.hearing.step(&self.world, listener, position, &self.sounds);
             self.revision += u64::from(heard);
-            self.sounds.clear();
         }
     }
 

@@ -23,8 +23,8 @@ impl Game {
             rng::hash(2, self.mechanisms.words()),
             rng::hash(3, self.words_of_missiles()),
             self.guards.checksum(),
-            u64::from(self.counts.alarms),
-            u64::from(self.counts.deaths) << 32 | u64::from(self.counts.stunned),
+            u64::from(self.player.counts.alarms),
+            u64::from(self.player.counts.deaths) << 32 | u64::from(self.player.counts.stunned),
         ];
         let seed = self.rules.seed ^ self.rules.difficulty as u64;
         rng::hash(seed, parts)
@@ -45,7 +45,7 @@ impl Game {
             player.fell_from.to_bits(),
             player.last_thrust.map_or(u64::MAX, |step| step),
             keys,
-            self.killed_by.map_or(0, word_of_cause),
+            self.player.killed_by.map_or(0, word_of_cause),
         ];
         player.motion.words().into_iter().chain(supplies).chain(numbers)
     }
@@ -54,7 +54,7 @@ impl Game {
         let missiles = self.missiles.iter().flat_map(|missile| {
             let kind = match missile.kind {
                 MissileKind::Pebble => 0,
-                MissileKind::Dart => 1,
+                MissileKind::Dart { .. } => 1,
                 MissileKind::Flask => 2,
                 MissileKind::Bolt { points, .. } => 3 + u64::from(points),
             };
