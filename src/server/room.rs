@@ -19,7 +19,7 @@ mod mode;
 mod tests;
 mod view;
 
-use std::collections::VecDeque;
+use std::collections::{BTreeSet, VecDeque};
 use std::sync::Arc;
 
 pub(crate) use self::catalog::Catalog;
@@ -27,8 +27,8 @@ pub(crate) use self::entry::{CHAT_COLUMNS, Deed, Emote, Entry, MemberId, NAME_CO
 pub(crate) use self::header::{Header, Seat};
 pub(crate) use self::log::{Log, Queue, Recorded, parse as parse_log};
 use self::member::Member;
-pub(crate) use self::mode::{Mode, Phase, Role, Standing};
 use self::mode::{Field, Round, SECOND};
+pub(crate) use self::mode::{Mode, Phase, Role, Standing};
 pub(crate) use self::view::{MemberView, RoomView, Said};
 use super::line::Line;
 use crate::game::{Game, Input, Intent, Intents, PlayerColor, Rules};
@@ -49,6 +49,8 @@ pub(crate) struct Room {
     members: Vec<Member>,
     next_member: u32,
     step: u64,
+    /// The members who wish to begin the round again.
+    again: BTreeSet<MemberId>,
     emotes: Vec<(MemberId, Emote, u64)>,
     said: VecDeque<Said>,
     said_count: u64,
@@ -61,7 +63,8 @@ impl Room {
     /// level.
     pub(crate) fn new(catalog: &Arc<Catalog>, header: Header) -> Option<Self> {
         let world = catalog.world(&header.level)?.as_ref().clone();
-        let rules = Rules { difficulty: header.difficulty, seed: header.seed };
+        let rules =
+            Rules { difficulty: header.difficulty, seed: header.mode.game_seed(header.seed) };
         let game = Game::for_company(header.mode.prepared(world), rules, header.mode.company());
         let round_seed = rng::hash(header.seed, [u64::from(header.round)]);
         let mut room = Self {
@@ -71,6 +74,7 @@ impl Room {
             members: Vec::new(),
             next_member: header.next_member,
             step: 0,
+            again: BTreeSet::new(),
             emotes: Vec::new(),
             said: VecDeque::new(),
             said_count: 0,
@@ -86,7 +90,8 @@ impl Room {
     /// The header of the next round: the checkpoint after which the log of this one is not needed.
     pub(crate) fn next_header(&self) -> Header {
         let level = &self.header.level;
-        let level = if self.header.mode.moves_on() { self.catalog.after(level) } else { level };
+        let moves_on = self.header.mode.moves_on() && !self.standings.is_empty();
+        let level = if moves_on { self.catalog.after(level) } else { level };
         let won = |id| self.standings.iter().find(|it| it.member == id).map_or(0, |it| it.points);
         let seat = |member: &Member| Seat {
             id: member.id,
@@ -137,7 +142,12 @@ impl Room {
 
     /// Whether the next round is due.
     pub(crate) fn is_over(&self) -> bool {
-        self.round.is_over(self.step)
+        self.round.is_over(self.step) || self.all_wish_again()
+    }
+
+    fn all_wish_again(&self) -> bool {
+        let all = self.members.iter().all(|member| self.again.contains(&member.id));
+        all && !self.members.is_empty()
     }
 
     /// Applies an entry. One of a member who is not there has no effect.
@@ -149,6 +159,11 @@ impl Room {
             Deed::Want { seen, intents } => {
                 if let Some(member) = self.member_mut(id) {
                     (member.seen, member.intents) = (*seen, *intents);
+                }
+            }
+            Deed::Again => {
+                if self.member_mut(id).is_some() && self.again.insert(id) {
+                    self.say(id, "wishes to begin again".to_owned());
                 }
             }
             Deed::Say(line) => self.say(id, line.as_str().to_owned()),
@@ -237,6 +252,7 @@ impl Room {
     fn leave(&mut self, id: MemberId) {
         let Some(index) = self.members.iter().position(|member| member.id == id) else { return };
         let member = self.members.remove(index);
+        self.again.remove(&id);
         if let Some(player) = member.player {
             Arc::make_mut(&mut self.game).leave(player);
         }

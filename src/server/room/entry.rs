@@ -52,6 +52,8 @@ pub(crate) enum Deed {
     Say(Line),
     /// Shows all an emotion.
     Emote(Emote),
+    /// Wishes to begin the round again, which happens when all do.
+    Again,
 }
 
 /// The widest line of chat, in columns.
@@ -116,6 +118,7 @@ impl fmt::Display for Entry {
                 write!(f, "{step} want {member} {seen} {}", intents.words())
             }
             Deed::Say(line) => write!(f, "{step} say {member} {line}"),
+            Deed::Again => write!(f, "{step} again {member}"),
             Deed::Emote(emote) => write!(f, "{step} emote {member} {}", emote.name()),
         }
     }
@@ -134,6 +137,7 @@ impl Entry {
                 Deed::Join { color, name: Line::of(name, NAME_COLUMNS)? }
             }
             "leave" if rest.is_empty() => Deed::Leave,
+            "again" if rest.is_empty() => Deed::Again,
             "want" => {
                 let (seen, words) = rest.split_once(' ')?;
                 Deed::Want { seen: seen.parse().ok()?, intents: Intents::from_words(words)? }
@@ -154,7 +158,8 @@ mod tests {
     use crate::game::{Intent, Look};
 
     fn deed() -> impl Strategy<Value = Deed> {
-        let line = |columns| any::<String>().prop_filter_map("text", move |it| Line::of(&it, columns));
+        let line =
+            |columns| any::<String>().prop_filter_map("text", move |it| Line::of(&it, columns));
         let intents = prop::sample::subsequence(Intent::ALL.to_vec(), 0..=5);
         let intents = (intents, any::<i16>(), any::<i16>()).prop_map(|(intents, turn, tilt)| {
             let look = Look { turn: turn.max(-i16::MAX), tilt: tilt.max(-i16::MAX) };
@@ -164,6 +169,7 @@ mod tests {
             (prop::sample::select(&PlayerColor::ALL), line(NAME_COLUMNS))
                 .prop_map(|(color, name)| Deed::Join { color, name }),
             Just(Deed::Leave),
+            Just(Deed::Again),
             (any::<u64>(), intents).prop_map(|(seen, intents)| Deed::Want { seen, intents }),
             line(CHAT_COLUMNS).prop_map(Deed::Say),
             prop::sample::select(&Emote::ALL).prop_map(Deed::Emote),

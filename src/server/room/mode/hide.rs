@@ -53,6 +53,9 @@ impl Hide {
             None => whole,
             Some(found) => found.unwrap_or(0),
         };
-        field.ids().map(|id| (id, Score { rank: u64::MAX - hidden(id), steps: hidden(id) })).collect()
+        field
+            .ids()
+            .map(|id| (id, Score { rank: u64::MAX - hidden(id), steps: hidden(id) }))
+            .collect()
     }
 }

@@ -51,8 +51,7 @@ impl Tag {
             return;
         }
         let is_spared = |id| self.before == Some(id) && field.step < self.since + SPARED;
-        let touched =
-            field.ids().find(|&id| id != it && !is_spared(id) && field.touches(it, id));
+        let touched = field.ids().find(|&id| id != it && !is_spared(id) && field.touches(it, id));
         if touched.is_some() {
             self.become_it(touched, field.step);
         }

@@ -1,0 +1,5 @@
+//! The server.
+#![allow(dead_code)]
+
+mod line;
+mod room;
