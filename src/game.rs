@@ -238,7 +238,9 @@ impl Game {
 
     fn move_player(&mut self, intents: Intents) {
         let before = self.player.motion;
-        self.player.motion = before.stepped(&self.world, intents, self.pace());
+        self.find_those_in_the_way();
+        let others = self.members.as_deref().map_or(&[][..], |members| members.in_the_way());
+        self.player.motion = before.stepped(&self.world, others, intents, self.pace());
         if self.is_mission {
             self.hear_steps(&before, intents);
         }

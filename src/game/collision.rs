@@ -49,6 +49,11 @@ pub(super) trait Obstacles {
         None
     }
 
+    /// The middles of other circles of the same radius that block.
+    fn circles(&self) -> &[DVec2] {
+        &[]
+    }
+
     /// Whether a cell touched by a circle around `center` does not block any more, because it gives
     /// way or because the circle has been lifted onto it.
     fn gives_way(&mut self, column: i64, row: i64, center: DVec2, radius: Radius) -> bool {
@@ -84,8 +89,8 @@ pub(super) fn slide<O: Obstacles>(
             return Body { position, velocity };
         };
         position = contact.position;
-        let (column, row) = contact.cell;
-        if obstacles.gives_way(column, row, position, radius) {
+        let gives_way = |(column, row)| obstacles.gives_way(column, row, position, radius);
+        if contact.cell.is_some_and(gives_way) {
             remaining = contact.remaining;
             continue;
         }
@@ -119,6 +124,12 @@ fn without_inward(vector: DVec2, normal: DVec2) -> DVec2 {
 /// Whether a circle around `center` overlaps nothing that blocks; it may touch. Cells are closed
 /// squares.
 pub(super) fn is_clear<O: Obstacles>(obstacles: &O, center: DVec2, radius: Radius) -> bool {
+    let least = 2.0 * radius.0;
+    let is_apart = |other: &DVec2| other.distance_squared(center) >= least * least;
+    obstacles.circles().iter().all(is_apart) && is_clear_of_cells(obstacles, center, radius)
+}
+
+fn is_clear_of_cells<O: Obstacles>(obstacles: &O, center: DVec2, radius: Radius) -> bool {
     let (column, row) = cell_of(center);
     let around = (row - 1..=row + 1).flat_map(|r| (column - 1..=column + 1).map(move |c| (c, r)));
     around.filter(|&(column, row)| !is_clear_of(center, column, row, radius)).all(

@@ -2,9 +2,11 @@
 
 use super::seen::Track;
 use super::{Company, MOST_PLAYERS};
+use crate::game::checksum::{word_of, words_of_player};
 use crate::game::guards::Target;
 use crate::game::player::Player;
 use crate::game::{Game, Intents};
+use crate::rng::hash;
 use crate::world::sprite::builtin::PlayerColor;
 use crate::world::{Cell, Figure, SpriteId, Thing};
 
@@ -100,6 +102,27 @@ impl Members {
         self.each().any(|(_, member)| member.checkpoint == Some(cell))
     }
 
+    /// What rules depend on, of all players.
+    pub(in crate::game) fn words(&self) -> impl Iterator<Item = u64> {
+        let members = self.each().map(|(index, member)| {
+            let counts = member.player.counts;
+            let numbers = [
+                index as u64,
+                member.color as u64,
+                u64::from(member.has_won),
+                u64::from(member.stunned) << 32 | u64::from(member.spared) << 16,
+                member.joined,
+                member.ended.unwrap_or(u64::MAX),
+                member.checkpoint.map_or(u64::MAX, word_of),
+                u64::from(counts.alarms) << 32 | u64::from(counts.deaths),
+                u64::from(counts.stunned),
+            ];
+            let words = numbers.into_iter().chain(words_of_player(&member.player));
+            hash(0, words.chain(member.track.words()))
+        });
+        std::iter::once(u64::from(self.treasure_of_the_gone)).chain(members)
+    }
+
     /// The first free slot.
     pub(super) fn free_slot(&self) -> Option<usize> {
         let free = self.slots.iter().position(Option::is_none);
@@ -145,6 +168,14 @@ impl Game {
     /// when the step began.
     pub(in crate::game) fn playing(&self) -> impl Iterator<Item = (usize, &Player)> {
         playing(&self.player, self.members.as_deref())
+    }
+
+    /// Whether nobody is alive in a game for several, or has yet to reach the exit: time does not
+    /// pass in it.
+    pub fn is_deserted(&self) -> bool {
+        let stands =
+            |(_, member): (usize, &Member)| !member.has_won && member.player.killed_by.is_none();
+        self.members.as_ref().is_some_and(|members| !members.each().any(stands))
     }
 
     /// The member whose turn it is.
