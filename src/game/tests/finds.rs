@@ -76,7 +76,7 @@ fn falls_do_not_hurt_in_an_easy_game_which_keeps_what_was_found() {
     stage.walk_to(8).play(10, &[Intent::Forward]).play(180, &[]);
     assert_eq!((stage.points(), stage.game.outcome()), (6, Outcome::Playing));
     // As if something had killed the player there.
-    stage.game.player.killed_by = Some(Cause::Water);
+    stage.game.player.killed_by = Some(crate::game::health::Cause::Water);
     stage.press(Intent::Retry);
     assert_eq!((stage.cell().column, stage.game.treasure()), (4, Share { found: 35, total: 35 }));
 }

@@ -232,3 +232,6 @@ fn club(model: &mut Model, joints: &Joints, frame: PlayerFrame) {
     let end = end.with_z(end.z.clamp(1.4, 25.0));
     model.limb([hand, end], [0.8, 1.5], CLUB);
 }
+
+#[cfg(test)]
+mod tests;
