@@ -154,6 +154,17 @@ impl Game {
         Some(done)
     }
 
+    /// Lets each player who plays have their turn while `act` runs.
+    pub(in crate::game) fn for_each_player(&mut self, act: impl Fn(&mut Self)) {
+        let count = self.members.as_ref().map_or(1, |members| members.slots.len());
+        for index in 0..count {
+            let is_playing = |it: &Members| it.member(index).is_some_and(|it| it.is_playing);
+            if self.members.as_deref().is_none_or(is_playing) {
+                self.in_turn(index, &act);
+            }
+        }
+    }
+
     /// Exchanges the player who has the turn with the one in a slot. Returns whose turn it was.
     fn swap_turn(&mut self, index: usize) -> Option<Option<usize>> {
         let Self { members, player, .. } = self;
