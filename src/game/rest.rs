@@ -13,7 +13,14 @@ impl Game {
     /// Advances the clocks by `steps` steps in which nothing moves. Has the effect of as many calls
     /// of [`Game::step`] if `steps` is at most [`Game::quiet_steps`].
     pub fn wait(&mut self, steps: u64) {
-        if self.members.is_none() && !self.is_finished() && !self.is_dead() {
+        if self.members.is_some() {
+            // Every further step without players is equal to the first.
+            if steps > 0 {
+                self.step_all(&[]);
+            }
+            return;
+        }
+        if !self.is_finished() && !self.is_dead() {
             self.steps = self.steps.saturating_add(steps);
             self.doors.wait(steps);
             self.player.wait(steps);

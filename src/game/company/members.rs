@@ -37,7 +37,7 @@ pub(in crate::game) struct Members {
 pub(super) struct Member {
     pub(super) player: Player,
     pub(super) color: PlayerColor,
-    /// Whether the player was alive and had not reached the exit when the step began.
+    /// Whether the player is alive and has not reached the exit; it changes between steps.
     pub(super) is_playing: bool,
     pub(super) has_won: bool,
     /// What the player wants in this step, and the step that they saw.
