@@ -39,6 +39,7 @@ pub fn play(
     store: Store,
     recording: Recording,
 ) -> Result<Farewell, Error> {
+    let settings = settings.preferring(&store.preferences());
     let mut options = Options::from_environment(|name| env::var(name).ok());
     if let Some(depth) = settings.depth {
         options.color_depth = Detected::Certain(depth);

@@ -92,6 +92,19 @@ fn line(level: &Level, difficulty: Difficulty) -> Result<String, String> {
     ))
 }
 
+/// A par time is about twice the time of the slowest of a level's scripts, which know the way.
+#[test]
+fn par_times_fit_the_scripts() {
+    for level in builtin::LEVELS {
+        let times =
+            Difficulty::ALL.map(|difficulty| replayed(level, difficulty).unwrap().elapsed());
+        let slowest = times.into_iter().fold(0.0, f64::max);
+        let par = f64::from(levels::world(level).par().unwrap());
+        let range = 1.5 * slowest..=3.0 * slowest;
+        assert!(range.contains(&par), "{}: par {par} s, slowest script {slowest:.1} s", level.name);
+    }
+}
+
 #[test]
 fn scripts_win_every_level_on_every_difficulty() {
     update_all();

@@ -9,6 +9,7 @@ mod landing;
 mod map;
 mod playing;
 mod several;
+mod steps;
 
 #[path = "../support/reach.rs"]
 mod reach;

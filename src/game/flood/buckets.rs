@@ -46,17 +46,14 @@ impl<const COUNT: usize> Buckets<COUNT> {
     /// Puts a cell into a bucket.
     pub(super) fn push(&mut self, bucket: usize, cell: Cell) {
         let entry = Entry { cell, below: self.tops[bucket] };
-        let place = match self.entries.get_mut(self.free as usize) {
-            Some(free) => {
-                let place = self.free;
-                self.free = free.below;
-                *free = entry;
-                place
-            }
-            None => {
-                self.entries.push(entry);
-                self.entries.len() as u32 - 1
-            }
+        let place = if let Some(free) = self.entries.get_mut(self.free as usize) {
+            let place = self.free;
+            self.free = free.below;
+            *free = entry;
+            place
+        } else {
+            self.entries.push(entry);
+            self.entries.len() as u32 - 1
         };
         self.tops[bucket] = place;
         self.count += 1;
