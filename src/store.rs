@@ -34,6 +34,8 @@ mod home;
 mod names;
 mod progress;
 mod read;
+#[cfg(feature = "cli")]
+mod replayed;
 mod write;
 
 use std::path::Path;
@@ -44,6 +46,8 @@ use home::Home;
 pub use names::map_key;
 use progress::Progress;
 pub use progress::{Daily, Preferences, SavedGame};
+#[cfg(feature = "cli")]
+pub(crate) use replayed::{Descent, replayed};
 
 use crate::world::Difficulty;
 
