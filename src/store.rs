@@ -31,6 +31,8 @@ mod best;
 mod change;
 mod disk;
 mod home;
+#[cfg(feature = "serve")]
+pub mod host;
 mod names;
 mod progress;
 mod read;
