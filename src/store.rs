@@ -34,6 +34,8 @@ mod home;
 #[cfg(feature = "serve")]
 pub mod host;
 mod names;
+#[cfg(feature = "serve")]
+mod private;
 mod progress;
 mod read;
 #[cfg(feature = "cli")]

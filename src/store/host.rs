@@ -21,16 +21,20 @@
 mod account;
 mod ban;
 mod failure;
+mod memory;
 mod name;
 mod score;
+mod sqlite;
 mod time;
 mod verify;
 
 pub use account::{Account, AccountId, AccountKey, AccountSettings};
 pub use ban::{AddressPrefix, Ban, BanTarget, Identity};
 pub use failure::{Refusal, StoreFailure};
+pub use memory::MemoryStore;
 pub use name::{Name, NameFault, printable};
 pub use score::{DailyScore, DailyTry, LevelBoard, LevelScore};
+pub use sqlite::SqliteStore;
 pub use time::{Day, UnixTime};
 pub use verify::{
     MOST_SCRIPT_BYTES, MOST_SCRIPT_STEPS, Unverified, VerifiedDescent, VerifiedLevel, VerifiedRun,
@@ -95,7 +99,7 @@ pub trait HostStore: Send {
     /// Replaces the settings of an account.
     ///
     /// # Errors
-    /// See [`account`](Self::account).
+    /// If the configuration is too long; and see [`account`](Self::account).
     fn set_settings(
         &mut self,
         account: AccountId,
@@ -206,3 +210,6 @@ pub trait HostStore: Send {
         board: &LevelBoard,
     ) -> Result<Option<String>, StoreFailure>;
 }
+
+#[cfg(test)]
+mod tests;

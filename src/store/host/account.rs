@@ -2,7 +2,7 @@
 
 use std::fmt;
 
-use super::{Name, UnixTime};
+use super::{Name, StoreFailure, UnixTime};
 use crate::store::Preferences;
 
 /// The number of an account.
@@ -45,13 +45,18 @@ pub struct AccountSettings {
     /// The choices in the game.
     pub preferences: Preferences,
     /// Keys, glyphs, colours and the rest, as the text of a configuration file. The store does not read
-    /// it. A text of more than [`Self::MOST_BYTES`] is not kept.
+    /// it. A text of more than [`Self::MOST_BYTES`] bytes is refused.
     pub configuration: String,
 }
 
 impl AccountSettings {
     /// The longest configuration that is kept, in bytes.
     pub const MOST_BYTES: usize = 16 << 10;
+
+    pub(super) fn checked(&self) -> Result<&Self, StoreFailure> {
+        let is_short = self.configuration.len() <= Self::MOST_BYTES;
+        is_short.then_some(self).ok_or_else(|| StoreFailure::new("the settings are too long"))
+    }
 }
 
 /// What OpenSSH puts before the digits.

@@ -67,6 +67,14 @@ impl Ban {
 }
 
 impl BanTarget {
+    /// Whether a ban of it takes the place of one of `other`.
+    pub(super) fn is_same(&self, other: &Self) -> bool {
+        match (self, other) {
+            (Self::Name(name), Self::Name(other)) => name.looks_like(other),
+            _ => self == other,
+        }
+    }
+
     /// Whether it applies to somebody.
     pub fn applies_to(&self, identity: &Identity<'_>) -> bool {
         match self {

@@ -1,9 +1,9 @@
 //! Entries of leaderboards.
 
-use super::{AccountId, Day, Name, UnixTime};
+use super::{AccountId, Day, Name, UnixTime, VerifiedLevel};
 use crate::game::{Rank, Tally};
 use crate::map::builtin;
-use crate::store::Reached;
+use crate::store::{Best, Improved, Reached};
 use crate::world::Difficulty;
 
 /// A board: a built-in level at one difficulty.
@@ -78,4 +78,12 @@ impl DailyTry {
     pub fn day(&self) -> Day {
         self.day
     }
+}
+
+/// The best of a known result and a run, and what the run improves.
+pub(super) fn with_run(known: Option<Best>, run: &VerifiedLevel) -> (Best, Improved) {
+    let of_run = Best { tally: run.tally(), rank: run.rank() };
+    let Some(known) = known else { return (of_run, Improved { time: true, rank: true }) };
+    let time = of_run.tally.steps < known.tally.steps;
+    (known.and(of_run), Improved { time, rank: of_run.rank > known.rank })
 }

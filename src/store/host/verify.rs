@@ -188,3 +188,76 @@ impl fmt::Display for Unverified {
 }
 
 impl std::error::Error for Unverified {}
+
+#[cfg(test)]
+impl VerifiedLevel {
+    pub(super) fn made_up(board: LevelBoard, tally: Tally, rank: Rank, script: &str) -> Self {
+        Self { board, tally, rank, script: script.to_owned() }
+    }
+}
+
+#[cfg(test)]
+impl VerifiedDescent {
+    pub(super) fn made_up(rules: Rules, reached: Reached, script: &str) -> Self {
+        Self { rules, reached, script: script.to_owned() }
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    const WON: &str = include_str!("../../../maps/scripts/cellar.normal.script");
+
+    #[test]
+    fn a_script_that_wins_is_a_run() {
+        let VerifiedRun::Level(run) = verify(WON).unwrap() else { panic!("not a level") };
+        assert_eq!((run.board().level(), run.board().difficulty()), ("cellar", Difficulty::Normal));
+        assert!(run.tally().steps > 0 && run.tally().steps <= MOST_SCRIPT_STEPS);
+        // What is kept is a run, too, and the same one.
+        assert_eq!(verify(run.script()).unwrap(), VerifiedRun::Level(run));
+    }
+
+    #[test]
+    fn what_comes_after_the_exit_does_not_count() {
+        let (run, longer) = (verify(WON).unwrap(), verify(&format!("{WON}9 s back\n")).unwrap());
+        let (VerifiedRun::Level(run), VerifiedRun::Level(longer)) = (run, longer) else {
+            panic!("not a level")
+        };
+        assert_eq!((run.tally(), run.rank()), (longer.tally(), longer.rank()));
+    }
+
+    #[test]
+    fn other_scripts_are_refused_in_a_sentence() {
+        let shorter = WON.lines().take(6).collect::<Vec<_>>().join("\n");
+        let steps = |count: u64| format!("level cellar\n{count} steps stand\n").repeat(1);
+        let long = steps(MOST_SCRIPT_STEPS) + "1 step stand\n";
+        for (script, expected) in [
+            (shorter.as_str(), "reaches no exit"),
+            ("2 s forward\n", "has no board"),
+            ("level tests/maps/way_out.toml\n2 s forward\n", "has no board"),
+            ("level /dev/zero\n2 s forward\n", "has no board"),
+            ("level floor 2\n2 s forward\n", "has no board"),
+            ("level floor 1\n2 s forward\n", "reaches no exit"),
+            (&WON.replace("seed 0", "seed 1"), "another seed"),
+            (&long, "longer than half an hour"),
+            (&"#".repeat(MOST_SCRIPT_BYTES + 1), "longer than half an hour"),
+            ("level cellar\n2 s fly\n", "nobody can want"),
+            ("", "no stretch of time"),
+        ] {
+            let sentence = verify(script).unwrap_err().to_string();
+            assert!(sentence.contains(expected), "{sentence}");
+        }
+    }
+
+    #[test]
+    fn a_daily_run_has_the_seed_of_a_day_and_the_usual_difficulty() {
+        let day = |seed, difficulty| {
+            VerifiedDescent::made_up(Rules { seed, difficulty }, Reached::default(), "").day()
+        };
+        assert_eq!(day(20_261_122, Difficulty::Normal), Day::parse("2026-11-22"));
+        assert_eq!(day(20_261_122, Difficulty::Easy), None);
+        assert_eq!(day(20_261_322, Difficulty::Normal), None);
+        assert_eq!(day(u64::MAX, Difficulty::Normal), None);
+    }
+}
