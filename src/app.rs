@@ -41,6 +41,7 @@ mod stats;
 mod status;
 mod steps;
 mod summary;
+mod time;
 mod vitals;
 mod watch;
 

@@ -15,6 +15,7 @@ use cellcaster::world::Difficulty;
 
 use crate::careful;
 use crate::levels::{self, route};
+use crate::pilot::Pilot;
 
 /// The variable that asks for new scripts.
 const UPDATE: &str = "CELLCASTER_UPDATE_SCRIPTS";
@@ -43,7 +44,7 @@ fn replayed(level: &Level, difficulty: Difficulty) -> Result<Game, String> {
 fn update(level: &Level, difficulty: Difficulty) -> Result<String, String> {
     let name = format!("{}.{}", level.name, difficulty.name());
     let game = Game::with_rules(levels::world(level), Rules { difficulty, seed: 0 });
-    let pilot = careful::search(&game, &route(level))
+    let pilot = careful::search(&Pilot::new(game), &route(level))
         .map_err(|failure| format!("{name}: nothing found{failure}"))?;
     let header = format!("level {}\ndifficulty {}\nseed 0\n", level.name, difficulty.name());
     fs::write(path(level, difficulty), header + &pilot.script())
