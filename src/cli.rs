@@ -22,6 +22,8 @@ mod play;
 mod plot;
 mod recording;
 mod replay;
+#[cfg(feature = "serve")]
+mod scores;
 mod script;
 mod snapshot;
 mod today;
@@ -60,6 +62,8 @@ impl Command {
             Self::Bench(options) => bench::run(&options),
             Self::Levels(options) => levels::run(&options),
             Self::Replay(options) => replay::run(&options),
+            #[cfg(feature = "serve")]
+            Self::Scores(options) => scores::run(&options),
             Self::Wire(options) => wire::run(&options),
         }
     }
