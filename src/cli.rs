@@ -23,6 +23,8 @@ mod plot;
 mod recording;
 mod replay;
 mod script;
+#[cfg(feature = "serve")]
+mod serve;
 mod snapshot;
 mod today;
 mod verify;
@@ -60,6 +62,8 @@ impl Command {
             Self::Bench(options) => bench::run(&options),
             Self::Levels(options) => levels::run(&options),
             Self::Replay(options) => replay::run(&options),
+            #[cfg(feature = "serve")]
+            Self::Serve(options) => serve::run(options),
             Self::Wire(options) => wire::run(&options),
         }
     }

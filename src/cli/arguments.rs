@@ -19,6 +19,8 @@ mod option;
 mod order;
 mod play;
 mod replay;
+#[cfg(feature = "serve")]
+mod serve;
 mod snapshot;
 mod value;
 mod wire;
@@ -40,6 +42,8 @@ pub(super) use self::map::STANDARD_INPUT;
 use self::option::OptionSpec;
 pub(super) use self::play::{FidelityChoice, Play};
 pub(super) use self::replay::Replay;
+#[cfg(feature = "serve")]
+pub(super) use self::serve::Serve;
 pub(super) use self::snapshot::{Format, Snapshot};
 pub(super) use self::value::Size;
 pub(super) use self::wire::{Wire, WireFormat};
@@ -61,6 +65,8 @@ pub(super) enum Command {
     Accuracy(Accuracy),
     Bench(Bench),
     Replay(Replay),
+    #[cfg(feature = "serve")]
+    Serve(Serve),
     Wire(Wire),
 }
 
@@ -89,7 +95,7 @@ impl Command {
 }
 
 /// The subcommands in the order of the help.
-const SUBCOMMANDS: [&Subcommand; 13] = [
+const SUBCOMMANDS: &[&Subcommand] = &[
     &play::SUBCOMMAND,
     &snapshot::SUBCOMMAND,
     &cast::SUBCOMMAND,
@@ -99,6 +105,8 @@ const SUBCOMMANDS: [&Subcommand; 13] = [
     &accuracy::SUBCOMMAND,
     &bench::SUBCOMMAND,
     &replay::SUBCOMMAND,
+    #[cfg(feature = "serve")]
+    &serve::SUBCOMMAND,
     &wire::SUBCOMMAND,
     &about::COMPLETIONS,
     &about::MAN,
@@ -140,7 +148,7 @@ pub(super) fn subcommand_names() -> impl Iterator<Item = &'static str> {
 }
 
 fn named(name: &str) -> Option<&'static Subcommand> {
-    SUBCOMMANDS.into_iter().find(|subcommand| subcommand.name == name)
+    SUBCOMMANDS.iter().copied().find(|subcommand| subcommand.name == name)
 }
 
 /// The whole program, for clap.
@@ -161,7 +169,7 @@ pub(super) fn description() -> clap::Command {
                 .help("Print the version")
                 .action(ArgAction::Version),
         )
-        .subcommands(SUBCOMMANDS.into_iter().map(Subcommand::description))
+        .subcommands(SUBCOMMANDS.iter().map(|subcommand| subcommand.description()))
         .args_conflicts_with_subcommands(true)
         .args_override_self(true)
         .disable_help_flag(true)

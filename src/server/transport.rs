@@ -1,5 +1,6 @@
 //! From sockets to visitors.
 
+mod client;
 mod connection;
 mod handler;
 mod hello;

@@ -15,7 +15,7 @@ use tokio::net::TcpStream;
 use tokio::sync::{oneshot, watch};
 use tokio::time::{Instant, sleep, sleep_until, timeout};
 
-use super::handler::{Begun, Client};
+use super::client::{Begun, Client};
 use super::outbox::Passage;
 use super::wire::{ByteLimits, Line, Wire};
 use super::{Counters, Host, Phase, locked};
