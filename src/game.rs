@@ -224,10 +224,11 @@ impl Game {
     /// The intents that are recorded from step to step, because each press acts once. A lever turns
     /// once for each press, too.
     fn presses(&self, intents: Intents) -> Intents {
-        let opens_once = self.mechanisms.has_handles();
-        let acts_once =
-            |intent: &Intent| intent.acts_once() || opens_once && *intent == Intent::Open;
-        intents.iter().filter(acts_once).collect()
+        let mut presses = intents.once();
+        if self.mechanisms.has_handles() && intents.contains(Intent::Open) {
+            presses.insert(Intent::Open);
+        }
+        presses
     }
 
     /// Does what the player begins to want.

@@ -11,9 +11,11 @@ impl Game {
         }
         let (alarm, target) = (self.guards.alarm(), self.target());
         let clouds = self.smoke.clouds();
-        let acts = self.guards.step(&self.world, &[target], &self.sounds, clouds).to_vec();
-        for act in acts {
-            self.answer(act);
+        let count = self.guards.step(&self.world, &[target], &self.sounds, clouds).len();
+        for index in 0..count {
+            if let Some(act) = self.guards.act(index) {
+                self.answer(act);
+            }
         }
         self.revision += u64::from(self.guards.alarm() != alarm);
     }

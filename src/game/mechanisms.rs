@@ -194,11 +194,16 @@ impl Game {
     }
 
     fn move_tiles(&mut self) {
+        let revision = self.revision;
         for index in 0..self.mechanisms.moving.len() {
             let cell = self.mechanisms.moving[index];
             if let Some(step) = self.next_step(cell) {
                 self.mechanisms.moving[index] = self.moved(cell, step);
             }
+        }
+        if self.revision != revision {
+            // What has moved may have made room.
+            self.mechanisms.moving.iter_mut().for_each(MovingCell::try_again);
         }
     }
 
@@ -212,36 +217,39 @@ impl Game {
         cell.step(&self.world, is_driven)
     }
 
-    /// Whether a step would change a moving cell.
+    /// Whether a step would change a moving cell, where nobody has moved since the last one.
     fn would_move(&self, cell: MovingCell) -> bool {
-        let Some(step) = self.next_step(cell) else { return false };
-        let Some(state) = step.state else { return true };
-        if !self.is_in_the_way(cell.cell()) {
-            return true;
-        }
-        let mut world = self.world.clone();
-        world.set_state(cell.cell(), state);
-        !self.is_crushing(&world, cell, state)
+        self.next_step(cell).is_some_and(|step| step.state.is_none() || !cell.is_blocked())
     }
 
-    /// The cell after `step`, with all who stand on it; the same cell if somebody is in the way.
+    /// The cell after `step`, with all who stand on it; the cell as it was, but blocked, if somebody
+    /// is in the way.
     fn moved(&mut self, cell: MovingCell, step: Step) -> MovingCell {
         let Some(state) = step.state else { return step.after };
         let before = cell.shown(&self.world);
         let stood = self.player.motion.stands(&self.world);
         self.world.set_state(cell.cell(), state);
-        if self.is_crushing(&self.world, cell, state) {
+        if self.is_crushing(cell, state) {
             self.world.set_state(cell.cell(), before);
-            return cell;
+            self.tell_who_blocks(cell);
+            return cell.blocked();
         }
         self.revision += 1;
         self.hear_crumbling(cell, step);
         let falls = cell.driver(&self.world) == Driver::Weight;
-        if let Some(feet) = self.feet_after(&self.world, stood && !falls) {
+        self.guards.floor_moved(&self.world, cell.cell(), !falls);
+        if let Some(feet) = self.feet_after(stood && !falls) {
             self.player.motion = self.player.motion.carried_to(feet);
             self.player.fell_from = feet;
         }
         step.after
+    }
+
+    /// Says that a cell stops, once, to a player who is in the way.
+    fn tell_who_blocks(&mut self, cell: MovingCell) {
+        if !cell.is_blocked() && self.player.motion.touches(cell.cell()) {
+            self.say("It stops: you are in the way.".to_owned());
+        }
     }
 
     /// A floor that crumbles cracks, and then breaks.
@@ -255,8 +263,9 @@ impl Game {
         }
     }
 
-    /// Whether somebody has no room in `world`, in which `cell` has just become `state`.
-    fn is_crushing(&self, world: &World, cell: MovingCell, state: TileId) -> bool {
+    /// Whether somebody has no room in the world, in which `cell` has just become `state`.
+    fn is_crushing(&self, cell: MovingCell, state: TileId) -> bool {
+        let world = &self.world;
         let tile = world.tile(state);
         let rises = tile.heights.floor() > world.tile(cell.shown(world)).heights.floor();
         if rises && matches!(tile.kind, TileKind::Wall(_)) {
@@ -270,10 +279,9 @@ impl Game {
                 && !(motion.has_room(world) || motion.lifted(world).is_some())
     }
 
-    /// The height of the player's feet in `world`, if that has lifted or, where they stood, lowered
-    /// them.
-    fn feet_after(&self, world: &World, stood: bool) -> Option<f64> {
-        let motion = self.player.motion;
+    /// The height of the player's feet, if the world has lifted or, where they stood, lowered them.
+    fn feet_after(&self, stood: bool) -> Option<f64> {
+        let (motion, world) = (self.player.motion, &self.world);
         if !motion.has_room(world) {
             return motion.lifted(world);
         }

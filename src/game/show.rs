@@ -5,7 +5,7 @@ use super::Game;
 use super::guards::Target;
 use super::tools::{Missile, MissileKind, Puff};
 use crate::world::sprite::builtin;
-use crate::world::{Cell, Figure, Heading, Lamp, Light, Reach, SpriteId, World};
+use crate::world::{Figure, Heading, Lamp, Light, Reach, SpriteId, World};
 
 /// The sprites of what flies; each is `None` where nothing can fly.
 #[derive(Clone, Copy, Debug, PartialEq, Default)]
@@ -113,7 +113,7 @@ impl Game {
     fn show_figures(&mut self) {
         let Self { guards, missiles, smoke, sprites, .. } = self;
         let is_still = !guards.has_changed() && missiles.is_empty() && smoke.is_empty();
-        if is_still && self.world.figures().len() == guards.figures().count() {
+        if is_still && self.world.figures().len() == guards.figure_count() {
             return;
         }
         let missiles = missiles.iter().filter_map(|missile| sprites.missile(missile));
@@ -124,8 +124,7 @@ impl Game {
 
     fn show_lamps(&mut self) {
         let lamp = self.player.has_light.then(|| (self.player.motion.cell(), lamp()));
-        let lamps: Vec<(Cell, Lamp)> = lamp.into_iter().chain(self.guards.lamps()).collect();
-        self.world.set_moving_lamps(&lamps);
+        self.world.set_moving_lamps(lamp.into_iter().chain(self.guards.lamps()));
     }
 }
 

@@ -1,5 +1,6 @@
 //! Properties of the game, in small levels.
 
+mod encounters;
 mod finds;
 mod hazards;
 mod mechanisms;

@@ -8,6 +8,7 @@ mod growth;
 mod landing;
 mod map;
 mod playing;
+mod steps;
 
 #[path = "../support/reach.rs"]
 mod reach;
