@@ -25,6 +25,8 @@ mod replay;
 #[cfg(feature = "serve")]
 mod scores;
 mod script;
+#[cfg(feature = "serve")]
+mod serve;
 mod snapshot;
 mod today;
 mod verify;
@@ -64,6 +66,8 @@ impl Command {
             Self::Replay(options) => replay::run(&options),
             #[cfg(feature = "serve")]
             Self::Scores(options) => scores::run(&options),
+            #[cfg(feature = "serve")]
+            Self::Serve(options) => serve::run(options),
             Self::Wire(options) => wire::run(&options),
         }
     }

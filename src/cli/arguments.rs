@@ -21,6 +21,8 @@ mod play;
 mod replay;
 #[cfg(feature = "serve")]
 mod scores;
+#[cfg(feature = "serve")]
+mod serve;
 mod snapshot;
 mod value;
 mod wire;
@@ -44,6 +46,8 @@ pub(super) use self::play::{FidelityChoice, Play};
 pub(super) use self::replay::Replay;
 #[cfg(feature = "serve")]
 pub(super) use self::scores::{Scores, ScoresFormat};
+#[cfg(feature = "serve")]
+pub(super) use self::serve::Serve;
 pub(super) use self::snapshot::{Format, Snapshot};
 pub(super) use self::value::Size;
 pub(super) use self::wire::{Wire, WireFormat};
@@ -67,6 +71,8 @@ pub(super) enum Command {
     Replay(Replay),
     #[cfg(feature = "serve")]
     Scores(Scores),
+    #[cfg(feature = "serve")]
+    Serve(Serve),
     Wire(Wire),
 }
 
@@ -105,6 +111,8 @@ const SUBCOMMANDS: &[&Subcommand] = &[
     &accuracy::SUBCOMMAND,
     &bench::SUBCOMMAND,
     &replay::SUBCOMMAND,
+    #[cfg(feature = "serve")]
+    &serve::SUBCOMMAND,
     &wire::SUBCOMMAND,
     #[cfg(feature = "serve")]
     &scores::SUBCOMMAND,

@@ -1,5 +1,7 @@
 //! Accounts, names and settings in the file.
 
+use std::num::NonZeroU32;
+
 use rusqlite::{Connection, OptionalExtension, Result, Row, params};
 
 use super::bans;
@@ -8,6 +10,7 @@ use crate::store::host::{
     Account, AccountId, AccountKey, AccountSettings, Identity, NAME_HELD, Name, RENAME_WAIT,
     Refusal, UnixTime, ban,
 };
+use crate::store::values::{COLORS, GLYPHS, name_of, named};
 use crate::world::Difficulty;
 
 const COLUMNS: &str = "id, key, name, named_at, created_at, seen_at";
@@ -75,18 +78,23 @@ pub(super) fn note_visit(connection: &Connection, id: AccountId, now: UnixTime) 
 }
 
 pub(super) fn settings(connection: &Connection, id: AccountId) -> Result<AccountSettings> {
-    let sql = "SELECT crosshair, compass, bell, ghost, difficulty, configuration \
-               FROM settings WHERE account = ?1";
+    let sql = "SELECT crosshair, compass, bell, ghost, difficulty, glyphs, colors, \
+               frames_per_second, configuration FROM settings WHERE account = ?1";
     let settings = connection.query_row(sql, [id.0], |row| {
         let difficulty: String = row.get(4)?;
+        let [glyphs, colors]: [Option<String>; 2] = [row.get(5)?, row.get(6)?];
+        let frames: Option<u32> = row.get(7)?;
         let preferences = Preferences {
             crosshair: row.get(0)?,
             compass: row.get(1)?,
             bell: row.get(2)?,
             ghost: row.get(3)?,
             difficulty: Difficulty::named(&difficulty).unwrap_or_default(),
+            glyphs: glyphs.and_then(|name| named(&GLYPHS, &name)),
+            colors: colors.and_then(|name| named(&COLORS, &name)),
+            frames_per_second: frames.and_then(NonZeroU32::new),
         };
-        Ok(AccountSettings { preferences, configuration: row.get(5)? })
+        Ok(AccountSettings { preferences, configuration: row.get(8)? })
     });
     Ok(settings.optional()?.unwrap_or_default())
 }
@@ -97,11 +105,27 @@ pub(super) fn set_settings(
     settings: &AccountSettings,
 ) -> Result<()> {
     let AccountSettings { preferences, configuration } = settings;
-    let Preferences { crosshair, compass, bell, ghost, difficulty } = *preferences;
-    let sql = "INSERT OR REPLACE INTO settings \
-               (account, crosshair, compass, bell, ghost, difficulty, configuration) \
-               VALUES (?1, ?2, ?3, ?4, ?5, ?6, ?7)";
-    let values = (id.0, crosshair, compass, bell, ghost, difficulty.name(), configuration);
+    let Preferences { crosshair, compass, bell, ghost, difficulty, .. } = *preferences;
+    let [glyphs, colors] = [
+        preferences.glyphs.map(|mode| name_of(&GLYPHS, mode)),
+        preferences.colors.map(|depth| name_of(&COLORS, depth)),
+    ];
+    let frames = preferences.frames_per_second.map(NonZeroU32::get);
+    let sql = "INSERT OR REPLACE INTO settings (account, crosshair, compass, bell, ghost, \
+               difficulty, glyphs, colors, frames_per_second, configuration) \
+               VALUES (?1, ?2, ?3, ?4, ?5, ?6, ?7, ?8, ?9, ?10)";
+    let values = params![
+        id.0,
+        crosshair,
+        compass,
+        bell,
+        ghost,
+        difficulty.name(),
+        glyphs,
+        colors,
+        frames,
+        configuration
+    ];
     connection.execute(sql, values).map(|_| ())
 }
 

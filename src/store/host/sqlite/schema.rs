@@ -10,7 +10,11 @@ pub(super) const MIGRATIONS: &[&str] = &[FIRST];
 pub(super) const TABLES: [(&str, &str); 6] = [
     ("accounts", "id, key, name, named_at, created_at, seen_at"),
     ("names", "key, account, held_until"),
-    ("settings", "account, crosshair, compass, bell, ghost, difficulty, configuration"),
+    (
+        "settings",
+        "account, crosshair, compass, bell, ghost, difficulty, glyphs, colors, frames_per_second, \
+         configuration",
+    ),
     ("bans", "id, kind, target, until, reason, made_by, made_at"),
     (
         "results",
@@ -44,6 +48,9 @@ CREATE TABLE settings (
     bell INTEGER NOT NULL,
     ghost INTEGER NOT NULL,
     difficulty TEXT NOT NULL,
+    glyphs TEXT,
+    colors TEXT,
+    frames_per_second INTEGER,
     configuration TEXT NOT NULL
 ) STRICT;
 
