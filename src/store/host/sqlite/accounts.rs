@@ -10,7 +10,7 @@ use crate::store::host::{
     Account, AccountId, AccountKey, AccountSettings, Identity, NAME_HELD, Name, RENAME_WAIT,
     Refusal, UnixTime, ban,
 };
-use crate::store::values::{COLORS, GLYPHS, name_of, named};
+use crate::store::values::{self, COLORS, GLYPHS, name_of};
 use crate::world::Difficulty;
 
 const COLUMNS: &str = "id, key, name, named_at, created_at, seen_at";
@@ -90,8 +90,8 @@ pub(super) fn settings(connection: &Connection, id: AccountId) -> Result<Account
             bell: row.get(2)?,
             ghost: row.get(3)?,
             difficulty: Difficulty::named(&difficulty).unwrap_or_default(),
-            glyphs: glyphs.and_then(|name| named(&GLYPHS, &name)),
-            colors: colors.and_then(|name| named(&COLORS, &name)),
+            glyphs: glyphs.and_then(|name| values::named(&GLYPHS, &name)),
+            colors: colors.and_then(|name| values::named(&COLORS, &name)),
             frames_per_second: frames.and_then(NonZeroU32::new),
         };
         Ok(AccountSettings { preferences, configuration: row.get(8)? })
