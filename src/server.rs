@@ -36,6 +36,7 @@ pub use self::admin::{AdminReply, AdminRequest, Operator, RoomRow, Target, Visit
 pub use self::admission::{Admission, Limits, Outcome, Refusal, Startups, VisitId};
 pub use self::config::{Config, LiveConfig};
 pub use self::host_key::{HostKey, HostKeyError};
+pub(crate) use self::logging::events;
 pub use self::logging::{LogFilter, LogFormat, Logging, UnknownLogFilter};
 pub use self::metrics::{Counter, Gauge, Histogram, Metrics, respond};
 pub use self::transport::{

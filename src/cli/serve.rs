@@ -1,56 +1,113 @@
 //! `cellcaster serve`: the SSH server.
 
-use std::fs;
+mod configuration;
+mod signals;
+
 use std::io::{self, Write};
 use std::net::{IpAddr, SocketAddr};
-use std::path::PathBuf;
+use std::path::Path;
+use std::sync::Arc;
 
+use tokio::net::TcpListener;
 use tokio::runtime::Runtime;
+use tokio::task::JoinSet;
 
 use super::Error;
 use super::arguments::Serve;
-use super::config::configuration_file;
 use super::data_folder::data_folder;
-use crate::server::{Arrival, Config, Departure, Host, HostKey, Link, Server, Visitor};
+#[cfg(unix)]
+use crate::server::{AdminSocket, Operator};
+use crate::server::{
+    Arrival, Config, Departure, Host, HostKey, Inbound, Link, LogFormat, Logging, Metrics, Notice,
+    Outbox, Presence, Server, Visitor, Visitors, events, respond,
+};
+use crate::store::host::AccountKey;
+use configuration::Configuration;
+use signals::{Hangups, Signals};
 
 /// Serves until a signal ends it.
 pub(super) fn run(options: Serve) -> Result<(), Error> {
-    let mut config = load(options.config)?;
-    config.listen = options.listen.unwrap_or(config.listen);
+    let configuration = Configuration::new(options.config, options.listen);
+    let config = configuration.read()?;
     let folder = options.data.or_else(data_folder).ok_or_else(|| {
         Error::mistake("there is no folder for data; name one, as in \"serve --data FOLDER\"")
     })?;
     let key = HostKey::open(&folder).map_err(|error| Error::mistake(error.to_string()))?;
     let runtime = Runtime::new()
         .map_err(|error| Error::machine(format!("no thread can be started: {error}")))?;
-    runtime.block_on(serve(config, key))
+    let ended = runtime.block_on(serve(configuration, config, key, &folder, options.log));
+    // After a second signal, nothing is waited for.
+    runtime.shutdown_background();
+    ended
 }
 
-async fn serve(config: Config, key: HostKey) -> Result<(), Error> {
-    let wanted = config.listen;
-    let fingerprint = key.fingerprint();
-    let cannot = |error: io::Error| Error::mistake(format!("{wanted} can't be used: {error}"));
-    let stop =
-        stop().map_err(|error| Error::machine(format!("no signal can be caught: {error}")))?;
+async fn serve(
+    configuration: Configuration,
+    config: Config,
+    key: HostKey,
+    folder: &Path,
+    format: LogFormat,
+) -> Result<(), Error> {
+    let no_signals = |error| Error::machine(format!("no signal can be caught: {error}"));
+    let signals = Signals::catch().map_err(no_signals)?;
+    let hangups = Hangups::catch().map_err(no_signals)?;
+    let (wanted, fingerprint, filter) = (config.listen, key.fingerprint(), config.log.clone());
+    let cannot = |error| cannot_listen(wanted, &error);
+    let metrics_listener = match config.metrics {
+        Some(address) => {
+            Some(TcpListener::bind(address).await.map_err(|error| cannot_listen(address, &error))?)
+        }
+        None => None,
+    };
+    #[cfg(unix)]
+    let admin = bind_admin(folder)?;
     let server = Server::bind(config, key).await.map_err(cannot)?;
-    let text = invitation(server.address().map_err(cannot)?, &fingerprint);
+    let address = server.address().map_err(cannot)?;
+    let text = invitation(address, &fingerprint);
     io::stdout().write_all(text.as_bytes()).map_err(|error| Error::of_output(&error))?;
-    server.run(NoRooms, stop).await;
+    let logging = Logging::begin(format, &filter);
+    events::listening(address, &fingerprint);
+
+    let visitors = Visitors::default();
+    let mut services = JoinSet::new();
+    if let Some(listener) = metrics_listener {
+        events::metrics_listening(listener.local_addr().map_err(cannot)?);
+        let (metrics, counters) = (Arc::new(Metrics::default()), server.counters());
+        services.spawn(respond(listener, move || metrics.text(&counters)));
+    }
+    #[cfg(unix)]
+    if let Some(admin) = admin {
+        let (visitors, drain) = (visitors.clone(), signals.drain());
+        services.spawn(admin.serve(Operator { visitors, rooms: Box::new(Vec::new), drain }));
+    }
+    services.spawn(configuration.follow(hangups, server.config(), logging));
+    tokio::select! {
+        () = server.run(NoRooms { visitors }, signals.first()) => {}
+        () = signals.second() => {}
+    }
+    events::ended();
     Ok(())
 }
 
-/// The configuration of the named file, or of the default one if it exists.
-fn load(named: Option<PathBuf>) -> Result<Config, Error> {
-    let is_named = named.is_some();
-    let Some(path) = named.or_else(|| configuration_file("serve.toml")) else {
-        return Ok(Config::default());
-    };
-    let name = path.display().to_string();
-    match fs::read_to_string(&path) {
-        Ok(text) => Ok(Config::parse(&text, &name)?),
-        Err(error) if error.kind() == io::ErrorKind::NotFound && !is_named => Ok(Config::default()),
-        Err(error) => Err(Error::mistake(format!("{name} can't be read: {error}"))),
+/// The socket for `cellcaster admin`. Without one the server runs, too, as in a folder with a name
+/// that is too long for a socket.
+#[cfg(unix)]
+fn bind_admin(folder: &Path) -> Result<Option<AdminSocket>, Error> {
+    match AdminSocket::bind(folder) {
+        Ok(socket) => Ok(Some(socket)),
+        Err(error) if error.kind() == io::ErrorKind::AddrInUse => {
+            let folder = folder.display().to_string().replace(char::is_control, "?");
+            Err(Error::mistake(format!("another server runs with the data in {folder}")))
+        }
+        Err(error) => {
+            Error::machine(format!("\"cellcaster admin\" can't reach this server: {error}")).warn();
+            Ok(None)
+        }
     }
+}
+
+fn cannot_listen(address: SocketAddr, error: &io::Error) -> Error {
+    Error::mistake(format!("{address} can't be used: {error}"))
 }
 
 /// What people type to play.
@@ -72,32 +129,17 @@ fn invitation(address: SocketAddr, fingerprint: &str) -> String {
     )
 }
 
-/// Ready when a signal asks the server to end.
-#[cfg(unix)]
-fn stop() -> io::Result<impl Future<Output = ()> + Send> {
-    use tokio::signal::unix::{SignalKind, signal};
-    let mut terminate = signal(SignalKind::terminate())?;
-    let mut interrupt = signal(SignalKind::interrupt())?;
-    Ok(async move {
-        tokio::select! {
-            _ = terminate.recv() => {}
-            _ = interrupt.recv() => {}
-        }
-    })
-}
-
-/// Ready when Ctrl-C asks the server to end.
-#[cfg(not(unix))]
-fn stop() -> io::Result<impl Future<Output = ()> + Send> {
-    Ok(async { _ = tokio::signal::ctrl_c().await })
-}
-
 /// Tells visitors that there is nothing to play yet.
-struct NoRooms;
+struct NoRooms {
+    visitors: Visitors,
+}
 
 impl Host for NoRooms {
     async fn serve(&self, visitor: Visitor, link: Link) -> Departure {
         let Link { mut inbound, mut outbox } = link;
+        let key = visitor.key.as_ref().and_then(|key| AccountKey::parse(key.fingerprint()));
+        let mut presence = self.visitors.arrive(visitor.peer.ip(), key);
+        presence.set_name(&visitor.user);
         let who = match &visitor.key {
             Some(key) => format!("with the key {}", key.fingerprint()),
             None => "a guest".to_owned(),
@@ -106,9 +148,33 @@ impl Host for NoRooms {
             "You are {}, {who}. No room is open on this server. Press any key.\r\n",
             visitor.user
         );
-        _ = outbox.try_send(text.into_bytes());
-        outbox.drained().await;
-        while matches!(inbound.next().await, Arrival::Resized(_)) {}
+        tell(&mut outbox, &text).await;
+        wait(&mut inbound, &mut outbox, &mut presence).await;
         Departure::default()
     }
+}
+
+/// Waits for a key, the end of the link, or an operator who ends the session.
+async fn wait(inbound: &mut Inbound, outbox: &mut Outbox, presence: &mut Presence) {
+    loop {
+        tokio::select! {
+            arrival = inbound.next() => {
+                if !matches!(arrival, Arrival::Resized(_)) {
+                    return;
+                }
+            }
+            notice = presence.notice() => match notice {
+                Notice::Said(line) => tell(outbox, &format!("{line}\r\n")).await,
+                Notice::Removed(sentence) => {
+                    return tell(outbox, &format!("{sentence}\r\n")).await;
+                }
+            },
+        }
+    }
+}
+
+async fn tell(outbox: &mut Outbox, text: &str) {
+    outbox.drained().await;
+    _ = outbox.try_send(text.as_bytes().to_vec());
+    outbox.drained().await;
 }

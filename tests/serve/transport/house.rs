@@ -18,7 +18,7 @@ use crate::emulator::Speaks;
 use crate::player::Player;
 
 /// Long enough for a machine under load.
-pub(super) const PATIENCE: Duration = Duration::from_secs(30);
+pub(crate) const PATIENCE: Duration = Duration::from_secs(30);
 const WINDOW: (u16, u16) = (80, 24);
 
 pub(super) struct House {
@@ -143,7 +143,7 @@ fn serve(runtime: &Runtime, server: Server, stopped: impl Future<Output = ()> + 
 }
 
 /// An empty folder of its own.
-pub(super) fn folder() -> PathBuf {
+pub(crate) fn folder() -> PathBuf {
     static COUNT: AtomicU32 = AtomicU32::new(0);
     let name = format!("serve-{}", COUNT.fetch_add(1, Ordering::Relaxed));
     let folder = Path::new(env!("CARGO_TARGET_TMPDIR")).join(name);
@@ -153,7 +153,7 @@ pub(super) fn folder() -> PathBuf {
 }
 
 /// Waits until `condition` holds.
-pub(super) fn wait_until(what: &str, condition: impl Fn() -> bool) {
+pub(crate) fn wait_until(what: &str, condition: impl Fn() -> bool) {
     let end = Instant::now() + PATIENCE;
     while !condition() {
         assert!(Instant::now() < end, "{what}");
