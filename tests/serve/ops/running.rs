@@ -37,11 +37,6 @@ impl Running {
         (self.process, self.port) = spawn(&self.folder, "text");
     }
 
-    /// Where it listens.
-    pub(super) fn address(&self) -> String {
-        format!("127.0.0.1:{}", self.port)
-    }
-
     pub(super) fn log(&self) -> String {
         fs::read_to_string(self.folder.join("log")).unwrap()
     }
