@@ -3,3 +3,5 @@
 
 mod line;
 mod room;
+mod session;
+mod summary;
