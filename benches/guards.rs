@@ -1,13 +1,14 @@
-//! The cost of a step with guards.
+//! The cost of a step with guards, and of a copy of the game.
 //!
 //! `cargo bench --no-default-features --bench guards`, on maps of 160 × 90 cells. A quarter of the
 //! cells are walls. The player runs in circles, so that those who follow always have a new goal. An
 //! iteration is one step of the whole game; the one without guards is the price of the rest.
 
 use std::hint::black_box;
+use std::time::{Duration, Instant};
 
-use cellcaster::game::{Alarm, Game, Intent, Intents};
-use cellcaster::map;
+use cellcaster::game::{Alarm, Company, Game, Input, Intent, Intents, PlayerColor, Rules};
+use cellcaster::map::{self, builtin};
 use cellcaster::world::World;
 use criterion::{Criterion, criterion_group, criterion_main};
 
@@ -95,15 +96,23 @@ fn steps(criterion: &mut Criterion) {
         }
         // A shout is heard one step later.
         game.step(circling());
+        // Those who chase soon kill the player: the game begins again, which is not measured.
         let begun = game.clone();
-        let mut left = 0;
         group.bench_function(name, |bencher| {
-            bencher.iter(|| {
-                if left == 0 {
-                    (game, left) = (begun.clone(), 120);
+            bencher.iter_custom(|steps| {
+                let mut time = Duration::ZERO;
+                let mut left = steps;
+                while left > 0 {
+                    if is_chase {
+                        game = begun.clone();
+                    }
+                    let count = if is_chase { left.min(120) } else { left };
+                    let start = Instant::now();
+                    (0..count).for_each(|_| game.step(black_box(circling())));
+                    time += start.elapsed();
+                    left -= count;
                 }
-                left -= 1;
-                game.step(black_box(circling()));
+                time
             });
         });
         let chasing = game.guards().filter(|guard| guard.mood >= cellcaster::game::Mood::Wondering);
@@ -112,5 +121,58 @@ fn steps(criterion: &mut Criterion) {
     group.finish();
 }
 
-criterion_group!(benches, steps);
+/// The same with eight players who run in circles from one place, and walk through each other or
+/// not.
+fn steps_of_several(criterion: &mut Criterion) {
+    let mut group = criterion.benchmark_group("a step of 8 players");
+    for (name, count, collides) in [
+        ("no guards", 0, false),
+        ("no guards, colliding", 0, true),
+        ("20 guards", 20, false),
+        ("20 guards, colliding", 20, true),
+    ] {
+        let company = Company { collides, ..Company::default() };
+        let mut game = Game::for_company(world(count, Deed::Chase), Rules::default(), company);
+        let players = PlayerColor::ALL.map(|color| game.join(color).expect("there is room"));
+        let step = |game: &mut Game| {
+            let seen = game.steps();
+            game.step_all(&players.map(|player| Input { player, intents: circling(), seen }));
+        };
+        (0..60).for_each(|_| step(&mut game));
+        let begun = game.clone();
+        let mut left = 0;
+        group.bench_function(name, |bencher| {
+            bencher.iter(|| {
+                if left == 0 {
+                    (game, left) = (begun.clone(), 120);
+                }
+                left -= 1;
+                step(black_box(&mut game));
+            });
+        });
+        group.bench_function(format!("{name}: a copy"), |bencher| bencher.iter(|| begun.clone()));
+    }
+    group.finish();
+}
+
+/// A copy of the game, as a checkpoint is one, after half a minute in which guards find their ways.
+fn copies(criterion: &mut Criterion) {
+    let mut group = criterion.benchmark_group("a copy");
+    let cells = |world: &World| world.grid().width() * world.grid().height();
+    let levels = builtin::LEVELS.iter().filter_map(|level| level.world().ok());
+    let largest = levels.filter(World::is_mission).max_by_key(cells).expect("there are levels");
+    for (name, world) in [
+        ("largest level", largest),
+        ("no guards", world(0, Deed::Sleep)),
+        ("20 wandering, far", world(20, Deed::FarPatrol)),
+    ] {
+        let mut game = Game::new(world);
+        (0..1800).for_each(|_| game.step(circling()));
+        group.bench_function(name, |bencher| bencher.iter(|| black_box(&game).clone()));
+        println!("{name}: {} cells", cells(game.world()));
+    }
+    group.finish();
+}
+
+criterion_group!(benches, steps, copies, steps_of_several);
 criterion_main!(benches);

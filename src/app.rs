@@ -32,6 +32,7 @@ mod replay;
 mod results;
 mod run;
 mod run_log;
+mod saved;
 mod screen;
 mod script_cursor;
 mod series;
@@ -41,6 +42,7 @@ mod stats;
 mod status;
 mod steps;
 mod summary;
+mod time;
 mod vitals;
 mod watch;
 
@@ -64,7 +66,7 @@ use results::LevelResult;
 pub use run::{Farewell, Opening, play};
 use run_log::RunLog;
 use screen::{Screen, Shelved};
-pub use settings::{Configuration, MapDisplay, Settings};
+pub use settings::{Configuration, Given, MapDisplay, Origin, Settings};
 
 use crate::color::palette::ColorDepth;
 use crate::game::STEP;

@@ -4,9 +4,9 @@
 //!
 //! | file | holds |
 //! |---|---|
-//! | `progress.toml` | best results, the saved game, preferences, daily runs |
+//! | `progress.toml` | best results, the saved games, preferences, daily runs |
 //! | `runs/LEVEL.DIFFICULTY.STEPS.script` | the fastest run of a level |
-//! | `runs/saved.HASH.script` | the run of the saved game so far |
+//! | `runs/saved.HASH.script` | the run of a saved game so far |
 //! | `runs/daily.DATE.REACHED.script` | the daily run of a date, up to the last exit it reached |
 //! | `runs/descent.REACHED.script` | the best descent without an end, up to the same |
 //! | `progress.lock` | nothing; it is locked while a game writes |
@@ -34,6 +34,7 @@ mod home;
 mod names;
 mod progress;
 mod read;
+mod values;
 mod write;
 
 use std::path::Path;
@@ -43,7 +44,7 @@ use change::Change;
 use home::Home;
 pub use names::map_key;
 use progress::Progress;
-pub use progress::{Daily, Preferences, SavedGame};
+pub use progress::{Daily, Descent, Preferences, SavedGame, Slot};
 
 use crate::world::Difficulty;
 
@@ -122,20 +123,20 @@ impl Store {
     }
 
     /// The saved game, if there is one and its script can be read.
-    pub fn saved(&self) -> Option<SavedGame> {
-        let script = self.text_in(|progress| Some(progress.saved.as_ref()?.script.clone()))?;
-        Some(self.progress.saved.as_ref()?.with_script(script))
+    pub fn saved(&self, slot: Slot) -> Option<SavedGame> {
+        let script = self.text_in(|progress| Some(progress.saved_in(slot)?.script.clone()))?;
+        Some(self.progress.saved_in(slot)?.with_script(script))
     }
 
-    /// Saves a game in place of the one before.
+    /// Saves a game in place of the one before in its slot.
     pub fn save(&mut self, game: &SavedGame) {
-        self.change(Change::Saved(Some(game.clone())));
+        self.change(Change::Saved(game.clone()));
     }
 
     /// Removes the saved game.
-    pub fn clear_saved(&mut self) {
-        if self.progress.saved.is_some() {
-            self.change(Change::Saved(None));
+    pub fn clear_saved(&mut self, slot: Slot) {
+        if self.progress.saved_in(slot).is_some() {
+            self.change(Change::Cleared(slot));
         }
     }
 

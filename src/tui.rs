@@ -31,6 +31,7 @@ mod glyphs;
 mod half_blocks;
 pub(crate) mod held;
 mod minimap;
+mod outline;
 mod ramp;
 mod wanted;
 

@@ -33,7 +33,10 @@ impl App {
         match self.screen {
             Screen::Playing => {}
             Screen::Help => self.help.draw(canvas, picture, bindings, self.detection.lines()),
-            Screen::Leaving => panels::leaving(canvas, picture, bindings),
+            Screen::Leaving => {
+                let effect = if self.is_descent() { "ends the run" } else { "leaves" };
+                panels::leaving(canvas, picture, bindings, effect);
+            }
             Screen::Title => {
                 let below = banner::draw(canvas, picture, self.settings.glyphs, self.depth);
                 self.menu.draw(canvas, below);

@@ -30,6 +30,11 @@ impl Goal {
             None if game.has_exit() => ("Find the way out: green on the map", "Find the exit"),
             None => ("Roam as you like: no exit here", "Roam around"),
         };
+        Self::new(text, short)
+    }
+
+    /// A goal with a shorter form for narrow windows. Both are sentences without their full stops.
+    pub(super) fn new(text: &str, short: &str) -> Self {
         Self { text: text.to_owned(), short: short.to_owned(), steps_left: SHOWN_FOR }
     }
 

@@ -9,7 +9,7 @@ use super::settings_screen::Setting;
 use super::{App, Levels, STEP, Screen};
 use crate::app::bindings::Action;
 use crate::map::builtin;
-use crate::store::Preferences;
+use crate::store::{Preferences, Slot};
 use crate::world::Difficulty;
 
 /// What an entry of a menu does.
@@ -23,8 +23,10 @@ pub(super) enum Choice {
     Level(usize),
     /// Begins the map with that index in the list of own maps.
     Map(usize),
-    /// Goes on with the saved game.
-    Continue,
+    /// Goes on with a saved game.
+    Continue(Slot),
+    /// Begins a saved game anew.
+    BeginAnew(Slot),
     /// Begins the descent of the day.
     Daily,
     /// Begins an endless descent.
@@ -53,6 +55,7 @@ impl App {
             Screen::NewGame => new_game_menu(self.store.preferences().difficulty),
             Screen::Levels => self.level_menu(),
             Screen::Maps => self.map_menu(),
+            Screen::Outdated(slot) => outdated_menu(slot),
             Screen::Paused => self.pause_menu(),
             Screen::Settings => self.settings_menu(),
             Screen::Dead => self.death_menu(),
@@ -80,7 +83,8 @@ impl App {
             Choice::Map(index) => self.begin_own_map(index),
             Choice::Daily => self.begin_daily(),
             Choice::Endless => self.begin_endless(),
-            Choice::Continue => self.continue_saved(),
+            Choice::Continue(slot) => self.continue_saved(slot),
+            Choice::BeginAnew(slot) => self.begin_saved_anew(slot),
             Choice::Change(setting) => self.change_setting(setting, true),
             Choice::Retry => self.retry(),
             Choice::GoOn => self.show(Screen::Playing),
@@ -114,9 +118,10 @@ impl App {
 
     pub(super) fn title_menu(&self) -> Menu<Choice> {
         let menu = Menu::new("");
-        let menu = match (self.store.saved(), self.first_not_won()) {
+        let menu = match (self.store.saved(Slot::Level), self.first_not_won()) {
             (Some(saved), _) => {
-                menu.entry_with("Continue", capitalized(shown_name(&saved.level)), Choice::Continue)
+                let name = capitalized(shown_name(&saved.level));
+                menu.entry_with("Continue", name, Choice::Continue(Slot::Level))
             }
             (None, Some(index)) => {
                 let name = capitalized(builtin::LEVELS[index].name);
@@ -200,6 +205,17 @@ impl App {
         };
         menu.entry("Leave", Choice::Leave)
     }
+}
+
+fn outdated_menu(slot: Slot) -> Menu<Choice> {
+    let what = match slot {
+        Slot::Level => "The level has",
+        Slot::Descent => "The floors of descents have",
+    };
+    Menu::new("the saved game")
+        .line(format!("{what} changed since you left it."))
+        .entry("Begin anew", Choice::BeginAnew(slot))
+        .entry("Return to the title", Choice::ToTitle)
 }
 
 fn new_game_menu(usual: Difficulty) -> Menu<Choice> {

@@ -90,11 +90,11 @@ impl Widget for TopBorder<'_> {
     }
 }
 
-/// Draws the question whether to leave.
-pub(super) fn leaving(canvas: &mut impl Canvas, picture: Rect, bindings: &Bindings) {
+/// Draws the question whether to leave; `effect` is what that does.
+pub(super) fn leaving(canvas: &mut impl Canvas, picture: Rect, bindings: &Bindings, effect: &str) {
     let leave = bindings.keys(Action::Leave).find(|&key| key != Key::Escape);
     let keys = leave.map_or_else(String::new, |key| format!("{key} or "));
-    let text = format!("{keys}Enter leaves\nany other key goes on");
+    let text = format!("{keys}Enter {effect}\nany other key goes on");
     message(canvas, picture, "leave?", Text::from(text).centered());
 }
 

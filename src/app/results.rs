@@ -1,13 +1,13 @@
-//! Results: what is kept of a run when it ends, and the run that is saved to go on with later.
+//! Results: what is kept of a run when it ends.
 
+use super::App;
 use super::levels::Stage;
 use super::panels::whole_seconds;
 use super::run_log::RunLog;
 use super::script_cursor::ScriptCursor;
-use super::{App, Levels};
 use crate::game::{Game, Header, LevelName, Rank, Script, Tally};
 use crate::map::builtin;
-use crate::store::{Improved, Run, SavedGame};
+use crate::store::{Improved, Run, Slot};
 
 /// The result of a level that was won.
 #[derive(Clone, Copy, Debug)]
@@ -30,57 +30,12 @@ impl App {
         let improved = match self.stage.name().map(str::to_owned) {
             Some(level) => {
                 let run = Run { tally, rank, script: self.run_script(game) };
-                self.store.clear_saved();
+                self.store.clear_saved(Slot::Level);
                 self.store.record(&level, self.difficulty, run)
             }
             None => Improved::default(),
         };
         Some(LevelResult { tally, par, rank, improved })
-    }
-
-    /// Saves a game that has begun and is not over, if its level has a name to find it by.
-    pub(super) fn save_game(&mut self) {
-        let Some(game) = self.game.grid().filter(|_| self.demo.is_none()) else { return };
-        let Some(level) = self.stage.name().filter(|_| !self.log.is_empty()) else { return };
-        if game.is_finished() {
-            return;
-        }
-        let saved = SavedGame {
-            level: level.to_owned(),
-            rules: game.rules(),
-            script: self.run_script(game),
-        };
-        self.store.save(&saved);
-    }
-
-    /// Goes on with the saved game: its script is played again up to its end.
-    pub(super) fn continue_saved(&mut self) {
-        let Some(saved) = self.store.saved() else { return };
-        let Some(levels) = self.levels_named(&saved.level) else {
-            self.menu = self.title_menu().line("The map of the saved game is not as it was.");
-            self.shown = None;
-            return;
-        };
-        let Ok(script) = Script::parse(&saved.script, "the saved game") else { return };
-        self.difficulty = saved.rules.difficulty;
-        self.begin(levels);
-        for (_, intents) in script.iter() {
-            self.game.step(intents);
-            self.log.record(intents, 1);
-            if let Some(ghost) = &mut self.ghost {
-                ghost.step();
-            }
-        }
-    }
-
-    /// The levels from the one on that the store calls `name`: built-in ones, or a map of the player's own.
-    fn levels_named(&mut self, name: &str) -> Option<Levels> {
-        if let Some(index) = builtin_named(name) {
-            return Levels::builtin(index);
-        }
-        self.find_own_maps();
-        let map = self.own_maps.iter().find(|map| map.key == name)?;
-        (map.load)().ok().filter(|own| own.key == name).map(Levels::own)
     }
 
     /// The script of the run so far, with a header that names the level. A descent is one run from its
@@ -149,6 +104,6 @@ pub(super) fn shown_name(key: &str) -> &str {
     }
 }
 
-fn builtin_named(name: &str) -> Option<usize> {
+pub(super) fn builtin_named(name: &str) -> Option<usize> {
     builtin::LEVELS.iter().position(|level| level.name == name)
 }

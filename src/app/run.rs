@@ -4,9 +4,10 @@
 //! frame, so that nothing is computed or written.
 
 use std::env;
-use std::time::{Duration, Instant};
+use std::time::Duration;
 
 use super::stats::{Meter, Stats};
+use super::time::Time;
 use super::{App, Levels, Offers, Recording, Settings};
 use crate::store::Store;
 #[cfg(debug_assertions)]
@@ -38,6 +39,7 @@ pub fn play(
     store: Store,
     recording: Recording,
 ) -> Result<Farewell, Error> {
+    let settings = settings.preferring(&store.preferences());
     let mut options = Options::from_environment(|name| env::var(name).ok());
     if let Some(depth) = settings.depth {
         options.color_depth = Detected::Certain(depth);
@@ -52,27 +54,31 @@ pub fn play(
     app.detection.ascii_locale = ascii_locale;
     app.detection.reports_releases = (!options.ask_for_key_releases).then_some(false);
     update_terminal(&mut app, &session);
-    let start = Instant::now();
+    let time = Time::begin();
     while !app.has_left {
-        app.advance(start.elapsed());
-        app.reload(start.elapsed());
+        app.advance(time.now());
+        app.reload(time.now());
         session.set_mouse(app.pointer.is_on())?;
         if app.watch.take_ring() && app.store.preferences().bell {
             session.ring_bell();
         }
         presenter.frame_time = app.settings.frame_time;
-        presenter.update(&mut app, &mut session, start.elapsed())?;
-        let wakes_at = presenter.wakes_at(&app, &session, start.elapsed());
-        let timeout = wakes_at.map(|wakes| wakes.saturating_sub(start.elapsed()));
+        presenter.update(&mut app, &mut session, time.now())?;
+        let wakes_at = presenter.wakes_at(&app, &session, time.now());
+        let timeout = wakes_at.and_then(|wakes| time.until(wakes));
         match session.next_event(timeout)? {
-            None | Some(Event::Ready | Event::FocusGained) => {}
+            None | Some(Event::Ready) => {}
+            Some(Event::FocusGained) => {
+                #[cfg(debug_assertions)]
+                time.focus_reported();
+            }
             Some(Event::Key(event)) => {
                 #[cfg(debug_assertions)]
                 panic_on_demand(event.key);
-                app.key(event, start.elapsed());
+                app.key(event, time.now());
             }
-            Some(Event::Mouse(event)) => app.mouse(event, start.elapsed()),
-            Some(Event::FocusLost) => app.focus_lost(start.elapsed()),
+            Some(Event::Mouse(event)) => app.mouse(event, time.now()),
+            Some(Event::FocusLost) => app.focus_lost(time.now()),
             Some(Event::Resized | Event::ColorDepth(_)) => update_terminal(&mut app, &session),
             Some(Event::KeyReleases(reported)) => {
                 app.controls.held.set_reports_releases(reported);
@@ -80,7 +86,7 @@ pub fn play(
             }
             Some(Event::Suspend) => {
                 session.suspend()?;
-                app.resumed(start.elapsed());
+                app.resumed(time.now());
             }
             Some(Event::Quit(_)) => break,
         }

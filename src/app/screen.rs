@@ -7,6 +7,7 @@
 use super::App;
 use super::menu::Menu;
 use super::menus::Choice;
+use crate::store::Slot;
 
 /// The panel on the picture. The effect of keys depends on it.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -18,6 +19,8 @@ pub(super) enum Screen {
     Levels,
     /// The choice of a map file.
     Maps,
+    /// The offer to begin a saved game anew that cannot go on.
+    Outdated(Slot),
     Settings,
     Playing,
     Paused,

@@ -29,6 +29,7 @@ impl App {
         self.script = None;
         self.log = RunLog::default();
         self.begin_level(first, game);
+        self.tell_whether_it_counts();
     }
 
     /// Begins the next level. After the last one comes the end.

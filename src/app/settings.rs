@@ -25,6 +25,7 @@ use std::time::Duration;
 use super::bindings::Bindings;
 use crate::color::palette::ColorDepth;
 use crate::render::{DynCaster, Filter};
+use crate::store::Preferences;
 use crate::terminal::Fidelity;
 use crate::tui::{CellAspect, GlyphMode};
 use crate::world::{Difficulty, FieldOfView};
@@ -60,6 +61,46 @@ pub struct Settings {
     pub minimap: MapDisplay,
     /// Whether the mouse turns the player at first.
     pub mouse: bool,
+    /// The origin of the settings that the game keeps.
+    pub given: Given,
+}
+
+/// The origin of the settings that the game keeps. What is given holds in place of what the player has
+/// chosen in an earlier game.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Default)]
+pub struct Given {
+    /// Of the glyph mode.
+    pub glyphs: Option<Origin>,
+    /// Of the colour depth.
+    pub depth: Option<Origin>,
+    /// Of the frame time.
+    pub frame_time: Option<Origin>,
+}
+
+/// Where a setting is given.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Origin {
+    /// By a flag of the command line.
+    Flag,
+    /// By the configuration file.
+    File,
+}
+
+impl Settings {
+    /// These settings, with what the player has chosen in earlier games where nothing is given.
+    #[must_use]
+    pub fn preferring(mut self, preferences: &Preferences) -> Self {
+        if let (None, Some(glyphs)) = (self.given.glyphs, preferences.glyphs) {
+            self.glyphs = glyphs;
+        }
+        if let (None, Some(depth)) = (self.given.depth, preferences.colors) {
+            self.depth = Some(depth);
+        }
+        if let (None, Some(frames)) = (self.given.frame_time, preferences.frames_per_second) {
+            self.frame_time = Duration::from_secs(1) / frames.get();
+        }
+        self
+    }
 }
 
 /// The content of the minimap.

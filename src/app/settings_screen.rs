@@ -1,13 +1,15 @@
 //! The settings screen.
 //!
-//! What the player prefers in every game is kept by the store. What depends on the terminal holds
-//! until the program ends: the configuration file keeps it, and the program never writes that file.
+//! The store keeps what the player chooses here, except the map and the mouse, which a game begins with
+//! as the configuration file says. A flag or the configuration file wins over what is kept, and the
+//! screen names it beside the value. The program never writes the configuration file.
 
+use std::num::NonZeroU32;
 use std::time::Duration;
 
 use super::menu::Menu;
 use super::menus::Choice;
-use super::{App, MapDisplay};
+use super::{App, Given, MapDisplay, Origin};
 use crate::color::palette::ColorDepth;
 use crate::store::Preferences;
 use crate::tui::GlyphMode;
@@ -28,15 +30,13 @@ pub(super) enum Setting {
     FrameRate,
 }
 
-/// The settings that are kept, and those that hold until the program ends.
-const KEPT: [(Setting, &str); 5] = [
+/// The settings in their order on the screen.
+const SETTINGS: [(Setting, &str); 10] = [
     (Setting::Difficulty, "Difficulty"),
     (Setting::Crosshair, "Crosshair"),
     (Setting::Compass, "Compass"),
     (Setting::Ghost, "Ghost of the best run"),
     (Setting::Bell, "Bell when noticed or hurt"),
-];
-const UNTIL_THE_END: [(Setting, &str); 5] = [
     (Setting::Minimap, "Map"),
     (Setting::Mouse, "Mouse turns"),
     (Setting::Glyphs, "Characters"),
@@ -58,7 +58,12 @@ const COLORS: [(Option<ColorDepth>, &str); 5] = [
 impl App {
     pub(super) fn settings_menu(&self) -> Menu<Choice> {
         let menu = Menu::new("settings").line("Enter or left and right change a setting.");
-        KEPT.into_iter().chain(UNTIL_THE_END).fold(menu, |menu, (setting, label)| {
+        let menu = if self.settings.given == Given::default() {
+            menu
+        } else {
+            menu.line("A flag or the file holds again at the next start.")
+        };
+        SETTINGS.into_iter().fold(menu, |menu, (setting, label)| {
             menu.entry_with(label, self.value_of(setting), Choice::Change(setting))
         })
     }
@@ -79,18 +84,25 @@ impl App {
             Setting::Minimap => self.map.is_shown ^= true,
             Setting::Mouse => self.pointer.toggle(),
             Setting::Glyphs => {
-                let glyphs = self.settings.glyphs;
-                self.settings.glyphs = after(&GLYPHS, |one| one.0 == glyphs, forward).0;
+                let before = self.settings.glyphs;
+                let glyphs = after(&GLYPHS, |one| one.0 == before, forward).0;
+                self.settings.glyphs = glyphs;
+                self.settings.given.glyphs = None;
+                preferences.glyphs = Some(glyphs);
             }
             Setting::Colors => {
                 let depth = self.settings.depth;
                 self.settings.depth = after(&COLORS, |one| one.0 == depth, forward).0;
+                self.settings.given.depth = None;
+                preferences.colors = self.settings.depth;
                 self.depth = self.settings.depth.unwrap_or(self.terminal_depth);
             }
             Setting::FrameRate => {
                 let rate = self.frame_rate();
                 let rate = after(&FRAME_RATES, |&one| one >= rate, forward);
                 self.settings.frame_time = Duration::from_secs(1) / rate;
+                self.settings.given.frame_time = None;
+                preferences.frames_per_second = NonZeroU32::new(rate);
             }
         }
         self.set_preferences(preferences);
@@ -104,7 +116,9 @@ impl App {
     }
 
     fn value_of(&self, setting: Setting) -> String {
-        let Preferences { crosshair, compass, bell, ghost, difficulty } = self.store.preferences();
+        let Preferences { crosshair, compass, bell, ghost, difficulty, .. } =
+            self.store.preferences();
+        let Given { glyphs, depth, frame_time } = self.settings.given;
         match setting {
             Setting::Difficulty => difficulty.name().to_owned(),
             Setting::Crosshair => on_or_off(crosshair),
@@ -117,14 +131,23 @@ impl App {
                 (true, _) => "what was seen".to_owned(),
             },
             Setting::Mouse => on_or_off(self.pointer.is_on()),
-            Setting::Glyphs => name(&GLYPHS, self.settings.glyphs),
-            Setting::Colors => name(&COLORS, self.settings.depth),
-            Setting::FrameRate => self.frame_rate().to_string(),
+            Setting::Glyphs => given(name(&GLYPHS, self.settings.glyphs), glyphs),
+            Setting::Colors => given(name(&COLORS, self.settings.depth), depth),
+            Setting::FrameRate => given(self.frame_rate().to_string(), frame_time),
         }
     }
 
     fn frame_rate(&self) -> u32 {
         (1.0 / self.settings.frame_time.as_secs_f64().max(1e-3)).round() as u32
+    }
+}
+
+/// `value` and where it is given.
+fn given(value: String, origin: Option<Origin>) -> String {
+    match origin {
+        Some(Origin::Flag) => value + " (flag)",
+        Some(Origin::File) => value + " (file)",
+        None => value,
     }
 }
 

@@ -23,10 +23,16 @@ pub(super) struct Rates {
     pub(super) bytes_per_second: f64,
 }
 
+impl fmt::Display for Rates {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        let Self { frames_per_second, bytes_per_second } = self;
+        write!(f, "{frames_per_second:.0} fps  {:.0} kB/s", bytes_per_second / 1000.0)
+    }
+}
+
 impl fmt::Display for Stats {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
-        let Rates { frames_per_second, bytes_per_second } = self.rates;
-        write!(f, "{frames_per_second:.0} fps  {:.0} kB/s  ", bytes_per_second / 1000.0)?;
+        write!(f, "{}  ", self.rates)?;
         if let Some(round_trip) = self.round_trip {
             write!(f, "{} ms  ", round_trip.as_millis())?;
         }

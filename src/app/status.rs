@@ -84,10 +84,8 @@ enum Form {
 }
 
 /// The forms in the order in which they get room, the most important first.
-const PRIORITIES: [(Part, Form); 22] = [
+const PRIORITIES: [(Part, Form); 21] = [
     (Part::Help, Form::Short),
-    // They show only if the player asks for them.
-    (Part::Stats, Form::Short),
     (Part::Health, Form::Short),
     (Part::Alarm, Form::Short),
     (Part::Notice, Form::Short),
@@ -109,6 +107,21 @@ const PRIORITIES: [(Part, Form); 22] = [
     (Part::Seen, Form::Short),
     (Part::Keys, Form::Long),
 ];
+/// The forms that come before those where the player has asked for stats: the stats take the room of
+/// the title and the goal, and yield to the state of the player.
+const PRIORITIES_WITH_STATS: [(Part, Form); 11] = [
+    (Part::Help, Form::Short),
+    (Part::Health, Form::Short),
+    (Part::Alarm, Form::Short),
+    (Part::Light, Form::Short),
+    (Part::Supplies, Form::Short),
+    (Part::Modes, Form::Short),
+    (Part::Keys, Form::Short),
+    (Part::Treasure, Form::Short),
+    (Part::Stats, Form::Short),
+    (Part::Notice, Form::Short),
+    (Part::Stats, Form::Long),
+];
 /// The number of blank columns of each part.
 const GAP: u16 = 2;
 /// The least widths to which the title and the notice are cut. Three letters of a title say nothing.
@@ -127,7 +140,9 @@ impl StatusLine {
     fn fitted(&self, width: u16) -> [(&str, u16); PARTS] {
         let mut fitted = [("", 0); PARTS];
         let mut room = width;
-        for (part, form) in PRIORITIES {
+        let has_stats = !self.texts[Part::Stats as usize][0].is_empty();
+        let first = if has_stats { &PRIORITIES_WITH_STATS[..] } else { &[] };
+        for &(part, form) in first.iter().chain(&PRIORITIES) {
             let text = self.texts[part as usize][form as usize].as_str();
             let (_, taken) = fitted[part as usize];
             let columns = Span::raw(text).width() as u16;
@@ -183,84 +198,4 @@ pub(super) fn hint(text: &str) -> impl Widget {
 }
 
 #[cfg(test)]
-mod tests {
-    use ratatui::buffer::Cell;
-
-    use super::*;
-
-    fn line(parts: &[(Part, &str, &str)]) -> StatusLine {
-        let mut line = StatusLine::default();
-        for &(part, short, long) in parts {
-            line.texts[part as usize] = [short.to_owned(), long.to_owned()];
-        }
-        line
-    }
-
-    fn shown(line: &StatusLine, columns: u16) -> String {
-        let mut buffer = Buffer::empty(Rect::new(0, 0, columns, 1));
-        line.render(buffer.area, &mut buffer);
-        buffer.content().iter().map(Cell::symbol).collect()
-    }
-
-    #[test]
-    fn less_important_parts_are_left_out() {
-        let line = line(&[
-            (Part::Title, "The Museum of Walls", "The Museum of Walls"),
-            (Part::Level, "2/5", "level 2 of 5"),
-            (Part::Keys, "brass key", "brass key"),
-            (Part::Time, "1:05", "1:05"),
-            (Part::Help, "?", "? help"),
-        ]);
-        let expected = [
-            " The Museum of Walls  level 2 of 5  brass key         1:05  ? help ",
-            " The Museum of Walls  2/5  brass key   1:05  ? help ",
-            " The Museum of Walls  brass key  ? help ",
-            " The Museum of Walls  ? ",
-            " The Museum of Wa  ? ",
-            "  ? ",
-        ];
-        for expected in expected {
-            assert_eq!(shown(&line, expected.len() as u16).trim_end(), expected.trim_end());
-        }
-    }
-
-    #[test]
-    fn the_goal_is_more_important_than_the_title() {
-        let line = line(&[
-            (Part::Title, "Cellar", "Cellar"),
-            (Part::Notice, "Find the exit", "Find the way out: green on the map"),
-            (Part::Time, "0:00", "0:00"),
-            (Part::Help, "?", "? help"),
-        ]);
-        for expected in [
-            " Cellar  Find the way out: green on the map  0:00  ? help ",
-            " Cellar  Find the exit  0:00  ? help ",
-            " Find the exit   ? ",
-        ] {
-            assert_eq!(shown(&line, expected.len() as u16), expected);
-        }
-    }
-
-    #[test]
-    fn stats_have_room_in_80_columns() {
-        let stats = "30 fps  272 kB/s  0 ms  fidelity exact";
-        let line = line(&[
-            (Part::Title, "The Museum of Walls", "The Museum of Walls"),
-            (Part::Level, "2/5", "level 2 of 5"),
-            (Part::Notice, "Find the exit", "Find the way out: green on the map"),
-            (Part::Stats, stats, stats),
-            (Part::Time, "0:02", "0:02"),
-            (Part::Help, "?", "? help"),
-        ]);
-        let expected = format!(" The Museum of Walls  Find the exit {stats}  ? ");
-        assert_eq!(shown(&line, 80).replace("   ", " "), expected);
-    }
-
-    #[test]
-    fn any_width_is_possible() {
-        let line = line(&[(Part::Title, "Cellar", "Cellar"), (Part::Help, "?", "? help")]);
-        for columns in 0..10 {
-            shown(&line, columns);
-        }
-    }
-}
+mod tests;

@@ -11,7 +11,7 @@ use super::recording::RecordingFile;
 use super::today::today;
 use super::{Error, config, level, own_maps};
 use crate::app;
-use crate::app::{Farewell, Levels, Offers, Opening, Settings};
+use crate::app::{Configuration, Farewell, Given, Levels, Offers, Opening, Origin, Settings};
 use crate::game::{Header, LevelName, Rules};
 use crate::store::Store;
 use crate::terminal::{self, locale_without_utf8, take_keys_from_terminal};
@@ -30,6 +30,15 @@ pub(super) fn run(options: Play) -> Result<(), Error> {
         Some(frames) => frames.get(),
         None => configuration.frames_per_second,
     };
+    let usual = Configuration::default().frames_per_second;
+    let given = Given {
+        glyphs: origin(options.glyphs.is_some(), configuration.glyphs.is_some()),
+        depth: origin(options.depth.is_some(), configuration.colors.is_some()),
+        frame_time: origin(
+            options.frames_per_second.is_some(),
+            configuration.frames_per_second != usual,
+        ),
+    };
     let settings = Settings {
         bindings: configuration.bindings,
         frame_time: Duration::from_secs(1) / frames_per_second.get(),
@@ -44,6 +53,7 @@ pub(super) fn run(options: Play) -> Result<(), Error> {
         difficulty: options.difficulty,
         minimap: configuration.minimap,
         mouse: configuration.mouse,
+        given,
     };
     let file = options.record.as_deref();
     let file = file.map(|path| RecordingFile::create(path, options.overwrites)).transpose()?;
@@ -59,6 +69,15 @@ pub(super) fn run(options: Play) -> Result<(), Error> {
     let farewell = played.map_err(about_the_terminal)?;
     say_farewell(&farewell, damage);
     written
+}
+
+/// The origin of a setting that a flag or the configuration file gives. The flag comes first.
+fn origin(by_flag: bool, by_file: bool) -> Option<Origin> {
+    match (by_flag, by_file) {
+        (true, _) => Some(Origin::Flag),
+        (false, true) => Some(Origin::File),
+        (false, false) => None,
+    }
 }
 
 /// The header of a script of what the program begins with. Levels that are not generated have the

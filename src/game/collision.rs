@@ -49,6 +49,11 @@ pub(super) trait Obstacles {
         None
     }
 
+    /// The middles of other circles of the same radius that block.
+    fn circles(&self) -> &[DVec2] {
+        &[]
+    }
+
     /// Whether a cell touched by a circle around `center` does not block any more, because it gives
     /// way or because the circle has been lifted onto it.
     fn gives_way(&mut self, column: i64, row: i64, center: DVec2, radius: Radius) -> bool {
@@ -84,8 +89,8 @@ pub(super) fn slide<O: Obstacles>(
             return Body { position, velocity };
         };
         position = contact.position;
-        let (column, row) = contact.cell;
-        if obstacles.gives_way(column, row, position, radius) {
+        let gives_way = |(column, row)| obstacles.gives_way(column, row, position, radius);
+        if contact.cell.is_some_and(gives_way) {
             remaining = contact.remaining;
             continue;
         }
@@ -119,17 +124,29 @@ fn without_inward(vector: DVec2, normal: DVec2) -> DVec2 {
 /// Whether a circle around `center` overlaps nothing that blocks; it may touch. Cells are closed
 /// squares.
 pub(super) fn is_clear<O: Obstacles>(obstacles: &O, center: DVec2, radius: Radius) -> bool {
-    let (column, row) = cell_of(center);
-    let around = (row - 1..=row + 1).flat_map(|r| (column - 1..=column + 1).map(move |c| (c, r)));
-    around.filter(|&(column, row)| !is_clear_of(center, column, row, radius)).all(
-        |(column, row)| {
+    let least = 2.0 * radius.0;
+    let is_apart = |other: &DVec2| other.distance_squared(center) >= least * least;
+    obstacles.circles().iter().all(is_apart)
+        && overlapped(center, radius).all(|(column, row)| {
             let stands_clear = |cell| {
                 let outline = obstacles.outline(cell);
                 outline.is_none_or(|outline| outline::is_clear_of(outline, cell, center, radius))
             };
             !obstacles.blocks(column, row) && cell_on_map(column, row).is_none_or(stands_clear)
-        },
-    )
+        })
+}
+
+/// The columns and rows of the cells that a circle around `center` overlaps, row by row.
+fn overlapped(center: DVec2, radius: Radius) -> impl Iterator<Item = (i64, i64)> {
+    let along = |place: f64, index: i64| {
+        let (before, after) = (place - index as f64, (index + 1) as f64 - place);
+        index - i64::from(before < radius.0)..=index + i64::from(after < radius.0)
+    };
+    let (column, row) = cell_of(center);
+    let columns = along(center.x, column);
+    along(center.y, row)
+        .flat_map(move |row| columns.clone().map(move |column| (column, row)))
+        .filter(move |&(column, row)| !is_clear_of(center, column, row, radius))
 }
 
 /// Whether a circle around `center` overlaps `cell`, solid or not. Touching is not overlapping.

@@ -107,3 +107,6 @@ pub struct Input {
     /// The number of [steps](super::Game::steps) of the game in the picture that they saw last.
     pub seen: u64,
 }
+
+#[cfg(test)]
+mod tests;

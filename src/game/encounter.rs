@@ -15,9 +15,11 @@ impl Game {
         let home = [self.target()];
         let Self { world, guards, sounds, smoke, members, .. } = self;
         let targets = members.as_deref().map_or(&home[..], |members| &members.targets);
-        let acts = guards.step(world, targets, sounds, smoke.clouds()).to_vec();
-        for act in acts {
-            self.answer(act);
+        let count = guards.step(world, targets, sounds, smoke.clouds()).len();
+        for index in 0..count {
+            if let Some(act) = self.guards.act(index) {
+                self.answer(act);
+            }
         }
         self.revision += u64::from(self.guards.alarm() != alarm);
     }

@@ -9,7 +9,10 @@
 //! Distances carry the number of the search that has found them, so that a new search need not
 //! clear those of the last one.
 
+mod buckets;
+
 use crate::world::Cell;
+use buckets::Buckets;
 
 /// The cost of a step to the north, east, south or west, in half cells.
 pub(super) const STRAIGHT: u16 = 2;
@@ -48,9 +51,7 @@ pub(super) struct Flood {
     /// The number of the search in the upper half, the distance in the lower.
     cells: Vec<u32>,
     search: u16,
-    buckets: [Vec<Cell>; BUCKETS],
-    /// The number of cells in the buckets.
-    waiting: usize,
+    buckets: Buckets<BUCKETS>,
     /// All cells nearer than this have their final distance.
     distance: u16,
 }
@@ -72,14 +73,14 @@ impl Flood {
             self.cells.resize(count, 0);
             self.search = 1;
         }
-        self.buckets.iter_mut().for_each(Vec::clear);
-        (self.waiting, self.distance) = (0, 0);
+        self.buckets.clear();
+        self.distance = 0;
         self.offer(start, 0);
     }
 
     /// Whether all cells that can be reached have been.
     pub(super) fn is_over(&self) -> bool {
-        self.waiting == 0
+        self.buckets.is_empty()
     }
 
     /// All cells nearer than this have been found.
@@ -94,13 +95,11 @@ impl Flood {
 
     /// Continues the search by the next cell. Returns whether there was one.
     pub(super) fn advance(&mut self, costs: &impl Costs) -> bool {
-        while self.waiting > 0 {
-            let bucket = usize::from(self.distance) % BUCKETS;
-            let Some(cell) = self.buckets[bucket].pop() else {
+        while !self.buckets.is_empty() {
+            let Some(cell) = self.buckets.pop(usize::from(self.distance) % BUCKETS) else {
                 self.distance += 1;
                 continue;
             };
-            self.waiting -= 1;
             if self.known(cell) == Some(self.distance) {
                 self.spread(cell, costs);
                 return true;
@@ -122,8 +121,10 @@ impl Flood {
         for side in 0..4 {
             let beside = [is_open[side], is_open[(side + 1) % 4]];
             let Some(to) = self.neighbor(cell, side * 2 + 1) else { continue };
-            if costs.has_diagonal(cell, to, beside) {
-                self.offer(to, self.distance + DIAGONAL);
+            let distance = self.distance + DIAGONAL;
+            let is_farther = self.known(to).is_some_and(|known| known <= distance);
+            if !is_farther && costs.has_diagonal(cell, to, beside) {
+                self.offer(to, distance);
             }
         }
     }
@@ -134,8 +135,7 @@ impl Flood {
             return;
         };
         self.cells[place] = u32::from(self.search) << 16 | u32::from(distance);
-        self.buckets[usize::from(distance) % BUCKETS].push(cell);
-        self.waiting += 1;
+        self.buckets.push(usize::from(distance) % BUCKETS, cell);
     }
 
     fn known(&self, cell: Cell) -> Option<u16> {

@@ -86,9 +86,7 @@ impl Intent {
 
     /// Whether each press does something once, however long it lasts.
     pub fn acts_once(self) -> bool {
-        use Intent::{AboutFace, FineLeft, FineRight, Lamp, Retry, Shoot, Smoke, Strike, Throw};
-        let once = [FineLeft, FineRight, AboutFace, Strike, Throw, Shoot, Smoke, Lamp, Retry];
-        once.contains(&self)
+        ONCE & bit(self) != 0
     }
 
     /// Whether the two exclude each other.
@@ -185,11 +183,35 @@ impl Intents {
         Intent::ALL.into_iter().filter(move |&intent| self.contains(intent))
     }
 
+    /// The intents of the set that [act once](Intent::acts_once), without angles.
+    pub(super) fn once(self) -> Self {
+        Self { bits: self.bits & ONCE, look: Look::NONE }
+    }
+
+    /// The intents of the set that are not in `others`, without angles.
+    pub(super) fn without(self, others: Self) -> Self {
+        Self { bits: self.bits & !others.bits, look: Look::NONE }
+    }
+
     /// 1 if only `toward` is wanted, −1 if only `against` is, 0 otherwise.
     pub(super) fn balance(self, toward: Intent, against: Intent) -> f64 {
         f64::from(i8::from(self.contains(toward)) - i8::from(self.contains(against)))
     }
 }
+
+/// The bits of the intents that [act once](Intent::acts_once).
+const ONCE: u32 = {
+    use Intent::{AboutFace, FineLeft, FineRight, Lamp, Retry, Shoot, Smoke, Strike, Throw};
+    bit(FineLeft)
+        | bit(FineRight)
+        | bit(AboutFace)
+        | bit(Strike)
+        | bit(Throw)
+        | bit(Shoot)
+        | bit(Smoke)
+        | bit(Lamp)
+        | bit(Retry)
+};
 
 const fn bit(intent: Intent) -> u32 {
     1 << intent as u8

@@ -13,7 +13,7 @@ mod moving_cell;
 use super::Game;
 use super::company::{MOST_PLAYERS, playing_mut};
 use super::noise::reach;
-use super::player::{Motion, STEP_HEIGHT};
+use super::player::Motion;
 use super::sound::SoundKind;
 use super::tally::Share;
 use crate::world::{
@@ -195,11 +195,16 @@ impl Game {
     }
 
     fn move_tiles(&mut self) {
+        let revision = self.revision;
         for index in 0..self.mechanisms.moving.len() {
             let cell = self.mechanisms.moving[index];
             if let Some(step) = self.next_step(cell) {
                 self.mechanisms.moving[index] = self.moved(cell, step);
             }
+        }
+        if self.revision != revision {
+            // What has moved may have made room.
+            self.mechanisms.moving.iter_mut().for_each(MovingCell::try_again);
         }
     }
 
@@ -213,19 +218,13 @@ impl Game {
         cell.step(&self.world, is_driven)
     }
 
-    /// Whether a step would change a moving cell.
+    /// Whether a step would change a moving cell, where nobody has moved since the last one.
     fn would_move(&self, cell: MovingCell) -> bool {
-        let Some(step) = self.next_step(cell) else { return false };
-        let Some(state) = step.state else { return true };
-        if !self.is_in_the_way(cell.cell()) {
-            return true;
-        }
-        let mut world = self.world.clone();
-        world.set_state(cell.cell(), state);
-        !self.is_crushing(&world, cell, state)
+        self.next_step(cell).is_some_and(|step| step.state.is_none() || !cell.is_blocked())
     }
 
-    /// The cell after `step`, with all who stand on it; the same cell if somebody is in the way.
+    /// The cell after `step`, with all who stand on it; the cell as it was, but blocked, if somebody
+    /// is in the way.
     fn moved(&mut self, cell: MovingCell, step: Step) -> MovingCell {
         let Some(state) = step.state else { return step.after };
         let before = cell.shown(&self.world);
@@ -234,21 +233,34 @@ impl Game {
             stood[index] = player.motion.stands(&self.world);
         }
         self.world.set_state(cell.cell(), state);
-        if self.is_crushing(&self.world, cell, state) {
+        if self.is_crushing(cell, state) {
             self.world.set_state(cell.cell(), before);
-            return cell;
+            self.tell_who_blocks(cell);
+            return cell.blocked();
         }
         self.revision += 1;
         self.hear_crumbling(cell, step);
         let falls = cell.driver(&self.world) == Driver::Weight;
+        self.guards.floor_moved(&self.world, cell.cell(), !falls);
         let Self { player, members, world, .. } = self;
         for (index, player) in playing_mut(player, members.as_deref_mut()) {
-            if let Some(feet) = feet_after(&player.motion, world, stood[index] && !falls) {
+            if let Some(feet) = player.motion.feet_after(world, stood[index] && !falls) {
                 player.motion = player.motion.carried_to(feet);
                 player.fell_from = feet;
             }
         }
         step.after
+    }
+
+    /// Says that a cell stops, once, to a player who is in the way.
+    fn tell_who_blocks(&mut self, cell: MovingCell) {
+        if !cell.is_blocked() {
+            self.for_each_player(|game| {
+                if game.player.motion.touches(cell.cell()) {
+                    game.say("It stops: you are in the way.".to_owned());
+                }
+            });
+        }
     }
 
     /// A floor that crumbles cracks, and then breaks.
@@ -262,8 +274,9 @@ impl Game {
         }
     }
 
-    /// Whether somebody has no room in `world`, in which `cell` has just become `state`.
-    fn is_crushing(&self, world: &World, cell: MovingCell, state: TileId) -> bool {
+    /// Whether somebody has no room in the world, in which `cell` has just become `state`.
+    fn is_crushing(&self, cell: MovingCell, state: TileId) -> bool {
+        let world = &self.world;
         let tile = world.tile(state);
         let rises = tile.heights.floor() > world.tile(cell.shown(world)).heights.floor();
         if rises && matches!(tile.kind, TileKind::Wall(_)) {
@@ -277,13 +290,4 @@ impl Game {
         };
         crushes_guards || self.playing().any(|(_, player)| crushes(&player.motion))
     }
-}
-
-/// The height of a player's feet in `world`, if that has lifted or, where they stood, lowered them.
-fn feet_after(motion: &Motion, world: &World, stood: bool) -> Option<f64> {
-    if !motion.has_room(world) {
-        return motion.lifted(world);
-    }
-    let floor = motion.floor(world);
-    (stood && floor < motion.feet() && motion.feet() - floor <= STEP_HEIGHT).then_some(floor)
 }

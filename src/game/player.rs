@@ -76,7 +76,7 @@ impl Player {
 
     /// Those of `presses` that begin in this step.
     pub(super) fn fresh(&self, presses: Intents) -> Intents {
-        presses.iter().filter(|&intent| !self.pressed.contains(intent)).collect()
+        presses.without(self.pressed)
     }
 
     /// The number of steps in which nothing changes but the player's clocks; `None` if nothing ever

@@ -2,11 +2,12 @@
 //! move.
 
 use super::Game;
+use super::company::playing;
 use super::guards::Target;
 use super::player::Player;
 use super::tools::{Missile, MissileKind, Puff};
 use crate::world::sprite::builtin;
-use crate::world::{Cell, Figure, Heading, Lamp, Light, Reach, SpriteId, World};
+use crate::world::{Figure, Heading, Lamp, Light, Reach, SpriteId, World};
 
 /// The sprites of what flies; each is `None` where nothing can fly.
 #[derive(Clone, Copy, Debug, PartialEq, Default)]
@@ -121,7 +122,7 @@ impl Game {
         let players = members.as_deref().map_or(&[][..], |members| members.figures());
         let is_still =
             !guards.has_changed() && !have_moved && missiles.is_empty() && smoke.is_empty();
-        if is_still && world.figures().len() == guards.figures().count() + players.len() {
+        if is_still && world.figures().len() == guards.figure_count() + players.len() {
             return;
         }
         let missiles = missiles.iter().filter_map(|missile| sprites.missile(missile));
@@ -132,10 +133,10 @@ impl Game {
     }
 
     fn show_lamps(&mut self) {
-        let lit = self.playing().filter(|(_, player)| player.has_light);
+        let lit = playing(&self.player, self.members.as_deref());
+        let lit = lit.filter(|(_, player)| player.has_light);
         let of_players = lit.map(|(_, player)| (player.motion.cell(), lamp()));
-        let lamps: Vec<(Cell, Lamp)> = of_players.chain(self.guards.lamps()).collect();
-        self.world.set_moving_lamps(&lamps);
+        self.world.set_moving_lamps(of_players.chain(self.guards.lamps()));
     }
 }
 

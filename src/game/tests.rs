@@ -1,9 +1,10 @@
 //! Properties of the game, in small levels.
 
+mod encounters;
 mod finds;
 mod hazards;
 mod mechanisms;
-mod missions;
+pub(super) mod missions;
 mod stage;
 mod tools;
 
@@ -102,7 +103,7 @@ fn to_nearest_wall(grid: &Grid, point: DVec2) -> f64 {
 }
 
 /// Intents that are held for a few steps each.
-fn script() -> impl Strategy<Value = Vec<(usize, Vec<Intent>)>> {
+pub(super) fn script() -> impl Strategy<Value = Vec<(usize, Vec<Intent>)>> {
     let held = prop::sample::subsequence(Intent::ALL.to_vec(), 0..=Intent::ALL.len());
     prop::collection::vec((1..60_usize, held), 0..30)
 }

@@ -9,6 +9,9 @@
 //! - Guards begin at least [`GUARD_DISTANCE`] cells from the start and out of its sight. Their number,
 //!   and the kinds among them, grow with the depth. Half as many again are there from normal
 //!   difficulty on, and as many more on hard.
+//! - At most [`MOST_OPEN`] percent of an office are open: without an opaque cell around them. A
+//!   hall or a garden as large as the floor, as every fourth small office would be, has no corners
+//!   to hide behind. Caves are open by nature, up to 70 percent, and mazes hardly at all.
 //! - Deeper floors are darker, so that lamps and lit rooms matter more.
 //! - Nothing but the seed and the number of the floor decides: nothing is carried from floor to floor.
 //!
@@ -40,7 +43,10 @@ const COLUMNS: (u32, u32, u32) = (24, 4, 64);
 const ROWS: (u32, u32, u32) = (24, 3, 48);
 /// One of this many cells of a floor is reachable, at least.
 const REACHABLE: u32 = 6;
-/// The levels that are tried before the one with the most reachable cells is taken as it is.
+/// The share of open cells in an office, in percent of the reachable ones. Offices that are divided
+/// into rooms have 9 to 35.
+const MOST_OPEN: usize = 40;
+/// The levels that are tried before the last one is taken as it is.
 const ATTEMPTS: i64 = 16;
 
 /// A floor of the descent of `seed`. The first one is 1; 0 is the same.
@@ -65,7 +71,7 @@ pub fn descent(seed: u64, floor: u32) -> Result<World, Faults> {
         let draft = Draft::new(seed, floor, attempt)?;
         attempt += 1;
         match draft {
-            Some(draft) if draft.ground.reachable().len() >= least || attempt >= ATTEMPTS => {
+            Some(draft) if draft.is_playable(least) || attempt >= ATTEMPTS => {
                 return draft.finish();
             }
             _ => {}
@@ -81,6 +87,7 @@ pub fn daily_seed(year: u32, month: u32, day: u32) -> u32 {
 /// A level before anything is placed in it.
 struct Draft {
     floor: u32,
+    generator: Generator,
     level: Level,
     ground: Ground,
     random: SplitMix64,
@@ -89,9 +96,9 @@ struct Draft {
 impl Draft {
     /// The level of one attempt. `None` if it has no start.
     fn new(seed: u64, floor: u32, attempt: i64) -> Result<Option<Self>, Faults> {
-        let generator_of_floor = kind(seed, floor);
+        let kind = kind(seed, floor);
         let own_seed = hash(seed, Purpose::Floor, floor.into(), attempt);
-        let terrain = FloorTerrain::new(generator_of_floor.terrain(own_seed), floor);
+        let terrain = FloorTerrain::new(kind.terrain(own_seed), floor);
         let (columns, rows) = size(floor);
         let extent = Extent::Cells { columns: columns.get(), rows: rows.get() };
         let level = Level::new(terrain, extent)?;
@@ -99,11 +106,19 @@ impl Draft {
         let Some(start) = level.start() else { return Ok(None) };
         let start = (start.column as u32, start.row as u32);
         let mut cells = level.rows_without_exit(columns, rows);
-        if generator_of_floor == Generator::Maze {
+        if kind == Generator::Maze {
             loops::open(&mut cells, level.tileset(), &mut random);
         }
         let ground = Ground::new(cells, start, level.tileset());
-        Ok(Some(Self { floor, level, ground, random }))
+        Ok(Some(Self { floor, generator: kind, level, ground, random }))
+    }
+
+    /// Whether at least that many cells are reachable, and not too many of an office are open.
+    fn is_playable(&self, least: usize) -> bool {
+        let reachable = self.ground.reachable().len();
+        let is_divided = self.generator != Generator::Office
+            || self.ground.open_count() * 100 <= reachable * MOST_OPEN;
+        reachable >= least && is_divided
     }
 
     /// The world: with an exit, items and guards.

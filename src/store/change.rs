@@ -2,7 +2,7 @@
 
 use super::best::{Best, Reached, Run};
 use super::names;
-use super::progress::{Daily, Preferences, Progress, SavedEntry, SavedGame};
+use super::progress::{Daily, Preferences, Progress, SavedEntry, SavedGame, Slot};
 use crate::world::Difficulty;
 
 /// A change.
@@ -10,8 +10,10 @@ use crate::world::Difficulty;
 pub(super) enum Change {
     /// A run reached the exit.
     Won { level: String, difficulty: Difficulty, run: Run },
-    /// A game was saved, or the saved game was removed.
-    Saved(Option<SavedGame>),
+    /// A game was saved.
+    Saved(SavedGame),
+    /// The saved game was removed.
+    Cleared(Slot),
     /// The player has chosen what differs.
     Preferences { before: Preferences, after: Preferences },
     /// The daily run of a date has come this far.
@@ -27,12 +29,12 @@ impl Change {
             Self::Won { level, difficulty, run } => {
                 Some((names::of_run(level, *difficulty, run.tally.steps), &run.script))
             }
-            Self::Saved(Some(game)) => Some((names::of_saved(&game.script), &game.script)),
+            Self::Saved(game) => Some((names::of_saved(&game.script), &game.script)),
             Self::Daily { date, reached, script } => {
                 Some((names::of_daily(*date, *reached)?, script))
             }
             Self::Descent { reached, script } => Some((names::of_descent(*reached)?, script)),
-            Self::Saved(None) | Self::Preferences { .. } => None,
+            Self::Cleared(_) | Self::Preferences { .. } => None,
         }
     }
 
@@ -49,7 +51,8 @@ impl Progress {
             Change::Won { level, difficulty, run } => {
                 self.add_best((level.clone(), *difficulty), Best::of(run));
             }
-            Change::Saved(game) => self.saved = game.as_ref().map(SavedEntry::of),
+            Change::Saved(game) => *self.saved_in_mut(game.slot()) = Some(SavedEntry::of(game)),
+            Change::Cleared(slot) => *self.saved_in_mut(*slot) = None,
             Change::Preferences { before, after } => self.preferences.choose(*before, *after),
             Change::Daily { date, reached, .. } => {
                 self.add_daily(*date, Daily { reached: *reached });
@@ -63,7 +66,10 @@ impl Progress {
         known.bests.iter().for_each(|(key, best)| self.add_best(key.clone(), *best));
         known.dailies.iter().for_each(|(date, daily)| self.add_daily(*date, *daily));
         self.descent = self.descent.max(known.descent);
-        self.saved = self.saved.take().or_else(|| known.saved.clone());
+        for slot in [Slot::Level, Slot::Descent] {
+            let saved = self.saved_in_mut(slot);
+            *saved = saved.take().or_else(|| known.saved_in(slot).cloned());
+        }
         self.preferences.choose(Preferences::default(), known.preferences);
     }
 
@@ -92,5 +98,8 @@ impl Preferences {
         set(&mut self.bell, &before.bell, after.bell);
         set(&mut self.ghost, &before.ghost, after.ghost);
         set(&mut self.difficulty, &before.difficulty, after.difficulty);
+        set(&mut self.glyphs, &before.glyphs, after.glyphs);
+        set(&mut self.colors, &before.colors, after.colors);
+        set(&mut self.frames_per_second, &before.frames_per_second, after.frames_per_second);
     }
 }

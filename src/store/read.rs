@@ -5,18 +5,17 @@
 //! short would be a better result.
 
 use std::borrow::Cow;
+use std::num::NonZeroU32;
 
 use toml::de::DeValue;
 
 use super::best::{Best, Reached};
-use super::progress::{Daily, Preferences, Progress, SavedEntry};
+use super::progress::{Daily, Descent, Preferences, Progress, SavedEntry};
+use super::values::{COLORS, GLYPHS, OLDEST, SAVED, SAVED_DESCENT, VERSION, named};
 use crate::fault::Fault;
 use crate::fault::document::{self, Entry, FaultList};
 use crate::game::{Rank, Rules, Share, Tally};
 use crate::world::Difficulty;
-
-/// The version of the format.
-pub(super) const VERSION: u64 = 1;
 
 /// What a text contains.
 #[derive(Debug, PartialEq)]
@@ -41,7 +40,8 @@ pub(super) fn read(content: &[u8]) -> Content {
         match entry.key {
             "version" => version = number(&entry),
             "preferences" => read_preferences(&entry, &mut progress.preferences),
-            "saved" => progress.saved = saved(&entry),
+            SAVED => progress.saved = saved(&entry),
+            SAVED_DESCENT => progress.saved_descent = saved(&entry),
             "descent" => progress.descent = reached(&entry),
             "best" => read_bests(&entry, &mut progress),
             "daily" => read_dailies(&entry, &mut progress),
@@ -50,7 +50,7 @@ pub(super) fn read(content: &[u8]) -> Content {
     }
     match version {
         Some(newer) if newer > VERSION => Content::Newer(newer),
-        Some(VERSION) if faults.is_empty() && !is_cut => Content::Sound(progress),
+        Some(OLDEST..=VERSION) if faults.is_empty() && !is_cut => Content::Sound(progress),
         _ => Content::Damaged(progress),
     }
 }
@@ -68,6 +68,12 @@ fn read_preferences(section: &Entry<'_, '_>, preferences: &mut Preferences) {
             "bell" => set(&mut preferences.bell, boolean(&entry)),
             "ghost" => set(&mut preferences.ghost, boolean(&entry)),
             "difficulty" => set(&mut preferences.difficulty, difficulty(&entry)),
+            "glyphs" => preferences.glyphs = checked(&entry, name_in(&entry, &GLYPHS)),
+            "colors" => preferences.colors = checked(&entry, name_in(&entry, &COLORS)),
+            "fps" => {
+                let frames = small_number(&entry).filter(|frames| (1..=240).contains(frames));
+                preferences.frames_per_second = checked(&entry, frames.and_then(NonZeroU32::new));
+            }
             _ => damaged(&entry),
         }
     }
@@ -75,6 +81,7 @@ fn read_preferences(section: &Entry<'_, '_>, preferences: &mut Preferences) {
 
 fn saved(section: &Entry<'_, '_>) -> Option<SavedEntry> {
     let (mut level, mut at, mut seed, mut script) = (None, None, None, None);
+    let (mut checksum, mut descent) = (None, None);
     for entry in inner(section) {
         match entry.key {
             "level" => level = entry.string(EXAMPLE).map(str::to_owned),
@@ -82,14 +89,29 @@ fn saved(section: &Entry<'_, '_>) -> Option<SavedEntry> {
             // TOML's own numbers have one bit less.
             "seed" => seed = checked(&entry, entry.string(EXAMPLE).and_then(|it| it.parse().ok())),
             "script" => script = checked(&entry, entry.string(EXAMPLE).and_then(file_name)),
+            "checksum" => {
+                let digits = entry.string(EXAMPLE);
+                let read = digits.and_then(|digits| u64::from_str_radix(digits, 16).ok());
+                checksum = checked(&entry, read);
+            }
+            "descent" => {
+                descent = checked(&entry, entry.string(EXAMPLE).and_then(Descent::named));
+            }
             _ => damaged(&entry),
         }
     }
     let complete = || {
         let rules = Rules { difficulty: at?, seed: seed? };
-        Some(SavedEntry { level: level?, rules, script: script? })
+        let is_descent = section.key == SAVED_DESCENT;
+        let entry = SavedEntry { level: level?, rules, script: script?, checksum, descent };
+        (entry.descent.is_some() == is_descent).then_some(entry)
     };
     checked(section, complete())
+}
+
+/// The value in `names` that the entry names.
+fn name_in<T: Copy>(entry: &Entry<'_, '_>, names: &[(T, &str)]) -> Option<T> {
+    named(names, entry.string(EXAMPLE)?)
 }
 
 /// `name`, unless it leaves the folder.

@@ -5,11 +5,14 @@ mod failing;
 mod sharing;
 
 use std::fs;
+use std::num::NonZeroU32;
 use std::path::{Path, PathBuf};
 use std::sync::atomic::{AtomicU32, Ordering};
 
 use super::*;
+use crate::color::palette::ColorDepth;
 use crate::game::{Rank, Rules, Share, Tally};
+use crate::tui::GlyphMode;
 use crate::world::Difficulty::{Easy, Hard, Normal};
 
 /// A folder that is removed at the end of a test.
@@ -72,6 +75,8 @@ fn saved(script: &str) -> SavedGame {
         level,
         rules: Rules { difficulty: Hard, seed: u64::MAX },
         script: script.to_owned(),
+        checksum: Some(0x0123_4567),
+        descent: None,
     }
 }
 
@@ -80,7 +85,15 @@ fn fill(store: &mut Store) {
     store.record("museum", Hard, run(500, Rank::Ghost));
     store.record("a b\\\"ä\n", Easy, run(7, Rank::Burglar));
     store.save(&saved("1 s forward\n"));
-    store.set_preferences(Preferences { compass: true, ghost: false, ..Preferences::default() });
+    store.save(&SavedGame { descent: Some(Descent::Practice), ..saved("5 s forward\n") });
+    store.set_preferences(Preferences {
+        compass: true,
+        ghost: false,
+        glyphs: Some(GlyphMode::Ascii),
+        colors: Some(ColorDepth::Indexed16),
+        frames_per_second: NonZeroU32::new(60),
+        ..Preferences::default()
+    });
     store.begin_daily(20_261_122);
     let script = || "4 s forward\n".to_owned();
     store.record_daily(20_261_122, Reached { floors: 3, treasure: 90, steps: 4000 }, script());
@@ -93,7 +106,8 @@ fn shown(store: &Store) -> String {
     let scripts =
         scripts.map(|(level, at)| (store.best(level, at).copied(), store.script(level, at)));
     let won: Vec<&str> = store.won(Normal).collect();
-    let kept = (store.saved(), store.preferences(), store.daily(20_261_122), store.best_descent());
+    let saved = [Slot::Level, Slot::Descent].map(|slot| store.saved(slot));
+    let kept = (saved, store.preferences(), store.daily(20_261_122), store.best_descent());
     format!("{scripts:?} {won:?} {kept:?}")
 }
 
@@ -110,6 +124,25 @@ fn what_is_kept_is_there_in_the_next_game() {
     assert_eq!(kept, shown(&in_memory));
     assert!(kept.contains("7 steps forward") && kept.contains("1 s forward"), "{kept}");
     insta::assert_snapshot!(folder.text());
+}
+
+#[test]
+fn a_file_of_the_first_version_is_read() {
+    let folder = Folder::new();
+    fs::create_dir_all(folder.0.join("runs")).unwrap();
+    fs::write(folder.0.join("runs/saved.1.script"), "1 s forward\n").unwrap();
+    let text = "version = 1\n[preferences]\ncrosshair = true\ncompass = false\nbell = false\n\
+                ghost = true\ndifficulty = \"hard\"\n[saved]\nlevel = \"cellar\"\n\
+                difficulty = \"easy\"\nseed = \"0\"\nscript = \"saved.1.script\"\n";
+    fs::write(folder.progress(), text).unwrap();
+    let mut store = sound(&folder.0);
+    let preferences = Preferences { crosshair: true, difficulty: Hard, ..Preferences::default() };
+    assert_eq!(store.preferences(), preferences);
+    let game = store.saved(Slot::Level).unwrap();
+    assert_eq!((game.level.as_str(), game.checksum, game.descent), ("cellar", None, None));
+    store.set_preferences(Preferences { bell: true, ..preferences });
+    assert!(folder.text().contains("version = 2"), "{}", folder.text());
+    assert_eq!(sound(&folder.0).saved(Slot::Level), Some(game));
 }
 
 #[test]
@@ -163,8 +196,13 @@ fn a_saved_game_replaces_the_one_before() {
     let mut store = sound(&folder.0);
     store.save(&saved("1 s forward\n"));
     store.save(&saved("2 s forward\n"));
-    assert_eq!(sound(&folder.0).saved(), Some(saved("2 s forward\n")));
+    assert_eq!(sound(&folder.0).saved(Slot::Level), Some(saved("2 s forward\n")));
     assert_eq!(folder.names(".script").len(), 1);
-    store.clear_saved();
-    assert_eq!((sound(&folder.0).saved(), folder.names(".script").len()), (None, 0));
+    let descent = SavedGame { descent: Some(Descent::Daily), ..saved("3 s forward\n") };
+    store.save(&descent);
+    store.clear_saved(Slot::Level);
+    assert_eq!(sound(&folder.0).saved(Slot::Level), None);
+    assert_eq!(sound(&folder.0).saved(Slot::Descent), Some(descent));
+    store.clear_saved(Slot::Descent);
+    assert_eq!((sound(&folder.0).saved(Slot::Descent), folder.names(".script").len()), (None, 0));
 }

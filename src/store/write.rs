@@ -4,7 +4,7 @@ use std::fmt::{self, Write};
 
 use super::best::{Best, Reached};
 use super::progress::{Preferences, Progress, SavedEntry};
-use super::read::VERSION;
+use super::values::{COLORS, GLYPHS, SAVED, SAVED_DESCENT, VERSION, name_of};
 use crate::game::{Rules, Share};
 
 impl fmt::Display for Progress {
@@ -13,8 +13,10 @@ impl fmt::Display for Progress {
         writeln!(f, "# The progress of a player of Cellcaster. The game replaces this file.")?;
         writeln!(f, "version = {VERSION}")?;
         write_preferences(f, self.preferences)?;
-        if let Some(saved) = &self.saved {
-            write_saved(f, saved)?;
+        for (section, saved) in [(SAVED, &self.saved), (SAVED_DESCENT, &self.saved_descent)] {
+            if let Some(saved) = saved {
+                write_saved(f, section, saved)?;
+            }
         }
         if let Some(reached) = self.descent {
             writeln!(f, "\n[descent]")?;
@@ -33,17 +35,36 @@ impl fmt::Display for Progress {
 }
 
 fn write_preferences(f: &mut fmt::Formatter<'_>, preferences: Preferences) -> fmt::Result {
-    let Preferences { crosshair, compass, bell, ghost, difficulty } = preferences;
+    let Preferences { crosshair, compass, bell, ghost, difficulty, .. } = preferences;
     writeln!(f, "\n[preferences]")?;
     writeln!(f, "crosshair = {crosshair}\ncompass = {compass}\nbell = {bell}\nghost = {ghost}")?;
-    writeln!(f, "difficulty = {}", quoted(difficulty.name()))
+    writeln!(f, "difficulty = {}", quoted(difficulty.name()))?;
+    if let Some(glyphs) = preferences.glyphs {
+        writeln!(f, "glyphs = {}", quoted(name_of(&GLYPHS, glyphs)))?;
+    }
+    if let Some(colors) = preferences.colors {
+        writeln!(f, "colors = {}", quoted(name_of(&COLORS, colors)))?;
+    }
+    match preferences.frames_per_second {
+        Some(frames) => writeln!(f, "fps = {frames}"),
+        None => Ok(()),
+    }
 }
 
-fn write_saved(f: &mut fmt::Formatter<'_>, saved: &SavedEntry) -> fmt::Result {
-    let SavedEntry { level, rules: Rules { difficulty, seed }, script } = saved;
-    writeln!(f, "\n[saved]\nlevel = {}", quoted(level))?;
+fn write_saved(f: &mut fmt::Formatter<'_>, section: &str, saved: &SavedEntry) -> fmt::Result {
+    let SavedEntry { level, rules: Rules { difficulty, seed }, script, checksum, descent } = saved;
+    writeln!(f, "\n[{section}]\nlevel = {}", quoted(level))?;
     writeln!(f, "difficulty = {}", quoted(difficulty.name()))?;
-    writeln!(f, "seed = \"{seed}\"\nscript = {}", quoted(script))
+    writeln!(f, "seed = \"{seed}\"")?;
+    if let Some(descent) = descent {
+        writeln!(f, "descent = {}", quoted(descent.name()))?;
+    }
+    if let Some(checksum) = checksum {
+        writeln!(f, "checksum = \"{checksum:016x}\"")?;
+    }
+    // The last line is one without which there is no saved game, so that a file that was cut short has
+    // none without a checksum.
+    writeln!(f, "script = {}", quoted(script))
 }
 
 fn write_best(f: &mut fmt::Formatter<'_>, best: &Best) -> fmt::Result {

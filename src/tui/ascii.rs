@@ -2,7 +2,8 @@
 //! then how bright.
 //!
 //! Each surface has its own characters, so that x sides and y sides of walls, floor, ceiling and
-//! sky differ without colour. Within a surface, four characters stand for four shades. One ramp of
+//! sky differ without colour. Without colour, the cells around a thing are blank, too. Within a
+//! surface, four characters stand for four shades. One ramp of
 //! brightness for all surfaces was refused: a dark wall in front of a bright one looked the same as
 //! a bright floor in front of a dark wall.
 

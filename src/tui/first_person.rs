@@ -6,6 +6,7 @@ use ratatui::buffer::Buffer;
 use ratatui::layout::{Rect, Size};
 use ratatui::widgets::StatefulWidget;
 
+use super::outline::{Edge, outline};
 use super::{CellAspect, GlyphMode, ascii, half_blocks, ramp};
 use crate::canvas::Canvas;
 use crate::color::palette::ColorDepth;
@@ -119,18 +120,25 @@ impl<'a, S: Renderable> FirstPerson<'a, S> {
         }
         let View { renderer, frame } = view;
         let above = u32::from(first_row) * self.glyphs.pixels_per_cell();
+        let surface = |x, y| S::surface(renderer, x, y);
         match self.glyphs {
             GlyphMode::Half => {
-                half_blocks::draw_frame(area, canvas, self.depth, above, frame);
+                half_blocks::draw_frame(area, canvas, self.depth, above, frame, surface);
             }
-            GlyphMode::Ascii => ascii::draw_picture(area, canvas, self.depth, |x, y| {
-                let color = frame.pixel(x, above + y);
-                let character = match S::surface(renderer, x, above + y) {
-                    Some(surface) => ascii::character(surface, color),
-                    None => ramp::character(color),
-                };
-                (color, character)
-            }),
+            GlyphMode::Ascii => {
+                let is_beside_thing =
+                    |x, y| outline(frame.size(), surface, x, y) == Some(Edge::Outer);
+                ascii::draw_picture(area, canvas, self.depth, |x, y| {
+                    let y = above + y;
+                    let color = frame.pixel(x, y);
+                    let character = match surface(x, y) {
+                        Some(_) if self.depth == ColorDepth::Mono && is_beside_thing(x, y) => ' ',
+                        Some(surface) => ascii::character(surface, color),
+                        None => ramp::character(color),
+                    };
+                    (color, character)
+                });
+            }
             GlyphMode::Ramp => ascii::draw_picture(area, canvas, self.depth, |x, y| {
                 let color = frame.pixel(x, above + y);
                 (color, ramp::character(color))
@@ -148,7 +156,11 @@ impl<'a, S: Renderable> FirstPerson<'a, S> {
     }
 
     fn options(&self) -> Options {
-        let keeps_surfaces = self.glyphs == GlyphMode::Ascii;
+        let keeps_surfaces = match self.glyphs {
+            GlyphMode::Half => self.depth == ColorDepth::Mono,
+            GlyphMode::Ascii => true,
+            GlyphMode::Ramp => false,
+        };
         Options { filter: self.filter, seconds: self.seconds, keeps_surfaces }
     }
 }

@@ -16,21 +16,23 @@ use super::glyphs::color_at;
 use crate::canvas::Canvas;
 use crate::color::Rgb;
 use crate::color::palette::{ColorDepth, mixture};
-use crate::render::Frame;
+use crate::render::{Frame, Surface};
 
 /// Draws the pixels of `frame` on `area`. The first `above` rows of pixels are above its top edge.
+/// `surface` is needed without colours only.
 pub(super) fn draw_frame(
     area: Rect,
     canvas: &mut impl Canvas,
     depth: ColorDepth,
     above: u32,
     frame: &Frame,
+    surface: impl Fn(u32, u32) -> Option<Surface>,
 ) {
     match depth {
         ColorDepth::Indexed256 => mixed::draw(area, canvas, &mixture::OF_256, above, frame),
         ColorDepth::Indexed16 => mixed::draw(area, canvas, &mixture::OF_16, above, frame),
         ColorDepth::True => draw(area, canvas, depth, above, |y| frame.row(y)),
-        ColorDepth::Mono => mono::draw(area, canvas, above, frame),
+        ColorDepth::Mono => mono::draw(area, canvas, above, frame, surface),
     }
 }
 

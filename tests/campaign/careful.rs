@@ -49,6 +49,11 @@ impl Move {
         Self::Strike,
     ];
 
+    /// Whether it is made by taps on the keys to walk.
+    fn is_tapped(self) -> bool {
+        matches!(self, Self::Walk | Self::Shun | Self::Pause | Self::Wait | Self::WaitLong)
+    }
+
     /// What the move adds to the estimate before it is played.
     fn surcharge(self) -> u64 {
         match self {
@@ -73,14 +78,14 @@ struct State {
     toll: u64,
 }
 
-/// The winning game on the way through `errands` from the start of `game`.
+/// The winning game on the way through `errands` from the state of `pilot`.
 ///
 /// # Errors
 /// How far each temper got, if none wins.
-pub(crate) fn search(game: &Game, errands: &[Errand]) -> Result<Pilot, String> {
+pub(crate) fn search(pilot: &Pilot, errands: &[Errand]) -> Result<Pilot, String> {
     let mut failures = String::new();
     for temper in TEMPERS {
-        match search_with(game.clone(), errands, temper) {
+        match search_with(pilot.clone(), errands, temper) {
             Ok(pilot) => return Ok(pilot),
             Err(failure) => failures.push_str(&failure),
         }
@@ -88,11 +93,11 @@ pub(crate) fn search(game: &Game, errands: &[Errand]) -> Result<Pilot, String> {
     Err(failures)
 }
 
-fn search_with(game: Game, errands: &[Errand], temper: Temper) -> Result<Pilot, String> {
+fn search_with(pilot: Pilot, errands: &[Errand], temper: Temper) -> Result<Pilot, String> {
     let (waiting, states, seen) = (BinaryHeap::new(), Vec::new(), BTreeSet::new());
-    let after_errand = after_errands(&game, errands);
+    let after_errand = after_errands(&pilot.game, errands);
     let mut search = Search { errands, after_errand, temper, waiting, states, seen };
-    search.add(State { pilot: Pilot::new(game), done: 0, toll: 0 });
+    search.add(State { pilot, done: 0, toll: 0 });
     for _ in 0..temper.most_moves {
         let Some((Reverse(_), Reverse(way), index)) = search.waiting.pop() else { break };
         let state = Rc::clone(&search.states[index]);
@@ -124,10 +129,11 @@ impl Search<'_> {
         if !self.seen.insert((state.done, state.pilot.cell(), steps / grain, health)) {
             return;
         }
+        let taps = state.pilot.taps();
         let estimate = steps + state.toll + self.left(&state) * self.temper.weight / 2;
         let index = self.states.len();
         self.states.push(Rc::new(state));
-        for way in Move::ALL {
+        for way in Move::ALL.into_iter().filter(|way| way.is_tapped() || !taps) {
             self.waiting.push((Reverse(estimate + way.surcharge()), Reverse(way), index));
         }
     }

@@ -6,6 +6,7 @@ mod lazy;
 mod levels;
 mod route;
 mod scripts;
+mod taps;
 mod temper;
 
 #[path = "../support/pilot.rs"]

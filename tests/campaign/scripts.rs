@@ -15,6 +15,7 @@ use cellcaster::world::Difficulty;
 
 use crate::careful;
 use crate::levels::{self, route};
+use crate::pilot::Pilot;
 
 /// The variable that asks for new scripts.
 const UPDATE: &str = "CELLCASTER_UPDATE_SCRIPTS";
@@ -43,7 +44,7 @@ fn replayed(level: &Level, difficulty: Difficulty) -> Result<Game, String> {
 fn update(level: &Level, difficulty: Difficulty) -> Result<String, String> {
     let name = format!("{}.{}", level.name, difficulty.name());
     let game = Game::with_rules(levels::world(level), Rules { difficulty, seed: 0 });
-    let pilot = careful::search(&game, &route(level))
+    let pilot = careful::search(&Pilot::new(game), &route(level))
         .map_err(|failure| format!("{name}: nothing found{failure}"))?;
     let header = format!("level {}\ndifficulty {}\nseed 0\n", level.name, difficulty.name());
     fs::write(path(level, difficulty), header + &pilot.script())
@@ -89,6 +90,19 @@ fn line(level: &Level, difficulty: Difficulty) -> Result<String, String> {
         treasure.total,
         game.checksum()
     ))
+}
+
+/// A par time is about twice the time of the slowest of a level's scripts, which know the way.
+#[test]
+fn par_times_fit_the_scripts() {
+    for level in builtin::LEVELS {
+        let times =
+            Difficulty::ALL.map(|difficulty| replayed(level, difficulty).unwrap().elapsed());
+        let slowest = times.into_iter().fold(0.0, f64::max);
+        let par = f64::from(levels::world(level).par().unwrap());
+        let range = 1.5 * slowest..=3.0 * slowest;
+        assert!(range.contains(&par), "{}: par {par} s, slowest script {slowest:.1} s", level.name);
+    }
 }
 
 #[test]

@@ -8,6 +8,8 @@ mod growth;
 mod landing;
 mod map;
 mod playing;
+mod several;
+mod steps;
 
 #[path = "../support/reach.rs"]
 mod reach;

@@ -27,18 +27,43 @@ pub(crate) enum Pace {
     Run,
 }
 
+/// How the player controls the game.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+enum Control {
+    /// By turns and steps of any size.
+    Free,
+    /// By taps on the keys to walk, without turning. Such a script can be typed at a keyboard that
+    /// reports no releases.
+    Taps,
+}
+
+/// The steps for which a tap walks, and those between two taps: no keyboard repeats as slowly.
+const TAP: u32 = 5;
+const BETWEEN_TAPS: u32 = 2;
+
 /// A game, and the intents that led to its state.
 #[derive(Clone)]
 pub(crate) struct Pilot {
     /// The game.
     pub(crate) game: Game,
+    control: Control,
     stretches: Vec<(u32, Intents)>,
 }
 
 impl Pilot {
     /// A pilot at the start of a game.
     pub(crate) fn new(game: Game) -> Self {
-        Self { game, stretches: Vec::new() }
+        Self { game, control: Control::Free, stretches: Vec::new() }
+    }
+
+    /// A pilot who taps keys.
+    pub(crate) fn tapping(game: Game) -> Self {
+        Self { control: Control::Taps, ..Self::new(game) }
+    }
+
+    /// Whether the pilot only taps keys.
+    pub(crate) fn taps(&self) -> bool {
+        self.control == Control::Taps
     }
 
     /// The steps so far.
@@ -83,15 +108,44 @@ impl Pilot {
 
     /// Goes along `ways` for at most a number of steps; whether the player has arrived.
     pub(crate) fn go(&mut self, ways: &Ways, pace: Pace, steps: u32) -> bool {
-        for _ in 0..steps {
+        let moves = if self.taps() { steps.div_ceil(TAP + BETWEEN_TAPS) } else { steps };
+        for _ in 0..moves {
             if self.has_arrived(ways) || self.game.is_finished() {
                 return true;
             }
             let (target, is_low) = ways.target(&self.game, self.position());
             let pace = if is_low { Pace::Duck } else { pace };
-            self.approach(target, pace);
+            match self.control {
+                Control::Free => self.approach(target, pace),
+                Control::Taps => self.tap_towards(target),
+            }
         }
         self.has_arrived(ways)
+    }
+
+    /// Taps the key that leads farthest towards `target`; if a wall is in its way, the other one.
+    fn tap_towards(&mut self, target: DVec2) {
+        let before = self.position();
+        let to = target - before;
+        let ahead = self.game.camera(FieldOfView::default()).direction();
+        let (along, aside) = (ahead.dot(to), ahead.perp().dot(to));
+        let forward = if along > 0.0 { Intent::Forward } else { Intent::Back };
+        let sideways = if aside > 0.0 { Intent::StrafeRight } else { Intent::StrafeLeft };
+        let is_ahead = along.abs() > aside.abs();
+        let (first, second) = if is_ahead { (forward, sideways) } else { (sideways, forward) };
+        self.tap(first);
+        if (self.position() - before).length() < 0.02 && along.abs().min(aside.abs()) > 0.05 {
+            self.tap(second);
+        }
+    }
+
+    fn tap(&mut self, intent: Intent) {
+        for index in 0..TAP + BETWEEN_TAPS {
+            if self.game.is_finished() {
+                return;
+            }
+            self.step(if index < TAP { [intent].into_iter().collect() } else { Intents::new() });
+        }
     }
 
     /// Turns to `cell` and opens what is there: a lever, a flame or a secret wall.

@@ -75,6 +75,16 @@ impl Player {
         (&*self.pty).write_all(bytes.as_ref()).unwrap();
     }
 
+    /// Waits until the program has read all that was sent.
+    #[track_caller]
+    pub(crate) fn wait_until_read(&self) {
+        let deadline = Instant::now() + PATIENCE;
+        while is_ready(&self.terminal, PollFlags::IN) {
+            assert!(Instant::now() < deadline, "never read; the screen:\n{}", self.text());
+            thread::sleep(Duration::from_micros(200));
+        }
+    }
+
     /// Changes the size of the window.
     pub(crate) fn resize(&self, columns: u16, rows: u16) {
         self.state().emulator.resize(columns, rows);

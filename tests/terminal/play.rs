@@ -2,6 +2,7 @@
 #![cfg(all(unix, feature = "cli"))]
 
 mod campaign;
+mod clock;
 mod doors;
 mod ending;
 mod game;

@@ -47,7 +47,9 @@ impl StatusLine {
             long.push_str(goal.text());
         }
         if let Some(stats) = stats {
-            self.both(Part::Stats, format_args!("{stats}"))?;
+            let [short, long] = self.forms(Part::Stats);
+            write!(short, "{}", stats.rates)?;
+            write!(long, "{stats}")?;
         }
         if let Some(share) = share_seen {
             self.both(Part::Seen, format_args!("{:.0} % seen", (share * 100.0).floor()))?;

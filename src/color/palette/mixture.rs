@@ -6,11 +6,26 @@
 //! counts as well, because it is visible as dots. Colours of another hue are not used: grey and one
 //! hue reach every colour between them, and a green dot on a brick is noticeable.
 //!
+//! The palette of 256 has few dark hues: its darkest red has a lightness of 0.31, and its darkest
+//! yellow 0.47. Three rules keep dark surfaces from becoming grey with bright dots:
+//!
+//! - A difference in saturation weighs more than one in hue: dark wood is mixed of red and grey in
+//!   one block, and of yellow and grey in the next.
+//! - A colour that is much lighter or darker than the wanted one is not used.
+//! - The largest deviation of a pixel from the mean counts as contrast, too: one orange pixel among
+//!   three dark ones costs more than two red and two grey pixels of one lightness.
+//!
+//! More weight on contrast was refused: it makes dark wood grey again.
+//!
 //! The idea is Joel Yliluoma's ("Arbitrary-palette positional dithering algorithm", 2011). Sets of
 //! four colours were refused: they come a little nearer, for twice the bytes.
 //!
-//! Mixtures are stored by the upper six bits of each channel, and computed on first use: a picture
-//! needs some hundreds of them, and computing all 262,144 would take seconds.
+//! Mixtures are stored by 64 levels of each channel, and computed on first use: a picture needs some
+//! hundreds of them, and computing all 262,144 would take seconds. The levels are equal steps of the
+//! cube root of light, which are equal steps of lightness. The upper six bits of sRGB were refused:
+//! their lowest levels are as far apart as black and the darkest grey.
+
+mod candidates;
 
 use std::array;
 use std::sync::LazyLock;
@@ -19,7 +34,7 @@ use std::sync::atomic::{AtomicU32, Ordering};
 use super::{CUBE, of_256};
 use crate::color::oklab::{self, Oklab};
 use crate::color::srgb::linear;
-use crate::color::{Rgb, product};
+use candidates::{Candidate, Candidates};
 
 /// Two colours and their shares.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -47,8 +62,10 @@ pub(crate) struct Mixtures {
 
 type Entries = [AtomicU32; 1 << (3 * BITS)];
 
-/// The number of bits of each channel by which mixtures are stored.
-pub(crate) const BITS: u32 = 6;
+/// The number of bits of a channel's level.
+const BITS: u32 = 6;
+/// The highest level.
+const FULL: u8 = (1 << BITS) - 1;
 /// The bit that marks an entry as computed, in its uppermost byte, beside the share.
 const FOUND: u8 = 1 << 7;
 
@@ -88,8 +105,15 @@ struct Weights {
     chroma: f32,
     /// The same for single colours, which would otherwise be grey too often.
     single: f32,
+    /// The weight of a difference in hue relative to one in saturation.
+    hue_error: f32,
     /// The weights of the differences in lightness and in chroma between the two colours.
     contrast: [f32; 2],
+    /// The weight of the largest deviation of a pixel relative to the mean contrast, for black; it
+    /// decreases to zero at [`DARK`].
+    deviation: f32,
+    /// The most by which the lightness of a colour may differ from that of a wanted one that is dark.
+    most_difference: f32,
     /// The least cosine between the hues of a colour and of the wanted one.
     hue: f32,
     /// Colours with less chroma are mixed of greys only.
@@ -103,7 +127,10 @@ struct Weights {
 const WEIGHTS_OF_256: Weights = Weights {
     chroma: 2.0,
     single: 1.0,
+    hue_error: 0.7,
     contrast: [0.03, 0.01],
+    deviation: 1.5,
+    most_difference: 0.18,
     hue: 0.5,
     least_chroma: 0.005,
     most_excess: 0.1,
@@ -112,16 +139,27 @@ const WEIGHTS_OF_256: Weights = Weights {
 const WEIGHTS_OF_16: Weights = Weights {
     chroma: 1.0,
     single: 1.0,
+    hue_error: 1.0,
     contrast: [0.008, 0.02],
+    deviation: 0.0,
+    most_difference: 1.0,
     hue: 0.9,
     least_chroma: 0.045,
     most_excess: 1.0,
 };
 
-/// The most candidates for a mixture: the nearest colours.
-const MOST_CANDIDATES: usize = 40;
-/// Colours with less chroma are grey and fit every hue.
-const GREY: f32 = 0.01;
+/// The lightness below which a colour is dark.
+const DARK: f32 = 0.45;
+
+/// The level of a channel with that amount of light, from 0 to 1.
+pub(crate) fn level(light: f64) -> u8 {
+    libm::round(libm::cbrt(light) * f64::from(FULL)) as u8
+}
+
+fn light_of_level(level: u8) -> f64 {
+    let root = f64::from(level) / f64::from(FULL);
+    root * root * root
+}
 
 /// A colour of the palette.
 #[derive(Clone, Copy)]
@@ -144,26 +182,22 @@ impl PaletteColor {
 }
 
 impl Mixtures {
-    /// The mixture for a colour, given the upper bits of red, green and blue.
+    /// The mixture for a colour, given the [`level`] of red, green and blue.
     #[inline]
-    pub(crate) fn of(&self, [red, green, blue]: [u8; 3]) -> Mixture {
-        let mask = (1 << BITS) - 1;
-        let index = [red, green, blue]
-            .iter()
-            .fold(0, |index, &channel| index << BITS | usize::from(channel) & mask);
+    pub(crate) fn of(&self, levels: [u8; 3]) -> Mixture {
+        let index =
+            levels.iter().fold(0, |index, &level| index << BITS | usize::from(level & FULL));
         // Every thread computes the same entry, so that it does not matter which one stores it.
         let stored = self.entries[index].load(Ordering::Relaxed);
-        let entry = if stored == 0 { self.find(index, [red, green, blue]) } else { stored };
+        let entry = if stored == 0 { self.find(index, levels) } else { stored };
         let [share, single, darker, brighter] = entry.to_be_bytes();
         Mixture { colors: [darker, brighter], share: share ^ FOUND, single }
     }
 
     #[cold]
     fn find(&self, index: usize, levels: [u8; 3]) -> u32 {
-        // Repeating the bits makes the lowest level black and the highest white.
-        let [red, green, blue] = levels.map(|level| level << 2 | level >> (BITS - 2));
         let Mixture { colors: [darker, brighter], share, single } =
-            (self.palette)().mixture(Rgb::new(red, green, blue));
+            (self.palette)().mixture(levels.map(light_of_level));
         let entry = u32::from_be_bytes([FOUND | share, single, darker, brighter]);
         self.entries[index].store(entry, Ordering::Relaxed);
         entry
@@ -171,9 +205,10 @@ impl Mixtures {
 }
 
 impl Palette {
-    fn mixture(self, color: Rgb) -> Mixture {
-        let Candidates { nearest, count } = Candidates::new(color, self);
-        let candidates = &nearest[..count];
+    fn mixture(self, light: [f64; 3]) -> Mixture {
+        let candidates = Candidates::new(light, self);
+        let darkness = (1.0 - candidates.lightness() / DARK).max(0.0) * self.weights.deviation;
+        let candidates = candidates.as_slice();
         let single = candidates.iter().min_by(|one, other| {
             let alone = |candidate: &Candidate| cost(candidate.error, self.weights.single);
             alone(one).total_cmp(&alone(other))
@@ -194,8 +229,9 @@ impl Palette {
                     let part = f32::from(share) / f32::from(Mixture::WHOLE);
                     let error =
                         array::from_fn(|i| one.error[i] + (other.error[i] - one.error[i]) * part);
-                    let total =
-                        cost(error, self.weights.chroma) + contrast * 4.0 * part * (1.0 - part);
+                    let largest = 2.0 * part.max(1.0 - part);
+                    let dots = 4.0 * part * (1.0 - part) + darkness * largest * largest;
+                    let total = cost(error, self.weights.chroma) + contrast * dots;
                     if one.lab[0] <= other.lab[0] {
                         consider(total, [one.index, other.index], share);
                     } else {
@@ -213,71 +249,9 @@ impl Palette {
     }
 }
 
-/// The cost of an error in Oklab, where `chroma` is the weight of an error in chroma.
-fn cost([lightness, red, yellow]: [f32; 3], chroma: f32) -> f32 {
-    lightness * lightness + chroma * chroma * (red * red + yellow * yellow)
-}
-
-/// The colours that may be mixed to give a colour.
-struct Candidates {
-    nearest: [Candidate; MOST_CANDIDATES],
-    count: usize,
-}
-
-/// A colour that may be part of a mixture, and its difference from the wanted colour. The error of
-/// a mixture is the weighted mean of the errors of its colours: errors are linear in the responses
-/// of the cones, and only scaled to perceived differences.
-#[derive(Clone, Copy, Default)]
-struct Candidate {
-    index: u8,
-    distance: f32,
-    error: [f32; 3],
-    lab: [f32; 3],
-}
-
-impl Candidates {
-    fn new(color: Rgb, Palette { colors, weights }: Palette) -> Self {
-        let light = linear(color);
-        let Oklab(wanted) = Oklab::from_linear(light);
-        let wanted = wanted.map(|part| part as f32);
-        let cones = oklab::cones(light).map(|share| share as f32);
-        // The derivative of the cube root, bounded near zero.
-        let slopes = cones.map(|share| {
-            let root = libm::cbrtf(share + 0.003);
-            1.0 / (3.0 * root * root)
-        });
-        let chroma = |lab: [f32; 3]| libm::sqrtf(lab[1] * lab[1] + lab[2] * lab[2]);
-        let own_chroma = chroma(wanted);
-        let fits = |lab: [f32; 3]| {
-            let cosine = lab[1] * wanted[1] + lab[2] * wanted[2];
-            let chroma_of_other = chroma(lab);
-            chroma_of_other < GREY
-                || own_chroma >= weights.least_chroma
-                    && chroma_of_other <= own_chroma + weights.most_excess
-                    && cosine >= weights.hue * chroma_of_other * own_chroma
-        };
-        let from_cone_roots = oklab::FROM_CONE_ROOTS.map(|row| row.map(|factor| factor as f32));
-        let mut nearest = [Candidate::default(); MOST_CANDIDATES];
-        let mut count = 0;
-        for other in colors.iter().filter(|other| fits(other.lab)) {
-            let distance =
-                other.lab.iter().zip(wanted).map(|(part, wanted)| (part - wanted).powi(2)).sum();
-            if count == MOST_CANDIDATES && distance >= nearest[count - 1].distance {
-                continue;
-            }
-            let roots = array::from_fn(|i| (other.cones[i] - cones[i]) * slopes[i]);
-            let error = product(&from_cone_roots, roots);
-            let candidate = Candidate { index: other.index, distance, error, lab: other.lab };
-            count = (count + 1).min(MOST_CANDIDATES);
-            nearest[count - 1] = candidate;
-            let mut at = count - 1;
-            while at > 0 && nearest[at - 1].distance > distance {
-                nearest.swap(at - 1, at);
-                at -= 1;
-            }
-        }
-        Self { nearest, count }
-    }
+/// The cost of a [`Candidate::error`], where `chroma` is the weight of an error in chroma.
+fn cost([lightness, saturation, hue]: [f32; 3], chroma: f32) -> f32 {
+    lightness * lightness + chroma * chroma * (saturation * saturation + hue * hue)
 }
 
 #[cfg(test)]

@@ -13,7 +13,7 @@ use std::iter::Flatten;
 
 use glam::DVec2;
 
-use super::{Obstacles, Radius, cell_of, cell_on_map, is_clear, is_clear_of, outline};
+use super::{Obstacles, Radius, cell_on_map, is_clear, outline, overlapped};
 use crate::game::fall::Room;
 use crate::world::{Cell, Gap, Outline, Tile, TileKind, World};
 
@@ -41,6 +41,8 @@ pub(in crate::game) struct Place<'a> {
     pub(in crate::game) step: f64,
     /// Whether the world has shapes.
     pub(in crate::game) has_shapes: bool,
+    /// The positions of players in the way, who are columns without an upper end.
+    pub(in crate::game) others: &'a [DVec2],
 }
 
 impl Obstacles for Place<'_> {
@@ -60,6 +62,10 @@ impl Obstacles for Place<'_> {
             }
             _ => None,
         }
+    }
+
+    fn circles(&self) -> &[DVec2] {
+        self.others
     }
 
     /// Steps up, if there is room.
@@ -122,11 +128,7 @@ impl Place<'_> {
     /// The lowest and the highest position of the feet of a player whose circle around `center` is
     /// clear.
     pub(in crate::game) fn room(&self, center: DVec2, radius: Radius) -> Room {
-        let (column, row) = cell_of(center);
-        let around =
-            (row - 1..=row + 1).flat_map(|row| (column - 1..=column + 1).map(move |c| (c, row)));
-        let gaps = around
-            .filter(|&(column, row)| !is_clear_of(center, column, row, radius))
+        let gaps = overlapped(center, radius)
             .filter_map(|(column, row)| self.gap_above_shapes(column, row, center, radius));
         let most = Room { floor: f64::NEG_INFINITY, ceiling: f64::INFINITY };
         gaps.fold(most, |room, gap| Room {

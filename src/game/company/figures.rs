@@ -35,9 +35,30 @@ impl Game {
             members.targets = targets;
         }
     }
+
+    /// Finds out who is in the way of the player in turn.
+    pub(in crate::game) fn find_those_in_the_way(&mut self) {
+        let Some(members) = &mut self.members else { return };
+        if !members.company.collides {
+            return;
+        }
+        let turn = members.turn;
+        let mut in_the_way = std::mem::take(&mut members.in_the_way);
+        in_the_way.clear();
+        let others = self.playing().filter(|&(index, _)| Some(index) != turn);
+        in_the_way.extend(others.map(|(_, player)| player.motion.position()));
+        if let Some(members) = &mut self.members {
+            members.in_the_way = in_the_way;
+        }
+    }
 }
 
 impl Members {
+    /// The positions of those who are in the way of the player in turn.
+    pub(in crate::game) fn in_the_way(&self) -> &[DVec2] {
+        &self.in_the_way
+    }
+
     /// Makes the figures of the players. Returns whether they have changed.
     pub(in crate::game) fn pose(&mut self, world: &World) -> bool {
         let mut figures = std::mem::take(&mut self.figures);

@@ -2,9 +2,11 @@
 
 use super::seen::Track;
 use super::{Company, MOST_PLAYERS};
+use crate::game::checksum::{word_of, words_of_player};
 use crate::game::guards::Target;
 use crate::game::player::Player;
 use crate::game::{Game, Intents};
+use crate::rng::hash;
 use crate::world::sprite::builtin::PlayerColor;
 use crate::world::{Cell, Figure, SpriteId, Thing};
 
@@ -35,7 +37,7 @@ pub(in crate::game) struct Members {
 pub(super) struct Member {
     pub(super) player: Player,
     pub(super) color: PlayerColor,
-    /// Whether the player was alive and had not reached the exit when the step began.
+    /// Whether the player is alive and has not reached the exit; it changes between steps.
     pub(super) is_playing: bool,
     pub(super) has_won: bool,
     /// What the player wants in this step, and the step that they saw.
@@ -100,6 +102,27 @@ impl Members {
         self.each().any(|(_, member)| member.checkpoint == Some(cell))
     }
 
+    /// What rules depend on, of all players.
+    pub(in crate::game) fn words(&self) -> impl Iterator<Item = u64> {
+        let members = self.each().map(|(index, member)| {
+            let counts = member.player.counts;
+            let numbers = [
+                index as u64,
+                member.color as u64,
+                u64::from(member.has_won),
+                u64::from(member.stunned) << 32 | u64::from(member.spared) << 16,
+                member.joined,
+                member.ended.unwrap_or(u64::MAX),
+                member.checkpoint.map_or(u64::MAX, word_of),
+                u64::from(counts.alarms) << 32 | u64::from(counts.deaths),
+                u64::from(counts.stunned),
+            ];
+            let words = numbers.into_iter().chain(words_of_player(&member.player));
+            hash(0, words.chain(member.track.words()))
+        });
+        std::iter::once(u64::from(self.treasure_of_the_gone)).chain(members)
+    }
+
     /// The first free slot.
     pub(super) fn free_slot(&self) -> Option<usize> {
         let free = self.slots.iter().position(Option::is_none);
@@ -131,6 +154,17 @@ impl Game {
         Some(done)
     }
 
+    /// Lets each player who plays have their turn while `act` runs.
+    pub(in crate::game) fn for_each_player(&mut self, act: impl Fn(&mut Self)) {
+        let count = self.members.as_ref().map_or(1, |members| members.slots.len());
+        for index in 0..count {
+            let is_playing = |it: &Members| it.member(index).is_some_and(|it| it.is_playing);
+            if self.members.as_deref().is_none_or(is_playing) {
+                self.in_turn(index, &act);
+            }
+        }
+    }
+
     /// Exchanges the player who has the turn with the one in a slot. Returns whose turn it was.
     fn swap_turn(&mut self, index: usize) -> Option<Option<usize>> {
         let Self { members, player, .. } = self;
@@ -145,6 +179,14 @@ impl Game {
     /// when the step began.
     pub(in crate::game) fn playing(&self) -> impl Iterator<Item = (usize, &Player)> {
         playing(&self.player, self.members.as_deref())
+    }
+
+    /// Whether nobody is alive in a game for several, or has yet to reach the exit: time does not
+    /// pass in it.
+    pub fn is_deserted(&self) -> bool {
+        let stands =
+            |(_, member): (usize, &Member)| !member.has_won && member.player.killed_by.is_none();
+        self.members.as_ref().is_some_and(|members| !members.each().any(stands))
     }
 
     /// The member whose turn it is.

@@ -4,8 +4,10 @@ use glam::DVec2;
 
 use super::{MOST_LAG, PlayerId};
 use crate::game::Game;
+use crate::game::checksum::words_of;
 use crate::game::guards::{Point, is_in_sight};
 use crate::game::player::{Motion, RADIUS};
+use crate::rng::hash;
 use crate::world::World;
 
 /// The number of positions that are remembered: those of this step and of the last ones.
@@ -36,6 +38,11 @@ impl Track {
         self.0[now as usize % STEPS] = stand;
         let way = stand.zip(before).map(|(now, before)| now.position.distance(before.position));
         way.unwrap_or_default()
+    }
+
+    /// The positions as numbers.
+    pub(super) fn words(&self) -> impl Iterator<Item = u64> {
+        self.0.iter().map(|stand| stand.map_or(0, |stand| hash(1, words_of(stand.position))))
     }
 
     /// Where the player was in the step `seen`.

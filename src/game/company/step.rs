@@ -214,6 +214,8 @@ impl Game {
             self.revision += 1;
         }
         member.has_won |= wins;
+        member.is_playing = !member.has_won && !is_dead;
+        (member.intents, member.seen) = (Intents::new(), now);
         let is_out = member.has_won || is_dead && !respawns;
         let stands = (!member.has_won && !is_dead).then_some(&member.player.motion);
         member.walked += member.track.record(now, stands);

@@ -52,6 +52,8 @@ pub(super) struct Guard {
     pub(super) blind: u16,
     /// The steps for which they have not reached a player whom they follow.
     pub(super) baffled: u16,
+    /// Whether a floor under them has moved.
+    pub(super) is_unsettled: bool,
     pub(super) route: Route,
     /// The velocity and the look that they want in this step.
     pub(super) wanted: DVec2,
@@ -82,6 +84,7 @@ impl Guard {
             stagger: 0,
             blind: 0,
             baffled: 0,
+            is_unsettled: false,
             route: Route::default(),
             wanted: DVec2::ZERO,
             look: None,

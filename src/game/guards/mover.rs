@@ -6,7 +6,7 @@
 
 use glam::DVec2;
 
-use super::terrain::{DROP, Gait, Terrain};
+use super::terrain::{DROP, Footing, Gait, Terrain};
 use crate::game::STEP;
 use crate::game::collision::{Body, Obstacles, Place, Radius, Stature, slide};
 use crate::game::fall::Flight;
@@ -59,6 +59,12 @@ impl Mover {
         self.rising == 0.0
     }
 
+    /// Whether no floor moves a guard who neither walks nor is pushed.
+    pub(super) fn is_at_rest(&self, world: &World) -> bool {
+        world.moving_tiles().is_empty()
+            || self.rising == 0.0 && self.feet == world.floor_at(self.cell())
+    }
+
     /// Turns towards `direction`, of any length but zero, by at most `degrees`.
     pub(super) fn turn(&mut self, direction: DVec2, degrees: f64) {
         let across = self.facing.perp_dot(direction);
@@ -87,6 +93,16 @@ impl Mover {
             self.body.position += displacement;
         } else {
             self.slide(ground, displacement);
+        }
+    }
+
+    /// Stays on the floor, which has moved by at most a step.
+    pub(super) fn ride(&mut self, ground: &Ground) {
+        let Some(feet) = ground.highest_floor(self.body.position) else { return };
+        let ridden = Self { feet, ..*self };
+        let is_a_step = (feet - self.feet).abs() <= STEP_HEIGHT;
+        if self.is_on_floor() && is_a_step && ground.has_room_for(&ridden) {
+            *self = ridden;
         }
     }
 
@@ -120,7 +136,13 @@ pub(super) struct Ground<'a> {
 impl Ground<'_> {
     fn place(&self, mover: &Mover) -> Place<'_> {
         let stature = Stature { feet: mover.feet, height: self.gait.height };
-        Place { world: self.world, stature, step: 0.0, has_shapes: self.world.has_shapes() }
+        Place {
+            world: self.world,
+            stature,
+            step: 0.0,
+            has_shapes: self.world.has_shapes(),
+            others: &[],
+        }
     }
 
     /// The height of the floor under a guard.
@@ -128,8 +150,16 @@ impl Ground<'_> {
         self.place(mover).room(mover.body.position, RADIUS).floor
     }
 
+    /// The highest floor under a guard at `position`.
+    fn highest_floor(&self, position: DVec2) -> Option<f64> {
+        let (low, high) = (position - RADIUS.cells(), position + RADIUS.cells());
+        let cells = (low.y as u32..=high.y as u32)
+            .flat_map(|row| (low.x as u32..=high.x as u32).map(move |column| Cell { column, row }));
+        let footings = cells.filter_map(|cell| self.terrain.footing(self.world, cell));
+        footings.map(|footing| footing.floor).reduce(f64::max)
+    }
+
     /// Whether the body of a guard overlaps nothing.
-    #[cfg(test)]
     pub(super) fn has_room_for(&self, mover: &Mover) -> bool {
         self.place(mover).is_clear(mover.body.position, RADIUS)
     }
@@ -150,9 +180,8 @@ impl Ground<'_> {
             return false;
         }
         let is_level = |cell| {
-            let footing = self.terrain.footing(self.world, cell);
-            let is_level = footing.is_some_and(|it| it.floor == mover.feet && it.is_level_with(it));
-            is_level && self.terrain.is_walkable(self.world, self.gait, cell)
+            let footing = self.terrain.way_through(self.world, self.gait, cell);
+            footing.is_some_and(|it| it.floor == mover.feet && it.is_level_with(it))
         };
         (low.y as u32..=high.y as u32)
             .all(|row| (low.x as u32..=high.x as u32).all(|column| is_level(Cell { column, row })))
@@ -186,9 +215,9 @@ impl Ground<'_> {
         (low.y as u32..=high.y as u32).all(|row| {
             (low.x as u32..=high.x as u32).all(|column| {
                 let cell = Cell { column, row };
-                let footing = self.terrain.footing(self.world, cell);
-                footing.is_some_and(|it| (it.floor - floor.floor).abs() <= STEP_HEIGHT)
-                    && (cell == middle || self.terrain.is_walkable(self.world, self.gait, cell))
+                let footing = || self.terrain.way_through(self.world, self.gait, cell);
+                let is_near = |it: Footing| (it.floor - floor.floor).abs() <= STEP_HEIGHT;
+                cell == middle || footing().is_some_and(is_near)
             })
         })
     }

@@ -2,9 +2,9 @@
 
 use glam::DVec2;
 
-use super::act::Cloud;
+use super::act::{Act, Cloud};
 use super::guard::Guard;
-use super::mover::RADIUS;
+use super::mover::{Ground, RADIUS};
 use super::sight::{Point, is_in_sight};
 use super::state::State;
 use super::{Alarm, GuardView, Guards, Mood};
@@ -24,6 +24,11 @@ impl Guards {
         self.list.is_empty()
     }
 
+    /// What guards have done in the last step, by its place in their order.
+    pub(crate) fn act(&self, index: usize) -> Option<Act> {
+        self.acts.get(index).copied()
+    }
+
     /// The number of steps in which no guard does anything, if nothing is perceived: 0 if anybody
     /// is awake, `None` if all sleep.
     pub(crate) fn quiet_steps(&self) -> Option<u64> {
@@ -32,8 +37,8 @@ impl Guards {
         if !has_begun || self.has_changed || !self.acts.is_empty() || !self.spoken.is_empty() {
             return Some(0);
         }
-        let quiet = self.list.iter().filter_map(|guard| match guard.state {
-            State::Asleep => None,
+        let quiet = self.awake().filter_map(|guard| match guard.state {
+            State::Asleep if guard.stagger == 0 => None,
             State::Down { left } => Some(u64::from(left) - 1),
             _ => Some(0),
         });
@@ -76,9 +81,14 @@ impl Guards {
         })
     }
 
+    /// The number of [`Guards::figures`].
+    pub(crate) fn figure_count(&self) -> usize {
+        self.awake.figures
+    }
+
     /// The lamps that guards carry.
-    pub(crate) fn lamps(&self) -> impl Iterator<Item = (Cell, Lamp)> + '_ {
-        let bearers = self.list.iter().filter(|guard| guard.kind == GuardKind::Lantern);
+    pub(crate) fn lamps(&self) -> impl Iterator<Item = (Cell, Lamp)> + Clone + '_ {
+        let bearers = self.awake().filter(|guard| guard.kind == GuardKind::Lantern);
         let up = bearers.filter(|guard| !guard.state.is_down() && guard.state != State::Asleep);
         let light = Light::new(0.7).unwrap_or(Light::FULL);
         up.map(move |guard| (guard.mover.cell(), Lamp { light, reach: Reach::default() }))
@@ -189,6 +199,7 @@ impl Guards {
         let Some(guard) = self.list.get_mut(index) else { return };
         guard.stun(steps);
         let (cell, by) = (guard.mover.cell(), Source::Guard(index));
+        self.find_awake();
         self.spoken.push(Sound { kind: SoundKind::Fall, cell, reach: FALL, by });
     }
 
@@ -197,6 +208,26 @@ impl Guards {
     pub(crate) fn push(&mut self, index: usize, direction: DVec2) {
         if let Some(guard) = self.list.get_mut(index) {
             guard.push(direction);
+            self.find_awake();
+        }
+    }
+
+    /// Records that the floor of `cell` has just moved. If it carries, the guards who stand on it stay
+    /// on it.
+    pub(crate) fn floor_moved(&mut self, world: &World, cell: Cell, carries: bool) {
+        let mut has_unsettled = false;
+        for guard in &mut self.list {
+            if overlaps(guard.mover.position(), cell, RADIUS) {
+                let gait = guard.gait();
+                if carries {
+                    guard.mover.ride(&Ground { world, terrain: &self.terrain, gait });
+                }
+                has_unsettled |= guard.is_asleep() && !guard.is_unsettled;
+                guard.is_unsettled = true;
+            }
+        }
+        if has_unsettled {
+            self.find_awake();
         }
     }
 
@@ -221,6 +252,8 @@ impl Guards {
         let seed = crate::rng::hash(self.rules.seed, [self.steps]);
         self.list.extend(posts.map(|(post, index)| Guard::new(world, post, index, seed)));
         self.terrain.look_at_things(world);
+        self.others.clear();
+        self.find_awake();
         self.ways.forget();
         self.air.forget();
         self.trails.iter_mut().for_each(super::Trail::forget);

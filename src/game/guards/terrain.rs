@@ -107,8 +107,13 @@ impl Terrain {
 
     /// Whether guards choose to go to `cell`.
     pub(super) fn is_walkable(&self, world: &World, gait: Gait, cell: Cell) -> bool {
-        let footing = self.footing(world, cell);
-        footing.is_some_and(|footing| self.is_entered(gait, footing, cell))
+        self.way_through(world, gait, cell).is_some()
+    }
+
+    /// The floor of `cell`, if guards choose to go there.
+    pub(super) fn way_through(&self, world: &World, gait: Gait, cell: Cell) -> Option<Footing> {
+        let footing = self.footing(world, cell)?;
+        self.is_entered(gait, footing, cell).then_some(footing)
     }
 
     fn is_entered(&self, gait: Gait, footing: Footing, cell: Cell) -> bool {

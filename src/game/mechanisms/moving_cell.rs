@@ -19,6 +19,8 @@ pub(super) struct MovingCell {
     cracks: u16,
     /// Whether a hand or a weight has set it in motion.
     is_driven: bool,
+    /// Whether somebody was in the way of its last step, and no tile has moved since.
+    is_blocked: bool,
 }
 
 /// What a moving cell does in a step.
@@ -32,7 +34,14 @@ pub(super) struct Step {
 impl MovingCell {
     /// A cell at rest of the moving tile `tile`.
     pub(super) fn new(cell: Cell, tile: usize) -> Self {
-        Self { cell, tile: tile as u16, progress: 0, cracks: 0, is_driven: false }
+        Self {
+            cell,
+            tile: tile as u16,
+            progress: 0,
+            cracks: 0,
+            is_driven: false,
+            is_blocked: false,
+        }
     }
 
     pub(super) fn cell(&self) -> Cell {
@@ -57,6 +66,22 @@ impl MovingCell {
         self.is_driven = true;
     }
 
+    /// Whether somebody was in the way of its last step, and no tile has moved since.
+    pub(super) fn is_blocked(&self) -> bool {
+        self.is_blocked
+    }
+
+    /// The same cell, after a step in which somebody was in the way.
+    #[must_use]
+    pub(super) fn blocked(self) -> Self {
+        Self { is_blocked: true, ..self }
+    }
+
+    /// Forgets that somebody was in the way.
+    pub(super) fn try_again(&mut self) {
+        self.is_blocked = false;
+    }
+
     /// The tile that it shows.
     pub(super) fn shown(&self, world: &World) -> TileId {
         let moving = self.moving_tile(world);
@@ -75,7 +100,7 @@ impl MovingCell {
     /// Its next step, towards the end if it `is_driven` and back otherwise; `None` if it rests.
     pub(super) fn step(self, world: &World, is_driven: bool) -> Option<Step> {
         let moving = self.moving_tile(world);
-        let mut after = self;
+        let mut after = Self { is_blocked: false, ..self };
         if moving.driver == Driver::Weight && is_driven && self.cracks < CRACKS {
             after.is_driven = true;
             after.cracks += 1;
@@ -90,7 +115,8 @@ impl MovingCell {
 
     /// Its state as a number.
     pub(super) fn word(&self) -> u64 {
-        u64::from(self.progress) << 17 | u64::from(self.cracks) << 1 | u64::from(self.is_driven)
+        let bits = u64::from(self.cracks) << 1 | u64::from(self.is_driven);
+        u64::from(self.is_blocked) << 33 | u64::from(self.progress) << 17 | bits
     }
 
     fn moving_tile<'a>(&self, world: &'a World) -> &'a MovingTile {

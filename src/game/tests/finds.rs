@@ -76,7 +76,7 @@ fn falls_do_not_hurt_in_an_easy_game_which_keeps_what_was_found() {
     stage.walk_to(8).play(10, &[Intent::Forward]).play(180, &[]);
     assert_eq!((stage.points(), stage.game.outcome()), (6, Outcome::Playing));
     // As if something had killed the player there.
-    stage.game.player.killed_by = Some(Cause::Water);
+    stage.game.player.killed_by = Some(health::Cause::Water);
     stage.press(Intent::Retry);
     assert_eq!((stage.cell().column, stage.game.treasure()), (4, Share { found: 35, total: 35 }));
 }
@@ -99,4 +99,36 @@ fn a_checkpoint_is_lit_once_it_is_reached() {
     assert_eq!(frames(&stage), [Some(1), None]);
     stage.walk_to(3);
     assert_eq!(frames(&stage), [None, Some(1)]);
+}
+
+#[test]
+fn a_retry_gives_back_the_checkpoint_but_not_the_clock_the_alarms_and_the_deaths() {
+    let rows = ["@.c.a....vv", "###########", "..g........"];
+    let things = "a = { treasure = 30 }\nc = { checkpoint = true }\ng = { guard = 'warden', heading = 0, wander = 4 }";
+    let mut stage = Stage::new(&rows, "v = { floor_height = -12 }", things);
+    stage.game.player.health.points = 1;
+    stage.walk_to(2);
+    let saved = stage.game.clone();
+    stage.press(Intent::Throw).walk_to(9).play(10, &[Intent::Forward]).play(240, &[]);
+    assert!(stage.is_dead() && stage.guard(0) != saved.guards().next().unwrap());
+    stage.game.player.counts.alarms += 2;
+    let dead = stage.game.tally();
+    stage.play(1, &[Intent::Retry]);
+    assert_eq!((stage.game.outcome(), stage.position()), (Outcome::Playing, position(&saved)));
+    assert_eq!(stage.game.guards().next(), saved.guards().next());
+    assert_eq!(stage.game.world().things(), saved.world().things());
+    assert_eq!((stage.game.supplies(Supply::Pebbles), stage.game.treasure().found), (3, 0));
+    assert_eq!(stage.points(), 3);
+    let tally = stage.game.tally();
+    assert_eq!((tally.steps, tally.alarms, tally.deaths), (dead.steps, 2, 1));
+}
+
+#[test]
+fn no_checkpoint_is_reached_under_alarm() {
+    let things = "c = { checkpoint = true }\nw = { guard = 'warden', heading = 180 }";
+    let mut stage = Stage::new(&["@..c....w."], "", things);
+    stage.steps_until(600, &[], |stage| stage.game.alarm() == Alarm::Raised).unwrap();
+    assert_ne!(stage.walk_to(3).message(), "Checkpoint.");
+    let checkpoint = stage.game.world().things_in(Cell { column: 3, row: 0 });
+    assert_eq!(checkpoint.first().and_then(|thing| thing.frame).filter(|&it| it > 0), None);
 }

@@ -43,13 +43,16 @@ fn a_floor_that_rises_under_a_low_ceiling_stops() {
     let floor = |stage: &Stage| stage.game.world().floor_at(Cell { column: 2, row: 0 });
     stage.walk_to(2).play(6, &[Intent::Forward]).play(60, &[]);
     stage.game.mechanisms.turn(SwitchId(0));
-    stage.play(120, &[]);
-    assert_eq!(floor(&stage), 0.625);
-    assert_eq!(stage.game.feet(), 0.625);
+    stage.play(60, &[]);
+    assert_eq!((floor(&stage), stage.game.feet()), (0.625, 0.625));
+    assert_eq!(stage.message(), "It stops: you are in the way.");
+    // The message is said once.
+    stage.play(180, &[]);
     assert!(stage.game.is_at_rest(Intents::new()));
-    // Who ducks takes less room.
+    // A player who ducks takes less room.
     stage.play(120, &[Intent::Duck]);
     assert_eq!(floor(&stage), 0.875);
+    assert_eq!(stage.message(), "It stops: you are in the way.");
 }
 
 #[test]
@@ -96,7 +99,9 @@ fn a_wall_does_not_rise_while_somebody_is_in_its_place() {
     let wall = Cell { column: 3, row: 1 };
     stage.walk_to(2).play(120, &[]);
     assert_eq!(stage.game.world().floor_at(wall), 0.0);
-    stage.walk_to(3).play(240, &[]);
+    stage.walk_to(3).play(60, &[]);
+    assert_eq!(stage.message(), "It stops: you are in the way.");
+    stage.play(180, &[]);
     assert_eq!((stage.cell(), stage.game.world().floor_at(wall)), (wall, 0.0));
     assert!(stage.game.is_at_rest(Intents::new()));
     stage.walk_to(4).play(30, &[Intent::Forward]);

@@ -2,7 +2,7 @@
 
 use glam::DVec2;
 
-use crate::game::{Game, Intent, Intents, Outcome, Rules};
+use crate::game::{Game, GuardView, Intent, Intents, Outcome, Rules, SoundKind};
 use crate::map;
 use crate::world::{Cell, Difficulty, FieldOfView};
 
@@ -62,6 +62,16 @@ impl Stage {
         panic!("the player does not reach column {column}: {:?}", self.cell());
     }
 
+    /// Plays until `is_it`, at most `most` steps; returns their number, or `None`.
+    pub(in crate::game) fn steps_until(
+        &mut self,
+        most: usize,
+        list: &[Intent],
+        is_it: impl Fn(&Self) -> bool,
+    ) -> Option<usize> {
+        (1..=most).find(|_| is_it(self.play(1, list)))
+    }
+
     /// Presses a key once.
     pub(in crate::game) fn press(&mut self, intent: Intent) -> &mut Self {
         self.play(1, &[intent]).play(1, &[])
@@ -73,6 +83,16 @@ impl Stage {
 
     pub(in crate::game) fn position(&self) -> DVec2 {
         self.game.camera(FieldOfView::default()).position()
+    }
+
+    /// The guard with that index.
+    pub(in crate::game) fn guard(&self, index: usize) -> GuardView {
+        self.game.guards().nth(index).unwrap()
+    }
+
+    /// Whether the player hears such a sound now.
+    pub(in crate::game) fn hears(&self, kind: SoundKind) -> bool {
+        self.game.heard().iter().any(|heard| heard.kind == kind)
     }
 
     pub(in crate::game) fn message(&self) -> &str {

@@ -148,7 +148,8 @@ impl Missile {
     /// Moves it by one step. Returns whether it has met a wall, the floor or its time.
     fn step(&mut self, world: &World) -> bool {
         let stature = Stature { feet: self.height, height: 0.0 };
-        let place = Place { world, stature, step: 0.0, has_shapes: world.has_shapes() };
+        let place =
+            Place { world, stature, step: 0.0, has_shapes: world.has_shapes(), others: &[] };
         let (position, is_stopped) = fly(&place, self.position, self.velocity * STEP, SIZE);
         self.position = position;
         let room = place.room(position, SIZE);

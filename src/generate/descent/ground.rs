@@ -63,6 +63,11 @@ impl Ground {
         &self.reachable
     }
 
+    /// The number of cells that can be reached and have nothing opaque around them.
+    pub(super) fn open_count(&self) -> usize {
+        self.reachable.iter().filter(|&&cell| self.is_open(cell)).count()
+    }
+
     /// The steps from the start to a cell that can be reached; 0 for another one.
     pub(super) fn distance(&self, cell: Cell) -> u32 {
         self.distances[self.index(cell)].unwrap_or(0)
@@ -157,6 +162,13 @@ impl Ground {
             }
         }
         found
+    }
+
+    /// Whether none of the cell and its eight neighbours is opaque.
+    fn is_open(&self, Cell { column, row }: Cell) -> bool {
+        (row - 1..=row + 1).all(|row| {
+            (column - 1..=column + 1).all(|column| !self.kind(Cell { column, row }).is_opaque)
+        })
     }
 
     fn kind(&self, cell: Cell) -> Kind {

@@ -74,6 +74,22 @@ proptest! {
     }
 
     #[test]
+    fn an_office_is_no_garden(seed: u64, floor in 1..16_u32) {
+        prop_assume!(kind(seed, floor) == Generator::Office);
+        let world = descent(seed, floor).unwrap();
+        let is_opaque = |column: u32, row: u32| {
+            let tile = world.grid().tile(column.into(), row.into()).unwrap();
+            matches!(world.tile(tile).kind, TileKind::Wall(_) | TileKind::Mirror(_) | TileKind::Door(_))
+        };
+        let reached = reachable(&world);
+        let is_open = |&&(column, row): &&(u32, u32)| {
+            (row - 1..=row + 1).all(|row| (column - 1..=column + 1).all(|it| !is_opaque(it, row)))
+        };
+        let open = reached.iter().filter(is_open).count();
+        prop_assert!(open * 100 <= reached.len() * 42, "{open} of {}", reached.len());
+    }
+
+    #[test]
     fn the_same_seed_is_the_same_floor(seed: u64, floor in floors()) {
         let world = descent(seed, floor).unwrap();
         prop_assert_eq!(&world, &descent(seed, floor).unwrap());

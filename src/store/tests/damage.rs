@@ -22,7 +22,7 @@ fn a_damaged_value_costs_its_result_only() {
                     in it that can be read stays in force";
     assert_eq!(sentence, expected);
     assert!(store.best("cellar", Normal).is_none());
-    assert!(store.best("museum", Hard).is_some() && store.saved().is_some());
+    assert!(store.best("museum", Hard).is_some() && store.saved(Slot::Level).is_some());
     assert_eq!(fs::read_to_string(folder.0.join("progress.toml.damaged-1")).unwrap(), damaged);
     // Its script is not removed.
     assert_eq!(folder.names("cellar"), ["cellar.normal.300.script"]);
@@ -51,16 +51,16 @@ fn a_file_that_is_damaged_during_the_game_is_completed_from_memory() {
     let next = sound(&folder.0);
     assert_eq!(shown(&next), shown(&store));
     assert_eq!(next.won(Normal).collect::<Vec<_>>(), ["cellar", "citadel"]);
-    assert!(next.saved().is_some() && !next.preferences().ghost);
+    assert!(next.saved(Slot::Level).is_some() && !next.preferences().ghost);
 }
 
 #[test]
 fn a_file_of_a_newer_version_is_left_alone() {
     let folder = filled();
-    let newer = folder.text().replace("version = 1", "version = 2") + "[unknown]\n";
+    let newer = folder.text().replace("version = 2", "version = 3") + "[unknown]\n";
     fs::write(folder.progress(), &newer).unwrap();
     let (mut store, sentence) = Store::open(&folder.0);
-    assert!(sentence.unwrap().contains("version 2"));
+    assert!(sentence.unwrap().contains("version 3"));
     assert!(store.record("cellar", Normal, run(5, Rank::Thief)).time);
     assert!(store.trouble().unwrap().contains("newer"));
     assert_eq!((folder.text(), folder.names("damaged").len()), (newer, 0));

@@ -82,7 +82,7 @@ fn play(store: &mut Store, mut observe: impl FnMut(&Store)) {
         |store| store.save(&saved("3 s forward\n")),
         |store| _ = store.record("museum", Hard, run(400, Rank::Shadow)),
         |store| store.set_preferences(Preferences { bell: true, ..store.preferences() }),
-        |store| store.clear_saved(),
+        |store| store.clear_saved(Slot::Level),
         |store| {
             let reached = Reached { floors: 10, treasure: 1, steps: 9000 };
             _ = store.record_descent(reached, String::new());

@@ -86,7 +86,7 @@ type Light = [i32; 3];
 struct Tables {
     of_channel: [i32; 256],
     of_index: [Light; 256],
-    /// The upper bits of the channel with that amount of light.
+    /// The [`mixture::level`] of each amount of light.
     levels: [u8; Self::STEPS + 1],
 }
 
@@ -107,15 +107,7 @@ impl Tables {
         let of = |color| linear(color).map(scaled);
         let of_channel = array::from_fn(|value| of(Rgb::new(value as u8, 0, 0))[0]);
         let of_index = array::from_fn(|index| of(palette::of_256(index as u8)));
-        let mut levels = [0; Self::STEPS + 1];
-        let mut channel = 0;
-        for (step, level) in levels.iter_mut().enumerate() {
-            let light = (step << 3) as i32;
-            while channel < 255 && of_channel[channel + 1] <= light {
-                channel += 1;
-            }
-            *level = (channel >> (u8::BITS - mixture::BITS)) as u8;
-        }
+        let levels = array::from_fn(|step| mixture::level(step as f64 / Self::STEPS as f64));
         Self { of_channel, of_index, levels }
     }
 
@@ -175,7 +167,8 @@ impl Tables {
     }
 
     fn levels(&self, light: Light) -> [u8; 3] {
-        light.map(|part| self.levels[(part >> 3) as usize])
+        let step = Self::WHITE / Self::STEPS as i32;
+        light.map(|part| self.levels[((part + step / 2) / step) as usize])
     }
 }
 

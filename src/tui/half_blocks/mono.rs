@@ -4,19 +4,34 @@
 //! joints and edges become lines. Other pixels are lit if they exceed their threshold in Bayer's
 //! matrix. Measuring a frame and stretching its range of brightness was refused: one lamp that
 //! comes into view would change every cell.
+//!
+//! Things have an outline: their outermost pixels are lit, and the pixels next to them are unlit.
+//! Otherwise a guard a few pixels wide is lost among the dots of the wall behind.
 
 use ratatui::layout::Rect;
 use ratatui::style::Color;
 
 use super::{lit_glyph, threshold_rank};
 use crate::canvas::Canvas;
-use crate::render::Frame;
+use crate::render::{Frame, Surface};
+use crate::tui::outline::{Edge, outline};
 
 /// Draws the pixels of `frame` as [`super::draw_frame`] does.
-pub(super) fn draw(area: Rect, canvas: &mut impl Canvas, above: u32, frame: &Frame) {
+pub(super) fn draw(
+    area: Rect,
+    canvas: &mut impl Canvas,
+    above: u32,
+    frame: &Frame,
+    surface: impl Fn(u32, u32) -> Option<Surface>,
+) {
+    let outline = |x, y| outline(frame.size(), &surface, x, y);
     for (y, upper) in (area.top()..area.bottom()).zip((above..).step_by(2)) {
         for (x, column) in (0..).zip(area.left()..area.right()) {
-            let [top, bottom] = [upper, upper + 1].map(|y| is_lit(frame, x, y));
+            let is_lit = |y| match outline(x, y) {
+                Some(edge) => edge == Edge::Inner,
+                None => is_lit(frame, x, y),
+            };
+            let [top, bottom] = [upper, upper + 1].map(is_lit);
             canvas.draw_character(column, y, lit_glyph(top, bottom), [Color::Reset; 2]);
         }
     }

@@ -33,14 +33,16 @@ pub(super) struct Glows {
 impl World {
     /// Replaces all lamps that move, each in a cell. Only light of lamps is computed that differ
     /// from those set before at the same index.
-    pub(crate) fn set_moving_lamps(&mut self, lamps: &[(Cell, Lamp)]) {
-        let before = self.lamplight.moving.len();
-        if !self.lamplight.is_needed || self.lamplight.moving == lamps {
+    pub(crate) fn set_moving_lamps(&mut self, lamps: impl Iterator<Item = (Cell, Lamp)> + Clone) {
+        let Lamplight { is_needed, ref moving, .. } = self.lamplight;
+        if !is_needed || lamps.clone().eq(moving.iter().copied()) {
             return;
         }
+        let before = moving.len();
         self.make_room_for_light();
-        for index in 0..before.max(lamps.len()) {
-            let [old, new] = [&self.lamplight.moving, lamps].map(|list| list.get(index).copied());
+        let mut new_lamps = lamps.clone().fuse();
+        for index in 0..before.max(lamps.clone().count()) {
+            let (old, new) = (self.lamplight.moving.get(index).copied(), new_lamps.next());
             if old == new {
                 continue;
             }
@@ -58,7 +60,7 @@ impl World {
             }
         }
         self.lamplight.moving.clear();
-        self.lamplight.moving.extend_from_slice(lamps);
+        self.lamplight.moving.extend(lamps);
     }
 
     /// Lights the [flames](ThingKind::Flame) in `cell`, or puts them out: then they give no light

@@ -1,132 +1,170 @@
-//! The campaign in a plain terminal of 80 by 24 cells, without key releases: the first level from
-//! the title to its summary, by bytes.
+//! The campaign in a plain terminal of 80 by 24 cells, without key releases, by bytes: the first
+//! three levels from the title to the summary of each, and what is kept of them.
 //!
-//! The player taps, as a tap has an exact effect: a quarter of a cell, or 5 degrees. They look east,
-//! and walk in all directions without turning, until a door in the north needs it. Walls take what a
-//! tap has too much, so that each stretch along a wall begins at a known place.
+//! The way through each level is a script of taps, which `tests/campaign/taps.rs` finds. It is typed
+//! step by step, and the run that the program keeps must be that script: then every byte was decoded,
+//! and every key was held for its steps.
 
 use std::fs;
 use std::path::Path;
-use std::thread;
-use std::time::Duration;
 
+use cellcaster::game::{Intent, Intents, Script, Stretch};
+
+use super::clock::{CLOCK, Typist};
 use super::game::PROGRAM;
 use super::titles::folder;
-use crate::emulator::Speaks;
-use crate::player::Player;
+use crate::support::cellcaster;
 
-/// The time between two taps: no keyboard repeats as slowly, and no player taps much faster.
-const BETWEEN_TAPS: Duration = Duration::from_millis(115);
-/// The taps for a cell.
-const CELL: usize = 4;
+/// The steps for which a tap walks.
+const TAP: u32 = 5;
+/// The steps in which a panel that has just appeared takes no key, and a few more.
+const PANEL: u32 = 40;
 
-/// Taps `key` so often that the player walks `cells`.
-fn walk(player: &Player, key: &str, cells: usize) {
-    tap(player, key, cells * CELL);
+/// A level: its name, its goal, what its summary shows, and what is kept of it.
+struct Level {
+    name: &'static str,
+    goal: &'static str,
+    summary: [&'static str; 3],
 }
 
-fn tap(player: &Player, key: &str, times: usize) {
-    for _ in 0..times {
-        player.send(key);
-        thread::sleep(BETWEEN_TAPS);
-    }
-}
-
-/// Waits for gold in one of the forms that the status line has for it.
-#[track_caller]
-fn wait_for_gold(player: &Player, forms: [&str; 2]) {
-    player.wait_until(&format!("showed {forms:?}"), |screen| {
-        forms.iter().any(|form| screen.text().contains(&format!("{form} gold")))
-    });
-}
+const LEVELS: [Level; 3] = [
+    Level {
+        name: "cellar",
+        goal: "Two cups, and wake nobody",
+        summary: ["Cellar", "level 1 of 12", "of 130"],
+    },
+    Level {
+        name: "museum",
+        goal: "Take the crown of plaster",
+        summary: ["The Museum of Walls", "level 2 of 12", "of 225"],
+    },
+    Level {
+        name: "kennels",
+        goal: "Cup and collar, then the gate",
+        summary: ["The Kennels", "level 3 of 12", "of 180"],
+    },
+];
 
 /// The program, which keeps what was won in `data`.
-fn start(data: &Path) -> Player {
-    let environment =
-        [("HOME", env!("CARGO_TARGET_TMPDIR")), ("CELLCASTER_DATA", data.to_str().unwrap())];
-    let arguments: [&str; 0] = [];
-    Player::start((80, 24), Speaks::Plain, PROGRAM, arguments, &environment)
+fn start(data: &Path) -> Typist {
+    let data = data.to_str().unwrap();
+    let environment = [("HOME", env!("CARGO_TARGET_TMPDIR")), ("CELLCASTER_DATA", data), CLOCK];
+    Typist::start(PROGRAM, &[], &environment)
 }
 
 /// The first level of the easiest game, begun from the title.
-fn begin(data: &Path) -> Player {
-    let player = start(data);
-    player.wait_for("> New game");
-    player.send("\r");
-    player.wait_for("> Normal");
-    player.send("\x1b[A");
-    player.wait_for("> Easy");
-    player.send("\r");
-    player.wait_for("0/100 gold");
-    player
+fn begin(data: &Path) -> Typist {
+    let typist = start(data);
+    typist.wait_to_see("> New game");
+    typist.tap("\r", PANEL);
+    typist.wait_to_see("> Normal");
+    typist.tap("\x1b[A", PANEL);
+    typist.wait_to_see("> Easy");
+    typist.send("\r");
+    typist
+}
+
+/// The script of taps through a level.
+fn script(name: &str) -> Script {
+    let path = Path::new(env!("CARGO_MANIFEST_DIR")).join("tests/terminal/taps").join(name);
+    let text = fs::read_to_string(path.with_extension("script")).unwrap();
+    Script::parse(&text, name).unwrap_or_else(|faults| panic!("{faults}"))
+}
+
+/// The key that wants `intents`; `None` if nothing is wanted.
+fn key(intents: Intents) -> Option<&'static str> {
+    intents.iter().next().map(|intent| match intent {
+        Intent::Forward => "w",
+        Intent::Back => "s",
+        Intent::StrafeLeft => "a",
+        Intent::StrafeRight => "d",
+        other => panic!("no key for {other:?}"),
+    })
+}
+
+/// Types a script of taps, whose first `passed` steps, in which the player stands, are over.
+fn play(typist: &Typist, script: &Script, mut passed: u32) {
+    for Stretch { steps, intents } in script.sections().iter().flat_map(|it| &it.stretches) {
+        let Some(key) = key(*intents) else {
+            typist.pass(steps - passed);
+            passed = 0;
+            continue;
+        };
+        // The last tap of a script is cut short by the exit.
+        assert!(*steps <= TAP, "{steps} steps are no tap");
+        typist.tap(key, *steps);
+    }
+}
+
+/// Leaves the game, and confirms that.
+fn leave(typist: &mut Typist) {
+    typist.tap("q", PANEL);
+    typist.wait_to_see("q or Enter leaves");
+    typist.send("\r");
+    let ending = typist.wait_for_end();
+    ending.assert_given_back();
+    assert!(ending.status.success());
+}
+
+/// Asserts that the run which the program has kept of a level has the steps of `script`, and that it
+/// wins.
+fn assert_kept(data: &Path, name: &str, script: &Script) {
+    let steps = script.steps();
+    let path = data.join(format!("runs/{name}.easy.{steps}.script"));
+    let kept = fs::read_to_string(&path).unwrap_or_else(|error| panic!("{path:?}: {error}"));
+    let kept = Script::parse(&kept, name).unwrap_or_else(|faults| panic!("{faults}"));
+    let intents = |script: &Script| script.iter().map(|(_, intents)| intents).collect::<Vec<_>>();
+    assert!(intents(&kept) == intents(script), "{name} was not played as it was typed");
+    let verified = cellcaster(&["replay", path.to_str().unwrap(), "--verify"]).output().unwrap();
+    assert!(verified.status.success(), "{}", String::from_utf8_lossy(&verified.stdout));
 }
 
 #[test]
-fn the_first_level_is_won_by_taps_in_a_plain_terminal() {
+fn the_first_three_levels_are_won_by_taps_in_a_plain_terminal() {
     let data = folder("campaign");
-    let mut player = begin(&data);
-    player.wait_for("♥♥♥♥♥♥");
-    player.wait_for("Two cups, and wake nobody");
-    walk(&player, "d", 2);
-    player.wait_for("To you, from R.");
-    // The warden comes along the corridor, turns, and goes back: behind him, nobody is seen.
-    walk(&player, "w", 2);
-    thread::sleep(Duration::from_secs(9));
-    walk(&player, "d", 2);
-    walk(&player, "s", 2);
-    tap(&player, "d", 4 * CELL + 1);
-    player.send("e");
-    thread::sleep(Duration::from_millis(500));
-    tap(&player, "w", 4 * CELL + 1);
-    walk(&player, "d", 3);
-    wait_for_gold(&player, ["50/100", "50 of 100"]);
-    player.wait_for("brass key");
-    walk(&player, "w", 3);
-    player.wait_until("showed five pebbles", |screen| {
-        ["5p", "5 pebbles"].iter().any(|form| screen.text().contains(form))
-    });
-    // Two doors in the north: an oak one, and the brass one.
-    tap(&player, "u", 90 / 5);
-    player.send("e");
-    thread::sleep(Duration::from_millis(500));
-    walk(&player, "w", 2);
-    walk(&player, "d", 1);
-    player.send("e");
-    thread::sleep(Duration::from_millis(500));
-    walk(&player, "w", 2);
-    wait_for_gold(&player, ["100/130", "100 of 130"]);
-    walk(&player, "s", 2);
-    walk(&player, "d", 8);
-    wait_for_gold(&player, ["115/130", "115 of 130"]);
-    walk(&player, "s", 2);
-    walk(&player, "d", 1);
-    player.wait_for("you found the way out");
-    for shown in [
-        "Cellar",
-        "level 1 of 12",
-        "in 0:",
-        "rank: ",
-        "gold: 115 of 130",
-        "alarms: ",
-        "secrets: 0 of 1",
-    ] {
-        assert!(player.text().contains(shown), "{shown}:\n{}", player.text());
+    let mut typist = begin(&data);
+    for Level { name, goal, summary } in LEVELS {
+        let begun = typist.steps();
+        typist.wait_to_see(goal);
+        typist.wait_for("♥♥♥♥♥♥");
+        let script = script(name);
+        play(&typist, &script, typist.steps() - begun);
+        typist.wait_to_see("you found the way out");
+        for shown in summary.into_iter().chain(["in 0:", "rank: ", "gold: 1", "alarms: "]) {
+            assert!(typist.text().contains(shown), "{shown}:\n{}", typist.text());
+        }
+        assert_kept(&data, name, &script);
+        typist.pass(PANEL);
+        typist.send("\r");
     }
+    typist.wait_to_see("Take the chalice");
     let progress = fs::read_to_string(data.join("progress.toml")).unwrap();
-    for kept in ["[best.\"cellar\".easy]", "treasure = [115, 130]", "deaths = 0"] {
-        assert!(progress.contains(kept), "{kept}:\n{progress}");
+    for Level { name, .. } in LEVELS {
+        assert!(progress.contains(&format!("[best.\"{name}\".easy]")), "{name}:\n{progress}");
     }
-    // A panel that has just appeared takes no key.
-    thread::sleep(Duration::from_millis(700));
-    player.send("\r");
-    player.wait_for("The Museum of Walls");
-    player.wait_for("♥♥♥♥♥♥");
-    player.send("q");
-    player.wait_for("q or Enter leaves");
-    player.send("\r");
-    let ending = player.wait_for_end();
-    ending.assert_given_back();
-    assert!(ending.status.success());
+    leave(&mut typist);
+}
+
+#[test]
+fn a_held_key_walks_for_as_long_as_it_repeats() {
+    let data = folder("campaign-holding");
+    let mut typist = begin(&data);
+    typist.wait_to_see(LEVELS[0].goal);
+    typist.hold("d", 120);
+    typist.pass(60);
+    leave(&mut typist);
+    let runs = fs::read_dir(data.join("runs")).unwrap();
+    let saved: Vec<_> = runs.map(|run| fs::read_to_string(run.unwrap().path()).unwrap()).collect();
+    let saved = Script::parse(&saved[0], "the saved game").unwrap();
+    let aside: Intents = [Intent::StrafeRight].into_iter().collect();
+    let stretches: Vec<_> = saved.sections()[0].stretches.iter().skip(1).collect();
+    let walks: Vec<_> = stretches.iter().map(|it| (it.intents == aside, it.steps)).collect();
+    // A tap; a pause up to the first repetition; and the repetitions, up to the time after which the
+    // next one would have come.
+    let [(true, TAP), (false, 25), (true, held), (false, _)] = walks[..] else {
+        panic!("{walks:?}");
+    };
+    assert!((90..98).contains(&held), "{walks:?}");
 }
 
 #[test]
@@ -137,8 +175,8 @@ fn the_second_level_is_offered_at_the_next_start() {
                 treasure = [115, 130]\nsecrets = [0, 1]\nalarms = 0\ndeaths = 0\nstunned = 0\n\
                 rank = \"Shadow\"\n";
     fs::write(data.join("progress.toml"), best).unwrap();
-    let player = start(&data);
-    player.wait_for("> Continue  Museum");
-    player.send("\r");
-    player.wait_for("Take the crown of plaster");
+    let typist = start(&data);
+    typist.wait_to_see("> Continue  Museum");
+    typist.send("\r");
+    typist.wait_to_see("Take the crown of plaster");
 }

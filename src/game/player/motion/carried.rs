@@ -26,6 +26,15 @@ impl Motion {
         self
     }
 
+    /// The height of the feet in `world`, if that has lifted or, where they stood, lowered them.
+    pub(in crate::game) fn feet_after(&self, world: &World, stood: bool) -> Option<f64> {
+        if !self.has_room(world) {
+            return self.lifted(world);
+        }
+        let floor = self.floor(world);
+        (stood && floor < self.feet && self.feet - floor <= STEP_HEIGHT).then_some(floor)
+    }
+
     /// The height to which floors that have risen around the feet lift them; `None` if there are no
     /// such floors, or no room.
     pub(in crate::game) fn lifted(&self, world: &World) -> Option<f64> {

@@ -108,7 +108,7 @@ proptest! {
         for event in events {
             match event.clone() {
                 Event::Move(lamps) => {
-                    world.set_moving_lamps(&lamps);
+                    world.set_moving_lamps(lamps.iter().copied());
                     moving = lamps;
                 }
                 Event::Flame(cell, burns) => {
@@ -144,7 +144,7 @@ fn where_everything_is_fully_lit_lamps_change_nothing() {
     let mut world = map::parse_str(text).unwrap();
     let before = world.clone();
     let lamp = Lamp { light: Light::FULL, reach: Reach::default() };
-    world.set_moving_lamps(&[(world.start().cell, lamp)]);
+    world.set_moving_lamps([(world.start().cell, lamp)].into_iter());
     assert!(world == before && !world.has_lamplight());
 }
 
@@ -157,10 +157,10 @@ fn a_lamp_carried_into_a_dim_level_lights_it() {
     let before = world.light_in(cell);
     assert!(!world.has_lamplight());
     let lamp = Lamp { light: Light::new(0.5).unwrap(), reach: Reach::default() };
-    world.set_moving_lamps(&[(cell, lamp)]);
+    world.set_moving_lamps([(cell, lamp)].into_iter());
     assert_eq!(world.light_in(cell), before.plus(lamp.light));
     assert_eq!(world.light_in(Cell { column: 3, row: 1 }), before.plus(lamp.light_at(2.0)));
-    world.set_moving_lamps(&[(Cell { column: 90, row: 1 }, lamp)]);
+    world.set_moving_lamps([(Cell { column: 90, row: 1 }, lamp)].into_iter());
     assert_eq!(world.light_in(cell), before, "off the map it lights nothing");
 }
 

@@ -73,11 +73,11 @@ impl PlayerColor {
             Self::Red => Rgb::new(0xe0, 0x20, 0x28),
             Self::Sky => Rgb::new(0x40, 0xd8, 0xf0),
             Self::Yellow => Rgb::new(0xfc, 0xe8, 0x30),
-            Self::Violet => Rgb::new(0x90, 0x38, 0xd8),
+            Self::Violet => Rgb::new(0xb0, 0x38, 0xe0),
             Self::Green => Rgb::new(0x28, 0xc0, 0x40),
             Self::Pink => Rgb::new(0xff, 0x98, 0xd0),
             Self::Orange => Rgb::new(0xff, 0x88, 0x10),
-            Self::Blue => Rgb::new(0x28, 0x40, 0xd8),
+            Self::Blue => Rgb::new(0x20, 0x38, 0xd8),
         }
     }
 }
@@ -95,7 +95,7 @@ pub(crate) fn player(color: PlayerColor) -> Option<Sprite> {
 
 /// The height of a player's pictures, in cells, and their size in texels.
 const HEIGHT: f64 = 0.76;
-const SIZE: Size = Size { width: 34, height: 28 };
+const SIZE: Size = Size { width: 42, height: 28 };
 
 fn design(pictures: Vec<Texture>) -> Design {
     let standing = Design::standing(HEIGHT, pictures);
@@ -227,8 +227,11 @@ fn head(model: &mut Model, joints: &Joints) {
 
 fn club(model: &mut Model, joints: &Joints, frame: PlayerFrame) {
     let hand = joints.arms[1][2];
-    let length = if frame == PlayerFrame::Strike { 6.0 } else { 4.0 };
+    let length = if frame == PlayerFrame::Strike { 5.0 } else { 4.0 };
     let end = hand + joints.holds * length;
     let end = end.with_z(end.z.clamp(1.4, 25.0));
     model.limb([hand, end], [0.8, 1.5], CLUB);
 }
+
+#[cfg(test)]
+mod tests;

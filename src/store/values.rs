@@ -1,0 +1,32 @@
+//! The version of the file, and the names in it that are read and written.
+
+use crate::color::palette::ColorDepth;
+use crate::tui::GlyphMode;
+
+/// The version of the format. Version 2 added the saved descent, the checksum of saved games, and the
+/// preferences about the terminal.
+pub(super) const VERSION: u64 = 2;
+/// The oldest version that is read.
+pub(super) const OLDEST: u64 = 1;
+
+pub(super) const SAVED: &str = "saved";
+pub(super) const SAVED_DESCENT: &str = "saved-descent";
+
+pub(super) const GLYPHS: [(GlyphMode, &str); 3] =
+    [(GlyphMode::Half, "half"), (GlyphMode::Ascii, "ascii"), (GlyphMode::Ramp, "ramp")];
+pub(super) const COLORS: [(ColorDepth, &str); 4] = [
+    (ColorDepth::True, "true"),
+    (ColorDepth::Indexed256, "256"),
+    (ColorDepth::Indexed16, "16"),
+    (ColorDepth::Mono, "mono"),
+];
+
+/// The name of `value`, which has one.
+pub(super) fn name_of<T: PartialEq>(names: &[(T, &'static str)], value: T) -> &'static str {
+    names.iter().find(|(named, _)| *named == value).map_or("", |(_, name)| name)
+}
+
+/// The value called `name`.
+pub(super) fn named<T: Copy>(names: &[(T, &str)], name: &str) -> Option<T> {
+    names.iter().find(|(_, known)| *known == name).map(|&(value, _)| value)
+}

@@ -1,0 +1,79 @@
+//! A step of the game allocates nothing once its memory has grown.
+
+use allocation_counter::measure;
+use cellcaster::game::{Alarm, Game, Intent, Intents, Outcome};
+use cellcaster::map::{self, builtin};
+use cellcaster::world::World;
+
+/// The steps in which the memory grows, and those that are counted.
+const GROWS: u32 = 14_400;
+const COUNTED: u32 = 600;
+
+/// A corridor with rooms to both sides. The player starts in that column; guards with this duty
+/// stand in the west.
+fn rooms(start: usize, duty: &str) -> World {
+    const COLUMNS: usize = 160;
+    let lines = (0..13_usize).map(|row| {
+        let cell = |column: usize| match (column, row) {
+            (0, _) | (_, 0 | 12) => '#',
+            (_, 6) if column == start => '@',
+            _ if column + 1 == COLUMNS => '#',
+            _ if column % 4 == 0 && !matches!(row % 6, 0 | 1 | 5) => '#',
+            (2..30, 4 | 8) if column % 3 == 1 => 'G',
+            _ => '.',
+        };
+        (0..COLUMNS).map(cell).collect::<String>()
+    });
+    let grid = lines.collect::<Vec<_>>().join("\n");
+    let text = format!(
+        "grid = '''\n{grid}\n'''\n[tiles]\n'#' = {{ wall = 'brick' }}\n[things]\n\
+         '@' = {{ start = 0 }}\n'G' = {{ guard = 'warden', heading = 0{duty} }}\n"
+    );
+    map::parse_str(&text).unwrap_or_else(|faults| panic!("{faults}"))
+}
+
+/// The allocations of [`COUNTED`] steps with these intents.
+fn allocations(game: &mut Game, intents: Intents) -> u64 {
+    measure(|| (0..COUNTED).for_each(|_| game.step(intents))).count_total
+}
+
+fn circling() -> Intents {
+    [Intent::Forward, Intent::TurnRight, Intent::Duck].into_iter().collect()
+}
+
+#[test]
+fn patrols_allocate_nothing_once_their_ways_are_known() {
+    let level = builtin::LEVELS.iter().find(|level| level.name == "barracks").unwrap();
+    let mut game = Game::new(level.world().unwrap());
+    (0..GROWS).for_each(|_| game.step(Intents::new()));
+    let before: Vec<_> = game.guards().map(|guard| guard.position).collect();
+    assert_eq!(allocations(&mut game, Intents::new()), 0);
+    assert!(game.guards().map(|guard| guard.position).ne(before), "nobody walks");
+    assert_eq!(game.outcome(), Outcome::Playing);
+}
+
+#[test]
+fn guards_on_duty_and_asleep_allocate_nothing() {
+    for duty in ["", ", asleep = true", ", wander = 8"] {
+        let mut game = Game::new(rooms(100, duty));
+        (0..GROWS).for_each(|_| game.step(circling()));
+        assert_eq!(allocations(&mut game, circling()), 0, "{duty}");
+        assert_eq!(game.outcome(), Outcome::Playing, "{duty}");
+    }
+}
+
+/// Guards share the searches for their ways, twelve at a time, and each search has two lists.
+#[test]
+fn guards_who_search_allocate_two_lists_for_each_search() {
+    let mut game = Game::new(rooms(30, ""));
+    let run = [Intent::Forward, Intent::Run].into_iter().collect();
+    let mut has_been_wary = false;
+    let counted = measure(|| {
+        for _ in 0..900 {
+            game.step(run);
+            has_been_wary |= game.alarm() == Alarm::Wary;
+        }
+    });
+    assert!(has_been_wary, "nobody searches");
+    assert!(counted.count_total <= 36, "{}", counted.count_total);
+}
