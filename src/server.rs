@@ -24,6 +24,10 @@ mod host_key;
 mod line;
 #[allow(dead_code, reason = "the sequencer uses it")]
 mod room;
+#[allow(dead_code, reason = "the driver uses it")]
+mod session;
+#[allow(dead_code, reason = "the driver uses it")]
+mod summary;
 mod transport;
 
 pub use self::admission::{Admission, Limits, Outcome, Refusal, Startups, VisitId};
