@@ -123,7 +123,7 @@ impl Mode {
 
     /// The seed of the game's chance. Alone, it is that of the built-in levels at home, so that the
     /// same script gives the same result there.
-    pub(super) const fn game_seed(self, of_room: u64) -> u64 {
+    pub(crate) const fn game_seed(self, of_room: u64) -> u64 {
         if matches!(self, Self::Alone) { 0 } else { of_room }
     }
 
