@@ -22,7 +22,11 @@ mod play;
 mod plot;
 mod recording;
 mod replay;
+#[cfg(feature = "serve")]
+mod scores;
 mod script;
+#[cfg(feature = "serve")]
+mod serve;
 mod snapshot;
 mod today;
 mod verify;
@@ -60,6 +64,10 @@ impl Command {
             Self::Bench(options) => bench::run(&options),
             Self::Levels(options) => levels::run(&options),
             Self::Replay(options) => replay::run(&options),
+            #[cfg(feature = "serve")]
+            Self::Scores(options) => scores::run(&options),
+            #[cfg(feature = "serve")]
+            Self::Serve(options) => serve::run(options),
             Self::Wire(options) => wire::run(&options),
         }
     }

@@ -79,7 +79,7 @@ mod raster;
 pub mod render;
 pub mod rng;
 #[cfg(feature = "serve")]
-mod server;
+pub mod server;
 pub mod space;
 #[cfg(feature = "terminal")]
 pub mod store;

@@ -1,7 +1,38 @@
-//! The server.
-#![allow(dead_code)]
+//! The SSH server in which people play together.
+//!
+//! A [`Server`] accepts connections and turns each into a [`Visitor`] and a [`Link`], which it hands to
+//! a [`Host`]. Everything that can be decided without a socket is decided by code without one:
+//! [`Admission`] takes time and chance as arguments.
+//!
+//! # Rules
+//!
+//! - A visitor holds one session channel with a terminal, and nothing else: no command, subsystem,
+//!   forwarding, agent or X11.
+//! - A public key is an account, and its comment does not matter. A visitor without a key is a guest.
+//! - Memory for a connection is bounded in both directions. What a client sends waits in its socket
+//!   while the session is busy, and at most one frame waits for a client that does not read.
+//! - A client costs the others nothing: connections, bytes and time before authentication are
+//!   limited, and so are the bytes a second after it.
+//!
+//! `russh`'s own accept loop was refused: it has no limit of connections, no deadline before
+//! authentication, and its queue to a channel tells nothing about the socket.
 
+mod admission;
+mod config;
+mod host_key;
+#[allow(dead_code, reason = "the sequencer uses it")]
 mod line;
+#[allow(dead_code, reason = "the sequencer uses it")]
 mod room;
+#[allow(dead_code, reason = "the driver uses it")]
 mod session;
+#[allow(dead_code, reason = "the directory of rooms uses it")]
 mod summary;
+mod transport;
+
+pub use self::admission::{Admission, Limits, Outcome, Refusal, Startups, VisitId};
+pub use self::config::Config;
+pub use self::host_key::{HostKey, HostKeyError};
+pub use self::transport::{
+    Arrival, Counters, Departure, Host, Inbound, KeyData, Link, Outbox, Server, Visitor,
+};

@@ -1,0 +1,61 @@
+//! The options of `serve`.
+
+use std::net::SocketAddr;
+use std::path::PathBuf;
+
+use clap::ArgMatches;
+
+use super::option::{FileOption, Parser, ValueOption};
+use super::{Command, Subcommand};
+
+/// Options of `serve`.
+#[derive(Debug)]
+pub(in crate::cli) struct Serve {
+    pub(in crate::cli) listen: Option<SocketAddr>,
+    pub(in crate::cli) data: Option<PathBuf>,
+    pub(in crate::cli) config: Option<PathBuf>,
+}
+
+pub(super) const SUBCOMMAND: Subcommand = Subcommand {
+    name: "serve",
+    about: "An SSH server in which people play together",
+    details: "Prints the line that people type to play. The host key and what the server keeps are in the \
+              folder for data; the key is made at the first start. SIGTERM and Ctrl-C end the server, after \
+              its visitors had time for their end.",
+    examples: "cellcaster serve\n\
+               cellcaster serve --listen 0.0.0.0:2222 --data /var/lib/cellcaster",
+    positionals: &[],
+    options: &[&LISTEN, &DATA, &CONFIG],
+    surplus: "takes no map",
+    missing: "",
+    read: |matches| Ok(Command::Serve(read(matches))),
+};
+
+fn read(mut matches: ArgMatches) -> Serve {
+    Serve {
+        listen: LISTEN.of(&mut matches),
+        data: DATA.of(&mut matches),
+        config: CONFIG.of(&mut matches),
+    }
+}
+
+const LISTEN: ValueOption<SocketAddr> = ValueOption {
+    name: "listen",
+    value: "ADDRESS:PORT",
+    takes: "an address and a port, such as 0.0.0.0:2222 or [::]:2222",
+    help: "Where to listen; port 0 for a free one",
+    default: "127.0.0.1:2222",
+    choices: &[],
+    read: Parser::Optional(|text| text.parse().ok()),
+    repeats: false,
+};
+
+const DATA: FileOption = FileOption {
+    name: "data",
+    help: "The folder for data [default: cellcaster in the folder for data, or $CELLCASTER_DATA]",
+};
+
+const CONFIG: FileOption = FileOption {
+    name: "config",
+    help: "The limits [default: cellcaster/serve.toml in the folder for configuration files]",
+};
