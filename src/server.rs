@@ -19,33 +19,24 @@
 
 mod admission;
 mod config;
+mod driver;
+mod governor;
 mod host_key;
-#[allow(dead_code, reason = "the driver uses it")]
 mod line;
-#[allow(dead_code, reason = "the driver uses it")]
 mod load;
-#[allow(dead_code, reason = "the driver uses it")]
+mod lock;
 mod room;
-#[allow(dead_code, reason = "the driver uses it")]
 mod rooms;
-#[allow(dead_code, reason = "the driver uses it")]
 mod sequencer;
-#[allow(dead_code, reason = "the driver uses it")]
 mod session;
-#[allow(dead_code, reason = "the driver uses it")]
 mod summary;
 mod transport;
 
 pub use self::admission::{Admission, Limits, Outcome, Refusal, Startups, VisitId};
 pub use self::config::Config;
+pub use self::driver::GameHost;
 pub use self::host_key::{HostKey, HostKeyError};
+use self::lock::locked;
 pub use self::transport::{
     Arrival, Counters, Departure, Host, Inbound, KeyData, Link, Outbox, Server, Visitor,
 };
-
-use std::sync::{Mutex, PoisonError};
-
-/// A lock that a panic elsewhere does not close.
-fn locked<T, R>(mutex: &Mutex<T>, act: impl FnOnce(&mut T) -> R) -> R {
-    act(&mut mutex.lock().unwrap_or_else(PoisonError::into_inner))
-}

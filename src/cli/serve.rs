@@ -11,7 +11,8 @@ use super::Error;
 use super::arguments::Serve;
 use super::config::configuration_file;
 use super::data_folder::data_folder;
-use crate::server::{Arrival, Config, Departure, Host, HostKey, Link, Server, Visitor};
+use crate::server::{Config, GameHost, HostKey, Server};
+use crate::store::host::SqliteStore;
 
 /// Serves until a signal ends it.
 pub(super) fn run(options: Serve) -> Result<(), Error> {
@@ -20,23 +21,33 @@ pub(super) fn run(options: Serve) -> Result<(), Error> {
     let folder = options.data.or_else(data_folder).ok_or_else(|| {
         Error::mistake("there is no folder for data; name one, as in \"serve --data FOLDER\"")
     })?;
+    config.recordings = options.record_room;
+    let (store, damage) =
+        SqliteStore::open(&folder).map_err(|failure| Error::mistake(failure.to_string()))?;
+    if let Some(sentence) = damage {
+        eprintln!("{sentence}");
+    }
     let key = HostKey::open(&folder).map_err(|error| Error::mistake(error.to_string()))?;
-    let runtime = Runtime::new()
-        .map_err(|error| Error::machine(format!("no thread can be started: {error}")))?;
-    runtime.block_on(serve(config, key))
+    let runtime = Runtime::new().map_err(no_thread)?;
+    runtime.block_on(serve(config, key, store))
 }
 
-async fn serve(config: Config, key: HostKey) -> Result<(), Error> {
+async fn serve(config: Config, key: HostKey, store: SqliteStore) -> Result<(), Error> {
     let wanted = config.listen;
     let fingerprint = key.fingerprint();
     let cannot = |error: io::Error| Error::mistake(format!("{wanted} can't be used: {error}"));
     let stop =
         stop().map_err(|error| Error::machine(format!("no signal can be caught: {error}")))?;
+    let host = GameHost::new(&config, Box::new(store)).map_err(no_thread)?;
     let server = Server::bind(config, key).await.map_err(cannot)?;
     let text = invitation(server.address().map_err(cannot)?, &fingerprint);
     io::stdout().write_all(text.as_bytes()).map_err(|error| Error::of_output(&error))?;
-    server.run(NoRooms, stop).await;
+    server.run(host, stop).await;
     Ok(())
+}
+
+fn no_thread(error: io::Error) -> Error {
+    Error::machine(format!("no thread can be started: {error}"))
 }
 
 /// The configuration of the named file, or of the default one if it exists.
@@ -90,25 +101,4 @@ fn stop() -> io::Result<impl Future<Output = ()> + Send> {
 #[cfg(not(unix))]
 fn stop() -> io::Result<impl Future<Output = ()> + Send> {
     Ok(async { _ = tokio::signal::ctrl_c().await })
-}
-
-/// Tells visitors that there is nothing to play yet.
-struct NoRooms;
-
-impl Host for NoRooms {
-    async fn serve(&self, visitor: Visitor, link: Link) -> Departure {
-        let Link { mut inbound, mut outbox } = link;
-        let who = match &visitor.key {
-            Some(key) => format!("with the key {}", key.fingerprint()),
-            None => "a guest".to_owned(),
-        };
-        let text = format!(
-            "You are {}, {who}. No room is open on this server. Press any key.\r\n",
-            visitor.user
-        );
-        _ = outbox.try_send(text.into_bytes());
-        outbox.drained().await;
-        while matches!(inbound.next().await, Arrival::Resized(_)) {}
-        Departure::default()
-    }
 }

@@ -14,6 +14,7 @@ pub(in crate::cli) struct Serve {
     pub(in crate::cli) listen: Option<SocketAddr>,
     pub(in crate::cli) data: Option<PathBuf>,
     pub(in crate::cli) config: Option<PathBuf>,
+    pub(in crate::cli) record_room: Option<PathBuf>,
 }
 
 pub(super) const SUBCOMMAND: Subcommand = Subcommand {
@@ -25,7 +26,7 @@ pub(super) const SUBCOMMAND: Subcommand = Subcommand {
     examples: "cellcaster serve\n\
                cellcaster serve --listen 0.0.0.0:2222 --data /var/lib/cellcaster",
     positionals: &[],
-    options: &[&LISTEN, &DATA, &CONFIG],
+    options: &[&LISTEN, &DATA, &CONFIG, &RECORD_ROOM],
     surplus: "takes no map",
     missing: "",
     read: |matches| Ok(Command::Serve(read(matches))),
@@ -36,6 +37,7 @@ fn read(mut matches: ArgMatches) -> Serve {
         listen: LISTEN.of(&mut matches),
         data: DATA.of(&mut matches),
         config: CONFIG.of(&mut matches),
+        record_room: RECORD_ROOM.of(&mut matches),
     }
 }
 
@@ -58,4 +60,9 @@ const DATA: FileOption = FileOption {
 const CONFIG: FileOption = FileOption {
     name: "config",
     help: "The limits [default: cellcaster/serve.toml in the folder for configuration files]",
+};
+
+const RECORD_ROOM: FileOption = FileOption {
+    name: "record-room",
+    help: "A folder in which the log of each room is written [default: nothing is recorded]",
 };

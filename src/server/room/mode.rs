@@ -109,6 +109,11 @@ impl Mode {
         }
     }
 
+    /// Whether there are guards, so that the difficulty matters.
+    pub(crate) const fn has_guards(self) -> bool {
+        matches!(self, Self::Together | Self::Alone)
+    }
+
     /// The rules among the players.
     pub(super) fn company(self) -> Company {
         let usual = Company::default();
