@@ -5,6 +5,8 @@
 //! argument causes a panic.
 
 mod accuracy;
+#[cfg(all(unix, feature = "serve"))]
+mod admin;
 mod arguments;
 mod asciicast;
 mod bench;
@@ -60,6 +62,8 @@ impl Command {
             Self::Cast(options) => cast::run(&options),
             Self::Check(maps) => check::run(&maps),
             Self::Config(options) => config::run(options),
+            #[cfg(all(unix, feature = "serve"))]
+            Self::Admin(options) => admin::run(options),
             Self::Accuracy(options) => accuracy::run(&options),
             Self::Bench(options) => bench::run(&options),
             Self::Levels(options) => levels::run(&options),

@@ -17,6 +17,7 @@
 //! `russh`'s own accept loop was refused: it has no limit of connections, no deadline before
 //! authentication, and its queue to a channel tells nothing about the socket.
 
+mod admin;
 mod admission;
 mod config;
 mod driver;
@@ -25,18 +26,27 @@ mod host_key;
 mod line;
 mod load;
 mod lock;
+mod logging;
+mod metrics;
 mod room;
 mod rooms;
 mod sequencer;
 mod session;
 mod summary;
 mod transport;
+mod visitors;
 
+#[cfg(unix)]
+pub use self::admin::{AdminFailure, AdminSocket, ask};
+pub use self::admin::{AdminReply, AdminRequest, Operator, RoomRow, Target, VisitorRow};
 pub use self::admission::{Admission, Limits, Outcome, Refusal, Startups, VisitId};
-pub use self::config::Config;
+pub use self::config::{Config, LiveConfig};
 pub use self::driver::GameHost;
 pub use self::host_key::{HostKey, HostKeyError};
 use self::lock::locked;
+pub use self::logging::{LogFilter, LogFormat, Logging, UnknownLogFilter};
+pub use self::metrics::{Counter, Gauge, Histogram, Metrics, respond};
 pub use self::transport::{
     Arrival, Counters, Departure, Host, Inbound, KeyData, Link, Outbox, Server, Visitor,
 };
+pub use self::visitors::{Notice, Presence, Present, Visitors};

@@ -6,6 +6,8 @@
 
 mod about;
 mod accuracy;
+#[cfg(all(unix, feature = "serve"))]
+mod admin;
 mod bench;
 mod cast;
 mod check;
@@ -35,6 +37,8 @@ use clap::{Arg, ArgAction, ArgMatches, ValueHint, value_parser};
 use clap_complete::Shell;
 
 pub(super) use self::accuracy::{Accuracy, ReportFormat};
+#[cfg(all(unix, feature = "serve"))]
+pub(super) use self::admin::{Admin, AdminAction};
 pub(super) use self::bench::{Bench, BenchFormat};
 pub(super) use self::cast::Cast;
 pub(super) use self::config::Config;
@@ -67,6 +71,8 @@ pub(super) enum Command {
     Config(Config),
     Levels(Levels),
     Accuracy(Accuracy),
+    #[cfg(all(unix, feature = "serve"))]
+    Admin(Admin),
     Bench(Bench),
     Replay(Replay),
     #[cfg(feature = "serve")]
@@ -116,6 +122,8 @@ const SUBCOMMANDS: &[&Subcommand] = &[
     &wire::SUBCOMMAND,
     #[cfg(feature = "serve")]
     &scores::SUBCOMMAND,
+    #[cfg(all(unix, feature = "serve"))]
+    &admin::SUBCOMMAND,
     &about::COMPLETIONS,
     &about::MAN,
     &about::HELP,

@@ -4,6 +4,7 @@ use std::fs;
 use std::io::{self, Write};
 use std::net::{IpAddr, SocketAddr};
 use std::path::PathBuf;
+use std::sync::Arc;
 
 use tokio::runtime::Runtime;
 
@@ -11,7 +12,7 @@ use super::Error;
 use super::arguments::Serve;
 use super::config::configuration_file;
 use super::data_folder::data_folder;
-use crate::server::{Config, GameHost, HostKey, Server};
+use crate::server::{Config, GameHost, HostKey, Metrics, Server, Visitors};
 use crate::store::host::SqliteStore;
 
 /// Serves until a signal ends it.
@@ -38,8 +39,10 @@ async fn serve(config: Config, key: HostKey, store: SqliteStore) -> Result<(), E
     let cannot = |error: io::Error| Error::mistake(format!("{wanted} can't be used: {error}"));
     let stop =
         stop().map_err(|error| Error::machine(format!("no signal can be caught: {error}")))?;
-    let host = GameHost::new(&config, Box::new(store)).map_err(no_thread)?;
     let server = Server::bind(config, key).await.map_err(cannot)?;
+    let (metrics, visitors) = (Arc::new(Metrics::default()), Visitors::default());
+    let host = GameHost::new(server.config(), metrics, visitors, Box::new(store));
+    let host = host.map_err(no_thread)?;
     let text = invitation(server.address().map_err(cannot)?, &fingerprint);
     io::stdout().write_all(text.as_bytes()).map_err(|error| Error::of_output(&error))?;
     server.run(host, stop).await;

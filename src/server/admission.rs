@@ -70,6 +70,35 @@ pub enum Outcome {
     BrokeProtocol,
 }
 
+impl Refusal {
+    /// All reasons, in the order of the variants.
+    pub const ALL: [Self; 5] =
+        [Self::Full, Self::Address, Self::Key, Self::Startups, Self::Penalty];
+
+    /// A word for logs and metrics.
+    pub const fn name(self) -> &'static str {
+        match self {
+            Self::Full => "full",
+            Self::Address => "address",
+            Self::Key => "key",
+            Self::Startups => "startups",
+            Self::Penalty => "penalty",
+        }
+    }
+}
+
+impl Outcome {
+    /// A few words for logs.
+    pub const fn name(self) -> &'static str {
+        match self {
+            Self::Served => "served",
+            Self::LeftEarly => "left early",
+            Self::TimedOut => "timed out",
+            Self::BrokeProtocol => "broke the protocol",
+        }
+    }
+}
+
 #[derive(Debug)]
 struct Visit {
     address: IpAddr,

@@ -4,10 +4,16 @@
 //! listen = "[::]:2222"
 //! connections = 400
 //! connections-per-address = 20     # behind a proxy, all visitors have one address
+//! message = "Races every Friday at 20:00"
+//! log = "info,connections=warn"
+//!
+//! [metrics]
+//! listen = "127.0.0.1:9464"
 //! ```
 //!
 //! All faults of a file are reported in one run, each with its place.
 
+mod live;
 mod read;
 mod settings;
 mod write;
@@ -17,6 +23,8 @@ use std::path::PathBuf;
 use std::time::Duration;
 
 use super::admission::Limits;
+use super::logging::LogFilter;
+pub use live::LiveConfig;
 
 /// The content of a configuration file, with defaults for missing settings.
 ///
@@ -25,6 +33,12 @@ use super::admission::Limits;
 pub struct Config {
     /// The address and port to listen at.
     pub listen: SocketAddr,
+    /// The message of the day: one line, which the lobby shows; may be empty.
+    pub message: String,
+    /// What is logged.
+    pub log: LogFilter,
+    /// Where metrics are read by HTTP; nowhere if `None`.
+    pub metrics: Option<SocketAddr>,
     /// Which connections are admitted.
     pub admission: Limits,
     /// The time in which a client sends its half of the key exchange.
@@ -62,6 +76,9 @@ impl Default for Config {
     fn default() -> Self {
         Self {
             listen: SocketAddr::from((Ipv4Addr::LOCALHOST, 2222)),
+            message: String::new(),
+            log: LogFilter::default(),
+            metrics: None,
             admission: Limits::default(),
             handshake: Duration::from_secs(20),
             login: Duration::from_secs(120),

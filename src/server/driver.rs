@@ -25,11 +25,12 @@ use self::account::NamesInUse;
 use self::store_worker::StoreWorker;
 use self::visit::Visit;
 use super::governor::Governor;
+use super::line::Line;
 use super::load::Load;
 use super::room::{Catalog, Mode};
 use super::rooms::{RoomLimits, Rooms};
-use super::summary::RoomWish;
-use super::{Config, Departure, Host, Link, Visitor};
+use super::summary::{RoomSummary, RoomWish};
+use super::{Departure, Host, Link, LiveConfig, Metrics, RoomRow, Visitor, Visitors};
 use crate::store::host::{HostStore, UnixTime};
 use crate::world::Difficulty;
 
@@ -42,7 +43,9 @@ pub struct GameHost {
 /// What the drivers have in common.
 #[derive(Debug)]
 struct Shared {
-    config: Config,
+    config: LiveConfig,
+    metrics: Arc<Metrics>,
+    visitors: Visitors,
     begun: Instant,
     rooms: Rooms,
     store: StoreWorker,
@@ -55,14 +58,21 @@ struct Shared {
 const GOVERNED: Duration = Duration::from_millis(250);
 
 impl GameHost {
-    /// A host that keeps accounts and results in `store`, with the built-in levels.
+    /// A host that keeps accounts and results in `store`, with the built-in levels. It adds to `metrics`,
+    /// and its sessions are among `visitors`.
     ///
     /// It is to be called within a runtime, on which the rooms run.
     ///
     /// # Errors
     /// If no thread can be started.
-    pub fn new(config: &Config, store: Box<dyn HostStore>) -> io::Result<Self> {
-        let load = Arc::<Load>::default();
+    pub fn new(
+        live: LiveConfig,
+        metrics: Arc<Metrics>,
+        visitors: Visitors,
+        store: Box<dyn HostStore>,
+    ) -> io::Result<Self> {
+        let load = Arc::new(Load::new(Arc::clone(&metrics)));
+        let config = live.get();
         let limits = RoomLimits {
             most: config.rooms as usize,
             most_watchers: config.watchers as usize,
@@ -74,7 +84,9 @@ impl GameHost {
         let seed = getrandom::u64().unwrap_or_default();
         let rooms = Rooms::new(limits, Arc::new(Catalog::builtin()), Arc::clone(&load), seed);
         let shared = Arc::new(Shared {
-            config: config.clone(),
+            config: live,
+            metrics,
+            visitors,
             begun: Instant::now(),
             rooms,
             store: StoreWorker::start(store)?,
@@ -84,6 +96,24 @@ impl GameHost {
         });
         tokio::spawn(govern(Arc::downgrade(&shared)));
         Ok(Self { shared })
+    }
+
+    /// Lists the rooms, for an operator.
+    pub fn room_rows(&self) -> impl Fn() -> Vec<RoomRow> + Send + Sync + use<> {
+        let summaries = self.shared.rooms.summaries();
+        move || summaries.borrow().iter().map(room_row).collect()
+    }
+}
+
+fn room_row(room: &RoomSummary) -> RoomRow {
+    RoomRow {
+        room: room.id.0,
+        mode: room.mode.name().to_owned(),
+        level: room.level.clone(),
+        difficulty: room.difficulty.name().to_owned(),
+        members: room.members.iter().map(Line::to_string).collect(),
+        most: room.mode.most(),
+        watchers: room.watchers,
     }
 }
 
@@ -127,7 +157,7 @@ async fn govern(shared: std::sync::Weak<Shared>) {
     loop {
         ticks.tick().await;
         let Some(shared) = shared.upgrade() else { return };
-        let most = shared.config.frames_per_second;
+        let most = shared.config.get().frames_per_second;
         let sample = shared.load.sample(GOVERNED);
         shared.load.set_frame_time(governor.decide(sample, most));
     }

@@ -1,17 +1,18 @@
 //! Measurements of how busy the server is, and the frame rate that follows from them.
 
 use std::num::NonZero;
-use std::sync::Mutex;
 use std::sync::atomic::{AtomicU64, Ordering};
+use std::sync::{Arc, Mutex};
 use std::thread::available_parallelism;
 use std::time::Duration;
 
 use super::governor::Sample;
-use super::locked;
+use super::{Metrics, locked};
 
 /// Measurements that all rooms and sessions add to.
 #[derive(Debug)]
 pub(crate) struct Load {
+    metrics: Arc<Metrics>,
     /// In microseconds: by how much the latest step of a room was late.
     lateness: AtomicU64,
     /// In microseconds: the least time between two frames.
@@ -22,18 +23,24 @@ pub(crate) struct Load {
     processors: f64,
 }
 
-impl Default for Load {
-    fn default() -> Self {
+impl Load {
+    /// Nothing measured yet; it adds to `metrics`, too.
+    pub(crate) fn new(metrics: Arc<Metrics>) -> Self {
         let processors = available_parallelism().map_or(1, NonZero::get) as f64;
         let used = Mutex::new(processor_time());
-        Self { lateness: AtomicU64::new(0), frame_time: AtomicU64::new(33_333), used, processors }
+        let (lateness, frame_time) = (AtomicU64::new(0), AtomicU64::new(33_333));
+        Self { metrics, lateness, frame_time, used, processors }
     }
-}
 
-impl Load {
+    /// The figures of the server.
+    pub(crate) fn metrics(&self) -> &Metrics {
+        &self.metrics
+    }
+
     /// Notes by how much a step of a room was late.
     pub(crate) fn note_lateness(&self, lateness: Duration) {
         self.lateness.fetch_max(micros(lateness), Ordering::Relaxed);
+        self.metrics.step_lateness.add(lateness);
     }
 
     /// What was measured in the last `time`, since the last call.

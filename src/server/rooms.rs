@@ -20,6 +20,7 @@ pub(crate) use self::place::Place;
 use super::line::Line;
 use super::load::Load;
 use super::locked;
+use super::logging::events;
 use super::room::{Catalog, Header, Mode, Room};
 use super::sequencer::{Doorway, Inbox, JoinRefusal, RoundLog, Sequencer, Shown};
 use super::summary::{RoomId, RoomSummary, RoomWish};
@@ -200,6 +201,8 @@ impl Rooms {
     /// Runs a room until it is closed.
     fn spawn(&self, new: NewRoom, closes_after: Option<Duration>) {
         let NewRoom { id, room, doorway } = new;
+        let header = room.header();
+        events::room_opened(id.0, &header.level, header.mode.name());
         self.publish();
         let log = RoundLog::new(recording::log(self.0.limits.recordings.as_deref(), id), &room);
         let load = Arc::clone(&self.0.load);
@@ -211,6 +214,7 @@ impl Rooms {
         tokio::spawn(async move {
             sequencer.run(|room| rooms.change(id, summary(id, room))).await;
             locked(&rooms.0.open, |open| open.rooms.remove(&id));
+            events::room_closed(id.0);
             rooms.publish();
         });
     }
@@ -232,7 +236,12 @@ impl Rooms {
         };
         // Under the lock, so that an older list never replaces a newer one.
         locked(&self.0.open, |open| {
-            self.0.summaries.send_replace(open.rooms.values().map(summary).collect());
+            let summaries: Arc<[RoomSummary]> = open.rooms.values().map(summary).collect();
+            let metrics = self.0.load.metrics();
+            metrics.rooms.set(summaries.len() as i64);
+            metrics.members.set(summaries.iter().map(|room| room.members.len() as i64).sum());
+            metrics.watchers.set(summaries.iter().map(|room| room.watchers as i64).sum());
+            self.0.summaries.send_replace(summaries);
         });
     }
 }

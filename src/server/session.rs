@@ -120,6 +120,11 @@ impl Session {
         self.finish(now);
     }
 
+    /// Whether the next frame answers a key.
+    pub(crate) fn has_key(&self) -> bool {
+        self.answers_key.is_some()
+    }
+
     /// What the session wants since the last call.
     pub(crate) fn asks(&mut self) -> Vec<Ask> {
         std::mem::take(&mut self.visit.asks)

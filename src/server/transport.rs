@@ -22,7 +22,8 @@ use tokio::sync::watch;
 use tokio::task::JoinSet;
 use tokio::time::{sleep, timeout};
 
-use super::{Config, HostKey, VisitId, locked};
+use super::logging::{Throttle, events};
+use super::{Config, HostKey, LiveConfig, Refusal, VisitId, locked};
 use crate::rng::SplitMix64;
 use connection::Shared;
 pub use inbound::{Arrival, Inbound};
@@ -67,13 +68,19 @@ pub struct Counters {
     pub refused: AtomicU64,
     /// Bytes of frames that wait for clients.
     pub held: AtomicUsize,
+    /// Frames that were sent so far.
+    pub frames: AtomicU64,
+    /// Their bytes, before compression and encryption.
+    pub frame_bytes: AtomicU64,
+    /// Those of `refused` and those with a key too often, by reason.
+    refusals: [AtomicU64; Refusal::ALL.len()],
 }
 
 /// A server that listens.
 #[derive(Debug)]
 pub struct Server {
     listener: TcpListener,
-    config: Config,
+    config: LiveConfig,
     key: HostKey,
     counters: Arc<Counters>,
 }
@@ -93,6 +100,17 @@ const ACCEPT_PAUSE: Duration = Duration::from_millis(100);
 /// The time in which closed connections end.
 const CLOSING: Duration = Duration::from_secs(2);
 
+impl Counters {
+    /// The connections that were refused for `reason` so far.
+    pub fn refused_for(&self, reason: Refusal) -> u64 {
+        self.refusals[reason as usize].load(Ordering::Relaxed)
+    }
+
+    pub(super) fn refuse(&self, reason: Refusal) {
+        self.refusals[reason as usize].fetch_add(1, Ordering::Relaxed);
+    }
+}
+
 impl Server {
     /// Listens at the address of `config`.
     ///
@@ -100,7 +118,7 @@ impl Server {
     /// The address can't be listened at.
     pub async fn bind(config: Config, key: HostKey) -> io::Result<Self> {
         let listener = TcpListener::bind(config.listen).await?;
-        Ok(Self { listener, config, key, counters: Arc::default() })
+        Ok(Self { listener, config: LiveConfig::new(config), key, counters: Arc::default() })
     }
 
     /// The address that it listens at.
@@ -109,6 +127,11 @@ impl Server {
     /// The system does not tell.
     pub fn address(&self) -> io::Result<SocketAddr> {
         self.listener.local_addr()
+    }
+
+    /// Its configuration, which can be replaced while it runs.
+    pub fn config(&self) -> LiveConfig {
+        self.config.clone()
     }
 
     /// The counts of its connections.
@@ -120,12 +143,12 @@ impl Server {
     /// server drains, waits for them as long as the configuration says, and closes what is left.
     pub async fn run<H: Host>(self, host: H, stop: impl Future<Output = ()> + Send) {
         let Self { listener, config, key, counters } = self;
-        let drain = config.drain;
         let (phase, phases) = watch::channel(Phase::Open);
-        let shared = Arc::new(Shared::new(config, &key, counters, phases));
+        let shared = Arc::new(Shared::new(config.clone(), &key, counters, phases));
         let host = Arc::new(host);
         let mut tasks = JoinSet::new();
         let mut chance = SplitMix64::new(seed());
+        let mut refusals = Throttle::default();
         tokio::pin!(stop);
         loop {
             tokio::select! {
@@ -133,16 +156,21 @@ impl Server {
                 Some(_) = tasks.join_next(), if !tasks.is_empty() => {}
                 accepted = listener.accept() => match accepted {
                     Ok((socket, peer)) => {
-                        if let Some(visit) = admit(&shared, peer, &mut chance) {
+                        if let Some(visit) = admit(&shared, peer, &mut chance, &mut refusals) {
                             let (shared, host) = (shared.clone(), host.clone());
                             tasks.spawn(connection::serve(shared, host, socket, peer, visit));
                         }
                     }
-                    Err(_) => sleep(ACCEPT_PAUSE).await,
+                    Err(error) => {
+                        events::fault("accept", error);
+                        sleep(ACCEPT_PAUSE).await;
+                    }
                 },
             }
         }
         drop(listener);
+        let drain = config.get().drain;
+        events::draining(drain.as_secs());
         for (next, time) in [(Phase::Draining, drain), (Phase::Closing, CLOSING)] {
             _ = phase.send(next);
             let all = async { while tasks.join_next().await.is_some() {} };
@@ -155,12 +183,30 @@ impl Server {
 }
 
 /// Admits a connection, or refuses it without a word.
-fn admit(shared: &Shared, peer: SocketAddr, chance: &mut SplitMix64) -> Option<VisitId> {
-    let visit = shared.admission(|admission, now| admission.arrive(peer.ip(), now, chance)).ok();
+fn admit(
+    shared: &Shared,
+    peer: SocketAddr,
+    chance: &mut SplitMix64,
+    refusals: &mut Throttle,
+) -> Option<VisitId> {
+    let limits = shared.config.get().admission;
+    let (visit, now) = shared.admission(|admission, now| {
+        admission.set_limits(limits);
+        (admission.arrive(peer.ip(), now, chance), now)
+    });
     let Counters { accepted, refused, .. } = &*shared.counters;
-    let count = if visit.is_some() { accepted } else { refused };
+    let count = if visit.is_ok() { accepted } else { refused };
     count.fetch_add(1, Ordering::Relaxed);
-    visit
+    match visit {
+        Ok(_) => events::accepted(peer.ip()),
+        Err(reason) => {
+            shared.counters.refuse(reason);
+            if let Some(left_out) = refusals.pass(now) {
+                events::refused(peer.ip(), reason, left_out);
+            }
+        }
+    }
+    visit.ok()
 }
 
 /// Unpredictable, so that nobody can time their connections by the random drop.

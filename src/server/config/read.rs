@@ -8,6 +8,10 @@ use super::Config;
 use super::settings::{SETTINGS, Setting};
 use crate::fault::document::{self, Entry, FaultList};
 use crate::fault::{Fault, Faults, quoted};
+use crate::server::logging::{LogFilter, UnknownLogFilter};
+
+/// In characters: the longest message of the day.
+const LONGEST_MESSAGE: usize = 200;
 
 impl Config {
     /// Parses a configuration file, which faults refer to as `name`.
@@ -26,33 +30,83 @@ impl Config {
 
     fn read(&mut self, document: &DeTable, faults: &FaultList) {
         for entry in document::entries(document, faults) {
-            if entry.key == "listen" {
-                if let Some(address) = address(&entry) {
-                    self.listen = address;
-                }
-            } else if let Some(setting) = SETTINGS.iter().find(|known| known.name == entry.key) {
-                if let Some(value) = number(&entry, setting) {
-                    (setting.set)(self, value);
-                }
-            } else {
-                let names = SETTINGS.iter().map(|setting| setting.name);
-                let known: Vec<&str> = ["listen"].into_iter().chain(names).collect();
-                faults.push(entry.unknown_key("the configuration", &known));
+            match entry.key {
+                "listen" => set(&mut self.listen, address(&entry, LISTEN)),
+                "message" => set(&mut self.message, message(&entry)),
+                "log" => set(&mut self.log, log(&entry)),
+                "metrics" => self.read_metrics(&entry),
+                key => match SETTINGS.iter().find(|known| known.name == key) {
+                    Some(setting) => {
+                        if let Some(value) = number(&entry, setting) {
+                            (setting.set)(self, value);
+                        }
+                    }
+                    None => {
+                        let names = SETTINGS.iter().map(|setting| setting.name);
+                        let known: Vec<&str> = ["listen", "message", "log", "metrics"]
+                            .into_iter()
+                            .chain(names)
+                            .collect();
+                        faults.push(entry.unknown_key("the configuration", &known));
+                    }
+                },
+            }
+        }
+    }
+
+    fn read_metrics(&mut self, metrics: &Entry<'_, '_>) {
+        let Some(table) = metrics.table("[metrics]") else { return };
+        for entry in metrics.entries(table) {
+            match entry.key {
+                "listen" => self.metrics = address(&entry, METRICS_LISTEN),
+                _ => entry.faults.push(entry.unknown_key("[metrics]", &["listen"])),
             }
         }
     }
 }
 
-fn address(entry: &Entry<'_, '_>) -> Option<SocketAddr> {
-    const EXAMPLE: &str = "listen = \"127.0.0.1:2222\"";
-    let text = entry.string(EXAMPLE)?;
+const LISTEN: &str = "listen = \"127.0.0.1:2222\"";
+const METRICS_LISTEN: &str = "listen = \"127.0.0.1:9464\"";
+
+fn set<T>(target: &mut T, value: Option<T>) {
+    if let Some(value) = value {
+        *target = value;
+    }
+}
+
+fn address(entry: &Entry<'_, '_>, example: &str) -> Option<SocketAddr> {
+    let text = entry.string(example)?;
     let address = text.parse().ok();
     if address.is_none() {
         let message = format!("{} is no address with a port", quoted(text));
-        let help = format!("write {EXAMPLE}, or \"[::]:2222\" for all addresses of this machine");
+        let help = format!("write {example}, or \"[::]:2222\" for all addresses of this machine");
         entry.faults.push(Fault::new(entry.value_place.clone(), message).help(help));
     }
     address
+}
+
+fn message(entry: &Entry<'_, '_>) -> Option<String> {
+    let text = entry.string("message = \"Welcome\"")?;
+    let is_line = text.chars().count() <= LONGEST_MESSAGE && !text.contains(char::is_control);
+    if !is_line {
+        let message =
+            format!("the message of the day is one line of at most {LONGEST_MESSAGE} characters");
+        entry.faults.push(Fault::new(entry.value_place.clone(), message));
+    }
+    is_line.then(|| text.to_owned())
+}
+
+fn log(entry: &Entry<'_, '_>) -> Option<LogFilter> {
+    const EXAMPLE: &str = "log = \"info,connections=warn\"";
+    match entry.string(EXAMPLE)?.parse() {
+        Ok(filter) => Some(filter),
+        Err(UnknownLogFilter(part)) => {
+            let message = format!("{} is no level of the log", quoted(&part));
+            let fault = Fault::new(entry.value_place.clone(), message);
+            entry.faults.push(fault.help(format!("write {EXAMPLE}; {}", LogFilter::GRAMMAR)));
+            None
+        }
+    }
 }
 
 fn number(entry: &Entry<'_, '_>, setting: &Setting) -> Option<u32> {

@@ -16,6 +16,9 @@ fn what_is_written_parses_to_the_same() -> Result<(), Faults> {
     let mut config = Config { listen: "[::1]:22".parse().unwrap(), ..Config::default() };
     config.admission.startups.per_network = 7;
     config.drain = Duration::ZERO;
+    config.message = "\"Races\" at 20:00 \\o/".to_owned();
+    config.log = "warn,rooms=debug".parse().unwrap();
+    config.metrics = Some("127.0.0.1:9464".parse().unwrap());
     assert_eq!(Config::parse(&config.to_string(), "serve.toml")?, config);
     Ok(())
 }
@@ -41,6 +44,31 @@ fn all_faults_are_named_with_their_lines() {
         "listen = \"localhost\"\nconnection = 5\nrows = \"many\"\ncolumns = 19\n\
          connections = 1.5\nsilence-seconds = 99999999999999999999\nwhat = 1\n"
     ));
+}
+
+#[test]
+fn faults_of_texts_are_named_with_their_lines() {
+    insta::assert_snapshot!(faults(
+        "message = \"two\\nlines\"\nlog = \"info,conections=warn\"\n\
+         [metrics]\nlisten = \"9464\"\nport = 9464\n"
+    ));
+}
+
+#[test]
+fn a_running_server_keeps_the_addresses_that_it_listens_at() {
+    let live = LiveConfig::new(Config::default());
+    let mut seen = live.subscribe();
+    let mut wanted = Config { message: "Welcome".to_owned(), ..Config::default() };
+    assert!(live.replace(wanted.clone()).is_empty());
+    assert!(seen.has_changed().unwrap());
+    assert_eq!(seen.borrow_and_update().message, "Welcome");
+    wanted.listen = "[::1]:22".parse().unwrap();
+    wanted.metrics = Some("127.0.0.1:9464".parse().unwrap());
+    wanted.rows = 100;
+    assert_eq!(live.replace(wanted), ["listen", "metrics.listen"]);
+    let config = live.get();
+    assert_eq!((config.rows, config.listen), (100, Config::default().listen));
+    assert_eq!(config.metrics, None);
 }
 
 #[test]

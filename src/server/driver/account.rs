@@ -4,6 +4,7 @@ use std::sync::{Arc, Mutex};
 
 use super::{Shared, unix_time};
 use crate::server::line::Line;
+use crate::server::logging::events;
 use crate::server::room::NAME_COLUMNS;
 use crate::server::{Visitor, locked};
 use crate::store::host::{
@@ -60,11 +61,13 @@ impl Shared {
         let (ban, account, settings) = match answer.await {
             Ok(Ok(known)) => known,
             failed => {
-                tracing::error!(?failed, "a visitor cannot be looked up");
+                self.metrics.store_errors.count();
+                events::store_failed(format!("{failed:?}"));
                 return Err("The host can't look you up now; try again later.".to_owned());
             }
         };
         if let Some(ban) = ban {
+            events::banned_visitor(address, &ban.target);
             return Err(banned(&ban));
         }
         let offer = match &account {
@@ -140,12 +143,6 @@ impl NamesInUse {
 
     fn has(&self, name: &Name) -> bool {
         locked(&self.0, |names| names.iter().any(|other| other.looks_like(name)))
-    }
-}
-
-impl NameInUse {
-    pub(super) fn name(&self) -> &Name {
-        &self.name
     }
 }
 

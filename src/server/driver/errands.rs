@@ -1,10 +1,13 @@
 //! What sessions want of their drivers, and the answers of the store.
 
+use std::sync::Arc;
+
 use tokio::sync::mpsc;
 
 use super::account::{self, choose_name};
 use super::results;
 use super::visit::Visit;
+use crate::server::logging::events;
 use crate::server::room::Deed;
 use crate::server::rooms::{Place, RoomRefusal};
 use crate::server::sequencer::DeedRefusal;
@@ -82,9 +85,9 @@ impl Visit {
             let sentence = "A guest's result does not rank: come with a public key.";
             return self.tell(News::Result(sentence.to_owned()));
         };
-        let replies = self.replies.clone();
+        let (replies, metrics) = (self.replies.clone(), Arc::clone(&self.shared.metrics));
         let is_accepted = self.shared.store.run(move |store| {
-            let sentence = results::record(store, account, &script);
+            let sentence = results::record(store, account, &script, &metrics);
             _ = replies.try_send(Reply::News(News::Result(sentence)));
         });
         if !is_accepted {
@@ -127,6 +130,8 @@ impl Visit {
             }
         }
         let line = account::line(&name);
+        self.presence.set_name(name.as_str());
+        events::named(self.key.as_ref(), name.as_str());
         self.account = account.or(self.account.take());
         self.name = Some(name);
         News::Named(Ok(line))
@@ -146,6 +151,7 @@ impl Visit {
         match place {
             Ok(place) => {
                 self.in_lobby = false;
+                self.presence.set_room(Some(format!("room {}", place.room())));
                 let news = News::Entered { room: place.room(), member: place.member_id() };
                 self.place = Some(place);
                 self.tell(news);
@@ -178,7 +184,7 @@ impl Visit {
                 store.set_settings(account, &settings)
             });
             if let Err(failure) = saved {
-                tracing::error!(%failure, "settings cannot be stored");
+                events::store_failed(failure);
             }
         });
     }

@@ -2,7 +2,9 @@
 
 use super::unix_time;
 use crate::game::STEPS_PER_SECOND;
+use crate::server::Metrics;
 use crate::server::line::Line;
+use crate::server::logging::events;
 use crate::server::room::NAME_COLUMNS;
 use crate::server::session::BoardRow;
 use crate::store::host::{
@@ -14,19 +16,27 @@ use crate::world::Difficulty;
 const MOST_ROWS: usize = 100;
 
 /// Replays a run of an account and records it; a sentence about it for the player.
-pub(super) fn record(store: &mut dyn HostStore, account: AccountId, script: &str) -> String {
+pub(super) fn record(
+    store: &mut dyn HostStore,
+    account: AccountId,
+    script: &str,
+    metrics: &Metrics,
+) -> String {
     let run = match verify(script) {
         Ok(VerifiedRun::Level(run)) => run,
         Ok(VerifiedRun::Descent(_)) => return "The level has no board.".to_owned(),
         Err(reason) => {
+            metrics.results_refused.count();
             tracing::warn!(%reason, "a result was refuted");
             return format!("The result does not count. {reason}");
         }
     };
+    metrics.results_verified.count();
     match placed(store, account, &run) {
         Ok(sentence) => sentence,
         Err(failure) => {
-            tracing::error!(%failure, "a result cannot be stored");
+            metrics.store_errors.count();
+            events::store_failed(failure);
             "The host can't keep your result now.".to_owned()
         }
     }
@@ -57,7 +67,7 @@ pub(super) fn board(
 ) -> Vec<BoardRow> {
     let Some(board) = LevelBoard::new(level, difficulty) else { return Vec::new() };
     let scores = store.level_scores(&board, MOST_ROWS).unwrap_or_else(|failure| {
-        tracing::error!(%failure, "a board cannot be read");
+        events::store_failed(failure);
         Vec::new()
     });
     let row = |score: crate::store::host::LevelScore| {

@@ -14,7 +14,7 @@ use crate::server::line::Line;
 use crate::server::rooms::Place;
 use crate::server::session::{HostFacts, Identity, IdleLimits, News, Session};
 use crate::server::summary::RoomSummary;
-use crate::server::{Arrival, Inbound, Link, Outbox, Visitor};
+use crate::server::{Arrival, Inbound, Link, Notice, Outbox, Presence, Visitor};
 use crate::store::host::{Account, AccountKey, Name};
 use crate::terminal::Options;
 
@@ -28,6 +28,7 @@ pub(super) struct Visit {
     pub(super) offer: Name,
     /// The name, once it is chosen.
     pub(super) name: Option<Name>,
+    pub(super) presence: Presence,
     pub(super) guest_name: Option<NameInUse>,
     pub(super) place: Option<Place>,
     pub(super) rooms: watch::Receiver<Arc<[RoomSummary]>>,
@@ -37,6 +38,10 @@ pub(super) struct Visit {
     replied: mpsc::Receiver<Reply>,
     /// Until then no frame is due, so that snapshots need not be looked at.
     quiet_until: Duration,
+    /// When a key came that no frame has answered.
+    key_at: Option<Duration>,
+    /// The same, if the frame on its way answers it.
+    answers_key: Option<Duration>,
     /// When the session is ended, since the server ends.
     ends_at: Option<Duration>,
 }
@@ -47,9 +52,12 @@ enum Happening {
     Drained,
     RoomsChanged,
     Replied(Reply),
+    Notice(Notice),
     Time,
 }
 
+/// The widest message of the day, in columns.
+const MESSAGE_COLUMNS: usize = 200;
 /// The time between the end of the sessions and that of the server, where there is as much.
 const LAST: Duration = Duration::from_secs(2);
 
@@ -62,9 +70,14 @@ impl Visit {
             is_named: account.is_some(),
             preferences: settings.preferences,
         };
+        let config = shared.config.get();
+        let presence = shared.visitors.arrive(visitor.peer.ip(), key);
+        if let Some(account) = &account {
+            presence.set_name(account.name.as_str());
+        }
         let host = HostFacts {
             name: host_name(),
-            message: None,
+            message: Line::of(&config.message, MESSAGE_COLUMNS),
             compresses: visitor.compresses,
             catalog: Arc::clone(shared.rooms.catalog()),
             idle: IdleLimits::default(),
@@ -79,6 +92,7 @@ impl Visit {
             name: account.as_ref().map(|account| account.name.clone()),
             account,
             offer,
+            presence,
             guest_name: None,
             place: None,
             rooms: shared.rooms.summaries(),
@@ -86,6 +100,8 @@ impl Visit {
             replies,
             replied,
             quiet_until: Duration::ZERO,
+            key_at: None,
+            answers_key: None,
             ends_at: None,
             shared,
         }
@@ -111,6 +127,9 @@ impl Visit {
                 Happening::Arrived(Arrival::Bytes(bytes)) => {
                     self.session.receive(&bytes, now);
                     self.quiet_until = now;
+                    if self.session.has_key() {
+                        self.key_at.get_or_insert(now);
+                    }
                 }
                 Happening::Arrived(Arrival::Resized(size)) => self.session.resize(size, now),
                 Happening::Arrived(Arrival::Drains) => self.drain(now),
@@ -121,12 +140,24 @@ impl Visit {
                 Happening::Drained => {
                     self.session.written(now);
                     is_sending = false;
+                    if let Some(key) = self.answers_key.take() {
+                        self.shared.metrics.key_time.add(now - key);
+                    }
                 }
                 Happening::RoomsChanged => {
                     let rooms = self.rooms.borrow_and_update().clone();
                     self.session.tell(News::Rooms(rooms), now);
                 }
                 Happening::Replied(reply) => self.hear(reply),
+                Happening::Notice(Notice::Removed(sentence)) => {
+                    self.leave();
+                    self.session.tell(News::Ended(sentence), now);
+                }
+                Happening::Notice(Notice::Said(text)) => {
+                    if let Some(line) = Line::of(&text, MESSAGE_COLUMNS) {
+                        self.session.tell(News::Said(line), now);
+                    }
+                }
                 Happening::Time => self.wake(now),
             }
         }
@@ -146,6 +177,8 @@ impl Visit {
         if self.session.is_due(view.as_deref(), now) {
             self.session.draw(view.as_deref(), now);
             self.quiet_until = now + frame_time;
+            self.shared.metrics.frame_time.add(self.shared.now() - now);
+            self.answers_key = self.key_at.take();
         }
         *wakes_at = self.session.wakes_at(view.as_deref(), now);
         std::mem::take(self.session.output(now))
@@ -165,12 +198,13 @@ impl Visit {
         let times = [wakes_at, quiet_end, self.ends_at, is_sending.then(|| self.patience())];
         let time = times.into_iter().flatten().min();
         let begun = self.shared.begun;
-        let Self { place, rooms, replied, in_lobby, .. } = self;
+        let Self { place, rooms, replied, in_lobby, presence, .. } = self;
         tokio::select! {
             biased;
             arrival = inbound.next() => Happening::Arrived(arrival),
             () = outbox.drained(), if is_sending => Happening::Drained,
             Some(reply) = replied.recv() => Happening::Replied(reply),
+            notice = presence.notice() => Happening::Notice(notice),
             () = changed(place.as_mut()), if looks => Happening::Time,
             Ok(()) = rooms.changed(), if *in_lobby => Happening::RoomsChanged,
             () = sleep_until(begun + time.unwrap_or_default()), if time.is_some() => Happening::Time,
@@ -201,15 +235,15 @@ impl Visit {
 
     /// Leaves the room, and submits what was won in it.
     pub(super) fn leave(&mut self) {
-        if let Some(place) = self.place.take()
-            && let Some(run) = place.finished()
-        {
+        let Some(place) = self.place.take() else { return };
+        self.presence.set_room(None);
+        if let Some(run) = place.finished() {
             self.submit(run.script);
         }
     }
 
     fn drain(&mut self, now: Duration) {
-        let time = self.shared.config.drain;
+        let time = self.shared.config.get().drain;
         self.session.tell(News::Draining { seconds: time.as_secs() }, now);
         self.ends_at = Some(now + time.saturating_sub(LAST.min(time / 2)));
     }

@@ -19,6 +19,7 @@ use super::inbound::{Inlet, inbound};
 use super::visitor::{self, MOST_VARIABLES};
 use super::wire::Line;
 use super::{KeyData, Link, Outbox, Visitor};
+use crate::server::logging::events;
 use crate::server::{Refusal, VisitId};
 use crate::terminal::WindowSize;
 
@@ -100,7 +101,12 @@ impl Client {
         let key = self.key.clone();
         let logged_in =
             self.shared.admission(|admission, now| admission.log_in(self.visit, key, now));
-        self.refusal = logged_in.err();
+        events::authenticated(self.peer.ip(), self.key.as_ref().map(KeyData::fingerprint));
+        if let Err(reason) = logged_in {
+            self.shared.counters.refuse(reason);
+            events::refused(self.peer.ip(), reason, 0);
+            self.refusal = Some(reason);
+        }
     }
 
     /// Takes the first session channel.
@@ -169,7 +175,7 @@ impl Client {
     }
 
     pub(super) fn window(&self, cells: [u32; 2], pixels: [u32; 2]) -> WindowSize {
-        let config = &self.shared.config;
+        let config = self.shared.config.get();
         visitor::window_size(cells, pixels, [config.columns, config.rows])
     }
 

@@ -19,11 +19,12 @@ use super::client::{Begun, Client};
 use super::outbox::Passage;
 use super::wire::{ByteLimits, Line, Wire};
 use super::{Counters, Host, Phase, locked};
-use crate::server::{Admission, Config, HostKey, Outcome, VisitId};
+use crate::server::logging::events;
+use crate::server::{Admission, HostKey, LiveConfig, Outcome, VisitId};
 
 /// What the connections of a server have in common.
 pub(super) struct Shared {
-    pub(super) config: Config,
+    pub(super) config: LiveConfig,
     pub(super) counters: Arc<Counters>,
     ssh: Arc<server::Config>,
     admission: Mutex<Admission>,
@@ -43,13 +44,13 @@ const WINDOW: u32 = 32 << 10;
 
 impl Shared {
     pub(super) fn new(
-        config: Config,
+        config: LiveConfig,
         key: &HostKey,
         counters: Arc<Counters>,
         phases: watch::Receiver<Phase>,
     ) -> Self {
         let ssh = Arc::new(ssh_config(key));
-        let admission = Mutex::new(Admission::new(config.admission));
+        let admission = Mutex::new(Admission::new(config.get().admission));
         Self { config, counters, ssh, admission, begun: Instant::now(), phases }
     }
 
@@ -70,10 +71,9 @@ pub(super) async fn serve<H: Host>(
     let _open = Counted::new(&shared.counters.connections);
     // Frames are small, and whole when they are written.
     _ = socket.set_nodelay(true);
-    let limits = ByteLimits {
-        before_login: shared.config.login_bytes,
-        per_second: shared.config.bytes_per_second,
-    };
+    let config = shared.config.get();
+    let limits =
+        ByteLimits { before_login: config.login_bytes, per_second: config.bytes_per_second };
     let passage = Arc::new(Passage::new(shared.counters.clone()));
     let line = Arc::new(Line::new(limits, passage));
     let (begin, begun) = oneshot::channel();
@@ -92,6 +92,7 @@ pub(super) async fn serve<H: Host>(
             outcome
         }
     };
+    events::disconnected(peer.ip(), outcome, line.begun().elapsed().as_secs());
     shared.admission(|admission, now| admission.leave(visit, outcome, now));
 }
 
@@ -105,8 +106,8 @@ async fn log_in(
     let mut phases = shared.phases.clone();
     loop {
         let time = match line.has_exchanged() {
-            true => shared.config.login,
-            false => shared.config.handshake,
+            true => shared.config.get().login,
+            false => shared.config.get().handshake,
         };
         let deadline = line.begun() + time;
         if Instant::now() >= deadline {
@@ -173,10 +174,11 @@ async fn converse<H: Host>(
 /// A client of which nothing is heard is asked something that it must answer (RFC 4254, section 4).
 /// russh's own keep-alives were refused: they wait behind a frame that the socket does not take, and
 /// they come while the user types a passphrase, where OpenSSH's client complains about them.
-async fn lost(config: &Config, line: &Line, handle: &Handle) {
-    let pause = config.silence / 3;
+async fn lost(config: &LiveConfig, line: &Line, handle: &Handle) {
     let mut frame = (line.passage.frames(), Instant::now());
     loop {
+        let config = config.get();
+        let pause = config.silence / 3;
         let now = Instant::now();
         let is_waiting = line.passage.is_waiting();
         if !is_waiting || line.passage.frames() != frame.0 {

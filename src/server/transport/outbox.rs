@@ -122,6 +122,8 @@ impl Passage {
         self.frames.fetch_add(1, Ordering::AcqRel);
         if let Some(counters) = self.counters.get() {
             counters.held.fetch_add(bytes.capacity(), Ordering::Relaxed);
+            counters.frames.fetch_add(1, Ordering::Relaxed);
+            counters.frame_bytes.fetch_add(bytes.len() as u64, Ordering::Relaxed);
         }
         Frame { bytes, passage: self.clone() }
     }

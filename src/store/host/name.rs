@@ -157,7 +157,7 @@ impl Name {
 
     /// The name that the store has kept. What would be no name now is taken as it is, as far as it can be
     /// printed.
-    pub(super) fn kept(text: &str) -> Self {
+    pub(crate) fn kept(text: &str) -> Self {
         Self(printable(text, Self::MOST_COLUMNS))
     }
 
