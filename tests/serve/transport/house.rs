@@ -143,7 +143,7 @@ fn serve(runtime: &Runtime, server: Server, stopped: impl Future<Output = ()> + 
 }
 
 /// An empty folder of its own.
-pub(super) fn folder() -> PathBuf {
+pub(crate) fn folder() -> PathBuf {
     static COUNT: AtomicU32 = AtomicU32::new(0);
     let name = format!("serve-{}", COUNT.fetch_add(1, Ordering::Relaxed));
     let folder = Path::new(env!("CARGO_TARGET_TMPDIR")).join(name);

@@ -8,3 +8,5 @@ mod floods;
 mod host_key;
 mod house;
 mod raw;
+
+pub(crate) use house::folder;
