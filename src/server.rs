@@ -44,6 +44,7 @@ pub use self::config::{Config, LiveConfig};
 pub use self::driver::GameHost;
 pub use self::host_key::{HostKey, HostKeyError};
 use self::lock::locked;
+pub(crate) use self::logging::events;
 pub use self::logging::{LogFilter, LogFormat, Logging, UnknownLogFilter};
 pub use self::metrics::{Counter, Gauge, Histogram, Metrics, respond};
 pub use self::transport::{

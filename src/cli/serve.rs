@@ -1,70 +1,125 @@
 //! `cellcaster serve`: the SSH server.
 
-use std::fs;
+mod configuration;
+mod signals;
+
 use std::io::{self, Write};
 use std::net::{IpAddr, SocketAddr};
-use std::path::PathBuf;
+use std::path::Path;
 use std::sync::Arc;
 
+use tokio::net::TcpListener;
 use tokio::runtime::Runtime;
+use tokio::task::JoinSet;
 
 use super::Error;
 use super::arguments::Serve;
-use super::config::configuration_file;
 use super::data_folder::data_folder;
-use crate::server::{Config, GameHost, HostKey, Metrics, Server, Visitors};
+#[cfg(unix)]
+use crate::server::{AdminSocket, Operator};
+use crate::server::{
+    Config, GameHost, HostKey, LogFormat, Logging, Metrics, Server, Visitors, events, respond,
+};
 use crate::store::host::SqliteStore;
+use configuration::Configuration;
+use signals::{Hangups, Signals};
 
 /// Serves until a signal ends it.
 pub(super) fn run(options: Serve) -> Result<(), Error> {
-    let mut config = load(options.config)?;
-    config.listen = options.listen.unwrap_or(config.listen);
+    let configuration = Configuration::new(options.config, options.listen);
+    let mut config = configuration.read()?;
+    config.recordings = options.record_room;
     let folder = options.data.or_else(data_folder).ok_or_else(|| {
         Error::mistake("there is no folder for data; name one, as in \"serve --data FOLDER\"")
     })?;
-    config.recordings = options.record_room;
+    let key = HostKey::open(&folder).map_err(|error| Error::mistake(error.to_string()))?;
     let (store, damage) =
         SqliteStore::open(&folder).map_err(|failure| Error::mistake(failure.to_string()))?;
     if let Some(sentence) = damage {
-        eprintln!("{sentence}");
+        Error::machine(sentence).warn();
     }
-    let key = HostKey::open(&folder).map_err(|error| Error::mistake(error.to_string()))?;
     let runtime = Runtime::new().map_err(no_thread)?;
-    runtime.block_on(serve(config, key, store))
+    let ended = runtime.block_on(serve(configuration, config, key, &folder, options.log, store));
+    // After a second signal, nothing is waited for.
+    runtime.shutdown_background();
+    ended
 }
 
-async fn serve(config: Config, key: HostKey, store: SqliteStore) -> Result<(), Error> {
-    let wanted = config.listen;
-    let fingerprint = key.fingerprint();
-    let cannot = |error: io::Error| Error::mistake(format!("{wanted} can't be used: {error}"));
-    let stop =
-        stop().map_err(|error| Error::machine(format!("no signal can be caught: {error}")))?;
+async fn serve(
+    configuration: Configuration,
+    config: Config,
+    key: HostKey,
+    folder: &Path,
+    format: LogFormat,
+    store: SqliteStore,
+) -> Result<(), Error> {
+    let no_signals = |error| Error::machine(format!("no signal can be caught: {error}"));
+    let signals = Signals::catch().map_err(no_signals)?;
+    let hangups = Hangups::catch().map_err(no_signals)?;
+    let (wanted, fingerprint, filter) = (config.listen, key.fingerprint(), config.log.clone());
+    let cannot = |error| cannot_listen(wanted, &error);
+    let metrics_listener = match config.metrics {
+        Some(address) => {
+            Some(TcpListener::bind(address).await.map_err(|error| cannot_listen(address, &error))?)
+        }
+        None => None,
+    };
+    #[cfg(unix)]
+    let admin = bind_admin(folder)?;
     let server = Server::bind(config, key).await.map_err(cannot)?;
-    let (metrics, visitors) = (Arc::new(Metrics::default()), Visitors::default());
-    let host = GameHost::new(server.config(), metrics, visitors, Box::new(store));
-    let host = host.map_err(no_thread)?;
-    let text = invitation(server.address().map_err(cannot)?, &fingerprint);
+    let address = server.address().map_err(cannot)?;
+    let text = invitation(address, &fingerprint);
     io::stdout().write_all(text.as_bytes()).map_err(|error| Error::of_output(&error))?;
-    server.run(host, stop).await;
+    let logging = Logging::begin(format, &filter);
+    events::listening(address, &fingerprint);
+
+    let (metrics, visitors) = (Arc::new(Metrics::default()), Visitors::default());
+    let host =
+        GameHost::new(server.config(), Arc::clone(&metrics), visitors.clone(), Box::new(store));
+    let host = host.map_err(no_thread)?;
+    let mut services = JoinSet::new();
+    if let Some(listener) = metrics_listener {
+        events::metrics_listening(listener.local_addr().map_err(cannot)?);
+        let counters = server.counters();
+        services.spawn(respond(listener, move || metrics.text(&counters)));
+    }
+    #[cfg(unix)]
+    if let Some(admin) = admin {
+        let (rooms, drain) = (Box::new(host.room_rows()), signals.drain());
+        services.spawn(admin.serve(Operator { visitors, rooms, drain }));
+    }
+    services.spawn(configuration.follow(hangups, server.config(), logging));
+    tokio::select! {
+        () = server.run(host, signals.first()) => {}
+        () = signals.second() => {}
+    }
+    events::ended();
     Ok(())
+}
+
+/// The socket for `cellcaster admin`. Without one the server runs, too, as in a folder with a name
+/// that is too long for a socket.
+#[cfg(unix)]
+fn bind_admin(folder: &Path) -> Result<Option<AdminSocket>, Error> {
+    match AdminSocket::bind(folder) {
+        Ok(socket) => Ok(Some(socket)),
+        Err(error) if error.kind() == io::ErrorKind::AddrInUse => {
+            let folder = folder.display().to_string().replace(char::is_control, "?");
+            Err(Error::mistake(format!("another server runs with the data in {folder}")))
+        }
+        Err(error) => {
+            Error::machine(format!("\"cellcaster admin\" can't reach this server: {error}")).warn();
+            Ok(None)
+        }
+    }
 }
 
 fn no_thread(error: io::Error) -> Error {
     Error::machine(format!("no thread can be started: {error}"))
 }
 
-/// The configuration of the named file, or of the default one if it exists.
-fn load(named: Option<PathBuf>) -> Result<Config, Error> {
-    let is_named = named.is_some();
-    let Some(path) = named.or_else(|| configuration_file("serve.toml")) else {
-        return Ok(Config::default());
-    };
-    let name = path.display().to_string();
-    match fs::read_to_string(&path) {
-        Ok(text) => Ok(Config::parse(&text, &name)?),
-        Err(error) if error.kind() == io::ErrorKind::NotFound && !is_named => Ok(Config::default()),
-        Err(error) => Err(Error::mistake(format!("{name} can't be read: {error}"))),
-    }
+fn cannot_listen(address: SocketAddr, error: &io::Error) -> Error {
+    Error::mistake(format!("{address} can't be used: {error}"))
 }
 
 /// What people type to play.
@@ -84,24 +139,4 @@ fn invitation(address: SocketAddr, fingerprint: &str) -> String {
          Over a slow link:      ssh -C {port}{host}\n\
          As a guest with a key: ssh {port}guest@{host}\n"
     )
-}
-
-/// Ready when a signal asks the server to end.
-#[cfg(unix)]
-fn stop() -> io::Result<impl Future<Output = ()> + Send> {
-    use tokio::signal::unix::{SignalKind, signal};
-    let mut terminate = signal(SignalKind::terminate())?;
-    let mut interrupt = signal(SignalKind::interrupt())?;
-    Ok(async move {
-        tokio::select! {
-            _ = terminate.recv() => {}
-            _ = interrupt.recv() => {}
-        }
-    })
-}
-
-/// Ready when Ctrl-C asks the server to end.
-#[cfg(not(unix))]
-fn stop() -> io::Result<impl Future<Output = ()> + Send> {
-    Ok(async { _ = tokio::signal::ctrl_c().await })
 }

@@ -6,6 +6,7 @@
 #[path = "../support/emulator.rs"]
 mod emulator;
 mod kept;
+mod ops;
 mod play;
 #[path = "../support/player.rs"]
 mod player;

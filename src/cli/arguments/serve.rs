@@ -7,6 +7,7 @@ use clap::ArgMatches;
 
 use super::option::{FileOption, Parser, ValueOption};
 use super::{Command, Subcommand};
+use crate::server::LogFormat;
 
 /// Options of `serve`.
 #[derive(Debug)]
@@ -15,6 +16,7 @@ pub(in crate::cli) struct Serve {
     pub(in crate::cli) data: Option<PathBuf>,
     pub(in crate::cli) config: Option<PathBuf>,
     pub(in crate::cli) record_room: Option<PathBuf>,
+    pub(in crate::cli) log: LogFormat,
 }
 
 pub(super) const SUBCOMMAND: Subcommand = Subcommand {
@@ -22,11 +24,12 @@ pub(super) const SUBCOMMAND: Subcommand = Subcommand {
     about: "An SSH server in which people play together",
     details: "Prints the line that people type to play. The host key and what the server keeps are in the \
               folder for data; the key is made at the first start. SIGTERM and Ctrl-C end the server, after \
-              its visitors had time for their end.",
+              its visitors had time for their end; a second one ends it at once. SIGHUP reads the \
+              configuration again. The log goes to standard error.",
     examples: "cellcaster serve\n\
                cellcaster serve --listen 0.0.0.0:2222 --data /var/lib/cellcaster",
     positionals: &[],
-    options: &[&LISTEN, &DATA, &CONFIG, &RECORD_ROOM],
+    options: &[&LISTEN, &DATA, &CONFIG, &LOG, &RECORD_ROOM],
     surplus: "takes no map",
     missing: "",
     read: |matches| Ok(Command::Serve(read(matches))),
@@ -38,6 +41,7 @@ fn read(mut matches: ArgMatches) -> Serve {
         data: DATA.of(&mut matches),
         config: CONFIG.of(&mut matches),
         record_room: RECORD_ROOM.of(&mut matches),
+        log: LOG.of(&mut matches).unwrap_or_default(),
     }
 }
 
@@ -59,7 +63,22 @@ const DATA: FileOption = FileOption {
 
 const CONFIG: FileOption = FileOption {
     name: "config",
-    help: "The limits [default: cellcaster/serve.toml in the folder for configuration files]",
+    help: "The configuration [default: cellcaster/serve.toml in the folder for configuration files]",
+};
+
+const LOG: ValueOption<LogFormat> = ValueOption {
+    name: "log",
+    value: "FORMAT",
+    takes: "text or json",
+    help: "How the log is written",
+    default: "text",
+    choices: &["text", "json"],
+    read: Parser::Optional(|text| match text {
+        "text" => Some(LogFormat::Text),
+        "json" => Some(LogFormat::Json),
+        _ => None,
+    }),
+    repeats: false,
 };
 
 const RECORD_ROOM: FileOption = FileOption {

@@ -79,7 +79,7 @@ fn address(entry: &Entry<'_, '_>, example: &str) -> Option<SocketAddr> {
     let address = text.parse().ok();
     if address.is_none() {
         let message = format!("{} is no address with a port", quoted(text));
-        let help = format!("write {example}, or \"[::]:2222\" for all addresses of this machine");
+        let help = format!("write {example}; [::] is all addresses of this machine");
         entry.faults.push(Fault::new(entry.value_place.clone(), message).help(help));
     }
     address

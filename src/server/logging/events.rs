@@ -25,10 +25,10 @@ pub(crate) fn metrics_listening(address: SocketAddr) {
     info!(target: HOST, %address, "metrics listening");
 }
 
-/// The configuration was read again. Settings that are in `fixed` stay as they are until the next
-/// start.
-pub(crate) fn reloaded(file: &Path, fixed: &[&str]) {
-    let file = clean(&file.display().to_string());
+/// The configuration was read again, from `file` if there is one. Settings that are in `fixed` stay as
+/// they are until the next start.
+pub(crate) fn reloaded(file: Option<&Path>, fixed: &[&str]) {
+    let file = file.map(|file| clean(&file.display().to_string()));
     if fixed.is_empty() {
         info!(target: HOST, file, "configuration reloaded");
     } else {

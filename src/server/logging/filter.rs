@@ -8,6 +8,9 @@ use tracing_subscriber::filter::{LevelFilter, Targets};
 /// The topics of events.
 pub(super) const TOPICS: [&str; 5] = ["host", "connections", "rooms", "results", "admin"];
 
+/// The beginning of targets without a topic: the paths of modules.
+const PROGRAM: &str = env!("CARGO_CRATE_NAME");
+
 /// The least level of events that are logged, and that of some topics.
 ///
 /// ```
@@ -33,10 +36,15 @@ impl LogFilter {
     pub const GRAMMAR: &str = "off, error, warn, info, debug or trace, and others for the topics host, \
                                connections, rooms, results and admin";
 
-    /// The filter for a subscriber: events of other programs' targets are not logged.
+    /// The filter for a subscriber. Events of this program without a topic count as those of `host`, and
+    /// events of libraries are not logged.
     pub(super) fn targets(&self) -> Targets {
-        let topics = TOPICS.map(|topic| (topic, self.level));
-        Targets::new().with_targets(topics).with_targets(self.topics.iter().copied())
+        let of_topic = |topic| {
+            let own = self.topics.iter().find(|(other, _)| *other == topic);
+            own.map_or(self.level, |(_, level)| *level)
+        };
+        let topics = TOPICS.map(|topic| (topic, of_topic(topic)));
+        Targets::new().with_targets(topics).with_target(PROGRAM, of_topic("host"))
     }
 }
 

@@ -18,7 +18,7 @@ use crate::emulator::Speaks;
 use crate::player::Player;
 
 /// Long enough for a machine under load.
-pub(super) const PATIENCE: Duration = Duration::from_secs(30);
+pub(crate) const PATIENCE: Duration = Duration::from_secs(30);
 const WINDOW: (u16, u16) = (80, 24);
 
 pub(super) struct House {
@@ -153,7 +153,7 @@ pub(crate) fn folder() -> PathBuf {
 }
 
 /// Waits until `condition` holds.
-pub(super) fn wait_until(what: &str, condition: impl Fn() -> bool) {
+pub(crate) fn wait_until(what: &str, condition: impl Fn() -> bool) {
     let end = Instant::now() + PATIENCE;
     while !condition() {
         assert!(Instant::now() < end, "{what}");
