@@ -24,7 +24,7 @@ fn a_step_of_eight_players_allocates_nothing_after_a_while() {
             let (seen, intents) = (game.steps(), circling.into_iter().collect::<Intents>());
             game.step_all(&players.map(|player| Input { player, intents, seen }));
         };
-        (0..600).for_each(|_| step());
+        (0..3600).for_each(|_| step());
         let counted = measure(|| (0..600).for_each(|_| step()));
         assert_eq!(counted.count_total, 0, "collides: {collides}");
     }

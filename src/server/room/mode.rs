@@ -297,7 +297,7 @@ impl Round {
     /// Whether a member cannot walk at present.
     pub(super) fn holds(&self, member: MemberId, step: u64) -> bool {
         match (&self.play, self.phase) {
-            (Play::Race(_), Phase::Countdown { .. }) => true,
+            (_, Phase::Waiting | Phase::Countdown { .. }) if self.mode == Mode::Race => true,
             (Play::Hide(hide), Phase::Countdown { .. }) => hide.role(member) == Role::Seeker,
             (Play::Tag(tag), Phase::Playing { .. }) => tag.holds(member, step),
             _ => false,

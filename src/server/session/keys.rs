@@ -274,9 +274,12 @@ impl Visit {
         self.is_stale = true;
     }
 
-    /// Goes on from the last checkpoint.
+    /// Goes on after death: from the last checkpoint, or from the beginning.
     fn retry(&mut self) {
         let Some(stay) = &mut self.stay else { return };
+        if stay.dies_for_good {
+            return self.ask(Ask::Deed(Deed::Again));
+        }
         stay.wants.want([Intent::Retry].into_iter().collect());
         self.want();
     }

@@ -184,8 +184,8 @@ impl Visit {
             },
         };
         let menu = Menu::new(mode.title());
-        let keys = "Arrows walk and turn, Enter talks, 1 waves, Tab tells who is here, ? all keys.";
-        let alone = "Arrows walk and turn, ? tells all keys.";
+        let keys = "Arrows walk, Enter talks, 1 shows emotions, Tab lists members, ? helps.";
+        let alone = "Arrows walk, ? helps.";
         let is_alone = mode == Mode::Alone;
         let guest = "You are a guest: with a key, results stand on the board.";
         let lines = [

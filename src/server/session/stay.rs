@@ -30,6 +30,8 @@ pub(super) struct Stay {
     /// Whether the player is in the air, and whether they are dead, in the last picture.
     pub(super) is_airborne: bool,
     pub(super) is_dead: bool,
+    /// Whether the dead begin the round again, in place of going on from a checkpoint.
+    pub(super) dies_for_good: bool,
     /// The members in the last picture, to watch another one.
     members: Vec<MemberId>,
     /// What the last picture shows; `None` before the first one.
@@ -65,6 +67,7 @@ impl Stay {
             shows_members: false,
             is_airborne: false,
             is_dead: false,
+            dies_for_good: false,
             members: Vec::new(),
             shown: None,
         }
@@ -85,6 +88,7 @@ impl Stay {
         let player = self.seen_through(room);
         self.is_airborne = player.is_some_and(|(_, player)| player.is_airborne());
         let is_dead = |player: PlayerView| matches!(player.outcome(), Outcome::Dead { .. });
+        self.dies_for_good = room.game.company().is_some_and(|company| !company.respawns);
         self.is_dead = self.member.is_some() && player.is_some_and(|(_, it)| is_dead(it));
     }
 

@@ -22,12 +22,12 @@ pub(super) fn draw_members(
     depth: ColorDepth,
 ) {
     let header = &room.header;
-    let place = Line::raw(catalog.title(&header.level).to_owned()).centered();
+    let place = Line::raw(format!("{}  points", catalog.title(&header.level))).right_aligned();
     let members = room.members.iter().map(|member| {
         let role = role(member, header.mode);
         Line::from_iter([
             name(member, depth),
-            Span::raw(format!(" {role:<8} {:>4}", points(member.points))),
+            Span::raw(format!(" {role:<6} {:>3}", member.points)),
         ])
     });
     let lines: Vec<Line> = [place].into_iter().chain(members).collect();
@@ -45,13 +45,13 @@ pub(super) fn draw_standings(
     let places = room.standings.iter().enumerate().filter_map(|(index, standing)| {
         let member = room.member(standing.member)?;
         let all = member.points.saturating_add(standing.points);
-        let place = Span::raw(format!("{:>2}. ", index + 1));
+        let place = Span::raw(format!("{}. ", index + 1));
         let steps = time(standing.steps as f64 * STEP);
         let gained = format!("+{}", standing.points);
-        let text = format!(" {steps:>7} {gained:>3} {:>4}", points(all));
+        let text = format!(" {steps:>7} {gained:>3} {all:>3}");
         Some(Line::from_iter([place, name(member, depth), Span::raw(text)]))
     });
-    let head = Line::raw(counted(room.header.mode)).centered();
+    let head = Line::raw(format!("{}   round  all", counted(room.header.mode))).right_aligned();
     let next = whole_seconds(seconds_left(room).unwrap_or(0) as f64);
     let next = Line::raw(format!("next round in {next}")).centered();
     let lines: Vec<Line> = [head].into_iter().chain(places).chain([next]).collect();
@@ -91,8 +91,4 @@ const fn role(member: &MemberView, mode: Mode) -> &'static str {
         (Role::Player, Mode::Hide) => "hides",
         (Role::Player, _) => "",
     }
-}
-
-fn points(points: u32) -> String {
-    if points == 1 { "1 pt".to_owned() } else { format!("{points} pts") }
 }

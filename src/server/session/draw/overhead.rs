@@ -17,7 +17,7 @@ use crate::visibility::Projection;
 /// The distance in which names are shown, in cells.
 const NEAR: f64 = 8.0;
 /// The height of a head above the feet, in cells: standing, and lying.
-const HEAD: f64 = 0.8;
+const HEAD: f64 = 0.7;
 const HEAD_DOWN: f64 = 0.3;
 
 /// Draws the names of the others whom `player` sees near.

@@ -24,7 +24,12 @@ impl Visit {
         let seen = stay.seen_through(room);
         status.rewrite(|line| {
             let mission = seen.filter(|_| room.game.is_mission());
-            if let Some((_, player)) = mission {
+            // Without guards, tools are for nothing, and health counts once it is lost.
+            let is_safe = |player: &PlayerView| {
+                let health = player.health();
+                !room.header.mode.has_guards() && health.points == health.most
+            };
+            if let Some((_, player)) = mission.filter(|(_, player)| !is_safe(player)) {
                 let signs = HealthSigns::for_picture(look.glyphs, look.depth);
                 line.write_vitals(&room.game, &player, signs)?;
             }
@@ -72,15 +77,16 @@ fn write_notice(
         *long = format!("watching {} · Tab: the next one", member.name);
         return Ok(());
     }
-    if let Some(message) = player.message() {
-        return line.both(Part::Notice, format_args!("{message}"));
-    }
     match player.outcome() {
         Outcome::Dead { cause } => {
+            let effect = if stay.dies_for_good { "begins again" } else { "goes on" };
             let [short, long] = line.forms(Part::Notice);
-            "Enter goes on".clone_into(short);
-            *long = format!("killed by {cause} · Enter goes on");
+            *short = format!("Enter {effect}");
+            *long = format!("killed by {cause} · Enter {effect}");
             Ok(())
+        }
+        _ if player.message().is_some() => {
+            line.both(Part::Notice, format_args!("{}", player.message().unwrap_or_default()))
         }
         Outcome::Won => line.both(Part::Notice, format_args!("you are out")),
         Outcome::Playing => line.both(Part::Notice, format_args!("{}", task(room, member))),
