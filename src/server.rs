@@ -20,13 +20,19 @@
 mod admin;
 mod admission;
 mod config;
+mod driver;
+mod governor;
 mod host_key;
-#[allow(dead_code, reason = "the sequencer uses it")]
 mod line;
+mod load;
+mod lock;
 mod logging;
 mod metrics;
-#[allow(dead_code, reason = "the sequencer uses it")]
 mod room;
+mod rooms;
+mod sequencer;
+mod session;
+mod summary;
 mod transport;
 mod visitors;
 
@@ -35,7 +41,9 @@ pub use self::admin::{AdminFailure, AdminSocket, ask};
 pub use self::admin::{AdminReply, AdminRequest, Operator, RoomRow, Target, VisitorRow};
 pub use self::admission::{Admission, Limits, Outcome, Refusal, Startups, VisitId};
 pub use self::config::{Config, LiveConfig};
+pub use self::driver::GameHost;
 pub use self::host_key::{HostKey, HostKeyError};
+use self::lock::locked;
 pub(crate) use self::logging::events;
 pub use self::logging::{LogFilter, LogFormat, Logging, UnknownLogFilter};
 pub use self::metrics::{Counter, Gauge, Histogram, Metrics, respond};

@@ -18,24 +18,28 @@ use super::data_folder::data_folder;
 #[cfg(unix)]
 use crate::server::{AdminSocket, Operator};
 use crate::server::{
-    Arrival, Config, Departure, Host, HostKey, Inbound, Link, LogFormat, Logging, Metrics, Notice,
-    Outbox, Presence, Server, Visitor, Visitors, events, respond,
+    Config, GameHost, HostKey, LogFormat, Logging, Metrics, Server, Visitors, events, respond,
 };
-use crate::store::host::AccountKey;
+use crate::store::host::SqliteStore;
 use configuration::Configuration;
 use signals::{Hangups, Signals};
 
 /// Serves until a signal ends it.
 pub(super) fn run(options: Serve) -> Result<(), Error> {
     let configuration = Configuration::new(options.config, options.listen);
-    let config = configuration.read()?;
+    let mut config = configuration.read()?;
+    config.recordings = options.record_room;
     let folder = options.data.or_else(data_folder).ok_or_else(|| {
         Error::mistake("there is no folder for data; name one, as in \"serve --data FOLDER\"")
     })?;
     let key = HostKey::open(&folder).map_err(|error| Error::mistake(error.to_string()))?;
-    let runtime = Runtime::new()
-        .map_err(|error| Error::machine(format!("no thread can be started: {error}")))?;
-    let ended = runtime.block_on(serve(configuration, config, key, &folder, options.log));
+    let (store, damage) =
+        SqliteStore::open(&folder).map_err(|failure| Error::mistake(failure.to_string()))?;
+    if let Some(sentence) = damage {
+        Error::machine(sentence).warn();
+    }
+    let runtime = Runtime::new().map_err(no_thread)?;
+    let ended = runtime.block_on(serve(configuration, config, key, &folder, options.log, store));
     // After a second signal, nothing is waited for.
     runtime.shutdown_background();
     ended
@@ -47,6 +51,7 @@ async fn serve(
     key: HostKey,
     folder: &Path,
     format: LogFormat,
+    store: SqliteStore,
 ) -> Result<(), Error> {
     let no_signals = |error| Error::machine(format!("no signal can be caught: {error}"));
     let signals = Signals::catch().map_err(no_signals)?;
@@ -68,21 +73,24 @@ async fn serve(
     let logging = Logging::begin(format, &filter);
     events::listening(address, &fingerprint);
 
-    let visitors = Visitors::default();
+    let (metrics, visitors) = (Arc::new(Metrics::default()), Visitors::default());
+    let host =
+        GameHost::new(server.config(), Arc::clone(&metrics), visitors.clone(), Box::new(store));
+    let host = host.map_err(no_thread)?;
     let mut services = JoinSet::new();
     if let Some(listener) = metrics_listener {
         events::metrics_listening(listener.local_addr().map_err(cannot)?);
-        let (metrics, counters) = (Arc::new(Metrics::default()), server.counters());
+        let counters = server.counters();
         services.spawn(respond(listener, move || metrics.text(&counters)));
     }
     #[cfg(unix)]
     if let Some(admin) = admin {
-        let (visitors, drain) = (visitors.clone(), signals.drain());
-        services.spawn(admin.serve(Operator { visitors, rooms: Box::new(Vec::new), drain }));
+        let (rooms, drain) = (Box::new(host.room_rows()), signals.drain());
+        services.spawn(admin.serve(Operator { visitors, rooms, drain }));
     }
     services.spawn(configuration.follow(hangups, server.config(), logging));
     tokio::select! {
-        () = server.run(NoRooms { visitors }, signals.first()) => {}
+        () = server.run(host, signals.first()) => {}
         () = signals.second() => {}
     }
     events::ended();
@@ -106,6 +114,10 @@ fn bind_admin(folder: &Path) -> Result<Option<AdminSocket>, Error> {
     }
 }
 
+fn no_thread(error: io::Error) -> Error {
+    Error::machine(format!("no thread can be started: {error}"))
+}
+
 fn cannot_listen(address: SocketAddr, error: &io::Error) -> Error {
     Error::mistake(format!("{address} can't be used: {error}"))
 }
@@ -127,54 +139,4 @@ fn invitation(address: SocketAddr, fingerprint: &str) -> String {
          Over a slow link:      ssh -C {port}{host}\n\
          As a guest with a key: ssh {port}guest@{host}\n"
     )
-}
-
-/// Tells visitors that there is nothing to play yet.
-struct NoRooms {
-    visitors: Visitors,
-}
-
-impl Host for NoRooms {
-    async fn serve(&self, visitor: Visitor, link: Link) -> Departure {
-        let Link { mut inbound, mut outbox } = link;
-        let key = visitor.key.as_ref().and_then(|key| AccountKey::parse(key.fingerprint()));
-        let mut presence = self.visitors.arrive(visitor.peer.ip(), key);
-        presence.set_name(&visitor.user);
-        let who = match &visitor.key {
-            Some(key) => format!("with the key {}", key.fingerprint()),
-            None => "a guest".to_owned(),
-        };
-        let text = format!(
-            "You are {}, {who}. No room is open on this server. Press any key.\r\n",
-            visitor.user
-        );
-        tell(&mut outbox, &text).await;
-        wait(&mut inbound, &mut outbox, &mut presence).await;
-        Departure::default()
-    }
-}
-
-/// Waits for a key, the end of the link, or an operator who ends the session.
-async fn wait(inbound: &mut Inbound, outbox: &mut Outbox, presence: &mut Presence) {
-    loop {
-        tokio::select! {
-            arrival = inbound.next() => {
-                if !matches!(arrival, Arrival::Resized(_)) {
-                    return;
-                }
-            }
-            notice = presence.notice() => match notice {
-                Notice::Said(line) => tell(outbox, &format!("{line}\r\n")).await,
-                Notice::Removed(sentence) => {
-                    return tell(outbox, &format!("{sentence}\r\n")).await;
-                }
-            },
-        }
-    }
-}
-
-async fn tell(outbox: &mut Outbox, text: &str) {
-    outbox.drained().await;
-    _ = outbox.try_send(text.as_bytes().to_vec());
-    outbox.drained().await;
 }

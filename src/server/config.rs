@@ -19,6 +19,7 @@ mod settings;
 mod write;
 
 use std::net::{Ipv4Addr, SocketAddr};
+use std::path::PathBuf;
 use std::time::Duration;
 
 use super::admission::Limits;
@@ -59,6 +60,16 @@ pub struct Config {
     pub rows: u16,
     /// The time that sessions have for their end when the server ends.
     pub drain: Duration,
+    /// The most rooms.
+    pub rooms: u32,
+    /// The most who watch one room.
+    pub watchers: u32,
+    /// The time after which a room without members is closed.
+    pub empty_room: Duration,
+    /// The most frames that a session gets in a second.
+    pub frames_per_second: u32,
+    /// The folder in which rooms are recorded, if they are.
+    pub recordings: Option<PathBuf>,
 }
 
 impl Default for Config {
@@ -78,6 +89,11 @@ impl Default for Config {
             columns: 500,
             rows: 200,
             drain: Duration::from_secs(10),
+            rooms: 200,
+            watchers: 32,
+            empty_room: Duration::from_secs(60),
+            frames_per_second: 30,
+            recordings: None,
         }
     }
 }

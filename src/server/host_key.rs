@@ -88,9 +88,8 @@ fn make(folder: &Path, path: &Path) -> Result<HostKey, HostKeyError> {
 
 /// Writes a file that must not exist, so that it is complete or absent at any time.
 fn write_new(path: &Path, content: &[u8]) -> io::Result<()> {
-    let new = path.with_extension(format!("{}.new", std::process::id()));
-    // A server that was killed may have left it.
-    _ = fs::remove_file(&new);
+    let mark = getrandom::u64().map_err(io::Error::other)?;
+    let new = path.with_extension(format!("{mark:016x}.new"));
     let written = private_file(&new).and_then(|mut file| {
         file.write_all(content)?;
         file.sync_all()?;

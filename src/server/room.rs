@@ -31,7 +31,7 @@ use self::mode::{Field, Round, SECOND};
 pub(crate) use self::mode::{Mode, Phase, Role, Standing};
 pub(crate) use self::view::{MemberView, RoomView, Said};
 use super::line::Line;
-use crate::game::{Game, Input, Intent, Intents, PlayerColor, Rules};
+use crate::game::{Game, Input, Intent, Intents, PlayerColor, PlayerId, Rules};
 use crate::rng;
 
 /// How many lines of chat a room remembers.
@@ -123,6 +123,27 @@ impl Room {
     /// The state at the start of the round.
     pub(crate) fn header(&self) -> &Header {
         &self.header
+    }
+
+    /// The phase of the round.
+    pub(crate) fn phase(&self) -> Phase {
+        self.round.phase()
+    }
+
+    /// The game of the round.
+    pub(crate) fn game(&self) -> &Game {
+        &self.game
+    }
+
+    /// The members' names, in the order in which they joined.
+    pub(crate) fn names(&self) -> impl Iterator<Item = &Line> {
+        self.members.iter().map(|member| &member.name)
+    }
+
+    /// The first member, their player, and what they wanted in the last step.
+    pub(crate) fn first_member(&self) -> Option<(MemberId, PlayerId, Intents)> {
+        let member = self.members.first()?;
+        Some((member.id, member.player?, member.intents))
     }
 
     /// The number of members.

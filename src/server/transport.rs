@@ -13,8 +13,8 @@ mod wire;
 use std::future::Future;
 use std::io;
 use std::net::SocketAddr;
+use std::sync::Arc;
 use std::sync::atomic::{AtomicU64, AtomicUsize, Ordering};
-use std::sync::{Arc, Mutex, PoisonError};
 use std::time::Duration;
 
 use tokio::net::TcpListener;
@@ -23,7 +23,7 @@ use tokio::task::JoinSet;
 use tokio::time::{sleep, timeout};
 
 use super::logging::{Throttle, events};
-use super::{Config, HostKey, LiveConfig, Refusal, VisitId};
+use super::{Config, HostKey, LiveConfig, Refusal, VisitId, locked};
 use crate::rng::SplitMix64;
 use connection::Shared;
 pub use inbound::{Arrival, Inbound};
@@ -213,9 +213,4 @@ fn admit(
 fn seed() -> u64 {
     // Without random numbers from the system there would be no keys, either.
     getrandom::u64().unwrap_or_default()
-}
-
-/// A lock that a panic elsewhere does not close.
-fn locked<T, R>(mutex: &Mutex<T>, act: impl FnOnce(&mut T) -> R) -> R {
-    act(&mut mutex.lock().unwrap_or_else(PoisonError::into_inner))
 }

@@ -7,6 +7,7 @@
 mod emulator;
 mod kept;
 mod ops;
+mod play;
 #[path = "../support/player.rs"]
 mod player;
 mod scores;

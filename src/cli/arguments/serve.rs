@@ -15,6 +15,7 @@ pub(in crate::cli) struct Serve {
     pub(in crate::cli) listen: Option<SocketAddr>,
     pub(in crate::cli) data: Option<PathBuf>,
     pub(in crate::cli) config: Option<PathBuf>,
+    pub(in crate::cli) record_room: Option<PathBuf>,
     pub(in crate::cli) log: LogFormat,
 }
 
@@ -28,7 +29,7 @@ pub(super) const SUBCOMMAND: Subcommand = Subcommand {
     examples: "cellcaster serve\n\
                cellcaster serve --listen 0.0.0.0:2222 --data /var/lib/cellcaster",
     positionals: &[],
-    options: &[&LISTEN, &DATA, &CONFIG, &LOG],
+    options: &[&LISTEN, &DATA, &CONFIG, &LOG, &RECORD_ROOM],
     surplus: "takes no map",
     missing: "",
     read: |matches| Ok(Command::Serve(read(matches))),
@@ -39,6 +40,7 @@ fn read(mut matches: ArgMatches) -> Serve {
         listen: LISTEN.of(&mut matches),
         data: DATA.of(&mut matches),
         config: CONFIG.of(&mut matches),
+        record_room: RECORD_ROOM.of(&mut matches),
         log: LOG.of(&mut matches).unwrap_or_default(),
     }
 }
@@ -77,4 +79,9 @@ const LOG: ValueOption<LogFormat> = ValueOption {
         _ => None,
     }),
     repeats: false,
+};
+
+const RECORD_ROOM: FileOption = FileOption {
+    name: "record-room",
+    help: "A folder in which the log of each room is written [default: nothing is recorded]",
 };

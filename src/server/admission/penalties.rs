@@ -1,6 +1,6 @@
 //! Failures of networks, in token buckets.
 
-use std::collections::BTreeMap;
+use std::collections::{BTreeMap, BTreeSet};
 use std::net::IpAddr;
 use std::time::Duration;
 
@@ -17,6 +17,8 @@ pub(super) enum Network {
 #[derive(Debug)]
 pub(super) struct Penalties {
     networks: BTreeMap<Network, Failures>,
+    /// The same networks in the order of their last failure or login.
+    order: BTreeSet<(Duration, Network)>,
     /// The size of a bucket.
     most: f64,
     forget: Duration,
@@ -54,7 +56,8 @@ impl Network {
 
 impl Penalties {
     pub(super) fn new(failures: u32, forget: Duration) -> Self {
-        Self { networks: BTreeMap::new(), most: f64::from(failures), forget }
+        let (networks, order) = (BTreeMap::new(), BTreeSet::new());
+        Self { networks, order, most: f64::from(failures), forget }
     }
 
     pub(super) fn set_limits(&mut self, failures: u32, forget: Duration) {
@@ -89,34 +92,29 @@ impl Penalties {
     fn change(&mut self, network: Network, cost: f64, now: Duration) {
         let before = self.networks.get(&network).map_or(0.0, |known| self.left(*known, now));
         let count = (before + cost).min(self.most);
+        self.remove(network);
         if count <= 0.0 {
-            self.networks.remove(&network);
             return;
         }
-        if self.networks.len() >= MOST_NETWORKS && !self.networks.contains_key(&network) {
-            self.make_room(now);
+        if self.networks.len() >= MOST_NETWORKS
+            && let Some(&(_, oldest)) = self.order.first()
+        {
+            self.remove(oldest);
         }
         self.networks.insert(network, Failures { count, since: now });
+        self.order.insert((now, network));
+    }
+
+    fn remove(&mut self, network: Network) {
+        if let Some(failures) = self.networks.remove(&network) {
+            self.order.remove(&(failures.since, network));
+        }
     }
 
     /// What is not forgotten of failures.
     fn left(&self, failures: Failures, now: Duration) -> f64 {
         let time = now.saturating_sub(failures.since).as_secs_f64();
         (failures.count - time / self.forget.as_secs_f64()).max(0.0)
-    }
-
-    /// Drops the networks whose failures are forgotten, and if there are none, the one that has
-    /// failed longest ago.
-    fn make_room(&mut self, now: Duration) {
-        let mut networks = std::mem::take(&mut self.networks);
-        networks.retain(|_, failures| self.left(*failures, now) > 0.0);
-        if networks.len() >= MOST_NETWORKS {
-            let oldest = networks.iter().min_by_key(|(_, failures)| failures.since);
-            if let Some(oldest) = oldest.map(|(network, _)| *network) {
-                networks.remove(&oldest);
-            }
-        }
-        self.networks = networks;
     }
 }
 
@@ -136,13 +134,24 @@ mod tests {
         assert_ne!(v6("2001:db8:1:2::1"), v6("2001:db8:1:3::1"));
     }
 
+    /// The networks that have failed longest ago are dropped first.
     #[test]
     fn memory_for_networks_is_bounded() {
         let mut penalties = Penalties::new(20, Duration::from_secs(1000));
-        for number in 0..2 * MOST_NETWORKS as u64 {
-            let network = Network::V6(number.to_be_bytes());
-            penalties.charge(network, Outcome::LeftEarly, Duration::from_millis(number));
+        let network = |number: u64| Network::V6(number.to_be_bytes());
+        let time = |number: u64| Duration::from_millis(number);
+        for number in 0..3 * MOST_NETWORKS as u64 {
+            penalties.charge(network(number), Outcome::LeftEarly, time(number));
+            penalties.charge(network(0), Outcome::LeftEarly, time(number));
         }
         assert_eq!(penalties.networks.len(), MOST_NETWORKS);
+        assert_eq!(penalties.order.len(), MOST_NETWORKS);
+        let last = 3 * MOST_NETWORKS as u64 - 1;
+        assert!(penalties.refused_share(network(0), time(last)) > 0.8);
+        for (number, is_known) in
+            [(1, false), (last + 1 - MOST_NETWORKS as u64, false), (last, true)]
+        {
+            assert_eq!(penalties.networks.contains_key(&network(number)), is_known, "{number}");
+        }
     }
 }

@@ -16,7 +16,7 @@ pub(super) struct Setting {
 }
 
 /// The settings in the order of a file.
-pub(super) const SETTINGS: [Setting; 18] = [
+pub(super) const SETTINGS: [Setting; 22] = [
     Setting {
         name: "connections",
         meaning: "the most connections at a time",
@@ -162,6 +162,38 @@ pub(super) const SETTINGS: [Setting; 18] = [
         most: 3600,
         get: |config| seconds(config.drain),
         set: |config, value| config.drain = of_seconds(value),
+    },
+    Setting {
+        name: "rooms",
+        meaning: "the most rooms at a time",
+        least: 2,
+        most: 10_000,
+        get: |config| config.rooms,
+        set: |config, value| config.rooms = value,
+    },
+    Setting {
+        name: "watchers",
+        meaning: "the most visitors who watch one room",
+        least: 0,
+        most: 10_000,
+        get: |config| config.watchers,
+        set: |config, value| config.watchers = value,
+    },
+    Setting {
+        name: "empty-room-seconds",
+        meaning: "the time after which a room without members is closed",
+        least: 0,
+        most: 86_400,
+        get: |config| seconds(config.empty_room),
+        set: |config, value| config.empty_room = of_seconds(value),
+    },
+    Setting {
+        name: "frames-per-second",
+        meaning: "the most frames that a visitor gets in a second; fewer, if the processor is busy",
+        least: 5,
+        most: 60,
+        get: |config| config.frames_per_second,
+        set: |config, value| config.frames_per_second = value,
     },
 ];
 

@@ -20,7 +20,7 @@ use crate::server::line::Line;
 
 /// The number of a member in a room. It is not used again after they leave.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash, PartialOrd, Ord)]
-pub(crate) struct MemberId(pub(super) u32);
+pub(crate) struct MemberId(pub(in crate::server) u32);
 
 impl fmt::Display for MemberId {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {

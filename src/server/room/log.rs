@@ -71,9 +71,11 @@ impl<L: Log, W: Write + Send> Log for Recorded<L, W> {
         self.output.flush()
     }
 
+    /// An entry that cannot be recorded is in the log nevertheless.
     fn append(&mut self, entry: Entry) -> io::Result<()> {
-        writeln!(self.output, "{entry}")?;
-        self.log.append(entry)
+        let line = format!("{entry}\n");
+        self.log.append(entry)?;
+        self.output.write_all(line.as_bytes())
     }
 
     fn next(&mut self, step: u64) -> Option<Entry> {

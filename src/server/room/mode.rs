@@ -109,6 +109,11 @@ impl Mode {
         }
     }
 
+    /// Whether there are guards, so that the difficulty matters.
+    pub(crate) const fn has_guards(self) -> bool {
+        matches!(self, Self::Together | Self::Alone)
+    }
+
     /// The rules among the players.
     pub(super) fn company(self) -> Company {
         let usual = Company::default();
@@ -123,7 +128,7 @@ impl Mode {
 
     /// The seed of the game's chance. Alone, it is that of the built-in levels at home, so that the
     /// same script gives the same result there.
-    pub(super) const fn game_seed(self, of_room: u64) -> u64 {
+    pub(crate) const fn game_seed(self, of_room: u64) -> u64 {
         if matches!(self, Self::Alone) { 0 } else { of_room }
     }
 

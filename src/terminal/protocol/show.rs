@@ -64,6 +64,17 @@ impl Protocol {
         self.flow.round_trip()
     }
 
+    /// The number of frames sent so far. One that changed nothing does not count.
+    pub fn frames_sent(&self) -> u64 {
+        self.flow.frames_sent()
+    }
+
+    /// The number of frames that the terminal shows, as far as is known: those that it has answered,
+    /// or if it never answers, those that the system has accepted.
+    pub fn frames_answered(&self) -> u64 {
+        self.flow.frames_answered()
+    }
+
     /// The number of bytes of all frames.
     pub fn bytes_drawn(&self) -> u64 {
         self.writer.bytes_written()

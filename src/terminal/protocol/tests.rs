@@ -89,6 +89,30 @@ fn an_answered_frame_is_followed_by_the_next() {
 }
 
 #[test]
+fn the_frames_that_the_terminal_shows_are_counted() {
+    let mut protocol = begun("xterm");
+    sent(&mut protocol, Duration::ZERO);
+    protocol.receive(ANSWERS, Duration::from_millis(10));
+    let at = Duration::from_millis;
+    let counts = |protocol: &Protocol| [protocol.frames_sent(), protocol.frames_answered()];
+    draw(&mut protocol, 'a');
+    sent(&mut protocol, at(20));
+    assert_eq!(counts(&protocol), [1, 0]);
+    protocol.receive(b"\x1b[0n", at(40));
+    assert_eq!(counts(&protocol), [1, 1]);
+    draw(&mut protocol, 'a');
+    sent(&mut protocol, at(60));
+    assert_eq!(counts(&protocol), [1, 1], "nothing has changed");
+    let mut silent = begun("xterm");
+    sent(&mut silent, Duration::ZERO);
+    for second in 1..4 {
+        draw(&mut silent, if second % 2 == 0 { 'a' } else { 'b' });
+        sent(&mut silent, Duration::from_secs(10 * second));
+    }
+    assert_eq!(counts(&silent), [3, 3], "it never answers");
+}
+
+#[test]
 fn bytes_wait_for_the_caller_before_the_next_frame() {
     let mut protocol = begun("xterm");
     let now = Duration::from_millis(10);

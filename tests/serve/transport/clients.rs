@@ -104,16 +104,44 @@ fn nothing_is_forwarded() {
     house.assert_answers();
 }
 
-/// Compression begins after authentication, and outlives a key exchange.
+/// Megabytes of frames pass while keys are exchanged again and again, and each key reaches the session.
+fn frames_outlive_key_exchanges(options: &[&str]) {
+    let house = House::open();
+    let limit = ["-o", "RekeyLimit=64K"];
+    let player = house.visitor(&[options, &limit].concat());
+    player.send("F");
+    // Between two frames there is hardly a moment at which the screen is complete.
+    wait_until("frames stop", || player.look(|emulator| emulator.bytes().len()) > 1_000_000);
+    // The next frame shows how many bytes came before it.
+    player.send("over");
+    player.send("f");
+    player.wait_for("overf]");
+    let (received, shown) = player.look(|emulator| {
+        const BEGIN: &[u8] = b"\x1b[?2026h";
+        let bytes = emulator.bytes();
+        let begins = bytes.windows(BEGIN.len()).rposition(|window| window == BEGIN);
+        (begins.unwrap(), emulator.text())
+    });
+    assert!(shown.contains(&format!("[sent {received}]")), "{received} bytes:\n{shown}");
+    house.assert_answers();
+}
+
+#[test]
+fn frames_outlive_key_exchanges_without_compression() {
+    frames_outlive_key_exchanges(&[]);
+}
+
+/// Compression begins after authentication, and starts anew with each key exchange.
+#[test]
+fn frames_outlive_key_exchanges_with_compression() {
+    frames_outlive_key_exchanges(&["-C"]);
+}
+
 #[test]
 fn a_client_that_asks_is_compressed() {
     let house = House::open();
-    let player = house.visitor(&["-C", "-o", "RekeyLimit=64K"]);
+    let player = house.visitor(&["-C"]);
     player.wait_for("[compressed true]");
-    player.send("F");
-    player.wait_until("got noise", |emulator| emulator.bytes().len() > 1_000_000);
-    player.send("hello");
-    player.wait_for("hello]");
     house.assert_answers();
 }
 

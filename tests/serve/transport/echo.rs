@@ -1,6 +1,7 @@
 //! A session for tests: shows what it knows about its visitor, and what they type.
 //!
-//! `q` ends it with status 7, and `F` makes every later frame a large one of random colours.
+//! `q` ends it with status 7. From `F` to `f`, frames of random colours follow each other without
+//! a pause; then it shows how many bytes they had.
 
 use cellcaster::rng::SplitMix64;
 use cellcaster::server::{Arrival, Departure, Host, Link, Visitor};
@@ -17,6 +18,8 @@ struct Screen {
     visitor: Visitor,
     typed: Vec<u8>,
     count: usize,
+    /// The bytes of all frames so far.
+    sent: usize,
     size: WindowSize,
     drains: bool,
     noise: Option<SplitMix64>,
@@ -37,6 +40,8 @@ impl Host for Echo {
                     link.outbox.try_send(screen.frame()).unwrap();
                 }
             }
+            // Asked once: the frame may drain at any time.
+            let waits = screen.is_stale || is_over;
             tokio::select! {
                 arrival = link.inbound.next(), if !is_over => match arrival {
                     Arrival::Bytes(bytes) => {
@@ -55,7 +60,7 @@ impl Host for Echo {
                     }
                     Arrival::Ended => return Departure { status },
                 },
-                () = link.outbox.drained(), if !link.outbox.is_empty() => {}
+                () = link.outbox.drained(), if waits => {}
             }
         }
     }
@@ -71,6 +76,7 @@ impl Screen {
             visitor,
             typed: Vec::new(),
             count: 0,
+            sent: 0,
             size,
             drains: false,
             noise: None,
@@ -85,6 +91,9 @@ impl Screen {
         self.typed.drain(..surplus);
         if bytes.contains(&b'F') {
             self.noise = Some(SplitMix64::new(1));
+        }
+        if bytes.contains(&b'f') {
+            self.noise = None;
         }
         self.is_stale = true;
     }
@@ -111,7 +120,9 @@ impl Screen {
         });
         drawn.unwrap();
         self.is_stale = self.noise.is_some();
-        std::mem::take(self.terminal.backend_mut().output_mut())
+        let bytes = std::mem::take(self.terminal.backend_mut().output_mut());
+        self.sent += bytes.len();
+        bytes
     }
 
     fn text(&self) -> String {
@@ -120,12 +131,13 @@ impl Screen {
         let environment: Vec<String> =
             environment.iter().map(|(name, value)| format!("{name}={value}")).collect();
         format!(
-            "[{user}]\n[{who}]\n[{term}]\n[{}x{}]\n[compressed {compresses}]\n[{}]\n[typed {}]\n[{}]\n{}",
+            "[{user}]\n[{who}]\n[{term}]\n[{}x{}]\n[compressed {compresses}]\n[{}]\n[typed {}]\n[{}]\n[sent {}]{}",
             self.size.columns,
             self.size.rows,
             environment.join(" "),
             String::from_utf8_lossy(&self.typed),
             self.count,
+            self.sent,
             if self.drains { "[drains]" } else { "" },
         )
     }

@@ -23,7 +23,7 @@ fn what_is_no_text_reaches_the_session_as_it_is() {
     let house = House::open();
     let player = house.visitor(&[]);
     player.send(b"\xff\xfe\xc3\x28\xed\xa0\x80\x1b]0;title\x07");
-    player.wait_for("[18]");
+    player.wait_for("[17]");
     assert_eq!(player.look(|emulator| emulator.title().to_owned()), "");
     house.assert_answers();
 }
