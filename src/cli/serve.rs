@@ -102,8 +102,9 @@ impl Host for NoRooms {
             Some(key) => format!("with the key {}", key.fingerprint()),
             None => "a guest".to_owned(),
         };
+        let notice = visitor.notice.map(|notice| format!("{notice}\r\n")).unwrap_or_default();
         let text = format!(
-            "You are {}, {who}. No room is open on this server. Press any key.\r\n",
+            "You are {}, {who}. No room is open on this server. Press any key.\r\n{notice}",
             visitor.user
         );
         _ = outbox.try_send(text.into_bytes());
