@@ -27,7 +27,8 @@ impl LineEntry {
     }
 
     /// The text.
-    pub(super) fn text(&self) -> &str {
+    #[cfg(test)]
+    fn text(&self) -> &str {
         &self.text
     }
 
