@@ -77,7 +77,7 @@ impl Visit {
         }
         let host = HostFacts {
             name: host_name(),
-            message: Line::of(&config.message, MESSAGE_COLUMNS),
+            message: Line::of(visitor.notice.unwrap_or(&config.message), MESSAGE_COLUMNS),
             compresses: visitor.compresses,
             catalog: Arc::clone(shared.rooms.catalog()),
             idle: IdleLimits::default(),

@@ -44,6 +44,7 @@ pub(super) struct Client {
     has_asked: bool,
     user: String,
     key: Option<KeyData>,
+    has_rsa_key: bool,
     refusal: Option<Refusal>,
     channel: Option<ChannelId>,
     terminal: Option<(String, WindowSize)>,
@@ -55,6 +56,8 @@ pub(super) struct Client {
 const GUEST: &str = "guest";
 const NO_TERMINAL: &str = "This is a game for a terminal: connect with ssh -t.";
 const TOO_MANY: &str = "You are connected too often with this key: end another game first.";
+const NO_RSA: &str =
+    "An RSA key is not an account here: make an ed25519 key with ssh-keygen -t ed25519.";
 /// The exit status of a refused session.
 const REFUSED: u32 = 2;
 const STANDARD_ERROR: u32 = 1;
@@ -76,6 +79,7 @@ impl Client {
             has_asked: false,
             user: String::new(),
             key: None,
+            has_rsa_key: false,
             refusal: None,
             channel: None,
             terminal: None,
@@ -87,6 +91,11 @@ impl Client {
     /// Whether the method `none` succeeds.
     pub(super) fn is_guest(&mut self, user: &str) -> bool {
         mem::replace(&mut self.has_asked, true) || user == GUEST
+    }
+
+    /// The client has an RSA key, which is no account.
+    pub(super) fn offer_rsa(&mut self) {
+        self.has_rsa_key = true;
     }
 
     /// The client has proved that it has `key`, or that it is a guest.
@@ -155,9 +164,12 @@ impl Client {
             return refuse(channel, NO_TERMINAL, session);
         };
         let Some(begin) = self.begin.take() else { return Ok(()) };
+        let key = self.key.take();
+        let notice = (self.has_rsa_key && key.is_none()).then_some(NO_RSA);
         let visitor = Visitor {
             peer: self.peer,
-            key: self.key.take(),
+            key,
+            notice,
             user: mem::take(&mut self.user),
             term,
             environment: mem::take(&mut self.environment),

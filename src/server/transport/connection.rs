@@ -8,7 +8,7 @@ use std::sync::atomic::{AtomicUsize, Ordering};
 use std::sync::{Arc, Mutex};
 use std::time::Duration;
 
-use russh::keys::{Algorithm, EcdsaCurve};
+use russh::keys::{Algorithm, EcdsaCurve, HashAlg};
 use russh::server::{self, Handle};
 use russh::{Error, MethodKind, MethodSet, Preferred, SshId, cipher, compression, kex, mac};
 use tokio::net::TcpStream;
@@ -34,6 +34,8 @@ pub(super) struct Shared {
 
 /// The time that a session has for its end after its link has ended.
 const AFTERWARDS: Duration = Duration::from_secs(5);
+/// The least time between two looks whether a client has gone.
+const LEAST_PAUSE: Duration = Duration::from_millis(50);
 /// The time that a client has for closing the connection after its session has ended.
 const FAREWELL: Duration = Duration::from_secs(2);
 /// The messages that may wait for russh: a frame, three of the end, and questions whether the
@@ -140,6 +142,7 @@ async fn converse<H: Host>(
     let _session = Counted::new(&shared.counters.sessions);
     let mut session = pin!(host.serve(visitor, link));
     let mut lost = pin!(lost(&shared.config, line, &handle));
+    let mut is_lost = false;
     let mut phases = shared.phases.clone();
     let departure = loop {
         tokio::select! {
@@ -149,7 +152,10 @@ async fn converse<H: Host>(
                 _ = timeout(AFTERWARDS, session).await;
                 return;
             }
-            () = &mut lost => line.cut(),
+            () = &mut lost, if !is_lost => {
+                is_lost = true;
+                line.cut();
+            }
             Ok(()) = phases.changed() => match *phases.borrow_and_update() {
                 Phase::Open => {}
                 Phase::Draining => inlet.drain(),
@@ -175,26 +181,27 @@ async fn converse<H: Host>(
 /// russh's own keep-alives were refused: they wait behind a frame that the socket does not take, and
 /// they come while the user types a passphrase, where OpenSSH's client complains about them.
 async fn lost(config: &LiveConfig, line: &Line, handle: &Handle) {
-    let mut frame = (line.passage.frames(), Instant::now());
+    let mut part = (line.passage.parts(), Instant::now());
     loop {
         let config = config.get();
         let pause = config.silence / 3;
         let now = Instant::now();
         let is_waiting = line.passage.is_waiting();
-        if !is_waiting || line.passage.frames() != frame.0 {
-            frame = (line.passage.frames(), now);
+        if !is_waiting || line.passage.parts() != part.0 {
+            part = (line.passage.parts(), now);
         }
-        let silent = now.saturating_duration_since(line.last_read());
-        if now - frame.1 >= config.stall || silent >= config.silence && !is_waiting {
+        let silent = now.saturating_duration_since(line.last_sign());
+        if now - part.1 >= config.stall || silent >= config.silence && !is_waiting {
             return;
         }
         if silent >= pause && !is_waiting {
             // No client forwards anything here, so it has nothing to cancel.
             let question = handle.cancel_forward_tcpip(String::new(), 0);
-            _ = timeout(pause, question).await;
+            _ = timeout(pause.min(config.silence.saturating_sub(silent)), question).await;
         }
-        let heard = line.last_read();
-        sleep(pause.saturating_sub(heard.elapsed()).max(pause / 4)).await;
+        let silent = line.last_sign().elapsed();
+        let end = config.silence.saturating_sub(silent).max(LEAST_PAUSE);
+        sleep(pause.saturating_sub(silent).max(pause / 4).min(end)).await;
     }
 }
 
@@ -203,6 +210,9 @@ fn outcome(ended: &Result<(), Error>, is_logged_in: bool) -> Outcome {
     match ended {
         _ if is_logged_in => Outcome::Served,
         Err(Error::IO(error)) if error.kind() == io::ErrorKind::QuotaExceeded => Outcome::TimedOut,
+        Err(Error::IO(error)) if error.kind() == io::ErrorKind::FileTooLarge => {
+            Outcome::BrokeProtocol
+        }
         // An old client may have no method in common.
         Ok(())
         | Err(Error::IO(_) | Error::Disconnect | Error::HUP | Error::NoCommonAlgo { .. }) => {
@@ -214,7 +224,8 @@ fn outcome(ended: &Result<(), Error>, is_logged_in: bool) -> Outcome {
 
 /// Algorithms and limits. Groups of Diffie-Hellman are not offered: the largest cost a tenth of a
 /// second of processor time before authentication. Neither is `zlib`, which compresses before
-/// authentication; `none` comes first in no client that is asked to compress.
+/// authentication; `none` comes first in no client that is asked to compress. RSA keys are named so
+/// that clients offer them, and their users can be told why they are guests.
 fn ssh_config(key: &HostKey) -> server::Config {
     const KEX: &[kex::Name] = &[
         kex::MLKEM768X25519_SHA256,
@@ -230,6 +241,8 @@ fn ssh_config(key: &HostKey) -> server::Config {
         Algorithm::Ecdsa { curve: EcdsaCurve::NistP384 },
         Algorithm::Ecdsa { curve: EcdsaCurve::NistP521 },
         Algorithm::SkEcdsaSha2NistP256,
+        Algorithm::Rsa { hash: Some(HashAlg::Sha512) },
+        Algorithm::Rsa { hash: Some(HashAlg::Sha256) },
     ];
     const CIPHERS: &[cipher::Name] =
         &[cipher::CHACHA20_POLY1305, cipher::AES_256_GCM, cipher::AES_256_CTR, cipher::AES_128_CTR];

@@ -1,7 +1,9 @@
 //! What a client asks for, and the answers.
 
-use russh::keys::Certificate;
-use russh::server::{Auth, ChannelOpenHandle, Handler, Msg, Response, Session, VerifiedPublicKey};
+use russh::keys::{Algorithm, Certificate};
+use russh::server::{
+    Auth, ChannelOpenHandle, Handler, Msg, PublicKeyOffer, Response, Session, VerifiedPublicKey,
+};
 use russh::{Channel, ChannelId, ChannelOpenFailure, Error, Pty};
 
 use super::KeyData;
@@ -26,6 +28,18 @@ impl Handler for Client {
     ) -> Result<Auth, Error> {
         self.accept(user, None);
         Ok(Auth::Accept)
+    }
+
+    async fn auth_publickey_offered(
+        &mut self,
+        _: &str,
+        offer: PublicKeyOffer<'_>,
+    ) -> Result<Auth, Error> {
+        if !matches!(offer.algorithm, Algorithm::Rsa { .. }) {
+            return Ok(Auth::Accept);
+        }
+        self.offer_rsa();
+        Ok(Auth::reject())
     }
 
     async fn auth_publickey(

@@ -13,6 +13,8 @@ pub struct Visitor {
     pub peer: SocketAddr,
     /// The key that they have proved to own; `None` for a guest.
     pub key: Option<KeyData>,
+    /// What a guest is to read about their key.
+    pub notice: Option<&'static str>,
     /// The user name that their client sent: printable, at most 64 characters. It proves nothing.
     pub user: String,
     /// `TERM`: printable, at most 64 characters.

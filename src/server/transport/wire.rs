@@ -3,13 +3,16 @@
 //! russh reads and writes when it likes, so limits belong below it. Before authentication, a client
 //! has a budget of bytes. After it, bytes are read at a limited rate: whatever a client floods its
 //! connection with, be it keys, empty packets or key exchanges, costs the server no more than that.
+//!
+//! russh makes room for a packet as soon as its length has arrived, up to 256 KB, and then reads the
+//! packet at once. A read of more than a packet of this server's channel has ends the connection.
 
-use std::io;
 use std::pin::Pin;
 use std::sync::atomic::{AtomicBool, AtomicU64, Ordering};
 use std::sync::{Arc, Mutex};
 use std::task::{Context, Poll, Waker, ready};
 use std::time::Duration;
+use std::{io, mem};
 
 use tokio::io::{AsyncRead, AsyncWrite, ReadBuf};
 use tokio::time::{Instant, Sleep, sleep_until};
@@ -34,6 +37,8 @@ pub(super) struct Wire<S> {
     hello: Hello,
     bucket: Bucket,
     pause: Pin<Box<Sleep>>,
+    /// Whether the last write has found no room.
+    is_full: bool,
 }
 
 /// The state of a connection, for the tasks that it concerns.
@@ -47,7 +52,7 @@ pub(super) struct Line {
     compresses: AtomicBool,
     read: AtomicU64,
     /// In milliseconds since the begin.
-    last_read: AtomicU64,
+    last_sign: AtomicU64,
     is_cut: AtomicBool,
     /// Of the reader and the writer.
     wakers: Mutex<[Option<Waker>; 2]>,
@@ -64,6 +69,8 @@ struct Bucket {
 const BURST: f64 = 4.0;
 /// The fewest bytes that are read after a pause, so that pauses are few.
 const FEWEST: f64 = 1024.0;
+/// The most bytes that are read at once. Packets are 32 KB and their frame (RFC 4253, section 6.1).
+const LONGEST_PACKET: usize = 35_000;
 const READER: usize = 0;
 const WRITER: usize = 1;
 
@@ -72,7 +79,8 @@ impl<S> Wire<S> {
         let now = Instant::now();
         let bytes = f64::from(line.limits.per_second) * BURST;
         let bucket = Bucket { bytes, filled: now };
-        Self { socket, line, hello: Hello::default(), bucket, pause: Box::pin(sleep_until(now)) }
+        let pause = Box::pin(sleep_until(now));
+        Self { socket, line, hello: Hello::default(), bucket, pause, is_full: false }
     }
 }
 
@@ -86,7 +94,7 @@ impl Line {
             is_logged_in: AtomicBool::new(false),
             compresses: AtomicBool::new(false),
             read: AtomicU64::new(0),
-            last_read: AtomicU64::new(0),
+            last_sign: AtomicU64::new(0),
             is_cut: AtomicBool::new(false),
             wakers: Mutex::default(),
         }
@@ -116,15 +124,16 @@ impl Line {
         self.begun
     }
 
-    /// When the client has last sent anything.
-    pub(super) fn last_read(&self) -> Instant {
-        self.begun + Duration::from_millis(self.last_read.load(Ordering::Acquire))
+    /// When the client has last sent anything, or made room in a full socket. While a frame does not
+    /// fit in the socket, russh reads nothing, and on a slow link that lasts.
+    pub(super) fn last_sign(&self) -> Instant {
+        self.begun + Duration::from_millis(self.last_sign.load(Ordering::Acquire))
     }
 
     /// Fails all reading and writing from now on.
     pub(super) fn cut(&self) {
         self.is_cut.store(true, Ordering::Release);
-        for waker in locked(&self.wakers, std::mem::take).into_iter().flatten() {
+        for waker in locked(&self.wakers, mem::take).into_iter().flatten() {
             waker.wake();
         }
     }
@@ -142,7 +151,11 @@ impl Line {
 
     fn count(&self, bytes: usize) {
         self.read.fetch_add(bytes as u64, Ordering::Relaxed);
-        self.last_read.store(self.begun.elapsed().as_millis() as u64, Ordering::Release);
+        self.note_sign();
+    }
+
+    fn note_sign(&self) {
+        self.last_sign.store(self.begun.elapsed().as_millis() as u64, Ordering::Release);
     }
 }
 
@@ -195,6 +208,9 @@ impl<S: AsyncRead + Unpin> AsyncRead for Wire<S> {
         buffer: &mut ReadBuf<'_>,
     ) -> Poll<io::Result<()>> {
         self.line.check(READER, cx)?;
+        if buffer.remaining() > LONGEST_PACKET {
+            return Poll::Ready(Err(io::ErrorKind::FileTooLarge.into()));
+        }
         let most = ready!(self.allowance(cx))?.min(buffer.remaining());
         let mut part = ReadBuf::new(buffer.initialize_unfilled_to(most));
         ready!(Pin::new(&mut self.socket).poll_read(cx, &mut part))?;
@@ -214,7 +230,11 @@ impl<S: AsyncWrite + Unpin> AsyncWrite for Wire<S> {
         bytes: &[u8],
     ) -> Poll<io::Result<usize>> {
         self.line.check(WRITER, cx)?;
-        Pin::new(&mut self.socket).poll_write(cx, bytes)
+        let written = Pin::new(&mut self.socket).poll_write(cx, bytes);
+        if mem::replace(&mut self.is_full, written.is_pending()) && written.is_ready() {
+            self.line.note_sign();
+        }
+        written
     }
 
     fn poll_flush(mut self: Pin<&mut Self>, cx: &mut Context<'_>) -> Poll<io::Result<()>> {

@@ -90,7 +90,8 @@ fn a_session_begins_once() {
         }
         assert_eq!(answers.iter().take(40).filter(|is_kept| **is_kept).count(), 16);
         assert_eq!(answers[40..], [true, false, false, true, false]);
-        while !String::from_utf8_lossy(&shown).contains("typed") {
+        // Its window has one column.
+        while shown.is_empty() {
             if let ChannelMsg::Data { data } = channel.wait().await.unwrap() {
                 shown.extend_from_slice(&data);
             }

@@ -48,6 +48,21 @@ fn one_key_has_three_sessions() {
 }
 
 #[test]
+fn an_rsa_key_makes_a_guest_who_is_told() {
+    const NOTICE: &str = "An RSA key is not an account here";
+    let house = House::open();
+    let rsa = format!("IdentityFile={}", house.user_key_of("rsa", "rsa", ""));
+    let guest = house.visitor(&["-o", &rsa]);
+    guest.wait_for(NOTICE);
+    guest.wait_for("[guest]");
+    let other = format!("IdentityFile={}", house.user_key("key", ""));
+    let account = house.visitor(&["-o", &rsa, "-o", &other]);
+    account.wait_for("[SHA256:");
+    assert!(!account.text().contains(NOTICE));
+    house.assert_answers();
+}
+
+#[test]
 fn passwords_are_refused() {
     let house = House::open();
     let (_, error, status) =
@@ -189,6 +204,22 @@ fn a_client_that_falls_silent_is_given_up() {
     alive.send("here");
     alive.wait_for("[typed here]");
     silent.signal(Signal::CONT);
+    house.assert_answers();
+}
+
+/// Questions whether a client is there come between its keys, and neither disturbs the other.
+#[test]
+fn questions_disturb_no_keys() {
+    let house = House::open_with(|config| config.silence = std::time::Duration::from_secs(2));
+    let player = house.visitor(&[]);
+    for (count, key) in (1..).zip(["a", "b", "\x1b", "[A", "c", "d"]) {
+        std::thread::sleep(std::time::Duration::from_millis(900));
+        player.send(key);
+        let bytes = if count < 4 { count } else { count + 1 };
+        player.wait_for(&format!("[{bytes}]"));
+    }
+    player.send("~.~B~?");
+    player.wait_for("[13]");
     house.assert_answers();
 }
 

@@ -126,12 +126,12 @@ impl Screen {
     }
 
     fn text(&self) -> String {
-        let Visitor { key, user, term, environment, compresses, .. } = &self.visitor;
+        let Visitor { key, user, term, environment, compresses, notice, .. } = &self.visitor;
         let who = key.as_ref().map_or("guest", |key| key.fingerprint());
         let environment: Vec<String> =
             environment.iter().map(|(name, value)| format!("{name}={value}")).collect();
         format!(
-            "[{user}]\n[{who}]\n[{term}]\n[{}x{}]\n[compressed {compresses}]\n[{}]\n[typed {}]\n[{}]\n[sent {}]{}",
+            "[{user}]\n[{who}]\n[{term}]\n[{}x{}]\n[compressed {compresses}]\n[{}]\n[typed {}]\n[{}]\n[sent {}]{}\n{}",
             self.size.columns,
             self.size.rows,
             environment.join(" "),
@@ -139,6 +139,7 @@ impl Screen {
             self.count,
             self.sent,
             if self.drains { "[drains]" } else { "" },
+            notice.unwrap_or_default(),
         )
     }
 }

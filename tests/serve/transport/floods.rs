@@ -49,8 +49,8 @@ fn clients_that_never_read_hold_one_frame_each() {
     for player in &players {
         player.set_reading(true);
     }
-    players[0].send("awake");
-    players[0].wait_for("awake]");
+    players[0].send("awakef");
+    players[0].wait_for("awakef]");
 }
 
 #[test]

@@ -89,9 +89,13 @@ impl House {
 
     /// A new user key.
     pub(super) fn user_key(&self, name: &str, comment: &str) -> String {
+        self.user_key_of("ed25519", name, comment)
+    }
+
+    pub(super) fn user_key_of(&self, kind: &str, name: &str, comment: &str) -> String {
         let path = self.folder.join(name);
         let status = Command::new("ssh-keygen")
-            .args(["-q", "-t", "ed25519", "-N", "", "-C", comment, "-f"])
+            .args(["-q", "-t", kind, "-N", "", "-C", comment, "-f"])
             .arg(&path)
             .status();
         assert!(status.unwrap().success());
