@@ -25,6 +25,8 @@ mod plot;
 mod recording;
 mod replay;
 #[cfg(feature = "serve")]
+mod room_recording;
+#[cfg(feature = "serve")]
 mod scores;
 mod script;
 #[cfg(feature = "serve")]

@@ -28,6 +28,7 @@ mod load;
 mod lock;
 mod logging;
 mod metrics;
+mod recorded;
 mod room;
 mod rooms;
 mod sequencer;
@@ -47,6 +48,7 @@ use self::lock::locked;
 pub(crate) use self::logging::events;
 pub use self::logging::{LogFilter, LogFormat, Logging, UnknownLogFilter};
 pub use self::metrics::{Counter, Gauge, Histogram, Metrics, respond};
+pub use self::recorded::{MOST_RECORDED_BYTES, RecordedRound, is_room_recording, replay_room};
 pub use self::transport::{
     Arrival, Counters, Departure, Host, Inbound, KeyData, Link, Outbox, Server, Visitor,
 };

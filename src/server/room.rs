@@ -15,6 +15,9 @@ mod header;
 mod log;
 mod member;
 mod mode;
+mod replayed;
+mod round;
+mod talk;
 #[cfg(test)]
 mod tests;
 mod view;
@@ -25,17 +28,19 @@ use std::sync::Arc;
 pub(crate) use self::catalog::Catalog;
 pub(crate) use self::entry::{CHAT_COLUMNS, Deed, Emote, Entry, MemberId, NAME_COLUMNS};
 pub(crate) use self::header::{Header, Seat};
-pub(crate) use self::log::{Log, Queue, Recorded, parse as parse_log};
+#[cfg(test)]
+use self::log::parse as parse_log;
+pub(crate) use self::log::{Log, Queue, Recorded};
 use self::member::Member;
-use self::mode::{Field, Round, SECOND};
-pub(crate) use self::mode::{Mode, Phase, Role, Standing};
+pub(crate) use self::mode::Mode;
+pub(crate) use self::replayed::replayed;
+use self::round::{Field, Round, SECOND};
+pub(crate) use self::round::{Phase, Role, Standing};
 pub(crate) use self::view::{MemberView, RoomView, Said};
 use super::line::Line;
 use crate::game::{Game, Input, Intent, Intents, PlayerColor, PlayerId, Rules};
 use crate::rng;
 
-/// How many lines of chat a room remembers.
-const SAID: usize = 8;
 /// How long an emotion is shown, in steps.
 const EMOTE: u64 = 3 * SECOND;
 
@@ -282,25 +287,6 @@ impl Room {
 
     fn member_mut(&mut self, id: MemberId) -> Option<&mut Member> {
         self.members.iter_mut().find(|member| member.id == id)
-    }
-
-    fn say(&mut self, id: MemberId, text: String) {
-        let member = self.members.iter().find(|member| member.id == id);
-        if let Some(by) = member.map(|member| (member.name.clone(), member.color)) {
-            self.remember(Some(by), text);
-        }
-    }
-
-    fn announce(&mut self, text: String) {
-        self.remember(None, text);
-    }
-
-    fn remember(&mut self, by: Option<(Line, PlayerColor)>, text: String) {
-        self.said_count += 1;
-        self.said.push_back(Said { number: self.said_count, by, text });
-        if self.said.len() > SAID {
-            self.said.pop_front();
-        }
     }
 }
 

@@ -229,3 +229,34 @@ proptest! {
         prop_assert_eq!(one.game, other.game);
     }
 }
+
+#[test]
+fn a_recording_is_played_again() {
+    let header = Header::new("hall", Mode::Race, Difficulty::Normal, 7);
+    let mut text = Vec::new();
+    let mut log = Recorded::new(Queue::default(), &mut text);
+    let mut room = Room::new(&catalog(), header.clone()).unwrap();
+    log.begin(&header).unwrap();
+    let runs = [Intent::Forward, Intent::Run].into_iter().collect();
+    let name = line("Mara");
+    for deed in
+        [Deed::Join { color: PlayerColor::ALL[0], name }, Deed::Want { seen: 0, intents: runs }]
+    {
+        log.append(Entry { step: 0, member: MemberId(1), deed }).unwrap();
+    }
+    while !room.is_over() {
+        while let Some(entry) = log.next(room.step()) {
+            room.apply(&entry);
+        }
+        room.advance();
+    }
+    log.begin(&room.next_header()).unwrap();
+    let (steps, checksum) = (room.step(), room.checksum());
+    drop(log);
+    let reports = replayed(&String::from_utf8(text).unwrap(), &catalog()).unwrap();
+    assert_eq!(reports.len(), 2);
+    assert_eq!((reports[0].steps, reports[0].checksum), (steps, checksum));
+    assert_eq!(reports[0].standings, [("Mara".to_owned(), 0)]);
+    assert_eq!((reports[1].round, reports[1].level.as_str()), (2, "second"));
+    assert!(replayed("nonsense", &catalog()).is_err());
+}

@@ -4,7 +4,7 @@ use std::sync::Arc;
 
 use super::entry::{Emote, MemberId};
 use super::header::Header;
-use super::mode::{Phase, Role, Standing};
+use super::round::{Phase, Role, Standing};
 use crate::game::{Game, PlayerColor, PlayerId};
 use crate::server::line::Line;
 

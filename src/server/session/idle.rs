@@ -66,7 +66,7 @@ mod tests {
         let limits = IdleLimits::default();
         let at = Duration::from_secs;
         let mut idle = Idle::default();
-        let mut step = |idle: &mut Idle, seconds| idle.step(&limits, limits.in_room, at(seconds));
+        let step = |idle: &mut Idle, seconds| idle.step(&limits, limits.in_room, at(seconds));
         assert_eq!(step(&mut idle, 239), None);
         assert_eq!(step(&mut idle, 240), Some(Patience::Warns));
         assert_eq!(step(&mut idle, 299), None);

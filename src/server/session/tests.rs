@@ -67,7 +67,7 @@ struct Rig {
     now: Duration,
     catalog: Arc<Catalog>,
     room: Room,
-    /// What the members did, in the order in which it took effect.
+    /// What the members did in this round, in the order in which it took effect.
     log: Vec<Entry>,
     visitors: Vec<Visitor>,
 }
@@ -174,6 +174,7 @@ impl Rig {
         self.room.advance();
         if self.room.is_over() {
             self.room.begin_next();
+            self.log.clear();
         }
         (0..self.visitors.len()).for_each(|index| self.show(index));
     }

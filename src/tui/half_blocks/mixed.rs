@@ -5,8 +5,8 @@
 //! is fixed to the screen, and on the pixel's own colour, so that details of a wall remain visible.
 //! The error of the upper of two blocks is added to the lower one, as in error diffusion (R. W.
 //! Floyd and L. Steinberg, "An Adaptive Algorithm for Spatial Greyscale", 1976), but goes no
-//! further: a changed pixel changes at most the eight pixels of its two blocks. A block with an
-//! edge shows the nearest colours of both sides.
+//! further: a changed pixel changes at most the eight pixels of its two blocks. Dark blocks carry no
+//! error. A block with an edge shows the nearest colours of both sides.
 //!
 //! A block takes hardly more bytes than one cell, because its two cells differ in their glyphs
 //! only. Independent dithering of each pixel (by Bayer's matrix, or a mask of blue noise) was
@@ -23,7 +23,7 @@ use ratatui::style::Color;
 use crate::canvas::Canvas;
 use crate::color::Rgb;
 use crate::color::palette;
-use crate::color::palette::mixture::{self, Mixture, Mixtures};
+use crate::color::palette::mixture::{self, Mixture, Mixtures, ToneCurve};
 use crate::color::srgb::linear;
 use crate::render::Frame;
 
@@ -101,6 +101,10 @@ impl Tables {
     const EDGE: u8 = 46;
     /// The order in which pixels of a block get the brighter colour: Bayer's 2×2 matrix.
     const ORDER: [i32; 4] = [0, 2, 3, 1];
+    /// The part of a pixel's difference from the block's mean that counts, in eighths.
+    const OWN: i64 = 3;
+    /// The same for dark blocks: their mixtures are even, so that only this shows the details.
+    const OWN_IF_DARK: i64 = 8;
 
     fn new() -> Self {
         let scaled = |share: f64| libm::round(share * f64::from(Self::WHITE)) as i32;
@@ -112,58 +116,77 @@ impl Tables {
     }
 
     /// Chooses the colours of a block's pixels. `error` is added to the block, and is set to three
-    /// quarters of the error that remains: all of it would cost more bytes than it is worth.
+    /// quarters of the error that remains: all of it would cost more bytes than it is worth. A dark
+    /// block leaves no error: it would show as lone dots in the block below.
     fn draw(&self, mixtures: &Mixtures, block: [Rgb; 4], error: &mut Light) -> [u8; 4] {
         let lumas = block.map(Rgb::luma);
         let [darkest, brightest] =
             lumas.iter().fold([u8::MAX, 0], |[low, high], &luma| [low.min(luma), high.max(luma)]);
-        let lights = block
-            .map(|pixel| pixel.channels().map(|channel| self.of_channel[usize::from(channel)]));
-        let colors = if brightest - darkest > Self::EDGE {
+        let lights = block.map(|pixel| self.light(mixtures, pixel));
+        let (colors, is_dark) = if brightest - darkest > Self::EDGE {
             self.draw_edge(mixtures, lumas.map(|luma| luma > darkest.midpoint(brightest)), &lights)
         } else {
             self.mix(mixtures, &lights, *error)
         };
         *error = array::from_fn(|i| {
             let shown = |pixel: usize| self.of_index[usize::from(colors[pixel])][i];
-            (0..4).map(|pixel| lights[pixel][i] - shown(pixel)).sum::<i32>() * 3 / 16
+            let remains = || (0..4).map(|pixel| lights[pixel][i] - shown(pixel)).sum::<i32>();
+            if is_dark { 0 } else { remains() * 3 / 16 }
         });
         colors
     }
 
-    /// The nearest colour of each side of an edge, to the mean of its pixels.
-    fn draw_edge(&self, mixtures: &Mixtures, is_bright: [bool; 4], lights: &[Light; 4]) -> [u8; 4] {
+    /// The light of a pixel, in the tones of the palette.
+    fn light(&self, mixtures: &Mixtures, pixel: Rgb) -> Light {
+        let factor = mixtures.tones.factor(pixel);
+        pixel.channels().map(|channel| {
+            let light = self.of_channel[usize::from(channel)];
+            (light * factor / ToneCurve::ONE).min(Self::WHITE)
+        })
+    }
+
+    /// The nearest colour of each side of an edge, to the mean of its pixels, and whether one side is
+    /// dark.
+    fn draw_edge(
+        &self,
+        mixtures: &Mixtures,
+        is_bright: [bool; 4],
+        lights: &[Light; 4],
+    ) -> ([u8; 4], bool) {
         let [dark, bright] = [false, true].map(|side| {
             let on_side =
                 || lights.iter().zip(is_bright).filter(|&(_, is_bright)| is_bright == side);
             let count = on_side().count().max(1) as i32;
             let mean =
                 array::from_fn(|i| on_side().map(|(light, _)| light[i]).sum::<i32>() / count);
-            mixtures.of(self.levels(mean)).single
+            mixtures.of(self.levels(mean))
         });
-        is_bright.map(|is_bright| if is_bright { bright } else { dark })
+        let colors = is_bright.map(|is_bright| if is_bright { bright.single } else { dark.single });
+        (colors, dark.is_dark)
     }
 
-    /// Mixes the mean of the block and `error`.
-    fn mix(&self, mixtures: &Mixtures, lights: &[Light; 4], error: Light) -> [u8; 4] {
+    /// Mixes the mean of the block and `error`, and whether the mixture is dark.
+    fn mix(&self, mixtures: &Mixtures, lights: &[Light; 4], error: Light) -> ([u8; 4], bool) {
         let mean: Light = array::from_fn(|i| lights.iter().map(|light| light[i]).sum::<i32>() / 4);
         let wanted = with_error(mean, error);
-        let Mixture { colors, share, .. } = mixtures.of(self.levels(wanted));
+        let Mixture { colors, share, is_dark, .. } = mixtures.of(self.levels(wanted));
         if share == 0 {
-            return [colors[0]; 4];
+            return ([colors[0]; 4], is_dark);
         }
         let [darker, brighter] = colors.map(|index| self.of_index[usize::from(index)]);
         let difference: [i64; 3] = array::from_fn(|i| i64::from(brighter[i] - darker[i]));
         let length: i64 = difference.iter().map(|part| part * part).sum();
-        array::from_fn(|pixel| {
+        let own = if is_dark { Self::OWN_IF_DARK } else { Self::OWN };
+        let colors = array::from_fn(|pixel| {
             let along: i64 =
                 (0..3).map(|i| i64::from(lights[pixel][i] - mean[i]) * difference[i]).sum();
-            // In eighths: the share of the brighter colour and three eighths of the pixel's own
-            // difference, compared with the pixel's threshold.
-            let level = 2 * i64::from(share) * length + 3 * along;
+            // In eighths: the share of the brighter colour and a part of the pixel's own difference,
+            // compared with the pixel's threshold.
+            let level = 2 * i64::from(share) * length + own * along;
             let threshold = i64::from(2 * Self::ORDER[pixel] + 1) * length;
             colors[usize::from(level > threshold)]
-        })
+        });
+        (colors, is_dark)
     }
 
     fn levels(&self, light: Light) -> [u8; 3] {

@@ -2,7 +2,7 @@
 
 use std::array;
 
-use super::{DARK, Palette, PaletteColor};
+use super::{PaletteColor, Weights};
 use crate::color::oklab::{self, Oklab};
 use crate::color::product;
 
@@ -15,7 +15,6 @@ const GREY: f32 = 0.01;
 pub(super) struct Candidates {
     nearest: [Candidate; MOST_CANDIDATES],
     count: usize,
-    lightness: f32,
 }
 
 /// A colour that may be part of a mixture, and its difference from the wanted colour.
@@ -31,27 +30,17 @@ pub(super) struct Candidate {
 }
 
 impl Candidates {
-    /// The candidates for a colour, given as red, green and blue light from 0 to 1.
-    pub(super) fn new(light: [f64; 3], palette: Palette) -> Self {
-        let wanted = Wanted::new(light);
-        let mut candidates = Self {
-            nearest: [Candidate::default(); MOST_CANDIDATES],
-            count: 0,
-            lightness: wanted.lab[0],
-        };
-        for color in palette.colors.iter().filter(|color| wanted.admits(color, palette)) {
-            candidates.insert(wanted.candidate(color, palette));
+    pub(super) fn new(wanted: &Wanted, palette: &[PaletteColor], weights: &Weights) -> Self {
+        let nearest = [Candidate::default(); MOST_CANDIDATES];
+        let mut candidates = Self { nearest, count: 0 };
+        for color in palette.iter().filter(|color| wanted.admits(color, weights)) {
+            candidates.insert(wanted.candidate(color, weights));
         }
         candidates
     }
 
     pub(super) fn as_slice(&self) -> &[Candidate] {
         &self.nearest[..self.count]
-    }
-
-    /// The lightness of the wanted colour.
-    pub(super) fn lightness(&self) -> f32 {
-        self.lightness
     }
 
     fn insert(&mut self, candidate: Candidate) {
@@ -70,7 +59,7 @@ impl Candidates {
 }
 
 /// The wanted colour.
-struct Wanted {
+pub(super) struct Wanted {
     lab: [f32; 3],
     chroma: f32,
     /// The direction of the hue: its red–green and its yellow–blue component.
@@ -81,7 +70,8 @@ struct Wanted {
 }
 
 impl Wanted {
-    fn new(light: [f64; 3]) -> Self {
+    /// The colour of that red, green and blue light, each from 0 to 1.
+    pub(super) fn new(light: [f64; 3]) -> Self {
         let Oklab(lab) = Oklab::from_linear(light);
         let lab = lab.map(|part| part as f32);
         let chroma = chroma(lab);
@@ -94,8 +84,12 @@ impl Wanted {
         Self { lab, chroma, hue, cones, slopes }
     }
 
+    pub(super) fn lightness(&self) -> f32 {
+        self.lab[0]
+    }
+
     /// Whether a colour may be part of a mixture.
-    fn admits(&self, color: &PaletteColor, Palette { weights, .. }: Palette) -> bool {
+    fn admits(&self, color: &PaletteColor, weights: &Weights) -> bool {
         let [lightness, red, yellow] = color.lab;
         let color_chroma = chroma(color.lab);
         let fits = || {
@@ -104,12 +98,11 @@ impl Wanted {
                 && color_chroma <= self.chroma + weights.most_excess
                 && along >= weights.hue * color_chroma
         };
-        let is_near =
-            self.lab[0] >= DARK || (lightness - self.lab[0]).abs() <= weights.most_difference;
+        let is_near = (lightness - self.lab[0]).abs() <= weights.most_difference;
         is_near && (color_chroma < GREY || fits())
     }
 
-    fn candidate(&self, color: &PaletteColor, palette: Palette) -> Candidate {
+    fn candidate(&self, color: &PaletteColor, weights: &Weights) -> Candidate {
         let distance =
             color.lab.iter().zip(self.lab).map(|(part, wanted)| (part - wanted).powi(2)).sum();
         let from_cone_roots = oklab::FROM_CONE_ROOTS.map(|row| row.map(|factor| factor as f32));
@@ -117,7 +110,7 @@ impl Wanted {
         let [lightness, red, yellow] = product(&from_cone_roots, roots);
         let saturation = red * self.hue[0] + yellow * self.hue[1];
         let hue = yellow * self.hue[0] - red * self.hue[1];
-        let error = [lightness, saturation, palette.weights.hue_error * hue];
+        let error = [lightness, saturation, weights.hue_error * hue];
         Candidate { index: color.index, distance, error, lab: color.lab }
     }
 }

@@ -31,16 +31,41 @@ fn dark_wood_is_brown() {
     }
 }
 
+/// Dark colours of every hue.
+fn dark_colours() -> impl Iterator<Item = [u8; 3]> {
+    (0..8 * 8 * 8)
+        .map(|number| [number / 64, number / 8 % 8, number % 8].map(|digit| 12 * digit as u8))
+}
+
+fn chroma(Oklab([_, red, yellow]): Oklab) -> f64 {
+    libm::hypot(red, yellow)
+}
+
 #[test]
-fn dark_colours_have_no_bright_dots() {
-    for number in 0..8 * 8 * 8 {
-        let [red, green, blue] =
-            [number / 64, number / 8 % 8, number % 8].map(|digit| 12 * digit as u8);
-        let Oklab([wanted, ..]) = Rgb::new(red, green, blue).into();
+fn dark_mixtures_are_even_and_have_no_bright_dots() {
+    for [red, green, blue] in dark_colours() {
         let mixture = mixture(red, green, blue);
+        assert!(mixture.is_dark && [0, Mixture::WHOLE / 2].contains(&mixture.share), "{mixture:?}");
+        let wanted = Oklab::from(Rgb::new(red, green, blue)).0[0];
         for index in mixture.colors {
             let Oklab([lightness, ..]) = of_256(index).into();
-            assert!(lightness < wanted + 0.2, "{red} {green} {blue}: {mixture:?}");
+            assert!(lightness < wanted + 0.24, "{red} {green} {blue}: {mixture:?}");
+        }
+        let [darker, brighter] = mixture.colors.map(|index| Oklab::from(of_256(index)).0[0]);
+        assert!(brighter - darker < 0.2, "{red} {green} {blue}: {mixture:?}");
+    }
+}
+
+#[test]
+fn dark_mixtures_have_no_foreign_hue() {
+    for [red, green, blue] in dark_colours() {
+        let wanted = Oklab::from(Rgb::new(red, green, blue));
+        let mixture = mixture(red, green, blue);
+        for color in mixture.colors.map(|index| Oklab::from(of_256(index))) {
+            let along = (1..3).map(|i| color.0[i] * wanted.0[i]).sum::<f64>();
+            // Mixtures are stored by levels: the hue of a level differs a little.
+            let is_near = along >= 0.6 * chroma(color) * chroma(wanted);
+            assert!(chroma(color) < 0.01 || is_near, "{red} {green} {blue}: {mixture:?}");
         }
     }
 }
@@ -67,9 +92,11 @@ fn greys_are_mixed_of_greys() {
 }
 
 #[test]
-fn a_mixture_looks_more_like_the_colour_than_the_nearest_colour_does() {
+fn a_bright_mixture_looks_more_like_the_colour_than_the_nearest_colour_does() {
     let mut better = 0;
-    for color in [[100, 40, 30], [90, 80, 60], [60, 90, 120], [140, 130, 115], [40, 60, 40]] {
+    for color in
+        [[180, 110, 90], [150, 140, 110], [110, 140, 170], [140, 130, 115], [120, 150, 120]]
+    {
         let wanted = Oklab::from(Rgb::new(color[0], color[1], color[2]));
         let [red, green, blue] = color;
         let mixed = mean_light(mixture(red, green, blue));

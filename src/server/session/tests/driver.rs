@@ -64,6 +64,7 @@ impl Rig {
             Ask::Open(wish) => {
                 let header = Header::new(&wish.level, wish.mode, wish.difficulty, 7);
                 self.room = Room::new(&self.catalog, header).unwrap();
+                self.log.clear();
                 self.join(index)
             }
             Ask::Deed(deed) => {

@@ -58,7 +58,6 @@ fn play(seed: u64) {
     let mut chance = SplitMix64::new(seed);
     let mode = [Mode::Roam, Mode::Tag, Mode::Race, Mode::Together][chance.below(4)];
     let mut rig = Rig::new(mode);
-    let header = rig.room.header().clone();
     let steady = rig.member("Mara", (24, 7), Speaks::Kitty);
     let faulty = rig.member("Jon", (24, 7), Speaks::Kitty);
     let silent = rig.member("Lu", (24, 7), Speaks::Kitty);
@@ -79,6 +78,7 @@ fn play(seed: u64) {
     assert!(pictures >= LEAST_PICTURES, "seed {seed}: {pictures} pictures in {mode:?}");
     let bytes = rig.visitors[silent].bytes - silent_before;
     assert!(bytes <= 24 * 7 * BYTES_OF_A_CELL, "seed {seed}: {bytes} bytes");
+    let header = rig.room.header().clone();
     let mut again = Room::new(&rig.catalog, header).unwrap();
     let mut entries = rig.log.iter().peekable();
     while again.step() < rig.room.step() {
