@@ -38,6 +38,8 @@ pub(super) struct Visit {
     replied: mpsc::Receiver<Reply>,
     /// Until then no frame is due, so that snapshots need not be looked at.
     quiet_until: Duration,
+    /// When the session was woken last.
+    woken_at: Duration,
     /// When a key came that no frame has answered.
     key_at: Option<Duration>,
     /// The same, if the frame on its way answers it.
@@ -56,6 +58,8 @@ enum Happening {
     Time,
 }
 
+/// The time after which a session is woken again for what it has been woken for.
+const AGAIN: Duration = Duration::from_millis(250);
 /// The widest message of the day, in columns.
 const MESSAGE_COLUMNS: usize = 200;
 /// The time between the end of the sessions and that of the server, where there is as much.
@@ -77,7 +81,7 @@ impl Visit {
         }
         let host = HostFacts {
             name: host_name(),
-            message: Line::of(&config.message, MESSAGE_COLUMNS),
+            message: Line::of(visitor.notice.unwrap_or(&config.message), MESSAGE_COLUMNS),
             compresses: visitor.compresses,
             catalog: Arc::clone(shared.rooms.catalog()),
             idle: IdleLimits::default(),
@@ -100,6 +104,7 @@ impl Visit {
             replies,
             replied,
             quiet_until: Duration::ZERO,
+            woken_at: Duration::ZERO,
             key_at: None,
             answers_key: None,
             ends_at: None,
@@ -180,7 +185,10 @@ impl Visit {
             self.shared.metrics.frame_time.add(self.shared.now() - now);
             self.answers_key = self.key_at.take();
         }
-        *wakes_at = self.session.wakes_at(view.as_deref(), now);
+        // What waking did not change, waking again will not, as where a terminal never answers.
+        let time = self.session.wakes_at(view.as_deref(), now);
+        *wakes_at =
+            time.map(|time| if time > self.woken_at { time } else { self.woken_at + AGAIN });
         std::mem::take(self.session.output(now))
     }
 
@@ -219,6 +227,7 @@ impl Visit {
 
     fn wake(&mut self, now: Duration) {
         self.session.wake(now);
+        self.woken_at = now;
         if let Some(sentence) = self.place.as_ref().and_then(Place::closed) {
             self.leave();
             self.session.tell(News::Left(sentence.to_string()), now);

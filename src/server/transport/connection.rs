@@ -34,6 +34,8 @@ pub(super) struct Shared {
 
 /// The time that a session has for its end after its link has ended.
 const AFTERWARDS: Duration = Duration::from_secs(5);
+/// The least time between two looks whether a client has gone.
+const LEAST_PAUSE: Duration = Duration::from_millis(50);
 /// The time that a client has for closing the connection after its session has ended.
 const FAREWELL: Duration = Duration::from_secs(2);
 /// The messages that may wait for russh: a frame, three of the end, and questions whether the
@@ -140,6 +142,7 @@ async fn converse<H: Host>(
     let _session = Counted::new(&shared.counters.sessions);
     let mut session = pin!(host.serve(visitor, link));
     let mut lost = pin!(lost(&shared.config, line, &handle));
+    let mut is_lost = false;
     let mut phases = shared.phases.clone();
     let departure = loop {
         tokio::select! {
@@ -149,7 +152,10 @@ async fn converse<H: Host>(
                 _ = timeout(AFTERWARDS, session).await;
                 return;
             }
-            () = &mut lost => line.cut(),
+            () = &mut lost, if !is_lost => {
+                is_lost = true;
+                line.cut();
+            }
             Ok(()) = phases.changed() => match *phases.borrow_and_update() {
                 Phase::Open => {}
                 Phase::Draining => inlet.drain(),
@@ -191,10 +197,11 @@ async fn lost(config: &LiveConfig, line: &Line, handle: &Handle) {
         if silent >= pause && !is_waiting {
             // No client forwards anything here, so it has nothing to cancel.
             let question = handle.cancel_forward_tcpip(String::new(), 0);
-            _ = timeout(pause, question).await;
+            _ = timeout(pause.min(config.silence.saturating_sub(silent)), question).await;
         }
-        let sign = line.last_sign();
-        sleep(pause.saturating_sub(sign.elapsed()).max(pause / 4)).await;
+        let silent = line.last_sign().elapsed();
+        let end = config.silence.saturating_sub(silent).max(LEAST_PAUSE);
+        sleep(pause.saturating_sub(silent).max(pause / 4).min(end)).await;
     }
 }
 
