@@ -37,7 +37,7 @@ fn act(folder: &Path, action: AdminAction) -> Result<String, Error> {
             Ok(format!("the server ends; it waits for {}\n", visitors(count)))
         }
         AdminAction::Kick { target, reason } => kick(folder, target, reason),
-        AdminAction::Ban { target, time, reason } => bans::ban(folder, target, time, reason),
+        AdminAction::Ban { target, time, reason } => bans::ban(folder, &target, time, &reason),
         AdminAction::Unban { target } => bans::unban(folder, &target),
         AdminAction::Bans => bans::list(folder),
     }

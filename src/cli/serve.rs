@@ -93,6 +93,8 @@ async fn serve(
         () = server.run(host, signals.first()) => {}
         () = signals.second() => {}
     }
+    // Else the process might end before the socket is removed.
+    services.shutdown().await;
     events::ended();
     Ok(())
 }

@@ -138,6 +138,7 @@ impl Sequencer {
             let changes = log.step(room, &doorway.inbox);
             (room.view(), changes)
         });
+        self.load.metrics().entries.add(changes.entries);
         if let Some(run) = changes.finished {
             doorway.inbox.finish(run);
         }

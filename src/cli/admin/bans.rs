@@ -12,24 +12,24 @@ use crate::store::host::{Ban, BanTarget, HostStore, SqliteStore, StoreFailure, U
 /// Bans, and ends the sessions to which the ban applies.
 pub(super) fn ban(
     folder: &Path,
-    target: Target,
+    target: &Target,
     time: Option<Duration>,
-    reason: String,
+    reason: &str,
 ) -> Result<String, Error> {
     let mut store = open(folder)?;
     let now = now();
-    let targets = targets(&mut store, &target)?;
+    let targets = targets(&mut store, target)?;
     for target in &targets {
         let ban = Ban {
             target: target.clone(),
             until: time.map(|time| now.after(time.as_secs())),
-            reason: reason.clone(),
+            reason: reason.to_owned(),
             by: operator(),
             made_at: now,
         };
         store.ban(&ban).map_err(failed)?;
     }
-    let removed = remove(folder, &targets, &reason)?;
+    let removed = remove(folder, &targets, reason)?;
     let whom: Vec<String> = targets.iter().map(shown).collect();
     let time =
         time.map_or("for ever".to_owned(), |time| format!("for {}", shown_time(time.as_secs())));
@@ -121,6 +121,7 @@ fn no_store(folder: &Path) -> Error {
     Error::mistake(format!("there is no store of a host in {folder}"))
 }
 
+#[expect(clippy::needless_pass_by_value, reason = "`map_err` passes a value")]
 fn failed(failure: StoreFailure) -> Error {
     Error::machine(failure.to_string())
 }

@@ -37,7 +37,7 @@ impl Signals {
     /// Catches signals from now on. Call it within a runtime.
     pub(super) fn catch() -> io::Result<Self> {
         let ends = Arc::<Ends>::default();
-        listen(ends.clone())?;
+        listen(&ends)?;
         Ok(Self { ends, drain: Arc::default() })
     }
 
@@ -65,7 +65,7 @@ impl Signals {
 }
 
 #[cfg(unix)]
-fn listen(ends: Arc<Ends>) -> io::Result<()> {
+fn listen(ends: &Arc<Ends>) -> io::Result<()> {
     use tokio::signal::unix::{SignalKind, signal};
     for kind in [SignalKind::terminate(), SignalKind::interrupt()] {
         let (mut signal, ends) = (signal(kind)?, ends.clone());
@@ -80,7 +80,8 @@ fn listen(ends: Arc<Ends>) -> io::Result<()> {
 
 /// Ctrl-C alone.
 #[cfg(not(unix))]
-fn listen(ends: Arc<Ends>) -> io::Result<()> {
+fn listen(ends: &Arc<Ends>) -> io::Result<()> {
+    let ends = ends.clone();
     tokio::spawn(async move {
         while tokio::signal::ctrl_c().await.is_ok() {
             ends.ask();
@@ -106,7 +107,7 @@ impl Hangups {
         if self.signal.recv().await.is_some() {
             return;
         }
-        std::future::pending().await
+        std::future::pending::<()>().await;
     }
 }
 

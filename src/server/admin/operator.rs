@@ -65,9 +65,10 @@ impl fmt::Debug for Operator {
 
 /// The sentence for those who are sent away.
 pub(crate) fn farewell(reason: &str, is_banned: bool) -> String {
-    let what = match is_banned {
-        true => "You are banned from this host",
-        false => "The operator of this host has ended your session",
+    let what = if is_banned {
+        "You are banned from this host"
+    } else {
+        "The operator of this host has ended your session"
     };
     match Line::of(reason, REASON_COLUMNS) {
         Some(reason) => format!("{what}: {reason}"),

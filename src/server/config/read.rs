@@ -35,21 +35,15 @@ impl Config {
                 "message" => set(&mut self.message, message(&entry)),
                 "log" => set(&mut self.log, log(&entry)),
                 "metrics" => self.read_metrics(&entry),
-                key => match SETTINGS.iter().find(|known| known.name == key) {
-                    Some(setting) => {
-                        if let Some(value) = number(&entry, setting) {
-                            (setting.set)(self, value);
-                        }
-                    }
-                    None => {
+                key => {
+                    if let Some(setting) = SETTINGS.iter().find(|known| known.name == key) {
+                        set_number(self, &entry, setting);
+                    } else {
                         let names = SETTINGS.iter().map(|setting| setting.name);
-                        let known: Vec<&str> = ["listen", "message", "log", "metrics"]
-                            .into_iter()
-                            .chain(names)
-                            .collect();
+                        let known: Vec<&str> = TEXTS.into_iter().chain(names).collect();
                         faults.push(entry.unknown_key("the configuration", &known));
                     }
-                },
+                }
             }
         }
     }
@@ -67,6 +61,15 @@ impl Config {
 
 const LISTEN: &str = "listen = \"127.0.0.1:2222\"";
 const METRICS_LISTEN: &str = "listen = \"127.0.0.1:9464\"";
+
+/// The settings that are no numbers.
+const TEXTS: [&str; 4] = ["listen", "message", "log", "metrics"];
+
+fn set_number(config: &mut Config, entry: &Entry<'_, '_>, setting: &Setting) {
+    if let Some(value) = number(entry, setting) {
+        (setting.set)(config, value);
+    }
+}
 
 fn set<T>(target: &mut T, value: Option<T>) {
     if let Some(value) = value {

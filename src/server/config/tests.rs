@@ -55,7 +55,7 @@ fn faults_of_texts_are_named_with_their_lines() {
 }
 
 #[test]
-fn a_running_server_keeps_the_addresses_that_it_listens_at() {
+fn a_running_server_keeps_what_cannot_change() {
     let live = LiveConfig::new(Config::default());
     let mut seen = live.subscribe();
     let mut wanted = Config { message: "Welcome".to_owned(), ..Config::default() };
@@ -65,7 +65,8 @@ fn a_running_server_keeps_the_addresses_that_it_listens_at() {
     wanted.listen = "[::1]:22".parse().unwrap();
     wanted.metrics = Some("127.0.0.1:9464".parse().unwrap());
     wanted.rows = 100;
-    assert_eq!(live.replace(wanted), ["listen", "metrics.listen"]);
+    wanted.empty_room = Duration::ZERO;
+    assert_eq!(live.replace(wanted), ["listen", "metrics.listen", "empty-room-seconds"]);
     let config = live.get();
     assert_eq!((config.rows, config.listen), (100, Config::default().listen));
     assert_eq!(config.metrics, None);

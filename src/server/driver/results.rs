@@ -51,6 +51,10 @@ fn placed(
     let scores = store.level_scores(&run.board(), MOST_ROWS)?;
     let place = scores.iter().position(|score| score.account == account);
     let (time, rank) = (clock(run.tally().steps), run.rank());
+    if let Some(score) = place.map(|place| &scores[place]) {
+        let (name, level) = (score.name.as_str(), run.board().level());
+        events::result_verified(name, level, run.tally().steps, rank.name());
+    }
     let what = if improved.time { "your best" } else { "not your best" };
     Ok(match place {
         Some(place) => format!("{time}, rank {rank}: {what}. You are number {}.", place + 1),

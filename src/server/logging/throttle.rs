@@ -34,6 +34,6 @@ mod tests {
         let passed: Vec<_> =
             (0..2500).filter_map(|time| throttle.pass(Duration::from_millis(time))).collect();
         assert_eq!(passed, [0, 999, 999]);
-        assert_eq!(throttle.pass(Duration::from_secs(60)), Some(499));
+        assert_eq!(throttle.pass(Duration::from_mins(1)), Some(499));
     }
 }

@@ -25,6 +25,8 @@ pub(crate) struct FinishedRun {
 /// What a step has changed.
 #[derive(Debug, Default)]
 pub(super) struct Changes {
+    /// The entries that the step has.
+    pub(super) entries: u64,
     /// Whether a lobby would show the room otherwise.
     pub(super) summary: bool,
     pub(super) finished: Option<FinishedRun>,
@@ -62,6 +64,7 @@ impl RoundLog {
         while let Some(entry) = self.log.next(step) {
             changes.summary |= matches!(entry.deed, Deed::Join { .. } | Deed::Leave);
             room.apply(&entry);
+            changes.entries += 1;
         }
         let phase = room.phase();
         room.advance();
