@@ -120,7 +120,7 @@ fn memory() -> Option<usize> {
     Some(1024 * line.trim().strip_suffix(" kB")?.parse::<usize>().ok()?)
 }
 
-/// Waits until every client has a frame that it does not take.
+/// Waits until all clients are there, and nothing moves any more.
 fn wait_for_crowd(counters: &Counters, crowd: &mut Child) {
     let end = Instant::now() + PATIENCE;
     let mut still_since = Instant::now();
@@ -131,7 +131,7 @@ fn wait_for_crowd(counters: &Counters, crowd: &mut Child) {
         std::thread::sleep(Duration::from_millis(100));
         let held = counters.held.load(Ordering::Relaxed);
         let sessions = counters.sessions.load(Ordering::Relaxed);
-        if sessions <= CLIENTS || held < CLIENTS * FRAME || held != sent {
+        if sessions <= CLIENTS || held != sent {
             still_since = Instant::now();
         }
         sent = held;

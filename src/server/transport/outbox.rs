@@ -17,7 +17,7 @@ use bytes::Bytes;
 use russh::ChannelId;
 use russh::server::Handle;
 use tokio::sync::Notify;
-use tokio::task::unconstrained;
+use tokio::task::{unconstrained, yield_now};
 
 use super::{Counters, locked};
 
@@ -88,6 +88,10 @@ impl Outbox {
     pub async fn drained(&mut self) {
         while !self.is_empty() && !self.passage.is_closed.load(Ordering::Acquire) {
             self.passage.changed.notified().await;
+        }
+        if self.passage.is_closed.load(Ordering::Acquire) {
+            // A session that sends frame after frame would never let its task see the end.
+            yield_now().await;
         }
     }
 }
