@@ -7,7 +7,7 @@
 use std::hint::black_box;
 use std::time::{Duration, Instant};
 
-use cellcaster::game::{Alarm, Game, Intent, Intents};
+use cellcaster::game::{Alarm, Company, Game, Input, Intent, Intents, PlayerColor, Rules};
 use cellcaster::map::{self, builtin};
 use cellcaster::world::World;
 use criterion::{Criterion, criterion_group, criterion_main};
@@ -121,6 +121,40 @@ fn steps(criterion: &mut Criterion) {
     group.finish();
 }
 
+/// The same with eight players who run in circles from one place, and walk through each other or
+/// not.
+fn steps_of_several(criterion: &mut Criterion) {
+    let mut group = criterion.benchmark_group("a step of 8 players");
+    for (name, count, collides) in [
+        ("no guards", 0, false),
+        ("no guards, colliding", 0, true),
+        ("20 guards", 20, false),
+        ("20 guards, colliding", 20, true),
+    ] {
+        let company = Company { collides, ..Company::default() };
+        let mut game = Game::for_company(world(count, Deed::Chase), Rules::default(), company);
+        let players = PlayerColor::ALL.map(|color| game.join(color).expect("there is room"));
+        let step = |game: &mut Game| {
+            let seen = game.steps();
+            game.step_all(&players.map(|player| Input { player, intents: circling(), seen }));
+        };
+        (0..60).for_each(|_| step(&mut game));
+        let begun = game.clone();
+        let mut left = 0;
+        group.bench_function(name, |bencher| {
+            bencher.iter(|| {
+                if left == 0 {
+                    (game, left) = (begun.clone(), 120);
+                }
+                left -= 1;
+                step(black_box(&mut game));
+            });
+        });
+        group.bench_function(format!("{name}: a copy"), |bencher| bencher.iter(|| begun.clone()));
+    }
+    group.finish();
+}
+
 /// A copy of the game, as a checkpoint is one, after half a minute in which guards find their ways.
 fn copies(criterion: &mut Criterion) {
     let mut group = criterion.benchmark_group("a copy");
@@ -140,5 +174,5 @@ fn copies(criterion: &mut Criterion) {
     group.finish();
 }
 
-criterion_group!(benches, steps, copies);
+criterion_group!(benches, steps, copies, steps_of_several);
 criterion_main!(benches);

@@ -23,7 +23,10 @@ mod menu;
 mod menus;
 mod mouse;
 mod offers;
+mod overlay;
 mod panels;
+#[cfg(feature = "serve")]
+pub(crate) mod parts;
 mod played;
 mod recording;
 mod redraw;

@@ -5,6 +5,8 @@
 //! argument causes a panic.
 
 mod accuracy;
+#[cfg(all(unix, feature = "serve"))]
+mod admin;
 mod arguments;
 mod asciicast;
 mod bench;
@@ -22,7 +24,13 @@ mod play;
 mod plot;
 mod recording;
 mod replay;
+#[cfg(feature = "serve")]
+mod room_recording;
+#[cfg(feature = "serve")]
+mod scores;
 mod script;
+#[cfg(feature = "serve")]
+mod serve;
 mod snapshot;
 mod today;
 mod verify;
@@ -56,10 +64,16 @@ impl Command {
             Self::Cast(options) => cast::run(&options),
             Self::Check(maps) => check::run(&maps),
             Self::Config(options) => config::run(options),
+            #[cfg(all(unix, feature = "serve"))]
+            Self::Admin(options) => admin::run(options),
             Self::Accuracy(options) => accuracy::run(&options),
             Self::Bench(options) => bench::run(&options),
             Self::Levels(options) => levels::run(&options),
             Self::Replay(options) => replay::run(&options),
+            #[cfg(feature = "serve")]
+            Self::Scores(options) => scores::run(&options),
+            #[cfg(feature = "serve")]
+            Self::Serve(options) => serve::run(options),
             Self::Wire(options) => wire::run(&options),
         }
     }

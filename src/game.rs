@@ -11,6 +11,7 @@
 mod checkpoint;
 mod checksum;
 mod collision;
+mod company;
 mod doors;
 mod encounter;
 mod exits;
@@ -38,21 +39,25 @@ mod sound;
 mod stance;
 mod tally;
 mod tools;
+mod turn;
 mod turning;
 
 use crate::generate::{self, Site, Window};
 use crate::world::World;
 use checkpoint::Checkpoint;
+use company::Members;
 use doors::Doors;
 use guards::Guards;
 use hazards::Spikes;
-use health::Cause;
 use mechanisms::Mechanisms;
 use player::{FRICTION, Player, RUN, STILL, WALK};
 use show::Sprites;
-use tally::Counts;
 use tools::{Missiles, Smoke, Supplies};
 
+pub use crate::world::sprite::builtin::PlayerColor;
+pub use company::{
+    Company, Input, MOST_LAG, MOST_PLAYERS, OtherPlayer, PlayerId, PlayerView, Sees, Strikes,
+};
 pub use exits::is_exit_out_of_reach;
 pub use flight::Flight;
 pub use guards::{Alarm, GuardView, Mood};
@@ -94,9 +99,10 @@ pub struct Game {
     is_mission: bool,
     /// The window of a generated level, of which `world` shows a part.
     window: Option<Window>,
+    /// The player of a game for one; in a game for several, the one whose turn it is.
     player: Player,
-    /// What has killed the player, if something has.
-    killed_by: Option<Cause>,
+    /// The players of a game for several.
+    members: Option<Box<Members>>,
     doors: Doors,
     mechanisms: Mechanisms,
     spikes: Spikes,
@@ -107,7 +113,6 @@ pub struct Game {
     /// The sounds of the current step; empty between steps.
     sounds: Vec<Sound>,
     checkpoint: Checkpoint,
-    counts: Counts,
     steps: u64,
     revision: u64,
 }
@@ -133,7 +138,7 @@ impl Game {
             is_mission,
             window,
             player: Player::new(&world, supplies),
-            killed_by: None,
+            members: None,
             doors: Doors::default(),
             mechanisms: Mechanisms::new(&world),
             spikes: Spikes::new(&mut world),
@@ -143,7 +148,6 @@ impl Game {
             sprites: if is_mission { Sprites::added_to(&mut world) } else { Sprites::default() },
             sounds: Vec::new(),
             checkpoint: Checkpoint::default(),
-            counts: Counts::default(),
             steps: 0,
             revision: 0,
             world,
@@ -177,116 +181,30 @@ impl Game {
 
     /// Advances the game by one step of [`STEP`] seconds with these intents. Nothing moves after
     /// the exit; after death, nothing but what [`Intent::Retry`] does.
+    ///
+    /// In a game for several these are the intents of the first one, and the others want nothing.
     pub fn step(&mut self, intents: Intents) {
+        if self.members.is_some() {
+            let seen = self.steps;
+            return self.step_all(&[Input { player: PlayerId::FIRST, intents, seen }]);
+        }
         if self.is_finished() {
             return;
         }
         if self.is_dead() {
             return self.step_after_death(intents);
         }
-        let intents = self.at_a_door(intents);
-        let before = self.player.motion;
-        self.move_player(intents);
-        self.take_finds();
-        self.meet_hazards(&before);
-        self.refuse(before.cell());
-        self.pass_time();
+        let intents = self.move_one(intents);
+        self.thin_smoke();
         self.move_doors();
-        self.open_doors(intents);
         self.act(intents);
-        self.move_mechanisms();
-        self.move_missiles();
-        self.move_guards();
+        self.move_others();
         self.hear();
+        self.sounds.clear();
         self.show();
         self.move_window();
         self.reach_checkpoint();
         self.steps = self.steps.saturating_add(1);
-    }
-
-    fn step_after_death(&mut self, intents: Intents) {
-        let presses = self.presses(intents);
-        let retries = self.player.fresh(presses).contains(Intent::Retry);
-        self.player.pressed = presses;
-        if retries {
-            self.retry();
-        }
-    }
-
-    fn move_player(&mut self, intents: Intents) {
-        let before = self.player.motion;
-        self.player.motion = before.stepped(&self.world, intents, self.pace());
-        if self.is_mission {
-            self.hear_steps(&before, intents);
-        }
-    }
-
-    /// The intents that are recorded from step to step, because each press acts once. A lever turns
-    /// once for each press, too.
-    fn presses(&self, intents: Intents) -> Intents {
-        let mut presses = intents.once();
-        if self.mechanisms.has_handles() && intents.contains(Intent::Open) {
-            presses.insert(Intent::Open);
-        }
-        presses
-    }
-
-    /// Does what the player begins to want.
-    fn act(&mut self, intents: Intents) {
-        let presses = self.presses(intents);
-        let fresh = self.player.fresh(presses);
-        self.player.pressed = presses;
-        if fresh.is_empty() {
-            return;
-        }
-        self.use_tools(fresh);
-        if fresh.contains(Intent::Open)
-            && let Some(handle) = self.handle_ahead()
-        {
-            self.use_handle(handle);
-        }
-    }
-
-    /// Advances the player's clocks.
-    fn pass_time(&mut self) {
-        let has_ended = self.player.wait(1);
-        self.revision += u64::from(has_ended);
-        if !self.smoke.is_empty() {
-            self.smoke.step();
-        }
-    }
-
-    fn move_doors(&mut self) {
-        let (motion, guards) = (self.player.motion, &self.guards);
-        let is_occupied = |cell| motion.touches(cell) || guards.touches(cell);
-        let has_moved = self.doors.step(&mut self.world, is_occupied);
-        self.revision += u64::from(has_moved);
-    }
-
-    /// Lets the player hear the sounds of this step.
-    fn hear(&mut self) {
-        if self.is_mission {
-            let position = self.player.motion.position();
-            let heard = self.player.hearing.step(&self.world, 0, position, &self.sounds);
-            self.revision += u64::from(heard);
-            self.sounds.clear();
-        }
-    }
-
-    /// Moves the window after the player.
-    fn move_window(&mut self) {
-        let Some(window) = &mut self.window else { return };
-        if let Some(shift) = window.follow(&mut self.world, self.player.motion.cell()) {
-            self.player.motion = self.player.motion.shifted(shift);
-            self.doors.shift(&mut self.world, shift);
-            self.missiles.shift(shift);
-            self.smoke.shift(shift);
-            if self.is_mission {
-                self.guards.shift(&self.world, shift);
-                self.player.hearing.forget();
-            }
-            self.show();
-        }
     }
 }
 

@@ -29,7 +29,7 @@ use std::fmt;
 use std::sync::Arc;
 
 pub use chunk::{CHUNK_SIDE, Chunk, ChunkArea, ChunkIndex, Extent, Site};
-pub use descent::{daily_seed, descent};
+pub use descent::{daily_seed, descent, floors_below};
 pub use level::Level;
 pub(crate) use window::Shift;
 pub use window::Window;

@@ -78,6 +78,8 @@ mod numeric;
 mod raster;
 pub mod render;
 pub mod rng;
+#[cfg(feature = "serve")]
+pub mod server;
 pub mod space;
 #[cfg(feature = "terminal")]
 pub mod store;

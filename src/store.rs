@@ -31,9 +31,15 @@ mod best;
 mod change;
 mod disk;
 mod home;
+#[cfg(feature = "serve")]
+pub mod host;
 mod names;
+#[cfg(feature = "serve")]
+mod private;
 mod progress;
 mod read;
+#[cfg(feature = "cli")]
+mod replayed;
 mod values;
 mod write;
 
@@ -45,6 +51,8 @@ use home::Home;
 pub use names::map_key;
 use progress::Progress;
 pub use progress::{Daily, Descent, Preferences, SavedGame, Slot};
+#[cfg(feature = "cli")]
+pub(crate) use replayed::{DescentRun, replayed};
 
 use crate::world::Difficulty;
 

@@ -1,8 +1,9 @@
 //! The real terminal: its capabilities, sessions with it, its bytes as events, and cells as bytes.
 //!
-//! A [`Session`] takes the terminal and yields [`Event`]s; [`Session::draw`] shows a frame. At the
+//! A [`Session`] takes the terminal of the process and yields [`Event`]s; [`Session::draw`] shows a frame. At the
 //! end of the session, the terminal is restored to its previous state, whether the session ends by
-//! a return, an error, a panic or a signal.
+//! a return, an error, a panic or a signal. A [`Protocol`] is the same without a device and a clock,
+//! for any other reader and writer, such as a channel of a server.
 //!
 //! This module reads the bytes and divides them into units itself. An event library was refused:
 //! the known ones swallow keys after an unknown answer, mistake half a sequence for keys, or keep a
@@ -21,6 +22,8 @@ mod guard;
 mod input;
 mod key;
 mod mouse;
+mod options;
+mod protocol;
 mod recorder;
 mod sequence;
 mod session;
@@ -45,8 +48,10 @@ pub use self::event::{Event, QuitReason};
 pub use self::fidelity::{Fidelity, UnknownFidelity};
 pub use self::key::{Key, KeyEvent, Modifiers, Phase, UnknownKey};
 pub use self::mouse::{MouseButton, MouseEvent, MouseEventKind};
+pub use self::options::Options;
 #[cfg(feature = "cli")]
 pub(crate) use self::platform::{peak_memory, take_keys_from_terminal};
+pub use self::protocol::Protocol;
 pub use self::recorder::Recorder;
-pub use self::session::{Options, Session};
+pub use self::session::Session;
 pub use self::size::WindowSize;

@@ -36,6 +36,8 @@ mod ramp;
 mod wanted;
 
 pub use first_person::{FirstPerson, View};
+#[cfg(feature = "serve")]
+pub(crate) use glyphs::color_at;
 pub use glyphs::{CellAspect, GlyphMode};
 pub use held::{CHORD, HeldKeys, Hold, LINGER, Press};
 pub use minimap::{Explored, MapMark, Minimap};

@@ -32,7 +32,7 @@ const COLUMNS: usize = NAME.len() * ADVANCE - 1;
 const LEAST_BELOW: u16 = 6;
 
 /// Draws the name on a band at the top of `picture`, as large as there is room. Returns the area below it.
-pub(super) fn draw(
+pub(crate) fn draw(
     canvas: &mut impl Canvas,
     picture: Rect,
     glyphs: GlyphMode,

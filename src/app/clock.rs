@@ -6,7 +6,7 @@ use crate::game::STEP;
 
 /// Divides time into steps of the game. A remainder counts for the next step.
 #[derive(Clone, Debug, Default)]
-pub(super) struct Clock {
+pub(crate) struct Clock {
     /// The time up to which steps have been counted.
     counted: Duration,
 }
@@ -14,34 +14,34 @@ pub(super) struct Clock {
 impl Clock {
     /// The most steps computed at once, a quarter of a second: a machine that is too slow plays
     /// more slowly and does not fall behind further and further.
-    pub(super) const MOST_STEPS: u64 = 15;
+    pub(crate) const MOST_STEPS: u64 = 15;
 
     /// The number of steps since the last call.
-    pub(super) fn steps_until(&mut self, now: Duration) -> u64 {
+    pub(crate) fn steps_until(&mut self, now: Duration) -> u64 {
         let steps = (now.saturating_sub(self.counted).as_nanos() / step().as_nanos()) as u64;
         self.counted = after(self.counted, steps);
         steps
     }
 
     /// Skips the time up to `now`.
-    pub(super) fn skip_to(&mut self, now: Duration) {
+    pub(crate) fn skip_to(&mut self, now: Duration) {
         self.counted = now;
     }
 
     /// The time at which the step after `steps` further steps ends.
-    pub(super) fn step_after(&self, steps: u64) -> Duration {
+    pub(crate) fn step_after(&self, steps: u64) -> Duration {
         after(self.counted, steps.saturating_add(1))
     }
 }
 
 /// The time `steps` steps after `time`.
-pub(super) fn after(time: Duration, steps: u64) -> Duration {
+pub(crate) fn after(time: Duration, steps: u64) -> Duration {
     let nanoseconds = step().as_nanos() as u64;
     time + Duration::from_nanos(nanoseconds.saturating_mul(steps))
 }
 
 /// The duration of a step.
-pub(super) fn step() -> Duration {
+pub(crate) fn step() -> Duration {
     Duration::from_secs_f64(STEP)
 }
 

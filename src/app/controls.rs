@@ -11,27 +11,27 @@ use crate::tui::{HeldKeys, Hold, Press, tap_steps, wanted};
 
 /// The keys that are held, and the modes that are switched on.
 #[derive(Clone, Debug, Default)]
-pub(super) struct Controls {
-    pub(super) held: HeldKeys<Key>,
-    pub(super) toggles: Toggles,
+pub(crate) struct Controls {
+    pub(crate) held: HeldKeys<Key>,
+    pub(crate) toggles: Toggles,
     /// The key that was pressed with Shift, for terminals that do not report Shift itself.
     shifted: Option<Key>,
 }
 
 /// The state of the game that keys depend on.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub(super) struct KeyContext {
+pub(crate) struct KeyContext {
     /// Whether the game runs and is not paused.
-    pub(super) plays: bool,
+    pub(crate) plays: bool,
     /// Whether the player is in the air.
-    pub(super) is_airborne: bool,
+    pub(crate) is_airborne: bool,
     /// Whether the player flies, so that ducking moves them.
-    pub(super) flies: bool,
+    pub(crate) flies: bool,
 }
 
 impl Controls {
     /// Handles an event. Returns its meaning, or `None` for a release.
-    pub(super) fn handle(
+    pub(crate) fn handle(
         &mut self,
         event: KeyEvent,
         now: Duration,
@@ -78,7 +78,7 @@ impl Controls {
     }
 
     /// Releases the keys that are no longer held at time `now`.
-    pub(super) fn advance(&mut self, now: Duration, context: KeyContext) {
+    pub(crate) fn advance(&mut self, now: Duration, context: KeyContext) {
         if context.is_airborne {
             self.held.keep(now);
         }
@@ -86,7 +86,7 @@ impl Controls {
     }
 
     /// The number of steps from `now`, from one to `most`, in which the intents do not change.
-    pub(super) fn steady_steps(&self, now: Duration, context: KeyContext, most: u64) -> u64 {
+    pub(crate) fn steady_steps(&self, now: Duration, context: KeyContext, most: u64) -> u64 {
         if self.held.has_taps() || context.is_airborne {
             return 1;
         }
@@ -96,7 +96,7 @@ impl Controls {
     }
 
     /// The player's intents.
-    pub(super) fn intents(&self, bindings: &Bindings, context: KeyContext) -> Intents {
+    pub(crate) fn intents(&self, bindings: &Bindings, context: KeyContext) -> Intents {
         let keys = self.held.iter().filter_map(|(key, hold)| match bindings.action(key) {
             Some(Action::Want(Intent::Duck)) if context.flies && hold == Hold::Unknown => None,
             Some(Action::Want(intent)) => Some((intent, hold)),

@@ -6,19 +6,19 @@ use crate::terminal::ColorSource;
 
 /// The known properties of the terminal.
 #[derive(Clone, Debug, Default)]
-pub(super) struct Detection {
-    pub(super) depth: ColorDepth,
+pub(crate) struct Detection {
+    pub(crate) depth: ColorDepth,
     /// The source of the colour depth; `None` if it is the command line or the configuration.
-    pub(super) source: Option<ColorSource>,
+    pub(crate) source: Option<ColorSource>,
     /// Whether key releases are reported; `None` if that is not known yet.
-    pub(super) reports_releases: Option<bool>,
+    pub(crate) reports_releases: Option<bool>,
     /// The locale setting that restricts output to ASCII.
-    pub(super) ascii_locale: Option<String>,
+    pub(crate) ascii_locale: Option<String>,
 }
 
 impl Detection {
     /// A line for each limit.
-    pub(super) fn lines(&self) -> impl Iterator<Item = String> {
+    pub(crate) fn lines(&self) -> impl Iterator<Item = String> {
         [self.colors(), self.releases(), self.characters()].into_iter().flatten()
     }
 

@@ -1,15 +1,13 @@
 //! Drawing: the picture, and what lies over it.
 
 use ratatui::layout::Rect;
-use ratatui::style::Color;
 
+use super::overlay::Overlay;
 use super::status::{StatusValues, hint};
 use super::vitals::HealthSigns;
-use super::{App, DrawOptions, Screen, banner, hud, panels};
+use super::{App, DrawOptions, Screen, banner, panels};
 use crate::canvas::Canvas;
-use crate::color::palette::ColorDepth;
-use crate::game::Game;
-use crate::tui::{GlyphMode, MapMark};
+use crate::game::{Game, PlayerId};
 
 impl App {
     pub(super) fn draw(&mut self, canvas: &mut impl Canvas) {
@@ -55,11 +53,7 @@ impl App {
             mouse: self.pointer.is_on(),
             stats: self.stats.as_ref().filter(|_| self.shows_stats),
             bindings: &self.settings.bindings,
-            health_signs: match (self.settings.glyphs, self.depth) {
-                (_, ColorDepth::Mono) => HealthSigns::Digits,
-                (GlyphMode::Half, _) => HealthSigns::Hearts,
-                _ => HealthSigns::Digits,
-            },
+            health_signs: HealthSigns::for_picture(self.settings.glyphs, self.depth),
         });
         canvas.draw_widget(&self.status, area);
     }
@@ -80,7 +74,7 @@ impl App {
         };
         self.game.draw(&options, canvas, area, &mut self.views);
         if is_game {
-            self.draw_map(canvas, area);
+            self.draw_map(canvas, area, &options);
             self.draw_hud(canvas, area, &options);
         }
     }
@@ -95,47 +89,22 @@ impl App {
     }
 
     fn draw_hud(&self, canvas: &mut impl Canvas, area: Rect, options: &DrawOptions) {
+        let Some(overlay) = self.overlay(options) else {
+            return options.draw_middle(canvas, area);
+        };
+        overlay.draw_hud(canvas, area, self.screen == Screen::Playing);
+    }
+
+    fn draw_map(&mut self, canvas: &mut impl Canvas, area: Rect, options: &DrawOptions) {
         let preferences = self.store.preferences();
-        let is_plain = self.depth == ColorDepth::Mono;
-        if options.marks_middle && (is_plain || options.glyphs != GlyphMode::Half) {
-            let (x, y) = (area.x + area.width / 2, area.y + area.height / 2);
-            canvas.draw_character(x, y, '+', [Color::Reset; 2]);
-        }
         let Some(game) = self.game.grid() else { return };
-        let heading = game.camera(self.field_of_view).heading;
-        if let Some((flash, heading)) = options.flash.as_ref().filter(|_| is_plain) {
-            hud::draw_edge(canvas, area, flash, *heading);
-        }
-        if preferences.compass {
-            hud::draw_compass(canvas, area, heading);
-        }
-        if self.screen == Screen::Playing {
-            hud::draw_sounds(canvas, area, game.heard(), heading, self.depth);
-            if let Some(note) = game.note() {
-                hud::draw_note(canvas, area, note);
-            }
+        if let Some(overlay) = Overlay::new(game, PlayerId::FIRST, options, preferences) {
+            overlay.draw_map(canvas, area, &mut self.map, &self.views.grid);
         }
     }
 
-    fn draw_map(&mut self, canvas: &mut impl Canvas, area: Rect) {
-        let Some(game) = self.game.grid() else { return };
-        let camera = &game.camera(self.field_of_view);
-        self.map.explore(game, camera, area.width);
-        if !self.map.is_shown {
-            return;
-        }
-        let marks: Vec<MapMark> = game
-            .guards()
-            .filter(|guard| !guard.is_down)
-            .map(|guard| MapMark { position: guard.position, heading: guard.heading })
-            .collect();
-        let map = self.map.minimap(game, camera, &self.views.grid);
-        let map = map.glyphs(self.settings.glyphs).color_depth(self.depth).marks(&marks);
-        if let Some(panel) = panels::minimap(area, &map) {
-            let inside = panels::framed(canvas, panel, "map");
-            map.paint(inside, canvas);
-            let extent = map.extent_within(inside.as_size());
-            self.map.shown(extent, game, camera);
-        }
+    fn overlay<'a>(&'a self, options: &'a DrawOptions) -> Option<Overlay<'a>> {
+        let preferences = self.store.preferences();
+        Overlay::new(self.game.grid()?, PlayerId::FIRST, options, preferences)
     }
 }

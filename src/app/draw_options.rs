@@ -12,21 +12,21 @@ use crate::world::{FieldOfView, Heading};
 
 /// How a picture is drawn.
 #[derive(Clone, Copy, Debug)]
-pub(super) struct DrawOptions {
-    pub(super) glyphs: GlyphMode,
-    pub(super) depth: ColorDepth,
-    pub(super) cell_aspect: CellAspect,
-    pub(super) filter: Filter,
-    pub(super) field_of_view: FieldOfView,
+pub(crate) struct DrawOptions {
+    pub(crate) glyphs: GlyphMode,
+    pub(crate) depth: ColorDepth,
+    pub(crate) cell_aspect: CellAspect,
+    pub(crate) filter: Filter,
+    pub(crate) field_of_view: FieldOfView,
     /// The flash at the edge, and the direction of view.
-    pub(super) flash: Option<(Flash, Heading)>,
+    pub(crate) flash: Option<(Flash, Heading)>,
     /// Whether a dot marks the middle.
-    pub(super) marks_middle: bool,
+    pub(crate) marks_middle: bool,
 }
 
 impl DrawOptions {
     /// Draws `scene` from `camera` at the time `seconds`.
-    pub(super) fn draw<S: Renderable>(
+    pub(crate) fn draw<S: Renderable>(
         &self,
         scene: &S,
         camera: &S::Camera,

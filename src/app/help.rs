@@ -17,7 +17,7 @@ use crate::terminal::Key;
 
 /// The scroll position of the help.
 #[derive(Clone, Copy, Debug, Default)]
-pub(super) struct HelpScroll {
+pub(crate) struct HelpScroll {
     /// The first line shown, below those that are always shown.
     first: usize,
     /// The number of lines shown last, and the number of all lines.
@@ -31,33 +31,38 @@ const GAP: usize = 3;
 impl App {
     /// Scrolls the help if `key` does that. Returns whether it does.
     pub(super) fn scroll_help(&mut self, key: Key) -> bool {
-        let page = self.help.page.max(1);
-        let first = self.help.first;
-        let wanted = match key {
-            Key::Up => first.saturating_sub(1),
-            Key::Down => first + 1,
-            Key::PageUp => first.saturating_sub(page),
-            Key::PageDown | Key::Char(' ') => first + page,
-            Key::Home => 0,
-            _ => return false,
-        };
-        let wanted = wanted.min(self.help.last());
-        if wanted != first {
-            self.help.first = wanted;
+        let before = self.help.first;
+        let scrolls = self.help.scroll(key);
+        if self.help.first != before {
             self.shown = None;
         }
-        true
+        scrolls
     }
 }
 
 impl HelpScroll {
+    /// Scrolls if `key` does that. Returns whether it does.
+    pub(crate) fn scroll(&mut self, key: Key) -> bool {
+        let page = self.page.max(1);
+        let wanted = match key {
+            Key::Up => self.first.saturating_sub(1),
+            Key::Down => self.first + 1,
+            Key::PageUp => self.first.saturating_sub(page),
+            Key::PageDown | Key::Char(' ') => self.first + page,
+            Key::Home => 0,
+            _ => return false,
+        };
+        self.first = wanted.min(self.last());
+        true
+    }
+
     /// The last scroll position.
     fn last(&self) -> usize {
         self.lines.saturating_sub(self.page)
     }
 
     /// Draws the help, with `notes` about the terminal at its end.
-    pub(super) fn draw(
+    pub(crate) fn draw(
         &mut self,
         canvas: &mut impl Canvas,
         picture: Rect,

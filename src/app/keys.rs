@@ -10,9 +10,9 @@ use super::controls::KeyContext;
 use super::menu::Selection;
 use super::menus::Choice;
 use super::settings_screen::Setting;
-use super::{App, Screen};
+use super::{App, Screen, menu};
 use crate::app::bindings::Action;
-use crate::game::{Intent, Intents};
+use crate::game::Intents;
 use crate::store::Preferences;
 use crate::terminal::{Key, KeyEvent};
 use crate::tui::Press;
@@ -26,7 +26,7 @@ const WIDEST_VIEW: f64 = 120.0;
 /// The least time for which a result is shown.
 const LEAST_SHOWN: Duration = Duration::from_millis(500);
 /// The longest interval between repetitions.
-const REPETITION: Duration = Duration::from_millis(150);
+pub(crate) const REPETITION: Duration = Duration::from_millis(150);
 
 /// A key that answers the question on the screen if it does not repeat until that time.
 #[derive(Clone, Copy, Debug)]
@@ -102,7 +102,7 @@ impl App {
         if self.screen.is_result() && is_early {
             return;
         }
-        if let Some(selection) = self.selection_by(key) {
+        if let Some(selection) = Selection::by(key, &self.settings.bindings) {
             self.menu.select(selection);
             self.shown = None;
         } else if let Some(forward) = self.changes_by(key) {
@@ -114,37 +114,10 @@ impl App {
         }
     }
 
-    /// The movement of the selection by `key`: the keys to walk, and those that every terminal has.
-    fn selection_by(&self, key: Key) -> Option<Selection> {
-        Some(match key {
-            Key::Up => Selection::Previous,
-            Key::Down => Selection::Next,
-            Key::PageUp => Selection::PageUp,
-            Key::PageDown => Selection::PageDown,
-            Key::Home => Selection::First,
-            Key::End => Selection::Last,
-            _ => match self.settings.bindings.action(key)? {
-                Action::Want(Intent::Forward) => Selection::Previous,
-                Action::Want(Intent::Back) => Selection::Next,
-                _ => return None,
-            },
-        })
-    }
-
     /// Whether `key` changes a value to the next one, or to the one before.
     fn changes_by(&self, key: Key) -> Option<bool> {
-        if !matches!(self.screen, Screen::Settings | Screen::Levels | Screen::Maps) {
-            return None;
-        }
-        match key {
-            Key::Right => Some(true),
-            Key::Left => Some(false),
-            _ => match self.settings.bindings.action(key)? {
-                Action::Want(Intent::StrafeRight) => Some(true),
-                Action::Want(Intent::StrafeLeft) => Some(false),
-                _ => None,
-            },
-        }
+        let has_values = matches!(self.screen, Screen::Settings | Screen::Levels | Screen::Maps);
+        menu::changes_by(key, &self.settings.bindings).filter(|_| has_values)
     }
 
     fn change_value(&mut self, forward: bool) {

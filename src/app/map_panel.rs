@@ -10,8 +10,8 @@ use crate::world::Camera;
 
 /// The state of the minimap between frames.
 #[derive(Clone, Debug)]
-pub(super) struct MapPanel {
-    pub(super) is_shown: bool,
+pub(crate) struct MapPanel {
+    pub(crate) is_shown: bool,
     display: MapDisplay,
     explored: Explored,
     zoom: i32,
@@ -27,7 +27,7 @@ const MOST_ZOOM: i32 = 6;
 const MOVED_BY: f64 = 0.25;
 
 impl MapPanel {
-    pub(super) fn new(display: MapDisplay) -> Self {
+    pub(crate) fn new(display: MapDisplay) -> Self {
         Self {
             is_shown: display != MapDisplay::Off,
             display,
@@ -39,13 +39,13 @@ impl MapPanel {
     }
 
     /// Resets the panel for a new level.
-    pub(super) fn begin_level(&mut self) {
+    pub(crate) fn begin_level(&mut self) {
         self.explored = Explored::default();
         self.offset = DVec2::ZERO;
     }
 
     /// Adds the cells that `camera` sees in a picture with that many columns.
-    pub(super) fn explore(&mut self, game: &Game, camera: &Camera, columns: u16) {
+    pub(crate) fn explore(&mut self, game: &Game, camera: &Camera, columns: u16) {
         if self.display == MapDisplay::All {
             return;
         }
@@ -56,13 +56,13 @@ impl MapPanel {
     }
 
     /// The share of the level that has been seen, if that is counted.
-    pub(super) fn share_seen(&self, game: &Game) -> Option<f64> {
+    pub(crate) fn share_seen(&self, game: &Game) -> Option<f64> {
         let is_counted = self.display != MapDisplay::All && game.corner().is_none();
         is_counted.then(|| self.explored.share())
     }
 
     /// Applies a change of the zoom or of the shown part.
-    pub(super) fn change(&mut self, change: MapChange) {
+    pub(crate) fn change(&mut self, change: MapChange) {
         let by = self.extent * MOVED_BY;
         match change {
             MapChange::Larger => self.zoom = (self.zoom + 1).min(MOST_ZOOM),
@@ -76,7 +76,7 @@ impl MapPanel {
     }
 
     /// The minimap of `game`, with the camera and the rays of the picture.
-    pub(super) fn minimap<'a>(
+    pub(crate) fn minimap<'a>(
         &'a self,
         game: &'a Game,
         camera: &'a Camera,
@@ -94,7 +94,7 @@ impl MapPanel {
 
     /// Records that `extent` cells were shown. The offset is limited to the map, so that no key
     /// presses are needed to come back from outside.
-    pub(super) fn shown(&mut self, extent: DVec2, game: &Game, camera: &Camera) {
+    pub(crate) fn shown(&mut self, extent: DVec2, game: &Game, camera: &Camera) {
         let grid = game.world().grid();
         let size = DVec2::new(f64::from(grid.width()), f64::from(grid.height()));
         self.extent = extent.min(size);

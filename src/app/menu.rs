@@ -12,11 +12,14 @@ use ratatui::widgets::{Block, Padding, Paragraph};
 
 use super::panels::{BORDERS, PADDING, framed};
 use super::wrap::wrapped;
+use crate::app::bindings::{Action, Bindings};
 use crate::canvas::Canvas;
+use crate::game::Intent;
+use crate::terminal::Key;
 
 /// A list of entries with choices of the type `C`.
 #[derive(Clone, Debug)]
-pub(super) struct Menu<C> {
+pub(crate) struct Menu<C> {
     title: String,
     text: Vec<String>,
     entries: Vec<Entry<C>>,
@@ -36,13 +39,45 @@ struct Entry<C> {
 
 /// A movement of the selection.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub(super) enum Selection {
+pub(crate) enum Selection {
     Previous,
     Next,
     PageUp,
     PageDown,
     First,
     Last,
+}
+
+impl Selection {
+    /// The movement of the selection by `key`: the keys to walk, and those that every terminal has.
+    pub(crate) fn by(key: Key, bindings: &Bindings) -> Option<Self> {
+        Some(match key {
+            Key::Up => Self::Previous,
+            Key::Down => Self::Next,
+            Key::PageUp => Self::PageUp,
+            Key::PageDown => Self::PageDown,
+            Key::Home => Self::First,
+            Key::End => Self::Last,
+            _ => match bindings.action(key)? {
+                Action::Want(Intent::Forward) => Self::Previous,
+                Action::Want(Intent::Back) => Self::Next,
+                _ => return None,
+            },
+        })
+    }
+}
+
+/// Whether `key` changes a value to the next one, or to the one before; `None` if it does neither.
+pub(crate) fn changes_by(key: Key, bindings: &Bindings) -> Option<bool> {
+    match key {
+        Key::Right => Some(true),
+        Key::Left => Some(false),
+        _ => match bindings.action(key)? {
+            Action::Want(Intent::StrafeRight) => Some(true),
+            Action::Want(Intent::StrafeLeft) => Some(false),
+            _ => None,
+        },
+    }
 }
 
 /// The columns before a label, with a mark if the entry is selected.
@@ -52,7 +87,7 @@ const GAP: usize = 2;
 
 impl<C: Copy> Menu<C> {
     /// A menu without entries.
-    pub(super) fn new(title: impl Into<String>) -> Self {
+    pub(crate) fn new(title: impl Into<String>) -> Self {
         Self {
             title: title.into(),
             text: Vec::new(),
@@ -64,18 +99,18 @@ impl<C: Copy> Menu<C> {
     }
 
     /// Adds a line of text above the entries.
-    pub(super) fn line(mut self, text: impl Into<String>) -> Self {
+    pub(crate) fn line(mut self, text: impl Into<String>) -> Self {
         self.text.push(text.into());
         self
     }
 
     /// Adds an entry.
-    pub(super) fn entry(self, label: impl Into<String>, choice: C) -> Self {
+    pub(crate) fn entry(self, label: impl Into<String>, choice: C) -> Self {
         self.entry_with(label, "", choice)
     }
 
     /// Adds an entry with a value at its right.
-    pub(super) fn entry_with(
+    pub(crate) fn entry_with(
         mut self,
         label: impl Into<String>,
         value: impl Into<String>,
@@ -86,41 +121,52 @@ impl<C: Copy> Menu<C> {
     }
 
     /// Selects the entry with that index, or the last one.
-    pub(super) fn selecting(mut self, index: usize) -> Self {
+    pub(crate) fn selecting(mut self, index: usize) -> Self {
         self.selected = index.min(self.entries.len().saturating_sub(1));
         self
     }
 
     /// The index of the selected entry.
-    pub(super) fn selected(&self) -> usize {
+    pub(crate) fn selected(&self) -> usize {
         self.selected
     }
 
     /// The choice of the selected entry; `None` if the menu is empty.
-    pub(super) fn choice(&self) -> Option<C> {
+    pub(crate) fn choice(&self) -> Option<C> {
         self.entries.get(self.selected).map(|entry| entry.choice)
     }
 
     /// The label of the selected entry.
     #[cfg(test)]
-    pub(super) fn label(&self) -> Option<String> {
+    pub(crate) fn label(&self) -> Option<String> {
         self.entries.get(self.selected).map(|entry| entry.label.clone())
     }
 
     /// Whether there is an entry with the number `digit`, counted from 1.
-    pub(super) fn has_number(&self, digit: char) -> bool {
+    pub(crate) fn has_number(&self, digit: char) -> bool {
         self.index_of(digit).is_some()
     }
 
     /// Selects the entry with the number `digit`, counted from 1, if there is one.
-    pub(super) fn select_number(&mut self, digit: char) {
+    pub(crate) fn select_number(&mut self, digit: char) {
         self.selected = self.index_of(digit).unwrap_or(self.selected);
     }
 
     /// Selects the entry with that value, if there is one.
-    pub(super) fn select_value(&mut self, value: &str) {
+    pub(crate) fn select_value(&mut self, value: &str) {
         let index = self.entries.iter().position(|entry| entry.value == value);
         self.selected = index.unwrap_or(self.selected);
+    }
+
+    /// Selects the entry with that choice, if there is one. Returns whether there is.
+    #[cfg(feature = "serve")]
+    pub(crate) fn select_choice(&mut self, choice: C) -> bool
+    where
+        C: PartialEq,
+    {
+        let index = self.entries.iter().position(|entry| entry.choice == choice);
+        self.selected = index.unwrap_or(self.selected);
+        index.is_some()
     }
 
     fn index_of(&self, digit: char) -> Option<usize> {
@@ -129,7 +175,7 @@ impl<C: Copy> Menu<C> {
     }
 
     /// Moves the selection. From the last entry, the next one is the first.
-    pub(super) fn select(&mut self, selection: Selection) {
+    pub(crate) fn select(&mut self, selection: Selection) {
         let (count, page) = (self.entries.len().max(1), self.page.max(1));
         let last = count - 1;
         self.selected = match selection {
@@ -143,7 +189,7 @@ impl<C: Copy> Menu<C> {
     }
 
     /// Draws the menu in the middle of `room`.
-    pub(super) fn draw(&mut self, canvas: &mut impl Canvas, room: Rect) {
+    pub(crate) fn draw(&mut self, canvas: &mut impl Canvas, room: Rect) {
         let most_rows = usize::from(room.height.saturating_sub(BORDERS)).max(1);
         let most_columns = usize::from(room.width.saturating_sub(BORDERS + PADDING)).max(1);
         self.page = self.entries.len().min(most_rows);

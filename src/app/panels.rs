@@ -20,23 +20,23 @@ const LEAST_WITH_MINIMAP: (u16, u16) = (36, 12);
 /// The largest minimap: a larger one would hide too much of the picture.
 const LARGEST_MINIMAP: (u16, u16) = (40, 20);
 /// The columns or rows that the borders of a panel take.
-pub(super) const BORDERS: u16 = 2;
+pub(crate) const BORDERS: u16 = 2;
 /// The columns that a message leaves blank at both sides.
-pub(super) const PADDING: u16 = 2;
+pub(crate) const PADDING: u16 = 2;
 
 /// Whether `area` is too small to play in.
-pub(super) fn is_too_small(area: Rect) -> bool {
+pub(crate) fn is_too_small(area: Rect) -> bool {
     area.width < LEAST_COLUMNS || area.height < LEAST_ROWS
 }
 
 /// Draws the message that the window is too small.
-pub(super) fn too_small(canvas: &mut impl Canvas) {
+pub(crate) fn too_small(canvas: &mut impl Canvas) {
     let text = format!("Too small to play: {LEAST_COLUMNS}×{LEAST_ROWS} at least.");
     canvas.draw_widget(Paragraph::new(text).wrap(Wrap { trim: true }), canvas.bounds());
 }
 
 /// The areas of the picture and of the status line.
-pub(super) fn picture_and_status(area: Rect) -> [Rect; 2] {
+pub(crate) fn picture_and_status(area: Rect) -> [Rect; 2] {
     let picture = Rect { height: area.height.saturating_sub(1), ..area };
     let status = Rect { y: picture.bottom(), height: area.height - picture.height, ..area };
     [picture, status]
@@ -44,7 +44,7 @@ pub(super) fn picture_and_status(area: Rect) -> [Rect; 2] {
 
 /// The area of the panel of `map`, in the upper right corner of the picture, if there is room for
 /// it.
-pub(super) fn minimap(picture: Rect, map: &Minimap) -> Option<Rect> {
+pub(crate) fn minimap(picture: Rect, map: &Minimap) -> Option<Rect> {
     let (least_columns, least_rows) = LEAST_WITH_MINIMAP;
     if picture.width < least_columns || picture.height < least_rows {
         return None;
@@ -62,7 +62,7 @@ pub(super) fn minimap(picture: Rect, map: &Minimap) -> Option<Rect> {
 ///
 /// Each side is drawn separately, because a whole block would also clear the inside, which a
 /// minimap fills anyway.
-pub(super) fn framed(canvas: &mut impl Canvas, area: Rect, title: &str) -> Rect {
+pub(crate) fn framed(canvas: &mut impl Canvas, area: Rect, title: &str) -> Rect {
     let inside = Block::bordered().inner(area);
     let row = |y| Rect { y, height: area.height.min(1), ..area };
     let column = |x| Rect { x, width: area.width.min(1), ..inside };
@@ -91,7 +91,7 @@ impl Widget for TopBorder<'_> {
 }
 
 /// Draws the question whether to leave; `effect` is what that does.
-pub(super) fn leaving(canvas: &mut impl Canvas, picture: Rect, bindings: &Bindings, effect: &str) {
+pub(crate) fn leaving(canvas: &mut impl Canvas, picture: Rect, bindings: &Bindings, effect: &str) {
     let leave = bindings.keys(Action::Leave).find(|&key| key != Key::Escape);
     let keys = leave.map_or_else(String::new, |key| format!("{key} or "));
     let text = format!("{keys}Enter {effect}\nany other key goes on");
@@ -99,7 +99,7 @@ pub(super) fn leaving(canvas: &mut impl Canvas, picture: Rect, bindings: &Bindin
 }
 
 /// Draws a panel in the middle of the picture, as large as `text` needs.
-fn message(canvas: &mut impl Canvas, picture: Rect, title: &str, text: Text) {
+pub(crate) fn message(canvas: &mut impl Canvas, picture: Rect, title: &str, text: Text) {
     let widest = text.width().max(title.len()) as u16;
     let width = Constraint::Length(widest.saturating_add(BORDERS + PADDING));
     let height = Constraint::Length((text.height() as u16).saturating_add(BORDERS));
@@ -110,13 +110,13 @@ fn message(canvas: &mut impl Canvas, picture: Rect, title: &str, text: Text) {
     canvas.draw_widget(Paragraph::new(text).block(padded), inside);
 }
 
-pub(super) fn key_names(bindings: &Bindings, action: Action) -> String {
+pub(crate) fn key_names(bindings: &Bindings, action: Action) -> String {
     let names: Vec<String> = bindings.keys(action).map(|key| key.to_string()).collect();
     names.join(" ")
 }
 
 /// Formats minutes and seconds.
-pub(super) fn whole_seconds(seconds: f64) -> impl Display {
+pub(crate) fn whole_seconds(seconds: f64) -> impl Display {
     let seconds = seconds as u64;
     WholeSeconds { minutes: seconds / 60, seconds: seconds % 60 }
 }
@@ -133,7 +133,7 @@ impl Display for WholeSeconds {
 }
 
 /// Formats minutes, seconds and tenths.
-pub(super) fn time(seconds: f64) -> String {
+pub(crate) fn time(seconds: f64) -> String {
     let tenths = (seconds * 10.0) as u64;
     format!("{}:{:02}.{}", tenths / 600, tenths / 10 % 60, tenths % 10)
 }

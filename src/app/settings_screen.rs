@@ -17,7 +17,7 @@ use crate::world::Difficulty;
 
 /// A setting on the screen.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub(super) enum Setting {
+pub(crate) enum Setting {
     Difficulty,
     Crosshair,
     Compass,
@@ -45,9 +45,9 @@ const SETTINGS: [(Setting, &str); 10] = [
 ];
 
 const FRAME_RATES: [u32; 4] = [15, 30, 60, 120];
-const GLYPHS: [(GlyphMode, &str); 3] =
+pub(crate) const GLYPHS: [(GlyphMode, &str); 3] =
     [(GlyphMode::Half, "half blocks"), (GlyphMode::Ascii, "ASCII"), (GlyphMode::Ramp, "ramp")];
-const COLORS: [(Option<ColorDepth>, &str); 5] = [
+pub(crate) const COLORS: [(Option<ColorDepth>, &str); 5] = [
     (None, "the terminal's"),
     (Some(ColorDepth::True), "all"),
     (Some(ColorDepth::Indexed256), "256"),
@@ -151,16 +151,16 @@ fn given(value: String, origin: Option<Origin>) -> String {
     }
 }
 
-fn on_or_off(is_on: bool) -> String {
+pub(crate) fn on_or_off(is_on: bool) -> String {
     if is_on { "on" } else { "off" }.to_owned()
 }
 
-fn name<T: Copy + PartialEq>(names: &[(T, &str)], value: T) -> String {
+pub(crate) fn name<T: Copy + PartialEq>(names: &[(T, &str)], value: T) -> String {
     names.iter().find(|(named, _)| *named == value).map_or("", |(_, name)| name).to_owned()
 }
 
 /// The value after the one that `is_it`, or before it; from the last, the first.
-fn after<T: Copy>(values: &[T], is_it: impl Fn(&T) -> bool, forward: bool) -> T {
+pub(crate) fn after<T: Copy>(values: &[T], is_it: impl Fn(&T) -> bool, forward: bool) -> T {
     let index = values.iter().position(is_it).unwrap_or(0);
     let by = if forward { 1 } else { values.len() - 1 };
     values[(index + by) % values.len()]

@@ -9,6 +9,8 @@
 
 mod write;
 
+use std::fmt;
+
 use ratatui::buffer::Buffer;
 use ratatui::layout::Rect;
 use ratatui::style::{Modifier, Style};
@@ -24,10 +26,10 @@ use crate::app::bindings::Bindings;
 
 /// The modes of motion that are switched on.
 #[derive(Clone, Copy, Debug, Default)]
-pub(super) struct Toggles {
-    pub(super) runs: bool,
-    pub(super) ducks: bool,
-    pub(super) keeps_walking: bool,
+pub(crate) struct Toggles {
+    pub(crate) runs: bool,
+    pub(crate) ducks: bool,
+    pub(crate) keeps_walking: bool,
 }
 
 /// The values that the line shows.
@@ -48,13 +50,13 @@ pub(super) struct StatusValues<'a> {
 /// The texts of the line: place and state of the player at the left; progress and help at the
 /// right.
 #[derive(Clone, Debug, Default)]
-pub(super) struct StatusLine {
+pub(crate) struct StatusLine {
     texts: [[String; 2]; PARTS],
 }
 
 /// The parts of the line, from left to right.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub(super) enum Part {
+pub(crate) enum Part {
     Health,
     Alarm,
     Light,
@@ -131,9 +133,14 @@ const LEAST_NOTICE: u16 = 3;
 impl StatusLine {
     /// Updates the texts.
     pub(super) fn update(&mut self, values: &StatusValues) {
+        self.rewrite(|line| line.write(values));
+    }
+
+    /// Replaces all texts by those that `write` writes.
+    pub(crate) fn rewrite(&mut self, write: impl FnOnce(&mut Self) -> fmt::Result) {
         self.texts.iter_mut().flatten().for_each(String::clear);
         // Writing to a string never fails.
-        _ = self.write(values);
+        _ = write(self);
     }
 
     /// The text and the width of each part that a line of `width` columns has room for.
@@ -193,7 +200,7 @@ impl Widget for &StatusLine {
 }
 
 /// A line with a hint instead of the game's state.
-pub(super) fn hint(text: &str) -> impl Widget {
+pub(crate) fn hint(text: &str) -> impl Widget {
     Line::raw(text).centered().style(Style::new().add_modifier(Modifier::REVERSED))
 }
 

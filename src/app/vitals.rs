@@ -3,12 +3,14 @@
 use std::fmt::{self, Write};
 
 use super::status::{Part, StatusLine};
-use crate::game::{Alarm, Game, GuardView, Health, Share};
+use crate::color::palette::ColorDepth;
+use crate::game::{Alarm, Game, GuardView, Health, PlayerView, Share};
+use crate::tui::GlyphMode;
 use crate::world::{FieldOfView, Supply};
 
 /// How health is written.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub(super) enum HealthSigns {
+pub(crate) enum HealthSigns {
     Hearts,
     Digits,
 }
@@ -17,18 +19,34 @@ pub(super) enum HealthSigns {
 const DARK: u8 = 64;
 const DIM: u8 = 144;
 
+impl HealthSigns {
+    /// The signs that a picture of that kind shows best.
+    pub(crate) fn for_picture(glyphs: GlyphMode, depth: ColorDepth) -> Self {
+        match (glyphs, depth) {
+            (_, ColorDepth::Mono) => Self::Digits,
+            (GlyphMode::Half, _) => Self::Hearts,
+            _ => Self::Digits,
+        }
+    }
+}
+
 impl StatusLine {
     /// Writes health, alarm, light, supplies and treasure.
-    pub(super) fn write_vitals(&mut self, game: &Game, signs: HealthSigns) -> fmt::Result {
-        self.write_health(game.health(), signs)?;
-        self.write_alarm(game)?;
-        let light = match game.visibility() {
+    pub(crate) fn write_vitals(
+        &mut self,
+        game: &Game,
+        player: &PlayerView,
+        signs: HealthSigns,
+    ) -> fmt::Result {
+        self.write_health(player.health(), signs)?;
+        self.write_alarm(game, player)?;
+        let light = match player.visibility() {
             0..DARK => "dark",
             DARK..DIM => "dim",
             DIM.. => "lit",
         };
         self.both(Part::Light, format_args!("{light}"))?;
-        self.write_supplies(game)?;
+        self.write_supplies(player)?;
         let Share { found, total } = game.treasure();
         if total > 0 {
             let needed = game.world().treasure_needed();
@@ -42,13 +60,13 @@ impl StatusLine {
     }
 
     /// Writes the alarm, and the kind of the nearest guard who has raised it.
-    fn write_alarm(&mut self, game: &Game) -> fmt::Result {
+    fn write_alarm(&mut self, game: &Game, player: &PlayerView) -> fmt::Result {
         let alarm = match game.alarm() {
             Alarm::Calm => return Ok(()),
             Alarm::Wary => "wary",
             Alarm::Raised => "ALARM",
         };
-        let position = game.camera(FieldOfView::default()).position();
+        let position = player.camera(FieldOfView::default()).position();
         let distance = |guard: &GuardView| guard.position.distance_squared(position);
         let guards = game.guards().filter(|guard| guard.mood.alarm() == game.alarm());
         let nearest = guards.min_by(|a, b| distance(a).total_cmp(&distance(b)));
@@ -72,8 +90,8 @@ impl StatusLine {
     }
 
     /// Writes what the player carries: the first letters, or the names.
-    fn write_supplies(&mut self, game: &Game) -> fmt::Result {
-        let carried = Supply::ALL.map(|supply| (supply.name(), game.supplies(supply)));
+    fn write_supplies(&mut self, player: &PlayerView) -> fmt::Result {
+        let carried = Supply::ALL.map(|supply| (supply.name(), player.supplies(supply)));
         let [short, long] = self.forms(Part::Supplies);
         for (index, (name, count)) in carried.iter().filter(|(_, count)| *count > 0).enumerate() {
             let (blank, comma) = if index > 0 { (" ", ", ") } else { ("", "") };

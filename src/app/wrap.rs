@@ -2,7 +2,7 @@
 
 /// Wraps `text` into lines of up to `width` characters, between words, and within words that are
 /// longer.
-pub(super) fn wrapped(text: &str, width: usize) -> Vec<String> {
+pub(crate) fn wrapped(text: &str, width: usize) -> Vec<String> {
     let mut lines = vec![String::new()];
     let mut room = width;
     for word in text.split_whitespace() {

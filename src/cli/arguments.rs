@@ -6,6 +6,8 @@
 
 mod about;
 mod accuracy;
+#[cfg(all(unix, feature = "serve"))]
+mod admin;
 mod bench;
 mod cast;
 mod check;
@@ -19,6 +21,10 @@ mod option;
 mod order;
 mod play;
 mod replay;
+#[cfg(feature = "serve")]
+mod scores;
+#[cfg(feature = "serve")]
+mod serve;
 mod snapshot;
 mod value;
 mod wire;
@@ -31,6 +37,8 @@ use clap::{Arg, ArgAction, ArgMatches, ValueHint, value_parser};
 use clap_complete::Shell;
 
 pub(super) use self::accuracy::{Accuracy, ReportFormat};
+#[cfg(all(unix, feature = "serve"))]
+pub(super) use self::admin::{Admin, AdminAction};
 pub(super) use self::bench::{Bench, BenchFormat};
 pub(super) use self::cast::Cast;
 pub(super) use self::config::Config;
@@ -40,6 +48,10 @@ pub(super) use self::map::STANDARD_INPUT;
 use self::option::OptionSpec;
 pub(super) use self::play::{FidelityChoice, Play};
 pub(super) use self::replay::Replay;
+#[cfg(feature = "serve")]
+pub(super) use self::scores::{Scores, ScoresFormat};
+#[cfg(feature = "serve")]
+pub(super) use self::serve::Serve;
 pub(super) use self::snapshot::{Format, Snapshot};
 pub(super) use self::value::Size;
 pub(super) use self::wire::{Wire, WireFormat};
@@ -59,8 +71,14 @@ pub(super) enum Command {
     Config(Config),
     Levels(Levels),
     Accuracy(Accuracy),
+    #[cfg(all(unix, feature = "serve"))]
+    Admin(Admin),
     Bench(Bench),
     Replay(Replay),
+    #[cfg(feature = "serve")]
+    Scores(Scores),
+    #[cfg(feature = "serve")]
+    Serve(Serve),
     Wire(Wire),
 }
 
@@ -89,7 +107,7 @@ impl Command {
 }
 
 /// The subcommands in the order of the help.
-const SUBCOMMANDS: [&Subcommand; 13] = [
+const SUBCOMMANDS: &[&Subcommand] = &[
     &play::SUBCOMMAND,
     &snapshot::SUBCOMMAND,
     &cast::SUBCOMMAND,
@@ -99,7 +117,13 @@ const SUBCOMMANDS: [&Subcommand; 13] = [
     &accuracy::SUBCOMMAND,
     &bench::SUBCOMMAND,
     &replay::SUBCOMMAND,
+    #[cfg(feature = "serve")]
+    &serve::SUBCOMMAND,
     &wire::SUBCOMMAND,
+    #[cfg(feature = "serve")]
+    &scores::SUBCOMMAND,
+    #[cfg(all(unix, feature = "serve"))]
+    &admin::SUBCOMMAND,
     &about::COMPLETIONS,
     &about::MAN,
     &about::HELP,
@@ -140,7 +164,7 @@ pub(super) fn subcommand_names() -> impl Iterator<Item = &'static str> {
 }
 
 fn named(name: &str) -> Option<&'static Subcommand> {
-    SUBCOMMANDS.into_iter().find(|subcommand| subcommand.name == name)
+    SUBCOMMANDS.iter().copied().find(|subcommand| subcommand.name == name)
 }
 
 /// The whole program, for clap.
@@ -161,7 +185,7 @@ pub(super) fn description() -> clap::Command {
                 .help("Print the version")
                 .action(ArgAction::Version),
         )
-        .subcommands(SUBCOMMANDS.into_iter().map(Subcommand::description))
+        .subcommands(SUBCOMMANDS.iter().map(|subcommand| subcommand.description()))
         .args_conflicts_with_subcommands(true)
         .args_override_self(true)
         .disable_help_flag(true)

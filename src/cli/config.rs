@@ -38,7 +38,7 @@ pub(super) fn run(options: Config) -> Result<(), Error> {
 /// The configuration of the named file, or of the user's own file if it exists.
 pub(super) fn load(named: Option<PathBuf>) -> Result<InForce, Error> {
     let is_named = named.is_some();
-    let Some(path) = named.or_else(default_path) else {
+    let Some(path) = named.or_else(|| configuration_file("config.toml")) else {
         return Ok(InForce {
             configuration: Configuration::default(),
             path: None,
@@ -56,8 +56,8 @@ pub(super) fn load(named: Option<PathBuf>) -> Result<InForce, Error> {
     Ok(InForce { configuration, path: Some(path), is_there })
 }
 
-/// `cellcaster/config.toml` in the platform's folder for configuration.
-fn default_path() -> Option<PathBuf> {
+/// A file in `cellcaster` in the platform's folder for configuration.
+pub(super) fn configuration_file(name: &str) -> Option<PathBuf> {
     let folder = choose_base_strategy().ok()?.config_dir();
-    Some(folder.join("cellcaster").join("config.toml"))
+    Some(folder.join("cellcaster").join(name))
 }

@@ -10,7 +10,7 @@ use super::watch::Watch;
 use crate::app::Levels;
 use crate::fault::nearest;
 use crate::game::{Game, Header, LevelName};
-use crate::generate::{Site, Window, descent};
+use crate::generate::{Site, Window, descent, floors_below};
 use crate::map::{self, Folder, Level, builtin};
 use crate::world::World;
 
@@ -110,7 +110,7 @@ pub(super) fn of_script(
         Some(name) if map.is_none() && generated.is_none() => {
             if let Some(first) = name.floor() {
                 let game = move |world| Game::with_rules(world, rules);
-                let later = floors_after(first, rules.seed);
+                let later = floors_below(rules.seed, first);
                 return Ok(Levels::of_games(game(descent(rules.seed, first)?), later.map(game)));
             }
             let world = match load_named(name, rules.seed)? {
@@ -129,11 +129,6 @@ pub(super) fn of_script(
         }
         _ => load_or_generate(map, generated),
     }
-}
-
-/// The floors of a descent below `floor`.
-pub(super) fn floors_after(floor: u32, seed: u64) -> impl Iterator<Item = World> {
-    (floor.saturating_add(1)..).map_while(move |number| descent(seed, number).ok())
 }
 
 /// The level that a script's header names.

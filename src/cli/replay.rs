@@ -23,6 +23,12 @@ use crate::terminal::CellWriter;
 
 /// Writes the recording that `options` request.
 pub(super) fn run(options: &Replay) -> Result<(), Error> {
+    #[cfg(feature = "serve")]
+    if let Some(reports) = super::room_recording::replayed(&options.script)? {
+        return io::stdout()
+            .write_all(reports.as_bytes())
+            .map_err(|error| Error::of_output(&error));
+    }
     let script = script::load(&options.script)?;
     if options.verifies {
         return verify::run(options, &script);

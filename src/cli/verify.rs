@@ -6,7 +6,7 @@ use std::io::{self, Write};
 use super::arguments::Replay;
 use super::{Error, level};
 use crate::game::{Game, Header, LevelName, Outcome, Rules, STEPS_PER_SECOND, Script};
-use crate::store::Reached;
+use crate::store::{DescentRun, replayed};
 use crate::world::World;
 
 /// Writes what `script` achieves in the level that `options` or its header name.
@@ -53,13 +53,7 @@ fn level(options: &Replay, header: &Header) -> Result<(String, World), Error> {
 
 /// A report about the script in one level, and whether it reaches the exit.
 fn play(name: &str, world: World, rules: Rules, script: &Script) -> (String, bool) {
-    let mut game = Game::with_rules(world, rules);
-    for (_section, intents) in script.iter() {
-        if game.is_finished() {
-            break;
-        }
-        game.step(intents);
-    }
+    let game = replayed(world, rules, script);
     let mut report = Report::about(name, game.world().title(), rules);
     report.tell_outcome(&game);
     let tally = game.tally();
@@ -78,22 +72,9 @@ fn play(name: &str, world: World, rules: Rules, script: &Script) -> (String, boo
     (report.0, game.is_finished())
 }
 
-/// A report about the script in a descent from `floor` on, and whether it reaches an exit. As in a
-/// game, a descent ends with the first death, and what is found counts once the exit is reached.
+/// A report about the script in a descent from `floor` on, and whether it reaches an exit.
 fn descend(name: &str, floor: u32, first: World, rules: Rules, script: &Script) -> (String, bool) {
-    let mut game = Game::with_rules(first, rules);
-    let mut later = level::floors_after(floor, rules.seed);
-    let mut reached = Reached::default();
-    for (_section, intents) in script.iter() {
-        if game.outcome() != Outcome::Playing {
-            let Some(world) = later.next().filter(|_| game.is_finished()) else { break };
-            game = Game::with_rules(world, rules);
-        }
-        game.step(intents);
-        if game.is_finished() {
-            reached = reached.and(&game.tally());
-        }
-    }
+    let DescentRun { game, reached } = DescentRun::replayed(floor, first, rules, script);
     let mut report = Report::about(name, "", rules);
     report.tell_outcome(&game);
     report.line("floors", reached.floors);

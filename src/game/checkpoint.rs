@@ -33,7 +33,7 @@ impl Game {
     pub(super) fn is_at_a_new_checkpoint(&self) -> bool {
         self.is_mission
             && self.rules.difficulty < Difficulty::Hard
-            && self.checkpoint.cell != Some(self.player.motion.cell())
+            && self.last_checkpoint() != Some(self.player.motion.cell())
             && self.guards.alarm() < Alarm::Raised
             && !self.is_dead()
             && self.things_reached().any(|thing| thing.kind == ThingKind::Checkpoint)
@@ -45,15 +45,43 @@ impl Game {
             return;
         }
         let cell = self.player.motion.cell();
-        let is_checkpoint = |kind| kind == ThingKind::Checkpoint;
-        if let Some(before) = self.checkpoint.cell {
-            self.world.set_frame(before, is_checkpoint, CheckpointFrame::Grey.index());
-        }
+        let before = self.last_checkpoint();
+        let is_of_one = !self.set_own_checkpoint(cell);
+        self.grey_checkpoint(before);
         self.world.set_frame(cell, is_checkpoint, CheckpointFrame::Lit.index());
         self.say("Checkpoint.".to_owned());
         self.revision += 1;
+        if is_of_one {
+            self.save_checkpoint(cell);
+        }
+    }
+
+    fn save_checkpoint(&mut self, cell: Cell) {
         self.checkpoint = Checkpoint { game: None, cell: Some(cell) };
         self.checkpoint.game = Some(Arc::new(self.clone()));
+    }
+
+    /// The cell of the player's last checkpoint; `None` for the start.
+    pub(super) fn last_checkpoint(&self) -> Option<Cell> {
+        match self.members.as_deref() {
+            Some(members) => members.checkpoint(),
+            None => self.checkpoint.cell,
+        }
+    }
+
+    /// Makes `cell` the checkpoint of the player whose turn it is; returns `false` in a game for one.
+    fn set_own_checkpoint(&mut self, cell: Cell) -> bool {
+        let Some(members) = self.members.as_deref_mut() else { return false };
+        members.set_checkpoint(cell);
+        true
+    }
+
+    /// Shows a checkpoint as one that nobody goes on from, if that is so.
+    pub(super) fn grey_checkpoint(&mut self, cell: Option<Cell>) {
+        let is_used = |cell| self.members.as_ref().is_some_and(|it| it.has_checkpoint(cell));
+        if let Some(cell) = cell.filter(|&cell| !is_used(cell)) {
+            self.world.set_frame(cell, is_checkpoint, CheckpointFrame::Grey.index());
+        }
     }
 
     /// Goes on from the last checkpoint.
@@ -64,7 +92,7 @@ impl Game {
         game.player.pressed = self.player.pressed;
         game.steps = self.steps;
         game.revision = self.revision + 1;
-        game.counts = self.counts;
+        game.player.counts = self.player.counts;
         if self.rules.difficulty == Difficulty::Easy {
             game.keep_finds(self);
         }
@@ -95,4 +123,8 @@ impl Game {
             self.world.take_things(cell, |kind| kind == taken);
         }
     }
+}
+
+fn is_checkpoint(kind: ThingKind) -> bool {
+    kind == ThingKind::Checkpoint
 }

@@ -8,6 +8,7 @@ use glam::DVec2;
 
 use super::Game;
 use super::health::Cause;
+use super::player::Player;
 use super::tools::MissileKind;
 use crate::rng;
 use crate::world::{Cell, Supply, Thing, ThingKind, World};
@@ -16,45 +17,30 @@ impl Game {
     /// A number that depends on the whole state: of the world, the player, the guards and all that
     /// moves.
     pub fn checksum(&self) -> u64 {
+        let players = match &self.members {
+            None => rng::hash(0, words_of_player(&self.player)),
+            Some(members) => rng::hash(0, members.words()),
+        };
+        let counts = self.player.counts;
         let parts = [
             self.steps,
-            rng::hash(0, self.words_of_player()),
+            players,
             rng::hash(1, words_of_world(&self.world)),
             rng::hash(2, self.mechanisms.words()),
             rng::hash(3, self.words_of_missiles()),
             self.guards.checksum(),
-            u64::from(self.counts.alarms),
-            u64::from(self.counts.deaths) << 32 | u64::from(self.counts.stunned),
+            u64::from(counts.alarms),
+            u64::from(counts.deaths) << 32 | u64::from(counts.stunned),
         ];
         let seed = self.rules.seed ^ self.rules.difficulty as u64;
         rng::hash(seed, parts)
-    }
-
-    fn words_of_player(&self) -> impl Iterator<Item = u64> {
-        let player = &self.player;
-        let supplies = Supply::ALL.map(|supply| u64::from(player.supplies.count(supply)));
-        let keys =
-            player.keys.iter().fold(0_u64, |bits, key| bits.rotate_left(9) ^ u64::from(key.0));
-        let numbers = [
-            u64::from(player.health.points),
-            u64::from(player.treasure),
-            u64::from(player.has_light),
-            u64::from(player.strike_wait),
-            u64::from(player.in_water),
-            player.stride.to_bits(),
-            player.fell_from.to_bits(),
-            player.last_thrust.map_or(u64::MAX, |step| step),
-            keys,
-            self.killed_by.map_or(0, word_of_cause),
-        ];
-        player.motion.words().into_iter().chain(supplies).chain(numbers)
     }
 
     fn words_of_missiles(&self) -> impl Iterator<Item = u64> {
         let missiles = self.missiles.iter().flat_map(|missile| {
             let kind = match missile.kind {
                 MissileKind::Pebble => 0,
-                MissileKind::Dart => 1,
+                MissileKind::Dart { .. } => 1,
                 MissileKind::Flask => 2,
                 MissileKind::Bolt { points, .. } => 3 + u64::from(points),
             };
@@ -65,6 +51,25 @@ impl Game {
         let clouds = self.smoke.clouds().iter().flat_map(|cloud| words_of(cloud.position));
         missiles.chain(clouds).chain(self.smoke.lives().map(u64::from))
     }
+}
+
+/// What rules depend on of a player.
+pub(super) fn words_of_player(player: &Player) -> impl Iterator<Item = u64> {
+    let supplies = Supply::ALL.map(|supply| u64::from(player.supplies.count(supply)));
+    let keys = player.keys.iter().fold(0_u64, |bits, key| bits.rotate_left(9) ^ u64::from(key.0));
+    let numbers = [
+        u64::from(player.health.points),
+        u64::from(player.treasure),
+        u64::from(player.has_light),
+        u64::from(player.strike_wait),
+        u64::from(player.in_water),
+        player.stride.to_bits(),
+        player.fell_from.to_bits(),
+        player.last_thrust.map_or(u64::MAX, |step| step),
+        keys,
+        player.killed_by.map_or(0, word_of_cause),
+    ];
+    player.motion.words().into_iter().chain(supplies).chain(numbers)
 }
 
 /// A position as the bits of its coordinates.
@@ -100,7 +105,7 @@ fn word_of_thing(thing: &Thing) -> u64 {
     rng::hash(word_of(thing.cell), kind.into_iter().chain([frame]))
 }
 
-fn word_of(cell: Cell) -> u64 {
+pub(super) fn word_of(cell: Cell) -> u64 {
     u64::from(cell.row) << 32 | u64::from(cell.column)
 }
 

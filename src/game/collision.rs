@@ -49,6 +49,11 @@ pub(super) trait Obstacles {
         None
     }
 
+    /// The middles of other circles of the same radius that block.
+    fn circles(&self) -> &[DVec2] {
+        &[]
+    }
+
     /// Whether a cell touched by a circle around `center` does not block any more, because it gives
     /// way or because the circle has been lifted onto it.
     fn gives_way(&mut self, column: i64, row: i64, center: DVec2, radius: Radius) -> bool {
@@ -84,8 +89,8 @@ pub(super) fn slide<O: Obstacles>(
             return Body { position, velocity };
         };
         position = contact.position;
-        let (column, row) = contact.cell;
-        if obstacles.gives_way(column, row, position, radius) {
+        let gives_way = |(column, row)| obstacles.gives_way(column, row, position, radius);
+        if contact.cell.is_some_and(gives_way) {
             remaining = contact.remaining;
             continue;
         }
@@ -119,13 +124,16 @@ fn without_inward(vector: DVec2, normal: DVec2) -> DVec2 {
 /// Whether a circle around `center` overlaps nothing that blocks; it may touch. Cells are closed
 /// squares.
 pub(super) fn is_clear<O: Obstacles>(obstacles: &O, center: DVec2, radius: Radius) -> bool {
-    overlapped(center, radius).all(|(column, row)| {
-        let stands_clear = |cell| {
-            let outline = obstacles.outline(cell);
-            outline.is_none_or(|outline| outline::is_clear_of(outline, cell, center, radius))
-        };
-        !obstacles.blocks(column, row) && cell_on_map(column, row).is_none_or(stands_clear)
-    })
+    let least = 2.0 * radius.0;
+    let is_apart = |other: &DVec2| other.distance_squared(center) >= least * least;
+    obstacles.circles().iter().all(is_apart)
+        && overlapped(center, radius).all(|(column, row)| {
+            let stands_clear = |cell| {
+                let outline = obstacles.outline(cell);
+                outline.is_none_or(|outline| outline::is_clear_of(outline, cell, center, radius))
+            };
+            !obstacles.blocks(column, row) && cell_on_map(column, row).is_none_or(stands_clear)
+        })
 }
 
 /// The columns and rows of the cells that a circle around `center` overlaps, row by row.

@@ -1,6 +1,7 @@
 //! Encounters: a step of the guards, and what they do to the rest of the game.
 
 use super::Game;
+use super::company::playing_mut;
 use super::guards::Act;
 use super::tools::Missile;
 
@@ -9,9 +10,12 @@ impl Game {
         if self.guards.is_empty() {
             return;
         }
-        let (alarm, target) = (self.guards.alarm(), self.target());
-        let clouds = self.smoke.clouds();
-        let count = self.guards.step(&self.world, &[target], &self.sounds, clouds).len();
+        let alarm = self.guards.alarm();
+        self.find_targets();
+        let home = [self.target()];
+        let Self { world, guards, sounds, smoke, members, .. } = self;
+        let targets = members.as_deref().map_or(&home[..], |members| &members.targets);
+        let count = guards.step(world, targets, sounds, smoke.clouds()).len();
         for index in 0..count {
             if let Some(act) = self.guards.act(index) {
                 self.answer(act);
@@ -20,19 +24,26 @@ impl Game {
         self.revision += u64::from(self.guards.alarm() != alarm);
     }
 
+    fn count_alarm(&mut self) {
+        let Self { player, members, .. } = self;
+        for (_, player) in playing_mut(player, members.as_deref_mut()) {
+            player.counts.alarms += 1;
+        }
+    }
+
     /// Does to the rest of the game what a guard does.
     fn answer(&mut self, act: Act) {
         match act {
-            Act::Hurt { by, from, points, .. } => {
+            Act::Hurt { target, by, from, points } => {
                 let guard = self.guards.views().nth(by);
-                self.hurt_by_guard(guard, from, points);
+                self.in_turn(target, |game| game.hurt_by_guard(guard, from, points));
             }
             Act::Open(cell) => self.doors.open(cell),
             Act::Sound(sound) => self.sounds.push(sound),
             Act::Bolt { from, height, direction, slope, points, .. } => {
                 self.missiles.launch(Missile::bolt((from, height), direction, slope, points));
             }
-            Act::Raised => self.counts.alarms += 1,
+            Act::Raised => self.count_alarm(),
         }
     }
 }

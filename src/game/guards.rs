@@ -49,6 +49,7 @@ use ways::Ways;
 
 pub(crate) use act::{Act, Cloud, Target};
 pub use mood::{Alarm, Mood};
+pub(crate) use sight::{Point, is_in_sight};
 pub use view::GuardView;
 
 /// Guards on duty at this distance from all players, in cells, take several steps at once.
@@ -247,7 +248,8 @@ impl Guards {
     fn record_trails(&mut self, world: &World, targets: &[Target]) {
         if self.awake.has_hounds {
             self.trails.resize_with(targets.len(), Trail::default);
-            for (trail, target) in self.trails.iter_mut().zip(targets) {
+            let trails = self.trails.iter_mut().zip(targets);
+            for (trail, target) in trails.filter(|(_, target)| target.is_alive) {
                 trail.record(world, target, self.steps);
             }
         }

@@ -128,8 +128,8 @@ impl Game {
         self.player.flash = Some(Flash::hurt(&harm));
         self.revision += 1;
         if self.player.health.is_gone() {
-            self.counts.deaths += 1;
-            self.killed_by = Some(harm.cause);
+            self.player.counts.deaths += 1;
+            self.player.killed_by = Some(harm.cause);
             self.say(format!("Killed by {}.", harm.cause.name()));
         }
     }

@@ -103,6 +103,11 @@ impl Flash {
         Self { kind: FlashKind::Hurt { bearing: harm.bearing }, left: HURT_STEPS }
     }
 
+    /// A flash for a blow of another player, which takes no health.
+    pub(super) fn struck(bearing: Option<Heading>) -> Self {
+        Self { kind: FlashKind::Hurt { bearing }, left: HURT_STEPS }
+    }
+
     /// A flash for a find.
     pub(super) fn gain() -> Self {
         Self { kind: FlashKind::Gain, left: GAIN_STEPS }

@@ -11,8 +11,9 @@ mod handles;
 mod moving_cell;
 
 use super::Game;
+use super::company::{MOST_PLAYERS, playing_mut};
 use super::noise::reach;
-use super::player::STEP_HEIGHT;
+use super::player::Motion;
 use super::sound::SoundKind;
 use super::tally::Share;
 use crate::world::{
@@ -145,14 +146,14 @@ impl Game {
 
     /// Whether somebody stands in `cell`.
     fn weighs_on(&self, cell: Cell) -> bool {
-        let motion = &self.player.motion;
-        let stands = motion.cell() == cell && motion.feet() <= self.world.floor_at(cell);
-        stands || self.guards.weighs_on(cell)
+        let stands =
+            |motion: &Motion| motion.cell() == cell && motion.feet() <= self.world.floor_at(cell);
+        self.playing().any(|(_, player)| stands(&player.motion)) || self.guards.weighs_on(cell)
     }
 
     /// Whether somebody would be in a wall in `cell`.
     pub(super) fn is_in_the_way(&self, cell: Cell) -> bool {
-        self.player.motion.touches(cell) || self.guards.touches(cell)
+        self.playing().any(|(_, it)| it.motion.touches(cell)) || self.guards.touches(cell)
     }
 
     fn press_plates(&mut self) {
@@ -227,7 +228,10 @@ impl Game {
     fn moved(&mut self, cell: MovingCell, step: Step) -> MovingCell {
         let Some(state) = step.state else { return step.after };
         let before = cell.shown(&self.world);
-        let stood = self.player.motion.stands(&self.world);
+        let mut stood = [false; MOST_PLAYERS];
+        for (index, player) in self.playing() {
+            stood[index] = player.motion.stands(&self.world);
+        }
         self.world.set_state(cell.cell(), state);
         if self.is_crushing(cell, state) {
             self.world.set_state(cell.cell(), before);
@@ -238,17 +242,24 @@ impl Game {
         self.hear_crumbling(cell, step);
         let falls = cell.driver(&self.world) == Driver::Weight;
         self.guards.floor_moved(&self.world, cell.cell(), !falls);
-        if let Some(feet) = self.feet_after(stood && !falls) {
-            self.player.motion = self.player.motion.carried_to(feet);
-            self.player.fell_from = feet;
+        let Self { player, members, world, .. } = self;
+        for (index, player) in playing_mut(player, members.as_deref_mut()) {
+            if let Some(feet) = player.motion.feet_after(world, stood[index] && !falls) {
+                player.motion = player.motion.carried_to(feet);
+                player.fell_from = feet;
+            }
         }
         step.after
     }
 
     /// Says that a cell stops, once, to a player who is in the way.
     fn tell_who_blocks(&mut self, cell: MovingCell) {
-        if !cell.is_blocked() && self.player.motion.touches(cell.cell()) {
-            self.say("It stops: you are in the way.".to_owned());
+        if !cell.is_blocked() {
+            self.for_each_player(|game| {
+                if game.player.motion.touches(cell.cell()) {
+                    game.say("It stops: you are in the way.".to_owned());
+                }
+            });
         }
     }
 
@@ -273,19 +284,10 @@ impl Game {
         }
         let headroom = tile.gaps().next().map_or(0.0, crate::world::Gap::height);
         let crushes_guards = rises && headroom < 1.0 && self.guards.touches(cell.cell());
-        let motion = self.player.motion;
-        crushes_guards
-            || motion.touches(cell.cell())
+        let crushes = |motion: &Motion| {
+            motion.touches(cell.cell())
                 && !(motion.has_room(world) || motion.lifted(world).is_some())
-    }
-
-    /// The height of the player's feet, if the world has lifted or, where they stood, lowered them.
-    fn feet_after(&self, stood: bool) -> Option<f64> {
-        let (motion, world) = (self.player.motion, &self.world);
-        if !motion.has_room(world) {
-            return motion.lifted(world);
-        }
-        let floor = motion.floor(world);
-        (stood && floor < motion.feet() && motion.feet() - floor <= STEP_HEIGHT).then_some(floor)
+        };
+        crushes_guards || self.playing().any(|(_, player)| crushes(&player.motion))
     }
 }

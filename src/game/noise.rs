@@ -39,8 +39,8 @@ const SLOW: f64 = 0.5;
 impl Game {
     /// The player makes a sound.
     pub(super) fn sound(&mut self, kind: SoundKind, reach: u8) {
-        let cell = self.player.motion.cell();
-        self.sounds.push(Sound { kind, cell, reach, by: Source::Player(0) });
+        let (cell, by) = (self.player.motion.cell(), Source::Player(self.turn()));
+        self.sounds.push(Sound { kind, cell, reach, by });
     }
 
     /// Something in `cell` makes a sound.

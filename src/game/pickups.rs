@@ -3,6 +3,7 @@
 
 use super::Game;
 use super::health::Flash;
+use super::player::Player;
 use super::tools::Supplies;
 use crate::world::{Cell, Supply, ThingKind};
 
@@ -13,7 +14,11 @@ const CROWN: u16 = 100;
 impl Game {
     /// The text of the note that the player has reached.
     pub fn note(&self) -> Option<&str> {
-        self.things_reached().find_map(|thing| match thing.kind {
+        self.note_reached_by(&self.player)
+    }
+
+    pub(super) fn note_reached_by(&self, player: &Player) -> Option<&str> {
+        self.things_reached_by(player).find_map(|thing| match thing.kind {
             ThingKind::Note(id) => Some(self.world.note(id)),
             _ => None,
         })
@@ -87,7 +92,7 @@ impl Game {
 
     /// The treasure without which the exit stays closed.
     pub(super) fn treasure_missing(&self) -> u32 {
-        self.world.treasure_needed().saturating_sub(self.player.treasure)
+        self.world.treasure_needed().saturating_sub(self.treasure_found())
     }
 }
 

@@ -4,10 +4,11 @@ mod motion;
 
 use std::collections::BTreeSet;
 
-use super::health::{Flash, Health};
+use super::health::{Cause, Flash, Health};
 use super::intent::Intents;
 use super::notice::Notice;
 use super::sound::Hearing;
+use super::tally::Counts;
 use super::tools::Supplies;
 use crate::world::{KeyId, World};
 pub(super) use motion::{FRICTION, JUMP_HEIGHT, Motion, RADIUS, RUN, STEP_HEIGHT, STILL, WALK};
@@ -37,6 +38,9 @@ pub(super) struct Player {
     pub(super) hearing: Hearing,
     pub(super) flash: Option<Flash>,
     pub(super) notice: Notice,
+    /// What has killed the player, if something has.
+    pub(super) killed_by: Option<Cause>,
+    pub(super) counts: Counts,
 }
 
 impl Player {
@@ -59,6 +63,8 @@ impl Player {
             hearing: Hearing::default(),
             flash: None,
             notice: Notice::default(),
+            killed_by: None,
+            counts: Counts::default(),
         }
     }
 

@@ -2,6 +2,7 @@
 
 use super::guards::{Alarm, GuardView};
 use super::health::{Flash, Health};
+use super::player::Player;
 use super::sound::Heard;
 use super::{Game, Rules, STEP};
 use crate::generate::Site;
@@ -66,6 +67,11 @@ impl Game {
     /// What the game depends on beside its level and the intents.
     pub fn rules(&self) -> Rules {
         self.rules
+    }
+
+    /// The number of steps since the start.
+    pub fn steps(&self) -> u64 {
+        self.steps
     }
 
     /// The time in the game in seconds, counted in steps.
@@ -137,7 +143,7 @@ impl Game {
 
     /// How the game stands.
     pub fn outcome(&self) -> Outcome {
-        match self.killed_by {
+        match self.player.killed_by {
             Some(cause) => Outcome::Dead { cause: cause.name() },
             None if self.is_finished() => Outcome::Won,
             None => Outcome::Playing,
@@ -153,13 +159,17 @@ impl Game {
     }
 
     pub(super) fn is_dead(&self) -> bool {
-        self.killed_by.is_some()
+        self.player.killed_by.is_some()
     }
 
     /// The things in the player's cell that are neither above the player's head nor below their
     /// feet.
     pub(super) fn things_reached(&self) -> impl Iterator<Item = &Thing> {
-        let motion = &self.player.motion;
+        self.things_reached_by(&self.player)
+    }
+
+    pub(super) fn things_reached_by(&self, player: &Player) -> impl Iterator<Item = &Thing> {
+        let motion = player.motion;
         let cell = motion.cell();
         let heights = self.world.room_in(cell);
         let (feet, head) = (motion.feet(), motion.head());

@@ -2,6 +2,9 @@
 //!
 //! A program that shows a game sleeps through such steps, and then advances the clocks at once. The
 //! two ways give the same game, bit for bit.
+//!
+//! A game for several rests while nobody plays in it. It was not made to rest while all of its
+//! players stand still: there is always somebody who does not.
 
 use super::Game;
 use super::intent::Intents;
@@ -10,6 +13,13 @@ impl Game {
     /// Advances the clocks by `steps` steps in which nothing moves. Has the effect of as many calls
     /// of [`Game::step`] if `steps` is at most [`Game::quiet_steps`].
     pub fn wait(&mut self, steps: u64) {
+        if self.members.is_some() {
+            // Every further step without players is equal to the first.
+            if steps > 0 {
+                self.step_all(&[]);
+            }
+            return;
+        }
         if !self.is_finished() && !self.is_dead() {
             self.steps = self.steps.saturating_add(steps);
             self.doors.wait(steps);
@@ -35,6 +45,9 @@ impl Game {
     /// and those of waiting doors and of the message. [`u64::MAX`] if the game is [at
     /// rest](Game::is_at_rest).
     pub fn quiet_steps(&self, intents: Intents) -> u64 {
+        if self.members.is_some() {
+            return if self.is_deserted() { u64::MAX } else { 0 };
+        }
         if self.is_finished() {
             return u64::MAX;
         }
@@ -59,7 +72,7 @@ impl Game {
     fn would_change(&self, intents: Intents) -> bool {
         let intents = self.at_a_door(intents);
         let motion = self.player.motion;
-        motion.stepped(&self.world, intents, self.pace()) != motion
+        motion.stepped(&self.world, &[], intents, self.pace()) != motion
             || self.presses(intents) != self.player.pressed
             || self.door_wanted(intents).is_some_and(|(cell, door)| self.would_answer(cell, door))
             || self.find().is_some()

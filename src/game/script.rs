@@ -163,12 +163,22 @@ impl fmt::Display for Stretch {
             }
             steps => format!("{steps} steps"),
         };
-        let names = self.intents.iter().map(|intent| intent.name().to_owned());
-        let mut wanted: Vec<String> = names.chain(self.intents.look().words()).collect();
-        if wanted.is_empty() {
-            wanted.push(STAND.to_owned());
-        }
-        write!(f, "{duration:<9} {}", wanted.join(" "))
+        write!(f, "{duration:<9} {}", self.intents.words())
+    }
+}
+
+impl Intents {
+    /// The words of a script for the set.
+    pub(crate) fn words(self) -> String {
+        let names = self.iter().map(|intent| intent.name().to_owned());
+        let wanted: Vec<String> = names.chain(self.look().words()).collect();
+        if wanted.is_empty() { STAND.to_owned() } else { wanted.join(" ") }
+    }
+
+    /// The set that words of a script name; `None` if they name none.
+    #[cfg(feature = "serve")]
+    pub(crate) fn from_words(words: &str) -> Option<Self> {
+        parse::intents(words)
     }
 }
 

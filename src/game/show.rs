@@ -2,7 +2,9 @@
 //! move.
 
 use super::Game;
+use super::company::playing;
 use super::guards::Target;
+use super::player::Player;
 use super::tools::{Missile, MissileKind, Puff};
 use crate::world::sprite::builtin;
 use crate::world::{Figure, Heading, Lamp, Light, Reach, SpriteId, World};
@@ -36,7 +38,7 @@ impl Sprites {
     fn missile(&self, missile: &Missile) -> Option<Figure> {
         let sprite = match missile.kind {
             MissileKind::Pebble => self.pebble,
-            MissileKind::Dart => self.dart,
+            MissileKind::Dart { .. } => self.dart,
             MissileKind::Flask => self.flask,
             MissileKind::Bolt { .. } => self.bolt,
         };
@@ -75,7 +77,7 @@ impl Game {
     /// Shows figures and lamps where they are now.
     pub(super) fn show(&mut self) {
         self.show_lamps();
-        if self.is_mission {
+        if self.is_mission || self.members.is_some() {
             self.show_figures();
         }
     }
@@ -96,7 +98,11 @@ impl Game {
 
     /// What guards can perceive of the player.
     pub(super) fn target(&self) -> Target {
-        let motion = &self.player.motion;
+        self.target_at(&self.player)
+    }
+
+    pub(super) fn target_at(&self, player: &Player) -> Target {
+        let motion = &player.motion;
         let light = self.world.light_in(motion.cell()).in_256ths();
         let posed = if motion.is_ducking() { light / 2 } else { light };
         let visibility = if motion.is_still() { posed * 4 / 5 } else { posed };
@@ -105,26 +111,32 @@ impl Game {
             feet: motion.feet(),
             head: motion.head(),
             visibility: visibility.min(u8::MAX.into()) as u8,
-            has_light: self.player.has_light,
-            is_alive: !self.player.health.is_gone(),
+            has_light: player.has_light,
+            is_alive: !player.health.is_gone(),
         }
     }
 
     fn show_figures(&mut self) {
-        let Self { guards, missiles, smoke, sprites, .. } = self;
-        let is_still = !guards.has_changed() && missiles.is_empty() && smoke.is_empty();
-        if is_still && self.world.figures().len() == guards.figure_count() {
+        let Self { guards, missiles, smoke, sprites, members, world, .. } = self;
+        let have_moved = members.as_deref_mut().is_some_and(|members| members.pose(world));
+        let players = members.as_deref().map_or(&[][..], |members| members.figures());
+        let is_still =
+            !guards.has_changed() && !have_moved && missiles.is_empty() && smoke.is_empty();
+        if is_still && world.figures().len() == guards.figure_count() + players.len() {
             return;
         }
         let missiles = missiles.iter().filter_map(|missile| sprites.missile(missile));
         let puffs = smoke.puffs().filter_map(|puff| sprites.puff(puff));
-        self.world.set_figures(guards.figures().chain(missiles).chain(puffs));
+        let players = players.iter().copied();
+        world.set_figures(guards.figures().chain(missiles).chain(puffs).chain(players));
         self.revision += 1;
     }
 
     fn show_lamps(&mut self) {
-        let lamp = self.player.has_light.then(|| (self.player.motion.cell(), lamp()));
-        self.world.set_moving_lamps(lamp.into_iter().chain(self.guards.lamps()));
+        let lit = playing(&self.player, self.members.as_deref());
+        let lit = lit.filter(|(_, player)| player.has_light);
+        let of_players = lit.map(|(_, player)| (player.motion.cell(), lamp()));
+        self.world.set_moving_lamps(of_players.chain(self.guards.lamps()));
     }
 }
 

@@ -102,13 +102,13 @@ pub(super) struct Counts {
 }
 
 impl Game {
-    /// The worth of the treasure found, and of all in the level.
+    /// The worth of the treasure found, by all players together, and of all in the level.
     pub fn treasure(&self) -> Share {
         let left = self.world.things().iter().map(|thing| match thing.kind {
             ThingKind::Treasure(worth) => u32::from(worth),
             _ => 0,
         });
-        let found = self.player.treasure;
+        let found = self.treasure_found();
         Share { found, total: left.fold(found, u32::saturating_add) }
     }
 
@@ -119,7 +119,7 @@ impl Game {
 
     /// What the player has done so far.
     pub fn tally(&self) -> Tally {
-        let Counts { alarms, deaths, stunned } = self.counts;
+        let Counts { alarms, deaths, stunned } = self.player.counts;
         let (treasure, secrets) = (self.treasure(), self.secrets());
         Tally { steps: self.steps, treasure, secrets, alarms, deaths, stunned }
     }

@@ -4,7 +4,7 @@ mod encounters;
 mod finds;
 mod hazards;
 mod mechanisms;
-mod missions;
+pub(super) mod missions;
 mod stage;
 mod tools;
 
@@ -103,7 +103,7 @@ fn to_nearest_wall(grid: &Grid, point: DVec2) -> f64 {
 }
 
 /// Intents that are held for a few steps each.
-fn script() -> impl Strategy<Value = Vec<(usize, Vec<Intent>)>> {
+pub(super) fn script() -> impl Strategy<Value = Vec<(usize, Vec<Intent>)>> {
     let held = prop::sample::subsequence(Intent::ALL.to_vec(), 0..=Intent::ALL.len());
     prop::collection::vec((1..60_usize, held), 0..30)
 }

@@ -7,6 +7,7 @@ mod missiles;
 mod smoke;
 
 use super::Game;
+use super::company::playing;
 use super::intent::{Intent, Intents};
 use super::noise::reach;
 use super::sound::{Sound, SoundKind, Source};
@@ -74,11 +75,12 @@ impl Game {
         if fresh.contains(Intent::Lamp) {
             self.turn_lamp();
         }
+        let strikes = fresh.contains(Intent::Strike) && self.player.strike_wait == 0;
+        if strikes && (self.is_mission || self.has_blows()) {
+            self.strike();
+        }
         if !self.is_mission {
             return;
-        }
-        if fresh.contains(Intent::Strike) && self.player.strike_wait == 0 {
-            self.strike();
         }
         for (intent, supply) in [
             (Intent::Throw, Supply::Pebbles),
@@ -101,9 +103,15 @@ impl Game {
     }
 
     fn strike(&mut self) {
+        self.swing();
         let motion = self.player.motion;
         let (position, direction) = (motion.position(), motion.heading().direction());
         let guard = self.guards.guard_near(&self.world, position, direction, ARM, ARM_COSINE);
+        if let Some(index) = self.player_struck(ARM, ARM_COSINE).filter(|_| guard.is_none()) {
+            self.player.strike_wait = AFTER_PUSH;
+            self.sound(SoundKind::Blow, reach::BLOW);
+            return self.strike_player(index, direction);
+        }
         let Some(index) = guard else {
             self.player.strike_wait = AFTER_MISS;
             self.say("Nobody is within reach.".to_owned());
@@ -115,7 +123,9 @@ impl Game {
         let is_surprised = self.guards.is_unaware(index) && kind != Some(GuardKind::Warden);
         if is_behind || is_surprised {
             self.player.strike_wait = AFTER_STUN;
-            self.stun(index, if kind == Some(GuardKind::Hound) { HOUND_STUNNED } else { STUNNED });
+            let is_hound = kind == Some(GuardKind::Hound);
+            self.guards.stun(index, if is_hound { HOUND_STUNNED } else { STUNNED });
+            self.count_stunned(kind);
         } else {
             self.player.strike_wait = AFTER_PUSH;
             self.guards.push(index, direction);
@@ -126,11 +136,9 @@ impl Game {
         }
     }
 
-    /// Lays a guard on the floor, and counts it.
-    fn stun(&mut self, index: usize, steps: u16) {
-        self.guards.stun(index, steps);
-        self.counts.stunned += 1;
-        let kind = self.guards.views().nth(index).map(|view| view.kind);
+    /// Counts a guard whom the player has laid on the floor.
+    fn count_stunned(&mut self, kind: Option<GuardKind>) {
+        self.player.counts.stunned += 1;
         if let Some(kind) = kind {
             self.say(format!("The {} goes down.", title(kind)));
         }
@@ -144,14 +152,14 @@ impl Game {
         self.revision += 1;
         let motion = self.player.motion;
         let eye = (motion.position(), motion.feet() + Camera::STANDING.min(motion.height() - 0.05));
-        let ahead = motion.heading().direction();
+        let (ahead, by) = (motion.heading().direction(), self.turn());
         self.missiles.launch(match supply {
             Supply::Pebbles => Missile::pebble(eye, ahead),
             Supply::Flasks => Missile::flask(eye, ahead),
             Supply::Darts => {
                 let clouds = self.smoke.clouds();
                 let aim = self.guards.aim(&self.world, clouds, eye, ahead, AIM_COSINE);
-                Missile::dart(eye, ahead, aim)
+                Missile::dart(eye, ahead, aim, by)
             }
         });
     }
@@ -161,8 +169,9 @@ impl Game {
         if self.missiles.is_empty() {
             return;
         }
-        let motion = self.player.motion;
-        for landed in self.missiles.step(&self.world, &self.guards, &motion) {
+        let Self { player, members, missiles, world, guards, .. } = self;
+        let bodies = playing(player, members.as_deref()).map(|(index, it)| (index, it.motion));
+        for landed in missiles.step(world, guards, bodies) {
             self.land(landed);
         }
     }
@@ -171,19 +180,22 @@ impl Game {
         let Landed { missile, cell, struck } = landed;
         let sound = |kind, reach| Sound { kind, cell, reach, by: Source::Object };
         match (missile.kind, struck) {
-            (MissileKind::Dart, Struck::Guard(index)) => {
+            (MissileKind::Dart { by }, Struck::Guard(index)) => {
                 let kind = self.guards.views().nth(index).map(|view| view.kind);
                 let is_warden = kind == Some(GuardKind::Warden);
                 self.sounds.push(sound(SoundKind::Blow, reach::BLOW));
-                self.stun(index, if is_warden { WARDEN_SHOT } else { STUNNED });
+                self.guards.stun(index, if is_warden { WARDEN_SHOT } else { STUNNED });
+                self.in_turn(by, |game| game.count_stunned(kind));
             }
-            (MissileKind::Bolt { points, from }, Struck::Player) => self.hurt_by_bolt(points, from),
+            (MissileKind::Bolt { points, from }, Struck::Player(index)) => {
+                self.in_turn(index, |game| game.hurt_by_bolt(points, from));
+            }
             (MissileKind::Flask, _) => {
                 self.sounds.push(sound(SoundKind::Crash, reach::CRASH));
                 self.smoke.add(missile.position, missile.height);
             }
             (MissileKind::Pebble, _) => self.sounds.push(sound(SoundKind::Knock, reach::KNOCK)),
-            (MissileKind::Dart | MissileKind::Bolt { .. }, _) => {
+            (MissileKind::Dart { .. } | MissileKind::Bolt { .. }, _) => {
                 self.sounds.push(sound(SoundKind::Knock, reach::TAP));
             }
         }

@@ -79,6 +79,11 @@ pub fn descent(seed: u64, floor: u32) -> Result<World, Faults> {
     }
 }
 
+/// The floors of the descent of `seed` below `floor`, without an end.
+pub fn floors_below(seed: u64, floor: u32) -> impl Iterator<Item = World> {
+    (floor.saturating_add(1)..).map_while(move |number| descent(seed, number).ok())
+}
+
 /// The seed of the descent of a day, such as 20261122: all players have the same one.
 pub fn daily_seed(year: u32, month: u32, day: u32) -> u32 {
     year * 10_000 + month * 100 + day

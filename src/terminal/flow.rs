@@ -43,6 +43,8 @@ use super::Fidelity;
 pub(super) struct Flow {
     answers: Answers,
     in_flight: InFlight,
+    /// The number of frames sent so far.
+    frames_sent: u64,
     /// The time of the last frame, request or answer.
     active_at: Duration,
     /// The time at which a fence was last sent.
@@ -118,6 +120,7 @@ impl Flow {
         if request == Request::Fence {
             self.fenced_at = now;
         }
+        self.frames_sent += u64::from(bytes > 0);
         self.in_flight.push(Sent { at: now, bytes, request });
         self.active_at = now;
         self.has_input = false;
@@ -212,6 +215,16 @@ impl Flow {
     /// Whether answers may arrive.
     pub(super) fn awaits_answers(&self) -> bool {
         self.answers != Answers::Never && !self.in_flight.is_empty()
+    }
+
+    /// The number of frames sent so far.
+    pub(super) fn frames_sent(&self) -> u64 {
+        self.frames_sent
+    }
+
+    /// The number of frames that are not in flight any more.
+    pub(super) fn frames_answered(&self) -> u64 {
+        self.frames_sent - self.in_flight.frames() as u64
     }
 
     /// The round-trip time of the latest answer; `None` if there was no answer.

@@ -4,29 +4,21 @@
 //! that ends gives the terminal back, and the others do nothing. Restoring a part of the state in
 //! each was refused: a mode that is pushed or popped twice is worse than neither.
 
-mod fences;
 mod output_queue;
 mod panic_hook;
-mod reports;
 
 use std::io;
 use std::sync::atomic::{AtomicBool, Ordering};
 use std::sync::{Arc, Condvar, Mutex, MutexGuard, PoisonError};
 use std::time::{Duration, Instant};
 
-use crossterm::cursor::{Hide, Show};
-use crossterm::terminal::{
-    DisableLineWrap, EnableLineWrap, EndSynchronizedUpdate, EnterAlternateScreen,
-    LeaveAlternateScreen,
-};
+use crossterm::terminal::LeaveAlternateScreen;
 
-use self::fences::Fences;
 use self::output_queue::OutputQueue;
-use self::reports::Reports;
 use super::Error;
 use super::input::{Answer, Decoder, Input};
-use super::mouse::MouseUnits;
 use super::platform::Device;
+use super::protocol::Changes;
 use super::recorder::{Recorder, Recording};
 use super::sequence;
 
@@ -37,6 +29,7 @@ const WRITE_TIMEOUT: Duration = Duration::from_millis(250);
 #[derive(Debug)]
 pub(super) struct Guard {
     device: Device,
+    begun_at: Instant,
     state: Mutex<State>,
     given_back: Condvar,
     shutting_down: AtomicBool,
@@ -44,15 +37,10 @@ pub(super) struct Guard {
     recording: Mutex<Recording>,
 }
 
-#[derive(Debug)]
+#[derive(Debug, Default)]
 struct State {
     taken: bool,
-    reports: Reports,
-    fences: Fences,
-    /// Whether answers to status requests may arrive.
-    awaits_statuses: bool,
-    /// Whether entries of the palette may have been defined.
-    palette_defined: bool,
+    changes: Changes,
 }
 
 impl Guard {
@@ -66,13 +54,8 @@ impl Guard {
     ) -> Result<Arc<Self>, Error> {
         let guard = Arc::new(Self {
             device,
-            state: Mutex::new(State {
-                taken: false,
-                reports: Reports::default(),
-                fences: Fences::none(),
-                awaits_statuses: false,
-                palette_defined: false,
-            }),
+            begun_at: Instant::now(),
+            state: Mutex::default(),
             given_back: Condvar::new(),
             shutting_down: AtomicBool::new(false),
             output_queue: Mutex::default(),
@@ -97,53 +80,23 @@ impl Guard {
         self.recording.lock().unwrap_or_else(PoisonError::into_inner)
     }
 
-    /// Takes the terminal: raw mode, the alternate screen, no cursor.
+    /// The time since the session began.
+    pub(super) fn now(&self) -> Duration {
+        self.begun_at.elapsed()
+    }
+
+    /// Takes the terminal, and sets raw mode.
     pub(super) fn take(&self) -> io::Result<()> {
         let mut state = self.lock();
         self.device.make_raw()?;
         state.taken = true;
         self.output_queue().clear();
-        let mut text = sequence::of(EnterAlternateScreen) + &sequence::of(Hide);
-        // Long lines are cut, so that a narrower window does not scroll.
-        text.push_str(&sequence::of(DisableLineWrap));
-        text.push_str(sequence::RESET_STYLE);
-        state.reports.push_start(&mut text);
-        drop(state);
-        self.write(text.as_bytes())
+        Ok(())
     }
 
-    /// Sends `queries` with a fence after them.
-    pub(super) fn ask(&self, queries: &str) -> io::Result<()> {
-        self.lock().fences.sent();
-        self.write([queries, sequence::QUERY_FENCE].concat().as_bytes())
-    }
-
-    /// Records that a fence was sent after a frame.
-    pub(super) fn fence_sent(&self) {
-        self.lock().fences.sent();
-    }
-
-    /// Records that the terminal has answered a fence.
-    pub(super) fn fence_answered(&self) {
-        self.lock().fences.answered();
-    }
-
-    /// Whether a fence is still unanswered.
-    pub(super) fn awaits_answers(&self) -> bool {
-        self.lock().fences.are_open()
-    }
-
-    /// Sets how the terminal reports the mouse, now and after it is taken again.
-    pub(super) fn set_mouse(&self, mouse: Option<MouseUnits>) -> io::Result<()> {
-        let mut text = String::new();
-        self.lock().reports.change_mouse(mouse, &mut text);
-        self.write(text.as_bytes())
-    }
-
-    /// Makes the terminal report keys in the kitty protocol, now and after it is taken again.
-    pub(super) fn push_key_flags(&self) -> io::Result<()> {
-        self.lock().reports.has_key_flags = true;
-        self.write(sequence::PUSH_KEY_FLAGS.as_bytes())
+    /// Sets what must be undone.
+    pub(super) fn set_changes(&self, changes: Changes) {
+        self.lock().changes = changes;
     }
 
     /// Whether the terminal is taken, so that the program may write to it.
@@ -170,16 +123,6 @@ impl Guard {
     /// Whether the terminal has accepted all bytes.
     pub(super) fn has_written_all(&self) -> bool {
         self.output_queue().is_empty()
-    }
-
-    /// Sets whether answers to status requests may arrive.
-    pub(super) fn await_statuses(&self, awaits: bool) {
-        self.lock().awaits_statuses = awaits;
-    }
-
-    /// Records that entries of the palette may have been defined.
-    pub(super) fn palette_defined(&self) {
-        self.lock().palette_defined = true;
     }
 
     /// Makes all functions stop waiting for a terminal that is not ready for a frame.
@@ -225,21 +168,9 @@ impl Guard {
     /// Undoes all changes, in reverse order. After an error in one step, the others are still
     /// tried: nothing better can be done about it.
     fn leave(&self, state: &mut State) {
-        let mut text = sequence::of(EndSynchronizedUpdate) + sequence::RESET_STYLE;
-        if state.palette_defined {
-            text.push_str(&sequence::give_palette_back());
-        }
-        state.reports.push_end(&mut text);
-        if state.has_pending_reports() {
-            // The answer to this arrives after all pending reports.
-            text.push_str(sequence::QUERY_FENCE);
-            state.fences.sent();
-            state.awaits_statuses = false;
-        }
-        text.push_str(&sequence::of(EnableLineWrap));
-        text.push_str(&sequence::of(Show));
+        let text = state.changes.end(self.now());
         if self.write_or_discard(&text).is_ok() {
-            self.discard_answers(&mut state.fences);
+            self.discard_answers(&mut state.changes);
             _ = self.write_or_discard(&sequence::of(LeaveAlternateScreen));
         }
         _ = self.device.restore_attributes();
@@ -260,10 +191,10 @@ impl Guard {
 
     /// Reads until every query is answered, so that the shell receives no answer and no key
     /// release.
-    fn discard_answers(&self, fences: &mut Fences) {
+    fn discard_answers(&self, changes: &mut Changes) {
         let mut decoder = Decoder::default();
         let mut buffer = [0; 256];
-        while let Some(timeout) = fences.time_left() {
+        while let Some(timeout) = changes.fences.time_left(self.now()) {
             match self.device.wait_for_input(timeout) {
                 Ok(true) => {}
                 Ok(false) | Err(_) => return,
@@ -273,19 +204,10 @@ impl Guard {
                 Ok(Some(0)) | Err(_) => return,
                 Ok(Some(count)) => decoder.feed(&buffer[..count], |input| {
                     if input == Input::Answer(Answer::Fence) {
-                        fences.answered();
+                        changes.fences.answered();
                     }
                 }),
             }
         }
-    }
-}
-
-impl State {
-    /// Whether the terminal may have sent input that is not read yet: a key release, which it sends
-    /// until its flags are popped, a motion of the mouse, or the answer to a frame. Focus reports
-    /// do not count: few are sent, and waiting for a terminal that answers nothing takes a second.
-    fn has_pending_reports(&self) -> bool {
-        self.reports.are_frequent() || self.awaits_statuses || self.fences.are_answered()
     }
 }

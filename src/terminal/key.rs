@@ -25,6 +25,23 @@ pub struct KeyEvent {
     pub phase: Phase,
 }
 
+impl KeyEvent {
+    /// The character that the event types into a text; `None` for other keys, with Control or Alt,
+    /// and for releases.
+    pub fn typed(&self) -> Option<char> {
+        let Key::Char(character) = self.key else { return None };
+        let Modifiers { shift, control, alt } = self.modifiers;
+        if control || alt || self.phase == Phase::Release {
+            return None;
+        }
+        let mut upper = character.to_uppercase();
+        match (upper.next(), upper.next()) {
+            (Some(single), None) if shift => Some(single),
+            _ => Some(character),
+        }
+    }
+}
+
 /// A key of the keyboard.
 ///
 /// Its text, for [`Display`](fmt::Display) and [`FromStr`], is the character or a name: `space`,

@@ -26,10 +26,14 @@ impl WindowSize {
     pub(super) const UNKNOWN: Self =
         Self { columns: 80, rows: 24, cell_aspect: None, pixels: None };
 
+    /// A window of this many cells, whose size in pixels is unknown.
+    pub fn of_cells(columns: u16, rows: u16) -> Self {
+        Self::new((columns, rows), (0, 0))
+    }
+
     /// The size of a window in columns and rows, and in pixels. Some terminals report no pixels,
     /// some implausible numbers.
-    #[cfg(unix)]
-    pub(super) fn new((columns, rows): (u16, u16), (width, height): (u16, u16)) -> Self {
+    pub fn new((columns, rows): (u16, u16), (width, height): (u16, u16)) -> Self {
         let cell_width = f64::from(width) / f64::from(columns);
         let cell_height = f64::from(height) / f64::from(rows);
         let cell_aspect =

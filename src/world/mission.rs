@@ -1,6 +1,6 @@
 //! The mission: what a level asks of the player, and who and what is there beside tiles and things.
 
-use super::{GuardPost, MovingTile, ThingKind, World};
+use super::{Cell, GuardPost, MovingTile, ThingKind, World};
 
 /// The parts of a level that only a game uses.
 #[derive(Clone, Debug, PartialEq, Default)]
@@ -44,6 +44,19 @@ impl World {
     #[must_use]
     pub fn without_guards(mut self) -> Self {
         self.mission.guards.clear();
+        self
+    }
+
+    /// The same world without exits.
+    #[must_use]
+    pub fn without_exits(mut self) -> Self {
+        let exits: Vec<Cell> = self
+            .things()
+            .iter()
+            .filter(|thing| thing.kind == ThingKind::Exit)
+            .map(|thing| thing.cell)
+            .collect();
+        exits.into_iter().for_each(|cell| self.take_things(cell, |kind| kind == ThingKind::Exit));
         self
     }
 

@@ -123,6 +123,11 @@ impl World {
         self.things.remove(|thing| thing.cell == cell && is_taken(thing.kind));
     }
 
+    /// Adds a thing that has no light.
+    pub(crate) fn put_thing(&mut self, thing: Thing) {
+        self.things.insert(thing);
+    }
+
     /// Sets the frame of the things in `cell` for which `is_it` is true.
     pub(crate) fn set_frame(&mut self, cell: Cell, is_it: impl Fn(ThingKind) -> bool, frame: u8) {
         let wanted = self.things.in_cell_mut(cell).iter_mut().filter(|thing| is_it(thing.kind));
@@ -179,6 +184,12 @@ impl Things {
 
     fn before_row(&self, row: u32) -> usize {
         self.before_row.get(row as usize).copied().unwrap_or(self.sorted.len())
+    }
+
+    fn insert(&mut self, thing: Thing) {
+        let index = self.sorted.partition_point(|other| place(other) <= place(&thing));
+        self.sorted.insert(index, thing);
+        self.find_rows();
     }
 
     fn remove(&mut self, is_gone: impl Fn(&Thing) -> bool) {

@@ -17,7 +17,7 @@ fn wants() -> impl Strategy<Value = Vec<(Intents, u8)>> {
     prop::collection::vec((held, 1_u8..40), 1..30)
 }
 
-/// The position of the player after a step, and the distance to the nearest solid cell.
+/// The position of the player after a step, and the distance to the nearest wall.
 type Place = (DVec2, f64);
 
 /// Every position on the way, and a frame after each of `wants`.
@@ -29,7 +29,7 @@ fn play(level: usize, wants: &[(Intents, u8)]) -> (Vec<Place>, Vec<Frame>) {
         for _ in 0..steps {
             game.step(intents);
             let position = game.camera(FieldOfView::default()).position();
-            places.push((position, clearance(game.world().grid(), position)));
+            places.push((position, clearance(game.world(), position)));
         }
         let mut frame = Frame::new(FrameSize::new(40, 24).unwrap(), PixelAspect::SQUARE);
         renderer.render(game.world(), &game.camera(FieldOfView::default()), &mut frame);

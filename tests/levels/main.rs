@@ -8,6 +8,7 @@ mod growth;
 mod landing;
 mod map;
 mod playing;
+mod several;
 mod steps;
 
 #[path = "../support/reach.rs"]

@@ -153,7 +153,7 @@ proptest! {
         for (held, steps) in wants {
             for _ in 0..steps {
                 walk(&mut game, 1, &held);
-                let clearance = clearance(game.world().grid(), position(&game));
+                let clearance = clearance(game.world(), position(&game));
                 prop_assert!(clearance >= RADIUS, "{} at {}", clearance, position(&game));
             }
         }

@@ -103,23 +103,26 @@ impl Emulator {
 
     /// Processes `bytes` and returns the terminal's answers.
     pub(crate) fn process(&mut self, bytes: &[u8]) -> Vec<u8> {
+        let before = self.bytes.len();
         self.bytes.extend_from_slice(bytes);
         self.parser.process(bytes);
         if let Some(alacritty) = &mut self.alacritty {
             return alacritty.process(bytes);
         }
         let answers = std::mem::take(&mut self.parser.callbacks_mut().answers);
-        [last_motion(bytes), &self.answer_about_colors(), &answers].concat()
+        [last_motion(bytes), &self.answer_about_colors(before), &answers].concat()
     }
 
-    /// Answers the query for 24-bit colours, in a kind of string that the parser ignores.
-    fn answer_about_colors(&mut self) -> Vec<u8> {
+    /// Answers the query for 24-bit colours, in a kind of string that the parser ignores. It ends
+    /// after the first `before` bytes.
+    fn answer_about_colors(&mut self, before: usize) -> Vec<u8> {
         const QUERY: &[u8] = b"\x1bP+q524742\x1b\\";
         const ANSWER: &[u8] = b"\x1bP1+r524742=38\x1b\\";
         let speaks = self.parser.callbacks().speaks;
+        let recent = &self.bytes[before.saturating_sub(QUERY.len())..];
         if self.answered_about_colors
             || speaks != Speaks::Kitty
-            || !self.bytes.windows(QUERY.len()).any(|window| window == QUERY)
+            || !recent.windows(QUERY.len()).any(|window| window == QUERY)
         {
             return Vec::new();
         }

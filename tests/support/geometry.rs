@@ -1,7 +1,7 @@
 //! Cameras and distances that several tests need.
 #![allow(dead_code, reason = "every test file uses its own share of this")]
 
-use cellcaster::world::{Camera, FieldOfView, Grid, Heading};
+use cellcaster::world::{Camera, FieldOfView, Heading, TileKind, World};
 use glam::DVec2;
 
 /// The camera at a position, with a heading and a field of view in degrees.
@@ -11,13 +11,19 @@ pub(crate) fn camera(position: impl Into<DVec2>, degrees: f64, field_of_view: f6
     Camera::new(position.into(), heading, field_of_view).unwrap()
 }
 
-/// The distance of `point` to the nearest solid cell around it.
-pub(crate) fn clearance(grid: &Grid, point: DVec2) -> f64 {
+/// The distance of `point` to the nearest cell around it that a wall fills. Pillars and other shapes,
+/// which leave room in their cells, do not count.
+pub(crate) fn clearance(world: &World, point: DVec2) -> f64 {
     let (column, row) = (point.x as i64, point.y as i64);
     let around =
         (row - 1..=row + 1).flat_map(|row| (column - 1..=column + 1).map(move |c| (c, row)));
+    let grid = world.grid();
+    let fills = |column, row| {
+        let shape = grid.tile(column, row).map(|tile| world.tile(tile).kind);
+        grid.is_solid(column, row) && !matches!(shape, Some(TileKind::Shape(_)))
+    };
     around
-        .filter(|&(column, row)| grid.is_solid(column, row))
+        .filter(|&(column, row)| fills(column, row))
         .map(|(column, row)| {
             let corner = DVec2::new(column as f64, row as f64);
             point.distance(point.clamp(corner, corner + 1.0))

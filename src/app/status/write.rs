@@ -2,18 +2,19 @@
 
 use std::fmt::{self, Write};
 
-use super::{Part, StatusLine, StatusValues};
-use crate::app::bindings::Action;
+use super::{Part, StatusLine, StatusValues, Toggles};
+use crate::app::bindings::{Action, Bindings};
 use crate::app::panels::whole_seconds;
-use crate::game::Game;
+use crate::game::PlayerId;
 
 impl StatusLine {
     pub(super) fn write(&mut self, values: &StatusValues) -> fmt::Result {
         let StatusValues { game, goal, level, share_seen, toggles, mouse, stats, bindings, .. } =
             *values;
-        let mission = game.grid().filter(|game| game.is_mission());
-        if let Some(game) = mission {
-            self.write_vitals(game, values.health_signs)?;
+        let player = game.grid().and_then(|game| game.seen_by(PlayerId::FIRST));
+        let mission = game.grid().filter(|game| game.is_mission()).zip(player);
+        if let Some((game, player)) = mission {
+            self.write_vitals(game, &player, values.health_signs)?;
         }
         self.both(Part::Title, format_args!("{}", game.title()))?;
         if level.is_one_of_several() {
@@ -24,21 +25,8 @@ impl StatusLine {
         if let Some(site) = game.site() {
             self.both(Part::Site, format_args!("{}, {}", site.column, site.row))?;
         }
-        let modes = [
-            (toggles.runs, "running"),
-            (toggles.ducks, "ducking"),
-            (toggles.keeps_walking, "walking on"),
-            (mouse, "mouse"),
-            (mission.is_some_and(Game::lamp_is_lit), "lamp"),
-        ];
-        for (index, (_, mode)) in modes.into_iter().filter(|(is_on, _)| *is_on).enumerate() {
-            let comma = if index > 0 { ", " } else { "" };
-            self.both(Part::Modes, format_args!("{comma}{mode}"))?;
-        }
-        for (index, key) in game.keys().enumerate() {
-            let comma = if index > 0 { ", " } else { "" };
-            self.both(Part::Keys, format_args!("{comma}{key} key"))?;
-        }
+        self.write_modes(toggles, mouse, mission.is_some_and(|it| it.1.lamp_is_lit()))?;
+        self.write_keys(game.keys())?;
         if let Some(message) = game.message() {
             self.both(Part::Notice, format_args!("{message}"))?;
         } else if goal.is_shown() {
@@ -55,6 +43,36 @@ impl StatusLine {
             self.both(Part::Seen, format_args!("{:.0} % seen", (share * 100.0).floor()))?;
         }
         self.both(Part::Time, format_args!("{}", whole_seconds(game.elapsed())))?;
+        self.write_help(bindings)
+    }
+
+    /// Writes the modes that are switched on.
+    pub(crate) fn write_modes(&mut self, toggles: Toggles, mouse: bool, lamp: bool) -> fmt::Result {
+        let modes = [
+            (toggles.runs, "running"),
+            (toggles.ducks, "ducking"),
+            (toggles.keeps_walking, "walking on"),
+            (mouse, "mouse"),
+            (lamp, "lamp"),
+        ];
+        for (index, (_, mode)) in modes.into_iter().filter(|(is_on, _)| *is_on).enumerate() {
+            let comma = if index > 0 { ", " } else { "" };
+            self.both(Part::Modes, format_args!("{comma}{mode}"))?;
+        }
+        Ok(())
+    }
+
+    /// Writes the names of the keys that the player has.
+    pub(crate) fn write_keys<'k>(&mut self, keys: impl Iterator<Item = &'k str>) -> fmt::Result {
+        for (index, key) in keys.enumerate() {
+            let comma = if index > 0 { ", " } else { "" };
+            self.both(Part::Keys, format_args!("{comma}{key} key"))?;
+        }
+        Ok(())
+    }
+
+    /// Writes the keys that show the help.
+    pub(crate) fn write_help(&mut self, bindings: &Bindings) -> fmt::Result {
         let [short, long] = &mut self.texts[Part::Help as usize];
         for (index, key) in bindings.keys(Action::ToggleHelp).enumerate() {
             let blank = if index > 0 { " " } else { "" };
@@ -66,12 +84,12 @@ impl StatusLine {
     }
 
     /// The short and the long form of `part`.
-    pub(in crate::app) fn forms(&mut self, part: Part) -> &mut [String; 2] {
+    pub(crate) fn forms(&mut self, part: Part) -> &mut [String; 2] {
         &mut self.texts[part as usize]
     }
 
     /// Appends to both forms of `part`.
-    pub(in crate::app) fn both(&mut self, part: Part, text: fmt::Arguments) -> fmt::Result {
+    pub(crate) fn both(&mut self, part: Part, text: fmt::Arguments) -> fmt::Result {
         self.texts[part as usize].iter_mut().try_for_each(|form| form.write_fmt(text))
     }
 }

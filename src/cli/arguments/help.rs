@@ -39,7 +39,7 @@ pub(super) const WHERE_TO_READ_ON: &str = "\
 /// The text after the options of the game: options of other commands, keys, and examples.
 pub(super) fn more() -> String {
     let mut text = String::new();
-    for subcommand in SUBCOMMANDS.into_iter().filter(|it| it.name != play::SUBCOMMAND.name) {
+    for subcommand in SUBCOMMANDS.iter().filter(|it| it.name != play::SUBCOMMAND.name) {
         push_details(&mut text, subcommand);
     }
     push_keys(&mut text);

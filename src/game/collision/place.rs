@@ -41,6 +41,8 @@ pub(in crate::game) struct Place<'a> {
     pub(in crate::game) step: f64,
     /// Whether the world has shapes.
     pub(in crate::game) has_shapes: bool,
+    /// The positions of players in the way, who are columns without an upper end.
+    pub(in crate::game) others: &'a [DVec2],
 }
 
 impl Obstacles for Place<'_> {
@@ -60,6 +62,10 @@ impl Obstacles for Place<'_> {
             }
             _ => None,
         }
+    }
+
+    fn circles(&self) -> &[DVec2] {
+        self.others
     }
 
     /// Steps up, if there is room.

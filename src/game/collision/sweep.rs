@@ -73,8 +73,8 @@ pub(super) struct Contact {
     pub(super) normal: DVec2,
     /// The rest of the displacement.
     pub(super) remaining: DVec2,
-    /// The column and the row of the obstacle.
-    pub(super) cell: (i64, i64),
+    /// The column and the row of the obstacle; `None` for another circle.
+    pub(super) cell: Option<(i64, i64)>,
 }
 
 /// The first contact of a circle on `path`, if there is one.
@@ -98,8 +98,7 @@ pub(super) fn first_contact<O: Obstacles>(
             EventKind::Touch(obstacle) => {
                 let (position, normal) = obstacle.touched(obstacles, path, distance, radius);
                 let remaining = path.direction * (path.length - distance);
-                let (columns, rows) = obstacle.cell();
-                let cell = (column + columns, row + rows);
+                let cell = obstacle.cell().map(|(columns, rows)| (column + columns, row + rows));
                 return Some(Contact { position, normal, remaining, cell });
             }
         }
@@ -133,6 +132,8 @@ enum Obstacle {
     Wall { position: DVec2, normal: DVec2 },
     /// The corner of a solid cell at an offset of columns and rows.
     Corner { vertex: DVec2, cell: (i64, i64) },
+    /// Another circle of the same radius.
+    Circle { center: DVec2 },
     /// The shape in a cell at an offset of columns and rows.
     Shape { touch: TouchKind, cell: (i64, i64) },
 }
@@ -154,13 +155,14 @@ impl<O: Obstacles> Room<'_, O> {
         self.obstacles.blocks(self.column + columns, self.row + rows)
     }
 
-    /// The first of: either side ahead, any corner, any shape. `None` for a path without a
+    /// The first of: either side ahead, any corner, shape or circle. `None` for a path without a
     /// direction.
     fn next_event(&self, path: Path) -> Option<Event> {
         // Of two equal events either will do: the other follows in the next room, or on the slide.
         let sides = [self.event_along_y(path), self.event_along_x(path)];
         let events = sides.into_iter().flatten();
         let events = events.chain(self.corner_events(path)).chain(self.shape_events(path));
+        let events = events.chain(self.circle_events(path));
         events.reduce(|first, next| if next.distance <= first.distance { next } else { first })
     }
 
@@ -206,6 +208,13 @@ impl<O: Obstacles> Room<'_, O> {
         [(-1, -1), (1, -1), (-1, 1), (1, 1)].into_iter().filter(exposed).filter_map(event)
     }
 
+    fn circle_events(&self, path: Path) -> impl Iterator<Item = Event> {
+        self.obstacles.circles().iter().filter_map(move |&center| {
+            let distance = distance_to_disc(path, center, 2.0 * self.radius.0)?;
+            Some(Event { distance, kind: EventKind::Touch(Obstacle::Circle { center }) })
+        })
+    }
+
     fn shape_events(&self, path: Path) -> impl Iterator<Item = Event> {
         let around = (-1..=1).flat_map(|rows| (-1..=1).map(move |columns| (columns, rows)));
         around.filter_map(move |(columns, rows)| {
@@ -246,10 +255,11 @@ pub(super) fn distance_to_disc(path: Path, center: DVec2, radius: f64) -> Option
 
 impl Obstacle {
     /// The obstacle's cell, as an offset of columns and rows from that of the centre.
-    fn cell(&self) -> (i64, i64) {
+    fn cell(&self) -> Option<(i64, i64)> {
         match *self {
-            Self::Wall { normal, .. } => (-normal.x as i64, -normal.y as i64),
-            Self::Corner { cell, .. } | Self::Shape { cell, .. } => cell,
+            Self::Wall { normal, .. } => Some((-normal.x as i64, -normal.y as i64)),
+            Self::Corner { cell, .. } | Self::Shape { cell, .. } => Some(cell),
+            Self::Circle { .. } => None,
         }
     }
 
@@ -274,7 +284,9 @@ impl Obstacle {
                     (path.last_clear(obstacles, distance, radius), normal)
                 }
             }
-            Self::Corner { vertex, .. } | Self::Shape { touch: TouchKind::Round(vertex), .. } => {
+            Self::Corner { vertex, .. }
+            | Self::Circle { center: vertex }
+            | Self::Shape { touch: TouchKind::Round(vertex), .. } => {
                 let position = path.last_clear(obstacles, distance, radius);
                 let outward = position - vertex;
                 (position, outward / outward.length())

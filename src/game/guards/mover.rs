@@ -136,7 +136,13 @@ pub(super) struct Ground<'a> {
 impl Ground<'_> {
     fn place(&self, mover: &Mover) -> Place<'_> {
         let stature = Stature { feet: mover.feet, height: self.gait.height };
-        Place { world: self.world, stature, step: 0.0, has_shapes: self.world.has_shapes() }
+        Place {
+            world: self.world,
+            stature,
+            step: 0.0,
+            has_shapes: self.world.has_shapes(),
+            others: &[],
+        }
     }
 
     /// The height of the floor under a guard.

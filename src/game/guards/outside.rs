@@ -231,6 +231,16 @@ impl Guards {
         }
     }
 
+    /// Forgets the player with that index, who has left.
+    pub(crate) fn forget_player(&mut self, index: usize) {
+        for guard in &mut self.list {
+            guard.quarry = guard.quarry.filter(|quarry| quarry.target != index);
+        }
+        if let Some(trail) = self.trails.get_mut(index) {
+            trail.forget();
+        }
+    }
+
     /// Moves all guards with the window of a generated level. Those outside it are gone, and those
     /// of parts that have come into it are there.
     pub(crate) fn shift(&mut self, world: &World, shift: Shift) {

@@ -16,13 +16,13 @@ use crate::world::{Cell, Gap, TileId, TileKind, World};
 
 /// A position and a height, in cells.
 #[derive(Clone, Copy, Debug, PartialEq)]
-pub(super) struct Point {
-    pub(super) position: DVec2,
-    pub(super) height: f64,
+pub(crate) struct Point {
+    pub(crate) position: DVec2,
+    pub(crate) height: f64,
 }
 
 /// Whether nothing hides one of two points from the other.
-pub(super) fn is_in_sight(world: &World, clouds: &[Cloud], from: Point, to: Point) -> bool {
+pub(crate) fn is_in_sight(world: &World, clouds: &[Cloud], from: Point, to: Point) -> bool {
     !clouds.iter().any(|cloud| cloud.hides(from.position, to.position))
         && Line { world, from, to }.is_free()
 }

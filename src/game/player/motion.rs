@@ -141,12 +141,19 @@ impl Motion {
         wanted_velocity(self.heading, intents).try_normalize()
     }
 
-    /// The motion after one step: turned, then ducked, then moved at this part of the usual speed.
+    /// The motion after one step: turned, then ducked, then moved at this part of the usual speed,
+    /// with `others` in the way.
     #[must_use]
-    pub(in crate::game) fn stepped(self, world: &World, intents: Intents, pace: f64) -> Self {
+    pub(in crate::game) fn stepped(
+        self,
+        world: &World,
+        others: &[DVec2],
+        intents: Intents,
+        pace: f64,
+    ) -> Self {
         let pitch_control = self.pitch_control.after_a_step(intents);
         let ducked = Self { pitch_control, ..self }.turned(intents).ducked(world, intents);
-        ducked.walked(world, intents, pace)
+        ducked.walked(world, others, intents, pace)
     }
 
     fn turned(self, intents: Intents) -> Self {
@@ -166,7 +173,7 @@ impl Motion {
         }
     }
 
-    fn walked(self, world: &World, intents: Intents, pace: f64) -> Self {
+    fn walked(self, world: &World, others: &[DVec2], intents: Intents, pace: f64) -> Self {
         let wants_to_jump = intents.contains(Intent::Jump);
         let stands = self.stands(world);
         let jumps = stands && wants_to_jump && !self.wanted_to_jump;
@@ -175,7 +182,7 @@ impl Motion {
         let target = wanted_velocity(self.heading, intents) * pace;
         let DampedMotion { velocity, displacement } =
             approach_in_plane(self.body.velocity, target, FRICTION, STEP);
-        let mut place = Place { step, ..self.place(world) };
+        let mut place = Place { step, others, ..self.place(world) };
         let mut body = slide(&mut place, Body { velocity, ..self.body }, displacement, RADIUS);
         if body.velocity.length() < STILL {
             body.velocity = DVec2::ZERO;
@@ -246,7 +253,7 @@ impl Motion {
 
     fn place<'a>(&self, world: &'a World) -> Place<'a> {
         let stature = Stature { feet: self.feet, height: self.stance.height() };
-        Place { world, stature, step: 0.0, has_shapes: world.has_shapes() }
+        Place { world, stature, step: 0.0, has_shapes: world.has_shapes(), others: &[] }
     }
 }
 

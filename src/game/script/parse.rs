@@ -188,6 +188,19 @@ impl Reader<'_> {
     }
 }
 
+/// The intents that words name, as a line of a script does after its duration.
+#[cfg(feature = "serve")]
+pub(super) fn intents(words_of_line: &str) -> Option<Intents> {
+    let reader = Reader {
+        text: words_of_line,
+        header: Header::default(),
+        sections: Vec::new(),
+        faults: Vec::new(),
+    };
+    let words = words(words_of_line, 0..words_of_line.len());
+    if words.is_empty() { None } else { reader.intents(&words).ok() }
+}
+
 /// `intents` with the turn or tilt of `word`, such as `turn:-1.5`.
 fn looking(intents: Intents, word: &str, place: Range<usize>) -> Result<Intents, Fault> {
     let (name, degrees) = word.split_once(':').unwrap_or((word, ""));

@@ -76,7 +76,7 @@ fn falls_do_not_hurt_in_an_easy_game_which_keeps_what_was_found() {
     stage.walk_to(8).play(10, &[Intent::Forward]).play(180, &[]);
     assert_eq!((stage.points(), stage.game.outcome()), (6, Outcome::Playing));
     // As if something had killed the player there.
-    stage.game.killed_by = Some(Cause::Water);
+    stage.game.player.killed_by = Some(health::Cause::Water);
     stage.press(Intent::Retry);
     assert_eq!((stage.cell().column, stage.game.treasure()), (4, Share { found: 35, total: 35 }));
 }
@@ -111,7 +111,7 @@ fn a_retry_gives_back_the_checkpoint_but_not_the_clock_the_alarms_and_the_deaths
     let saved = stage.game.clone();
     stage.press(Intent::Throw).walk_to(9).play(10, &[Intent::Forward]).play(240, &[]);
     assert!(stage.is_dead() && stage.guard(0) != saved.guards().next().unwrap());
-    stage.game.counts.alarms += 2;
+    stage.game.player.counts.alarms += 2;
     let dead = stage.game.tally();
     stage.play(1, &[Intent::Retry]);
     assert_eq!((stage.game.outcome(), stage.position()), (Outcome::Playing, position(&saved)));

@@ -104,6 +104,6 @@ fn a_blow_says_where_it_comes_from() {
     let flash = stage.game.flash().unwrap();
     let FlashKind::Hurt { bearing: Some(bearing) } = flash.kind else { panic!("{flash:?}") };
     assert!((bearing.degrees() - 90.0).abs() < 1e-9);
-    let harm = Harm { points: 9, bearing: None, spares: false, cause: Cause::Fall };
+    let harm = Harm { points: 9, bearing: None, spares: false, cause: health::Cause::Fall };
     assert!(Health::default().after(&harm).is_gone());
 }

@@ -6,7 +6,7 @@ use crate::map;
 use crate::world::{Difficulty, Supply};
 
 /// A level with something of everything.
-const EVERYTHING: &str = r##"
+pub(in crate::game) const EVERYTHING: &str = r##"
 par = 60
 treasure_needed = 60
 grid = '''
@@ -201,7 +201,7 @@ fn a_checksum_notices_every_change() {
         |game| game.player.treasure += 1,
         |game| game.player.has_light = true,
         |game| game.steps += 1,
-        |game| game.counts.stunned += 1,
+        |game| game.player.counts.stunned += 1,
         |game| game.rules.seed += 1,
         |game| game.doors.open(Cell { column: 5, row: 4 }),
         |game| game.smoke.add(DVec2::ONE, 0.0),

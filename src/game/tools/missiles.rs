@@ -48,7 +48,10 @@ pub(in crate::game) struct Missile {
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub(in crate::game) enum MissileKind {
     Pebble,
-    Dart,
+    /// The player with that index has shot it.
+    Dart {
+        by: usize,
+    },
     Flask,
     /// Hits for `points`; it was shot at `from`.
     Bolt {
@@ -71,7 +74,8 @@ pub(in crate::game) enum Struck {
     /// A wall, the floor, or nothing for a long time.
     Nothing,
     Guard(usize),
-    Player,
+    /// The player with that index.
+    Player(usize),
 }
 
 impl Missile {
@@ -90,6 +94,7 @@ impl Missile {
         (position, height): (DVec2, f64),
         ahead: DVec2,
         aim: Option<(DVec2, f64)>,
+        by: usize,
     ) -> Self {
         const SPEED: f64 = 14.0;
         let to_aim = aim.and_then(|(target, middle)| {
@@ -98,7 +103,7 @@ impl Missile {
         });
         let (direction, slope) = to_aim.unwrap_or((ahead, 0.0));
         Self {
-            kind: MissileKind::Dart,
+            kind: MissileKind::Dart { by },
             position,
             height,
             velocity: direction * SPEED,
@@ -143,7 +148,8 @@ impl Missile {
     /// Moves it by one step. Returns whether it has met a wall, the floor or its time.
     fn step(&mut self, world: &World) -> bool {
         let stature = Stature { feet: self.height, height: 0.0 };
-        let place = Place { world, stature, step: 0.0, has_shapes: world.has_shapes() };
+        let place =
+            Place { world, stature, step: 0.0, has_shapes: world.has_shapes(), others: &[] };
         let (position, is_stopped) = fly(&place, self.position, self.velocity * STEP, SIZE);
         self.position = position;
         let room = place.room(position, SIZE);
@@ -183,7 +189,7 @@ impl Missiles {
         &mut self,
         world: &World,
         guards: &Guards,
-        player: &Motion,
+        players: impl Iterator<Item = (usize, Motion)> + Clone,
     ) -> Vec<Landed> {
         let mut landed = Vec::new();
         self.flying.retain_mut(|missile| {
@@ -191,8 +197,12 @@ impl Missiles {
             let has_ended = missile.step(world);
             let to = (missile.position, missile.height);
             let struck = match missile.kind {
-                MissileKind::Dart => guards.hit_between(from, to).map(Struck::Guard),
-                MissileKind::Bolt { .. } => hits(player, from, to).then_some(Struck::Player),
+                MissileKind::Dart { .. } => guards.hit_between(from, to).map(Struck::Guard),
+                MissileKind::Bolt { .. } => {
+                    let mut players = players.clone();
+                    let struck = players.find(|(_, player)| hits(player, from, to));
+                    struck.map(|(index, _)| Struck::Player(index))
+                }
                 MissileKind::Pebble | MissileKind::Flask => None,
             };
             let is_over = has_ended || struck.is_some();

@@ -35,8 +35,10 @@ fn reported(unit: &[u8]) -> Option<termina::event::KeyEvent> {
 }
 
 fn translate(event: termina::event::KeyEvent, told_base: Option<char>) -> Option<KeyEvent> {
+    // The parser drops Shift if the terminal reports the character that it types, too.
+    let is_upper = matches!(event.code, KeyCode::Char(character) if character.is_uppercase());
     let modifiers = Modifiers {
-        shift: event.modifiers.contains(Reported::SHIFT),
+        shift: is_upper || event.modifiers.contains(Reported::SHIFT),
         control: event.modifiers.contains(Reported::CONTROL),
         alt: event.modifiers.contains(Reported::ALT),
     };

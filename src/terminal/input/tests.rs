@@ -64,7 +64,7 @@ fn vocabulary() -> Vec<(&'static str, Option<Input>)> {
         ("\x1b[57448;1:3u", key(Key::Control, CONTROL, Phase::Release)),
         ("\x1b[1094::119;1:1u", elsewhere('ц', 'w', PLAIN, Phase::Press)),
         ("\x1b[1094::119;1:3u", elsewhere('ц', 'w', PLAIN, Phase::Release)),
-        ("\x1b[1094:1062:119;2u", elsewhere('ц', 'w', PLAIN, Phase::Press)),
+        ("\x1b[1094:1062:119;2u", elsewhere('ц', 'w', SHIFT, Phase::Press)),
         ("\x1b[1089::99;5u", elsewhere('с', 'c', CONTROL, Phase::Press)),
         ("\x1b[1492::101u", elsewhere('ה', 'e', PLAIN, Phase::Press)),
         ("\x1b[122::119;1:1u", press(Key::Char('z'), PLAIN)),

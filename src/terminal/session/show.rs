@@ -1,16 +1,10 @@
-//! Sends frames: when, at which fidelity, and in how many bytes.
+//! Sends frames, as soon as the terminal is ready for them.
 
 use std::io;
-use std::time::{Duration, Instant};
-
-use ratatui::backend::Backend;
+use std::time::Duration;
 
 use super::Session;
-use crate::terminal::flow::Request;
-use crate::terminal::{Error, Event, Fidelity, Screen, sequence};
-
-/// The byte that rings the bell.
-const BELL: u8 = 0x07;
+use crate::terminal::{Error, Fidelity, Screen};
 
 impl Session {
     /// Draws a frame on a blank screen and sends the changes since the last one. Waits until the
@@ -35,17 +29,17 @@ impl Session {
 
     /// Rings the terminal's bell with the next frame.
     pub fn ring_bell(&mut self) {
-        self.writer.output_mut().push(BELL);
+        self.protocol.ring_bell();
     }
 
     /// Whether the terminal shows exactly the last frame drawn. If it does not, a few calls of
     /// [`Session::refine`] make it exact.
     pub fn is_settled(&self) -> bool {
-        self.writer.is_settled()
+        self.protocol.is_settled()
     }
 
     /// Whether a frame would be shown at once, not behind others in flight. If it would not,
-    /// [`Event::Ready`] follows.
+    /// [`Event::Ready`](crate::terminal::Event::Ready) follows.
     pub fn is_ready(&mut self) -> bool {
         let is_ready = self.may_send();
         self.awaits_readiness = !is_ready;
@@ -54,41 +48,36 @@ impl Session {
 
     /// The present fidelity of frames of motion.
     pub fn fidelity(&self) -> Fidelity {
-        self.fidelity.unwrap_or_else(|| self.flow.fidelity())
+        self.protocol.fidelity()
     }
 
     /// Whether a network makes frames of motion coarser than necessary; `ssh -C` then helps if it
     /// is not in use.
     pub fn is_limited_by_network(&self) -> bool {
-        self.is_remote && self.fidelity.is_none() && self.flow.fidelity() > Fidelity::EXACT
+        self.protocol.is_limited_by_network()
     }
 
     /// The round-trip time of the terminal's latest answer; `None` if the terminal does not answer.
     pub fn round_trip(&self) -> Option<Duration> {
-        self.flow.round_trip()
+        self.protocol.round_trip()
     }
 
     /// The number of bytes written for frames.
     pub fn bytes_written(&self) -> u64 {
-        self.writer.bytes_written()
+        self.protocol.bytes_drawn()
     }
 
     fn try_draw(&mut self, render: impl FnOnce(&mut Screen)) -> io::Result<()> {
         if self.wait_until_ready()? {
-            let fidelity = self.fidelity();
-            self.writer.set_fidelity(fidelity);
-            self.writer.draw_frame(render);
-            Backend::flush(&mut self.writer)?;
-            let bytes = self.send()?;
-            self.flow.sent_motion(bytes, fidelity);
+            self.protocol.draw(render);
+            self.send()?;
         }
         Ok(())
     }
 
     fn try_refine(&mut self) -> io::Result<()> {
         if self.wait_until_ready()? {
-            self.writer.refine();
-            Backend::flush(&mut self.writer)?;
+            self.protocol.refine();
             self.send()?;
         }
         Ok(())
@@ -117,59 +106,43 @@ impl Session {
 
     /// Whether the program has been asked to end.
     pub(super) fn is_ending(&self) -> bool {
-        let is_quit = |event: &Event| matches!(event, Event::Quit(_));
-        self.guard.is_shutting_down() || self.events.iter().any(is_quit)
+        self.guard.is_shutting_down() || self.protocol.is_asked_to_quit()
     }
 
     fn may_send(&self) -> bool {
-        self.guard.has_written_all() && self.flow.may_send(self.now())
+        self.guard.has_written_all() && self.protocol.is_ready(self.guard.now())
     }
 
     /// The time at which to check again whether a frame may be sent, even without an event before
     /// then; `None` for never.
-    pub(super) fn opens_at(&self) -> Option<Instant> {
-        let time = if self.guard.has_written_all() { self.flow.opens_at() } else { None };
-        time.map(|time| self.begun_at + time)
-    }
-
-    /// Sends the bytes of the frame and returns their number, which may be zero.
-    fn send(&mut self) -> io::Result<usize> {
-        let now = self.now();
-        let frame = self.writer.output_mut();
-        let bytes = frame.len();
-        if bytes == 0 {
-            return Ok(0);
-        }
-        let request = self.flow.request(now);
-        match request {
-            Request::Nothing => {}
-            Request::Status => frame.extend_from_slice(sequence::QUERY_STATUS.as_bytes()),
-            Request::Fence => {
-                frame.extend_from_slice(sequence::QUERY_FENCE.as_bytes());
-                self.guard.fence_sent();
-            }
-        }
-        let written = self.guard.write(frame);
-        frame.clear();
-        self.flow.sent(now, bytes, request);
-        self.guard.await_statuses(self.flow.awaits_answers());
-        written?;
-        self.update_written();
-        Ok(bytes)
+    pub(super) fn opens_at(&self) -> Option<Duration> {
+        if self.guard.has_written_all() { self.protocol.opens_at() } else { None }
     }
 
     /// Sends a fence alone after a timeout, to learn whether the terminal is still there.
     pub(super) fn probe(&mut self) -> io::Result<()> {
-        if self.guard.has_written_all() && self.flow.probe_is_due(self.now()) {
-            self.send_queries("")?;
+        if self.guard.has_written_all() {
+            self.protocol.probe(self.guard.now());
+            self.send()?;
         }
         Ok(())
     }
 
-    /// Sends `queries` with a fence after them.
-    pub(super) fn send_queries(&mut self, queries: &str) -> io::Result<()> {
-        self.flow.sent(self.now(), 0, Request::Fence);
-        self.guard.ask(queries)
+    /// Sends the output of the protocol, as far as the terminal accepts it at once.
+    pub(super) fn send(&mut self) -> io::Result<()> {
+        let now = self.guard.now();
+        self.protocol.queue_frame(now);
+        // Before the bytes are sent: whatever gives the terminal back must undo them.
+        self.guard.set_changes(self.protocol.changes());
+        let output = self.protocol.output(now);
+        if output.is_empty() {
+            return Ok(());
+        }
+        let written = self.guard.write(output);
+        output.clear();
+        written?;
+        self.update_written();
+        Ok(())
     }
 
     /// Sends the bytes that the terminal has not accepted yet.
@@ -181,12 +154,7 @@ impl Session {
 
     fn update_written(&mut self) {
         if self.guard.has_written_all() {
-            self.flow.written(self.now());
+            self.protocol.written(self.guard.now());
         }
-    }
-
-    /// The present time, for flow control, which has no clock.
-    pub(super) fn now(&self) -> Duration {
-        self.begun_at.elapsed()
     }
 }

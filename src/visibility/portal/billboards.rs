@@ -78,7 +78,7 @@ impl Finder {
             }
             considered += world.figures().len() as u64;
             billboards.extend(Billboard::of_figures(scene, image));
-            if let Some(player) = player.as_ref().filter(|_| index > 0) {
+            if let Some(player) = player.as_ref().filter(|_| index > 0 && !has_own_figure(scene)) {
                 billboards.extend(Billboard::of_player(scene, image, player));
             }
             billboards[start..].sort_unstable_by(from_near_to_far);
@@ -120,6 +120,12 @@ impl Finder {
             }
         }
     }
+}
+
+/// Whether the world has a figure of the player who sees it, which mirrors show then.
+fn has_own_figure(scene: Scene<'_>) -> bool {
+    let origin = scene.projection.origin();
+    scene.world.figures().iter().any(|figure| figure.position == origin)
 }
 
 fn from_near_to_far(one: &Billboard, other: &Billboard) -> Ordering {

@@ -14,6 +14,7 @@ mod model;
 mod player;
 mod portal;
 mod stores;
+mod traveller;
 mod treasure;
 mod weapons;
 
@@ -22,7 +23,9 @@ use std::num::NonZeroU32;
 use super::{Anchor, Facings, FrameTime, Sprite, SpriteHeight};
 use crate::color::Rgb;
 use crate::world::{GuardKind, Lamp, Light, Reach, Texture};
-pub use frame::{CheckpointFrame, GuardFrame, LeverFrame, SpikesFrame};
+pub use frame::{CheckpointFrame, GuardFrame, LeverFrame, PlayerFrame, SpikesFrame};
+pub use traveller::PlayerColor;
+pub(crate) use traveller::player;
 
 /// The names that maps may use for ornaments. Games also use sprites of guards, of finds and of what
 /// flies, which [`named`] knows.
@@ -40,8 +43,7 @@ pub const PLAYER: &str = "player";
 
 /// The built-in sprite of that name; `None` if there is none.
 pub fn named(name: &str) -> Option<Sprite> {
-    let Design { pictures, facings, seconds, animated, anchor, height, blocks, shines } = match name
-    {
+    let design = match name {
         "bolt" => weapons::bolt(),
         "checkpoint" => fixtures::checkpoint(),
         "coins" => finds::coins(),
@@ -77,17 +79,7 @@ pub fn named(name: &str) -> Option<Sprite> {
         PLAYER => player::player(),
         _ => guard::guard(GuardKind::ALL.into_iter().find(|kind| kind.name() == name)?),
     };
-    let mut sprite = Sprite::new(pictures, facings)?.with_frame_time(FrameTime::new(seconds)?);
-    if let Some(animated) = animated {
-        sprite = sprite.with_animated_frames(animated);
-    }
-    sprite.anchor = anchor;
-    sprite.height = SpriteHeight::new(height)?;
-    sprite.blocks = blocks;
-    sprite.lamp = Light::new(shines)
-        .filter(|&light| light != Light::NONE)
-        .map(|light| Lamp { light, reach: Reach::default() });
-    Some(sprite)
+    design.sprite()
 }
 
 /// The definition of a sprite.
@@ -107,6 +99,22 @@ struct Design {
 }
 
 impl Design {
+    /// The sprite; `None` if the pictures are not as many as their facings need.
+    fn sprite(self) -> Option<Sprite> {
+        let Self { pictures, facings, seconds, animated, anchor, height, blocks, shines } = self;
+        let mut sprite = Sprite::new(pictures, facings)?.with_frame_time(FrameTime::new(seconds)?);
+        if let Some(animated) = animated {
+            sprite = sprite.with_animated_frames(animated);
+        }
+        sprite.anchor = anchor;
+        sprite.height = SpriteHeight::new(height)?;
+        sprite.blocks = blocks;
+        sprite.lamp = Light::new(shines)
+            .filter(|&light| light != Light::NONE)
+            .map(|light| Lamp { light, reach: Reach::default() });
+        Some(sprite)
+    }
+
     /// Pictures with one facing that stand on the floor and do not block.
     fn standing(height: f64, pictures: Vec<Texture>) -> Self {
         let (facings, anchor) = (Facings::One, Anchor::Floor);

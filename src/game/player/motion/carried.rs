@@ -1,4 +1,6 @@
-//! Floors that move: they carry the players who stand on them.
+//! What moves a player who does not walk: floors carry those who stand on them, and blows push.
+
+use glam::DVec2;
 
 use super::{Motion, STEP_HEIGHT};
 use crate::world::{Cell, World};
@@ -8,6 +10,29 @@ impl Motion {
     #[must_use]
     pub(in crate::game) fn carried_to(self, feet: f64) -> Self {
         Self { feet, rising: 0.0, ..self }
+    }
+
+    /// Standing in the middle of `cell`; `None` if there is no room.
+    pub(in crate::game) fn moved_to(mut self, world: &World, cell: Cell) -> Option<Self> {
+        self.body.position = cell.center();
+        self.feet = world.floor_at(cell);
+        self.has_room(world).then_some(self)
+    }
+
+    /// With that change of the velocity, in cells per second.
+    #[must_use]
+    pub(in crate::game) fn pushed(mut self, change: DVec2) -> Self {
+        self.body.velocity += change;
+        self
+    }
+
+    /// The height of the feet in `world`, if that has lifted or, where they stood, lowered them.
+    pub(in crate::game) fn feet_after(&self, world: &World, stood: bool) -> Option<f64> {
+        if !self.has_room(world) {
+            return self.lifted(world);
+        }
+        let floor = self.floor(world);
+        (stood && floor < self.feet && self.feet - floor <= STEP_HEIGHT).then_some(floor)
     }
 
     /// The height to which floors that have risen around the feet lift them; `None` if there are no

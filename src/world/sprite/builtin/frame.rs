@@ -40,6 +40,34 @@ impl GuardFrame {
     }
 }
 
+/// A frame of the sprite of a player as others see them.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
+pub enum PlayerFrame {
+    /// Stands.
+    Stand,
+    /// Walks, with the left foot in front.
+    WalkLeft,
+    /// Walks, with the right foot in front.
+    WalkRight,
+    /// Strikes.
+    Strike,
+    /// Ducks.
+    Duck,
+    /// Lies on the floor.
+    Down,
+}
+
+impl PlayerFrame {
+    /// All frames, in the order of the sprite.
+    pub const ALL: [Self; 6] =
+        [Self::Stand, Self::WalkLeft, Self::WalkRight, Self::Strike, Self::Duck, Self::Down];
+
+    /// The index among the sprite's frames.
+    pub const fn index(self) -> u8 {
+        self as u8
+    }
+}
+
 /// A frame of a checkpoint's sprite.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
 pub enum CheckpointFrame {

@@ -42,7 +42,13 @@ fn figure(kind: GuardKind) -> Figure {
 }
 
 /// Adds both legs and boots.
-fn legs(model: &mut Model, joints: &Joints, radii: [f64; 2], trousers: Paint, boots: Paint) {
+pub(super) fn legs(
+    model: &mut Model,
+    joints: &Joints,
+    radii: [f64; 2],
+    trousers: Paint,
+    boots: Paint,
+) {
     let [thigh, shin] = radii;
     let middle = thigh.midpoint(shin);
     for [hip, knee, foot] in joints.legs {
@@ -55,7 +61,13 @@ fn legs(model: &mut Model, joints: &Joints, radii: [f64; 2], trousers: Paint, bo
 }
 
 /// Adds both arms and hands.
-fn arms(model: &mut Model, joints: &Joints, radii: [f64; 2], sleeves: Paint, hands: Paint) {
+pub(super) fn arms(
+    model: &mut Model,
+    joints: &Joints,
+    radii: [f64; 2],
+    sleeves: Paint,
+    hands: Paint,
+) {
     let [upper, lower] = radii;
     let middle = upper.midpoint(lower);
     for [shoulder, elbow, hand] in joints.arms {

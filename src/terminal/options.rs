@@ -1,9 +1,9 @@
-//! Options of a session.
+//! What is known of a terminal at first, and how to use it.
 
-use super::super::environment::teletype;
-use super::super::{ColorSource, Detected, Fidelity, color_depth, color_source};
+use super::environment::teletype;
+use super::{ColorSource, Detected, Fidelity, color_depth, color_source};
 
-/// The properties of the terminal that are known when a session begins, and how to use it.
+/// The properties of a terminal that are known at first, and how to use it.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 #[expect(clippy::struct_excessive_bools, reason = "each is a question of its own")]
 pub struct Options {

@@ -1,10 +1,10 @@
 //! Reports from the terminal: of the focus always, of keys and the mouse on request.
 
-use super::super::mouse::MouseUnits;
-use super::super::sequence;
+use crate::terminal::mouse::MouseUnits;
+use crate::terminal::sequence;
 
 /// The enabled reports while the terminal is taken.
-#[derive(Debug, Default)]
+#[derive(Clone, Copy, Debug, Default)]
 pub(super) struct Reports {
     /// Whether keys are reported in the kitty protocol.
     pub(super) has_key_flags: bool,

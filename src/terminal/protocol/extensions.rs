@@ -1,6 +1,6 @@
 //! Control sequences that make frames shorter, used if the terminal proves that they work.
 //!
-//! The session probes two when it begins. A repeated half block (REP) must move the cursor as far
+//! The program probes two at the beginning. A repeated half block (REP) must move the cursor as far
 //! as it should. An entry of the palette, defined in the form that frames use (OSC 4), must be
 //! reported as defined, and with its old colour after a reset (OSC 104). Some terminals claim to
 //! repeat characters and fail on half blocks, so that no terminal is trusted by its name or
@@ -9,7 +9,7 @@
 //! Neither is probed in a multiplexer, which would answer for itself, nor if a recorder receives
 //! the sent bytes, since a recording must play on any terminal.
 
-use super::Session;
+use super::Protocol;
 use crate::color::palette::ColorDepth;
 use crate::terminal::sequence;
 
@@ -47,13 +47,13 @@ impl Palette {
     }
 }
 
-impl Session {
+impl Protocol {
     /// Adds the probes to `queries`.
     pub(super) fn probe_extensions(&mut self, queries: &mut String) {
         self.extensions.is_probed = true;
         queries.push_str(sequence::PROBE_PALETTE);
         queries.push_str(sequence::PROBE_REPETITION);
-        self.guard.palette_defined();
+        self.changes.palette_defined = true;
     }
 
     /// Records that the terminal has repeated a half block.

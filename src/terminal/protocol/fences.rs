@@ -1,31 +1,32 @@
 //! Fences: queries that every terminal answers.
 
-use std::time::{Duration, Instant};
+use std::time::Duration;
 
 /// The time that a terminal has to answer.
 const TIMEOUT: Duration = Duration::from_secs(1);
 
 /// The number of unanswered fences.
-#[derive(Debug)]
-pub(super) struct Fences {
+#[derive(Clone, Copy, Debug, Default)]
+pub(in crate::terminal) struct Fences {
     open: u32,
-    last_sent: Instant,
+    last_sent: Duration,
     are_answered: bool,
 }
 
 impl Fences {
-    pub(super) fn none() -> Self {
-        Self { open: 0, last_sent: Instant::now(), are_answered: false }
-    }
-
-    pub(super) fn sent(&mut self) {
+    pub(in crate::terminal) fn sent(&mut self, now: Duration) {
         self.open += 1;
-        self.last_sent = Instant::now();
+        self.last_sent = now;
     }
 
-    pub(super) fn answered(&mut self) {
+    pub(in crate::terminal) fn answered(&mut self) {
         self.open = self.open.saturating_sub(1);
         self.are_answered = true;
+    }
+
+    /// Expects no answer any more.
+    pub(super) fn forget(&mut self) {
+        self.open = 0;
     }
 
     /// Whether the terminal has ever answered a fence.
@@ -39,8 +40,8 @@ impl Fences {
     }
 
     /// The remaining time to wait for an answer; `None` if no answer is expected any more.
-    pub(super) fn time_left(&self) -> Option<Duration> {
-        let left = TIMEOUT.checked_sub(self.last_sent.elapsed())?;
+    pub(in crate::terminal) fn time_left(&self, now: Duration) -> Option<Duration> {
+        let left = TIMEOUT.checked_sub(now.saturating_sub(self.last_sent))?;
         self.are_open().then_some(left)
     }
 }

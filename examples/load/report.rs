@@ -1,0 +1,68 @@
+//! Counts of clients, and the report about them.
+
+use std::time::Duration;
+
+/// What a client has counted.
+#[derive(Debug, Default)]
+pub(crate) struct Tally {
+    pub(crate) is_walking: bool,
+    pub(crate) frames: u64,
+    pub(crate) bytes: u64,
+    /// The times from keys to the next bytes.
+    pub(crate) delays: Vec<Duration>,
+}
+
+pub(crate) struct Report {
+    walking: usize,
+    /// Of each session.
+    frames: Vec<f64>,
+    bytes: f64,
+    delays: Vec<Duration>,
+    busy: f64,
+}
+
+impl Report {
+    pub(crate) fn new(tallies: &[Tally], seconds: u64, processor: Duration) -> Self {
+        let seconds = seconds as f64;
+        let mut frames: Vec<f64> = tallies.iter().map(|it| it.frames as f64 / seconds).collect();
+        frames.sort_by(f64::total_cmp);
+        let mut delays: Vec<Duration> =
+            tallies.iter().flat_map(|tally| tally.delays.iter().copied()).collect();
+        delays.sort();
+        Self {
+            walking: tallies.iter().filter(|tally| tally.is_walking).count(),
+            frames,
+            bytes: tallies.iter().map(|it| it.bytes as f64).sum::<f64>() / seconds,
+            delays,
+            busy: processor.as_secs_f64() / seconds,
+        }
+    }
+
+    pub(crate) fn print(&self) {
+        let count = self.frames.len().max(1) as f64;
+        let mean = self.frames.iter().sum::<f64>() / count;
+        println!("sessions      {}, of which {} walk", self.frames.len(), self.walking);
+        println!(
+            "frames        {mean:.1} a second and session (least {:.1}, most {:.1})",
+            self.frames.first().unwrap_or(&0.0),
+            self.frames.last().unwrap_or(&0.0)
+        );
+        println!("bytes         {:.1} KB a second and session", self.bytes / count / 1000.0);
+        println!(
+            "key to bytes  p50 {:.1} ms, p99 {:.1} ms, {} keys",
+            self.percentile(50),
+            self.percentile(99),
+            self.delays.len()
+        );
+        println!(
+            "processor     {:.1} % of one; {:.0} µs a frame",
+            self.busy * 100.0,
+            self.busy * 1e6 / (mean * count).max(1.0)
+        );
+    }
+
+    fn percentile(&self, percent: usize) -> f64 {
+        let index = self.delays.len() * percent / 100;
+        self.delays.get(index).map_or(0.0, |delay| delay.as_secs_f64() * 1000.0)
+    }
+}

@@ -1,0 +1,19 @@
+//! The parts of the program that the sessions of a server use, too.
+
+pub(crate) use super::banner::draw as draw_banner;
+pub(crate) use super::bindings::Action;
+pub(crate) use super::clock::Clock;
+pub(crate) use super::controls::{Controls, KeyContext};
+pub(crate) use super::detection::Detection;
+pub(crate) use super::draw_options::DrawOptions;
+pub(crate) use super::help::HelpScroll;
+pub(crate) use super::keys::REPETITION;
+pub(crate) use super::map_panel::MapPanel;
+pub(crate) use super::menu::{Menu, Selection, changes_by};
+pub(crate) use super::overlay::Overlay;
+pub(crate) use super::panels::{
+    is_too_small, leaving, message, picture_and_status, time, too_small, whole_seconds,
+};
+pub(crate) use super::settings_screen::{COLORS, GLYPHS, after, name, on_or_off};
+pub(crate) use super::status::{Part, StatusLine, hint};
+pub(crate) use super::vitals::HealthSigns;

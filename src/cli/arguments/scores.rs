@@ -1,0 +1,114 @@
+//! The options of `scores`.
+
+use std::path::PathBuf;
+
+use super::option::{FileOption, Parser, ValueOption};
+use super::{Command, Error, Subcommand};
+use crate::map::builtin;
+use crate::store::host::Day;
+use crate::world::Difficulty;
+
+/// Options of `scores`.
+#[derive(Debug)]
+pub(in crate::cli) struct Scores {
+    /// The folder of the host's store; that of the program if `None`.
+    pub(in crate::cli) data: Option<PathBuf>,
+    /// The level; all if `None`.
+    pub(in crate::cli) level: Option<&'static str>,
+    /// The difficulty; all if `None`.
+    pub(in crate::cli) difficulty: Option<Difficulty>,
+    /// The day whose daily run is shown instead of levels.
+    pub(in crate::cli) day: Option<Day>,
+    pub(in crate::cli) format: ScoresFormat,
+}
+
+/// The format of the boards.
+#[derive(Clone, Copy, Debug, Default)]
+pub(in crate::cli) enum ScoresFormat {
+    #[default]
+    Table,
+    Json,
+}
+
+pub(super) const SUBCOMMAND: Subcommand = Subcommand {
+    name: "scores",
+    about: "List the leaderboards of a host",
+    details: "For each level and difficulty it lists the fastest run of each account, with the highest \
+              rank of all its runs; for a day, how far the daily runs came. It reads the store of serve, \
+              also while that runs.",
+    examples: "cellcaster scores\n\
+               cellcaster scores --level cellar --difficulty hard\n\
+               cellcaster scores --day 2026-11-22 --format json",
+    positionals: &[],
+    options: &[&DATA, &LEVEL, &DIFFICULTY, &DAY, &FORMAT],
+    surplus: "takes no map",
+    missing: "",
+    read: |mut matches| {
+        let scores = Scores {
+            data: DATA.of(&mut matches),
+            level: LEVEL.of(&mut matches),
+            difficulty: DIFFICULTY.of(&mut matches),
+            day: DAY.of(&mut matches),
+            format: FORMAT.of(&mut matches).unwrap_or_default(),
+        };
+        if scores.day.is_some() && (scores.level.is_some() || scores.difficulty.is_some()) {
+            return Err(Error::mistake("--day goes without --level and --difficulty"));
+        }
+        Ok(Command::Scores(scores))
+    },
+};
+
+const DATA: FileOption = FileOption {
+    name: "data",
+    help: "The folder of the store [default: the folder for data files, or CELLCASTER_DATA]",
+};
+
+const LEVEL: ValueOption<&'static str> = ValueOption {
+    name: "level",
+    value: "NAME",
+    takes: "the name of a built-in level",
+    help: "List this built-in level only",
+    default: "",
+    choices: &[],
+    read: Parser::Optional(|text| {
+        builtin::LEVELS.iter().map(|level| level.name).find(|name| *name == text)
+    }),
+    repeats: false,
+};
+
+const DIFFICULTY: ValueOption<Difficulty> = ValueOption {
+    name: "difficulty",
+    value: "LEVEL",
+    takes: "easy, normal or hard",
+    help: "List this difficulty only",
+    default: "",
+    choices: &["easy", "normal", "hard"],
+    read: Parser::Optional(Difficulty::named),
+    repeats: false,
+};
+
+const DAY: ValueOption<Day> = ValueOption {
+    name: "day",
+    value: "DATE",
+    takes: "a date such as 2026-11-22",
+    help: "List the daily runs of this day",
+    default: "",
+    choices: &[],
+    read: Parser::Optional(Day::parse),
+    repeats: false,
+};
+
+const FORMAT: ValueOption<ScoresFormat> = ValueOption {
+    name: "format",
+    value: "FORMAT",
+    takes: "table or json",
+    help: "How the boards are written",
+    default: "table",
+    choices: &["table", "json"],
+    read: Parser::Optional(|text| match text {
+        "table" => Some(ScoresFormat::Table),
+        "json" => Some(ScoresFormat::Json),
+        _ => None,
+    }),
+    repeats: false,
+};

@@ -1,0 +1,87 @@
+//! The options of `serve`.
+
+use std::net::SocketAddr;
+use std::path::PathBuf;
+
+use clap::ArgMatches;
+
+use super::option::{FileOption, Parser, ValueOption};
+use super::{Command, Subcommand};
+use crate::server::LogFormat;
+
+/// Options of `serve`.
+#[derive(Debug)]
+pub(in crate::cli) struct Serve {
+    pub(in crate::cli) listen: Option<SocketAddr>,
+    pub(in crate::cli) data: Option<PathBuf>,
+    pub(in crate::cli) config: Option<PathBuf>,
+    pub(in crate::cli) record_room: Option<PathBuf>,
+    pub(in crate::cli) log: LogFormat,
+}
+
+pub(super) const SUBCOMMAND: Subcommand = Subcommand {
+    name: "serve",
+    about: "An SSH server in which people play together",
+    details: "Prints the line that people type to play. The host key and what the server keeps are in the \
+              folder for data; the key is made at the first start. SIGTERM and Ctrl-C end the server, after \
+              its visitors had time for their end; a second one ends it at once. SIGHUP reads the \
+              configuration again. The log goes to standard error.",
+    examples: "cellcaster serve\n\
+               cellcaster serve --listen 0.0.0.0:2222 --data /var/lib/cellcaster",
+    positionals: &[],
+    options: &[&LISTEN, &DATA, &CONFIG, &LOG, &RECORD_ROOM],
+    surplus: "takes no map",
+    missing: "",
+    read: |matches| Ok(Command::Serve(read(matches))),
+};
+
+fn read(mut matches: ArgMatches) -> Serve {
+    Serve {
+        listen: LISTEN.of(&mut matches),
+        data: DATA.of(&mut matches),
+        config: CONFIG.of(&mut matches),
+        record_room: RECORD_ROOM.of(&mut matches),
+        log: LOG.of(&mut matches).unwrap_or_default(),
+    }
+}
+
+const LISTEN: ValueOption<SocketAddr> = ValueOption {
+    name: "listen",
+    value: "ADDRESS:PORT",
+    takes: "an address and a port, such as 0.0.0.0:2222 or [::]:2222",
+    help: "Where to listen; port 0 for a free one",
+    default: "127.0.0.1:2222",
+    choices: &[],
+    read: Parser::Optional(|text| text.parse().ok()),
+    repeats: false,
+};
+
+const DATA: FileOption = FileOption {
+    name: "data",
+    help: "The folder for data [default: cellcaster in the folder for data, or $CELLCASTER_DATA]",
+};
+
+const CONFIG: FileOption = FileOption {
+    name: "config",
+    help: "The configuration [default: cellcaster/serve.toml in the folder for configuration files]",
+};
+
+const LOG: ValueOption<LogFormat> = ValueOption {
+    name: "log",
+    value: "FORMAT",
+    takes: "text or json",
+    help: "How the log is written",
+    default: "text",
+    choices: &["text", "json"],
+    read: Parser::Optional(|text| match text {
+        "text" => Some(LogFormat::Text),
+        "json" => Some(LogFormat::Json),
+        _ => None,
+    }),
+    repeats: false,
+};
+
+const RECORD_ROOM: FileOption = FileOption {
+    name: "record-room",
+    help: "A folder in which the log of each room is written [default: nothing is recorded]",
+};

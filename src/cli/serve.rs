@@ -1,0 +1,144 @@
+//! `cellcaster serve`: the SSH server.
+
+mod configuration;
+mod signals;
+
+use std::io::{self, Write};
+use std::net::{IpAddr, SocketAddr};
+use std::path::Path;
+use std::sync::Arc;
+
+use tokio::net::TcpListener;
+use tokio::runtime::Runtime;
+use tokio::task::JoinSet;
+
+use super::Error;
+use super::arguments::Serve;
+use super::data_folder::data_folder;
+#[cfg(unix)]
+use crate::server::{AdminSocket, Operator};
+use crate::server::{
+    Config, GameHost, HostKey, LogFormat, Logging, Metrics, Server, Visitors, events, respond,
+};
+use crate::store::host::SqliteStore;
+use configuration::Configuration;
+use signals::{Hangups, Signals};
+
+/// Serves until a signal ends it.
+pub(super) fn run(options: Serve) -> Result<(), Error> {
+    let configuration = Configuration::new(options.config, options.listen);
+    let mut config = configuration.read()?;
+    config.recordings = options.record_room;
+    let folder = options.data.or_else(data_folder).ok_or_else(|| {
+        Error::mistake("there is no folder for data; name one, as in \"serve --data FOLDER\"")
+    })?;
+    let key = HostKey::open(&folder).map_err(|error| Error::mistake(error.to_string()))?;
+    let (store, damage) =
+        SqliteStore::open(&folder).map_err(|failure| Error::mistake(failure.to_string()))?;
+    if let Some(sentence) = damage {
+        Error::machine(sentence).warn();
+    }
+    let runtime = Runtime::new().map_err(no_thread)?;
+    let ended = runtime.block_on(serve(configuration, config, key, &folder, options.log, store));
+    // After a second signal, nothing is waited for.
+    runtime.shutdown_background();
+    ended
+}
+
+async fn serve(
+    configuration: Configuration,
+    config: Config,
+    key: HostKey,
+    folder: &Path,
+    format: LogFormat,
+    store: SqliteStore,
+) -> Result<(), Error> {
+    let no_signals = |error| Error::machine(format!("no signal can be caught: {error}"));
+    let signals = Signals::catch().map_err(no_signals)?;
+    let hangups = Hangups::catch().map_err(no_signals)?;
+    let (wanted, fingerprint, filter) = (config.listen, key.fingerprint(), config.log.clone());
+    let cannot = |error| cannot_listen(wanted, &error);
+    let metrics_listener = match config.metrics {
+        Some(address) => {
+            Some(TcpListener::bind(address).await.map_err(|error| cannot_listen(address, &error))?)
+        }
+        None => None,
+    };
+    #[cfg(unix)]
+    let admin = bind_admin(folder)?;
+    let server = Server::bind(config, key).await.map_err(cannot)?;
+    let address = server.address().map_err(cannot)?;
+    let text = invitation(address, &fingerprint);
+    io::stdout().write_all(text.as_bytes()).map_err(|error| Error::of_output(&error))?;
+    let logging = Logging::begin(format, &filter);
+    events::listening(address, &fingerprint);
+
+    let (metrics, visitors) = (Arc::new(Metrics::default()), Visitors::default());
+    let host =
+        GameHost::new(server.config(), Arc::clone(&metrics), visitors.clone(), Box::new(store));
+    let host = host.map_err(no_thread)?;
+    let mut services = JoinSet::new();
+    if let Some(listener) = metrics_listener {
+        events::metrics_listening(listener.local_addr().map_err(cannot)?);
+        let counters = server.counters();
+        services.spawn(respond(listener, move || metrics.text(&counters)));
+    }
+    #[cfg(unix)]
+    if let Some(admin) = admin {
+        let (rooms, drain) = (Box::new(host.room_rows()), signals.drain());
+        services.spawn(admin.serve(Operator { visitors, rooms, drain }));
+    }
+    services.spawn(configuration.follow(hangups, server.config(), logging));
+    tokio::select! {
+        () = server.run(host, signals.first()) => {}
+        () = signals.second() => {}
+    }
+    // Else the process might end before the socket is removed.
+    services.shutdown().await;
+    events::ended();
+    Ok(())
+}
+
+/// The socket for `cellcaster admin`. Without one the server runs, too, as in a folder with a name
+/// that is too long for a socket.
+#[cfg(unix)]
+fn bind_admin(folder: &Path) -> Result<Option<AdminSocket>, Error> {
+    match AdminSocket::bind(folder) {
+        Ok(socket) => Ok(Some(socket)),
+        Err(error) if error.kind() == io::ErrorKind::AddrInUse => {
+            let folder = folder.display().to_string().replace(char::is_control, "?");
+            Err(Error::mistake(format!("another server runs with the data in {folder}")))
+        }
+        Err(error) => {
+            Error::machine(format!("\"cellcaster admin\" can't reach this server: {error}")).warn();
+            Ok(None)
+        }
+    }
+}
+
+fn no_thread(error: io::Error) -> Error {
+    Error::machine(format!("no thread can be started: {error}"))
+}
+
+fn cannot_listen(address: SocketAddr, error: &io::Error) -> Error {
+    Error::mistake(format!("{address} can't be used: {error}"))
+}
+
+/// What people type to play.
+fn invitation(address: SocketAddr, fingerprint: &str) -> String {
+    let host = match address.ip() {
+        ip if ip.is_unspecified() => "HOST".to_owned(),
+        IpAddr::V4(ip) => ip.to_string(),
+        IpAddr::V6(ip) => ip.to_string(),
+    };
+    let port = match address.port() {
+        22 => String::new(),
+        port => format!("-p {port} "),
+    };
+    format!(
+        "Listening at {address}; the host key is {fingerprint}.\n\
+         To play, type:         ssh {port}{host}\n\
+         Over a slow link:      ssh -C {port}{host}\n\
+         As a guest with a key: ssh {port}guest@{host}\n"
+    )
+}

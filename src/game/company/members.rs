@@ -1,0 +1,223 @@
+//! The players of a game for several, by slot, and whose turn it is.
+
+use super::seen::Track;
+use super::{Company, MOST_PLAYERS};
+use crate::game::checksum::{word_of, words_of_player};
+use crate::game::guards::Target;
+use crate::game::player::Player;
+use crate::game::{Game, Intents};
+use crate::rng::hash;
+use crate::world::sprite::builtin::PlayerColor;
+use crate::world::{Cell, Figure, SpriteId, Thing};
+
+/// The players of a game for several.
+#[derive(Clone, Debug, PartialEq)]
+pub(in crate::game) struct Members {
+    pub(super) company: Company,
+    /// The last slot is taken, if there is any.
+    pub(super) slots: Vec<Option<Member>>,
+    /// The slot of the player whose turn it is; that player is [`Game::player`] meanwhile.
+    pub(super) turn: Option<usize>,
+    /// The worth of the treasure of those who have left.
+    pub(super) treasure_of_the_gone: u32,
+    /// Where the keys lay at the start.
+    pub(super) keys: Vec<Thing>,
+    /// By colour.
+    pub(super) sprites: [Option<SpriteId>; PlayerColor::ALL.len()],
+    /// The blows of the last step: who has struck whom.
+    pub(super) blows: Vec<(usize, usize)>,
+    /// The memory for what guards perceive, for the positions of those in the way, and for figures.
+    pub(in crate::game) targets: Vec<Target>,
+    pub(super) in_the_way: Vec<glam::DVec2>,
+    pub(super) figures: Vec<Figure>,
+}
+
+/// A player, and what concerns them among others.
+#[derive(Clone, Debug, PartialEq)]
+pub(super) struct Member {
+    pub(super) player: Player,
+    pub(super) color: PlayerColor,
+    /// Whether the player is alive and has not reached the exit; it changes between steps.
+    pub(super) is_playing: bool,
+    pub(super) has_won: bool,
+    /// What the player wants in this step, and the step that they saw.
+    pub(super) intents: Intents,
+    pub(super) seen: u64,
+    /// The step in which they joined, and the one in which they died or reached the exit.
+    pub(super) joined: u64,
+    pub(super) ended: Option<u64>,
+    /// The last checkpoint; `None` for the start.
+    pub(super) checkpoint: Option<Cell>,
+    /// The steps for which they lie on the floor, and until they can be struck again.
+    pub(super) stunned: u16,
+    pub(super) spared: u16,
+    /// The steps for which the figure strikes, and how far it has walked, in cells.
+    pub(super) swing: u16,
+    pub(super) walked: f64,
+    pub(super) track: Track,
+}
+
+impl Member {
+    /// Whether the player lies on the floor.
+    pub(super) fn is_down(&self) -> bool {
+        self.stunned > 0 || self.player.killed_by.is_some()
+    }
+}
+
+impl Members {
+    /// The member in a slot.
+    pub(super) fn member(&self, index: usize) -> Option<&Member> {
+        self.slots.get(index)?.as_ref()
+    }
+
+    pub(super) fn member_mut(&mut self, index: usize) -> Option<&mut Member> {
+        self.slots.get_mut(index)?.as_mut()
+    }
+
+    /// The members with the indices of their slots.
+    pub(super) fn each(&self) -> impl Iterator<Item = (usize, &Member)> + Clone {
+        let slots = self.slots.iter().enumerate();
+        slots.filter_map(|(index, slot)| Some((index, slot.as_ref()?)))
+    }
+
+    pub(super) fn each_mut(&mut self) -> impl Iterator<Item = (usize, &mut Member)> {
+        let slots = self.slots.iter_mut().enumerate();
+        slots.filter_map(|(index, slot)| Some((index, slot.as_mut()?)))
+    }
+
+    /// The last checkpoint of the player whose turn it is.
+    pub(in crate::game) fn checkpoint(&self) -> Option<Cell> {
+        self.member(self.turn?)?.checkpoint
+    }
+
+    pub(in crate::game) fn set_checkpoint(&mut self, cell: Cell) {
+        let turn = self.turn;
+        if let Some(member) = turn.and_then(|turn| self.member_mut(turn)) {
+            member.checkpoint = Some(cell);
+        }
+    }
+
+    /// Whether anybody goes on from the checkpoint in `cell`.
+    pub(in crate::game) fn has_checkpoint(&self, cell: Cell) -> bool {
+        self.each().any(|(_, member)| member.checkpoint == Some(cell))
+    }
+
+    /// What rules depend on, of all players.
+    pub(in crate::game) fn words(&self) -> impl Iterator<Item = u64> {
+        let members = self.each().map(|(index, member)| {
+            let counts = member.player.counts;
+            let numbers = [
+                index as u64,
+                member.color as u64,
+                u64::from(member.has_won),
+                u64::from(member.stunned) << 32 | u64::from(member.spared) << 16,
+                member.joined,
+                member.ended.unwrap_or(u64::MAX),
+                member.checkpoint.map_or(u64::MAX, word_of),
+                u64::from(counts.alarms) << 32 | u64::from(counts.deaths),
+                u64::from(counts.stunned),
+            ];
+            let words = numbers.into_iter().chain(words_of_player(&member.player));
+            hash(0, words.chain(member.track.words()))
+        });
+        std::iter::once(u64::from(self.treasure_of_the_gone)).chain(members)
+    }
+
+    /// The first free slot.
+    pub(super) fn free_slot(&self) -> Option<usize> {
+        let free = self.slots.iter().position(Option::is_none);
+        free.or(Some(self.slots.len())).filter(|&index| index < MOST_PLAYERS)
+    }
+}
+
+impl Game {
+    /// The index of the player whose turn it is.
+    pub(in crate::game) fn turn(&self) -> usize {
+        self.members.as_ref().and_then(|members| members.turn).unwrap_or_default()
+    }
+
+    /// Lets the player in a slot have their turn while `act` runs; does nothing if nobody is there.
+    pub(in crate::game) fn in_turn<T>(
+        &mut self,
+        index: usize,
+        act: impl FnOnce(&mut Self) -> T,
+    ) -> Option<T> {
+        if self.members.is_none() {
+            return Some(act(self));
+        }
+        let before = self.swap_turn(index)?;
+        let done = act(self);
+        self.swap_turn(index);
+        if let Some(members) = &mut self.members {
+            members.turn = before;
+        }
+        Some(done)
+    }
+
+    /// Lets each player who plays have their turn while `act` runs.
+    pub(in crate::game) fn for_each_player(&mut self, act: impl Fn(&mut Self)) {
+        let count = self.members.as_ref().map_or(1, |members| members.slots.len());
+        for index in 0..count {
+            let is_playing = |it: &Members| it.member(index).is_some_and(|it| it.is_playing);
+            if self.members.as_deref().is_none_or(is_playing) {
+                self.in_turn(index, &act);
+            }
+        }
+    }
+
+    /// Exchanges the player who has the turn with the one in a slot. Returns whose turn it was.
+    fn swap_turn(&mut self, index: usize) -> Option<Option<usize>> {
+        let Self { members, player, .. } = self;
+        let members = members.as_deref_mut()?;
+        let before = members.turn;
+        std::mem::swap(&mut members.member_mut(index)?.player, player);
+        members.turn = Some(index);
+        Some(before)
+    }
+
+    /// The players who are alive and have not reached the exit, with their indices, as they were
+    /// when the step began.
+    pub(in crate::game) fn playing(&self) -> impl Iterator<Item = (usize, &Player)> {
+        playing(&self.player, self.members.as_deref())
+    }
+
+    /// Whether nobody is alive in a game for several, or has yet to reach the exit: time does not
+    /// pass in it.
+    pub fn is_deserted(&self) -> bool {
+        let stands =
+            |(_, member): (usize, &Member)| !member.has_won && member.player.killed_by.is_none();
+        self.members.as_ref().is_some_and(|members| !members.each().any(stands))
+    }
+
+    /// The member whose turn it is.
+    pub(super) fn member_in_turn(&mut self) -> Option<&mut Member> {
+        let members = self.members.as_deref_mut()?;
+        let turn = members.turn?;
+        members.member_mut(turn)
+    }
+}
+
+/// [`Game::playing`], of the parts of a game.
+pub(in crate::game) fn playing<'a>(
+    player: &'a Player,
+    members: Option<&'a Members>,
+) -> impl Iterator<Item = (usize, &'a Player)> + Clone {
+    let turn = members.and_then(|members| members.turn);
+    let alone = members.is_none().then_some((0, player));
+    let several = members.into_iter().flat_map(Members::each);
+    let several = several.filter(|(_, member)| member.is_playing).map(move |(index, member)| {
+        (index, if turn == Some(index) { player } else { &member.player })
+    });
+    alone.into_iter().chain(several)
+}
+
+/// The same, between turns, for what moves them.
+pub(in crate::game) fn playing_mut<'a>(
+    player: &'a mut Player,
+    members: Option<&'a mut Members>,
+) -> impl Iterator<Item = (usize, &'a mut Player)> {
+    let alone = members.is_none().then_some((0, player));
+    let several = members.into_iter().flat_map(Members::each_mut);
+    let several = several.filter(|(_, member)| member.is_playing);
+    alone.into_iter().chain(several.map(|(index, member)| (index, &mut member.player)))
+}

@@ -1,0 +1,69 @@
+//! Properties of games for several.
+
+mod among;
+mod properties;
+
+use glam::DVec2;
+
+use super::*;
+use crate::game::player::RADIUS;
+use crate::game::{Game, Intent, Outcome, PlayerColor, Rules};
+use crate::map;
+use crate::world::{Cell, Difficulty, World};
+
+const RULES: Rules = Rules { difficulty: Difficulty::Normal, seed: 7 };
+
+fn world(text: &str) -> World {
+    map::parse_str(text).unwrap_or_else(|faults| panic!("{faults}"))
+}
+
+/// A world that `rows` draw; the player starts at `@` and looks east.
+fn level(rows: &[&str], tiles: &str, things: &str) -> World {
+    world(&format!(
+        "grid = '''\n{}\n'''\n[tiles]\n'#' = {{ wall = \"brick\" }}\n{tiles}\n[things]\n'@' = {{ start = 0 }}\n{things}\n",
+        rows.join("\n")
+    ))
+}
+
+/// A game for several with `count` players in it.
+fn with_players(world: World, company: Company, count: usize) -> (Game, Vec<PlayerId>) {
+    let mut game = Game::for_company(world, RULES, company);
+    let ids = (0..count).map(|index| game.join(PlayerColor::ALL[index % 8]).unwrap()).collect();
+    (game, ids)
+}
+
+fn intents(list: &[Intent]) -> Intents {
+    list.iter().copied().collect()
+}
+
+/// Plays that many steps, in which players want what `wanted` says.
+fn play(game: &mut Game, steps: usize, wanted: &[(PlayerId, &[Intent])]) {
+    for _ in 0..steps {
+        let seen = game.steps();
+        let inputs =
+            wanted.iter().map(|&(player, list)| Input { player, intents: intents(list), seen });
+        game.step_all(&inputs.collect::<Vec<_>>());
+    }
+}
+
+fn position(game: &Game, player: PlayerId) -> DVec2 {
+    game.seen_by(player).unwrap().camera(crate::world::FieldOfView::default()).position()
+}
+
+/// Everything in a game that is not a figure or a sprite is the same as in `other`, but for the
+/// player of a game for one, who is the one in the first slot of `other`.
+fn assert_plays_alike(one: &Game, other: &Game) {
+    let member = other.members.as_ref().unwrap().member(0).unwrap();
+    assert_eq!(one.player, member.player);
+    assert_eq!(one.doors, other.doors);
+    assert_eq!(one.mechanisms, other.mechanisms);
+    assert_eq!(one.spikes, other.spikes);
+    assert_eq!(one.missiles, other.missiles);
+    assert_eq!(one.smoke, other.smoke);
+    assert_eq!(one.guards, other.guards);
+    assert_eq!(one.world.things(), other.world.things());
+    assert_eq!(
+        (one.steps, one.outcome()),
+        (other.steps, other.seen_by(PlayerId::FIRST).unwrap().outcome())
+    );
+}

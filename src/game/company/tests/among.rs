@@ -1,0 +1,238 @@
+//! What players do to each other, and what they share.
+
+use super::*;
+
+const HALL: [&str; 3] = ["##########", "#@.......#", "##########"];
+
+fn company(strikes: Strikes) -> Company {
+    Company { strikes, collides: true, ..Company::default() }
+}
+
+#[test]
+fn players_join_at_the_start_or_beside_it_until_the_game_is_full() {
+    let hall = [".................", "........@........", "................."];
+    let company = Company { collides: true, ..Company::default() };
+    let (mut game, ids) = with_players(level(&hall, "", ""), company, MOST_PLAYERS);
+    assert_eq!(position(&game, ids[0]), DVec2::new(8.5, 1.5));
+    assert_eq!(game.players().collect::<Vec<_>>(), ids);
+    assert_eq!(game.join(PlayerColor::Red), None);
+    game.leave(ids[3]);
+    assert_eq!(game.seen_by(ids[3]).map(|view| view.id()), None);
+    assert_eq!(game.join(PlayerColor::Green), Some(ids[3]));
+    assert_eq!(game.seen_by(ids[3]).unwrap().color(), Some(PlayerColor::Green));
+    let (mut closet, _) = with_players(level(&["@"], "", ""), company, 1);
+    assert_eq!(closet.join(PlayerColor::Red), None);
+    assert_eq!(Game::new(level(&["@."], "", "")).join(PlayerColor::Red), None);
+}
+
+#[test]
+fn players_push_against_each_other_and_slide_past() {
+    let (mut game, ids) = with_players(level(&HALL, "", ""), company(Strikes::Nobody), 2);
+    play(&mut game, 60, &[(ids[0], &[Intent::Forward])]);
+    let apart = position(&game, ids[1]).x - position(&game, ids[0]).x;
+    assert!((0.5..0.5 + 1e-9).contains(&apart), "{apart}");
+    play(&mut game, 60, &[(ids[0], &[Intent::StrafeRight])]);
+    play(&mut game, 120, &[(ids[0], &[Intent::Forward]), (ids[1], &[Intent::StrafeLeft])]);
+    assert!(position(&game, ids[0]).x > 5.0, "{}", position(&game, ids[0]));
+}
+
+#[test]
+fn walking_through_each_other_is_a_rule() {
+    let rules = Company { collides: false, ..company(Strikes::Nobody) };
+    let (mut game, ids) = with_players(level(&HALL, "", ""), rules, 2);
+    assert_eq!(position(&game, ids[0]), position(&game, ids[1]));
+    play(&mut game, 60, &[(ids[0], &[Intent::Forward])]);
+    play(&mut game, 120, &[(ids[1], &[Intent::Forward, Intent::Run])]);
+    assert!(position(&game, ids[1]).x > position(&game, ids[0]).x + 1.0);
+}
+
+#[test]
+fn a_blow_pushes_or_stuns_by_the_rules_of_the_company() {
+    for strikes in [Strikes::Nobody, Strikes::Push, Strikes::Stun] {
+        let (mut game, ids) = with_players(level(&HALL, "", ""), company(strikes), 2);
+        let before = position(&game, ids[1]);
+        play(&mut game, 1, &[(ids[0], &[Intent::Strike])]);
+        let blows: Vec<_> = game.blows().collect();
+        let is_hit = strikes != Strikes::Nobody;
+        assert_eq!(blows, if is_hit { vec![(ids[0], ids[1])] } else { vec![] });
+        play(&mut game, 30, &[(ids[1], &[Intent::StrafeRight])]);
+        assert_eq!(game.blows().count(), 0);
+        let moved = position(&game, ids[1]) - before;
+        assert_eq!(moved.x > 0.3, is_hit, "{strikes:?}: {moved}");
+        let view = game.seen_by(ids[0]).unwrap();
+        let other = view.others().next().unwrap();
+        assert_eq!(other.is_down, strikes == Strikes::Stun);
+        // Those who lie on the floor do not walk.
+        assert_eq!(moved.y > 0.0, strikes != Strikes::Stun, "{moved}");
+        assert_eq!(game.seen_by(ids[1]).unwrap().health().points, 6);
+    }
+}
+
+#[test]
+fn a_stunned_player_is_spared_for_a_while() {
+    let (mut game, ids) = with_players(level(&HALL, "", ""), company(Strikes::Stun), 2);
+    play(&mut game, 1, &[(ids[0], &[Intent::Strike])]);
+    assert_eq!(game.seen_by(ids[1]).unwrap().stunned(), 119);
+    play(&mut game, 100, &[(ids[0], &[Intent::Forward])]);
+    play(&mut game, 1, &[(ids[0], &[Intent::Strike])]);
+    assert_eq!(game.blows().count(), 0);
+    play(&mut game, 150, &[]);
+    assert_eq!(game.seen_by(ids[1]).unwrap().stunned(), 0);
+    play(&mut game, 1, &[(ids[0], &[Intent::Strike])]);
+    assert_eq!(game.blows().count(), 1);
+}
+
+#[test]
+fn acts_are_judged_by_the_step_that_the_player_saw() {
+    for (lag, hits) in [(0, false), (15, true), (40, true)] {
+        let (mut game, ids) = with_players(level(&HALL, "", ""), company(Strikes::Push), 2);
+        // They are one cell apart, and the other one runs away.
+        let long_ago = game.steps();
+        play(&mut game, 15, &[(ids[1], &[Intent::Forward, Intent::Run])]);
+        assert!(position(&game, ids[1]).x - position(&game, ids[0]).x > 1.2);
+        let seen = game.steps() - lag.min(game.steps());
+        assert_eq!(seen == long_ago, lag > 0);
+        let strike = Input { player: ids[0], intents: intents(&[Intent::Strike]), seen };
+        game.step_all(&[strike]);
+        assert_eq!(game.blows().count() == 1, hits, "{lag}");
+    }
+    let (mut game, ids) = with_players(level(&HALL, "", ""), company(Strikes::Push), 2);
+    play(&mut game, 10, &[(ids[0], &[Intent::Forward])]);
+    play(&mut game, 30, &[(ids[1], &[Intent::Forward, Intent::Run])]);
+    play(&mut game, 16, &[]);
+    // It was too long ago, and counts as 15 steps.
+    let strike = Input { player: ids[0], intents: intents(&[Intent::Strike]), seen: 0 };
+    game.step_all(&[strike]);
+    assert_eq!(game.blows().count(), 0);
+}
+
+#[test]
+fn touching_is_judged_in_the_past_too() {
+    let rules = Company { collides: false, ..Company::default() };
+    let (mut game, ids) = with_players(level(&HALL, "", ""), rules, 2);
+    let now = game.steps();
+    assert!(game.touches(ids[0], ids[1], now) && game.touches(ids[1], ids[0], now));
+    assert!(!game.touches(ids[0], ids[0], now));
+    play(&mut game, 15, &[(ids[1], &[Intent::Forward, Intent::Run])]);
+    assert!(game.touches(ids[0], ids[1], now));
+    assert!(!game.touches(ids[0], ids[1], game.steps()));
+    play(&mut game, 60, &[]);
+    assert!(!game.touches(ids[0], ids[1], now));
+    game.leave(ids[1]);
+    assert!(!game.touches(ids[0], ids[1], now));
+}
+
+#[test]
+fn keys_fall_back_and_treasure_counts_for_all() {
+    let text = "treasure_needed = 20\ngrid = '''\n########\n#@k.t.D.X#\n########\n'''\n[tiles]\n'#' = { wall = 'brick' }\n\
+                D = { door = 'oak', key = 'brass' }\n[things]\n'@' = { start = 0 }\nk = { key = 'brass' }\n\
+                t = { treasure = 20 }\nX = { exit = true }";
+    let rows =
+        text.replace("########\n#@", "##########\n#@").replace("X#\n########", "X#\n##########");
+    let (mut game, ids) = with_players(world(&rows), Company::default(), 2);
+    let things = game.world().things().len();
+    play(&mut game, 75, &[(ids[0], &[Intent::Forward])]);
+    let keys = |game: &Game, id| game.seen_by(id).unwrap().keys().count();
+    assert_eq!((keys(&game, ids[0]), keys(&game, ids[1])), (1, 0));
+    assert_eq!(game.seen_by(ids[0]).unwrap().treasure(), 20);
+    assert_eq!(game.world().things().len(), things - 2);
+    game.leave(ids[0]);
+    assert_eq!(game.world().things().len(), things - 1);
+    assert_eq!((game.treasure().found, game.treasure().total), (20, 20));
+    let third = game.join(PlayerColor::Blue).unwrap();
+    play(&mut game, 400, &[(ids[1], &[Intent::Forward])]);
+    let outcome = |game: &Game, id| game.seen_by(id).unwrap().outcome();
+    assert_eq!(outcome(&game, ids[1]), Outcome::Won);
+    assert_eq!(outcome(&game, third), Outcome::Playing);
+    assert_eq!(game.world().things().len(), things - 1);
+    let tally = game.seen_by(ids[1]).unwrap().tally();
+    assert!(tally.treasure.is_all() && tally.steps < 475);
+    assert!(!game.is_deserted());
+    play(&mut game, 400, &[(third, &[Intent::Forward])]);
+    assert_eq!(outcome(&game, third), Outcome::Won);
+    assert!(game.seen_by(third).unwrap().tally().steps < 800 && game.is_deserted());
+}
+
+#[test]
+fn the_dead_go_on_from_their_own_checkpoint_where_the_company_respawns() {
+    let rows = ["###########", "#@.u...s..#", "###########"];
+    let things = "u = { checkpoint = true }\ns = { spikes = 1.0 }";
+    for respawns in [true, false] {
+        let rules = Company { respawns, ..Company::default() };
+        let (mut game, ids) = with_players(level(&rows, "", things), rules, 2);
+        play(&mut game, 60, &[(ids[0], &[Intent::Forward])]);
+        for _ in 0..1200 {
+            let column = position(&game, ids[0]).x as u32;
+            let walk: &[Intent] = if column < 7 { &[Intent::Forward] } else { &[] };
+            play(&mut game, 1, &[(ids[0], walk)]);
+        }
+        let view = game.seen_by(ids[0]).unwrap();
+        assert_eq!(view.outcome(), Outcome::Dead { cause: "spikes" });
+        assert_eq!(view.tally().deaths, 1);
+        assert!(!game.is_deserted());
+        play(&mut game, 1, &[(ids[0], &[Intent::Retry])]);
+        let view = game.seen_by(ids[0]).unwrap();
+        if respawns {
+            assert_eq!((view.outcome(), view.health().points), (Outcome::Playing, 3));
+            assert_eq!(position(&game, ids[0]), Cell { column: 3, row: 1 }.center());
+            play(&mut game, 30, &[(ids[0], &[Intent::Forward])]);
+            assert!(position(&game, ids[0]).x > 4.0);
+        } else {
+            assert!(matches!(view.outcome(), Outcome::Dead { .. }));
+        }
+        assert_eq!(game.seen_by(ids[1]).unwrap().health().points, 6);
+    }
+}
+
+#[test]
+fn plates_and_doors_feel_every_player() {
+    let tiles =
+        "p = { plate = 'gate', floor = '#808080' }\nG = { door = 'metal', switch = 'gate' }";
+    let rows = ["########", "#@p...G.", "########"];
+    let (mut game, ids) = with_players(level(&rows, tiles, ""), Company::default(), 2);
+    let gate = Cell { column: 6, row: 1 };
+    play(&mut game, 24, &[(ids[1], &[Intent::Forward])]);
+    play(&mut game, 240, &[(ids[0], &[Intent::Forward])]);
+    assert_eq!(game.world().opening(gate).part(), 1.0);
+    assert!(position(&game, ids[0]).x > 7.0, "{}", position(&game, ids[0]));
+}
+
+#[test]
+fn players_hear_each_other_and_guards_chase_whom_they_see() {
+    let rows = ["##############", "#@......G....#", "##############"];
+    let things = "G = { guard = 'warden', heading = 180 }";
+    let (mut game, ids) = with_players(level(&rows, "", things), Company::default(), 2);
+    play(&mut game, 30, &[(ids[1], &[Intent::Forward, Intent::Run])]);
+    let kinds = |id| -> Vec<_> {
+        game.seen_by(id).unwrap().heard().iter().map(|heard| heard.kind).collect()
+    };
+    let running = crate::game::SoundKind::Running;
+    assert!(kinds(ids[0]).contains(&running) && !kinds(ids[1]).contains(&running));
+    let mut hurt = Vec::new();
+    for _ in 0..600 {
+        play(&mut game, 1, &[]);
+        hurt = ids.iter().filter(|&&id| game.seen_by(id).unwrap().health().points < 6).collect();
+        if !hurt.is_empty() {
+            break;
+        }
+    }
+    assert_eq!(hurt, [&ids[1]]);
+    assert_eq!(game.seen_by(ids[0]).unwrap().tally().alarms, 1);
+    // The guard of somebody who has left looks for somebody else.
+    game.leave(ids[1]);
+    play(&mut game, 60, &[]);
+}
+
+#[test]
+fn the_map_shows_whom_the_rules_say() {
+    let rows = ["@.#..", "..+..", "..#.."];
+    for (sees, count) in [(Sees::Nobody, 0), (Sees::InSight, 1), (Sees::All, 2)] {
+        let rules = Company { sees, ..Company::default() };
+        let (mut game, ids) = with_players(level(&rows, "'+' = { door = 'oak' }", ""), rules, 3);
+        let member = game.members.as_mut().unwrap().member_mut(2).unwrap();
+        let behind = Cell { column: 4, row: 1 };
+        member.player.motion = member.player.motion.moved_to(&game.world, behind).unwrap();
+        let view = game.seen_by(ids[0]).unwrap();
+        assert_eq!((view.others().count(), view.others_on_map().count()), (2, count));
+    }
+}

@@ -1,0 +1,226 @@
+//! What one player of a game sees and has.
+
+use glam::DVec2;
+
+use super::{PlayerId, Sees};
+use crate::game::guards::{Point, is_in_sight};
+use crate::game::player::{Motion, Player};
+use crate::game::{Flash, Game, Health, Heard, Outcome, Tally};
+use crate::world::sprite::builtin::PlayerColor;
+use crate::world::{Camera, FieldOfView, Heading, Supply};
+
+/// How far below the top of the head the eyes are, in cells.
+const EYE: f64 = 0.2;
+
+/// One player's view of a game.
+#[derive(Clone, Copy, Debug)]
+pub struct PlayerView<'a> {
+    game: &'a Game,
+    id: PlayerId,
+    player: &'a Player,
+}
+
+/// Another player, as one player knows them.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct OtherPlayer {
+    /// The slot.
+    pub id: PlayerId,
+    /// The colour of the figure.
+    pub color: PlayerColor,
+    /// The position, in cells.
+    pub position: DVec2,
+    /// The height of the feet, in cells.
+    pub feet: f64,
+    /// The direction of the look.
+    pub heading: Heading,
+    /// Whether they lie on the floor: dead or stunned.
+    pub is_down: bool,
+    /// Whether nothing is between the two.
+    pub is_in_sight: bool,
+}
+
+impl Game {
+    /// The players in the game, in the order of their slots. In a game for one, that is the [first
+    /// slot](PlayerId::FIRST).
+    pub fn players(&self) -> impl Iterator<Item = PlayerId> {
+        let alone = self.members.is_none().then_some(PlayerId::FIRST);
+        let several = self.members.iter().flat_map(|members| members.each());
+        alone.into_iter().chain(several.filter_map(|(index, _)| PlayerId::new(index)))
+    }
+
+    /// The view of a player; `None` if they are not in the game.
+    pub fn seen_by(&self, id: PlayerId) -> Option<PlayerView<'_>> {
+        let player = match self.members.as_deref() {
+            Some(members) => &members.member(id.index())?.player,
+            None if id == PlayerId::FIRST => &self.player,
+            None => return None,
+        };
+        Some(PlayerView { game: self, id, player })
+    }
+
+    /// The blows of the last step that hit other players: who has struck whom.
+    pub fn blows(&self) -> impl Iterator<Item = (PlayerId, PlayerId)> {
+        let blows = self.members.iter().flat_map(|members| &members.blows);
+        blows.filter_map(|&(by, struck)| Some((PlayerId::new(by)?, PlayerId::new(struck)?)))
+    }
+}
+
+impl Game {
+    /// Whether nothing hides the middle of one body from the head of another.
+    fn sees_body(&self, from: &Motion, to: &Motion) -> bool {
+        let eye = Point { position: from.position(), height: from.head() - EYE };
+        let middle = f64::midpoint(to.feet(), to.head());
+        let body = Point { position: to.position(), height: middle };
+        is_in_sight(&self.world, self.smoke.clouds(), eye, body)
+    }
+}
+
+impl<'a> PlayerView<'a> {
+    /// The slot of the player.
+    pub fn id(&self) -> PlayerId {
+        self.id
+    }
+
+    /// The camera. Once the player has reached the exit, it stays there.
+    #[expect(clippy::missing_panics_doc, reason = "the player stands inside the map")]
+    pub fn camera(&self, field_of_view: FieldOfView) -> Camera {
+        self.player
+            .motion
+            .camera(&self.game.world, field_of_view)
+            .expect("the player stands inside the map, where all places are finite")
+    }
+
+    /// The height of the feet, in cells above the map's own floor.
+    pub fn feet(&self) -> f64 {
+        self.player.motion.feet()
+    }
+
+    /// Whether the player is in the air: jumping or falling.
+    pub fn is_airborne(&self) -> bool {
+        !self.player.motion.stands(&self.game.world)
+    }
+
+    /// Whether the player neither walks nor falls.
+    pub fn is_still(&self) -> bool {
+        self.player.motion.is_still()
+    }
+
+    /// The health.
+    pub fn health(&self) -> Health {
+        self.player.health
+    }
+
+    /// The number of a tool that the player carries; at most 9.
+    pub fn supplies(&self, supply: Supply) -> u8 {
+        self.player.supplies.count(supply)
+    }
+
+    /// The names of the keys that the player has.
+    pub fn keys(&self) -> impl Iterator<Item = &'a str> + use<'a> {
+        let Self { game, player, .. } = *self;
+        player.keys.iter().map(|&key| game.world.key_name(key))
+    }
+
+    /// The worth of the treasure that this player has found. [`Game::treasure`] is that of all.
+    pub fn treasure(&self) -> u32 {
+        self.player.treasure
+    }
+
+    /// Whether the lamp is lit.
+    pub fn lamp_is_lit(&self) -> bool {
+        self.player.has_light
+    }
+
+    /// How well guards see the player: from 0 for not at all to 255.
+    pub fn visibility(&self) -> u8 {
+        self.game.target_at(self.player).visibility
+    }
+
+    /// A message to the player. It lasts for a few seconds.
+    pub fn message(&self) -> Option<&'a str> {
+        self.player.notice.text()
+    }
+
+    /// The text of the note that the player has reached.
+    pub fn note(&self) -> Option<&'a str> {
+        self.game.note_reached_by(self.player)
+    }
+
+    /// What the player has heard in the last steps, the newest last.
+    pub fn heard(&self) -> &'a [Heard] {
+        self.player.hearing.heard()
+    }
+
+    /// What the edge of the picture shows now.
+    pub fn flash(&self) -> Option<Flash> {
+        self.player.flash
+    }
+
+    /// The steps for which the player still lies on the floor, stunned by another one.
+    pub fn stunned(&self) -> u16 {
+        self.member().map_or(0, |member| member.stunned)
+    }
+
+    /// The colour of the player's figure; `None` in a game for one.
+    pub fn color(&self) -> Option<PlayerColor> {
+        Some(self.member()?.color)
+    }
+
+    /// How the game stands for this player.
+    pub fn outcome(&self) -> Outcome {
+        match (self.member(), self.player.killed_by) {
+            (None, _) => self.game.outcome(),
+            (Some(member), _) if member.has_won => Outcome::Won,
+            (_, Some(cause)) => Outcome::Dead { cause: cause.name() },
+            _ => Outcome::Playing,
+        }
+    }
+
+    /// What the player has done so far. The time is that from joining to the exit or to death;
+    /// treasure and secrets are those of all.
+    pub fn tally(&self) -> Tally {
+        let Some(member) = self.member() else { return self.game.tally() };
+        let steps = member.ended.unwrap_or(self.game.steps).saturating_sub(member.joined);
+        Tally {
+            steps,
+            treasure: self.game.treasure(),
+            secrets: self.game.secrets(),
+            alarms: self.player.counts.alarms,
+            deaths: self.player.counts.deaths,
+            stunned: self.player.counts.stunned,
+        }
+    }
+
+    /// The other players who have a figure: all but those who have reached the exit.
+    pub fn others(&self) -> impl Iterator<Item = OtherPlayer> + use<'a> {
+        let Self { game, id, player } = *self;
+        let members = game.members.iter().flat_map(|members| members.each());
+        let others = members.filter(move |(index, it)| *index != id.index() && !it.has_won);
+        others.filter_map(move |(index, member)| {
+            let motion = &member.player.motion;
+            Some(OtherPlayer {
+                id: PlayerId::new(index)?,
+                color: member.color,
+                position: motion.position(),
+                feet: motion.feet(),
+                heading: motion.heading(),
+                is_down: member.is_down(),
+                is_in_sight: game.sees_body(&player.motion, motion),
+            })
+        })
+    }
+
+    /// Those of the [others](Self::others) whom the player's map shows.
+    pub fn others_on_map(&self) -> impl Iterator<Item = OtherPlayer> + use<'a> {
+        let sees = self.game.company().map_or(Sees::Nobody, |company| company.sees);
+        self.others().filter(move |other| match sees {
+            Sees::Nobody => false,
+            Sees::InSight => other.is_in_sight,
+            Sees::All => true,
+        })
+    }
+
+    fn member(&self) -> Option<&'a super::members::Member> {
+        self.game.members.as_deref()?.member(self.id.index())
+    }
+}

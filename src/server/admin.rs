@@ -1,0 +1,147 @@
+//! What an operator asks a running server, over a socket in its data folder.
+//!
+//! A connection carries one [`AdminRequest`] and one [`AdminReply`], each a line of JSON. The socket
+//! is `admin.sock`, for its owner alone, and the server answers that user and root only.
+//!
+//! Bans are no request: the store keeps them, and `cellcaster admin` writes them there, so that they
+//! can be made while no server runs. A request then ends the sessions to which the ban applies. A port
+//! of TCP with a password was refused: every user of the machine could reach it.
+
+#[cfg(unix)]
+mod client;
+mod operator;
+#[cfg(unix)]
+mod socket;
+
+use serde::{Deserialize, Serialize};
+
+use crate::store::host::{AccountKey, AddressPrefix, BanTarget, Name};
+#[cfg(unix)]
+pub use client::{AdminFailure, ask};
+pub use operator::Operator;
+#[cfg(unix)]
+pub use socket::AdminSocket;
+
+/// What an operator asks.
+#[derive(Clone, Debug, PartialEq, Eq, Serialize, Deserialize)]
+#[serde(tag = "do", rename_all = "lowercase", deny_unknown_fields)]
+pub enum AdminRequest {
+    /// The visitors: [`AdminReply::Visitors`].
+    Who,
+    /// The rooms: [`AdminReply::Rooms`].
+    Rooms,
+    /// To end the sessions of some visitors: [`AdminReply::Count`].
+    Remove {
+        /// Which ones.
+        target: Target,
+        /// Why, for them to read; may be empty.
+        reason: String,
+        /// Whether they are banned.
+        banned: bool,
+    },
+    /// To say a line to all visitors: [`AdminReply::Count`].
+    Say {
+        /// The line. Only its printable characters are shown.
+        text: String,
+    },
+    /// To end the server as a signal does: [`AdminReply::Count`], the visitors whom it waits for.
+    Drain,
+}
+
+/// Some visitors, as a text.
+#[derive(Clone, Debug, PartialEq, Eq, Serialize, Deserialize)]
+#[serde(rename_all = "lowercase")]
+pub enum Target {
+    /// Those who are called so, or nearly so.
+    Name(String),
+    /// Those with the key of this fingerprint.
+    Key(String),
+    /// Those with an address in this range.
+    Address(String),
+}
+
+/// What a server answers.
+#[derive(Clone, Debug, PartialEq, Eq, Serialize, Deserialize)]
+#[serde(rename_all = "lowercase")]
+pub enum AdminReply {
+    /// Who is on.
+    Visitors(Vec<VisitorRow>),
+    /// The rooms.
+    Rooms(Vec<RoomRow>),
+    /// How many visitors the request concerns.
+    Count(usize),
+    /// Why the request was refused.
+    Fault(String),
+}
+
+/// A visitor.
+#[derive(Clone, Debug, PartialEq, Eq, Serialize, Deserialize)]
+pub struct VisitorRow {
+    /// The name; `None` until it is chosen.
+    pub name: Option<String>,
+    /// The address that they connect from.
+    pub address: String,
+    /// The fingerprint of their key; `None` for a guest.
+    pub key: Option<String>,
+    /// The room; `None` for the lobby.
+    pub room: Option<String>,
+    /// For how long they have been here.
+    pub seconds: u64,
+}
+
+/// A room.
+#[derive(Clone, Debug, PartialEq, Eq, Serialize, Deserialize)]
+pub struct RoomRow {
+    /// Its number.
+    pub room: u32,
+    /// The name of the mode.
+    pub mode: String,
+    /// The name of the level.
+    pub level: String,
+    /// The name of the difficulty.
+    pub difficulty: String,
+    /// The names of its members.
+    pub members: Vec<String>,
+    /// The most members.
+    pub most: usize,
+    /// The number of those who watch.
+    pub watchers: usize,
+}
+
+impl Target {
+    /// What a ban of them applies to.
+    ///
+    /// # Errors
+    /// A sentence, if the text is no fingerprint or no range of addresses.
+    pub fn to_ban(&self) -> Result<BanTarget, String> {
+        match self {
+            Self::Name(name) => {
+                let name = Name::kept(name);
+                let has_text = !name.as_str().is_empty();
+                has_text.then_some(BanTarget::Name(name)).ok_or("this is no name".to_owned())
+            }
+            Self::Key(key) => AccountKey::parse(key).map(BanTarget::Key).ok_or_else(|| {
+                "a key is written as its fingerprint, SHA256: and 43 characters".to_owned()
+            }),
+            Self::Address(range) => {
+                let range = AddressPrefix::parse(range).map(BanTarget::Addresses);
+                range.ok_or_else(|| "addresses are written as 203.0.113.0/24 or as one".to_owned())
+            }
+        }
+    }
+}
+
+/// In bytes: the longest line of a request.
+#[cfg(unix)]
+const MOST_REQUEST: usize = 4096;
+/// In bytes: the longest line of a reply. A hundred thousand visitors are less.
+#[cfg(unix)]
+const MOST_REPLY: u64 = 32 << 20;
+
+#[cfg(unix)]
+fn socket_of(folder: &std::path::Path) -> std::path::PathBuf {
+    folder.join("admin.sock")
+}
+
+#[cfg(test)]
+mod tests;

@@ -1,0 +1,96 @@
+use std::net::IpAddr;
+use std::sync::Arc;
+
+use proptest::prelude::*;
+use tokio::sync::Notify;
+
+use super::*;
+use crate::server::visitors::{Notice, Visitors};
+
+fn operator(visitors: &Visitors) -> Operator {
+    let rooms = || Vec::new();
+    Operator { visitors: visitors.clone(), rooms: Box::new(rooms), drain: Arc::new(Notify::new()) }
+}
+
+fn remove(target: Target, reason: &str, banned: bool) -> AdminRequest {
+    AdminRequest::Remove { target, reason: reason.to_owned(), banned }
+}
+
+#[tokio::test]
+async fn requests_reach_those_whom_they_concern() {
+    let visitors = Visitors::default();
+    let operator = operator(&visitors);
+    let mut ada = visitors.arrive(IpAddr::from([192, 0, 2, 1]), None);
+    let ben = visitors.arrive(IpAddr::from([192, 0, 2, 2]), None);
+    ada.set_name("Ada");
+    ben.set_name("Ben");
+    let AdminReply::Visitors(rows) = operator.answer(&AdminRequest::Who) else { panic!("no rows") };
+    assert_eq!(
+        rows.iter().map(|row| row.name.as_deref()).collect::<Vec<_>>(),
+        [Some("Ada"), Some("Ben")]
+    );
+
+    let say = AdminRequest::Say { text: "\u{1b}[2Jclosing \nsoon".to_owned() };
+    assert_eq!(operator.answer(&say), AdminReply::Count(2));
+    assert_eq!(ada.notice().await, Notice::Said("[2Jclosing soon".to_owned()));
+
+    let kick = remove(Target::Name("ADA".to_owned()), "", false);
+    assert_eq!(operator.answer(&kick), AdminReply::Count(1));
+    let sentence = "The operator of this host has ended your session.";
+    assert_eq!(ada.notice().await, Notice::Removed(sentence.to_owned()));
+
+    let ban = remove(Target::Address("192.0.2.1".to_owned()), "flood\u{7}s", true);
+    assert_eq!(operator.answer(&ban), AdminReply::Count(1));
+    let sentence = "You are banned from this host: floods";
+    assert_eq!(ada.notice().await, Notice::Removed(sentence.to_owned()));
+
+    assert_eq!(operator.answer(&AdminRequest::Drain), AdminReply::Count(2));
+    operator.drain.notified().await;
+}
+
+#[test]
+fn what_is_no_target_is_told_in_a_sentence() {
+    let operator = operator(&Visitors::default());
+    for target in [
+        Target::Name("\u{1b}".to_owned()),
+        Target::Key("SHA256:short".to_owned()),
+        Target::Address("192.0.2.1/33".to_owned()),
+    ] {
+        let reply = operator.answer(&remove(target.clone(), "", false));
+        assert!(matches!(reply, AdminReply::Fault(_)), "{target:?}");
+    }
+}
+
+#[test]
+fn the_form_of_a_line_is_fixed() {
+    let lines = [
+        (AdminRequest::Who, r#"{"do":"who"}"#),
+        (
+            remove(Target::Name("Ada".to_owned()), "spam", true),
+            r#"{"do":"remove","target":{"name":"Ada"},"reason":"spam","banned":true}"#,
+        ),
+        (AdminRequest::Say { text: "a\nb".to_owned() }, r#"{"do":"say","text":"a\nb"}"#),
+    ];
+    for (request, line) in lines {
+        assert_eq!(serde_json::to_string(&request).unwrap(), line);
+        assert_eq!(serde_json::from_str::<AdminRequest>(line).unwrap(), request);
+    }
+    assert_eq!(serde_json::to_string(&AdminReply::Count(2)).unwrap(), r#"{"count":2}"#);
+    for line in ["", "{}", r#"{"do":"shell"}"#, r#"{"do":"say","text":"a","to":"b"}"#, "null"] {
+        assert!(serde_json::from_str::<AdminRequest>(line).is_err(), "{line}");
+    }
+}
+
+proptest! {
+    #[test]
+    fn no_request_panics(name in ".*", reason in ".*", banned: bool, kind in 0..4) {
+        let operator = operator(&Visitors::default());
+        let request = match kind {
+            0 => remove(Target::Name(name), &reason, banned),
+            1 => remove(Target::Key(name), &reason, banned),
+            2 => remove(Target::Address(name), &reason, banned),
+            _ => AdminRequest::Say { text: name },
+        };
+        operator.answer(&request);
+    }
+}

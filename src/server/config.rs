@@ -1,0 +1,102 @@
+//! The configuration of a server: where it listens, and every limit.
+//!
+//! ```toml
+//! listen = "[::]:2222"
+//! connections = 400
+//! connections-per-address = 20     # behind a proxy, all visitors have one address
+//! message = "Races every Friday at 20:00"
+//! log = "info,connections=warn"
+//!
+//! [metrics]
+//! listen = "127.0.0.1:9464"
+//! ```
+//!
+//! All faults of a file are reported in one run, each with its place.
+
+mod live;
+mod read;
+mod settings;
+mod write;
+
+use std::net::{Ipv4Addr, SocketAddr};
+use std::path::PathBuf;
+use std::time::Duration;
+
+use super::admission::Limits;
+use super::logging::LogFilter;
+pub use live::LiveConfig;
+
+/// The content of a configuration file, with defaults for missing settings.
+///
+/// Its `Display` output is a complete file with comments, which parses to the same configuration.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Config {
+    /// The address and port to listen at.
+    pub listen: SocketAddr,
+    /// The message of the day: one line, which the lobby shows; may be empty.
+    pub message: String,
+    /// What is logged.
+    pub log: LogFilter,
+    /// Where metrics are read by HTTP; nowhere if `None`.
+    pub metrics: Option<SocketAddr>,
+    /// Which connections are admitted.
+    pub admission: Limits,
+    /// The time in which a client sends its half of the key exchange.
+    pub handshake: Duration,
+    /// The time in which a session begins. Its user may have to check the host key and to type a
+    /// passphrase.
+    pub login: Duration,
+    /// The most bytes that a client sends before authentication.
+    pub login_bytes: u64,
+    /// The most bytes that a client sends in a second after it.
+    pub bytes_per_second: u32,
+    /// A client from which nothing comes for this time, not even an answer, has gone.
+    pub silence: Duration,
+    /// A client that takes no bytes for this time is disconnected, even if it answers.
+    pub stall: Duration,
+    /// The most columns of a window; further ones are left blank.
+    pub columns: u16,
+    /// The most rows of a window.
+    pub rows: u16,
+    /// The time that sessions have for their end when the server ends.
+    pub drain: Duration,
+    /// The most rooms.
+    pub rooms: u32,
+    /// The most who watch one room.
+    pub watchers: u32,
+    /// The time after which a room without members is closed.
+    pub empty_room: Duration,
+    /// The most frames that a session gets in a second.
+    pub frames_per_second: u32,
+    /// The folder in which rooms are recorded, if they are.
+    pub recordings: Option<PathBuf>,
+}
+
+impl Default for Config {
+    fn default() -> Self {
+        Self {
+            listen: SocketAddr::from((Ipv4Addr::LOCALHOST, 2222)),
+            message: String::new(),
+            log: LogFilter::default(),
+            metrics: None,
+            admission: Limits::default(),
+            handshake: Duration::from_secs(20),
+            login: Duration::from_secs(120),
+            login_bytes: 64 << 10,
+            bytes_per_second: 64 << 10,
+            silence: Duration::from_secs(12),
+            stall: Duration::from_secs(60),
+            columns: 500,
+            rows: 200,
+            drain: Duration::from_secs(10),
+            rooms: 200,
+            watchers: 32,
+            empty_room: Duration::from_secs(60),
+            frames_per_second: 30,
+            recordings: None,
+        }
+    }
+}
+
+#[cfg(test)]
+mod tests;

@@ -1,0 +1,191 @@
+//! What sessions want of their drivers, and the answers of the store.
+
+use std::sync::Arc;
+
+use tokio::sync::mpsc;
+
+use super::account::{self, choose_name};
+use super::results;
+use super::visit::Visit;
+use crate::server::logging::events;
+use crate::server::room::Deed;
+use crate::server::rooms::{Place, RoomRefusal};
+use crate::server::sequencer::DeedRefusal;
+use crate::server::session::{Ask, News};
+use crate::store::Preferences;
+use crate::store::host::{Account, Name};
+use crate::world::Difficulty;
+
+/// What the store has answered.
+pub(super) enum Reply {
+    /// A name, with the account that has it now; `None` for a guest.
+    Named(Name, Result<Option<Account>, String>),
+    News(News),
+}
+
+/// The most answers that wait for a session. Further ones are dropped, as those to a flood of wishes.
+const MOST_REPLIES: usize = 16;
+
+pub(super) fn replies() -> (mpsc::Sender<Reply>, mpsc::Receiver<Reply>) {
+    mpsc::channel(MOST_REPLIES)
+}
+
+impl Visit {
+    /// Does what the session wants.
+    pub(super) fn run_errands(&mut self) {
+        loop {
+            let asks = self.session.asks();
+            if asks.is_empty() {
+                return;
+            }
+            asks.into_iter().for_each(|ask| self.run_errand(ask));
+        }
+    }
+
+    fn run_errand(&mut self, ask: Ask) {
+        match ask {
+            Ask::Name(text) => self.choose_name(&text),
+            Ask::Rooms => {
+                self.in_lobby = true;
+                let rooms = self.rooms.borrow_and_update().clone();
+                self.tell(News::Rooms(rooms));
+            }
+            Ask::Enter { room, watches: true } => {
+                let place = self.shared.rooms.watch(room);
+                self.enter(place);
+            }
+            Ask::Enter { room, watches: false } => {
+                let place = self.named(|visit, name| visit.shared.rooms.enter(room, name));
+                self.enter(place);
+            }
+            Ask::Open(wish) => {
+                let place = self.named(|visit, name| visit.shared.rooms.open(&wish, name));
+                self.enter(place);
+            }
+            Ask::Deed(deed) => self.act(deed),
+            Ask::Leave => self.leave(),
+            Ask::Board { level, difficulty } => self.show_board(level, difficulty),
+            Ask::Save(preferences) => self.save(preferences),
+        }
+    }
+
+    /// Records an answer of the store.
+    pub(super) fn hear(&mut self, reply: Reply) {
+        let news = match reply {
+            Reply::News(news) => news,
+            Reply::Named(name, Ok(account)) => self.take_name(name, account),
+            Reply::Named(_, Err(sentence)) => News::Named(Err(sentence)),
+        };
+        self.tell(news);
+    }
+
+    /// Has a run verified and recorded.
+    pub(super) fn submit(&mut self, script: String) {
+        let Some(account) = self.account.as_ref().map(|account| account.id) else {
+            let sentence = "A guest's result does not rank: come with a public key.";
+            return self.tell(News::Result(sentence.to_owned()));
+        };
+        let (replies, metrics) = (self.replies.clone(), Arc::clone(&self.shared.metrics));
+        let is_accepted = self.shared.store.run(move |store| {
+            let sentence = results::record(store, account, &script, &metrics);
+            _ = replies.try_send(Reply::News(News::Result(sentence)));
+        });
+        if !is_accepted {
+            self.tell(News::Result("The host can't check your result now.".to_owned()));
+        }
+    }
+
+    fn tell(&mut self, news: News) {
+        let now = self.shared.now();
+        self.session.tell(news, now);
+    }
+
+    fn choose_name(&mut self, text: &str) {
+        let offered =
+            (self.key.is_none() && text == self.offer.as_str()).then(|| self.offer.clone());
+        let name = match offered.map_or_else(|| Name::new(text), Ok) {
+            Ok(name) => name,
+            Err(fault) => return self.tell(News::Named(Err(fault.to_string()))),
+        };
+        if self.name.as_ref() == Some(&name) {
+            return self.tell(News::Named(Ok(account::line(&name))));
+        }
+        let (key, account) = (self.key, self.account.as_ref().map(|account| account.id));
+        let replies = self.replies.clone();
+        let is_accepted = self.shared.store.run(move |store| {
+            let result = choose_name(store, key, account, &name);
+            _ = replies.try_send(Reply::Named(name, result));
+        });
+        if !is_accepted {
+            self.tell(News::Named(Err("The host is busy; try again.".to_owned())));
+        }
+    }
+
+    fn take_name(&mut self, name: Name, account: Option<Account>) -> News {
+        if account.is_none() {
+            self.guest_name = None;
+            self.guest_name = self.shared.names.reserve(&name);
+            if self.guest_name.is_none() {
+                return News::Named(Err("Somebody here has this name; take another.".to_owned()));
+            }
+        }
+        let line = account::line(&name);
+        self.presence.set_name(name.as_str());
+        events::named(self.key.as_ref(), name.as_str());
+        self.account = account.or(self.account.take());
+        self.name = Some(name);
+        News::Named(Ok(line))
+    }
+
+    /// Acts with the visitor's name, without which nobody is in a room.
+    fn named(
+        &mut self,
+        act: impl FnOnce(&Self, &crate::server::line::Line) -> Result<Place, RoomRefusal>,
+    ) -> Result<Place, RoomRefusal> {
+        self.leave();
+        let name = self.name.as_ref().ok_or(RoomRefusal::Gone)?;
+        act(self, &account::line(name))
+    }
+
+    fn enter(&mut self, place: Result<Place, RoomRefusal>) {
+        match place {
+            Ok(place) => {
+                self.in_lobby = false;
+                self.presence.set_room(Some(format!("room {}", place.room())));
+                let news = News::Entered { room: place.room(), member: place.member_id() };
+                self.place = Some(place);
+                self.tell(news);
+            }
+            Err(refusal) => self.tell(News::Refused(refusal.to_string())),
+        }
+    }
+
+    fn act(&mut self, deed: Deed) {
+        let Some(place) = &self.place else { return };
+        if place.act(deed) == Err(DeedRefusal::TooOften) {
+            self.tell(News::Result("Not so fast: wait a second.".to_owned()));
+        }
+    }
+
+    fn show_board(&mut self, level: String, difficulty: Difficulty) {
+        let own = self.account.as_ref().map(|account| account.id);
+        let replies = self.replies.clone();
+        self.shared.store.run(move |store| {
+            let rows = results::board(store, &level, difficulty, own).into();
+            _ = replies.try_send(Reply::News(News::Board { level, difficulty, rows }));
+        });
+    }
+
+    fn save(&mut self, preferences: Preferences) {
+        let Some(account) = self.account.as_ref().map(|account| account.id) else { return };
+        self.shared.store.run(move |store| {
+            let saved = store.settings(account).and_then(|mut settings| {
+                settings.preferences = preferences;
+                store.set_settings(account, &settings)
+            });
+            if let Err(failure) = saved {
+                events::store_failed(failure);
+            }
+        });
+    }
+}

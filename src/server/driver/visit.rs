@@ -1,0 +1,282 @@
+//! The driver of one visitor.
+
+use std::collections::BTreeMap;
+use std::sync::Arc;
+use std::time::Duration;
+
+use tokio::sync::{mpsc, watch};
+use tokio::time::sleep_until;
+
+use super::Shared;
+use super::account::{self, Known, NameInUse};
+use super::errands::{Reply, replies};
+use crate::server::line::Line;
+use crate::server::rooms::Place;
+use crate::server::session::{HostFacts, Identity, IdleLimits, News, Session};
+use crate::server::summary::RoomSummary;
+use crate::server::{Arrival, Inbound, Link, Notice, Outbox, Presence, Visitor};
+use crate::store::host::{Account, AccountKey, Name};
+use crate::terminal::Options;
+
+/// A visitor with everything that concerns them.
+pub(super) struct Visit {
+    pub(super) shared: Arc<Shared>,
+    pub(super) session: Session,
+    pub(super) key: Option<AccountKey>,
+    pub(super) account: Option<Account>,
+    /// The name that a guest may take without asking.
+    pub(super) offer: Name,
+    /// The name, once it is chosen.
+    pub(super) name: Option<Name>,
+    pub(super) presence: Presence,
+    pub(super) guest_name: Option<NameInUse>,
+    pub(super) place: Option<Place>,
+    pub(super) rooms: watch::Receiver<Arc<[RoomSummary]>>,
+    /// Whether the session is told of the rooms.
+    pub(super) in_lobby: bool,
+    pub(super) replies: mpsc::Sender<Reply>,
+    replied: mpsc::Receiver<Reply>,
+    /// Until then no frame is due, so that snapshots need not be looked at.
+    quiet_until: Duration,
+    /// When the session was woken last.
+    woken_at: Duration,
+    /// When a key came that no frame has answered.
+    key_at: Option<Duration>,
+    /// The same, if the frame on its way answers it.
+    answers_key: Option<Duration>,
+    /// When the session is ended, since the server ends.
+    ends_at: Option<Duration>,
+}
+
+/// What a driver waits for.
+enum Happening {
+    Arrived(Arrival),
+    Drained,
+    RoomsChanged,
+    Replied(Reply),
+    Notice(Notice),
+    Time,
+}
+
+/// The time after which a session is woken again for what it has been woken for.
+const AGAIN: Duration = Duration::from_millis(250);
+/// The widest message of the day, in columns.
+const MESSAGE_COLUMNS: usize = 200;
+/// The time between the end of the sessions and that of the server, where there is as much.
+const LAST: Duration = Duration::from_secs(2);
+
+impl Visit {
+    pub(super) fn new(shared: Arc<Shared>, visitor: Visitor, known: Known) -> Self {
+        let Known { key, account, settings, offer } = known;
+        let identity = Identity {
+            has_account: key.is_some(),
+            name: account::line(&offer),
+            is_named: account.is_some(),
+            preferences: settings.preferences,
+        };
+        let config = shared.config.get();
+        let presence = shared.visitors.arrive(visitor.peer.ip(), key);
+        if let Some(account) = &account {
+            presence.set_name(account.name.as_str());
+        }
+        let host = HostFacts {
+            name: host_name(),
+            message: Line::of(visitor.notice.unwrap_or(&config.message), MESSAGE_COLUMNS),
+            compresses: visitor.compresses,
+            catalog: Arc::clone(shared.rooms.catalog()),
+            idle: IdleLimits::default(),
+            frame_time: shared.load.frame_time(),
+        };
+        let now = shared.now();
+        let session = Session::new(identity, options(&visitor), visitor.size, host, now);
+        let (replies, replied) = replies();
+        Self {
+            session,
+            key,
+            name: account.as_ref().map(|account| account.name.clone()),
+            account,
+            offer,
+            presence,
+            guest_name: None,
+            place: None,
+            rooms: shared.rooms.summaries(),
+            in_lobby: false,
+            replies,
+            replied,
+            quiet_until: Duration::ZERO,
+            woken_at: Duration::ZERO,
+            key_at: None,
+            answers_key: None,
+            ends_at: None,
+            shared,
+        }
+    }
+
+    /// Drives the session to its end; returns the exit status.
+    pub(super) async fn run(mut self, link: Link) -> u8 {
+        let Link { mut inbound, mut outbox } = link;
+        let mut is_sending = false;
+        loop {
+            self.run_errands();
+            let mut wakes_at = None;
+            if !is_sending {
+                let bytes = self.frame(&mut wakes_at);
+                if bytes.is_empty() && self.session.is_over() {
+                    return 0;
+                }
+                is_sending = !bytes.is_empty() && outbox.try_send(bytes).is_ok();
+            }
+            let happening = self.wait(&mut inbound, &mut outbox, is_sending, wakes_at).await;
+            let now = self.shared.now();
+            match happening {
+                Happening::Arrived(Arrival::Bytes(bytes)) => {
+                    self.session.receive(&bytes, now);
+                    self.quiet_until = now;
+                    if self.session.has_key() {
+                        self.key_at.get_or_insert(now);
+                    }
+                }
+                Happening::Arrived(Arrival::Resized(size)) => self.session.resize(size, now),
+                Happening::Arrived(Arrival::Drains) => self.drain(now),
+                Happening::Arrived(Arrival::Ended) => {
+                    self.leave();
+                    return 0;
+                }
+                Happening::Drained => {
+                    self.session.written(now);
+                    is_sending = false;
+                    if let Some(key) = self.answers_key.take() {
+                        self.shared.metrics.key_time.add(now - key);
+                    }
+                }
+                Happening::RoomsChanged => {
+                    let rooms = self.rooms.borrow_and_update().clone();
+                    self.session.tell(News::Rooms(rooms), now);
+                }
+                Happening::Replied(reply) => self.hear(reply),
+                Happening::Notice(Notice::Removed(sentence)) => {
+                    self.leave();
+                    self.session.tell(News::Ended(sentence), now);
+                }
+                Happening::Notice(Notice::Said(text)) => {
+                    if let Some(line) = Line::of(&text, MESSAGE_COLUMNS) {
+                        self.session.tell(News::Said(line), now);
+                    }
+                }
+                Happening::Time => self.wake(now),
+            }
+        }
+    }
+
+    /// The bytes to send: those that wait, or else a frame, if one is due.
+    fn frame(&mut self, wakes_at: &mut Option<Duration>) -> Vec<u8> {
+        let now = self.shared.now();
+        let waiting = std::mem::take(self.session.output(now));
+        if !waiting.is_empty() {
+            return waiting;
+        }
+        // The snapshot is dropped before the driver waits.
+        let view = self.place.as_mut().and_then(Place::view);
+        let frame_time = self.shared.load.frame_time();
+        self.session.set_frame_time(frame_time);
+        if self.session.is_due(view.as_deref(), now) {
+            self.session.draw(view.as_deref(), now);
+            self.quiet_until = now + frame_time;
+            self.shared.metrics.frame_time.add(self.shared.now() - now);
+            self.answers_key = self.key_at.take();
+        }
+        // What waking did not change, waking again will not, as where a terminal never answers.
+        let time = self.session.wakes_at(view.as_deref(), now);
+        *wakes_at =
+            time.map(|time| if time > self.woken_at { time } else { self.woken_at + AGAIN });
+        std::mem::take(self.session.output(now))
+    }
+
+    async fn wait(
+        &mut self,
+        inbound: &mut Inbound,
+        outbox: &mut Outbox,
+        is_sending: bool,
+        wakes_at: Option<Duration>,
+    ) -> Happening {
+        let is_quiet = self.quiet_until > self.shared.now();
+        let looks = !is_sending && !is_quiet && self.place.is_some();
+        let quiet_end =
+            (is_quiet && !is_sending && self.place.is_some()).then_some(self.quiet_until);
+        let times = [wakes_at, quiet_end, self.ends_at, is_sending.then(|| self.patience())];
+        let time = times.into_iter().flatten().min();
+        let begun = self.shared.begun;
+        let Self { place, rooms, replied, in_lobby, presence, .. } = self;
+        tokio::select! {
+            biased;
+            arrival = inbound.next() => Happening::Arrived(arrival),
+            () = outbox.drained(), if is_sending => Happening::Drained,
+            Some(reply) = replied.recv() => Happening::Replied(reply),
+            notice = presence.notice() => Happening::Notice(notice),
+            () = changed(place.as_mut()), if looks => Happening::Time,
+            Ok(()) = rooms.changed(), if *in_lobby => Happening::RoomsChanged,
+            () = sleep_until(begun + time.unwrap_or_default()), if time.is_some() => Happening::Time,
+        }
+    }
+
+    /// The time until which a frame that does not leave keeps the session from its own time: idle
+    /// visitors are put out even if they do not read.
+    fn patience(&self) -> Duration {
+        self.shared.now() + Duration::from_secs(1)
+    }
+
+    fn wake(&mut self, now: Duration) {
+        self.session.wake(now);
+        self.woken_at = now;
+        if let Some(sentence) = self.place.as_ref().and_then(Place::closed) {
+            self.leave();
+            self.session.tell(News::Left(sentence.to_string()), now);
+        }
+        if let Some(place) = &self.place
+            && let Some(run) = place.finished()
+        {
+            self.submit(run.script);
+        }
+        if self.ends_at.take_if(|end| *end <= now).is_some() {
+            self.session.tell(News::Ended("The server has ended. Come again!".to_owned()), now);
+        }
+    }
+
+    /// Leaves the room, and submits what was won in it.
+    pub(super) fn leave(&mut self) {
+        let Some(place) = self.place.take() else { return };
+        self.presence.set_room(None);
+        if let Some(run) = place.finished() {
+            self.submit(run.script);
+        }
+    }
+
+    fn drain(&mut self, now: Duration) {
+        let time = self.shared.config.get().drain;
+        self.session.tell(News::Draining { seconds: time.as_secs() }, now);
+        self.ends_at = Some(now + time.saturating_sub(LAST.min(time / 2)));
+    }
+}
+
+/// What the host is called.
+fn host_name() -> Line {
+    Line::of("Cellcaster", 40).expect("printable characters")
+}
+
+/// Waits for a newer snapshot.
+async fn changed(place: Option<&mut Place>) {
+    match place {
+        Some(place) => place.changed().await,
+        None => std::future::pending().await,
+    }
+}
+
+/// What is known of a visitor's terminal.
+fn options(visitor: &Visitor) -> Options {
+    let environment: &BTreeMap<String, String> = &visitor.environment;
+    let options = Options::from_environment(|name| match name {
+        "TERM" => Some(visitor.term.clone()),
+        _ => environment.get(name).cloned(),
+    });
+    Options { is_remote: true, ..options }
+}

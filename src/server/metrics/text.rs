@@ -1,0 +1,119 @@
+//! Prometheus' text format, version 0.0.4.
+
+use std::fmt::{Display, Write};
+use std::sync::atomic::Ordering;
+
+use super::histogram::BOUNDS;
+use super::{Histogram, Metrics, process};
+use crate::server::{Counters, Refusal};
+
+impl Metrics {
+    /// All figures, with those of the transport and of this process.
+    pub fn text(&self, transport: &Counters) -> String {
+        let mut text = Text::default();
+        text.transport(transport);
+        text.rooms(self);
+        text.sessions(self);
+        text.process();
+        text.0
+    }
+}
+
+#[derive(Default)]
+struct Text(String);
+
+impl Text {
+    fn transport(&mut self, counters: &Counters) {
+        let accepted = counters.accepted.load(Ordering::Relaxed);
+        self.counter("connections_accepted", "Connections that were accepted.", accepted);
+        let name = "connections_refused_total";
+        self.head(name, "counter", "Connections that were refused.");
+        for reason in Refusal::ALL {
+            let count = counters.refused_for(reason);
+            self.line(name, &format!("{{reason=\"{}\"}}", reason.name()), count);
+        }
+        let frames = counters.frames.load(Ordering::Relaxed);
+        self.counter("frames", "Frames that were sent.", frames);
+        let help = "Bytes of frames, before compression and encryption.";
+        self.counter("frame_bytes", help, counters.frame_bytes.load(Ordering::Relaxed));
+        let gauges = [
+            ("connections", "Connections that are open.", &counters.connections),
+            ("sessions", "Visitors whose session runs.", &counters.sessions),
+            ("held_bytes", "Bytes of frames that wait for clients.", &counters.held),
+        ];
+        for (name, help, gauge) in gauges {
+            self.gauge(name, help, gauge.load(Ordering::Relaxed));
+        }
+    }
+
+    fn rooms(&mut self, metrics: &Metrics) {
+        self.gauge("rooms", "Rooms that are open.", metrics.rooms.get());
+        self.gauge("members", "Members of all rooms.", metrics.members.get());
+        self.gauge("watchers", "Visitors who watch a room.", metrics.watchers.get());
+        self.counter("log_entries", "Entries of the logs of all rooms.", metrics.entries.get());
+        let help = "How late the steps of rooms are.";
+        self.histogram("step_lateness_seconds", help, &metrics.step_lateness);
+    }
+
+    fn sessions(&mut self, metrics: &Metrics) {
+        let help = "The time in which a frame is drawn and encoded.";
+        self.histogram("frame_seconds", help, &metrics.frame_time);
+        let help = "The time from a key to the departure of the next frame.";
+        self.histogram("key_seconds", help, &metrics.key_time);
+        let name = "results_total";
+        self.head(name, "counter", "Results that were replayed, by what the replay says.");
+        self.line(name, "{verdict=\"verified\"}", metrics.results_verified.get());
+        self.line(name, "{verdict=\"refused\"}", metrics.results_refused.get());
+        self.counter("store_errors", "Calls of the store that failed.", metrics.store_errors.get());
+    }
+
+    /// The names that Prometheus' own clients use.
+    fn process(&mut self) {
+        if let Some(time) = process::cpu_time() {
+            let name = "process_cpu_seconds_total";
+            self.head(name, "counter", "Processor time of all threads.");
+            self.line(name, "", time.as_secs_f64());
+        }
+        if let Some(bytes) = process::resident_bytes() {
+            let name = "process_resident_memory_bytes";
+            self.head(name, "gauge", "Memory in use.");
+            self.line(name, "", bytes);
+        }
+    }
+
+    fn counter(&mut self, name: &str, help: &str, value: impl Display) {
+        let name = format!("{name}_total");
+        self.head(&name, "counter", help);
+        self.line(&name, "", value);
+    }
+
+    fn gauge(&mut self, name: &str, help: &str, value: impl Display) {
+        self.head(name, "gauge", help);
+        self.line(name, "", value);
+    }
+
+    fn histogram(&mut self, name: &str, help: &str, histogram: &Histogram) {
+        self.head(name, "histogram", help);
+        let distribution = histogram.distribution();
+        let bucket = format!("{name}_bucket");
+        let bounds = BOUNDS.iter().map(|&bound| (bound as f64 / 1e6).to_string());
+        for (bound, count) in bounds.chain(["+Inf".to_owned()]).zip(distribution.up_to) {
+            self.line(&bucket, &format!("{{le=\"{bound}\"}}"), count);
+        }
+        self.line(&format!("{name}_sum"), "", distribution.sum);
+        self.line(&format!("{name}_count"), "", distribution.up_to[BOUNDS.len()]);
+    }
+
+    fn head(&mut self, name: &str, kind: &str, help: &str) {
+        let name = full(name);
+        _ = writeln!(self.0, "# HELP {name} {help}\n# TYPE {name} {kind}");
+    }
+
+    fn line(&mut self, name: &str, labels: &str, value: impl Display) {
+        _ = writeln!(self.0, "{}{labels} {value}", full(name));
+    }
+}
+
+fn full(name: &str) -> String {
+    if name.starts_with("process_") { name.to_owned() } else { format!("cellcaster_{name}") }
+}

@@ -1,0 +1,198 @@
+//! Entries of a room's log: what the members want, in which step.
+//!
+//! An entry is a line of text:
+//!
+//! ```text
+//! 0 join 1 amber Mara
+//! 12 want 1 9 forward run turn:1.5
+//! 40 say 1 behind you
+//! 41 emote 1 wave
+//! 90 leave 1
+//! ```
+//!
+//! The first number is the step, before which the entry takes effect; the second is the member. The
+//! number after them in `want` is the step in the picture that the member saw.
+
+use std::fmt;
+
+use crate::game::{Intents, PlayerColor};
+use crate::server::line::Line;
+
+/// The number of a member in a room. It is not used again after they leave.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Hash, PartialOrd, Ord)]
+pub(crate) struct MemberId(pub(in crate::server) u32);
+
+impl fmt::Display for MemberId {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        self.0.fmt(f)
+    }
+}
+
+/// An entry of a room's log.
+#[derive(Clone, Debug, PartialEq)]
+pub(crate) struct Entry {
+    /// The step of the round before which it takes effect.
+    pub(crate) step: u64,
+    /// Whose entry it is.
+    pub(crate) member: MemberId,
+    /// What the member does.
+    pub(crate) deed: Deed,
+}
+
+/// What a member does.
+#[derive(Clone, Debug, PartialEq)]
+pub(crate) enum Deed {
+    /// Enters the room.
+    Join { color: PlayerColor, name: Line },
+    /// Leaves the room.
+    Leave,
+    /// Wants this from now on, after a picture of the step `seen` of the game.
+    Want { seen: u64, intents: Intents },
+    /// Says something to all.
+    Say(Line),
+    /// Shows all an emotion.
+    Emote(Emote),
+    /// Wishes to begin the round again, which happens when all do.
+    Again,
+}
+
+/// The widest line of chat, in columns.
+pub(crate) const CHAT_COLUMNS: usize = 60;
+/// The widest name, in columns.
+pub(crate) const NAME_COLUMNS: usize = 16;
+
+/// An emotion, or a gesture.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub(crate) enum Emote {
+    /// Greets, or says goodbye.
+    Wave,
+    /// Agrees.
+    Yes,
+    /// Disagrees.
+    No,
+    /// Laughs.
+    Laugh,
+    /// Calls for help.
+    Help,
+    /// Calls the others here.
+    Here,
+}
+
+impl Emote {
+    /// All of them, in the order of their keys.
+    pub(crate) const ALL: [Self; 6] =
+        [Self::Wave, Self::Yes, Self::No, Self::Laugh, Self::Help, Self::Here];
+
+    /// The name in logs.
+    pub(crate) const fn name(self) -> &'static str {
+        match self {
+            Self::Wave => "wave",
+            Self::Yes => "yes",
+            Self::No => "no",
+            Self::Laugh => "laugh",
+            Self::Help => "help",
+            Self::Here => "here",
+        }
+    }
+
+    /// What others read beside the name.
+    pub(crate) const fn text(self) -> &'static str {
+        match self {
+            Self::Wave => "waves",
+            Self::Yes => "nods",
+            Self::No => "shakes their head",
+            Self::Laugh => "laughs",
+            Self::Help => "calls for help",
+            Self::Here => "calls: over here!",
+        }
+    }
+}
+
+impl fmt::Display for Entry {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        let Self { step, member, deed } = self;
+        match deed {
+            Deed::Join { color, name } => write!(f, "{step} join {member} {} {name}", color.name()),
+            Deed::Leave => write!(f, "{step} leave {member}"),
+            Deed::Want { seen, intents } => {
+                write!(f, "{step} want {member} {seen} {}", intents.words())
+            }
+            Deed::Say(line) => write!(f, "{step} say {member} {line}"),
+            Deed::Again => write!(f, "{step} again {member}"),
+            Deed::Emote(emote) => write!(f, "{step} emote {member} {}", emote.name()),
+        }
+    }
+}
+
+impl Entry {
+    /// Reads a line; `None` if it is no entry.
+    pub(crate) fn parse(line: &str) -> Option<Self> {
+        let (step, rest) = line.split_once(' ')?;
+        let (verb, rest) = rest.split_once(' ')?;
+        let (member, rest) = rest.split_once(' ').unwrap_or((rest, ""));
+        let deed = match verb {
+            "join" => {
+                let (color, name) = rest.split_once(' ')?;
+                let color = PlayerColor::ALL.into_iter().find(|it| it.name() == color)?;
+                Deed::Join { color, name: Line::of(name, NAME_COLUMNS)? }
+            }
+            "leave" if rest.is_empty() => Deed::Leave,
+            "again" if rest.is_empty() => Deed::Again,
+            "want" => {
+                let (seen, words) = rest.split_once(' ')?;
+                Deed::Want { seen: seen.parse().ok()?, intents: Intents::from_words(words)? }
+            }
+            "say" => Deed::Say(Line::of(rest, CHAT_COLUMNS)?),
+            "emote" => Deed::Emote(Emote::ALL.into_iter().find(|it| it.name() == rest)?),
+            _ => return None,
+        };
+        Some(Self { step: step.parse().ok()?, member: MemberId(member.parse().ok()?), deed })
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use proptest::prelude::*;
+
+    use super::*;
+    use crate::game::{Intent, Look};
+
+    fn deed() -> impl Strategy<Value = Deed> {
+        let line =
+            |columns| any::<String>().prop_filter_map("text", move |it| Line::of(&it, columns));
+        let intents = prop::sample::subsequence(Intent::ALL.to_vec(), 0..=5);
+        let intents = (intents, any::<i16>(), any::<i16>()).prop_map(|(intents, turn, tilt)| {
+            let look = Look { turn: turn.max(-i16::MAX), tilt: tilt.max(-i16::MAX) };
+            intents.into_iter().collect::<Intents>().with_look(look)
+        });
+        prop_oneof![
+            (prop::sample::select(&PlayerColor::ALL), line(NAME_COLUMNS))
+                .prop_map(|(color, name)| Deed::Join { color, name }),
+            Just(Deed::Leave),
+            Just(Deed::Again),
+            (any::<u64>(), intents).prop_map(|(seen, intents)| Deed::Want { seen, intents }),
+            line(CHAT_COLUMNS).prop_map(Deed::Say),
+            prop::sample::select(&Emote::ALL).prop_map(Deed::Emote),
+        ]
+    }
+
+    proptest! {
+        #[test]
+        fn what_is_written_reads_as_the_same(step: u64, member: u32, deed in deed()) {
+            let entry = Entry { step, member: MemberId(member), deed };
+            prop_assert_eq!(Entry::parse(&entry.to_string()), Some(entry));
+        }
+
+        #[test]
+        fn no_line_is_a_fault_of_the_program(line in any::<String>()) {
+            Entry::parse(&line);
+        }
+    }
+
+    #[test]
+    fn other_lines_are_no_entries() {
+        for line in ["", "0", "0 join 1", "0 join 1 plaid Mara", "x leave 1", "0 want 1 2 fly"] {
+            assert_eq!(Entry::parse(line), None, "{line}");
+        }
+    }
+}

@@ -1,0 +1,123 @@
+//! The state of a room at the start of a round: its checkpoint.
+//!
+//! ```text
+//! cellcaster-room 1
+//! level museum
+//! mode tag
+//! difficulty normal
+//! seed 77
+//! round 3
+//! member 1 amber 250 Mara
+//! ```
+//!
+//! A line for each member holds their number, colour, points and name.
+
+use std::fmt;
+
+use super::entry::{MemberId, NAME_COLUMNS};
+use super::mode::Mode;
+use crate::game::PlayerColor;
+use crate::server::line::Line;
+use crate::world::Difficulty;
+
+/// The version of the format, and the first line of each log.
+const FIRST_LINE: &str = "cellcaster-room 1";
+
+/// The state of a room at the start of a round.
+#[derive(Clone, Debug, PartialEq, Eq)]
+pub(crate) struct Header {
+    /// The name of the level in the catalog.
+    pub(crate) level: String,
+    /// What is played.
+    pub(crate) mode: Mode,
+    /// How hard it is.
+    pub(crate) difficulty: Difficulty,
+    /// The seed of all chance in the room.
+    pub(crate) seed: u64,
+    /// The number of the round, from 1.
+    pub(crate) round: u32,
+    /// The number of the next member who joins.
+    pub(crate) next_member: u32,
+    /// The members at the start of the round, in the order of their numbers.
+    pub(crate) members: Vec<Seat>,
+}
+
+/// A member at the start of a round.
+#[derive(Clone, Debug, PartialEq, Eq)]
+pub(crate) struct Seat {
+    pub(crate) id: MemberId,
+    pub(crate) color: PlayerColor,
+    /// The points of the rounds before.
+    pub(crate) points: u32,
+    pub(crate) name: Line,
+}
+
+impl Header {
+    /// The header of a new room.
+    pub(crate) fn new(level: &str, mode: Mode, difficulty: Difficulty, seed: u64) -> Self {
+        let level = level.to_owned();
+        Self { level, mode, difficulty, seed, round: 1, next_member: 1, members: Vec::new() }
+    }
+
+    /// Reads the lines of a header; `None` if a line is none of one.
+    pub(crate) fn parse<'t>(lines: impl IntoIterator<Item = &'t str>) -> Option<Self> {
+        let mut lines = lines.into_iter();
+        (lines.next()? == FIRST_LINE).then_some(())?;
+        let mut value = |name: &str| lines.next()?.strip_prefix(name)?.strip_prefix(' ');
+        let level = value("level")?.to_owned();
+        let mode = Mode::named(value("mode")?)?;
+        let difficulty = value("difficulty")?;
+        let difficulty = Difficulty::ALL.into_iter().find(|it| it.name() == difficulty)?;
+        let [seed, round, next_member] = [value("seed")?, value("round")?, value("next")?];
+        let members = lines.map(Seat::parse).collect::<Option<_>>()?;
+        let (seed, round) = (seed.parse().ok()?, round.parse().ok()?);
+        let next_member = next_member.parse().ok()?;
+        Some(Self { level, mode, difficulty, seed, round, next_member, members })
+    }
+}
+
+impl fmt::Display for Header {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        writeln!(f, "{FIRST_LINE}\nlevel {}\nmode {}", self.level, self.mode.name())?;
+        writeln!(f, "difficulty {}\nseed {}", self.difficulty.name(), self.seed)?;
+        writeln!(f, "round {}\nnext {}", self.round, self.next_member)?;
+        self.members.iter().try_for_each(|seat| writeln!(f, "{seat}"))
+    }
+}
+
+impl Seat {
+    fn parse(line: &str) -> Option<Self> {
+        let mut words = line.strip_prefix("member ")?.splitn(4, ' ');
+        let id = MemberId(words.next()?.parse().ok()?);
+        let color = words.next()?;
+        let color = PlayerColor::ALL.into_iter().find(|it| it.name() == color)?;
+        let points = words.next()?.parse().ok()?;
+        Some(Self { id, color, points, name: Line::of(words.next()?, NAME_COLUMNS)? })
+    }
+}
+
+impl fmt::Display for Seat {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        let Self { id, color, points, name } = self;
+        write!(f, "member {id} {} {points} {name}", color.name())
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn what_is_written_reads_as_the_same() {
+        let seat = |id, points, name| {
+            let name = Line::of(name, NAME_COLUMNS).unwrap();
+            Seat { id: MemberId(id), color: PlayerColor::ALL[id as usize % 8], points, name }
+        };
+        let mut header = Header::new("museum", Mode::Tag, Difficulty::Hard, u64::MAX);
+        header.members = vec![seat(1, 250, "Mara"), seat(7, 0, "a b  c")];
+        header.next_member = 9;
+        let text = header.to_string();
+        assert_eq!(Header::parse(text.lines()), Some(header));
+        assert_eq!(Header::parse(text.lines().skip(1)), None);
+    }
+}

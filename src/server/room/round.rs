@@ -1,0 +1,272 @@
+//! Rounds: the phases of what is played in a room, and its standings.
+//!
+//! A round waits for enough members, counts down, is played, and shows its standings; then the next
+//! one begins. Time is counted in steps, and chance comes from the room's seed, so that the log
+//! alone determines who wins.
+//!
+//! A member gains a point for each other one whom they beat in a round. Points for a place were
+//! refused: with two members, the first of them would be worth as much as with eight.
+
+mod hide;
+mod race;
+mod tag;
+mod together;
+
+use std::collections::BTreeMap;
+
+use self::hide::Hide;
+use self::race::Race;
+use self::tag::Tag;
+use self::together::Together;
+use super::entry::MemberId;
+use super::member::Member;
+use super::mode::Mode;
+use crate::game::{Game, Outcome, PlayerId};
+use crate::rng::SplitMix64;
+
+/// Steps of a game in a second.
+pub(super) const SECOND: u64 = 60;
+/// How long the standings are shown.
+const STANDINGS: u64 = 10 * SECOND;
+
+/// The phase of a round. Times are steps of the round.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub(crate) enum Phase {
+    /// There are not enough members; they walk about.
+    Waiting,
+    /// The play begins at `ends`.
+    Countdown { ends: u64 },
+    /// The play ends at `ends` at the latest.
+    Playing { ends: u64 },
+    /// The standings are shown until `ends`.
+    Over { ends: u64 },
+}
+
+/// What a member is in a round.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Default)]
+pub(crate) enum Role {
+    /// One of many.
+    #[default]
+    Player,
+    /// Who is "it", or seeks.
+    Seeker,
+    /// At the exit, or found last.
+    Done,
+}
+
+/// A member's place in the standings.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub(crate) struct Standing {
+    pub(crate) member: MemberId,
+    /// The points that the round gives.
+    pub(crate) points: u32,
+    /// What counts in the mode, in steps: the time to the exit, as "it", or hidden.
+    pub(crate) steps: u64,
+}
+
+/// What a mode sees of its room.
+#[derive(Clone, Copy)]
+pub(super) struct Field<'a> {
+    pub(super) game: &'a Game,
+    pub(super) members: &'a [Member],
+    pub(super) step: u64,
+}
+
+impl Field<'_> {
+    fn ids(&self) -> impl Iterator<Item = MemberId> {
+        self.members.iter().map(|member| member.id)
+    }
+
+    /// Whether `one` touches `other`, in the picture that `one` saw.
+    fn touches(&self, one: MemberId, other: MemberId) -> bool {
+        let Some(seen) = self.member(one).map(|member| member.seen) else { return false };
+        let [one, other] = [one, other].map(|id| self.player(id));
+        one.zip(other).is_some_and(|(one, other)| self.game.touches(one, other, seen))
+    }
+
+    fn has_won(&self, id: MemberId) -> bool {
+        let view = self.player(id).and_then(|player| self.game.seen_by(player));
+        view.is_some_and(|view| view.outcome() == Outcome::Won)
+    }
+
+    fn member(&self, id: MemberId) -> Option<&Member> {
+        self.members.iter().find(|member| member.id == id)
+    }
+
+    fn player(&self, id: MemberId) -> Option<PlayerId> {
+        self.member(id)?.player
+    }
+}
+
+/// A round.
+#[derive(Clone, Debug, PartialEq)]
+pub(super) struct Round {
+    mode: Mode,
+    phase: Phase,
+    play: Play,
+    chance: SplitMix64,
+    standings: Vec<Standing>,
+}
+
+/// What a mode remembers of a round.
+#[derive(Clone, Debug, PartialEq)]
+enum Play {
+    Roam,
+    Together(Together),
+    Race(Race),
+    Tag(Tag),
+    Hide(Hide),
+}
+
+impl Round {
+    pub(super) fn new(mode: Mode, seed: u64) -> Self {
+        let play = match mode {
+            Mode::Roam => Play::Roam,
+            Mode::Together => Play::Together(Together::default()),
+            Mode::Alone | Mode::Race => Play::Race(Race::default()),
+            Mode::Tag => Play::Tag(Tag::default()),
+            Mode::Hide => Play::Hide(Hide::default()),
+        };
+        let chance = SplitMix64::new(seed);
+        Self { mode, phase: Phase::Waiting, play, chance, standings: Vec::new() }
+    }
+
+    pub(super) fn phase(&self) -> Phase {
+        self.phase
+    }
+
+    /// The standings, the winner first; empty before the end.
+    pub(super) fn standings(&self) -> &[Standing] {
+        &self.standings
+    }
+
+    /// Whether the next round is due.
+    pub(super) fn is_over(&self, step: u64) -> bool {
+        matches!(self.phase, Phase::Over { ends } if ends <= step)
+    }
+
+    /// What a member is.
+    pub(super) fn role(&self, member: MemberId) -> Role {
+        match &self.play {
+            Play::Roam => Role::Player,
+            Play::Together(together) => together.role(member),
+            Play::Race(race) => race.role(member),
+            Play::Tag(tag) => tag.role(member),
+            Play::Hide(hide) => hide.role(member),
+        }
+    }
+
+    /// Whether a member cannot walk at present.
+    pub(super) fn holds(&self, member: MemberId, step: u64) -> bool {
+        match (&self.play, self.phase) {
+            (_, Phase::Waiting | Phase::Countdown { .. }) if self.mode == Mode::Race => true,
+            (Play::Hide(hide), Phase::Countdown { .. }) => hide.role(member) == Role::Seeker,
+            (Play::Tag(tag), Phase::Playing { .. }) => tag.holds(member, step),
+            _ => false,
+        }
+    }
+
+    /// Whether a member sees nothing at present.
+    pub(super) fn is_blind(&self, member: MemberId) -> bool {
+        matches!(self.mode, Mode::Hide) && self.holds(member, 0)
+    }
+
+    /// Advances the round by one step.
+    pub(super) fn step(&mut self, field: Field) {
+        let (step, enough) = (field.step, field.members.len() >= self.mode.fewest());
+        match self.phase {
+            Phase::Waiting if enough => self.count_down(field),
+            Phase::Countdown { .. } | Phase::Playing { .. } if !enough => {
+                *self = Self { chance: self.chance.clone(), ..Self::new(self.mode, 0) };
+            }
+            Phase::Countdown { ends } if ends <= step => self.begin(field),
+            Phase::Playing { ends } => {
+                let is_decided = self.play(field);
+                if is_decided || ends <= step {
+                    self.end(field);
+                }
+            }
+            Phase::Waiting | Phase::Countdown { .. } | Phase::Over { .. } => {}
+        }
+    }
+
+    fn count_down(&mut self, field: Field) {
+        if let Play::Hide(hide) = &mut self.play {
+            hide.choose(field, &mut self.chance);
+        }
+        self.phase = Phase::Countdown { ends: field.step + self.mode.countdown() };
+        if self.mode.countdown() == 0 {
+            self.begin(field);
+        }
+    }
+
+    fn begin(&mut self, field: Field) {
+        if let Play::Tag(tag) = &mut self.play {
+            tag.choose(field, &mut self.chance);
+        }
+        if let Play::Race(race) = &mut self.play {
+            race.begin(field.step);
+        }
+        self.phase = Phase::Playing { ends: field.step + self.mode.longest() };
+    }
+
+    /// Plays one step; returns whether the round is decided.
+    fn play(&mut self, field: Field) -> bool {
+        match &mut self.play {
+            Play::Roam => false,
+            Play::Together(together) => together.step(field),
+            Play::Race(race) => race.step(field),
+            Play::Tag(tag) => {
+                tag.step(field);
+                false
+            }
+            Play::Hide(hide) => hide.step(field),
+        }
+    }
+
+    fn end(&mut self, field: Field) {
+        let scores = match &self.play {
+            Play::Roam => BTreeMap::new(),
+            Play::Together(together) => together.scores(field),
+            Play::Race(race) => race.scores(field),
+            Play::Tag(tag) => tag.scores(field),
+            Play::Hide(hide) => hide.scores(field),
+        };
+        self.standings = standings(&scores);
+        self.phase = Phase::Over { ends: field.step + STANDINGS };
+    }
+}
+
+/// What counts in a round: the lower rank wins, and the steps are shown.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+struct Score {
+    rank: u64,
+    steps: u64,
+}
+
+/// The standings from `scores`. Members of the same rank have the same points.
+fn standings(scores: &BTreeMap<MemberId, Score>) -> Vec<Standing> {
+    let beaten = |score: &Score| scores.values().filter(|other| other.rank > score.rank).count();
+    let standing = |(&member, score): (&MemberId, &Score)| Standing {
+        member,
+        points: beaten(score) as u32,
+        steps: score.steps,
+    };
+    let mut standings: Vec<Standing> = scores.iter().map(standing).collect();
+    standings.sort_by_key(|standing| (std::cmp::Reverse(standing.points), standing.member));
+    standings
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn a_point_is_a_member_beaten() {
+        let score = |(id, rank)| (MemberId(id), Score { rank, steps: rank * 10 });
+        let scores = [(1, 5), (2, 3), (3, 5), (4, 9)].map(score).into_iter().collect();
+        let places: Vec<_> =
+            standings(&scores).iter().map(|it| (it.member.0, it.points, it.steps)).collect();
+        assert_eq!(places, [(2, 3, 30), (1, 1, 50), (3, 1, 50), (4, 0, 90)]);
+    }
+}

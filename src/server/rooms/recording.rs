@@ -1,0 +1,37 @@
+//! Recordings of rooms: a file for each of them.
+//!
+//! Entries are few and short, and wait in memory until there are eight kilobytes of them, or a round
+//! begins. So the disk is touched seldom, and a thread for it was refused.
+
+use std::fs::{self, File};
+use std::io::{self, BufWriter};
+use std::path::Path;
+
+use crate::server::room::{Log, Queue, Recorded};
+use crate::server::summary::RoomId;
+
+/// The log of a room, which is recorded if there is a folder for it.
+pub(super) fn log(folder: Option<&Path>, id: RoomId) -> Box<dyn Log> {
+    let Some(folder) = folder else { return Box::new(Queue::default()) };
+    match file(folder, id) {
+        Ok(file) => Box::new(Recorded::new(Queue::default(), BufWriter::new(file))),
+        Err(error) => {
+            tracing::error!(%error, room = %id, "a room cannot be recorded");
+            Box::new(Queue::default())
+        }
+    }
+}
+
+/// A file that did not exist before.
+fn file(folder: &Path, id: RoomId) -> io::Result<File> {
+    fs::create_dir_all(folder)?;
+    for number in 0.. {
+        let suffix = if number == 0 { String::new() } else { format!("-{number}") };
+        let path = folder.join(format!("room-{id}{suffix}.log"));
+        match File::create_new(&path) {
+            Err(error) if error.kind() == io::ErrorKind::AlreadyExists => {}
+            result => return result,
+        }
+    }
+    Err(io::ErrorKind::AlreadyExists.into())
+}

@@ -1,0 +1,160 @@
+//! The sequencer of a room: it decides in which step what the members want takes effect.
+//!
+//! # Rules
+//!
+//! - A room takes [`STEPS_PER_SECOND`] steps a second. If a step is late, at most [`MOST_CAUGHT_UP`]
+//!   follow at once; further ones are left out, so that the room's time slips.
+//! - All that changes the room is an entry of its [`Log`], which is applied from the log. What
+//!   members want too often is refused or delayed before it reaches the log, see [`Inbox`].
+//! - A room without members takes no steps and has no timer. After a while it is closed, if it is no
+//!   standing room.
+//! - A fault in a room, even a panic, ends this room with a sentence to its members, and no other.
+//! - A recording that cannot be written is reported, and the room goes on.
+//!
+//! A thread for each room was refused: rooms sleep most of the time, and their steps take microseconds.
+
+mod inbox;
+mod round_log;
+mod shown;
+
+use std::panic::{AssertUnwindSafe, catch_unwind};
+use std::sync::Arc;
+use std::time::Duration;
+
+use tokio::time::{Instant, sleep_until, timeout};
+
+pub(crate) use self::inbox::{DeedRefusal, Inbox, JoinRefusal};
+pub(crate) use self::round_log::{FinishedRun, RoundLog};
+pub(crate) use self::shown::{Shown, State};
+use super::load::Load;
+use super::room::Room;
+use crate::game::STEPS_PER_SECOND;
+
+/// The most steps that follow at once after a delay.
+pub(crate) const MOST_CAUGHT_UP: u32 = 6;
+/// What members read after a fault.
+const FAULT: &str = "The room has ended because of a fault of this server.";
+
+/// What a room and its members share.
+#[derive(Debug)]
+pub(crate) struct Doorway {
+    /// What the members want.
+    pub(crate) inbox: Inbox,
+    /// What they see.
+    pub(crate) shown: Shown,
+}
+
+/// A room with its log, of which the sequencer alone is in charge.
+pub(crate) struct Sequencer {
+    room: Room,
+    log: RoundLog,
+    doorway: Arc<Doorway>,
+    load: Arc<Load>,
+    /// The time without members after which the room is closed; `None` for a standing room.
+    closes_after: Option<Duration>,
+}
+
+/// The next thing that a sequencer waits for.
+enum Pause {
+    /// The time of the next step.
+    Until(Instant),
+    /// Somebody who joins.
+    Member,
+}
+
+impl Sequencer {
+    pub(crate) fn new(
+        room: Room,
+        log: RoundLog,
+        doorway: Arc<Doorway>,
+        load: Arc<Load>,
+        closes_after: Option<Duration>,
+    ) -> Self {
+        Self { room, log, doorway, load, closes_after }
+    }
+
+    /// Runs the room until it is closed. `on_change` is called when a lobby would show it otherwise.
+    pub(crate) async fn run(mut self, mut on_change: impl FnMut(&Room) + Send) {
+        let mut next = Instant::now();
+        loop {
+            match self.pause(next) {
+                Pause::Until(time) => sleep_until(time).await,
+                Pause::Member => {
+                    if !self.somebody_joins().await {
+                        return;
+                    }
+                    next = Instant::now();
+                }
+            }
+            let caught =
+                catch_unwind(AssertUnwindSafe(|| self.catch_up(&mut next, &mut on_change)));
+            if caught.is_err() {
+                self.doorway.close(FAULT);
+                return;
+            }
+            if self.doorway.inbox.is_closed() {
+                return;
+            }
+        }
+    }
+
+    fn pause(&self, next: Instant) -> Pause {
+        match self.room.len() == 0 && self.doorway.inbox.is_empty() {
+            true => Pause::Member,
+            false => Pause::Until(next),
+        }
+    }
+
+    /// Waits until somebody joins; returns whether the room still exists then.
+    async fn somebody_joins(&mut self) -> bool {
+        let inbox = &self.doorway.inbox;
+        let Some(patience) = self.closes_after else {
+            inbox.joined().await;
+            return !inbox.is_closed();
+        };
+        if timeout(patience, inbox.joined()).await.is_err() && inbox.close_if_empty() {
+            self.doorway.shown.close("The room was empty and is closed.");
+        }
+        !inbox.is_closed()
+    }
+
+    /// Takes the steps that are due, and moves `next` to the time of the one after them.
+    fn catch_up(&mut self, next: &mut Instant, on_change: &mut impl FnMut(&Room)) {
+        let now = Instant::now();
+        self.load.note_lateness(now.saturating_duration_since(*next));
+        for _ in 0..MOST_CAUGHT_UP {
+            if *next > now {
+                return;
+            }
+            *next += STEP;
+            self.step(on_change);
+        }
+        *next = (*next).max(now);
+    }
+
+    fn step(&mut self, on_change: &mut impl FnMut(&Room)) {
+        let Self { room, log, doorway, .. } = self;
+        let changes = doorway.shown.replace(|| {
+            let changes = log.step(room, &doorway.inbox);
+            (room.view(), changes)
+        });
+        self.load.metrics().entries.add(changes.entries);
+        if let Some(run) = changes.finished {
+            doorway.inbox.finish(run);
+        }
+        if changes.summary {
+            on_change(&self.room);
+        }
+    }
+}
+
+/// The time of a step.
+pub(crate) const STEP: Duration = Duration::from_nanos(1_000_000_000 / STEPS_PER_SECOND as u64);
+
+impl Doorway {
+    /// Closes the room for all, with a sentence.
+    pub(crate) fn close(&self, sentence: &str) {
+        self.inbox.close();
+        self.shown.close(sentence);
+    }
+}

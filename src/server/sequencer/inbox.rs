@@ -1,0 +1,255 @@
+//! What the members of a room want, until the sequencer takes it.
+//!
+//! Each member has a bounded place of their own: what one floods it with is refused or replaces what
+//! they wanted before, and never waits in another's way. Of chat and emotions only as many are
+//! accepted as [`Pace`] allows. A queue for all members was refused: one of them could fill it.
+//!
+//! Intents take effect in the order in which they were wanted, one change in [`WANT_PAUSE`] steps. If
+//! more than [`MOST_WANTS`] changes wait, the newest replaces the last one.
+
+use std::collections::VecDeque;
+use std::sync::Mutex;
+
+use tokio::sync::Notify;
+
+use super::FinishedRun;
+use crate::game::{PlayerColor, STEPS_PER_SECOND};
+use crate::server::line::Line;
+use crate::server::locked;
+use crate::server::room::{Deed, MemberId, Mode};
+
+/// The least number of steps between two changes of a member's intents: 30 changes a second.
+const WANT_PAUSE: u64 = STEPS_PER_SECOND as u64 / 30;
+/// The most changes that wait.
+const MOST_WANTS: usize = 8;
+/// The most arrivals and departures that wait, each of which takes effect in the next step.
+const MOST_MOVES: usize = 64;
+
+/// What the members of a room want.
+#[derive(Debug)]
+pub(crate) struct Inbox {
+    waiting: Mutex<Waiting>,
+    joined: Notify,
+}
+
+/// Why somebody cannot join.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub(crate) enum JoinRefusal {
+    Closed,
+    Full,
+}
+
+/// Why a deed was not accepted.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub(crate) enum DeedRefusal {
+    /// The member does such things too often.
+    TooOften,
+    /// There is no such member, or the deed is none of a member's.
+    Impossible,
+}
+
+#[derive(Debug)]
+struct Waiting {
+    is_closed: bool,
+    most: usize,
+    next: u32,
+    /// Those who have joined, whether the room knows it or not.
+    seats: Vec<Seat>,
+    moves: VecDeque<(MemberId, Deed)>,
+    /// The number of steps so far, over all rounds.
+    steps: u64,
+    finished: Option<FinishedRun>,
+}
+
+#[derive(Debug)]
+struct Seat {
+    id: MemberId,
+    color: PlayerColor,
+    wants: VecDeque<Deed>,
+    /// The step after which the next change of intents takes effect.
+    next_want: u64,
+    talk: VecDeque<Deed>,
+    chat: Pace,
+    emotes: Pace,
+}
+
+/// How often a member may do something: a token bucket, counted in steps.
+#[derive(Debug)]
+struct Pace {
+    most: u64,
+    /// Steps that are not used up; one deed uses a second's.
+    credit: u64,
+    counted: u64,
+}
+
+impl Inbox {
+    /// The inbox of a room without members, whose next member is `next`.
+    pub(crate) fn new(mode: Mode, next: MemberId) -> Self {
+        let waiting = Waiting {
+            is_closed: false,
+            most: mode.most(),
+            next: next.0,
+            seats: Vec::new(),
+            moves: VecDeque::new(),
+            steps: 0,
+            finished: None,
+        };
+        Self { waiting: Mutex::new(waiting), joined: Notify::new() }
+    }
+
+    /// Somebody joins.
+    pub(crate) fn join(&self, name: &Line) -> Result<MemberId, JoinRefusal> {
+        let id = locked(&self.waiting, |waiting| waiting.join(name))?;
+        self.joined.notify_one();
+        Ok(id)
+    }
+
+    /// A member leaves. It is always accepted.
+    pub(crate) fn leave(&self, id: MemberId) {
+        locked(&self.waiting, |waiting| {
+            let count = waiting.seats.len();
+            waiting.seats.retain(|seat| seat.id != id);
+            if waiting.seats.len() < count {
+                waiting.moves.push_back((id, Deed::Leave));
+            }
+        });
+    }
+
+    /// A member does something.
+    pub(crate) fn act(&self, id: MemberId, deed: Deed) -> Result<(), DeedRefusal> {
+        locked(&self.waiting, |waiting| {
+            let steps = waiting.steps;
+            let seat = waiting.seats.iter_mut().find(|seat| seat.id == id);
+            seat.ok_or(DeedRefusal::Impossible)?.act(deed, steps)
+        })
+    }
+
+    /// Whether nobody is in the room or on the way to it, and nobody is about to leave it.
+    pub(super) fn is_empty(&self) -> bool {
+        locked(&self.waiting, |waiting| waiting.seats.is_empty() && waiting.moves.is_empty())
+    }
+
+    /// Waits until somebody joins, or the room is closed.
+    pub(super) async fn joined(&self) {
+        while self.is_empty() && !self.is_closed() {
+            self.joined.notified().await;
+        }
+    }
+
+    pub(crate) fn is_closed(&self) -> bool {
+        locked(&self.waiting, |waiting| waiting.is_closed)
+    }
+
+    /// Nobody may join any more.
+    pub(super) fn close(&self) {
+        locked(&self.waiting, |waiting| waiting.is_closed = true);
+        self.joined.notify_one();
+    }
+
+    /// Closes the room, unless somebody joins; returns whether it is closed.
+    pub(super) fn close_if_empty(&self) -> bool {
+        locked(&self.waiting, |waiting| {
+            waiting.is_closed |= waiting.seats.is_empty();
+            waiting.is_closed
+        })
+    }
+
+    /// Keeps a run until its member takes it.
+    pub(super) fn finish(&self, run: FinishedRun) {
+        locked(&self.waiting, |waiting| waiting.finished = Some(run));
+    }
+
+    /// The run that a member has finished since the last call.
+    pub(crate) fn finished(&self, id: MemberId) -> Option<FinishedRun> {
+        locked(&self.waiting, |waiting| waiting.finished.take_if(|run| run.member == id))
+    }
+
+    /// Passes on what takes effect in the next step, in its order.
+    pub(super) fn take(&self, mut pass: impl FnMut(MemberId, Deed)) {
+        locked(&self.waiting, |waiting| {
+            let steps = waiting.steps;
+            waiting.moves.drain(..).for_each(|(id, deed)| pass(id, deed));
+            for seat in &mut waiting.seats {
+                if seat.next_want <= steps
+                    && let Some(want) = seat.wants.pop_front()
+                {
+                    seat.next_want = steps + WANT_PAUSE;
+                    pass(seat.id, want);
+                }
+                seat.talk.drain(..).for_each(|deed| pass(seat.id, deed));
+            }
+            waiting.steps += 1;
+        });
+    }
+}
+
+impl Waiting {
+    fn join(&mut self, name: &Line) -> Result<MemberId, JoinRefusal> {
+        if self.is_closed {
+            return Err(JoinRefusal::Closed);
+        }
+        if self.seats.len() >= self.most || self.moves.len() >= MOST_MOVES {
+            return Err(JoinRefusal::Full);
+        }
+        let worn = |color: &PlayerColor| self.seats.iter().filter(|it| it.color == *color).count();
+        let color = PlayerColor::ALL.into_iter().min_by_key(worn).ok_or(JoinRefusal::Full)?;
+        let id = MemberId(self.next);
+        self.next += 1;
+        self.moves.push_back((id, Deed::Join { color, name: name.clone() }));
+        self.seats.push(Seat::new(id, color, self.steps));
+        Ok(id)
+    }
+}
+
+impl Seat {
+    fn new(id: MemberId, color: PlayerColor, steps: u64) -> Self {
+        Self {
+            id,
+            color,
+            wants: VecDeque::new(),
+            next_want: 0,
+            talk: VecDeque::new(),
+            chat: Pace::new(4, steps),
+            emotes: Pace::new(1, steps),
+        }
+    }
+
+    fn act(&mut self, deed: Deed, steps: u64) -> Result<(), DeedRefusal> {
+        let pace = match deed {
+            Deed::Want { .. } => {
+                if self.wants.len() >= MOST_WANTS {
+                    self.wants.pop_back();
+                }
+                self.wants.push_back(deed);
+                return Ok(());
+            }
+            Deed::Say(_) => &mut self.chat,
+            Deed::Emote(_) | Deed::Again => &mut self.emotes,
+            Deed::Join { .. } | Deed::Leave => return Err(DeedRefusal::Impossible),
+        };
+        if !pace.allows(steps) {
+            return Err(DeedRefusal::TooOften);
+        }
+        self.talk.push_back(deed);
+        Ok(())
+    }
+}
+
+impl Pace {
+    /// One a second, and `burst` at once.
+    fn new(burst: u64, steps: u64) -> Self {
+        let most = burst * u64::from(STEPS_PER_SECOND);
+        Self { most, credit: most, counted: steps }
+    }
+
+    fn allows(&mut self, steps: u64) -> bool {
+        self.credit = (self.credit + steps - self.counted).min(self.most);
+        self.counted = steps;
+        let is_allowed = self.credit >= u64::from(STEPS_PER_SECOND);
+        self.credit -= if is_allowed { u64::from(STEPS_PER_SECOND) } else { 0 };
+        is_allowed
+    }
+}
+
+#[cfg(test)]
+mod tests;

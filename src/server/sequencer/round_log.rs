@@ -1,0 +1,128 @@
+//! Steps of a room from its log, and the script of a run that counts.
+
+use std::io;
+
+use super::inbox::Inbox;
+use crate::game::{self, Intents, LevelName, Outcome, Recorder, Rules, Stretch};
+use crate::server::room::{Deed, Entry, Log, MemberId, Mode, Room};
+
+/// The log of a room, from which it takes its steps.
+pub(crate) struct RoundLog {
+    log: Box<dyn Log>,
+    /// Whether a fault was reported, so that a full disk is reported once.
+    has_failed: bool,
+    run: Run,
+}
+
+/// A level that somebody has won alone.
+#[derive(Clone, Debug, PartialEq, Eq)]
+pub(crate) struct FinishedRun {
+    pub(crate) member: MemberId,
+    /// The script, which is still to be verified.
+    pub(crate) script: String,
+}
+
+/// What a step has changed.
+#[derive(Debug, Default)]
+pub(super) struct Changes {
+    /// The entries that the step has.
+    pub(super) entries: u64,
+    /// Whether a lobby would show the room otherwise.
+    pub(super) summary: bool,
+    pub(super) finished: Option<FinishedRun>,
+}
+
+/// What a member who plays alone has wanted in the round so far.
+#[derive(Debug, Default)]
+struct Run {
+    stretches: Vec<Stretch>,
+    is_finished: bool,
+}
+
+impl RoundLog {
+    /// Begins the log of the round that `room` is in.
+    pub(crate) fn new(log: Box<dyn Log>, room: &Room) -> Self {
+        let mut log = Self { log, has_failed: false, run: Run::default() };
+        log.begin(room);
+        log
+    }
+
+    /// Takes a step: what the members want becomes entries, the entries change the room, and the room
+    /// advances.
+    pub(super) fn step(&mut self, room: &mut Room, inbox: &Inbox) -> Changes {
+        let mut changes = Changes::default();
+        if room.is_over() {
+            room.begin_next();
+            self.begin(room);
+            changes.summary = true;
+        }
+        let step = room.step();
+        inbox.take(|member, deed| {
+            let result = self.log.append(Entry { step, member, deed });
+            self.report(result);
+        });
+        while let Some(entry) = self.log.next(step) {
+            changes.summary |= matches!(entry.deed, Deed::Join { .. } | Deed::Leave);
+            room.apply(&entry);
+            changes.entries += 1;
+        }
+        let phase = room.phase();
+        room.advance();
+        changes.summary |= phase != room.phase();
+        if room.header().mode == Mode::Alone {
+            changes.finished = self.run.step(room);
+        }
+        changes
+    }
+
+    fn begin(&mut self, room: &Room) {
+        self.run = Run::default();
+        let result = self.log.begin(room.header());
+        self.report(result);
+    }
+
+    /// Reports the first fault of the log: it is one of a recording, without which the room goes on.
+    fn report(&mut self, result: io::Result<()>) {
+        if let Err(error) = result
+            && !self.has_failed
+        {
+            self.has_failed = true;
+            tracing::error!(%error, "a recording of a room cannot be written");
+        }
+    }
+}
+
+impl Run {
+    /// Records the step that the room has taken; returns the run when it has reached the exit.
+    fn step(&mut self, room: &Room) -> Option<FinishedRun> {
+        let (member, player, intents) = room.first_member().filter(|_| !self.is_finished)?;
+        self.record(intents);
+        let outcome = room.game().seen_by(player)?.outcome();
+        self.is_finished = outcome == Outcome::Won;
+        self.is_finished.then(|| FinishedRun { member, script: self.script(room) })
+    }
+
+    fn record(&mut self, intents: Intents) {
+        match self.stretches.last_mut() {
+            Some(last) if last.intents == intents && last.steps < Stretch::MOST_STEPS => {
+                last.steps += 1;
+            }
+            _ => self.stretches.push(Stretch { steps: 1, intents }),
+        }
+    }
+
+    fn script(&self, room: &Room) -> String {
+        let header = room.header();
+        let rules =
+            Rules { difficulty: header.difficulty, seed: header.mode.game_seed(header.seed) };
+        let header = game::Header::of(LevelName::new(&header.level), rules);
+        let mut text = Vec::new();
+        let mut recorder = Recorder::with_header(&mut text, header);
+        for stretch in &self.stretches {
+            // Memory accepts every byte.
+            _ = recorder.record(stretch.intents, u64::from(stretch.steps));
+        }
+        drop(recorder);
+        String::from_utf8(text).unwrap_or_default()
+    }
+}

@@ -1,0 +1,248 @@
+//! The session of a visitor: what they see, and what their keys do.
+//!
+//! A session has no connection, no clock and no room. The driver passes it what arrives and when,
+//! takes bytes and [wishes](Ask) from it, brings it [news](News), and shows it the newest
+//! [snapshot](RoomView) of the room. The order of calls:
+//!
+//! - after each [`receive`](Session::receive), [`resize`](Session::resize), [`tell`](Session::tell) and
+//!   [`wake`](Session::wake): take [`asks`](Session::asks) and [`output`](Session::output);
+//! - when the outbox is empty and [`is_due`](Session::is_due): [`draw`](Session::draw), and take the output;
+//! - at [`wakes_at`](Session::wakes_at): [`wake`](Session::wake).
+//!
+//! A frame is drawn only while the terminal has answered the ones before and something on it has
+//! changed. So a session of a client that does not read keeps one frame, and a visitor who does
+//! nothing among others who do nothing costs no bytes.
+
+mod choice;
+mod draw;
+mod idle;
+mod keys;
+mod line_entry;
+mod look;
+mod menus;
+mod news;
+mod page;
+mod settings;
+mod shown_steps;
+mod stay;
+mod talk;
+#[cfg(test)]
+mod tests;
+mod visit;
+mod wants;
+
+use std::time::Duration;
+
+use self::look::Look;
+pub(crate) use self::news::{Ask, BoardRow, HostFacts, Identity, IdleLimits, News};
+use self::visit::Visit;
+use super::room::RoomView;
+use crate::terminal::{Event, Options, Protocol, WindowSize};
+
+/// The least time between two frames after a key: the answer to it is not delayed by the frame rate.
+const PROMPT: Duration = Duration::from_millis(16);
+
+/// The session of a visitor.
+pub(crate) struct Session {
+    protocol: Protocol,
+    visit: Visit,
+    ending: Ending,
+    /// The time of the last frame.
+    drawn_at: Option<Duration>,
+    /// Whether the next frame answers a key, and the step of the room that the key was pressed in.
+    answers_key: Option<u64>,
+    /// The step of the room in the last frame.
+    drawn_step: u64,
+    frame_time: Duration,
+}
+
+/// How far the session has ended.
+#[derive(Clone, Debug, PartialEq, Eq)]
+enum Ending {
+    /// It goes on.
+    Not,
+    /// The terminal is asked to answer all that was sent; then it shows this sentence.
+    Asked(String),
+    /// All is in the output.
+    Over,
+}
+
+impl Session {
+    /// A session with a terminal of which `options` are known.
+    pub(crate) fn new(
+        identity: Identity,
+        options: Options,
+        size: WindowSize,
+        host: HostFacts,
+        now: Duration,
+    ) -> Self {
+        let mut protocol = Protocol::new(options, size);
+        protocol.begin(now);
+        let look = Look::new(options.is_ascii, &identity.preferences);
+        let frame_time = host.frame_time;
+        let mut session = Self {
+            protocol,
+            visit: Visit::new(identity, host, look, now),
+            ending: Ending::Not,
+            drawn_at: None,
+            answers_key: None,
+            drawn_step: 0,
+            frame_time,
+        };
+        session.follow_terminal();
+        session
+    }
+
+    /// Interprets bytes from the terminal. They may be cut at any place.
+    pub(crate) fn receive(&mut self, bytes: &[u8], now: Duration) {
+        self.protocol.receive(bytes, now);
+        self.handle_events(now);
+    }
+
+    /// Records a new size of the window.
+    pub(crate) fn resize(&mut self, size: WindowSize, now: Duration) {
+        self.protocol.resize(size, now);
+        self.handle_events(now);
+    }
+
+    /// Records what the driver brings.
+    pub(crate) fn tell(&mut self, news: News, now: Duration) {
+        self.visit.advance(now);
+        self.visit.tell(news);
+        self.finish(now);
+    }
+
+    /// Does what is due at `now` without bytes and news.
+    pub(crate) fn wake(&mut self, now: Duration) {
+        self.protocol.wake(now);
+        self.handle_events(now);
+        self.visit.wake(now);
+        self.finish(now);
+    }
+
+    /// Whether the next frame answers a key.
+    pub(crate) fn has_key(&self) -> bool {
+        self.answers_key.is_some()
+    }
+
+    /// What the session wants since the last call.
+    pub(crate) fn asks(&mut self) -> Vec<Ask> {
+        std::mem::take(&mut self.visit.asks)
+    }
+
+    /// Whether to [`draw`](Self::draw) now, with `room` as the newest snapshot.
+    pub(crate) fn is_due(&self, room: Option<&RoomView>, now: Duration) -> bool {
+        self.due_at(room, now).is_some_and(|due| due <= now)
+    }
+
+    /// Adds a frame to the output.
+    pub(crate) fn draw(&mut self, room: Option<&RoomView>, now: Duration) {
+        if self.visit.is_stale(room) {
+            self.draw_anew(room, now);
+        } else {
+            self.protocol.refine();
+        }
+        self.protocol.output(now);
+        if let (Some(stay), Some(room)) = (&mut self.visit.stay, room) {
+            stay.frames.drawn(self.protocol.frames_sent(), room.game.steps());
+        }
+        self.drawn_at = Some(now);
+    }
+
+    fn draw_anew(&mut self, room: Option<&RoomView>, now: Duration) {
+        let Self { protocol, visit, .. } = self;
+        if let (Some(stay), Some(room)) = (&mut visit.stay, room) {
+            stay.look_at(room, now);
+        }
+        protocol.draw(|screen| visit.draw(screen, room));
+        visit.is_stale = false;
+        if let (Some(stay), Some(room)) = (&mut visit.stay, room) {
+            stay.drawn(room, visit.look.field_of_view);
+            self.drawn_step = room.step;
+        }
+        self.answers_key = self.answers_key.filter(|&pressed| pressed == self.drawn_step);
+    }
+
+    /// The bytes to send. The driver takes all of them.
+    pub(crate) fn output(&mut self, now: Duration) -> &mut Vec<u8> {
+        self.protocol.output(now)
+    }
+
+    /// Records that all bytes so far have left.
+    pub(crate) fn written(&mut self, now: Duration) {
+        self.protocol.written(now);
+    }
+
+    /// The time at which to [`wake`](Self::wake) the session and to ask again whether a frame
+    /// [is due](Self::is_due), if nothing happens before; `None` for never.
+    pub(crate) fn wakes_at(&self, room: Option<&RoomView>, now: Duration) -> Option<Duration> {
+        let visit = self.visit.wakes_at().filter(|_| self.ending == Ending::Not);
+        self.due_at(room, now).into_iter().chain(visit).chain(self.protocol.wakes_at()).min()
+    }
+
+    /// Sets the least time between two frames.
+    pub(crate) fn set_frame_time(&mut self, frame_time: Duration) {
+        self.frame_time = frame_time;
+    }
+
+    /// Whether the session has ended, and the connection may be closed after the output is sent.
+    pub(crate) fn is_over(&self) -> bool {
+        self.ending == Ending::Over
+    }
+
+    /// The time of the next frame; `None` if nothing has changed or the terminal is not ready.
+    fn due_at(&self, room: Option<&RoomView>, now: Duration) -> Option<Duration> {
+        if self.ending != Ending::Not || !self.protocol.is_ready(now) {
+            return None;
+        }
+        let is_stale = self.visit.is_stale(room);
+        if !is_stale && self.protocol.is_settled() {
+            return None;
+        }
+        let answers = |pressed| room.is_none_or(|room| room.step != pressed) || self.visit.is_stale;
+        let is_prompt = is_stale && self.answers_key.is_some_and(answers);
+        let wait = if is_prompt { PROMPT.min(self.frame_time) } else { self.frame_time };
+        Some(self.drawn_at.map_or(now, |drawn| (drawn + wait).max(now)))
+    }
+
+    /// Handles the events of the terminal.
+    fn handle_events(&mut self, now: Duration) {
+        self.visit.answered = self.protocol.frames_answered();
+        while let Some(event) = self.protocol.next_event() {
+            match event {
+                Event::Key(_) => self.answers_key = Some(self.drawn_step),
+                Event::Resized | Event::ColorDepth(_) => self.follow_terminal(),
+                _ => {}
+            }
+            self.visit.event(event, now);
+        }
+        self.finish(now);
+    }
+
+    /// Takes over what is known of the terminal.
+    fn follow_terminal(&mut self) {
+        let Self { protocol, visit, .. } = self;
+        visit.look.follow_terminal(protocol, &visit.identity.preferences);
+        visit.detection.depth = visit.look.depth;
+        visit.detection.source = Some(protocol.color_source());
+    }
+
+    /// Ends the session if it should, and gives the screen back once the terminal has answered all
+    /// that it was asked.
+    fn finish(&mut self, now: Duration) {
+        if self.ending == Ending::Not
+            && let Some(sentence) = self.visit.farewell.take()
+        {
+            self.protocol.end(now);
+            self.ending = Ending::Asked(sentence);
+        }
+        if let Ending::Asked(sentence) = &self.ending
+            && self.protocol.has_ended(now)
+        {
+            let sentence = format!("{sentence}\r\n");
+            self.protocol.finish();
+            self.protocol.output(now).extend_from_slice(sentence.as_bytes());
+            self.ending = Ending::Over;
+        }
+    }
+}

@@ -1,0 +1,152 @@
+//! Drawing: what a visitor sees.
+
+mod members;
+mod overhead;
+mod room_status;
+mod said;
+
+use ratatui::layout::Rect;
+use ratatui::style::{Color, Modifier, Style};
+use ratatui::text::{Line, Text};
+use ratatui::widgets::Block;
+
+use super::page::Page;
+use super::stay::{Stay, seconds_left};
+use super::visit::Visit;
+use crate::app::parts::{
+    DrawOptions, Menu, Overlay, draw_banner, hint, is_too_small, leaving, message,
+    picture_and_status, too_small, whole_seconds,
+};
+use crate::canvas::Canvas;
+use crate::color::palette::ColorDepth;
+use crate::server::room::{Phase, RoomView};
+
+/// The least rows of a picture with a banner above a menu.
+const LEAST_WITH_BANNER: u16 = 20;
+
+impl Visit {
+    /// Draws the page, with `room` as the newest snapshot.
+    pub(super) fn draw(&mut self, canvas: &mut impl Canvas, room: Option<&RoomView>) {
+        let area = canvas.bounds();
+        if is_too_small(area) {
+            return too_small(canvas);
+        }
+        let [picture, status] = picture_and_status(area);
+        match (self.stay.is_some(), room) {
+            (true, Some(room)) => {
+                self.draw_room(canvas, picture, room);
+                self.draw_room_status(canvas, status, room);
+                self.draw_panel(canvas, picture);
+            }
+            _ => self.draw_lobby(canvas, picture, status),
+        }
+        if self.idle.is_warned() {
+            let effect = if self.stay.is_some() { "leave the room" } else { "end this session" };
+            notice(canvas, picture, &format!("Still there? Press a key, or soon you {effect}."));
+        }
+    }
+
+    fn draw_lobby(&mut self, canvas: &mut impl Canvas, picture: Rect, status: Rect) {
+        let below = if picture.height >= LEAST_WITH_BANNER {
+            draw_banner(canvas, picture, self.look.glyphs, self.look.depth)
+        } else {
+            picture
+        };
+        let text = match self.page {
+            Page::Name => "type a name, Enter takes it",
+            _ => "up and down, Enter, Esc",
+        };
+        canvas.draw_widget(hint(text), status);
+        self.draw_panel(canvas, below);
+    }
+
+    /// Draws what the page shows over the picture.
+    fn draw_panel(&mut self, canvas: &mut impl Canvas, area: Rect) {
+        match self.page {
+            Page::Name => self.draw_name(canvas, area),
+            Page::Help => {
+                self.help.draw(canvas, area, &self.bindings, self.help_notes().into_iter());
+            }
+            Page::Leaving => leaving(canvas, area, &self.bindings, "ends the session"),
+            Page::Room => {}
+            Page::Chat => self.draw_chat_entry(canvas, area),
+            _ => self.menu.draw(canvas, area),
+        }
+    }
+
+    fn draw_name(&self, canvas: &mut impl Canvas, area: Rect) {
+        let identity = &self.identity;
+        let about = match (identity.has_account, identity.is_named) {
+            (true, true) => "Welcome back. Your key is your account.",
+            (true, false) => "Your key is your account. Choose its name.",
+            (false, _) => "You are a guest. With a key, your results rank.",
+        };
+        let room = usize::from(area.width.saturating_sub(6));
+        let entry = self.entry.shown(room);
+        let note = self.note.clone().unwrap_or_else(|| about.to_owned());
+        let mut menu: Menu<()> = Menu::new("your name").line(note).entry(entry, ());
+        menu.draw(canvas, area);
+    }
+
+    /// What the help says of a room, and of the terminal.
+    fn help_notes(&self) -> Vec<String> {
+        let room = "In a room: Enter or / talks, 1 shows an emotion, ; hides chat, Tab tells who is \
+                    here. Who watches changes whom by Tab.";
+        [room.to_owned()].into_iter().chain(self.detection.lines()).collect()
+    }
+
+    fn draw_room(&mut self, canvas: &mut impl Canvas, area: Rect, room: &RoomView) {
+        let (look, page) = (self.look, self.page);
+        let preferences = self.identity.preferences;
+        let Some(stay) = &mut self.stay else { return };
+        let seen_through = stay.seen_through(room);
+        if seen_through.is_some_and(|(member, _)| member.is_blind) {
+            draw_darkness(canvas, area, room, look.depth);
+        } else {
+            let camera = stay.camera(room, look.field_of_view);
+            let flash = seen_through.and_then(|(_, player)| player.flash());
+            let flash = flash.map(|flash| (flash, camera.heading));
+            let options = DrawOptions { flash, ..look.options() };
+            let (game, seconds) = (&room.game, room.game.elapsed());
+            options.draw(game.world(), &camera, seconds, canvas, area, &mut stay.view);
+            if let Some((_, player)) = seen_through {
+                overhead::draw(canvas, area, room, &player, &options);
+                let overlay = Overlay::new(game, player.id(), &options, preferences);
+                if let Some(overlay) = overlay {
+                    let Stay { map, view, .. } = stay;
+                    overlay.draw_map(canvas, area, map, view);
+                    overlay.draw_hud(canvas, area, page == Page::Room);
+                }
+            }
+        }
+        if matches!(room.phase, Phase::Over { .. }) && matches!(page, Page::Room | Page::Chat) {
+            members::draw_standings(canvas, area, room, look.depth);
+        } else if stay.shows_members && page == Page::Room {
+            members::draw_members(canvas, area, room, &self.host.catalog, look.depth);
+        }
+        said::draw(canvas, area, stay.talk.shown(), page == Page::Chat, look.depth);
+        if let Some(draining) = &self.draining {
+            notice(canvas, area, draining);
+        }
+    }
+}
+
+/// Draws the darkness in which seekers wait.
+fn draw_darkness(canvas: &mut impl Canvas, area: Rect, room: &RoomView, depth: ColorDepth) {
+    let style = match depth {
+        ColorDepth::Mono => Style::new(),
+        _ => Style::new().bg(Color::Black).fg(Color::Gray),
+    };
+    canvas.draw_widget(Block::new().style(style), area);
+    let left = whole_seconds(seconds_left(room).unwrap_or(0) as f64);
+    let text = format!("The others hide.\nYou see again in {left}.");
+    message(canvas, area, "you seek", Text::from(text).centered());
+}
+
+/// Draws a sentence in the first row of the picture.
+fn notice(canvas: &mut impl Canvas, picture: Rect, text: &str) {
+    let line = Line::raw(format!(" {text} "));
+    let width = (line.width() as u16).min(picture.width);
+    let area = Rect { x: picture.x + (picture.width - width) / 2, width, height: 1, ..picture };
+    canvas.draw_widget(line.style(Style::new().add_modifier(Modifier::REVERSED)), area);
+}

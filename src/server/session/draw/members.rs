@@ -1,0 +1,94 @@
+//! Panels about the members: who is here, and how a round ended.
+
+use ratatui::layout::Rect;
+use ratatui::style::Style;
+use ratatui::text::{Line, Span, Text};
+use unicode_width::UnicodeWidthStr;
+
+use super::overhead::style;
+use super::seconds_left;
+use crate::app::parts::{message, time, whole_seconds};
+use crate::canvas::Canvas;
+use crate::color::palette::ColorDepth;
+use crate::game::STEP;
+use crate::server::room::{Catalog, MemberView, Mode, NAME_COLUMNS, Role, RoomView};
+
+/// Draws who is in the room, and their points.
+pub(super) fn draw_members(
+    canvas: &mut impl Canvas,
+    picture: Rect,
+    room: &RoomView,
+    catalog: &Catalog,
+    depth: ColorDepth,
+) {
+    let header = &room.header;
+    let place = Line::raw(format!("{}  points", catalog.title(&header.level))).right_aligned();
+    let members = room.members.iter().map(|member| {
+        let role = role(member, header.mode);
+        Line::from_iter([
+            name(member, depth),
+            Span::raw(format!(" {role:<6} {:>3}", member.points)),
+        ])
+    });
+    let lines: Vec<Line> = [place].into_iter().chain(members).collect();
+    let title = format!("{} {}/{}", header.mode.title(), room.members.len(), header.mode.most());
+    panel(canvas, picture, &title, lines);
+}
+
+/// Draws the standings of a round that is over.
+pub(super) fn draw_standings(
+    canvas: &mut impl Canvas,
+    picture: Rect,
+    room: &RoomView,
+    depth: ColorDepth,
+) {
+    let places = room.standings.iter().enumerate().filter_map(|(index, standing)| {
+        let member = room.member(standing.member)?;
+        let all = member.points.saturating_add(standing.points);
+        let place = Span::raw(format!("{}. ", index + 1));
+        let steps = time(standing.steps as f64 * STEP);
+        let gained = format!("+{}", standing.points);
+        let text = format!(" {steps:>7} {gained:>3} {all:>3}");
+        Some(Line::from_iter([place, name(member, depth), Span::raw(text)]))
+    });
+    let head = Line::raw(format!("{}   round  all", counted(room.header.mode))).right_aligned();
+    let next = whole_seconds(seconds_left(room).unwrap_or(0) as f64);
+    let next = Line::raw(format!("next round in {next}")).centered();
+    let lines: Vec<Line> = [head].into_iter().chain(places).chain([next]).collect();
+    panel(canvas, picture, "the round is over", lines);
+}
+
+/// Draws a panel with the first lines for which there is room.
+fn panel(canvas: &mut impl Canvas, picture: Rect, title: &str, mut lines: Vec<Line>) {
+    lines.truncate(usize::from(picture.height.saturating_sub(2)).max(1));
+    message(canvas, picture, title, Text::from(lines));
+}
+
+/// What the times of the standings are.
+const fn counted(mode: Mode) -> &'static str {
+    match mode {
+        Mode::Tag => "time as \"it\"",
+        Mode::Hide => "time hidden",
+        Mode::Race | Mode::Together | Mode::Alone | Mode::Roam => "time to the exit",
+    }
+}
+
+/// The name in the member's colour, in as many columns as the widest name.
+fn name(member: &MemberView, depth: ColorDepth) -> Span<'static> {
+    let blanks = NAME_COLUMNS.saturating_sub(member.name.as_str().width());
+    let style = match depth {
+        ColorDepth::Mono => Style::new(),
+        depth => style(member.color, depth),
+    };
+    Span::styled(format!("{}{:blanks$}", member.name, ""), style)
+}
+
+const fn role(member: &MemberView, mode: Mode) -> &'static str {
+    match (member.role, mode) {
+        (Role::Seeker, Mode::Tag) => "is it",
+        (Role::Seeker, _) => "seeks",
+        (Role::Done, _) => "is out",
+        (Role::Player, Mode::Hide) => "hides",
+        (Role::Player, _) => "",
+    }
+}

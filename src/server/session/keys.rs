@@ -1,0 +1,286 @@
+//! Events: the effect of each key on each page.
+//!
+//! As in a game at home, what is irreversible requires a certain press: a repetition never answers a
+//! question. A byte that may be the first repetition of a key counts if no other follows soon.
+
+use std::time::Duration;
+
+use super::page::Page;
+use super::visit::Visit;
+use super::{Ask, choice::Choice};
+use crate::app::parts::{Action, REPETITION, Selection, changes_by};
+use crate::game::Intent;
+use crate::server::line::Line;
+use crate::server::room::{CHAT_COLUMNS, Deed};
+use crate::server::session::line_entry::LineEntry;
+use crate::terminal::{Event, Key, KeyEvent, Phase, QuitReason};
+use crate::tui::Press;
+
+/// The step by which a key widens or narrows the view, in degrees.
+const VIEW_STEP: f64 = 6.0;
+
+/// A key that answers the question on the page if it does not repeat until that time.
+#[derive(Clone, Copy, Debug)]
+pub(super) struct Pending {
+    key: Key,
+    pub(super) until: Duration,
+}
+
+impl Visit {
+    /// Handles an event of the terminal.
+    pub(super) fn event(&mut self, event: Event, now: Duration) {
+        self.advance(now);
+        match event {
+            Event::Key(event) => self.key(event),
+            Event::FocusLost => self.release_keys(),
+            Event::KeyReleases(reported) => {
+                self.controls.held.set_reports_releases(reported);
+                self.detection.reports_releases = Some(reported);
+                self.is_stale = true;
+            }
+            Event::Resized | Event::ColorDepth(_) => self.is_stale = true,
+            Event::Quit(QuitReason::Interrupted) => {
+                self.idle.restart(now);
+                self.interrupted();
+            }
+            Event::Quit(_)
+            | Event::Mouse(_)
+            | Event::FocusGained
+            | Event::Ready
+            | Event::Suspend => {}
+        }
+    }
+
+    fn key(&mut self, event: KeyEvent) {
+        if event.phase != Phase::Release {
+            self.is_stale |= self.idle.restart(self.now);
+        }
+        if self.page.is_typed_in() && event.phase != Phase::Release {
+            return self.press_while_typing(event);
+        }
+        let event = self.bindings.resolve(event);
+        let context = self.key_context();
+        let press = self.controls.handle(event, self.now, &self.bindings, context);
+        if let Some(press) = press {
+            self.press(event.key, press);
+        }
+        self.want();
+    }
+
+    fn press(&mut self, key: Key, press: Press) {
+        self.pending = None;
+        match self.page {
+            Page::Help if self.help.scroll(key) => self.is_stale = true,
+            Page::Leaving => self.press_to_answer(key, press),
+            Page::Room => self.press_in_room(key, press),
+            page if page.has_menu() => self.press_in_menu(key, press),
+            _ => self.press_command(key, press),
+        }
+    }
+
+    /// Answers the question by a pending key that did not repeat.
+    pub(super) fn settle(&mut self) {
+        let now = self.now;
+        if let Some(Pending { key, .. }) = self.pending.take_if(|pending| pending.until <= now) {
+            self.answer(key);
+        }
+    }
+
+    /// Handles Ctrl-C. In a room and elsewhere, the first one asks and the second one leaves.
+    fn interrupted(&mut self) {
+        match self.page {
+            Page::Leaving | Page::RoomMenu => self.say_goodbye(),
+            _ if self.stay.is_some() => self.open(Page::RoomMenu),
+            _ => self.open(Page::Leaving),
+        }
+    }
+
+    fn say_goodbye(&mut self) {
+        self.farewell = Some("Goodbye.".to_owned());
+    }
+
+    fn press_while_typing(&mut self, event: KeyEvent) {
+        match (self.page, event.key) {
+            (Page::Name, Key::Escape) => self.open(Page::Leaving),
+            (_, Key::Escape) => self.show(Page::Room),
+            (_, Key::Enter) if event.phase == Phase::Press => self.submit(),
+            _ => self.is_stale |= self.entry.press(event),
+        }
+    }
+
+    /// Takes the line that was typed.
+    fn submit(&mut self) {
+        if self.page == Page::Chat {
+            if let Some(line) = self.entry.line() {
+                self.ask(Ask::Deed(Deed::Say(line)));
+            }
+            return self.show(Page::Room);
+        }
+        let name = self.entry.line();
+        if self.identity.is_named && name.as_ref() == Some(&self.identity.name) {
+            return self.enter_lobby();
+        }
+        if !std::mem::replace(&mut self.awaits_name, true) {
+            let name = name.as_ref().map_or("", Line::as_str).to_owned();
+            self.ask(Ask::Name(name));
+        }
+    }
+
+    fn press_in_menu(&mut self, key: Key, press: Press) {
+        if let Some(selection) = Selection::by(key, &self.bindings) {
+            self.menu.select(selection);
+            self.is_stale = true;
+        } else if let Some(forward) = changes_by(key, &self.bindings) {
+            self.change_value(forward);
+        } else if self.chooses(key) {
+            self.press_to_answer(key, press);
+        } else {
+            self.press_command(key, press);
+        }
+    }
+
+    fn chooses(&self, key: Key) -> bool {
+        let leaves = self.page == Page::RoomMenu && self.leaves(key);
+        match key {
+            Key::Enter | Key::Char(' ') => true,
+            Key::Char(digit) => leaves || self.menu.has_number(digit),
+            _ => false,
+        }
+    }
+
+    /// Whether `key` leaves, other than Escape, which goes back.
+    fn leaves(&self, key: Key) -> bool {
+        key != Key::Escape && self.bindings.action(key) == Some(Action::Leave)
+    }
+
+    fn change_value(&mut self, forward: bool) {
+        use super::settings::Preference;
+        match (self.page, self.menu.choice()) {
+            (Page::Settings, Some(Choice::Change(preference))) => {
+                self.change_preference(preference, forward);
+            }
+            (Page::Levels(mode), _) if !mode.has_guards() => {}
+            (Page::Levels(_) | Page::Board, _) => {
+                let selected = self.menu.selected();
+                self.change_preference(Preference::Difficulty, forward);
+                self.menu = self.menu_of(self.page).selecting(selected);
+                if self.page == Page::Board {
+                    self.ask_for_board();
+                    self.renew_menu();
+                }
+            }
+            _ => {}
+        }
+    }
+
+    fn press_to_answer(&mut self, key: Key, press: Press) {
+        match press {
+            Press::Fresh => self.answer(key),
+            Press::Unclear => self.pending = Some(Pending { key, until: self.now + REPETITION }),
+            Press::Repeat => {}
+        }
+    }
+
+    fn answer(&mut self, key: Key) {
+        match (self.page, key) {
+            (Page::Leaving, _) if key == Key::Enter || self.leaves(key) => self.say_goodbye(),
+            (Page::Leaving, _) => self.close(),
+            (Page::RoomMenu, _) if self.leaves(key) => {
+                self.menu.select_choice(Choice::LeaveRoom);
+                self.choose();
+            }
+            _ => {
+                if let Key::Char(digit) = key {
+                    self.menu.select_number(digit);
+                }
+                self.choose();
+            }
+        }
+    }
+
+    /// Handles the keys that do the same on every page with a menu, and on the help.
+    fn press_command(&mut self, key: Key, press: Press) {
+        if press == Press::Repeat {
+            return;
+        }
+        match self.bindings.action(key) {
+            Some(Action::ToggleHelp) if self.page == Page::Help => self.close(),
+            Some(Action::ToggleHelp) => self.open(Page::Help),
+            _ if matches!(key, Key::Escape | Key::Backspace) => self.go_back(),
+            Some(Action::Leave) if self.stay.is_some() => self.open(Page::RoomMenu),
+            Some(Action::Leave) => self.open(Page::Leaving),
+            _ => {}
+        }
+    }
+
+    fn go_back(&mut self) {
+        match self.page {
+            Page::Lobby => self.open(Page::Leaving),
+            Page::Entering => {}
+            _ => self.close(),
+        }
+    }
+
+    fn press_in_room(&mut self, key: Key, press: Press) {
+        let action = self.bindings.action(key);
+        match action {
+            Some(Action::WidenView) => return self.widen_view(VIEW_STEP),
+            Some(Action::NarrowView) => return self.widen_view(-VIEW_STEP),
+            _ if press == Press::Repeat => return,
+            _ => {}
+        }
+        let Some(stay) = &mut self.stay else { return };
+        let is_member = stay.member.is_some();
+        match key {
+            Key::Enter if stay.is_dead => return self.retry(),
+            Key::Enter | Key::Char('/') if is_member => {
+                self.entry = LineEntry::new(CHAT_COLUMNS);
+                return self.open(Page::Chat);
+            }
+            Key::Char('1') if is_member => return self.open(Page::Emotes),
+            Key::Char(';') => stay.talk.toggle(),
+            Key::Tab if is_member => stay.shows_members ^= true,
+            Key::Tab | Key::Right | Key::Down if !is_member => stay.watch_another(true),
+            Key::Left | Key::Up if !is_member => stay.watch_another(false),
+            _ => return self.command(action),
+        }
+        self.is_stale = true;
+    }
+
+    fn command(&mut self, action: Option<Action>) {
+        let Some(stay) = &mut self.stay else { return };
+        let toggles = &mut self.controls.toggles;
+        match action {
+            Some(Action::ToggleHelp) => self.open(Page::Help),
+            Some(Action::Leave | Action::TogglePause) => self.open(Page::RoomMenu),
+            Some(Action::ToggleMinimap) => stay.map.is_shown ^= true,
+            Some(Action::ChangeMap(change)) => stay.map.change(change),
+            Some(Action::ToggleDuck) => toggles.ducks ^= true,
+            Some(Action::ToggleRun) => toggles.runs ^= true,
+            Some(Action::ToggleWalkOn) => toggles.keeps_walking ^= true,
+            Some(Action::ToggleCrosshair) => {
+                self.change_preference(super::settings::Preference::Crosshair, true);
+            }
+            Some(Action::ToggleCompass) => {
+                self.change_preference(super::settings::Preference::Compass, true);
+            }
+            _ => return,
+        }
+        self.is_stale = true;
+    }
+
+    fn widen_view(&mut self, degrees: f64) {
+        self.look.widen(degrees);
+        self.is_stale = true;
+    }
+
+    /// Goes on after death: from the last checkpoint, or from the beginning.
+    fn retry(&mut self) {
+        let Some(stay) = &mut self.stay else { return };
+        if stay.dies_for_good {
+            return self.ask(Ask::Deed(Deed::Again));
+        }
+        stay.wants.want([Intent::Retry].into_iter().collect());
+        self.want();
+    }
+}

@@ -1,0 +1,70 @@
+//! How pictures are drawn on the visitor's terminal.
+
+use crate::app::parts::DrawOptions;
+use crate::color::palette::ColorDepth;
+use crate::render::Filter;
+use crate::store::Preferences;
+use crate::terminal::Protocol;
+use crate::tui::{CellAspect, GlyphMode};
+use crate::world::FieldOfView;
+
+/// How far a key widens or narrows the view, and its limits, in degrees.
+const NARROWEST_VIEW: f64 = 30.0;
+const WIDEST_VIEW: f64 = 120.0;
+
+/// How pictures are drawn.
+#[derive(Clone, Copy, Debug, Default)]
+pub(super) struct Look {
+    pub(super) glyphs: GlyphMode,
+    pub(super) depth: ColorDepth,
+    pub(super) field_of_view: FieldOfView,
+    cell_aspect: CellAspect,
+    /// What the terminal shows best.
+    terminal_depth: ColorDepth,
+    terminal_glyphs: GlyphMode,
+    marks_middle: bool,
+}
+
+impl Look {
+    /// For a terminal that shows only ASCII, or not, and a visitor with `preferences`.
+    pub(super) fn new(is_ascii: bool, preferences: &Preferences) -> Self {
+        let terminal_glyphs = if is_ascii { GlyphMode::Ascii } else { GlyphMode::Half };
+        let mut look = Self { terminal_glyphs, ..Self::default() };
+        look.follow(preferences);
+        look
+    }
+
+    /// Takes over what is known of the terminal.
+    pub(super) fn follow_terminal(&mut self, protocol: &Protocol, preferences: &Preferences) {
+        let aspect = protocol.size().cell_aspect.and_then(CellAspect::new);
+        self.cell_aspect = aspect.unwrap_or_default();
+        self.terminal_depth = protocol.color_depth();
+        self.follow(preferences);
+    }
+
+    /// Takes over what the visitor prefers.
+    pub(super) fn follow(&mut self, preferences: &Preferences) {
+        self.glyphs = preferences.glyphs.unwrap_or(self.terminal_glyphs);
+        self.depth = preferences.colors.unwrap_or(self.terminal_depth);
+        self.marks_middle = preferences.crosshair;
+    }
+
+    /// Widens the field of view.
+    pub(super) fn widen(&mut self, degrees: f64) {
+        let view = (self.field_of_view.degrees() + degrees).clamp(NARROWEST_VIEW, WIDEST_VIEW);
+        self.field_of_view = FieldOfView::from_degrees(view).unwrap_or(self.field_of_view);
+    }
+
+    /// The options of a picture without a flash.
+    pub(super) fn options(&self) -> DrawOptions {
+        DrawOptions {
+            glyphs: self.glyphs,
+            depth: self.depth,
+            cell_aspect: self.cell_aspect,
+            filter: Filter::default(),
+            field_of_view: self.field_of_view,
+            flash: None,
+            marks_middle: self.marks_middle,
+        }
+    }
+}

@@ -1,0 +1,115 @@
+//! What a session and its driver tell each other, and what a session knows from the beginning.
+
+use std::sync::Arc;
+use std::time::Duration;
+
+use crate::game::Rank;
+use crate::server::line::Line;
+use crate::server::room::{Catalog, Deed, MemberId};
+use crate::server::summary::{RoomId, RoomSummary, RoomWish};
+use crate::store::Preferences;
+use crate::world::Difficulty;
+
+/// Who the visitor is.
+#[derive(Clone, Debug, PartialEq)]
+pub(crate) struct Identity {
+    /// Whether they have an account, so that their results rank. Otherwise they are a guest.
+    pub(crate) has_account: bool,
+    /// The name of the account, or else a name that nobody has, to be offered.
+    pub(crate) name: Line,
+    /// Whether the account has that name already.
+    pub(crate) is_named: bool,
+    pub(crate) preferences: Preferences,
+}
+
+/// What a session knows of the host and of the connection.
+#[derive(Clone, Debug)]
+pub(crate) struct HostFacts {
+    /// The name of the host.
+    pub(crate) name: Line,
+    /// The message of the day.
+    pub(crate) message: Option<Line>,
+    /// Whether the connection compresses what is sent.
+    pub(crate) compresses: bool,
+    pub(crate) catalog: Arc<Catalog>,
+    pub(crate) idle: IdleLimits,
+    /// The least time between two frames, at first.
+    pub(crate) frame_time: Duration,
+}
+
+/// How long a visitor may press no key.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub(crate) struct IdleLimits {
+    /// As a member of a room; then they are in the lobby.
+    pub(crate) in_room: Duration,
+    /// Elsewhere; then the session ends.
+    pub(crate) elsewhere: Duration,
+    /// How long before that they are warned.
+    pub(crate) warning: Duration,
+}
+
+impl Default for IdleLimits {
+    /// Five minutes in a room, and a quarter of an hour elsewhere, with a warning a minute before.
+    fn default() -> Self {
+        let [in_room, elsewhere, warning] = [5, 15, 1].map(Duration::from_mins);
+        Self { in_room, elsewhere, warning }
+    }
+}
+
+/// What a session wants of its driver.
+#[derive(Clone, Debug, PartialEq)]
+pub(crate) enum Ask {
+    /// To have this name: [`News::Named`].
+    Name(String),
+    /// The rooms, now and whenever they change, until the session is in a room: [`News::Rooms`].
+    Rooms,
+    /// To be in a room, as a member or to watch: [`News::Entered`] or [`News::Refused`].
+    Enter { room: RoomId, watches: bool },
+    /// To be a member of a new room: [`News::Entered`] or [`News::Refused`].
+    Open(RoomWish),
+    /// To do something in the room: neither [`Deed::Join`] nor [`Deed::Leave`].
+    Deed(Deed),
+    /// To be in the room no more. Nothing is answered.
+    Leave,
+    /// A board: [`News::Board`].
+    Board { level: String, difficulty: Difficulty },
+    /// To keep the preferences. Nothing is answered.
+    Save(Preferences),
+}
+
+/// What the driver tells a session.
+#[derive(Clone, Debug, PartialEq)]
+pub(crate) enum News {
+    /// The visitor has this name, or a sentence why they cannot have it.
+    Named(Result<Line, String>),
+    /// The rooms.
+    Rooms(Arc<[RoomSummary]>),
+    /// The visitor is in a room; `None` if they watch.
+    Entered { room: RoomId, member: Option<MemberId> },
+    /// A sentence why they cannot be in the room.
+    Refused(String),
+    /// The visitor is in the room no more, and why: a sentence.
+    Left(String),
+    /// A board, the best first.
+    Board { level: String, difficulty: Difficulty, rows: Arc<[BoardRow]> },
+    /// What became of a result: a sentence.
+    Result(String),
+    /// A line from the host to all.
+    Said(Line),
+    /// The server ends in that many seconds.
+    Draining { seconds: u64 },
+    /// The session ends, and why: a sentence.
+    Ended(String),
+}
+
+/// An entry of a board.
+#[derive(Clone, Debug, PartialEq, Eq)]
+pub(crate) struct BoardRow {
+    pub(crate) name: Line,
+    /// The time of the fastest run, in steps.
+    pub(crate) steps: u64,
+    /// The highest rank.
+    pub(crate) rank: Rank,
+    /// Whether it is the visitor's own.
+    pub(crate) is_own: bool,
+}

@@ -1,0 +1,161 @@
+//! A visitor's stay in a room, as a member or to watch.
+
+use std::sync::Arc;
+use std::time::Duration;
+
+use super::shown_steps::ShownSteps;
+use super::talk::Talk;
+use super::wants::Wants;
+use crate::app::MapDisplay;
+use crate::app::parts::MapPanel;
+use crate::game::{Outcome, PlayerView};
+use crate::server::room::{Header, MemberId, MemberView, Mode, Phase, RoomView};
+use crate::server::summary::RoomId;
+use crate::tui::View;
+use crate::world::{Camera, FieldOfView};
+
+/// A stay in a room.
+pub(super) struct Stay {
+    pub(super) room: RoomId,
+    /// The visitor as a member; `None` if they watch.
+    pub(super) member: Option<MemberId>,
+    /// Whom they watch.
+    watched: Option<MemberId>,
+    pub(super) talk: Talk,
+    pub(super) wants: Wants,
+    pub(super) frames: ShownSteps,
+    pub(super) map: MapPanel,
+    pub(super) view: View,
+    pub(super) shows_members: bool,
+    /// Whether the player is in the air, and whether they are dead, in the last picture.
+    pub(super) is_airborne: bool,
+    pub(super) is_dead: bool,
+    /// Whether the dead begin the round again, in place of going on from a checkpoint.
+    pub(super) dies_for_good: bool,
+    /// The members in the last picture, to watch another one.
+    members: Vec<MemberId>,
+    /// What the last picture shows; `None` before the first one.
+    shown: Option<Shown>,
+}
+
+/// The part of a room that a picture depends on.
+#[derive(Debug)]
+struct Shown {
+    header: Arc<Header>,
+    revision: u64,
+    camera: Camera,
+    phase: Phase,
+    /// The seconds that the picture counts down.
+    seconds: Option<u64>,
+    members: Vec<MemberView>,
+    standings: usize,
+    /// The time in the game of the next change that nobody causes.
+    animates_at: Option<f64>,
+}
+
+impl Stay {
+    pub(super) fn new(room: RoomId, member: Option<MemberId>) -> Self {
+        Self {
+            room,
+            member,
+            watched: None,
+            talk: Talk::default(),
+            wants: Wants::default(),
+            frames: ShownSteps::default(),
+            map: MapPanel::new(MapDisplay::default()),
+            view: View::default(),
+            shows_members: false,
+            is_airborne: false,
+            is_dead: false,
+            dies_for_good: false,
+            members: Vec::new(),
+            shown: None,
+        }
+    }
+
+    /// Takes over what is new in `room` before it is drawn.
+    pub(super) fn look_at(&mut self, room: &RoomView, now: Duration) {
+        self.talk.hear(&room.said, now);
+        self.talk.forget_old(now);
+        if self.shown.as_ref().is_some_and(|shown| !Arc::ptr_eq(&shown.header, &room.header)) {
+            self.map.begin_level();
+            self.frames.forget();
+        }
+        self.members = room.members.iter().map(|member| member.id).collect();
+        if self.watched.is_none_or(|id| room.member(id).is_none()) {
+            self.watched = self.members.first().copied();
+        }
+        let player = self.seen_through(room);
+        self.is_airborne = player.is_some_and(|(_, player)| player.is_airborne());
+        let is_dead = |player: PlayerView| matches!(player.outcome(), Outcome::Dead { .. });
+        self.dies_for_good = room.game.company().is_some_and(|company| !company.respawns);
+        self.is_dead = self.member.is_some() && player.is_some_and(|(_, it)| is_dead(it));
+    }
+
+    /// The member through whose eyes the room is seen: the visitor, or whom they watch. `None` if
+    /// nobody is there.
+    pub(super) fn seen_through<'r>(
+        &self,
+        room: &'r RoomView,
+    ) -> Option<(&'r MemberView, PlayerView<'r>)> {
+        let own = self.member.and_then(|id| room.member(id));
+        let watched = self.watched.and_then(|id| room.member(id));
+        let candidates = own.into_iter().chain(watched).chain(&room.members);
+        candidates.filter_map(|it| Some((it, room.game.seen_by(it.player?)?))).next()
+    }
+
+    /// The camera of the picture.
+    pub(super) fn camera(&self, room: &RoomView, view: FieldOfView) -> Camera {
+        let start = || room.game.world().start_camera(view);
+        self.seen_through(room).map_or_else(start, |(_, player)| player.camera(view))
+    }
+
+    /// Watches the next member, or the one before.
+    pub(super) fn watch_another(&mut self, forward: bool) {
+        let count = self.members.len();
+        if count > 0 {
+            let index = self.members.iter().position(|&id| Some(id) == self.watched).unwrap_or(0);
+            let by = if forward { 1 } else { count - 1 };
+            self.watched = self.members.get((index + by) % count).copied();
+        }
+    }
+
+    /// Whether a picture of `room` would differ from the last one.
+    pub(super) fn differs_from(&self, room: &RoomView, view: FieldOfView) -> bool {
+        let Some(shown) = &self.shown else { return true };
+        let elapsed = room.game.elapsed();
+        shown.revision != room.game.revision()
+            || shown.camera != self.camera(room, view)
+            || std::mem::discriminant(&shown.phase) != std::mem::discriminant(&room.phase)
+            || shown.seconds != seconds_left(room)
+            || shown.members != room.members
+            || shown.standings != room.standings.len()
+            || self.talk.is_behind(&room.said)
+            || shown.animates_at.is_some_and(|time| time <= elapsed)
+            || !Arc::ptr_eq(&shown.header, &room.header)
+    }
+
+    /// Records that `room` was drawn.
+    pub(super) fn drawn(&mut self, room: &RoomView, view: FieldOfView) {
+        self.shown = Some(Shown {
+            header: Arc::clone(&room.header),
+            revision: room.game.revision(),
+            camera: self.camera(room, view),
+            phase: room.phase,
+            seconds: seconds_left(room),
+            members: room.members.clone(),
+            standings: room.standings.len(),
+            animates_at: self.view.next_change(),
+        });
+    }
+}
+
+/// The seconds until something that the picture counts down to; `None` if it counts nothing down.
+pub(super) fn seconds_left(room: &RoomView) -> Option<u64> {
+    let ends = match (room.phase, room.header.mode) {
+        (Phase::Countdown { ends } | Phase::Over { ends }, _) => ends,
+        (Phase::Playing { ends }, Mode::Tag | Mode::Hide) => ends,
+        _ => return None,
+    };
+    Some(ends.saturating_sub(room.step).div_ceil(60))
+}

@@ -1,0 +1,134 @@
+//! What is sent, and when: idle visitors, slow terminals, and windows of any size.
+
+use proptest::prelude::*;
+
+use super::*;
+
+#[test]
+fn who_does_nothing_among_others_who_do_nothing_costs_no_bytes() {
+    for speaks in [Speaks::Kitty, Speaks::Plain] {
+        let mut rig = Rig::new(Mode::Roam);
+        let visitors = [
+            rig.member("Mara", (80, 24), speaks),
+            rig.member("Jon", (80, 24), speaks),
+            rig.visitor("Lu", (80, 24), speaks),
+        ];
+        rig.pump(20_000);
+        let bytes = |rig: &Rig| visitors.map(|index| rig.visitors[index].bytes);
+        let before = bytes(&rig);
+        rig.pump(60_000);
+        assert_eq!(bytes(&rig), before);
+    }
+}
+
+#[test]
+fn a_terminal_that_does_not_answer_gets_no_second_frame() {
+    let mut rig = Rig::new(Mode::Roam);
+    let one = rig.member("Mara", (80, 24), Speaks::Kitty);
+    let other = rig.member("Jon", (80, 24), Speaks::Kitty);
+    rig.visitors[one].answers = false;
+    rig.pump(20_000);
+    let before = rig.visitors[one].bytes;
+    for _ in 0..60 {
+        rig.press(other, "\x1b[119;1:1u");
+        rig.press(other, "\x1b[119;1:3u\x1b[98;1:1u\x1b[98;1:3u");
+    }
+    // At most the frame and the request of whether it is still there.
+    let more = rig.visitors[one].bytes - before;
+    assert!(more < 6_000, "{more}");
+    let again = rig.visitors[one].bytes;
+    rig.pump(30_000);
+    assert_eq!(rig.visitors[one].bytes, again);
+}
+
+#[test]
+fn acts_tell_the_step_that_was_seen() {
+    for milliseconds in [0, 100, 200] {
+        let mut rig = Rig::new(Mode::Roam);
+        let one = rig.member("Mara", (80, 24), Speaks::Kitty);
+        let other = rig.member("Jon", (80, 24), Speaks::Kitty);
+        rig.visitors[one].latency = Duration::from_millis(milliseconds);
+        rig.send(other, "\x1b[97;1:1u");
+        rig.send(other, "\x1b[119;1:1u");
+        rig.send(one, "\x1b[119;1:1u");
+        rig.visitors[one].wants.clear();
+        rig.pump(1_500);
+        let lags: Vec<u64> = rig.visitors[one].wants.iter().map(|(seen, now)| now - seen).collect();
+        let expected = milliseconds * 60 / 1_000;
+        let late = lags.last().unwrap();
+        // Frames come every two or three steps, one after the other's answer at most.
+        assert!((expected..=2 * expected + 5).contains(late), "{milliseconds} ms: {lags:?}");
+    }
+}
+
+#[test]
+fn a_key_is_answered_before_the_next_regular_frame() {
+    let mut rig = Rig::new(Mode::Roam);
+    let one = rig.member("Mara", (80, 24), Speaks::Kitty);
+    let other = rig.member("Jon", (80, 24), Speaks::Kitty);
+    rig.visitors[one].session.set_frame_time(Duration::from_millis(200));
+    rig.send(other, "\x1b[119;1:1u");
+    rig.pump(400);
+    let before = rig.text(one);
+    rig.send(one, "\x1b[109;1:1u");
+    rig.pump(40);
+    assert_ne!(rig.text(one), before, "the map is hidden");
+}
+
+/// What a hostile or unlucky client may do.
+#[derive(Clone, Debug)]
+enum Event {
+    Bytes(Vec<u8>),
+    Resize(u16, u16),
+    Wait(u64),
+    Other,
+}
+
+fn events() -> impl Strategy<Value = Vec<Event>> {
+    let keys = prop::sample::select(vec![
+        "\r", "\x1b", "\t", "1", ";", "/", "w", "d", "p", "?", "\x1b[A", "\x1b[B", "x", " ", "m",
+    ]);
+    let size = prop_oneof![0_u16..4, 0_u16..30, 60_u16..260];
+    let event = prop_oneof![
+        6 => keys.prop_map(|key| Event::Bytes(key.as_bytes().to_vec())),
+        2 => prop::collection::vec(any::<u8>(), 0..40).prop_map(Event::Bytes),
+        3 => (size.clone(), size).prop_map(|(columns, rows)| Event::Resize(columns, rows)),
+        3 => (0_u64..1_000).prop_map(Event::Wait),
+        1 => Just(Event::Other),
+    ];
+    prop::collection::vec(event, 0..40)
+}
+
+proptest! {
+    #![proptest_config(ProptestConfig::with_cases(48))]
+
+    #[test]
+    fn nothing_that_arrives_is_a_fault_of_the_session(
+        events in events(),
+        mode in prop::sample::select(&Mode::ALL),
+    ) {
+        let mut rig = Rig::new(mode);
+        let one = rig.visitor("Mara", (80, 24), Speaks::Kitty);
+        let other = rig.member("Jon", (40, 12), Speaks::Kitty);
+        for _ in 0..3 {
+            rig.press(one, ENTER);
+        }
+        for event in events {
+            match event {
+                Event::Bytes(bytes) => {
+                    let now = rig.now;
+                    rig.visitors[one].session.receive(&bytes, now);
+                    rig.serve(one);
+                }
+                Event::Resize(columns, rows) => {
+                    let now = rig.now;
+                    rig.visitors[one].session.resize(WindowSize::of_cells(columns, rows), now);
+                    rig.visitors[one].emulator.resize(columns.max(1), rows.max(1));
+                }
+                Event::Wait(milliseconds) => rig.pump(milliseconds),
+                Event::Other => rig.press(other, "\x1b[119;1:1u"),
+            }
+        }
+        rig.pump(300);
+    }
+}

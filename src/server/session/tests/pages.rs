@@ -1,0 +1,151 @@
+//! The way from the name into a room, and back.
+
+use super::*;
+use crate::server::session::page::Page;
+
+#[test]
+fn enter_alone_leads_to_a_first_walk() {
+    let mut rig = Rig::new(Mode::Roam);
+    let one = rig.visitor("guest-amber-fox", (80, 24), Speaks::Kitty);
+    assert_eq!(rig.page(one), Page::Name);
+    for page in [Page::Lobby, Page::Card(super::choice::Target::Existing(ROOM)), Page::Room] {
+        rig.press(one, ENTER);
+        assert_eq!(rig.page(one), page, "{}", rig.text(one));
+    }
+    let before = rig.position(one);
+    rig.send(one, "\x1b[119;1:1u");
+    rig.pump(600);
+    assert!(rig.position(one).x > before.x + 1.0, "{:?}", rig.position(one));
+}
+
+#[test]
+fn a_name_is_typed_in_place_of_the_offer() {
+    let mut rig = Rig::new(Mode::Roam);
+    let one = rig.visitor("guest-amber-fox", (80, 24), Speaks::Plain);
+    rig.press(one, "\x1b]0;evil\x07\x1b[31mMara\x1b[2J\u{9b}31m\u{202e} v");
+    assert!(rig.text(one).contains("Mara31m v_"), "{}", rig.text(one));
+    assert_eq!(rig.visitors[one].emulator.title(), "");
+    rig.press(one, "\x7f\x7f\x7f\x7f\x7f\r");
+    assert_eq!(rig.visitors[one].session.visit.identity.name, line("Mara"));
+    assert_eq!(rig.page(one), Page::Lobby);
+}
+
+#[test]
+fn a_name_that_is_refused_is_typed_again() {
+    let mut rig = Rig::new(Mode::Roam);
+    let one = rig.visitor("g", (80, 24), Speaks::Plain);
+    rig.press(one, "\x7f\r");
+    assert!(rig.text(one).contains("Choose another name."), "{}", rig.text(one));
+    rig.press(one, "Jo\r");
+    assert_eq!(rig.page(one), Page::Lobby);
+}
+
+#[test]
+fn escape_goes_back_and_asks_before_it_leaves() {
+    let mut rig = Rig::new(Mode::Roam);
+    let one = rig.member("Mara", (80, 24), Speaks::Plain);
+    rig.press(one, ESCAPE);
+    assert_eq!(rig.page(one), Page::RoomMenu);
+    rig.press(one, ESCAPE);
+    assert_eq!(rig.page(one), Page::Room);
+    rig.press(one, "q");
+    rig.press(one, "q");
+    assert_eq!(rig.page(one), Page::Lobby);
+    assert_eq!(rig.room.len(), 0);
+    rig.press(one, ESCAPE);
+    assert_eq!(rig.page(one), Page::Leaving);
+    rig.press(one, "x");
+    assert_eq!(rig.page(one), Page::Lobby);
+    rig.press(one, "\x03");
+    rig.press(one, "\x03");
+    assert!(rig.visitors[one].session.is_over());
+    let modes = rig.visitors[one].emulator.modes();
+    assert_eq!(modes, emulator::Modes::default());
+    assert!(rig.text(one).contains("Goodbye."));
+}
+
+#[test]
+fn arrow_keys_put_nobody_out() {
+    for speaks in [Speaks::Plain, Speaks::Kitty] {
+        let mut rig = Rig::new(Mode::Roam);
+        let one = rig.visitor("Mara", (80, 24), speaks);
+        for _ in 0..4 {
+            for arrow in ["\x1b[A", "\x1b[B", "\x1b[C", "\x1b[D", "\x1bOA", "\x1bOB"] {
+                rig.press(one, arrow);
+            }
+            // Half an arrow, and the rest of it after a while.
+            rig.send(one, "\x1b");
+            rig.pump(20);
+            rig.press(one, "[A");
+            rig.press(one, "\x1b[H");
+            rig.press(one, ENTER);
+        }
+        assert_eq!(rig.page(one), Page::Chat, "{}", rig.text(one));
+    }
+}
+
+#[test]
+fn who_presses_no_key_is_warned_and_put_out() {
+    let mut rig = Rig::new(Mode::Roam);
+    let one = rig.member("Mara", (80, 24), Speaks::Kitty);
+    rig.pump(240_000);
+    assert!(rig.text(one).contains("Still there?"), "{}", rig.text(one));
+    rig.press(one, "\x1b[109;1:1u\x1b[109;1:3u");
+    assert!(!rig.text(one).contains("Still there?"));
+    rig.pump(300_000);
+    assert_eq!(rig.page(one), Page::Lobby);
+    assert!(rig.text(one).contains("You pressed no key for 5 minutes."), "{}", rig.text(one));
+    assert_eq!(rig.room.len(), 0);
+    rig.pump(14 * 60_000);
+    assert!(rig.text(one).contains("end this session"), "{}", rig.text(one));
+    rig.pump(60_000);
+    assert!(rig.visitors[one].session.is_over());
+}
+
+#[test]
+fn a_room_is_opened_and_watched() {
+    let mut rig = Rig::new(Mode::Roam);
+    let one = rig.visitor("Mara", (80, 24), Speaks::Plain);
+    rig.press(one, ENTER);
+    rig.press(one, "2");
+    assert_eq!(rig.page(one), Page::Modes, "{}", rig.text(one));
+    rig.press(one, "2");
+    assert_eq!(rig.page(one), Page::Levels(Mode::Tag));
+    rig.press(one, ENTER);
+    assert!(rig.text(one).contains("Touch another one"), "{}", rig.text(one));
+    rig.press(one, ENTER);
+    assert!(rig.text(one).contains("waiting for another one"), "{}", rig.text(one));
+    let other = rig.visitor("Jon", (80, 24), Speaks::Plain);
+    rig.press(other, ENTER);
+    rig.press(other, "3");
+    rig.press(other, ENTER);
+    rig.press(other, "2");
+    assert!(rig.text(other).contains("watching Mara"), "{}", rig.text(other));
+    assert_eq!(rig.room.len(), 1);
+    rig.press(other, "hello\r");
+    assert!(rig.room.view().said.iter().all(|said| said.text != "hello"));
+}
+
+#[test]
+fn boards_settings_and_help_lead_back() {
+    let mut rig = Rig::new(Mode::Roam);
+    let one = rig.visitor("Mara", (80, 24), Speaks::Plain);
+    rig.press(one, ENTER);
+    for (number, shown) in [
+        ("4", "left and right change"),
+        ("5", "board"),
+        ("6", "Difficulty"),
+        ("7", "walk back"),
+        ("8", "Enter ends the session"),
+    ] {
+        rig.press(one, number);
+        assert!(rig.text(one).contains(shown), "{number}: {}", rig.text(one));
+        rig.press(one, ESCAPE);
+        assert_eq!(rig.page(one), Page::Lobby, "{number}");
+    }
+    rig.press(one, "5\r");
+    assert_eq!(rig.page(one), Page::Board);
+    assert!(rig.text(one).contains("Nobody has won it yet."), "{}", rig.text(one));
+    rig.press(one, "\x1b[C");
+    assert!(rig.text(one).contains("On hard"), "{}", rig.text(one));
+}

@@ -1,0 +1,285 @@
+//! The state of a visitor's session, without their terminal.
+
+use std::sync::Arc;
+use std::time::Duration;
+
+use super::choice::Choice;
+use super::idle::{Idle, Patience};
+use super::keys::Pending;
+use super::line_entry::LineEntry;
+use super::look::Look;
+use super::news::{Ask, BoardRow, HostFacts, Identity, News};
+use super::page::{Page, Shelved};
+use super::stay::Stay;
+use crate::app::Bindings;
+use crate::app::parts::{Clock, Controls, Detection, HelpScroll, KeyContext, Menu, StatusLine};
+use crate::game::Intents;
+use crate::server::line::Line;
+use crate::server::room::{Deed, NAME_COLUMNS, RoomView};
+use crate::server::summary::{RoomId, RoomSummary};
+
+/// The most wishes that wait for the driver. Further ones are left out: they come from a paste.
+const MOST_ASKS: usize = 64;
+
+/// The state of a session.
+pub(super) struct Visit {
+    pub(super) identity: Identity,
+    pub(super) host: HostFacts,
+    pub(super) asks: Vec<Ask>,
+    pub(super) bindings: Bindings,
+    pub(super) controls: Controls,
+    pub(super) clock: Clock,
+    pub(super) look: Look,
+    pub(super) detection: Detection,
+    pub(super) page: Page,
+    pub(super) menu: Menu<Choice>,
+    /// The pages to return to, the next one last.
+    pub(super) behind: Vec<Shelved>,
+    pub(super) entry: LineEntry,
+    /// Whether the driver is asked about the name.
+    pub(super) awaits_name: bool,
+    pub(super) help: HelpScroll,
+    pub(super) pending: Option<Pending>,
+    /// A sentence about what happened last.
+    pub(super) note: Option<String>,
+    /// That the server ends.
+    pub(super) draining: Option<String>,
+    pub(super) rooms: Arc<[RoomSummary]>,
+    pub(super) board: Board,
+    /// The room that the visitor is in.
+    pub(super) stay: Option<Stay>,
+    pub(super) status: StatusLine,
+    pub(super) idle: Idle,
+    /// The number of frames that the terminal has answered.
+    pub(super) answered: u64,
+    /// The time of the last event.
+    pub(super) now: Duration,
+    /// Whether the screen must be drawn again, whatever the room does.
+    pub(super) is_stale: bool,
+    /// Why the session ends, if it does.
+    pub(super) farewell: Option<String>,
+}
+
+/// The board that is shown.
+#[derive(Clone, Debug, Default)]
+pub(super) struct Board {
+    /// The index of the level in the catalog.
+    pub(super) level: usize,
+    /// The entries; `None` before they are known.
+    pub(super) rows: Option<Arc<[BoardRow]>>,
+}
+
+impl Visit {
+    pub(super) fn new(identity: Identity, host: HostFacts, look: Look, now: Duration) -> Self {
+        let mut idle = Idle::default();
+        idle.restart(now);
+        let mut clock = Clock::default();
+        clock.skip_to(now);
+        Self {
+            entry: LineEntry::offering(&identity.name, NAME_COLUMNS),
+            identity,
+            host,
+            asks: Vec::new(),
+            bindings: Bindings::default(),
+            controls: Controls::default(),
+            clock,
+            look,
+            detection: Detection::default(),
+            page: Page::Name,
+            menu: Menu::new(""),
+            behind: Vec::new(),
+            awaits_name: false,
+            help: HelpScroll::default(),
+            pending: None,
+            note: None,
+            draining: None,
+            rooms: Arc::from([]),
+            board: Board::default(),
+            stay: None,
+            status: StatusLine::default(),
+            idle,
+            answered: 0,
+            now,
+            is_stale: true,
+            farewell: None,
+        }
+    }
+
+    /// Wants something of the driver.
+    pub(super) fn ask(&mut self, ask: Ask) {
+        if self.asks.len() < MOST_ASKS {
+            self.asks.push(ask);
+        }
+    }
+
+    /// The room with that number, if it is listed.
+    pub(super) fn room(&self, id: RoomId) -> Option<&RoomSummary> {
+        self.rooms.iter().find(|room| room.id == id)
+    }
+
+    /// Whether a picture would differ from the one that is shown.
+    pub(super) fn is_stale(&self, room: Option<&RoomView>) -> bool {
+        let differs =
+            |stay: &Stay| room.is_some_and(|room| stay.differs_from(room, self.look.field_of_view));
+        self.is_stale || self.stay.as_ref().is_some_and(differs)
+    }
+
+    /// Does what is due at `now`.
+    pub(super) fn wake(&mut self, now: Duration) {
+        self.advance(now);
+        self.settle();
+        if let Some(stay) = &mut self.stay {
+            self.is_stale |= stay.talk.forget_old(now);
+        }
+        match self.idle.step(&self.host.idle, self.idle_limit(), now) {
+            None => {}
+            Some(Patience::Warns) => self.is_stale = true,
+            Some(Patience::Ends) => self.put_out(),
+        }
+    }
+
+    /// The time at which to wake again.
+    pub(super) fn wakes_at(&self) -> Option<Duration> {
+        let held = &self.controls.held;
+        let tap = self.is_playing() && held.has_taps();
+        let stay = self.stay.as_ref();
+        let times = [
+            Some(self.idle.next_at(&self.host.idle, self.idle_limit())),
+            self.pending.map(|pending| pending.until),
+            held.next_expiry(),
+            tap.then(|| self.clock.step_after(0)),
+            stay.and_then(|stay| stay.talk.next_end()),
+            stay.and_then(|stay| stay.wants.next_at()),
+        ];
+        times.into_iter().flatten().min()
+    }
+
+    /// Counts the steps up to `now`, and tells the room what the visitor wants in them.
+    pub(super) fn advance(&mut self, now: Duration) {
+        self.now = now;
+        let context = self.key_context();
+        for _ in 0..self.clock.steps_until(now).min(Clock::MOST_STEPS) {
+            self.controls.advance(now, context);
+            self.want();
+            self.controls.held.step();
+        }
+        self.controls.advance(now, context);
+        self.want();
+    }
+
+    /// Tells the room what the held keys want.
+    pub(super) fn want(&mut self) {
+        let intents = match self.is_playing() {
+            true => self.controls.intents(&self.bindings, self.key_context()),
+            false => Intents::new(),
+        };
+        let Some(stay) = self.stay.as_mut().filter(|stay| stay.member.is_some()) else { return };
+        stay.wants.want(intents);
+        if let Some(intents) = stay.wants.take(self.now) {
+            let seen = stay.frames.seen(self.answered);
+            self.ask(Ask::Deed(Deed::Want { seen, intents }));
+        }
+    }
+
+    /// Whether keys walk.
+    fn is_playing(&self) -> bool {
+        self.page == Page::Room && self.stay.as_ref().is_some_and(|stay| stay.member.is_some())
+    }
+
+    pub(super) fn key_context(&self) -> KeyContext {
+        let is_airborne = self.stay.as_ref().is_some_and(|stay| stay.is_airborne);
+        KeyContext { plays: self.is_playing(), is_airborne, flies: false }
+    }
+
+    /// Releases all keys, as if nobody touched the keyboard.
+    pub(super) fn release_keys(&mut self) {
+        self.controls.held.release_all();
+        self.controls.toggles.keeps_walking = false;
+        self.want();
+    }
+
+    fn idle_limit(&self) -> Duration {
+        match &self.stay {
+            Some(stay) if stay.member.is_some() => self.host.idle.in_room,
+            _ => self.host.idle.elsewhere,
+        }
+    }
+
+    /// Puts out a visitor who has pressed no key for too long.
+    fn put_out(&mut self) {
+        let minutes = self.idle_limit().as_secs().div_ceil(60);
+        self.idle.restart(self.now);
+        let sentence = format!("You pressed no key for {minutes} minutes.");
+        if self.stay.as_ref().is_some_and(|stay| stay.member.is_some()) {
+            self.ask(Ask::Leave);
+            self.leave_room(Some(sentence));
+        } else {
+            self.farewell = Some(sentence);
+        }
+    }
+
+    /// Records what the driver brings.
+    pub(super) fn tell(&mut self, news: News) {
+        self.is_stale = true;
+        match news {
+            News::Named(answer) => self.named(answer),
+            News::Rooms(rooms) => {
+                self.rooms = rooms;
+                if self.stay.is_none() {
+                    self.renew_menu();
+                }
+            }
+            News::Entered { room, member } => {
+                self.note = None;
+                self.stay = Some(Stay::new(room, member));
+                self.clock.skip_to(self.now);
+                self.show(Page::Room);
+            }
+            News::Refused(sentence) | News::Left(sentence) => self.leave_room(Some(sentence)),
+            News::Board { level, difficulty, rows } => {
+                let asked = self.host.catalog.names().get(self.board.level);
+                let is_asked = self.identity.preferences.difficulty == difficulty;
+                if asked == Some(&level) && is_asked {
+                    self.board.rows = Some(rows);
+                    self.renew_menu();
+                }
+            }
+            News::Result(sentence) => self.hear(sentence),
+            News::Said(line) => self.hear(format!("{}: {line}", self.host.name)),
+            News::Draining { seconds } => {
+                self.draining = Some(format!("The server ends in {seconds} seconds."));
+                self.renew_menu();
+            }
+            News::Ended(sentence) => self.farewell = Some(sentence),
+        }
+    }
+
+    fn named(&mut self, answer: Result<Line, String>) {
+        self.awaits_name = false;
+        match answer {
+            Ok(name) => {
+                self.identity.name = name;
+                self.identity.is_named = true;
+                self.enter_lobby();
+            }
+            Err(sentence) => self.note = Some(sentence),
+        }
+    }
+
+    /// Shows the lobby for the first time.
+    pub(super) fn enter_lobby(&mut self) {
+        self.note = None;
+        self.ask(Ask::Rooms);
+        self.show(Page::Lobby);
+    }
+
+    fn hear(&mut self, sentence: String) {
+        match &mut self.stay {
+            Some(stay) => stay.talk.hear_host(sentence, self.now),
+            None => {
+                self.note = Some(sentence);
+                self.renew_menu();
+            }
+        }
+    }
+}

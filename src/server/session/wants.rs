@@ -1,0 +1,106 @@
+//! What a member wants, on its way into the log of the room.
+//!
+//! An intent is sent when it changes, at most 30 times a second, and none is left out: a tap may
+//! begin and end between two of those times. In rooms where touches are judged by what the member
+//! saw, what they want is also sent again while they move, since it tells the room what they saw.
+
+use std::collections::VecDeque;
+use std::time::Duration;
+
+use crate::game::Intents;
+
+/// The least time between two changes that are sent: two steps, so that each takes effect in a step
+/// of its own.
+const LEAST: Duration = Duration::from_millis(34);
+/// The time after which a member who moves tells again what they saw.
+const RENEWED: Duration = Duration::from_millis(250);
+/// The most changes that wait. If more do, all but the newest are left out.
+const MOST: usize = 8;
+
+/// The intents of a member.
+#[derive(Clone, Debug, Default)]
+pub(super) struct Wants {
+    sent: Intents,
+    sent_at: Option<Duration>,
+    waiting: VecDeque<Intents>,
+}
+
+impl Wants {
+    /// Records what the member wants from now on.
+    pub(super) fn want(&mut self, intents: Intents) {
+        if *self.waiting.back().unwrap_or(&self.sent) == intents {
+            return;
+        }
+        if self.waiting.len() >= MOST {
+            self.waiting.clear();
+        }
+        self.waiting.push_back(intents);
+    }
+
+    /// What is to be sent at `now`, if something is.
+    pub(super) fn take(&mut self, now: Duration) -> Option<Intents> {
+        if self.next_at().is_none_or(|due| due > now) {
+            return None;
+        }
+        self.sent = self.waiting.pop_front().unwrap_or(self.sent);
+        self.sent_at = Some(now);
+        Some(self.sent)
+    }
+
+    /// The time of the next [`take`](Self::take) that gives something; `None` for never.
+    pub(super) fn next_at(&self) -> Option<Duration> {
+        let after = |time| self.sent_at.map_or(Duration::ZERO, |sent| sent + time);
+        match (self.waiting.is_empty(), self.sent.is_empty()) {
+            (false, _) => Some(after(LEAST)),
+            (true, false) => Some(after(RENEWED)),
+            (true, true) => None,
+        }
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::game::Intent;
+
+    fn at(milliseconds: u64) -> Duration {
+        Duration::from_millis(milliseconds)
+    }
+
+    #[test]
+    fn a_tap_begins_and_ends_in_steps_of_their_own() {
+        let mut wants = Wants::default();
+        assert_eq!(wants.next_at(), None);
+        let strike: Intents = [Intent::Strike].into_iter().collect();
+        wants.want(strike);
+        assert_eq!(wants.take(at(5)), Some(strike));
+        wants.want(Intents::new());
+        assert_eq!(wants.take(at(22)), None);
+        assert_eq!(wants.next_at(), Some(at(39)));
+        assert_eq!(wants.take(at(39)), Some(Intents::new()));
+        assert_eq!(wants.next_at(), None);
+    }
+
+    #[test]
+    fn who_moves_tells_again_what_they_saw() {
+        let mut wants = Wants::default();
+        let forward: Intents = [Intent::Forward].into_iter().collect();
+        wants.want(forward);
+        wants.take(at(0));
+        wants.want(forward);
+        assert_eq!(wants.take(at(249)), None);
+        assert_eq!(wants.take(at(250)), Some(forward));
+    }
+
+    #[test]
+    fn only_some_changes_wait() {
+        let mut wants = Wants::default();
+        let forward: Intents = [Intent::Forward].into_iter().collect();
+        for change in 0..1000 {
+            wants.want(if change % 2 == 0 { forward } else { Intents::new() });
+        }
+        assert!(wants.waiting.len() <= MOST);
+        let last = (0..20).filter_map(|step| wants.take(at(50 * step))).last();
+        assert_eq!(last, Some(Intents::new()));
+    }
+}

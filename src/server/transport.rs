@@ -1,0 +1,232 @@
+//! From sockets to visitors.
+
+mod client;
+mod connection;
+mod handler;
+mod hello;
+mod inbound;
+mod key_data;
+mod outbox;
+mod visitor;
+mod wire;
+
+use std::future::Future;
+use std::io;
+use std::net::SocketAddr;
+use std::sync::Arc;
+use std::sync::atomic::{AtomicU64, AtomicUsize, Ordering};
+use std::time::Duration;
+
+use tokio::net::{TcpListener, TcpSocket};
+use tokio::sync::watch;
+use tokio::task::JoinSet;
+use tokio::time::{sleep, timeout};
+
+use super::logging::{Throttle, events};
+use super::{Config, HostKey, LiveConfig, Refusal, VisitId, locked};
+use crate::rng::SplitMix64;
+use connection::Shared;
+pub use inbound::{Arrival, Inbound};
+pub use key_data::KeyData;
+pub use outbox::Outbox;
+pub use visitor::Visitor;
+
+/// What serves visitors: the sessions above the transport.
+pub trait Host: Send + Sync + 'static {
+    /// Serves `visitor` until they leave, or until `link` has ended.
+    ///
+    /// The future is dropped five seconds after the link has ended.
+    fn serve(&self, visitor: Visitor, link: Link) -> impl Future<Output = Departure> + Send;
+}
+
+/// Both directions of a visitor's channel.
+#[derive(Debug)]
+pub struct Link {
+    /// What the visitor sends.
+    pub inbound: Inbound,
+    /// The frame on its way to the visitor.
+    pub outbox: Outbox,
+}
+
+/// The end of a session.
+#[derive(Clone, Debug, Default, PartialEq, Eq)]
+pub struct Departure {
+    /// The exit status that the visitor's `ssh` ends with.
+    pub status: u8,
+}
+
+/// Counts of connections, for metrics and tests.
+#[derive(Debug, Default)]
+pub struct Counters {
+    /// Connections that are open.
+    pub connections: AtomicUsize,
+    /// Visitors whose session runs.
+    pub sessions: AtomicUsize,
+    /// Connections that were accepted so far.
+    pub accepted: AtomicU64,
+    /// Connections that were refused so far.
+    pub refused: AtomicU64,
+    /// Bytes of frames that wait for clients.
+    pub held: AtomicUsize,
+    /// Frames that were sent so far.
+    pub frames: AtomicU64,
+    /// Their bytes, before compression and encryption.
+    pub frame_bytes: AtomicU64,
+    /// Those of `refused` and those with a key too often, by reason.
+    refusals: [AtomicU64; Refusal::ALL.len()],
+}
+
+/// A server that listens.
+#[derive(Debug)]
+pub struct Server {
+    listener: TcpListener,
+    config: LiveConfig,
+    key: HostKey,
+    counters: Arc<Counters>,
+}
+
+/// What the connections of a server may do.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+enum Phase {
+    Open,
+    /// Sessions are told to end.
+    Draining,
+    /// Connections are closed.
+    Closing,
+}
+
+/// The pause after a failed `accept`, as when the process has no file descriptors left.
+const ACCEPT_PAUSE: Duration = Duration::from_millis(100);
+/// In bytes: of a socket, for what the client's system has not acknowledged. That is 640 KB a second on
+/// a link with a round trip of 0.2 s.
+const SEND_BUFFER: u32 = 128 << 10;
+/// The connections that wait to be accepted.
+const BACKLOG: u32 = 1024;
+/// The time in which closed connections end.
+const CLOSING: Duration = Duration::from_secs(2);
+
+impl Counters {
+    /// The connections that were refused for `reason` so far.
+    pub fn refused_for(&self, reason: Refusal) -> u64 {
+        self.refusals[reason as usize].load(Ordering::Relaxed)
+    }
+
+    pub(super) fn refuse(&self, reason: Refusal) {
+        self.refusals[reason as usize].fetch_add(1, Ordering::Relaxed);
+    }
+}
+
+impl Server {
+    /// Listens at the address of `config`.
+    ///
+    /// # Errors
+    /// The address can't be listened at.
+    pub async fn bind(config: Config, key: HostKey) -> io::Result<Self> {
+        let listener = listen(config.listen)?;
+        Ok(Self { listener, config: LiveConfig::new(config), key, counters: Arc::default() })
+    }
+
+    /// The address that it listens at.
+    ///
+    /// # Errors
+    /// The system does not tell.
+    pub fn address(&self) -> io::Result<SocketAddr> {
+        self.listener.local_addr()
+    }
+
+    /// Its configuration, which can be replaced while it runs.
+    pub fn config(&self) -> LiveConfig {
+        self.config.clone()
+    }
+
+    /// The counts of its connections.
+    pub fn counters(&self) -> Arc<Counters> {
+        self.counters.clone()
+    }
+
+    /// Serves visitors until `stop` is ready. Then it accepts no more, tells each session that the
+    /// server drains, waits for them as long as the configuration says, and closes what is left.
+    pub async fn run<H: Host>(self, host: H, stop: impl Future<Output = ()> + Send) {
+        let Self { listener, config, key, counters } = self;
+        let (phase, phases) = watch::channel(Phase::Open);
+        let shared = Arc::new(Shared::new(config.clone(), &key, counters, phases));
+        let host = Arc::new(host);
+        let mut tasks = JoinSet::new();
+        let mut chance = SplitMix64::new(seed());
+        let mut refusals = Throttle::default();
+        tokio::pin!(stop);
+        loop {
+            tokio::select! {
+                () = &mut stop => break,
+                Some(_) = tasks.join_next(), if !tasks.is_empty() => {}
+                accepted = listener.accept() => match accepted {
+                    Ok((socket, peer)) => {
+                        if let Some(visit) = admit(&shared, peer, &mut chance, &mut refusals) {
+                            let (shared, host) = (shared.clone(), host.clone());
+                            tasks.spawn(connection::serve(shared, host, socket, peer, visit));
+                        }
+                    }
+                    Err(error) => {
+                        events::fault("accept", error);
+                        sleep(ACCEPT_PAUSE).await;
+                    }
+                },
+            }
+        }
+        drop(listener);
+        let drain = config.get().drain;
+        events::draining(drain.as_secs());
+        for (next, time) in [(Phase::Draining, drain), (Phase::Closing, CLOSING)] {
+            _ = phase.send(next);
+            let all = async { while tasks.join_next().await.is_some() {} };
+            if timeout(time, all).await.is_ok() {
+                break;
+            }
+        }
+        tasks.shutdown().await;
+    }
+}
+
+fn listen(address: SocketAddr) -> io::Result<TcpListener> {
+    let socket = if address.is_ipv4() { TcpSocket::new_v4()? } else { TcpSocket::new_v6()? };
+    // As `TcpListener::bind` does: another server may have ended just now.
+    #[cfg(unix)]
+    socket.set_reuseaddr(true)?;
+    // Connections inherit it. The system would keep megabytes for a client that does not read.
+    socket.set_send_buffer_size(SEND_BUFFER)?;
+    socket.bind(address)?;
+    socket.listen(BACKLOG)
+}
+
+/// Admits a connection, or refuses it without a word.
+fn admit(
+    shared: &Shared,
+    peer: SocketAddr,
+    chance: &mut SplitMix64,
+    refusals: &mut Throttle,
+) -> Option<VisitId> {
+    let limits = shared.config.get().admission;
+    let (visit, now) = shared.admission(|admission, now| {
+        admission.set_limits(limits);
+        (admission.arrive(peer.ip(), now, chance), now)
+    });
+    let Counters { accepted, refused, .. } = &*shared.counters;
+    let count = if visit.is_ok() { accepted } else { refused };
+    count.fetch_add(1, Ordering::Relaxed);
+    match visit {
+        Ok(_) => events::accepted(peer.ip()),
+        Err(reason) => {
+            shared.counters.refuse(reason);
+            if let Some(left_out) = refusals.pass(now) {
+                events::refused(peer.ip(), reason, left_out);
+            }
+        }
+    }
+    visit.ok()
+}
+
+/// Unpredictable, so that nobody can time their connections by the random drop.
+fn seed() -> u64 {
+    // Without random numbers from the system there would be no keys, either.
+    getrandom::u64().unwrap_or_default()
+}

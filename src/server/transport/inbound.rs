@@ -1,0 +1,224 @@
+//! What a visitor sends, on its way from the connection to the session.
+//!
+//! Bytes wait in one buffer of bounded size. Where it is full, the connection is read no further, so
+//! that a flood waits in the client's own socket. Of sizes of the window, only the newest waits. A
+//! queue of messages was refused: a message of one byte costs a hundred.
+
+use std::mem;
+use std::sync::{Arc, Mutex};
+
+use tokio::sync::Notify;
+
+use super::locked;
+use crate::terminal::WindowSize;
+
+/// What has arrived from a visitor.
+#[derive(Clone, Debug, PartialEq)]
+pub enum Arrival {
+    /// What they typed, at most [`Inbound::MOST_BYTES`].
+    Bytes(Vec<u8>),
+    /// The new size of their window.
+    Resized(WindowSize),
+    /// The server ends soon. The session is to say so, and to end in time.
+    Drains,
+    /// The link has ended: nothing arrives any more, and nothing can be sent.
+    Ended,
+}
+
+/// The session's end.
+#[derive(Debug)]
+pub struct Inbound {
+    shared: Arc<Shared>,
+}
+
+/// The connection's end.
+#[derive(Clone, Debug)]
+pub(super) struct Inlet {
+    shared: Arc<Shared>,
+}
+
+#[derive(Debug, Default)]
+struct Shared {
+    waiting: Mutex<Waiting>,
+    /// For the session: something has arrived.
+    arrived: Notify,
+    /// For the connection: there is room.
+    taken: Notify,
+}
+
+#[derive(Debug, Default)]
+struct Waiting {
+    bytes: Vec<u8>,
+    size: Option<WindowSize>,
+    drains: bool,
+    ended: bool,
+    /// Nobody takes what arrives.
+    is_abandoned: bool,
+}
+
+/// Both ends.
+pub(super) fn inbound() -> (Inlet, Inbound) {
+    let shared = Arc::<Shared>::default();
+    (Inlet { shared: shared.clone() }, Inbound { shared })
+}
+
+impl Inbound {
+    /// The most bytes that wait.
+    pub const MOST_BYTES: usize = 16 << 10;
+
+    /// The next arrival. [`Arrival::Ended`] comes last, after all bytes, and then each time.
+    ///
+    /// It loses nothing if it is dropped before it is ready.
+    pub async fn next(&mut self) -> Arrival {
+        loop {
+            if let Some(arrival) = locked(&self.shared.waiting, Waiting::take) {
+                self.shared.taken.notify_one();
+                return arrival;
+            }
+            self.shared.arrived.notified().await;
+        }
+    }
+}
+
+impl Drop for Inbound {
+    fn drop(&mut self) {
+        locked(&self.shared.waiting, |waiting| {
+            *waiting = Waiting { is_abandoned: true, ..Waiting::default() };
+        });
+        self.shared.taken.notify_one();
+    }
+}
+
+impl Inlet {
+    /// Passes bytes on, and waits where there is no room for them.
+    pub(super) async fn bytes(&self, mut bytes: &[u8]) {
+        while !bytes.is_empty() {
+            let count = locked(&self.shared.waiting, |waiting| waiting.append(bytes));
+            if count == 0 {
+                self.shared.taken.notified().await;
+            } else {
+                self.shared.arrived.notify_one();
+            }
+            bytes = &bytes[count..];
+        }
+    }
+
+    pub(super) fn resize(&self, size: WindowSize) {
+        self.change(|waiting| waiting.size = Some(size));
+    }
+
+    pub(super) fn drain(&self) {
+        self.change(|waiting| waiting.drains = true);
+    }
+
+    pub(super) fn end(&self) {
+        self.change(|waiting| waiting.ended = true);
+        self.shared.taken.notify_one();
+    }
+
+    fn change(&self, change: impl FnOnce(&mut Waiting)) {
+        locked(&self.shared.waiting, change);
+        self.shared.arrived.notify_one();
+    }
+}
+
+impl Waiting {
+    fn take(&mut self) -> Option<Arrival> {
+        if mem::take(&mut self.drains) {
+            return Some(Arrival::Drains);
+        }
+        if let Some(size) = self.size.take() {
+            return Some(Arrival::Resized(size));
+        }
+        if !self.bytes.is_empty() {
+            return Some(Arrival::Bytes(mem::take(&mut self.bytes)));
+        }
+        self.ended.then_some(Arrival::Ended)
+    }
+
+    /// The number of bytes that are done with.
+    fn append(&mut self, bytes: &[u8]) -> usize {
+        if self.is_abandoned || self.ended {
+            return bytes.len();
+        }
+        let count = bytes.len().min(Inbound::MOST_BYTES - self.bytes.len());
+        self.bytes.extend_from_slice(&bytes[..count]);
+        count
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use std::future::Future;
+    use std::pin::pin;
+    use std::task::{Context, Poll, Waker};
+
+    use super::*;
+
+    fn poll<T>(future: impl Future<Output = T>) -> Option<T> {
+        match pin!(future).poll(&mut Context::from_waker(Waker::noop())) {
+            Poll::Ready(value) => Some(value),
+            Poll::Pending => None,
+        }
+    }
+
+    #[test]
+    fn a_flood_waits_and_takes_no_memory() {
+        let (inlet, mut inbound) = inbound();
+        let flood = vec![b'w'; 10 << 20];
+        assert_eq!(poll(inlet.bytes(&flood)), None);
+        let held =
+            |inlet: &Inlet| locked(&inlet.shared.waiting, |waiting| waiting.bytes.capacity());
+        assert!(held(&inlet) <= 2 * Inbound::MOST_BYTES);
+        let Some(Arrival::Bytes(bytes)) = poll(inbound.next()) else { panic!("no bytes") };
+        assert_eq!(bytes.len(), Inbound::MOST_BYTES);
+        assert_eq!(poll(inlet.bytes(b"d")), Some(()));
+        assert_eq!(poll(inbound.next()), Some(Arrival::Bytes(b"d".to_vec())));
+    }
+
+    #[test]
+    fn bytes_keep_their_order_across_waits() {
+        let (inlet, mut inbound) = inbound();
+        let sent: Vec<u8> = (0..100_000_u32).map(|number| number as u8).collect();
+        let mut sending = pin!(inlet.bytes(&sent));
+        let mut received = Vec::new();
+        loop {
+            let is_sent = poll(sending.as_mut()).is_some();
+            while let Some(Arrival::Bytes(bytes)) = poll(inbound.next()) {
+                received.extend(bytes);
+            }
+            if is_sent {
+                break;
+            }
+        }
+        assert_eq!(received, sent);
+    }
+
+    #[test]
+    fn of_many_sizes_the_newest_arrives() {
+        let (inlet, mut inbound) = inbound();
+        for columns in 1..=500 {
+            inlet.resize(WindowSize::of_cells(columns, 24));
+        }
+        assert_eq!(poll(inbound.next()), Some(Arrival::Resized(WindowSize::of_cells(500, 24))));
+        assert_eq!(poll(inbound.next()), None);
+    }
+
+    #[test]
+    fn the_end_comes_after_the_bytes_and_stays() {
+        let (inlet, mut inbound) = inbound();
+        assert_eq!(poll(inlet.bytes(b"q")), Some(()));
+        inlet.end();
+        assert_eq!(poll(inbound.next()), Some(Arrival::Bytes(b"q".to_vec())));
+        assert_eq!(poll(inbound.next()), Some(Arrival::Ended));
+        assert_eq!(poll(inbound.next()), Some(Arrival::Ended));
+    }
+
+    #[test]
+    fn a_connection_never_waits_for_a_session_that_is_gone() {
+        let (inlet, inbound) = inbound();
+        assert_eq!(poll(inlet.bytes(&[0; Inbound::MOST_BYTES + 1])), None);
+        drop(inbound);
+        assert_eq!(poll(inlet.bytes(&[0; 1 << 20])), Some(()));
+    }
+}

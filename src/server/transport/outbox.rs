@@ -1,0 +1,204 @@
+//! The one frame on its way to a visitor.
+//!
+//! A frame has drained when the socket has accepted its last byte, so a session encodes a frame only
+//! when the last one has left, and a client that does not read holds the memory of one frame. A frame
+//! goes to russh in parts, each when the last was written: russh keeps a buffer as large as the most
+//! that it was ever given at once. It drops the bytes of a part once they are encrypted, and the next
+//! flush of the stream then says that they were written. Counting encrypted bytes was refused:
+//! compression changes their number.
+
+use std::future::Future;
+use std::pin::pin;
+use std::sync::atomic::{AtomicBool, AtomicU8, AtomicU64, Ordering};
+use std::sync::{Arc, Mutex, OnceLock};
+use std::task::{Context, Poll, Waker};
+
+use bytes::Bytes;
+use russh::ChannelId;
+use russh::server::Handle;
+use tokio::sync::Notify;
+use tokio::task::{unconstrained, yield_now};
+
+use super::{Counters, locked};
+
+/// The place for one frame. The next one has room when the last has drained.
+#[derive(Debug)]
+pub struct Outbox {
+    passage: Arc<Passage>,
+}
+
+/// The state of the frame, which the outbox, the frame and the stream share.
+#[derive(Debug, Default)]
+pub(super) struct Passage {
+    state: AtomicU8,
+    /// Nothing can be sent any more.
+    is_closed: AtomicBool,
+    /// The number of parts so far.
+    parts: AtomicU64,
+    /// What russh was not given yet.
+    rest: Mutex<Bytes>,
+    changed: Notify,
+    counters: OnceLock<Arc<Counters>>,
+    channel: OnceLock<(Handle, ChannelId)>,
+}
+
+/// The most bytes that russh is given at once; a frame of a game has fewer as a rule.
+const PART: usize = 16 << 10;
+
+const EMPTY: u8 = 0;
+/// A part of the frame waits for the client's window.
+const QUEUED: u8 = 1;
+/// A part of the frame is encrypted, and not yet written.
+const ENCRYPTED: u8 = 2;
+
+impl Outbox {
+    pub(super) fn new(handle: Handle, channel: ChannelId, passage: Arc<Passage>) -> Self {
+        // There is one session channel.
+        _ = passage.channel.set((handle, channel));
+        Self { passage }
+    }
+
+    /// Whether there is room for a frame.
+    pub fn is_empty(&self) -> bool {
+        self.passage.is_empty()
+    }
+
+    /// Sends a frame. After the link has ended, frames are accepted and dropped.
+    ///
+    /// # Errors
+    /// The frame, if the last one has not drained.
+    pub fn try_send(&mut self, frame: Vec<u8>) -> Result<(), Vec<u8>> {
+        if !self.is_empty() {
+            return Err(frame);
+        }
+        if frame.is_empty() || self.passage.is_closed.load(Ordering::Acquire) {
+            return Ok(());
+        }
+        let frame = Bytes::from_owner(Frame::new(frame, self.passage.counters.get().cloned()));
+        locked(&self.passage.rest, |rest| *rest = frame);
+        self.passage.send_part();
+        Ok(())
+    }
+
+    /// Waits until the last frame has drained, or the link has ended. It is ready at once where no
+    /// frame is on its way, and it may be dropped before it is ready.
+    ///
+    /// A caller that asks [`Outbox::is_empty`] whether to wait may be answered that there is nothing
+    /// to wait for, and then wait for something else without end: the frame drains at any time.
+    pub async fn drained(&mut self) {
+        while !self.is_empty() && !self.passage.is_closed.load(Ordering::Acquire) {
+            self.passage.changed.notified().await;
+        }
+        if self.passage.is_closed.load(Ordering::Acquire) {
+            // A session that sends frame after frame would never let its task see the end.
+            yield_now().await;
+        }
+    }
+}
+
+impl Passage {
+    pub(super) fn new(counters: Arc<Counters>) -> Self {
+        Self { counters: OnceLock::from(counters), ..Self::default() }
+    }
+
+    /// The stream has written all bytes that it was given.
+    pub(super) fn flushed(self: &Arc<Self>) {
+        if self.state.load(Ordering::Acquire) != ENCRYPTED {
+            return;
+        }
+        if locked(&self.rest, |rest| rest.is_empty()) {
+            self.state.store(EMPTY, Ordering::Release);
+            self.changed.notify_one();
+        } else {
+            self.send_part();
+        }
+    }
+
+    /// Nothing can be sent any more.
+    pub(super) fn close(&self) {
+        self.is_closed.store(true, Ordering::Release);
+        locked(&self.rest, Bytes::clear);
+        self.changed.notify_one();
+    }
+
+    /// The number of parts of frames so far.
+    pub(super) fn parts(&self) -> u64 {
+        self.parts.load(Ordering::Acquire)
+    }
+
+    /// Whether a part of a frame waits for the client's window.
+    pub(super) fn is_waiting(&self) -> bool {
+        self.state.load(Ordering::Acquire) == QUEUED
+    }
+
+    fn is_empty(&self) -> bool {
+        self.state.load(Ordering::Acquire) == EMPTY
+    }
+
+    fn send_part(self: &Arc<Self>) {
+        let Some((handle, channel)) = self.channel.get() else { return };
+        let bytes = locked(&self.rest, |rest| rest.split_to(rest.len().min(PART)));
+        self.state.store(QUEUED, Ordering::Release);
+        self.parts.fetch_add(1, Ordering::AcqRel);
+        let part = Bytes::from_owner(Part { bytes, passage: self.clone() });
+        // The queue has room: one part, a few questions and the three messages of the end are in it.
+        _ = at_once(handle.data(*channel, part));
+    }
+}
+
+/// The bytes of a frame, which are counted as long as they are kept.
+struct Frame {
+    bytes: Vec<u8>,
+    counters: Option<Arc<Counters>>,
+}
+
+impl Frame {
+    fn new(bytes: Vec<u8>, counters: Option<Arc<Counters>>) -> Self {
+        if let Some(counters) = &counters {
+            counters.held.fetch_add(bytes.capacity(), Ordering::Relaxed);
+            counters.frames.fetch_add(1, Ordering::Relaxed);
+            counters.frame_bytes.fetch_add(bytes.len() as u64, Ordering::Relaxed);
+        }
+        Self { bytes, counters }
+    }
+}
+
+impl AsRef<[u8]> for Frame {
+    fn as_ref(&self) -> &[u8] {
+        &self.bytes
+    }
+}
+
+impl Drop for Frame {
+    fn drop(&mut self) {
+        if let Some(counters) = &self.counters {
+            counters.held.fetch_sub(self.bytes.capacity(), Ordering::Relaxed);
+        }
+    }
+}
+
+/// A part of a frame. It is dropped when it is encrypted.
+struct Part {
+    bytes: Bytes,
+    passage: Arc<Passage>,
+}
+
+impl AsRef<[u8]> for Part {
+    fn as_ref(&self) -> &[u8] {
+        &self.bytes
+    }
+}
+
+impl Drop for Part {
+    fn drop(&mut self) {
+        self.passage.state.store(ENCRYPTED, Ordering::Release);
+    }
+}
+
+/// Polls a future once, regardless of the task's budget.
+fn at_once<T>(future: impl Future<Output = T>) -> Option<T> {
+    match pin!(unconstrained(future)).poll(&mut Context::from_waker(Waker::noop())) {
+        Poll::Ready(value) => Some(value),
+        Poll::Pending => None,
+    }
+}

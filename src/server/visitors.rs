@@ -1,0 +1,289 @@
+//! Who is on: the visitors of a server, as its operator sees them, and what reaches them from there.
+//!
+//! The driver of a session holds a [`Presence`], says in it what the visitor is called and where they
+//! are, and waits for its [notices](Presence::notice). An operator lists visitors, says a line to all
+//! of them, and removes some.
+//!
+//! At most `MOST_LINES` lines wait for a session; then the oldest one is dropped. So a session that
+//! does not take them costs no memory.
+
+use std::collections::{BTreeMap, VecDeque};
+use std::net::IpAddr;
+use std::sync::{Arc, Mutex, PoisonError};
+use std::time::Duration;
+
+use tokio::sync::Notify;
+use tokio::time::Instant;
+
+use crate::store::host::{AccountKey, BanTarget, Identity, Name};
+
+/// The visitors of a server. Clones share them.
+#[derive(Clone, Debug, Default)]
+pub struct Visitors(Arc<Mutex<Table>>);
+
+/// A visitor among the [`Visitors`], until it is dropped.
+#[derive(Debug)]
+pub struct Presence {
+    number: u64,
+    visitors: Visitors,
+    inbox: Arc<Inbox>,
+}
+
+/// What an operator tells the session of a visitor.
+#[derive(Clone, Debug, PartialEq, Eq)]
+pub enum Notice {
+    /// A line from the host.
+    Said(String),
+    /// The session ends, with this sentence.
+    Removed(String),
+}
+
+/// What an operator sees of a visitor.
+#[derive(Clone, Debug, PartialEq, Eq)]
+pub struct Present {
+    /// The name; `None` until it is chosen.
+    pub name: Option<Name>,
+    /// The address that they connect from.
+    pub address: IpAddr,
+    /// Their key; `None` for a guest.
+    pub key: Option<AccountKey>,
+    /// The room that they are in, in a few words; `None` for the lobby.
+    pub room: Option<String>,
+    /// For how long they have been here.
+    pub time: Duration,
+}
+
+#[derive(Debug, Default)]
+struct Table {
+    next: u64,
+    /// In the order in which they came.
+    entries: BTreeMap<u64, Entry>,
+}
+
+#[derive(Debug)]
+struct Entry {
+    name: Option<Name>,
+    address: IpAddr,
+    key: Option<AccountKey>,
+    room: Option<String>,
+    since: Instant,
+    inbox: Arc<Inbox>,
+}
+
+#[derive(Debug, Default)]
+struct Inbox {
+    notices: Mutex<Notices>,
+    changed: Notify,
+}
+
+#[derive(Debug, Default)]
+struct Notices {
+    lines: VecDeque<String>,
+    removed: Option<String>,
+}
+
+/// The most lines that wait for a session.
+const MOST_LINES: usize = 8;
+
+impl Visitors {
+    /// Adds a visitor.
+    pub fn arrive(&self, address: IpAddr, key: Option<AccountKey>) -> Presence {
+        let inbox = Arc::<Inbox>::default();
+        let (name, room, since) = (None, None, Instant::now());
+        let address = address.to_canonical();
+        let entry = Entry { name, address, key, room, since, inbox: inbox.clone() };
+        let number = self.with(|table| {
+            let number = table.next;
+            table.next += 1;
+            table.entries.insert(number, entry);
+            number
+        });
+        Presence { number, visitors: self.clone(), inbox }
+    }
+
+    /// All visitors, in the order in which they came.
+    pub fn list(&self) -> Vec<Present> {
+        self.with(|table| table.entries.values().map(Entry::present).collect())
+    }
+
+    /// Says a line to all visitors, and returns how many there are.
+    pub fn say(&self, line: &str) -> usize {
+        self.with(|table| {
+            table.entries.values().for_each(|entry| entry.inbox.say(line));
+            table.entries.len()
+        })
+    }
+
+    /// Ends the sessions of all to whom a ban of `target` applies, with a sentence for them. Returns
+    /// how many there are.
+    pub fn remove(&self, target: &BanTarget, sentence: &str) -> usize {
+        self.with(|table| {
+            let removed =
+                table.entries.values().filter(|entry| target.applies_to(&entry.identity()));
+            removed.map(|entry| entry.inbox.remove(sentence)).count()
+        })
+    }
+
+    fn with<T>(&self, act: impl FnOnce(&mut Table) -> T) -> T {
+        act(&mut self.0.lock().unwrap_or_else(PoisonError::into_inner))
+    }
+}
+
+impl Presence {
+    /// Records what the visitor is called: the name of an account, or one that a guest has chosen.
+    pub fn set_name(&self, name: &str) {
+        self.change(|entry| entry.name = Some(Name::kept(name)));
+    }
+
+    /// Records the room that the visitor is in, in a few words; `None` for the lobby.
+    pub fn set_room(&self, room: Option<String>) {
+        self.change(|entry| entry.room = room);
+    }
+
+    /// Waits for the next notice. It may be dropped before it is ready.
+    pub async fn notice(&mut self) -> Notice {
+        loop {
+            if let Some(notice) = self.inbox.take() {
+                return notice;
+            }
+            self.inbox.changed.notified().await;
+        }
+    }
+
+    fn change(&self, act: impl FnOnce(&mut Entry)) {
+        self.visitors.with(|table| table.entries.get_mut(&self.number).map(act));
+    }
+}
+
+impl Drop for Presence {
+    fn drop(&mut self) {
+        self.visitors.with(|table| table.entries.remove(&self.number));
+    }
+}
+
+impl Entry {
+    fn present(&self) -> Present {
+        Present {
+            name: self.name.clone(),
+            address: self.address,
+            key: self.key,
+            room: self.room.clone(),
+            time: self.since.elapsed(),
+        }
+    }
+
+    fn identity(&self) -> Identity<'_> {
+        Identity { address: Some(self.address), key: self.key.as_ref(), name: self.name.as_ref() }
+    }
+}
+
+impl Inbox {
+    fn say(&self, line: &str) {
+        self.with(|notices| {
+            notices.lines.push_back(line.to_owned());
+            let surplus = notices.lines.len().saturating_sub(MOST_LINES);
+            notices.lines.drain(..surplus);
+        });
+        self.changed.notify_one();
+    }
+
+    fn remove(&self, sentence: &str) {
+        self.with(|notices| notices.removed = Some(sentence.to_owned()));
+        self.changed.notify_one();
+    }
+
+    /// A removal comes before lines.
+    fn take(&self) -> Option<Notice> {
+        self.with(|notices| {
+            let removed = notices.removed.take().map(Notice::Removed);
+            removed.or_else(|| notices.lines.pop_front().map(Notice::Said))
+        })
+    }
+
+    fn with<T>(&self, act: impl FnOnce(&mut Notices) -> T) -> T {
+        act(&mut self.notices.lock().unwrap_or_else(PoisonError::into_inner))
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use std::pin::pin;
+    use std::task::{Context, Poll, Waker};
+
+    use super::*;
+    use crate::store::host::AddressPrefix;
+
+    fn next(presence: &mut Presence) -> Option<Notice> {
+        match pin!(presence.notice()).poll(&mut Context::from_waker(Waker::noop())) {
+            Poll::Ready(notice) => Some(notice),
+            Poll::Pending => None,
+        }
+    }
+
+    fn here(last: u8) -> IpAddr {
+        IpAddr::from([192, 0, 2, last])
+    }
+
+    #[test]
+    fn a_visitor_is_listed_while_present() -> Result<(), Box<dyn std::error::Error>> {
+        let visitors = Visitors::default();
+        let key = AccountKey::new([1; 32]);
+        let one = visitors.arrive("::ffff:192.0.2.1".parse()?, Some(key));
+        let other = visitors.arrive(here(2), None);
+        one.set_name("Ada");
+        one.set_room(Some("1 roam museum".to_owned()));
+        let list = visitors.list();
+        assert_eq!(list.len(), 2);
+        assert_eq!((list[0].address, list[0].key), (here(1), Some(key)));
+        assert_eq!(list[0].name, Some(Name::new("Ada")?));
+        assert_eq!(list[0].room.as_deref(), Some("1 roam museum"));
+        assert_eq!((list[1].address, &list[1].name, &list[1].room), (here(2), &None, &None));
+        drop(one);
+        assert_eq!(visitors.list().len(), 1);
+        drop(other);
+        assert!(visitors.list().is_empty());
+        Ok(())
+    }
+
+    #[test]
+    fn lines_wait_in_order_and_are_bounded() {
+        let visitors = Visitors::default();
+        let mut present = [1, 2].map(|last| visitors.arrive(here(last), None));
+        for number in 0..MOST_LINES + 3 {
+            assert_eq!(visitors.say(&number.to_string()), 2);
+        }
+        for presence in &mut present {
+            for number in 3..MOST_LINES + 3 {
+                assert_eq!(next(presence), Some(Notice::Said(number.to_string())));
+            }
+            assert_eq!(next(presence), None);
+        }
+    }
+
+    #[test]
+    fn a_removal_reaches_those_whom_it_concerns_before_any_line()
+    -> Result<(), Box<dyn std::error::Error>> {
+        let visitors = Visitors::default();
+        let key = AccountKey::new([1; 32]);
+        let mut ada = visitors.arrive(here(1), Some(key));
+        let mut ben = visitors.arrive(here(2), None);
+        ada.set_name("Ada");
+        ben.set_name("guest-4");
+        let network = AddressPrefix::parse("192.0.2.0/24").ok_or("no prefix")?;
+        visitors.say("hello");
+        for (target, count) in [
+            (BanTarget::Name(Name::new("ADA")?), 1),
+            (BanTarget::Key(key), 1),
+            (BanTarget::Key(AccountKey::new([2; 32])), 0),
+            (BanTarget::Name(Name::of_guest(4)), 1),
+            (BanTarget::Addresses(network), 2),
+        ] {
+            assert_eq!(visitors.remove(&target, "go"), count, "{target:?}");
+        }
+        for presence in [&mut ada, &mut ben] {
+            assert_eq!(next(presence), Some(Notice::Removed("go".to_owned())));
+            assert_eq!(next(presence), Some(Notice::Said("hello".to_owned())));
+        }
+        Ok(())
+    }
+}

@@ -1,0 +1,65 @@
+//! Why a store did not do something.
+
+use std::fmt;
+
+use super::UnixTime;
+
+/// A failure of the store, as a sentence.
+#[derive(Clone, Debug, PartialEq, Eq)]
+pub struct StoreFailure(String);
+
+/// Why an account was not created or renamed.
+#[derive(Clone, Debug, PartialEq, Eq)]
+pub enum Refusal {
+    /// Another account has this name, or one that looks like it.
+    NameTaken,
+    /// The name is banned.
+    NameBanned,
+    /// The key has an account.
+    KeyKnown,
+    /// There is no such account.
+    NoAccount,
+    /// The name was chosen not long ago.
+    TooEarly {
+        /// When it can be changed.
+        next: UnixTime,
+    },
+    /// The store failed.
+    Failed(StoreFailure),
+}
+
+impl StoreFailure {
+    pub(super) fn new(sentence: impl Into<String>) -> Self {
+        Self(sentence.into())
+    }
+}
+
+impl fmt::Display for StoreFailure {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        f.write_str(&self.0)
+    }
+}
+
+impl fmt::Display for Refusal {
+    /// Writes a sentence for the player.
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        f.write_str(match self {
+            Self::NameTaken => "Somebody has this name, or one that looks like it.",
+            Self::NameBanned => "This name is not allowed here.",
+            Self::KeyKnown => "Your key has an account.",
+            Self::NoAccount => "There is no such account.",
+            Self::TooEarly { .. } => "A name can be changed after seven days.",
+            Self::Failed(_) => "The host can't keep this now; try again later.",
+        })
+    }
+}
+
+impl std::error::Error for StoreFailure {}
+
+impl std::error::Error for Refusal {}
+
+impl From<StoreFailure> for Refusal {
+    fn from(failure: StoreFailure) -> Self {
+        Self::Failed(failure)
+    }
+}

@@ -1,0 +1,162 @@
+use std::collections::BTreeSet;
+
+use proptest::prelude::*;
+
+use super::*;
+
+#[test]
+fn names_of_many_scripts_are_names() {
+    for text in [
+        "Ada",
+        "bob_7",
+        "Zoë",
+        "Łukasz",
+        "Вася",
+        "Ελένη",
+        "Անի",
+        "ნინო",
+        "漢字",
+        "ひらがな",
+        "カタカナ",
+        "한국어",
+        "ada漢字",
+        "x-1",
+        "sixteen_columns1",
+        "漢字漢字漢字漢字",
+    ] {
+        assert_eq!(Name::new(text).map(|name| name.to_string()), Ok(text.to_owned()));
+    }
+    // Compatibility forms are the plain ones, and decomposed letters are composed.
+    assert_eq!(Name::new("Ａｄａ").unwrap().as_str(), "Ada");
+    assert_eq!(Name::new("Zoe\u{308}").unwrap().as_str(), "Zoë");
+}
+
+#[test]
+fn what_is_no_name_is_told_in_a_sentence() {
+    let mut sentences = BTreeSet::new();
+    for (text, fault) in [
+        ("", NameFault::Short),
+        ("a", NameFault::Short),
+        ("seventeen_columns", NameFault::Long),
+        ("漢字漢字漢字漢字a", NameFault::Long),
+        ("a b", NameFault::Character(' ')),
+        ("a\u{0}b", NameFault::Character('\0')),
+        ("a\u{1b}[31m", NameFault::Character('\u{1b}')),
+        ("a\u{202e}b", NameFault::Character('\u{202e}')),
+        ("a\u{200b}b", NameFault::Character('\u{200b}')),
+        ("a\u{300}\u{301}\u{302}b", NameFault::Character('\u{301}')),
+        ("'; DROP TABLE accounts; --", NameFault::Character('\'')),
+        ("שלום", NameFault::Character('ש')),
+        ("ab😀", NameFault::Character('😀')),
+        ("\u{e000}ab", NameFault::Character('\u{e000}')),
+        ("7seas", NameFault::Begin),
+        ("-ab", NameFault::Begin),
+        ("ab-", NameFault::End),
+        ("pаypal", NameFault::Mixed),
+        ("Server", NameFault::Reserved),
+        ("Аdmin", NameFault::Mixed),
+        ("guest-12", NameFault::Reserved),
+        ("GUESTS", NameFault::Reserved),
+        ("r00t", NameFault::Reserved),
+        ("adrnin", NameFault::Reserved),
+    ] {
+        assert_eq!(Name::new(text), Err(fault), "{text:?}");
+        let sentence = fault.to_string();
+        assert!(sentence.ends_with('.') && sentence.lines().count() == 1, "{sentence:?}");
+        assert_eq!(printable(&sentence, 100), sentence);
+        sentences.insert(sentence);
+    }
+    assert!(sentences.len() > 12);
+    assert_eq!(Name::new(&"a".repeat(1 << 20)), Err(NameFault::Long));
+}
+
+#[test]
+fn names_that_look_alike_share_a_key() {
+    let look_alike =
+        |one: &str, other: &str| Name::new(one).unwrap().looks_like(&Name::new(other).unwrap());
+    for (one, other) in [
+        ("Bob", "bOB"),
+        ("Bill", "BiIl"),
+        ("bi1l", "bill"),
+        ("rnary", "mary"),
+        ("Boss", "Воѕѕ"),
+        ("СССР", "cccp"),
+        ("straße", "STRASSE"),
+        ("zoo", "z00"),
+        ("Igor", "igor"),
+        ("Σας", "σασ"),
+    ] {
+        assert!(look_alike(one, other) && look_alike(other, one), "{one} {other}");
+    }
+    for (one, other) in [("Bob", "Rob"), ("Ada", "Ada1"), ("a-b", "a_b"), ("漢字", "漢宇")] {
+        assert!(!look_alike(one, other), "{one} {other}");
+    }
+}
+
+#[test]
+fn no_account_has_the_name_of_a_guest() {
+    for number in [0, 1, u32::MAX] {
+        let name = Name::of_guest(number);
+        assert!(name.is_reserved() && name.as_str().width() <= Name::MOST_COLUMNS);
+    }
+}
+
+/// Texts that are often names.
+fn texts() -> impl Strategy<Value = String> {
+    prop_oneof![
+        any::<String>(),
+        "[a-zA-Z0-9_-]{1,17}",
+        "[a-zA-ZàéïöüßıſIl1O0А-яёҰαιοΣςσ漢字かカ가-각\u{300}\u{301}_-]{1,12}",
+    ]
+}
+
+proptest! {
+    #![proptest_config(ProptestConfig::with_cases(2048))]
+
+    #[test]
+    fn every_name_is_printable_and_is_its_own_name(text in texts()) {
+        if let Ok(name) = Name::new(&text) {
+            let text = name.as_str();
+            prop_assert!((Name::LEAST_COLUMNS..=Name::MOST_COLUMNS).contains(&text.width()));
+            prop_assert_eq!(printable(text, Name::MOST_COLUMNS), text);
+            prop_assert_eq!(Name::new(text), Ok(name.clone()));
+            prop_assert_eq!(Name::kept(text), name);
+        }
+    }
+
+    #[test]
+    fn names_without_a_common_key_have_other_skeletons(one in texts(), other in texts()) {
+        if let (Ok(one), Ok(other)) = (Name::new(&one), Name::new(&other)) {
+            let skeleton = |name: &Name| -> String {
+                unicode_security::skeleton(name.as_str()).collect()
+            };
+            let lower_case = |name: &Name| name.as_str().to_lowercase();
+            if !one.looks_like(&other) {
+                prop_assert_ne!(skeleton(&one), skeleton(&other));
+                prop_assert_ne!(lower_case(&one), lower_case(&other));
+            }
+            prop_assert_eq!(one.looks_like(&other), other.looks_like(&one));
+            prop_assert!(one.looks_like(&one));
+        }
+    }
+
+    #[test]
+    fn other_case_looks_alike(text in texts()) {
+        if let Ok(name) = Name::new(&text) {
+            for other in [name.as_str().to_uppercase(), name.as_str().to_lowercase()] {
+                if let Ok(other) = Name::new(&other) {
+                    prop_assert!(name.looks_like(&other), "{} {}", name, other);
+                }
+            }
+        }
+    }
+
+    #[test]
+    fn what_is_printable_takes_its_columns(text in any::<String>(), columns in 0..40_usize) {
+        let line = printable(&text, columns);
+        prop_assert!(line.chars().map(|c| c.width().unwrap()).sum::<usize>() <= columns);
+        prop_assert!(line.chars().all(|c| !c.is_control() && c.width() != Some(0)));
+        prop_assert!(line.trim() == line && !line.contains("  "));
+        prop_assert_eq!(printable(&line, columns), line);
+    }
+}

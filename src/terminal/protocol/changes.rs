@@ -1,0 +1,60 @@
+//! Changes of the terminal's state, and the sequences that undo them.
+
+use std::time::Duration;
+
+use crossterm::cursor::{Hide, Show};
+use crossterm::terminal::{
+    DisableLineWrap, EnableLineWrap, EndSynchronizedUpdate, EnterAlternateScreen,
+};
+
+use super::fences::Fences;
+use super::reports::Reports;
+use crate::terminal::sequence;
+
+/// What the program has changed in the terminal, and which answers may still arrive.
+#[derive(Clone, Copy, Debug, Default)]
+pub(in crate::terminal) struct Changes {
+    pub(super) reports: Reports,
+    pub(in crate::terminal) fences: Fences,
+    /// Whether answers to status requests may arrive.
+    pub(super) awaits_statuses: bool,
+    /// Whether entries of the palette may have been defined.
+    pub(super) palette_defined: bool,
+}
+
+impl Changes {
+    /// Adds the sequences that take the screen: the alternate one, without a cursor.
+    pub(super) fn push_start(&self, text: &mut String) {
+        text.push_str(&sequence::of(EnterAlternateScreen));
+        text.push_str(&sequence::of(Hide));
+        // Long lines are cut, so that a narrower window does not scroll.
+        text.push_str(&sequence::of(DisableLineWrap));
+        text.push_str(sequence::RESET_STYLE);
+        self.reports.push_start(text);
+    }
+
+    /// The sequences that undo all changes, in reverse order, but leave the alternate screen. If
+    /// input may still arrive, a fence is among them, whose answer follows all of it.
+    pub(in crate::terminal) fn end(&mut self, now: Duration) -> String {
+        let mut text = sequence::of(EndSynchronizedUpdate) + sequence::RESET_STYLE;
+        if self.palette_defined {
+            text.push_str(&sequence::give_palette_back());
+        }
+        self.reports.push_end(&mut text);
+        if self.has_pending_reports() {
+            text.push_str(sequence::QUERY_FENCE);
+            self.fences.sent(now);
+            self.awaits_statuses = false;
+        }
+        text.push_str(&sequence::of(EnableLineWrap));
+        text.push_str(&sequence::of(Show));
+        text
+    }
+
+    /// Whether the terminal may have sent input that is not read yet: a key release, which it sends
+    /// until its flags are popped, a motion of the mouse, or the answer to a frame. Focus reports
+    /// do not count: few are sent, and waiting for a terminal that answers nothing takes a second.
+    fn has_pending_reports(&self) -> bool {
+        self.reports.are_frequent() || self.awaits_statuses || self.fences.are_answered()
+    }
+}

@@ -1,0 +1,154 @@
+use super::*;
+use crate::canvas::Canvas;
+use crate::terminal::{Key, KeyEvent};
+use ratatui::style::Color;
+
+const ENTERED: &str = "\x1b[?1049h";
+
+fn options(term: &str) -> Options {
+    Options::from_environment(|name| (name == "TERM").then(|| term.to_owned()))
+}
+
+fn begun(term: &str) -> Protocol {
+    let mut protocol = Protocol::new(options(term), WindowSize::of_cells(80, 24));
+    protocol.begin(Duration::ZERO);
+    protocol
+}
+
+fn sent(protocol: &mut Protocol, now: Duration) -> String {
+    let bytes = std::mem::take(protocol.output(now));
+    protocol.written(now);
+    String::from_utf8(bytes).unwrap()
+}
+
+fn draw(protocol: &mut Protocol, character: char) {
+    protocol.draw(|screen| screen.draw_character(0, 0, character, [Color::Reset; 2]));
+}
+
+const ANSWERS: &[u8] = b"\x1b[0n\x1b[?62;22c";
+
+#[test]
+fn what_is_taken_is_given_back() {
+    let mut protocol = begun("xterm-kitty");
+    let now = Duration::from_millis(20);
+    assert!(sent(&mut protocol, now).starts_with(ENTERED));
+    protocol.receive(b"\x1b[?0u\x1b[0n\x1b[?62;22c", now);
+    protocol.set_mouse(true);
+    assert_eq!(protocol.next_event(), Some(Event::KeyReleases(true)));
+    let text = sent(&mut protocol, now);
+    assert!(text.contains(sequence::PUSH_KEY_FLAGS) && text.contains(sequence::ENABLE_MOUSE));
+    protocol.end(now);
+    let text = sent(&mut protocol, now);
+    assert!(text.contains(sequence::POP_KEY_FLAGS) && text.contains(sequence::DISABLE_MOUSE));
+    assert!(text.contains(sequence::QUERY_FENCE));
+    assert!(!protocol.has_ended(now));
+    assert!(protocol.has_ended(now + Duration::from_secs(2)));
+    protocol.receive(b"w\x1b[?62;22c", now);
+    assert!(protocol.has_ended(now));
+    protocol.finish();
+    assert_eq!(sent(&mut protocol, now), "\x1b[?1049l");
+}
+
+#[test]
+fn a_terminal_that_reads_nothing_is_sent_nothing() {
+    let mut protocol = begun("xterm");
+    let now = Duration::from_millis(20);
+    sent(&mut protocol, now);
+    protocol.receive(ANSWERS, now);
+    let mut sends = 0;
+    for second in 1..100 {
+        let now = Duration::from_secs(second);
+        protocol.wake(now);
+        if protocol.is_ready(now) {
+            draw(&mut protocol, if second % 2 == 0 { 'a' } else { 'b' });
+        }
+        let text = sent(&mut protocol, now);
+        sends += u32::from(!text.is_empty());
+    }
+    // The frame, and the request that asks whether the terminal is still there.
+    assert_eq!(sends, 2);
+}
+
+#[test]
+fn an_answered_frame_is_followed_by_the_next() {
+    let mut protocol = begun("xterm");
+    sent(&mut protocol, Duration::ZERO);
+    protocol.receive(ANSWERS, Duration::from_millis(10));
+    for frame in 1_u64..50 {
+        let now = Duration::from_millis(10 + frame * 40);
+        assert!(protocol.is_ready(now), "{frame}");
+        let character = char::from(b'a' + (frame % 26) as u8);
+        draw(&mut protocol, character);
+        let text = sent(&mut protocol, now);
+        assert!(text.contains(character), "{text:?}");
+        let answers = [(sequence::QUERY_STATUS, &b"\x1b[0n"[..]), ("\x1b[c", b"\x1b[?62;22c")];
+        for (_, answer) in answers.iter().filter(|(query, _)| text.contains(query)) {
+            protocol.receive(answer, now + Duration::from_millis(20));
+        }
+    }
+}
+
+#[test]
+fn the_frames_that_the_terminal_shows_are_counted() {
+    let mut protocol = begun("xterm");
+    sent(&mut protocol, Duration::ZERO);
+    protocol.receive(ANSWERS, Duration::from_millis(10));
+    let at = Duration::from_millis;
+    let counts = |protocol: &Protocol| [protocol.frames_sent(), protocol.frames_answered()];
+    draw(&mut protocol, 'a');
+    sent(&mut protocol, at(20));
+    assert_eq!(counts(&protocol), [1, 0]);
+    protocol.receive(b"\x1b[0n", at(40));
+    assert_eq!(counts(&protocol), [1, 1]);
+    draw(&mut protocol, 'a');
+    sent(&mut protocol, at(60));
+    assert_eq!(counts(&protocol), [1, 1], "nothing has changed");
+    let mut silent = begun("xterm");
+    sent(&mut silent, Duration::ZERO);
+    for second in 1..4 {
+        draw(&mut silent, if second % 2 == 0 { 'a' } else { 'b' });
+        sent(&mut silent, Duration::from_secs(10 * second));
+    }
+    assert_eq!(counts(&silent), [3, 3], "it never answers");
+}
+
+#[test]
+fn bytes_wait_for_the_caller_before_the_next_frame() {
+    let mut protocol = begun("xterm");
+    let now = Duration::from_millis(10);
+    protocol.receive(ANSWERS, now);
+    assert!(!protocol.is_ready(now), "the queries are not taken yet");
+    sent(&mut protocol, now);
+    assert!(protocol.is_ready(now));
+}
+
+#[test]
+fn an_escape_byte_alone_becomes_a_key_after_a_wait() {
+    let mut protocol = begun("xterm");
+    let now = Duration::from_millis(10);
+    protocol.receive(ANSWERS, now);
+    while protocol.next_event().is_some() {}
+    protocol.receive(b"\x1b", now);
+    assert_eq!(protocol.next_event(), None);
+    let wakes_at = protocol.wakes_at().unwrap();
+    assert!(wakes_at > now && wakes_at < now + Duration::from_millis(200));
+    protocol.wake(wakes_at);
+    let event = protocol.next_event();
+    assert!(matches!(event, Some(Event::Key(KeyEvent { key: Key::Escape, .. }))), "{event:?}");
+}
+
+#[test]
+fn a_resized_window_is_drawn_whole() {
+    let mut protocol = begun("xterm");
+    let now = Duration::from_millis(10);
+    sent(&mut protocol, now);
+    protocol.receive(ANSWERS, now);
+    while protocol.next_event().is_some() {}
+    draw(&mut protocol, '#');
+    sent(&mut protocol, now);
+    protocol.receive(b"\x1b[0n", now);
+    protocol.resize(WindowSize::of_cells(20, 5), now);
+    assert_eq!(protocol.next_event(), Some(Event::Resized));
+    draw(&mut protocol, '#');
+    assert!(sent(&mut protocol, now).contains('#'));
+}

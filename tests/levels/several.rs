@@ -1,0 +1,31 @@
+//! The memory that games for several take: counts, not times.
+
+use allocation_counter::measure;
+use cellcaster::game::{Company, Game, Input, Intent, Intents, PlayerColor, Rules};
+use cellcaster::map;
+
+#[test]
+fn a_step_of_eight_players_allocates_nothing_after_a_while() {
+    let hall = format!("#{}#\n", ".".repeat(20)).repeat(12);
+    let edge = "#".repeat(22);
+    let grid = format!("{edge}\n#{}@..G#\n{hall}{edge}", ".".repeat(16));
+    let text = format!(
+        "grid = '''\n{grid}\n'''\n[tiles]\n'#'.wall = 'brick'\n\
+         [things]\n'@'.start = 180\nG = {{ guard = 'hound', asleep = true }}\n"
+    );
+    for collides in [false, true] {
+        let world = map::parse_str(&text).unwrap_or_else(|faults| panic!("{faults}"));
+        let company = Company { collides, ..Company::default() };
+        let mut game = Game::for_company(world, Rules::default(), company);
+        let players = PlayerColor::ALL.map(|color| game.join(color).unwrap());
+        // Ducking wakes nobody.
+        let circling = [Intent::Forward, Intent::Duck, Intent::TurnRight];
+        let mut step = || {
+            let (seen, intents) = (game.steps(), circling.into_iter().collect::<Intents>());
+            game.step_all(&players.map(|player| Input { player, intents, seen }));
+        };
+        (0..3600).for_each(|_| step());
+        let counted = measure(|| (0..600).for_each(|_| step()));
+        assert_eq!(counted.count_total, 0, "collides: {collides}");
+    }
+}

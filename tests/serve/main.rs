@@ -1,0 +1,16 @@
+//! A host on which people play together: real clients of OpenSSH in pseudo-terminals, clients that
+//! break the rules, and what is kept.
+#![cfg(all(unix, feature = "serve"))]
+
+#[allow(dead_code, reason = "this file uses a share of it")]
+#[path = "../support/emulator.rs"]
+mod emulator;
+mod kept;
+mod ops;
+mod play;
+#[path = "../support/player.rs"]
+mod player;
+mod scores;
+#[path = "../support/mod.rs"]
+mod support;
+mod transport;

@@ -1,0 +1,7 @@
+//! Running a host: its log, its metrics, its operator, its signals, and the files that start it.
+
+mod admin;
+mod documents;
+mod metrics;
+mod running;
+mod signals;

@@ -1,0 +1,122 @@
+//! A server in a process of its own.
+
+use std::fs::{self, File};
+use std::io::{BufRead, BufReader};
+use std::path::{Path, PathBuf};
+use std::process::{Child, Command, Output, Stdio};
+use std::thread;
+use std::time::{Duration, Instant};
+
+use cellcaster::store::host::SqliteStore;
+use rustix::process::{Pid, Signal, kill_process};
+
+use crate::emulator::Speaks;
+use crate::player::Player;
+use crate::support::cellcaster;
+use crate::transport::{PATIENCE, folder, wait_until};
+
+pub(super) struct Running {
+    pub(super) folder: PathBuf,
+    process: Child,
+    port: String,
+}
+
+impl Running {
+    /// A server with this configuration, logging in `format`.
+    pub(super) fn start(config: &str, format: &str) -> Self {
+        let folder = folder();
+        // A host that has run before.
+        drop(SqliteStore::open(&folder).unwrap());
+        fs::write(folder.join("serve.toml"), config).unwrap();
+        let (process, port) = spawn(&folder, format);
+        Self { folder, process, port }
+    }
+
+    /// Starts the server again in the same folder.
+    pub(super) fn restart(&mut self) {
+        (self.process, self.port) = spawn(&self.folder, "text");
+    }
+
+    pub(super) fn log(&self) -> String {
+        fs::read_to_string(self.folder.join("log")).unwrap()
+    }
+
+    pub(super) fn wait_for_log(&self, text: &str) {
+        wait_until(&format!("{text} in the log"), || self.log().contains(text));
+    }
+
+    /// A client of OpenSSH in a terminal.
+    pub(super) fn visitor(&self) -> Player {
+        let options = "-F none -o StrictHostKeyChecking=no -o UserKnownHostsFile=/dev/null \
+                       -o LogLevel=ERROR -o IdentitiesOnly=yes -o IdentityFile=none -tt -p";
+        let words = options.split_whitespace().chain([self.port.as_str(), "guest@127.0.0.1"]);
+        let arguments: Vec<String> = words.map(str::to_owned).collect();
+        Player::start((80, 24), Speaks::Kitty, "ssh", arguments, &[])
+    }
+
+    /// Waits until the operator sees so many visitors.
+    pub(super) fn wait_for_visitors(&self, count: usize) {
+        wait_until("visitors", || {
+            let lines = self.admin_says(&["who"]).lines().count();
+            lines == if count == 0 { 1 } else { count + 1 }
+        });
+    }
+
+    pub(super) fn admin(&self, arguments: &[&str]) -> Output {
+        let words = [&["admin"], arguments].concat();
+        cellcaster(&words).env("CELLCASTER_DATA", &self.folder).output().unwrap()
+    }
+
+    /// What `admin` writes, which succeeds.
+    pub(super) fn admin_says(&self, arguments: &[&str]) -> String {
+        let output = self.admin(arguments);
+        let error = String::from_utf8(output.stderr).unwrap();
+        assert_eq!((output.status.code(), error.as_str()), (Some(0), ""), "{arguments:?}");
+        String::from_utf8(output.stdout).unwrap()
+    }
+
+    pub(super) fn signal(&self, signal: Signal) {
+        kill_process(Pid::from_child(&self.process), signal).unwrap();
+    }
+
+    /// The exit status of the process.
+    pub(super) fn wait_for_end(&mut self) -> Option<i32> {
+        let end = Instant::now() + PATIENCE;
+        loop {
+            if let Some(status) = self.process.try_wait().unwrap() {
+                return status.code();
+            }
+            assert!(Instant::now() < end, "the server goes on; its log:\n{}", self.log());
+            thread::sleep(Duration::from_millis(20));
+        }
+    }
+}
+
+/// The process, and its port.
+fn spawn(folder: &Path, format: &str) -> (Child, String) {
+    let log = File::create(folder.join("log")).unwrap();
+    let mut process = Command::new(env!("CARGO_BIN_EXE_cellcaster"))
+        .args(["serve", "--listen", "127.0.0.1:0", "--log", format, "--config"])
+        .arg(folder.join("serve.toml"))
+        .env_clear()
+        .env("CELLCASTER_DATA", folder)
+        .stdout(Stdio::piped())
+        .stderr(log)
+        .spawn()
+        .unwrap();
+    let mut lines = BufReader::new(process.stdout.take().unwrap()).lines();
+    let line = lines.find(|line| line.as_ref().unwrap().contains("ssh -p ")).unwrap().unwrap();
+    let (_, rest) = line.split_once("ssh -p ").unwrap();
+    let port = rest.split(' ').next().unwrap().to_owned();
+    (process, port)
+}
+
+impl Drop for Running {
+    fn drop(&mut self) {
+        _ = self.process.kill();
+        _ = self.process.wait();
+        if !thread::panicking() {
+            _ = fs::remove_dir_all(&self.folder);
+        }
+    }
+}

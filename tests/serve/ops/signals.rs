@@ -1,0 +1,93 @@
+//! Signals: SIGHUP reads the configuration again, SIGTERM ends the server.
+
+use std::fs;
+
+use rustix::process::Signal;
+use serde_json::Value;
+
+use super::running::Running;
+
+#[test]
+fn a_hang_up_reads_the_configuration_again() {
+    let running = Running::start("log = \"info\"\n", "text");
+    running.wait_for_log("host: listening");
+    let config = running.folder.join("serve.toml");
+
+    fs::write(&config, "connections = 0\nconections-per-key = 1\n").unwrap();
+    running.signal(Signal::HUP);
+    running.wait_for_log("the nearest key is");
+    let log = running.log();
+    let fault = log.lines().find(|line| line.contains("must be a whole number")).unwrap();
+    assert!(fault.contains("ERROR host: configuration not reloaded"), "{fault}");
+    // The one before stays in force.
+    let visitor = running.visitor();
+    running.wait_for_visitors(1);
+    drop(visitor);
+    running.wait_for_visitors(0);
+
+    fs::write(
+        &config,
+        "listen = \"127.0.0.1:1\"\nlog = \"info,connections=off\"\n\
+                        [metrics]\nlisten = \"127.0.0.1:2\"\n",
+    )
+    .unwrap();
+    running.signal(Signal::HUP);
+    running.wait_for_log("configuration reloaded");
+    // The address of the command line goes before that of the file.
+    running.wait_for_log("needs_restart=\"metrics.listen\"");
+    let before = running.log().matches(" connections: ").count();
+    let visitor = running.visitor();
+    running.wait_for_visitors(1);
+    drop(visitor);
+    running.wait_for_visitors(0);
+    assert_eq!(running.log().matches(" connections: ").count(), before);
+    assert!(before >= 3, "{}", running.log());
+}
+
+#[test]
+fn new_limits_apply_to_those_who_come() {
+    let running = Running::start("connections = 1\n", "text");
+    let first = running.visitor();
+    running.wait_for_visitors(1);
+    let mut second = running.visitor();
+    second.wait_for_end();
+    running.wait_for_log("reason=\"full\"");
+    fs::write(running.folder.join("serve.toml"), "connections = 2\n").unwrap();
+    running.signal(Signal::HUP);
+    running.wait_for_log("configuration reloaded");
+    let second = running.visitor();
+    running.wait_for_visitors(2);
+    drop((first, second));
+}
+
+#[test]
+fn a_signal_ends_the_server_and_the_log_says_so() {
+    let mut running = Running::start("drain-seconds = 5\n", "json");
+    let mut visitor = running.visitor();
+    running.wait_for_visitors(1);
+    running.signal(Signal::TERM);
+    assert_eq!(running.wait_for_end(), Some(0));
+    visitor.wait_for_end();
+    let log = running.log();
+    let events: Vec<Value> = log.lines().map(|line| serde_json::from_str(line).unwrap()).collect();
+    let messages: Vec<&str> = events.iter().filter_map(|event| event["message"].as_str()).collect();
+    let of_a_visit =
+        ["listening", "accepted", "authenticated", "draining", "disconnected", "ended"];
+    let expected: Vec<&str> =
+        messages.iter().copied().filter(|message| of_a_visit.contains(message)).collect();
+    assert_eq!(expected, of_a_visit, "{log}");
+    let draining = events.iter().find(|event| event["message"] == "draining").unwrap();
+    assert_eq!((&draining["seconds"], &draining["target"]), (&5.into(), &"host".into()));
+    assert!(!log.contains("127.0.0.1\""), "an address is logged whole: {log}");
+}
+
+#[test]
+fn an_operator_ends_the_server_as_a_signal_does() {
+    let mut running = Running::start("drain-seconds = 1\n", "text");
+    let mut visitor = running.visitor();
+    running.wait_for_visitors(1);
+    assert_eq!(running.admin_says(&["drain"]), "the server ends; it waits for 1 visitor\n");
+    assert_eq!(running.wait_for_end(), Some(0));
+    visitor.wait_for_end();
+    assert!(running.log().contains("host: draining seconds=1"), "{}", running.log());
+}

@@ -1,0 +1,84 @@
+//! The game on a server: real clients of OpenSSH that see each other's pictures.
+
+mod server;
+
+use std::time::{Duration, Instant};
+
+use rustix::process::Signal;
+
+use self::server::GameServer;
+use crate::player::Player;
+
+/// Enter takes what is offered: the name, the room, the card; then one walks.
+fn enter_room(player: &Player, name: &str) {
+    player.wait_for("Enter takes it");
+    // Ctrl-U empties the line.
+    player.send(format!("\x15{name}"));
+    player.wait_for(name);
+    player.send("\r");
+    player.wait_for("Open a room");
+    player.send("\r");
+    player.wait_for("Go in");
+    player.send("\r");
+    player.wait_for(&format!("{name} comes in."));
+}
+
+#[test]
+fn two_players_meet_talk_and_part() {
+    let server = GameServer::open();
+    let [mara, jon] = ["mara", "jon"].map(|_| server.player(&[]));
+    enter_room(&mara, "Mara");
+    enter_room(&jon, "Jon");
+    mara.wait_for("Jon comes in.");
+    jon.send("\r");
+    jon.send("behind you\x1b[31m");
+    jon.send("\r");
+    mara.wait_for("behind you");
+    mara.send("/");
+    mara.send("where?\r");
+    jon.wait_for("where?");
+    drop(jon);
+    mara.wait_for("Jon leaves.");
+}
+
+#[test]
+fn a_client_that_answers_nothing_is_gone_within_fifteen_seconds() {
+    let server = GameServer::open();
+    let [mara, jon] = ["mara", "jon"].map(|_| server.player(&[]));
+    enter_room(&mara, "Mara");
+    enter_room(&jon, "Jon");
+    mara.wait_for("Jon comes in.");
+    let cut = Instant::now();
+    jon.signal(Signal::STOP);
+    mara.wait_for("Jon leaves.");
+    assert!(cut.elapsed() < Duration::from_secs(15), "{:?}", cut.elapsed());
+    jon.signal(Signal::CONT);
+}
+
+#[test]
+fn a_key_is_an_account_that_a_restart_keeps() {
+    let mut server = GameServer::open();
+    let key = format!("IdentityFile={}", server.user_key());
+    let player = server.player(&["-o", &key]);
+    enter_room(&player, "Mara");
+    server.restart();
+    let player = server.player(&["-o", &key]);
+    player.wait_for("Mara");
+    player.wait_for("Enter takes it");
+    player.send("\r");
+    player.wait_for("Open a room");
+    let guest = server.player(&[]);
+    guest.wait_for("Enter takes it");
+    guest.send("\x15MARA\r");
+    guest.wait_for("Somebody has this name");
+}
+
+#[test]
+fn a_server_that_ends_says_so() {
+    let mut server = GameServer::open();
+    let mut player = server.player(&[]);
+    enter_room(&player, "Mara");
+    server.stop();
+    let ending = player.wait_for_end();
+    assert_eq!(ending.status.code(), Some(0));
+}

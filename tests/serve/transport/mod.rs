@@ -1,0 +1,12 @@
+//! The transport, below any game: every test ends with a visitor who still gets an answer.
+
+mod awkward;
+mod clients;
+mod command;
+mod echo;
+mod floods;
+mod host_key;
+mod house;
+mod raw;
+
+pub(crate) use house::{PATIENCE, folder, wait_until};
