@@ -164,13 +164,6 @@ impl Rooms {
         Ok(place)
     }
 
-    /// Closes a room, with a sentence to those in it; returns whether there was such a room.
-    pub(crate) fn close(&self, id: RoomId, sentence: &str) -> bool {
-        let doorway =
-            locked(&self.0.open, |open| open.rooms.get(&id).map(|room| Arc::clone(&room.doorway)));
-        doorway.map(|doorway| doorway.close(sentence)).is_some()
-    }
-
     /// Adds a room, which does not run yet.
     fn add(&self, wish: &RoomWish) -> Result<NewRoom, RoomRefusal> {
         let Directory { limits, catalog, open, .. } = &*self.0;

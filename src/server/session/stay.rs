@@ -10,13 +10,11 @@ use crate::app::MapDisplay;
 use crate::app::parts::MapPanel;
 use crate::game::{Outcome, PlayerView};
 use crate::server::room::{Header, MemberId, MemberView, Mode, Phase, RoomView};
-use crate::server::summary::RoomId;
 use crate::tui::View;
 use crate::world::{Camera, FieldOfView};
 
 /// A stay in a room.
 pub(super) struct Stay {
-    pub(super) room: RoomId,
     /// The visitor as a member; `None` if they watch.
     pub(super) member: Option<MemberId>,
     /// Whom they watch.
@@ -54,9 +52,8 @@ struct Shown {
 }
 
 impl Stay {
-    pub(super) fn new(room: RoomId, member: Option<MemberId>) -> Self {
+    pub(super) fn new(member: Option<MemberId>) -> Self {
         Self {
-            room,
             member,
             watched: None,
             talk: Talk::default(),

@@ -229,9 +229,9 @@ impl Visit {
                     self.renew_menu();
                 }
             }
-            News::Entered { room, member } => {
+            News::Entered { member, .. } => {
                 self.note = None;
-                self.stay = Some(Stay::new(room, member));
+                self.stay = Some(Stay::new(member));
                 self.clock.skip_to(self.now);
                 self.show(Page::Room);
             }

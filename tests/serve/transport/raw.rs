@@ -69,7 +69,11 @@ fn a_connection_that_drips_is_closed() {
 
 #[test]
 fn garbage_is_refused() {
-    let house = House::open_with(|config| config.handshake = Duration::from_secs(2));
+    let house = House::open_with(|config| {
+        config.handshake = Duration::from_secs(2);
+        // Four failures from one address are enough to be refused by chance.
+        config.admission.failures = 1000;
+    });
     let mut random = SplitMix64::new(1);
     for beginning in [b"GET / HTTP/1.1\r\n\r\n" as &[u8], b"\0\0\0\0", VERSION, b"SSH-1.5-x\r\n"] {
         let mut stream = connect(&house);
