@@ -169,11 +169,15 @@ impl Game {
         if self.missiles.is_empty() {
             return;
         }
-        let Self { player, members, missiles, world, guards, .. } = self;
-        let bodies = playing(player, members.as_deref()).map(|(index, it)| (index, it.motion));
-        for landed in missiles.step(world, guards, bodies) {
+        for landed in self.step_missiles() {
             self.land(landed);
         }
+    }
+
+    fn step_missiles(&mut self) -> Vec<Landed> {
+        let Self { player, members, missiles, world, guards, .. } = self;
+        let bodies = playing(player, members.as_deref()).map(|(index, it)| (index, it.motion));
+        missiles.step(world, guards, &bodies)
     }
 
     fn land(&mut self, landed: Landed) {

@@ -22,7 +22,7 @@ pub(super) const COLORS: [(ColorDepth, &str); 4] = [
 ];
 
 /// The name of `value`, which has one.
-pub(super) fn name_of<T: PartialEq>(names: &[(T, &'static str)], value: T) -> &'static str {
+pub(super) fn name_of<T: Copy + PartialEq>(names: &[(T, &'static str)], value: T) -> &'static str {
     names.iter().find(|(named, _)| *named == value).map_or("", |(_, name)| name)
 }
 

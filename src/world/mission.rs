@@ -56,7 +56,9 @@ impl World {
             .filter(|thing| thing.kind == ThingKind::Exit)
             .map(|thing| thing.cell)
             .collect();
-        exits.into_iter().for_each(|cell| self.take_things(cell, |kind| kind == ThingKind::Exit));
+        for cell in exits {
+            self.take_things(cell, |kind| kind == ThingKind::Exit);
+        }
         self
     }
 

@@ -18,7 +18,7 @@ fn rooms(start: usize, duty: &str) -> World {
             (0, _) | (_, 0 | 12) => '#',
             (_, 6) if column == start => '@',
             _ if column + 1 == COLUMNS => '#',
-            _ if column % 4 == 0 && !matches!(row % 6, 0 | 1 | 5) => '#',
+            _ if column.is_multiple_of(4) && !matches!(row % 6, 0 | 1 | 5) => '#',
             (2..30, 4 | 8) if column % 3 == 1 => 'G',
             _ => '.',
         };

@@ -68,15 +68,12 @@ impl Members {
         for (_, member) in shown {
             let Some(sprite) = self.sprites[member.color as usize] else { continue };
             let figure = member.figure(world, sprite);
-            match figures.get_mut(count) {
-                Some(before) => {
-                    has_changed |= *before != figure;
-                    *before = figure;
-                }
-                None => {
-                    has_changed = true;
-                    figures.push(figure);
-                }
+            if let Some(before) = figures.get_mut(count) {
+                has_changed |= *before != figure;
+                *before = figure;
+            } else {
+                has_changed = true;
+                figures.push(figure);
             }
             count += 1;
         }

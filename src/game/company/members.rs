@@ -145,7 +145,10 @@ impl Game {
         if self.members.is_none() {
             return Some(act(self));
         }
-        let before = self.swap_turn(index)?;
+        let before = self.members.as_ref()?.turn;
+        if !self.swap_turn(index) {
+            return None;
+        }
         let done = act(self);
         self.swap_turn(index);
         if let Some(members) = &mut self.members {
@@ -165,14 +168,14 @@ impl Game {
         }
     }
 
-    /// Exchanges the player who has the turn with the one in a slot. Returns whose turn it was.
-    fn swap_turn(&mut self, index: usize) -> Option<Option<usize>> {
+    /// Exchanges the player who has the turn with the one in a slot. Returns whether there is one.
+    fn swap_turn(&mut self, index: usize) -> bool {
         let Self { members, player, .. } = self;
-        let members = members.as_deref_mut()?;
-        let before = members.turn;
-        std::mem::swap(&mut members.member_mut(index)?.player, player);
+        let Some(members) = members.as_deref_mut() else { return false };
+        let Some(member) = members.member_mut(index) else { return false };
+        std::mem::swap(&mut member.player, player);
         members.turn = Some(index);
-        Some(before)
+        true
     }
 
     /// The players who are alive and have not reached the exit, with their indices, as they were

@@ -102,7 +102,7 @@ impl Game {
         if self.playing().next().is_none() {
             return;
         }
-        self.each_turn(|game, intents| game.move_one(intents));
+        self.each_turn(Self::move_one);
         self.thin_smoke();
         self.move_doors();
         self.each_turn(|game, intents| {

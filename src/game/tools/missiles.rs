@@ -189,7 +189,7 @@ impl Missiles {
         &mut self,
         world: &World,
         guards: &Guards,
-        players: impl Iterator<Item = (usize, Motion)> + Clone,
+        players: &(impl Iterator<Item = (usize, Motion)> + Clone),
     ) -> Vec<Landed> {
         let mut landed = Vec::new();
         self.flying.retain_mut(|missile| {

@@ -18,7 +18,9 @@ impl Protocol {
         self.received_at = now;
         let mut inputs = Vec::new();
         self.decoder.feed(bytes, |input| inputs.push(input));
-        inputs.into_iter().for_each(|input| self.take_input(input, now));
+        for input in inputs {
+            self.take_input(input, now);
+        }
     }
 
     /// The next event, in the order of arrival.

@@ -14,12 +14,12 @@ pub(super) struct Reports {
 
 impl Reports {
     /// Whether a key or mouse report may arrive at any time.
-    pub(super) fn are_frequent(&self) -> bool {
+    pub(super) fn are_frequent(self) -> bool {
         self.has_key_flags || self.mouse.is_some()
     }
 
     /// Adds the sequences that enable the reports.
-    pub(super) fn push_start(&self, text: &mut String) {
+    pub(super) fn push_start(self, text: &mut String) {
         text.push_str(sequence::ENABLE_FOCUS_REPORTS);
         if self.has_key_flags {
             text.push_str(sequence::PUSH_KEY_FLAGS);
@@ -28,7 +28,7 @@ impl Reports {
     }
 
     /// Adds the sequences that disable the reports, in reverse order.
-    pub(super) fn push_end(&self, text: &mut String) {
+    pub(super) fn push_end(self, text: &mut String) {
         push_mouse(text, self.mouse, None);
         if self.has_key_flags {
             text.push_str(sequence::POP_KEY_FLAGS);

@@ -111,7 +111,8 @@ fn leave(typist: &mut Typist) {
 fn assert_kept(data: &Path, name: &str, script: &Script) {
     let steps = script.steps();
     let path = data.join(format!("runs/{name}.easy.{steps}.script"));
-    let kept = fs::read_to_string(&path).unwrap_or_else(|error| panic!("{path:?}: {error}"));
+    let kept =
+        fs::read_to_string(&path).unwrap_or_else(|error| panic!("{}: {error}", path.display()));
     let kept = Script::parse(&kept, name).unwrap_or_else(|faults| panic!("{faults}"));
     let intents = |script: &Script| script.iter().map(|(_, intents)| intents).collect::<Vec<_>>();
     assert!(intents(&kept) == intents(script), "{name} was not played as it was typed");

@@ -91,7 +91,9 @@ proptest! {
         let mut games = [0; 2].map(|_| Game::for_company(world(EVERYTHING), RULES, company));
         for game in &mut games {
             game.join(PlayerColor::Red);
-            events.iter().for_each(|event| happen(game, event));
+            for event in &events {
+                happen(game, event);
+            }
         }
         prop_assert_eq!(games[0].checksum(), games[1].checksum());
         prop_assert!(games[0] == games[1]);

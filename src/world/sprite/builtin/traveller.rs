@@ -126,13 +126,13 @@ fn dyed(picture: &Texture, color: PlayerColor) -> Texture {
         let [across, none, down] = texel.channels().map(u32::from);
         let share = |channel: u32, of: u32| (channel * of / u32::from(DYE)).min(255) as u8;
         let is_dyed = none == 0 && across > 0;
-        (alpha > 0).then(|| match is_dyed {
-            true => {
-                let middle = across.midpoint(down);
-                Rgb::new(share(red, across), share(green, middle), share(blue, down))
-            }
-            false => texel,
-        })
+        let color = if is_dyed {
+            let middle = across.midpoint(down);
+            Rgb::new(share(red, across), share(green, middle), share(blue, down))
+        } else {
+            texel
+        };
+        (alpha > 0).then_some(color)
     })
 }
 
