@@ -47,10 +47,10 @@ use crate::color::palette::ColorDepth;
 /// protocol.output(now).clear(); // sent to the terminal
 /// protocol.receive(b"w", now);
 /// assert!(matches!(protocol.next_event(), Some(Event::Key(event)) if event.key == Key::Char('w')));
-/// assert!(!protocol.is_ready(now)); // it waits for the answers to its queries
-/// protocol.receive(b"\x1b[?62;22c\x1b[0n", now);
 /// protocol.draw(|screen| screen.draw_character(0, 0, '@', [Color::Reset; 2]));
 /// assert!(protocol.output(now).contains(&b'@'));
+/// protocol.output(now).clear();
+/// assert!(!protocol.is_ready(now)); // it waits until the terminal has answered
 /// ```
 #[derive(Debug)]
 pub struct Protocol {
