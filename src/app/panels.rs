@@ -2,10 +2,10 @@
 
 use std::fmt::{self, Display};
 
-use ratatui::buffer::Buffer;
-use ratatui::layout::{Constraint, Flex, Layout, Margin, Rect, Size};
+use ratatui::layout::{Constraint, Flex, Layout, Rect, Size};
+use ratatui::style::Color;
 use ratatui::text::{Span, Text};
-use ratatui::widgets::{Block, Borders, Padding, Paragraph, Widget, Wrap};
+use ratatui::widgets::{Block, Padding, Paragraph, Wrap};
 
 use crate::app::bindings::{Action, Bindings};
 use crate::canvas::Canvas;
@@ -60,34 +60,28 @@ pub(crate) fn minimap(picture: Rect, map: &Minimap) -> Option<Rect> {
 
 /// Draws the border of a panel with a title, and returns the area inside.
 ///
-/// Each side is drawn separately, because a whole block would also clear the inside, which a
-/// minimap fills anyway.
+/// A ratatui block would also clear the inside, which a minimap fills anyway, and allocate a list for
+/// its titles, in each frame.
 pub(crate) fn framed(canvas: &mut impl Canvas, area: Rect, title: &str) -> Rect {
     let inside = Block::bordered().inner(area);
-    let row = |y| Rect { y, height: area.height.min(1), ..area };
-    let column = |x| Rect { x, width: area.width.min(1), ..inside };
-    for (sides, area) in [
-        (Borders::LEFT, column(area.left())),
-        (Borders::RIGHT, column(area.right().saturating_sub(1))),
-        (Borders::BOTTOM | Borders::LEFT | Borders::RIGHT, row(area.bottom().saturating_sub(1))),
-    ] {
-        canvas.draw_widget(Block::new().borders(sides), area);
+    if area.width < BORDERS || area.height < BORDERS {
+        return inside;
     }
-    canvas.draw_widget(TopBorder { title }, row(area.top()));
+    let (right, bottom) = (area.right() - 1, area.bottom() - 1);
+    let mut draw = |x, y, character| canvas.draw_character(x, y, character, [Color::Reset; 2]);
+    for y in area.top() + 1..bottom {
+        draw(area.x, y, '│');
+        draw(right, y, '│');
+    }
+    for (y, [first, last]) in [(area.y, ['┌', '┐']), (bottom, ['└', '┘'])] {
+        draw(area.x, y, first);
+        (area.x + 1..right).for_each(|x| draw(x, y, '─'));
+        draw(right, y, last);
+    }
+    let title = Span::raw(title);
+    let width = (title.width() as u16).min(right - area.x - 1);
+    canvas.draw_widget(title, Rect { x: area.x + 1, width, height: 1, ..area });
     inside
-}
-
-/// The upper side of a panel, with a title. A ratatui block allocates a list for its titles, which
-/// costs too much in each frame.
-struct TopBorder<'a> {
-    title: &'a str,
-}
-
-impl Widget for TopBorder<'_> {
-    fn render(self, area: Rect, buffer: &mut Buffer) {
-        Block::new().borders(Borders::TOP | Borders::LEFT | Borders::RIGHT).render(area, buffer);
-        Span::raw(self.title).render(area.inner(Margin::new(1, 0)), buffer);
-    }
 }
 
 /// Draws the question whether to leave; `effect` is what that does.

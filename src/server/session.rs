@@ -176,6 +176,13 @@ impl Session {
         self.due_at(room, now).into_iter().chain(visit).chain(self.protocol.wakes_at()).min()
     }
 
+    /// The time from which on a newer snapshot may bring a frame; `None` until the terminal answers or
+    /// [`wakes_at`](Self::wakes_at).
+    pub(crate) fn looks_at(&self, now: Duration) -> Option<Duration> {
+        let looks = self.ending == Ending::Not && self.protocol.is_ready(now);
+        looks.then(|| self.pace.next(self.answers_key.is_some()))
+    }
+
     /// Sets the time between two frames.
     pub(crate) fn set_frame_time(&mut self, frame_time: Duration) {
         self.pace.set_frame_time(frame_time);

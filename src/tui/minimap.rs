@@ -25,7 +25,7 @@ use crate::render::Column;
 use crate::world::{Camera, Heading, World};
 pub use explored::Explored;
 use map_point::MapPoint;
-use top_view::TopView;
+use top_view::{Row, TopView};
 use window::Window;
 
 /// A widget that shows the map from above: walls in their colours, floor by its height, the player
@@ -158,7 +158,10 @@ impl Minimap<'_> {
     }
 
     fn draw_halves(&self, picture: &Picture, area: Rect, canvas: &mut impl Canvas) {
-        let row = |y| (0..u32::from(area.width)).map(move |x| picture.point(x, y));
+        let row = |y| {
+            let pixels = picture.row(y);
+            (0..u32::from(area.width)).map(move |x| pixels.point(x))
+        };
         match self.depth {
             ColorDepth::True | ColorDepth::Indexed256 => {
                 for (y, upper) in (area.top()..area.bottom()).zip((0..).step_by(2)) {
@@ -249,14 +252,35 @@ struct Picture<'a> {
     window: Window,
 }
 
-impl Picture<'_> {
+impl<'a> Picture<'a> {
+    /// The pixels in row `y`.
+    fn row(&self, y: u32) -> PixelRow<'_, 'a> {
+        PixelRow { picture: self, y, middle: self.top_view.row(self.window.position(0, y).y) }
+    }
+
+    /// The map point at a pixel.
+    fn point(&self, x: u32, y: u32) -> MapPoint {
+        self.row(y).point(x)
+    }
+}
+
+/// A row of pixels of a map.
+struct PixelRow<'p, 'a> {
+    picture: &'p Picture<'a>,
+    y: u32,
+    /// The points in the middle of the pixels.
+    middle: Row<'p>,
+}
+
+impl PixelRow<'_, '_> {
     /// The map point at a pixel. If a pixel covers several cells, it is the most important one.
     #[inline]
-    fn point(&self, x: u32, y: u32) -> MapPoint {
-        let position = self.window.position(x, y);
-        let [columns, rows] = self.window.cells_per_pixel();
+    fn point(&self, x: u32) -> MapPoint {
+        let Picture { top_view, window } = self.picture;
+        let position = window.position(x, self.y);
+        let [columns, rows] = window.cells_per_pixel();
         if (columns, rows) == (1, 1) {
-            return self.top_view.row(position.y).point(position.x);
+            return self.middle.point(position.x);
         }
         // The pixel covers this number of cells in each direction; each is sampled at its middle.
         let along = |middle: f64, count: u32| {
@@ -264,7 +288,7 @@ impl Picture<'_> {
             (0..count).map(move |index| first + f64::from(index))
         };
         let points = along(position.y, rows).flat_map(|y| {
-            let row = self.top_view.row(y);
+            let row = top_view.row(y);
             along(position.x, columns).map(move |x| row.point(x))
         });
         points.max_by_key(|point| point.importance()).unwrap_or(MapPoint::Void)

@@ -36,8 +36,6 @@ pub(super) struct Visit {
     pub(super) in_lobby: bool,
     pub(super) replies: mpsc::Sender<Reply>,
     replied: mpsc::Receiver<Reply>,
-    /// Until then no frame is due, so that snapshots need not be looked at.
-    quiet_until: Duration,
     /// When the session was woken last.
     woken_at: Duration,
     /// When a key came that no frame has answered.
@@ -60,6 +58,9 @@ enum Happening {
 
 /// The time after which a session is woken again for what it has been woken for.
 const AGAIN: Duration = Duration::from_millis(250);
+/// A driver that does not look at its room wakes after this time, since idle visitors are put out and
+/// a room may close even if nothing is read or answered.
+const PATIENCE: Duration = Duration::from_secs(1);
 /// The widest message of the day, in columns.
 const MESSAGE_COLUMNS: usize = 200;
 /// The time between the end of the sessions and that of the server, where there is as much.
@@ -103,7 +104,6 @@ impl Visit {
             in_lobby: false,
             replies,
             replied,
-            quiet_until: Duration::ZERO,
             woken_at: Duration::ZERO,
             key_at: None,
             answers_key: None,
@@ -131,7 +131,6 @@ impl Visit {
             match happening {
                 Happening::Arrived(Arrival::Bytes(bytes)) => {
                     self.session.receive(&bytes, now);
-                    self.quiet_until = now;
                     if self.session.has_key() {
                         self.key_at.get_or_insert(now);
                     }
@@ -181,7 +180,6 @@ impl Visit {
         self.session.set_frame_time(frame_time);
         if self.session.is_due(view.as_deref(), now) {
             self.session.draw(view.as_deref(), now);
-            self.quiet_until = now + frame_time;
             self.shared.metrics.frame_time.add(self.shared.now() - now);
             self.answers_key = self.key_at.take();
         }
@@ -199,11 +197,13 @@ impl Visit {
         is_sending: bool,
         wakes_at: Option<Duration>,
     ) -> Happening {
-        let is_quiet = self.quiet_until > self.shared.now();
-        let looks = !is_sending && !is_quiet && self.place.is_some();
-        let quiet_end =
-            (is_quiet && !is_sending && self.place.is_some()).then_some(self.quiet_until);
-        let times = [wakes_at, quiet_end, self.ends_at, is_sending.then(|| self.patience())];
+        let now = self.shared.now();
+        let is_free = !is_sending && self.place.is_some();
+        let looks_at = self.session.looks_at(now).filter(|_| is_free);
+        let looks = looks_at.is_some_and(|time| time <= now);
+        let quiet_end = looks_at.filter(|_| !looks);
+        let patience = now + PATIENCE;
+        let times = [wakes_at, quiet_end, self.ends_at, (!looks).then_some(patience)];
         let time = times.into_iter().flatten().min();
         let begun = self.shared.begun;
         let Self { place, rooms, replied, in_lobby, presence, .. } = self;
@@ -217,12 +217,6 @@ impl Visit {
             Ok(()) = rooms.changed(), if *in_lobby => Happening::RoomsChanged,
             () = sleep_until(begun + time.unwrap_or_default()), if time.is_some() => Happening::Time,
         }
-    }
-
-    /// The time until which a frame that does not leave keeps the session from its own time: idle
-    /// visitors are put out even if they do not read.
-    fn patience(&self) -> Duration {
-        self.shared.now() + Duration::from_secs(1)
     }
 
     fn wake(&mut self, now: Duration) {
