@@ -13,7 +13,7 @@ use std::time::Duration;
 pub(crate) struct Sample {
     /// The share of their time in which the threads that draw were busy, from 0 to 1.
     pub(crate) busy: f64,
-    /// By how much the latest step of a room was late.
+    /// By how much the steps of rooms were late in the mean.
     pub(crate) lateness: Duration,
 }
 
@@ -32,8 +32,9 @@ const LEAST: f64 = 5.0;
 const BUSY: f64 = 0.9;
 /// The share below which it may rise.
 const SPARE: f64 = 0.75;
-/// The delay of a step from which on the rate falls: half a step.
-const LATE: Duration = Duration::from_millis(25);
+/// The mean delay of steps from which on the rate falls: a step. The longest delay was refused: where
+/// other programs use the machine, some step is late in each quarter of a second.
+const LATE: Duration = Duration::from_micros(16_667);
 /// The decisions with time to spare after which the rate rises: a second.
 const CALM: u32 = 4;
 

@@ -13,8 +13,10 @@ use super::{Metrics, locked};
 #[derive(Debug)]
 pub(crate) struct Load {
     metrics: Arc<Metrics>,
-    /// In microseconds: by how much the latest step of a room was late.
+    /// In microseconds: the sum of the delays of all steps since the last sample.
     lateness: AtomicU64,
+    /// The number of those steps.
+    steps: AtomicU64,
     /// In microseconds: the least time between two frames.
     frame_time: AtomicU64,
     /// The processor time of this process at the last sample.
@@ -28,8 +30,8 @@ impl Load {
     pub(crate) fn new(metrics: Arc<Metrics>) -> Self {
         let processors = available_parallelism().map_or(1, NonZero::get) as f64;
         let used = Mutex::new(processor_time());
-        let (lateness, frame_time) = (AtomicU64::new(0), AtomicU64::new(33_333));
-        Self { metrics, lateness, frame_time, used, processors }
+        let [lateness, steps] = [const { AtomicU64::new(0) }; 2];
+        Self { metrics, lateness, steps, frame_time: AtomicU64::new(33_333), used, processors }
     }
 
     /// The figures of the server.
@@ -39,13 +41,15 @@ impl Load {
 
     /// Notes by how much a step of a room was late.
     pub(crate) fn note_lateness(&self, lateness: Duration) {
-        self.lateness.fetch_max(micros(lateness), Ordering::Relaxed);
+        self.lateness.fetch_add(micros(lateness), Ordering::Relaxed);
+        self.steps.fetch_add(1, Ordering::Relaxed);
         self.metrics.step_lateness.add(lateness);
     }
 
     /// What was measured in the last `time`, since the last call.
     pub(crate) fn sample(&self, time: Duration) -> Sample {
-        let lateness = Duration::from_micros(self.lateness.swap(0, Ordering::Relaxed));
+        let steps = self.steps.swap(0, Ordering::Relaxed).max(1);
+        let lateness = Duration::from_micros(self.lateness.swap(0, Ordering::Relaxed) / steps);
         let now = processor_time();
         let used = locked(&self.used, |used| now.saturating_sub(std::mem::replace(used, now)));
         let available = (time + lateness).as_secs_f64() * self.processors;
