@@ -7,11 +7,12 @@ use std::time::Duration;
 
 use cellcaster::rng::SplitMix64;
 use russh::client::{self, Handle, Handler, Msg};
-use russh::keys::PublicKeyOrCertificate;
+use russh::keys::{PrivateKeyWithHashAlg, PublicKeyOrCertificate, load_secret_key};
 use russh::{Channel, ChannelMsg, Error};
 use tokio::time::{Instant, sleep_until};
 
 use crate::report::Tally;
+use crate::server::Access;
 
 /// Believes every server.
 pub(crate) struct Anyone;
@@ -43,11 +44,12 @@ const PICTURE: usize = 200;
 /// Plays until the counting has ended.
 pub(crate) async fn play(
     address: SocketAddr,
+    access: &Access,
     number: u64,
     delay: Duration,
     counts: &AtomicBool,
 ) -> Result<Tally, Error> {
-    let (_handle, channel) = connect(address, number).await?;
+    let (_handle, channel) = connect(address, access, number).await?;
     let mut client = Client {
         channel,
         chance: SplitMix64::new(number),
@@ -68,18 +70,31 @@ pub(crate) async fn play(
 /// A session that never reads.
 pub(crate) async fn never_read(
     address: SocketAddr,
+    access: &Access,
 ) -> Result<(Handle<Anyone>, Channel<Msg>), Error> {
-    connect(address, 0).await
+    connect(address, access, 0).await
 }
 
 async fn connect(
     address: SocketAddr,
+    access: &Access,
     number: u64,
 ) -> Result<(Handle<Anyone>, Channel<Msg>), Error> {
     let config = client::Config { nodelay: true, ..client::Config::default() };
     let mut handle = client::connect(Arc::new(config), address, Anyone).await?;
-    let user = format!("load{number}");
-    while !handle.authenticate_none(&user).await?.success() {}
+    match access {
+        Access::Guest => {
+            let user = format!("load{number}");
+            while !handle.authenticate_none(&user).await?.success() {}
+        }
+        Access::Key { user, file } => {
+            let key = Arc::new(load_secret_key(file, None)?);
+            let key = PrivateKeyWithHashAlg::new(key, None);
+            if !handle.authenticate_publickey(user, key).await?.success() {
+                return Err(Error::NotAuthenticated);
+            }
+        }
+    }
     let channel = handle.channel_open_session().await?;
     channel.set_env(false, "COLORTERM", "truecolor").await?;
     channel.request_pty(false, "xterm-256color", 80, 24, 0, 0, &[]).await?;

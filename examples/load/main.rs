@@ -7,11 +7,14 @@
 //! The server is a process of its own on processor 0, and all clients are in this process on
 //! processor 1. Each client walks about a room, answers the terminal's queries, counts frames and
 //! bytes, and measures the time from a key to the next bytes. `--silent N` adds connections that never
-//! read. `--server PATH` is the program, `target/release/cellcaster` otherwise.
+//! read. `--server PATH` is the program, `target/release/cellcaster` otherwise. `--sshd` measures OpenSSH's
+//! server with one process of the game for each session in place of `cellcaster serve`.
 
 mod client;
+mod process;
 mod report;
 mod server;
+mod sshd;
 
 use std::error::Error;
 use std::sync::Arc;
@@ -29,6 +32,7 @@ use server::ServerProcess;
 struct Plan {
     sessions: usize,
     silent: usize,
+    uses_sshd: bool,
     seconds: u64,
     server: String,
     answer_delay: Duration,
@@ -41,8 +45,12 @@ const WARM_UP: Duration = Duration::from_secs(8);
 
 fn main() -> Result<(), Box<dyn Error>> {
     let plan = plan()?;
-    server::pin(std::process::id(), 1);
-    let server = ServerProcess::start(&plan.server, plan.sessions + plan.silent)?;
+    process::pin(std::process::id(), 1);
+    let server = if plan.uses_sshd {
+        sshd::start(&plan.server)?
+    } else {
+        ServerProcess::start(&plan.server, plan.sessions + plan.silent)?
+    };
     let runtime = Builder::new_current_thread().enable_all().build()?;
     runtime.block_on(run(&plan, &server))
 }
@@ -50,29 +58,30 @@ fn main() -> Result<(), Box<dyn Error>> {
 async fn run(plan: &Plan, server: &ServerProcess) -> Result<(), Box<dyn Error>> {
     let counts = Arc::new(AtomicBool::new(false));
     let mut clients = JoinSet::new();
-    let empty = server.usage()?;
+    let empty = server.usage();
     for number in 0..plan.sessions {
         let counts = counts.clone();
-        let (address, delay) = (server.address, plan.answer_delay);
+        let (address, access, delay) = (server.address, server.access.clone(), plan.answer_delay);
         clients.spawn(async move {
-            client::play(address, number as u64, delay, &counts).await.map_err(|it| it.to_string())
+            let played = client::play(address, &access, number as u64, delay, &counts);
+            played.await.map_err(|it| it.to_string())
         });
         sleep(PAUSE).await;
     }
     if plan.sessions > 0 {
         sleep(WARM_UP).await;
     }
-    let walking = server.usage()?;
+    let walking = server.usage();
     let mut silent = Vec::new();
     for _ in 0..plan.silent {
-        silent.push(client::never_read(server.address).await?);
+        silent.push(client::never_read(server.address, &server.access).await?);
     }
     sleep(Duration::from_secs(2)).await;
-    let before = server.usage()?;
+    let before = server.usage();
     counts.store(true, Ordering::Release);
     sleep(Duration::from_secs(plan.seconds)).await;
     counts.store(false, Ordering::Release);
-    let after = server.usage()?;
+    let after = server.usage();
     let tallies = ended(clients).await;
     println!(
         "memory        {} MB empty, {} MB with {} sessions, {} MB at the end",
@@ -99,12 +108,17 @@ fn plan() -> Result<Plan, Box<dyn Error>> {
     let mut plan = Plan {
         sessions: 20,
         silent: 0,
+        uses_sshd: false,
         seconds: 10,
         server: "target/release/cellcaster".to_owned(),
         answer_delay: Duration::ZERO,
     };
     let mut arguments = std::env::args().skip(1);
     while let Some(name) = arguments.next() {
+        if name == "--sshd" {
+            plan.uses_sshd = true;
+            continue;
+        }
         let value = arguments.next().ok_or_else(|| format!("{name} needs a value"))?;
         match name.as_str() {
             "--sessions" => plan.sessions = value.parse()?,

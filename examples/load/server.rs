@@ -6,25 +6,29 @@ use std::io::{BufRead, BufReader};
 use std::net::SocketAddr;
 use std::path::PathBuf;
 use std::process::{Child, Command, Stdio};
-use std::time::Duration;
+
+use crate::process::Usage;
 
 /// A server that runs until this is dropped.
 pub(crate) struct ServerProcess {
-    child: Child,
-    folder: PathBuf,
+    pub(super) child: Child,
+    pub(super) folder: PathBuf,
     pub(crate) address: SocketAddr,
+    pub(crate) access: Access,
 }
 
-/// What a process has used.
-pub(crate) struct Usage {
-    pub(crate) processor: Duration,
-    pub(crate) megabytes: f64,
+/// How a client is let in.
+#[derive(Clone, Debug)]
+pub(crate) enum Access {
+    /// As a guest.
+    Guest,
+    /// With the private key in a file.
+    Key { user: String, file: PathBuf },
 }
 
 impl ServerProcess {
     pub(crate) fn start(program: &str, connections: usize) -> Result<Self, Box<dyn Error>> {
-        let folder = std::env::temp_dir().join(format!("cellcaster-load-{}", std::process::id()));
-        fs::create_dir_all(&folder)?;
+        let folder = folder()?;
         let config = folder.join("serve.toml");
         let most = connections + 100;
         fs::write(
@@ -45,25 +49,20 @@ impl ServerProcess {
         BufReader::new(child.stdout.take().ok_or("no output")?).read_line(&mut line)?;
         let address = line.strip_prefix("Listening at ").and_then(|it| it.split(';').next());
         let address = address.ok_or("the server does not listen")?.parse()?;
-        Ok(Self { child, folder, address })
+        Ok(Self { child, folder, address, access: Access::Guest })
     }
 
-    /// What the server has used so far, from `/proc`.
-    pub(crate) fn usage(&self) -> Result<Usage, Box<dyn Error>> {
-        let folder = PathBuf::from(format!("/proc/{}", self.child.id()));
-        let stat = fs::read_to_string(folder.join("stat"))?;
-        let fields = stat.rsplit(')').next().unwrap_or_default().split_whitespace();
-        // User and system time, in hundredths of a second.
-        let ticks: u64 = fields.skip(11).take(2).filter_map(|it| it.parse::<u64>().ok()).sum();
-        let status = fs::read_to_string(folder.join("status"))?;
-        let resident = status.lines().find_map(|line| line.strip_prefix("VmRSS:"));
-        let kilobytes = resident.and_then(|it| it.split_whitespace().next());
-        let kilobytes: f64 = kilobytes.ok_or("no size")?.parse()?;
-        Ok(Usage {
-            processor: Duration::from_millis(ticks * 10),
-            megabytes: (kilobytes / 102.4).round() / 10.0,
-        })
+    /// What the server has used so far.
+    pub(crate) fn usage(&self) -> Usage {
+        Usage::of(self.child.id())
     }
+}
+
+/// A folder for the files of a server.
+pub(crate) fn folder() -> Result<PathBuf, Box<dyn Error>> {
+    let folder = std::env::temp_dir().join(format!("cellcaster-load-{}", std::process::id()));
+    fs::create_dir_all(&folder)?;
+    Ok(folder)
 }
 
 impl Drop for ServerProcess {
@@ -72,10 +71,4 @@ impl Drop for ServerProcess {
         _ = self.child.wait();
         _ = fs::remove_dir_all(&self.folder);
     }
-}
-
-/// Keeps a process on one processor.
-pub(crate) fn pin(process: u32, processor: u32) {
-    let arguments = ["-apc".to_owned(), processor.to_string(), process.to_string()];
-    _ = Command::new("taskset").args(arguments).stdout(Stdio::null()).status();
 }

@@ -21,6 +21,7 @@ mod line_entry;
 mod look;
 mod menus;
 mod news;
+mod pace;
 mod page;
 mod settings;
 mod shown_steps;
@@ -35,25 +36,21 @@ use std::time::Duration;
 
 use self::look::Look;
 pub(crate) use self::news::{Ask, BoardRow, HostFacts, Identity, IdleLimits, News};
+use self::pace::Pace;
 use self::visit::Visit;
 use super::room::RoomView;
 use crate::terminal::{Event, Options, Protocol, WindowSize};
-
-/// The least time between two frames after a key: the answer to it is not delayed by the frame rate.
-const PROMPT: Duration = Duration::from_millis(16);
 
 /// The session of a visitor.
 pub(crate) struct Session {
     protocol: Protocol,
     visit: Visit,
     ending: Ending,
-    /// The time of the last frame.
-    drawn_at: Option<Duration>,
+    pace: Pace,
     /// Whether the next frame answers a key, and the step of the room that the key was pressed in.
     answers_key: Option<u64>,
     /// The step of the room in the last frame.
     drawn_step: u64,
-    frame_time: Duration,
 }
 
 /// How far the session has ended.
@@ -79,15 +76,14 @@ impl Session {
         let mut protocol = Protocol::new(options, size);
         protocol.begin(now);
         let look = Look::new(options.is_ascii, &identity.preferences);
-        let frame_time = host.frame_time;
+        let pace = Pace::new(host.frame_time);
         let mut session = Self {
             protocol,
             visit: Visit::new(identity, host, look, now),
             ending: Ending::Not,
-            drawn_at: None,
+            pace,
             answers_key: None,
             drawn_step: 0,
-            frame_time,
         };
         session.follow_terminal();
         session
@@ -146,7 +142,7 @@ impl Session {
         if let (Some(stay), Some(room)) = (&mut self.visit.stay, room) {
             stay.frames.drawn(self.protocol.frames_sent(), room.game.steps());
         }
-        self.drawn_at = Some(now);
+        self.pace.drawn(now);
     }
 
     fn draw_anew(&mut self, room: Option<&RoomView>, now: Duration) {
@@ -180,9 +176,9 @@ impl Session {
         self.due_at(room, now).into_iter().chain(visit).chain(self.protocol.wakes_at()).min()
     }
 
-    /// Sets the least time between two frames.
+    /// Sets the time between two frames.
     pub(crate) fn set_frame_time(&mut self, frame_time: Duration) {
-        self.frame_time = frame_time;
+        self.pace.set_frame_time(frame_time);
     }
 
     /// Whether the session has ended, and the connection may be closed after the output is sent.
@@ -201,8 +197,7 @@ impl Session {
         }
         let answers = |pressed| room.is_none_or(|room| room.step != pressed) || self.visit.is_stale;
         let is_prompt = is_stale && self.answers_key.is_some_and(answers);
-        let wait = if is_prompt { PROMPT.min(self.frame_time) } else { self.frame_time };
-        Some(self.drawn_at.map_or(now, |drawn| (drawn + wait).max(now)))
+        Some(self.pace.next(is_prompt).max(now))
     }
 
     /// Handles the events of the terminal.

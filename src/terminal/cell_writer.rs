@@ -22,6 +22,7 @@ mod inexact;
 mod ink;
 mod motion;
 mod packed_cell;
+mod packed_position;
 mod palette;
 mod pen;
 mod refinement;

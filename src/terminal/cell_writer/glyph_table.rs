@@ -25,6 +25,8 @@ pub(super) struct GlyphId(u16);
 pub(super) struct GlyphTable {
     glyphs: Vec<Glyph>,
     ids: BTreeMap<Glyph, GlyphId>,
+    /// The ids of ASCII characters without modifiers, which most texts consist of.
+    plain: [Option<GlyphId>; 128],
 }
 
 impl Glyph {
@@ -62,10 +64,24 @@ impl GlyphId {
 
 impl GlyphTable {
     /// The id of `glyph`, a new one if necessary; `None` if the table is full.
+    #[inline]
     pub(super) fn id(&mut self, glyph: Glyph) -> Option<GlyphId> {
-        if let Some(&id) = self.ids.get(&glyph) {
-            return Some(id);
+        let is_plain = glyph.modifiers == 0;
+        let plain = self.plain.get(glyph.character as usize).filter(|_| is_plain);
+        plain.copied().flatten().or_else(|| self.find(glyph))
+    }
+
+    fn find(&mut self, glyph: Glyph) -> Option<GlyphId> {
+        let id = self.ids.get(&glyph).copied().or_else(|| self.add(glyph))?;
+        if glyph.modifiers == 0
+            && let Some(plain) = self.plain.get_mut(glyph.character as usize)
+        {
+            *plain = Some(id);
         }
+        Some(id)
+    }
+
+    fn add(&mut self, glyph: Glyph) -> Option<GlyphId> {
         let next = u16::try_from(self.glyphs.len()).ok()?;
         let id = (next < GlyphId::COUNT).then_some(GlyphId(next))?;
         self.glyphs.push(glyph);
@@ -81,7 +97,7 @@ impl GlyphTable {
 
 impl Default for GlyphTable {
     fn default() -> Self {
-        let mut glyph_table = Self { glyphs: Vec::new(), ids: BTreeMap::new() };
+        let mut glyph_table = Self { glyphs: Vec::new(), ids: BTreeMap::new(), plain: [None; 128] };
         let mut id = |glyph| glyph_table.id(Glyph::new(glyph, Modifier::empty()));
         let ids = [' ', '▀'].map(&mut id);
         debug_assert_eq!(ids, [Some(GlyphId::SPACE), Some(GlyphId::UPPER_HALF)]);

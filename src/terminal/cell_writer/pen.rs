@@ -10,6 +10,7 @@ use super::control::ControlSequence;
 use super::ink::Price;
 use super::motion;
 use super::packed_cell::BlockElement;
+use super::packed_position::PackedPosition;
 use super::palette::Palette;
 use super::screen::Screen;
 use super::shift::{Shift, Way};
@@ -25,7 +26,7 @@ pub(super) struct Pen {
     style: Option<Style>,
     /// The position of the cursor; `None` if it is unknown. In the column after the last one, the
     /// cursor waits to wrap.
-    cursor: Option<Position>,
+    cursor: Option<PackedPosition>,
     /// Whether the terminal repeats characters (REP).
     repeats: bool,
     /// The last block drawn, unless other bytes were written since.
@@ -87,7 +88,7 @@ impl Pen {
 
     /// The position of the cursor; `None` if it is unknown.
     pub(super) fn position(&self) -> Option<Position> {
-        self.cursor.filter(|cursor| cursor.x < self.size.width)
+        self.cursor().filter(|cursor| cursor.x < self.size.width)
     }
 
     /// Sets the size of the terminal.
@@ -124,11 +125,11 @@ impl Pen {
     }
 
     pub(super) fn move_to(&mut self, target: Position) {
-        let (cursor, size) = (self.cursor, self.size);
+        let (cursor, size) = (self.cursor(), self.size);
         let mut piece = self.frame().piece();
         motion::push(cursor, target, size, &mut piece);
         piece.finish();
-        self.cursor = Some(target);
+        self.cursor = Some(PackedPosition::of(target));
     }
 
     pub(super) fn set_style(&mut self, target: Style) {
@@ -147,7 +148,7 @@ impl Pen {
     #[expect(clippy::inline_always, reason = "calls would take longer than what they do")]
     #[inline(always)]
     pub(super) fn draw_block(&mut self, position: Position, element: BlockElement, style: Style) {
-        let (cursor, size, current) = (self.cursor, self.size, self.style);
+        let (cursor, size, current) = (self.cursor(), self.size, self.style);
         if self.last == Some(element) && cursor == Some(position) && current == Some(style) {
             self.repeated += 1;
             self.advance(position);
@@ -217,10 +218,17 @@ impl Pen {
         }
     }
 
+    /// The position of the cursor, as in the field.
+    #[inline]
+    fn cursor(&self) -> Option<Position> {
+        self.cursor.map(PackedPosition::get)
+    }
+
     /// Records that the cursor has moved on from `position` by one column.
     #[inline]
     fn advance(&mut self, position: Position) {
-        self.cursor = Some(Position { x: position.x.saturating_add(1), ..position });
+        let next = Position { x: position.x.saturating_add(1), ..position };
+        self.cursor = Some(PackedPosition::of(next));
     }
 
     /// Moves a stretch of row `y`. The cells to its right move away and back.
