@@ -28,7 +28,7 @@ use super::governor::Governor;
 use super::line::Line;
 use super::load::Load;
 use super::room::{Catalog, Mode};
-use super::rooms::{RoomLimits, Rooms};
+use super::rooms::{Logs, RoomLimits, Rooms};
 use super::summary::{RoomSummary, RoomWish};
 use super::{Departure, Host, Link, LiveConfig, Metrics, RoomRow, Visitor, Visitors};
 use crate::store::host::{HostStore, UnixTime};
@@ -78,11 +78,11 @@ impl GameHost {
             most_watchers: config.watchers as usize,
             closes_after: config.empty_room,
             standing: standing_rooms(),
-            recordings: config.recordings.clone(),
         };
+        let logs = Logs::recorded(config.recordings.clone());
         // Without random numbers from the system there would be no keys, either.
         let seed = getrandom::u64().unwrap_or_default();
-        let rooms = Rooms::new(limits, Arc::new(Catalog::builtin()), Arc::clone(&load), seed);
+        let rooms = Rooms::new(limits, Arc::new(Catalog::builtin()), logs, Arc::clone(&load), seed);
         let shared = Arc::new(Shared {
             config: live,
             metrics,

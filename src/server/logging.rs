@@ -11,7 +11,6 @@
 //! An event has a topic, which is the target that `tracing` knows: `host`, `connections`, `rooms`,
 //! `results` or `admin`. A [`LogFilter`] has a level for each.
 
-#[allow(dead_code, reason = "the sequencer uses some")]
 pub(crate) mod events;
 mod filter;
 mod throttle;
@@ -76,4 +75,4 @@ fn subscriber(
 }
 
 #[cfg(test)]
-mod tests;
+pub(super) mod tests;

@@ -3,13 +3,16 @@
 //! Each room is a task, which a [`Sequencer`] runs. The directory gives out [`Place`]s in rooms; a place
 //! that is dropped is left. Lobbies watch a list of [`RoomSummary`], which is replaced when a room
 //! changes for them.
+//!
+//! A standing room that has ended by a panic is opened anew; its members are in the lobby then.
 
 mod place;
 mod recording;
+mod refusal;
+#[cfg(test)]
+mod tests;
 
 use std::collections::BTreeMap;
-use std::fmt;
-use std::path::PathBuf;
 use std::sync::atomic::{AtomicUsize, Ordering};
 use std::sync::{Arc, Mutex};
 use std::time::Duration;
@@ -17,12 +20,14 @@ use std::time::Duration;
 use tokio::sync::watch;
 
 pub(crate) use self::place::Place;
+pub(crate) use self::recording::Logs;
+pub(crate) use self::refusal::RoomRefusal;
 use super::line::Line;
 use super::load::Load;
 use super::locked;
 use super::logging::events;
-use super::room::{Catalog, Header, Mode, Room};
-use super::sequencer::{Doorway, Inbox, JoinRefusal, RoundLog, Sequencer, Shown};
+use super::room::{Catalog, Header, Mode, Phase, Room};
+use super::sequencer::{Doorway, Inbox, RoundLog, Sequencer, Shown};
 use super::summary::{RoomId, RoomSummary, RoomWish};
 use crate::rng::SplitMix64;
 
@@ -41,29 +46,13 @@ pub(crate) struct RoomLimits {
     pub(crate) closes_after: Duration,
     /// The rooms that are always there.
     pub(crate) standing: Vec<RoomWish>,
-    /// The folder in which rooms are recorded.
-    pub(crate) recordings: Option<PathBuf>,
-}
-
-/// Why somebody cannot be in a room.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub(crate) enum RoomRefusal {
-    /// There is no such room any more.
-    Gone,
-    /// It is full.
-    Full,
-    /// One plays alone in it.
-    Alone,
-    /// There are as many rooms as the host allows.
-    TooMany,
-    /// There is no such level.
-    NoLevel,
 }
 
 #[derive(Debug)]
 struct Directory {
     limits: RoomLimits,
     catalog: Arc<Catalog>,
+    logs: Logs,
     load: Arc<Load>,
     open: Mutex<OpenRooms>,
     summaries: watch::Sender<Arc<[RoomSummary]>>,
@@ -93,25 +82,22 @@ struct OpenRoom {
 }
 
 impl Rooms {
-    /// The standing rooms. All chance in rooms comes from `seed`.
+    /// The standing rooms. Each room takes its steps from one of `logs`, and all chance in rooms comes
+    /// from `seed`.
     ///
     /// It is to be called within a runtime, on which the rooms run.
     pub(crate) fn new(
         limits: RoomLimits,
         catalog: Arc<Catalog>,
+        logs: Logs,
         load: Arc<Load>,
         seed: u64,
     ) -> Self {
         let chance = SplitMix64::new(seed);
         let open = Mutex::new(OpenRooms { last: 0, chance, rooms: BTreeMap::new() });
         let summaries = watch::Sender::new(Arc::from([]));
-        let rooms = Self(Arc::new(Directory { limits, catalog, load, open, summaries }));
-        for wish in &rooms.0.limits.standing {
-            match rooms.add(wish) {
-                Ok(room) => rooms.spawn(room, None),
-                Err(refusal) => tracing::error!(level = wish.level, "no standing room: {refusal}"),
-            }
-        }
+        let rooms = Self(Arc::new(Directory { limits, catalog, logs, load, open, summaries }));
+        rooms.0.limits.standing.iter().for_each(|wish| rooms.open_standing(wish));
         rooms
     }
 
@@ -164,6 +150,14 @@ impl Rooms {
         Ok(place)
     }
 
+    /// Opens a standing room.
+    fn open_standing(&self, wish: &RoomWish) {
+        match self.add(wish) {
+            Ok(room) => self.spawn(room, None),
+            Err(refusal) => tracing::error!(level = wish.level, "no standing room: {refusal}"),
+        }
+    }
+
     /// Adds a room, which does not run yet.
     fn add(&self, wish: &RoomWish) -> Result<NewRoom, RoomRefusal> {
         let Directory { limits, catalog, open, .. } = &*self.0;
@@ -197,7 +191,12 @@ impl Rooms {
         let header = room.header();
         events::room_opened(id.0, &header.level, header.mode.name());
         self.publish();
-        let log = RoundLog::new(recording::log(self.0.limits.recordings.as_deref(), id), &room);
+        let log = RoundLog::new(self.0.logs.open(id), &room);
+        let standing = closes_after.is_none().then(|| RoomWish {
+            level: header.level.clone(),
+            mode: header.mode,
+            difficulty: header.difficulty,
+        });
         let load = Arc::clone(&self.0.load);
         // Nobody else can go on with what one plays alone.
         let is_alone = room.header().mode == Mode::Alone;
@@ -205,19 +204,33 @@ impl Rooms {
         let sequencer = Sequencer::new(room, log, doorway, load, closes_after);
         let rooms = self.clone();
         tokio::spawn(async move {
-            sequencer.run(|room| rooms.change(id, summary(id, room))).await;
+            let ended = sequencer.run(|room| rooms.change(id, room)).await;
             locked(&rooms.0.open, |open| open.rooms.remove(&id));
-            events::room_closed(id.0);
             rooms.publish();
+            match ended {
+                Ok(()) => events::room_closed(id.0),
+                Err(panic) => {
+                    events::room_failed(id.0, panic);
+                    standing.iter().for_each(|wish| rooms.open_standing(wish));
+                }
+            }
         });
     }
 
-    fn change(&self, id: RoomId, summary: RoomSummary) {
-        locked(&self.0.open, |open| {
-            if let Some(room) = open.rooms.get_mut(&id) {
-                room.summary = summary;
-            }
+    /// Records what is new in a room.
+    fn change(&self, id: RoomId, room: &Room) {
+        let is_over = |phase| matches!(phase, Phase::Over { .. });
+        let summary = summary(id, room);
+        let ends = is_over(summary.phase);
+        let before = locked(&self.0.open, |open| {
+            let open = open.rooms.get_mut(&id)?;
+            Some(std::mem::replace(&mut open.summary, summary))
         });
+        if ends && before.is_some_and(|before| !is_over(before.phase)) {
+            let view = room.view();
+            let winner = view.winner().map(|member| member.name.as_str());
+            events::round_ended(id.0, view.step, winner);
+        }
         self.publish();
     }
 
@@ -250,27 +263,5 @@ fn summary(id: RoomId, room: &Room) -> RoomSummary {
         phase: room.phase(),
         members: room.names().cloned().collect(),
         watchers: 0,
-    }
-}
-
-impl From<JoinRefusal> for RoomRefusal {
-    fn from(refusal: JoinRefusal) -> Self {
-        match refusal {
-            JoinRefusal::Closed => Self::Gone,
-            JoinRefusal::Full => Self::Full,
-        }
-    }
-}
-
-impl fmt::Display for RoomRefusal {
-    /// Writes a sentence for the visitor.
-    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
-        f.write_str(match self {
-            Self::Gone => "This room is closed.",
-            Self::Full => "This room is full.",
-            Self::Alone => "Somebody plays alone in this room; you can watch.",
-            Self::TooMany => "There are as many rooms as this server allows; enter one of them.",
-            Self::NoLevel => "There is no such level.",
-        })
     }
 }

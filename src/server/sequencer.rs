@@ -17,6 +17,7 @@ mod inbox;
 mod round_log;
 mod shown;
 
+use std::any::Any;
 use std::panic::{AssertUnwindSafe, catch_unwind};
 use std::sync::Arc;
 use std::time::Duration;
@@ -74,26 +75,32 @@ impl Sequencer {
     }
 
     /// Runs the room until it is closed. `on_change` is called when a lobby would show it otherwise.
-    pub(crate) async fn run(mut self, mut on_change: impl FnMut(&Room) + Send) {
+    ///
+    /// # Errors
+    /// The message of a panic, after which the room is closed.
+    pub(crate) async fn run(
+        mut self,
+        mut on_change: impl FnMut(&Room) + Send,
+    ) -> Result<(), String> {
         let mut next = Instant::now();
         loop {
             match self.pause(next) {
                 Pause::Until(time) => sleep_until(time).await,
                 Pause::Member => {
                     if !self.somebody_joins().await {
-                        return;
+                        return Ok(());
                     }
                     next = Instant::now();
                 }
             }
             let caught =
                 catch_unwind(AssertUnwindSafe(|| self.catch_up(&mut next, &mut on_change)));
-            if caught.is_err() {
+            if let Err(panic) = caught {
                 self.doorway.close(FAULT);
-                return;
+                return Err(message(&*panic));
             }
             if self.doorway.inbox.is_closed() {
-                return;
+                return Ok(());
             }
         }
     }
@@ -146,6 +153,13 @@ impl Sequencer {
             on_change(&self.room);
         }
     }
+}
+
+/// The message of a panic.
+fn message(panic: &(dyn Any + Send)) -> String {
+    let text = panic.downcast_ref::<&str>().copied();
+    let text = text.or_else(|| panic.downcast_ref().map(String::as_str));
+    text.unwrap_or("a panic without a message").to_owned()
 }
 
 /// The time of a step.

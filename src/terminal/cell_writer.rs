@@ -27,6 +27,7 @@ mod palette;
 mod pen;
 mod refinement;
 mod screen;
+mod shared;
 mod shift;
 mod style;
 mod trellis;
@@ -78,7 +79,6 @@ pub struct CellWriter<W> {
     bytes_written: u64,
     fidelity: Fidelity,
     shifts: Shifts,
-    row_encoder: RowEncoder,
     refinement: Refinement,
 }
 
@@ -95,7 +95,6 @@ impl<W: Write> CellWriter<W> {
             bytes_written: 0,
             fidelity: Fidelity::EXACT,
             shifts: Shifts::default(),
-            row_encoder: RowEncoder::default(),
             refinement: Refinement::new(),
         }
     }
@@ -202,7 +201,7 @@ impl<W: Write> CellWriter<W> {
             self.refinement.disturb();
             self.screen.count_rest();
             self.draw_changed();
-            self.refinement.draw_resting(&mut self.pen, &mut self.shifts, &mut self.screen);
+            Refinement::draw_resting(&mut self.pen, &mut self.shifts, &mut self.screen);
         } else {
             self.refine();
         }
@@ -214,12 +213,11 @@ impl<W: Write> CellWriter<W> {
         let (pen, shifts) = (&mut self.pen, &mut self.shifts);
         let price = (!is_exact).then(|| Price::at(self.fidelity, Notation::Entry));
         pen.define_colors(&self.screen, price);
-        for row in self.screen.changed_rows() {
-            if is_exact {
-                exact::draw_row(pen, shifts, row);
-            } else {
-                self.row_encoder.draw_row(pen, shifts, row, self.fidelity);
-            }
+        let rows = self.screen.changed_rows();
+        if is_exact {
+            rows.for_each(|row| exact::draw_row(pen, shifts, row));
+        } else {
+            RowEncoder::draw_rows(pen, shifts, rows, self.fidelity);
         }
     }
 }

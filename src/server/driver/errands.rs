@@ -10,7 +10,7 @@ use super::visit::Visit;
 use crate::server::logging::events;
 use crate::server::room::Deed;
 use crate::server::rooms::{Place, RoomRefusal};
-use crate::server::sequencer::DeedRefusal;
+use crate::server::sequencer::{DeedRefusal, FinishedRun};
 use crate::server::session::{Ask, News};
 use crate::store::Preferences;
 use crate::store::host::{Account, Name};
@@ -80,14 +80,14 @@ impl Visit {
     }
 
     /// Has a run verified and recorded.
-    pub(super) fn submit(&mut self, script: String) {
-        let Some(account) = self.account.as_ref().map(|account| account.id) else {
+    pub(super) fn submit(&mut self, run: FinishedRun) {
+        let Some(account) = self.account.clone() else {
             let sentence = "A guest's result does not rank: come with a public key.";
             return self.tell(News::Result(sentence.to_owned()));
         };
         let (replies, metrics) = (self.replies.clone(), Arc::clone(&self.shared.metrics));
         let is_accepted = self.shared.store.run(move |store| {
-            let sentence = results::record(store, account, &script, &metrics);
+            let sentence = results::record(store, &account, &run, &metrics);
             _ = replies.try_send(Reply::News(News::Result(sentence)));
         });
         if !is_accepted {

@@ -6,9 +6,10 @@ use crate::server::Metrics;
 use crate::server::line::Line;
 use crate::server::logging::events;
 use crate::server::room::NAME_COLUMNS;
+use crate::server::sequencer::FinishedRun;
 use crate::server::session::BoardRow;
 use crate::store::host::{
-    AccountId, HostStore, LevelBoard, StoreFailure, VerifiedLevel, VerifiedRun, verify,
+    Account, AccountId, HostStore, LevelBoard, StoreFailure, VerifiedLevel, VerifiedRun, verify,
 };
 use crate::world::Difficulty;
 
@@ -18,21 +19,21 @@ const MOST_ROWS: usize = 100;
 /// Replays a run of an account and records it; a sentence about it for the player.
 pub(super) fn record(
     store: &mut dyn HostStore,
-    account: AccountId,
-    script: &str,
+    account: &Account,
+    run: &FinishedRun,
     metrics: &Metrics,
 ) -> String {
-    let run = match verify(script) {
+    let run = match verify(&run.script) {
         Ok(VerifiedRun::Level(run)) => run,
         Ok(VerifiedRun::Descent(_)) => return "The level has no board.".to_owned(),
         Err(reason) => {
             metrics.results_refused.count();
-            tracing::warn!(%reason, "a result was refuted");
+            events::result_refused(account.name.as_str(), &run.level, &reason);
             return format!("The result does not count. {reason}");
         }
     };
     metrics.results_verified.count();
-    match placed(store, account, &run) {
+    match placed(store, account.id, &run) {
         Ok(sentence) => sentence,
         Err(failure) => {
             metrics.store_errors.count();

@@ -229,7 +229,7 @@ impl Visit {
         if let Some(place) = &self.place
             && let Some(run) = place.finished()
         {
-            self.submit(run.script);
+            self.submit(run);
         }
         if self.ends_at.take_if(|end| *end <= now).is_some() {
             self.session.tell(News::Ended("The server has ended. Come again!".to_owned()), now);
@@ -241,7 +241,7 @@ impl Visit {
         let Some(place) = self.place.take() else { return };
         self.presence.set_room(None);
         if let Some(run) = place.finished() {
-            self.submit(run.script);
+            self.submit(run);
         }
     }
 

@@ -22,7 +22,12 @@ impl Write for Kept {
 }
 
 /// What `act` logs.
-fn logged(format: LogFormat, filter: &str, act: impl FnOnce(&Logging)) -> String {
+/// What is logged while `act` runs, by this thread.
+pub(in crate::server) fn logged(
+    format: LogFormat,
+    filter: &str,
+    act: impl FnOnce(&Logging),
+) -> String {
     let kept = Kept::default();
     let writer = kept.clone();
     let (subscriber, logging) =

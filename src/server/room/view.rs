@@ -60,6 +60,11 @@ impl RoomView {
         self.members.iter().find(|member| member.id == id)
     }
 
+    /// The winner, if the round has ended and they are still there.
+    pub(crate) fn winner(&self) -> Option<&MemberView> {
+        self.member(self.standings.first()?.member)
+    }
+
     /// The member whose player that is.
     pub(crate) fn member_of(&self, player: PlayerId) -> Option<&MemberView> {
         self.members.iter().find(|member| member.player == Some(player))

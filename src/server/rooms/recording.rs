@@ -3,15 +3,42 @@
 //! Entries are few and short, and wait in memory until there are eight kilobytes of them, or a round
 //! begins. So the disk is touched seldom, and a thread for it was refused.
 
+use std::fmt;
 use std::fs::{self, File};
 use std::io::{self, BufWriter};
-use std::path::Path;
+use std::path::{Path, PathBuf};
 
 use crate::server::room::{Log, Queue, Recorded};
 use crate::server::summary::RoomId;
 
+/// Gives each room its log.
+pub(crate) struct Logs(Box<dyn Fn(RoomId) -> Box<dyn Log> + Send + Sync>);
+
+impl Logs {
+    /// Logs as `open` gives them.
+    pub(crate) fn new(open: impl Fn(RoomId) -> Box<dyn Log> + Send + Sync + 'static) -> Self {
+        Self(Box::new(open))
+    }
+
+    /// Queues, which are recorded in `folder` if there is one.
+    pub(crate) fn recorded(folder: Option<PathBuf>) -> Self {
+        Self::new(move |id| log(folder.as_deref(), id))
+    }
+
+    /// The log of a new room.
+    pub(super) fn open(&self, id: RoomId) -> Box<dyn Log> {
+        (self.0)(id)
+    }
+}
+
+impl fmt::Debug for Logs {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        f.debug_struct("Logs").finish_non_exhaustive()
+    }
+}
+
 /// The log of a room, which is recorded if there is a folder for it.
-pub(super) fn log(folder: Option<&Path>, id: RoomId) -> Box<dyn Log> {
+fn log(folder: Option<&Path>, id: RoomId) -> Box<dyn Log> {
     let Some(folder) = folder else { return Box::new(Queue::default()) };
     match file(folder, id) {
         Ok(file) => Box::new(Recorded::new(Queue::default(), BufWriter::new(file))),

@@ -18,6 +18,8 @@ pub(crate) struct RoundLog {
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub(crate) struct FinishedRun {
     pub(crate) member: MemberId,
+    /// The name of the level.
+    pub(crate) level: String,
     /// The script, which is still to be verified.
     pub(crate) script: String,
 }
@@ -99,7 +101,12 @@ impl Run {
         self.record(intents);
         let outcome = room.game().seen_by(player)?.outcome();
         self.is_finished = outcome == Outcome::Won;
-        self.is_finished.then(|| FinishedRun { member, script: self.script(room) })
+        let level = &room.header().level;
+        self.is_finished.then(|| FinishedRun {
+            member,
+            level: level.clone(),
+            script: self.script(room),
+        })
     }
 
     fn record(&mut self, intents: Intents) {

@@ -5,13 +5,15 @@ mod overhead;
 mod room_status;
 mod said;
 
+use std::cell::Cell;
+
 use ratatui::layout::Rect;
 use ratatui::style::{Color, Modifier, Style};
 use ratatui::text::{Line, Text};
 use ratatui::widgets::Block;
 
 use super::page::Page;
-use super::stay::{Stay, seconds_left};
+use super::stay::seconds_left;
 use super::visit::Visit;
 use crate::app::parts::{
     DrawOptions, Menu, Overlay, draw_banner, hint, is_too_small, leaving, message,
@@ -20,9 +22,16 @@ use crate::app::parts::{
 use crate::canvas::Canvas;
 use crate::color::palette::ColorDepth;
 use crate::server::room::{Phase, RoomView};
+use crate::tui::View;
 
 /// The least rows of a picture with a banner above a menu.
 const LEAST_WITH_BANNER: u16 = 20;
+
+thread_local! {
+    /// The renderer of the sessions that are drawn on this thread. Its memory is half a megabyte in a
+    /// level with steps, and a picture needs nothing of the one before.
+    static VIEW: Cell<Option<View>> = const { Cell::new(None) };
+}
 
 impl Visit {
     /// Draws the page, with `room` as the newest snapshot.
@@ -108,16 +117,18 @@ impl Visit {
             let flash = flash.map(|flash| (flash, camera.heading));
             let options = DrawOptions { flash, ..look.options() };
             let (game, seconds) = (&room.game, room.game.elapsed());
-            options.draw(game.world(), &camera, seconds, canvas, area, &mut stay.view);
+            let mut view = VIEW.take().unwrap_or_default();
+            options.draw(game.world(), &camera, seconds, canvas, area, &mut view);
+            stay.next_change = view.next_change();
             if let Some((_, player)) = seen_through {
                 overhead::draw(canvas, area, room, &player, &options);
                 let overlay = Overlay::new(game, player.id(), &options, preferences);
                 if let Some(overlay) = overlay {
-                    let Stay { map, view, .. } = stay;
-                    overlay.draw_map(canvas, area, map, view);
+                    overlay.draw_map(canvas, area, &mut stay.map, &view);
                     overlay.draw_hud(canvas, area, page == Page::Room);
                 }
             }
+            VIEW.set(Some(view));
         }
         if matches!(room.phase, Phase::Over { .. }) && matches!(page, Page::Room | Page::Chat) {
             members::draw_standings(canvas, area, room, look.depth);

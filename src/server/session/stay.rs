@@ -10,7 +10,6 @@ use crate::app::MapDisplay;
 use crate::app::parts::MapPanel;
 use crate::game::{Outcome, PlayerView};
 use crate::server::room::{Header, MemberId, MemberView, Mode, Phase, RoomView};
-use crate::tui::View;
 use crate::world::{Camera, FieldOfView};
 
 /// A stay in a room.
@@ -23,7 +22,8 @@ pub(super) struct Stay {
     pub(super) wants: Wants,
     pub(super) frames: ShownSteps,
     pub(super) map: MapPanel,
-    pub(super) view: View,
+    /// The time in the game at which the last picture changes without a cause.
+    pub(super) next_change: Option<f64>,
     pub(super) shows_members: bool,
     /// Whether the player is in the air, and whether they are dead, in the last picture.
     pub(super) is_airborne: bool,
@@ -60,7 +60,7 @@ impl Stay {
             wants: Wants::default(),
             frames: ShownSteps::default(),
             map: MapPanel::new(MapDisplay::default()),
-            view: View::default(),
+            next_change: None,
             shows_members: false,
             is_airborne: false,
             is_dead: false,
@@ -142,7 +142,7 @@ impl Stay {
             seconds: seconds_left(room),
             members: room.members.clone(),
             standings: room.standings.len(),
-            animates_at: self.view.next_change(),
+            animates_at: self.next_change,
         });
     }
 }

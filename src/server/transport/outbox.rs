@@ -4,7 +4,8 @@
 //! when the last one has left, and a client that does not read holds the memory of one frame. A frame
 //! goes to russh in parts, each when the last was written: russh keeps a buffer as large as the most
 //! that it was ever given at once. It drops the bytes of a part once they are encrypted, and the next
-//! flush of the stream then says that they were written. Counting encrypted bytes was refused:
+//! flush of the stream then says that they were written. Each part has memory of its own, so that a
+//! client that stops reading within a frame holds only its rest. Counting encrypted bytes was refused:
 //! compression changes their number.
 
 use std::future::Future;
@@ -36,7 +37,7 @@ pub(super) struct Passage {
     /// The number of parts so far.
     parts: AtomicU64,
     /// What russh was not given yet.
-    rest: Mutex<Bytes>,
+    rest: Mutex<Option<Frame>>,
     changed: Notify,
     counters: OnceLock<Arc<Counters>>,
     channel: OnceLock<(Handle, ChannelId)>,
@@ -74,9 +75,12 @@ impl Outbox {
         if frame.is_empty() || self.passage.is_closed.load(Ordering::Acquire) {
             return Ok(());
         }
-        let frame = Bytes::from_owner(Frame::new(frame, self.passage.counters.get().cloned()));
-        locked(&self.passage.rest, |rest| *rest = frame);
-        self.passage.send_part();
+        let counters = self.passage.counters.get().cloned();
+        if let Some(counters) = &counters {
+            counters.frames.fetch_add(1, Ordering::Relaxed);
+            counters.frame_bytes.fetch_add(frame.len() as u64, Ordering::Relaxed);
+        }
+        self.passage.send_part(Frame::new(frame, counters));
         Ok(())
     }
 
@@ -106,18 +110,19 @@ impl Passage {
         if self.state.load(Ordering::Acquire) != ENCRYPTED {
             return;
         }
-        if locked(&self.rest, |rest| rest.is_empty()) {
-            self.state.store(EMPTY, Ordering::Release);
-            self.changed.notify_one();
-        } else {
-            self.send_part();
+        match locked(&self.rest, Option::take) {
+            Some(rest) => self.send_part(rest),
+            None => {
+                self.state.store(EMPTY, Ordering::Release);
+                self.changed.notify_one();
+            }
         }
     }
 
     /// Nothing can be sent any more.
     pub(super) fn close(&self) {
         self.is_closed.store(true, Ordering::Release);
-        locked(&self.rest, Bytes::clear);
+        locked(&self.rest, Option::take);
         self.changed.notify_one();
     }
 
@@ -135,18 +140,21 @@ impl Passage {
         self.state.load(Ordering::Acquire) == EMPTY
     }
 
-    fn send_part(self: &Arc<Self>) {
+    /// Sends the first part of a frame, and keeps the others.
+    fn send_part(self: &Arc<Self>, mut frame: Frame) {
         let Some((handle, channel)) = self.channel.get() else { return };
-        let bytes = locked(&self.rest, |rest| rest.split_to(rest.len().min(PART)));
+        let rest = frame.split_off(PART);
+        locked(&self.rest, |kept| *kept = rest);
         self.state.store(QUEUED, Ordering::Release);
         self.parts.fetch_add(1, Ordering::AcqRel);
-        let part = Bytes::from_owner(Part { bytes, passage: self.clone() });
+        let part = Bytes::from_owner(Part { frame, passage: self.clone() });
         // The queue has room: one part, a few questions and the three messages of the end are in it.
         _ = at_once(handle.data(*channel, part));
     }
 }
 
-/// The bytes of a frame, which are counted as long as they are kept.
+/// The bytes of a frame or of a part of it, which are counted as long as they are kept.
+#[derive(Debug)]
 struct Frame {
     bytes: Vec<u8>,
     counters: Option<Arc<Counters>>,
@@ -156,16 +164,23 @@ impl Frame {
     fn new(bytes: Vec<u8>, counters: Option<Arc<Counters>>) -> Self {
         if let Some(counters) = &counters {
             counters.held.fetch_add(bytes.capacity(), Ordering::Relaxed);
-            counters.frames.fetch_add(1, Ordering::Relaxed);
-            counters.frame_bytes.fetch_add(bytes.len() as u64, Ordering::Relaxed);
         }
         Self { bytes, counters }
     }
-}
 
-impl AsRef<[u8]> for Frame {
-    fn as_ref(&self) -> &[u8] {
-        &self.bytes
+    /// Splits off what is behind the first `count` bytes, if anything is. Both have memory of their
+    /// own, so that a part which has left takes none.
+    fn split_off(&mut self, count: usize) -> Option<Self> {
+        if self.bytes.len() <= count {
+            return None;
+        }
+        let rest = Self::new(self.bytes.split_off(count), self.counters.clone());
+        let capacity = self.bytes.capacity();
+        self.bytes.shrink_to_fit();
+        if let Some(counters) = &self.counters {
+            counters.held.fetch_sub(capacity - self.bytes.capacity(), Ordering::Relaxed);
+        }
+        Some(rest)
     }
 }
 
@@ -179,13 +194,13 @@ impl Drop for Frame {
 
 /// A part of a frame. It is dropped when it is encrypted.
 struct Part {
-    bytes: Bytes,
+    frame: Frame,
     passage: Arc<Passage>,
 }
 
 impl AsRef<[u8]> for Part {
     fn as_ref(&self) -> &[u8] {
-        &self.bytes
+        &self.frame.bytes
     }
 }
 

@@ -6,6 +6,8 @@
 //! refused: in ascii mode the character also identifies the surface, and most of the bytes are
 //! colours.
 
+use std::cell::Cell;
+
 use ratatui::layout::Position;
 
 use super::exact;
@@ -14,12 +16,13 @@ use super::ink::{Ink, Inks, Notation, Price};
 use super::packed_cell::{BlockElement, Form, PackedCell};
 use super::pen::Pen;
 use super::screen::Row;
+use super::shared;
 use super::shift::{BYTE, CELL, Loss, Shifts};
 use super::style::Style;
 use super::trellis::{Action, Store, Terms, Trellis, Wanted};
 use crate::terminal::Fidelity;
 
-/// Draws rows inexactly; keeps its memory between rows.
+/// Draws rows inexactly; keeps its memory between rows, one for each thread.
 #[derive(Debug, Default)]
 pub(super) struct RowEncoder {
     inks: Inks,
@@ -41,15 +44,25 @@ pub(super) struct RowEncoder {
 #[derive(Debug, Default)]
 struct Colors([Vec<[f32; 2]>; 3]);
 
+thread_local! {
+    static ENCODER: Cell<Option<Box<RowEncoder>>> = const { Cell::new(None) };
+}
+
 impl RowEncoder {
-    /// Makes a row look like its target within `fidelity`.
-    pub(super) fn draw_row(
-        &mut self,
+    /// Makes rows look like their targets within `fidelity`.
+    pub(super) fn draw_rows<'a>(
         pen: &mut Pen,
         shifts: &mut Shifts,
-        mut row: Row,
+        rows: impl Iterator<Item = Row<'a>>,
         fidelity: Fidelity,
     ) {
+        let mut encoder = shared::take(&ENCODER).unwrap_or_default();
+        rows.for_each(|row| encoder.draw_row(pen, shifts, row, fidelity));
+        shared::put_back(&ENCODER, Some(encoder));
+    }
+
+    /// Makes a row look like its target within `fidelity`.
+    fn draw_row(&mut self, pen: &mut Pen, shifts: &mut Shifts, mut row: Row, fidelity: Fidelity) {
         if *row.intricate {
             // The extent of an intricate character is unknown.
             return exact::draw_row(pen, shifts, row);

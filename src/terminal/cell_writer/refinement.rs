@@ -5,21 +5,29 @@
 //! tolerance step by step was refused: cells were sent twice, and the last frame had most of the
 //! bytes.
 
+use std::cell::Cell as Place;
+
 use super::exact;
 use super::glyph_table::GlyphTable;
 use super::ink::Inks;
 use super::packed_cell::PackedCell;
 use super::pen::Pen;
 use super::screen::{Row, Screen};
+use super::shared;
 use super::shift::Shifts;
 
-/// The progress of refinement, and its memory.
+/// The progress of refinement.
 #[derive(Debug)]
 pub(super) struct Refinement {
     /// The number of frames until the picture is exact.
     frames: usize,
-    /// The errors and positions of the inexact cells, row by row.
-    inexact: Vec<Cell>,
+}
+
+/// The inexact cells.
+#[derive(Debug, Default)]
+struct Inexact {
+    /// Their errors and positions, row by row.
+    cells: Vec<Cell>,
     inks: Inks,
 }
 
@@ -38,9 +46,13 @@ const FRAMES: usize = 10;
 /// that soon move on would be drawn in vain.
 const PATIENCE: usize = 10;
 
+thread_local! {
+    static INEXACT: Place<Option<Box<Inexact>>> = const { Place::new(None) };
+}
+
 impl Refinement {
     pub(super) fn new() -> Self {
-        Self { frames: FRAMES, inexact: Vec::new(), inks: Inks::default() }
+        Self { frames: FRAMES }
     }
 
     /// Starts again after a motion.
@@ -53,55 +65,66 @@ impl Refinement {
         if screen.is_exact() {
             return;
         }
-        self.inexact.clear();
+        let mut inexact = shared::take(&INEXACT).unwrap_or_default();
+        inexact.cells.clear();
         for row in screen.inexact_rows() {
             if row.is_near() {
-                self.inexact.extend(errors(&row, &mut self.inks));
+                inexact.add(&row);
             } else {
                 exact::draw_row(pen, shifts, row);
             }
         }
-        self.choose_worst(self.frames);
+        inexact.choose_worst(self.frames);
         self.frames = (self.frames - 1).max(1);
-        let mut chosen = self.inexact.iter().peekable();
+        let mut chosen = inexact.cells.iter().peekable();
         for mut row in screen.inexact_rows() {
             while let Some(cell) = chosen.next_if(|cell| cell.y == row.y) {
                 exact::draw_cell(pen, &mut row, usize::from(cell.column));
             }
             *row.exact = row.shown == row.targets;
         }
+        shared::put_back(&INEXACT, Some(inexact));
     }
 
     /// Draws the next refinement frame of the rows that rest while others change.
-    pub(super) fn draw_resting(&mut self, pen: &mut Pen, shifts: &mut Shifts, screen: &mut Screen) {
+    pub(super) fn draw_resting(pen: &mut Pen, shifts: &mut Shifts, screen: &mut Screen) {
         if screen.is_exact() {
             return;
         }
+        let mut inexact = shared::take(&INEXACT).unwrap_or_default();
         for mut row in screen.inexact_rows() {
             let Some(drawn) = usize::from(row.rested).checked_sub(PATIENCE) else { continue };
             if !row.is_near() {
                 exact::draw_row(pen, shifts, row);
                 continue;
             }
-            self.inexact.clear();
-            self.inexact.extend(errors(&row, &mut self.inks));
-            self.choose_worst(FRAMES.saturating_sub(drawn).max(1));
-            for cell in &self.inexact {
+            inexact.cells.clear();
+            inexact.add(&row);
+            inexact.choose_worst(FRAMES.saturating_sub(drawn).max(1));
+            for cell in &inexact.cells {
                 exact::draw_cell(pen, &mut row, usize::from(cell.column));
             }
             *row.exact = row.shown == row.targets;
         }
+        shared::put_back(&INEXACT, Some(inexact));
+    }
+}
+
+impl Inexact {
+    /// Adds those of a row.
+    fn add(&mut self, row: &Row) {
+        self.cells.extend(errors(row, &mut self.inks));
     }
 
     /// Keeps the worst cells, a share for one of `frames` frames, in the order of the screen.
     fn choose_worst(&mut self, frames: usize) {
-        let share = self.inexact.len().div_ceil(frames);
-        if share < self.inexact.len() {
-            self.inexact
+        let share = self.cells.len().div_ceil(frames);
+        if share < self.cells.len() {
+            self.cells
                 .select_nth_unstable_by(share, |one, other| other.error.total_cmp(&one.error));
-            self.inexact.truncate(share);
+            self.cells.truncate(share);
         }
-        self.inexact.sort_unstable_by_key(|cell| (cell.y, cell.column));
+        self.cells.sort_unstable_by_key(|cell| (cell.y, cell.column));
     }
 }
 

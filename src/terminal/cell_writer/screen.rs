@@ -2,13 +2,16 @@
 
 mod canvas;
 
+use std::cell::Cell as Place;
+
 use ratatui::backend::ClearType;
-use ratatui::buffer::{Buffer, Cell};
+use ratatui::buffer::Cell;
 use ratatui::layout::{Position, Size};
 
 use super::ascii;
 use super::glyph_table::GlyphTable;
 use super::packed_cell::PackedCell;
+use super::shared;
 use super::shift::{Mark, Shift};
 use super::style::{Shade, Style};
 
@@ -25,11 +28,11 @@ pub struct Screen {
     shown: Vec<PackedCell>,
     /// The appearance that each cell should have.
     targets: Vec<PackedCell>,
-    /// The targets before the present frame.
+    /// The targets before the present frame; empty between frames.
     targets_before: Vec<PackedCell>,
     /// The landmarks of the targets at the time when each row was last drawn.
     marks: Vec<Mark>,
-    /// The intricate targets, which packed cells do not describe in full.
+    /// The intricate targets, which packed cells do not describe in full; empty before the first.
     wanted: Vec<Cell>,
     /// Whether a row has changed targets.
     changed: Vec<bool>,
@@ -39,8 +42,11 @@ pub struct Screen {
     exact: Vec<bool>,
     /// The number of frames for which a row has not changed.
     rested: Vec<u8>,
-    /// The buffer into which widgets are drawn first.
-    scratch: Buffer,
+}
+
+thread_local! {
+    /// The memory of the targets before a frame.
+    static BEFORE: Place<Vec<PackedCell>> = const { Place::new(Vec::new()) };
 }
 
 /// A row of the screen.
@@ -72,14 +78,13 @@ impl Screen {
     pub(super) fn resize(&mut self, size: Size) {
         let (width, height) = (usize::from(size.width), usize::from(size.height));
         self.width = width;
-        for targets in [&mut self.shown, &mut self.targets, &mut self.targets_before] {
+        for targets in [&mut self.shown, &mut self.targets] {
             targets.clear();
             targets.resize(width * height, PackedCell::BLANK);
         }
         self.marks.clear();
         self.marks.resize(width * height, Mark::NONE);
-        self.wanted.clear();
-        self.wanted.resize(width * height, Cell::EMPTY);
+        self.wanted = Vec::new();
         self.changed.clear();
         self.changed.resize(height, false);
         self.intricate.clear();
@@ -149,6 +154,7 @@ impl Screen {
     fn want_intricate(&mut self, place: usize, cell: &Cell) {
         let y = place / self.width;
         self.intricate[y] = true;
+        self.wanted.resize(self.targets.len(), Cell::EMPTY);
         if self.wanted[place] != *cell {
             self.wanted[place].clone_from(cell);
             self.changed[y] = true;
@@ -157,7 +163,8 @@ impl Screen {
 
     /// Begins a whole frame, with blank targets.
     pub(super) fn begin_frame(&mut self) {
-        std::mem::swap(&mut self.targets, &mut self.targets_before);
+        self.targets_before = shared::take(&BEFORE);
+        self.targets_before.clone_from(&self.targets);
         self.targets.fill(PackedCell::BLANK);
     }
 
@@ -168,6 +175,7 @@ impl Screen {
         for (changed, (targets, before)) in self.changed.iter_mut().zip(rows) {
             *changed |= targets != before;
         }
+        shared::put_back(&BEFORE, std::mem::take(&mut self.targets_before));
     }
 
     /// Whether any target has changed since the rows were drawn.
@@ -223,12 +231,15 @@ impl Screen {
     ) -> impl Iterator<Item = Row<'_>> {
         let width = self.width.max(1);
         let glyph_table = &self.glyph_table;
-        let wanted = self.targets.chunks(width).zip(self.wanted.chunks(width));
+        let wanted = &self.wanted;
         let known = self.shown.chunks_mut(width).zip(self.marks.chunks_mut(width));
         let states = self.changed.iter_mut().zip(&mut self.intricate).zip(&mut self.exact);
         let states = states.zip(&self.rested);
-        (0..).zip(known.zip(wanted).zip(states)).filter_map(move |(y, (cells, state))| {
-            let ((shown, marks), (targets, wanted)) = cells;
+        let cells = known.zip(self.targets.chunks(width));
+        (0..).zip(cells.zip(states)).filter_map(move |(y, (cells, state))| {
+            let ((shown, marks), targets) = cells;
+            let place = usize::from(y) * width;
+            let wanted = wanted.get(place..place + targets.len()).unwrap_or_default();
             let (((changed, intricate), exact), &rested) = state;
             let row =
                 Row { y, glyph_table, shown, targets, marks, wanted, intricate, exact, rested };

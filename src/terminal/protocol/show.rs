@@ -109,7 +109,12 @@ impl Protocol {
         let frame = self.writer.output_mut();
         let bytes = frame.len();
         if bytes > 0 {
-            self.output.append(frame);
+            if self.output.is_empty() {
+                // The memory of the frame leaves with it.
+                std::mem::swap(&mut self.output, frame);
+            } else {
+                self.output.append(frame);
+            }
             self.queue_request(bytes, now);
         }
         if let Drawn::Motion(fidelity) = drawn {

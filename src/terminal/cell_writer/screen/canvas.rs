@@ -1,16 +1,24 @@
 //! The canvas: draws the targets of a screen.
 
-use ratatui::buffer::Cell;
+use std::cell::Cell as Place;
+
+use ratatui::buffer::{Buffer, Cell};
 use ratatui::layout::Rect;
 use ratatui::style::Color;
 use ratatui::widgets::Widget;
 
 use super::super::ascii;
 use super::super::packed_cell::PackedCell;
+use super::super::shared;
 use super::super::style::Style;
 use super::Screen;
 use crate::canvas::Canvas;
 use crate::color::Rgb;
+
+thread_local! {
+    /// The buffer into which widgets are drawn first.
+    static SCRATCH: Place<Buffer> = Place::default();
+}
 
 impl Canvas for Screen {
     fn bounds(&self) -> Rect {
@@ -54,7 +62,7 @@ impl Canvas for Screen {
 
     fn draw_widget(&mut self, widget: impl Widget, area: Rect) {
         let area = area.intersection(self.bounds());
-        let mut scratch = std::mem::take(&mut self.scratch);
+        let mut scratch = shared::take(&SCRATCH);
         scratch.area = area;
         scratch.content.clear();
         scratch.content.resize(area.area() as usize, Cell::EMPTY);
@@ -63,7 +71,7 @@ impl Canvas for Screen {
             let place = usize::from(position.y) * self.width + usize::from(position.x);
             self.set(place, cell);
         }
-        self.scratch = scratch;
+        shared::put_back(&SCRATCH, scratch);
     }
 }
 

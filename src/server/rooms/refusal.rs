@@ -1,0 +1,42 @@
+//! Why somebody cannot be in a room.
+
+use std::fmt;
+
+use crate::server::sequencer::JoinRefusal;
+
+/// Why somebody cannot be in a room.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub(crate) enum RoomRefusal {
+    /// There is no such room any more.
+    Gone,
+    /// It is full.
+    Full,
+    /// One plays alone in it.
+    Alone,
+    /// There are as many rooms as the host allows.
+    TooMany,
+    /// There is no such level.
+    NoLevel,
+}
+
+impl From<JoinRefusal> for RoomRefusal {
+    fn from(refusal: JoinRefusal) -> Self {
+        match refusal {
+            JoinRefusal::Closed => Self::Gone,
+            JoinRefusal::Full => Self::Full,
+        }
+    }
+}
+
+impl fmt::Display for RoomRefusal {
+    /// Writes a sentence for the visitor.
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        f.write_str(match self {
+            Self::Gone => "This room is closed.",
+            Self::Full => "This room is full.",
+            Self::Alone => "Somebody plays alone in this room; you can watch.",
+            Self::TooMany => "There are as many rooms as this server allows; enter one of them.",
+            Self::NoLevel => "There is no such level.",
+        })
+    }
+}
