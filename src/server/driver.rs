@@ -12,6 +12,7 @@ mod account;
 mod errands;
 mod results;
 mod store_worker;
+mod terminal;
 mod visit;
 
 use std::io;
@@ -120,6 +121,10 @@ fn room_row(room: &RoomSummary) -> RoomRow {
 impl Host for GameHost {
     async fn serve(&self, visitor: Visitor, link: Link) -> Departure {
         let shared = Arc::clone(&self.shared);
+        if let Some(sentence) = terminal::refusal(&visitor) {
+            refuse(link, &sentence).await;
+            return Departure { status: 1 };
+        }
         let status = match shared.log_in(&visitor).await {
             Ok(known) => Visit::new(shared, visitor, known).run(link).await,
             Err(sentence) => {

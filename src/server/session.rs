@@ -14,6 +14,7 @@
 //! nothing among others who do nothing costs no bytes.
 
 mod choice;
+mod commands;
 mod draw;
 mod idle;
 mod keys;
@@ -26,6 +27,7 @@ mod settings;
 mod shown_steps;
 mod stay;
 mod talk;
+mod tell;
 #[cfg(test)]
 mod tests;
 mod visit;
@@ -37,10 +39,14 @@ use self::look::Look;
 pub(crate) use self::news::{Ask, BoardRow, HostFacts, Identity, IdleLimits, News};
 use self::visit::Visit;
 use super::room::RoomView;
+use crate::app::parts::{Meter, Stats};
 use crate::terminal::{Event, Options, Protocol, WindowSize};
 
 /// The least time between two frames after a key: the answer to it is not delayed by the frame rate.
 const PROMPT: Duration = Duration::from_millis(16);
+
+/// The least round-trip time of a link that is not local.
+const FAR: Duration = Duration::from_millis(3);
 
 /// The session of a visitor.
 pub(crate) struct Session {
@@ -54,6 +60,7 @@ pub(crate) struct Session {
     /// The step of the room in the last frame.
     drawn_step: u64,
     frame_time: Duration,
+    meter: Meter,
 }
 
 /// How far the session has ended.
@@ -78,7 +85,7 @@ impl Session {
     ) -> Self {
         let mut protocol = Protocol::new(options, size);
         protocol.begin(now);
-        let look = Look::new(options.is_ascii, &identity.preferences);
+        let look = Look::new(options.is_ascii, &identity);
         let frame_time = host.frame_time;
         let mut session = Self {
             protocol,
@@ -88,8 +95,10 @@ impl Session {
             answers_key: None,
             drawn_step: 0,
             frame_time,
+            meter: Meter::default(),
         };
         session.follow_terminal();
+        session.show_choices();
         session
     }
 
@@ -153,6 +162,9 @@ impl Session {
         let Self { protocol, visit, .. } = self;
         if let (Some(stay), Some(room)) = (&mut visit.stay, room) {
             stay.look_at(room, now);
+            if stay.watch.take_ring() && visit.identity.preferences.bell {
+                protocol.ring_bell();
+            }
         }
         protocol.draw(|screen| visit.draw(screen, room));
         visit.is_stale = false;
@@ -161,6 +173,16 @@ impl Session {
             self.drawn_step = room.step;
         }
         self.answers_key = self.answers_key.filter(|&pressed| pressed == self.drawn_step);
+        self.measure(now);
+    }
+
+    fn measure(&mut self, now: Duration) {
+        let Self { protocol, visit, meter, .. } = self;
+        if let Some(rates) = meter.frame(now, protocol.bytes_drawn()) {
+            let (round_trip, fidelity) = (protocol.round_trip(), protocol.fidelity());
+            let wants_compression = visit.wants_compression && protocol.is_limited_by_network();
+            visit.stats = Some(Stats { rates, round_trip, fidelity, wants_compression });
+        }
     }
 
     /// The bytes to send. The driver takes all of them.
@@ -208,15 +230,32 @@ impl Session {
     /// Handles the events of the terminal.
     fn handle_events(&mut self, now: Duration) {
         self.visit.answered = self.protocol.frames_answered();
+        self.visit.wants_compression = self.wants_compression();
         while let Some(event) = self.protocol.next_event() {
             match event {
-                Event::Key(_) => self.answers_key = Some(self.drawn_step),
+                Event::Key(_) | Event::Mouse(_) => self.answers_key = Some(self.drawn_step),
                 Event::Resized | Event::ColorDepth(_) => self.follow_terminal(),
                 _ => {}
             }
             self.visit.event(event, now);
         }
+        self.show_choices();
         self.finish(now);
+    }
+
+    /// Whether compression would make pictures finer. Until the link is measured, whether it is longer
+    /// than a local one.
+    fn wants_compression(&self) -> bool {
+        let Self { protocol, visit, .. } = self;
+        let is_far = protocol.round_trip().is_some_and(|time| time >= FAR);
+        !visit.host.compresses && is_far && protocol.is_limited_by_network()
+    }
+
+    /// Requests what the visitor has chosen from the terminal.
+    fn show_choices(&mut self) {
+        let Self { protocol, visit, .. } = self;
+        protocol.set_mouse(visit.pointer.is_on());
+        protocol.set_ascii(visit.look.is_ascii());
     }
 
     /// Takes over what is known of the terminal.
@@ -224,7 +263,9 @@ impl Session {
         let Self { protocol, visit, .. } = self;
         visit.look.follow_terminal(protocol, &visit.identity.preferences);
         visit.detection.depth = visit.look.depth;
-        visit.detection.source = Some(protocol.color_source());
+        let is_chosen = visit.identity.preferences.colors.is_some();
+        visit.detection.source = (!is_chosen).then(|| protocol.color_source());
+        visit.pointer.set_columns(protocol.size().columns);
     }
 
     /// Ends the session if it should, and gives the screen back once the terminal has answered all

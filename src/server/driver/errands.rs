@@ -12,8 +12,7 @@ use crate::server::room::Deed;
 use crate::server::rooms::{Place, RoomRefusal};
 use crate::server::sequencer::DeedRefusal;
 use crate::server::session::{Ask, News};
-use crate::store::Preferences;
-use crate::store::host::{Account, Name};
+use crate::store::host::{Account, AccountSettings, Name};
 use crate::world::Difficulty;
 
 /// What the store has answered.
@@ -65,7 +64,7 @@ impl Visit {
             Ask::Deed(deed) => self.act(deed),
             Ask::Leave => self.leave(),
             Ask::Board { level, difficulty } => self.show_board(level, difficulty),
-            Ask::Save(preferences) => self.save(preferences),
+            Ask::Save(settings) => self.save(settings),
         }
     }
 
@@ -176,14 +175,10 @@ impl Visit {
         });
     }
 
-    fn save(&mut self, preferences: Preferences) {
+    fn save(&mut self, settings: AccountSettings) {
         let Some(account) = self.account.as_ref().map(|account| account.id) else { return };
         self.shared.store.run(move |store| {
-            let saved = store.settings(account).and_then(|mut settings| {
-                settings.preferences = preferences;
-                store.set_settings(account, &settings)
-            });
-            if let Err(failure) = saved {
+            if let Err(failure) = store.set_settings(account, &settings) {
                 events::store_failed(failure);
             }
         });

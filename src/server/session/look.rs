@@ -1,5 +1,6 @@
 //! How pictures are drawn on the visitor's terminal.
 
+use super::news::Identity;
 use crate::app::parts::DrawOptions;
 use crate::color::palette::ColorDepth;
 use crate::render::Filter;
@@ -26,12 +27,18 @@ pub(super) struct Look {
 }
 
 impl Look {
-    /// For a terminal that shows only ASCII, or not, and a visitor with `preferences`.
-    pub(super) fn new(is_ascii: bool, preferences: &Preferences) -> Self {
+    /// For a terminal that shows only ASCII, or not, and the visitor `identity`.
+    pub(super) fn new(is_ascii: bool, identity: &Identity) -> Self {
         let terminal_glyphs = if is_ascii { GlyphMode::Ascii } else { GlyphMode::Half };
-        let mut look = Self { terminal_glyphs, ..Self::default() };
-        look.follow(preferences);
+        let field_of_view = identity.configuration.field_of_view;
+        let mut look = Self { terminal_glyphs, field_of_view, ..Self::default() };
+        look.follow(&identity.preferences);
         look
+    }
+
+    /// Whether only ASCII is sent: the terminal shows no more, and the visitor did not ask for it.
+    pub(super) fn is_ascii(&self) -> bool {
+        self.terminal_glyphs == GlyphMode::Ascii && self.glyphs != GlyphMode::Half
     }
 
     /// Takes over what is known of the terminal.

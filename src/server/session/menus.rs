@@ -34,13 +34,14 @@ impl Visit {
 
     fn lobby_menu(&self) -> Menu<Choice> {
         let menu = Menu::new(self.host.name.as_str());
-        let compression = "On a slow link, ssh -C makes pictures finer.".to_owned();
-        let message = self.host.message.as_ref().map(ToString::to_string);
+        let compression = "Your link is slow: ssh -C makes pictures finer.".to_owned();
+        let [notice, message] = [&self.host.notice, &self.host.message];
         let lines = [
             self.note.clone(),
             self.draining.clone(),
-            message,
-            (!self.host.compresses).then_some(compression),
+            notice.as_ref().map(ToString::to_string),
+            message.as_ref().map(ToString::to_string),
+            self.wants_compression.then_some(compression),
         ];
         let menu = lines.into_iter().flatten().fold(menu, Menu::line);
         let rooms = self.rooms_by_life();

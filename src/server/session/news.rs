@@ -3,11 +3,13 @@
 use std::sync::Arc;
 use std::time::Duration;
 
+use crate::app::Configuration;
 use crate::game::Rank;
 use crate::server::line::Line;
 use crate::server::room::{Catalog, Deed, MemberId};
 use crate::server::summary::{RoomId, RoomSummary, RoomWish};
 use crate::store::Preferences;
+use crate::store::host::AccountSettings;
 use crate::world::Difficulty;
 
 /// Who the visitor is.
@@ -20,6 +22,8 @@ pub(crate) struct Identity {
     /// Whether the account has that name already.
     pub(crate) is_named: bool,
     pub(crate) preferences: Preferences,
+    /// The keys that they use, and how the game begins.
+    pub(crate) configuration: Configuration,
 }
 
 /// What a session knows of the host and of the connection.
@@ -29,8 +33,12 @@ pub(crate) struct HostFacts {
     pub(crate) name: Line,
     /// The message of the day.
     pub(crate) message: Option<Line>,
+    /// What the visitor is to read about their key.
+    pub(crate) notice: Option<Line>,
     /// Whether the connection compresses what is sent.
     pub(crate) compresses: bool,
+    /// The setting of the visitor's locale that restricts them to ASCII, such as `LANG=C`.
+    pub(crate) ascii_locale: Option<Line>,
     pub(crate) catalog: Arc<Catalog>,
     pub(crate) idle: IdleLimits,
     /// The least time between two frames, at first.
@@ -73,8 +81,8 @@ pub(crate) enum Ask {
     Leave,
     /// A board: [`News::Board`].
     Board { level: String, difficulty: Difficulty },
-    /// To keep the preferences. Nothing is answered.
-    Save(Preferences),
+    /// To keep the settings. Nothing is answered.
+    Save(AccountSettings),
 }
 
 /// What the driver tells a session.

@@ -7,7 +7,7 @@ use super::shown_steps::ShownSteps;
 use super::talk::Talk;
 use super::wants::Wants;
 use crate::app::MapDisplay;
-use crate::app::parts::MapPanel;
+use crate::app::parts::{MapPanel, Watch};
 use crate::game::{Outcome, PlayerView};
 use crate::server::room::{Header, MemberId, MemberView, Mode, Phase, RoomView};
 use crate::tui::View;
@@ -23,6 +23,8 @@ pub(super) struct Stay {
     pub(super) wants: Wants,
     pub(super) frames: ShownSteps,
     pub(super) map: MapPanel,
+    /// What the bell rings for.
+    pub(super) watch: Watch,
     pub(super) view: View,
     pub(super) shows_members: bool,
     /// Whether the player is in the air, and whether they are dead, in the last picture.
@@ -52,14 +54,15 @@ struct Shown {
 }
 
 impl Stay {
-    pub(super) fn new(member: Option<MemberId>) -> Self {
+    pub(super) fn new(member: Option<MemberId>, map: MapDisplay) -> Self {
         Self {
             member,
             watched: None,
             talk: Talk::default(),
             wants: Wants::default(),
             frames: ShownSteps::default(),
-            map: MapPanel::new(MapDisplay::default()),
+            map: MapPanel::new(map),
+            watch: Watch::default(),
             view: View::default(),
             shows_members: false,
             is_airborne: false,
@@ -74,9 +77,17 @@ impl Stay {
     pub(super) fn look_at(&mut self, room: &RoomView, now: Duration) {
         self.talk.hear(&room.said, now);
         self.talk.forget_old(now);
-        if self.shown.as_ref().is_some_and(|shown| !Arc::ptr_eq(&shown.header, &room.header)) {
+        let is_same_round = |shown: &Shown| Arc::ptr_eq(&shown.header, &room.header);
+        let begins = !self.shown.as_ref().is_some_and(is_same_round);
+        if begins && self.shown.is_some() {
             self.map.begin_level();
             self.frames.forget();
+        }
+        if let Some(player) = self.member.and_then(|id| room.member(id)?.player) {
+            if begins {
+                self.watch = Watch::of(&room.game, player);
+            }
+            self.watch.look_at(&room.game, player);
         }
         self.members = room.members.iter().map(|member| member.id).collect();
         if self.watched.is_none_or(|id| room.member(id).is_none()) {

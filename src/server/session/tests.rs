@@ -15,6 +15,7 @@ use std::time::Duration;
 
 use self::emulator::{Emulator, Speaks};
 use super::*;
+use crate::app::Configuration;
 use crate::color::palette::ColorDepth;
 use crate::game::PlayerColor;
 use crate::map;
@@ -111,11 +112,14 @@ impl Rig {
             name: line(name),
             is_named: false,
             preferences: Preferences::default(),
+            configuration: Configuration::default(),
         };
         let host = HostFacts {
             name: line("play.example.org"),
             message: Some(line("Be kind.")),
+            notice: None,
             compresses: true,
+            ascii_locale: None,
             catalog: Arc::clone(&self.catalog),
             idle: IdleLimits::default(),
             frame_time: Duration::from_millis(33),
