@@ -16,8 +16,8 @@ mod terminal;
 mod visit;
 
 use std::io;
-use std::sync::Arc;
 use std::sync::atomic::{AtomicU32, Ordering};
+use std::sync::{Arc, Mutex};
 use std::time::{Duration, SystemTime, UNIX_EPOCH};
 
 use tokio::time::{Instant, interval};
@@ -25,6 +25,7 @@ use tokio::time::{Instant, interval};
 use self::account::NamesInUse;
 use self::store_worker::StoreWorker;
 use self::visit::Visit;
+use super::ghost::KeptRuns;
 use super::governor::Governor;
 use super::line::Line;
 use super::load::Load;
@@ -50,6 +51,8 @@ struct Shared {
     begun: Instant,
     rooms: Rooms,
     store: StoreWorker,
+    /// The runs of boards that walk along. Only the thread of the store uses them.
+    runs: Mutex<KeptRuns>,
     names: NamesInUse,
     load: Arc<Load>,
     next_guest: AtomicU32,
@@ -91,6 +94,7 @@ impl GameHost {
             begun: Instant::now(),
             rooms,
             store: StoreWorker::start(store)?,
+            runs: Mutex::default(),
             names: NamesInUse::default(),
             load,
             next_guest: AtomicU32::new(1),

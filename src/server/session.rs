@@ -4,8 +4,8 @@
 //! takes bytes and [wishes](Ask) from it, brings it [news](News), and shows it the newest
 //! [snapshot](RoomView) of the room. The order of calls:
 //!
-//! - after each [`receive`](Session::receive), [`resize`](Session::resize), [`tell`](Session::tell) and
-//!   [`wake`](Session::wake): take [`asks`](Session::asks) and [`output`](Session::output);
+//! - after each [`receive`](Session::receive), [`resize`](Session::resize), [`tell`](Session::tell),
+//!   [`wake`](Session::wake) and [`draw`](Session::draw): take [`asks`](Session::asks) and [`output`](Session::output);
 //! - when the outbox is empty and [`is_due`](Session::is_due): [`draw`](Session::draw), and take the output;
 //! - at [`wakes_at`](Session::wakes_at): [`wake`](Session::wake).
 //!
@@ -16,6 +16,7 @@
 mod choice;
 mod commands;
 mod draw;
+mod ghosts;
 mod idle;
 mod keys;
 mod line_entry;
@@ -161,7 +162,7 @@ impl Session {
     fn draw_anew(&mut self, room: Option<&RoomView>, now: Duration) {
         let Self { protocol, visit, .. } = self;
         if let (Some(stay), Some(room)) = (&mut visit.stay, room) {
-            stay.look_at(room, now);
+            visit.asks.extend(stay.look_at(room, now));
             if stay.watch.take_ring() && visit.identity.preferences.bell {
                 protocol.ring_bell();
             }
@@ -169,7 +170,7 @@ impl Session {
         protocol.draw(|screen| visit.draw(screen, room));
         visit.is_stale = false;
         if let (Some(stay), Some(room)) = (&mut visit.stay, room) {
-            stay.drawn(room, visit.look.field_of_view);
+            stay.drawn(room, &visit.look);
             self.drawn_step = room.step;
         }
         self.answers_key = self.answers_key.filter(|&pressed| pressed == self.drawn_step);

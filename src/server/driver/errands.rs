@@ -7,6 +7,7 @@ use tokio::sync::mpsc;
 use super::account::{self, choose_name};
 use super::results;
 use super::visit::Visit;
+use crate::server::locked;
 use crate::server::logging::events;
 use crate::server::room::Deed;
 use crate::server::rooms::{Place, RoomRefusal};
@@ -64,6 +65,7 @@ impl Visit {
             Ask::Deed(deed) => self.act(deed),
             Ask::Leave => self.leave(),
             Ask::Board { level, difficulty } => self.show_board(level, difficulty),
+            Ask::Ghosts { level, difficulty } => self.show_ghosts(level, difficulty),
             Ask::Save(settings) => self.save(settings),
         }
     }
@@ -172,6 +174,26 @@ impl Visit {
         self.shared.store.run(move |store| {
             let rows = results::board(store, &level, difficulty, own).into();
             _ = replies.try_send(Reply::News(News::Board { level, difficulty, rows }));
+        });
+    }
+
+    /// Has the best runs of a level played, for this visitor alone: who else is in the room may want
+    /// other ones.
+    fn show_ghosts(&mut self, level: String, difficulty: Difficulty) {
+        let own = self.account.as_ref().map(|account| account.id);
+        let (replies, shared) = (self.replies.clone(), Arc::downgrade(&self.shared));
+        self.shared.store.run(move |store| {
+            let Some(shared) = shared.upgrade() else { return };
+            let board = (level.as_str(), difficulty);
+            let catalog = shared.rooms.catalog();
+            let ghosts = locked(&shared.runs, |runs| runs.ghosts(store, catalog, board, own));
+            match ghosts {
+                Ok(ghosts) => {
+                    let ghosts = ghosts.into();
+                    _ = replies.try_send(Reply::News(News::Ghosts { level, difficulty, ghosts }));
+                }
+                Err(failure) => events::store_failed(failure),
+            }
         });
     }
 

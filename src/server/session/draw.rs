@@ -1,15 +1,19 @@
 //! Drawing: what a visitor sees.
 
+mod ghost;
 mod members;
 mod overhead;
 mod room_status;
 mod said;
+
+use std::borrow::Cow;
 
 use ratatui::layout::Rect;
 use ratatui::style::{Color, Modifier, Style};
 use ratatui::text::{Line, Text};
 use ratatui::widgets::Block;
 
+use self::ghost::Ghost;
 use super::page::Page;
 use super::stay::{Stay, seconds_left};
 use super::visit::Visit;
@@ -20,6 +24,7 @@ use crate::app::parts::{
 use crate::canvas::Canvas;
 use crate::color::palette::ColorDepth;
 use crate::server::room::{Phase, RoomView};
+use crate::world::{Figure, World};
 
 /// The least rows of a picture with a banner above a menu.
 const LEAST_WITH_BANNER: u16 = 20;
@@ -108,9 +113,12 @@ impl Visit {
             let flash = flash.map(|flash| (flash, camera.heading));
             let options = DrawOptions { flash, ..look.options() };
             let (game, seconds) = (&room.game, room.game.elapsed());
-            options.draw(game.world(), &camera, seconds, canvas, area, &mut stay.view);
+            let ghosts: Vec<Ghost> =
+                stay.ghosts(room, &look).map(|seen| Ghost::of(&seen)).collect();
+            let world = with_ghosts(game.world(), &ghosts);
+            options.draw(&*world, &camera, seconds, canvas, area, &mut stay.view);
             if let Some((_, player)) = seen_through {
-                overhead::draw(canvas, area, room, &player, &options);
+                overhead::draw(canvas, area, &options, &player, room, &ghosts);
                 let overlay = Overlay::new(game, player.id(), &options, preferences);
                 if let Some(overlay) = overlay {
                     let Stay { map, view, .. } = stay;
@@ -129,6 +137,18 @@ impl Visit {
             notice(canvas, area, draining);
         }
     }
+}
+
+/// The world with the figures of `ghosts`. It is copied, since the room and other sessions share it: a
+/// tenth of what a picture costs, and nothing where there are no ghosts.
+fn with_ghosts<'w>(world: &'w World, ghosts: &[Ghost]) -> Cow<'w, World> {
+    let mut world = Cow::Borrowed(world);
+    if !ghosts.is_empty() {
+        let figures = world.figures().iter().copied().chain(ghosts.iter().map(|it| it.figure));
+        let figures: Vec<Figure> = figures.collect();
+        world.to_mut().set_figures(figures.into_iter());
+    }
+    world
 }
 
 /// Draws the darkness in which seekers wait.

@@ -42,10 +42,7 @@ impl Visit {
                 self.idle.restart(now);
                 self.interrupted();
             }
-            Event::Quit(_)
-            | Event::FocusGained
-            | Event::Ready
-            | Event::Suspend => {}
+            Event::Quit(_) | Event::FocusGained | Event::Ready | Event::Suspend => {}
         }
     }
 

@@ -24,6 +24,7 @@ pub(super) struct Look {
     terminal_depth: ColorDepth,
     terminal_glyphs: GlyphMode,
     marks_middle: bool,
+    pub(super) shows_ghosts: bool,
 }
 
 impl Look {
@@ -54,6 +55,7 @@ impl Look {
         self.glyphs = preferences.glyphs.unwrap_or(self.terminal_glyphs);
         self.depth = preferences.colors.unwrap_or(self.terminal_depth);
         self.marks_middle = preferences.crosshair;
+        self.shows_ghosts = preferences.ghost;
     }
 
     /// Widens the field of view.

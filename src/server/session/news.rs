@@ -5,6 +5,7 @@ use std::time::Duration;
 
 use crate::app::Configuration;
 use crate::game::Rank;
+use crate::server::ghost::Ghost;
 use crate::server::line::Line;
 use crate::server::room::{Catalog, Deed, MemberId};
 use crate::server::summary::{RoomId, RoomSummary, RoomWish};
@@ -81,6 +82,8 @@ pub(crate) enum Ask {
     Leave,
     /// A board: [`News::Board`].
     Board { level: String, difficulty: Difficulty },
+    /// The runs that walk along in a level: [`News::Ghosts`].
+    Ghosts { level: String, difficulty: Difficulty },
     /// To keep the settings. Nothing is answered.
     Save(AccountSettings),
 }
@@ -100,6 +103,8 @@ pub(crate) enum News {
     Left(String),
     /// A board, the best first.
     Board { level: String, difficulty: Difficulty, rows: Arc<[BoardRow]> },
+    /// The runs that walk along in a level.
+    Ghosts { level: String, difficulty: Difficulty, ghosts: Arc<[Ghost]> },
     /// What became of a result: a sentence.
     Result(String),
     /// A line from the host to all.

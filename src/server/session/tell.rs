@@ -33,6 +33,11 @@ impl Visit {
                     self.renew_menu();
                 }
             }
+            News::Ghosts { level, difficulty, ghosts } => {
+                if let Some(stay) = &mut self.stay {
+                    stay.ghosts.receive(level, difficulty, ghosts);
+                }
+            }
             News::Result(sentence) => self.hear(sentence),
             News::Said(line) => self.hear(format!("{}: {line}", self.host.name)),
             News::Draining { seconds } => {

@@ -19,6 +19,7 @@ use crate::app::Configuration;
 use crate::color::palette::ColorDepth;
 use crate::game::PlayerColor;
 use crate::map;
+use crate::server::ghost::Ghost;
 use crate::server::line::Line;
 use crate::server::room::{Catalog, Deed, Entry, Header, MemberId, Mode, NAME_COLUMNS, Room};
 use crate::server::summary::{RoomId, RoomSummary};
@@ -71,6 +72,8 @@ struct Rig {
     /// What the members did in this round, in the order in which it took effect.
     log: Vec<Entry>,
     visitors: Vec<Visitor>,
+    /// The runs that walk along.
+    ghosts: Arc<[Ghost]>,
 }
 
 fn line(text: &str) -> Line {
@@ -87,7 +90,8 @@ impl Rig {
         let header = Header::new("hall", mode, Difficulty::Normal, 7);
         let room = Room::new(&catalog, header).unwrap();
         let now = Duration::from_secs(1);
-        Self { now, catalog, room, log: Vec::new(), visitors: Vec::new() }
+        let ghosts = Arc::from([]);
+        Self { now, catalog, room, log: Vec::new(), visitors: Vec::new(), ghosts }
     }
 
     /// Adds a visitor whose terminal has no colours, and returns their index.

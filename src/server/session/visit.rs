@@ -134,8 +134,7 @@ impl Visit {
 
     /// Whether a picture would differ from the one that is shown.
     pub(super) fn is_stale(&self, room: Option<&RoomView>) -> bool {
-        let differs =
-            |stay: &Stay| room.is_some_and(|room| stay.differs_from(room, self.look.field_of_view));
+        let differs = |stay: &Stay| room.is_some_and(|room| stay.differs_from(room, &self.look));
         self.is_stale || self.stay.as_ref().is_some_and(differs)
     }
 

@@ -82,6 +82,9 @@ impl Rig {
             Ask::Board { level, difficulty } => {
                 News::Board { level, difficulty, rows: Arc::from([]) }
             }
+            Ask::Ghosts { level, difficulty } => {
+                News::Ghosts { level, difficulty, ghosts: Arc::clone(&self.ghosts) }
+            }
             Ask::Save(_) => return,
         };
         self.visitors[index].session.tell(news, now);
