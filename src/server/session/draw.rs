@@ -23,8 +23,17 @@ use crate::app::parts::{
 };
 use crate::canvas::Canvas;
 use crate::color::palette::ColorDepth;
+use crate::server::line;
 use crate::server::room::{Phase, RoomView};
 use crate::world::{Figure, World};
+
+/// The keys in a room that bindings do not change.
+const ROOM_KEYS: [&str; 2] = [
+    "In a room: Enter or / talks, ; hides chat, 1 shows an emotion,",
+    "Tab lists the members, or watches another one.",
+];
+/// What is said on a link that makes pictures coarse.
+pub(super) const COMPRESSION: &str = "Your link is slow: ssh -C makes pictures finer.";
 
 /// The least rows of a picture with a banner above a menu.
 const LEAST_WITH_BANNER: u16 = 20;
@@ -70,7 +79,8 @@ impl Visit {
         match self.page {
             Page::Name => self.draw_name(canvas, area),
             Page::Help => {
-                self.help.draw(canvas, area, &self.bindings, self.help_notes().into_iter());
+                let (room_keys, notes) = (ROOM_KEYS.map(str::to_owned), self.help_notes());
+                self.help.draw(canvas, area, (&room_keys, &self.bindings), notes.into_iter());
             }
             Page::Leaving => leaving(canvas, area, &self.bindings, "ends the session"),
             Page::Room => {}
@@ -86,6 +96,7 @@ impl Visit {
             (true, false) => "Your key is your account. Choose its name.",
             (false, _) => "You are a guest. With a key, your results rank.",
         };
+        let about = self.host.notice.as_ref().map_or(about, line::Line::as_str);
         let room = usize::from(area.width.saturating_sub(6));
         let entry = self.entry.shown(room);
         let note = self.note.clone().unwrap_or_else(|| about.to_owned());
@@ -93,11 +104,10 @@ impl Visit {
         menu.draw(canvas, area);
     }
 
-    /// What the help says of a room, and of the terminal.
+    /// What the help says of the link and of the terminal.
     fn help_notes(&self) -> Vec<String> {
-        let room = "In a room: Enter or / talks, 1 shows an emotion, ; hides chat, Tab tells who is \
-                    here. Who watches changes whom by Tab.";
-        [room.to_owned()].into_iter().chain(self.detection.lines()).collect()
+        let compression = self.wants_compression.then(|| COMPRESSION.to_owned());
+        compression.into_iter().chain(self.detection.lines()).collect()
     }
 
     fn draw_room(&mut self, canvas: &mut impl Canvas, area: Rect, room: &RoomView) {

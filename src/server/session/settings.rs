@@ -5,7 +5,7 @@
 
 use super::choice::Choice;
 use super::news::Ask;
-use super::visit::Visit;
+use super::visit::{Visit, bindings_of};
 use crate::app::parts::{COLORS, GLYPHS, Menu, after, name, on_or_off};
 use crate::store::host::AccountSettings;
 use crate::world::Difficulty;
@@ -104,7 +104,7 @@ impl Visit {
     fn change_keys(&mut self, forward: bool) {
         let configuration = &mut self.identity.configuration;
         configuration.change_preset(forward);
-        self.bindings = configuration.bindings.clone();
+        self.bindings = bindings_of(configuration);
     }
 
     fn switch_mouse(&mut self) {

@@ -1,6 +1,8 @@
 //! Sessions with terminal emulators and one room, in simulated time.
 
 mod driver;
+mod ghosts;
+mod home;
 mod lag;
 mod pages;
 mod pictures;
@@ -24,6 +26,7 @@ use crate::server::line::Line;
 use crate::server::room::{Catalog, Deed, Entry, Header, MemberId, Mode, NAME_COLUMNS, Room};
 use crate::server::summary::{RoomId, RoomSummary};
 use crate::store::Preferences;
+use crate::store::host::AccountSettings;
 use crate::terminal::Detected;
 use crate::world::Difficulty;
 
@@ -62,6 +65,9 @@ struct Visitor {
     /// The pictures that were drawn, whether they differ or not.
     pictures: u64,
     wants: Vec<(u64, u64)>,
+    /// How often the bell has rung.
+    bells: usize,
+    saved: Option<AccountSettings>,
 }
 
 /// A host with one room.
@@ -141,6 +147,8 @@ impl Rig {
             bytes: 0,
             pictures: 0,
             wants: Vec::new(),
+            bells: 0,
+            saved: None,
         });
         self.pump(300);
         self.visitors.len() - 1

@@ -11,13 +11,14 @@ use super::look::Look;
 use super::news::{Ask, BoardRow, HostFacts, Identity};
 use super::page::{Page, Shelved};
 use super::stay::Stay;
-use crate::app::Bindings;
 use crate::app::parts::{
     Clock, Controls, Detection, HelpScroll, KeyContext, Menu, Pointer, Stats, StatusLine,
 };
+use crate::app::{Bindings, Configuration};
 use crate::game::Intents;
 use crate::server::room::{Deed, NAME_COLUMNS, RoomView};
 use crate::server::summary::{RoomId, RoomSummary};
+use crate::terminal::Key;
 
 /// The most wishes that wait for the driver. Further ones are left out: they come from a paste.
 const MOST_ASKS: usize = 64;
@@ -85,7 +86,7 @@ impl Visit {
         Self {
             entry: LineEntry::offering(&identity.name, NAME_COLUMNS),
             asks: Vec::new(),
-            bindings: identity.configuration.bindings.clone(),
+            bindings: bindings_of(&identity.configuration),
             controls: Controls::default(),
             pointer: Pointer::new(identity.configuration.mouse),
             clock,
@@ -247,4 +248,10 @@ impl Visit {
             self.farewell = Some(sentence);
         }
     }
+}
+
+/// The bindings without the keys that have another meaning in a room.
+pub(super) fn bindings_of(configuration: &Configuration) -> Bindings {
+    let keys = ['/', ';', '1'].map(Key::Char);
+    configuration.bindings.clone().without(&keys).without(&[Key::Enter, Key::Tab])
 }

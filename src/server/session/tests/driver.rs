@@ -43,6 +43,7 @@ impl Rig {
         }
         visitor.bytes += bytes.len();
         visitor.session.written(now);
+        visitor.bells += bytes.iter().filter(|&&byte| byte == 0x07).count();
         let answers = visitor.emulator.process(&bytes);
         if !answers.is_empty() {
             visitor.under_way.push((now + visitor.latency, answers));
@@ -85,7 +86,10 @@ impl Rig {
             Ask::Ghosts { level, difficulty } => {
                 News::Ghosts { level, difficulty, ghosts: Arc::clone(&self.ghosts) }
             }
-            Ask::Save(_) => return,
+            Ask::Save(settings) => {
+                self.visitors[index].saved = Some(settings);
+                return;
+            }
         };
         self.visitors[index].session.tell(news, now);
     }
