@@ -52,7 +52,7 @@ struct Shared {
     rooms: Rooms,
     store: StoreWorker,
     /// The runs of boards that walk along. Only the thread of the store uses them.
-    runs: Mutex<KeptRuns>,
+    runs: Arc<Mutex<KeptRuns>>,
     names: NamesInUse,
     load: Arc<Load>,
     next_guest: AtomicU32,
@@ -94,7 +94,7 @@ impl GameHost {
             begun: Instant::now(),
             rooms,
             store: StoreWorker::start(store)?,
-            runs: Mutex::default(),
+            runs: Arc::default(),
             names: NamesInUse::default(),
             load,
             next_guest: AtomicU32::new(1),

@@ -62,6 +62,8 @@ pub(crate) struct Session {
     drawn_step: u64,
     frame_time: Duration,
     meter: Meter,
+    /// Whether the link has made pictures of a room coarser; `None` if there was none yet.
+    is_limited: Option<bool>,
 }
 
 /// How far the session has ended.
@@ -97,6 +99,7 @@ impl Session {
             drawn_step: 0,
             frame_time,
             meter: Meter::default(),
+            is_limited: None,
         };
         session.follow_terminal();
         session.show_choices();
@@ -181,7 +184,9 @@ impl Session {
         let Self { protocol, visit, meter, .. } = self;
         if let Some(rates) = meter.frame(now, protocol.bytes_drawn()) {
             let (round_trip, fidelity) = (protocol.round_trip(), protocol.fidelity());
-            let wants_compression = visit.wants_compression && protocol.is_limited_by_network();
+            let is_limited = protocol.is_limited_by_network();
+            let wants_compression = is_limited && !visit.host.compresses;
+            self.is_limited = visit.stay.is_some().then_some(is_limited).or(self.is_limited);
             visit.stats = Some(Stats { rates, round_trip, fidelity, wants_compression });
         }
     }
@@ -244,12 +249,11 @@ impl Session {
         self.finish(now);
     }
 
-    /// Whether compression would make pictures finer. Until the link is measured, whether it is longer
-    /// than a local one.
+    /// Whether compression would make pictures finer. Before the first pictures of a room have shown
+    /// that, it may on every link that is not local.
     fn wants_compression(&self) -> bool {
-        let Self { protocol, visit, .. } = self;
-        let is_far = protocol.round_trip().is_some_and(|time| time >= FAR);
-        !visit.host.compresses && is_far && protocol.is_limited_by_network()
+        let is_far = self.protocol.round_trip().is_some_and(|time| time >= FAR);
+        !self.visit.host.compresses && self.is_limited.unwrap_or(is_far)
     }
 
     /// Requests what the visitor has chosen from the terminal.

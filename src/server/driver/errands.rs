@@ -181,12 +181,11 @@ impl Visit {
     /// other ones.
     fn show_ghosts(&mut self, level: String, difficulty: Difficulty) {
         let own = self.account.as_ref().map(|account| account.id);
-        let (replies, shared) = (self.replies.clone(), Arc::downgrade(&self.shared));
+        let (replies, runs) = (self.replies.clone(), Arc::clone(&self.shared.runs));
+        let catalog = Arc::clone(self.shared.rooms.catalog());
         self.shared.store.run(move |store| {
-            let Some(shared) = shared.upgrade() else { return };
             let board = (level.as_str(), difficulty);
-            let catalog = shared.rooms.catalog();
-            let ghosts = locked(&shared.runs, |runs| runs.ghosts(store, catalog, board, own));
+            let ghosts = locked(&runs, |runs| runs.ghosts(store, &catalog, board, own));
             match ghosts {
                 Ok(ghosts) => {
                     let ghosts = ghosts.into();

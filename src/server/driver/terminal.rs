@@ -28,7 +28,7 @@ pub(super) fn refusal(visitor: &Visitor) -> Option<String> {
     let term = options(visitor).teletype?;
     Some(format!(
         "TERM is {term}, a terminal that cannot move its cursor, which playing needs. Set it to what \
-         you have: TERM=xterm-256color ssh …"
+         you have, such as TERM=xterm-256color."
     ))
 }
 

@@ -32,8 +32,8 @@ const ROOM_KEYS: [&str; 2] = [
     "In a room: Enter or / talks, ; hides chat, 1 shows an emotion,",
     "Tab lists the members, or watches another one.",
 ];
-/// What is said on a link that makes pictures coarse.
-pub(super) const COMPRESSION: &str = "Your link is slow: ssh -C makes pictures finer.";
+/// What is said on a link that may make pictures coarse.
+pub(super) const COMPRESSION: &str = "On a slow link, ssh -C makes pictures finer.";
 
 /// The least rows of a picture with a banner above a menu.
 const LEAST_WITH_BANNER: u16 = 20;
@@ -149,8 +149,8 @@ impl Visit {
     }
 }
 
-/// The world with the figures of `ghosts`. It is copied, since the room and other sessions share it: a
-/// tenth of what a picture costs, and nothing where there are no ghosts.
+/// The world with the figures of `ghosts`. Where there are some, it is copied, since the room and other
+/// sessions share it.
 fn with_ghosts<'w>(world: &'w World, ghosts: &[Ghost]) -> Cow<'w, World> {
     let mut world = Cow::Borrowed(world);
     if !ghosts.is_empty() {

@@ -1,5 +1,6 @@
 //! Sessions with terminal emulators and one room, in simulated time.
 
+mod bytes;
 mod driver;
 mod ghosts;
 mod home;
@@ -68,6 +69,8 @@ struct Visitor {
     /// How often the bell has rung.
     bells: usize,
     saved: Option<AccountSettings>,
+    /// All that was sent, frame by frame.
+    sent: Vec<Vec<u8>>,
 }
 
 /// A host with one room.
@@ -149,6 +152,7 @@ impl Rig {
             wants: Vec::new(),
             bells: 0,
             saved: None,
+            sent: Vec::new(),
         });
         self.pump(300);
         self.visitors.len() - 1

@@ -48,6 +48,7 @@ impl Rig {
         if !answers.is_empty() {
             visitor.under_way.push((now + visitor.latency, answers));
         }
+        visitor.sent.push(bytes);
     }
 
     pub(super) fn answer(&mut self, index: usize, ask: Ask) {

@@ -150,16 +150,22 @@ fn a_notice_about_the_key_stands_in_the_lobby() {
 
 #[test]
 fn compression_is_advised_only_where_it_would_help() {
-    for (compresses, latency, advises) in [(false, 60, true), (false, 0, false), (true, 60, false)]
-    {
+    for (compresses, is_limited, advises) in [
+        (false, None, true),
+        (false, Some(false), false),
+        (false, Some(true), true),
+        (true, None, false),
+        (true, Some(true), false),
+    ] {
         let mut rig = Rig::new(Mode::Roam);
         let one = rig.visitor_with("Mara", (80, 24), Speaks::Kitty, ColorDepth::True);
-        rig.visitors[one].latency = Duration::from_millis(latency);
+        rig.visitors[one].latency = Duration::from_millis(60);
         rig.visitors[one].session.visit.host.compresses = compresses;
+        rig.visitors[one].session.is_limited = is_limited;
         rig.press(one, "x");
         rig.press(one, ENTER);
         let text = rig.text(one);
-        assert_eq!(text.contains("ssh -C"), advises, "{compresses} {latency}: {text}");
+        assert_eq!(text.contains("ssh -C"), advises, "{compresses} {is_limited:?}: {text}");
     }
 }
 
