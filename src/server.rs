@@ -21,6 +21,7 @@ mod admin;
 mod admission;
 mod config;
 mod driver;
+mod ghost;
 mod governor;
 mod host_key;
 mod line;

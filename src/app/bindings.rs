@@ -140,6 +140,14 @@ impl Bindings {
         self.in_order()
     }
 
+    /// The bindings without those of `keys`.
+    #[cfg(feature = "serve")]
+    #[must_use]
+    pub(crate) fn without(mut self, keys: &[Key]) -> Self {
+        self.keys.retain(|(key, _)| !keys.contains(key));
+        self
+    }
+
     /// Sorts the keys by their actions.
     fn in_order(mut self) -> Self {
         let index = |action| Action::ALL.iter().position(|&(.., known)| known == action);

@@ -14,6 +14,8 @@ pub(crate) struct Detection {
     pub(crate) reports_releases: Option<bool>,
     /// The locale setting that restricts output to ASCII.
     pub(crate) ascii_locale: Option<String>,
+    /// Whether the player has no command line: what they have chosen is among their settings.
+    pub(crate) is_visitor: bool,
 }
 
 impl Detection {
@@ -31,6 +33,7 @@ impl Detection {
             ColorDepth::Mono => "no colours",
         };
         let reason = match self.source {
+            None if self.is_visitor => "your settings say so",
             None => "--colors or the configuration says so",
             Some(ColorSource::NoColor) => "NO_COLOR is set",
             Some(ColorSource::ForceColor) => "FORCE_COLOR or CLICOLOR_FORCE says so",
@@ -52,7 +55,9 @@ impl Detection {
     /// The reason why only ASCII is shown.
     fn characters(&self) -> Option<String> {
         let setting = self.ascii_locale.as_ref()?;
-        Some(format!("ASCII only: {setting} is not UTF-8; try --glyphs half"))
+        let remedy =
+            if self.is_visitor { "see Characters in the settings" } else { "try --glyphs half" };
+        Some(format!("ASCII only: {setting} is not UTF-8; {remedy}"))
     }
 }
 
@@ -71,6 +76,7 @@ mod tests {
             source: Some(ColorSource::Answer),
             reports_releases: Some(true),
             ascii_locale: None,
+            is_visitor: false,
         };
         assert_eq!(lines(&best), [""; 0]);
     }
@@ -82,11 +88,18 @@ mod tests {
             source: Some(ColorSource::Nothing),
             reports_releases: Some(false),
             ascii_locale: Some("LANG=C".to_owned()),
+            is_visitor: false,
         };
         insta::assert_snapshot!(lines(&plain).join("\n"), @r"
         256 colours: your terminal did not offer more; see docs/terminals.md
         no key releases: keys are held while they repeat; see docs/keys.md
         ASCII only: LANG=C is not UTF-8; try --glyphs half
+        ");
+        let visitor = Detection { source: None, is_visitor: true, ..plain };
+        insta::assert_snapshot!(lines(&visitor).join("\n"), @r"
+        256 colours: your settings say so
+        no key releases: keys are held while they repeat; see docs/keys.md
+        ASCII only: LANG=C is not UTF-8; see Characters in the settings
         ");
         for (source, said) in [
             (None, "no colours: --colors or the configuration says so"),

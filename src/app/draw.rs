@@ -30,7 +30,9 @@ impl App {
         let bindings = &self.settings.bindings;
         match self.screen {
             Screen::Playing => {}
-            Screen::Help => self.help.draw(canvas, picture, bindings, self.detection.lines()),
+            Screen::Help => {
+                self.help.draw(canvas, picture, (&[], bindings), self.detection.lines());
+            }
             Screen::Leaving => {
                 let effect = if self.is_descent() { "ends the run" } else { "leaves" };
                 panels::leaving(canvas, picture, bindings, effect);

@@ -61,21 +61,24 @@ impl HelpScroll {
         self.lines.saturating_sub(self.page)
     }
 
-    /// Draws the help, with `notes` about the terminal at its end.
+    /// Draws the help: further keys, in sentences, before those of the bindings, and `notes` about the
+    /// terminal at the end.
     pub(crate) fn draw(
         &mut self,
         canvas: &mut impl Canvas,
         picture: Rect,
-        bindings: &Bindings,
+        (further, bindings): (&[String], &Bindings),
         notes: impl Iterator<Item = String>,
     ) {
         let room = usize::from(picture.height.saturating_sub(BORDERS)).max(1);
         let most_columns = usize::from(picture.width.saturating_sub(BORDERS + PADDING)).max(1);
         let leave = how_to_leave(bindings, most_columns);
+        let further: Vec<String> =
+            further.iter().flat_map(|keys| wrapped(keys, most_columns)).collect();
         let notes: Vec<String> = notes.flat_map(|note| wrapped(&note, most_columns)).collect();
-        let room_for_keys = room.saturating_sub(1 + notes.len());
+        let room_for_keys = room.saturating_sub(1 + further.len() + notes.len());
         let keys = keys_in_columns(bindings, room_for_keys, most_columns);
-        let body: Vec<String> = keys.into_iter().chain(notes).collect();
+        let body: Vec<String> = further.into_iter().chain(keys).chain(notes).collect();
         self.lines = body.len();
         let fits = body.len() < room;
         // The line that says how to scroll takes a line.
@@ -176,7 +179,8 @@ mod tests {
         let note =
             "256 colours: your terminal did not offer more; see docs/terminals.md".to_owned();
         let notes = [note].into_iter();
-        help.draw(&mut buffer, Rect::new(0, 0, columns, rows), &Bindings::default(), notes);
+        let keys = (&[][..], &Bindings::default());
+        help.draw(&mut buffer, Rect::new(0, 0, columns, rows), keys, notes);
         let lines = buffer.content().chunks(columns.into());
         lines.flat_map(|line| line.iter().map(Cell::symbol).chain(["\n"])).collect()
     }

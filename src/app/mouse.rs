@@ -26,7 +26,7 @@ const COLUMNS_PER_EDGE_COLUMN: i32 = 80;
 
 /// The position of the pointer, and its motion and clicks since the last step.
 #[derive(Clone, Copy, Debug, Default)]
-pub(super) struct Pointer {
+pub(crate) struct Pointer {
     is_on: bool,
     columns: u16,
     /// Measured from the upper left corner, in units of [`Look`]; `None` if unknown.
@@ -42,29 +42,57 @@ pub(super) struct Pointer {
 
 impl Pointer {
     /// A pointer that is on or off at first.
-    pub(super) fn new(is_on: bool) -> Self {
+    pub(crate) fn new(is_on: bool) -> Self {
         Self { is_on, ..Self::default() }
     }
 
     /// Whether the mouse turns the player.
-    pub(super) fn is_on(&self) -> bool {
+    pub(crate) fn is_on(&self) -> bool {
         self.is_on
     }
 
     /// Switches between on and off.
-    pub(super) fn toggle(&mut self) {
+    pub(crate) fn toggle(&mut self) {
         *self = Self { is_on: !self.is_on, columns: self.columns, ..Self::default() };
     }
 
     /// Forgets the position.
-    pub(super) fn forget(&mut self) {
+    pub(crate) fn forget(&mut self) {
         *self = Self { is_on: self.is_on, columns: self.columns, ..Self::default() };
     }
 
     /// Sets the width of the window.
-    pub(super) fn set_columns(&mut self, columns: u16) {
+    pub(crate) fn set_columns(&mut self, columns: u16) {
         self.columns = columns;
         self.forget();
+    }
+
+    /// Handles an event. Motion and clicks count only if the player `plays`.
+    pub(crate) fn handle(&mut self, event: MouseEvent, plays: bool) {
+        if !self.is_on {
+            return;
+        }
+        self.move_to(event.x, event.y);
+        if !plays {
+            self.moved = [0, 0];
+            return;
+        }
+        match event.kind {
+            MouseEventKind::Pressed(MouseButton::Left) => self.clicked.insert(Intent::Open),
+            MouseEventKind::Pressed(MouseButton::Right) => self.clicked.insert(Intent::Jump),
+            _ => {}
+        }
+    }
+
+    /// The intents of the buttons for the next step.
+    pub(crate) fn clicked(&self) -> Intents {
+        self.clicked
+    }
+
+    /// Whether the next step turns the player or uses a click.
+    #[cfg(feature = "serve")]
+    pub(crate) fn is_busy(&self) -> bool {
+        self.has_input() || self.edge.is_some()
     }
 
     /// Moves the pointer to a position in units of [`MouseEvent`].
@@ -97,7 +125,7 @@ impl Pointer {
     }
 
     /// The turn and tilt of the next step.
-    fn look(&self) -> Look {
+    pub(crate) fn look(&self) -> Look {
         let at_edge = self.edge.map_or(0, |(edge, _)| {
             i32::from(edge) * DEGREES_PER_SECOND * i32::from(Look::PER_DEGREE)
                 / STEPS_PER_SECOND as i32
@@ -112,7 +140,7 @@ impl Pointer {
     }
 
     /// Records that `steps` steps have used [`Pointer::look`].
-    pub(super) fn passed(&mut self, steps: u64) {
+    pub(crate) fn passed(&mut self, steps: u64) {
         if steps == 0 {
             return;
         }
@@ -129,28 +157,14 @@ impl App {
     /// Handles an event of the mouse at time `now`.
     pub(super) fn mouse(&mut self, event: MouseEvent, now: Duration) {
         self.advance(now);
-        if !self.pointer.is_on {
-            return;
-        }
-        self.pointer.move_to(event.x, event.y);
-        if self.screen != Screen::Playing {
-            self.pointer.moved = [0, 0];
-            return;
-        }
-        match event.kind {
-            MouseEventKind::Pressed(MouseButton::Left) => self.pointer.clicked.insert(Intent::Open),
-            MouseEventKind::Pressed(MouseButton::Right) => {
-                self.pointer.clicked.insert(Intent::Jump);
-            }
-            _ => {}
-        }
+        self.pointer.handle(event, self.screen == Screen::Playing);
     }
 
     /// The player's intents for the next step, by keys and mouse.
     pub(super) fn wanted(&self) -> Intents {
         let keys = self.intents();
         keys.iter()
-            .chain(self.pointer.clicked.iter())
+            .chain(self.pointer.clicked().iter())
             .collect::<Intents>()
             .with_look(self.pointer.look())
     }

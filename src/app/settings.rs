@@ -23,6 +23,10 @@ use std::num::NonZeroU32;
 use std::time::Duration;
 
 use super::bindings::Bindings;
+#[cfg(feature = "serve")]
+use super::bindings::PRESETS;
+#[cfg(feature = "serve")]
+use super::settings_screen::after;
 use crate::color::palette::ColorDepth;
 use crate::render::{DynCaster, Filter};
 use crate::store::Preferences;
@@ -148,6 +152,20 @@ pub struct Configuration {
     pub minimap: MapDisplay,
     /// The fidelity of frames; `None` for the highest that the link to the terminal allows.
     pub fidelity: Option<Fidelity>,
+}
+
+#[cfg(feature = "serve")]
+impl Configuration {
+    /// The name of the preset that the bindings are based on.
+    pub(crate) fn preset(&self) -> &'static str {
+        self.preset
+    }
+
+    /// Takes the bindings of the next preset, or of the one before if `forward` is false.
+    pub(crate) fn change_preset(&mut self, forward: bool) {
+        let (name, bindings) = after(&PRESETS, |preset| preset.0 == self.preset, forward);
+        (self.preset, self.bindings) = (name, bindings());
+    }
 }
 
 impl Default for Configuration {

@@ -12,11 +12,12 @@ mod account;
 mod errands;
 mod results;
 mod store_worker;
+mod terminal;
 mod visit;
 
 use std::io;
-use std::sync::Arc;
 use std::sync::atomic::{AtomicU32, Ordering};
+use std::sync::{Arc, Mutex};
 use std::time::{Duration, SystemTime, UNIX_EPOCH};
 
 use tokio::time::{Instant, interval};
@@ -24,6 +25,7 @@ use tokio::time::{Instant, interval};
 use self::account::NamesInUse;
 use self::store_worker::StoreWorker;
 use self::visit::Visit;
+use super::ghost::KeptRuns;
 use super::governor::Governor;
 use super::line::Line;
 use super::load::Load;
@@ -49,6 +51,8 @@ struct Shared {
     begun: Instant,
     rooms: Rooms,
     store: StoreWorker,
+    /// The runs of boards that walk along. Only the thread of the store uses them.
+    runs: Arc<Mutex<KeptRuns>>,
     names: NamesInUse,
     load: Arc<Load>,
     next_guest: AtomicU32,
@@ -90,6 +94,7 @@ impl GameHost {
             begun: Instant::now(),
             rooms,
             store: StoreWorker::start(store)?,
+            runs: Arc::default(),
             names: NamesInUse::default(),
             load,
             next_guest: AtomicU32::new(1),
@@ -120,6 +125,10 @@ fn room_row(room: &RoomSummary) -> RoomRow {
 impl Host for GameHost {
     async fn serve(&self, visitor: Visitor, link: Link) -> Departure {
         let shared = Arc::clone(&self.shared);
+        if let Some(sentence) = terminal::refusal(&visitor) {
+            refuse(link, &sentence).await;
+            return Departure { status: 1 };
+        }
         let status = match shared.log_in(&visitor).await {
             Ok(known) => Visit::new(shared, visitor, known).run(link).await,
             Err(sentence) => {

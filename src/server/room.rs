@@ -38,7 +38,7 @@ use self::round::{Field, Round, SECOND};
 pub(crate) use self::round::{Phase, Role, Standing};
 pub(crate) use self::view::{MemberView, RoomView, Said};
 use super::line::Line;
-use crate::game::{Game, Input, Intent, Intents, PlayerColor, PlayerId, Rules};
+use crate::game::{Game, Input, Intent, Intents, Look, PlayerColor, PlayerId, Rules};
 use crate::rng;
 
 /// How long an emotion is shown, in steps.
@@ -148,7 +148,7 @@ impl Room {
     /// The first member, their player, and what they wanted in the last step.
     pub(crate) fn first_member(&self) -> Option<(MemberId, PlayerId, Intents)> {
         let member = self.members.first()?;
-        Some((member.id, member.player?, member.intents))
+        Some((member.id, member.player?, member.acted))
     }
 
     /// The number of members.
@@ -210,6 +210,10 @@ impl Room {
             let intents = if held { looking_only(member.intents) } else { member.intents };
             Some(Input { player: member.player?, intents, seen: member.seen })
         }));
+        for member in &mut *members {
+            member.acted = member.intents;
+            member.intents = member.intents.with_look(Look::NONE);
+        }
         Arc::make_mut(game).step_all(inputs);
         round.step(Field { game, members, step: *step });
         emotes.retain(|(_, _, until)| *until > *step);
@@ -271,6 +275,7 @@ impl Room {
             player,
             points: seat.points,
             intents: Intents::new(),
+            acted: Intents::new(),
             seen: game.steps(),
         });
     }

@@ -4,8 +4,8 @@
 //! takes bytes and [wishes](Ask) from it, brings it [news](News), and shows it the newest
 //! [snapshot](RoomView) of the room. The order of calls:
 //!
-//! - after each [`receive`](Session::receive), [`resize`](Session::resize), [`tell`](Session::tell) and
-//!   [`wake`](Session::wake): take [`asks`](Session::asks) and [`output`](Session::output);
+//! - after each [`receive`](Session::receive), [`resize`](Session::resize), [`tell`](Session::tell),
+//!   [`wake`](Session::wake) and [`draw`](Session::draw): take [`asks`](Session::asks) and [`output`](Session::output);
 //! - when the outbox is empty and [`is_due`](Session::is_due): [`draw`](Session::draw), and take the output;
 //! - at [`wakes_at`](Session::wakes_at): [`wake`](Session::wake).
 //!
@@ -14,7 +14,9 @@
 //! nothing among others who do nothing costs no bytes.
 
 mod choice;
+mod commands;
 mod draw;
+mod ghosts;
 mod idle;
 mod keys;
 mod line_entry;
@@ -27,6 +29,7 @@ mod settings;
 mod shown_steps;
 mod stay;
 mod talk;
+mod tell;
 #[cfg(test)]
 mod tests;
 mod visit;
@@ -39,7 +42,11 @@ pub(crate) use self::news::{Ask, BoardRow, HostFacts, Identity, IdleLimits, News
 use self::pace::Pace;
 use self::visit::Visit;
 use super::room::RoomView;
+use crate::app::parts::{Meter, Stats};
 use crate::terminal::{Event, Options, Protocol, WindowSize};
+
+/// The least round-trip time of a link that is not local.
+const FAR: Duration = Duration::from_millis(3);
 
 /// The session of a visitor.
 pub(crate) struct Session {
@@ -51,6 +58,9 @@ pub(crate) struct Session {
     answers_key: Option<u64>,
     /// The step of the room in the last frame.
     drawn_step: u64,
+    meter: Meter,
+    /// Whether the link has made pictures of a room coarser; `None` if there was none yet.
+    is_limited: Option<bool>,
 }
 
 /// How far the session has ended.
@@ -75,7 +85,7 @@ impl Session {
     ) -> Self {
         let mut protocol = Protocol::new(options, size);
         protocol.begin(now);
-        let look = Look::new(options.is_ascii, &identity.preferences);
+        let look = Look::new(options.is_ascii, &identity);
         let pace = Pace::new(host.frame_time);
         let mut session = Self {
             protocol,
@@ -84,8 +94,11 @@ impl Session {
             pace,
             answers_key: None,
             drawn_step: 0,
+            meter: Meter::default(),
+            is_limited: None,
         };
         session.follow_terminal();
+        session.show_choices();
         session
     }
 
@@ -148,15 +161,30 @@ impl Session {
     fn draw_anew(&mut self, room: Option<&RoomView>, now: Duration) {
         let Self { protocol, visit, .. } = self;
         if let (Some(stay), Some(room)) = (&mut visit.stay, room) {
-            stay.look_at(room, now);
+            visit.asks.extend(stay.look_at(room, now));
+            if stay.watch.take_ring() && visit.identity.preferences.bell {
+                protocol.ring_bell();
+            }
         }
         protocol.draw(|screen| visit.draw(screen, room));
         visit.is_stale = false;
         if let (Some(stay), Some(room)) = (&mut visit.stay, room) {
-            stay.drawn(room, visit.look.field_of_view);
+            stay.drawn(room, &visit.look);
             self.drawn_step = room.step;
         }
         self.answers_key = self.answers_key.filter(|&pressed| pressed == self.drawn_step);
+        self.measure(now);
+    }
+
+    fn measure(&mut self, now: Duration) {
+        let Self { protocol, visit, meter, .. } = self;
+        if let Some(rates) = meter.frame(now, protocol.bytes_drawn()) {
+            let (round_trip, fidelity) = (protocol.round_trip(), protocol.fidelity());
+            let is_limited = protocol.is_limited_by_network();
+            let wants_compression = is_limited && !visit.host.compresses;
+            self.is_limited = visit.stay.is_some().then_some(is_limited).or(self.is_limited);
+            visit.stats = Some(Stats { rates, round_trip, fidelity, wants_compression });
+        }
     }
 
     /// The bytes to send. The driver takes all of them.
@@ -210,15 +238,31 @@ impl Session {
     /// Handles the events of the terminal.
     fn handle_events(&mut self, now: Duration) {
         self.visit.answered = self.protocol.frames_answered();
+        self.visit.wants_compression = self.wants_compression();
         while let Some(event) = self.protocol.next_event() {
             match event {
-                Event::Key(_) => self.answers_key = Some(self.drawn_step),
+                Event::Key(_) | Event::Mouse(_) => self.answers_key = Some(self.drawn_step),
                 Event::Resized | Event::ColorDepth(_) => self.follow_terminal(),
                 _ => {}
             }
             self.visit.event(event, now);
         }
+        self.show_choices();
         self.finish(now);
+    }
+
+    /// Whether compression would make pictures finer. Before the first pictures of a room have shown
+    /// that, it may on every link that is not local.
+    fn wants_compression(&self) -> bool {
+        let is_far = self.protocol.round_trip().is_some_and(|time| time >= FAR);
+        !self.visit.host.compresses && self.is_limited.unwrap_or(is_far)
+    }
+
+    /// Requests what the visitor has chosen from the terminal.
+    fn show_choices(&mut self) {
+        let Self { protocol, visit, .. } = self;
+        protocol.set_mouse(visit.pointer.is_on());
+        protocol.set_ascii(visit.look.is_ascii());
     }
 
     /// Takes over what is known of the terminal.
@@ -226,7 +270,9 @@ impl Session {
         let Self { protocol, visit, .. } = self;
         visit.look.follow_terminal(protocol, &visit.identity.preferences);
         visit.detection.depth = visit.look.depth;
-        visit.detection.source = Some(protocol.color_source());
+        let is_chosen = visit.identity.preferences.colors.is_some();
+        visit.detection.source = (!is_chosen).then(|| protocol.color_source());
+        visit.pointer.set_columns(protocol.size().columns);
     }
 
     /// Ends the session if it should, and gives the screen back once the terminal has answered all

@@ -5,6 +5,7 @@ use std::fmt::{self, Write};
 use super::{Part, StatusLine, StatusValues, Toggles};
 use crate::app::bindings::{Action, Bindings};
 use crate::app::panels::whole_seconds;
+use crate::app::stats::Stats;
 use crate::game::PlayerId;
 
 impl StatusLine {
@@ -35,9 +36,7 @@ impl StatusLine {
             long.push_str(goal.text());
         }
         if let Some(stats) = stats {
-            let [short, long] = self.forms(Part::Stats);
-            write!(short, "{}", stats.rates)?;
-            write!(long, "{stats}")?;
+            self.write_stats(stats)?;
         }
         if let Some(share) = share_seen {
             self.both(Part::Seen, format_args!("{:.0} % seen", (share * 100.0).floor()))?;
@@ -60,6 +59,13 @@ impl StatusLine {
             self.both(Part::Modes, format_args!("{comma}{mode}"))?;
         }
         Ok(())
+    }
+
+    /// Writes the figures of frames and the link.
+    pub(crate) fn write_stats(&mut self, stats: &Stats) -> fmt::Result {
+        let [short, long] = self.forms(Part::Stats);
+        write!(short, "{}", stats.rates)?;
+        write!(long, "{stats}")
     }
 
     /// Writes the names of the keys that the player has.

@@ -5,6 +5,9 @@ use glam::DVec2;
 use super::members::{Member, Members};
 use crate::game::Game;
 use crate::game::guards::Target;
+use crate::game::player::Motion;
+#[cfg(feature = "serve")]
+use crate::world::sprite::builtin::PlayerColor;
 use crate::world::sprite::builtin::PlayerFrame;
 use crate::world::{Figure, SpriteId, World};
 
@@ -50,6 +53,23 @@ impl Game {
         if let Some(members) = &mut self.members {
             members.in_the_way = in_the_way;
         }
+    }
+}
+
+#[cfg(feature = "serve")]
+impl Game {
+    /// The frame of a figure of the player of a game for one, who has walked so many cells.
+    pub(crate) fn frame_of_figure(&self, walked: f64) -> u8 {
+        let frame = match self.player.killed_by {
+            Some(_) => PlayerFrame::Down,
+            None => walking_frame(&self.player.motion, walked),
+        };
+        frame.index()
+    }
+
+    /// The sprite of the players of that colour; `None` in a game for one.
+    pub(crate) fn sprite_of_players(&self, color: PlayerColor) -> Option<SpriteId> {
+        self.members.as_ref()?.sprites[color as usize]
     }
 }
 
@@ -100,15 +120,21 @@ impl Member {
 
     fn frame(&self) -> PlayerFrame {
         let motion = &self.player.motion;
-        let stride = (self.walked / STRIDE) as u64 % 4;
-        match stride {
+        match self.swing {
             _ if self.is_down() => PlayerFrame::Down,
-            _ if self.swing > 0 => PlayerFrame::Strike,
-            _ if motion.is_ducking() => PlayerFrame::Duck,
-            _ if motion.is_still() => PlayerFrame::Stand,
-            0 => PlayerFrame::WalkLeft,
-            2 => PlayerFrame::WalkRight,
-            _ => PlayerFrame::Stand,
+            0 => walking_frame(motion, self.walked),
+            _ => PlayerFrame::Strike,
         }
+    }
+}
+
+/// The frame of somebody who stands or walks, and has walked so many cells.
+fn walking_frame(motion: &Motion, walked: f64) -> PlayerFrame {
+    match (walked / STRIDE) as u64 % 4 {
+        _ if motion.is_ducking() => PlayerFrame::Duck,
+        _ if motion.is_still() => PlayerFrame::Stand,
+        0 => PlayerFrame::WalkLeft,
+        2 => PlayerFrame::WalkRight,
+        _ => PlayerFrame::Stand,
     }
 }

@@ -7,13 +7,13 @@ use tokio::sync::mpsc;
 use super::account::{self, choose_name};
 use super::results;
 use super::visit::Visit;
+use crate::server::locked;
 use crate::server::logging::events;
 use crate::server::room::Deed;
 use crate::server::rooms::{Place, RoomRefusal};
 use crate::server::sequencer::{DeedRefusal, FinishedRun};
 use crate::server::session::{Ask, News};
-use crate::store::Preferences;
-use crate::store::host::{Account, Name};
+use crate::store::host::{Account, AccountSettings, Name};
 use crate::world::Difficulty;
 
 /// What the store has answered.
@@ -65,7 +65,8 @@ impl Visit {
             Ask::Deed(deed) => self.act(deed),
             Ask::Leave => self.leave(),
             Ask::Board { level, difficulty } => self.show_board(level, difficulty),
-            Ask::Save(preferences) => self.save(preferences),
+            Ask::Ghosts { level, difficulty } => self.show_ghosts(level, difficulty),
+            Ask::Save(settings) => self.save(settings),
         }
     }
 
@@ -176,14 +177,29 @@ impl Visit {
         });
     }
 
-    fn save(&mut self, preferences: Preferences) {
+    /// Has the best runs of a level played, for this visitor alone: who else is in the room may want
+    /// other ones.
+    fn show_ghosts(&mut self, level: String, difficulty: Difficulty) {
+        let own = self.account.as_ref().map(|account| account.id);
+        let (replies, runs) = (self.replies.clone(), Arc::clone(&self.shared.runs));
+        let catalog = Arc::clone(self.shared.rooms.catalog());
+        self.shared.store.run(move |store| {
+            let board = (level.as_str(), difficulty);
+            let ghosts = locked(&runs, |runs| runs.ghosts(store, &catalog, board, own));
+            match ghosts {
+                Ok(ghosts) => {
+                    let ghosts = ghosts.into();
+                    _ = replies.try_send(Reply::News(News::Ghosts { level, difficulty, ghosts }));
+                }
+                Err(failure) => events::store_failed(failure),
+            }
+        });
+    }
+
+    fn save(&mut self, settings: AccountSettings) {
         let Some(account) = self.account.as_ref().map(|account| account.id) else { return };
         self.shared.store.run(move |store| {
-            let saved = store.settings(account).and_then(|mut settings| {
-                settings.preferences = preferences;
-                store.set_settings(account, &settings)
-            });
-            if let Err(failure) = saved {
+            if let Err(failure) = store.set_settings(account, &settings) {
                 events::store_failed(failure);
             }
         });

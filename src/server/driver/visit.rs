@@ -1,6 +1,5 @@
 //! The driver of one visitor.
 
-use std::collections::BTreeMap;
 use std::sync::Arc;
 use std::time::Duration;
 
@@ -10,13 +9,14 @@ use tokio::time::sleep_until;
 use super::Shared;
 use super::account::{self, Known, NameInUse};
 use super::errands::{Reply, replies};
+use super::terminal;
+use crate::app::Configuration;
 use crate::server::line::Line;
 use crate::server::rooms::Place;
 use crate::server::session::{HostFacts, Identity, IdleLimits, News, Session};
 use crate::server::summary::RoomSummary;
 use crate::server::{Arrival, Inbound, Link, Notice, Outbox, Presence, Visitor};
 use crate::store::host::{Account, AccountKey, Name};
-use crate::terminal::Options;
 
 /// A visitor with everything that concerns them.
 pub(super) struct Visit {
@@ -74,7 +74,12 @@ impl Visit {
             name: account::line(&offer),
             is_named: account.is_some(),
             preferences: settings.preferences,
+            // What does not parse was written by another version.
+            configuration: Configuration::parse(&settings.configuration, "settings")
+                .unwrap_or_default(),
         };
+        let options = terminal::options(&visitor);
+        let ascii_locale = terminal::ascii_locale(&visitor);
         let config = shared.config.get();
         let presence = shared.visitors.arrive(visitor.peer.ip(), key);
         if let Some(account) = &account {
@@ -82,14 +87,16 @@ impl Visit {
         }
         let host = HostFacts {
             name: host_name(),
-            message: Line::of(visitor.notice.unwrap_or(&config.message), MESSAGE_COLUMNS),
+            message: Line::of(&config.message, MESSAGE_COLUMNS),
+            notice: visitor.notice.and_then(|notice| Line::of(notice, MESSAGE_COLUMNS)),
             compresses: visitor.compresses,
+            ascii_locale: ascii_locale.and_then(|setting| Line::of(&setting, MESSAGE_COLUMNS)),
             catalog: Arc::clone(shared.rooms.catalog()),
             idle: IdleLimits::default(),
             frame_time: shared.load.frame_time(),
         };
         let now = shared.now();
-        let session = Session::new(identity, options(&visitor), visitor.size, host, now);
+        let session = Session::new(identity, options, visitor.size, host, now);
         let (replies, replied) = replies();
         Self {
             session,
@@ -263,14 +270,4 @@ async fn changed(place: Option<&mut Place>) {
         Some(place) => place.changed().await,
         None => std::future::pending().await,
     }
-}
-
-/// What is known of a visitor's terminal.
-fn options(visitor: &Visitor) -> Options {
-    let environment: &BTreeMap<String, String> = &visitor.environment;
-    let options = Options::from_environment(|name| match name {
-        "TERM" => Some(visitor.term.clone()),
-        _ => environment.get(name).cloned(),
-    });
-    Options { is_remote: true, ..options }
 }

@@ -11,7 +11,9 @@
 //! ```
 //!
 //! The first number is the step, before which the entry takes effect; the second is the member. The
-//! number after them in `want` is the step in the picture that the member saw.
+//! number after them in `want` is the step in the picture that the member saw. Its angles count in
+//! one step, the rest of it until the next `want` of the member: a hand that rests turns nobody,
+//! however late the client says so.
 
 use std::fmt;
 
@@ -46,7 +48,8 @@ pub(crate) enum Deed {
     Join { color: PlayerColor, name: Line },
     /// Leaves the room.
     Leave,
-    /// Wants this from now on, after a picture of the step `seen` of the game.
+    /// Wants this from now on, after a picture of the step `seen` of the game. The angles count in the
+    /// next step only.
     Want { seen: u64, intents: Intents },
     /// Says something to all.
     Say(Line),

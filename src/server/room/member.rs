@@ -15,8 +15,10 @@ pub(crate) struct Member {
     pub(crate) player: Option<PlayerId>,
     /// The points of the rounds before.
     pub(crate) points: u32,
-    /// What the member wants at present.
+    /// What the member wants in the next step.
     pub(super) intents: Intents,
+    /// What they wanted in the last one.
+    pub(super) acted: Intents,
     /// The step of the game in the picture that the member saw last.
     pub(super) seen: u64,
 }

@@ -89,6 +89,11 @@ impl Mode {
         matches!(self, Self::Together | Self::Alone)
     }
 
+    /// Whether the best runs of the level walk along.
+    pub(crate) const fn has_ghosts(self) -> bool {
+        matches!(self, Self::Race | Self::Alone)
+    }
+
     /// The rules among the players.
     pub(super) fn company(self) -> Company {
         let usual = Company::default();
@@ -131,7 +136,7 @@ impl Mode {
     }
 
     /// The longest play of a round, in steps.
-    pub(super) const fn longest(self) -> u64 {
+    pub(in crate::server) const fn longest(self) -> u64 {
         match self {
             Self::Roam => 60 * 60 * SECOND,
             Self::Together | Self::Alone => 20 * 60 * SECOND,

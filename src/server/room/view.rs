@@ -65,6 +65,14 @@ impl RoomView {
         self.member(self.standings.first()?.member)
     }
 
+    /// The step in which the play of the round has begun, while it is played.
+    pub(crate) fn begun(&self) -> Option<u64> {
+        match self.phase {
+            Phase::Playing { ends } => Some(ends.saturating_sub(self.header.mode.longest())),
+            Phase::Waiting | Phase::Countdown { .. } | Phase::Over { .. } => None,
+        }
+    }
+
     /// The member whose player that is.
     pub(crate) fn member_of(&self, player: PlayerId) -> Option<&MemberView> {
         self.members.iter().find(|member| member.player == Some(player))

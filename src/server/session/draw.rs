@@ -1,10 +1,12 @@
 //! Drawing: what a visitor sees.
 
+mod ghost;
 mod members;
 mod overhead;
 mod room_status;
 mod said;
 
+use std::borrow::Cow;
 use std::cell::Cell;
 
 use ratatui::layout::Rect;
@@ -12,6 +14,7 @@ use ratatui::style::{Color, Modifier, Style};
 use ratatui::text::{Line, Text};
 use ratatui::widgets::Block;
 
+use self::ghost::Ghost;
 use super::page::Page;
 use super::stay::seconds_left;
 use super::visit::Visit;
@@ -21,8 +24,18 @@ use crate::app::parts::{
 };
 use crate::canvas::Canvas;
 use crate::color::palette::ColorDepth;
+use crate::server::line;
 use crate::server::room::{Phase, RoomView};
 use crate::tui::View;
+use crate::world::{Figure, World};
+
+/// The keys in a room that bindings do not change.
+const ROOM_KEYS: [&str; 2] = [
+    "In a room: Enter or / talks, ; hides chat, 1 shows an emotion,",
+    "Tab lists the members, or watches another one.",
+];
+/// What is said on a link that may make pictures coarse.
+pub(super) const COMPRESSION: &str = "On a slow link, ssh -C makes pictures finer.";
 
 /// The least rows of a picture with a banner above a menu.
 const LEAST_WITH_BANNER: u16 = 20;
@@ -74,7 +87,8 @@ impl Visit {
         match self.page {
             Page::Name => self.draw_name(canvas, area),
             Page::Help => {
-                self.help.draw(canvas, area, &self.bindings, self.help_notes().into_iter());
+                let (room_keys, notes) = (ROOM_KEYS.map(str::to_owned), self.help_notes());
+                self.help.draw(canvas, area, (&room_keys, &self.bindings), notes.into_iter());
             }
             Page::Leaving => leaving(canvas, area, &self.bindings, "ends the session"),
             Page::Room => {}
@@ -90,6 +104,7 @@ impl Visit {
             (true, false) => "Your key is your account. Choose its name.",
             (false, _) => "You are a guest. With a key, your results rank.",
         };
+        let about = self.host.notice.as_ref().map_or(about, line::Line::as_str);
         let room = usize::from(area.width.saturating_sub(6));
         let entry = self.entry.shown(room);
         let note = self.note.clone().unwrap_or_else(|| about.to_owned());
@@ -97,11 +112,10 @@ impl Visit {
         menu.draw(canvas, area);
     }
 
-    /// What the help says of a room, and of the terminal.
+    /// What the help says of the link and of the terminal.
     fn help_notes(&self) -> Vec<String> {
-        let room = "In a room: Enter or / talks, 1 shows an emotion, ; hides chat, Tab tells who is \
-                    here. Who watches changes whom by Tab.";
-        [room.to_owned()].into_iter().chain(self.detection.lines()).collect()
+        let compression = self.wants_compression.then(|| COMPRESSION.to_owned());
+        compression.into_iter().chain(self.detection.lines()).collect()
     }
 
     fn draw_room(&mut self, canvas: &mut impl Canvas, area: Rect, room: &RoomView) {
@@ -117,11 +131,14 @@ impl Visit {
             let flash = flash.map(|flash| (flash, camera.heading));
             let options = DrawOptions { flash, ..look.options() };
             let (game, seconds) = (&room.game, room.game.elapsed());
+            let ghosts: Vec<Ghost> =
+                stay.ghosts(room, &look).map(|seen| Ghost::of(&seen)).collect();
+            let world = with_ghosts(game.world(), &ghosts);
             let mut view = VIEW.take().unwrap_or_default();
-            options.draw(game.world(), &camera, seconds, canvas, area, &mut view);
+            options.draw(&*world, &camera, seconds, canvas, area, &mut view);
             stay.next_change = view.next_change();
             if let Some((_, player)) = seen_through {
-                overhead::draw(canvas, area, room, &player, &options);
+                overhead::draw(canvas, area, &options, &player, room, &ghosts);
                 let overlay = Overlay::new(game, player.id(), &options, preferences);
                 if let Some(overlay) = overlay {
                     overlay.draw_map(canvas, area, &mut stay.map, &view);
@@ -140,6 +157,18 @@ impl Visit {
             notice(canvas, area, draining);
         }
     }
+}
+
+/// The world with the figures of `ghosts`. Where there are some, it is copied, since the room and other
+/// sessions share it.
+fn with_ghosts<'w>(world: &'w World, ghosts: &[Ghost]) -> Cow<'w, World> {
+    let mut world = Cow::Borrowed(world);
+    if !ghosts.is_empty() {
+        let figures = world.figures().iter().copied().chain(ghosts.iter().map(|it| it.figure));
+        let figures: Vec<Figure> = figures.collect();
+        world.to_mut().set_figures(figures.into_iter());
+    }
+    world
 }
 
 /// Draws the darkness in which seekers wait.

@@ -9,15 +9,10 @@ use super::page::Page;
 use super::visit::Visit;
 use super::{Ask, choice::Choice};
 use crate::app::parts::{Action, REPETITION, Selection, changes_by};
-use crate::game::Intent;
 use crate::server::line::Line;
-use crate::server::room::{CHAT_COLUMNS, Deed};
-use crate::server::session::line_entry::LineEntry;
-use crate::terminal::{Event, Key, KeyEvent, Phase, QuitReason};
+use crate::server::room::Deed;
+use crate::terminal::{Event, Key, KeyEvent, MouseEvent, Phase, QuitReason};
 use crate::tui::Press;
-
-/// The step by which a key widens or narrows the view, in degrees.
-const VIEW_STEP: f64 = 6.0;
 
 /// A key that answers the question on the page if it does not repeat until that time.
 #[derive(Clone, Copy, Debug)]
@@ -32,7 +27,11 @@ impl Visit {
         self.advance(now);
         match event {
             Event::Key(event) => self.key(event),
-            Event::FocusLost => self.release_keys(),
+            Event::Mouse(event) => self.mouse(event),
+            Event::FocusLost => {
+                self.release_keys();
+                self.pointer.forget();
+            }
             Event::KeyReleases(reported) => {
                 self.controls.held.set_reports_releases(reported);
                 self.detection.reports_releases = Some(reported);
@@ -43,11 +42,7 @@ impl Visit {
                 self.idle.restart(now);
                 self.interrupted();
             }
-            Event::Quit(_)
-            | Event::Mouse(_)
-            | Event::FocusGained
-            | Event::Ready
-            | Event::Suspend => {}
+            Event::Quit(_) | Event::FocusGained | Event::Ready | Event::Suspend => {}
         }
     }
 
@@ -64,6 +59,14 @@ impl Visit {
         if let Some(press) = press {
             self.press(event.key, press);
         }
+        self.want();
+    }
+
+    /// Handles an event of the mouse, which turns the player and does nothing else, as at home.
+    fn mouse(&mut self, event: MouseEvent) {
+        self.is_stale |= self.idle.restart(self.now);
+        let plays = self.is_playing();
+        self.pointer.handle(event, plays);
         self.want();
     }
 
@@ -219,68 +222,5 @@ impl Visit {
             Page::Entering => {}
             _ => self.close(),
         }
-    }
-
-    fn press_in_room(&mut self, key: Key, press: Press) {
-        let action = self.bindings.action(key);
-        match action {
-            Some(Action::WidenView) => return self.widen_view(VIEW_STEP),
-            Some(Action::NarrowView) => return self.widen_view(-VIEW_STEP),
-            _ if press == Press::Repeat => return,
-            _ => {}
-        }
-        let Some(stay) = &mut self.stay else { return };
-        let is_member = stay.member.is_some();
-        match key {
-            Key::Enter if stay.is_dead => return self.retry(),
-            Key::Enter | Key::Char('/') if is_member => {
-                self.entry = LineEntry::new(CHAT_COLUMNS);
-                return self.open(Page::Chat);
-            }
-            Key::Char('1') if is_member => return self.open(Page::Emotes),
-            Key::Char(';') => stay.talk.toggle(),
-            Key::Tab if is_member => stay.shows_members ^= true,
-            Key::Tab | Key::Right | Key::Down if !is_member => stay.watch_another(true),
-            Key::Left | Key::Up if !is_member => stay.watch_another(false),
-            _ => return self.command(action),
-        }
-        self.is_stale = true;
-    }
-
-    fn command(&mut self, action: Option<Action>) {
-        let Some(stay) = &mut self.stay else { return };
-        let toggles = &mut self.controls.toggles;
-        match action {
-            Some(Action::ToggleHelp) => self.open(Page::Help),
-            Some(Action::Leave | Action::TogglePause) => self.open(Page::RoomMenu),
-            Some(Action::ToggleMinimap) => stay.map.is_shown ^= true,
-            Some(Action::ChangeMap(change)) => stay.map.change(change),
-            Some(Action::ToggleDuck) => toggles.ducks ^= true,
-            Some(Action::ToggleRun) => toggles.runs ^= true,
-            Some(Action::ToggleWalkOn) => toggles.keeps_walking ^= true,
-            Some(Action::ToggleCrosshair) => {
-                self.change_preference(super::settings::Preference::Crosshair, true);
-            }
-            Some(Action::ToggleCompass) => {
-                self.change_preference(super::settings::Preference::Compass, true);
-            }
-            _ => return,
-        }
-        self.is_stale = true;
-    }
-
-    fn widen_view(&mut self, degrees: f64) {
-        self.look.widen(degrees);
-        self.is_stale = true;
-    }
-
-    /// Goes on after death: from the last checkpoint, or from the beginning.
-    fn retry(&mut self) {
-        let Some(stay) = &mut self.stay else { return };
-        if stay.dies_for_good {
-            return self.ask(Ask::Deed(Deed::Again));
-        }
-        stay.wants.want([Intent::Retry].into_iter().collect());
-        self.want();
     }
 }

@@ -1,5 +1,6 @@
 //! How pictures are drawn on the visitor's terminal.
 
+use super::news::Identity;
 use crate::app::parts::DrawOptions;
 use crate::color::palette::ColorDepth;
 use crate::render::Filter;
@@ -23,15 +24,22 @@ pub(super) struct Look {
     terminal_depth: ColorDepth,
     terminal_glyphs: GlyphMode,
     marks_middle: bool,
+    pub(super) shows_ghosts: bool,
 }
 
 impl Look {
-    /// For a terminal that shows only ASCII, or not, and a visitor with `preferences`.
-    pub(super) fn new(is_ascii: bool, preferences: &Preferences) -> Self {
+    /// For a terminal that shows only ASCII, or not, and the visitor `identity`.
+    pub(super) fn new(is_ascii: bool, identity: &Identity) -> Self {
         let terminal_glyphs = if is_ascii { GlyphMode::Ascii } else { GlyphMode::Half };
-        let mut look = Self { terminal_glyphs, ..Self::default() };
-        look.follow(preferences);
+        let field_of_view = identity.configuration.field_of_view;
+        let mut look = Self { terminal_glyphs, field_of_view, ..Self::default() };
+        look.follow(&identity.preferences);
         look
+    }
+
+    /// Whether only ASCII is sent: the terminal shows no more, and the visitor did not ask for it.
+    pub(super) fn is_ascii(&self) -> bool {
+        self.terminal_glyphs == GlyphMode::Ascii && self.glyphs != GlyphMode::Half
     }
 
     /// Takes over what is known of the terminal.
@@ -47,6 +55,7 @@ impl Look {
         self.glyphs = preferences.glyphs.unwrap_or(self.terminal_glyphs);
         self.depth = preferences.colors.unwrap_or(self.terminal_depth);
         self.marks_middle = preferences.crosshair;
+        self.shows_ghosts = preferences.ghost;
     }
 
     /// Widens the field of view.

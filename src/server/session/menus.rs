@@ -1,6 +1,7 @@
 //! The menus: their texts and entries.
 
 use super::choice::{Choice, Target};
+use super::draw::COMPRESSION;
 use super::page::Page;
 use super::visit::Visit;
 use crate::app::parts::{Menu, time};
@@ -34,13 +35,13 @@ impl Visit {
 
     fn lobby_menu(&self) -> Menu<Choice> {
         let menu = Menu::new(self.host.name.as_str());
-        let compression = "On a slow link, ssh -C makes pictures finer.".to_owned();
-        let message = self.host.message.as_ref().map(ToString::to_string);
+        let [notice, message] = [&self.host.notice, &self.host.message];
         let lines = [
             self.note.clone(),
             self.draining.clone(),
-            message,
-            (!self.host.compresses).then_some(compression),
+            notice.as_ref().map(ToString::to_string),
+            message.as_ref().map(ToString::to_string),
+            self.wants_compression.then(|| COMPRESSION.to_owned()),
         ];
         let menu = lines.into_iter().flatten().fold(menu, Menu::line);
         let rooms = self.rooms_by_life();
@@ -184,7 +185,7 @@ impl Visit {
             },
         };
         let menu = Menu::new(mode.title());
-        let keys = "Arrows walk, Enter talks, 1 shows emotions, Tab lists members, ? helps.";
+        let keys = "Arrows walk, Enter talks, ? helps.";
         let alone = "Arrows walk, ? helps.";
         let is_alone = mode == Mode::Alone;
         let guest = "You are a guest: with a key, results stand on the board.";
@@ -206,7 +207,8 @@ impl Visit {
 
     fn room_menu(&self) -> Menu<Choice> {
         let is_member = self.stay.as_ref().is_some_and(|stay| stay.member.is_some());
-        let menu = Menu::new("leave?").entry("Go on", Choice::Back);
+        let menu = Menu::new("room").line("The room goes on meanwhile.");
+        let menu = menu.entry("Go on", Choice::Back);
         let menu =
             if is_member { menu.entry("Begin the round again", Choice::Again) } else { menu };
         menu.entry("Settings", Choice::Open(Page::Settings))

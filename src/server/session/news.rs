@@ -3,11 +3,14 @@
 use std::sync::Arc;
 use std::time::Duration;
 
+use crate::app::Configuration;
 use crate::game::Rank;
+use crate::server::ghost::Ghost;
 use crate::server::line::Line;
 use crate::server::room::{Catalog, Deed, MemberId};
 use crate::server::summary::{RoomId, RoomSummary, RoomWish};
 use crate::store::Preferences;
+use crate::store::host::AccountSettings;
 use crate::world::Difficulty;
 
 /// Who the visitor is.
@@ -20,6 +23,8 @@ pub(crate) struct Identity {
     /// Whether the account has that name already.
     pub(crate) is_named: bool,
     pub(crate) preferences: Preferences,
+    /// The keys that they use, and how the game begins.
+    pub(crate) configuration: Configuration,
 }
 
 /// What a session knows of the host and of the connection.
@@ -29,8 +34,12 @@ pub(crate) struct HostFacts {
     pub(crate) name: Line,
     /// The message of the day.
     pub(crate) message: Option<Line>,
+    /// What the visitor is to read about their key.
+    pub(crate) notice: Option<Line>,
     /// Whether the connection compresses what is sent.
     pub(crate) compresses: bool,
+    /// The setting of the visitor's locale that restricts them to ASCII, such as `LANG=C`.
+    pub(crate) ascii_locale: Option<Line>,
     pub(crate) catalog: Arc<Catalog>,
     pub(crate) idle: IdleLimits,
     /// The least time between two frames, at first.
@@ -73,8 +82,10 @@ pub(crate) enum Ask {
     Leave,
     /// A board: [`News::Board`].
     Board { level: String, difficulty: Difficulty },
-    /// To keep the preferences. Nothing is answered.
-    Save(Preferences),
+    /// The runs that walk along in a level: [`News::Ghosts`].
+    Ghosts { level: String, difficulty: Difficulty },
+    /// To keep the settings. Nothing is answered.
+    Save(AccountSettings),
 }
 
 /// What the driver tells a session.
@@ -92,6 +103,8 @@ pub(crate) enum News {
     Left(String),
     /// A board, the best first.
     Board { level: String, difficulty: Difficulty, rows: Arc<[BoardRow]> },
+    /// The runs that walk along in a level.
+    Ghosts { level: String, difficulty: Difficulty, ghosts: Arc<[Ghost]> },
     /// What became of a result: a sentence.
     Result(String),
     /// A line from the host to all.

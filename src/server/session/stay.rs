@@ -3,14 +3,17 @@
 use std::sync::Arc;
 use std::time::Duration;
 
+use super::ghosts::{Ghosts, Seen};
+use super::look::Look;
+use super::news::Ask;
 use super::shown_steps::ShownSteps;
 use super::talk::Talk;
 use super::wants::Wants;
 use crate::app::MapDisplay;
-use crate::app::parts::MapPanel;
+use crate::app::parts::{MapPanel, Watch};
 use crate::game::{Outcome, PlayerView};
 use crate::server::room::{Header, MemberId, MemberView, Mode, Phase, RoomView};
-use crate::world::{Camera, FieldOfView};
+use crate::world::{Camera, FieldOfView, Figure};
 
 /// A stay in a room.
 pub(super) struct Stay {
@@ -22,8 +25,11 @@ pub(super) struct Stay {
     pub(super) wants: Wants,
     pub(super) frames: ShownSteps,
     pub(super) map: MapPanel,
+    /// What the bell rings for.
+    pub(super) watch: Watch,
     /// The time in the game at which the last picture changes without a cause.
     pub(super) next_change: Option<f64>,
+    pub(super) ghosts: Ghosts,
     pub(super) shows_members: bool,
     /// Whether the player is in the air, and whether they are dead, in the last picture.
     pub(super) is_airborne: bool,
@@ -46,21 +52,24 @@ struct Shown {
     /// The seconds that the picture counts down.
     seconds: Option<u64>,
     members: Vec<MemberView>,
+    ghosts: Vec<Figure>,
     standings: usize,
     /// The time in the game of the next change that nobody causes.
     animates_at: Option<f64>,
 }
 
 impl Stay {
-    pub(super) fn new(member: Option<MemberId>) -> Self {
+    pub(super) fn new(member: Option<MemberId>, map: MapDisplay) -> Self {
         Self {
             member,
             watched: None,
             talk: Talk::default(),
             wants: Wants::default(),
             frames: ShownSteps::default(),
-            map: MapPanel::new(MapDisplay::default()),
+            map: MapPanel::new(map),
+            watch: Watch::default(),
             next_change: None,
+            ghosts: Ghosts::default(),
             shows_members: false,
             is_airborne: false,
             is_dead: false,
@@ -70,13 +79,21 @@ impl Stay {
         }
     }
 
-    /// Takes over what is new in `room` before it is drawn.
-    pub(super) fn look_at(&mut self, room: &RoomView, now: Duration) {
+    /// Takes over what is new in `room` before it is drawn; returns what is wanted to draw it.
+    pub(super) fn look_at(&mut self, room: &RoomView, now: Duration) -> Option<Ask> {
         self.talk.hear(&room.said, now);
         self.talk.forget_old(now);
-        if self.shown.as_ref().is_some_and(|shown| !Arc::ptr_eq(&shown.header, &room.header)) {
+        let is_same_round = |shown: &Shown| Arc::ptr_eq(&shown.header, &room.header);
+        let begins = !self.shown.as_ref().is_some_and(is_same_round);
+        if begins && self.shown.is_some() {
             self.map.begin_level();
             self.frames.forget();
+        }
+        if let Some(player) = self.member.and_then(|id| room.member(id)?.player) {
+            if begins {
+                self.watch = Watch::of(&room.game, player);
+            }
+            self.watch.look_at(&room.game, player);
         }
         self.members = room.members.iter().map(|member| member.id).collect();
         if self.watched.is_none_or(|id| room.member(id).is_none()) {
@@ -87,6 +104,18 @@ impl Stay {
         let is_dead = |player: PlayerView| matches!(player.outcome(), Outcome::Dead { .. });
         self.dies_for_good = room.game.company().is_some_and(|company| !company.respawns);
         self.is_dead = self.member.is_some() && player.is_some_and(|(_, it)| is_dead(it));
+        begins.then(|| self.ghosts.begin(room)).flatten()
+    }
+
+    /// The ghosts in the picture.
+    pub(super) fn ghosts<'r>(
+        &'r self,
+        room: &'r RoomView,
+        look: &Look,
+    ) -> impl Iterator<Item = Seen<'r>> {
+        let own = self.member.and_then(|id| room.member(id)).map(|member| member.color);
+        let is_on = look.shows_ghosts;
+        self.ghosts.seen(room, own).filter(move |_| is_on)
     }
 
     /// The member through whose eyes the room is seen: the visitor, or whom they watch. `None` if
@@ -118,14 +147,15 @@ impl Stay {
     }
 
     /// Whether a picture of `room` would differ from the last one.
-    pub(super) fn differs_from(&self, room: &RoomView, view: FieldOfView) -> bool {
+    pub(super) fn differs_from(&self, room: &RoomView, look: &Look) -> bool {
         let Some(shown) = &self.shown else { return true };
         let elapsed = room.game.elapsed();
         shown.revision != room.game.revision()
-            || shown.camera != self.camera(room, view)
+            || shown.camera != self.camera(room, look.field_of_view)
             || std::mem::discriminant(&shown.phase) != std::mem::discriminant(&room.phase)
             || shown.seconds != seconds_left(room)
             || shown.members != room.members
+            || !self.ghosts(room, look).map(|seen| seen.figure).eq(shown.ghosts.iter().copied())
             || shown.standings != room.standings.len()
             || self.talk.is_behind(&room.said)
             || shown.animates_at.is_some_and(|time| time <= elapsed)
@@ -133,14 +163,15 @@ impl Stay {
     }
 
     /// Records that `room` was drawn.
-    pub(super) fn drawn(&mut self, room: &RoomView, view: FieldOfView) {
+    pub(super) fn drawn(&mut self, room: &RoomView, look: &Look) {
         self.shown = Some(Shown {
             header: Arc::clone(&room.header),
             revision: room.game.revision(),
-            camera: self.camera(room, view),
+            camera: self.camera(room, look.field_of_view),
             phase: room.phase,
             seconds: seconds_left(room),
             members: room.members.clone(),
+            ghosts: self.ghosts(room, look).map(|seen| seen.figure).collect(),
             standings: room.standings.len(),
             animates_at: self.next_change,
         });

@@ -1,6 +1,9 @@
 //! Sessions with terminal emulators and one room, in simulated time.
 
+mod bytes;
 mod driver;
+mod ghosts;
+mod home;
 mod lag;
 mod pages;
 mod pictures;
@@ -15,13 +18,16 @@ use std::time::Duration;
 
 use self::emulator::{Emulator, Speaks};
 use super::*;
+use crate::app::Configuration;
 use crate::color::palette::ColorDepth;
 use crate::game::PlayerColor;
 use crate::map;
+use crate::server::ghost::Ghost;
 use crate::server::line::Line;
 use crate::server::room::{Catalog, Deed, Entry, Header, MemberId, Mode, NAME_COLUMNS, Room};
 use crate::server::summary::{RoomId, RoomSummary};
 use crate::store::Preferences;
+use crate::store::host::AccountSettings;
 use crate::terminal::Detected;
 use crate::world::Difficulty;
 
@@ -60,6 +66,11 @@ struct Visitor {
     /// The pictures that were drawn, whether they differ or not.
     pictures: u64,
     wants: Vec<(u64, u64)>,
+    /// How often the bell has rung.
+    bells: usize,
+    saved: Option<AccountSettings>,
+    /// All that was sent, frame by frame.
+    sent: Vec<Vec<u8>>,
 }
 
 /// A host with one room.
@@ -70,6 +81,8 @@ struct Rig {
     /// What the members did in this round, in the order in which it took effect.
     log: Vec<Entry>,
     visitors: Vec<Visitor>,
+    /// The runs that walk along.
+    ghosts: Arc<[Ghost]>,
 }
 
 fn line(text: &str) -> Line {
@@ -86,7 +99,8 @@ impl Rig {
         let header = Header::new("hall", mode, Difficulty::Normal, 7);
         let room = Room::new(&catalog, header).unwrap();
         let now = Duration::from_secs(1);
-        Self { now, catalog, room, log: Vec::new(), visitors: Vec::new() }
+        let ghosts = Arc::from([]);
+        Self { now, catalog, room, log: Vec::new(), visitors: Vec::new(), ghosts }
     }
 
     /// Adds a visitor whose terminal has no colours, and returns their index.
@@ -111,11 +125,14 @@ impl Rig {
             name: line(name),
             is_named: false,
             preferences: Preferences::default(),
+            configuration: Configuration::default(),
         };
         let host = HostFacts {
             name: line("play.example.org"),
             message: Some(line("Be kind.")),
+            notice: None,
             compresses: true,
+            ascii_locale: None,
             catalog: Arc::clone(&self.catalog),
             idle: IdleLimits::default(),
             frame_time: Duration::from_millis(33),
@@ -133,6 +150,9 @@ impl Rig {
             bytes: 0,
             pictures: 0,
             wants: Vec::new(),
+            bells: 0,
+            saved: None,
+            sent: Vec::new(),
         });
         self.pump(300);
         self.visitors.len() - 1

@@ -8,15 +8,17 @@ use super::idle::{Idle, Patience};
 use super::keys::Pending;
 use super::line_entry::LineEntry;
 use super::look::Look;
-use super::news::{Ask, BoardRow, HostFacts, Identity, News};
+use super::news::{Ask, BoardRow, HostFacts, Identity};
 use super::page::{Page, Shelved};
 use super::stay::Stay;
-use crate::app::Bindings;
-use crate::app::parts::{Clock, Controls, Detection, HelpScroll, KeyContext, Menu, StatusLine};
+use crate::app::parts::{
+    Clock, Controls, Detection, HelpScroll, KeyContext, Menu, Pointer, Stats, StatusLine,
+};
+use crate::app::{Bindings, Configuration};
 use crate::game::Intents;
-use crate::server::line::Line;
 use crate::server::room::{Deed, NAME_COLUMNS, RoomView};
 use crate::server::summary::{RoomId, RoomSummary};
+use crate::terminal::Key;
 
 /// The most wishes that wait for the driver. Further ones are left out: they come from a paste.
 const MOST_ASKS: usize = 64;
@@ -28,6 +30,7 @@ pub(super) struct Visit {
     pub(super) asks: Vec<Ask>,
     pub(super) bindings: Bindings,
     pub(super) controls: Controls,
+    pub(super) pointer: Pointer,
     pub(super) clock: Clock,
     pub(super) look: Look,
     pub(super) detection: Detection,
@@ -49,6 +52,11 @@ pub(super) struct Visit {
     /// The room that the visitor is in.
     pub(super) stay: Option<Stay>,
     pub(super) status: StatusLine,
+    /// The figures of frames and the link, and whether the status line shows them.
+    pub(super) stats: Option<Stats>,
+    pub(super) shows_stats: bool,
+    /// Whether compression would make pictures finer, as far as is known.
+    pub(super) wants_compression: bool,
     pub(super) idle: Idle,
     /// The number of frames that the terminal has answered.
     pub(super) answered: u64,
@@ -77,14 +85,17 @@ impl Visit {
         clock.skip_to(now);
         Self {
             entry: LineEntry::offering(&identity.name, NAME_COLUMNS),
-            identity,
-            host,
             asks: Vec::new(),
-            bindings: Bindings::default(),
+            bindings: bindings_of(&identity.configuration),
             controls: Controls::default(),
+            pointer: Pointer::new(identity.configuration.mouse),
             clock,
             look,
-            detection: Detection::default(),
+            detection: Detection {
+                ascii_locale: host.ascii_locale.as_ref().map(ToString::to_string),
+                is_visitor: true,
+                ..Detection::default()
+            },
             page: Page::Name,
             menu: Menu::new(""),
             behind: Vec::new(),
@@ -97,11 +108,16 @@ impl Visit {
             board: Board::default(),
             stay: None,
             status: StatusLine::default(),
+            stats: None,
+            shows_stats: false,
+            wants_compression: false,
             idle,
             answered: 0,
             now,
             is_stale: true,
             farewell: None,
+            identity,
+            host,
         }
     }
 
@@ -119,8 +135,7 @@ impl Visit {
 
     /// Whether a picture would differ from the one that is shown.
     pub(super) fn is_stale(&self, room: Option<&RoomView>) -> bool {
-        let differs =
-            |stay: &Stay| room.is_some_and(|room| stay.differs_from(room, self.look.field_of_view));
+        let differs = |stay: &Stay| room.is_some_and(|room| stay.differs_from(room, &self.look));
         self.is_stale || self.stay.as_ref().is_some_and(differs)
     }
 
@@ -142,12 +157,13 @@ impl Visit {
     pub(super) fn wakes_at(&self) -> Option<Duration> {
         let held = &self.controls.held;
         let tap = self.is_playing() && held.has_taps();
+        let turns = self.is_playing() && self.pointer.is_busy();
         let stay = self.stay.as_ref();
         let times = [
             Some(self.idle.next_at(&self.host.idle, self.idle_limit())),
             self.pending.map(|pending| pending.until),
             held.next_expiry(),
-            tap.then(|| self.clock.step_after(0)),
+            (tap || turns).then(|| self.clock.step_after(0)),
             stay.and_then(|stay| stay.talk.next_end()),
             stay.and_then(|stay| stay.wants.next_at()),
         ];
@@ -161,16 +177,31 @@ impl Visit {
         for _ in 0..self.clock.steps_until(now).min(Clock::MOST_STEPS) {
             self.controls.advance(now, context);
             self.want();
+            self.turn();
             self.controls.held.step();
         }
         self.controls.advance(now, context);
         self.want();
     }
 
-    /// Tells the room what the held keys want.
+    /// Turns by what the mouse has moved in a step.
+    fn turn(&mut self) {
+        if !self.is_playing() {
+            return;
+        }
+        if let Some(stay) = &mut self.stay {
+            stay.wants.turn(self.pointer.look());
+        }
+        self.pointer.passed(1);
+    }
+
+    /// Tells the room what the held keys and the buttons of the mouse want.
     pub(super) fn want(&mut self) {
         let intents = match self.is_playing() {
-            true => self.controls.intents(&self.bindings, self.key_context()),
+            true => {
+                let keys = self.controls.intents(&self.bindings, self.key_context());
+                keys.iter().chain(self.pointer.clicked().iter()).collect()
+            }
             false => Intents::new(),
         };
         let Some(stay) = self.stay.as_mut().filter(|stay| stay.member.is_some()) else { return };
@@ -182,7 +213,7 @@ impl Visit {
     }
 
     /// Whether keys walk.
-    fn is_playing(&self) -> bool {
+    pub(super) fn is_playing(&self) -> bool {
         self.page == Page::Room && self.stay.as_ref().is_some_and(|stay| stay.member.is_some())
     }
 
@@ -217,69 +248,10 @@ impl Visit {
             self.farewell = Some(sentence);
         }
     }
+}
 
-    /// Records what the driver brings.
-    pub(super) fn tell(&mut self, news: News) {
-        self.is_stale = true;
-        match news {
-            News::Named(answer) => self.named(answer),
-            News::Rooms(rooms) => {
-                self.rooms = rooms;
-                if self.stay.is_none() {
-                    self.renew_menu();
-                }
-            }
-            News::Entered { member, .. } => {
-                self.note = None;
-                self.stay = Some(Stay::new(member));
-                self.clock.skip_to(self.now);
-                self.show(Page::Room);
-            }
-            News::Refused(sentence) | News::Left(sentence) => self.leave_room(Some(sentence)),
-            News::Board { level, difficulty, rows } => {
-                let asked = self.host.catalog.names().get(self.board.level);
-                let is_asked = self.identity.preferences.difficulty == difficulty;
-                if asked == Some(&level) && is_asked {
-                    self.board.rows = Some(rows);
-                    self.renew_menu();
-                }
-            }
-            News::Result(sentence) => self.hear(sentence),
-            News::Said(line) => self.hear(format!("{}: {line}", self.host.name)),
-            News::Draining { seconds } => {
-                self.draining = Some(format!("The server ends in {seconds} seconds."));
-                self.renew_menu();
-            }
-            News::Ended(sentence) => self.farewell = Some(sentence),
-        }
-    }
-
-    fn named(&mut self, answer: Result<Line, String>) {
-        self.awaits_name = false;
-        match answer {
-            Ok(name) => {
-                self.identity.name = name;
-                self.identity.is_named = true;
-                self.enter_lobby();
-            }
-            Err(sentence) => self.note = Some(sentence),
-        }
-    }
-
-    /// Shows the lobby for the first time.
-    pub(super) fn enter_lobby(&mut self) {
-        self.note = None;
-        self.ask(Ask::Rooms);
-        self.show(Page::Lobby);
-    }
-
-    fn hear(&mut self, sentence: String) {
-        match &mut self.stay {
-            Some(stay) => stay.talk.hear_host(sentence, self.now),
-            None => {
-                self.note = Some(sentence);
-                self.renew_menu();
-            }
-        }
-    }
+/// The bindings without the keys that have another meaning in a room.
+pub(super) fn bindings_of(configuration: &Configuration) -> Bindings {
+    let keys = ['/', ';', '1'].map(Key::Char);
+    configuration.bindings.clone().without(&keys).without(&[Key::Enter, Key::Tab])
 }

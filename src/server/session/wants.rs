@@ -3,11 +3,13 @@
 //! An intent is sent when it changes, at most 30 times a second, and none is left out: a tap may
 //! begin and end between two of those times. In rooms where touches are judged by what the member
 //! saw, what they want is also sent again while they move, since it tells the room what they saw.
+//!
+//! The angles of the mouse add up until they are sent, since they count in one step of the room.
 
 use std::collections::VecDeque;
 use std::time::Duration;
 
-use crate::game::Intents;
+use crate::game::{Intents, Look};
 
 /// The least time between two changes that are sent: two steps, so that each takes effect in a step
 /// of its own.
@@ -23,6 +25,8 @@ pub(super) struct Wants {
     sent: Intents,
     sent_at: Option<Duration>,
     waiting: VecDeque<Intents>,
+    /// The turn and the tilt that are not sent yet, in units of [`Look`].
+    angles: [i32; 2],
 }
 
 impl Wants {
@@ -37,6 +41,12 @@ impl Wants {
         self.waiting.push_back(intents);
     }
 
+    /// Records that the member turns and tilts by these angles.
+    pub(super) fn turn(&mut self, by: Look) {
+        let [turn, tilt] = self.angles;
+        self.angles = [turn + i32::from(by.turn), tilt + i32::from(by.tilt)].map(within);
+    }
+
     /// What is to be sent at `now`, if something is.
     pub(super) fn take(&mut self, now: Duration) -> Option<Intents> {
         if self.next_at().is_none_or(|due| due > now) {
@@ -44,18 +54,25 @@ impl Wants {
         }
         self.sent = self.waiting.pop_front().unwrap_or(self.sent);
         self.sent_at = Some(now);
-        Some(self.sent)
+        let [turn, tilt] = std::mem::take(&mut self.angles).map(|angle| angle as i16);
+        Some(self.sent.with_look(Look { turn, tilt }))
     }
 
     /// The time of the next [`take`](Self::take) that gives something; `None` for never.
     pub(super) fn next_at(&self) -> Option<Duration> {
         let after = |time| self.sent_at.map_or(Duration::ZERO, |sent| sent + time);
-        match (self.waiting.is_empty(), self.sent.is_empty()) {
+        let is_renewed = self.waiting.is_empty() && self.angles == [0, 0];
+        match (is_renewed, self.sent.is_empty()) {
             (false, _) => Some(after(LEAST)),
             (true, false) => Some(after(RENEWED)),
             (true, true) => None,
         }
     }
+}
+
+/// The nearest angle that a [`Look`] can have.
+fn within(angle: i32) -> i32 {
+    angle.clamp(-i32::from(i16::MAX), i16::MAX.into())
 }
 
 #[cfg(test)]
@@ -90,6 +107,22 @@ mod tests {
         wants.want(forward);
         assert_eq!(wants.take(at(249)), None);
         assert_eq!(wants.take(at(250)), Some(forward));
+    }
+
+    #[test]
+    fn angles_add_up_and_are_sent_once() {
+        let mut wants = Wants::default();
+        let forward: Intents = [Intent::Forward].into_iter().collect();
+        wants.want(forward);
+        assert_eq!(wants.take(at(0)), Some(forward));
+        wants.turn(Look { turn: 150, tilt: -20 });
+        wants.turn(Look { turn: 50, tilt: 0 });
+        assert_eq!(wants.take(at(33)), None);
+        assert_eq!(wants.take(at(34)), Some(forward.with_look(Look { turn: 200, tilt: -20 })));
+        assert_eq!(wants.next_at(), Some(at(284)));
+        (0..4).for_each(|_| wants.turn(Look { turn: i16::MIN, tilt: i16::MAX }));
+        let most = Look { turn: -i16::MAX, tilt: i16::MAX };
+        assert_eq!(wants.take(at(70)), Some(forward.with_look(most)));
     }
 
     #[test]

@@ -48,6 +48,15 @@ impl Protocol {
         self.fidelity = fidelity;
     }
 
+    /// Sets whether frames are restricted to ASCII. If that changes, the next one is sent whole.
+    #[cfg(feature = "serve")]
+    pub(crate) fn set_ascii(&mut self, is_ascii: bool) {
+        if self.options.is_ascii != is_ascii {
+            self.options.is_ascii = is_ascii;
+            self.writer.set_ascii(is_ascii);
+        }
+    }
+
     /// The present fidelity of frames of motion.
     pub fn fidelity(&self) -> Fidelity {
         self.fidelity.unwrap_or_else(|| self.flow.fidelity())

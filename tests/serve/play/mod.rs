@@ -1,5 +1,6 @@
 //! The game on a server: real clients of OpenSSH that see each other's pictures.
 
+mod race;
 mod server;
 
 use std::time::{Duration, Instant};

@@ -30,7 +30,15 @@ struct Running {
 
 impl GameServer {
     pub(super) fn open() -> Self {
+        Self::open_with(|_| ())
+    }
+
+    /// A server with what `fill` puts into its store.
+    pub(super) fn open_with(fill: impl FnOnce(&mut SqliteStore)) -> Self {
         let folder = folder();
+        let (mut store, _) = SqliteStore::open(&folder).unwrap();
+        fill(&mut store);
+        drop(store);
         let running = Some(Running::start(&folder));
         Self { folder, running }
     }

@@ -1,10 +1,12 @@
 //! Names over the heads of those who are near.
 
+use glam::DVec2;
 use ratatui::layout::Rect;
 use ratatui::style::{Modifier, Style};
 use ratatui::text::Span;
 use unicode_width::{UnicodeWidthChar, UnicodeWidthStr};
 
+use super::ghost::Ghost;
 use crate::app::parts::DrawOptions;
 use crate::canvas::Canvas;
 use crate::color::palette::ColorDepth;
@@ -13,6 +15,7 @@ use crate::render::FrameSize;
 use crate::server::room::{MemberView, Mode, Role, RoomView};
 use crate::tui::color_at;
 use crate::visibility::Projection;
+use crate::world::Figure;
 
 /// The distance in which names are shown, in cells.
 const NEAR: f64 = 8.0;
@@ -20,13 +23,23 @@ const NEAR: f64 = 8.0;
 const HEAD: f64 = 0.7;
 const HEAD_DOWN: f64 = 0.3;
 
-/// Draws the names of the others whom `player` sees near.
+/// A text over a head.
+struct Overhead {
+    position: DVec2,
+    /// The height of the head.
+    head: f64,
+    text: String,
+    color: PlayerColor,
+}
+
+/// Draws the names of the others and of the ghosts that `player` sees near.
 pub(super) fn draw(
     canvas: &mut impl Canvas,
     area: Rect,
-    room: &RoomView,
-    player: &PlayerView,
     options: &DrawOptions,
+    player: &PlayerView,
+    room: &RoomView,
+    ghosts: &[Ghost],
 ) {
     let rows_per_cell = options.glyphs.pixels_per_cell();
     let height = u32::from(area.height) * rows_per_cell;
@@ -34,20 +47,42 @@ pub(super) fn draw(
     let camera = player.camera(options.field_of_view);
     let aspect = options.cell_aspect.of_pixels(options.glyphs);
     let projection = Projection::new(&camera, size, aspect);
-    let distance = |other: &OtherPlayer| other.position.distance(camera.position());
-    let is_near = |other: &OtherPlayer| other.is_in_sight && distance(other) <= NEAR;
-    let mut others: Vec<OtherPlayer> = player.others().filter(is_near).collect();
+    let distance = |position: DVec2| position.distance(camera.position());
+    let others = player.others().filter(|it| it.is_in_sight && distance(it.position) <= NEAR);
+    let others = others.filter_map(|other| Overhead::of_member(&other, room));
+    let is_seen = |figure: &Figure| {
+        distance(figure.position) <= NEAR && player.sees_figure(figure.position, figure.base)
+    };
+    let ghosts = ghosts.iter().filter(|ghost| is_seen(&ghost.figure)).map(Overhead::of_ghost);
+    let mut all: Vec<Overhead> = others.chain(ghosts).collect();
     // The nearest one is drawn last.
-    others.sort_by(|one, other| distance(other).total_cmp(&distance(one)));
-    for other in others {
-        let place = projection.place(other.position);
-        let Some(member) = room.member_of(other.id).filter(|_| place.depth > 0.1) else { continue };
-        let head = other.feet + if other.is_down { HEAD_DOWN } else { HEAD };
-        let row = projection.row_at(head, place.depth) / f64::from(rows_per_cell) - 1.0;
-        let label = label(member, room.header.mode);
-        let left = place.column - label.width() as f64 / 2.0;
-        let style = style(member.color, options.depth);
-        draw_clipped(canvas, area, [left, row.max(0.0)], &label, style);
+    all.sort_by(|one, other| distance(other.position).total_cmp(&distance(one.position)));
+    for Overhead { position, head, text, color } in all {
+        let place = projection.place(position);
+        if place.depth > 0.1 {
+            let row = projection.row_at(head, place.depth) / f64::from(rows_per_cell) - 1.0;
+            let left = place.column - text.width() as f64 / 2.0;
+            let style = style(color, options.depth);
+            draw_clipped(canvas, area, [left, row.max(0.0)], &text, style);
+        }
+    }
+}
+
+impl Overhead {
+    fn of_member(other: &OtherPlayer, room: &RoomView) -> Option<Self> {
+        let member = room.member_of(other.id)?;
+        Some(Self {
+            position: other.position,
+            head: other.feet + if other.is_down { HEAD_DOWN } else { HEAD },
+            text: label(member, room.header.mode),
+            color: member.color,
+        })
+    }
+
+    fn of_ghost(ghost: &Ghost) -> Self {
+        let Ghost { figure, label, color } = ghost;
+        let head = figure.base + HEAD;
+        Self { position: figure.position, head, text: label.clone(), color: *color }
     }
 }
 

@@ -6,7 +6,7 @@ use ratatui::layout::Rect;
 
 use crate::app::parts::{HealthSigns, Part, StatusLine, whole_seconds};
 use crate::canvas::Canvas;
-use crate::game::{Outcome, PlayerView};
+use crate::game::{Outcome, PlayerView, STEP};
 use crate::server::room::{MemberView, Mode, Phase, Role, RoomView};
 use crate::server::session::stay::{Stay, seconds_left};
 use crate::server::session::visit::Visit;
@@ -19,7 +19,8 @@ impl Visit {
         area: Rect,
         room: &RoomView,
     ) {
-        let Self { stay, status, host, controls, bindings, look, .. } = self;
+        let Self { stay, status, host, controls, pointer, bindings, look, .. } = self;
+        let stats = self.stats.as_ref().filter(|_| self.shows_stats);
         let Some(stay) = stay else { return };
         let seen = stay.seen_through(room);
         status.rewrite(|line| {
@@ -37,11 +38,17 @@ impl Visit {
             line.both(Part::Level, format_args!("{}", host.catalog.title(&room.header.level)))?;
             if stay.member.is_some() {
                 let is_lit = mission.is_some_and(|(_, player)| player.lamp_is_lit());
-                line.write_modes(controls.toggles, false, is_lit)?;
+                line.write_modes(controls.toggles, pointer.is_on(), is_lit)?;
             }
             if let Some((member, player)) = seen {
                 line.write_keys(player.keys())?;
                 write_notice(line, stay, room, member, &player)?;
+            }
+            if let Some(stats) = stats {
+                line.write_stats(stats)?;
+            }
+            if let Some(seconds) = run_time(room) {
+                line.both(Part::Time, format_args!("{}", whole_seconds(seconds)))?;
             }
             let (here, most) = (room.members.len(), room.header.mode.most());
             line.both(Part::Seen, format_args!("{here}/{most} here"))?;
@@ -49,6 +56,15 @@ impl Visit {
         });
         canvas.draw_widget(&*status, area);
     }
+}
+
+/// The seconds of a round whose time counts; `None` in the others.
+fn run_time(room: &RoomView) -> Option<f64> {
+    let begun = match room.header.mode {
+        Mode::Race | Mode::Together | Mode::Alone => room.begun()?,
+        Mode::Roam | Mode::Tag | Mode::Hide => return None,
+    };
+    Some(room.step.saturating_sub(begun) as f64 * STEP)
 }
 
 /// Writes the mode and the time of the round.

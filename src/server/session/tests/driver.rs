@@ -43,10 +43,12 @@ impl Rig {
         }
         visitor.bytes += bytes.len();
         visitor.session.written(now);
+        visitor.bells += bytes.iter().filter(|&&byte| byte == 0x07).count();
         let answers = visitor.emulator.process(&bytes);
         if !answers.is_empty() {
             visitor.under_way.push((now + visitor.latency, answers));
         }
+        visitor.sent.push(bytes);
     }
 
     pub(super) fn answer(&mut self, index: usize, ask: Ask) {
@@ -82,7 +84,13 @@ impl Rig {
             Ask::Board { level, difficulty } => {
                 News::Board { level, difficulty, rows: Arc::from([]) }
             }
-            Ask::Save(_) => return,
+            Ask::Ghosts { level, difficulty } => {
+                News::Ghosts { level, difficulty, ghosts: Arc::clone(&self.ghosts) }
+            }
+            Ask::Save(settings) => {
+                self.visitors[index].saved = Some(settings);
+                return;
+            }
         };
         self.visitors[index].session.tell(news, now);
     }

@@ -1,0 +1,79 @@
+//! What keys do in a room, besides walking.
+
+use super::line_entry::LineEntry;
+use super::news::Ask;
+use super::page::Page;
+use super::settings::Preference;
+use super::visit::Visit;
+use crate::app::parts::Action;
+use crate::game::Intent;
+use crate::server::room::{CHAT_COLUMNS, Deed};
+use crate::terminal::Key;
+use crate::tui::Press;
+
+/// The step by which a key widens or narrows the view, in degrees.
+const VIEW_STEP: f64 = 6.0;
+
+impl Visit {
+    pub(super) fn press_in_room(&mut self, key: Key, press: Press) {
+        let action = self.bindings.action(key);
+        match action {
+            Some(Action::WidenView) => return self.widen_view(VIEW_STEP),
+            Some(Action::NarrowView) => return self.widen_view(-VIEW_STEP),
+            _ if press == Press::Repeat => return,
+            _ => {}
+        }
+        let Some(stay) = &mut self.stay else { return };
+        let is_member = stay.member.is_some();
+        match key {
+            Key::Enter if stay.is_dead => return self.retry(),
+            Key::Enter | Key::Char('/') if is_member => {
+                self.entry = LineEntry::new(CHAT_COLUMNS);
+                return self.open(Page::Chat);
+            }
+            Key::Char('1') if is_member => return self.open(Page::Emotes),
+            Key::Char(';') => stay.talk.toggle(),
+            Key::Tab if is_member => stay.shows_members ^= true,
+            Key::Tab | Key::Right | Key::Down if !is_member => stay.watch_another(true),
+            Key::Left | Key::Up if !is_member => stay.watch_another(false),
+            _ => return self.command(action),
+        }
+        self.is_stale = true;
+    }
+
+    fn command(&mut self, action: Option<Action>) {
+        let Some(stay) = &mut self.stay else { return };
+        let toggles = &mut self.controls.toggles;
+        match action {
+            Some(Action::ToggleHelp) => self.open(Page::Help),
+            Some(Action::Leave | Action::TogglePause) => self.open(Page::RoomMenu),
+            Some(Action::ToggleMinimap) => stay.map.is_shown ^= true,
+            Some(Action::ChangeMap(change)) => stay.map.change(change),
+            Some(Action::ToggleDuck) => toggles.ducks ^= true,
+            Some(Action::ToggleRun) => toggles.runs ^= true,
+            Some(Action::ToggleWalkOn) => toggles.keeps_walking ^= true,
+            Some(Action::ToggleCrosshair) => self.change_preference(Preference::Crosshair, true),
+            Some(Action::ToggleCompass) => self.change_preference(Preference::Compass, true),
+            Some(Action::ToggleGhost) => self.change_preference(Preference::Ghost, true),
+            Some(Action::ToggleMouse) => self.change_preference(Preference::Mouse, true),
+            Some(Action::ToggleStats) => self.shows_stats ^= true,
+            _ => return,
+        }
+        self.is_stale = true;
+    }
+
+    fn widen_view(&mut self, degrees: f64) {
+        self.look.widen(degrees);
+        self.is_stale = true;
+    }
+
+    /// Goes on after death: from the last checkpoint, or from the beginning.
+    fn retry(&mut self) {
+        let Some(stay) = &mut self.stay else { return };
+        if stay.dies_for_good {
+            return self.ask(Ask::Deed(Deed::Again));
+        }
+        stay.wants.want([Intent::Retry].into_iter().collect());
+        self.want();
+    }
+}
