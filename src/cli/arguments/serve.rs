@@ -15,6 +15,7 @@ pub(in crate::cli) struct Serve {
     pub(in crate::cli) listen: Option<SocketAddr>,
     pub(in crate::cli) data: Option<PathBuf>,
     pub(in crate::cli) config: Option<PathBuf>,
+    pub(in crate::cli) maps: Option<PathBuf>,
     pub(in crate::cli) record_room: Option<PathBuf>,
     pub(in crate::cli) log: LogFormat,
 }
@@ -27,9 +28,9 @@ pub(super) const SUBCOMMAND: Subcommand = Subcommand {
               its visitors had time for their end; a second one ends it at once. SIGHUP reads the \
               configuration again. The log goes to standard error.",
     examples: "cellcaster serve\n\
-               cellcaster serve --listen 0.0.0.0:2222 --data /var/lib/cellcaster",
+               cellcaster serve --listen 0.0.0.0:2222 --data /var/lib/cellcaster --maps maps",
     positionals: &[],
-    options: &[&LISTEN, &DATA, &CONFIG, &LOG, &RECORD_ROOM],
+    options: &[&LISTEN, &DATA, &CONFIG, &MAPS, &LOG, &RECORD_ROOM],
     surplus: "takes no map",
     missing: "",
     read: |matches| Ok(Command::Serve(read(matches))),
@@ -40,6 +41,7 @@ fn read(mut matches: ArgMatches) -> Serve {
         listen: LISTEN.of(&mut matches),
         data: DATA.of(&mut matches),
         config: CONFIG.of(&mut matches),
+        maps: MAPS.of(&mut matches),
         record_room: RECORD_ROOM.of(&mut matches),
         log: LOG.of(&mut matches).unwrap_or_default(),
     }
@@ -64,6 +66,11 @@ const DATA: FileOption = FileOption {
 const CONFIG: FileOption = FileOption {
     name: "config",
     help: "The configuration [default: cellcaster/serve.toml in the folder for configuration files]",
+};
+
+const MAPS: FileOption = FileOption {
+    name: "maps",
+    help: "A folder of own maps, beside the built-in levels [default: that of the configuration]",
 };
 
 const LOG: ValueOption<LogFormat> = ValueOption {

@@ -66,7 +66,7 @@ const MESSAGE_COLUMNS: usize = 200;
 const LAST: Duration = Duration::from_secs(2);
 
 impl Visit {
-    pub(super) fn new(shared: Arc<Shared>, visitor: Visitor, known: Known) -> Self {
+    pub(super) fn new(shared: Arc<Shared>, visitor: &Visitor, known: Known) -> Self {
         let Known { key, account, settings, offer } = known;
         let identity = Identity {
             has_account: key.is_some(),
@@ -80,7 +80,7 @@ impl Visit {
             presence.set_name(account.name.as_str());
         }
         let host = HostFacts {
-            name: host_name(),
+            name: host_name(&config.name),
             message: Line::of(visitor.notice.unwrap_or(&config.message), MESSAGE_COLUMNS),
             compresses: visitor.compresses,
             catalog: Arc::clone(shared.rooms.catalog()),
@@ -88,7 +88,7 @@ impl Visit {
             frame_time: shared.load.frame_time(),
         };
         let now = shared.now();
-        let session = Session::new(identity, options(&visitor), visitor.size, host, now);
+        let session = Session::new(identity, options(visitor), visitor.size, host, now);
         let (replies, replied) = replies();
         Self {
             session,
@@ -146,7 +146,7 @@ impl Visit {
                     self.session.written(now);
                     is_sending = false;
                     if let Some(key) = self.answers_key.take() {
-                        self.shared.metrics.key_time.add(now - key);
+                        self.shared.metrics.key_time.add(now.saturating_sub(key));
                     }
                 }
                 Happening::RoomsChanged => {
@@ -182,7 +182,7 @@ impl Visit {
         if self.session.is_due(view.as_deref(), now) {
             self.session.draw(view.as_deref(), now);
             self.quiet_until = now + frame_time;
-            self.shared.metrics.frame_time.add(self.shared.now() - now);
+            self.shared.metrics.frame_time.add(self.shared.now().saturating_sub(now));
             self.answers_key = self.key_at.take();
         }
         // What waking did not change, waking again will not, as where a terminal never answers.
@@ -258,9 +258,11 @@ impl Visit {
     }
 }
 
-/// What the host is called.
-fn host_name() -> Line {
-    Line::of("Cellcaster", 40).expect("printable characters")
+/// The name of the host as the lobby shows it.
+fn host_name(name: &str) -> Line {
+    const COLUMNS: usize = 40;
+    let line = Line::of(name, COLUMNS).or_else(|| Line::of("Cellcaster", COLUMNS));
+    line.expect("printable characters")
 }
 
 /// Waits for a newer snapshot.

@@ -169,9 +169,10 @@ impl Visit {
 
     /// Tells the room what the held keys want.
     pub(super) fn want(&mut self) {
-        let intents = match self.is_playing() {
-            true => self.controls.intents(&self.bindings, self.key_context()),
-            false => Intents::new(),
+        let intents = if self.is_playing() {
+            self.controls.intents(&self.bindings, self.key_context())
+        } else {
+            Intents::new()
         };
         let Some(stay) = self.stay.as_mut().filter(|stay| stay.member.is_some()) else { return };
         stay.wants.want(intents);
@@ -274,12 +275,11 @@ impl Visit {
     }
 
     fn hear(&mut self, sentence: String) {
-        match &mut self.stay {
-            Some(stay) => stay.talk.hear_host(sentence, self.now),
-            None => {
-                self.note = Some(sentence);
-                self.renew_menu();
-            }
+        if let Some(stay) = &mut self.stay {
+            stay.talk.hear_host(sentence, self.now);
+        } else {
+            self.note = Some(sentence);
+            self.renew_menu();
         }
     }
 }
