@@ -26,7 +26,8 @@ pub(super) const SUBCOMMAND: Subcommand = Subcommand {
     details: "Prints the line that people type to play. The host key and what the server keeps are in the \
               folder for data; the key is made at the first start. SIGTERM and Ctrl-C end the server, after \
               its visitors had time for their end; a second one ends it at once. SIGHUP reads the \
-              configuration again. The log goes to standard error.",
+              configuration again. The log goes to standard error. cellcaster replay FILE [MAP] plays the \
+              recording of a room again.",
     examples: "cellcaster serve\n\
                cellcaster serve --listen 0.0.0.0:2222 --data /var/lib/cellcaster --maps maps",
     positionals: &[],
