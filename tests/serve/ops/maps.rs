@@ -113,7 +113,7 @@ fn a_run_in_a_map_of_the_host_ranks_and_its_room_is_played_again() {
     choose(&player, "Mara", "4");
     player.wait_for("The moss hall");
     // The last level of the list.
-    player.send("\x1b[F\x1b[A\r");
+    player.send("\x1b[F\r");
     player.wait_for("Go in");
     player.send("\r");
     player.wait_for("comes in.");
