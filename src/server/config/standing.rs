@@ -3,6 +3,7 @@
 use std::fmt;
 use std::ops::Range;
 
+use toml::Spanned;
 use toml::de::{DeTable, DeValue};
 
 use super::Config;
@@ -66,7 +67,7 @@ impl Config {
 
 /// The levels of the standing rooms, with their places.
 fn named_levels<'a>(document: &'a DeTable<'_>) -> Vec<(&'a str, Range<usize>)> {
-    let Some(DeValue::Array(rooms)) = document.get("room").map(|it| it.get_ref()) else {
+    let Some(DeValue::Array(rooms)) = document.get("room").map(Spanned::get_ref) else {
         return Vec::new();
     };
     let tables = rooms.iter().filter_map(|room| match room.get_ref() {
@@ -132,12 +133,12 @@ fn mode(entry: &Entry<'_, '_>) -> Option<Mode> {
     let text = entry.string("mode = \"roam\"")?;
     let mode = Mode::named(text).filter(|&mode| mode != Mode::Alone);
     if mode.is_none() {
-        let message = match text == Mode::Alone.name() {
-            true => {
-                "a standing room can't be in the mode \"alone\": such a room ends with its player"
-                    .to_owned()
-            }
-            false => format!("there is no mode {}", quoted(text)),
+        let message = if text == Mode::Alone.name() {
+            const MESSAGE: &str =
+                "a standing room can't be in the mode \"alone\": such a room ends with its player";
+            MESSAGE.to_owned()
+        } else {
+            format!("there is no mode {}", quoted(text))
         };
         let all = Mode::ALL.into_iter().filter(|&mode| mode != Mode::Alone);
         let names: Vec<&str> = all.map(Mode::name).collect();

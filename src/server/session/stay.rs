@@ -150,10 +150,10 @@ impl Stay {
 
 /// The seconds until something that the picture counts down to; `None` if it counts nothing down.
 pub(super) fn seconds_left(room: &RoomView) -> Option<u64> {
-    let ends = match (room.phase, room.header.mode) {
-        (Phase::Countdown { ends } | Phase::Over { ends }, _)
-        | (Phase::Playing { ends }, Mode::Tag | Mode::Hide) => ends,
-        _ => return None,
+    let ((Phase::Countdown { ends } | Phase::Over { ends }, _)
+    | (Phase::Playing { ends }, Mode::Tag | Mode::Hide)) = (room.phase, room.header.mode)
+    else {
+        return None;
     };
     Some(ends.saturating_sub(room.step).div_ceil(60))
 }
