@@ -49,6 +49,8 @@ pub use best::{Best, Improved, Reached, Run};
 use change::Change;
 use home::Home;
 pub use names::map_key;
+#[cfg(feature = "serve")]
+pub(crate) use names::name_in_map_key;
 use progress::Progress;
 pub use progress::{Daily, Descent, Preferences, SavedGame, Slot};
 #[cfg(feature = "cli")]

@@ -87,7 +87,7 @@ async fn run(plan: &Plan, server: &ServerProcess) -> Result<(), Box<dyn Error>> 
         "memory        {} MB empty, {} MB with {} sessions, {} MB at the end",
         empty.megabytes, walking.megabytes, plan.sessions, after.megabytes
     );
-    Report::new(&tallies, plan.seconds, after.processor - before.processor).print();
+    Report::new(&tallies, plan.seconds, after.processor.saturating_sub(before.processor)).print();
     Ok(())
 }
 

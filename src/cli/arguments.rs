@@ -117,13 +117,13 @@ const SUBCOMMANDS: &[&Subcommand] = &[
     &accuracy::SUBCOMMAND,
     &bench::SUBCOMMAND,
     &replay::SUBCOMMAND,
-    #[cfg(feature = "serve")]
-    &serve::SUBCOMMAND,
     &wire::SUBCOMMAND,
     #[cfg(feature = "serve")]
-    &scores::SUBCOMMAND,
+    &serve::SUBCOMMAND,
     #[cfg(all(unix, feature = "serve"))]
     &admin::SUBCOMMAND,
+    #[cfg(feature = "serve")]
+    &scores::SUBCOMMAND,
     &about::COMPLETIONS,
     &about::MAN,
     &about::HELP,
@@ -220,11 +220,6 @@ impl Subcommand {
     fn arguments(&self) -> impl Iterator<Item = Arg> {
         let positionals = self.positionals.iter().map(Positional::argument);
         positionals.chain(self.options.iter().map(|option| option.argument()))
-    }
-
-    /// Whether it has an option `name`, without dashes.
-    fn has(&self, name: &str) -> bool {
-        self.options.iter().any(|option| option.name() == name)
     }
 
     /// The option of this name, with dashes.

@@ -24,7 +24,8 @@ use crate::terminal::CellWriter;
 /// Writes the recording that `options` request.
 pub(super) fn run(options: &Replay) -> Result<(), Error> {
     #[cfg(feature = "serve")]
-    if let Some(reports) = super::room_recording::replayed(&options.script)? {
+    if let Some(reports) = super::room_recording::replayed(&options.script, options.map.as_deref())?
+    {
         return io::stdout()
             .write_all(reports.as_bytes())
             .map_err(|error| Error::of_output(&error));

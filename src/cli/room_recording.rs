@@ -1,18 +1,20 @@
 //! `cellcaster replay` of a recorded room: what came out of its rounds.
 
+use std::ffi::OsStr;
 use std::fmt::Write;
 use std::fs;
 use std::path::Path;
 
 use super::Error;
 use super::verify::clock;
-use crate::server::{MOST_RECORDED_BYTES, is_room_recording, replay_room};
+use crate::server::{HostMaps, MOST_RECORDED_BYTES, is_room_recording, replay_room};
 
-/// A line for each round of the recording in `path`; `None` if the file is no recording of a room.
+/// A line for each round of the recording in `path`; `None` if the file is no recording of a room. `maps`
+/// is a map file or a folder of maps, for rounds in maps of the host.
 ///
 /// # Errors
 /// If the recording is damaged, or too long.
-pub(super) fn replayed(path: &Path) -> Result<Option<String>, Error> {
+pub(super) fn replayed(path: &Path, maps: Option<&OsStr>) -> Result<Option<String>, Error> {
     // What cannot be read is reported where scripts are read.
     let length = fs::metadata(path).map_or(0, |file| if file.is_file() { file.len() } else { 0 });
     if length == 0 || length > MOST_RECORDED_BYTES {
@@ -21,7 +23,9 @@ pub(super) fn replayed(path: &Path) -> Result<Option<String>, Error> {
     let Some(text) = fs::read_to_string(path).ok().filter(|text| is_room_recording(text)) else {
         return Ok(None);
     };
-    let rounds = replay_room(&text).map_err(|fault| {
+    let maps = maps.map(|path| HostMaps::read(Path::new(path))).transpose();
+    let maps = maps.map_err(|error| Error::mistake(error.to_string()))?.unwrap_or_default();
+    let rounds = replay_room(&text, &maps).map_err(|fault| {
         Error::mistake(format!("{} cannot be replayed: {fault}", path.display()))
     })?;
     let mut lines = String::new();

@@ -52,11 +52,17 @@ fn levels(
     store: &mut SqliteStore,
     options: &Scores,
 ) -> Result<Vec<(LevelBoard, Vec<LevelScore>)>, StoreFailure> {
+    let is_of =
+        |level: &String, board: &LevelBoard| [board.level(), board.name()].contains(&&**level);
     let boards = store.level_boards()?.into_iter().filter(|board| {
-        options.level.is_none_or(|level| level == board.level())
+        options.level.as_ref().is_none_or(|level| is_of(level, board))
             && options.difficulty.is_none_or(|difficulty| difficulty == board.difficulty())
     });
-    boards.map(|board| Ok((board, store.level_scores(&board, MOST)?))).collect()
+    let scored = |board: LevelBoard| {
+        let scores = store.level_scores(&board, MOST)?;
+        Ok((board, scores))
+    };
+    boards.map(scored).collect()
 }
 
 fn table(boards: &Boards) -> String {

@@ -26,9 +26,7 @@ use signals::{Hangups, Signals};
 
 /// Serves until a signal ends it.
 pub(super) fn run(options: Serve) -> Result<(), Error> {
-    let configuration = Configuration::new(options.config, options.listen);
-    let mut config = configuration.read()?;
-    config.recordings = options.record_room;
+    let (configuration, config) = Configuration::begin(&options)?;
     let folder = options.data.or_else(data_folder).ok_or_else(|| {
         Error::mistake("there is no folder for data; name one, as in \"serve --data FOLDER\"")
     })?;
@@ -38,7 +36,7 @@ pub(super) fn run(options: Serve) -> Result<(), Error> {
     if let Some(sentence) = damage {
         Error::machine(sentence).warn();
     }
-    let runtime = Runtime::new().map_err(no_thread)?;
+    let runtime = Runtime::new().map_err(|error| no_thread(&error))?;
     let ended = runtime.block_on(serve(configuration, config, key, &folder, options.log, store));
     // After a second signal, nothing is waited for.
     runtime.shutdown_background();
@@ -73,10 +71,11 @@ async fn serve(
     let logging = Logging::begin(format, &filter);
     events::listening(address, &fingerprint);
 
+    let (store, maps) = (Box::new(store), configuration.maps());
     let (metrics, visitors) = (Arc::new(Metrics::default()), Visitors::default());
     let host =
-        GameHost::new(server.config(), Arc::clone(&metrics), visitors.clone(), Box::new(store));
-    let host = host.map_err(no_thread)?;
+        GameHost::with_maps(server.config(), Arc::clone(&metrics), visitors.clone(), store, maps);
+    let host = host.map_err(|error| no_thread(&error))?;
     let mut services = JoinSet::new();
     if let Some(listener) = metrics_listener {
         events::metrics_listening(listener.local_addr().map_err(cannot)?);
@@ -116,7 +115,7 @@ fn bind_admin(folder: &Path) -> Result<Option<AdminSocket>, Error> {
     }
 }
 
-fn no_thread(error: io::Error) -> Error {
+fn no_thread(error: &io::Error) -> Error {
     Error::machine(format!("no thread can be started: {error}"))
 }
 

@@ -6,16 +6,23 @@
 //! connections-per-address = 20     # behind a proxy, all visitors have one address
 //! message = "Races every Friday at 20:00"
 //! log = "info,connections=warn"
+//! maps = "/var/lib/cellcaster/maps"
 //!
 //! [metrics]
 //! listen = "127.0.0.1:9464"
+//!
+//! [[room]]
+//! mode = "race"
+//! level = "cellar"
 //! ```
 //!
-//! All faults of a file are reported in one run, each with its place.
+//! All faults of a file are reported in one run, each with its place. Only whether a level exists is
+//! checked after the maps were read, by [`Config::check_levels`]: the file says where they are.
 
 mod live;
 mod read;
 mod settings;
+mod standing;
 mod write;
 
 use std::net::{Ipv4Addr, SocketAddr};
@@ -25,6 +32,7 @@ use std::time::Duration;
 use super::admission::Limits;
 use super::logging::LogFilter;
 pub use live::LiveConfig;
+pub use standing::StandingRoom;
 
 /// The content of a configuration file, with defaults for missing settings.
 ///
@@ -33,10 +41,14 @@ pub use live::LiveConfig;
 pub struct Config {
     /// The address and port to listen at.
     pub listen: SocketAddr,
+    /// The name of the host: one line, which the lobby shows.
+    pub name: String,
     /// The message of the day: one line, which the lobby shows; may be empty.
     pub message: String,
     /// What is logged.
     pub log: LogFilter,
+    /// The folder of the host's own maps, if there is one.
+    pub maps: Option<PathBuf>,
     /// Where metrics are read by HTTP; nowhere if `None`.
     pub metrics: Option<SocketAddr>,
     /// Which connections are admitted.
@@ -68,6 +80,8 @@ pub struct Config {
     pub empty_room: Duration,
     /// The most frames that a session gets in a second.
     pub frames_per_second: u32,
+    /// The rooms that are always there.
+    pub standing: Vec<StandingRoom>,
     /// The folder in which rooms are recorded, if they are.
     pub recordings: Option<PathBuf>,
 }
@@ -76,23 +90,26 @@ impl Default for Config {
     fn default() -> Self {
         Self {
             listen: SocketAddr::from((Ipv4Addr::LOCALHOST, 2222)),
+            name: "Cellcaster".to_owned(),
             message: String::new(),
             log: LogFilter::default(),
+            maps: None,
             metrics: None,
             admission: Limits::default(),
             handshake: Duration::from_secs(20),
-            login: Duration::from_secs(120),
+            login: Duration::from_mins(2),
             login_bytes: 64 << 10,
             bytes_per_second: 64 << 10,
             silence: Duration::from_secs(12),
-            stall: Duration::from_secs(60),
+            stall: Duration::from_mins(1),
             columns: 500,
             rows: 200,
             drain: Duration::from_secs(10),
             rooms: 200,
             watchers: 32,
-            empty_room: Duration::from_secs(60),
+            empty_room: Duration::from_mins(1),
             frames_per_second: 30,
+            standing: StandingRoom::usual(),
             recordings: None,
         }
     }

@@ -20,6 +20,7 @@ use std::sync::atomic::{AtomicU32, Ordering};
 use std::sync::{Arc, Mutex};
 use std::time::{Duration, SystemTime, UNIX_EPOCH};
 
+use tokio::sync::watch;
 use tokio::time::{Instant, interval};
 
 use self::account::NamesInUse;
@@ -29,12 +30,13 @@ use super::ghost::KeptRuns;
 use super::governor::Governor;
 use super::line::Line;
 use super::load::Load;
-use super::room::{Catalog, Mode};
+use super::room::Catalog;
 use super::rooms::{Logs, RoomLimits, Rooms};
-use super::summary::{RoomSummary, RoomWish};
-use super::{Departure, Host, Link, LiveConfig, Metrics, RoomRow, Visitor, Visitors};
+use super::summary::RoomSummary;
+use super::{
+    Config, Departure, Host, HostMaps, Link, LiveConfig, Metrics, RoomRow, Visitor, Visitors,
+};
 use crate::store::host::{HostStore, UnixTime};
-use crate::world::Difficulty;
 
 /// The host of the game: rooms, accounts, and a session for each visitor.
 #[derive(Debug)]
@@ -75,18 +77,27 @@ impl GameHost {
         visitors: Visitors,
         store: Box<dyn HostStore>,
     ) -> io::Result<Self> {
+        Self::with_maps(live, metrics, visitors, store, &HostMaps::default())
+    }
+
+    /// As [`GameHost::new`], with the maps of the host beside the built-in levels.
+    ///
+    /// # Errors
+    /// If no thread can be started.
+    pub fn with_maps(
+        live: LiveConfig,
+        metrics: Arc<Metrics>,
+        visitors: Visitors,
+        store: Box<dyn HostStore>,
+        maps: &HostMaps,
+    ) -> io::Result<Self> {
         let load = Arc::new(Load::new(Arc::clone(&metrics)));
         let config = live.get();
-        let limits = RoomLimits {
-            most: config.rooms as usize,
-            most_watchers: config.watchers as usize,
-            closes_after: config.empty_room,
-            standing: standing_rooms(),
-        };
         let logs = Logs::recorded(config.recordings.clone());
         // Without random numbers from the system there would be no keys, either.
         let seed = getrandom::u64().unwrap_or_default();
-        let rooms = Rooms::new(limits, Arc::new(Catalog::builtin()), logs, Arc::clone(&load), seed);
+        let catalog = Arc::new(Catalog::with(maps));
+        let rooms = Rooms::new(RoomLimits::of(&config), catalog, logs, Arc::clone(&load), seed);
         let shared = Arc::new(Shared {
             config: live,
             metrics,
@@ -100,21 +111,23 @@ impl GameHost {
             next_guest: AtomicU32::new(1),
         });
         tokio::spawn(govern(Arc::downgrade(&shared)));
+        tokio::spawn(follow(shared.config.subscribe(), shared.rooms.clone()));
         Ok(Self { shared })
     }
 
     /// Lists the rooms, for an operator.
     pub fn room_rows(&self) -> impl Fn() -> Vec<RoomRow> + Send + Sync + use<> {
         let summaries = self.shared.rooms.summaries();
-        move || summaries.borrow().iter().map(room_row).collect()
+        let catalog = Arc::clone(self.shared.rooms.catalog());
+        move || summaries.borrow().iter().map(|room| room_row(room, &catalog)).collect()
     }
 }
 
-fn room_row(room: &RoomSummary) -> RoomRow {
+fn room_row(room: &RoomSummary, catalog: &Catalog) -> RoomRow {
     RoomRow {
         room: room.id.0,
         mode: room.mode.name().to_owned(),
-        level: room.level.clone(),
+        level: catalog.short(&room.level).to_owned(),
         difficulty: room.difficulty.name().to_owned(),
         members: room.members.iter().map(Line::to_string).collect(),
         most: room.mode.most(),
@@ -130,7 +143,7 @@ impl Host for GameHost {
             return Departure { status: 1 };
         }
         let status = match shared.log_in(&visitor).await {
-            Ok(known) => Visit::new(shared, visitor, known).run(link).await,
+            Ok(known) => Visit::new(shared, &visitor, known).run(link).await,
             Err(sentence) => {
                 refuse(link, &sentence).await;
                 1
@@ -172,11 +185,12 @@ async fn govern(shared: std::sync::Weak<Shared>) {
     }
 }
 
-/// The rooms that are always there: one to walk about in, and one to play in.
-fn standing_rooms() -> Vec<RoomWish> {
-    let room =
-        |mode| RoomWish { level: "museum".to_owned(), mode, difficulty: Difficulty::default() };
-    [Mode::Roam, Mode::Tag].map(room).into()
+/// Tells the rooms what the host allows, whenever the configuration is read again.
+async fn follow(mut config: watch::Receiver<Arc<Config>>, rooms: Rooms) {
+    while config.changed().await.is_ok() {
+        let limits = RoomLimits::of(&config.borrow_and_update());
+        rooms.set_limits(limits);
+    }
 }
 
 /// The time of the clock on the wall.

@@ -111,7 +111,8 @@ fn private_file(path: &Path) -> io::Result<File> {
 fn refuse_readable(file: &File, path: &Path) -> Result<(), HostKeyError> {
     use std::os::unix::fs::PermissionsExt;
     let mode = file.metadata().map_err(|error| unreadable(path, &error))?.permissions().mode();
-    if mode & 0o077 == 0 {
+    let others = 0o077;
+    if mode & others == 0 {
         return Ok(());
     }
     let path = shown(path);

@@ -2,6 +2,7 @@
 
 use std::sync::Arc;
 
+use super::HostMaps;
 use super::room::{Catalog, replayed};
 
 /// The largest recording that is played again.
@@ -27,12 +28,12 @@ pub fn is_room_recording(text: &str) -> bool {
     text.starts_with("cellcaster-room ")
 }
 
-/// Plays a recording of a room in the built-in levels again.
+/// Plays a recording of a room again, in the built-in levels and in `maps`.
 ///
 /// # Errors
 /// A part of a sentence: why it cannot be played.
-pub fn replay_room(text: &str) -> Result<Vec<RecordedRound>, String> {
-    let catalog = Arc::new(Catalog::builtin());
+pub fn replay_room(text: &str, maps: &HostMaps) -> Result<Vec<RecordedRound>, String> {
+    let catalog = Arc::new(Catalog::with(maps));
     let rounds = replayed(text, &catalog)?.into_iter();
     Ok(rounds
         .map(|round| RecordedRound {

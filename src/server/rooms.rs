@@ -9,6 +9,7 @@
 mod place;
 mod recording;
 mod refusal;
+mod standing;
 #[cfg(test)]
 mod tests;
 
@@ -22,6 +23,7 @@ use tokio::sync::watch;
 pub(crate) use self::place::Place;
 pub(crate) use self::recording::Logs;
 pub(crate) use self::refusal::RoomRefusal;
+use super::config::Config;
 use super::line::Line;
 use super::load::Load;
 use super::locked;
@@ -48,9 +50,21 @@ pub(crate) struct RoomLimits {
     pub(crate) standing: Vec<RoomWish>,
 }
 
+impl RoomLimits {
+    /// What a configuration allows.
+    pub(crate) fn of(config: &Config) -> Self {
+        Self {
+            most: config.rooms as usize,
+            most_watchers: config.watchers as usize,
+            closes_after: config.empty_room,
+            standing: config.standing.iter().map(|room| room.0.clone()).collect(),
+        }
+    }
+}
+
 #[derive(Debug)]
 struct Directory {
-    limits: RoomLimits,
+    limits: Mutex<RoomLimits>,
     catalog: Arc<Catalog>,
     logs: Logs,
     load: Arc<Load>,
@@ -79,6 +93,8 @@ struct OpenRoom {
     /// Without the number of watchers.
     summary: RoomSummary,
     watchers: Arc<AtomicUsize>,
+    /// What it was opened for as a standing room, even if it does not stand any more.
+    stood_for: Option<RoomWish>,
 }
 
 impl Rooms {
@@ -96,8 +112,9 @@ impl Rooms {
         let chance = SplitMix64::new(seed);
         let open = Mutex::new(OpenRooms { last: 0, chance, rooms: BTreeMap::new() });
         let summaries = watch::Sender::new(Arc::from([]));
+        let limits = Mutex::new(limits);
         let rooms = Self(Arc::new(Directory { limits, catalog, logs, load, open, summaries }));
-        rooms.0.limits.standing.iter().for_each(|wish| rooms.open_standing(wish));
+        rooms.open_standing();
         rooms
     }
 
@@ -113,11 +130,11 @@ impl Rooms {
 
     /// Opens a room, and joins it.
     pub(crate) fn open(&self, wish: &RoomWish, name: &Line) -> Result<Place, RoomRefusal> {
-        let room = self.add(wish)?;
+        let room = self.add(wish, false)?;
         // Before the room runs: one for a single member is closed as soon as nobody is in it.
         let member = room.doorway.inbox.join(name).map_err(RoomRefusal::from)?;
         let place = Place::member(room.id, member, Arc::clone(&room.doorway));
-        self.spawn(room, Some(self.0.limits.closes_after));
+        self.spawn(room);
         Ok(place)
     }
 
@@ -136,7 +153,7 @@ impl Rooms {
 
     /// Watches a room.
     pub(crate) fn watch(&self, id: RoomId) -> Result<Place, RoomRefusal> {
-        let most = self.0.limits.most_watchers;
+        let most = locked(&self.0.limits, |limits| limits.most_watchers);
         let (doorway, watchers) = locked(&self.0.open, |open| {
             let room = open.rooms.get(&id).ok_or(RoomRefusal::Gone)?;
             if room.watchers.fetch_add(1, Ordering::AcqRel) >= most {
@@ -150,34 +167,35 @@ impl Rooms {
         Ok(place)
     }
 
-    /// Opens a standing room.
-    fn open_standing(&self, wish: &RoomWish) {
-        match self.add(wish) {
-            Ok(room) => self.spawn(room, None),
-            Err(refusal) => tracing::error!(level = wish.level, "no standing room: {refusal}"),
-        }
-    }
-
     /// Adds a room, which does not run yet.
-    fn add(&self, wish: &RoomWish) -> Result<NewRoom, RoomRefusal> {
+    fn add(&self, wish: &RoomWish, stands: bool) -> Result<NewRoom, RoomRefusal> {
         let Directory { limits, catalog, open, .. } = &*self.0;
+        let (most, closes_after) = locked(limits, |it| (it.most, it.closes_after));
+        let closes_after = match wish.mode {
+            // Nobody else can go on with what one plays alone.
+            Mode::Alone => Some(Duration::ZERO),
+            _ => (!stands).then_some(closes_after),
+        };
         let (id, seed) = locked(open, |open| {
             open.last += 1;
             (RoomId(open.last), open.chance.bits())
         });
-        let header = Header::new(&wish.level, wish.mode, wish.difficulty, seed);
+        let level = catalog.named(&wish.level).unwrap_or(&wish.level);
+        let header = Header::new(level, wish.mode, wish.difficulty, seed);
         let room = Room::new(catalog, header).ok_or(RoomRefusal::NoLevel)?;
         let doorway = Arc::new(Doorway {
             inbox: Inbox::new(wish.mode, room.next_member()),
             shown: Shown::new(room.view()),
+            closes_after: watch::Sender::new(closes_after),
         });
         let open_room = OpenRoom {
             doorway: Arc::clone(&doorway),
             summary: summary(id, &room),
             watchers: Arc::default(),
+            stood_for: stands.then(|| wish.clone()),
         };
         locked(open, |open| {
-            let is_allowed = open.rooms.len() < limits.most;
+            let is_allowed = open.rooms.len() < most;
             if is_allowed {
                 open.rooms.insert(id, open_room);
             }
@@ -186,22 +204,14 @@ impl Rooms {
     }
 
     /// Runs a room until it is closed.
-    fn spawn(&self, new: NewRoom, closes_after: Option<Duration>) {
+    fn spawn(&self, new: NewRoom) {
         let NewRoom { id, room, doorway } = new;
         let header = room.header();
         events::room_opened(id.0, &header.level, header.mode.name());
         self.publish();
         let log = RoundLog::new(self.0.logs.open(id), &room);
-        let standing = closes_after.is_none().then(|| RoomWish {
-            level: header.level.clone(),
-            mode: header.mode,
-            difficulty: header.difficulty,
-        });
         let load = Arc::clone(&self.0.load);
-        // Nobody else can go on with what one plays alone.
-        let is_alone = room.header().mode == Mode::Alone;
-        let closes_after = if is_alone { Some(Duration::ZERO) } else { closes_after };
-        let sequencer = Sequencer::new(room, log, doorway, load, closes_after);
+        let sequencer = Sequencer::new(room, log, doorway, load);
         let rooms = self.clone();
         tokio::spawn(async move {
             let ended = sequencer.run(|room| rooms.change(id, room)).await;
@@ -211,7 +221,7 @@ impl Rooms {
                 Ok(()) => events::room_closed(id.0),
                 Err(panic) => {
                     events::room_failed(id.0, panic);
-                    standing.iter().for_each(|wish| rooms.open_standing(wish));
+                    rooms.open_standing();
                 }
             }
         });

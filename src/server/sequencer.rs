@@ -22,7 +22,8 @@ use std::panic::{AssertUnwindSafe, catch_unwind};
 use std::sync::Arc;
 use std::time::Duration;
 
-use tokio::time::{Instant, sleep_until, timeout};
+use tokio::sync::watch;
+use tokio::time::{Instant, sleep, sleep_until};
 
 pub(crate) use self::inbox::{DeedRefusal, Inbox, JoinRefusal};
 pub(crate) use self::round_log::{FinishedRun, RoundLog};
@@ -43,6 +44,8 @@ pub(crate) struct Doorway {
     pub(crate) inbox: Inbox,
     /// What they see.
     pub(crate) shown: Shown,
+    /// The time without members after which the room is closed; `None` as long as it stands.
+    pub(crate) closes_after: watch::Sender<Option<Duration>>,
 }
 
 /// A room with its log, of which the sequencer alone is in charge.
@@ -51,8 +54,6 @@ pub(crate) struct Sequencer {
     log: RoundLog,
     doorway: Arc<Doorway>,
     load: Arc<Load>,
-    /// The time without members after which the room is closed; `None` for a standing room.
-    closes_after: Option<Duration>,
 }
 
 /// The next thing that a sequencer waits for.
@@ -64,14 +65,8 @@ enum Pause {
 }
 
 impl Sequencer {
-    pub(crate) fn new(
-        room: Room,
-        log: RoundLog,
-        doorway: Arc<Doorway>,
-        load: Arc<Load>,
-        closes_after: Option<Duration>,
-    ) -> Self {
-        Self { room, log, doorway, load, closes_after }
+    pub(crate) fn new(room: Room, log: RoundLog, doorway: Arc<Doorway>, load: Arc<Load>) -> Self {
+        Self { room, log, doorway, load }
     }
 
     /// Runs the room until it is closed. `on_change` is called when a lobby would show it otherwise.
@@ -106,23 +101,29 @@ impl Sequencer {
     }
 
     fn pause(&self, next: Instant) -> Pause {
-        match self.room.len() == 0 && self.doorway.inbox.is_empty() {
-            true => Pause::Member,
-            false => Pause::Until(next),
-        }
+        let is_empty = self.room.len() == 0 && self.doorway.inbox.is_empty();
+        if is_empty { Pause::Member } else { Pause::Until(next) }
     }
 
     /// Waits until somebody joins; returns whether the room still exists then.
     async fn somebody_joins(&mut self) -> bool {
-        let inbox = &self.doorway.inbox;
-        let Some(patience) = self.closes_after else {
-            inbox.joined().await;
-            return !inbox.is_closed();
-        };
-        if timeout(patience, inbox.joined()).await.is_err() && inbox.close_if_empty() {
-            self.doorway.shown.close("The room was empty and is closed.");
+        let Doorway { inbox, shown, closes_after } = &*self.doorway;
+        let mut patience = closes_after.subscribe();
+        loop {
+            let wait = *patience.borrow_and_update();
+            tokio::select! {
+                biased;
+                () = inbox.joined() => return !inbox.is_closed(),
+                // The sender is in the doorway.
+                _ = patience.changed() => {}
+                () = sleep(wait.unwrap_or_default()), if wait.is_some() => {
+                    if inbox.close_if_empty() {
+                        shown.close("The room was empty and is closed.");
+                    }
+                    return !inbox.is_closed();
+                }
+            }
         }
-        !inbox.is_closed()
     }
 
     /// Takes the steps that are due, and moves `next` to the time of the one after them.

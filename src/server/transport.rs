@@ -121,6 +121,7 @@ impl Server {
     ///
     /// # Errors
     /// The address can't be listened at.
+    #[expect(clippy::unused_async, reason = "a listener is made within a runtime")]
     pub async fn bind(config: Config, key: HostKey) -> io::Result<Self> {
         let listener = listen(config.listen)?;
         Ok(Self { listener, config: LiveConfig::new(config), key, counters: Arc::default() })

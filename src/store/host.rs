@@ -38,7 +38,7 @@ pub use sqlite::SqliteStore;
 pub use time::{Day, UnixTime};
 pub use verify::{
     MOST_SCRIPT_BYTES, MOST_SCRIPT_STEPS, Unverified, VerifiedDescent, VerifiedLevel, VerifiedRun,
-    verify,
+    verify, verify_with,
 };
 
 use super::{Best, Improved};

@@ -46,6 +46,7 @@ use self::refinement::Refinement;
 pub use self::screen::Screen;
 use self::shift::Shifts;
 use self::style::Shade;
+#[cfg(feature = "cli")]
 pub(crate) use self::style::Style;
 use super::fidelity::Fidelity;
 

@@ -41,7 +41,7 @@ const MOST_MEMORY: usize = 64 << 20;
 const LANES: usize = 8;
 /// The variable that makes this program the clients of a server at that address.
 const ADDRESS: &str = "CELLCASTER_CROWD";
-const PATIENCE: Duration = Duration::from_secs(120);
+const PATIENCE: Duration = Duration::from_mins(2);
 
 impl Host for Frames {
     async fn serve(&self, _: Visitor, mut link: Link) -> Departure {
@@ -151,7 +151,7 @@ async fn crowd(address: SocketAddr) {
         });
     }
     let _clients = lanes.join_all().await;
-    future::pending().await
+    future::pending::<()>().await;
 }
 
 async fn connect<H: Handler<Error = Error> + Send + Copy + 'static>(

@@ -45,13 +45,15 @@ fn write(folder: &Path, first: u32) {
     }
 }
 
+/// How often the test kills the process.
+const KILLS: u32 = 12;
+
 #[test]
 fn what_is_said_to_be_kept_outlives_a_killed_process() {
     if let Ok(writer) = env::var(WRITER) {
         let (folder, first) = writer.rsplit_once(':').unwrap();
         return write(Path::new(folder), first.parse().unwrap());
     }
-    const KILLS: u32 = 12;
     let folder = scratch("killed");
     let mut next = 0;
     for round in 0..KILLS {

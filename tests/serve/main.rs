@@ -2,7 +2,6 @@
 //! break the rules, and what is kept.
 #![cfg(all(unix, feature = "serve"))]
 
-#[allow(dead_code, reason = "this file uses a share of it")]
 #[path = "../support/emulator.rs"]
 mod emulator;
 mod kept;

@@ -88,7 +88,7 @@ fn what_is_wrong_is_told_in_a_sentence() {
     let folder = scratch("absent");
     for (arguments, said) in [
         (&[][..], "there is no store of a host in"),
-        (&["--level", "nowhere"], "the name of a built-in level"),
+        (&["--level", "No where"], "the name of a built-in level, or of a map"),
         (&["--day", "2026-02-30"], "a date such as 2026-11-22"),
         (&["--day", "2026-11-22", "--level", "cellar"], "--day goes without --level"),
     ] {

@@ -79,7 +79,7 @@ fn push_details(text: &mut String, subcommand: &Subcommand) {
 fn push_options(text: &mut String, subcommand: &Subcommand) {
     let options = subcommand.options.iter();
     let (shared, own): (Vec<&&dyn OptionSpec>, Vec<&&dyn OptionSpec>) =
-        options.partition(|option| play::SUBCOMMAND.has(option.name()));
+        options.partition(|option| is_as_in_play(**option));
     for option in own {
         let choices = match option.choices() {
             [] => String::new(),
@@ -92,6 +92,12 @@ fn push_options(text: &mut String, subcommand: &Subcommand) {
             shared.iter().map(|option| format!("--{}", option.name())).collect();
         push_row(text, "as above", &names.join(", "));
     }
+}
+
+/// Whether the game has an option of the same name that means the same.
+fn is_as_in_play(option: &dyn OptionSpec) -> bool {
+    let mut options = play::SUBCOMMAND.options.iter();
+    options.any(|known| known.usage() == option.usage() && known.help() == option.help())
 }
 
 fn push_keys(text: &mut String) {

@@ -4,7 +4,6 @@ use std::path::PathBuf;
 
 use super::option::{FileOption, Parser, ValueOption};
 use super::{Command, Error, Subcommand};
-use crate::map::builtin;
 use crate::store::host::Day;
 use crate::world::Difficulty;
 
@@ -14,7 +13,7 @@ pub(in crate::cli) struct Scores {
     /// The folder of the host's store; that of the program if `None`.
     pub(in crate::cli) data: Option<PathBuf>,
     /// The level; all if `None`.
-    pub(in crate::cli) level: Option<&'static str>,
+    pub(in crate::cli) level: Option<String>,
     /// The difficulty; all if `None`.
     pub(in crate::cli) difficulty: Option<Difficulty>,
     /// The day whose daily run is shown instead of levels.
@@ -63,15 +62,17 @@ const DATA: FileOption = FileOption {
     help: "The folder of the store [default: the folder for data files, or CELLCASTER_DATA]",
 };
 
-const LEVEL: ValueOption<&'static str> = ValueOption {
+const LEVEL: ValueOption<String> = ValueOption {
     name: "level",
     value: "NAME",
-    takes: "the name of a built-in level",
-    help: "List this built-in level only",
+    takes: "the name of a built-in level, or of a map of the host without .toml",
+    help: "List this level only: a built-in one, or a map of the host",
     default: "",
     choices: &[],
     read: Parser::Optional(|text| {
-        builtin::LEVELS.iter().map(|level| level.name).find(|name| *name == text)
+        let is_plain =
+            |byte: u8| byte.is_ascii_lowercase() || byte.is_ascii_digit() || b"-_".contains(&byte);
+        (!text.is_empty() && text.bytes().all(is_plain)).then(|| text.to_owned())
     }),
     repeats: false,
 };

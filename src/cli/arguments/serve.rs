@@ -15,6 +15,7 @@ pub(in crate::cli) struct Serve {
     pub(in crate::cli) listen: Option<SocketAddr>,
     pub(in crate::cli) data: Option<PathBuf>,
     pub(in crate::cli) config: Option<PathBuf>,
+    pub(in crate::cli) maps: Option<PathBuf>,
     pub(in crate::cli) record_room: Option<PathBuf>,
     pub(in crate::cli) log: LogFormat,
 }
@@ -25,11 +26,12 @@ pub(super) const SUBCOMMAND: Subcommand = Subcommand {
     details: "Prints the line that people type to play. The host key and what the server keeps are in the \
               folder for data; the key is made at the first start. SIGTERM and Ctrl-C end the server, after \
               its visitors had time for their end; a second one ends it at once. SIGHUP reads the \
-              configuration again. The log goes to standard error.",
+              configuration again. The log goes to standard error. cellcaster replay FILE [MAP] plays the \
+              recording of a room again.",
     examples: "cellcaster serve\n\
-               cellcaster serve --listen 0.0.0.0:2222 --data /var/lib/cellcaster",
+               cellcaster serve --listen 0.0.0.0:2222 --data /var/lib/cellcaster --maps maps",
     positionals: &[],
-    options: &[&LISTEN, &DATA, &CONFIG, &LOG, &RECORD_ROOM],
+    options: &[&LISTEN, &DATA, &CONFIG, &MAPS, &LOG, &RECORD_ROOM],
     surplus: "takes no map",
     missing: "",
     read: |matches| Ok(Command::Serve(read(matches))),
@@ -40,6 +42,7 @@ fn read(mut matches: ArgMatches) -> Serve {
         listen: LISTEN.of(&mut matches),
         data: DATA.of(&mut matches),
         config: CONFIG.of(&mut matches),
+        maps: MAPS.of(&mut matches),
         record_room: RECORD_ROOM.of(&mut matches),
         log: LOG.of(&mut matches).unwrap_or_default(),
     }
@@ -64,6 +67,11 @@ const DATA: FileOption = FileOption {
 const CONFIG: FileOption = FileOption {
     name: "config",
     help: "The configuration [default: cellcaster/serve.toml in the folder for configuration files]",
+};
+
+const MAPS: FileOption = FileOption {
+    name: "maps",
+    help: "A folder of own maps, beside the built-in levels [default: that of the configuration]",
 };
 
 const LOG: ValueOption<LogFormat> = ValueOption {

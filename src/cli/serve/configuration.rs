@@ -1,4 +1,5 @@
-//! The configuration file: read at the start, and again at each hang-up.
+//! The configuration: the file and the maps that it names, read at the start; the file again at each
+//! hang-up.
 
 use std::fs;
 use std::io;
@@ -7,8 +8,9 @@ use std::path::PathBuf;
 
 use super::signals::Hangups;
 use crate::cli::Error;
+use crate::cli::arguments::Serve;
 use crate::cli::config::configuration_file;
-use crate::server::{Config, LiveConfig, Logging, events};
+use crate::server::{Config, HostMaps, LiveConfig, Logging, events};
 
 /// Where the configuration comes from.
 pub(super) struct Configuration {
@@ -16,41 +18,44 @@ pub(super) struct Configuration {
     file: Option<PathBuf>,
     /// Whether the file was named, and so has to exist.
     is_named: bool,
-    /// The address of the command line, which goes before that of the file.
+    /// What the command line says, which goes before the file.
     listen: Option<SocketAddr>,
+    maps_folder: Option<PathBuf>,
+    recordings: Option<PathBuf>,
+    maps: HostMaps,
 }
 
 impl Configuration {
-    /// The named file, or else the default one.
-    pub(super) fn new(named: Option<PathBuf>, listen: Option<SocketAddr>) -> Self {
-        let is_named = named.is_some();
-        Self { file: named.or_else(|| configuration_file("serve.toml")), is_named, listen }
-    }
-
-    /// The content of the file; the defaults if the default file does not exist.
-    pub(super) fn read(&self) -> Result<Config, Error> {
-        let mut config = self.content()?;
-        config.listen = self.listen.unwrap_or(config.listen);
-        Ok(config)
-    }
-
-    fn content(&self) -> Result<Config, Error> {
-        let Some(file) = &self.file else { return Ok(Config::default()) };
-        let name = file.display().to_string();
-        match fs::read_to_string(file) {
-            Ok(text) => Ok(Config::parse(&text, &name)?),
-            Err(error) if error.kind() == io::ErrorKind::NotFound && !self.is_named => {
-                Ok(Config::default())
-            }
-            Err(error) => Err(Error::mistake(format!("{name} can't be read: {error}"))),
+    /// Reads the file that `options` name, or else the default one, and the maps.
+    pub(super) fn begin(options: &Serve) -> Result<(Self, Config), Error> {
+        let mut configuration = Self {
+            file: options.config.clone().or_else(|| configuration_file("serve.toml")),
+            is_named: options.config.is_some(),
+            listen: options.listen,
+            maps_folder: options.maps.clone(),
+            recordings: options.record_room.clone(),
+            maps: HostMaps::default(),
+        };
+        let text = configuration.text()?;
+        let config = configuration.parse(&text)?;
+        if let Some(folder) = &config.maps {
+            let maps = HostMaps::read(folder);
+            configuration.maps = maps.map_err(|error| Error::mistake(error.to_string()))?;
         }
+        configuration.check_levels(&text)?;
+        Ok((configuration, config))
+    }
+
+    /// The maps, which are read once.
+    pub(super) fn maps(&self) -> &HostMaps {
+        &self.maps
     }
 
     /// Reads the file again at each hang-up. With a fault in it, the configuration stays as it is.
     pub(super) async fn follow(self, mut hangups: Hangups, live: LiveConfig, logging: Logging) {
         loop {
             hangups.next().await;
-            match self.read() {
+            match self.read_again() {
                 Ok(config) => {
                     logging.set_filter(&config.log);
                     let fixed = live.replace(config);
@@ -59,5 +64,42 @@ impl Configuration {
                 Err(error) => error.to_string().lines().for_each(events::configuration_fault),
             }
         }
+    }
+
+    fn read_again(&self) -> Result<Config, Error> {
+        let text = self.text()?;
+        let config = self.parse(&text)?;
+        // Other maps than those that were read have no effect until the next start.
+        self.check_levels(&text)?;
+        Ok(config)
+    }
+
+    fn parse(&self, text: &str) -> Result<Config, Error> {
+        let mut config = Config::parse(text, &self.file_name())?;
+        config.listen = self.listen.unwrap_or(config.listen);
+        config.maps = self.maps_folder.clone().or(config.maps);
+        config.recordings.clone_from(&self.recordings);
+        Ok(config)
+    }
+
+    fn check_levels(&self, text: &str) -> Result<(), Error> {
+        Ok(Config::check_levels(text, &self.file_name(), &self.maps.level_names())?)
+    }
+
+    /// The content of the file; an empty one if the default file does not exist.
+    fn text(&self) -> Result<String, Error> {
+        let Some(file) = &self.file else { return Ok(String::new()) };
+        match fs::read_to_string(file) {
+            Err(error) if error.kind() == io::ErrorKind::NotFound && !self.is_named => {
+                Ok(String::new())
+            }
+            text => text.map_err(|error| {
+                Error::mistake(format!("{} can't be read: {error}", self.file_name()))
+            }),
+        }
+    }
+
+    fn file_name(&self) -> String {
+        self.file.as_ref().map_or_else(String::new, |file| file.display().to_string())
     }
 }

@@ -26,8 +26,8 @@ impl LiveConfig {
         self.0.subscribe()
     }
 
-    /// Replaces the configuration, except for addresses that the server listens at and the limits of
-    /// rooms. Returns the names of settings that `wanted` would change and that stay until the next
+    /// Replaces the configuration, except for addresses that the server listens at and the folder of
+    /// maps. Returns the names of settings that `wanted` would change and that stay until the next
     /// start.
     pub fn replace(&self, mut wanted: Config) -> Vec<&'static str> {
         let now = self.get();
@@ -40,17 +40,9 @@ impl LiveConfig {
             wanted.metrics = now.metrics;
             fixed.push("metrics.listen");
         }
-        if wanted.rooms != now.rooms {
-            wanted.rooms = now.rooms;
-            fixed.push("rooms");
-        }
-        if wanted.watchers != now.watchers {
-            wanted.watchers = now.watchers;
-            fixed.push("watchers");
-        }
-        if wanted.empty_room != now.empty_room {
-            wanted.empty_room = now.empty_room;
-            fixed.push("empty-room-seconds");
+        if wanted.maps != now.maps {
+            wanted.maps.clone_from(&now.maps);
+            fixed.push("maps");
         }
         // Of the command line alone.
         wanted.recordings.clone_from(&now.recordings);

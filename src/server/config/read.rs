@@ -1,17 +1,20 @@
 //! Parsing: from a file to a configuration.
 
 use std::net::SocketAddr;
+use std::path::{Path, PathBuf};
 
 use toml::de::{DeTable, DeValue};
 
-use super::Config;
 use super::settings::{SETTINGS, Setting};
+use super::{Config, standing};
 use crate::fault::document::{self, Entry, FaultList};
 use crate::fault::{Fault, Faults, quoted};
 use crate::server::logging::{LogFilter, UnknownLogFilter};
 
 /// In characters: the longest message of the day.
 const LONGEST_MESSAGE: usize = 200;
+/// In characters: the longest name of a host.
+const LONGEST_NAME: usize = 40;
 
 impl Config {
     /// Parses a configuration file, which faults refer to as `name`.
@@ -32,9 +35,12 @@ impl Config {
         for entry in document::entries(document, faults) {
             match entry.key {
                 "listen" => set(&mut self.listen, address(&entry, LISTEN)),
+                "name" => set(&mut self.name, name(&entry)),
                 "message" => set(&mut self.message, message(&entry)),
                 "log" => set(&mut self.log, log(&entry)),
+                "maps" => set(&mut self.maps, folder(&entry).map(Some)),
                 "metrics" => self.read_metrics(&entry),
+                "room" => set(&mut self.standing, standing::read(&entry)),
                 key => {
                     if let Some(setting) = SETTINGS.iter().find(|known| known.name == key) {
                         set_number(self, &entry, setting);
@@ -45,6 +51,16 @@ impl Config {
                     }
                 }
             }
+        }
+        self.check_room_count(document, faults);
+    }
+
+    fn check_room_count(&self, document: &DeTable, faults: &FaultList) {
+        let (standing, most) = (self.standing.len(), self.rooms as usize);
+        if let Some((key, _)) = document.get_key_value("room").filter(|_| standing > most) {
+            let message = format!("{standing} standing rooms are more than the limit of rooms");
+            let help = format!("write rooms = {standing} or more");
+            faults.push(Fault::new(key.span(), message).help(help));
         }
     }
 
@@ -63,7 +79,7 @@ const LISTEN: &str = "listen = \"127.0.0.1:2222\"";
 const METRICS_LISTEN: &str = "listen = \"127.0.0.1:9464\"";
 
 /// The settings that are no numbers.
-const TEXTS: [&str; 4] = ["listen", "message", "log", "metrics"];
+const TEXTS: [&str; 7] = ["listen", "name", "message", "log", "maps", "metrics", "room"];
 
 fn set_number(config: &mut Config, entry: &Entry<'_, '_>, setting: &Setting) {
     if let Some(value) = number(entry, setting) {
@@ -90,13 +106,41 @@ fn address(entry: &Entry<'_, '_>, example: &str) -> Option<SocketAddr> {
 
 fn message(entry: &Entry<'_, '_>) -> Option<String> {
     let text = entry.string("message = \"Welcome\"")?;
-    let is_line = text.chars().count() <= LONGEST_MESSAGE && !text.contains(char::is_control);
+    line(entry, text, "the message of the day", LONGEST_MESSAGE)
+}
+
+fn name(entry: &Entry<'_, '_>) -> Option<String> {
+    let text = entry.string("name = \"Cellcaster\"")?;
+    if text.trim().is_empty() {
+        let message = "the name of the host is empty";
+        let help = "leave the setting out for \"Cellcaster\"";
+        entry.faults.push(Fault::new(entry.value_place.clone(), message).help(help));
+        return None;
+    }
+    line(entry, text, "the name of the host", LONGEST_NAME)
+}
+
+/// `text`, if it is one line of at most `longest` characters. `what` it is goes to the fault.
+fn line(entry: &Entry<'_, '_>, text: &str, what: &str, longest: usize) -> Option<String> {
+    let is_line = text.chars().count() <= longest && !text.contains(char::is_control);
     if !is_line {
-        let message =
-            format!("the message of the day is one line of at most {LONGEST_MESSAGE} characters");
+        let message = format!("{what} is one line of at most {longest} characters");
         entry.faults.push(Fault::new(entry.value_place.clone(), message));
     }
     is_line.then(|| text.to_owned())
+}
+
+fn folder(entry: &Entry<'_, '_>) -> Option<PathBuf> {
+    const EXAMPLE: &str = "maps = \"/var/lib/cellcaster/maps\"";
+    let path = Path::new(entry.string(EXAMPLE)?);
+    // A service starts in a folder that nobody thinks of.
+    if !path.is_absolute() {
+        let message = format!("{} is not an absolute path", quoted(&path.to_string_lossy()));
+        let fault = Fault::new(entry.value_place.clone(), message);
+        entry.faults.push(fault.help(format!("write {EXAMPLE}")));
+        return None;
+    }
+    Some(path.to_owned())
 }
 
 fn log(entry: &Entry<'_, '_>) -> Option<LogFilter> {

@@ -19,6 +19,12 @@ fn what_is_written_parses_to_the_same() -> Result<(), Faults> {
     config.message = "\"Races\" at 20:00 \\o/".to_owned();
     config.log = "warn,rooms=debug".parse().unwrap();
     config.metrics = Some("127.0.0.1:9464".parse().unwrap());
+    config.name = "Mara's \"cellar\"".to_owned();
+    config.maps = Some("/srv/maps".into());
+    assert_eq!(Config::parse(&config.to_string(), "serve.toml")?, config);
+    config.standing.pop();
+    assert_eq!(Config::parse(&config.to_string(), "serve.toml")?, config);
+    config.standing.clear();
     assert_eq!(Config::parse(&config.to_string(), "serve.toml")?, config);
     Ok(())
 }
@@ -55,6 +61,31 @@ fn faults_of_texts_are_named_with_their_lines() {
 }
 
 #[test]
+fn faults_of_rooms_are_named_with_their_lines() {
+    insta::assert_snapshot!(faults(
+        "name = \"\"\nmaps = \"maps\"\n\
+         [[room]]\nmode = \"alone\"\n\
+         [[room]]\nmode = \"tig\"\ndificulty = \"easy\"\n\
+         [[room]]\nlevel = 5\ndifficulty = \"dire\"\n"
+    ));
+    insta::assert_snapshot!(faults("room = [1]\n"));
+    insta::assert_snapshot!(faults(&"[[room]]\n".repeat(33)));
+}
+
+#[test]
+fn levels_of_rooms_are_checked_against_those_that_there_are() {
+    let text = "[[room]]\nlevel = \"cellar\"\n[[room]]\nmode = \"race\"\nlevel = \"celar\"\n\
+                [[room]]\nlevel = \"moss\"\n";
+    let levels = ["cellar", "museum"];
+    let faults = Config::check_levels(text, "serve.toml", &levels).unwrap_err();
+    insta::assert_snapshot!(faults);
+    let rooms = Config::parse(text, "serve.toml").unwrap().standing;
+    let levels: Vec<&str> = rooms.iter().map(StandingRoom::level).collect();
+    assert_eq!(levels, ["cellar", "celar", "moss"]);
+    assert!(Config::check_levels(text, "serve.toml", &levels).is_ok());
+}
+
+#[test]
 fn a_running_server_keeps_what_cannot_change() {
     let live = LiveConfig::new(Config::default());
     let mut seen = live.subscribe();
@@ -66,10 +97,12 @@ fn a_running_server_keeps_what_cannot_change() {
     wanted.metrics = Some("127.0.0.1:9464".parse().unwrap());
     wanted.rows = 100;
     wanted.empty_room = Duration::ZERO;
-    assert_eq!(live.replace(wanted), ["listen", "metrics.listen", "empty-room-seconds"]);
+    wanted.maps = Some("/srv/maps".into());
+    assert_eq!(live.replace(wanted), ["listen", "metrics.listen", "maps"]);
     let config = live.get();
     assert_eq!((config.rows, config.listen), (100, Config::default().listen));
-    assert_eq!(config.metrics, None);
+    assert_eq!((config.metrics, config.maps.as_ref()), (None, None));
+    assert_eq!(config.empty_room, Duration::ZERO);
 }
 
 #[test]

@@ -38,7 +38,9 @@ impl Visit {
             if asks.is_empty() {
                 return;
             }
-            asks.into_iter().for_each(|ask| self.run_errand(ask));
+            for ask in asks {
+                self.run_errand(ask);
+            }
         }
     }
 
@@ -87,8 +89,9 @@ impl Visit {
             return self.tell(News::Result(sentence.to_owned()));
         };
         let (replies, metrics) = (self.replies.clone(), Arc::clone(&self.shared.metrics));
+        let catalog = Arc::clone(self.shared.rooms.catalog());
         let is_accepted = self.shared.store.run(move |store| {
-            let sentence = results::record(store, &account, &run, &metrics);
+            let sentence = results::record(store, &account, &run, &catalog, &metrics);
             _ = replies.try_send(Reply::News(News::Result(sentence)));
         });
         if !is_accepted {

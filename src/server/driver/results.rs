@@ -5,13 +5,14 @@ use crate::game::STEPS_PER_SECOND;
 use crate::server::Metrics;
 use crate::server::line::Line;
 use crate::server::logging::events;
-use crate::server::room::NAME_COLUMNS;
+use crate::server::room::{Catalog, NAME_COLUMNS};
 use crate::server::sequencer::FinishedRun;
 use crate::server::session::BoardRow;
 use crate::store::host::{
-    Account, AccountId, HostStore, LevelBoard, StoreFailure, VerifiedLevel, VerifiedRun, verify,
+    Account, AccountId, HostStore, LevelBoard, StoreFailure, VerifiedLevel, VerifiedRun,
+    verify_with,
 };
-use crate::world::Difficulty;
+use crate::world::{Difficulty, World};
 
 /// The most entries of a board that are shown, and the places that are told.
 const MOST_ROWS: usize = 100;
@@ -21,9 +22,11 @@ pub(super) fn record(
     store: &mut dyn HostStore,
     account: &Account,
     run: &FinishedRun,
+    catalog: &Catalog,
     metrics: &Metrics,
 ) -> String {
-    let run = match verify(&run.script) {
+    let world = |name: &str| catalog.world(name).map(|world| World::clone(world));
+    let run = match verify_with(&run.script, world) {
         Ok(VerifiedRun::Level(run)) => run,
         Ok(VerifiedRun::Descent(_)) => return "The level has no board.".to_owned(),
         Err(reason) => {
@@ -49,7 +52,7 @@ fn placed(
     run: &VerifiedLevel,
 ) -> Result<String, StoreFailure> {
     let improved = store.record(account, run, unix_time())?;
-    let scores = store.level_scores(&run.board(), MOST_ROWS)?;
+    let scores = store.level_scores(run.board(), MOST_ROWS)?;
     let place = scores.iter().position(|score| score.account == account);
     let (time, rank) = (clock(run.tally().steps), run.rank());
     if let Some(score) = place.map(|place| &scores[place]) {

@@ -67,7 +67,7 @@ const MESSAGE_COLUMNS: usize = 200;
 const LAST: Duration = Duration::from_secs(2);
 
 impl Visit {
-    pub(super) fn new(shared: Arc<Shared>, visitor: Visitor, known: Known) -> Self {
+    pub(super) fn new(shared: Arc<Shared>, visitor: &Visitor, known: Known) -> Self {
         let Known { key, account, settings, offer } = known;
         let identity = Identity {
             has_account: key.is_some(),
@@ -86,7 +86,7 @@ impl Visit {
             presence.set_name(account.name.as_str());
         }
         let host = HostFacts {
-            name: host_name(),
+            name: host_name(&config.name),
             message: Line::of(&config.message, MESSAGE_COLUMNS),
             notice: visitor.notice.and_then(|notice| Line::of(notice, MESSAGE_COLUMNS)),
             compresses: visitor.compresses,
@@ -152,7 +152,7 @@ impl Visit {
                     self.session.written(now);
                     is_sending = false;
                     if let Some(key) = self.answers_key.take() {
-                        self.shared.metrics.key_time.add(now - key);
+                        self.shared.metrics.key_time.add(now.saturating_sub(key));
                     }
                 }
                 Happening::RoomsChanged => {
@@ -187,7 +187,7 @@ impl Visit {
         self.session.set_frame_time(frame_time);
         if self.session.is_due(view.as_deref(), now) {
             self.session.draw(view.as_deref(), now);
-            self.shared.metrics.frame_time.add(self.shared.now() - now);
+            self.shared.metrics.frame_time.add(self.shared.now().saturating_sub(now));
             self.answers_key = self.key_at.take();
         }
         // What waking did not change, waking again will not, as where a terminal never answers.
@@ -259,9 +259,11 @@ impl Visit {
     }
 }
 
-/// What the host is called.
-fn host_name() -> Line {
-    Line::of("Cellcaster", 40).expect("printable characters")
+/// The name of the host as the lobby shows it.
+fn host_name(name: &str) -> Line {
+    const COLUMNS: usize = 40;
+    let line = Line::of(name, COLUMNS).or_else(|| Line::of("Cellcaster", COLUMNS));
+    line.expect("printable characters")
 }
 
 /// Waits for a newer snapshot.

@@ -24,7 +24,7 @@ pub(crate) struct KeptRuns {
 
 /// What tells a run from all others: an account's fastest run of a level takes fewer steps than the one
 /// before it.
-#[derive(Clone, Copy, Debug, PartialEq)]
+#[derive(Clone, Debug, PartialEq)]
 struct Key {
     account: AccountId,
     board: LevelBoard,
@@ -48,7 +48,7 @@ impl KeptRuns {
         let mut ghosts = Vec::new();
         let best = store.level_scores(&board, 1)?.into_iter().next();
         if let Some(best) = best.filter(|best| Some(best.account) != own) {
-            let key = Key { account: best.account, board, steps: best.tally.steps };
+            let key = Key { account: best.account, board: board.clone(), steps: best.tally.steps };
             let name = Line::of(best.name.as_str(), NAME_COLUMNS);
             ghosts.extend(self.run(store, catalog, key)?.map(|run| Ghost::new(run, name)));
         }
@@ -136,7 +136,7 @@ mod tests {
         store.record(mara, &run, UnixTime::new(8)).unwrap();
         let mut kept = KeptRuns::default();
         for steps in 0..MOST as u64 + 3 {
-            let key = Key { account: mara, board: run.board(), steps };
+            let key = Key { account: mara, board: run.board().clone(), steps };
             assert!(kept.run(&mut store, &catalog, key).unwrap().is_some());
         }
         assert_eq!(kept.runs.len(), MOST);

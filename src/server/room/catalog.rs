@@ -3,14 +3,25 @@
 use std::collections::BTreeMap;
 use std::sync::Arc;
 
+use super::Mode;
 use crate::map::builtin;
-use crate::world::World;
+use crate::server::HostMaps;
+use crate::world::{ThingKind, World};
 
-/// Levels by name, in their order.
+/// Levels by name, in their order. The name of a map of the host is its key, which differs between two
+/// texts of the map.
 #[derive(Clone, Debug, Default)]
 pub(crate) struct Catalog {
     names: Vec<String>,
-    worlds: BTreeMap<String, Arc<World>>,
+    levels: BTreeMap<String, Listed>,
+}
+
+#[derive(Clone, Debug)]
+struct Listed {
+    /// The name for people, without a hash.
+    short: String,
+    world: Arc<World>,
+    has_exit: bool,
 }
 
 impl Catalog {
@@ -25,11 +36,18 @@ impl Catalog {
         catalog
     }
 
+    /// The built-in levels, then the host's maps.
+    pub(crate) fn with(maps: &HostMaps) -> Self {
+        let mut catalog = Self::builtin();
+        for map in maps.iter() {
+            catalog.list(&map.key, &map.name, Arc::clone(&map.world));
+        }
+        catalog
+    }
+
     /// Adds a level. One with the same name is replaced.
     pub(crate) fn add(&mut self, name: &str, world: World) {
-        if self.worlds.insert(name.to_owned(), Arc::new(world)).is_none() {
-            self.names.push(name.to_owned());
-        }
+        self.list(name, name, Arc::new(world));
     }
 
     /// The names, in their order.
@@ -39,18 +57,45 @@ impl Catalog {
 
     /// The level with that name.
     pub(crate) fn world(&self, name: &str) -> Option<&Arc<World>> {
-        self.worlds.get(name)
+        self.levels.get(name).map(|level| &level.world)
+    }
+
+    /// The name for people of the level `name`: that of its file.
+    pub(crate) fn short<'a>(&'a self, name: &'a str) -> &'a str {
+        self.levels.get(name).map_or(name, |level| level.short.as_str())
+    }
+
+    /// The name of the level that people call `short`.
+    pub(crate) fn named<'a>(&'a self, short: &'a str) -> Option<&'a str> {
+        let level = |name: &&String| self.short(name) == short;
+        self.names.iter().find(level).map(String::as_str)
     }
 
     /// The title of a level, or else its name.
     pub(crate) fn title<'a>(&'a self, name: &'a str) -> &'a str {
-        self.world(name).map(|world| world.title()).filter(|it| !it.is_empty()).unwrap_or(name)
+        let title = self.world(name).map(|world| world.title()).filter(|title| !title.is_empty());
+        title.unwrap_or_else(|| self.short(name))
     }
 
-    /// The name of the level after `name`, which is the first after the last.
+    /// Whether a level can be played in `mode`: where an exit ends a round, there is one.
+    pub(crate) fn suits(&self, name: &str, mode: Mode) -> bool {
+        let level = self.levels.get(name);
+        level.is_some_and(|level| level.has_exit || !mode.moves_on())
+    }
+
+    /// The name of the level with an exit after `name`. After the last one comes the first.
     pub(crate) fn after<'a>(&'a self, name: &'a str) -> &'a str {
-        let index = self.names.iter().position(|it| it == name);
-        let next = index.map_or(0, |index| (index + 1) % self.names.len());
-        self.names.get(next).map_or(name, String::as_str)
+        let index = self.names.iter().position(|it| it == name).map_or(0, |index| index + 1);
+        let (before, after) = self.names.split_at(index);
+        let has_exit = |name: &&String| self.levels.get(*name).is_some_and(|it| it.has_exit);
+        after.iter().chain(before).find(has_exit).map_or(name, String::as_str)
+    }
+
+    fn list(&mut self, name: &str, short: &str, world: Arc<World>) {
+        let has_exit = world.things().iter().any(|thing| thing.kind == ThingKind::Exit);
+        let listed = Listed { short: short.to_owned(), world, has_exit };
+        if self.levels.insert(name.to_owned(), listed).is_none() {
+            self.names.push(name.to_owned());
+        }
     }
 }

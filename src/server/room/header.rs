@@ -114,7 +114,7 @@ mod tests {
             Seat { id: MemberId(id), color: PlayerColor::ALL[id as usize % 8], points, name }
         };
         let mut header = Header::new("museum", Mode::Tag, Difficulty::Hard, u64::MAX);
-        header.members = vec![seat(1, 250, "Mara"), seat(7, 0, "a b  c")];
+        header.members = vec![seat(1, 250, "Mara"), seat(7, 0, "a b c")];
         header.next_member = 9;
         let text = header.to_string();
         assert_eq!(Header::parse(text.lines()), Some(header));

@@ -122,7 +122,7 @@ impl Mode {
     }
 
     /// Whether the next round is in the next level.
-    pub(super) const fn moves_on(self) -> bool {
+    pub(crate) const fn moves_on(self) -> bool {
         matches!(self, Self::Together | Self::Alone | Self::Race)
     }
 

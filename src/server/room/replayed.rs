@@ -5,6 +5,7 @@ use std::sync::Arc;
 use super::entry::Entry;
 use super::log::parse;
 use super::{Catalog, Header, Mode, Room};
+use crate::store::name_in_map_key;
 
 /// What came out of a round.
 #[derive(Clone, Debug, PartialEq, Eq)]
@@ -43,7 +44,7 @@ fn play(
     entries: &[Entry],
     is_last: bool,
 ) -> Result<RoundReport, String> {
-    let no_level = || format!("there is no level called {}", header.level);
+    let no_level = || no_level(&header.level);
     let mut room = Room::new(catalog, header.clone()).ok_or_else(no_level)?;
     let end = entries.last().map_or(0, |entry| entry.step);
     let mut entries = entries.iter().peekable();
@@ -59,6 +60,17 @@ fn play(
             return Err(format!("round {} does not end within two hours", header.round));
         }
         room.advance();
+    }
+}
+
+/// Why there is no level of that name, and what to do.
+fn no_level(name: &str) -> String {
+    match name_in_map_key(name) {
+        Some(map) => format!(
+            "it was recorded in the map {map}.toml, which is not given or has changed since (it was {name}); \
+             name the map or its folder"
+        ),
+        None => format!("there is no level called {name}"),
     }
 }
 

@@ -3,7 +3,7 @@ use proptest::prelude::*;
 use super::*;
 use crate::game::{Intent, Outcome};
 use crate::map;
-use crate::world::Difficulty;
+use crate::world::{Difficulty, FieldOfView};
 
 const HALL: &str = r##"
 title = "Hall"
@@ -62,7 +62,7 @@ fn advance(room: &mut Room, steps: u64) {
 fn position(room: &Room, member: MemberId) -> glam::DVec2 {
     let view = room.view();
     let player = view.member(member).unwrap().player.unwrap();
-    view.game.seen_by(player).unwrap().camera(Default::default()).position()
+    view.game.seen_by(player).unwrap().camera(FieldOfView::default()).position()
 }
 
 #[test]
@@ -223,7 +223,9 @@ proptest! {
         let [(read, entries)] = &rounds[..] else { panic!("one round") };
         prop_assert_eq!(read, &header);
         let mut queue = Queue::default();
-        entries.iter().for_each(|entry| queue.append(entry.clone()).unwrap());
+        for entry in entries {
+            queue.append(entry.clone()).unwrap();
+        }
         let other = played(&mut queue, read, step + 60);
         prop_assert_eq!(one.checksum(), other.checksum());
         prop_assert_eq!(one.game, other.game);

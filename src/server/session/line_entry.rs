@@ -1,11 +1,13 @@
 //! A line of text that the visitor types.
 
-use unicode_width::UnicodeWidthChar;
+use unicode_width::{UnicodeWidthChar, UnicodeWidthStr};
 
 use crate::server::line::Line;
+use crate::store::host::printable;
 use crate::terminal::{Key, KeyEvent};
 
-/// A line that is being typed. It takes printable characters only.
+/// A line that is being typed. What is typed is what [`printable`] leaves of it, except for a blank at
+/// its end.
 #[derive(Clone, Debug, Default)]
 pub(super) struct LineEntry {
     text: String,
@@ -45,18 +47,9 @@ impl LineEntry {
         }
         let Some(character) = event.typed() else { return false };
         let before = if self.is_offer { "" } else { &self.text };
-        let is_first = before.is_empty();
-        // What would end a line is kept while it is typed.
-        let is_printable = character == ' ' && !is_first
-            || Line::of(character.encode_utf8(&mut [0; 4]), self.columns).is_some();
-        let width: usize = before.chars().chain([character]).filter_map(char::width).sum();
-        if !is_printable || width > self.columns {
-            return false;
-        }
-        if std::mem::take(&mut self.is_offer) {
-            self.text.clear();
-        }
-        self.text.push(character);
+        let Some(after) = appended(before, character, self.columns) else { return false };
+        self.is_offer = false;
+        self.text = after;
         true
     }
 
@@ -73,6 +66,16 @@ impl LineEntry {
         shown.reverse();
         shown.into_iter().chain(['_']).collect()
     }
+}
+
+/// `line` with another character, which may combine with the last one; `None` if it is not taken.
+fn appended(line: &str, character: char, columns: usize) -> Option<String> {
+    if character == ' ' {
+        let is_taken = !line.is_empty() && !line.ends_with(' ') && line.width() < columns;
+        return is_taken.then(|| format!("{line} "));
+    }
+    let after = printable(&format!("{line}{character}"), columns);
+    (after != line.trim_end()).then_some(after)
 }
 
 #[cfg(test)]
@@ -110,9 +113,26 @@ mod tests {
     fn only_what_is_printable_and_fits_is_taken() {
         let mut entry = LineEntry::new(6);
         type_all(&mut entry, " a\u{1b}\u{7f}\u{202e}\u{301}日b日本");
-        assert_eq!(entry.text(), "a日b日");
+        // The accent combines with what was typed before.
+        assert_eq!(entry.text(), "á日b日");
         assert_eq!(entry.shown(4), "b日_");
         assert_eq!(entry.shown(0), "_");
         assert_eq!(LineEntry::new(4).line(), None);
+    }
+
+    #[test]
+    fn what_is_typed_is_what_the_line_will_be() {
+        for text in ["e\u{301}te\u{301}", "a  b \u{a0}c", "\u{ad}\u{3164}x\u{e000}", "שלום 日本"]
+        {
+            let mut entry = LineEntry::new(12);
+            type_all(&mut entry, text);
+            assert_eq!(entry.line(), Line::of(text, 12), "{text:?}");
+        }
+        let mut entry = LineEntry::new(12);
+        type_all(&mut entry, "cafe\u{301} ");
+        assert_eq!(entry.text(), "café ");
+        assert!(!entry.press(event(Key::Char(' '), false)));
+        assert!(!entry.press(event(Key::Char('\u{202e}'), false)));
+        assert_eq!(entry.text(), "café ");
     }
 }

@@ -6,6 +6,7 @@ use super::page::Page;
 use super::visit::Visit;
 use crate::app::parts::{Menu, time};
 use crate::game::STEP;
+use crate::server::line::Line;
 use crate::server::room::{Emote, Mode};
 use crate::server::summary::RoomSummary;
 
@@ -139,21 +140,26 @@ impl Visit {
         } else {
             menu
         };
-        self.each_level(menu, |level| {
+        self.each_level(menu, mode, |level| {
             Choice::Open(Page::Card(Target::New { mode, level, difficulty }))
         })
     }
 
     fn boards_menu(&self) -> Menu<Choice> {
-        self.each_level(Menu::new("board"), Choice::Board)
+        self.each_level(Menu::new("board"), Mode::Alone, Choice::Board)
     }
 
-    fn each_level(&self, menu: Menu<Choice>, choice: impl Fn(usize) -> Choice) -> Menu<Choice> {
+    /// `menu` with an entry for each level that suits a mode.
+    fn each_level(
+        &self,
+        menu: Menu<Choice>,
+        mode: Mode,
+        choice: impl Fn(usize) -> Choice,
+    ) -> Menu<Choice> {
         let catalog = &self.host.catalog;
-        catalog
-            .names()
-            .iter()
-            .enumerate()
+        let levels = catalog.names().iter().enumerate();
+        levels
+            .filter(|(_, name)| catalog.suits(name, mode))
             .fold(menu, |menu, (index, name)| menu.entry(catalog.title(name), choice(index)))
     }
 
@@ -224,11 +230,11 @@ fn who_is_here(room: &RoomSummary) -> String {
         1 => " One watches.".to_owned(),
         count => format!(" {count} watch."),
     };
-    let names: Vec<&str> = room.members.iter().map(|name| name.as_str()).collect();
-    match names.is_empty() {
-        true => format!("Nobody is here yet.{watchers}"),
-        false => format!("Here: {}.{watchers}", names.join(", ")),
+    let names: Vec<&str> = room.members.iter().map(Line::as_str).collect();
+    if names.is_empty() {
+        return format!("Nobody is here yet.{watchers}");
     }
+    format!("Here: {}.{watchers}", names.join(", "))
 }
 
 fn modes_menu() -> Menu<Choice> {

@@ -29,7 +29,7 @@ use crate::server::summary::{RoomId, RoomSummary};
 use crate::store::Preferences;
 use crate::store::host::AccountSettings;
 use crate::terminal::Detected;
-use crate::world::Difficulty;
+use crate::world::{Difficulty, FieldOfView};
 
 const HALL: &str = r##"
 title = "The Hall"
@@ -38,13 +38,14 @@ grid = '''
 #@............#
 #.............#
 #.............#
-#.............#
+#............>#
 ###############
 '''
 [tiles]
 "#" = { wall = "#808080" }
 [things]
 "@" = { start = 0 }
+">" = { exit = true }
 "##;
 
 const ROOM: RoomId = RoomId(7);
@@ -211,7 +212,7 @@ impl Rig {
         let view = self.room.view();
         let member = view.member(self.visitors[index].member.unwrap()).unwrap();
         let player = view.game.seen_by(member.player.unwrap()).unwrap();
-        player.camera(Default::default()).position()
+        player.camera(FieldOfView::default()).position()
     }
 
     fn page(&self, index: usize) -> page::Page {

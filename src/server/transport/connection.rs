@@ -109,10 +109,8 @@ async fn log_in(
 ) -> Result<Begun, Outcome> {
     let mut phases = shared.phases.clone();
     loop {
-        let time = match line.has_exchanged() {
-            true => shared.config.get().login,
-            false => shared.config.get().handshake,
-        };
+        let config = shared.config.get();
+        let time = if line.has_exchanged() { config.login } else { config.handshake };
         let deadline = line.begun() + time;
         if Instant::now() >= deadline {
             let is_guilty = !line.is_logged_in();

@@ -61,12 +61,11 @@ impl Hello {
         };
         let unit = self.bytes.get(..length)?;
         self.stage = match self.stage {
-            Stage::Version => Stage::Offer,
             Stage::Offer if unit.get(5) == Some(&KEXINIT) => {
                 self.compresses = compresses(unit.get(OFFER_START..)?);
                 Stage::Exchange
             }
-            Stage::Offer => Stage::Offer,
+            Stage::Version | Stage::Offer => Stage::Offer,
             Stage::Exchange | Stage::Done => Stage::Done,
         };
         self.bytes.drain(..length);

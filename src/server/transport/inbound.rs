@@ -217,8 +217,8 @@ mod tests {
     #[test]
     fn a_connection_never_waits_for_a_session_that_is_gone() {
         let (inlet, inbound) = inbound();
-        assert_eq!(poll(inlet.bytes(&[0; Inbound::MOST_BYTES + 1])), None);
+        assert_eq!(poll(inlet.bytes(&vec![0; Inbound::MOST_BYTES + 1])), None);
         drop(inbound);
-        assert_eq!(poll(inlet.bytes(&[0; 1 << 20])), Some(()));
+        assert_eq!(poll(inlet.bytes(&vec![0; 1 << 20])), Some(()));
     }
 }

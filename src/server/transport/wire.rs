@@ -143,10 +143,8 @@ impl Line {
             Some(waker) => waker.clone_from(cx.waker()),
             none => *none = Some(cx.waker().clone()),
         });
-        match self.is_cut.load(Ordering::Acquire) {
-            true => Err(io::ErrorKind::ConnectionAborted.into()),
-            false => Ok(()),
-        }
+        let is_cut = self.is_cut.load(Ordering::Acquire);
+        if is_cut { Err(io::ErrorKind::ConnectionAborted.into()) } else { Ok(()) }
     }
 
     fn count(&self, bytes: usize) {

@@ -86,7 +86,7 @@ impl AccountKey {
         }
         // A digit too many, or one whose last bits are not 0, would be a second text for the same key.
         let key = Self(bytes);
-        (index == bytes.len() && key.to_string()[PREFIX.len()..].as_bytes() == digits)
+        (index == bytes.len() && &key.to_string().as_bytes()[PREFIX.len()..] == digits)
             .then_some(key)
     }
 

@@ -42,7 +42,7 @@ pub struct Identity<'a> {
     pub name: Option<&'a Name>,
 }
 
-/// The addresses that begin with the same bits, such as 203.0.113.0/24 or 2001:db8::/64.
+/// The addresses that begin with the same bits, such as `203.0.113.0/24` or `2001:db8::/64`.
 ///
 /// ```
 /// use cellcaster::store::host::AddressPrefix;

@@ -1,7 +1,7 @@
 //! A store in memory.
 
 use std::cmp::Reverse;
-use std::collections::BTreeMap;
+use std::collections::{BTreeMap, BTreeSet};
 
 use super::score::with_run;
 use super::{
@@ -176,11 +176,11 @@ impl HostStore for MemoryStore {
     ) -> Result<Improved, StoreFailure> {
         self.existing(account)?;
         let kept = self.results.entry(account).or_default();
-        let known = kept.iter_mut().find(|kept| kept.board == run.board());
+        let known = kept.iter_mut().find(|kept| kept.board == *run.board());
         let (best, improved) = with_run(known.as_ref().map(|kept| kept.best), run);
         match known {
             None => {
-                let (board, script) = (run.board(), run.script().to_owned());
+                let (board, script) = (run.board().clone(), run.script().to_owned());
                 kept.push(Kept { board, best, script, verified_at: now });
             }
             Some(known) => {
@@ -224,15 +224,15 @@ impl HostStore for MemoryStore {
 
     fn bests(&mut self, account: AccountId) -> Result<Vec<(LevelBoard, Best)>, StoreFailure> {
         let kept = self.results.get(&account).into_iter().flatten();
-        let bests: Vec<_> = kept.map(|kept| (kept.board, kept.best)).collect();
-        let of_board = |board| bests.iter().find(|(known, _)| *known == board).copied();
-        Ok(LevelBoard::all().filter_map(of_board).collect())
+        let mut bests: Vec<_> = kept.map(|kept| (kept.board.clone(), kept.best)).collect();
+        bests.sort_by(|(one, _), (other, _)| one.cmp(other));
+        Ok(bests)
     }
 
     fn level_boards(&mut self) -> Result<Vec<LevelBoard>, StoreFailure> {
-        let has_results =
-            |board: &LevelBoard| self.results.values().flatten().any(|kept| kept.board == *board);
-        Ok(LevelBoard::all().filter(has_results).collect())
+        let boards = self.results.values().flatten().map(|kept| kept.board.clone());
+        let boards: BTreeSet<LevelBoard> = boards.collect();
+        Ok(boards.into_iter().collect())
     }
 
     fn level_scores(

@@ -1,15 +1,18 @@
 //! Entries of leaderboards.
 
+use std::cmp::Ordering;
+use std::sync::Arc;
+
 use super::{AccountId, Day, Name, UnixTime, VerifiedLevel};
 use crate::game::{Rank, Tally};
 use crate::map::builtin;
-use crate::store::{Best, Improved, Reached};
+use crate::store::{Best, Improved, Reached, name_in_map_key};
 use crate::world::Difficulty;
 
-/// A board: a built-in level at one difficulty.
-#[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
+/// A board: a built-in level or a map of the host, at one difficulty.
+#[derive(Clone, Debug, PartialEq, Eq, Hash)]
 pub struct LevelBoard {
-    level: &'static str,
+    level: Arc<str>,
     difficulty: Difficulty,
 }
 
@@ -49,28 +52,52 @@ pub struct DailyTry {
 }
 
 impl LevelBoard {
-    /// The board of the built-in level `level`; `None` if there is none of that name.
+    /// The board of `level`: the name of a built-in level, or the [key](crate::store::map_key) of a map.
+    /// `None` if it is neither.
     pub fn new(level: &str, difficulty: Difficulty) -> Option<Self> {
-        let level = builtin::LEVELS.iter().find(|known| known.name == level)?.name;
-        Some(Self { level, difficulty })
+        let is_level = place(level).is_some() || name_in_map_key(level).is_some();
+        is_level.then(|| Self { level: level.into(), difficulty })
     }
 
-    /// All boards, in the order of levels and difficulties.
-    pub fn all() -> impl Iterator<Item = Self> {
-        builtin::LEVELS.iter().flat_map(|level| {
-            Difficulty::ALL.map(|difficulty| Self { level: level.name, difficulty })
-        })
+    /// The name of the level, or the key of the map.
+    pub fn level(&self) -> &str {
+        &self.level
     }
 
-    /// The name of the level.
-    pub fn level(&self) -> &'static str {
-        self.level
+    /// The name of the level, or that of the map without the hash of its text.
+    pub fn name(&self) -> &str {
+        name_in_map_key(&self.level).unwrap_or(&self.level)
     }
 
     /// The difficulty.
     pub fn difficulty(&self) -> Difficulty {
         self.difficulty
     }
+}
+
+impl Ord for LevelBoard {
+    /// Built-in levels in their order come before maps by name, and easy before hard.
+    fn cmp(&self, other: &Self) -> Ordering {
+        let rank = |board: &Self| {
+            let level = place(&board.level).unwrap_or(usize::MAX);
+            let difficulty = Difficulty::ALL.iter().position(|it| *it == board.difficulty);
+            (level, difficulty)
+        };
+        let [(level, difficulty), (other_level, other_difficulty)] = [rank(self), rank(other)];
+        let by_level = level.cmp(&other_level).then_with(|| self.level.cmp(&other.level));
+        by_level.then(difficulty.cmp(&other_difficulty))
+    }
+}
+
+impl PartialOrd for LevelBoard {
+    fn partial_cmp(&self, other: &Self) -> Option<Ordering> {
+        Some(self.cmp(other))
+    }
+}
+
+/// The place of a built-in level among all of them.
+fn place(level: &str) -> Option<usize> {
+    builtin::LEVELS.iter().position(|known| known.name == level)
 }
 
 impl DailyTry {

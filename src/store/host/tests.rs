@@ -165,7 +165,9 @@ fn a_ban_applies_until_it_ends() {
             ban(BanTarget::Name(name("Rude")), Some(at(2))),
             ban(range(), Some(at(1))),
         ];
-        bans.iter().for_each(|ban| store.ban(ban).unwrap());
+        for ban in &bans {
+            store.ban(ban).unwrap();
+        }
         assert_eq!(store.bans(at(0)).unwrap(), bans);
         assert_eq!(store.bans(at(1)).unwrap(), bans[..2]);
         let rude = name("rude");
@@ -222,7 +224,8 @@ fn boards_have_the_best_run_of_each_account() {
         assert_eq!(store.level_scores(&board("prison"), 9).unwrap(), []);
         assert_eq!(store.level_boards().unwrap(), [board("cellar"), board("museum")]);
         let bests = store.bests(eve).unwrap();
-        let bests: Vec<_> = bests.iter().map(|(board, best)| (*board, best.tally.steps)).collect();
+        let bests: Vec<_> =
+            bests.iter().map(|(board, best)| (board.clone(), best.tally.steps)).collect();
         assert_eq!(bests, [(board("cellar"), 999), (board("museum"), 10)]);
         let script = store.script(ada, &board("cellar")).unwrap();
         assert_eq!(script.as_deref(), Some(run("cellar", 250, Rank::Thief).script()));

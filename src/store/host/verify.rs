@@ -8,7 +8,7 @@ use crate::game::{Game, Outcome, Rank, Rules, STEPS_PER_SECOND, Script, Tally};
 use crate::generate::descent;
 use crate::map::builtin;
 use crate::store::{DescentRun, Reached, replayed};
-use crate::world::Difficulty;
+use crate::world::{Difficulty, World};
 
 /// The longest script that is verified, in steps: half an hour.
 pub const MOST_SCRIPT_STEPS: u64 = 60 * 30 * STEPS_PER_SECOND as u64;
@@ -19,13 +19,13 @@ pub const MOST_SCRIPT_BYTES: usize = 8 << 20;
 /// A run that [`verify`] has replayed.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub enum VerifiedRun {
-    /// A built-in level that was won.
+    /// A level that was won.
     Level(VerifiedLevel),
     /// A descent that reached an exit.
     Descent(VerifiedDescent),
 }
 
-/// A built-in level that was won.
+/// A built-in level or a map of the host that was won.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub struct VerifiedLevel {
     board: LevelBoard,
@@ -49,7 +49,7 @@ pub enum Unverified {
     TooLong,
     /// It is no script.
     Faulty(Faults),
-    /// It names no built-in level, and not the first floor of a descent.
+    /// It names no level that is known, and not the first floor of a descent.
     OtherLevel,
     /// A level is played with the seed 0, so that all runs of it compare.
     OtherSeed,
@@ -73,6 +73,17 @@ pub enum Unverified {
 /// # Errors
 /// Why the run does not count.
 pub fn verify(script: &str) -> Result<VerifiedRun, Unverified> {
+    verify_with(script, |_| None)
+}
+
+/// As [`verify`], where `map` has the worlds of the host's maps by their [keys](crate::store::map_key).
+///
+/// # Errors
+/// Why the run does not count.
+pub fn verify_with(
+    script: &str,
+    map: impl FnOnce(&str) -> Option<World>,
+) -> Result<VerifiedRun, Unverified> {
     if script.len() > MOST_SCRIPT_BYTES {
         return Err(Unverified::TooLong);
     }
@@ -85,17 +96,25 @@ pub fn verify(script: &str) -> Result<VerifiedRun, Unverified> {
     match level.floor() {
         Some(1) => verify_descent(rules, &script).map(VerifiedRun::Descent),
         Some(_) => Err(Unverified::OtherLevel),
-        None => verify_level(level.as_str(), rules, &script).map(VerifiedRun::Level),
+        None => verify_level(level.as_str(), map, rules, &script).map(VerifiedRun::Level),
     }
 }
 
-fn verify_level(name: &str, rules: Rules, script: &Script) -> Result<VerifiedLevel, Unverified> {
+fn verify_level(
+    name: &str,
+    map: impl FnOnce(&str) -> Option<World>,
+    rules: Rules,
+    script: &Script,
+) -> Result<VerifiedLevel, Unverified> {
     let board = LevelBoard::new(name, rules.difficulty).ok_or(Unverified::OtherLevel)?;
     if rules.seed != 0 {
         return Err(Unverified::OtherSeed);
     }
-    let level = builtin::LEVELS.iter().find(|level| level.name == board.level());
-    let world = level.and_then(|level| level.world().ok()).ok_or(Unverified::OtherLevel)?;
+    let world = match builtin::LEVELS.iter().find(|level| level.name == name) {
+        Some(level) => level.world().ok(),
+        None => map(name),
+    };
+    let world = world.ok_or(Unverified::OtherLevel)?;
     let game = replayed(world, rules, script);
     if !game.is_finished() {
         return Err(not_won(&game));
@@ -123,8 +142,8 @@ fn not_won(game: &Game) -> Unverified {
 
 impl VerifiedLevel {
     /// The board that it belongs to.
-    pub fn board(&self) -> LevelBoard {
-        self.board
+    pub fn board(&self) -> &LevelBoard {
+        &self.board
     }
 
     /// What happened in it.
@@ -253,7 +272,7 @@ mod tests {
     #[test]
     fn a_daily_run_has_the_seed_of_a_day_and_the_usual_difficulty() {
         let day = |seed, difficulty| {
-            VerifiedDescent::made_up(Rules { seed, difficulty }, Reached::default(), "").day()
+            VerifiedDescent::made_up(Rules { difficulty, seed }, Reached::default(), "").day()
         };
         assert_eq!(day(20_261_122, Difficulty::Normal), Day::parse("2026-11-22"));
         assert_eq!(day(20_261_122, Difficulty::Easy), None);

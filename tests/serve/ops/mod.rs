@@ -2,6 +2,7 @@
 
 mod admin;
 mod documents;
+mod maps;
 mod metrics;
 mod running;
 mod signals;

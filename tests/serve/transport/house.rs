@@ -54,11 +54,10 @@ impl House {
     pub(super) fn arguments(&self, options: &[&str]) -> Vec<String> {
         let fixed = "-F none -o StrictHostKeyChecking=no -o UserKnownHostsFile=/dev/null \
                      -o LogLevel=ERROR -o IdentitiesOnly=yes -p";
-        let identity = match options.iter().any(|option| option.starts_with("IdentityFile")) {
-            true => vec![],
-            false => vec!["-o", "IdentityFile=none"],
-        };
         let port = self.address.port().to_string();
+        let has_identity = options.iter().any(|option| option.starts_with("IdentityFile"));
+        let none = ["-o", "IdentityFile=none"];
+        let identity = none.into_iter().filter(|_| !has_identity);
         let words = fixed.split_whitespace().chain([port.as_str()]).chain(identity);
         words.chain(options.iter().copied()).map(str::to_owned).collect()
     }

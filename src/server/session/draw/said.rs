@@ -27,7 +27,7 @@ pub(super) fn draw<'r>(
         let by = remark.by.as_ref();
         let name = by.map(|(name, color)| Span::styled(format!(" {name}"), style(*color, depth)));
         let text = Span::raw(format!(" {} ", remark.text));
-        let line = Line::from_iter(name.into_iter().chain([text]));
+        let line = name.into_iter().chain([text]).collect::<Line<'_>>();
         let width = (line.width() as u16).min(picture.width);
         canvas.draw_widget(line, Rect { y, width, height: 1, ..picture });
     }

@@ -1,6 +1,7 @@
 //! The way from the name into a room, and back.
 
 use super::*;
+use crate::server::session::choice::Target;
 use crate::server::session::page::Page;
 
 #[test]
@@ -8,7 +9,7 @@ fn enter_alone_leads_to_a_first_walk() {
     let mut rig = Rig::new(Mode::Roam);
     let one = rig.visitor("guest-amber-fox", (80, 24), Speaks::Kitty);
     assert_eq!(rig.page(one), Page::Name);
-    for page in [Page::Lobby, Page::Card(choice::Target::Existing(ROOM)), Page::Room] {
+    for page in [Page::Lobby, Page::Card(Target::Existing(ROOM)), Page::Room] {
         rig.press(one, ENTER);
         assert_eq!(rig.page(one), page, "{}", rig.text(one));
     }

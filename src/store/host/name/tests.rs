@@ -110,6 +110,35 @@ fn texts() -> impl Strategy<Value = String> {
     ]
 }
 
+#[test]
+fn every_kind_of_character_is_kept_or_dropped_by_one_rule() {
+    for (text, kept) in [
+        // Control characters, and those that begin escape sequences.
+        ("\u{1b}]0;title\u{7}\u{9b}31m\u{7f}\0", "]0;title31m"),
+        // Blanks and breaks of all kinds.
+        ("a\u{a0}\u{2003}\r\n\u{2028}\u{3000}b", "a b"),
+        // Marks that combine, with a letter and without one.
+        ("e\u{301} z\u{301}\u{302}\u{303} q\u{301} \u{20dd} \u{fe0f}", "é ź q"),
+        // Overrides, isolates and marks of direction.
+        ("\u{202a}a\u{202b}b\u{202c}c\u{202d}d\u{202e}e", "abcde"),
+        ("\u{2066}a\u{2067}b\u{2068}c\u{2069}d\u{200e}e\u{200f}f\u{61c}g", "abcdefg"),
+        // Invisible ones.
+        ("a\u{200b}\u{200c}\u{200d}\u{2060}\u{feff}\u{ad}\u{3164}\u{2800}b", "ab"),
+        // Tags, private ones, unassigned ones and no characters.
+        ("a\u{e0041}\u{e000}\u{f0000}\u{10fffd}\u{378}\u{fffe}b", "ab"),
+        // Wide ones, and families of emoji, which fall apart.
+        ("日本 \u{1f468}\u{200d}\u{1f469}", "日本 \u{1f468}\u{1f469}"),
+        // In a line, look-alikes are as good as others: a name is checked by `Name`.
+        ("раураl ⅰ①Ａ", "раураl ⅰ①Ａ"),
+        ("\u{fdfa}", "\u{fdfa}"),
+    ] {
+        assert_eq!(printable(text, 80), kept, "{text:?}");
+    }
+    assert_eq!(printable("ab 日本", 6), "ab 日");
+    assert_eq!(printable("ab 日", 3), "ab");
+    assert_eq!(printable("日", 1), "");
+}
+
 proptest! {
     #![proptest_config(ProptestConfig::with_cases(2048))]
 

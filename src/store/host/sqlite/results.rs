@@ -22,7 +22,8 @@ pub(super) fn record(
     run: &VerifiedLevel,
     now: UnixTime,
 ) -> Result<Improved> {
-    let (level, difficulty) = (run.board().level(), run.board().difficulty().name());
+    let board = run.board();
+    let (level, difficulty) = (board.level(), board.difficulty().name());
     let sql =
         format!("SELECT {BEST} FROM results WHERE account = ?1 AND level = ?2 AND difficulty = ?3");
     let of_board = (account.0, level, difficulty);
@@ -111,16 +112,18 @@ pub(super) fn bests(
     let sql = format!("SELECT level, difficulty, {BEST} FROM results WHERE account = ?1");
     let mut statement = connection.prepare(&sql)?;
     let rows = statement.query_map([account.0], |row| Ok((board(row)?, best(row, 2)?)))?;
-    let rows = rows.collect::<Result<Vec<_>>>()?;
-    let of_board = |board| rows.iter().find(|(known, _)| *known == Some(board));
-    let in_order = LevelBoard::all().filter_map(|board| Some((board, of_board(board)?.1)));
-    Ok(in_order.collect())
+    let rows = rows.collect::<Result<Vec<_>>>()?.into_iter();
+    let mut bests: Vec<_> = rows.filter_map(|(board, best)| Some((board?, best))).collect();
+    bests.sort_by(|(one, _), (other, _)| one.cmp(other));
+    Ok(bests)
 }
 
 pub(super) fn level_boards(connection: &Connection) -> Result<Vec<LevelBoard>> {
     let mut statement = connection.prepare("SELECT DISTINCT level, difficulty FROM results")?;
     let known = statement.query_map([], board)?.collect::<Result<Vec<_>>>()?;
-    Ok(LevelBoard::all().filter(|board| known.contains(&Some(*board))).collect())
+    let mut boards: Vec<LevelBoard> = known.into_iter().flatten().collect();
+    boards.sort();
+    Ok(boards)
 }
 
 pub(super) fn level_scores(

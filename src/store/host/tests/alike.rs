@@ -1,5 +1,7 @@
 //! Both stores answer alike, whatever is asked of them.
 
+use std::fmt::Write;
+
 use proptest::prelude::*;
 
 use super::*;
@@ -95,8 +97,8 @@ fn shown(store: &mut dyn HostStore, now: UnixTime) -> String {
     let mut shown = format!("{:?} {:?}", store.bans(now), store.level_boards());
     for number in 1..4 {
         let id = AccountId(number.into());
-        shown += &format!("{:?} {:?}", store.account(&key(number)), store.settings(id));
-        shown += &format!("{:?}", store.bests(id));
+        let (account, settings) = (store.account(&key(number)), store.settings(id));
+        _ = write!(shown, "{account:?} {settings:?} {:?}", store.bests(id));
         shown += &LEVELS.map(|level| format!("{:?}", store.script(id, &board(level)))).concat();
     }
     shown += &NAMES.map(|text| format!("{:?}", store.account_named(&name(text)))).concat();

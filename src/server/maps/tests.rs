@@ -1,0 +1,97 @@
+use std::env;
+use std::process;
+
+use super::*;
+
+const HALL: &str = "grid = '''\n#####\n#@.>#\n#####\n'''\n[tiles]\n\"#\" = { wall = \"brick\" }\n\
+                    [things]\n\"@\" = { start = 0 }\n\">\" = { exit = true }\n";
+
+/// A folder with files, which is removed at the end.
+struct Scratch(PathBuf);
+
+impl Scratch {
+    fn with(name: &str, files: &[(&str, &str)]) -> Self {
+        let folder = env::temp_dir().join(format!("cellcaster-maps-{}-{name}", process::id()));
+        _ = fs::remove_dir_all(&folder);
+        fs::create_dir_all(&folder).unwrap();
+        for (file, text) in files {
+            fs::write(folder.join(file), text).unwrap();
+        }
+        Self(folder)
+    }
+
+    fn fault(&self) -> String {
+        let fault = HostMaps::read(&self.0).unwrap_err().to_string();
+        fault.replace(self.0.to_str().unwrap(), "maps")
+    }
+}
+
+impl Drop for Scratch {
+    fn drop(&mut self) {
+        _ = fs::remove_dir_all(&self.0);
+    }
+}
+
+#[test]
+fn each_toml_file_of_a_folder_is_a_map() {
+    let titled = format!("title = \"The moss\"\n{HALL}");
+    let files = [("moss.toml", &*titled), ("hall-2.toml", HALL), ("notes.md", "no map")];
+    let folder = Scratch::with("all", &files);
+    let maps = HostMaps::read(&folder.0).unwrap();
+    assert_eq!(maps.names().collect::<Vec<_>>(), ["hall-2", "moss"]);
+    let keys: Vec<&str> = maps.iter().map(|map| map.key.as_str()).collect();
+    assert_eq!(keys, [map_key("hall-2", HALL), map_key("moss", &titled)]);
+    let one = HostMaps::read(&folder.0.join("moss.toml")).unwrap();
+    assert_eq!(one.names().collect::<Vec<_>>(), ["moss"]);
+    let names = maps.level_names();
+    assert!(names.contains(&"cellar"));
+    assert_eq!(names[names.len() - 2..], ["hall-2", "moss"]);
+}
+
+#[test]
+fn all_faults_of_all_maps_are_reported() {
+    let folder = Scratch::with(
+        "faults",
+        &[
+            ("cellar.toml", HALL),
+            ("Hall.toml", HALL),
+            ("unknown.toml", &HALL.replace("#@.>#", "#@?>#")),
+            ("ragged.toml", &HALL.replace("#@.>#", "#@.>##")),
+            ("right.toml", HALL),
+            (
+                "space.toml",
+                "start = { at = [0, 0, 0.5], heading = 0 }\n[[sphere]]\ncenter = [4, 0, 1]\n\
+              radius = 1\ncolor = \"#c04030\"\n",
+            ),
+        ],
+    );
+    insta::assert_snapshot!(folder.fault());
+}
+
+#[test]
+fn the_number_and_the_size_of_maps_have_limits() {
+    let long = format!("{HALL}#{}", " ".repeat(MOST_MAP_BYTES as usize));
+    let folder = Scratch::with("large", &[("large.toml", &long)]);
+    assert_eq!(folder.fault(), "maps/large.toml is larger than a map of a host may be, 256 KiB");
+    let full = &long[..MOST_MAP_BYTES as usize];
+    let names: Vec<String> = (0..=MOST_MAPS).map(|number| format!("m{number}.toml")).collect();
+    let files: Vec<(&str, &str)> = names.iter().map(|name| (name.as_str(), full)).collect();
+    let most = (MOST_BYTES / MOST_MAP_BYTES) as usize;
+    let folder = Scratch::with("bytes", &files[..most]);
+    assert_eq!(HostMaps::read(&folder.0).unwrap().iter().count(), most);
+    let folder = Scratch::with("more-bytes", &files[..=most]);
+    assert_eq!(folder.fault(), "the maps in maps have more than 4 MiB together");
+    let files: Vec<(&str, &str)> = names.iter().map(|name| (name.as_str(), HALL)).collect();
+    let folder = Scratch::with("many", &files);
+    assert_eq!(folder.fault(), "there are more than 100 maps in maps");
+}
+
+#[test]
+fn what_is_no_file_is_refused() {
+    let folder = Scratch::with("absent", &[]);
+    assert_eq!(HostMaps::read(&folder.0).unwrap().iter().count(), 0);
+    fs::create_dir(folder.0.join("deep.toml")).unwrap();
+    assert_eq!(folder.fault(), "maps/deep.toml is no file");
+    let absent = HostMaps::read(&folder.0.join("absent")).unwrap_err().to_string();
+    assert!(absent.contains("can't be read"), "{absent}");
+}
