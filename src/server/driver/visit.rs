@@ -60,6 +60,8 @@ enum Happening {
 
 /// The time after which a session is woken again for what it has been woken for.
 const AGAIN: Duration = Duration::from_millis(250);
+/// The most bytes that wait behind a frame. They are queries and no frame, so some hundred are usual.
+const MOST_WAITING: usize = 64 << 10;
 /// The widest message of the day, in columns.
 const MESSAGE_COLUMNS: usize = 200;
 /// The time between the end of the sessions and that of the server, where there is as much.
@@ -164,6 +166,11 @@ impl Visit {
                     }
                 }
                 Happening::Time => self.wake(now),
+            }
+            if is_sending && self.session.output(now).len() > MOST_WAITING {
+                // A client that reads no frame, and sends what the session must answer.
+                self.leave();
+                return 1;
             }
         }
     }
