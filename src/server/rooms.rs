@@ -211,7 +211,9 @@ impl Rooms {
                 Ok(()) => events::room_closed(id.0),
                 Err(panic) => {
                     events::room_failed(id.0, panic);
-                    standing.iter().for_each(|wish| rooms.open_standing(wish));
+                    if let Some(wish) = standing {
+                        rooms.open_standing(&wish);
+                    }
                 }
             }
         });

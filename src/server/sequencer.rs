@@ -106,10 +106,8 @@ impl Sequencer {
     }
 
     fn pause(&self, next: Instant) -> Pause {
-        match self.room.len() == 0 && self.doorway.inbox.is_empty() {
-            true => Pause::Member,
-            false => Pause::Until(next),
-        }
+        let is_empty = self.room.len() == 0 && self.doorway.inbox.is_empty();
+        if is_empty { Pause::Member } else { Pause::Until(next) }
     }
 
     /// Waits until somebody joins; returns whether the room still exists then.

@@ -111,12 +111,11 @@ impl Passage {
         if self.state.load(Ordering::Acquire) != ENCRYPTED {
             return;
         }
-        match locked(&self.rest, Option::take) {
-            Some(rest) => self.send_part(rest),
-            None => {
-                self.state.store(EMPTY, Ordering::Release);
-                self.changed.notify_one();
-            }
+        if let Some(rest) = locked(&self.rest, Option::take) {
+            self.send_part(rest);
+        } else {
+            self.state.store(EMPTY, Ordering::Release);
+            self.changed.notify_one();
         }
     }
 
