@@ -9,12 +9,17 @@
 //! bytes, and measures the time from a key to the next bytes. `--silent N` adds connections that never
 //! read. `--server PATH` is the program, `target/release/cellcaster` otherwise. `--sshd` measures OpenSSH's
 //! server with one process of the game for each session in place of `cellcaster serve`.
+//!
+//! `--soak` lets clients come, walk, talk, resize their windows and leave in several ways, by `--seed`,
+//! and prints ten times what the server holds.
 
 mod client;
 mod process;
 mod report;
 mod server;
+mod soak;
 mod sshd;
+mod wanderer;
 
 use std::error::Error;
 use std::sync::Arc;
@@ -44,6 +49,9 @@ const PAUSE: Duration = Duration::from_millis(25);
 const WARM_UP: Duration = Duration::from_secs(8);
 
 fn main() -> Result<(), Box<dyn Error>> {
+    if std::env::args().any(|it| it == "--soak") {
+        return soak::run();
+    }
     let plan = plan()?;
     process::pin(std::process::id(), 1);
     let server = if plan.uses_sshd {

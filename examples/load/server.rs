@@ -3,7 +3,7 @@
 use std::error::Error;
 use std::fs;
 use std::io::{BufRead, BufReader};
-use std::net::SocketAddr;
+use std::net::{SocketAddr, TcpListener};
 use std::path::PathBuf;
 use std::process::{Child, Command, Stdio};
 
@@ -14,6 +14,8 @@ pub(crate) struct ServerProcess {
     pub(super) child: Child,
     pub(super) folder: PathBuf,
     pub(crate) address: SocketAddr,
+    /// Where its metrics are; `None` if it has none.
+    pub(crate) metrics: Option<SocketAddr>,
     pub(crate) access: Access,
 }
 
@@ -31,11 +33,14 @@ impl ServerProcess {
         let folder = folder()?;
         let config = folder.join("serve.toml");
         let most = connections + 100;
+        // A port that is free now.
+        let metrics = TcpListener::bind("127.0.0.1:0")?.local_addr()?;
         fs::write(
             &config,
             format!(
                 "connections = {most}\nconnections-per-address = {most}\nstartups-begin = {most}\n\
-                 startups-full = {most}\nstartups-per-network = {most}\nstall-seconds = 600\n"
+                 startups-full = {most}\nstartups-per-network = {most}\nstall-seconds = 600\n\
+                 [metrics]\nlisten = \"{metrics}\"\n"
             ),
         )?;
         let mut child = Command::new("taskset")
@@ -49,7 +54,12 @@ impl ServerProcess {
         BufReader::new(child.stdout.take().ok_or("no output")?).read_line(&mut line)?;
         let address = line.strip_prefix("Listening at ").and_then(|it| it.split(';').next());
         let address = address.ok_or("the server does not listen")?.parse()?;
-        Ok(Self { child, folder, address, access: Access::Guest })
+        Ok(Self { child, folder, address, metrics: Some(metrics), access: Access::Guest })
+    }
+
+    /// The number of its process.
+    pub(crate) fn id(&self) -> u32 {
+        self.child.id()
     }
 
     /// What the server has used so far.

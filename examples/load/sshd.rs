@@ -37,6 +37,7 @@ pub(crate) fn start(program: &str) -> Result<ServerProcess, Box<dyn Error>> {
     let server = ServerProcess {
         child,
         address: ([127, 0, 0, 1], port).into(),
+        metrics: None,
         access: Access::Key { user: user()?, file: folder.join("user_key") },
         folder,
     };

@@ -21,7 +21,7 @@ use tokio::runtime::Runtime;
 use tokio::task::JoinSet;
 use tokio::time::sleep;
 
-/// Sends frames without a pause.
+/// Sends frames as a game does.
 struct Frames;
 
 /// A client that takes no frame.
@@ -33,8 +33,11 @@ struct Deaf;
 struct Awake;
 
 const CLIENTS: usize = 1000;
-/// In bytes: an exact frame of 120×40 cells, on average.
-const FRAME: usize = 32_000;
+/// In bytes: an exact frame of 80×24 cells, on average. Without flow control, each client holds one.
+const FRAME: usize = 16_000;
+const FRAME_TIME: Duration = Duration::from_millis(33);
+/// The time for which the frames of the client that reads are counted.
+const COUNTED: Duration = Duration::from_secs(3);
 /// In bytes.
 const MOST_MEMORY: usize = 64 << 20;
 /// The clients that connect at the same time.
@@ -50,7 +53,10 @@ impl Host for Frames {
                 arrival = link.inbound.next() => if arrival == Arrival::Ended {
                     return Departure::default();
                 },
-                () = link.outbox.drained() => {
+                () = async {
+                    sleep(FRAME_TIME).await;
+                    link.outbox.drained().await;
+                } => {
                     _ = link.outbox.try_send(vec![b'x'; FRAME]);
                 }
             }
@@ -97,7 +103,7 @@ fn clients_that_never_read_need_little_memory() {
     let (address, counters) = (server.address().unwrap(), server.counters());
     runtime.spawn(server.run(Frames, future::pending()));
     let (_client, mut channel) = runtime.block_on(connect(address, Awake));
-    runtime.block_on(read(&mut channel));
+    let alone = runtime.block_on(frames(&mut channel));
     let before = memory();
     let mut crowd = Command::new(env::current_exe().unwrap())
         .env(ADDRESS, address.to_string())
@@ -105,9 +111,11 @@ fn clients_that_never_read_need_little_memory() {
         .unwrap();
     wait_for_crowd(&counters, &mut crowd);
     let added = memory().zip(before).map(|(after, before)| after - before);
-    runtime.block_on(read(&mut channel));
+    let among = runtime.block_on(frames(&mut channel));
     crowd.kill().unwrap();
     crowd.wait().unwrap();
+    println!("frames of another client in {COUNTED:?}: {alone} alone, {among} among them");
+    assert!(2 * among > alone, "{among} frames of {alone}");
     let Some(added) = added else { return println!("Memory is measured on Linux only.") };
     println!("{CLIENTS} clients that never read add {} KB each", added / CLIENTS / 1024);
     assert!(added < MOST_MEMORY, "{added} bytes");
@@ -172,12 +180,16 @@ async fn connect<H: Handler<Error = Error> + Send + Copy + 'static>(
     (client, channel)
 }
 
-/// Reads some frames.
-async fn read(channel: &mut Channel<client::Msg>) {
+/// The frames that a client takes in the time in which they are counted, after those that wait.
+async fn frames(channel: &mut Channel<client::Msg>) -> usize {
     let mut bytes = 0;
-    while bytes < 20 * FRAME {
-        if let ChannelMsg::Data { data } = channel.wait().await.unwrap() {
+    let begun = Instant::now() + COUNTED;
+    while Instant::now() < begun + COUNTED {
+        if let ChannelMsg::Data { data } = channel.wait().await.unwrap()
+            && Instant::now() >= begun
+        {
             bytes += data.len();
         }
     }
+    bytes / FRAME
 }

@@ -10,6 +10,7 @@ mod play;
 #[path = "../support/player.rs"]
 mod player;
 mod scores;
+mod soak;
 #[path = "../support/mod.rs"]
 mod support;
 mod transport;

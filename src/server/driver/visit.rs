@@ -61,6 +61,8 @@ const AGAIN: Duration = Duration::from_millis(250);
 /// A driver that does not look at its room wakes after this time, since idle visitors are put out and
 /// a room may close even if nothing is read or answered.
 const PATIENCE: Duration = Duration::from_secs(1);
+/// The most bytes that wait behind a frame. They are queries and no frame, so some hundred are usual.
+const MOST_WAITING: usize = 64 << 10;
 /// The widest message of the day, in columns.
 const MESSAGE_COLUMNS: usize = 200;
 /// The time between the end of the sessions and that of the server, where there is as much.
@@ -170,6 +172,11 @@ impl Visit {
                     }
                 }
                 Happening::Time => self.wake(now),
+            }
+            if is_sending && self.session.output(now).len() > MOST_WAITING {
+                // A client that reads no frame, and sends what the session must answer.
+                self.leave();
+                return 1;
             }
         }
     }

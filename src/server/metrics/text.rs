@@ -3,6 +3,8 @@
 use std::fmt::{Display, Write};
 use std::sync::atomic::Ordering;
 
+use tokio::runtime::Handle;
+
 use super::histogram::BOUNDS;
 use super::{Histogram, Metrics, process};
 use crate::server::{Counters, Refusal};
@@ -67,8 +69,12 @@ impl Text {
         self.counter("store_errors", "Calls of the store that failed.", metrics.store_errors.get());
     }
 
-    /// The names that Prometheus' own clients use.
+    /// The tasks of this runtime, and the process by the names that Prometheus' own clients use.
     fn process(&mut self) {
+        if let Ok(runtime) = Handle::try_current() {
+            let help = "Tasks: a few of the server, and some for each connection and room.";
+            self.gauge("tasks", help, runtime.metrics().num_alive_tasks());
+        }
         if let Some(time) = process::cpu_time() {
             let name = "process_cpu_seconds_total";
             self.head(name, "counter", "Processor time of all threads.");

@@ -39,9 +39,8 @@ fn rooms(broken: &'static [u32]) -> Rooms {
         closes_after: Duration::ZERO,
         standing: vec![wish(Mode::Roam)],
     };
-    let logs = Logs::new(|id| match broken.contains(&id.0) {
-        true => Box::new(Broken),
-        false => Box::new(Queue::default()),
+    let logs = Logs::new(|id| -> Box<dyn Log> {
+        if broken.contains(&id.0) { Box::new(Broken) } else { Box::<Queue>::default() }
     });
     let load = Arc::new(Load::new(Arc::<Metrics>::default()));
     Rooms::new(limits, Arc::new(Catalog::builtin()), logs, load, 7)

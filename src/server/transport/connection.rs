@@ -82,7 +82,7 @@ pub(super) async fn serve<H: Host>(
     let client = Client::new(shared.clone(), line.clone(), visit, peer, begin);
     let wire = Wire::new(socket, line.clone());
     let ssh = shared.ssh.clone();
-    // The first part would keep ten kilobytes of this task as long as the connection lasts.
+    // Unboxed, the handshake would keep its memory in this task as long as the connection lasts.
     let mut transport =
         pin!(async { Box::pin(server::run_stream(ssh, wire, client)).await?.await });
     let outcome = match log_in(&shared, &line, transport.as_mut(), begun).await {

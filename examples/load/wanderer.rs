@@ -1,0 +1,185 @@
+//! A client that comes, enters some room, walks, talks, resizes its window, and leaves in one of several
+//! ways.
+//!
+//! What it does follows from its seed; the pauses of the server do not. The tests of the server use it,
+//! too.
+
+use std::net::{Shutdown, SocketAddr};
+use std::sync::Arc;
+use std::time::Duration;
+
+use cellcaster::rng::SplitMix64;
+use russh::client::{self, Handle, Handler, Msg};
+use russh::keys::PublicKeyOrCertificate;
+use russh::{Channel, ChannelMsg, Disconnect, Error};
+use tokio::net::TcpStream;
+use tokio::time::{Instant, sleep_until, timeout_at};
+
+/// How a visit ends.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord)]
+pub(crate) enum Leaving {
+    /// With the keys of the game.
+    ByKeys,
+    /// As an SSH client that ends its connection.
+    Disconnected,
+    /// Without a word: the socket is closed.
+    Cut,
+    /// The terminal answers nothing any more, and after 25 seconds the connection is gone.
+    Silent,
+}
+
+/// Believes every server.
+struct Anyone;
+
+struct Wanderer {
+    /// It is dropped last: without it, the connection ends.
+    handle: Handle<Anyone>,
+    channel: Channel<Msg>,
+    chance: SplitMix64,
+    /// The last bytes, in which a query may begin.
+    unread: Vec<u8>,
+    /// The keys on the way to a room are slower than those in it.
+    next_key: Instant,
+    keys: u32,
+    /// Another descriptor of the socket.
+    socket: std::net::TcpStream,
+}
+
+/// The keys on the way to a room: mostly Enter, else another room or menu.
+const WAY: [&str; 6] = ["\r", "\r", "\r", "\r", "\x1b[B", "\x1b[B\x1b[B"];
+/// The keys in a room.
+const KEYS: [&str; 8] = ["w", "w", "w", "\x1b[C", "\x1b[D", "s", "1", "\r"];
+/// The number of keys on the way to a room.
+const WAY_LENGTH: u32 = 6;
+const WAY_PAUSE: Duration = Duration::from_millis(150);
+const PAUSE: Duration = Duration::from_millis(50);
+/// The time for which a terminal is silent, and the longest wait for the end of a session.
+const PATIENCE: Duration = Duration::from_secs(25);
+
+impl Handler for Anyone {
+    type Error = Error;
+
+    async fn check_server_key(&mut self, _: &PublicKeyOrCertificate) -> Result<bool, Error> {
+        Ok(true)
+    }
+}
+
+/// Visits a server for at most `longest`, and leaves it.
+pub(crate) async fn visit(
+    address: SocketAddr,
+    seed: u64,
+    longest: Duration,
+) -> Result<Leaving, Error> {
+    let mut chance = SplitMix64::new(seed);
+    let leaving = [Leaving::ByKeys, Leaving::Disconnected, Leaving::Cut, Leaving::Silent];
+    // Those who are silent stay long, so there are few of them.
+    let leaving = leaving[[0, 0, 0, 1, 1, 1, 2, 2, 2, 3][chance.below(10)]];
+    let time = Duration::from_secs_f64(chance.between(0.2, longest.as_secs_f64()));
+    let mut wanderer = Wanderer::connect(address, chance).await?;
+    wanderer.wander(Instant::now() + time).await?;
+    wanderer.leave(leaving).await?;
+    Ok(leaving)
+}
+
+impl Wanderer {
+    async fn connect(address: SocketAddr, mut chance: SplitMix64) -> Result<Self, Error> {
+        let socket = TcpStream::connect(address).await?.into_std()?;
+        socket.set_nodelay(true)?;
+        let stream = TcpStream::from_std(socket.try_clone()?)?;
+        let config = Arc::<client::Config>::default();
+        let mut handle = client::connect_stream(config, stream, Anyone).await?;
+        let user = format!("soak{}", chance.below(100_000));
+        while !handle.authenticate_none(&user).await?.success() {}
+        let channel = handle.channel_open_session().await?;
+        channel.set_env(false, "COLORTERM", "truecolor").await?;
+        let [columns, rows] = window(&mut chance);
+        channel.request_pty(false, "xterm-256color", columns, rows, 0, 0, &[]).await?;
+        channel.request_shell(false).await?;
+        let next_key = Instant::now() + WAY_PAUSE;
+        Ok(Self { handle, channel, chance, unread: Vec::new(), next_key, keys: 0, socket })
+    }
+
+    /// Plays until `end`, or until the server ends the session.
+    async fn wander(&mut self, end: Instant) -> Result<(), Error> {
+        loop {
+            tokio::select! {
+                message = self.channel.wait() => match message {
+                    Some(ChannelMsg::Data { data }) => self.answer(&data).await?,
+                    Some(_) => {}
+                    None => return Ok(()),
+                },
+                () = sleep_until(self.next_key) => self.press().await?,
+                () = sleep_until(end) => return Ok(()),
+            }
+        }
+    }
+
+    async fn leave(mut self, leaving: Leaving) -> Result<(), Error> {
+        let patience = Instant::now() + PATIENCE;
+        match leaving {
+            Leaving::ByKeys => {
+                self.channel.data(&b"\x03\x03"[..]).await?;
+                // It answers what it is asked, so that the session ends at once.
+                _ = timeout_at(patience, self.answer_all()).await;
+                Ok(())
+            }
+            Leaving::Disconnected => {
+                self.handle.disconnect(Disconnect::ByApplication, "", "").await
+            }
+            Leaving::Cut => Ok(self.socket.shutdown(Shutdown::Both)?),
+            Leaving::Silent => {
+                sleep_until(patience).await;
+                Ok(())
+            }
+        }
+    }
+
+    async fn answer_all(&mut self) -> Result<(), Error> {
+        while let Some(message) = self.channel.wait().await {
+            if let ChannelMsg::Data { data } = message {
+                self.answer(&data).await?;
+            }
+        }
+        Ok(())
+    }
+
+    async fn press(&mut self) -> Result<(), Error> {
+        self.keys += 1;
+        let is_inside = self.keys > WAY_LENGTH;
+        self.next_key = Instant::now() + if is_inside { PAUSE } else { WAY_PAUSE };
+        if self.chance.below(100) == 0 {
+            let [columns, rows] = window(&mut self.chance);
+            return self.channel.window_change(columns, rows, 0, 0).await;
+        }
+        let keys = if is_inside {
+            KEYS[self.chance.below(KEYS.len())]
+        } else {
+            WAY[self.chance.below(WAY.len())]
+        };
+        self.channel.data(keys.as_bytes()).await
+    }
+
+    /// Answers the queries of a terminal in `data`.
+    async fn answer(&mut self, data: &[u8]) -> Result<(), Error> {
+        self.unread.extend_from_slice(data);
+        let mut answers = Vec::new();
+        for query in self.unread.windows(4).filter(|it| it.starts_with(b"\x1b[")) {
+            match query {
+                [_, _, b'5', b'n'] => answers.extend_from_slice(b"\x1b[0n"),
+                [_, _, b'6', b'n'] => answers.extend_from_slice(b"\x1b[1;1R"),
+                [_, _, b'c', _] => answers.extend_from_slice(b"\x1b[?62;22c"),
+                _ => {}
+            }
+        }
+        // A query of three bytes at the end is answered with the next data: each frame ends with one
+        // of four.
+        let kept = self.unread.len().saturating_sub(3);
+        self.unread.drain(..kept);
+        if answers.is_empty() { Ok(()) } else { self.channel.data(&answers[..]).await }
+    }
+}
+
+/// A size of a window.
+fn window(chance: &mut SplitMix64) -> [u32; 2] {
+    [20 + chance.below(140) as u32, 6 + chance.below(50) as u32]
+}
