@@ -17,6 +17,7 @@ use crate::tui::View;
 use crate::world::{Camera, FieldOfView, Figure};
 
 /// A stay in a room.
+#[expect(clippy::struct_excessive_bools, reason = "each is a state of its own")]
 pub(super) struct Stay {
     /// The visitor as a member; `None` if they watch.
     pub(super) member: Option<MemberId>,
@@ -126,8 +127,8 @@ impl Stay {
     ) -> Option<(&'r MemberView, PlayerView<'r>)> {
         let own = self.member.and_then(|id| room.member(id));
         let watched = self.watched.and_then(|id| room.member(id));
-        let candidates = own.into_iter().chain(watched).chain(&room.members);
-        candidates.filter_map(|it| Some((it, room.game.seen_by(it.player?)?))).next()
+        let mut candidates = own.into_iter().chain(watched).chain(&room.members);
+        candidates.find_map(|it| Some((it, room.game.seen_by(it.player?)?)))
     }
 
     /// The camera of the picture.
@@ -180,10 +181,10 @@ impl Stay {
 
 /// The seconds until something that the picture counts down to; `None` if it counts nothing down.
 pub(super) fn seconds_left(room: &RoomView) -> Option<u64> {
-    let ends = match (room.phase, room.header.mode) {
-        (Phase::Countdown { ends } | Phase::Over { ends }, _) => ends,
-        (Phase::Playing { ends }, Mode::Tag | Mode::Hide) => ends,
-        _ => return None,
+    let ((Phase::Countdown { ends } | Phase::Over { ends }, _)
+    | (Phase::Playing { ends }, Mode::Tag | Mode::Hide)) = (room.phase, room.header.mode)
+    else {
+        return None;
     };
     Some(ends.saturating_sub(room.step).div_ceil(60))
 }

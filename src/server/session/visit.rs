@@ -24,6 +24,7 @@ use crate::terminal::Key;
 const MOST_ASKS: usize = 64;
 
 /// The state of a session.
+#[expect(clippy::struct_excessive_bools, reason = "each is a state of its own")]
 pub(super) struct Visit {
     pub(super) identity: Identity,
     pub(super) host: HostFacts,
@@ -197,12 +198,11 @@ impl Visit {
 
     /// Tells the room what the held keys and the buttons of the mouse want.
     pub(super) fn want(&mut self) {
-        let intents = match self.is_playing() {
-            true => {
-                let keys = self.controls.intents(&self.bindings, self.key_context());
-                keys.iter().chain(self.pointer.clicked().iter()).collect()
-            }
-            false => Intents::new(),
+        let intents = if self.is_playing() {
+            let keys = self.controls.intents(&self.bindings, self.key_context());
+            keys.iter().chain(self.pointer.clicked().iter()).collect()
+        } else {
+            Intents::new()
         };
         let Some(stay) = self.stay.as_mut().filter(|stay| stay.member.is_some()) else { return };
         stay.wants.want(intents);
