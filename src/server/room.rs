@@ -31,14 +31,14 @@ pub(crate) use self::header::{Header, Seat};
 #[cfg(test)]
 use self::log::parse as parse_log;
 pub(crate) use self::log::{Log, Queue, Recorded};
-use self::member::Member;
+use self::member::{Member, looking_only};
 pub(crate) use self::mode::Mode;
 pub(crate) use self::replayed::replayed;
 use self::round::{Field, Round, SECOND};
 pub(crate) use self::round::{Phase, Role, Standing};
 pub(crate) use self::view::{MemberView, RoomView, Said};
 use super::line::Line;
-use crate::game::{Game, Input, Intent, Intents, Look, PlayerColor, PlayerId, Rules};
+use crate::game::{Game, Input, Intents, PlayerColor, PlayerId, Rules};
 use crate::rng;
 
 /// How long an emotion is shown, in steps.
@@ -205,15 +205,12 @@ impl Room {
     pub(crate) fn advance(&mut self) {
         let Self { members, round, inputs, game, step, emotes, .. } = self;
         inputs.clear();
-        inputs.extend(members.iter().filter_map(|member| {
-            let held = round.holds(member.id, *step);
-            let intents = if held { looking_only(member.intents) } else { member.intents };
+        inputs.extend(members.iter_mut().filter_map(|member| {
+            let intents = member.begin_step();
+            let is_held = round.holds(member.id, *step);
+            let intents = if is_held { looking_only(intents) } else { intents };
             Some(Input { player: member.player?, intents, seen: member.seen })
         }));
-        for member in &mut *members {
-            member.acted = member.intents;
-            member.intents = member.intents.with_look(Look::NONE);
-        }
         Arc::make_mut(game).step_all(inputs);
         round.step(Field { game, members, step: *step });
         emotes.retain(|(_, _, until)| *until > *step);
@@ -293,12 +290,4 @@ impl Room {
     fn member_mut(&mut self, id: MemberId) -> Option<&mut Member> {
         self.members.iter_mut().find(|member| member.id == id)
     }
-}
-
-/// What of `intents` somebody may do who cannot walk.
-fn looking_only(intents: Intents) -> Intents {
-    use Intent::{Aim, LookAhead, LookDown, LookUp, TurnLeft, TurnRight};
-    let looks = [Aim, LookAhead, LookDown, LookUp, TurnLeft, TurnRight];
-    let kept: Intents = intents.iter().filter(|intent| looks.contains(intent)).collect();
-    kept.with_look(intents.look())
 }

@@ -26,8 +26,9 @@ pub(crate) struct KeptRuns {
 /// before it.
 #[derive(Clone, Debug, PartialEq)]
 struct Key {
+    level: String,
+    difficulty: Difficulty,
     account: AccountId,
-    board: LevelBoard,
     steps: u64,
 }
 
@@ -48,32 +49,36 @@ impl KeptRuns {
         let mut ghosts = Vec::new();
         let best = store.level_scores(&board, 1)?.into_iter().next();
         if let Some(best) = best.filter(|best| Some(best.account) != own) {
-            let key = Key { account: best.account, board: board.clone(), steps: best.tally.steps };
+            let run = self.run(store, catalog, &board, (best.account, best.tally.steps))?;
             let name = Line::of(best.name.as_str(), NAME_COLUMNS);
-            ghosts.extend(self.run(store, catalog, key)?.map(|run| Ghost::new(run, name)));
+            ghosts.extend(run.map(|run| Ghost::new(run, name)));
         }
         if let Some(account) = own {
             let bests = store.bests(account)?;
             let steps = bests.iter().find(|best| best.0 == board).map(|best| best.1.tally.steps);
-            let key = steps.map(|steps| Key { account, board, steps });
-            let run = key.map(|key| self.run(store, catalog, key)).transpose()?.flatten();
+            let run = steps.map(|steps| self.run(store, catalog, &board, (account, steps)));
+            let run = run.transpose()?.flatten();
             ghosts.extend(run.map(|run| Ghost::new(run, None)));
         }
         Ok(ghosts)
     }
 
+    /// The run of an account that took so many steps.
     fn run(
         &mut self,
         store: &mut dyn HostStore,
         catalog: &Catalog,
-        key: Key,
+        board: &LevelBoard,
+        (account, steps): (AccountId, u64),
     ) -> Result<Option<Arc<Run>>, StoreFailure> {
+        let (level, difficulty) = (board.level().to_owned(), board.difficulty());
+        let key = Key { level, difficulty, account, steps };
         if let Some((_, run)) = self.runs.iter().find(|(known, _)| *known == key) {
             return Ok(Some(Arc::clone(run)));
         }
-        let Some(text) = store.script(key.account, &key.board)? else { return Ok(None) };
+        let Some(text) = store.script(account, board)? else { return Ok(None) };
         let script = Script::parse(&text, "the script").ok();
-        let world = catalog.world(key.board.level());
+        let world = catalog.world(board.level());
         let Some((script, world)) = script.zip(world) else { return Ok(None) };
         let run = Run::played(world.as_ref().clone(), script.header().rules(), &script);
         let run = Arc::new(run);
@@ -134,10 +139,11 @@ mod tests {
         let mara = account(&mut store, 1, "Mara").id;
         let VerifiedRun::Level(run) = verify(WON).unwrap() else { panic!("not a level") };
         store.record(mara, &run, UnixTime::new(8)).unwrap();
+        let board = LevelBoard::new(CELLAR.0, CELLAR.1).unwrap();
         let mut kept = KeptRuns::default();
         for steps in 0..MOST as u64 + 3 {
-            let key = Key { account: mara, board: run.board().clone(), steps };
-            assert!(kept.run(&mut store, &catalog, key).unwrap().is_some());
+            let run = kept.run(&mut store, &catalog, &board, (mara, steps)).unwrap();
+            assert!(run.is_some());
         }
         assert_eq!(kept.runs.len(), MOST);
     }

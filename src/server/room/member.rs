@@ -1,7 +1,7 @@
 //! Members of a room.
 
 use super::entry::MemberId;
-use crate::game::{Intents, PlayerColor, PlayerId};
+use crate::game::{Intent, Intents, Look, PlayerColor, PlayerId};
 use crate::server::line::Line;
 
 /// A member of a room.
@@ -21,4 +21,21 @@ pub(crate) struct Member {
     pub(super) acted: Intents,
     /// The step of the game in the picture that the member saw last.
     pub(super) seen: u64,
+}
+
+impl Member {
+    /// What the member wants in the step that begins. The angles of it count in no other step.
+    pub(super) fn begin_step(&mut self) -> Intents {
+        self.acted = self.intents;
+        self.intents = self.intents.with_look(Look::NONE);
+        self.acted
+    }
+}
+
+/// What of `intents` somebody may do who cannot walk.
+pub(super) fn looking_only(intents: Intents) -> Intents {
+    use Intent::{Aim, LookAhead, LookDown, LookUp, TurnLeft, TurnRight};
+    let looks = [Aim, LookAhead, LookDown, LookUp, TurnLeft, TurnRight];
+    let kept: Intents = intents.iter().filter(|intent| looks.contains(intent)).collect();
+    kept.with_look(intents.look())
 }

@@ -32,7 +32,7 @@ impl Look {
     pub(super) fn new(is_ascii: bool, identity: &Identity) -> Self {
         let terminal_glyphs = if is_ascii { GlyphMode::Ascii } else { GlyphMode::Half };
         let field_of_view = identity.configuration.field_of_view;
-        let mut look = Self { terminal_glyphs, field_of_view, ..Self::default() };
+        let mut look = Self { field_of_view, terminal_glyphs, ..Self::default() };
         look.follow(&identity.preferences);
         look
     }

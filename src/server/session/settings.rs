@@ -43,9 +43,10 @@ const IN_A_ROOM: [(Preference, &str); 2] = [(Preference::Map, "Map"), (Preferenc
 impl Visit {
     pub(super) fn settings_menu(&self) -> Menu<Choice> {
         let menu = Menu::new("settings").line("Enter or left and right change a setting.");
-        let menu = match self.identity.has_account {
-            true => menu,
-            false => menu.line("You are a guest: they hold for this session."),
+        let menu = if self.identity.has_account {
+            menu
+        } else {
+            menu.line("You are a guest: they hold for this session.")
         };
         let in_a_room = IN_A_ROOM.into_iter().filter(|_| self.stay.is_some());
         USUAL.into_iter().chain(in_a_room).fold(menu, |menu, (setting, label)| {

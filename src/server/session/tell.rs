@@ -68,12 +68,11 @@ impl Visit {
     }
 
     fn hear(&mut self, sentence: String) {
-        match &mut self.stay {
-            Some(stay) => stay.talk.hear_host(sentence, self.now),
-            None => {
-                self.note = Some(sentence);
-                self.renew_menu();
-            }
+        if let Some(stay) = &mut self.stay {
+            stay.talk.hear_host(sentence, self.now);
+        } else {
+            self.note = Some(sentence);
+            self.renew_menu();
         }
     }
 }

@@ -24,6 +24,7 @@ use crate::terminal::Key;
 const MOST_ASKS: usize = 64;
 
 /// The state of a session.
+#[expect(clippy::struct_excessive_bools, reason = "each is a state of its own")]
 pub(super) struct Visit {
     pub(super) identity: Identity,
     pub(super) host: HostFacts,

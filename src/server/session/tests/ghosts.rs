@@ -3,6 +3,7 @@
 use super::*;
 use crate::game::{Game, Intent, Intents, Rules};
 use crate::server::ghost::Ghost;
+use crate::world::FieldOfView;
 
 const RUN: &str = "3 s forward\n2 s stand\n";
 
@@ -42,7 +43,7 @@ fn a_stored_run_walks_along_where_the_script_was() {
     let view = rig.room.view();
     let visit = &rig.visitors[mara].session.visit;
     let seen: Vec<_> = visit.stay.as_ref().unwrap().ghosts(&view, &visit.look).collect();
-    let at = game.camera(Default::default()).position();
+    let at = game.camera(FieldOfView::default()).position();
     assert!(seen[0].figure.position.distance(at) < 1e-4, "{:?} {at}", seen[0].figure);
     assert!(seen[0].figure.opacity < u8::MAX, "one can see through it");
     rig.press(mara, "0");

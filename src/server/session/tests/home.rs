@@ -4,11 +4,12 @@ use super::*;
 use crate::game::Outcome;
 use crate::server::session::page::Page;
 use crate::terminal::Fidelity;
+use crate::world::FieldOfView;
 
 fn heading(rig: &Rig) -> f64 {
     let view = rig.room.view();
     let player = view.members[0].player.unwrap();
-    view.game.seen_by(player).unwrap().camera(Default::default()).heading.degrees()
+    view.game.seen_by(player).unwrap().camera(FieldOfView::default()).heading.degrees()
 }
 
 /// Moves the pointer to a column of the tenth row.
