@@ -198,7 +198,9 @@ async fn soak(address: SocketAddr) -> BTreeMap<Leaving, usize> {
     }
     let all = clients.join_all().await;
     all.into_iter().fold(BTreeMap::new(), |mut all, ends| {
-        ends.into_iter().for_each(|(leaving, count)| *all.entry(leaving).or_default() += count);
+        for (leaving, count) in ends {
+            *all.entry(leaving).or_default() += count;
+        }
         all
     })
 }

@@ -80,8 +80,8 @@ impl Visit {
             configuration: Configuration::parse(&settings.configuration, "settings")
                 .unwrap_or_default(),
         };
-        let options = terminal::options(&visitor);
-        let ascii_locale = terminal::ascii_locale(&visitor);
+        let options = terminal::options(visitor);
+        let ascii_locale = terminal::ascii_locale(visitor);
         let config = shared.config.get();
         let presence = shared.visitors.arrive(visitor.peer.ip(), key);
         if let Some(account) = &account {

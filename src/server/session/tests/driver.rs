@@ -43,7 +43,7 @@ impl Rig {
         }
         visitor.bytes += bytes.len();
         visitor.session.written(now);
-        visitor.bells += bytes.iter().filter(|&&byte| byte == 0x07).count();
+        visitor.bells += bytes.split(|&byte| byte == 0x07).count() - 1;
         let answers = visitor.emulator.process(&bytes);
         if !answers.is_empty() {
             visitor.under_way.push((now + visitor.latency, answers));
