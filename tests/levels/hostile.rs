@@ -3,9 +3,11 @@
 //! Bytes are asserted and seconds are not, since every step of the work that a limit bounds also
 //! allocates, or is counted against the limit itself.
 
+use std::cell::Cell;
+
 use allocation_counter::measure;
 use cellcaster::fault::Faults;
-use cellcaster::map::{self, Level, NoFiles};
+use cellcaster::map::{self, Level, NoFiles, TextureFileError, TextureFiles};
 
 /// The largest number of bytes that a map under 1 MB may need.
 const SMALL_MAP: u64 = 256 << 20;
@@ -13,9 +15,16 @@ const SMALL_MAP: u64 = 256 << 20;
 const LARGE_MAP: u64 = 1 << 30;
 
 /// Reads a map, and asserts that this needs at most `most` bytes at once.
+#[track_caller]
 fn read(text: &str, most: u64) -> Result<Level, Faults> {
+    read_with(&NoFiles, text, most)
+}
+
+/// Reads a map as [`read`] does, with pictures from `files`.
+#[track_caller]
+fn read_with(files: &dyn TextureFiles, text: &str, most: u64) -> Result<Level, Faults> {
     let mut level = None;
-    let needed = measure(|| level = Some(map::parse_level(text, "map", &NoFiles)));
+    let needed = measure(|| level = Some(map::parse_level(text, "map", files)));
     let start: String = text.chars().take(20).collect();
     assert!(needed.bytes_max <= most, "{} bytes for {start:?}…", needed.bytes_max);
     level.unwrap()
@@ -53,4 +62,71 @@ fn the_fault_of_too_many_tokens_has_a_place() {
           |
           = help: leave some definitions out; a string is one token, however long
     ");
+}
+
+/// A picture of the largest size under every name, and the number of times that it was read.
+struct LargePictures {
+    png: Vec<u8>,
+    reads: Cell<u32>,
+}
+
+impl LargePictures {
+    fn new() -> Self {
+        let mut png = Vec::new();
+        let mut encoder = png::Encoder::new(&mut png, 1024, 1024);
+        encoder.set_color(png::ColorType::Grayscale);
+        encoder.set_depth(png::BitDepth::One);
+        encoder.write_header().unwrap().write_image_data(&[0; 1024 * 1024 / 8]).unwrap();
+        Self { png, reads: Cell::new(0) }
+    }
+}
+
+impl TextureFiles for LargePictures {
+    fn read(&self, _: &str) -> Result<Vec<u8>, TextureFileError> {
+        self.reads.set(self.reads.get() + 1);
+        Ok(self.png.clone())
+    }
+}
+
+/// The `count` characters from U+4E00 on, all of which are letters.
+fn characters(count: u32) -> impl Iterator<Item = char> {
+    ('\u{4e00}'..).take(count as usize)
+}
+
+/// A map with one thing for each of `count` characters, defined as `definition` returns.
+fn things(count: u32, definition: impl Fn(u32) -> String) -> String {
+    let row: String = characters(count).collect();
+    let defined =
+        characters(count).zip(0..).map(|(it, index)| format!("{it:?} = {}\n", definition(index)));
+    let definitions: String = defined.collect();
+    format!("grid = \"@{row}\"\n[things]\n\"@\" = {{ start = 0 }}\n{definitions}")
+}
+
+#[test]
+fn a_sheet_is_decoded_once_for_each_way_to_divide_it() {
+    let files = LargePictures::new();
+    let map = things(900, |index| {
+        format!("{{ sprite = \"a.png\", frames = {}, reach = 2 }}", 1 << (index % 3))
+    });
+    assert!(read_with(&files, &map, SMALL_MAP).is_ok());
+    assert_eq!(files.reads.get(), 3);
+}
+
+#[test]
+fn the_texels_of_all_pictures_are_limited() {
+    let files = LargePictures::new();
+    let sheets = things(900, |index| format!("{{ sprite = \"{index}.png\" }}"));
+    let faults = read_with(&files, &sheets, SMALL_MAP).unwrap_err();
+    // After the first one too many, none is read.
+    assert_eq!((faults.len(), files.reads.get()), (1, 17));
+    insta::assert_snapshot!(faults.summary(), @r#"map:20: the sprite "16.png" is too much: the pictures of a map have 16777216 texels and 64 MiB at most"#);
+    let walls: String = characters(200)
+        .map(|it| format!("{it:?} = {{ wall = \"{}.png\" }}\n", u32::from(it)))
+        .collect();
+    let row: String = characters(200).collect();
+    let map = format!(
+        "grid = \"@{row}\"\nfloor = \"0.png\"\n[things]\n\"@\" = {{ start = 0 }}\n[tiles]\n{walls}"
+    );
+    let faults = read_with(&files, &map, SMALL_MAP).unwrap_err();
+    assert_eq!((faults.len(), files.reads.get()), (1, 2 * 17));
 }
