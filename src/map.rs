@@ -36,6 +36,7 @@ mod guards;
 mod heights;
 mod input;
 mod items;
+mod lamp_budget;
 mod layout;
 mod legend;
 mod mechanisms;

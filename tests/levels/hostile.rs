@@ -130,3 +130,46 @@ fn the_texels_of_all_pictures_are_limited() {
     let faults = read_with(&files, &map, SMALL_MAP).unwrap_err();
     assert_eq!((faults.len(), files.reads.get()), (1, 2 * 17));
 }
+
+/// A dim map of `side` rows and columns of a lamp, `lamp`, with one start.
+fn lamps(side: usize, lamp: &str) -> String {
+    let row = "l".repeat(side);
+    let rows = vec![row.as_str(); side - 1].join("\n");
+    format!(
+        "light = 0.1\ngrid = '''\n@{}\n{rows}\n'''\n[things]\n\"@\" = {{ start = 0 }}\n\"l\" = {lamp}\n",
+        &row[1..]
+    )
+}
+
+#[test]
+fn the_cells_that_lamps_light_are_limited() {
+    let lamp = r#"{ sprite = "lamp", light = 1, reach = 32 }"#;
+    assert!(read(&lamps(100, lamp), SMALL_MAP).is_ok());
+    insta::assert_snapshot!(read(&lamps(103, lamp), SMALL_MAP).unwrap_err(), @r#"
+    error: the lamps of a map light 33554432 cells at most, counted for each lamp
+       --> map:109:1
+        |
+    109 | "l" = { sprite = "lamp", light = 1, reach = 32 }
+        | ^^^ with these, they light more
+        |
+        = help: draw fewer lamps, or let them reach less far
+    "#);
+    let near = r#"{ sprite = "lamp", light = 1, reach = 1 }"#;
+    assert!(read(&lamps(990, near), SMALL_MAP).is_ok());
+    let kinds = |count| {
+        things(count, |index| {
+            format!(
+                "{{ sprite = \"lamp\", light = 0.5, reach = {} }}",
+                31.5 + f64::from(index) / 1e4
+            )
+        })
+    };
+    assert!(read(&format!("light = 0.1\n{}", kinds(300)), SMALL_MAP).is_ok());
+    assert_eq!(read(&kinds(900), SMALL_MAP).unwrap_err().len(), 1);
+}
+
+#[test]
+fn the_number_of_things_is_limited() {
+    let map = lamps(1025, "{ treasure = 1 }");
+    insta::assert_snapshot!(read(&map, SMALL_MAP).unwrap_err().summary(), @"map:2: the grid has 1050624 things, and 1048576 at most can be there");
+}
