@@ -173,3 +173,17 @@ fn the_number_of_things_is_limited() {
     let map = lamps(1025, "{ treasure = 1 }");
     insta::assert_snapshot!(read(&map, SMALL_MAP).unwrap_err().summary(), @"map:2: the grid has 1050624 things, and 1048576 at most can be there");
 }
+
+#[test]
+fn the_number_of_bodies_is_limited() {
+    let spheres = |count| {
+        let sphere = "{ center = [9, 0, 0], radius = 8, color = '#fff000' },";
+        let start = "start = { at = [0, 0, 0], heading = 0 }";
+        format!("{start}\nsphere = [{}]\nbox = []\n", sphere.repeat(count))
+    };
+    assert!(read(&spheres(1000), SMALL_MAP).is_ok());
+    let faults = read(&spheres(1001), SMALL_MAP).unwrap_err();
+    insta::assert_snapshot!(faults.summary(), @"map:2: a map has 1000 bodies at most");
+    // Of more, the first one too many is named alone.
+    assert_eq!(read(&spheres(15_000), SMALL_MAP).unwrap_err().len(), 1);
+}
