@@ -36,6 +36,7 @@ mod guards;
 mod heights;
 mod input;
 mod items;
+mod lamp_budget;
 mod layout;
 mod legend;
 mod mechanisms;
@@ -52,7 +53,6 @@ mod textures;
 mod things;
 mod tiles;
 
-use std::collections::BTreeSet;
 use std::fs::{self, File};
 use std::io::{self, Read};
 use std::path::Path;
@@ -212,12 +212,12 @@ fn read(text: &str, files: &dyn TextureFiles, faults: &FaultList) -> Option<Leve
     let not_toml = faults.take();
     if scene::has_bodies(&document) {
         let scene = scene::read(&document, faults);
-        keep_apart(faults, not_toml, text);
+        faults.extend_by_broken_lines(not_toml, text);
         return scene.map(Level::Space);
     }
     let definitions = Definitions::read(&document, faults);
     if !not_toml.is_empty() {
-        keep_apart(faults, not_toml, text);
+        faults.extend_by_broken_lines(not_toml, text);
         return None;
     }
     let mut reader = Reader::new(text, faults, files);
@@ -279,16 +279,6 @@ pub(crate) fn rows_of_grid(text: &str) -> Vec<String> {
     let grid = document::entries(&document, &faults).find(|entry| entry.key == "grid");
     let drawn = grid.and_then(|entry| entry.string(""));
     drawn.unwrap_or_default().lines().map(str::to_owned).collect()
-}
-
-/// Adds the faults of the TOML to `faults`, and removes other faults in the same lines: the parser
-/// guesses what such lines mean.
-fn keep_apart(faults: &FaultList, not_toml: Vec<Fault>, text: &str) {
-    let line_ends: Vec<_> = text.match_indices('\n').map(|(at, _)| at).collect();
-    let line = |fault: &Fault| line_ends.partition_point(|&end| end < fault.start());
-    let broken: BTreeSet<_> = not_toml.iter().map(line).collect();
-    let sound = faults.take().into_iter().filter(|fault| !broken.contains(&line(fault)));
-    faults.extend(sound.chain(not_toml));
 }
 
 fn no_grid() -> Fault {

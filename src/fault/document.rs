@@ -2,19 +2,26 @@
 //!
 //! Deserializing into structs with serde was refused: it stops at the first fault, and its values
 //! have no places.
+//!
+//! The parser keeps each token several times, at up to 150 bytes, and a file of 64 MiB can have as
+//! many tokens as bytes. The lexer alone needs no memory, so tokens are counted before they are parsed.
 
 use std::cell::RefCell;
-use std::collections::BTreeSet;
+use std::collections::{BTreeMap, BTreeSet};
 use std::ops::Range;
 
 use toml::Spanned;
 use toml::de::{DeTable, DeValue};
+use toml_parser::Source;
 
 use super::{Fault, nearest, quoted};
 
-/// In bytes. Of a longer text that is not TOML, only the first fault is reported: it may have
-/// millions.
-const LONGEST_RECOVERED: usize = 1 << 20;
+/// The largest number of tokens of a document, white space and line breaks included: some twenty for
+/// each of ten thousand definitions.
+const MOST_TOKENS: usize = 1 << 18;
+/// Of a text with more tokens that is not TOML, only the first fault is reported: each token may be
+/// one.
+const MOST_TOKENS_RECOVERED: usize = 1 << 16;
 
 /// The faults of a document, collected while it is read.
 #[derive(Default)]
@@ -45,11 +52,40 @@ impl FaultList {
     pub(crate) fn take(&self) -> Vec<Fault> {
         self.0.take()
     }
+
+    /// Adds `not_toml`, the faults of the TOML of `text`, and removes other faults in the same lines:
+    /// the parser guesses what such lines mean.
+    pub(crate) fn extend_by_broken_lines(&self, not_toml: Vec<Fault>, text: &str) {
+        let found = self.take();
+        let starts: BTreeSet<usize> = found.iter().chain(&not_toml).map(Fault::start).collect();
+        let lines = line_numbers(text, starts);
+        let broken: BTreeSet<usize> = not_toml.iter().map(|fault| lines[&fault.start()]).collect();
+        let sound = found.into_iter().filter(|fault| !broken.contains(&lines[&fault.start()]));
+        self.extend(sound.chain(not_toml));
+    }
+}
+
+/// The number of the line of each of some places in `text`, in one pass over it.
+fn line_numbers(text: &str, places: BTreeSet<usize>) -> BTreeMap<usize, usize> {
+    let (mut line, mut counted) = (0, 0);
+    let numbered = places.into_iter().map(|place| {
+        let passed = text.as_bytes().get(counted..place).unwrap_or_default();
+        line += passed.iter().filter(|&&byte| byte == b'\n').count();
+        counted = place;
+        (place, line)
+    });
+    numbered.collect()
 }
 
 /// Parses `text` as TOML as far as possible; adds faults to `faults`.
 pub(crate) fn parse<'t>(text: &'t str, faults: &FaultList) -> DeTable<'t> {
-    let (table, errors) = if text.len() <= LONGEST_RECOVERED {
+    let mut tokens = Source::new(text).lex();
+    let is_recovered = tokens.by_ref().nth(MOST_TOKENS_RECOVERED).is_none();
+    if let Some(token) = tokens.nth(MOST_TOKENS - MOST_TOKENS_RECOVERED - 1) {
+        faults.push(too_many_tokens(token.span().start()..token.span().end()));
+        return DeTable::new();
+    }
+    let (table, errors) = if is_recovered {
         DeTable::parse_recoverable(text)
     } else {
         match DeTable::parse(text) {
@@ -66,6 +102,12 @@ pub(crate) fn parse<'t>(text: &'t str, faults: &FaultList) -> DeTable<'t> {
         }
     }
     table.into_inner()
+}
+
+fn too_many_tokens(place: Range<usize>) -> Fault {
+    Fault::new(place, format!("a file has {MOST_TOKENS} TOML tokens at most"))
+        .label("this is one too many")
+        .help("leave some definitions out; a string is one token, however long")
 }
 
 /// A key and its value.

@@ -55,18 +55,18 @@ pub(super) fn blind_secrets(
     legend: &Legend<'_>,
     cells: &Cells<'_>,
 ) -> Vec<Fault> {
-    let is_secret =
-        |meaning: &Meaning<'_>| matches!(meaning, Meaning::MovingWall(it) if it.switch.is_none());
-    let secrets = legend.used_in(drawing).filter(|(_, symbol)| is_secret(&symbol.meaning));
-    let faults = secrets.filter_map(|(character, _)| {
-        let mut blind = drawing.cells_of(character).filter(|&cell| ways_into(cells, cell) < 2);
-        let first = blind.next()?;
+    let is_secret = |character| {
+        let meaning = legend.symbols.get(&character).map(|symbol| &symbol.meaning);
+        matches!(meaning, Some(Meaning::MovingWall(it)) if it.switch.is_none())
+    };
+    let blind = drawing.first_of_each(is_secret, |cell| ways_into(cells, cell) < 2);
+    let faults = blind.into_iter().map(|(first, others)| {
         let fault = Fault::new(drawing.place_of(first), "there is nothing behind this secret wall")
             .help("draw open floor on two of its sides, one to come from and one to find");
-        Some(match blind.count() {
+        match others {
             0 => fault,
             others => fault.label(format!("and behind {others} more")),
-        })
+        }
     });
     faults.collect()
 }

@@ -114,31 +114,13 @@ pub(super) fn faults(
     start: Start,
     low_things: &BTreeSet<Cell>,
 ) -> Vec<Fault> {
-    let doors = drawn_doors(drawing, legend);
-    let mut faults: Vec<Fault> = doors.filter_map(|door| misplaced(drawing, cells, door)).collect();
+    let mut faults = misplaced(drawing, legend, cells);
     // Behind a misplaced door, reachability means nothing.
     if faults.is_empty() {
         faults = keys_out_of_reach(drawing, legend, cells.grid, start, low_things);
     }
     faults.extend(useless_keys(drawing, legend));
     faults
-}
-
-/// The characters in the grid that are doors.
-fn drawn_doors(drawing: &Drawing<'_>, legend: &Legend<'_>) -> impl Iterator<Item = char> {
-    drawn(drawing, legend, |meaning| matches!(meaning, Meaning::Door(_)))
-}
-
-/// The characters in the grid whose meaning `is_wanted`.
-fn drawn(
-    drawing: &Drawing<'_>,
-    legend: &Legend<'_>,
-    is_wanted: impl Fn(&Meaning<'_>) -> bool,
-) -> impl Iterator<Item = char> {
-    let characters = drawing.characters().map(|(character, _)| character);
-    characters.filter(move |character| {
-        legend.symbols.get(character).is_some_and(|symbol| is_wanted(&symbol.meaning))
-    })
 }
 
 /// The characters in the grid that are locked doors, with their keys.
@@ -167,17 +149,23 @@ fn drawn_keys<'l, 'a>(
     })
 }
 
-/// The fault of doors drawn as `character` that cannot slide or lead nowhere.
-fn misplaced(drawing: &Drawing<'_>, cells: &Cells<'_>, character: char) -> Option<Fault> {
-    let mut wrong = drawing.cells_of(character).filter(|&cell| !is_between_jambs(cells, cell));
-    let first = wrong.next()?;
-    let message = "a door stands between two walls, with open floor before and behind it";
-    let fault = Fault::new(drawing.place_of(first), message)
-        .help("draw it in a gap of a wall, such as \"#+#\", or use { wall = … }");
-    Some(match wrong.count() {
-        0 => fault.label("this one does not"),
-        others => fault.label(format!("this one does not, and {others} more")),
-    })
+/// The faults of doors that cannot slide or lead nowhere, one for each character.
+fn misplaced(drawing: &Drawing<'_>, legend: &Legend<'_>, cells: &Cells<'_>) -> Vec<Fault> {
+    let is_door = |character| {
+        let meaning = legend.symbols.get(&character).map(|symbol| &symbol.meaning);
+        matches!(meaning, Some(Meaning::Door(_)))
+    };
+    let misplaced = drawing.first_of_each(is_door, |cell| !is_between_jambs(cells, cell));
+    let faults = misplaced.into_iter().map(|(first, others)| {
+        let message = "a door stands between two walls, with open floor before and behind it";
+        let fault = Fault::new(drawing.place_of(first), message)
+            .help("draw it in a gap of a wall, such as \"#+#\", or use { wall = … }");
+        match others {
+            0 => fault.label("this one does not"),
+            others => fault.label(format!("this one does not, and {others} more")),
+        }
+    });
+    faults.collect()
 }
 
 /// Whether exactly one pair of opposite neighbours of `cell` can hold a door, and the other pair is

@@ -21,6 +21,8 @@ pub(super) struct Drawing<'a> {
     /// The place of the key `grid`.
     pub(super) key_place: Range<usize>,
     sightings: PerCharacter<Sightings>,
+    /// The first byte of each row in the grid's text.
+    row_starts: Vec<usize>,
 }
 
 /// The occurrences of a character in the grid.
@@ -56,7 +58,9 @@ impl<'a> Drawing<'a> {
             return None;
         }
         entry.faults.extend(text.ragged_rows(&widths, width));
-        Some(Self { text, width, height, key_place: entry.key_place.clone(), sightings })
+        let row_starts = text.rows().map(|(start, _)| start).collect();
+        let key_place = entry.key_place.clone();
+        Some(Self { text, width, height, key_place, sightings, row_starts })
     }
 
     /// The characters of the grid with their occurrences, in the order of the characters.
@@ -76,8 +80,8 @@ impl<'a> Drawing<'a> {
 
     /// The place in the map of a cell.
     pub(super) fn place_of(&self, cell: Cell) -> Range<usize> {
-        let row = self.text.rows().nth(cell.row as usize);
-        let drawn = row.and_then(|(start, row)| {
+        let drawn = self.row_starts.get(cell.row as usize).and_then(|&start| {
+            let row = &self.text.value[start..];
             let (at, character) = row.char_indices().nth(cell.column as usize)?;
             Some(self.place(character, start + at))
         });
@@ -96,9 +100,45 @@ impl<'a> Drawing<'a> {
         })
     }
 
+    /// For each character that `is_asked`, the first of its cells that `is_such`, and the number of
+    /// others; none for a character without any. All characters take one pass over the cells.
+    pub(super) fn first_of_each(
+        &self,
+        is_asked: impl Fn(char) -> bool,
+        is_such: impl Fn(Cell) -> bool,
+    ) -> Vec<(Cell, usize)> {
+        let asked: Vec<char> =
+            self.characters().map(|(it, _)| it).filter(|&it| is_asked(it)).collect();
+        if asked.is_empty() {
+            return Vec::new();
+        }
+        let mut found = PerCharacter::<Option<Asked>>::new();
+        asked.into_iter().for_each(|it| *found.get_mut(it) = Some(Asked::default()));
+        for (cell, character) in self.cells() {
+            if found.get(character).is_some()
+                && is_such(cell)
+                && let Some(asked) = found.get_mut(character)
+            {
+                asked.record(cell);
+            }
+        }
+        found.iter().filter_map(|(_, asked)| asked?.0).collect()
+    }
+
     /// The cells with `character`, row by row from the north.
     pub(super) fn cells_of(&self, character: char) -> impl Iterator<Item = Cell> {
         self.cells().filter(move |&(_, drawn)| drawn == character).map(|(cell, _)| cell)
+    }
+}
+
+/// The first cell found of a character, and the number of others.
+#[derive(Clone, Copy, Default)]
+struct Asked(Option<(Cell, usize)>);
+
+impl Asked {
+    fn record(&mut self, cell: Cell) {
+        let Self(found) = self;
+        *found = Some(found.map_or((cell, 0), |(first, others)| (first, others + 1)));
     }
 }
 

@@ -1,4 +1,7 @@
 //! PNG files as textures.
+//!
+//! A file of 200 bytes can have a million texels, so the texels of all files of a map are limited
+//! together: see [`Budget`].
 
 use std::fmt;
 use std::io::Cursor;
@@ -6,6 +9,7 @@ use std::num::NonZeroU32;
 
 use png::{ColorType, Decoder, DecodingError, Limits, Transformations};
 
+use super::textures::TextureFileError;
 use crate::color::Rgb;
 use crate::world::Texture;
 
@@ -14,17 +18,53 @@ const MAX_SIDE: u32 = 1024;
 /// Twice the size of the largest picture in 16-bit RGBA.
 const DECODER_LIMITS: Limits = Limits { bytes: 2 * 8 * (MAX_SIDE * MAX_SIDE) as usize };
 
-/// Why bytes are not a texture.
+/// The largest number of texels of all pictures of a map: 16 of the largest size.
+const MOST_TEXELS: u32 = 16 * MAX_SIDE * MAX_SIDE;
+/// The largest number of bytes of all PNG files of a map.
+const MOST_BYTES: usize = 64 << 20;
+
+/// The texels that a map may still decode, and the bytes of files that it may still read.
+///
+/// A picture that is decoded takes its texels from the budget before memory is allocated for them.
+pub(super) struct Budget {
+    texels: u32,
+    bytes: usize,
+}
+
+impl Default for Budget {
+    /// That of a whole map.
+    fn default() -> Self {
+        Self { texels: MOST_TEXELS, bytes: MOST_BYTES }
+    }
+}
+
+impl Budget {
+    fn take(&mut self, texels: u32, bytes: usize) -> Result<(), PictureError> {
+        let left = self.texels.checked_sub(texels).zip(self.bytes.checked_sub(bytes));
+        let (texels, bytes) = left.ok_or(PictureError::OneTooMany)?;
+        *self = Self { texels, bytes };
+        Ok(())
+    }
+}
+
+/// Why there is no picture.
 #[derive(Debug)]
 pub(super) enum PictureError {
+    Unreadable(TextureFileError),
     Broken(DecodingError),
-    TooLarge { width: u32, height: u32 },
+    TooLarge {
+        width: u32,
+        height: u32,
+    },
+    /// It exceeds the [`Budget`] of the map.
+    OneTooMany,
 }
 
 impl fmt::Display for PictureError {
     /// Writes the reason, to follow the name of the file.
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
         match self {
+            Self::Unreadable(error) => write!(f, "{error}"),
             Self::Broken(error) => {
                 let error = error.to_string();
                 write!(f, "is no whole PNG picture: {}", error.trim_end_matches('.'))
@@ -32,16 +72,23 @@ impl fmt::Display for PictureError {
             Self::TooLarge { width, height } => {
                 write!(f, "is {width}×{height} texels, and may be {MAX_SIDE}×{MAX_SIDE} at most")
             }
+            Self::OneTooMany => {
+                let megabytes = MOST_BYTES >> 20;
+                write!(f, "is too much: the pictures of a map have {MOST_TEXELS} texels and ")?;
+                write!(f, "{megabytes} MiB at most")
+            }
         }
     }
 }
 
 impl PictureError {
-    /// What to do about it.
-    pub(super) fn help(&self) -> &'static str {
+    /// What to do about it. `use_of_file` says what the picture is for.
+    pub(super) fn help(&self, use_of_file: &'static str) -> &'static str {
         match self {
+            Self::Unreadable(_) => use_of_file,
             Self::Broken(_) => "save the picture again, as PNG",
             Self::TooLarge { .. } => "scale it down: 64×64 texels are plenty in a terminal",
+            Self::OneTooMany => "scale them down: 64×64 texels are plenty in a terminal",
         }
     }
 }
@@ -52,9 +99,56 @@ impl From<DecodingError> for PictureError {
     }
 }
 
+impl From<TextureFileError> for PictureError {
+    fn from(error: TextureFileError) -> Self {
+        Self::Unreadable(error)
+    }
+}
+
+/// A decoded picture, which has no mip levels.
+pub(super) struct Picture {
+    width: NonZeroU32,
+    height: NonZeroU32,
+    color_type: ColorType,
+    samples: Vec<u8>,
+    /// The number of samples of a row.
+    row_size: usize,
+}
+
+impl Picture {
+    pub(super) fn width(&self) -> u32 {
+        self.width.get()
+    }
+
+    pub(super) fn height(&self) -> u32 {
+        self.height.get()
+    }
+
+    /// All of it as a texture.
+    pub(super) fn texture(&self) -> Texture {
+        self.part(0, 0, self.width, self.height)
+    }
+
+    /// The part from `(left, top)` on as a texture. It is inside the picture.
+    pub(super) fn part(
+        &self,
+        left: u32,
+        top: u32,
+        width: NonZeroU32,
+        height: NonZeroU32,
+    ) -> Texture {
+        let count = self.color_type.samples();
+        Texture::from_fn_with_alpha(width, height, |x, y| {
+            let start = (top + y) as usize * self.row_size + (left + x) as usize * count;
+            texel(self.color_type, &self.samples[start..start + count])
+        })
+    }
+}
+
 /// Decodes a PNG file of any colour type and depth; the first picture of an animation. The size is
-/// checked before memory is allocated.
-pub(super) fn decode(bytes: &[u8]) -> Result<Texture, PictureError> {
+/// checked, and taken from `budget`, before memory is allocated.
+pub(super) fn decode(bytes: &[u8], budget: &mut Budget) -> Result<Picture, PictureError> {
+    budget.take(0, bytes.len())?;
     let mut decoder = Decoder::new_with_limits(Cursor::new(bytes), DECODER_LIMITS);
     decoder.set_ignore_text_chunk(true);
     decoder.set_ignore_iccp_chunk(true);
@@ -63,6 +157,7 @@ pub(super) fn decode(bytes: &[u8]) -> Result<Texture, PictureError> {
     if width > MAX_SIDE || height > MAX_SIDE {
         return Err(PictureError::TooLarge { width, height });
     }
+    budget.take(width * height, 0)?;
     let mut reader = decoder.read_info()?;
     let mut samples = vec![0; reader.output_buffer_size().ok_or(DecodingError::LimitsExceeded)?];
     let picture = reader.next_frame(&mut samples)?;
@@ -70,11 +165,8 @@ pub(super) fn decode(bytes: &[u8]) -> Result<Texture, PictureError> {
     let (Some(width), Some(height)) = sizes else {
         return Err(DecodingError::LimitsExceeded.into());
     };
-    let sample_count = picture.color_type.samples();
-    Ok(Texture::from_fn_with_alpha(width, height, |x, y| {
-        let start = y as usize * picture.line_size + x as usize * sample_count;
-        texel(picture.color_type, &samples[start..start + sample_count])
-    }))
+    let (color_type, row_size) = (picture.color_type, picture.line_size);
+    Ok(Picture { width, height, color_type, samples, row_size })
 }
 
 /// The colour and alpha of one texel of 8-bit samples.
@@ -91,124 +183,4 @@ fn texel(color_type: ColorType, samples: &[u8]) -> (Rgb, u8) {
 }
 
 #[cfg(test)]
-mod tests {
-    use png::{BitDepth, Encoder};
-    use proptest::prelude::*;
-
-    use super::*;
-
-    const CLEAR: u8 = 0;
-    const OPAQUE: u8 = 255;
-    const PALETTE: &[u8] = &[1, 2, 3, 4, 5, 6];
-
-    /// A picture two texels wide and one high.
-    fn encoded(color_type: ColorType, depth: BitDepth, samples: &[u8]) -> Vec<u8> {
-        encoded_with(color_type, depth, samples, |_| {})
-    }
-
-    fn encoded_with(
-        color_type: ColorType,
-        depth: BitDepth,
-        samples: &[u8],
-        set_up: impl FnOnce(&mut Encoder<'_, &mut Vec<u8>>),
-    ) -> Vec<u8> {
-        let mut bytes = Vec::new();
-        let mut encoder = Encoder::new(&mut bytes, 2, 1);
-        encoder.set_color(color_type);
-        encoder.set_depth(depth);
-        set_up(&mut encoder);
-        encoder.write_header().unwrap().write_image_data(samples).unwrap();
-        bytes
-    }
-
-    fn texels(bytes: &[u8]) -> [(Rgb, u8); 2] {
-        let texture = decode(bytes).unwrap();
-        assert_eq!((texture.width(), texture.height()), (2, 1));
-        [0, 1].map(|x| (texture.column(f64::from(x) / 2.0)[0], texture.texel(x, 0).1))
-    }
-
-    #[test]
-    fn gray_of_every_depth() {
-        let expected = [(Rgb::WHITE, OPAQUE), (Rgb::BLACK, OPAQUE)];
-        for (depth, samples) in [
-            (BitDepth::One, [0b1000_0000].as_slice()),
-            (BitDepth::Two, &[0b1100_0000]),
-            (BitDepth::Four, &[0xf0]),
-            (BitDepth::Eight, &[255, 0]),
-            (BitDepth::Sixteen, &[255, 255, 0, 0]),
-        ] {
-            assert_eq!(texels(&encoded(ColorType::Grayscale, depth, samples)), expected);
-        }
-    }
-
-    #[test]
-    fn gray_with_alpha() {
-        let bytes = encoded(ColorType::GrayscaleAlpha, BitDepth::Eight, &[7, 0, 9, 255]);
-        assert_eq!(texels(&bytes), [(Rgb::new(7, 7, 7), CLEAR), (Rgb::new(9, 9, 9), OPAQUE)]);
-    }
-
-    #[test]
-    fn colour_with_and_without_alpha() {
-        let (left, right) = (Rgb::new(1, 2, 3), Rgb::new(4, 5, 6));
-        let bytes = encoded(ColorType::Rgb, BitDepth::Eight, &[1, 2, 3, 4, 5, 6]);
-        assert_eq!(texels(&bytes), [(left, OPAQUE), (right, OPAQUE)]);
-        let bytes = encoded(ColorType::Rgba, BitDepth::Eight, &[1, 2, 3, 128, 4, 5, 6, 0]);
-        assert_eq!(texels(&bytes), [(left, 128), (right, CLEAR)]);
-        let samples = [1, 99, 2, 99, 3, 99, 128, 99, 4, 99, 5, 99, 6, 99, 0, 99];
-        let bytes = encoded(ColorType::Rgba, BitDepth::Sixteen, &samples);
-        assert_eq!(texels(&bytes), [(left, 128), (right, CLEAR)]);
-    }
-
-    #[test]
-    fn a_palette_with_and_without_alpha() {
-        let (left, right) = (Rgb::new(4, 5, 6), Rgb::new(1, 2, 3));
-        let bytes = encoded_with(ColorType::Indexed, BitDepth::One, &[0b1000_0000], |encoder| {
-            encoder.set_palette(PALETTE);
-        });
-        assert_eq!(texels(&bytes), [(left, OPAQUE), (right, OPAQUE)]);
-        let bytes = encoded_with(ColorType::Indexed, BitDepth::Eight, &[1, 0], |encoder| {
-            encoder.set_palette(PALETTE);
-            encoder.set_trns([0, 128].as_slice());
-        });
-        assert_eq!(texels(&bytes), [(left, 128), (right, CLEAR)]);
-    }
-
-    #[test]
-    fn one_clear_colour() {
-        let samples = [1, 2, 3, 4, 5, 6];
-        let bytes = encoded_with(ColorType::Rgb, BitDepth::Eight, &samples, |encoder| {
-            encoder.set_trns([0, 1, 0, 2, 0, 3].as_slice());
-        });
-        assert_eq!(texels(&bytes).map(|(_, alpha)| alpha), [CLEAR, OPAQUE]);
-    }
-
-    #[test]
-    fn the_largest_picture_of_the_longest_texels() {
-        let mut bytes = Vec::new();
-        let mut encoder = Encoder::new(&mut bytes, MAX_SIDE, MAX_SIDE);
-        encoder.set_color(ColorType::Rgba);
-        encoder.set_depth(BitDepth::Sixteen);
-        let samples = vec![200; 8 * (MAX_SIDE * MAX_SIDE) as usize];
-        encoder.write_header().unwrap().write_image_data(&samples).unwrap();
-        let texture = decode(&bytes).unwrap();
-        assert_eq!((texture.width(), texture.height()), (MAX_SIDE, MAX_SIDE));
-        assert_eq!(texture.mean(), Rgb::new(200, 200, 200));
-    }
-
-    proptest! {
-        #[test]
-        fn a_damaged_picture_is_a_texture_or_an_error(
-            edits in prop::collection::vec((any::<prop::sample::Index>(), any::<u8>()), 1..4),
-            cut in any::<prop::sample::Index>(),
-        ) {
-            let mut bytes = encoded(ColorType::Rgb, BitDepth::Eight, &[1, 2, 3, 4, 5, 6]);
-            for (place, byte) in edits {
-                *place.get_mut(&mut bytes) = byte;
-            }
-            bytes.truncate(cut.index(bytes.len() + 1));
-            if let Ok(texture) = decode(&bytes) {
-                prop_assert!(texture.width() <= MAX_SIDE && texture.height() <= MAX_SIDE);
-            }
-        }
-    }
-}
+mod tests;

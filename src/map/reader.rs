@@ -1,21 +1,26 @@
 //! The reader: what all stages after the definitions share.
 
+use std::collections::BTreeMap;
+
 use super::textures::{Surface, TextureFiles, Textures};
 use crate::color::Rgb;
 use crate::fault::document::FaultList;
-use crate::world::Paint;
+use crate::world::{Paint, Sprite};
 
 /// A map's text, the faults found in it, and the textures that it uses.
 pub(super) struct Reader<'m> {
     pub(super) text: &'m str,
     pub(super) faults: &'m FaultList,
     pub(super) textures: Textures<'m>,
+    /// The sprite of a sheet by its name and its numbers of frames and of facings; `None` where it
+    /// has a fault.
+    pub(super) sheets: BTreeMap<(String, Option<u32>, Option<u32>), Option<Sprite>>,
 }
 
 impl<'m> Reader<'m> {
     /// A reader of `text` whose textures come from `files` where they are not built in.
     pub(super) fn new(text: &'m str, faults: &'m FaultList, files: &'m dyn TextureFiles) -> Self {
-        Self { text, faults, textures: Textures::new(files) }
+        Self { text, faults, textures: Textures::new(files), sheets: BTreeMap::new() }
     }
 
     /// The paint for `surface`. Where its texture cannot be had, that is reported, once

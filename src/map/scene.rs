@@ -6,6 +6,8 @@
 mod body;
 mod vector;
 
+use std::ops::Range;
+
 use glam::DVec3;
 use toml::de::{DeTable, DeValue};
 
@@ -18,6 +20,9 @@ use crate::world::{Heading, SkyGradient};
 use body::Kind;
 
 const KEYS: &[&str] = &["title", "sky", "fog", "light", "start", "sphere", "plane", "box"];
+/// The largest number of bodies. Each of them may cover every pixel, and no order among bodies that
+/// overlap makes the nearest one cheaper to find.
+const MOST_BODIES: usize = 1000;
 const LIGHT_KEYS: &[&str] = &["toward", "ambient"];
 const LIGHT_EXAMPLE: &str = "light = { toward = [-1, -1, 2], ambient = 0.2 }";
 const START_KEYS: &[&str] = &["at", "heading", "pitch"];
@@ -41,7 +46,7 @@ pub(super) fn read(document: &DeTable, faults: &FaultList) -> Option<Scene> {
             "start" => start = Some(entry),
             "grid" | "tiles" | "things" => entry.faults.push(both_kinds(&entry)),
             key => match Kind::of_key(key) {
-                Some(kind) => scene.bodies.extend(kind.read_all(&entry)),
+                Some(kind) => scene.bodies.extend(kind.read_all(&entry, scene.bodies.len())),
                 None => entry.faults.push(entry.unknown_key("a map of bodies", KEYS)),
             },
         }
@@ -162,11 +167,14 @@ fn coordinates() -> String {
     format!("from -{FARTHEST:e} to {FARTHEST:e}")
 }
 
+fn too_many_bodies(place: Range<usize>) -> Fault {
+    Fault::new(place, format!("a map has {MOST_BODIES} bodies at most"))
+        .label("this is one too many")
+        .help("leave some out, or make two maps of it")
+}
+
 /// The tables of `entry`, each of which the map writes as `[[key]]`.
-fn tables<'a, 't>(
-    entry: &Entry<'a, 't>,
-    example: &str,
-) -> Vec<(&'a DeTable<'t>, std::ops::Range<usize>)> {
+fn tables<'a, 't>(entry: &Entry<'a, 't>, example: &str) -> Vec<(&'a DeTable<'t>, Range<usize>)> {
     let wrong = || entry.wrong_type("a list of tables", example);
     let DeValue::Array(list) = entry.value else {
         entry.faults.push(wrong());

@@ -6,14 +6,13 @@ use std::ops::Range;
 use toml::de::{DeTable, DeValue};
 
 use super::legend;
+use super::picture::Picture;
 use super::reader::Reader;
-use super::textures::{SheetError, is_png, stays_inside};
+use super::textures::{is_png, stays_inside};
 use crate::fault::document::Entry;
 use crate::fault::{Fault, nearest, quoted};
 use crate::world::sprite::builtin;
-use crate::world::{
-    Anchor, Facings, FrameTime, Heading, Lamp, Light, Reach, Sprite, SpriteHeight, Texture,
-};
+use crate::world::{Anchor, Facings, FrameTime, Heading, Lamp, Light, Reach, Sprite, SpriteHeight};
 
 /// The keys that belong to a sprite.
 pub(super) const ADDITIONS: [(&str, &str); 10] = [
@@ -116,14 +115,15 @@ impl<'a> SpriteSymbol<'a> {
         }
     }
 
-    /// The sprite itself. Reports a fault where its sheet is missing or cannot be divided.
+    /// The sprite itself. Reports a fault where its sheet is missing or cannot be divided, once for
+    /// all sprites that divide the sheet alike.
     pub(super) fn sprite(&self, reader: &mut Reader<'_>) -> Option<Sprite> {
         let mut sprite = match builtin::named(self.name) {
             Some(sprite) => {
                 reader.faults.extend(self.cut_of_built_in());
                 sprite
             }
-            None => self.cut(&self.sheet(reader)?, reader)?,
+            None => self.of_sheet(reader)?,
         };
         sprite.anchor = self.anchor.unwrap_or(sprite.anchor);
         sprite.blocks = self.blocks.unwrap_or(sprite.blocks);
@@ -148,18 +148,34 @@ impl<'a> SpriteSymbol<'a> {
         Some(Fault::new(place.clone(), message).help(format!("leave {key} out")))
     }
 
-    fn sheet(&self, reader: &mut Reader<'_>) -> Option<Texture> {
-        let sheet = reader.textures.sheet(self.name);
+    /// The sprite of the sheet as it is divided, which is decoded once for all sprites that divide
+    /// it alike.
+    fn of_sheet(&self, reader: &mut Reader<'_>) -> Option<Sprite> {
+        let frames = self.frames.as_ref().map(|&(frames, _)| frames);
+        let facings = self.facings.as_ref().map(|(facings, _)| facings.count());
+        let key = (self.name.to_owned(), frames, facings);
+        if let Some(known) = reader.sheets.get(&key) {
+            return known.clone();
+        }
+        let sprite = self.sheet(reader).and_then(|sheet| self.cut(&sheet, reader));
+        reader.sheets.insert(key, sprite.clone());
+        sprite
+    }
+
+    fn sheet(&self, reader: &mut Reader<'_>) -> Option<Picture> {
+        let sheet = reader.textures.picture(self.name);
         sheet
-            .map_err(|SheetError { why, help }| {
-                let message = format!("the sprite {} {why}", quoted(self.name));
+            .map_err(|error| {
+                let Some(error) = error else { return };
+                let message = format!("the sprite {} {error}", quoted(self.name));
+                let help = error.help("a sprite is a PNG file beside the map");
                 reader.faults.push(Fault::new(self.place.clone(), message).help(help));
             })
             .ok()
     }
 
     /// Divides `sheet`: frames from left to right, facings from top to bottom.
-    fn cut(&self, sheet: &Texture, reader: &Reader<'_>) -> Option<Sprite> {
+    fn cut(&self, sheet: &Picture, reader: &Reader<'_>) -> Option<Sprite> {
         let (frames, facings) = (self.frames.as_ref(), self.facings.as_ref());
         let facing_count = facings.map_or(1, |(facings, _)| facings.count());
         let frame_count = frames.map_or(1, |&(frames, _)| frames);

@@ -7,7 +7,7 @@ mod surface;
 
 use std::collections::BTreeMap;
 
-use super::picture;
+use super::picture::{self, Picture, PictureError};
 use crate::fault::{Fault, quoted};
 use crate::world::texture::builtin;
 use crate::world::{Paint, Texture, TextureId};
@@ -16,15 +16,11 @@ pub(super) use files::{is_png, stays_inside};
 use surface::Source;
 pub(super) use surface::Surface;
 
-/// Why there is no picture: the reason, to follow its name, and what to do.
-pub(super) struct SheetError {
-    pub(super) why: String,
-    pub(super) help: &'static str,
-}
-
 /// The textures that a map uses, each once.
 pub(super) struct Textures<'f> {
     files: &'f dyn TextureFiles,
+    /// `None` after a picture exceeded it.
+    budget: Option<picture::Budget>,
     list: Vec<Texture>,
     /// The texture of a name; `None` where it has a fault.
     known: BTreeMap<String, Option<TextureId>>,
@@ -32,7 +28,8 @@ pub(super) struct Textures<'f> {
 
 impl<'f> Textures<'f> {
     pub(super) fn new(files: &'f dyn TextureFiles) -> Self {
-        Self { files, list: Vec::new(), known: BTreeMap::new() }
+        let budget = Some(picture::Budget::default());
+        Self { files, budget, list: Vec::new(), known: BTreeMap::new() }
     }
 
     /// The paint for `surface`. Reports a fault where its texture is missing, once for each
@@ -55,30 +52,32 @@ impl<'f> Textures<'f> {
             TextureId(self.list.len() as u16 - 1)
         });
         self.known.insert(name.to_owned(), made.as_ref().ok().copied());
-        made.map_err(Some)
+        made
     }
 
-    fn make(&self, name: &str, surface: &Surface<'_>) -> Result<Texture, Fault> {
+    fn make(&mut self, name: &str, surface: &Surface<'_>) -> Result<Texture, Option<Fault>> {
         if let Some(texture) = builtin::named(name).or_else(|| builtin::panorama(name)) {
             return Ok(texture);
         }
-        let fault = |why: String| {
-            Fault::new(surface.place.clone(), format!("the texture {} {why}", quoted(name)))
-        };
-        let bytes = self.files.read(name).map_err(|error| {
-            fault(error.to_string()).help("a texture is a PNG file beside the map")
+        let picture = self.picture(name).map_err(|error| {
+            let error = error?;
+            let message = format!("the texture {} {error}", quoted(name));
+            let help = error.help("a texture is a PNG file beside the map");
+            Some(Fault::new(surface.place.clone(), message).help(help))
         })?;
-        picture::decode(&bytes).map_err(|error| fault(error.to_string()).help(error.help()))
+        Ok(picture.texture())
     }
 
-    /// The picture in the file `name`, for sprites.
-    pub(super) fn sheet(&self, name: &str) -> Result<Texture, SheetError> {
-        let bytes = self.files.read(name).map_err(|error| SheetError {
-            why: error.to_string(),
-            help: "a sprite is a PNG file beside the map",
-        })?;
-        picture::decode(&bytes)
-            .map_err(|error| SheetError { why: error.to_string(), help: error.help() })
+    /// Decodes the picture in the file `name`. The error is `None` after a picture has exceeded the
+    /// budget, which is reported once.
+    pub(super) fn picture(&mut self, name: &str) -> Result<Picture, Option<PictureError>> {
+        let budget = self.budget.as_mut().ok_or(None)?;
+        let bytes = self.files.read(name).map_err(PictureError::from)?;
+        let picture = picture::decode(&bytes, budget);
+        if let Err(PictureError::OneTooMany) = picture {
+            self.budget = None;
+        }
+        Ok(picture?)
     }
 
     /// A texture that [`Textures::paint`] returned.

@@ -3,7 +3,8 @@
 use super::doors::Keys;
 use super::drawing::Drawing;
 use super::items::ItemSymbol;
-use super::legend::{Legend, Meaning};
+use super::lamp_budget::{self, LampBudget};
+use super::legend::{Legend, Meaning, Symbol};
 use super::per_character::PerCharacter;
 use super::reader::Reader;
 use super::switches::Switches;
@@ -13,6 +14,8 @@ use crate::world::{NoteId, Sprite, SpriteId, Thing, ThingKind};
 
 /// The largest number of sprites, and of notes.
 const MOST_KINDS: usize = 1000;
+/// The largest number of things.
+const MOST_THINGS: usize = 1 << 20;
 
 /// The things in a drawing except the start, with what they refer to.
 #[derive(Default)]
@@ -36,13 +39,15 @@ impl ThingList {
     ) -> Self {
         let mut list = Self::default();
         let mut thing_of = PerCharacter::<Option<(ThingKind, SpriteId)>>::new();
+        let mut lamp_budget = LampBudget::default();
+        let mut count = 0;
         for (character, symbol) in legend.used_in(drawing) {
             if list.sprites.len().max(list.notes.len()) >= MOST_KINDS {
                 let message = format!("the grid has more than {MOST_KINDS} kinds of thing");
                 reader.faults.push(Fault::new(symbol.place.clone(), message).label("one too many"));
                 break;
             }
-            *thing_of.get_mut(character) = match &symbol.meaning {
+            let thing = match &symbol.meaning {
                 Meaning::Exit => list.add_built_in(ThingKind::Exit, builtin::EXIT),
                 Meaning::Key(key) => keys
                     .id(key.name)
@@ -56,6 +61,18 @@ impl ThingList {
                 Meaning::Item(item) => list.add_item(item, switches),
                 _ => None,
             };
+            let Some((_, sprite)) = thing else { continue };
+            let drawn = drawing.sightings(character).count;
+            count += drawn;
+            let lamp = list.sprites[usize::from(sprite.0)].lamp;
+            if lamp.is_some_and(|lamp| lamp_budget.is_exceeded_by(lamp, drawn)) {
+                reader.faults.push(too_many_lamps(symbol));
+            }
+            *thing_of.get_mut(character) = thing;
+        }
+        if count > MOST_THINGS {
+            reader.faults.push(too_many_things(drawing, count));
+            return list;
         }
         list.things.extend(drawing.cells().filter_map(|(cell, character)| {
             let (kind, sprite) = thing_of.get(character)?;
@@ -66,7 +83,7 @@ impl ThingList {
 
     /// Adds a sprite; returns it with the kind of thing that has it.
     fn add(&mut self, kind: ThingKind, sprite: Option<Sprite>) -> Option<(ThingKind, SpriteId)> {
-        let id = SpriteId(self.sprites.len() as u16);
+        let id = SpriteId(u16::try_from(self.sprites.len()).ok()?);
         self.sprites.push(sprite?);
         Some((kind, id))
     }
@@ -107,6 +124,19 @@ impl ThingList {
         self.notes.push(text.to_owned());
         id
     }
+}
+
+fn too_many_lamps(symbol: &Symbol<'_>) -> Fault {
+    let most = lamp_budget::MOST_CELLS;
+    let message = format!("the lamps of a map light {most} cells at most, counted for each lamp");
+    Fault::new(symbol.place.clone(), message)
+        .label("with these, they light more")
+        .help("draw fewer lamps, or let them reach less far")
+}
+
+fn too_many_things(drawing: &Drawing<'_>, count: usize) -> Fault {
+    let message = format!("the grid has {count} things, and {MOST_THINGS} at most can be there");
+    Fault::new(drawing.key_place.clone(), message).help("draw fewer of them")
 }
 
 /// The frame that a thing shows first; `None` if it depends on the time.

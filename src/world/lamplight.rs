@@ -42,6 +42,15 @@ impl Reach {
     pub const fn cells(self) -> f64 {
         self.0
     }
+
+    /// The number of cells that a lamp with this reach lights where nothing stands around it.
+    pub(crate) fn cell_count(self) -> u64 {
+        let most = self.0 as i64;
+        let around = (-most..=most).flat_map(|row| (-most..=most).map(move |column| (column, row)));
+        let is_reached =
+            |&(column, row): &(i64, i64)| ((column * column + row * row) as f64).sqrt() < self.0;
+        around.filter(is_reached).count() as u64
+    }
 }
 
 impl Default for Reach {
@@ -115,6 +124,13 @@ impl Lamplight {
 #[cfg(test)]
 mod tests {
     use super::*;
+
+    #[test]
+    fn a_reach_of_whole_cells_ends_before_the_last() {
+        let counts =
+            [1.0, 1.5, 2.0, 4.0, 32.0].map(|cells| Reach::new(cells).unwrap().cell_count());
+        assert_eq!(counts, [1, 9, 9, 45, 3205]);
+    }
 
     #[test]
     fn a_lamp_is_brightest_in_its_cell_and_ends_at_its_reach() {

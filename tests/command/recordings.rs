@@ -95,6 +95,8 @@ fn mistakes_are_told() {
         complaint_about(&["replay", "absent.script"]),
         complaint_about(&["replay", &bad]),
         complaint_about(&["replay", &bad, "--size", "0x3"]),
+        complaint_about(&["replay", &bad, "--size", "1000x1000"]),
+        complaint_about(&["accuracy", "--rays", "1000001"]),
         complaint_about(&["wire", "--script", &bad]),
         complaint_about(&["wire", "--format", "svg"]),
         complaint_about(&["wire", "--scirpt", "x"]),

@@ -5,6 +5,7 @@ mod bad_scripts;
 mod climbing;
 mod endless;
 mod growth;
+mod hostile;
 mod landing;
 mod map;
 mod playing;

@@ -79,11 +79,11 @@ const SET: ValueOption<String> = ValueOption {
 const RAYS: ValueOption<usize> = ValueOption {
     name: "rays",
     value: "N",
-    takes: "a whole number from 1 to 10000000",
-    help: "How many rays each scene has, from 1 to 10000000",
+    takes: "a whole number from 1 to 1000000",
+    help: "How many rays each scene has, from 1 to 1000000",
     default: "2000",
     choices: &[],
-    read: Parser::Optional(|text| text.parse().ok().filter(|rays| (1..=10_000_000).contains(rays))),
+    read: Parser::Optional(|text| text.parse().ok().filter(|rays| (1..=1_000_000).contains(rays))),
     repeats: false,
 };
 

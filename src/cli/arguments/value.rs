@@ -37,6 +37,14 @@ impl Size {
     pub(in crate::cli) fn cells(self) -> ratatui::layout::Size {
         ratatui::layout::Size::new(self.columns, self.rows)
     }
+
+    /// Whether a window may have this size.
+    fn is_window(self) -> bool {
+        const LONGEST_SIDE: u16 = 1000;
+        const MOST_CELLS: u32 = 200_000;
+        self.columns.max(self.rows) <= LONGEST_SIDE
+            && u32::from(self.columns) * u32::from(self.rows) <= MOST_CELLS
+    }
 }
 
 impl Default for Size {
@@ -141,11 +149,12 @@ pub(super) const SIZE: ValueOption<Size> = ValueOption {
     repeats: false,
 };
 
-/// As [`SIZE`], but for a window with several buffers in memory, so that the limit is lower.
+/// As [`SIZE`], but for a window: it is drawn for each frame of a game, and several buffers of it are
+/// in memory. The limit is that of a window of 800×250 cells.
 pub(super) const WINDOW_SIZE: ValueOption<Size> = ValueOption {
-    takes: "COLSxROWS from 1x1 to 1000x1000, such as 120x40",
-    help: "The size of the window in cells, from 1x1 to 1000x1000",
-    read: Parser::Optional(|text| size(text).filter(|size| size.columns.max(size.rows) <= 1000)),
+    takes: "COLSxROWS with sides up to 1000 and up to 200000 cells, such as 120x40",
+    help: "The size of the window in cells, with sides up to 1000 and up to 200000 cells",
+    read: Parser::Optional(|text| size(text).filter(|size| size.is_window())),
     ..SIZE
 };
 

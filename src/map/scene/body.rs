@@ -5,7 +5,7 @@ use std::ops::Range;
 use glam::DVec3;
 use toml::de::DeTable;
 
-use super::{coordinates, tables, vector};
+use super::{MOST_BODIES, coordinates, tables, too_many_bodies, vector};
 use crate::color::Rgb;
 use crate::fault::document::Entry;
 use crate::fault::{Fault, quoted};
@@ -41,12 +41,13 @@ impl Kind {
         }
     }
 
-    /// Reads the bodies of `entry`; reports its faults.
-    pub(super) fn read_all(self, entry: &Entry<'_, '_>) -> Vec<Body> {
-        tables(entry, self.example())
-            .into_iter()
-            .filter_map(|(table, place)| self.read(entry, table, place))
-            .collect()
+    /// Reads the bodies of `entry`, in a map that has `known` others; reports its faults.
+    pub(super) fn read_all(self, entry: &Entry<'_, '_>, known: usize) -> Vec<Body> {
+        let mut tables = tables(entry, self.example());
+        let most = MOST_BODIES.saturating_sub(known);
+        entry.faults.extend(tables.get(most).map(|(_, place)| too_many_bodies(place.clone())));
+        tables.truncate(most);
+        tables.into_iter().filter_map(|(table, place)| self.read(entry, table, place)).collect()
     }
 
     fn example(self) -> &'static str {

@@ -23,15 +23,16 @@ pub(super) struct Glow {
     branches: Vec<Branch>,
 }
 
-/// A cell that light passes, coming from the cell before it in the tree.
+/// A cell that light passes, coming from the cell before it in the tree. A lamp of the longest reach
+/// has 25,000 of them, so they are kept small.
 #[derive(Debug)]
 struct Branch {
-    /// Columns to the east of the lamp, and rows to the south.
-    offset: (i64, i64),
+    /// Columns to the east of the lamp, and rows to the south, each at most the longest reach.
+    offset: (i8, i8),
     /// What the lamp adds there; nothing, if its light only passes through.
     light: Light,
     /// The index of the first cell whose line does not lead through this one.
-    next_beside: usize,
+    next_beside: u32,
 }
 
 impl Glow {
@@ -45,8 +46,9 @@ impl Glow {
         for Line { cells, light } in &lines {
             let shared = before.iter().zip(cells).take_while(|(one, other)| one == other).count();
             close(&mut branches, open.drain(shared..));
-            for &offset in &cells[shared..] {
+            for &(columns, rows) in &cells[shared..] {
                 open.push(branches.len());
+                let offset = (columns as i8, rows as i8);
                 branches.push(Branch { offset, light: Light::NONE, next_beside: 0 });
             }
             if let Some(end) = branches.last_mut() {
@@ -70,13 +72,13 @@ impl Glow {
         add(place, self.light);
         let mut index = 0;
         while let Some(branch) = self.branches.get(index) {
-            let column = i64::from(place.column) + branch.offset.0;
-            let row = i64::from(place.row) + branch.offset.1;
+            let column = i64::from(place.column) + i64::from(branch.offset.0);
+            let row = i64::from(place.row) + i64::from(branch.offset.1);
             if grid.tile(column, row).is_some_and(&is_clear) {
                 add(Cell { column: column as u32, row: row as u32 }, branch.light);
                 index += 1;
             } else {
-                index = branch.next_beside;
+                index = branch.next_beside as usize;
             }
         }
     }
@@ -84,7 +86,7 @@ impl Glow {
 
 /// Ends the branches at `indices`: no later cell's line leads through them.
 fn close(branches: &mut [Branch], indices: impl Iterator<Item = usize>) {
-    let end = branches.len();
+    let end = branches.len() as u32;
     indices.for_each(|index| branches[index].next_beside = end);
 }
 

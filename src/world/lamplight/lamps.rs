@@ -120,15 +120,18 @@ impl World {
         let passed: Vec<bool> = self.tiles.iter().map(passes).collect();
         let lamp = |thing: &&Thing| {
             let lamp = self.sprites[usize::from(thing.sprite.0)].lamp;
-            lamp.filter(|_| thing.burns()).map(|lamp| (thing.cell, lamp))
+            lamp.filter(|_| thing.burns()).map(|lamp| (thing.cell, thing.sprite, lamp))
         };
         let lamps = self.things.all().iter().filter_map(|thing| lamp(&thing));
         let lamplight = &mut self.lamplight;
-        for (cell, lamp) in lamps.take_while(|_| is_needed) {
+        // Looked up once for each sprite: a map may have as many lamps as cells.
+        let mut glow_of = vec![None; self.sprites.len()];
+        for (cell, sprite, lamp) in lamps.take_while(|_| is_needed) {
             if lamplight.is_dark() {
                 lamplight.begin(&self.grid);
             }
-            let glow = lamplight.glows.of(lamp);
+            let glow: &Arc<Glow> =
+                glow_of[usize::from(sprite.0)].get_or_insert_with(|| lamplight.glows.of(lamp));
             let is_clear = |tile: TileId| passed[usize::from(tile.0)];
             glow.shine(&self.grid, cell, is_clear, |cell, light| {
                 lamplight.change(cell, light, Change::Add);
