@@ -3,6 +3,7 @@
 mod arguments;
 mod bench;
 mod descents;
+mod full_disk;
 mod hostile;
 mod recordings;
 mod replay;
