@@ -19,6 +19,7 @@ mod error;
 mod level;
 mod levels;
 mod manual;
+mod output_file;
 mod own_maps;
 mod play;
 mod plot;
@@ -47,7 +48,7 @@ pub use error::Error;
 /// Runs the command that `arguments` request, and returns the exit status. The first argument is
 /// the program's own name.
 pub fn run(arguments: impl IntoIterator<Item = OsString>) -> ExitCode {
-    match Command::parse(arguments).and_then(Command::run) {
+    match Command::parse(arguments).and_then(Command::run).and_then(|()| finish()) {
         Ok(()) => ExitCode::SUCCESS,
         Err(error) => error.report(),
     }
@@ -77,6 +78,11 @@ impl Command {
             Self::Wire(options) => wire::run(&options),
         }
     }
+}
+
+/// Writes what is left of the last line of output, which may have no end.
+fn finish() -> Result<(), Error> {
+    io::stdout().flush().map_err(|error| Error::of_output(&error))
 }
 
 fn print(text: &str) -> Result<(), Error> {

@@ -7,11 +7,13 @@
 
 pub(crate) mod document;
 mod excerpt;
+mod printable;
 mod words;
 
 use std::fmt;
 use std::ops::Range;
 
+pub(crate) use printable::{printable, printable_lines};
 pub(crate) use words::{nearest, quoted};
 
 /// All faults of a file; there is at least one.
@@ -31,11 +33,12 @@ impl Faults {
     pub(crate) fn new(name: &str, text: &str, mut faults: Vec<Fault>) -> Self {
         debug_assert!(!faults.is_empty(), "an error has a cause");
         faults.sort_by_key(|fault| fault.place.as_ref().map(|place| (place.start, place.end)));
-        Self { name: name.to_owned(), text: text.to_owned(), list: faults }
+        Self { name: printable(name), text: text.to_owned(), list: faults }
     }
 
     /// A fault of the whole file `name`, such as that it does not exist. `message` names the file.
     pub(crate) fn of_whole_file(name: &str, message: String, help: &str) -> Self {
+        let message = printable(&message);
         let fault = Fault { place: None, message, label: String::new(), help: help.to_owned() };
         Self::new(name, "", vec![fault])
     }

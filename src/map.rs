@@ -53,8 +53,7 @@ mod textures;
 mod things;
 mod tiles;
 
-use std::fs::{self, File};
-use std::io::{self, Read};
+use std::io::Read;
 use std::path::Path;
 
 use crate::color::Rgb;
@@ -65,7 +64,7 @@ use crate::world::{Ceiling, Covering, Heights, Mission, Paint, Parts, Sky, Tile,
 use definitions::Definitions;
 use drawing::Drawing;
 use heights::Faces;
-use input::{read_text, too_large, unreadable};
+use input::{open, read_text, too_large};
 use layout::Layout;
 use reader::Reader;
 use textures::Surface;
@@ -163,13 +162,7 @@ pub fn load_level(path: &Path) -> Result<Level, Faults> {
 /// As [`load_level`].
 pub fn load_level_with(path: &Path, files: &dyn TextureFiles) -> Result<Level, Faults> {
     let name = path.display().to_string();
-    let is_folder = fs::metadata(path).map(|metadata| metadata.is_dir());
-    let file = match is_folder {
-        Ok(true) => Err(io::ErrorKind::IsADirectory.into()),
-        Ok(false) => File::open(path),
-        Err(error) => Err(error),
-    };
-    read_level(file.map_err(|error| unreadable(&name, &error))?, &name, files)
+    read_level(open(path, &name)?, &name, files)
 }
 
 /// Reads a map of either kind from `input`, at most [`MAX_BYTES`] of it.

@@ -7,14 +7,13 @@ mod table;
 mod tables;
 
 use std::ffi::OsStr;
-use std::fs::File;
 use std::io::{self, BufWriter, Write};
 use std::time::Duration;
 
 use ratatui::layout::Size;
 
 use super::arguments::{Bench, BenchFormat};
-use super::recording::unwritable;
+use super::output_file::OutputFile;
 use super::script::SHOWCASE;
 use super::{Error, level};
 use crate::app::{Replay, Settings};
@@ -36,13 +35,10 @@ const WINDOWS: [Size; 3] = [Size::new(80, 24), Size::new(120, 40), Size::new(200
 /// Writes the report that `options` request.
 pub(super) fn run(options: &Bench) -> Result<(), Error> {
     // A file that cannot be written is reported before the measurement.
-    let plot = match &options.plot {
-        Some(path) => Some((path, File::create(path).map_err(|error| unwritable(path, &error))?)),
-        None => None,
-    };
+    let plot = options.plot.as_deref().map(OutputFile::create).transpose()?;
     let report = Report::measure(Duration::from_secs(options.seconds.into()))?;
-    if let Some((path, file)) = plot {
-        plot::write(&report, file).map_err(|error| unwritable(path, &error))?;
+    if let Some(file) = plot {
+        file.write(|output| plot::write(&report, output))?;
     }
     let output = BufWriter::new(io::stdout().lock());
     write(&report, options.format, output).map_err(|error| Error::of_output(&error))

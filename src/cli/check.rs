@@ -4,6 +4,7 @@ use std::ffi::OsString;
 use std::io::{self, Write};
 
 use super::{Error, level};
+use crate::fault::printable;
 use crate::game::is_exit_out_of_reach;
 use crate::map::Level;
 
@@ -13,7 +14,8 @@ pub(super) fn run(maps: &[OsString]) -> Result<(), Error> {
     for map in maps {
         match level::load(Some(map)) {
             Ok(level) => {
-                writeln!(io::stdout(), "{}: right, {}", map.display(), summary(&level))
+                let name = printable(&map.to_string_lossy());
+                writeln!(io::stdout(), "{name}: right, {}", summary(&level))
                     .map_err(|error| Error::of_output(&error))?;
             }
             Err(error) => {

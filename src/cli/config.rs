@@ -9,6 +9,7 @@ use etcetera::{BaseStrategy, choose_base_strategy};
 use super::Error;
 use super::arguments::Config;
 use crate::app::Configuration;
+use crate::fault::printable;
 
 /// The configuration in force, and the path of its file.
 pub(super) struct InForce {
@@ -31,7 +32,7 @@ pub(super) fn run(options: Config) -> Result<(), Error> {
             "# Settings of Cellcaster: the defaults, as there is no folder for a file".to_owned()
         }
     };
-    let text = format!("{}\n\n{configuration}", place.replace(char::is_control, "?"));
+    let text = format!("{}\n\n{configuration}", printable(&place));
     io::stdout().write_all(text.as_bytes()).map_err(|error| Error::of_output(&error))
 }
 

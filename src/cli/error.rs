@@ -1,10 +1,10 @@
 //! The errors of commands.
 
 use std::fmt;
-use std::io;
+use std::io::{self, Write};
 use std::process::ExitCode;
 
-use crate::fault::Faults;
+use crate::fault::{Faults, printable, printable_lines};
 use crate::terminal;
 
 /// The error of a command: a sentence, or a report of several faults, and the exit status.
@@ -61,7 +61,7 @@ impl Error {
 
     /// Prints the message of a command that continues.
     pub(super) fn warn(&self) {
-        print(self);
+        self.print();
     }
 
     /// Prints the message, and returns the exit status.
@@ -71,21 +71,29 @@ impl Error {
             Cause::Reported => ExitCode::from(2),
             Cause::Failed => ExitCode::FAILURE,
             Cause::Mistake(_) | Cause::Faults(_) => {
-                print(self);
+                self.print();
                 ExitCode::from(2)
             }
             Cause::Machine(_) => {
-                print(self);
+                self.print();
                 ExitCode::FAILURE
             }
         }
     }
-}
 
-/// Writes to standard error. If that is closed, too, the message is lost.
-fn print(error: &Error) {
-    use io::Write;
-    let _ = writeln!(io::stderr(), "{error}");
+    /// Writes to standard error. If that is closed, too, the message is lost.
+    fn print(&self) {
+        let _ = writeln!(io::stderr(), "{}", self.printable());
+    }
+
+    /// The message, without characters that a terminal obeys.
+    fn printable(&self) -> String {
+        let message = self.to_string();
+        match self.cause {
+            Cause::Faults(_) => printable_lines(&message),
+            _ => printable(&message),
+        }
+    }
 }
 
 impl From<Faults> for Error {

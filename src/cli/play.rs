@@ -103,7 +103,7 @@ fn say_farewell(Farewell { done, trouble }: &Farewell, damage: Option<String>) {
         _ = writeln!(io::stdout(), "{done}");
     }
     if let Some(sentence) = trouble.clone().or(damage) {
-        _ = writeln!(io::stderr(), "cellcaster: {sentence}");
+        Error::machine(sentence).warn();
     }
 }
 

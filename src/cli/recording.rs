@@ -2,6 +2,7 @@
 
 use std::fs::{self, File, OpenOptions};
 use std::io::{self, Write};
+use std::mem;
 use std::path::{Path, PathBuf};
 use std::sync::{Arc, Mutex, MutexGuard, PoisonError};
 use std::time::Instant;
@@ -10,6 +11,7 @@ use ratatui::layout::Size;
 
 use super::Error;
 use super::asciicast::Asciicast;
+use super::output_file::unwritable;
 use crate::{app, game, terminal};
 
 /// The content of a file, by its extension.
@@ -30,12 +32,13 @@ pub(super) struct RecordingFile {
 }
 
 impl RecordingFile {
-    /// Creates an empty file. An existing file is replaced only if `overwrites` is set.
+    /// Creates an empty file. An existing file is replaced only if `overwrites` is set, and when
+    /// the game starts.
     pub(super) fn create(path: &Path, overwrites: bool) -> Result<Self, Error> {
         let kind = Kind::of(path)?;
         let mut options = OpenOptions::new();
         if overwrites {
-            options.create(true).truncate(true);
+            options.create(true).truncate(false);
         } else {
             options.create_new(true);
         }
@@ -70,11 +73,13 @@ impl RecordingFile {
     /// Returns the first error of writing, if there was one. A file without content is removed,
     /// because the game did not start.
     pub(super) fn finish(self) -> Result<(), Error> {
-        if fs::metadata(&self.path).is_ok_and(|file| file.is_file() && file.len() == 0) {
+        let mut state = self.output.lock();
+        let is_empty = || fs::metadata(&self.path).is_ok_and(|it| it.is_file() && it.len() == 0);
+        if is_empty() {
             // The empty file would prevent the next recording.
             _ = fs::remove_file(&self.path);
         }
-        match self.output.lock().fault.take() {
+        match state.fault.take() {
             None => Ok(()),
             Some(error) => Err(unwritable(&self.path, &error)),
         }
@@ -98,11 +103,6 @@ impl Kind {
     }
 }
 
-/// The error for a file that cannot be written.
-pub(super) fn unwritable(path: &Path, error: &io::Error) -> Error {
-    Error::machine(format!("{} can't be written: {error}", path.display()))
-}
-
 /// A file that accepts all writes and stores the first error. A full disk is reported after the
 /// game.
 #[derive(Clone, Debug)]
@@ -111,12 +111,14 @@ struct Output(Arc<Mutex<State>>);
 #[derive(Debug)]
 struct State {
     file: File,
+    /// Whether nothing has been written yet, and the file may still have its old content.
+    is_untouched: bool,
     fault: Option<io::Error>,
 }
 
 impl Output {
     fn to(file: File) -> Self {
-        Self(Arc::new(Mutex::new(State { file, fault: None })))
+        Self(Arc::new(Mutex::new(State { file, is_untouched: true, fault: None })))
     }
 
     fn lock(&self) -> MutexGuard<'_, State> {
@@ -124,11 +126,21 @@ impl Output {
     }
 }
 
+impl State {
+    fn write(&mut self, bytes: &[u8]) -> io::Result<()> {
+        // A pipe or a device has no length.
+        if mem::take(&mut self.is_untouched) && self.file.metadata()?.is_file() {
+            self.file.set_len(0)?;
+        }
+        self.file.write_all(bytes)
+    }
+}
+
 impl Write for Output {
     fn write(&mut self, bytes: &[u8]) -> io::Result<usize> {
         let mut state = self.lock();
         if state.fault.is_none() {
-            state.fault = state.file.write_all(bytes).err();
+            state.fault = state.write(bytes).err();
         }
         Ok(bytes.len())
     }

@@ -1,7 +1,6 @@
 //! `cellcaster replay`: plays a script off screen into a recording.
 
 use std::cell::Cell;
-use std::fs::File;
 use std::io::{self, BufWriter, Write};
 use std::rc::Rc;
 use std::time::Duration;
@@ -14,7 +13,7 @@ use ratatui::buffer::Buffer;
 
 use super::arguments::Replay;
 use super::asciicast::Asciicast;
-use super::recording::unwritable;
+use super::output_file::OutputFile;
 use super::{Error, level, script, verify};
 use crate::app;
 use crate::app::Settings;
@@ -45,9 +44,9 @@ pub(super) fn run(options: &Replay) -> Result<(), Error> {
     match &options.cast {
         None => write(&mut replay, &script, options, BufWriter::new(io::stdout().lock()))
             .map_err(|error| Error::of_output(&error)),
-        Some(path) => File::create(path)
-            .and_then(|file| write(&mut replay, &script, options, BufWriter::new(file)))
-            .map_err(|error| unwritable(path, &error)),
+        Some(path) => {
+            OutputFile::create(path)?.write(|output| write(&mut replay, &script, options, output))
+        }
     }
 }
 

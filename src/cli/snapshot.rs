@@ -135,8 +135,9 @@ fn scene_camera(scene: &Scene, options: &Snapshot) -> Result<space::Camera, Erro
 }
 
 fn output<S: Renderable>(mut picture: Picture<'_, S>, options: &Snapshot) -> io::Result<()> {
-    let mut output = BufWriter::new(io::stdout().lock());
+    let output = io::stdout().lock();
     if options.explain {
+        let mut output = BufWriter::new(output);
         write!(output, "{}", picture.explain(size(options)))?;
         return output.flush();
     }
@@ -173,9 +174,10 @@ fn writer(
     output: impl Write + 'static,
 ) -> io::Result<Box<dyn Writer>> {
     Ok(match options.format {
-        Format::Text => Box::new(text::Text::new(output)),
-        Format::Ansi => Box::new(ansi::Ansi::new(output)),
-        Format::Json => Box::new(json::Json::new(output, size)?),
+        Format::Text => Box::new(text::Text::new(BufWriter::new(output))),
+        Format::Ansi => Box::new(ansi::Ansi::new(BufWriter::new(output))),
+        Format::Json => Box::new(json::Json::new(BufWriter::new(output), size)?),
+        // It has a buffer of its own, and reports no error of one behind it.
         Format::Png => Box::new(png::Png::new(output, size, options.cell_aspect)?),
     })
 }

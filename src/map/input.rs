@@ -17,11 +17,25 @@ pub(super) fn read_text(input: impl Read, name: &str) -> Result<String, Faults> 
     Faults::text_of(bytes, name, "map")
 }
 
+/// Opens the map file at `path`, which faults call `name`.
+///
+/// Only a regular file is opened: opening a pipe would wait for its other end, and a device may
+/// have no end.
+pub(super) fn open(path: &Path, name: &str) -> Result<File, Faults> {
+    let metadata = fs::metadata(path).map_err(|error| unreadable(name, &error))?;
+    if metadata.is_dir() {
+        let message = format!("{name} is a folder, not a map");
+        return Err(Faults::of_whole_file(name, message, "name a map file in it"));
+    }
+    if !metadata.is_file() {
+        let message = format!("{name} is a pipe or a device, not a map");
+        return Err(Faults::of_whole_file(name, message, "a map on standard input is called -"));
+    }
+    File::open(path).map_err(|error| unreadable(name, &error))
+}
+
 /// Reads at most `limit` bytes of a file.
 pub(super) fn read_up_to(path: &Path, limit: usize) -> io::Result<Vec<u8>> {
-    if fs::metadata(path)?.is_dir() {
-        return Err(io::ErrorKind::IsADirectory.into());
-    }
     let mut bytes = Vec::new();
     File::open(path)?.take(limit as u64).read_to_end(&mut bytes)?;
     Ok(bytes)
@@ -33,13 +47,10 @@ pub(super) fn too_large(name: &str) -> Faults {
     Faults::of_whole_file(name, message, "")
 }
 
-pub(super) fn unreadable(name: &str, error: &io::Error) -> Faults {
-    let (message, help) = match error.kind() {
-        io::ErrorKind::NotFound => (format!("there is no file {name}"), ""),
-        io::ErrorKind::IsADirectory => {
-            (format!("{name} is a folder, not a map"), "name a map file in it")
-        }
-        kind => (format!("{name} cannot be read: {kind}"), ""),
+fn unreadable(name: &str, error: &io::Error) -> Faults {
+    let message = match error.kind() {
+        io::ErrorKind::NotFound => format!("there is no file {name}"),
+        kind => format!("{name} cannot be read: {kind}"),
     };
-    Faults::of_whole_file(name, message, help)
+    Faults::of_whole_file(name, message, "")
 }

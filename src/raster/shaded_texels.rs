@@ -40,19 +40,20 @@ impl Default for ShadedTexels {
 
 impl ShadedTexels {
     /// The most texels of a range.
-    pub(crate) const MOST: usize = TEXELS - 1;
+    pub(crate) const MOST: usize = TEXELS - 2;
 
-    /// Whether there is room for `texels` more.
+    /// Whether there is room for a range of `texels` more.
     pub(crate) fn have_room_for(&self, texels: usize) -> bool {
-        self.used + texels < TEXELS
+        self.used + texels <= Self::MOST
     }
 
     /// A range of these texels, shaded, if there is room for them.
     #[inline]
     pub(crate) fn make(&mut self, texels: &[Rgb], shaded: impl Fn(Rgb) -> Rgb) -> ShadedRange {
+        // Rounding may put the first and the last row one texel too far.
+        self.add(&texels[..texels.len().min(1)], &shaded);
         let range = ShadedRange(self.next());
         self.add(texels, &shaded);
-        // Rounding may put the last row one texel too far.
         self.add(&texels[texels.len().saturating_sub(1)..], &shaded);
         range
     }

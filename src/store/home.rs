@@ -187,8 +187,13 @@ impl Home {
         let file = self.folder.join(name);
         let mut new = file.clone().into_os_string();
         new.push(".new");
-        self.disk.write(Path::new(&new), content)?;
-        self.disk.rename(Path::new(&new), &file)
+        let written = self.disk.write(Path::new(&new), content);
+        let renamed = written.and_then(|()| self.disk.rename(Path::new(&new), &file));
+        if renamed.is_err() {
+            // On a full disk, the part that was written would take the last room.
+            _ = self.disk.remove(Path::new(&new));
+        }
+        renamed
     }
 }
 

@@ -104,7 +104,7 @@ fn may_be_passed(world: &World, cell: Cell) -> bool {
 /// Whether `place` is in, or at the edge of, a cell whose content a ray may hit without entering
 /// the cell.
 fn stands_in_what_may_be_hit(world: &World, place: DVec2) -> bool {
-    let around = |along: f64| [along.floor() as i64, along.ceil() as i64 - 1];
+    let around = |along: f64| [along.floor() as i64, (along.ceil() - 1.0) as i64];
     let cells = around(place.x).map(|column| around(place.y).map(|row| (column, row)));
     cells.as_flattened().iter().any(|&(column, row)| {
         let tile = world.grid().tile(column, row);

@@ -30,14 +30,19 @@ pub struct PixelAspect(f64);
 impl PixelAspect {
     /// The aspect of square pixels.
     pub const SQUARE: Self = Self(1.0);
+    /// The greatest ratio of the longer side to the shorter one. Far beyond it, the slopes of rays
+    /// would not be finite.
+    pub const MOST: f64 = 1e6;
 
-    /// The aspect with this ratio; `None` unless it is finite and above 0.
+    /// The aspect with this ratio; `None` unless it is between 1 / [`PixelAspect::MOST`] and
+    /// [`PixelAspect::MOST`].
     pub fn new(height_over_width: f64) -> Option<Self> {
-        (height_over_width > 0.0 && height_over_width.is_finite())
-            .then_some(Self(height_over_width))
+        let is_possible = (1.0 / Self::MOST..=Self::MOST).contains(&height_over_width);
+        is_possible.then_some(Self(height_over_width))
     }
 
-    /// The height of a pixel over its width.
+    /// The height of a pixel over its width, from 1 / [`PixelAspect::MOST`] to
+    /// [`PixelAspect::MOST`].
     pub fn height_over_width(self) -> f64 {
         self.0
     }

@@ -136,8 +136,7 @@ impl Projection {
     /// The rise from the eye to `height`.
     pub(crate) fn rise_to(&self, height: f64) -> Rise {
         let rise = height - self.eye;
-        // Eye height has no rise through an infinitely long lens either.
-        Rise(if rise == 0.0 { 0.0 } else { rise * self.focal_length })
+        Rise(rise * self.focal_length)
     }
 
     /// The first row whose centre is not above a point with `rise` at distance `t`.
@@ -262,8 +261,6 @@ impl Projection {
     /// The first row with its centre at or below `y`; the number of rows if there is none.
     #[inline]
     fn first_row_below(&self, y: f64) -> u32 {
-        // The cast converts NaN to 0. A wall at infinite distance through an infinitely long lens
-        // gives NaN.
         let y = (y - 0.5).clamp(0.0, self.height);
         // On old processors `f64::ceil` is a call.
         let row = y as u32;
@@ -281,7 +278,7 @@ const FARTHEST: f64 = 4.0 * Heights::MOST;
 /// The number of rows from the middle of the picture down to the horizon: an integer, so that a
 /// change of pitch moves the picture by whole rows.
 fn rows_of_pitch(camera: &Camera, focal_length: f64) -> f64 {
-    /// Outside any picture. Through an infinitely long lens the offset would be infinite.
+    /// Outside any picture, and within the integers that a double can count.
     const FAR: f64 = 1e9;
     let slope = camera.pitch.slope();
     if slope == 0.0 { 0.0 } else { (slope * focal_length).round().clamp(-FAR, FAR) }

@@ -56,7 +56,10 @@ impl TextureStepper {
         let in_texels = |cells: f64| cells * count as f64;
         let texels_in_row = in_texels(height_of_row).min(MOST_TEXELS);
         // A smaller step would not exceed `HAIR`, and a row above the horizon would be below it.
-        let half_step = rounded(texels_in_row / 2.0 * TEXEL).max(2 * HAIR);
+        // From a horizon far outside the picture, it would add up to texels beyond the face.
+        let is_far = half_rows_to_horizon.abs() > FARTHEST_HORIZON;
+        let least = if is_far { 0 } else { 2 * HAIR };
+        let half_step = rounded(texels_in_row / 2.0 * TEXEL).max(least);
         // Positions far above or below the face wrap around, and return to the same value at the
         // face.
         let at_horizon = rounded(in_texels(at_eye) * TEXEL);
@@ -182,6 +185,8 @@ const MOST_TEXELS: f64 = 65_536.0;
 /// The offset that puts a row's centre on the line between two texels on the lower one, however the
 /// step was rounded: the rounding of 4096 rows, by half a unit each, is half as much.
 const HAIR: i64 = 1 << 12;
+/// In halves of a row: as far from the horizon, the least step adds up to 1/32 of a texel.
+const FARTHEST_HORIZON: f64 = (1_u64 << 22) as f64;
 
 #[cfg(test)]
 mod tests {
@@ -198,6 +203,21 @@ mod tests {
         for near in [0.0, f64::MIN_POSITIVE, 1e-30, 1e-9] {
             let texels = TextureStepper::new(90.0, near, wall(64));
             assert_eq!((texels.at(44), texels.at(45)), (31, 32), "{near}");
+        }
+    }
+
+    #[test]
+    fn however_far_the_horizon_is_a_row_on_the_wall_is_near_a_texel_of_it() {
+        for (rows, at_eye) in (0..31).flat_map(|power| [(1_i64 << power, 0.02), (1 << power, 0.9)])
+        {
+            // The top row of a picture in which the wall ends, and the horizon is `rows` below.
+            let of_face = [0.0, f64::MIN_POSITIVE, at_eye / (rows as f64 + 0.5)];
+            for height_of_row in of_face {
+                let half_rows = 2.0 * rows as f64;
+                let texels = TextureStepper::of_wall(half_rows, height_of_row, 1, at_eye);
+                let Range { start, end } = texels.places(&(0..1)).unwrap();
+                assert!(-1 <= start && end <= 2, "{rows}, {height_of_row}: {start}");
+            }
         }
     }
 

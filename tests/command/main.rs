@@ -3,6 +3,8 @@
 mod arguments;
 mod bench;
 mod descents;
+mod full_disk;
+mod hostile;
 mod recordings;
 mod replay;
 mod scores;

@@ -4,6 +4,7 @@
 mod costs;
 mod doors;
 mod exact_pictures;
+mod extremes;
 mod figures;
 mod gallery;
 mod guards;

@@ -1,6 +1,6 @@
 //! Three plots of the report on one page, with logarithmic axes.
 
-use std::io::{self, BufWriter, Write};
+use std::io::{self, Write};
 
 use ratatui::layout::Size;
 
@@ -10,10 +10,8 @@ use crate::lab::speed::{DrawingRow, Ground, SIDES, Scene};
 use crate::lab::wire::PipelineRow;
 
 /// Writes the page as an SVG file.
-pub(super) fn write(report: &Report, output: impl Write) -> io::Result<()> {
-    let mut output = BufWriter::new(output);
-    plot::write_svg(&page(report), &mut output)?;
-    output.flush()
+pub(super) fn write(report: &Report, output: &mut impl Write) -> io::Result<()> {
+    plot::write_svg(&page(report), output)
 }
 
 /// The width and the height of a plot.

@@ -13,7 +13,7 @@ use ratatui::layout::Size;
 use super::draw;
 use crate::cli::arguments::{self, Format, Snapshot};
 use crate::cli::{Error, level};
-use crate::fault::Faults;
+use crate::fault::{Faults, printable, printable_lines};
 use crate::map::Level;
 
 /// The interval between checks for changes.
@@ -31,7 +31,7 @@ pub(super) fn run(mut options: Snapshot) -> Result<(), Error> {
                 level = changed;
                 output.show(&level, &mut options)?;
             }
-            Some(Err(faults)) => output.report(&faults)?,
+            Some(Err(faults)) => output.report(faults)?,
             None if output.has_another_size(&options) => output.show(&level, &mut options)?,
             None => {}
         }
@@ -68,21 +68,20 @@ impl Output {
             && window().map(arguments::Size::cells) != options.size.map(arguments::Size::cells)
     }
 
-    fn report(&self, faults: &Faults) -> Result<(), Error> {
+    fn report(&self, faults: Faults) -> Result<(), Error> {
         if !self.is_terminal || !io::stderr().is_terminal() {
-            // If standard error is closed, too, the message is lost.
-            _ = writeln!(io::stderr(), "{faults}");
+            Error::from(faults).warn();
             return Ok(());
         }
         // At the top of the picture. The cursor stays below the picture.
         write("\x1b7\x1b[H")?;
-        let report = faults.to_string();
+        let report = printable_lines(&faults.to_string());
         let room = window().map_or(10, |size| usize::from(size.rows) / 2).max(1);
         for line in report.lines().take(room) {
             _ = write!(io::stderr(), "\x1b[2K{line}\r\n");
         }
         if report.lines().count() > room {
-            _ = write!(io::stderr(), "\x1b[2K{}\r\n", faults.summary());
+            _ = write!(io::stderr(), "\x1b[2K{}\r\n", printable(&faults.summary()));
         }
         write("\x1b8")
     }

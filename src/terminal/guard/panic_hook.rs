@@ -7,6 +7,7 @@ use std::sync::{Arc, Mutex, MutexGuard, Once, PoisonError};
 
 use super::super::Error;
 use super::Guard;
+use crate::fault::printable;
 
 /// The guard of the current session. The hook runs in all threads, so that this belongs to the
 /// process and not to the session.
@@ -47,7 +48,7 @@ fn install_hook() {
 
 /// Prints one sentence. If standard error is closed, nothing can be reported.
 fn report(info: &PanicHookInfo) {
-    let message = message(info.payload());
+    let message = printable(message(info.payload()));
     _ = match info.location() {
         Some(place) => writeln!(
             io::stderr(),

@@ -17,9 +17,14 @@ fn empty(name: &str) -> PathBuf {
 
 /// Plays a few steps of the daily run, and leaves. Returns the last screen.
 fn play_daily(data: &Path, options: &[&str]) -> String {
+    play_daily_by(&[PROGRAM], data, options)
+}
+
+/// As [`play_daily`], with `program` in front of the arguments.
+fn play_daily_by(program: &[&str], data: &Path, options: &[&str]) -> String {
     let environment = [&ENVIRONMENT[..], &[("CELLCASTER_DATA", data.to_str().unwrap())]].concat();
-    let arguments = [&["play", "--daily"], options].concat();
-    let mut player = Player::start((80, 24), Speaks::Plain, PROGRAM, arguments, &environment);
+    let arguments = [&program[1..], &["play", "--daily"], options].concat();
+    let mut player = Player::start((80, 24), Speaks::Plain, program[0], arguments, &environment);
     player.wait_for("? help");
     player.send("w");
     player.wait_for_rest();
@@ -28,6 +33,33 @@ fn play_daily(data: &Path, options: &[&str]) -> String {
     ending.assert_given_back();
     assert!(ending.status.success());
     player.text()
+}
+
+/// Runs the program where no file can have any content. Without the trap, the signal would end it.
+const WITHOUT_ROOM: [&str; 4] =
+    ["/bin/sh", "-c", "trap '' XFSZ; ulimit -f 0; exec \"$0\" \"$@\"", PROGRAM];
+
+#[test]
+fn a_full_disk_costs_a_sentence_and_nothing_that_was_kept() {
+    let folder = empty("full");
+    let progress = folder.join("progress.toml");
+    play_daily(&folder, &[]);
+    let today = fs::read_to_string(&progress).unwrap();
+    let date = today.split("[daily.").nth(1).and_then(|rest| rest.split(']').next()).unwrap();
+    // With the run of another day, there is something to lose.
+    let another_day = today.replace(date, "20200101");
+    fs::write(&progress, &another_day).unwrap();
+    let screen = play_daily_by(&WITHOUT_ROOM, &folder, &[]).replace('\n', "");
+    assert_eq!(screen.matches("cellcaster: ").count(), 1, "{screen}");
+    assert!(screen.contains("File too large") && screen.contains("not kept"), "{screen}");
+    assert_eq!(fs::read_to_string(&progress).unwrap(), another_day);
+    let names = fs::read_dir(&folder).unwrap().chain(fs::read_dir(folder.join("runs")).unwrap());
+    let names: Vec<_> = names.map(|entry| entry.unwrap().file_name()).collect();
+    assert!(!names.iter().any(|name| name.to_string_lossy().ends_with(".new")), "{names:?}");
+    // With room again, both days are kept.
+    play_daily(&folder, &[]);
+    let both = fs::read_to_string(&progress).unwrap();
+    assert!(both.contains("[daily.20200101]") && both.contains(date), "{both}");
 }
 
 #[test]

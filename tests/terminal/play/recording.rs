@@ -58,6 +58,26 @@ fn a_killed_game_leaves_a_whole_file() {
 }
 
 #[test]
+fn a_full_disk_costs_the_recording_and_no_game() {
+    let folder = Path::new(env!("CARGO_TARGET_TMPDIR"));
+    for name in ["full.cast", "full.script"] {
+        let link = folder.join(name);
+        _ = fs::remove_file(&link);
+        std::os::unix::fs::symlink("/dev/full", &link).unwrap();
+        let (mut game, path) = recorded(name);
+        walk_a_little(&game);
+        game.leave();
+        let ending = game.wait_for_end();
+        ending.assert_given_back();
+        assert_eq!(ending.status.code(), Some(1));
+        let screen = game.text().replace('\n', "");
+        assert_eq!(screen.matches("cellcaster: ").count(), 1, "{screen}");
+        assert!(screen.contains("can't be written: No space left on device"), "{screen}");
+        assert!(path.is_symlink());
+    }
+}
+
+#[test]
 fn a_recorded_walk_replays_to_the_same_picture() {
     let (mut game, path) = recorded("walk.script");
     walk_a_little(&game);

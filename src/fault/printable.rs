@@ -1,0 +1,46 @@
+//! Printable text: what a terminal would obey is shown as an escape.
+//!
+//! Names of files and values of options may hold any character. All text on standard error goes
+//! through [`printable`] or [`printable_lines`].
+
+/// `text` on one line, with escapes such as `\u{1b}` for characters that do not print.
+pub(crate) fn printable(text: &str) -> String {
+    text.chars().fold(String::with_capacity(text.len()), |mut shown, c| {
+        if does_print(c) {
+            shown.push(c);
+        } else {
+            shown.extend(c.escape_debug());
+        }
+        shown
+    })
+}
+
+/// As [`printable`], with the line breaks of `text` as they are.
+pub(crate) fn printable_lines(text: &str) -> String {
+    text.split('\n').map(printable).collect::<Vec<_>>().join("\n")
+}
+
+/// Whether `c` is neither a control character nor one that changes the direction of the characters
+/// after it ("Trojan Source: Invisible Vulnerabilities", Boucher and Anderson, 2021).
+fn does_print(c: char) -> bool {
+    !c.is_control() && !matches!(c, '\u{202a}'..='\u{202e}' | '\u{2066}'..='\u{2069}')
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn control_characters_are_shown_and_nothing_else_changes() {
+        assert_eq!(printable("a\u{1b}[31m\r\n\u{9b}\u{7f}\0"), r"a\u{1b}[31m\r\n\u{9b}\u{7f}\0");
+        assert_eq!(printable("\u{202e}live"), r"\u{202e}live");
+        for text in ["", r#""it's" C:\maps"#, "Flur – 廊下", "e\u{301}"] {
+            assert_eq!(printable(text), text);
+        }
+    }
+
+    #[test]
+    fn lines_stay_lines() {
+        assert_eq!(printable_lines("one\ntwo\u{7}\n"), "one\ntwo\\u{7}\n");
+    }
+}
