@@ -205,9 +205,8 @@ impl Pen {
         &mut self.frame
     }
 
-    /// Draws text. A control character is written as a space.
+    /// Draws text without control characters.
     pub(super) fn draw_text(&mut self, position: Position, text: &str, style: Style) {
-        let text = if text.chars().any(char::is_control) { " " } else { text };
         self.move_to(position);
         self.set_style(style);
         self.frame().push_text(text.as_bytes());

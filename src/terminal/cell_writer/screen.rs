@@ -5,7 +5,7 @@ mod canvas;
 use std::cell::Cell as Place;
 
 use ratatui::backend::ClearType;
-use ratatui::buffer::Cell;
+use ratatui::buffer::{Cell, CellWidth};
 use ratatui::layout::{Position, Size};
 
 use super::ascii;
@@ -150,9 +150,17 @@ impl Screen {
         }
     }
 
+    /// Sets an intricate target, and blanks those that it covers: ratatui does not send a covered
+    /// cell, and need not send it when it is uncovered.
     #[cold]
     fn want_intricate(&mut self, place: usize, cell: &Cell) {
         let y = place / self.width;
+        let end = place + usize::from(cell.cell_width());
+        if end > (y + 1) * self.width {
+            self.targets[place] = PackedCell::blank(cell, &mut self.glyph_table);
+            return;
+        }
+        self.targets[place + 1..end].fill(PackedCell::BLANK);
         self.intricate[y] = true;
         self.wanted.resize(self.targets.len(), Cell::EMPTY);
         if self.wanted[place] != *cell {

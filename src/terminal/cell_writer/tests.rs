@@ -1,4 +1,5 @@
 mod support;
+mod symbols;
 
 use proptest::prelude::*;
 use ratatui::Terminal;
