@@ -123,7 +123,20 @@ impl Screen {
         };
         let cells = cells.start.min(end)..cells.end.min(end);
         self.shown[cells.clone()].fill(PackedCell::BLANK);
-        self.targets[cells].fill(PackedCell::BLANK);
+        self.targets[cells.clone()].fill(PackedCell::BLANK);
+        self.forget_cut(cells.start);
+        self.forget_cut(cells.end);
+    }
+
+    /// Forgets a row that an erased region begins or ends in, at `place`, if it may show a wide
+    /// character: half of it may have been erased.
+    fn forget_cut(&mut self, place: usize) {
+        let width = self.width.max(1);
+        let y = place / width;
+        if place % width > 0 && self.intricate[y] {
+            self.shown[y * width..(y + 1) * width].fill(PackedCell::UNKNOWN);
+            self.exact[y] = false;
+        }
     }
 
     /// Sets the target of a cell; does nothing off the screen.

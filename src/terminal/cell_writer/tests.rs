@@ -1,3 +1,4 @@
+mod erasing;
 mod support;
 mod symbols;
 
