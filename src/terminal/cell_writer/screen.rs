@@ -151,15 +151,24 @@ impl Screen {
 
     #[inline]
     fn set(&mut self, place: usize, cell: &Cell) {
-        let target = if self.is_ascii {
-            let character = ascii::substitute(cell.symbol());
-            PackedCell::of_glyph(character, Style::of(cell), &mut self.glyph_table)
-        } else {
-            PackedCell::of(cell, &mut self.glyph_table)
-        };
+        if self.is_ascii {
+            return self.set_ascii_cell(place, cell.clone());
+        }
+        let target = PackedCell::of(cell, &mut self.glyph_table);
         self.targets[place] = target;
         if target.is_intricate() {
             self.want_intricate(place, cell);
+        }
+    }
+
+    /// Sets a target to the ASCII substitute of `cell`.
+    fn set_ascii_cell(&mut self, place: usize, mut cell: Cell) {
+        let character = ascii::substitute(cell.symbol());
+        cell.set_char(character);
+        let style = Style::of(&cell);
+        self.targets[place] = PackedCell::of_glyph(character, style, &mut self.glyph_table);
+        if self.targets[place].is_intricate() {
+            self.want_intricate(place, &cell);
         }
     }
 

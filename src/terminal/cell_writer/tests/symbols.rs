@@ -150,3 +150,45 @@ fn a_wide_character_in_the_last_column_is_a_space() {
         assert_shown(&screen, &expected);
     }
 }
+
+/// Glyphs without an id are intricate, and so are their substitutes.
+#[test]
+fn substitutes_in_ascii_are_shown_even_without_ids() {
+    let size = Size::new(64, 64);
+    let screen = support::Screen::new(size);
+    let mut writer = CellWriter::new(screen.clone(), size);
+    writer.draw_frame(|screen| {
+        let places = (0..64_u16).flat_map(|y| (0..64).map(move |x| (x, y)));
+        for ((x, y), letter) in places.zip('\u{10000}'..) {
+            screen.draw_character(x, y, letter, [Color::Reset; 2]);
+        }
+    });
+    writer.flush().unwrap();
+    writer.set_ascii(true);
+    let unfit: Vec<_> = UNFIT.into_iter().chain(["字", "é", "x"]).collect();
+    for _ in 0..2 {
+        writer.draw_frame(|screen| {
+            for (x, symbol) in (0..).zip(&unfit) {
+                let mut cell = Buffer::empty(Rect::new(x, 0, 1, 1));
+                cell.content[0].set_symbol(symbol);
+                screen.draw_widget(Picture(&cell), cell.area);
+                let character = symbol.chars().next().unwrap_or(' ');
+                screen.draw_character(x, 1, character, [Color::Red; 2]);
+            }
+        });
+        writer.flush().unwrap();
+    }
+    let mut expected = Buffer::empty(size.into());
+    for x in 0..unfit.len() as u16 {
+        let symbol = if x == 12 {
+            "x"
+        } else if x == 9 {
+            " "
+        } else {
+            "?"
+        };
+        expected[(x, 0)].set_symbol(symbol);
+        expected[(x, 1)].set_symbol(symbol).set_fg(Color::Red).set_bg(Color::Red);
+    }
+    assert_shown(&screen, &expected);
+}
