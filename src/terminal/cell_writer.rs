@@ -30,6 +30,7 @@ mod screen;
 mod shared;
 mod shift;
 mod style;
+mod symbol;
 mod trellis;
 
 use std::io::Write;
@@ -53,7 +54,9 @@ use super::fidelity::Fidelity;
 /// A ratatui backend that writes to `W`.
 ///
 /// The colours and the modifiers bold, dim, italic, underlined and reversed are written; ratatui's
-/// other modifiers are left out. A control character in a cell is written as a space.
+/// other modifiers are left out. A cell whose text contains a control character or has no width is
+/// written as a space, and so is a wide character that the last column would cut. A wide character
+/// covers the cells after it; when it goes, they are blank until they are drawn.
 ///
 /// ```
 /// use cellcaster::terminal::CellWriter;

@@ -57,7 +57,11 @@ impl<W: Write> Backend for CellWriter<W> {
 
     fn clear_region(&mut self, region: ClearType) -> io::Result<()> {
         self.pen.set_style(Style::RESET);
-        self.screen.clear(region, self.pen.position().unwrap_or(Position::ORIGIN));
+        let cursor = match region {
+            ClearType::All => Position::ORIGIN,
+            _ => self.pen.settle(),
+        };
+        self.screen.clear(region, cursor);
         let region = match region {
             ClearType::All => terminal::ClearType::All,
             ClearType::AfterCursor => terminal::ClearType::FromCursorDown,

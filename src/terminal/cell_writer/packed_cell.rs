@@ -7,11 +7,12 @@
 
 use std::fmt;
 
-use ratatui::buffer::{Cell, CellWidth};
+use ratatui::buffer::Cell;
 use ratatui::style::Color;
 
 use super::glyph_table::{Glyph, GlyphId, GlyphTable};
 use super::style::{Shade, Style};
+use super::symbol::Symbol;
 use crate::color::Rgb;
 
 /// A character that shows at most two colours, each in a whole half of its cell.
@@ -111,8 +112,13 @@ impl PackedCell {
         let (symbol, style) = (cell.symbol(), Style::of(cell));
         match BlockElement::of(symbol) {
             Some(element) => Self::of_element(element, style, glyph_table),
-            None => Self::of_symbol(cell, style, glyph_table),
+            None => Self::of_symbol(Symbol::of(cell), style, glyph_table),
         }
+    }
+
+    /// A space in the style of `cell`.
+    pub(super) fn blank(cell: &Cell, glyph_table: &mut GlyphTable) -> Self {
+        Self::of_element(BlockElement::Space, Style::of(cell), glyph_table)
     }
 
     /// A cell of two colours, the first above the second.
@@ -131,16 +137,18 @@ impl PackedCell {
         Self::of_halves(pixels.map(Shade::of_pixel))
     }
 
-    /// A character one cell wide, in a text and a background colour.
+    /// A character in a text and a background colour.
     pub(super) fn of_character(
         character: char,
         colors: [Color; 2],
         glyph_table: &mut GlyphTable,
     ) -> Self {
         let style = Style::in_colors(colors);
-        match BlockElement::of(character.encode_utf8(&mut [0; 4])) {
+        let mut encoded = [0; 4];
+        let symbol = &*character.encode_utf8(&mut encoded);
+        match BlockElement::of(symbol) {
             Some(element) => Self::of_element(element, style, glyph_table),
-            None => Self::of_glyph(character, style, glyph_table),
+            None => Self::of_symbol(Symbol::of_text(symbol), style, glyph_table),
         }
     }
 
@@ -152,13 +160,11 @@ impl PackedCell {
         }
     }
 
-    fn of_symbol(cell: &Cell, style: Style, glyph_table: &mut GlyphTable) -> Self {
-        let mut characters = cell.symbol().chars();
-        match (characters.next(), characters.next()) {
-            (Some(character), None) if character.is_ascii_graphic() || cell.cell_width() == 1 => {
-                Self::of_glyph(character, style, glyph_table)
-            }
-            _ => Self::INTRICATE,
+    fn of_symbol(symbol: Symbol, style: Style, glyph_table: &mut GlyphTable) -> Self {
+        match symbol {
+            Symbol::Blank => Self::of_element(BlockElement::Space, style, glyph_table),
+            Symbol::Character(character) => Self::of_glyph(character, style, glyph_table),
+            Symbol::Intricate => Self::INTRICATE,
         }
     }
 

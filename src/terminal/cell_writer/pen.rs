@@ -91,6 +91,14 @@ impl Pen {
         self.cursor().filter(|cursor| cursor.x < self.size.width)
     }
 
+    /// The position of the cursor, which moves to the first cell if its position is unknown.
+    pub(super) fn settle(&mut self) -> Position {
+        self.position().unwrap_or_else(|| {
+            self.move_to(Position::ORIGIN);
+            Position::ORIGIN
+        })
+    }
+
     /// Sets the size of the terminal.
     pub(super) fn set_size(&mut self, size: Size) {
         self.size = size;
@@ -124,8 +132,13 @@ impl Pen {
         _ = queue!(self.frame(), command);
     }
 
+    /// Moves the cursor to `target`, or to the nearest cell of the screen, as the terminal would.
     pub(super) fn move_to(&mut self, target: Position) {
         let (cursor, size) = (self.cursor(), self.size);
+        let target = Position {
+            x: target.x.min(size.width.saturating_sub(1)),
+            y: target.y.min(size.height.saturating_sub(1)),
+        };
         let mut piece = self.frame().piece();
         motion::push(cursor, target, size, &mut piece);
         piece.finish();
@@ -205,9 +218,8 @@ impl Pen {
         &mut self.frame
     }
 
-    /// Draws text. A control character is written as a space.
+    /// Draws text without control characters.
     pub(super) fn draw_text(&mut self, position: Position, text: &str, style: Style) {
-        let text = if text.chars().any(char::is_control) { " " } else { text };
         self.move_to(position);
         self.set_style(style);
         self.frame().push_text(text.as_bytes());

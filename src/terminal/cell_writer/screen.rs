@@ -5,7 +5,7 @@ mod canvas;
 use std::cell::Cell as Place;
 
 use ratatui::backend::ClearType;
-use ratatui::buffer::Cell;
+use ratatui::buffer::{Cell, CellWidth};
 use ratatui::layout::{Position, Size};
 
 use super::ascii;
@@ -123,7 +123,20 @@ impl Screen {
         };
         let cells = cells.start.min(end)..cells.end.min(end);
         self.shown[cells.clone()].fill(PackedCell::BLANK);
-        self.targets[cells].fill(PackedCell::BLANK);
+        self.targets[cells.clone()].fill(PackedCell::BLANK);
+        self.forget_cut(cells.start);
+        self.forget_cut(cells.end);
+    }
+
+    /// Forgets a row that an erased region begins or ends in, at `place`, if it may show a wide
+    /// character: half of it may have been erased.
+    fn forget_cut(&mut self, place: usize) {
+        let width = self.width.max(1);
+        let y = place / width;
+        if place % width > 0 && self.intricate[y] {
+            self.shown[y * width..(y + 1) * width].fill(PackedCell::UNKNOWN);
+            self.exact[y] = false;
+        }
     }
 
     /// Sets the target of a cell; does nothing off the screen.
@@ -138,21 +151,38 @@ impl Screen {
 
     #[inline]
     fn set(&mut self, place: usize, cell: &Cell) {
-        let target = if self.is_ascii {
-            let character = ascii::substitute(cell.symbol());
-            PackedCell::of_glyph(character, Style::of(cell), &mut self.glyph_table)
-        } else {
-            PackedCell::of(cell, &mut self.glyph_table)
-        };
+        if self.is_ascii {
+            return self.set_ascii_cell(place, cell.clone());
+        }
+        let target = PackedCell::of(cell, &mut self.glyph_table);
         self.targets[place] = target;
         if target.is_intricate() {
             self.want_intricate(place, cell);
         }
     }
 
+    /// Sets a target to the ASCII substitute of `cell`.
+    fn set_ascii_cell(&mut self, place: usize, mut cell: Cell) {
+        let character = ascii::substitute(cell.symbol());
+        cell.set_char(character);
+        let style = Style::of(&cell);
+        self.targets[place] = PackedCell::of_glyph(character, style, &mut self.glyph_table);
+        if self.targets[place].is_intricate() {
+            self.want_intricate(place, &cell);
+        }
+    }
+
+    /// Sets an intricate target, and blanks those that it covers: ratatui does not send a covered
+    /// cell, and need not send it when it is uncovered.
     #[cold]
     fn want_intricate(&mut self, place: usize, cell: &Cell) {
         let y = place / self.width;
+        let end = place + usize::from(cell.cell_width());
+        if end > (y + 1) * self.width {
+            self.targets[place] = PackedCell::blank(cell, &mut self.glyph_table);
+            return;
+        }
+        self.targets[place + 1..end].fill(PackedCell::BLANK);
         self.intricate[y] = true;
         self.wanted.resize(self.targets.len(), Cell::EMPTY);
         if self.wanted[place] != *cell {

@@ -1,4 +1,6 @@
+mod erasing;
 mod support;
+mod symbols;
 
 use proptest::prelude::*;
 use ratatui::Terminal;

@@ -7,10 +7,8 @@ use ratatui::layout::Rect;
 use ratatui::style::Color;
 use ratatui::widgets::Widget;
 
-use super::super::ascii;
 use super::super::packed_cell::PackedCell;
 use super::super::shared;
-use super::super::style::Style;
 use super::Screen;
 use crate::canvas::Canvas;
 use crate::color::Rgb;
@@ -86,11 +84,10 @@ impl Screen {
 
     /// Draws the ASCII substitute of `character`.
     fn draw_ascii(&mut self, x: u16, y: u16, character: char, colors: [Color; 2]) {
-        let character = ascii::substitute(character.encode_utf8(&mut [0; 4]));
-        let target =
-            PackedCell::of_glyph(character, Style::in_colors(colors), &mut self.glyph_table);
-        if let Some(place) = self.targets_from(x, y).first_mut() {
-            *place = target;
+        if !self.targets_from(x, y).is_empty() {
+            let mut cell = Cell::EMPTY;
+            cell.set_char(character).set_fg(colors[0]).set_bg(colors[1]);
+            self.set_ascii_cell(usize::from(y) * self.width + usize::from(x), cell);
         }
     }
 
