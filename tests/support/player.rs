@@ -285,9 +285,10 @@ impl Player {
         raw.make_raw();
         tcsetattr(&self.terminal, OptionalActions::Now, &raw).unwrap();
         let mut input = vec![0; 4096];
-        let length = match is_ready(&self.terminal, PollFlags::IN) {
-            true => rustix::io::read(&self.terminal, &mut input).unwrap(),
-            false => 0,
+        let length = if is_ready(&self.terminal, PollFlags::IN) {
+            rustix::io::read(&self.terminal, &mut input).unwrap()
+        } else {
+            0
         };
         input.truncate(length);
         input
