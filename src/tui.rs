@@ -42,3 +42,6 @@ pub use glyphs::{CellAspect, GlyphMode};
 pub use held::{CHORD, HeldKeys, Hold, LINGER, Press};
 pub use minimap::{Explored, MapMark, Minimap};
 pub use wanted::{tap_steps, wanted};
+
+#[cfg(test)]
+mod tests;

@@ -47,13 +47,13 @@ pub(crate) fn draw(
     let lines = lines.into_iter().find(fits).unwrap_or_else(|| vec![NAME.to_owned()]);
     let (width, height) = (lines[0].chars().count() as u16, lines.len() as u16);
     let blank = u16::from(picture.height >= height + LEAST_BELOW + 6);
-    let taken = height + 2 * blank;
+    let taken = (height + 2 * blank).min(picture.height);
     let band = Rect { height: taken, ..picture };
     let area = Rect {
         x: picture.x + (picture.width - width.min(picture.width)) / 2,
         y: picture.y + blank,
         width: width.min(picture.width),
-        height,
+        height: height.min(picture.height),
     };
     let style = style(depth);
     let text: Text = lines.into_iter().map(Line::from).collect();

@@ -105,9 +105,10 @@ impl Guard {
     }
 
     /// Writes `bytes` after all earlier bytes, as far as the terminal accepts them at once. The
-    /// rest is [written later](Self::write_queued).
-    pub(super) fn write(&self, bytes: &[u8]) -> io::Result<()> {
-        self.check_taken()?;
+    /// rest is [written later](Self::write_queued). After them, `changes` must be undone.
+    pub(super) fn write(&self, bytes: &[u8], changes: Changes) -> io::Result<()> {
+        let mut state = self.lock_taken()?;
+        state.changes = changes;
         self.recording().sent(bytes);
         let mut output_queue = self.output_queue();
         output_queue.push(bytes);
@@ -116,8 +117,14 @@ impl Guard {
 
     /// Writes the queued bytes, as far as the terminal accepts them at once.
     pub(super) fn write_queued(&self) -> io::Result<()> {
-        self.check_taken()?;
+        let _taken = self.lock_taken()?;
         self.output_queue().write_to(&self.device)
+    }
+
+    /// Reads as [`Device::read`] does.
+    pub(super) fn read(&self, buffer: &mut [u8]) -> io::Result<Option<usize>> {
+        let _taken = self.lock_taken()?;
+        self.device.read(buffer)
     }
 
     /// Whether the terminal has accepted all bytes.
@@ -137,12 +144,19 @@ impl Guard {
 
     /// Gives the terminal back, unless that was done before. Takes two seconds at most.
     pub(super) fn give_back(&self) {
+        self.give_back_and(|| ());
+    }
+
+    /// Gives the terminal back, unless that was done before, and then calls `end`. Threads that want to
+    /// write or read wait until both are done, so that none ends the program in another way.
+    pub(super) fn give_back_and(&self, end: impl FnOnce()) {
         let mut state = self.lock();
         if state.taken {
             state.taken = false;
             self.leave(&mut state);
             self.given_back.notify_all();
         }
+        end();
     }
 
     /// Waits until the terminal is given back; returns whether that happened within `timeout`.
@@ -152,8 +166,12 @@ impl Guard {
         !waited.unwrap_or_else(PoisonError::into_inner).0.taken
     }
 
-    fn check_taken(&self) -> io::Result<()> {
-        if self.is_taken() { Ok(()) } else { Err(io::Error::other(Error::given_back())) }
+    /// Locks the state of the terminal, which is taken: until the lock is released, no thread gives it
+    /// back. A thread that only looked before it wrote could write to a terminal that belongs to the
+    /// shell again.
+    fn lock_taken(&self) -> io::Result<MutexGuard<'_, State>> {
+        let state = self.lock();
+        if state.taken { Ok(state) } else { Err(io::Error::other(Error::given_back())) }
     }
 
     fn output_queue(&self) -> MutexGuard<'_, OutputQueue> {
@@ -168,25 +186,30 @@ impl Guard {
     /// Undoes all changes, in reverse order. After an error in one step, the others are still
     /// tried: nothing better can be done about it.
     fn leave(&self, state: &mut State) {
-        let text = state.changes.end(self.now());
-        if self.write_or_discard(&text).is_ok() {
-            self.discard_answers(&mut state.changes);
-            _ = self.write_or_discard(&sequence::of(LeaveAlternateScreen));
+        if self.output_queue().withholds(sequence::PUSH_KEY_FLAGS) {
+            state.changes.forget_key_flags();
         }
+        let text = state.changes.end(self.now());
+        let accepted = self.write_patiently(&text);
+        if !accepted.as_ref().is_ok_and(|&length| length == text.len()) {
+            // The frame that the terminal has not accepted gives way.
+            if accepted.is_ok_and(|length| length > 0) {
+                state.changes.doubt_key_flags();
+            }
+            _ = self.device.discard_output();
+            _ = self.write_patiently(&state.changes.end_after_loss());
+        }
+        self.discard_answers(&mut state.changes);
+        _ = self.write_patiently(&sequence::of(LeaveAlternateScreen));
+        _ = self.device.discard_input();
         _ = self.device.restore_attributes();
     }
 
-    /// Writes `text`, if necessary in place of a frame that the terminal has not accepted.
-    fn write_or_discard(&self, text: &str) -> io::Result<()> {
+    /// Writes `text`, and returns the length of the part that the terminal accepts in time.
+    fn write_patiently(&self, text: &str) -> io::Result<usize> {
         self.recording().sent(text.as_bytes());
-        let patiently = || {
-            let deadline = Instant::now() + WRITE_TIMEOUT;
-            self.device.write(text.as_bytes(), || Instant::now() < deadline)
-        };
-        patiently().or_else(|_| {
-            self.device.discard_output()?;
-            patiently()
-        })
+        let deadline = Instant::now() + WRITE_TIMEOUT;
+        self.device.write(text.as_bytes(), || Instant::now() < deadline)
     }
 
     /// Reads until every query is answered, so that the shell receives no answer and no key

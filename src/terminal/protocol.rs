@@ -74,6 +74,8 @@ pub struct Protocol {
     drawn: Option<Drawn>,
     extensions: Extensions,
     changes: Changes,
+    /// The number of frames that were sent before the keyboard flags were pushed.
+    frames_before_key_flags: u64,
 }
 
 /// What a frame shows.
@@ -126,6 +128,7 @@ impl Protocol {
             drawn: None,
             extensions: Extensions::default(),
             changes: Changes::default(),
+            frames_before_key_flags: 0,
         }
     }
 
@@ -163,6 +166,8 @@ impl Protocol {
     fn take_screen(&mut self) {
         let mut text = String::new();
         self.changes.push_start(&mut text);
+        self.frames_before_key_flags = self.flow.frames_sent();
+        self.confirm_key_flags();
         self.output.extend_from_slice(text.as_bytes());
     }
 

@@ -19,6 +19,8 @@ pub(super) fn of(command: impl Command) -> String {
 /// Requests all keys as escape codes, with presses, repeats and releases, and with shifted
 /// characters: the kitty keyboard protocol's flags 1, 2, 4 and 8.
 pub(super) const PUSH_KEY_FLAGS: &str = "\x1b[>15u";
+/// Clears the present keyboard flags, and leaves those that were pushed.
+pub(super) const CLEAR_KEY_FLAGS: &str = "\x1b[=0u";
 /// Restores the previous keyboard flags.
 pub(super) const POP_KEY_FLAGS: &str = "\x1b[<u";
 

@@ -19,7 +19,9 @@ use crate::color::palette::ColorDepth;
 ///
 /// During a session, the terminal is in raw mode and shows its alternate screen without a cursor.
 /// Its previous state is restored when the session is dropped, on a panic in any thread, and on the
-/// signals that end a program. A process has one session at a time.
+/// signals that end a program, except those that cannot be caught and those that report a fault of
+/// the program. Such a signal has its own effect afterwards, also if the program handles it itself. A
+/// process has one session at a time.
 #[derive(Debug)]
 pub struct Session {
     guard: Arc<Guard>,

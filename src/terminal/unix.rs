@@ -96,18 +96,15 @@ impl Device {
         Ok(written)
     }
 
-    /// Writes all of `bytes`. While the terminal accepts no more, waits as long as `go_on` returns
-    /// `true`.
-    pub(super) fn write(&self, bytes: &[u8], go_on: impl Fn() -> bool) -> io::Result<()> {
-        let mut rest = &bytes[self.write_some(bytes)?..];
-        while !rest.is_empty() {
-            if !go_on() {
-                return Err(io::ErrorKind::TimedOut.into());
-            }
+    /// Writes `bytes` and returns the length of the accepted part. While the terminal accepts no more,
+    /// waits as long as `go_on` returns `true`.
+    pub(super) fn write(&self, bytes: &[u8], go_on: impl Fn() -> bool) -> io::Result<usize> {
+        let mut written = self.write_some(bytes)?;
+        while written < bytes.len() && go_on() {
             self.wait_for_room()?;
-            rest = &rest[self.write_some(rest)?..];
+            written += self.write_some(&bytes[written..])?;
         }
-        Ok(())
+        Ok(written)
     }
 
     /// Waits until the terminal accepts bytes again, or for a short time.
@@ -120,6 +117,11 @@ impl Device {
     /// Discards written bytes that the terminal has not received.
     pub(super) fn discard_output(&self) -> io::Result<()> {
         Ok(tcflush(&self.output, QueueSelector::OFlush)?)
+    }
+
+    /// Discards received bytes that were not read.
+    pub(super) fn discard_input(&self) -> io::Result<()> {
+        Ok(tcflush(&self.input, QueueSelector::IFlush)?)
     }
 
     /// Reads the available bytes into `buffer` and returns their number: zero at the end of input,

@@ -223,39 +223,3 @@ impl<S: Renderable> StatefulWidget for FirstPerson<'_, S> {
         self.paint(view, 0, area, buffer);
     }
 }
-
-#[cfg(test)]
-mod tests {
-    use ratatui::style::Color;
-
-    use super::*;
-    use crate::map::builtin;
-    use crate::space::Scene;
-    use crate::world::FieldOfView;
-
-    /// Draws areas of 0 to 3 columns and rows in every glyph mode, each after a large one.
-    fn draw_small_areas<S: Renderable>(scene: &S) {
-        let camera = scene.start_camera(FieldOfView::default());
-        let mut view = View::<S>::default();
-        let mut buffer = Buffer::empty(Rect::new(0, 0, 9, 5));
-        for glyphs in [GlyphMode::Half, GlyphMode::Ascii, GlyphMode::Ramp] {
-            for (width, height) in
-                (0..4).flat_map(|width| (0..4).map(move |height| (width, height)))
-            {
-                let widget = FirstPerson::new(scene, &camera).glyphs(glyphs);
-                widget.render(buffer.area, &mut buffer, &mut view);
-                buffer.reset();
-                let area = Rect::new(1, 1, width, height);
-                widget.render(area, &mut buffer, &mut view);
-                let written = buffer.content.iter().filter(|cell| cell.bg != Color::Reset).count();
-                assert_eq!(written, area.area() as usize, "{glyphs:?} {width}x{height}");
-            }
-        }
-    }
-
-    #[test]
-    fn exactly_the_area_is_filled() {
-        draw_small_areas(&builtin::LEVELS[0].world().unwrap());
-        draw_small_areas(&Scene::default());
-    }
-}

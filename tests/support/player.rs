@@ -38,14 +38,46 @@ struct Shared {
 struct State {
     emulator: Emulator,
     reading: bool,
+    stall: Option<Stall>,
+}
+
+/// A terminal that stops reading.
+struct Stall {
+    /// It stops when it has received these bytes, and only then answers what came before.
+    at: &'static [u8],
+    answers: Vec<u8>,
 }
 
 impl Player {
     /// Starts `program` in a terminal of `columns` by `rows` that answers as `speaks`. The
     /// environment of the program consists of `TERM` and `environment`.
     pub(crate) fn start<A: AsRef<OsStr>>(
-        (columns, rows): (u16, u16),
+        size: (u16, u16),
         speaks: Speaks,
+        program: impl AsRef<OsStr>,
+        arguments: impl IntoIterator<Item = A>,
+        environment: &[(&str, &str)],
+    ) -> Self {
+        Self::start_in(size, (speaks, None), program, arguments, environment)
+    }
+
+    /// Does the same in a terminal that answers nothing until it has received `stalls_at`; then it
+    /// answers and stops reading.
+    pub(crate) fn start_stalling<A: AsRef<OsStr>>(
+        size: (u16, u16),
+        speaks: Speaks,
+        stalls_at: &'static [u8],
+        program: impl AsRef<OsStr>,
+        arguments: impl IntoIterator<Item = A>,
+        environment: &[(&str, &str)],
+    ) -> Self {
+        let stall = Stall { at: stalls_at, answers: Vec::new() };
+        Self::start_in(size, (speaks, Some(stall)), program, arguments, environment)
+    }
+
+    fn start_in<A: AsRef<OsStr>>(
+        (columns, rows): (u16, u16),
+        (speaks, stall): (Speaks, Option<Stall>),
         program: impl AsRef<OsStr>,
         arguments: impl IntoIterator<Item = A>,
         environment: &[(&str, &str)],
@@ -60,7 +92,7 @@ impl Player {
             .envs(environment.iter().copied())
             .spawn_borrowed(&terminal)
             .unwrap();
-        let state = State { emulator: Emulator::new(columns, rows, speaks), reading: true };
+        let state = State { emulator: Emulator::new(columns, rows, speaks), reading: true, stall };
         let shared = Arc::new(Shared { state: Mutex::new(state), changed: Condvar::new() });
         let pty = Arc::new(pty);
         thread::spawn({
@@ -134,6 +166,16 @@ impl Player {
         self.state().emulator.statuses().unanswered
     }
 
+    /// Waits until the terminal has stopped reading.
+    #[track_caller]
+    pub(crate) fn wait_until_stalled(&self) {
+        let deadline = Instant::now() + PATIENCE;
+        while self.state().reading {
+            assert!(Instant::now() < deadline, "the terminal never stalled");
+            thread::sleep(Duration::from_millis(5));
+        }
+    }
+
     /// Waits until the terminal, which does not read, has no room for another byte.
     #[track_caller]
     pub(crate) fn wait_until_full(&self) {
@@ -142,6 +184,16 @@ impl Player {
             assert!(Instant::now() < deadline, "the terminal never was full");
             thread::sleep(Duration::from_millis(5));
         }
+    }
+
+    /// Makes the terminal interpret and echo keys, as it did before the program.
+    pub(crate) fn interpret_keys(&self) {
+        tcsetattr(&self.terminal, OptionalActions::Now, &self.attributes_before).unwrap();
+    }
+
+    /// Whether the program has ended.
+    pub(crate) fn has_ended(&mut self) -> bool {
+        self.child.try_wait().unwrap().is_some()
     }
 
     /// Sends the program a signal.
@@ -227,16 +279,38 @@ impl Player {
             && now.local_modes == before.local_modes
     }
 
-    /// Whether there is unread input, which a shell would get.
-    fn leftover_input(&self) -> bool {
+    /// The unread input, which a shell would get.
+    fn leftover_input(&self) -> Vec<u8> {
         let mut raw = tcgetattr(&self.terminal).unwrap();
         raw.make_raw();
         tcsetattr(&self.terminal, OptionalActions::Now, &raw).unwrap();
-        is_ready(&self.terminal, PollFlags::IN)
+        let mut input = vec![0; 4096];
+        let length = if is_ready(&self.terminal, PollFlags::IN) {
+            rustix::io::read(&self.terminal, &mut input).unwrap()
+        } else {
+            0
+        };
+        input.truncate(length);
+        input
     }
 
     fn state(&self) -> MutexGuard<'_, State> {
         self.shared.state.lock().unwrap()
+    }
+}
+
+impl State {
+    /// The answers to send now, of which `answers` are the newest, and whether the terminal stops
+    /// reading then.
+    fn answers_to_send(&mut self, answers: Vec<u8>) -> (Vec<u8>, bool) {
+        let Some(stall) = &mut self.stall else { return (answers, false) };
+        stall.answers.extend(answers);
+        let mut received = self.emulator.bytes().windows(stall.at.len());
+        if received.any(|bytes| bytes == stall.at) {
+            (self.stall.take().unwrap().answers, true)
+        } else {
+            (Vec::new(), false)
+        }
     }
 }
 
@@ -254,7 +328,7 @@ pub(crate) struct Ending {
     pub(crate) status: ExitStatus,
     pub(crate) modes: Modes,
     pub(crate) attributes_restored: bool,
-    pub(crate) leftover_input: bool,
+    pub(crate) leftover_input: Vec<u8>,
 }
 
 impl Ending {
@@ -263,7 +337,8 @@ impl Ending {
     pub(crate) fn assert_given_back(&self) {
         assert_eq!(self.modes, Modes::default());
         assert!(self.attributes_restored, "the terminal's attributes are not as they were");
-        assert!(!self.leftover_input, "the shell would find input");
+        let input = self.leftover_input.escape_ascii();
+        assert!(self.leftover_input.is_empty(), "the shell would find {input}");
     }
 
     /// The signal that ended the program.
@@ -286,9 +361,13 @@ fn receive(mut pty: &Pty, shared: &Shared) {
         let Ok(count @ 1..) = pty.read(&mut buffer) else { return };
         let mut state = shared.state.lock().unwrap();
         let answers = state.emulator.process(&buffer[..count]);
+        let (answers, stalls) = state.answers_to_send(answers);
         drop(state);
         // The program may have ended without waiting for the answers.
         _ = pty.write_all(&answers);
+        if stalls {
+            shared.state.lock().unwrap().reading = false;
+        }
         shared.changed.notify_all();
     }
 }

@@ -20,5 +20,6 @@ mod recording;
 mod resting;
 mod settings;
 mod showing;
+mod signals;
 mod titles;
 mod watching;

@@ -1,6 +1,6 @@
 //! Every screen, in windows of many sizes and in every mode.
 
-use ratatui::buffer::Buffer;
+use ratatui::buffer::{Buffer, Cell};
 use ratatui::layout::Rect;
 use ratatui::style::Color;
 
@@ -8,6 +8,8 @@ use super::missions::{danger, dead, text};
 use super::titles::titled;
 use super::*;
 use crate::app::Offers;
+use crate::app::panels::{framed, leaving, message};
+use crate::canvas::Canvas;
 use crate::tui::GlyphMode;
 
 /// All screens, each with the game behind it.
@@ -65,6 +67,49 @@ fn every_screen_can_be_drawn_in_any_window_and_mode() {
                     assert!(!has_colors || depth != ColorDepth::Mono, "{name} {columns}x{rows}");
                 }
             }
+        }
+    }
+}
+
+/// The windows of 0 to 3 columns and rows, those about the smallest in which the game is played, and a
+/// large one.
+fn windows() -> impl Iterator<Item = Rect> {
+    let small = (0..4).flat_map(|width| (0..4).map(move |height| (width, height)));
+    let sizes = small.chain([(19, 6), (20, 5), (20, 6), (21, 7), (36, 12), (80, 24)]);
+    sizes.map(|(width, height)| Rect::new(0, 0, width, height))
+}
+
+#[test]
+fn every_screen_can_be_drawn_in_every_small_window_after_every_other() {
+    for (_, mut rig) in screens() {
+        for before in windows() {
+            for window in windows() {
+                rig.app.draw(&mut Buffer::empty(before));
+                rig.app.draw(&mut Buffer::empty(window));
+            }
+        }
+    }
+}
+
+#[test]
+fn panels_stay_in_areas_of_every_small_size() {
+    let mut rig = danger();
+    let screen = Rect::new(0, 0, 90, 30);
+    for size in windows() {
+        let area = Rect { x: 2, y: 2, ..size };
+        let mut drawn = Buffer::empty(screen);
+        let canvas = &mut drawn;
+        message(canvas, area, "title", "some text\nin two lines".into());
+        leaving(canvas, area, &rig.app.settings.bindings, "leaves");
+        framed(canvas, area, "title");
+        banner::draw(canvas, area, GlyphMode::Half, ColorDepth::True);
+        hud::draw_note(canvas, area, "a note that is long enough to be wrapped into lines");
+        rig.app.menu.draw(canvas, area);
+        let bindings = &rig.app.settings.bindings;
+        rig.app.help.draw(canvas, area, (&[], bindings), iter::once("a note".to_owned()));
+        canvas.draw_widget(&rig.app.status, Rect { height: area.height.min(1), ..area });
+        for position in screen.positions().filter(|&position| !area.contains(position)) {
+            assert_eq!(drawn[position], Cell::EMPTY, "{position} of {area}");
         }
     }
 }

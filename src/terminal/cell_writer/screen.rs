@@ -133,7 +133,7 @@ impl Screen {
     fn forget_cut(&mut self, place: usize) {
         let width = self.width.max(1);
         let y = place / width;
-        if place % width > 0 && self.intricate[y] {
+        if !place.is_multiple_of(width) && self.intricate[y] {
             self.shown[y * width..(y + 1) * width].fill(PackedCell::UNKNOWN);
             self.exact[y] = false;
         }

@@ -27,6 +27,13 @@ impl OutputQueue {
         Ok(())
     }
 
+    /// Whether `sequence` is among the bytes, and the device has not accepted all of it.
+    pub(super) fn withholds(&self, sequence: &str) -> bool {
+        let mut places = self.bytes.windows(sequence.len());
+        let last = places.rposition(|bytes| bytes == sequence.as_bytes());
+        last.is_some_and(|place| place + sequence.len() > self.taken)
+    }
+
     pub(super) fn is_empty(&self) -> bool {
         self.bytes.is_empty()
     }
@@ -34,5 +41,24 @@ impl OutputQueue {
     pub(super) fn clear(&mut self) {
         self.bytes.clear();
         self.taken = 0;
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn a_sequence_is_withheld_until_all_of_it_is_accepted() {
+        let mut queue = OutputQueue::default();
+        assert!(!queue.withholds("flags"));
+        queue.push(b"frame flags frame");
+        for (taken, withheld) in [(0, true), (6, true), (10, true), (11, false), (17, false)] {
+            queue.taken = taken;
+            assert_eq!(queue.withholds("flags"), withheld, "{taken} bytes");
+        }
+        queue.push(b" flags");
+        assert!(queue.withholds("flags"));
+        assert!(!queue.withholds("other"));
     }
 }

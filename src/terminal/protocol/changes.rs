@@ -8,7 +8,7 @@ use crossterm::terminal::{
 };
 
 use super::fences::Fences;
-use super::reports::Reports;
+use super::reports::{KeyFlags, Reports};
 use crate::terminal::sequence;
 
 /// What the program has changed in the terminal, and which answers may still arrive.
@@ -24,7 +24,7 @@ pub(in crate::terminal) struct Changes {
 
 impl Changes {
     /// Adds the sequences that take the screen: the alternate one, without a cursor.
-    pub(super) fn push_start(&self, text: &mut String) {
+    pub(super) fn push_start(&mut self, text: &mut String) {
         text.push_str(&sequence::of(EnterAlternateScreen));
         text.push_str(&sequence::of(Hide));
         // Long lines are cut, so that a narrower window does not scroll.
@@ -36,18 +36,44 @@ impl Changes {
     /// The sequences that undo all changes, in reverse order, but leave the alternate screen. If
     /// input may still arrive, a fence is among them, whose answer follows all of it.
     pub(in crate::terminal) fn end(&mut self, now: Duration) -> String {
-        let mut text = sequence::of(EndSynchronizedUpdate) + sequence::RESET_STYLE;
-        if self.palette_defined {
-            text.push_str(&sequence::give_palette_back());
-        }
+        let mut text = self.end_of_frame();
         self.reports.push_end(&mut text);
         if self.has_pending_reports() {
             text.push_str(sequence::QUERY_FENCE);
             self.fences.sent(now);
             self.awaits_statuses = false;
         }
-        text.push_str(&sequence::of(EnableLineWrap));
-        text.push_str(&sequence::of(Show));
+        push_end_of_screen(&mut text);
+        text
+    }
+
+    /// The same sequences for a terminal that does not read, some of whose input was discarded before
+    /// it was read. There is no fence among them, whose answer would arrive too late.
+    pub(in crate::terminal) fn end_after_loss(&mut self) -> String {
+        let mut text = self.end_of_frame();
+        self.reports.push_end_after_loss(&mut text);
+        push_end_of_screen(&mut text);
+        self.fences.forget();
+        text
+    }
+
+    /// Records that no keyboard flags of the program were sent: they need not be undone.
+    pub(in crate::terminal) fn forget_key_flags(&mut self) {
+        self.reports.key_flags = KeyFlags::Unset;
+    }
+
+    /// Records that the terminal may have received a part of what [`Changes::end`] has returned.
+    pub(in crate::terminal) fn doubt_key_flags(&mut self) {
+        if self.reports.key_flags == KeyFlags::Received {
+            self.reports.key_flags = KeyFlags::Pushed;
+        }
+    }
+
+    fn end_of_frame(&self) -> String {
+        let mut text = sequence::of(EndSynchronizedUpdate) + sequence::RESET_STYLE;
+        if self.palette_defined {
+            text.push_str(&sequence::give_palette_back());
+        }
         text
     }
 
@@ -57,4 +83,9 @@ impl Changes {
     fn has_pending_reports(&self) -> bool {
         self.reports.are_frequent() || self.awaits_statuses || self.fences.are_answered()
     }
+}
+
+fn push_end_of_screen(text: &mut String) {
+    text.push_str(&sequence::of(EnableLineWrap));
+    text.push_str(&sequence::of(Show));
 }

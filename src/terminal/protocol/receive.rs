@@ -4,6 +4,7 @@ use std::time::Duration;
 
 use ratatui::backend::Backend;
 
+use super::reports::KeyFlags;
 use super::{KeyReleases, Protocol};
 use crate::color::palette::ColorDepth;
 use crate::terminal::input::{Answer, Input};
@@ -113,12 +114,14 @@ impl Protocol {
             Answer::Status => {
                 self.flow.answered(now);
                 self.changes.awaits_statuses = self.flow.awaits_answers();
+                self.confirm_key_flags();
             }
             Answer::Fence => {
                 self.changes.fences.answered();
                 self.mouse.is_changing &= self.changes.fences.are_open();
                 self.flow.fence_answered(now);
                 self.changes.awaits_statuses = self.flow.awaits_answers();
+                self.confirm_key_flags();
                 self.settle_key_releases(false);
             }
         }
@@ -162,10 +165,23 @@ impl Protocol {
         if self.key_releases == KeyReleases::Asked {
             self.key_releases = KeyReleases::Settled;
             if agreed {
-                self.changes.reports.has_key_flags = true;
+                self.changes.reports.key_flags = KeyFlags::Pushed;
+                self.frames_before_key_flags = self.flow.frames_sent();
                 self.output.extend_from_slice(sequence::PUSH_KEY_FLAGS.as_bytes());
+                self.confirm_key_flags();
             }
             self.events.push_back(Event::KeyReleases(agreed));
+        }
+    }
+
+    /// Records that the terminal has received the keyboard flags, if it has answered all frames before
+    /// them.
+    pub(super) fn confirm_key_flags(&mut self) {
+        let key_flags = &mut self.changes.reports.key_flags;
+        if *key_flags == KeyFlags::Pushed
+            && self.flow.frames_answered() >= self.frames_before_key_flags
+        {
+            *key_flags = KeyFlags::Received;
         }
     }
 

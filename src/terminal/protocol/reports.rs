@@ -6,23 +6,36 @@ use crate::terminal::sequence;
 /// The enabled reports while the terminal is taken.
 #[derive(Clone, Copy, Debug, Default)]
 pub(super) struct Reports {
-    /// Whether keys are reported in the kitty protocol.
-    pub(super) has_key_flags: bool,
+    pub(super) key_flags: KeyFlags,
     /// The unit of mouse positions; `None` if the mouse is not reported.
     mouse: Option<MouseUnits>,
+}
+
+/// What is known about keyboard flags of the program's own, with which keys are reported in the kitty
+/// protocol.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+pub(super) enum KeyFlags {
+    /// There are none.
+    #[default]
+    Unset,
+    /// They were pushed, behind a frame that the terminal may not have read.
+    Pushed,
+    /// They were pushed, and the terminal has answered all frames before them.
+    Received,
 }
 
 impl Reports {
     /// Whether a key or mouse report may arrive at any time.
     pub(super) fn are_frequent(self) -> bool {
-        self.has_key_flags || self.mouse.is_some()
+        self.key_flags != KeyFlags::Unset || self.mouse.is_some()
     }
 
     /// Adds the sequences that enable the reports.
-    pub(super) fn push_start(self, text: &mut String) {
+    pub(super) fn push_start(&mut self, text: &mut String) {
         text.push_str(sequence::ENABLE_FOCUS_REPORTS);
-        if self.has_key_flags {
+        if self.key_flags != KeyFlags::Unset {
             text.push_str(sequence::PUSH_KEY_FLAGS);
+            self.key_flags = KeyFlags::Pushed;
         }
         push_mouse(text, None, self.mouse);
     }
@@ -30,10 +43,23 @@ impl Reports {
     /// Adds the sequences that disable the reports, in reverse order.
     pub(super) fn push_end(self, text: &mut String) {
         push_mouse(text, self.mouse, None);
-        if self.has_key_flags {
+        if self.key_flags != KeyFlags::Unset {
             text.push_str(sequence::POP_KEY_FLAGS);
         }
         text.push_str(sequence::DISABLE_FOCUS_REPORTS);
+    }
+
+    /// Does the same for a terminal that may have lost what was sent to it. A pop without its push
+    /// would take the flags of another program.
+    pub(super) fn push_end_after_loss(self, text: &mut String) {
+        let known = match self.key_flags {
+            KeyFlags::Pushed => {
+                text.push_str(sequence::CLEAR_KEY_FLAGS);
+                KeyFlags::Unset
+            }
+            known => known,
+        };
+        Self { key_flags: known, ..self }.push_end(text);
     }
 
     /// Sets whether and in which unit the mouse is reported.

@@ -49,6 +49,30 @@ fn what_is_taken_is_given_back() {
     assert_eq!(sent(&mut protocol, now), "\x1b[?1049l");
 }
 
+/// A pop without its push would take the flags of another program.
+#[test]
+fn keyboard_flags_are_popped_after_a_loss_only_if_they_were_received() {
+    let mut protocol = begun("xterm-kitty");
+    let at = Duration::from_millis;
+    sent(&mut protocol, at(0));
+    draw(&mut protocol, 'a');
+    sent(&mut protocol, at(10));
+    assert!(!protocol.changes().end_after_loss().contains('u'), "none were pushed");
+    protocol.receive(b"\x1b[?0u\x1b[0n\x1b[?62;22c", at(20));
+    assert!(sent(&mut protocol, at(20)).contains(sequence::PUSH_KEY_FLAGS));
+    let text = protocol.changes().end_after_loss();
+    assert!(!text.contains(sequence::POP_KEY_FLAGS) && text.contains(sequence::CLEAR_KEY_FLAGS));
+    assert!(!text.contains(sequence::QUERY_FENCE), "its answer would come too late");
+    // The answer to the frame before the flags.
+    protocol.receive(b"\x1b[0n", at(30));
+    let text = protocol.changes().end_after_loss();
+    assert!(text.contains(sequence::POP_KEY_FLAGS) && !text.contains(sequence::CLEAR_KEY_FLAGS));
+    // A part of the sequences that end the session may have arrived, the pop among them.
+    let mut changes = protocol.changes();
+    changes.doubt_key_flags();
+    assert!(!changes.end_after_loss().contains(sequence::POP_KEY_FLAGS));
+}
+
 #[test]
 fn a_terminal_that_reads_nothing_is_sent_nothing() {
     let mut protocol = begun("xterm");

@@ -55,7 +55,7 @@ impl Session {
 
     fn receive_input(&mut self) -> io::Result<()> {
         let mut buffer = [0; 1024];
-        let Some(count) = self.guard.device().read(&mut buffer)? else { return Ok(()) };
+        let Some(count) = self.guard.read(&mut buffer)? else { return Ok(()) };
         if count == 0 {
             self.protocol.push_event(Event::Quit(QuitReason::InputClosed));
             return Ok(());

@@ -132,13 +132,13 @@ impl Session {
     pub(super) fn send(&mut self) -> io::Result<()> {
         let now = self.guard.now();
         self.protocol.queue_frame(now);
-        // Before the bytes are sent: whatever gives the terminal back must undo them.
-        self.guard.set_changes(self.protocol.changes());
+        let changes = self.protocol.changes();
         let output = self.protocol.output(now);
         if output.is_empty() {
+            self.guard.set_changes(changes);
             return Ok(());
         }
-        let written = self.guard.write(output);
+        let written = self.guard.write(output, changes);
         output.clear();
         written?;
         self.update_written();

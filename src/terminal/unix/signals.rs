@@ -1,5 +1,10 @@
 //! Signals: a thread receives them, passes them on as bytes that can be polled, and ensures that
 //! the signals that end the program do so.
+//!
+//! On a signal that asks the program to end, the program may still keep what was played. On every
+//! other signal that would end it, the thread gives the terminal back and lets the signal have its
+//! own effect. Doing so for signals that report a fault of the program, such as SIGSEGV, was refused: the
+//! faulty instruction would run again and again before the thread is done.
 
 use std::io::{self, Read, Write};
 use std::mem;
@@ -12,8 +17,12 @@ use std::time::Duration;
 
 use rustix::event::{PollFd, PollFlags};
 use rustix::process::{Signal as ProcessSignal, getpgrp, getsid, kill_current_process_group};
-use signal_hook::consts::{SIGCONT, SIGHUP, SIGINT, SIGTERM, SIGTSTP, SIGWINCH};
-use signal_hook::iterator::{Handle, Signals as Incoming};
+use signal_hook::consts::{
+    SIGABRT, SIGALRM, SIGCONT, SIGHUP, SIGINT, SIGPROF, SIGQUIT, SIGSYS, SIGTERM, SIGTRAP, SIGTSTP,
+    SIGUSR1, SIGUSR2, SIGVTALRM, SIGWINCH, SIGXCPU, SIGXFSZ,
+};
+use signal_hook::iterator::exfiltrator::WithRawSiginfo;
+use signal_hook::iterator::{Handle, SignalsInfo};
 use signal_hook::low_level::emulate_default_handler;
 
 use super::super::QuitReason;
@@ -23,11 +32,20 @@ use super::wait;
 /// The time from a signal that should end the program until the program is ended by force.
 const GRACE: Duration = Duration::from_secs(1);
 
-/// The signals that end or stop the program by default.
-const EFFECTIVE: [i32; 4] = [SIGHUP, SIGINT, SIGTERM, SIGTSTP];
+/// The signals that ask the program to end or to stop, which they also do by default.
+const REQUESTS: [i32; 4] = [SIGHUP, SIGINT, SIGTERM, SIGTSTP];
+
+/// The signals that end the program by default and ask for nothing.
+const ENDS: [i32; 11] = [
+    SIGABRT, SIGALRM, SIGPROF, SIGQUIT, SIGSYS, SIGTRAP, SIGUSR1, SIGUSR2, SIGVTALRM, SIGXCPU,
+    SIGXFSZ,
+];
 
 /// The signals that have no effect by default.
 const NOTICES: [i32; 2] = [SIGCONT, SIGWINCH];
+
+/// Signals with what the system tells about each.
+type Incoming = SignalsInfo<WithRawSiginfo>;
 
 /// The meaning of a signal.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -60,7 +78,7 @@ impl Signals {
         receiver.set_nonblocking(true)?;
         sender.set_nonblocking(true)?;
         default_effects()?.store(false, Ordering::SeqCst);
-        let incoming = Incoming::new(EFFECTIVE.iter().chain(&NOTICES))?;
+        let incoming = Incoming::new(REQUESTS.iter().chain(&ENDS).chain(&NOTICES))?;
         let handle = incoming.handle();
         let thread = thread::Builder::new().name("signals".to_owned()).spawn({
             let guard = Arc::clone(guard);
@@ -137,25 +155,50 @@ fn default_effects() -> io::Result<&'static AtomicBool> {
         return Ok(flag);
     }
     let flag = Arc::new(AtomicBool::new(false));
-    for number in EFFECTIVE {
+    for number in REQUESTS.into_iter().chain(ENDS) {
         signal_hook::flag::register_conditional_default(number, Arc::clone(&flag))?;
     }
     Ok(FLAG.get_or_init(|| flag))
 }
 
 fn pass_on(mut incoming: Incoming, mut sender: &UnixStream, guard: &Guard) {
-    for number in incoming.forever() {
+    for info in incoming.forever() {
+        let number = info.si_signo;
+        if ENDS.contains(&number) {
+            if number != SIGQUIT || !is_from_system(info.si_code) {
+                end(number, guard);
+            }
+            continue;
+        }
         // Fails only if thousands of bytes are waiting; then no session reads them any more.
         _ = sender.write(&[number as u8]);
         if let Some(Signal::Quit(_)) = meaning(number) {
             guard.shut_down();
             if !guard.wait_until_given_back(GRACE) {
-                guard.give_back();
-                // Returns only if the number is not a signal.
-                _ = emulate_default_handler(number);
+                end(number, guard);
             }
         }
     }
+}
+
+/// Gives the terminal back and ends the program by this signal.
+fn end(number: i32, guard: &Guard) {
+    // Returns only if the number is not a signal.
+    guard.give_back_and(|| _ = emulate_default_handler(number));
+}
+
+/// Whether the system has sent a signal with this code, and not a process. SIGQUIT then comes from a key
+/// that was pressed while the terminal interpreted keys, for a moment before or after a stop; in raw
+/// mode, the same key does nothing.
+#[cfg(any(target_os = "linux", target_os = "android"))]
+fn is_from_system(code: i32) -> bool {
+    code > 0
+}
+
+/// Not known: other systems use the codes in other ways.
+#[cfg(not(any(target_os = "linux", target_os = "android")))]
+fn is_from_system(_: i32) -> bool {
+    false
 }
 
 fn meaning(number: i32) -> Option<Signal> {

@@ -77,6 +77,11 @@ impl Game {
         Self { player, speaks, map }
     }
 
+    /// The player without the game's map.
+    pub(crate) fn into_player(self) -> Player {
+        self.player
+    }
+
     /// Waits until the terminal reports releases.
     #[track_caller]
     pub(crate) fn wait_for_releases(&self) {

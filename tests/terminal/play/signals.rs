@@ -1,0 +1,162 @@
+//! Every signal at every moment, and terminals that stop reading or change their size all the time.
+
+use std::thread;
+use std::time::Duration;
+
+use rustix::process::Signal;
+
+use super::game::{ENVIRONMENT, Game, Key, PROGRAM};
+use crate::emulator::{Modes, Speaks};
+use crate::player::Player;
+
+/// The signals that ask the program to end. It keeps what was played, and then ends by itself.
+const REQUESTS: [Signal; 3] = [Signal::TERM, Signal::HUP, Signal::INT];
+
+/// Signals that end the program at once.
+const ENDS: [Signal; 7] = [
+    Signal::QUIT,
+    Signal::ABORT,
+    Signal::USR1,
+    Signal::USR2,
+    Signal::ALARM,
+    Signal::XCPU,
+    Signal::XFSZ,
+];
+
+const ENTERED: &[u8] = b"\x1b[?1049h";
+
+/// Starts a program for each signal, which must give the terminal back and then have its effect.
+#[track_caller]
+fn end_by_each_signal(start: impl Fn() -> Player) {
+    for signal in REQUESTS.into_iter().chain(ENDS) {
+        let mut player = start();
+        player.signal(signal);
+        let ending = player.wait_for_end();
+        ending.assert_given_back();
+        if REQUESTS.contains(&signal) {
+            assert!(ending.status.success(), "{signal:?}: {ending:?}");
+        } else {
+            assert_eq!(ending.signal(), Some(signal.as_raw()), "{ending:?}");
+        }
+    }
+}
+
+#[test]
+fn signals_end_it_at_once_after_the_start() {
+    end_by_each_signal(|| {
+        let arguments = ["play", "cellar"];
+        let player = Player::start((80, 24), Speaks::Kitty, PROGRAM, arguments, &ENVIRONMENT);
+        player.wait_until("took the terminal", |emulator| {
+            emulator.bytes().windows(ENTERED.len()).any(|bytes| bytes == ENTERED)
+        });
+        player
+    });
+}
+
+#[test]
+fn signals_end_it_at_rest() {
+    end_by_each_signal(|| {
+        let game = Game::start();
+        game.wait_for_releases();
+        game.into_player()
+    });
+}
+
+#[test]
+fn signals_end_it_in_motion() {
+    end_by_each_signal(|| {
+        let game = Game::start();
+        game.press(Key::Right);
+        game.wait_for_arrow("turned", |arrow| arrow.points != '→');
+        game.into_player()
+    });
+}
+
+#[test]
+fn signals_end_it_with_the_mouse() {
+    end_by_each_signal(|| {
+        let game = Game::start();
+        game.press(Key::Char('v'));
+        game.wait_until("took the mouse", |emulator| {
+            emulator.modes().mouse != Modes::default().mouse
+        });
+        game.into_player()
+    });
+}
+
+#[test]
+fn signals_end_it_in_a_terminal_that_answers_nothing() {
+    end_by_each_signal(|| Game::with(Speaks::Nothing, (80, 24), None, &[], &[]).into_player());
+}
+
+/// The key of SIGQUIT, pressed in a moment in which the terminal interprets keys.
+#[cfg(target_os = "linux")]
+#[test]
+fn a_key_does_not_end_it_while_the_terminal_interprets_keys() {
+    let mut game = Game::start();
+    game.wait_for_releases();
+    game.wait_for_rest();
+    game.interpret_keys();
+    game.send("\x1c");
+    thread::sleep(Duration::from_millis(300));
+    assert!(!game.has_ended());
+    // As after a stop.
+    game.signal(Signal::CONT);
+    game.press(Key::Right);
+    game.wait_for_arrow("turned", |arrow| arrow.points != '→');
+    game.leave();
+    let ending = game.wait_for_end();
+    ending.assert_given_back();
+    assert!(ending.status.success(), "{ending:?}");
+}
+
+/// The terminal answers while the first frame is too long for it: the program wants to push keyboard
+/// flags, and cannot.
+#[test]
+fn flags_that_were_not_pushed_are_not_popped() {
+    const FRAME: &[u8] = b"\x1b[?2026h";
+    for signal in [Signal::TERM, Signal::QUIT] {
+        let arguments = ["play", "cellar"];
+        let size = (400, 120);
+        let mut player =
+            Player::start_stalling(size, Speaks::Kitty, FRAME, PROGRAM, arguments, &ENVIRONMENT);
+        player.wait_until_stalled();
+        player.wait_until_full();
+        player.wait_until_read();
+        player.signal(signal);
+        player.wait_for_end().assert_given_back();
+        assert!(!player.bytes().windows(3).any(|bytes| bytes == b"\x1b[<"));
+    }
+}
+
+#[test]
+fn it_ends_in_a_terminal_that_does_not_read() {
+    for signal in [Signal::TERM, Signal::QUIT] {
+        let mut game = Game::with(Speaks::Plain, (300, 100), None, &[], &[]);
+        game.set_reading(false);
+        for _ in 0..20 {
+            game.send("\x1b[C");
+            thread::sleep(Duration::from_millis(20));
+        }
+        game.wait_until_full();
+        game.signal(signal);
+        let ending = game.wait_for_end();
+        assert_eq!(ending.modes, Modes::default());
+        assert!(ending.attributes_restored);
+    }
+}
+
+#[test]
+fn after_a_storm_of_resizes_the_picture_is_whole() {
+    let mut game = Game::start();
+    for number in 0..400_u16 {
+        game.resize(1 + number * 37 % 160, 1 + number * 23 % 50);
+        if number % 8 == 0 {
+            thread::sleep(Duration::from_millis(3));
+        }
+    }
+    game.resize(80, 24);
+    game.wait_for_picture(&[]);
+    game.leave();
+    game.wait_for_end().assert_given_back();
+}
