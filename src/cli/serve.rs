@@ -68,8 +68,6 @@ async fn serve(
     let admin = bind_admin(folder)?;
     let server = Server::bind(config, key).await.map_err(cannot)?;
     let address = server.address().map_err(cannot)?;
-    let text = invitation(address, &fingerprint);
-    io::stdout().write_all(text.as_bytes()).map_err(|error| Error::of_output(&error))?;
     let logging = Logging::begin(format, &filter);
     events::listening(address, &fingerprint);
 
@@ -77,6 +75,9 @@ async fn serve(
     let host =
         GameHost::new(server.config(), Arc::clone(&metrics), visitors.clone(), Box::new(store));
     let host = host.map_err(no_thread)?;
+    // The rooms take a moment to make. Those who are invited, and operators, are answered at once.
+    let text = invitation(address, &fingerprint);
+    io::stdout().write_all(text.as_bytes()).map_err(|error| Error::of_output(&error))?;
     let mut services = JoinSet::new();
     if let Some(listener) = metrics_listener {
         events::metrics_listening(listener.local_addr().map_err(cannot)?);
@@ -89,8 +90,9 @@ async fn serve(
         services.spawn(admin.serve(Operator { visitors, rooms, drain }));
     }
     services.spawn(configuration.follow(hangups, server.config(), logging));
+    let ending = host.ending();
     tokio::select! {
-        () = server.run(host, signals.first()) => {}
+        () = server.run(host, signals.first()) => ending.await,
         () = signals.second() => {}
     }
     // Else the process might end before the socket is removed.

@@ -11,6 +11,8 @@
 mod account;
 mod errands;
 mod results;
+#[cfg(test)]
+mod simulated;
 mod store_worker;
 mod visit;
 
@@ -22,13 +24,15 @@ use std::time::{Duration, SystemTime, UNIX_EPOCH};
 use tokio::time::{Instant, interval};
 
 use self::account::NamesInUse;
+#[cfg(test)]
+pub(super) use self::simulated::{Setup, Simulated, Visiting};
 use self::store_worker::StoreWorker;
 use self::visit::Visit;
 use super::governor::Governor;
 use super::line::Line;
 use super::load::Load;
 use super::room::{Catalog, Mode};
-use super::rooms::{RoomLimits, Rooms};
+use super::rooms::{Recordings, RoomLimits, Rooms};
 use super::summary::{RoomSummary, RoomWish};
 use super::{Departure, Host, Link, LiveConfig, Metrics, RoomRow, Visitor, Visitors};
 use crate::store::host::{HostStore, UnixTime};
@@ -38,6 +42,21 @@ use crate::world::Difficulty;
 #[derive(Debug)]
 pub struct GameHost {
     shared: Arc<Shared>,
+}
+
+/// The parts of a host.
+struct Parts {
+    live: LiveConfig,
+    metrics: Arc<Metrics>,
+    visitors: Visitors,
+    catalog: Catalog,
+    /// The rooms that are always there.
+    standing: Vec<RoomWish>,
+    recordings: Recordings,
+    load: Load,
+    store: StoreWorker,
+    /// Of all chance in rooms.
+    seed: u64,
 }
 
 /// What the drivers have in common.
@@ -71,31 +90,53 @@ impl GameHost {
         visitors: Visitors,
         store: Box<dyn HostStore>,
     ) -> io::Result<Self> {
-        let load = Arc::new(Load::new(Arc::clone(&metrics)));
+        let load = Load::new(Arc::clone(&metrics));
         let config = live.get();
+        Ok(Self::of(Parts {
+            visitors,
+            catalog: Catalog::builtin(),
+            standing: standing_rooms(),
+            recordings: config.recordings.clone().map_or(Recordings::Nowhere, Recordings::Folder),
+            load,
+            store: StoreWorker::start(store)?,
+            // Without random numbers from the system there would be no keys, either.
+            seed: getrandom::u64().unwrap_or_default(),
+            metrics,
+            live,
+        }))
+    }
+
+    fn of(parts: Parts) -> Self {
+        let Parts { live, metrics, visitors, catalog, standing, recordings, load, store, seed } =
+            parts;
+        let (config, load) = (live.get(), Arc::new(load));
         let limits = RoomLimits {
             most: config.rooms as usize,
             most_watchers: config.watchers as usize,
             closes_after: config.empty_room,
-            standing: standing_rooms(),
-            recordings: config.recordings.clone(),
+            standing,
+            recordings,
         };
-        // Without random numbers from the system there would be no keys, either.
-        let seed = getrandom::u64().unwrap_or_default();
-        let rooms = Rooms::new(limits, Arc::new(Catalog::builtin()), Arc::clone(&load), seed);
+        let rooms = Rooms::new(limits, Arc::new(catalog), Arc::clone(&load), seed);
         let shared = Arc::new(Shared {
             config: live,
             metrics,
             visitors,
             begun: Instant::now(),
             rooms,
-            store: StoreWorker::start(store)?,
+            store,
             names: NamesInUse::default(),
             load,
             next_guest: AtomicU32::new(1),
         });
         tokio::spawn(govern(Arc::downgrade(&shared)));
-        Ok(Self { shared })
+        Self { shared }
+    }
+
+    /// Ends the rooms after the last session, so that their recordings are whole.
+    pub fn ending(&self) -> impl Future<Output = ()> + use<> {
+        let rooms = self.shared.rooms.clone();
+        async move { rooms.end().await }
     }
 
     /// Lists the rooms, for an operator.
@@ -118,10 +159,13 @@ fn room_row(room: &RoomSummary) -> RoomRow {
 }
 
 impl Host for GameHost {
-    async fn serve(&self, visitor: Visitor, link: Link) -> Departure {
+    async fn serve(&self, visitor: Visitor, mut link: Link) -> Departure {
         let shared = Arc::clone(&self.shared);
         let status = match shared.log_in(&visitor).await {
-            Ok(known) => Visit::new(shared, visitor, known).run(link).await,
+            Ok(known) => {
+                let options = visit::options(&visitor);
+                Visit::new(shared, visitor, known, options).run(&mut link).await
+            }
             Err(sentence) => {
                 refuse(link, &sentence).await;
                 1

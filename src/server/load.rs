@@ -21,15 +21,27 @@ pub(crate) struct Load {
     used: Mutex<Duration>,
     /// The processors that it may use.
     processors: f64,
+    /// The clock of its processor time.
+    clock: fn() -> Duration,
 }
 
 impl Load {
     /// Nothing measured yet; it adds to `metrics`, too.
     pub(crate) fn new(metrics: Arc<Metrics>) -> Self {
         let processors = available_parallelism().map_or(1, NonZero::get) as f64;
-        let used = Mutex::new(processor_time());
+        Self::with(metrics, processors, processor_time)
+    }
+
+    /// That of a processor that is never busy, in simulated time.
+    #[cfg(test)]
+    pub(crate) fn simulated(metrics: Arc<Metrics>) -> Self {
+        Self::with(metrics, 1.0, || Duration::ZERO)
+    }
+
+    fn with(metrics: Arc<Metrics>, processors: f64, clock: fn() -> Duration) -> Self {
+        let used = Mutex::new(clock());
         let (lateness, frame_time) = (AtomicU64::new(0), AtomicU64::new(33_333));
-        Self { metrics, lateness, frame_time, used, processors }
+        Self { metrics, lateness, frame_time, used, processors, clock }
     }
 
     /// The figures of the server.
@@ -46,7 +58,7 @@ impl Load {
     /// What was measured in the last `time`, since the last call.
     pub(crate) fn sample(&self, time: Duration) -> Sample {
         let lateness = Duration::from_micros(self.lateness.swap(0, Ordering::Relaxed));
-        let now = processor_time();
+        let now = (self.clock)();
         let used = locked(&self.used, |used| now.saturating_sub(std::mem::replace(used, now)));
         let available = (time + lateness).as_secs_f64() * self.processors;
         Sample { busy: used.as_secs_f64() / available, lateness }

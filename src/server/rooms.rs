@@ -9,14 +9,15 @@ mod recording;
 
 use std::collections::BTreeMap;
 use std::fmt;
-use std::path::PathBuf;
 use std::sync::atomic::{AtomicUsize, Ordering};
 use std::sync::{Arc, Mutex};
 use std::time::Duration;
 
 use tokio::sync::watch;
+use tokio::time::timeout;
 
 pub(crate) use self::place::Place;
+pub(crate) use self::recording::Recordings;
 use super::line::Line;
 use super::load::Load;
 use super::locked;
@@ -41,8 +42,8 @@ pub(crate) struct RoomLimits {
     pub(crate) closes_after: Duration,
     /// The rooms that are always there.
     pub(crate) standing: Vec<RoomWish>,
-    /// The folder in which rooms are recorded.
-    pub(crate) recordings: Option<PathBuf>,
+    /// Where rooms are recorded.
+    pub(crate) recordings: Recordings,
 }
 
 /// Why somebody cannot be in a room.
@@ -91,6 +92,9 @@ struct OpenRoom {
     summary: RoomSummary,
     watchers: Arc<AtomicUsize>,
 }
+
+/// The time in which rooms end.
+const ENDING: Duration = Duration::from_secs(1);
 
 impl Rooms {
     /// The standing rooms. All chance in rooms comes from `seed`.
@@ -164,6 +168,29 @@ impl Rooms {
         Ok(place)
     }
 
+    /// Closes all rooms, and waits until their recordings are written, for [`ENDING`] at most.
+    pub(crate) async fn end(&self) {
+        let doorways: Vec<Arc<Doorway>> = locked(&self.0.open, |open| {
+            open.rooms.values().map(|room| Arc::clone(&room.doorway)).collect()
+        });
+        doorways.iter().for_each(|doorway| doorway.close("The server has ended."));
+        let mut summaries = self.summaries();
+        let all_closed = async { _ = summaries.wait_for(|rooms| rooms.is_empty()).await };
+        _ = timeout(ENDING, all_closed).await;
+    }
+
+    /// The newest snapshot of a room; `None` if there is no such room.
+    #[cfg(test)]
+    pub(crate) fn view(&self, id: RoomId) -> Option<Arc<super::room::RoomView>> {
+        locked(&self.0.open, |open| open.rooms.get(&id).and_then(|room| room.doorway.shown.view()))
+    }
+
+    /// Ends a room as a fault does.
+    #[cfg(test)]
+    pub(crate) fn close(&self, id: RoomId, sentence: &str) {
+        locked(&self.0.open, |open| open.rooms[&id].doorway.close(sentence));
+    }
+
     /// Adds a room, which does not run yet.
     fn add(&self, wish: &RoomWish) -> Result<NewRoom, RoomRefusal> {
         let Directory { limits, catalog, open, .. } = &*self.0;
@@ -197,7 +224,7 @@ impl Rooms {
         let header = room.header();
         events::room_opened(id.0, &header.level, header.mode.name());
         self.publish();
-        let log = RoundLog::new(recording::log(self.0.limits.recordings.as_deref(), id), &room);
+        let log = RoundLog::new(self.0.limits.recordings.log(id), &room);
         let load = Arc::clone(&self.0.load);
         // Nobody else can go on with what one plays alone.
         let is_alone = room.header().mode == Mode::Alone;

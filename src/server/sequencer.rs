@@ -107,6 +107,7 @@ impl Sequencer {
 
     /// Waits until somebody joins; returns whether the room still exists then.
     async fn somebody_joins(&mut self) -> bool {
+        self.log.flush();
         let inbox = &self.doorway.inbox;
         let Some(patience) = self.closes_after else {
             inbox.joined().await;

@@ -46,6 +46,8 @@ pub(super) struct Visit {
     answers_key: Option<Duration>,
     /// When the session is ended, since the server ends.
     ends_at: Option<Duration>,
+    /// Whether a frame is on its way.
+    is_sending: bool,
 }
 
 /// What a driver waits for.
@@ -66,7 +68,12 @@ const MESSAGE_COLUMNS: usize = 200;
 const LAST: Duration = Duration::from_secs(2);
 
 impl Visit {
-    pub(super) fn new(shared: Arc<Shared>, visitor: Visitor, known: Known) -> Self {
+    pub(super) fn new(
+        shared: Arc<Shared>,
+        visitor: Visitor,
+        known: Known,
+        options: Options,
+    ) -> Self {
         let Known { key, account, settings, offer } = known;
         let identity = Identity {
             has_account: key.is_some(),
@@ -88,7 +95,7 @@ impl Visit {
             frame_time: shared.load.frame_time(),
         };
         let now = shared.now();
-        let session = Session::new(identity, options(&visitor), visitor.size, host, now);
+        let session = Session::new(identity, options, visitor.size, host, now);
         let (replies, replied) = replies();
         Self {
             session,
@@ -108,25 +115,26 @@ impl Visit {
             key_at: None,
             answers_key: None,
             ends_at: None,
+            is_sending: false,
             shared,
         }
     }
 
-    /// Drives the session to its end; returns the exit status.
-    pub(super) async fn run(mut self, link: Link) -> u8 {
-        let Link { mut inbound, mut outbox } = link;
-        let mut is_sending = false;
+    /// Drives the session to its end; returns the exit status. The future may be dropped before, and
+    /// the session driven on.
+    pub(super) async fn run(&mut self, link: &mut Link) -> u8 {
+        let Link { inbound, outbox } = link;
         loop {
             self.run_errands();
             let mut wakes_at = None;
-            if !is_sending {
+            if !self.is_sending {
                 let bytes = self.frame(&mut wakes_at);
                 if bytes.is_empty() && self.session.is_over() {
                     return 0;
                 }
-                is_sending = !bytes.is_empty() && outbox.try_send(bytes).is_ok();
+                self.is_sending = !bytes.is_empty() && outbox.try_send(bytes).is_ok();
             }
-            let happening = self.wait(&mut inbound, &mut outbox, is_sending, wakes_at).await;
+            let happening = self.wait(inbound, outbox, wakes_at).await;
             let now = self.shared.now();
             match happening {
                 Happening::Arrived(Arrival::Bytes(bytes)) => {
@@ -144,7 +152,7 @@ impl Visit {
                 }
                 Happening::Drained => {
                     self.session.written(now);
-                    is_sending = false;
+                    self.is_sending = false;
                     if let Some(key) = self.answers_key.take() {
                         self.shared.metrics.key_time.add(now - key);
                     }
@@ -196,9 +204,9 @@ impl Visit {
         &mut self,
         inbound: &mut Inbound,
         outbox: &mut Outbox,
-        is_sending: bool,
         wakes_at: Option<Duration>,
     ) -> Happening {
+        let is_sending = self.is_sending;
         let is_quiet = self.quiet_until > self.shared.now();
         let looks = !is_sending && !is_quiet && self.place.is_some();
         let quiet_end =
@@ -272,7 +280,7 @@ async fn changed(place: Option<&mut Place>) {
 }
 
 /// What is known of a visitor's terminal.
-fn options(visitor: &Visitor) -> Options {
+pub(super) fn options(visitor: &Visitor) -> Options {
     let environment: &BTreeMap<String, String> = &visitor.environment;
     let options = Options::from_environment(|name| match name {
         "TERM" => Some(visitor.term.clone()),

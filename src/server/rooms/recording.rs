@@ -1,18 +1,39 @@
 //! Recordings of rooms: a file for each of them.
 //!
-//! Entries are few and short, and wait in memory until there are eight kilobytes of them, or a round
-//! begins. So the disk is touched seldom, and a thread for it was refused.
+//! Entries are few and short. They wait in memory for a second at most, see
+//! [`RoundLog`](crate::server::sequencer::RoundLog), so that a killed server loses no more, and each
+//! write ends with a whole line. So the disk is touched seldom, and a thread for it was refused.
 
 use std::fs::{self, File};
 use std::io::{self, BufWriter};
-use std::path::Path;
+use std::path::{Path, PathBuf};
 
 use crate::server::room::{Log, Queue, Recorded};
 use crate::server::summary::RoomId;
 
-/// The log of a room, which is recorded if there is a folder for it.
-pub(super) fn log(folder: Option<&Path>, id: RoomId) -> Box<dyn Log> {
-    let Some(folder) = folder else { return Box::new(Queue::default()) };
+/// Where rooms are recorded.
+#[derive(Clone, Debug)]
+pub(crate) enum Recordings {
+    Nowhere,
+    /// In files of this folder.
+    Folder(PathBuf),
+    #[cfg(test)]
+    Memory(crate::server::simulation::Tapes),
+}
+
+impl Recordings {
+    /// The log of a room.
+    pub(super) fn log(&self, id: RoomId) -> Box<dyn Log> {
+        match self {
+            Self::Nowhere => Box::new(Queue::default()),
+            Self::Folder(folder) => in_file(folder, id),
+            #[cfg(test)]
+            Self::Memory(tapes) => Box::new(Recorded::new(Queue::default(), tapes.tape(id))),
+        }
+    }
+}
+
+fn in_file(folder: &Path, id: RoomId) -> Box<dyn Log> {
     match file(folder, id) {
         Ok(file) => Box::new(Recorded::new(Queue::default(), BufWriter::new(file))),
         Err(error) => {

@@ -17,6 +17,8 @@ use bytes::Bytes;
 use russh::ChannelId;
 use russh::server::Handle;
 use tokio::sync::Notify;
+#[cfg(test)]
+use tokio::sync::mpsc::UnboundedSender;
 use tokio::task::{unconstrained, yield_now};
 
 use super::{Counters, locked};
@@ -39,7 +41,15 @@ pub(super) struct Passage {
     rest: Mutex<Bytes>,
     changed: Notify,
     counters: OnceLock<Arc<Counters>>,
-    channel: OnceLock<(Handle, ChannelId)>,
+    way: OnceLock<Way>,
+}
+
+/// The way of parts to the client.
+#[derive(Debug)]
+enum Way {
+    Channel(Handle, ChannelId),
+    #[cfg(test)]
+    Pipe(UnboundedSender<Bytes>),
 }
 
 /// The most bytes that russh is given at once; a frame of a game has fewer as a rule.
@@ -53,8 +63,18 @@ const ENCRYPTED: u8 = 2;
 
 impl Outbox {
     pub(super) fn new(handle: Handle, channel: ChannelId, passage: Arc<Passage>) -> Self {
+        Self::on(Way::Channel(handle, channel), passage)
+    }
+
+    /// The parts of frames come out of a pipe.
+    #[cfg(test)]
+    pub(super) fn into_pipe(pipe: UnboundedSender<Bytes>, passage: Arc<Passage>) -> Self {
+        Self::on(Way::Pipe(pipe), passage)
+    }
+
+    fn on(way: Way, passage: Arc<Passage>) -> Self {
         // There is one session channel.
-        _ = passage.channel.set((handle, channel));
+        _ = passage.way.set(way);
         Self { passage }
     }
 
@@ -136,13 +156,17 @@ impl Passage {
     }
 
     fn send_part(self: &Arc<Self>) {
-        let Some((handle, channel)) = self.channel.get() else { return };
+        let Some(way) = self.way.get() else { return };
         let bytes = locked(&self.rest, |rest| rest.split_to(rest.len().min(PART)));
         self.state.store(QUEUED, Ordering::Release);
         self.parts.fetch_add(1, Ordering::AcqRel);
         let part = Bytes::from_owner(Part { bytes, passage: self.clone() });
-        // The queue has room: one part, a few questions and the three messages of the end are in it.
-        _ = at_once(handle.data(*channel, part));
+        match way {
+            // The queue has room: one part, a few questions and the three messages of the end are in it.
+            Way::Channel(handle, channel) => _ = at_once(handle.data(*channel, part)),
+            #[cfg(test)]
+            Way::Pipe(pipe) => _ = pipe.send(part),
+        }
     }
 }
 

@@ -24,17 +24,22 @@ pub(super) struct Running {
 impl Running {
     /// A server with this configuration, logging in `format`.
     pub(super) fn start(config: &str, format: &str) -> Self {
+        Self::start_with(config, format, &[])
+    }
+
+    /// As [`Running::start`], with more options.
+    pub(super) fn start_with(config: &str, format: &str, options: &[&str]) -> Self {
         let folder = folder();
         // A host that has run before.
         drop(SqliteStore::open(&folder).unwrap());
         fs::write(folder.join("serve.toml"), config).unwrap();
-        let (process, port) = spawn(&folder, format);
+        let (process, port) = spawn(&folder, format, options);
         Self { folder, process, port }
     }
 
     /// Starts the server again in the same folder.
     pub(super) fn restart(&mut self) {
-        (self.process, self.port) = spawn(&self.folder, "text");
+        (self.process, self.port) = spawn(&self.folder, "text", &[]);
     }
 
     pub(super) fn log(&self) -> String {
@@ -47,9 +52,18 @@ impl Running {
 
     /// A client of OpenSSH in a terminal.
     pub(super) fn visitor(&self) -> Player {
+        self.player(None)
+    }
+
+    /// A client of OpenSSH with a key, or as a guest.
+    pub(super) fn player(&self, key: Option<&Path>) -> Player {
+        let key = key.map_or_else(|| "none".to_owned(), |key| key.display().to_string());
+        let identity = format!("IdentityFile={key}");
         let options = "-F none -o StrictHostKeyChecking=no -o UserKnownHostsFile=/dev/null \
-                       -o LogLevel=ERROR -o IdentitiesOnly=yes -o IdentityFile=none -tt -p";
-        let words = options.split_whitespace().chain([self.port.as_str(), "guest@127.0.0.1"]);
+                       -o LogLevel=ERROR -o IdentitiesOnly=yes -tt -p";
+        let user = if key == "none" { "guest@127.0.0.1" } else { "ann@127.0.0.1" };
+        let last = [self.port.as_str(), "-o", &identity, user];
+        let words = options.split_whitespace().chain(last);
         let arguments: Vec<String> = words.map(str::to_owned).collect();
         Player::start((80, 24), Speaks::Kitty, "ssh", arguments, &[])
     }
@@ -93,11 +107,12 @@ impl Running {
 }
 
 /// The process, and its port.
-fn spawn(folder: &Path, format: &str) -> (Child, String) {
+fn spawn(folder: &Path, format: &str, options: &[&str]) -> (Child, String) {
     let log = File::create(folder.join("log")).unwrap();
     let mut process = Command::new(env!("CARGO_BIN_EXE_cellcaster"))
         .args(["serve", "--listen", "127.0.0.1:0", "--log", format, "--config"])
         .arg(folder.join("serve.toml"))
+        .args(options)
         .env_clear()
         .env("CELLCASTER_DATA", folder)
         .stdout(Stdio::piped())
