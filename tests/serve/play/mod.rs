@@ -59,16 +59,7 @@ fn players_see_each_other_walk() {
     // What was said is shown for some seconds.
     let says = |emulator: &Emulator| emulator.text().contains("comes in.");
     mara.wait_until("forgot what was said", |emulator| !says(emulator));
-    assert!(!mara.text().contains("Jon"), "{}", mara.text());
-    // Both look the same way, so Jon walks into her view. His name is over his head.
-    for _ in 0..20 {
-        jon.send(HOLD_FORWARD);
-        thread::sleep(Duration::from_millis(200));
-        jon.send(RELEASE_FORWARD);
-        if mara.text().contains("Jon") {
-            break;
-        }
-    }
+    // Both look the same way, and he stands before her. His name is over his head.
     mara.wait_for("Jon");
     thread::sleep(Duration::from_millis(500));
     // Nobody does anything, and the picture stays as it is.
