@@ -5,5 +5,6 @@ mod documents;
 mod killed;
 mod maps;
 mod metrics;
+mod results;
 mod running;
 mod signals;
