@@ -35,6 +35,8 @@ mod room;
 mod rooms;
 mod sequencer;
 mod session;
+#[cfg(test)]
+mod simulation;
 mod summary;
 mod transport;
 mod visitors;

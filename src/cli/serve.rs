@@ -66,8 +66,6 @@ async fn serve(
     let admin = bind_admin(folder)?;
     let server = Server::bind(config, key).await.map_err(cannot)?;
     let address = server.address().map_err(cannot)?;
-    let text = invitation(address, &fingerprint);
-    io::stdout().write_all(text.as_bytes()).map_err(|error| Error::of_output(&error))?;
     let logging = Logging::begin(format, &filter);
     events::listening(address, &fingerprint);
 
@@ -76,6 +74,9 @@ async fn serve(
     let host =
         GameHost::with_maps(server.config(), Arc::clone(&metrics), visitors.clone(), store, maps);
     let host = host.map_err(|error| no_thread(&error))?;
+    // The rooms take a moment to make. Those who are invited, and operators, are answered at once.
+    let text = invitation(address, &fingerprint);
+    io::stdout().write_all(text.as_bytes()).map_err(|error| Error::of_output(&error))?;
     let mut services = JoinSet::new();
     if let Some(listener) = metrics_listener {
         events::metrics_listening(listener.local_addr().map_err(cannot)?);
@@ -88,8 +89,9 @@ async fn serve(
         services.spawn(admin.serve(Operator { visitors, rooms, drain }));
     }
     services.spawn(configuration.follow(hangups, server.config(), logging));
+    let ending = host.ending();
     tokio::select! {
-        () = server.run(host, signals.first()) => {}
+        () = server.run(host, signals.first()) => ending.await,
         () = signals.second() => {}
     }
     // Else the process might end before the socket is removed.

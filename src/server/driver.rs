@@ -11,6 +11,8 @@
 mod account;
 mod errands;
 mod results;
+#[cfg(test)]
+mod simulated;
 mod store_worker;
 mod terminal;
 mod visit;
@@ -24,6 +26,8 @@ use tokio::sync::watch;
 use tokio::time::{Instant, interval};
 
 use self::account::NamesInUse;
+#[cfg(test)]
+pub(super) use self::simulated::{Setup, Simulated, Visiting};
 use self::store_worker::StoreWorker;
 use self::visit::Visit;
 use super::ghost::KeptRuns;
@@ -42,6 +46,19 @@ use crate::store::host::{HostStore, UnixTime};
 #[derive(Debug)]
 pub struct GameHost {
     shared: Arc<Shared>,
+}
+
+/// The parts of a host.
+struct Parts {
+    live: LiveConfig,
+    metrics: Arc<Metrics>,
+    visitors: Visitors,
+    catalog: Catalog,
+    logs: Logs,
+    load: Load,
+    store: StoreWorker,
+    /// Of all chance in rooms.
+    seed: u64,
 }
 
 /// What the drivers have in common.
@@ -91,20 +108,30 @@ impl GameHost {
         store: Box<dyn HostStore>,
         maps: &HostMaps,
     ) -> io::Result<Self> {
-        let load = Arc::new(Load::new(Arc::clone(&metrics)));
-        let config = live.get();
-        let logs = Logs::recorded(config.recordings.clone());
-        // Without random numbers from the system there would be no keys, either.
-        let seed = getrandom::u64().unwrap_or_default();
-        let catalog = Arc::new(Catalog::with(maps));
-        let rooms = Rooms::new(RoomLimits::of(&config), catalog, logs, Arc::clone(&load), seed);
+        Ok(Self::of(Parts {
+            visitors,
+            catalog: Catalog::with(maps),
+            logs: Logs::recorded(live.get().recordings.clone()),
+            load: Load::new(Arc::clone(&metrics)),
+            store: StoreWorker::start(store)?,
+            // Without random numbers from the system there would be no keys, either.
+            seed: getrandom::u64().unwrap_or_default(),
+            metrics,
+            live,
+        }))
+    }
+
+    fn of(parts: Parts) -> Self {
+        let Parts { live, metrics, visitors, catalog, logs, load, store, seed } = parts;
+        let (limits, load) = (RoomLimits::of(&live.get()), Arc::new(load));
+        let rooms = Rooms::new(limits, Arc::new(catalog), logs, Arc::clone(&load), seed);
         let shared = Arc::new(Shared {
             config: live,
             metrics,
             visitors,
             begun: Instant::now(),
             rooms,
-            store: StoreWorker::start(store)?,
+            store,
             runs: Arc::default(),
             names: NamesInUse::default(),
             load,
@@ -112,7 +139,13 @@ impl GameHost {
         });
         tokio::spawn(govern(Arc::downgrade(&shared)));
         tokio::spawn(follow(shared.config.subscribe(), shared.rooms.clone()));
-        Ok(Self { shared })
+        Self { shared }
+    }
+
+    /// Ends the rooms after the last session, so that their recordings are whole.
+    pub fn ending(&self) -> impl Future<Output = ()> + use<> {
+        let rooms = self.shared.rooms.clone();
+        async move { rooms.end().await }
     }
 
     /// Lists the rooms, for an operator.
@@ -136,14 +169,17 @@ fn room_row(room: &RoomSummary, catalog: &Catalog) -> RoomRow {
 }
 
 impl Host for GameHost {
-    async fn serve(&self, visitor: Visitor, link: Link) -> Departure {
+    async fn serve(&self, visitor: Visitor, mut link: Link) -> Departure {
         let shared = Arc::clone(&self.shared);
         if let Some(sentence) = terminal::refusal(&visitor) {
             refuse(link, &sentence).await;
             return Departure { status: 1 };
         }
         let status = match shared.log_in(&visitor).await {
-            Ok(known) => Visit::new(shared, &visitor, known).run(link).await,
+            Ok(known) => {
+                let options = terminal::options(&visitor);
+                Visit::new(shared, &visitor, known, options).run(&mut link).await
+            }
             Err(sentence) => {
                 refuse(link, &sentence).await;
                 1

@@ -23,15 +23,28 @@ pub(crate) struct Load {
     used: Mutex<Duration>,
     /// The processors that it may use.
     processors: f64,
+    /// The clock of its processor time.
+    clock: fn() -> Duration,
 }
 
 impl Load {
     /// Nothing measured yet; it adds to `metrics`, too.
     pub(crate) fn new(metrics: Arc<Metrics>) -> Self {
         let processors = available_parallelism().map_or(1, NonZero::get) as f64;
-        let used = Mutex::new(processor_time());
+        Self::with(metrics, processors, processor_time)
+    }
+
+    /// That of a processor that is never busy, in simulated time.
+    #[cfg(test)]
+    pub(crate) fn simulated(metrics: Arc<Metrics>) -> Self {
+        Self::with(metrics, 1.0, || Duration::ZERO)
+    }
+
+    fn with(metrics: Arc<Metrics>, processors: f64, clock: fn() -> Duration) -> Self {
+        let used = Mutex::new(clock());
         let [lateness, steps] = [const { AtomicU64::new(0) }; 2];
-        Self { metrics, lateness, steps, frame_time: AtomicU64::new(33_333), used, processors }
+        let frame_time = AtomicU64::new(33_333);
+        Self { metrics, lateness, steps, frame_time, used, processors, clock }
     }
 
     /// The figures of the server.
@@ -50,7 +63,7 @@ impl Load {
     pub(crate) fn sample(&self, time: Duration) -> Sample {
         let steps = self.steps.swap(0, Ordering::Relaxed).max(1);
         let lateness = Duration::from_micros(self.lateness.swap(0, Ordering::Relaxed) / steps);
-        let now = processor_time();
+        let now = (self.clock)();
         let used = locked(&self.used, |used| now.saturating_sub(std::mem::replace(used, now)));
         let available = (time + lateness).as_secs_f64() * self.processors;
         Sample { busy: used.as_secs_f64() / available, lateness }

@@ -29,7 +29,7 @@ pub(crate) use self::catalog::Catalog;
 pub(crate) use self::entry::{CHAT_COLUMNS, Deed, Emote, Entry, MemberId, NAME_COLUMNS};
 pub(crate) use self::header::{Header, Seat};
 #[cfg(test)]
-use self::log::parse as parse_log;
+pub(crate) use self::log::parse as parse_log;
 pub(crate) use self::log::{Log, Queue, Recorded};
 use self::member::{Member, looking_only};
 pub(crate) use self::mode::Mode;

@@ -6,6 +6,7 @@
 //!
 //! A standing room that has ended by a panic is opened anew; its members are in the lobby then.
 
+mod ending;
 mod place;
 mod recording;
 mod refusal;

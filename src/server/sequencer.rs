@@ -107,6 +107,7 @@ impl Sequencer {
 
     /// Waits until somebody joins; returns whether the room still exists then.
     async fn somebody_joins(&mut self) -> bool {
+        self.log.flush();
         let Doorway { inbox, shown, closes_after } = &*self.doorway;
         let mut patience = closes_after.subscribe();
         loop {

@@ -159,6 +159,8 @@ impl Session {
     }
 
     fn draw_anew(&mut self, room: Option<&RoomView>, now: Duration) {
+        // Before the picture, which shows the newest figures then.
+        self.measure(now);
         let Self { protocol, visit, .. } = self;
         if let (Some(stay), Some(room)) = (&mut visit.stay, room) {
             visit.asks.extend(stay.look_at(room, now));
@@ -173,9 +175,9 @@ impl Session {
             self.drawn_step = room.step;
         }
         self.answers_key = self.answers_key.filter(|&pressed| pressed == self.drawn_step);
-        self.measure(now);
     }
 
+    /// Measures the frames so far.
     fn measure(&mut self, now: Duration) {
         let Self { protocol, visit, meter, .. } = self;
         if let Some(rates) = meter.frame(now, protocol.bytes_drawn()) {

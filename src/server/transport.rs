@@ -7,6 +7,8 @@ mod hello;
 mod inbound;
 mod key_data;
 mod outbox;
+#[cfg(test)]
+mod pipe;
 mod visitor;
 mod wire;
 
@@ -29,6 +31,8 @@ use connection::Shared;
 pub use inbound::{Arrival, Inbound};
 pub use key_data::KeyData;
 pub use outbox::Outbox;
+#[cfg(test)]
+pub(super) use pipe::{FarEnd, Parts, pipe};
 pub use visitor::Visitor;
 
 /// What serves visitors: the sessions above the transport.

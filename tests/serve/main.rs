@@ -5,6 +5,8 @@
 #[path = "../support/emulator.rs"]
 mod emulator;
 mod kept;
+#[path = "../support/looks.rs"]
+mod looks;
 mod ops;
 mod play;
 #[path = "../support/player.rs"]

@@ -59,6 +59,12 @@ impl fmt::Display for AdminFailure {
             Self::NotAllowed(socket) => {
                 write!(f, "{} belongs to another user: ask as that user, or as root", shown(socket))
             }
+            Self::Failed(socket, error)
+                if matches!(error.kind(), ErrorKind::WouldBlock | ErrorKind::TimedOut) =>
+            {
+                let seconds = PATIENCE.as_secs();
+                write!(f, "the server at {} has not answered for {seconds} s", shown(socket))
+            }
             Self::Failed(socket, error) => {
                 write!(f, "the server at {} does not answer: {error}", shown(socket))
             }

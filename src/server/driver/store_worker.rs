@@ -2,14 +2,15 @@
 //!
 //! Calls wait in a bounded queue; if it is full, a call fails at once. What was queued when the server
 //! ends is done before the thread ends, so that no result is lost.
+//!
+//! In simulated time, a task takes the place of the thread, whose time nobody could simulate.
 
 use std::fmt;
 use std::io;
 use std::panic::{AssertUnwindSafe, catch_unwind};
-use std::sync::mpsc::{SyncSender, sync_channel};
 use std::thread::{self, JoinHandle};
 
-use tokio::sync::oneshot;
+use tokio::sync::{mpsc, oneshot};
 
 use crate::store::host::HostStore;
 
@@ -20,7 +21,7 @@ const MOST_CALLS: usize = 256;
 
 /// The thread of the store.
 pub(super) struct StoreWorker {
-    calls: Option<SyncSender<Call>>,
+    calls: Option<mpsc::Sender<Call>>,
     thread: Option<JoinHandle<()>>,
 }
 
@@ -29,14 +30,26 @@ pub(super) type Answer<T> = oneshot::Receiver<T>;
 
 impl StoreWorker {
     pub(super) fn start(mut store: Box<dyn HostStore>) -> io::Result<Self> {
-        let (calls, queue) = sync_channel::<Call>(MOST_CALLS);
+        let (calls, mut queue) = mpsc::channel::<Call>(MOST_CALLS);
         let thread = thread::Builder::new().name("store".to_owned()).spawn(move || {
-            for call in queue {
-                // A fault in one call is no reason to answer no other.
-                _ = catch_unwind(AssertUnwindSafe(|| call(&mut *store)));
+            while let Some(call) = queue.blocking_recv() {
+                answer(call, &mut *store);
             }
         })?;
         Ok(Self { calls: Some(calls), thread: Some(thread) })
+    }
+
+    /// A task that takes `time` for each call.
+    #[cfg(test)]
+    pub(super) fn simulated(mut store: Box<dyn HostStore>, time: std::time::Duration) -> Self {
+        let (calls, mut queue) = mpsc::channel::<Call>(MOST_CALLS);
+        tokio::spawn(async move {
+            while let Some(call) = queue.recv().await {
+                tokio::time::sleep(time).await;
+                answer(call, &mut *store);
+            }
+        });
+        Self { calls: Some(calls), thread: None }
     }
 
     /// Acts on the store, and answers. The answer is an error if too many calls wait.
@@ -60,6 +73,11 @@ impl StoreWorker {
         }
         is_accepted
     }
+}
+
+/// A fault in one call is no reason to answer no other.
+fn answer(call: Call, store: &mut dyn HostStore) {
+    _ = catch_unwind(AssertUnwindSafe(|| call(store)));
 }
 
 impl Drop for StoreWorker {

@@ -17,6 +17,7 @@ use crate::server::session::{HostFacts, Identity, IdleLimits, News, Session};
 use crate::server::summary::RoomSummary;
 use crate::server::{Arrival, Inbound, Link, Notice, Outbox, Presence, Visitor};
 use crate::store::host::{Account, AccountKey, Name};
+use crate::terminal::Options;
 
 /// A visitor with everything that concerns them.
 pub(super) struct Visit {
@@ -44,6 +45,8 @@ pub(super) struct Visit {
     answers_key: Option<Duration>,
     /// When the session is ended, since the server ends.
     ends_at: Option<Duration>,
+    /// Whether a frame is on its way.
+    is_sending: bool,
 }
 
 /// What a driver waits for.
@@ -69,7 +72,12 @@ const MESSAGE_COLUMNS: usize = 200;
 const LAST: Duration = Duration::from_secs(2);
 
 impl Visit {
-    pub(super) fn new(shared: Arc<Shared>, visitor: &Visitor, known: Known) -> Self {
+    pub(super) fn new(
+        shared: Arc<Shared>,
+        visitor: &Visitor,
+        known: Known,
+        options: Options,
+    ) -> Self {
         let Known { key, account, settings, offer } = known;
         let identity = Identity {
             has_account: key.is_some(),
@@ -80,7 +88,6 @@ impl Visit {
             configuration: Configuration::parse(&settings.configuration, "settings")
                 .unwrap_or_default(),
         };
-        let options = terminal::options(visitor);
         let ascii_locale = terminal::ascii_locale(visitor);
         let config = shared.config.get();
         let presence = shared.visitors.arrive(visitor.peer.ip(), key);
@@ -117,25 +124,26 @@ impl Visit {
             key_at: None,
             answers_key: None,
             ends_at: None,
+            is_sending: false,
             shared,
         }
     }
 
-    /// Drives the session to its end; returns the exit status.
-    pub(super) async fn run(mut self, link: Link) -> u8 {
-        let Link { mut inbound, mut outbox } = link;
-        let mut is_sending = false;
+    /// Drives the session to its end; returns the exit status. The future may be dropped before, and
+    /// the session driven on.
+    pub(super) async fn run(&mut self, link: &mut Link) -> u8 {
+        let Link { inbound, outbox } = link;
         loop {
             self.run_errands();
             let mut wakes_at = None;
-            if !is_sending {
+            if !self.is_sending {
                 let bytes = self.frame(&mut wakes_at);
                 if bytes.is_empty() && self.session.is_over() {
                     return 0;
                 }
-                is_sending = !bytes.is_empty() && outbox.try_send(bytes).is_ok();
+                self.is_sending = !bytes.is_empty() && outbox.try_send(bytes).is_ok();
             }
-            let happening = self.wait(&mut inbound, &mut outbox, is_sending, wakes_at).await;
+            let happening = self.wait(inbound, outbox, wakes_at).await;
             let now = self.shared.now();
             match happening {
                 Happening::Arrived(Arrival::Bytes(bytes)) => {
@@ -152,7 +160,7 @@ impl Visit {
                 }
                 Happening::Drained => {
                     self.session.written(now);
-                    is_sending = false;
+                    self.is_sending = false;
                     if let Some(key) = self.answers_key.take() {
                         self.shared.metrics.key_time.add(now.saturating_sub(key));
                     }
@@ -173,7 +181,7 @@ impl Visit {
                 }
                 Happening::Time => self.wake(now),
             }
-            if is_sending && self.session.output(now).len() > MOST_WAITING {
+            if self.is_sending && self.session.output(now).len() > MOST_WAITING {
                 // A client that reads no frame, and sends what the session must answer.
                 self.leave();
                 return 1;
@@ -208,9 +216,9 @@ impl Visit {
         &mut self,
         inbound: &mut Inbound,
         outbox: &mut Outbox,
-        is_sending: bool,
         wakes_at: Option<Duration>,
     ) -> Happening {
+        let is_sending = self.is_sending;
         let now = self.shared.now();
         let is_free = !is_sending && self.place.is_some();
         let looks_at = self.session.looks_at(now).filter(|_| is_free);

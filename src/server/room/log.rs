@@ -24,6 +24,12 @@ pub(crate) trait Log: Send {
     /// If the log cannot be written.
     fn append(&mut self, entry: Entry) -> io::Result<()>;
 
+    /// Writes out what waits in memory.
+    ///
+    /// # Errors
+    /// If the log cannot be written.
+    fn flush(&mut self) -> io::Result<()>;
+
     /// The next entry that takes effect at `step` or before; `None` if there is none.
     fn next(&mut self, step: u64) -> Option<Entry>;
 }
@@ -42,6 +48,10 @@ impl Log for Queue {
 
     fn append(&mut self, entry: Entry) -> io::Result<()> {
         self.entries.push_back(entry);
+        Ok(())
+    }
+
+    fn flush(&mut self) -> io::Result<()> {
         Ok(())
     }
 
@@ -76,6 +86,10 @@ impl<L: Log, W: Write + Send> Log for Recorded<L, W> {
         let line = format!("{entry}\n");
         self.log.append(entry)?;
         self.output.write_all(line.as_bytes())
+    }
+
+    fn flush(&mut self) -> io::Result<()> {
+        self.output.flush()
     }
 
     fn next(&mut self, step: u64) -> Option<Entry> {

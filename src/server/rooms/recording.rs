@@ -1,7 +1,8 @@
 //! Recordings of rooms: a file for each of them.
 //!
-//! Entries are few and short, and wait in memory until there are eight kilobytes of them, or a round
-//! begins. So the disk is touched seldom, and a thread for it was refused.
+//! Entries are few and short. They wait in memory for a second at most, see
+//! [`RoundLog`](crate::server::sequencer::RoundLog), so that a killed server loses no more, and each
+//! write ends with a whole line. So the disk is touched seldom, and a thread for it was refused.
 
 use std::fmt;
 use std::fs::{self, File};

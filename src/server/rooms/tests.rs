@@ -7,8 +7,20 @@ use crate::game::PlayerColor;
 use crate::server::Metrics;
 use crate::server::logging::LogFormat;
 use crate::server::logging::tests::logged;
-use crate::server::room::{Deed, Entry, Log, MemberId, NAME_COLUMNS, Queue};
+use crate::server::room::{Deed, Entry, Log, MemberId, NAME_COLUMNS, Queue, RoomView};
 use crate::world::Difficulty;
+
+impl Rooms {
+    /// The newest snapshot of a room; `None` if there is no such room.
+    pub(crate) fn view(&self, id: RoomId) -> Option<Arc<RoomView>> {
+        locked(&self.0.open, |open| open.rooms.get(&id).and_then(|room| room.doorway.shown.view()))
+    }
+
+    /// Ends a room as a fault does.
+    pub(crate) fn close(&self, id: RoomId, sentence: &str) {
+        locked(&self.0.open, |open| open.rooms[&id].doorway.close(sentence));
+    }
+}
 
 /// A log that panics at the first entry.
 struct Broken;
@@ -20,6 +32,10 @@ impl Log for Broken {
 
     fn append(&mut self, _: Entry) -> io::Result<()> {
         panic!("the log is broken")
+    }
+
+    fn flush(&mut self) -> io::Result<()> {
+        Ok(())
     }
 
     fn next(&mut self, _: u64) -> Option<Entry> {

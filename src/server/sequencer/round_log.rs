@@ -3,7 +3,7 @@
 use std::io;
 
 use super::inbox::Inbox;
-use crate::game::{self, Intents, LevelName, Outcome, Recorder, Rules, Stretch};
+use crate::game::{self, Intents, LevelName, Outcome, Recorder, Rules, STEPS_PER_SECOND, Stretch};
 use crate::server::room::{Deed, Entry, Log, MemberId, Mode, Room};
 
 /// The log of a room, from which it takes its steps.
@@ -41,6 +41,10 @@ struct Run {
     is_finished: bool,
 }
 
+/// The steps after which a recording is written out: a killed server loses at most the entries of a
+/// second.
+const FLUSHED: u64 = STEPS_PER_SECOND as u64;
+
 impl RoundLog {
     /// Begins the log of the round that `room` is in.
     pub(crate) fn new(log: Box<dyn Log>, room: &Room) -> Self {
@@ -63,6 +67,10 @@ impl RoundLog {
             let result = self.log.append(Entry { step, member, deed });
             self.report(result);
         });
+        if step.is_multiple_of(FLUSHED) {
+            let result = self.log.flush();
+            self.report(result);
+        }
         while let Some(entry) = self.log.next(step) {
             changes.summary |= matches!(entry.deed, Deed::Join { .. } | Deed::Leave);
             room.apply(&entry);
@@ -75,6 +83,12 @@ impl RoundLog {
             changes.finished = self.run.step(room);
         }
         changes
+    }
+
+    /// Writes out what waits in memory, since no step follows for a while.
+    pub(super) fn flush(&mut self) {
+        let result = self.log.flush();
+        self.report(result);
     }
 
     fn begin(&mut self, room: &Room) {

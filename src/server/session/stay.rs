@@ -11,7 +11,7 @@ use super::talk::Talk;
 use super::wants::Wants;
 use crate::app::MapDisplay;
 use crate::app::parts::{MapPanel, Watch};
-use crate::game::{Outcome, PlayerView};
+use crate::game::{Outcome, PlayerView, STEPS_PER_SECOND};
 use crate::server::room::{Header, MemberId, MemberView, Mode, Phase, RoomView};
 use crate::world::{Camera, FieldOfView, Figure};
 
@@ -50,8 +50,7 @@ struct Shown {
     revision: u64,
     camera: Camera,
     phase: Phase,
-    /// The seconds that the picture counts down.
-    seconds: Option<u64>,
+    times: [Option<u64>; 2],
     members: Vec<MemberView>,
     ghosts: Vec<Figure>,
     standings: usize,
@@ -96,6 +95,8 @@ impl Stay {
             }
             self.watch.look_at(&room.game, player);
         }
+        // A picture without the level changes with nothing in it.
+        self.next_change = None;
         self.members = room.members.iter().map(|member| member.id).collect();
         if self.watched.is_none_or(|id| room.member(id).is_none()) {
             self.watched = self.members.first().copied();
@@ -154,7 +155,7 @@ impl Stay {
         shown.revision != room.game.revision()
             || shown.camera != self.camera(room, look.field_of_view)
             || std::mem::discriminant(&shown.phase) != std::mem::discriminant(&room.phase)
-            || shown.seconds != seconds_left(room)
+            || shown.times != times(room)
             || shown.members != room.members
             || !self.ghosts(room, look).map(|seen| seen.figure).eq(shown.ghosts.iter().copied())
             || shown.standings != room.standings.len()
@@ -170,12 +171,27 @@ impl Stay {
             revision: room.game.revision(),
             camera: self.camera(room, look.field_of_view),
             phase: room.phase,
-            seconds: seconds_left(room),
+            times: times(room),
             members: room.members.clone(),
             ghosts: self.ghosts(room, look).map(|seen| seen.figure).collect(),
             standings: room.standings.len(),
             animates_at: self.next_change,
         });
+    }
+}
+
+/// The times that the picture may show, in seconds.
+fn times(room: &RoomView) -> [Option<u64>; 2] {
+    [seconds_left(room), run_seconds(room)]
+}
+
+/// The seconds of a round whose time counts; `None` in the others.
+pub(super) fn run_seconds(room: &RoomView) -> Option<u64> {
+    match room.header.mode {
+        Mode::Race | Mode::Together | Mode::Alone => {
+            Some(room.step.saturating_sub(room.begun()?) / u64::from(STEPS_PER_SECOND))
+        }
+        Mode::Roam | Mode::Tag | Mode::Hide => None,
     }
 }
 

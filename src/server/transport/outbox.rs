@@ -18,6 +18,8 @@ use bytes::Bytes;
 use russh::ChannelId;
 use russh::server::Handle;
 use tokio::sync::Notify;
+#[cfg(test)]
+use tokio::sync::mpsc::UnboundedSender;
 use tokio::task::{unconstrained, yield_now};
 
 use super::{Counters, locked};
@@ -40,7 +42,15 @@ pub(super) struct Passage {
     rest: Mutex<Option<Frame>>,
     changed: Notify,
     counters: OnceLock<Arc<Counters>>,
-    channel: OnceLock<(Handle, ChannelId)>,
+    way: OnceLock<Way>,
+}
+
+/// The way of parts to the client.
+#[derive(Debug)]
+enum Way {
+    Channel(Handle, ChannelId),
+    #[cfg(test)]
+    Pipe(UnboundedSender<Bytes>),
 }
 
 /// The most bytes that russh is given at once, and keeps for each connection from then on. With 16 KB, a
@@ -55,8 +65,18 @@ const ENCRYPTED: u8 = 2;
 
 impl Outbox {
     pub(super) fn new(handle: Handle, channel: ChannelId, passage: Arc<Passage>) -> Self {
+        Self::on(Way::Channel(handle, channel), passage)
+    }
+
+    /// The parts of frames come out of a pipe.
+    #[cfg(test)]
+    pub(super) fn into_pipe(pipe: UnboundedSender<Bytes>, passage: Arc<Passage>) -> Self {
+        Self::on(Way::Pipe(pipe), passage)
+    }
+
+    fn on(way: Way, passage: Arc<Passage>) -> Self {
         // There is one session channel.
-        _ = passage.channel.set((handle, channel));
+        _ = passage.way.set(way);
         Self { passage }
     }
 
@@ -142,14 +162,18 @@ impl Passage {
 
     /// Sends the first part of a frame, and keeps the others.
     fn send_part(self: &Arc<Self>, mut frame: Frame) {
-        let Some((handle, channel)) = self.channel.get() else { return };
+        let Some(way) = self.way.get() else { return };
         let rest = frame.split_off(PART);
         locked(&self.rest, |kept| *kept = rest);
         self.state.store(QUEUED, Ordering::Release);
         self.parts.fetch_add(1, Ordering::AcqRel);
         let part = Bytes::from_owner(Part { frame, passage: self.clone() });
-        // The queue has room: one part, a few questions and the three messages of the end are in it.
-        _ = at_once(handle.data(*channel, part));
+        match way {
+            // The queue has room: one part, a few questions and the three messages of the end are in it.
+            Way::Channel(handle, channel) => _ = at_once(handle.data(*channel, part)),
+            #[cfg(test)]
+            Way::Pipe(pipe) => _ = pipe.send(part),
+        }
     }
 }
 

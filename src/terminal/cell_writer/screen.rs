@@ -213,9 +213,9 @@ impl Screen {
         self.changed.contains(&true)
     }
 
-    /// Whether every row shows exactly its targets.
+    /// Whether every row shows exactly its targets, as rows without columns do.
     pub(super) fn is_exact(&self) -> bool {
-        !self.exact.contains(&false)
+        self.width == 0 || !self.exact.contains(&false)
     }
 
     /// The two colours of a shown cell; `None` if they are unknown, and off the screen.

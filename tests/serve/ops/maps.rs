@@ -2,17 +2,18 @@
 
 use std::fs;
 use std::path::{Path, PathBuf};
-use std::process::{Command, Output};
+use std::process::Output;
 
 use rustix::process::Signal;
 
+use super::killed::user_key;
 use super::running::Running;
 use crate::player::Player;
 use crate::support::cellcaster;
 use crate::transport::{folder, wait_until};
 
 /// A hall whose exit is a few steps ahead.
-const HALL: &str = r##"title = "The moss hall"
+pub(super) const HALL: &str = r##"title = "The moss hall"
 grid = '''
 #########
 #@....>.#
@@ -26,7 +27,7 @@ grid = '''
 "##;
 
 /// A folder of maps.
-fn maps(files: &[(&str, &str)]) -> PathBuf {
+pub(super) fn maps(files: &[(&str, &str)]) -> PathBuf {
     let maps = folder();
     for (name, text) in files {
         fs::write(maps.join(name), text).unwrap();
@@ -47,7 +48,7 @@ fn complaint(arguments: &[&str]) -> String {
     error
 }
 
-fn scores(data: &Path, arguments: &[&str]) -> String {
+pub(super) fn scores(data: &Path, arguments: &[&str]) -> String {
     let words = [&["scores"], arguments].concat();
     let output = cellcaster(&words).env("CELLCASTER_DATA", data).output().unwrap();
     assert!(output.status.success(), "{output:?}");
@@ -59,7 +60,7 @@ fn replay(arguments: &[&Path]) -> Output {
 }
 
 /// Presses a number in the lobby and takes what the next pages offer, with a name that is new.
-fn choose(player: &Player, name: &str, entry: &str) {
+pub(super) fn choose(player: &Player, name: &str, entry: &str) {
     player.wait_for("Enter takes it");
     player.send(format!("\x15{name}"));
     player.wait_for(name);
@@ -105,10 +106,7 @@ fn a_run_in_a_map_of_the_host_ranks_and_its_room_is_played_again() {
     let options = ["--maps", maps.to_str().unwrap(), "--record-room", recordings.to_str().unwrap()];
     let config = "room = []\n";
     let running = Running::start_with(config, "text", &options);
-    let key = running.folder.join("user");
-    let mut keygen = Command::new("ssh-keygen");
-    keygen.args(["-q", "-t", "ed25519", "-N", "", "-f"]).arg(&key);
-    assert!(keygen.status().unwrap().success());
+    let key = user_key(&running.folder);
     let player = running.player(Some(&key));
     choose(&player, "Mara", "4");
     player.wait_for("The moss hall");

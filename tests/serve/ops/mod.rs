@@ -1,8 +1,10 @@
-//! Running a host: its log, its metrics, its operator, its signals, and the files that start it.
+//! Running a host: its log, its metrics, its operator, its signals, its ends, and the files that start it.
 
 mod admin;
 mod documents;
+mod killed;
 mod maps;
 mod metrics;
+mod results;
 mod running;
 mod signals;

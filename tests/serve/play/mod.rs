@@ -1,13 +1,18 @@
 //! The game on a server: real clients of OpenSSH that see each other's pictures.
 
+mod cut;
 mod race;
 mod server;
 
+use std::thread;
 use std::time::{Duration, Instant};
 
 use rustix::process::Signal;
 
+use self::cut::Relay;
 use self::server::GameServer;
+use crate::emulator::Emulator;
+use crate::looks::looks;
 use crate::player::Player;
 
 /// Enter takes what is offered: the name, the room, the card; then one walks.
@@ -40,6 +45,47 @@ fn two_players_meet_talk_and_part() {
     jon.wait_for("where?");
     drop(jon);
     mara.wait_for("Jon leaves.");
+}
+
+const HOLD_FORWARD: &str = "\x1b[119;1:1u";
+const RELEASE_FORWARD: &str = "\x1b[119;1:3u";
+
+#[test]
+fn players_see_each_other_walk() {
+    let server = GameServer::open();
+    let [mara, jon] = ["mara", "jon"].map(|_| server.player(&[]));
+    enter_room(&mara, "Mara");
+    enter_room(&jon, "Jon");
+    mara.wait_for("Jon comes in.");
+    // What was said is shown for some seconds.
+    let says = |emulator: &Emulator| emulator.text().contains("comes in.");
+    mara.wait_until("forgot what was said", |emulator| !says(emulator));
+    // Both look the same way, and he stands before her. His name is over his head.
+    mara.wait_for("Jon");
+    thread::sleep(Duration::from_millis(500));
+    // Nobody does anything, and the picture stays as it is.
+    let picture = || mara.look(|emulator| looks(emulator.screen()));
+    let before = picture();
+    thread::sleep(Duration::from_millis(500));
+    assert!(picture() == before, "{}", mara.text());
+    jon.send(HOLD_FORWARD);
+    mara.wait_until("saw a step", |emulator| looks(emulator.screen()) != before);
+    jon.send(RELEASE_FORWARD);
+}
+
+#[test]
+fn a_link_that_is_cut_frees_its_player_within_fifteen_seconds() {
+    let server = GameServer::open();
+    let relay = Relay::to(server.address());
+    let mara = server.player(&[]);
+    let jon = server.player_at(relay.port, &[]);
+    enter_room(&mara, "Mara");
+    enter_room(&jon, "Jon");
+    mara.wait_for("Jon comes in.");
+    let cut = Instant::now();
+    relay.cut();
+    mara.wait_for("Jon leaves.");
+    assert!(cut.elapsed() < Duration::from_secs(15), "{:?}", cut.elapsed());
 }
 
 #[test]

@@ -55,11 +55,20 @@ impl GameServer {
         stop.map(|stop| stop.send(()));
     }
 
+    pub(super) fn address(&self) -> SocketAddr {
+        self.running.as_ref().unwrap().address
+    }
+
     /// A client of OpenSSH in a terminal.
     pub(super) fn player(&self, options: &[&str]) -> Player {
+        self.player_at(self.address().port(), options)
+    }
+
+    /// A client that connects to another port.
+    pub(super) fn player_at(&self, port: u16, options: &[&str]) -> Player {
         let fixed = "-F none -o StrictHostKeyChecking=no -o UserKnownHostsFile=/dev/null \
                      -o LogLevel=ERROR -o IdentitiesOnly=yes -tt -p";
-        let port = self.running.as_ref().unwrap().address.port().to_string();
+        let port = port.to_string();
         let words = fixed.split_whitespace().chain([port.as_str()]);
         let identity: &[&str] = if options.is_empty() { &["-o", "IdentityFile=none"] } else { &[] };
         let arguments: Vec<&str> =

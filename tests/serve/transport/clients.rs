@@ -39,11 +39,13 @@ fn a_key_is_the_same_whatever_its_comment() {
 #[test]
 fn one_key_has_three_sessions() {
     let house = House::open();
-    let identity = format!("IdentityFile={}", house.user_key("key", ""));
-    let _players = [(); 3].map(|()| house.visitor(&["-o", &identity]));
-    let mut fourth = house.player(&["-o", &identity]);
-    fourth.wait_for("connected too often with this key");
-    assert_eq!(fourth.wait_for_end().status.code(), Some(2));
+    house.beside_another(|| {
+        let identity = format!("IdentityFile={}", house.user_key("key", ""));
+        let _players = [(); 3].map(|()| house.visitor(&["-o", &identity]));
+        let mut fourth = house.player(&["-o", &identity]);
+        fourth.wait_for("connected too often with this key");
+        assert_eq!(fourth.wait_for_end().status.code(), Some(2));
+    });
     house.assert_answers();
 }
 
@@ -65,36 +67,42 @@ fn an_rsa_key_makes_a_guest_who_is_told() {
 #[test]
 fn passwords_are_refused() {
     let house = House::open();
-    let (_, error, status) =
-        house.run(&["-o", "PreferredAuthentications=password"], &["-tt", "ann@127.0.0.1"]);
-    assert!(error.contains("Permission denied"), "{error}");
-    assert_eq!(status, Some(255));
+    house.beside_another(|| {
+        let (_, error, status) =
+            house.run(&["-o", "PreferredAuthentications=password"], &["-tt", "ann@127.0.0.1"]);
+        assert!(error.contains("Permission denied"), "{error}");
+        assert_eq!(status, Some(255));
+    });
     house.assert_answers();
 }
 
 #[test]
 fn a_client_without_a_terminal_gets_one_sentence() {
     let house = House::open();
-    let (output, error, status) = house.run(&[], &["-T", "ann@127.0.0.1"]);
-    assert_eq!(output, "");
-    assert_eq!(error, "This is a game for a terminal: connect with ssh -t.\r\n");
-    assert_eq!(status, Some(2));
+    house.beside_another(|| {
+        let (output, error, status) = house.run(&[], &["-T", "ann@127.0.0.1"]);
+        assert_eq!(output, "");
+        assert_eq!(error, "This is a game for a terminal: connect with ssh -t.\r\n");
+        assert_eq!(status, Some(2));
+    });
     house.assert_answers();
 }
 
 #[test]
 fn commands_and_subsystems_are_refused() {
     let house = House::open();
-    for rest in [
-        &["ann@127.0.0.1", "id"] as &[&str],
-        &["-tt", "ann@127.0.0.1", "id"],
-        &["-s", "ann@127.0.0.1", "sftp"],
-    ] {
-        let (output, error, status) = house.run(&[], rest);
-        assert_eq!(output, "", "{rest:?}");
-        assert!(error.contains("request failed on channel 0"), "{rest:?}: {error}");
-        assert_eq!(status, Some(255), "{rest:?}");
-    }
+    house.beside_another(|| {
+        for rest in [
+            &["ann@127.0.0.1", "id"] as &[&str],
+            &["-tt", "ann@127.0.0.1", "id"],
+            &["-s", "ann@127.0.0.1", "sftp"],
+        ] {
+            let (output, error, status) = house.run(&[], rest);
+            assert_eq!(output, "", "{rest:?}");
+            assert!(error.contains("request failed on channel 0"), "{rest:?}: {error}");
+            assert_eq!(status, Some(255), "{rest:?}");
+        }
+    });
     house.assert_answers();
 }
 
@@ -173,14 +181,16 @@ fn only_variables_about_the_terminal_pass() {
 #[test]
 fn after_a_storm_of_resizes_the_size_is_right() {
     let house = House::open();
-    let player = house.visitor(&[]);
-    for round in 0..500 {
-        player.resize(20 + round % 300, 10 + round % 90);
-    }
-    player.resize(90, 30);
-    player.wait_for("[90x30]");
-    player.resize(1000, 900);
-    player.wait_for("[500x200]");
+    house.beside_another(|| {
+        let player = house.visitor(&[]);
+        for round in 0..500 {
+            player.resize(20 + round % 300, 10 + round % 90);
+        }
+        player.resize(90, 30);
+        player.wait_for("[90x30]");
+        player.resize(1000, 900);
+        player.wait_for("[500x200]");
+    });
     house.assert_answers();
 }
 

@@ -1,7 +1,10 @@
 //! A session for tests: shows what it knows about its visitor, and what they type.
 //!
 //! `q` ends it with status 7. From `F` to `f`, frames of random colours follow each other without
-//! a pause; then it shows how many bytes they had.
+//! a pause; then it shows how many bytes they had. After `T`, a frame is due every tenth of a second,
+//! and it shows how many were sent, and at how many times the one before had not left yet.
+
+use std::time::Duration;
 
 use cellcaster::rng::SplitMix64;
 use cellcaster::server::{Arrival, Departure, Host, Link, Visitor};
@@ -10,8 +13,12 @@ use ratatui::layout::Size;
 use ratatui::style::Color;
 use ratatui::widgets::{Paragraph, Wrap};
 use ratatui::{Terminal, TerminalOptions, Viewport};
+use tokio::time::{Interval, interval};
 
 pub(crate) struct Echo;
+
+/// The time between two frames that are due.
+const TICK: Duration = Duration::from_millis(100);
 
 struct Screen {
     terminal: Terminal<CellWriter<Vec<u8>>>,
@@ -23,7 +30,15 @@ struct Screen {
     size: WindowSize,
     drains: bool,
     noise: Option<SplitMix64>,
+    ticks: Option<Ticks>,
     is_stale: bool,
+}
+
+/// Frames that are due at regular times.
+struct Ticks {
+    times: Interval,
+    sent: u32,
+    missed: u32,
 }
 
 impl Host for Echo {
@@ -61,6 +76,7 @@ impl Host for Echo {
                     Arrival::Ended => return Departure { status },
                 },
                 () = link.outbox.drained(), if waits => {}
+                () = tick(&mut screen.ticks) => screen.tick(),
             }
         }
     }
@@ -80,6 +96,7 @@ impl Screen {
             size,
             drains: false,
             noise: None,
+            ticks: None,
             is_stale: true,
         }
     }
@@ -92,10 +109,21 @@ impl Screen {
         if bytes.contains(&b'F') {
             self.noise = Some(SplitMix64::new(1));
         }
+        if bytes.contains(&b'T') {
+            self.ticks = Some(Ticks { times: interval(TICK), sent: 0, missed: 0 });
+        }
         if bytes.contains(&b'f') {
             self.noise = None;
         }
         self.is_stale = true;
+    }
+
+    fn tick(&mut self) {
+        if let Some(ticks) = &mut self.ticks {
+            let count = if self.is_stale { &mut ticks.missed } else { &mut ticks.sent };
+            *count += 1;
+            self.is_stale = true;
+        }
     }
 
     fn resize(&mut self, size: WindowSize) {
@@ -130,8 +158,10 @@ impl Screen {
         let who = key.as_ref().map_or("guest", |key| key.fingerprint());
         let environment: Vec<String> =
             environment.iter().map(|(name, value)| format!("{name}={value}")).collect();
+        let ticks = self.ticks.as_ref();
+        let ticks = ticks.map(|ticks| format!("[due {} {}]", ticks.sent, ticks.missed));
         format!(
-            "[{user}]\n[{who}]\n[{term}]\n[{}x{}]\n[compressed {compresses}]\n[{}]\n[typed {}]\n[{}]\n[sent {}]{}\n{}",
+            "[{user}]\n[{who}]\n[{term}]\n[{}x{}]\n[compressed {compresses}]\n[{}]\n[typed {}]\n[{}]\n[sent {}]{}\n{}{}",
             self.size.columns,
             self.size.rows,
             environment.join(" "),
@@ -140,6 +170,15 @@ impl Screen {
             self.sent,
             if self.drains { "[drains]" } else { "" },
             notice.unwrap_or_default(),
+            ticks.unwrap_or_default(),
         )
+    }
+}
+
+/// Waits until the next frame is due.
+async fn tick(ticks: &mut Option<Ticks>) {
+    match ticks {
+        Some(ticks) => _ = ticks.times.tick().await,
+        None => std::future::pending().await,
     }
 }

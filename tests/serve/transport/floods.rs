@@ -8,23 +8,27 @@ use super::house::{House, wait_until};
 #[test]
 fn a_paste_bomb_arrives_bit_by_bit() {
     let house = House::open_with(|config| config.bytes_per_second = 16 << 10);
-    let bomber = house.visitor(&[]);
-    let begun = Instant::now();
-    bomber.send("w".repeat(100_000));
-    house.assert_answers();
-    bomber.wait_for("[100000]");
-    // Four seconds' bytes come at once.
-    assert!(begun.elapsed() >= Duration::from_secs(2));
+    house.beside_another(|| {
+        let bomber = house.visitor(&[]);
+        let begun = Instant::now();
+        bomber.send("w".repeat(100_000));
+        house.assert_answers();
+        bomber.wait_for("[100000]");
+        // Four seconds' bytes come at once.
+        assert!(begun.elapsed() >= Duration::from_secs(2));
+    });
     house.assert_answers();
 }
 
 #[test]
 fn what_is_no_text_reaches_the_session_as_it_is() {
     let house = House::open();
-    let player = house.visitor(&[]);
-    player.send(b"\xff\xfe\xc3\x28\xed\xa0\x80\x1b]0;title\x07");
-    player.wait_for("[17]");
-    assert_eq!(player.look(|emulator| emulator.title().to_owned()), "");
+    house.beside_another(|| {
+        let player = house.visitor(&[]);
+        player.send(b"\xff\xfe\xc3\x28\xed\xa0\x80\x1b]0;title\x07");
+        player.wait_for("[17]");
+        assert_eq!(player.look(|emulator| emulator.title().to_owned()), "");
+    });
     house.assert_answers();
 }
 
@@ -40,7 +44,7 @@ fn clients_that_never_read_hold_one_frame_each() {
         player.send("F");
     }
     wait_until("they read on", || held() > 0);
-    std::thread::sleep(Duration::from_secs(2));
+    house.beside_another(|| std::thread::sleep(Duration::from_secs(2)));
     for _ in 0..3 {
         house.assert_answers();
         // A frame of noise has 80 × 24 cells of at most 40 bytes, in a buffer that has grown by doubling.
@@ -54,10 +58,12 @@ fn clients_that_never_read_hold_one_frame_each() {
 #[test]
 fn a_client_that_takes_nothing_is_disconnected() {
     let house = House::open_with(|config| config.stall = Duration::from_secs(3));
-    let player = house.visitor(&[]);
-    player.set_reading(false);
-    player.send("F");
-    wait_until("it is served on", || house.sessions() == 0);
-    player.set_reading(true);
+    house.beside_another(|| {
+        let player = house.visitor(&[]);
+        player.set_reading(false);
+        player.send("F");
+        wait_until("it is served on", || house.sessions() == 1);
+        player.set_reading(true);
+    });
     house.assert_answers();
 }

@@ -1,5 +1,6 @@
 //! A server in this process, and clients of it.
 
+use std::cell::Cell;
 use std::fs;
 use std::net::SocketAddr;
 use std::path::{Path, PathBuf};
@@ -110,6 +111,24 @@ impl House {
         assert_eq!(player.wait_for_end().status.code(), Some(7));
     }
 
+    /// Does something beside a visitor to whom a frame is due every tenth of a second, and asserts that
+    /// they have lost none of them. On a machine under load, one of ten may leave later than the next
+    /// is due.
+    pub(super) fn beside_another<T>(&self, act: impl FnOnce() -> T) -> T {
+        let bystander = self.visitor(&[]);
+        bystander.send("T");
+        bystander.wait_for("[due 1 ");
+        let [before, _] = due(&bystander);
+        let result = act();
+        let [sent, _] = due(&bystander);
+        // They still come.
+        bystander.wait_until("got a frame", |emulator| due_of(&emulator.text())[0] > sent);
+        let [sent, missed] = due(&bystander);
+        assert!(missed * 10 <= sent + 10, "{missed} frames were lost, and {} sent", sent - before);
+        bystander.send("q");
+        result
+    }
+
     pub(super) fn sessions(&self) -> usize {
         self.counters.sessions.load(Ordering::Relaxed)
     }
@@ -134,6 +153,22 @@ impl Drop for House {
         }
         _ = fs::remove_dir_all(&self.folder);
     }
+}
+
+/// The frames that a visitor was sent when they were due, and the others.
+fn due(visitor: &Player) -> [u32; 2] {
+    let due = Cell::new([0; 2]);
+    visitor.wait_until("showed a whole frame", |emulator| {
+        due.set(due_of(&emulator.text()));
+        true
+    });
+    due.get()
+}
+
+fn due_of(text: &str) -> [u32; 2] {
+    let numbers = text.split_once("[due ").and_then(|(_, rest)| rest.split_once(']'));
+    let mut numbers = numbers.map_or("0 0", |(numbers, _)| numbers).split(' ');
+    [(); 2].map(|()| numbers.next().and_then(|number| number.parse().ok()).unwrap_or(0))
 }
 
 fn serve(runtime: &Runtime, server: Server, stopped: impl Future<Output = ()> + Send) {

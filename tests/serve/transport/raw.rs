@@ -44,26 +44,30 @@ fn packet(kind: u8, length: usize) -> Vec<u8> {
 #[test]
 fn a_connection_that_says_nothing_is_closed() {
     let house = House::open_with(|config| config.handshake = Duration::from_secs(1));
-    let mut silent = connect(&house);
-    let mut versed = connect(&house);
-    versed.write_all(VERSION).unwrap();
-    assert!(read_to_end(&mut silent).starts_with(b"SSH-2.0-cellcaster\r\n"));
-    read_to_end(&mut versed);
+    house.beside_another(|| {
+        let mut silent = connect(&house);
+        let mut versed = connect(&house);
+        versed.write_all(VERSION).unwrap();
+        assert!(read_to_end(&mut silent).starts_with(b"SSH-2.0-cellcaster\r\n"));
+        read_to_end(&mut versed);
+    });
     house.assert_answers();
 }
 
 #[test]
 fn a_connection_that_drips_is_closed() {
     let house = House::open_with(|config| config.handshake = Duration::from_secs(1));
-    let mut slow = connect(&house);
-    let bytes = [VERSION, &packet(20, 1000)].concat();
-    let begun = Instant::now();
-    let dripped = bytes.iter().take_while(|byte| {
-        std::thread::sleep(Duration::from_millis(20));
-        assert!(begun.elapsed() < PATIENCE, "it is not closed");
-        slow.write_all(&[**byte]).is_ok()
+    house.beside_another(|| {
+        let mut slow = connect(&house);
+        let bytes = [VERSION, &packet(20, 1000)].concat();
+        let begun = Instant::now();
+        let dripped = bytes.iter().take_while(|byte| {
+            std::thread::sleep(Duration::from_millis(20));
+            assert!(begun.elapsed() < PATIENCE, "it is not closed");
+            slow.write_all(&[**byte]).is_ok()
+        });
+        assert!(dripped.count() < bytes.len());
     });
-    assert!(dripped.count() < bytes.len());
     house.assert_answers();
 }
 
@@ -75,26 +79,32 @@ fn garbage_is_refused() {
         config.admission.failures = 1000;
     });
     let mut random = SplitMix64::new(1);
-    for beginning in [b"GET / HTTP/1.1\r\n\r\n" as &[u8], b"\0\0\0\0", VERSION, b"SSH-1.5-x\r\n"] {
-        let mut stream = connect(&house);
-        let garbage: Vec<u8> = (0..4096).map(|_| random.bits() as u8).collect();
-        _ = stream.write_all(&[beginning, &garbage].concat());
-        read_to_end(&mut stream);
-    }
+    house.beside_another(|| {
+        for beginning in
+            [b"GET / HTTP/1.1\r\n\r\n" as &[u8], b"\0\0\0\0", VERSION, b"SSH-1.5-x\r\n"]
+        {
+            let mut stream = connect(&house);
+            let garbage: Vec<u8> = (0..4096).map(|_| random.bits() as u8).collect();
+            _ = stream.write_all(&[beginning, &garbage].concat());
+            read_to_end(&mut stream);
+        }
+    });
     house.assert_answers();
 }
 
 #[test]
 fn an_oversized_packet_is_refused() {
     let house = House::open_with(|config| config.admission.failures = 1000);
-    for length in [u32::MAX, 1 << 30, 300_000, 40_000, 0, 1] {
-        let mut stream = connect(&house);
-        stream.write_all(VERSION).unwrap();
-        _ = stream.write_all(&[&length.to_be_bytes()[..], &[4, 20, 0, 0]].concat());
-        if length > 1 {
-            read_to_end(&mut stream);
+    house.beside_another(|| {
+        for length in [u32::MAX, 1 << 30, 300_000, 40_000, 0, 1] {
+            let mut stream = connect(&house);
+            stream.write_all(VERSION).unwrap();
+            _ = stream.write_all(&[&length.to_be_bytes()[..], &[4, 20, 0, 0]].concat());
+            if length > 1 {
+                read_to_end(&mut stream);
+            }
         }
-    }
+    });
     house.assert_answers();
 }
 
@@ -102,13 +112,15 @@ fn an_oversized_packet_is_refused() {
 #[test]
 fn bytes_before_authentication_are_counted() {
     let house = House::open();
-    let mut stream = connect(&house);
-    stream.write_all(VERSION).unwrap();
-    let ignored = packet(2, 1004);
-    let written = (0..100_000).take_while(|_| stream.write_all(&ignored).is_ok()).count();
-    // The rest was on its way when the connection was closed.
-    assert!(written * ignored.len() < 16 << 20, "{written}");
-    read_to_end(&mut stream);
+    house.beside_another(|| {
+        let mut stream = connect(&house);
+        stream.write_all(VERSION).unwrap();
+        let ignored = packet(2, 1004);
+        let written = (0..100_000).take_while(|_| stream.write_all(&ignored).is_ok()).count();
+        // The rest was on its way when the connection was closed.
+        assert!(written * ignored.len() < 16 << 20, "{written}");
+        read_to_end(&mut stream);
+    });
     house.assert_answers();
 }
 
@@ -117,15 +129,17 @@ fn bytes_before_authentication_are_counted() {
 fn half_open_connections_leave_room() {
     let house = House::open();
     let runtime = Runtime::new().unwrap();
-    let _streams = runtime.block_on(async {
-        let mut streams = Vec::new();
-        for number in 0..200_u16 {
-            let socket = TcpSocket::new_v4().unwrap();
-            let from = Ipv4Addr::new(127, 9, 9, number as u8);
-            socket.bind(SocketAddr::from((from, 0))).unwrap();
-            streams.push(socket.connect(house.address).await.unwrap());
-        }
-        streams
+    let _streams = house.beside_another(|| {
+        runtime.block_on(async {
+            let mut streams = Vec::new();
+            for number in 0..200_u16 {
+                let socket = TcpSocket::new_v4().unwrap();
+                let from = Ipv4Addr::new(127, 9, 9, number as u8);
+                socket.bind(SocketAddr::from((from, 0))).unwrap();
+                streams.push(socket.connect(house.address).await.unwrap());
+            }
+            streams
+        })
     });
     let open = || house.counters.connections.load(std::sync::atomic::Ordering::Relaxed);
     super::house::wait_until("none is open", || open() > 5);

@@ -6,9 +6,9 @@ use ratatui::layout::Rect;
 
 use crate::app::parts::{HealthSigns, Part, StatusLine, whole_seconds};
 use crate::canvas::Canvas;
-use crate::game::{Outcome, PlayerView, STEP};
+use crate::game::{Outcome, PlayerView};
 use crate::server::room::{MemberView, Mode, Phase, Role, RoomView};
-use crate::server::session::stay::{Stay, seconds_left};
+use crate::server::session::stay::{Stay, run_seconds, seconds_left};
 use crate::server::session::visit::Visit;
 
 impl Visit {
@@ -47,8 +47,8 @@ impl Visit {
             if let Some(stats) = stats {
                 line.write_stats(stats)?;
             }
-            if let Some(seconds) = run_time(room) {
-                line.both(Part::Time, format_args!("{}", whole_seconds(seconds)))?;
+            if let Some(seconds) = run_seconds(room) {
+                line.both(Part::Time, format_args!("{}", whole_seconds(seconds as f64)))?;
             }
             let (here, most) = (room.members.len(), room.header.mode.most());
             line.both(Part::Seen, format_args!("{here}/{most} here"))?;
@@ -56,15 +56,6 @@ impl Visit {
         });
         canvas.draw_widget(&*status, area);
     }
-}
-
-/// The seconds of a round whose time counts; `None` in the others.
-fn run_time(room: &RoomView) -> Option<f64> {
-    let begun = match room.header.mode {
-        Mode::Race | Mode::Together | Mode::Alone => room.begun()?,
-        Mode::Roam | Mode::Tag | Mode::Hide => return None,
-    };
-    Some(room.step.saturating_sub(begun) as f64 * STEP)
 }
 
 /// Writes the mode and the time of the round.

@@ -6,27 +6,26 @@ use flate2::Compression;
 use flate2::write::ZlibEncoder;
 
 use super::*;
+use crate::color::palette::ColorDepth;
+use crate::server::room::Catalog;
 use crate::terminal::Fidelity;
 
 /// The frames of a walk through the museum.
 fn walk(fidelity: Fidelity) -> Vec<Vec<u8>> {
-    let mut rig = Rig::new(Mode::Roam);
-    rig.catalog = Arc::new(Catalog::builtin());
-    let header = Header::new("museum", Mode::Roam, Difficulty::Normal, 7);
-    rig.room = Room::new(&rig.catalog, header).unwrap();
+    let catalog = Catalog::builtin();
+    let mut rig = Rig::with(Wish { catalog, level: "museum", ..Wish::new(Mode::Roam) });
     let one = rig.visitor_with("Mara", (80, 24), Speaks::Kitty, ColorDepth::True);
-    rig.visitors[one].session.protocol.set_fidelity(Some(fidelity));
-    rig.press(one, ENTER);
-    let (news, now) = (rig.join(one), rig.now);
-    rig.visitors[one].session.tell(news, now);
-    rig.pump(500);
-    rig.visitors[one].sent.clear();
+    rig.session(one, move |session, _| session.protocol.set_fidelity(Some(fidelity)));
+    for _ in 0..3 {
+        rig.press(one, ENTER);
+    }
+    let begun = rig.now();
     for turn in ["\x1b[1;1:1C", "\x1b[1;1:3C", "\x1b[1;1:1D", "\x1b[1;1:3D"] {
         rig.send(one, "\x1b[119;1:1u");
         rig.send(one, turn);
         rig.pump(1_000);
     }
-    std::mem::take(&mut rig.visitors[one].sent)
+    rig.clients[one].received(begun)
 }
 
 fn compressed(frames: &[Vec<u8>]) -> usize {

@@ -1,15 +1,44 @@
 //! What a session has as a game at home does: the mouse, the bell, presets of keys.
 
+use std::sync::Arc;
+use std::time::Duration;
+
+use russh::keys::ssh_key::public::{self, Ed25519PublicKey};
+
 use super::*;
+use crate::color::palette::ColorDepth;
 use crate::game::Outcome;
+use crate::server::line::Line;
+use crate::server::room::{Room, parse_log};
 use crate::server::session::page::Page;
+use crate::server::simulation::guest;
+use crate::server::summary::RoomId;
+use crate::server::{KeyData, Visitor};
 use crate::terminal::Fidelity;
-use crate::world::FieldOfView;
+
+/// A key, which makes its owner an account.
+fn key() -> KeyData {
+    let key = Ed25519PublicKey([7; 32]);
+    KeyData::new(&public::KeyData::Ed25519(key)).unwrap()
+}
+
+/// From the name to the first level alone.
+const ALONE: [&str; 4] = [ENTER, "4", ENTER, ENTER];
 
 fn heading(rig: &Rig) -> f64 {
-    let view = rig.room.view();
+    let view = rig.view();
     let player = view.members[0].player.unwrap();
     view.game.seen_by(player).unwrap().camera(FieldOfView::default()).heading.degrees()
+}
+
+/// What the terminal reports of the mouse.
+fn mouse(rig: &Rig, index: usize) -> vt100::MouseProtocolMode {
+    rig.clients[index].look(|emulator| emulator.modes().mouse.0)
+}
+
+/// How often the bell has rung.
+fn bells(rig: &Rig, index: usize) -> usize {
+    rig.clients[index].look(|emulator| emulator.bytes().iter().filter(|&&it| it == 0x07).count())
 }
 
 /// Moves the pointer to a column of the tenth row.
@@ -27,7 +56,7 @@ fn the_mouse_turns_by_two_degrees_a_cell() {
     point(&mut rig, one, 40);
     assert_eq!(heading(&rig), before, "the mouse is off");
     rig.press(one, "v");
-    assert_ne!(rig.visitors[one].emulator.modes().mouse.0, vt100::MouseProtocolMode::None);
+    assert_ne!(mouse(&rig, one), vt100::MouseProtocolMode::None);
     assert!(rig.text(one).contains("mouse"), "{}", rig.text(one));
     for column in [30, 40, 50] {
         point(&mut rig, one, column);
@@ -41,7 +70,7 @@ fn the_mouse_turns_by_two_degrees_a_cell() {
     rig.press(one, ESCAPE);
     assert!((heading(&rig) - before - turned).abs() < 1e-6, "in a menu it turns nobody");
     rig.press(one, "v");
-    assert_eq!(rig.visitors[one].emulator.modes().mouse.0, vt100::MouseProtocolMode::None);
+    assert_eq!(mouse(&rig, one), vt100::MouseProtocolMode::None);
 }
 
 #[test]
@@ -59,28 +88,33 @@ fn at_the_edge_of_the_window_the_mouse_turns_once_around() {
     let after = heading(&rig);
     rig.pump(1_000);
     assert_eq!(heading(&rig), after);
-    let pictures = rig.visitors[one].pictures;
+    let pictures = rig.clients[one].frames();
     rig.pump(1_000);
-    assert_eq!(rig.visitors[one].pictures, pictures);
+    assert_eq!(rig.clients[one].frames(), pictures);
 }
 
 #[test]
 fn a_run_that_the_mouse_has_steered_is_recorded_with_its_turns() {
-    let mut rig = Rig::new(Mode::Alone);
+    let mut rig = Rig::new(Mode::Roam);
     let one = rig.visitor("Mara", (80, 24), Speaks::Plain);
-    rig.press(one, ENTER);
-    let (news, now) = (rig.join(one), rig.now);
-    rig.visitors[one].session.tell(news, now);
+    for key in ALONE {
+        rig.press(one, key);
+    }
     rig.press(one, "v");
     point(&mut rig, one, 30);
-    rig.send(one, "\x1b[<35;40;10M");
+    point(&mut rig, one, 40);
+    rig.pump(300);
+    let text = rig.tapes.text(RoomId(ROOM.0 + 1));
+    let rounds = parse_log(&text).unwrap();
+    let (header, entries) = &rounds[0];
+    let mut room = Room::new(&Arc::new(catalog(HALL)), header.clone()).unwrap();
     let mut turned = 0;
-    for _ in 0..20 {
-        rig.pump(16);
-        let (_, _, intents) = rig.room.first_member().unwrap();
-        turned += i32::from(intents.look().turn);
+    for step in 0..=entries[entries.len() - 1].step {
+        entries.iter().filter(|entry| entry.step == step).for_each(|entry| room.apply(entry));
+        room.advance();
+        turned += room.first_member().map_or(0, |(.., intents)| i32::from(intents.look().turn));
     }
-    assert_eq!(turned, 2_000);
+    assert_eq!(turned, 2_000, "{text}");
 }
 
 #[test]
@@ -89,25 +123,18 @@ fn the_bell_rings_for_those_who_want_it_when_they_are_hurt() {
         .replace("@............", "@^^^^^^^^^^^^")
         .replace("[things]", "[things]\n\"^\" = { spikes = 1.0 }");
     let rings = [false, true].map(|bell| {
-        let mut rig = Rig::new(Mode::Together);
-        let mut catalog = Catalog::default();
-        catalog.add("hall", map::parse(&spikes, "hall", &map::NoFiles).unwrap());
-        rig.catalog = Arc::new(catalog);
-        let header = Header::new("hall", Mode::Together, Difficulty::Normal, 7);
-        rig.room = Room::new(&rig.catalog, header).unwrap();
+        let mut rig = Rig::with(Wish { catalog: catalog(&spikes), ..Wish::new(Mode::Together) });
         let one = rig.visitor("Mara", (80, 24), Speaks::Plain);
-        rig.visitors[one].session.visit.identity.preferences.bell = bell;
-        rig.press(one, ENTER);
-        let (news, now) = (rig.join(one), rig.now);
-        rig.visitors[one].session.tell(news, now);
-        rig.pump(500);
-        let before = rig.visitors[one].bells;
-        assert_eq!(before, 0);
+        rig.session(one, move |session, _| session.visit.identity.preferences.bell = bell);
+        for _ in 0..3 {
+            rig.press(one, ENTER);
+        }
+        assert_eq!(bells(&rig, one), 0);
         (0..40).for_each(|_| rig.press(one, "w"));
-        let view = rig.room.view();
+        let view = rig.view();
         let player = view.game.seen_by(view.members[0].player.unwrap()).unwrap();
         assert!(matches!(player.outcome(), Outcome::Dead { .. }));
-        rig.visitors[one].bells
+        bells(&rig, one)
     });
     assert_eq!(rings[0], 0);
     assert!((1..=3).contains(&rings[1]), "{rings:?}");
@@ -116,7 +143,12 @@ fn the_bell_rings_for_those_who_want_it_when_they_are_hurt() {
 #[test]
 fn a_preset_of_keys_is_chosen_and_kept() {
     let mut rig = Rig::new(Mode::Roam);
-    let one = rig.member("Mara", (80, 24), Speaks::Plain);
+    let mara = Visitor { key: Some(key()), ..guest("Mara", (80, 24)) };
+    let one = rig.connect(mara.clone(), Speaks::Plain, ColorDepth::Mono);
+    rig.pump(300);
+    for _ in 0..3 {
+        rig.press(one, ENTER);
+    }
     let start = rig.position(one);
     rig.press(one, "z");
     assert_eq!(rig.position(one), start);
@@ -126,24 +158,25 @@ fn a_preset_of_keys_is_chosen_and_kept() {
     assert!(rig.text(one).contains("qwerty"), "{}", rig.text(one));
     rig.press(one, "2");
     assert!(rig.text(one).contains("azerty"), "{}", rig.text(one));
-    let saved = rig.visitors[one].saved.clone().unwrap();
-    let kept = Configuration::parse(&saved.configuration, "it").unwrap();
-    assert_eq!(kept.preset(), "azerty");
     rig.press(one, "3");
-    let saved = rig.visitors[one].saved.clone().unwrap();
-    assert!(Configuration::parse(&saved.configuration, "it").unwrap().mouse);
     rig.press(one, ESCAPE);
     rig.press(one, ESCAPE);
     assert_eq!(rig.page(one), Page::Room);
     rig.press(one, "z");
     assert!(rig.position(one).x > start.x + 0.1);
+    let again = rig.connect(mara, Speaks::Plain, ColorDepth::Mono);
+    rig.pump(300);
+    let kept = rig.session(again, |session, _| session.visit.identity.configuration.clone());
+    assert_eq!((kept.preset(), kept.mouse), ("azerty", true));
 }
 
 #[test]
 fn a_notice_about_the_key_stands_in_the_lobby() {
     let mut rig = Rig::new(Mode::Roam);
     let one = rig.visitor("Mara", (80, 24), Speaks::Plain);
-    rig.visitors[one].session.visit.host.notice = Line::of("An RSA key is not an account.", 60);
+    rig.session(one, |session, _| {
+        session.visit.host.notice = Line::of("An RSA key is not an account.", 60);
+    });
     rig.press(one, ENTER);
     let text = rig.text(one);
     assert!(text.contains("An RSA key is not an account.") && text.contains("Be kind."), "{text}");
@@ -160,10 +193,12 @@ fn compression_is_advised_only_where_it_would_help() {
     ] {
         let mut rig = Rig::new(Mode::Roam);
         let one = rig.visitor_with("Mara", (80, 24), Speaks::Kitty, ColorDepth::True);
-        rig.visitors[one].latency = Duration::from_millis(60);
-        rig.visitors[one].session.visit.host.compresses = compresses;
-        rig.visitors[one].session.is_limited = is_limited;
-        rig.press(one, "x");
+        rig.clients[one].set(|link| link.latency = Duration::from_millis(60));
+        rig.session(one, move |session, _| {
+            session.visit.host.compresses = compresses;
+            session.is_limited = is_limited;
+        });
+        rig.press(one, "Xenia");
         rig.press(one, ENTER);
         let text = rig.text(one);
         assert_eq!(text.contains("ssh -C"), advises, "{compresses} {is_limited:?}: {text}");

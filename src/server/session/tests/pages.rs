@@ -3,11 +3,13 @@
 use super::*;
 use crate::server::session::choice::Target;
 use crate::server::session::page::Page;
+use crate::server::simulation::emulator::{Emulator, Modes};
+use crate::server::summary::RoomId;
 
 #[test]
 fn enter_alone_leads_to_a_first_walk() {
     let mut rig = Rig::new(Mode::Roam);
-    let one = rig.visitor("guest-amber-fox", (80, 24), Speaks::Kitty);
+    let one = rig.visitor("amber-fox", (80, 24), Speaks::Kitty);
     assert_eq!(rig.page(one), Page::Name);
     for page in [Page::Lobby, Page::Card(Target::Existing(ROOM)), Page::Room] {
         rig.press(one, ENTER);
@@ -22,12 +24,13 @@ fn enter_alone_leads_to_a_first_walk() {
 #[test]
 fn a_name_is_typed_in_place_of_the_offer() {
     let mut rig = Rig::new(Mode::Roam);
-    let one = rig.visitor("guest-amber-fox", (80, 24), Speaks::Plain);
+    let one = rig.visitor("amber-fox", (80, 24), Speaks::Plain);
     rig.press(one, "\x1b]0;evil\x07\x1b[31mMara\x1b[2J\u{9b}31m\u{202e} v");
     assert!(rig.text(one).contains("Mara31m v_"), "{}", rig.text(one));
-    assert_eq!(rig.visitors[one].emulator.title(), "");
+    assert_eq!(rig.clients[one].look(|emulator| emulator.title().to_owned()), "");
     rig.press(one, "\x7f\x7f\x7f\x7f\x7f\r");
-    assert_eq!(rig.visitors[one].session.visit.identity.name, line("Mara"));
+    let name = rig.session(one, |session, _| session.visit.identity.name.clone());
+    assert_eq!(name, line("Mara"));
     assert_eq!(rig.page(one), Page::Lobby);
 }
 
@@ -36,9 +39,9 @@ fn a_name_that_is_refused_is_typed_again() {
     let mut rig = Rig::new(Mode::Roam);
     let one = rig.visitor("g", (80, 24), Speaks::Plain);
     rig.press(one, "\x7f\r");
-    assert!(rig.text(one).contains("Choose another name."), "{}", rig.text(one));
-    rig.press(one, "Jo\r");
-    assert_eq!(rig.page(one), Page::Lobby);
+    assert!(rig.text(one).contains("A name ends with a letter"), "{}", rig.text(one));
+    rig.press(one, "\x7f\x7f\x7f\x7f\x7f\x7fJo\r");
+    assert_eq!(rig.page(one), Page::Lobby, "{}", rig.text(one));
 }
 
 #[test]
@@ -52,16 +55,16 @@ fn escape_goes_back_and_asks_before_it_leaves() {
     rig.press(one, "q");
     rig.press(one, "q");
     assert_eq!(rig.page(one), Page::Lobby);
-    assert_eq!(rig.room.len(), 0);
+    assert_eq!(rig.view().members.len(), 0);
     rig.press(one, ESCAPE);
     assert_eq!(rig.page(one), Page::Leaving);
     rig.press(one, "x");
     assert_eq!(rig.page(one), Page::Lobby);
     rig.press(one, "\x03");
     rig.press(one, "\x03");
-    assert!(rig.visitors[one].session.is_over());
-    let modes = rig.visitors[one].emulator.modes();
-    assert_eq!(modes, emulator::Modes::default());
+    assert!(rig.is_over(one));
+    let modes = rig.clients[one].look(Emulator::modes);
+    assert_eq!(modes, Modes::default());
     assert!(rig.text(one).contains("Goodbye."));
 }
 
@@ -96,11 +99,11 @@ fn who_presses_no_key_is_warned_and_put_out() {
     rig.pump(300_000);
     assert_eq!(rig.page(one), Page::Lobby);
     assert!(rig.text(one).contains("You pressed no key for 5 minutes."), "{}", rig.text(one));
-    assert_eq!(rig.room.len(), 0);
+    assert_eq!(rig.view().members.len(), 0);
     rig.pump(14 * 60_000);
     assert!(rig.text(one).contains("end this session"), "{}", rig.text(one));
     rig.pump(60_000);
-    assert!(rig.visitors[one].session.is_over());
+    assert!(rig.is_over(one));
 }
 
 #[test]
@@ -118,13 +121,16 @@ fn a_room_is_opened_and_watched() {
     assert!(rig.text(one).contains("waiting for another one"), "{}", rig.text(one));
     let other = rig.visitor("Jon", (80, 24), Speaks::Plain);
     rig.press(other, ENTER);
-    rig.press(other, "3");
+    // After the two rooms, and a new one.
+    rig.press(other, "4");
     rig.press(other, ENTER);
     rig.press(other, "2");
     assert!(rig.text(other).contains("watching Mara"), "{}", rig.text(other));
-    assert_eq!(rig.room.len(), 1);
+    let view = rig.rooms().view(RoomId(2)).unwrap();
+    assert_eq!(view.members.len(), 1);
     rig.press(other, "hello\r");
-    assert!(rig.room.view().said.iter().all(|said| said.text != "hello"));
+    let view = rig.rooms().view(RoomId(2)).unwrap();
+    assert!(view.said.iter().all(|said| said.text != "hello"));
 }
 
 #[test]

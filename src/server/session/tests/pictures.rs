@@ -24,11 +24,7 @@ fn face_to_face(rig: &mut Rig, size: (u16, u16)) -> usize {
 
 #[test]
 fn every_page_is_readable() {
-    assert_pages(
-        "name",
-        |rig, size| rig.visitor("guest-amber-fox", size, Speaks::Plain),
-        Mode::Roam,
-    );
+    assert_pages("name", |rig, size| rig.visitor("amber-fox", size, Speaks::Plain), Mode::Roam);
     let lobby = |rig: &mut Rig, size| {
         rig.member("Mara", (80, 24), Speaks::Plain);
         let jon = rig.visitor("Jon", size, Speaks::Plain);

@@ -41,7 +41,7 @@ fn what_is_said_reaches_the_others_as_text() {
     assert_eq!(rig.position(one), before, "keys are typed, and walk nowhere");
     rig.press(one, "\r");
     assert!(rig.text(other).contains("Mara wwww hi31m there!"), "{}", rig.text(other));
-    assert_eq!(rig.visitors[other].emulator.title(), "");
+    assert_eq!(rig.clients[other].look(|emulator| emulator.title().to_owned()), "");
     rig.pump(8_500);
     assert!(!rig.text(other).contains("wwww"), "{}", rig.text(other));
     rig.press(other, ";");
@@ -133,7 +133,7 @@ fn each_tap_of_an_act_counts_once() {
     let mut rig = Rig::new(Mode::Roam);
     let one = rig.member("Mara", (80, 24), Speaks::Plain);
     let heading = |rig: &Rig| {
-        let view = rig.room.view();
+        let view = rig.view();
         let player = view.members[0].player.unwrap();
         view.game.seen_by(player).unwrap().camera(FieldOfView::default()).heading.degrees()
     };
@@ -149,38 +149,36 @@ fn each_tap_of_an_act_counts_once() {
 #[test]
 fn a_member_who_is_put_out_is_told_why() {
     let (mut rig, one, _) = two(Mode::Roam);
-    let now = rig.now;
-    rig.visitors[one].session.tell(News::Said(line("be quiet")), now);
-    rig.visitors[one].session.tell(News::Draining { seconds: 30 }, now);
+    rig.visitors.say("be quiet");
+    rig.clients[one].drain();
     rig.pump(200);
     let text = rig.text(one);
-    assert!(text.contains("play.example.org: be quiet"), "{text}");
-    assert!(text.contains("The server ends in 30 seconds."), "{text}");
-    rig.visitors[one].is_inside = false;
-    rig.visitors[one].session.tell(News::Left("The room is closed.".to_owned()), now);
+    assert!(text.contains(": be quiet"), "{text}");
+    assert!(text.contains("The server ends in 10 seconds."), "{text}");
+    rig.rooms().close(ROOM, "The room is closed.");
     rig.pump(200);
     assert!(rig.text(one).contains("The room is closed."), "{}", rig.text(one));
-    rig.visitors[one].session.tell(News::Ended("The server has ended.".to_owned()), rig.now);
+    rig.pump(9_000);
+    assert!(rig.text(one).contains("The server has ended."), "{}", rig.text(one));
     rig.pump(1_500);
-    assert!(rig.visitors[one].session.is_over());
+    assert!(rig.is_over(one));
 }
 
 #[test]
 fn the_dead_go_on_or_begin_again() {
+    let spikes = HALL
+        .replace("@............", "@^^^^^^^^^^^^")
+        .replace("[things]", "[things]\n\"^\" = { spikes = 1.0 }");
     for (mode, effect) in [(Mode::Together, "Enter goes on"), (Mode::Alone, "Enter begins again")] {
-        let mut rig = Rig::new(mode);
-        let mut catalog = Catalog::default();
-        let spikes = HALL
-            .replace("@............", "@^^^^^^^^^^^^")
-            .replace("[things]", "[things]\n\"^\" = { spikes = 1.0 }");
-        catalog.add("hall", map::parse(&spikes, "hall", &map::NoFiles).unwrap());
-        rig.catalog = Arc::new(catalog);
-        rig.room =
-            Room::new(&rig.catalog, Header::new("hall", mode, Difficulty::Normal, 7)).unwrap();
+        let mut rig = Rig::with(Wish { catalog: catalog(&spikes), ..Wish::new(Mode::Together) });
         let one = rig.visitor("Mara", (80, 24), Speaks::Plain);
-        rig.press(one, ENTER);
-        let (news, now) = (rig.join(one), rig.now);
-        rig.visitors[one].session.tell(news, now);
+        let way: &[&str] = match mode {
+            // Alone, in the first level.
+            Mode::Alone => &[ENTER, "4", ENTER, ENTER],
+            _ => &[ENTER, ENTER, ENTER],
+        };
+        way.iter().for_each(|key| rig.press(one, key));
+        assert_eq!(rig.page(one), Page::Room, "{}", rig.text(one));
         for _ in 0..40 {
             rig.press(one, "w");
         }
@@ -208,7 +206,7 @@ fn capitals_and_signs_are_typed_in_both_protocols() {
         rig.press(one, slash);
         rig.press(one, typed);
         rig.press(one, enter);
-        let said = rig.room.view().said.last().unwrap().text.clone();
+        let said = rig.view().said.last().unwrap().text.clone();
         assert_eq!(said, "Hi! \u{e9}\u{e4}", "{speaks:?}");
     }
 }

@@ -1,0 +1,127 @@
+//! Drivers in simulated time: a store that is a task, and visits that can be looked into.
+
+use std::sync::Arc;
+use std::time::Duration;
+
+use tokio::sync::{mpsc, oneshot};
+use tokio::task::JoinHandle;
+
+use super::store_worker::StoreWorker;
+use super::terminal;
+use super::visit::Visit;
+use super::{GameHost, Parts, Shared, refuse};
+use crate::server::load::Load;
+use crate::server::room::{Catalog, RoomView};
+use crate::server::rooms::{Logs, Rooms};
+use crate::server::session::Session;
+use crate::server::{Link, LiveConfig, Metrics, Visitor, Visitors};
+use crate::store::host::HostStore;
+use crate::terminal::Options;
+
+/// A host in simulated time.
+pub(in crate::server) struct Simulated {
+    host: GameHost,
+}
+
+/// What a host in simulated time begins with.
+pub(in crate::server) struct Setup {
+    pub(in crate::server) live: LiveConfig,
+    pub(in crate::server) visitors: Visitors,
+    pub(in crate::server) catalog: Catalog,
+    pub(in crate::server) logs: Logs,
+    pub(in crate::server) store: Box<dyn HostStore>,
+    /// How long the store takes for a call.
+    pub(in crate::server) store_time: Duration,
+    pub(in crate::server) seed: u64,
+}
+
+/// A visit that runs.
+pub(in crate::server) struct Visiting {
+    looks: mpsc::UnboundedSender<Look>,
+    task: JoinHandle<u8>,
+}
+
+type Look = Box<dyn FnOnce(&mut Visit) + Send>;
+
+impl Simulated {
+    /// It is to be called within a runtime.
+    pub(in crate::server) fn new(setup: Setup) -> Self {
+        let metrics = Arc::<Metrics>::default();
+        let time = setup.store_time;
+        let host = GameHost::of(Parts {
+            live: setup.live,
+            visitors: setup.visitors,
+            catalog: setup.catalog,
+            logs: setup.logs,
+            load: Load::simulated(Arc::clone(&metrics)),
+            metrics,
+            store: StoreWorker::simulated(setup.store, time),
+            seed: setup.seed,
+        });
+        Self { host }
+    }
+
+    pub(in crate::server) fn rooms(&self) -> &Rooms {
+        &self.host.shared.rooms
+    }
+
+    /// Serves a visitor, of whose terminal `change` knows more than their environment tells.
+    pub(in crate::server) fn serve(
+        &self,
+        visitor: Visitor,
+        link: Link,
+        change: impl FnOnce(&mut Options),
+    ) -> Visiting {
+        let mut options = terminal::options(&visitor);
+        change(&mut options);
+        let (looks, looked) = mpsc::unbounded_channel();
+        let shared = Arc::clone(&self.host.shared);
+        Visiting { looks, task: tokio::spawn(serve(shared, visitor, link, options, looked)) }
+    }
+}
+
+/// Does what [`GameHost`] does for a visitor, and lets others look in between.
+async fn serve(
+    shared: Arc<Shared>,
+    visitor: Visitor,
+    mut link: Link,
+    options: Options,
+    mut looked: mpsc::UnboundedReceiver<Look>,
+) -> u8 {
+    let known = match shared.log_in(&visitor).await {
+        Ok(known) => known,
+        Err(sentence) => {
+            refuse(link, &sentence).await;
+            return 1;
+        }
+    };
+    let mut visit = Visit::new(shared, &visitor, known, options);
+    loop {
+        tokio::select! {
+            biased;
+            Some(look) = looked.recv() => look(&mut visit),
+            status = visit.run(&mut link) => return status,
+        }
+    }
+}
+
+impl Visiting {
+    /// Looks into the session with the newest snapshot of its room; `None` if it has ended.
+    pub(in crate::server) async fn look<T: Send + 'static>(
+        &self,
+        look: impl FnOnce(&mut Session, Option<&RoomView>) -> T + Send + 'static,
+    ) -> Option<T> {
+        let (answer, answered) = oneshot::channel();
+        let look = move |visit: &mut Visit| {
+            let room = visit.place.as_ref().map(|place| place.room());
+            let view = room.and_then(|room| visit.shared.rooms.view(room));
+            _ = answer.send(look(&mut visit.session, view.as_deref()));
+        };
+        self.looks.send(Box::new(look)).ok()?;
+        answered.await.ok()
+    }
+
+    pub(in crate::server) fn is_over(&self) -> bool {
+        self.task.is_finished()
+    }
+}

@@ -1,0 +1,265 @@
+//! A host in simulated time: rooms, sequencers, drivers, sessions and the store as they are, and
+//! clients with terminal emulators at the far ends of pipes.
+//!
+//! Everything runs on one thread under a clock that advances when nothing else is left to do. So what
+//! happens depends on the seed alone, and a minute takes less than a second. Tokio wakes those who wait
+//! for one `watch` channel in a random order, which only an unstable option seeds; no run depends on
+//! that order, as a test shows that plays seeds twice.
+
+mod client;
+#[path = "../../tests/support/emulator.rs"]
+pub(in crate::server) mod emulator;
+#[path = "../../tests/support/looks.rs"]
+mod looks;
+mod replay;
+mod seeds;
+mod tapes;
+
+use std::sync::Arc;
+use std::time::Duration;
+
+use tokio::runtime::{Builder, Runtime};
+use tokio::time::{Instant, sleep};
+
+pub(in crate::server) use self::client::{Client, Conditions, guest};
+pub(in crate::server) use self::emulator::Speaks;
+pub(in crate::server) use self::tapes::Tapes;
+use super::config::StandingRoom;
+use super::driver::{Setup, Simulated};
+use super::line::Line;
+use super::room::{Catalog, MemberId, Mode, NAME_COLUMNS, RoomView};
+use super::rooms::Rooms;
+use super::session::Session;
+use super::summary::{RoomId, RoomWish};
+use super::{Config, LiveConfig, Visitor, Visitors};
+use crate::color::palette::ColorDepth;
+use crate::map;
+use crate::store::host::MemoryStore;
+use crate::world::{Difficulty, FieldOfView};
+
+pub(in crate::server) const HALL: &str = r##"
+title = "The Hall"
+grid = '''
+###############
+#@............#
+#.............#
+#.............#
+#............>#
+###############
+'''
+[tiles]
+"#" = { wall = "#808080" }
+[things]
+"@" = { start = 0 }
+">" = { exit = true }
+"##;
+
+/// The standing room.
+pub(in crate::server) const ROOM: RoomId = RoomId(1);
+pub(in crate::server) const ENTER: &str = "\r";
+pub(in crate::server) const ESCAPE: &str = "\x1b";
+
+/// A host, and the clients that have come so far.
+pub(in crate::server) struct Rig {
+    runtime: Runtime,
+    host: Simulated,
+    pub(in crate::server) live: LiveConfig,
+    pub(in crate::server) visitors: Visitors,
+    pub(in crate::server) clients: Vec<Client>,
+    pub(in crate::server) tapes: Tapes,
+}
+
+/// What may differ from rig to rig.
+pub(in crate::server) struct Wish {
+    pub(in crate::server) catalog: Catalog,
+    /// The level and the mode of the standing room.
+    pub(in crate::server) level: &'static str,
+    pub(in crate::server) mode: Mode,
+    /// How long the store takes for a call.
+    pub(in crate::server) store_time: Duration,
+    pub(in crate::server) seed: u64,
+}
+
+pub(in crate::server) fn line(text: &str) -> Line {
+    Line::of(text, NAME_COLUMNS).unwrap()
+}
+
+/// Two levels with the same map.
+pub(in crate::server) fn catalog(map: &str) -> Catalog {
+    let mut catalog = Catalog::default();
+    for name in ["museum", "hall"] {
+        catalog.add(name, map::parse(map, name, &map::NoFiles).unwrap());
+    }
+    catalog
+}
+
+impl Wish {
+    /// Two levels with the hall, and a standing room in it.
+    pub(in crate::server) fn new(mode: Mode) -> Self {
+        Self { catalog: catalog(HALL), level: "hall", mode, store_time: Duration::ZERO, seed: 7 }
+    }
+}
+
+impl Rig {
+    /// A host with a standing room of that mode.
+    pub(in crate::server) fn new(mode: Mode) -> Self {
+        Self::with(Wish::new(mode))
+    }
+
+    pub(in crate::server) fn with(wish: Wish) -> Self {
+        let runtime =
+            Builder::new_current_thread().enable_time().start_paused(true).build().unwrap();
+        let (level, difficulty) = (wish.level.to_owned(), Difficulty::Normal);
+        let room = StandingRoom(RoomWish { level, mode: wish.mode, difficulty });
+        let config =
+            Config { message: "Be kind.".to_owned(), standing: vec![room], ..Config::default() };
+        let (live, visitors, tapes) =
+            (LiveConfig::new(config), Visitors::default(), Tapes::default());
+        let setup = Setup {
+            live: live.clone(),
+            visitors: visitors.clone(),
+            catalog: wish.catalog,
+            logs: tapes.logs(),
+            store: Box::new(MemoryStore::default()),
+            store_time: wish.store_time,
+            seed: wish.seed,
+        };
+        let host = runtime.block_on(async { Simulated::new(setup) });
+        Self { runtime, host, live, visitors, clients: Vec::new(), tapes }
+    }
+
+    /// Adds a visitor whose terminal has no colours, and returns their index.
+    pub(in crate::server) fn visitor(
+        &mut self,
+        name: &str,
+        size: (u16, u16),
+        speaks: Speaks,
+    ) -> usize {
+        self.visitor_with(name, size, speaks, ColorDepth::Mono)
+    }
+
+    pub(in crate::server) fn visitor_with(
+        &mut self,
+        name: &str,
+        size: (u16, u16),
+        speaks: Speaks,
+        depth: ColorDepth,
+    ) -> usize {
+        let index = self.arrive(name, size, speaks, depth);
+        self.pump(300);
+        index
+    }
+
+    /// A guest connects; no time passes.
+    pub(in crate::server) fn arrive(
+        &mut self,
+        name: &str,
+        size: (u16, u16),
+        speaks: Speaks,
+        depth: ColorDepth,
+    ) -> usize {
+        self.connect(guest(name, size), speaks, depth)
+    }
+
+    /// That visitor connects; no time passes.
+    pub(in crate::server) fn connect(
+        &mut self,
+        visitor: Visitor,
+        speaks: Speaks,
+        depth: ColorDepth,
+    ) -> usize {
+        let Self { runtime, host, .. } = self;
+        let client = runtime.block_on(async { Client::come(host, visitor, speaks, depth) });
+        self.clients.push(client);
+        self.clients.len() - 1
+    }
+
+    /// A visitor who is in the room.
+    pub(in crate::server) fn member(
+        &mut self,
+        name: &str,
+        size: (u16, u16),
+        speaks: Speaks,
+    ) -> usize {
+        let index = self.visitor(name, size, speaks);
+        for _ in 0..3 {
+            self.press(index, ENTER);
+        }
+        assert!(self.member_id(index).is_some(), "{}", self.text(index));
+        index
+    }
+
+    /// Types bytes, and lets half a second pass.
+    pub(in crate::server) fn press(&mut self, index: usize, bytes: &str) {
+        self.send(index, bytes);
+        self.pump(500);
+    }
+
+    pub(in crate::server) fn send(&self, index: usize, bytes: impl AsRef<[u8]>) {
+        let _guard = self.runtime.enter();
+        self.clients[index].send(bytes.as_ref());
+    }
+
+    /// Lets that many milliseconds pass.
+    pub(in crate::server) fn pump(&mut self, milliseconds: u64) {
+        self.runtime.block_on(async { sleep(Duration::from_millis(milliseconds)).await });
+    }
+
+    /// The simulated time.
+    pub(in crate::server) fn now(&self) -> Instant {
+        let _guard = self.runtime.enter();
+        Instant::now()
+    }
+
+    /// What the visitor's screen shows.
+    pub(in crate::server) fn text(&self, index: usize) -> String {
+        self.clients[index].look(|emulator| {
+            let screen = emulator.screen();
+            let (_, columns) = screen.size();
+            let rows = screen.rows(0, columns.get()).map(|row| row.trim_end().to_owned() + "\n");
+            rows.collect()
+        })
+    }
+
+    /// Looks into a session that has not ended, with the newest snapshot of its room.
+    pub(in crate::server) fn session<T: Send + 'static>(
+        &self,
+        index: usize,
+        look: impl FnOnce(&mut Session, Option<&RoomView>) -> T + Send + 'static,
+    ) -> T {
+        let looked = self.runtime.block_on(self.clients[index].visiting.look(look));
+        looked.expect("the session has ended")
+    }
+
+    /// The number of the visitor as a member.
+    pub(in crate::server) fn member_id(&self, index: usize) -> Option<MemberId> {
+        self.session(index, |session, _| session.member())
+    }
+
+    pub(in crate::server) fn is_over(&self, index: usize) -> bool {
+        self.clients[index].visiting.is_over()
+    }
+
+    pub(in crate::server) fn rooms(&self) -> &Rooms {
+        self.host.rooms()
+    }
+
+    /// The newest snapshot of the standing room.
+    pub(in crate::server) fn view(&self) -> Arc<RoomView> {
+        self.rooms().view(ROOM).expect("the room is there")
+    }
+
+    pub(in crate::server) fn position(&self, index: usize) -> glam::DVec2 {
+        self.session(index, |session, room| {
+            let room = room.expect("a room");
+            let member = room.member(session.member().unwrap()).unwrap();
+            let player = room.game.seen_by(member.player.unwrap()).unwrap();
+            player.camera(FieldOfView::default()).position()
+        })
+    }
+
+    /// The tasks of the host and its clients.
+    pub(in crate::server) fn tasks(&self) -> usize {
+        self.runtime.metrics().num_alive_tasks()
+    }
+}

@@ -1,0 +1,101 @@
+//! What is left after a server was killed, and after it has drained.
+
+use std::fs;
+use std::path::{Path, PathBuf};
+use std::process::Command;
+use std::thread;
+use std::time::Duration;
+
+use rustix::process::Signal;
+
+use super::running::Running;
+use crate::player::Player;
+use crate::support::cellcaster;
+use crate::transport::folder;
+
+/// A host that records its rooms, and the folder of the recordings.
+fn recorded(config: &str) -> (Running, PathBuf) {
+    let recordings = folder();
+    let options = ["--record-room", recordings.to_str().unwrap()];
+    (Running::start_with(config, "text", &options), recordings)
+}
+
+/// A new user key.
+pub(super) fn user_key(folder: &Path) -> PathBuf {
+    let path = folder.join("user");
+    let mut keygen = Command::new("ssh-keygen");
+    let made = keygen.args(["-q", "-t", "ed25519", "-N", "", "-f"]).arg(&path);
+    assert!(made.status().unwrap().success());
+    path
+}
+
+/// Takes a name, and goes into the first room.
+fn enter_room(player: &Player, name: &str) {
+    player.wait_for("Enter takes it");
+    player.send(format!("\x15{name}"));
+    player.wait_for(name);
+    player.send("\r");
+    player.wait_for("Open a room");
+    player.send("\r");
+    player.wait_for("Go in");
+    player.send("\r");
+    player.wait_for(&format!("{name} comes in."));
+}
+
+fn say(player: &Player, text: &str) {
+    player.send(format!("/{text}\r"));
+    player.wait_for(text);
+}
+
+/// The recording of the first room, of which each line is whole, and which can be played again.
+fn recording(folder: &Path) -> String {
+    let path = folder.join("room-1.log");
+    let text = fs::read_to_string(&path).unwrap();
+    assert!(text.ends_with('\n'), "{text}");
+    let replayed = cellcaster(&["replay"]).arg(&path).output().unwrap();
+    assert!(replayed.status.success(), "{replayed:?}\n{text}");
+    assert!(String::from_utf8(replayed.stdout).unwrap().contains("round 1: Roam"));
+    text
+}
+
+#[test]
+fn a_killed_server_loses_the_running_second_at_most() {
+    let (mut running, recordings) = recorded("");
+    let key = user_key(&running.folder);
+    let player = running.player(Some(&key));
+    enter_room(&player, "Mara");
+    say(&player, "the first words");
+    // The room writes its recording out once a second.
+    thread::sleep(Duration::from_millis(1_500));
+    say(&player, "the last words");
+    running.signal(Signal::KILL);
+    running.wait_for_end();
+    let text = recording(&recordings);
+    assert!(text.contains("say 1 the first words\n"), "{text}");
+
+    running.restart();
+    let player = running.player(Some(&key));
+    player.wait_for("> Mara");
+    let guest = running.visitor();
+    guest.wait_for("Enter takes it");
+    guest.send("\x15MARA\r");
+    guest.wait_for("Somebody has this name");
+}
+
+#[test]
+fn a_server_that_drains_loses_nothing() {
+    let (mut running, recordings) = recorded("drain-seconds = 3\n");
+    let key = user_key(&running.folder);
+    let mut player = running.player(Some(&key));
+    enter_room(&player, "Mara");
+    running.signal(Signal::TERM);
+    player.wait_for("The server ends in 3 seconds.");
+    say(&player, "the last words");
+    assert_eq!(player.wait_for_end().status.code(), Some(0));
+    assert_eq!(running.wait_for_end(), Some(0));
+    let text = recording(&recordings);
+    assert!(text.contains("say 1 the last words\n"), "{text}");
+    assert!(text.ends_with(" leave 1\n"), "{text}");
+    running.restart();
+    running.player(Some(&key)).wait_for("> Mara");
+}
