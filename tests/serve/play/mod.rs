@@ -49,6 +49,7 @@ fn two_players_meet_talk_and_part() {
 
 const HOLD_FORWARD: &str = "\x1b[119;1:1u";
 const RELEASE_FORWARD: &str = "\x1b[119;1:3u";
+const TURN_BACK: &str = "\x1b[98;1:1u\x1b[98;1:3u";
 
 #[test]
 fn players_see_each_other_walk() {
@@ -60,17 +61,21 @@ fn players_see_each_other_walk() {
     // What was said is shown for some seconds.
     let says = |emulator: &Emulator| emulator.text().contains("comes in.");
     mara.wait_until("forgot what was said", |emulator| !says(emulator));
-    // Both look the same way, and he stands before her. His name is over his head.
+    // Both look the same way. He walks until she sees him, whose name is over his head.
+    jon.send(HOLD_FORWARD);
     mara.wait_for("Jon");
-    thread::sleep(Duration::from_millis(500));
-    // Nobody does anything, and the picture stays as it is.
-    let picture = || mara.look(|emulator| looks(emulator.screen()));
+    jon.send(RELEASE_FORWARD);
+    jon.send(TURN_BACK);
+    jon.wait_for("Mara");
+    // Nobody does anything, and the picture stays as it is, until she takes a step.
+    let picture = || jon.look(|emulator| looks(emulator.screen()));
+    thread::sleep(Duration::from_millis(1_000));
     let before = picture();
     thread::sleep(Duration::from_millis(500));
-    assert!(picture() == before, "{}", mara.text());
-    jon.send(HOLD_FORWARD);
-    mara.wait_until("saw a step", |emulator| looks(emulator.screen()) != before);
-    jon.send(RELEASE_FORWARD);
+    assert!(picture() == before, "{}", jon.text());
+    mara.send(HOLD_FORWARD);
+    jon.wait_until("saw a step", |emulator| looks(emulator.screen()) != before);
+    mara.send(RELEASE_FORWARD);
 }
 
 #[test]
