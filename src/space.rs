@@ -9,8 +9,10 @@
 //! checker pattern shows its mean over the area of a pixel: see `checker`.
 //!
 //! A body is tested only against the pixels that it can cover. Its bounds on the screen are
-//! computed first, and a row of pixels tests only the bodies that reach it. A bounding volume
-//! hierarchy was refused: it pays with thousands of bodies, and maps are written by hand.
+//! computed first, and a row of pixels tests only the bodies that reach it. Where these bounds overlap
+//! so much that a pixel has many bodies to test, a bounding volume hierarchy finds the nearest of
+//! them: see `tree`. It is not used elsewhere, since most maps have few bodies, and rows of pixels are
+//! faster to test than a tree.
 
 mod body;
 mod bounds;
@@ -23,6 +25,7 @@ mod relative_shape;
 mod renderer;
 mod scene;
 mod shadows;
+mod tree;
 
 pub use body::{Block, Body, FARTHEST, Plane, SMALLEST, Shape, SolidTexture, Sphere};
 pub use camera::{Axes, Camera, EYE_CLEARANCE, Elevation};

@@ -5,7 +5,7 @@
 
 mod reach;
 
-use std::collections::{BTreeMap, BTreeSet};
+use std::collections::BTreeSet;
 use std::ops::Range;
 
 use toml::de::DeTable;
@@ -18,7 +18,7 @@ use super::textures::Surface;
 use crate::fault::document::Entry;
 use crate::fault::{Fault, quoted};
 use crate::world::{Cell, Grid, KeyId, Start, Tile, TileId, TileKind};
-use reach::{Opener, Reach};
+use reach::{Opener, Openers, Reach};
 
 /// A door as the legend defines it.
 pub(super) struct DoorSymbol<'a> {
@@ -218,35 +218,40 @@ fn keys_out_of_reach(
     if locked_doors(drawing, legend).next().is_none() {
         return Vec::new();
     }
-    let mut passable = low_things.clone();
-    let mut locks = BTreeMap::new();
-    let mut found = BTreeMap::<Cell, Vec<Opener<'_>>>::new();
+    let mut reach = Reach::new(grid);
+    let mut openers = Openers::default();
     let mut given = BTreeSet::new();
+    low_things.iter().for_each(|&cell| _ = reach.passable.replace(cell, true));
     let has_guards = legend.used_in(drawing).any(|(_, it)| matches!(it.meaning, Meaning::Guard(_)));
     for (cell, symbol) in legend.of_cells(drawing) {
         match &symbol.meaning {
             Meaning::Door(door) => {
-                passable.insert(cell);
-                locks.extend(door.opener().map(|opener| (cell, opener)));
+                reach.passable.replace(cell, true);
+                reach.locks.replace(cell, door.opener().map(|opener| openers.id(opener)));
             }
-            Meaning::Shape(_) | Meaning::MovingWall(_) => _ = passable.insert(cell),
-            Meaning::Key(key) => found.entry(cell).or_default().push(Opener::Key(key.name)),
+            Meaning::Shape(_) | Meaning::MovingWall(_) => _ = reach.passable.replace(cell, true),
+            Meaning::Key(key) => {
+                reach.found.replace(cell, Some(openers.id(Opener::Key(key.name))));
+            }
             meaning => {
                 let Some(switch) = switches::set_by(symbol) else { continue };
-                let opener = Opener::Switch(switch.name);
-                let is_lever = matches!(meaning, Meaning::Item(_));
-                let around = if is_lever { cells_around(cell) } else { vec![cell] };
-                for &it in &around {
-                    found.entry(it).or_default().push(opener);
+                let opener = openers.id(Opener::Switch(switch.name));
+                if matches!(meaning, Meaning::Item(_)) {
+                    for it in cells_around(cell) {
+                        reach.levers.entry(it).or_default().push(opener);
+                    }
+                } else {
+                    reach.found.replace(cell, Some(opener));
+                    given.extend(has_guards.then_some(opener));
                 }
-                given.extend((has_guards && !is_lever).then_some(opener));
             }
         }
     }
-    let reach = Reach { grid, passable: &passable, locks: &locks, found: &found };
     let taken = reach.openers_from(start.cell, given);
-    let missing =
-        locked_doors(drawing, legend).filter(|(_, key)| !taken.contains(&Opener::Key(key.name)));
+    let is_taken = |key: &KeySymbol<'_>| {
+        openers.known(Opener::Key(key.name)).is_some_and(|key| taken.contains(&key))
+    };
+    let missing = locked_doors(drawing, legend).filter(|(_, key)| !is_taken(key));
     missing
         .map(|(_, key)| {
             let name = quoted(key.name);

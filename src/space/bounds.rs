@@ -37,6 +37,11 @@ impl Bounds {
         let is_empty = columns.is_empty() || rows.is_empty();
         (!is_empty).then_some(Self { columns, rows })
     }
+
+    /// The number of pixels in the rectangle.
+    pub(super) fn pixel_count(&self) -> u64 {
+        self.columns.len() as u64 * self.rows.len() as u64
+    }
 }
 
 /// The range of pixels, of `count` along a side of the picture, with slopes in this extent. It has

@@ -170,7 +170,7 @@ impl RelativeBlock {
     /// The distances at which a ray enters and leaves the slab between the two faces of each axis,
     /// as in the slab method of Kay and Kajiya ("Ray Tracing Complex Scenes", 1986).
     #[inline]
-    fn crossings(&self, direction: DVec3) -> (DVec3, DVec3) {
+    pub(super) fn crossings(&self, direction: DVec3) -> (DVec3, DVec3) {
         let slabs = [
             slab(self.low.x, self.high.x, direction.x),
             slab(self.low.y, self.high.y, direction.y),

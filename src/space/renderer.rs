@@ -10,9 +10,13 @@ use super::explanation::Explanation;
 use super::relative_shape::RelativeShape;
 use super::scene::Scene;
 use super::shadows::Shadows;
+use super::tree::{Nearest, Tree};
 use crate::color::Rgb;
 use crate::render::Frame;
 use crate::world::Fog;
+
+/// With more tests of a ray on average, the tree is faster than the bounds on the screen.
+const MOST_TESTS_OF_RAY: u64 = 32;
 
 /// Draws frames, and reuses its memory from frame to frame.
 #[derive(Clone, Debug, Default)]
@@ -23,6 +27,8 @@ pub struct Renderer {
     nearest: Vec<Option<Nearest>>,
     /// The directions of the rays of the middle row.
     directions: Vec<DVec3>,
+    /// Empty where the bounds of bodies overlap little.
+    tree: Tree,
     shadows: Shadows,
 }
 
@@ -32,13 +38,6 @@ struct InView {
     body: usize,
     shape: RelativeShape,
     bounds: Bounds,
-}
-
-#[derive(Clone, Copy, Debug)]
-struct Nearest {
-    t: f64,
-    /// The index among the bodies in view.
-    index: usize,
 }
 
 impl Renderer {
@@ -86,10 +85,37 @@ impl Renderer {
             let bounds = Bounds::new(&shape, projection)?;
             Some(InView { body, shape, bounds })
         }));
+        let rays = u64::from(projection.width) * u64::from(projection.height);
+        let tests: u64 = self.in_view.iter().map(|it| it.bounds.pixel_count()).sum();
+        self.tree.clear();
+        if tests > MOST_TESTS_OF_RAY * rays {
+            self.tree.build(self.in_view.iter().map(|it| &it.shape));
+        }
     }
 
     /// Finds the hits of the rays of `row`, and returns the number of tests.
     fn cast_row(&mut self, row: u32, up: DVec3) -> u64 {
+        if self.tree.is_empty() {
+            self.cast_row_by_bounds(row, up)
+        } else {
+            self.cast_row_by_tree(up)
+        }
+    }
+
+    fn cast_row_by_tree(&mut self, up: DVec3) -> u64 {
+        let Self { in_view, nearest, directions, tree, .. } = self;
+        let mut tests = 0;
+        nearest.clear();
+        nearest.extend(directions.iter().map(|&across| {
+            tree.nearest(across + up, |index| {
+                tests += 1;
+                in_view[index].shape.distance(across + up)
+            })
+        }));
+        tests
+    }
+
+    fn cast_row_by_bounds(&mut self, row: u32, up: DVec3) -> u64 {
         let Self { in_view, nearest, directions, .. } = self;
         nearest.clear();
         nearest.resize(directions.len(), None);

@@ -175,6 +175,24 @@ fn the_number_of_things_is_limited() {
 }
 
 #[test]
+fn the_search_for_keys_takes_a_few_bytes_for_each_cell() {
+    const SIDE: usize = 990;
+    let legend = "[tiles]\n\"+\" = { door = \"oak\", key = \"brass\" }\n\"#\" = { wall = \"brick\" }\n\
+                  \"o\" = { pillar = \"brick\" }\n\"p\" = { plate = \"gate\" }\n\
+                  \"g\" = { door = \"oak\", switch = \"gate\" }\n\
+                  [things]\n\"@\" = { start = 0 }\n\"k\" = { key = \"brass\" }\n";
+    for most_cells in ["o", "p", "."] {
+        let row = most_cells.repeat(SIDE);
+        let rows = vec![row.as_str(); SIDE - 5].join("\n");
+        let (floor, wall) = (".".repeat(SIDE - 5), "#".repeat(SIDE - 3));
+        let start = format!("@kp..{floor}\n#+#{wall}\n.....{floor}\n#g#{wall}\n.....{floor}");
+        let map = format!("grid = '''\n{start}\n{rows}\n'''\n{legend}");
+        let level = read(&map, 40 * (SIDE * SIDE) as u64);
+        assert!(level.is_ok(), "{level:?}");
+    }
+}
+
+#[test]
 fn the_number_of_bodies_is_limited() {
     let spheres = |count| {
         let sphere = "{ center = [9, 0, 0], radius = 8, color = '#fff000' },";

@@ -294,3 +294,21 @@ fn a_sphere_ahead_is_round() {
     let down = (0..24).filter(|&row| is_sphere(40, row)).count();
     assert!(down > 8 && across.abs_diff(2 * down) <= 2, "{across} by {down}");
 }
+
+/// Where bodies overlap on the screen, a ray is tested against few of them.
+#[test]
+fn bodies_that_overlap_cost_little_more_than_the_nearest() {
+    let place = |index: u32, factor: u32| f64::from(index * factor % 1000) / 1000.0;
+    let ball = |index: u32| {
+        let aside = DVec3::new(0.0, place(index, 7) - 0.5, place(index, 13) - 0.5) * 20.0;
+        sphere(DVec3::new(20.0 + 80.0 * place(index, 17), 0.0, 0.0) + aside, 9.0)
+    };
+    let texture = SolidTexture::Plain(Rgb::WHITE);
+    let bodies = (0..1000).map(|index| Body { shape: ball(index), texture }).collect();
+    let scene = Scene { bodies, ..Scene::default() };
+    let camera = Camera::new(DVec3::ZERO, Heading::default(), FieldOfView::default()).unwrap();
+    let (size, aspect) = (FrameSize::new(60, 40).unwrap(), PixelAspect::SQUARE);
+    let mut frame = Frame::new(size, aspect);
+    let explained = Renderer::new().explain(&scene, &camera, &mut frame);
+    assert!(explained.tests < 50 * explained.rays, "{} tests", explained.tests);
+}

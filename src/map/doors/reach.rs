@@ -3,8 +3,13 @@
 //!
 //! It overestimates what the player can reach: walls that sink are open, all floors are at one
 //! height, and a plate that a guard may step on is pressed.
+//!
+//! What is known of a cell is in arrays with a value for each cell. Ordered sets of cells were refused:
+//! a map with a pillar in each of a million cells took 1.3 s, most of it in the sets.
 
 use std::collections::{BTreeMap, BTreeSet};
+use std::mem;
+use std::num::NonZeroU32;
 
 use crate::world::{Cell, Grid};
 
@@ -17,54 +22,104 @@ pub(super) enum Opener<'a> {
     Switch(&'a str),
 }
 
-/// A map for the search.
-pub(super) struct Reach<'a> {
-    pub(super) grid: &'a Grid,
-    /// Solid cells that can be passed: doors; walls that sink; shapes, which may leave room beside
-    /// them; and things that the player may jump over.
-    pub(super) passable: &'a BTreeSet<Cell>,
-    /// Locked doors, and what opens them.
-    pub(super) locks: &'a BTreeMap<Cell, Opener<'a>>,
-    /// What the player finds in a cell or, for levers, beside it.
-    pub(super) found: &'a BTreeMap<Cell, Vec<Opener<'a>>>,
+/// An opener by its number, from 1.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord)]
+pub(super) struct OpenerId(NonZeroU32);
+
+/// The openers of a map, numbered.
+#[derive(Default)]
+pub(super) struct Openers<'a> {
+    ids: BTreeMap<Opener<'a>, OpenerId>,
 }
 
-impl<'a> Reach<'a> {
+/// A value for each cell of a grid, the default at first.
+pub(super) struct PerCell<T> {
+    width: usize,
+    values: Vec<T>,
+}
+
+/// A map for the search.
+pub(super) struct Reach<'g> {
+    grid: &'g Grid,
+    /// Solid cells that can be passed: doors; walls that sink; shapes, which may leave room beside
+    /// them; and things that the player may jump over.
+    pub(super) passable: PerCell<bool>,
+    /// What opens the door in a cell, if it is locked.
+    pub(super) locks: PerCell<Option<OpenerId>>,
+    /// What the player finds in a cell.
+    pub(super) found: PerCell<Option<OpenerId>>,
+    /// The switches of levers, for each cell from which the player can reach them.
+    pub(super) levers: BTreeMap<Cell, Vec<OpenerId>>,
+}
+
+impl<'a> Openers<'a> {
+    /// The number of `opener`, which is new if it has none yet. There are fewer openers than characters.
+    pub(super) fn id(&mut self, opener: Opener<'a>) -> OpenerId {
+        let new = NonZeroU32::MIN.saturating_add(self.ids.len() as u32);
+        *self.ids.entry(opener).or_insert(OpenerId(new))
+    }
+
+    /// The number of `opener`; `None` if it has none.
+    pub(super) fn known(&self, opener: Opener<'_>) -> Option<OpenerId> {
+        self.ids.get(&opener).copied()
+    }
+}
+
+impl<T: Copy + Default> PerCell<T> {
+    fn new(grid: &Grid) -> Self {
+        let (width, height) = (grid.width() as usize, grid.height() as usize);
+        Self { width, values: vec![T::default(); width * height] }
+    }
+
+    /// Sets the value of `cell`, and returns the one before.
+    pub(super) fn replace(&mut self, cell: Cell, value: T) -> T {
+        let index = self.index(cell);
+        mem::replace(&mut self.values[index], value)
+    }
+
+    fn get(&self, cell: Cell) -> T {
+        self.values[self.index(cell)]
+    }
+
+    fn index(&self, cell: Cell) -> usize {
+        cell.row as usize * self.width + cell.column as usize
+    }
+}
+
+impl<'g> Reach<'g> {
+    /// A map of `grid` in which nothing is found.
+    pub(super) fn new(grid: &'g Grid) -> Self {
+        let (locks, found) = (PerCell::new(grid), PerCell::new(grid));
+        Self { grid, passable: PerCell::new(grid), locks, found, levers: BTreeMap::new() }
+    }
+
     /// What the player can reach from `start`, and what is `given`.
     pub(super) fn openers_from(
         &self,
         start: Cell,
-        given: BTreeSet<Opener<'a>>,
-    ) -> BTreeSet<Opener<'a>> {
+        given: BTreeSet<OpenerId>,
+    ) -> BTreeSet<OpenerId> {
         let mut taken = given;
-        let mut waiting = BTreeMap::<Opener<'_>, Vec<Cell>>::new();
-        let mut seen = vec![false; self.grid.width() as usize * self.grid.height() as usize];
+        let mut waiting = BTreeMap::<OpenerId, Vec<Cell>>::new();
+        let mut seen = PerCell::<bool>::new(self.grid);
+        seen.replace(start, true);
         let mut next = vec![start];
         while let Some(cell) = next.pop() {
-            if std::mem::replace(&mut seen[self.index(cell)], true) {
-                continue;
-            }
-            if let Some(&opener) = self.locks.get(&cell)
+            if let Some(opener) = self.locks.get(cell)
                 && !taken.contains(&opener)
             {
                 waiting.entry(opener).or_default().push(cell);
                 continue;
             }
-            for &opener in self.found.get(&cell).into_iter().flatten() {
+            let at_levers = self.levers.get(&cell).into_iter().flatten().copied();
+            for opener in self.found.get(cell).into_iter().chain(at_levers) {
                 if taken.insert(opener) {
-                    for door in waiting.remove(&opener).unwrap_or_default() {
-                        seen[self.index(door)] = false;
-                        next.push(door);
-                    }
+                    next.extend(waiting.remove(&opener).unwrap_or_default());
                 }
             }
-            next.extend(self.neighbors(cell));
+            next.extend(self.neighbors(cell).filter(|&it| !seen.replace(it, true)));
         }
         taken
-    }
-
-    fn index(&self, cell: Cell) -> usize {
-        cell.row as usize * self.grid.width() as usize + cell.column as usize
     }
 
     /// The neighbours of `cell` that the player can enter.
@@ -75,7 +130,7 @@ impl<'a> Reach<'a> {
             let tile = self.grid.tile(column, row)?;
             let is_barred = self.grid.is_solid_tile(tile) || self.grid.is_occupied(column, row);
             let cell = Cell { column: column as u32, row: row as u32 };
-            (!is_barred || self.passable.contains(&cell)).then_some(cell)
+            (!is_barred || self.passable.get(cell)).then_some(cell)
         })
     }
 }
