@@ -5,6 +5,7 @@
 
 mod explored;
 mod map_point;
+mod picture;
 mod top_view;
 mod window;
 
@@ -25,7 +26,8 @@ use crate::render::Column;
 use crate::world::{Camera, Heading, World};
 pub use explored::Explored;
 use map_point::MapPoint;
-use top_view::{Row, TopView};
+use picture::Picture;
+use top_view::TopView;
 use window::Window;
 
 /// A widget that shows the map from above: walls in their colours, floor by its height, the player
@@ -245,55 +247,6 @@ const MARK_TEXT: Rgb = Rgb::new(0xb8, 0xb0, 0xb0);
 const MARK: Rgb = Rgb::new(0xc0, 0x30, 0x28);
 /// The background of the arrow.
 const PLAYER: Rgb = Rgb::new(0xff, 0xf0, 0x50);
-
-/// A map and the part of it that is shown.
-struct Picture<'a> {
-    top_view: TopView<'a>,
-    window: Window,
-}
-
-impl<'a> Picture<'a> {
-    /// The pixels in row `y`.
-    fn row(&self, y: u32) -> PixelRow<'_, 'a> {
-        PixelRow { picture: self, y, middle: self.top_view.row(self.window.position(0, y).y) }
-    }
-
-    /// The map point at a pixel.
-    fn point(&self, x: u32, y: u32) -> MapPoint {
-        self.row(y).point(x)
-    }
-}
-
-/// A row of pixels of a map.
-struct PixelRow<'p, 'a> {
-    picture: &'p Picture<'a>,
-    y: u32,
-    /// The points in the middle of the pixels.
-    middle: Row<'p>,
-}
-
-impl PixelRow<'_, '_> {
-    /// The map point at a pixel. If a pixel covers several cells, it is the most important one.
-    #[inline]
-    fn point(&self, x: u32) -> MapPoint {
-        let Picture { top_view, window } = self.picture;
-        let position = window.position(x, self.y);
-        let [columns, rows] = window.cells_per_pixel();
-        if (columns, rows) == (1, 1) {
-            return self.middle.point(position.x);
-        }
-        // The pixel covers this number of cells in each direction; each is sampled at its middle.
-        let along = |middle: f64, count: u32| {
-            let first = middle - f64::from(count - 1) / 2.0;
-            (0..count).map(move |index| first + f64::from(index))
-        };
-        let points = along(position.y, rows).flat_map(|y| {
-            let row = top_view.row(y);
-            along(position.x, columns).map(move |x| row.point(x))
-        });
-        points.max_by_key(|point| point.importance()).unwrap_or(MapPoint::Void)
-    }
-}
 
 /// The character for two map points, one above the other, without colour. Things are letters.
 fn in_mono((top, bottom): (MapPoint, MapPoint), (x, y): (u32, u32)) -> char {

@@ -118,14 +118,20 @@ impl Alacritty {
         }
     }
 
-    /// The entries of the palette that cells are shown in, or that the next character would be.
+    /// The entries of the palette that cells are shown in, or that the next character would be. A space
+    /// does not show its text colour, nor a full block its background.
     pub(crate) fn entries_in_use(&self) -> BTreeSet<u8> {
         let rows = 0..self.terminal.screen_lines() as u16;
         let places = rows
             .flat_map(|row| (0..self.terminal.columns() as u16).map(move |column| (column, row)));
         let cells = places.map(|(column, row)| self.cell(column, row));
+        let shown = cells.flat_map(|cell| match cell.c {
+            ' ' => [cell.bg; 2],
+            '█' => [cell.fg; 2],
+            _ => [cell.fg, cell.bg],
+        });
         let pen = &self.terminal.grid().cursor.template;
-        let colors = cells.chain([pen]).flat_map(|cell| [cell.fg, cell.bg]);
+        let colors = shown.chain([pen.fg, pen.bg]);
         colors
             .filter_map(|color| match color {
                 Color::Indexed(entry) => Some(entry),

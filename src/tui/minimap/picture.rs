@@ -1,0 +1,56 @@
+//! The pixels of a map.
+//!
+//! A row of pixels finds its row of tiles and things once, not for each pixel.
+
+use super::map_point::MapPoint;
+use super::top_view::{Row, TopView};
+use super::window::Window;
+
+/// A map and the part of it that is shown.
+pub(super) struct Picture<'a> {
+    pub(super) top_view: TopView<'a>,
+    pub(super) window: Window,
+}
+
+impl<'a> Picture<'a> {
+    /// The pixels in row `y`.
+    pub(super) fn row(&self, y: u32) -> PixelRow<'_, 'a> {
+        PixelRow { picture: self, y, middle: self.top_view.row(self.window.position(0, y).y) }
+    }
+
+    /// The map point at a pixel.
+    pub(super) fn point(&self, x: u32, y: u32) -> MapPoint {
+        self.row(y).point(x)
+    }
+}
+
+/// A row of pixels of a map.
+pub(super) struct PixelRow<'p, 'a> {
+    picture: &'p Picture<'a>,
+    y: u32,
+    /// The points in the middle of the pixels.
+    middle: Row<'p>,
+}
+
+impl PixelRow<'_, '_> {
+    /// The map point at a pixel. If a pixel covers several cells, it is the most important one.
+    #[inline]
+    pub(super) fn point(&self, x: u32) -> MapPoint {
+        let Picture { top_view, window } = self.picture;
+        let position = window.position(x, self.y);
+        let [columns, rows] = window.cells_per_pixel();
+        if (columns, rows) == (1, 1) {
+            return self.middle.point(position.x);
+        }
+        // The pixel covers this number of cells in each direction; each is sampled at its middle.
+        let along = |middle: f64, count: u32| {
+            let first = middle - f64::from(count - 1) / 2.0;
+            (0..count).map(move |index| first + f64::from(index))
+        };
+        let points = along(position.y, rows).flat_map(|y| {
+            let row = top_view.row(y);
+            along(position.x, columns).map(move |x| row.point(x))
+        });
+        points.max_by_key(|point| point.importance()).unwrap_or(MapPoint::Void)
+    }
+}
