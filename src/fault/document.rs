@@ -70,7 +70,7 @@ fn line_numbers(text: &str, places: BTreeSet<usize>) -> BTreeMap<usize, usize> {
     let (mut line, mut counted) = (0, 0);
     let numbered = places.into_iter().map(|place| {
         let passed = text.as_bytes().get(counted..place).unwrap_or_default();
-        line += passed.iter().filter(|&&byte| byte == b'\n').count();
+        line += passed.split(|&byte| byte == b'\n').count() - 1;
         counted = place;
         (place, line)
     });

@@ -221,7 +221,9 @@ fn keys_out_of_reach(
     let mut reach = Reach::new(grid);
     let mut openers = Openers::default();
     let mut given = BTreeSet::new();
-    low_things.iter().for_each(|&cell| _ = reach.passable.replace(cell, true));
+    for &cell in low_things {
+        reach.passable.replace(cell, true);
+    }
     let has_guards = legend.used_in(drawing).any(|(_, it)| matches!(it.meaning, Meaning::Guard(_)));
     for (cell, symbol) in legend.of_cells(drawing) {
         match &symbol.meaning {

@@ -113,7 +113,9 @@ impl<'a> Drawing<'a> {
             return Vec::new();
         }
         let mut found = PerCharacter::<Option<Asked>>::new();
-        asked.into_iter().for_each(|it| *found.get_mut(it) = Some(Asked::default()));
+        for character in asked {
+            *found.get_mut(character) = Some(Asked::default());
+        }
         for (cell, character) in self.cells() {
             if found.get(character).is_some()
                 && is_such(cell)
