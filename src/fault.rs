@@ -37,8 +37,8 @@ impl Faults {
     }
 
     /// A fault of the whole file `name`, such as that it does not exist. `message` names the file.
-    pub(crate) fn of_whole_file(name: &str, message: String, help: &str) -> Self {
-        let message = printable(&message);
+    pub(crate) fn of_whole_file(name: &str, message: &str, help: &str) -> Self {
+        let message = printable(message);
         let fault = Fault { place: None, message, label: String::new(), help: help.to_owned() };
         Self::new(name, "", vec![fault])
     }
@@ -54,7 +54,7 @@ impl Faults {
             let message = format!(
                 "{name} is not UTF-8 text: line {line} has a byte that is part of no character"
             );
-            Self::of_whole_file(name, message, &format!("save the {what} in the encoding UTF-8"))
+            Self::of_whole_file(name, &message, &format!("save the {what} in the encoding UTF-8"))
         })
     }
 

@@ -179,7 +179,7 @@ mod tests {
 
     #[test]
     fn a_whole_file_has_no_line() {
-        let faults = Faults::of_whole_file("a.toml", "a.toml is too large".into(), "make it small");
+        let faults = Faults::of_whole_file("a.toml", "a.toml is too large", "make it small");
         assert_snapshot!(faults, @r"
         error: a.toml is too large
          |

@@ -42,7 +42,7 @@ impl Tileset {
         let is_rock = |&(byte, meaning): &(u8, Meaning)| byte == ROCK && !meaning.is_walkable;
         let Some((_, rock)) = drawn.iter().copied().find(is_rock) else {
             let message = format!("{NAME} shows no wall '#'");
-            return Err(Faults::of_whole_file(NAME, message, "draw one in its grid"));
+            return Err(Faults::of_whole_file(NAME, &message, "draw one in its grid"));
         };
         let mut meanings = vec![rock; 256];
         let mut exits = Vec::new();

@@ -25,11 +25,11 @@ pub(super) fn open(path: &Path, name: &str) -> Result<File, Faults> {
     let metadata = fs::metadata(path).map_err(|error| unreadable(name, &error))?;
     if metadata.is_dir() {
         let message = format!("{name} is a folder, not a map");
-        return Err(Faults::of_whole_file(name, message, "name a map file in it"));
+        return Err(Faults::of_whole_file(name, &message, "name a map file in it"));
     }
     if !metadata.is_file() {
         let message = format!("{name} is a pipe or a device, not a map");
-        return Err(Faults::of_whole_file(name, message, "a map on standard input is called -"));
+        return Err(Faults::of_whole_file(name, &message, "a map on standard input is called -"));
     }
     File::open(path).map_err(|error| unreadable(name, &error))
 }
@@ -44,7 +44,7 @@ pub(super) fn read_up_to(path: &Path, limit: usize) -> io::Result<Vec<u8>> {
 pub(super) fn too_large(name: &str) -> Faults {
     let limit = MAX_BYTES >> 20;
     let message = format!("{name} is larger than {limit} MiB, the most that a map may have");
-    Faults::of_whole_file(name, message, "")
+    Faults::of_whole_file(name, &message, "")
 }
 
 fn unreadable(name: &str, error: &io::Error) -> Faults {
@@ -52,5 +52,5 @@ fn unreadable(name: &str, error: &io::Error) -> Faults {
         io::ErrorKind::NotFound => format!("there is no file {name}"),
         kind => format!("{name} cannot be read: {kind}"),
     };
-    Faults::of_whole_file(name, message, "")
+    Faults::of_whole_file(name, &message, "")
 }

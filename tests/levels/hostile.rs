@@ -76,7 +76,7 @@ impl LargePictures {
         let mut encoder = png::Encoder::new(&mut png, 1024, 1024);
         encoder.set_color(png::ColorType::Grayscale);
         encoder.set_depth(png::BitDepth::One);
-        encoder.write_header().unwrap().write_image_data(&[0; 1024 * 1024 / 8]).unwrap();
+        encoder.write_header().unwrap().write_image_data(&vec![0; 1024 * 1024 / 8]).unwrap();
         Self { png, reads: Cell::new(0) }
     }
 }
@@ -120,9 +120,8 @@ fn the_texels_of_all_pictures_are_limited() {
     // After the first one too many, none is read.
     assert_eq!((faults.len(), files.reads.get()), (1, 17));
     insta::assert_snapshot!(faults.summary(), @r#"map:20: the sprite "16.png" is too much: the pictures of a map have 16777216 texels and 64 MiB at most"#);
-    let walls: String = characters(200)
-        .map(|it| format!("{it:?} = {{ wall = \"{}.png\" }}\n", u32::from(it)))
-        .collect();
+    let wall = |it| format!("{it:?} = {{ wall = \"{}.png\" }}", u32::from(it));
+    let walls = characters(200).map(wall).collect::<Vec<_>>().join("\n");
     let row: String = characters(200).collect();
     let map = format!(
         "grid = \"@{row}\"\nfloor = \"0.png\"\n[things]\n\"@\" = {{ start = 0 }}\n[tiles]\n{walls}"

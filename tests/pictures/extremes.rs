@@ -20,21 +20,21 @@ struct View {
     heading: Heading,
     /// In degrees, from −30 to 30.
     pitch: f64,
-    field_of_view: FieldOfView,
+    width: FieldOfView,
     size: FrameSize,
     pixel_aspect: PixelAspect,
 }
 
 impl View {
     fn camera(&self) -> Camera {
-        let camera = Camera::new(self.place.truncate(), self.heading, self.field_of_view).unwrap();
+        let camera = Camera::new(self.place.truncate(), self.heading, self.width).unwrap();
         let pitch = Pitch::from_degrees(self.pitch).unwrap();
         camera.with_eye(self.place.z).unwrap().with_pitch(pitch)
     }
 
     fn camera_in_space(&self) -> space::Camera {
         let place = self.place.clamp(DVec3::splat(-1e6), DVec3::splat(1e6));
-        let camera = space::Camera::new(place, self.heading, self.field_of_view).unwrap();
+        let camera = space::Camera::new(place, self.heading, self.width).unwrap();
         camera.with_elevation(space::Elevation::from_degrees(3.0 * self.pitch).unwrap())
     }
 }
@@ -67,7 +67,7 @@ fn view() -> impl Strategy<Value = View> {
             place: place.into(),
             heading: Heading::from_degrees(heading).unwrap(),
             pitch,
-            field_of_view: FieldOfView::from_degrees(degrees).unwrap(),
+            width: FieldOfView::from_degrees(degrees).unwrap(),
             size: FrameSize::new(width, height).unwrap(),
             pixel_aspect,
         },

@@ -168,7 +168,7 @@ impl Reader<'_> {
         if self.faults.is_empty() && self.sections.is_empty() {
             return Err(Faults::of_whole_file(
                 name,
-                format!("{name} holds no stretch of time"),
+                &format!("{name} holds no stretch of time"),
                 "write a line such as 2.5 s forward",
             ));
         }

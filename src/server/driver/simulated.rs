@@ -12,7 +12,7 @@ use super::visit::Visit;
 use super::{GameHost, Parts, Shared, refuse};
 use crate::server::load::Load;
 use crate::server::room::{Catalog, RoomView};
-use crate::server::rooms::{Logs, Rooms};
+use crate::server::rooms::{Logs, Place, Rooms};
 use crate::server::session::Session;
 use crate::server::{Link, LiveConfig, Metrics, Visitor, Visitors};
 use crate::store::host::HostStore;
@@ -113,7 +113,7 @@ impl Visiting {
     ) -> Option<T> {
         let (answer, answered) = oneshot::channel();
         let look = move |visit: &mut Visit| {
-            let room = visit.place.as_ref().map(|place| place.room());
+            let room = visit.place.as_ref().map(Place::room);
             let view = room.and_then(|room| visit.shared.rooms.view(room));
             _ = answer.send(look(&mut visit.session, view.as_deref()));
         };

@@ -18,7 +18,9 @@ impl Rooms {
         let doorways: Vec<Arc<Doorway>> = locked(&self.0.open, |open| {
             open.rooms.values().map(|room| Arc::clone(&room.doorway)).collect()
         });
-        doorways.iter().for_each(|doorway| doorway.close("The server has ended."));
+        for doorway in &doorways {
+            doorway.close("The server has ended.");
+        }
         let mut summaries = self.summaries();
         let all_closed = async { _ = summaries.wait_for(|rooms| rooms.is_empty()).await };
         _ = timeout(ENDING, all_closed).await;

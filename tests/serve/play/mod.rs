@@ -69,7 +69,7 @@ fn players_see_each_other_walk() {
     jon.wait_for("Mara");
     // Nobody does anything, and the picture stays as it is, until she takes a step.
     let picture = || jon.look(|emulator| looks(emulator.screen()));
-    thread::sleep(Duration::from_millis(1_000));
+    thread::sleep(Duration::from_secs(1));
     let before = picture();
     thread::sleep(Duration::from_millis(500));
     assert!(picture() == before, "{}", jon.text());
@@ -83,7 +83,7 @@ fn a_link_that_is_cut_frees_its_player_within_fifteen_seconds() {
     let server = GameServer::open();
     let relay = Relay::to(server.address());
     let mara = server.player(&[]);
-    let jon = server.player_at(relay.port, &[]);
+    let jon = server::player_at(relay.port, &[]);
     enter_room(&mara, "Mara");
     enter_room(&jon, "Jon");
     mara.wait_for("Jon comes in.");

@@ -61,20 +61,7 @@ impl GameServer {
 
     /// A client of OpenSSH in a terminal.
     pub(super) fn player(&self, options: &[&str]) -> Player {
-        self.player_at(self.address().port(), options)
-    }
-
-    /// A client that connects to another port.
-    pub(super) fn player_at(&self, port: u16, options: &[&str]) -> Player {
-        let fixed = "-F none -o StrictHostKeyChecking=no -o UserKnownHostsFile=/dev/null \
-                     -o LogLevel=ERROR -o IdentitiesOnly=yes -tt -p";
-        let port = port.to_string();
-        let words = fixed.split_whitespace().chain([port.as_str()]);
-        let identity: &[&str] = if options.is_empty() { &["-o", "IdentityFile=none"] } else { &[] };
-        let arguments: Vec<&str> =
-            words.chain(identity.iter().copied()).chain(options.iter().copied()).collect();
-        let arguments = arguments.into_iter().chain(["ann@127.0.0.1"]);
-        Player::start((80, 24), Speaks::Kitty, "ssh", arguments, &[])
+        player_at(self.address().port(), options)
     }
 
     /// The path of a new key.
@@ -127,4 +114,17 @@ impl Running {
         });
         Self { address, stop: Some(stop), thread }
     }
+}
+
+/// A client of OpenSSH in a terminal that connects to `port`.
+pub(super) fn player_at(port: u16, options: &[&str]) -> Player {
+    let fixed = "-F none -o StrictHostKeyChecking=no -o UserKnownHostsFile=/dev/null \
+                 -o LogLevel=ERROR -o IdentitiesOnly=yes -tt -p";
+    let port = port.to_string();
+    let words = fixed.split_whitespace().chain([port.as_str()]);
+    let identity: &[&str] = if options.is_empty() { &["-o", "IdentityFile=none"] } else { &[] };
+    let arguments: Vec<&str> =
+        words.chain(identity.iter().copied()).chain(options.iter().copied()).collect();
+    let arguments = arguments.into_iter().chain(["ann@127.0.0.1"]);
+    Player::start((80, 24), Speaks::Kitty, "ssh", arguments, &[])
 }

@@ -38,12 +38,12 @@ fn mouse(rig: &Rig, index: usize) -> vt100::MouseProtocolMode {
 
 /// How often the bell has rung.
 fn bells(rig: &Rig, index: usize) -> usize {
-    rig.clients[index].look(|emulator| emulator.bytes().iter().filter(|&&it| it == 0x07).count())
+    rig.clients[index].look(|emulator| emulator.bytes().split(|&it| it == 0x07).count() - 1)
 }
 
 /// Moves the pointer to a column of the tenth row.
 fn point(rig: &mut Rig, index: usize, column: u16) {
-    rig.send(index, &format!("\x1b[<35;{column};10M"));
+    rig.send(index, format!("\x1b[<35;{column};10M"));
     rig.pump(100);
 }
 

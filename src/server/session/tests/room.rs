@@ -177,7 +177,9 @@ fn the_dead_go_on_or_begin_again() {
             Mode::Alone => &[ENTER, "4", ENTER, ENTER],
             _ => &[ENTER, ENTER, ENTER],
         };
-        way.iter().for_each(|key| rig.press(one, key));
+        for key in way {
+            rig.press(one, key);
+        }
         assert_eq!(rig.page(one), Page::Room, "{}", rig.text(one));
         for _ in 0..40 {
             rig.press(one, "w");

@@ -37,7 +37,10 @@ impl Run {
     pub(super) fn disturb(&mut self) {
         let others = &self.connected[1..];
         if others.is_empty() {
-            return if self.is_draining { () } else { self.come() };
+            if !self.is_draining {
+                self.come();
+            }
+            return;
         }
         let client = others[self.chance.below(others.len())];
         match self.chance.below(24) {
@@ -129,6 +132,8 @@ impl Run {
             .extract_if(.., |(_, notices)| *notices <= now)
             .map(|(client, _)| client)
             .collect();
-        due.into_iter().for_each(|client| self.leave(client));
+        for client in due {
+            self.leave(client);
+        }
     }
 }

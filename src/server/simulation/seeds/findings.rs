@@ -6,6 +6,7 @@ use std::time::Duration;
 use tokio::time::Instant;
 
 use super::{Run, STEADY, hall};
+use crate::server::session::Session;
 use crate::server::simulation::emulator::Emulator;
 use crate::server::simulation::looks::looks;
 use crate::server::simulation::replay::{assert_same, replayed};
@@ -67,7 +68,7 @@ impl Run {
             let wait = self.rig.session(client, |session, room| session.wait(room));
             assert!(is_settled, "client {client} never shows all ({wait}):\n{text}");
             let (size, shown) = self.rig.clients[client].look(|it| (size(it), looks(it.screen())));
-            let bytes = self.rig.session(client, |session, room| session.whole_picture(room));
+            let bytes = self.rig.session(client, Session::whole_picture);
             let mut empty = Emulator::new(size.0, size.1, Speaks::Nothing);
             empty.process(&bytes);
             let is_same = shown == looks(empty.screen());
