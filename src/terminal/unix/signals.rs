@@ -36,13 +36,12 @@ const GRACE: Duration = Duration::from_secs(1);
 const REQUESTS: [i32; 4] = [SIGHUP, SIGINT, SIGTERM, SIGTSTP];
 
 /// The signals that end the program by default and ask for nothing.
-const ENDS: [i32; 11] = [
-    SIGABRT, SIGALRM, SIGPROF, SIGQUIT, SIGSYS, SIGTRAP, SIGUSR1, SIGUSR2, SIGVTALRM, SIGXCPU,
-    SIGXFSZ,
-];
+const ENDS: [i32; 10] =
+    [SIGABRT, SIGALRM, SIGPROF, SIGQUIT, SIGSYS, SIGTRAP, SIGUSR1, SIGUSR2, SIGVTALRM, SIGXCPU];
 
-/// The signals that have no effect by default.
-const NOTICES: [i32; 2] = [SIGCONT, SIGWINCH];
+/// The signals that have no effect, by default or, as SIGXFSZ, here: without that effect, a write
+/// beyond the largest size of a file fails as one on a full disk does.
+const NOTICES: [i32; 3] = [SIGCONT, SIGWINCH, SIGXFSZ];
 
 /// Signals with what the system tells about each.
 type Incoming = SignalsInfo<WithRawSiginfo>;

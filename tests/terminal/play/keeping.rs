@@ -35,9 +35,8 @@ fn play_daily_by(program: &[&str], data: &Path, options: &[&str]) -> String {
     player.text()
 }
 
-/// Runs the program where no file can have any content. Without the trap, the signal would end it.
-const WITHOUT_ROOM: [&str; 4] =
-    ["/bin/sh", "-c", "trap '' XFSZ; ulimit -f 0; exec \"$0\" \"$@\"", PROGRAM];
+/// Runs the program where no file can have any content.
+const WITHOUT_ROOM: [&str; 4] = ["/bin/sh", "-c", "ulimit -f 0; exec \"$0\" \"$@\"", PROGRAM];
 
 #[test]
 fn a_full_disk_costs_a_sentence_and_nothing_that_was_kept() {

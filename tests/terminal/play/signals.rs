@@ -13,15 +13,8 @@ use crate::player::Player;
 const REQUESTS: [Signal; 3] = [Signal::TERM, Signal::HUP, Signal::INT];
 
 /// Signals that end the program at once.
-const ENDS: [Signal; 7] = [
-    Signal::QUIT,
-    Signal::ABORT,
-    Signal::USR1,
-    Signal::USR2,
-    Signal::ALARM,
-    Signal::XCPU,
-    Signal::XFSZ,
-];
+const ENDS: [Signal; 6] =
+    [Signal::QUIT, Signal::ABORT, Signal::USR1, Signal::USR2, Signal::ALARM, Signal::XCPU];
 
 const ENTERED: &[u8] = b"\x1b[?1049h";
 
