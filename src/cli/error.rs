@@ -19,6 +19,9 @@ enum Cause {
     Mistake(String),
     /// A file of the user with faults.
     Faults(Faults),
+    /// The same of several files, as text of several lines.
+    #[cfg(feature = "serve")]
+    Report(String),
     /// A failure of the system.
     Machine(String),
     /// A mistake that has already been reported.
@@ -33,6 +36,12 @@ impl Error {
     /// An invalid request, described by `sentence`.
     pub(super) fn mistake(sentence: impl Into<String>) -> Self {
         Self { cause: Cause::Mistake(sentence.into()) }
+    }
+
+    /// Faults of several files: `text` has a line with the place of each.
+    #[cfg(feature = "serve")]
+    pub(super) fn report_of(text: String) -> Self {
+        Self { cause: Cause::Report(text) }
     }
 
     /// A mistake that has already been reported.
@@ -74,6 +83,11 @@ impl Error {
                 self.print();
                 ExitCode::from(2)
             }
+            #[cfg(feature = "serve")]
+            Cause::Report(_) => {
+                self.print();
+                ExitCode::from(2)
+            }
             Cause::Machine(_) => {
                 self.print();
                 ExitCode::FAILURE
@@ -91,6 +105,8 @@ impl Error {
         let message = self.to_string();
         match self.cause {
             Cause::Faults(_) => printable_lines(&message),
+            #[cfg(feature = "serve")]
+            Cause::Report(_) => printable_lines(&message),
             _ => printable(&message),
         }
     }
@@ -119,6 +135,8 @@ impl fmt::Display for Error {
                 write!(f, "cellcaster: {sentence}")
             }
             Cause::Faults(faults) => faults.fmt(f),
+            #[cfg(feature = "serve")]
+            Cause::Report(text) => f.write_str(text),
             Cause::Failed => f.write_str("cellcaster: not so"),
             Cause::Reported => f.write_str("cellcaster: already reported"),
             Cause::ClosedPipe => f.write_str("cellcaster: the output was closed"),

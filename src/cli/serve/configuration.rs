@@ -40,7 +40,7 @@ impl Configuration {
         let config = configuration.parse(&text)?;
         if let Some(folder) = &config.maps {
             let maps = HostMaps::read(folder);
-            configuration.maps = maps.map_err(|error| Error::mistake(error.to_string()))?;
+            configuration.maps = maps.map_err(|error| refused(&error.to_string()))?;
         }
         configuration.check_levels(&text)?;
         Ok((configuration, config))
@@ -102,4 +102,9 @@ impl Configuration {
     fn file_name(&self) -> String {
         self.file.as_ref().map_or_else(String::new, |file| file.display().to_string())
     }
+}
+
+/// The error for maps that are refused: one sentence, or a report like that of `check`.
+fn refused(text: &str) -> Error {
+    if text.contains('\n') { Error::report_of(text.to_owned()) } else { Error::mistake(text) }
 }
