@@ -13,7 +13,9 @@ mod words;
 use std::fmt;
 use std::ops::Range;
 
-pub(crate) use printable::{printable, printable_lines};
+pub(crate) use printable::printable;
+#[cfg(feature = "cli")]
+pub(crate) use printable::printable_lines;
 pub(crate) use words::{nearest, quoted};
 
 /// All faults of a file; there is at least one.

@@ -1,7 +1,7 @@
 //! Printable text: what a terminal would obey is shown as an escape.
 //!
 //! Names of files and values of options may hold any character. All text on standard error goes
-//! through [`printable`] or [`printable_lines`].
+//! through `printable` or `printable_lines`.
 
 /// `text` on one line, with escapes such as `\u{1b}` for characters that do not print.
 pub(crate) fn printable(text: &str) -> String {
@@ -16,6 +16,7 @@ pub(crate) fn printable(text: &str) -> String {
 }
 
 /// As [`printable`], with the line breaks of `text` as they are.
+#[cfg(feature = "cli")]
 pub(crate) fn printable_lines(text: &str) -> String {
     text.split('\n').map(printable).collect::<Vec<_>>().join("\n")
 }
@@ -39,6 +40,7 @@ mod tests {
         }
     }
 
+    #[cfg(feature = "cli")]
     #[test]
     fn lines_stay_lines() {
         assert_eq!(printable_lines("one\ntwo\u{7}\n"), "one\ntwo\\u{7}\n");
