@@ -1,4 +1,4 @@
-//! Drawing compared with the classic loop and with a fill, at five sizes.
+//! Drawing compared with the classic loop and with a fill, at eight sizes.
 //!
 //! `cargo bench --no-default-features --features lab --bench drawing` measures the drawing table of
 //! `cellcaster bench` with more cameras and more repetitions. One thread draws. The last two

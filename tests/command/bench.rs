@@ -36,7 +36,7 @@ fn has_every_size(report: &Value) {
         of_scene.map(|row| row["width"].as_u64().unwrap()).collect::<Vec<_>>()
     };
     for scene in ["planes", "walls"] {
-        assert_eq!(sizes(scene), [160, 320, 640, 1920, 3840]);
+        assert_eq!(sizes(scene), [80, 120, 160, 200, 320, 640, 1920, 3840]);
     }
     for row in &drawing {
         for who in ["ours", "by_threads", "classic", "fill"] {

@@ -36,9 +36,17 @@ pub enum Scene {
     Walls,
 }
 
-/// The sizes of the pictures.
-pub const SIZES: [FrameSize; 5] =
-    [size(160, 90), size(320, 200), size(640, 480), size(1920, 1080), size(3840, 2160)];
+/// The sizes of the pictures: those of terminals, from 80×24 to 320×100 cells, then larger ones.
+pub const SIZES: [FrameSize; 8] = [
+    size(80, 48),
+    size(120, 80),
+    size(160, 90),
+    size(200, 120),
+    size(320, 200),
+    size(640, 480),
+    size(1920, 1080),
+    size(3840, 2160),
+];
 
 /// A size that is known to be valid.
 pub(super) const fn size(width: u32, height: u32) -> FrameSize {
