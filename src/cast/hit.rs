@@ -53,6 +53,33 @@ impl Hit {
         let (t, along) = meeting(ray, side, corner_of_face(direction, cell, side));
         Self { cell, side, t, u: texture_coordinate(direction, side, along) }
     }
+
+    /// The face that a ray along `direction` hit here.
+    #[inline]
+    pub(crate) fn face(&self, direction: DVec2) -> HitFace {
+        let &Self { cell, side, .. } = self;
+        let corner = corner_of_face(direction, cell, side);
+        HitFace { cell, side, corner, is_from_left: is_from_left(direction, side) }
+    }
+}
+
+/// A face of a cell, for many rays that enter the cell there from one point.
+#[derive(Clone, Copy, Debug)]
+pub(crate) struct HitFace {
+    cell: Cell,
+    side: Side,
+    corner: DVec2,
+    is_from_left: bool,
+}
+
+impl HitFace {
+    /// As [`Hit::entering`], for one of the rays that enter the cell by this face.
+    #[inline]
+    pub(crate) fn enter(&self, ray: &Ray) -> Hit {
+        let Self { cell, side, corner, is_from_left } = *self;
+        let (t, along) = meeting(ray, side, corner);
+        Hit { cell, side, t, u: from_left(along, is_from_left) }
+    }
 }
 
 /// The distance along `ray` to the line of kind `side` through `corner`, and the distance from the
@@ -104,11 +131,21 @@ fn corner_of_face(direction: DVec2, cell: Cell, side: Side) -> DVec2 {
 /// viewer who looks along `direction`.
 #[inline]
 pub(crate) fn texture_coordinate(direction: DVec2, side: Side, along: f64) -> f64 {
-    // Adding zero turns −0 into +0.
-    let along = along.clamp(0.0, 1.0) + 0.0;
-    let from_left = match side {
+    from_left(along, is_from_left(direction, side))
+}
+
+/// Whether a viewer who looks along `direction` sees the north or west end of a face on the left.
+#[inline]
+fn is_from_left(direction: DVec2, side: Side) -> bool {
+    match side {
         Side::X => direction.x > 0.0,
         Side::Y => direction.y < 0.0,
-    };
-    if from_left { along } else { 1.0 - along }
+    }
+}
+
+#[inline]
+fn from_left(along: f64, is_from_left: bool) -> f64 {
+    // Adding zero turns −0 into +0.
+    let along = along.clamp(0.0, 1.0) + 0.0;
+    if is_from_left { along } else { 1.0 - along }
 }

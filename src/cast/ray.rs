@@ -52,6 +52,13 @@ impl Ray {
         (DVec2::new(scale(self.direction.x), scale(self.direction.y)), exponent)
     }
 
+    /// The ray of a camera, which is at a finite place and whose directions are finite and not zero.
+    #[inline]
+    pub(crate) fn of_camera(origin: DVec2, direction: DVec2) -> Self {
+        debug_assert!(Self::new(origin, direction).is_ok(), "{origin} {direction}");
+        Self { origin, direction }
+    }
+
     /// The ray of the same line with another origin and another unit of `t`.
     pub(crate) fn moved(origin: DVec2, direction: DVec2) -> Self {
         Self { origin, direction }

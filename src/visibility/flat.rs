@@ -139,10 +139,11 @@ impl<C: Caster> Fan<'_, C> {
         if let (Some(left), Some(right)) = (&left.hit, &right.hit)
             && self.caster.follows_between(left, right)
         {
-            for (index, column) in (first + 1..).zip(between) {
-                let ray = self.projection.ray(index as u32);
-                let hit = Hit::entering(&ray, left.cell, left.side);
-                *column = column_of(self.grid, self.projection, &ray, Some(hit));
+            let face = left.face(self.projection.direction_of(first as u32));
+            for (index, column) in (first as u32 + 1..).zip(between) {
+                let hit = face.enter(&self.projection.ray(index));
+                let rows = self.projection.wall_rows(hit.t);
+                *column = Column { distance: hit.t, rows, hit: Some(hit) };
             }
             return;
         }

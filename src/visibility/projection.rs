@@ -105,8 +105,7 @@ impl Projection {
     /// The ray of `column`.
     #[inline]
     pub(crate) fn ray(&self, column: u32) -> Ray {
-        Ray::new(self.origin, self.direction_of(column))
-            .expect("a camera is at a finite place, and its plane is not parallel to its view")
+        Ray::of_camera(self.origin, self.direction_of(column))
     }
 
     /// Whether neighbouring rays differ by far more than rounding.
