@@ -53,6 +53,7 @@ pub(crate) fn draw<S: Stats>(
     list.for_each_span(scene, &rows, spans, |span| match span {
         Span::Fill { pass, rows, color } => target.whole_rows_mut(pass, rows).fill(color),
         Span::Plane(span) => span::draw(scene, &span, target),
+        Span::Planes(spans) => span::draw_both(scene, &spans, target),
         Span::Sky { row, columns, image } => sky.draw(row, columns, image, target),
     });
     wall_column::draw(scene, list, batch, target);

@@ -49,6 +49,15 @@ impl<'a> Band<'a> {
         &mut self.pixels[pixels]
     }
 
+    /// The pixels of two rows, which are in the band, from the left; the first one is further up.
+    #[inline]
+    pub(crate) fn two_rows_mut(&mut self, [upper, lower]: [u32; 2]) -> [&mut [Rgb]; 2] {
+        let width = self.width;
+        let (above, below) =
+            self.rows_mut(upper..lower + 1).split_at_mut((lower - upper) as usize * width);
+        [&mut above[..width], below]
+    }
+
     /// The pixels of column `x` in these rows, which are in the band, from the top.
     #[inline]
     pub(crate) fn column_mut(

@@ -18,6 +18,56 @@ pub(super) fn draw<S: Stats>(scene: Scene<'_>, span: &PlaneSpan<'_>, target: &mu
     }
 }
 
+/// Draws `spans`, which have the same columns and the same mapping; the first one is further up.
+///
+/// If two textures of one size are in full light, the indices of their texels are computed once.
+pub(super) fn draw_both<S: Stats>(
+    scene: Scene<'_>,
+    spans: &[PlaneSpan<'_>; 2],
+    target: &mut Target<'_, S>,
+) {
+    let [upper, lower] = spans;
+    let levels = spans.each_ref().map(|span| level_in_full_light(scene, span));
+    if let [Some(one), Some(other)] = levels
+        && one.has_indices_of(other)
+        && upper.covering.scale == lower.covering.scale
+    {
+        let (columns, count) = (&upper.columns, upper.columns.len());
+        let places = upper.mapping.places(columns.start, 1.0 / upper.covering.scale.cells());
+        if TexelRuns::of(one, &places, count).is_none() {
+            let passes = [upper.pass, lower.pass];
+            passes.into_iter().for_each(|pass| target.count_texels(pass, count));
+            let [above, below] = target.two_spans_mut(passes, [upper.row, lower.row], columns);
+            let blocks = above.chunks_mut(AT_ONCE).zip(below.chunks_mut(AT_ONCE));
+            for_each_block(
+                one,
+                places,
+                blocks.map(|(above, below)| (above.len(), [above, below])),
+                |texels, [above, below]| {
+                    look_up(one, FullyLit, texels, above);
+                    look_up(other, FullyLit, texels, below);
+                },
+            );
+            return;
+        }
+    }
+    draw(scene, upper, target);
+    draw(scene, lower, target);
+}
+
+/// The mip level of the texture of `span`, if it is drawn without lighting and by shifts.
+fn level_in_full_light<'a>(scene: Scene<'a>, span: &PlaneSpan<'a>) -> Option<MipLevelByShifts<'a>> {
+    let Pattern::Plain(paint) = span.covering.pattern else { return None };
+    if Faded::of_plane(span.light, scene.world.fog(), span.mapping.distance).is_some() {
+        return None;
+    }
+    let per_cell = 1.0 / span.covering.scale.cells();
+    match (Sampler { scene, mapping: span.mapping, per_cell }).sample(paint) {
+        Sample::Color(_) => None,
+        Sample::Level(level) => level.by_shifts(),
+    }
+}
+
 fn draw_lit<L: Lighting, S: Stats>(
     scene: Scene<'_>,
     span: &PlaneSpan<'_>,
@@ -106,22 +156,36 @@ fn draw_level<L: Lighting>(level: &MipLevel, lighting: L, places: TexelPlaces, p
     }
 }
 
-/// Draws `level` on `pixels`, many at a time. The indices of their texels are computed first, in a
-/// loop that reads no texel, so that a compiler vectorizes it.
+/// Draws `level` on `pixels`.
 fn draw_by_shifts<L: Lighting>(
     level: MipLevelByShifts<'_>,
     lighting: L,
-    mut places: TexelPlaces,
+    places: TexelPlaces,
     pixels: &mut [Rgb],
 ) {
+    let blocks = pixels.chunks_mut(AT_ONCE).map(|pixels| (pixels.len(), pixels));
+    for_each_block(level, places, blocks, |texels, pixels| {
+        look_up(level, lighting, texels, pixels)
+    });
+}
+
+/// Passes each of `blocks`, of this number of pixels, to `draw` with the indices of its texels. They
+/// are computed in a loop that reads no texel, so that a compiler vectorizes it.
+#[inline]
+fn for_each_block<B>(
+    level: MipLevelByShifts<'_>,
+    mut places: TexelPlaces,
+    blocks: impl Iterator<Item = (usize, B)>,
+    mut draw: impl FnMut(&[u32], B),
+) {
     let mut texels = [0; AT_ONCE];
-    for pixels in pixels.chunks_mut(AT_ONCE) {
+    for (count, block) in blocks {
         // A few surplus texels take less time than a remainder that is computed one by one.
-        let texels = &mut texels[..pixels.len().next_multiple_of(LANES)];
+        let texels = &mut texels[..count.next_multiple_of(LANES)];
         for (texel, (x, y)) in texels.iter_mut().zip(places.clone()) {
             *texel = level.index(x, y);
         }
-        look_up(level, lighting, texels, pixels);
+        draw(texels, block);
         places.skip_pixels(AT_ONCE as u64);
     }
 }
@@ -150,7 +214,7 @@ fn look_up<L: Lighting>(
 /// The most pixels that are drawn at once.
 const AT_ONCE: usize = 64;
 /// A multiple of the number of texels that a processor computes at once.
-const LANES: usize = 16;
+const LANES: usize = 4;
 const UNROLLED: usize = 8;
 
 /// The inputs for sampling the paints of a span.

@@ -54,6 +54,23 @@ impl<'a, S: Stats> Target<'a, S> {
         &mut self.band.row_mut(row)[columns]
     }
 
+    /// The pixels of `columns` in two rows, the first one further up, to be written for two passes.
+    #[inline]
+    pub(super) fn two_spans_mut(
+        &mut self,
+        passes: [Pass; 2],
+        rows: [u32; 2],
+        columns: &Range<usize>,
+    ) -> [&mut [Rgb]; 2] {
+        for pass in passes {
+            self.stats.change(|stats| {
+                stats.spans += 1;
+                stats.of_mut(pass).pixels += columns.len() as u64;
+            });
+        }
+        self.band.two_rows_mut(rows).map(|row| &mut row[columns.clone()])
+    }
+
     /// The pixels of `rows` in column `x`, from the top.
     #[inline]
     pub(super) fn column_mut(

@@ -21,7 +21,7 @@ pub(crate) struct TexelRuns {
 
 /// The least mean length of runs, in pixels: below it, drawing each pixel by itself takes less
 /// time.
-const SHORTEST: f64 = 6.0;
+const SHORTEST: u64 = 6;
 /// The least number of pixels: for fewer, a division takes longer than it saves.
 const FEWEST_PIXELS: usize = 32;
 /// The number of pixels that are set at a time, beyond the end of a run as well: the next run
@@ -36,9 +36,12 @@ impl TexelRuns {
         places: &TexelPlaces,
         pixels: usize,
     ) -> Option<Self> {
-        let (masks, steps) = (level.masks(), places.steps());
-        let edges_a_pixel = edges_a_pixel(steps[0], masks[0]) + edges_a_pixel(steps[1], masks[1]);
-        let is_worth_it = pixels >= FEWEST_PIXELS && edges_a_pixel * SHORTEST <= 1.0;
+        if pixels < FEWEST_PIXELS {
+            return None;
+        }
+        let (bits, steps) = (level.bits(), places.steps());
+        let edges_a_pixel = edges_a_pixel(steps[0], bits[0]) + edges_a_pixel(steps[1], bits[1]);
+        let is_worth_it = edges_a_pixel * SHORTEST <= 1 << EDGE_BITS;
         is_worth_it.then(|| Self::new(level, places)).flatten()
     }
 
@@ -87,12 +90,14 @@ fn fill(pixels: &mut [Rgb], count: usize, color: Rgb) {
     }
 }
 
-/// The mean number of edges between two neighbouring pixels, along one axis.
-fn edges_a_pixel(step: u64, mask: u32) -> f64 {
-    let texels = 1_u64 << mask.count_ones();
-    let step = step.cast_signed().unsigned_abs();
-    step as f64 * (texels as f64 / 2.0_f64.powi(64))
+/// The mean number of edges between two neighbouring pixels, along one axis with two to the power of
+/// `bits` texels, in units of 2 to the power of −[`EDGE_BITS`].
+fn edges_a_pixel(step: u64, bits: u32) -> u64 {
+    step.cast_signed().unsigned_abs() >> (u64::BITS - EDGE_BITS).saturating_sub(bits)
 }
+
+/// With them, the edges of 2³¹ texels do not overflow.
+const EDGE_BITS: u32 = 28;
 
 /// The edges between texels, along one axis.
 #[derive(Clone, Debug)]

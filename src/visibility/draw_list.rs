@@ -45,6 +45,8 @@ pub(crate) enum Span<'m> {
     Fill { pass: Pass, rows: Range<u32>, color: Rgb },
     /// A floor or a ceiling.
     Plane(PlaneSpan<'m>),
+    /// A ceiling and a floor, with the same columns and the same mapping.
+    Planes([PlaneSpan<'m>; 2]),
     /// The sky, directly or in the mirrors of `image`.
     Sky { row: u32, columns: Range<usize>, image: Option<MirrorTransform> },
 }

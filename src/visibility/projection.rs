@@ -117,6 +117,11 @@ impl Projection {
         MODERATE.contains(&self.plane.length()) && self.width <= WIDEST
     }
 
+    /// Whether every row above the horizon is the mirror image of one below it.
+    pub(crate) fn is_symmetric(&self) -> bool {
+        self.eye == 0.5 && 2.0 * self.horizon == self.height && self.rows().is_multiple_of(2)
+    }
+
     /// The direction of the ray of `column`.
     pub(crate) fn direction_of(&self, column: u32) -> DVec2 {
         let width = f64::from(self.width);

@@ -157,14 +157,20 @@ impl Iterator for TexelPlaces {
 }
 
 /// The fractional part of `number`, in 2⁻⁶⁴ths; 0 for NaN.
+///
+/// It is the significand, shifted: conversions of doubles to integers saturate, which takes longer.
+#[inline]
 fn fraction(number: f64) -> u64 {
-    const WHOLE: f64 = 18_446_744_073_709_551_616.0;
-    /// All doubles from here on are integers.
-    const LARGE: f64 = (1_u64 << f64::MANTISSA_DIGITS) as f64;
-    let size = number.abs();
-    // On old processors `f64::floor` is a call.
-    let rest = if size < LARGE { size - size as i64 as f64 } else { 0.0 };
-    let fraction = (rest * WHOLE) as u64;
+    const BITS: u32 = f64::MANTISSA_DIGITS - 1;
+    /// The exponent, as stored, of a number whose significand counts 2⁻⁶⁴ths.
+    const OF_64THS: u32 = f64::MAX_EXP as u32 - 1 + BITS - u64::BITS;
+    let exponent = (number.to_bits() >> BITS) as u32 & 0x7ff;
+    let significand = number.to_bits() & ((1 << BITS) - 1) | 1 << BITS;
+    let fraction = match exponent.checked_sub(OF_64THS) {
+        Some(shift) => significand.checked_shl(shift),
+        None => significand.checked_shr(OF_64THS - exponent),
+    };
+    let fraction = fraction.unwrap_or(0);
     if number < 0.0 { fraction.wrapping_neg() } else { fraction }
 }
 
@@ -182,6 +188,16 @@ mod tests {
     }
 
     proptest! {
+        #[test]
+        fn a_fraction_is_what_the_whole_number_leaves(
+            number in prop_oneof![-1e4..1e4_f64, -1e-6..1e-6_f64, any::<f64>()],
+        ) {
+            let rest = number.abs() - number.abs().trunc();
+            let rest = (rest * 2.0_f64.powi(64)) as u64;
+            let expected = if number < 0.0 { rest.wrapping_neg() } else { rest };
+            prop_assert_eq!(fraction(number), expected);
+        }
+
         #[test]
         fn every_pixel_is_in_the_cell_of_its_point(
             middle in (-50.0..50.0, -50.0..50.0),

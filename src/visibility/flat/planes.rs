@@ -6,6 +6,8 @@
 //! half as long as drawing them. One colour everywhere is a fill: at 160×90 pixels that takes less
 //! time than reading the rows of the wall in every column.
 
+mod stretches;
+
 use std::ops::Range;
 
 use glam::DVec2;
@@ -13,9 +15,10 @@ use glam::DVec2;
 use crate::color::Rgb;
 use crate::visibility::{
     CeilingLoop, Column, Faded, Lighting, Pass, PlaneLoop, PlaneSpan, Scene, SkyLoop, Span,
-    SpanMapping,
 };
 use crate::world::{Ceiling, Cell, Covering, Light, TileId};
+pub(crate) use stretches::PlaneRow;
+use stretches::for_each_stretch;
 
 /// Passes every span of `columns` in `rows` to `emit`. Later spans are drawn over earlier ones.
 pub(crate) fn for_each_span(
@@ -26,6 +29,19 @@ pub(crate) fn for_each_span(
     emit: &mut impl FnMut(Span<'_>),
 ) {
     let plane = |kind| Plane { scene, columns, kind };
+    if are_mirror_images(scene, columns, rows) {
+        let [ceiling, floor] = [PlaneKind::Ceiling, PlaneKind::Floor].map(plane);
+        let height = rows.end;
+        memory.reserve((height as usize / 2).saturating_sub(memory.len()));
+        let row_at = |depth, x| PlaneRow::new(scene, depth, x);
+        let visible = |column: &Column| column.rows.start;
+        for_each_stretch(columns, visible, memory, row_at, |row, columns| {
+            let floor = floor.default_span(row, columns.clone());
+            let floor = PlaneSpan { row: height - 1 - row.row, ..floor };
+            emit(Span::Planes([ceiling.default_span(row, columns), floor]));
+        });
+        return;
+    }
     match scene.plan.ceiling {
         CeilingLoop::Sky => sky_overhead(scene, columns, rows, emit),
         CeilingLoop::Plane(ceiling) => {
@@ -36,13 +52,16 @@ pub(crate) fn for_each_span(
     plane(PlaneKind::Floor).for_each_span(scene.plan.floor, rows, memory, emit);
 }
 
-/// A row that shows the plane.
-#[derive(Clone, Debug)]
-pub(crate) struct PlaneRow {
-    row: u32,
-    mapping: SpanMapping,
-    /// The first column of the span that has not ended yet.
-    span_start: usize,
+/// Whether each row of the ceiling in `rows` shows the same columns and the same points of the map as
+/// the row of the floor that is its mirror image.
+fn are_mirror_images(scene: Scene<'_>, columns: &[Column], rows: &Range<u32>) -> bool {
+    let Scene { plan, projection, .. } = scene;
+    let are_spans = plan.ceiling == CeilingLoop::Plane(PlaneLoop::Spans)
+        && plan.floor == PlaneLoop::Spans
+        && *rows == (0..projection.rows());
+    let is_symmetric =
+        |column: &Column| column.hit.is_some() && column.rows.start + column.rows.end == rows.end;
+    are_spans && projection.is_symmetric() && columns.iter().all(is_symmetric)
 }
 
 /// The floor or the ceiling.
@@ -90,7 +109,7 @@ impl Plane<'_> {
         &self,
         rows: &Range<u32>,
         memory: &mut Vec<PlaneRow>,
-        mut emit: impl FnMut(&PlaneRow, Range<usize>),
+        emit: impl FnMut(&PlaneRow, Range<usize>),
     ) {
         let all = self.rows();
         let Range { start, end } = common(rows, &all);
@@ -105,27 +124,10 @@ impl Plane<'_> {
         };
         let visible =
             |column: &Column| self.visible(column, &all).saturating_sub(elsewhere).min(end - start);
-        let most = self.columns.iter().map(visible).max().unwrap_or_default();
-        memory.clear();
         // Enough for any later view.
-        memory.reserve((end - start) as usize);
-        memory.extend((0..most).map(|depth| {
-            let row = row_at(depth);
-            PlaneRow { row, mapping: self.scene.projection.mapping(row), span_start: 0 }
-        }));
-        let mut before = 0;
-        for (x, visible) in self.columns.iter().map(visible).chain([0]).enumerate() {
-            if visible > before {
-                for row in &mut memory[before as usize..visible as usize] {
-                    row.span_start = x;
-                }
-            } else {
-                for row in &memory[visible as usize..before as usize] {
-                    emit(row, row.span_start..x);
-                }
-            }
-            before = visible;
-        }
+        memory.reserve(((end - start) as usize).saturating_sub(memory.len()));
+        let row_at = |depth, x| PlaneRow::new(self.scene, row_at(depth), x);
+        for_each_stretch(self.columns, visible, memory, row_at, emit);
     }
 
     /// Emits a span for each stretch of one tile and light in `columns` of `row`.

@@ -86,6 +86,7 @@ impl MipLevel {
             mask_x: (self.width.get() - 1) << height,
             shift_y: (u32::BITS - height).min(u32::BITS - 1),
             mask_y: self.height.get() - 1,
+            bits: [width, height],
         })
     }
 }
@@ -99,6 +100,8 @@ pub(crate) struct MipLevelByShifts<'a> {
     mask_x: u32,
     shift_y: u32,
     mask_y: u32,
+    /// The number of bits of the index that depend on the position along each axis.
+    bits: [u32; 2],
 }
 
 impl MipLevelByShifts<'_> {
@@ -109,9 +112,19 @@ impl MipLevelByShifts<'_> {
         x >> self.shift_x & self.mask_x | y >> self.shift_y & self.mask_y
     }
 
+    /// Whether `other` has the same index for every position.
+    pub(crate) fn has_indices_of(self, other: Self) -> bool {
+        self.masks() == other.masks()
+    }
+
     /// The bits of the index that depend on the position along each axis.
     pub(crate) fn masks(self) -> [u32; 2] {
         [self.mask_x, self.mask_y]
+    }
+
+    /// The number of those bits, along each axis.
+    pub(crate) fn bits(self) -> [u32; 2] {
+        self.bits
     }
 
     /// The texel at an index.
