@@ -12,6 +12,7 @@
 
 mod band;
 mod column_batch;
+mod direct_columns;
 mod lanes;
 mod masked;
 mod shaded_texels;

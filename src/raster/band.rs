@@ -25,6 +25,11 @@ impl<'a> Band<'a> {
         Self { width, rows: first..end, pixels }
     }
 
+    /// The number of pixels in a row.
+    pub(crate) fn width(&self) -> usize {
+        self.width
+    }
+
     /// The indices of the rows in the frame.
     pub(crate) fn rows(&self) -> Range<u32> {
         self.rows.clone()

@@ -7,12 +7,14 @@
 use std::ops::Range;
 use std::{iter, ptr};
 
+use super::direct_columns::{DirectColumn, DirectColumns};
 use super::lanes::{LANES, Lanes, QueuedColumn};
 use super::shaded_texels::{ShadedRange, ShadedTexels};
 use super::target::Target;
 use crate::color::Rgb;
 use crate::visibility::{Lighting, Pass, Stats, TextureStepper};
 use crate::world::Paint;
+use crate::world::texture::MipLevel;
 
 /// The most columns that are drawn together.
 const MOST_COLUMNS: usize = 15 * LANES;
@@ -35,11 +37,18 @@ pub(super) struct ColumnBatch<'m, 't, 'a, L, S> {
     latest: Option<(&'a [Rgb], L, ShadedRange)>,
     /// Columns before this one can no longer be queued: those of a batch do not overlap.
     next: u32,
+    /// The columns that are drawn without a batch, if that takes less time.
+    direct: Option<DirectColumns<'a>>,
 }
 
 impl<'m, 't, 'a, L: Lighting, S: Stats> ColumnBatch<'m, 't, 'a, L, S> {
-    pub(super) fn new(memory: &'m mut BatchMemory, target: &'m mut Target<'t, S>) -> Self {
-        let mut batch = Self { memory, target, latest: None, next: 0 };
+    pub(super) fn new(
+        memory: &'m mut BatchMemory,
+        target: &'m mut Target<'t, S>,
+        are_direct: bool,
+    ) -> Self {
+        let direct = are_direct.then(DirectColumns::default);
+        let mut batch = Self { memory, target, latest: None, next: 0, direct };
         batch.clear();
         // Enough for any later view of a wall.
         batch.memory.columns.reserve(MOST_COLUMNS);
@@ -67,6 +76,25 @@ impl<'m, 't, 'a, L: Lighting, S: Stats> ColumnBatch<'m, 't, 'a, L, S> {
         let shaded = &mut self.memory.shaded;
         let address = shaded.make(&[color], |color| lighting.apply(color)).start();
         self.memory.columns.push(QueuedColumn { x, rows, address, step: 0 });
+    }
+
+    /// Draws `rows` of column `x` with the column of `level` at `u`.
+    #[expect(clippy::inline_always, reason = "a call would cost a fifth of it")]
+    #[inline(always)]
+    pub(super) fn draw_wall(
+        &mut self,
+        (x, rows): (u32, Range<u32>),
+        (level, u): (&'a MipLevel, f64),
+        stepper: TextureStepper,
+        lighting: L,
+    ) {
+        if let Some(direct) = &mut self.direct
+            && let Some(texels) = lighting.lit_column(level, u)
+        {
+            direct.push(DirectColumn { x, rows, texels, stepper }, self.target.band_mut());
+        } else {
+            self.queue_texels(x, rows, level.column(u), stepper, lighting);
+        }
     }
 
     /// Queues `rows` of column `x` for drawing with `texels`.
@@ -161,6 +189,9 @@ impl<'m, 't, 'a, L: Lighting, S: Stats> ColumnBatch<'m, 't, 'a, L, S> {
     pub(super) fn draw(&mut self) {
         let BatchMemory { shaded, columns, lanes } = &mut *self.memory;
         let band = self.target.band_mut();
+        if let Some(direct) = &mut self.direct {
+            direct.draw(band);
+        }
         let mut rest = columns.as_slice();
         while let [column, more @ ..] = rest {
             let Some(together) = rest.first_chunk().and_then(Lanes::new) else {
@@ -221,6 +252,7 @@ mod tests {
         fn columns_show_their_texels(
             columns in prop::collection::vec(column(), 1..400),
             repeats in 1_usize..20,
+            are_direct in any::<bool>(),
         ) {
             let texels: Vec<_> =
                 (0..9000).map(|texel| Rgb::new(1, (texel >> 8) as u8, texel as u8)).collect();
@@ -235,7 +267,7 @@ mod tests {
             let mut surfaces = SurfaceBuffer::default();
             let rows = surfaces.bands(size.height).next().unwrap();
             let mut target = Target::<()>::new(frame.whole(), rows);
-            let mut batch = ColumnBatch::new(&mut memory, &mut target);
+            let mut batch = ColumnBatch::new(&mut memory, &mut target, are_direct);
             let walls = || (0..).zip(&columns).filter_map(|(x, column)| Some((x, column.as_ref()?)));
             let down = |t: f64, range: &Range<usize>| projection.texels_down_the_wall(t, range.len());
             for (x, (t, side, range)) in walls() {

@@ -257,8 +257,7 @@ impl<'a> Sampler<'a> {
             Paint::Color(color) => Sample::Color(color),
             Paint::Texture(id) => {
                 let texture = self.scene.world.texture(id);
-                let texels = f64::from(texture.width()) * f64::from(texture.height());
-                Sample::Level(texture.level(self.lod(texels)))
+                Sample::Level(texture.level(self.lod(texture.area())))
             }
         }
     }

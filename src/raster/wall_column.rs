@@ -7,6 +7,7 @@
 use std::ops::Range;
 
 use super::column_batch::{BatchMemory, ColumnBatch};
+use super::direct_columns;
 use super::target::Target;
 use crate::cast::Side;
 use crate::visibility::{
@@ -23,14 +24,15 @@ pub(super) fn draw<S: Stats>(
 ) {
     if scene.plan.walls.faded || scene.world.has_shapes() {
         let lighting = |wall: &WallColumn| lighting_of(scene, wall.facing, wall.light, wall.t);
-        draw_lit(scene, list, true, ColumnBatch::new(memory, target), lighting);
+        draw_lit(scene, list, true, ColumnBatch::new(memory, target, false), lighting);
     } else {
         let lighting = |wall: &WallColumn| match wall.facing {
             Facing::Side(side) => SideLit(side),
             // Only shapes have such a normal, and this scene has none.
             Facing::Normal(_) => SideLit(Side::X),
         };
-        draw_lit(scene, list, false, ColumnBatch::new(memory, target), lighting);
+        let are_direct = direct_columns::are_for(scene, target.band_mut());
+        draw_lit(scene, list, false, ColumnBatch::new(memory, target, are_direct), lighting);
     }
 }
 
@@ -77,14 +79,15 @@ impl<L: Lighting, S: Stats, F: Fn(&WallColumn) -> L> WallSink for Queue<'_, '_, 
             }
             Paint::Texture(texture) => texture,
         };
-        let texels = scene.level_on_face(texture, t, wall.slope).column(wall.u);
+        let level = scene.level_on_face(texture, t, wall.slope);
         let projection = scene.projection;
         match wall.extent {
             Extent::Level => {
-                let stepper = projection.texels_down_the_wall(t, texels.len());
-                batch.queue_texels(column, rows, texels, stepper, lighting(wall));
+                let stepper = projection.texels_down_the_wall(t, level.height() as usize);
+                batch.draw_wall((column, rows), (level, wall.u), stepper, lighting(wall));
             }
             Extent::Heights { bottom, top } => {
+                let texels = level.column(wall.u);
                 let stepper = projection.texels_down_the_face(t, texels.len(), bottom, top);
                 batch.queue_repeating(column, rows, texels, stepper, lighting(wall));
             }

@@ -7,11 +7,19 @@ use glam::DVec2;
 
 use crate::cast::Side;
 use crate::color::Rgb;
+use crate::world::texture::MipLevel;
 use crate::world::{Fog, Light};
 
 /// The effect of light and fog on a colour.
 pub(crate) trait Lighting: Copy + PartialEq {
     fn apply(self, color: Rgb) -> Rgb;
+
+    /// The column of `level` at `u` in this lighting, if the level has it.
+    #[inline]
+    fn lit_column(self, level: &MipLevel, u: f64) -> Option<&[Rgb]> {
+        _ = (level, u);
+        None
+    }
 }
 
 /// No effect: the surface is near and in full light.
@@ -46,6 +54,14 @@ impl Lighting for SideLit {
             Side::X => color,
             Side::Y => color.halved(),
         }
+    }
+
+    #[inline]
+    fn lit_column(self, level: &MipLevel, u: f64) -> Option<&[Rgb]> {
+        Some(match self.0 {
+            Side::X => level.column(u),
+            Side::Y => level.halved_column(u),
+        })
     }
 }
 

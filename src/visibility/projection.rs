@@ -8,7 +8,7 @@ use std::ops::{Range, RangeInclusive};
 
 use glam::DVec2;
 
-use super::texture_stepper::{FaceTexels, TextureStepper, ceil};
+use super::texture_stepper::{FaceTexels, Horizon, TextureStepper, ceil};
 use super::{FrameSize, PixelAspect, SpanMapping};
 use crate::cast::Ray;
 use crate::world::{Camera, Heights};
@@ -21,9 +21,10 @@ pub(crate) struct Projection {
     plane: DVec2,
     width: u32,
     height: f64,
-    /// The position of the horizon, at eye height, in rows from the top. It is far outside the
-    /// picture if the camera is pitched that far.
+    /// The horizon, at eye height, in rows from the top; it may be far outside the picture.
     horizon: f64,
+    /// The same horizon, for the texels of walls.
+    horizon_of_texels: Horizon,
     /// The height of the eye.
     eye: f64,
     /// The number of rows from the horizon to a point 1 above the eye at distance 1.
@@ -39,8 +40,7 @@ pub(crate) struct Rise(f64);
 /// The position of a point in a picture.
 #[derive(Clone, Copy, Debug)]
 pub(crate) struct Place {
-    /// The distance from the camera plane, in cells; at most 0 for a point that is not in front of
-    /// it.
+    /// The distance from the camera plane, in cells; at most 0 for a point behind it.
     pub(crate) depth: f64,
     /// The number of columns of pixels from the left edge.
     pub(crate) column: f64,
@@ -52,6 +52,7 @@ impl Projection {
         let height = f64::from(size.height.get());
         let across = f64::from(width) / 2.0 / camera.field_of_view.half_width();
         let focal_length = across / pixel_aspect.height_over_width();
+        let horizon = height / 2.0 + rows_of_pitch(camera, focal_length);
         Self {
             eye: camera.eye().clamp(-FARTHEST, FARTHEST),
             origin: camera.position(),
@@ -59,7 +60,8 @@ impl Projection {
             plane: camera.plane(),
             width,
             height,
-            horizon: height / 2.0 + rows_of_pitch(camera, focal_length),
+            horizon,
+            horizon_of_texels: Horizon::new(2.0 * horizon),
             focal_length,
             focal_length_across: across,
         }
@@ -95,9 +97,8 @@ impl Projection {
         self.width as usize
     }
 
-    /// The rays of all columns, from left to right, each through the centres of its pixels.
-    ///
-    /// The `t` of a ray is the distance to the camera plane and needs no correction.
+    /// The rays of all columns, from left to right, each through the centres of its pixels. Their `t` is
+    /// the distance to the camera plane and needs no correction.
     pub(crate) fn rays(&self) -> impl Iterator<Item = Ray> {
         (0..self.width).map(|column| self.ray(column))
     }
@@ -122,7 +123,14 @@ impl Projection {
         self.eye == 0.5 && 2.0 * self.horizon == self.height && self.rows().is_multiple_of(2)
     }
 
+    /// Whether the horizon is so near to the picture that the texels of walls are exact, except for
+    /// the first and the last row of a wall.
+    pub(crate) fn is_horizon_near(&self) -> bool {
+        self.horizon.abs() <= 4096.0
+    }
+
     /// The direction of the ray of `column`.
+    #[inline]
     pub(crate) fn direction_of(&self, column: u32) -> DVec2 {
         let width = f64::from(self.width);
         // The quotient of two integers: a column and its mirror image have opposite ones.
@@ -131,6 +139,7 @@ impl Projection {
     }
 
     /// The rows whose centres are between top and bottom of a wall of height 1 at distance `t`.
+    #[inline]
     pub(crate) fn wall_rows(&self, t: f64) -> Range<u32> {
         let above = (1.0 - self.eye) * self.focal_length / t;
         let below = self.eye * self.focal_length / t;
@@ -159,9 +168,10 @@ impl Projection {
     }
 
     /// The texels of a wall at distance `t`, with `count` from top to bottom.
+    #[inline]
     pub(crate) fn texels_down_the_wall(&self, t: f64, count: usize) -> TextureStepper {
         let height_of_row = t / self.focal_length;
-        TextureStepper::of_wall(2.0 * self.horizon, height_of_row, count, 1.0 - self.eye)
+        TextureStepper::of_wall(self.horizon_of_texels, height_of_row, count, 1.0 - self.eye)
     }
 
     /// The texels of a face at distance `t` from the height `bottom` to `top`: `count` for each
@@ -177,7 +187,7 @@ impl Projection {
         let above = ceil(top) as f64;
         let of_cells = (above - top, above - bottom);
         let texels = FaceTexels { count, of_cells, at_eye: above - self.eye };
-        TextureStepper::new(2.0 * self.horizon, t / self.focal_length, texels)
+        TextureStepper::new(self.horizon_of_texels, t / self.focal_length, texels)
     }
 
     /// The position in the picture of a point on the map.
@@ -212,6 +222,7 @@ impl Projection {
 
     /// The area of a wall's side, in square cells, that a pixel covers at the point that its ray
     /// hits at `t`. Per unit of `t`, the ray approaches the side by `slope`.
+    #[inline]
     pub(crate) fn pixel_area_on_wall(&self, t: f64, slope: f64) -> f64 {
         let down = t / self.focal_length;
         let across = t / (self.focal_length_across * slope.abs());
@@ -272,8 +283,7 @@ impl Projection {
     }
 }
 
-/// The least distance of an eye from floor and ceiling, in cells: a nearer one shows only the point
-/// of contact.
+/// The least distance of an eye from floor and ceiling, in cells: a nearer one shows one point.
 const NEAREST: f64 = 1.0 / 64.0;
 
 /// An eye further up or down has the same view as from here: no height is so far.

@@ -21,8 +21,7 @@ impl<'a> Scene<'a> {
     #[inline]
     pub(crate) fn level_on_face(self, id: TextureId, t: f64, slope: f64) -> &'a MipLevel {
         let texture = self.world.texture(id);
-        let texels = f64::from(texture.width()) * f64::from(texture.height());
         let area = self.projection.pixel_area_on_wall(t, slope);
-        texture.level(self.plan.filter.lod(area * texels))
+        texture.level(self.plan.filter.lod(area * texture.area()))
     }
 }

@@ -5,8 +5,13 @@
 //! so that no error accumulates and a step is one addition. Counting in doubles was refused: a
 //! conversion and a floor for each pixel took half the time of a whole frame.
 
+mod rounding;
+
 use std::iter;
 use std::ops::Range;
+
+pub(crate) use rounding::ceil;
+use rounding::{floor, rounded};
 
 /// The texels of an upright face.
 #[derive(Clone, Copy, Debug)]
@@ -19,8 +24,17 @@ pub(crate) struct FaceTexels {
     pub(crate) at_eye: f64,
 }
 
+/// The horizon of a picture, for the steppers of its faces.
+#[derive(Clone, Copy, Debug)]
+pub(crate) struct Horizon {
+    /// The halves of a row from the horizon to the centre of row 0.
+    half_rows_to_first: i64,
+    /// The least half of a step.
+    least: i64,
+}
+
 /// The texels of an upright face, by rows of pixels.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub(crate) struct TextureStepper {
     /// The position at the centre of row 0, even if the row is not on the face.
     first: i64,
@@ -31,40 +45,37 @@ pub(crate) struct TextureStepper {
     count: i64,
 }
 
+impl Horizon {
+    /// The horizon `half_rows` halves of a row below the top of a picture.
+    pub(crate) fn new(half_rows: f64) -> Self {
+        // A smaller step would not exceed `HAIR`, and a row above the horizon would be below it.
+        // From a horizon far outside the picture, it would add up to texels beyond the face.
+        let is_far = half_rows.abs() > FARTHEST_HORIZON;
+        Self { half_rows_to_first: 1 - half_rows as i64, least: if is_far { 0 } else { 2 * HAIR } }
+    }
+}
+
 impl TextureStepper {
-    /// The stepper of `texels` in a picture whose horizon is `half_rows_to_horizon` halves of a row
-    /// below its top, if a row covers `height_of_row` cells of the face.
-    pub(crate) fn new(half_rows_to_horizon: f64, height_of_row: f64, texels: FaceTexels) -> Self {
+    /// The stepper of `texels` in a picture with this `horizon`, if a row covers `height_of_row`
+    /// cells of the face.
+    pub(crate) fn new(horizon: Horizon, height_of_row: f64, texels: FaceTexels) -> Self {
         let FaceTexels { count, of_cells: (top, bottom), at_eye } = texels;
         let in_texels = |cells: f64| cells * count as f64;
         let uppermost = floor(in_texels(top));
         let lowest = (ceil(in_texels(bottom)) - 1).max(uppermost);
-        Self {
-            range: (uppermost, lowest),
-            ..Self::of_wall(half_rows_to_horizon, height_of_row, count, at_eye)
-        }
+        Self { range: (uppermost, lowest), ..Self::of_wall(horizon, height_of_row, count, at_eye) }
     }
 
     /// The stepper of a wall of height 1 that one texture of `count` texels covers.
     #[inline]
-    pub(crate) fn of_wall(
-        half_rows_to_horizon: f64,
-        height_of_row: f64,
-        count: usize,
-        at_eye: f64,
-    ) -> Self {
+    pub(crate) fn of_wall(horizon: Horizon, height_of_row: f64, count: usize, at_eye: f64) -> Self {
         let in_texels = |cells: f64| cells * count as f64;
         let texels_in_row = in_texels(height_of_row).min(MOST_TEXELS);
-        // A smaller step would not exceed `HAIR`, and a row above the horizon would be below it.
-        // From a horizon far outside the picture, it would add up to texels beyond the face.
-        let is_far = half_rows_to_horizon.abs() > FARTHEST_HORIZON;
-        let least = if is_far { 0 } else { 2 * HAIR };
-        let half_step = rounded(texels_in_row / 2.0 * TEXEL).max(least);
+        let half_step = rounded(texels_in_row / 2.0 * TEXEL).max(horizon.least);
         // Positions far above or below the face wrap around, and return to the same value at the
         // face.
         let at_horizon = rounded(in_texels(at_eye) * TEXEL);
-        let half_rows_to_first = 1 - half_rows_to_horizon as i64;
-        let from_horizon = half_step.wrapping_mul(half_rows_to_first);
+        let from_horizon = half_step.wrapping_mul(horizon.half_rows_to_first);
         let count = count as i64;
         Self {
             first: at_horizon.wrapping_add(HAIR).wrapping_add(from_horizon),
@@ -79,6 +90,13 @@ impl TextureStepper {
     #[inline]
     pub(crate) fn at(self, row: u32) -> usize {
         self.texel_at(self.place(row) >> TEXEL_BITS)
+    }
+
+    /// Whether the centre of `row` is on the face, in spite of rounding.
+    #[inline]
+    pub(crate) fn is_on_wall(self, row: u32) -> bool {
+        let (uppermost, lowest) = self.range;
+        (uppermost..=lowest).contains(&(self.place(row) >> TEXEL_BITS))
     }
 
     /// The texel of the texture for the one at `place`, counted from the top of the uppermost
@@ -148,35 +166,6 @@ impl TextureStepper {
     }
 }
 
-/// The nearest integer, away from 0 for ties; values beyond 64 bits wrap around.
-///
-/// On old processors `f64::round` and `f64::floor` are calls.
-#[inline]
-fn rounded(number: f64) -> i64 {
-    const LARGE: f64 = (1_u64 << 62) as f64;
-    if number.abs() >= LARGE {
-        // It is an integer.
-        return number as i128 as i64;
-    }
-    let whole = number as i64;
-    let rest = number - whole as f64;
-    whole + i64::from(rest >= 0.5) - i64::from(rest <= -0.5)
-}
-
-/// The largest integer not above `number`, for numbers in the middle half of 64 bits.
-#[inline]
-fn floor(number: f64) -> i64 {
-    const MOST: f64 = (1_u64 << 62) as f64;
-    let whole = number.clamp(-MOST, MOST) as i64;
-    whole - i64::from(whole as f64 > number)
-}
-
-/// The least integer not below `number`, for the same numbers.
-#[inline]
-pub(crate) fn ceil(number: f64) -> i64 {
-    -floor(-number)
-}
-
 /// The size of a texel, in fixed point.
 const TEXEL: f64 = (1_u64 << TEXEL_BITS) as f64;
 const TEXEL_BITS: u32 = 40;
@@ -201,7 +190,7 @@ mod tests {
     #[test]
     fn halves_of_the_picture_show_halves_of_a_wall_at_any_distance() {
         for near in [0.0, f64::MIN_POSITIVE, 1e-30, 1e-9] {
-            let texels = TextureStepper::new(90.0, near, wall(64));
+            let texels = TextureStepper::new(Horizon::new(90.0), near, wall(64));
             assert_eq!((texels.at(44), texels.at(45)), (31, 32), "{near}");
         }
     }
@@ -214,7 +203,8 @@ mod tests {
             let of_face = [0.0, f64::MIN_POSITIVE, at_eye / (rows as f64 + 0.5)];
             for height_of_row in of_face {
                 let half_rows = 2.0 * rows as f64;
-                let texels = TextureStepper::of_wall(half_rows, height_of_row, 1, at_eye);
+                let texels =
+                    TextureStepper::of_wall(Horizon::new(half_rows), height_of_row, 1, at_eye);
                 let Range { start, end } = texels.places(&(0..1)).unwrap();
                 assert!(-1 <= start && end <= 2, "{rows}, {height_of_row}: {start}");
             }
@@ -226,7 +216,11 @@ mod tests {
         // Thirds and sevenths have no finite binary fraction.
         for (rows, count) in [(3_u32, 1_u32), (7, 3), (21, 5), (63, 64), (4095, 3)] {
             let height_of_row = 1.0 / f64::from(rows);
-            let texels = TextureStepper::new(f64::from(rows), height_of_row, wall(count as usize));
+            let texels = TextureStepper::new(
+                Horizon::new(f64::from(rows)),
+                height_of_row,
+                wall(count as usize),
+            );
             for row in 0..rows {
                 let exact = (2 * row + 1) * count / (2 * rows);
                 assert_eq!(texels.at(row), exact as usize, "{row} of {rows}");
@@ -238,7 +232,7 @@ mod tests {
     fn a_high_face_repeats_its_texture_at_each_integer_height() {
         // From 0.25 to 2.5, seen from 1: its uppermost texture has its top at 3.
         let texels = FaceTexels { count: 4, of_cells: (0.5, 2.75), at_eye: 2.0 };
-        let texels = TextureStepper::new(12.0, 0.25, texels);
+        let texels = TextureStepper::new(Horizon::new(12.0), 0.25, texels);
         let seen: Vec<usize> = (0..9).map(|row| texels.at(row)).collect();
         assert_eq!(seen, [2, 3, 0, 1, 2, 3, 0, 1, 2]);
     }
@@ -252,7 +246,7 @@ mod tests {
             count in 1_usize..4097,
         ) {
             let texels = FaceTexels { at_eye, ..wall(count) };
-            let texels = TextureStepper::new(f64::from(height), 1.0 / rows, texels);
+            let texels = TextureStepper::new(Horizon::new(f64::from(height)), 1.0 / rows, texels);
             for row in 0..height {
                 let from_horizon = f64::from(2 * row + 1) / 2.0 - f64::from(height) / 2.0;
                 let place = (from_horizon / rows + at_eye) * count as f64;

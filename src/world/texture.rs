@@ -15,12 +15,17 @@ pub use mip_level::MipLevel;
 pub(crate) use mip_level::MipLevelByShifts;
 
 /// A picture, at least one texel wide and high.
-#[derive(Clone, Debug, PartialEq, Eq)]
+#[derive(Clone, Debug, PartialEq)]
 pub struct Texture {
     /// From the picture itself down to one texel.
     levels: Vec<MipLevel>,
+    /// The number of texels.
+    area: f64,
     mean: Rgb,
 }
+
+// The number of texels is no NaN.
+impl Eq for Texture {}
 
 impl Texture {
     /// An opaque texture with the texel `texel(x, y)` at `(x, y)`, `x` from the left and `y` from
@@ -48,7 +53,8 @@ impl Texture {
             alpha = Vec::new();
         }
         let mean = mean(&texels);
-        Self { levels: mip_level::pyramid(width, height, texels, alpha), mean }
+        let area = f64::from(width.get()) * f64::from(height.get());
+        Self { levels: mip_level::pyramid(width, height, texels, alpha), area, mean }
     }
 
     /// The width in texels.
@@ -88,6 +94,11 @@ impl Texture {
     #[must_use]
     pub fn part(&self, left: u32, top: u32, width: NonZeroU32, height: NonZeroU32) -> Self {
         Self::from_fn_with_alpha(width, height, |x, y| self.texel(left + x, top + y))
+    }
+
+    /// The number of texels.
+    pub(crate) fn area(&self) -> f64 {
+        self.area
     }
 
     /// The mip level after `lod` halvings, at most the one with a single texel.

@@ -19,6 +19,8 @@ pub struct MipLevel {
     height: NonZeroU32,
     /// The columns from the left, each from top to bottom.
     texels: Vec<Rgb>,
+    /// The same at half brightness.
+    halved: Vec<Rgb>,
     /// The alpha of the texels in the same order, 0 for transparent, 255 for opaque; empty if all
     /// texels are opaque.
     alpha: Vec<u8>,
@@ -39,6 +41,11 @@ impl MipLevel {
     /// outside that range, or NaN, selects the nearest column.
     pub fn column(&self, u: f64) -> &[Rgb] {
         &self.texels[self.column_range(u)]
+    }
+
+    /// The column at `u` at [half brightness](Rgb::halved), as a y-side shows it.
+    pub(crate) fn halved_column(&self, u: f64) -> &[Rgb] {
+        &self.halved[self.column_range(u)]
     }
 
     /// The alpha of the texels of [`MipLevel::column`]; `None` if all texels of the level are
@@ -137,8 +144,8 @@ impl MipLevelByShifts<'_> {
 /// The index, of `count`, of the texel at `coordinate`, from 0 to 1; the nearest one for
 /// coordinates outside.
 fn texel_index(coordinate: f64, count: u32) -> usize {
-    let index = (coordinate * f64::from(count)) as usize;
-    index.min(count as usize - 1)
+    let index = (coordinate * f64::from(count)) as u32;
+    index.min(count - 1) as usize
 }
 
 /// A picture with these texels, column by column, and its mip levels down to one texel. `alpha` is
@@ -151,12 +158,16 @@ pub(super) fn pyramid(
 ) -> Vec<MipLevel> {
     let light_texels = texels.iter().copied().map(linear_16).collect();
     let mut light = Light { width, height, texels: light_texels, alpha: alpha.clone() };
-    let mut levels = vec![MipLevel { width, height, texels, alpha }];
+    let level = |width, height, texels: Vec<Rgb>, alpha| {
+        let halved = texels.iter().map(|texel| texel.halved()).collect();
+        MipLevel { width, height, texels, halved, alpha }
+    };
+    let mut levels = vec![level(width, height, texels, alpha)];
     while light.texels.len() > 1 {
         light = light.halved();
         let texels = light.texels.iter().copied().map(from_linear_16).collect();
         let (width, height, alpha) = (light.width, light.height, light.alpha.clone());
-        levels.push(MipLevel { width, height, texels, alpha });
+        levels.push(level(width, height, texels, alpha));
     }
     levels
 }
@@ -202,10 +213,12 @@ mod tests {
         ) {
             let (width, height) = (1 << sides.0, 1 << sides.1);
             let texels = (0..width * height).map(|texel| Rgb::new(0, (texel >> 8) as u8, texel as u8));
+            let texels: Vec<_> = texels.collect();
             let level = MipLevel {
                 width: size(width),
                 height: size(height),
-                texels: texels.collect(),
+                halved: texels.clone(),
+                texels,
                 alpha: vec![],
             };
             let shifts = level.by_shifts().unwrap();
