@@ -95,7 +95,9 @@ fn draw_lanes<const N: usize, const BITS: u32>(
         return;
     };
     if start >= end {
-        columns.iter().for_each(|column| column.draw(column.rows.clone(), band));
+        for column in columns {
+            column.draw(column.rows.clone(), band);
+        }
         return;
     }
     for column in columns {

@@ -36,7 +36,9 @@ pub(super) fn draw_both<S: Stats>(
         let places = upper.mapping.places(columns.start, 1.0 / upper.covering.scale.cells());
         if TexelRuns::of(one, &places, count).is_none() {
             let passes = [upper.pass, lower.pass];
-            passes.into_iter().for_each(|pass| target.count_texels(pass, count));
+            for pass in passes {
+                target.count_texels(pass, count);
+            }
             let [above, below] = target.two_spans_mut(passes, [upper.row, lower.row], columns);
             let blocks = above.chunks_mut(AT_ONCE).zip(below.chunks_mut(AT_ONCE));
             for_each_block(
@@ -165,7 +167,7 @@ fn draw_by_shifts<L: Lighting>(
 ) {
     let blocks = pixels.chunks_mut(AT_ONCE).map(|pixels| (pixels.len(), pixels));
     for_each_block(level, places, blocks, |texels, pixels| {
-        look_up(level, lighting, texels, pixels)
+        look_up(level, lighting, texels, pixels);
     });
 }
 
