@@ -16,6 +16,7 @@ mod ghost;
 mod goal;
 mod help;
 mod hud;
+mod interruption;
 mod keys;
 mod levels;
 mod map_panel;
@@ -145,6 +146,8 @@ struct App {
     views: Views,
     /// The state that the screen shows; `None` if it must be redrawn.
     shown: Option<Shown>,
+    /// Whether the last picture was abandoned for a key, whose effect is shown first.
+    is_interrupted: bool,
     /// The game time of the next change in the picture that the player does not cause.
     animates_at: Option<f64>,
     shows_stats: bool,
@@ -203,6 +206,7 @@ impl App {
             has_left: false,
             clock: Clock::default(),
             shown: None,
+            is_interrupted: false,
             animates_at: None,
             stats: None,
             status: StatusLine::default(),
@@ -255,7 +259,7 @@ impl App {
         self.cell_aspect = self.settings.cell_aspect.or(aspect).unwrap_or_default();
         self.terminal_depth = depth;
         self.depth = self.settings.depth.unwrap_or(depth);
-        self.shown = None;
+        self.redraw_whole();
     }
 
     /// Continues after a suspension, whose time does not count.
@@ -263,7 +267,13 @@ impl App {
         self.clock.skip_to(now);
         self.release_keys();
         self.pointer.forget();
+        self.redraw_whole();
+    }
+
+    /// Has the next frame show a complete picture.
+    fn redraw_whole(&mut self) {
         self.shown = None;
+        self.is_interrupted = false;
     }
 }
 

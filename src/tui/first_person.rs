@@ -102,6 +102,18 @@ impl<'a, S: Renderable> FirstPerson<'a, S> {
         self.scene.render(self.camera, self.options(), renderer, frame);
     }
 
+    /// Does the same as [`FirstPerson::draw`], but may stop once `go_on` returns `false`. Returns whether
+    /// the picture is complete. It can be painted in either case: the rest shows earlier pictures.
+    pub fn draw_while(
+        &self,
+        size: Size,
+        view: &mut View<S>,
+        go_on: &mut dyn FnMut() -> bool,
+    ) -> bool {
+        let Some(View { renderer, frame }) = self.resized(size, view) else { return true };
+        self.scene.render_while(self.camera, self.options(), renderer, frame, go_on)
+    }
+
     /// Does the same as [`FirstPerson::draw`] and returns the frame's cost, or `None` if the area
     /// has no cells.
     pub fn explain(&self, size: Size, view: &mut View<S>) -> Option<S::Explanation> {
