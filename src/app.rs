@@ -29,6 +29,7 @@ mod panels;
 #[cfg(feature = "serve")]
 pub(crate) mod parts;
 mod played;
+mod question;
 mod recording;
 mod redraw;
 mod reload;
@@ -80,9 +81,9 @@ use crate::world::{Difficulty, FieldOfView};
 use clock::Clock;
 use controls::Controls;
 use detection::Detection;
-use keys::Pending;
 use mouse::Pointer;
 use played::{Played, Viewpoint, Views};
+use question::PendingKey;
 use recording::ScriptRecorder;
 use reload::Reload;
 use stats::Stats;
@@ -140,7 +141,7 @@ struct App {
     /// The time of the last event, and the time since which the screen is shown.
     now: Duration,
     shown_since: Duration,
-    pending: Option<Pending>,
+    pending: PendingKey,
     has_left: bool,
     clock: Clock,
     views: Views,
@@ -202,7 +203,7 @@ impl App {
             controls: Controls::default(),
             now: Duration::ZERO,
             shown_since: Duration::ZERO,
-            pending: None,
+            pending: PendingKey::default(),
             has_left: false,
             clock: Clock::default(),
             shown: None,

@@ -38,7 +38,7 @@ impl App {
             return Some(self.clock.step_after(0));
         }
         if self.screen != Screen::Playing {
-            return self.pending.map(|pending| pending.until);
+            return self.pending.until();
         }
         if self.controls.held.has_taps() {
             return Some(self.clock.step_after(0));
