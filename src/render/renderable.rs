@@ -47,8 +47,8 @@ pub trait Renderable {
     /// Draws as [`Renderable::render`] does, but may stop once `go_on` returns `false`, and then leaves
     /// the rest of `frame` as it was. Returns whether the frame is complete.
     ///
-    /// A grid never stops: its frames take a tenth of a second at most in the largest terminals, while
-    /// bodies can take seconds.
+    /// A grid never stops. The slowest one found, thousands of things between mirrors, takes about a
+    /// second in the largest terminals, while bodies can take several.
     fn render_while(
         &self,
         camera: &Self::Camera,
