@@ -4,7 +4,7 @@
 //!   except in the easiest game.
 //! - Water slows, splashes and puts out the lamp. It takes a point each [`COLD`] steps, from the
 //!   second time on.
-//! - Spikes hurt once for each time that they come out.
+//! - Spikes are heard half a second before they come out, and hurt once for each time.
 //! - A blow from more than 90° off the player's view never kills.
 
 mod spikes;
@@ -86,7 +86,8 @@ impl Game {
     }
 
     fn step_on_spikes(&mut self) {
-        if self.spikes.show(&mut self.world, self.steps) {
+        let Self { spikes, world, sounds, steps, .. } = self;
+        if spikes.show(world, *steps, sounds) {
             self.revision += 1;
         }
         let motion = self.player.motion;

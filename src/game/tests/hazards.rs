@@ -59,6 +59,26 @@ fn spikes_hurt_once_for_each_thrust() {
 }
 
 #[test]
+fn the_nearest_spikes_are_heard_half_a_second_before_they_come_out() {
+    let rows = ["#####", "#..s#", "#@..#", "#.s.#", "#s..#", "#####"];
+    let mut stage = Stage::new(&rows, "", "s = { spikes = 2, delay = 1 }");
+    let is_out = |stage: &Stage| stage.game.world().things()[0].frame == Some(2);
+    let heard = stage.steps_until(60, &[], |stage| stage.hears(SoundKind::Spikes)).unwrap();
+    let out = stage.steps_until(60, &[], is_out).unwrap();
+    assert_eq!((heard, out), (31, 30));
+    let heard: Vec<_> = stage.game.heard().iter().map(|it| it.bearing.degrees()).collect();
+    assert!(matches!(heard[..], [bearing] if (bearing - 45.0).abs() < 1e-9), "{heard:?}");
+    // Nobody behind a wall hears them, and guards do not care.
+    let rows = ["########", "#@###s.#", "#####.g#", "########"];
+    let things = "s = { spikes = 2 }\ng = { guard = 'listener', heading = 0 }";
+    let mut stage = Stage::new(&rows, "", things);
+    for _ in 0..480 {
+        stage.play(1, &[]);
+        assert!(!stage.hears(SoundKind::Spikes) && stage.guard(0).mood == Mood::OnDuty);
+    }
+}
+
+#[test]
 fn who_jumps_over_spikes_is_not_hurt() {
     let rows = ["@.s......"];
     let (things, difficulty) = ("s = { spikes = 1 }", Difficulty::Normal);
