@@ -41,6 +41,7 @@ mod tally;
 mod tools;
 mod turn;
 mod turning;
+mod warnings;
 
 use crate::generate::{self, Site, Window};
 use crate::world::World;

@@ -107,6 +107,7 @@ impl Game {
             if self.is_mission {
                 self.guards.shift(&self.world, shift);
                 self.player.hearing.forget();
+                self.player.warnings.clear();
             }
             self.show();
         }

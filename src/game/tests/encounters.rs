@@ -48,7 +48,7 @@ fn bolts_end_at_walls_and_closed_doors() {
         let mut stage =
             Stage::new(&rows, "'+' = { door = 'oak' }\n'%' = { glass = '#80c0ff' }", "");
         let from = (DVec2::new(7.5, 1.5), 0.5);
-        stage.game.missiles.launch(Missile::bolt(from, -DVec2::X, 0.0, 2));
+        stage.game.missiles.launch(Missile::bolt(from, -DVec2::X, 0.0, (0, 2)));
         stage.play(60, &[]);
         assert!(stage.game.missiles.is_empty());
         assert_eq!(stage.points(), points, "{between}");
