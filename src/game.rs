@@ -12,6 +12,7 @@ mod checkpoint;
 mod checksum;
 mod collision;
 mod company;
+mod crowding;
 mod doors;
 mod encounter;
 mod exits;
