@@ -150,12 +150,13 @@ impl Game {
         }
     }
 
-    /// Whether the player has reached the exit, with as much treasure as it asks for. Nothing moves
-    /// after that, and the clock stops.
+    /// Whether the player has reached the exit, with as much treasure as it asks for, and in the hardest
+    /// game while no alarm is raised. Nothing moves after that, and the clock stops.
     pub fn is_finished(&self) -> bool {
         !self.is_dead()
             && self.things_reached().any(|thing| thing.kind == ThingKind::Exit)
             && self.treasure_missing() == 0
+            && !self.alarm_closes_exits()
     }
 
     pub(super) fn is_dead(&self) -> bool {
