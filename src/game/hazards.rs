@@ -123,10 +123,8 @@ impl Game {
         let bearing = Heading::from_degrees(degrees);
         let harm = Harm { points, bearing, spares: false, cause };
         let kills = self.player.health.after(&harm).is_gone() && !self.player.health.is_gone();
-        let grace = match kills && !is_in_view {
-            true => self.player.warnings.spare(by, self.steps),
-            false => None,
-        };
+        let warns = kills && !is_in_view;
+        let grace = if warns { self.player.warnings.spare(by, self.steps) } else { None };
         self.hurt(Harm { spares: grace.is_some(), ..harm });
         if let Some(left) = grace {
             self.player.flash = Some(Flash::warning(&harm, left));
