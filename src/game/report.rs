@@ -138,6 +138,12 @@ impl Game {
     /// A number that grows with every visible change other than the camera: a door moves, a key is
     /// taken, a guard moves, the message changes.
     pub fn revision(&self) -> u64 {
+        self.revision + self.figure_revision
+    }
+
+    /// A number that grows with every such change but those of [figures](Game::figures).
+    #[cfg(feature = "terminal")]
+    pub(crate) fn revision_without_figures(&self) -> u64 {
         self.revision
     }
 
