@@ -44,8 +44,8 @@ const RUNS: &str = "runs";
 const LARGEST_PROGRESS: u64 = 4 << 20;
 /// In bytes: that is more than a day of play.
 const LARGEST_SCRIPT: u64 = 4 << 20;
-/// They take a second.
-const ATTEMPTS: u32 = 100;
+/// They take two seconds.
+const ATTEMPTS: u32 = 1000;
 
 impl Home {
     pub(super) fn new(folder: PathBuf, disk: Box<dyn Disk>) -> Self {
