@@ -77,7 +77,7 @@ use crate::color::palette::ColorDepth;
 use crate::game::STEP;
 use crate::store::{Reached, Store};
 use crate::tui::{CellAspect, View};
-use crate::world::{Difficulty, FieldOfView};
+use crate::world::{Difficulty, FieldOfView, Figure};
 use clock::Clock;
 use controls::Controls;
 use detection::Detection;
@@ -91,10 +91,12 @@ use status::StatusLine;
 use watch::Watch;
 
 /// The part of the game's state that a picture depends on.
-#[derive(Clone, Copy, Debug, PartialEq)]
+#[derive(Clone, Debug, PartialEq)]
 struct Shown {
     viewpoint: Viewpoint,
     revision: u64,
+    /// The figures in view.
+    figures: Vec<Figure>,
 }
 
 struct App {

@@ -36,7 +36,7 @@ pub(super) trait Simulation: fmt::Debug {
     /// The seconds since the level began, counted in steps.
     fn elapsed(&self) -> f64;
 
-    /// A number that grows with every visible change other than that of the viewpoint.
+    /// A number that grows with every visible change other than those of the viewpoint and of figures.
     fn revision(&self) -> u64;
 
     fn is_finished(&self) -> bool;
@@ -253,7 +253,7 @@ impl Simulation for Game {
     }
 
     fn revision(&self) -> u64 {
-        Self::revision(self)
+        self.revision_without_figures()
     }
 
     fn is_finished(&self) -> bool {

@@ -7,6 +7,7 @@ mod levels;
 mod missions;
 mod panels;
 mod questions;
+mod redraws;
 mod saved;
 mod screens;
 mod table;

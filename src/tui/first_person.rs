@@ -14,6 +14,8 @@ use crate::render::{
     Column, DynCaster, Filter, Frame, FrameSize, Options, PixelAspect, Renderable, Renderer,
 };
 use crate::world::World;
+#[cfg(feature = "terminal")]
+use crate::world::{Camera, Figure};
 
 /// A widget that shows what a camera sees of a [`World`], or of a [`Scene`](crate::space::Scene) of
 /// bodies.
@@ -218,6 +220,13 @@ impl View {
     /// A view whose renderer finds walls by `caster`.
     pub fn with_caster(caster: DynCaster) -> Self {
         Self { renderer: Renderer::with_caster(caster), ..Self::default() }
+    }
+
+    /// Whether `figure` may be seen in the last picture, wherever the figure was then. `world` and
+    /// `camera` are those of the picture.
+    #[cfg(feature = "terminal")]
+    pub(crate) fn may_show(&self, world: &World, camera: &Camera, figure: &Figure) -> bool {
+        self.renderer.may_show(world, camera, &self.frame, figure)
     }
 
     /// The hits of the last picture's rays, from left to right.
