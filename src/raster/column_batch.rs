@@ -90,6 +90,7 @@ impl<'m, 't, 'a, L: Lighting, S: Stats> ColumnBatch<'m, 't, 'a, L, S> {
     ) {
         if let Some(direct) = &mut self.direct
             && let Some(texels) = lighting.lit_column(level, u)
+            && DirectColumns::are_for(texels)
         {
             direct.push(DirectColumn { x, rows, texels, stepper }, self.target.band_mut());
         } else {
@@ -252,7 +253,6 @@ mod tests {
         fn columns_show_their_texels(
             columns in prop::collection::vec(column(), 1..400),
             repeats in 1_usize..20,
-            are_direct in any::<bool>(),
         ) {
             let texels: Vec<_> =
                 (0..9000).map(|texel| Rgb::new(1, (texel >> 8) as u8, texel as u8)).collect();
@@ -267,7 +267,7 @@ mod tests {
             let mut surfaces = SurfaceBuffer::default();
             let rows = surfaces.bands(size.height).next().unwrap();
             let mut target = Target::<()>::new(frame.whole(), rows);
-            let mut batch = ColumnBatch::new(&mut memory, &mut target, are_direct);
+            let mut batch = ColumnBatch::new(&mut memory, &mut target, false);
             let walls = || (0..).zip(&columns).filter_map(|(x, column)| Some((x, column.as_ref()?)));
             let down = |t: f64, range: &Range<usize>| projection.texels_down_the_wall(t, range.len());
             for (x, (t, side, range)) in walls() {

@@ -42,6 +42,13 @@ pub(super) struct DirectColumn<'a> {
 }
 
 impl<'a> DirectColumns<'a> {
+    /// Whether there is a loop for columns of as many texels: a power of two, up to 256. Others are drawn
+    /// faster in a batch.
+    #[inline]
+    pub(super) fn are_for(texels: &[Rgb]) -> bool {
+        texels.len().is_power_of_two() && texels.len() <= 256
+    }
+
     /// Draws `column`, now or with its neighbours.
     #[inline]
     pub(super) fn push(&mut self, column: DirectColumn<'a>, band: &mut Band<'_>) {
@@ -72,6 +79,8 @@ impl<'a> DirectColumns<'a> {
 /// Draws neighbouring columns with equal numbers of texels.
 fn draw_together(columns: &[DirectColumn<'_>; LANES], band: &mut Band<'_>) {
     match columns[0].texels.len() {
+        256 => draw_lanes::<256, 8>(columns, band),
+        128 => draw_lanes::<128, 7>(columns, band),
         64 => draw_lanes::<64, 6>(columns, band),
         32 => draw_lanes::<32, 5>(columns, band),
         16 => draw_lanes::<16, 4>(columns, band),
@@ -144,6 +153,58 @@ impl DirectColumn<'_> {
             if !self.stepper.is_on_wall(row) {
                 self.draw(row..row + 1, band);
             }
+        }
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use proptest::prelude::*;
+
+    use super::*;
+    use crate::render::Frame;
+    use crate::visibility::{FrameSize, PixelAspect, Projection};
+    use crate::world::{Camera, FieldOfView, Heading, Pitch};
+
+    const HEIGHT: u32 = 90;
+
+    /// A column of a wall: its distance, and the power of two of its texels; or `None`.
+    fn column() -> impl Strategy<Value = Option<(f64, u32)>> {
+        prop::option::weighted(0.95, (0.01..20.0, prop_oneof![1 => 0_u32..9, 4 => Just(6)]))
+    }
+
+    proptest! {
+        #[test]
+        fn columns_show_their_texels(
+            columns in prop::collection::vec(column(), 1..200),
+            repeats in 1_usize..20,
+            degrees in -30.0..30.0,
+        ) {
+            let texels: Vec<_> = (0..256).map(|texel| Rgb::new(1, 2, texel as u8)).collect();
+            let columns: Vec<_> =
+                columns.iter().flat_map(|column| vec![column; repeats]).take(200).collect();
+            let size = FrameSize::new(columns.len() as u32, HEIGHT).unwrap();
+            let east = Heading::from_degrees(0.0).unwrap();
+            let camera = Camera::new((0.0, 0.0).into(), east, FieldOfView::default()).unwrap();
+            let camera = camera.with_pitch(Pitch::from_degrees(degrees).unwrap());
+            let projection = Projection::new(&camera, size, PixelAspect::SQUARE);
+            let mut frame = Frame::new(size, PixelAspect::SQUARE);
+            let mut shown = vec![vec![Rgb::BLACK; columns.len()]; HEIGHT as usize];
+            let mut band = frame.whole();
+            let mut direct = DirectColumns::default();
+            for (x, column) in columns.iter().enumerate() {
+                let Some((t, bits)) = column else { continue };
+                let (rows, texels) = (projection.wall_rows(*t), &texels[..1 << bits]);
+                let stepper = projection.texels_down_the_wall(*t, texels.len());
+                for row in rows.clone() {
+                    shown[row as usize][x] = texels[stepper.at(row)];
+                }
+                if !rows.is_empty() {
+                    direct.push(DirectColumn { x: x as u32, rows, texels, stepper }, &mut band);
+                }
+            }
+            direct.draw(&mut band);
+            prop_assert!(frame.rows().eq(shown));
         }
     }
 }
