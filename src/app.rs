@@ -16,6 +16,7 @@ mod ghost;
 mod goal;
 mod help;
 mod hud;
+mod interruption;
 mod keys;
 mod levels;
 mod map_panel;
@@ -28,6 +29,7 @@ mod panels;
 #[cfg(feature = "serve")]
 pub(crate) mod parts;
 mod played;
+mod question;
 mod recording;
 mod redraw;
 mod reload;
@@ -75,13 +77,13 @@ use crate::color::palette::ColorDepth;
 use crate::game::STEP;
 use crate::store::{Reached, Store};
 use crate::tui::{CellAspect, View};
-use crate::world::{Difficulty, FieldOfView};
+use crate::world::{Difficulty, FieldOfView, Figure};
 use clock::Clock;
 use controls::Controls;
 use detection::Detection;
-use keys::Pending;
 use mouse::Pointer;
 use played::{Played, Viewpoint, Views};
+use question::PendingKey;
 use recording::ScriptRecorder;
 use reload::Reload;
 use stats::Stats;
@@ -89,10 +91,12 @@ use status::StatusLine;
 use watch::Watch;
 
 /// The part of the game's state that a picture depends on.
-#[derive(Clone, Copy, Debug, PartialEq)]
+#[derive(Clone, Debug, PartialEq)]
 struct Shown {
     viewpoint: Viewpoint,
     revision: u64,
+    /// The figures in view.
+    figures: Vec<Figure>,
 }
 
 struct App {
@@ -139,12 +143,14 @@ struct App {
     /// The time of the last event, and the time since which the screen is shown.
     now: Duration,
     shown_since: Duration,
-    pending: Option<Pending>,
+    pending: PendingKey,
     has_left: bool,
     clock: Clock,
     views: Views,
     /// The state that the screen shows; `None` if it must be redrawn.
     shown: Option<Shown>,
+    /// Whether the last picture was abandoned for a key, whose effect is shown first.
+    is_interrupted: bool,
     /// The game time of the next change in the picture that the player does not cause.
     animates_at: Option<f64>,
     shows_stats: bool,
@@ -199,10 +205,11 @@ impl App {
             controls: Controls::default(),
             now: Duration::ZERO,
             shown_since: Duration::ZERO,
-            pending: None,
+            pending: PendingKey::default(),
             has_left: false,
             clock: Clock::default(),
             shown: None,
+            is_interrupted: false,
             animates_at: None,
             stats: None,
             status: StatusLine::default(),
@@ -255,7 +262,7 @@ impl App {
         self.cell_aspect = self.settings.cell_aspect.or(aspect).unwrap_or_default();
         self.terminal_depth = depth;
         self.depth = self.settings.depth.unwrap_or(depth);
-        self.shown = None;
+        self.redraw_whole();
     }
 
     /// Continues after a suspension, whose time does not count.
@@ -263,7 +270,13 @@ impl App {
         self.clock.skip_to(now);
         self.release_keys();
         self.pointer.forget();
+        self.redraw_whole();
+    }
+
+    /// Has the next frame show a complete picture.
+    fn redraw_whole(&mut self) {
         self.shown = None;
+        self.is_interrupted = false;
     }
 }
 

@@ -16,6 +16,8 @@ use std::ops::Range;
 pub(crate) use printable::printable;
 #[cfg(feature = "cli")]
 pub(crate) use printable::printable_lines;
+#[cfg(feature = "terminal")]
+pub(crate) use printable::printable_path;
 pub(crate) use words::{nearest, quoted};
 
 /// All faults of a file; there is at least one.

@@ -12,6 +12,7 @@ mod checkpoint;
 mod checksum;
 mod collision;
 mod company;
+mod crowding;
 mod doors;
 mod encounter;
 mod exits;
@@ -41,6 +42,7 @@ mod tally;
 mod tools;
 mod turn;
 mod turning;
+mod warnings;
 
 use crate::generate::{self, Site, Window};
 use crate::world::World;
@@ -114,7 +116,10 @@ pub struct Game {
     sounds: Vec<Sound>,
     checkpoint: Checkpoint,
     steps: u64,
+    /// Grows with every visible change but those of the viewpoint and of figures.
     revision: u64,
+    /// Grows with every change of figures.
+    figure_revision: u64,
 }
 
 impl Game {
@@ -150,6 +155,7 @@ impl Game {
             checkpoint: Checkpoint::default(),
             steps: 0,
             revision: 0,
+            figure_revision: 0,
             world,
         };
         game.shown().with_start()

@@ -34,6 +34,8 @@ pub use threads::{Threads, WhyOne};
 use crate::cast::Caster;
 use crate::raster::{self, RasterMemory, SkyColumn, SkyView, SurfaceBuffer};
 use crate::visibility::{self, DrawList, Projection, Scene, Stats, VisibilityMemory};
+#[cfg(feature = "tui")]
+use crate::world::Figure;
 use crate::world::{Camera, World};
 use threads::draw_bands;
 
@@ -158,6 +160,20 @@ impl Renderer {
         let size = u64::from(frame.width()) * u64::from(frame.height());
         counted.overwritten = counted.pixels() - size;
         Explanation { plan, threads, stats: counted }
+    }
+
+    /// Whether `figure` may be seen in `frame`, the last that was drawn, wherever the figure was then.
+    /// `world` and `camera` are those of the frame.
+    #[cfg(feature = "tui")]
+    pub(crate) fn may_show(
+        &self,
+        world: &World,
+        camera: &Camera,
+        frame: &Frame,
+        figure: &Figure,
+    ) -> bool {
+        let projection = Projection::new(camera, frame.size(), frame.pixel_aspect());
+        world.has_mirrors() || visibility::may_show(world, &projection, self.columns(), figure)
     }
 
     /// The hits of the rays of the last frame, from left to right, one for each column of pixels.

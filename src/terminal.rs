@@ -28,6 +28,7 @@ mod recorder;
 mod sequence;
 mod session;
 mod size;
+pub(crate) mod thread_memory;
 #[cfg(unix)]
 mod unix;
 #[cfg(not(unix))]

@@ -40,6 +40,8 @@ mod texture_stepper;
 mod visible_cells;
 
 pub(crate) use billboard::Billboard;
+#[cfg(feature = "tui")]
+pub(crate) use billboard::may_show;
 pub use column::{Column, Surface};
 pub(crate) use draw_list::{
     BillboardColumn, DrawList, Extent, Layer, Material, PlaneSpan, SeeThroughColumn, Span,

@@ -21,7 +21,7 @@ use crate::bytes::Bytes;
 const TERMS: [&str; 8] =
     ["xterm-256color", "xterm-kitty", "linux", "tmux-256color", "dumb", "alacritty", "vt220", ""];
 /// Longer than the wait for the rest of any key or answer.
-const PAUSE: Duration = Duration::from_secs(4);
+const PAUSE: Duration = Duration::from_secs(20);
 /// The most parts that a stream is cut into.
 const MOST_PARTS: usize = 64;
 

@@ -1,22 +1,48 @@
 //! Drawing: the picture, and what lies over it.
 
-use ratatui::layout::Rect;
+use ratatui::layout::{Rect, Size};
 
 use super::overlay::Overlay;
 use super::status::{StatusValues, hint};
 use super::vitals::HealthSigns;
-use super::{App, DrawOptions, Screen, banner, panels};
+use super::{App, Bindings, DrawOptions, Screen, banner, panels};
 use crate::canvas::Canvas;
 use crate::game::{Game, PlayerId};
 
 impl App {
+    /// Draws the screen.
     pub(super) fn draw(&mut self, canvas: &mut impl Canvas) {
+        self.render(canvas.bounds().as_size(), &mut |_, _| true);
+        self.paint(canvas);
+    }
+
+    /// Renders the picture for a window of this size; may stop once `go_on` returns `false`, which it
+    /// may decide by the screen and the keys. Returns whether the picture is complete.
+    pub(super) fn render(
+        &mut self,
+        window: Size,
+        go_on: &mut dyn FnMut(Screen, &Bindings) -> bool,
+    ) -> bool {
+        let area = Rect::from(window);
+        if panels::is_too_small(area) {
+            return true;
+        }
+        self.show_ghost();
+        let [picture, _] = panels::picture_and_status(area);
+        let (options, screen, bindings) =
+            (self.draw_options(), self.screen, &self.settings.bindings);
+        let go_on = &mut || go_on(screen, bindings);
+        self.game.render(&options, picture.as_size(), &mut self.views, go_on)
+    }
+
+    /// Paints the rendered picture, and what lies over it, on a canvas of the same size.
+    pub(super) fn paint(&mut self, canvas: &mut impl Canvas) {
         let area = canvas.bounds();
         if panels::is_too_small(area) {
             return panels::too_small(canvas);
         }
         let [picture, status] = panels::picture_and_status(area);
-        self.draw_picture(canvas, picture);
+        self.paint_picture(canvas, picture);
         if self.demo.is_some() {
             canvas.draw_widget(hint("up and down, Enter, Esc"), status);
         } else {
@@ -60,12 +86,20 @@ impl App {
         canvas.draw_widget(&self.status, area);
     }
 
-    fn draw_picture(&mut self, canvas: &mut impl Canvas, area: Rect) {
-        self.show_ghost();
+    fn paint_picture(&mut self, canvas: &mut impl Canvas, area: Rect) {
+        let options = self.draw_options();
+        self.game.paint(&options, canvas, area, &self.views);
+        if self.demo.is_none() {
+            self.draw_map(canvas, area, &options);
+            self.draw_hud(canvas, area, &options);
+        }
+    }
+
+    fn draw_options(&self) -> DrawOptions {
         let is_game = self.demo.is_none();
         let heading = |game: &Game| game.camera(self.field_of_view).heading;
         let flash = self.game.grid().and_then(|game| Some((game.flash()?, heading(game))));
-        let options = DrawOptions {
+        DrawOptions {
             glyphs: self.settings.glyphs,
             depth: self.depth,
             cell_aspect: self.cell_aspect,
@@ -73,11 +107,6 @@ impl App {
             field_of_view: self.field_of_view,
             flash: flash.filter(|_| is_game),
             marks_middle: is_game && self.store.preferences().crosshair,
-        };
-        self.game.draw(&options, canvas, area, &mut self.views);
-        if is_game {
-            self.draw_map(canvas, area, &options);
-            self.draw_hud(canvas, area, &options);
         }
     }
 

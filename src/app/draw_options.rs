@@ -1,8 +1,11 @@
 //! How a picture is drawn, and the drawing itself.
 
+#[cfg(feature = "serve")]
 use ratatui::layout::Rect;
+use ratatui::layout::Size;
 
 use super::hud;
+#[cfg(feature = "serve")]
 use crate::canvas::Canvas;
 use crate::color::palette::ColorDepth;
 use crate::game::Flash;
@@ -26,6 +29,7 @@ pub(crate) struct DrawOptions {
 
 impl DrawOptions {
     /// Draws `scene` from `camera` at the time `seconds`.
+    #[cfg(feature = "serve")]
     pub(crate) fn draw<S: Renderable>(
         &self,
         scene: &S,
@@ -35,21 +39,43 @@ impl DrawOptions {
         area: Rect,
         view: &mut View<S>,
     ) {
-        let picture = FirstPerson::new(scene, camera)
+        let picture = self.picture(scene, camera, seconds);
+        self.render(&picture, area.as_size(), view, &mut || true);
+        picture.paint(view, 0, area, canvas);
+    }
+
+    /// The picture of `scene` from `camera` at the time `seconds`.
+    pub(super) fn picture<'a, S: Renderable>(
+        &self,
+        scene: &'a S,
+        camera: &'a S::Camera,
+        seconds: f64,
+    ) -> FirstPerson<'a, S> {
+        FirstPerson::new(scene, camera)
             .glyphs(self.glyphs)
             .color_depth(self.depth)
             .cell_aspect(self.cell_aspect)
             .filter(self.filter)
-            .time(seconds);
-        picture.draw(area.as_size(), view);
-        if !area.is_empty() && self.depth != ColorDepth::Mono {
+            .time(seconds)
+    }
+
+    /// Renders `picture` for an area of this size into `view`; may stop once `go_on` returns `false`.
+    /// Returns whether the picture is complete.
+    pub(super) fn render<S: Renderable>(
+        &self,
+        picture: &FirstPerson<'_, S>,
+        size: Size,
+        view: &mut View<S>,
+        go_on: &mut dyn FnMut() -> bool,
+    ) -> bool {
+        let is_complete = picture.draw_while(size, view, go_on);
+        let has_pixels = size.width > 0 && size.height > 0;
+        if is_complete && has_pixels && self.depth != ColorDepth::Mono {
             self.change_pixels(view.frame_mut());
         }
-        picture.paint(view, 0, area, canvas);
+        is_complete
     }
-}
 
-impl DrawOptions {
     /// Tints and marks the pixels of a picture in colours.
     fn change_pixels(&self, frame: &mut Frame) {
         if let Some((flash, heading)) = &self.flash {

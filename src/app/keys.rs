@@ -1,8 +1,7 @@
 //! Keys: the effect of each key on each screen.
 //!
-//! Irreversible actions require a certain press. A repetition never answers a question, and nothing
-//! does in the first half second of a panel that shows a result. A byte that may be the first
-//! repetition of a key counts if no other byte follows within the interval of repetitions.
+//! A [`PendingKey`](super::question::PendingKey) decides which presses answer a question. In the first half
+//! second of a panel that shows a result, none does.
 
 use std::time::Duration;
 
@@ -25,15 +24,6 @@ const WIDEST_VIEW: f64 = 120.0;
 
 /// The least time for which a result is shown.
 const LEAST_SHOWN: Duration = Duration::from_millis(500);
-/// The longest interval between repetitions.
-pub(crate) const REPETITION: Duration = Duration::from_millis(150);
-
-/// A key that answers the question on the screen if it does not repeat until that time.
-#[derive(Clone, Copy, Debug)]
-pub(super) struct Pending {
-    key: Key,
-    pub(super) until: Duration,
-}
 
 impl App {
     /// Handles a press, a repetition or a release at time `now`.
@@ -61,7 +51,7 @@ impl App {
 
     /// Answers the question on the screen by a pending key that did not repeat.
     pub(super) fn settle(&mut self, now: Duration) {
-        if let Some(Pending { key, .. }) = self.pending.take_if(|pending| pending.until <= now) {
+        if let Some(key) = self.pending.settle(now) {
             self.answer(key);
         }
     }
@@ -75,7 +65,7 @@ impl App {
     }
 
     fn press(&mut self, key: Key, press: Press) {
-        self.pending = None;
+        self.pending.forget();
         let scrolls = self.screen == Screen::Help && self.scroll_help(key);
         match self.screen {
             _ if scrolls => {}
@@ -204,10 +194,8 @@ impl App {
     }
 
     fn press_to_answer(&mut self, key: Key, press: Press) {
-        match press {
-            Press::Fresh => self.answer(key),
-            Press::Unclear => self.pending = Some(Pending { key, until: self.now + REPETITION }),
-            Press::Repeat => {}
+        if let Some(key) = self.pending.press(key, press, self.now) {
+            self.answer(key);
         }
     }
 

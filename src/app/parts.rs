@@ -7,7 +7,6 @@ pub(crate) use super::controls::{Controls, KeyContext};
 pub(crate) use super::detection::Detection;
 pub(crate) use super::draw_options::DrawOptions;
 pub(crate) use super::help::HelpScroll;
-pub(crate) use super::keys::REPETITION;
 pub(crate) use super::map_panel::MapPanel;
 pub(crate) use super::menu::{Menu, Selection, changes_by};
 pub(crate) use super::mouse::Pointer;
@@ -15,6 +14,7 @@ pub(crate) use super::overlay::Overlay;
 pub(crate) use super::panels::{
     is_too_small, leaving, message, picture_and_status, time, too_small, whole_seconds,
 };
+pub(crate) use super::question::PendingKey;
 pub(crate) use super::settings_screen::{COLORS, GLYPHS, after, name, on_or_off};
 pub(crate) use super::stats::{Meter, Stats};
 pub(crate) use super::status::{Part, StatusLine, hint};

@@ -7,7 +7,7 @@ use std::fmt;
 use std::ops::{Deref, DerefMut};
 
 use glam::DVec3;
-use ratatui::layout::Rect;
+use ratatui::layout::{Rect, Size};
 
 use super::DrawOptions;
 use crate::canvas::Canvas;
@@ -36,7 +36,7 @@ pub(super) trait Simulation: fmt::Debug {
     /// The seconds since the level began, counted in steps.
     fn elapsed(&self) -> f64;
 
-    /// A number that grows with every visible change other than that of the viewpoint.
+    /// A number that grows with every visible change other than those of the viewpoint and of figures.
     fn revision(&self) -> u64;
 
     fn is_finished(&self) -> bool;
@@ -165,23 +165,49 @@ impl Played {
         self.grid().is_none()
     }
 
-    /// Draws the player's view.
-    pub(super) fn draw(
+    /// Renders the player's view for an area of this size; may stop once `go_on` returns `false`.
+    /// Returns whether the picture is complete.
+    pub(super) fn render(
+        &self,
+        options: &DrawOptions,
+        size: Size,
+        views: &mut Views,
+        go_on: &mut dyn FnMut() -> bool,
+    ) -> bool {
+        let seconds = self.elapsed();
+        match self {
+            Self::Grid(game) => {
+                let camera = game.camera(options.field_of_view);
+                let picture = options.picture(game.world(), &camera, seconds);
+                options.render(&picture, size, &mut views.grid, go_on)
+            }
+            Self::Space(flight) => {
+                let camera = flight.camera(options.field_of_view);
+                let picture = options.picture(flight.scene(), &camera, seconds);
+                options.render(&picture, size, &mut views.space, go_on)
+            }
+        }
+    }
+
+    /// Paints the rendered picture into `area`, which has the size that it was rendered for.
+    pub(super) fn paint(
         &self,
         options: &DrawOptions,
         canvas: &mut impl Canvas,
         area: Rect,
-        views: &mut Views,
+        views: &Views,
     ) {
         let seconds = self.elapsed();
         match self {
             Self::Grid(game) => {
                 let camera = game.camera(options.field_of_view);
-                options.draw(game.world(), &camera, seconds, canvas, area, &mut views.grid);
+                let picture = options.picture(game.world(), &camera, seconds);
+                picture.paint(&views.grid, 0, area, canvas);
             }
             Self::Space(flight) => {
                 let camera = flight.camera(options.field_of_view);
-                options.draw(flight.scene(), &camera, seconds, canvas, area, &mut views.space);
+                let picture = options.picture(flight.scene(), &camera, seconds);
+                picture.paint(&views.space, 0, area, canvas);
             }
         }
     }
@@ -227,7 +253,7 @@ impl Simulation for Game {
     }
 
     fn revision(&self) -> u64 {
-        Self::revision(self)
+        self.revision_without_figures()
     }
 
     fn is_finished(&self) -> bool {

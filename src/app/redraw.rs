@@ -1,22 +1,41 @@
 //! Redrawing: whether the screen is out of date, and when the game changes next.
+//!
+//! Guards who move where no ray of the last picture ends behind them are not in view, and need no new
+//! picture. Comparing the pixels of two pictures was refused: it saves the bytes, but not the drawing.
 
 use std::time::Duration;
 
 use super::ghost::Ghost;
+use super::played::Viewpoint;
 use super::{App, Screen, Shown};
 use crate::game::STEP;
+use crate::world::Figure;
 
 impl App {
-    /// The state that a picture would show now.
-    pub(super) fn visible(&self) -> Shown {
-        let ghost = self.ghost.as_ref().map_or(0, Ghost::steps);
-        let revision = self.game.revision() + ghost;
-        Shown { viewpoint: self.game.viewpoint(self.field_of_view), revision }
-    }
-
     /// Whether the screen is out of date.
     pub(super) fn is_stale(&self) -> bool {
-        self.shown != Some(self.visible()) || self.steps_to_animation() == Some(0)
+        let Some(Shown { viewpoint, revision, figures }) = &self.shown else { return true };
+        (*viewpoint, *revision) != self.surroundings()
+            || !self.figures_in_view().eq(figures)
+            || self.steps_to_animation() == Some(0)
+    }
+
+    /// The viewpoint, and a number that grows with every visible change but those of figures.
+    fn surroundings(&self) -> (Viewpoint, u64) {
+        let ghost = self.ghost.as_ref().map_or(0, Ghost::steps);
+        (self.game.viewpoint(self.field_of_view), self.game.revision() + ghost)
+    }
+
+    /// The figures that the last picture and its map would show if they were drawn now, in the same
+    /// surroundings; and perhaps others.
+    fn figures_in_view(&self) -> impl Iterator<Item = &Figure> {
+        let figures = self.game.grid().into_iter().flat_map(|game| {
+            let camera = game.camera(self.field_of_view);
+            game.figures().map(move |figure| (game.world(), camera, figure))
+        });
+        let in_view = figures
+            .filter(|(world, camera, figure)| self.views.grid.may_show(world, camera, figure));
+        in_view.map(|(.., figure)| figure)
     }
 
     /// The number of steps until that change; `None` for never.
@@ -27,7 +46,9 @@ impl App {
 
     /// Records that the screen is up to date.
     pub(super) fn drawn(&mut self) {
-        self.shown = Some(self.visible());
+        let (viewpoint, revision) = self.surroundings();
+        let figures = self.figures_in_view().copied().collect();
+        self.shown = Some(Shown { viewpoint, revision, figures });
         let soonest = self.game.elapsed() + STEP;
         self.animates_at = self.views.next_change().map(|change| change.max(soonest));
     }
@@ -38,7 +59,7 @@ impl App {
             return Some(self.clock.step_after(0));
         }
         if self.screen != Screen::Playing {
-            return self.pending.map(|pending| pending.until);
+            return self.pending.until();
         }
         if self.controls.held.has_taps() {
             return Some(self.clock.step_after(0));

@@ -6,9 +6,11 @@
 use std::env;
 use std::time::Duration;
 
+use super::interruption::Rendered;
 use super::stats::{Meter, Stats};
 use super::time::Time;
 use super::{App, Levels, Offers, Recording, Settings};
+use crate::canvas::Canvas;
 use crate::store::Store;
 #[cfg(debug_assertions)]
 use crate::terminal::Key;
@@ -121,7 +123,7 @@ impl Presenter {
         Self { frame_time, next_frame: Duration::ZERO, waits: false, meter }
     }
 
-    /// Draws or refines a frame, if one is due.
+    /// Draws or refines a frame, if one is due, and unless an event comes first.
     fn update(&mut self, app: &mut App, session: &mut Session, now: Duration) -> Result<(), Error> {
         let is_due = is_unfinished(app, session) && now >= self.next_frame;
         self.waits = is_due && !session.is_ready();
@@ -129,9 +131,23 @@ impl Presenter {
             return Ok(());
         }
         if app.is_stale() {
-            session.draw(|frame| app.draw(frame))?;
-            app.drawn();
-            self.measure(app, session, now);
+            let window = session.size().cells();
+            let rendered =
+                app.render_unless(window, &mut |comes_first| session.has_event(comes_first));
+            if rendered == Rendered::Interrupted {
+                return Ok(());
+            }
+            session.draw(|screen| {
+                // The window may have changed during a wait for the terminal.
+                if screen.bounds().as_size() != window {
+                    app.render(screen.bounds().as_size(), &mut |_, _| false);
+                }
+                app.paint(screen);
+            })?;
+            if rendered == Rendered::Complete {
+                app.drawn();
+                self.measure(app, session, now);
+            }
         } else {
             session.refine()?;
         }

@@ -82,7 +82,7 @@ impl App {
         self.screen = screen;
         self.menu = menu;
         self.shown_since = self.now;
-        self.pending = None;
+        self.pending.forget();
         self.shown = None;
     }
 }

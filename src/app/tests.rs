@@ -1,11 +1,13 @@
 //! The keys of the game, from timed bytes to the player's motion, in simulated time.
 
 mod colours;
+mod interruption;
 mod kept;
 mod levels;
 mod missions;
 mod panels;
 mod questions;
+mod redraws;
 mod saved;
 mod screens;
 mod table;

@@ -1,7 +1,10 @@
 //! Printable text: what a terminal would obey is shown as an escape.
 //!
 //! Names of files and values of options may hold any character. All text on standard error goes
-//! through `printable` or `printable_lines`.
+//! through these functions.
+
+#[cfg(feature = "terminal")]
+use std::path::Path;
 
 /// `text` on one line, with escapes such as `\u{1b}` for characters that do not print.
 pub(crate) fn printable(text: &str) -> String {
@@ -13,6 +16,12 @@ pub(crate) fn printable(text: &str) -> String {
         }
         shown
     })
+}
+
+/// A path in a sentence, on one line and with escapes as in [`printable`].
+#[cfg(feature = "terminal")]
+pub(crate) fn printable_path(path: &Path) -> String {
+    printable(&path.display().to_string())
 }
 
 /// As [`printable`], with the line breaks of `text` as they are.
@@ -38,6 +47,12 @@ mod tests {
         for text in ["", r#""it's" C:\maps"#, "Flur – 廊下", "e\u{301}"] {
             assert_eq!(printable(text), text);
         }
+    }
+
+    #[cfg(feature = "terminal")]
+    #[test]
+    fn a_path_is_shown_on_one_line() {
+        assert_eq!(printable_path(Path::new("/maps\n/\u{1b}c.toml")), r"/maps\n/\u{1b}c.toml");
     }
 
     #[cfg(feature = "cli")]

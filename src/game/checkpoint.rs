@@ -92,6 +92,7 @@ impl Game {
         game.player.pressed = self.player.pressed;
         game.steps = self.steps;
         game.revision = self.revision + 1;
+        game.figure_revision = self.figure_revision;
         game.player.counts = self.player.counts;
         if self.rules.difficulty == Difficulty::Easy {
             game.keep_finds(self);

@@ -58,7 +58,7 @@ pub(super) fn words_of_player(player: &Player) -> impl Iterator<Item = u64> {
     let supplies = Supply::ALL.map(|supply| u64::from(player.supplies.count(supply)));
     let keys = player.keys.iter().fold(0_u64, |bits, key| bits.rotate_left(9) ^ u64::from(key.0));
     let numbers = [
-        u64::from(player.health.points),
+        u64::from(player.health.points) ^ player.warnings.word(),
         u64::from(player.treasure),
         u64::from(player.has_light),
         u64::from(player.strike_wait),

@@ -35,13 +35,13 @@ impl Game {
     fn answer(&mut self, act: Act) {
         match act {
             Act::Hurt { target, by, from, points } => {
-                let guard = self.guards.views().nth(by);
-                self.in_turn(target, |game| game.hurt_by_guard(guard, from, points));
+                self.in_turn(target, |game| game.hurt_by_guard(by, from, points));
             }
             Act::Open(cell) => self.doors.open(cell),
             Act::Sound(sound) => self.sounds.push(sound),
-            Act::Bolt { from, height, direction, slope, points, .. } => {
-                self.missiles.launch(Missile::bolt((from, height), direction, slope, points));
+            Act::Bolt { by, from, height, direction, slope, points } => {
+                let bolt = Missile::bolt((from, height), direction, slope, (by, points));
+                self.missiles.launch(bolt);
             }
             Act::Raised => self.count_alarm(),
         }

@@ -4,9 +4,6 @@
 //! sounds of the step, and on nothing else. Guards share what they know about ways, and call each
 //! other by sounds that spread as all others do.
 //!
-//! Guards and players do not block each other. Solid bodies were refused: 20 of the 36 scripts that
-//! win pass through a guard, and a guard on duty in a corridor would close it.
-//!
 //! Guards far from all players take [`FAR_STRIDE`] steps at once. Simulating only those who are in
 //! view was refused: a patrol would stop whenever the player looks away.
 

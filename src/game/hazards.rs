@@ -4,15 +4,16 @@
 //!   except in the easiest game.
 //! - Water slows, splashes and puts out the lamp. It takes a point each [`COLD`] steps, from the
 //!   second time on.
-//! - Spikes hurt once for each time that they come out.
-//! - A blow from more than 90° off the player's view never kills.
+//! - Spikes are heard half a second before they come out, and hurt once for each time.
+//! - A blow from outside the view does not kill before it has [warned](super::warnings). The view
+//!   is that of the default field of view, whatever the player has chosen: a game does not depend on
+//!   how it is shown.
 
 mod spikes;
 
 use glam::DVec2;
 
 use super::Game;
-use super::guards::GuardView;
 use super::health::{Cause, Flash, Harm};
 use super::noise::reach;
 use super::player::Motion;
@@ -26,6 +27,8 @@ const SAFE_FALL: f64 = 2.2;
 const COLD: u32 = 240;
 /// The points that spikes take.
 const SPIKES: u8 = 2;
+/// The cosine of the angle from the middle of the view to its edge, 33°.
+const VIEW: f64 = 0.838_670_567_945_424;
 
 impl Game {
     /// What the floor does to the player in this step, which began at `before`.
@@ -86,7 +89,8 @@ impl Game {
     }
 
     fn step_on_spikes(&mut self) {
-        if self.spikes.show(&mut self.world, self.steps) {
+        let Self { spikes, world, sounds, steps, .. } = self;
+        if spikes.show(world, *steps, sounds) {
             self.revision += 1;
         }
         let motion = self.player.motion;
@@ -98,26 +102,35 @@ impl Game {
         }
     }
 
-    /// A guard hits the player from `from`.
-    pub(super) fn hurt_by_guard(&mut self, guard: Option<GuardView>, from: DVec2, points: u8) {
-        if let Some(guard) = guard {
-            self.hurt_from(from, points, Cause::Guard(guard.kind));
+    /// The guard `by` hits the player from `from`.
+    pub(super) fn hurt_by_guard(&mut self, by: usize, from: DVec2, points: u8) {
+        let kind = self.guards.views().nth(by).map(|guard| guard.kind);
+        if let Some(kind) = kind {
+            self.hurt_from(by, from, points, Cause::Guard(kind));
         }
     }
 
-    /// A bolt that was shot at `from` hits the player.
-    pub(super) fn hurt_by_bolt(&mut self, points: u8, from: DVec2) {
-        self.hurt_from(from, points, Cause::Bolt);
+    /// A bolt hits the player that the guard `by` has shot at `from`.
+    pub(super) fn hurt_by_bolt(&mut self, by: usize, from: DVec2, points: u8) {
+        self.hurt_from(by, from, points, Cause::Bolt);
     }
 
-    fn hurt_from(&mut self, from: DVec2, points: u8, cause: Cause) {
+    fn hurt_from(&mut self, by: usize, from: DVec2, points: u8, cause: Cause) {
         let motion = self.player.motion;
         let way = from - motion.position();
         let degrees = libm::atan2(way.y, way.x).to_degrees();
-        let spares = motion.heading().direction().dot(way) < 0.0;
-        let cell = motion.cell();
-        self.hurt(Harm { points, bearing: Heading::from_degrees(degrees), spares, cause });
-        self.sound_in(cell, SoundKind::Cry, reach::BLOW);
+        let is_in_view = motion.heading().direction().dot(way) >= VIEW * way.length();
+        let bearing = Heading::from_degrees(degrees);
+        let harm = Harm { points, bearing, spares: false, cause };
+        let kills = self.player.health.after(&harm).is_gone() && !self.player.health.is_gone();
+        let warns = kills && !is_in_view;
+        let grace = if warns { self.player.warnings.spare(by, self.steps) } else { None };
+        self.hurt(Harm { spares: grace.is_some(), ..harm });
+        if let Some(left) = grace {
+            self.player.flash = Some(Flash::warning(&harm, left));
+            self.say("A blow from outside your view! The next one may kill.".to_owned());
+        }
+        self.sound_in(motion.cell(), SoundKind::Cry, reach::BLOW);
     }
 
     fn hurt(&mut self, harm: Harm) {

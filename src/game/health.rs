@@ -103,6 +103,11 @@ impl Flash {
         Self { kind: FlashKind::Hurt { bearing: harm.bearing }, left: HURT_STEPS }
     }
 
+    /// A flash for a blow after which `grace` steps of grace are left.
+    pub(super) fn warning(harm: &Harm, grace: u16) -> Self {
+        Self { left: grace.max(HURT_STEPS), ..Self::hurt(harm) }
+    }
+
     /// A flash for a blow of another player, which takes no health.
     pub(super) fn struck(bearing: Option<Heading>) -> Self {
         Self { kind: FlashKind::Hurt { bearing }, left: HURT_STEPS }

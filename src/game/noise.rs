@@ -17,6 +17,7 @@ pub(super) mod reach {
     pub(in crate::game) const DOOR: u8 = 6;
     pub(in crate::game) const MECHANISM: u8 = 6;
     pub(in crate::game) const CLICK: u8 = 4;
+    pub(in crate::game) const SPIKES: u8 = 5;
     pub(in crate::game) const KNOCK: u8 = 8;
     pub(in crate::game) const TAP: u8 = 4;
     pub(in crate::game) const CRASH: u8 = 6;

@@ -2,10 +2,11 @@
 //! which stay.
 
 use super::Game;
+use super::guards::Alarm;
 use super::health::Flash;
 use super::player::Player;
 use super::tools::Supplies;
-use crate::world::{Cell, Supply, ThingKind};
+use crate::world::{Cell, Difficulty, Supply, ThingKind};
 
 /// The least worth of a cup and of a crown.
 const CUP: u16 = 25;
@@ -76,7 +77,12 @@ impl Game {
         let refusal = self.things_reached().find_map(|thing| match thing.kind {
             ThingKind::Exit => {
                 let missing = self.treasure_missing();
-                (missing > 0).then(|| format!("The exit is closed: {missing} treasure missing."))
+                if missing > 0 {
+                    Some(format!("The exit is closed: {missing} treasure missing."))
+                } else {
+                    let text = "The exit is closed while the alarm is raised.";
+                    self.alarm_closes_exits().then(|| text.to_owned())
+                }
             }
             ThingKind::Supply(supply, _)
                 if self.player.supplies.count(supply) == Supplies::MOST =>
@@ -93,6 +99,11 @@ impl Game {
     /// The treasure without which the exit stays closed.
     pub(super) fn treasure_missing(&self) -> u32 {
         self.world.treasure_needed().saturating_sub(self.treasure_found())
+    }
+
+    /// Whether the exits are closed because guards follow somebody: so it is in the hardest game.
+    pub(super) fn alarm_closes_exits(&self) -> bool {
+        self.rules.difficulty == Difficulty::Hard && self.guards.alarm() == Alarm::Raised
     }
 }
 

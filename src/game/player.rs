@@ -10,6 +10,7 @@ use super::notice::Notice;
 use super::sound::Hearing;
 use super::tally::Counts;
 use super::tools::Supplies;
+use super::warnings::Warnings;
 use crate::world::{KeyId, World};
 pub(super) use motion::{FRICTION, JUMP_HEIGHT, Motion, RADIUS, RUN, STEP_HEIGHT, STILL, WALK};
 
@@ -35,6 +36,7 @@ pub(super) struct Player {
     pub(super) in_water: u32,
     /// The last thrust of spikes that hurt the player, by the step in which it began.
     pub(super) last_thrust: Option<u64>,
+    pub(super) warnings: Warnings,
     pub(super) hearing: Hearing,
     pub(super) flash: Option<Flash>,
     pub(super) notice: Notice,
@@ -60,6 +62,7 @@ impl Player {
             stride: 0.0,
             in_water: 0,
             last_thrust: None,
+            warnings: Warnings::default(),
             hearing: Hearing::default(),
             flash: None,
             notice: Notice::default(),

@@ -138,6 +138,12 @@ impl Game {
     /// A number that grows with every visible change other than the camera: a door moves, a key is
     /// taken, a guard moves, the message changes.
     pub fn revision(&self) -> u64 {
+        self.revision + self.figure_revision
+    }
+
+    /// A number that grows with every such change but those of [figures](Game::figures).
+    #[cfg(feature = "terminal")]
+    pub(crate) fn revision_without_figures(&self) -> u64 {
         self.revision
     }
 
@@ -150,12 +156,13 @@ impl Game {
         }
     }
 
-    /// Whether the player has reached the exit, with as much treasure as it asks for. Nothing moves
-    /// after that, and the clock stops.
+    /// Whether the player has reached the exit, with as much treasure as it asks for, and in the hardest
+    /// game while no alarm is raised. Nothing moves after that, and the clock stops.
     pub fn is_finished(&self) -> bool {
         !self.is_dead()
             && self.things_reached().any(|thing| thing.kind == ThingKind::Exit)
             && self.treasure_missing() == 0
+            && !self.alarm_closes_exits()
     }
 
     pub(super) fn is_dead(&self) -> bool {

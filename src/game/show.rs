@@ -96,6 +96,13 @@ impl Game {
         self.world.set_figures(all.into_iter());
     }
 
+    /// The figures of the game itself, without a guest.
+    #[cfg(feature = "terminal")]
+    pub(crate) fn figures(&self) -> impl Iterator<Item = &Figure> {
+        let is_guest = |figure: &&Figure| Some(figure.sprite) == self.sprites.player;
+        self.world.figures().iter().filter(move |figure| !is_guest(figure))
+    }
+
     /// What guards can perceive of the player.
     pub(super) fn target(&self) -> Target {
         self.target_at(&self.player)
@@ -129,14 +136,15 @@ impl Game {
         let puffs = smoke.puffs().filter_map(|puff| sprites.puff(puff));
         let players = players.iter().copied();
         world.set_figures(guards.figures().chain(missiles).chain(puffs).chain(players));
-        self.revision += 1;
+        self.figure_revision += 1;
     }
 
     fn show_lamps(&mut self) {
         let lit = playing(&self.player, self.members.as_deref());
         let lit = lit.filter(|(_, player)| player.has_light);
         let of_players = lit.map(|(_, player)| (player.motion.cell(), lamp()));
-        self.world.set_moving_lamps(of_players.chain(self.guards.lamps()));
+        let has_changed = self.world.set_moving_lamps(of_players.chain(self.guards.lamps()));
+        self.revision += u64::from(has_changed);
     }
 }
 

@@ -56,6 +56,8 @@ pub enum SoundKind {
     Door,
     /// A stone, a lever or a floor that moves.
     Mechanism,
+    /// Spikes that are about to come out.
+    Spikes,
     /// A pebble that lands.
     Knock,
     /// Something that breaks, such as a flask.

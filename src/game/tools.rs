@@ -191,8 +191,8 @@ impl Game {
                 self.guards.stun(index, if is_warden { WARDEN_SHOT } else { STUNNED });
                 self.in_turn(by, |game| game.count_stunned(kind));
             }
-            (MissileKind::Bolt { points, from }, Struck::Player(index)) => {
-                self.in_turn(index, |game| game.hurt_by_bolt(points, from));
+            (MissileKind::Bolt { points, from, by }, Struck::Player(index)) => {
+                self.in_turn(index, |game| game.hurt_by_bolt(by, from, points));
             }
             (MissileKind::Flask, _) => {
                 self.sounds.push(sound(SoundKind::Crash, reach::CRASH));

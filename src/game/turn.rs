@@ -41,6 +41,7 @@ impl Game {
         let others = self.members.as_deref().map_or(&[][..], |members| members.in_the_way());
         self.player.motion = before.stepped(&self.world, others, intents, self.pace());
         if self.is_mission {
+            self.give_way();
             self.hear_steps(&before, intents);
         }
     }
@@ -107,6 +108,7 @@ impl Game {
             if self.is_mission {
                 self.guards.shift(&self.world, shift);
                 self.player.hearing.forget();
+                self.player.warnings.clear();
             }
             self.show();
         }

@@ -1,8 +1,9 @@
 //! Maps of bodies: spheres, planes and boxes instead of a grid.
 //!
-//! This file reads the keys of the whole map, `body` reads bodies, and `vector` positions,
-//! directions and numbers.
+//! This file reads the keys of the whole map, `body` reads bodies, `bodies` limits them, and `vector`
+//! reads positions, directions and numbers.
 
+mod bodies;
 mod body;
 mod vector;
 
@@ -17,12 +18,10 @@ use crate::fault::Fault;
 use crate::fault::document::{Entry, FaultList, entries};
 use crate::space::{EYE_CLEARANCE, Elevation, FARTHEST, Fraction, Scene, Start, Sun};
 use crate::world::{Heading, SkyGradient};
+use bodies::Bodies;
 use body::Kind;
 
 const KEYS: &[&str] = &["title", "sky", "fog", "light", "start", "sphere", "plane", "box"];
-/// The largest number of bodies. Each of them may cover every pixel, and no order among bodies that
-/// overlap makes the nearest one cheaper to find.
-const MOST_BODIES: usize = 1000;
 const LIGHT_KEYS: &[&str] = &["toward", "ambient"];
 const LIGHT_EXAMPLE: &str = "light = { toward = [-1, -1, 2], ambient = 0.2 }";
 const START_KEYS: &[&str] = &["at", "heading", "pitch"];
@@ -36,6 +35,7 @@ pub(super) fn has_bodies(document: &DeTable) -> bool {
 /// Reads the scene in `document`; reports its faults. `None` where there is no scene.
 pub(super) fn read(document: &DeTable, faults: &FaultList) -> Option<Scene> {
     let mut scene = Scene::default();
+    let mut bodies = Bodies::default();
     let mut start = None;
     for entry in entries(document, faults) {
         match entry.key {
@@ -46,11 +46,12 @@ pub(super) fn read(document: &DeTable, faults: &FaultList) -> Option<Scene> {
             "start" => start = Some(entry),
             "grid" | "tiles" | "things" => entry.faults.push(both_kinds(&entry)),
             key => match Kind::of_key(key) {
-                Some(kind) => scene.bodies.extend(kind.read_all(&entry, scene.bodies.len())),
+                Some(kind) => kind.read_all(&entry, &mut bodies),
                 None => entry.faults.push(entry.unknown_key("a map of bodies", KEYS)),
             },
         }
     }
+    scene.bodies = bodies.into_list();
     let Some(entry) = start else {
         faults.push(
             Fault::new(0..0, "the map has no start")
@@ -165,12 +166,6 @@ fn number_wanted(entry: &Entry<'_, '_>, message: &str) -> Fault {
 /// The range of coordinates, in words.
 fn coordinates() -> String {
     format!("from -{FARTHEST:e} to {FARTHEST:e}")
-}
-
-fn too_many_bodies(place: Range<usize>) -> Fault {
-    Fault::new(place, format!("a map has {MOST_BODIES} bodies at most"))
-        .label("this is one too many")
-        .help("leave some out, or make two maps of it")
 }
 
 /// The tables of `entry`, each of which the map writes as `[[key]]`.

@@ -44,6 +44,24 @@ pub trait Renderable {
         frame: &mut Frame,
     );
 
+    /// Draws as [`Renderable::render`] does, but may stop once `go_on` returns `false`, and then leaves
+    /// the rest of `frame` as it was. Returns whether the frame is complete.
+    ///
+    /// A grid never stops. The slowest one found, thousands of things between mirrors, takes about a
+    /// second in the largest terminals, while bodies can take several.
+    fn render_while(
+        &self,
+        camera: &Self::Camera,
+        options: Options,
+        renderer: &mut Self::Renderer,
+        frame: &mut Frame,
+        go_on: &mut dyn FnMut() -> bool,
+    ) -> bool {
+        _ = go_on;
+        self.render(camera, options, renderer, frame);
+        true
+    }
+
     /// Draws as [`Renderable::render`] does, and returns the plan and the cost.
     fn explain(
         &self,

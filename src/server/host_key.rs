@@ -3,11 +3,13 @@
 use std::fmt;
 use std::fs::{self, File, OpenOptions};
 use std::io::{self, Read, Write};
-use std::path::{Path, PathBuf};
+use std::path::Path;
 
 use russh::keys::ssh_key::LineEnding;
 use russh::keys::ssh_key::private::Ed25519Keypair;
 use russh::keys::{HashAlg, PrivateKey};
+
+use crate::fault::printable_path;
 
 /// An ed25519 key of a server.
 #[derive(Clone)]
@@ -58,7 +60,7 @@ fn read(file: File, path: &Path) -> Result<HostKey, HostKeyError> {
     read.map_err(|error| unreadable(path, &error))?;
     let key = PrivateKey::from_openssh(&text).ok().filter(|key| key.key_data().is_ed25519());
     let no_key = || {
-        let path = shown(path);
+        let path = printable_path(path);
         error(format!(
             "{path} is no ed25519 key without a passphrase in OpenSSH's format; move it away to get a \
              new one"
@@ -69,8 +71,9 @@ fn read(file: File, path: &Path) -> Result<HostKey, HostKeyError> {
 
 /// Makes a key. Where two servers begin at once, both take the one whose file was there first.
 fn make(folder: &Path, path: &Path) -> Result<HostKey, HostKeyError> {
-    let not_written =
-        |cause: &dyn fmt::Display| error(format!("{} can't be written: {cause}", shown(path)));
+    let not_written = |cause: &dyn fmt::Display| {
+        error(format!("{} can't be written: {cause}", printable_path(path)))
+    };
     let mut seed = [0; 32];
     getrandom::fill(&mut seed).map_err(|cause| not_written(&cause))?;
     let key = PrivateKey::from(Ed25519Keypair::from_seed(&seed));
@@ -115,7 +118,7 @@ fn refuse_readable(file: &File, path: &Path) -> Result<(), HostKeyError> {
     if mode & others == 0 {
         return Ok(());
     }
-    let path = shown(path);
+    let path = printable_path(path);
     Err(error(format!(
         "{path} can be read or written by others, so it is no secret; type \"chmod 600 {path}\" if \
          nobody has copied it, or move it away to get a new one"
@@ -128,15 +131,11 @@ fn refuse_readable(_: &File, _: &Path) -> Result<(), HostKeyError> {
 }
 
 fn unreadable(path: &Path, cause: &io::Error) -> HostKeyError {
-    error(format!("{} can't be read: {cause}", shown(path)))
+    error(format!("{} can't be read: {cause}", printable_path(path)))
 }
 
 fn error(sentence: String) -> HostKeyError {
     HostKeyError { sentence }
-}
-
-fn shown(path: &Path) -> String {
-    PathBuf::from(path).display().to_string().replace(char::is_control, "?")
 }
 
 impl fmt::Debug for HostKey {

@@ -15,13 +15,13 @@
 //! Maps that are read again while the server runs were refused: the rooms in them, and the boards,
 //! would have two maps of one name.
 
-use std::fmt::{self, Write};
+use std::fmt;
 use std::fs::{self, File};
 use std::io::Read;
 use std::path::{Path, PathBuf};
 use std::sync::Arc;
 
-use crate::fault::Faults;
+use crate::fault::{Faults, printable_path};
 use crate::map::{self, Folder, builtin};
 use crate::store::map_key;
 use crate::world::World;
@@ -45,9 +45,14 @@ pub(crate) struct HostMap {
     pub(crate) world: Arc<World>,
 }
 
-/// Why maps cannot be taken: a sentence or a report for each fault.
+/// Why maps cannot be taken.
 #[derive(Clone, Debug, PartialEq, Eq)]
-pub struct MapsError(String);
+pub enum MapsError {
+    /// A sentence.
+    Sentence(String),
+    /// Several sentences, or reports like those of `cellcaster check`, in lines.
+    Report(String),
+}
 
 impl HostMaps {
     /// The maps of a folder, or of one map file.
@@ -56,27 +61,26 @@ impl HostMaps {
     /// All faults of all maps, or the reason why the folder cannot be read.
     pub fn read(path: &Path) -> Result<Self, MapsError> {
         let files = map_files(path)?;
-        let (mut maps, mut faults, mut bytes) = (Vec::new(), String::new(), 0);
+        let (mut maps, mut errors, mut bytes) = (Vec::new(), Vec::new(), 0);
         for file in &files {
             match read_map(file) {
                 Ok((map, length)) => {
                     bytes += length;
                     maps.push(map);
                 }
-                Err(MapsError(fault)) => _ = writeln!(faults, "{}", fault.trim_end()),
+                Err(error) => errors.push(error),
             }
             if bytes > MOST_BYTES {
                 let most = MOST_BYTES >> 20;
-                return Err(MapsError(format!(
+                return Err(MapsError::Sentence(format!(
                     "the maps in {} have more than {most} MiB together",
-                    shown(path)
+                    printable_path(path)
                 )));
             }
         }
-        if faults.is_empty() {
-            Ok(Self(maps))
-        } else {
-            Err(MapsError(faults.trim_end().to_owned()))
+        match MapsError::of_all(errors) {
+            None => Ok(Self(maps)),
+            Some(error) => Err(error),
         }
     }
 
@@ -95,9 +99,21 @@ impl HostMaps {
     }
 }
 
+impl MapsError {
+    /// One error for all; `None` if there are none.
+    fn of_all(mut errors: Vec<Self>) -> Option<Self> {
+        if errors.len() <= 1 {
+            return errors.pop();
+        }
+        let texts: Vec<String> = errors.iter().map(Self::to_string).collect();
+        Some(Self::Report(texts.join("\n")))
+    }
+}
+
 impl fmt::Display for MapsError {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
-        f.write_str(&self.0)
+        let (Self::Sentence(text) | Self::Report(text)) = self;
+        f.write_str(text)
     }
 }
 
@@ -105,14 +121,15 @@ impl std::error::Error for MapsError {}
 
 impl From<Faults> for MapsError {
     fn from(faults: Faults) -> Self {
-        Self(faults.to_string())
+        Self::Report(faults.to_string().trim_end().to_owned())
     }
 }
 
 /// The map files in a folder, sorted by name; a file alone.
 fn map_files(path: &Path) -> Result<Vec<PathBuf>, MapsError> {
-    let unreadable =
-        |error| MapsError(format!("the maps in {} can't be read: {error}", shown(path)));
+    let unreadable = |error| {
+        MapsError::Sentence(format!("the maps in {} can't be read: {error}", printable_path(path)))
+    };
     if !fs::metadata(path).map_err(unreadable)?.is_dir() {
         return Ok(vec![path.to_owned()]);
     }
@@ -123,9 +140,9 @@ fn map_files(path: &Path) -> Result<Vec<PathBuf>, MapsError> {
             files.push(file);
         }
         if files.len() > MOST_MAPS {
-            return Err(MapsError(format!(
+            return Err(MapsError::Sentence(format!(
                 "there are more than {MOST_MAPS} maps in {}",
-                shown(path)
+                printable_path(path)
             )));
         }
     }
@@ -136,11 +153,11 @@ fn map_files(path: &Path) -> Result<Vec<PathBuf>, MapsError> {
 /// A map, and its length in bytes.
 fn read_map(path: &Path) -> Result<(HostMap, u64), MapsError> {
     let name = map_name(path)?;
-    let shown = shown(path);
-    let unreadable = |error| MapsError(format!("{shown} can't be read: {error}"));
+    let shown = printable_path(path);
+    let unreadable = |error| MapsError::Sentence(format!("{shown} can't be read: {error}"));
     // Opening a pipe would wait for its other end.
     if !fs::metadata(path).map_err(unreadable)?.is_file() {
-        return Err(MapsError(format!("{shown} is no file")));
+        return Err(MapsError::Sentence(format!("{shown} is no file")));
     }
     let mut bytes = Vec::new();
     let file = File::open(path).map_err(unreadable)?;
@@ -148,7 +165,7 @@ fn read_map(path: &Path) -> Result<(HostMap, u64), MapsError> {
     let length = bytes.len() as u64;
     if length > MOST_MAP_BYTES {
         let most = MOST_MAP_BYTES >> 10;
-        return Err(MapsError(format!(
+        return Err(MapsError::Sentence(format!(
             "{shown} is larger than a map of a host may be, {most} KiB"
         )));
     }
@@ -164,23 +181,18 @@ fn map_name(path: &Path) -> Result<String, MapsError> {
     let name = path.file_stem().unwrap_or_default().to_string_lossy();
     let is_plain = |byte: u8| matches!(byte, b'a'..=b'z' | b'0'..=b'9' | b'-' | b'_');
     if !(1..=LONGEST).contains(&name.len()) || !name.bytes().all(is_plain) {
-        return Err(MapsError(format!(
+        return Err(MapsError::Sentence(format!(
             "{} needs another name: 1 to {LONGEST} of the characters a to z, 0 to 9, - and _, then .toml",
-            shown(path)
+            printable_path(path)
         )));
     }
     if builtin::LEVELS.iter().any(|level| level.name == name) {
-        return Err(MapsError(format!(
+        return Err(MapsError::Sentence(format!(
             "{} needs another name: {name} is a built-in level",
-            shown(path)
+            printable_path(path)
         )));
     }
     Ok(name.into_owned())
-}
-
-/// A path in a sentence for a terminal.
-fn shown(path: &Path) -> String {
-    path.display().to_string().replace(char::is_control, "?")
 }
 
 #[cfg(test)]

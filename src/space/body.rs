@@ -147,6 +147,27 @@ impl Shape {
             Self::Block(block) => block.signed_distance(point),
         }
     }
+
+    /// Whether the boxes around both shapes overlap: no tree then separates them. Planes, which have no
+    /// boxes, overlap each other.
+    pub(crate) fn overlaps(&self, other: &Self) -> bool {
+        match (self.bounds(), other.bounds()) {
+            (Some([low, high]), Some([other_low, other_high])) => {
+                low.cmplt(other_high).all() && other_low.cmplt(high).all()
+            }
+            (None, None) => true,
+            _ => false,
+        }
+    }
+
+    /// The low and the high corner of the box around the shape; `None` for a plane.
+    pub(super) fn bounds(&self) -> Option<[DVec3; 2]> {
+        match self {
+            Self::Sphere(Sphere { center, radius }) => Some([center - radius, center + radius]),
+            Self::Plane(_) => None,
+            Self::Block(Block { low, high }) => Some([*low, *high]),
+        }
+    }
 }
 
 impl Block {
@@ -235,5 +256,21 @@ mod tests {
         assert_eq!(block.signed_distance(DVec3::new(2.0, 0.5, 2.0)), (-0.5, -DVec3::Y));
         let plane = Shape::Plane(Plane::new(DVec3::ZERO, DVec3::Z).unwrap());
         assert_eq!(plane.signed_distance(DVec3::new(9.0, 9.0, -2.0)), (2.0, -DVec3::Z));
+    }
+
+    #[test]
+    fn shapes_that_touch_do_not_overlap() {
+        let block = |low: f64, high: f64| {
+            Shape::Block(Block::new(DVec3::splat(low), DVec3::splat(high)).unwrap())
+        };
+        let plane = |normal| Shape::Plane(Plane::new(DVec3::ZERO, normal).unwrap());
+        let sphere = Shape::Sphere(Sphere::new(DVec3::splat(3.0), 1.0).unwrap());
+        assert!(block(0.0, 2.0).overlaps(&block(1.0, 3.0)));
+        assert!(block(0.0, 9.0).overlaps(&block(1.0, 3.0)));
+        assert!(!block(0.0, 1.0).overlaps(&block(1.0, 3.0)));
+        assert!(sphere.overlaps(&sphere) && sphere.overlaps(&block(0.0, 2.5)));
+        assert!(!sphere.overlaps(&block(0.0, 2.0)) && !block(0.0, 2.0).overlaps(&sphere));
+        assert!(plane(DVec3::X).overlaps(&plane(DVec3::Z)));
+        assert!(!plane(DVec3::X).overlaps(&sphere));
     }
 }

@@ -18,6 +18,10 @@ use crate::world::Fog;
 /// With more tests of a ray on average, the tree is faster than the bounds on the screen.
 const MOST_TESTS_OF_RAY: u64 = 32;
 
+/// The number of tests and pixels of a band, after which a drawing can be interrupted: a millisecond or
+/// two.
+const WORK_OF_BAND: u64 = 1 << 16;
+
 /// Draws frames, and reuses its memory from frame to frame.
 #[derive(Clone, Debug, Default)]
 pub struct Renderer {
@@ -51,8 +55,36 @@ impl Renderer {
         self.explain(scene, camera, frame);
     }
 
+    /// Draws as [`Renderer::render`] does, in bands of rows from the top. Before each band, `go_on` is
+    /// called; if it returns `false`, the rest of `frame` stays as it was. Returns whether the frame is
+    /// complete.
+    ///
+    /// A band ends after the row in which the number of its pixels and of tests of its rays exceeds a
+    /// limit.
+    pub fn render_while(
+        &mut self,
+        scene: &Scene,
+        camera: &Camera,
+        frame: &mut Frame,
+        go_on: &mut dyn FnMut() -> bool,
+    ) -> bool {
+        self.draw(scene, camera, frame, go_on).1
+    }
+
     /// Draws as [`Renderer::render`] does, and returns the counts.
     pub fn explain(&mut self, scene: &Scene, camera: &Camera, frame: &mut Frame) -> Explanation {
+        self.draw(scene, camera, frame, &mut || true).0
+    }
+
+    /// Draws as [`Renderer::render_while`] does, and returns the counts and whether the frame is
+    /// complete.
+    fn draw(
+        &mut self,
+        scene: &Scene,
+        camera: &Camera,
+        frame: &mut Frame,
+        go_on: &mut dyn FnMut() -> bool,
+    ) -> (Explanation, bool) {
         let projection = Projection::new(camera, frame.size(), frame.pixel_aspect());
         self.find_bodies(scene, &projection);
         self.shadows.begin(&scene.bodies, &scene.sun);
@@ -68,13 +100,22 @@ impl Renderer {
             shadow_tests: 0,
         };
         let mut whole = frame.whole();
+        let mut end_of_band = 0;
         for row in 0..projection.height {
+            let pixels_before = u64::from(projection.width) * u64::from(row);
+            let work = pixels_before + explanation.tests + explanation.shadow_tests;
+            if work >= end_of_band {
+                if !go_on() {
+                    return (explanation, false);
+                }
+                end_of_band = work + WORK_OF_BAND;
+            }
             let up = projection.upwards(row);
             explanation.tests += self.cast_row(row, up);
             let pixels = whole.row_mut(row);
             self.shade_row(scene, &projection, up, pixels, &mut explanation);
         }
-        explanation
+        (explanation, true)
     }
 
     fn find_bodies(&mut self, scene: &Scene, projection: &Projection) {

@@ -97,6 +97,17 @@ impl Renderable for Scene {
         renderer.render(self, camera, frame);
     }
 
+    fn render_while(
+        &self,
+        camera: &Camera,
+        _: Options,
+        renderer: &mut Renderer,
+        frame: &mut Frame,
+        go_on: &mut dyn FnMut() -> bool,
+    ) -> bool {
+        renderer.render_while(self, camera, frame, go_on)
+    }
+
     fn explain(
         &self,
         camera: &Camera,

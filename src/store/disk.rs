@@ -43,7 +43,7 @@ pub(super) trait Disk: fmt::Debug + Send {
 pub(super) struct Real;
 
 /// The time between two attempts to lock a file.
-const PAUSE: Duration = Duration::from_millis(10);
+const PAUSE: Duration = Duration::from_millis(2);
 
 impl Disk for Real {
     fn create_folder(&self, folder: &Path) -> io::Result<()> {

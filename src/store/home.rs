@@ -8,6 +8,7 @@ use super::change::Change;
 use super::disk::Disk;
 use super::progress::Progress;
 use super::read::{self, Content};
+use crate::fault::printable_path;
 
 /// A folder of a store.
 #[derive(Debug)]
@@ -44,8 +45,8 @@ const RUNS: &str = "runs";
 const LARGEST_PROGRESS: u64 = 4 << 20;
 /// In bytes: that is more than a day of play.
 const LARGEST_SCRIPT: u64 = 4 << 20;
-/// They take a second.
-const ATTEMPTS: u32 = 100;
+/// They take two seconds.
+const ATTEMPTS: u32 = 1000;
 
 impl Home {
     pub(super) fn new(folder: PathBuf, disk: Box<dyn Disk>) -> Self {
@@ -95,7 +96,7 @@ impl Home {
         known: &Progress,
     ) -> Result<Written, String> {
         let not_kept = |folder: &Path, error: &io::Error| {
-            format!("{} can't be written: {error}; this game is not kept", shown(folder))
+            format!("{} can't be written: {error}; this game is not kept", printable_path(folder))
         };
         let lock = self
             .disk
@@ -118,7 +119,10 @@ impl Home {
                 return Ok(Found::TooLarge);
             }
             Err(error) => {
-                return Err(format!("{} can't be read: {error}; nothing is kept", shown(&file)));
+                return Err(format!(
+                    "{} can't be read: {error}; nothing is kept",
+                    printable_path(&file)
+                ));
             }
         };
         match read::read(&content) {
@@ -127,7 +131,7 @@ impl Home {
             Content::Newer(version) => Err(format!(
                 "{} has version {version}, which a newer Cellcaster wrote: it is left as it is, and \
                  nothing is kept",
-                shown(&file)
+                printable_path(&file)
             )),
         }
     }
@@ -178,7 +182,7 @@ impl Home {
             self.disk.rename(&self.folder.join(PROGRESS), &self.folder.join(&name))?;
             "it is too large to be read"
         };
-        let file = shown(&self.folder.join(PROGRESS));
+        let file = printable_path(&self.folder.join(PROGRESS));
         Ok(format!("{file} was damaged and is kept as {name}; {kept}"))
     }
 
@@ -195,9 +199,4 @@ impl Home {
         }
         renamed
     }
-}
-
-/// A path for a sentence.
-fn shown(path: &Path) -> String {
-    path.display().to_string().replace(char::is_control, "?")
 }

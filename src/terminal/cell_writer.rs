@@ -27,7 +27,6 @@ mod palette;
 mod pen;
 mod refinement;
 mod screen;
-mod shared;
 mod shift;
 mod style;
 mod symbol;

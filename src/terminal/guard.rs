@@ -142,7 +142,7 @@ impl Guard {
         self.shutting_down.load(Ordering::SeqCst)
     }
 
-    /// Gives the terminal back, unless that was done before. Takes two seconds at most.
+    /// Gives the terminal back, unless that was done before. Takes six seconds at most.
     pub(super) fn give_back(&self) {
         self.give_back_and(|| ());
     }
@@ -218,9 +218,9 @@ impl Guard {
         let mut decoder = Decoder::default();
         let mut buffer = [0; 256];
         while let Some(timeout) = changes.fences.time_left(self.now()) {
-            match self.device.wait_for_input(timeout) {
-                Ok(true) => {}
-                Ok(false) | Err(_) => return,
+            // A signal ends the wait early, and the loop goes on.
+            if self.device.wait_for_input(timeout).is_err() {
+                return;
             }
             match self.device.read(&mut buffer) {
                 Ok(None) => {}

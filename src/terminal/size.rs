@@ -47,7 +47,7 @@ impl WindowSize {
     }
 
     /// The size in cells, as ratatui's type.
-    pub(super) fn cells(self) -> ratatui::layout::Size {
+    pub(crate) fn cells(self) -> ratatui::layout::Size {
         ratatui::layout::Size { width: self.columns, height: self.rows }
     }
 }

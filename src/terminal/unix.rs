@@ -136,11 +136,9 @@ impl Device {
         }
     }
 
-    /// Waits for bytes to read; returns whether there are any within `timeout`.
-    pub(super) fn wait_for_input(&self, timeout: Duration) -> io::Result<bool> {
-        let mut input = [PollFd::new(&self.input, PollFlags::IN)];
-        wait(&mut input, Some(timeout))?;
-        Ok(!input[0].revents().is_empty())
+    /// Waits for bytes to read, for `timeout` at most or until a signal arrives.
+    pub(super) fn wait_for_input(&self, timeout: Duration) -> io::Result<()> {
+        wait(&mut [PollFd::new(&self.input, PollFlags::IN)], Some(timeout))
     }
 
     /// Waits for bytes, signals or, if `wants_room`, room to write; for `timeout` at most.

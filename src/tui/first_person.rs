@@ -14,6 +14,8 @@ use crate::render::{
     Column, DynCaster, Filter, Frame, FrameSize, Options, PixelAspect, Renderable, Renderer,
 };
 use crate::world::World;
+#[cfg(feature = "terminal")]
+use crate::world::{Camera, Figure};
 
 /// A widget that shows what a camera sees of a [`World`], or of a [`Scene`](crate::space::Scene) of
 /// bodies.
@@ -100,6 +102,18 @@ impl<'a, S: Renderable> FirstPerson<'a, S> {
     pub fn draw(&self, size: Size, view: &mut View<S>) {
         let Some(View { renderer, frame }) = self.resized(size, view) else { return };
         self.scene.render(self.camera, self.options(), renderer, frame);
+    }
+
+    /// Does the same as [`FirstPerson::draw`], but may stop once `go_on` returns `false`. Returns whether
+    /// the picture is complete. It can be painted in either case: the rest shows earlier pictures.
+    pub fn draw_while(
+        &self,
+        size: Size,
+        view: &mut View<S>,
+        go_on: &mut dyn FnMut() -> bool,
+    ) -> bool {
+        let Some(View { renderer, frame }) = self.resized(size, view) else { return true };
+        self.scene.render_while(self.camera, self.options(), renderer, frame, go_on)
     }
 
     /// Does the same as [`FirstPerson::draw`] and returns the frame's cost, or `None` if the area
@@ -206,6 +220,13 @@ impl View {
     /// A view whose renderer finds walls by `caster`.
     pub fn with_caster(caster: DynCaster) -> Self {
         Self { renderer: Renderer::with_caster(caster), ..Self::default() }
+    }
+
+    /// Whether `figure` may be seen in the last picture, wherever the figure was then. `world` and
+    /// `camera` are those of the picture.
+    #[cfg(feature = "terminal")]
+    pub(crate) fn may_show(&self, world: &World, camera: &Camera, figure: &Figure) -> bool {
+        self.renderer.may_show(world, camera, &self.frame, figure)
     }
 
     /// The hits of the last picture's rays, from left to right.

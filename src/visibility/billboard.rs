@@ -4,8 +4,12 @@ use std::ops::Range;
 
 use glam::DVec2;
 
+#[cfg(feature = "tui")]
+use super::{Column, Projection};
 use super::{Faded, Scene};
 use crate::cast::MirrorTransform;
+#[cfg(feature = "tui")]
+use crate::world::World;
 use crate::world::texture::MipLevel;
 use crate::world::{Camera, Cell, Figure, Heading, Light, Sprite, SpriteId, Thing};
 
@@ -44,6 +48,28 @@ pub(crate) struct Billboard {
     /// The order among billboards at equal distance: by row, column and sprite, things before
     /// figures, and figures as the world lists them.
     pub(crate) order: (u32, u32, u16, u32),
+}
+
+/// Whether `figure`, or a mark for it on a map of what is in view, may be seen in a picture whose rays
+/// are `columns`, if it has no mirrors: a part of it is nearer than the end of a ray.
+#[cfg(feature = "tui")]
+pub(crate) fn may_show(
+    world: &World,
+    projection: &Projection,
+    columns: &[Column],
+    figure: &Figure,
+) -> bool {
+    /// The columns beside the figure that count, too: more than the rounding error.
+    const MARGIN: f64 = 1.0;
+    let Some(sprite) = world.sprites().get(usize::from(figure.sprite.0)) else { return false };
+    let place = projection.place(figure.position);
+    if place.depth < NEAREST {
+        return place.depth > 0.0;
+    }
+    let half = projection.columns_for(sprite.width(), place.depth) / 2.0 + MARGIN;
+    let covered = projection.columns_between(place.column - half, place.column + half);
+    let rays = columns.get(covered.start as usize..covered.end as usize);
+    rays.is_none_or(|rays| rays.iter().any(|ray| place.depth <= ray.distance))
 }
 
 /// The frame and the heading that a billboard shows.

@@ -34,10 +34,11 @@ enum Move {
     Wait,
     WaitLong,
     Strike,
+    Retreat,
 }
 
 impl Move {
-    const ALL: [Self; 9] = [
+    const ALL: [Self; 10] = [
         Self::Walk,
         Self::Shun,
         Self::Run,
@@ -47,6 +48,7 @@ impl Move {
         Self::Wait,
         Self::WaitLong,
         Self::Strike,
+        Self::Retreat,
     ];
 
     /// Whether it is made by taps on the keys to walk.
@@ -66,6 +68,7 @@ impl Move {
             Self::Wait => 45,
             Self::WaitLong => 160,
             Self::Strike => 40,
+            Self::Retreat => 60,
         }
     }
 }
@@ -180,6 +183,7 @@ impl Search<'_> {
             Move::Wait => pilot.wait(40),
             Move::WaitLong => pilot.wait(150),
             Move::Strike => strike(&mut pilot)?,
+            Move::Retreat => self.retreat(state, &mut pilot)?,
             Move::Walk => done += self.errand(state, &mut pilot, Pace::Walk, 40, |_| 0)?,
             Move::Run => done += self.errand(state, &mut pilot, Pace::Run, 24, |_| 0)?,
             Move::Duck => done += self.errand(state, &mut pilot, Pace::Duck, 60, |_| 0)?,
@@ -197,6 +201,15 @@ impl Search<'_> {
         let toll = state.toll + self.temper.toll(&state.pilot.game, &pilot.game);
         let is_alive = !matches!(pilot.game.outcome(), Outcome::Dead { .. });
         is_alive.then_some(State { pilot, done, toll })
+    }
+
+    /// Runs back towards the last errand from guards who follow; `None` if nobody does.
+    fn retreat(&self, state: &State, pilot: &mut Pilot) -> Option<()> {
+        pilot.game.guards().find(|guard| matches!(guard.mood, Mood::Chasing | Mood::Attacking))?;
+        let last = self.errands[..state.done].last();
+        let home = last.map_or(pilot.game.world().start().cell, |errand| errand.cell);
+        pilot.go(&Ways::beside(&pilot.game, home, |_| 0), Pace::Run, 60);
+        Some(())
     }
 
     /// Goes on with the next errand: the number of errands that are done by that, 0 or 1.

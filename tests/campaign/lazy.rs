@@ -24,7 +24,8 @@ pub(crate) fn play(level: &Level, rules: Rules) -> Pilot {
     pilot
 }
 
-fn run(pilot: &mut Pilot, Errand { verb, cell, height, .. }: Errand) {
+/// Does an errand without care.
+pub(crate) fn run(pilot: &mut Pilot, Errand { verb, cell, height, .. }: Errand) {
     let is_over =
         |pilot: &Pilot| pilot.steps() > MOST_STEPS || pilot.game.outcome() != Outcome::Playing;
     loop {

@@ -2,6 +2,7 @@
 //! the shortest way without care.
 
 mod careful;
+mod fixtures;
 mod lazy;
 mod levels;
 mod route;

@@ -3,10 +3,11 @@
 use cellcaster::game::{Game, Mood};
 
 /// The tempers that are tried in turn: a level that cannot be left unseen is left in haste.
-pub(crate) const TEMPERS: [Temper; 3] = [
+pub(crate) const TEMPERS: [Temper; 4] = [
     Temper { point: 900, alarm: 1200, noticed: 30, chased: 90, weight: 3, most_moves: 8_000 },
     Temper { point: 300, alarm: 200, noticed: 10, chased: 20, weight: 4, most_moves: 12_000 },
     Temper { point: 100, alarm: 0, noticed: 0, chased: 2, weight: 8, most_moves: 16_000 },
+    Temper { point: 300, alarm: 600, noticed: 20, chased: 150, weight: 3, most_moves: 40_000 },
 ];
 
 /// How much a player minds what can happen, in steps, and how long the search goes on.

@@ -191,16 +191,40 @@ fn the_search_for_keys_takes_a_few_bytes_for_each_cell() {
     }
 }
 
+/// A map of `count` spheres of radius 8, one every `apart` cells.
+fn spheres(count: u32, apart: f64) -> String {
+    let sphere = |number| {
+        let x = 9.0 + f64::from(number) * apart;
+        format!("{{ center = [{x}, 0, 0], radius = 8, color = '#fff000' }},")
+    };
+    let spheres: String = (0..count).map(sphere).collect();
+    format!("start = {{ at = [0, 0, 0], heading = 0 }}\nsphere = [{spheres}]\nbox = []\n")
+}
+
 #[test]
 fn the_number_of_bodies_is_limited() {
-    let spheres = |count| {
-        let sphere = "{ center = [9, 0, 0], radius = 8, color = '#fff000' },";
-        let start = "start = { at = [0, 0, 0], heading = 0 }";
-        format!("{start}\nsphere = [{}]\nbox = []\n", sphere.repeat(count))
-    };
-    assert!(read(&spheres(1000), SMALL_MAP).is_ok());
-    let faults = read(&spheres(1001), SMALL_MAP).unwrap_err();
+    assert!(read(&spheres(1000, 16.0), SMALL_MAP).is_ok());
+    let faults = read(&spheres(1001, 16.0), SMALL_MAP).unwrap_err();
     insta::assert_snapshot!(faults.summary(), @"map:2: a map has 1000 bodies at most");
     // Of more, the first one too many is named alone.
-    assert_eq!(read(&spheres(15_000), SMALL_MAP).unwrap_err().len(), 1);
+    assert_eq!(read(&spheres(15_000, 16.0), SMALL_MAP).unwrap_err().len(), 1);
+}
+
+/// A ray is tested against all bodies of one place.
+#[test]
+fn the_number_of_bodies_in_one_place_is_limited() {
+    for apart in [0.0, 1e-6, 0.1] {
+        assert!(read(&spheres(141, apart), SMALL_MAP).is_ok());
+        let faults = read(&spheres(142, apart), SMALL_MAP).unwrap_err();
+        insta::allow_duplicates! {
+            insta::assert_snapshot!(faults.summary(), @"map:2: more than 10000 pairs of bodies overlap");
+        }
+    }
+    let planes = |count| {
+        let planes = "{ height = -1, color = '#fff000' },".repeat(count);
+        format!("start = {{ at = [0, 0, 0], heading = 0 }}\nplane = [{planes}]\n")
+    };
+    assert!(read(&planes(141), SMALL_MAP).is_ok());
+    let faults = read(&planes(142), SMALL_MAP).unwrap_err();
+    insta::assert_snapshot!(faults.summary(), @"map:2: more than 10000 pairs of bodies overlap");
 }

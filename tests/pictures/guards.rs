@@ -17,7 +17,7 @@ const DISTANCES: [(f64, usize, usize); 3] = [(2.0, 20, 18), (5.0, 16, 12), (9.0,
 /// from each other kind, at each distance.
 const DEPTHS: [(&str, [usize; 3], [usize; 3]); 3] = [
     ("true", [70, 10, 10], [200, 40, 12]),
-    ("256", [70, 4, 8], [200, 25, 8]),
+    ("256", [70, 8, 6], [200, 25, 8]),
     ("mono", [40, 8, 6], [120, 16, 6]),
 ];
 const COLUMNS: usize = 80;

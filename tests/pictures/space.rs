@@ -312,3 +312,34 @@ fn bodies_that_overlap_cost_little_more_than_the_nearest() {
     let explained = Renderer::new().explain(&scene, &camera, &mut frame);
     assert!(explained.tests < 50 * explained.rays, "{} tests", explained.tests);
 }
+
+/// Draws `scene` in bands, and goes on before as many of them. Returns whether the frame is complete, and
+/// the number of bands.
+fn draw_bands(scene: &Scene, camera: &Camera, frame: &mut Frame, most: u64) -> (bool, u64) {
+    let mut bands = 0;
+    let is_complete = Renderer::new().render_while(scene, camera, frame, &mut || {
+        bands += u64::from(bands < most);
+        bands < most
+    });
+    (is_complete, bands)
+}
+
+#[test]
+fn a_drawing_can_be_interrupted_after_bounded_work() {
+    let scene = scene((0..100).map(|_| sphere(DVec3::new(9.0, 0.0, 0.0), 8.0)));
+    let camera = Camera::new(DVec3::ZERO, Heading::default(), FieldOfView::default()).unwrap();
+    let black = Frame::new(FrameSize::new(120, 80).unwrap(), PixelAspect::SQUARE);
+    let (mut whole, mut in_bands) = (black.clone(), black.clone());
+    let counts = Renderer::new().explain(&scene, &camera, &mut whole);
+    let (is_complete, bands) = draw_bands(&scene, &camera, &mut in_bands, u64::MAX);
+    assert!(is_complete && whole == in_bands);
+    let work = counts.rays + counts.tests + counts.shadow_tests;
+    assert!(bands > 10 && work / bands < 100_000, "{work} tests and pixels in {bands} bands");
+
+    let mut partial = black.clone();
+    assert_eq!(draw_bands(&scene, &camera, &mut partial, 3), (false, 3));
+    let rows = |frame: &Frame| frame.rows().map(<[Rgb]>::to_vec).collect::<Vec<_>>();
+    let [partial, whole, black] = [&partial, &whole, &black].map(rows);
+    let drawn = partial.iter().zip(&whole).take_while(|(one, other)| one == other).count();
+    assert!((1..80).contains(&drawn) && partial[drawn..] == black[drawn..], "{drawn} rows");
+}

@@ -39,6 +39,8 @@ struct State {
     emulator: Emulator,
     reading: bool,
     stall: Option<Stall>,
+    /// The time that the terminal takes to answer.
+    answer_time: Duration,
 }
 
 /// A terminal that stops reading.
@@ -92,7 +94,12 @@ impl Player {
             .envs(environment.iter().copied())
             .spawn_borrowed(&terminal)
             .unwrap();
-        let state = State { emulator: Emulator::new(columns, rows, speaks), reading: true, stall };
+        let state = State {
+            emulator: Emulator::new(columns, rows, speaks),
+            reading: true,
+            stall,
+            answer_time: Duration::ZERO,
+        };
         let shared = Arc::new(Shared { state: Mutex::new(state), changed: Condvar::new() });
         let pty = Arc::new(pty);
         thread::spawn({
@@ -154,6 +161,11 @@ impl Player {
     pub(crate) fn set_reading(&self, reading: bool) {
         self.state().reading = reading;
         self.shared.changed.notify_all();
+    }
+
+    /// Sets the time that the terminal takes to answer.
+    pub(crate) fn set_answer_time(&self, time: Duration) {
+        self.state().answer_time = time;
     }
 
     /// Sets whether answers to status requests are lost.
@@ -362,7 +374,11 @@ fn receive(mut pty: &Pty, shared: &Shared) {
         let mut state = shared.state.lock().unwrap();
         let answers = state.emulator.process(&buffer[..count]);
         let (answers, stalls) = state.answers_to_send(answers);
+        let answer_time = state.answer_time;
         drop(state);
+        if !answers.is_empty() {
+            thread::sleep(answer_time);
+        }
         // The program may have ended without waiting for the answers.
         _ = pty.write_all(&answers);
         if stalls {

@@ -21,5 +21,6 @@ mod resting;
 mod settings;
 mod showing;
 mod signals;
+mod slow;
 mod titles;
 mod watching;

@@ -74,6 +74,7 @@ const fn character(kind: SoundKind) -> char {
         SoundKind::Splash => '~',
         SoundKind::Door => '+',
         SoundKind::Mechanism => '=',
+        SoundKind::Spikes => 'i',
         SoundKind::Knock => 'o',
         SoundKind::Crash => '*',
         SoundKind::Blow => 'x',
@@ -247,8 +248,8 @@ mod tests {
     fn each_kind_has_its_own_character() {
         use SoundKind::*;
         let kinds = [
-            Walking, Running, Landing, Splash, Door, Mechanism, Knock, Crash, Blow, Cry, Fall,
-            Wonder, GiveUp, Shout, Bell, Bark, Windup, Draw, Shot, Swing,
+            Walking, Running, Landing, Splash, Door, Mechanism, Spikes, Knock, Crash, Blow, Cry,
+            Fall, Wonder, GiveUp, Shout, Bell, Bark, Windup, Draw, Shot, Swing,
         ];
         let characters: BTreeSet<char> = kinds.into_iter().map(character).collect();
         assert_eq!(characters.len(), kinds.len());

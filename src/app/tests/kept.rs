@@ -141,7 +141,7 @@ fn the_best_run_walks_along_and_can_be_switched_off() {
     let mut rig = playing_builtin(store);
     let figures = |rig: &mut Rig| {
         text(&mut rig.app, 40, 12);
-        let see_through = |figure: &&crate::world::Figure| figure.opacity == 96;
+        let see_through = |figure: &&Figure| figure.opacity == 96;
         let ghosts = rig.game().world().figures().iter().filter(see_through).copied();
         ghosts.collect::<Vec<_>>()
     };

@@ -10,7 +10,7 @@ use super::signals::Hangups;
 use crate::cli::Error;
 use crate::cli::arguments::Serve;
 use crate::cli::config::configuration_file;
-use crate::server::{Config, HostMaps, LiveConfig, Logging, events};
+use crate::server::{Config, HostMaps, LiveConfig, Logging, MapsError, events};
 
 /// Where the configuration comes from.
 pub(super) struct Configuration {
@@ -40,7 +40,7 @@ impl Configuration {
         let config = configuration.parse(&text)?;
         if let Some(folder) = &config.maps {
             let maps = HostMaps::read(folder);
-            configuration.maps = maps.map_err(|error| refused(&error.to_string()))?;
+            configuration.maps = maps.map_err(refused)?;
         }
         configuration.check_levels(&text)?;
         Ok((configuration, config))
@@ -104,7 +104,9 @@ impl Configuration {
     }
 }
 
-/// The error for maps that are refused: one sentence, or a report like that of `check`.
-fn refused(text: &str) -> Error {
-    if text.contains('\n') { Error::report_of(text.to_owned()) } else { Error::mistake(text) }
+fn refused(error: MapsError) -> Error {
+    match error {
+        MapsError::Sentence(sentence) => Error::mistake(sentence),
+        MapsError::Report(text) => Error::report_of(text),
+    }
 }

@@ -1,28 +1,27 @@
 //! Mixtures: two colours of a palette that look like a given colour when they alternate in a
 //! pattern.
 //!
-//! Each pair of colours near the wanted one is tried in a few shares. The best mixture is the one
-//! whose mean light is nearest to the wanted colour in Oklab; the contrast between its two colours
-//! counts as well, because it is visible as dots. Colours of another hue are not used: grey and one
-//! hue reach every colour between them, and a green dot on a brick is noticeable.
+//! Each pair of colours near the wanted one is tried. The best mixture is the one whose mean light is
+//! nearest to the wanted colour in Oklab; the contrast between its two colours counts almost as much
+//! as the error of the mean. A pixel of a half block is large, so that the eye sees the pixels of a
+//! mixture and not their mean: a mixture of grey and a bright hue is a chessboard, and a quarter of
+//! the pixels is a grid of lone dots. The two colours therefore differ by at most 0.18, and each has
+//! half of the pixels.
 //!
-//! The palette of 256 has few dark hues: its darkest red has a lightness of 0.31, its darkest yellow
-//! 0.47, and its darkest brown 0.51. A pixel of a half block is large, so that the eye sees the
-//! pixels of a dark mixture and not their mean. Dark colours therefore have rules of their own:
+//! The palette of 256 has few colours between grey and its hues: its darkest red has a lightness of
+//! 0.31, its darkest yellow 0.47, and its darkest brown 0.51. The nearest colour of most surfaces in
+//! a room is grey. Colours are therefore changed before they are mixed:
 //!
-//! - Both colours have half of the pixels. A quarter is a grid of lone dots.
-//! - The two colours have almost the same lightness, because contrast weighs more.
-//! - A hue differs from the wanted one by at most 40 degrees, and colours with little chroma are
-//!   mixed of greys only: a brown wall is brown and grey, and a sandstone in the dark is grey.
-//! - In the darkest, where red is the only warm hue, an error in hue counts little.
+//! - [`ToneCurve`] lifts dark colours to where the palette has hues.
+//! - Saturation is increased, more in the dark. Colours that are almost grey remain as they are.
 //!
-//! [`ToneCurve`] lifts dark colours to where the palette has hues. More shares, hues of up to 60
-//! degrees and an error carried to the next block were refused for dark colours. The mean over 2×2
-//! cells is nearer to the wanted colour (an error of 0.024 instead of 0.088 in the kennels), but dark
-//! wood is a grey surface with a grid of red, olive and orange dots.
+//! Hues differ from the wanted one by at most 26 degrees, and colours with little chroma are mixed of
+//! greys only.
 //!
-//! The idea is Joel Yliluoma's ("Arbitrary-palette positional dithering algorithm", 2011). Sets of
-//! four colours were refused: they come a little nearer, for twice the bytes.
+//! The idea is Joel Yliluoma's ("Arbitrary-palette positional dithering algorithm", 2011), who
+//! weighs contrast, too. A weight of a tenth was refused, with one mixture for each two cells: the
+//! mean over 2×2 cells is nearer to the wanted colour, but bricks, joints and stones are no longer
+//! seen among red, olive and orange dots. Sets of four colours were refused, too.
 //!
 //! Mixtures are stored by 64 levels of each channel, and computed on first use: a picture needs some
 //! hundreds of them, and computing all 262,144 would take seconds. The levels are equal steps of the
@@ -40,7 +39,7 @@ use std::sync::atomic::{AtomicU32, Ordering};
 use super::{CUBE, of_256};
 use crate::color::oklab::{self, Oklab};
 use crate::color::srgb::linear;
-use candidates::{Candidate, Candidates, Wanted};
+use candidates::{Candidates, Wanted};
 pub(crate) use tone::ToneCurve;
 use weights::{WEIGHTS_OF_16, WEIGHTS_OF_256, Weights};
 
@@ -51,17 +50,12 @@ pub(crate) struct Mixture {
     pub(crate) colors: [u8; 2],
     /// The number of pixels, of [`Mixture::WHOLE`], that have the brighter colour; less than all.
     pub(crate) share: u8,
-    /// Whether the wanted colour is dark. A dark mixture is half and half, and its error is not
-    /// carried to other pixels.
-    pub(crate) is_dark: bool,
-    /// The index of the nearest single colour, for pixels that are not mixed.
-    pub(crate) single: u8,
 }
 
 impl Mixture {
     /// The number of pixels of a mixture.
     pub(crate) const WHOLE: u8 = 4;
-    const NONE: Self = Self { colors: [0; 2], share: 0, is_dark: false, single: 0 };
+    const NONE: Self = Self { colors: [0; 2], share: 0 };
 }
 
 /// The mixtures for all colours, each computed on first use.
@@ -79,10 +73,8 @@ type Entries = [AtomicU32; 1 << (3 * BITS)];
 const BITS: u32 = 6;
 /// The highest level.
 const FULL: u8 = (1 << BITS) - 1;
-/// The bit that marks an entry as computed, in its uppermost byte, beside the share.
+/// The bit that marks an entry as computed, beside the share.
 const FOUND: u8 = 1 << 7;
-/// The bit that marks a dark mixture, in the same byte.
-const IS_DARK: u8 = 1 << 6;
 
 /// The mixtures of the 240 fixed colours of xterm.
 pub(crate) static OF_256: Mixtures = {
@@ -117,8 +109,7 @@ pub(crate) static OF_16: Mixtures = {
 #[derive(Clone, Copy)]
 struct Palette {
     colors: &'static [PaletteColor],
-    /// The weights for colours up to a lightness, in ascending order of it.
-    weights: &'static [(f32, Weights)],
+    weights: &'static Weights,
 }
 
 /// The level of a channel with that amount of light, from 0 to 1.
@@ -160,21 +151,15 @@ impl Mixtures {
         // Every thread computes the same entry, so that it does not matter which one stores it.
         let stored = self.entries[index].load(Ordering::Relaxed);
         let entry = if stored == 0 { self.find(index, levels) } else { stored };
-        let [share, single, darker, brighter] = entry.to_be_bytes();
-        Mixture {
-            colors: [darker, brighter],
-            share: share & !(FOUND | IS_DARK),
-            is_dark: share & IS_DARK != 0,
-            single,
-        }
+        let [_, share, darker, brighter] = entry.to_be_bytes();
+        Mixture { colors: [darker, brighter], share: share & !FOUND }
     }
 
     #[cold]
     fn find(&self, index: usize, levels: [u8; 3]) -> u32 {
-        let Mixture { colors: [darker, brighter], share, is_dark, single } =
+        let Mixture { colors: [darker, brighter], share } =
             (self.palette)().mixture(levels.map(light_of_level));
-        let flags = if is_dark { FOUND | IS_DARK } else { FOUND };
-        let entry = u32::from_be_bytes([flags | share, single, darker, brighter]);
+        let entry = u32::from_be_bytes([0, FOUND | share, darker, brighter]);
         self.entries[index].store(entry, Ordering::Relaxed);
         entry
     }
@@ -182,38 +167,26 @@ impl Mixtures {
 
 impl Palette {
     fn mixture(self, light: [f64; 3]) -> Mixture {
-        let wanted = Wanted::new(light);
-        let weights = self.weights_at(wanted.lightness());
-        let candidates = Candidates::new(&wanted, self.colors, weights);
+        let wanted = Wanted::new(self.saturated(light));
+        let candidates = Candidates::new(&wanted, self.colors, self.weights);
         let candidates = candidates.as_slice();
-        let single = candidates.iter().min_by(|one, other| {
-            let alone = |candidate: &Candidate| cost(candidate.error, weights.single);
-            alone(one).total_cmp(&alone(other))
-        });
-        let mut best = Mixture {
-            single: single.map_or(0, |single| single.index),
-            is_dark: weights.is_dark,
-            ..Mixture::NONE
-        };
-        let half = Mixture::WHOLE / 2;
-        let shares = if weights.is_dark { half..half + 1 } else { 1..Mixture::WHOLE };
+        let mut best = Mixture::NONE;
         let mut least = f32::INFINITY;
         let mut consider = |cost: f32, colors: [u8; 2], share: u8| {
             if cost < least {
                 least = cost;
-                best = Mixture { colors, share, ..best };
+                best = Mixture { colors, share };
             }
         };
         for (index, one) in candidates.iter().enumerate() {
-            consider(cost(one.error, weights.chroma), [one.index; 2], 0);
+            consider(cost(one.error), [one.index; 2], 0);
             for other in &candidates[index + 1..] {
-                let contrast = weights.contrast(one, other);
-                for share in shares.clone() {
+                let Some(contrast) = self.weights.contrast(one, other) else { continue };
+                for share in self.weights.shares.clone() {
                     let part = f32::from(share) / f32::from(Mixture::WHOLE);
                     let error =
                         array::from_fn(|i| one.error[i] + (other.error[i] - one.error[i]) * part);
-                    let dots = 4.0 * part * (1.0 - part);
-                    let total = cost(error, weights.chroma) + contrast * dots;
+                    let total = cost(error) + contrast * part * (1.0 - part);
                     if one.lab[0] <= other.lab[0] {
                         consider(total, [one.index, other.index], share);
                     } else {
@@ -225,16 +198,21 @@ impl Palette {
         best
     }
 
-    fn weights_at(self, lightness: f32) -> &'static Weights {
-        let [.., (_, brightest)] = self.weights else { unreachable!("there are weights") };
-        let found = self.weights.iter().find(|(limit, _)| lightness < *limit);
-        found.map_or(brightest, |(_, weights)| weights)
+    /// More saturated light of the same brightness.
+    fn saturated(self, light: [f64; 3]) -> [f64; 3] {
+        let Oklab([lightness, red, yellow]) = Oklab::from_linear(light);
+        let factor = self.weights.saturation(lightness, libm::hypot(red, yellow));
+        let grey = light.iter().sum::<f64>() / 3.0;
+        let least = light.into_iter().fold(grey, f64::min);
+        // No channel may become negative.
+        let factor = if least < grey { factor.min(grey / (grey - least)) } else { 1.0 };
+        light.map(|part| (grey + factor * (part - grey)).clamp(0.0, 1.0))
     }
 }
 
-/// The cost of a [`Candidate::error`], where `chroma` is the weight of an error in chroma.
-fn cost([lightness, saturation, hue]: [f32; 3], chroma: f32) -> f32 {
-    lightness * lightness + chroma * chroma * (saturation * saturation + hue * hue)
+/// The cost of a [`Candidate::error`].
+fn cost(error: [f32; 3]) -> f32 {
+    error.iter().map(|part| part * part).sum()
 }
 
 #[cfg(test)]

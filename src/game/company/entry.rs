@@ -62,6 +62,7 @@ impl Game {
         self.player.health = self.player.health.revived();
         (self.player.killed_by, self.player.flash) = (None, None);
         (self.player.in_water, self.player.last_thrust) = (0, None);
+        self.player.warnings.clear();
         self.revision += 1;
         if let Some(member) = self.member_in_turn() {
             member.ended = None;

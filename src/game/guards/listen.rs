@@ -139,7 +139,9 @@ fn startle(kind: SoundKind) -> u32 {
         SoundKind::Landing => 380,
         // They make every guard wonder who hears them.
         SoundKind::Knock | SoundKind::Crash | SoundKind::Fall => 1200,
-        SoundKind::Wonder
+        // Guards are used to spikes.
+        SoundKind::Spikes
+        | SoundKind::Wonder
         | SoundKind::GiveUp
         | SoundKind::Shout
         | SoundKind::Bell

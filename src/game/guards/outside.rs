@@ -123,6 +123,21 @@ impl Guards {
         self.list.iter().any(|guard| guard.mover.cell() == cell && guard.mover.is_on_floor())
     }
 
+    /// The positions of the guards who are awake and on their feet, nearer than `distance` to
+    /// `position`, and with a part of their body between the heights `feet` and `head`.
+    pub(crate) fn touching(
+        &self,
+        position: DVec2,
+        distance: f64,
+        feet: f64,
+        head: f64,
+    ) -> impl Iterator<Item = DVec2> {
+        let up = self.awake().filter(|guard| !guard.is_asleep() && !guard.state.is_down());
+        let level = up.filter(move |guard| guard.mover.feet < head && feet < guard.head());
+        let positions = level.map(|guard| guard.mover.position());
+        positions.filter(move |at| at.distance_squared(position) < distance * distance)
+    }
+
     /// The nearest guard who is not down, whose middle is at most `reach` from `position` and at
     /// most the angle with the cosine `least_cosine` off `direction`, a unit vector. Nothing is
     /// between the two at the height of the middle of the guard.

@@ -1,7 +1,9 @@
-//! Spikes: they come out of the floor at intervals, and show it beforehand.
+//! Spikes: they come out of the floor at intervals, and announce it by a picture and a sound.
 //!
 //! What they do depends on the number of steps since the start alone.
 
+use crate::game::noise::reach;
+use crate::game::sound::{Sound, SoundKind, Source};
 use crate::world::sprite::builtin::SpikesFrame;
 use crate::world::{Cell, Rhythm, ThingKind, World};
 
@@ -53,14 +55,21 @@ impl Spikes {
         Self { each }
     }
 
-    /// Shows the spikes as they are in the step `now`. Returns whether any has changed.
-    pub(in crate::game) fn show(&mut self, world: &mut World, now: u64) -> bool {
+    /// Shows the spikes as they are in the step `now`, and adds a sound for those that begin to rise.
+    /// Returns whether any has changed.
+    pub(in crate::game) fn show(
+        &mut self,
+        world: &mut World,
+        now: u64,
+        sounds: &mut Vec<Sound>,
+    ) -> bool {
         let mut has_changed = false;
         for spike in &mut self.each {
             let phase = spike.rhythm.phase(now);
             if phase != spike.phase {
                 spike.phase = phase;
                 spike.show(world);
+                sounds.extend((phase == Phase::Rising).then(|| spike.warning()));
                 has_changed = true;
             }
         }
@@ -85,6 +94,12 @@ impl Spikes {
 }
 
 impl Spike {
+    /// The sound that they make before they come out.
+    fn warning(&self) -> Sound {
+        let (kind, by) = (SoundKind::Spikes, Source::Object);
+        Sound { kind, cell: self.cell, reach: reach::SPIKES, by }
+    }
+
     fn show(&self, world: &mut World) {
         let is_it = |kind| matches!(kind, ThingKind::Spikes(_));
         let frame = match self.phase {

@@ -29,8 +29,8 @@ pub struct Heard {
 pub(crate) struct Hearing {
     field: SoundField,
     heard: Vec<Heard>,
-    /// What has made each of them.
-    sources: Vec<Source>,
+    /// What was heard as each of them.
+    sounds: Vec<Sound>,
     steps: u64,
 }
 
@@ -95,24 +95,29 @@ impl Hearing {
         Some(3 - (u32::from(distance) * 3 / (u32::from(reach) + 1)) as u8)
     }
 
-    /// Records a sound. A newer one of the same source and kind replaces an older one.
+    /// Records a sound. A newer one of the same source and kind replaces an older one, and of those in
+    /// one step the nearest is kept.
     fn hear(&mut self, sound: &Sound, position: DVec2, strength: u8) {
         let way = sound.cell.center() - position;
         let degrees = libm::atan2(way.y, way.x).to_degrees();
         let bearing = Heading::from_degrees(degrees).unwrap_or_default();
-        let mut sounds = self.sources.iter().zip(&self.heard);
-        let is_same = |(&by, heard): (&Source, &Heard)| by == sound.by && heard.kind == sound.kind;
-        if let Some(index) = sounds.position(is_same) {
+        let is_same = |other: &Sound| (other.by, other.kind) == (sound.by, sound.kind);
+        if let Some(index) = self.sounds.iter().position(is_same) {
+            let is_new = self.heard[index].left == DURATION;
+            let distance = self.sounds[index].cell.center().distance(position);
+            if is_new && distance <= way.length() {
+                return;
+            }
             self.remove(index);
         } else if self.heard.len() == MOST {
             self.remove(0);
         }
-        self.sources.push(sound.by);
+        self.sounds.push(*sound);
         self.heard.push(Heard { bearing, strength, kind: sound.kind, left: DURATION });
     }
 
     fn remove(&mut self, index: usize) {
         self.heard.remove(index);
-        self.sources.remove(index);
+        self.sounds.remove(index);
     }
 }

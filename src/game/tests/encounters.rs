@@ -48,14 +48,72 @@ fn bolts_end_at_walls_and_closed_doors() {
         let mut stage =
             Stage::new(&rows, "'+' = { door = 'oak' }\n'%' = { glass = '#80c0ff' }", "");
         let from = (DVec2::new(7.5, 1.5), 0.5);
-        stage.game.missiles.launch(Missile::bolt(from, -DVec2::X, 0.0, 2));
+        stage.game.missiles.launch(Missile::bolt(from, -DVec2::X, 0.0, (0, 2)));
         stage.play(60, &[]);
         assert!(stage.game.missiles.is_empty());
         assert_eq!(stage.points(), points, "{between}");
     }
 }
 
-/// Guards do not block the player, and the player does not block guards.
+#[test]
+fn a_guard_who_is_awake_pushes_a_player_away_and_one_who_sleeps_does_not() {
+    let rows = ["#######", "#.....#", "#..@..#", "#.....#", "#######"];
+    for (name, degrees) in
+        KINDS.into_iter().flat_map(|name| [0.0, 90.0, 200.0].map(|it| (name, it)))
+    {
+        for duty in ["", ", asleep = true"] {
+            if name == "listener" && !duty.is_empty() {
+                // The steps wake them.
+                continue;
+            }
+            let rows = rows.map(|row| row.replace("@..", "@g."));
+            let rows: Vec<&str> = rows.iter().map(String::as_str).collect();
+            let guard = format!("g = {{ guard = '{name}', heading = {degrees}{duty} }}");
+            let mut stage = Stage::new(&rows, "", &guard);
+            let distance = |stage: &Stage| stage.guard(0).position.distance(stage.position());
+            stage.play(25, &[Intent::Forward]);
+            assert!(distance(&stage) < 0.5, "{name}: {}", distance(&stage));
+            let parts = |stage: &Stage| distance(stage) > 0.49;
+            let has_parted = stage.steps_until(60, &[], parts).is_some();
+            assert_eq!(has_parted, duty.is_empty(), "{name} {degrees} {duty}");
+        }
+    }
+}
+
+proptest! {
+    #![proptest_config(ProptestConfig::with_cases(24))]
+
+    /// From any place in a corridor with guards, walking gets past them in either direction.
+    #[test]
+    fn no_guard_holds_a_player(
+        kinds in prop::collection::vec(prop::sample::select(&KINDS[..]), 2),
+        column in 1..12_usize,
+        ducks in any::<bool>(),
+        turns in any::<bool>(),
+    ) {
+        let mut row: Vec<char> = "#...g....h...#".chars().collect();
+        prop_assume!(row[column] == '.');
+        row[column] = '@';
+        let row: String = row.into_iter().collect();
+        let rows = ["##############", &row, "##############"];
+        let things = format!("g.guard = '{}'\ng.heading = 180\nh.guard = '{}'\nh.heading = 0", kinds[0], kinds[1]);
+        let mut stage = Stage::played(&rows, "", &things, Difficulty::Easy);
+        if turns {
+            stage.press(Intent::AboutFace).play(40, &[]);
+        }
+        let end = if turns { 1.3 } else { 12.7 };
+        for _ in 0..1500 {
+            // Blows do not count here.
+            stage.game.player.health = Health::default();
+            stage.play(1, if ducks { &[Intent::Forward, Intent::Duck] } else { &[Intent::Forward] });
+            if (stage.position().x - end).abs() < 0.1 {
+                return Ok(());
+            }
+        }
+        prop_assert!(false, "{row} {kinds:?}: {}", stage.position());
+    }
+}
+
 #[test]
 fn a_guard_and_a_player_who_meet_in_a_corridor_pass_and_the_guard_turns_and_strikes() {
     let rows = ["###############", "#@......g.....#", "###############"];

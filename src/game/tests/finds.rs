@@ -132,3 +132,22 @@ fn no_checkpoint_is_reached_under_alarm() {
     let checkpoint = stage.game.world().things_in(Cell { column: 3, row: 0 });
     assert_eq!(checkpoint.first().and_then(|thing| thing.frame).filter(|&it| it > 0), None);
 }
+
+#[test]
+fn in_a_hard_game_the_exit_is_closed_while_the_alarm_is_raised() {
+    let rows = ["##########", "#@.X...w.#", "##########"];
+    let things = "X = { exit = true }\nw = { guard = 'warden', heading = 180 }";
+    for difficulty in Difficulty::ALL {
+        let mut stage = Stage::played(&rows, "", things, difficulty);
+        stage.steps_until(600, &[], |stage| stage.game.alarm() == Alarm::Raised).unwrap();
+        stage.walk_to(3);
+        let is_hard = difficulty == Difficulty::Hard;
+        assert_eq!(stage.game.is_finished(), !is_hard, "{difficulty:?}");
+        if is_hard {
+            assert_eq!(stage.message(), "The exit is closed while the alarm is raised.");
+            stage.game.guards.stun(0, 900);
+            stage.play(1, &[]);
+            assert_eq!(stage.game.outcome(), Outcome::Won);
+        }
+    }
+}

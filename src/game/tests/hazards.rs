@@ -59,6 +59,26 @@ fn spikes_hurt_once_for_each_thrust() {
 }
 
 #[test]
+fn the_nearest_spikes_are_heard_half_a_second_before_they_come_out() {
+    let rows = ["#####", "#..s#", "#@..#", "#.s.#", "#s..#", "#####"];
+    let mut stage = Stage::new(&rows, "", "s = { spikes = 2, delay = 1 }");
+    let is_out = |stage: &Stage| stage.game.world().things()[0].frame == Some(2);
+    let heard = stage.steps_until(60, &[], |stage| stage.hears(SoundKind::Spikes)).unwrap();
+    let out = stage.steps_until(60, &[], is_out).unwrap();
+    assert_eq!((heard, out), (31, 30));
+    let heard: Vec<_> = stage.game.heard().iter().map(|it| it.bearing.degrees()).collect();
+    assert!(matches!(heard[..], [bearing] if (bearing - 45.0).abs() < 1e-9), "{heard:?}");
+    // Nobody behind a wall hears them, and guards do not care.
+    let rows = ["########", "#@###s.#", "#####.g#", "########"];
+    let things = "s = { spikes = 2 }\ng = { guard = 'listener', heading = 0 }";
+    let mut stage = Stage::new(&rows, "", things);
+    for _ in 0..480 {
+        stage.play(1, &[]);
+        assert!(!stage.hears(SoundKind::Spikes) && stage.guard(0).mood == Mood::OnDuty);
+    }
+}
+
+#[test]
 fn who_jumps_over_spikes_is_not_hurt() {
     let rows = ["@.s......"];
     let (things, difficulty) = ("s = { spikes = 1 }", Difficulty::Normal);
@@ -77,7 +97,7 @@ fn who_jumps_over_spikes_is_not_hurt() {
 
 proptest! {
     #[test]
-    fn a_blow_from_behind_never_kills(
+    fn the_first_blow_from_outside_the_view_never_kills(
         degrees in 0.0..360.0,
         from in (-3.0..3.0, -3.0..3.0).prop_map(DVec2::from),
         points in 1..=20_u8,
@@ -88,11 +108,59 @@ proptest! {
         stage.game.player.health.points = health;
         let position = stage.position();
         let ahead = stage.game.player.motion.heading().direction();
-        stage.game.hurt_by_bolt(points, position + from);
-        let is_seen = ahead.dot(from) >= 0.0;
-        let expected = health.saturating_sub(points).max(u8::from(!is_seen));
+        let off = ahead.angle_to(from).to_degrees().abs();
+        prop_assume!((off - 33.0).abs() > 0.001);
+        stage.game.hurt_by_bolt(0, position + from, points);
+        let expected = health.saturating_sub(points).max(u8::from(off > 33.0));
         prop_assert_eq!(stage.points(), expected);
         prop_assert_eq!(stage.is_dead(), expected == 0);
+    }
+
+    /// Blows of several guards from any direction at any time: those in the view kill, those from
+    /// outside it kill only three seconds after the same guard has struck before.
+    #[test]
+    fn nobody_is_killed_from_outside_the_view_without_a_warning(
+        blows in prop::collection::vec((0..3_usize, 0.0..360.0, 20..200_usize), 1..20),
+    ) {
+        let mut stage = Stage::new(&["@"], "", "");
+        stage.game.player.health.points = 1;
+        let mut first = [None; 3];
+        for (guard, degrees, wait) in blows {
+            stage.play(wait, &[]);
+            let now = stage.game.steps;
+            let from = Heading::from_degrees(degrees).unwrap().direction();
+            stage.game.hurt_by_bolt(guard, stage.position() + from, 2);
+            if stage.is_dead() {
+                let is_seen = !(33.0..=327.0).contains(&degrees);
+                prop_assert!(is_seen || first[guard].is_some_and(|first| now >= first + 180));
+                break;
+            }
+            prop_assert!((33.0..=327.0).contains(&degrees));
+            first[guard] = first[guard].or(Some(now));
+        }
+    }
+}
+
+/// A player with one point who looks at a wall, with a guard behind them.
+#[test]
+fn a_player_who_looks_away_is_warned_and_then_killed() {
+    let rows = ["##########", "#......@##", "##########"];
+    for (name, place) in [("warden", "g"), ("hound", "g"), ("archer", "g")] {
+        let rows = rows.map(|row| row.replacen("#.", &format!("#{place}"), 1));
+        let rows: Vec<&str> = rows.iter().map(String::as_str).collect();
+        let guard = format!("g = {{ guard = '{name}', heading = 0 }}");
+        let mut stage = Stage::played(&rows, "", &guard, Difficulty::Easy);
+        stage.game.player.health.points = 1;
+        let is_warned = |stage: &Stage| stage.message().starts_with("A blow from outside");
+        stage.steps_until(1800, &[], is_warned).unwrap_or_else(|| panic!("{name}"));
+        assert_eq!((stage.points(), stage.game.flash().unwrap().left), (1, 180), "{name}");
+        let mut turned = Stage { game: stage.game.clone() };
+        let killed = stage.steps_until(1200, &[], Stage::is_dead).unwrap();
+        assert!((180..600).contains(&killed), "{name}: {killed}");
+        // Three seconds are enough to turn around.
+        turned.play(79, &[Intent::TurnRight]);
+        let heading = turned.game.player.motion.heading().degrees();
+        assert!((147.0..213.0).contains(&heading) && turned.points() == 1, "{name}: {heading}");
     }
 }
 
@@ -100,7 +168,7 @@ proptest! {
 fn a_blow_says_where_it_comes_from() {
     let mut stage = Stage::new(&["@"], "", "");
     let position = stage.position();
-    stage.game.hurt_by_bolt(1, position + DVec2::new(0.0, 2.0));
+    stage.game.hurt_by_bolt(0, position + DVec2::new(0.0, 2.0), 1);
     let flash = stage.game.flash().unwrap();
     let FlashKind::Hurt { bearing: Some(bearing) } = flash.kind else { panic!("{flash:?}") };
     assert!((bearing.degrees() - 90.0).abs() < 1e-9);

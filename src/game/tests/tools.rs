@@ -154,3 +154,42 @@ fn a_pebble_lures_a_guard_through_a_shut_door_and_a_hound_not() {
         assert_eq!(stage.steps_until(500, &[], passes).is_some(), comes, "{name}");
     }
 }
+
+#[test]
+fn a_push_makes_a_guard_stagger_back_and_lose_the_blow() {
+    for (name, behind) in [("warden", '.'), ("lantern", '.'), ("warden", 'v')] {
+        let row = format!("#@.g{behind}....#");
+        let rows = ["##########", &row, "##########"];
+        let guard = format!("g = {{ guard = '{name}', heading = 180 }}");
+        let mut stage = Stage::new(&rows, "v = { floor_height = -3 }", &guard);
+        stage.steps_until(900, &[], |stage| stage.hears(SoundKind::Windup)).unwrap();
+        stage.play(6, &[Intent::Forward]);
+        assert_eq!(stage.guard(0).mood, Mood::Attacking, "{name}");
+        let before = stage.guard(0).position.x;
+        stage.press(Intent::Strike);
+        assert_eq!(stage.guard(0).mood, Mood::Chasing, "{name}: {}", stage.message());
+        stage.play(28, &[]);
+        let moved = stage.guard(0).position.x - before;
+        if behind == '.' {
+            assert!((0.5..2.5).contains(&moved), "{name}: {moved}");
+        }
+        // Nobody is pushed over an edge.
+        assert_eq!((stage.guard(0).feet, stage.points()), (0.0, 6), "{name}");
+        assert_eq!(stage.game.tally().stunned, 0);
+    }
+}
+
+#[test]
+fn a_push_wakes_a_guard_who_sleeps_only_if_it_does_not_stun() {
+    for (name, degrees, is_down) in
+        [("warden", 180, false), ("warden", 0, true), ("archer", 180, true)]
+    {
+        let guard = format!("g = {{ guard = '{name}', heading = {degrees}, asleep = true }}");
+        let mut stage = Stage::new(&["####", "#@g#", "####"], "", &guard);
+        stage.play(4, &[Intent::Forward]).press(Intent::Strike);
+        assert_eq!(stage.guard(0).is_down, is_down, "{name} {degrees}");
+        if !is_down {
+            assert_eq!(stage.guard(0).mood, Mood::Wondering, "{name}");
+        }
+    }
+}

@@ -53,10 +53,11 @@ pub(in crate::game) enum MissileKind {
         by: usize,
     },
     Flask,
-    /// Hits for `points`; it was shot at `from`.
+    /// Hits for `points`; the guard with the index `by` has shot it at `from`.
     Bolt {
         points: u8,
         from: DVec2,
+        by: usize,
     },
 }
 
@@ -112,16 +113,16 @@ impl Missile {
         }
     }
 
-    /// A bolt along `direction`, a unit vector, that rises by `slope` for each cell.
+    /// A bolt of the guard `by` along `direction`, a unit vector, that rises by `slope` for each cell.
     pub(in crate::game) fn bolt(
         (position, height): (DVec2, f64),
         direction: DVec2,
         slope: f64,
-        points: u8,
+        (by, points): (usize, u8),
     ) -> Self {
         const SPEED: f64 = 10.0;
         Self {
-            kind: MissileKind::Bolt { points, from: position },
+            kind: MissileKind::Bolt { points, from: position, by },
             position,
             height,
             velocity: direction * SPEED,

@@ -5,7 +5,8 @@ use std::ops::Range;
 use glam::DVec3;
 use toml::de::DeTable;
 
-use super::{MOST_BODIES, coordinates, tables, too_many_bodies, vector};
+use super::bodies::Bodies;
+use super::{coordinates, tables, vector};
 use crate::color::Rgb;
 use crate::fault::document::Entry;
 use crate::fault::{Fault, quoted};
@@ -41,13 +42,16 @@ impl Kind {
         }
     }
 
-    /// Reads the bodies of `entry`, in a map that has `known` others; reports its faults.
-    pub(super) fn read_all(self, entry: &Entry<'_, '_>, known: usize) -> Vec<Body> {
-        let mut tables = tables(entry, self.example());
-        let most = MOST_BODIES.saturating_sub(known);
-        entry.faults.extend(tables.get(most).map(|(_, place)| too_many_bodies(place.clone())));
-        tables.truncate(most);
-        tables.into_iter().filter_map(|(table, place)| self.read(entry, table, place)).collect()
+    /// Reads the bodies of `entry` into `bodies`; reports its faults. Nothing is read after a body that
+    /// is one too many.
+    pub(super) fn read_all(self, entry: &Entry<'_, '_>, bodies: &mut Bodies) {
+        for (table, place) in tables(entry, self.example()) {
+            let Some(body) = self.read(entry, table, place.clone()) else { continue };
+            if let Err(fault) = bodies.add(body, place) {
+                entry.faults.push(fault);
+                return;
+            }
+        }
     }
 
     fn example(self) -> &'static str {

@@ -7,6 +7,7 @@ use std::path::{Path, PathBuf};
 use std::time::Duration;
 
 use super::{AdminReply, AdminRequest, MOST_REPLY, socket_of};
+use crate::fault::printable_path;
 
 /// Why a server has not answered.
 #[derive(Debug)]
@@ -51,22 +52,29 @@ fn converse(socket: &Path, request: &AdminRequest) -> io::Result<AdminReply> {
 
 impl fmt::Display for AdminFailure {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
-        let shown = |path: &Path| path.display().to_string().replace(char::is_control, "?");
         match self {
             Self::NoServer(folder) => {
-                write!(f, "no server runs with the data in {}", shown(folder))
+                write!(f, "no server runs with the data in {}", printable_path(folder))
             }
             Self::NotAllowed(socket) => {
-                write!(f, "{} belongs to another user: ask as that user, or as root", shown(socket))
+                write!(
+                    f,
+                    "{} belongs to another user: ask as that user, or as root",
+                    printable_path(socket)
+                )
             }
             Self::Failed(socket, error)
                 if matches!(error.kind(), ErrorKind::WouldBlock | ErrorKind::TimedOut) =>
             {
                 let seconds = PATIENCE.as_secs();
-                write!(f, "the server at {} has not answered for {seconds} s", shown(socket))
+                write!(
+                    f,
+                    "the server at {} has not answered for {seconds} s",
+                    printable_path(socket)
+                )
             }
             Self::Failed(socket, error) => {
-                write!(f, "the server at {} does not answer: {error}", shown(socket))
+                write!(f, "the server at {} does not answer: {error}", printable_path(socket))
             }
         }
     }

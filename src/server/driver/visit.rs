@@ -61,8 +61,8 @@ enum Happening {
 
 /// The time after which a session is woken again for what it has been woken for.
 const AGAIN: Duration = Duration::from_millis(250);
-/// A driver that does not look at its room wakes after this time, since idle visitors are put out and
-/// a room may close even if nothing is read or answered.
+/// A driver that sends, or that has a room and does not look at it, wakes after this time, since idle
+/// visitors are put out and a room may close even if nothing is read or answered.
 const PATIENCE: Duration = Duration::from_secs(1);
 /// The most bytes that wait behind a frame. They are queries and no frame, so some hundred are usual.
 const MOST_WAITING: usize = 64 << 10;
@@ -224,8 +224,10 @@ impl Visit {
         let looks_at = self.session.looks_at(now).filter(|_| is_free);
         let looks = looks_at.is_some_and(|time| time <= now);
         let quiet_end = looks_at.filter(|_| !looks);
-        let patience = now + PATIENCE;
-        let times = [wakes_at, quiet_end, self.ends_at, (!looks).then_some(patience)];
+        // Elsewhere, it is told when something happens.
+        let is_patient = is_sending || self.place.is_some() && !looks;
+        let patience = is_patient.then_some(now + PATIENCE);
+        let times = [wakes_at, quiet_end, self.ends_at, patience];
         let time = times.into_iter().flatten().min();
         let begun = self.shared.begun;
         let Self { place, rooms, replied, in_lobby, presence, .. } = self;

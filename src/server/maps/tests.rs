@@ -95,3 +95,14 @@ fn what_is_no_file_is_refused() {
     let absent = HostMaps::read(&folder.0.join("absent")).unwrap_err().to_string();
     assert!(absent.contains("can't be read"), "{absent}");
 }
+
+#[test]
+fn names_are_shown_without_characters_that_a_terminal_obeys() {
+    let folder = Scratch::with("names", &[("a\u{1b}[31m\nb.toml", HALL)]);
+    let sentence = r"maps/a\u{1b}[31m\nb.toml needs another name: 1 to 32 of the characters a to z, 0 to 9, - and _, then .toml";
+    assert_eq!(folder.fault(), sentence);
+    assert!(matches!(HostMaps::read(&folder.0), Err(MapsError::Sentence(_))));
+    let folder = Scratch::with("name", &[("\u{9b}.toml", HALL), ("wide.toml", "grid = 1\n")]);
+    let error = HostMaps::read(&folder.0).unwrap_err();
+    assert!(matches!(&error, MapsError::Report(text) if text.contains(r"\u{9b}.toml needs")));
+}

@@ -2,31 +2,15 @@ use proptest::prelude::*;
 
 use super::*;
 use crate::game::{Intent, Outcome};
-use crate::map;
+use crate::server::simulation;
 use crate::world::{Difficulty, FieldOfView};
 
-const HALL: &str = r##"
-title = "Hall"
-grid = '''
-###########
-#@.......>#
-#.........#
-#.........#
-###########
-'''
-[tiles]
-"#" = { wall = "#808080" }
-[things]
-"@" = { start = 0 }
-">" = { exit = true }
-"##;
-
+/// Two levels with a hall in which the exit is straight ahead.
 fn catalog() -> Arc<Catalog> {
-    let mut catalog = Catalog::default();
-    for name in ["hall", "second"] {
-        catalog.add(name, map::parse(HALL, name, &map::NoFiles).unwrap());
-    }
-    Arc::new(catalog)
+    let map = simulation::HALL
+        .replace("............>#", ".............#")
+        .replace("@............#", "@.......>....#");
+    Arc::new(simulation::catalog(&map))
 }
 
 fn room(mode: Mode) -> Room {
@@ -101,7 +85,7 @@ fn a_race_counts_down_and_is_won_at_the_exit() {
     assert_eq!((view.standings[0].member, view.standings[0].points), (one, 1));
     assert_eq!((view.standings[1].member, view.standings[1].points), (other, 0));
     let next = room.next_header();
-    assert_eq!((next.round, next.level.as_str()), (2, "second"));
+    assert_eq!((next.round, next.level.as_str()), (2, "museum"));
     assert_eq!(next.members.iter().map(|seat| seat.points).collect::<Vec<_>>(), [1, 0]);
 }
 
@@ -259,6 +243,6 @@ fn a_recording_is_played_again() {
     assert_eq!(reports.len(), 2);
     assert_eq!((reports[0].steps, reports[0].checksum), (steps, checksum));
     assert_eq!(reports[0].standings, [("Mara".to_owned(), 0)]);
-    assert_eq!((reports[1].round, reports[1].level.as_str()), (2, "second"));
+    assert_eq!((reports[1].round, reports[1].level.as_str()), (2, "museum"));
     assert!(replayed("nonsense", &catalog()).is_err());
 }

@@ -26,6 +26,7 @@ use crate::canvas::Canvas;
 use crate::color::palette::ColorDepth;
 use crate::server::line;
 use crate::server::room::{Phase, RoomView};
+use crate::terminal::thread_memory;
 use crate::tui::View;
 use crate::world::{Figure, World};
 
@@ -134,7 +135,7 @@ impl Visit {
             let ghosts: Vec<Ghost> =
                 stay.ghosts(room, &look).map(|seen| Ghost::of(&seen)).collect();
             let world = with_ghosts(game.world(), &ghosts);
-            let mut view = VIEW.take().unwrap_or_default();
+            let mut view = thread_memory::take(&VIEW).unwrap_or_default();
             options.draw(&*world, &camera, seconds, canvas, area, &mut view);
             stay.next_change = view.next_change();
             if let Some((_, player)) = seen_through {
@@ -145,7 +146,7 @@ impl Visit {
                     overlay.draw_hud(canvas, area, page == Page::Room);
                 }
             }
-            VIEW.set(Some(view));
+            thread_memory::put_back(&VIEW, Some(view));
         }
         if matches!(room.phase, Phase::Over { .. }) && matches!(page, Page::Room | Page::Chat) {
             members::draw_standings(canvas, area, room, look.depth);

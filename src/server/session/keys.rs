@@ -1,25 +1,18 @@
 //! Events: the effect of each key on each page.
 //!
-//! As in a game at home, what is irreversible requires a certain press: a repetition never answers a
-//! question. A byte that may be the first repetition of a key counts if no other follows soon.
+//! As in a game at home, a [`PendingKey`](crate::app::parts::PendingKey) decides which presses answer a
+//! question.
 
 use std::time::Duration;
 
 use super::page::Page;
 use super::visit::Visit;
 use super::{Ask, choice::Choice};
-use crate::app::parts::{Action, REPETITION, Selection, changes_by};
+use crate::app::parts::{Action, Selection, changes_by};
 use crate::server::line::Line;
 use crate::server::room::Deed;
 use crate::terminal::{Event, Key, KeyEvent, MouseEvent, Phase, QuitReason};
 use crate::tui::Press;
-
-/// A key that answers the question on the page if it does not repeat until that time.
-#[derive(Clone, Copy, Debug)]
-pub(super) struct Pending {
-    key: Key,
-    pub(super) until: Duration,
-}
 
 impl Visit {
     /// Handles an event of the terminal.
@@ -71,7 +64,7 @@ impl Visit {
     }
 
     fn press(&mut self, key: Key, press: Press) {
-        self.pending = None;
+        self.pending.forget();
         match self.page {
             Page::Help if self.help.scroll(key) => self.is_stale = true,
             Page::Leaving => self.press_to_answer(key, press),
@@ -83,8 +76,7 @@ impl Visit {
 
     /// Answers the question by a pending key that did not repeat.
     pub(super) fn settle(&mut self) {
-        let now = self.now;
-        if let Some(Pending { key, .. }) = self.pending.take_if(|pending| pending.until <= now) {
+        if let Some(key) = self.pending.settle(self.now) {
             self.answer(key);
         }
     }
@@ -177,10 +169,8 @@ impl Visit {
     }
 
     fn press_to_answer(&mut self, key: Key, press: Press) {
-        match press {
-            Press::Fresh => self.answer(key),
-            Press::Unclear => self.pending = Some(Pending { key, until: self.now + REPETITION }),
-            Press::Repeat => {}
+        if let Some(key) = self.pending.press(key, press, self.now) {
+            self.answer(key);
         }
     }
 

@@ -96,7 +96,7 @@ impl Visit {
         }
         self.page = page;
         self.menu = menu;
-        self.pending = None;
+        self.pending.forget();
         self.is_stale = true;
     }
 }

@@ -5,14 +5,14 @@ use std::time::Duration;
 
 use super::choice::Choice;
 use super::idle::{Idle, Patience};
-use super::keys::Pending;
 use super::line_entry::LineEntry;
 use super::look::Look;
 use super::news::{Ask, BoardRow, HostFacts, Identity};
 use super::page::{Page, Shelved};
 use super::stay::Stay;
 use crate::app::parts::{
-    Clock, Controls, Detection, HelpScroll, KeyContext, Menu, Pointer, Stats, StatusLine,
+    Clock, Controls, Detection, HelpScroll, KeyContext, Menu, PendingKey, Pointer, Stats,
+    StatusLine,
 };
 use crate::app::{Bindings, Configuration};
 use crate::game::Intents;
@@ -43,7 +43,7 @@ pub(super) struct Visit {
     /// Whether the driver is asked about the name.
     pub(super) awaits_name: bool,
     pub(super) help: HelpScroll,
-    pub(super) pending: Option<Pending>,
+    pub(super) pending: PendingKey,
     /// A sentence about what happened last.
     pub(super) note: Option<String>,
     /// That the server ends.
@@ -102,7 +102,7 @@ impl Visit {
             behind: Vec::new(),
             awaits_name: false,
             help: HelpScroll::default(),
-            pending: None,
+            pending: PendingKey::default(),
             note: None,
             draining: None,
             rooms: Arc::from([]),
@@ -162,7 +162,7 @@ impl Visit {
         let stay = self.stay.as_ref();
         let times = [
             Some(self.idle.next_at(&self.host.idle, self.idle_limit())),
-            self.pending.map(|pending| pending.until),
+            self.pending.until(),
             held.next_expiry(),
             (tap || turns).then(|| self.clock.step_after(0)),
             stay.and_then(|stay| stay.talk.next_end()),

@@ -16,11 +16,10 @@ use super::ink::{Ink, Inks, Notation, Price};
 use super::packed_cell::{BlockElement, Form, PackedCell};
 use super::pen::Pen;
 use super::screen::Row;
-use super::shared;
 use super::shift::{BYTE, CELL, Loss, Shifts};
 use super::style::Style;
 use super::trellis::{Action, Store, Terms, Trellis, Wanted};
-use crate::terminal::Fidelity;
+use crate::terminal::{Fidelity, thread_memory};
 
 /// Draws rows inexactly; keeps its memory between rows, one for each thread.
 #[derive(Debug, Default)]
@@ -56,9 +55,9 @@ impl RowEncoder {
         rows: impl Iterator<Item = Row<'a>>,
         fidelity: Fidelity,
     ) {
-        let mut encoder = shared::take(&ENCODER).unwrap_or_default();
+        let mut encoder = thread_memory::take(&ENCODER).unwrap_or_default();
         rows.for_each(|row| encoder.draw_row(pen, shifts, row, fidelity));
-        shared::put_back(&ENCODER, Some(encoder));
+        thread_memory::put_back(&ENCODER, Some(encoder));
     }
 
     /// Makes a row look like its target within `fidelity`.

@@ -13,8 +13,8 @@ use super::ink::Inks;
 use super::packed_cell::PackedCell;
 use super::pen::Pen;
 use super::screen::{Row, Screen};
-use super::shared;
 use super::shift::Shifts;
+use crate::terminal::thread_memory;
 
 /// The progress of refinement.
 #[derive(Debug)]
@@ -65,7 +65,7 @@ impl Refinement {
         if screen.is_exact() {
             return;
         }
-        let mut inexact = shared::take(&INEXACT).unwrap_or_default();
+        let mut inexact = thread_memory::take(&INEXACT).unwrap_or_default();
         inexact.cells.clear();
         for row in screen.inexact_rows() {
             if row.is_near() {
@@ -83,7 +83,7 @@ impl Refinement {
             }
             *row.exact = row.shown == row.targets;
         }
-        shared::put_back(&INEXACT, Some(inexact));
+        thread_memory::put_back(&INEXACT, Some(inexact));
     }
 
     /// Draws the next refinement frame of the rows that rest while others change.
@@ -91,7 +91,7 @@ impl Refinement {
         if screen.is_exact() {
             return;
         }
-        let mut inexact = shared::take(&INEXACT).unwrap_or_default();
+        let mut inexact = thread_memory::take(&INEXACT).unwrap_or_default();
         for mut row in screen.inexact_rows() {
             let Some(drawn) = usize::from(row.rested).checked_sub(PATIENCE) else { continue };
             if !row.is_near() {
@@ -106,7 +106,7 @@ impl Refinement {
             }
             *row.exact = row.shown == row.targets;
         }
-        shared::put_back(&INEXACT, Some(inexact));
+        thread_memory::put_back(&INEXACT, Some(inexact));
     }
 }
 

@@ -11,9 +11,9 @@ use ratatui::layout::{Position, Size};
 use super::ascii;
 use super::glyph_table::GlyphTable;
 use super::packed_cell::PackedCell;
-use super::shared;
 use super::shift::{Mark, Shift};
 use super::style::{Shade, Style};
+use crate::terminal::thread_memory;
 
 /// A model of a terminal's screen: for each cell, its shown appearance and its target.
 ///
@@ -193,7 +193,7 @@ impl Screen {
 
     /// Begins a whole frame, with blank targets.
     pub(super) fn begin_frame(&mut self) {
-        self.targets_before = shared::take(&BEFORE);
+        self.targets_before = thread_memory::take(&BEFORE);
         self.targets_before.clone_from(&self.targets);
         self.targets.fill(PackedCell::BLANK);
     }
@@ -205,7 +205,7 @@ impl Screen {
         for (changed, (targets, before)) in self.changed.iter_mut().zip(rows) {
             *changed |= targets != before;
         }
-        shared::put_back(&BEFORE, std::mem::take(&mut self.targets_before));
+        thread_memory::put_back(&BEFORE, std::mem::take(&mut self.targets_before));
     }
 
     /// Whether any target has changed since the rows were drawn.

@@ -2,8 +2,11 @@
 
 use std::time::Duration;
 
-/// The time that a terminal has to answer.
+/// The time that a terminal has to answer, if it never has.
 const TIMEOUT: Duration = Duration::from_secs(1);
+/// The time that a terminal has which has answered before, and so will again. A shell would print an
+/// answer that comes later.
+const TIMEOUT_AFTER_ANSWER: Duration = Duration::from_secs(5);
 
 /// The number of unanswered fences.
 #[derive(Clone, Copy, Debug, Default)]
@@ -41,7 +44,8 @@ impl Fences {
 
     /// The remaining time to wait for an answer; `None` if no answer is expected any more.
     pub(in crate::terminal) fn time_left(&self, now: Duration) -> Option<Duration> {
-        let left = TIMEOUT.checked_sub(now.saturating_sub(self.last_sent))?;
+        let timeout = if self.are_answered { TIMEOUT_AFTER_ANSWER } else { TIMEOUT };
+        let left = timeout.checked_sub(now.saturating_sub(self.last_sent))?;
         self.are_open().then_some(left)
     }
 }

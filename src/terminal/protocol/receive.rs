@@ -63,9 +63,14 @@ impl Protocol {
         self.events.push_back(event);
     }
 
+    /// Whether `is_such` holds for an event that was not taken yet.
+    pub(in crate::terminal) fn has_event(&self, is_such: impl Fn(&Event) -> bool) -> bool {
+        self.events.iter().any(is_such)
+    }
+
     /// Whether an event asks the program to end.
     pub(in crate::terminal) fn is_asked_to_quit(&self) -> bool {
-        self.events.iter().any(|event| matches!(event, Event::Quit(_)))
+        self.has_event(|event| matches!(event, Event::Quit(_)))
     }
 
     /// The time at which half a key is taken for a whole one.

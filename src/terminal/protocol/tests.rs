@@ -42,7 +42,8 @@ fn what_is_taken_is_given_back() {
     assert!(text.contains(sequence::POP_KEY_FLAGS) && text.contains(sequence::DISABLE_MOUSE));
     assert!(text.contains(sequence::QUERY_FENCE));
     assert!(!protocol.has_ended(now));
-    assert!(protocol.has_ended(now + Duration::from_secs(2)));
+    assert!(!protocol.has_ended(now + Duration::from_secs(4)), "it has answered before");
+    assert!(protocol.has_ended(now + Duration::from_secs(6)));
     protocol.receive(b"w\x1b[?62;22c", now);
     assert!(protocol.has_ended(now));
     protocol.finish();

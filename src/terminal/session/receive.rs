@@ -15,6 +15,12 @@ pub(super) enum Received {
 }
 
 impl Session {
+    /// Whether an event for which `is_such` holds has arrived and was not returned yet. Does not wait. After
+    /// an error, which [`Session::next_event`] returns, it is `true`.
+    pub fn has_event(&mut self, is_such: impl Fn(&Event) -> bool) -> bool {
+        self.receive(Some(Duration::ZERO)).is_err() || self.protocol.has_event(is_such)
+    }
+
     /// Waits until `wake_at` for input, signals, or room for bytes.
     pub(super) fn receive(&mut self, wake_at: Option<Duration>) -> io::Result<Received> {
         let timeout = wake_at.map(|time| time.saturating_sub(self.guard.now()));

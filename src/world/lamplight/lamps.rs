@@ -32,11 +32,14 @@ pub(super) struct Glows {
 
 impl World {
     /// Replaces all lamps that move, each in a cell. Only light of lamps is computed that differ
-    /// from those set before at the same index.
-    pub(crate) fn set_moving_lamps(&mut self, lamps: impl Iterator<Item = (Cell, Lamp)> + Clone) {
+    /// from those set before at the same index. Returns whether any does.
+    pub(crate) fn set_moving_lamps(
+        &mut self,
+        lamps: impl Iterator<Item = (Cell, Lamp)> + Clone,
+    ) -> bool {
         let Lamplight { is_needed, ref moving, .. } = self.lamplight;
         if !is_needed || lamps.clone().eq(moving.iter().copied()) {
-            return;
+            return false;
         }
         let before = moving.len();
         self.make_room_for_light();
@@ -61,6 +64,7 @@ impl World {
         }
         self.lamplight.moving.clear();
         self.lamplight.moving.extend(lamps);
+        true
     }
 
     /// Lights the [flames](ThingKind::Flame) in `cell`, or puts them out: then they give no light

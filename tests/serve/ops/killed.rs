@@ -9,6 +9,7 @@ use std::time::Duration;
 use rustix::process::Signal;
 
 use super::running::Running;
+use crate::play::enter_room;
 use crate::player::Player;
 use crate::support::cellcaster;
 use crate::transport::folder;
@@ -27,19 +28,6 @@ pub(super) fn user_key(folder: &Path) -> PathBuf {
     let made = keygen.args(["-q", "-t", "ed25519", "-N", "", "-f"]).arg(&path);
     assert!(made.status().unwrap().success());
     path
-}
-
-/// Takes a name, and goes into the first room.
-fn enter_room(player: &Player, name: &str) {
-    player.wait_for("Enter takes it");
-    player.send(format!("\x15{name}"));
-    player.wait_for(name);
-    player.send("\r");
-    player.wait_for("Open a room");
-    player.send("\r");
-    player.wait_for("Go in");
-    player.send("\r");
-    player.wait_for(&format!("{name} comes in."));
 }
 
 fn say(player: &Player, text: &str) {

@@ -15,8 +15,8 @@ use crate::emulator::Emulator;
 use crate::looks::looks;
 use crate::player::Player;
 
-/// Enter takes what is offered: the name, the room, the card; then one walks.
-fn enter_room(player: &Player, name: &str) {
+/// Takes a name, and goes into the first room: Enter takes what is offered.
+pub(crate) fn enter_room(player: &Player, name: &str) {
     player.wait_for("Enter takes it");
     // Ctrl-U empties the line.
     player.send(format!("\x15{name}"));

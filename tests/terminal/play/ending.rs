@@ -83,6 +83,25 @@ fn signals_end_it_in_the_middle_of_a_walk() {
     }
 }
 
+/// A shell would print the answer to the last request.
+#[test]
+fn a_terminal_that_answers_late_is_waited_for() {
+    for signal in [None, Some(Signal::TERM), Some(Signal::USR1)] {
+        let mut game = Game::start();
+        game.wait_for_releases();
+        game.wait_for_rest();
+        game.set_answer_time(Duration::from_millis(1500));
+        match signal {
+            Some(signal) => game.signal(signal),
+            None => game.send("\x1b[99;5u"),
+        }
+        // A signal in the middle of the wait does not end it.
+        thread::sleep(Duration::from_millis(700));
+        game.signal(Signal::WINCH);
+        game.wait_for_end().assert_given_back();
+    }
+}
+
 #[test]
 fn it_ends_even_while_the_link_is_down() {
     let mut game = Game::start();

@@ -84,22 +84,15 @@ impl Wanted {
         Self { lab, chroma, hue, cones, slopes }
     }
 
-    pub(super) fn lightness(&self) -> f32 {
-        self.lab[0]
-    }
-
     /// Whether a colour may be part of a mixture.
     fn admits(&self, color: &PaletteColor, weights: &Weights) -> bool {
-        let [lightness, red, yellow] = color.lab;
+        let [_, red, yellow] = color.lab;
         let color_chroma = chroma(color.lab);
         let fits = || {
             let along = red * self.hue[0] + yellow * self.hue[1];
-            self.chroma >= weights.least_chroma
-                && color_chroma <= self.chroma + weights.most_excess
-                && along >= weights.hue * color_chroma
+            self.chroma >= weights.least_chroma && along >= weights.hue * color_chroma
         };
-        let is_near = (lightness - self.lab[0]).abs() <= weights.most_difference;
-        is_near && (color_chroma < GREY || fits())
+        color_chroma < GREY || fits()
     }
 
     fn candidate(&self, color: &PaletteColor, weights: &Weights) -> Candidate {

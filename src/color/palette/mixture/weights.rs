@@ -1,76 +1,71 @@
 //! The weights and limits by which mixtures are rated, for each palette.
 
+use std::ops::RangeInclusive;
+
+use super::Mixture;
 use super::candidates::Candidate;
 
 /// The weights and limits by which mixtures are rated.
-#[derive(Clone, Copy)]
+#[derive(Clone, Debug)]
 pub(super) struct Weights {
-    /// The weight of a difference in chroma relative to one in lightness, for mixtures.
-    pub(super) chroma: f32,
-    /// The same for single colours, which would otherwise be grey too often.
-    pub(super) single: f32,
-    /// The weight of a difference in hue relative to one in saturation.
+    /// The shares of the brighter colour, of [`super::Mixture::WHOLE`].
+    pub(super) shares: RangeInclusive<u8>,
+    /// The factors of saturation, of dark colours and of bright ones.
+    pub(super) saturation: [f64; 2],
+    /// The weight of a difference in hue relative to one in saturation or in lightness.
     pub(super) hue_error: f32,
-    /// The weights of the differences in lightness and in chroma between the two colours.
+    /// The weights of the differences in lightness and in chroma between the two colours. The mean
+    /// square of the error of single pixels counts where both are 1.
     pub(super) contrast: [f32; 2],
-    /// The most by which the lightness of a colour may differ from that of the wanted one.
+    /// The most by which the two colours may differ.
     pub(super) most_difference: f32,
     /// The least cosine between the hues of a colour and of the wanted one.
     pub(super) hue: f32,
     /// Colours with less chroma are mixed of greys only.
     pub(super) least_chroma: f32,
-    /// The most by which the chroma of a colour may exceed that of the wanted one: more shows as
-    /// dots.
-    pub(super) most_excess: f32,
-    /// Whether they are those of dark colours: see [`super::Mixture::is_dark`].
-    pub(super) is_dark: bool,
 }
 
 impl Weights {
-    /// The contrast between two colours.
-    pub(super) fn contrast(&self, one: &Candidate, other: &Candidate) -> f32 {
-        let square = |index: usize| (one.lab[index] - other.lab[index]).powi(2);
-        self.contrast[0] * square(0) + self.contrast[1] * (square(1) + square(2))
+    /// The weighted square of the difference between two colours; none where they differ too much.
+    pub(super) fn contrast(&self, one: &Candidate, other: &Candidate) -> Option<f32> {
+        let [lightness, red, yellow] = [0, 1, 2].map(|i| (one.lab[i] - other.lab[i]).powi(2));
+        let chroma = red + yellow;
+        let is_low = lightness + chroma <= self.most_difference * self.most_difference;
+        is_low.then(|| self.contrast[0] * lightness + self.contrast[1] * chroma)
+    }
+
+    /// The factor of saturation of a colour with that lightness.
+    ///
+    /// Colours that are almost grey have a factor of 1, so that marble has no coloured dots.
+    pub(super) fn saturation(&self, lightness: f64, chroma: f64) -> f64 {
+        const DARK: f64 = 0.4;
+        const BRIGHT: f64 = 0.6;
+        const GREY: f64 = 0.01;
+        const COLOURED: f64 = 0.03;
+        let [dark, bright] = self.saturation;
+        let brightness = ((lightness - DARK) / (BRIGHT - DARK)).clamp(0.0, 1.0);
+        let part = ((chroma - GREY) / (COLOURED - GREY)).clamp(0.0, 1.0);
+        1.0 + part * (dark + (bright - dark) * brightness - 1.0)
     }
 }
 
 /// Chosen by eye in pictures of all levels, and by experiment with `cellcaster wire --palette 256`.
-pub(super) const WEIGHTS_OF_256: [(f32, Weights); 3] = {
-    let bright = Weights {
-        chroma: 2.0,
-        single: 1.0,
-        hue_error: 0.7,
-        contrast: [0.03, 0.01],
-        most_difference: 1.0,
-        hue: 0.5,
-        least_chroma: 0.005,
-        most_excess: 0.1,
-        is_dark: false,
-    };
-    let dark = Weights {
-        hue_error: 2.0,
-        contrast: [0.15, 0.08],
-        most_difference: 0.22,
-        hue: 0.77,
-        least_chroma: 0.022,
-        is_dark: true,
-        ..bright
-    };
-    let darkest = Weights { hue_error: 0.4, least_chroma: 0.03, ..dark };
-    [(0.4, darkest), (0.57, dark), (f32::INFINITY, bright)]
+pub(super) const WEIGHTS_OF_256: Weights = Weights {
+    shares: Mixture::WHOLE / 2..=Mixture::WHOLE / 2,
+    saturation: [1.7, 1.3],
+    hue_error: 2.0,
+    contrast: [0.82, 0.82],
+    most_difference: 0.18,
+    hue: 0.9,
+    least_chroma: 0.02,
 };
 /// For a few saturated colours, which users redefine: they are used sparingly.
-pub(super) const WEIGHTS_OF_16: [(f32, Weights); 1] = {
-    let weights = Weights {
-        chroma: 1.0,
-        single: 1.0,
-        hue_error: 1.0,
-        contrast: [0.008, 0.02],
-        most_difference: 1.0,
-        hue: 0.9,
-        least_chroma: 0.045,
-        most_excess: 1.0,
-        is_dark: false,
-    };
-    [(f32::INFINITY, weights)]
+pub(super) const WEIGHTS_OF_16: Weights = Weights {
+    shares: 1..=Mixture::WHOLE - 1,
+    saturation: [1.0, 1.0],
+    hue_error: 1.0,
+    contrast: [0.032, 0.08],
+    most_difference: 1.0,
+    hue: 0.9,
+    least_chroma: 0.045,
 };

@@ -1,8 +1,8 @@
-//! What moves a player who does not walk: floors carry those who stand on them, and blows push.
+//! What moves a player who does not walk: floors carry those who stand on them, blows and guards push.
 
 use glam::DVec2;
 
-use super::{Motion, STEP_HEIGHT};
+use super::{Body, Motion, RADIUS, STEP_HEIGHT, slide};
 use crate::world::{Cell, World};
 
 impl Motion {
@@ -24,6 +24,17 @@ impl Motion {
     pub(in crate::game) fn pushed(mut self, change: DVec2) -> Self {
         self.body.velocity += change;
         self
+    }
+
+    /// The same motion moved by `displacement`, as far as nothing is in the way; unchanged if the floor
+    /// there is not level with the feet.
+    #[must_use]
+    pub(in crate::game) fn moved_aside(self, world: &World, displacement: DVec2) -> Self {
+        let mut place = self.place(world);
+        let body = slide(&mut place, self.body, displacement, RADIUS);
+        let moved = Self { body: Body { velocity: self.body.velocity, ..body }, ..self };
+        let is_level = self.stands(world) && moved.stands(world) && moved.has_room(world);
+        if is_level { moved } else { self }
     }
 
     /// The height of the feet in `world`, if that has lifted or, where they stood, lowered them.

@@ -9,6 +9,7 @@ use rusqlite::{Connection, ErrorCode, OpenFlags};
 
 use super::salvage::salvage;
 use super::schema::{self, APPLICATION, MIGRATIONS};
+use crate::fault::printable_path;
 use crate::store::host::StoreFailure;
 use crate::store::private;
 
@@ -21,9 +22,9 @@ const PATIENCE: Duration = Duration::from_secs(5);
 /// The file in `folder` to read and write, and a sentence if it was damaged.
 pub(super) fn open(folder: &Path) -> Result<(Connection, Option<String>), StoreFailure> {
     let file = folder.join(FILE);
-    private::create_folder(folder)
-        .and_then(|()| private::create_file(&file))
-        .map_err(|error| StoreFailure::new(format!("{} can't be used: {error}", shown(&file))))?;
+    private::create_folder(folder).and_then(|()| private::create_file(&file)).map_err(|error| {
+        StoreFailure::new(format!("{} can't be used: {error}", printable_path(&file)))
+    })?;
     match connect(&file) {
         Ok(connection) => Ok((connection, None)),
         Err(Fault::Failure(failure)) => Err(failure),
@@ -42,7 +43,8 @@ pub(super) fn open_to_read(folder: &Path) -> Result<Option<Connection>, StoreFai
         connection.busy_timeout(PATIENCE)?;
         Ok((schema::version(&connection)?, connection))
     });
-    let unreadable = |error| StoreFailure::new(format!("{} can't be read: {error}", shown(&file)));
+    let unreadable =
+        |error| StoreFailure::new(format!("{} can't be read: {error}", printable_path(&file)));
     let (version, connection) = connection.map_err(unreadable)?;
     if version == 0 {
         return Ok(None);
@@ -51,7 +53,7 @@ pub(super) fn open_to_read(folder: &Path) -> Result<Option<Connection>, StoreFai
     if version < MIGRATIONS.len() {
         return Err(StoreFailure::new(format!(
             "{} has the older version {version}: start the host once, which renews it",
-            shown(&file)
+            printable_path(&file)
         )));
     }
     Ok(Some(connection))
@@ -66,7 +68,7 @@ enum Fault {
 impl Fault {
     fn or_damage_of(self, file: &Path) -> StoreFailure {
         match self {
-            Self::Damaged => StoreFailure::new(format!("{} is damaged", shown(file))),
+            Self::Damaged => StoreFailure::new(format!("{} is damaged", printable_path(file))),
             Self::Failure(failure) => failure,
         }
     }
@@ -91,7 +93,7 @@ fn connect(file: &Path) -> Result<Connection, Fault> {
     check_content(&connection)?;
     let mode: String = connection.query_row("PRAGMA journal_mode = WAL", [], |row| row.get(0))?;
     if !mode.eq_ignore_ascii_case("wal") {
-        let sentence = format!("{} can't have a write-ahead log here", shown(file));
+        let sentence = format!("{} can't have a write-ahead log here", printable_path(file));
         return Err(Fault::Failure(StoreFailure::new(sentence)));
     }
     connection.execute_batch(
@@ -109,11 +111,11 @@ fn check_origin(connection: &Connection, file: &Path) -> Result<(), Fault> {
     let version = schema::version(connection)?;
     let is_new = application == 0 && version == 0 && objects == 0;
     let sentence = if application != APPLICATION && !is_new {
-        format!("{} belongs to another program: it is left as it is", shown(file))
+        format!("{} belongs to another program: it is left as it is", printable_path(file))
     } else if version > MIGRATIONS.len() {
         format!(
             "{} has version {version}, which a newer Cellcaster wrote: it is left as it is",
-            shown(file)
+            printable_path(file)
         )
     } else {
         return Ok(());
@@ -133,12 +135,12 @@ fn replace(folder: &Path, file: &Path) -> Result<(Connection, String), StoreFail
         Ok(aside)
     });
     let aside = aside.map_err(|error| {
-        let file = shown(file);
+        let file = printable_path(file);
         StoreFailure::new(format!("{file} is damaged, and can't be put aside: {error}"))
     })?;
     let mut connection = connect(file).map_err(|fault| fault.or_damage_of(file))?;
     let rows = salvage(&folder.join(&aside), &mut connection)?;
-    let file = shown(file);
+    let file = printable_path(file);
     let sentence = format!(
         "{file} was damaged and is kept as {aside}; {rows} rows of it could be read and stay in force"
     );
@@ -162,9 +164,4 @@ fn with_end(file: &Path, end: &str) -> PathBuf {
     let mut name = file.as_os_str().to_owned();
     name.push(end);
     name.into()
-}
-
-/// A path for a sentence.
-fn shown(path: &Path) -> String {
-    path.display().to_string().replace(char::is_control, "?")
 }

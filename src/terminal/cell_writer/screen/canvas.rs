@@ -8,10 +8,10 @@ use ratatui::style::Color;
 use ratatui::widgets::Widget;
 
 use super::super::packed_cell::PackedCell;
-use super::super::shared;
 use super::Screen;
 use crate::canvas::Canvas;
 use crate::color::Rgb;
+use crate::terminal::thread_memory;
 
 thread_local! {
     /// The buffer into which widgets are drawn first.
@@ -60,7 +60,7 @@ impl Canvas for Screen {
 
     fn draw_widget(&mut self, widget: impl Widget, area: Rect) {
         let area = area.intersection(self.bounds());
-        let mut scratch = shared::take(&SCRATCH);
+        let mut scratch = thread_memory::take(&SCRATCH);
         scratch.area = area;
         scratch.content.clear();
         scratch.content.resize(area.area() as usize, Cell::EMPTY);
@@ -69,7 +69,7 @@ impl Canvas for Screen {
             let place = usize::from(position.y) * self.width + usize::from(position.x);
             self.set(place, cell);
         }
-        shared::put_back(&SCRATCH, scratch);
+        thread_memory::put_back(&SCRATCH, scratch);
     }
 }
 

@@ -1,4 +1,4 @@
-//! The hound: low, long and rust red.
+//! The hound: low, long and red. The red is pure, so that palettes of 256 colours show it in a dim room.
 
 use glam::{DAffine3, DVec3};
 
@@ -6,16 +6,16 @@ use super::super::GuardFrame;
 use super::super::model::skeleton::{bend, turned};
 use super::super::model::{Model, Paint, glowing, matt};
 
-const COAT: Paint = matt(0xff, 0x6c, 0x28);
-const BACK: Paint = matt(0xd8, 0x3c, 0x1c);
-const BELLY: Paint = matt(0xff, 0xbc, 0x70);
-const PAWS: Paint = matt(0xa4, 0x38, 0x20);
+const COAT: Paint = matt(0xff, 0x40, 0x18);
+const BACK: Paint = matt(0xe8, 0x18, 0x10);
+const BELLY: Paint = matt(0xff, 0x78, 0x48);
+const PAWS: Paint = matt(0xb8, 0x20, 0x14);
 const NOSE: Paint = matt(0x28, 0x14, 0x18);
 const MOUTH: Paint = matt(0xd0, 0x28, 0x38);
 const TEETH: Paint = glowing(0xff, 0xff, 0xff);
 const EYES: Paint = glowing(0xff, 0xe8, 0x50);
 const LID: Paint = matt(0x40, 0x18, 0x1c);
-const COLLAR: Paint = matt(0xff, 0xff, 0xff);
+const COLLAR: Paint = matt(0xff, 0xd8, 0x80);
 
 /// How the hound is posed, in texels from the middle of its feet.
 #[derive(Clone, Copy)]

@@ -1,0 +1,87 @@
+//! Pictures that take long, and the keys that arrive meanwhile. Work is counted, not timed.
+
+use std::iter;
+
+use ratatui::buffer::Buffer;
+use ratatui::layout::{Rect, Size};
+
+use super::*;
+use crate::app::interruption::Rendered;
+use crate::terminal::{Event, QuitReason};
+
+/// The largest window.
+const WINDOW: Size = Size { width: 1000, height: 200 };
+
+/// As many spheres in one place as a map can have: the whole picture takes thousands of bands.
+fn spheres() -> Rig {
+    let sphere = "{ center = [9, 0, 0], radius = 8, color = '#fff000' },".repeat(141);
+    let text = format!("start = {{ at = [0, 0, 0], heading = 0 }}\nsphere = [{sphere}]\n");
+    let level = crate::map::parse_level(&text, "spheres", &crate::map::NoFiles).unwrap();
+    Rig::of(App::new(Levels::new(level, iter::empty()), Settings::default()), Some((500, 30)))
+}
+
+fn press(key: Key) -> Event {
+    let modifiers = Modifiers::default();
+    Event::Key(KeyEvent { key, base: None, modifiers, phase: Phase::Press })
+}
+
+/// Renders while `event` arrives before the band of this number. Returns the number of bands.
+fn render(app: &mut App, event: Event, band: usize) -> (Rendered, usize) {
+    let mut bands = 0;
+    let rendered = app.render_unless(WINDOW, &mut |comes_first| {
+        bands += 1;
+        bands > band && comes_first(&event)
+    });
+    (rendered, bands)
+}
+
+fn text(app: &mut App) -> String {
+    let mut buffer = Buffer::empty(Rect::from(WINDOW));
+    app.paint(&mut buffer);
+    buffer.content.iter().map(ratatui::buffer::Cell::symbol).collect()
+}
+
+#[test]
+fn q_is_answered_between_two_bands() {
+    let mut rig = spheres();
+    let q = press(Key::Char('q'));
+    assert_eq!(render(&mut rig.app, q, 3), (Rendered::Interrupted, 4));
+    assert!(rig.app.is_stale());
+    // Until it is handled, nothing is painted.
+    assert_eq!(render(&mut rig.app, q, 0), (Rendered::Interrupted, 1));
+    rig.tap(Key::Char('q'), 20);
+    // The question is shown over what there is of the picture.
+    assert_eq!(render(&mut rig.app, q, 1), (Rendered::Partial, 1));
+    assert!(text(&mut rig.app).contains("any other key goes on"));
+    // Then the picture is rendered again, and any key interrupts it.
+    assert!(rig.app.is_stale());
+    assert_eq!(render(&mut rig.app, press(Key::Enter), 3), (Rendered::Interrupted, 4));
+    rig.tap(Key::Enter, 200);
+    assert!(rig.app.has_left);
+}
+
+#[test]
+fn what_ends_the_program_or_changes_the_window_comes_first_and_other_keys_wait() {
+    for event in [Event::Quit(QuitReason::Terminated), Event::Suspend, Event::Resized] {
+        assert_eq!(render(&mut spheres().app, event, 1), (Rendered::Interrupted, 2));
+    }
+    for event in [press(W), press(Key::Char('+')), Event::FocusGained] {
+        let mut rig = spheres();
+        let mut bands = 0;
+        let rendered = rig.app.render_unless(WINDOW, &mut |comes_first| {
+            bands += 1;
+            assert!(!comes_first(&event), "{event:?}");
+            // Ends the test, not the picture.
+            bands > 9
+        });
+        assert_eq!(rendered, Rendered::Interrupted);
+    }
+}
+
+#[test]
+fn after_a_new_size_nothing_partial_is_shown() {
+    let mut rig = spheres();
+    assert_eq!(render(&mut rig.app, Event::Resized, 1), (Rendered::Interrupted, 2));
+    rig.app.terminal_changed(None, ColorDepth::True);
+    assert_eq!(render(&mut rig.app, Event::Resized, 1), (Rendered::Interrupted, 2));
+}
