@@ -21,6 +21,9 @@ mod admin;
 mod admission;
 mod config;
 mod driver;
+#[cfg(fuzzing)]
+#[doc(hidden)]
+pub mod fuzzing;
 mod ghost;
 mod governor;
 mod host_key;

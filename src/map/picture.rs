@@ -7,7 +7,7 @@ use std::fmt;
 use std::io::Cursor;
 use std::num::NonZeroU32;
 
-use png::{ColorType, Decoder, DecodingError, Limits, Transformations};
+use png::{ColorType, Decoder, DecodingError, Info, Limits, Transformations};
 
 use super::textures::TextureFileError;
 use crate::color::Rgb;
@@ -52,6 +52,8 @@ impl Budget {
 pub(super) enum PictureError {
     Unreadable(TextureFileError),
     Broken(DecodingError),
+    /// The palette ends within a colour.
+    BrokenPalette,
     TooLarge {
         width: u32,
         height: u32,
@@ -69,6 +71,7 @@ impl fmt::Display for PictureError {
                 let error = error.to_string();
                 write!(f, "is no whole PNG picture: {}", error.trim_end_matches('.'))
             }
+            Self::BrokenPalette => f.write_str("is no whole PNG picture: its palette is broken"),
             Self::TooLarge { width, height } => {
                 write!(f, "is {width}×{height} texels, and may be {MAX_SIDE}×{MAX_SIDE} at most")
             }
@@ -86,7 +89,7 @@ impl PictureError {
     pub(super) fn help(&self, use_of_file: &'static str) -> &'static str {
         match self {
             Self::Unreadable(_) => use_of_file,
-            Self::Broken(_) => "save the picture again, as PNG",
+            Self::Broken(_) | Self::BrokenPalette => "save the picture again, as PNG",
             Self::TooLarge { .. } => "scale it down: 64×64 texels are plenty in a terminal",
             Self::OneTooMany => "scale them down: 64×64 texels are plenty in a terminal",
         }
@@ -159,6 +162,9 @@ pub(super) fn decode(bytes: &[u8], budget: &mut Budget) -> Result<Picture, Pictu
     }
     budget.take(width * height, 0)?;
     let mut reader = decoder.read_info()?;
+    if !has_whole_palette(reader.info()) {
+        return Err(PictureError::BrokenPalette);
+    }
     let mut samples = vec![0; reader.output_buffer_size().ok_or(DecodingError::LimitsExceeded)?];
     let picture = reader.next_frame(&mut samples)?;
     let sizes = (NonZeroU32::new(picture.width), NonZeroU32::new(picture.height));
@@ -167,6 +173,12 @@ pub(super) fn decode(bytes: &[u8], budget: &mut Budget) -> Result<Picture, Pictu
     };
     let (color_type, row_size) = (picture.color_type, picture.line_size);
     Ok(Picture { width, height, color_type, samples, row_size })
+}
+
+/// Whether the palette ends with a whole colour. The decoder panics at one that does not.
+fn has_whole_palette(info: &Info<'_>) -> bool {
+    let palette = info.palette.as_deref().unwrap_or_default();
+    info.color_type != ColorType::Indexed || palette.len().is_multiple_of(3)
 }
 
 /// The colour and alpha of one texel of 8-bit samples.

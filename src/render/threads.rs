@@ -13,8 +13,9 @@ use super::{Frame, FrameSize};
 use crate::raster::{SurfaceBuffer, Target};
 use crate::visibility::Stats;
 
-/// The number of pixels for each thread: for fewer, starting the thread takes longer than it saves.
-const PIXELS_OF_A_THREAD: usize = 1 << 19;
+/// The number of pixels for each thread: for fewer, starting the thread takes longer than it saves. A
+/// fuzz target compares threads in small pictures.
+const PIXELS_OF_A_THREAD: usize = 1 << if cfg!(fuzzing) { 8 } else { 19 };
 
 /// The number of bands for each thread. Each band costs the preparation of all columns.
 const BANDS_OF_A_THREAD: usize = 2;

@@ -12,6 +12,8 @@ mod playing;
 mod several;
 mod steps;
 
+#[path = "../support/open.rs"]
+mod open;
 #[path = "../support/reach.rs"]
 mod reach;
 #[path = "../support/mod.rs"]

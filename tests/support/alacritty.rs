@@ -8,7 +8,7 @@ use alacritty_terminal::event::{Event, EventListener};
 use alacritty_terminal::grid::Dimensions;
 use alacritty_terminal::index::{Column, Line};
 use alacritty_terminal::term::cell::Cell;
-use alacritty_terminal::term::{Config, Term};
+use alacritty_terminal::term::{Config, Term, TermMode};
 use alacritty_terminal::vte::ansi::{Color, NamedColor, Processor, Rgb};
 
 /// Alacritty without its window.
@@ -76,6 +76,11 @@ impl Alacritty {
 
     pub(crate) fn resize(&mut self, columns: u16, rows: u16) {
         self.terminal.resize(Window(columns.into(), rows.into()));
+    }
+
+    /// The modes that programs set.
+    pub(crate) fn modes(&self) -> TermMode {
+        *self.terminal.mode()
     }
 
     /// What the screen shows, row by row.

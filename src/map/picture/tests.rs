@@ -80,6 +80,21 @@ fn a_palette_with_and_without_alpha() {
 }
 
 #[test]
+fn a_palette_that_ends_within_a_colour_is_an_error() {
+    for length in 3..=3 * 256 {
+        let palette = vec![7; length];
+        let bytes = encoded_with(ColorType::Indexed, BitDepth::Eight, &[0, 0], |encoder| {
+            encoder.set_palette(palette);
+        });
+        let decoded = decode(&bytes, &mut Budget::default());
+        match length % 3 {
+            0 => assert!(decoded.is_ok(), "{length}"),
+            _ => assert!(matches!(decoded, Err(PictureError::BrokenPalette)), "{length}"),
+        }
+    }
+}
+
+#[test]
 fn one_clear_colour() {
     let samples = [1, 2, 3, 4, 5, 6];
     let bytes = encoded_with(ColorType::Rgb, BitDepth::Eight, &samples, |encoder| {

@@ -72,6 +72,12 @@ impl<L: Log, W: Write> Recorded<L, W> {
     pub(crate) fn new(log: L, output: W) -> Self {
         Self { log, output }
     }
+
+    /// What was recorded.
+    #[cfg(fuzzing)]
+    pub(in crate::server) fn output(&self) -> &W {
+        &self.output
+    }
 }
 
 impl<L: Log, W: Write + Send> Log for Recorded<L, W> {

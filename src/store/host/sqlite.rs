@@ -197,10 +197,14 @@ impl HostStore for SqliteStore {
     }
 }
 
-#[cfg(test)]
+#[cfg(any(test, fuzzing))]
 impl SqliteStore {
     /// A store without a file.
-    pub(super) fn in_memory() -> Self {
+    ///
+    /// # Panics
+    /// Without memory for it.
+    #[doc(hidden)]
+    pub fn in_memory() -> Self {
         let mut connection = Connection::open_in_memory().unwrap();
         connection.execute_batch("PRAGMA foreign_keys = ON").unwrap();
         schema::migrate(&mut connection, schema::MIGRATIONS).unwrap();

@@ -208,16 +208,20 @@ impl fmt::Display for Unverified {
 
 impl std::error::Error for Unverified {}
 
-#[cfg(test)]
+#[cfg(any(test, fuzzing))]
 impl VerifiedLevel {
-    pub(super) fn made_up(board: LevelBoard, tally: Tally, rank: Rank, script: &str) -> Self {
+    /// A run that nobody has verified.
+    #[doc(hidden)]
+    pub fn made_up(board: LevelBoard, tally: Tally, rank: Rank, script: &str) -> Self {
         Self { board, tally, rank, script: script.to_owned() }
     }
 }
 
-#[cfg(test)]
+#[cfg(any(test, fuzzing))]
 impl VerifiedDescent {
-    pub(super) fn made_up(rules: Rules, reached: Reached, script: &str) -> Self {
+    /// A descent that nobody has verified.
+    #[doc(hidden)]
+    pub fn made_up(rules: Rules, reached: Reached, script: &str) -> Self {
         Self { rules, reached, script: script.to_owned() }
     }
 }

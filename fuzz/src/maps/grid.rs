@@ -1,0 +1,78 @@
+//! A map with a grid: a game in it, and pictures of it.
+
+use cellcaster::game::{Game, Intents, Rules, is_exit_out_of_reach};
+use cellcaster::world::{Difficulty, FieldOfView, World};
+
+use super::intents::{Stretch, stretch, usual};
+use super::views::{self, Format, Old};
+use crate::bytes::Bytes;
+use crate::open::is_in_the_open;
+
+/// The most steps of a game.
+const MOST_STEPS: u64 = 600;
+/// The most steps that a wait is compared with.
+const MOST_QUIET_STEPS: u64 = 40;
+/// The most pictures, of a map of up to that many cells.
+const MOST_PICTURES: usize = 4;
+
+/// Plays in `world`, and draws it before, meanwhile and afterwards.
+pub(super) fn check(world: World, choices: &mut Bytes) {
+    // Bounded work, whatever it finds.
+    is_exit_out_of_reach(&world);
+    let script = if choices.is_empty() { usual() } else { Vec::new() };
+    let format = Format::new(choices);
+    let mut old = Old::new(&format);
+    old.check(&world, &world.start_camera(format.field_of_view), &format, choices);
+    let difficulty = choices.pick(&[Difficulty::Normal, Difficulty::Easy, Difficulty::Hard]);
+    let mut game = Game::with_rules(world, Rules { difficulty, seed: choices.byte().into() });
+    check_place(&game);
+    for stretch in script {
+        play(&mut game, &stretch);
+    }
+    let mut pictures = 0;
+    while !choices.is_empty() && game.steps() < MOST_STEPS && !game.is_finished() {
+        let before = game.steps();
+        play(&mut game, &stretch(choices));
+        if game.steps() == before && game.health().is_gone() {
+            break;
+        }
+        if pictures < MOST_PICTURES && choices.below(4) == 0 {
+            pictures += 1;
+            let format = Format::new(choices);
+            let camera = views::camera(game.world(), &format, choices);
+            old.check(game.world(), &camera, &format, choices);
+        }
+    }
+    old.check(game.world(), &game.camera(format.field_of_view), &format, choices);
+}
+
+/// Plays a stretch, and checks each step of it.
+fn play(game: &mut Game, Stretch { steps, intents }: &Stretch) {
+    check_wait(game, *intents);
+    for _ in 0..*steps {
+        game.step(*intents);
+        check_place(game);
+    }
+}
+
+/// Checks that the player is not inside anything.
+fn check_place(game: &Game) {
+    let camera = game.camera(FieldOfView::default());
+    let (place, feet, eye) = (camera.position(), game.feet(), camera.eye());
+    assert!(is_in_the_open(game.world(), place, feet), "inside of something: {place}, {feet}");
+    assert!(feet < eye || feet.abs() > 1e8, "an eye at {eye}, feet at {feet}");
+}
+
+/// Checks that a wait equals as many steps.
+fn check_wait(game: &Game, intents: Intents) {
+    let quiet = game.quiet_steps(intents).min(MOST_QUIET_STEPS);
+    if quiet == 0 {
+        return;
+    }
+    let (mut stepping, mut waiting) = (game.clone(), game.clone());
+    for _ in 0..quiet {
+        stepping.step(intents);
+    }
+    waiting.wait(quiet);
+    assert!(stepping == waiting, "{quiet} quiet steps are not one wait");
+}

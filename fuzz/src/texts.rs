@@ -1,0 +1,143 @@
+//! Texts that players write or keep: the first byte says which one, the others are the text.
+//!
+//! - A configuration and a script that are read are written as texts that read as the same, and a
+//!   script can be played.
+//! - A damaged file of progress is read as far as it can be, is kept, and does not hinder a record.
+
+use std::fs;
+use std::path::PathBuf;
+
+use cellcaster::app::Configuration;
+use cellcaster::game::{Game, Script};
+use cellcaster::map::builtin;
+use cellcaster::store::{Preferences, Slot, Store};
+use cellcaster::terminal::{Fidelity, Key};
+use cellcaster::world::Difficulty;
+
+use crate::faults::check_faults;
+
+/// The most steps of a script that are played.
+const MOST_STEPS: usize = 300;
+
+/// Reads the text in the way that its first byte says.
+pub fn run(data: &[u8]) {
+    let Some((kind, content)) = data.split_first() else { return };
+    match kind % 4 {
+        0 => configuration(&String::from_utf8_lossy(content)),
+        1 => script(content),
+        2 => progress(content),
+        _ => names(&String::from_utf8_lossy(content)),
+    }
+}
+
+fn configuration(text: &str) {
+    match Configuration::parse(text, "config.toml") {
+        Err(faults) => check_faults(&faults),
+        Ok(read) => {
+            let written = read.to_string();
+            match Configuration::parse(&written, "config.toml") {
+                Ok(again) => assert!(again == read, "another one is written:\n{written}"),
+                Err(faults) => panic!("{faults}\nin what was written:\n{written}"),
+            }
+        }
+    }
+}
+
+fn script(content: &[u8]) {
+    let read = match Script::from_bytes(content.to_vec(), "it") {
+        Err(faults) => return check_faults(&faults),
+        Ok(read) => read,
+    };
+    let written = read.to_string();
+    match Script::parse(&written, "it") {
+        Ok(again) => assert_eq!(again, read, "another one is written:\n{written}"),
+        Err(faults) => panic!("{faults}\nin what was written:\n{written}"),
+    }
+    let sum: u64 = read.sections().iter().map(|section| section.steps()).sum();
+    assert_eq!(read.steps(), sum);
+    let Ok(world) = builtin::LEVELS[0].world() else { unreachable!("it is built in") };
+    let mut game = Game::new(world);
+    for (section, intents) in read.iter().take(MOST_STEPS) {
+        assert!(section < read.sections().len());
+        game.step(intents);
+    }
+}
+
+fn names(text: &str) {
+    match text.parse::<Key>() {
+        Ok(key) => assert_eq!(key.to_string().parse(), Ok(key)),
+        Err(unknown) => assert!(!unknown.to_string().contains(char::is_control)),
+    }
+    if let Ok(fidelity) = text.parse::<Fidelity>() {
+        assert_eq!(fidelity.to_string().parse::<Fidelity>().ok(), Some(fidelity));
+    }
+}
+
+/// A folder in memory if there is one, which is removed.
+struct Folder(PathBuf);
+
+impl Folder {
+    fn new() -> Self {
+        let memory = PathBuf::from("/dev/shm");
+        let parent = if memory.is_dir() { memory } else { std::env::temp_dir() };
+        let folder = parent.join(format!("cellcaster-fuzz-{}", std::process::id()));
+        _ = fs::remove_dir_all(&folder);
+        fs::create_dir_all(&folder).expect("a folder for temporary files");
+        Self(folder)
+    }
+}
+
+impl Drop for Folder {
+    fn drop(&mut self) {
+        _ = fs::remove_dir_all(&self.0);
+    }
+}
+
+fn progress(content: &[u8]) {
+    let folder = Folder::new();
+    let file = folder.0.join("progress.toml");
+    fs::write(&file, content).expect("a full disk");
+    let (mut store, sentence) = Store::open(&folder.0);
+    let seen = look_at(&store);
+    let is_newer = sentence.as_deref().is_some_and(|it| it.contains("newer"));
+    let preferences = Preferences { compass: !store.preferences().compass, ..store.preferences() };
+    store.set_preferences(preferences);
+    let begun = store.begin_daily(20_261_122);
+    assert_eq!(begun, !seen.had_daily);
+    if is_newer {
+        assert_eq!(fs::read(&file).expect("it is there"), content, "a newer file is changed");
+        return;
+    }
+    assert_eq!(store.trouble().filter(|it| !it.contains("damaged")), None);
+    // Everything that was read is still there, and nothing is damaged any more.
+    let (again, sentence) = Store::open(&folder.0);
+    assert_eq!(sentence, None, "damaged again:\n{}", fs::read_to_string(&file).unwrap_or_default());
+    assert_eq!(again.preferences(), preferences);
+    assert_eq!(look_at(&again), Seen { had_daily: true, ..seen });
+}
+
+/// What a store says.
+#[derive(Debug, PartialEq)]
+struct Seen {
+    won: Vec<String>,
+    bests: Vec<String>,
+    descent: String,
+    had_daily: bool,
+}
+
+fn look_at(store: &Store) -> Seen {
+    let difficulties = [Difficulty::Easy, Difficulty::Normal, Difficulty::Hard];
+    let won = difficulties.iter().flat_map(|&it| store.won(it).map(str::to_owned));
+    let bests = difficulties
+        .iter()
+        .flat_map(|&it| store.won(it).map(move |level| format!("{:?}", store.best(level, it))));
+    for slot in [Slot::Level, Slot::Descent] {
+        _ = store.saved(slot);
+    }
+    Seen {
+        won: won.collect(),
+        bests: bests.collect(),
+        descent: format!("{:?}", store.best_descent()),
+        had_daily: store.daily(20_261_122).is_some(),
+    }
+}
