@@ -98,6 +98,20 @@ impl Default for Health {
 }
 
 impl Flash {
+    /// The steps over which a flash fades at its end.
+    pub(crate) const FADE: u16 = 12;
+
+    /// The share of its full strength, from 0 to 1.
+    #[cfg(feature = "terminal")]
+    pub(crate) fn strength(self) -> f64 {
+        f64::from(self.left.min(Self::FADE)) / f64::from(Self::FADE)
+    }
+
+    /// The number of steps in which it does not fade.
+    pub(super) fn quiet_steps(self) -> u64 {
+        u64::from(self.left.saturating_sub(Self::FADE))
+    }
+
     /// A flash for `harm`.
     pub(super) fn hurt(harm: &Harm) -> Self {
         Self { kind: FlashKind::Hurt { bearing: harm.bearing }, left: HURT_STEPS }

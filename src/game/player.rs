@@ -85,17 +85,19 @@ impl Player {
     /// The number of steps in which nothing changes but the player's clocks; `None` if nothing ever
     /// will.
     pub(super) fn quiet_steps(&self) -> Option<u64> {
-        let flash = self.flash.map(|flash| u64::from(flash.left.saturating_sub(1)));
+        let flash = self.flash.map(Flash::quiet_steps);
         let quiet = [self.notice.quiet_steps(), self.hearing.quiet_steps(), flash];
         quiet.into_iter().flatten().min()
     }
 
-    /// Advances the player's clocks by `steps`, except those of what they hear. Returns whether a message or a flash ended.
+    /// Advances the player's clocks by `steps`, except those of what they hear. Returns whether a
+    /// message ended, or a flash faded.
     pub(super) fn wait(&mut self, steps: u64) -> bool {
         let short = u16::try_from(steps).unwrap_or(u16::MAX);
         self.strike_wait = self.strike_wait.saturating_sub(short);
-        let had_flash = self.flash.is_some();
+        let shown = |flash: Option<Flash>| flash.map_or(0, |flash| flash.left.min(Flash::FADE));
+        let before = shown(self.flash);
         self.flash = self.flash.and_then(|flash| flash.after(short));
-        self.notice.wait(steps) | (had_flash && self.flash.is_none())
+        self.notice.wait(steps) | (shown(self.flash) != before)
     }
 }

@@ -23,8 +23,6 @@ const GAIN_OPACITY: f64 = 130.0;
 /// the others.
 const NEAR_SIDE: f64 = 0.3;
 const OTHER_SIDES: f64 = 0.08;
-/// The steps over which a flash fades at its end.
-const FADES: f64 = 12.0;
 
 /// A side of the picture.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -61,7 +59,7 @@ pub(in crate::app) fn tint(frame: &mut Frame, flash: &Flash, heading: Heading) {
         FlashKind::Hurt { .. } => (HURT, HURT_OPACITY),
         FlashKind::Gain => (GAIN, GAIN_OPACITY),
     };
-    let opacity = opacity * (f64::from(flash.left) / FADES).min(1.0);
+    let opacity = opacity * flash.strength();
     let sides = Sides::of(flash, heading);
     // A flash without a direction is thin on all sides.
     let (width, height) = (f64::from(frame.width()), f64::from(frame.height()));
