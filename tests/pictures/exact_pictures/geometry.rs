@@ -135,9 +135,12 @@ impl<'a> Geometry<'a> {
         let sign = if from_middle.is_negative() { -1 } else { 1 };
         let next = tile_in(here.0 + sign * way.0, here.1 + sign * way.1);
         let light = |tile: Tile| exact(f64::from(tile.light.unwrap().in_256ths()));
-        let light_here = light(tile_in(here.0, here.1).unwrap());
+        let tile_here = tile_in(here.0, here.1).unwrap();
+        let light_here = light(tile_here);
+        // A camera inside a wall sees the next wall in the light of its own, which nothing passes.
+        let is_open = |tile: &Tile| tile.kind == TileKind::Open;
         let light_next = match next {
-            Some(next) if next.kind == TileKind::Open => light(next),
+            Some(next) if is_open(&next) && is_open(&tile_here) => light(next),
             _ => light_here.clone(),
         };
         let share = from_middle.abs();
