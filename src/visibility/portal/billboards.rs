@@ -26,6 +26,8 @@ pub(super) struct RayPart {
     pub(super) from: f64,
     pub(super) to: f64,
     pub(super) gap: GapId,
+    /// The height of the top of a pillar below it, which hides what is lower.
+    pub(super) top_below: Option<f64>,
     pub(super) image: ImageId,
 }
 
@@ -139,7 +141,10 @@ fn rows_in(scene: Scene<'_>, gaps: &TileGaps, billboard: &Billboard, part: &RayP
     }
     let gap = gaps.gap(part.gap);
     let top = gap.row_of_top(scene.projection, billboard.depth);
-    let bottom = gap.row_of_bottom(scene.projection, billboard.depth);
+    let bottom = match part.top_below {
+        Some(height) => scene.projection.row_of_height(height, billboard.depth),
+        None => gap.row_of_bottom(scene.projection, billboard.depth),
+    };
     let start = billboard.rows.start.max(part.rows.start).max(top);
     start..billboard.rows.end.min(part.rows.end).min(bottom)
 }

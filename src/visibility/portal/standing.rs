@@ -67,6 +67,9 @@ impl ColumnWalk<'_> {
         if !is_seen || ray.rows.is_empty() {
             return;
         }
+        // What stands on the top is in front of it.
+        self.keep_part(ray, end, Some(top));
+        ray.from = end;
         let tile = ray.place.map(|(_, tile)| tile);
         let surface = FlatSurface { tile, part: Part::Top, image: ray.image };
         let Range { start, end: bottom } = ray.rows;

@@ -249,7 +249,7 @@ impl<'a> ColumnWalk<'a> {
     /// Shows floor and ceiling of the cell of `ray`, which it leaves at `t`, and removes their rows
     /// from its clip range.
     pub(super) fn close(&mut self, ray: &mut PortalRay, t: f64) {
-        self.keep_part(ray, t);
+        self.keep_part(ray, t, None);
         let projection = self.surroundings.scene.projection;
         let (eye, gap) = (projection.eye(), self.surroundings.gaps.gap(ray.gap));
         let Range { start, end } = ray.rows;
@@ -271,13 +271,15 @@ impl<'a> ColumnWalk<'a> {
         }
     }
 
-    /// Stores the part of `ray` up to `to`, in which billboards may show.
-    fn keep_part(&mut self, ray: &PortalRay, to: f64) {
+    /// Stores the part of `ray` up to `to`, in which billboards may show, where they are higher than
+    /// the top of a pillar below it.
+    pub(super) fn keep_part(&mut self, ray: &PortalRay, to: f64, top_below: Option<f64>) {
         if !self.surroundings.has_things {
             return;
         }
         let &PortalRay { ref rows, gap, from, image, .. } = ray;
         let (column, rows) = (self.column, rows.clone());
-        self.memory.passed.push(Passed::Billboards(RayPart { column, rows, from, to, gap, image }));
+        let part = RayPart { column, rows, from, to, gap, top_below, image };
+        self.memory.passed.push(Passed::Billboards(part));
     }
 }
