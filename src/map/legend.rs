@@ -225,6 +225,11 @@ fn meaning<'a>(section: Section, entry: &Entry<'a, '_>) -> (Meaning<'a>, Surroun
         (Some(_), true) if !surroundings.mechanism.is_empty() => {
             entry.faults.extend(surroundings.mechanism.not_on_a_floor());
         }
+        (Some(Meaning::Door(_) | Meaning::Mask(_) | Meaning::Glass(_)), true) => {
+            // These may have anything else.
+            let light = entry.entries(table).find(|entry| entry.key == "light");
+            entry.faults.extend(light.map(|light| no_light_of_its_own(light.key_place)));
+        }
         (None, _) if !surroundings.is_empty() => match surroundings.mechanism.contradiction() {
             None => return (Meaning::Floor, surroundings),
             fault => entry.faults.extend(fault),
@@ -236,6 +241,13 @@ fn meaning<'a>(section: Section, entry: &Entry<'a, '_>) -> (Meaning<'a>, Surroun
         ),
     }
     (Meaning::Unclear, surroundings)
+}
+
+/// The fault of a door, a mask or glass with the light at `place`.
+fn no_light_of_its_own(place: Range<usize>) -> Fault {
+    Fault::new(place, "a door, a mask or glass has no light of its own")
+        .label("open floor, walls and shapes have one")
+        .help("leave it out, and give the floor beside it a light")
 }
 
 fn defined_twice(character: char, place: Range<usize>) -> Fault {
