@@ -172,6 +172,13 @@ impl World {
         &self.textures[usize::from(id.0)]
     }
 
+    /// The number of mip levels of textures and sprites made so far. Those of built-in ones are made when they are
+    /// first read.
+    pub fn mip_levels_made(&self) -> usize {
+        let pictures = self.sprites.iter().flat_map(|sprite| sprite.pictures());
+        self.textures.iter().chain(pictures).map(Texture::levels_made).sum()
+    }
+
     /// The colour that represents `paint`: itself, or the mean of its texture.
     pub fn mean_color(&self, paint: Paint) -> Rgb {
         match paint {

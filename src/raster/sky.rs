@@ -9,13 +9,21 @@ use super::target::Target;
 use crate::cast::MirrorTransform;
 use crate::color::Rgb;
 use crate::visibility::{Pass, Projection, Scene, Stats};
-use crate::world::texture::MipLevel;
-use crate::world::{Sky, SkyGradient};
+use crate::world::{Sky, SkyGradient, Texture};
 
 /// The sky as seen by a camera.
 pub(crate) enum SkyView<'a> {
-    Gradient { projection: &'a Projection, zenith: Rgb, horizon: Rgb },
-    Panorama { projection: &'a Projection, level: &'a MipLevel, columns: &'a [SkyColumn] },
+    Gradient {
+        projection: &'a Projection,
+        zenith: Rgb,
+        horizon: Rgb,
+    },
+    Panorama {
+        projection: &'a Projection,
+        texture: &'a Texture,
+        lod: usize,
+        columns: &'a [SkyColumn],
+    },
 }
 
 /// The mapping of a column of pixels to a panorama.
@@ -43,12 +51,12 @@ impl<'a> SkyView<'a> {
                 // At the horizon a texel is as high as wide.
                 let texels_per_radian = f64::from(texture.width()) / TAU;
                 let area = projection.pixel_angles() * texels_per_radian;
-                let level = texture.level(plan.filter.lod(area.x * area.y));
+                let lod = plan.filter.lod(area.x * area.y);
                 let height = f64::from(texture.height()) / texels_per_radian;
                 columns.clear();
                 columns
                     .extend(projection.rays().map(|ray| SkyColumn::new(ray.direction(), height)));
-                Self::Panorama { projection, level, columns }
+                Self::Panorama { projection, texture, lod, columns }
             }
         }
     }
@@ -67,7 +75,8 @@ impl<'a> SkyView<'a> {
                 let color = gradient(zenith, horizon, projection.slope(row));
                 target.span_mut(Pass::Sky, row, columns).fill(color);
             }
-            Self::Panorama { projection, level, columns: places } => {
+            Self::Panorama { projection, texture, lod, columns: places } => {
+                let level = texture.level(lod);
                 target.count_texels(Pass::Sky, columns.len());
                 let slope = projection.slope(row);
                 let pixels = target.span_mut(Pass::Sky, row, columns);

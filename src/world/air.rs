@@ -74,6 +74,15 @@ impl Fog {
         let relative = t / self.distance;
         1.0 / (1.0 + relative * relative)
     }
+
+    /// A distance up to which the share is at least this one, from 0 to 1. Little beyond it, it is less.
+    #[cfg_attr(not(feature = "tui"), expect(dead_code, reason = "only the minimap needs it"))]
+    pub(crate) fn clear_to(&self, clearness: f64) -> f64 {
+        /// Less than 1, by more than rounding.
+        const ALMOST: f64 = 1.0 - 1e-9;
+        let distance = self.distance * (1.0 / clearness - 1.0).sqrt() * ALMOST;
+        if self.clearness(distance) < clearness { 0.0 } else { distance }
+    }
 }
 
 /// The sky: what shows where there is no ceiling, and outside the map.

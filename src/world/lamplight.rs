@@ -64,7 +64,8 @@ impl Lamp {
     /// What it adds in a cell whose middle is `distance` cells away: `light · (1 − (distance /
     /// reach)²)²`, which ends smoothly at the reach.
     pub(crate) fn light_at(&self, distance: f64) -> Light {
-        let nearness = 1.0 - (distance / self.reach.0).min(1.0).powi(2);
+        let part = (distance / self.reach.0).min(1.0);
+        let nearness = 1.0 - part * part;
         self.light.dimmed(nearness * nearness)
     }
 }

@@ -12,9 +12,9 @@ impl World {
         self.tiles.iter().all(Tile::has_level_heights)
     }
 
-    /// Whether any tile is a mirror.
+    /// Whether any tile is a mirror that shows an image.
     pub fn has_mirrors(&self) -> bool {
-        self.tiles.iter().any(|tile| matches!(tile.kind, TileKind::Mirror(_)))
+        self.tiles.iter().any(Tile::reflects)
     }
 
     /// Whether any tile is a shape.
@@ -58,8 +58,13 @@ impl Tile {
         self.heights == level && is_as_high
     }
 
+    /// Whether it is a mirror that shows an image: an opaque tint hides all of it.
+    pub(crate) fn reflects(&self) -> bool {
+        matches!(self.kind, TileKind::Mirror(tint) if !tint.is_opaque())
+    }
+
     /// Whether a ray through it goes neither above nor below anything, and is not reflected.
     pub(crate) fn is_level(&self) -> bool {
-        self.has_level_heights() && !matches!(self.kind, TileKind::Mirror(_))
+        self.has_level_heights() && !self.reflects()
     }
 }

@@ -4,28 +4,36 @@
 //! and then read contiguous memory. A texture has mip levels (Williams, "Pyramidal Parametrics",
 //! 1983), each half the size of the one before: distant surfaces use a level whose texels are about
 //! as large as pixels.
+//!
+//! A built-in texture is painted when a texel is first read, and the mip levels are made when one of
+//! them is. So a level begins without what it does not show, and rays without any. Making all of them with
+//! the world was refused: nine tenths of the instructions of a first frame were theirs.
 
 pub mod builtin;
 mod mip_level;
+mod picture;
 
+use std::fmt;
 use std::num::NonZeroU32;
+use std::sync::OnceLock;
 
 use crate::color::Rgb;
 pub use mip_level::MipLevel;
 pub(crate) use mip_level::MipLevelByShifts;
+use picture::{Picture, Source};
 
 /// A picture, at least one texel wide and high.
-#[derive(Clone, Debug, PartialEq)]
+#[derive(Clone)]
 pub struct Texture {
-    /// From the picture itself down to one texel.
-    levels: Vec<MipLevel>,
+    width: NonZeroU32,
+    height: NonZeroU32,
     /// The number of texels.
     area: f64,
-    mean: Rgb,
+    has_alpha: bool,
+    source: Source,
+    /// The mip levels after the picture itself, down to one texel.
+    smaller: OnceLock<Vec<MipLevel>>,
 }
-
-// The number of texels is no NaN.
-impl Eq for Texture {}
 
 impl Texture {
     /// An opaque texture with the texel `texel(x, y)` at `(x, y)`, `x` from the left and `y` from
@@ -43,39 +51,49 @@ impl Texture {
     pub fn from_fn_with_alpha(
         width: NonZeroU32,
         height: NonZeroU32,
-        mut texel: impl FnMut(u32, u32) -> (Rgb, u8),
+        texel: impl FnMut(u32, u32) -> (Rgb, u8),
     ) -> Self {
-        let (texels, mut alpha): (Vec<Rgb>, Vec<u8>) = (0..width.get())
-            .flat_map(|x| (0..height.get()).map(move |y| (x, y)))
-            .map(|(x, y)| texel(x, y))
-            .unzip();
-        if alpha.iter().all(|&alpha| alpha == u8::MAX) {
-            alpha = Vec::new();
-        }
-        let mean = mean(&texels);
+        let picture = Picture::from_fn(width, height, texel);
+        let has_alpha = picture.level.has_alpha();
+        Self::new(width, height, has_alpha, Source::Made(picture))
+    }
+
+    /// A texture as [`Texture::from_fn_with_alpha`], whose function of texels is asked for when one is first
+    /// read. `has_alpha` says whether any texel is not opaque.
+    pub(crate) fn on_demand<T: FnMut(u32, u32) -> (Rgb, u8)>(
+        width: NonZeroU32,
+        height: NonZeroU32,
+        has_alpha: bool,
+        texels: impl Fn() -> T + Send + Sync + 'static,
+    ) -> Self {
+        let source = Source::on_demand(move || Picture::from_fn(width, height, texels()));
+        Self::new(width, height, has_alpha, source)
+    }
+
+    fn new(width: NonZeroU32, height: NonZeroU32, has_alpha: bool, source: Source) -> Self {
         let area = f64::from(width.get()) * f64::from(height.get());
-        Self { levels: mip_level::pyramid(width, height, texels, alpha), area, mean }
+        Self { width, height, area, has_alpha, source, smaller: OnceLock::new() }
     }
 
     /// The width in texels.
     pub fn width(&self) -> u32 {
-        self.levels[0].width()
+        self.width.get()
     }
 
     /// The height in texels.
     pub fn height(&self) -> u32 {
-        self.levels[0].height()
+        self.height.get()
     }
 
     /// The column at `u`, from 0 at the left edge to 1 at the right one, from top to bottom. A `u`
     /// outside that range, or NaN, selects the nearest column.
     pub fn column(&self, u: f64) -> &[Rgb] {
-        self.levels[0].column(u)
+        self.level(0).column(u)
     }
 
     /// Whether any texel is not opaque.
     pub fn has_alpha(&self) -> bool {
-        self.levels[0].has_alpha()
+        self.has_alpha
     }
 
     /// The colour of the texel at `(x, y)`, and its alpha: 0 is transparent, 255 opaque.
@@ -84,7 +102,7 @@ impl Texture {
     /// If the texture has no such texel.
     pub fn texel(&self, x: u32, y: u32) -> (Rgb, u8) {
         assert!(x < self.width() && y < self.height(), "no texel at ({x}, {y})");
-        self.levels[0].texel(x, y)
+        self.level(0).texel(x, y)
     }
 
     /// The part from `(left, top)` on, as a texture.
@@ -102,31 +120,49 @@ impl Texture {
     }
 
     /// The mip level after `lod` halvings, at most the one with a single texel.
+    #[inline]
     pub fn level(&self, lod: usize) -> &MipLevel {
-        &self.levels[lod.min(self.levels.len() - 1)]
+        let picture = &self.source.picture().level;
+        if lod == 0 {
+            return picture;
+        }
+        let smaller = self.smaller.get_or_init(|| mip_level::smaller(picture));
+        smaller.get(lod - 1).or(smaller.last()).unwrap_or(picture)
     }
 
-    /// All mip levels, from the texture itself to a single texel.
-    pub fn levels(&self) -> &[MipLevel] {
-        &self.levels
+    /// The height in texels of that mip level, which is not made for it.
+    pub(crate) fn height_of_level(&self, lod: usize) -> u32 {
+        self.height.get().checked_shr(lod as u32).unwrap_or(0).max(1)
+    }
+
+    /// The number of mip levels made so far, of which the picture itself is the first.
+    pub fn levels_made(&self) -> usize {
+        usize::from(self.source.is_made()) + self.smaller.get().map_or(0, Vec::len)
     }
 
     /// The mean colour of all texels, which represents the texture on the minimap.
     pub fn mean(&self) -> Rgb {
-        self.mean
+        self.source.picture().mean
     }
 }
 
-fn mean(texels: &[Rgb]) -> Rgb {
-    let mut sums = [0u64; 3];
-    for texel in texels {
-        for (sum, channel) in sums.iter_mut().zip(texel.channels()) {
-            *sum += u64::from(channel);
-        }
+/// Textures are equal if all their texels are.
+impl PartialEq for Texture {
+    fn eq(&self, other: &Self) -> bool {
+        self.source.is_same(&other.source) || self.level(0) == other.level(0)
     }
-    let count = texels.len() as u64;
-    let [red, green, blue] = sums.map(|sum| ((sum + count / 2) / count) as u8);
-    Rgb::new(red, green, blue)
+}
+
+impl Eq for Texture {}
+
+impl fmt::Debug for Texture {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        let Self { width, height, .. } = self;
+        f.debug_struct("Texture")
+            .field("width", width)
+            .field("height", height)
+            .finish_non_exhaustive()
+    }
 }
 
 #[cfg(test)]
@@ -159,5 +195,20 @@ mod tests {
         assert_eq!((texture.texel(0, 0).1, texture.texel(1, 0).1), (0, 255));
         let opaque = Texture::from_fn(size(1), size(1), |_, _| Rgb::BLACK);
         assert_eq!(opaque.texel(0, 0).1, 255);
+    }
+
+    #[test]
+    fn only_what_is_read_is_made() {
+        let texture = Texture::on_demand(size(8), size(4), false, || {
+            |x, y| (Rgb::new(x as u8, y as u8, 0), 255)
+        });
+        assert_eq!((texture.width(), texture.height_of_level(1), texture.levels_made()), (8, 2, 0));
+        assert_eq!((texture.level(0).height(), texture.levels_made()), (4, 1));
+        assert_eq!((texture.level(9).width(), texture.levels_made()), (1, 4));
+        let heights =
+            (0..70).map(|lod| texture.level(lod).height() == texture.height_of_level(lod));
+        assert!(heights.into_iter().all(|is_equal| is_equal));
+        let eager = Texture::from_fn(size(8), size(4), |x, y| Rgb::new(x as u8, y as u8, 0));
+        assert_eq!(texture, eager);
     }
 }

@@ -63,6 +63,18 @@ pub struct Glass {
     pub opacity: u8,
 }
 
+impl Glass {
+    /// Whether the tint shows nowhere.
+    pub(crate) fn is_clear(self) -> bool {
+        self.opacity == 0
+    }
+
+    /// Whether the tint hides what is behind, or reflected.
+    pub(crate) fn is_opaque(self) -> bool {
+        self.opacity == u8::MAX
+    }
+}
+
 /// The look of a surface.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Paint {

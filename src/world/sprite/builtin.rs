@@ -1,4 +1,4 @@
-//! The built-in sprites, drawn with characters or computed when a map uses one.
+//! The built-in sprites, drawn with characters or computed when one is first shown.
 //!
 //! They have few texels, a dark outline, and light from the upper left, so that they can be told
 //! apart at a height of ten pixels. A drawing is text, so that changes to it can be reviewed,
@@ -127,27 +127,52 @@ impl Design {
 type Palette = [(char, Rgb)];
 
 /// The picture that lines of characters draw, all of one length.
-fn drawn(lines: &[&str], palette: &Palette) -> Texture {
-    let rows: Vec<Vec<char>> = lines.iter().map(|line| line.chars().collect()).collect();
-    painted(rows[0].len() as u32, rows.len() as u32, |x, y| {
-        let character = rows[y as usize].get(x as usize)?;
-        palette.iter().find(|(known, _)| known == character).map(|&(_, color)| color)
-    })
+fn drawn(lines: &[&'static str], palette: &'static Palette) -> Texture {
+    character_picture(lines, palette, false)
 }
 
 /// The mirror image of a drawing.
-fn mirrored(lines: &[&str], palette: &Palette) -> Texture {
-    let lines: Vec<String> = lines.iter().map(|line| line.chars().rev().collect()).collect();
-    let lines: Vec<&str> = lines.iter().map(String::as_str).collect();
-    drawn(&lines, palette)
+fn mirrored(lines: &[&'static str], palette: &'static Palette) -> Texture {
+    character_picture(lines, palette, true)
+}
+
+fn character_picture(
+    lines: &[&'static str],
+    palette: &'static Palette,
+    is_mirrored: bool,
+) -> Texture {
+    let (width, height) = (lines[0].chars().count(), lines.len());
+    let lines = lines.to_vec();
+    painted_by(width as u32, height as u32, move || {
+        let rows: Vec<Vec<char>> = lines.iter().map(|line| line.chars().collect()).collect();
+        move |x, y| {
+            let (x, row) = (x as usize, &rows[y as usize]);
+            let character = row.get(if is_mirrored { row.len() - 1 - x } else { x })?;
+            palette.iter().find(|(known, _)| known == character).map(|&(_, color)| color)
+        }
+    })
 }
 
 /// The picture whose texel at `(x, y)` is `paint(x, y)`, transparent where that is `None`.
-fn painted(width: u32, height: u32, paint: impl Fn(i32, i32) -> Option<Rgb>) -> Texture {
+fn painted(
+    width: u32,
+    height: u32,
+    paint: impl Fn(i32, i32) -> Option<Rgb> + Clone + Send + Sync + 'static,
+) -> Texture {
+    painted_by(width, height, move || paint.clone())
+}
+
+/// The picture as [`painted`] by the function that `painter` returns when a texel is first read.
+fn painted_by<P: Fn(i32, i32) -> Option<Rgb>>(
+    width: u32,
+    height: u32,
+    painter: impl Fn() -> P + Send + Sync + 'static,
+) -> Texture {
     const CLEAR: (Rgb, u8) = (Rgb::BLACK, 0);
     let side = |side| NonZeroU32::new(side).unwrap_or(NonZeroU32::MIN);
-    Texture::from_fn_with_alpha(side(width), side(height), |x, y| {
-        paint(x as i32, y as i32).map_or(CLEAR, |color| (color, u8::MAX))
+    Texture::on_demand(side(width), side(height), true, move || {
+        let paint = painter();
+        move |x, y| paint(x as i32, y as i32).map_or(CLEAR, |color| (color, u8::MAX))
     })
 }
 

@@ -1,4 +1,4 @@
-//! The built-in textures, computed when a map uses one.
+//! The built-in textures, computed when one is first shown.
 //!
 //! All are 64 texels square and lit from the upper left. Each is a function from a texel's position
 //! to its colour, in integers only, so that it is the same on every machine. They tile horizontally
@@ -34,12 +34,12 @@ pub const NAMES: &[&str] = &names();
 pub fn named(name: &str) -> Option<Texture> {
     let (_, painter) = PAINTERS.iter().find(|(known, _)| *known == name)?;
     Some(match *painter {
-        Painter::Solid(paint) => {
-            Texture::from_fn(SIDE_LENGTH, SIDE_LENGTH, |x, y| paint(x as i32, y as i32))
-        }
+        Painter::Solid(paint) => Texture::on_demand(SIDE_LENGTH, SIDE_LENGTH, false, move || {
+            move |x, y| (paint(x as i32, y as i32), OPAQUE)
+        }),
         Painter::WithHoles(paint) => {
-            Texture::from_fn_with_alpha(SIDE_LENGTH, SIDE_LENGTH, |x, y| {
-                paint(x as i32, y as i32).map_or((HOLE, CLEAR), |color| (color, OPAQUE))
+            Texture::on_demand(SIDE_LENGTH, SIDE_LENGTH, true, move || {
+                move |x, y| paint(x as i32, y as i32).map_or((HOLE, CLEAR), |color| (color, OPAQUE))
             })
         }
     })
@@ -52,8 +52,12 @@ pub const PANORAMAS: &[&str] = &["hills"];
 pub fn panorama(name: &str) -> Option<Texture> {
     const WIDTH: NonZeroU32 = NonZeroU32::new(panorama::WIDTH as u32).expect("it is not 0");
     const HEIGHT: NonZeroU32 = NonZeroU32::new(panorama::HEIGHT as u32).expect("it is not 0");
-    let paint = (name == PANORAMAS[0]).then(panorama::hills)?;
-    Some(Texture::from_fn(WIDTH, HEIGHT, |x, y| paint(x as i32, y as i32)))
+    (name == PANORAMAS[0]).then(|| {
+        Texture::on_demand(WIDTH, HEIGHT, false, || {
+            let paint = panorama::hills();
+            move |x, y| (paint(x as i32, y as i32), OPAQUE)
+        })
+    })
 }
 
 /// The number of texels along each side.
@@ -211,6 +215,7 @@ mod tests {
             let holes = texels().filter(|&(x, y)| texture.texel(x, y).1 == CLEAR).count();
             if ["grate", "fence"].contains(name) {
                 assert!((64 * 64 / 3..64 * 64 * 3 / 4).contains(&holes), "{name}: {holes}");
+                assert!(texture.has_alpha(), "{name}");
             } else {
                 assert!(holes == 0 && !texture.has_alpha(), "{name}: {holes}");
             }

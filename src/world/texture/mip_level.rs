@@ -27,6 +27,18 @@ pub struct MipLevel {
 }
 
 impl MipLevel {
+    /// A level with these texels, column by column. `alpha` is in the same order, or empty if all texels are
+    /// opaque.
+    pub(super) fn new(
+        width: NonZeroU32,
+        height: NonZeroU32,
+        texels: Vec<Rgb>,
+        alpha: Vec<u8>,
+    ) -> Self {
+        let halved = texels.iter().map(|texel| texel.halved()).collect();
+        Self { width, height, texels, halved, alpha }
+    }
+
     /// The width in texels.
     pub fn width(&self) -> u32 {
         self.width.get()
@@ -111,7 +123,13 @@ pub(crate) struct MipLevelByShifts<'a> {
     bits: [u32; 2],
 }
 
-impl MipLevelByShifts<'_> {
+impl<'a> MipLevelByShifts<'a> {
+    /// The texels, by their indices.
+    #[inline]
+    pub(crate) fn texels(self) -> &'a [Rgb] {
+        self.texels
+    }
+
     /// The index of the texel that [`MipLevel::at_fraction`] returns.
     #[inline]
     pub(crate) fn index(self, x: u64, y: u64) -> u32 {
@@ -148,26 +166,16 @@ fn texel_index(coordinate: f64, count: u32) -> usize {
     index.min(count - 1) as usize
 }
 
-/// A picture with these texels, column by column, and its mip levels down to one texel. `alpha` is
-/// in the same order, or empty if all texels are opaque.
-pub(super) fn pyramid(
-    width: NonZeroU32,
-    height: NonZeroU32,
-    texels: Vec<Rgb>,
-    alpha: Vec<u8>,
-) -> Vec<MipLevel> {
-    let light_texels = texels.iter().copied().map(linear_16).collect();
-    let mut light = Light { width, height, texels: light_texels, alpha: alpha.clone() };
-    let level = |width, height, texels: Vec<Rgb>, alpha| {
-        let halved = texels.iter().map(|texel| texel.halved()).collect();
-        MipLevel { width, height, texels, halved, alpha }
-    };
-    let mut levels = vec![level(width, height, texels, alpha)];
+/// The mip levels after `level`, down to one texel.
+pub(super) fn smaller(level: &MipLevel) -> Vec<MipLevel> {
+    let &MipLevel { width, height, ref texels, ref alpha, .. } = level;
+    let texels = texels.iter().copied().map(linear_16).collect();
+    let mut light = Light { width, height, texels, alpha: alpha.clone() };
+    let mut levels = Vec::new();
     while light.texels.len() > 1 {
         light = light.halved();
         let texels = light.texels.iter().copied().map(from_linear_16).collect();
-        let (width, height, alpha) = (light.width, light.height, light.alpha.clone());
-        levels.push(level(width, height, texels, alpha));
+        levels.push(MipLevel::new(light.width, light.height, texels, light.alpha.clone()));
     }
     levels
 }
@@ -186,11 +194,11 @@ mod tests {
     fn a_chessboard_becomes_the_gray_of_the_same_light() {
         let texels = (0..16).map(|index| if (index + index / 4) % 2 == 0 { 0 } else { 255 });
         let texels = texels.map(|gray| Rgb::new(gray, gray, gray)).collect();
-        let levels = pyramid(size(4), size(4), texels, vec![]);
-        assert_eq!(levels.len(), 3);
+        let levels = smaller(&MipLevel::new(size(4), size(4), texels, vec![]));
+        assert_eq!(levels.len(), 2);
         // Half the light, which is far more than half the value.
         assert!(
-            levels[1..]
+            levels
                 .iter()
                 .flat_map(|level| &level.texels)
                 .all(|&texel| { texel == Rgb::new(188, 188, 188) })
@@ -199,7 +207,7 @@ mod tests {
 
     #[test]
     fn a_fraction_selects_the_texel_that_contains_it() {
-        let level = &pyramid(size(2), size(1), vec![Rgb::BLACK, Rgb::WHITE], vec![])[0];
+        let level = MipLevel::new(size(2), size(1), vec![Rgb::BLACK, Rgb::WHITE], vec![]);
         let half = 1 << 63;
         let seen = [0, half - 1, half, u64::MAX].map(|x| level.at_fraction(x, u64::MAX));
         assert_eq!(seen, [Rgb::BLACK, Rgb::BLACK, Rgb::WHITE, Rgb::WHITE]);
@@ -214,13 +222,7 @@ mod tests {
             let (width, height) = (1 << sides.0, 1 << sides.1);
             let texels = (0..width * height).map(|texel| Rgb::new(0, (texel >> 8) as u8, texel as u8));
             let texels: Vec<_> = texels.collect();
-            let level = MipLevel {
-                width: size(width),
-                height: size(height),
-                halved: texels.clone(),
-                texels,
-                alpha: vec![],
-            };
+            let level = MipLevel::new(size(width), size(height), texels, vec![]);
             let shifts = level.by_shifts().unwrap();
             for (x, y) in places.into_iter().chain([(0, u64::MAX), (u64::MAX, 0)]) {
                 prop_assert_eq!(shifts.at_index(shifts.index(x, y)), level.at_fraction(x, y));
@@ -231,9 +233,11 @@ mod tests {
     #[test]
     fn transparent_texels_have_no_influence_on_the_colour() {
         let texels = vec![Rgb::WHITE, Rgb::BLACK, Rgb::WHITE, Rgb::BLACK];
-        let level = &pyramid(size(2), size(2), texels, vec![255, 0, 255, 0])[1];
+        let of_four = MipLevel::new(size(2), size(2), texels, vec![255, 0, 255, 0]);
+        let level = &smaller(&of_four)[0];
         assert_eq!(level.texel(0, 0), (Rgb::WHITE, 128));
-        let level = &pyramid(size(2), size(1), vec![Rgb::WHITE; 2], vec![0, 0])[1];
+        let of_two = MipLevel::new(size(2), size(1), vec![Rgb::WHITE; 2], vec![0, 0]);
+        let level = &smaller(&of_two)[0];
         assert_eq!(level.texel(0, 0).1, 0);
     }
 }

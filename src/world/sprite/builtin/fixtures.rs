@@ -114,7 +114,7 @@ fn spikes_out_by(out: i32) -> Texture {
     const SPACING: i32 = 6;
     /// The upper edge of the slab.
     const SLAB: i32 = HEIGHT - 4;
-    painted(WIDTH as u32, HEIGHT as u32, |x, y| {
+    painted(WIDTH as u32, HEIGHT as u32, move |x, y| {
         let across = x % SPACING - SPACING / 2;
         // A spike is wider below its tip.
         let from_tip = y - (SLAB + 1 - out);

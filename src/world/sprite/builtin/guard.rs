@@ -16,7 +16,7 @@ use crate::world::GuardKind;
 /// The sprite of a kind of guard.
 pub(super) fn guard(kind: GuardKind) -> Design {
     let Figure { height, size, model } = figure(kind);
-    let pictures = model::pictures(GuardFrame::ALL.into_iter().map(model), size);
+    let pictures = model::pictures(GuardFrame::ALL, model, size);
     let shines = if kind == GuardKind::Lantern { 0.7 } else { 0.0 };
     let standing = Design::standing(height, pictures);
     Design { facings: Facings::Eight, animated: Some(1), shines, ..standing }

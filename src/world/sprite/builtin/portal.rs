@@ -7,7 +7,7 @@ use crate::color::Rgb;
 pub(super) fn portal() -> Design {
     const FRAMES: i32 = 4;
     let pictures = (0..FRAMES).map(|frame| {
-        painted(WIDTH as u32, HEIGHT as u32, |x, y| texel(x, y, frame * BAND * 2 / FRAMES))
+        painted(WIDTH as u32, HEIGHT as u32, move |x, y| texel(x, y, frame * BAND * 2 / FRAMES))
     });
     Design { seconds: 0.15, shines: 0.3, ..Design::standing(0.9, pictures.collect()) }
 }

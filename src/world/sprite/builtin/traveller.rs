@@ -1,7 +1,7 @@
 //! Players as others see them: a traveller with a broad hat and a cape, in eight colours.
 //!
-//! The pictures are computed once for a process, in one colour, of which those of all players are
-//! variants. Computing them for each game was refused: a host begins games all the time.
+//! A picture is computed once for a process, in one colour, of which those of all players are
+//! variants. Computing it for each game was refused: a host begins games all the time.
 
 use std::sync::OnceLock;
 
@@ -86,11 +86,16 @@ impl PlayerColor {
 pub(crate) fn player(color: PlayerColor) -> Option<Sprite> {
     static SPRITES: OnceLock<Vec<Option<Sprite>>> = OnceLock::new();
     let sprites = SPRITES.get_or_init(|| {
-        let pictures = model::pictures(PlayerFrame::ALL.into_iter().map(model), SIZE);
-        let in_color = |color| pictures.iter().map(|picture| dyed(picture, color)).collect();
+        let in_color = |color| (0..undyed().len()).map(|index| dyed(index, color)).collect();
         PlayerColor::ALL.map(|color| design(in_color(color)).sprite()).to_vec()
     });
     sprites.get(color as usize)?.clone()
+}
+
+/// The pictures before they are dyed.
+fn undyed() -> &'static [Texture] {
+    static PICTURES: OnceLock<Vec<Texture>> = OnceLock::new();
+    PICTURES.get_or_init(|| model::pictures(PlayerFrame::ALL, model, SIZE))
 }
 
 /// The height of a player's pictures, in cells, and their size in texels.
@@ -118,10 +123,11 @@ const CLUB: Paint = matt(0xa0, 0x70, 0x44);
 
 const BUILD: Build = Build { legs: 7.4, trunk: 7.2, neck: 3.4, shoulder: 3.8, hip: 1.8, arms: 9.2 };
 
-/// `picture` with the dye of that colour.
-fn dyed(picture: &Texture, color: PlayerColor) -> Texture {
+/// The picture with this index, with the dye of that colour.
+fn dyed(index: usize, color: PlayerColor) -> Texture {
     let [red, green, blue] = color.rgb().channels().map(u32::from);
-    painted(picture.width(), picture.height(), |x, y| {
+    let picture = &undyed()[index];
+    painted(picture.width(), picture.height(), move |x, y| {
         let (texel, alpha) = picture.texel(x as u32, y as u32);
         let [across, none, down] = texel.channels().map(u32::from);
         let share = |channel: u32, of: u32| (channel * of / u32::from(DYE)).min(255) as u8;

@@ -53,10 +53,10 @@ pub(super) fn bolt() -> Design {
 
 /// A missile of that height that flies with its point, of colour `point`, in front. `side` shows it
 /// from its right.
-fn flying(height: f64, side: &[&str], point: Rgb) -> Design {
+fn flying(height: f64, side: &[&'static str], point: Rgb) -> Design {
     let (columns, rows) = (side[0].len() as i32, side.len() as i32);
     let end = |color| {
-        painted(columns as u32, rows as u32, |x, y| {
+        painted(columns as u32, rows as u32, move |x, y| {
             let (across, above) = (2 * x + 1 - columns, 2 * y + 1 - rows);
             let squared = across * across + above * above;
             let is_within = |radius: i32| squared < radius * radius;
@@ -147,7 +147,7 @@ fn smoke_picture(frame: i32) -> Texture {
         [24, 12, 3],
         [14, 4, 3],
     ];
-    painted(CLOUD as u32, CLOUD as u32, |x, y| {
+    painted(CLOUD as u32, CLOUD as u32, move |x, y| {
         let depth_in = |(index, &[across, down, radius]): (usize, &[i32; 3])| {
             let moved = [0, 1, 2, 1][(frame as usize + index * 3) % FRAMES as usize];
             let (x, y) = (x - across, y - down + moved);

@@ -7,8 +7,7 @@ use glam::{DVec2, DVec3};
 use super::solid::{Hit, Paint, Seen, Solid};
 use super::view::View;
 use crate::color::Rgb;
-use crate::world::Texture;
-use crate::world::sprite::builtin::{INK, painted};
+use crate::world::sprite::builtin::INK;
 
 /// The size of a picture, in texels. The body's axis is in the middle, and the floor is one texel
 /// above the lower edge, which leaves room for the outline.
@@ -18,7 +17,7 @@ pub(in super::super) struct Size {
     pub(in super::super) height: u32,
 }
 
-/// Makes pictures, and reuses its memory.
+/// The picture of a model in the making.
 pub(super) struct Studio {
     size: Size,
     /// Row by row from the top, with an empty margin of one texel on all sides.
@@ -44,17 +43,14 @@ impl Studio {
         Self { size, texels: vec![NOTHING; size.stride() * (size.height as usize + 2)] }
     }
 
-    /// The picture of `solids` in `view`.
-    pub(super) fn picture(&mut self, solids: &[Solid], view: View) -> Texture {
-        self.texels.fill(NOTHING);
+    /// Draws `solids` in `view`.
+    pub(super) fn draw_all(&mut self, solids: &[Solid], view: View) {
         // From the nearest on, so that most of what is hidden is refused by its depth.
         let mut seen: Vec<_> = solids.iter().map(|solid| (solid.seen(view), solid.paint)).collect();
         seen.sort_by(|(one, _), (other, _)| other.nearest.total_cmp(&one.nearest));
         for (seen, paint) in &seen {
             self.draw(seen, *paint);
         }
-        let Size { width, height } = self.size;
-        painted(width, height, |x, y| self.outlined(x as usize, y as usize))
     }
 
     fn draw(&mut self, seen: &Seen, paint: Paint) {
@@ -77,7 +73,7 @@ impl Studio {
 
     /// The colour at `(x, y)` with outlines: around the figure, and where a part is well behind its
     /// neighbour.
-    fn outlined(&self, x: usize, y: usize) -> Option<Rgb> {
+    pub(super) fn outlined(&self, x: usize, y: usize) -> Option<Rgb> {
         let (place, stride) = (self.size.place(x, y), self.size.stride());
         let own = self.texels[place];
         let near = [place - 1, place + 1, place - stride, place + stride];
