@@ -33,7 +33,7 @@ impl Passage {
         match outline {
             Outline::Pillar(radius) => {
                 let Some(chord) = Chord::new(ray, cell, radius) else { return Self::NONE };
-                Self { hit: chord.hit(ray, cell, radius), end: chord.end(ray) }
+                Self { hit: chord.hit(ray, cell, radius), end: chord.end() }
             }
             Outline::Line(line) => Self { hit: meet_line(ray, cell, line), end: None },
         }
@@ -48,9 +48,7 @@ pub(super) fn meet(ray: &Ray, cell: Cell, outline: Outline) -> Option<Hit> {
 
 fn meet_line(ray: &Ray, cell: Cell, line: Line) -> Option<Hit> {
     let (start, extent) = (line.start(cell), line.stretch());
-    let (direction, exponent) = ray.scaled_direction();
-    // The speed towards the line, from its left or its right; rounded at most once.
-    let across = direction.x * extent.y - direction.y * extent.x;
+    let (across, exponent) = speed_across(ray, extent);
     let side_of = |end| sign_of_cross(ray.origin(), ray.direction(), end);
     let (from_start, from_end) = (side_of(start), side_of(start + extent));
     let is_beside = from_start > 0.0 && from_end > 0.0 || from_start < 0.0 && from_end < 0.0;
@@ -62,81 +60,114 @@ fn meet_line(ray: &Ray, cell: Cell, line: Line) -> Option<Hit> {
     if !is_ahead {
         return None;
     }
-    let t = libm::scalbn(to_line.over(across), -exponent).abs();
-    let along = cross(ray.origin(), direction, start).over(across).clamp(0.0, 1.0) + 0.0;
+    let t = to_line.over_scaled(across, exponent).abs();
+    let along = cross(ray.origin(), ray.direction(), start).over_scaled(across, exponent);
+    let along = along.clamp(0.0, 1.0) + 0.0;
     let u = if across > 0.0 { along } else { 1.0 - along };
     Some(Hit { cell, side: facing(extent.perp()), t, u })
 }
 
-/// The chord of a pillar on a line. All values are multiplied by the length of the ray's scaled
-/// direction.
+/// The speed of `ray` towards a line with this `extent`, from its left or its right, rounded at most once,
+/// and the exponent of a power of two by which it is divided.
+fn speed_across(ray: &Ray, extent: DVec2) -> (f64, i32) {
+    let across = |direction: DVec2| direction.x * extent.y - direction.y * extent.x;
+    if extent.x == 0.0 || extent.y == 0.0 {
+        // This is one of the components, which underflows in no other unit.
+        return (across(ray.direction()), 0);
+    }
+    let (direction, exponent) = ray.scaled_direction();
+    (across(direction), exponent)
+}
+
+/// The chord of a pillar on the line of a ray.
 struct Chord {
-    /// The distance from the ray's origin to the middle of the chord.
-    to_closest: f64,
+    /// The `t` of the ray at its start; `None` if that is behind the ray's origin.
+    start: Option<f64>,
+    /// The `t` of the ray at its end.
+    end: f64,
+    /// Half its length, and the signed distance of the line from the axis, both multiplied by the length of the
+    /// ray's scaled direction.
     half_length: f64,
-    /// The squared distance of the origin from the axis minus the squared radius. This one is not
-    /// multiplied.
-    outside: f64,
-    /// The signed distance of the line from the axis.
     miss: f64,
-    /// The square of the factor by which the others are multiplied.
-    scale_squared: f64,
 }
 
 impl Chord {
     /// The chord on the line of `ray`; `None` if the line misses the pillar.
     fn new(ray: &Ray, cell: Cell, radius: PillarRadius) -> Option<Self> {
-        /// Beyond this distance, squares overflow.
+        /// From further away, squares overflow.
         const FARTHEST: f64 = 1e100;
         let (center, radius) = (cell.center(), radius.cells());
         let (direction, _) = ray.scaled_direction();
-        if is_clearly_beside(center - ray.origin(), direction, radius) {
+        let way = center - ray.origin();
+        if way.abs().max_element() > FARTHEST {
+            return Self::from_afar(ray, center, radius);
+        }
+        if is_clearly_beside(way, direction, radius) {
             return None;
         }
+        Self::from_near(ray, center, radius)
+    }
+
+    fn from_near(ray: &Ray, center: DVec2, radius: f64) -> Option<Self> {
+        let (direction, exponent) = ray.scaled_direction();
         let x = DoubleDouble::sum(center.x, -ray.origin().x);
         let y = DoubleDouble::sum(center.y, -ray.origin().y);
-        if x.rounded().abs().max(y.rounded().abs()) > FARTHEST {
-            return None;
-        }
         let (along_x, along_y) = (DoubleDouble::from(direction.x), DoubleDouble::from(direction.y));
-        let to_closest = (x * along_x + y * along_y).rounded();
+        let to_middle = (x * along_x + y * along_y).rounded();
         let miss = x * along_y - y * along_x;
         let length_squared = along_x.square() + along_y.square();
         let radius_squared = DoubleDouble::product(radius, radius);
         let half_length_squared = (radius_squared * length_squared - miss.square()).rounded();
+        if half_length_squared < 0.0 {
+            return None;
+        }
+        let half_length = half_length_squared.sqrt();
+        // The squared distance of the origin from the axis minus the squared radius.
         let outside = (x.square() + y.square() - radius_squared).rounded();
-        (half_length_squared >= 0.0).then(|| Self {
-            to_closest,
-            half_length: half_length_squared.sqrt(),
-            outside,
+        let unscaled = |t: f64| libm::scalbn(t, -exponent);
+        let is_ahead = outside >= 0.0 && to_middle > 0.0;
+        // Of the two forms of each solution, these add terms of the same sign.
+        let end = if to_middle > 0.0 {
+            (to_middle + half_length) / length_squared.rounded()
+        } else {
+            -outside / (half_length - to_middle)
+        };
+        Some(Self {
+            start: is_ahead.then(|| unscaled(outside / (to_middle + half_length))),
+            end: unscaled(end),
+            half_length,
             miss: miss.rounded(),
-            scale_squared: length_squared.rounded(),
         })
+    }
+
+    /// The chord on the line of a ray from so far away that its ends are at the same distance.
+    fn from_afar(ray: &Ray, center: DVec2, radius: f64) -> Option<Self> {
+        /// The exponent of a unit of length in which no distance overflows.
+        const UNIT: i32 = 8;
+        let (direction, exponent) = ray.scaled_direction();
+        let miss = cross(ray.origin(), ray.direction(), center).over_scaled(1.0, exponent);
+        let length_squared = direction.length_squared();
+        let half_length_squared = radius * radius * length_squared - miss * miss;
+        if half_length_squared < 0.0 {
+            return None;
+        }
+        let way = (center - ray.origin()) * libm::scalbn(1.0, -UNIT);
+        let t = libm::scalbn(way.dot(direction) / length_squared, UNIT - exponent);
+        let half_length = half_length_squared.sqrt();
+        Some(Self { start: Some(t).filter(|&t| t > 0.0), end: t, half_length, miss })
     }
 
     /// The hit of `ray`, from outside, on the pillar with this `radius` in `cell`.
     fn hit(&self, ray: &Ray, cell: Cell, radius: PillarRadius) -> Option<Hit> {
-        let &Self { to_closest, half_length, outside, miss, .. } = self;
-        if outside < 0.0 || to_closest <= 0.0 {
-            return None;
-        }
-        let (direction, exponent) = ray.scaled_direction();
-        let t = libm::scalbn(outside / (to_closest + half_length), -exponent);
-        let outward = direction.perp() * miss - direction * half_length;
+        let t = self.start?;
+        let (direction, _) = ray.scaled_direction();
+        let outward = direction.perp() * self.miss - direction * self.half_length;
         Some(Hit { cell, side: facing(outward), t, u: around_pillar(outward, radius.cells()) })
     }
 
-    /// The `t` at which `ray` leaves the pillar; `None` if that is behind the origin.
-    fn end(&self, ray: &Ray) -> Option<f64> {
-        // Of the two forms of the solution, this one adds terms of the same sign.
-        let scaled = if self.to_closest > 0.0 {
-            (self.to_closest + self.half_length) / self.scale_squared
-        } else {
-            -self.outside / (self.half_length - self.to_closest)
-        };
-        let (_, exponent) = ray.scaled_direction();
-        let t = libm::scalbn(scaled, -exponent);
-        (t >= 0.0).then_some(t)
+    /// The `t` at which the ray leaves the pillar; `None` if that is behind the origin.
+    fn end(&self) -> Option<f64> {
+        Some(self.end).filter(|&t| t >= 0.0)
     }
 }
 
@@ -162,3 +193,6 @@ fn around_pillar(outward: DVec2, radius: f64) -> f64 {
 fn facing(normal: DVec2) -> Side {
     if normal.x.abs() >= normal.y.abs() { Side::X } else { Side::Y }
 }
+
+#[cfg(test)]
+mod tests;

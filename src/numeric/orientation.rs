@@ -65,9 +65,14 @@ impl Scaled {
 
     /// The quotient by `divisor`.
     pub(crate) fn over(self, divisor: f64) -> f64 {
+        self.over_scaled(divisor, 0)
+    }
+
+    /// The quotient by `divisor` · 2^`exponent`. It underflows at most once.
+    pub(crate) fn over_scaled(self, divisor: f64, exponent: i32) -> f64 {
         let divisor = Integer::from_double(divisor);
         let quotient = self.mantissa / divisor.mantissa as f64;
-        libm::scalbn(quotient, self.exponent - divisor.exponent)
+        libm::scalbn(quotient, self.exponent - divisor.exponent - exponent)
     }
 }
 
