@@ -43,6 +43,7 @@ mod walk;
 
 pub(crate) use exact::ExactOnLevel;
 pub use exact::{Exact, ExactOrder};
+pub(crate) use hit::HitFace;
 #[cfg(feature = "lab")]
 pub(crate) use hit::texture_coordinate;
 pub use hit::{Hit, Side};
@@ -62,12 +63,9 @@ pub trait Caster {
     /// The first hit of `ray` in `grid`, or `None` if the ray escapes.
     fn cast(&self, grid: &Grid, ray: &Ray) -> Option<Hit>;
 
-    /// Whether every ray between two rays from one point hits the same side of the same cell as
-    /// both of them. The two rays are far enough apart that rounding does not matter, and hits are
-    /// those of [`Caster::cast`], which treats everything solid as a wall. If the answer is
-    /// `false`, each ray between them has to be cast.
-    fn follows_between(&self, left: &Hit, right: &Hit) -> bool {
-        _ = (left, right);
+    /// Whether the cell and the side of each hit of [`Caster::cast`] are those that rational arithmetic
+    /// gives, so that hits of rays between others follow from those. If not, each ray has to be cast.
+    fn is_exact(&self) -> bool {
         false
     }
 

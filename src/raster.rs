@@ -18,12 +18,14 @@ mod masked;
 mod shaded_texels;
 mod sky;
 mod span;
+mod span_pair;
 mod sprite;
 mod surface_buffer;
 mod target;
 mod texel_runs;
 mod translucent;
 mod wall_column;
+mod wall_level;
 
 pub(crate) use band::Band;
 use column_batch::BatchMemory;
@@ -32,6 +34,7 @@ pub(crate) use surface_buffer::SurfaceBuffer;
 pub(crate) use target::Target;
 
 use crate::visibility::{DrawList, Layer, Material, Scene, Span, SpanMemory, Stats};
+use span_pair::SpanPairs;
 use translucent::Tints;
 
 /// The memory of a drawing thread, reused from frame to frame.
@@ -51,10 +54,11 @@ pub(crate) fn draw<S: Stats>(
 ) {
     let RasterMemory { spans, batch } = memory;
     let rows = target.rows();
+    let mut pairs = SpanPairs::default();
     list.for_each_span(scene, &rows, spans, |span| match span {
         Span::Fill { pass, rows, color } => target.whole_rows_mut(pass, rows).fill(color),
         Span::Plane(span) => span::draw(scene, &span, target),
-        Span::Planes(spans) => span::draw_both(scene, &spans, target),
+        Span::Pair(pair) => pairs.draw(scene, &pair, target),
         Span::Sky { row, columns, image } => sky.draw(row, columns, image, target),
     });
     wall_column::draw(scene, list, batch, target);

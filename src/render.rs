@@ -219,11 +219,7 @@ impl<S: Stats> Picture<'_, S> {
     fn draw_planned<C: Caster>(self, caster: &C, plan: FramePlan, threads: Threads) {
         let Self { world, camera, seconds, memory, frame, stats, .. } = self;
         let projection = Projection::new(camera, frame.size(), frame.pixel_aspect());
-        let projection = &match plan.visibility {
-            Visibility::Flat => projection.between_floor_and_ceiling(),
-            Visibility::Mixed(_) | Visibility::Portals(_) => projection,
-        };
-        let scene = Scene { world, camera, seconds, projection, plan: &plan };
+        let scene = Scene { world, camera, seconds, projection: &projection, plan: &plan };
         let list = &mut memory.list;
         memory.next_change = visibility::fill(scene, caster, &mut memory.visibility, list, stats);
         memory.first_row_of_ground = projection.first_row_of_ground();

@@ -44,8 +44,8 @@ pub(crate) use billboard::Billboard;
 pub(crate) use billboard::may_show;
 pub use column::{Column, Surface};
 pub(crate) use draw_list::{
-    BillboardColumn, DrawList, Extent, Layer, Material, PlaneSpan, SeeThroughColumn, Span,
-    SpanMemory, WallColumn, WallSink,
+    BillboardColumn, DrawList, DrawnPlane, Extent, Layer, Material, PlaneSpan, SeeThroughColumn,
+    Span, SpanMemory, SpanPair, WallColumn, WallSink,
 };
 pub(crate) use facing::Facing;
 pub use filter::Filter;
@@ -60,7 +60,7 @@ pub(crate) use scene::Scene;
 pub(crate) use span_mapping::{SpanMapping, TexelPlaces};
 pub(crate) use stats::Stats;
 pub use stats::{FrameStats, Pass, PassStats, PortalStats};
-pub(crate) use texture_stepper::TextureStepper;
+pub(crate) use texture_stepper::{TextureStepper, WallTexels};
 
 use crate::cast::{Caster, ExactOnLevel};
 use flat::{FlatMemory, PortalStarts};

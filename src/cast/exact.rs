@@ -43,11 +43,9 @@ impl Caster for Exact {
         Some(Hit::entering(ray, wall.cell, wall.side))
     }
 
-    /// If both rays hit one face, no solid cell is between them: it would be at least as wide as
-    /// the face and nearer, and one of the two rays would have hit it.
     #[inline]
-    fn follows_between(&self, left: &Hit, right: &Hit) -> bool {
-        (left.cell, left.side) == (right.cell, right.side)
+    fn is_exact(&self) -> bool {
+        true
     }
 
     fn cast_through(&self, world: &World, ray: &Ray, passed: impl FnMut(Hit)) -> Option<Hit> {
@@ -74,8 +72,8 @@ impl Caster for ExactOnLevel<'_> {
     }
 
     #[inline]
-    fn follows_between(&self, left: &Hit, right: &Hit) -> bool {
-        Exact.follows_between(left, right)
+    fn is_exact(&self) -> bool {
+        true
     }
 
     fn cast_through(&self, world: &World, ray: &Ray, passed: impl FnMut(Hit)) -> Option<Hit> {

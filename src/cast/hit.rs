@@ -54,12 +54,18 @@ impl Hit {
         Self { cell, side, t, u: texture_coordinate(direction, side, along) }
     }
 
-    /// The face that a ray along `direction` hit here.
+    /// The face that an exact ray from `origin` hit here.
     #[inline]
-    pub(crate) fn face(&self, direction: DVec2) -> HitFace {
+    pub(crate) fn face(&self, origin: DVec2) -> HitFace {
         let &Self { cell, side, .. } = self;
-        let corner = corner_of_face(direction, cell, side);
-        HitFace { cell, side, corner, is_from_left: is_from_left(direction, side) }
+        let corner = DVec2::new(f64::from(cell.column), f64::from(cell.row));
+        // From the west or the north, the ray enters at the start of the cell, which is ahead.
+        let (is_ahead, to_far_side) = match side {
+            Side::X => (corner.x >= origin.x, DVec2::X),
+            Side::Y => (corner.y >= origin.y, DVec2::Y),
+        };
+        let corner = if is_ahead { corner } else { corner + to_far_side };
+        HitFace { cell, side, corner, is_from_left: is_ahead == (side == Side::X) }
     }
 }
 
@@ -68,7 +74,9 @@ impl Hit {
 pub(crate) struct HitFace {
     cell: Cell,
     side: Side,
+    /// The north or west end.
     corner: DVec2,
+    /// Whether that end is on the left.
     is_from_left: bool,
 }
 
@@ -79,6 +87,53 @@ impl HitFace {
         let Self { cell, side, corner, is_from_left } = *self;
         let (t, along) = meeting(ray, side, corner);
         Hit { cell, side, t, u: from_left(along, is_from_left) }
+    }
+
+    /// Whether it is the same face as `other`.
+    #[inline]
+    pub(crate) fn is(&self, other: &Self) -> bool {
+        (self.cell, self.side) == (other.cell, other.side)
+    }
+
+    /// Whether `other` is on the same line, and of a neighbouring cell.
+    #[inline]
+    pub(crate) fn is_beside(&self, other: &Self) -> bool {
+        let along = |face: &Self| match face.side {
+            Side::X => (face.cell.column, face.cell.row),
+            Side::Y => (face.cell.row, face.cell.column),
+        };
+        let ((line, place), (line_of_other, place_of_other)) = (along(self), along(other));
+        self.side == other.side && line == line_of_other && place.abs_diff(place_of_other) == 1
+    }
+
+    /// The end on the left, as rays see it.
+    #[inline]
+    pub(crate) fn left_end(&self) -> DVec2 {
+        if self.is_from_left { self.corner } else { self.other_end() }
+    }
+
+    /// The end on the right, as rays see it.
+    #[inline]
+    pub(crate) fn right_end(&self) -> DVec2 {
+        if self.is_from_left { self.other_end() } else { self.corner }
+    }
+
+    /// The south or east end.
+    #[inline]
+    fn other_end(&self) -> DVec2 {
+        match self.side {
+            Side::X => self.corner + DVec2::Y,
+            Side::Y => self.corner + DVec2::X,
+        }
+    }
+
+    /// The distance from `point` to the line of the face.
+    #[inline]
+    pub(crate) fn distance_to_line(&self, point: DVec2) -> f64 {
+        match self.side {
+            Side::X => (self.corner.x - point.x).abs(),
+            Side::Y => (self.corner.y - point.y).abs(),
+        }
     }
 }
 

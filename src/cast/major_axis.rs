@@ -132,18 +132,12 @@ impl Iterator for MajorAxisTraversal<'_> {
     #[inline(always)]
     fn next(&mut self) -> Option<Crossing> {
         let distance_field = self.grid.distance_field();
-        if distance_field.beam_tables().is_some() {
-            let (traversal, met) = self.clone().leap_along_beams();
+        if distance_field.is_measured() {
+            let (traversal, met) = self.clone().leap();
             *self = traversal;
             return met;
         }
-        self.advance(|path, at| {
-            if distance_field.is_measured() {
-                path.leap(distance_field, at)
-            } else {
-                path.step(distance_field, at)
-            }
-        })
+        self.advance(|path, at| path.step(distance_field, at))
     }
 }
 
@@ -175,16 +169,18 @@ impl MajorAxisTraversal<'_> {
         }
     }
 
-    /// As [`MajorAxisTraversal::next`], on a map with beam tables.
+    /// As [`MajorAxisTraversal::next`], on a map with distances.
     ///
     /// It is a separate function on a copy, so that the loop for other maps keeps its state in registers.
     #[inline(never)]
-    fn leap_along_beams(mut self) -> (Self, Option<Crossing>) {
+    fn leap(mut self) -> (Self, Option<Crossing>) {
         let distance_field = self.grid.distance_field();
-        let beam_tables = distance_field.beam_tables();
-        let met = beam_tables.and_then(|beam_tables| {
-            self.advance(|path, at| path.leap_along_beams(distance_field, beam_tables, at))
-        });
+        let met = match distance_field.beam_tables() {
+            Some(beam_tables) => {
+                self.advance(|path, at| path.leap_along_beams(distance_field, beam_tables, at))
+            }
+            None => self.advance(|path, at| path.leap(distance_field, at)),
+        };
         (self, met)
     }
 }
@@ -197,18 +193,20 @@ impl Path {
         let Progress { mut line, mut band, mut lookups } = from;
         let mut position = self.position + self.slope * line;
         let mut before_line = self.corner + self.line_stride * line;
+        let first = line;
         loop {
-            lookups += 1;
             line += 1;
             position += self.slope;
             let band_before = band;
             band = self.band_at(position, line);
             let beside = before_line + self.band_stride * band;
-            let ahead = beside + self.line_stride;
-            if !distance_field.is_clear(ahead) || !distance_field.is_clear(beside) {
+            before_line += self.line_stride;
+            if !(distance_field.is_clear(beside)
+                && distance_field.is_clear(beside + self.line_stride))
+            {
+                lookups += (line - first) as u64;
                 return (band_before, Progress { line, band, lookups });
             }
-            before_line += self.line_stride;
         }
     }
 

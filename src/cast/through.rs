@@ -41,10 +41,13 @@ pub(super) fn cast(
                     return Some(hit);
                 }
             }
+            TileKind::Mask(_) | TileKind::Glass(_)
+                if tile_before(world, ray, crossing) == Some(crossing.tile) => {}
+            TileKind::Glass(glass) if glass.is_opaque() => {
+                return Some(Hit::entering(ray, crossing.cell, crossing.side));
+            }
             TileKind::Mask(_) | TileKind::Glass(_) => {
-                if tile_before(world, ray, crossing) != Some(crossing.tile) {
-                    passed(Hit::entering(ray, crossing.cell, crossing.side));
-                }
+                passed(Hit::entering(ray, crossing.cell, crossing.side));
             }
             TileKind::Wall(_) | TileKind::Mirror(_) | TileKind::Open | TileKind::Doorway(_) => {
                 return Some(Hit::entering(ray, crossing.cell, crossing.side));

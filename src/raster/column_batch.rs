@@ -7,7 +7,7 @@
 use std::ops::Range;
 use std::{iter, ptr};
 
-use super::direct_columns::{DirectColumn, DirectColumns};
+use super::direct_columns::DirectColumn;
 use super::lanes::{LANES, Lanes, QueuedColumn};
 use super::shaded_texels::{ShadedRange, ShadedTexels};
 use super::target::Target;
@@ -37,8 +37,8 @@ pub(super) struct ColumnBatch<'m, 't, 'a, L, S> {
     latest: Option<(&'a [Rgb], L, ShadedRange)>,
     /// Columns before this one can no longer be queued: those of a batch do not overlap.
     next: u32,
-    /// The columns that are drawn without a batch, if that takes less time.
-    direct: Option<DirectColumns<'a>>,
+    /// Whether columns are drawn without a batch where that takes less time.
+    are_direct: bool,
 }
 
 impl<'m, 't, 'a, L: Lighting, S: Stats> ColumnBatch<'m, 't, 'a, L, S> {
@@ -47,8 +47,7 @@ impl<'m, 't, 'a, L: Lighting, S: Stats> ColumnBatch<'m, 't, 'a, L, S> {
         target: &'m mut Target<'t, S>,
         are_direct: bool,
     ) -> Self {
-        let direct = are_direct.then(DirectColumns::default);
-        let mut batch = Self { memory, target, latest: None, next: 0, direct };
+        let mut batch = Self { memory, target, latest: None, next: 0, are_direct };
         batch.clear();
         // Enough for any later view of a wall.
         batch.memory.columns.reserve(MOST_COLUMNS);
@@ -88,11 +87,12 @@ impl<'m, 't, 'a, L: Lighting, S: Stats> ColumnBatch<'m, 't, 'a, L, S> {
         stepper: TextureStepper,
         lighting: L,
     ) {
-        if let Some(direct) = &mut self.direct
-            && let Some(texels) = lighting.lit_column(level, u)
-            && DirectColumns::are_for(texels)
-        {
-            direct.push(DirectColumn { x, rows, texels, stepper }, self.target.band_mut());
+        let height = level.height() as usize;
+        // Other lightings are applied to each texel of a batch, and to each pixel of a direct column.
+        let is_lit = L::HAS_COLUMNS || rows.len() <= height;
+        if self.are_direct && is_lit && DirectColumn::is_for(height) {
+            let (texels, lighting) = lighting.lit_column(level, u);
+            DirectColumn { x, rows, texels, stepper }.draw(lighting, self.target.band_mut());
         } else {
             self.queue_texels(x, rows, level.column(u), stepper, lighting);
         }
@@ -190,9 +190,6 @@ impl<'m, 't, 'a, L: Lighting, S: Stats> ColumnBatch<'m, 't, 'a, L, S> {
     pub(super) fn draw(&mut self) {
         let BatchMemory { shaded, columns, lanes } = &mut *self.memory;
         let band = self.target.band_mut();
-        if let Some(direct) = &mut self.direct {
-            direct.draw(band);
-        }
         let mut rest = columns.as_slice();
         while let [column, more @ ..] = rest {
             let Some(together) = rest.first_chunk().and_then(Lanes::new) else {
@@ -269,7 +266,9 @@ mod tests {
             let mut target = Target::<()>::new(frame.whole(), rows);
             let mut batch = ColumnBatch::new(&mut memory, &mut target, false);
             let walls = || (0..).zip(&columns).filter_map(|(x, column)| Some((x, column.as_ref()?)));
-            let down = |t: f64, range: &Range<usize>| projection.texels_down_the_wall(t, range.len());
+            let down = |t: f64, range: &Range<usize>| {
+                projection.texels_down_the_wall(t, projection.wall_texels(range.len()))
+            };
             for (x, (t, side, range)) in walls() {
                 let (rows, lighting) = (projection.wall_rows(*t), SideLit(*side));
                 match texels[range.clone()] {

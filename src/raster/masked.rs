@@ -22,7 +22,10 @@ pub(super) fn draw<S: Stats>(
     let Some(alphas) = level.alpha_column(u) else { return };
     let lighting = lighting_of(scene, facing, light, t);
     let stepper = match extent {
-        Extent::Level => scene.projection.texels_down_the_wall(t, texels.len()),
+        Extent::Level => {
+            let projection = scene.projection;
+            projection.texels_down_the_wall(t, projection.wall_texels(texels.len()))
+        }
         Extent::Heights { bottom, top } => {
             scene.projection.texels_down_the_face(t, texels.len(), bottom, top)
         }

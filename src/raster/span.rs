@@ -18,58 +18,6 @@ pub(super) fn draw<S: Stats>(scene: Scene<'_>, span: &PlaneSpan<'_>, target: &mu
     }
 }
 
-/// Draws `spans`, which have the same columns and the same mapping; the first one is further up.
-///
-/// If two textures of one size are in full light, the indices of their texels are computed once.
-pub(super) fn draw_both<S: Stats>(
-    scene: Scene<'_>,
-    spans: &[PlaneSpan<'_>; 2],
-    target: &mut Target<'_, S>,
-) {
-    let [upper, lower] = spans;
-    let levels = spans.each_ref().map(|span| level_in_full_light(scene, span));
-    if let [Some(one), Some(other)] = levels
-        && one.has_indices_of(other)
-        && upper.covering.scale == lower.covering.scale
-    {
-        let (columns, count) = (&upper.columns, upper.columns.len());
-        let places = upper.mapping.places(columns.start, 1.0 / upper.covering.scale.cells());
-        if TexelRuns::of(one, &places, count).is_none() {
-            let passes = [upper.pass, lower.pass];
-            for pass in passes {
-                target.count_texels(pass, count);
-            }
-            let [above, below] = target.two_spans_mut(passes, [upper.row, lower.row], columns);
-            let blocks = above.chunks_mut(AT_ONCE).zip(below.chunks_mut(AT_ONCE));
-            for_each_block(
-                one,
-                places,
-                blocks.map(|(above, below)| (above.len(), [above, below])),
-                |texels, [above, below]| {
-                    look_up(one, FullyLit, texels, above);
-                    look_up(other, FullyLit, texels, below);
-                },
-            );
-            return;
-        }
-    }
-    draw(scene, upper, target);
-    draw(scene, lower, target);
-}
-
-/// The mip level of the texture of `span`, if it is drawn without lighting and by shifts.
-fn level_in_full_light<'a>(scene: Scene<'a>, span: &PlaneSpan<'a>) -> Option<MipLevelByShifts<'a>> {
-    let Pattern::Plain(paint) = span.covering.pattern else { return None };
-    if Faded::of_plane(span.light, scene.world.fog(), span.mapping.distance).is_some() {
-        return None;
-    }
-    let per_cell = 1.0 / span.covering.scale.cells();
-    match (Sampler { scene, mapping: span.mapping, per_cell }).sample(paint) {
-        Sample::Color(_) => None,
-        Sample::Level(level) => level.by_shifts(),
-    }
-}
-
 fn draw_lit<L: Lighting, S: Stats>(
     scene: Scene<'_>,
     span: &PlaneSpan<'_>,
@@ -158,74 +106,86 @@ fn draw_level<L: Lighting>(level: &MipLevel, lighting: L, places: TexelPlaces, p
     }
 }
 
-/// Draws `level` on `pixels`.
+/// Draws `level` on `pixels`. For the usual numbers of texels, no lookup needs a bounds check.
 fn draw_by_shifts<L: Lighting>(
     level: MipLevelByShifts<'_>,
     lighting: L,
     places: TexelPlaces,
     pixels: &mut [Rgb],
 ) {
+    match level.texels().len() {
+        16384 => draw_texels::<_, 16384>(level, lighting, places, pixels),
+        4096 => draw_texels::<_, 4096>(level, lighting, places, pixels),
+        1024 => draw_texels::<_, 1024>(level, lighting, places, pixels),
+        256 => draw_texels::<_, 256>(level, lighting, places, pixels),
+        64 => draw_texels::<_, 64>(level, lighting, places, pixels),
+        16 => draw_texels::<_, 16>(level, lighting, places, pixels),
+        _ => {
+            for (pixel, (x, y)) in pixels.iter_mut().zip(places) {
+                *pixel = lighting.apply(level.at_index(level.index(x, y)));
+            }
+        }
+    }
+}
+
+/// Draws `level`, which has `N` texels, on `pixels`.
+fn draw_texels<L: Lighting, const N: usize>(
+    level: MipLevelByShifts<'_>,
+    lighting: L,
+    places: TexelPlaces,
+    pixels: &mut [Rgb],
+) {
+    let Some(texels) = level.texels().first_chunk::<N>() else { return };
     let blocks = pixels.chunks_mut(AT_ONCE).map(|pixels| (pixels.len(), pixels));
-    for_each_block(level, places, blocks, |texels, pixels| {
-        look_up(level, lighting, texels, pixels);
+    for_each_block(level, places, blocks, |indices, pixels| {
+        // A compiler does not unroll the loop by itself.
+        let (pixels, rest) = pixels.as_chunks_mut::<UNROLLED>();
+        let (indices, rest_of_indices) = indices.split_at(pixels.as_flattened().len());
+        for (pixels, indices) in pixels.iter_mut().zip(indices.as_chunks::<UNROLLED>().0) {
+            for (pixel, &index) in pixels.iter_mut().zip(indices) {
+                *pixel = lighting.apply(texels[index as usize % N]);
+            }
+        }
+        for (pixel, &index) in rest.iter_mut().zip(rest_of_indices) {
+            *pixel = lighting.apply(texels[index as usize % N]);
+        }
     });
 }
 
 /// Passes each of `blocks`, of this number of pixels, to `draw` with the indices of its texels. They
 /// are computed in a loop that reads no texel, so that a compiler vectorizes it.
 #[inline]
-fn for_each_block<B>(
+pub(super) fn for_each_block<B>(
     level: MipLevelByShifts<'_>,
     mut places: TexelPlaces,
     blocks: impl Iterator<Item = (usize, B)>,
     mut draw: impl FnMut(&[u32], B),
 ) {
-    let mut texels = [0; AT_ONCE];
+    let mut indices = [0; AT_ONCE];
     for (count, block) in blocks {
-        // A few surplus texels take less time than a remainder that is computed one by one.
-        let texels = &mut texels[..count.next_multiple_of(LANES)];
-        for (texel, (x, y)) in texels.iter_mut().zip(places.clone()) {
-            *texel = level.index(x, y);
+        // A few surplus indices take less time than a remainder that is computed one by one.
+        let indices = &mut indices[..count.next_multiple_of(LANES)];
+        for (index, (x, y)) in indices.iter_mut().zip(places.clone()) {
+            *index = level.index(x, y);
         }
-        draw(texels, block);
+        draw(indices, block);
         places.skip_pixels(AT_ONCE as u64);
     }
 }
 
-/// Colours `pixels` by the indices of their texels, of which there are at least as many.
-#[inline]
-fn look_up<L: Lighting>(
-    level: MipLevelByShifts<'_>,
-    lighting: L,
-    texels: &[u32],
-    pixels: &mut [Rgb],
-) {
-    // A compiler does not unroll the loop by itself: any lookup may panic and end it.
-    let (pixels, rest) = pixels.as_chunks_mut::<UNROLLED>();
-    let (texels, rest_of_texels) = texels.split_at(pixels.as_flattened().len());
-    for (pixels, texels) in pixels.iter_mut().zip(texels.as_chunks::<UNROLLED>().0) {
-        for (pixel, &texel) in pixels.iter_mut().zip(texels) {
-            *pixel = lighting.apply(level.at_index(texel));
-        }
-    }
-    for (pixel, &texel) in rest.iter_mut().zip(rest_of_texels) {
-        *pixel = lighting.apply(level.at_index(texel));
-    }
-}
-
 /// The most pixels that are drawn at once.
-const AT_ONCE: usize = 64;
-/// A multiple of the number of texels that a processor computes at once.
+pub(super) const AT_ONCE: usize = 64;
+/// A multiple of the number of indices that a processor computes at once.
 const LANES: usize = 4;
-const UNROLLED: usize = 8;
+pub(super) const UNROLLED: usize = 8;
 
 /// The inputs for sampling the paints of a span.
 #[derive(Clone, Copy)]
-struct Sampler<'a> {
-    scene: Scene<'a>,
-    mapping: &'a SpanMapping,
+pub(super) struct Sampler<'a> {
+    pub(super) scene: Scene<'a>,
+    pub(super) mapping: &'a SpanMapping,
     /// The number of repeats of the paints in a cell.
-    per_cell: f64,
+    pub(super) per_cell: f64,
 }
 
 /// A paint at one distance.
@@ -265,7 +225,8 @@ impl<'a> Sampler<'a> {
     }
 
     /// The level of detail of a pattern with `texels` texels in a repeat.
-    fn lod(self, texels: f64) -> usize {
+    #[inline]
+    pub(super) fn lod(self, texels: f64) -> usize {
         let area = self.mapping.pixel_area * self.per_cell * self.per_cell;
         self.scene.plan.filter.lod(area * texels)
     }

@@ -9,6 +9,7 @@ use std::ops::Range;
 use super::column_batch::{BatchMemory, ColumnBatch};
 use super::direct_columns;
 use super::target::Target;
+use super::wall_level::WallLevel;
 use crate::cast::Side;
 use crate::visibility::{
     DrawList, Extent, Facing, Faded, Lighting, Pass, Scene, SideLit, Stats, WallColumn, WallSink,
@@ -22,16 +23,16 @@ pub(super) fn draw<S: Stats>(
     memory: &mut BatchMemory,
     target: &mut Target<'_, S>,
 ) {
+    let are_direct = direct_columns::are_for(scene, target.band_mut());
     if scene.plan.walls.faded || scene.world.has_shapes() {
         let lighting = |wall: &WallColumn| lighting_of(scene, wall.facing, wall.light, wall.t);
-        draw_lit(scene, list, true, ColumnBatch::new(memory, target, false), lighting);
+        draw_lit(scene, list, true, ColumnBatch::new(memory, target, are_direct), lighting);
     } else {
         let lighting = |wall: &WallColumn| match wall.facing {
             Facing::Side(side) => SideLit(side),
             // Only shapes have such a normal, and this scene has none.
             Facing::Normal(_) => SideLit(Side::X),
         };
-        let are_direct = direct_columns::are_for(scene, target.band_mut());
         draw_lit(scene, list, false, ColumnBatch::new(memory, target, are_direct), lighting);
     }
 }
@@ -53,7 +54,7 @@ fn draw_lit<'a, L: Lighting, S: Stats>(
     lighting: impl Fn(&WallColumn) -> L,
 ) {
     let rows = batch.rows();
-    let mut queue = Queue { scene, batch, lighting };
+    let mut queue = Queue { scene, batch, lighting, latest: None };
     list.for_each_wall_column(scene, &rows, is_lit, &mut queue);
     queue.batch.draw();
 }
@@ -63,13 +64,15 @@ struct Queue<'m, 't, 'a, L, S, F> {
     scene: Scene<'a>,
     batch: ColumnBatch<'m, 't, 'a, L, S>,
     lighting: F,
+    /// The level of the column before.
+    latest: Option<WallLevel<'a>>,
 }
 
 impl<L: Lighting, S: Stats, F: Fn(&WallColumn) -> L> WallSink for Queue<'_, '_, '_, L, S, F> {
     #[expect(clippy::inline_always, reason = "elsewhere every wall column would go through memory")]
     #[inline(always)]
     fn take(&mut self, wall: &WallColumn, rows: Range<u32>) {
-        let Self { scene, batch, lighting } = self;
+        let Self { scene, batch, lighting, latest } = self;
         let (column, t) = (wall.column, wall.t);
         batch.count(Pass::Walls, rows.len(), wall.paint);
         let texture = match wall.paint {
@@ -79,11 +82,12 @@ impl<L: Lighting, S: Stats, F: Fn(&WallColumn) -> L> WallSink for Queue<'_, '_, 
             }
             Paint::Texture(texture) => texture,
         };
-        let level = scene.level_on_face(texture, t, wall.slope);
+        let WallLevel { level, texels, .. } =
+            WallLevel::on_face(*scene, texture, (t, wall.slope), latest);
         let projection = scene.projection;
         match wall.extent {
             Extent::Level => {
-                let stepper = projection.texels_down_the_wall(t, level.height() as usize);
+                let stepper = projection.texels_down_the_wall(t, texels);
                 batch.draw_wall((column, rows), (level, wall.u), stepper, lighting(wall));
             }
             Extent::Heights { bottom, top } => {

@@ -188,7 +188,7 @@ impl Billboard {
             width,
             columns,
             top,
-            texels_in_row: f64::from(texture.level(lod).height()) / (bottom - top),
+            texels_in_row: f64::from(texture.height_of_level(lod)) / (bottom - top),
             rows,
             is_mirrored: image.swaps_sides(),
             is_drawn: false,

@@ -46,7 +46,7 @@ pub(crate) enum Span<'m> {
     /// A floor or a ceiling.
     Plane(PlaneSpan<'m>),
     /// A ceiling and a floor, with the same columns and the same mapping.
-    Planes([PlaneSpan<'m>; 2]),
+    Pair(SpanPair<'m>),
     /// The sky, directly or in the mirrors of `image`.
     Sky { row: u32, columns: Range<usize>, image: Option<MirrorTransform> },
 }
@@ -60,6 +60,24 @@ pub(crate) struct PlaneSpan<'m> {
     pub(crate) light: Light,
     /// The mapping from the row to the floor or the ceiling.
     pub(crate) mapping: &'m SpanMapping,
+}
+
+/// A span of the ceiling and its mirror image, a span of the floor.
+pub(crate) struct SpanPair<'m> {
+    /// The row of each; the first one is further up.
+    pub(crate) rows: [u32; 2],
+    pub(crate) columns: Range<usize>,
+    /// The planes, which are the same for all pairs of a frame.
+    pub(crate) planes: &'m [DrawnPlane; 2],
+    pub(crate) mapping: &'m SpanMapping,
+}
+
+/// A floor or a ceiling with one covering in one light.
+#[derive(Clone, Copy, Debug)]
+pub(crate) struct DrawnPlane {
+    pub(crate) pass: Pass,
+    pub(crate) covering: Covering,
+    pub(crate) light: Light,
 }
 
 /// Memory for making spans, one for each thread.
@@ -142,6 +160,22 @@ pub(crate) struct BillboardColumn {
     pub(crate) rows: Range<u32>,
     /// An index into the billboards.
     pub(crate) billboard: usize,
+}
+
+impl<'m> SpanPair<'m> {
+    /// Both spans, each by itself.
+    pub(crate) fn spans(&self) -> [PlaneSpan<'m>; 2] {
+        let [ceiling, floor] = self.planes;
+        let [above, below] = self.rows;
+        [(above, ceiling), (below, floor)].map(|(row, plane)| PlaneSpan {
+            pass: plane.pass,
+            row,
+            columns: self.columns.clone(),
+            covering: plane.covering,
+            light: plane.light,
+            mapping: self.mapping,
+        })
+    }
 }
 
 impl DrawList {

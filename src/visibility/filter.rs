@@ -12,6 +12,17 @@ pub enum Filter {
 }
 
 impl Filter {
+    /// All filters, the default first.
+    pub const ALL: [Self; 2] = [Self::Mip, Self::Nearest];
+
+    /// The name on the command line.
+    pub const fn name(self) -> &'static str {
+        match self {
+            Self::Mip => "mip",
+            Self::Nearest => "nearest",
+        }
+    }
+
     /// The level of detail for a pixel that covers an area of this many texels.
     ///
     /// A texel of each level covers four of the level before. A long and narrow pixel counts by its

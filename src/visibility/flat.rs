@@ -1,10 +1,10 @@
 //! The flat way to fill a draw list: each ray ends at the first wall.
 //!
-//! Few rays are cast: those at both ends of the picture, then the one in the middle, and likewise
-//! in each half, until two rays hit the same face of a wall. All rays between two such rays hit
-//! that face, too. Rays that hit a tile which may be passed are cast again, and the hits that they
-//! pass are recorded.
+//! Few rays are cast: the [fan](fan) of a picture is found from some of them. Rays that hit a tile which
+//! may be passed are cast again, and the hits that they pass are recorded.
 
+mod ceilings;
+mod fan;
 mod layers;
 mod planes;
 mod portal_starts;
@@ -17,6 +17,7 @@ use super::ray_counter::RayCounter;
 use super::{DrawList, Projection, Scene, Stats};
 use crate::cast::{Caster, Hit, Ray};
 use crate::world::{Cell, Grid, TileId, TileKind, World};
+use fan::Fan;
 pub(super) use layers::{FlatMemory, PassedHits};
 pub(super) use planes::{PlaneRow, for_each_span};
 pub(super) use portal_starts::PortalStarts;
@@ -83,7 +84,7 @@ fn cast<C: Caster>(
         return;
     }
     columns.resize(projection.columns(), Column::UNKNOWN);
-    Fan { caster, grid, projection }.cast(columns);
+    Fan::new(caster, grid, projection).cast(columns);
     if is_of_walls {
         return;
     }
@@ -113,52 +114,6 @@ fn stands_in_what_may_be_hit(world: &World, place: DVec2) -> bool {
     })
 }
 
-/// The rays of a picture, for which every solid tile is a wall.
-struct Fan<'a, C> {
-    caster: &'a C,
-    grid: &'a Grid,
-    projection: &'a Projection,
-}
-
-impl<C: Caster> Fan<'_, C> {
-    fn cast(&self, columns: &mut [Column]) {
-        let last = columns.len() - 1;
-        for index in [0, last].into_iter().take(columns.len()) {
-            columns[index] = self.cast_one(index);
-        }
-        self.cast_between(columns, 0);
-    }
-
-    /// Casts the rays of all `columns` except the first and the last, which are known. `first` is
-    /// the index of the first.
-    fn cast_between(&self, columns: &mut [Column], first: usize) {
-        let [left, between @ .., right] = columns else { return };
-        if between.is_empty() {
-            return;
-        }
-        if let (Some(left), Some(right)) = (&left.hit, &right.hit)
-            && self.caster.follows_between(left, right)
-        {
-            let face = left.face(self.projection.direction_of(first as u32));
-            for (index, column) in (first as u32 + 1..).zip(between) {
-                let hit = face.enter(&self.projection.ray(index));
-                let rows = self.projection.wall_rows(hit.t);
-                *column = Column { distance: hit.t, rows, hit: Some(hit) };
-            }
-            return;
-        }
-        let middle = columns.len() / 2;
-        columns[middle] = self.cast_one(first + middle);
-        self.cast_between(&mut columns[..=middle], first);
-        self.cast_between(&mut columns[middle..], first + middle);
-    }
-
-    fn cast_one(&self, index: usize) -> Column {
-        let ray = self.projection.ray(index as u32);
-        column_of(self.grid, self.projection, &ray, self.caster.cast(self.grid, &ray))
-    }
-}
-
 /// The column of a `ray` with this hit.
 #[inline]
 fn column_of(grid: &Grid, projection: &Projection, ray: &Ray, hit: Option<Hit>) -> Column {
@@ -181,7 +136,8 @@ fn distance_to_edge(grid: &Grid, ray: &Ray) -> f64 {
     };
     let (origin, direction) = (ray.origin(), ray.direction());
     let leaves = along(origin.x, direction.x, edges.x).min(along(origin.y, direction.y, edges.y));
-    leaves.max(0.0)
+    // Of two zeros, `max` returns either; adding zero turns −0 into +0.
+    leaves.max(0.0) + 0.0
 }
 
 #[cfg(test)]

@@ -12,14 +12,15 @@ use crate::world::{Fog, Light};
 
 /// The effect of light and fog on a colour.
 pub(crate) trait Lighting: Copy + PartialEq {
+    /// The lighting that is left to [`Lighting::lit_column`]'s caller.
+    type Rest: Lighting;
+    /// Whether mip levels have columns in this lighting, so that nothing is left.
+    const HAS_COLUMNS: bool;
+
     fn apply(self, color: Rgb) -> Rgb;
 
-    /// The column of `level` at `u` in this lighting, if the level has it.
-    #[inline]
-    fn lit_column(self, level: &MipLevel, u: f64) -> Option<&[Rgb]> {
-        _ = (level, u);
-        None
-    }
+    /// The column of `level` at `u`, lit as far as the level has it so, and the rest of the lighting.
+    fn lit_column(self, level: &MipLevel, u: f64) -> (&[Rgb], Self::Rest);
 }
 
 /// No effect: the surface is near and in full light.
@@ -41,13 +42,24 @@ pub(crate) struct Faded {
 }
 
 impl Lighting for FullyLit {
+    type Rest = Self;
+    const HAS_COLUMNS: bool = true;
+
     #[inline]
     fn apply(self, color: Rgb) -> Rgb {
         color
     }
+
+    #[inline]
+    fn lit_column(self, level: &MipLevel, u: f64) -> (&[Rgb], Self) {
+        (level.column(u), self)
+    }
 }
 
 impl Lighting for SideLit {
+    type Rest = FullyLit;
+    const HAS_COLUMNS: bool = true;
+
     #[inline]
     fn apply(self, color: Rgb) -> Rgb {
         match self.0 {
@@ -57,18 +69,27 @@ impl Lighting for SideLit {
     }
 
     #[inline]
-    fn lit_column(self, level: &MipLevel, u: f64) -> Option<&[Rgb]> {
-        Some(match self.0 {
+    fn lit_column(self, level: &MipLevel, u: f64) -> (&[Rgb], FullyLit) {
+        let texels = match self.0 {
             Side::X => level.column(u),
             Side::Y => level.halved_column(u),
-        })
+        };
+        (texels, FullyLit)
     }
 }
 
 impl Lighting for Faded {
+    type Rest = Self;
+    const HAS_COLUMNS: bool = false;
+
     #[inline]
     fn apply(self, color: Rgb) -> Rgb {
         color.blended(self.own, self.fog, self.share)
+    }
+
+    #[inline]
+    fn lit_column(self, level: &MipLevel, u: f64) -> (&[Rgb], Self) {
+        (level.column(u), self)
     }
 }
 

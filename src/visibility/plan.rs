@@ -8,9 +8,7 @@ mod display;
 
 use super::{Filter, Projection};
 use crate::color::Rgb;
-use crate::world::{
-    Camera, Ceiling, Covering, Heights, Light, Paint, Pattern, Sky, Tile, TileKind, World,
-};
+use crate::world::{Camera, Ceiling, Covering, Light, Paint, Pattern, Sky, Tile, TileKind, World};
 
 /// The loops that draw a frame.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -189,8 +187,7 @@ impl Visibility {
             (true, true) => Some(WhyPortals::Mirrors),
             (false, _) => Some(WhyPortals::Heights),
         };
-        let level = Heights::LEVEL;
-        let is_between = level.floor() < camera.eye() && camera.eye() < level.ceiling();
+        let is_between = Projection::is_between_floor_and_ceiling(camera.eye());
         match why {
             Some(why) if stands_on_level_floor(world, camera) => Self::Mixed(why),
             Some(why) => Self::Portals(why),

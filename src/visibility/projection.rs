@@ -8,7 +8,7 @@ use std::ops::{Range, RangeInclusive};
 
 use glam::DVec2;
 
-use super::texture_stepper::{FaceTexels, Horizon, TextureStepper, ceil};
+use super::texture_stepper::{FaceTexels, Horizon, TextureStepper, WallTexels, ceil, ceil_within};
 use super::{FrameSize, PixelAspect, SpanMapping};
 use crate::cast::Ray;
 use crate::world::{Camera, Heights};
@@ -67,14 +67,10 @@ impl Projection {
         }
     }
 
-    /// Whether a level scene looks the same from an eye at this height by both ways.
+    /// Whether an eye at this height is well between floor and ceiling of a level scene: nearer to either,
+    /// rounding could take a ray of the flat way through it.
     pub(crate) fn is_between_floor_and_ceiling(eye: f64) -> bool {
         (NEAREST..=1.0 - NEAREST).contains(&eye)
-    }
-
-    /// The projection for a level scene: the eye is moved out of its floor and its ceiling.
-    pub(crate) fn between_floor_and_ceiling(self) -> Self {
-        Self { eye: self.eye.clamp(NEAREST, 1.0 - NEAREST), ..self }
     }
 
     /// The height of the eye.
@@ -141,9 +137,9 @@ impl Projection {
     /// The rows whose centres are between top and bottom of a wall of height 1 at distance `t`.
     #[inline]
     pub(crate) fn wall_rows(&self, t: f64) -> Range<u32> {
-        let above = (1.0 - self.eye) * self.focal_length / t;
-        let below = self.eye * self.focal_length / t;
-        self.first_row_below(self.horizon - above)..self.first_row_below(self.horizon + below)
+        let at_1 = [-((1.0 - self.eye) * self.focal_length), self.eye * self.focal_length];
+        let [top, bottom] = at_1.map(|rows| self.first_row_below(self.horizon + rows / t));
+        top..bottom
     }
 
     /// The rise from the eye to `height`.
@@ -167,11 +163,15 @@ impl Projection {
         self.row_of(self.rise_to(height), t)
     }
 
-    /// The texels of a wall at distance `t`, with `count` from top to bottom.
+    /// The texels of a wall with `count` from top to bottom.
+    pub(crate) fn wall_texels(&self, count: usize) -> WallTexels {
+        WallTexels::new(count, 1.0 - self.eye)
+    }
+
+    /// The texels of a wall at distance `t`.
     #[inline]
-    pub(crate) fn texels_down_the_wall(&self, t: f64, count: usize) -> TextureStepper {
-        let height_of_row = t / self.focal_length;
-        TextureStepper::of_wall(self.horizon_of_texels, height_of_row, count, 1.0 - self.eye)
+    pub(crate) fn texels_down_the_wall(&self, t: f64, texels: WallTexels) -> TextureStepper {
+        TextureStepper::of_wall(self.horizon_of_texels, t / self.focal_length, texels)
     }
 
     /// The texels of a face at distance `t` from the height `bottom` to `top`: `count` for each
@@ -276,14 +276,11 @@ impl Projection {
     /// The first row with its centre at or below `y`; the number of rows if there is none.
     #[inline]
     fn first_row_below(&self, y: f64) -> u32 {
-        let y = (y - 0.5).clamp(0.0, self.height);
-        // On old processors `f64::ceil` is a call.
-        let row = y as u32;
-        row + u32::from(f64::from(row) < y)
+        ceil_within(self.height, y - 0.5)
     }
 }
 
-/// The least distance of an eye from floor and ceiling, in cells: a nearer one shows one point.
+/// The least distance of an eye from floor and ceiling, in cells, for the flat way.
 const NEAREST: f64 = 1.0 / 64.0;
 
 /// An eye further up or down has the same view as from here: no height is so far.

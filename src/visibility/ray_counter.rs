@@ -53,8 +53,8 @@ impl<C: Caster> Caster for RayCounter<'_, C> {
         self.caster.cast(grid, ray)
     }
 
-    fn follows_between(&self, left: &Hit, right: &Hit) -> bool {
-        self.caster.follows_between(left, right)
+    fn is_exact(&self) -> bool {
+        self.caster.is_exact()
     }
 
     fn cast_through(&self, world: &World, ray: &Ray, passed: impl FnMut(Hit)) -> Option<Hit> {

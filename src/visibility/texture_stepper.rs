@@ -10,7 +10,7 @@ mod rounding;
 use std::iter;
 use std::ops::Range;
 
-pub(crate) use rounding::ceil;
+pub(crate) use rounding::{ceil, ceil_within};
 use rounding::{floor, rounded};
 
 /// The texels of an upright face.
@@ -45,6 +45,22 @@ pub(crate) struct TextureStepper {
     count: i64,
 }
 
+/// The texels of a wall of height 1 that one texture covers.
+#[derive(Clone, Copy, Debug)]
+pub(crate) struct WallTexels {
+    count: i64,
+    /// The position of eye height.
+    at_horizon: i64,
+}
+
+impl WallTexels {
+    /// `count` texels of a wall, with eye height `at_eye` cells below its top.
+    pub(crate) fn new(count: usize, at_eye: f64) -> Self {
+        let count = count as i64;
+        Self { count, at_horizon: rounded(at_eye * count as f64 * TEXEL) }
+    }
+}
+
 impl Horizon {
     /// The horizon `half_rows` halves of a row below the top of a picture.
     pub(crate) fn new(half_rows: f64) -> Self {
@@ -63,20 +79,19 @@ impl TextureStepper {
         let in_texels = |cells: f64| cells * count as f64;
         let uppermost = floor(in_texels(top));
         let lowest = (ceil(in_texels(bottom)) - 1).max(uppermost);
-        Self { range: (uppermost, lowest), ..Self::of_wall(horizon, height_of_row, count, at_eye) }
+        let wall = WallTexels::new(count, at_eye);
+        Self { range: (uppermost, lowest), ..Self::of_wall(horizon, height_of_row, wall) }
     }
 
-    /// The stepper of a wall of height 1 that one texture of `count` texels covers.
+    /// The stepper of a wall of height 1 with these `texels`.
     #[inline]
-    pub(crate) fn of_wall(horizon: Horizon, height_of_row: f64, count: usize, at_eye: f64) -> Self {
-        let in_texels = |cells: f64| cells * count as f64;
-        let texels_in_row = in_texels(height_of_row).min(MOST_TEXELS);
+    pub(crate) fn of_wall(horizon: Horizon, height_of_row: f64, texels: WallTexels) -> Self {
+        let WallTexels { count, at_horizon } = texels;
+        let texels_in_row = (height_of_row * count as f64).min(MOST_TEXELS);
         let half_step = rounded(texels_in_row / 2.0 * TEXEL).max(horizon.least);
         // Positions far above or below the face wrap around, and return to the same value at the
         // face.
-        let at_horizon = rounded(in_texels(at_eye) * TEXEL);
         let from_horizon = half_step.wrapping_mul(horizon.half_rows_to_first);
-        let count = count as i64;
         Self {
             first: at_horizon.wrapping_add(HAIR).wrapping_add(from_horizon),
             step: 2 * half_step,
@@ -203,8 +218,8 @@ mod tests {
             let of_face = [0.0, f64::MIN_POSITIVE, at_eye / (rows as f64 + 0.5)];
             for height_of_row in of_face {
                 let half_rows = 2.0 * rows as f64;
-                let texels =
-                    TextureStepper::of_wall(Horizon::new(half_rows), height_of_row, 1, at_eye);
+                let wall = WallTexels::new(1, at_eye);
+                let texels = TextureStepper::of_wall(Horizon::new(half_rows), height_of_row, wall);
                 let Range { start, end } = texels.places(&(0..1)).unwrap();
                 assert!(-1 <= start && end <= 2, "{rows}, {height_of_row}: {start}");
             }

@@ -137,3 +137,19 @@ fn a_very_close_wall_shows_the_texels_at_eye_height() {
         }
     }
 }
+
+#[test]
+fn a_distance_of_zero_has_no_sign() {
+    let world = map::load(Path::new("maps/gallery/stripes.toml")).unwrap();
+    let mut frame = Frame::new(FrameSize::new(64, 40).unwrap(), PixelAspect::SQUARE);
+    let mut renderer = Renderer::new();
+    for degrees in [135.0, 180.0, 225.0, 270.0] {
+        let heading = Heading::from_degrees(degrees).unwrap();
+        let position = DVec2::new(1.0, -0.0);
+        let camera = Camera::new(position, heading, FieldOfView::default()).unwrap();
+        renderer.render(&world, &camera, &mut frame);
+        let distances = renderer.columns().iter().map(|column| column.distance);
+        assert!(distances.clone().any(|distance| distance == 0.0));
+        assert!(distances.clone().all(f64::is_sign_positive), "{degrees}");
+    }
+}

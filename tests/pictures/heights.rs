@@ -130,7 +130,7 @@ fn map_of(scene: &Scene, look: Look) -> String {
         look.paint('z', 0),
         if is_covered { look.paint('z', 1) } else { "sky".to_owned() }
     );
-    text += "ceiling_height = 1.25\ngrid = '''\n";
+    _ = writeln!(text, "ceiling_height = {:?}\ngrid = '''", scene.ceiling_height);
     for row in cells.chunks(COLUMNS) {
         let character = |&kind: &usize| match kind {
             KINDS.. => 't',
@@ -217,6 +217,7 @@ struct Scene {
     /// The brightness of each kind of tile; empty if everything is fully lit.
     lights: Vec<f64>,
     is_covered: bool,
+    ceiling_height: f64,
     figures: Vec<Standing>,
     position: DVec2,
     is_on_a_roof: bool,
@@ -252,7 +253,32 @@ prop_compose! {
     ) -> Scene {
         let kinds = [vec![first], others].concat();
         let position = DVec2::from(position);
-        Scene { kinds, cells, lights, is_covered, figures, position, is_on_a_roof, up, degrees, pitch, size }
+        let ceiling_height = 1.25;
+        Scene {
+            kinds, cells, lights, is_covered, ceiling_height, figures, position,
+            is_on_a_roof, up, degrees, pitch, size,
+        }
+    }
+}
+
+prop_compose! {
+    /// A world in which all is level. Figures may be partly in the floor, or above the ceiling.
+    fn level_scene(of: Look)(
+        scene in scene(of),
+        up in prop_oneof![0.01..0.99, prop::sample::select(vec![1e-12, 0.001, 0.015, 0.99, 0.999])],
+    ) -> Scene {
+        let level = |kind: Kind| match kind {
+            Kind::Wall { .. } | Kind::Shape { .. } => Kind::Wall { height: 1.0 },
+            Kind::Open { .. } => Kind::Open { floor: 0.0 },
+            Kind::Covered { .. } => Kind::Covered { floor: 0.0, room: 1.0, rock: 0.0 },
+        };
+        let kinds: Vec<Kind> = scene.kinds.into_iter().map(level).collect();
+        let is_open = !scene.is_covered || kinds.iter().any(|kind| matches!(kind, Kind::Open { .. }));
+        // Above a wall under the sky, the flat way shows nothing that is behind it.
+        let highest = if is_open { 0.2 } else { f64::INFINITY };
+        let lowered = |it: Standing| Standing { base: it.base.min(highest), ..it };
+        let figures = scene.figures.into_iter().map(lowered).collect();
+        Scene { kinds, figures, up, ceiling_height: 1.0, is_on_a_roof: false, ..scene }
     }
 }
 
@@ -316,6 +342,16 @@ proptest! {
 
     #[test]
     fn every_texel_is_where_geometry_says(scene in scene(Look::Textures)) {
+        compare(&scene, Look::Textures)?;
+    }
+
+    #[test]
+    fn every_pixel_of_a_level_scene_is_where_geometry_says(scene in level_scene(Look::Colors)) {
+        compare(&scene, Look::Colors)?;
+    }
+
+    #[test]
+    fn every_texel_of_a_level_scene_is_where_geometry_says(scene in level_scene(Look::Textures)) {
         compare(&scene, Look::Textures)?;
     }
 }

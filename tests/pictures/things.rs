@@ -132,6 +132,48 @@ proptest! {
     }
 }
 
+/// Maps with a room around a court: everything is level in one, and a tile that is not is out of view in
+/// the other.
+fn level_and_uneven(thing: &str) -> [World; 2] {
+    let world = |last_row: &str| {
+        let text = format!(
+            "ceiling = '#202030'\nsky = {{ gradient = ['#5080c0', '#c0d8f0'] }}\n\
+             grid = '''\n..........\n.########.\n.#@.....#.\n.#..tu,.#.\n.#..,,,.#.\n.#......#.\n.########.\n{last_row}\n'''\n\
+             [tiles]\n'#' = {{ wall = 'brick' }}\n',' = {{ ceiling = 'sky' }}\n'^' = {{ floor_height = 0.5 }}\n\
+             [things]\n'@' = {{ start = 0 }}\n't' = {{ {thing} }}\n'u' = {{ {thing}, on = ',' }}\n"
+        );
+        map::parse_str(&text).unwrap_or_else(|faults| panic!("{faults}"))
+    };
+    [world(".........."), world("^.........")]
+}
+
+const TALLER_THAN_THE_ROOM: [&str; 3] = [
+    "sprite = 'statue', height = 2.5",
+    "sprite = 'lamp', height = 1.5, anchor = 'ceiling'",
+    "sprite = 'column', height = 1.01",
+];
+
+proptest! {
+    /// A thing reaches neither through the ceiling nor through the floor, whichever way draws it.
+    #[test]
+    fn what_is_taller_than_the_room_is_cut_off(
+        x in prop_oneof![2.1..7.9, (3..8).prop_map(|line| f64::from(line) + 1e-7)],
+        y in 2.1..5.9,
+        degrees in 0.0..360.0,
+        thing in prop::sample::select(&TALLER_THAN_THE_ROOM[..]),
+        base in -1.0..1.0,
+    ) {
+        let worlds = level_and_uneven(thing).map(|mut world| {
+            let figure = Figure { position: (4.5, 5.5).into(), base, ..standing(&world) };
+            world.set_figures([figure].into_iter());
+            world
+        });
+        let camera = camera((x, y), degrees);
+        let [level, uneven] = worlds.map(|world| frame_of(&world, &camera));
+        prop_assert!(level == uneven);
+    }
+}
+
 /// The figure that stands where the first thing of a level world does.
 fn standing(world: &World) -> Figure {
     let thing = world.things()[0];
@@ -186,6 +228,13 @@ impl<'a> Oracle<'a> {
         let y = (1.0 - (above - figure.base) / height) * f64::from(picture.height());
         if (x - x.round()).abs() < HAIR || (y - y.round()).abs() < HAIR {
             return None;
+        }
+        if above.abs() < HAIR || (above - 1.0).abs() < HAIR {
+            return None;
+        }
+        if !(0.0..1.0).contains(&above) {
+            // Behind the floor or the ceiling.
+            return Some(behind);
         }
         let inside = |place: f64, count: u32| (0.0..f64::from(count)).contains(&place);
         if !inside(x, picture.width()) || !inside(y, picture.height()) {

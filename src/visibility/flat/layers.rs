@@ -12,7 +12,7 @@
 use std::cmp::Ordering;
 use std::ops::Range;
 
-use super::PortalStarts;
+use super::ceilings::Ceilings;
 use super::wall::light_of;
 use crate::cast::{Hit, MirrorTransform};
 use crate::visibility::layer_order::put_in_order;
@@ -86,6 +86,7 @@ pub(super) fn fill<S: Stats>(
         stats.things_considered += considered;
         stats.things_drawn += (list.billboards.len() - first) as u64;
     });
+    let ceilings = Ceilings::new(scene);
     left.begin(passed, list.columns.len());
     list.make_room_for_layers(passed.list.capacity());
     for index in first..list.billboards.len() {
@@ -96,12 +97,11 @@ pub(super) fn fill<S: Stats>(
                 continue;
             }
             push_behind(depth, x as usize, scene, (passed, left), list);
-            let rows = rows.clone();
-            list.layers.push(Layer::Billboard(BillboardColumn {
-                column: x,
-                rows,
-                billboard: index,
-            }));
+            let is_at_wall = list.flat_columns()[x as usize].hit.is_some();
+            ceilings.for_each_open((x, is_at_wall), depth, rows.clone(), |rows| {
+                let column = BillboardColumn { column: x, rows, billboard: index };
+                list.layers.push(Layer::Billboard(column));
+            });
         }
     }
     for column in 0..left.of_columns.len() {
@@ -140,13 +140,8 @@ fn find_billboards(scene: Scene<'_>, visible: &mut VisibleCells, list: &mut Draw
     for billboard in &mut *found {
         billboard.is_drawn = true;
     }
-    if !list.flat_columns.is_empty() && PortalStarts::new(world).are_under_ceilings() {
-        // As the portal way does.
-        let projection = scene.projection;
-        for Billboard { rows, depth, .. } in &mut *found {
-            rows.start = rows.start.max(projection.row_of_height(1.0, *depth));
-            rows.end = rows.end.min(projection.row_of_height(0.0, *depth));
-        }
+    for Billboard { rows, depth, .. } in &mut *found {
+        rows.end = rows.end.min(scene.projection.row_of_height(0.0, *depth));
     }
     found.sort_unstable_by(from_far_to_near);
     considered
@@ -227,7 +222,7 @@ fn push_hit(scene: Scene<'_>, column: usize, hit: &Hit, list: &mut DrawList) {
     let material = match world.grid().tile(i64::from(x), i64::from(y)).map(|id| world.tile(id).kind)
     {
         Some(TileKind::Mask(texture)) => Material::Masked(texture),
-        Some(TileKind::Glass(glass)) => Material::Translucent(glass),
+        Some(TileKind::Glass(glass)) if !glass.is_clear() => Material::Translucent(glass),
         _ => return,
     };
     let (column, facing) = (column as u32, Facing::Side(hit.side));

@@ -14,7 +14,8 @@ use glam::DVec2;
 
 use crate::color::Rgb;
 use crate::visibility::{
-    CeilingLoop, Column, Faded, Lighting, Pass, PlaneLoop, PlaneSpan, Scene, SkyLoop, Span,
+    CeilingLoop, Column, DrawnPlane, Faded, Lighting, Pass, PlaneLoop, Scene, SkyLoop, Span,
+    SpanPair,
 };
 use crate::world::{Ceiling, Cell, Covering, Light, TileId};
 pub(crate) use stretches::PlaneRow;
@@ -30,15 +31,15 @@ pub(crate) fn for_each_span(
 ) {
     let plane = |kind| Plane { scene, columns, kind };
     if are_mirror_images(scene, columns, rows) {
-        let [ceiling, floor] = [PlaneKind::Ceiling, PlaneKind::Floor].map(plane);
+        let planes =
+            &[PlaneKind::Ceiling, PlaneKind::Floor].map(|kind| plane(kind).default_plane());
         let height = rows.end;
         memory.reserve((height as usize / 2).saturating_sub(memory.len()));
         let row_at = |depth, x| PlaneRow::new(scene, depth, x);
         let visible = |column: &Column| column.rows.start;
         for_each_stretch(columns, visible, memory, row_at, |row, columns| {
-            let floor = floor.default_span(row, columns.clone());
-            let floor = PlaneSpan { row: height - 1 - row.row, ..floor };
-            emit(Span::Planes([ceiling.default_span(row, columns), floor]));
+            let rows = [row.row, height - 1 - row.row];
+            emit(Span::Pair(SpanPair { rows, columns, planes, mapping: &row.mapping }));
         });
         return;
     }
@@ -95,9 +96,12 @@ impl Plane<'_> {
                     emit(Span::Fill { pass, rows: row..row + 1, color: self.fogged(color, row) });
                 }
             }
-            PlaneLoop::Spans => self.for_each_visible(rows, memory, |row, columns| {
-                emit(Span::Plane(self.default_span(row, columns)));
-            }),
+            PlaneLoop::Spans => {
+                let plane = self.default_plane();
+                self.for_each_visible(rows, memory, |row, columns| {
+                    emit(Span::Plane(row.span(columns, plane)));
+                });
+            }
             PlaneLoop::Tiles => self.for_each_visible(rows, memory, |row, columns| {
                 self.cut_by_tile(row, columns, emit);
             }),
@@ -141,41 +145,27 @@ impl Plane<'_> {
                 columns.end = more.end;
             }
             let Some((tile, lamplight)) = ground else {
-                emit(Span::Plane(self.default_span(row, columns)));
+                emit(Span::Plane(row.span(columns, self.default_plane())));
                 continue;
             };
             let tile = world.tile(tile);
             let light = tile.light.unwrap_or(Light::FULL).plus(lamplight);
             emit(match self.covering(tile.floor, tile.ceiling) {
-                Some(covering) => Span::Plane(self.span(row, columns, covering, light)),
+                Some(covering) => Span::Plane(
+                    row.span(columns, DrawnPlane { pass: self.pass(), covering, light }),
+                ),
                 None => Span::Sky { row: row.row, columns, image: None },
             });
         }
     }
 
-    /// A span with the covering that holds unless the map has another.
-    fn default_span<'m>(&self, row: &'m PlaneRow, columns: Range<usize>) -> PlaneSpan<'m> {
+    /// The plane with the covering and the light that hold unless the map has others.
+    fn default_plane(&self) -> DrawnPlane {
         let world = self.scene.world;
         // A ceiling that is sky is cut by tile; off the map, it is not visible from on the map.
         let covering = self.covering(world.floor(), world.ceiling()).unwrap_or(world.floor());
-        self.span(row, columns, covering, world.ground().light.unwrap_or(Light::FULL))
-    }
-
-    fn span<'m>(
-        &self,
-        row: &'m PlaneRow,
-        columns: Range<usize>,
-        covering: Covering,
-        light: Light,
-    ) -> PlaneSpan<'m> {
-        PlaneSpan {
-            pass: self.pass(),
-            row: row.row,
-            columns,
-            covering,
-            light,
-            mapping: &row.mapping,
-        }
+        let light = world.ground().light.unwrap_or(Light::FULL);
+        DrawnPlane { pass: self.pass(), covering, light }
     }
 
     /// The covering that this plane shows of the two; `None` for the sky.

@@ -47,11 +47,6 @@ impl<'a> PortalStarts<'a> {
         })
     }
 
-    /// Whether all level cells have a ceiling.
-    pub(super) fn are_under_ceilings(self) -> bool {
-        self.overhead == Overhead::Ceiling
-    }
-
     /// Whether the flat way fills nothing of the columns that it leaves to the portal way.
     fn are_at_camera(self) -> bool {
         self.overhead == Overhead::Both

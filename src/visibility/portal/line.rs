@@ -8,7 +8,7 @@ use super::walk::{ColumnWalk, MOST_BOUNCES, Place, PortalRay};
 use crate::cast::Hit;
 use crate::visibility::runs::{FlatSurface, ImageId, Part, Shown};
 use crate::visibility::{Extent, Material};
-use crate::world::{Glass, Tile, TileKind};
+use crate::world::{Glass, Paint, Tile, TileKind};
 
 impl ColumnWalk<'_> {
     /// Divides the clip range of `ray` among the faces and gaps at a line into `place`, and returns
@@ -33,7 +33,7 @@ impl ColumnWalk<'_> {
                 self.meet_rock(ray, place, met, rock, rock_from..gap.gap.bottom);
             }
             (rock_from, rock_end) = (gap.gap.top, end.min(top));
-            let (start, end) = (start.max(top), end.min(bottom));
+            let (start, mut end) = (start.max(top), end.min(bottom));
             if start >= end {
                 continue;
             }
@@ -42,7 +42,10 @@ impl ColumnWalk<'_> {
                 continue;
             }
             if gap.holds == Holds::Cube {
-                self.pass_cube(ray, place, &(start..end), met);
+                end = self.pass_cube(ray, place, &(start..end), met);
+                if start >= end {
+                    continue;
+                }
             }
             if let Some((gap, start, end)) = goes_on.replace((id, start, end)) {
                 let (walk, rows) = (ray.walk.clone(), start..end);
@@ -77,6 +80,7 @@ impl ColumnWalk<'_> {
         let tile = surroundings.tile(place).unwrap_or(&surroundings.scene.world.tiles()[0]);
         if is_lowest
             && let TileKind::Mirror(tint) = tile.kind
+            && !tint.is_opaque()
             && ray.walk.bounces() < MOST_BOUNCES
         {
             self.reflect(ray, rows, place, met, tint);
@@ -106,26 +110,44 @@ impl ColumnWalk<'_> {
     /// Stores the mirror image for later, in these `rows` behind the mirror's tint.
     fn reflect(&mut self, ray: &PortalRay, rows: Range<u32>, place: Place, met: &Met, tint: Glass) {
         self.memory.stats.bounces += 1;
-        let everywhere = Extent::Heights { bottom: BOTTOMLESS.bottom, top: BOTTOMLESS.top };
-        self.pass(ray, rows.clone(), met, place, Material::Translucent(tint), everywhere);
+        if !tint.is_clear() {
+            let everywhere = Extent::Heights { bottom: BOTTOMLESS.bottom, top: BOTTOMLESS.top };
+            self.pass(ray, rows.clone(), met, place, Material::Translucent(tint), everywhere);
+        }
         let mut walk = ray.walk.clone();
         walk.reflect(met.side);
         let image = self.list.runs.image_id(walk.transform());
         self.memory.rays.push(PortalRay { walk, rows, image, ..*ray });
     }
 
-    /// Records the face of the see-through cube in `place`.
+    /// Records the face of the see-through cube in `place`, and returns the end of those of `rows` that show
+    /// something behind it.
     #[inline(never)]
-    fn pass_cube(&mut self, ray: &PortalRay, place: Place, rows: &Range<u32>, met: &Met) {
-        let Some(Tile { heights, kind, .. }) = self.surroundings.tile(place) else { return };
-        let material = match *kind {
-            TileKind::Mask(texture) => Material::Masked(texture),
-            TileKind::Glass(glass) => Material::Translucent(glass),
-            _ => return,
+    fn pass_cube(&mut self, ray: &PortalRay, place: Place, rows: &Range<u32>, met: &Met) -> u32 {
+        let Some(Tile { heights, kind, .. }) = self.surroundings.tile(place) else {
+            return rows.end;
         };
         let (bottom, top) = (heights.floor(), heights.ceiling());
-        let rows = self.rows_between(rows, bottom..top, met.t);
-        self.pass(ray, rows, met, place, material, Extent::Heights { bottom, top });
+        let covered = self.rows_between(rows, bottom..top, met.t);
+        let extent = Extent::Heights { bottom, top };
+        let material = match *kind {
+            TileKind::Glass(glass) if glass.is_opaque() => {
+                let end = if covered.is_empty() { rows.end } else { covered.start };
+                let u = met.u(ray);
+                if ray.image == ImageId::NONE {
+                    self.hit = place.map(|(cell, _)| Hit { cell, side: met.side, t: met.t, u });
+                }
+                let light = self.light(place, met, u);
+                self.show_face(covered, met, u, (Paint::Color(glass.color), light), extent);
+                return end;
+            }
+            TileKind::Glass(glass) if glass.is_clear() => return rows.end,
+            TileKind::Glass(glass) => Material::Translucent(glass),
+            TileKind::Mask(texture) => Material::Masked(texture),
+            _ => return rows.end,
+        };
+        self.pass(ray, covered, met, place, material, extent);
+        rows.end
     }
 
     /// The part of `rows` between two heights at distance `t`.

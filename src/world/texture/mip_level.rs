@@ -137,11 +137,6 @@ impl<'a> MipLevelByShifts<'a> {
         x >> self.shift_x & self.mask_x | y >> self.shift_y & self.mask_y
     }
 
-    /// Whether `other` has the same index for every position.
-    pub(crate) fn has_indices_of(self, other: Self) -> bool {
-        self.masks() == other.masks()
-    }
-
     /// The bits of the index that depend on the position along each axis.
     pub(crate) fn masks(self) -> [u32; 2] {
         [self.mask_x, self.mask_y]

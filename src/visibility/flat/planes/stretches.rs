@@ -2,7 +2,7 @@
 
 use std::ops::Range;
 
-use crate::visibility::{Column, Scene, SpanMapping};
+use crate::visibility::{Column, DrawnPlane, PlaneSpan, Scene, SpanMapping};
 
 /// A row that shows the plane.
 #[derive(Clone, Debug)]
@@ -16,6 +16,12 @@ pub(crate) struct PlaneRow {
 impl PlaneRow {
     pub(super) fn new(scene: Scene<'_>, row: u32, span_start: usize) -> Self {
         Self { row, mapping: scene.projection.mapping(row), span_start }
+    }
+
+    /// The span of `columns` that shows `plane`.
+    pub(super) fn span(&self, columns: Range<usize>, plane: DrawnPlane) -> PlaneSpan<'_> {
+        let DrawnPlane { pass, covering, light } = plane;
+        PlaneSpan { pass, row: self.row, columns, covering, light, mapping: &self.mapping }
     }
 }
 

@@ -1,0 +1,156 @@
+//! Span pairs: a span of the ceiling and its mirror image, a span of the floor.
+//!
+//! If two textures of one size are in full light, the indices of their texels are computed once for both.
+//! What all pairs of a frame share, such as these textures, is found once for the frame: in small pictures,
+//! a span has a dozen pixels, and finding it for each span took as long as drawing.
+
+use super::span::{self, AT_ONCE, Sampler, UNROLLED, for_each_block};
+use super::target::Target;
+use super::texel_runs::TexelRuns;
+use crate::color::Rgb;
+use crate::visibility::{DrawnPlane, Faded, Scene, SpanPair, Stats, TexelPlaces};
+use crate::world::texture::{MipLevelByShifts, Texture};
+use crate::world::{Light, Paint, Pattern};
+
+/// The drawing of a frame's span pairs.
+#[derive(Default)]
+pub(super) struct SpanPairs<'a> {
+    /// `None` before the first pair; `Some(None)` if the planes have no textures of one size.
+    textures: Option<Option<TexturePair<'a>>>,
+}
+
+/// Two textures of one size on planes in one light.
+struct TexturePair<'a> {
+    textures: [&'a Texture; 2],
+    /// The number of repeats of the textures in a cell.
+    per_cell: f64,
+    light: Light,
+    /// The levels of the pair before.
+    levels: Option<LevelPair<'a>>,
+}
+
+/// Two mip levels of one size.
+#[derive(Clone, Copy)]
+struct LevelPair<'a> {
+    lod: usize,
+    upper: MipLevelByShifts<'a>,
+    lower: &'a [Rgb],
+}
+
+impl<'a> SpanPairs<'a> {
+    /// Draws `pair`, whose planes are those of the pairs before.
+    pub(super) fn draw<S: Stats>(
+        &mut self,
+        scene: Scene<'a>,
+        pair: &SpanPair<'_>,
+        target: &mut Target<'_, S>,
+    ) {
+        let textures = self.textures.get_or_insert_with(|| TexturePair::new(scene, pair.planes));
+        let drawn = textures.as_mut().and_then(|textures| textures.draw(scene, pair, target));
+        if drawn.is_none() {
+            for span in pair.spans() {
+                span::draw(scene, &span, target);
+            }
+        }
+    }
+}
+
+impl<'a> TexturePair<'a> {
+    fn new(scene: Scene<'a>, planes: &[DrawnPlane; 2]) -> Option<Self> {
+        let [upper, lower] = planes;
+        let (scale, light) = (upper.covering.scale, upper.light);
+        let texture = |plane: &DrawnPlane| match plane.covering.pattern {
+            Pattern::Plain(Paint::Texture(id)) => Some(scene.world.texture(id)),
+            _ => None,
+        };
+        let textures = [texture(upper)?, texture(lower)?];
+        let [one, other] = textures.map(|texture| (texture.width(), texture.height()));
+        let are_alike = one == other && scale == lower.covering.scale && light == lower.light;
+        are_alike.then(|| Self { textures, per_cell: 1.0 / scale.cells(), light, levels: None })
+    }
+
+    /// Draws `pair`; `None` if its spans are better drawn each by itself.
+    fn draw<S: Stats>(
+        &mut self,
+        scene: Scene<'_>,
+        pair: &SpanPair<'_>,
+        target: &mut Target<'_, S>,
+    ) -> Option<()> {
+        let (mapping, per_cell) = (pair.mapping, self.per_cell);
+        if Faded::of_plane(self.light, scene.world.fog(), mapping.distance).is_some() {
+            return None;
+        }
+        let lod = Sampler { scene, mapping, per_cell }.lod(self.textures[0].area());
+        let levels = match self.levels {
+            Some(levels) if levels.lod == lod => levels,
+            _ => *self.levels.insert(LevelPair::new(self.textures, lod)?),
+        };
+        let places = mapping.places(pair.columns.start, per_cell);
+        if TexelRuns::of(levels.upper, &places, pair.columns.len()).is_some() {
+            return None;
+        }
+        match levels.lower.len() {
+            16384 => draw_texels::<_, 16384>(levels, places, pair, target),
+            4096 => draw_texels::<_, 4096>(levels, places, pair, target),
+            1024 => draw_texels::<_, 1024>(levels, places, pair, target),
+            256 => draw_texels::<_, 256>(levels, places, pair, target),
+            64 => draw_texels::<_, 64>(levels, places, pair, target),
+            16 => draw_texels::<_, 16>(levels, places, pair, target),
+            4 => draw_texels::<_, 4>(levels, places, pair, target),
+            1 => draw_texels::<_, 1>(levels, places, pair, target),
+            _ => None,
+        }
+    }
+}
+
+impl<'a> LevelPair<'a> {
+    /// The levels of two `textures` of one size; `None` if their texels are not found by shifts.
+    fn new(textures: [&'a Texture; 2], lod: usize) -> Option<Self> {
+        let [upper, lower] = textures.map(|texture| texture.level(lod).by_shifts());
+        Some(Self { lod, upper: upper?, lower: lower?.texels() })
+    }
+}
+
+/// Draws `pair` in `levels` with `N` texels.
+fn draw_texels<S: Stats, const N: usize>(
+    levels: LevelPair<'_>,
+    places: TexelPlaces,
+    pair: &SpanPair<'_>,
+    target: &mut Target<'_, S>,
+) -> Option<()> {
+    let upper = levels.upper.texels().first_chunk::<N>()?;
+    let lower = levels.lower.first_chunk::<N>()?;
+    let passes = pair.planes.each_ref().map(|plane| plane.pass);
+    for pass in passes {
+        target.count_texels(pass, pair.columns.len());
+    }
+    let [above, below] = target.two_spans_mut(passes, pair.rows, &pair.columns);
+    let blocks = above.chunks_mut(AT_ONCE).zip(below.chunks_mut(AT_ONCE));
+    let blocks = blocks.map(|(above, below)| (above.len(), [above, below]));
+    for_each_block(levels.upper, places, blocks, |indices, [above, below]| {
+        let (above, rest_above) = above.as_chunks_mut::<UNROLLED>();
+        let (below, rest_below) = below.as_chunks_mut::<UNROLLED>();
+        let (indices, rest) = indices.split_at(above.as_flattened().len());
+        let indices = indices.as_chunks::<UNROLLED>().0;
+        for ((above, below), indices) in above.iter_mut().zip(below).zip(indices) {
+            look_up((upper, lower), indices, (above, below));
+        }
+        look_up((upper, lower), rest, (rest_above, rest_below));
+    });
+    Some(())
+}
+
+/// Colours pixels above and below by the indices of their texels, of which there are at least as many.
+#[inline]
+fn look_up<const N: usize>(
+    (upper, lower): (&[Rgb; N], &[Rgb; N]),
+    indices: &[u32],
+    (above, below): (&mut [Rgb], &mut [Rgb]),
+) {
+    for ((above, below), &index) in above.iter_mut().zip(below).zip(indices) {
+        // `N` is a power of two: no lookup needs a bounds check.
+        let index = index as usize % N;
+        *above = upper[index];
+        *below = lower[index];
+    }
+}
