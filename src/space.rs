@@ -19,11 +19,14 @@ mod bounds;
 mod camera;
 mod checker;
 mod explanation;
+mod lanes;
 mod light;
 mod ray;
 mod relative_shape;
 mod renderer;
+mod row;
 mod scene;
+mod shading;
 mod shadows;
 mod tree;
 

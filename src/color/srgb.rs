@@ -11,20 +11,22 @@ pub(crate) fn linear(color: Rgb) -> [f64; 3] {
     color.channels().map(|channel| LINEAR[usize::from(channel)])
 }
 
+/// Converts linear light from 0 to 1 to a channel from 0 to 1, without rounding it to 8 bits.
+#[cfg(feature = "lab")]
+pub(crate) fn encoded(light: f64) -> f64 {
+    if light <= 0.003_130_8 { 12.92 * light } else { 1.055 * libm::pow(light, 1.0 / 2.4) - 0.055 }
+}
+
 /// Converts a colour to red, green and blue light in 65535ths, rounded to the nearest.
 pub(crate) fn linear_16(color: Rgb) -> [u16; 3] {
     color.channels().map(|channel| LINEAR_16[usize::from(channel)])
 }
 
-/// Converts linear light in 65535ths to the nearest colour.
+/// Converts linear light in 65535ths to the nearest colour; of two that are as near, to the lighter.
 pub(crate) fn from_linear_16(light: [u16; 3]) -> Rgb {
     let [red, green, blue] = light.map(|channel| {
-        let first = usize::from(FIRST[usize::from(channel / SPACING)]);
-        let mut lighter = LINEAR_16[first..].iter();
-        let above = first + lighter.position(|&linear| linear >= channel).unwrap_or_default();
-        let below = above.saturating_sub(1);
-        let is_below = channel - LINEAR_16[below].min(channel) < LINEAR_16[above] - channel;
-        (if is_below { below } else { above }) as u8
+        let value = NEAREST[usize::from(channel / SPACING)];
+        value + u8::from(u32::from(channel) >= LEAST[usize::from(value) + 1])
     });
     Rgb::new(red, green, blue)
 }
@@ -34,22 +36,6 @@ pub(crate) fn from_linear_16(light: [u16; 3]) -> Rgb {
 pub(crate) fn mean_of_two(one: Rgb, other: Rgb) -> Rgb {
     let (one, other) = (linear_16(one), linear_16(other));
     from_linear_16(std::array::from_fn(|channel| one[channel].midpoint(other[channel])))
-}
-
-/// The weighted mean of two colours in linear light. The weight of the second is `share`, from 0 to
-/// 1.
-pub(crate) fn mean_of_shares([one, other]: [Rgb; 2], share: f64) -> Rgb {
-    if one == other || share <= 0.0 {
-        return one;
-    }
-    if share >= 1.0 {
-        return other;
-    }
-    let (one, other) = (linear_16(one), linear_16(other));
-    from_linear_16(std::array::from_fn(|channel| {
-        let [one, other] = [one[channel], other[channel]].map(f64::from);
-        (one + (other - one) * share).round() as u16
-    }))
 }
 
 /// The light of each value of a channel, from 0 to 1.
@@ -97,23 +83,35 @@ const fn fifth_root(number: f64) -> f64 {
     root
 }
 
-/// For each multiple of [`SPACING`], the first channel value with at least that much light.
-static FIRST: [u8; (u16::MAX / SPACING) as usize + 1] = {
+/// The channel value nearest to each multiple of [`SPACING`].
+static NEAREST: [u8; (u16::MAX / SPACING) as usize + 1] = {
     let mut table = [0; (u16::MAX / SPACING) as usize + 1];
-    let (mut index, mut channel) = (0, 0);
+    let (mut index, mut value) = (0, 0);
     while index < table.len() {
-        while LINEAR_16[channel] < index as u16 * SPACING {
-            channel += 1;
+        while index as u32 * SPACING as u32 >= LEAST[value + 1] {
+            value += 1;
         }
-        table[index] = channel as u8;
+        table[index] = value as u8;
         index += 1;
     }
     table
 };
 
-/// The distance of two entries of [`FIRST`]: about three times that of the two darkest channel
-/// values.
-const SPACING: u16 = 64;
+/// The least light to which each channel value is nearest, in 65535ths.
+static LEAST: [u32; 257] = {
+    let mut table = [0; 257];
+    let mut value = 1;
+    while value < LINEAR_16.len() {
+        table[value] = (LINEAR_16[value - 1] as u32 + LINEAR_16[value] as u32).div_ceil(2);
+        value += 1;
+    }
+    table[value] = u16::MAX as u32 + 1;
+    table
+};
+
+/// The distance of two entries of [`NEAREST`]: less than that of the two darkest channel values, so that
+/// the value of any light between two entries is one of theirs.
+const SPACING: u16 = 16;
 
 #[cfg(test)]
 mod tests {
@@ -148,6 +146,9 @@ mod tests {
             let found = from_linear_16([light; 3]).red();
             let least = LINEAR_16.iter().map(|linear| linear.abs_diff(light)).min().unwrap();
             assert_eq!(LINEAR_16[usize::from(found)].abs_diff(light), least, "{light}");
+            let is_lighter_as_near = LINEAR_16.contains(&light.saturating_add(least))
+                && LINEAR_16[usize::from(found)] < light;
+            assert!(least == 0 || !is_lighter_as_near, "{light}");
         }
     }
 }

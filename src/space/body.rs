@@ -2,9 +2,8 @@
 
 use glam::DVec3;
 
-use super::checker::{self, Footprint};
+use super::checker;
 use crate::color::Rgb;
-use crate::color::srgb::mean_of_shares;
 use crate::world::Scale;
 
 /// The largest absolute value of a coordinate along each axis, and the largest radius, in cells.
@@ -186,34 +185,18 @@ impl Block {
 }
 
 impl SolidTexture {
-    /// The mean colour of the surface in a pixel at `point`. `normal` is the unit normal on the
-    /// side of the eye.
-    ///
-    /// The colour is looked up slightly below the surface. A surface between two layers of cubes
-    /// would otherwise show a random mixture of both.
-    pub(super) fn mean_color(
-        &self,
-        point: DVec3,
-        normal: DVec3,
-        footprint: impl FnOnce() -> Footprint,
-    ) -> Rgb {
-        /// A part of a cube that is larger than any rounding and too small to be visible.
-        const DEPTH: f64 = 1.0 / 1024.0;
-        match *self {
-            Self::Plain(color) => color,
-            Self::Checker(colors, scale) => {
-                let Footprint(widths) = footprint();
-                let below = point / scale.cells() - normal * DEPTH;
-                let mean = checker::mean(below, widths / scale.cells());
-                // The cube at the origin is +1, its neighbours −1.
-                mean_of_shares(colors, (1.0 - mean) / 2.0)
-            }
-        }
-    }
-
     /// The colour at `point`.
     pub fn color_at(&self, point: DVec3) -> Rgb {
-        self.mean_color(point, DVec3::ZERO, || Footprint(DVec3::ZERO))
+        match *self {
+            Self::Plain(color) => color,
+            Self::Checker([first, second], scale) => {
+                if checker::is_first(point / scale.cells()) {
+                    first
+                } else {
+                    second
+                }
+            }
+        }
     }
 }
 

@@ -12,51 +12,148 @@
 
 use glam::DVec3;
 
-/// The area that a pixel covers on a surface, as the widths of a box along the axes, in cells.
-#[derive(Clone, Copy, Debug, PartialEq)]
-pub(super) struct Footprint(pub(super) DVec3);
+use super::lanes::{LANES, Lanes, Vectors, are_finite, floor, floor_of_small, greatest, least};
 
-impl Footprint {
-    /// The footprint on a surface with this `normal`, which a ray with this `direction` meets at
-    /// `t`. `steps` are the changes of the direction to the next column and to the next row.
-    pub(super) fn new(direction: DVec3, t: f64, normal: DVec3, steps: [DVec3; 2]) -> Self {
-        let across = normal.dot(direction);
-        let [column, row] = steps.map(|step| (step - direction * (normal.dot(step) / across)) * t);
+/// For larger widths, the mean is closer to 0 than the resolution of colours.
+const WIDEST: f64 = 65_536.0;
+/// The largest place that is rounded to an integer by [`floor_of_small`], positive or negative.
+const MOST: f64 = (1_u64 << 50) as f64;
+
+/// Sets each lane of `widths` to the area that its pixel covers on a surface, as the widths of a box along
+/// the axes, in cells.
+///
+/// A ray in each of `directions` meets the surface at `t`, where it has this normal. `steps` are the
+/// changes of a direction to the next column and to the next row. `are_alike` says that all normals are
+/// equal, and that their products with the directions are.
+#[inline(never)]
+pub(super) fn find_footprints(
+    directions: &Vectors,
+    t: &Lanes,
+    normals: &Vectors,
+    steps: [DVec3; 2],
+    are_alike: bool,
+    widths: &mut Vectors,
+) {
+    // The change of `t`, as a share of it, to the next column and to the next row.
+    let changes = |lane| {
+        let normal: DVec3 = normals.get(lane);
+        let across = normal.dot(directions.get(lane));
+        steps.map(|step| normal.dot(step) / across)
+    };
+    let footprint = |lane, [column, row]: [f64; 2]| {
+        let end = |step, change| (step - directions.get(lane) * change) * t[lane];
+        let (column, row) = (end(steps[0], column), end(steps[1], row));
         let square = column * column + row * row;
-        Self(DVec3::new(square.x.sqrt(), square.y.sqrt(), square.z.sqrt()))
+        DVec3::new(square.x.sqrt(), square.y.sqrt(), square.z.sqrt())
+    };
+    if are_alike {
+        let changes = changes(0);
+        widths.fill(|lane| footprint(lane, changes));
+    } else {
+        widths.fill(|lane| footprint(lane, changes(lane)));
     }
 }
 
-/// The mean of a checkerboard of +1 and −1 over a box with these `widths` around `point`. Both are
-/// in cubes; the cube at the origin is +1.
-pub(super) fn mean(point: DVec3, widths: DVec3) -> f64 {
-    mean_along(point.x, widths.x) * mean_along(point.y, widths.y) * mean_along(point.z, widths.z)
+/// Sets `means` to the mean of a checkerboard of +1 and −1 over a box with these `widths` around each of
+/// `points`. Both are in cubes; the cube at the origin is +1.
+pub(super) fn find_means(points: &Vectors, widths: &Vectors, means: &mut Lanes) {
+    means.fill(1.0);
+    points.axes().into_iter().zip(widths.axes()).for_each(|(places, widths)| {
+        multiply_by_means_along(places, widths, means);
+    });
+}
+
+/// Whether the cube at `point` is one of +1. The coordinates are in cubes.
+pub(super) fn is_first(point: DVec3) -> bool {
+    point.to_array().into_iter().map(|place| mean_along(place, 0.0)).product::<f64>() > 0.0
+}
+
+/// Multiplies `products` by the means along one axis.
+#[inline(never)]
+fn multiply_by_means_along(places: &Lanes, widths: &Lanes, products: &mut Lanes) {
+    let ends = [least(places), greatest(places)];
+    let width = greatest(widths);
+    if !are_finite(places, widths) || ends.iter().any(|end| end.abs() > MOST) || width >= WIDEST {
+        for lane in 0..LANES {
+            products[lane] *= mean_along(places[lane], widths[lane]);
+        }
+    } else if let Some(mean) = mean_of_all(ends, width) {
+        products.iter_mut().for_each(|product| *product *= mean);
+    } else {
+        for lane in 0..LANES {
+            products[lane] *= mean_of_small(places[lane], widths[lane]);
+        }
+    }
+}
+
+/// The mean along one axis over areas between these `ends` and up to this `width`, if they are in one
+/// cube.
+///
+/// Along the axis on which it is level, a surface mostly is. Since sums of doubles and their floors are
+/// monotonic, all areas are between the two ends that are computed here, with any rounding.
+fn mean_of_all([least, greatest]: [f64; 2], width: f64) -> Option<f64> {
+    let period = floor_of_small(least / 2.0);
+    if period != floor_of_small(greatest / 2.0) {
+        return None;
+    }
+    let low = Place::new(least - 2.0 * period - width / 2.0);
+    let high = Place::new(greatest - 2.0 * period + width / 2.0);
+    low.is_in_cube_of(&high).then(|| low.sign())
 }
 
 /// The mean of a square wave, +1 from 0 to 1 and −1 from 1 to 2, over `width` around `place`.
 fn mean_along(place: f64, width: f64) -> f64 {
-    /// For larger widths, the mean is closer to 0 than the resolution of colours.
-    const WIDEST: f64 = 65_536.0;
     // With a large place, the difference of two close ends would lose its digits.
-    let place = within_two(place);
-    let (low, high) = (place - width / 2.0, place + width / 2.0);
-    if low.floor() == high.floor() {
-        if within_two(low.floor()) == 0.0 { 1.0 } else { -1.0 }
-    } else if width < WIDEST {
-        ((integral(high) - integral(low)) / width).clamp(-1.0, 1.0)
-    } else {
-        0.0
+    let place = place - 2.0 * floor(place / 2.0);
+    let mean = mean_within(place, width);
+    if width < WIDEST || mean.abs() == 1.0 { mean } else { 0.0 }
+}
+
+/// The same for a place of at most [`MOST`] and a width below [`WIDEST`].
+#[inline(always)]
+fn mean_of_small(place: f64, width: f64) -> f64 {
+    mean_within(place - 2.0 * floor_of_small(place / 2.0), width)
+}
+
+/// The same for a place within the first period.
+#[inline(always)]
+fn mean_within(place: f64, width: f64) -> f64 {
+    let (low, high) = (Place::new(place - width / 2.0), Place::new(place + width / 2.0));
+    let mean = ((high.integral() - low.integral()) / width).clamp(-1.0, 1.0);
+    if low.is_in_cube_of(&high) { low.sign() } else { mean }
+}
+
+/// A place of at most [`MOST`] on the axis of the square wave.
+struct Place {
+    /// The index of its period.
+    period: f64,
+    /// The place in the period, from 0 to 2.
+    within: f64,
+}
+
+impl Place {
+    #[inline(always)]
+    fn new(place: f64) -> Self {
+        let period = floor_of_small(place / 2.0);
+        Self { period, within: place - 2.0 * period }
     }
-}
 
-/// The integral of the square wave from 0 to `place`.
-fn integral(place: f64) -> f64 {
-    1.0 - (within_two(place) - 1.0).abs()
-}
+    /// The value of the square wave.
+    #[inline(always)]
+    fn sign(&self) -> f64 {
+        if self.within >= 1.0 { -1.0 } else { 1.0 }
+    }
 
-/// `place` modulo 2, from 0 to 2. This is exact, and faster than the remainder operator.
-fn within_two(place: f64) -> f64 {
-    place - 2.0 * (place / 2.0).floor()
+    #[inline(always)]
+    fn is_in_cube_of(&self, other: &Self) -> bool {
+        (self.period == other.period) & ((self.within >= 1.0) == (other.within >= 1.0))
+    }
+
+    /// The integral of the square wave from the start of the period.
+    #[inline(always)]
+    fn integral(&self) -> f64 {
+        1.0 - (self.within - 1.0).abs()
+    }
 }
 
 #[cfg(test)]
@@ -75,6 +172,37 @@ mod tests {
         (0..SAMPLES).map(sample).sum::<f64>() / f64::from(SAMPLES)
     }
 
+    /// The mean by the functions of the standard library, branch by branch.
+    fn mean_by_branches(place: f64, width: f64) -> f64 {
+        let within_two = |place: f64| place - 2.0 * (place / 2.0).floor();
+        let integral = |place: f64| 1.0 - (within_two(place) - 1.0).abs();
+        let place = within_two(place);
+        let (low, high) = (place - width / 2.0, place + width / 2.0);
+        if low.floor() == high.floor() {
+            if within_two(low.floor()) == 0.0 { 1.0 } else { -1.0 }
+        } else if width < WIDEST {
+            ((integral(high) - integral(low)) / width).clamp(-1.0, 1.0)
+        } else {
+            0.0
+        }
+    }
+
+    fn place() -> impl Strategy<Value = f64> {
+        prop_oneof![
+            4 => -9.0..9.0,
+            1 => (-20..20_i32).prop_map(|halves| f64::from(halves) / 2.0),
+            1 => any::<f64>(),
+        ]
+    }
+
+    fn width() -> impl Strategy<Value = f64> {
+        prop_oneof![
+            4 => 0.0..30.0,
+            1 => 60_000.0..70_000.0,
+            1 => any::<f64>().prop_map(f64::abs),
+        ]
+    }
+
     proptest! {
         #[test]
         fn the_mean_along_an_axis_is_that_of_many_samples(place in -9.0..9.0, width in 0.0..30.0) {
@@ -82,12 +210,44 @@ mod tests {
         }
 
         #[test]
-        fn any_place_and_any_width_have_a_mean(
-            place in any::<f64>(), width in any::<f64>().prop_map(f64::abs),
-        ) {
+        fn any_place_and_any_width_have_a_mean(place in place(), width in width()) {
             let mean = mean_along(place, width);
             prop_assert!(mean.is_nan() || (-1.0..=1.0).contains(&mean), "{mean}");
+            let expected = mean_by_branches(place, width);
+            prop_assert_eq!(mean.is_nan(), expected.is_nan());
+            prop_assert!(mean == expected || mean.is_nan(), "{mean} for {expected}");
         }
+
+        #[test]
+        fn lanes_have_the_means_of_their_places(
+            place in place(), spread in prop_oneof![Just(0.0), -1e-9..1e-9, -2.0..2.0],
+            width in width(), wider in 0.0..0.1, odd in 0..LANES, odd_place in place(),
+        ) {
+            let mut places: Lanes = std::array::from_fn(|lane| place + spread * lane as f64);
+            let widths: Lanes = std::array::from_fn(|lane| width + wider * lane as f64);
+            for _ in 0..2 {
+                let expected = std::array::from_fn(|lane| mean_along(places[lane], widths[lane]));
+                let mut means = [1.0; LANES];
+                multiply_by_means_along(&places, &widths, &mut means);
+                let bits = |means: Lanes| means.map(|it| if it.is_nan() { 0 } else { it.to_bits() });
+                prop_assert_eq!(bits(means), bits(expected));
+                places[odd] = odd_place;
+            }
+        }
+    }
+
+    /// The same vector in all lanes.
+    fn vectors(vector: DVec3) -> Vectors {
+        let mut vectors = Vectors::default();
+        vectors.fill(|_| vector);
+        vectors
+    }
+
+    /// The mean at one point.
+    fn mean(point: DVec3, widths: DVec3) -> f64 {
+        let mut means = [0.0; LANES];
+        find_means(&vectors(point), &vectors(widths), &mut means);
+        means[LANES - 1]
     }
 
     #[test]
@@ -96,16 +256,22 @@ mod tests {
         assert_eq!(mean(DVec3::new(1e9 + 0.5, 1.5, -0.5), DVec3::splat(0.9)), 1.0);
         assert_eq!(mean(DVec3::new(1.5, 0.5, 0.5), DVec3::ZERO), -1.0);
         assert_eq!(mean(DVec3::ZERO, DVec3::new(f64::INFINITY, 0.0, 0.0)), 0.0);
+        assert!(is_first(DVec3::new(0.5, 0.5, 2.5)) && !is_first(DVec3::new(0.5, -0.5, 0.5)));
     }
 
     #[test]
     fn the_footprint_on_a_perpendicular_surface_is_the_distance_between_rays() {
         let steps = [DVec3::Y * 0.01, DVec3::Z * 0.02];
-        let Footprint(widths) = Footprint::new(DVec3::X, 10.0, -DVec3::X, steps);
+        let footprint = |direction, normal| {
+            let mut widths = Vectors::default();
+            let (directions, normals) = (vectors(direction), vectors(normal));
+            find_footprints(&directions, &[10.0; LANES], &normals, steps, false, &mut widths);
+            widths.get(LANES - 1)
+        };
+        let widths = footprint(DVec3::X, -DVec3::X);
         assert!((widths - DVec3::new(0.0, 0.1, 0.2)).length() < 1e-12, "{widths}");
         // A floor that is seen at a slope of one in ten is covered ten times as far along the ray.
-        let direction = DVec3::new(1.0, 0.0, -0.1);
-        let Footprint(widths) = Footprint::new(direction, 10.0, DVec3::Z, steps);
+        let widths = footprint(DVec3::new(1.0, 0.0, -0.1), DVec3::Z);
         assert!((widths - DVec3::new(2.0, 0.1, 0.0)).length() < 1e-12, "{widths}");
     }
 }

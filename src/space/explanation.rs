@@ -17,7 +17,7 @@ pub struct Explanation {
     pub hits: u64,
     /// Rays cast from these hits towards the sun.
     pub shadow_rays: u64,
-    /// Tests of shadow rays against bodies.
+    /// Tests of shadow rays against bodies, and of neighbouring ones together against boxes around them.
     pub shadow_tests: u64,
 }
 

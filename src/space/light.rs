@@ -2,6 +2,7 @@
 
 use glam::DVec3;
 
+use super::lanes::rounded;
 use crate::color::Rgb;
 use crate::world::SkyGradient;
 
@@ -62,12 +63,22 @@ impl Default for Sun {
 
 /// The colour of a sky in this direction. It changes linearly with the slope.
 pub(super) fn sky_color(sky: SkyGradient, direction: DVec3) -> Rgb {
+    sky.zenith.over(sky.horizon, sky_share(direction) as u8)
+}
+
+/// The share of the zenith's colour in this direction, in 255ths.
+#[inline(always)]
+pub(super) fn sky_share(direction: DVec3) -> u32 {
     const STEEPEST: f64 = 0.5;
-    let away = direction.truncate().length();
-    let height = (direction.z / STEEPEST).clamp(0.0, away);
+    let DVec3 { x, y, z } = direction;
+    let away = (x * x + y * y).sqrt();
+    let height = z / STEEPEST;
+    let above = if height > 0.0 { height } else { 0.0 };
+    let height = if above < away { above } else { away };
     // Straight up or down, the horizontal distance is zero.
-    let share = if away > 0.0 { height / away } else { f64::from(direction.z > 0.0) };
-    sky.zenith.over(sky.horizon, (share * 255.0).round() as u8)
+    let vertical = if z > 0.0 { 1.0 } else { 0.0 };
+    let share = if away > 0.0 { height / away } else { vertical };
+    rounded(share * 255.0)
 }
 
 #[cfg(test)]

@@ -5,9 +5,10 @@
 //! computed with compensated sums. The roots of the quadratic equation are taken without
 //! cancellation. Neither a planet under the eye nor a grain of sand on it loses digits.
 
-use glam::DVec3;
+use glam::{BVec3, DVec3};
 
 use super::body::{Block, Plane, Shape, Sphere};
+use super::lanes::{Lanes, Vectors};
 use crate::numeric::{two_product, two_sum};
 
 /// A shape relative to an eye.
@@ -56,23 +57,58 @@ impl RelativeShape {
     pub(super) fn distance(&self, direction: DVec3) -> Option<f64> {
         let t = match self {
             Self::Sphere(sphere) => sphere.distance(direction),
-            Self::Plane(plane) => Some(plane.distance(direction)),
+            Self::Plane(plane) => plane.distance(direction),
             Self::Block(block) => block.distance(direction),
         };
-        t.filter(|t| (0.0..f64::INFINITY).contains(t))
+        (0.0..f64::INFINITY).contains(&t).then_some(t)
     }
 
     /// The unit normal of the shape where `direction` meets it at `t`, on the side of the eye.
     pub(super) fn normal(&self, direction: DVec3, t: f64) -> DVec3 {
-        let normal = match self {
-            Self::Sphere(sphere) => direction * t - sphere.center,
-            Self::Plane(plane) => plane.normal,
+        match self {
+            Self::Sphere(sphere) => sphere.normal(direction, t),
+            Self::Plane(plane) => facing_eye(unit(plane.normal), direction),
             Self::Block(block) => block.normal(direction),
-        };
-        // Only the exact center of a sphere has no normal, and it is not on the surface.
-        let normal = normal.try_normalize().unwrap_or(DVec3::Z);
-        if normal.dot(direction) > 0.0 { -normal } else { normal }
+        }
     }
+
+    /// The unit normal on the side of the eye, if it is the same wherever a ray hits the shape.
+    pub(super) fn common_normal(&self) -> Option<DVec3> {
+        let Self::Plane(RelativePlane { normal, distance }) = *self else { return None };
+        // With another normal, or with an eye on the plane, the side depends on the rounding of each ray.
+        let is_certain = unit(normal) == normal && distance != 0.0;
+        is_certain.then(|| if distance > 0.0 { -normal } else { normal })
+    }
+
+    /// Sets each lane of `normals` to that for its direction and its `t`.
+    #[inline(never)]
+    pub(super) fn find_normals(&self, directions: &Vectors, t: &Lanes, normals: &mut Vectors) {
+        match self {
+            Self::Sphere(sphere) => {
+                normals.fill(|lane| sphere.normal(directions.get(lane), t[lane]));
+            }
+            Self::Plane(plane) => {
+                let normal = unit(plane.normal);
+                normals.fill(|lane| facing_eye(normal, directions.get(lane)));
+            }
+            Self::Block(block) => normals.fill(|lane| block.normal(directions.get(lane))),
+        }
+    }
+}
+
+/// The vector in units of its length. Only the exact center of a sphere has no direction, and it is not
+/// on the surface.
+#[inline(always)]
+fn unit(vector: DVec3) -> DVec3 {
+    let per_length = 1.0 / vector.dot(vector).sqrt();
+    let has_direction = (per_length > 0.0) & (per_length < f64::INFINITY);
+    DVec3::select(BVec3::splat(has_direction), vector * per_length, DVec3::Z)
+}
+
+/// The one of `normal` and its opposite that is on the side of the eye.
+#[inline(always)]
+fn facing_eye(normal: DVec3, direction: DVec3) -> DVec3 {
+    normal * if normal.dot(direction) > 0.0 { -1.0 } else { 1.0 }
 }
 
 impl RelativeSphere {
@@ -81,7 +117,10 @@ impl RelativeSphere {
         Self { center: center - origin, radius, power: power(origin, center, radius) }
     }
 
-    fn distance(&self, direction: DVec3) -> Option<f64> {
+    /// The distance to the sphere; NaN or negative if it is not ahead. Without branches, neighbouring
+    /// rays are calculated together.
+    #[inline(always)]
+    pub(super) fn distance(&self, direction: DVec3) -> f64 {
         let Self { center, radius, power } = *self;
         let square = direction.dot(direction);
         let along = center.dot(direction);
@@ -90,17 +129,21 @@ impl RelativeSphere {
         // discriminant `b² - 4ac` would lose a small sphere far away.
         let beside = center - direction * (along / square);
         let half_chord = (radius * radius - beside.dot(beside)) * square;
-        if half_chord < 0.0 {
-            return None;
-        }
+        // NaN if the ray passes the sphere.
         let root = half_chord.sqrt();
-        let is_inside = power < 0.0;
-        match (is_inside, along > 0.0) {
-            (false, true) => Some(power / (along + root)),
-            (false, false) => None,
-            (true, true) => Some((along + root) / square),
-            (true, false) => Some(power / (along - root)),
-        }
+        let far = along + root;
+        let (dividend, divisor) = match (power < 0.0, along > 0.0) {
+            (false, true) => (power, far),
+            (false, false) => (f64::NAN, far),
+            (true, true) => (far, square),
+            (true, false) => (power, along - root),
+        };
+        dividend / divisor
+    }
+
+    #[inline(always)]
+    fn normal(&self, direction: DVec3, t: f64) -> DVec3 {
+        facing_eye(unit(direction * t - self.center), direction)
     }
 }
 
@@ -145,9 +188,16 @@ impl RelativePlane {
         Self { normal, distance: normal.dot(plane.point() - origin) }
     }
 
-    /// The distance to the plane: infinite or NaN if the direction is parallel to the plane.
-    fn distance(&self, direction: DVec3) -> f64 {
+    /// The distance to the plane; negative if it is not ahead, infinite or NaN if the direction is
+    /// parallel to it.
+    #[inline(always)]
+    pub(super) fn distance(&self, direction: DVec3) -> f64 {
         self.distance / self.normal.dot(direction)
+    }
+
+    /// Whether the distance depends on nothing but the `z` of a direction.
+    pub(super) fn is_horizontal(&self) -> bool {
+        self.normal.x == 0.0 && self.normal.y == 0.0
     }
 
     /// Whether a ray in this direction approaches the plane.
@@ -157,19 +207,23 @@ impl RelativePlane {
 }
 
 impl RelativeBlock {
-    fn new(block: &Block, origin: DVec3) -> Self {
+    #[inline(always)]
+    pub(super) fn new(block: &Block, origin: DVec3) -> Self {
         Self { low: block.low() - origin, high: block.high() - origin }
     }
 
-    fn distance(&self, direction: DVec3) -> Option<f64> {
+    /// The distance to the block; NaN or negative if it is not ahead.
+    #[inline(always)]
+    pub(super) fn distance(&self, direction: DVec3) -> f64 {
         let (enters, leaves) = self.crossings(direction);
         let (enter, leave) = (enters.max_element(), leaves.min_element());
-        (enter <= leave && leave >= 0.0).then_some(if enter >= 0.0 { enter } else { leave })
+        let nearest = if enter >= 0.0 { enter } else { leave };
+        if enter <= leave { nearest } else { f64::NAN }
     }
 
     /// The distances at which a ray enters and leaves the slab between the two faces of each axis,
     /// as in the slab method of Kay and Kajiya ("Ray Tracing Complex Scenes", 1986).
-    #[inline]
+    #[inline(always)]
     pub(super) fn crossings(&self, direction: DVec3) -> (DVec3, DVec3) {
         let slabs = [
             slab(self.low.x, self.high.x, direction.x),
@@ -180,32 +234,30 @@ impl RelativeBlock {
         (DVec3::new(x, y, z), DVec3::new(past_x, past_y, past_z))
     }
 
+    /// The unit normal of the face where `direction` meets the block, on the side of the eye.
+    #[inline(always)]
     fn normal(&self, direction: DVec3) -> DVec3 {
         let (enters, leaves) = self.crossings(direction);
         let (enter, leave) = (enters.max_element(), leaves.min_element());
         let (times, t) = if enter >= 0.0 { (enters, enter) } else { (leaves, leave) };
-        if times.x == t {
+        let axis = if times.x == t {
             DVec3::X
         } else if times.y == t {
             DVec3::Y
         } else {
             DVec3::Z
-        }
+        };
+        facing_eye(axis, direction)
     }
 }
 
 /// The distances at which a ray is between `low` and `high`, for this component of its direction. A
 /// ray parallel to the slab is inside always or never.
-#[inline]
+#[inline(always)]
 fn slab(low: f64, high: f64, direction: f64) -> (f64, f64) {
-    if direction == 0.0 {
-        let is_between = low <= 0.0 && high >= 0.0;
-        return if is_between {
-            (f64::NEG_INFINITY, f64::INFINITY)
-        } else {
-            (f64::INFINITY, f64::NEG_INFINITY)
-        };
-    }
     let (one, other) = (low / direction, high / direction);
-    if one < other { (one, other) } else { (other, one) }
+    let crossings = if one < other { (one, other) } else { (other, one) };
+    let is_between = (low <= 0.0) & (high >= 0.0);
+    let parallel = if is_between { f64::NEG_INFINITY } else { f64::INFINITY };
+    if direction == 0.0 { (parallel, -parallel) } else { crossings }
 }

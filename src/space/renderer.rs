@@ -1,19 +1,17 @@
 //! The renderer of a scene: for each row of pixels, it tests each body that reaches the row against
 //! the pixels in the body's bounds.
 
-use glam::DVec3;
-
 use super::bounds::Bounds;
 use super::camera::{Camera, Projection};
-use super::checker::Footprint;
 use super::explanation::Explanation;
 use super::relative_shape::RelativeShape;
+use super::row::Row;
 use super::scene::Scene;
+use super::shading::{Shader, Shading};
 use super::shadows::Shadows;
-use super::tree::{Nearest, Tree};
+use super::tree::Tree;
 use crate::color::Rgb;
 use crate::render::Frame;
-use crate::world::Fog;
 
 /// With more tests of a ray on average, the tree is faster than the bounds on the screen.
 const MOST_TESTS_OF_RAY: u64 = 32;
@@ -27,13 +25,11 @@ const WORK_OF_BAND: u64 = 1 << 16;
 pub struct Renderer {
     /// The bodies that can cover a pixel.
     in_view: Vec<InView>,
-    /// The nearest hits so far of the rays of a row.
-    nearest: Vec<Option<Nearest>>,
-    /// The directions of the rays of the middle row.
-    directions: Vec<DVec3>,
+    row: Row,
     /// Empty where the bounds of bodies overlap little.
     tree: Tree,
     shadows: Shadows,
+    shading: Shading,
 }
 
 #[derive(Clone, Debug)]
@@ -88,8 +84,7 @@ impl Renderer {
         let projection = Projection::new(camera, frame.size(), frame.pixel_aspect());
         self.find_bodies(scene, &projection);
         self.shadows.begin(&scene.bodies, &scene.sun);
-        self.directions.clear();
-        self.directions.extend((0..projection.width).map(|column| projection.across(column)));
+        self.row.begin(&projection);
         let mut explanation = Explanation {
             bodies: scene.bodies.len() as u64,
             in_view: self.in_view.len() as u64,
@@ -99,6 +94,7 @@ impl Renderer {
             shadow_rays: 0,
             shadow_tests: 0,
         };
+        let shader = Shader::new(scene, &projection, self.row.is_level());
         let mut whole = frame.whole();
         let mut end_of_band = 0;
         for row in 0..projection.height {
@@ -110,10 +106,9 @@ impl Renderer {
                 }
                 end_of_band = work + WORK_OF_BAND;
             }
-            let up = projection.upwards(row);
-            explanation.tests += self.cast_row(row, up);
-            let pixels = whole.row_mut(row);
-            self.shade_row(scene, &projection, up, pixels, &mut explanation);
+            self.row.begin_row(projection.upwards(row));
+            explanation.tests += self.cast_row(row);
+            self.shade_row(&shader, whole.row_mut(row), &mut explanation);
         }
         (explanation, true)
     }
@@ -135,51 +130,19 @@ impl Renderer {
     }
 
     /// Finds the hits of the rays of `row`, and returns the number of tests.
-    fn cast_row(&mut self, row: u32, up: DVec3) -> u64 {
-        if self.tree.is_empty() {
-            self.cast_row_by_bounds(row, up)
-        } else {
-            self.cast_row_by_tree(up)
-        }
-    }
-
-    fn cast_row_by_tree(&mut self, up: DVec3) -> u64 {
-        let Self { in_view, nearest, directions, tree, .. } = self;
+    fn cast_row(&mut self, row: u32) -> u64 {
         let mut tests = 0;
-        nearest.clear();
-        nearest.extend(directions.iter().map(|&across| {
-            tree.nearest(across + up, |index| {
+        if !self.tree.is_empty() {
+            self.row.search(&self.tree, |index, direction| {
                 tests += 1;
-                in_view[index].shape.distance(across + up)
-            })
-        }));
-        tests
-    }
-
-    fn cast_row_by_bounds(&mut self, row: u32, up: DVec3) -> u64 {
-        let Self { in_view, nearest, directions, .. } = self;
-        nearest.clear();
-        nearest.resize(directions.len(), None);
-        let mut tests = 0;
-        for (index, InView { shape, bounds, .. }) in in_view.iter().enumerate() {
-            if !bounds.rows.contains(&row) {
-                continue;
-            }
-            if let RelativeShape::Plane(plane) = shape {
-                // If both end rays of a row point away from a plane, all rays between them do.
-                let ends = [directions.first(), directions.last()];
-                if !ends.into_iter().flatten().any(|&across| plane.is_ahead(across + up)) {
-                    continue;
-                }
-            }
-            let columns = bounds.columns.start as usize..bounds.columns.end as usize;
-            tests += columns.len() as u64;
-            for (nearest, &across) in nearest[columns.clone()].iter_mut().zip(&directions[columns])
-            {
-                let Some(t) = shape.distance(across + up) else { continue };
-                if nearest.is_none_or(|before| t < before.t) {
-                    *nearest = Some(Nearest { t, index });
-                }
+                self.in_view[index].shape.distance(direction)
+            });
+            return tests;
+        }
+        for (index, InView { shape, bounds, .. }) in self.in_view.iter().enumerate() {
+            if bounds.rows.contains(&row) {
+                let columns = bounds.columns.start as usize..bounds.columns.end as usize;
+                tests += self.row.test(columns, index, shape);
             }
         }
         tests
@@ -187,62 +150,24 @@ impl Renderer {
 
     /// Colours the pixels of a row.
     fn shade_row(
-        &self,
-        scene: &Scene,
-        projection: &Projection,
-        up: DVec3,
+        &mut self,
+        shader: &Shader<'_>,
         pixels: &mut [Rgb],
         explanation: &mut Explanation,
     ) {
-        let steps = projection.steps();
-        for ((pixel, nearest), &across) in
-            pixels.iter_mut().zip(&self.nearest).zip(&self.directions)
-        {
-            let direction = across + up;
-            let Some(Nearest { t, index }) = *nearest else {
-                *pixel = scene.sky_color(direction);
-                continue;
-            };
-            explanation.hits += 1;
-            let InView { body, shape, .. } = self.in_view[index];
-            let normal = shape.normal(direction, t);
-            let point = projection.origin + direction * t;
-            let footprint = || Footprint::new(direction, t, normal, steps);
-            let color = scene.bodies[body].texture.mean_color(point, normal, footprint);
-            let brightness = self.brightness(scene, body, point, normal, explanation);
-            *pixel = lit(color, brightness, scene.fog, t);
+        let Self { row, in_view, shadows, shading, .. } = self;
+        let mut column = 0;
+        while column < pixels.len() {
+            let (found, end) = row.same_from(column);
+            let pixels = &mut pixels[column..end];
+            row.take(column..end, &mut shading.stretch);
+            match found.map(|index| &in_view[index]) {
+                None => shader.shade_sky(shading, pixels),
+                Some(InView { body, shape, .. }) => {
+                    shader.shade(*body, shape, shadows, shading, pixels, explanation);
+                }
+            }
+            column = end;
         }
     }
-
-    /// The brightness of `point` on the surface of `body`, which has this `normal` there.
-    fn brightness(
-        &self,
-        scene: &Scene,
-        body: usize,
-        point: DVec3,
-        normal: DVec3,
-        explanation: &mut Explanation,
-    ) -> f64 {
-        let (in_sun, ambient) = (scene.sun.brightness(normal), scene.sun.ambient.get());
-        if in_sun <= ambient {
-            return ambient;
-        }
-        explanation.shadow_rays += 1;
-        if self.shadows.hides_sun(point, body, &mut explanation.shadow_tests) {
-            ambient
-        } else {
-            in_sun
-        }
-    }
-}
-
-/// `color` with this brightness, and with the fog of the distance `t`.
-fn lit(color: Rgb, brightness: f64, fog: Option<Fog>, t: f64) -> Rgb {
-    const WHOLE: f64 = 256.0;
-    let (behind, clearness) = match fog {
-        Some(fog) => (fog.color, fog.clearness(t)),
-        None => (Rgb::BLACK, 1.0),
-    };
-    let own = (WHOLE * brightness * clearness).round() as u32;
-    color.blended(own, behind, 256 - (WHOLE * clearness).round() as u32)
 }

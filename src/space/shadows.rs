@@ -5,22 +5,31 @@
 //! on the bodies that it encloses: a sphere around a whole scene is its sky.
 //!
 //! All shadow rays have the same direction. Projected along it, a body covers an interval of an
-//! axis perpendicular to the light. Only bodies whose interval contains the ray's position are
-//! tested: first against boxes around them, which is fast, and then exactly. An interval tree in a sorted array finds them; Li and Rong ("Bedtk", 2021) describe this
+//! axis perpendicular to the light. Only bodies whose interval overlaps that of the rays of
+//! neighbouring pixels are tested: first by boxes around the body and the pixels, and then exactly for
+//! each ray. An interval tree in a sorted array finds them; Li and Rong ("Bedtk", 2021) describe this
 //! layout. A grid perpendicular to the light, as in the light buffer of Haines and Greenberg
 //! (1986), was refused: a few huge bodies would fill all its cells.
 
 use glam::DVec3;
 
 use super::body::{Body, Shape};
+use super::lanes::{LANES, Lanes, Vectors, greatest};
 use super::light::Sun;
+use super::relative_shape::RelativeBlock;
 
 /// A bound on the rounding of a position, as a fraction of it.
 const MARGIN: f64 = 1e-9;
 
+/// The largest number of occluders that are tested one by one.
+const MOST_IN_LEAF: usize = 8;
+
 /// The bodies of a scene that cast shadows.
 #[derive(Clone, Debug, Default)]
 pub(super) struct Shadows {
+    /// The bodies and the sun for which the tree was made.
+    bodies: Vec<Body>,
+    sun: Option<Sun>,
     light: LightAxes,
     /// The interval tree, in order: the middle of a range is its root.
     occluders: Vec<Occluder>,
@@ -59,19 +68,25 @@ struct Interval {
     high: f64,
 }
 
-/// A point in the coordinates of the light.
+/// A box around some points, in the coordinates of the light.
 #[derive(Clone, Copy, Debug)]
-struct LightPoint {
-    across: f64,
-    upwards: f64,
-    /// The point itself; coordinates are negated that decrease towards the sun, and zero if they do
-    /// not change.
+struct LightBox {
+    across: Interval,
+    upwards: Interval,
+    /// The corner away from the sun; coordinates are negated that decrease towards the sun, and zero
+    /// if they do not change.
     sunward: DVec3,
 }
 
 impl Shadows {
-    /// Prepares the tree for `bodies` under `sun`.
+    /// Prepares the tree for `bodies` under `sun`, unless it is that of the last frame.
     pub(super) fn begin(&mut self, bodies: &[Body], sun: &Sun) {
+        if self.sun == Some(*sun) && self.bodies == bodies {
+            return;
+        }
+        self.sun = Some(*sun);
+        self.bodies.clear();
+        self.bodies.extend_from_slice(bodies);
         self.light = LightAxes::new(sun.toward());
         self.occluders.clear();
         self.occluders.reserve(bodies.len());
@@ -82,16 +97,29 @@ impl Shadows {
         set_highest(&mut self.occluders);
     }
 
-    /// Whether a body is between the sun and `point`, which is on the surface of `body`. Each test
-    /// is counted in `tests`.
-    pub(super) fn hides_sun(&self, point: DVec3, body: usize, tests: &mut u64) -> bool {
-        let place = self.light.place_of(point);
-        any_at(&self.occluders, place.across, &mut |occluder| {
-            *tests += 1;
-            occluder.body != body
-                && occluder.may_hide(place)
-                && is_before(&occluder.shape, point, self.light.toward_sun)
-        })
+    /// Sets the `brightness` of each of `points` to `ambient` if a body is between it and the sun. All of
+    /// them are on the surface of `body`, and in the box between two corners, up to rounding. Returns the
+    /// number of bodies whose boxes are tested, and that of those against which the points are tested.
+    pub(super) fn darken(
+        &self,
+        points: &Vectors,
+        bounds: [DVec3; 2],
+        body: usize,
+        ambient: f64,
+        brightness: &mut Lanes,
+    ) -> (u64, u64) {
+        let around = self.light.around(bounds);
+        let (mut boxes, mut exact) = (0, 0);
+        any_at(&self.occluders, around.across, &mut |occluder| {
+            boxes += 1;
+            if occluder.body == body || !occluder.may_hide(&around) {
+                return false;
+            }
+            exact += 1;
+            darken_behind(&occluder.shape, points, self.light.toward_sun, ambient, brightness);
+            greatest(brightness) <= ambient
+        });
+        (boxes, exact)
     }
 }
 
@@ -104,12 +132,18 @@ impl LightAxes {
         Self { toward_sun, across, upwards: toward_sun.cross(across), signs }
     }
 
-    fn place_of(&self, point: DVec3) -> LightPoint {
-        let Self { across, upwards, signs, .. } = self;
-        LightPoint {
-            across: point.dot(*across),
-            upwards: point.dot(*upwards),
-            sunward: point * signs,
+    fn around(&self, [low, high]: [DVec3; 2]) -> LightBox {
+        let (half, center) = ((high - low) / 2.0, (high + low) / 2.0);
+        let sum = |vector: DVec3| vector.dot(DVec3::ONE);
+        let margin = MARGIN * sum(half + center.abs());
+        let interval = |axis: DVec3| {
+            let (place, reach) = (center.dot(axis), half.dot(axis.abs()) + margin);
+            Interval { low: place - reach, high: place + reach }
+        };
+        LightBox {
+            across: interval(self.across),
+            upwards: interval(self.upwards),
+            sunward: (low * self.signs).min(high * self.signs) - margin,
         }
     }
 }
@@ -139,11 +173,15 @@ impl Occluder {
         })
     }
 
-    /// Whether the body can be between the sun and this place, by boxes around it.
-    fn may_hide(&self, place: LightPoint) -> bool {
-        self.upwards.low <= place.upwards
-            && place.upwards <= self.upwards.high
-            && place.sunward.cmple(self.sunward).all()
+    /// Whether the body can be between the sun and one of the points in this box.
+    fn may_hide(&self, around: &LightBox) -> bool {
+        self.upwards.overlaps(around.upwards) && around.sunward.cmple(self.sunward).all()
+    }
+}
+
+impl Interval {
+    fn overlaps(self, other: Self) -> bool {
+        self.low <= other.high && other.low <= self.high
     }
 }
 
@@ -155,45 +193,57 @@ fn set_highest(occluders: &mut [Occluder]) -> f64 {
     root.highest
 }
 
-/// Whether `is_such` holds for any of `occluders` whose interval contains `place`.
-fn any_at(occluders: &[Occluder], place: f64, is_such: &mut impl FnMut(&Occluder) -> bool) -> bool {
+/// Whether `is_such` holds for any of `occluders` whose interval overlaps `places`.
+fn any_at(
+    occluders: &[Occluder],
+    places: Interval,
+    is_such: &mut impl FnMut(&Occluder) -> bool,
+) -> bool {
+    if occluders.len() <= MOST_IN_LEAF {
+        return occluders.iter().any(|it| it.across.overlaps(places) && is_such(it));
+    }
     let (before, rest) = occluders.split_at(occluders.len() / 2);
     let [root, after @ ..] = rest else { return false };
-    if root.highest < place {
+    if root.highest < places.low {
         return false;
     }
-    any_at(before, place, is_such)
-        || root.across.low <= place
-            && (place <= root.across.high && is_such(root) || any_at(after, place, is_such))
+    any_at(before, places, is_such)
+        || root.across.low <= places.high
+            && (places.low <= root.across.high && is_such(root) || any_at(after, places, is_such))
 }
 
-/// Whether a ray from `point` along the unit vector `direction` enters `shape` from outside.
-fn is_before(shape: &Shape, point: DVec3, direction: DVec3) -> bool {
+/// Sets the `brightness` of each of `points` to `ambient` from which a ray along the unit vector
+/// `direction` enters `shape` from outside.
+fn darken_behind(
+    shape: &Shape,
+    points: &Vectors,
+    direction: DVec3,
+    ambient: f64,
+    brightness: &mut Lanes,
+) {
     match shape {
-        Shape::Plane(_) => false,
+        Shape::Plane(_) => {}
         Shape::Sphere(sphere) => {
-            let center = sphere.center() - point;
-            let square = sphere.radius() * sphere.radius();
-            let along = center.dot(direction);
-            let beside = center - direction * along;
-            center.length_squared() > square && along > 0.0 && beside.length_squared() < square
+            let (center, square) = (sphere.center(), sphere.radius() * sphere.radius());
+            darken_if(brightness, ambient, |lane| {
+                let center = center - points.get(lane);
+                let along = center.dot(direction);
+                let beside = center - direction * along;
+                (center.dot(center) > square) & (along > 0.0) & (beside.dot(beside) < square)
+            });
         }
-        Shape::Block(block) => {
-            let (mut enter, mut leave) = (f64::NEG_INFINITY, f64::INFINITY);
-            for axis in 0..3 {
-                let [low, high] = [block.low(), block.high()].map(|it| it[axis] - point[axis]);
-                if direction[axis] == 0.0 {
-                    if low > 0.0 || high < 0.0 {
-                        return false;
-                    }
-                    continue;
-                }
-                let (one, other) = (low / direction[axis], high / direction[axis]);
-                enter = enter.max(one.min(other));
-                leave = leave.min(one.max(other));
-            }
-            enter > 0.0 && enter < leave
-        }
+        Shape::Block(block) => darken_if(brightness, ambient, |lane| {
+            let (enters, leaves) = RelativeBlock::new(block, points.get(lane)).crossings(direction);
+            let enter = enters.max_element();
+            (enter > 0.0) & (enter < leaves.min_element())
+        }),
+    }
+}
+
+#[inline(always)]
+fn darken_if(brightness: &mut Lanes, ambient: f64, is_dark: impl Fn(usize) -> bool) {
+    for lane in 0..LANES {
+        brightness[lane] = if is_dark(lane) { ambient } else { brightness[lane] };
     }
 }
 
@@ -229,19 +279,22 @@ mod tests {
         fn the_tree_and_the_boxes_leave_out_no_shadow(
             bodies in prop::collection::vec(body(), 0..30),
             toward in point(3),
-            points in prop::collection::vec(point(14), 1..20),
+            points in prop::collection::vec(point(14), 1..LANES),
         ) {
             let ambient = Fraction::new(0.2).unwrap();
             let Some(sun) = Sun::new(toward, ambient) else { return Ok(()) };
             let mut shadows = Shadows::default();
             shadows.begin(&bodies, &sun);
-            for point in points {
-                let hides = |it: &(usize, &Body)| {
-                    it.0 != 0 && is_before(&it.1.shape, point, sun.toward())
-                };
-                let expected = bodies.iter().enumerate().any(|it| hides(&it));
-                prop_assert_eq!(shadows.hides_sun(point, 0, &mut 0), expected);
+            let mut lanes = Vectors::default();
+            lanes.fill(|lane| points[lane % points.len()]);
+            let points = lanes;
+            let mut expected = [1.0; LANES];
+            for body in bodies.iter().skip(1) {
+                darken_behind(&body.shape, &points, sun.toward(), 0.2, &mut expected);
             }
+            let mut brightness = [1.0; LANES];
+            shadows.darken(&points, points.bounds(), 0, 0.2, &mut brightness);
+            prop_assert_eq!(brightness, expected);
         }
     }
 }

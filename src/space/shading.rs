@@ -1,0 +1,205 @@
+//! Shading: the colours of neighbouring pixels that show the same body, or the sky.
+
+use glam::DVec3;
+
+use super::body::SolidTexture;
+use super::camera::Projection;
+use super::checker;
+use super::explanation::Explanation;
+use super::lanes::{LANES, Lanes, Vectors, rounded};
+use super::light::sky_share;
+use super::relative_shape::RelativeShape;
+use super::row::Stretch;
+use super::scene::Scene;
+use super::shadows::Shadows;
+use crate::color::Rgb;
+use crate::color::srgb::{from_linear_16, linear_16};
+
+/// The values that all pixels of a frame share.
+pub(super) struct Shader<'a> {
+    scene: &'a Scene,
+    origin: DVec3,
+    /// The changes of direction to the next column and to the next row.
+    steps: [DVec3; 2],
+    /// Whether the directions of a row have the same `z`, so that a horizontal plane is at the same `t`.
+    is_level: bool,
+}
+
+/// Memory for shading, which is reused.
+#[derive(Clone, Debug, Default)]
+pub(super) struct Shading {
+    /// The rays of the pixels.
+    pub(super) stretch: Stretch,
+    points: Vectors,
+    normals: Vectors,
+    brightness: Lanes,
+    /// The footprints of the pixels, and the points below the surface, both in cubes of a checker.
+    widths: Vectors,
+    below: Vectors,
+    /// The shares of the second colour of a checker.
+    shares: Lanes,
+    light: Light,
+}
+
+/// The light of each pixel.
+#[derive(Clone, Debug, Default)]
+struct Light {
+    /// The share of the surface's own colour, in 256ths.
+    own: [u32; LANES],
+    /// The share of the fog's colour, in 256ths.
+    fog: [u32; LANES],
+}
+
+impl<'a> Shader<'a> {
+    pub(super) fn new(scene: &'a Scene, projection: &Projection, is_level: bool) -> Self {
+        Self { scene, origin: projection.origin, steps: projection.steps(), is_level }
+    }
+
+    /// Colours `pixels`, which show the sky.
+    #[inline(never)]
+    pub(super) fn shade_sky(&self, shading: &Shading, pixels: &mut [Rgb]) {
+        let sky = self.scene.sky;
+        let mut shares = [0; LANES];
+        for (lane, share) in shares.iter_mut().enumerate() {
+            *share = sky_share(shading.stretch.directions.get(lane));
+        }
+        // Many neighbours have the same colour.
+        let (mut last, mut color) = (0, sky.horizon);
+        for (pixel, share) in pixels.iter_mut().zip(shares) {
+            if share != last {
+                (last, color) = (share, sky.zenith.over(sky.horizon, share as u8));
+            }
+            *pixel = color;
+        }
+    }
+
+    /// Colours `pixels`, which show `body`.
+    pub(super) fn shade(
+        &self,
+        body: usize,
+        shape: &RelativeShape,
+        shadows: &Shadows,
+        shading: &mut Shading,
+        pixels: &mut [Rgb],
+        explanation: &mut Explanation,
+    ) {
+        explanation.hits += pixels.len() as u64;
+        let Shading { stretch: Stretch { directions, t }, points, normals, .. } = shading;
+        let normal = shape.common_normal();
+        match normal {
+            Some(normal) => normals.fill(|_| normal),
+            None => shape.find_normals(directions, t, normals),
+        }
+        points.fill(|lane| self.origin + directions.get(lane) * t[lane]);
+        // The points on a plane are on a line, in order.
+        let ends = [points.get(0), points.get(pixels.len() - 1)];
+        let bounds = match normal {
+            Some(_) => [ends[0].min(ends[1]), ends[0].max(ends[1])],
+            None => points.bounds(),
+        };
+        self.find_brightness(normal, shading);
+        let ambient = self.scene.sun.ambient.get();
+        let Shading { points, brightness, .. } = &mut *shading;
+        let count = pixels.len();
+        let rays = brightness[..count].iter().filter(|&&it| it > ambient).count();
+        if rays > 0 {
+            explanation.shadow_rays += rays as u64;
+            let (boxes, exact) = shadows.darken(points, bounds, body, ambient, brightness);
+            explanation.shadow_tests += boxes + exact * count as u64;
+        }
+        let is_level = self.is_level && normal.is_some_and(|it| it.x == 0.0 && it.y == 0.0);
+        self.find_light(is_level, shading);
+        match self.scene.bodies[body].texture {
+            SolidTexture::Plain(color) => pixels.fill(color),
+            SolidTexture::Checker(colors, scale) => {
+                self.find_shares(is_level, scale.cells(), shading);
+                mix(colors, &shading.shares, pixels);
+            }
+        }
+        let fog = self.scene.fog.map_or(Rgb::BLACK, |fog| fog.color);
+        let Light { own, fog: shares } = &shading.light;
+        for ((pixel, &own), &share) in pixels.iter_mut().zip(own).zip(shares) {
+            *pixel = pixel.blended(own, fog, share);
+        }
+    }
+
+    /// Sets the brightness without shadows. `normal` is that of all pixels, if they have the same one.
+    #[inline(never)]
+    fn find_brightness(&self, normal: Option<DVec3>, shading: &mut Shading) {
+        let sun = self.scene.sun;
+        let Shading { normals, brightness, .. } = shading;
+        match normal {
+            Some(normal) => brightness.fill(sun.brightness(normal)),
+            None => {
+                for (lane, brightness) in brightness.iter_mut().enumerate() {
+                    *brightness = sun.brightness(normals.get(lane));
+                }
+            }
+        }
+    }
+
+    /// Sets the light, by the brightness and the fog. `is_level` says that all pixels are at the same `t`.
+    #[inline(never)]
+    fn find_light(&self, is_level: bool, shading: &mut Shading) {
+        const WHOLE: f64 = 256.0;
+        let Shading { stretch: Stretch { t, .. }, brightness, light, .. } = shading;
+        let clearness = |t: f64| self.scene.fog.map_or(1.0, |fog| fog.clearness(t));
+        if is_level || self.scene.fog.is_none() {
+            let clearness = clearness(t[0]);
+            light.fog = [256 - rounded(WHOLE * clearness); LANES];
+            for lane in 0..LANES {
+                light.own[lane] = rounded(WHOLE * brightness[lane] * clearness);
+            }
+        } else {
+            for lane in 0..LANES {
+                let clearness = clearness(t[lane]);
+                light.own[lane] = rounded(WHOLE * brightness[lane] * clearness);
+                light.fog[lane] = 256 - rounded(WHOLE * clearness);
+            }
+        }
+    }
+
+    /// Sets the shares of the second colour of a checker of this `scale`.
+    ///
+    /// The colour is looked up slightly below the surface. A surface between two layers of cubes would
+    /// otherwise show a random mixture of both.
+    fn find_shares(&self, is_level: bool, scale: f64, shading: &mut Shading) {
+        /// A part of a cube that is larger than any rounding and too small to be visible.
+        const DEPTH: f64 = 1.0 / 1024.0;
+        let Shading { stretch, points, normals, widths, below, shares, .. } = shading;
+        let Stretch { directions, t } = stretch;
+        checker::find_footprints(directions, t, normals, self.steps, is_level, widths);
+        below.fill(|lane| points.get(lane) / scale - normals.get(lane) * DEPTH);
+        if scale != 1.0 {
+            widths.divide(scale);
+        }
+        checker::find_means(below, widths, shares);
+        // The cube at the origin is +1, its neighbours −1.
+        shares.iter_mut().for_each(|share| *share = (1.0 - *share) / 2.0);
+    }
+}
+
+/// Colours `pixels` with the weighted mean of two colours in linear light. The weights of the second are
+/// `shares`, from 0 to 1.
+#[inline(never)]
+fn mix([one, other]: [Rgb; 2], shares: &Lanes, pixels: &mut [Rgb]) {
+    let is_one = |&share: &f64| (share == 0.0) | (share == 1.0);
+    if shares.iter().fold(true, |all, share| all & is_one(share)) {
+        for (pixel, &share) in pixels.iter_mut().zip(shares) {
+            *pixel = if share == 0.0 { one } else { other };
+        }
+        return;
+    }
+    let (one, other) = (linear_16(one), linear_16(other));
+    let mut channels = [[0; LANES]; 3];
+    for (channels, (one, other)) in channels.iter_mut().zip(one.into_iter().zip(other)) {
+        let [one, other] = [one, other].map(f64::from);
+        for (channel, share) in channels.iter_mut().zip(shares) {
+            *channel = rounded(one + (other - one) * share);
+        }
+    }
+    let [red, green, blue] = channels;
+    for (lane, pixel) in pixels.iter_mut().enumerate() {
+        *pixel = from_linear_16([red[lane], green[lane], blue[lane]].map(|it| it as u16));
+    }
+}
