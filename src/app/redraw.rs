@@ -69,4 +69,14 @@ impl App {
         let steps = quiet.into_iter().chain(before_animation).min()?;
         Some(self.clock.step_after(steps))
     }
+
+    /// Whether the player wants nothing, and the next step changes only what others do.
+    pub(super) fn waits_for_others(&self) -> bool {
+        let wanted = self.wanted();
+        self.screen == Screen::Playing
+            && self.demo.is_none()
+            && wanted.is_empty()
+            && !self.controls.held.has_taps()
+            && self.quiet_steps(wanted) == 0
+    }
 }

@@ -114,18 +114,22 @@ struct Presenter {
     next_frame: Duration,
     /// Whether a frame is due and the terminal is not ready; it will report when it is.
     waits: bool,
+    /// Whether a frame was possible at the last look, and there was nothing to show.
+    is_idle: bool,
     meter: Meter,
 }
 
 impl Presenter {
     fn new(frame_time: Duration) -> Self {
         let meter = Meter::default();
-        Self { frame_time, next_frame: Duration::ZERO, waits: false, meter }
+        Self { frame_time, next_frame: Duration::ZERO, waits: false, is_idle: false, meter }
     }
 
     /// Draws or refines a frame, if one is due, and unless an event comes first.
     fn update(&mut self, app: &mut App, session: &mut Session, now: Duration) -> Result<(), Error> {
-        let is_due = is_unfinished(app, session) && now >= self.next_frame;
+        let may_be_due = now >= self.next_frame;
+        let is_due = may_be_due && is_unfinished(app, session);
+        self.is_idle = may_be_due && !is_due;
         self.waits = is_due && !session.is_ready();
         if !is_due || self.waits {
             return Ok(());
@@ -175,6 +179,9 @@ impl Presenter {
         } else {
             (is_unfinished(app, session).then_some(self.next_frame), self.next_frame)
         };
+        // While others move out of view and the player does not, a look at each step is in vain.
+        let rests = self.is_idle && app.waits_for_others();
+        let soonest = if rests { now + self.frame_time } else { soonest };
         let change = app.next_change().map(|change| change.max(soonest));
         let expiry = app.controls.held.next_expiry();
         frame.into_iter().chain(change).chain(expiry).chain(app.next_reload()).min()

@@ -191,11 +191,23 @@ impl Widget for &StatusLine {
         let to_the_right = area.right().saturating_sub((columns + gaps).saturating_sub(1));
         for (mut x, parts) in [(area.x + 1, left), (to_the_right, right)] {
             for &(text, width) in parts.iter().filter(|part| part.1 > 0) {
-                Span::raw(text).render(Rect { x, width, ..area }, buffer);
+                draw_text(text, Rect { x, width, ..area }, buffer);
                 x += width + GAP;
             }
         }
         buffer.set_style(area, Style::new().add_modifier(Modifier::REVERSED));
+    }
+}
+
+/// Draws a text. Most are ASCII, which needs no division into graphemes.
+fn draw_text(text: &str, area: Rect, buffer: &mut Buffer) {
+    if !text.bytes().all(|byte| matches!(byte, b' '..=b'~')) {
+        return Span::raw(text).render(area, buffer);
+    }
+    for (x, byte) in (area.left()..area.right()).zip(text.bytes()) {
+        if let Some(cell) = buffer.cell_mut((x, area.y)) {
+            cell.set_char(byte.into());
+        }
     }
 }
 

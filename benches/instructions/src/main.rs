@@ -4,6 +4,8 @@
 //! calls is counted: the work is done once before, so that memory has grown. Times differ from run to
 //! run and from machine to machine; these counts differ with the compiler alone.
 
+mod pipeline;
+
 use std::env;
 use std::hint::black_box;
 use std::num::NonZero;
@@ -14,7 +16,7 @@ use cellcaster::map::{self, Level, builtin};
 use cellcaster::render::{Frame, FrameSize, Options, PixelAspect, Renderable, Renderer};
 use cellcaster::world::{FieldOfView, Heading, World};
 
-const CASES: [Case; 10] = [
+const CASES: [Case; 12] = [
     Case { name: "rooms-80x48", work: Work::Frames("rooms", 80, 48) },
     Case { name: "rooms-160x90", work: Work::Frames("rooms", 160, 90) },
     Case { name: "rooms-320x200", work: Work::Frames("rooms", 320, 200) },
@@ -25,6 +27,8 @@ const CASES: [Case; 10] = [
     Case { name: "mirrors-160x90", work: Work::Frames("mirrors", 160, 90) },
     Case { name: "bodies-160x90", work: Work::Frames("spheres", 160, 90) },
     Case { name: "steps-citadel", work: Work::Steps("citadel") },
+    Case { name: "pipeline-120x40", work: Work::Pipeline(120, 40) },
+    Case { name: "encode-120x40", work: Work::Encode(120, 40) },
 ];
 
 struct Case {
@@ -38,6 +42,10 @@ enum Work {
     Frames(&'static str, u32, u32),
     /// Steps of the game on this level, in which the player runs in circles.
     Steps(&'static str),
+    /// A played script in a window of this size: from intents to bytes.
+    Pipeline(u16, u16),
+    /// The encoder's part of that.
+    Encode(u16, u16),
 }
 
 /// The number of frames, each in another direction.
@@ -101,6 +109,8 @@ fn main() {
             game.step(intents);
             counted(|| (0..STEPS).for_each(|_| _ = black_box(game.step(intents))));
         }
+        Work::Pipeline(columns, rows) => pipeline::play(columns, rows),
+        Work::Encode(columns, rows) => pipeline::encode(columns, rows),
     }
 }
 

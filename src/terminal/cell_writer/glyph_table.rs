@@ -25,13 +25,22 @@ pub(super) struct GlyphId(u16);
 pub(super) struct GlyphTable {
     glyphs: Vec<Glyph>,
     ids: BTreeMap<Glyph, GlyphId>,
-    /// The ids of ASCII characters without modifiers, which most texts consist of.
-    plain: [Option<GlyphId>; 128],
+    /// The glyphs that were looked up last, with their ids, each in its place: nearly all that a frame has.
+    recent: [(Glyph, GlyphId); RECENT],
 }
+
+/// The number of places for recent glyphs.
+const RECENT: usize = 128;
 
 impl Glyph {
     pub(super) const fn new(character: char, modifier: Modifier) -> Self {
         Self { character, modifiers: modifier.bits() }
+    }
+
+    /// Its place among the recent ones. ASCII characters with the same modifiers have different places.
+    #[inline]
+    fn place(self) -> usize {
+        (self.character as usize ^ usize::from(self.modifiers)) % RECENT
     }
 
     pub(super) fn character(self) -> char {
@@ -66,18 +75,13 @@ impl GlyphTable {
     /// The id of `glyph`, a new one if necessary; `None` if the table is full.
     #[inline]
     pub(super) fn id(&mut self, glyph: Glyph) -> Option<GlyphId> {
-        let is_plain = glyph.modifiers == 0;
-        let plain = self.plain.get(glyph.character as usize).filter(|_| is_plain);
-        plain.copied().flatten().or_else(|| self.find(glyph))
+        let (recent, id) = self.recent[glyph.place()];
+        if recent == glyph { Some(id) } else { self.find(glyph) }
     }
 
     fn find(&mut self, glyph: Glyph) -> Option<GlyphId> {
         let id = self.ids.get(&glyph).copied().or_else(|| self.add(glyph))?;
-        if glyph.modifiers == 0
-            && let Some(plain) = self.plain.get_mut(glyph.character as usize)
-        {
-            *plain = Some(id);
-        }
+        self.recent[glyph.place()] = (glyph, id);
         Some(id)
     }
 
@@ -97,9 +101,10 @@ impl GlyphTable {
 
 impl Default for GlyphTable {
     fn default() -> Self {
-        let mut glyph_table = Self { glyphs: Vec::new(), ids: BTreeMap::new(), plain: [None; 128] };
-        let mut id = |glyph| glyph_table.id(Glyph::new(glyph, Modifier::empty()));
-        let ids = [' ', '▀'].map(&mut id);
+        let [space, half] = [' ', '▀'].map(|glyph| Glyph::new(glyph, Modifier::empty()));
+        let recent = [(space, GlyphId::SPACE); RECENT];
+        let mut glyph_table = Self { glyphs: Vec::new(), ids: BTreeMap::new(), recent };
+        let ids = [space, half].map(|glyph| glyph_table.find(glyph));
         debug_assert_eq!(ids, [Some(GlyphId::SPACE), Some(GlyphId::UPPER_HALF)]);
         glyph_table
     }

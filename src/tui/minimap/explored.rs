@@ -48,6 +48,10 @@ pub struct Explored {
     elsewhere: BTreeMap<(i64, i64), u32>,
 }
 
+/// The cells of a row that have been seen: a bit for each. Beyond the last cell there are none.
+#[derive(Clone, Copy, Debug)]
+pub(super) struct SeenRow<'a>(&'a [u32]);
+
 /// The number of cells in a word.
 const WORD: u32 = u32::BITS;
 
@@ -55,13 +59,11 @@ impl Explored {
     /// Adds the cells of `world` that `camera` sees. `rays` is the width of the picture: its
     /// columns have the same rays.
     pub fn look(&mut self, world: &World, camera: &Camera, rays: u32) {
+        self.look_by(&Observer::new(world, camera), world, camera, rays);
+    }
+
+    fn look_by(&mut self, observer: &Observer, world: &World, camera: &Camera, rays: u32) {
         self.begin(world);
-        let heights = world.tiles().iter().map(|tile| {
-            let top_gap = tile.gaps().next_back().map_or(0.0, |gap| gap.bottom);
-            top_gap.max(tile.top_of_what_stands())
-        });
-        let top = heights.fold(0.0, f64::max);
-        let observer = Observer { world, eye: camera.eye(), top };
         let plane = camera.direction().perp() * camera.field_of_view.half_width();
         for column in 0..rays {
             let across = 2.0 * (f64::from(column) + 0.5) / f64::from(rays) - 1.0;
@@ -105,10 +107,14 @@ impl Explored {
     }
 
     /// Whether `cell` has been seen.
-    #[inline]
     pub fn contains(&self, cell: Cell) -> bool {
-        let is_on_map = cell.column < self.size.0 && cell.row < self.size.1;
-        is_on_map && self.words[self.word(cell)] >> (cell.column % WORD) & 1 == 1
+        self.row(cell.row).contains(cell.column)
+    }
+
+    /// The cells of a row that have been seen.
+    pub(super) fn row(&self, row: u32) -> SeenRow<'_> {
+        let words = self.words_of_a_row();
+        SeenRow(self.words.chunks_exact(words.max(1)).nth(row as usize).unwrap_or_default())
     }
 
     /// The share of cells seen, from 0 to 1, among those that are not walls.
@@ -164,6 +170,14 @@ impl Explored {
 
     fn words_of_a_row(&self) -> usize {
         self.size.0.div_ceil(WORD) as usize
+    }
+}
+
+impl SeenRow<'_> {
+    #[inline]
+    pub(super) fn contains(self, column: u32) -> bool {
+        let word = self.0.get((column / WORD) as usize);
+        word.is_some_and(|word| word >> (column % WORD) & 1 == 1)
     }
 }
 

@@ -15,7 +15,8 @@ pub(super) struct Picture<'a> {
 impl<'a> Picture<'a> {
     /// The pixels in row `y`.
     pub(super) fn row(&self, y: u32) -> PixelRow<'_, 'a> {
-        PixelRow { picture: self, y, middle: self.top_view.row(self.window.position(0, y).y) }
+        let y = self.window.y_of(y);
+        PixelRow { picture: self, y, middle: self.top_view.row(y) }
     }
 
     /// The map point at a pixel.
@@ -27,7 +28,8 @@ impl<'a> Picture<'a> {
 /// A row of pixels of a map.
 pub(super) struct PixelRow<'p, 'a> {
     picture: &'p Picture<'a>,
-    y: u32,
+    /// The position of the middle of the pixels.
+    y: f64,
     /// The points in the middle of the pixels.
     middle: Row<'p>,
 }
@@ -37,19 +39,19 @@ impl PixelRow<'_, '_> {
     #[inline]
     pub(super) fn point(&self, x: u32) -> MapPoint {
         let Picture { top_view, window } = self.picture;
-        let position = window.position(x, self.y);
+        let x = window.x_of(x);
         let [columns, rows] = window.cells_per_pixel();
         if (columns, rows) == (1, 1) {
-            return self.middle.point(position.x);
+            return self.middle.point(x);
         }
         // The pixel covers this number of cells in each direction; each is sampled at its middle.
         let along = |middle: f64, count: u32| {
             let first = middle - f64::from(count - 1) / 2.0;
             (0..count).map(move |index| first + f64::from(index))
         };
-        let points = along(position.y, rows).flat_map(|y| {
+        let points = along(self.y, rows).flat_map(|y| {
             let row = top_view.row(y);
-            along(position.x, columns).map(move |x| row.point(x))
+            along(x, columns).map(move |x| row.point(x))
         });
         points.max_by_key(|point| point.importance()).unwrap_or(MapPoint::Void)
     }

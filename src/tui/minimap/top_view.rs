@@ -5,7 +5,7 @@
 
 use glam::DVec2;
 
-use super::explored::Explored;
+use super::explored::{Explored, SeenRow};
 use super::map_point::{self, Floor, MapPoint};
 use crate::color::Rgb;
 use crate::render::Column;
@@ -60,6 +60,7 @@ impl<'a> TopView<'a> {
         let row = u32::try_from(cell_at(y)).ok();
         Row {
             view: self,
+            seen: self.explored.map(|explored| explored.row(row.unwrap_or(u32::MAX))),
             tiles: row
                 .and_then(|row| self.world.grid().rows().nth(row as usize))
                 .unwrap_or_default(),
@@ -87,6 +88,8 @@ impl<'a> TopView<'a> {
 pub(super) struct Row<'a> {
     view: &'a TopView<'a>,
     tiles: &'a [TileId],
+    /// Which cells are not hidden, if any are.
+    seen: Option<SeenRow<'a>>,
     things: &'a [Thing],
     y: f64,
     /// The number of the row, if there are tiles.
@@ -100,11 +103,11 @@ impl Row<'_> {
     pub(super) fn point(&self, x: f64) -> MapPoint {
         let column = cell_at(x) as usize;
         let Some(&tile) = self.tiles.get(column) else { return MapPoint::Void };
-        let cell = Cell { column: column as u32, row: self.number };
-        let point = DVec2::new(x, self.y);
-        if self.view.explored.is_some_and(|explored| !explored.contains(cell)) {
+        if self.seen.is_some_and(|seen| !seen.contains(column as u32)) {
             return MapPoint::Void;
         }
+        let cell = Cell { column: column as u32, row: self.number };
+        let point = DVec2::new(x, self.y);
         let floor = match self.view.tiles[usize::from(tile.0)] {
             TileAppearance::Wall(color) => return MapPoint::Wall(color),
             TileAppearance::Door(color) => return MapPoint::Door(color),

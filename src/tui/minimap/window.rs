@@ -19,6 +19,8 @@ pub(super) struct Window {
     scale: DVec2,
     /// The position of the area's top left corner, in pixels from the map's top left corner.
     corner: DVec2,
+    /// The numbers of the map's cells that a pixel shows from left to right and from top to bottom.
+    cells_per_pixel: [u32; 2],
     pixels_per_cell: u32,
 }
 
@@ -48,7 +50,9 @@ impl Window {
             corner_along(spare.x, center.x, size.x),
             corner_along(spare.y, center.y, size.y),
         );
-        Self { size, scale, corner, pixels_per_cell }
+        // Rounding up is a function call on older processors.
+        let cells_per_pixel = [scale.x, scale.y].map(|scale| (1.0 / scale).ceil() as u32);
+        Self { size, scale, corner, cells_per_pixel, pixels_per_cell }
     }
 
     /// The width of a pixel in cells of the map.
@@ -58,12 +62,17 @@ impl Window {
 
     /// The numbers of the map's cells that a pixel shows from left to right and from top to bottom.
     pub(super) fn cells_per_pixel(&self) -> [u32; 2] {
-        [self.scale.x, self.scale.y].map(|scale| (1.0 / scale).ceil() as u32)
+        self.cells_per_pixel
     }
 
-    /// The position on the map of a pixel's centre.
-    pub(super) fn position(&self, x: u32, y: u32) -> DVec2 {
-        (DVec2::new(f64::from(x), f64::from(y)) + 0.5 + self.corner) / self.scale
+    /// The distance of the centres of a column of pixels from the map's western edge.
+    pub(super) fn x_of(&self, column: u32) -> f64 {
+        (f64::from(column) + 0.5 + self.corner.x) / self.scale.x
+    }
+
+    /// The distance of the centres of a row of pixels from the map's northern edge.
+    pub(super) fn y_of(&self, row: u32) -> f64 {
+        (f64::from(row) + 0.5 + self.corner.y) / self.scale.y
     }
 
     /// The cell of the area that shows `point`.

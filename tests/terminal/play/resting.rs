@@ -62,6 +62,44 @@ fn processor_time(game: &Game) -> Option<u64> {
     Some(user?.parse::<u64>().ok()? + system?.parse::<u64>().ok()?)
 }
 
+/// How often the program has waited for something, if the system has a file with it.
+fn waits(game: &Game) -> Option<usize> {
+    let status = std::fs::read_to_string(format!("/proc/{}/status", game.process())).ok()?;
+    let count = status.lines().find_map(|line| line.strip_prefix("voluntary_ctxt_switches:"))?;
+    count.trim().parse().ok()
+}
+
+#[test]
+fn a_frame_takes_two_waits() {
+    const FRAMES: usize = 20;
+    // The terminal takes a frame of a small window at once.
+    let game = Game::with(Speaks::Kitty, (40, 12), None, &["--fps", "10"], &[]);
+    let frames = || count(&game.bytes(), END);
+    let still = frames();
+    game.press(Key::Right);
+    game.wait_until("turned", |emulator| count(emulator.bytes(), END) >= still + 2);
+    let (Some(waited), before) = (waits(&game), frames()) else { return };
+    game.wait_until("went on turning", |emulator| count(emulator.bytes(), END) >= before + FRAMES);
+    let waited = waits(&game).unwrap_or_default() - waited;
+    let drawn = frames() - before;
+    // One until the frame is due, and one for the terminal's answer.
+    assert!(waited <= 2 * drawn + FRAMES / 4, "{waited} waits for {drawn} frames");
+}
+
+#[test]
+fn what_others_do_out_of_view_is_looked_at_once_a_frame() {
+    const REST: Duration = Duration::from_secs(2);
+    let game = Game::with(Speaks::Kitty, (80, 24), Some("patrol"), &["--fps", "10"], &[]);
+    game.wait_for_rest();
+    let (Some(waited), written) = (waits(&game), game.bytes_written()) else { return };
+    let begun = Instant::now();
+    thread::sleep(REST);
+    let waited = waits(&game).unwrap_or_default() - waited;
+    let frames = begun.elapsed().as_secs_f64() * 10.0;
+    assert!((waited as f64) < 1.5 * frames, "{waited} waits in the time of {frames:.0} frames");
+    assert_eq!(game.bytes_written(), written, "a guard is in view");
+}
+
 #[test]
 fn no_more_frames_are_drawn_than_asked_for() {
     const FRAMES: usize = 15;

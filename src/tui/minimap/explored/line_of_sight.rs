@@ -6,23 +6,43 @@
 //! range. The vertical field of view does not count: the player knows the floor at their feet
 //! without looking down.
 //!
+//! Most cells have floor and ceiling at the heights of the observer's own cell. A ray through such cells
+//! sees all of them, so that it only crosses lines until it enters another tile. On the levels of the
+//! game that takes a seventh of the instructions.
+//!
 //! A mirror ends a line of sight: a map cannot show which of its cells is the one in the mirror,
 //! and reflections would reveal what is behind corners.
 
 use super::is_wall;
-use crate::cast::{MirroredWalk, Ray};
-use crate::world::{Cell, Gap, TileId, TileKind, World};
+use crate::cast::{Crossed, MirroredWalk, Ray};
+use crate::world::{Camera, Cell, Gap, Tile, TileId, TileKind, World};
 
 /// Cells in which fog leaves less than this share of light are not seen.
 const LEAST_CLEARNESS: f64 = 1.0 / 32.0;
 
 /// An eye in a world, which all rays of one position share.
 pub(super) struct Observer<'a> {
-    pub(super) world: &'a World,
+    world: &'a World,
     /// The height of the eye, in cells.
-    pub(super) eye: f64,
+    eye: f64,
     /// The greatest height of anything.
-    pub(super) top: f64,
+    top: f64,
+    /// A distance up to which fog hides nothing.
+    clear_to: f64,
+    /// The gap around the eye in the observer's cell.
+    own_gap: Gap,
+    /// What each tile is for a ray that has been in cells with that gap only.
+    passages: [Passage; TileId::MOST],
+}
+
+/// What a tile is for a ray that has been in cells with the observer's own gap only.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+enum Passage {
+    /// The same gap, in which nothing opaque stands: the ray sees the cell.
+    Same,
+    /// A block that ends the ray, which sees its face.
+    Block,
+    Other,
 }
 
 /// The range of slopes at which a ray still sees, in height per distance.
@@ -43,30 +63,78 @@ impl SlopeRange {
     }
 }
 
+impl<'a> Observer<'a> {
+    /// The eye of `camera`.
+    pub(super) fn new(world: &'a World, camera: &Camera) -> Self {
+        let eye = camera.eye();
+        let heights = world.tiles().iter().map(|tile| {
+            let top_gap = tile.gaps().next_back().map_or(0.0, |gap| gap.bottom);
+            top_gap.max(tile.top_of_what_stands())
+        });
+        let top = heights.fold(0.0, f64::max);
+        let place = camera.position().floor();
+        let tile = world.grid().tile(place.x as i64, place.y as i64);
+        let own_gap = gap_around(eye, tile.map_or(world.ground(), |tile| world.tile(tile)));
+        let clear_to = world.fog().map_or(f64::INFINITY, |fog| fog.clear_to(LEAST_CLEARNESS));
+        let passages = [Passage::Other; TileId::MOST];
+        let mut observer = Self { world, eye, top, clear_to, own_gap, passages };
+        observer.find_passages();
+        observer
+    }
+
+    /// Has rays do the same in all cells.
+    #[cfg(test)]
+    pub(super) fn forget_passages(&mut self) {
+        self.passages.fill(Passage::Other);
+    }
+
+    fn find_passages(&mut self) {
+        let Self { world, eye, top, own_gap, .. } = *self;
+        let is_inside = own_gap.bottom < eye && eye < own_gap.top && own_gap.bottom < top;
+        if !is_inside {
+            return;
+        }
+        for (passage, tile) in self.passages.iter_mut().zip(world.tiles()) {
+            let is_empty = !is_opaque_inside(tile);
+            let Some(lowest) = tile.gaps().next() else { continue };
+            let hides_all = is_empty && eye < lowest.bottom && top <= lowest.bottom;
+            if own_gap.top <= lowest.bottom || hides_all {
+                *passage = Passage::Block;
+            } else if lowest == own_gap && is_empty && !is_wall(tile.kind) {
+                *passage = Passage::Same;
+            }
+        }
+    }
+}
+
 impl Observer<'_> {
     /// Calls `see` with each cell that `ray` sees, and with `true` if it is not a wall.
     pub(super) fn follow(&self, ray: &Ray, mut see: impl FnMut(Cell, bool)) {
         let grid = self.world.grid();
-        let mut walk = MirroredWalk::new(grid, ray, 0);
-        let mut position = walk.cell(grid);
-        let mut gap = self.gap_around_eye(position);
-        let mut visible = SlopeRange { low: f64::NEG_INFINITY, high: f64::INFINITY };
-        let mut from = 0.0;
+        let walk = MirroredWalk::new(grid, ray, 0);
+        let position = walk.cell(grid);
+        let mut line = Line { walk, position, from: 0.0 };
         if let Some((cell, tile)) = position {
             see(cell, !is_wall(self.world.tile(tile).kind));
         }
+        let mut gap = self.gap_around_eye(position);
+        let mut visible = SlopeRange { low: f64::NEG_INFINITY, high: f64::INFINITY };
+        let mut crossed = if let Some((cell, tile)) = position
+            && self.passage(tile) == Passage::Same
+        {
+            let Some(crossed) = self.follow_through_same(&mut line, cell, &mut see) else { return };
+            visible = self.slopes(gap, line.from);
+            crossed
+        } else {
+            self.cross(&mut line, &mut visible, &mut see)
+        };
         loop {
-            if let Some((cell, tile)) = position
-                && let Some((t, top)) = self.standing(&walk, cell, tile)
-            {
-                see(cell, true);
-                visible.low = visible.low.max(self.slope(top, t));
-            }
-            let crossed = walk.cross(grid);
+            let Line { walk, position, from } = &mut line;
             let t = walk.distance(&crossed);
             let through_gap = self.slopes_through(gap, t);
-            if let Some((cell, tile)) = position {
-                let floor = SlopeRange { low: self.slope(gap.bottom, from), high: through_gap.low };
+            if let Some((cell, tile)) = *position {
+                let floor =
+                    SlopeRange { low: self.slope(gap.bottom, *from), high: through_gap.low };
                 if self.eye > gap.bottom && !floor.intersection(visible).is_empty() {
                     see(cell, !is_wall(self.world.tile(tile).kind));
                 }
@@ -90,8 +158,60 @@ impl Observer<'_> {
                     visible = visible.intersection(self.slopes(next, t));
                 }
             }
-            (position, from) = (crossed.into, t);
+            (*position, *from) = (crossed.into, t);
+            crossed = self.cross(&mut line, &mut visible, &mut see);
         }
+    }
+
+    /// Crosses the next line, after what stands in the cell before it.
+    fn cross(
+        &self,
+        line: &mut Line,
+        visible: &mut SlopeRange,
+        see: &mut impl FnMut(Cell, bool),
+    ) -> Crossed {
+        if let Some((cell, tile)) = line.position
+            && let Some((t, top)) = self.standing(&line.walk, cell, tile)
+        {
+            see(cell, true);
+            visible.low = visible.low.max(self.slope(top, t));
+        }
+        line.walk.cross(self.world.grid())
+    }
+
+    /// Follows a line from `cell`, in which it begins, through cells with the observer's own gap. Returns
+    /// the crossing into another one, with `line` before it, or `None` if the line ends.
+    fn follow_through_same(
+        &self,
+        line: &mut Line,
+        mut cell: Cell,
+        see: &mut impl FnMut(Cell, bool),
+    ) -> Option<Crossed> {
+        let grid = self.world.grid();
+        let mut slope = f64::NEG_INFINITY;
+        loop {
+            let crossed = line.walk.cross(grid);
+            let t = line.walk.distance(&crossed);
+            let (next, tile) = match crossed.into {
+                Some(into) if self.passage(into.1) != Passage::Other && t <= self.clear_to => into,
+                _ => return Some(crossed),
+            };
+            let slope_before = std::mem::replace(&mut slope, self.slope(self.own_gap.bottom, t));
+            // They are equal in a cell of which the ray meets a corner only.
+            if slope_before < slope {
+                see(cell, true);
+            }
+            if self.passage(tile) == Passage::Block {
+                see(next, !is_wall(self.world.tile(tile).kind));
+                return None;
+            }
+            (line.position, line.from) = (crossed.into, t);
+            cell = next;
+        }
+    }
+
+    fn passage(&self, tile: TileId) -> Passage {
+        self.passages[usize::from(tile.0)]
     }
 
     /// The lowest visible gap of `tile`, in which a ray that enters it at `t` continues.
@@ -128,7 +248,7 @@ impl Observer<'_> {
     /// The distance and the height of an opaque thing that the ray hits in `cell`.
     fn standing(&self, walk: &MirroredWalk, cell: Cell, tile: TileId) -> Option<(f64, f64)> {
         let tile = &self.world.tiles()[usize::from(tile.0)];
-        if !matches!(tile.kind, TileKind::Door(_) | TileKind::Shape(_)) {
+        if !is_opaque_inside(tile) {
             return None;
         }
         let hit = walk.standing(self.world, cell, tile.kind).hit?;
@@ -136,15 +256,34 @@ impl Observer<'_> {
     }
 
     fn is_hidden_by_fog(&self, t: f64) -> bool {
-        self.world.fog().is_some_and(|fog| fog.clearness(t) < LEAST_CLEARNESS)
+        t > self.clear_to && self.world.fog().is_some_and(|fog| fog.clearness(t) < LEAST_CLEARNESS)
     }
 
-    /// The gap that contains the eye; inside of solid rock, everything.
+    /// The gap that contains the eye.
     fn gap_around_eye(&self, position: Option<(Cell, TileId)>) -> Gap {
         let tile = position.map_or(self.world.ground(), |(_, tile)| self.world.tile(tile));
-        let around = tile.gaps().find(|gap| gap.holds(self.eye));
-        around.unwrap_or(Gap { bottom: f64::NEG_INFINITY, top: f64::INFINITY })
+        gap_around(self.eye, tile)
     }
+}
+
+/// The gap of a tile that contains the eye; inside of solid rock, everything.
+fn gap_around(eye: f64, tile: Tile) -> Gap {
+    let around = tile.gaps().find(|gap| gap.holds(eye));
+    around.unwrap_or(Gap { bottom: f64::NEG_INFINITY, top: f64::INFINITY })
+}
+
+/// Whether something opaque stands in a gap of the tile.
+fn is_opaque_inside(tile: &Tile) -> bool {
+    matches!(tile.kind, TileKind::Door(_) | TileKind::Shape(_))
+}
+
+/// A line of sight as far as it has been followed.
+struct Line {
+    walk: MirroredWalk,
+    /// The cell that it is in; `None` off the map.
+    position: Option<(Cell, TileId)>,
+    /// The distance at which it has entered that cell.
+    from: f64,
 }
 
 /// The result of entering a cell.

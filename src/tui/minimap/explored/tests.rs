@@ -9,13 +9,18 @@ use crate::world::{FieldOfView, Heading};
 
 const SIDE: usize = 12;
 
-/// A map of those rows, with tiles of several heights.
+/// A map of those rows under the sky, with tiles of several heights.
 fn world(rows: &[String]) -> World {
+    world_under("'sky'", "", rows)
+}
+
+/// A map of those rows and with that ceiling; `more` is text of its header.
+fn world_under(ceiling: &str, more: &str, rows: &[String]) -> World {
     let text = format!(
-        "ceiling = 'sky'\ngrid = '''\n{}\n'''\n[tiles]\n'#' = {{ wall = 'brick' }}\n\
+        "ceiling = {ceiling}\n{more}grid = '''\n{}\n'''\n[tiles]\n'#' = {{ wall = 'brick' }}\n\
          'H' = {{ wall = 'brick', height = 3 }}\n'l' = {{ wall = 'brick', height = 0.3 }}\n\
          '_' = {{ floor_height = -2 }}\n'=' = {{ floor_height = 0.6 }}\n\
-         'm' = {{ mirror = true, height = 3 }}\n\
+         'm' = {{ mirror = true, height = 3 }}\n'g' = {{ glass = '#80ff80' }}\n\
          [things]\n'@' = {{ start = 0 }}\n",
         rows.join("\n")
     );
@@ -129,6 +134,39 @@ fn crossed(world: &World, origin: DVec2, direction: DVec2) -> Option<Vec<(u32, u
 }
 
 proptest! {
+    /// Rays through cells with the observer's own gap see the same as others.
+    #[test]
+    fn the_shortcut_through_equal_cells_sees_the_same(
+        tiles in prop::collection::vec(0..40_usize, SIDE * SIDE),
+        place in (1..11_usize, 1..11_usize, 0..5_usize, 0..5_usize),
+        degrees in prop_oneof![(0..8_u32).prop_map(|eighth| f64::from(eighth) * 45.0), 0.0..360.0],
+        eye in prop_oneof![Just(0.5), -0.5..2.5],
+        ceiling in prop_oneof![Just("'sky'"), Just("'wood'")],
+        fog in prop::bool::weighted(0.3),
+        rays in 1..60_u32,
+    ) {
+        let (column, row, east, south) = place;
+        let character = |(index, &tile): (usize, &usize)| match b"##HHll__==mmg+".get(tile) {
+            _ if index == row * SIDE + column => '@',
+            Some(b'+') | None => '.',
+            Some(&tile) => tile.into(),
+        };
+        let drawing: Vec<char> = tiles.iter().enumerate().map(character).collect();
+        let drawing: Vec<String> = drawing.chunks(SIDE).map(|row| row.iter().collect()).collect();
+        let fog = if fog { "fog = { color = '#000000', distance = 0.7 }\n" } else { "" };
+        let world = world_under(ceiling, fog, &drawing);
+        let position = DVec2::new(column as f64 + 0.25 * east as f64, row as f64 + 0.25 * south as f64);
+        let camera = camera(position, degrees).with_eye(eye).unwrap();
+        let mut stepping = Observer::new(&world, &camera);
+        stepping.forget_passages();
+        let mut expected = Explored::default();
+        expected.look_by(&stepping, &world, &camera, rays);
+        let mut explored = Explored::default();
+        explored.look(&world, &camera, rays);
+        prop_assert_eq!(explored.cells(), expected.cells());
+        prop_assert_eq!(explored.share(), expected.share());
+    }
+
     #[test]
     fn on_a_flat_map_exactly_the_cells_that_rays_cross_are_seen(
         walls in prop::collection::vec(prop::bool::weighted(0.2), SIDE * SIDE),
